@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/context.h"
+#include "base/context_struct.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Every block is preceded by one cache line that holds its size, so that the counter can be lowered again. */
+enum { HEADER = 64 };
+
+static int available_processors(void) {
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) == 0) {
+    int count = CPU_COUNT(&set);
+    if (count > 0)
+      return count;
+  }
+  long online = sysconf(_SC_NPROCESSORS_ONLN);
+  return online > 0 ? (int)online : 1;
+}
+
+vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *options, vxm_error *error) {
+  if (!out)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "context: the output argument is NULL");
+  *out = NULL;
+  vxm_context_options chosen = VXM_CONTEXT_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+  if (chosen.version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "context: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  if (chosen.threads < 0 || chosen.threads > VXM_THREADS_MAX)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "context: %d threads; choose 0 (all processors) to %d",
+                    chosen.threads, VXM_THREADS_MAX);
+  vxm_context *context = calloc(1, sizeof *context);
+  if (!context)
+    return vxm_fail(error, VXM_ERROR_MEMORY, "context: out of memory");
+  atomic_init(&context->references, 1);
+  atomic_init(&context->used, 0);
+  atomic_init(&context->peak, 0);
+  context->limit = chosen.memory_limit ? (size_t)chosen.memory_limit : SIZE_MAX;
+  context->threads = chosen.threads ? chosen.threads : available_processors();
+  if (context->threads > VXM_THREADS_MAX)
+    context->threads = VXM_THREADS_MAX;
+  context->progress = chosen.progress;
+  context->payload = chosen.payload;
+  vxm_pool_init(&context->pool);
+  *out = context;
+  return VXM_OK;
+}
+
+vxm_status vxm_context_acquire(vxm_context **out, vxm_context *context, vxm_error *error) {
+  if (!context)
+    return vxm_context_create(out, NULL, error);
+  atomic_fetch_add_explicit(&context->references, 1, memory_order_relaxed);
+  *out = context;
+  return VXM_OK;
+}
+
+void vxm_context_release(vxm_context *context) {
+  if (!context || atomic_fetch_sub_explicit(&context->references, 1, memory_order_acq_rel) != 1)
+    return;
+  vxm_pool_destroy(&context->pool);
+  free(context);
+}
+
+void vxm_context_destroy(vxm_context *context) {
+  vxm_context_release(context);
+}
+
+int vxm_context_threads(const vxm_context *context) {
+  return context ? context->threads : available_processors();
+}
+
+uint64_t vxm_context_peak_bytes(const vxm_context *context) {
+  return context ? atomic_load_explicit(&context->peak, memory_order_relaxed) : 0;
+}
+
+/** Books `bytes`, or says why not. */
+static bool reserve(vxm_context *context, size_t bytes, vxm_error *error) {
+  size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
+  do
+    if (bytes > context->limit - (used < context->limit ? used : context->limit)) {
+      vxm_fail(error, VXM_ERROR_MEMORY_LIMIT,
+               "the memory limit of %zu MiB would be exceeded (%zu MiB in use, %zu more needed); "
+               "raise it or lower the resolution",
+               context->limit >> 20, used >> 20, (bytes >> 20) + 1);
+      return false;
+    }
+  while (!atomic_compare_exchange_weak_explicit(&context->used, &used, used + bytes, memory_order_relaxed,
+                                                memory_order_relaxed));
+  size_t now = used + bytes;
+  size_t peak = atomic_load_explicit(&context->peak, memory_order_relaxed);
+  while (peak < now && !atomic_compare_exchange_weak_explicit(&context->peak, &peak, now,
+                                                              memory_order_relaxed, memory_order_relaxed))
+    ;
+  return true;
+}
+
+static void unreserve(vxm_context *context, size_t bytes) {
+  atomic_fetch_sub_explicit(&context->used, bytes, memory_order_relaxed);
+}
+
+/** Size of a block with its header and padding, or 0 if the product overflows. */
+static size_t block_bytes(size_t count, size_t size) {
+  size_t bytes;
+  if (__builtin_mul_overflow(count, size, &bytes) || bytes > PTRDIFF_MAX - 2 * HEADER)
+    return 0;
+  return (bytes + HEADER + HEADER - 1) / HEADER * HEADER;
+}
+
+static void fail_memory(vxm_error *error, size_t bytes) {
+  vxm_fail(error, VXM_ERROR_MEMORY,
+           "out of memory (%zu MiB asked for); lower the resolution or free some memory", (bytes >> 20) + 1);
+}
+
+/* Large zeroed blocks come from calloc, whose fresh pages need no clearing; calloc aligns to 16 only, so the
+   block is placed at the next multiple of 64 and the start is remembered. */
+typedef struct block_header {
+  void *start;
+  size_t bytes;
+} block_header;
+
+static block_header *header_of(void *block) {
+  return (block_header *)((char *)block - HEADER);
+}
+
+static void *allocate(vxm_context *context, size_t count, size_t size, bool zero, vxm_error *error) {
+  size_t bytes = block_bytes(count, size);
+  if (bytes == 0) {
+    vxm_fail(error, VXM_ERROR_RANGE, "a size of %zu x %zu bytes is beyond what can be addressed", count,
+             size);
+    return NULL;
+  }
+  bytes += HEADER;
+  if (!reserve(context, bytes, error))
+    return NULL;
+  char *start = zero ? calloc(1, bytes) : malloc(bytes);
+  if (!start) {
+    unreserve(context, bytes);
+    fail_memory(error, bytes);
+    return NULL;
+  }
+  uintptr_t aligned = ((uintptr_t)start + HEADER + HEADER - 1) / HEADER * HEADER;
+  void *block = start + (aligned - (uintptr_t)start);
+  *header_of(block) = (block_header){start, bytes};
+  return block;
+}
+
+void *vxm_alloc(vxm_context *context, size_t count, size_t size, vxm_error *error) {
+  return allocate(context, count, size, false, error);
+}
+
+void *vxm_calloc(vxm_context *context, size_t count, size_t size, vxm_error *error) {
+  return allocate(context, count, size, true, error);
+}
+
+void *vxm_realloc(vxm_context *context, void *block, size_t count, size_t size, vxm_error *error) {
+  if (!block)
+    return vxm_alloc(context, count, size, error);
+  block_header old = *header_of(block);
+  size_t bytes = block_bytes(count, size);
+  if (bytes == 0)
+    return vxm_alloc(context, count, size, error);
+  bytes += HEADER;
+  if (bytes == old.bytes)
+    return block;
+  if (bytes > old.bytes && !reserve(context, bytes - old.bytes, error))
+    return NULL;
+  size_t old_shift = (size_t)((char *)block - (char *)old.start);
+  char *start = realloc(old.start, bytes);
+  if (!start) {
+    if (bytes > old.bytes)
+      unreserve(context, bytes - old.bytes);
+    fail_memory(error, bytes);
+    return NULL;
+  }
+  if (bytes < old.bytes)
+    unreserve(context, old.bytes - bytes);
+  /* realloc may land on another alignment: move the content to its aligned place. */
+  uintptr_t aligned = ((uintptr_t)start + HEADER + HEADER - 1) / HEADER * HEADER;
+  size_t shift = (size_t)(aligned - (uintptr_t)start);
+  size_t kept = (bytes < old.bytes ? bytes : old.bytes) - 2 * HEADER;
+  if (shift != old_shift)
+    memmove(start + shift, start + old_shift, kept);
+  void *moved = start + shift;
+  *header_of(moved) = (block_header){start, bytes};
+  return moved;
+}
+
+void vxm_free(vxm_context *context, void *block) {
+  if (!block)
+    return;
+  block_header header = *header_of(block);
+  unreserve(context, header.bytes);
+  free(header.start);
+}
+
+size_t vxm_memory_left(const vxm_context *context) {
+  if (context->limit == SIZE_MAX)
+    return SIZE_MAX;
+  size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
+  return used < context->limit ? context->limit - used : 0;
+}
+
+vxm_status vxm_memory_check(const vxm_context *context, uint64_t bytes, const char *what, vxm_error *error) {
+  size_t left = vxm_memory_left(context);
+  if (bytes <= left)
+    return VXM_OK;
+  return vxm_fail(error, VXM_ERROR_MEMORY_LIMIT,
+                  "%s needs %" PRIu64 " MiB, but only %zu MiB of the memory limit are left; "
+                  "raise it or lower the resolution",
+                  what, (bytes >> 20) + 1, left >> 20);
+}
+
+vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
+                    vxm_error *error) {
+  if (needed <= *capacity)
+    return VXM_OK;
+  size_t wanted = *capacity < 16 ? 16 : *capacity + *capacity / 2;
+  if (wanted < needed)
+    wanted = needed;
+  vxm_error local = VXM_ERROR_INIT;
+  void *grown = vxm_realloc(context, *array, wanted, size, &local);
+  if (!grown) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  *array = grown;
+  *capacity = wanted;
+  return VXM_OK;
+}
+
+vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error) {
+  if (!context->progress || context->progress(phase, fraction, context->payload) == 0)
+    return VXM_OK;
+  return vxm_fail(error, VXM_ERROR_CANCELLED, "cancelled while %s", phase);
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Contexts inside the library: reference counts, memory under a limit, progress. */
+#ifndef VXM_BASE_CONTEXT_H
+#define VXM_BASE_CONTEXT_H
+
+#include "base/error.h"
+
+/** NULL makes a new default context, otherwise adds a reference. Every object holds one. */
+vxm_status vxm_context_acquire(vxm_context **out, vxm_context *context, vxm_error *error);
+void vxm_context_release(vxm_context *context);
+
+/**
+ * Allocates count * size bytes, aligned to 64 bytes, counted against the limit.
+ * Returns NULL and fills `error` (VXM_ERROR_MEMORY or VXM_ERROR_MEMORY_LIMIT) when it cannot; the product is
+ * checked. A count of 0 gives a valid pointer. Thread-safe.
+ */
+void *vxm_alloc(vxm_context *context, size_t count, size_t size, vxm_error *error);
+/** As vxm_alloc, zeroed (cheap for large blocks: the system hands out zero pages). */
+void *vxm_calloc(vxm_context *context, size_t count, size_t size, vxm_error *error);
+/** Grows or shrinks a block, keeping its content; on failure the block stays valid and NULL is returned. */
+void *vxm_realloc(vxm_context *context, void *block, size_t count, size_t size, vxm_error *error);
+/** Frees a block of this context; NULL is allowed. */
+void vxm_free(vxm_context *context, void *block);
+
+/** Bytes that could still be allocated; SIZE_MAX without a limit. */
+size_t vxm_memory_left(const vxm_context *context);
+/**
+ * Checks an estimate before work starts: VXM_OK, or VXM_ERROR_MEMORY_LIMIT with a message that names `what`
+ * and both figures.
+ */
+vxm_status vxm_memory_check(const vxm_context *context, uint64_t bytes, const char *what, vxm_error *error);
+
+/**
+ * Makes room for at least `needed` elements in a growing array (doubling), and updates *capacity.
+ * `*array` is a block of this context or NULL.
+ */
+vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
+                    vxm_error *error);
+
+/** Reports progress from the calling thread; VXM_ERROR_CANCELLED if the callback asks to stop. */
+vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error);
+
+#endif

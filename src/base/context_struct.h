@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The fields of a context; for context.c and threads.c only. */
+#ifndef VXM_BASE_CONTEXT_STRUCT_H
+#define VXM_BASE_CONTEXT_STRUCT_H
+
+#include "base/context.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+
+enum { VXM_THREADS_MAX = 256 };
+
+typedef struct vxm_pool {
+  pthread_mutex_t owner; /**< held by the caller whose work runs */
+  pthread_mutex_t mutex;
+  pthread_cond_t wake, done;
+  pthread_t *threads;
+  int started;    /**< workers that exist */
+  int busy;       /**< workers still in the present round */
+  uint64_t round; /**< number of the present round */
+  bool quit;
+  void (*function)(size_t task, int worker, void *payload);
+  void *payload;
+  size_t task_count;
+  atomic_size_t next_task;
+} vxm_pool;
+
+void vxm_pool_init(vxm_pool *pool);
+void vxm_pool_destroy(vxm_pool *pool);
+
+struct vxm_context {
+  atomic_uint references;
+  atomic_size_t used, peak;
+  size_t limit;
+  int threads;
+  vxm_progress_fn progress;
+  void *payload;
+  vxm_pool pool;
+};
+
+#endif

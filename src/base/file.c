@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- Input ---- */
+
+static vxm_status read_stream(vxm_input *input, int descriptor, vxm_error *error) {
+  void *block = NULL;
+  size_t capacity = 0, size = 0;
+  for (;;) {
+    vxm_status status = vxm_grow(input->context, &block, &capacity, size + 65536, 1, error);
+    if (status != VXM_OK) {
+      vxm_free(input->context, block);
+      return status;
+    }
+    ssize_t got = read(descriptor, (char *)block + size, capacity - size);
+    if (got < 0 && errno == EINTR)
+      continue;
+    if (got < 0) {
+      vxm_fail_errno(error, input->name, "cannot read");
+      vxm_free(input->context, block);
+      return VXM_ERROR_IO;
+    }
+    if (got == 0)
+      break;
+    size += (size_t)got;
+  }
+  input->block = block;
+  input->data = block;
+  input->size = size;
+  return VXM_OK;
+}
+
+vxm_status vxm_input_open(vxm_input *out, vxm_context *context, const char *path, vxm_error *error) {
+  *out = (vxm_input){.name = path, .context = context};
+  if (strcmp(path, "-") == 0) {
+    out->name = "<stdin>";
+    return read_stream(out, STDIN_FILENO, error);
+  }
+  int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0)
+    return vxm_fail_errno(error, path, "cannot open");
+  struct stat info;
+  vxm_status status = VXM_OK;
+  if (fstat(descriptor, &info) != 0)
+    status = vxm_fail_errno(error, path, "cannot open");
+  else if (S_ISDIR(info.st_mode)) {
+    errno = EISDIR;
+    status = vxm_fail_errno(error, path, "cannot read");
+  } else if (S_ISREG(info.st_mode) && info.st_size > 0) {
+    out->size = (size_t)info.st_size;
+    /* MAP_POPULATE maps the pages in one call rather than by one fault each. */
+    void *mapping = mmap(NULL, out->size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
+    if (mapping == MAP_FAILED)
+      status = read_stream(out, descriptor, error);
+    else {
+      out->mapping = mapping;
+      out->data = mapping;
+      posix_madvise(mapping, out->size, POSIX_MADV_SEQUENTIAL);
+    }
+  } else
+    status = read_stream(out, descriptor, error);
+  close(descriptor);
+  return status;
+}
+
+void vxm_input_close(vxm_input *input) {
+  if (input->mapping)
+    munmap(input->mapping, input->size);
+  vxm_free(input->context, input->block);
+  input->mapping = NULL;
+  input->block = NULL;
+}
+
+/* ---- Output ---- */
+
+enum { BUFFER = 1 << 16, ROOM_MAX = 4096 };
+
+struct vxm_output {
+  vxm_context *context;
+  int descriptor;
+  int failure; /**< errno of the first failed write */
+  bool is_stdout;
+  size_t used;
+  char *path;
+  char *temporary;
+  char buffer[BUFFER + ROOM_MAX];
+};
+
+static void output_free(vxm_output *output) {
+  vxm_context *context = output->context;
+  free(output->path);
+  free(output->temporary);
+  vxm_free(context, output);
+}
+
+/** Creates a file of a new name beside the output, with the rights that a plain open would give. */
+static int open_temporary(vxm_output *output, size_t size) {
+  for (int attempt = 0; attempt < 1000; attempt++) {
+    snprintf(output->temporary, size, "%s.%ld-%d.tmp", output->path, (long)getpid(), attempt);
+    int descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 || errno != EEXIST)
+      return descriptor;
+  }
+  return -1;
+}
+
+vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *path, vxm_error *error) {
+  *out = NULL;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_output *output = vxm_alloc(context, 1, sizeof *output, &local);
+  if (!output) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  output->context = context;
+  output->failure = 0;
+  output->used = 0;
+  output->is_stdout = strcmp(path, "-") == 0;
+  output->path = strdup(path);
+  size_t temporary_size = strlen(path) + 48;
+  output->temporary = calloc(1, temporary_size);
+  if (!output->path || !output->temporary) {
+    output_free(output);
+    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+  }
+  if (output->is_stdout) {
+    output->descriptor = STDOUT_FILENO;
+    *out = output;
+    return VXM_OK;
+  }
+  struct stat info;
+  if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+    /* A device or pipe (/dev/null) cannot be replaced by a rename: write straight to it. */
+    output->descriptor = S_ISDIR(info.st_mode) ? (errno = EISDIR, -1) : open(path, O_WRONLY | O_CLOEXEC);
+  else
+    output->descriptor = open_temporary(output, temporary_size);
+  if (output->descriptor < 0) {
+    vxm_fail_errno(error, path, "cannot write");
+    output_free(output);
+    return VXM_ERROR_IO;
+  }
+  *out = output;
+  return VXM_OK;
+}
+
+static void write_all(vxm_output *output, const char *data, size_t size) {
+  while (size > 0 && !output->failure) {
+    size_t piece = size < (1u << 30) ? size : (1u << 30);
+    ssize_t done = write(output->descriptor, data, piece);
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done < 0) {
+      output->failure = errno;
+      return;
+    }
+    data += done;
+    size -= (size_t)done;
+  }
+}
+
+static void flush(vxm_output *output) {
+  write_all(output, output->buffer, output->used);
+  output->used = 0;
+}
+
+void vxm_output_write(vxm_output *output, const void *data, size_t size) {
+  if (size > BUFFER - output->used) {
+    flush(output);
+    if (size >= BUFFER) {
+      write_all(output, data, size);
+      return;
+    }
+  }
+  memcpy(output->buffer + output->used, data, size);
+  output->used += size;
+}
+
+char *vxm_output_reserve(vxm_output *output, size_t room) {
+  if (room > BUFFER + ROOM_MAX - output->used)
+    flush(output);
+  return output->buffer + output->used;
+}
+
+void vxm_output_advance(vxm_output *output, size_t used) {
+  output->used += used;
+  if (output->used >= BUFFER)
+    flush(output);
+}
+
+void vxm_output_printf(vxm_output *output, const char *format, ...) {
+  char *room = vxm_output_reserve(output, ROOM_MAX);
+  va_list arguments;
+  va_start(arguments, format);
+  int written = vsnprintf(room, ROOM_MAX, format, arguments);
+  va_end(arguments);
+  if (written > 0)
+    vxm_output_advance(output, (size_t)written < ROOM_MAX ? (size_t)written : ROOM_MAX - 1);
+}
+
+bool vxm_output_failed(const vxm_output *output) {
+  return output->failure != 0;
+}
+
+void vxm_output_abort(vxm_output *output) {
+  if (!output)
+    return;
+  if (!output->is_stdout) {
+    close(output->descriptor);
+    if (output->temporary[0])
+      unlink(output->temporary);
+  }
+  output_free(output);
+}
+
+vxm_status vxm_output_commit(vxm_output *output, vxm_error *error) {
+  flush(output);
+  if (!output->failure && !output->is_stdout) {
+    if (close(output->descriptor) != 0)
+      output->failure = errno;
+    output->descriptor = -1;
+    if (!output->failure && output->temporary[0] && rename(output->temporary, output->path) != 0)
+      output->failure = errno;
+  }
+  if (output->failure) {
+    errno = output->failure;
+    vxm_fail_errno(error, output->is_stdout ? "<stdout>" : output->path, "cannot write");
+    if (output->temporary[0])
+      unlink(output->temporary);
+    if (!output->is_stdout && output->descriptor >= 0)
+      close(output->descriptor);
+    output_free(output);
+    return VXM_ERROR_IO;
+  }
+  output_free(output);
+  return VXM_OK;
+}
+
+/* ---- Names ---- */
+
+const char *vxm_path_extension(const char *path) {
+  const char *slash = strrchr(path, '/');
+  const char *name = slash ? slash + 1 : path;
+  const char *dot = strrchr(name, '.');
+  return dot ? dot + 1 : "";
+}
+
+bool vxm_text_equal_nocase(const char *a, const char *b) {
+  for (; *a && *b; a++, b++) {
+    unsigned char x = (unsigned char)*a, y = (unsigned char)*b;
+    if (x >= 'A' && x <= 'Z')
+      x = (unsigned char)(x + 32);
+    if (y >= 'A' && y <= 'Z')
+      y = (unsigned char)(y + 32);
+    if (x != y)
+      return false;
+  }
+  return *a == *b;
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** A short list of warnings that belongs to an object. */
+#ifndef VXM_BASE_NOTES_H
+#define VXM_BASE_NOTES_H
+
+#include "base/error.h"
+
+enum { VXM_NOTES_MAX = 16, VXM_NOTE_LENGTH = 320 };
+
+/**
+ * Readers gather each kind of damage into one line ("line 7: ...; 12 such lines in all"), so a fixed number
+ * is enough; what comes after the last place is counted in `dropped`.
+ */
+typedef struct vxm_notes {
+  int count;
+  int dropped;
+  char text[VXM_NOTES_MAX][VXM_NOTE_LENGTH];
+} vxm_notes;
+
+void vxm_note(vxm_notes *notes, const char *format, ...) VXM_PRINTF(2, 3);
+
+#endif

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/threads.h"
+#include "base/context_struct.h"
+
+#include <stdlib.h>
+
+typedef struct worker_start {
+  vxm_pool *pool;
+  int worker;
+} worker_start;
+
+void vxm_pool_init(vxm_pool *pool) {
+  pthread_mutex_init(&pool->owner, NULL);
+  pthread_mutex_init(&pool->mutex, NULL);
+  pthread_cond_init(&pool->wake, NULL);
+  pthread_cond_init(&pool->done, NULL);
+}
+
+static void run_tasks(vxm_pool *pool, int worker) {
+  for (;;) {
+    size_t task = atomic_fetch_add_explicit(&pool->next_task, 1, memory_order_relaxed);
+    if (task >= pool->task_count)
+      return;
+    pool->function(task, worker, pool->payload);
+  }
+}
+
+static void *worker_main(void *argument) {
+  worker_start start = *(worker_start *)argument;
+  free(argument);
+  vxm_pool *pool = start.pool;
+  uint64_t seen = 0;
+  pthread_mutex_lock(&pool->mutex);
+  for (;;) {
+    while (!pool->quit && pool->round == seen)
+      pthread_cond_wait(&pool->wake, &pool->mutex);
+    if (pool->quit)
+      break;
+    seen = pool->round;
+    pthread_mutex_unlock(&pool->mutex);
+    run_tasks(pool, start.worker);
+    pthread_mutex_lock(&pool->mutex);
+    if (--pool->busy == 0)
+      pthread_cond_signal(&pool->done);
+  }
+  pthread_mutex_unlock(&pool->mutex);
+  return NULL;
+}
+
+/** Starts the workers on first use; fewer than asked for is not an error, the work is only slower. */
+static void start_workers(vxm_pool *pool, int wanted) {
+  if (pool->threads)
+    return;
+  pool->threads = calloc((size_t)wanted, sizeof *pool->threads);
+  if (!pool->threads)
+    return;
+  while (pool->started < wanted) {
+    worker_start *start = malloc(sizeof *start);
+    if (!start)
+      return;
+    *start = (worker_start){pool, pool->started + 1};
+    if (pthread_create(&pool->threads[pool->started], NULL, worker_main, start) != 0) {
+      free(start);
+      return;
+    }
+    pool->started++;
+  }
+}
+
+void vxm_pool_destroy(vxm_pool *pool) {
+  pthread_mutex_lock(&pool->mutex);
+  pool->quit = true;
+  pthread_cond_broadcast(&pool->wake);
+  pthread_mutex_unlock(&pool->mutex);
+  for (int i = 0; i < pool->started; i++)
+    pthread_join(pool->threads[i], NULL);
+  free(pool->threads);
+  pthread_cond_destroy(&pool->done);
+  pthread_cond_destroy(&pool->wake);
+  pthread_mutex_destroy(&pool->mutex);
+  pthread_mutex_destroy(&pool->owner);
+}
+
+void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void *payload) {
+  vxm_pool *pool = &context->pool;
+  /* trylock fails for a nested loop and for a second caller: both work alone. */
+  if (context->threads < 2 || count < 2 || pthread_mutex_trylock(&pool->owner) != 0) {
+    for (size_t task = 0; task < count; task++)
+      function(task, 0, payload);
+    return;
+  }
+  pthread_mutex_lock(&pool->mutex);
+  if (pool->round == 0)
+    start_workers(pool, context->threads - 1);
+  pool->function = function;
+  pool->payload = payload;
+  pool->task_count = count;
+  atomic_store_explicit(&pool->next_task, 0, memory_order_relaxed);
+  pool->busy = pool->started;
+  pool->round++;
+  pthread_cond_broadcast(&pool->wake);
+  pthread_mutex_unlock(&pool->mutex);
+
+  run_tasks(pool, 0);
+
+  pthread_mutex_lock(&pool->mutex);
+  while (pool->busy > 0)
+    pthread_cond_wait(&pool->done, &pool->mutex);
+  pthread_mutex_unlock(&pool->mutex);
+  pthread_mutex_unlock(&pool->owner);
+}

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "grid/bitgrid.h"
+#include "base/hash.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+vxm_status vxm_space_check(const vxm_space *space, vxm_error *error) {
+  static const char axis_name[3] = {'x', 'y', 'z'};
+  for (int a = 0; a < 3; a++) {
+    if (space->dims[a] < 1 || space->dims[a] > VXM_DIM_MAX)
+      return vxm_fail(error, space->dims[a] < 1 ? VXM_ERROR_ARGUMENT : VXM_ERROR_RANGE,
+                      "%" PRId64 " voxels along %c; choose 1 to %" PRId64, space->dims[a], axis_name[a],
+                      VXM_DIM_MAX);
+    if (!isfinite(space->origin[a]) || !isfinite(space->voxel_size[a]) || space->voxel_size[a] <= 0)
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "voxel size %g and origin %g along %c; both must be finite and the "
+                      "size positive",
+                      space->voxel_size[a], space->origin[a], axis_name[a]);
+  }
+  /* 2^14 words x 2^20 x 2^20 rows fit 64 bits; bytes must fit the address space too. */
+  uint64_t words = ((uint64_t)space->dims[0] + 63) / 64 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
+  if (words > PTRDIFF_MAX / 8 - 4096)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "%" PRId64 " x %" PRId64 " x %" PRId64 " voxels are beyond what can be "
+                    "addressed; lower the resolution",
+                    space->dims[0], space->dims[1], space->dims[2]);
+  return VXM_OK;
+}
+
+uint64_t vxm_space_bytes(const vxm_space *space) {
+  return ((uint64_t)space->dims[0] + 63) / 64 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2] * 8;
+}
+
+vxm_status vxm_grid_create(vxm_grid **out, vxm_context *context, const vxm_space *space, vxm_error *error) {
+  if (!out || !space)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
+  *out = NULL;
+  vxm_status status = vxm_space_check(space, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_context *owner;
+  status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_grid *grid = vxm_calloc(owner, 1, sizeof *grid, &local);
+  if (grid) {
+    grid->context = owner;
+    grid->space = *space;
+    grid->row_words = ((size_t)space->dims[0] + 63) / 64;
+    grid->slice_words = grid->row_words * (size_t)space->dims[1];
+    grid->word_count = grid->slice_words * (size_t)space->dims[2];
+    grid->words = vxm_calloc(owner, grid->word_count, sizeof *grid->words, &local);
+  }
+  if (!grid || !grid->words) {
+    vxm_free(owner, grid);
+    vxm_context_release(owner);
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  *out = grid;
+  return VXM_OK;
+}
+
+void vxm_grid_destroy(vxm_grid *grid) {
+  if (!grid)
+    return;
+  vxm_context *context = grid->context;
+  vxm_free(context, grid->words);
+  vxm_free(context, grid);
+  vxm_context_release(context);
+}
+
+static bool inside(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
+  const int64_t *dims = grid->space.dims;
+  return i >= 0 && j >= 0 && k >= 0 && i < dims[0] && j < dims[1] && k < dims[2];
+}
+
+bool vxm_grid_get(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
+  return inside(grid, i, j, k) && (vxm_grid_row(grid, j, k)[i / 64] >> (i % 64) & 1);
+}
+
+void vxm_grid_set(vxm_grid *grid, int64_t i, int64_t j, int64_t k, bool value) {
+  if (!inside(grid, i, j, k))
+    return;
+  uint64_t *word = vxm_grid_row(grid, j, k) + i / 64, bit = UINT64_C(1) << (i % 64);
+  *word = value ? *word | bit : *word & ~bit;
+}
+
+const vxm_space *vxm_grid_space(const vxm_grid *grid) {
+  return &grid->space;
+}
+
+int64_t vxm_grid_row_words(const vxm_grid *grid) {
+  return (int64_t)grid->row_words;
+}
+
+const uint64_t *vxm_grid_words(const vxm_grid *grid) {
+  return grid->words;
+}
+
+int64_t vxm_grid_count(const vxm_grid *grid) {
+  int64_t count = 0;
+  for (size_t w = 0; w < grid->word_count; w++)
+    count += vxm_popcount(grid->words[w]);
+  return count;
+}
+
+uint64_t vxm_grid_hash(const vxm_grid *grid) {
+  uint64_t hash = 0;
+  for (int a = 0; a < 3; a++)
+    hash = vxm_hash_word(hash, (uint64_t)grid->space.dims[a]);
+  for (size_t w = 0; w < grid->word_count; w++)
+    hash = vxm_hash_word(hash, grid->words[w]);
+  return hash;
+}
+
+void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes) {
+  size_t nx = (size_t)grid->space.dims[0], ny = (size_t)grid->space.dims[1], nz = (size_t)grid->space.dims[2];
+  for (size_t k = 0; k < nz; k++)
+    for (size_t j = 0; j < ny; j++) {
+      const uint64_t *row = vxm_grid_row(grid, (int64_t)j, (int64_t)k);
+      uint8_t *column = bytes + j * nz + k;
+      for (size_t i = 0; i < nx; i++)
+        column[i * ny * nz] = (uint8_t)(row[i / 64] >> (i % 64) & 1);
+    }
+}
+
+int64_t vxm_grid_warning_count(const vxm_grid *grid) {
+  return grid->notes.count;
+}
+
+const char *vxm_grid_warning(const vxm_grid *grid, int64_t index) {
+  return index >= 0 && index < grid->notes.count ? grid->notes.text[index] : "";
+}
+
+vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b, vxm_error *error) {
+  if (!out || !a || !b)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "compare: an argument is NULL");
+  *out = (vxm_comparison){.iou = 1};
+  const int64_t *p = a->space.dims, *q = b->space.dims;
+  if (memcmp(p, q, sizeof a->space.dims) != 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "compare: the grids have different dimensions, %" PRId64 "x%" PRId64 "x%" PRId64
+                    " and %" PRId64 "x%" PRId64 "x%" PRId64 "; make both in one space (--like)",
+                    p[0], p[1], p[2], q[0], q[1], q[2]);
+  for (size_t w = 0; w < a->word_count; w++) {
+    out->both += vxm_popcount(a->words[w] & b->words[w]);
+    out->only_a += vxm_popcount(a->words[w] & ~b->words[w]);
+    out->only_b += vxm_popcount(~a->words[w] & b->words[w]);
+  }
+  out->voxels_a = out->both + out->only_a;
+  out->voxels_b = out->both + out->only_b;
+  int64_t any = out->both + out->only_a + out->only_b;
+  if (any > 0)
+    out->iou = (double)out->both / (double)any;
+  return VXM_OK;
+}

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/soup.h"
+
+#include <string.h>
+
+vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *format, vxm_error *error) {
+  *out = NULL;
+  vxm_context *owner;
+  vxm_status status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_soup *soup = vxm_calloc(owner, 1, sizeof *soup, &local);
+  if (soup) {
+    soup->context = owner;
+    soup->format = format;
+    soup->offsets = vxm_calloc(owner, 1, sizeof *soup->offsets, &local);
+  }
+  if (!soup || !soup->offsets) {
+    vxm_free(owner, soup);
+    vxm_context_release(owner);
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  *out = soup;
+  return VXM_OK;
+}
+
+void vxm_soup_destroy(vxm_soup *soup) {
+  if (!soup)
+    return;
+  vxm_context *context = soup->context;
+  for (size_t t = 0; t < soup->tag_count; t++)
+    vxm_free(context, soup->tags[t]);
+  vxm_free(context, soup->tags);
+  vxm_free(context, soup->face_tags);
+  vxm_free(context, soup->indices);
+  vxm_free(context, soup->offsets);
+  vxm_free(context, soup->positions);
+  vxm_free(context, soup);
+  vxm_context_release(context);
+}
+
+vxm_status vxm_soup_reserve(vxm_soup *soup, size_t vertices, size_t faces, size_t corners, vxm_error *error) {
+  vxm_context *context = soup->context;
+  if (vertices > VXM_VERTICES_MAX)
+    return vxm_fail(error, VXM_ERROR_RANGE, "%zu vertices; at most %zu can be held: split the mesh", vertices,
+                    VXM_VERTICES_MAX);
+  vxm_status status = vxm_grow(context, (void **)&soup->positions, &soup->vertex_capacity, vertices,
+                               3 * sizeof *soup->positions, error);
+  if (status == VXM_OK && faces > soup->face_capacity) {
+    /* offsets hold one more element than there are faces */
+    size_t capacity = soup->face_capacity;
+    status = vxm_grow(context, (void **)&soup->offsets, &capacity, faces + 1, sizeof *soup->offsets, error);
+    if (status == VXM_OK)
+      soup->face_capacity = capacity - 1;
+  }
+  if (status == VXM_OK)
+    status = vxm_grow(context, (void **)&soup->indices, &soup->corner_capacity, corners,
+                      sizeof *soup->indices, error);
+  return status;
+}
+
+vxm_status vxm_soup_add_vertex(vxm_soup *soup, double x, double y, double z, vxm_error *error) {
+  if (soup->vertex_count == soup->vertex_capacity) {
+    vxm_status status = vxm_soup_reserve(soup, soup->vertex_count + 1, 0, 0, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  double *p = soup->positions + 3 * soup->vertex_count++;
+  p[0] = x;
+  p[1] = y;
+  p[2] = z;
+  return VXM_OK;
+}
+
+vxm_status vxm_soup_add_face(vxm_soup *soup, const uint32_t *corners, size_t count, vxm_error *error) {
+  if (soup->face_count == soup->face_capacity || count > soup->corner_capacity - soup->corner_count) {
+    vxm_status status = vxm_soup_reserve(soup, 0, soup->face_count + 1, soup->corner_count + count, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  if (count > 0)
+    memcpy(soup->indices + soup->corner_count, corners, count * sizeof *corners);
+  soup->corner_count += count;
+  soup->offsets[++soup->face_count] = soup->corner_count;
+  return VXM_OK;
+}
+
+vxm_status vxm_soup_add_tag(vxm_soup *soup, const char *name, size_t length, uint32_t *tag,
+                            vxm_error *error) {
+  vxm_status status = vxm_grow(soup->context, (void **)&soup->tags, &soup->tag_capacity, soup->tag_count + 1,
+                               sizeof *soup->tags, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_error local = VXM_ERROR_INIT;
+  char *copy = vxm_alloc(soup->context, length + 1, 1, &local);
+  if (!copy) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  memcpy(copy, name, length);
+  copy[length] = '\0';
+  *tag = (uint32_t)soup->tag_count;
+  soup->tags[soup->tag_count++] = copy;
+  return VXM_OK;
+}
+
+vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error) {
+  vxm_soup *copy;
+  vxm_status status = vxm_soup_create(&copy, soup->context, soup->format, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_soup_reserve(copy, soup->vertex_count, soup->face_count, soup->corner_count, error);
+  if (status == VXM_OK && soup->face_tags) {
+    vxm_error local = VXM_ERROR_INIT;
+    copy->face_tags = vxm_alloc(copy->context, soup->face_count, sizeof *copy->face_tags, &local);
+    if (!copy->face_tags) {
+      status = local.code;
+      if (error)
+        *error = local;
+    } else
+      memcpy(copy->face_tags, soup->face_tags, soup->face_count * sizeof *copy->face_tags);
+  }
+  for (size_t t = 0; status == VXM_OK && t < soup->tag_count; t++) {
+    uint32_t tag;
+    status = vxm_soup_add_tag(copy, soup->tags[t], strlen(soup->tags[t]), &tag, error);
+  }
+  if (status != VXM_OK) {
+    vxm_soup_destroy(copy);
+    *out = NULL;
+    return status;
+  }
+  if (soup->vertex_count)
+    memcpy(copy->positions, soup->positions, 3 * soup->vertex_count * sizeof *copy->positions);
+  memcpy(copy->offsets, soup->offsets, (soup->face_count + 1) * sizeof *copy->offsets);
+  if (soup->corner_count)
+    memcpy(copy->indices, soup->indices, soup->corner_count * sizeof *copy->indices);
+  copy->vertex_count = soup->vertex_count;
+  copy->face_count = soup->face_count;
+  copy->corner_count = soup->corner_count;
+  copy->notes = soup->notes;
+  *out = copy;
+  return VXM_OK;
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The polygon soup: what every room hands on. A vxm_mesh of the public header is a soup. */
+#ifndef VXM_MESH_SOUP_H
+#define VXM_MESH_SOUP_H
+
+#include "base/context.h"
+#include "base/notes.h"
+
+/** Vertices are numbered by uint32_t to halve the memory; the largest number is kept free as "none". */
+#define VXM_NO_VERTEX UINT32_MAX
+#define VXM_VERTICES_MAX ((size_t)UINT32_MAX - 1)
+
+typedef struct vxm_mesh vxm_soup;
+
+/**
+ * Invariants: offsets[0] = 0, offsets do not decrease, offsets[face_count] = corner_count,
+ * indices[c] < vertex_count. A face may have any number of corners, also fewer than 3, and may repeat a
+ * corner: that is for the census to count and for repair to remove. Positions may be NaN or infinite.
+ */
+struct vxm_mesh {
+  vxm_context *context; /**< one reference held */
+  double *positions;    /**< vertex_count x 3 */
+  uint64_t *offsets;    /**< face_count + 1; never NULL in a finished soup */
+  uint32_t *indices;    /**< corner_count */
+  uint32_t *face_tags;  /**< face_count, or NULL when tag_count is 0 */
+  char **tags;          /**< tag_count names, each a block of the context */
+  size_t vertex_count, face_count, corner_count, tag_count;
+  size_t vertex_capacity, face_capacity, corner_capacity, tag_capacity; /**< room while a soup grows */
+  const char *format;                                                   /**< static text, such as "off" */
+  vxm_notes notes;
+};
+
+/** An empty soup in a context (NULL = a new one). */
+vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *format, vxm_error *error);
+/** Same as vxm_mesh_destroy; NULL is allowed. */
+void vxm_soup_destroy(vxm_soup *soup);
+/** Copies everything, notes included. */
+vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
+
+/** Makes room for at least so many elements in all (amortized doubling beyond what is there). */
+vxm_status vxm_soup_reserve(vxm_soup *soup, size_t vertices, size_t faces, size_t corners, vxm_error *error);
+/** Adds a vertex; VXM_ERROR_RANGE beyond VXM_VERTICES_MAX. */
+vxm_status vxm_soup_add_vertex(vxm_soup *soup, double x, double y, double z, vxm_error *error);
+/** Adds a face; the corners must exist by the time the soup is finished. */
+vxm_status vxm_soup_add_face(vxm_soup *soup, const uint32_t *corners, size_t count, vxm_error *error);
+/** Adds a tag name (copied) and gives its number. */
+vxm_status vxm_soup_add_tag(vxm_soup *soup, const char *name, size_t length, uint32_t *tag, vxm_error *error);
+
+/** Corners of a face. */
+static inline const uint32_t *vxm_face(const vxm_soup *soup, size_t face, size_t *count) {
+  uint64_t begin = soup->offsets[face];
+  *count = (size_t)(soup->offsets[face + 1] - begin);
+  return soup->indices + begin;
+}
+
+static inline const double *vxm_position(const vxm_soup *soup, size_t vertex) {
+  return soup->positions + 3 * vertex;
+}
+
+#endif

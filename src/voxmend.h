@@ -1,0 +1,471 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * voxmend: repairs messy meshes and turns them into voxel grids.
+ *
+ * Conventions (doc/conventions.md has them in full):
+ *  - Every fallible call returns a vxm_status, 0 for success, and describes a failure in one line in the
+ *    caller's vxm_error, which may be NULL. After a failure nothing is created and output arguments are NULL
+ * or 0.
+ *  - `out` arguments come first, options next, the error last. A NULL options pointer means defaults, and so
+ * does a field that is zero; start from the matching VXM_..._INIT.
+ *  - What a call creates belongs to the caller and has a destroy function that accepts NULL. What a getter
+ *    returns belongs to its object and lives as long as it.
+ *  - Distinct objects may be used from distinct threads at the same time, also when they share a context.
+ *    One object may be read by many threads at once.
+ *  - The same input gives the same bits whatever the number of threads.
+ */
+#ifndef VOXMEND_H
+#define VOXMEND_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define VXM_API __attribute__((visibility("default")))
+#else
+#define VXM_API
+#endif
+
+#define VXM_VERSION_MAJOR 0
+#define VXM_VERSION_MINOR 1
+#define VXM_VERSION_PATCH 0
+
+/** Version of the library that runs, "MAJOR.MINOR.PATCH". */
+VXM_API const char *vxm_version(void);
+
+/* ---- Status and errors ------------------------------------------------------------------------------------
+ */
+
+/** What a call came to, and what its caller can do next. */
+typedef enum vxm_status {
+  VXM_OK = 0,         /**< done */
+  VXM_ERROR_ARGUMENT, /**< an argument is out of its range: mend the call */
+  VXM_ERROR_IO,       /**< the system refused to open, read, write or rename: check path, rights and space */
+  VXM_ERROR_FORMAT,   /**< the content is not a known format or is damaged beyond reading: mend the file */
+  VXM_ERROR_EMPTY,    /**< there is nothing to work on (no face with area, no voxel): check the input */
+  VXM_ERROR_MEMORY,   /**< the system has no memory left: free some, or lower the resolution */
+  VXM_ERROR_MEMORY_LIMIT, /**< the context's limit would be exceeded: raise it, or lower the resolution */
+  VXM_ERROR_RANGE, /**< a size or coordinate is beyond what can be computed: scale down or choose another grid
+                    */
+  VXM_ERROR_UNAVAILABLE, /**< this build lacks an optional library: rebuild with it, or use another format */
+  VXM_ERROR_CANCELLED    /**< the progress callback asked to stop: nothing was made */
+} vxm_status;
+
+/** Short fixed name of a status, such as "format". */
+VXM_API const char *vxm_status_name(vxm_status status);
+
+/** The one line that describes a failure; owned by the caller, written only by a call that fails. */
+typedef struct vxm_error {
+  vxm_status code;
+  int64_t line;    /**< 1-based line in a text file, 0 if none applies */
+  int64_t offset;  /**< byte offset in a binary file, -1 if none applies */
+  int64_t element; /**< 0-based vertex, face or record, -1 if none applies */
+  char file[256];  /**< file concerned, "" if none, shortened at the front if long */
+  char text[512];  /**< the whole message, file and line included, without a line end */
+} vxm_error;
+
+#define VXM_ERROR_INIT \
+  { VXM_OK, 0, -1, -1, "", "" }
+
+/* ---- Context: threads, memory limit, progress
+ * -------------------------------------------------------------- */
+
+/**
+ * Called now and then from the thread that made the call.
+ *
+ * @param phase     what is being done, such as "reading"
+ * @param fraction  0 to 1 within the phase
+ * @return 0 to go on; anything else cancels the call, which then returns VXM_ERROR_CANCELLED
+ */
+typedef int (*vxm_progress_fn)(const char *phase, double fraction, void *payload);
+
+typedef struct vxm_context_options {
+  uint32_t version;         /**< 1 */
+  int threads;              /**< 0 = one per processor available */
+  uint64_t memory_limit;    /**< bytes of all objects and scratch of the context together; 0 = no limit */
+  vxm_progress_fn progress; /**< NULL = none */
+  void *payload;            /**< handed to progress */
+} vxm_context_options;
+
+#define VXM_CONTEXT_OPTIONS_INIT \
+  { 1, 0, 0, NULL, NULL }
+
+/** Worker threads, a memory budget and a progress callback shared by the objects made in it. */
+typedef struct vxm_context vxm_context;
+
+/**
+ * Makes a context. It lives until it is destroyed and the last object made in it is destroyed too.
+ * Wherever a function takes a context, NULL stands for a new one with default options.
+ *
+ * @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY
+ */
+VXM_API vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *options,
+                                      vxm_error *error);
+VXM_API void vxm_context_destroy(vxm_context *context);
+/** Number of threads that calls in this context use. */
+VXM_API int vxm_context_threads(const vxm_context *context);
+/** Largest number of bytes held at once by the context so far. */
+VXM_API uint64_t vxm_context_peak_bytes(const vxm_context *context);
+
+/* ---- Meshes
+ * -------------------------------------------------------------------------------------------------- */
+
+/** Vertices and polygons, with nothing assumed of them: a polygon soup, or a mesh after repair. */
+typedef struct vxm_mesh vxm_mesh;
+
+typedef enum vxm_scalar { VXM_FLOAT64 = 0, VXM_FLOAT32 = 1 } vxm_scalar;
+
+/** Caller-owned arrays that describe a mesh; they are copied. */
+typedef struct vxm_mesh_arrays {
+  uint32_t version;         /**< 1 */
+  vxm_scalar vertex_scalar; /**< type of the coordinates */
+  const void *vertices;     /**< vertex_count x 3 coordinates, x y z together, model units */
+  int64_t vertex_count;
+  const int64_t
+      *offsets; /**< face f has corners indices[offsets[f]] to indices[offsets[f+1]-1]; NULL = triangles */
+  const int64_t *indices; /**< 0-based vertices of the corners */
+  int64_t face_count;
+} vxm_mesh_arrays;
+
+#define VXM_MESH_ARRAYS_INIT \
+  { 1, VXM_FLOAT64, NULL, 0, NULL, NULL, 0 }
+
+/**
+ * Makes a mesh from arrays.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT with `element` the face whose offsets run backwards, that has fewer than
+ * three corners, or that names a vertex that does not exist; VXM_ERROR_RANGE beyond 2^32 - 2 vertices;
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_arrays *arrays,
+                                   vxm_error *error);
+
+/**
+ * Reads a mesh file: OFF, OBJ, STL or PLY, told by content first and by name second.
+ * What a damaged file still holds is read, and each kind of damage becomes a warning of the mesh.
+ *
+ * @param path file to read; "-" reads standard input
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond 2^32 - 2
+ * vertices; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error);
+
+/** As vxm_mesh_read, from memory. `name` is used in messages and for its extension. */
+VXM_API vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
+                                        const char *name, vxm_error *error);
+
+typedef struct vxm_mesh_write_options {
+  uint32_t version;   /**< 1 */
+  const char *format; /**< "off", "obj", "stl" or "ply"; NULL = by the extension of the path */
+  bool ascii;         /**< stl and ply as text rather than binary */
+} vxm_mesh_write_options;
+
+#define VXM_MESH_WRITE_OPTIONS_INIT \
+  { 1, NULL, false }
+
+/**
+ * Writes a mesh, under a temporary name first, so that no half-written file is left. "-" writes standard
+ * output. Coordinates come back bit for bit from OFF, OBJ and PLY; STL holds 32-bit floats and triangles
+ * only.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format; VXM_ERROR_IO; VXM_ERROR_RANGE if the format
+ * cannot hold the mesh; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_mesh_write(const vxm_mesh *mesh, const char *path,
+                                  const vxm_mesh_write_options *options, vxm_error *error);
+VXM_API void vxm_mesh_destroy(vxm_mesh *mesh);
+
+VXM_API int64_t vxm_mesh_vertex_count(const vxm_mesh *mesh);
+VXM_API int64_t vxm_mesh_face_count(const vxm_mesh *mesh);
+/** vertex_count x 3 coordinates in model units. */
+VXM_API const double *vxm_mesh_vertices(const vxm_mesh *mesh);
+/** face_count + 1 offsets into vxm_mesh_indices. */
+VXM_API const uint64_t *vxm_mesh_offsets(const vxm_mesh *mesh);
+/** 0-based vertices of all corners, face after face. */
+VXM_API const uint32_t *vxm_mesh_indices(const vxm_mesh *mesh);
+/** Number of face tags (names of OBJ groups and materials); 0 if the file had none. */
+VXM_API int64_t vxm_mesh_tag_count(const vxm_mesh *mesh);
+/** Name of a tag, UTF-8 as in the file, "group" or "group/material". */
+VXM_API const char *vxm_mesh_tag_name(const vxm_mesh *mesh, int64_t tag);
+/** face_count tag numbers, or NULL if there are no tags. */
+VXM_API const uint32_t *vxm_mesh_face_tags(const vxm_mesh *mesh);
+/** Format the mesh was read from, such as "off" or "ply binary_little_endian"; "arrays" if made from arrays.
+ */
+VXM_API const char *vxm_mesh_format(const vxm_mesh *mesh);
+/** Warnings from reading, one line each. */
+VXM_API int64_t vxm_mesh_warning_count(const vxm_mesh *mesh);
+VXM_API const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index);
+
+/* ---- Census: what is wrong with a mesh
+ * ----------------------------------------------------------------------- */
+
+/** Counts over a mesh. Edges, components and duplicates are taken after welding bit-identical positions. */
+typedef struct vxm_census {
+  int64_t vertices, faces;
+  int64_t triangles;       /**< after splitting polygons: the sum of corners - 2 */
+  int64_t components;      /**< connected by welded vertices; faces only */
+  int64_t components_raw;  /**< connected by vertex index as in the file */
+  int64_t duplicate_faces; /**< faces that repeat an earlier one with the same orientation */
+  int64_t
+      opposite_duplicate_faces; /**< faces that repeat an earlier one with the opposite orientation only */
+  int64_t degenerate_faces;     /**< fewer than three distinct corners, or no area */
+  int64_t boundary_edges;       /**< one incident face */
+  int64_t nonmanifold_edges;    /**< more than two incident faces */
+  int64_t inconsistent_edges;   /**< two incident faces that run along it in the same direction */
+  int64_t nonfinite_vertices, unused_vertices;
+  int64_t largest_face; /**< corners of the largest face */
+  bool watertight;      /**< at least one face, no boundary and no non-manifold edge */
+  bool closed;          /**< at least one face, and every edge has an even number of incident faces */
+  double bounds[6]; /**< x0 y0 z0 x1 y1 z1 of the finite vertices used by faces; zeros if there are none */
+  double area;      /**< model units squared; polygons by their vector area */
+  double volume;    /**< signed; positive if faces point outward. Meaningful if closed */
+} vxm_census;
+
+/** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED */
+VXM_API vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error);
+
+/* ---- Repair
+ * ---------------------------------------------------------------------------------------------------- */
+
+typedef enum vxm_weld {
+  VXM_WELD_AUTO = 0, /**< bit-identical positions, then near ones where that closes cracks */
+  VXM_WELD_OFF,      /**< bit-identical positions only */
+  VXM_WELD_TOLERANCE /**< bit-identical positions, then all that are no farther apart than weld_tolerance */
+} vxm_weld;
+
+typedef struct vxm_repair_options {
+  uint32_t version; /**< 1 */
+  vxm_weld weld;
+  double weld_tolerance; /**< model units, with VXM_WELD_TOLERANCE */
+  bool keep_duplicates;  /**< leave repeated faces in */
+} vxm_repair_options;
+
+#define VXM_REPAIR_OPTIONS_INIT \
+  { 1, VXM_WELD_AUTO, 0.0, false }
+
+#define VXM_REPAIR_PASSES_MAX 16
+
+typedef struct vxm_repair_report {
+  int pass_count;
+  struct {
+    const char *pass; /**< fixed name such as "exact_weld" */
+    int64_t count;    /**< vertices or faces that the pass removed or changed */
+  } passes[VXM_REPAIR_PASSES_MAX];
+  vxm_census before, after;
+} vxm_repair_report;
+
+/**
+ * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated
+ * corners, faces without area and repeated faces (a face and its reverse become one), and unused vertices.
+ * Applying it to its own result changes nothing. Vertices keep their first position and their order.
+ *
+ * @param[out] report may be NULL (then no census is taken)
+ * @return VXM_OK (the result may have no faces), VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
+                                   const vxm_repair_options *options, vxm_error *error);
+
+/* ---- Grids
+ * -------------------------------------------------------------------------------------------------------- */
+
+/** A box of dims[0] x dims[1] x dims[2] cells: the centre of (i,j,k) is origin + ((i,j,k) + 1/2) *
+ * voxel_size. */
+typedef struct vxm_space {
+  int64_t dims[3];
+  double origin[3];     /**< minimum corner, model units */
+  double voxel_size[3]; /**< model units per axis */
+} vxm_space;
+
+/** One bit per voxel, x fastest, rows padded to whole 64-bit words with zero bits. */
+typedef struct vxm_grid vxm_grid;
+
+/** Makes an empty grid. @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT */
+VXM_API vxm_status vxm_grid_create(vxm_grid **out, vxm_context *context, const vxm_space *space,
+                                   vxm_error *error);
+VXM_API void vxm_grid_destroy(vxm_grid *grid);
+
+VXM_API const vxm_space *vxm_grid_space(const vxm_grid *grid);
+/** Whether voxel (i,j,k) is set; false outside the grid. */
+VXM_API bool vxm_grid_get(const vxm_grid *grid, int64_t i, int64_t j, int64_t k);
+/** Sets or clears voxel (i,j,k); outside the grid it does nothing. */
+VXM_API void vxm_grid_set(vxm_grid *grid, int64_t i, int64_t j, int64_t k, bool value);
+/** Words of a row: (dims[0] + 63) / 64. */
+VXM_API int64_t vxm_grid_row_words(const vxm_grid *grid);
+/** Row (j,k) starts at word (k * dims[1] + j) * row_words; voxel i is bit i % 64 of its word i / 64. */
+VXM_API const uint64_t *vxm_grid_words(const vxm_grid *grid);
+/** Number of set voxels. */
+VXM_API int64_t vxm_grid_count(const vxm_grid *grid);
+/** A 64-bit hash of dimensions and bits, the same on every machine. */
+VXM_API uint64_t vxm_grid_hash(const vxm_grid *grid);
+/** One byte, 0 or 1, per voxel into dims[0]*dims[1]*dims[2] bytes, as [x][y][z] in C order (z fastest). */
+VXM_API void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes);
+/** Warnings from voxelizing or reading, one line each. */
+VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
+VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
+
+/**
+ * Reads a grid: .binvox, .npy, .raw (with its .json beside it) or .rle, told by content first and by name
+ * second.
+ * "-" reads standard input (not .raw).
+ *
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
+
+typedef struct vxm_grid_write_options {
+  uint32_t version; /**< 1 */
+  const char
+      *format; /**< "binvox", "npy", "raw", "rle", or "obj", "ply", "stl", "off"; NULL = by extension */
+} vxm_grid_write_options;
+
+#define VXM_GRID_WRITE_OPTIONS_INIT \
+  { 1, NULL }
+
+/**
+ * Writes a grid, under a temporary name first. "-" writes standard output (not .raw). The mesh formats hold
+ * the grid's surface as vxm_grid_surface_mesh makes it. .binvox pads a grid that is not cubic at its far
+ * side.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format, or .binvox with voxels that are not cubes;
+ * VXM_ERROR_IO; VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_grid_write(const vxm_grid *grid, const char *path,
+                                  const vxm_grid_write_options *options, vxm_error *error);
+
+/**
+ * Makes a mesh of the exposed voxel faces in model units, facing outward, merged into rectangles that share
+ * vertices. The mesh is closed mod 2: rectangles have a corner wherever a neighbour has one.
+ */
+VXM_API vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error);
+
+typedef struct vxm_picture_options {
+  uint32_t version;  /**< 1 */
+  int width, height; /**< pixels; 0 = 800 x 600 */
+  double azimuth;    /**< degrees about the up axis */
+  double elevation;  /**< degrees above the horizon */
+  int up;            /**< axis that points up: 0 = default (z), 1 = x, 2 = y, 3 = z */
+} vxm_picture_options;
+
+#define VXM_PICTURE_OPTIONS_INIT \
+  { 1, 0, 0, 30.0, 25.0, 0 }
+
+/**
+ * Draws the grid as shaded voxels into a PNG file.
+ *
+ * @return VXM_OK; VXM_ERROR_UNAVAILABLE without libpng; VXM_ERROR_ARGUMENT, VXM_ERROR_IO, VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path,
+                                    const vxm_picture_options *options, vxm_error *error);
+
+typedef struct vxm_comparison {
+  int64_t voxels_a, voxels_b, both, only_a, only_b;
+  double iou; /**< both / (both + only_a + only_b); 1 if both grids are empty */
+} vxm_comparison;
+
+/** Compares two grids of equal dimensions. @return VXM_OK; VXM_ERROR_ARGUMENT if the dimensions differ */
+VXM_API vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b,
+                                    vxm_error *error);
+
+/* ---- Voxelization
+ * ---------------------------------------------------------------------------------------------------- */
+
+typedef enum vxm_fit {
+  VXM_FIT_CUBE = 0, /**< equal dimensions; the longest side of the model fills them, the model is centred */
+  VXM_FIT_TIGHT,    /**< the box of the model */
+  VXM_FIT_SPHERE    /**< equal dimensions; the diagonal of the box fills them: safe under rotation */
+} vxm_fit;
+
+typedef enum vxm_method {
+  VXM_METHOD_VOTE = 0, /**< all of the following, combined by vxm_vote */
+  VXM_METHOD_X,        /**< parity of crossings along x */
+  VXM_METHOD_Y,
+  VXM_METHOD_Z,
+  VXM_METHOD_TETRA /**< XOR of the tetrahedra from the centroid to every triangle (Rueda et al.) */
+} vxm_method;
+
+typedef enum vxm_vote {
+  VXM_VOTE_MAJORITY = 0, /**< more than half of the voters; a tie of the four is decided by x, y and z */
+  VXM_VOTE_ANY,          /**< at least one voter */
+  VXM_VOTE_ALL           /**< every voter */
+} vxm_vote;
+
+typedef enum vxm_parts {
+  VXM_PARTS_AUTO = 0, /**< every closed component alone, all others together; united */
+  VXM_PARTS_GROUP,    /**< every component alone (Chen & Tu); united */
+  VXM_PARTS_WHOLE     /**< no splitting */
+} vxm_parts;
+
+/** Which voxel space to use. Give resolution or voxel_size, or `like`. */
+typedef struct vxm_space_options {
+  uint32_t version;      /**< 1 */
+  int64_t resolution[3]; /**< voxels per axis; {N,0,0} = N along the longest side; all 0 and no voxel_size =
+                            128 */
+  double voxel_size;     /**< model units */
+  vxm_fit fit;
+  int64_t pad; /**< empty voxels kept free on each side; within `resolution`, in addition with voxel_size */
+  bool use_bounds;       /**< cover `bounds` exactly instead of fitting to the model */
+  double bounds[6];      /**< x0 y0 z0 x1 y1 z1 */
+  const vxm_space *like; /**< take exactly this space; overrides the rest */
+} vxm_space_options;
+
+#define VXM_SPACE_OPTIONS_INIT \
+  { 1, {0, 0, 0}, 0.0, VXM_FIT_CUBE, 0, false, {0, 0, 0, 0, 0, 0}, NULL }
+
+/**
+ * Chooses a voxel space for a mesh.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if the mesh has no extent; VXM_ERROR_RANGE beyond 2^20
+ * voxels along an axis
+ */
+VXM_API vxm_status vxm_space_fit(vxm_space *out, const vxm_mesh *mesh, const vxm_space_options *options,
+                                 vxm_error *error);
+
+typedef struct vxm_voxelize_options {
+  uint32_t version; /**< 1 */
+  vxm_space_options space;
+  vxm_method method;
+  vxm_vote vote;
+  vxm_parts parts;
+} vxm_voxelize_options;
+
+#define VXM_VOXELIZE_OPTIONS_INIT \
+  { 1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_MAJORITY, VXM_PARTS_AUTO }
+
+typedef struct vxm_voxelize_report {
+  int64_t parts;        /**< parts that were voxelized apart and united */
+  int64_t closed_parts; /**< those in which every edge has an even number of faces: all voters agree there */
+  int64_t contested;    /**< voxels on which the voters disagreed */
+  int64_t voxels;       /**< set voxels */
+  uint64_t hash;        /**< vxm_grid_hash */
+  int64_t empty_parts;  /**< parts that set no voxel */
+} vxm_voxelize_report;
+
+/**
+ * Voxelizes the inside of a mesh: voxel (i,j,k) is set where its centre is inside.
+ *
+ * @param[out] out    new grid
+ * @param[out] report may be NULL
+ * @param mesh        polygons in model units; need not be closed, oriented or manifold; parts are found by
+ * vertex index, so repair (or at least weld) it first
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has area; VXM_ERROR_RANGE if a vertex lies
+ * too far outside the grid; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ *
+ * Parity is computed exactly on an integer lattice (at least 1/256 voxel). For parts closed mod 2 all methods
+ * give the same bits.
+ */
+VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, const vxm_mesh *mesh,
+                                const vxm_voxelize_options *options, vxm_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
