@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions that read, write and draw grids: they check arguments and call down. */
+#include "grid/bitgrid.h"
+#include "gridio/gridio.h"
+
+#include <inttypes.h>
+
+vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
+  if (!out || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
+  *out = NULL;
+  vxm_context *owner;
+  vxm_status status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_gridio_read(out, owner, path, error);
+  vxm_context_release(owner);
+  return status;
+}
+
+vxm_status vxm_grid_write(const vxm_grid *grid, const char *path, const vxm_grid_write_options *options,
+                          vxm_error *error) {
+  if (!grid || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
+  vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+  if (chosen.version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "grid: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  return vxm_gridio_write(grid, path, chosen.format, error);
+}
+
+vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error) {
+  if (!out || !grid)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
+  *out = NULL;
+  return vxm_gridio_surface_mesh(out, grid, error);
+}
+
+vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path, const vxm_picture_options *options,
+                            vxm_error *error) {
+  if (!grid || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: an argument is NULL");
+  vxm_picture_options chosen = VXM_PICTURE_OPTIONS_INIT;
+  return vxm_gridio_picture(grid, path, options ? options : &chosen, error);
+}

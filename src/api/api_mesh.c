@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions on meshes: they check arguments and call down. */
+#include "base/file.h"
+#include "mesh/census.h"
+#include "mesh/soup.h"
+#include "meshio/meshio.h"
+#include "repair/repair.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+static vxm_status check_arrays(const vxm_mesh_arrays *arrays, vxm_error *error) {
+  if (arrays->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "mesh: arrays version %" PRIu32 " is unknown; use the initializer", arrays->version);
+  if (arrays->vertex_scalar != VXM_FLOAT64 && arrays->vertex_scalar != VXM_FLOAT32)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "mesh: vertex_scalar %d is neither VXM_FLOAT64 nor VXM_FLOAT32",
+                    (int)arrays->vertex_scalar);
+  if (arrays->vertex_count < 0 || arrays->face_count < 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: a count is negative");
+  if ((arrays->vertex_count > 0 && !arrays->vertices) || (arrays->face_count > 0 && !arrays->indices))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an array is NULL but its count is not 0");
+  if ((uint64_t)arrays->vertex_count > VXM_VERTICES_MAX)
+    return vxm_fail(error, VXM_ERROR_RANGE, "%" PRId64 " vertices; at most %zu can be held: split the mesh",
+                    arrays->vertex_count, VXM_VERTICES_MAX);
+  if (arrays->face_count > INT64_MAX / 3)
+    return vxm_fail(error, VXM_ERROR_RANGE, "%" PRId64 " faces are beyond what can be addressed",
+                    arrays->face_count);
+  if (arrays->offsets && arrays->offsets[0] != 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: offsets[0] is %" PRId64 "; it must be 0",
+                    arrays->offsets[0]);
+  return VXM_OK;
+}
+
+static vxm_status copy_vertices(vxm_soup *soup, const vxm_mesh_arrays *arrays) {
+  size_t count = 3 * (size_t)arrays->vertex_count;
+  const float *single = arrays->vertices;
+  if (arrays->vertex_scalar == VXM_FLOAT32)
+    for (size_t i = 0; i < count; i++)
+      soup->positions[i] = (double)single[i];
+  else if (count > 0)
+    memcpy(soup->positions, arrays->vertices, count * sizeof *soup->positions);
+  soup->vertex_count = (size_t)arrays->vertex_count;
+  return VXM_OK;
+}
+
+static vxm_status copy_face(vxm_soup *soup, const vxm_mesh_arrays *arrays, int64_t face, vxm_error *error) {
+  int64_t begin = arrays->offsets ? arrays->offsets[face] : 3 * face;
+  int64_t end = arrays->offsets ? arrays->offsets[face + 1] : begin + 3;
+  vxm_place place = {NULL, 0, -1, face};
+  if (end < begin || end - begin < 3)
+    return vxm_fail_at(error, VXM_ERROR_ARGUMENT, place,
+                       "mesh: face %" PRId64 " has fewer than three corners (offsets %" PRId64 " to %" PRId64
+                       ")",
+                       face, begin, end);
+  vxm_status status = vxm_soup_reserve(soup, 0, 0, soup->corner_count + (size_t)(end - begin), error);
+  if (status != VXM_OK)
+    return status;
+  for (int64_t c = begin; c < end; c++) {
+    int64_t vertex = arrays->indices[c];
+    if (vertex < 0 || vertex >= arrays->vertex_count)
+      return vxm_fail_at(error, VXM_ERROR_ARGUMENT, place,
+                         "mesh: face %" PRId64 " names vertex %" PRId64 ", but there are %" PRId64, face,
+                         vertex, arrays->vertex_count);
+    soup->indices[soup->corner_count++] = (uint32_t)vertex;
+  }
+  soup->offsets[++soup->face_count] = soup->corner_count;
+  return VXM_OK;
+}
+
+vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_arrays *arrays,
+                           vxm_error *error) {
+  if (!out || !arrays)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
+  *out = NULL;
+  vxm_soup *soup;
+  vxm_status status = check_arrays(arrays, error);
+  if (status == VXM_OK)
+    status = vxm_soup_create(&soup, context, "arrays", error);
+  if (status != VXM_OK)
+    return status;
+  size_t corners = arrays->offsets ? 0 : 3 * (size_t)arrays->face_count;
+  status = vxm_soup_reserve(soup, (size_t)arrays->vertex_count, (size_t)arrays->face_count, corners, error);
+  if (status == VXM_OK)
+    status = copy_vertices(soup, arrays);
+  for (int64_t face = 0; status == VXM_OK && face < arrays->face_count; face++)
+    status = copy_face(soup, arrays, face, error);
+  if (status != VXM_OK) {
+    vxm_soup_destroy(soup);
+    return status;
+  }
+  *out = soup;
+  return VXM_OK;
+}
+
+vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
+                                const char *name, vxm_error *error) {
+  if (!out || (!data && size > 0))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
+  *out = NULL;
+  return vxm_meshio_read(out, context, data, size, name ? name : "<memory>", error);
+}
+
+vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error) {
+  if (!out || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
+  *out = NULL;
+  vxm_context *owner;
+  vxm_status status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_input input;
+  status = vxm_input_open(&input, owner, path, error);
+  if (status == VXM_OK) {
+    status = vxm_meshio_read(out, owner, input.data, input.size, input.name, error);
+    vxm_input_close(&input);
+  }
+  vxm_context_release(owner);
+  return status;
+}
+
+vxm_status vxm_mesh_write(const vxm_mesh *mesh, const char *path, const vxm_mesh_write_options *options,
+                          vxm_error *error) {
+  if (!mesh || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
+  vxm_mesh_write_options chosen = VXM_MESH_WRITE_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+  if (chosen.version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "mesh: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  return vxm_meshio_write(mesh, path, chosen.format, chosen.ascii, error);
+}
+
+void vxm_mesh_destroy(vxm_mesh *mesh) {
+  vxm_soup_destroy(mesh);
+}
+
+int64_t vxm_mesh_vertex_count(const vxm_mesh *mesh) {
+  return (int64_t)mesh->vertex_count;
+}
+
+int64_t vxm_mesh_face_count(const vxm_mesh *mesh) {
+  return (int64_t)mesh->face_count;
+}
+
+const double *vxm_mesh_vertices(const vxm_mesh *mesh) {
+  return mesh->positions;
+}
+
+const uint64_t *vxm_mesh_offsets(const vxm_mesh *mesh) {
+  return mesh->offsets;
+}
+
+const uint32_t *vxm_mesh_indices(const vxm_mesh *mesh) {
+  return mesh->indices;
+}
+
+int64_t vxm_mesh_tag_count(const vxm_mesh *mesh) {
+  return (int64_t)mesh->tag_count;
+}
+
+const char *vxm_mesh_tag_name(const vxm_mesh *mesh, int64_t tag) {
+  return tag >= 0 && (size_t)tag < mesh->tag_count ? mesh->tags[tag] : "";
+}
+
+const uint32_t *vxm_mesh_face_tags(const vxm_mesh *mesh) {
+  return mesh->face_tags;
+}
+
+const char *vxm_mesh_format(const vxm_mesh *mesh) {
+  return mesh->format;
+}
+
+int64_t vxm_mesh_warning_count(const vxm_mesh *mesh) {
+  return mesh->notes.count;
+}
+
+const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index) {
+  return index >= 0 && index < mesh->notes.count ? mesh->notes.text[index] : "";
+}
+
+vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error) {
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "census: an argument is NULL");
+  memset(out, 0, sizeof *out);
+  return vxm_soup_census(out, mesh, error);
+}
+
+vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
+                           const vxm_repair_options *options, vxm_error *error) {
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: an argument is NULL");
+  *out = NULL;
+  if (report)
+    memset(report, 0, sizeof *report);
+  return vxm_repair_run(out, report, mesh, options, error);
+}

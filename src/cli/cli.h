@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * What the subcommands share: options, messages, tables, JSON and progress. The command line sees the library
+ * through voxmend.h alone.
+ */
+#ifndef VXM_CLI_CLI_H
+#define VXM_CLI_CLI_H
+
+#include "voxmend.h"
+
+#include <jansson.h>
+#include <stdio.h>
+
+/** Exit status, a contract with scripts. */
+enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_WRONG_USAGE = 2, CLI_WARNED = 3 };
+
+#define CLI_PRINTF(text, first) __attribute__((format(printf, text, first)))
+
+/** Keys of options without a letter. The common options take the numbers below CLI_KEY_COMMAND. */
+enum { CLI_KEY_COMMON = 256, CLI_KEY_COMMAND = 512 };
+
+/** What cli_next_option returns beside an option's key, and functions that read arguments return. */
+enum { CLI_END = 0, CLI_STOP = -1 };
+
+typedef struct cli_option {
+  int key;              /**< the option's letter, or a number from CLI_KEY_COMMAND on */
+  const char *name;     /**< long name; NULL ends a list */
+  const char *argument; /**< what it takes, as shown in the help; NULL = nothing */
+  const char *help;     /**< a line, or several separated by '\n' */
+} cli_option;
+
+typedef struct cli_run cli_run;
+
+typedef struct cli_command {
+  const char *name;
+  const char *arguments; /**< shown behind the name in the usage line */
+  const char *summary;   /**< one line */
+  const char *notes;     /**< shown below the options: defaults and examples */
+  const cli_option *options;
+  int (*run)(cli_run *cli); /**< returns an exit status */
+} cli_command;
+
+extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
+    cli_command_compare, cli_command_view;
+
+enum { CLI_OPTIONS_MAX = 48 };
+
+/** One run of the program. */
+struct cli_run {
+  const cli_command *command;
+  int argc;
+  char **argv;
+  char **arguments; /**< what is left after the options */
+  int argument_count;
+  int status; /**< exit status once something has returned CLI_STOP */
+
+  bool json, quiet, verbose, strict;
+  const char *report;
+  const char *progress;
+  vxm_context_options limits;
+
+  vxm_context *context; /**< made by cli_start */
+  vxm_error error;      /**< hand &cli->error to the library, then cli_fail */
+  json_t *warnings;     /**< array of strings for the report */
+  int64_t warning_count;
+  FILE *text;       /**< where the summary goes: stdout, or stderr while stdout carries the output */
+  const char *made; /**< output file that exists by now; removed if the run still fails */
+  char phase[48];
+  double drawn; /**< time at which progress was last drawn; 0 = none on the screen */
+};
+
+/* ---- options.c: reading the command line ---- */
+
+/**
+ * Returns the key of the next option of the command, its argument in *value; CLI_END after the last, then
+ * cli->arguments are set; CLI_STOP when the program is to end with cli->status (help shown, or wrong usage).
+ */
+int cli_next_option(cli_run *cli, const char **value);
+/** Prints one line about wrong usage, sets cli->status and returns CLI_STOP. */
+int cli_usage(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
+void cli_help(const cli_command *command);
+/** Makes the context from the common options; false after a failure that has been reported. */
+bool cli_start(cli_run *cli);
+
+/* Strict readings: the whole text must be the value, in the C locale; false if it is not. */
+bool cli_read_integer(int64_t *out, const char *text, int64_t low, int64_t high);
+bool cli_read_number(double *out, const char *text);
+/** Exactly `count` numbers separated by commas. */
+bool cli_read_numbers(double *out, int count, const char *text);
+/** Bytes, with a binary suffix K, M, G or T. */
+bool cli_read_size(uint64_t *out, const char *text);
+/** Position of `text` in the list, which ends with NULL, or -1. */
+int cli_read_choice(const char *text, const char *const *choices);
+
+/**
+ * Format that the output's name or --format asks for, out of `known`; NULL with cli->status set if there is
+ * none. Sends the summary to stderr where the output goes to stdout.
+ */
+const char *cli_output_format(cli_run *cli, const char *path, const char *format, const char *const *known);
+extern const char *const cli_mesh_formats[];
+extern const char *const cli_grid_formats[];
+/** Whether a file name ends in '.' and this extension, in any case. */
+bool cli_is_extension(const char *path, const char *extension);
+
+/* ---- output.c: messages, tables and reports ---- */
+
+/** Prints cli->error as one line, with the options that help, and returns CLI_FAILED. */
+int cli_fail(cli_run *cli);
+/** As cli_fail, with a message of the program itself. */
+int cli_fail_text(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
+/** Notes a warning for the report and prints it unless --quiet. */
+void cli_warn(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
+/** The warnings from reading a file. */
+void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh);
+void cli_warn_grid(cli_run *cli, const char *path, const vxm_grid *grid);
+/** A row of a summary, "label  text", to cli->text. */
+void cli_row(const cli_run *cli, const char *label, const char *format, ...) CLI_PRINTF(3, 4);
+/** The rows about a voxel space. */
+void cli_rows_space(const cli_run *cli, const vxm_space *space);
+/** Whether the summary is wanted: neither --json nor --quiet. */
+bool cli_summary(const cli_run *cli);
+/** The name of a file in messages: "-" stands for `standard`. */
+const char *cli_shown(const char *path, const char *standard);
+/** Milliseconds since an arbitrary start. */
+double cli_clock(void);
+
+/* JSON values that jansson would refuse: not UTF-8, not finite. */
+json_t *cli_json_text(const char *text);
+json_t *cli_json_number(double value);
+json_t *cli_json_numbers(const double *values, int count);
+/** {dims, origin, voxel_size} */
+json_t *cli_json_space(const vxm_space *space);
+/** 16 hexadecimal digits, as JSON has no 64-bit unsigned numbers. */
+json_t *cli_json_hash(uint64_t hash);
+/** Prints the report with --json, writes it with --report, and frees it. Returns an exit status. */
+int cli_finish(cli_run *cli, json_t *report);
+
+/* ---- progress.c ---- */
+
+/** Sets the context options up for progress on stderr and for cancelling by a signal. */
+void cli_progress_init(cli_run *cli);
+/** Clears the progress line before something else is printed. */
+void cli_progress_clear(cli_run *cli);
+/** The signal that asked to stop, or 0. */
+int cli_signal(void);
+
+/* ---- census.c ---- */
+
+/** A row for each count, with what it means where it is not zero. */
+void cli_census_print(const cli_run *cli, const vxm_census *census);
+/** Both in one table, "Original" and "Final". */
+void cli_census_print_both(const cli_run *cli, const vxm_census *before, const vxm_census *after);
+/** Adds the census's keys to an object. */
+void cli_census_json(json_t *object, const vxm_census *census);
+
+/* ---- repairing.c: the options and results of a repair, for repair, voxelize and view ---- */
+
+/** A mesh that was read, and repaired unless that was not wanted. */
+typedef struct cli_input {
+  const char *path;
+  char format[48];
+  int64_t vertices, faces; /**< as read */
+  vxm_mesh *mesh;
+  vxm_repair_report repair; /**< no passes without repair */
+  double read_ms, repair_ms;
+} cli_input;
+
+/** Reads --weld's argument; false if it is neither auto, off nor a positive distance. */
+bool cli_read_weld(vxm_repair_options *options, const char *text);
+json_t *cli_passes_json(const vxm_repair_report *report);
+/** Reads, and repairs unless `options` is NULL. After CLI_FAILED a line was printed and input->mesh is NULL.
+ */
+int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options);
+
+#endif

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend info: what is wrong with a mesh. */
+#include "cli/cli.h"
+
+static const cli_option known_options[] = {{0, NULL, NULL, NULL}};
+
+static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mesh *mesh,
+                             const vxm_census *census) {
+  json_t *object = json_object();
+  json_object_set_new(object, "file", cli_json_text(path));
+  json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(mesh)));
+  cli_census_json(object, census);
+  json_object_set(object, "warnings", cli->warnings);
+  return object;
+}
+
+static void describe(const cli_run *cli, const char *path, const vxm_mesh *mesh, const vxm_census *census) {
+  fprintf(cli->text, "%s\n  %-26s %12s\n", cli_shown(path, "<stdin>"), "format", vxm_mesh_format(mesh));
+  if (cli->verbose && vxm_mesh_tag_count(mesh) > 0)
+    fprintf(cli->text, "  %-26s %12lld\n", "tags", (long long)vxm_mesh_tag_count(mesh));
+  cli_census_print(cli, census);
+}
+
+/** Adds the file's object to `reports` if it can be read. */
+static int examine(cli_run *cli, json_t *reports, const char *path) {
+  json_array_clear(cli->warnings);
+  vxm_mesh *mesh = NULL;
+  vxm_census census;
+  if (vxm_mesh_read(&mesh, cli->context, path, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  cli_warn_mesh(cli, path, mesh);
+  int status = CLI_DONE;
+  if (vxm_mesh_census(&census, mesh, &cli->error) != VXM_OK)
+    status = cli_fail(cli);
+  else {
+    cli_progress_clear(cli);
+    if (cli_summary(cli)) {
+      if (json_array_size(reports) > 0)
+        fputc('\n', cli->text);
+      describe(cli, path, mesh, &census);
+    }
+    json_array_append_new(reports, describe_json(cli, path, mesh, &census));
+  }
+  vxm_mesh_destroy(mesh);
+  return status;
+}
+
+static int run(cli_run *cli) {
+  const char *value;
+  if (cli_next_option(cli, &value) == CLI_STOP)
+    return cli->status;
+  if (cli->argument_count < 1) {
+    cli_usage(cli, "a mesh is missing");
+    return cli->status;
+  }
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  json_t *reports = json_array();
+  int failed = 0;
+  for (int i = 0; i < cli->argument_count && !cli_signal(); i++)
+    failed += examine(cli, reports, cli->arguments[i]) != CLI_DONE;
+  if (failed == cli->argument_count || cli_signal()) {
+    json_decref(reports);
+    return CLI_FAILED;
+  }
+  json_t *report = reports;
+  if (cli->argument_count == 1) {
+    report = json_incref(json_array_get(reports, 0));
+    json_decref(reports);
+  }
+  int status = cli_finish(cli, report);
+  return failed > 0 ? CLI_FAILED : status;
+}
+
+const cli_command cli_command_info = {
+    .name = "info",
+    .arguments = "MESH... [OPTION]...",
+    .summary = "tell what is wrong with meshes",
+    .notes =
+        "Edges, components and repeated faces are counted after welding vertices at identical positions.\n"
+        "--json prints one object for one mesh and an array for several. Files that cannot be read are\n"
+        "named, the others are reported, and the exit status is 1.\n\n"
+        "Examples:\n"
+        "  voxmend info chair.off\n"
+        "  voxmend info --json *.obj > census.json",
+    .options = known_options,
+    .run = run,
+};

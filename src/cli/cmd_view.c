@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend view: a picture of a grid, or of a mesh as voxels. */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_AZIMUTH, KEY_ELEVATION, KEY_UP };
+
+static const cli_option known_options[] = {
+    {'o', "output", "FILE.png", "picture to write"},
+    {KEY_SIZE, "size", "WxH", "pixels, each from 1 to 16384 [800x600]"},
+    {KEY_AZIMUTH, "azimuth", "DEGREES", "direction to look from, about the up axis [30]"},
+    {KEY_ELEVATION, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]"},
+    {KEY_UP, "up", "x|y|z", "axis that points up [z]"},
+    {0, NULL, NULL, NULL}};
+
+typedef struct request {
+  const char *input, *output;
+  vxm_picture_options picture;
+} request;
+
+/** "800x600" */
+static bool read_size(vxm_picture_options *out, const char *text) {
+  enum { MOST = 16384 };
+  const char *x = strchr(text, 'x');
+  char width[8];
+  int64_t w, h;
+  if (!x || (size_t)(x - text) >= sizeof width)
+    return false;
+  memcpy(width, text, (size_t)(x - text));
+  width[x - text] = '\0';
+  if (!cli_read_integer(&w, width, 1, MOST) || !cli_read_integer(&h, x + 1, 1, MOST))
+    return false;
+  out->width = (int)w;
+  out->height = (int)h;
+  return true;
+}
+
+static int read_option(cli_run *cli, request *out, int key, const char *value) {
+  static const char *const axes[] = {"x", "y", "z", NULL};
+  vxm_picture_options *picture = &out->picture;
+  switch (key) {
+  case 'o':
+    out->output = value;
+    return CLI_END;
+  case KEY_SIZE:
+    if (!read_size(picture, value))
+      return cli_usage(cli, "--size '%s' is not WxH, each from 1 to 16384", value);
+    return CLI_END;
+  case KEY_AZIMUTH:
+    if (!cli_read_number(&picture->azimuth, value))
+      return cli_usage(cli, "--azimuth '%s' is not a number of degrees", value);
+    return CLI_END;
+  case KEY_ELEVATION:
+    if (!cli_read_number(&picture->elevation, value) || picture->elevation < -90 || picture->elevation > 90)
+      return cli_usage(cli, "--elevation '%s' is not a number of degrees from -90 to 90", value);
+    return CLI_END;
+  default:
+    picture->up = cli_read_choice(value, axes) + 1;
+    if (picture->up == 0)
+      return cli_usage(cli, "--up '%s' is none of x, y, z", value);
+    return CLI_END;
+  }
+}
+
+static int read_arguments(cli_run *cli, request *out) {
+  const char *value;
+  int key;
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
+      return CLI_STOP;
+  if (cli->argument_count != 1)
+    return cli_usage(cli, "one grid or mesh is expected, not %d", cli->argument_count);
+  out->input = cli->arguments[0];
+  if (!out->output)
+    return cli_usage(cli, "-o FILE.png is missing");
+  if (!cli_is_extension(out->output, "png"))
+    return cli_usage(cli, "the picture is a PNG: '%s' must end in .png", out->output);
+  return CLI_END;
+}
+
+static bool is_named(const char *path, const char *const *formats, int count) {
+  for (int i = 0; i < count; i++)
+    if (cli_is_extension(path, formats[i]))
+      return true;
+  return false;
+}
+
+static int voxelize(cli_run *cli, vxm_grid **grid, const char *path) {
+  enum { RESOLUTION = 128 };
+  cli_input input;
+  vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
+  if (cli_read_repaired(cli, &input, path, &repair) != CLI_DONE)
+    return CLI_FAILED;
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.space.resolution[0] = RESOLUTION;
+  vxm_status status = vxm_voxelize(grid, NULL, input.mesh, &options, &cli->error);
+  vxm_mesh_destroy(input.mesh);
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+}
+
+/** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
+static int read_input(cli_run *cli, vxm_grid **grid, const char *path) {
+  enum { MESH_FORMATS = 4, GRID_FORMATS = 4 }; /* the first grid formats; the others are meshes */
+  if (is_named(path, cli_mesh_formats, MESH_FORMATS))
+    return voxelize(cli, grid, path);
+  vxm_status status = vxm_grid_read(grid, cli->context, path, &cli->error);
+  if (status == VXM_OK)
+    return CLI_DONE;
+  bool maybe_mesh = status == VXM_ERROR_FORMAT && strcmp(path, "-") != 0;
+  if (maybe_mesh && !is_named(path, cli_grid_formats, GRID_FORMATS))
+    return voxelize(cli, grid, path);
+  return cli_fail(cli);
+}
+
+static json_t *make_report(const cli_run *cli, const request *given, const vxm_grid *grid) {
+  json_t *report = json_object();
+  json_object_set_new(report, "input", cli_json_text(given->input));
+  json_object_set_new(report, "output", cli_json_text(given->output));
+  json_object_set_new(report, "grid", cli_json_space(vxm_grid_space(grid)));
+  json_object_set_new(report, "voxels", json_integer(vxm_grid_count(grid)));
+  json_object_set(report, "warnings", cli->warnings);
+  return report;
+}
+
+static int draw(cli_run *cli, const request *given, const vxm_grid *grid) {
+  cli_warn_grid(cli, given->input, grid);
+  if (vxm_grid_picture(grid, given->output, &given->picture, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  cli->made = given->output;
+  cli_progress_clear(cli);
+  if (cli_summary(cli)) {
+    cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
+    cli_rows_space(cli, vxm_grid_space(grid));
+    cli_row(cli, "voxels", "%" PRId64, vxm_grid_count(grid));
+    cli_row(cli, "output", "%s", given->output);
+  }
+  return cli_finish(cli, make_report(cli, given, grid));
+}
+
+static int run(cli_run *cli) {
+  request given = {.picture = VXM_PICTURE_OPTIONS_INIT};
+  if (read_arguments(cli, &given) == CLI_STOP)
+    return cli->status;
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  vxm_grid *grid = NULL;
+  if (read_input(cli, &grid, given.input) != CLI_DONE)
+    return CLI_FAILED;
+  int status = draw(cli, &given, grid);
+  vxm_grid_destroy(grid);
+  return status;
+}
+
+const cli_command cli_command_view = {
+    .name = "view",
+    .arguments = "GRID|MESH -o FILE.png [OPTION]...",
+    .summary = "draw a picture of a grid, or of a mesh",
+    .notes =
+        "A file named .off, .obj, .stl or .ply is repaired and voxelized at 128 voxels along its longest\n"
+        "side first; everything else, standard input too, is read as a grid.\n\n"
+        "Examples:\n"
+        "  voxmend view chair.binvox -o chair.png\n"
+        "  voxmend view bunny.obj -o bunny.png --up y --azimuth 120 --size 1200x900",
+    .options = known_options,
+    .run = run,
+};

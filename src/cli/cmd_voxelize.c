@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend voxelize: mesh in, voxel grid out. */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+enum {
+  KEY_SIZE = CLI_KEY_COMMAND,
+  KEY_FIT,
+  KEY_BOUNDS,
+  KEY_PAD,
+  KEY_LIKE,
+  KEY_METHOD,
+  KEY_VOTE,
+  KEY_PARTS,
+  KEY_NO_REPAIR,
+  KEY_WELD,
+  KEY_KEEP,
+  KEY_FORMAT
+};
+
+static const cli_option known_options[] = {
+    {'o', "output", "GRID",
+     "file to write: .binvox, .npy, .raw (with a .json beside it), .rle, or the\n"
+     "grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
+    {KEY_FORMAT, "format", "F", "binvox, npy, raw, rle, obj, ply, stl or off [by the name of the output]"},
+    {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
+    {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
+    {KEY_FIT, "fit", "cube|tight|sphere",
+     "cube: N x N x N, the model's longest side fills it, the model is centred;\n"
+     "tight: the box of the model; sphere: N x N x N, the diagonal of the box\n"
+     "fills it, so that every rotation stays inside [cube]"},
+    {KEY_PAD, "pad", "P", "keep P voxels free on each side: within -r, in addition to --voxel-size [0]"},
+    {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1", "cover exactly this box, whatever the model's size"},
+    {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
+    {KEY_METHOD, "method", "vote|x|y|z|tetra",
+     "who says what is inside: parity along one axis, the XOR of tetrahedra, or\n"
+     "a vote of these four. They agree wherever the mesh is closed [vote]"},
+    {KEY_VOTE, "vote", "majority|any|all", "how many of the four must say inside [majority]"},
+    {KEY_PARTS, "parts", "auto|group|whole",
+     "what is voxelized alone, then united: auto = each closed component, and\n"
+     "all others together; group = each component; whole = no splitting [auto]"},
+    {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
+    {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
+    {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
+    {0, NULL, NULL, NULL}};
+
+typedef struct request {
+  const char *input, *output, *format, *like;
+  bool resolution, size, fit, pad, bounds, vote, no_repair, repair_options; /**< which options were given */
+  vxm_repair_options repair;
+  vxm_voxelize_options voxelize;
+} request;
+
+/* ---- Options ---- */
+
+/** "64", or "64x32x16". */
+static bool read_resolution(int64_t out[3], const char *text) {
+  enum { MOST = 1 << 20 };
+  int64_t value[3] = {0, 0, 0};
+  int count = 0;
+  for (;;) {
+    size_t digits = strspn(text, "0123456789");
+    char number[16] = "";
+    if (digits >= sizeof number || count == 3)
+      return false;
+    memcpy(number, text, digits);
+    if (!cli_read_integer(&value[count++], number, 1, MOST))
+      return false;
+    text += digits;
+    if (!*text)
+      break;
+    if (*text++ != 'x')
+      return false;
+  }
+  if (count == 2)
+    return false;
+  memcpy(out, value, sizeof value);
+  return true;
+}
+
+static int read_choice(cli_run *cli, int *out, const char *name, const char *value,
+                       const char *const *choices, const char *list) {
+  *out = cli_read_choice(value, choices);
+  return *out < 0 ? cli_usage(cli, "--%s '%s' is none of %s", name, value, list) : CLI_END;
+}
+
+/** The options that choose the voxel space. */
+static int read_space_option(cli_run *cli, request *out, int key, const char *value) {
+  static const char *const fits[] = {"cube", "tight", "sphere", NULL};
+  vxm_space_options *space = &out->voxelize.space;
+  int choice;
+  switch (key) {
+  case 'r':
+    out->resolution = true;
+    if (!read_resolution(space->resolution, value))
+      return cli_usage(cli, "-r '%s' is neither N nor NXxNYxNZ, each from 1 to 1048576", value);
+    return CLI_END;
+  case KEY_SIZE:
+    out->size = true;
+    if (!cli_read_number(&space->voxel_size, value) || space->voxel_size <= 0)
+      return cli_usage(cli, "--voxel-size '%s' is not a positive number", value);
+    return CLI_END;
+  case KEY_FIT:
+    out->fit = true;
+    if (read_choice(cli, &choice, "fit", value, fits, "cube, tight, sphere") == CLI_STOP)
+      return CLI_STOP;
+    space->fit = (vxm_fit)choice;
+    return CLI_END;
+  case KEY_PAD:
+    out->pad = true;
+    if (!cli_read_integer(&space->pad, value, 0, 1 << 19))
+      return cli_usage(cli, "--pad '%s' is not a number of voxels from 0 to 524288", value);
+    return CLI_END;
+  case KEY_BOUNDS:
+    out->bounds = space->use_bounds = true;
+    if (!cli_read_numbers(space->bounds, 6, value))
+      return cli_usage(cli, "--bounds '%s' is not X0,Y0,Z0,X1,Y1,Z1", value);
+    for (int axis = 0; axis < 3; axis++)
+      if (!(space->bounds[axis] < space->bounds[axis + 3]))
+        return cli_usage(cli, "--bounds '%s' is empty along %c", value, 'x' + axis);
+    return CLI_END;
+  default:
+    out->like = value;
+    return CLI_END;
+  }
+}
+
+static int read_option(cli_run *cli, request *out, int key, const char *value) {
+  static const char *const methods[] = {"vote", "x", "y", "z", "tetra", NULL};
+  static const char *const votes[] = {"majority", "any", "all", NULL};
+  static const char *const parts[] = {"auto", "group", "whole", NULL};
+  int choice = 0, result = CLI_END;
+  switch (key) {
+  case 'o':
+    out->output = value;
+    return CLI_END;
+  case KEY_FORMAT:
+    out->format = value;
+    return CLI_END;
+  case KEY_METHOD:
+    result = read_choice(cli, &choice, "method", value, methods, "vote, x, y, z, tetra");
+    out->voxelize.method = (vxm_method)choice;
+    return result;
+  case KEY_VOTE:
+    out->vote = true;
+    result = read_choice(cli, &choice, "vote", value, votes, "majority, any, all");
+    out->voxelize.vote = (vxm_vote)choice;
+    return result;
+  case KEY_PARTS:
+    result = read_choice(cli, &choice, "parts", value, parts, "auto, group, whole");
+    out->voxelize.parts = (vxm_parts)choice;
+    return result;
+  case KEY_NO_REPAIR:
+    out->no_repair = true;
+    return CLI_END;
+  case KEY_WELD:
+    out->repair_options = true;
+    if (!cli_read_weld(&out->repair, value))
+      return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
+    return CLI_END;
+  case KEY_KEEP:
+    out->repair_options = out->repair.keep_duplicates = true;
+    return CLI_END;
+  default:
+    return read_space_option(cli, out, key, value);
+  }
+}
+
+/** Options that contradict each other. */
+static int check_conflicts(cli_run *cli, const request *given) {
+  if (given->like && (given->resolution || given->size || given->fit || given->pad || given->bounds))
+    return cli_usage(cli, "--like takes the whole grid from a file; leave out -r, --voxel-size, --fit, "
+                          "--pad and --bounds");
+  if (given->resolution && given->size)
+    return cli_usage(cli, "-r and --voxel-size exclude each other");
+  if (given->bounds && given->pad)
+    return cli_usage(cli, "--bounds is covered exactly; leave out --pad");
+  if (given->bounds && given->fit)
+    return cli_usage(cli, "--bounds is covered exactly; leave out --fit");
+  if (given->vote && given->voxelize.method != VXM_METHOD_VOTE)
+    return cli_usage(cli, "--vote goes with --method vote only");
+  if (given->no_repair && given->repair_options)
+    return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
+  return CLI_END;
+}
+
+static int read_arguments(cli_run *cli, request *out) {
+  const char *value;
+  int key;
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
+      return CLI_STOP;
+  if (cli->argument_count != 1)
+    return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
+  out->input = cli->arguments[0];
+  if (check_conflicts(cli, out) == CLI_STOP)
+    return CLI_STOP;
+  out->format = cli_output_format(cli, out->output, out->format, cli_grid_formats);
+  return out->format ? CLI_END : CLI_STOP;
+}
+
+/* ---- Results ---- */
+
+typedef struct outcome {
+  cli_input input;
+  vxm_voxelize_report voxelize;
+  vxm_space space;
+  double voxelize_ms, write_ms, total_ms;
+} outcome;
+
+static json_t *make_report(const cli_run *cli, const request *given, const outcome *results) {
+  json_t *votes = json_object();
+  json_object_set_new(votes, "contested", json_integer(results->voxelize.contested));
+  json_object_set_new(votes, "escalated", json_integer(0));
+  json_t *times = json_object();
+  json_object_set_new(times, "read", json_real(results->input.read_ms));
+  json_object_set_new(times, "repair", json_real(results->input.repair_ms));
+  json_object_set_new(times, "voxelize", json_real(results->voxelize_ms));
+  json_object_set_new(times, "write", json_real(results->write_ms));
+  json_object_set_new(times, "total", json_real(results->total_ms));
+  json_t *report = json_object();
+  json_object_set_new(report, "input", cli_json_text(given->input));
+  json_object_set_new(report, "output", cli_json_text(given->output));
+  json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
+  json_object_set_new(report, "parts", json_integer(results->voxelize.parts));
+  json_object_set_new(report, "closed_parts", json_integer(results->voxelize.closed_parts));
+  json_object_set_new(report, "grid", cli_json_space(&results->space));
+  json_object_set_new(report, "votes", votes);
+  json_object_set_new(report, "voxels", json_integer(results->voxelize.voxels));
+  json_object_set_new(report, "hash", cli_json_hash(results->voxelize.hash));
+  json_object_set_new(report, "time_ms", times);
+  json_object_set_new(report, "peak_bytes", json_integer((json_int_t)vxm_context_peak_bytes(cli->context)));
+  json_object_set(report, "warnings", cli->warnings);
+  return report;
+}
+
+/** "exact_weld 12, degenerate 3", or "nothing to do". */
+static void summarize_repair(const cli_run *cli, const vxm_repair_report *repair) {
+  const char *separator = "";
+  fprintf(cli->text, "%-10s ", "repair");
+  for (int i = 0; i < repair->pass_count; i++)
+    if (repair->passes[i].count > 0 || cli->verbose) {
+      fprintf(cli->text, "%s%s %" PRId64, separator, repair->passes[i].pass, repair->passes[i].count);
+      separator = ", ";
+    }
+  fprintf(cli->text, "%s\n", *separator ? "" : repair->pass_count ? "nothing to do" : "not wanted");
+}
+
+static void summarize(const cli_run *cli, const request *given, const outcome *results) {
+  const cli_input *input = &results->input;
+  const vxm_voxelize_report *report = &results->voxelize;
+  const vxm_space *space = &results->space;
+  double cells = (double)space->dims[0] * (double)space->dims[1] * (double)space->dims[2];
+  cli_row(cli, "input", "%s (%s): %" PRId64 " vertices, %" PRId64 " faces", cli_shown(input->path, "<stdin>"),
+          input->format, input->vertices, input->faces);
+  summarize_repair(cli, &input->repair);
+  cli_rows_space(cli, space);
+  cli_row(cli, "parts", "%" PRId64 ", of which %" PRId64 " closed", report->parts, report->closed_parts);
+  cli_row(cli, "voxels", "%" PRId64 " (%.2f %%)", report->voxels, 100.0 * (double)report->voxels / cells);
+  cli_row(cli, "contested", "%" PRId64 "%s", report->contested,
+          report->contested ? " (open parts: the voters disagreed there)" : "");
+  cli_row(cli, "hash", "%016" PRIx64, report->hash);
+  cli_row(cli, "time", "%.1f ms: read %.1f, repair %.1f, voxelize %.1f, write %.1f", results->total_ms,
+          input->read_ms, input->repair_ms, results->voxelize_ms, results->write_ms);
+  if (cli->verbose) {
+    cli_row(cli, "threads", "%d", vxm_context_threads(cli->context));
+    cli_row(cli, "memory", "%.1f MiB", (double)vxm_context_peak_bytes(cli->context) / (1 << 20));
+  }
+  cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+}
+
+/* ---- Work ---- */
+
+/** Takes the space of the grid named by --like. */
+static int read_like(cli_run *cli, vxm_space *out, const char *path) {
+  vxm_grid *grid = NULL;
+  if (vxm_grid_read(&grid, cli->context, path, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  cli_warn_grid(cli, path, grid);
+  *out = *vxm_grid_space(grid);
+  vxm_grid_destroy(grid);
+  return CLI_DONE;
+}
+
+static int make_grid(cli_run *cli, const request *given, outcome *results) {
+  double start = cli_clock();
+  vxm_grid *grid = NULL;
+  if (vxm_voxelize(&grid, &results->voxelize, results->input.mesh, &given->voxelize, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  cli_warn_grid(cli, given->input, grid);
+  results->space = *vxm_grid_space(grid);
+  double made = cli_clock();
+  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+  options.format = given->format;
+  vxm_status status = vxm_grid_write(grid, given->output, &options, &cli->error);
+  results->voxelize_ms = made - start;
+  results->write_ms = cli_clock() - made;
+  vxm_grid_destroy(grid);
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  cli->made = given->output;
+  return CLI_DONE;
+}
+
+static int run(cli_run *cli) {
+  request given = {.repair = VXM_REPAIR_OPTIONS_INIT, .voxelize = VXM_VOXELIZE_OPTIONS_INIT};
+  if (read_arguments(cli, &given) == CLI_STOP)
+    return cli->status;
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  double start = cli_clock();
+  vxm_space like;
+  if (given.like) {
+    if (read_like(cli, &like, given.like) != CLI_DONE)
+      return CLI_FAILED;
+    given.voxelize.space.like = &like;
+  }
+  outcome results = {0};
+  const vxm_repair_options *repair = given.no_repair ? NULL : &given.repair;
+  if (cli_read_repaired(cli, &results.input, given.input, repair) != CLI_DONE)
+    return CLI_FAILED;
+  int status = make_grid(cli, &given, &results);
+  vxm_mesh_destroy(results.input.mesh);
+  if (status != CLI_DONE)
+    return status;
+  results.total_ms = cli_clock() - start;
+  cli_progress_clear(cli);
+  if (cli_summary(cli))
+    summarize(cli, &given, &results);
+  return cli_finish(cli, make_report(cli, &given, &results));
+}
+
+const cli_command cli_command_voxelize = {
+    .name = "voxelize",
+    .arguments = "MESH -o GRID [OPTION]...",
+    .summary = "turn a mesh into a voxel grid",
+    .notes = "The mesh is repaired first, as by 'voxmend repair'. Voxel (i,j,k) is set where its centre,\n"
+             "origin + ((i,j,k) + 1/2) * size, is inside the mesh.\n\n"
+             "Examples:\n"
+             "  voxmend voxelize chair.off -o chair.binvox\n"
+             "  voxmend voxelize part.stl -o part.npy --voxel-size 0.5 --fit tight --pad 1\n"
+             "  voxmend voxelize second.stl -o second.npy --like part.npy\n"
+             "  voxmend voxelize chair.off -o - --format rle -r 64 | wc -c",
+    .options = known_options,
+    .run = run,
+};

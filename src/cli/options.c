@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Reading the command line: one table per command serves both getopt and the help text. */
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEY_JSON = CLI_KEY_COMMON, KEY_REPORT, KEY_THREADS, KEY_MEMLIMIT, KEY_PROGRESS, KEY_STRICT };
+
+static const cli_option common_options[] = {
+    {KEY_JSON, "json", NULL, "print the report as JSON on standard output instead of the summary"},
+    {KEY_REPORT, "report", "FILE.json", "write the report as JSON into a file too"},
+    {KEY_THREADS, "threads", "N", "threads to work with, 1 to 256 [one per processor]"},
+    {KEY_MEMLIMIT, "memlimit", "SIZE",
+     "fail rather than hold more memory than this, in bytes\nor with a binary suffix: 512M, 4G [no limit]"},
+    {'q', "quiet", NULL, "print neither the summary nor warnings"},
+    {'v', "verbose", NULL, "print more: tags, passes that changed nothing, threads and memory"},
+    {KEY_PROGRESS, "progress", "WHEN", "auto (where standard error is a terminal), always or never [auto]"},
+    {KEY_STRICT, "strict", NULL, "exit with status 3 if there were warnings"},
+    {'h', "help", NULL, "show this help"},
+    {0, NULL, NULL, NULL}};
+
+const char *const cli_mesh_formats[] = {"off", "obj", "stl", "ply", NULL};
+const char *const cli_grid_formats[] = {"binvox", "npy", "raw", "rle", "obj", "ply", "stl", "off", NULL};
+
+/* ---- Help ---- */
+
+enum { HELP_COLUMN = 30 };
+
+static void print_option(const cli_option *option) {
+  char text[96];
+  char letter[8] = "    ";
+  if (option->key < CLI_KEY_COMMON)
+    snprintf(letter, sizeof letter, "-%c, ", option->key);
+  int used = snprintf(text, sizeof text, "  %s--%s%s%s", letter, option->name, option->argument ? " " : "",
+                      option->argument ? option->argument : "");
+  if (used < HELP_COLUMN)
+    printf("%-*s", HELP_COLUMN, text);
+  else
+    printf("%s\n%*s", text, HELP_COLUMN, "");
+  for (const char *c = option->help; *c; c++) {
+    putchar(*c);
+    if (*c == '\n')
+      printf("%*s", HELP_COLUMN, "");
+  }
+  putchar('\n');
+}
+
+void cli_help(const cli_command *command) {
+  printf("Usage: voxmend %s %s\n%s\n", command->name, command->arguments, command->summary);
+  if (command->options[0].name)
+    printf("\nOptions:\n");
+  for (const cli_option *option = command->options; option->name; option++)
+    print_option(option);
+  printf("\nCommon options:\n");
+  for (const cli_option *option = common_options; option->name; option++)
+    print_option(option);
+  printf("\n%s\n\nExit status: 0 done; 1 failed, and no output file is left; 2 wrong usage;\n"
+         "3 done with warnings, and only with --strict.\n",
+         command->notes);
+}
+
+/* ---- Options ---- */
+
+static struct option long_options[CLI_OPTIONS_MAX + 1];
+static char letters[2 * CLI_OPTIONS_MAX + 2];
+
+static void add_options(const cli_option *options, size_t *count, size_t *used) {
+  for (; options->name && *count < CLI_OPTIONS_MAX; options++) {
+    int takes = options->argument ? required_argument : no_argument;
+    long_options[(*count)++] = (struct option){options->name, takes, NULL, options->key};
+    if (options->key >= CLI_KEY_COMMON)
+      continue;
+    letters[(*used)++] = (char)options->key;
+    if (options->argument)
+      letters[(*used)++] = ':';
+  }
+}
+
+static void build_tables(const cli_run *cli) {
+  size_t count = 0, used = 0;
+  letters[used++] = ':'; /* tells a missing argument from an unknown option */
+  add_options(cli->command->options, &count, &used);
+  add_options(common_options, &count, &used);
+  opterr = 0;
+}
+
+int cli_usage(cli_run *cli, const char *format, ...) {
+  fprintf(stderr, "voxmend: ");
+  va_list arguments;
+  va_start(arguments, format);
+  vfprintf(stderr, format, arguments);
+  va_end(arguments);
+  if (cli->command)
+    fprintf(stderr, " (see 'voxmend %s --help')\n", cli->command->name);
+  else
+    fprintf(stderr, " (see 'voxmend --help')\n");
+  cli->status = CLI_WRONG_USAGE;
+  return CLI_STOP;
+}
+
+/** The name under which an option is shown in a message. */
+static const char *option_name(int key) {
+  for (const struct option *option = long_options; option->name; option++)
+    if (option->val == key)
+      return option->name;
+  return "?";
+}
+
+/** What getopt refused; `word` is the argument that it was looking at. */
+static int refuse(cli_run *cli, int result, const char *word) {
+  if (result == ':')
+    return cli_usage(cli, "option --%s needs a value", option_name(optopt));
+  if (optopt >= CLI_KEY_COMMON || (optopt && word[0] == '-' && word[1] == '-'))
+    return cli_usage(cli, "option --%s takes no value", option_name(optopt));
+  if (optopt)
+    return cli_usage(cli, "unknown option -%c", optopt);
+  return cli_usage(cli, "unknown option %s", word);
+}
+
+/** Handles an option that all commands have; CLI_END if it is one, else its key. */
+static int common_option(cli_run *cli, int key, const char *value) {
+  static const char *const when[] = {"auto", "always", "never", NULL};
+  int64_t threads;
+  switch (key) {
+  case 'h':
+    cli_help(cli->command);
+    cli->status = CLI_DONE;
+    return CLI_STOP;
+  case 'q':
+    cli->quiet = true;
+    return CLI_END;
+  case 'v':
+    cli->verbose = true;
+    return CLI_END;
+  case KEY_JSON:
+    cli->json = true;
+    return CLI_END;
+  case KEY_STRICT:
+    cli->strict = true;
+    return CLI_END;
+  case KEY_REPORT:
+    cli->report = value;
+    return CLI_END;
+  case KEY_THREADS:
+    if (!cli_read_integer(&threads, value, 1, 256))
+      return cli_usage(cli, "--threads '%s' is not a number from 1 to 256", value);
+    cli->limits.threads = (int)threads;
+    return CLI_END;
+  case KEY_MEMLIMIT:
+    if (!cli_read_size(&cli->limits.memory_limit, value))
+      return cli_usage(cli, "--memlimit '%s' is not a size such as 512M or 4G", value);
+    return CLI_END;
+  case KEY_PROGRESS:
+    if (cli_read_choice(value, when) < 0)
+      return cli_usage(cli, "--progress '%s' is none of auto, always, never", value);
+    cli->progress = value;
+    return CLI_END;
+  default:
+    return key;
+  }
+}
+
+int cli_next_option(cli_run *cli, const char **value) {
+  if (!long_options[0].name)
+    build_tables(cli);
+  for (;;) {
+    int index = optind;
+    int result = getopt_long(cli->argc, cli->argv, letters, long_options, NULL);
+    if (result == -1)
+      break;
+    if (result == '?' || result == ':')
+      return refuse(cli, result, cli->argv[optind > index ? optind - 1 : index]);
+    *value = optarg;
+    int key = common_option(cli, result, optarg);
+    if (key != CLI_END)
+      return key;
+  }
+  cli->arguments = cli->argv + optind;
+  cli->argument_count = cli->argc - optind;
+  return CLI_END;
+}
+
+bool cli_start(cli_run *cli) {
+  cli_progress_init(cli);
+  if (vxm_context_create(&cli->context, &cli->limits, &cli->error) == VXM_OK)
+    return true;
+  cli_fail(cli);
+  return false;
+}
+
+/* ---- Values ---- */
+
+bool cli_read_integer(int64_t *out, const char *text, int64_t low, int64_t high) {
+  if (!*text || strspn(text, "0123456789") != strlen(text))
+    return false;
+  errno = 0;
+  long long value = strtoll(text, NULL, 10);
+  if (errno || value < low || value > high)
+    return false;
+  *out = value;
+  return true;
+}
+
+/** As strtod, which the program uses in the C locale only, without hexadecimal, infinities and blanks. */
+static const char *read_number(double *out, const char *text) {
+  size_t length = strspn(text, "0123456789+-.eE");
+  char *end;
+  *out = strtod(text, &end);
+  return length > 0 && end == text + length && isfinite(*out) ? end : NULL;
+}
+
+bool cli_read_number(double *out, const char *text) {
+  const char *end = read_number(out, text);
+  return end && !*end;
+}
+
+bool cli_read_numbers(double *out, int count, const char *text) {
+  for (int i = 0; i < count; i++) {
+    text = read_number(&out[i], text);
+    if (!text || *text != (i + 1 < count ? ',' : '\0'))
+      return false;
+    text++;
+  }
+  return true;
+}
+
+bool cli_read_size(uint64_t *out, const char *text) {
+  static const char suffixes[] = "KMGT";
+  size_t digits = strspn(text, "0123456789");
+  char number[24];
+  if (digits == 0 || digits >= sizeof number)
+    return false;
+  memcpy(number, text, digits);
+  number[digits] = '\0';
+  int64_t value;
+  if (!cli_read_integer(&value, number, 1, INT64_MAX))
+    return false;
+  text += digits;
+  unsigned shift = 0;
+  if (*text) {
+    char letter = (char)(*text >= 'a' && *text <= 'z' ? *text - 'a' + 'A' : *text);
+    const char *found = strchr(suffixes, letter);
+    if (!found || text[1])
+      return false;
+    shift = 10 * (unsigned)(found - suffixes + 1);
+  }
+  if (value > INT64_MAX >> shift)
+    return false;
+  *out = (uint64_t)value << shift;
+  return true;
+}
+
+int cli_read_choice(const char *text, const char *const *choices) {
+  for (int i = 0; choices[i]; i++)
+    if (strcmp(text, choices[i]) == 0)
+      return i;
+  return -1;
+}
+
+/* ---- Names of formats ---- */
+
+/** Part of a name behind the last '.', or "". */
+static const char *extension_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  const char *dot = strrchr(slash ? slash + 1 : path, '.');
+  return dot ? dot + 1 : "";
+}
+
+static bool equal_nocase(const char *a, const char *b) {
+  while (*a && (*a | 0x20) == (*b | 0x20)) {
+    a++;
+    b++;
+  }
+  return !*a && !*b;
+}
+
+bool cli_is_extension(const char *path, const char *extension) {
+  return equal_nocase(extension_of(path), extension);
+}
+
+static const char *find_format(const char *name, const char *const *known) {
+  for (; *known; known++)
+    if (equal_nocase(name, *known))
+      return *known;
+  return NULL;
+}
+
+/** "off, obj, stl, ply" */
+static const char *list_formats(char *list, size_t size, const char *const *known) {
+  size_t used = 0;
+  for (int i = 0; known[i] && used < size; i++)
+    used += (size_t)snprintf(list + used, size - used, "%s%s", i ? ", " : "", known[i]);
+  return list;
+}
+
+const char *cli_output_format(cli_run *cli, const char *path, const char *format, const char *const *known) {
+  char list[96];
+  list_formats(list, sizeof list, known);
+  if (!path) {
+    cli_usage(cli, "-o FILE is missing");
+    return NULL;
+  }
+  const char *found = find_format(format ? format : extension_of(path), known);
+  if (!found && format)
+    cli_usage(cli, "--format '%s' is none of %s", format, list);
+  else if (!found && strcmp(path, "-") == 0)
+    cli_usage(cli, "-o - needs --format: %s", list);
+  else if (!found)
+    cli_usage(cli, "the name '%s' does not tell the format; give --format: %s", path, list);
+  if (!found || strcmp(path, "-") != 0)
+    return found;
+  if (cli->json) {
+    cli_usage(cli, "-o - and --json both want standard output; use --report FILE.json");
+    return NULL;
+  }
+  cli->text = stderr;
+  return found;
+}

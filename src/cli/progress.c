@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Progress on standard error, and signals that cancel the work so that no half-made file is left. */
+#include "cli/cli.h"
+
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t caught;
+
+static void on_signal(int signal) {
+  caught = signal;
+}
+
+int cli_signal(void) {
+  return caught;
+}
+
+static void draw(cli_run *cli, double fraction) {
+  enum { WIDTH = 30, REDRAW_MS = 100 };
+  double now = cli_clock();
+  if (cli->drawn > 0 && now - cli->drawn < REDRAW_MS)
+    return;
+  cli->drawn = now;
+  if (fraction < 0 || fraction > 1)
+    fraction = fraction < 0 ? 0 : 1;
+  int filled = (int)(fraction * WIDTH);
+  fprintf(stderr, "\r%-16s [", cli->phase);
+  for (int i = 0; i < WIDTH; i++)
+    fputc(i < filled ? '#' : ' ', stderr);
+  fprintf(stderr, "] %3d %%", (int)(fraction * 100));
+  fflush(stderr);
+}
+
+static int on_progress(const char *phase, double fraction, void *payload) {
+  cli_run *cli = payload;
+  if (caught)
+    return 1;
+  if (strcmp(cli->progress, "never") == 0)
+    return 0;
+  bool terminal = isatty(STDERR_FILENO);
+  bool begins = strncmp(cli->phase, phase, sizeof cli->phase - 1) != 0;
+  if (begins)
+    snprintf(cli->phase, sizeof cli->phase, "%s", phase);
+  if (terminal)
+    draw(cli, fraction);
+  else if (begins) /* --progress always into a file: each phase once */
+    fprintf(stderr, "voxmend: %s\n", cli->phase);
+  return 0;
+}
+
+void cli_progress_clear(cli_run *cli) {
+  if (cli->drawn > 0)
+    fprintf(stderr, "\r\033[K");
+  cli->drawn = 0;
+}
+
+void cli_progress_init(cli_run *cli) {
+  if (strcmp(cli->progress, "auto") == 0 && (cli->quiet || !isatty(STDERR_FILENO)))
+    cli->progress = "never";
+  cli->limits.progress = on_progress;
+  cli->limits.payload = cli;
+  /* A second signal ends the program at once, should the work not come to its next report. */
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGHUP, &action, NULL);
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Reading and repairing a mesh, which repair, voxelize and view have in common. */
+#include "cli/cli.h"
+
+#include <string.h>
+
+bool cli_read_weld(vxm_repair_options *options, const char *text) {
+  double tolerance;
+  if (strcmp(text, "auto") == 0)
+    options->weld = VXM_WELD_AUTO;
+  else if (strcmp(text, "off") == 0)
+    options->weld = VXM_WELD_OFF;
+  else if (cli_read_number(&tolerance, text) && tolerance > 0) {
+    options->weld = VXM_WELD_TOLERANCE;
+    options->weld_tolerance = tolerance;
+  } else
+    return false;
+  return true;
+}
+
+json_t *cli_passes_json(const vxm_repair_report *report) {
+  json_t *passes = json_array();
+  for (int i = 0; i < report->pass_count; i++) {
+    json_t *pass = json_object();
+    json_object_set_new(pass, "pass", json_string(report->passes[i].pass));
+    json_object_set_new(pass, "count", json_integer(report->passes[i].count));
+    json_array_append_new(passes, pass);
+  }
+  return passes;
+}
+
+int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options) {
+  *input = (cli_input){.path = path};
+  double start = cli_clock();
+  vxm_mesh *raw = NULL;
+  if (vxm_mesh_read(&raw, cli->context, path, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  cli_warn_mesh(cli, path, raw);
+  snprintf(input->format, sizeof input->format, "%s", vxm_mesh_format(raw));
+  input->vertices = vxm_mesh_vertex_count(raw);
+  input->faces = vxm_mesh_face_count(raw);
+  double read = cli_clock();
+  input->read_ms = read - start;
+  if (!options) {
+    input->mesh = raw;
+    return CLI_DONE;
+  }
+  vxm_status status = vxm_mesh_repair(&input->mesh, &input->repair, raw, options, &cli->error);
+  input->repair_ms = cli_clock() - read;
+  vxm_mesh_destroy(raw);
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  if (vxm_mesh_face_count(input->mesh) > 0)
+    return CLI_DONE;
+  vxm_mesh_destroy(input->mesh);
+  input->mesh = NULL;
+  return cli_fail_text(cli, "%s: no face is left after repair", cli_shown(path, "<stdin>"));
+}

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "grid/space.h"
+#include "grid/bitgrid.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+/** A model side that is a whole number of voxels must not gain one through rounding. */
+static const double rounding_slack = 1e-9;
+
+typedef struct box {
+  double low[3], high[3];
+} box;
+
+static double extent(const box *b, int axis) {
+  return b->high[axis] - b->low[axis];
+}
+
+static double longest(const box *b) {
+  return fmax(extent(b, 0), fmax(extent(b, 1), extent(b, 2)));
+}
+
+static double diagonal(const box *b) {
+  return hypot(hypot(extent(b, 0), extent(b, 1)), extent(b, 2));
+}
+
+/** Box of the finite vertices that faces use; false if there are none. */
+static bool box_of_soup(box *out, const vxm_soup *soup) {
+  bool any = false;
+  for (size_t c = 0; c < soup->corner_count; c++) {
+    const double *p = vxm_position(soup, soup->indices[c]);
+    if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
+      continue;
+    for (int a = 0; a < 3; a++) {
+      out->low[a] = any ? fmin(out->low[a], p[a]) : p[a];
+      out->high[a] = any ? fmax(out->high[a], p[a]) : p[a];
+    }
+    any = true;
+  }
+  return any;
+}
+
+/** Voxels of size `size` needed for a length; at least 1, and at most more than any grid may have. */
+static int64_t voxels_for(double length, double size) {
+  double count = ceil(length / size * (1 - rounding_slack));
+  if (!(count >= 1))
+    return 1;
+  return count < (double)(2 * VXM_DIM_MAX) ? (int64_t)count : 2 * VXM_DIM_MAX;
+}
+
+/** What the options ask for, taken apart. */
+typedef struct request {
+  bool by_size;       /**< voxel_size is given rather than a resolution */
+  bool one_number;    /**< the resolution is one number, for the longest side */
+  int64_t voxels[3];  /**< the resolution */
+  int64_t content[3]; /**< the resolution without the pad */
+} request;
+
+static vxm_status read_request(request *out, const vxm_space_options *o, vxm_error *error) {
+  const int64_t *r = o->resolution;
+  bool none = r[0] == 0 && r[1] == 0 && r[2] == 0;
+  bool one = r[0] > 0 && r[1] == 0 && r[2] == 0;
+  bool three = r[0] > 0 && r[1] > 0 && r[2] > 0;
+  if (!none && !one && !three)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "resolution %" PRId64 "x%" PRId64 "x%" PRId64
+                    "; give one number or three, each at least 1",
+                    r[0], r[1], r[2]);
+  if (o->voxel_size != 0 && !(isfinite(o->voxel_size) && o->voxel_size > 0))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxel size %g; it must be positive", o->voxel_size);
+  if (o->voxel_size != 0 && !none)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "both a resolution and a voxel size are given; choose one");
+  if (o->pad < 0 || o->pad > VXM_DIM_MAX)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "pad %" PRId64 "; it must be 0 or more voxels", o->pad);
+  out->by_size = o->voxel_size != 0;
+  out->one_number = !three;
+  for (int a = 0; a < 3; a++) {
+    out->voxels[a] = none ? 128 : one ? r[0] : r[a];
+    if (out->voxels[a] > VXM_DIM_MAX)
+      return vxm_fail(error, VXM_ERROR_RANGE, "%" PRId64 " voxels along an axis; at most %" PRId64,
+                      out->voxels[a], VXM_DIM_MAX);
+    out->content[a] = out->voxels[a] - 2 * o->pad;
+    if (!out->by_size && out->content[a] < 1)
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "a pad of %" PRId64 " voxels on both sides leaves nothing of %" PRId64
+                      "; raise the resolution",
+                      o->pad, out->voxels[a]);
+  }
+  return VXM_OK;
+}
+
+static void set_cubic(vxm_space *space, double size) {
+  for (int a = 0; a < 3; a++)
+    space->voxel_size[a] = size;
+}
+
+/** Cells that cover a box from its minimum corner on; three numbers divide each side exactly. */
+static vxm_status cover_bounds(vxm_space *out, const box *b, const request *r, double voxel_size,
+                               vxm_error *error) {
+  for (int a = 0; a < 3; a++)
+    if (!isfinite(b->low[a]) || !isfinite(b->high[a]) || !(extent(b, a) > 0) || !isfinite(extent(b, a)))
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "bounds %g to %g along %c; the second corner must lie beyond the first", b->low[a],
+                      b->high[a], "xyz"[a]);
+  set_cubic(out, r->by_size ? voxel_size : longest(b) / (double)r->voxels[0]);
+  for (int a = 0; a < 3; a++) {
+    if (!r->by_size && !r->one_number)
+      out->voxel_size[a] = extent(b, a) / (double)r->voxels[a];
+    out->dims[a] =
+        !r->by_size && !r->one_number ? r->voxels[a] : voxels_for(extent(b, a), out->voxel_size[a]);
+    out->origin[a] = b->low[a];
+  }
+  return vxm_space_check(out, error);
+}
+
+/** Size of cubic voxels with which the model fills the content of the grid. */
+static double fitted_size(const box *b, const request *r, vxm_fit fit) {
+  double size = 0;
+  for (int a = 0; a < 3; a++) {
+    double side = fit == VXM_FIT_SPHERE ? diagonal(b) : r->one_number ? longest(b) : extent(b, a);
+    size = fmax(size, side / (double)r->content[a]);
+  }
+  return size;
+}
+
+static vxm_status fit_model(vxm_space *out, const box *b, const request *r, const vxm_space_options *o,
+                            vxm_error *error) {
+  set_cubic(out, r->by_size ? o->voxel_size : fitted_size(b, r, o->fit));
+  double size = out->voxel_size[0];
+  for (int a = 0; a < 3; a++) {
+    double side = o->fit == VXM_FIT_TIGHT    ? extent(b, a)
+                  : o->fit == VXM_FIT_SPHERE ? diagonal(b)
+                                             : longest(b);
+    bool from_model = r->by_size || (o->fit == VXM_FIT_TIGHT && r->one_number);
+    out->dims[a] = from_model ? voxels_for(side, size) + 2 * o->pad : r->voxels[a];
+    /* Halves first: the sum of two huge corners could overflow. */
+    out->origin[a] = (b->low[a] / 2 + b->high[a] / 2) - (double)out->dims[a] * size / 2;
+  }
+  return vxm_space_check(out, error);
+}
+
+vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_space_options *options,
+                            vxm_error *error) {
+  if (options->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "voxel space: options version %" PRIu32 " is unknown; use the initializer",
+                    options->version);
+  if (options->like) {
+    *out = *options->like;
+    return vxm_space_check(out, error);
+  }
+  if ((unsigned)options->fit > VXM_FIT_SPHERE)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxel space: fit %d is unknown", (int)options->fit);
+  request wanted = {0};
+  vxm_status status = read_request(&wanted, options, error);
+  if (status != VXM_OK)
+    return status;
+  box b;
+  if (options->use_bounds) {
+    if (options->pad != 0)
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "bounds are covered exactly and take no pad; widen the bounds instead");
+    for (int a = 0; a < 3; a++) {
+      b.low[a] = options->bounds[a];
+      b.high[a] = options->bounds[a + 3];
+    }
+    return cover_bounds(out, &b, &wanted, options->voxel_size, error);
+  }
+  if (!box_of_soup(&b, soup))
+    return vxm_fail(error, VXM_ERROR_EMPTY,
+                    "the mesh has no face with finite vertices, so there is nothing to voxelize");
+  if (!(longest(&b) > 0))
+    return vxm_fail(error, VXM_ERROR_EMPTY, "all faces lie in one point, so there is nothing to voxelize");
+  if (!isfinite(diagonal(&b)))
+    return vxm_fail(error, VXM_ERROR_RANGE, "the model is larger than the largest number; scale it down");
+  return fit_model(out, &b, &wanted, options, error);
+}

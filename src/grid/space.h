@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Choosing the voxel space of a mesh. */
+#ifndef VXM_GRID_SPACE_H
+#define VXM_GRID_SPACE_H
+
+#include "mesh/soup.h"
+
+/** See vxm_space_fit in voxmend.h. */
+vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_space_options *options,
+                            vxm_error *error);
+
+#endif

@@ -1,0 +1,386 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* .binvox: a text header, then pairs (value, count) over voxels with y fastest, then z, then x. */
+#include "gridio/format.h"
+#include "gridio/planes.h"
+#include "gridio/runs.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool sniff(const vxm_input *input) {
+  return input->size >= 7 && memcmp(input->data, "#binvox", 7) == 0;
+}
+
+/* ---- Reading the header ---- */
+
+typedef struct header {
+  int64_t dims[3]; /**< x, z, y: slowest first, as in the file */
+  double translate[3];
+  double scale;
+  bool has_dims, has_translate, has_scale;
+  size_t unknown;     /**< lines with a key that is not known */
+  size_t dims_offset; /**< of the line */
+  size_t data;        /**< offset of the first pair */
+} header;
+
+/** Splits a line into words; returns how many, at most `most`. A word too long to be a number becomes "". */
+static int split(const unsigned char *line, size_t length, char words[][64], int most) {
+  int count = 0;
+  for (size_t at = 0; count < most;) {
+    while (at < length && (line[at] == ' ' || line[at] == '\t' || line[at] == '\r'))
+      at++;
+    if (at == length)
+      break;
+    size_t used = 0;
+    for (; at < length && line[at] != ' ' && line[at] != '\t' && line[at] != '\r'; at++, used++)
+      if (used < 63)
+        words[count][used] = (char)line[at];
+    words[count++][used < 64 ? used : 0] = '\0';
+  }
+  return count;
+}
+
+static bool parse_integer(const char *word, int64_t *value) {
+  char *end;
+  errno = 0;
+  *value = strtoll(word, &end, 10);
+  return end != word && *end == '\0' && errno == 0;
+}
+
+/** A number with a decimal point whatever the locale. */
+static bool parse_number(const char *word, double *value) {
+  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+  if (!c)
+    return false;
+  char *end;
+  *value = strtod_l(word, &end, c);
+  freelocale(c);
+  return end != word && *end == '\0' && isfinite(*value);
+}
+
+static vxm_status read_dims(header *h, char words[][64], int count, const vxm_input *input, size_t offset,
+                            vxm_error *error) {
+  for (int a = 0; a < 3; a++)
+    if (count != 4 || !parse_integer(words[a + 1], &h->dims[a]))
+      return vxm_fail_byte(error, input, offset, "the dim line needs three whole numbers");
+  h->has_dims = true;
+  h->dims_offset = offset;
+  return VXM_OK;
+}
+
+static vxm_status read_header_line(header *h, char words[][64], int count, const vxm_input *input,
+                                   size_t offset, vxm_error *error) {
+  if (strcmp(words[0], "dim") == 0)
+    return read_dims(h, words, count, input, offset, error);
+  if (strcmp(words[0], "translate") == 0) {
+    for (int a = 0; a < 3; a++)
+      if (count != 4 || !parse_number(words[a + 1], &h->translate[a]))
+        return vxm_fail_byte(error, input, offset, "the translate line needs three finite numbers");
+    h->has_translate = true;
+  } else if (strcmp(words[0], "scale") == 0) {
+    if (count != 2 || !parse_number(words[1], &h->scale) || h->scale <= 0)
+      return vxm_fail_byte(error, input, offset, "the scale line needs one positive number");
+    h->has_scale = true;
+  } else
+    h->unknown++;
+  return VXM_OK;
+}
+
+static vxm_status read_header(header *h, const vxm_input *input, vxm_error *error) {
+  *h = (header){.scale = 1};
+  if (!sniff(input))
+    return vxm_fail_byte(error, input, 0, "not a binvox file: it does not begin with \"#binvox\"");
+  for (size_t at = 0; at < input->size;) {
+    const unsigned char *line = input->data + at;
+    const unsigned char *end = memchr(line, '\n', input->size - at);
+    if (!end)
+      break;
+    char words[5][64];
+    int count = *line == '#' ? 0 : split(line, (size_t)(end - line), words, 5);
+    size_t offset = at;
+    at = (size_t)(end - input->data) + 1;
+    if (count == 0)
+      continue;
+    if (strcmp(words[0], "data") == 0) {
+      h->data = at;
+      if (!h->has_dims)
+        return vxm_fail_byte(error, input, offset, "the header has no dim line");
+      return VXM_OK;
+    }
+    vxm_status status = read_header_line(h, words, count, input, offset, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  return vxm_fail_byte(error, input, input->size, "the header has no data line");
+}
+
+/** Three different dims are x, z and y, the order in which the voxels vary; the scale is the longest side. */
+static void header_space(const header *h, vxm_space *space) {
+  int64_t longest = h->dims[0];
+  for (int a = 1; a < 3; a++)
+    longest = h->dims[a] > longest ? h->dims[a] : longest;
+  const int source[3] = {0, 2, 1};
+  for (int a = 0; a < 3; a++) {
+    space->dims[a] = h->dims[source[a]];
+    space->origin[a] = h->translate[a];
+    space->voxel_size[a] = h->scale / (double)longest;
+  }
+}
+
+/* ---- Reading the voxels ---- */
+
+typedef struct oddities {
+  bool odd, labels; /**< a lone byte at the end; values above 1 */
+} oddities;
+
+/** Adds up the counts before anything is allocated. */
+static vxm_status check_runs(oddities *found, const vxm_input *input, size_t data, uint64_t voxels,
+                             vxm_error *error) {
+  const unsigned char *pairs = input->data + data;
+  size_t pair_count = (input->size - data) / 2;
+  uint64_t sum = 0;
+  unsigned char values = 0;
+  for (size_t p = 0; p < pair_count; p++) {
+    sum += pairs[2 * p + 1];
+    values |= pairs[2 * p] & 0xfe;
+  }
+  if (sum > voxels) {
+    uint64_t before = 0;
+    size_t p = 0;
+    while (before + pairs[2 * p + 1] <= voxels)
+      before += pairs[2 * p++ + 1];
+    return vxm_fail_byte(error, input, data + 2 * p, "the runs go beyond the %" PRIu64 " voxels of the grid",
+                         voxels);
+  }
+  if (sum < voxels)
+    return vxm_fail_byte(error, input, input->size,
+                         "the data end after %" PRIu64 " of %" PRIu64 " voxels: the file is cut short", sum,
+                         voxels);
+  *found = (oddities){(input->size - data) % 2 != 0, values != 0};
+  return VXM_OK;
+}
+
+/** Where the next voxel lies: plane x % 64, row z, bit y. */
+typedef struct cursor {
+  size_t plane, row, bit;
+} cursor;
+
+/** Sets or skips `count` voxels, but not beyond the planes; returns how many are left. */
+static unsigned advance(cursor *at, const vxm_planes *planes, size_t used, bool value, unsigned count) {
+  while (count > 0 && at->plane < used) {
+    size_t room = planes->length - at->bit, step = count < room ? count : room;
+    if (value)
+      vxm_row_set_span(vxm_plane_row(planes, at->plane, at->row), (int64_t)at->bit, (int64_t)(at->bit + step));
+    count -= (unsigned)step;
+    at->bit += step;
+    if (at->bit < planes->length)
+      break;
+    at->bit = 0;
+    if (++at->row == planes->rows) {
+      at->row = 0;
+      at->plane++;
+    }
+  }
+  return count;
+}
+
+static vxm_status read_runs(vxm_grid *grid, const vxm_input *input, size_t data, vxm_error *error) {
+  vxm_planes planes;
+  vxm_status status =
+      vxm_planes_create(&planes, grid->context, &grid->space, VXM_PLANE_Y_FAST, error);
+  if (status != VXM_OK)
+    return status;
+  size_t at = data;
+  unsigned left = 0; /* of the pair before `at` */
+  for (size_t w = 0; status == VXM_OK && w < grid->row_words; w++) {
+    cursor place = {0, 0, 0};
+    size_t used = vxm_planes_in(grid, w);
+    left = left ? advance(&place, &planes, used, input->data[at - 2] != 0, left) : 0;
+    while (place.plane < used) {
+      left = advance(&place, &planes, used, input->data[at] != 0, input->data[at + 1]);
+      at += 2;
+    }
+    vxm_planes_scatter(&planes, grid, w);
+    vxm_planes_clear(&planes);
+    status = vxm_progress(grid->context, "reading", (double)(w + 1) / (double)grid->row_words, error);
+  }
+  vxm_planes_destroy(&planes);
+  return status;
+}
+
+static void add_notes(vxm_grid *grid, const header *h, const oddities *found) {
+  if (!h->has_translate)
+    vxm_note(&grid->notes, "the header has no translate line: 0 0 0 is taken");
+  if (!h->has_scale)
+    vxm_note(&grid->notes, "the header has no scale line: 1 is taken");
+  if (h->unknown)
+    vxm_note(&grid->notes, "%zu header line%s with an unknown key skipped", h->unknown,
+             h->unknown == 1 ? "" : "s");
+  if (h->dims[0] != h->dims[1] || h->dims[1] != h->dims[2])
+    vxm_note(&grid->notes, "the dims differ: they are taken as x, z and y, slowest first");
+  if (found->labels)
+    vxm_note(&grid->notes, "values above 1 (labels) are read as set voxels");
+  if (found->odd)
+    vxm_note(&grid->notes, "a lone byte behind the last run is ignored");
+}
+
+static vxm_status read_binvox(vxm_grid **out, const vxm_input *input, vxm_error *error) {
+  header h;
+  vxm_space space;
+  oddities found = {false, false};
+  vxm_status status = read_header(&h, input, error);
+  if (status != VXM_OK)
+    return status;
+  header_space(&h, &space);
+  status = vxm_space_check_file(&space, input, h.dims_offset, error);
+  if (status == VXM_OK)
+    status = check_runs(&found, input, h.data, vxm_space_voxels(&space), error);
+  vxm_grid *grid = NULL;
+  if (status == VXM_OK)
+    status = vxm_grid_create(&grid, input->context, &space, error);
+  if (status == VXM_OK)
+    status = read_runs(grid, input, h.data, error);
+  if (status != VXM_OK) {
+    vxm_grid_destroy(grid);
+    return status;
+  }
+  add_notes(grid, &h, &found);
+  *out = grid;
+  return VXM_OK;
+}
+
+/* ---- Writing ---- */
+
+/** Pairs are put straight into the output's buffer. */
+typedef struct sink {
+  vxm_output *output;
+  unsigned char *room;
+  size_t used;
+} sink;
+
+enum { ROOM = 4096 };
+
+static void sink_flush(sink *s) {
+  vxm_output_advance(s->output, s->used);
+  s->room = (unsigned char *)vxm_output_reserve(s->output, ROOM);
+  s->used = 0;
+}
+
+static inline void put_pair(sink *s, bool value, unsigned count) {
+  if (s->used == ROOM)
+    sink_flush(s);
+  s->room[s->used++] = value;
+  s->room[s->used++] = (unsigned char)count;
+}
+
+static inline void put_run(bool value, uint64_t length, void *payload) {
+  sink *s = payload;
+  for (; length > 255; length -= 255)
+    put_pair(s, value, 255);
+  if (length > 0)
+    put_pair(s, value, (unsigned)length);
+}
+
+/** One plane of the cube: the rows of the grid, each followed by padding, then rows of padding. */
+static void put_plane(vxm_run *run, sink *s, const vxm_planes *planes, size_t plane, uint64_t side) {
+  for (size_t row = 0; row < planes->rows; row++) {
+    vxm_run_scan(run, vxm_plane_row(planes, plane, row), planes->length, put_run, s);
+    vxm_run_skip(run, side - planes->length, put_run, s);
+  }
+  vxm_run_skip(run, (side - planes->rows) * side, put_run, s);
+}
+
+/** Pairs of 255 may be written before their run ends: the file is the same, and the writer can be stopped. */
+static void put_full_pairs(vxm_run *run, sink *s) {
+  for (; run->length > 255; run->length -= 255)
+    put_pair(s, run->value, 255);
+}
+
+static vxm_status write_voxels(vxm_output *output, const vxm_grid *grid, vxm_planes *planes, uint64_t side,
+                               vxm_error *error) {
+  sink s = {output, (unsigned char *)vxm_output_reserve(output, ROOM), 0};
+  vxm_run run = {false, 0};
+  uint64_t nx = (uint64_t)grid->space.dims[0];
+  for (uint64_t x = 0; x < side && !vxm_output_failed(output); x++) {
+    if (x < nx && x % 64 == 0)
+      vxm_planes_gather(planes, grid, x / 64, NULL);
+    if (x < nx)
+      put_plane(&run, &s, planes, x % 64, side);
+    else
+      vxm_run_skip(&run, side * side, put_run, &s);
+    put_full_pairs(&run, &s);
+    if (x % 16 == 0 || side > 4096) {
+      vxm_status status = vxm_progress(grid->context, "writing", (double)x / (double)side, error);
+      if (status != VXM_OK)
+        return status;
+    }
+  }
+  put_run(run.value, run.length, &s);
+  vxm_output_advance(output, s.used);
+  return VXM_OK;
+}
+
+static vxm_status write_header(vxm_output *output, const vxm_space *space, uint64_t side, vxm_error *error) {
+  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+  if (!c)
+    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+  locale_t previous = uselocale(c);
+  vxm_output_printf(output,
+                    "#binvox 1\ndim %" PRIu64 " %" PRIu64 " %" PRIu64 "\ntranslate %.9g %.9g %.9g\n"
+                    "scale %.9g\ndata\n",
+                    side, side, side, space->origin[0], space->origin[1], space->origin[2],
+                    space->voxel_size[0] * (double)side);
+  uselocale(previous);
+  freelocale(c);
+  return VXM_OK;
+}
+
+/** One scale holds the size of all voxels, and all three sides. */
+static vxm_status check_cubic(const vxm_space *space, uint64_t side, vxm_error *error) {
+  const double *size = space->voxel_size;
+  if (fabs(size[1] - size[0]) > 1e-9 * size[0] || fabs(size[2] - size[0]) > 1e-9 * size[0])
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "binvox holds only voxels that are cubes, these are %g x %g x %g; use .npy, .raw or .rle",
+                    size[0], size[1], size[2]);
+  if (!isfinite(size[0] * (double)side))
+    return vxm_fail(error, VXM_ERROR_RANGE, "the side of the grid is too long for binvox; use .npy, .raw or .rle");
+  /* 2 bytes for 255 voxels of padding: a rod of a million voxels would become petabytes. */
+  uint64_t padding = (side * side * side - vxm_space_voxels(space)) / 255 * 2;
+  if (padding >> 34)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "binvox would pad this grid to a cube with %" PRIu64 " GiB; use .npy, .raw or .rle",
+                    padding >> 30);
+  return VXM_OK;
+}
+
+static vxm_status write_binvox(const vxm_grid *grid, const char *path, vxm_error *error) {
+  const vxm_space *space = &grid->space;
+  uint64_t side = 0;
+  for (int a = 0; a < 3; a++)
+    side = (uint64_t)space->dims[a] > side ? (uint64_t)space->dims[a] : side;
+  vxm_status status = check_cubic(space, side, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_planes planes;
+  status = vxm_planes_create(&planes, grid->context, space, VXM_PLANE_Y_FAST, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_output *output = NULL;
+  status = vxm_output_open(&output, grid->context, path, error);
+  if (status == VXM_OK)
+    status = write_header(output, space, side, error);
+  if (status == VXM_OK)
+    status = write_voxels(output, grid, &planes, side, error);
+  vxm_planes_destroy(&planes);
+  if (status == VXM_OK)
+    return vxm_output_commit(output, error);
+  vxm_output_abort(output);
+  return status;
+}
+
+const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, write_binvox};

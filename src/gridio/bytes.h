@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Little-endian words in files, on machines of either byte order. */
+#ifndef VXM_GRIDIO_BYTES_H
+#define VXM_GRIDIO_BYTES_H
+
+#include <stdint.h>
+#include <string.h>
+
+static inline uint64_t vxm_le64(uint64_t word) {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  return __builtin_bswap64(word);
+#else
+  return word;
+#endif
+}
+
+static inline uint64_t vxm_load_le64(const unsigned char *bytes) {
+  uint64_t word;
+  memcpy(&word, bytes, sizeof word);
+  return vxm_le64(word);
+}
+
+static inline void vxm_store_le64(unsigned char *bytes, uint64_t word) {
+  word = vxm_le64(word);
+  memcpy(bytes, &word, sizeof word);
+}
+
+static inline double vxm_load_double(const unsigned char *bytes) {
+  uint64_t word = vxm_load_le64(bytes);
+  double value;
+  memcpy(&value, &word, sizeof value);
+  return value;
+}
+
+static inline void vxm_store_double(unsigned char *bytes, double value) {
+  uint64_t word;
+  memcpy(&word, &value, sizeof word);
+  vxm_store_le64(bytes, word);
+}
+
+/**
+ * 8 bytes (first byte lowest), each 0 or 1, to the 8 low bits. The product moves byte n to bit 56 + n; no two
+ * of the moved bits meet.
+ */
+static inline uint64_t vxm_pack_bytes(uint64_t bytes) {
+  return bytes * UINT64_C(0x0102040810204080) >> 56;
+}
+
+/** 1 for each byte that is not 0. Adding 0x7f to the low 7 bits carries into the top bit unless they are 0. */
+static inline uint64_t vxm_nonzero_bytes(uint64_t bytes) {
+  const uint64_t low = UINT64_C(0x7f7f7f7f7f7f7f7f);
+  return (((bytes & low) + low) | bytes) >> 7 & UINT64_C(0x0101010101010101);
+}
+
+/** The inverse of vxm_pack_bytes: bit n of the low 8 to byte n. */
+static inline uint64_t vxm_unpack_bits(uint64_t bits) {
+  const uint64_t spread = UINT64_C(0x8040201008040201);
+  return vxm_nonzero_bytes((bits & 0xff) * UINT64_C(0x0101010101010101) & spread);
+}
+
+#endif

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gridio/format.h"
+#include "gridio/gridio.h"
+#include "meshio/meshio.h"
+
+#include <string.h>
+
+/* ---- The surface as a mesh file ---- */
+
+static vxm_status write_surface(const vxm_grid *grid, const char *path, const char *format,
+                                vxm_error *error) {
+  vxm_soup *surface;
+  vxm_status status = vxm_gridio_surface_mesh(&surface, grid, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_meshio_write(surface, path, format, false, error);
+  vxm_soup_destroy(surface);
+  return status;
+}
+
+static vxm_status write_obj(const vxm_grid *grid, const char *path, vxm_error *error) {
+  return write_surface(grid, path, "obj", error);
+}
+
+static vxm_status write_ply(const vxm_grid *grid, const char *path, vxm_error *error) {
+  return write_surface(grid, path, "ply", error);
+}
+
+static vxm_status write_stl(const vxm_grid *grid, const char *path, vxm_error *error) {
+  return write_surface(grid, path, "stl", error);
+}
+
+static vxm_status write_off(const vxm_grid *grid, const char *path, vxm_error *error) {
+  return write_surface(grid, path, "off", error);
+}
+
+static const vxm_grid_format mesh_formats[] = {
+    {"obj", NULL, NULL, write_obj},
+    {"ply", NULL, NULL, write_ply},
+    {"stl", NULL, NULL, write_stl},
+    {"off", NULL, NULL, write_off},
+};
+
+/* ---- The table ---- */
+
+/** In the order in which the content is asked. */
+static const vxm_grid_format *const formats[] = {
+    &vxm_format_raw,  &vxm_format_binvox, &vxm_format_npy,  &vxm_format_rle,
+    &mesh_formats[0], &mesh_formats[1],   &mesh_formats[2], &mesh_formats[3],
+};
+
+enum { FORMATS = sizeof formats / sizeof formats[0] };
+
+static const vxm_grid_format *find_name(const char *name) {
+  for (size_t f = 0; f < FORMATS; f++)
+    if (vxm_text_equal_nocase(formats[f]->name, name))
+      return formats[f];
+  return NULL;
+}
+
+static const vxm_grid_format *find_content(const vxm_input *input) {
+  for (size_t f = 0; f < FORMATS; f++)
+    if (formats[f]->sniff && formats[f]->sniff(input))
+      return formats[f];
+  return NULL;
+}
+
+vxm_status vxm_space_check_file(const vxm_space *space, const vxm_input *input, size_t offset,
+                                vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = vxm_space_check(space, &local);
+  if (status == VXM_OK)
+    return VXM_OK;
+  if (status == VXM_ERROR_ARGUMENT)
+    status = VXM_ERROR_FORMAT;
+  return vxm_fail_at(error, status, (vxm_place){input->name, 0, (int64_t)offset, -1}, "%s", local.text);
+}
+
+vxm_status vxm_gridio_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
+  *out = NULL;
+  vxm_input input;
+  vxm_status status = vxm_input_open(&input, context, path, error);
+  if (status != VXM_OK)
+    return status;
+  const vxm_grid_format *format = find_content(&input);
+  if (!format)
+    format = find_name(vxm_path_extension(path));
+  if (!format)
+    status = vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input.name, 0, -1, -1},
+                         "not a grid: neither content nor name are those of .binvox, .npy, .raw or .rle");
+  else if (!format->read)
+    status = vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input.name, 0, -1, -1},
+                         "not a grid but a mesh, by its name; voxelize it first");
+  else
+    status = format->read(out, &input, error);
+  vxm_input_close(&input);
+  return status;
+}
+
+vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {
+  const char *name = format ? format : vxm_path_extension(path);
+  const vxm_grid_format *found = find_name(name);
+  if (found)
+    return found->write(grid, path, error);
+  if (!format && !*name)
+    return vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
+                       "no format is given and the name has no extension; choose binvox, npy, raw, rle, obj, "
+                       "ply, stl or off");
+  return vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
+                     "unknown grid format \"%s\"; choose binvox, npy, raw, rle, obj, ply, stl or off", name);
+}

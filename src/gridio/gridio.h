@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Grid files in and out, the surface of a grid as a mesh, and its picture. doc/formats.md has the formats. */
+#ifndef VXM_GRIDIO_GRIDIO_H
+#define VXM_GRIDIO_GRIDIO_H
+
+#include "grid/bitgrid.h"
+#include "mesh/soup.h"
+
+/**
+ * Reads a grid. The format is told by content first and by the extension second. What a file leaves out or
+ * adds, but can be done without, becomes a note of the grid.
+ *
+ * @param context not NULL
+ * @param path    "-" reads standard input (not raw, which needs the JSON file beside it)
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with the byte offset; VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE,
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. The whole file is checked for length
+ *         before the grid is allocated: a short file cannot ask for a large grid.
+ */
+vxm_status vxm_gridio_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
+
+/**
+ * Writes a grid; the file appears under its name when it is complete.
+ *
+ * @param path   "-" is standard output (not raw); format is then needed
+ * @param format "binvox", "npy", "raw", "rle", or for the surface "obj", "ply", "stl", "off"; in any case;
+ *               NULL = by the extension of `path`
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format, and for binvox with voxels that are not cubes;
+ *         VXM_ERROR_IO, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error);
+
+/**
+ * Makes a mesh of the exposed voxel faces, merged into rectangles that share vertices. It is closed mod 2:
+ * every edge has an even number of faces.
+ *
+ * @return VXM_OK; VXM_ERROR_RANGE for more than 2^30 rectangles; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ *         VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_gridio_surface_mesh(vxm_soup **out, const vxm_grid *grid, vxm_error *error);
+
+/**
+ * Draws the grid into a PNG file.
+ *
+ * @param options not NULL
+ * @return VXM_OK; VXM_ERROR_UNAVAILABLE without libpng; VXM_ERROR_ARGUMENT, VXM_ERROR_IO, VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_gridio_picture(const vxm_grid *grid, const char *path, const vxm_picture_options *options,
+                              vxm_error *error);
+
+#endif

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gridio/planes.h"
+#include "base/threads.h"
+
+#include <string.h>
+
+enum { ROWS_PER_TASK = 16 };
+
+vxm_status vxm_planes_create(vxm_planes *out, vxm_context *context, const vxm_space *space,
+                             vxm_plane_order order, vxm_error *error) {
+  size_t ny = (size_t)space->dims[1], nz = (size_t)space->dims[2];
+  bool y_fast = order == VXM_PLANE_Y_FAST;
+  *out = (vxm_planes){.context = context, .order = order};
+  out->count = space->dims[0] < 64 ? (size_t)space->dims[0] : 64;
+  out->rows = y_fast ? nz : ny;
+  out->length = y_fast ? ny : nz;
+  out->row_words = (out->length + 63) / 64;
+  /* At most 2^20 rows of 2^14 words; the sum makes whole cache lines, an odd number of them. */
+  out->plane_words = ((out->rows * out->row_words + 7) / 8 | 1) * 8;
+  vxm_error local = VXM_ERROR_INIT;
+  out->words = vxm_calloc(context, out->count * out->plane_words, sizeof *out->words, &local);
+  if (out->words)
+    return VXM_OK;
+  if (error)
+    *error = local;
+  return local.code;
+}
+
+void vxm_planes_destroy(vxm_planes *planes) {
+  vxm_free(planes->context, planes->words);
+  planes->words = NULL;
+}
+
+void vxm_planes_clear(vxm_planes *planes) {
+  memset(planes->words, 0, planes->count * planes->plane_words * sizeof *planes->words);
+}
+
+/** Bit c of word r goes to bit r of word c: blocks of 32, 16, ... 1 change places across the diagonal. */
+static void transpose(uint64_t block[64]) {
+  uint64_t mask = UINT64_C(0x00000000ffffffff);
+  for (unsigned size = 32; size > 0; size /= 2, mask ^= mask << size)
+    for (unsigned base = 0; base < 64; base += 2 * size)
+      for (unsigned r = base; r < base + size; r++) {
+        uint64_t change = (block[r] >> size ^ block[r + size]) & mask;
+        block[r] ^= change << size;
+        block[r + size] ^= change;
+      }
+}
+
+typedef struct move {
+  const vxm_planes *planes;
+  const vxm_grid *grid;
+  size_t word, planes_used;
+  vxm_row_word_fn load;
+} move;
+
+/** Word index in the grid of element 0 of a plane's row, and the step to the next element. */
+static size_t row_start(const move *m, size_t row, size_t *step) {
+  bool y_fast = m->planes->order == VXM_PLANE_Y_FAST;
+  *step = y_fast ? m->grid->row_words : m->grid->slice_words;
+  return row * (y_fast ? m->grid->slice_words : m->grid->row_words);
+}
+
+static size_t task_count(const vxm_planes *planes) {
+  return (planes->rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK;
+}
+
+static size_t task_end(const vxm_planes *planes, size_t task) {
+  size_t end = (task + 1) * ROWS_PER_TASK;
+  return end < planes->rows ? end : planes->rows;
+}
+
+static void gather_rows(size_t task, int worker, void *payload) {
+  (void)worker;
+  const move *m = payload;
+  const vxm_planes *planes = m->planes;
+  for (size_t row = task * ROWS_PER_TASK; row < task_end(planes, task); row++) {
+    size_t step, start = row_start(m, row, &step);
+    for (size_t w = 0; w < planes->row_words; w++) {
+      uint64_t block[64], any = 0;
+      size_t used = planes->length - w * 64 < 64 ? planes->length - w * 64 : 64;
+      for (size_t e = 0; e < used; e++) {
+        const uint64_t *source = m->grid->words + start + (w * 64 + e) * step;
+        block[e] = m->load ? m->load(source, m->word, m->grid->row_words) : source[m->word];
+        any |= block[e];
+      }
+      memset(block + used, 0, (64 - used) * sizeof *block);
+      if (any)
+        transpose(block);
+      for (size_t p = 0; p < m->planes_used; p++)
+        vxm_plane_row(planes, p, row)[w] = block[p];
+    }
+  }
+}
+
+void vxm_planes_gather(vxm_planes *planes, const vxm_grid *grid, size_t word, vxm_row_word_fn load) {
+  move m = {planes, grid, word, vxm_planes_in(grid, word), load};
+  vxm_parallel(grid->context, task_count(planes), gather_rows, &m);
+}
+
+static void scatter_rows(size_t task, int worker, void *payload) {
+  (void)worker;
+  const move *m = payload;
+  const vxm_planes *planes = m->planes;
+  for (size_t row = task * ROWS_PER_TASK; row < task_end(planes, task); row++) {
+    size_t step, start = row_start(m, row, &step);
+    for (size_t w = 0; w < planes->row_words; w++) {
+      uint64_t block[64] = {0}, any = 0;
+      for (size_t p = 0; p < m->planes_used; p++) {
+        block[p] = vxm_plane_row(planes, p, row)[w];
+        any |= block[p];
+      }
+      if (any)
+        transpose(block);
+      size_t used = planes->length - w * 64 < 64 ? planes->length - w * 64 : 64;
+      for (size_t e = 0; e < used; e++)
+        m->grid->words[start + (w * 64 + e) * step + m->word] = block[e];
+    }
+  }
+}
+
+void vxm_planes_scatter(const vxm_planes *planes, vxm_grid *grid, size_t word) {
+  move m = {planes, grid, word, vxm_planes_in(grid, word), NULL};
+  vxm_parallel(grid->context, task_count(planes), scatter_rows, &m);
+}

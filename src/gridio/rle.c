@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** .rle: a fixed header with the transform, then one byte per run over voxels with x fastest. */
+#include "gridio/bytes.h"
+#include "gridio/format.h"
+#include "gridio/runs.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* doc/formats.md: 8 bytes magic, 3 int64 dims, 3 double origin, 3 double voxel size. */
+static const char magic[8] = {'V', 'X', 'M', 'R', 'L', 'E', '1', '\n'};
+
+enum { HEADER = 80 };
+
+static bool sniff(const vxm_input *input) {
+  return input->size >= sizeof magic && memcmp(input->data, magic, sizeof magic) == 0;
+}
+
+/* ---- Reading ---- */
+
+static vxm_status read_header(vxm_space *space, const vxm_input *input, vxm_error *error) {
+  if (!sniff(input))
+    return vxm_fail_byte(error, input, 0, "not an rle grid: it does not begin with \"VXMRLE1\"");
+  if (input->size < HEADER)
+    return vxm_fail_byte(error, input, input->size, "the file ends within its header of %d bytes", HEADER);
+  for (int a = 0; a < 3; a++) {
+    space->dims[a] = (int64_t)vxm_load_le64(input->data + 8 + 8 * a);
+    space->origin[a] = vxm_load_double(input->data + 32 + 8 * a);
+    space->voxel_size[a] = vxm_load_double(input->data + 56 + 8 * a);
+  }
+  return vxm_space_check_file(space, input, 8, error);
+}
+
+/** The runs must end exactly where the file ends; seen before anything is allocated. */
+static vxm_status check_runs(const vxm_input *input, uint64_t voxels, vxm_error *error) {
+  uint64_t sum = 0;
+  for (size_t b = HEADER; b < input->size; b++)
+    sum += input->data[b];
+  if (sum < voxels)
+    return vxm_fail_byte(error, input, input->size,
+                         "the runs end after %" PRIu64 " of %" PRIu64 " voxels: the file is cut short", sum,
+                         voxels);
+  if (sum == voxels && input->data[input->size - 1] != 0)
+    return VXM_OK;
+  size_t b = HEADER;
+  for (sum = 0; sum < voxels; b++) {
+    if (sum + input->data[b] > voxels)
+      return vxm_fail_byte(error, input, b, "the runs go beyond the %" PRIu64 " voxels of the grid", voxels);
+    sum += input->data[b];
+  }
+  return vxm_fail_byte(error, input, b, "%zu bytes behind the last run", input->size - b);
+}
+
+/** Sets voxels from the word pointed at on, row after row; rows are padded, so a run is cut at row ends. */
+typedef struct cursor {
+  uint64_t *row;
+  size_t bit;
+} cursor;
+
+static inline void advance(cursor *at, const vxm_grid *grid, bool value, size_t count) {
+  size_t length = (size_t)grid->space.dims[0];
+  while (count > 0) {
+    size_t room = length - at->bit, step = count < room ? count : room;
+    if (value)
+      vxm_row_set_span(at->row, (int64_t)at->bit, (int64_t)(at->bit + step));
+    count -= step;
+    at->bit += step;
+    if (at->bit == length)
+      *at = (cursor){at->row + grid->row_words, 0};
+  }
+}
+
+static vxm_status read_runs(vxm_grid *grid, const vxm_input *input, vxm_error *error) {
+  enum { PIECE = 1 << 22 };
+  cursor at = {grid->words, 0};
+  bool value = false;
+  for (size_t begin = HEADER; begin < input->size; begin += PIECE) {
+    size_t end = input->size - begin < PIECE ? input->size : begin + PIECE;
+    for (size_t b = begin; b < end; b++) {
+      advance(&at, grid, value, input->data[b]);
+      value ^= input->data[b] != 255;
+    }
+    vxm_status status =
+        vxm_progress(grid->context, "reading", (double)end / (double)input->size, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  return VXM_OK;
+}
+
+static vxm_status read_rle(vxm_grid **out, const vxm_input *input, vxm_error *error) {
+  vxm_space space;
+  vxm_status status = read_header(&space, input, error);
+  if (status == VXM_OK)
+    status = check_runs(input, vxm_space_voxels(&space), error);
+  vxm_grid *grid = NULL;
+  if (status == VXM_OK)
+    status = vxm_grid_create(&grid, input->context, &space, error);
+  if (status == VXM_OK)
+    status = read_runs(grid, input, error);
+  if (status != VXM_OK) {
+    vxm_grid_destroy(grid);
+    return status;
+  }
+  *out = grid;
+  return VXM_OK;
+}
+
+/* ---- Writing ---- */
+
+typedef struct sink {
+  vxm_output *output;
+  unsigned char *room;
+  size_t used;
+} sink;
+
+enum { ROOM = 4096 };
+
+static inline void put_byte(sink *s, unsigned byte) {
+  if (s->used == ROOM) {
+    vxm_output_advance(s->output, s->used);
+    s->room = (unsigned char *)vxm_output_reserve(s->output, ROOM);
+    s->used = 0;
+  }
+  s->room[s->used++] = (unsigned char)byte;
+}
+
+static inline void put_run(bool value, uint64_t length, void *payload) {
+  (void)value;
+  sink *s = payload;
+  for (; length >= 255; length -= 255)
+    put_byte(s, 255);
+  put_byte(s, (unsigned)length);
+}
+
+/** Bytes of 255 may be written before their run ends: the file is the same, and the writer can be stopped. */
+static void put_full_bytes(vxm_run *run, sink *s) {
+  for (; run->length >= 255; run->length -= 255)
+    put_byte(s, 255);
+}
+
+static void write_header(vxm_output *output, const vxm_space *space) {
+  unsigned char header[HEADER];
+  memcpy(header, magic, sizeof magic);
+  for (int a = 0; a < 3; a++) {
+    vxm_store_le64(header + 8 + 8 * a, (uint64_t)space->dims[a]);
+    vxm_store_double(header + 32 + 8 * a, space->origin[a]);
+    vxm_store_double(header + 56 + 8 * a, space->voxel_size[a]);
+  }
+  vxm_output_write(output, header, sizeof header);
+}
+
+static vxm_status write_runs(vxm_output *output, const vxm_grid *grid, vxm_error *error) {
+  sink s = {output, (unsigned char *)vxm_output_reserve(output, ROOM), 0};
+  vxm_run run = {false, 0};
+  size_t nx = (size_t)grid->space.dims[0], rows = grid->word_count / grid->row_words;
+  for (size_t row = 0; row < rows && !vxm_output_failed(output); row++) {
+    vxm_run_scan(&run, grid->words + row * grid->row_words, nx, put_run, &s);
+    if (row % 4096 != 0)
+      continue;
+    put_full_bytes(&run, &s);
+    vxm_status status = vxm_progress(grid->context, "writing", (double)row / (double)rows, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  /* The last run needs no byte to end it. */
+  put_full_bytes(&run, &s);
+  if (run.length > 0)
+    put_byte(&s, (unsigned)run.length);
+  vxm_output_advance(output, s.used);
+  return VXM_OK;
+}
+
+static vxm_status write_rle(const vxm_grid *grid, const char *path, vxm_error *error) {
+  vxm_output *output;
+  vxm_status status = vxm_output_open(&output, grid->context, path, error);
+  if (status != VXM_OK)
+    return status;
+  write_header(output, &grid->space);
+  status = write_runs(output, grid, error);
+  if (status == VXM_OK)
+    return vxm_output_commit(output, error);
+  vxm_output_abort(output);
+  return status;
+}
+
+const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, write_rle};

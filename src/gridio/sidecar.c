@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gridio/sidecar.h"
+#include "gridio/format.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* A description has some 300 bytes; whatever is far longer is another file. */
+enum { LENGTH_MAX = 1 << 16 };
+
+/** The JSON's path, to be freed; NULL without memory. */
+static char *sidecar_path(const char *data_path) {
+  size_t length = strlen(data_path);
+  char *path = malloc(length + 6);
+  if (path)
+    snprintf(path, length + 6, "%s.json", data_path);
+  return path;
+}
+
+static vxm_status fail_memory(vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+}
+
+bool vxm_sidecar_exists(const char *data_path) {
+  char *path = sidecar_path(data_path);
+  bool exists = path && access(path, F_OK) == 0;
+  free(path);
+  return exists;
+}
+
+/* ---- Writing ---- */
+
+/** The whole text, to be freed; 17 digits bring every double back bit for bit. */
+static char *describe(const vxm_space *space, const vxm_sidecar_text *text) {
+  const int64_t *d = space->dims;
+  const double *o = space->origin, *s = space->voxel_size;
+  json_t *root =
+      json_pack("{s:s, s:i, s:[I,I,I], s:[f,f,f], s:[f,f,f], s:s}", "format", text->format, "version", 1, "dims",
+                (json_int_t)d[0], (json_int_t)d[1], (json_int_t)d[2], "origin", o[0], o[1], o[2], "voxel_size",
+                s[0], s[1], s[2], "order", text->order);
+  if (root && text->bits && json_object_set_new(root, "bits", json_string(text->bits)) != 0) {
+    json_decref(root);
+    return NULL;
+  }
+  char *json = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
+  json_decref(root);
+  return json;
+}
+
+static bool has_neighbours(const char *data_path) {
+  struct stat info;
+  return strcmp(data_path, "-") != 0 && (stat(data_path, &info) != 0 || S_ISREG(info.st_mode));
+}
+
+vxm_status vxm_sidecar_open(vxm_output **out, const vxm_grid *grid, const char *data_path,
+                            const vxm_sidecar_text *text, vxm_error *error) {
+  *out = NULL;
+  if (!has_neighbours(data_path))
+    return VXM_OK;
+  char *path = sidecar_path(data_path), *json = describe(&grid->space, text);
+  vxm_status status =
+      path && json ? vxm_output_open(out, grid->context, path, error) : fail_memory(error);
+  if (status == VXM_OK) {
+    vxm_output_write(*out, json, strlen(json));
+    vxm_output_write(*out, "\n", 1);
+  }
+  free(json);
+  free(path);
+  return status;
+}
+
+vxm_status vxm_sidecar_commit(vxm_output *data, vxm_output *sidecar, const char *data_path, vxm_error *error) {
+  vxm_status status = vxm_output_commit(data, error);
+  if (!sidecar)
+    return status;
+  if (status != VXM_OK) {
+    vxm_output_abort(sidecar);
+    return status;
+  }
+  status = vxm_output_commit(sidecar, error);
+  if (status != VXM_OK)
+    unlink(data_path);
+  return status;
+}
+
+/* ---- Reading ---- */
+
+static bool read_numbers(const json_t *root, const char *key, double values[3]) {
+  const json_t *array = json_object_get(root, key);
+  if (json_array_size(array) != 3)
+    return false;
+  for (size_t a = 0; a < 3; a++) {
+    const json_t *number = json_array_get(array, a);
+    if (!json_is_number(number))
+      return false;
+    values[a] = json_number_value(number);
+  }
+  return true;
+}
+
+static bool read_dims(const json_t *root, int64_t dims[3]) {
+  const json_t *array = json_object_get(root, "dims");
+  if (json_array_size(array) != 3)
+    return false;
+  for (size_t a = 0; a < 3; a++) {
+    const json_t *number = json_array_get(array, a);
+    if (!json_is_integer(number))
+      return false;
+    dims[a] = (int64_t)json_integer_value(number);
+  }
+  return true;
+}
+
+static vxm_status read_root(vxm_space *space, const json_t *root, const vxm_input *input, const char *format,
+                            vxm_error *error) {
+  const char *name = json_string_value(json_object_get(root, "format"));
+  if (!name || strcmp(name, format) != 0)
+    return vxm_fail_byte(error, input, 0, "its \"format\" is not \"%s\"", format);
+  if (json_integer_value(json_object_get(root, "version")) != 1)
+    return vxm_fail_byte(error, input, 0, "its \"version\" is not 1");
+  if (!read_dims(root, space->dims))
+    return vxm_fail_byte(error, input, 0, "\"dims\" must be three whole numbers");
+  if (!read_numbers(root, "origin", space->origin) || !read_numbers(root, "voxel_size", space->voxel_size))
+    return vxm_fail_byte(error, input, 0, "\"origin\" and \"voxel_size\" must be three numbers each");
+  return vxm_space_check_file(space, input, 0, error);
+}
+
+static vxm_status parse(vxm_space *space, const vxm_input *input, const char *format, vxm_error *error) {
+  if (input->size > LENGTH_MAX)
+    return vxm_fail_byte(error, input, LENGTH_MAX, "too long to be the description of a grid");
+  json_error_t what;
+  json_t *root = json_loadb((const char *)input->data, input->size, JSON_REJECT_DUPLICATES, &what);
+  if (!root)
+    return vxm_fail_byte(error, input, what.position, "not JSON: %s", what.text);
+  vxm_status status = read_root(space, root, input, format, error);
+  json_decref(root);
+  return status;
+}
+
+vxm_status vxm_sidecar_read(vxm_space *space, vxm_context *context, const char *data_path, const char *format,
+                            vxm_error *error) {
+  char *path = sidecar_path(data_path);
+  if (!path)
+    return fail_memory(error);
+  vxm_input input;
+  vxm_status status = vxm_input_open(&input, context, path, error);
+  if (status == VXM_OK) {
+    status = parse(space, &input, format, error);
+    vxm_input_close(&input);
+  }
+  free(path);
+  return status;
+}

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/duplicates.h"
+
+#include "base/hash.h"
+#include "base/threads.h"
+#include "mesh/buckets.h"
+#include "mesh/edges.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+/* ---- The least form of a face ---- */
+
+/** A face read from one of its corners in one of its directions, after mapping. */
+typedef struct reading {
+  const uint32_t *corners;
+  const uint32_t *map;
+  size_t count, start;
+  bool backward;
+} reading;
+
+static inline uint32_t read_corner(const reading *r, size_t i) {
+  size_t at = r->backward ? r->start + r->count - i : r->start + i;
+  uint32_t v = r->corners[at >= r->count ? at - r->count : at];
+  return r->map ? r->map[v] : v;
+}
+
+static int compare(const reading *a, const reading *b) {
+  for (size_t i = 0; i < a->count; i++) {
+    uint32_t u = read_corner(a, i), v = read_corner(b, i);
+    if (u != v)
+      return u < v ? -1 : 1;
+  }
+  return 0;
+}
+
+/**
+ * Starts the reading where it is least in lexicographic order, in linear time: of two candidate starts the
+ * one that loses after k equal corners takes the k starts behind it with it.
+ */
+static void turn_to_least(reading *r) {
+  size_t i = 0, j = 1, k = 0, n = r->count;
+  r->start = 0;
+  while (i < n && j < n && k < n) {
+    size_t p = i + k, q = j + k;
+    uint32_t u = read_corner(r, p >= n ? p - n : p), v = read_corner(r, q >= n ? q - n : q);
+    if (u == v) {
+      k++;
+      continue;
+    }
+    if (u > v)
+      i += k + 1;
+    else
+      j += k + 1;
+    if (i == j)
+      j++;
+    k = 0;
+  }
+  size_t least = i < j ? i : j;
+  r->start = r->backward && least > 0 ? n - least : least;
+}
+
+/** The least of all readings in both directions: the same for all faces that repeat each other. */
+static reading least_reading(const uint32_t *corners, size_t count, const uint32_t *map) {
+  reading forward = {.corners = corners, .map = map, .count = count};
+  if (count == 3) {
+    uint32_t a = read_corner(&forward, 0), b = read_corner(&forward, 1), c = read_corner(&forward, 2);
+    forward.start = a < b ? (a < c ? 0 : 2) : (b < c ? 1 : 2);
+    forward.backward = read_corner(&forward, 1) > read_corner(&forward, 2);
+    return forward;
+  }
+  reading backward = forward;
+  backward.backward = true;
+  turn_to_least(&forward);
+  turn_to_least(&backward);
+  return compare(&forward, &backward) <= 0 ? forward : backward;
+}
+
+/* ---- The search ---- */
+
+/* A record is (24 bits of the hash, 40 bits of the face number); the top of the hash tells the bucket. Face
+   numbers fit, as 2^40 faces would take more memory than machines have. */
+enum { FACE_BITS = 40 };
+static const uint64_t FACE_MASK = (UINT64_C(1) << FACE_BITS) - 1;
+
+typedef struct tally {
+  uint32_t forward, backward; /**< faces of a kind so far, by direction of their least reading */
+} tally;
+
+typedef struct search {
+  const vxm_soup *soup;
+  const uint32_t *map;
+  uint8_t *kinds;
+  unsigned bucket_shift;
+  vxm_buckets buckets;
+  uint32_t *tables; /**< one hash table per worker: place of a record in its bucket + 1, or 0 */
+  size_t table_size;
+  tally *tallies; /**< per worker, by place of the first record of a kind */
+  atomic_size_t same, opposite_pairs;
+} search;
+
+static reading read_face(const search *s, size_t face) {
+  size_t count;
+  const uint32_t *corners = vxm_face(s->soup, face, &count);
+  return least_reading(corners, count, s->map);
+}
+
+static void emit_faces(size_t begin, size_t end, vxm_sink *sink, void *payload) {
+  const search *s = payload;
+  for (size_t f = begin; f < end; f++) {
+    size_t count;
+    const uint32_t *corners = vxm_face(s->soup, f, &count);
+    if (!vxm_face_has_three(corners, count, s->map))
+      continue;
+    reading r = least_reading(corners, count, s->map);
+    uint64_t hash = vxm_hash_word(0, count);
+    for (size_t i = 0; i < count; i++)
+      hash = vxm_hash_word(hash, read_corner(&r, i));
+    vxm_sink_put(sink, (size_t)(hash >> s->bucket_shift), hash << FACE_BITS | f);
+  }
+}
+
+/** Power of two that keeps a table of `records` entries at most half full. */
+static size_t table_slots(size_t records) {
+  size_t slots = 16;
+  while (slots < 2 * records)
+    slots *= 2;
+  return slots;
+}
+
+/** Whether two records are of faces with the same least reading. */
+static bool same_kind(const search *s, const reading *r, uint64_t record, uint64_t other) {
+  if (record >> FACE_BITS != other >> FACE_BITS)
+    return false;
+  reading q = read_face(s, (size_t)(other & FACE_MASK));
+  return q.count == r->count && compare(&q, r) == 0;
+}
+
+static vxm_repeat count_face(tally *t, bool backward) {
+  uint32_t *mine = backward ? &t->backward : &t->forward, theirs = backward ? t->forward : t->backward;
+  if ((*mine)++ > 0)
+    return VXM_REPEAT_SAME;
+  return theirs > 0 ? VXM_REPEAT_OPPOSITE : VXM_REPEAT_NONE;
+}
+
+static void search_bucket(size_t bucket, int worker, void *payload) {
+  search *s = payload;
+  const uint64_t *records = s->buckets.records + s->buckets.begin[bucket];
+  size_t count = s->buckets.begin[bucket + 1] - s->buckets.begin[bucket];
+  uint32_t *table = s->tables + (size_t)worker * s->table_size;
+  tally *tallies = s->tallies + (size_t)worker * s->buckets.largest;
+  size_t mask = table_slots(count) - 1, same = 0, pairs = 0;
+  memset(table, 0, (mask + 1) * sizeof *table);
+  memset(tallies, 0, count * sizeof *tallies);
+  for (size_t i = 0; i < count; i++) {
+    size_t face = (size_t)(records[i] & FACE_MASK), slot = (size_t)(records[i] >> FACE_BITS) & mask;
+    reading r = read_face(s, face);
+    while (table[slot] != 0 && !same_kind(s, &r, records[i], records[table[slot] - 1]))
+      slot = (slot + 1) & mask;
+    if (table[slot] == 0)
+      table[slot] = (uint32_t)i + 1;
+    vxm_repeat kind = count_face(&tallies[table[slot] - 1], r.backward);
+    same += kind == VXM_REPEAT_SAME;
+    if (s->kinds)
+      s->kinds[face] = (uint8_t)kind;
+  }
+  for (size_t i = 0; i < count; i++)
+    pairs += tallies[i].forward < tallies[i].backward ? tallies[i].forward : tallies[i].backward;
+  atomic_fetch_add_explicit(&s->same, same, memory_order_relaxed);
+  atomic_fetch_add_explicit(&s->opposite_pairs, pairs, memory_order_relaxed);
+}
+
+vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const vxm_soup *soup,
+                               const uint32_t *vertex_map, uint8_t *kinds, vxm_error *error) {
+  *out = (vxm_duplicates){0};
+  size_t bucket_count = vxm_buckets_advise(soup->face_count);
+  search s = {.soup = soup, .map = vertex_map, .kinds = kinds};
+  s.bucket_shift = 64 - (unsigned)__builtin_ctzll(bucket_count);
+  vxm_status status =
+      vxm_buckets_fill(&s.buckets, context, soup->face_count, bucket_count, emit_faces, &s, error);
+  if (status != VXM_OK)
+    return status;
+  if (kinds && soup->face_count > 0)
+    memset(kinds, VXM_REPEAT_NONE, soup->face_count);
+  size_t workers = (size_t)vxm_context_threads(context);
+  s.table_size = table_slots(s.buckets.largest);
+  vxm_error local = VXM_ERROR_INIT;
+  s.tables = vxm_alloc(context, workers * s.table_size, sizeof *s.tables, &local);
+  s.tallies = s.tables ? vxm_alloc(context, workers * s.buckets.largest, sizeof *s.tallies, &local) : NULL;
+  if (s.tallies) {
+    vxm_parallel(context, bucket_count, search_bucket, &s);
+    *out = (vxm_duplicates){atomic_load(&s.same), atomic_load(&s.opposite_pairs)};
+  } else {
+    status = local.code;
+    if (error)
+      *error = local;
+  }
+  vxm_free(context, s.tallies);
+  vxm_free(context, s.tables);
+  vxm_buckets_free(&s.buckets);
+  return status;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Faces that repeat others, with the same or with the opposite orientation. */
+#ifndef VXM_MESH_DUPLICATES_H
+#define VXM_MESH_DUPLICATES_H
+
+#include "mesh/soup.h"
+
+typedef enum vxm_repeat {
+  VXM_REPEAT_NONE = 0, /**< the first of its kind */
+  VXM_REPEAT_SAME,     /**< repeats an earlier face with the same orientation */
+  VXM_REPEAT_OPPOSITE  /**< repeats an earlier face with the opposite orientation only */
+} vxm_repeat;
+
+typedef struct vxm_duplicates {
+  size_t same;           /**< faces beyond the first of each kind and orientation */
+  size_t opposite_pairs; /**< per kind, the lesser of the numbers of faces of either orientation */
+} vxm_duplicates;
+
+/**
+ * Finds faces that repeat an earlier one: the same corners (after mapping) in the same cyclic order, from any
+ * start, or in the reverse one. Faces with fewer than three distinct corners take no part.
+ *
+ * @param vertex_map vertex to take in place of each vertex, or NULL
+ * @param kinds      face_count elements that get a vxm_repeat each; may be NULL
+ *
+ * Linear time, also in the corners of large polygons.
+ */
+vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const vxm_soup *soup,
+                               const uint32_t *vertex_map, uint8_t *kinds, vxm_error *error);
+
+#endif

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/sort.h"
+
+#include <string.h>
+
+/** So few keys are sorted faster by insertion. */
+enum { FEW = 24 };
+
+static void insertion_sort(uint64_t *keys, size_t count) {
+  for (size_t i = 1; i < count; i++) {
+    uint64_t key = keys[i];
+    size_t j = i;
+    for (; j > 0 && keys[j - 1] > key; j--)
+      keys[j] = keys[j - 1];
+    keys[j] = key;
+  }
+}
+
+/** Sorts by bytes from the lowest up, leaving out bytes in which all keys agree. */
+static void radix_sort(uint64_t *keys, uint64_t *scratch, size_t count) {
+  uint64_t varying = 0;
+  for (size_t i = 1; i < count; i++)
+    varying |= keys[i] ^ keys[0];
+  uint64_t *from = keys, *to = scratch;
+  for (unsigned shift = 0; shift < 64; shift += 8) {
+    if ((varying >> shift & 0xff) == 0)
+      continue;
+    size_t place[256] = {0};
+    for (size_t i = 0; i < count; i++)
+      place[from[i] >> shift & 0xff]++;
+    size_t total = 0;
+    for (size_t d = 0; d < 256; d++) {
+      size_t n = place[d];
+      place[d] = total;
+      total += n;
+    }
+    for (size_t i = 0; i < count; i++)
+      to[place[from[i] >> shift & 0xff]++] = from[i];
+    uint64_t *swap = from;
+    from = to;
+    to = swap;
+  }
+  if (from != keys)
+    memcpy(keys, from, count * sizeof *keys);
+}
+
+void vxm_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count) {
+  if (count <= FEW)
+    insertion_sort(keys, count);
+  else
+    radix_sort(keys, scratch, count);
+}

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "meshio/format.h"
+#include "meshio/meshio.h"
+#include "meshio/utf16.h"
+
+#include <string.h>
+
+static const vxm_format formats[] = {
+    {"off", {"off", NULL}, vxm_off_sniff, vxm_off_read, vxm_off_write},
+    {"obj", {"obj", NULL}, vxm_obj_sniff, vxm_obj_read, vxm_obj_write},
+    {"stl", {"stl", "stla"}, vxm_stl_sniff, vxm_stl_read, vxm_stl_write},
+    {"ply", {"ply", NULL}, vxm_ply_sniff, vxm_ply_read, vxm_ply_write},
+};
+enum { FORMATS = sizeof formats / sizeof *formats };
+
+static const vxm_format *by_name(const char *name) {
+  for (size_t f = 0; f < FORMATS; f++)
+    if (vxm_text_equal_nocase(name, formats[f].name))
+      return &formats[f];
+  return NULL;
+}
+
+static const vxm_format *by_extension(const char *path) {
+  const char *extension = vxm_path_extension(path);
+  for (size_t f = 0; f < FORMATS; f++)
+    for (size_t e = 0; e < 2; e++)
+      if (formats[f].extensions[e] && vxm_text_equal_nocase(extension, formats[f].extensions[e]))
+        return &formats[f];
+  return NULL;
+}
+
+static const vxm_format *choose(const unsigned char *data, size_t size, const char *name) {
+  const vxm_format *possible = NULL;
+  for (size_t f = 0; f < FORMATS; f++) {
+    vxm_likeness likeness = formats[f].sniff(data, size);
+    if (likeness == VXM_LIKENESS_CERTAIN)
+      return &formats[f];
+    if (likeness == VXM_LIKENESS_POSSIBLE && !possible)
+      possible = &formats[f];
+  }
+  const vxm_format *named = by_extension(name);
+  return named ? named : possible;
+}
+
+/** What people hand in by mistake, by the first bytes. */
+static const struct {
+  const char *magic, *advice;
+} strangers[] = {
+    {"\x1f\x8b", "is compressed by gzip: unpack it first"},
+    {"PK\x03\x04", "is a zip archive: unpack it first"},
+    {"BZh", "is compressed by bzip2: unpack it first"},
+    {"\xfd"
+     "7zXZ",
+     "is compressed by xz: unpack it first"},
+    {"\x28\xb5\x2f\xfd", "is compressed by zstd: unpack it first"},
+    {"version https://git-lfs", "is a Git LFS pointer, not the mesh itself: run git lfs pull"},
+    {"<!DOCTYPE", "is a web page, not a mesh: download the file itself"},
+    {"<html", "is a web page, not a mesh: download the file itself"},
+    {"glTF", "is glTF, which cannot be read: convert it to ply or obj"},
+    {"#binvox", "is a binvox grid, not a mesh"},
+    {"\x93NUMPY", "is a numpy array, not a mesh"},
+};
+
+static vxm_status fail_unknown(const unsigned char *data, size_t size, const char *name, vxm_error *error) {
+  vxm_place place = {name, 0, -1, -1};
+  for (size_t s = 0; s < sizeof strangers / sizeof *strangers; s++) {
+    size_t length = strlen(strangers[s].magic);
+    if (size >= length && memcmp(data, strangers[s].magic, length) == 0)
+      return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "%s", strangers[s].advice);
+  }
+  return vxm_fail_at(error, VXM_ERROR_FORMAT, place,
+                     "not a known mesh format: neither off, obj, stl nor ply by content or extension");
+}
+
+static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
+                             vxm_error *error) {
+  if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) {
+    data += 3;
+    size -= 3;
+  }
+  if (size == 0)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1}, "the file is empty");
+  const vxm_format *format = choose(data, size, name);
+  if (!format)
+    return fail_unknown(data, size, name, error);
+  return format->read(soup, data, size, name, error);
+}
+
+vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
+                           const char *name, vxm_error *error) {
+  *out = NULL;
+  vxm_soup *soup;
+  vxm_status status = vxm_soup_create(&soup, context, "", error);
+  if (status != VXM_OK)
+    return status;
+  unsigned char *text = NULL;
+  if (vxm_utf16_is(data, size) && vxm_stl_sniff(data, size) != VXM_LIKENESS_CERTAIN) {
+    size_t text_size;
+    status = vxm_utf16_to_utf8(&text, &text_size, soup->context, data, size, error);
+    data = text;
+    size = text_size;
+  }
+  if (status == VXM_OK)
+    status = vxm_progress(soup->context, "reading", 0.0, error);
+  if (status == VXM_OK)
+    status = read_bytes(soup, data, size, name, error);
+  if (status == VXM_OK)
+    status = vxm_progress(soup->context, "reading", 1.0, error);
+  vxm_free(soup->context, text);
+  if (status != VXM_OK) {
+    vxm_soup_destroy(soup);
+    return status;
+  }
+  *out = soup;
+  return VXM_OK;
+}
+
+vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *format, bool ascii,
+                            vxm_error *error) {
+  const char *wanted = format ? format : vxm_path_extension(path);
+  const vxm_format *row = format ? by_name(format) : by_extension(path);
+  if (!row) {
+    if (*wanted == '\0')
+      return vxm_fail(error, VXM_ERROR_ARGUMENT, "%s: name a mesh format: off, obj, stl or ply", path);
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "%s: mesh format \"%.32s\" is not known; choose off, obj, stl or ply", path, wanted);
+  }
+  vxm_output *output;
+  vxm_status status = vxm_output_open(&output, soup->context, path, error);
+  if (status != VXM_OK)
+    return status;
+  status = row->write(soup, output, ascii, error);
+  /* A failed output is committed too, for the message that says why. */
+  if (status == VXM_OK || vxm_output_failed(output))
+    return vxm_output_commit(output, error);
+  vxm_output_abort(output);
+  return status;
+}

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "meshio/scan.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+vxm_status vxm_scan_open(vxm_scan *scan, vxm_soup *soup, const unsigned char *data, size_t size,
+                         const char *name, vxm_error *error) {
+  *scan = (vxm_scan){.begin = data, .at = data, .end = data + size, .name = name, .soup = soup};
+  scan->report_at = size < VXM_REPORT_BYTES ? data + size : data + VXM_REPORT_BYTES;
+  scan->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+  if (!scan->c_locale)
+    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+  return VXM_OK;
+}
+
+void vxm_scan_close(vxm_scan *scan) {
+  if (scan->c_locale)
+    freelocale(scan->c_locale);
+  scan->c_locale = (locale_t)0;
+}
+
+vxm_status vxm_scan_report(vxm_scan *scan, vxm_error *error) {
+  size_t size = (size_t)(scan->end - scan->begin), done = (size_t)(scan->at - scan->begin);
+  scan->report_at = size - done < VXM_REPORT_BYTES ? scan->end : scan->at + VXM_REPORT_BYTES;
+  return vxm_progress(scan->soup->context, "reading", size ? (double)done / (double)size : 1.0, error);
+}
+
+int64_t vxm_scan_line(const vxm_scan *scan, const unsigned char *position) {
+  int64_t line = 1;
+  const unsigned char *p = scan->begin;
+  for (;;) {
+    p = vxm_find_newline(p, position);
+    if (p == position)
+      return line;
+    if (*p++ == '\r' && p < scan->end && *p == '\n') {
+      if (p == position)
+        return line;
+      p++;
+    }
+    line++;
+  }
+}
+
+vxm_place vxm_scan_place(const vxm_scan *scan, const unsigned char *position) {
+  return (vxm_place){scan->name, vxm_scan_line(scan, position), -1, -1};
+}
+
+/* ---- Damage ---- */
+
+static void note(const vxm_scan *scan, const char *unit, int64_t where, const vxm_tally *tally,
+                 const char *what, const char *things) {
+  if (tally->count > 1)
+    vxm_note(&scan->soup->notes, "%s %" PRId64 ": %s, %" PRIu64 " such %s in all", unit, where, what,
+             tally->count, things);
+  else
+    vxm_note(&scan->soup->notes, "%s %" PRId64 ": %s", unit, where, what);
+}
+
+void vxm_tally_note_line(const vxm_scan *scan, const vxm_tally *tally, const char *what, const char *things) {
+  if (tally->count > 0)
+    note(scan, "line", vxm_scan_line(scan, tally->first), tally, what, things);
+}
+
+void vxm_tally_note_byte(const vxm_scan *scan, const vxm_tally *tally, const char *what, const char *things) {
+  if (tally->count > 0)
+    note(scan, "byte", (int64_t)(tally->first - scan->begin), tally, what, things);
+}
+
+void vxm_note_text_conversion(const vxm_scan *scan) {
+  /* EF BF BD is U+FFFD, which a decoder puts in place of bytes that are no text; in binary data it is rare.
+   */
+  uint64_t count = 0;
+  const unsigned char *p = scan->begin, *first = NULL;
+  while (scan->end - p >= 3 && (p = memchr(p, 0xef, (size_t)(scan->end - p) - 2)) != NULL) {
+    if (p[1] == 0xbf && p[2] == 0xbd) {
+      if (count++ == 0)
+        first = p;
+      p += 3;
+    } else
+      p++;
+  }
+  if (count > 4 && count > (uint64_t)(scan->end - scan->begin) / 1000)
+    vxm_note(&scan->soup->notes,
+             "byte %" PRId64 ": looks ruined by a text conversion (%" PRIu64
+             " times U+FFFD); get the file again as binary",
+             (int64_t)(first - scan->begin), count);
+}
+
+/* ---- Tokens and lines ---- */
+
+const unsigned char *vxm_find_newline(const unsigned char *at, const unsigned char *end) {
+  const uint64_t ones = UINT64_C(0x0101010101010101), tops = UINT64_C(0x8080808080808080);
+  while (end - at >= 8) {
+    uint64_t word = vxm_load8(at), lf = word ^ (ones * '\n'), cr = word ^ (ones * '\r');
+    /* The lowest flagged byte of (x - ones) & ~x & tops is the lowest zero byte of x. */
+    uint64_t found = (((lf - ones) & ~lf) | ((cr - ones) & ~cr)) & tops;
+    if (found)
+      return at + (unsigned)__builtin_ctzll(found) / 8;
+    at += 8;
+  }
+  while (at < end && !vxm_is_newline(*at))
+    at++;
+  return at;
+}
+
+size_t vxm_token_length(const vxm_scan *scan) {
+  vxm_scan ahead = *scan;
+  vxm_skip_token(&ahead);
+  return (size_t)(ahead.at - scan->at);
+}
+
+size_t vxm_tokens_on_line(const vxm_scan *scan, unsigned char comment) {
+  vxm_scan ahead = *scan;
+  size_t tokens = 0;
+  while (vxm_more_on_line(&ahead) && (comment == 0 || *ahead.at != comment)) {
+    tokens++;
+    vxm_skip_token(&ahead);
+  }
+  return tokens;
+}
+
+uint64_t vxm_lines_with_data(const vxm_scan *scan, unsigned char comment, uint64_t enough) {
+  vxm_scan ahead = *scan;
+  uint64_t lines = 0;
+  while (lines < enough && vxm_skip_space(&ahead)) {
+    lines += comment == 0 || *ahead.at != comment;
+    vxm_skip_line(&ahead);
+  }
+  return lines;
+}
+
+/* ---- Numbers ---- */
+
+bool vxm_scan_double_slow(vxm_scan *scan, double *value) {
+  const unsigned char *p = scan->at;
+  while (p<scan->end && * p> ' ')
+    p++;
+  if (!vxm_number_parse(scan->at, (size_t)(p - scan->at), scan->c_locale, value))
+    return false;
+  scan->at = p;
+  return true;
+}
+
+uint64_t vxm_scan_uint_long(vxm_scan *scan, uint64_t value) {
+  const uint64_t limit = UINT64_C(1) << 63;
+  for (; scan->at < scan->end && vxm_is_digit(*scan->at); scan->at++)
+    value = value > (limit - 9) / 10 ? limit : value * 10 + (uint64_t)(*scan->at - '0');
+  return value;
+}
+
+/* ---- Room in the soup ---- */
+
+/** A smaller block never fails to fit, but should the system refuse, the larger one is as good. */
+static void trim(vxm_soup *soup, void **array, size_t *capacity, size_t used, size_t size) {
+  if (*array == NULL || used == *capacity)
+    return;
+  void *smaller = vxm_realloc(soup->context, *array, used, size, NULL);
+  if (smaller) {
+    *array = smaller;
+    *capacity = used;
+  }
+}
+
+void vxm_soup_trim(vxm_soup *soup) {
+  trim(soup, (void **)&soup->positions, &soup->vertex_capacity, soup->vertex_count,
+       3 * sizeof *soup->positions);
+  trim(soup, (void **)&soup->indices, &soup->corner_capacity, soup->corner_count, sizeof *soup->indices);
+  size_t offsets = soup->face_capacity + 1;
+  trim(soup, (void **)&soup->offsets, &offsets, soup->face_count + 1, sizeof *soup->offsets);
+  soup->face_capacity = offsets - 1;
+  size_t tags = SIZE_MAX; /* its capacity is the tagger's */
+  trim(soup, (void **)&soup->face_tags, &tags, soup->face_count, sizeof *soup->face_tags);
+}
+
+size_t vxm_soup_drop_bad_faces(vxm_soup *soup) {
+  size_t kept = 0, corners = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    uint64_t begin = soup->offsets[f], end = soup->offsets[f + 1];
+    bool good = true;
+    for (uint64_t c = begin; c < end; c++)
+      good &= soup->indices[c] < soup->vertex_count;
+    if (!good)
+      continue;
+    memmove(soup->indices + corners, soup->indices + begin, (size_t)(end - begin) * sizeof *soup->indices);
+    corners += (size_t)(end - begin);
+    /* kept <= f, so no offset is overwritten before it is read: offsets[f + 1] was read above. */
+    if (soup->face_tags)
+      soup->face_tags[kept] = soup->face_tags[f];
+    soup->offsets[++kept] = corners;
+  }
+  size_t dropped = soup->face_count - kept;
+  soup->face_count = kept;
+  soup->corner_count = corners;
+  return dropped;
+}

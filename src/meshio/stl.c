@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** STL: telling text from binary, and the binary reader. */
+#include "meshio/stl.h"
+#include "meshio/bytes.h"
+#include "meshio/format.h"
+
+#include <inttypes.h>
+
+/* ---- Which of the two ---- */
+
+static bool starts_with_solid(const unsigned char *data, size_t size) {
+  static const char word[] = "solid";
+  size_t at = 0;
+  while (at < size && (vxm_is_blank(data[at]) || vxm_is_newline(data[at])))
+    at++;
+  for (size_t i = 0; word[i]; i++, at++)
+    if (at == size || (data[at] | 0x20) != word[i])
+      return false;
+  return at == size || data[at] <= ' ';
+}
+
+static uint64_t announced(const unsigned char *data) {
+  return vxm_load_u32(data + VXM_STL_COUNT_AT, vxm_must_swap(false));
+}
+
+static bool size_fits(const unsigned char *data, size_t size) {
+  return size >= VXM_STL_FACETS_AT && size == VXM_STL_FACETS_AT + announced(data) * VXM_STL_FACET;
+}
+
+/** Many binary files begin with "solid" too, but their first facets hold zero bytes, which text never does.
+ */
+static bool is_text(const unsigned char *data, size_t size) {
+  return starts_with_solid(data, size) && !size_fits(data, size) &&
+         memchr(data, '\0', size < 1024 ? size : 1024) == NULL;
+}
+
+vxm_likeness vxm_stl_sniff(const unsigned char *data, size_t size) {
+  if (size_fits(data, size) || starts_with_solid(data, size))
+    return VXM_LIKENESS_CERTAIN;
+  return VXM_LIKENESS_NONE;
+}
+
+/* ---- Binary ---- */
+
+static inline void read_facet(const unsigned char *from, double *to, bool swap) {
+  for (size_t c = 0; c < 9; c++)
+    to[c] = (double)vxm_load_f32(from + 12 + 4 * c, swap);
+}
+
+static vxm_status read_facets(vxm_scan *scan, size_t count, vxm_error *error) {
+  vxm_soup *soup = scan->soup;
+  vxm_status status = vxm_soup_reserve(soup, 3 * count, count, 3 * count, error);
+  size_t done = 0;
+  while (status == VXM_OK && done < count) {
+    /* Some tens of kilobytes at a time, so that all arrays stay in cache between the loops. */
+    size_t piece = count - done < 1024 ? count - done : 1024;
+    double *position = soup->positions + 9 * done;
+    if (vxm_must_swap(false))
+      for (size_t f = 0; f < piece; f++)
+        read_facet(scan->at + f * VXM_STL_FACET, position + 9 * f, true);
+    else
+      for (size_t f = 0; f < piece; f++)
+        read_facet(scan->at + f * VXM_STL_FACET, position + 9 * f, false);
+    for (size_t c = 3 * done; c < 3 * (done + piece); c++)
+      soup->indices[c] = (uint32_t)c;
+    for (size_t f = done + 1; f <= done + piece; f++)
+      soup->offsets[f] = 3 * f;
+    done += piece;
+    scan->at += piece * VXM_STL_FACET;
+    status = vxm_scan_progress(scan, error);
+  }
+  soup->vertex_count = soup->corner_count = 3 * done;
+  soup->face_count = done;
+  return status;
+}
+
+static vxm_status read_binary(vxm_scan *scan, vxm_error *error) {
+  vxm_soup *soup = scan->soup;
+  size_t size = (size_t)(scan->end - scan->begin);
+  if (size < VXM_STL_FACETS_AT)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){scan->name, 0, (int64_t)size, -1},
+                       "neither text (no \"solid\") nor binary STL, which has at least 84 bytes");
+  uint64_t wanted = announced(scan->begin), room = (size - VXM_STL_FACETS_AT) / VXM_STL_FACET;
+  uint64_t count = wanted < room ? wanted : room;
+  /* A count of 0 before many facets was never filled in; another count that is too small is believed less
+     than the size of the file too. */
+  if (wanted < room && (size - VXM_STL_FACETS_AT) % VXM_STL_FACET == 0)
+    count = room;
+  if (wanted > 0 && room == 0)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){scan->name, 0, (int64_t)size, 0},
+                       "%" PRIu64 " facets are announced, but the file holds none", wanted);
+  scan->at = scan->begin + VXM_STL_FACETS_AT;
+  vxm_status status = read_facets(scan, (size_t)count, error);
+  if (status != VXM_OK)
+    return status;
+  if (count != wanted)
+    vxm_note(&soup->notes,
+             "byte %d: %" PRIu64 " facets are announced, but the file holds %" PRIu64 "; those are read",
+             VXM_STL_COUNT_AT, wanted, count);
+  size_t rest = (size_t)(scan->end - scan->at);
+  if (rest > 0)
+    vxm_note(&soup->notes, "byte %zu: %zu bytes after the last facet; ignored", size - rest, rest);
+  if (count != wanted || rest > 0)
+    vxm_note_text_conversion(scan);
+  if (count == 0)
+    vxm_note(&soup->notes, "the file has no faces");
+  return VXM_OK;
+}
+
+vxm_status vxm_stl_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
+                        vxm_error *error) {
+  vxm_scan scan;
+  vxm_status status = vxm_scan_open(&scan, soup, data, size, name, error);
+  if (status != VXM_OK)
+    return status;
+  bool text = is_text(data, size);
+  soup->format = text ? "stl ascii" : "stl binary";
+  status = text ? vxm_stl_read_text(&scan, error) : read_binary(&scan, error);
+  vxm_scan_close(&scan);
+  if (status == VXM_OK)
+    vxm_soup_trim(soup);
+  return status;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Polygons into triangles, for formats that have nothing else. */
+#ifndef VXM_MESHIO_TRIANGULATE_H
+#define VXM_MESHIO_TRIANGULATE_H
+
+#include "mesh/soup.h"
+
+/** Room for the largest polygon met so far. */
+typedef struct vxm_triangulator {
+  vxm_context *context;
+  double *plane;            /**< two coordinates for each corner */
+  uint32_t *before, *after; /**< the ring of corners left */
+  uint32_t *triangles;      /**< three corners each */
+  size_t capacity;
+} vxm_triangulator;
+
+void vxm_triangulator_open(vxm_triangulator *tri, vxm_context *context);
+void vxm_triangulator_close(vxm_triangulator *tri);
+
+/**
+ * Splits a polygon of n >= 3 corners into n - 2 triangles by clipping ears, seen along the axis on which its
+ * vector area is largest. A planar simple polygon is covered exactly; others get as many triangles, some of
+ * which may overlap. Work is at most proportional to n squared: what is left of a polygon that withstands
+ * becomes a fan.
+ *
+ * @param[out] triangles 3 (n - 2) vertex numbers, valid until the next call
+ */
+vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const uint32_t *corners, size_t n,
+                           const uint32_t **triangles, vxm_error *error);
+
+#endif

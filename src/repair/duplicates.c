@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/duplicates.h"
+#include "repair/work.h"
+
+/** Leaves the first of all faces with the same corners in the same or the opposite cyclic order. */
+vxm_status vxm_pass_duplicates(vxm_work *work, bool *changed, vxm_error *error) {
+  *changed = false;
+  if (work->options.keep_duplicates)
+    return VXM_OK;
+  vxm_status status = VXM_OK;
+  vxm_soup *soup = work->soup;
+  uint8_t *kinds = vxm_work_scratch(work, soup->face_count, sizeof *kinds, &status, error);
+  if (!kinds)
+    return status;
+  vxm_duplicates found;
+  status = vxm_duplicates_find(&found, work->context, soup, NULL, kinds, error);
+  if (status == VXM_OK && found.same + found.opposite_pairs > 0) {
+    /* a face that is not the first of its orientation repeats that one; the first may repeat the other's */
+    int64_t removed = vxm_work_remove_faces(work, kinds);
+    work->counts[VXM_PASS_DUPLICATES] += (int64_t)found.same;
+    work->counts[VXM_PASS_OPPOSITE_DUPLICATES] += removed - (int64_t)found.same;
+    *changed = true;
+  }
+  vxm_free(work->context, kinds);
+  return status;
+}

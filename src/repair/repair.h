@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Repair: the plan that orders the passes. */
+#ifndef VXM_REPAIR_REPAIR_H
+#define VXM_REPAIR_REPAIR_H
+
+#include "mesh/soup.h"
+
+/**
+ * Repairs a soup into a new one (vxm_mesh_repair).
+ *
+ * The report lists, in this order:
+ *  - nonfinite_vertices: vertices with a NaN or an infinity; they go with their faces
+ *  - exact_weld: vertices merged into an earlier one of the same position
+ *  - tolerant_weld: vertices merged into an earlier one near by (repair/tolerant_weld.c)
+ *  - repeated_corners: faces that lost corners which repeat the one before, or a spike there and back; below
+ *    three corners the face goes
+ *  - zero_area_faces: faces without area that went; those without which more edges would be odd stay
+ *  - duplicate_faces: faces that repeat an earlier one with the same orientation
+ *  - opposite_duplicate_faces: faces that repeat an earlier one with the opposite orientation
+ *  - unused_vertices: vertices without a face, apart from those counted above
+ * The passes in the middle are run until none of them changes anything, and their counts are sums. A pass
+ * that an option leaves out is listed with 0. Repairing the result again gives the same arrays and counts of
+ * 0.
+ *
+ * @param report  may be NULL, then no census is taken
+ * @param options NULL for defaults
+ * @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
+                          const vxm_repair_options *options, vxm_error *error);
+
+#endif

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What the passes of a repair work on, and what they share. */
+#ifndef VXM_REPAIR_WORK_H
+#define VXM_REPAIR_WORK_H
+
+#include "mesh/edges.h"
+#include "mesh/frame.h"
+
+typedef enum vxm_pass {
+  VXM_PASS_NONFINITE = 0,
+  VXM_PASS_EXACT_WELD,
+  VXM_PASS_TOLERANT_WELD,
+  VXM_PASS_REPEATED_CORNERS,
+  VXM_PASS_ZERO_AREA,
+  VXM_PASS_DUPLICATES,
+  VXM_PASS_OPPOSITE_DUPLICATES,
+  VXM_PASS_UNUSED,
+  VXM_PASS_COUNT
+} vxm_pass;
+
+/** A soup under repair. Vertices keep their numbers until the last pass removes those that are not used. */
+typedef struct vxm_work {
+  vxm_soup *soup;
+  vxm_context *context;
+  vxm_repair_options options;
+  uint8_t *gone; /**< vertex_count; 1 = removed or merged by a pass that counted it */
+  uint8_t *used; /**< vertex_count; scratch of vxm_work_extent */
+  bool has_edges;
+  vxm_edges edges; /**< of the present faces, if has_edges */
+  int64_t counts[VXM_PASS_COUNT];
+} vxm_work;
+
+/** Runs a pass, adds to the counts and says whether it changed anything. */
+typedef vxm_status (*vxm_pass_fn)(vxm_work *work, bool *changed, vxm_error *error);
+
+vxm_status vxm_pass_nonfinite(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_exact_weld(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_tolerant_weld(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_repeated_corners(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_zero_area(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_duplicates(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_unused(vxm_work *work, bool *changed, vxm_error *error);
+
+/** A block of scratch, zeroed; on failure NULL, with *status and *error set. */
+void *vxm_work_scratch(vxm_work *work, size_t count, size_t size, vxm_status *status, vxm_error *error);
+/** The edge map of the present faces, built if need be. */
+vxm_status vxm_work_edges(vxm_work *work, vxm_error *error);
+/** Which vertices are used (work->used), and the bounds of these. */
+void vxm_work_extent(vxm_work *work, vxm_extent *extent);
+/** Puts map[v] in the place of each corner v; vertices that lose their place are marked gone. Returns how
+ * many were not gone before. */
+int64_t vxm_work_merge(vxm_work *work, const uint32_t *map);
+/** Takes out the faces marked in `remove` (face_count elements), keeping the order of the others. Returns how
+ * many. */
+int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove);
+/** Says that faces have changed: what was derived from them is dropped. */
+void vxm_work_touch(vxm_work *work);
+
+#endif

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * The tetrahedral XOR as published (Rueda et al., sections 3 and 4): every triangle makes a tetrahedron with
+ * the apex of its part, and every tetrahedron is scan-converted, slice by slice and row by row, by flipping
+ * the presence of the voxels it covers. Its cost follows the volume of the tetrahedra; parity with cones
+ * (facets.h) gives the same bits for the price of the surface.
+ */
+#ifndef VXM_VOXEL_TETRA_H
+#define VXM_VOXEL_TETRA_H
+
+#include "voxel/slabs.h"
+
+/** Sets in `grid` every voxel covered by an odd number of tetrahedra of at least one part. Exact; axes are
+ * ignored. */
+vxm_status vxm_tetra_unite(vxm_grid *grid, const vxm_unite_job *job, vxm_error *error);
+
+#endif

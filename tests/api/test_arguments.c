@@ -1,0 +1,457 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Every public function with arguments that it must refuse, and what it says then. */
+#include "api_support.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/** A failure has its code, one line of text, and nothing created. */
+#define REFUSED(call, expected)                                      \
+  do {                                                               \
+    error = (vxm_error)VXM_ERROR_INIT;                               \
+    assert_int_equal(call, expected);                                \
+    assert_int_equal(error.code, expected);                          \
+    assert_true(error.text[0] != '\0' && !strchr(error.text, '\n')); \
+  } while (0)
+
+static vxm_error error;
+static void *const junk = &error;
+
+static vxm_grid *small_grid(int64_t x, int64_t y, int64_t z) {
+  vxm_space space = {{x, y, z}, {0, 0, 0}, {1, 1, 1}};
+  vxm_grid *grid = NULL;
+  assert_int_equal(vxm_grid_create(&grid, NULL, &space, NULL), VXM_OK);
+  return grid;
+}
+
+static void test_names(void **state) {
+  (void)state;
+  char version[32];
+  snprintf(version, sizeof version, "%d.%d.%d", VXM_VERSION_MAJOR, VXM_VERSION_MINOR, VXM_VERSION_PATCH);
+  assert_string_equal(vxm_version(), version);
+  for (int a = VXM_OK; a <= VXM_ERROR_CANCELLED; a++)
+    for (int b = VXM_OK; b < a; b++)
+      assert_string_not_equal(vxm_status_name((vxm_status)a), vxm_status_name((vxm_status)b));
+  assert_string_equal(vxm_status_name((vxm_status)1000), "unknown");
+}
+
+static void test_destroying_nothing(void **state) {
+  (void)state;
+  vxm_context_destroy(NULL);
+  vxm_mesh_destroy(NULL);
+  vxm_grid_destroy(NULL);
+}
+
+static void test_context(void **state) {
+  (void)state;
+  vxm_context *context = junk;
+  vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+  REFUSED(vxm_context_create(NULL, &options, &error), VXM_ERROR_ARGUMENT);
+  options.version = 2;
+  REFUSED(vxm_context_create(&context, &options, &error), VXM_ERROR_ARGUMENT);
+  assert_null(context);
+  options = (vxm_context_options)VXM_CONTEXT_OPTIONS_INIT;
+  options.threads = -1;
+  REFUSED(vxm_context_create(&context, &options, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_ERROR_ARGUMENT);
+  options.threads = 3;
+  assert_int_equal(vxm_context_create(&context, &options, &error), VXM_OK);
+  assert_int_equal(vxm_context_threads(context), 3);
+  assert_true(vxm_context_threads(NULL) >= 1);
+  assert_int_equal(vxm_context_peak_bytes(context), 0);
+  vxm_context_destroy(context);
+}
+
+/* ---- Meshes ---- */
+
+static const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+static vxm_mesh_arrays tetrahedron(void) {
+  static const int64_t indices[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
+  arrays.vertices = corners;
+  arrays.vertex_count = 4;
+  arrays.indices = indices;
+  arrays.face_count = 4;
+  return arrays;
+}
+
+static void test_mesh_arrays(void **state) {
+  (void)state;
+  vxm_mesh *mesh = junk;
+  vxm_mesh_arrays arrays = tetrahedron();
+  REFUSED(vxm_mesh_create(NULL, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_create(&mesh, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
+  arrays.version = 2;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  assert_null(mesh);
+  arrays = tetrahedron();
+  arrays.vertex_scalar = (vxm_scalar)7;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  arrays = tetrahedron();
+  arrays.vertices = NULL;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  arrays = tetrahedron();
+  arrays.indices = NULL;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  arrays = tetrahedron();
+  arrays.vertex_count = -1;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  arrays = tetrahedron();
+  arrays.face_count = -1;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  arrays = tetrahedron();
+  arrays.vertex_count = INT64_C(1) << 40;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_RANGE);
+  arrays = tetrahedron();
+  arrays.face_count = INT64_MAX;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_RANGE);
+  assert_null(mesh);
+}
+
+/** The face at fault is named by its number. */
+static void test_faces_at_fault(void **state) {
+  (void)state;
+  static const int64_t high[] = {0, 2, 1, 0, 1, 3, 1, 2, 4, 2, 0, 3};
+  static const int64_t negative[] = {0, 2, 1, 0, -1, 3, 1, 2, 3, 2, 0, 3};
+  static const int64_t backward[] = {0, 3, 6, 5, 12}, thin[] = {0, 3, 6, 9, 11},
+                       shifted[] = {1, 4, 7, 10, 12};
+  vxm_mesh *mesh = junk;
+  vxm_mesh_arrays arrays = tetrahedron();
+  arrays.indices = high;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(error.element, 2);
+  assert_non_null(strstr(error.text, "face 2"));
+  arrays.indices = negative;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(error.element, 1);
+  arrays = tetrahedron();
+  arrays.offsets = backward;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(error.element, 2);
+  arrays.offsets = thin;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(error.element, 3);
+  arrays.offsets = shifted;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  assert_null(mesh);
+}
+
+/** 32- and 64-bit coordinates, triangles with and without offsets: the same mesh. */
+static void test_kinds_of_arrays(void **state) {
+  (void)state;
+  float single[12];
+  for (int i = 0; i < 12; i++)
+    single[i] = (float)corners[i];
+  static const int64_t offsets[] = {0, 3, 6, 9, 12};
+  vxm_mesh *meshes[2] = {NULL, NULL};
+  vxm_mesh_arrays arrays = tetrahedron();
+  assert_int_equal(vxm_mesh_create(&meshes[0], NULL, &arrays, NULL), VXM_OK);
+  arrays.vertex_scalar = VXM_FLOAT32;
+  arrays.vertices = single;
+  arrays.offsets = offsets;
+  assert_int_equal(vxm_mesh_create(&meshes[1], NULL, &arrays, NULL), VXM_OK);
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(vxm_mesh_vertex_count(meshes[i]), 4);
+    assert_int_equal(vxm_mesh_face_count(meshes[i]), 4);
+    assert_memory_equal(vxm_mesh_vertices(meshes[i]), corners, sizeof corners);
+    for (int f = 0; f <= 4; f++)
+      assert_int_equal(vxm_mesh_offsets(meshes[i])[f], 3 * f);
+    for (int c = 0; c < 12; c++)
+      assert_int_equal(vxm_mesh_indices(meshes[i])[c], arrays.indices[c]);
+    assert_string_equal(vxm_mesh_format(meshes[i]), "arrays");
+    assert_int_equal(vxm_mesh_tag_count(meshes[i]), 0);
+    assert_null(vxm_mesh_face_tags(meshes[i]));
+    assert_string_equal(vxm_mesh_tag_name(meshes[i], 0), "");
+    assert_string_equal(vxm_mesh_warning(meshes[i], -1), "");
+    vxm_mesh_destroy(meshes[i]);
+  }
+}
+
+static void test_mesh_files(void **state) {
+  (void)state;
+  vxm_mesh *mesh = junk;
+  REFUSED(vxm_mesh_read(NULL, NULL, "x.off", &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_read(&mesh, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_read(&mesh, NULL, "no/such/file.off", &error), VXM_ERROR_IO);
+  assert_null(mesh);
+  assert_string_equal(error.file, "no/such/file.off");
+  assert_non_null(strstr(error.text, "no/such/file.off"));
+  REFUSED(vxm_mesh_read(&mesh, NULL, ".", &error), VXM_ERROR_IO);
+  REFUSED(vxm_mesh_read_memory(&mesh, NULL, NULL, 5, "x.off", &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_read_memory(&mesh, NULL, "", 0, "x.off", &error), VXM_ERROR_FORMAT);
+  REFUSED(vxm_mesh_read_memory(&mesh, NULL, "\x01\x02\x03", 3, NULL, &error), VXM_ERROR_FORMAT);
+  assert_null(mesh);
+
+  vxm_mesh_arrays arrays = tetrahedron();
+  assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);
+  vxm_mesh_write_options options = VXM_MESH_WRITE_OPTIONS_INIT;
+  REFUSED(vxm_mesh_write(NULL, "x.off", NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_write(mesh, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_write(mesh, "x.dwg", NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_write(mesh, "no/such/folder/x.off", NULL, &error), VXM_ERROR_IO);
+  options.format = "dwg";
+  REFUSED(vxm_mesh_write(mesh, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
+  options = (vxm_mesh_write_options){.version = 9, .format = "off"};
+  REFUSED(vxm_mesh_write(mesh, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
+  vxm_mesh_destroy(mesh);
+}
+
+static void test_census_and_repair(void **state) {
+  (void)state;
+  vxm_mesh *mesh = NULL, *repaired = junk;
+  vxm_mesh_arrays arrays = tetrahedron();
+  assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);
+  vxm_census census;
+  REFUSED(vxm_mesh_census(NULL, mesh, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_census(&census, NULL, &error), VXM_ERROR_ARGUMENT);
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  REFUSED(vxm_mesh_repair(NULL, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_repair(&repaired, NULL, NULL, &options, &error), VXM_ERROR_ARGUMENT);
+  options.version = 0;
+  REFUSED(vxm_mesh_repair(&repaired, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  assert_null(repaired);
+  options = (vxm_repair_options)VXM_REPAIR_OPTIONS_INIT;
+  options.weld = (vxm_weld)9;
+  REFUSED(vxm_mesh_repair(&repaired, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  options.weld = VXM_WELD_TOLERANCE;
+  static const double tolerances[] = {-1.0, (double)NAN, (double)INFINITY};
+  for (int i = 0; i < 3; i++) {
+    options.weld_tolerance = tolerances[i];
+    REFUSED(vxm_mesh_repair(&repaired, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  }
+  vxm_mesh_destroy(mesh);
+}
+
+/* ---- Grids ---- */
+
+static void test_grids(void **state) {
+  (void)state;
+  vxm_grid *grid = junk;
+  static const vxm_space good = {{4, 4, 4}, {0, 0, 0}, {1, 1, 1}};
+  REFUSED(vxm_grid_create(NULL, NULL, &good, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_create(&grid, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
+  vxm_space bad = good;
+  bad.dims[1] = 0;
+  REFUSED(vxm_grid_create(&grid, NULL, &bad, &error), VXM_ERROR_ARGUMENT);
+  bad = good;
+  bad.voxel_size[2] = 0;
+  REFUSED(vxm_grid_create(&grid, NULL, &bad, &error), VXM_ERROR_ARGUMENT);
+  bad = good;
+  bad.origin[0] = (double)NAN;
+  REFUSED(vxm_grid_create(&grid, NULL, &bad, &error), VXM_ERROR_ARGUMENT);
+  bad = good;
+  bad.dims[0] = INT64_MAX;
+  REFUSED(vxm_grid_create(&grid, NULL, &bad, &error), VXM_ERROR_RANGE);
+  assert_null(grid);
+
+  grid = small_grid(3, 4, 5);
+  vxm_grid_set(grid, 2, 3, 4, true);
+  vxm_grid_set(grid, 3, 0, 0, true);
+  vxm_grid_set(grid, -1, 0, 0, true);
+  vxm_grid_set(grid, 0, 4, 0, true);
+  vxm_grid_set(grid, 0, 0, INT64_MAX, true);
+  assert_int_equal(vxm_grid_count(grid), 1);
+  assert_true(vxm_grid_get(grid, 2, 3, 4));
+  assert_false(vxm_grid_get(grid, 5, 3, 4));
+  assert_false(vxm_grid_get(grid, INT64_MIN, 0, 0));
+  uint8_t bytes[60];
+  vxm_grid_unpack(grid, bytes);
+  for (int i = 0; i < 60; i++)
+    assert_int_equal(bytes[i], i == 59);
+  assert_int_equal(vxm_grid_row_words(grid), 1);
+  assert_int_equal(vxm_grid_words(grid)[4 * 4 + 3], 4);
+  uint64_t hash = vxm_grid_hash(grid);
+  vxm_grid_set(grid, 2, 3, 4, false);
+  assert_true(vxm_grid_hash(grid) != hash);
+  assert_string_equal(vxm_grid_warning(grid, 0), "");
+  vxm_grid_destroy(grid);
+}
+
+static void test_grid_files(void **state) {
+  (void)state;
+  vxm_grid *grid = junk;
+  REFUSED(vxm_grid_read(NULL, NULL, "x.npy", &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_read(&grid, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_read(&grid, NULL, "no/such/file.npy", &error), VXM_ERROR_IO);
+  REFUSED(vxm_grid_read(&grid, NULL, "/dev/null", &error), VXM_ERROR_FORMAT);
+  assert_null(grid);
+  vxm_mesh *mesh = junk;
+  grid = small_grid(3, 4, 5);
+  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+  REFUSED(vxm_grid_write(NULL, "x.npy", NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_write(grid, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_write(grid, "x.dwg", NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_write(grid, "no/such/folder/x.npy", NULL, &error), VXM_ERROR_IO);
+  options.version = 2;
+  REFUSED(vxm_grid_write(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_surface_mesh(NULL, grid, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_surface_mesh(&mesh, NULL, &error), VXM_ERROR_ARGUMENT);
+  assert_null(mesh);
+  vxm_grid_destroy(grid);
+
+  vxm_space flat = {{4, 4, 4}, {0, 0, 0}, {1, 1, 2}};
+  assert_int_equal(vxm_grid_create(&grid, NULL, &flat, NULL), VXM_OK);
+  options = (vxm_grid_write_options){.version = 1, .format = "binvox"};
+  REFUSED(vxm_grid_write(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
+  vxm_grid_destroy(grid);
+}
+
+static void test_pictures(void **state) {
+  (void)state;
+  vxm_grid *grid = small_grid(3, 4, 5);
+  vxm_grid_set(grid, 1, 1, 1, true);
+  vxm_picture_options options = VXM_PICTURE_OPTIONS_INIT;
+  vxm_status able = vxm_grid_picture(grid, "/dev/null", &options, NULL);
+  assert_true(able == VXM_OK || able == VXM_ERROR_UNAVAILABLE);
+  REFUSED(vxm_grid_picture(NULL, "/dev/null", NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_picture(grid, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
+  if (able == VXM_OK) {
+    REFUSED(vxm_grid_picture(grid, "no/such/folder/x.png", NULL, &error), VXM_ERROR_IO);
+    options.version = 2;
+    REFUSED(vxm_grid_picture(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
+    options = (vxm_picture_options)VXM_PICTURE_OPTIONS_INIT;
+    options.width = -1;
+    REFUSED(vxm_grid_picture(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
+    options = (vxm_picture_options)VXM_PICTURE_OPTIONS_INIT;
+    options.up = 4;
+    REFUSED(vxm_grid_picture(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
+    options = (vxm_picture_options)VXM_PICTURE_OPTIONS_INIT;
+    options.azimuth = (double)NAN;
+    REFUSED(vxm_grid_picture(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
+  }
+  vxm_grid_destroy(grid);
+}
+
+static void test_comparing(void **state) {
+  (void)state;
+  vxm_grid *a = small_grid(3, 4, 5), *b = small_grid(3, 4, 5), *c = small_grid(3, 5, 4);
+  vxm_comparison found;
+  REFUSED(vxm_grid_compare(NULL, a, b, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_compare(&found, NULL, b, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_compare(&found, a, NULL, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_grid_compare(&found, a, c, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_compare(&found, a, b, NULL), VXM_OK);
+  assert_true(found.iou == 1);
+  vxm_grid_set(a, 0, 0, 0, true);
+  vxm_grid_set(a, 1, 0, 0, true);
+  vxm_grid_set(b, 1, 0, 0, true);
+  vxm_grid_set(b, 2, 3, 4, true);
+  assert_int_equal(vxm_grid_compare(&found, a, b, NULL), VXM_OK);
+  assert_int_equal(found.voxels_a, 2);
+  assert_int_equal(found.voxels_b, 2);
+  assert_int_equal(found.both, 1);
+  assert_int_equal(found.only_a, 1);
+  assert_int_equal(found.only_b, 1);
+  assert_true(fabs(found.iou - 1.0 / 3) < 1e-15);
+  vxm_grid_destroy(a);
+  vxm_grid_destroy(b);
+  vxm_grid_destroy(c);
+}
+
+/* ---- Voxelization ---- */
+
+static void test_spaces(void **state) {
+  (void)state;
+  vxm_mesh *mesh = mesh_of_model(NULL, "cube");
+  vxm_space space;
+  vxm_space_options options = VXM_SPACE_OPTIONS_INIT;
+  REFUSED(vxm_space_fit(NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_space_fit(&space, NULL, &options, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_space_fit(&space, mesh, NULL, NULL), VXM_OK);
+  assert_int_equal(space.dims[2], 128);
+  options.version = 2;
+  REFUSED(vxm_space_fit(&space, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+#define REFUSED_SPACE(setting, expected)                              \
+  do {                                                                \
+    options = (vxm_space_options)VXM_SPACE_OPTIONS_INIT;              \
+    options.resolution[0] = 16;                                       \
+    setting;                                                          \
+    REFUSED(vxm_space_fit(&space, mesh, &options, &error), expected); \
+  } while (0)
+  REFUSED_SPACE(options.resolution[0] = -1, VXM_ERROR_ARGUMENT);
+  REFUSED_SPACE(options.resolution[1] = 8, VXM_ERROR_ARGUMENT);
+  REFUSED_SPACE(options.resolution[0] = (1 << 20) + 1, VXM_ERROR_RANGE);
+  REFUSED_SPACE(options.voxel_size = 0.5, VXM_ERROR_ARGUMENT);
+  REFUSED_SPACE((options.resolution[0] = 0, options.voxel_size = -1), VXM_ERROR_ARGUMENT);
+  REFUSED_SPACE((options.resolution[0] = 0, options.voxel_size = (double)NAN), VXM_ERROR_ARGUMENT);
+  REFUSED_SPACE((options.resolution[0] = 0, options.voxel_size = 1e-9), VXM_ERROR_RANGE);
+  REFUSED_SPACE(options.pad = -1, VXM_ERROR_ARGUMENT);
+  REFUSED_SPACE(options.pad = 8, VXM_ERROR_ARGUMENT);
+  REFUSED_SPACE(options.fit = (vxm_fit)3, VXM_ERROR_ARGUMENT);
+  REFUSED_SPACE(options.use_bounds = true, VXM_ERROR_ARGUMENT);
+  vxm_mesh_destroy(mesh);
+}
+
+static void test_voxelizing(void **state) {
+  (void)state;
+  vxm_mesh *mesh = mesh_of_model(NULL, "cube");
+  vxm_grid *grid = junk;
+  vxm_voxelize_report report;
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.space.resolution[0] = 8;
+  REFUSED(vxm_voxelize(NULL, &report, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_voxelize(&grid, &report, NULL, &options, &error), VXM_ERROR_ARGUMENT);
+  options.version = 2;
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  assert_null(grid);
+  options.version = 1;
+  options.method = (vxm_method)9;
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  options.method = VXM_METHOD_VOTE;
+  options.vote = (vxm_vote)9;
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  options.vote = VXM_VOTE_MAJORITY;
+  options.parts = (vxm_parts)9;
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  options.parts = VXM_PARTS_AUTO;
+  assert_int_equal(vxm_voxelize(&grid, &report, mesh, &options, NULL), VXM_OK);
+  assert_int_equal(report.voxels, 512); /* a unit cube at 8 is 8 x 8 x 8 */
+  assert_int_equal(report.voxels, vxm_grid_count(grid));
+  assert_true(report.hash == vxm_grid_hash(grid));
+  assert_int_equal(report.parts, 1);
+  assert_int_equal(report.closed_parts, 1);
+  assert_int_equal(report.contested, 0);
+  vxm_grid_destroy(grid);
+  vxm_mesh_destroy(mesh);
+}
+
+/** No face, or no face with area. */
+static void test_voxelizing_nothing(void **state) {
+  (void)state;
+  vxm_mesh *mesh = NULL;
+  vxm_grid *grid = junk;
+  vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
+  assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, NULL, &error), VXM_ERROR_EMPTY);
+  assert_null(grid);
+  vxm_mesh_destroy(mesh);
+  static const int64_t same[] = {1, 1, 1};
+  arrays = tetrahedron();
+  arrays.indices = same;
+  arrays.face_count = 1;
+  assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, NULL, &error), VXM_ERROR_EMPTY);
+  vxm_mesh_destroy(mesh);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_names),
+      cmocka_unit_test(test_destroying_nothing),
+      cmocka_unit_test(test_context),
+      cmocka_unit_test(test_mesh_arrays),
+      cmocka_unit_test(test_faces_at_fault),
+      cmocka_unit_test(test_kinds_of_arrays),
+      cmocka_unit_test(test_mesh_files),
+      cmocka_unit_test(test_census_and_repair),
+      cmocka_unit_test(test_grids),
+      cmocka_unit_test(test_grid_files),
+      cmocka_unit_test(test_pictures),
+      cmocka_unit_test(test_comparing),
+      cmocka_unit_test(test_spaces),
+      cmocka_unit_test(test_voxelizing),
+      cmocka_unit_test(test_voxelizing_nothing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,31 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# voxmend convert, compare and view.
+. "$SRCDIR/tests/cli/lib.sh"
+run 'voxmend voxelize in/torus.off -o t.npy -r 24 -q'
+run 'voxmend convert t.npy -o t.binvox'
+run 'voxmend convert t.binvox -o t.rle --json'
+run 'voxmend convert t.rle -o t.raw -q'
+run 'voxmend convert t.raw -o back.npy -q && voxmend compare t.npy back.npy'
+run 'voxmend convert - -o - --format binvox <t.npy 2>err.log | cmp - t.binvox; cat err.log'
+run 'voxmend convert t.npy -o t.obj -q && voxmend info t.obj'
+run 'voxmend convert t.npy -o t.grid --format rle -q && cmp t.rle t.grid'
+
+say "# compare"
+run 'voxmend voxelize in/sphere.off -o s.npy --like t.npy -q'
+run 'voxmend compare t.npy s.npy'
+run 'voxmend compare t.npy s.npy --json'
+run 'voxmend voxelize in/torus.off -o moved.npy -r 24 --pad 1 -q && voxmend compare t.npy moved.npy --strict'
+run 'voxmend voxelize in/torus.off -o small.npy -r 12 -q && voxmend compare t.npy small.npy'
+run 'voxmend compare t.npy in/torus.off'
+run 'voxmend compare t.npy missing.npy'
+
+say "# convert: failures leave nothing"
+mkdir out
+head -c 200 t.npy >cut.npy
+run 'voxmend convert cut.npy -o out/x.rle'
+run 'voxmend convert in/cube.off -o out/x.rle'
+run 'voxmend convert t.npy -o no/such/x.rle'
+run 'voxmend convert t.npy -o out/x.rle --report no/such/x.json'
+run 'ls out'
+finish

@@ -1,0 +1,37 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# voxmend info: tables, JSON, several files, damaged and missing files.
+. "$SRCDIR/tests/cli/lib.sh"
+run 'voxmend info in/cube.off'
+run 'voxmend info in/rocket.off in/degenerate.off'
+run 'voxmend info --json in/nonfinite.off'
+run 'voxmend info --json in/cube.off in/open_box.off'
+run 'voxmend info - <in/l_prism.off'
+run 'voxmend info -q in/cube.off'
+
+say "# damage"
+head -n 28 in/star_prism.off >cut.off
+head -n 10 in/star_prism.off >stump.off
+printf 'g side\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\n' >index.obj
+printf '\377\376 not a mesh' >junk.stl
+: >empty.off
+run 'voxmend info cut.off'
+run 'voxmend info --strict cut.off'
+run 'voxmend info --strict -q cut.off'
+run 'voxmend info -v index.obj'
+run 'voxmend info --json --strict index.obj'
+run 'voxmend info stump.off'
+run 'voxmend info junk.stl'
+run 'voxmend info empty.off'
+run 'voxmend info missing.off'
+run 'voxmend info --json missing.off in/cube.off empty.off'
+run 'voxmend info --memlimit 1K in/torus.off'
+
+say "# report and progress"
+run 'voxmend info -q --report r.json in/cube.off && cat r.json'
+run 'voxmend info -q --report no/such/r.json in/cube.off'
+run 'voxmend info -q in/cube.off --threads 3 --memlimit 1g --progress never'
+run 'voxmend info in/cube.off >/dev/full'
+run 'voxmend info --json in/cube.off >/dev/full'
+run 'ls'
+finish

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Golden tests of the command line, sourced by the test scripts. A script runs commands with `run`, which writes down
+# the command, what it printed and its exit status; `finish` compares the whole with expect/NAME.txt.
+# REFRESH=1 writes the expectation anew: read the difference before it is committed.
+#
+#   $ voxmend info cube.off        the command
+#   text                           what it wrote to standard output
+#   ! voxmend: text                what it wrote to standard error
+#   exit 1                         its status, where that is not 0
+set -eu
+name=$(basename "$0" .sh)
+expected=$SRCDIR/tests/cli/expect/$name.txt
+work=$(mktemp -d "${TMPDIR:-/tmp}/voxmend-cli.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/in"
+"$BUILDDIR/samples/generate_samples" "$work/in"
+cd "$work"
+voxmend() {
+  "$VOXMEND" "$@"
+}
+: >transcript
+
+# Times, memory and the number of processors differ between runs and machines.
+mask() {
+  sed -E \
+    -e 's/^(time +)[0-9.]+ ms: read [0-9.]+, repair [0-9.]+, voxelize [0-9.]+, write [0-9.]+/\1T ms: read T, repair T, voxelize T, write T/' \
+    -e 's/("(read|repair|voxelize|write|total)": )[0-9][0-9.e+-]*/\1T/' \
+    -e 's/("peak_bytes": )[0-9]+/\1N/' \
+    -e 's/^(threads +)[0-9]+/\1N/' \
+    -e 's/^(memory +)[0-9.]+ MiB/\1N MiB/'
+}
+
+say() {
+  printf '%s\n' "$*" >>transcript
+}
+
+run() {
+  say "\$ $1"
+  status=0
+  (eval "$1") >out.txt 2>err.txt </dev/null || status=$?
+  mask <out.txt >>transcript
+  mask <err.txt | sed 's/^/! /' >>transcript
+  if [ "$status" -ne 0 ]; then
+    say "exit $status"
+  fi
+  say ""
+}
+
+finish() {
+  if [ "${REFRESH:-}" = 1 ]; then
+    mkdir -p "$SRCDIR/tests/cli/expect"
+    cp transcript "$expected"
+  fi
+  diff -u "$expected" transcript
+}

@@ -1,0 +1,35 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# voxmend repair: table, JSON, formats, options, and nothing left behind after a failure.
+. "$SRCDIR/tests/cli/lib.sh"
+run 'voxmend repair in/doubled.off -o doubled.ply'
+run 'voxmend info doubled.ply'
+run 'voxmend repair in/degenerate.off -o degenerate.off && cat degenerate.off'
+run 'voxmend repair in/nonfinite.off -o nonfinite.obj --json && cat nonfinite.obj'
+run 'voxmend repair in/cracks.off -o cracks.off -q && voxmend info cracks.off'
+run 'voxmend repair in/cracks.off -o off.off -q --weld off && voxmend info off.off'
+run 'voxmend repair in/cracks.off -o eps.off -q --weld 1e-6 && voxmend info eps.off'
+run 'voxmend repair in/repeated.off -o kept.off -q --keep-duplicates && voxmend info kept.off'
+run 'voxmend repair in/l_prism.off -o l.stl --ascii -q && voxmend info l.stl'
+run 'voxmend repair in/l_prism.off -o l.anything --format ply --ascii -q && cat l.anything'
+
+say "# once repaired, nothing is left to do"
+run 'voxmend repair in/rocket.off -o once.off'
+run 'voxmend repair once.off -o twice.off'
+run 'cmp once.off twice.off'
+
+say "# streams"
+run 'voxmend repair - -o - --format off <in/unused.off'
+run 'voxmend repair in/cube.off -o - --format obj -q | voxmend info -'
+
+say "# failures leave nothing"
+mkdir out
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
+run 'voxmend repair flat.off -o out/x.off'
+run 'voxmend repair missing.off -o out/x.off'
+run 'voxmend repair in/cube.off -o no/such/x.off'
+run 'voxmend repair in/torus.off -o out/x.off --memlimit 64K'
+run 'voxmend repair in/cube.off -o out/x.off --report no/such/r.json'
+run 'voxmend repair in/cube.off -o - --format off >/dev/full'
+run 'ls out'
+finish

@@ -1,0 +1,73 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Help, version and wrong usage: exit status 2 with one line that names the option.
+. "$SRCDIR/tests/cli/lib.sh"
+run 'voxmend'
+run 'voxmend --help'
+run 'voxmend --version'
+run 'voxmend --nonsense'
+run 'voxmend nonsense'
+for command in info repair voxelize convert compare view; do
+  run "voxmend $command --help"
+done
+
+say "# options"
+run 'voxmend info'
+run 'voxmend info --mode solid in/cube.off'
+run 'voxmend info -z in/cube.off'
+run 'voxmend info -qz in/cube.off'
+run 'voxmend info --quiet=yes in/cube.off'
+run 'voxmend info --threads'
+run 'voxmend info --threads 0 in/cube.off'
+run 'voxmend info --threads 2x in/cube.off'
+run 'voxmend info --threads 257 in/cube.off'
+run 'voxmend info --threads -1 in/cube.off'
+run 'voxmend info --memlimit 5Q in/cube.off'
+run 'voxmend info --memlimit 0 in/cube.off'
+run 'voxmend info --memlimit 99999999999999T in/cube.off'
+run 'voxmend info --progress sometimes in/cube.off'
+
+say "# repair"
+run 'voxmend repair in/cube.off'
+run 'voxmend repair -o x.off'
+run 'voxmend repair in/cube.off in/torus.off -o x.off'
+run 'voxmend repair in/cube.off -o x.dwg'
+run 'voxmend repair in/cube.off -o x.npy'
+run 'voxmend repair in/cube.off -o -'
+run 'voxmend repair in/cube.off -o - --format off --json'
+run 'voxmend repair in/cube.off -o x --format dwg'
+run 'voxmend repair in/cube.off -o x.off --weld 0'
+run 'voxmend repair in/cube.off -o x.off --weld -1'
+run 'voxmend repair in/cube.off -o x.off --weld 1e-3x'
+run 'voxmend repair in/cube.off -o x.off --weld nan'
+
+say "# voxelize"
+run 'voxmend voxelize in/cube.off'
+run 'voxmend voxelize -o x.npy'
+run 'voxmend voxelize in/cube.off -o x.dwg'
+for option in '-r 0' '-r 8.5' '-r 8x8' '-r 8x8x8x8' '-r 8x8x' '-r 0x8' '-r -8' '-r 1048577' '-r 99999999999999999999' \
+  '--voxel-size 0' '--voxel-size -1' '--voxel-size 1,5' '--voxel-size inf' '--voxel-size 0x1' '--voxel-size ""' \
+  '--fit round' '--pad -1' '--pad 1.5' '--bounds 0,0,0,1,1' '--bounds 0,0,0,1,1,1,1' '--bounds 0,0,0,1,0,1' \
+  '--bounds 0,0,0,1,1,nan' '--method w' '--vote auto' '--parts some' '--weld near' \
+  '--mode surface' '--surface thin' '--engine cpu' '--sparse' '--coverage 2'; do
+  run "voxmend voxelize in/cube.off -o x.npy $option"
+done
+for options in '-r 8 --voxel-size 1' '--like y.npy -r 8' '--like y.npy --pad 1' '--bounds 0,0,0,1,1,1 --pad 1' \
+  '--bounds 0,0,0,1,1,1 --fit tight' '--method x --vote any' '--no-repair --weld off' '--no-repair --keep-duplicates'; do
+  run "voxmend voxelize in/cube.off -o x.npy $options"
+done
+
+say "# convert, compare, view"
+run 'voxmend convert x.npy'
+run 'voxmend convert x.npy -o y.png'
+run 'voxmend compare x.npy'
+run 'voxmend compare x.npy y.npy z.npy'
+run 'voxmend view x.npy'
+run 'voxmend view x.npy -o y.html'
+run 'voxmend view x.npy -o y.png --size 800'
+run 'voxmend view x.npy -o y.png --size 0x600'
+run 'voxmend view x.npy -o y.png --azimuth north'
+run 'voxmend view x.npy -o y.png --elevation 91'
+run 'voxmend view x.npy -o y.png --up w'
+run 'ls'
+finish

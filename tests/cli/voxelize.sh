@@ -1,0 +1,54 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# voxmend voxelize: summary, JSON, voxel spaces, streams, and nothing left behind after a failure.
+. "$SRCDIR/tests/cli/lib.sh"
+run 'voxmend voxelize in/cube.off -o cube.npy -r 8'
+run 'voxmend voxelize in/degenerate.off -o cube.binvox -r 8 --json'
+run 'voxmend voxelize in/open_box.off -o open.rle -r 16 -v'
+run 'voxmend voxelize in/doubled.off -o doubled.npy -r 16 --no-repair --strict'
+
+say "# spaces"
+run 'voxmend voxelize in/l_prism.off -o a.npy --fit tight -r 16'
+run 'voxmend voxelize in/l_prism.off -o a.npy --fit sphere -r 16'
+run 'voxmend voxelize in/l_prism.off -o a.npy -r 16x16x8'
+run 'voxmend voxelize in/l_prism.off -o a.npy -r 16 --pad 2'
+run 'voxmend voxelize in/l_prism.off -o a.npy --voxel-size 0.25 --fit tight --pad 1'
+run 'voxmend voxelize in/l_prism.off -o a.npy --bounds 0,0,0,2,2,1 -r 16'
+run 'voxmend voxelize in/l_prism.off -o b.npy --bounds -1,-1,-1,3,3,3 --voxel-size 0.5'
+run 'voxmend voxelize in/cube.off -o c.npy --like b.npy'
+run 'voxmend voxelize in/cube.off -o c.npy --like in/cube.off'
+
+say "# methods, votes and parts"
+for options in '--method x' '--method y' '--method z' '--method tetra' '--vote any' '--vote all' '--parts group' '--parts whole'; do
+  run "voxmend voxelize in/missing.off -o m.npy -r 32 $options | grep -E '^(parts|voxels|contested|hash)'"
+done
+
+say "# the same bits for any number of threads"
+for threads in 1 2 7; do
+  run "voxmend voxelize in/rocket.off -o t$threads.npy -r 100 --threads $threads | grep -E '^(voxels|hash)'"
+done
+run 'cmp t1.npy t2.npy && cmp t1.npy t7.npy'
+
+say "# streams and reports"
+run 'voxmend voxelize - -o - --format rle -r 8 <in/cube.off >cube.rle'
+run 'voxmend voxelize in/cube.off -o cube2.rle -r 8 -q && cmp cube.rle cube2.rle'
+run 'voxmend voxelize in/cube.off -o cube.binvox -r 8 -q --report r.json && cat r.json'
+run 'voxmend voxelize in/cube.off -o - --format raw -r 8'
+run 'voxmend voxelize in/cube.off -o cube.raw -r 8 -q && wc -c <cube.raw && cat cube.raw.json'
+
+say "# failures leave nothing"
+mkdir out
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
+run 'voxmend voxelize flat.off -o out/x.npy'
+run 'voxmend voxelize flat.off -o out/x.npy --no-repair'
+run 'voxmend voxelize missing.off -o out/x.npy'
+run 'voxmend voxelize in/cube.off -o no/such/x.npy -r 8'
+run 'voxmend voxelize in/cube.off -o out/x.npy -r 4096 --memlimit 100M'
+run 'voxmend voxelize in/cube.off -o out/x.npy --voxel-size 1e-12'
+run 'voxmend voxelize in/cube.off -o out/x.npy --pad 64'
+run 'voxmend voxelize in/cube.off -o out/x.binvox --bounds 0,0,0,1,1,2 -r 8x8x8'
+run 'voxmend voxelize in/cube.off -o out/x.npy -r 8 --report no/such/r.json'
+run 'voxmend voxelize in/cube.off -o out/x.raw -r 8 --report no/such/r.json'
+run 'voxmend voxelize in/cube.off -o - --format npy -r 64 >/dev/full'
+run 'ls out'
+finish

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Choosing a voxel space: every fit, pad, bounds, and what is refused. */
+#include "voxmend.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static vxm_mesh *mesh; /* a triangle in the box (1,2,3) to (5,4,3.5) */
+
+static int setup(void **state) {
+  (void)state;
+  static const double vertices[] = {1, 2, 3, 5, 2, 3, 1, 4, 3.5, 900, 900, 900};
+  static const int64_t indices[] = {0, 1, 2};
+  vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
+  arrays.vertices = vertices;
+  arrays.vertex_count = 4; /* the last one is used by no face and must not count */
+  arrays.indices = indices;
+  arrays.face_count = 1;
+  return vxm_mesh_create(&mesh, NULL, &arrays, NULL) != VXM_OK;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  vxm_mesh_destroy(mesh);
+  return 0;
+}
+
+static vxm_space chosen(const vxm_space_options *options) {
+  vxm_space space;
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_space_fit(&space, mesh, options, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  return space;
+}
+
+static void assert_space(vxm_space s, int64_t nx, int64_t ny, int64_t nz, double size, double x, double y,
+                         double z) {
+  assert_int_equal(s.dims[0], nx);
+  assert_int_equal(s.dims[1], ny);
+  assert_int_equal(s.dims[2], nz);
+  const double origin[3] = {x, y, z};
+  for (int a = 0; a < 3; a++) {
+    assert_true(fabs(s.voxel_size[a] - size) < 1e-12);
+    assert_true(fabs(s.origin[a] - origin[a]) < 1e-12);
+  }
+}
+
+static void test_cube(void **state) {
+  (void)state;
+  vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
+  o.resolution[0] = 8;
+  assert_space(chosen(&o), 8, 8, 8, 0.5, 1, 1, 1.25);
+  o.pad = 2;
+  assert_space(chosen(&o), 8, 8, 8, 1, -1, -1, -0.75);
+  o.pad = 0;
+  o.resolution[0] = 0;
+  assert_int_equal(chosen(&o).dims[2], 128);
+  o.voxel_size = 0.5;
+  assert_space(chosen(&o), 8, 8, 8, 0.5, 1, 1, 1.25);
+  o.pad = 1;
+  assert_space(chosen(&o), 10, 10, 10, 0.5, 0.5, 0.5, 0.75);
+}
+
+static void test_three_numbers(void **state) {
+  (void)state;
+  vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
+  o.resolution[0] = 8;
+  o.resolution[1] = 2;
+  o.resolution[2] = 8;
+  /* y decides: 2 units in 2 voxels */
+  assert_space(chosen(&o), 8, 2, 8, 1, -1, 2, -0.75);
+}
+
+static void test_tight(void **state) {
+  (void)state;
+  vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
+  o.fit = VXM_FIT_TIGHT;
+  o.resolution[0] = 8;
+  assert_space(chosen(&o), 8, 4, 1, 0.5, 1, 2, 3);
+  o.pad = 1;
+  o.resolution[0] = 10;
+  assert_space(chosen(&o), 10, 6, 3, 0.5, 0.5, 1.5, 2.5);
+  /* A side that is a whole number of voxels gains none by rounding. */
+  o.pad = 0;
+  for (int64_t n = 1; n < 2000; n++) {
+    o.resolution[0] = n;
+    assert_int_equal(chosen(&o).dims[0], n);
+  }
+}
+
+static void test_sphere(void **state) {
+  (void)state;
+  vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
+  o.fit = VXM_FIT_SPHERE;
+  o.resolution[0] = 9;
+  double size = sqrt(16 + 4 + 0.25) / 9;
+  assert_space(chosen(&o), 9, 9, 9, size, 3 - 4.5 * size, 3 - 4.5 * size, 3.25 - 4.5 * size);
+}
+
+static void test_bounds(void **state) {
+  (void)state;
+  vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
+  o.use_bounds = true;
+  memcpy(o.bounds, (double[]){0, 0, 0, 10, 5, 2.5}, sizeof o.bounds);
+  o.resolution[0] = 20;
+  assert_space(chosen(&o), 20, 10, 5, 0.5, 0, 0, 0);
+  o.resolution[1] = o.resolution[2] = 20;
+  vxm_space s = chosen(&o);
+  assert_int_equal(s.dims[1], 20);
+  assert_true(s.voxel_size[0] == 0.5 && s.voxel_size[1] == 0.25 && s.voxel_size[2] == 0.125);
+  memset(o.resolution, 0, sizeof o.resolution);
+  o.voxel_size = 3;
+  assert_space(chosen(&o), 4, 2, 1, 3, 0, 0, 0);
+}
+
+static void test_like(void **state) {
+  (void)state;
+  vxm_space like = {{3, 4, 5}, {6, 7, 8}, {1, 2, 3}};
+  vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
+  o.like = &like;
+  vxm_space s = chosen(&o);
+  assert_memory_equal(&s, &like, sizeof s);
+}
+
+static void assert_refused(vxm_space_options o, vxm_status status) {
+  vxm_space space;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_space_fit(&space, mesh, &o, &error), status);
+  assert_int_equal(error.code, status);
+  assert_true(strlen(error.text) > 10);
+}
+
+static void test_refusals(void **state) {
+  (void)state;
+  vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
+  o.version = 2;
+  assert_refused(o, VXM_ERROR_ARGUMENT);
+  o = (vxm_space_options)VXM_SPACE_OPTIONS_INIT;
+  o.resolution[0] = 4;
+  o.pad = 2;
+  assert_refused(o, VXM_ERROR_ARGUMENT);
+  o.pad = 0;
+  o.voxel_size = 1;
+  assert_refused(o, VXM_ERROR_ARGUMENT);
+  o = (vxm_space_options)VXM_SPACE_OPTIONS_INIT;
+  o.resolution[1] = 5;
+  assert_refused(o, VXM_ERROR_ARGUMENT);
+  o.resolution[1] = 0;
+  o.resolution[0] = INT64_C(1) << 21;
+  assert_refused(o, VXM_ERROR_RANGE);
+  o.resolution[0] = 0;
+  o.voxel_size = 1e-300;
+  assert_refused(o, VXM_ERROR_RANGE);
+  o.voxel_size = NAN;
+  assert_refused(o, VXM_ERROR_ARGUMENT);
+  o.voxel_size = 0;
+  o.use_bounds = true;
+  assert_refused(o, VXM_ERROR_ARGUMENT);
+  memcpy(o.bounds, (double[]){0, 0, 0, 1, 1, INFINITY}, sizeof o.bounds);
+  assert_refused(o, VXM_ERROR_ARGUMENT);
+}
+
+static void test_nothing_to_fit(void **state) {
+  (void)state;
+  vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
+  vxm_mesh *empty, *point;
+  vxm_space space;
+  assert_int_equal(vxm_mesh_create(&empty, NULL, &arrays, NULL), VXM_OK);
+  assert_int_equal(vxm_space_fit(&space, empty, NULL, NULL), VXM_ERROR_EMPTY);
+  vxm_mesh_destroy(empty);
+  arrays.vertices = (double[]){7, 7, 7};
+  arrays.vertex_count = 1;
+  arrays.indices = (int64_t[]){0, 0, 0};
+  arrays.face_count = 1;
+  assert_int_equal(vxm_mesh_create(&point, NULL, &arrays, NULL), VXM_OK);
+  assert_int_equal(vxm_space_fit(&space, point, NULL, NULL), VXM_ERROR_EMPTY);
+  vxm_mesh_destroy(point);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_cube),     cmocka_unit_test(test_three_numbers),  cmocka_unit_test(test_tight),
+      cmocka_unit_test(test_sphere),   cmocka_unit_test(test_bounds),         cmocka_unit_test(test_like),
+      cmocka_unit_test(test_refusals), cmocka_unit_test(test_nothing_to_fit),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

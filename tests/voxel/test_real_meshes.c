@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/*
+ * Every closed mesh of the shared collection, at several resolutions and at random sub-voxel offsets: parity
+ * along x, y and z, the votes and (at the lowest resolution) the tetrahedra agree bit for bit.
+ * VOXMEND_TEST_RESOLUTIONS="17 64 200" chooses other resolutions, VOXMEND_TEST_TETRA=200 draws the tetrahedra
+ * up to that one.
+ */
+#include "base/rng.h"
+#include "grid/bitgrid.h"
+#include "mesh/soup.h"
+
+#include <dirent.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const char *const folders[] = {"cad", "classic", "messy", "modelnet", "paper"};
+
+static uint64_t hash_of(const vxm_mesh *mesh, const vxm_voxelize_options *options, const char *path) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_grid *grid;
+  if (vxm_voxelize(&grid, NULL, mesh, options, &error) != VXM_OK)
+    fail_msg("%s: %s", path, error.text);
+  uint64_t hash = vxm_grid_hash(grid);
+  vxm_grid_destroy(grid);
+  return hash;
+}
+
+static void check_mesh(const vxm_mesh *mesh, const char *path, int64_t resolution, bool tetra, vxm_rng *rng) {
+  vxm_space_options fit = VXM_SPACE_OPTIONS_INIT;
+  fit.resolution[0] = resolution;
+  vxm_space space;
+  assert_int_equal(vxm_space_fit(&space, mesh, &fit, NULL), VXM_OK);
+  for (int a = 0; a < 3; a++)
+    space.origin[a] += vxm_rng_unit(rng) * space.voxel_size[a];
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.space.like = &space;
+  for (int parts = VXM_PARTS_GROUP; parts <= VXM_PARTS_WHOLE; parts++) {
+    options.parts = (vxm_parts)parts;
+    options.method = VXM_METHOD_VOTE;
+    uint64_t expected = hash_of(mesh, &options, path);
+    for (int method = VXM_METHOD_X; method <= (tetra ? VXM_METHOD_TETRA : VXM_METHOD_Z); method++) {
+      options.method = (vxm_method)method;
+      if (hash_of(mesh, &options, path) != expected)
+        fail_msg("%s at %d: method %d differs", path, (int)resolution, method);
+    }
+  }
+}
+
+/** Says whether the mesh is closed after repair, and checks it if so. */
+static bool check_file(const char *path, const char *resolutions, int64_t tetra_max, vxm_rng *rng) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_mesh *raw, *mesh;
+  vxm_census census;
+  if (vxm_mesh_read(&raw, NULL, path, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  assert_int_equal(vxm_mesh_repair(&mesh, NULL, raw, NULL, &error), VXM_OK);
+  vxm_mesh_destroy(raw);
+  assert_int_equal(vxm_mesh_census(&census, mesh, &error), VXM_OK);
+  if (census.closed) {
+    const char *at = resolutions;
+    for (char *end; *at; at = end) {
+      int64_t resolution = strtol(at, &end, 10);
+      if (end == at)
+        break;
+      check_mesh(mesh, path, resolution, resolution <= tetra_max, rng);
+    }
+  }
+  vxm_mesh_destroy(mesh);
+  return census.closed;
+}
+
+static void test_closed_meshes_agree(void **state) {
+  (void)state;
+  const char *source = getenv("SRCDIR"), *resolutions = getenv("VOXMEND_TEST_RESOLUTIONS");
+  const char *tetra = getenv("VOXMEND_TEST_TETRA");
+  vxm_rng rng = {11};
+  int closed = 0, all = 0;
+  for (size_t f = 0; f < sizeof folders / sizeof *folders; f++) {
+    char folder[2048];
+    snprintf(folder, sizeof folder, "%s/../shared/meshes/%s", source ? source : ".", folders[f]);
+    DIR *listing = opendir(folder);
+    if (!listing)
+      skip();
+    for (struct dirent *entry; (entry = readdir(listing));) {
+      if (entry->d_name[0] == '.')
+        continue;
+      char path[4096];
+      snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+      closed +=
+          check_file(path, resolutions ? resolutions : "17 64", tetra ? strtol(tetra, NULL, 10) : 17, &rng);
+      all++;
+    }
+    closedir(listing);
+  }
+  print_message("%d of %d meshes are closed\n", closed, all);
+  assert_true(closed > 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_meshes_agree)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
