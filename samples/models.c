@@ -193,7 +193,7 @@ shape model_rocket(void) {
   shape rocket = {0};
   shape body = make_turned(9, hull, false, ROUND, 0, 0, 0);
   shape_split_triangles(&body);
-  shape_remove_faces(&body, 0.004, 21);
+  shape_remove_faces(&body, 0.005, 5);
   shape_reverse_faces(&body, 0.2, 22);
   shape_repeat_faces(&body, true, 0.3, 23);
   add(&rocket, body);

@@ -47,7 +47,7 @@ typedef enum vxm_status {
   VXM_ERROR_ARGUMENT, /**< an argument is out of its range: mend the call */
   VXM_ERROR_IO,       /**< the system refused to open, read, write or rename: check path, rights and space */
   VXM_ERROR_FORMAT,   /**< the content is not a known format or is damaged beyond reading: mend the file */
-  VXM_ERROR_EMPTY,    /**< there is nothing to work on (no face with area, no voxel): check the input */
+  VXM_ERROR_EMPTY,    /**< there is nothing to work on (no face): check the input */
   VXM_ERROR_MEMORY,   /**< the system has no memory left: free some, or lower the resolution */
   VXM_ERROR_MEMORY_LIMIT, /**< the context's limit would be exceeded: raise it, or lower the resolution */
   VXM_ERROR_RANGE, /**< a size or coordinate is beyond what can be computed: scale down or choose another grid
@@ -456,8 +456,9 @@ typedef struct vxm_voxelize_report {
  * @param[out] report may be NULL
  * @param mesh        polygons in model units; need not be closed, oriented or manifold; parts are found by
  * vertex index, so repair (or at least weld) it first
- * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has area; VXM_ERROR_RANGE if a vertex lies
- * too far outside the grid; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners;
+ *         VXM_ERROR_RANGE if a vertex lies too far outside the grid; VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Parity is computed exactly on an integer lattice (at least 1/256 voxel). For parts closed mod 2 all methods
  * give the same bits.

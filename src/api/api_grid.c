@@ -6,9 +6,10 @@
 #include <inttypes.h>
 
 vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
+  if (out)
+    *out = NULL;
   if (!out || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
-  *out = NULL;
   vxm_context *owner;
   vxm_status status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
@@ -32,9 +33,10 @@ vxm_status vxm_grid_write(const vxm_grid *grid, const char *path, const vxm_grid
 }
 
 vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error) {
+  if (out)
+    *out = NULL;
   if (!out || !grid)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
-  *out = NULL;
   return vxm_gridio_surface_mesh(out, grid, error);
 }
 

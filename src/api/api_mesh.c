@@ -71,9 +71,10 @@ static vxm_status copy_face(vxm_soup *soup, const vxm_mesh_arrays *arrays, int64
 
 vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_arrays *arrays,
                            vxm_error *error) {
+  if (out)
+    *out = NULL;
   if (!out || !arrays)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
-  *out = NULL;
   vxm_soup *soup;
   vxm_status status = check_arrays(arrays, error);
   if (status == VXM_OK)
@@ -96,16 +97,18 @@ vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_
 
 vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
                                 const char *name, vxm_error *error) {
+  if (out)
+    *out = NULL;
   if (!out || (!data && size > 0))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
-  *out = NULL;
   return vxm_meshio_read(out, context, data, size, name ? name : "<memory>", error);
 }
 
 vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error) {
+  if (out)
+    *out = NULL;
   if (!out || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
-  *out = NULL;
   vxm_context *owner;
   vxm_status status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
@@ -182,18 +185,27 @@ const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index) {
 }
 
 vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error) {
+  if (out)
+    memset(out, 0, sizeof *out);
   if (!out || !mesh)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "census: an argument is NULL");
-  memset(out, 0, sizeof *out);
-  return vxm_soup_census(out, mesh, error);
+  vxm_census census = {0};
+  vxm_status status = vxm_soup_census(&census, mesh, error);
+  if (status == VXM_OK)
+    *out = census;
+  return status;
 }
 
 vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
                            const vxm_repair_options *options, vxm_error *error) {
-  if (!out || !mesh)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: an argument is NULL");
-  *out = NULL;
+  if (out)
+    *out = NULL;
   if (report)
     memset(report, 0, sizeof *report);
-  return vxm_repair_run(out, report, mesh, options, error);
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: an argument is NULL");
+  vxm_status status = vxm_repair_run(out, report, mesh, options, error);
+  if (status != VXM_OK && report)
+    memset(report, 0, sizeof *report);
+  return status;
 }

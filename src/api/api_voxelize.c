@@ -9,11 +9,16 @@
 
 vxm_status vxm_space_fit(vxm_space *out, const vxm_mesh *mesh, const vxm_space_options *options,
                          vxm_error *error) {
+  if (out)
+    memset(out, 0, sizeof *out);
   if (!out || !mesh)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxel space: an argument is NULL");
-  memset(out, 0, sizeof *out);
-  vxm_space_options chosen = VXM_SPACE_OPTIONS_INIT;
-  return vxm_space_choose(out, mesh, options ? options : &chosen, error);
+  vxm_space_options defaults = VXM_SPACE_OPTIONS_INIT;
+  vxm_space space = {0};
+  vxm_status status = vxm_space_choose(&space, mesh, options ? options : &defaults, error);
+  if (status == VXM_OK)
+    *out = space;
+  return status;
 }
 
 static vxm_status check_options(const vxm_voxelize_options *options, vxm_error *error) {
@@ -32,16 +37,17 @@ static vxm_status check_options(const vxm_voxelize_options *options, vxm_error *
 
 vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, const vxm_mesh *mesh,
                         const vxm_voxelize_options *options, vxm_error *error) {
-  if (!out || !mesh)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
-  *out = NULL;
-  vxm_voxelize_options chosen = VXM_VOXELIZE_OPTIONS_INIT;
-  if (options)
-    chosen = *options;
+  if (out)
+    *out = NULL;
   vxm_voxelize_report local;
   if (!report)
     report = &local;
   memset(report, 0, sizeof *report);
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
+  vxm_voxelize_options chosen = VXM_VOXELIZE_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
   vxm_space space;
   vxm_status status = check_options(&chosen, error);
   if (status == VXM_OK)

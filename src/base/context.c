@@ -78,15 +78,34 @@ uint64_t vxm_context_peak_bytes(const vxm_context *context) {
   return context ? atomic_load_explicit(&context->peak, memory_order_relaxed) : 0;
 }
 
+/** A number of bytes in the largest unit that leaves at least one, rounded up. */
+typedef struct readable {
+  uint64_t count;
+  const char *unit;
+} readable;
+
+static readable readable_bytes(uint64_t bytes) {
+  static const char *const unit[] = {"bytes", "KiB", "MiB", "GiB"};
+  int u = 0;
+  for (; u < 3 && bytes >= 10240; u++)
+    bytes = (bytes + 1023) / 1024;
+  return (readable){bytes, unit[u]};
+}
+
+static vxm_status fail_limit(vxm_error *error, const char *what, uint64_t needed, size_t limit, size_t used) {
+  readable n = readable_bytes(needed), l = readable_bytes(limit), u = readable_bytes(used);
+  return vxm_fail(error, VXM_ERROR_MEMORY_LIMIT,
+                  "%s needs %" PRIu64 " %s, but the memory limit is %" PRIu64 " %s and %" PRIu64
+                  " %s of it are in use; raise it (--memlimit) or lower the resolution (-r)",
+                  what, n.count, n.unit, l.count, l.unit, u.count, u.unit);
+}
+
 /** Books `bytes`, or says why not. */
 static bool reserve(vxm_context *context, size_t bytes, vxm_error *error) {
   size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
   do
     if (bytes > context->limit - (used < context->limit ? used : context->limit)) {
-      vxm_fail(error, VXM_ERROR_MEMORY_LIMIT,
-               "the memory limit of %zu MiB would be exceeded (%zu MiB in use, %zu more needed); "
-               "raise it or lower the resolution",
-               context->limit >> 20, used >> 20, (bytes >> 20) + 1);
+      fail_limit(error, "this step", bytes, context->limit, used);
       return false;
     }
   while (!atomic_compare_exchange_weak_explicit(&context->used, &used, used + bytes, memory_order_relaxed,
@@ -206,13 +225,10 @@ size_t vxm_memory_left(const vxm_context *context) {
 }
 
 vxm_status vxm_memory_check(const vxm_context *context, uint64_t bytes, const char *what, vxm_error *error) {
-  size_t left = vxm_memory_left(context);
-  if (bytes <= left)
+  if (bytes <= vxm_memory_left(context))
     return VXM_OK;
-  return vxm_fail(error, VXM_ERROR_MEMORY_LIMIT,
-                  "%s needs %" PRIu64 " MiB, but only %zu MiB of the memory limit are left; "
-                  "raise it or lower the resolution",
-                  what, (bytes >> 20) + 1, left >> 20);
+  size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
+  return fail_limit(error, what, bytes, context->limit, used);
 }
 
 vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,

@@ -63,8 +63,11 @@ struct cli_run {
   vxm_error error;      /**< hand &cli->error to the library, then cli_fail */
   json_t *warnings;     /**< array of strings for the report */
   int64_t warning_count;
-  FILE *text;       /**< where the summary goes: stdout, or stderr while stdout carries the output */
-  const char *made; /**< output file that exists by now; removed if the run still fails */
+  FILE *text;        /**< where the summary goes: stdout, or stderr while stdout carries the output */
+  FILE *report_file; /**< the report under its temporary name, open from cli_start to cli_finish */
+  char *report_name; /**< that name; NULL if the report is a device */
+  const char *made;  /**< output file that exists by now; removed if the run still fails */
+  const char *made_format;
   char phase[48];
   double drawn; /**< time at which progress was last drawn; 0 = none on the screen */
 };
@@ -79,7 +82,7 @@ int cli_next_option(cli_run *cli, const char **value);
 /** Prints one line about wrong usage, sets cli->status and returns CLI_STOP. */
 int cli_usage(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 void cli_help(const cli_command *command);
-/** Makes the context from the common options; false after a failure that has been reported. */
+/** Makes the context and opens the report; false after a failure that has been printed. */
 bool cli_start(cli_run *cli);
 
 /* Strict readings: the whole text must be the value, in the C locale; false if it is not. */
@@ -132,6 +135,10 @@ json_t *cli_json_numbers(const double *values, int count);
 json_t *cli_json_space(const vxm_space *space);
 /** 16 hexadecimal digits, as JSON has no 64-bit unsigned numbers. */
 json_t *cli_json_hash(uint64_t hash);
+/** Opens the file of --report, so that a wrong name fails before the work. */
+bool cli_report_open(cli_run *cli);
+/** Drops a report that was not finished. */
+void cli_report_close(cli_run *cli);
 /** Prints the report with --json, writes it with --report, and frees it. Returns an exit status. */
 int cli_finish(cli_run *cli, json_t *report);
 

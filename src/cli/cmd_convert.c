@@ -8,8 +8,8 @@ enum { KEY_FORMAT = CLI_KEY_COMMAND };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
-     "file to write: .binvox, .npy, .raw (with a .json beside it), .rle, or the\n"
-     "grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
+     "file to write: .binvox, .rle, .npy or .raw (these two with a .json beside\n"
+     "them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
     {KEY_FORMAT, "format", "F", "binvox, npy, raw, rle, obj, ply, stl or off [by the name of the output]"},
     {0, NULL, NULL, NULL}};
 
@@ -51,6 +51,7 @@ static int convert(cli_run *cli, const request *given, const vxm_grid *grid) {
   if (vxm_grid_write(grid, given->output, &write, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli->made = given->output;
+  cli->made_format = given->format;
   cli_progress_clear(cli);
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));

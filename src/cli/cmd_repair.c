@@ -91,6 +91,7 @@ static int run(cli_run *cli) {
   if (status != VXM_OK)
     return cli_fail(cli);
   cli->made = given.output;
+  cli->made_format = given.write.format;
   cli_progress_clear(cli);
   if (cli_summary(cli))
     summarize(cli, &input.repair);

@@ -129,6 +129,7 @@ static int draw(cli_run *cli, const request *given, const vxm_grid *grid) {
   if (vxm_grid_picture(grid, given->output, &given->picture, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli->made = given->output;
+  cli->made_format = "png";
   cli_progress_clear(cli);
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));

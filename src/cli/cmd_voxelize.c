@@ -22,8 +22,8 @@ enum {
 
 static const cli_option known_options[] = {
     {'o', "output", "GRID",
-     "file to write: .binvox, .npy, .raw (with a .json beside it), .rle, or the\n"
-     "grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
+     "file to write: .binvox, .rle, .npy or .raw (these two with a .json beside\n"
+     "them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
     {KEY_FORMAT, "format", "F", "binvox, npy, raw, rle, obj, ply, stl or off [by the name of the output]"},
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
@@ -301,6 +301,7 @@ static int make_grid(cli_run *cli, const request *given, outcome *results) {
   if (status != VXM_OK)
     return cli_fail(cli);
   cli->made = given->output;
+  cli->made_format = given->format;
   return CLI_DONE;
 }
 

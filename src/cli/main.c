@@ -44,11 +44,18 @@ static int flush_output(cli_run *cli, int status) {
              : status;
 }
 
-/** A failed run leaves no output file, not even one that was complete. */
+/** A failed run leaves no output file, not even one that was complete, nor the .json beside it. */
 static void remove_output(const cli_run *cli) {
   struct stat info;
-  if (cli->made && lstat(cli->made, &info) == 0 && S_ISREG(info.st_mode))
-    unlink(cli->made);
+  if (!cli->made || lstat(cli->made, &info) != 0 || !S_ISREG(info.st_mode))
+    return;
+  unlink(cli->made);
+  if (strcmp(cli->made_format, "raw") != 0 && strcmp(cli->made_format, "npy") != 0)
+    return;
+  char beside[4096];
+  int length = snprintf(beside, sizeof beside, "%s.json", cli->made);
+  if (length > 0 && (size_t)length < sizeof beside)
+    unlink(beside);
 }
 
 static int run(const cli_command *command, int argc, char **argv) {
@@ -63,6 +70,7 @@ static int run(const cli_command *command, int argc, char **argv) {
   int status = flush_output(&cli, command->run(&cli));
   if (status == CLI_FAILED)
     remove_output(&cli);
+  cli_report_close(&cli);
   vxm_context_destroy(cli.context);
   json_decref(cli.warnings);
   return status;

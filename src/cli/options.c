@@ -188,7 +188,7 @@ int cli_next_option(cli_run *cli, const char **value) {
 bool cli_start(cli_run *cli) {
   cli_progress_init(cli);
   if (vxm_context_create(&cli->context, &cli->limits, &cli->error) == VXM_OK)
-    return true;
+    return cli_report_open(cli);
   cli_fail(cli);
   return false;
 }

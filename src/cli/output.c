@@ -145,35 +145,47 @@ json_t *cli_json_hash(uint64_t hash) {
 
 enum { JSON_STYLE = JSON_INDENT(2) | JSON_REAL_PRECISION(17) };
 
-/** Writes under a temporary name and renames. */
-static bool write_report(cli_run *cli, const json_t *report) {
-  size_t size = strlen(cli->report) + 32;
-  char *temporary = malloc(size);
-  if (!temporary) {
-    cli_fail_text(cli, "out of memory");
-    return false;
-  }
+static bool report_failed(cli_run *cli, int reason) {
+  cli_fail_text(cli, "%s: cannot write the report: %s", cli->report, strerror(reason));
+  return false;
+}
+
+bool cli_report_open(cli_run *cli) {
+  if (!cli->report)
+    return true;
   struct stat info;
-  bool plain = stat(cli->report, &info) != 0 || S_ISREG(info.st_mode);
-  snprintf(temporary, size, plain ? "%s.%ld.tmp" : "%s", cli->report, (long)getpid());
-  FILE *file = fopen(temporary, "w");
-  bool good = file && json_dumpf(report, file, JSON_STYLE) == 0 && fputc('\n', file) != EOF;
-  int reason = good ? 0 : errno;
-  if (file && fclose(file) != 0 && good) {
-    good = false;
-    reason = errno;
+  bool replace = stat(cli->report, &info) != 0 || S_ISREG(info.st_mode);
+  if (replace) {
+    size_t size = strlen(cli->report) + 32;
+    cli->report_name = malloc(size);
+    if (!cli->report_name)
+      return report_failed(cli, ENOMEM);
+    snprintf(cli->report_name, size, "%s.%ld.tmp", cli->report, (long)getpid());
   }
-  if (good && plain && rename(temporary, cli->report) != 0) {
-    good = false;
-    reason = errno;
+  cli->report_file = fopen(replace ? cli->report_name : cli->report, "we");
+  return cli->report_file || report_failed(cli, errno);
+}
+
+void cli_report_close(cli_run *cli) {
+  if (cli->report_file) {
+    fclose(cli->report_file);
+    if (cli->report_name)
+      unlink(cli->report_name);
   }
-  if (!good) {
-    if (file && plain)
-      unlink(temporary);
-    cli_fail_text(cli, "%s: cannot write the report: %s", cli->report, strerror(reason));
-  }
-  free(temporary);
-  return good;
+  cli->report_file = NULL;
+  free(cli->report_name);
+  cli->report_name = NULL;
+}
+
+static bool write_report(cli_run *cli, const json_t *report) {
+  FILE *file = cli->report_file;
+  bool good = json_dumpf(report, file, JSON_STYLE) == 0 && fputc('\n', file) != EOF && fflush(file) == 0;
+  good = good && (!cli->report_name || rename(cli->report_name, cli->report) == 0);
+  if (!good)
+    return report_failed(cli, errno);
+  fclose(file);
+  cli->report_file = NULL;
+  return true;
 }
 
 int cli_finish(cli_run *cli, json_t *report) {

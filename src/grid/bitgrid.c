@@ -9,10 +9,13 @@
 vxm_status vxm_space_check(const vxm_space *space, vxm_error *error) {
   static const char axis_name[3] = {'x', 'y', 'z'};
   for (int a = 0; a < 3; a++) {
-    if (space->dims[a] < 1 || space->dims[a] > VXM_DIM_MAX)
-      return vxm_fail(error, space->dims[a] < 1 ? VXM_ERROR_ARGUMENT : VXM_ERROR_RANGE,
-                      "%" PRId64 " voxels along %c; choose 1 to %" PRId64, space->dims[a], axis_name[a],
-                      VXM_DIM_MAX);
+    if (space->dims[a] < 1)
+      return vxm_fail(error, VXM_ERROR_ARGUMENT, "%" PRId64 " voxels along %c; there must be at least 1",
+                      space->dims[a], axis_name[a]);
+    if (space->dims[a] > VXM_DIM_MAX)
+      return vxm_fail(error, VXM_ERROR_RANGE,
+                      "more than %" PRId64 " voxels along %c; choose larger voxels or a lower resolution",
+                      VXM_DIM_MAX, axis_name[a]);
     if (!isfinite(space->origin[a]) || !isfinite(space->voxel_size[a]) || space->voxel_size[a] <= 0)
       return vxm_fail(error, VXM_ERROR_ARGUMENT,
                       "voxel size %g and origin %g along %c; both must be finite and the "
@@ -34,9 +37,10 @@ uint64_t vxm_space_bytes(const vxm_space *space) {
 }
 
 vxm_status vxm_grid_create(vxm_grid **out, vxm_context *context, const vxm_space *space, vxm_error *error) {
+  if (out)
+    *out = NULL;
   if (!out || !space)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
-  *out = NULL;
   vxm_status status = vxm_space_check(space, error);
   if (status != VXM_OK)
     return status;
@@ -138,9 +142,10 @@ const char *vxm_grid_warning(const vxm_grid *grid, int64_t index) {
 }
 
 vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b, vxm_error *error) {
+  if (out)
+    *out = (vxm_comparison){0};
   if (!out || !a || !b)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "compare: an argument is NULL");
-  *out = (vxm_comparison){.iou = 1};
   const int64_t *p = a->space.dims, *q = b->space.dims;
   if (memcmp(p, q, sizeof a->space.dims) != 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
@@ -155,7 +160,6 @@ vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_gr
   out->voxels_a = out->both + out->only_a;
   out->voxels_b = out->both + out->only_b;
   int64_t any = out->both + out->only_a + out->only_b;
-  if (any > 0)
-    out->iou = (double)out->both / (double)any;
+  out->iou = any > 0 ? (double)out->both / (double)any : 1;
   return VXM_OK;
 }

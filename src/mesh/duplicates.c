@@ -78,10 +78,17 @@ static reading least_reading(const uint32_t *corners, size_t count, const uint32
 
 /* ---- The search ---- */
 
-/* A record is (24 bits of the hash, 40 bits of the face number); the top of the hash tells the bucket. Face
-   numbers fit, as 2^40 faces would take more memory than machines have. */
-enum { FACE_BITS = 40 };
-static const uint64_t FACE_MASK = (UINT64_C(1) << FACE_BITS) - 1;
+/* A record is (24 bits of the hash, 39 bits of the face number, direction of the least reading); the top of
+   the hash tells the bucket. Face numbers fit, as 2^39 faces would take more memory than machines have. */
+enum { FACE_BITS = 39, HASH_SHIFT = FACE_BITS + 1 };
+
+static inline uint64_t record_of(uint64_t hash, size_t face, bool backward) {
+  return hash << HASH_SHIFT | (uint64_t)face << 1 | backward;
+}
+
+static inline size_t record_face(uint64_t record) {
+  return (size_t)(record >> 1 & ((UINT64_C(1) << FACE_BITS) - 1));
+}
 
 typedef struct tally {
   uint32_t forward, backward; /**< faces of a kind so far, by direction of their least reading */
@@ -99,10 +106,26 @@ typedef struct search {
   atomic_size_t same, opposite_pairs;
 } search;
 
-static reading read_face(const search *s, size_t face) {
+/** The reading of a face that its record tells. */
+static reading least_of_face(const search *s, uint64_t record) {
   size_t count;
-  const uint32_t *corners = vxm_face(s->soup, face, &count);
+  const uint32_t *corners = vxm_face(s->soup, record_face(record), &count);
   return least_reading(corners, count, s->map);
+}
+
+/** Triangles are told apart by their sorted corners: (a b c), (b c a) and (c a b) run forward if a < b < c.
+ */
+static void put_triangle(const search *s, vxm_sink *sink, size_t face, const uint32_t *corners) {
+  uint32_t a = corners[0], b = corners[1], c = corners[2];
+  if (s->map)
+    a = s->map[a], b = s->map[b], c = s->map[c];
+  if (a == b || b == c || c == a)
+    return;
+  bool backward = (a < b) + (b < c) + (c < a) == 1;
+  uint32_t low = a < b ? a : b, high = a < b ? b : a;
+  uint32_t least = low < c ? low : c, most = high > c ? high : c, middle = a ^ b ^ c ^ least ^ most;
+  uint64_t hash = vxm_mix(((uint64_t)least << 32 | middle) ^ most * UINT64_C(0x9e3779b97f4a7c15));
+  vxm_sink_put(sink, (size_t)(hash >> s->bucket_shift), record_of(hash, face, backward));
 }
 
 static void emit_faces(size_t begin, size_t end, vxm_sink *sink, void *payload) {
@@ -110,13 +133,17 @@ static void emit_faces(size_t begin, size_t end, vxm_sink *sink, void *payload) 
   for (size_t f = begin; f < end; f++) {
     size_t count;
     const uint32_t *corners = vxm_face(s->soup, f, &count);
+    if (count == 3) {
+      put_triangle(s, sink, f, corners);
+      continue;
+    }
     if (!vxm_face_has_three(corners, count, s->map))
       continue;
     reading r = least_reading(corners, count, s->map);
     uint64_t hash = vxm_hash_word(0, count);
     for (size_t i = 0; i < count; i++)
       hash = vxm_hash_word(hash, read_corner(&r, i));
-    vxm_sink_put(sink, (size_t)(hash >> s->bucket_shift), hash << FACE_BITS | f);
+    vxm_sink_put(sink, (size_t)(hash >> s->bucket_shift), record_of(hash, f, r.backward));
   }
 }
 
@@ -129,11 +156,11 @@ static size_t table_slots(size_t records) {
 }
 
 /** Whether two records are of faces with the same least reading. */
-static bool same_kind(const search *s, const reading *r, uint64_t record, uint64_t other) {
-  if (record >> FACE_BITS != other >> FACE_BITS)
+static bool same_kind(const search *s, uint64_t record, uint64_t other) {
+  if (record >> HASH_SHIFT != other >> HASH_SHIFT)
     return false;
-  reading q = read_face(s, (size_t)(other & FACE_MASK));
-  return q.count == r->count && compare(&q, r) == 0;
+  reading r = least_of_face(s, record), q = least_of_face(s, other);
+  return q.count == r.count && compare(&q, &r) == 0;
 }
 
 static vxm_repeat count_face(tally *t, bool backward) {
@@ -153,16 +180,15 @@ static void search_bucket(size_t bucket, int worker, void *payload) {
   memset(table, 0, (mask + 1) * sizeof *table);
   memset(tallies, 0, count * sizeof *tallies);
   for (size_t i = 0; i < count; i++) {
-    size_t face = (size_t)(records[i] & FACE_MASK), slot = (size_t)(records[i] >> FACE_BITS) & mask;
-    reading r = read_face(s, face);
-    while (table[slot] != 0 && !same_kind(s, &r, records[i], records[table[slot] - 1]))
+    size_t slot = (size_t)(records[i] >> HASH_SHIFT) & mask;
+    while (table[slot] != 0 && !same_kind(s, records[i], records[table[slot] - 1]))
       slot = (slot + 1) & mask;
     if (table[slot] == 0)
       table[slot] = (uint32_t)i + 1;
-    vxm_repeat kind = count_face(&tallies[table[slot] - 1], r.backward);
+    vxm_repeat kind = count_face(&tallies[table[slot] - 1], records[i] & 1);
     same += kind == VXM_REPEAT_SAME;
     if (s->kinds)
-      s->kinds[face] = (uint8_t)kind;
+      s->kinds[record_face(records[i])] = (uint8_t)kind;
   }
   for (size_t i = 0; i < count; i++)
     pairs += tallies[i].forward < tallies[i].backward ? tallies[i].forward : tallies[i].backward;

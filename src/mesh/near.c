@@ -2,39 +2,40 @@
 #include "mesh/near.h"
 
 #include "base/hash.h"
+#include "base/threads.h"
+#include "mesh/buckets.h"
 #include "mesh/soup.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
-/* Members are sorted into cubic cells 8 tolerances wide, so that the ball about a vertex meets two cells on
-   average and eight at most, and only their vertices need be looked at. */
+/* Space is cut into cubic cells 8 tolerances wide. A member lives in one cell and visits the others that the
+   ball about it meets, half of a cell on average; an obstacle visits all that its ball meets. Vertices near
+   each other then meet in the cell of one of them. Cells are known by a hash alone: two cells of the same
+   hash are one list of vertices, whose distances are looked at all the same. */
 enum { CELL_TOLERANCES = 8, CROWD = 64 };
+
+/** A record is (31 bits of the hash of a cell, whether the vertex lives there, vertex). */
+enum { LIVES_SHIFT = 32, HASH_SHIFT = 33 };
 
 typedef struct box {
   double low[3], high[3];
 } box;
 
-typedef struct cell {
-  double at[3];   /**< whole numbers; doubles, as they may be beyond 64 bits */
-  uint32_t first; /**< one of its members; `next` leads to the others */
-  uint32_t count;
-  box around;
-} cell;
-
 typedef struct search {
-  vxm_context *context;
   const double *positions;
   const uint8_t *roles;
-  size_t count;
+  size_t count, slices;
   double tolerance, width;
-  uint32_t *parent; /**< union-find over vertices; the root is the lowest */
-  uint32_t *next;   /**< next member of the same cell, or VXM_NO_VERTEX */
-  cell *cells;
-  size_t cell_count, cell_capacity;
-  uint32_t *table; /**< number of a cell + 1, or 0 */
-  size_t mask;
-  uint8_t *blocked; /**< vertices linked to an obstacle */
+  _Atomic uint32_t *parent; /**< union-find over vertices; the root is the lowest */
+  _Atomic uint8_t *blocked; /**< vertices near an obstacle */
+  _Atomic uint64_t *homes;  /**< bits that tell which cells may have members, by hash */
+  unsigned homes_shift;
+  unsigned bucket_shift;
+  vxm_buckets buckets;
+  uint32_t *scratch; /**< per worker: a hash table, then the links of the lists */
+  size_t table_size;
 } search;
 
 /* ---- Distances, as multiples of the tolerance so that squares neither overflow nor vanish ---- */
@@ -63,6 +64,10 @@ static bool point_near_box(const double *p, const box *b, double tolerance) {
   return length_within(away[0], away[1], away[2], tolerance);
 }
 
+static box no_box(void) {
+  return (box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
 static void box_include(box *b, const double *p) {
   for (int axis = 0; axis < 3; axis++) {
     b->low[axis] = p[axis] < b->low[axis] ? p[axis] : b->low[axis];
@@ -70,213 +75,323 @@ static void box_include(box *b, const double *p) {
   }
 }
 
-static box box_of_point(const double *p) {
-  return (box){{p[0], p[1], p[2]}, {p[0], p[1], p[2]}};
-}
+/* ---- Union-find without locks: a root is hooked below a lower one, so the last root is the lowest ---- */
 
-/* ---- Union-find ---- */
-
-static uint32_t find_root(uint32_t *parent, uint32_t v) {
-  while (parent[v] != v) {
-    parent[v] = parent[parent[v]];
-    v = parent[v];
+static uint32_t find_root(const search *s, uint32_t v) {
+  uint32_t parent = atomic_load_explicit(&s->parent[v], memory_order_relaxed);
+  while (parent != v) {
+    uint32_t above = atomic_load_explicit(&s->parent[parent], memory_order_relaxed);
+    /* whoever writes here writes a vertex nearer to the root */
+    if (above != parent)
+      atomic_store_explicit(&s->parent[v], above, memory_order_relaxed);
+    v = parent;
+    parent = above;
   }
   return v;
 }
 
-static void link_vertices(uint32_t *parent, uint32_t u, uint32_t v) {
-  u = find_root(parent, u);
-  v = find_root(parent, v);
-  if (u < v)
-    parent[v] = u;
-  else
-    parent[u] = v;
+static void link_vertices(const search *s, uint32_t u, uint32_t v) {
+  for (;;) {
+    u = find_root(s, u);
+    v = find_root(s, v);
+    if (u == v)
+      return;
+    uint32_t high = u > v ? u : v, low = u > v ? v : u;
+    uint32_t expected = high;
+    if (atomic_compare_exchange_strong_explicit(&s->parent[high], &expected, low, memory_order_relaxed,
+                                                memory_order_relaxed))
+      return;
+  }
 }
 
 /* ---- Cells ---- */
 
-static uint64_t hash_cell(const double at[3]) {
-  uint64_t hash = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    uint64_t bits;
-    double plain = at[axis] + 0.0;
-    memcpy(&bits, &plain, sizeof bits);
-    hash = vxm_hash_word(hash, bits);
-  }
-  return hash;
+static uint64_t coordinate_bits(double x) {
+  double plain = x + 0.0;
+  uint64_t bits;
+  memcpy(&bits, &plain, sizeof bits);
+  return bits;
 }
 
-/** Slot of a cell in the table, or the free slot where it belongs. */
-static size_t find_slot(const search *s, const double at[3]) {
-  size_t slot = (size_t)hash_cell(at) & s->mask;
-  for (; s->table[slot] != 0; slot = (slot + 1) & s->mask) {
-    const double *other = s->cells[s->table[slot] - 1].at;
-    if (other[0] == at[0] && other[1] == at[1] && other[2] == at[2])
-      break;
-  }
-  return slot;
+static uint64_t rotate(uint64_t x, unsigned by) {
+  return x << by | x >> (64 - by);
 }
 
-static vxm_status add_member(search *s, uint32_t v, vxm_error *error) {
-  const double *p = s->positions + 3 * (size_t)v;
-  double at[3] = {floor(p[0] / s->width), floor(p[1] / s->width), floor(p[2] / s->width)};
-  size_t slot = find_slot(s, at);
-  if (s->table[slot] == 0) {
-    vxm_status status = vxm_grow(s->context, (void **)&s->cells, &s->cell_capacity, s->cell_count + 1,
-                                 sizeof *s->cells, error);
-    if (status != VXM_OK)
-      return status;
-    s->cells[s->cell_count++] = (cell){{at[0], at[1], at[2]}, VXM_NO_VERTEX, 0, box_of_point(p)};
-    s->table[slot] = (uint32_t)s->cell_count;
-  }
-  cell *c = &s->cells[s->table[slot] - 1];
-  s->next[v] = c->first;
-  c->first = v;
-  c->count++;
-  box_include(&c->around, p);
-  return VXM_OK;
+/** Hash of the cell in column x, y, z; whole numbers, but as doubles, as they may be beyond 64 bits. */
+static uint64_t hash_cell(double x, double y, double z) {
+  return vxm_mix(coordinate_bits(x) * UINT64_C(0x9e3779b97f4a7c15) ^
+                 rotate(coordinate_bits(y) * UINT64_C(0xc2b2ae3d27d4eb4f), 21) ^
+                 rotate(coordinate_bits(z) * UINT64_C(0x165667b19e3779f9), 42));
 }
 
-static vxm_status fill_cells(search *s, vxm_error *error) {
-  size_t members = 0;
-  for (size_t v = 0; v < s->count; v++)
-    members += s->roles[v] == VXM_NEAR_MEMBER;
-  size_t slots = 16;
-  while (slots < 2 * members)
-    slots *= 2;
-  s->mask = slots - 1;
-  vxm_error local = VXM_ERROR_INIT;
-  s->table = vxm_calloc(s->context, slots, sizeof *s->table, &local);
-  if (s->table)
-    s->next = vxm_alloc(s->context, s->count, sizeof *s->next, &local);
-  if (s->next)
-    s->blocked = vxm_calloc(s->context, s->count, sizeof *s->blocked, &local);
-  vxm_status status = s->blocked ? VXM_OK : local.code;
-  for (size_t v = 0; v < s->count && status == VXM_OK; v++) {
-    s->parent[v] = (uint32_t)v;
-    if (s->roles[v] == VXM_NEAR_MEMBER)
-      status = add_member(s, (uint32_t)v, &local);
-  }
-  if (status != VXM_OK && error)
-    *error = local;
-  return status;
-}
-
-/* ---- Linking ---- */
-
-/** A member is linked to u; an obstacle blocks it. */
-static void meet(search *s, uint32_t v, uint32_t u) {
-  if (s->roles[v] == VXM_NEAR_OBSTACLE)
-    s->blocked[u] = 1;
-  else
-    link_vertices(s->parent, u, v);
-}
-
-static void meet_cell(search *s, uint32_t v, const cell *c) {
-  const double *p = s->positions + 3 * (size_t)v;
-  if (c->count > CROWD) {
-    if (point_near_box(p, &c->around, s->tolerance))
-      meet(s, v, c->first);
-    return;
-  }
-  for (uint32_t u = c->first; u != VXM_NO_VERTEX; u = s->next[u])
-    if (u != v && points_near(p, s->positions + 3 * (size_t)u, s->tolerance))
-      meet(s, v, u);
-}
+/** The columns, per axis, that the ball about a point meets, and the one of the point. */
+typedef struct columns {
+  double low[3], high[3], home[3];
+} columns;
 
 /**
- * Looks at all cells that the ball about a vertex may meet. Rounding is monotonic, so that a member at most
- * the tolerance away along an axis is in a cell between the two found here; those are the same or neighbours.
+ * Rounding is monotonic, so that what is at most the tolerance away along an axis is in column low or high;
+ * those are the same or neighbours.
  */
-static void meet_around(search *s, uint32_t v) {
-  const double *p = s->positions + 3 * (size_t)v;
-  double range[3][2];
+static columns columns_of(const search *s, const double *p) {
+  columns c;
   for (int axis = 0; axis < 3; axis++) {
-    range[axis][0] = floor((p[axis] - s->tolerance) / s->width);
-    range[axis][1] = floor((p[axis] + s->tolerance) / s->width);
+    c.low[axis] = floor((p[axis] - s->tolerance) / s->width);
+    c.high[axis] = floor((p[axis] + s->tolerance) / s->width);
+    c.home[axis] = c.low[axis] == c.high[axis] ? c.low[axis] : floor(p[axis] / s->width);
   }
+  return c;
+}
+
+static uint64_t hash_home(const columns *c) {
+  return hash_cell(c->home[0], c->home[1], c->home[2]);
+}
+
+/** Hashes of all cells that the ball meets. */
+static int hash_visited(const columns *c, uint64_t hashes[8]) {
+  int count = 0;
   for (int i = 0; i < 8; i++) {
     double at[3];
-    bool seen = false;
+    bool again = false;
     for (int axis = 0; axis < 3; axis++) {
-      int side = i >> axis & 1;
-      seen |= side == 1 && range[axis][0] == range[axis][1];
-      at[axis] = range[axis][side];
+      bool far = i >> axis & 1;
+      again |= far && c->low[axis] == c->high[axis];
+      at[axis] = far ? c->high[axis] : c->low[axis];
     }
-    size_t slot = seen ? 0 : find_slot(s, at);
-    if (!seen && s->table[slot] != 0)
-      meet_cell(s, v, &s->cells[s->table[slot] - 1]);
+    if (!again)
+      hashes[count++] = hash_cell(at[0], at[1], at[2]);
+  }
+  return count;
+}
+
+static bool meets_one_cell(const columns *c) {
+  return c->low[0] == c->high[0] && c->low[1] == c->high[1] && c->low[2] == c->high[2];
+}
+
+static uint64_t record_of(uint64_t hash, bool lives, size_t v) {
+  return hash << HASH_SHIFT | (uint64_t)lives << LIVES_SHIFT | v;
+}
+
+static bool may_have_members(const search *s, uint64_t hash) {
+  uint64_t bit = hash >> s->homes_shift;
+  return atomic_load_explicit(&s->homes[bit / 64], memory_order_relaxed) >> bit % 64 & 1;
+}
+
+static void emit_vertices(size_t begin, size_t end, vxm_sink *sink, void *payload) {
+  const search *s = payload;
+  for (size_t v = begin; v < end; v++) {
+    if (s->roles[v] == VXM_NEAR_ABSENT)
+      continue;
+    bool member = s->roles[v] == VXM_NEAR_MEMBER;
+    columns c = columns_of(s, s->positions + 3 * v);
+    uint64_t home = hash_home(&c), hashes[8];
+    if (member)
+      vxm_sink_put(sink, (size_t)(home >> s->bucket_shift), record_of(home, true, v));
+    if (member && meets_one_cell(&c))
+      continue;
+    int count = hash_visited(&c, hashes);
+    for (int i = 0; i < count; i++)
+      /* of two members that may visit each other, one visit is enough */
+      if ((!member || hashes[i] < home) && may_have_members(s, hashes[i]))
+        vxm_sink_put(sink, (size_t)(hashes[i] >> s->bucket_shift), record_of(hashes[i], false, v));
   }
 }
 
-static void link_all(search *s) {
-  for (size_t i = 0; i < s->cell_count; i++) {
-    const cell *c = &s->cells[i];
-    for (uint32_t v = c->first; c->count > CROWD && v != VXM_NO_VERTEX; v = s->next[v])
-      link_vertices(s->parent, c->first, v);
+static void start_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  search *s = payload;
+  size_t end = vxm_slice_begin(s->count, s->slices, slice + 1);
+  for (size_t v = vxm_slice_begin(s->count, s->slices, slice); v < end; v++) {
+    atomic_store_explicit(&s->parent[v], (uint32_t)v, memory_order_relaxed);
+    if (s->roles[v] != VXM_NEAR_MEMBER)
+      continue;
+    columns c = columns_of(s, s->positions + 3 * v);
+    uint64_t bit = hash_home(&c) >> s->homes_shift, mask = UINT64_C(1) << bit % 64;
+    if (!(atomic_load_explicit(&s->homes[bit / 64], memory_order_relaxed) & mask))
+      atomic_fetch_or_explicit(&s->homes[bit / 64], mask, memory_order_relaxed);
   }
-  for (size_t v = 0; v < s->count; v++)
-    if (s->roles[v] != VXM_NEAR_ABSENT)
-      meet_around(s, (uint32_t)v);
+}
+
+/* ---- Linking within a cell ---- */
+
+/** The records of a bucket in lists by cell: links are places in the bucket + 1, or 0. */
+typedef struct cells {
+  const uint64_t *records;
+  uint32_t *table, *next;
+  size_t count, mask;
+} cells;
+
+static uint32_t vertex_of(uint64_t record) {
+  return (uint32_t)record;
+}
+
+static bool lives(uint64_t record) {
+  return record >> LIVES_SHIFT & 1;
+}
+
+/** A member is linked to u; an obstacle blocks it. */
+static void meet(const search *s, uint32_t v, uint32_t u) {
+  if (s->roles[v] == VXM_NEAR_OBSTACLE)
+    atomic_store_explicit(&s->blocked[u], 1, memory_order_relaxed);
+  else
+    link_vertices(s, u, v);
+}
+
+/** Links all who live in a crowded cell, and who visits it and comes near the box around them. */
+static void link_crowd(const search *s, const cells *c, uint32_t list) {
+  box around = no_box();
+  uint32_t first = VXM_NO_VERTEX;
+  for (uint32_t i = list; i != 0; i = c->next[i - 1])
+    if (lives(c->records[i - 1])) {
+      uint32_t v = vertex_of(c->records[i - 1]);
+      first = first == VXM_NO_VERTEX ? v : first;
+      link_vertices(s, first, v);
+      box_include(&around, s->positions + 3 * (size_t)v);
+    }
+  for (uint32_t i = list; i != 0; i = c->next[i - 1]) {
+    uint32_t v = vertex_of(c->records[i - 1]);
+    if (!lives(c->records[i - 1]) && point_near_box(s->positions + 3 * (size_t)v, &around, s->tolerance))
+      meet(s, v, first);
+  }
+}
+
+static void link_cell(const search *s, const cells *c, uint32_t list) {
+  uint32_t residents[CROWD];
+  size_t count = 0;
+  for (uint32_t i = list; i != 0; i = c->next[i - 1])
+    if (lives(c->records[i - 1])) {
+      if (count == CROWD) {
+        link_crowd(s, c, list);
+        return;
+      }
+      residents[count++] = vertex_of(c->records[i - 1]);
+    }
+  for (uint32_t i = list; i != 0; i = c->next[i - 1]) {
+    uint32_t v = vertex_of(c->records[i - 1]);
+    bool resident = lives(c->records[i - 1]);
+    for (size_t r = 0; r < count; r++)
+      if ((!resident || residents[r] < v) &&
+          points_near(s->positions + 3 * (size_t)v, s->positions + 3 * (size_t)residents[r], s->tolerance))
+        meet(s, v, residents[r]);
+  }
+}
+
+/** Power of two that keeps a table of `records` entries at most half full. */
+static size_t table_slots(size_t records) {
+  size_t slots = 16;
+  while (slots < 2 * records)
+    slots *= 2;
+  return slots;
+}
+
+static void link_bucket(size_t bucket, int worker, void *payload) {
+  const search *s = payload;
+  cells c = {.records = s->buckets.records + s->buckets.begin[bucket]};
+  c.count = s->buckets.begin[bucket + 1] - s->buckets.begin[bucket];
+  c.table = s->scratch + (size_t)worker * (s->table_size + s->buckets.largest);
+  c.next = c.table + s->table_size;
+  c.mask = table_slots(c.count) - 1;
+  memset(c.table, 0, (c.mask + 1) * sizeof *c.table);
+  for (size_t i = 0; i < c.count; i++) {
+    __builtin_prefetch(s->positions + 3 * (size_t)vertex_of(c.records[i]));
+    size_t slot = (size_t)(c.records[i] >> HASH_SHIFT) & c.mask;
+    while (c.table[slot] != 0 && c.records[c.table[slot] - 1] >> HASH_SHIFT != c.records[i] >> HASH_SHIFT)
+      slot = (slot + 1) & c.mask;
+    c.next[i] = c.table[slot];
+    c.table[slot] = (uint32_t)i + 1;
+  }
+  for (size_t slot = 0; slot <= c.mask; slot++)
+    if (c.table[slot] != 0 && c.next[c.table[slot] - 1] != 0)
+      link_cell(s, &c, c.table[slot]);
 }
 
 /* ---- Judging the groups ---- */
 
 /** Gives every group of several members its box, and maps the members of those that are small enough. */
-static vxm_status map_groups(search *s, uint32_t *map, vxm_error *error) {
-  /* the cells have done their work: their lists become the numbers of the groups */
-  uint32_t *number = s->next;
+static vxm_status map_groups(search *s, vxm_context *context, uint32_t *map, vxm_error *error) {
+  uint32_t *number = vxm_alloc(context, s->count, sizeof *number, error);
+  if (!number)
+    return error->code;
   size_t groups = 0;
-  for (size_t v = 0; v < s->count; v++)
-    number[v] = VXM_NO_VERTEX;
   for (size_t v = 0; v < s->count; v++) {
-    uint32_t root = find_root(s->parent, (uint32_t)v);
+    uint32_t root = find_root(s, (uint32_t)v);
     map[v] = root;
+    number[v] = VXM_NO_VERTEX;
+    /* a root comes before the members below it */
     if (root != v && number[root] == VXM_NO_VERTEX)
       number[root] = (uint32_t)groups++;
-    s->blocked[root] |= s->blocked[v];
+    if (root != v && atomic_load_explicit(&s->blocked[v], memory_order_relaxed))
+      atomic_store_explicit(&s->blocked[root], 1, memory_order_relaxed);
   }
-  vxm_error local = VXM_ERROR_INIT;
-  box *boxes = vxm_alloc(s->context, groups, sizeof *boxes, &local);
+  box *boxes = vxm_alloc(context, groups, sizeof *boxes, error);
   if (!boxes) {
-    if (error)
-      *error = local;
-    return local.code;
+    vxm_free(context, number);
+    return error->code;
   }
+  for (size_t g = 0; g < groups; g++)
+    boxes[g] = no_box();
   for (size_t v = 0; v < s->count; v++)
-    if (map[v] == v && number[v] != VXM_NO_VERTEX)
-      boxes[number[v]] = box_of_point(s->positions + 3 * v);
-  for (size_t v = 0; v < s->count; v++)
-    if (map[v] != v)
+    if (number[map[v]] != VXM_NO_VERTEX)
       box_include(&boxes[number[map[v]]], s->positions + 3 * v);
   for (size_t v = 0; v < s->count; v++)
-    if (map[v] != v && (s->blocked[map[v]] || !box_within(&boxes[number[map[v]]], s->tolerance)))
+    if (map[v] != v && (atomic_load_explicit(&s->blocked[map[v]], memory_order_relaxed) ||
+                        !box_within(&boxes[number[map[v]]], s->tolerance)))
       map[v] = (uint32_t)v;
-  vxm_free(s->context, boxes);
+  vxm_free(context, boxes);
+  vxm_free(context, number);
+  return VXM_OK;
+}
+
+static vxm_status fill_cells(search *s, vxm_context *context, vxm_error *error) {
+  size_t members = 0, bits = 1024;
+  for (size_t v = 0; v < s->count; v++)
+    members += s->roles[v] == VXM_NEAR_MEMBER;
+  while (bits < 16 * members)
+    bits *= 2;
+  s->homes_shift = 64 - (unsigned)__builtin_ctzll(bits);
+  s->parent = vxm_alloc(context, s->count, sizeof *s->parent, error);
+  if (s->parent)
+    s->blocked = vxm_calloc(context, s->count, sizeof *s->blocked, error);
+  if (s->blocked)
+    s->homes = vxm_calloc(context, bits / 64, sizeof *s->homes, error);
+  if (!s->homes)
+    return error->code;
+  s->slices = s->count / 16384 + 1;
+  vxm_parallel(context, s->slices, start_slice, s);
+  size_t bucket_count = vxm_buckets_advise(2 * members);
+  s->bucket_shift = 64 - (unsigned)__builtin_ctzll(bucket_count);
+  return vxm_buckets_fill(&s->buckets, context, s->count, bucket_count, emit_vertices, s, error);
+}
+
+static vxm_status link_all(search *s, vxm_context *context, vxm_error *error) {
+  s->table_size = table_slots(s->buckets.largest);
+  size_t workers = (size_t)vxm_context_threads(context);
+  s->scratch = vxm_alloc(context, workers * (s->table_size + s->buckets.largest), sizeof *s->scratch, error);
+  if (!s->scratch)
+    return error->code;
+  vxm_parallel(context, s->buckets.count, link_bucket, s);
   return VXM_OK;
 }
 
 vxm_status vxm_weld_near(vxm_context *context, const double *positions, size_t count, const uint8_t *roles,
                          double tolerance, uint32_t *map, vxm_error *error) {
-  search s = {.context = context, .positions = positions, .roles = roles, .count = count};
-  s.tolerance = tolerance;
-  s.width = CELL_TOLERANCES * tolerance;
   if (!(tolerance > 0)) {
     for (size_t v = 0; v < count; v++)
       map[v] = (uint32_t)v;
     return VXM_OK;
   }
+  search s = {.positions = positions, .roles = roles, .count = count, .tolerance = tolerance};
+  s.width = CELL_TOLERANCES * tolerance;
   vxm_error local = VXM_ERROR_INIT;
-  s.parent = vxm_alloc(context, count, sizeof *s.parent, &local);
-  vxm_status status = s.parent ? fill_cells(&s, &local) : local.code;
-  if (status == VXM_OK) {
-    link_all(&s);
-    status = map_groups(&s, map, &local);
-  }
+  vxm_status status = fill_cells(&s, context, &local);
+  if (status == VXM_OK)
+    status = link_all(&s, context, &local);
+  vxm_free(context, s.scratch);
+  vxm_buckets_free(&s.buckets);
+  if (status == VXM_OK)
+    status = map_groups(&s, context, map, &local);
+  vxm_free(context, s.homes);
   vxm_free(context, s.blocked);
-  vxm_free(context, s.next);
-  vxm_free(context, s.table);
-  vxm_free(context, s.cells);
   vxm_free(context, s.parent);
   if (status != VXM_OK && error)
     *error = local;

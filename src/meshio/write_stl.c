@@ -31,14 +31,17 @@ static vxm_status count_facets(const vxm_soup *soup, uint32_t *facets, vxm_error
   return VXM_OK;
 }
 
+/** Vertices that no facet has are not written, and may be anything. */
 static vxm_status check_range(const vxm_soup *soup, vxm_error *error) {
-  for (size_t v = 0; v < soup->vertex_count; v++)
+  for (size_t i = 0; i < soup->corner_count; i++)
     for (size_t c = 0; c < 3; c++) {
+      uint32_t v = soup->indices[i];
       double value = vxm_position(soup, v)[c];
       /* Halfway from FLT_MAX to the next power of two is the first value that becomes infinite. */
       if (isfinite(value) && fabs(value) >= 0x1.ffffffp127)
         return vxm_fail_at(error, VXM_ERROR_RANGE, (vxm_place){NULL, 0, -1, (int64_t)v},
-                           "vertex %zu: %c = %g is beyond the 32-bit floats of STL; write ply or scale down",
+                           "vertex %" PRIu32
+                           ": %c = %g is beyond the 32-bit floats of STL; write ply or scale down",
                            v, (char)('x' + c), value);
     }
   return VXM_OK;

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The bit grid against an array of bytes: every operation, at row ends and far beyond the grid. */
+#include "../gridio/grids.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+/** What the grid should hold: one byte per voxel, x fastest. */
+typedef struct model {
+  int64_t dims[3];
+  uint8_t *voxels;
+} model;
+
+static model new_model(const vxm_space *space) {
+  model m = {{space->dims[0], space->dims[1], space->dims[2]}, NULL};
+  m.voxels = calloc((size_t)(m.dims[0] * m.dims[1] * m.dims[2]), 1);
+  assert_non_null(m.voxels);
+  return m;
+}
+
+static uint8_t *at(const model *m, int64_t i, int64_t j, int64_t k) {
+  return &m->voxels[(k * m->dims[1] + j) * m->dims[0] + i];
+}
+
+/** Random sets and clears, a third of them outside; then everything that can be asked. */
+static void check_grid(vxm_context *context, vxm_rng *rng) {
+  vxm_space space = random_space(rng, 90, false);
+  vxm_grid *grid = new_grid(context, space);
+  model m = new_model(&space);
+  assert_int_equal(vxm_grid_count(grid), 0);
+  for (int n = 0; n < 3000; n++) {
+    int64_t p[3];
+    bool inside = true, value = vxm_rng_below(rng, 3) > 0;
+    for (int a = 0; a < 3; a++) {
+      p[a] = (int64_t)vxm_rng_below(rng, (uint64_t)space.dims[a]);
+      if (vxm_rng_below(rng, 8) == 0) {
+        static const int64_t outside[] = {-1, -64, INT64_MIN, INT64_MAX};
+        uint64_t choice = vxm_rng_below(rng, 5);
+        p[a] = choice < 4 ? outside[choice] : space.dims[a];
+        inside = false;
+      }
+    }
+    vxm_grid_set(grid, p[0], p[1], p[2], value);
+    if (inside)
+      *at(&m, p[0], p[1], p[2]) = value;
+    assert_int_equal(vxm_grid_get(grid, p[0], p[1], p[2]), inside && value);
+  }
+  assert_padding_clear(grid);
+
+  size_t total = (size_t)(m.dims[0] * m.dims[1] * m.dims[2]);
+  uint8_t *unpacked = malloc(total);
+  assert_non_null(unpacked);
+  vxm_grid_unpack(grid, unpacked);
+  int64_t count = 0;
+  const uint64_t *words = vxm_grid_words(grid);
+  int64_t row_words = vxm_grid_row_words(grid);
+  assert_int_equal(row_words, (m.dims[0] + 63) / 64);
+  for (int64_t k = 0; k < m.dims[2]; k++)
+    for (int64_t j = 0; j < m.dims[1]; j++)
+      for (int64_t i = 0; i < m.dims[0]; i++) {
+        uint8_t value = *at(&m, i, j, k);
+        count += value;
+        assert_int_equal(vxm_grid_get(grid, i, j, k), value);
+        assert_int_equal(words[(k * m.dims[1] + j) * row_words + i / 64] >> (i % 64) & 1, value);
+        assert_int_equal(unpacked[(i * m.dims[1] + j) * m.dims[2] + k], value);
+      }
+  assert_int_equal(vxm_grid_count(grid), count);
+  assert_memory_equal(vxm_grid_space(grid), &space, sizeof space);
+  free(unpacked);
+  free(m.voxels);
+  vxm_grid_destroy(grid);
+}
+
+static void test_against_bytes(void **state) {
+  (void)state;
+  vxm_context *context = context_with(2, 0, NULL, NULL);
+  vxm_rng rng = {31};
+  for (int round = 0; round < 40; round++)
+    check_grid(context, &rng);
+  vxm_context_destroy(context);
+}
+
+static void test_row_spans(void **state) {
+  (void)state;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  static const int64_t lengths[] = {1, 63, 64, 65, 130, 200};
+  for (int l = 0; l < 6; l++)
+    for (int64_t begin = 0; begin <= lengths[l]; begin++)
+      for (int64_t end = begin > 0 ? begin - 1 : 0; end <= lengths[l]; end++) {
+        vxm_grid *grid = new_grid(context, unit_space(lengths[l], 1, 1));
+        vxm_row_set_span(vxm_grid_row(grid, 0, 0), begin, end);
+        assert_padding_clear(grid);
+        assert_int_equal(vxm_grid_count(grid), end > begin ? end - begin : 0);
+        if (end > begin)
+          assert_true(vxm_grid_get(grid, begin, 0, 0) && vxm_grid_get(grid, end - 1, 0, 0));
+        vxm_grid_destroy(grid);
+      }
+  vxm_context_destroy(context);
+}
+
+/** Every single bit and the dimensions count; the values are the same on every machine. */
+static void test_hash(void **state) {
+  (void)state;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  vxm_grid *grid = new_grid(context, unit_space(70, 3, 2));
+  uint64_t empty = vxm_grid_hash(grid), seen[70 * 3 * 2];
+  size_t count = 0;
+  for (int64_t v = 0; v < 70 * 3 * 2; v++) {
+    vxm_grid_set(grid, v % 70, v / 70 % 3, v / 210, true);
+    seen[count] = vxm_grid_hash(grid);
+    assert_true(seen[count] != empty);
+    for (size_t s = 0; s < count; s++)
+      assert_true(seen[s] != seen[count]);
+    count++;
+    vxm_grid_set(grid, v % 70, v / 70 % 3, v / 210, false);
+    assert_true(vxm_grid_hash(grid) == empty);
+  }
+  grid->space.origin[0] = 5; /* the place does not count */
+  assert_true(vxm_grid_hash(grid) == empty);
+  vxm_grid_set(grid, 69, 2, 1, true);
+  assert_true(vxm_grid_hash(grid) == UINT64_C(0xd609cad2a70ce59a));
+  vxm_grid_destroy(grid);
+  grid = new_grid(context, unit_space(70, 2, 3));
+  assert_true(vxm_grid_hash(grid) != empty);
+  vxm_grid_destroy(grid);
+  vxm_context_destroy(context);
+}
+
+static void test_compare(void **state) {
+  (void)state;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  vxm_rng rng = {32};
+  for (int round = 0; round < 40; round++) {
+    vxm_space space = random_space(&rng, 50, false);
+    vxm_grid *a = new_grid(context, space), *b = new_grid(context, space);
+    fill_random(a, &rng, round % KINDS);
+    fill_random(b, &rng, round / 2 % KINDS);
+    int64_t both = 0, only_a = 0, only_b = 0;
+    for (int64_t k = 0; k < space.dims[2]; k++)
+      for (int64_t j = 0; j < space.dims[1]; j++)
+        for (int64_t i = 0; i < space.dims[0]; i++) {
+          bool in_a = vxm_grid_get(a, i, j, k), in_b = vxm_grid_get(b, i, j, k);
+          both += in_a && in_b;
+          only_a += in_a && !in_b;
+          only_b += !in_a && in_b;
+        }
+    vxm_comparison c;
+    assert_int_equal(vxm_grid_compare(&c, a, b, NULL), VXM_OK);
+    assert_int_equal(c.both, both);
+    assert_int_equal(c.only_a, only_a);
+    assert_int_equal(c.only_b, only_b);
+    assert_int_equal(c.voxels_a, both + only_a);
+    assert_int_equal(c.voxels_b, both + only_b);
+    int64_t any = both + only_a + only_b;
+    assert_true(c.iou == (any ? (double)both / (double)any : 1));
+    vxm_grid_destroy(a);
+    vxm_grid_destroy(b);
+  }
+  vxm_grid *a = new_grid(context, unit_space(64, 2, 3)), *b = new_grid(context, unit_space(64, 3, 2));
+  vxm_comparison c;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_grid_compare(&c, a, b, &error), VXM_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.text, "64x2x3"));
+  assert_non_null(strstr(error.text, "64x3x2"));
+  assert_int_equal(vxm_grid_compare(&c, a, a, NULL), VXM_OK);
+  assert_true(c.iou == 1 && c.both == 0);
+  assert_int_equal(vxm_grid_compare(NULL, a, a, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_compare(&c, NULL, a, NULL), VXM_ERROR_ARGUMENT);
+  vxm_grid_destroy(a);
+  vxm_grid_destroy(b);
+  vxm_context_destroy(context);
+}
+
+static void test_space_check(void **state) {
+  (void)state;
+  vxm_space good = unit_space(VXM_DIM_MAX, 1, 1);
+  assert_int_equal(vxm_space_check(&good, NULL), VXM_OK);
+  static const struct {
+    int64_t dims[3];
+    double origin, size;
+    vxm_status status;
+  } cases[] = {
+      {{0, 1, 1}, 0, 1, VXM_ERROR_ARGUMENT},
+      {{1, -5, 1}, 0, 1, VXM_ERROR_ARGUMENT},
+      {{1, 1, INT64_MIN}, 0, 1, VXM_ERROR_ARGUMENT},
+      {{1, 1, VXM_DIM_MAX + 1}, 0, 1, VXM_ERROR_RANGE},
+      {{INT64_MAX, 1, 1}, 0, 1, VXM_ERROR_RANGE},
+      {{1, 1, 1}, NAN, 1, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, -INFINITY, 1, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, 0, 0, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, 0, -1, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, 0, NAN, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, 0, INFINITY, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, 1e308, 5e-324, VXM_OK},
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++)
+    for (int axis = 0; axis < 3; axis++) {
+      vxm_space space = unit_space(cases[c].dims[0], cases[c].dims[1], cases[c].dims[2]);
+      space.origin[axis] = cases[c].origin;
+      space.voxel_size[axis] = cases[c].size;
+      vxm_error error = VXM_ERROR_INIT;
+      assert_int_equal(vxm_space_check(&space, &error), cases[c].status);
+      assert_int_equal(error.code, cases[c].status);
+      vxm_grid *grid;
+      assert_int_equal(vxm_grid_create(&grid, NULL, &space, NULL), cases[c].status);
+      assert_int_equal(grid != NULL, cases[c].status == VXM_OK);
+      vxm_grid_destroy(grid);
+    }
+  assert_int_equal(vxm_space_bytes(&(vxm_space){.dims = {65, 3, 2}}), 2 * 3 * 2 * 8);
+}
+
+/** The largest grid that can be named is refused by the limit, not by the system. */
+static void test_memory_limit(void **state) {
+  (void)state;
+  vxm_context *context = context_with(1, 1 << 20, NULL, NULL);
+  vxm_space space = unit_space(VXM_DIM_MAX, VXM_DIM_MAX, VXM_DIM_MAX);
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_grid *grid;
+  assert_int_equal(vxm_grid_create(&grid, context, &space, &error), VXM_ERROR_MEMORY_LIMIT);
+  assert_null(grid);
+  space = unit_space(256, 256, 128); /* 1 MiB, and no room for what goes with it */
+  assert_int_equal(vxm_grid_create(&grid, context, &space, &error), VXM_ERROR_MEMORY_LIMIT);
+  space = unit_space(256, 256, 120);
+  assert_int_equal(vxm_grid_create(&grid, context, &space, &error), VXM_OK);
+  assert_true(vxm_context_peak_bytes(context) <= 1 << 20);
+  vxm_grid_destroy(grid);
+  vxm_context_destroy(context);
+  assert_int_equal(vxm_grid_create(NULL, NULL, &space, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_create(&grid, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
+  vxm_grid_destroy(NULL);
+}
+
+/** A grid outlives the handle of its context. */
+static void test_context_lives_on(void **state) {
+  (void)state;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  vxm_grid *grid = new_grid(context, unit_space(5, 5, 5));
+  vxm_context_destroy(context);
+  vxm_grid_set(grid, 4, 4, 4, true);
+  assert_int_equal(vxm_grid_count(grid), 1);
+  assert_int_equal(vxm_grid_warning_count(grid), 0);
+  assert_string_equal(vxm_grid_warning(grid, 0), "");
+  assert_string_equal(vxm_grid_warning(grid, -1), "");
+  vxm_grid_destroy(grid);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_against_bytes), cmocka_unit_test(test_row_spans),
+      cmocka_unit_test(test_hash),          cmocka_unit_test(test_compare),
+      cmocka_unit_test(test_space_check),   cmocka_unit_test(test_memory_limit),
+      cmocka_unit_test(test_context_lives_on),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
