@@ -5,6 +5,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 /* Every block is preceded by one cache line that holds its size, so that the counter can be lowered again. */
@@ -146,6 +147,21 @@ static block_header *header_of(void *block) {
   return (block_header *)((char *)block - HEADER);
 }
 
+/** Asks for large pages in a large block: faults of 4 KiB each would cost more than filling it does. */
+static void advise_large(char *start, size_t bytes) {
+#ifdef MADV_HUGEPAGE
+  enum { LARGE = 4 << 20 };
+  if (bytes < LARGE)
+    return;
+  uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), skip = (page - (uintptr_t)start % page) % page;
+  /* Only advice: whether it is taken changes no result. */
+  (void)madvise(start + skip, (bytes - skip) / page * page, MADV_HUGEPAGE);
+#else
+  (void)start;
+  (void)bytes;
+#endif
+}
+
 static void *allocate(vxm_context *context, size_t count, size_t size, bool zero, vxm_error *error) {
   size_t bytes = block_bytes(count, size);
   if (bytes == 0) {
@@ -162,6 +178,7 @@ static void *allocate(vxm_context *context, size_t count, size_t size, bool zero
     fail_memory(error, bytes);
     return NULL;
   }
+  advise_large(start, bytes);
   uintptr_t aligned = ((uintptr_t)start + HEADER + HEADER - 1) / HEADER * HEADER;
   void *block = start + (aligned - (uintptr_t)start);
   *header_of(block) = (block_header){start, bytes};
@@ -198,6 +215,8 @@ void *vxm_realloc(vxm_context *context, void *block, size_t count, size_t size, 
   }
   if (bytes < old.bytes)
     unreserve(context, old.bytes - bytes);
+  else
+    advise_large(start, bytes);
   /* realloc may land on another alignment: move the content to its aligned place. */
   uintptr_t aligned = ((uintptr_t)start + HEADER + HEADER - 1) / HEADER * HEADER;
   size_t shift = (size_t)(aligned - (uintptr_t)start);

@@ -107,7 +107,7 @@ bool cli_is_extension(const char *path, const char *extension);
 
 /* ---- output.c: messages, tables and reports ---- */
 
-/** Prints cli->error as one line, with the options that help, and returns CLI_FAILED. */
+/** Prints cli->error as one line and returns CLI_FAILED. */
 int cli_fail(cli_run *cli);
 /** As cli_fail, with a message of the program itself. */
 int cli_fail_text(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);

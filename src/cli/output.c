@@ -14,19 +14,12 @@
 
 /* ---- Messages ---- */
 
-/** What to try, for failures that an option can mend. */
-static const char *hint(vxm_status status) {
-  if (status == VXM_ERROR_MEMORY_LIMIT)
-    return " [--memlimit]";
-  return "";
-}
-
 int cli_fail(cli_run *cli) {
   cli_progress_clear(cli);
   if (cli->error.code == VXM_ERROR_CANCELLED && cli_signal())
     fprintf(stderr, "voxmend: interrupted\n");
   else
-    fprintf(stderr, "voxmend: %s%s\n", cli->error.text, hint(cli->error.code));
+    fprintf(stderr, "voxmend: %s\n", cli->error.text);
   return CLI_FAILED;
 }
 

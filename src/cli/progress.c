@@ -25,7 +25,7 @@ static void draw(cli_run *cli, double fraction) {
   if (fraction < 0 || fraction > 1)
     fraction = fraction < 0 ? 0 : 1;
   int filled = (int)(fraction * WIDTH);
-  fprintf(stderr, "\r%-16s [", cli->phase);
+  fprintf(stderr, "\r%-20s [", cli->phase);
   for (int i = 0; i < WIDTH; i++)
     fputc(i < filled ? '#' : ' ', stderr);
   fprintf(stderr, "] %3d %%", (int)(fraction * 100));

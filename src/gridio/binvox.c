@@ -175,7 +175,8 @@ static unsigned advance(cursor *at, const vxm_planes *planes, size_t used, bool 
   while (count > 0 && at->plane < used) {
     size_t room = planes->length - at->bit, step = count < room ? count : room;
     if (value)
-      vxm_row_set_span(vxm_plane_row(planes, at->plane, at->row), (int64_t)at->bit, (int64_t)(at->bit + step));
+      vxm_row_set_span(vxm_plane_row(planes, at->plane, at->row), (int64_t)at->bit,
+                       (int64_t)(at->bit + step));
     count -= (unsigned)step;
     at->bit += step;
     if (at->bit < planes->length)
@@ -191,8 +192,7 @@ static unsigned advance(cursor *at, const vxm_planes *planes, size_t used, bool 
 
 static vxm_status read_runs(vxm_grid *grid, const vxm_input *input, size_t data, vxm_error *error) {
   vxm_planes planes;
-  vxm_status status =
-      vxm_planes_create(&planes, grid->context, &grid->space, VXM_PLANE_Y_FAST, error);
+  vxm_status status = vxm_planes_create(&planes, grid->context, &grid->space, VXM_PLANE_Y_FAST, error);
   if (status != VXM_OK)
     return status;
   size_t at = data;
@@ -348,7 +348,8 @@ static vxm_status check_cubic(const vxm_space *space, uint64_t side, vxm_error *
                     "binvox holds only voxels that are cubes, these are %g x %g x %g; use .npy, .raw or .rle",
                     size[0], size[1], size[2]);
   if (!isfinite(size[0] * (double)side))
-    return vxm_fail(error, VXM_ERROR_RANGE, "the side of the grid is too long for binvox; use .npy, .raw or .rle");
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "the side of the grid is too long for binvox; use .npy, .raw or .rle");
   /* 2 bytes for 255 voxels of padding: a rod of a million voxels would become petabytes. */
   uint64_t padding = (side * side * side - vxm_space_voxels(space)) / 255 * 2;
   if (padding >> 34)

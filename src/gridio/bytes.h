@@ -46,7 +46,8 @@ static inline uint64_t vxm_pack_bytes(uint64_t bytes) {
   return bytes * UINT64_C(0x0102040810204080) >> 56;
 }
 
-/** 1 for each byte that is not 0. Adding 0x7f to the low 7 bits carries into the top bit unless they are 0. */
+/** 1 for each byte that is not 0. Adding 0x7f to the low 7 bits carries into the top bit unless they are 0.
+ */
 static inline uint64_t vxm_nonzero_bytes(uint64_t bytes) {
   const uint64_t low = UINT64_C(0x7f7f7f7f7f7f7f7f);
   return (((bytes & low) + low) | bytes) >> 7 & UINT64_C(0x0101010101010101);

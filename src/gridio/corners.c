@@ -13,7 +13,8 @@ typedef struct record {
 typedef struct scratch {
   vxm_context *context;
   record *records[2];
-  size_t *starts; /**< of the buckets of a counting sort: one per coordinate of the longest axis, and one more */
+  size_t
+      *starts; /**< of the buckets of a counting sort: one per coordinate of the longest axis, and one more */
 } scratch;
 
 static void scratch_destroy(scratch *s) {

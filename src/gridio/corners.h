@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The corners of rectangles on the lattice: one vertex for each lattice point, and its neighbours in line. */
+/** The corners of rectangles on the lattice: one vertex for each lattice point, and its neighbours in line.
+ */
 #ifndef VXM_GRIDIO_CORNERS_H
 #define VXM_GRIDIO_CORNERS_H
 

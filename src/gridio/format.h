@@ -23,8 +23,8 @@ extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_raw, 
   vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){(input)->name, 0, (int64_t)(offset), -1}, __VA_ARGS__)
 
 /**
- * Checks the space that a file claims: VXM_ERROR_FORMAT with the offset for what can never be, VXM_ERROR_RANGE
- * for what is too large.
+ * Checks the space that a file claims: VXM_ERROR_FORMAT with the offset for what can never be,
+ * VXM_ERROR_RANGE for what is too large.
  */
 vxm_status vxm_space_check_file(const vxm_space *space, const vxm_input *input, size_t offset,
                                 vxm_error *error);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Grid files in and out, the surface of a grid as a mesh, and its picture. doc/formats.md has the formats. */
+/** Grid files in and out, the surface of a grid as a mesh, and its picture. doc/formats.md has the formats.
+ */
 #ifndef VXM_GRIDIO_GRIDIO_H
 #define VXM_GRIDIO_GRIDIO_H
 

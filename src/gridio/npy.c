@@ -66,7 +66,8 @@ typedef struct loading {
 static void load_rows(size_t task, int worker, void *payload) {
   (void)worker;
   const loading *l = payload;
-  size_t begin = task * ROWS_PER_TASK, end = begin + ROWS_PER_TASK < l->rows ? begin + ROWS_PER_TASK : l->rows;
+  size_t begin = task * ROWS_PER_TASK,
+         end = begin + ROWS_PER_TASK < l->rows ? begin + ROWS_PER_TASK : l->rows;
   for (size_t r = begin; r < end; r++) {
     uint64_t *row = l->planes ? vxm_plane_row(l->planes, r / l->planes->rows, r % l->planes->rows)
                               : l->words + r * l->row_words;
@@ -102,8 +103,13 @@ static vxm_status read_fortran_order(vxm_grid *grid, const unsigned char *data, 
   vxm_status status = VXM_OK;
   size_t rows = grid->word_count / grid->row_words, length = (size_t)grid->space.dims[0];
   for (size_t row = 0; status == VXM_OK && row < rows; row += ROWS_PER_STEP) {
-    loading l = {data + row * length * e.size, e, rows - row < ROWS_PER_STEP ? rows - row : ROWS_PER_STEP, length,
-                 NULL, grid->words + row * grid->row_words, grid->row_words};
+    loading l = {data + row * length * e.size,
+                 e,
+                 rows - row < ROWS_PER_STEP ? rows - row : ROWS_PER_STEP,
+                 length,
+                 NULL,
+                 grid->words + row * grid->row_words,
+                 grid->row_words};
     load_step(grid, &l);
     status = vxm_progress(grid->context, "reading", (double)(row + l.rows) / (double)rows, error);
   }
@@ -159,7 +165,8 @@ static vxm_status read_npy(vxm_grid **out, const vxm_input *input, vxm_error *er
   if (status == VXM_OK)
     status = vxm_grid_create(&grid, input->context, &space, error);
   if (status == VXM_OK)
-    status = (h.fortran ? read_fortran_order : read_c_order)(grid, input->data + h.data, element_of(&h), error);
+    status =
+        (h.fortran ? read_fortran_order : read_c_order)(grid, input->data + h.data, element_of(&h), error);
   if (status != VXM_OK) {
     vxm_grid_destroy(grid);
     return status;
@@ -190,7 +197,8 @@ static void store_row(unsigned char *to, const uint64_t *row, size_t count) {
 static void store_rows(size_t task, int worker, void *payload) {
   (void)worker;
   const storing *s = payload;
-  size_t begin = task * ROWS_PER_TASK, end = begin + ROWS_PER_TASK < s->rows ? begin + ROWS_PER_TASK : s->rows;
+  size_t begin = task * ROWS_PER_TASK,
+         end = begin + ROWS_PER_TASK < s->rows ? begin + ROWS_PER_TASK : s->rows;
   for (size_t r = begin; r < end; r++) {
     size_t plane = (s->row + r) / s->planes->rows, row = (s->row + r) % s->planes->rows;
     store_row(s->bytes + r * s->planes->length, vxm_plane_row(s->planes, plane, row), s->planes->length);

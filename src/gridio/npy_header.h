@@ -6,13 +6,13 @@
 #include "base/file.h"
 
 typedef struct vxm_npy_header {
-  char kind;            /**< 'b' boolean, 'i' signed, 'u' unsigned, 'f' floating */
-  bool big_endian;      /**< of elements longer than a byte */
-  size_t size;          /**< bytes of an element: 1, 2, 4 or 8 */
-  bool fortran;         /**< the first index is the fastest */
-  int64_t shape[3];     /**< not checked */
-  size_t data;          /**< offset of the first element */
-  size_t shape_offset;  /**< for messages */
+  char kind;           /**< 'b' boolean, 'i' signed, 'u' unsigned, 'f' floating */
+  bool big_endian;     /**< of elements longer than a byte */
+  size_t size;         /**< bytes of an element: 1, 2, 4 or 8 */
+  bool fortran;        /**< the first index is the fastest */
+  int64_t shape[3];    /**< not checked */
+  size_t data;         /**< offset of the first element */
+  size_t shape_offset; /**< for messages */
 } vxm_npy_header;
 
 bool vxm_npy_sniff(const vxm_input *input);

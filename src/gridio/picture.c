@@ -73,7 +73,8 @@ static void add_cell(outline *o, const box *limits, const double step[3], const 
     o->points[o->count++] = box_corner(&b, step, corner);
 }
 
-/** The first and last cell of each row of a coarse level, cut to the occupied box; the box if all is empty. */
+/** The first and last cell of each row of a coarse level, cut to the occupied box; the box if all is empty.
+ */
 static vxm_status find_outline(outline *o, const vxm_scene *scene, const box *limits, vxm_error *error) {
   const vxm_pyramid *pyramid = &scene->pyramid;
   int level = 0;
@@ -217,8 +218,7 @@ static unsigned char encode(double light) {
 
 /** A pixel is the mean of four rays, spread so that no two share a row or column of its 4 x 4 parts. */
 static void draw_pixel(const drawing *d, int x, int y, unsigned char *rgb) {
-  static const double offset[SAMPLES][2] = {
-      {0.375, 0.125}, {0.875, 0.375}, {0.125, 0.625}, {0.625, 0.875}};
+  static const double offset[SAMPLES][2] = {{0.375, 0.125}, {0.875, 0.375}, {0.125, 0.625}, {0.625, 0.875}};
   const camera *cam = d->cam;
   /* Neighbouring pixels look at different points of the sun; their mean is even (Jimenez 2014). */
   double start = 52.9829189 * fmod(0.06711056 * x + 0.00583715 * y, 1);
@@ -299,6 +299,7 @@ vxm_status vxm_gridio_picture(const vxm_grid *grid, const char *path, const vxm_
                 .height = options->height ? options->height : 600};
   vxm_scene scene = {.grid = grid};
   set_steps(&scene, &grid->space);
+  vxm_scene_weigh(&scene);
   status = vxm_pyramid_create(&scene.pyramid, grid, error);
   if (status != VXM_OK)
     return status;

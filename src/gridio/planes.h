@@ -44,7 +44,8 @@ static inline size_t vxm_planes_in(const vxm_grid *grid, size_t word) {
 /** A word made of a row of the grid, such as the row's own word or its exposed faces. */
 typedef uint64_t (*vxm_row_word_fn)(const uint64_t *row, size_t word, size_t row_words);
 
-/** Fills the planes from word column `word` of the grid, seen through `load` (NULL = the words as they are). */
+/** Fills the planes from word column `word` of the grid, seen through `load` (NULL = the words as they are).
+ */
 void vxm_planes_gather(vxm_planes *planes, const vxm_grid *grid, size_t word, vxm_row_word_fn load);
 /** Writes the planes to word column `word` of the grid. */
 void vxm_planes_scatter(const vxm_planes *planes, vxm_grid *grid, size_t word);

@@ -88,8 +88,8 @@ vxm_status vxm_png_create(vxm_png **out, vxm_context *context, vxm_output *outpu
   png->context = context;
   png->output = output;
   png->row_bytes = 3 * (size_t)width;
-  png->writer = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, png, on_error, on_warning, png, on_allocate,
-                                          on_free);
+  png->writer =
+      png_create_write_struct_2(PNG_LIBPNG_VER_STRING, png, on_error, on_warning, png, on_allocate, on_free);
   if (png->writer)
     png->info = png_create_info_struct(png->writer);
   vxm_status status = png->info ? begin(png, width, height, error) : fail(png, error);

@@ -27,8 +27,8 @@ void vxm_pyramid_destroy(vxm_pyramid *pyramid);
 static inline uint8_t vxm_pyramid_cell(const vxm_pyramid *p, int level, const int64_t voxel[3]) {
   int shift = level + 2;
   const int64_t *dims = p->level[level].dims;
-  return p->level[level].cells[((voxel[2] >> shift) * dims[1] + (voxel[1] >> shift)) * dims[0] +
-                               (voxel[0] >> shift)];
+  return p->level[level]
+      .cells[((voxel[2] >> shift) * dims[1] + (voxel[1] >> shift)) * dims[0] + (voxel[0] >> shift)];
 }
 
 /** Fullness around a point (in voxels), 0 to 1, interpolated between the centres of cells. */

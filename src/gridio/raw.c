@@ -44,7 +44,8 @@ static void unpack_rows(size_t task, int worker, void *payload) {
   const unpacking *u = payload;
   vxm_grid *grid = u->grid;
   uint64_t nx = (uint64_t)grid->space.dims[0];
-  size_t begin = task * ROWS_PER_TASK, end = begin + ROWS_PER_TASK < u->rows ? begin + ROWS_PER_TASK : u->rows;
+  size_t begin = task * ROWS_PER_TASK,
+         end = begin + ROWS_PER_TASK < u->rows ? begin + ROWS_PER_TASK : u->rows;
   for (size_t r = u->row + begin; r < u->row + end; r++) {
     uint64_t *row = grid->words + r * grid->row_words;
     for (size_t w = 0; w < grid->row_words; w++)

@@ -56,7 +56,8 @@ static void add(task_state *task, vxm_rectangle rectangle) {
     list->items[list->count++] = rectangle;
 }
 
-/** Takes the longest run along u, then as many rows along v as have all of it; clears the layer on the way. */
+/** Takes the longest run along u, then as many rows along v as have all of it; clears the layer on the way.
+ */
 static void merge_layer(task_state *task, uint64_t *layer, size_t rows, size_t words, uint32_t level) {
   for (size_t v = 0; v < rows && task->status == VXM_OK; v++) {
     uint64_t *row = layer + v * words;
@@ -173,8 +174,8 @@ static vxm_status find_axis(vxm_rectangles *all, const vxm_grid *grid, vxm_recta
     if (all->count > RECTANGLES_MAX)
       return vxm_fail(error, VXM_ERROR_RANGE,
                       "the surface has more than 2^30 rectangles; lower the resolution");
-    vxm_status status = vxm_progress(
-        grid->context, "finding faces", ((double)axis + (double)(first + count) / (double)chunks) / 3, error);
+    vxm_status status = vxm_progress(grid->context, "finding faces",
+                                     ((double)axis + (double)(first + count) / (double)chunks) / 3, error);
     if (status != VXM_OK)
       return status;
   }

@@ -80,8 +80,7 @@ static vxm_status read_runs(vxm_grid *grid, const vxm_input *input, vxm_error *e
       advance(&at, grid, value, input->data[b]);
       value ^= input->data[b] != 255;
     }
-    vxm_status status =
-        vxm_progress(grid->context, "reading", (double)end / (double)input->size, error);
+    vxm_status status = vxm_progress(grid->context, "reading", (double)end / (double)input->size, error);
     if (status != VXM_OK)
       return status;
   }

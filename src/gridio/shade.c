@@ -45,20 +45,30 @@ static unsigned window(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
   return (unsigned)bits & ((1u << WIDTH) - 1);
 }
 
+static const double weight[WIDTH] = {0.15, 0.45, 0.80, 1.0, 0.80, 0.45, 0.15};
+
+void vxm_scene_weigh(vxm_scene *scene) {
+  for (unsigned bits = 0; bits < 1u << WIDTH; bits++) {
+    double mass = 0, moment = 0;
+    for (int at = 0; at < WIDTH; at++)
+      if (bits >> at & 1) {
+        mass += weight[at];
+        moment += weight[at] * (at - REACH);
+      }
+    scene->weighed[bits].mass = mass;
+    scene->weighed[bits].moment = moment;
+  }
+}
+
 /** The direction in which the neighbourhood empties: the gradient of a blurred grid, in scene coordinates. */
 static vxm_vec3 smooth_normal(const vxm_scene *scene, const int64_t voxel[3]) {
-  static const double weight[WIDTH] = {0.15, 0.45, 0.80, 1.0, 0.80, 0.45, 0.15};
   vxm_vec3 sum = {{0, 0, 0}};
   for (int dk = -REACH; dk <= REACH; dk++)
     for (int dj = -REACH; dj <= REACH; dj++) {
       unsigned bits = window(scene->grid, voxel[0], voxel[1] + dj, voxel[2] + dk);
-      double mass = 0, moment = 0, w = weight[dj + REACH] * weight[dk + REACH];
-      for (; bits; bits &= bits - 1) {
-        int at = __builtin_ctz(bits);
-        mass += weight[at];
-        moment += weight[at] * (at - REACH);
-      }
-      sum = vxm_vec3_add(sum, -w, vxm_vec3_of(moment, mass * dj, mass * dk));
+      double mass = scene->weighed[bits].mass, moment = scene->weighed[bits].moment;
+      sum = vxm_vec3_add(sum, -weight[dj + REACH] * weight[dk + REACH],
+                         vxm_vec3_of(moment, mass * dj, mass * dk));
     }
   for (int a = 0; a < 3; a++)
     sum.c[a] /= scene->step[a];
@@ -112,13 +122,13 @@ static double off_line(double width, const double part[2]) {
 
 /** How much of the sky is seen, by looking along the normal over four distances. 1 is all. */
 static double sky_openness(const vxm_scene *scene, const double point[3], vxm_vec3 normal) {
-  static const double weight[4] = {0.50, 0.50, 0.45, 0.40};
+  static const double strength[4] = {0.50, 0.50, 0.45, 0.40};
   double open = 1;
   for (int l = 0; l < 4 && l < scene->pyramid.levels; l++) {
     double at[3], distance = (double)(4 << l);
     for (int a = 0; a < 3; a++)
       at[a] = point[a] + distance * normal.c[a];
-    open *= 1 - weight[l] * vxm_pyramid_sample(&scene->pyramid, l, at);
+    open *= 1 - strength[l] * vxm_pyramid_sample(&scene->pyramid, l, at);
   }
   return open;
 }
@@ -160,7 +170,8 @@ static vxm_vec3 shade_voxel(const vxm_scene *scene, const vxm_hit *hit, const do
   open *= sky_openness(scene, point, normal);
 
   double toward = vxm_vec3_dot(normal, scene->light), direct = 0;
-  if (toward > 0 && vxm_vec3_dot(face, scene->light) > -scene->smoothness && sees_sun(scene, outside, jitter, sun_radius))
+  if (toward > 0 && vxm_vec3_dot(face, scene->light) > -scene->smoothness &&
+      sees_sun(scene, outside, jitter, sun_radius))
     direct = toward;
   double upward = 0.5 + 0.5 * vxm_vec3_dot(normal, scene->up);
   double line = 1 - 0.30 * crisp * (1 - off_line(scene->line_width, part));
@@ -190,7 +201,10 @@ static vxm_vec3 shade_background(const vxm_scene *scene, vxm_vec3 origin, vxm_ve
   double point[3];
   to_voxels(scene, vxm_vec3_add(at, 1e-6, scene->up), point);
   double open = sky_openness(scene, point, scene->up);
-  double direct = sees_sun(scene, point, jitter, 2 * sun_radius) ? 1 : 0;
+  /* The shadow's border is wide here, so it takes a second ray, to the other half of the sun. */
+  const double other[2] = {jitter[0] + 0.5, fmod(jitter[1] + 0.125, 1)};
+  double direct = 0.5 * sees_sun(scene, point, jitter, 2 * sun_radius) +
+                  0.5 * sees_sun(scene, point, other, 2 * sun_radius);
   vxm_vec3 colour;
   for (int n = 0; n < 3; n++)
     colour.c[n] = 1 - near * (0.40 * (1 - direct) + (0.60 - 0.02 * n) * (1 - open));

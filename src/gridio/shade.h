@@ -21,7 +21,13 @@ typedef struct vxm_scene {
   double floor;       /**< height of its lowest side along `up` */
   double smoothness;  /**< 0: every voxel is seen as a cube; 1: voxels are too small for that */
   double line_width;  /**< of the lines between voxels, as a part of a voxel's side */
+  struct {
+    double mass, moment;
+  } weighed[128]; /**< every pattern of 7 voxels in a row, weighed around its middle */
 } vxm_scene;
+
+/** Fills `weighed`; before the first ray. */
+void vxm_scene_weigh(vxm_scene *scene);
 
 /**
  * Light that comes along a ray, linear red, green and blue.

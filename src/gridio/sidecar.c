@@ -38,10 +38,9 @@ bool vxm_sidecar_exists(const char *data_path) {
 static char *describe(const vxm_space *space, const vxm_sidecar_text *text) {
   const int64_t *d = space->dims;
   const double *o = space->origin, *s = space->voxel_size;
-  json_t *root =
-      json_pack("{s:s, s:i, s:[I,I,I], s:[f,f,f], s:[f,f,f], s:s}", "format", text->format, "version", 1, "dims",
-                (json_int_t)d[0], (json_int_t)d[1], (json_int_t)d[2], "origin", o[0], o[1], o[2], "voxel_size",
-                s[0], s[1], s[2], "order", text->order);
+  json_t *root = json_pack("{s:s, s:i, s:[I,I,I], s:[f,f,f], s:[f,f,f], s:s}", "format", text->format,
+                           "version", 1, "dims", (json_int_t)d[0], (json_int_t)d[1], (json_int_t)d[2],
+                           "origin", o[0], o[1], o[2], "voxel_size", s[0], s[1], s[2], "order", text->order);
   if (root && text->bits && json_object_set_new(root, "bits", json_string(text->bits)) != 0) {
     json_decref(root);
     return NULL;
@@ -62,8 +61,7 @@ vxm_status vxm_sidecar_open(vxm_output **out, const vxm_grid *grid, const char *
   if (!has_neighbours(data_path))
     return VXM_OK;
   char *path = sidecar_path(data_path), *json = describe(&grid->space, text);
-  vxm_status status =
-      path && json ? vxm_output_open(out, grid->context, path, error) : fail_memory(error);
+  vxm_status status = path && json ? vxm_output_open(out, grid->context, path, error) : fail_memory(error);
   if (status == VXM_OK) {
     vxm_output_write(*out, json, strlen(json));
     vxm_output_write(*out, "\n", 1);
@@ -73,7 +71,8 @@ vxm_status vxm_sidecar_open(vxm_output **out, const vxm_grid *grid, const char *
   return status;
 }
 
-vxm_status vxm_sidecar_commit(vxm_output *data, vxm_output *sidecar, const char *data_path, vxm_error *error) {
+vxm_status vxm_sidecar_commit(vxm_output *data, vxm_output *sidecar, const char *data_path,
+                              vxm_error *error) {
   vxm_status status = vxm_output_commit(data, error);
   if (!sidecar)
     return status;

@@ -2,14 +2,15 @@
 /**
  * The surface of a grid as a mesh. A rectangle becomes a polygon with a corner at every lattice point of its
  * border where any rectangle has a corner. So a piece of border between two such points belongs, whole, to
- * every rectangle that it bounds. Around a unit edge of the lattice 0, 2 or 4 voxel faces are exposed, and the
- * edge lies on the border of a rectangle for each of them, except where two faces are in the same rectangle:
- * an even number is left, on every edge of the mesh.
+ * every rectangle that it bounds. Around a unit edge of the lattice 0, 2 or 4 voxel faces are exposed, and
+ * the edge lies on the border of a rectangle for each of them, except where two faces are in the same
+ * rectangle: an even number is left, on every edge of the mesh.
  */
 #include "gridio/corners.h"
 #include "gridio/gridio.h"
 
-/** The point on the lattice in model units; the same expression for every vertex, so equal points are equal. */
+/** The point on the lattice in model units; the same expression for every vertex, so equal points are equal.
+ */
 static double place(const vxm_space *space, uint64_t point, int axis) {
   return space->origin[axis] + (double)vxm_point_coordinate(point, axis) * space->voxel_size[axis];
 }

@@ -87,22 +87,24 @@ void vxm_extent_of(vxm_extent *out, vxm_context *context, const vxm_soup *soup, 
 }
 
 vxm_frame vxm_frame_of(const double bounds[6]) {
-  double half[3], longest = 0;
+  double longest = 0, squared = 0;
   vxm_frame frame = {.scale = 1};
   for (int axis = 0; axis < 3; axis++) {
-    /* halves first: the length of the bounds may be beyond a double */
-    half[axis] = 0.5 * bounds[3 + axis] - 0.5 * bounds[axis];
+    double length = bounds[3 + axis] - bounds[axis];
     frame.centre[axis] = 0.5 * bounds[3 + axis] + 0.5 * bounds[axis];
-    if (half[axis] > longest)
-      longest = half[axis];
+    longest = length > longest ? length : longest;
   }
   if (longest > 0) {
-    int exponent;
-    frexp(longest, &exponent);
-    frame.scale = ldexp(1.0, exponent < -1020 ? 1021 : -exponent - 1);
+    int exponent = 1025;
+    if (isfinite(longest))
+      frexp(longest, &exponent);
+    /* the inverse of a number below the normal ones would be infinite */
+    frame.scale = ldexp(1.0, exponent < -1020 ? 1020 : -exponent);
   }
-  double x = 2 * (half[0] * frame.scale), y = 2 * (half[1] * frame.scale), z = 2 * (half[2] * frame.scale);
-  double squared = x * x + y * y + z * z;
+  for (int axis = 0; axis < 3; axis++) {
+    double length = bounds[3 + axis] * frame.scale - bounds[axis] * frame.scale;
+    squared += length * length;
+  }
   frame.diagonal = sqrt(squared);
   frame.no_area = VXM_NO_AREA * squared;
   return frame;

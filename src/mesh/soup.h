@@ -50,7 +50,7 @@ vxm_status vxm_soup_add_tag(vxm_soup *soup, const char *name, size_t length, uin
 static inline const uint32_t *vxm_face(const vxm_soup *soup, size_t face, size_t *count) {
   uint64_t begin = soup->offsets[face];
   *count = (size_t)(soup->offsets[face + 1] - begin);
-  return soup->indices + begin;
+  return *count ? soup->indices + begin : soup->indices; /* there may be no corners at all */
 }
 
 static inline const double *vxm_position(const vxm_soup *soup, size_t vertex) {

@@ -176,6 +176,17 @@ static vxm_status read_rare(obj_reader *reader, vxm_error *error) {
   return VXM_OK;
 }
 
+/** Makes about the room that will be needed; where that fails or is too little the soup grows as it is read.
+ */
+static void make_room(obj_reader *reader) {
+  vxm_line_kinds kinds;
+  vxm_sample_lines(&reader->scan, &kinds);
+  const double margin = 1.03;
+  double corners = kinds.letter_tokens['f'] - kinds.letter['f'];
+  (void)vxm_soup_reserve(reader->soup, (size_t)(margin * kinds.letter['v']),
+                         (size_t)(margin * kinds.letter['f']), (size_t)(margin * corners), NULL);
+}
+
 static vxm_status read_statements(obj_reader *reader, vxm_error *error) {
   vxm_scan *scan = &reader->scan;
   vxm_status status = VXM_OK;
@@ -263,6 +274,7 @@ vxm_status vxm_obj_read(vxm_soup *soup, const unsigned char *data, size_t size, 
     return status;
   soup->format = "obj";
   vxm_tagger_open(&reader.tagger, soup);
+  make_room(&reader);
   status = read_statements(&reader, error);
   if (status == VXM_OK)
     status = finish(&reader, error);

@@ -77,10 +77,10 @@ static vxm_status read_count(vxm_scan *scan, const char *what, uint64_t *count, 
                        "the file ends before the number of %s", what);
   if (vxm_scan_uint(scan, count))
     return VXM_OK;
-  size_t length = vxm_token_length(scan);
+  char quote[VXM_QUOTE];
   return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_scan_place(scan, scan->at),
-                     "the number of %s is not a whole number: \"%.*s\"", what,
-                     (int)(length < 40 ? length : 40), (const char *)scan->at);
+                     "the number of %s is not a whole number: \"%s\"", what,
+                     vxm_quote(quote, scan->at, vxm_token_length(scan)));
 }
 
 /** Skips the number of edges, which says nothing and is often left out. */
@@ -353,13 +353,15 @@ static vxm_status read_faces(vxm_scan *scan, uint64_t faces, uint64_t *done, off
 
 static void note_damage(vxm_scan *scan, const vxm_off_header *header, const off_damage *damage) {
   vxm_notes *notes = &scan->soup->notes;
+  int64_t line = vxm_scan_line(scan, header->at);
   if (header->missing)
-    vxm_note(notes, "line 1: no OFF keyword; the counts are taken from the first line");
+    vxm_note(notes, "line %" PRId64 ": no OFF keyword; the file begins with its counts", line);
   if (header->dimension > 3)
-    vxm_note(notes, "line 1: vertices have %zu coordinates; x y z are the first three, the rest is ignored",
-             header->dimension);
+    vxm_note(notes, "line %" PRId64 ": vertices have %zu coordinates; the first three are taken as x y z",
+             line, header->dimension);
   if (header->dimension < 3)
-    vxm_note(notes, "line 1: vertices have %zu coordinates; the missing ones are 0", header->dimension);
+    vxm_note(notes, "line %" PRId64 ": vertices have %zu coordinates; the missing ones are 0", line,
+             header->dimension);
   vxm_tally_note_line(scan, &damage->numbers, "coordinate is not a number; taken as NaN", "numbers");
   vxm_tally_note_line(scan, &damage->short_vertices, "vertex has too few coordinates; taken as NaN",
                       "vertices");
@@ -416,13 +418,15 @@ static vxm_status read_header(vxm_scan *scan, vxm_off_header *header, vxm_error 
   const unsigned char *first = scan->at;
   if (!any || !read_word(scan, header)) {
     if (!any || !vxm_is_digit(*first)) {
+      char quote[VXM_QUOTE];
       size_t length = (size_t)(vxm_find_newline(first, scan->end) - first);
-      return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_scan_place(scan, first), "no OFF header: \"%.*s\"",
-                         (int)(length < 40 ? length : 40), (const char *)first);
+      return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_scan_place(scan, first), "no OFF header: \"%s\"",
+                         vxm_quote(quote, first, length));
     }
     *header = (vxm_off_header){.missing = true, .dimension = 3};
     scan->at = first;
   }
+  header->at = first;
   vxm_skip_blanks(scan);
   if (starts_with(scan, "BINARY")) {
     header->binary = true;

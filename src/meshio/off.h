@@ -11,8 +11,9 @@
  */
 typedef struct vxm_off_header {
   bool textures, colours, normals, four, n_dimensional, binary;
-  bool missing;     /**< no such word: the counts come first, which geomview allows */
-  size_t dimension; /**< numbers of a position */
+  bool missing;            /**< no such word: the counts come first, which geomview allows */
+  size_t dimension;        /**< numbers of a position */
+  const unsigned char *at; /**< where the header begins */
 } vxm_off_header;
 
 /** Numbers of a vertex behind its position. */

@@ -46,6 +46,8 @@ typedef void note_fn(const vxm_scan *scan, const vxm_tally *tally, const char *w
 
 static void note_damage(const vxm_scan *scan, const vxm_ply_header *header, const vxm_ply_body *body) {
   note_fn *note = header->ascii ? vxm_tally_note_line : vxm_tally_note_byte;
+  vxm_tally_note_line(scan, &header->no_corners, "faces have no list vertex_indices; passed over",
+                      "elements");
   note(scan, &body->numbers, "coordinate is not a number; taken as NaN", "numbers");
   note(scan, &body->short_lines, "line has fewer values than the header says", "lines");
   note(scan, &body->long_lines, "line has more values than the header says; the rest is ignored", "lines");
@@ -68,17 +70,17 @@ static vxm_status judge_cut(const vxm_scan *scan, const vxm_ply_header *header, 
   const vxm_ply_element *cut = body->cut;
   if (!cut)
     return VXM_OK;
-  const char *name = (const char *)scan->begin + cut->name_at;
-  int length = (int)(cut->name_length < 40 ? cut->name_length : 40);
+  char name[VXM_QUOTE];
+  vxm_quote(name, scan->begin + cut->name_at, cut->name_length);
   if (soup->vertex_count == 0 || (soup->face_count == 0 && announced_faces(header) > 0))
     return vxm_fail_at(error, VXM_ERROR_FORMAT, place_of_end(scan, header),
                        "the file ends after %" PRIu64 " of %" PRIu64
-                       " elements \"%.*s\"; what it holds up to there is no mesh",
-                       body->cut_done, cut->count, length, name);
+                       " elements \"%s\"; what it holds up to there is no mesh",
+                       body->cut_done, cut->count, name);
   vxm_place end = place_of_end(scan, header);
-  vxm_note(&soup->notes, "%s %" PRId64 ": the file ends after %" PRIu64 " of %" PRIu64 " elements \"%.*s\"",
+  vxm_note(&soup->notes, "%s %" PRId64 ": the file ends after %" PRIu64 " of %" PRIu64 " elements \"%s\"",
            header->ascii ? "line" : "byte", header->ascii ? end.line : end.offset, body->cut_done, cut->count,
-           length, name);
+           name);
   return VXM_OK;
 }
 

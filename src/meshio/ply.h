@@ -51,7 +51,8 @@ typedef struct vxm_ply_header {
   vxm_ply_element *elements;
   vxm_ply_property *properties;
   size_t element_count, element_capacity, property_count, property_capacity;
-  uint64_t vertices; /**< announced */
+  uint64_t vertices;    /**< announced */
+  vxm_tally no_corners; /**< elements of faces without a list of corners */
 } vxm_ply_header;
 
 /** How the reading of a body went. */
@@ -59,6 +60,8 @@ typedef struct vxm_ply_body {
   vxm_tally numbers, short_lines, long_lines, beyond, small_faces, bad_faces, bad_strips;
   const vxm_ply_element *cut; /**< the element within which the file ends, or NULL */
   uint64_t cut_done;          /**< how many of it were whole */
+  bool lines_counted;         /**< whether `few_lines` is known */
+  bool few_lines;             /**< a text has fewer lines than elements */
   bool faces_first;           /**< faces came before vertices, so that indices are checked at the end */
 } vxm_ply_body;
 

@@ -23,10 +23,6 @@ static word next_word(vxm_scan *scan) {
   return w;
 }
 
-static int shown(word w) {
-  return (int)(w.length < 40 ? w.length : 40);
-}
-
 size_t vxm_ply_size(vxm_ply_type type) {
   static const size_t sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   return sizes[type];
@@ -53,8 +49,9 @@ static bool find_type(word w, uint8_t *type) {
 
 static vxm_status fail_line(const vxm_scan *scan, const unsigned char *at, vxm_error *error, const char *what,
                             word w) {
-  return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_scan_place(scan, at), "%s: \"%.*s\"", what, shown(w),
-                     (const char *)w.text);
+  char quote[VXM_QUOTE];
+  return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_scan_place(scan, at), "%s: \"%s\"", what,
+                     vxm_quote(quote, w.text, w.length));
 }
 
 static vxm_status read_format(vxm_scan *scan, vxm_ply_header *header, bool *known, vxm_error *error) {
@@ -173,8 +170,7 @@ static vxm_status settle_roles(vxm_scan *scan, vxm_ply_header *header, vxm_error
     }
     if ((element->role == VXM_PLY_FACES || element->role == VXM_PLY_STRIPS) && !element->has_corners) {
       if (element->count > 0)
-        vxm_note(&scan->soup->notes, "line %" PRId64 ": faces have no list vertex_indices; passed over",
-                 vxm_scan_line(scan, scan->begin + element->name_at));
+        vxm_tally_add(&header->no_corners, scan->begin + element->name_at);
       element->role = VXM_PLY_PASSED;
     }
   }

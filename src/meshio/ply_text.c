@@ -22,11 +22,14 @@ static inline bool more(text_reader *reader) {
   return reader->by_lines ? vxm_more_on_line(reader->scan) : vxm_skip_space(reader->scan);
 }
 
-static vxm_status fail_length(const vxm_scan *scan, vxm_error *error) {
-  size_t length = vxm_token_length(scan);
+static vxm_status fail_length(const text_reader *reader, vxm_error *error) {
+  const vxm_scan *scan = reader->scan;
+  char quote[VXM_QUOTE];
   return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_scan_place(scan, scan->at),
-                     "the length of a list is not a whole number: \"%.*s\"", (int)(length < 40 ? length : 40),
-                     (const char *)scan->at);
+                     "the length of a list is not a whole number: \"%s\"%s",
+                     vxm_quote(quote, scan->at, vxm_token_length(scan)),
+                     reader->element->role == VXM_PLY_VERTICES ? " (does the header lack \"element face\"?)"
+                                                               : "");
 }
 
 /* ---- The layout ---- */
@@ -58,9 +61,15 @@ static bool is_by_lines(const text_reader *reader) {
   }
   if (!vxm_more_on_line(&ahead))
     return true;
-  /* More values than one element has: values that the header does not know, or several elements to a line. */
-  uint64_t lines = lines_announced(reader);
-  if (vxm_lines_with_data(reader->scan, 0, lines) < lines)
+  /* More values than one element has: values that the header does not know, or several elements to a line.
+     The lines are counted once, whatever the number of elements. */
+  vxm_ply_body *body = reader->body;
+  if (!body->lines_counted) {
+    uint64_t lines = lines_announced(reader);
+    body->few_lines = vxm_lines_with_data(reader->scan, 0, lines) < lines;
+    body->lines_counted = true;
+  }
+  if (body->few_lines)
     return false;
   vxm_tally_add(&reader->body->long_lines, reader->scan->at);
   return true;
@@ -75,7 +84,7 @@ static vxm_status skip_list(text_reader *reader, bool *there, vxm_error *error) 
   if (!*there)
     return VXM_OK;
   if (!vxm_scan_uint(reader->scan, &n))
-    return fail_length(reader->scan, error);
+    return fail_length(reader, error);
   for (; n > 0; n--) {
     *there = more(reader);
     if (!*there)
@@ -256,7 +265,7 @@ static vxm_status read_polygon(text_reader *reader, size_t corners, uint64_t lim
     return status;
   if (__builtin_expect(!vxm_scan_uint(scan, &n), 0)) {
     if (!reader->by_lines)
-      return fail_length(scan, error);
+      return fail_length(reader, error);
     vxm_tally_add(&reader->body->bad_faces, first);
     return VXM_OK;
   }

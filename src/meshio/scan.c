@@ -46,6 +46,14 @@ vxm_place vxm_scan_place(const vxm_scan *scan, const unsigned char *position) {
   return (vxm_place){scan->name, vxm_scan_line(scan, position), -1, -1};
 }
 
+const char *vxm_quote(char quote[VXM_QUOTE], const unsigned char *text, size_t length) {
+  size_t shown = length < VXM_QUOTE - 4 ? length : VXM_QUOTE - 4, used = 0;
+  for (; used < shown; used++)
+    quote[used] = text[used] >= ' ' && text[used] < 0x7f ? (char)text[used] : '?';
+  memcpy(quote + used, length > shown ? "..." : "", length > shown ? 4 : 1);
+  return quote;
+}
+
 /* ---- Damage ---- */
 
 static void note(const vxm_scan *scan, const char *unit, int64_t where, const vxm_tally *tally,
@@ -128,6 +136,44 @@ uint64_t vxm_lines_with_data(const vxm_scan *scan, unsigned char comment, uint64
     vxm_skip_line(&ahead);
   }
   return lines;
+}
+
+enum { SAMPLES = 64, SAMPLE_BYTES = 2048, LINE_BYTES = 4096 };
+
+/** Adds the lines between two positions, each counted `weight` times. */
+static void count_lines(vxm_scan ahead, const unsigned char *until, double weight, vxm_line_kinds *kinds) {
+  while (vxm_skip_space(&ahead) && ahead.at < until) {
+    unsigned char first = *ahead.at & 127;
+    bool letter = ahead.end - ahead.at < 2 || ahead.at[1] <= ' ';
+    if (letter) {
+      kinds->letter[first] += weight;
+      kinds->letter_tokens[first] += weight * (double)vxm_tokens_on_line(&ahead, 0);
+    } else
+      kinds->longer[first] += weight;
+    vxm_skip_line(&ahead);
+  }
+}
+
+void vxm_sample_lines(const vxm_scan *scan, vxm_line_kinds *kinds) {
+  *kinds = (vxm_line_kinds){0};
+  size_t size = (size_t)(scan->end - scan->begin);
+  vxm_scan ahead = *scan;
+  if (size <= SAMPLES * SAMPLE_BYTES) {
+    ahead.at = scan->begin;
+    count_lines(ahead, scan->end, 1.0, kinds);
+    return;
+  }
+  for (size_t s = 0; s < SAMPLES; s++) {
+    /* From one line's beginning to another's, so that lines are neither lost nor counted in part. */
+    ahead.at = scan->begin + size / SAMPLES * s;
+    const unsigned char *until = ahead.at + SAMPLE_BYTES;
+    /* No more than a few kilobytes are looked at, however long the lines are. */
+    ahead.end = scan->end - until > LINE_BYTES ? until + LINE_BYTES : scan->end;
+    if (s > 0)
+      vxm_skip_line(&ahead);
+    if (ahead.at < until)
+      count_lines(ahead, until, (double)(size / SAMPLES) / SAMPLE_BYTES, kinds);
+  }
 }
 
 /* ---- Numbers ---- */

@@ -28,6 +28,11 @@ int64_t vxm_scan_line(const vxm_scan *scan, const unsigned char *position);
 /** Where a failure lies in a text file. */
 vxm_place vxm_scan_place(const vxm_scan *scan, const unsigned char *position);
 
+enum { VXM_QUOTE = 48 };
+
+/** The beginning of some text for a message: printable ASCII, with '?' for all else. Returns `quote`. */
+const char *vxm_quote(char quote[VXM_QUOTE], const unsigned char *text, size_t length);
+
 /* ---- Damage ---- */
 
 /** One kind of damage: where it was met first and how often. */
@@ -126,6 +131,15 @@ size_t vxm_tokens_on_line(const vxm_scan *scan, unsigned char comment);
 /** Lines from the cursor on that hold a token, comments not counted; stops counting at `enough`. */
 uint64_t vxm_lines_with_data(const vxm_scan *scan, unsigned char comment, uint64_t enough);
 
+/** About how many lines begin with a word, and how many tokens they have, by the word's first letter. */
+typedef struct vxm_line_kinds {
+  double letter[128], letter_tokens[128]; /**< words of one letter */
+  double longer[128];                     /**< words of more */
+} vxm_line_kinds;
+
+/** Extrapolates from samples all over the text, to make room before it is read. */
+void vxm_sample_lines(const vxm_scan *scan, vxm_line_kinds *kinds);
+
 /* ---- Numbers ---- */
 
 bool vxm_scan_double_slow(vxm_scan *scan, double *value);
@@ -136,7 +150,7 @@ bool vxm_scan_double_slow(vxm_scan *scan, double *value);
  */
 static inline bool vxm_scan_double(vxm_scan *scan, double *value) {
   const unsigned char *p = scan->at;
-  if (scan->end - p < 40) /* a sign, 8 + 1 + 16 digits and what the last load takes beyond */
+  if (scan->end - p < 40) /* a sign, 8 + 1 + 16 digits, an exponent, and what loads take beyond */
     return vxm_scan_double_slow(scan, value);
   bool negative = *p == '-';
   p += negative;
@@ -162,14 +176,20 @@ static inline bool vxm_scan_double(vxm_scan *scan, double *value) {
       }
     }
   }
-  /* Not for this path: exponents, words, more than 19 digits (w may have wrapped), longer runs of digits. */
+  int exponent = -(int)places;
+  if ((*p | 0x20) == 'e' && (p[1] == '-' || p[1] == '+') && vxm_is_digit(p[2]) && vxm_is_digit(p[3])) {
+    int size = 10 * (p[2] - '0') + (p[3] - '0');
+    exponent += p[1] == '-' ? -size : size;
+    p += 4;
+  }
+  /* Not for this path: words, more than 19 digits (w may have wrapped), other exponents. */
   if (*p > ' ' || whole + places - 1u > 18u)
     return vxm_scan_double_slow(scan, value);
   double result;
-  if (__builtin_expect(w <= UINT64_C(1) << 53, 1))
-    result = (double)w / vxm_pow10[places];
-  else
-    vxm_decimal(w, -(int)places, &result);
+  if (__builtin_expect(w <= UINT64_C(1) << 53 && exponent <= 0 && exponent >= -22, 1))
+    result = (double)w / vxm_pow10[-exponent];
+  else if (!vxm_decimal(w, exponent, &result))
+    return vxm_scan_double_slow(scan, value);
   *value = negative ? -result : result;
   scan->at = p;
   return true;

@@ -162,13 +162,21 @@ static void note_damage(text_reader *reader, bool cut_off) {
     vxm_note(&reader->soup->notes, "the file has no faces");
 }
 
+/** Makes about the room that will be needed, if each vertex has its line; else the soup grows as it is read.
+ */
+static void make_room(vxm_scan *scan) {
+  vxm_line_kinds kinds;
+  vxm_sample_lines(scan, &kinds);
+  size_t facets = (size_t)(1.03 * (kinds.longer['v'] + kinds.longer['V']) / 3.0);
+  (void)vxm_soup_reserve(scan->soup, 3 * facets, facets, 3 * facets, NULL);
+}
+
 vxm_status vxm_stl_read_text(vxm_scan *scan, vxm_error *error) {
   vxm_soup *soup = scan->soup;
   text_reader reader = {.scan = scan, .soup = soup};
   vxm_tagger_open(&reader.tagger, soup);
-  /* A facet takes some 250 bytes as most programs write it: about the room it will need. */
-  size_t facets = (size_t)(scan->end - scan->begin) / 256;
-  vxm_status status = vxm_soup_reserve(soup, 3 * facets, facets, 3 * facets, error);
+  make_room(scan);
+  vxm_status status = VXM_OK;
   while (status == VXM_OK && vxm_skip_space(scan)) {
     status = read_word(&reader, error);
     if (status == VXM_OK)

@@ -57,7 +57,32 @@ void vxm_tagger_material(vxm_tagger *tagger, const unsigned char *name, size_t l
   tagger->named = tagger->changed = true;
 }
 
-/** Joins the parts into one name; a zero byte in it would end it early for a C program. */
+/** Bytes of the UTF-8 character at `text`, 0 if it is none (Unicode standard, table 3-7). */
+static size_t character(const unsigned char *text, size_t length) {
+  unsigned char c = text[0];
+  size_t n = c < 0x80 ? 1 : c < 0xc2 ? 0 : c < 0xe0 ? 2 : c < 0xf0 ? 3 : c < 0xf5 ? 4 : 0;
+  if (n == 0 || n > length)
+    return 0;
+  for (size_t i = 1; i < n; i++)
+    if ((text[i] & 0xc0) != 0x80)
+      return 0;
+  if ((c == 0xe0 && text[1] < 0xa0) || (c == 0xed && text[1] > 0x9f) || (c == 0xf0 && text[1] < 0x90) ||
+      (c == 0xf4 && text[1] > 0x8f))
+    return 0;
+  return n;
+}
+
+/** Puts '?' for what is not UTF-8, and for control characters. */
+static void make_utf8(unsigned char *text, size_t length) {
+  for (size_t i = 0; i < length;) {
+    size_t n = character(text + i, length - i);
+    if (n == 0 || text[i] < ' ' || text[i] == 0x7f)
+      text[i] = '?';
+    i += n ? n : 1;
+  }
+}
+
+/** Joins the parts into one name. */
 static size_t join(const vxm_tagger *tagger, char name[2 * VXM_TAG_PART_MAX + 2]) {
   size_t length = tagger->group.length;
   if (length > 0)
@@ -71,9 +96,7 @@ static size_t join(const vxm_tagger *tagger, char name[2 * VXM_TAG_PART_MAX + 2]
     memcpy(name + length, tagger->material.text, tagger->material.length);
     length += tagger->material.length;
   }
-  for (size_t i = 0; i < length; i++)
-    if (name[i] == '\0')
-      name[i] = '?';
+  make_utf8((unsigned char *)name, length);
   name[length] = '\0';
   return length;
 }

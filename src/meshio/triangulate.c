@@ -4,7 +4,7 @@
 #include <math.h>
 
 void vxm_triangulator_open(vxm_triangulator *tri, vxm_context *context) {
-  *tri = (vxm_triangulator){.context = context};
+  *tri = (vxm_triangulator){.context = context, .tests_left = (size_t)1 << 31};
 }
 
 void vxm_triangulator_close(vxm_triangulator *tri) {
@@ -110,8 +110,9 @@ static void clip(vxm_triangulator *tri, const uint32_t *corners, size_t n) {
     tri->before[i] = (uint32_t)(i > 0 ? i - 1 : n - 1);
     tri->after[i] = (uint32_t)(i + 1 < n ? i + 1 : 0);
   }
-  /* The ring has at most 2^32 corners, so the bound needs 64 bits but does not wrap for what fits memory. */
-  const size_t tests_max = n < 4096 ? 8 * n * n + 4096 : (size_t)1 << 27;
+  /* Enough for any simple polygon, as long as the budget for all of them lasts. */
+  const size_t share = n < 16384 ? 8 * n * n : tri->tests_left;
+  const size_t tests_max = 64 * n + (share < tri->tests_left ? share : tri->tests_left);
   size_t count = 0, tests = 0, i = 0, since = 0, remaining = n;
   while (remaining > 3 && since < remaining && tests < tests_max) {
     if (!is_ear(tri, i, &tests)) {
@@ -127,6 +128,7 @@ static void clip(vxm_triangulator *tri, const uint32_t *corners, size_t n) {
     since = 0;
     i = tri->after[c]; /* one further, so that the pieces do not all fan out from one corner */
   }
+  tri->tests_left -= tests < tri->tests_left ? tests : tri->tests_left;
   for (size_t b = tri->after[i], c = tri->after[b]; c != i; b = c, c = tri->after[c])
     put(tri, &count, corners[i], corners[b], corners[c]);
 }

@@ -12,6 +12,7 @@ typedef struct vxm_triangulator {
   uint32_t *before, *after; /**< the ring of corners left */
   uint32_t *triangles;      /**< three corners each */
   size_t capacity;
+  size_t tests_left; /**< of corners against ears, for all polygons together */
 } vxm_triangulator;
 
 void vxm_triangulator_open(vxm_triangulator *tri, vxm_context *context);
@@ -20,8 +21,8 @@ void vxm_triangulator_close(vxm_triangulator *tri);
 /**
  * Splits a polygon of n >= 3 corners into n - 2 triangles by clipping ears, seen along the axis on which its
  * vector area is largest. A planar simple polygon is covered exactly; others get as many triangles, some of
- * which may overlap. Work is at most proportional to n squared: what is left of a polygon that withstands
- * becomes a fan.
+ * which may overlap. What is left of a polygon that withstands becomes a
+ * fan, also when all polygons together have used up a budget of work; from there on each takes linear time.
  *
  * @param[out] triangles 3 (n - 2) vertex numbers, valid until the next call
  */

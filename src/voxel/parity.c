@@ -50,26 +50,27 @@ static bool fold_across_rows(vxm_grid *grid, vxm_scratch *s) {
   for (int64_t v = box->v_begin; v < box->v_end; v++) {
     uint64_t *words = s->raster.words + (size_t)(v - box->v_begin) * s->raster.v_stride;
     uint64_t open = 0;
-    for (int64_t w = box->w_begin; w < box->w_end; w++, words += n) {
+    uint64_t *before = NULL;
+    for (int64_t w = box->w_begin; w < box->w_end; w++, before = words, words += n) {
       uint64_t *row = grid_row(grid, s, v, w);
       open = 0;
       for (size_t i = 0; i < n; i++) {
-        if (w > box->w_begin) {
-          words[i] ^= words[i - n];
-          words[i - n] = 0;
+        if (before) {
+          words[i] ^= before[i];
+          before[i] = 0;
         }
         row[i] |= words[i];
         open |= words[i];
       }
       any |= open;
     }
-    words -= n;
+    /* What is left open at the end of the box runs to the end of the grid. */
     for (int64_t w = box->w_end; open && w < w_dim; w++) {
       uint64_t *row = grid_row(grid, s, v, w);
       for (size_t i = 0; i < n; i++)
-        row[i] |= words[i];
+        row[i] |= before[i];
     }
-    memset(words, 0, n * sizeof *words);
+    memset(before, 0, n * sizeof *before);
   }
   return any != 0;
 }

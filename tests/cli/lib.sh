@@ -27,6 +27,7 @@ mask() {
     -e 's/("(read|repair|voxelize|write|total)": )[0-9][0-9.e+-]*/\1T/' \
     -e 's/("peak_bytes": )[0-9]+/\1N/' \
     -e 's/^(threads +)[0-9]+/\1N/' \
+    -e '/memory limit/s/[0-9]+ (bytes|KiB|MiB|GiB)/N bytes/g' \
     -e 's/^(memory +)[0-9.]+ MiB/\1N MiB/'
 }
 

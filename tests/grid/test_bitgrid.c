@@ -180,18 +180,12 @@ static void test_space_check(void **state) {
     double origin, size;
     vxm_status status;
   } cases[] = {
-      {{0, 1, 1}, 0, 1, VXM_ERROR_ARGUMENT},
-      {{1, -5, 1}, 0, 1, VXM_ERROR_ARGUMENT},
-      {{1, 1, INT64_MIN}, 0, 1, VXM_ERROR_ARGUMENT},
-      {{1, 1, VXM_DIM_MAX + 1}, 0, 1, VXM_ERROR_RANGE},
-      {{INT64_MAX, 1, 1}, 0, 1, VXM_ERROR_RANGE},
-      {{1, 1, 1}, NAN, 1, VXM_ERROR_ARGUMENT},
-      {{1, 1, 1}, -INFINITY, 1, VXM_ERROR_ARGUMENT},
-      {{1, 1, 1}, 0, 0, VXM_ERROR_ARGUMENT},
-      {{1, 1, 1}, 0, -1, VXM_ERROR_ARGUMENT},
-      {{1, 1, 1}, 0, NAN, VXM_ERROR_ARGUMENT},
-      {{1, 1, 1}, 0, INFINITY, VXM_ERROR_ARGUMENT},
-      {{1, 1, 1}, 1e308, 5e-324, VXM_OK},
+      {{0, 1, 1}, 0, 1, VXM_ERROR_ARGUMENT},         {{1, -5, 1}, 0, 1, VXM_ERROR_ARGUMENT},
+      {{1, 1, INT64_MIN}, 0, 1, VXM_ERROR_ARGUMENT}, {{1, 1, VXM_DIM_MAX + 1}, 0, 1, VXM_ERROR_RANGE},
+      {{INT64_MAX, 1, 1}, 0, 1, VXM_ERROR_RANGE},    {{1, 1, 1}, NAN, 1, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, -INFINITY, 1, VXM_ERROR_ARGUMENT}, {{1, 1, 1}, 0, 0, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, 0, -1, VXM_ERROR_ARGUMENT},        {{1, 1, 1}, 0, NAN, VXM_ERROR_ARGUMENT},
+      {{1, 1, 1}, 0, INFINITY, VXM_ERROR_ARGUMENT},  {{1, 1, 1}, 1e308, 5e-324, VXM_OK},
   };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++)
     for (int axis = 0; axis < 3; axis++) {
@@ -246,9 +240,12 @@ static void test_context_lives_on(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_against_bytes), cmocka_unit_test(test_row_spans),
-      cmocka_unit_test(test_hash),          cmocka_unit_test(test_compare),
-      cmocka_unit_test(test_space_check),   cmocka_unit_test(test_memory_limit),
+      cmocka_unit_test(test_against_bytes),
+      cmocka_unit_test(test_row_spans),
+      cmocka_unit_test(test_hash),
+      cmocka_unit_test(test_compare),
+      cmocka_unit_test(test_space_check),
+      cmocka_unit_test(test_memory_limit),
       cmocka_unit_test(test_context_lives_on),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

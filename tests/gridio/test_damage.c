@@ -61,9 +61,9 @@ static void test_truncation(void **state) {
     for (size_t size = 0; size < samples[s].size; size++) {
       vxm_error error = VXM_ERROR_INIT;
       vxm_grid *grid;
-      assert_int_equal(read_bytes(&grid, samples[s].format, context, samples[s].path, samples[s].data, size,
-                                  &error),
-                       VXM_ERROR_FORMAT);
+      assert_int_equal(
+          read_bytes(&grid, samples[s].format, context, samples[s].path, samples[s].data, size, &error),
+          VXM_ERROR_FORMAT);
       assert_null(grid);
       assert_true(error.offset >= 0 && error.offset <= (int64_t)size);
       assert_non_null(strstr(error.text, "s."));
@@ -101,7 +101,8 @@ static size_t mutate(unsigned char *data, size_t size, vxm_rng *rng) {
   return size;
 }
 
-/** Random damage: a grid that keeps its invariants, or an error; never much more memory than the file earns. */
+/** Random damage: a grid that keeps its invariants, or an error; never much more memory than the file earns.
+ */
 static void test_mutation(void **state) {
   (void)state;
   enum { ROUNDS = 20000 };
@@ -165,7 +166,7 @@ static const refused cases[] = {
     CASE("a.binvox", "#binvox 1\ndim 2 2 x\ndata\n\0\10", VXM_ERROR_FORMAT, 10, "three"),
     CASE("a.binvox", "#binvox 1\ndim 0 0 0\ndata\n\0\10", VXM_ERROR_FORMAT, 10, "0 voxels"),
     CASE("a.binvox", "#binvox 1\ndim -2 2 2\ndata\n\0\10", VXM_ERROR_FORMAT, 10, "-2"),
-    CASE("a.binvox", "#binvox 1\ndim 1048577 1 1\ndata\n\0\10", VXM_ERROR_RANGE, 10, "1048577"),
+    CASE("a.binvox", "#binvox 1\ndim 1048577 1 1\ndata\n\0\10", VXM_ERROR_RANGE, 10, "1048576"),
     CASE("a.binvox", "#binvox 1\ndim 99999999999999999999 1 1\ndata\n", VXM_ERROR_FORMAT, 10, "three"),
     CASE("a.binvox", "#binvox 1\ndim 1048576 1048576 1048576\ndata\n\1\377", VXM_ERROR_FORMAT, 45, "short"),
     CASE("a.binvox", "#binvox 1\ndim 2 2 2\nscale 0\ndata\n\0\10", VXM_ERROR_FORMAT, 20, "positive"),
@@ -203,7 +204,8 @@ static const refused cases[] = {
          VXM_ERROR_FORMAT, 73, "behind"),
     CASE("a.npy", NPY("{'descr': '|b1', 'fortran_order': None, 'shape': (1, 1, 1), }                   \0"),
          VXM_ERROR_FORMAT, 44, "True or False"),
-    CASE("a.npy", NPY("{'descr': '<i4', 'fortran_order': False, 'shape': (1, 1, 2), }                  \0\0\0\0\0"),
+    CASE("a.npy",
+         NPY("{'descr': '<i4', 'fortran_order': False, 'shape': (1, 1, 2), }                  \0\0\0\0\0"),
          VXM_ERROR_FORMAT, 95, "1 of 2"),
 };
 
@@ -287,21 +289,25 @@ static void test_refused_binary(void **state) {
   assert_int_equal(vxm_gridio_read(&back, context, raw, &error), VXM_OK);
   vxm_grid_destroy(back);
 #define HEAD "{\"format\":\"voxmend raw\",\"version\":1,"
-  static const char *const bad[] = {
-      "", "{", "7", HEAD "\"dims\":[10,1]}", "{\"format\":\"voxmend raw\",\"version\":2,\"dims\":[10,1,1]}",
-      HEAD "\"dims\":[10,1,1],\"origin\":[0,0,0]}",
-      HEAD "\"dims\":[10,1.0,1],\"origin\":[0,0,0],\"voxel_size\":[1,1,1]}",
-      HEAD "\"dims\":[10,1,1],\"origin\":[0,0,0],\"voxel_size\":[1,0,1]}",
-      HEAD "\"dims\":[10,1,1],\"origin\":[0,0,null],\"voxel_size\":[1,1,1]}",
-      HEAD "\"dims\":[10,-1,1],\"origin\":[0,0,0],\"voxel_size\":[1,1,1]}",
-      HEAD "\"dims\":[10,1,1],\"origin\":[0,0,0],\"voxel_size\":[1,1,1e999]}"};
+  static const char *const bad[] = {"",
+                                    "{",
+                                    "7",
+                                    HEAD "\"dims\":[10,1]}",
+                                    "{\"format\":\"voxmend raw\",\"version\":2,\"dims\":[10,1,1]}",
+                                    HEAD "\"dims\":[10,1,1],\"origin\":[0,0,0]}",
+                                    HEAD "\"dims\":[10,1.0,1],\"origin\":[0,0,0],\"voxel_size\":[1,1,1]}",
+                                    HEAD "\"dims\":[10,1,1],\"origin\":[0,0,0],\"voxel_size\":[1,0,1]}",
+                                    HEAD "\"dims\":[10,1,1],\"origin\":[0,0,null],\"voxel_size\":[1,1,1]}",
+                                    HEAD "\"dims\":[10,-1,1],\"origin\":[0,0,0],\"voxel_size\":[1,1,1]}",
+                                    HEAD "\"dims\":[10,1,1],\"origin\":[0,0,0],\"voxel_size\":[1,1,1e999]}"};
   for (size_t b = 0; b < sizeof bad / sizeof bad[0]; b++) {
     save_file(json, bad[b], strlen(bad[b]));
     assert_int_equal(vxm_gridio_read(&back, context, raw, &error), VXM_ERROR_FORMAT);
     assert_non_null(strstr(error.text, "g.raw.json"));
     assert_null(back);
   }
-  static const char good[] = HEAD "\"dims\":[10,1,1],\"origin\":[0,-1,2.5],\"voxel_size\":[1,2,3],\"note\":{}}";
+  static const char good[] =
+      HEAD "\"dims\":[10,1,1],\"origin\":[0,-1,2.5],\"voxel_size\":[1,2,3],\"note\":{}}";
   save_file(json, good, sizeof good - 1);
   assert_int_equal(vxm_gridio_read(&back, context, raw, &error), VXM_OK);
   assert_true(back->space.origin[2] == 2.5 && back->space.voxel_size[1] == 2);
@@ -373,7 +379,8 @@ static void test_cancel(void **state) {
   remove_folder(folder);
 }
 
-/** With every limit from too little to enough: the limit's own error, no file, and never more than the limit. */
+/** With every limit from too little to enough: the limit's own error, no file, and never more than the limit.
+ */
 static void test_memory_limit(void **state) {
   (void)state;
   char folder[64];
@@ -449,9 +456,9 @@ static void test_pair_is_whole(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_truncation), cmocka_unit_test(test_mutation),
-      cmocka_unit_test(test_refusals),   cmocka_unit_test(test_refused_binary),
-      cmocka_unit_test(test_cancel),     cmocka_unit_test(test_memory_limit),
+      cmocka_unit_test(test_truncation),    cmocka_unit_test(test_mutation),
+      cmocka_unit_test(test_refusals),      cmocka_unit_test(test_refused_binary),
+      cmocka_unit_test(test_cancel),        cmocka_unit_test(test_memory_limit),
       cmocka_unit_test(test_pair_is_whole),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -89,8 +89,8 @@ static unsigned char *plain_binvox_reader(const char *path, int *d, double trans
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
   int version, d2, d3;
-  assert_int_equal(fscanf(file, "#binvox %d\ndim %d %d %d\ntranslate %lf %lf %lf\nscale %lf\ndata", &version, d,
-                          &d2, &d3, &translate[0], &translate[1], &translate[2], scale),
+  assert_int_equal(fscanf(file, "#binvox %d\ndim %d %d %d\ntranslate %lf %lf %lf\nscale %lf\ndata", &version,
+                          d, &d2, &d3, &translate[0], &translate[1], &translate[2], scale),
                    8);
   assert_int_equal(fgetc(file), '\n');
   assert_int_equal(version, 1);
@@ -173,7 +173,8 @@ static void test_binvox_tolerance(void **state) {
   make_folder(folder);
   vxm_context *context = context_with(1, 0, NULL, NULL);
 
-  /* Keys in any order, comments, CRLF, no translate, an unknown key, a zero count, labels, a byte too many. */
+  /* Keys in any order, comments, CRLF, no translate, an unknown key, a zero count, labels, a byte too many.
+   */
   vxm_grid *grid = read_text(context, folder, "a.binvox",
                              TEXT("#binvox 2\r\n# made by hand\r\nscale 4\r\ncolour red\r\ndim 2 2 2\r\n"
                                   "data\r\n\0\3\7\2\1\0\0\3\1"));
@@ -237,11 +238,13 @@ static void test_expected_bytes(void **state) {
   write_grid(grid, path_in(folder, "t.raw"));
   /* x fastest: bits 1, 5 and 9 of 12. */
   assert_file(path_in(folder, "t.raw"), TEXT("\x22\x02"));
-  assert_file(path_in(folder, "t.raw.json"),
-              TEXT("{\n  \"format\": \"voxmend raw\",\n  \"version\": 1,\n  \"dims\": [\n    3,\n    2,\n    2\n  ],\n"
-                   "  \"origin\": [\n    -1.5,\n    0.10000000000000001,\n    1.9999999999999999e-7\n  ],\n"
-                   "  \"voxel_size\": [\n    0.25,\n    0.25,\n    0.25\n  ],\n"
-                   "  \"order\": \"x fastest, then y, then z\",\n  \"bits\": \"least significant first\"\n}\n"));
+  assert_file(
+      path_in(folder, "t.raw.json"),
+      TEXT(
+          "{\n  \"format\": \"voxmend raw\",\n  \"version\": 1,\n  \"dims\": [\n    3,\n    2,\n    2\n  ],\n"
+          "  \"origin\": [\n    -1.5,\n    0.10000000000000001,\n    1.9999999999999999e-7\n  ],\n"
+          "  \"voxel_size\": [\n    0.25,\n    0.25,\n    0.25\n  ],\n"
+          "  \"order\": \"x fastest, then y, then z\",\n  \"bits\": \"least significant first\"\n}\n"));
   write_grid(grid, path_in(folder, "t.npy"));
   /* z fastest: (0,1,1) is 3, (1,0,0) is 4, (2,1,0) is 10. */
   assert_file(path_in(folder, "t.npy"),
@@ -321,14 +324,17 @@ static void test_npy_types(void **state) {
   for (size_t t = 0; t < sizeof types / sizeof types[0]; t++)
     for (int fortran = 0; fortran < 2; fortran++) {
       vxm_context *context = context_with(1 + fortran, 0, NULL, NULL);
-      int64_t shape[3] = {random_side(&rng, 80), random_side(&rng, 30), random_side(&rng, 70)};
+      int64_t shape[3];
+      for (int a = 0; a < 3; a++)
+        shape[a] = random_side(&rng, 75);
       size_t count = (size_t)(shape[0] * shape[1] * shape[2]), size = types[t].size;
       unsigned char *data = calloc(count, size);
       bool is_float = types[t].descr[1] == 'f', big = types[t].descr[0] == '>';
       for (size_t e = 0; e < count; e++) {
         uint64_t choice = vxm_rng_below(&rng, 4);
+        size_t byte = vxm_rng_below(&rng, size);
         if (choice == 0) /* one byte of the element; of a number with a sign not the sign alone */
-          data[e * size + vxm_rng_below(&rng, size)] = (unsigned char)(1 + vxm_rng_below(&rng, 127));
+          data[e * size + byte] = (unsigned char)(1 + vxm_rng_below(&rng, 127));
         else if (choice == 1 && is_float) /* minus zero is zero */
           data[e * size + (big ? 0 : size - 1)] = 0x80;
       }
@@ -431,10 +437,14 @@ static void test_format_choice(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_exact_round_trips), cmocka_unit_test(test_transforms_bit_for_bit),
-      cmocka_unit_test(test_binvox),            cmocka_unit_test(test_binvox_tolerance),
-      cmocka_unit_test(test_expected_bytes),    cmocka_unit_test(test_long_runs),
-      cmocka_unit_test(test_npy_types),         cmocka_unit_test(test_npy_sidecar),
+      cmocka_unit_test(test_exact_round_trips),
+      cmocka_unit_test(test_transforms_bit_for_bit),
+      cmocka_unit_test(test_binvox),
+      cmocka_unit_test(test_binvox_tolerance),
+      cmocka_unit_test(test_expected_bytes),
+      cmocka_unit_test(test_long_runs),
+      cmocka_unit_test(test_npy_types),
+      cmocka_unit_test(test_npy_sidecar),
       cmocka_unit_test(test_format_choice),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

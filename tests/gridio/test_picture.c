@@ -13,12 +13,6 @@ static vxm_context *context_of(int threads) {
   return context_with(threads, 0, NULL, NULL);
 }
 
-static void fill_box(vxm_grid *grid, const int64_t low[3], const int64_t high[3]) {
-  for (int64_t k = low[2]; k < high[2]; k++)
-    for (int64_t j = low[1]; j < high[1]; j++)
-      vxm_row_set_span(vxm_grid_row(grid, j, k), low[0], high[0]);
-}
-
 /* ---- Rays ---- */
 
 /** The first set voxel along a ray, by cutting the ray with every voxel's box. */
@@ -48,15 +42,17 @@ static void test_rays(void **state) {
   (void)state;
   vxm_context *context = context_of(1);
   vxm_rng rng = {21};
-  for (int round = 0; round < 60; round++) {
+  for (int round = 0; round < 120; round++) {
     vxm_space space = random_space(&rng, 40, false);
-    if (round % 8 == 0)
-      space.dims[0] = 150;
+    if (round % 4 == 0) /* flat, and long */
+      space.dims[round / 4 % 3] = round % 8 == 0 ? 150 : 1;
     vxm_grid *grid = new_grid(context, space);
-    for (int n = 0; n < (round % 4) * 8; n++)
-      vxm_grid_set(grid, (int64_t)vxm_rng_below(&rng, (uint64_t)space.dims[0]),
-                   (int64_t)vxm_rng_below(&rng, (uint64_t)space.dims[1]),
-                   (int64_t)vxm_rng_below(&rng, (uint64_t)space.dims[2]), true);
+    for (int n = 0; n < (round % 4) * 8; n++) {
+      int64_t p[3];
+      for (int a = 0; a < 3; a++)
+        p[a] = (int64_t)vxm_rng_below(&rng, (uint64_t)space.dims[a]);
+      vxm_grid_set(grid, p[0], p[1], p[2], true);
+    }
     vxm_pyramid pyramid;
     assert_int_equal(vxm_pyramid_create(&pyramid, grid, NULL), VXM_OK);
     for (int r = 0; r < 40; r++) {
@@ -216,6 +212,12 @@ static void test_framing(void **state) {
   }
   vxm_context_destroy(context);
   remove_folder(folder);
+}
+
+static void fill_box(vxm_grid *grid, const int64_t low[3], const int64_t high[3]) {
+  for (int64_t k = low[2]; k < high[2]; k++)
+    for (int64_t j = low[1]; j < high[1]; j++)
+      vxm_row_set_span(vxm_grid_row(grid, j, k), low[0], high[0]);
 }
 
 /** A tower on a plate stands up, and on the side that the azimuth says. */

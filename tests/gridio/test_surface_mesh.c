@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The surface as a mesh: exactly the exposed faces, each once, in rectangles, closed mod 2, facing outward. */
+/** The surface as a mesh: exactly the exposed faces, each once, in rectangles, closed mod 2, facing outward.
+ */
 #include "grids.h"
 
 #include "base/file.h"
@@ -84,12 +85,13 @@ static void paint(painted *p, const int64_t voxel[3], int side) {
   *sides = (uint8_t)(*sides | 1u << side);
 }
 
-/** A polygon must run round its bounding rectangle once; paints the unit faces in it. Returns their number. */
+/** A polygon must run round its bounding rectangle once; paints the unit faces in it. Returns their number.
+ */
 static int64_t paint_polygon(painted *p, const vxm_soup *soup, size_t face) {
   size_t n;
   const uint32_t *corner = vxm_face(soup, face, &n);
   int64_t low[3] = {INT64_MAX, INT64_MAX, INT64_MAX}, high[3] = {-1, -1, -1}, area[3] = {0, 0, 0};
-  int64_t (*at)[3] = malloc(n * sizeof *at);
+  int64_t(*at)[3] = malloc(n * sizeof *at);
   assert_non_null(at);
   for (size_t c = 0; c < n; c++)
     for (int a = 0; a < 3; a++) {
@@ -377,9 +379,9 @@ static void test_mesh_files(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_random_grids),         cmocka_unit_test(test_all_of_eight),
-      cmocka_unit_test(test_known_sizes),          cmocka_unit_test(test_same_for_all_threads),
-      cmocka_unit_test(test_cancel_and_limit),     cmocka_unit_test(test_mesh_files),
+      cmocka_unit_test(test_random_grids),     cmocka_unit_test(test_all_of_eight),
+      cmocka_unit_test(test_known_sizes),      cmocka_unit_test(test_same_for_all_threads),
+      cmocka_unit_test(test_cancel_and_limit), cmocka_unit_test(test_mesh_files),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

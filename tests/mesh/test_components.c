@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "soups.h"
+#include "shared.h"
 
 #include "mesh/components.h"
 
@@ -157,11 +157,43 @@ static void can_be_cancelled(void **state) {
   }
 }
 
+/* ---- The paper's models ---- */
+
+static void check_paper_model(const shared_mesh *mesh, void *payload) {
+  static const struct {
+    const char *file;
+    size_t components;
+  } models[] = {{"paper/nau-al.obj", 21}, {"paper/common3d-teapot.obj", 4}};
+  for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
+    if (strcmp(mesh->values[0], models[i].file) != 0)
+      continue;
+    vxm_context *context = context_of_threads(2);
+    vxm_soup *soup = read_soup(context, mesh->path);
+    size_t count;
+    assert_int_equal(vxm_components(context, soup, NULL, NULL, &count, NULL), VXM_OK);
+    assert_int_equal(count, models[i].components);
+    check(context, soup, NULL);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+    ++*(int *)payload;
+  }
+}
+
+/** Chen & Tu, Table 1: Al Capone has 21 parts and the teapot 4, by vertex index. */
+static void models_of_the_paper(void **state) {
+  (void)state;
+  int found = 0;
+  if (for_each_shared_mesh(check_paper_model, &found) == 0)
+    skip();
+  assert_int_equal(found, 2);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(random_soups),
       cmocka_unit_test(long_strips_take_few_rounds),
       cmocka_unit_test(can_be_cancelled),
+      cmocka_unit_test(models_of_the_paper),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

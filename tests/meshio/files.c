@@ -47,15 +47,18 @@ static void split(char *line, char **fields, size_t count) {
 static vxm_soup *read_file(const char *file, vxm_error *error) {
   char path[1024];
   snprintf(path, sizeof path, "%s/%s", meshes, file);
+  vxm_context *context;
   vxm_input input;
-  if (vxm_input_open(&input, NULL, path, error) != VXM_OK)
+  assert_int_equal(vxm_context_create(&context, NULL, error), VXM_OK);
+  if (vxm_input_open(&input, context, path, error) != VXM_OK)
     fail_msg("%s", error->text);
   vxm_soup *soup;
-  if (vxm_meshio_read(&soup, NULL, input.data, input.size, path, error) != VXM_OK)
+  if (vxm_meshio_read(&soup, context, input.data, input.size, path, error) != VXM_OK)
     soup = NULL;
   else
     check_invariants(soup);
   vxm_input_close(&input);
+  vxm_context_destroy(context);
   return soup;
 }
 

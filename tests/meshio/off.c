@@ -45,7 +45,7 @@ static void test_missing_word(void **state) {
   (void)state;
   vxm_soup *soup = read_text("4 4 6\n" TETRAHEDRON, "x.off");
   expect_counts(soup, 4, 4);
-  expect_note(soup, "line 1: no OFF keyword");
+  expect_note(soup, "line 1: no OFF keyword; the file begins");
   vxm_soup_destroy(soup);
   soup = read_text("4 4 6\n" TETRAHEDRON, "-");
   expect_counts(soup, 4, 4);

@@ -23,11 +23,14 @@ static void write_ok(const vxm_soup *soup, const char *name, const char *format,
 }
 
 static vxm_soup *read_file(const char *name) {
+  vxm_context *context;
   vxm_input input;
   vxm_error error = VXM_ERROR_INIT;
-  assert_int_equal(vxm_input_open(&input, NULL, path_of(name), &error), VXM_OK);
+  assert_int_equal(vxm_context_create(&context, NULL, &error), VXM_OK);
+  assert_int_equal(vxm_input_open(&input, context, path_of(name), &error), VXM_OK);
   vxm_soup *soup = read_data(input.data, input.size, name);
   vxm_input_close(&input);
+  vxm_context_destroy(context);
   return soup;
 }
 

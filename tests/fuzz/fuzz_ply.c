@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Any bytes through the reader of PLY. */
+#include "fuzz_mesh.h"
+
+const char fuzz_corpus[] = "ply";
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  fuzz_mesh(vxm_ply_read, data, size);
+  return 0;
+}
