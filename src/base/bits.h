@@ -36,6 +36,18 @@ static inline int64_t vxm_floor_div(int64_t a, int64_t b) {
   return q - (a % b < 0);
 }
 
+/** Bit c of word r goes to bit r of word c: blocks of 32, 16, ... 1 change places across the diagonal. */
+static inline void vxm_transpose64(uint64_t block[64]) {
+  uint64_t mask = UINT64_C(0x00000000ffffffff);
+  for (unsigned size = 32; size > 0; size /= 2, mask ^= mask << size)
+    for (unsigned base = 0; base < 64; base += 2 * size)
+      for (unsigned r = base; r < base + size; r++) {
+        uint64_t change = (block[r] >> size ^ block[r + size]) & mask;
+        block[r] ^= change << size;
+        block[r + size] ^= change;
+      }
+}
+
 /** a * b into *product; false if it overflows. */
 static inline bool vxm_size_mul(size_t a, size_t b, size_t *product) {
   return !__builtin_mul_overflow(a, b, product);

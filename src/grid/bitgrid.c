@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/bitgrid.h"
 #include "base/hash.h"
+#include "base/threads.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -122,15 +123,35 @@ uint64_t vxm_grid_hash(const vxm_grid *grid) {
   return hash;
 }
 
-void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes) {
+typedef struct unpacking {
+  const vxm_grid *grid;
+  uint8_t *bytes;
+} unpacking;
+
+/** All voxels of one j: 64 x 64 bits at a time are turned from running along x to running along z. */
+static void unpack_layer(size_t j, int worker, void *payload) {
+  (void)worker;
+  const unpacking *u = payload;
+  const vxm_grid *grid = u->grid;
   size_t nx = (size_t)grid->space.dims[0], ny = (size_t)grid->space.dims[1], nz = (size_t)grid->space.dims[2];
-  for (size_t k = 0; k < nz; k++)
-    for (size_t j = 0; j < ny; j++) {
-      const uint64_t *row = vxm_grid_row(grid, (int64_t)j, (int64_t)k);
-      uint8_t *column = bytes + j * nz + k;
-      for (size_t i = 0; i < nx; i++)
-        column[i * ny * nz] = (uint8_t)(row[i / 64] >> (i % 64) & 1);
+  for (size_t w = 0; w < grid->row_words; w++)
+    for (size_t k0 = 0; k0 < nz; k0 += 64) {
+      uint64_t block[64] = {0};
+      size_t count = nz - k0 < 64 ? nz - k0 : 64, columns = nx - w * 64 < 64 ? nx - w * 64 : 64;
+      for (size_t k = 0; k < count; k++)
+        block[k] = vxm_grid_row(grid, (int64_t)j, (int64_t)(k0 + k))[w];
+      vxm_transpose64(block);
+      for (size_t c = 0; c < columns; c++) {
+        uint8_t *to = u->bytes + ((w * 64 + c) * ny + j) * nz + k0;
+        for (size_t k = 0; k < count; k++)
+          to[k] = (uint8_t)(block[c] >> k & 1);
+      }
     }
+}
+
+void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes) {
+  unpacking u = {grid, bytes};
+  vxm_parallel(grid->context, (size_t)grid->space.dims[1], unpack_layer, &u);
 }
 
 int64_t vxm_grid_warning_count(const vxm_grid *grid) {
