@@ -39,11 +39,15 @@ void fuzz_mesh(fuzz_reader *reader, const uint8_t *data, size_t size) {
   options.threads = 1;
   options.memory_limit = (uint64_t)size * RATE + BESIDES;
   vxm_context *context;
-  vxm_soup *soup;
+  vxm_soup *soup = NULL;
   vxm_error error = VXM_ERROR_INIT;
+  vxm_status status;
   require(vxm_context_create(&context, &options, &error) == VXM_OK, "a context can be made");
-  require(vxm_soup_create(&soup, context, "", &error) == VXM_OK, "a soup can be made");
-  vxm_status status = reader(soup, data, size, "fuzz", &error);
+  if (reader) {
+    require(vxm_soup_create(&soup, context, "", &error) == VXM_OK, "a soup can be made");
+    status = reader(soup, data, size, "fuzz", &error);
+  } else
+    status = vxm_meshio_read(&soup, context, data, size, "fuzz", &error);
   require(status != VXM_ERROR_MEMORY_LIMIT, "memory stays in proportion to the size");
   if (status == VXM_OK) {
     check_soup(soup);

@@ -9,8 +9,8 @@ typedef vxm_status fuzz_reader(vxm_soup *soup, const unsigned char *data, size_t
                                vxm_error *error);
 
 /**
- * Reads the bytes and aborts if the reader breaks a promise: indices in range, one line of text for a
- * failure, and memory in proportion to the size.
+ * Reads the bytes, by the reader that their content asks for if `reader` is NULL, and aborts if it breaks a
+ * promise: indices in range, one line of text for a failure, and memory in proportion to the size.
  */
 void fuzz_mesh(fuzz_reader *reader, const uint8_t *data, size_t size);
 

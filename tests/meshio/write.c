@@ -5,6 +5,7 @@
 #include "meshio/triangulate.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <float.h>
 #include <unistd.h>
 
@@ -180,6 +181,25 @@ static void test_failures(void **state) {
   if (access("/dev/full", W_OK) == 0)
     assert_int_equal(vxm_meshio_write(soup, "/dev/full", "ply", false, &error), VXM_ERROR_IO);
   vxm_soup_destroy(soup);
+}
+
+static void test_standard_output(void **state) {
+  (void)state;
+  vxm_soup *soup = random_soup(&(vxm_rng){19}, 10, 10, 4);
+  vxm_error error = VXM_ERROR_INIT;
+  fflush(stdout);
+  int kept = dup(STDOUT_FILENO), file = open(path_of("out"), O_CREAT | O_WRONLY, 0666);
+  assert_true(kept >= 0 && file >= 0 && dup2(file, STDOUT_FILENO) >= 0);
+  vxm_status status = vxm_meshio_write(soup, "-", "ply", false, &error);
+  assert_true(dup2(kept, STDOUT_FILENO) >= 0);
+  close(kept);
+  close(file);
+  assert_int_equal(status, VXM_OK);
+  vxm_soup *back = read_file("out");
+  expect_same(soup, back);
+  vxm_soup_destroy(back);
+  vxm_soup_destroy(soup);
+  unlink(path_of("out"));
 }
 
 static int stop(const char *phase, double fraction, void *payload) {
@@ -378,11 +398,16 @@ static int remove_folder(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_round_trips),  cmocka_unit_test(test_special_values),
-      cmocka_unit_test(test_empty),        cmocka_unit_test(test_tags),
-      cmocka_unit_test(test_stl),          cmocka_unit_test(test_failures),
-      cmocka_unit_test(test_cancel),       cmocka_unit_test(test_triangulate),
-      cmocka_unit_test(test_stl_polygons), cmocka_unit_test(test_triangulate_nonsense)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trips),
+                                     cmocka_unit_test(test_special_values),
+                                     cmocka_unit_test(test_empty),
+                                     cmocka_unit_test(test_tags),
+                                     cmocka_unit_test(test_stl),
+                                     cmocka_unit_test(test_failures),
+                                     cmocka_unit_test(test_cancel),
+                                     cmocka_unit_test(test_standard_output),
+                                     cmocka_unit_test(test_triangulate),
+                                     cmocka_unit_test(test_stl_polygons),
+                                     cmocka_unit_test(test_triangulate_nonsense)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
