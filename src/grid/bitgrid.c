@@ -73,6 +73,7 @@ void vxm_grid_destroy(vxm_grid *grid) {
   if (!grid)
     return;
   vxm_context *context = grid->context;
+  vxm_free(context, grid->confidence);
   vxm_free(context, grid->words);
   vxm_free(context, grid);
   vxm_context_release(context);
@@ -131,6 +132,10 @@ void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes) {
       for (size_t i = 0; i < nx; i++)
         column[i * ny * nz] = (uint8_t)(row[i / 64] >> (i % 64) & 1);
     }
+}
+
+const uint8_t *vxm_grid_confidence(const vxm_grid *grid) {
+  return grid->confidence;
 }
 
 int64_t vxm_grid_warning_count(const vxm_grid *grid) {

@@ -17,6 +17,7 @@ struct vxm_grid {
   size_t slice_words; /**< row_words * dims[1] */
   size_t word_count;  /**< slice_words * dims[2] */
   uint64_t *words;    /**< bits beyond dims[0] in the last word of a row are zero: every writer keeps that */
+  uint8_t *confidence; /**< a byte per voxel, x fastest, or NULL */
   vxm_notes notes;
 };
 

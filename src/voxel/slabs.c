@@ -99,7 +99,7 @@ static void sort_facets(unite_state *state, size_t *counter, size_t *list) {
          end = facets->parts[state->job->part_end - 1].end;
   for (size_t f = begin; f < end; f++) {
     size_t first, last;
-    if (!state->job->with_cones && vxm_facet_is_cone(facets, f))
+    if (!(vxm_facet_role_of(facets, &facets->facets[f]) & state->job->roles))
       continue;
     if (!facet_slabs(state, &facets->facets[f], &first, &last))
       continue;

@@ -18,7 +18,7 @@ typedef struct vxm_unite_job {
   const vxm_lattice *lattice;
   vxm_axes axes;               /**< slabs are cut along v */
   size_t part_begin, part_end; /**< these parts only */
-  bool with_cones;             /**< the cones count as triangles */
+  unsigned roles;              /**< facets of these roles count, or-ed vxm_facet_role */
   bool to_apex;                /**< a facet reaches from its triangle to the part's apex */
   atomic_uchar *touched;       /**< per part: set to 1 if it sets a voxel; may be NULL */
   const char *phase;           /**< for progress */

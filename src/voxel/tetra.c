@@ -140,7 +140,7 @@ static bool fold_presence(vxm_grid *grid, vxm_scratch *s) {
 vxm_status vxm_tetra_unite(vxm_grid *grid, const vxm_unite_job *job, vxm_error *error) {
   vxm_unite_job tetra = *job;
   tetra.axes = vxm_axes_of(0);
-  tetra.with_cones = false;
+  tetra.roles = VXM_FACET_TRIANGLE;
   tetra.to_apex = true;
   return vxm_unite(grid, &tetra, draw_tetrahedron, fold_presence, error);
 }
