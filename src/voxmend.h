@@ -4,10 +4,10 @@
  *
  * Conventions (doc/conventions.md has them in full):
  *  - Every fallible call returns a vxm_status, 0 for success, and describes a failure in one line in the
- *    caller's vxm_error, which may be NULL. After a failure nothing is created and output arguments are NULL
- * or 0.
- *  - `out` arguments come first, options next, the error last. A NULL options pointer means defaults, and so
- * does a field that is zero; start from the matching VXM_..._INIT.
+ *    caller's vxm_error, which may be NULL. After a failure nothing is created and output arguments are
+ *    NULL or 0.
+ *  - `out` arguments come first, options next, the error last. A NULL options pointer means defaults; to set
+ *    some options start from the matching VXM_..._INIT.
  *  - What a call creates belongs to the caller and has a destroy function that accepts NULL. What a getter
  *    returns belongs to its object and lives as long as it.
  *  - Distinct objects may be used from distinct threads at the same time, also when they share a context.
@@ -149,7 +149,7 @@ VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const v
  * Reads a mesh file: OFF, OBJ, STL or PLY, told by content first and by name second.
  * What a damaged file still holds is read, and each kind of damage becomes a warning of the mesh.
  *
- * @param path file to read; "-" reads standard input
+ * @param path file to read; "-" reads standard input. A file is mapped: nobody may shorten it meanwhile
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond 2^32 - 2
  * vertices; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
@@ -438,7 +438,8 @@ typedef struct vxm_space_options {
   double voxel_size;     /**< model units */
   vxm_fit fit;
   int64_t pad; /**< empty voxels kept free on each side; within `resolution`, in addition with voxel_size */
-  bool use_bounds;       /**< cover `bounds` exactly instead of fitting to the model */
+  bool use_bounds;       /**< cover `bounds` instead of fitting to the model: from their minimum corner
+                              on, rounded up to whole voxels; exactly if three numbers are given */
   double bounds[6];      /**< x0 y0 z0 x1 y1 z1 */
   const vxm_space *like; /**< take exactly this space; overrides the rest */
 } vxm_space_options;
@@ -478,7 +479,7 @@ typedef struct vxm_voxelize_report {
   int64_t escalated;    /**< those of them that the winding number decided */
   int64_t voxels;       /**< set voxels */
   uint64_t hash;        /**< vxm_grid_hash */
-  int64_t empty_parts;  /**< parts that set no voxel */
+  int64_t empty_parts;  /**< parts that set no voxel; of open parts, all if together they set none */
 } vxm_voxelize_report;
 
 /**

@@ -144,6 +144,8 @@ static int common_option(cli_run *cli, int key, const char *value) {
     cli->strict = true;
     return CLI_END;
   case KEY_REPORT:
+    if (strcmp(value, "-") == 0)
+      return cli_usage(cli, "--report names a file; --json prints the report on standard output");
     cli->report = value;
     return CLI_END;
   case KEY_THREADS:

@@ -35,18 +35,6 @@ void vxm_planes_clear(vxm_planes *planes) {
   memset(planes->words, 0, planes->count * planes->plane_words * sizeof *planes->words);
 }
 
-/** Bit c of word r goes to bit r of word c: blocks of 32, 16, ... 1 change places across the diagonal. */
-static void transpose(uint64_t block[64]) {
-  uint64_t mask = UINT64_C(0x00000000ffffffff);
-  for (unsigned size = 32; size > 0; size /= 2, mask ^= mask << size)
-    for (unsigned base = 0; base < 64; base += 2 * size)
-      for (unsigned r = base; r < base + size; r++) {
-        uint64_t change = (block[r] >> size ^ block[r + size]) & mask;
-        block[r] ^= change << size;
-        block[r + size] ^= change;
-      }
-}
-
 typedef struct move {
   const vxm_planes *planes;
   const vxm_grid *grid;
@@ -86,7 +74,7 @@ static void gather_rows(size_t task, int worker, void *payload) {
       }
       memset(block + used, 0, (64 - used) * sizeof *block);
       if (any)
-        transpose(block);
+        vxm_transpose64(block);
       for (size_t p = 0; p < m->planes_used; p++)
         vxm_plane_row(planes, p, row)[w] = block[p];
     }
@@ -111,7 +99,7 @@ static void scatter_rows(size_t task, int worker, void *payload) {
         any |= block[p];
       }
       if (any)
-        transpose(block);
+        vxm_transpose64(block);
       size_t used = planes->length - w * 64 < 64 ? planes->length - w * 64 : 64;
       for (size_t e = 0; e < used; e++)
         m->grid->words[start + (w * 64 + e) * step + m->word] = block[e];

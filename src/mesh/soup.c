@@ -15,8 +15,14 @@ vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *for
     soup->context = owner;
     soup->format = format;
     soup->offsets = vxm_calloc(owner, 1, sizeof *soup->offsets, &local);
+    soup->indices = vxm_alloc(owner, 1, sizeof *soup->indices, &local);
+    soup->corner_capacity = 1;
   }
-  if (!soup || !soup->offsets) {
+  if (!soup || !soup->offsets || !soup->indices) {
+    if (soup) {
+      vxm_free(owner, soup->indices);
+      vxm_free(owner, soup->offsets);
+    }
     vxm_free(owner, soup);
     vxm_context_release(owner);
     if (error)

@@ -21,7 +21,7 @@ struct vxm_mesh {
   vxm_context *context; /**< one reference held */
   double *positions;    /**< vertex_count x 3 */
   uint64_t *offsets;    /**< face_count + 1; never NULL in a finished soup */
-  uint32_t *indices;    /**< corner_count */
+  uint32_t *indices;    /**< corner_count; never NULL, so that vxm_face is fine without corners */
   uint32_t *face_tags;  /**< face_count, or NULL when tag_count is 0 */
   char **tags;          /**< tag_count names, each a block of the context */
   size_t vertex_count, face_count, corner_count, tag_count;

@@ -118,8 +118,6 @@ static vxm_status decide_by_winding(solid *s, vxm_grid *out, const vxm_grid *ask
 
 static vxm_status agree_or_decide(solid *s, vxm_error *error) {
   size_t begin = kind_end(s, VXM_PART_CAPPED);
-  if (begin == s->facets.split.part_count)
-    return VXM_OK;
   vxm_grid *voters[VOTERS] = {NULL};
   vxm_status status = fill_voters(s, voters, 3, begin, error);
   if (status == VXM_OK)
@@ -169,18 +167,33 @@ static bool caps_are_wanted(const vxm_voxelize_options *options) {
          (options->method == VXM_METHOD_VOTE && options->vote == VXM_VOTE_AUTO);
 }
 
+/** The open parts count as empty if together they added nothing, whatever single voters held. */
+static void note_open_parts(solid *s, int64_t voxels_before) {
+  if (vxm_grid_count(s->grid) > voxels_before)
+    return;
+  for (size_t p = kind_end(s, VXM_PART_CAPPED); p < s->facets.split.part_count; p++)
+    atomic_store_explicit(&s->touched[p], 0, memory_order_relaxed);
+}
+
+static vxm_status decide_open_parts(solid *s, vxm_error *error) {
+  if (kind_end(s, VXM_PART_CAPPED) == s->facets.split.part_count)
+    return VXM_OK;
+  int64_t before = vxm_grid_count(s->grid);
+  vxm_status status = caps_are_wanted(s->options) ? agree_or_decide(s, error) : vote_by_rule(s, error);
+  if (status == VXM_OK)
+    note_open_parts(s, before);
+  return status;
+}
+
 static vxm_status fill(solid *s, vxm_error *error) {
   const vxm_voxelize_options *options = s->options;
   if (options->method != VXM_METHOD_VOTE && options->method != VXM_METHOD_WINDING)
     return unite_all_parts(s, options->method, error);
   vxm_status status = unite_closed_parts(s, error);
-  if (status != VXM_OK)
-    return status;
-  if (!caps_are_wanted(options))
-    return kind_end(s, VXM_PART_CLOSED) < s->facets.split.part_count ? vote_by_rule(s, error) : VXM_OK;
-  status = unite_capped_parts(s, error);
   if (status == VXM_OK)
-    status = agree_or_decide(s, error);
+    status = unite_capped_parts(s, error);
+  if (status == VXM_OK)
+    status = decide_open_parts(s, error);
   if (status == VXM_OK && options->method == VXM_METHOD_WINDING)
     status = fill_by_winding(s, error);
   return status;
@@ -215,8 +228,7 @@ static void fill_report(solid *s) {
   report->capped_parts = (int64_t)(kind_end(s, VXM_PART_CAPPED) - kind_end(s, VXM_PART_CLOSED));
   report->caps = (int64_t)split->capped_loops;
   report->cavities = (int64_t)split->cavity_count;
-  report->voxels = vxm_grid_count(s->grid);
-  report->hash = vxm_grid_hash(s->grid);
+  vxm_grid_sum(s->grid, &report->voxels, &report->hash);
   for (size_t p = 0; p < split->part_count; p++)
     report->empty_parts += !atomic_load_explicit(&s->touched[p], memory_order_relaxed);
 }

@@ -26,6 +26,7 @@ run 'voxmend info --memlimit 5Q in/cube.off'
 run 'voxmend info --memlimit 0 in/cube.off'
 run 'voxmend info --memlimit 99999999999999T in/cube.off'
 run 'voxmend info --progress sometimes in/cube.off'
+run 'voxmend info --report - in/cube.off'
 
 say "# repair"
 run 'voxmend repair in/cube.off'
