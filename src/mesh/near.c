@@ -6,6 +6,7 @@
 #include "mesh/buckets.h"
 #include "mesh/soup.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -27,7 +28,8 @@ typedef struct search {
   const double *positions;
   const uint8_t *roles;
   size_t count, slices;
-  double tolerance, width;
+  double tolerance;
+  double columns_per_unit;  /**< 1 / width of a cell */
   _Atomic uint32_t *parent; /**< union-find over vertices; the root is the lowest */
   _Atomic uint8_t *blocked; /**< vertices near an obstacle */
   _Atomic uint64_t *homes;  /**< bits that tell which cells may have members, by hash */
@@ -124,6 +126,14 @@ static uint64_t hash_cell(double x, double y, double z) {
                  rotate(coordinate_bits(z) * UINT64_C(0x165667b19e3779f9), 42));
 }
 
+/** floor, without a call on processors that the build does not take for granted to have it. */
+static double whole_below(double x) {
+  if (!(fabs(x) < 0x1p52))
+    return x;
+  double toward_zero = (double)(int64_t)x;
+  return toward_zero > x ? toward_zero - 1 : toward_zero;
+}
+
 /** The columns, per axis, that the ball about a point meets, and the one of the point. */
 typedef struct columns {
   double low[3], high[3], home[3];
@@ -133,12 +143,12 @@ typedef struct columns {
  * Rounding is monotonic, so that what is at most the tolerance away along an axis is in column low or high;
  * those are the same or neighbours.
  */
-static columns columns_of(const search *s, const double *p) {
+static inline columns columns_of(const search *s, const double *p) {
   columns c;
   for (int axis = 0; axis < 3; axis++) {
-    c.low[axis] = floor((p[axis] - s->tolerance) / s->width);
-    c.high[axis] = floor((p[axis] + s->tolerance) / s->width);
-    c.home[axis] = c.low[axis] == c.high[axis] ? c.low[axis] : floor(p[axis] / s->width);
+    c.low[axis] = whole_below((p[axis] - s->tolerance) * s->columns_per_unit);
+    c.high[axis] = whole_below((p[axis] + s->tolerance) * s->columns_per_unit);
+    c.home[axis] = c.low[axis] == c.high[axis] ? c.low[axis] : whole_below(p[axis] * s->columns_per_unit);
   }
   return c;
 }
@@ -346,7 +356,7 @@ static vxm_status fill_cells(search *s, vxm_context *context, vxm_error *error) 
   size_t members = 0, bits = 1024;
   for (size_t v = 0; v < s->count; v++)
     members += s->roles[v] == VXM_NEAR_MEMBER;
-  while (bits < 16 * members)
+  while (bits < 8 * members)
     bits *= 2;
   s->homes_shift = 64 - (unsigned)__builtin_ctzll(bits);
   s->parent = vxm_alloc(context, s->count, sizeof *s->parent, error);
@@ -381,7 +391,7 @@ vxm_status vxm_weld_near(vxm_context *context, const double *positions, size_t c
     return VXM_OK;
   }
   search s = {.positions = positions, .roles = roles, .count = count, .tolerance = tolerance};
-  s.width = CELL_TOLERANCES * tolerance;
+  s.columns_per_unit = fmin(1 / (CELL_TOLERANCES * tolerance), DBL_MAX);
   vxm_error local = VXM_ERROR_INIT;
   vxm_status status = fill_cells(&s, context, &local);
   if (status == VXM_OK)

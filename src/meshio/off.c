@@ -390,7 +390,7 @@ static vxm_status finish(vxm_scan *scan, uint64_t vertices, uint64_t faces, uint
     vxm_note(&soup->notes, "line %" PRId64 ": the file ends after %" PRIu64 " of %" PRIu64 " faces", end.line,
              done, faces);
   else if (skip_to_data(scan))
-    vxm_note(&soup->notes, "line %" PRId64 ": %" PRIu64 " more lines than announced; ignored",
+    vxm_note(&soup->notes, "line %" PRId64 ": more than announced; ignored (lines: %" PRIu64 ")",
              vxm_scan_line(scan, scan->at), vxm_lines_with_data(scan, '#', UINT64_MAX));
   if (soup->face_count == 0)
     vxm_note(&soup->notes, "the file has no faces");

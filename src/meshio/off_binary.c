@@ -127,7 +127,7 @@ vxm_status vxm_off_read_binary(vxm_scan *scan, vxm_off_header *header, vxm_error
     vxm_note(&soup->notes, "byte %" PRId64 ": the file ends after %" PRIu32 " of %" PRIu32 " faces", offset,
              done, faces);
   else if (left(scan) > 0)
-    vxm_note(&soup->notes, "byte %" PRId64 ": %zu bytes more than announced; ignored",
+    vxm_note(&soup->notes, "byte %" PRId64 ": more than announced; ignored (bytes: %zu)",
              (int64_t)(scan->at - scan->begin), left(scan));
   if (done < faces || beyond.count > 0)
     vxm_note_text_conversion(scan);

@@ -89,17 +89,17 @@ static vxm_status finish(vxm_scan *scan, const vxm_ply_header *header, vxm_ply_b
   if (body->faces_first && soup->vertex_count < header->vertices) {
     size_t dropped = vxm_soup_drop_bad_faces(soup);
     if (dropped > 0)
-      vxm_note(&soup->notes, "%zu faces name vertices that are cut off; skipped", dropped);
+      vxm_note(&soup->notes, "faces name vertices that are cut off; skipped (faces: %zu)", dropped);
   }
   vxm_status status = judge_cut(scan, header, body, error);
   if (status != VXM_OK)
     return status;
   note_damage(scan, header, body);
   if (header->ascii && vxm_skip_space(scan))
-    vxm_note(&soup->notes, "line %" PRId64 ": %" PRIu64 " more lines than announced; ignored",
+    vxm_note(&soup->notes, "line %" PRId64 ": more than announced; ignored (lines: %" PRIu64 ")",
              vxm_scan_line(scan, scan->at), vxm_lines_with_data(scan, 0, UINT64_MAX));
   else if (!header->ascii && scan->at < scan->end && !body->cut)
-    vxm_note(&soup->notes, "byte %zu: %zu bytes more than announced; ignored",
+    vxm_note(&soup->notes, "byte %zu: more than announced; ignored (bytes: %zu)",
              (size_t)(scan->at - scan->begin), (size_t)(scan->end - scan->at));
   if (!header->ascii && (body->cut || body->beyond.count > 0))
     vxm_note_text_conversion(scan);

@@ -99,7 +99,7 @@ static vxm_status read_binary(vxm_scan *scan, vxm_error *error) {
              VXM_STL_COUNT_AT, wanted, count);
   size_t rest = (size_t)(scan->end - scan->at);
   if (rest > 0)
-    vxm_note(&soup->notes, "byte %zu: %zu bytes after the last facet; ignored", size - rest, rest);
+    vxm_note(&soup->notes, "byte %zu: more after the last facet; ignored (bytes: %zu)", size - rest, rest);
   if (count != wanted || rest > 0)
     vxm_note_text_conversion(scan);
   if (count == 0)

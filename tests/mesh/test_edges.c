@@ -2,6 +2,7 @@
 #include "soups.h"
 
 #include "mesh/edges.h"
+#include "mesh/sort.h"
 
 static vxm_edges build(const vxm_soup *soup, const uint32_t *map) {
   vxm_edges edges;
@@ -122,6 +123,54 @@ static void crowded_vertex_and_edge(void **state) {
   vxm_context_destroy(context);
 }
 
+/** Few faces on many vertices: the work must go with the faces. */
+static void few_faces_on_many_vertices(void **state) {
+  (void)state;
+  vxm_context *context = context_of_threads(2);
+  enum { N = 300000 };
+  vxm_soup *soup = new_soup(context);
+  for (int v = 0; v < N; v++)
+    add_vertex(soup, v, 0, 0);
+  uint32_t corners[200];
+  for (uint32_t i = 0; i < 200; i++)
+    corners[i] = (uint32_t)((uint64_t)i * 123457 % N);
+  add_face(soup, corners, 200);
+  for (uint32_t i = 0; i + 2 < 200; i++)
+    add_triangle(soup, corners[0], corners[i + 2], corners[i + 1]);
+  vxm_edges edges = build(soup, NULL);
+  assert_int_equal(edges.count, 200 + 197);
+  assert_int_equal(vxm_edges_count_odd(&edges), 0);
+  for (size_t e = 0; e < edges.count; e++) {
+    assert_int_equal(edges.edges[e].count, 2);
+    assert_int_equal(edges.edges[e].forward, 1);
+    if (e > 0)
+      assert_true(edges.edges[e].a > edges.edges[e - 1].a ||
+                  (edges.edges[e].a == edges.edges[e - 1].a && edges.edges[e].b > edges.edges[e - 1].b));
+  }
+  vxm_edges_destroy(&edges);
+  vxm_soup_destroy(soup);
+  vxm_context_destroy(context);
+}
+
+static void keys_are_sorted(void **state) {
+  (void)state;
+  enum { N = 3000 };
+  static uint64_t keys[N], scratch[N];
+  vxm_rng rng = {41};
+  for (size_t count = 0; count <= N; count = count * 2 + 1)
+    for (unsigned shift = 0; shift < 64; shift += 9) {
+      uint64_t sum = 0;
+      for (size_t i = 0; i < count; i++)
+        sum += keys[i] = vxm_rng_next(&rng) << shift >> (shift / 2);
+      vxm_sort_keys(keys, scratch, count);
+      for (size_t i = 0; i < count; i++) {
+        assert_true(i == 0 || keys[i - 1] <= keys[i]);
+        sum -= keys[i];
+      }
+      assert_true(sum == 0);
+    }
+}
+
 static void same_for_any_threads(void **state) {
   (void)state;
   vxm_edges first = {0};
@@ -175,7 +224,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(edges_equal_counting),    cmocka_unit_test(sheet_and_cube),
       cmocka_unit_test(crowded_vertex_and_edge), cmocka_unit_test(same_for_any_threads),
-      cmocka_unit_test(memory_limit_is_kept),
+      cmocka_unit_test(memory_limit_is_kept),    cmocka_unit_test(few_faces_on_many_vertices),
+      cmocka_unit_test(keys_are_sorted),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

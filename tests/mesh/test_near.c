@@ -78,8 +78,8 @@ static void equals_all_pairs(void **state) {
       size_t like = v > 0 && vxm_rng_below(&rng, 3) ? (size_t)vxm_rng_below(&rng, v) : v;
       for (size_t axis = 0; axis < 3; axis++) {
         double step = (double)vxm_rng_below(&rng, 65) / 1024 - 0x1p-5;
-        c->positions[3 * v + axis] = like == v ? (double)vxm_rng_below(&rng, 1024) / 1024 - 0.5
-                                               : c->positions[3 * like + axis] + step / 2;
+        c->positions[3 * v + axis] =
+            like == v ? (double)vxm_rng_below(&rng, 1024) / 1024 - 0.5 : c->positions[3 * like + axis] + step;
       }
       c->roles[v] = vxm_rng_below(&rng, 8) ? VXM_NEAR_MEMBER
                                            : (vxm_rng_below(&rng, 2) ? VXM_NEAR_OBSTACLE : VXM_NEAR_ABSENT);
@@ -172,6 +172,14 @@ static void pairs_of_any_size(void **state) {
     weld(context, c, s);
     for (uint32_t v = 0; v < 6; v++)
       assert_int_equal(c->map[v], v);
+    /* an obstacle near one member of a group keeps all of it apart */
+    c->positions[6] = 1.8 * s;
+    c->roles[2] = VXM_NEAR_OBSTACLE;
+    weld(context, c, s);
+    assert_int_equal(c->map[1], 1);
+    c->roles[2] = VXM_NEAR_ABSENT;
+    weld(context, c, s);
+    assert_int_equal(c->map[1], 0);
     weld(context, c, 0);
     for (uint32_t v = 0; v < 6; v++)
       assert_int_equal(c->map[v], v);

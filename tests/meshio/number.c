@@ -190,6 +190,12 @@ static void test_very_long_numbers(void **state) {
   text[1] = '.';
   text[length] = '\0';
   expect_number(text, 1.1111111111111112);
+  /* Halfway between two doubles but for the last of a million digits. */
+  memset(text, '0', length);
+  memcpy(text, "9007199254740993.", 17);
+  expect_number(text, 9007199254740992.0);
+  text[length - 1] = '1';
+  expect_number(text, 9007199254740994.0);
   free(text);
 }
 

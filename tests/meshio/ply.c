@@ -86,7 +86,7 @@ static void test_damaged_text(void **state) {
   expect_note(soup, "line 14: face names a vertex that does not exist; skipped, 2 such");
   expect_note(soup, "line 16: face has fewer than 3 corners");
   expect_note(soup, "line 17: face is not a list of whole numbers; skipped, 2 such");
-  expect_note(soup, "line 19: 1 more lines than announced");
+  expect_note(soup, "line 19: more than announced; ignored (lines: 1)");
   vxm_soup_destroy(soup);
   soup = read_text(HEADER "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 3 2", "x.ply");
   expect_counts(soup, 4, 1);
@@ -97,7 +97,7 @@ static void test_damaged_text(void **state) {
                    "3 0 1 2\n3 2 3 4\n0 0 0\n1 0 0\n1 1 0\n",
                    "x.ply");
   expect_counts(soup, 3, 1);
-  expect_note(soup, "1 faces name vertices that are cut off");
+  expect_note(soup, "vertices that are cut off; skipped (faces: 1)");
   vxm_soup_destroy(soup);
 }
 
@@ -374,7 +374,7 @@ static void test_damaged_binary(void **state) {
   char note[64];
   snprintf(note, sizeof note, "byte %zu: face names a vertex that does not exist", body + 48);
   expect_note(soup, note);
-  expect_note(soup, "2 bytes more than announced");
+  expect_note(soup, "more than announced; ignored (bytes: 2)");
   vxm_soup_destroy(soup);
   bytes_free(&b);
   /* Counts that no file could hold. */

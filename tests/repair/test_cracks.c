@@ -100,6 +100,25 @@ static void torn_sphere_closes(void **state) {
   vxm_soup_destroy(whole);
 }
 
+/** What counts as a crack goes with the size of the model. */
+static void any_size_of_model(void **state) {
+  vxm_soup *whole = sphere(*state, 12);
+  static const double sizes[] = {1e-6, 1e6, 1e-150, 1e150};
+  for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+    for (int wide = 0; wide < 2; wide++) {
+      vxm_soup *soup = torn(whole, wide ? 1e-4 : 1e-7);
+      for (size_t c = 0; c < 3 * soup->vertex_count; c++)
+        soup->positions[c] *= sizes[i];
+      vxm_repair_report report;
+      vxm_soup *out = repaired(soup, NULL, &report);
+      assert_int_equal(report.after.watertight, !wide);
+      assert_repair_is_done(out, NULL);
+      vxm_soup_destroy(out);
+      vxm_soup_destroy(soup);
+    }
+  vxm_soup_destroy(whole);
+}
+
 /** A jitter about as wide as the tolerance: some groups merge, some do not; never one that is too wide. */
 static void wide_cracks_are_left(void **state) {
   vxm_soup *whole = sphere(*state, 16);
@@ -192,9 +211,8 @@ static int drop_context(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(torn_sphere_closes),
-      cmocka_unit_test(wide_cracks_are_left),
-      cmocka_unit_test(only_what_closes),
+      cmocka_unit_test(torn_sphere_closes),         cmocka_unit_test(any_size_of_model),
+      cmocka_unit_test(wide_cracks_are_left),       cmocka_unit_test(only_what_closes),
       cmocka_unit_test(cracks_under_doubled_faces),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
