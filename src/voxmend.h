@@ -316,7 +316,7 @@ VXM_API void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes);
  */
 VXM_API const uint8_t *vxm_grid_confidence(const vxm_grid *grid);
 /**
- * Writes the confidence as .npy: uint8 [x][y][z], C order.
+ * Writes the confidence as .npy: uint8, indexed [x][y][z], stored with x fastest.
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT if the grid has none or the extension is another; VXM_ERROR_IO,
  *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
