@@ -6,7 +6,8 @@
 #include <stdlib.h>
 
 enum {
-  JOIN_MAX = 32 /**< odd edges at a vertex that are joined by angle; beyond, in the order of their fans */
+  ALL_PAIRS_MAX = 32, /**< odd edges at a vertex of which all pairs are compared */
+  WINDOW = 4          /**< beyond, how many neighbours along each axis each one is compared with */
 };
 
 /**
@@ -153,8 +154,23 @@ static void join(builder *b, size_t p, size_t q) {
 /** Two ends that could be joined, and how well they go together. */
 typedef struct candidate {
   double cosine; /**< of the angle between the edges; less 2 within one fan, so that such pairs come last */
-  uint32_t p, q; /**< places among the ends of the vertex */
+  uint32_t p, q; /**< places among the ends of the vertex, p < q */
 } candidate;
+
+typedef struct keyed {
+  double key;
+  uint32_t place; /**< among the ends of the vertex */
+} keyed;
+
+/** Scratch for joining the ends at one vertex, with room for the vertex that has the most. */
+typedef struct joining {
+  const size_t *ends;
+  size_t count, candidate_count;
+  size_t *fans; /**< per end */
+  uint8_t *joined;
+  keyed *sorted;
+  candidate *candidates;
+} joining;
 
 static int better_first(const void *a, const void *b) {
   const candidate *p = a, *q = b;
@@ -165,51 +181,120 @@ static int better_first(const void *a, const void *b) {
   return p->q < q->q ? -1 : p->q > q->q;
 }
 
-static double cosine_between(const builder *b, size_t p, size_t q) {
-  const double *at = vxm_position(b->soup, end_vertex(b, p));
-  vxm_vec3 u = vxm_vec3_between(vxm_position(b->soup, far_vertex(b, p)), at, 1);
-  vxm_vec3 v = vxm_vec3_between(vxm_position(b->soup, far_vertex(b, q)), at, 1);
-  double product = vxm_vec3_length(u) * vxm_vec3_length(v);
-  double cosine = vxm_vec3_dot(u, v) / product;
-  return cosine >= -1 && cosine <= 1 ? cosine : -1; /* also where lengths overflow or vanish */
+static int lower_key_first(const void *a, const void *b) {
+  const keyed *p = a, *q = b;
+  if (p->key != q->key)
+    return p->key < q->key ? -1 : 1;
+  return p->place < q->place ? -1 : p->place > q->place;
 }
 
-static void join_by_angle(builder *b, const size_t *ends, size_t n) {
-  candidate candidates[JOIN_MAX * (JOIN_MAX - 1) / 2];
-  size_t fans[JOIN_MAX], count = 0;
-  bool joined[JOIN_MAX] = {false};
-  for (size_t p = 0; p < n; p++)
-    fans[p] = fan_of(b, find_side(b, end_vertex(b, ends[p]), far_vertex(b, ends[p])));
-  for (uint32_t p = 0; p < n; p++)
-    for (uint32_t q = p + 1; q < n; q++) {
-      double penalty = fans[p] == fans[q] ? 2 : 0;
-      candidates[count++] = (candidate){cosine_between(b, ends[p], ends[q]) - penalty, p, q};
+static vxm_vec3 direction_of(const builder *b, size_t end) {
+  return vxm_vec3_between(vxm_position(b->soup, far_vertex(b, end)),
+                          vxm_position(b->soup, end_vertex(b, end)), 1);
+}
+
+static void add_candidate(const builder *b, joining *j, uint32_t p, uint32_t q) {
+  vxm_vec3 u = direction_of(b, j->ends[p]), v = direction_of(b, j->ends[q]);
+  double cosine = vxm_vec3_dot(u, v) / (vxm_vec3_length(u) * vxm_vec3_length(v));
+  if (!(cosine >= -1 && cosine <= 1)) /* also where lengths overflow or vanish */
+    cosine = cosine > 1 ? 1 : -1;
+  double penalty = j->fans[p] == j->fans[q] ? 2 : 0;
+  j->candidates[j->candidate_count++] = (candidate){cosine - penalty, p < q ? p : q, p < q ? q : p};
+}
+
+static void add_all_candidates(const builder *b, joining *j) {
+  for (uint32_t p = 0; p < j->count; p++)
+    for (uint32_t q = p + 1; q < j->count; q++)
+      add_candidate(b, j, p, q);
+}
+
+/** Those that follow closely on each other along an axis: near directions are near along all of them. */
+static void add_near_candidates(const builder *b, joining *j) {
+  for (int axis = 0; axis < 3; axis++) {
+    for (uint32_t p = 0; p < j->count; p++) {
+      vxm_vec3 u = direction_of(b, j->ends[p]);
+      double key = (axis == 0 ? u.x : axis == 1 ? u.y : u.z) / vxm_vec3_length(u);
+      j->sorted[p] = (keyed){key >= -1 && key <= 1 ? key : 2, p};
     }
-  qsort(candidates, count, sizeof *candidates, better_first);
-  for (size_t c = 0; c < count; c++) {
-    if (joined[candidates[c].p] || joined[candidates[c].q])
+    qsort(j->sorted, j->count, sizeof *j->sorted, lower_key_first);
+    for (size_t i = 0; i < j->count; i++)
+      for (size_t k = i + 1; k < j->count && k <= i + WINDOW; k++)
+        add_candidate(b, j, j->sorted[i].place, j->sorted[k].place);
+  }
+}
+
+/** What is left is joined half way round the fans, so that only a fan that has most of it meets itself. */
+static void join_rest(builder *b, joining *j) {
+  size_t rest = 0;
+  for (uint32_t p = 0; p < j->count; p++)
+    if (!j->joined[p])
+      j->sorted[rest++] = (keyed){(double)j->fans[p], p};
+  qsort(j->sorted, rest, sizeof *j->sorted, lower_key_first);
+  for (size_t i = 0; i < rest / 2; i++)
+    join(b, j->ends[j->sorted[i].place], j->ends[j->sorted[i + rest / 2].place]);
+}
+
+static void join_by_angle(builder *b, joining *j) {
+  j->candidate_count = 0;
+  for (size_t p = 0; p < j->count; p++) {
+    j->fans[p] = fan_of(b, find_side(b, end_vertex(b, j->ends[p]), far_vertex(b, j->ends[p])));
+    j->joined[p] = 0;
+  }
+  if (j->count <= ALL_PAIRS_MAX)
+    add_all_candidates(b, j);
+  else
+    add_near_candidates(b, j);
+  qsort(j->candidates, j->candidate_count, sizeof *j->candidates, better_first);
+  for (size_t c = 0; c < j->candidate_count; c++) {
+    uint32_t p = j->candidates[c].p, q = j->candidates[c].q;
+    bool own_fan = j->fans[p] == j->fans[q];
+    if (j->joined[p] || j->joined[q] || (own_fan && j->count > ALL_PAIRS_MAX))
       continue;
-    joined[candidates[c].p] = joined[candidates[c].q] = true;
-    join(b, ends[candidates[c].p], ends[candidates[c].q]);
+    j->joined[p] = j->joined[q] = 1;
+    join(b, j->ends[p], j->ends[q]);
+  }
+  join_rest(b, j);
+}
+
+static size_t most_ends(const builder *b) {
+  size_t most = 0;
+  for (size_t v = 0; v < b->soup->vertex_count; v++)
+    if (b->first_end[v + 1] - b->first_end[v] > most)
+      most = b->first_end[v + 1] - b->first_end[v];
+  return most;
+}
+
+static void join_all(builder *b, joining *j) {
+  for (size_t v = 0; v < b->soup->vertex_count; v++) {
+    j->ends = b->ends + b->first_end[v];
+    j->count = b->first_end[v + 1] - b->first_end[v];
+    if (j->count > 2)
+      join_by_angle(b, j);
+    else if (j->count == 2)
+      join(b, j->ends[0], j->ends[1]);
   }
 }
 
 static bool join_ends(builder *b) {
-  bool crossings = false;
-  for (size_t v = 0; v < b->soup->vertex_count && !crossings; v++)
-    crossings = is_crossing(b, (uint32_t)v);
-  if (crossings && !find_fans(b))
-    return false;
-  for (size_t v = 0; v < b->soup->vertex_count; v++) {
-    const size_t *ends = b->ends + b->first_end[v];
-    size_t n = b->first_end[v + 1] - b->first_end[v];
-    if (n > 2 && n <= JOIN_MAX)
-      join_by_angle(b, ends, n);
-    else
-      for (size_t i = 0; i + 1 < n; i += 2)
-        join(b, ends[i], ends[i + 1]);
+  size_t most = most_ends(b), all = ALL_PAIRS_MAX * (ALL_PAIRS_MAX - 1) / 2;
+  size_t near = most > ALL_PAIRS_MAX ? 3 * WINDOW * most : 0;
+  joining j = {0};
+  if (most > 2) {
+    if (!find_fans(b))
+      return false;
+    j.fans = allocate(b, most, sizeof *j.fans);
+    j.joined = allocate(b, most, sizeof *j.joined);
+    j.sorted = allocate(b, most, sizeof *j.sorted);
+    j.candidates = allocate(b, all > near ? all : near, sizeof *j.candidates);
   }
-  return true;
+  bool ready = most <= 2 || (j.fans && j.joined && j.sorted && j.candidates);
+  if (ready)
+    join_all(b, &j);
+  vxm_free(b->context, j.candidates);
+  vxm_free(b->context, j.sorted);
+  vxm_free(b->context, j.joined);
+  vxm_free(b->context, j.fans);
+  return ready;
 }
 
 /* ---- Walking ---- */

@@ -31,7 +31,8 @@ typedef struct vxm_loops {
  * @param edges    of the same soup, without a vertex map
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  *
- * Linear time, but for sorting the edges at vertices with more than two odd ones.
+ * Linear time, but for sorting the edges at vertices with more than two odd ones. At a vertex with more than
+ * 32 of them only those that are near in direction are compared.
  */
 vxm_status vxm_loops_build(vxm_loops *out, const vxm_soup *soup, const vxm_edges *edges, vxm_error *error);
 void vxm_loops_destroy(vxm_loops *loops);
