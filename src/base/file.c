@@ -110,7 +110,7 @@ static int open_temporary(vxm_output *output, size_t size, mode_t mode) {
   const char *slash = strrchr(output->path, '/');
   int folder = slash ? (int)(slash - output->path + 1) : 0;
   for (int attempt = 0; attempt < 1000; attempt++) {
-    snprintf(output->temporary, size, "%.*s.voxmend-%ld-%d.tmp", folder, output->path, (long)getpid(),
+    snprintf(output->temporary, size, "%.*svoxmend-%ld-%d.tmp", folder, output->path, (long)getpid(),
              attempt);
     int descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0 && mode != 0 && fchmod(descriptor, mode) != 0) {

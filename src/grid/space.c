@@ -165,7 +165,7 @@ vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_spac
   vxm_status status = read_request(&wanted, options, error);
   if (status != VXM_OK)
     return status;
-  box b;
+  box b = {{0}, {0}};
   if (options->use_bounds) {
     if (options->pad != 0)
       return vxm_fail(error, VXM_ERROR_ARGUMENT,
