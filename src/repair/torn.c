@@ -11,6 +11,7 @@
 static const double REACH = 3e-4;       /**< of the diagonal: ends of mates are no farther apart */
 static const double GROUP_WIDTH = 5e-4; /**< of the diagonal: that of a group's box */
 static const double EDGE_PART = 0.35;   /**< of an edge: nearer ends make mates beyond doubt */
+static const double PLAIN_PART = 0.15;  /**< of an edge: so near that it does not matter who comes first */
 static const double BOX_PART = 1.75;    /**< diagonal of a box of points that are no farther than 1 apart */
 
 enum {
@@ -32,7 +33,8 @@ typedef struct rim {
 typedef struct pair {
   uint32_t i, j;
   float cost; /**< the larger distance of the two ends, scaled */
-  bool crosswise, sure, folded;
+  bool crosswise, folded;
+  bool sure, plain; /**< by EDGE_PART, by PLAIN_PART */
 } pair;
 
 typedef struct box {
@@ -53,13 +55,29 @@ typedef struct search {
   pair *pairs;
   size_t pair_count, pair_capacity;
   uint64_t *order; /**< cost << 32 | place among the pairs; sorted. Twice the room, for the sort */
+  size_t order_count;
   uint8_t *joined; /**< per rim */
   uint32_t *parent, *size;
   uint32_t *ring; /**< per vertex: the next of its group */
-  box *boxes;     /**< per root */
+  box *boxes;     /**< per root of a group of more than one */
   size_t *first_face;
   size_t *faces; /**< of vertex v: faces[first_face[v]] to faces[first_face[v + 1] - 1] */
 } search;
+
+/** Without the calls and the care for NaN of fmin and fmax. */
+static inline double least(double a, double b) {
+  return a < b ? a : b;
+}
+
+static inline double most(double a, double b) {
+  return a > b ? a : b;
+}
+
+/** floor, of what is known to be small. */
+static inline int64_t whole_below(double x) {
+  int64_t toward_zero = (int64_t)x;
+  return toward_zero - (x < (double)toward_zero);
+}
 
 static void *allocate(search *s, size_t count, size_t size) {
   return vxm_calloc(s->work->context, count, size, &s->error);
@@ -134,12 +152,21 @@ static bool is_folded(const search *s, const rim *p, const rim *q) {
   return vxm_vec3_dot(out[0], out[1]) > 0.5 * vxm_vec3_length(out[0]) * vxm_vec3_length(out[1]);
 }
 
+static double squared(const search *s, uint32_t p, uint32_t q) {
+  vxm_vec3 d = between(s, p, q);
+  return vxm_vec3_dot(d, d);
+}
+
 static bool consider(search *s, uint32_t i, uint32_t j) {
   const rim *p = &s->rims[i], *q = &s->rims[j];
-  double straight = fmax(distance(s, p->a, q->a), distance(s, p->b, q->b));
-  double across = fmax(distance(s, p->a, q->b), distance(s, p->b, q->a));
-  double cost = fmin(straight, across);
-  if (!(cost <= s->reach) || p->face == q->face)
+  double limit = s->reach * s->reach;
+  double straight = squared(s, p->a, q->a), across = squared(s, p->a, q->b);
+  if ((straight > limit && across > limit) || p->face == q->face)
+    return true;
+  straight = most(straight, squared(s, p->b, q->b));
+  across = most(across, squared(s, p->b, q->a));
+  double cost = sqrt(least(straight, across));
+  if (!(cost <= s->reach))
     return true;
   if (s->pair_count == PAIRS_PER_EDGE * s->rim_count)
     return false;
@@ -148,13 +175,15 @@ static bool consider(search *s, uint32_t i, uint32_t j) {
       VXM_OK)
     return false;
   s->pairs = pairs;
-  double length = fmin(distance(s, p->a, p->b), distance(s, q->a, q->b));
+  double length = least(distance(s, p->a, p->b), distance(s, q->a, q->b));
+  bool sure = cost <= EDGE_PART * length;
   s->pairs[s->pair_count++] = (pair){.i = i,
                                      .j = j,
                                      .cost = (float)cost,
                                      .crosswise = across < straight,
-                                     .sure = cost <= EDGE_PART * length,
-                                     .folded = is_folded(s, p, q)};
+                                     .sure = sure,
+                                     .plain = cost <= PLAIN_PART * length,
+                                     .folded = sure && is_folded(s, p, q)};
   return true;
 }
 
@@ -169,9 +198,9 @@ static size_t slot_of(const search *s, const int64_t cell[3]) {
 static size_t slots_around(const search *s, const double middle[3], size_t slots[8]) {
   int64_t low[3], high[3], home[3];
   for (int a = 0; a < 3; a++) {
-    low[a] = (int64_t)floor((middle[a] - s->reach) * s->per_unit);
-    high[a] = (int64_t)floor((middle[a] + s->reach) * s->per_unit);
-    home[a] = (int64_t)floor(middle[a] * s->per_unit);
+    low[a] = whole_below((middle[a] - s->reach) * s->per_unit);
+    high[a] = whole_below((middle[a] + s->reach) * s->per_unit);
+    home[a] = whole_below(middle[a] * s->per_unit);
   }
   size_t count = 0;
   slots[count++] = slot_of(s, home);
@@ -245,13 +274,16 @@ static void set_width(search *s) {
   uint32_t bits = (uint32_t)s->order[(count - 1) - count / 100];
   float cost;
   memcpy(&cost, &bits, sizeof cost);
-  s->width = fmin(s->reach, 1.15 * (double)cost);
+  s->width = least(s->reach, 1.15 * (double)cost);
 }
 
+/** Of the pairs that are left, the nearest first. */
 static void sort_pairs(search *s) {
+  s->order_count = 0;
   for (size_t k = 0; k < s->pair_count; k++)
-    s->order[k] = bits_of(s->pairs[k].cost) << 32 | k;
-  vxm_sort_keys(s->order, s->order + s->pair_count, s->pair_count);
+    if (!s->joined[s->pairs[k].i] || !s->joined[s->pairs[k].j])
+      s->order[s->order_count++] = bits_of(s->pairs[k].cost) << 32 | k;
+  vxm_sort_keys(s->order, s->order + s->order_count, s->order_count);
 }
 
 /* ---- Groups of vertices ---- */
@@ -275,8 +307,6 @@ static bool start_groups(search *s) {
   for (uint32_t v = 0; v < vertices; v++) {
     s->parent[v] = s->ring[v] = v;
     s->size[v] = 1;
-    for (int a = 0; a < 3; a++)
-      s->boxes[v].low[a] = s->boxes[v].high[a] = vxm_position(s->soup, v)[a] * s->scale;
   }
   /* counted two places on, the sums are the begins, and listing moves each to the next one's begin */
   for (size_t c = 0; c < s->soup->corner_count; c++)
@@ -292,6 +322,24 @@ static bool start_groups(search *s) {
   return true;
 }
 
+static box box_of(const search *s, uint32_t root) {
+  if (s->size[root] > 1)
+    return s->boxes[root];
+  box around;
+  for (int a = 0; a < 3; a++)
+    around.low[a] = around.high[a] = vxm_position(s->soup, root)[a] * s->scale;
+  return around;
+}
+
+static box box_around(const box *p, const box *q) {
+  box around;
+  for (int a = 0; a < 3; a++) {
+    around.low[a] = least(p->low[a], q->low[a]);
+    around.high[a] = most(p->high[a], q->high[a]);
+  }
+  return around;
+}
+
 static bool has_corner_in(const search *s, size_t face, uint32_t root) {
   size_t count;
   const uint32_t *corner = vxm_face(s->soup, face, &count);
@@ -305,13 +353,11 @@ static bool has_corner_in(const search *s, size_t face, uint32_t root) {
 static bool may_unite(const search *s, uint32_t p, uint32_t q) {
   if (p == q)
     return true;
-  double squared = 0, limit = fmin(GROUP_WIDTH / REACH * s->reach, BOX_PART * s->width);
-  for (int a = 0; a < 3; a++) {
-    double low = fmin(s->boxes[p].low[a], s->boxes[q].low[a]);
-    double side = fmax(s->boxes[p].high[a], s->boxes[q].high[a]) - low;
-    squared += side * side;
-  }
-  if (!(squared <= limit * limit))
+  double limit = least(GROUP_WIDTH / REACH * s->reach, BOX_PART * s->width), sum = 0;
+  box of_p = box_of(s, p), of_q = box_of(s, q), around = box_around(&of_p, &of_q);
+  for (int a = 0; a < 3; a++)
+    sum += (around.high[a] - around.low[a]) * (around.high[a] - around.low[a]);
+  if (!(sum <= limit * limit))
     return false;
   uint32_t small = s->size[p] < s->size[q] ? p : q, v = small;
   if (s->size[small] > GROUP_MAX)
@@ -329,21 +375,23 @@ static void unite(search *s, uint32_t p, uint32_t q) {
   if (p == q)
     return;
   uint32_t root = p < q ? p : q, other = p < q ? q : p;
+  box of_p = box_of(s, p), of_q = box_of(s, q);
+  s->boxes[root] = box_around(&of_p, &of_q);
   s->parent[other] = root;
   s->size[root] += s->size[other];
   uint32_t kept = s->ring[root];
   s->ring[root] = s->ring[other];
   s->ring[other] = kept;
-  for (int a = 0; a < 3; a++) {
-    s->boxes[root].low[a] = fmin(s->boxes[root].low[a], s->boxes[other].low[a]);
-    s->boxes[root].high[a] = fmax(s->boxes[root].high[a], s->boxes[other].high[a]);
-  }
 }
 
 /* ---- Joining pairs ---- */
 
-/** What a pair must be for a round to join it. */
-typedef enum round_kind { ROUND_SURE, ROUND_ZIP, ROUND_ANY } round_kind;
+/** Which pairs a round may join. */
+typedef enum round_kind {
+  ROUND_SURE, /**< those without doubt */
+  ROUND_ZIP,  /**< those of which one end is joined */
+  ROUND_ANY
+} round_kind;
 
 static bool join_pair(search *s, const pair *k, round_kind kind) {
   if (s->joined[k->i] && s->joined[k->j])
@@ -365,9 +413,17 @@ static bool join_pair(search *s, const pair *k, round_kind kind) {
   return true;
 }
 
+/** In the order of the faces, which is that of the memory. */
+static void join_plain(search *s) {
+  for (size_t k = 0; k < s->pair_count; k++)
+    if (s->pairs[k].plain && (double)s->pairs[k].cost <= s->width)
+      join_pair(s, &s->pairs[k], ROUND_SURE);
+}
+
+/** The others, the nearest first. */
 static size_t join_round(search *s, round_kind kind) {
   size_t joined = 0;
-  for (size_t k = 0; k < s->pair_count; k++) {
+  for (size_t k = 0; k < s->order_count; k++) {
     const pair *p = &s->pairs[(uint32_t)s->order[k]];
     if ((double)p->cost > s->width)
       break;
@@ -377,9 +433,11 @@ static size_t join_round(search *s, round_kind kind) {
   return joined;
 }
 
-/** Sure pairs, then along what is joined from its ends on, then whatever else goes together. */
+/** What is sure, then on from its ends along what is still open, then whatever else goes together. */
 static void join_all(search *s) {
   memset(s->joined, 0, s->rim_count);
+  join_plain(s);
+  sort_pairs(s);
   join_round(s, ROUND_SURE);
   for (int round = 0; round < ROUNDS_MAX; round++)
     if (join_round(s, ROUND_ZIP) == 0)
@@ -399,7 +457,7 @@ static bool match(search *s, size_t rims, const vxm_frame *frame) {
   if (!find_rims(s, rims))
     return false;
   s->scale = frame->scale;
-  s->reach = fmin(REACH * frame->diagonal, 0.5 * mean_length(s));
+  s->reach = least(REACH * frame->diagonal, 0.5 * mean_length(s));
   s->joined = allocate(s, s->rim_count, sizeof *s->joined);
   if (!(s->reach > 1e-9) || !s->joined || !find_pairs(s) || 2 * count_mates(s) < s->rim_count)
     return false;
@@ -407,7 +465,6 @@ static bool match(search *s, size_t rims, const vxm_frame *frame) {
   if (!s->order || !start_groups(s))
     return false;
   set_width(s);
-  sort_pairs(s);
   join_all(s);
   return true;
 }
