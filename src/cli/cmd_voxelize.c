@@ -271,6 +271,25 @@ static void summarize_repair(const cli_run *cli, const vxm_repair_report *repair
   fprintf(cli->text, "%s\n", *separator ? "" : repair->pass_count ? "nothing to do" : "not wanted");
 }
 
+/** "3: 1 closed, 2 closed by caps over 7 holes"; kinds without a part are left out. */
+static void summarize_parts(const cli_run *cli, const vxm_voxelize_report *report) {
+  int64_t open = report->parts - report->closed_parts - report->capped_parts;
+  const char *separator = ": ";
+  fprintf(cli->text, "%-10s %" PRId64, "parts", report->parts);
+  if (report->closed_parts > 0) {
+    fprintf(cli->text, "%s%" PRId64 " closed", separator, report->closed_parts);
+    separator = ", ";
+  }
+  if (report->capped_parts > 0) {
+    fprintf(cli->text, "%s%" PRId64 " closed by caps over %" PRId64 " rims", separator, report->capped_parts,
+            report->caps);
+    separator = ", ";
+  }
+  if (open > 0)
+    fprintf(cli->text, "%s%" PRId64 " open", separator, open);
+  fputc('\n', cli->text);
+}
+
 static void summarize(const cli_run *cli, const request *given, const outcome *results) {
   const cli_input *input = &results->input;
   const vxm_voxelize_report *report = &results->voxelize;
@@ -280,11 +299,7 @@ static void summarize(const cli_run *cli, const request *given, const outcome *r
           input->format, input->vertices, input->faces);
   summarize_repair(cli, &input->repair);
   cli_rows_space(cli, space);
-  cli_row(cli, "parts",
-          "%" PRId64 ": %" PRId64 " closed, %" PRId64 " closed by caps over %" PRId64 " holes, %" PRId64
-          " open",
-          report->parts, report->closed_parts, report->capped_parts, report->caps,
-          report->parts - report->closed_parts - report->capped_parts);
+  summarize_parts(cli, report);
   if (report->cavities > 0)
     cli_row(cli, "cavities", "%" PRId64, report->cavities);
   cli_row(cli, "voxels", "%" PRId64 " (%.2f %%)", report->voxels, 100.0 * (double)report->voxels / cells);
