@@ -4,10 +4,10 @@
  *
  * Conventions (doc/conventions.md has them in full):
  *  - Every fallible call returns a vxm_status, 0 for success, and describes a failure in one line in the
- *    caller's vxm_error, which may be NULL. After a failure nothing is created and output arguments are NULL
- * or 0.
- *  - `out` arguments come first, options next, the error last. A NULL options pointer means defaults, and so
- * does a field that is zero; start from the matching VXM_..._INIT.
+ *    caller's vxm_error, which may be NULL. After a failure nothing is created and output arguments are
+ *    NULL or 0.
+ *  - `out` arguments come first, options next, the error last. A NULL options pointer means defaults; to set
+ *    some options start from the matching VXM_..._INIT.
  *  - What a call creates belongs to the caller and has a destroy function that accepts NULL. What a getter
  *    returns belongs to its object and lives as long as it.
  *  - Distinct objects may be used from distinct threads at the same time, also when they share a context.
@@ -149,7 +149,7 @@ VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const v
  * Reads a mesh file: OFF, OBJ, STL or PLY, told by content first and by name second.
  * What a damaged file still holds is read, and each kind of damage becomes a warning of the mesh.
  *
- * @param path file to read; "-" reads standard input
+ * @param path file to read; "-" reads standard input. A file is mapped: nobody may shorten it meanwhile
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond 2^32 - 2
  * vertices; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
@@ -243,10 +243,12 @@ typedef struct vxm_repair_options {
   vxm_weld weld;
   double weld_tolerance; /**< model units, with VXM_WELD_TOLERANCE */
   bool keep_duplicates;  /**< leave repeated faces in */
+  bool keep_orientation; /**< leave faces turned as they are */
+  bool close;            /**< close holes: a fan of triangles from the centre of each rim */
 } vxm_repair_options;
 
 #define VXM_REPAIR_OPTIONS_INIT \
-  { 1, VXM_WELD_AUTO, 0.0, false }
+  { 1, VXM_WELD_AUTO, 0.0, false, false, false }
 
 #define VXM_REPAIR_PASSES_MAX 16
 
@@ -306,6 +308,20 @@ VXM_API int64_t vxm_grid_count(const vxm_grid *grid);
 VXM_API uint64_t vxm_grid_hash(const vxm_grid *grid);
 /** One byte, 0 or 1, per voxel into dims[0]*dims[1]*dims[2] bytes, as [x][y][z] in C order (z fastest). */
 VXM_API void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes);
+/**
+ * How sure each voxel is, 0 (a guess) to 255 (proven), dims[0]*dims[1]*dims[2] bytes with x fastest; NULL
+ * unless the grid was made with vxm_voxelize_options.confidence. A voxel decided by closed parts alone has
+ * 255, one decided by the winding number w has 255 times the smaller of 1 and |2 w - 1|, any other the share
+ * of the voters x, y, z and tetra that agree with it.
+ */
+VXM_API const uint8_t *vxm_grid_confidence(const vxm_grid *grid);
+/**
+ * Writes the confidence as .npy: uint8, indexed [x][y][z], stored with x fastest.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT if the grid has none or the extension is another; VXM_ERROR_IO,
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_grid_write_confidence(const vxm_grid *grid, const char *path, vxm_error *error);
 /** Warnings from voxelizing or reading, one line each. */
 VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
 VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
@@ -385,17 +401,20 @@ typedef enum vxm_fit {
 } vxm_fit;
 
 typedef enum vxm_method {
-  VXM_METHOD_VOTE = 0, /**< all of the following, combined by vxm_vote */
+  VXM_METHOD_VOTE = 0, /**< parity along x, y, z and the tetrahedra, combined by vxm_vote */
   VXM_METHOD_X,        /**< parity of crossings along x */
   VXM_METHOD_Y,
   VXM_METHOD_Z,
-  VXM_METHOD_TETRA /**< XOR of the tetrahedra from the centroid to every triangle (Rueda et al.) */
+  VXM_METHOD_TETRA,  /**< XOR of the tetrahedra from the centroid to every triangle (Rueda et al.) */
+  VXM_METHOD_WINDING /**< winding number above 1/2 at every voxel, after turning all patches outward */
 } vxm_method;
 
 typedef enum vxm_vote {
-  VXM_VOTE_MAJORITY = 0, /**< more than half of the voters; a tie of the four is decided by x, y and z */
-  VXM_VOTE_ANY,          /**< at least one voter */
-  VXM_VOTE_ALL           /**< every voter */
+  VXM_VOTE_AUTO = 0, /**< holes closed by caps over their rims; what stays open by agreement of x, y and z,
+                        and by the winding number where they disagree */
+  VXM_VOTE_MAJORITY, /**< at least two of x, y and z (Chen & Tu); the tetrahedra cannot overturn that */
+  VXM_VOTE_ANY,      /**< at least one voter */
+  VXM_VOTE_ALL       /**< every voter */
 } vxm_vote;
 
 typedef enum vxm_parts {
@@ -403,6 +422,13 @@ typedef enum vxm_parts {
   VXM_PARTS_GROUP,    /**< every component alone (Chen & Tu); united */
   VXM_PARTS_WHOLE     /**< no splitting */
 } vxm_parts;
+
+/** What a closed component inside another one is, with VXM_PARTS_AUTO. */
+typedef enum vxm_cavities {
+  VXM_CAVITIES_AUTO = 0, /**< a cavity if it is wound against the one around it, else solid */
+  VXM_CAVITIES_KEEP,     /**< a cavity */
+  VXM_CAVITIES_FILL      /**< solid */
+} vxm_cavities;
 
 /** Which voxel space to use. Give resolution or voxel_size, or `like`. */
 typedef struct vxm_space_options {
@@ -412,7 +438,8 @@ typedef struct vxm_space_options {
   double voxel_size;     /**< model units */
   vxm_fit fit;
   int64_t pad; /**< empty voxels kept free on each side; within `resolution`, in addition with voxel_size */
-  bool use_bounds;       /**< cover `bounds` exactly instead of fitting to the model */
+  bool use_bounds;       /**< cover `bounds` instead of fitting to the model: from their minimum corner
+                              on, rounded up to whole voxels; exactly if three numbers are given */
   double bounds[6];      /**< x0 y0 z0 x1 y1 z1 */
   const vxm_space *like; /**< take exactly this space; overrides the rest */
 } vxm_space_options;
@@ -435,18 +462,24 @@ typedef struct vxm_voxelize_options {
   vxm_method method;
   vxm_vote vote;
   vxm_parts parts;
+  vxm_cavities cavities;
+  bool confidence; /**< keep for every voxel how sure it is: vxm_grid_confidence */
 } vxm_voxelize_options;
 
 #define VXM_VOXELIZE_OPTIONS_INIT \
-  { 1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_MAJORITY, VXM_PARTS_AUTO }
+  { 1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, false }
 
 typedef struct vxm_voxelize_report {
   int64_t parts;        /**< parts that were voxelized apart and united */
   int64_t closed_parts; /**< those in which every edge has an even number of faces: all voters agree there */
-  int64_t contested;    /**< voxels on which the voters disagreed */
+  int64_t capped_parts; /**< those that were closed by caps over the rims of their holes */
+  int64_t cavities;     /**< components that were taken for cavities of the one around them */
+  int64_t caps;         /**< rims that were capped */
+  int64_t contested;    /**< voxels on which the voters of the parts that stayed open disagreed */
+  int64_t escalated;    /**< those of them that the winding number decided */
   int64_t voxels;       /**< set voxels */
   uint64_t hash;        /**< vxm_grid_hash */
-  int64_t empty_parts;  /**< parts that set no voxel */
+  int64_t empty_parts;  /**< parts that set no voxel; of open parts, all if together they set none */
 } vxm_voxelize_report;
 
 /**

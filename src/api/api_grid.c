@@ -47,3 +47,9 @@ vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path, const vxm_pi
   vxm_picture_options chosen = VXM_PICTURE_OPTIONS_INIT;
   return vxm_gridio_picture(grid, path, options ? options : &chosen, error);
 }
+
+vxm_status vxm_grid_write_confidence(const vxm_grid *grid, const char *path, vxm_error *error) {
+  if (!grid || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "confidence: an argument is NULL");
+  return vxm_gridio_confidence(grid, path, error);
+}

@@ -26,10 +26,12 @@ static vxm_status check_options(const vxm_voxelize_options *options, vxm_error *
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "voxelize: options version %" PRIu32 " is unknown; use the initializer",
                     options->version);
-  if ((unsigned)options->method > VXM_METHOD_TETRA)
+  if ((unsigned)options->method > VXM_METHOD_WINDING)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: method %d is unknown", (int)options->method);
   if ((unsigned)options->vote > VXM_VOTE_ALL)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: vote %d is unknown", (int)options->vote);
+  if ((unsigned)options->cavities > VXM_CAVITIES_FILL)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: cavities %d is unknown", (int)options->cavities);
   if ((unsigned)options->parts > VXM_PARTS_WHOLE)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: parts %d is unknown", (int)options->parts);
   return VXM_OK;

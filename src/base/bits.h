@@ -26,14 +26,20 @@ static inline uint64_t vxm_low_bits(unsigned n) {
   return n >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << n) - 1;
 }
 
+/** In plain arithmetic: without a processor's own instruction the compiler's built-in is a call. */
 static inline int vxm_popcount(uint64_t word) {
-  return __builtin_popcountll(word);
+  word -= word >> 1 & UINT64_C(0x5555555555555555);
+  word = (word & UINT64_C(0x3333333333333333)) + (word >> 2 & UINT64_C(0x3333333333333333));
+  word = (word + (word >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
+  return (int)(word * UINT64_C(0x0101010101010101) >> 56);
 }
 
-/** Quotient rounded toward minus infinity; the divisor is positive. */
-static inline int64_t vxm_floor_div(int64_t a, int64_t b) {
-  int64_t q = a / b;
-  return q - (a % b < 0);
+static inline int64_t vxm_min(int64_t a, int64_t b) {
+  return a < b ? a : b;
+}
+
+static inline int64_t vxm_max(int64_t a, int64_t b) {
+  return a > b ? a : b;
 }
 
 /** Bit c of word r goes to bit r of word c: blocks of 32, 16, ... 1 change places across the diagonal. */
@@ -46,11 +52,6 @@ static inline void vxm_transpose64(uint64_t block[64]) {
         block[r] ^= change << size;
         block[r + size] ^= change;
       }
-}
-
-/** a * b into *product; false if it overflows. */
-static inline bool vxm_size_mul(size_t a, size_t b, size_t *product) {
-  return !__builtin_mul_overflow(a, b, product);
 }
 
 #endif

@@ -8,6 +8,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <sys/types.h>
 
 enum { VXM_THREADS_MAX = 256 };
 
@@ -16,9 +17,11 @@ typedef struct vxm_pool {
   pthread_mutex_t mutex;
   pthread_cond_t wake, done;
   pthread_t *threads;
-  int started;    /**< workers that exist */
-  int busy;       /**< workers still in the present round */
-  uint64_t round; /**< number of the present round */
+  int started;      /**< workers that exist */
+  int participants; /**< workers that take part in the present round: those numbered 1 to this */
+  int busy;         /**< of these, those still at work */
+  pid_t process;    /**< the process that started the workers */
+  uint64_t round;   /**< number of the present round */
   bool quit;
   void (*function)(size_t task, int worker, void *payload);
   void *payload;

@@ -104,15 +104,45 @@ static void output_free(vxm_output *output) {
   vxm_free(context, output);
 }
 
-/** Creates a file of a new name beside the output, with the rights that a plain open would give. */
-static int open_temporary(vxm_output *output, size_t size) {
+/** Creates a file of a short new name in the output's folder, with the rights of the file that it is to
+ * replace. */
+static int open_temporary(vxm_output *output, size_t size, mode_t mode) {
+  const char *slash = strrchr(output->path, '/');
+  int folder = slash ? (int)(slash - output->path + 1) : 0;
   for (int attempt = 0; attempt < 1000; attempt++) {
-    snprintf(output->temporary, size, "%s.%ld-%d.tmp", output->path, (long)getpid(), attempt);
+    snprintf(output->temporary, size, "%.*svoxmend-%ld-%d.tmp", folder, output->path, (long)getpid(),
+             attempt);
     int descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 && mode != 0 && fchmod(descriptor, mode) != 0) {
+      close(descriptor);
+      unlink(output->temporary);
+      return -1;
+    }
     if (descriptor >= 0 || errno != EEXIST)
       return descriptor;
   }
   return -1;
+}
+
+/** Opens what `path` names: a link is followed, so that it stays a link and its file is replaced. */
+static int open_output(vxm_output *output, const char *path) {
+  struct stat info = {.st_mode = 0};
+  bool exists = stat(path, &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) {
+    errno = EISDIR;
+    return -1;
+  }
+  output->path = exists ? realpath(path, NULL) : strdup(path);
+  /* A device or pipe (/dev/null) cannot be replaced by a rename: write straight to it. */
+  if (exists && !S_ISREG(info.st_mode))
+    return open(path, O_WRONLY | O_CLOEXEC);
+  if (!output->path)
+    return -1;
+  size_t size = strlen(output->path) + 48;
+  output->temporary = calloc(1, size);
+  if (!output->temporary)
+    return -1;
+  return open_temporary(output, size, info.st_mode & 07777);
 }
 
 vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *path, vxm_error *error) {
@@ -127,25 +157,10 @@ vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *p
   output->context = context;
   output->failure = 0;
   output->used = 0;
+  output->path = NULL;
+  output->temporary = NULL;
   output->is_stdout = strcmp(path, "-") == 0;
-  output->path = strdup(path);
-  size_t temporary_size = strlen(path) + 48;
-  output->temporary = calloc(1, temporary_size);
-  if (!output->path || !output->temporary) {
-    output_free(output);
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  }
-  if (output->is_stdout) {
-    output->descriptor = STDOUT_FILENO;
-    *out = output;
-    return VXM_OK;
-  }
-  struct stat info;
-  if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-    /* A device or pipe (/dev/null) cannot be replaced by a rename: write straight to it. */
-    output->descriptor = S_ISDIR(info.st_mode) ? (errno = EISDIR, -1) : open(path, O_WRONLY | O_CLOEXEC);
-  else
-    output->descriptor = open_temporary(output, temporary_size);
+  output->descriptor = output->is_stdout ? STDOUT_FILENO : open_output(output, path);
   if (output->descriptor < 0) {
     vxm_fail_errno(error, path, "cannot write");
     output_free(output);
@@ -218,7 +233,7 @@ void vxm_output_abort(vxm_output *output) {
     return;
   if (!output->is_stdout) {
     close(output->descriptor);
-    if (output->temporary[0])
+    if (output->temporary)
       unlink(output->temporary);
   }
   output_free(output);
@@ -230,13 +245,13 @@ vxm_status vxm_output_commit(vxm_output *output, vxm_error *error) {
     if (close(output->descriptor) != 0)
       output->failure = errno;
     output->descriptor = -1;
-    if (!output->failure && output->temporary[0] && rename(output->temporary, output->path) != 0)
+    if (!output->failure && output->temporary && rename(output->temporary, output->path) != 0)
       output->failure = errno;
   }
   if (output->failure) {
     errno = output->failure;
     vxm_fail_errno(error, output->is_stdout ? "<stdout>" : output->path, "cannot write");
-    if (output->temporary[0])
+    if (output->temporary)
       unlink(output->temporary);
     if (!output->is_stdout && output->descriptor >= 0)
       close(output->descriptor);

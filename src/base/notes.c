@@ -5,10 +5,8 @@
 #include <stdio.h>
 
 void vxm_note(vxm_notes *notes, const char *format, ...) {
-  if (notes->count == VXM_NOTES_MAX) {
-    notes->dropped++;
+  if (notes->count == VXM_NOTES_MAX)
     return;
-  }
   char *text = notes->text[notes->count++];
   va_list arguments;
   va_start(arguments, format);

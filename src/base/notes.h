@@ -9,11 +9,10 @@ enum { VXM_NOTES_MAX = 16, VXM_NOTE_LENGTH = 320 };
 
 /**
  * Readers gather each kind of damage into one line ("line 7: ...; 12 such lines in all"), so a fixed number
- * is enough; what comes after the last place is counted in `dropped`.
+ * is enough; what comes after the last place is left out.
  */
 typedef struct vxm_notes {
   int count;
-  int dropped;
   char text[VXM_NOTES_MAX][VXM_NOTE_LENGTH];
 } vxm_notes;
 

@@ -2,7 +2,9 @@
 #include "base/threads.h"
 #include "base/context_struct.h"
 
+#include <signal.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 typedef struct worker_start {
   vxm_pool *pool;
@@ -37,6 +39,8 @@ static void *worker_main(void *argument) {
     if (pool->quit)
       break;
     seen = pool->round;
+    if (start.worker > pool->participants)
+      continue; /* fewer tasks than workers */
     pthread_mutex_unlock(&pool->mutex);
     run_tasks(pool, start.worker);
     pthread_mutex_lock(&pool->mutex);
@@ -47,27 +51,42 @@ static void *worker_main(void *argument) {
   return NULL;
 }
 
-/** Starts the workers on first use; fewer than asked for is not an error, the work is only slower. */
+/**
+ * Starts the workers on first use; fewer than asked for is not an error, the work is only slower. They take
+ * no signals, which are the application's.
+ */
 static void start_workers(vxm_pool *pool, int wanted) {
-  if (pool->threads)
-    return;
+  sigset_t all, before;
+  pool->process = getpid();
   pool->threads = calloc((size_t)wanted, sizeof *pool->threads);
   if (!pool->threads)
     return;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
   while (pool->started < wanted) {
     worker_start *start = malloc(sizeof *start);
     if (!start)
-      return;
+      break;
     *start = (worker_start){pool, pool->started + 1};
     if (pthread_create(&pool->threads[pool->started], NULL, worker_main, start) != 0) {
       free(start);
-      return;
+      break;
     }
     pool->started++;
   }
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+/** After a fork the child has the pool's memory but none of its threads. */
+static bool is_forked(const vxm_pool *pool) {
+  return pool->threads && pool->process != getpid();
 }
 
 void vxm_pool_destroy(vxm_pool *pool) {
+  if (is_forked(pool)) {
+    free(pool->threads);
+    return;
+  }
   pthread_mutex_lock(&pool->mutex);
   pool->quit = true;
   pthread_cond_broadcast(&pool->wake);
@@ -84,7 +103,7 @@ void vxm_pool_destroy(vxm_pool *pool) {
 void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void *payload) {
   vxm_pool *pool = &context->pool;
   /* trylock fails for a nested loop and for a second caller: both work alone. */
-  if (context->threads < 2 || count < 2 || pthread_mutex_trylock(&pool->owner) != 0) {
+  if (context->threads < 2 || count < 2 || is_forked(pool) || pthread_mutex_trylock(&pool->owner) != 0) {
     for (size_t task = 0; task < count; task++)
       function(task, 0, payload);
     return;
@@ -96,7 +115,8 @@ void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void
   pool->payload = payload;
   pool->task_count = count;
   atomic_store_explicit(&pool->next_task, 0, memory_order_relaxed);
-  pool->busy = pool->started;
+  pool->participants = count - 1 < (size_t)pool->started ? (int)(count - 1) : pool->started;
+  pool->busy = pool->participants;
   pool->round++;
   pthread_cond_broadcast(&pool->wake);
   pthread_mutex_unlock(&pool->mutex);

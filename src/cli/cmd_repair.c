@@ -5,7 +5,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { KEY_WELD = CLI_KEY_COMMAND, KEY_KEEP, KEY_ASCII, KEY_FORMAT };
+enum { KEY_WELD = CLI_KEY_COMMAND, KEY_KEEP, KEY_TURNED, KEY_CLOSE, KEY_ASCII, KEY_FORMAT };
 
 static const cli_option known_options[] = {
     {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)"},
@@ -14,6 +14,11 @@ static const cli_option known_options[] = {
      "near ones where that closes cracks; off = identical positions only;\n"
      "EPS = all that are no farther apart, in model units [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
+    {KEY_TURNED, "keep-orientation", NULL,
+     "leave faces turned as they are, rather than consistently and outward"},
+    {KEY_CLOSE, "close", NULL,
+     "close holes: triangles from the middle of each rim to its edges. Sheets,\n"
+     "which that would only cover a second time, stay open"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
     {0, NULL, NULL, NULL}};
@@ -39,6 +44,12 @@ static int read_arguments(cli_run *cli, request *out) {
       break;
     case KEY_KEEP:
       out->repair.keep_duplicates = true;
+      break;
+    case KEY_TURNED:
+      out->repair.keep_orientation = true;
+      break;
+    case KEY_CLOSE:
+      out->repair.close = true;
       break;
     case KEY_ASCII:
       out->write.ascii = true;
@@ -104,11 +115,12 @@ const cli_command cli_command_repair = {
     .summary = "mend a mesh, and show it before and after",
     .notes =
         "Removes vertices that are not finite with their faces, welds vertices, removes faces without area,\n"
-        "repeated faces (of two that lie back to back one stays) and unused vertices. Repairing the result\n"
-        "again changes nothing.\n\n"
+        "repeated faces (of two that lie back to back one stays) and unused vertices, and turns faces\n"
+        "consistently, outward where they enclose something. Repairing the result again changes nothing.\n\n"
         "Examples:\n"
         "  voxmend repair scan.obj -o scan.ply\n"
         "  voxmend repair part.stl -o part.off --weld 0.001\n"
+        "  voxmend repair scan.ply -o closed.stl --close\n"
         "  cat part.stl | voxmend repair - -o - --format obj > part.obj",
     .options = known_options,
     .run = run,

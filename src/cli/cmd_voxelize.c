@@ -14,6 +14,8 @@ enum {
   KEY_METHOD,
   KEY_VOTE,
   KEY_PARTS,
+  KEY_CAVITIES,
+  KEY_CONFIDENCE,
   KEY_NO_REPAIR,
   KEY_WELD,
   KEY_KEEP,
@@ -34,20 +36,28 @@ static const cli_option known_options[] = {
     {KEY_PAD, "pad", "P", "keep P voxels free on each side: within -r, in addition to --voxel-size [0]"},
     {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1", "cover exactly this box, whatever the model's size"},
     {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
-    {KEY_METHOD, "method", "vote|x|y|z|tetra",
-     "who says what is inside: parity along one axis, the XOR of tetrahedra, or\n"
-     "a vote of these four. They agree wherever the mesh is closed [vote]"},
-    {KEY_VOTE, "vote", "majority|any|all", "how many of the four must say inside [majority]"},
+    {KEY_METHOD, "method", "vote|x|y|z|tetra|winding",
+     "who says what is inside: parity along one axis, the XOR of tetrahedra, a\n"
+     "vote of these four (they agree wherever the mesh is closed), or the winding\n"
+     "number, which is slow and always has an answer [vote]"},
+    {KEY_VOTE, "vote", "auto|majority|any|all",
+     "what is inside where the mesh is open: auto = close holes by caps over their\n"
+     "rims, and ask the winding number where that cannot be; majority = what two\n"
+     "of x, y and z say; any, all = what any or all of the four say [auto]"},
     {KEY_PARTS, "parts", "auto|group|whole",
      "what is voxelized alone, then united: auto = each closed component, and\n"
      "all others together; group = each component; whole = no splitting [auto]"},
+    {KEY_CAVITIES, "cavities", "auto|keep|fill",
+     "what a closed component inside another is: auto = a cavity if it is wound\n"
+     "against that, else solid; keep = a cavity; fill = solid [auto]"},
+    {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
-  const char *input, *output, *format, *like;
+  const char *input, *output, *format, *like, *confidence;
   bool resolution, size, fit, pad, bounds, vote, no_repair, repair_options; /**< which options were given */
   vxm_repair_options repair;
   vxm_voxelize_options voxelize;
@@ -128,9 +138,10 @@ static int read_space_option(cli_run *cli, request *out, int key, const char *va
 }
 
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
-  static const char *const methods[] = {"vote", "x", "y", "z", "tetra", NULL};
-  static const char *const votes[] = {"majority", "any", "all", NULL};
+  static const char *const methods[] = {"vote", "x", "y", "z", "tetra", "winding", NULL};
+  static const char *const votes[] = {"auto", "majority", "any", "all", NULL};
   static const char *const parts[] = {"auto", "group", "whole", NULL};
+  static const char *const cavities[] = {"auto", "keep", "fill", NULL};
   int choice = 0, result = CLI_END;
   switch (key) {
   case 'o':
@@ -140,18 +151,26 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     out->format = value;
     return CLI_END;
   case KEY_METHOD:
-    result = read_choice(cli, &choice, "method", value, methods, "vote, x, y, z, tetra");
+    result = read_choice(cli, &choice, "method", value, methods, "vote, x, y, z, tetra, winding");
     out->voxelize.method = (vxm_method)choice;
     return result;
   case KEY_VOTE:
     out->vote = true;
-    result = read_choice(cli, &choice, "vote", value, votes, "majority, any, all");
+    result = read_choice(cli, &choice, "vote", value, votes, "auto, majority, any, all");
     out->voxelize.vote = (vxm_vote)choice;
     return result;
   case KEY_PARTS:
     result = read_choice(cli, &choice, "parts", value, parts, "auto, group, whole");
     out->voxelize.parts = (vxm_parts)choice;
     return result;
+  case KEY_CAVITIES:
+    result = read_choice(cli, &choice, "cavities", value, cavities, "auto, keep, fill");
+    out->voxelize.cavities = (vxm_cavities)choice;
+    return result;
+  case KEY_CONFIDENCE:
+    out->confidence = value;
+    out->voxelize.confidence = true;
+    return CLI_END;
   case KEY_NO_REPAIR:
     out->no_repair = true;
     return CLI_END;
@@ -213,7 +232,7 @@ typedef struct outcome {
 static json_t *make_report(const cli_run *cli, const request *given, const outcome *results) {
   json_t *votes = json_object();
   json_object_set_new(votes, "contested", json_integer(results->voxelize.contested));
-  json_object_set_new(votes, "escalated", json_integer(0));
+  json_object_set_new(votes, "escalated", json_integer(results->voxelize.escalated));
   json_t *times = json_object();
   json_object_set_new(times, "read", json_real(results->input.read_ms));
   json_object_set_new(times, "repair", json_real(results->input.repair_ms));
@@ -226,6 +245,10 @@ static json_t *make_report(const cli_run *cli, const request *given, const outco
   json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
   json_object_set_new(report, "parts", json_integer(results->voxelize.parts));
   json_object_set_new(report, "closed_parts", json_integer(results->voxelize.closed_parts));
+  json_object_set_new(report, "capped_parts", json_integer(results->voxelize.capped_parts));
+  json_object_set_new(report, "caps", json_integer(results->voxelize.caps));
+  json_object_set_new(report, "cavities", json_integer(results->voxelize.cavities));
+  json_object_set_new(report, "empty_parts", json_integer(results->voxelize.empty_parts));
   json_object_set_new(report, "grid", cli_json_space(&results->space));
   json_object_set_new(report, "votes", votes);
   json_object_set_new(report, "voxels", json_integer(results->voxelize.voxels));
@@ -248,6 +271,25 @@ static void summarize_repair(const cli_run *cli, const vxm_repair_report *repair
   fprintf(cli->text, "%s\n", *separator ? "" : repair->pass_count ? "nothing to do" : "not wanted");
 }
 
+/** "3: 1 closed, 2 closed by caps over 7 holes"; kinds without a part are left out. */
+static void summarize_parts(const cli_run *cli, const vxm_voxelize_report *report) {
+  int64_t open = report->parts - report->closed_parts - report->capped_parts;
+  const char *separator = ": ";
+  fprintf(cli->text, "%-10s %" PRId64, "parts", report->parts);
+  if (report->closed_parts > 0) {
+    fprintf(cli->text, "%s%" PRId64 " closed", separator, report->closed_parts);
+    separator = ", ";
+  }
+  if (report->capped_parts > 0) {
+    fprintf(cli->text, "%s%" PRId64 " closed by caps over %" PRId64 " rims", separator, report->capped_parts,
+            report->caps);
+    separator = ", ";
+  }
+  if (open > 0)
+    fprintf(cli->text, "%s%" PRId64 " open", separator, open);
+  fputc('\n', cli->text);
+}
+
 static void summarize(const cli_run *cli, const request *given, const outcome *results) {
   const cli_input *input = &results->input;
   const vxm_voxelize_report *report = &results->voxelize;
@@ -257,10 +299,14 @@ static void summarize(const cli_run *cli, const request *given, const outcome *r
           input->format, input->vertices, input->faces);
   summarize_repair(cli, &input->repair);
   cli_rows_space(cli, space);
-  cli_row(cli, "parts", "%" PRId64 ", of which %" PRId64 " closed", report->parts, report->closed_parts);
+  summarize_parts(cli, report);
+  if (report->cavities > 0)
+    cli_row(cli, "cavities", "%" PRId64, report->cavities);
   cli_row(cli, "voxels", "%" PRId64 " (%.2f %%)", report->voxels, 100.0 * (double)report->voxels / cells);
   cli_row(cli, "contested", "%" PRId64 "%s", report->contested,
-          report->contested ? " (open parts: the voters disagreed there)" : "");
+          report->escalated   ? " (open parts, decided by the winding number)"
+          : report->contested ? " (open parts: the voters disagreed there)"
+                              : "");
   cli_row(cli, "hash", "%016" PRIx64, report->hash);
   cli_row(cli, "time", "%.1f ms: read %.1f, repair %.1f, voxelize %.1f, write %.1f", results->total_ms,
           input->read_ms, input->repair_ms, results->voxelize_ms, results->write_ms);
@@ -294,7 +340,14 @@ static int make_grid(cli_run *cli, const request *given, outcome *results) {
   double made = cli_clock();
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = given->format;
-  vxm_status status = vxm_grid_write(grid, given->output, &options, &cli->error);
+  vxm_status status = VXM_OK;
+  if (given->confidence)
+    status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
+  if (status == VXM_OK) {
+    status = vxm_grid_write(grid, given->output, &options, &cli->error);
+    if (status != VXM_OK && given->confidence)
+      remove(given->confidence); /* no output is left of a failed command */
+  }
   results->voxelize_ms = made - start;
   results->write_ms = cli_clock() - made;
   vxm_grid_destroy(grid);

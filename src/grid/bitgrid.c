@@ -23,13 +23,7 @@ vxm_status vxm_space_check(const vxm_space *space, vxm_error *error) {
                       "size positive",
                       space->voxel_size[a], space->origin[a], axis_name[a]);
   }
-  /* 2^14 words x 2^20 x 2^20 rows fit 64 bits; bytes must fit the address space too. */
-  uint64_t words = ((uint64_t)space->dims[0] + 63) / 64 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
-  if (words > PTRDIFF_MAX / 8 - 4096)
-    return vxm_fail(error, VXM_ERROR_RANGE,
-                    "%" PRId64 " x %" PRId64 " x %" PRId64 " voxels are beyond what can be "
-                    "addressed; lower the resolution",
-                    space->dims[0], space->dims[1], space->dims[2]);
+  /* At most 2^14 words x 2^20 x 2^20 rows: the bytes fit 64 bits. */
   return VXM_OK;
 }
 
@@ -74,6 +68,7 @@ void vxm_grid_destroy(vxm_grid *grid) {
   if (!grid)
     return;
   vxm_context *context = grid->context;
+  vxm_free(context, grid->confidence);
   vxm_free(context, grid->words);
   vxm_free(context, grid);
   vxm_context_release(context);
@@ -107,19 +102,63 @@ const uint64_t *vxm_grid_words(const vxm_grid *grid) {
   return grid->words;
 }
 
+/** One slice of a grid: what it holds, and its hash. */
+typedef struct slice_sum {
+  int64_t count;
+  uint64_t hash;
+} slice_sum;
+
+enum { SLICES_AT_ONCE = 256 };
+
+typedef struct sum_job {
+  const vxm_grid *grid;
+  size_t first;
+  slice_sum sums[SLICES_AT_ONCE];
+} sum_job;
+
+static void sum_slice(size_t task, int worker, void *payload) {
+  (void)worker;
+  sum_job *job = payload;
+  const uint64_t *words = job->grid->words + (job->first + task) * job->grid->slice_words;
+  slice_sum sum = {0, 0};
+  uint64_t lanes[4] = {0, 0, 0, 0}; /* four chains, as one would wait for its own multiplications */
+  for (size_t w = 0; w < job->grid->slice_words; w++) {
+    sum.count += vxm_popcount(words[w]);
+    lanes[w % 4] = vxm_hash_word(lanes[w % 4], words[w]);
+  }
+  for (int l = 0; l < 4; l++)
+    sum.hash = vxm_hash_word(sum.hash, lanes[l]);
+  job->sums[task] = sum;
+}
+
+void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
+  size_t slices = (size_t)grid->space.dims[2];
+  sum_job job = {.grid = grid};
+  *count = 0;
+  *hash = 0;
+  for (int a = 0; a < 3; a++)
+    *hash = vxm_hash_word(*hash, (uint64_t)grid->space.dims[a]);
+  for (; job.first < slices; job.first += SLICES_AT_ONCE) {
+    size_t tasks = slices - job.first < SLICES_AT_ONCE ? slices - job.first : SLICES_AT_ONCE;
+    vxm_parallel(grid->context, tasks, sum_slice, &job);
+    for (size_t t = 0; t < tasks; t++) {
+      *count += job.sums[t].count;
+      *hash = vxm_hash_word(*hash, job.sums[t].hash);
+    }
+  }
+}
+
 int64_t vxm_grid_count(const vxm_grid *grid) {
-  int64_t count = 0;
-  for (size_t w = 0; w < grid->word_count; w++)
-    count += vxm_popcount(grid->words[w]);
+  int64_t count;
+  uint64_t hash;
+  vxm_grid_sum(grid, &count, &hash);
   return count;
 }
 
 uint64_t vxm_grid_hash(const vxm_grid *grid) {
-  uint64_t hash = 0;
-  for (int a = 0; a < 3; a++)
-    hash = vxm_hash_word(hash, (uint64_t)grid->space.dims[a]);
-  for (size_t w = 0; w < grid->word_count; w++)
-    hash = vxm_hash_word(hash, grid->words[w]);
+  int64_t count;
+  uint64_t hash;
+  vxm_grid_sum(grid, &count, &hash);
   return hash;
 }
 
@@ -147,6 +186,10 @@ static void unpack_layer(size_t j, int worker, void *payload) {
           to[k] = (uint8_t)(block[c] >> k & 1);
       }
     }
+}
+
+const uint8_t *vxm_grid_confidence(const vxm_grid *grid) {
+  return grid->confidence;
 }
 
 void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes) {

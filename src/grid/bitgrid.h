@@ -13,17 +13,21 @@
 struct vxm_grid {
   vxm_context *context; /**< one reference held */
   vxm_space space;
-  size_t row_words;   /**< (dims[0] + 63) / 64 */
-  size_t slice_words; /**< row_words * dims[1] */
-  size_t word_count;  /**< slice_words * dims[2] */
-  uint64_t *words;    /**< bits beyond dims[0] in the last word of a row are zero: every writer keeps that */
+  size_t row_words;    /**< (dims[0] + 63) / 64 */
+  size_t slice_words;  /**< row_words * dims[1] */
+  size_t word_count;   /**< slice_words * dims[2] */
+  uint64_t *words;     /**< bits beyond dims[0] in the last word of a row are zero: every writer keeps that */
+  uint8_t *confidence; /**< a byte per voxel, x fastest, or NULL */
   vxm_notes notes;
 };
 
-/** Checks dims (1 to VXM_DIM_MAX, total words addressable), finite origin, positive finite voxel size. */
+/** Checks dims (1 to VXM_DIM_MAX, ), finite origin, positive finite voxel size. */
 vxm_status vxm_space_check(const vxm_space *space, vxm_error *error);
 /** Bytes that a grid of this space takes. The space has been checked. */
 uint64_t vxm_space_bytes(const vxm_space *space);
+
+/** vxm_grid_count and vxm_grid_hash in one go. */
+void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash);
 
 static inline uint64_t *vxm_grid_row(const vxm_grid *grid, int64_t j, int64_t k) {
   return grid->words + (size_t)k * grid->slice_words + (size_t)j * grid->row_words;

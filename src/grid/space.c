@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/space.h"
 #include "grid/bitgrid.h"
+#include "mesh/frame.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -24,20 +25,23 @@ static double diagonal(const box *b) {
   return hypot(hypot(extent(b, 0), extent(b, 1)), extent(b, 2));
 }
 
-/** Box of the finite vertices that faces use; false if there are none. */
-static bool box_of_soup(box *out, const vxm_soup *soup) {
-  bool any = false;
-  for (size_t c = 0; c < soup->corner_count; c++) {
-    const double *p = vxm_position(soup, soup->indices[c]);
-    if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
-      continue;
-    for (int a = 0; a < 3; a++) {
-      out->low[a] = any ? fmin(out->low[a], p[a]) : p[a];
-      out->high[a] = any ? fmax(out->high[a], p[a]) : p[a];
-    }
-    any = true;
+/** Box of the finite vertices that faces use. */
+static vxm_status box_of_soup(box *out, const vxm_soup *soup, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  uint8_t *used = vxm_alloc(soup->context, soup->vertex_count, sizeof *used, &local);
+  if (!used) {
+    if (error)
+      *error = local;
+    return local.code;
   }
-  return any;
+  vxm_extent extent;
+  vxm_extent_of(&extent, soup->context, soup, used);
+  vxm_free(soup->context, used);
+  for (int a = 0; a < 3; a++) {
+    out->low[a] = extent.bounds[a];
+    out->high[a] = extent.bounds[a + 3];
+  }
+  return VXM_OK;
 }
 
 /** Voxels of size `size` needed for a length; at least 1, and at most more than any grid may have. */
@@ -127,6 +131,9 @@ static vxm_status fit_model(vxm_space *out, const box *b, const request *r, cons
                             vxm_error *error) {
   set_cubic(out, r->by_size ? o->voxel_size : fitted_size(b, r, o->fit));
   double size = out->voxel_size[0];
+  if (!(size > 0) || !isfinite(size))
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "voxels of size %g are beyond what can be computed; scale the model", size);
   for (int a = 0; a < 3; a++) {
     double side = o->fit == VXM_FIT_TIGHT    ? extent(b, a)
                   : o->fit == VXM_FIT_SPHERE ? diagonal(b)
@@ -135,6 +142,9 @@ static vxm_status fit_model(vxm_space *out, const box *b, const request *r, cons
     out->dims[a] = from_model ? voxels_for(side, size) + 2 * o->pad : r->voxels[a];
     /* Halves first: the sum of two huge corners could overflow. */
     out->origin[a] = (b->low[a] / 2 + b->high[a] / 2) - (double)out->dims[a] * size / 2;
+    if (!isfinite(out->origin[a]))
+      return vxm_fail(error, VXM_ERROR_RANGE,
+                      "the grid would reach beyond the largest number; scale the model down");
   }
   return vxm_space_check(out, error);
 }
@@ -155,7 +165,7 @@ vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_spac
   vxm_status status = read_request(&wanted, options, error);
   if (status != VXM_OK)
     return status;
-  box b;
+  box b = {{0}, {0}};
   if (options->use_bounds) {
     if (options->pad != 0)
       return vxm_fail(error, VXM_ERROR_ARGUMENT,
@@ -166,11 +176,14 @@ vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_spac
     }
     return cover_bounds(out, &b, &wanted, options->voxel_size, error);
   }
-  if (!box_of_soup(&b, soup))
-    return vxm_fail(error, VXM_ERROR_EMPTY,
-                    "the mesh has no face with finite vertices, so there is nothing to voxelize");
+  status = box_of_soup(&b, soup, error);
+  if (status != VXM_OK)
+    return status;
   if (!(longest(&b) > 0))
-    return vxm_fail(error, VXM_ERROR_EMPTY, "all faces lie in one point, so there is nothing to voxelize");
+    return vxm_fail(
+        error, VXM_ERROR_EMPTY,
+        "the mesh has no faces with finite vertices, or all of them lie in one point, so there is nothing "
+        "to voxelize");
   if (!isfinite(diagonal(&b)))
     return vxm_fail(error, VXM_ERROR_RANGE, "the model is larger than the largest number; scale it down");
   return fit_model(out, &b, &wanted, options, error);

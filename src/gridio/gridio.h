@@ -39,6 +39,9 @@ vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *
  */
 vxm_status vxm_gridio_surface_mesh(vxm_soup **out, const vxm_grid *grid, vxm_error *error);
 
+/** Writes the confidence of a grid as .npy; see vxm_grid_write_confidence in voxmend.h. */
+vxm_status vxm_gridio_confidence(const vxm_grid *grid, const char *path, vxm_error *error);
+
 /**
  * Draws the grid into a PNG file.
  *

@@ -235,7 +235,7 @@ static vxm_status fill_output(vxm_output *output, const vxm_grid *grid, vxm_erro
   vxm_error local = VXM_ERROR_INIT;
   unsigned char *bytes = vxm_alloc(grid->context, chunk_rows, planes.length, &local);
   if (bytes) {
-    vxm_npy_header_write(output, grid->space.dims);
+    vxm_npy_header_write(output, "|b1", false, grid->space.dims);
     status = write_array(output, grid, &planes, bytes, chunk_rows, error);
   } else {
     status = local.code;

@@ -188,13 +188,13 @@ vxm_status vxm_npy_header_read(vxm_npy_header *out, const vxm_input *input, vxm_
   return read_dictionary(&s, out);
 }
 
-void vxm_npy_header_write(vxm_output *output, const int64_t shape[3]) {
+void vxm_npy_header_write(vxm_output *output, const char *type, bool fortran, const int64_t shape[3]) {
   enum { BEGIN = 10, ALIGN = 64 };
   char text[192];
   int length =
       snprintf(text, sizeof text,
-               "{'descr': '|b1', 'fortran_order': False, 'shape': (%" PRId64 ", %" PRId64 ", %" PRId64 "), }",
-               shape[0], shape[1], shape[2]);
+               "{'descr': '%s', 'fortran_order': %s, 'shape': (%" PRId64 ", %" PRId64 ", %" PRId64 "), }",
+               type, fortran ? "True" : "False", shape[0], shape[1], shape[2]);
   /* Spaces and a line end fill the header up to the alignment. */
   size_t used = (size_t)length, total = (BEGIN + used + 1 + ALIGN - 1) / ALIGN * ALIGN - BEGIN;
   memset(text + used, ' ', total - used - 1);

@@ -18,7 +18,12 @@ typedef struct vxm_npy_header {
 bool vxm_npy_sniff(const vxm_input *input);
 /** VXM_ERROR_FORMAT with the offset of what is wrong, or of what voxmend cannot take as a grid. */
 vxm_status vxm_npy_header_read(vxm_npy_header *out, const vxm_input *input, vxm_error *error);
-/** Writes the header of a boolean array in C order; the array begins at a multiple of 64 bytes. */
-void vxm_npy_header_write(vxm_output *output, const int64_t shape[3]);
+/**
+ * Writes the header of an array, which begins at a multiple of 64 bytes.
+ *
+ * @param type    numpy's name of the elements, such as "|b1" or "|u1"
+ * @param fortran whether the first index is the fastest
+ */
+void vxm_npy_header_write(vxm_output *output, const char *type, bool fortran, const int64_t shape[3]);
 
 #endif

@@ -4,6 +4,7 @@
 #include "mesh/geometry.h"
 #include "mesh/near.h"
 #include "mesh/sort.h"
+#include "repair/torn.h"
 
 #include <string.h>
 
@@ -118,8 +119,9 @@ static vxm_status is_wanted(vxm_work *work, bool *wanted, vxm_error *error) {
 
 /**
  * Merges near vertices: with a given tolerance wherever vxm_weld_near merges them, else only where that
- * closes cracks. As a merged group has no other vertex near it, running the pass again, after others, merges
- * new groups or none, but never adds to an old one.
+ * closes cracks, and where there is none of the usual kind, in soups that were torn apart. As a merged group
+ * has no other vertex near it, running the pass again, after others, merges new groups or none, but never
+ * adds to an old one.
  */
 vxm_status vxm_pass_tolerant_weld(vxm_work *work, bool *changed, vxm_error *error) {
   bool wanted;
@@ -134,8 +136,12 @@ vxm_status vxm_pass_tolerant_weld(vxm_work *work, bool *changed, vxm_error *erro
     status = weld_all(work, map, error);
   else
     status = weld_cracks(work, map, error);
+  int64_t count = status == VXM_OK ? vxm_work_merge(work, map) : 0;
+  if (status == VXM_OK && count == 0 && work->options.weld == VXM_WELD_AUTO) {
+    status = vxm_torn_match(work, map, error);
+    count = status == VXM_OK ? vxm_work_merge(work, map) : 0;
+  }
   if (status == VXM_OK) {
-    int64_t count = vxm_work_merge(work, map);
     work->counts[VXM_PASS_TOLERANT_WELD] += count;
     *changed = count > 0;
   }

@@ -7,48 +7,52 @@
  * section III, with the apex in a corner). The inner edges cancel in pairs, so that a closed set of polygons
  * stays closed.
  *
- * An open part also gets its cones: the triangles from the part's apex to each odd edge (one with an odd
- * number of incident faces). Part and cones together are closed mod 2, and the XOR of the part's tetrahedra
- * with that apex equals the parity of part and cones, because the other inner faces of the tetrahedra cancel
- * in pairs.
+ * Odd edges (those with an odd number of faces) get two more sets of triangles, each of which closes a part
+ * mod 2:
+ *  - cones, from the apex of the part to each odd edge. The XOR of the tetrahedra from that apex to the
+ * part's triangles equals the parity of triangles and cones, because the other inner faces of the tetrahedra
+ * cancel.
+ *  - caps, from the centre of each loop of odd edges to its edges: they close holes.
  */
 #ifndef VXM_VOXEL_FACETS_H
 #define VXM_VOXEL_FACETS_H
 
-#include "voxel/lattice.h"
+#include "voxel/parts.h"
+
+typedef enum vxm_facet_role { VXM_FACET_TRIANGLE = 1, VXM_FACET_CONE = 2, VXM_FACET_CAP = 4 } vxm_facet_role;
 
 typedef struct vxm_facet {
-  uint32_t corner[3]; /**< into points; a cone has its apex in corner[2] */
+  uint32_t corner[3]; /**< into points; cones and caps have their apex in corner[2] */
   uint32_t part;
 } vxm_facet;
 
-/** Box of a part in lattice coordinates, without its apex; low > high for a part without triangles. */
+/** Box of a part in lattice coordinates; low > high for a part without triangles. */
 typedef struct vxm_part {
-  vxm_point low, high;
+  vxm_point low, high; /**< of its triangles; apexes lie inside */
   uint32_t apex;     /**< point: the mean of the corners of the part's triangles (Rueda et al., section 3) */
-  size_t begin, end; /**< its facets, cones included */
-  size_t odd_edges;  /**< 0 = closed mod 2 */
+  size_t begin, end; /**< its facets of all roles */
 } vxm_part;
 
 typedef struct vxm_facets {
   vxm_context *context;
-  vxm_point *points; /**< the soup's vertices, then one apex per part */
-  size_t first_apex;
-  vxm_facet *facets; /**< part after part; in each the triangles first, then the cones */
+  vxm_point *points; /**< the soup's vertices, then an apex per part, then an apex per loop */
+  size_t first_apex, first_cap;
+  vxm_facet *facets; /**< part after part; in each the triangles first, then the cones and the caps */
   size_t facet_count;
   vxm_part *parts;
-  size_t part_count;
-  size_t closed_count;   /**< parts closed mod 2: they come first */
-  size_t odd_edge_count; /**< in all parts together */
+  vxm_split split;
 } vxm_facets;
 
-static inline bool vxm_facet_is_cone(const vxm_facets *facets, size_t f) {
-  return facets->facets[f].corner[2] >= facets->first_apex;
+static inline vxm_facet_role vxm_facet_role_of(const vxm_facets *facets, const vxm_facet *facet) {
+  if (facet->corner[2] < facets->first_apex)
+    return VXM_FACET_TRIANGLE;
+  return facet->corner[2] < facets->first_cap ? VXM_FACET_CONE : VXM_FACET_CAP;
 }
 
-/** Splits a soup into parts and covers its polygons. Destroy with vxm_facets_destroy. */
+/** Splits a soup into parts and covers its polygons. Destroy with vxm_facets_destroy, also after a failure.
+ */
 vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, const vxm_lattice *lattice,
-                             vxm_parts split, vxm_error *error);
+                             vxm_split_rule rule, vxm_error *error);
 void vxm_facets_destroy(vxm_facets *facets);
 
 #endif

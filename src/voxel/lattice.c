@@ -8,7 +8,7 @@
 enum {
   BITS_MIN = 8,
   BITS_MAX = 16,
-  /* With differences below 2^20 the products of three of them, summed, stay below 2^63. */
+  /* With differences up to 2^20 the products of three of them, summed, stay below 2^63. */
   COORDINATE_BITS = 20
 };
 

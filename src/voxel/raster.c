@@ -10,11 +10,20 @@ static inline void flip(const vxm_raster *raster, int64_t u, int64_t v, int64_t 
   uint64_t *row = raster->words + (size_t)(v - box->v_begin) * raster->v_stride;
   if (raster->axes.w == 0) {
     size_t x = (size_t)(w - raster->x_first);
-    row[(size_t)(u - box->u_begin) * raster->u_stride + x / 64] ^= UINT64_C(1) << (x % 64);
+    row[(size_t)(u - box->u_begin) * raster->row_words + x / 64] ^= UINT64_C(1) << (x % 64);
   } else {
     size_t x = (size_t)(u - raster->x_first);
-    row[(size_t)(w - box->w_begin) * raster->w_stride + x / 64] ^= UINT64_C(1) << (x % 64);
+    row[(size_t)(w - box->w_begin) * raster->row_words + x / 64] ^= UINT64_C(1) << (x % 64);
   }
+}
+
+/** Notes that columns u_begin to u_end - 1 of row v may hold flips. */
+static inline void widen_span(const vxm_raster *raster, int64_t v, int64_t u_begin, int64_t u_end) {
+  vxm_span *span = &raster->spans[v - raster->box.v_begin];
+  int32_t begin = (int32_t)(u_begin - raster->box.u_begin), end = (int32_t)(u_end - raster->box.u_begin);
+  bool empty = span->end <= span->begin;
+  span->begin = empty || begin < span->begin ? begin : span->begin;
+  span->end = empty || end > span->end ? end : span->end;
 }
 
 /* The same arithmetic twice: in 64 bits for triangles of ordinary size, in 128 bits for the others. */
@@ -31,29 +40,21 @@ static inline void flip(const vxm_raster *raster, int64_t u, int64_t v, int64_t 
 #undef NAME
 
 /** Differences up to this keep the narrow products within 63 bits. */
-static const int64_t narrow_max = (INT64_C(1) << 20) - 1;
-
-static inline int64_t least(int64_t a, int64_t b) {
-  return a < b ? a : b;
-}
-
-static inline int64_t most(int64_t a, int64_t b) {
-  return a > b ? a : b;
-}
+static const int64_t narrow_max = INT64_C(1) << 20;
 
 void vxm_raster_triangle(const vxm_raster *raster, const vxm_point *a, const vxm_point *b,
                          const vxm_point *c) {
   vxm_point low, high;
   for (int k = 0; k < 3; k++) {
-    low.at[k] = least(least(a->at[k], b->at[k]), c->at[k]);
-    high.at[k] = most(most(a->at[k], b->at[k]), c->at[k]);
+    low.at[k] = vxm_min(vxm_min(a->at[k], b->at[k]), c->at[k]);
+    high.at[k] = vxm_max(vxm_max(a->at[k], b->at[k]), c->at[k]);
   }
   vxm_axes axes = raster->axes;
   vxm_box rows = raster->box;
-  rows.u_begin = most(rows.u_begin, vxm_lattice_first(raster->lattice, low.at[axes.u]));
-  rows.u_end = least(rows.u_end, vxm_lattice_last(raster->lattice, high.at[axes.u]) + 1);
-  rows.v_begin = most(rows.v_begin, vxm_lattice_first(raster->lattice, low.at[axes.v]));
-  rows.v_end = least(rows.v_end, vxm_lattice_last(raster->lattice, high.at[axes.v]) + 1);
+  rows.u_begin = vxm_max(rows.u_begin, vxm_lattice_first(raster->lattice, low.at[axes.u]));
+  rows.u_end = vxm_min(rows.u_end, vxm_lattice_last(raster->lattice, high.at[axes.u]) + 1);
+  rows.v_begin = vxm_max(rows.v_begin, vxm_lattice_first(raster->lattice, low.at[axes.v]));
+  rows.v_end = vxm_min(rows.v_end, vxm_lattice_last(raster->lattice, high.at[axes.v]) + 1);
   if (rows.u_begin >= rows.u_end || rows.v_begin >= rows.v_end)
     return; /* between the centres: most triangles of a fine mesh */
   bool narrow = true;

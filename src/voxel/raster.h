@@ -22,19 +22,26 @@ typedef struct vxm_box {
   int64_t u_begin, u_end, v_begin, v_end, w_begin, w_end;
 } vxm_box;
 
+/** Columns of a row, counted from the box's u_begin, that hold flips; end <= begin if there are none. */
+typedef struct vxm_span {
+  int32_t begin, end;
+} vxm_span;
+
 /**
  * Where the flips go: bits for a box of voxels, x along the words as in the grid, so x positions count from
  * x_first, a multiple of 64. A voxel lies in word
- *   (v - box.v_begin) * v_stride + (u - box.u_begin) * u_stride + (w - x_first) / 64   if w is x, otherwise
- *   (v - box.v_begin) * v_stride + (w - box.w_begin) * w_stride + (u - x_first) / 64.
+ *   (v - box.v_begin) * v_stride + (u - box.u_begin) * row_words + (w - x_first) / 64   if w is x, otherwise
+ *   (v - box.v_begin) * v_stride + (w - box.w_begin) * row_words + (u - x_first) / 64.
  */
 typedef struct vxm_raster {
   const vxm_lattice *lattice;
   vxm_axes axes;
   vxm_box box;
   int64_t x_first;
-  size_t u_stride, v_stride, w_stride;
+  size_t row_words; /**< words of a row along x */
+  size_t v_stride;
   uint64_t *words;
+  vxm_span *spans; /**< of every row v of the box */
 } vxm_raster;
 
 /**

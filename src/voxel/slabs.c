@@ -3,26 +3,32 @@
 #include "base/threads.h"
 
 enum {
-  SCRATCH_WORDS = 1 << 15, /* 256 KiB: half of a usual second-level cache */
-  SLABS_PER_THREAD = 4     /* so that threads end at about the same time */
+  SCRATCH_WORDS = 1 << 15, /**< 256 KiB: half of a usual second-level cache */
+  SLABS_PER_THREAD = 4,    /**< so that threads end at about the same time */
+  POLL_FACETS = 256,       /**< facets between two looks at the progress callback */
+  LISTED_MIN = 1 << 20     /**< facets listed at once, at least */
 };
 
-/** Facets by slab: slab s takes list[begin[s]] to list[begin[s + 1] - 1], in the order of their parts. */
-typedef struct bins {
+/** Facets by slab: slab first + s takes list[begin[s]] to list[begin[s + 1] - 1], in the order of their
+ * parts. */
+typedef struct batch {
+  size_t first, count;
   size_t *begin;
-  size_t *list;
-} bins;
+  uint32_t *list;
+} batch;
 
 typedef struct unite_state {
   const vxm_unite_job *job;
+  vxm_context *context;
   vxm_grid *grid;
   vxm_facet_fn draw;
   vxm_fold_fn fold;
   int64_t thickness, rows;
-  size_t slab_count;
-  bins bins;
-  uint64_t *scratch; /**< scratch_words for each worker, zero between parts */
-  size_t scratch_words;
+  size_t slab_count, workers;
+  batch batch;
+  uint64_t *words; /**< words_each for each worker, zero between parts */
+  size_t words_each;
+  vxm_span *spans; /**< `thickness` for each worker, empty between parts */
   atomic_size_t done;
   atomic_bool stop;
   vxm_status status;
@@ -30,7 +36,7 @@ typedef struct unite_state {
 } unite_state;
 
 static int64_t clamp(int64_t value, int64_t low, int64_t high) {
-  return value < low ? low : value > high ? high : value;
+  return vxm_min(vxm_max(value, low), high);
 }
 
 /** Voxels of a part along one axis, cut to [0, n); empty where begin = end. */
@@ -52,19 +58,15 @@ static bool part_box(const vxm_unite_job *job, const vxm_part *part, vxm_box *bo
   return box->u_begin < box->u_end && box->v_begin < box->v_end && box->w_begin < box->w_end;
 }
 
-/** Shapes the scratch for a box; words is left to the caller. */
-static vxm_scratch scratch_for(const vxm_unite_job *job, const vxm_box *box) {
-  vxm_scratch s = {.raster = {.lattice = job->lattice, .axes = job->axes, .box = *box}};
+/** The raster of a box, without its memory. */
+static vxm_raster raster_of(const vxm_unite_job *job, const vxm_box *box) {
   bool along_w = job->axes.w == 0;
   int64_t x_begin = along_w ? box->w_begin : box->u_begin, x_end = along_w ? box->w_end : box->u_end;
-  s.raster.x_first = x_begin / 64 * 64;
-  s.row_words = (size_t)((x_end - s.raster.x_first + 63) / 64);
-  s.u_rows = along_w ? (size_t)(box->u_end - box->u_begin) : 1;
-  s.w_rows = along_w ? 1 : (size_t)(box->w_end - box->w_begin);
-  s.v_rows = (size_t)(box->v_end - box->v_begin);
-  s.raster.u_stride = s.raster.w_stride = s.row_words;
-  s.raster.v_stride = s.row_words * s.u_rows * s.w_rows;
-  return s;
+  vxm_raster raster = {.lattice = job->lattice, .axes = job->axes, .box = *box, .x_first = x_begin / 64 * 64};
+  raster.row_words = (size_t)((x_end - raster.x_first + 63) / 64);
+  raster.v_stride =
+      raster.row_words * (size_t)(along_w ? box->u_end - box->u_begin : box->w_end - box->w_begin);
+  return raster;
 }
 
 /* ---- Sorting facets into slabs ---- */
@@ -77,13 +79,11 @@ static bool facet_slabs(const unite_state *state, const vxm_facet *facet, size_t
   int64_t low = INT64_MAX, high = INT64_MIN;
   for (int k = 0; k < (job->to_apex ? 4 : 3); k++) {
     uint32_t corner = k < 3 ? facet->corner[k] : job->facets->parts[facet->part].apex;
-    int64_t at = points[corner].at[v];
-    low = at < low ? at : low;
-    high = at > high ? at : high;
+    low = vxm_min(low, points[corner].at[v]);
+    high = vxm_max(high, points[corner].at[v]);
   }
-  int64_t begin = vxm_lattice_first(job->lattice, low), end = vxm_lattice_last(job->lattice, high) + 1;
-  begin = begin < 0 ? 0 : begin;
-  end = end > state->rows ? state->rows : end;
+  int64_t begin = vxm_max(vxm_lattice_first(job->lattice, low), 0);
+  int64_t end = vxm_min(vxm_lattice_last(job->lattice, high) + 1, state->rows);
   if (begin >= end)
     return false;
   *first = (size_t)(begin / state->thickness);
@@ -91,45 +91,51 @@ static bool facet_slabs(const unite_state *state, const vxm_facet *facet, size_t
   return true;
 }
 
-/** Counts (list NULL) or lists the facets of each slab; after listing, begin[s] has moved to the end of slab
- * s. */
-static void sort_facets(unite_state *state, size_t *counter, size_t *list) {
+/**
+ * Counts the facets of slabs first..end-1 (list NULL), or lists them; counter[s] belongs to slab first + s,
+ * and after listing it has moved to the end of its slab.
+ */
+static void sort_facets(const unite_state *state, size_t first, size_t end, size_t *counter, uint32_t *list) {
   const vxm_facets *facets = state->job->facets;
-  size_t begin = facets->parts[state->job->part_begin].begin,
-         end = facets->parts[state->job->part_end - 1].end;
-  for (size_t f = begin; f < end; f++) {
-    size_t first, last;
-    if (!state->job->with_cones && vxm_facet_is_cone(facets, f))
+  size_t f_end = facets->parts[state->job->part_end - 1].end;
+  for (size_t f = facets->parts[state->job->part_begin].begin; f < f_end; f++) {
+    size_t low, high;
+    if (!(vxm_facet_role_of(facets, &facets->facets[f]) & state->job->roles) ||
+        !facet_slabs(state, &facets->facets[f], &low, &high))
       continue;
-    if (!facet_slabs(state, &facets->facets[f], &first, &last))
-      continue;
-    for (size_t s = first; s <= last; s++)
+    for (size_t s = low < first ? first : low; s <= high && s < end; s++)
       if (list)
-        list[counter[s]++] = f;
+        list[counter[s - first]++] = (uint32_t)f;
       else
-        counter[s]++;
+        counter[s - first]++;
   }
 }
 
-static vxm_status make_bins(unite_state *state, vxm_error *error) {
-  vxm_context *context = state->grid->context;
-  vxm_error local = VXM_ERROR_INIT;
-  bins *b = &state->bins;
-  b->begin = vxm_calloc(context, state->slab_count + 2, sizeof *b->begin, &local);
-  if (b->begin) {
-    /* Counted two places further on, the sums become the begins, and listing moves them to the next begins.
-     */
-    sort_facets(state, b->begin + 2, NULL);
-    for (size_t s = 2; s < state->slab_count + 2; s++)
-      b->begin[s] += b->begin[s - 1];
-    b->list = vxm_alloc(context, b->begin[state->slab_count + 1], sizeof *b->list, &local);
+/**
+ * Takes as many slabs from b->first on as keep the list short, though at least one: a facet as tall as the
+ * grid is listed in every slab, and the list must not outgrow the facets. counts[s] is the number of facets
+ * of slab s.
+ */
+static vxm_status list_batch(unite_state *state, const size_t *counts, vxm_error *error) {
+  batch *b = &state->batch;
+  size_t listed_max = 4 * state->job->facets->facet_count + LISTED_MIN, total = 0;
+  b->begin[0] = b->begin[1] = 0;
+  for (b->count = 0; b->first + b->count < state->slab_count; b->count++) {
+    size_t next = total + counts[b->first + b->count];
+    if (b->count > 0 && next > listed_max)
+      break;
+    b->begin[b->count + 1] = total; /* listing moves this begin to the next one */
+    total = next;
   }
-  if (!b->begin || !b->list) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(state->context, b->list);
+  b->list = vxm_alloc(state->context, total, sizeof *b->list, &local);
+  if (!b->list) {
     if (error)
       *error = local;
     return local.code;
   }
-  sort_facets(state, b->begin + 1, b->list);
+  sort_facets(state, b->first, b->first + b->count, b->begin + 1, b->list);
   return VXM_OK;
 }
 
@@ -143,65 +149,92 @@ static void choose_slabs(unite_state *state) {
     vxm_box box;
     if (!part_box(job, &job->facets->parts[p], &box))
       continue;
-    vxm_scratch s = scratch_for(job, &box);
-    per_row = s.raster.v_stride > per_row ? s.raster.v_stride : per_row;
+    size_t words = raster_of(job, &box).v_stride;
+    per_row = words > per_row ? words : per_row;
   }
   state->rows = job->lattice->space.dims[job->axes.v];
-  int threads = vxm_context_threads(state->grid->context);
+  int threads = vxm_context_threads(state->context);
   int64_t shares = threads > 1 ? (int64_t)threads * SLABS_PER_THREAD : 1;
   int64_t even = (state->rows + shares - 1) / shares, cached = (int64_t)(SCRATCH_WORDS / per_row);
-  state->thickness = clamp(cached < even ? cached : even, 1, state->rows);
+  state->thickness = clamp(vxm_min(cached, even), 1, state->rows);
   state->slab_count = (size_t)((state->rows + state->thickness - 1) / state->thickness);
-  state->scratch_words = per_row * (size_t)state->thickness;
+  state->workers = (size_t)threads < state->slab_count ? (size_t)threads : state->slab_count;
+  state->words_each = per_row * (size_t)state->thickness;
 }
 
 /* ---- Doing a slab ---- */
 
-static void do_part(unite_state *state, uint64_t *words, size_t slab, const size_t *list, size_t count) {
+/** Worker 0 is the calling thread, the only one that may report progress; the others only look whether to
+ * stop. */
+static bool is_stopped(unite_state *state, int worker) {
+  if (worker == 0 && state->status == VXM_OK) {
+    size_t done = atomic_load_explicit(&state->done, memory_order_relaxed);
+    double fraction = (double)done / (double)state->slab_count;
+    state->status = vxm_progress(state->context, state->job->phase, fraction, state->error);
+    if (state->status != VXM_OK)
+      atomic_store_explicit(&state->stop, true, memory_order_relaxed);
+  }
+  return atomic_load_explicit(&state->stop, memory_order_relaxed);
+}
+
+/** `place` is where the scratch of the calling task lies. */
+static void do_part(unite_state *state, int worker, size_t place, size_t slab, const uint32_t *list,
+                    size_t count) {
   const vxm_unite_job *job = state->job;
   const vxm_facet *facets = job->facets->facets;
   uint32_t part = facets[list[0]].part;
   vxm_box box;
   if (!part_box(job, &job->facets->parts[part], &box))
     return;
-  int64_t begin = (int64_t)slab * state->thickness, end = begin + state->thickness;
-  box.v_begin = box.v_begin > begin ? box.v_begin : begin;
-  box.v_end = box.v_end < end ? box.v_end : end;
+  int64_t begin = (int64_t)slab * state->thickness;
+  box.v_begin = vxm_max(box.v_begin, begin);
+  box.v_end = vxm_min(box.v_end, begin + state->thickness);
   if (box.v_begin >= box.v_end)
     return;
-  vxm_scratch scratch = scratch_for(job, &box);
-  scratch.raster.words = words;
-  for (size_t i = 0; i < count; i++)
-    state->draw(job, &facets[list[i]], &scratch);
-  bool any = state->fold(state->grid, &scratch);
+  vxm_raster raster = raster_of(job, &box);
+  raster.words = state->words + place * state->words_each;
+  raster.spans = state->spans + place * (size_t)state->thickness;
+  for (size_t i = 0; i < count; i++) {
+    state->draw(job, &facets[list[i]], &raster);
+    if (i % POLL_FACETS == POLL_FACETS - 1 && is_stopped(state, worker))
+      return; /* what was drawn stays in the scratch, which nobody uses any more */
+  }
+  bool any = state->fold(state->grid, &raster);
   if (any && job->touched)
     atomic_store_explicit(&job->touched[part], 1, memory_order_relaxed);
 }
 
-static void do_slab(size_t slab, int worker, void *payload) {
+static void do_slab(size_t task, int worker, void *payload) {
   unite_state *state = payload;
-  if (atomic_load_explicit(&state->stop, memory_order_relaxed))
-    return;
-  uint64_t *words = state->scratch + (size_t)worker * state->scratch_words;
+  const batch *b = &state->batch;
   const vxm_facet *facets = state->job->facets->facets;
-  const size_t *list = state->bins.list;
-  size_t i = state->bins.begin[slab], end = state->bins.begin[slab + 1];
+  /* With no more slabs than threads each slab has a scratch of its own. */
+  size_t place = state->slab_count == state->workers ? task : (size_t)worker;
+  if (is_stopped(state, worker))
+    return;
+  size_t i = b->begin[task], end = b->begin[task + 1];
   while (i < end) {
     size_t next = i + 1;
-    while (next < end && facets[list[next]].part == facets[list[i]].part)
+    while (next < end && facets[b->list[next]].part == facets[b->list[i]].part)
       next++;
-    do_part(state, words, slab, list + i, next - i);
+    do_part(state, worker, place, b->first + task, b->list + i, next - i);
     i = next;
   }
-  size_t done = atomic_fetch_add_explicit(&state->done, 1, memory_order_relaxed) + 1;
-  if (worker != 0)
-    return; /* worker 0 is the calling thread, the only one that may report progress */
-  double fraction = (double)done / (double)state->slab_count;
-  vxm_status status = vxm_progress(state->grid->context, state->job->phase, fraction, state->error);
-  if (status != VXM_OK) {
-    state->status = status;
-    atomic_store_explicit(&state->stop, true, memory_order_relaxed);
+  atomic_fetch_add_explicit(&state->done, 1, memory_order_relaxed);
+}
+
+static vxm_status do_batches(unite_state *state, const size_t *counts, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  while (state->batch.first < state->slab_count && status == VXM_OK) {
+    status = list_batch(state, counts, error);
+    if (status != VXM_OK)
+      break;
+    vxm_parallel(state->context, state->batch.count, do_slab, state);
+    status = state->status;
+    state->batch.first += state->batch.count;
   }
+  /* Other threads may have taken all slabs: ask once more, so that no wish to stop is missed. */
+  return status == VXM_OK ? vxm_progress(state->context, state->job->phase, 1.0, error) : status;
 }
 
 vxm_status vxm_unite(vxm_grid *grid, const vxm_unite_job *job, vxm_facet_fn draw, vxm_fold_fn fold,
@@ -209,26 +242,29 @@ vxm_status vxm_unite(vxm_grid *grid, const vxm_unite_job *job, vxm_facet_fn draw
   if (job->part_begin >= job->part_end)
     return VXM_OK;
   vxm_context *context = grid->context;
-  unite_state state = {.job = job, .grid = grid, .draw = draw, .fold = fold, .error = error};
+  unite_state state = {
+      .job = job, .context = context, .grid = grid, .draw = draw, .fold = fold, .error = error};
   atomic_init(&state.done, 0);
   atomic_init(&state.stop, false);
   choose_slabs(&state);
-  vxm_status status = make_bins(&state, error);
-  if (status == VXM_OK) {
-    vxm_error local = VXM_ERROR_INIT;
-    size_t workers = (size_t)vxm_context_threads(context);
-    state.scratch = vxm_calloc(context, state.scratch_words * workers, sizeof *state.scratch, &local);
-    if (state.scratch) {
-      vxm_parallel(context, state.slab_count, do_slab, &state);
-      status = state.status;
-    } else {
-      status = local.code;
-      if (error)
-        *error = local;
-    }
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
+  size_t *counts = vxm_calloc(context, state.slab_count, sizeof *counts, &local);
+  state.batch.begin = vxm_calloc(context, state.slab_count + 2, sizeof *state.batch.begin, &local);
+  state.words = vxm_calloc(context, state.words_each * state.workers, sizeof *state.words, &local);
+  state.spans = vxm_calloc(context, (size_t)state.thickness * state.workers, sizeof *state.spans, &local);
+  if (counts && state.batch.begin && state.words && state.spans) {
+    sort_facets(&state, 0, state.slab_count, counts, NULL);
+    status = do_batches(&state, counts, error);
+  } else {
+    status = local.code;
+    if (error)
+      *error = local;
   }
-  vxm_free(context, state.scratch);
-  vxm_free(context, state.bins.list);
-  vxm_free(context, state.bins.begin);
+  vxm_free(context, state.spans);
+  vxm_free(context, state.words);
+  vxm_free(context, state.batch.list);
+  vxm_free(context, state.batch.begin);
+  vxm_free(context, counts);
   return status;
 }

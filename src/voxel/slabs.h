@@ -18,22 +18,16 @@ typedef struct vxm_unite_job {
   const vxm_lattice *lattice;
   vxm_axes axes;               /**< slabs are cut along v */
   size_t part_begin, part_end; /**< these parts only */
-  bool with_cones;             /**< the cones count as triangles */
+  unsigned roles;              /**< facets of these roles count, or-ed vxm_facet_role */
   bool to_apex;                /**< a facet reaches from its triangle to the part's apex */
   atomic_uchar *touched;       /**< per part: set to 1 if it sets a voxel; may be NULL */
   const char *phase;           /**< for progress */
 } vxm_unite_job;
 
-/** Bits that a part needs within a slab: a raster whose words are zero, to be left zero. */
-typedef struct vxm_scratch {
-  vxm_raster raster;
-  size_t row_words, u_rows, v_rows, w_rows; /**< rows of words along x; the axis that is x counts 1 */
-} vxm_scratch;
-
-/** Puts one facet into the scratch. */
-typedef void (*vxm_facet_fn)(const vxm_unite_job *job, const vxm_facet *facet, vxm_scratch *scratch);
-/** Moves what the scratch holds into the grid and clears it; says whether any voxel was set. */
-typedef bool (*vxm_fold_fn)(vxm_grid *grid, vxm_scratch *scratch);
+/** Puts one facet into the bits of a part within a slab. */
+typedef void (*vxm_facet_fn)(const vxm_unite_job *job, const vxm_facet *facet, const vxm_raster *raster);
+/** Moves those bits into the grid and clears words and spans; says whether any voxel was set. */
+typedef bool (*vxm_fold_fn)(vxm_grid *grid, const vxm_raster *raster);
 
 /**
  * Runs `draw` for every facet of the job and `fold` for every part in every slab, in parallel over slabs.

@@ -62,22 +62,13 @@ static bool clip(const half_space *h, int64_t y, int64_t z, int64_t *low, int64_
   return *low <= *high;
 }
 
-static int64_t least(int64_t a, int64_t b) {
-  return a < b ? a : b;
-}
-
-static int64_t most(int64_t a, int64_t b) {
-  return a > b ? a : b;
-}
-
-static void flip_span(vxm_scratch *s, int64_t j, int64_t k, int64_t begin, int64_t end) {
-  const vxm_raster *raster = &s->raster;
-  begin = most(begin, raster->box.w_begin);
-  end = least(end, raster->box.w_end);
+static void flip_span(const vxm_raster *raster, int64_t j, int64_t k, int64_t begin, int64_t end) {
+  begin = vxm_max(begin, raster->box.w_begin);
+  end = vxm_min(end, raster->box.w_end);
   if (begin >= end)
     return;
   uint64_t *row = raster->words + (size_t)(k - raster->box.v_begin) * raster->v_stride +
-                  (size_t)(j - raster->box.u_begin) * raster->u_stride;
+                  (size_t)(j - raster->box.u_begin) * raster->row_words;
   size_t first = (size_t)(begin - raster->x_first), last = (size_t)(end - 1 - raster->x_first);
   for (size_t w = first / 64; w <= last / 64; w++) {
     uint64_t mask = ~UINT64_C(0);
@@ -89,7 +80,7 @@ static void flip_span(vxm_scratch *s, int64_t j, int64_t k, int64_t begin, int64
   }
 }
 
-static void draw_tetrahedron(const vxm_unite_job *job, const vxm_facet *facet, vxm_scratch *s) {
+static void draw_tetrahedron(const vxm_unite_job *job, const vxm_facet *facet, const vxm_raster *raster) {
   const vxm_facets *facets = job->facets;
   const vxm_point *corner[4] = {&facets->points[facet->corner[0]], &facets->points[facet->corner[1]],
                                 &facets->points[facet->corner[2]],
@@ -101,15 +92,15 @@ static void draw_tetrahedron(const vxm_unite_job *job, const vxm_facet *facet, v
   vxm_point low = *corner[0], high = low;
   for (int c = 1; c < 4; c++)
     for (int a = 0; a < 3; a++) {
-      low.at[a] = least(low.at[a], corner[c]->at[a]);
-      high.at[a] = most(high.at[a], corner[c]->at[a]);
+      low.at[a] = vxm_min(low.at[a], corner[c]->at[a]);
+      high.at[a] = vxm_max(high.at[a], corner[c]->at[a]);
     }
   const vxm_lattice *lattice = job->lattice;
-  const vxm_box *box = &s->raster.box;
-  int64_t k_begin = most(box->v_begin, vxm_lattice_first(lattice, low.at[2]));
-  int64_t k_end = least(box->v_end, vxm_lattice_last(lattice, high.at[2]) + 1);
-  int64_t j_begin = most(box->u_begin, vxm_lattice_first(lattice, low.at[1]));
-  int64_t j_end = least(box->u_end, vxm_lattice_last(lattice, high.at[1]) + 1);
+  const vxm_box *box = &raster->box;
+  int64_t k_begin = vxm_max(box->v_begin, vxm_lattice_first(lattice, low.at[2]));
+  int64_t k_end = vxm_min(box->v_end, vxm_lattice_last(lattice, high.at[2]) + 1);
+  int64_t j_begin = vxm_max(box->u_begin, vxm_lattice_first(lattice, low.at[1]));
+  int64_t j_end = vxm_min(box->u_end, vxm_lattice_last(lattice, high.at[1]) + 1);
   for (int64_t k = k_begin; k < k_end; k++)
     for (int64_t j = j_begin; j < j_end; j++) {
       int64_t y = vxm_lattice_centre(lattice, j), z = vxm_lattice_centre(lattice, k);
@@ -118,17 +109,17 @@ static void draw_tetrahedron(const vxm_unite_job *job, const vxm_facet *facet, v
       for (int f = 0; f < 4 && inside; f++)
         inside = clip(&face[f], y, z, &x_low, &x_high);
       if (inside)
-        flip_span(s, j, k, vxm_lattice_first(lattice, x_low), vxm_lattice_last(lattice, x_high) + 1);
+        flip_span(raster, j, k, vxm_lattice_first(lattice, x_low), vxm_lattice_last(lattice, x_high) + 1);
     }
 }
 
-static bool fold_presence(vxm_grid *grid, vxm_scratch *s) {
-  const vxm_box *box = &s->raster.box;
-  uint64_t any = 0, *words = s->raster.words;
+static bool fold_presence(vxm_grid *grid, const vxm_raster *raster) {
+  const vxm_box *box = &raster->box;
+  uint64_t any = 0, *words = raster->words;
   for (int64_t k = box->v_begin; k < box->v_end; k++)
-    for (int64_t j = box->u_begin; j < box->u_end; j++, words += s->row_words) {
-      uint64_t *row = vxm_grid_row(grid, j, k) + s->raster.x_first / 64;
-      for (size_t w = 0; w < s->row_words; w++) {
+    for (int64_t j = box->u_begin; j < box->u_end; j++, words += raster->row_words) {
+      uint64_t *row = vxm_grid_row(grid, j, k) + raster->x_first / 64;
+      for (size_t w = 0; w < raster->row_words; w++) {
         row[w] |= words[w];
         any |= words[w];
         words[w] = 0;
@@ -140,7 +131,7 @@ static bool fold_presence(vxm_grid *grid, vxm_scratch *s) {
 vxm_status vxm_tetra_unite(vxm_grid *grid, const vxm_unite_job *job, vxm_error *error) {
   vxm_unite_job tetra = *job;
   tetra.axes = vxm_axes_of(0);
-  tetra.with_cones = false;
+  tetra.roles = VXM_FACET_TRIANGLE;
   tetra.to_apex = true;
   return vxm_unite(grid, &tetra, draw_tetrahedron, fold_presence, error);
 }

@@ -14,7 +14,14 @@
  * and a tie goes to the axes.
  *
  * @param voters x, y, z and tetra, of the dimensions of `out`
+ * @param rule   VXM_VOTE_MAJORITY, VXM_VOTE_ANY or VXM_VOTE_ALL
  */
 void vxm_vote_combine(vxm_grid *out, vxm_grid *const voters[4], vxm_vote rule, int64_t *contested);
+
+/**
+ * Adds to `out` the voxels that all three voters hold, sets in `contested` those on which they disagree and
+ * that `out` did not hold before, and counts them.
+ */
+void vxm_vote_agree(vxm_grid *out, vxm_grid *const voters[3], vxm_grid *contested, int64_t *count);
 
 #endif

@@ -2,7 +2,7 @@
 /**
  * A brute-force oracle for parity: every voxel centre is tested against every triangle on its own, with a
  * perturbation of real size instead of the symbolic rules. Coordinates are whole quarters of a voxel, |c| <=
- * 64, so that determinants are whole numbers far below 1/e: moving the centre by (e, e^2, e^3), e = 2^-15,
+ * 64, so that determinants are whole numbers far below 1/e: moving the centre by (e, e^2, e^3), e = 2^-24,
  * decides every tie as the symbolic perturbation does. Everything is computed in units of e^3.
  */
 #ifndef TEST_VOXEL_ORACLE_H
@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define ORACLE_E 15
+#define ORACLE_E 24
 
 __extension__ typedef __int128 oracle_wide;
 
@@ -21,14 +21,14 @@ typedef struct oracle_triangle {
 
 /* Does the ray from the moved centre of voxel (i,j,k) toward minus `axis` cross the triangle? */
 static inline bool oracle_crosses(const oracle_triangle *t, const int64_t voxel[3], int axis) {
-  int64_t one = INT64_C(1) << (3 * ORACLE_E), p[3];
+  oracle_wide one = (oracle_wide)1 << (3 * ORACLE_E), p[3];
   for (int a = 0; a < 3; a++)
     p[a] = (4 * voxel[a] + 2) * one + (one >> ((a + 1) * ORACLE_E));
   int u = (axis + 1) % 3, v = (axis + 2) % 3;
   int positive = 0, negative = 0;
   for (int s = 0; s < 3; s++) {
     const int64_t *a = t->at[s], *b = t->at[(s + 1) % 3];
-    int64_t side = (b[u] - a[u]) * (p[v] - a[v] * one) - (b[v] - a[v]) * (p[u] - a[u] * one);
+    oracle_wide side = (b[u] - a[u]) * (p[v] - a[v] * one) - (b[v] - a[v]) * (p[u] - a[u] * one);
     positive += side > 0;
     negative += side < 0;
   }

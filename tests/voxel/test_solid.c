@@ -124,6 +124,34 @@ static void test_random_triangles_match_the_oracle(void **state) {
   }
 }
 
+/** Rows of one, two and three words, and soups that lie partly or wholly before or behind the grid. */
+static void test_wide_grids_match_the_oracle(void **state) {
+  (void)state;
+  static const int64_t widths[] = {1, 63, 64, 65, 128, 130};
+  vxm_rng rng = {8};
+  for (int round = 0; round < 600; round++) {
+    vxm_soup *soup = shape_empty(context);
+    int wide = (int)(round % 3);
+    int64_t dims[3] = {3, 2, 3};
+    dims[wide] = widths[round / 3 % 6];
+    int before = vxm_rng_below(&rng, 4) == 0 ? -4 * (int)dims[wide] - 8 : 0;
+    for (int v = 0; v < 6; v++) {
+      double p[3];
+      for (int a = 0; a < 3; a++)
+        p[a] = shape_quarter(&rng, (a == wide ? before : 0) - 4,
+                             (a == wide ? before : 0) + 4 * (int)dims[a] + 4);
+      shape_vertex(soup, p[0], p[1], p[2]);
+    }
+    shape_triangle(soup, 0, 1, 2);
+    shape_triangle(soup, 3, 4, 5);
+    if (round % 2)
+      shape_triangle(soup, 1, 2, 3);
+    vxm_space space = unit_space(dims[0], dims[1], dims[2]);
+    assert_matches_oracle(soup, &space);
+    vxm_soup_destroy(soup);
+  }
+}
+
 static void test_random_closed_meshes_agree_on_all_axes(void **state) {
   (void)state;
   vxm_rng rng = {2};
@@ -236,6 +264,34 @@ static void test_boxes_at_every_offset(void **state) {
       }
 }
 
+/** What a closed part fills is not contested, and parts that set nothing are counted. */
+static void test_counts_of_the_report(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, (double[]){0, 0, 0}, (double[]){4, 4, 4});
+  shape_box(soup, (double[]){5.1, 5.1, 5.1}, (double[]){5.2, 5.2, 5.2}); /* between the centres */
+  uint32_t v = shape_vertex(soup, 1, 0, 0);
+  shape_vertex(soup, 1, 7, 0);
+  shape_vertex(soup, 1, 7, 7);
+  shape_vertex(soup, 1, 0, 7);
+  shape_face(soup, (uint32_t[]){v, v + 1, v + 2, v + 3}, 4); /* a sheet across x: only x sees it */
+  vxm_space space = unit_space(7, 7, 7);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.space.like = &space;
+  options.vote = VXM_VOTE_MAJORITY;
+  vxm_voxelize_report report;
+  vxm_grid *grid;
+  assert_int_equal(vxm_voxelize(&grid, &report, soup, &options, NULL), VXM_OK);
+  assert_int_equal(report.parts, 3);
+  assert_int_equal(report.closed_parts, 2);
+  assert_int_equal(report.empty_parts, 2);
+  assert_int_equal(report.voxels, 64);
+  /* x fills from the sheet to the end of the rows; 3 x 4 x 4 of that lies in the box. */
+  assert_int_equal(report.contested, 6 * 7 * 7 - 3 * 4 * 4);
+  vxm_grid_destroy(grid);
+  vxm_soup_destroy(soup);
+}
+
 static void test_parts_are_united_and_whole_is_exclusive(void **state) {
   (void)state;
   vxm_soup *soup = shape_empty(context);
@@ -306,8 +362,10 @@ static void test_huge_triangles(void **state) {
 static void test_vertices_too_far_away_are_refused(void **state) {
   (void)state;
   vxm_soup *soup = shape_empty(context);
-  shape_triangle(soup, shape_vertex(soup, 0, 0, 0), shape_vertex(soup, 1, 0, 0),
-                 shape_vertex(soup, 0, 1e300, 0));
+  shape_vertex(soup, 0, 0, 0);
+  shape_vertex(soup, 1, 0, 0);
+  shape_vertex(soup, 0, 1e300, 0);
+  shape_triangle(soup, 0, 1, 2);
   vxm_space space = unit_space(4, 4, 4);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.space.like = &space;
@@ -377,10 +435,12 @@ static void test_torus_volume(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_random_triangles_match_the_oracle),
+      cmocka_unit_test(test_wide_grids_match_the_oracle),
       cmocka_unit_test(test_random_closed_meshes_agree_on_all_axes),
       cmocka_unit_test(test_tetrahedra_equal_parity_with_cones),
       cmocka_unit_test(test_unit_cube_fills_the_grid),
       cmocka_unit_test(test_boxes_at_every_offset),
+      cmocka_unit_test(test_counts_of_the_report),
       cmocka_unit_test(test_parts_are_united_and_whole_is_exclusive),
       cmocka_unit_test(test_non_convex_polygons),
       cmocka_unit_test(test_huge_triangles),

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/inside.h"
+
+#include "mesh/frame.h"
+
+#include <math.h>
+
+enum {
+  CELLS_MAX = 4096,        /**< along an axis */
+  ENTRIES_PER_TRIANGLE = 4 /**< at most, on average */
+};
+
+typedef struct vxm_inside_triangle triangle;
+
+/** The axes across: u and v with (u, v, axis) a turn of (x, y, z). */
+typedef struct plane {
+  int u, v, axis;
+} plane;
+
+static plane plane_across(int axis) {
+  return (plane){(axis + 1) % 3, (axis + 2) % 3, axis};
+}
+
+static double coordinate(const vxm_inside *inside, uint32_t vertex, int axis) {
+  return vxm_position(inside->soup, vertex)[axis] * inside->scale;
+}
+
+/* ---- Binning ---- */
+
+typedef struct cell_range {
+  size_t low[2], high[2];
+} cell_range;
+
+static size_t cell_of(const vxm_inside_bins *bins, int side, double from_low) {
+  double cell = from_low * bins->per_unit[side];
+  if (!(cell > 0))
+    return 0;
+  return cell < (double)(bins->cells[side] - 1) ? (size_t)cell : bins->cells[side] - 1;
+}
+
+static cell_range range_of(const vxm_inside *inside, const vxm_inside_bins *bins, const triangle *t,
+                           plane p) {
+  const int axes[2] = {p.u, p.v};
+  cell_range range;
+  for (int side = 0; side < 2; side++) {
+    int axis = axes[side];
+    double a = coordinate(inside, t->v[0], axis), b = coordinate(inside, t->v[1], axis);
+    double c = coordinate(inside, t->v[2], axis), base = inside->box[axis];
+    range.low[side] = cell_of(bins, side, fmin(a, fmin(b, c)) - base);
+    range.high[side] = cell_of(bins, side, fmax(a, fmax(b, c)) - base);
+  }
+  return range;
+}
+
+/** Calls the visitor for all fan triangles whose corners are finite. */
+typedef void (*triangle_fn)(const triangle *t, void *payload);
+
+static void for_each_triangle(const vxm_inside *inside, triangle_fn visit, void *payload) {
+  for (size_t i = 0; i < inside->face_count; i++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(inside->soup, inside->faces[i], &count);
+    bool finite = true;
+    for (size_t c = 0; c < count && finite; c++)
+      finite = vxm_is_finite(vxm_position(inside->soup, corner[c]));
+    for (size_t c = 2; c < count && finite; c++)
+      visit(&(triangle){{corner[0], corner[c - 1], corner[c]}}, payload);
+  }
+}
+
+typedef struct binning {
+  const vxm_inside *inside;
+  vxm_inside_bins *bins;
+  plane across;
+  size_t triangles, entries;
+} binning;
+
+static void count_entries(const triangle *t, void *payload) {
+  binning *b = payload;
+  cell_range r = range_of(b->inside, b->bins, t, b->across);
+  b->triangles++;
+  b->entries += (r.high[0] - r.low[0] + 1) * (r.high[1] - r.low[1] + 1);
+}
+
+static void count_cells(const triangle *t, void *payload) {
+  binning *b = payload;
+  cell_range r = range_of(b->inside, b->bins, t, b->across);
+  for (size_t j = r.low[1]; j <= r.high[1]; j++)
+    for (size_t i = r.low[0]; i <= r.high[0]; i++)
+      b->bins->begin[j * b->bins->cells[0] + i + 1]++;
+}
+
+static void put_entries(const triangle *t, void *payload) {
+  binning *b = payload;
+  cell_range r = range_of(b->inside, b->bins, t, b->across);
+  for (size_t j = r.low[1]; j <= r.high[1]; j++)
+    for (size_t i = r.low[0]; i <= r.high[0]; i++)
+      b->bins->triangles[b->bins->begin[j * b->bins->cells[0] + i]++] = *t;
+}
+
+/** Square cells, about `wanted` of them. */
+static void set_cells(binning *b, double wanted) {
+  const double *box = b->inside->box;
+  double size[2] = {box[b->across.u + 3] - box[b->across.u], box[b->across.v + 3] - box[b->across.v]};
+  double side = sqrt(size[0] * size[1] / wanted);
+  for (int i = 0; i < 2; i++) {
+    double cells = side > 0 ? size[i] / side : 1;
+    b->bins->cells[i] = cells > 1 ? (cells < CELLS_MAX ? (size_t)cells : CELLS_MAX) : 1;
+    b->bins->per_unit[i] = size[i] > 0 ? (double)b->bins->cells[i] / size[i] : 0;
+  }
+}
+
+/** Chooses as many cells as triangles, or fewer if they are so large that they would be in too many cells. */
+static void choose_cells(binning *b) {
+  double wanted = (double)b->inside->face_count;
+  for (;; wanted /= 4) {
+    set_cells(b, wanted > 1 ? wanted : 1);
+    b->triangles = b->entries = 0;
+    for_each_triangle(b->inside, count_entries, b);
+    if (b->entries <= ENTRIES_PER_TRIANGLE * b->triangles || b->bins->cells[0] * b->bins->cells[1] <= 1)
+      return;
+  }
+}
+
+static vxm_status build(vxm_inside *inside, int axis, vxm_error *error) {
+  vxm_context *context = inside->soup->context;
+  vxm_inside_bins *bins = &inside->bins[axis];
+  binning b = {.inside = inside, .bins = bins, .across = plane_across(axis)};
+  choose_cells(&b);
+  size_t cells = bins->cells[0] * bins->cells[1];
+  vxm_error local = VXM_ERROR_INIT;
+  bins->begin = vxm_calloc(context, cells + 1, sizeof *bins->begin, &local);
+  if (bins->begin)
+    bins->triangles = vxm_alloc(context, b.entries, sizeof *bins->triangles, &local);
+  if (!bins->triangles) {
+    vxm_free(context, bins->begin);
+    *bins = (vxm_inside_bins){0};
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  for_each_triangle(inside, count_cells, &b);
+  for (size_t c = 0; c < cells; c++)
+    bins->begin[c + 1] += bins->begin[c];
+  for_each_triangle(inside, put_entries, &b);
+  /* every begin has moved to its end */
+  for (size_t c = cells; c > 0; c--)
+    bins->begin[c] = bins->begin[c - 1];
+  bins->begin[0] = 0;
+  bins->built = true;
+  return VXM_OK;
+}
+
+/* ---- Crossing ---- */
+
+/** Whether an edge of the projection crosses the ray from the point along u: half open along v, and computed
+ * from the lower to the higher vertex, so that two triangles agree on the edge they share. */
+static bool edge_crosses(const vxm_inside *inside, plane across, uint32_t a, uint32_t b,
+                         const double point[3]) {
+  if (a > b) {
+    uint32_t kept = a;
+    a = b;
+    b = kept;
+  }
+  double av = coordinate(inside, a, across.v) - point[across.v];
+  double bv = coordinate(inside, b, across.v) - point[across.v];
+  if ((av > 0) == (bv > 0))
+    return false;
+  double au = coordinate(inside, a, across.u) - point[across.u];
+  double bu = coordinate(inside, b, across.u) - point[across.u];
+  double turn = au * bv - bu * av;
+  return bv > av ? turn > 0 : turn < 0;
+}
+
+/** Height of the triangle over the point, relative to it. */
+static double height_over(const vxm_inside *inside, plane across, const triangle *t, const double point[3]) {
+  double d[3][3];
+  for (int c = 0; c < 3; c++) {
+    d[c][0] = coordinate(inside, t->v[c], across.u) - point[across.u];
+    d[c][1] = coordinate(inside, t->v[c], across.v) - point[across.v];
+    d[c][2] = coordinate(inside, t->v[c], across.axis) - point[across.axis];
+  }
+  double weight = 0, sum = 0;
+  for (int c = 0; c < 3; c++) {
+    const double *p = d[(c + 1) % 3], *q = d[(c + 2) % 3];
+    double part = p[0] * q[1] - p[1] * q[0];
+    weight += part;
+    sum += part * d[c][2];
+  }
+  return weight != 0 ? sum / weight : d[0][2];
+}
+
+vxm_status vxm_inside_vote(vxm_inside *inside, const double point[3], int axis, int *votes,
+                           vxm_error *error) {
+  vxm_inside_bins *bins = &inside->bins[axis];
+  plane across = plane_across(axis);
+  *votes = 0;
+  for (int a = 0; a < 3; a++)
+    if (!(point[a] >= inside->box[a] && point[a] <= inside->box[a + 3]))
+      return VXM_OK;
+  vxm_status status = bins->built ? VXM_OK : build(inside, axis, error);
+  if (status != VXM_OK)
+    return status;
+  size_t cell = cell_of(bins, 1, point[across.v] - inside->box[across.v]) * bins->cells[0] +
+                cell_of(bins, 0, point[across.u] - inside->box[across.u]);
+  int odd[2] = {0, 0};
+  for (size_t i = bins->begin[cell]; i < bins->begin[cell + 1]; i++) {
+    const triangle *t = &bins->triangles[i];
+    bool covers = false;
+    for (int c = 0; c < 3; c++)
+      covers ^= edge_crosses(inside, across, t->v[c], t->v[(c + 1) % 3], point);
+    if (covers)
+      odd[height_over(inside, across, t, point) > 0] ^= 1;
+  }
+  *votes = odd[0] + odd[1];
+  return VXM_OK;
+}
+
+void vxm_inside_release(vxm_inside *inside) {
+  for (int axis = 0; axis < 3; axis++) {
+    vxm_free(inside->soup->context, inside->bins[axis].triangles);
+    vxm_free(inside->soup->context, inside->bins[axis].begin);
+    inside->bins[axis] = (vxm_inside_bins){0};
+  }
+}

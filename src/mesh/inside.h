@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Whether points lie inside a set of faces, by crossings of lines along the axes. */
+#ifndef VXM_MESH_INSIDE_H
+#define VXM_MESH_INSIDE_H
+
+#include "mesh/soup.h"
+
+/** Fan triangles over the cells of a grid on the plane across an axis. */
+typedef struct vxm_inside_bins {
+  bool built;
+  size_t cells[2];
+  double per_unit[2]; /**< cells per unit of scaled length */
+  size_t *begin;      /**< cells[0] * cells[1] + 1 */
+  struct vxm_inside_triangle {
+    uint32_t v[3];
+  } * triangles;
+} vxm_inside_bins;
+
+/** A set of faces and what was binned of it so far. The caller keeps the soup and the list alive. */
+typedef struct vxm_inside {
+  const vxm_soup *soup;
+  const size_t *faces;
+  size_t face_count;
+  double scale;  /**< of all positions, see vxm_frame */
+  double box[6]; /**< x0 y0 z0 x1 y1 z1 of the faces, scaled */
+  vxm_inside_bins bins[3];
+} vxm_inside;
+
+/**
+ * Sends rays from a point both ways along an axis.
+ *
+ * @param point  scaled
+ * @param[out] votes how many of the two rays cross the faces an odd number of times: 0 to 2
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ *
+ * A line through an edge between faces crosses one of them or both or none, so that the number stays even or
+ * odd as it should. The first call along an axis sorts the faces into cells, in time linear in their corners.
+ */
+vxm_status vxm_inside_vote(vxm_inside *inside, const double point[3], int axis, int *votes, vxm_error *error);
+/** Frees the bins. */
+void vxm_inside_release(vxm_inside *inside);
+
+#endif

@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/outward.h"
+
+#include <math.h>
+
+/** Voxels from a triangle at which the grid is asked, and how far. */
+static const double probe_steps[] = {0.75, 1.5};
+/** Where on a triangle: its middle and near its corners, as weights of the corners. */
+static const double probe_weights[4][3] = {
+    {1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.7, 0.15, 0.15}, {0.15, 0.7, 0.15}, {0.15, 0.15, 0.7}};
+/** What a probe counts if the voters disagree at one of its ends. */
+static const double doubtful = 0.3;
+/** Evidence below this part of the patch's area says nothing. */
+static const double evidence_min = 0.05;
+
+/** One side of a triangle, linked to the next one at the same lower vertex. */
+typedef struct side {
+  uint32_t high, triangle, next;
+  bool forward; /**< runs from the lower to the higher vertex */
+} side;
+
+typedef struct builder {
+  vxm_outward *out;
+  const vxm_facets *facets;
+  const vxm_facet **facet; /**< of every triangle */
+  uint32_t (*neighbour)[3];
+  uint8_t *against; /**< bit k: neighbour k runs along the common edge in the same direction */
+  uint8_t *neighbour_count;
+  uint8_t *turn;
+  uint32_t *patch;
+  vxm_error error;
+} builder;
+
+static const uint32_t none = UINT32_MAX;
+
+static void *allocate(builder *b, size_t count, size_t size) {
+  return vxm_calloc(b->out->context, count, size, &b->error);
+}
+
+/* ---- Patches ---- */
+
+static void link_triangles(builder *b, const side *p, const side *q) {
+  uint8_t same = p->forward == q->forward;
+  uint32_t s = p->triangle, t = q->triangle;
+  b->against[s] |= (uint8_t)(same << b->neighbour_count[s]);
+  b->neighbour[s][b->neighbour_count[s]++] = t;
+  b->against[t] |= (uint8_t)(same << b->neighbour_count[t]);
+  b->neighbour[t][b->neighbour_count[t]++] = s;
+}
+
+/** Links the two triangles at every edge that has exactly two; sides[3 t + k] is side k of triangle t. */
+static void link_at_vertex(builder *b, const side *sides, uint32_t first) {
+  for (uint32_t s = first; s != none; s = sides[s].next) {
+    uint32_t other = none, count = 1;
+    for (uint32_t r = first; r != none; r = sides[r].next)
+      if (r != s && sides[r].high == sides[s].high) {
+        other = r;
+        count++;
+      }
+    if (count == 2 && s < other && sides[s].triangle != sides[other].triangle)
+      link_triangles(b, &sides[s], &sides[other]);
+  }
+}
+
+enum {
+  VALENCE_MAX = 256 /**< beyond, a vertex joins no triangles: comparing its sides would be quadratic */
+};
+
+static bool find_neighbours(builder *b) {
+  size_t n = b->out->count;
+  uint32_t *first = allocate(b, b->facets->first_apex, sizeof *first);
+  uint32_t *valence = allocate(b, b->facets->first_apex, sizeof *valence);
+  side *sides = allocate(b, n, 3 * sizeof *sides);
+  bool done = first && valence && sides;
+  if (done) {
+    for (size_t v = 0; v < b->facets->first_apex; v++)
+      first[v] = none;
+    for (size_t t = 0; t < n; t++)
+      for (size_t k = 0; k < 3; k++) {
+        uint32_t p = b->facet[t]->corner[k], q = b->facet[t]->corner[(k + 1) % 3], low = p < q ? p : q;
+        sides[3 * t + k] = (side){p < q ? q : p, (uint32_t)t, first[low], p < q};
+        first[low] = (uint32_t)(3 * t + k);
+        valence[low]++;
+      }
+    for (size_t v = 0; v < b->facets->first_apex; v++)
+      if (valence[v] <= VALENCE_MAX)
+        link_at_vertex(b, sides, first[v]);
+  }
+  vxm_free(b->out->context, sides);
+  vxm_free(b->out->context, valence);
+  vxm_free(b->out->context, first);
+  return done;
+}
+
+static bool find_patches(builder *b) {
+  size_t n = b->out->count;
+  uint32_t *queue = allocate(b, n, sizeof *queue);
+  if (!queue)
+    return false;
+  for (size_t t = 0; t < n; t++)
+    b->patch[t] = none;
+  for (size_t t = 0; t < n; t++) {
+    if (b->patch[t] != none)
+      continue;
+    size_t head = 0, tail = 0;
+    queue[tail++] = (uint32_t)t;
+    b->patch[t] = (uint32_t)b->out->patch_count;
+    while (head < tail) {
+      uint32_t at = queue[head++];
+      for (int k = 0; k < b->neighbour_count[at]; k++) {
+        uint32_t next = b->neighbour[at][k];
+        if (b->patch[next] != none)
+          continue;
+        b->patch[next] = (uint32_t)b->out->patch_count;
+        b->turn[next] = (uint8_t)(b->turn[at] ^ (b->against[at] >> k & 1));
+        queue[tail++] = next;
+      }
+    }
+    b->out->patch_count++;
+  }
+  vxm_free(b->out->context, queue);
+  return true;
+}
+
+/* ---- Evidence ---- */
+
+/** Twice the vector area of a triangle; returns its length. */
+static double normal_of(const vxm_triangle *t, double n[3]) {
+  double u[3], v[3], sum = 0;
+  for (int a = 0; a < 3; a++) {
+    u[a] = t->corner[1][a] - t->corner[0][a];
+    v[a] = t->corner[2][a] - t->corner[0][a];
+  }
+  for (int a = 0; a < 3; a++) {
+    n[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+    sum += n[a] * n[a];
+  }
+  return sqrt(sum);
+}
+
+/** 1 inside, 0 outside by majority; `sure` is cleared if the voters disagree. */
+static int ask(const vxm_grid *const voters[3], const double p[3], bool *sure) {
+  int votes = 0;
+  for (int v = 0; v < 3; v++) {
+    const int64_t *dims = voters[v]->space.dims;
+    bool inside = true;
+    for (int a = 0; a < 3; a++)
+      inside &= p[a] >= 0 && p[a] < (double)dims[a];
+    votes += inside && vxm_grid_get(voters[v], (int64_t)p[0], (int64_t)p[1], (int64_t)p[2]);
+  }
+  *sure &= votes == 0 || votes == 3;
+  return votes >= 2;
+}
+
+/** Between -1 and 1: how much more is set behind the triangle than before it. */
+static double evidence_of(const vxm_triangle *t, const double n[3], double length,
+                          const vxm_grid *const voters[3]) {
+  double sum = 0;
+  for (int w = 0; w < 4; w++)
+    for (int s = 0; s < 2; s++) {
+      double behind[3], before[3];
+      for (int a = 0; a < 3; a++) {
+        double at = 0, step = probe_steps[s] * n[a] / length;
+        for (int k = 0; k < 3; k++)
+          at += probe_weights[w][k] * t->corner[k][a];
+        behind[a] = at - step;
+        before[a] = at + step;
+      }
+      bool sure = true;
+      int difference = ask(voters, behind, &sure) - ask(voters, before, &sure);
+      sum += (sure ? 1 : doubtful) * difference;
+    }
+  return sum / 8;
+}
+
+static void turn_triangle(vxm_triangle *t) {
+  for (int a = 0; a < 3; a++) {
+    double swap = t->corner[1][a];
+    t->corner[1][a] = t->corner[2][a];
+    t->corner[2][a] = swap;
+  }
+}
+
+/** What speaks for the way a patch faces, each in units of area. */
+typedef struct opinion {
+  double area, evidence, came; /**< `came`: how it came, before triangles were made consistent */
+} opinion;
+
+static bool turn_patches(builder *b, const vxm_grid *const voters[3]) {
+  vxm_outward *out = b->out;
+  opinion *opinions = allocate(b, out->patch_count, sizeof *opinions);
+  if (!opinions)
+    return false;
+  for (size_t t = 0; t < out->count; t++) {
+    vxm_triangle *triangle = &out->triangles[t];
+    if (b->turn[t])
+      turn_triangle(triangle);
+    double n[3], length = normal_of(triangle, n);
+    if (!(length > 0))
+      continue;
+    opinion *o = &opinions[b->patch[t]];
+    o->area += length;
+    o->came += b->turn[t] ? -length : length;
+    o->evidence += length * evidence_of(triangle, n, length, voters);
+  }
+  for (size_t t = 0; t < out->count; t++) {
+    const opinion *o = &opinions[b->patch[t]];
+    bool told = fabs(o->evidence) >= evidence_min * o->area;
+    if ((told ? o->evidence : o->came) < 0)
+      turn_triangle(&out->triangles[t]);
+  }
+  vxm_free(out->context, opinions);
+  return true;
+}
+
+/* ---- All of it ---- */
+
+static bool collect_triangles(builder *b, const vxm_lattice *lattice, size_t begin, size_t end) {
+  vxm_outward *out = b->out;
+  const vxm_facets *facets = b->facets;
+  for (size_t f = begin; f < end; f++)
+    out->count += vxm_facet_role_of(facets, &facets->facets[f]) == VXM_FACET_TRIANGLE;
+  out->triangles = allocate(b, out->count, sizeof *out->triangles);
+  b->facet = allocate(b, out->count, sizeof *b->facet);
+  b->neighbour = allocate(b, out->count, sizeof *b->neighbour);
+  b->against = allocate(b, out->count, sizeof *b->against);
+  b->neighbour_count = allocate(b, out->count, sizeof *b->neighbour_count);
+  b->turn = allocate(b, out->count, sizeof *b->turn);
+  b->patch = allocate(b, out->count, sizeof *b->patch);
+  if (!out->triangles || !b->facet || !b->neighbour || !b->against || !b->neighbour_count || !b->turn ||
+      !b->patch)
+    return false;
+  size_t next = 0;
+  for (size_t f = begin; f < end; f++) {
+    const vxm_facet *facet = &facets->facets[f];
+    if (vxm_facet_role_of(facets, facet) != VXM_FACET_TRIANGLE)
+      continue;
+    for (int k = 0; k < 3; k++)
+      for (int a = 0; a < 3; a++)
+        out->triangles[next].corner[k][a] =
+            (double)facets->points[facet->corner[k]].at[a] / (double)lattice->unit;
+    b->facet[next++] = facet;
+  }
+  return true;
+}
+
+vxm_status vxm_outward_create(vxm_outward *out, const vxm_facets *facets, const vxm_lattice *lattice,
+                              size_t part_begin, size_t part_end, const vxm_grid *const voters[3],
+                              vxm_error *error) {
+  *out = (vxm_outward){.context = facets->context};
+  builder b = {.out = out, .facets = facets, .error = VXM_ERROR_INIT};
+  size_t begin = part_begin < part_end ? facets->parts[part_begin].begin : 0;
+  size_t end = part_begin < part_end ? facets->parts[part_end - 1].end : 0;
+  if (end - begin > UINT32_MAX / 3)
+    return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many to turn outward; split the mesh",
+                    end - begin);
+  bool done = collect_triangles(&b, lattice, begin, end) && find_neighbours(&b) && find_patches(&b) &&
+              turn_patches(&b, voters);
+  vxm_context *context = facets->context;
+  vxm_free(context, b.patch);
+  vxm_free(context, b.turn);
+  vxm_free(context, b.neighbour_count);
+  vxm_free(context, b.against);
+  vxm_free(context, b.neighbour);
+  vxm_free(context, (void *)b.facet);
+  if (done)
+    return VXM_OK;
+  vxm_outward_destroy(out);
+  if (error)
+    *error = b.error;
+  return b.error.code;
+}
+
+void vxm_outward_destroy(vxm_outward *outward) {
+  vxm_free(outward->context, outward->triangles);
+  *outward = (vxm_outward){.context = outward->context};
+}

@@ -1,0 +1,424 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Open, turned and nested parts: caps, patches turned outward, winding numbers, cavities, confidence. */
+#include "shapes.h"
+
+#include "grid/bitgrid.h"
+#include "voxel/outward.h"
+#include "voxel/parity.h"
+#include "voxel/winding.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static vxm_context *context;
+
+static int setup(void **state) {
+  (void)state;
+  return vxm_context_create(&context, NULL, NULL) != VXM_OK;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  vxm_context_destroy(context);
+  return 0;
+}
+
+static vxm_grid *voxelize(const vxm_soup *soup, vxm_voxelize_options options, vxm_voxelize_report *report) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_grid *grid;
+  if (vxm_voxelize(&grid, report, soup, &options, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  return grid;
+}
+
+static vxm_voxelize_options in_space(const vxm_space *space) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.space.like = space;
+  return options;
+}
+
+static double iou(const vxm_grid *a, const vxm_grid *b) {
+  vxm_comparison comparison;
+  assert_int_equal(vxm_grid_compare(&comparison, a, b, NULL), VXM_OK);
+  return comparison.iou;
+}
+
+/** Drops or turns faces of a soup at random. */
+static void damage(vxm_soup *soup, vxm_rng *rng, double removed, double turned) {
+  for (size_t f = 0; f < soup->face_count; f++) {
+    uint32_t *corner = soup->indices + soup->offsets[f];
+    size_t n = soup->offsets[f + 1] - soup->offsets[f];
+    if (vxm_rng_unit(rng) < removed)
+      for (size_t c = 1; c < n; c++)
+        corner[c] = corner[0];
+    else if (vxm_rng_unit(rng) < turned)
+      for (size_t c = 0; c < n / 2; c++) {
+        uint32_t swap = corner[c];
+        corner[c] = corner[n - 1 - c];
+        corner[n - 1 - c] = swap;
+      }
+  }
+}
+
+static const vxm_space cube64 = {{64, 64, 64}, {-1.6, -1.6, -1.6}, {0.05, 0.05, 0.05}};
+
+static vxm_soup *torus(void) {
+  vxm_soup *soup = shape_empty(context);
+  shape_torus(soup, 64, 32, 1, 0.45, (double[]){0.013, 0.021, 0.007});
+  return soup;
+}
+
+/* ---- Caps ---- */
+
+static void test_triangles_and_caps_are_closed(void **state) {
+  (void)state;
+  vxm_rng rng = {1};
+  for (int round = 0; round < 1000; round++) {
+    vxm_soup *soup = shape_empty(context);
+    uint32_t vertices = 4 + (uint32_t)vxm_rng_below(&rng, 8);
+    for (uint32_t v = 0; v < vertices; v++) {
+      double x = shape_quarter(&rng, 0, 28), y = shape_quarter(&rng, 0, 28);
+      shape_vertex(soup, x, y, shape_quarter(&rng, 0, 28));
+    }
+    for (int f = 0; f < 8; f++) {
+      uint32_t corner[5];
+      size_t n = 3 + vxm_rng_below(&rng, 3);
+      for (size_t c = 0; c < n; c++)
+        corner[c] = (uint32_t)vxm_rng_below(&rng, vertices);
+      shape_face(soup, corner, n);
+    }
+    vxm_space space = {{7, 7, 7}, {0, 0, 0}, {1, 1, 1}};
+    vxm_lattice lattice = vxm_lattice_of(&space);
+    vxm_facets facets;
+    vxm_split_rule rule = {VXM_PARTS_GROUP, VXM_CAVITIES_FILL, true};
+    assert_int_equal(vxm_facets_create(&facets, soup, &lattice, rule, NULL), VXM_OK);
+    for (int closing = VXM_FACET_CONE; closing <= VXM_FACET_CAP; closing *= 2) {
+      vxm_grid *grids[3];
+      for (int axis = 0; axis < 3; axis++) {
+        assert_int_equal(vxm_grid_create(&grids[axis], context, &space, NULL), VXM_OK);
+        vxm_unite_job job = {.facets = &facets,
+                             .lattice = &lattice,
+                             .axes = vxm_axes_of(axis),
+                             .part_end = facets.split.part_count,
+                             .roles = VXM_FACET_TRIANGLE | (unsigned)closing,
+                             .phase = "testing"};
+        assert_int_equal(vxm_parity_unite(grids[axis], &job, NULL), VXM_OK);
+      }
+      size_t bytes = grids[0]->word_count * sizeof *grids[0]->words;
+      assert_memory_equal(grids[0]->words, grids[1]->words, bytes);
+      assert_memory_equal(grids[0]->words, grids[2]->words, bytes);
+      for (int axis = 0; axis < 3; axis++)
+        vxm_grid_destroy(grids[axis]);
+    }
+    vxm_facets_destroy(&facets);
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_holes_are_capped(void **state) {
+  (void)state;
+  static const double part[] = {0.01, 0.05, 0.2}, least[] = {0.9999, 0.999, 0.98};
+  vxm_soup *clean = torus();
+  vxm_grid *truth = voxelize(clean, in_space(&cube64), NULL);
+  for (int p = 0; p < 3; p++) {
+    vxm_rng rng = {(uint64_t)p};
+    vxm_soup *soup = torus();
+    damage(soup, &rng, part[p], 0.3);
+    vxm_voxelize_report report;
+    vxm_grid *grid = voxelize(soup, in_space(&cube64), &report);
+    assert_true(iou(grid, truth) >= least[p]);
+    assert_int_equal(report.capped_parts, 1);
+    assert_true(report.caps > 0);
+    vxm_grid_destroy(grid);
+    vxm_soup_destroy(soup);
+  }
+  vxm_grid_destroy(truth);
+  vxm_soup_destroy(clean);
+}
+
+/** A square of quads in the plane w = at, with its own vertices. */
+static void add_panel(vxm_soup *soup, int w, double at, double half, uint32_t cuts) {
+  uint32_t first = (uint32_t)soup->vertex_count;
+  for (uint32_t j = 0; j <= cuts; j++)
+    for (uint32_t i = 0; i <= cuts; i++) {
+      double p[3];
+      p[w] = at;
+      p[(w + 1) % 3] = half * (2.0 * i / cuts - 1);
+      p[(w + 2) % 3] = half * (2.0 * j / cuts - 1);
+      shape_vertex(soup, p[0], p[1], p[2]);
+    }
+  for (uint32_t j = 0; j < cuts; j++)
+    for (uint32_t i = 0; i < cuts; i++) {
+      uint32_t c = first + j * (cuts + 1) + i;
+      shape_face(soup, (uint32_t[]){c, c + 1, c + cuts + 2, c + cuts + 1}, 4);
+    }
+}
+
+static void test_panels_make_a_body(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  for (uint32_t side = 0; side < 6; side++)
+    add_panel(soup, (int)side / 2, side % 2 ? 1.01 : -1.01, 1.01, 2 + side);
+  vxm_grid *grid = voxelize(soup, in_space(&cube64), NULL);
+  assert_int_equal(vxm_grid_count(grid), 40 * 40 * 40);
+  vxm_grid_destroy(grid);
+  vxm_soup_destroy(soup);
+}
+
+static void test_a_sheet_vanishes(void **state) {
+  (void)state;
+  for (int inside = 0; inside < 2; inside++) {
+    vxm_soup *soup = shape_empty(context);
+    add_panel(soup, 2, 0.03, 0.5, 3);
+    if (inside)
+      shape_box(soup, (double[]){-1.01, -1.01, -1.01}, (double[]){1.01, 1.01, 1.01});
+    vxm_grid *grid = voxelize(soup, in_space(&cube64), NULL);
+    assert_int_equal(vxm_grid_count(grid), inside ? 40 * 40 * 40 : 0);
+    vxm_grid_destroy(grid);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/* ---- Cavities ---- */
+
+static void turn_faces(vxm_soup *soup, size_t first) {
+  vxm_rng rng = {1};
+  vxm_soup view = *soup;
+  view.offsets += first;
+  view.face_count -= first;
+  damage(&view, &rng, 0, 2);
+}
+
+static void test_cavities(void **state) {
+  (void)state;
+  const int64_t solid = 40 * 40 * 40, inner = 20 * 20 * 20;
+  for (int inward = 0; inward < 2; inward++) {
+    vxm_soup *soup = shape_empty(context);
+    shape_box(soup, (double[]){-1.01, -1.01, -1.01}, (double[]){1.01, 1.01, 1.01});
+    shape_box(soup, (double[]){-0.51, -0.51, -0.51}, (double[]){0.51, 0.51, 0.51});
+    if (inward)
+      turn_faces(soup, 6);
+    vxm_voxelize_options options = in_space(&cube64);
+    for (int rule = VXM_CAVITIES_AUTO; rule <= VXM_CAVITIES_FILL; rule++) {
+      bool hollow = rule == VXM_CAVITIES_KEEP || (rule == VXM_CAVITIES_AUTO && inward);
+      options.cavities = (vxm_cavities)rule;
+      vxm_voxelize_report report;
+      vxm_grid *grid = voxelize(soup, options, &report);
+      assert_int_equal(report.cavities, hollow);
+      assert_int_equal(vxm_grid_count(grid), hollow ? solid - inner : solid);
+      vxm_grid_destroy(grid);
+    }
+    vxm_soup_destroy(soup);
+  }
+}
+
+/* ---- Winding numbers ---- */
+
+/** The sum of solid angles in doubles, term by term. */
+static double winding_of(const vxm_triangle *triangles, size_t count, const double q[3]) {
+  double sum = 0;
+  for (size_t t = 0; t < count; t++) {
+    double v[3][3], length[3], dot[3];
+    for (int k = 0; k < 3; k++)
+      for (int a = 0; a < 3; a++)
+        v[k][a] = triangles[t].corner[k][a] - q[a];
+    for (int k = 0; k < 3; k++) {
+      length[k] = sqrt(v[k][0] * v[k][0] + v[k][1] * v[k][1] + v[k][2] * v[k][2]);
+      const double *next = v[(k + 1) % 3];
+      dot[k] = v[k][0] * next[0] + v[k][1] * next[1] + v[k][2] * next[2];
+    }
+    double volume = 0;
+    for (int a = 0; a < 3; a++)
+      volume += v[0][a] * (v[1][(a + 1) % 3] * v[2][(a + 2) % 3] - v[1][(a + 2) % 3] * v[2][(a + 1) % 3]);
+    sum += 2 * atan2(volume, length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] +
+                                 dot[2] * length[1]);
+  }
+  return sum / (4 * M_PI);
+}
+
+static void test_winding_numbers_match_the_sum(void **state) {
+  (void)state;
+  enum { COUNT = 400 };
+  vxm_rng rng = {3};
+  for (int round = 0; round < 12; round++) {
+    vxm_triangle triangles[COUNT], sorted[COUNT];
+    double size = pow(0.5, round % 6), worst = 0;
+    for (int t = 0; t < COUNT; t++) {
+      double centre[3];
+      for (int a = 0; a < 3; a++)
+        centre[a] = 16 * vxm_rng_unit(&rng);
+      for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 3; a++)
+          triangles[t].corner[k][a] = centre[a] + size * 4 * (vxm_rng_unit(&rng) - 0.5);
+    }
+    memcpy(sorted, triangles, sizeof sorted);
+    vxm_winding *winding;
+    assert_int_equal(vxm_winding_create(&winding, context, sorted, COUNT, NULL), VXM_OK);
+    for (int b = 0; b < 64; b++) {
+      float value[VXM_BRICK];
+      int64_t at[3] = {4 * (b & 3), 4 * (b >> 2 & 3), 4 * (b >> 4)};
+      vxm_winding_brick(winding, at[0], at[1], at[2], value);
+      for (int v = 0; v < VXM_BRICK; v++) {
+        double q[3] = {(double)at[0] + (v & 3) + 0.5, (double)at[1] + (v >> 2 & 3) + 0.5,
+                       (double)at[2] + (v >> 4) + 0.5};
+        worst = fmax(worst, fabs((double)value[v] - winding_of(triangles, COUNT, q)));
+      }
+    }
+    assert_true(worst < 0.01);
+    vxm_winding_destroy(winding);
+  }
+}
+
+static void test_no_triangles_wind_around_nothing(void **state) {
+  (void)state;
+  vxm_triangle none;
+  vxm_winding *winding;
+  float value[VXM_BRICK];
+  assert_int_equal(vxm_winding_create(&winding, context, &none, 0, NULL), VXM_OK);
+  vxm_winding_brick(winding, 0, 0, 0, value);
+  for (int v = 0; v < VXM_BRICK; v++)
+    assert_true(value[v] == 0.0F);
+  vxm_winding_destroy(winding);
+}
+
+static void test_winding_method_equals_parity_on_closed_meshes(void **state) {
+  (void)state;
+  vxm_soup *clean = torus(), *turned = torus();
+  vxm_rng rng = {4};
+  damage(turned, &rng, 0, 0.5);
+  vxm_voxelize_options options = in_space(&cube64);
+  vxm_grid *truth = voxelize(clean, options, NULL);
+  options.method = VXM_METHOD_WINDING;
+  vxm_grid *grid = voxelize(turned, options, NULL);
+  assert_true(iou(grid, truth) > 0.9999);
+  vxm_grid_destroy(grid);
+  vxm_grid_destroy(truth);
+  vxm_soup_destroy(turned);
+  vxm_soup_destroy(clean);
+}
+
+/** Triangles that share no vertices and are turned at random: every one is a patch of its own. */
+static void test_patches_are_turned_outward(void **state) {
+  (void)state;
+  vxm_soup *clean = torus(), *soup = shape_empty(context);
+  vxm_rng rng = {5};
+  for (size_t f = 0; f < clean->face_count; f++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(clean, f, &n);
+    uint32_t own[4];
+    for (size_t c = 0; c < n; c++) {
+      const double *p = vxm_position(clean, corner[c]);
+      own[c] = shape_vertex(soup, p[0], p[1], p[2]);
+    }
+    shape_face(soup, own, n);
+  }
+  damage(soup, &rng, 0, 0.5);
+  vxm_voxelize_options options = in_space(&cube64);
+  vxm_grid *truth = voxelize(clean, options, NULL);
+  vxm_lattice lattice = vxm_lattice_of(&cube64);
+  vxm_facets facets;
+  vxm_split_rule rule = {VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, true};
+  assert_int_equal(vxm_facets_create(&facets, soup, &lattice, rule, NULL), VXM_OK);
+  vxm_outward outward;
+  const vxm_grid *const voters[3] = {truth, truth, truth};
+  assert_int_equal(vxm_outward_create(&outward, &facets, &lattice, 0, facets.split.part_count, voters, NULL),
+                   VXM_OK);
+  assert_int_equal(outward.patch_count, soup->face_count);
+  double volume = 0;
+  for (size_t t = 0; t < outward.count; t++) {
+    double(*c)[3] = outward.triangles[t].corner;
+    for (int a = 0; a < 3; a++)
+      volume += (c[0][a] - 32) * ((c[1][(a + 1) % 3] - 32) * (c[2][(a + 2) % 3] - 32) -
+                                  (c[1][(a + 2) % 3] - 32) * (c[2][(a + 1) % 3] - 32));
+  }
+  double true_volume = 2 * M_PI * M_PI * 0.45 * 0.45 / pow(0.05, 3);
+  assert_true(fabs(volume / 6 / true_volume - 1) < 0.02);
+  vxm_outward_destroy(&outward);
+  vxm_facets_destroy(&facets);
+  vxm_grid *grid = voxelize(soup, options, NULL);
+  assert_true(iou(grid, truth) > 0.999);
+  vxm_grid_destroy(grid);
+  vxm_grid_destroy(truth);
+  vxm_soup_destroy(soup);
+  vxm_soup_destroy(clean);
+}
+
+static void test_same_bits_for_any_number_of_threads(void **state) {
+  (void)state;
+  static const int threads[] = {1, 2, 7};
+  uint64_t hash[3][2];
+  for (int t = 0; t < 3; t++) {
+    vxm_context_options with = VXM_CONTEXT_OPTIONS_INIT;
+    with.threads = threads[t];
+    vxm_context *shared = context;
+    assert_int_equal(vxm_context_create(&context, &with, NULL), VXM_OK);
+    vxm_soup *soup = torus();
+    vxm_rng rng = {6};
+    damage(soup, &rng, 0.1, 0.3);
+    add_panel(soup, 1, 0.8, 0.9, 5);
+    vxm_voxelize_options options = in_space(&cube64);
+    options.parts = VXM_PARTS_WHOLE;
+    for (int m = 0; m < 2; m++) {
+      options.method = m ? VXM_METHOD_WINDING : VXM_METHOD_VOTE;
+      vxm_grid *grid = voxelize(soup, options, NULL);
+      hash[t][m] = vxm_grid_hash(grid);
+      vxm_grid_destroy(grid);
+    }
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+    context = shared;
+  }
+  for (int t = 1; t < 3; t++)
+    for (int m = 0; m < 2; m++)
+      assert_true(hash[t][m] == hash[0][m]);
+}
+
+/* ---- Confidence ---- */
+
+static void test_confidence(void **state) {
+  (void)state;
+  vxm_voxelize_options options = in_space(&cube64);
+  vxm_soup *soup = torus();
+  vxm_grid *grid = voxelize(soup, options, NULL);
+  assert_null(vxm_grid_confidence(grid));
+  vxm_grid_destroy(grid);
+  options.confidence = true;
+  grid = voxelize(soup, options, NULL);
+  const uint8_t *closed = vxm_grid_confidence(grid);
+  for (int v = 0; v < 64 * 64 * 64; v++)
+    assert_int_equal(closed[v], 255);
+  vxm_grid_destroy(grid);
+  vxm_rng rng = {7};
+  damage(soup, &rng, 0.05, 0);
+  for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_WINDING; method++) {
+    options.method = (vxm_method)method;
+    grid = voxelize(soup, options, NULL);
+    const uint8_t *confidence = vxm_grid_confidence(grid);
+    int sure = 0, unsure = 0;
+    for (int v = 0; v < 64 * 64 * 64; v++) {
+      sure += confidence[v] >= 250;
+      unsure += confidence[v] < 200;
+    }
+    assert_true(sure > 64 * 64 * 64 / 2 && unsure > 0);
+    vxm_grid_destroy(grid);
+  }
+  vxm_soup_destroy(soup);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_triangles_and_caps_are_closed),
+      cmocka_unit_test(test_holes_are_capped),
+      cmocka_unit_test(test_panels_make_a_body),
+      cmocka_unit_test(test_a_sheet_vanishes),
+      cmocka_unit_test(test_cavities),
+      cmocka_unit_test(test_winding_numbers_match_the_sum),
+      cmocka_unit_test(test_no_triangles_wind_around_nothing),
+      cmocka_unit_test(test_winding_method_equals_parity_on_closed_meshes),
+      cmocka_unit_test(test_patches_are_turned_outward),
+      cmocka_unit_test(test_same_bits_for_any_number_of_threads),
+      cmocka_unit_test(test_confidence),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
