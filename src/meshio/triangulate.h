@@ -20,9 +20,9 @@ void vxm_triangulator_close(vxm_triangulator *tri);
 
 /**
  * Splits a polygon of n >= 3 corners into n - 2 triangles by clipping ears, seen along the axis on which its
- * vector area is largest. A planar simple polygon is covered exactly; others get as many triangles, some of which
- * may overlap. What withstands becomes a fan, and so does what is left when all polygons together have used up a
- * budget of work; from there on each takes linear time.
+ * vector area is largest. A planar simple polygon is covered exactly; others get as many triangles, some of
+ * which may overlap. What withstands becomes a fan, and so does what is left when all polygons together have
+ * used up a budget of work; from there on each takes linear time.
  *
  * @param[out] triangles 3 (n - 2) vertex numbers, valid until the next call
  */
