@@ -312,7 +312,7 @@ VXM_API void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes);
  * How sure each voxel is, 0 (a guess) to 255 (proven), dims[0]*dims[1]*dims[2] bytes with x fastest; NULL
  * unless the grid was made with vxm_voxelize_options.confidence. A voxel decided by closed parts alone has
  * 255, one decided by the winding number w has 255 times the smaller of 1 and |2 w - 1|, any other the share
- * of the voters x, y, z and tetra that agree with it.
+ * of the voters x, y, z and tetra that agree with it; what the surface sets has 255.
  */
 VXM_API const uint8_t *vxm_grid_confidence(const vxm_grid *grid);
 /**
@@ -400,6 +400,13 @@ typedef enum vxm_fit {
   VXM_FIT_SPHERE    /**< equal dimensions; the diagonal of the box fills them: safe under rotation */
 } vxm_fit;
 
+/** Which voxels of a mesh are set. */
+typedef enum vxm_mode {
+  VXM_MODE_SOLID = 0, /**< centre inside */
+  VXM_MODE_SURFACE,   /**< closed box meets a face */
+  VXM_MODE_BOTH       /**< either: thin parts and sheets are kept */
+} vxm_mode;
+
 typedef enum vxm_method {
   VXM_METHOD_VOTE = 0, /**< parity along x, y, z and the tetrahedra, combined by vxm_vote */
   VXM_METHOD_X,        /**< parity of crossings along x */
@@ -463,11 +470,15 @@ typedef struct vxm_voxelize_options {
   vxm_vote vote;
   vxm_parts parts;
   vxm_cavities cavities;
+  vxm_mode mode;
   bool confidence; /**< keep for every voxel how sure it is: vxm_grid_confidence */
 } vxm_voxelize_options;
 
-#define VXM_VOXELIZE_OPTIONS_INIT \
-  { 1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, false }
+#define VXM_VOXELIZE_OPTIONS_INIT                                                                 \
+  {                                                                                               \
+    1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, \
+        VXM_MODE_SOLID, false                                                                     \
+  }
 
 typedef struct vxm_voxelize_report {
   int64_t parts;        /**< parts that were voxelized apart and united */

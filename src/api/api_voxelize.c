@@ -30,6 +30,8 @@ static vxm_status check_options(const vxm_voxelize_options *options, vxm_error *
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: method %d is unknown", (int)options->method);
   if ((unsigned)options->vote > VXM_VOTE_ALL)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: vote %d is unknown", (int)options->vote);
+  if ((unsigned)options->mode > VXM_MODE_BOTH)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: mode %d is unknown", (int)options->mode);
   if ((unsigned)options->cavities > VXM_CAVITIES_FILL)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: cavities %d is unknown", (int)options->cavities);
   if ((unsigned)options->parts > VXM_PARTS_WHOLE)

@@ -11,6 +11,7 @@ enum {
   KEY_BOUNDS,
   KEY_PAD,
   KEY_LIKE,
+  KEY_MODE,
   KEY_METHOD,
   KEY_VOTE,
   KEY_PARTS,
@@ -36,6 +37,9 @@ static const cli_option known_options[] = {
     {KEY_PAD, "pad", "P", "keep P voxels free on each side: within -r, in addition to --voxel-size [0]"},
     {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1", "cover exactly this box, whatever the model's size"},
     {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
+    {KEY_MODE, "mode", "solid|surface|both",
+     "solid: voxels whose centre is inside; surface: voxels whose box meets a face;\n"
+     "both: either, which keeps sheets and parts thinner than a voxel [solid]"},
     {KEY_METHOD, "method", "vote|x|y|z|tetra|winding",
      "who says what is inside: parity along one axis, the XOR of tetrahedra, a\n"
      "vote of these four (they agree wherever the mesh is closed), or the winding\n"
@@ -138,6 +142,7 @@ static int read_space_option(cli_run *cli, request *out, int key, const char *va
 }
 
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
+  static const char *const modes[] = {"solid", "surface", "both", NULL};
   static const char *const methods[] = {"vote", "x", "y", "z", "tetra", "winding", NULL};
   static const char *const votes[] = {"auto", "majority", "any", "all", NULL};
   static const char *const parts[] = {"auto", "group", "whole", NULL};
@@ -150,6 +155,10 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_FORMAT:
     out->format = value;
     return CLI_END;
+  case KEY_MODE:
+    result = read_choice(cli, &choice, "mode", value, modes, "solid, surface, both");
+    out->voxelize.mode = (vxm_mode)choice;
+    return result;
   case KEY_METHOD:
     result = read_choice(cli, &choice, "method", value, methods, "vote, x, y, z, tetra, winding");
     out->voxelize.method = (vxm_method)choice;

@@ -5,6 +5,7 @@
 
 /** Voxels from a triangle at which the grid is asked, and how far. */
 static const double probe_steps[] = {0.5, 1.0, 1.5};
+enum { PROBES = sizeof probe_steps / sizeof *probe_steps };
 /** Where on a triangle: its middle and near its corners, as weights of the corners. */
 static const double probe_weights[4][3] = {
     {1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.7, 0.15, 0.15}, {0.15, 0.7, 0.15}, {0.15, 0.15, 0.7}};
@@ -157,7 +158,7 @@ static double evidence_of(const vxm_triangle *t, const double n[3], double lengt
                           const vxm_grid *const voters[3]) {
   double sum = 0;
   for (int w = 0; w < 4; w++)
-    for (int s = 0; s < 3; s++) {
+    for (size_t s = 0; s < PROBES; s++) {
       double behind[3], before[3];
       for (int a = 0; a < 3; a++) {
         double at = 0, step = probe_steps[s] * n[a] / length;
@@ -170,7 +171,7 @@ static double evidence_of(const vxm_triangle *t, const double n[3], double lengt
       int difference = ask(voters, behind, &sure) - ask(voters, before, &sure);
       sum += (sure ? 1 : doubtful) * difference;
     }
-  return sum / 12;
+  return sum / (4 * PROBES);
 }
 
 static void turn_triangle(vxm_triangle *t) {

@@ -4,11 +4,13 @@
 #include "voxel/outward.h"
 #include "voxel/parity.h"
 #include "voxel/settle.h"
+#include "voxel/surface.h"
 #include "voxel/tetra.h"
 #include "voxel/vote.h"
 
 #include <inttypes.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <string.h>
 
 /** The voters of parts that are not closed: x, y, z, and the tetrahedra by parity with cones. */
@@ -18,6 +20,7 @@ typedef struct solid {
   const vxm_voxelize_options *options;
   vxm_voxelize_report *report;
   vxm_context *context;
+  const vxm_soup *soup;
   vxm_grid *grid;
   vxm_lattice lattice;
   vxm_facets facets;
@@ -229,8 +232,30 @@ static void fill_report(solid *s) {
   report->caps = (int64_t)split->capped_loops;
   report->cavities = (int64_t)split->cavity_count;
   vxm_grid_sum(s->grid, &report->voxels, &report->hash);
-  for (size_t p = 0; p < split->part_count; p++)
+  for (size_t p = 0; p < split->part_count && s->options->mode != VXM_MODE_SURFACE; p++)
     report->empty_parts += !atomic_load_explicit(&s->touched[p], memory_order_relaxed);
+}
+
+/** The first few parts without volume, each by one of its vertices. */
+static void name_empty_parts(solid *s) {
+  enum { NAMED = 3 };
+  char names[200] = "";
+  int used = 0, named = 0;
+  for (size_t p = 0; p < s->facets.split.part_count && named < NAMED; p++) {
+    const vxm_part *part = &s->facets.parts[p];
+    if (atomic_load_explicit(&s->touched[p], memory_order_relaxed) || part->begin == part->end)
+      continue;
+    uint32_t vertex = s->facets.facets[part->begin].corner[0];
+    const double *at = vxm_position(s->soup, vertex);
+    used += snprintf(names + used, sizeof names - (size_t)used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "",
+                     at[0], at[1], at[2]);
+    named++;
+  }
+  vxm_note(&s->grid->notes,
+           "%" PRId64 " of %" PRId64
+           " parts hold no voxel centre, being thinner than a voxel or open sheets: those at "
+           "%s%s; --mode both keeps them, and so may a higher resolution (-r)",
+           s->report->empty_parts, s->report->parts, names, s->report->empty_parts > named ? ", ..." : "");
 }
 
 static void warn(solid *s) {
@@ -238,13 +263,10 @@ static void warn(solid *s) {
   vxm_notes *notes = &s->grid->notes;
   if (report->voxels == 0)
     vxm_note(notes,
-             "no voxel centre is inside: the model is open, flat or thinner than a voxel; try a higher "
-             "resolution (-r) or --vote any");
-  else if (report->empty_parts > 0)
-    vxm_note(notes,
-             "%" PRId64 " of %" PRId64 " parts hold no voxel centre: they are thinner than a voxel or open "
-             "sheets; a higher resolution (-r) may show them",
-             report->empty_parts, report->parts);
+             "no voxel centre is inside: the model is open, flat or thinner than a voxel; try --mode both "
+             "or a higher resolution (-r)");
+  else if (report->empty_parts > 0 && s->options->mode == VXM_MODE_SOLID)
+    name_empty_parts(s);
   if (report->contested > 0)
     vxm_note(notes,
              "the model is open (%zu odd edges) and x, y and z disagree on %" PRId64
@@ -269,10 +291,10 @@ static vxm_status check_memory(const solid *s, vxm_error *error) {
   return vxm_memory_check(s->context, bytes, "voxelizing", error);
 }
 
-static vxm_status prepare(solid *s, const vxm_soup *soup, const vxm_space *space, vxm_error *error) {
+static vxm_status prepare(solid *s, const vxm_space *space, vxm_error *error) {
   const vxm_voxelize_options *options = s->options;
   vxm_split_rule rule = {options->parts, options->cavities, caps_are_wanted(options)};
-  vxm_status status = vxm_facets_create(&s->facets, soup, &s->lattice, rule, error);
+  vxm_status status = vxm_facets_create(&s->facets, s->soup, &s->lattice, rule, error);
   if (status != VXM_OK)
     return status;
   if (s->facets.facet_count == 0)
@@ -296,13 +318,18 @@ static vxm_status prepare(solid *s, const vxm_soup *soup, const vxm_space *space
 vxm_status vxm_voxelize_run(vxm_grid **out, vxm_voxelize_report *report, const vxm_soup *soup,
                             const vxm_space *space, const vxm_voxelize_options *options, vxm_error *error) {
   *out = NULL;
-  solid s = {
-      .options = options, .report = report, .context = soup->context, .lattice = vxm_lattice_of(space)};
-  vxm_status status = prepare(&s, soup, space, error);
-  if (status == VXM_OK)
+  solid s = {.options = options,
+             .report = report,
+             .context = soup->context,
+             .soup = soup,
+             .lattice = vxm_lattice_of(space)};
+  vxm_status status = prepare(&s, space, error);
+  if (status == VXM_OK && options->mode != VXM_MODE_SURFACE)
     status = fill(&s, error);
-  if (status == VXM_OK)
+  if (status == VXM_OK && options->mode != VXM_MODE_SURFACE)
     status = complete_confidence(&s, error);
+  if (status == VXM_OK && options->mode != VXM_MODE_SOLID)
+    status = vxm_surface_unite(s.grid, soup, &s.lattice, s.grid->confidence, error);
   if (status == VXM_OK) {
     fill_report(&s);
     warn(&s);

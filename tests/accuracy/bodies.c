@@ -32,17 +32,14 @@ static shape make_ball(size_t rings, size_t segments, double radius) {
   return shape_revolve(rings, profile, false, segments);
 }
 
-/** A ball with a disc through it: two components that share space but no vertex. */
+/** A ball and an egg that sticks in its side: two components that share space but no vertex. */
 static shape make_two_parts(void) {
-  shape made = make_ball(32, 48, 1);
-  double profile[2 * 24];
-  shape_half_circle(profile, 24, 1.3);
-  shape disc = shape_revolve(24, profile, false, 40);
-  shape_scale(&disc, 1, 1, 0.35);
-  shape_turn(&disc, 1, 37);
-  shape_move(&disc, 0.55, 0.2, 0.1);
-  shape_append(&made, &disc);
-  shape_free(&disc);
+  shape made = make_ball(32, 48, 1), egg = make_ball(24, 40, 0.7);
+  shape_scale(&egg, 1, 0.8, 0.6);
+  shape_turn(&egg, 1, 37);
+  shape_move(&egg, 1.25, 0.3, 0.15);
+  shape_append(&made, &egg);
+  shape_free(&egg);
   return made;
 }
 

@@ -12,7 +12,8 @@
 /** Number of own bodies, and what they are called. */
 enum { BODY_COUNT = 3 };
 extern const char *const body_names[BODY_COUNT];
-/** One of them: triangles, closed, wound outward. Two bodies are one component, "two parts" are two that overlap. */
+/** One of them: triangles, closed, wound outward. Two bodies are one component, "two parts" are two that
+ * overlap. */
 shape body_make(int index);
 
 /** How the six panels of a box are made. */

@@ -16,6 +16,7 @@ const char *const damage_names[DAMAGE_COUNT] = {
     [DAMAGE_REMOVED_5] = "5 % removed",
     [DAMAGE_REMOVED_20] = "20 % removed",
     [DAMAGE_COPIES] = "two overlapping copies",
+    [DAMAGE_SHAKEN] = "shared vertices moved by 1e-4",
     [DAMAGE_MOVED] = "unshared vertices moved by 1e-4",
     [DAMAGE_SHEET] = "open sheet inside",
     [DAMAGE_CAVITY] = "nested inward box",
@@ -28,8 +29,9 @@ const char *const damage_names[DAMAGE_COUNT] = {
 /** What is done to the faces, each with a probability; lengths are shares of the body's diagonal. */
 typedef struct recipe {
   double turned, doubled, removed;
-  double moved; /**< every corner gets a vertex of its own, moved this far in a random direction */
-  double hole;  /**< diameter of the ball in which all faces are removed */
+  double moved;  /**< every corner gets a vertex of its own, moved this far in a random direction */
+  double shaken; /**< every vertex is moved this far; the mesh stays closed */
+  double hole;   /**< diameter of the ball in which all faces are removed */
 } recipe;
 
 static const recipe recipes[DAMAGE_COUNT] = {
@@ -38,6 +40,7 @@ static const recipe recipes[DAMAGE_COUNT] = {
     [DAMAGE_REMOVED_1] = {.removed = 0.01},
     [DAMAGE_REMOVED_5] = {.removed = 0.05},
     [DAMAGE_REMOVED_20] = {.removed = 0.2},
+    [DAMAGE_SHAKEN] = {.shaken = 1e-4},
     [DAMAGE_MOVED] = {.moved = 1e-4},
     [DAMAGE_HOLE] = {.hole = 0.08},
     [DAMAGE_PANELS_DOUBLED] = {.doubled = 1},
@@ -63,15 +66,20 @@ static const int64_t *corners_of(const shape *body, size_t face) {
   return body->indices + body->offsets[face];
 }
 
-static double distance_to_face(const shape *body, size_t face, const double from[3]) {
+static void middle_of(double out[3], const shape *body, size_t face) {
   const int64_t *corners = corners_of(body, face);
+  for (int a = 0; a < 3; a++)
+    out[a] = (body->positions[3 * corners[0] + a] + body->positions[3 * corners[1] + a] +
+              body->positions[3 * corners[2] + a]) /
+             3;
+}
+
+static double distance_to_face(const shape *body, size_t face, const double from[3]) {
+  double middle[3];
+  middle_of(middle, body, face);
   double squared = 0;
-  for (int a = 0; a < 3; a++) {
-    double middle = 0;
-    for (int c = 0; c < 3; c++)
-      middle += body->positions[3 * corners[c] + a] / 3;
-    squared += (middle - from[a]) * (middle - from[a]);
-  }
+  for (int a = 0; a < 3; a++)
+    squared += (middle[a] - from[a]) * (middle[a] - from[a]);
   return sqrt(squared);
 }
 
@@ -83,10 +91,11 @@ typedef struct fate {
   bool turned, repeated;
 } fate;
 
-static size_t decide_fates(fate *fates, const shape *body, const recipe *apply, double diagonal, vxm_rng *rng) {
+static size_t decide_fates(fate *fates, const shape *body, const recipe *apply, double diagonal,
+                           vxm_rng *rng) {
   double centre[3];
-  size_t at = (size_t)vxm_rng_below(rng, body->face_count), count = 0;
-  memcpy(centre, body->positions + 3 * corners_of(body, at)[0], sizeof centre);
+  size_t count = 0;
+  middle_of(centre, body, (size_t)vxm_rng_below(rng, body->face_count));
   for (size_t f = 0; f < body->face_count; f++) {
     bool turned = vxm_rng_unit(rng) < apply->turned, doubled = vxm_rng_unit(rng) < apply->doubled;
     if (distance_to_face(body, f, centre) < apply->hole / 2 * diagonal)
@@ -111,41 +120,28 @@ static void random_direction(double out[3], vxm_rng *rng) {
     out[a] /= sqrt(squared);
 }
 
-/** Adds a vertex of its own for each corner of a face. */
-static void add_moved_corners(shape *made, const shape *body, size_t face, double distance, int64_t corners[3],
-                              vxm_rng *rng) {
-  for (int c = 0; c < 3; c++) {
-    const double *p = body->positions + 3 * corners_of(body, face)[c];
-    double d[3];
-    random_direction(d, rng);
-    corners[c] = shape_add_vertex(made, p[0] + distance * d[0], p[1] + distance * d[1], p[2] + distance * d[2]);
-  }
+static int64_t add_moved(shape *to, const double p[3], double distance, vxm_rng *rng) {
+  double d[3];
+  random_direction(d, rng);
+  return shape_add_vertex(to, p[0] + distance * d[0], p[1] + distance * d[1], p[2] + distance * d[2]);
 }
 
 /** The damaged faces, and in `oriented` those of them that are no repetition, turned as they were. */
 static void apply_fates(shape *damaged, shape *oriented, const shape *body, const fate *fates, size_t count,
                         double distance, vxm_rng *rng) {
-  size_t repeated_of = SIZE_MAX;
-  for (size_t v = 0; v < body->vertex_count && distance == 0; v++) {
-    const double *p = body->positions + 3 * v;
-    shape_add_vertex(damaged, p[0], p[1], p[2]);
-  }
+  size_t last = SIZE_MAX;
   for (size_t i = 0; i < count; i++) {
     int64_t corners[3];
     memcpy(corners, corners_of(body, fates[i].face), sizeof corners);
-    if (distance > 0)
-      add_moved_corners(damaged, body, fates[i].face, distance, corners, rng);
-    if (fates[i].face != repeated_of)
+    for (int c = 0; c < 3 && distance > 0; c++)
+      corners[c] = add_moved(damaged, body->positions + 3 * corners[c], distance, rng);
+    if (fates[i].face != last)
       shape_add_face(oriented, 3, corners);
-    repeated_of = fates[i].face;
+    last = fates[i].face;
     if (fates[i].turned)
       shape_add_face(damaged, 3, (int64_t[]){corners[0], corners[2], corners[1]});
     else
       shape_add_face(damaged, 3, corners);
-  }
-  for (size_t v = 0; v < damaged->vertex_count; v++) {
-    const double *p = damaged->positions + 3 * v;
-    shape_add_vertex(oriented, p[0], p[1], p[2]);
   }
 }
 
@@ -157,7 +153,13 @@ static void damage_faces(shape *damaged, shape *oriented, const shape *body, con
   if (!fates)
     exit(1);
   size_t count = decide_fates(fates, body, apply, diagonal, &rng);
+  for (size_t v = 0; v < body->vertex_count && apply->moved == 0; v++)
+    add_moved(damaged, body->positions + 3 * v, apply->shaken * diagonal, &rng);
   apply_fates(damaged, oriented, body, fates, count, apply->moved * diagonal, &rng);
+  for (size_t v = 0; v < damaged->vertex_count; v++) {
+    const double *p = damaged->positions + 3 * v;
+    shape_add_vertex(oriented, p[0], p[1], p[2]);
+  }
   free(fates);
 }
 
@@ -174,7 +176,8 @@ static shape shifted_copy(const shape *body) {
 
 static void add_sheet(shape *to, const double low[3], const double high[3]) {
   int64_t a = shape_add_vertex(to, low[0], low[1], low[2]), b = shape_add_vertex(to, high[0], low[1], low[2]);
-  int64_t c = shape_add_vertex(to, high[0], high[1], high[2]), d = shape_add_vertex(to, low[0], high[1], high[2]);
+  int64_t c = shape_add_vertex(to, high[0], high[1], high[2]),
+          d = shape_add_vertex(to, low[0], high[1], high[2]);
   shape_add_face(to, 3, (int64_t[]){a, b, c});
   shape_add_face(to, 3, (int64_t[]){a, c, d});
 }

@@ -19,7 +19,6 @@ vxm_grid *truth_solid(vxm_context *context, const shape *body, const vxm_space *
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.space.like = space;
   options.method = VXM_METHOD_Z;
-  options.parts = VXM_PARTS_GROUP;
   vxm_mesh *mesh = mesh_of_shape(context, body);
   vxm_grid *grid;
   vxm_error error = VXM_ERROR_INIT;
@@ -46,7 +45,8 @@ void truth_subtract(vxm_grid *from, const vxm_grid *other) {
   assign(from, other, false);
 }
 
-/** Edge of the largest cube of set voxels whose last voxel is (i,j,k), from those of its seven predecessors. */
+/** Edge of the largest cube of set voxels whose last voxel is (i,j,k), from those of its seven predecessors.
+ */
 static int cube_ending_at(const int *edges, size_t voxel, const int64_t dims[3]) {
   const size_t step[3] = {1, (size_t)dims[0], (size_t)(dims[0] * dims[1])};
   int least = edges[voxel - step[0]];

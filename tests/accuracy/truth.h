@@ -5,12 +5,13 @@
 
 #include "bodies.h"
 
-/** The space in which a body is measured: a cube of `resolution` voxels with one empty voxel around the body. */
+/** The space in which a body is measured: a cube of `resolution` voxels with one empty voxel around the body.
+ */
 vxm_space truth_space(vxm_context *context, const shape *body, int64_t resolution);
 
 /**
- * The solid of a closed body: parity along z, every component alone. It needs neither closing, nor orientation,
- * nor a vote, so that none of them can make its own truth.
+ * The solid of a closed body: parity along z of every component. Closing, orientation and votes have no part
+ * in it, so that none of them makes its own truth.
  */
 vxm_grid *truth_solid(vxm_context *context, const shape *body, const vxm_space *space);
 
