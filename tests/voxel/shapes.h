@@ -12,6 +12,20 @@
 
 #include <cmocka.h>
 
+/** The context of a test program, made and dropped around its tests. */
+static vxm_context *context;
+
+static int setup(void **state) {
+  (void)state;
+  return vxm_context_create(&context, NULL, NULL) != VXM_OK;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  vxm_context_destroy(context);
+  return 0;
+}
+
 static inline vxm_soup *shape_empty(vxm_context *context) {
   vxm_soup *soup;
   assert_int_equal(vxm_soup_create(&soup, context, "test", NULL), VXM_OK);

@@ -11,19 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static vxm_context *context;
-
-static int setup(void **state) {
-  (void)state;
-  return vxm_context_create(&context, NULL, NULL) != VXM_OK;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  vxm_context_destroy(context);
-  return 0;
-}
-
 static vxm_grid *voxelize(const vxm_soup *soup, vxm_voxelize_options options, vxm_voxelize_report *report) {
   vxm_error error = VXM_ERROR_INIT;
   vxm_grid *grid;

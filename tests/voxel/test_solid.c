@@ -11,19 +11,6 @@
 
 enum { TINY = 6, TRIANGLES_MAX = 96 };
 
-static vxm_context *context;
-
-static int setup(void **state) {
-  (void)state;
-  return vxm_context_create(&context, NULL, NULL) != VXM_OK;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  vxm_context_destroy(context);
-  return 0;
-}
-
 static vxm_grid *voxelize(const vxm_soup *soup, const vxm_space *space, vxm_method method, vxm_parts parts,
                           vxm_voxelize_report *report) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
