@@ -26,9 +26,9 @@ static int teardown(void **state) {
   return 0;
 }
 
-static inline vxm_soup *shape_empty(vxm_context *context) {
+static inline vxm_soup *shape_empty(vxm_context *owner) {
   vxm_soup *soup;
-  assert_int_equal(vxm_soup_create(&soup, context, "test", NULL), VXM_OK);
+  assert_int_equal(vxm_soup_create(&soup, owner, "test", NULL), VXM_OK);
   return soup;
 }
 
