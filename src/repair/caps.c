@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/caps.h"
 
+#include "base/hash.h"
 #include "mesh/geometry.h"
 
 #include <math.h>
@@ -35,6 +36,7 @@ void vxm_caps_free(vxm_caps *caps) {
   vxm_free(context, caps->triangles);
   vxm_free(context, caps->points);
   vxm_free(context, caps->steps);
+  vxm_free(context, caps->chords);
   vxm_free(context, caps->along);
   *caps = (vxm_caps){.soup = caps->soup};
 }
@@ -114,8 +116,49 @@ static vxm_status cone(vxm_caps *caps, const step *steps, size_t count, vxm_erro
   return status;
 }
 
+/* ---- Edges between old vertices: each may be made once, so that no two triangles have the same corners ----
+ */
+
+/** Never 0, as the vertices differ. */
+static uint64_t chord_key(uint32_t p, uint32_t q) {
+  return p < q ? (uint64_t)p << 32 | q : (uint64_t)q << 32 | p;
+}
+
+/** The slot that has the key, or a free one. */
+static size_t chord_slot(const uint64_t *chords, size_t slots, uint64_t key) {
+  size_t slot = (size_t)vxm_mix(key) & (slots - 1);
+  while (chords[slot] != 0 && chords[slot] != key)
+    slot = (slot + 1) & (slots - 1);
+  return slot;
+}
+
 static bool is_edge(const vxm_caps *caps, uint32_t p, uint32_t q) {
+  uint64_t key = chord_key(p, q);
+  if (caps->chord_slots > 0 && caps->chords[chord_slot(caps->chords, caps->chord_slots, key)] == key)
+    return true;
   return vxm_edges_find(caps->edges, p, q) < caps->edges->count;
+}
+
+static vxm_status add_chord(vxm_caps *caps, uint32_t p, uint32_t q, vxm_error *error) {
+  if (2 * (caps->chord_count + 1) > caps->chord_slots) {
+    size_t slots = caps->chord_slots > 0 ? 2 * caps->chord_slots : 64;
+    vxm_error local = VXM_ERROR_INIT;
+    uint64_t *chords = vxm_calloc(caps->soup->context, slots, sizeof *chords, &local);
+    if (!chords) {
+      if (error)
+        *error = local;
+      return local.code;
+    }
+    for (size_t i = 0; i < caps->chord_slots; i++)
+      if (caps->chords[i] != 0)
+        chords[chord_slot(chords, slots, caps->chords[i])] = caps->chords[i];
+    vxm_free(caps->soup->context, caps->chords);
+    caps->chords = chords;
+    caps->chord_slots = slots;
+  }
+  caps->chords[chord_slot(caps->chords, caps->chord_slots, chord_key(p, q))] = chord_key(p, q);
+  caps->chord_count++;
+  return VXM_OK;
 }
 
 /** Two triangles, along the shorter diagonal that is not an edge yet. */
@@ -128,7 +171,9 @@ static vxm_status close_four(vxm_caps *caps, const step *steps, vxm_error *error
   size_t first = taken[0] || (!taken[1] && length[1] < length[0]) ? 1 : 0;
   int8_t turn = majority(steps, 4);
   uint32_t a = v[first], b = v[first + 1], c = v[first + 2], d = v[(first + 3) % 4];
-  vxm_status status = add_triangle(caps, a, b, c, turn, error);
+  vxm_status status = add_chord(caps, a, c, error);
+  if (status == VXM_OK)
+    status = add_triangle(caps, a, b, c, turn, error);
   return status == VXM_OK ? add_triangle(caps, c, d, a, turn, error) : status;
 }
 
@@ -149,7 +194,7 @@ static bool is_flat(const vxm_caps *caps, const step *steps, size_t count) {
   return vxm_vec3_length(sum) >= FLAT * area;
 }
 
-/** Where to cut a loop, or that it is not to be cut: then the same vertex, or a chord, joins both places. */
+/** Between which steps to cut a loop, if it is to be cut. */
 typedef struct cut {
   bool found;
   size_t i, j; /**< steps, i < j */
@@ -170,9 +215,7 @@ static cut find_cut(const vxm_caps *caps, const step *steps, size_t count) {
       double walk = along[j] - along[i], around = along[count] - walk;
       double chord = vxm_vec3_length(between(caps, from, to));
       walk = walk < around ? walk : around;
-      size_t fewest = from == to ? 3 : 2;
-      if (j - i < fewest || count - (j - i) < fewest || !(chord < best * walk) ||
-          (from != to && is_edge(caps, from, to)))
+      if (j - i < 2 || count - (j - i) < 2 || from == to || !(chord < best * walk) || is_edge(caps, from, to))
         continue;
       best = chord / walk;
       found = (cut){true, i, j};
@@ -180,23 +223,20 @@ static cut find_cut(const vxm_caps *caps, const step *steps, size_t count) {
   return found;
 }
 
-/** Puts the two parts in the place of the loop that begins at `begin`; they may be two steps more. */
+/** Puts the two parts in the place of the loop that begins at `begin`; they are two steps more. */
 static void split(step *steps, size_t begin, size_t count, cut at, step *spare, size_t parts[2]) {
   step *loop = steps + begin;
   size_t inner = at.j - at.i;
   int8_t turn = majority(loop, count);
-  bool chord = loop[at.i].from != loop[at.j].from;
   uint32_t i_vertex = loop[at.i].from, j_vertex = loop[at.j].from;
   size_t next = 0;
   for (size_t k = at.i; k < at.j; k++)
     spare[next++] = loop[k];
-  if (chord)
-    spare[next++] = (step){j_vertex, turn, true};
+  spare[next++] = (step){j_vertex, turn, true};
   parts[0] = next;
   for (size_t k = 0; k < count - inner; k++)
     spare[next++] = loop[(at.j + k) % count];
-  if (chord)
-    spare[next++] = (step){i_vertex, turn, true};
+  spare[next++] = (step){i_vertex, turn, true};
   parts[1] = next - parts[0];
   memcpy(loop, spare, next * sizeof *spare);
 }
@@ -216,7 +256,7 @@ static vxm_status make_room(vxm_caps *caps, size_t count, vxm_error *error) {
 }
 
 static vxm_status close_part(vxm_caps *caps, const step *steps, size_t count, bool plain, vxm_error *error) {
-  /* no face has a side along a chord yet, so none has the corners of a triangle with one */
+  /* no face has a side along a chord, so none has the corners of a triangle with one */
   if (count == 3 && (plain || steps[0].chord || steps[1].chord || steps[2].chord))
     return add_triangle(caps, steps[0].from, steps[1].from, steps[2].from, majority(steps, 3), error);
   return count == 4 ? close_four(caps, steps, error) : cone(caps, steps, count, error);
@@ -244,6 +284,9 @@ vxm_status vxm_caps_add(vxm_caps *caps, const vxm_loops *loops, size_t loop, boo
     }
     if (at.found) {
       size_t parts[2];
+      status = add_chord(caps, caps->steps[top + at.i].from, caps->steps[top + at.j].from, error);
+      if (status != VXM_OK)
+        return status;
       split(caps->steps, top, length, at, caps->steps + 3 * count, parts);
       sizes[depth++] = parts[0];
       top += parts[0];

@@ -17,6 +17,8 @@ typedef struct vxm_caps {
   size_t point_count, point_capacity;
   struct vxm_cap_step *steps; /**< scratch: a stack of loops */
   size_t step_capacity;
+  uint64_t *chords; /**< a hash of the edges made so far between old vertices, by both vertices; 0 = free */
+  size_t chord_count, chord_slots;
   double *along; /**< scratch: length of the walk up to each step */
   size_t along_capacity;
 } vxm_caps;
