@@ -256,8 +256,10 @@ typedef struct vxm_repair_report {
   int pass_count;
   struct {
     const char *pass; /**< fixed name such as "exact_weld" */
-    int64_t count;    /**< vertices or faces that the pass removed or changed */
+    int64_t count;    /**< vertices or faces that the pass removed, changed or added */
   } passes[VXM_REPAIR_PASSES_MAX];
+  int64_t nonorientable_patches; /**< faces joined by edges that cannot all be turned consistently */
+  int64_t open_parts; /**< components that `close` left open: sheets that their closing would cover */
   vxm_census before, after;
 } vxm_repair_report;
 

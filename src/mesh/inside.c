@@ -62,8 +62,11 @@ static void for_each_triangle(const vxm_inside *inside, triangle_fn visit, void 
     bool finite = true;
     for (size_t c = 0; c < count && finite; c++)
       finite = vxm_is_finite(vxm_position(inside->soup, corner[c]));
-    for (size_t c = 2; c < count && finite; c++)
-      visit(&(triangle){{corner[0], corner[c - 1], corner[c]}}, payload);
+    /* in an order that does not change when the face is reversed, nor then does the rounding */
+    for (size_t c = 2; c < count && finite; c++) {
+      uint32_t p = corner[c - 1], q = corner[c];
+      visit(&(triangle){{corner[0], p < q ? p : q, p < q ? q : p}}, payload);
+    }
   }
 }
 

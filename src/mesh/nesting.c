@@ -240,23 +240,22 @@ static bool list_candidates(builder *b) {
 
 /* ---- Containment ---- */
 
-/** A point on a face of the component, off the lines on which edges use to lie. */
+/** A point on a face of the component, off the lines on which edges use to lie. The same if the face is
+ * reversed about its first corner: turning faces must not change what lies inside what. */
 static bool sample(const builder *b, uint32_t component, int number, double point[3]) {
-  static const double weights[SAMPLES][3] = {{0.35355339, 0.31830989, 0.32813672},
-                                             {0.31415927, 0.36787944, 0.31796129},
-                                             {0.33873241, 0.30116867, 0.36009892}};
+  static const double weights[SAMPLES] = {0.35355339, 0.31415927, 0.33873241}; /* of the first corner */
   size_t first = b->bodies[component].first, faces = b->bodies[component + 1].first - first;
   size_t start = faces * (2 * (size_t)number + 1) / (2 * SAMPLES);
   for (size_t i = 0; i < faces; i++) {
     size_t count;
     const uint32_t *corner = vxm_face(b->soup, b->faces[first + (start + i) % faces], &count);
-    if (count < 3 || !face_is_finite(b->soup, corner, 3))
+    if (count < 3 || !face_is_finite(b->soup, corner, count))
       continue;
-    for (int a = 0; a < 3; a++) {
-      point[a] = 0;
-      for (int c = 0; c < 3; c++)
-        point[a] += weights[number][c] * (vxm_position(b->soup, corner[c])[a] * b->frame.scale);
-    }
+    const double *p = vxm_position(b->soup, corner[0]), *q = vxm_position(b->soup, corner[1]);
+    const double *r = vxm_position(b->soup, corner[count - 1]);
+    for (int a = 0; a < 3; a++)
+      point[a] = weights[number] * (p[a] * b->frame.scale) +
+                 (1 - weights[number]) / 2 * (q[a] * b->frame.scale + r[a] * b->frame.scale);
     return true;
   }
   return false;

@@ -15,6 +15,8 @@ static const char *const names[VXM_PASS_COUNT] = {
     [VXM_PASS_ZERO_AREA] = "zero_area_faces",
     [VXM_PASS_DUPLICATES] = "duplicate_faces",
     [VXM_PASS_OPPOSITE_DUPLICATES] = "opposite_duplicate_faces",
+    [VXM_PASS_ORIENTATION] = "orientation",
+    [VXM_PASS_CLOSING] = "closing",
     [VXM_PASS_UNUSED] = "unused_vertices",
 };
 
@@ -75,7 +77,14 @@ static vxm_status run_passes(vxm_work *work, vxm_error *error) {
   if (status == VXM_OK)
     status = run_until_quiet(work, error);
   if (status == VXM_OK)
-    status = run_pass(work, vxm_pass_unused, 0.9, &changed, error);
+    status = run_pass(work, vxm_pass_orientation, 0.9, &changed, error);
+  if (status == VXM_OK)
+    status = run_pass(work, vxm_pass_closing, 0.93, &changed, error);
+  /* a part that was open may be turned otherwise now that it is closed */
+  if (status == VXM_OK && changed)
+    status = run_pass(work, vxm_pass_orientation, 0.96, &changed, error);
+  if (status == VXM_OK)
+    status = run_pass(work, vxm_pass_unused, 0.98, &changed, error);
   return status;
 }
 
@@ -94,6 +103,8 @@ static vxm_status repair_copy(vxm_work *work, vxm_error *error) {
 }
 
 static void list_passes(vxm_repair_report *report, const vxm_work *work) {
+  report->nonorientable_patches = work->nonorientable;
+  report->open_parts = work->open_parts;
   report->pass_count = VXM_PASS_COUNT;
   for (int pass = 0; pass < VXM_PASS_COUNT; pass++) {
     report->passes[pass].pass = names[pass];

@@ -17,6 +17,8 @@
  *  - zero_area_faces: faces without area that went; those without which more edges would be odd stay
  *  - duplicate_faces: faces that repeat an earlier one with the same orientation
  *  - opposite_duplicate_faces: faces that repeat an earlier one with the opposite orientation
+ *  - orientation: faces that were turned (repair/orient.c)
+ *  - closing: faces that were added to close holes (repair/close.c)
  *  - unused_vertices: vertices without a face, apart from those counted above
  * The passes in the middle are run until none of them changes anything, and their counts are sums. A pass
  * that an option leaves out is listed with 0. Repairing the result again gives the same arrays and counts of

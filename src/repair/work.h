@@ -14,6 +14,8 @@ typedef enum vxm_pass {
   VXM_PASS_ZERO_AREA,
   VXM_PASS_DUPLICATES,
   VXM_PASS_OPPOSITE_DUPLICATES,
+  VXM_PASS_ORIENTATION,
+  VXM_PASS_CLOSING,
   VXM_PASS_UNUSED,
   VXM_PASS_COUNT
 } vxm_pass;
@@ -28,6 +30,8 @@ typedef struct vxm_work {
   bool has_edges;
   vxm_edges edges; /**< of the present faces, if has_edges */
   int64_t counts[VXM_PASS_COUNT];
+  int64_t nonorientable; /**< patches, in the last pass of orientation */
+  int64_t open_parts;    /**< that the last pass of closing left open */
 } vxm_work;
 
 /** Runs a pass, adds to the counts and says whether it changed anything. */
@@ -39,6 +43,8 @@ vxm_status vxm_pass_tolerant_weld(vxm_work *work, bool *changed, vxm_error *erro
 vxm_status vxm_pass_repeated_corners(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_zero_area(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_duplicates(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_unused(vxm_work *work, bool *changed, vxm_error *error);
 
 /** A block of scratch, zeroed; on failure NULL, with *status and *error set. */

@@ -17,7 +17,7 @@ static void clean_mesh_stays(void **state) {
   vxm_soup *soup = new_pyramid(*state);
   vxm_repair_report report;
   vxm_soup *out = repaired(soup, NULL, &report);
-  assert_int_equal(report.pass_count, 8);
+  assert_int_equal(report.pass_count, 10);
   assert_int_equal(count_all(&report), 0);
   assert_same_soup(soup, out);
   assert_true(report.before.watertight && report.after.watertight);

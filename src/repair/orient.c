@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/geometry.h"
+#include "mesh/nesting.h"
+#include "repair/sides.h"
+
+#include <math.h>
+
+/** A patch whose vector area is at least this part of its area is a sheet; of a hemisphere it is half. */
+static const double SHEET = 0.45;
+/** A volume of at most this part of the area times the diagonal is none. */
+static const double NO_VOLUME = 1e-12;
+
+/** Faces joined by edges that have exactly two sides. */
+typedef struct patch {
+  int64_t conflicts;    /**< sides along edges that no turning makes consistent */
+  int64_t inconsistent; /**< sides along edges that are not consistent in the input */
+  double area, turned_area;
+  vxm_vec3 vector_area;
+} patch;
+
+typedef struct orienting {
+  vxm_work *work;
+  vxm_soup *soup;
+  vxm_error error;
+  vxm_frame frame;
+  size_t *sides;     /**< per corner: its edge */
+  size_t (*pair)[2]; /**< per edge with two sides: their faces */
+  uint32_t *label;   /**< per face: its patch */
+  uint8_t *turn;     /**< per face: 1 = against the first face of its patch, later: against the input */
+  size_t *queue;
+  patch *patches;
+  size_t patch_count, patch_capacity;
+} orienting;
+
+static void *allocate(orienting *o, size_t count, size_t size) {
+  return vxm_calloc(o->work->context, count, size, &o->error);
+}
+
+/* ---- Patches ---- */
+
+static void pair_faces(orienting *o) {
+  const vxm_edges *edges = &o->work->edges;
+  for (size_t e = 0; e < edges->count; e++)
+    o->pair[e][0] = o->pair[e][1] = SIZE_MAX;
+  for (size_t f = 0; f < o->soup->face_count; f++)
+    for (uint64_t c = o->soup->offsets[f]; c < o->soup->offsets[f + 1]; c++) {
+      size_t e = o->sides[c];
+      if (e != VXM_NO_EDGE && edges->edges[e].count == 2)
+        o->pair[e][o->pair[e][0] != SIZE_MAX] = f;
+    }
+}
+
+/** Whether the sides of a face are walked backward: a walk that is the same for the face and its reverse
+ * makes the walk over a patch the same after it was turned. */
+static bool walks_backward(const uint32_t *corner, size_t count) {
+  for (size_t i = 1; i < count; i++)
+    if (corner[i] != corner[count - i])
+      return corner[i] > corner[count - i];
+  return false;
+}
+
+/** Meets the neighbours of a face: labels and queues the new ones, counts conflicts with the old ones. */
+static size_t visit(orienting *o, size_t face, size_t queued) {
+  patch *p = &o->patches[o->label[face]];
+  size_t count;
+  const uint32_t *corner = vxm_face(o->soup, face, &count);
+  bool backward = walks_backward(corner, count);
+  for (size_t i = 0; i < count; i++) {
+    size_t e = o->sides[o->soup->offsets[face] + (backward ? count - 1 - i : i)];
+    if (e == VXM_NO_EDGE || o->work->edges.edges[e].count != 2)
+      continue;
+    size_t other = o->pair[e][o->pair[e][0] == face];
+    uint8_t against = o->work->edges.edges[e].forward != 1, turn = o->turn[face] ^ against;
+    p->inconsistent += against;
+    if (other == face)
+      p->conflicts += against;
+    else if (o->label[other] != VXM_NO_COMPONENT)
+      p->conflicts += o->turn[other] != turn;
+    else {
+      o->label[other] = o->label[face];
+      o->turn[other] = turn;
+      o->queue[queued++] = other;
+    }
+  }
+  return queued;
+}
+
+static bool find_patches(orienting *o) {
+  for (size_t f = 0; f < o->soup->face_count; f++)
+    o->label[f] = VXM_NO_COMPONENT;
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    if (o->label[f] != VXM_NO_COMPONENT)
+      continue;
+    void *patches = o->patches;
+    if (vxm_grow(o->work->context, &patches, &o->patch_capacity, o->patch_count + 1, sizeof *o->patches,
+                 &o->error) != VXM_OK)
+      return false;
+    o->patches = patches;
+    o->patches[o->patch_count] = (patch){0};
+    o->label[f] = (uint32_t)o->patch_count++;
+    o->queue[0] = f;
+    for (size_t next = 0, queued = 1; next < queued; next++)
+      queued = visit(o, o->queue[next], queued);
+  }
+  return true;
+}
+
+/* ---- Turning ---- */
+
+/** Reverses a face about its first corner. */
+static void reverse(vxm_soup *soup, size_t face) {
+  uint32_t *corner = soup->indices + soup->offsets[face];
+  size_t count = (size_t)(soup->offsets[face + 1] - soup->offsets[face]);
+  for (size_t i = 1, j = count; i < j; i++) {
+    j--;
+    uint32_t kept = corner[i];
+    corner[i] = corner[j];
+    corner[j] = kept;
+  }
+}
+
+static vxm_vec3 area_of(const orienting *o, size_t face) {
+  size_t count;
+  const uint32_t *corner = vxm_face(o->soup, face, &count);
+  return vxm_polygon_area(o->soup->positions, corner, count, o->frame.scale);
+}
+
+/** Makes patches consistent, with most of their area as it was; without a gain they stay as they are. */
+static void make_consistent(orienting *o) {
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    patch *p = &o->patches[o->label[f]];
+    double area = vxm_vec3_length(area_of(o, f));
+    p->area += area;
+    p->turned_area += o->turn[f] ? area : 0;
+  }
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    patch *p = &o->patches[o->label[f]];
+    if (p->inconsistent <= p->conflicts)
+      o->turn[f] = 0;
+    else
+      o->turn[f] ^= 2 * p->turned_area > p->area;
+    if (o->turn[f])
+      reverse(o->soup, f);
+    vxm_vec3 area = area_of(o, f);
+    p->vector_area =
+        (vxm_vec3){p->vector_area.x + area.x, p->vector_area.y + area.y, p->vector_area.z + area.z};
+  }
+}
+
+static bool is_closed_or_nearly(const patch *p) {
+  return p->conflicts == 0 && p->area > 0 && vxm_vec3_length(p->vector_area) < SHEET * p->area;
+}
+
+/** Which patches to turn over: outward those that bound a volume, but for cavities. */
+static void choose_sides(const vxm_nesting *nesting, const uint8_t *solid, uint8_t *over, uint8_t *known,
+                         size_t *chain) {
+  for (size_t i = 0; i < nesting->count; i++) {
+    size_t depth = 0, at = i;
+    for (; !known[at] && solid[at]; at = nesting->parent[at]) {
+      chain[depth++] = at;
+      if (nesting->parent[at] == VXM_NO_COMPONENT)
+        break;
+    }
+    while (depth > 0) {
+      size_t child = chain[--depth];
+      uint32_t parent = nesting->parent[child];
+      bool inward = nesting->volume[child] < 0;
+      over[child] = inward;
+      if (parent != VXM_NO_COMPONENT && inward != (nesting->volume[parent] < 0))
+        over[child] = over[parent]; /* against the parent it stays */
+      known[child] = 1;
+    }
+  }
+}
+
+static bool turn_outward(orienting *o) {
+  size_t count = o->patch_count;
+  uint8_t *solid = allocate(o, count, sizeof *solid), *over = allocate(o, count, sizeof *over);
+  uint8_t *known = allocate(o, count, sizeof *known);
+  size_t *chain = allocate(o, count, sizeof *chain);
+  vxm_nesting nesting = {0};
+  bool done = solid && over && known && chain;
+  for (size_t i = 0; done && i < count; i++)
+    solid[i] = is_closed_or_nearly(&o->patches[i]);
+  if (done)
+    done = vxm_nesting_build(&nesting, o->soup, o->label, count, solid, &o->error) == VXM_OK;
+  if (done) {
+    double unit = o->frame.scale * o->frame.scale * o->frame.scale;
+    for (size_t i = 0; i < count; i++)
+      if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
+        nesting.volume[i] = 0;
+    choose_sides(&nesting, solid, over, known, chain);
+    for (size_t f = 0; f < o->soup->face_count; f++)
+      if (over[o->label[f]]) {
+        o->turn[f] ^= 1;
+        reverse(o->soup, f);
+      }
+  }
+  vxm_nesting_destroy(&nesting);
+  vxm_free(o->work->context, chain);
+  vxm_free(o->work->context, known);
+  vxm_free(o->work->context, over);
+  vxm_free(o->work->context, solid);
+  return done;
+}
+
+static bool orient(orienting *o) {
+  size_t faces = o->soup->face_count;
+  if (vxm_sides_find(&o->sides, o->work, &o->error) != VXM_OK)
+    return false;
+  o->pair = allocate(o, o->work->edges.count, sizeof *o->pair);
+  o->label = allocate(o, faces, sizeof *o->label);
+  o->turn = allocate(o, faces, sizeof *o->turn);
+  o->queue = allocate(o, faces, sizeof *o->queue);
+  if (!o->pair || !o->label || !o->turn || !o->queue)
+    return false;
+  pair_faces(o);
+  if (!find_patches(o))
+    return false;
+  make_consistent(o);
+  return turn_outward(o);
+}
+
+/**
+ * Turns faces: consistent within a patch, and patches that are closed or nearly so outward. A patch inside
+ * another one that was wound against it is a cavity and stays so. Sheets keep the side that most of their
+ * area has. A patch that no turning makes consistent gets as few inconsistent edges as a walk over its faces
+ * leaves.
+ */
+vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error) {
+  *changed = false;
+  if (work->options.keep_orientation || work->soup->face_count == 0)
+    return VXM_OK;
+  vxm_extent extent;
+  vxm_work_extent(work, &extent);
+  orienting o = {
+      .work = work, .soup = work->soup, .error = VXM_ERROR_INIT, .frame = vxm_frame_of(extent.bounds)};
+  bool done = orient(&o);
+  int64_t turned = 0;
+  work->nonorientable = 0;
+  for (size_t f = 0; done && f < work->soup->face_count; f++)
+    turned += o.turn[f];
+  for (size_t i = 0; done && i < o.patch_count; i++)
+    work->nonorientable += o.patches[i].conflicts > 0;
+  vxm_free(work->context, o.patches);
+  vxm_free(work->context, o.queue);
+  vxm_free(work->context, o.turn);
+  vxm_free(work->context, o.label);
+  vxm_free(work->context, o.pair);
+  vxm_free(work->context, o.sides);
+  if (!done) {
+    if (error)
+      *error = o.error;
+    return o.error.code;
+  }
+  work->counts[VXM_PASS_ORIENTATION] += turned;
+  *changed = turned > 0;
+  if (turned > 0)
+    vxm_work_touch(work);
+  return VXM_OK;
+}

@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Orientation of faces. */
+#include "repairing.h"
+
+#include "../mesh/shared.h"
+
+#include <math.h>
+
+static void reverse_face(vxm_soup *soup, size_t face) {
+  size_t count;
+  uint32_t *corner = soup->indices + soup->offsets[face];
+  vxm_face(soup, face, &count);
+  for (size_t i = 1, j = count - 1; i < j; i++, j--) {
+    uint32_t kept = corner[i];
+    corner[i] = corner[j];
+    corner[j] = kept;
+  }
+}
+
+static size_t flip_some(vxm_soup *soup, double part, uint64_t seed) {
+  vxm_rng rng = {seed};
+  size_t flipped = 0;
+  for (size_t f = 0; f < soup->face_count; f++)
+    if (vxm_rng_unit(&rng) < part) {
+      reverse_face(soup, f);
+      flipped++;
+    }
+  return flipped;
+}
+
+/** The same faces, each as it is in the other soup or reversed. */
+static void check_only_turned(const vxm_soup *in, const vxm_soup *out, int64_t turned) {
+  assert_int_equal(in->face_count, out->face_count);
+  assert_int_equal(in->vertex_count, out->vertex_count);
+  assert_memory_equal(in->offsets, out->offsets, (in->face_count + 1) * sizeof *in->offsets);
+  assert_memory_equal(in->positions, out->positions, 3 * in->vertex_count * sizeof *in->positions);
+  int64_t found = 0;
+  for (size_t f = 0; f < in->face_count; f++) {
+    size_t count;
+    const uint32_t *p = vxm_face(in, f, &count), *q = vxm_face(out, f, &count);
+    bool same = true, reversed = true;
+    for (size_t c = 0; c < count; c++) {
+      same &= p[c] == q[c];
+      reversed &= p[(count - c) % count] == q[c];
+    }
+    assert_true(same || reversed);
+    found += !same;
+  }
+  assert_int_equal(found, turned);
+}
+
+/** Repairs a soup that needs no other repair. */
+static vxm_soup *oriented(const vxm_soup *soup, vxm_repair_report *report) {
+  vxm_soup *out = repaired(soup, NULL, report);
+  check_only_turned(soup, out, count_of(report, "orientation"));
+  assert_repair_is_done(out, NULL);
+  return out;
+}
+
+static void add_box(vxm_soup *soup, double x, double y, double z, double half, bool inward) {
+  size_t first = soup->vertex_count, face = soup->face_count;
+  add_cube(soup, 0);
+  for (size_t v = first; v < soup->vertex_count; v++) {
+    double *p = soup->positions + 3 * v;
+    p[0] = x + (2 * p[0] - 1) * half;
+    p[1] = y + (2 * p[1] - 1) * half;
+    p[2] = z + (2 * p[2] - 1) * half;
+  }
+  for (; inward && face < soup->face_count; face++)
+    reverse_face(soup, face);
+}
+
+/** Signed volume of the faces from `begin` on. */
+static double volume_of(const vxm_soup *soup, size_t begin, size_t end) {
+  double sum = 0;
+  for (size_t f = begin; f < end; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count);
+    const double *a = vxm_position(soup, corner[0]);
+    for (size_t c = 2; c < count; c++) {
+      const double *p = vxm_position(soup, corner[c - 1]), *q = vxm_position(soup, corner[c]);
+      sum += (a[0] * (p[1] * q[2] - p[2] * q[1]) + a[1] * (p[2] * q[0] - p[0] * q[2]) +
+              a[2] * (p[0] * q[1] - p[1] * q[0])) /
+             6;
+    }
+  }
+  return sum;
+}
+
+static void boxes_turn_outward(void **state) {
+  for (int mask = 0; mask < 64; mask++) {
+    vxm_soup *soup = new_soup(*state);
+    add_cube(soup, 3);
+    for (int f = 0; f < 6; f++)
+      if (mask >> f & 1)
+        reverse_face(soup, (size_t)f);
+    vxm_repair_report report;
+    vxm_soup *out = oriented(soup, &report);
+    assert_int_equal(report.after.inconsistent_edges, 0);
+    assert_true(fabs(report.after.volume - 1) < 1e-12);
+    assert_int_equal(count_of(&report, "orientation"), __builtin_popcount((unsigned)mask));
+    assert_int_equal(report.nonorientable_patches, 0);
+    vxm_soup_destroy(out);
+    vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+    options.keep_orientation = true;
+    out = repaired(soup, &options, &report);
+    check_only_turned(soup, out, 0);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** Boxes in boxes: what was wound against its parent stays against it, all else is outward. */
+static void cavities_stay(void **state) {
+  enum { LEVELS = 4 };
+  for (int mask = 0; mask < 1 << LEVELS; mask++)
+    for (int flips = 0; flips < 2; flips++) {
+      vxm_soup *soup = new_soup(*state);
+      for (int i = 0; i < LEVELS; i++)
+        add_box(soup, 2, 1, 0, 1.0 / (1 + i), mask >> i & 1);
+      if (flips) /* one face of six in each box */
+        for (int i = 0; i < LEVELS; i++)
+          reverse_face(soup, (size_t)(6 * i + (mask + i) % 6));
+      vxm_repair_report report;
+      vxm_soup *out = oriented(soup, &report);
+      assert_int_equal(report.after.inconsistent_edges, 0);
+      bool wanted = false; /* inward */
+      for (int i = 0; i < LEVELS; i++) {
+        bool against = i > 0 && ((mask >> i ^ mask >> (i - 1)) & 1);
+        wanted = against ? !wanted : false;
+        double volume = volume_of(out, 6 * (size_t)i, 6 * (size_t)i + 6);
+        assert_true(wanted ? volume < 0 : volume > 0);
+      }
+      vxm_soup_destroy(out);
+      vxm_soup_destroy(soup);
+    }
+}
+
+static void sheets_keep_their_side(void **state) {
+  for (int side = 0; side < 2; side++)
+    for (int round = 0; round < 5; round++) {
+      vxm_soup *soup = grid_sheet(*state, 12);
+      flip_some(soup, side ? 0.7 : 0.3, (uint64_t)round);
+      vxm_repair_report report;
+      vxm_soup *out = oriented(soup, &report);
+      assert_int_equal(report.after.inconsistent_edges, 0);
+      /* counter-clockwise from above before the flips */
+      const double *a = vxm_position(out, out->indices[0]), *b = vxm_position(out, out->indices[1]);
+      const double *c = vxm_position(out, out->indices[2]);
+      double z = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+      assert_true(side ? z < 0 : z > 0);
+      vxm_soup_destroy(out);
+      vxm_soup_destroy(soup);
+    }
+}
+
+/** A band of quadrilaterals with half a twist: consistent but for one seam. */
+static void moebius_bands_are_reported(void **state) {
+  enum { N = 40 };
+  vxm_soup *soup = new_soup(*state);
+  for (int i = 0; i < N; i++)
+    for (int side = -1; side <= 1; side += 2) {
+      double u = 2 * M_PI * i / N, w = 0.3 * side;
+      add_vertex(soup, (1 + w * cos(u / 2)) * cos(u), (1 + w * cos(u / 2)) * sin(u), w * sin(u / 2));
+    }
+  for (uint32_t i = 0; i < N; i++) {
+    uint32_t j = (i + 1) % N, swap = i + 1 == N;
+    uint32_t quad[4] = {2 * i, 2 * i + 1, 2 * j + (swap ? 0 : 1), 2 * j + (swap ? 1 : 0)};
+    add_face(soup, quad, 4);
+  }
+  add_cube(soup, 5);
+  for (int round = 0; round < 3; round++) {
+    vxm_repair_report report;
+    vxm_soup *out = oriented(soup, &report);
+    assert_int_equal(report.nonorientable_patches, 1);
+    assert_int_equal(report.after.inconsistent_edges, 1);
+    if (round == 0) /* it has the fewest possible already */
+      assert_int_equal(count_of(&report, "orientation"), 0);
+    vxm_soup_destroy(out);
+    flip_some(soup, 0.4, (uint64_t)round);
+  }
+  vxm_soup_destroy(soup);
+}
+
+/** Against brute force: a patch is orientable if some turning of its faces makes it consistent. */
+static void small_random_soups(void **state) {
+  vxm_rng rng = {6};
+  int orientable = 0, others = 0;
+  for (int round = 0; round < 3000; round++) {
+    vxm_soup *soup = new_soup(*state);
+    size_t vertices = 5 + (size_t)vxm_rng_below(&rng, 4), faces = 3 + (size_t)vxm_rng_below(&rng, 8);
+    for (size_t v = 0; v < vertices; v++)
+      add_vertex(soup, vxm_rng_unit(&rng), vxm_rng_unit(&rng), vxm_rng_unit(&rng));
+    for (size_t f = 0; f < faces; f++) {
+      uint32_t a = (uint32_t)vxm_rng_below(&rng, vertices), b, c;
+      do
+        b = (uint32_t)vxm_rng_below(&rng, vertices);
+      while (b == a);
+      do
+        c = (uint32_t)vxm_rng_below(&rng, vertices);
+      while (c == a || c == b);
+      add_triangle(soup, a, b, c);
+    }
+    vxm_repair_report report;
+    vxm_soup *out = repaired(soup, NULL, &report);
+    assert_repair_is_done(out, NULL);
+    size_t fewest = SIZE_MAX;
+    for (unsigned mask = 0; mask < 1u << out->face_count; mask += 2) {
+      int8_t along[9][9] = {{0}}, count[9][9] = {{0}};
+      for (size_t f = 0; f < out->face_count; f++)
+        for (size_t i = 0; i < 3; i++) {
+          uint32_t p = out->indices[3 * f + i], q = out->indices[3 * f + (i + 1) % 3];
+          int sign = (p < q) == (mask >> f & 1) ? 1 : -1;
+          along[p < q ? p : q][p < q ? q : p] = (int8_t)(along[p < q ? p : q][p < q ? q : p] + sign);
+          count[p < q ? p : q][p < q ? q : p]++;
+        }
+      size_t wrong = 0;
+      for (int p = 0; p < 9; p++)
+        for (int q = p + 1; q < 9; q++)
+          wrong += count[p][q] == 2 && along[p][q] != 0;
+      fewest = wrong < fewest ? wrong : fewest;
+    }
+    if (out->face_count > 0) {
+      assert_int_equal(fewest == 0, report.after.inconsistent_edges == 0);
+      assert_int_equal(fewest == 0, report.nonorientable_patches == 0);
+      orientable += fewest == 0;
+      others += fewest != 0;
+    }
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+  print_message("%d orientable, %d not\n", orientable, others);
+  assert_true(orientable > 100 && others > 10);
+}
+
+static void flip_real_mesh(const shared_mesh *mesh, void *payload) {
+  int *count = payload;
+  vxm_context *context = context_of_threads(2);
+  vxm_soup *soup = read_soup(context, mesh->path);
+  if (soup->face_count < 60000) {
+    vxm_repair_report report, again;
+    vxm_soup *clean = repaired(soup, NULL, &report);
+    if (report.after.closed && report.after.nonmanifold_edges == 0 && report.nonorientable_patches == 0) {
+      vxm_soup *flipped;
+      assert_int_equal(vxm_soup_copy(&flipped, clean, NULL), VXM_OK);
+      size_t flips = flip_some(flipped, 0.3, 1);
+      vxm_soup *out = oriented(flipped, &again);
+      assert_int_equal(again.after.inconsistent_edges, 0);
+      if (memcmp(out->indices, clean->indices, clean->corner_count * sizeof *clean->indices) == 0)
+        assert_int_equal(count_of(&again, "orientation"), flips);
+      else
+        print_message("%s: not as it was; volume %g, was %g\n", mesh->values[0], again.after.volume,
+                      report.after.volume);
+      count[0]++;
+      count[1] += memcmp(out->indices, clean->indices, clean->corner_count * sizeof *clean->indices) == 0;
+      vxm_soup_destroy(out);
+      vxm_soup_destroy(flipped);
+    }
+    vxm_soup_destroy(clean);
+  }
+  vxm_soup_destroy(soup);
+  vxm_context_destroy(context);
+}
+
+/** Closed meshes of which 30 % of the faces are turned come back as they were. */
+static void real_meshes(void **state) {
+  (void)state;
+  int count[2] = {0};
+  if (for_each_shared_mesh(flip_real_mesh, count) == 0)
+    skip();
+  print_message("%d of %d closed meshes come back as they were\n", count[1], count[0]);
+  assert_true(100 * count[1] >= 95 * count[0]);
+}
+
+static void memory_may_run_out(void **state) {
+  (void)state;
+  bool passed = false;
+  for (uint64_t limit = 8000; !passed; limit += 300) {
+    vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+    options.threads = 1;
+    options.memory_limit = limit;
+    vxm_context *context;
+    vxm_soup *soup = NULL, *out = NULL;
+    assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
+    if (vxm_soup_create(&soup, context, "arrays", NULL) == VXM_OK &&
+        vxm_soup_reserve(soup, 32, 32, 128, NULL) == VXM_OK) {
+      for (int i = 0; i < 4; i++)
+        add_box(soup, 0, 0, 0, 1 + i, i % 2);
+      flip_some(soup, 0.2, 1);
+      vxm_status status = vxm_repair_run(&out, NULL, soup, NULL, NULL);
+      passed = status == VXM_OK;
+      assert_true(passed || status == VXM_ERROR_MEMORY_LIMIT);
+    }
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+  }
+}
+
+static int make_context(void **state) {
+  *state = context_of_threads(2);
+  return 0;
+}
+
+static int drop_context(void **state) {
+  vxm_context_destroy(*state);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(boxes_turn_outward),     cmocka_unit_test(cavities_stay),
+      cmocka_unit_test(sheets_keep_their_side), cmocka_unit_test(moebius_bands_are_reported),
+      cmocka_unit_test(small_random_soups),     cmocka_unit_test(real_meshes),
+      cmocka_unit_test(memory_may_run_out),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
