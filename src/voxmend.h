@@ -72,8 +72,7 @@ typedef struct vxm_error {
 #define VXM_ERROR_INIT \
   { VXM_OK, 0, -1, -1, "", "" }
 
-/* ---- Context: threads, memory limit, progress
- * -------------------------------------------------------------- */
+/* ---- Context: threads, memory limit, progress ---- */
 
 /**
  * Called now and then from the thread that made the call.
@@ -112,8 +111,7 @@ VXM_API int vxm_context_threads(const vxm_context *context);
 /** Largest number of bytes held at once by the context so far. */
 VXM_API uint64_t vxm_context_peak_bytes(const vxm_context *context);
 
-/* ---- Meshes
- * -------------------------------------------------------------------------------------------------- */
+/* ---- Meshes ---- */
 
 /** Vertices and polygons, with nothing assumed of them: a polygon soup, or a mesh after repair. */
 typedef struct vxm_mesh vxm_mesh;
@@ -201,8 +199,7 @@ VXM_API const char *vxm_mesh_format(const vxm_mesh *mesh);
 VXM_API int64_t vxm_mesh_warning_count(const vxm_mesh *mesh);
 VXM_API const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index);
 
-/* ---- Census: what is wrong with a mesh
- * ----------------------------------------------------------------------- */
+/* ---- Census: what is wrong with a mesh ---- */
 
 /** Counts over a mesh. Edges, components and duplicates are taken after welding bit-identical positions. */
 typedef struct vxm_census {
@@ -229,8 +226,7 @@ typedef struct vxm_census {
 /** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED */
 VXM_API vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error);
 
-/* ---- Repair
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- Repair ---- */
 
 typedef enum vxm_weld {
   VXM_WELD_AUTO = 0, /**< bit-identical positions, then near ones where that closes cracks */
@@ -265,7 +261,8 @@ typedef struct vxm_repair_report {
 
 /**
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated
- * corners, faces without area and repeated faces (a face and its reverse become one), and unused vertices.
+ * corners, faces without area and repeated faces (a face and its reverse become one), and unused vertices;
+ * turns faces consistently, outward where they enclose something; closes holes if that is asked for.
  * Applying it to its own result changes nothing. Vertices keep their first position and their order.
  *
  * @param[out] report may be NULL (then no census is taken)
@@ -275,8 +272,7 @@ typedef struct vxm_repair_report {
 VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
                                    const vxm_repair_options *options, vxm_error *error);
 
-/* ---- Grids
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- Grids ---- */
 
 /** A box of dims[0] x dims[1] x dims[2] cells: the centre of (i,j,k) is origin + ((i,j,k) + 1/2) *
  * voxel_size. */
@@ -393,8 +389,7 @@ typedef struct vxm_comparison {
 VXM_API vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b,
                                     vxm_error *error);
 
-/* ---- Voxelization
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- Voxelization ---- */
 
 typedef enum vxm_fit {
   VXM_FIT_CUBE = 0, /**< equal dimensions; the longest side of the model fills them, the model is centred */

@@ -75,6 +75,7 @@ static json_t *make_report(const cli_run *cli, const request *given, const cli_i
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "passes", cli_passes_json(&input->repair));
+  json_object_set_new(report, "nonorientable_patches", json_integer(input->repair.nonorientable_patches));
   json_object_set_new(report, "before", before);
   json_object_set_new(report, "after", after);
   json_object_set(report, "warnings", cli->warnings);
@@ -86,6 +87,9 @@ static void summarize(const cli_run *cli, const vxm_repair_report *repair) {
   fprintf(cli->text, "\n%-28s %12s\n", "Pass", "Changed");
   for (int i = 0; i < repair->pass_count; i++)
     fprintf(cli->text, "  %-26s %12" PRId64 "\n", repair->passes[i].pass, repair->passes[i].count);
+  if (repair->nonorientable_patches > 0)
+    fprintf(cli->text, "\n%" PRId64 " patches cannot be turned consistently (like a Moebius strip)\n",
+            repair->nonorientable_patches);
 }
 
 static int run(cli_run *cli) {
