@@ -38,8 +38,7 @@ extern "C" {
 /** Version of the library that runs, "MAJOR.MINOR.PATCH". */
 VXM_API const char *vxm_version(void);
 
-/* ---- Status and errors ------------------------------------------------------------------------------------
- */
+/* ---- Status and errors ---- */
 
 /** What a call came to, and what its caller can do next. */
 typedef enum vxm_status {
