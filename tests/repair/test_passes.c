@@ -28,7 +28,9 @@ static void clean_mesh_stays(void **state) {
   assert_string_equal(report.passes[4].pass, "zero_area_faces");
   assert_string_equal(report.passes[5].pass, "duplicate_faces");
   assert_string_equal(report.passes[6].pass, "opposite_duplicate_faces");
-  assert_string_equal(report.passes[7].pass, "unused_vertices");
+  assert_string_equal(report.passes[7].pass, "orientation");
+  assert_string_equal(report.passes[8].pass, "closing");
+  assert_string_equal(report.passes[9].pass, "unused_vertices");
   vxm_soup_destroy(out);
   vxm_soup_destroy(soup);
 }
