@@ -4,6 +4,7 @@
 #include "repair/sides.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /** A patch whose vector area is at least this part of its area is a sheet; of a hemisphere it is half. */
 static const double SHEET = 0.45;
@@ -147,13 +148,81 @@ static void make_consistent(orienting *o) {
   }
 }
 
+/* ---- Patches that together are consistent about an edge with four sides or more ---- */
+
+/** A side along an edge with an even number of sides, four or more. */
+typedef struct crossing {
+  size_t edge;
+  uint32_t patch;
+  int along; /**< 1 upward, -1 downward */
+} crossing;
+
+static int by_edge_then_patch(const void *a, const void *b) {
+  const crossing *p = a, *q = b;
+  if (p->edge != q->edge)
+    return p->edge < q->edge ? -1 : 1;
+  return p->patch < q->patch ? -1 : p->patch > q->patch;
+}
+
+/** Lists (or, with NULL, counts) the sides at crossings, as the faces are turned by now. */
+static size_t list_crossings(const orienting *o, crossing *crossings) {
+  size_t listed = 0;
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(o->soup, f, &count);
+    for (size_t i = 0; i < count; i++) {
+      size_t e = o->sides[o->soup->offsets[f] + (o->turn[f] ? count - 1 - i : i)];
+      if (e == VXM_NO_EDGE || o->work->edges.edges[e].count < 4 || vxm_edge_is_odd(&o->work->edges.edges[e]))
+        continue;
+      int along = corner[i] < corner[i + 1 < count ? i + 1 : 0] ? 1 : -1;
+      if (crossings)
+        crossings[listed] = (crossing){e, o->label[f], along};
+      listed++;
+    }
+  }
+  return listed;
+}
+
+/** Marks the patches that are out of balance about an edge by themselves, but in balance together. */
+static void mark_held(const crossing *crossings, size_t count, uint8_t *held) {
+  for (size_t i = 0, j; i < count; i = j) {
+    int balance = 0;
+    for (j = i; j < count && crossings[j].edge == crossings[i].edge; j++)
+      balance += crossings[j].along;
+    for (size_t k = i, next; k < j && balance == 0; k = next) {
+      int own = 0;
+      for (next = k; next < j && crossings[next].patch == crossings[k].patch; next++)
+        own += crossings[next].along;
+      held[crossings[k].patch] |= own != 0;
+    }
+  }
+}
+
+/** Such patches hold each other: turned alone, one would open what is closed. As all of them about an edge
+ * stay, they stay in balance. */
+static bool find_held(orienting *o, uint8_t *held) {
+  size_t count = list_crossings(o, NULL);
+  crossing *crossings = allocate(o, count, sizeof *crossings);
+  if (!crossings)
+    return false;
+  if (count > 0) {
+    list_crossings(o, crossings);
+    qsort(crossings, count, sizeof *crossings, by_edge_then_patch);
+    mark_held(crossings, count, held);
+  }
+  vxm_free(o->work->context, crossings);
+  return true;
+}
+
+/* ---- Outward ---- */
+
 static bool is_closed_or_nearly(const patch *p) {
   return p->conflicts == 0 && p->area > 0 && vxm_vec3_length(p->vector_area) < SHEET * p->area;
 }
 
 /** Which patches to turn over: outward those that bound a volume, but for cavities. */
-static void choose_sides(const vxm_nesting *nesting, const uint8_t *solid, uint8_t *over, uint8_t *known,
-                         size_t *chain) {
+static void choose_sides(const vxm_nesting *nesting, const uint8_t *solid, const uint8_t *held, uint8_t *over,
+                         uint8_t *known, size_t *chain) {
   for (size_t i = 0; i < nesting->count; i++) {
     size_t depth = 0, at = i;
     for (; !known[at] && solid[at]; at = nesting->parent[at]) {
@@ -168,6 +237,8 @@ static void choose_sides(const vxm_nesting *nesting, const uint8_t *solid, uint8
       over[child] = inward;
       if (parent != VXM_NO_COMPONENT && inward != (nesting->volume[parent] < 0))
         over[child] = over[parent]; /* against the parent it stays */
+      if (held[child])
+        over[child] = 0;
       known[child] = 1;
     }
   }
@@ -176,10 +247,10 @@ static void choose_sides(const vxm_nesting *nesting, const uint8_t *solid, uint8
 static bool turn_outward(orienting *o) {
   size_t count = o->patch_count;
   uint8_t *solid = allocate(o, count, sizeof *solid), *over = allocate(o, count, sizeof *over);
-  uint8_t *known = allocate(o, count, sizeof *known);
+  uint8_t *known = allocate(o, count, sizeof *known), *held = allocate(o, count, sizeof *held);
   size_t *chain = allocate(o, count, sizeof *chain);
   vxm_nesting nesting = {0};
-  bool done = solid && over && known && chain;
+  bool done = solid && over && known && held && chain && find_held(o, held);
   for (size_t i = 0; done && i < count; i++)
     solid[i] = is_closed_or_nearly(&o->patches[i]);
   if (done)
@@ -189,7 +260,7 @@ static bool turn_outward(orienting *o) {
     for (size_t i = 0; i < count; i++)
       if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
         nesting.volume[i] = 0;
-    choose_sides(&nesting, solid, over, known, chain);
+    choose_sides(&nesting, solid, held, over, known, chain);
     for (size_t f = 0; f < o->soup->face_count; f++)
       if (over[o->label[f]]) {
         o->turn[f] ^= 1;
@@ -198,6 +269,7 @@ static bool turn_outward(orienting *o) {
   }
   vxm_nesting_destroy(&nesting);
   vxm_free(o->work->context, chain);
+  vxm_free(o->work->context, held);
   vxm_free(o->work->context, known);
   vxm_free(o->work->context, over);
   vxm_free(o->work->context, solid);
@@ -223,7 +295,8 @@ static bool orient(orienting *o) {
 
 /**
  * Turns faces: consistent within a patch, and patches that are closed or nearly so outward. A patch inside
- * another one that was wound against it is a cavity and stays so. Sheets keep the side that most of their
+ * another one that was wound against it is a cavity and stays so. Patches that only together are consistent
+ * about an edge stay as they are. Sheets keep the side that most of their
  * area has. A patch that no turning makes consistent gets as few inconsistent edges as a walk over its faces
  * leaves.
  */

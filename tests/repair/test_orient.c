@@ -4,6 +4,8 @@
 
 #include "../mesh/shared.h"
 
+#include "mesh/edges.h"
+
 #include <math.h>
 
 static void reverse_face(vxm_soup *soup, size_t face) {
@@ -136,6 +138,22 @@ static void cavities_stay(void **state) {
     }
 }
 
+/** Two boxes along a diagonal share an edge with four sides: each is a body of its own. */
+static void boxes_that_share_an_edge(void **state) {
+  for (int mask = 0; mask < 4; mask++) {
+    vxm_soup *soup = new_soup(*state);
+    add_box(soup, 0, 0, 0, 1, mask & 1);
+    add_box(soup, 2, 2, 0, 1, mask >> 1);
+    vxm_repair_report report;
+    vxm_soup *out = repaired(soup, NULL, &report);
+    assert_int_equal(report.after.nonmanifold_edges, 1);
+    assert_true(fabs(report.after.volume - 16) < 1e-9);
+    assert_repair_is_done(out, NULL);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
 static void sheets_keep_their_side(void **state) {
   for (int side = 0; side < 2; side++)
     for (int round = 0; round < 5; round++) {
@@ -262,6 +280,43 @@ static void flip_real_mesh(const shared_mesh *mesh, void *payload) {
   vxm_context_destroy(context);
 }
 
+/** A mesh of which every edge is in balance encloses a volume that is there to stay, but for its sign. */
+static void balanced_mesh_stays_balanced(const shared_mesh *mesh, void *payload) {
+  int *count = payload;
+  vxm_context *context = context_of_threads(2);
+  vxm_soup *soup = read_soup(context, mesh->path), *clean, *out;
+  if (soup->face_count < 30000) {
+    vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+    options.keep_orientation = true;
+    vxm_edges edges;
+    clean = repaired(soup, &options, NULL);
+    out = repaired(clean, NULL, NULL);
+    bool balanced = true;
+    assert_int_equal(vxm_edges_build(&edges, context, clean, NULL, NULL), VXM_OK);
+    for (size_t e = 0; e < edges.count; e++)
+      balanced &= 2 * edges.edges[e].forward == edges.edges[e].count;
+    vxm_edges_destroy(&edges);
+    assert_int_equal(vxm_edges_build(&edges, context, out, NULL, NULL), VXM_OK);
+    for (size_t e = 0; e < edges.count && balanced; e++)
+      assert_int_equal(2 * edges.edges[e].forward, edges.edges[e].count);
+    vxm_edges_destroy(&edges);
+    *count += balanced;
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(clean);
+  }
+  vxm_soup_destroy(soup);
+  vxm_context_destroy(context);
+}
+
+static void balance_is_kept(void **state) {
+  (void)state;
+  int count = 0;
+  if (for_each_shared_mesh(balanced_mesh_stays_balanced, &count) == 0)
+    skip();
+  print_message("%d meshes are in balance\n", count);
+  assert_true(count > 30);
+}
+
 /** Closed meshes of which 30 % of the faces are turned come back as they were. */
 static void real_meshes(void **state) {
   (void)state;
@@ -309,9 +364,14 @@ static int drop_context(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(boxes_turn_outward),     cmocka_unit_test(cavities_stay),
-      cmocka_unit_test(sheets_keep_their_side), cmocka_unit_test(moebius_bands_are_reported),
-      cmocka_unit_test(small_random_soups),     cmocka_unit_test(real_meshes),
+      cmocka_unit_test(boxes_turn_outward),
+      cmocka_unit_test(cavities_stay),
+      cmocka_unit_test(boxes_that_share_an_edge),
+      cmocka_unit_test(sheets_keep_their_side),
+      cmocka_unit_test(moebius_bands_are_reported),
+      cmocka_unit_test(small_random_soups),
+      cmocka_unit_test(balance_is_kept),
+      cmocka_unit_test(real_meshes),
       cmocka_unit_test(memory_may_run_out),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
