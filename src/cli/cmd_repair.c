@@ -76,6 +76,7 @@ static json_t *make_report(const cli_run *cli, const request *given, const cli_i
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "passes", cli_passes_json(&input->repair));
   json_object_set_new(report, "nonorientable_patches", json_integer(input->repair.nonorientable_patches));
+  json_object_set_new(report, "open_parts", json_integer(input->repair.open_parts));
   json_object_set_new(report, "before", before);
   json_object_set_new(report, "after", after);
   json_object_set(report, "warnings", cli->warnings);
@@ -90,6 +91,10 @@ static void summarize(const cli_run *cli, const vxm_repair_report *repair) {
   if (repair->nonorientable_patches > 0)
     fprintf(cli->text, "\n%" PRId64 " patches cannot be turned consistently (like a Moebius strip)\n",
             repair->nonorientable_patches);
+  if (repair->open_parts > 0)
+    fprintf(cli->text,
+            "\n%" PRId64 " components stay open: sheets, which closing would only cover a second time\n",
+            repair->open_parts);
 }
 
 static int run(cli_run *cli) {

@@ -7,8 +7,9 @@
 
 #include <string.h>
 
-/** A component whose caps have at least this part of its area is a sheet: closing would fold it flat. */
-static const double SHEET = 0.5;
+/** A component whose caps have at least this part of its area is a sheet: closing would fold it flat. The
+   solid has the same bound (voxel/parts.c). */
+static const double SHEET = 0.75;
 
 typedef struct closing {
   vxm_work *work;
