@@ -262,7 +262,8 @@ typedef struct vxm_repair_report {
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated
  * corners, faces without area and repeated faces (a face and its reverse become one), and unused vertices;
  * turns faces consistently, outward where they enclose something; closes holes if that is asked for.
- * Applying it to its own result changes nothing. Vertices keep their first position and their order.
+ * Applying it to its own result changes nothing. Vertices keep their order and the position of the first one
+ * welded; only where a soup was torn apart everywhere do they move, to the middle of the copies joined.
  *
  * @param[out] report may be NULL (then no census is taken)
  * @return VXM_OK (the result may have no faces), VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY,

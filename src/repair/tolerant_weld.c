@@ -118,6 +118,30 @@ static vxm_status is_wanted(vxm_work *work, bool *wanted, vxm_error *error) {
 }
 
 /**
+ * Moves every vertex that others merge into to the middle of them all: the copies of a torn vertex were moved
+ * apart at random, so their mean lies nearer to where it was than any of them.
+ */
+static vxm_status move_to_middle(vxm_work *work, const uint32_t *map, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  size_t vertices = work->soup->vertex_count;
+  uint32_t *copies = vxm_work_scratch(work, vertices, sizeof *copies, &status, error);
+  if (!copies)
+    return status;
+  memset(copies, 0, vertices * sizeof *copies);
+  double *positions = work->soup->positions;
+  /* The mean grows by the difference to each copy, so that positions of any size do not overflow. */
+  for (size_t v = 0; v < vertices; v++) {
+    if (work->gone[v] && map[v] == v)
+      continue;
+    double share = 1.0 / ++copies[map[v]];
+    for (size_t a = 0; a < 3 && map[v] != v; a++)
+      positions[3 * (size_t)map[v] + a] += (positions[3 * v + a] - positions[3 * (size_t)map[v] + a]) * share;
+  }
+  vxm_free(work->context, copies);
+  return VXM_OK;
+}
+
+/**
  * Merges near vertices: with a given tolerance wherever vxm_weld_near merges them, else only where that
  * closes cracks, and where there is none of the usual kind, in soups that were torn apart. As a merged group
  * has no other vertex near it, running the pass again, after others, merges new groups or none, but never
@@ -139,6 +163,8 @@ vxm_status vxm_pass_tolerant_weld(vxm_work *work, bool *changed, vxm_error *erro
   int64_t count = status == VXM_OK ? vxm_work_merge(work, map) : 0;
   if (status == VXM_OK && count == 0 && work->options.weld == VXM_WELD_AUTO) {
     status = vxm_torn_match(work, map, error);
+    if (status == VXM_OK)
+      status = move_to_middle(work, map, error);
     count = status == VXM_OK ? vxm_work_merge(work, map) : 0;
   }
   if (status == VXM_OK) {

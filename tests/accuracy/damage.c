@@ -88,7 +88,7 @@ static double distance_to_face(const shape *body, size_t face, const double from
 /** A face of the damaged mesh: which face of the body it was, and what became of it. */
 typedef struct fate {
   size_t face;
-  bool turned, repeated;
+  bool turned;
 } fate;
 
 static size_t decide_fates(fate *fates, const shape *body, const recipe *apply, double diagonal,
@@ -102,7 +102,7 @@ static size_t decide_fates(fate *fates, const shape *body, const recipe *apply, 
       continue;
     for (int repeat = 0; repeat <= doubled; repeat++)
       if (vxm_rng_unit(rng) >= apply->removed)
-        fates[count++] = (fate){f, turned != (repeat == 1), repeat == 1};
+        fates[count++] = (fate){f, turned != (repeat == 1)};
   }
   return count;
 }
