@@ -484,7 +484,7 @@ typedef struct vxm_voxelize_report {
   int64_t cavities;     /**< components that were taken for cavities of the one around them */
   int64_t caps;         /**< rims that were capped */
   int64_t contested;    /**< voxels on which the voters of the parts that stayed open disagreed */
-  int64_t escalated;    /**< those of them that the winding number decided */
+  int64_t escalated;    /**< voxels that the winding number decided: all with VXM_METHOD_WINDING */
   int64_t voxels;       /**< set voxels */
   uint64_t hash;        /**< vxm_grid_hash */
   int64_t empty_parts;  /**< parts that set no voxel; of open parts, all if together they set none */
@@ -502,7 +502,9 @@ typedef struct vxm_voxelize_report {
  *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Parity is computed exactly on an integer lattice (at least 1/256 voxel). For parts closed mod 2 all methods
- * give the same bits.
+ * give the same bits, except the winding number where a part cuts through itself or a centre lies on a face.
+ * With VXM_METHOD_WINDING the parts of the report are those of the solid that is made first, to turn the
+ * faces.
  */
 VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, const vxm_mesh *mesh,
                                 const vxm_voxelize_options *options, vxm_error *error);

@@ -20,7 +20,7 @@ typedef struct vxm_pool {
   int started;      /**< workers that exist */
   int participants; /**< workers that take part in the present round: those numbered 1 to this */
   int busy;         /**< of these, those still at work */
-  pid_t process;    /**< the process that started the workers */
+  pid_t process;    /**< the process that the pool belongs to */
   uint64_t round;   /**< number of the present round */
   bool quit;
   void (*function)(size_t task, int worker, void *payload);

@@ -124,7 +124,8 @@ static int open_temporary(vxm_output *output, size_t size, mode_t mode) {
   return -1;
 }
 
-/** Opens what `path` names: a link is followed, so that it stays a link and its file is replaced. */
+/** Opens what `path` names: a link to a file is followed, so that it stays a link and its file is replaced.
+ */
 static int open_output(vxm_output *output, const char *path) {
   struct stat info = {.st_mode = 0};
   bool exists = stat(path, &info) == 0;

@@ -12,6 +12,7 @@ typedef struct worker_start {
 } worker_start;
 
 void vxm_pool_init(vxm_pool *pool) {
+  pool->process = getpid();
   pthread_mutex_init(&pool->owner, NULL);
   pthread_mutex_init(&pool->mutex, NULL);
   pthread_cond_init(&pool->wake, NULL);
@@ -57,7 +58,6 @@ static void *worker_main(void *argument) {
  */
 static void start_workers(vxm_pool *pool, int wanted) {
   sigset_t all, before;
-  pool->process = getpid();
   pool->threads = calloc((size_t)wanted, sizeof *pool->threads);
   if (!pool->threads)
     return;
@@ -77,9 +77,10 @@ static void start_workers(vxm_pool *pool, int wanted) {
   pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
-/** After a fork the child has the pool's memory but none of its threads. */
+/** After a fork the child has the pool's memory but none of its threads, and its locks may be held for ever.
+ */
 static bool is_forked(const vxm_pool *pool) {
-  return pool->threads && pool->process != getpid();
+  return pool->process != getpid();
 }
 
 void vxm_pool_destroy(vxm_pool *pool) {

@@ -196,6 +196,11 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   }
 }
 
+static bool is_npy(const char *path) {
+  size_t length = strlen(path);
+  return length > 4 && strcmp(path + length - 4, ".npy") == 0;
+}
+
 /** Options that contradict each other. */
 static int check_conflicts(cli_run *cli, const request *given) {
   if (given->like && (given->resolution || given->size || given->fit || given->pad || given->bounds))
@@ -209,6 +214,10 @@ static int check_conflicts(cli_run *cli, const request *given) {
     return cli_usage(cli, "--bounds is covered exactly; leave out --fit");
   if (given->vote && given->voxelize.method != VXM_METHOD_VOTE)
     return cli_usage(cli, "--vote goes with --method vote only");
+  if (given->confidence && !is_npy(given->confidence))
+    return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
+  if (given->confidence && given->output && strcmp(given->confidence, given->output) == 0)
+    return cli_usage(cli, "--confidence and -o name the same file");
   if (given->no_repair && given->repair_options)
     return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
   return CLI_END;
@@ -349,22 +358,17 @@ static int make_grid(cli_run *cli, const request *given, outcome *results) {
   double made = cli_clock();
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = given->format;
-  vxm_status status = VXM_OK;
-  if (given->confidence)
-    status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
-  if (status == VXM_OK) {
-    status = vxm_grid_write(grid, given->output, &options, &cli->error);
-    if (status != VXM_OK && given->confidence)
-      remove(given->confidence); /* no output is left of a failed command */
-  }
+  vxm_status status = vxm_grid_write(grid, given->output, &options, &cli->error);
   results->voxelize_ms = made - start;
   results->write_ms = cli_clock() - made;
+  if (status == VXM_OK) {
+    cli->made = given->output;
+    cli->made_format = given->format;
+    if (given->confidence)
+      status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
+  }
   vxm_grid_destroy(grid);
-  if (status != VXM_OK)
-    return cli_fail(cli);
-  cli->made = given->output;
-  cli->made_format = given->format;
-  return CLI_DONE;
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
 static int run(cli_run *cli) {

@@ -321,16 +321,22 @@ static size_t first_larger(const builder *b, size_t begin, size_t end, double si
   return begin;
 }
 
+/** Components whose box is around another one's that are looked at as its parent; of the nearest so many one
+ * will do. */
+enum { TRIES_MAX = 256 };
+
 static vxm_status find_parent(builder *b, uint32_t component, uint32_t *parent) {
   const body *inner = &b->bodies[component];
   size_t cell[3];
   for (int a = 0; a < 3; a++)
     cell[a] = cell_of(b, a, inner->box[a]);
   size_t place = (cell[2] * b->cells[1] + cell[1]) * b->cells[0] + cell[0], end = b->begin[place + 1];
-  for (size_t i = first_larger(b, b->begin[place], end, inner->size); i < end; i++) {
+  int tries = 0;
+  for (size_t i = first_larger(b, b->begin[place], end, inner->size); i < end && tries < TRIES_MAX; i++) {
     uint32_t outer = b->order[b->listed[i]];
     bool within = box_within(inner->box, b->bodies[outer].box);
     vxm_status status = within ? contains(b, outer, component, &within) : VXM_OK;
+    tries += box_within(inner->box, b->bodies[outer].box);
     if (status != VXM_OK)
       return status;
     if (within) {

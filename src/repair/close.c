@@ -182,7 +182,10 @@ static void add_cap(closing *c, place_table *places, size_t loop, size_t first) 
   size_t begin = c->loops.begin[loop], planned = first + c->points[loop], number = soup->vertex_count;
   for (size_t k = c->points[loop]; k < c->points[loop + 1]; k++) {
     double *p = c->caps.points[k];
-    find_free(places, soup, p, vxm_position(soup, c->loops.vertex[begin]));
+    const double *toward = vxm_position(soup, c->loops.vertex[begin]);
+    if (memcmp(toward, p, 3 * sizeof *p) == 0) /* any other place on the rim does as well */
+      toward = vxm_position(soup, c->loops.vertex[begin + 1]);
+    find_free(places, soup, p, toward);
     memcpy(soup->positions + 3 * soup->vertex_count, p, 3 * sizeof *p);
     enter(places, soup, (uint32_t)soup->vertex_count++);
   }

@@ -127,7 +127,6 @@ static vxm_status move_to_middle(vxm_work *work, const uint32_t *map, vxm_error 
   uint32_t *copies = vxm_work_scratch(work, vertices, sizeof *copies, &status, error);
   if (!copies)
     return status;
-  memset(copies, 0, vertices * sizeof *copies);
   double *positions = work->soup->positions;
   /* The mean grows by the difference to each copy, so that positions of any size do not overflow. */
   for (size_t v = 0; v < vertices; v++) {

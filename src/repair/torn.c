@@ -18,6 +18,7 @@ enum {
   CHAIN_MAX = 64,      /**< edges looked at in a cell; where more crowd, some find no mate */
   PAIRS_PER_EDGE = 16, /**< beyond, on average, nothing is mended: no torn surface has that many */
   GROUP_MAX = 256,     /**< vertices of the smaller of two groups that may still be joined */
+  FACES_MAX = 4096,    /**< at the vertices of the smaller of two groups */
   ROUNDS_MAX = 8
 };
 
@@ -95,11 +96,15 @@ static double distance(const search *s, uint32_t p, uint32_t q) {
 
 /** Whether the side from a to b runs along an edge by itself; places[v] is where the edges of v begin. */
 static bool is_rim(const vxm_edges *edges, const size_t *places, uint32_t a, uint32_t b) {
+  enum { SCAN_MAX = 16 }; /* beyond, as at the hub of a large fan, a search over all edges is quicker */
   uint32_t low = a < b ? a : b, high = a < b ? b : a;
-  for (size_t e = places[low]; e < places[low + 1]; e++)
-    if (edges->edges[e].b == high)
-      return edges->edges[e].count == 1;
-  return false;
+  size_t e = places[low], end = places[low + 1];
+  if (end - e > SCAN_MAX)
+    e = vxm_edges_find(edges, low, high);
+  else
+    while (e < end && edges->edges[e].b != high)
+      e++;
+  return e < end && edges->edges[e].count == 1;
 }
 
 static void list_rims(search *s, const size_t *places) {
@@ -362,7 +367,11 @@ static bool may_unite(const search *s, uint32_t p, uint32_t q) {
   uint32_t small = s->size[p] < s->size[q] ? p : q, v = small;
   if (s->size[small] > GROUP_MAX)
     return false;
+  size_t faces = 0;
   do {
+    faces += s->first_face[v + 1] - s->first_face[v];
+    if (faces > FACES_MAX)
+      return false;
     for (size_t k = s->first_face[v]; k < s->first_face[v + 1]; k++)
       if (has_corner_in(s, s->faces[k], small == p ? q : p))
         return false;

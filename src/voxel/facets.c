@@ -93,6 +93,9 @@ static vxm_status make_facets(builder *b) {
       facets->parts[p].begin = facets->parts[p].end = total;
       total += count;
     }
+    if (total > UINT32_MAX)
+      return vxm_fail(&b->error, VXM_ERROR_RANGE, "%zu triangles are too many to number; split the mesh",
+                      total);
     facets->facet_count = total;
     facets->facets = allocate(b, total, sizeof *facets->facets);
     if (!facets->facets)

@@ -5,12 +5,14 @@
 #include <math.h>
 #include <stdatomic.h>
 
+static const char phase[] = "computing winding numbers";
+
 typedef struct settle_job {
   vxm_grid *out;
   const vxm_grid *asked;
   const vxm_winding *winding;
   uint8_t *confidence;
-  size_t layer_count;
+  size_t layer_count, row_count; /**< bricks along z and y */
   atomic_size_t done;
   atomic_bool stop;
   vxm_status status;
@@ -51,28 +53,24 @@ static void decide_brick(const settle_job *job, int64_t i, int64_t j, int64_t k,
   }
 }
 
-/** A layer of bricks: its words belong to this task alone. */
-static void decide_layer(size_t layer, int worker, void *payload) {
+/** A row of bricks along x: its words belong to this task alone. */
+static void decide_row(size_t task, int worker, void *payload) {
   settle_job *job = payload;
-  const int64_t *dims = job->out->space.dims;
   if (atomic_load_explicit(&job->stop, memory_order_relaxed))
     return;
-  int64_t k = 4 * (int64_t)layer;
-  for (int64_t j = 0; j < dims[1]; j += 4)
-    for (int64_t i = 0; i < dims[0]; i += 4) {
-      uint64_t bits = asked_in_brick(job, i, j, k);
-      if (bits)
-        decide_brick(job, i, j, k, bits);
-    }
-  size_t done = atomic_fetch_add_explicit(&job->done, 1, memory_order_relaxed) + 1;
-  if (worker != 0)
-    return; /* worker 0 is the calling thread, the only one that may report progress */
-  double fraction = (double)done / (double)job->layer_count;
-  vxm_status status = vxm_progress(job->out->context, "computing winding numbers", fraction, job->error);
-  if (status != VXM_OK) {
-    job->status = status;
-    atomic_store_explicit(&job->stop, true, memory_order_relaxed);
+  int64_t k = 4 * (int64_t)(task / job->row_count), j = 4 * (int64_t)(task % job->row_count);
+  for (int64_t i = 0; i < job->out->space.dims[0]; i += 4) {
+    uint64_t bits = asked_in_brick(job, i, j, k);
+    if (bits)
+      decide_brick(job, i, j, k, bits);
   }
+  size_t done = atomic_fetch_add_explicit(&job->done, 1, memory_order_relaxed) + 1;
+  if (worker != 0 || job->status != VXM_OK)
+    return; /* worker 0 is the calling thread, the only one that may report progress */
+  double fraction = (double)done / (double)(job->layer_count * job->row_count);
+  job->status = vxm_progress(job->out->context, phase, fraction, job->error);
+  if (job->status != VXM_OK)
+    atomic_store_explicit(&job->stop, true, memory_order_relaxed);
 }
 
 vxm_status vxm_settle(vxm_grid *out, const vxm_grid *asked, const vxm_winding *winding, uint8_t *confidence,
@@ -81,6 +79,8 @@ vxm_status vxm_settle(vxm_grid *out, const vxm_grid *asked, const vxm_winding *w
   job.layer_count = (size_t)(out->space.dims[2] + 3) / 4;
   atomic_init(&job.done, 0);
   atomic_init(&job.stop, false);
-  vxm_parallel(out->context, job.layer_count, decide_layer, &job);
-  return job.status;
+  job.row_count = (size_t)(out->space.dims[1] + 3) / 4;
+  vxm_parallel(out->context, job.layer_count * job.row_count, decide_row, &job);
+  /* Other threads may have taken the last rows: ask once more, so that no wish to stop is missed. */
+  return job.status == VXM_OK ? vxm_progress(out->context, phase, 1.0, error) : job.status;
 }

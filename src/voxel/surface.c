@@ -96,7 +96,8 @@ static void touched_range(const vxm_lattice *lattice, int64_t low, int64_t high,
   *end = vxm_min(last, (high >> lattice->bits) + 1);
 }
 
-static void draw_triangle(const surface_job *job, const triangle *t, int64_t k_first, int64_t k_last) {
+/** Draws the part of a triangle in slices k_first..k_last-1; returns the rows it looked at. */
+static size_t draw_triangle(const surface_job *job, const triangle *t, int64_t k_first, int64_t k_last) {
   const vxm_point *v[3];
   vxm_point low, high;
   int64_t begin[3], end[3];
@@ -109,7 +110,7 @@ static void draw_triangle(const surface_job *job, const triangle *t, int64_t k_f
     touched_range(job->lattice, low.at[a], high.at[a], a == 2 ? k_first : 0, a == 2 ? k_last : dims[a],
                   &begin[a], &end[a]);
     if (begin[a] >= end[a])
-      return;
+      return 0;
   }
   condition conditions[CONDITIONS];
   make_conditions(conditions, v, job->lattice->unit);
@@ -122,9 +123,11 @@ static void draw_triangle(const surface_job *job, const triangle *t, int64_t k_f
       if (job->confidence)
         memset(job->confidence + (k * dims[1] + j) * dims[0] + i, 255, (size_t)(i_end - i));
     }
+  return (size_t)((end[2] - begin[2]) * (end[1] - begin[1]));
 }
 
-enum { POLL_TRIANGLES = 4096 };
+/** Rows between two looks at the progress callback; a triangle counts as one too. */
+enum { POLL_ROWS = 1 << 16 };
 
 /** A slab of slices, whose words belong to this task alone. */
 static void draw_slab(size_t slab, int worker, void *payload) {
@@ -132,10 +135,12 @@ static void draw_slab(size_t slab, int worker, void *payload) {
   size_t slices = (size_t)job->grid->space.dims[2];
   int64_t first = (int64_t)vxm_slice_begin(slices, job->slabs, slab);
   int64_t last = (int64_t)vxm_slice_begin(slices, job->slabs, slab + 1);
+  size_t rows = POLL_ROWS;
   for (size_t t = 0; t < job->count; t++) {
-    draw_triangle(job, &job->triangles[t], first, last);
-    if (t % POLL_TRIANGLES != 0)
+    rows += 1 + draw_triangle(job, &job->triangles[t], first, last);
+    if (rows < POLL_ROWS)
       continue;
+    rows = 0;
     if (worker == 0 &&
         job->status == VXM_OK) { /* the calling thread, the only one that may report progress */
       double done = (double)atomic_load_explicit(&job->done, memory_order_relaxed);

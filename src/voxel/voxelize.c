@@ -213,8 +213,11 @@ static vxm_status complete_confidence(solid *s, vxm_error *error) {
   }
   vxm_grid *voters[VOTERS] = {NULL};
   vxm_status status = s->closed ? VXM_OK : new_grid(s, &s->closed, error);
+  atomic_uchar *touched = s->touched;
+  s->touched = NULL; /* what these voters see says nothing about the result */
   if (status == VXM_OK)
     status = fill_voters(s, voters, VOTERS, begin, error);
+  s->touched = touched;
   if (status == VXM_OK)
     vxm_confidence_fill(s->grid->confidence, s->grid, s->closed, voters, s->settled);
   destroy_voters(voters);
@@ -233,7 +236,8 @@ static void fill_report(solid *s) {
   report->cavities = (int64_t)split->cavity_count;
   vxm_grid_sum(s->grid, &report->voxels, &report->hash);
   for (size_t p = 0; p < split->part_count && s->options->mode != VXM_MODE_SURFACE; p++)
-    report->empty_parts += !atomic_load_explicit(&s->touched[p], memory_order_relaxed);
+    report->empty_parts += s->facets.parts[p].begin < s->facets.parts[p].end &&
+                           !atomic_load_explicit(&s->touched[p], memory_order_relaxed);
 }
 
 /** The first few parts without volume, each by one of its vertices. */
@@ -261,7 +265,9 @@ static void name_empty_parts(solid *s) {
 static void warn(solid *s) {
   const vxm_voxelize_report *report = s->report;
   vxm_notes *notes = &s->grid->notes;
-  if (report->voxels == 0)
+  if (report->voxels == 0 && s->options->mode != VXM_MODE_SOLID)
+    vxm_note(notes, "no face meets the grid: check --bounds or --like");
+  else if (report->voxels == 0)
     vxm_note(notes,
              "no voxel centre is inside: the model is open, flat or thinner than a voxel; try --mode both "
              "or a higher resolution (-r)");
@@ -276,19 +282,24 @@ static void warn(solid *s) {
              report->escalated > 0 ? "the winding number" : "the vote");
 }
 
-/** What will be needed at once, checked before the work starts. */
+/** The grids that will be needed at once, checked before they are made. */
 static vxm_status check_memory(const solid *s, vxm_error *error) {
   const vxm_split *split = &s->facets.split;
+  const vxm_voxelize_options *options = s->options;
+  bool solid_wanted = options->mode != VXM_MODE_SURFACE;
   bool closed = kind_end(s, VXM_PART_CLOSED) == split->part_count;
-  uint64_t grids = 1, bytes;
-  if (s->options->method == VXM_METHOD_VOTE && !closed)
-    grids +=
-        kind_end(s, VXM_PART_CAPPED) < split->part_count || s->options->vote != VXM_VOTE_AUTO ? VOTERS : 0;
-  if (s->options->confidence)
-    grids += 1 + VOTERS + 8; /* a byte per voxel is eight bits */
-  if (__builtin_mul_overflow(grids, vxm_space_bytes(&s->lattice.space), &bytes))
-    return vxm_fail(error, VXM_ERROR_RANGE, "the grid is beyond what can be addressed; lower the resolution");
-  return vxm_memory_check(s->context, bytes, "voxelizing", error);
+  bool decided = closed || (caps_are_wanted(options) && kind_end(s, VXM_PART_CAPPED) == split->part_count);
+  bool voted = options->method == VXM_METHOD_VOTE || options->method == VXM_METHOD_WINDING;
+  uint64_t grids = 1, voters = solid_wanted && voted && !decided ? VOTERS : 0;
+  if (solid_wanted && options->method == VXM_METHOD_WINDING && voters == 0)
+    voters = 1;
+  if (options->confidence) {
+    grids += 8; /* a byte per voxel is eight bits */
+    if (solid_wanted && options->method != VXM_METHOD_WINDING)
+      voters = closed ? 1 : 1 + VOTERS;
+  }
+  return vxm_memory_check(s->context, (grids + voters) * vxm_space_bytes(&s->lattice.space), "voxelizing",
+                          error);
 }
 
 static vxm_status prepare(solid *s, const vxm_space *space, vxm_error *error) {
@@ -328,6 +339,8 @@ vxm_status vxm_voxelize_run(vxm_grid **out, vxm_voxelize_report *report, const v
     status = fill(&s, error);
   if (status == VXM_OK && options->mode != VXM_MODE_SURFACE)
     status = complete_confidence(&s, error);
+  if (status == VXM_OK && options->mode == VXM_MODE_SURFACE && s.grid->confidence)
+    vxm_confidence_fill(s.grid->confidence, s.grid, s.grid, NULL, NULL); /* exact everywhere */
   if (status == VXM_OK && options->mode != VXM_MODE_SOLID)
     status = vxm_surface_unite(s.grid, soup, &s.lattice, s.grid->confidence, error);
   if (status == VXM_OK) {

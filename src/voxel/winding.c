@@ -202,7 +202,8 @@ typedef struct brick {
 
 /* The loops over a brick are compiled for several vector widths. Each voxel's arithmetic is the same in all
    of them (no fused or approximate operations), so the bits are too. */
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 #define VECTOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define VECTOR_CLONES
