@@ -262,6 +262,38 @@ static void random_soups(void **state) {
   }
 }
 
+/** Boxes on a coarse lattice that touch, lack faces and have others added: the middle of a rim is often
+ * taken, even by a vertex of the rim. */
+static void crowded_soups(void **state) {
+  static const uint32_t sides[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                        {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  vxm_rng rng = {7};
+  for (int round = 0; round < 4000; round++) {
+    vxm_soup *soup = new_soup(*state);
+    uint64_t boxes = 1 + vxm_rng_below(&rng, 3);
+    for (uint32_t b = 0; b < boxes; b++) {
+      double low[3], long_side = 1 + (double)vxm_rng_below(&rng, 2);
+      for (int a = 0; a < 3; a++)
+        low[a] = (double)vxm_rng_below(&rng, 3);
+      for (uint32_t v = 0; v < 8; v++)
+        add_vertex(soup, low[0] + (v & 1 ? long_side : 0), low[1] + (v >> 1 & 1), low[2] + (v >> 2));
+      for (int f = 0; f < 12; f++)
+        if (vxm_rng_below(&rng, 8) > 0)
+          add_face(soup, (uint32_t[]){8 * b + sides[f][0], 8 * b + sides[f][1], 8 * b + sides[f][2]}, 3);
+    }
+    for (uint64_t extra = vxm_rng_below(&rng, 6); extra > 0; extra--) {
+      uint32_t corner[3];
+      for (int c = 0; c < 3; c++)
+        corner[c] = (uint32_t)vxm_rng_below(&rng, soup->vertex_count);
+      add_face(soup, corner, 3);
+    }
+    for (uint64_t moves = vxm_rng_below(&rng, 4); moves > 0; moves--)
+      soup->positions[vxm_rng_below(&rng, 3 * soup->vertex_count)] += 0.5 * (double)vxm_rng_below(&rng, 3);
+    check_closing(soup, NULL);
+    vxm_soup_destroy(soup);
+  }
+}
+
 static void same_for_any_threads(void **state) {
   (void)state;
   vxm_repair_options options = closing();
@@ -338,11 +370,11 @@ static int drop_context(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(spheres_with_holes),   cmocka_unit_test(cubes_without_a_side),
-      cmocka_unit_test(sheets_stay_open),     cmocka_unit_test(slits_of_panels),
-      cmocka_unit_test(long_cracks_are_cut),  cmocka_unit_test(random_soups),
-      cmocka_unit_test(same_for_any_threads), cmocka_unit_test(real_meshes),
-      cmocka_unit_test(memory_may_run_out),
+      cmocka_unit_test(spheres_with_holes),  cmocka_unit_test(cubes_without_a_side),
+      cmocka_unit_test(sheets_stay_open),    cmocka_unit_test(slits_of_panels),
+      cmocka_unit_test(long_cracks_are_cut), cmocka_unit_test(random_soups),
+      cmocka_unit_test(crowded_soups),       cmocka_unit_test(same_for_any_threads),
+      cmocka_unit_test(real_meshes),         cmocka_unit_test(memory_may_run_out),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

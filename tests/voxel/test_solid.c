@@ -276,6 +276,12 @@ static void test_counts_of_the_report(void **state) {
   /* x fills from the sheet to the end of the rows; 3 x 4 x 4 of that lies in the box. */
   assert_int_equal(report.contested, 6 * 7 * 7 - 3 * 4 * 4);
   vxm_grid_destroy(grid);
+  /* Asking for the confidence changes nothing of that. */
+  vxm_voxelize_report with_confidence;
+  options.confidence = true;
+  assert_int_equal(vxm_voxelize(&grid, &with_confidence, soup, &options, NULL), VXM_OK);
+  assert_memory_equal(&with_confidence, &report, sizeof report);
+  vxm_grid_destroy(grid);
   vxm_soup_destroy(soup);
 }
 
