@@ -55,22 +55,37 @@ static void cover_face(builder *b, size_t face, vxm_facet *facets) {
   for (size_t i = 1; i + 1 < n; i++) {
     uint32_t p = corner[apex], q = corner[(apex + i) % n], r = corner[(apex + i + 1) % n];
     if (has_three_corners(p, q, r))
-      add(b, facets, (vxm_facet){{p, q, r}, part});
+      add(b, facets, (vxm_facet){{p, q, r}, part, VXM_FACET_TRIANGLE});
   }
 }
 
-/** The triangles from an apex, one per part or one per loop, to every odd edge. */
-static void cover_odd_edges(builder *b, vxm_facet *facets, vxm_facet_role role) {
+/** The triangles from the apex of a part to its odd edges. */
+static void add_cones(builder *b, vxm_facet *facets) {
   const vxm_split *split = &b->facets->split;
   const vxm_loops *loops = &split->loops;
   for (size_t l = 0; l < loops->count; l++) {
-    uint32_t part = split->loop_part[l];
-    size_t apex = role == VXM_FACET_CONE ? b->facets->first_apex + part : b->facets->first_cap + l;
+    uint32_t part = split->loop_part[l], apex = (uint32_t)(b->facets->first_apex + part);
     for (size_t s = loops->begin[l]; s < loops->begin[l + 1]; s++) {
       const vxm_edge *edge = &split->edges.edges[loops->edge[s]];
-      add(b, facets, (vxm_facet){{edge->a, edge->b, (uint32_t)apex}, part});
+      add(b, facets, (vxm_facet){{edge->a, edge->b, apex}, part, VXM_FACET_CONE});
     }
   }
+}
+
+/** The caps of all loops; their own points are numbered behind the soup's vertices, and here behind the
+ * apexes. */
+static void add_caps(builder *b, vxm_facet *facets) {
+  const vxm_split *split = &b->facets->split;
+  size_t vertices = b->soup->vertex_count, first_cap = b->facets->first_cap;
+  for (size_t l = 0; split->cap_begin && l < split->loops.count; l++)
+    for (size_t t = split->cap_begin[l]; t < split->cap_begin[l + 1]; t++) {
+      vxm_facet facet = {{0, 0, 0}, split->loop_part[l], VXM_FACET_CAP};
+      for (int c = 0; c < 3; c++) {
+        uint32_t v = split->caps.triangles[t][c];
+        facet.corner[c] = v < vertices ? v : (uint32_t)(v - vertices + first_cap);
+      }
+      add(b, facets, facet);
+    }
 }
 
 /** Two rounds of the same walk: the first counts the facets of each part, the second puts them in place. */
@@ -83,8 +98,8 @@ static vxm_status make_facets(builder *b) {
   for (int round = 0; round < 2; round++) {
     for (size_t f = 0; f < b->soup->face_count; f++)
       cover_face(b, f, facets->facets);
-    cover_odd_edges(b, facets->facets, VXM_FACET_CONE);
-    cover_odd_edges(b, facets->facets, VXM_FACET_CAP);
+    add_cones(b, facets->facets);
+    add_caps(b, facets->facets);
     if (round == 1)
       break;
     size_t total = 0;
@@ -124,7 +139,7 @@ static void measure_part(vxm_facets *facets, size_t part) {
   }
   for (size_t f = p->begin; f < p->end; f++) {
     const vxm_facet *facet = &facets->facets[f];
-    if (vxm_facet_role_of(facets, facet) != VXM_FACET_TRIANGLE)
+    if (facet->role != VXM_FACET_TRIANGLE)
       break;
     for (int c = 0; c < 3; c++, corners++) {
       const vxm_point *q = &facets->points[facet->corner[c]];
@@ -139,21 +154,12 @@ static void measure_part(vxm_facets *facets, size_t part) {
   facets->points[p->apex] = mean_of(sum, corners);
 }
 
-static void place_cap_apex(vxm_facets *facets, size_t loop) {
-  const vxm_loops *loops = &facets->split.loops;
-  vxm_int128 sum[3] = {0, 0, 0};
-  for (size_t s = loops->begin[loop]; s < loops->begin[loop + 1]; s++)
-    for (int a = 0; a < 3; a++)
-      sum[a] += facets->points[loops->vertex[s]].at[a];
-  facets->points[facets->first_cap + loop] = mean_of(sum, loops->begin[loop + 1] - loops->begin[loop]);
-}
-
 /** Appends room for the apexes to the points. */
 static vxm_status reserve_apexes(builder *b, vxm_error *error) {
   vxm_facets *facets = b->facets;
   facets->first_apex = b->soup->vertex_count;
   facets->first_cap = facets->first_apex + facets->split.part_count;
-  size_t count = facets->first_cap + facets->split.loops.count;
+  size_t count = facets->first_cap + facets->split.caps.point_count;
   if (count > VXM_VERTICES_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "too many vertices, parts and holes to number; split the mesh");
   vxm_point *points = vxm_realloc(facets->context, facets->points, count, sizeof *points, &b->error);
@@ -175,7 +181,7 @@ vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, const vxm_la
   if (status == VXM_OK)
     status = vxm_lattice_snap(lattice, soup, out->points, &local);
   if (status == VXM_OK)
-    status = vxm_split_create(&out->split, soup, out->points, rule, &local);
+    status = vxm_split_create(&out->split, soup, lattice, rule, &local);
   if (status == VXM_OK)
     status = reserve_apexes(&b, &local);
   if (status == VXM_OK)
@@ -183,8 +189,8 @@ vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, const vxm_la
   if (status == VXM_OK) {
     for (size_t p = 0; p < out->split.part_count; p++)
       measure_part(out, p);
-    for (size_t l = 0; l < out->split.loops.count; l++)
-      place_cap_apex(out, l);
+    for (size_t p = 0; p < out->split.caps.point_count; p++)
+      vxm_lattice_place(lattice, out->split.caps.points[p], &out->points[out->first_cap + p]);
   } else if (error)
     *error = local.code != VXM_OK ? local : b.error;
   return status;

@@ -12,7 +12,8 @@
  *  - cones, from the apex of the part to each odd edge. The XOR of the tetrahedra from that apex to the
  * part's triangles equals the parity of triangles and cones, because the other inner faces of the tetrahedra
  * cancel.
- *  - caps, from the centre of each loop of odd edges to its edges: they close holes.
+ *  - caps, which close each loop of odd edges by triangles of its own vertices and its middle
+ * (repair/caps.h).
  */
 #ifndef VXM_VOXEL_FACETS_H
 #define VXM_VOXEL_FACETS_H
@@ -22,8 +23,9 @@
 typedef enum vxm_facet_role { VXM_FACET_TRIANGLE = 1, VXM_FACET_CONE = 2, VXM_FACET_CAP = 4 } vxm_facet_role;
 
 typedef struct vxm_facet {
-  uint32_t corner[3]; /**< into points; cones and caps have their apex in corner[2] */
+  uint32_t corner[3]; /**< into points */
   uint32_t part;
+  vxm_facet_role role;
 } vxm_facet;
 
 /** Box of a part in lattice coordinates; low > high for a part without triangles. */
@@ -35,19 +37,13 @@ typedef struct vxm_part {
 
 typedef struct vxm_facets {
   vxm_context *context;
-  vxm_point *points; /**< the soup's vertices, then an apex per part, then an apex per loop */
+  vxm_point *points; /**< the soup's vertices, then an apex per part, then the caps' own points */
   size_t first_apex, first_cap;
   vxm_facet *facets; /**< part after part; in each the triangles first, then the cones and the caps */
   size_t facet_count;
   vxm_part *parts;
   vxm_split split;
 } vxm_facets;
-
-static inline vxm_facet_role vxm_facet_role_of(const vxm_facets *facets, const vxm_facet *facet) {
-  if (facet->corner[2] < facets->first_apex)
-    return VXM_FACET_TRIANGLE;
-  return facet->corner[2] < facets->first_cap ? VXM_FACET_CONE : VXM_FACET_CAP;
-}
 
 /** Splits a soup into parts and covers its polygons. Destroy with vxm_facets_destroy, also after a failure.
  */

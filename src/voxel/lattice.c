@@ -27,6 +27,19 @@ vxm_lattice vxm_lattice_of(const vxm_space *space) {
   return (vxm_lattice){bits, INT64_C(1) << bits, *space};
 }
 
+bool vxm_lattice_place(const vxm_lattice *lattice, const double position[3], vxm_point *point) {
+  double steps[3];
+  for (int a = 0; a < 3; a++) {
+    double voxels = (position[a] - lattice->space.origin[a]) / lattice->space.voxel_size[a];
+    steps[a] = voxels * (double)lattice->unit;
+    if (!(fabs(steps[a]) < (double)VXM_LATTICE_MAX)) /* NaN too */
+      return false;
+  }
+  for (int a = 0; a < 3; a++)
+    point->at[a] = (int64_t)llrint(steps[a]);
+  return true;
+}
+
 typedef struct snap_job {
   const vxm_lattice *lattice;
   const vxm_soup *soup;
@@ -40,19 +53,13 @@ static void snap_slice(size_t slice, int worker, void *payload) {
   const vxm_lattice *lattice = job->lattice;
   size_t end = vxm_slice_begin(job->soup->vertex_count, job->slices, slice + 1);
   for (size_t v = vxm_slice_begin(job->soup->vertex_count, job->slices, slice); v < end; v++)
-    for (int a = 0; a < 3; a++) {
-      double voxels =
-          (vxm_position(job->soup, v)[a] - lattice->space.origin[a]) / lattice->space.voxel_size[a];
-      double steps = voxels * (double)lattice->unit;
-      bool fits = fabs(steps) < (double)VXM_LATTICE_MAX; /* false for NaN too */
-      job->points[v].at[a] = fits ? (int64_t)llrint(steps) : off_lattice;
-    }
+    if (!vxm_lattice_place(lattice, vxm_position(job->soup, v), &job->points[v]))
+      job->points[v].at[0] = off_lattice;
 }
 
 static vxm_status check_used(const vxm_soup *soup, const vxm_point *points, vxm_error *error) {
   for (size_t c = 0; c < soup->corner_count; c++) {
-    const int64_t *at = points[soup->indices[c]].at;
-    if (at[0] != off_lattice && at[1] != off_lattice && at[2] != off_lattice)
+    if (points[soup->indices[c]].at[0] != off_lattice)
       continue;
     uint32_t vertex = soup->indices[c];
     const double *p = vxm_position(soup, vertex);

@@ -40,6 +40,9 @@ vxm_lattice vxm_lattice_of(const vxm_space *space);
 vxm_status vxm_lattice_snap(const vxm_lattice *lattice, const vxm_soup *soup, vxm_point *points,
                             vxm_error *error);
 
+/** Snaps one position; false, and nothing stored, if it is not finite or lies too far outside the grid. */
+bool vxm_lattice_place(const vxm_lattice *lattice, const double position[3], vxm_point *point);
+
 /** First voxel whose centre is at or beyond a lattice coordinate. */
 static inline int64_t vxm_lattice_first(const vxm_lattice *lattice, int64_t coordinate) {
   /* ceil((c - unit/2) / unit); arithmetic shifts round down. */

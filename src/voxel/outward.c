@@ -220,7 +220,7 @@ static bool collect_triangles(builder *b, const vxm_lattice *lattice, size_t beg
   vxm_outward *out = b->out;
   const vxm_facets *facets = b->facets;
   for (size_t f = begin; f < end; f++)
-    out->count += vxm_facet_role_of(facets, &facets->facets[f]) == VXM_FACET_TRIANGLE;
+    out->count += facets->facets[f].role == VXM_FACET_TRIANGLE;
   out->triangles = allocate(b, out->count, sizeof *out->triangles);
   b->facet = allocate(b, out->count, sizeof *b->facet);
   b->neighbour = allocate(b, out->count, sizeof *b->neighbour);
@@ -234,7 +234,7 @@ static bool collect_triangles(builder *b, const vxm_lattice *lattice, size_t beg
   size_t next = 0;
   for (size_t f = begin; f < end; f++) {
     const vxm_facet *facet = &facets->facets[f];
-    if (vxm_facet_role_of(facets, facet) != VXM_FACET_TRIANGLE)
+    if (facet->role != VXM_FACET_TRIANGLE)
       continue;
     for (int k = 0; k < 3; k++)
       for (int a = 0; a < 3; a++)

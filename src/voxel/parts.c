@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/parts.h"
 #include "mesh/components.h"
+#include "mesh/geometry.h"
 #include "mesh/nesting.h"
-
-#include <math.h>
 
 /** Area of the caps against that of the component, above which it is a sheet rather than a body with holes.
  */
@@ -13,7 +12,7 @@ static const double capped_part_max = 0.75;
 typedef struct builder {
   vxm_split *split;
   const vxm_soup *soup;
-  const vxm_point *points;
+  const vxm_lattice *lattice;
   vxm_split_rule rule;
   uint8_t *kind;            /**< of every component */
   uint32_t *loop_component; /**< of every loop */
@@ -61,45 +60,27 @@ static vxm_status assign_loops(builder *b) {
 
 /* ---- Kinds ---- */
 
-/** Twice the area of the triangle from `apex` over an edge, in lattice steps squared. */
-static double double_area(const double apex[3], const vxm_point *p, const vxm_point *q) {
-  double u[3], v[3], sum = 0;
-  for (int a = 0; a < 3; a++) {
-    u[a] = (double)p->at[a] - apex[a];
-    v[a] = (double)q->at[a] - apex[a];
+/** Closes every loop, whether its part will be capped or not: that is what the areas tell. */
+static vxm_status make_caps(builder *b, double scale, double *area) {
+  vxm_split *s = b->split;
+  s->cap_begin = allocate(b, s->loops.count + 1, sizeof *s->cap_begin);
+  if (!s->cap_begin)
+    return b->error.code;
+  s->caps = (vxm_caps){.soup = b->soup, .edges = &s->edges, .scale = scale};
+  for (size_t l = 0; l < s->loops.count; l++) {
+    vxm_status status = vxm_caps_add(&s->caps, &s->loops, l, true, &b->error);
+    if (status != VXM_OK)
+      return status;
+    s->cap_begin[l + 1] = s->caps.triangle_count;
+    for (size_t t = s->cap_begin[l]; t < s->cap_begin[l + 1]; t++) {
+      const uint32_t *v = s->caps.triangles[t];
+      const double *p = vxm_caps_position(&s->caps, v[0]);
+      vxm_vec3 u = vxm_vec3_between(vxm_caps_position(&s->caps, v[1]), p, scale);
+      vxm_vec3 w = vxm_vec3_between(vxm_caps_position(&s->caps, v[2]), p, scale);
+      area[b->loop_component[l]] += vxm_vec3_length(vxm_vec3_cross(u, w)) / 2;
+    }
   }
-  for (int a = 0; a < 3; a++) {
-    double n = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
-    sum += n * n;
-  }
-  return sqrt(sum);
-}
-
-static double face_area(const builder *b, size_t face) {
-  size_t n;
-  const uint32_t *corner = vxm_face(b->soup, face, &n);
-  double area = 0;
-  for (size_t c = 2; c < n; c++) {
-    const int64_t *first = b->points[corner[0]].at;
-    const double apex[3] = {(double)first[0], (double)first[1], (double)first[2]};
-    area += double_area(apex, &b->points[corner[c - 1]], &b->points[corner[c]]);
-  }
-  return area;
-}
-
-/** Area of the cap over a loop: the triangles from the mean of its vertices. */
-static double cap_area(const builder *b, size_t loop) {
-  const vxm_loops *loops = &b->split->loops;
-  size_t begin = loops->begin[loop], end = loops->begin[loop + 1];
-  double mean[3] = {0, 0, 0}, area = 0;
-  for (size_t s = begin; s < end; s++)
-    for (int a = 0; a < 3; a++)
-      mean[a] += (double)b->points[loops->vertex[s]].at[a] / (double)(end - begin);
-  for (size_t s = begin; s < end; s++) {
-    uint32_t next = loops->vertex[s + 1 < end ? s + 1 : begin];
-    area += double_area(mean, &b->points[loops->vertex[s]], &b->points[next]);
-  }
-  return area;
+  return VXM_OK;
 }
 
 static vxm_status find_kinds(builder *b) {
@@ -113,20 +94,21 @@ static vxm_status find_kinds(builder *b) {
     return b->error.code;
   }
   bool measure = b->rule.cap && s->loops.count > 0;
-  for (size_t f = 0; measure && f < b->soup->face_count; f++)
-    area[s->component[f]] += face_area(b, f);
-  for (size_t l = 0; l < s->loops.count; l++) {
-    uint32_t c = b->loop_component[l];
-    b->kind[c] = VXM_PART_OPEN;
-    if (measure)
-      caps[c] += cap_area(b, l);
+  double scale = 1 / b->lattice->space.voxel_size[0]; /* lengths in voxels */
+  vxm_status status = measure ? make_caps(b, scale, caps) : VXM_OK;
+  for (size_t f = 0; measure && f < b->soup->face_count; f++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(b->soup, f, &n);
+    area[s->component[f]] += vxm_polygon_fan_area(b->soup->positions, corner, n, scale);
   }
+  for (size_t l = 0; l < s->loops.count; l++)
+    b->kind[b->loop_component[l]] = VXM_PART_OPEN;
   for (size_t c = 0; c < s->component_count; c++)
     if (measure && b->kind[c] == VXM_PART_OPEN && caps[c] < capped_part_max * area[c])
       b->kind[c] = VXM_PART_CAPPED;
   vxm_free(s->context, caps);
   vxm_free(s->context, area);
-  return VXM_OK;
+  return status;
 }
 
 /* ---- Cavities ---- */
@@ -204,10 +186,10 @@ static vxm_status number_parts(builder *b) {
   return VXM_OK;
 }
 
-vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, const vxm_point *points,
+vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, const vxm_lattice *lattice,
                             vxm_split_rule rule, vxm_error *error) {
   *out = (vxm_split){.context = soup->context};
-  builder b = {.split = out, .soup = soup, .points = points, .rule = rule, .error = VXM_ERROR_INIT};
+  builder b = {.split = out, .soup = soup, .lattice = lattice, .rule = rule, .error = VXM_ERROR_INIT};
   vxm_error local = VXM_ERROR_INIT;
   vxm_status status = vxm_edges_build(&out->edges, soup->context, soup, NULL, &local);
   if (status == VXM_OK) {
@@ -234,6 +216,9 @@ vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, const vxm_poin
 
 void vxm_split_destroy(vxm_split *split) {
   vxm_context *context = split->context;
+  if (split->cap_begin)
+    vxm_caps_free(&split->caps);
+  vxm_free(context, split->cap_begin);
   vxm_free(context, split->loop_part);
   vxm_free(context, split->part);
   vxm_free(context, split->component);

@@ -4,6 +4,7 @@
 #define VXM_VOXEL_PARTS_H
 
 #include "mesh/loops.h"
+#include "repair/caps.h"
 #include "voxel/lattice.h"
 
 typedef enum vxm_part_kind {
@@ -32,6 +33,9 @@ typedef struct vxm_split {
   vxm_edges edges;
   vxm_loops loops;
   uint32_t *loop_part; /**< part of every loop */
+  vxm_caps caps;       /**< of all loops, if parts are to be capped */
+  size_t *cap_begin;   /**< loop l has the caps' triangles cap_begin[l] to cap_begin[l + 1] - 1; NULL without
+                          caps */
 } vxm_split;
 
 /**
@@ -44,10 +48,9 @@ typedef struct vxm_split {
  * without sharing vertices are seen together.
  *
  * @param[out] out freed with vxm_split_destroy, also after a failure
- * @param points   the soup's vertices on the lattice
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, const vxm_point *points,
+vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, const vxm_lattice *lattice,
                             vxm_split_rule rule, vxm_error *error);
 void vxm_split_destroy(vxm_split *split);
 

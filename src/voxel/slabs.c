@@ -100,8 +100,7 @@ static void sort_facets(const unite_state *state, size_t first, size_t end, size
   size_t f_end = facets->parts[state->job->part_end - 1].end;
   for (size_t f = facets->parts[state->job->part_begin].begin; f < f_end; f++) {
     size_t low, high;
-    if (!(vxm_facet_role_of(facets, &facets->facets[f]) & state->job->roles) ||
-        !facet_slabs(state, &facets->facets[f], &low, &high))
+    if (!(facets->facets[f].role & state->job->roles) || !facet_slabs(state, &facets->facets[f], &low, &high))
       continue;
     for (size_t s = low < first ? first : low; s <= high && s < end; s++)
       if (list)
