@@ -322,9 +322,11 @@ static void summarize(const cli_run *cli, const request *given, const outcome *r
     cli_row(cli, "cavities", "%" PRId64, report->cavities);
   cli_row(cli, "voxels", "%" PRId64 " (%.2f %%)", report->voxels, 100.0 * (double)report->voxels / cells);
   cli_row(cli, "contested", "%" PRId64 "%s", report->contested,
-          report->escalated   ? " (open parts, decided by the winding number)"
-          : report->contested ? " (open parts: the voters disagreed there)"
-                              : "");
+          report->contested == 0  ? ""
+          : report->escalated > 0 ? " (open parts, decided by the winding number)"
+                                  : " (open parts: the voters disagreed there)");
+  if (report->escalated > report->contested)
+    cli_row(cli, "winding", "%" PRId64 " voxels decided by the winding number", report->escalated);
   cli_row(cli, "hash", "%016" PRIx64, report->hash);
   cli_row(cli, "time", "%.1f ms: read %.1f, repair %.1f, voxelize %.1f, write %.1f", results->total_ms,
           input->read_ms, input->repair_ms, results->voxelize_ms, results->write_ms);
