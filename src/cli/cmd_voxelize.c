@@ -95,9 +95,14 @@ static bool read_resolution(int64_t out[3], const char *text) {
 }
 
 static int read_choice(cli_run *cli, int *out, const char *name, const char *value,
-                       const char *const *choices, const char *list) {
+                       const char *const *choices) {
   *out = cli_read_choice(value, choices);
-  return *out < 0 ? cli_usage(cli, "--%s '%s' is none of %s", name, value, list) : CLI_END;
+  if (*out >= 0)
+    return CLI_END;
+  char list[96] = "";
+  for (size_t i = 0, used = 0; choices[i] && used < sizeof list; i++)
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", choices[i]);
+  return cli_usage(cli, "--%s '%s' is none of %s", name, value, list);
 }
 
 /** The options that choose the voxel space. */
@@ -118,7 +123,7 @@ static int read_space_option(cli_run *cli, request *out, int key, const char *va
     return CLI_END;
   case KEY_FIT:
     out->fit = true;
-    if (read_choice(cli, &choice, "fit", value, fits, "cube, tight, sphere") == CLI_STOP)
+    if (read_choice(cli, &choice, "fit", value, fits) == CLI_STOP)
       return CLI_STOP;
     space->fit = (vxm_fit)choice;
     return CLI_END;
@@ -156,24 +161,24 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     out->format = value;
     return CLI_END;
   case KEY_MODE:
-    result = read_choice(cli, &choice, "mode", value, modes, "solid, surface, both");
+    result = read_choice(cli, &choice, "mode", value, modes);
     out->voxelize.mode = (vxm_mode)choice;
     return result;
   case KEY_METHOD:
-    result = read_choice(cli, &choice, "method", value, methods, "vote, x, y, z, tetra, winding");
+    result = read_choice(cli, &choice, "method", value, methods);
     out->voxelize.method = (vxm_method)choice;
     return result;
   case KEY_VOTE:
     out->vote = true;
-    result = read_choice(cli, &choice, "vote", value, votes, "auto, majority, any, all");
+    result = read_choice(cli, &choice, "vote", value, votes);
     out->voxelize.vote = (vxm_vote)choice;
     return result;
   case KEY_PARTS:
-    result = read_choice(cli, &choice, "parts", value, parts, "auto, group, whole");
+    result = read_choice(cli, &choice, "parts", value, parts);
     out->voxelize.parts = (vxm_parts)choice;
     return result;
   case KEY_CAVITIES:
-    result = read_choice(cli, &choice, "cavities", value, cavities, "auto, keep, fill");
+    result = read_choice(cli, &choice, "cavities", value, cavities);
     out->voxelize.cavities = (vxm_cavities)choice;
     return result;
   case KEY_CONFIDENCE:
