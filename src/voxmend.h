@@ -468,13 +468,15 @@ typedef struct vxm_voxelize_options {
   vxm_parts parts;
   vxm_cavities cavities;
   vxm_mode mode;
-  bool confidence; /**< keep for every voxel how sure it is: vxm_grid_confidence */
+  bool confidence;  /**< keep for every voxel how sure it is: vxm_grid_confidence */
+  bool vote_always; /**< with `vote` majority, any or all: on closed parts too, where the voters agree anyway
+                     */
 } vxm_voxelize_options;
 
 #define VXM_VOXELIZE_OPTIONS_INIT                                                                 \
   {                                                                                               \
     1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, \
-        VXM_MODE_SOLID, false                                                                     \
+        VXM_MODE_SOLID, false, false                                                              \
   }
 
 typedef struct vxm_voxelize_report {
@@ -508,6 +510,68 @@ typedef struct vxm_voxelize_report {
  */
 VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, const vxm_mesh *mesh,
                                 const vxm_voxelize_options *options, vxm_error *error);
+
+/* ---- Models: many grids of one mesh ---- */
+
+/**
+ * A mesh made ready for voxelizing: its parts are found, its holes capped. Making one costs more than a small
+ * grid does; every grid after the first costs no allocation.
+ */
+typedef struct vxm_model vxm_model;
+
+/**
+ * Makes a model. Its space options are not used: each grid brings its own space.
+ *
+ * @param mesh as for vxm_voxelize; must outlive the model and stay as it is
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners;
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_model_create(vxm_model **out, const vxm_mesh *mesh,
+                                    const vxm_voxelize_options *options, vxm_error *error);
+VXM_API void vxm_model_destroy(vxm_model *model);
+
+/**
+ * Voxelizes a model into a grid: all bits of the grid are replaced. One model may be used by one thread at a
+ * time.
+ *
+ * @param grid      says the space
+ * @param report    NULL = not wanted, which saves counting and hashing
+ * @param transform NULL, or the 3 x 4 matrix, row after row, that takes (x, y, z, 1) of the mesh to where it
+ * is voxelized, in model units
+ * @return as vxm_voxelize; VXM_ERROR_ARGUMENT too for a matrix that is not finite or has determinant 0. After
+ *         a failure the content of the grid is unspecified
+ */
+VXM_API vxm_status vxm_model_voxelize(vxm_grid *grid, vxm_voxelize_report *report, vxm_model *model,
+                                      const double transform[12], vxm_error *error);
+
+/** What voxelizing a model into a file takes. */
+typedef struct vxm_estimate {
+  uint64_t grid_bytes;   /**< one bit per voxel */
+  uint64_t memory_bytes; /**< held at most, beyond what the context holds already */
+  int64_t windows;       /**< ranges of slices that are made and written one after another; 1 = all at once */
+} vxm_estimate;
+
+/** Estimates vxm_model_write under the memory limit of the mesh's context. @return as vxm_model_write, before
+ * the work */
+VXM_API vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
+                                      const char *path, const vxm_grid_write_options *options,
+                                      vxm_error *error);
+
+/**
+ * Voxelizes a model straight into a grid file. What does not fit the memory limit at once is made and written
+ * range after range of slices, in the order of the file; the file is the same.
+ *
+ * @param report may be NULL
+ * @param path, options as for vxm_grid_write. The mesh formats and the confidence need the whole grid in
+ * memory
+ * @return as vxm_voxelize and vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
+                                   const char *path, const vxm_grid_write_options *options, vxm_error *error);
+
+/** Warnings from the last grid or file made of the model, one line each. */
+VXM_API int64_t vxm_model_warning_count(const vxm_model *model);
+VXM_API const char *vxm_model_warning(const vxm_model *model, int64_t index);
 
 #ifdef __cplusplus
 }
