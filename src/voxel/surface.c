@@ -198,7 +198,8 @@ vxm_status vxm_surface_unite(vxm_grid *grid, const vxm_soup *soup, const vxm_lat
   if (!triangles && error)
     *error = local;
   if (status == VXM_OK)
-    status = vxm_lattice_snap(lattice, soup, points, error);
+    for (size_t v = 0; v < soup->vertex_count; v++)
+      (void)vxm_lattice_place(lattice, vxm_position(soup, v), &points[v]);
   if (status == VXM_OK)
     status = list_triangles(&job, triangles, soup, error);
   if (status == VXM_OK) {

@@ -3,6 +3,7 @@
 #ifndef VXM_VOXEL_SURFACE_H
 #define VXM_VOXEL_SURFACE_H
 
+#include "mesh/soup.h"
 #include "voxel/lattice.h"
 
 /**
