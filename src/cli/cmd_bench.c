@@ -187,6 +187,7 @@ static int measure(bench_work *work, bench_stage *stage, int phase, int64_t reso
              plural);
   else
     snprintf(label, sizeof label, "%s, %d thread%s", name, stage->threads, plural);
+  work->cli->drawn = 0; /* a phase that takes long is not to run under the name of the one before */
   cli_progress(work->cli, label, (double)work->done++ / (double)work->total);
   return bench_measure(&work->results, stage, &work->plan, &bench_phases[phase], resolution) == VXM_OK
              ? CLI_DONE
