@@ -4,8 +4,8 @@
 #include <string.h>
 
 enum {
-  CHUNK_FIRST = 28, /**< records; with the head of a chunk, whole cache lines */
-  CHUNK_MOST = 1020,
+  CHUNK_FIRST = 20, /**< records; with head and slack, whole cache lines */
+  CHUNK_MOST = 1012,
   HEAD_WORDS = sizeof(vxm_chunk) / sizeof(uint64_t),
   BLOCK_FIRST = 4 << 10, /**< words */
   BLOCK_MOST = 128 << 10
@@ -81,7 +81,7 @@ static vxm_status reserve(vxm_bins *bins, size_t count, vxm_error *error) {
     vxm_free(bins->context, bins->arenas);
     bins->arena_capacity = 0;
     vxm_free(bins->context, bins->trash);
-    bins->trash = vxm_alloc(bins->context, bins->workers, sizeof *bins->trash, &local);
+    bins->trash = vxm_alloc(bins->context, bins->workers * (VXM_BIN_SLACK + 1), sizeof *bins->trash, &local);
     bins->arenas = vxm_calloc(bins->context, bins->workers, sizeof *bins->arenas, &local);
     bins->arena_capacity = bins->arenas ? bins->workers : 0;
   }
@@ -124,9 +124,9 @@ vxm_status vxm_bins_check(const vxm_bins *bins, vxm_error *error) {
 /* ---- Adding ---- */
 
 static bool add_chunk(vxm_bins *bins, size_t worker, vxm_bin *bin, size_t capacity, bool is_bitmap) {
-  vxm_chunk *chunk = (vxm_chunk *)(void *)take(bins, worker, HEAD_WORDS + capacity);
+  vxm_chunk *chunk = (vxm_chunk *)(void *)take(bins, worker, HEAD_WORDS + capacity + VXM_BIN_SLACK);
   if (!chunk) { /* all of it fails; until then records go where nobody reads */
-    bin->at = bins->trash + worker;
+    bin->at = bins->trash + worker * (VXM_BIN_SLACK + 1);
     bin->limit = bin->at + 1;
     return false;
   }
@@ -156,20 +156,20 @@ static void add_bitmap(vxm_bins *bins, size_t worker, vxm_bin *bin) {
 
 void vxm_bin_grow(vxm_bins *bins, size_t worker, vxm_bin *bin) {
   if (atomic_load_explicit(&bins->failed, memory_order_relaxed) != VXM_OK) {
-    bin->at = bins->trash + worker;
+    bin->at = bins->trash + worker * (VXM_BIN_SLACK + 1);
     bin->limit = bin->at + 1;
     return;
   }
   if (bin->bitmap) { /* `last` holds records behind the bitmap: put them into it */
-    for (const uint64_t *r = bin->last->data; r < bin->limit; r++)
+    for (const uint64_t *r = bin->last->data; r < bin->at; r++)
       bin->bitmap[*r / 64] ^= UINT64_C(1) << (*r % 64);
     bin->at = bin->last->data;
     return;
   }
   size_t capacity = CHUNK_FIRST;
   if (bin->last) {
-    bin->last->end = bin->limit;
-    capacity = bin->last->is_bitmap ? CHUNK_FIRST : 2 * (size_t)bin->last->capacity + 4;
+    bin->last->end = bin->at;
+    capacity = bin->last->is_bitmap ? CHUNK_FIRST : 2 * (size_t)bin->last->capacity + 12;
     bin->part_records += bin->last->capacity;
   }
   if (bin->part_records > bins->slab_words + CHUNK_MOST)

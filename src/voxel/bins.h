@@ -19,6 +19,9 @@
 /** No part. */
 #define VXM_BIN_NONE UINT32_MAX
 
+/** Words behind the limit of a bin that may be written, so that a vector of records can be stored at once. */
+enum { VXM_BIN_SLACK = 8 };
+
 typedef struct vxm_chunk {
   struct vxm_chunk *next;
   uint32_t capacity; /**< records, or words of a bitmap */
@@ -29,7 +32,8 @@ typedef struct vxm_chunk {
 
 /** The bin of one thread, voter and slab. */
 typedef struct vxm_bin {
-  uint64_t *at, *limit; /**< room in `last` */
+  uint64_t *at, *limit; /**< the next record, and where `last` counts as full; `at` may be up to
+                           VXM_BIN_SLACK beyond */
   vxm_chunk *first, *last;
   uint64_t *bitmap; /**< of the present part, once there is one */
   size_t part_records;
@@ -67,7 +71,7 @@ static inline vxm_bin *vxm_bins_at(const vxm_bins *bins, size_t worker, size_t v
 void vxm_bin_grow(vxm_bins *bins, size_t worker, vxm_bin *bin);
 
 static inline void vxm_bin_put(vxm_bins *bins, size_t worker, vxm_bin *bin, uint64_t record) {
-  if (bin->at == bin->limit)
+  if (bin->at >= bin->limit)
     vxm_bin_grow(bins, worker, bin);
   *bin->at++ = record;
 }

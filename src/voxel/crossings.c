@@ -53,6 +53,19 @@ static double estimate_all(const vxm_crossings *x, size_t f) {
   return sum;
 }
 
+/** At least the number of columns along any axis that all facets cover: squares about their longest edges. */
+static double bound(const vxm_crossings *x) {
+  double voxel = x->placed->lattice.space.voxel_size[0], norm = 0;
+  for (int a = 1; a < 3; a++)
+    voxel = fmin(voxel, x->placed->lattice.space.voxel_size[a]);
+  for (int r = 0; r < 3; r++) /* the Frobenius norm is at least the longest that a unit vector becomes */
+    for (int c = 0; c < 3; c++)
+      norm += x->placed->transform[4 * r + c] * x->placed->transform[4 * r + c];
+  double scale = sqrt(norm) / voxel;
+  return x->facets->squared_length * scale * scale + 2 * x->facets->length * scale +
+         (double)x->facets->facet_count;
+}
+
 /* ---- Planning ---- */
 
 static vxm_status add_range(vxm_crossings *x, size_t begin, size_t end, vxm_error *error) {
@@ -114,17 +127,16 @@ vxm_status vxm_crossings_plan(vxm_crossings *x, const vxm_facets *facets, const 
   x->columns_count = columns_count;
   x->range_count = x->round_count = 0;
   size_t begin = SIZE_MAX, end = 0;
-  double most = 0;
   for (size_t c = 0; c < columns_count; c++) {
     begin = columns[c].facet_begin < begin ? columns[c].facet_begin : begin;
     end = columns[c].facet_end > end ? columns[c].facet_end : end;
-    const int64_t *low = columns[c].begin, *high = columns[c].end;
-    most +=
-        (double)(high[columns[c].u] - low[columns[c].u]) * (double)(high[columns[c].v] - low[columns[c].v]);
   }
   if (begin >= end)
     return end_round(x, error);
-  if (most * (double)(end - begin) <= round_crossings)
+  /* One part is never divided between rounds; estimates would only share out the work better. */
+  bool one_part = facets->part[begin] == facets->part[end - 1];
+  double most = bound(x) * (double)columns_count;
+  if (one_part ? end - begin > FACETS_MAX || most <= TASK_CROSSINGS : most <= round_crossings)
     return plan_evenly(x, begin, end, error);
   return plan_by_estimate(x, begin, end, error);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/facets.h"
 
+#include <math.h>
 #include <string.h>
 
 /** What is needed while facets are made. */
@@ -147,6 +148,48 @@ static vxm_status number_points(builder *b, vxm_error *error) {
   return VXM_OK;
 }
 
+/* ---- Sizes ---- */
+
+static const double *position_of(const vxm_facets *facets, uint32_t point) {
+  return point < facets->first_cap ? vxm_position(facets->soup, point)
+                                   : facets->cap_points[point - facets->first_cap];
+}
+
+static double squared_distance(const double *p, const double *q) {
+  double sum = 0;
+  for (int a = 0; a < 3; a++)
+    sum += (p[a] - q[a]) * (p[a] - q[a]);
+  return sum;
+}
+
+/** Sums up how long facets are. A cone reaches from its edge to somewhere among the triangles. */
+static void measure(vxm_facets *facets) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  size_t cones = 0;
+  for (size_t f = 0; f < facets->facet_count; f++) {
+    const uint32_t *corner = facets->corners[f];
+    if (corner[2] >= facets->first_apex) {
+      cones++;
+      continue;
+    }
+    double squared = 0;
+    for (int k = 0; k < 3; k++) {
+      const double *p = position_of(facets, corner[k]);
+      squared = fmax(squared, squared_distance(p, position_of(facets, corner[(k + 1) % 3])));
+      for (int a = 0; a < 3; a++) {
+        low[a] = fmin(low[a], p[a]);
+        high[a] = fmax(high[a], p[a]);
+      }
+    }
+    facets->length += sqrt(squared);
+    facets->squared_length += squared;
+  }
+  if (cones > 0) {
+    facets->length += (double)cones * sqrt(squared_distance(low, high));
+    facets->squared_length += (double)cones * squared_distance(low, high);
+  }
+}
+
 vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_rule rule, vxm_error *error) {
   *out = (vxm_facets){.context = soup->context, .soup = soup, .split = {.context = soup->context}};
   builder b = {.facets = out, .soup = soup, .error = VXM_ERROR_INIT};
@@ -157,9 +200,10 @@ vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_ru
   if (status == VXM_OK)
     status = make_facets(&b);
   vxm_free(out->context, b.next);
-  if (status == VXM_OK)
+  if (status == VXM_OK) {
+    measure(out);
     vxm_split_trim(&out->split);
-  else if (error)
+  } else if (error)
     *error = local.code != VXM_OK ? local : b.error;
   return status;
 }

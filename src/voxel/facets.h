@@ -24,6 +24,9 @@
 
 typedef enum vxm_facet_role { VXM_FACET_TRIANGLE = 1, VXM_FACET_CAP = 2, VXM_FACET_CONE = 4 } vxm_facet_role;
 
+/** With this a set of roles holds all of them, and roles need not be looked up. */
+#define VXM_FACETS_ALL 8U
+
 /** Facets begin..end-1 belong to a part: first triangles, then from `caps` on its caps, from `cones` on its
  * cones. */
 typedef struct vxm_part {
@@ -39,8 +42,9 @@ typedef struct vxm_facets {
   vxm_part *parts;
   /* Points: the soup's vertices, then from first_cap on the caps' own, then an apex for each part. */
   size_t first_cap, first_apex, point_count;
-  double (*cap_points)[3]; /**< positions of the caps' own points, model units */
-  vxm_split split;         /**< trimmed: counts only */
+  double (*cap_points)[3];       /**< positions of the caps' own points, model units */
+  double length, squared_length; /**< sums over all facets of the longest edge and its square, model units */
+  vxm_split split;               /**< trimmed: counts only */
 } vxm_facets;
 
 /** Splits a soup into parts and covers its polygons. Destroy with vxm_facets_destroy, also after a failure.

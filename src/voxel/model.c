@@ -107,7 +107,8 @@ vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const doubl
   for (size_t p = 0; p < facets->split.part_count; p++)
     atomic_store_explicit(&run->touched[p], 0, memory_order_relaxed);
   run->confidence = confidence;
-  run->contested = run->escalated = run->added = 0;
+  run->contested = run->escalated = 0;
+  run->added = false;
   vxm_wound_destroy(&run->open_wound);
   vxm_wound_destroy(&run->all_wound);
   vxm_lattice lattice = vxm_lattice_of(space);
@@ -152,7 +153,7 @@ vxm_status vxm_model_fill(vxm_model *model, const vxm_window *window, vxm_error 
 static void count_empty_parts(vxm_model *model, vxm_voxelize_report *report) {
   vxm_run *run = &model->run;
   const vxm_facets *facets = &model->shape.facets;
-  if (!vxm_one_voter(&model->options) && run->added == 0)
+  if (!vxm_one_voter(&model->options) && !run->added)
     for (size_t p = vxm_voted_begin(&model->shape); p < facets->split.part_count; p++)
       atomic_store_explicit(&run->touched[p], 0, memory_order_relaxed);
   for (size_t p = 0; p < facets->split.part_count && model->options.mode != VXM_MODE_SURFACE; p++)

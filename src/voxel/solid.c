@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/solid.h"
 #include "voxel/orient.h"
+#include "voxel/poll.h"
 #include "voxel/settle.h"
 #include "voxel/tetra.h"
 #include "voxel/unite.h"
@@ -40,7 +41,10 @@ int vxm_run_buffers(const vxm_shape *shape) {
   if (shape->options->mode == VXM_MODE_SURFACE || vxm_one_voter(shape->options) ||
       vxm_voted_begin(shape) == shape->facets.split.part_count)
     return 0;
-  return vxm_caps_wanted(shape->options) || has_cones(shape, vxm_voted_begin(shape)) ? 4 : 3;
+  bool decide = vxm_caps_wanted(shape->options);
+  if (vxm_voted_begin(shape) + 1 == shape->facets.split.part_count)
+    return decide ? 1 : 0; /* one part: only what is contested */
+  return decide || has_cones(shape, vxm_voted_begin(shape)) ? 4 : 3;
 }
 
 bool vxm_run_apexes(const vxm_shape *shape) {
@@ -117,6 +121,7 @@ static vxm_status settle_contested(vxm_run *run, const vxm_window *window, const
                                    vxm_error *error) {
   vxm_shape *shape = run->shape;
   vxm_status status = VXM_OK;
+  int64_t added = 0;
   if (!run->open_wound.tree) {
     status = vxm_orient_open(shape, error);
     if (status == VXM_OK)
@@ -124,30 +129,62 @@ static vxm_status settle_contested(vxm_run *run, const vxm_window *window, const
                                 run->mirrored, error);
   }
   if (status == VXM_OK)
-    status =
-        vxm_settle(window, mask, run->open_wound.tree, shape->context, run->confidence, &run->added, error);
+    status = vxm_settle(window, mask, run->open_wound.tree, shape->context, run->confidence, &added, error);
+  run->added |= added > 0;
+  if (added > 0 && run->touched)
+    for (size_t p = vxm_voted_begin(shape); p < shape->facets.split.part_count; p++)
+      atomic_store_explicit(&run->touched[p], 1, memory_order_relaxed);
   return status;
+}
+
+/** One part is asked about slab by slab, and the voters are never held as a whole. */
+static vxm_status poll_part(vxm_run *run, const vxm_window *window, size_t part, bool tetra, vxm_vote rule,
+                            uint64_t *mask, vxm_tally *tally, vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  vxm_window slice = *window, carry;
+  slice.begin = 0;
+  slice.end = 1;
+  vxm_status status = vxm_run_buffer(run, VXM_BUFFER_CARRY, &slice, &carry, error);
+  if (status != VXM_OK)
+    return status;
+  if (window->begin == 0)
+    memset(carry.words, 0, carry.slice_words * sizeof *carry.words);
+  vxm_poll_job job = {.facets = &shape->facets,
+                      .placed = &run->placed,
+                      .part = part,
+                      .tetra = tetra,
+                      .rule = rule,
+                      .mask = mask,
+                      .carry = carry.words};
+  return vxm_poll(&shape->workspace, window, &job, tally, error);
 }
 
 static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_error *error) {
   vxm_shape *shape = run->shape;
-  size_t begin = vxm_voted_begin(shape);
-  if (begin == shape->facets.split.part_count)
+  size_t begin = vxm_voted_begin(shape), end = shape->facets.split.part_count;
+  if (begin == end)
     return VXM_OK;
-  bool decide = vxm_caps_wanted(shape->options);
-  const uint64_t *voters[VOTERS];
+  bool decide = vxm_caps_wanted(shape->options), tetra = !decide && has_cones(shape, begin);
+  vxm_vote rule = decide ? VXM_VOTE_AUTO : shape->options->vote;
   vxm_window mask = {.words = NULL};
-  vxm_status status = fill_voters(run, window, begin, !decide && has_cones(shape, begin), voters, error);
-  if (status == VXM_OK && decide)
-    status = vxm_run_buffer(run, VXM_BUFFER_MASK, window, &mask, error);
+  vxm_tally tally = {0, false};
+  vxm_status status = decide ? vxm_run_buffer(run, VXM_BUFFER_MASK, window, &mask, error) : VXM_OK;
+  if (status == VXM_OK && end - begin == 1) {
+    status = poll_part(run, window, begin, tetra, rule, mask.words, &tally, error);
+    if (tally.added && run->touched)
+      atomic_store_explicit(&run->touched[begin], 1, memory_order_relaxed);
+  } else if (status == VXM_OK) {
+    const uint64_t *voters[VOTERS];
+    status = fill_voters(run, window, begin, tetra, voters, error);
+    if (status == VXM_OK)
+      vxm_vote_count(window->words, voters, mask.words,
+                     window->slice_words * (size_t)(window->end - window->begin), rule, shape->context,
+                     &tally);
+  }
   if (status != VXM_OK)
     return status;
-  vxm_tally tally = {0, 0};
-  size_t count = window->slice_words * (size_t)(window->end - window->begin);
-  vxm_vote_count(window->words, voters, mask.words, count, decide ? VXM_VOTE_AUTO : shape->options->vote,
-                 shape->context, &tally);
   run->contested += tally.contested;
-  run->added += tally.added;
+  run->added |= tally.added;
   if (!decide || tally.contested == 0)
     return VXM_OK;
   run->escalated += tally.contested;

@@ -20,6 +20,7 @@ enum {
   VXM_BUFFER_VOTERS = 0, /**< x, y, z and the tetrahedra */
   VXM_BUFFER_MASK = 4,   /**< contested voxels */
   VXM_BUFFER_CLOSED,     /**< what closed parts fill */
+  VXM_BUFFER_CARRY,      /**< a slice, for vxm_poll */
   VXM_BUFFERS
 };
 
@@ -44,7 +45,7 @@ typedef struct vxm_run {
   atomic_uchar *touched;           /**< per part: whether it sets a voxel; NULL = not asked */
   uint8_t *confidence;             /**< of the whole grid, x fastest; NULL = not asked */
   int64_t contested, escalated;
-  int64_t added; /**< voxels that the open parts set */
+  bool added; /**< whether the open parts set a voxel */
 } vxm_run;
 
 /** Whether holes are capped: only where no rule of the papers was asked for. */

@@ -272,7 +272,9 @@ static void shape(unite_state *state) {
   vxm_columns *columns = &state->columns;
   *columns = vxm_columns_of(window, job->axis);
   columns->slab_shift = state->slabs.shift;
-  columns->roles = job->roles;
+  /* Closed parts have neither caps nor cones. */
+  bool closed = job->part_end <= job->facets->split.kind_end[VXM_PART_CLOSED];
+  columns->roles = job->roles | (closed ? VXM_FACETS_ALL : 0);
   columns->facet_begin = job->facets->parts[job->part_begin].begin;
   columns->facet_end = job->facets->parts[job->part_end - 1].end;
   if (slices)

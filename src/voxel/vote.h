@@ -8,7 +8,7 @@
 /** What voters came to. */
 typedef struct vxm_tally {
   int64_t contested; /**< voxels on which they disagree and that were not set before */
-  int64_t added;     /**< voxels newly set */
+  bool added;        /**< whether a voxel was newly set */
 } vxm_tally;
 
 /**
