@@ -3,9 +3,6 @@
 #include "base/hash.h"
 #include "base/threads.h"
 
-/** Words looked at together: a line of the cache. */
-enum { BLOCK = 8 };
-
 /** A range of rows of a window, counted through its slices, and what their places mean. */
 typedef struct rows {
   const vxm_window *window;
@@ -45,16 +42,10 @@ static inline void add_steps(vxm_sum *sum, uint64_t steps, uint64_t word, size_t
 static inline void sum_along(vxm_sum *sum, const uint64_t *row, size_t words, uint64_t tail, line at) {
   uint64_t last = 0; /* the bit before, in all places */
   for (size_t w = 0; w < words;) {
-    size_t end = words;
-    if (w + BLOCK <= words) {
-      uint64_t any = 0;
-      end = w + BLOCK;
-      for (size_t i = 0; i < BLOCK; i++)
-        any |= row[w + i] ^ last;
-      if (!any) {
-        w = end;
-        continue;
-      }
+    size_t end = w + VXM_LINE_WORDS <= words ? w + VXM_LINE_WORDS : words;
+    if (w + VXM_LINE_WORDS <= words && vxm_line_is(row + w, last)) {
+      w = end;
+      continue;
     }
     for (; w < end; w++) {
       uint64_t word = row[w];
@@ -70,17 +61,12 @@ static inline void sum_along(vxm_sum *sum, const uint64_t *row, size_t words, ui
 /** A row across x, against the one at i - 1; NULL stands for clear voxels. */
 static inline void sum_across(vxm_sum *sum, const uint64_t *row, const uint64_t *previous, size_t words,
                               line at) {
-  static const uint64_t clear[BLOCK] = {0};
-  for (size_t w = 0; w < words; w += BLOCK) {
+  static const uint64_t clear[VXM_LINE_WORDS] = {0};
+  for (size_t w = 0; w < words; w += VXM_LINE_WORDS) {
     const uint64_t *from = previous ? previous + w : clear;
-    size_t count = words - w < BLOCK ? words - w : BLOCK;
-    if (count == BLOCK) {
-      uint64_t any = 0;
-      for (size_t i = 0; i < BLOCK; i++)
-        any |= row[w + i] ^ from[i];
-      if (!any)
-        continue;
-    }
+    size_t count = words - w < VXM_LINE_WORDS ? words - w : VXM_LINE_WORDS;
+    if (count == VXM_LINE_WORDS && vxm_lines_equal(row + w, from))
+      continue;
     for (size_t i = 0; i < count; i++)
       add_steps(sum, row[w + i] ^ from[i], row[w + i], w + i, at);
   }
