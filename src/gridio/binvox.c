@@ -311,6 +311,7 @@ static vxm_status write_header(vxm_output *output, const vxm_space *space, uint6
 static vxm_status begin(vxm_slices *slices, vxm_error *error) {
   const vxm_space *space = &slices->space;
   vxm_run_shape shape = shape_of(space);
+  slices->length = (int64_t)side_of(space);
   vxm_run_writer_begin(slices->state, &shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
   return write_header(slices->output, space, side_of(space), error);
 }
@@ -320,7 +321,7 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
   uint64_t side = side_of(&slices->space);
   for (uint64_t x = (uint64_t)slices->space.dims[0]; x < side; x++) {
     vxm_run_writer_skip(slices, side * side);
-    vxm_status status = vxm_slices_step(slices, x, side, error);
+    vxm_status status = vxm_slices_step(slices, (double)(x + 1), error);
     if (status != VXM_OK)
       return status;
   }

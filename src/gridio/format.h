@@ -17,6 +17,8 @@ struct vxm_slices {
   char *path;
   bool report;
   int64_t next; /**< slice */
+  int64_t
+      length; /**< slices of the file, its padding included; those of the space unless `begin` says more */
   void *state;
 };
 
@@ -34,12 +36,13 @@ typedef struct vxm_slices_kind {
   vxm_status (*end)(vxm_slices *slices, vxm_error *error);
 } vxm_slices_kind;
 
-/**
- * For `put` and `end`, now and then: notices a failed write, and reports progress if that is wanted.
- *
- * @param done rows of `all`
- */
-vxm_status vxm_slices_step(vxm_slices *slices, uint64_t done, uint64_t all, vxm_error *error);
+/** For `put` and `end`, now and then: notices a failed write, and reports progress if that is wanted. */
+vxm_status vxm_slices_step(vxm_slices *slices, double slices_done, vxm_error *error);
+/** The same after some rows, counted through the slices of a window. */
+static inline vxm_status vxm_slices_step_rows(vxm_slices *slices, const vxm_window *window, size_t rows,
+                                              vxm_error *error) {
+  return vxm_slices_step(slices, (double)window->begin + (double)rows / (double)window->middle_dim, error);
+}
 
 typedef struct vxm_grid_format {
   const char *name; /**< also the extension */

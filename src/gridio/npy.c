@@ -214,14 +214,13 @@ static void store_rows(size_t task, int worker, void *payload) {
 }
 
 static vxm_status put(vxm_slices *slices, const vxm_window *window, vxm_error *error) {
-  size_t middles = (size_t)window->middle_dim, rows = (size_t)(window->end - window->begin) * middles,
+  size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim,
          most = chunk_rows(&slices->space);
   for (size_t row = 0; row < rows; row += most) {
     storing s = {window, slices->state, row, rows - row < most ? rows - row : most};
     vxm_parallel(slices->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
     vxm_output_write(slices->output, s.bytes, s.rows * (size_t)window->fast_dim);
-    vxm_status status = vxm_slices_step(slices, (uint64_t)window->begin * middles + row + s.rows,
-                                        (uint64_t)window->slow_dim * middles, error);
+    vxm_status status = vxm_slices_step_rows(slices, window, row + s.rows, error);
     if (status != VXM_OK)
       return status;
   }

@@ -154,25 +154,24 @@ static bool is_plain(const vxm_window *window) {
 static vxm_status put(vxm_slices *slices, const vxm_window *window, vxm_error *error) {
   enum { WORDS_PER_STEP = 1 << 19 };
   int64_t rows = window->middle_dim, some = WORDS_PER_STEP / (int64_t)window->row_words;
-  uint64_t done = 0, all = (uint64_t)rows * (uint64_t)window->slow_dim;
-  for (int64_t slow = window->begin; slow < window->end; slow++)
-    for (int64_t begin = 0; begin < rows; begin += some) {
-      int64_t end = vxm_min(begin + some, rows);
+  size_t words = 0; /* since the last step */
+  vxm_status status = VXM_OK;
+  for (int64_t slow = window->begin; status == VXM_OK && slow < window->end; slow++)
+    for (int64_t begin = 0, end; status == VXM_OK && begin < rows; begin = end) {
+      end = vxm_min(begin + some, rows);
       if (is_plain(window))
         vxm_output_write(slices->output, vxm_window_row(window, begin, slow),
                          (size_t)(end - begin) * window->row_words * 8);
       else
         put_rows(slices->state, slices->output, window, slow, begin, end);
-      done += (uint64_t)(end - begin) * window->row_words;
-      if (done < WORDS_PER_STEP)
+      words += (size_t)(end - begin) * window->row_words;
+      bool last = slow + 1 == window->end && end == rows;
+      if (words < WORDS_PER_STEP && !last)
         continue;
-      done = 0;
-      vxm_status status =
-          vxm_slices_step(slices, (uint64_t)slow * (uint64_t)rows + (uint64_t)end, all, error);
-      if (status != VXM_OK)
-        return status;
+      words = 0;
+      status = vxm_slices_step(slices, (double)slow + (double)end / (double)rows, error);
     }
-  return VXM_OK;
+  return status;
 }
 
 static vxm_status check_path(const vxm_space *space, const char *path, vxm_error *error) {

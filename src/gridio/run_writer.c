@@ -38,7 +38,7 @@ static void plan(const vxm_run_shape *shape, uint64_t rows, writer *out) {
   size_t row_words = (shape->length + 63) / 64, room = row_room(shape);
   out->shape = *shape;
   out->piece_rows = row_words < PIECE_WORDS ? PIECE_WORDS / row_words : 1;
-  out->buffer_bytes = room < BUFFER ? BUFFER : (room + 63) / 64 * 64;
+  out->buffer_bytes = room < BUFFER ? (size_t)(rows < BUFFER / room ? rows * room : BUFFER) : room;
   uint64_t wanted = (rows + out->piece_rows - 1) / out->piece_rows;
   out->pieces = BUFFERS_MAX / out->buffer_bytes; /* at least 1: a row takes at most 2^21 + 64 bytes */
   if (wanted < out->pieces)
@@ -206,7 +206,7 @@ static void join_pieces(writer *w, vxm_output *output, size_t count) {
 
 vxm_status vxm_run_writer_put(vxm_slices *slices, const vxm_window *window, vxm_error *error) {
   writer *w = slices->state;
-  size_t middles = (size_t)window->middle_dim, rows = (size_t)(window->end - window->begin) * middles;
+  size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim;
   w->window = window;
   for (size_t row = 0; row < rows;) {
     size_t count = 0;
@@ -217,8 +217,7 @@ vxm_status vxm_run_writer_put(vxm_slices *slices, const vxm_window *window, vxm_
     }
     vxm_parallel(slices->context, count, code_piece, w);
     join_pieces(w, slices->output, count);
-    vxm_status status = vxm_slices_step(slices, (uint64_t)window->begin * middles + row,
-                                        (uint64_t)window->slow_dim * middles, error);
+    vxm_status status = vxm_slices_step_rows(slices, window, row, error);
     if (status != VXM_OK)
       return status;
   }

@@ -76,6 +76,7 @@ static vxm_status create(vxm_slices **out, vxm_context *context, const vxm_grid_
   slices->context = owner;
   slices->format = format;
   slices->space = *space;
+  slices->length = space->dims[format->slices->layout.slow];
   slices->path = vxm_alloc(owner, strlen(path) + 1, 1, &local);
   if (slices->path)
     slices->state = vxm_alloc(owner, format->slices->state_bytes(space), 1, &local);
@@ -122,14 +123,15 @@ void vxm_slices_report(vxm_slices *slices) {
   slices->report = true;
 }
 
-vxm_status vxm_slices_step(vxm_slices *slices, uint64_t done, uint64_t all, vxm_error *error) {
+vxm_status vxm_slices_step(vxm_slices *slices, double slices_done, vxm_error *error) {
   if (vxm_output_failed(slices->output)) {
     vxm_output *output = slices->output;
     slices->output = NULL;
     return vxm_output_commit(output, error); /* which tells the reason */
   }
-  return slices->report ? vxm_progress(slices->context, "writing", (double)done / (double)all, error)
-                        : VXM_OK;
+  return slices->report
+             ? vxm_progress(slices->context, "writing", slices_done / (double)slices->length, error)
+             : VXM_OK;
 }
 
 vxm_status vxm_slices_put(vxm_slices *slices, const vxm_window *window, vxm_error *error) {
