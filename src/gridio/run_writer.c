@@ -139,12 +139,12 @@ static void code_piece(size_t task, int worker, void *payload) {
 
 /* ---- Joining them ---- */
 
-/** Writes all codes of 255 voxels that the run is sure to have; a pair of 255 may also be the last. */
+/** Writes all codes of 255 voxels that the run has by now. */
 static void put_full(writer *w, vxm_output *output) {
   enum { ROOM = 4096 };
   bool pairs = w->shape.code == VXM_RUN_PAIRS;
-  uint64_t codes = pairs ? (w->run.length - (w->run.length > 0)) / 255 : w->run.length / 255;
-  w->run.length -= codes * 255;
+  uint64_t codes = w->run.length / 255;
+  w->run.length %= 255;
   uint64_t four = UINT64_C(0xff00ff00ff00ff00) | (w->run.value ? UINT64_C(0x0001000100010001) : 0);
   while (codes > 0) {
     char *room = vxm_output_reserve(output, ROOM);

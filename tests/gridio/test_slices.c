@@ -4,6 +4,7 @@
 #include "grids.h"
 
 #include "gridio/gridio.h"
+#include "gridio/run_writer.h"
 #include "gridio/slices.h"
 
 static const char *const formats[] = {"binvox", "npy", "raw", "rle"};
@@ -159,6 +160,111 @@ static void test_rough_binvox(void **state) {
         grid->words[w] = ~UINT64_C(0);
     check_format(grid, folder, "binvox", 2, &rng);
     vxm_grid_destroy(grid);
+    vxm_context_destroy(context);
+  }
+  remove_folder(folder);
+}
+
+/* ---- Runs alone ---- */
+
+typedef struct code {
+  vxm_run_code kind;
+  bool value;
+  uint64_t length;
+  unsigned char *bytes;
+  size_t used, room;
+} code;
+
+static void put_code(code *c, unsigned byte) {
+  if (c->used == c->room)
+    c->bytes = realloc(c->bytes, c->room = 2 * c->room + 1000);
+  assert_non_null(c->bytes);
+  c->bytes[c->used++] = (unsigned char)byte;
+}
+
+/** As doc/formats.md says it, run by run. */
+static void end_code(code *c, bool last) {
+  while (c->kind == VXM_RUN_BYTES && c->length >= 255) {
+    put_code(c, 255);
+    c->length -= 255;
+  }
+  if (c->kind == VXM_RUN_BYTES && !(last && c->length == 0))
+    put_code(c, (unsigned)c->length);
+  while (c->kind == VXM_RUN_PAIRS && c->length > 0) {
+    unsigned count = c->length > 255 ? 255 : (unsigned)c->length;
+    put_code(c, c->value);
+    put_code(c, count);
+    c->length -= count;
+  }
+  c->value = !c->value;
+  c->length = 0;
+}
+
+static void add_code(code *c, bool value, uint64_t count) {
+  if (value != c->value && count > 0)
+    end_code(c, false);
+  c->length += count;
+}
+
+/** A window without a grid around it, with gaps of any length. */
+static void check_runs(vxm_context *context, const char *folder, const vxm_run_shape *shape, int64_t rows,
+                       int64_t slices, uint64_t sparse, vxm_rng *rng) {
+  vxm_space space = unit_space((int64_t)shape->length, rows, slices);
+  const char *path = path_in(folder, "runs");
+  uint64_t all = (uint64_t)(rows * slices);
+  vxm_slices file = {.context = context, .space = space, .length = slices};
+  assert_int_equal(vxm_output_open(&file.output, context, path, NULL), VXM_OK);
+  file.state = vxm_alloc(context, vxm_run_writer_bytes(shape, all), 1, NULL);
+  assert_non_null(file.state);
+  vxm_run_writer_begin(file.state, shape, all);
+  vxm_grid *grid = new_grid(context, space);
+  code expected = {.kind = shape->code};
+  for (int64_t k = 0; k < slices; k++) {
+    for (int64_t j = 0; j < rows; j++) {
+      for (int64_t i = 0; i < space.dims[0]; i++) {
+        bool value = vxm_rng_below(rng, sparse) == 0;
+        vxm_grid_set(grid, i, j, k, value);
+        add_code(&expected, value, 1);
+      }
+      add_code(&expected, false, shape->row_gap);
+    }
+    add_code(&expected, false, shape->slice_gap);
+  }
+  add_code(&expected, false, 12345);
+  end_code(&expected, true);
+  vxm_window window = vxm_window_of_grid(grid);
+  assert_int_equal(vxm_run_writer_put(&file, &window, NULL), VXM_OK);
+  vxm_run_writer_skip(&file, 12345);
+  vxm_run_writer_end(&file);
+  assert_int_equal(vxm_output_commit(file.output, NULL), VXM_OK);
+  vxm_free(context, file.state);
+  vxm_grid_destroy(grid);
+  size_t size;
+  unsigned char *bytes = load_file(path, &size);
+  assert_int_equal(size, expected.used);
+  assert_memory_equal(bytes, expected.bytes, size);
+  free(bytes);
+  free(expected.bytes);
+}
+
+/** Gaps that make many codes of one run, at and around multiples of 255; buffers that fill between them. */
+static void test_runs(void **state) {
+  (void)state;
+  char folder[64];
+  make_folder(folder);
+  vxm_rng rng = {67};
+  static const uint64_t gaps[] = {0, 1, 254, 255, 256, 510, 1000, 20000};
+  for (int round = 0; round < 120; round++) {
+    vxm_context *context = context_with(1 + round % 2, 0, NULL, NULL);
+    vxm_run_shape shape = {round % 3 ? VXM_RUN_PAIRS : VXM_RUN_BYTES, 1 + vxm_rng_below(&rng, 130),
+                           gaps[vxm_rng_below(&rng, 8)], gaps[vxm_rng_below(&rng, 8)]};
+    int64_t rows = 1 + (int64_t)vxm_rng_below(&rng, 40), slices = 1 + (int64_t)vxm_rng_below(&rng, 30);
+    check_runs(context, folder, &shape, rows, slices, 1 + vxm_rng_below(&rng, 3), &rng);
+    if (round < 6) {
+      shape = (vxm_run_shape){shape.code, 1 + (size_t)round % 3, 10000 + 255 * (uint64_t)round, 700000};
+      check_runs(context, folder, &shape, 5000, 2, 300, &rng);
+      check_runs(context, folder, &shape, 5000, 2, 3, &rng);
+    }
     vxm_context_destroy(context);
   }
   remove_folder(folder);
@@ -343,6 +449,7 @@ int main(void) {
       cmocka_unit_test(test_pieces_make_the_file),
       cmocka_unit_test(test_long_rows_and_rough_grids),
       cmocka_unit_test(test_rough_binvox),
+      cmocka_unit_test(test_runs),
       cmocka_unit_test(test_plan),
       cmocka_unit_test(test_order_of_slices),
       cmocka_unit_test(test_memory_limit),
