@@ -101,19 +101,19 @@ static inline void put_bytes(bool value, uint64_t length, void *payload) {
  * Codes rows while the buffer has room: for a row, and for the run before it, which takes at most 2 bytes for
  * 255 voxels. The first row always fits, since its first run takes none.
  */
-static inline __attribute__((always_inline)) piece code_rows(const writer *w, piece p, unsigned char *buffer,
-                                                             vxm_run_fn put) {
+static inline __attribute__((always_inline)) void code_rows(const writer *w, piece *p, unsigned char *buffer,
+                                                            vxm_run_fn put) {
   const vxm_window *window = w->window;
   const vxm_run_shape shape = w->shape;
   const size_t room = row_room(&shape);
-  int64_t middle = (int64_t)p.row % window->middle_dim;
-  int64_t slow = window->begin + (int64_t)p.row / window->middle_dim;
+  int64_t middle = (int64_t)p->row % window->middle_dim;
+  int64_t slow = window->begin + (int64_t)p->row / window->middle_dim;
   /* It begins as the first voxel is, so that its first run is not empty. */
   vxm_run run = {*vxm_window_row(window, middle, slow) & 1, 0};
-  sink s = {&p, buffer};
-  p.has_first = false;
+  sink s = {p, buffer};
+  p->has_first = false;
   do {
-    if (p.has_first && (size_t)(s.at - buffer) + (run.length >> 6) + room > w->buffer_bytes)
+    if (p->has_first && (size_t)(s.at - buffer) + (run.length >> 6) + room > w->buffer_bytes)
       break;
     vxm_run_scan(&run, vxm_window_row(window, middle, slow), shape.length, put, &s);
     vxm_run_skip(&run, shape.row_gap, put, &s);
@@ -122,10 +122,9 @@ static inline __attribute__((always_inline)) piece code_rows(const writer *w, pi
       middle = 0;
       slow++;
     }
-  } while (++p.row < p.end);
-  p.used = (size_t)(s.at - buffer);
-  p.last = run;
-  return p;
+  } while (++p->row < p->end);
+  p->used = (size_t)(s.at - buffer);
+  p->last = run;
 }
 
 static void code_piece(size_t task, int worker, void *payload) {
@@ -133,9 +132,9 @@ static void code_piece(size_t task, int worker, void *payload) {
   writer *w = payload;
   unsigned char *buffer = w->buffers + task * w->buffer_bytes;
   if (w->shape.code == VXM_RUN_PAIRS)
-    w->piece[task] = code_rows(w, w->piece[task], buffer, put_pairs);
+    code_rows(w, &w->piece[task], buffer, put_pairs);
   else
-    w->piece[task] = code_rows(w, w->piece[task], buffer, put_bytes);
+    code_rows(w, &w->piece[task], buffer, put_bytes);
 }
 
 /* ---- Joining them ---- */
