@@ -490,6 +490,7 @@ typedef struct vxm_voxelize_report {
   int64_t voxels;       /**< set voxels */
   uint64_t hash;        /**< vxm_grid_hash */
   int64_t empty_parts;  /**< parts that set no voxel; of open parts, all if together they set none */
+  double fill_ms, write_ms; /**< of vxm_model_write: time for making and for writing the voxels; else 0 */
 } vxm_voxelize_report;
 
 /**
@@ -552,7 +553,7 @@ typedef struct vxm_estimate {
 } vxm_estimate;
 
 /** Estimates vxm_model_write under the memory limit of the mesh's context. @return as vxm_model_write, before
- * the work */
+ * the work. Nothing is opened */
 VXM_API vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
                                       const char *path, const vxm_grid_write_options *options,
                                       vxm_error *error);

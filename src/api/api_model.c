@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that make many grids of one mesh: they check arguments and call down. */
 #include "api/api_options.h"
-#include "gridio/gridio.h"
+#include "gridio/stream.h"
 #include "voxel/voxelize.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 vxm_status vxm_model_create(vxm_model **out, const vxm_mesh *mesh, const vxm_voxelize_options *options,
@@ -25,26 +26,45 @@ vxm_status vxm_model_voxelize(vxm_grid *grid, vxm_voxelize_report *report, vxm_m
     memset(report, 0, sizeof *report);
   if (!grid || !model)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
-  return vxm_voxelize_into(grid, report, model, transform, error);
+  vxm_status status = model->options.confidence ? vxm_grid_add_confidence(grid, error) : VXM_OK;
+  return status == VXM_OK ? vxm_voxelize_into(grid, report, model, transform, error) : status;
+}
+
+static vxm_status check_write(const vxm_space *space, const char *path, const vxm_grid_write_options *options,
+                              vxm_error *error) {
+  if (!space || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
+  if (options && options->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "write: options version %" PRIu32 " is unknown; use the initializer", options->version);
+  return VXM_OK;
 }
 
 vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
                               const char *path, const vxm_grid_write_options *options, vxm_error *error) {
-  (void)model, (void)path, (void)options, (void)error;
-  *out = (vxm_estimate){vxm_space_bytes(space), vxm_space_bytes(space), 1};
-  return VXM_OK;
+  if (out)
+    *out = (vxm_estimate){0};
+  if (!out || !model)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
+  vxm_status status = check_write(space, path, options, error);
+  return status == VXM_OK
+             ? vxm_stream_estimate(out, model, space, path, options ? options->format : NULL, error)
+             : status;
 }
 
 vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
                            const char *path, const vxm_grid_write_options *options, vxm_error *error) {
-  vxm_grid *grid;
-  vxm_status status = vxm_grid_create(&grid, model->context, space, error);
-  if (status != VXM_OK)
-    return status;
-  status = vxm_model_voxelize(grid, report, model, NULL, error);
+  vxm_voxelize_report local;
+  if (!report)
+    report = &local;
+  *report = (vxm_voxelize_report){0};
+  if (!model)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
+  vxm_status status = check_write(space, path, options, error);
   if (status == VXM_OK)
-    status = vxm_grid_write(grid, path, options, error);
-  vxm_grid_destroy(grid);
+    status = vxm_stream_write(report, model, space, path, options ? options->format : NULL, error);
+  if (status != VXM_OK)
+    *report = (vxm_voxelize_report){0};
   return status;
 }
 

@@ -20,7 +20,8 @@ enum {
   KEY_NO_REPAIR,
   KEY_WELD,
   KEY_KEEP,
-  KEY_FORMAT
+  KEY_FORMAT,
+  KEY_DRY_RUN
 };
 
 static const cli_option known_options[] = {
@@ -55,6 +56,7 @@ static const cli_option known_options[] = {
      "what a closed component inside another is: auto = a cavity if it is wound\n"
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
+    {KEY_DRY_RUN, "dry-run", NULL, "tell the grid and the memory it takes, and write nothing"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
@@ -62,7 +64,7 @@ static const cli_option known_options[] = {
 
 typedef struct request {
   const char *input, *output, *format, *like, *confidence;
-  bool resolution, size, fit, pad, bounds, vote, no_repair, repair_options; /**< which options were given */
+  bool resolution, size, fit, pad, bounds, vote, no_repair, repair_options, dry_run; /**< which were given */
   vxm_repair_options repair;
   vxm_voxelize_options voxelize;
 } request;
@@ -185,6 +187,9 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     out->confidence = value;
     out->voxelize.confidence = true;
     return CLI_END;
+  case KEY_DRY_RUN:
+    out->dry_run = true;
+    return CLI_END;
   case KEY_NO_REPAIR:
     out->no_repair = true;
     return CLI_END;
@@ -249,8 +254,17 @@ typedef struct outcome {
   cli_input input;
   vxm_voxelize_report voxelize;
   vxm_space space;
+  vxm_estimate estimate;
   double voxelize_ms, write_ms, total_ms;
 } outcome;
+
+static json_t *estimate_json(const vxm_estimate *estimate) {
+  json_t *object = json_object();
+  json_object_set_new(object, "grid_bytes", json_integer((json_int_t)estimate->grid_bytes));
+  json_object_set_new(object, "memory_bytes", json_integer((json_int_t)estimate->memory_bytes));
+  json_object_set_new(object, "windows", json_integer(estimate->windows));
+  return object;
+}
 
 static json_t *make_report(const cli_run *cli, const request *given, const outcome *results) {
   json_t *votes = json_object();
@@ -266,13 +280,20 @@ static json_t *make_report(const cli_run *cli, const request *given, const outco
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
+  json_object_set_new(report, "estimate", estimate_json(&results->estimate));
+  json_object_set_new(report, "grid", cli_json_space(&results->space));
+  if (given->dry_run) {
+    json_decref(votes);
+    json_decref(times);
+    json_object_set(report, "warnings", cli->warnings);
+    return report;
+  }
   json_object_set_new(report, "parts", json_integer(results->voxelize.parts));
   json_object_set_new(report, "closed_parts", json_integer(results->voxelize.closed_parts));
   json_object_set_new(report, "capped_parts", json_integer(results->voxelize.capped_parts));
   json_object_set_new(report, "caps", json_integer(results->voxelize.caps));
   json_object_set_new(report, "cavities", json_integer(results->voxelize.cavities));
   json_object_set_new(report, "empty_parts", json_integer(results->voxelize.empty_parts));
-  json_object_set_new(report, "grid", cli_json_space(&results->space));
   json_object_set_new(report, "votes", votes);
   json_object_set_new(report, "voxels", json_integer(results->voxelize.voxels));
   json_object_set_new(report, "hash", cli_json_hash(results->voxelize.hash));
@@ -313,15 +334,33 @@ static void summarize_parts(const cli_run *cli, const vxm_voxelize_report *repor
   fputc('\n', cli->text);
 }
 
+/** What is known before the voxels are made. */
+static void summarize_begin(const cli_run *cli, const outcome *results) {
+  const cli_input *input = &results->input;
+  cli_row(cli, "input", "%s (%s): %" PRId64 " vertices, %" PRId64 " faces", cli_shown(input->path, "<stdin>"),
+          input->format, input->vertices, input->faces);
+  summarize_repair(cli, &input->repair);
+  cli_rows_space(cli, &results->space);
+}
+
+/** The estimate: always with --dry-run, else for what may take long. */
+static void summarize_estimate(const cli_run *cli, const request *given, const outcome *results) {
+  const uint64_t large = UINT64_C(1) << 26; /* 64 MiB */
+  const vxm_estimate *estimate = &results->estimate;
+  double mib = 1 << 20;
+  if (!given->dry_run && estimate->grid_bytes < large)
+    return;
+  cli_row(cli, "estimate", "%.1f MiB of voxels; up to %.1f MiB of memory, %s",
+          (double)estimate->grid_bytes / mib, (double)estimate->memory_bytes / mib,
+          estimate->windows > 1 ? "slices at a time" : "all at once");
+  fflush(cli->text);
+}
+
 static void summarize(const cli_run *cli, const request *given, const outcome *results) {
   const cli_input *input = &results->input;
   const vxm_voxelize_report *report = &results->voxelize;
   const vxm_space *space = &results->space;
   double cells = (double)space->dims[0] * (double)space->dims[1] * (double)space->dims[2];
-  cli_row(cli, "input", "%s (%s): %" PRId64 " vertices, %" PRId64 " faces", cli_shown(input->path, "<stdin>"),
-          input->format, input->vertices, input->faces);
-  summarize_repair(cli, &input->repair);
-  cli_rows_space(cli, space);
   summarize_parts(cli, report);
   if (report->cavities > 0)
     cli_row(cli, "cavities", "%" PRId64, report->cavities);
@@ -355,13 +394,13 @@ static int read_like(cli_run *cli, vxm_space *out, const char *path) {
   return CLI_DONE;
 }
 
-static int make_grid(cli_run *cli, const request *given, outcome *results) {
+/** The confidence is written beside the grid, which is therefore made as a whole. */
+static int write_with_confidence(cli_run *cli, const request *given, outcome *results) {
   double start = cli_clock();
   vxm_grid *grid = NULL;
   if (vxm_voxelize(&grid, &results->voxelize, results->input.mesh, &given->voxelize, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_grid(cli, given->input, grid);
-  results->space = *vxm_grid_space(grid);
   double made = cli_clock();
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = given->format;
@@ -371,11 +410,53 @@ static int make_grid(cli_run *cli, const request *given, outcome *results) {
   if (status == VXM_OK) {
     cli->made = given->output;
     cli->made_format = given->format;
-    if (given->confidence)
-      status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
+    status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
   }
   vxm_grid_destroy(grid);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+}
+
+static int write_model(cli_run *cli, const request *given, outcome *results, vxm_model *model) {
+  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+  options.format = given->format;
+  double start = cli_clock();
+  if (vxm_model_write(&results->voxelize, model, &results->space, given->output, &options, &cli->error) !=
+      VXM_OK)
+    return cli_fail(cli);
+  cli->made = given->output;
+  cli->made_format = given->format;
+  results->write_ms = results->voxelize.write_ms;
+  results->voxelize_ms += cli_clock() - start - results->write_ms;
+  for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
+    cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
+  return CLI_DONE;
+}
+
+/** Makes the model, tells what it will take, and unless that is all that is wanted writes the grid. */
+static int make_file(cli_run *cli, const request *given, outcome *results) {
+  const vxm_mesh *mesh = results->input.mesh;
+  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+  options.format = given->format;
+  vxm_model *model = NULL;
+  double start = cli_clock();
+  vxm_status status = vxm_space_fit(&results->space, mesh, &given->voxelize.space, &cli->error);
+  if (status == VXM_OK)
+    status = vxm_model_create(&model, mesh, &given->voxelize, &cli->error);
+  if (status == VXM_OK)
+    status =
+        vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
+  results->voxelize_ms = cli_clock() - start;
+  int result = status == VXM_OK ? CLI_DONE : cli_fail(cli);
+  if (result == CLI_DONE && cli_summary(cli)) {
+    cli_progress_clear(cli);
+    summarize_begin(cli, results);
+    summarize_estimate(cli, given, results);
+  }
+  if (result == CLI_DONE && !given->dry_run)
+    result = given->confidence ? write_with_confidence(cli, given, results)
+                               : write_model(cli, given, results, model);
+  vxm_model_destroy(model);
+  return result;
 }
 
 static int run(cli_run *cli) {
@@ -395,13 +476,13 @@ static int run(cli_run *cli) {
   const vxm_repair_options *repair = given.no_repair ? NULL : &given.repair;
   if (cli_read_repaired(cli, &results.input, given.input, repair) != CLI_DONE)
     return CLI_FAILED;
-  int status = make_grid(cli, &given, &results);
+  int status = make_file(cli, &given, &results);
   vxm_mesh_destroy(results.input.mesh);
   if (status != CLI_DONE)
     return status;
   results.total_ms = cli_clock() - start;
   cli_progress_clear(cli);
-  if (cli_summary(cli))
+  if (cli_summary(cli) && !given.dry_run)
     summarize(cli, &given, &results);
   return cli_finish(cli, make_report(cli, &given, &results));
 }

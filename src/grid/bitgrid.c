@@ -74,6 +74,16 @@ void vxm_grid_destroy(vxm_grid *grid) {
   vxm_context_release(context);
 }
 
+vxm_status vxm_grid_add_confidence(vxm_grid *grid, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  const int64_t *dims = grid->space.dims;
+  if (!grid->confidence)
+    grid->confidence = vxm_calloc(grid->context, (size_t)dims[0] * (size_t)dims[1], (size_t)dims[2], &local);
+  if (!grid->confidence && error)
+    *error = local;
+  return local.code;
+}
+
 static bool inside(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
   const int64_t *dims = grid->space.dims;
   return i >= 0 && j >= 0 && k >= 0 && i < dims[0] && j < dims[1] && k < dims[2];

@@ -26,6 +26,9 @@ vxm_status vxm_space_check(const vxm_space *space, vxm_error *error);
 /** Bytes that a grid of this space takes. The space has been checked. */
 uint64_t vxm_space_bytes(const vxm_space *space);
 
+/** Makes room for a confidence, all 0, unless the grid has one. */
+vxm_status vxm_grid_add_confidence(vxm_grid *grid, vxm_error *error);
+
 /** vxm_grid_count and vxm_grid_hash in one go. */
 void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash);
 

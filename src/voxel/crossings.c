@@ -11,8 +11,14 @@ enum {
   TASK_CROSSINGS = 1 << 21 /**< of a task, estimated, unless one facet has more */
 };
 
-/** Crossings of a round, estimated, beside those of its last part: 128 MiB. */
-static const double round_crossings = 1 << 24;
+/** Crossings of a round, estimated: 128 MiB where memory is not limited. */
+static const double round_most = 1 << 24, round_least = 1 << 16;
+
+double vxm_crossings_round(const vxm_context *context) {
+  size_t left = vxm_memory_left(context);
+  double share = left == SIZE_MAX ? round_most : (double)left / (8 * sizeof(uint64_t));
+  return share > round_most ? round_most : share < round_least ? round_least : share;
+}
 
 void vxm_crossings_destroy(vxm_crossings *crossings) {
   vxm_free(crossings->context, crossings->ranges);
@@ -53,17 +59,15 @@ static double estimate_all(const vxm_crossings *x, size_t f) {
   return sum;
 }
 
-/** At least the number of columns along any axis that all facets cover: squares about their longest edges. */
-static double bound(const vxm_crossings *x) {
-  double voxel = x->placed->lattice.space.voxel_size[0], norm = 0;
+double vxm_crossings_bound(const vxm_facets *facets, const vxm_space *space, const double transform[12]) {
+  double voxel = space->voxel_size[0], norm = 0;
   for (int a = 1; a < 3; a++)
-    voxel = fmin(voxel, x->placed->lattice.space.voxel_size[a]);
+    voxel = fmin(voxel, space->voxel_size[a]);
   for (int r = 0; r < 3; r++) /* the Frobenius norm is at least the longest that a unit vector becomes */
     for (int c = 0; c < 3; c++)
-      norm += x->placed->transform[4 * r + c] * x->placed->transform[4 * r + c];
-  double scale = sqrt(norm) / voxel;
-  return x->facets->squared_length * scale * scale + 2 * x->facets->length * scale +
-         (double)x->facets->facet_count;
+      norm += transform ? transform[4 * r + c] * transform[4 * r + c] : 0;
+  double scale = (transform ? sqrt(norm) : 1) / voxel;
+  return facets->squared_length * scale * scale + 2 * facets->length * scale + (double)facets->facet_count;
 }
 
 /* ---- Planning ---- */
@@ -97,7 +101,7 @@ static vxm_status plan_evenly(vxm_crossings *x, size_t begin, size_t end, vxm_er
 
 /** Tasks of about equal crossings, and a round after each part with which the crossings become too many. */
 static vxm_status plan_by_estimate(vxm_crossings *x, size_t begin, size_t end, vxm_error *error) {
-  double task = 0, round = 0;
+  double task = 0, round = 0, round_crossings = vxm_crossings_round(x->context);
   size_t first = begin;
   vxm_status status = VXM_OK;
   for (size_t f = begin; f < end && status == VXM_OK; f++) {
@@ -135,8 +139,9 @@ vxm_status vxm_crossings_plan(vxm_crossings *x, const vxm_facets *facets, const 
     return end_round(x, error);
   /* One part is never divided between rounds; estimates would only share out the work better. */
   bool one_part = facets->part[begin] == facets->part[end - 1];
-  double most = bound(x) * (double)columns_count;
-  if (one_part ? end - begin > FACETS_MAX || most <= TASK_CROSSINGS : most <= round_crossings)
+  double most =
+      vxm_crossings_bound(facets, &placed->lattice.space, placed->transform) * (double)columns_count;
+  if (one_part ? end - begin > FACETS_MAX || most <= TASK_CROSSINGS : most <= vxm_crossings_round(x->context))
     return plan_evenly(x, begin, end, error);
   return plan_by_estimate(x, begin, end, error);
 }

@@ -33,6 +33,11 @@ typedef struct vxm_crossings {
  */
 vxm_status vxm_crossings_plan(vxm_crossings *crossings, const vxm_facets *facets, const vxm_placed *placed,
                               const vxm_columns *columns, size_t columns_count, vxm_error *error);
+/** Crossings after which a round ends with the present part: a share of the memory that is left. */
+double vxm_crossings_round(const vxm_context *context);
+/** At least the number of columns along any one axis that all facets cover: squares about their longest
+ * edges. */
+double vxm_crossings_bound(const vxm_facets *facets, const vxm_space *space, const double transform[12]);
 void vxm_crossings_destroy(vxm_crossings *crossings);
 
 /** Puts the crossings of a round into the bins, which are empty and have a worker for each thread. */

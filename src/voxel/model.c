@@ -76,6 +76,27 @@ int vxm_model_windows_held(const vxm_model *model) {
   return 1 + confidence + (confidence > 0 && buffers < 4 ? 4 : buffers);
 }
 
+vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
+                            bool worst) {
+  const vxm_facets *facets = &model->shape.facets;
+  uint64_t threads = (uint64_t)vxm_context_threads(model->context);
+  bool polled = vxm_voted_begin(&model->shape) < facets->split.part_count;
+  int voters = polled ? 4 : 1;
+  uint64_t points = facets->point_count * sizeof *model->run.placed.narrow;
+  uint64_t slab = (uint64_t)vxm_max(VXM_SLAB_WORDS, (int64_t)shape->slice_words) * sizeof(uint64_t);
+  /* A slab for each voter and thread, some slices for what is carried on, and the bins themselves. */
+  vxm_demand demand = {points + (5 * threads + 4) * slab + (UINT64_C(1) << 20),
+                       vxm_model_windows_held(model)};
+  /* Chunks of records are half full at worst. */
+  double bound = 2 * sizeof(uint64_t) * vxm_crossings_bound(facets, space, NULL) * voters;
+  double round = 2 * sizeof(uint64_t) * vxm_crossings_round(model->context);
+  if (worst) /* a bin keeps a slab of records of a part before it becomes a bitmap */
+    demand.windows += 2 * voters * (int)threads;
+  double crossings = worst ? fmin(round, bound) : bound;
+  demand.fixed += crossings < 0x1p62 ? (uint64_t)crossings : UINT64_C(1) << 62;
+  return demand;
+}
+
 /* ---- A run ---- */
 
 static vxm_status check_transform(const double m[12], bool *mirrored, vxm_error *error) {

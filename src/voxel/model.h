@@ -18,7 +18,18 @@ struct vxm_model {
 vxm_status vxm_model_make(vxm_model **out, const vxm_soup *soup, const vxm_voxelize_options *options,
                           vxm_error *error);
 
-/** Windows of words that a run holds at once, its result included. */
+/** What a run takes at most, beside the points of the mesh: `fixed` bytes, and `windows` times the words of
+ * the windows it fills, the result included. */
+typedef struct vxm_demand {
+  uint64_t fixed;
+  int windows;
+} vxm_demand;
+
+/** What a run over windows of this shape takes if the crossings of triangles stay below their bound; or,
+ * where `worst`, if all of them become bitmaps, of which each thread may have several. */
+vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
+                            bool worst);
+/** Windows of words that a run over a whole grid holds at once, its result included. */
 int vxm_model_windows_held(const vxm_model *model);
 
 /**

@@ -2,8 +2,7 @@
 #include "voxel/slabs.h"
 
 enum {
-  SLAB_WORDS = 1 << 14, /**< 128 KiB: a part of a usual second-level cache */
-  SLABS_PER_THREAD = 4  /**< so that threads end at about the same time */
+  SLABS_PER_THREAD = 4 /**< so that threads end at about the same time */
 };
 
 vxm_workspace vxm_workspace_of(vxm_context *context) {
@@ -32,10 +31,10 @@ vxm_status vxm_workspace_scratch(vxm_workspace *workspace, size_t words, vxm_err
 vxm_slabs vxm_slabs_of(int64_t layers, size_t layer_words, int threads) {
   int64_t shares = threads > 1 ? (int64_t)threads * SLABS_PER_THREAD : 1;
   int shift = 0;
-  while ((layer_words << (shift + 1)) <= SLAB_WORDS && (shares << (shift + 1)) <= layers)
+  while ((layer_words << (shift + 1)) <= VXM_SLAB_WORDS && (shares << (shift + 1)) <= layers)
     shift++;
   /* A single thread may take all layers as one slab. */
-  while (threads == 1 && (layer_words << shift) * 2 <= SLAB_WORDS && (INT64_C(1) << shift) < layers)
+  while (threads == 1 && (layer_words << shift) * 2 <= VXM_SLAB_WORDS && (INT64_C(1) << shift) < layers)
     shift++;
   int64_t thickness = INT64_C(1) << shift;
   return (vxm_slabs){layers, shift, (size_t)((layers + thickness - 1) >> shift), layer_words << shift};

@@ -7,6 +7,9 @@
 #include "voxel/columns.h"
 #include "voxel/crossings.h"
 
+/** Words of a slab, unless one layer has more: 128 KiB, a part of a usual second-level cache. */
+enum { VXM_SLAB_WORDS = 1 << 14 };
+
 /** Memory that is kept from one use to the next. Start from {.context = ...}. */
 typedef struct vxm_workspace {
   vxm_context *context;

@@ -23,30 +23,32 @@ static vxm_status make_grid(vxm_grid **out, vxm_model *model, const vxm_space *s
     status = vxm_grid_create(out, model->context, space, error);
   if (status != VXM_OK || !model->options.confidence)
     return status;
-  vxm_error local = VXM_ERROR_INIT;
-  const int64_t *dims = space->dims;
-  (*out)->confidence = vxm_calloc(model->context, (size_t)dims[0] * (size_t)dims[1], (size_t)dims[2], &local);
-  if (local.code != VXM_OK && error)
-    *error = local;
-  return local.code;
+  return vxm_grid_add_confidence(*out, error);
+}
+
+vxm_status vxm_voxelize_grid(vxm_grid **out, vxm_voxelize_report *report, vxm_model *model,
+                             const vxm_space *space, vxm_error *error) {
+  vxm_grid *grid = NULL;
+  *out = NULL;
+  vxm_status status = make_grid(&grid, model, space, error);
+  if (status == VXM_OK)
+    status = vxm_voxelize_into(grid, report, model, NULL, error);
+  if (status != VXM_OK) {
+    vxm_grid_destroy(grid);
+    return status;
+  }
+  grid->notes = model->notes;
+  *out = grid;
+  return VXM_OK;
 }
 
 vxm_status vxm_voxelize_run(vxm_grid **out, vxm_voxelize_report *report, const vxm_soup *soup,
                             const vxm_space *space, const vxm_voxelize_options *options, vxm_error *error) {
   vxm_model *model = NULL;
-  vxm_grid *grid = NULL;
   *out = NULL;
   vxm_status status = vxm_model_make(&model, soup, options, error);
   if (status == VXM_OK)
-    status = make_grid(&grid, model, space, error);
-  if (status == VXM_OK)
-    status = vxm_voxelize_into(grid, report, model, NULL, error);
-  if (status == VXM_OK) {
-    grid->notes = model->notes;
-    *out = grid;
-    grid = NULL;
-  }
-  vxm_grid_destroy(grid);
+    status = vxm_voxelize_grid(out, report, model, space, error);
   vxm_model_destroy(model);
   return status;
 }

@@ -25,7 +25,7 @@ mask() {
   sed -E \
     -e 's/^(time +)[0-9.]+ ms: read [0-9.]+, repair [0-9.]+, voxelize [0-9.]+, write [0-9.]+/\1T ms: read T, repair T, voxelize T, write T/' \
     -e 's/("(read|repair|voxelize|write|total)": )[0-9][0-9.e+-]*/\1T/' \
-    -e 's/("peak_bytes": )[0-9]+/\1N/' \
+    -e 's/("(peak|memory)_bytes": )[0-9]+/\1N/' \
     -e 's/^(threads +)[0-9]+/\1N/' \
     -e '/memory limit/s/[0-9]+ (bytes|KiB|MiB|GiB)/N bytes/g' \
     -e 's/^(memory +)[0-9.]+ MiB/\1N MiB/'

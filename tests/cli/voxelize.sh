@@ -36,6 +36,14 @@ run 'voxmend voxelize in/cube.off -o cube.binvox -r 8 -q --report r.json && cat 
 run 'voxmend voxelize in/cube.off -o - --format raw -r 8'
 run 'voxmend voxelize in/cube.off -o cube.raw -r 8 -q && wc -c <cube.raw && cat cube.raw.json'
 
+say "# bounded memory, and what it will take"
+run 'voxmend voxelize in/rocket.off -o whole.npy -r 400 | grep -E "^(voxels|hash)"'
+run 'voxmend voxelize in/rocket.off -o pieces.npy -r 400 --memlimit 9M --threads 1 | grep -E "^(estimate|voxels|hash)"'
+run 'cmp whole.npy pieces.npy'
+run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --memlimit 40M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
+run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --json --memlimit 40M --threads 2'
+run 'test -e not.npy || echo nothing written'
+
 say "# failures leave nothing"
 mkdir out
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
@@ -43,7 +51,8 @@ run 'voxmend voxelize flat.off -o out/x.npy'
 run 'voxmend voxelize flat.off -o out/x.npy --no-repair'
 run 'voxmend voxelize missing.off -o out/x.npy'
 run 'voxmend voxelize in/cube.off -o no/such/x.npy -r 8'
-run 'voxmend voxelize in/cube.off -o out/x.npy -r 4096 --memlimit 100M'
+run 'voxmend voxelize in/cube.off -o out/x.npy -r 4096 --memlimit 10M'
+run 'voxmend voxelize in/cube.off -o out/x.obj -r 4096 --memlimit 100M'
 run 'voxmend voxelize in/cube.off -o out/x.npy --voxel-size 1e-12'
 run 'voxmend voxelize in/cube.off -o out/x.npy --pad 64'
 run 'voxmend voxelize in/cube.off -o out/x.binvox --bounds 0,0,0,1,1,2 -r 8x8x8'
