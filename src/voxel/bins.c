@@ -193,10 +193,10 @@ static void read_mark(vxm_bin_reader *reader) {
   reader->part = reader->chunk ? (uint32_t)(*reader->at++ & UINT32_MAX) : VXM_BIN_NONE;
 }
 
-vxm_bin_reader vxm_bin_read(vxm_bin *bin) {
+vxm_bin_reader vxm_bin_read(vxm_bin *bin, bool one_part) {
   if (bin->last)
     bin->last->end = bin->at;
-  vxm_bin_reader reader = {bin->first, bin->first ? bin->first->data : NULL, VXM_BIN_NONE};
+  vxm_bin_reader reader = {bin->first, bin->first ? bin->first->data : NULL, VXM_BIN_NONE, one_part};
   read_mark(&reader);
   return reader;
 }
@@ -213,7 +213,7 @@ bool vxm_bin_next(vxm_bin_reader *reader, vxm_bin_piece *piece) {
     read_mark(reader);
     return false;
   }
-  const uint64_t *end = reader->at;
+  const uint64_t *end = reader->one_part ? chunk->end : reader->at;
   while (end < chunk->end && !(*end & VXM_BIN_MARK))
     end++;
   *piece = (vxm_bin_piece){reader->at, (size_t)(end - reader->at), false};

@@ -92,6 +92,7 @@ typedef struct vxm_bin_reader {
   const vxm_chunk *chunk;
   const uint64_t *at;
   uint32_t part; /**< whose records come next; VXM_BIN_NONE at the end */
+  bool one_part; /**< there is no other part, so no need to look for marks */
 } vxm_bin_reader;
 
 /** A run of records, or a bitmap of `count` words. */
@@ -101,8 +102,8 @@ typedef struct vxm_bin_piece {
   bool is_bitmap;
 } vxm_bin_piece;
 
-/** Starts at the first part of a bin. */
-vxm_bin_reader vxm_bin_read(vxm_bin *bin);
+/** Starts at the first part of a bin; `one_part`: there is no other. */
+vxm_bin_reader vxm_bin_read(vxm_bin *bin, bool one_part);
 /** The next piece of the reader's part; false, and moved on to the next part, when there is no more. */
 bool vxm_bin_next(vxm_bin_reader *reader, vxm_bin_piece *piece);
 

@@ -40,9 +40,10 @@ typedef struct vxm_kernels {
   void (*fold_across)(uint64_t *words, size_t distance, size_t count);
   /** to |= from, from = 0; returns the OR of all words of `from`. */
   uint64_t (*move_or)(uint64_t *to, uint64_t *from, size_t count);
-  /** vxm_vote_count for some words; returns the contested voxels, and ors into *added the bits newly set. */
+  /** vxm_vote_count for some words, of which `out` holds nothing yet if it is `fresh`; returns the contested
+   * voxels, and ors into *added the bits newly set. */
   int64_t (*vote)(uint64_t *out, const uint64_t *const voters[4], uint64_t *mask, size_t count, vxm_vote rule,
-                  uint64_t *added);
+                  bool fresh, uint64_t *added);
 } vxm_kernels;
 
 /** The best build for this processor, or the one forced. */

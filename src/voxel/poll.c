@@ -40,7 +40,7 @@ static void flip_slab(const poll_state *state, size_t voter, size_t slab, uint64
   vxm_bins *bins = &state->workspace->bins;
   vxm_bin_piece piece;
   for (size_t w = 0; w < bins->workers; w++) {
-    vxm_bin_reader reader = vxm_bin_read(vxm_bins_at(bins, w, voter, slab));
+    vxm_bin_reader reader = vxm_bin_read(vxm_bins_at(bins, w, voter, slab), true);
     while (reader.part != VXM_BIN_NONE)
       while (vxm_bin_next(&reader, &piece))
         flip_piece(words, &piece);
@@ -107,7 +107,7 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
     }
     contested += state->kernels->vote(window->words + at, (const uint64_t *const *)words,
                                       state->job->mask ? state->job->mask + at : NULL, count,
-                                      state->job->rule, &added);
+                                      state->job->rule, state->job->fresh, &added);
     memset(scratch, 0, state->words_each * sizeof *scratch);
     vxm_watch_step(&state->watch);
   }

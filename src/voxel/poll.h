@@ -18,13 +18,14 @@ typedef struct vxm_poll_job {
   size_t part;
   bool tetra;      /**< ask the tetrahedra, too, as parity with cones */
   vxm_vote rule;   /**< VXM_VOTE_AUTO elects what x, y and z all hold, and leaves the rest to others */
+  bool fresh;      /**< the window's words are replaced; else voxels are added to them */
   uint64_t *mask;  /**< NULL, or words laid out as the window's that become the contested voxels */
   uint64_t *carry; /**< a slice of words: what is open along slices at the begin of the window; becomes that
                       at its end. Zeros for the first window */
 } vxm_poll_job;
 
 /**
- * Adds to the window the voxels that the voters elect, and adds up the tally. The same bits for any number of
+ * Sets in the window the voxels that the voters elect, and adds up the tally. The same bits for any number of
  * threads.
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED

@@ -154,6 +154,7 @@ static vxm_status poll_part(vxm_run *run, const vxm_window *window, size_t part,
                       .part = part,
                       .tetra = tetra,
                       .rule = rule,
+                      .fresh = vxm_voted_begin(shape) == 0,
                       .mask = mask,
                       .carry = carry.words};
   return vxm_poll(&shape->workspace, window, &job, tally, error);
@@ -231,9 +232,11 @@ vxm_status vxm_solid_fill(vxm_run *run, const vxm_window *window, vxm_error *err
   vxm_shape *shape = run->shape;
   if (vxm_one_voter(shape->options))
     return fill_by_one(run, window, error);
-  /* Parts that are closed, or closed by caps: one axis settles them. */
-  vxm_status status = vxm_run_unite(run, window, window->layout.fast, 0, vxm_voted_begin(shape),
-                                    VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
+  /* Parts that are closed, or closed by caps: one axis settles them. Without any, a poll starts afresh. */
+  vxm_status status = VXM_OK;
+  if (vxm_voted_begin(shape) > 0 || shape->facets.split.part_count != 1)
+    status = vxm_run_unite(run, window, window->layout.fast, 0, vxm_voted_begin(shape),
+                           VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
   if (status == VXM_OK)
     status = decide_open_parts(run, window, error);
   if (status == VXM_OK && shape->options->method == VXM_METHOD_WINDING)

@@ -233,7 +233,7 @@ static void do_slab(size_t task, int worker, void *payload) {
       memset(s.out, 0, (size_t)(s.end - s.begin) * window->slice_words * sizeof *s.out);
   }
   for (size_t w = 0; w < bins->workers; w++)
-    reader[w] = vxm_bin_read(vxm_bins_at(bins, w, 0, task));
+    reader[w] = vxm_bin_read(vxm_bins_at(bins, w, 0, task), state->in_place);
   for (;;) {
     uint32_t part = VXM_BIN_NONE;
     for (size_t w = 0; w < bins->workers; w++)
