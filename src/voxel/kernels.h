@@ -36,14 +36,18 @@ typedef struct vxm_kernels {
   /** Prefix XOR along each of `rows` rows of row_words words, in place; the last word is masked. Returns the
    * OR of all words. */
   uint64_t (*fold_rows)(uint64_t *words, size_t row_words, size_t rows, uint64_t tail_mask);
+  /** The same for whole lines of 64 bytes, with the result stored past the cache to `to`, and `words`
+   * cleared. row_words is a multiple of 8, and both are aligned to lines. */
+  uint64_t (*fold_rows_past)(uint64_t *to, uint64_t *words, size_t row_words, size_t rows);
   /** words[i] ^= words[i - distance] for i = distance to count - 1: prefix XOR of row onto row. */
   void (*fold_across)(uint64_t *words, size_t distance, size_t count);
   /** to |= from, from = 0; returns the OR of all words of `from`. */
   uint64_t (*move_or)(uint64_t *to, uint64_t *from, size_t count);
   /** vxm_vote_count for some words, of which `out` holds nothing yet if it is `fresh`; returns the contested
-   * voxels, and ors into *added the bits newly set. */
+   * voxels, and ors into *added the bits newly set. With `past` they are stored past the cache where lines
+   * are whole. */
   int64_t (*vote)(uint64_t *out, const uint64_t *const voters[4], uint64_t *mask, size_t count, vxm_vote rule,
-                  bool fresh, uint64_t *added);
+                  bool fresh, bool past, uint64_t *added);
 } vxm_kernels;
 
 /** The best build for this processor, or the one forced. */

@@ -16,6 +16,7 @@ typedef struct poll_state {
   vxm_slabs slabs;
   size_t stripes;
   size_t words_each; /**< scratch of a worker: a slab for each voter */
+  bool past;         /**< the window is larger than caches */
   uint64_t *carries; /**< a slice for each stripe, and one for the end */
   atomic_int_fast64_t contested;
   atomic_bool added;
@@ -59,10 +60,11 @@ static void sum_stripe(size_t stripe, int worker, void *payload) {
     return;
   for (size_t slab = stripe_begin(state, stripe); slab < stripe_begin(state, stripe + 1); slab++) {
     flip_slab(state, (size_t)window->layout.slow, slab, words);
-    for (size_t w = 0; w < state->slabs.words; w++) {
-      carry[w % window->slice_words] ^= words[w];
-      words[w] = 0;
-    }
+    for (size_t k = 0; k < state->slabs.words; k += window->slice_words)
+      for (size_t w = 0; w < window->slice_words; w++) {
+        carry[w] ^= words[k + w];
+        words[k + w] = 0;
+      }
   }
 }
 
@@ -107,7 +109,7 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
     }
     contested += state->kernels->vote(window->words + at, (const uint64_t *const *)words,
                                       state->job->mask ? state->job->mask + at : NULL, count,
-                                      state->job->rule, state->job->fresh, &added);
+                                      state->job->rule, state->job->fresh, state->past, &added);
     memset(scratch, 0, state->words_each * sizeof *scratch);
     vxm_watch_step(&state->watch);
   }
@@ -125,6 +127,7 @@ static void shape(poll_state *state) {
   state->slabs = vxm_slabs_of(window->end - window->begin, window->slice_words, threads);
   state->stripes = (size_t)threads < state->slabs.count ? (size_t)threads : state->slabs.count;
   state->words_each = state->voters * state->slabs.words;
+  state->past = job->fresh && vxm_window_is_large(window);
   for (size_t v = 0; v < state->voters; v++) {
     int axis = v == 3 ? window->layout.fast : (int)v; /* with cones the part is closed: any axis tells */
     vxm_columns *columns = &state->columns[v];

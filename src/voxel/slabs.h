@@ -7,8 +7,8 @@
 #include "voxel/columns.h"
 #include "voxel/crossings.h"
 
-/** Words of a slab, unless one layer has more: 128 KiB, a part of a usual second-level cache. */
-enum { VXM_SLAB_WORDS = 1 << 14 };
+/** Words of a slab, unless one layer has more: 512 KiB, a part of a usual second-level cache. */
+enum { VXM_SLAB_WORDS = 1 << 16 };
 
 /** Memory that is kept from one use to the next. Start from {.context = ...}. */
 typedef struct vxm_workspace {
@@ -35,6 +35,13 @@ typedef struct vxm_slabs {
 /** Cuts `layers` of layer_words each: as thick as fits the cache, but several slabs for each of the threads.
  */
 vxm_slabs vxm_slabs_of(int64_t layers, size_t layer_words, int threads);
+
+/** Whether a window is so large that its words are better stored past the caches, which would first read
+ * them. */
+static inline bool vxm_window_is_large(const vxm_window *window) {
+  const size_t large = 1 << 22; /* 32 MiB */
+  return (size_t)(window->end - window->begin) * window->slice_words >= large;
+}
 
 /** The columns of a window along an axis of the voxel space, with the layers of its slabs cut along v. */
 vxm_columns vxm_columns_of(const vxm_window *window, int axis);

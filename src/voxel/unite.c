@@ -17,6 +17,7 @@ typedef struct unite_state {
   vxm_slabs slabs;
   direction along;
   bool in_place; /**< there is but one part: its flips go straight to the window's words */
+  bool past;     /**< in place, but by way of the work words and past the cache */
   bool clear;    /**< the slabs are still to be cleared */
   size_t row_bits;
   vxm_watch watch;
@@ -171,14 +172,22 @@ static void touch(const unite_state *state, uint32_t part) {
     atomic_store_explicit(&state->job->touched[part], 1, memory_order_relaxed);
 }
 
-/** The only part: the window's own words are flipped and folded. */
+/** The only part: the window's own words are flipped and folded, or written past the cache from work words.
+ */
 static void do_in_place(const slab *s, vxm_bin_reader *reader, uint32_t part) {
   const unite_state *state = s->state;
   extent flipped = {SIZE_MAX, 0};
   vxm_bin_piece piece;
+  uint64_t *words = state->past ? s->work : s->out;
   for (size_t w = 0; w < state->workspace->bins.workers; w++)
     while (reader[w].part == part && vxm_bin_next(&reader[w], &piece))
-      flip_piece(s->out, &piece, &flipped);
+      flip_piece(words, &piece, &flipped);
+  if (state->past) {
+    size_t rows = (size_t)(s->end - s->begin) * (size_t)state->window->middle_dim;
+    if (state->kernels->fold_rows_past(s->out, s->work, state->window->row_words, rows))
+      touch(state, part);
+    return;
+  }
   if (flipped.first > flipped.last)
     return;
   bool any = true;
@@ -229,21 +238,20 @@ static void do_slab(size_t task, int worker, void *payload) {
   s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
   if (state->along != ACROSS_SLICES) {
     s.out = window->words + (size_t)s.begin * window->slice_words;
-    if (state->clear)
+    if (state->clear && !state->past)
       memset(s.out, 0, (size_t)(s.end - s.begin) * window->slice_words * sizeof *s.out);
   }
   for (size_t w = 0; w < bins->workers; w++)
     reader[w] = vxm_bin_read(vxm_bins_at(bins, w, 0, task), state->in_place);
+  if (state->in_place)
+    do_in_place(&s, reader, (uint32_t)state->job->part_begin);
   for (;;) {
     uint32_t part = VXM_BIN_NONE;
     for (size_t w = 0; w < bins->workers; w++)
       part = reader[w].part < part ? reader[w].part : part;
     if (part == VXM_BIN_NONE)
       break;
-    if (state->in_place)
-      do_in_place(&s, reader, part);
-    else
-      do_part(&s, reader, part);
+    do_part(&s, reader, part);
   }
   vxm_watch_step(&state->watch);
 }
@@ -280,6 +288,8 @@ static void shape(unite_state *state) {
   if (slices)
     columns->step[layout->slow] = state->row_bits << state->slabs.shift;
   state->in_place = !slices && job->fresh && job->part_end - job->part_begin == 1;
+  state->past = state->in_place && state->along == ALONG_ROWS && vxm_window_is_large(window) &&
+                window->fast_dim % 512 == 0 && (uintptr_t)window->words % 64 == 0;
 }
 
 vxm_status vxm_unite(vxm_workspace *workspace, const vxm_window *window, const vxm_unite_job *job,
@@ -304,7 +314,7 @@ vxm_status vxm_unite(vxm_workspace *workspace, const vxm_window *window, const v
   size_t workers = (size_t)vxm_context_threads(context);
   vxm_crossings *crossings = &workspace->crossings;
   vxm_status status = vxm_crossings_plan(crossings, job->facets, job->placed, &state.columns, 1, error);
-  if (status == VXM_OK && !state.in_place)
+  if (status == VXM_OK && (!state.in_place || state.past))
     status = vxm_workspace_scratch(workspace, workers * state.slabs.words, error);
   vxm_watch_start(&state.watch, context, job->phase,
                   crossings->range_count + crossings->round_count * state.slabs.count, error);

@@ -25,7 +25,7 @@ static void count_slice(size_t slice, int worker, void *payload) {
     voters[v] = job->voters[v] ? job->voters[v] + begin : NULL;
   uint64_t added = 0;
   int64_t contested = job->kernels->vote(job->out + begin, voters, job->mask ? job->mask + begin : NULL,
-                                         end - begin, job->rule, false, &added);
+                                         end - begin, job->rule, false, false, &added);
   atomic_fetch_add_explicit(&job->contested, contested, memory_order_relaxed);
   if (added)
     atomic_store_explicit(&job->added, true, memory_order_relaxed);
