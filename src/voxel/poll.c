@@ -15,7 +15,7 @@ typedef struct poll_state {
   size_t voters;
   vxm_slabs slabs;
   size_t stripes;
-  size_t words_each; /**< scratch of a worker: a slab for each voter */
+  size_t words_each; /**< scratch of a worker: a slab for each voter, and a slice */
   bool past;         /**< the window is larger than caches */
   uint64_t *carries; /**< a slice for each stripe, and one for the end */
   atomic_int_fast64_t contested;
@@ -80,33 +80,33 @@ static void fold_voter(const poll_state *state, size_t voter, uint64_t *words, s
   else if (axis == window->layout.middle)
     for (size_t k = 0; k < slices; k++)
       kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
-  else {
-    for (size_t w = 0; w < window->slice_words; w++)
-      words[w] ^= carry[w];
-    kernels->fold_across(words, window->slice_words, slices * window->slice_words);
-    memcpy(carry, words + (slices - 1) * window->slice_words, window->slice_words * sizeof *carry);
-  }
+  else
+    kernels->fold_across(words - window->slice_words, window->slice_words,
+                         (slices + 1) * window->slice_words);
 }
 
 static void do_stripe(size_t stripe, int worker, void *payload) {
   poll_state *state = payload;
   const vxm_window *window = state->window;
-  uint64_t *carry = state->carries + stripe * window->slice_words, added = 0;
+  size_t slice = window->slice_words, slow = (size_t)window->layout.slow;
+  uint64_t *carry = state->carries + stripe * slice, added = 0;
   uint64_t *scratch = state->workspace->scratch + (size_t)worker * state->words_each;
   uint64_t *words[VOTERS] = {NULL};
   int64_t contested = 0;
   for (size_t v = 0; v < state->voters; v++)
-    words[v] = scratch + v * state->slabs.words;
+    words[v] = scratch + v * state->slabs.words + (v >= slow ? slice : 0);
   for (size_t slab = stripe_begin(state, stripe); slab < stripe_begin(state, stripe + 1); slab++) {
     if (vxm_watch_stopped(&state->watch, worker))
       break;
     int64_t first = (int64_t)slab << state->slabs.shift;
-    int64_t slices = vxm_min(INT64_C(1) << state->slabs.shift, state->slabs.layers - first);
-    size_t count = (size_t)slices * window->slice_words, at = (size_t)first * window->slice_words;
+    size_t slices = (size_t)vxm_min(INT64_C(1) << state->slabs.shift, state->slabs.layers - first);
+    size_t count = slices * slice, at = (size_t)first * slice;
+    memcpy(words[slow] - slice, carry, slice * sizeof *carry);
     for (size_t v = 0; v < state->voters; v++) {
       flip_slab(state, v, slab, words[v]);
-      fold_voter(state, v, words[v], (size_t)slices, carry);
+      fold_voter(state, v, words[v], slices);
     }
+    memcpy(carry, words[slow] + count - slice, slice * sizeof *carry);
     contested += state->kernels->vote(window->words + at, (const uint64_t *const *)words,
                                       state->job->mask ? state->job->mask + at : NULL, count,
                                       state->job->rule, state->job->fresh, state->past, &added);
@@ -126,7 +126,7 @@ static void shape(poll_state *state) {
   state->voters = job->tetra ? VOTERS : 3;
   state->slabs = vxm_slabs_of(window->end - window->begin, window->slice_words, threads);
   state->stripes = (size_t)threads < state->slabs.count ? (size_t)threads : state->slabs.count;
-  state->words_each = state->voters * state->slabs.words;
+  state->words_each = state->voters * state->slabs.words + window->slice_words;
   state->past = job->fresh && vxm_window_is_large(window);
   for (size_t v = 0; v < state->voters; v++) {
     int axis = v == 3 ? window->layout.fast : (int)v; /* with cones the part is closed: any axis tells */
