@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Drawing the voxels of one triangle, exactly.
+ *
+ * A voxel with centre c belongs to the surface of a triangle where, after Schwarz & Seidel 2010, all of these
+ * hold (n is the normal, u the width of a voxel, and everything is closed: equality belongs to it):
+ *
+ *   box     the voxel meets the triangle's bounding box
+ *   plane   |n . (c - v)| <= u / 2 R(n)
+ *   edges   in each of the three projections and for each edge, with m its normal that points inward,
+ *           m . (c - v) >= -u / 2 R(m)
+ *
+ * For the conservative surface (section 3.1) R is the sum of the absolute components: u / 2 R(m) is how far a
+ * voxel reaches along m, and the tests together say whether the closed voxel meets the triangle. For the thin
+ * surface (section 3.4) R is the largest absolute component, which is the reach of the octahedron whose six
+ * corners are the middles of the voxel's faces.
+ *
+ * Thin separates: a step between two 6-neighbours that crosses the triangle at a point q has one of the two
+ * centres within u / 2 of q along an axis a. Then n . (c - q) is n_a times at most u / 2, the same holds for
+ * every edge normal, and q is in the plane, inside of all edges and in the box: that voxel passes all tests.
+ * Being closed, they need no rule for ties: a centre on the triangle, and both voxels beside a border on the
+ * triangle, belong to it. Since the largest component is at most the sum, thin is part of conservative.
+ */
+#ifndef VXM_VOXEL_SURFACE_DRAW_H
+#define VXM_VOXEL_SURFACE_DRAW_H
+
+#include "grid/window.h"
+#include "voxel/lattice.h"
+#include "voxel/surface.h"
+
+/** Axes are numbered by their role in the window: 0 the bits run along, 1 the rows, 2 the slices. */
+enum { VXM_FAST, VXM_MIDDLE, VXM_SLOW };
+
+/** Voxels begin..end-1 by role. */
+typedef struct vxm_surface_box {
+  int64_t begin[3], end[3];
+} vxm_surface_box;
+
+/** Voxels begin..end-1 of a row or rows of a slice; none if end <= begin. */
+typedef struct vxm_surface_span {
+  int32_t begin, end;
+} vxm_surface_span;
+
+/** Most slices of a tile. */
+enum { VXM_SURFACE_SLICES = 64 };
+
+/** What one task draws with. */
+typedef struct vxm_surface_pen {
+  const vxm_window *window;
+  const vxm_lattice *lattice;
+  vxm_surface_kind kind;
+  int64_t narrow_max;     /**< differences of corners up to this keep to 64 bits */
+  vxm_surface_box tile;   /**< of the window; at most VXM_SURFACE_SLICES slices */
+  vxm_surface_span *rows; /**< room for one of each row of the tile */
+} vxm_surface_pen;
+
+/** The largest differences of corners with which 64-bit arithmetic is exact: see surface_body.inc. */
+int64_t vxm_surface_narrow_max(const vxm_lattice *lattice);
+
+/** The voxels, also outside the grid, whose closed extents meet the bounding box of a triangle. */
+vxm_surface_box vxm_surface_bounds(const vxm_lattice *lattice, vxm_layout layout,
+                                   const vxm_point *const v[3]);
+
+/** Sets the triangle's voxels within the tile; returns about how many rows it looked at. */
+size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]);
+
+/** What bounds the rows of a triangle in a range of slices: a middle + c slow + b >= 0. */
+typedef struct vxm_surface_shadow {
+  int count;
+  struct {
+    vxm_int128 a, c, b;
+  } line[5];
+  int64_t origin[3];
+} vxm_surface_shadow;
+
+/** The triangle seen along the bits, and of that what the plane leaves between voxels 0 and fast_dim - 1. */
+void vxm_surface_shadow_of(vxm_surface_shadow *shadow, const vxm_surface_pen *pen,
+                           const vxm_point *const v[3]);
+/** Narrows rows [*begin, *end) to those that the triangle may have in slices s_begin..s_end-1, s_begin <
+ * s_end. */
+void vxm_surface_shadow_rows(const vxm_surface_shadow *shadow, int64_t s_begin, int64_t s_end, int64_t *begin,
+                             int64_t *end);
+
+#endif

@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/*
+ * A window is cut into tiles, rows by slices, that stay in cache; triangles are sorted into the tiles that
+ * they may touch, and each tile is drawn by one task, which alone writes its words.
+ */
+#include "base/threads.h"
+#include "voxel/surface_draw.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+enum {
+  TILE_WORDS = 1 << 15,   /**< 256 KiB: half of a usual second-level cache */
+  TILES_PER_THREAD = 8,   /**< so that threads end at about the same time */
+  CHUNK = 4096,           /**< triangles that one task sorts, at least */
+  COUNTERS_MAX = 1 << 20, /**< for all chunks together, unless one chunk needs more */
+  LISTED_MIN = 1 << 20,   /**< triangles listed at once, at least */
+  BOXED_MAX = 4,          /**< tiles up to which a triangle is sorted by its box alone */
+  POLL_ROWS = 1 << 16     /**< rows between two looks at the progress callback */
+};
+
+typedef struct tiling {
+  const vxm_surface *surface;
+  vxm_surface_pen pen; /**< its tile is the whole window, its rows those of all workers */
+  bool is_fresh;
+  int row_bits, slice_bits;  /**< a tile has 2^row_bits rows of 2^slice_bits slices */
+  size_t across, tile_count; /**< tiles side by side in a slice, and in all */
+  size_t chunks;
+  size_t *counters;  /**< chunks x tile_count: triangles, and while listing the next place in the list */
+  size_t first, end; /**< the tiles that are listed at present */
+  size_t *begin;     /**< for each of these where its list begins; one more for the end */
+  uint32_t *list;
+  atomic_size_t done;
+  atomic_bool stop;
+  vxm_status status;
+  vxm_error *error;
+} tiling;
+
+static const char phase[] = "voxelizing the surface";
+
+/* ---- Shape of the tiles ---- */
+
+/** The largest exponent with 2^bits <= n. */
+static int log2_floor(int64_t n) {
+  int bits = 0;
+  while (n >> (bits + 1))
+    bits++;
+  return bits;
+}
+
+/** The smallest exponent with 2^bits >= n. */
+static int log2_ceil(int64_t n) {
+  return n <= 1 ? 0 : log2_floor(n - 1) + 1;
+}
+
+static int least(int a, int b) {
+  return a < b ? a : b;
+}
+
+/** About square, so that few triangles reach over several tiles, but small enough for every thread. */
+static void choose_tiles(tiling *t) {
+  const vxm_window *window = t->pen.window;
+  int64_t slices = window->end - window->begin, rows = window->middle_dim;
+  int threads = vxm_context_threads(t->surface->context);
+  int64_t fitting = vxm_max(1, TILE_WORDS / (int64_t)window->row_words);
+  int64_t shares = threads > 1 ? (int64_t)threads * TILES_PER_THREAD : 1;
+  int64_t fair = vxm_max(1, rows * slices / shares);
+  int size = log2_floor(vxm_min(fitting, fair));
+  t->slice_bits = least(least(size / 2, log2_ceil(slices)), log2_floor(VXM_SURFACE_SLICES));
+  t->row_bits = least(size - t->slice_bits, log2_ceil(rows));
+  t->across = (size_t)((rows - 1) >> t->row_bits) + 1;
+  t->tile_count = t->across * ((size_t)((slices - 1) >> t->slice_bits) + 1);
+  t->chunks = 1 + t->surface->triangle_count / CHUNK;
+  t->chunks = t->chunks < (size_t)threads * 4 ? t->chunks : (size_t)threads * 4;
+  while (t->chunks > 1 && t->chunks * t->tile_count > COUNTERS_MAX)
+    t->chunks--;
+}
+
+static vxm_surface_box tile_box(const tiling *t, size_t tile) {
+  const vxm_window *window = t->pen.window;
+  vxm_surface_box box = t->pen.tile;
+  box.begin[VXM_MIDDLE] = (int64_t)(tile % t->across) << t->row_bits;
+  box.end[VXM_MIDDLE] = vxm_min(box.begin[VXM_MIDDLE] + (INT64_C(1) << t->row_bits), window->middle_dim);
+  box.begin[VXM_SLOW] = window->begin + ((int64_t)(tile / t->across) << t->slice_bits);
+  box.end[VXM_SLOW] = vxm_min(box.begin[VXM_SLOW] + (INT64_C(1) << t->slice_bits), window->end);
+  return box;
+}
+
+/* ---- Sorting triangles into tiles ---- */
+
+static void corners_of(const vxm_surface *surface, size_t triangle, const vxm_point *v[3]) {
+  const uint32_t *corner = surface->corners + 3 * triangle;
+  for (int c = 0; c < 3; c++)
+    v[c] = &surface->points[corner[c]];
+}
+
+/** Counts a triangle in tiles first..end-1 (list NULL), or lists it there. */
+static void sort_into(const tiling *t, size_t first, size_t end, size_t *counter, uint32_t *list,
+                      uint32_t triangle) {
+  first = first > t->first ? first : t->first;
+  end = end < t->end ? end : t->end;
+  for (size_t tile = first; tile < end; tile++) {
+    if (list)
+      list[counter[tile]] = triangle;
+    counter[tile]++;
+  }
+}
+
+static void sort_triangle(const tiling *t, size_t triangle, size_t *counter, uint32_t *list) {
+  const vxm_window *window = t->pen.window;
+  const vxm_point *v[3];
+  corners_of(t->surface, triangle, v);
+  vxm_surface_box box = vxm_surface_bounds(t->pen.lattice, window->layout, v);
+  for (int r = 0; r < 3; r++) {
+    box.begin[r] = vxm_max(box.begin[r], t->pen.tile.begin[r]);
+    box.end[r] = vxm_min(box.end[r], t->pen.tile.end[r]);
+    if (box.begin[r] >= box.end[r])
+      return;
+  }
+  int64_t low = (box.begin[VXM_SLOW] - window->begin) >> t->slice_bits,
+          high = (box.end[VXM_SLOW] - 1 - window->begin) >> t->slice_bits;
+  int64_t left = box.begin[VXM_MIDDLE] >> t->row_bits, right = (box.end[VXM_MIDDLE] - 1) >> t->row_bits;
+  bool by_box = (high - low + 1) * (right - left + 1) <= BOXED_MAX || left == right;
+  vxm_surface_shadow shadow;
+  if (!by_box)
+    vxm_surface_shadow_of(&shadow, &t->pen, v);
+  for (int64_t band = low; band <= high; band++) {
+    int64_t begin = box.begin[VXM_MIDDLE], end = box.end[VXM_MIDDLE];
+    if (!by_box) {
+      int64_t s_begin = window->begin + (band << t->slice_bits);
+      vxm_surface_shadow_rows(&shadow, vxm_max(s_begin, box.begin[VXM_SLOW]),
+                              vxm_min(s_begin + (INT64_C(1) << t->slice_bits), box.end[VXM_SLOW]), &begin,
+                              &end);
+      if (begin >= end)
+        continue;
+    }
+    size_t row = (size_t)band * t->across;
+    sort_into(t, row + (size_t)(begin >> t->row_bits), row + (size_t)((end - 1) >> t->row_bits) + 1, counter,
+              list, (uint32_t)triangle);
+  }
+}
+
+static void sort_chunk(size_t chunk, int worker, void *payload) {
+  (void)worker;
+  const tiling *t = payload;
+  size_t end = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk + 1);
+  size_t *counter = t->counters + chunk * t->tile_count;
+  for (size_t i = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk); i < end; i++)
+    sort_triangle(t, i, counter, t->list);
+}
+
+/**
+ * Takes as many tiles from t->first on as keep the list short, though at least one: a triangle as large as
+ * the window is listed in every tile, and the list must not outgrow the mesh.
+ */
+static vxm_status list_tiles(tiling *t) {
+  vxm_context *context = t->surface->context;
+  size_t most = 4 * t->surface->triangle_count + LISTED_MIN, total = 0;
+  for (t->end = t->first; t->end < t->tile_count; t->end++) {
+    size_t next = total;
+    for (size_t c = 0; c < t->chunks; c++)
+      next += t->counters[c * t->tile_count + t->end];
+    if (t->end > t->first && next > most)
+      break;
+    t->begin[t->end - t->first] = total;
+    for (size_t c = 0; c < t->chunks; c++) { /* counts become places */
+      size_t *counter = &t->counters[c * t->tile_count + t->end], count = *counter;
+      *counter = total;
+      total += count;
+    }
+  }
+  t->begin[t->end - t->first] = total;
+  vxm_free(context, t->list);
+  t->list = vxm_alloc(context, total, sizeof *t->list, t->error);
+  if (!t->list)
+    return t->error->code;
+  if (total > 0)
+    vxm_parallel(context, t->chunks, sort_chunk, t);
+  return VXM_OK;
+}
+
+/* ---- Drawing ---- */
+
+/** Worker 0 is the calling thread, the only one that may report progress; the others only look whether to
+ * stop. */
+static bool is_stopped(tiling *t, int worker) {
+  if (worker == 0 && t->status == VXM_OK) {
+    size_t done = atomic_load_explicit(&t->done, memory_order_relaxed);
+    t->status = vxm_progress(t->surface->context, phase, (double)done / (double)t->tile_count, t->error);
+    if (t->status != VXM_OK)
+      atomic_store_explicit(&t->stop, true, memory_order_relaxed);
+  }
+  return atomic_load_explicit(&t->stop, memory_order_relaxed);
+}
+
+static void clear(const vxm_window *window, const vxm_surface_box *box) {
+  size_t rows = (size_t)(box->end[VXM_MIDDLE] - box->begin[VXM_MIDDLE]);
+  for (int64_t s = box->begin[VXM_SLOW]; s < box->end[VXM_SLOW]; s++)
+    memset(vxm_window_row(window, box->begin[VXM_MIDDLE], s), 0, rows * window->row_words * sizeof(uint64_t));
+}
+
+static void draw_tile(size_t task, int worker, void *payload) {
+  tiling *t = payload;
+  if (is_stopped(t, worker))
+    return;
+  vxm_surface_pen pen = t->pen;
+  pen.tile = tile_box(t, t->first + task);
+  pen.rows += (size_t)worker << t->row_bits;
+  if (t->is_fresh)
+    clear(pen.window, &pen.tile);
+  size_t rows = 0;
+  for (size_t i = t->begin[task]; i < t->begin[task + 1]; i++) {
+    const vxm_point *v[3];
+    corners_of(t->surface, t->list[i], v);
+    rows += 1 + vxm_surface_draw(&pen, v);
+    if (rows < POLL_ROWS)
+      continue;
+    rows = 0;
+    if (is_stopped(t, worker))
+      return;
+  }
+  atomic_fetch_add_explicit(&t->done, 1, memory_order_relaxed);
+}
+
+static vxm_status draw_tiles(tiling *t) {
+  vxm_context *context = t->surface->context;
+  t->end = t->tile_count;
+  vxm_parallel(context, t->chunks, sort_chunk, t); /* counts only, while there is no list */
+  for (t->first = 0; t->first < t->tile_count; t->first = t->end) {
+    vxm_status status = list_tiles(t);
+    if (status != VXM_OK)
+      return status;
+    vxm_parallel(context, t->end - t->first, draw_tile, t);
+    if (t->status != VXM_OK)
+      return t->status;
+  }
+  /* Other threads may have taken all tiles: ask once more, so that no wish to stop is missed. */
+  return vxm_progress(context, phase, 1.0, t->error);
+}
+
+vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window, vxm_surface_kind kind,
+                           bool is_fresh, vxm_error *error) {
+  if (window->begin >= window->end)
+    return VXM_OK;
+  vxm_context *context = surface->context;
+  vxm_error local = VXM_ERROR_INIT;
+  tiling t = {
+      .surface = surface,
+      .pen = {.window = window,
+              .lattice = &surface->lattice,
+              .kind = kind,
+              .narrow_max = vxm_surface_narrow_max(&surface->lattice),
+              .tile = {{0, 0, window->begin}, {window->fast_dim, window->middle_dim, window->end}}},
+      .is_fresh = is_fresh,
+      .error = &local,
+  };
+  atomic_init(&t.done, 0);
+  atomic_init(&t.stop, false);
+  choose_tiles(&t);
+  size_t workers = (size_t)vxm_context_threads(context);
+  t.counters = vxm_calloc(context, t.chunks * t.tile_count, sizeof *t.counters, &local);
+  t.begin = vxm_alloc(context, t.tile_count + 1, sizeof *t.begin, &local);
+  t.pen.rows = vxm_alloc(context, workers << t.row_bits, sizeof *t.pen.rows, &local);
+  vxm_status status = t.counters && t.begin && t.pen.rows ? draw_tiles(&t) : local.code;
+  vxm_free(context, t.list);
+  vxm_free(context, t.pen.rows);
+  vxm_free(context, t.begin);
+  vxm_free(context, t.counters);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
