@@ -1,43 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/surface_draw.h"
 
-/**
- * floor (t / d) and the rest, for d > 0 and |t| < 2^52. The quotient of doubles is rounded correctly, and one
- * that is not whole differs from the next whole number by at least 1 / d, more than half a unit in its last
- * place: so it is never rounded up to one.
- */
-static inline void divide_narrow(int64_t t, int64_t d, int64_t *quotient, int64_t *rest) {
-  int64_t q = (int64_t)((double)t / (double)d), r = t - q * d; /* toward zero */
-  int64_t below = r < 0;
-  *quotient = q - below;
-  *rest = below ? r + d : r;
-}
-
-static inline void divide_wide(vxm_int128 t, vxm_int128 d, vxm_int128 *quotient, vxm_int128 *rest) {
-  vxm_int128 q = t / d, r = t - q * d, below = r < 0;
-  *quotient = q - below;
-  *rest = below ? r + d : r;
-}
-
-/* The same arithmetic twice: in 64 bits for triangles of ordinary size, in 128 bits for the others. */
-#define INTEGER int64_t
-#define NAME(name) name##_narrow
-#include "voxel/surface_body.inc"
-#undef INTEGER
-#undef NAME
-
-#define INTEGER vxm_int128
-#define NAME(name) name##_wide
-#include "voxel/surface_body.inc"
-#undef INTEGER
-#undef NAME
+#include <stdatomic.h>
 
 int64_t vxm_surface_narrow_max(const vxm_lattice *lattice) {
   int k = 30;
   for (; k > 0; k--) {
     vxm_int128 square = (vxm_int128)1 << 2 * k;
-    vxm_int128 dividend = 3 * square * (((INT64_C(1) << k) >> lattice->bits) + 5);
-    if (dividend < (vxm_int128)1 << 52 && 3 * square * lattice->unit < (vxm_int128)1 << 62)
+    vxm_int128 dividend = 3 * square * (((INT64_C(1) << k) >> lattice->bits) + VXM_SURFACE_LANES + 4);
+    if (dividend < (vxm_int128)1 << 50 && 3 * square * lattice->unit < (vxm_int128)1 << 62)
       break;
   }
   return INT64_C(1) << k;
@@ -91,41 +62,35 @@ size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3])
   else if (flat >= 2)
     return fill_box(pen->window, &box);
   bool is_cut = whole.begin[VXM_FAST] < box.begin[VXM_FAST] || whole.end[VXM_FAST] > box.end[VXM_FAST];
-  if (is_narrow(v, pen->narrow_max))
-    return draw_narrow(pen, v, box, thin, is_cut);
-  return draw_wide(pen, v, box, thin, is_cut);
+  if (is_narrow(v, pen->narrow_max) && (!is_cut || thin >= 0))
+    return pen->build->draw(pen, v, &box, thin);
+  return vxm_surface_draw_wide(pen, v, box);
 }
 
-void vxm_surface_shadow_of(vxm_surface_shadow *shadow, const vxm_surface_pen *pen,
-                           const vxm_point *const v[3]) {
-  shape_wide shape;
-  line_wide lines[5];
-  shape_of_wide(&shape, pen, v);
-  shadow->count = 3;
-  for (int e = 0; e < 3; e++)
-    lines[e] = edge_wide(pen, &shape, e, VXM_MIDDLE, VXM_SLOW);
-  if (shape.normal[0] != 0) {
-    plane_lines_wide(&shape, 0, pen->window->fast_dim, lines + 3);
-    shadow->count = 5;
-  }
-  for (int i = 0; i < shadow->count; i++) {
-    shadow->line[i].a = lines[i].a;
-    shadow->line[i].c = lines[i].c;
-    shadow->line[i].b = lines[i].b;
-  }
-  for (int r = 0; r < 3; r++)
-    shadow->origin[r] = shape.origin[r];
+/* ---- Builds ---- */
+
+extern const vxm_surface_build vxm_surface_build_plain, vxm_surface_build_avx2, vxm_surface_build_avx512;
+
+static _Atomic(const vxm_surface_build *) chosen;
+
+size_t vxm_surface_builds(const vxm_surface_build *out[3]) {
+  size_t count = 0;
+  out[count++] = &vxm_surface_build_plain;
+#if VXM_SURFACE_X86
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))
+    out[count++] = &vxm_surface_build_avx2;
+  if (count == 2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    out[count++] = &vxm_surface_build_avx512;
+#endif
+  return count;
 }
 
-void vxm_surface_shadow_rows(const vxm_surface_shadow *shadow, int64_t s_begin, int64_t s_end, int64_t *begin,
-                             int64_t *end) {
-  vxm_surface_span span = {(int32_t)*begin, (int32_t)*end};
-  for (int i = 0; i < shadow->count; i++) {
-    line_wide line = {shadow->line[i].a, shadow->line[i].c, shadow->line[i].b};
-    int64_t best = line.c > 0 ? s_end - 1 : s_begin;
-    clip_wide(&line, shadow->origin[VXM_MIDDLE], best - shadow->origin[VXM_SLOW], &span, 1, (int32_t)*begin,
-              (int32_t)*end);
-  }
-  *begin = span.begin;
-  *end = span.end;
+void vxm_surface_force(const vxm_surface_build *build) {
+  atomic_store_explicit(&chosen, build, memory_order_relaxed);
+}
+
+const vxm_surface_build *vxm_surface_best(void) {
+  const vxm_surface_build *forced = atomic_load_explicit(&chosen, memory_order_relaxed), *all[3];
+  return forced ? forced : all[vxm_surface_builds(all) - 1];
 }

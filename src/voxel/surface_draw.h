@@ -41,20 +41,53 @@ typedef struct vxm_surface_span {
   int32_t begin, end;
 } vxm_surface_span;
 
-/** Most slices of a tile. */
-enum { VXM_SURFACE_SLICES = 64 };
+enum {
+  VXM_SURFACE_SLICES = 64, /**< most slices of a tile */
+  VXM_SURFACE_LANES = 8    /**< rows worked on together */
+};
+
+/** Whether there are builds for particular x86 processors. */
+#if defined(__x86_64__) && defined(__GNUC__)
+#define VXM_SURFACE_X86 1
+#else
+#define VXM_SURFACE_X86 0
+#endif
+
+typedef struct vxm_surface_build vxm_surface_build;
 
 /** What one task draws with. */
 typedef struct vxm_surface_pen {
   const vxm_window *window;
   const vxm_lattice *lattice;
   vxm_surface_kind kind;
-  int64_t narrow_max;     /**< differences of corners up to this keep to 64 bits */
-  vxm_surface_box tile;   /**< of the window; at most VXM_SURFACE_SLICES slices */
-  vxm_surface_span *rows; /**< room for one of each row of the tile */
+  int64_t narrow_max;          /**< differences of corners up to this are exact there */
+  vxm_surface_box tile;        /**< of the window; at most VXM_SURFACE_SLICES slices */
+  vxm_surface_span *rows;      /**< room for one for each row of the tile */
+  double *row_begin, *row_end; /**< the same, and for 2 VXM_SURFACE_LANES more */
+  const vxm_surface_build *build;
 } vxm_surface_pen;
 
-/** The largest differences of corners with which 64-bit arithmetic is exact: see surface_body.inc. */
+/** The loops that draw a triangle of ordinary size, built for several processors from surface_narrow.inc; all
+ * give the same bits. */
+struct vxm_surface_build {
+  const char *name;
+  /** `box` is what the triangle and the tile have in common; `thin` is an axis along which the triangle meets
+   * one voxel only, by which alone the box decides nothing else, or -1. Returns the rows looked at. */
+  size_t (*draw)(const vxm_surface_pen *pen, const vxm_point *const v[3], const vxm_surface_box *box,
+                 int thin);
+};
+
+/** All builds that run on this processor, best last. */
+size_t vxm_surface_builds(const vxm_surface_build *out[3]);
+/** The best of them, or the one forced. */
+const vxm_surface_build *vxm_surface_best(void);
+/** Makes vxm_surface_best return this one; NULL = the best again. For tests, while nothing is drawn. */
+void vxm_surface_force(const vxm_surface_build *build);
+
+/** As a build's draw, for any triangle. */
+size_t vxm_surface_draw_wide(const vxm_surface_pen *pen, const vxm_point *const v[3], vxm_surface_box box);
+
+/** The largest differences of corners with which surface_narrow.inc is exact. */
 int64_t vxm_surface_narrow_max(const vxm_lattice *lattice);
 
 /** The voxels, also outside the grid, whose closed extents meet the bounding box of a triangle. */

@@ -205,7 +205,10 @@ static void draw_tile(size_t task, int worker, void *payload) {
     return;
   vxm_surface_pen pen = t->pen;
   pen.tile = tile_box(t, t->first + task);
-  pen.rows += (size_t)worker << t->row_bits;
+  size_t room = (size_t)1 << t->row_bits, padded = room + (size_t)2 * VXM_SURFACE_LANES;
+  pen.rows += (size_t)worker * room;
+  pen.row_begin += (size_t)worker * 2 * padded;
+  pen.row_end = pen.row_begin + padded;
   if (t->is_fresh)
     clear(pen.window, &pen.tile);
   size_t rows = 0;
@@ -249,6 +252,7 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
       .pen = {.window = window,
               .lattice = &surface->lattice,
               .kind = kind,
+              .build = vxm_surface_best(),
               .narrow_max = vxm_surface_narrow_max(&surface->lattice),
               .tile = {{0, 0, window->begin}, {window->fast_dim, window->middle_dim, window->end}}},
       .is_fresh = is_fresh,
@@ -257,12 +261,15 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
   atomic_init(&t.done, 0);
   atomic_init(&t.stop, false);
   choose_tiles(&t);
-  size_t workers = (size_t)vxm_context_threads(context);
+  size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t.row_bits;
   t.counters = vxm_calloc(context, t.chunks * t.tile_count, sizeof *t.counters, &local);
   t.begin = vxm_alloc(context, t.tile_count + 1, sizeof *t.begin, &local);
-  t.pen.rows = vxm_alloc(context, workers << t.row_bits, sizeof *t.pen.rows, &local);
-  vxm_status status = t.counters && t.begin && t.pen.rows ? draw_tiles(&t) : local.code;
+  t.pen.rows = vxm_alloc(context, workers * rows, sizeof *t.pen.rows, &local);
+  t.pen.row_begin = vxm_calloc(context, workers * 2 * (rows + (size_t)2 * VXM_SURFACE_LANES),
+                               sizeof *t.pen.row_begin, &local);
+  vxm_status status = t.counters && t.begin && t.pen.rows && t.pen.row_begin ? draw_tiles(&t) : local.code;
   vxm_free(context, t.list);
+  vxm_free(context, t.pen.row_begin);
   vxm_free(context, t.pen.rows);
   vxm_free(context, t.begin);
   vxm_free(context, t.counters);
