@@ -43,7 +43,7 @@ typedef struct vxm_surface_span {
 
 enum {
   VXM_SURFACE_SLICES = 64, /**< most slices of a tile */
-  VXM_SURFACE_LANES = 8    /**< rows worked on together */
+  VXM_SURFACE_LANES = 8    /**< most rows worked on together */
 };
 
 /** Whether there are builds for particular x86 processors. */
