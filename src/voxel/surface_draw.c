@@ -14,55 +14,37 @@ int64_t vxm_surface_narrow_max(const vxm_lattice *lattice) {
   return INT64_C(1) << k;
 }
 
-vxm_surface_box vxm_surface_bounds(const vxm_lattice *lattice, vxm_layout layout,
-                                   const vxm_point *const v[3]) {
-  const int axis[3] = {layout.fast, layout.middle, layout.slow};
-  vxm_surface_box box;
-  for (int r = 0; r < 3; r++) {
-    int64_t a = v[0]->at[axis[r]], b = v[1]->at[axis[r]], c = v[2]->at[axis[r]];
-    int64_t low = vxm_min(vxm_min(a, b), c), high = vxm_max(vxm_max(a, b), c);
-    box.begin[r] = ((low + lattice->unit - 1) >> lattice->bits) - 1;
-    box.end[r] = (high >> lattice->bits) + 1;
+static size_t fill_box(const vxm_surface_pen *pen, const vxm_surface_box *box) {
+  size_t rows = (size_t)(box->end[VXM_MIDDLE] - box->begin[VXM_MIDDLE]);
+  for (int64_t s = box->begin[VXM_SLOW]; s < box->end[VXM_SLOW]; s++) {
+    uint64_t *row = vxm_surface_row(pen, box->begin[VXM_MIDDLE], s);
+    for (size_t m = 0; m < rows; m++, row += pen->window->row_words)
+      vxm_row_set_span(row, box->begin[VXM_FAST], box->end[VXM_FAST]);
   }
-  return box;
-}
-
-static bool is_narrow(const vxm_point *const v[3], int64_t most) {
-  for (int a = 0; a < 3; a++) {
-    int64_t p = v[0]->at[a], q = v[1]->at[a], r = v[2]->at[a];
-    if (vxm_max(vxm_max(p, q), r) - vxm_min(vxm_min(p, q), r) > most)
-      return false;
-  }
-  return true;
-}
-
-static size_t fill_box(const vxm_window *window, const vxm_surface_box *box) {
-  for (int64_t s = box->begin[VXM_SLOW]; s < box->end[VXM_SLOW]; s++)
-    for (int64_t m = box->begin[VXM_MIDDLE]; m < box->end[VXM_MIDDLE]; m++)
-      vxm_row_set_span(vxm_window_row(window, m, s), box->begin[VXM_FAST], box->end[VXM_FAST]);
-  return (size_t)((box->end[VXM_SLOW] - box->begin[VXM_SLOW]) *
-                  (box->end[VXM_MIDDLE] - box->begin[VXM_MIDDLE]));
+  return (size_t)(box->end[VXM_SLOW] - box->begin[VXM_SLOW]) * rows;
 }
 
 size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]) {
-  vxm_surface_box whole = vxm_surface_bounds(pen->lattice, pen->window->layout, v), box;
+  vxm_surface_bounds bounds = vxm_surface_bounds_of(pen->lattice, pen->window->layout, v);
+  vxm_surface_box whole = bounds.box, box;
+  bool is_empty = false;
   int flat = 0, thin = -1;
   for (int r = 0; r < 3; r++) {
-    box.begin[r] = vxm_max(whole.begin[r], pen->tile.begin[r]);
-    box.end[r] = vxm_min(whole.end[r], pen->tile.end[r]);
-    if (box.begin[r] >= box.end[r])
-      return 1;
-    if (whole.end[r] - whole.begin[r] == 1) {
-      flat++;
-      thin = r;
-    }
+    box.begin[r] = vxm_surface_upper(whole.begin[r], pen->tile.begin[r]);
+    box.end[r] = vxm_surface_lower(whole.end[r], pen->tile.end[r]);
+    is_empty |= box.begin[r] >= box.end[r];
+    bool one = whole.end[r] - whole.begin[r] == 1;
+    flat += one;
+    thin = one ? r : thin;
   }
+  if (is_empty)
+    return 1;
   if (pen->kind != VXM_SURFACE_CONSERVATIVE)
     thin = -1; /* the box being one voxel thick does not make the plane pass there */
   else if (flat >= 2)
-    return fill_box(pen->window, &box);
+    return fill_box(pen, &box);
   bool is_cut = whole.begin[VXM_FAST] < box.begin[VXM_FAST] || whole.end[VXM_FAST] > box.end[VXM_FAST];
-  if (is_narrow(v, pen->narrow_max) && (!is_cut || thin >= 0))
+  if (bounds.longest <= pen->narrow_max && (!is_cut || thin >= 0))
     return pen->build->draw(pen, v, &box, thin);
   return vxm_surface_draw_wide(pen, v, box);
 }

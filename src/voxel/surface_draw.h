@@ -36,6 +36,12 @@ typedef struct vxm_surface_box {
   int64_t begin[3], end[3];
 } vxm_surface_box;
 
+/** The bounding box of a triangle. */
+typedef struct vxm_surface_bounds {
+  vxm_surface_box box; /**< the voxels, also outside the grid, whose closed extents meet it */
+  int64_t longest;     /**< its longest side in lattice steps */
+} vxm_surface_bounds;
+
 /** Voxels begin..end-1 of a row or rows of a slice; none if end <= begin. */
 typedef struct vxm_surface_span {
   int32_t begin, end;
@@ -60,8 +66,10 @@ typedef struct vxm_surface_pen {
   const vxm_window *window;
   const vxm_lattice *lattice;
   vxm_surface_kind kind;
-  int64_t narrow_max;          /**< differences of corners up to this are exact there */
-  vxm_surface_box tile;        /**< of the window; at most VXM_SURFACE_SLICES slices */
+  int64_t narrow_max;   /**< differences of corners up to this are exact there */
+  vxm_surface_box tile; /**< of the window; at most VXM_SURFACE_SLICES slices */
+  uint64_t *words;      /**< the tile's rows, window->row_words each; slices lie slice_words apart */
+  size_t slice_words;
   vxm_surface_span *rows;      /**< room for one for each row of the tile */
   double *row_begin, *row_end; /**< the same, and for 2 VXM_SURFACE_LANES more */
   const vxm_surface_build *build;
@@ -75,7 +83,17 @@ struct vxm_surface_build {
    * one voxel only, by which alone the box decides nothing else, or -1. Returns the rows looked at. */
   size_t (*draw)(const vxm_surface_pen *pen, const vxm_point *const v[3], const vxm_surface_box *box,
                  int thin);
+  /** to = from, past the caches, and from = 0. */
+  void (*put)(uint64_t *to, uint64_t *from, size_t count);
+  /** to |= from, and from = 0. */
+  void (*join)(uint64_t *to, uint64_t *from, size_t count);
 };
+
+/** Row `middle` of slice `slow` of the tile, by their numbers in the grid. */
+static inline uint64_t *vxm_surface_row(const vxm_surface_pen *pen, int64_t middle, int64_t slow) {
+  return pen->words + (size_t)(slow - pen->tile.begin[VXM_SLOW]) * pen->slice_words +
+         (size_t)(middle - pen->tile.begin[VXM_MIDDLE]) * pen->window->row_words;
+}
 
 /** All builds that run on this processor, best last. */
 size_t vxm_surface_builds(const vxm_surface_build *out[3]);
@@ -90,9 +108,29 @@ size_t vxm_surface_draw_wide(const vxm_surface_pen *pen, const vxm_point *const 
 /** The largest differences of corners with which surface_narrow.inc is exact. */
 int64_t vxm_surface_narrow_max(const vxm_lattice *lattice);
 
-/** The voxels, also outside the grid, whose closed extents meet the bounding box of a triangle. */
-vxm_surface_box vxm_surface_bounds(const vxm_lattice *lattice, vxm_layout layout,
-                                   const vxm_point *const v[3]);
+/* Triangles come in no order that a processor could learn, so these do without branches. */
+static inline int64_t vxm_surface_lower(int64_t a, int64_t b) {
+  return b ^ ((a ^ b) & -(int64_t)(a < b));
+}
+
+static inline int64_t vxm_surface_upper(int64_t a, int64_t b) {
+  return a ^ ((a ^ b) & -(int64_t)(a < b));
+}
+
+static inline vxm_surface_bounds vxm_surface_bounds_of(const vxm_lattice *lattice, vxm_layout layout,
+                                                       const vxm_point *const v[3]) {
+  const int axis[3] = {layout.fast, layout.middle, layout.slow};
+  vxm_surface_bounds bounds = {.longest = 0};
+  for (int r = 0; r < 3; r++) {
+    int64_t a = v[0]->at[axis[r]], b = v[1]->at[axis[r]], c = v[2]->at[axis[r]];
+    int64_t low = vxm_surface_lower(vxm_surface_lower(a, b), c);
+    int64_t high = vxm_surface_upper(vxm_surface_upper(a, b), c);
+    bounds.box.begin[r] = ((low + lattice->unit - 1) >> lattice->bits) - 1;
+    bounds.box.end[r] = (high >> lattice->bits) + 1;
+    bounds.longest = vxm_surface_upper(bounds.longest, high - low);
+  }
+  return bounds;
+}
 
 /** Sets the triangle's voxels within the tile; returns about how many rows it looked at. */
 size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]);

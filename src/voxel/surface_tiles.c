@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * A window is cut into tiles, rows by slices, that stay in cache; triangles are sorted into the tiles that
- * they may touch, and each tile is drawn by one task, which alone writes its words.
+ * A window is cut into tiles, rows by slices; triangles are sorted into the tiles that they may touch, and
+ * each tile is drawn by one task, in words of its own that stay in cache, and then moved into the window.
  */
 #include "base/threads.h"
 #include "voxel/surface_draw.h"
@@ -11,6 +11,8 @@
 
 enum {
   TILE_WORDS = 1 << 15,   /**< 256 KiB: half of a usual second-level cache */
+  LINE_WORDS = 8,         /**< a line of the cache */
+  LARGE_WORDS = 1 << 23,  /**< windows that no cache holds: 64 MiB */
   TILES_PER_THREAD = 8,   /**< so that threads end at about the same time */
   CHUNK = 4096,           /**< triangles that one task sorts, at least */
   COUNTERS_MAX = 1 << 20, /**< for all chunks together, unless one chunk needs more */
@@ -22,7 +24,8 @@ enum {
 typedef struct tiling {
   const vxm_surface *surface;
   vxm_surface_pen pen; /**< its tile is the whole window, its rows those of all workers */
-  bool is_fresh;
+  bool is_fresh, is_large;
+  size_t tile_words;
   int row_bits, slice_bits;  /**< a tile has 2^row_bits rows of 2^slice_bits slices */
   size_t across, tile_count; /**< tiles side by side in a slice, and in all */
   size_t chunks;
@@ -70,6 +73,10 @@ static void choose_tiles(tiling *t) {
   t->row_bits = least(size - t->slice_bits, log2_ceil(rows));
   t->across = (size_t)((rows - 1) >> t->row_bits) + 1;
   t->tile_count = t->across * ((size_t)((slices - 1) >> t->slice_bits) + 1);
+  /* Slices a power of two apart would share few sets of the caches. */
+  t->pen.slice_words = (window->row_words << t->row_bits) + LINE_WORDS;
+  t->tile_words = t->pen.slice_words << t->slice_bits;
+  t->is_large = (size_t)slices * window->slice_words >= LARGE_WORDS;
   t->chunks = 1 + t->surface->triangle_count / CHUNK;
   t->chunks = t->chunks < (size_t)threads * 4 ? t->chunks : (size_t)threads * 4;
   while (t->chunks > 1 && t->chunks * t->tile_count > COUNTERS_MAX)
@@ -110,13 +117,15 @@ static void sort_triangle(const tiling *t, size_t triangle, size_t *counter, uin
   const vxm_window *window = t->pen.window;
   const vxm_point *v[3];
   corners_of(t->surface, triangle, v);
-  vxm_surface_box box = vxm_surface_bounds(t->pen.lattice, window->layout, v);
+  vxm_surface_box box = vxm_surface_bounds_of(t->pen.lattice, window->layout, v).box;
+  bool is_outside = false;
   for (int r = 0; r < 3; r++) {
-    box.begin[r] = vxm_max(box.begin[r], t->pen.tile.begin[r]);
-    box.end[r] = vxm_min(box.end[r], t->pen.tile.end[r]);
-    if (box.begin[r] >= box.end[r])
-      return;
+    box.begin[r] = vxm_surface_upper(box.begin[r], t->pen.tile.begin[r]);
+    box.end[r] = vxm_surface_lower(box.end[r], t->pen.tile.end[r]);
+    is_outside |= box.begin[r] >= box.end[r];
   }
+  if (is_outside)
+    return;
   int64_t low = (box.begin[VXM_SLOW] - window->begin) >> t->slice_bits,
           high = (box.end[VXM_SLOW] - 1 - window->begin) >> t->slice_bits;
   int64_t left = box.begin[VXM_MIDDLE] >> t->row_bits, right = (box.end[VXM_MIDDLE] - 1) >> t->row_bits;
@@ -193,10 +202,22 @@ static bool is_stopped(tiling *t, int worker) {
   return atomic_load_explicit(&t->stop, memory_order_relaxed);
 }
 
-static void clear(const vxm_window *window, const vxm_surface_box *box) {
-  size_t rows = (size_t)(box->end[VXM_MIDDLE] - box->begin[VXM_MIDDLE]);
-  for (int64_t s = box->begin[VXM_SLOW]; s < box->end[VXM_SLOW]; s++)
-    memset(vxm_window_row(window, box->begin[VXM_MIDDLE], s), 0, rows * window->row_words * sizeof(uint64_t));
+/** Moves what was drawn into the window and leaves the tile's words zero. */
+static void move_tile(const tiling *t, const vxm_surface_pen *pen) {
+  const vxm_surface_box *box = &pen->tile;
+  size_t count = (size_t)(box->end[VXM_MIDDLE] - box->begin[VXM_MIDDLE]) * pen->window->row_words;
+  for (int64_t s = box->begin[VXM_SLOW]; s < box->end[VXM_SLOW]; s++) {
+    uint64_t *to = vxm_window_row(pen->window, box->begin[VXM_MIDDLE], s);
+    uint64_t *from = vxm_surface_row(pen, box->begin[VXM_MIDDLE], s);
+    if (!t->is_fresh)
+      pen->build->join(to, from, count);
+    else if (t->is_large)
+      pen->build->put(to, from, count);
+    else {
+      memcpy(to, from, count * sizeof *to);
+      memset(from, 0, count * sizeof *from);
+    }
+  }
 }
 
 static void draw_tile(size_t task, int worker, void *payload) {
@@ -209,8 +230,7 @@ static void draw_tile(size_t task, int worker, void *payload) {
   pen.rows += (size_t)worker * room;
   pen.row_begin += (size_t)worker * 2 * padded;
   pen.row_end = pen.row_begin + padded;
-  if (t->is_fresh)
-    clear(pen.window, &pen.tile);
+  pen.words += (size_t)worker * t->tile_words;
   size_t rows = 0;
   for (size_t i = t->begin[task]; i < t->begin[task + 1]; i++) {
     const vxm_point *v[3];
@@ -222,6 +242,8 @@ static void draw_tile(size_t task, int worker, void *payload) {
     if (is_stopped(t, worker))
       return;
   }
+  if (t->is_fresh || t->begin[task] < t->begin[task + 1])
+    move_tile(t, &pen);
   atomic_fetch_add_explicit(&t->done, 1, memory_order_relaxed);
 }
 
@@ -267,8 +289,11 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
   t.pen.rows = vxm_alloc(context, workers * rows, sizeof *t.pen.rows, &local);
   t.pen.row_begin = vxm_calloc(context, workers * 2 * (rows + (size_t)2 * VXM_SURFACE_LANES),
                                sizeof *t.pen.row_begin, &local);
-  vxm_status status = t.counters && t.begin && t.pen.rows && t.pen.row_begin ? draw_tiles(&t) : local.code;
+  t.pen.words = vxm_calloc(context, workers * t.tile_words, sizeof *t.pen.words, &local);
+  vxm_status status =
+      t.counters && t.begin && t.pen.rows && t.pen.row_begin && t.pen.words ? draw_tiles(&t) : local.code;
   vxm_free(context, t.list);
+  vxm_free(context, t.pen.words);
   vxm_free(context, t.pen.row_begin);
   vxm_free(context, t.pen.rows);
   vxm_free(context, t.begin);

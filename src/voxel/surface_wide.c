@@ -170,7 +170,7 @@ static inline void draw_slice(const vxm_surface_pen *pen, const plane_shape *sha
                               vxm_surface_span across, vxm_surface_span along, const vxm_surface_span *rows) {
   const integer *n = shape->normal;
   size_t stride = pen->window->row_words;
-  uint64_t *row = vxm_window_row(pen->window, across.begin, s);
+  uint64_t *row = vxm_surface_row(pen, across.begin, s);
   size_t count = (size_t)(across.end - across.begin);
   if (n[0] == 0) { /* seen edge-on along the bits, where the edges imply the plane */
     for (size_t i = 0; i < count; i++, row += stride)
