@@ -26,19 +26,13 @@ static size_t fill_box(const vxm_surface_pen *pen, const vxm_surface_box *box) {
 
 size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]) {
   vxm_surface_bounds bounds = vxm_surface_bounds_of(pen->lattice, pen->window->layout, v);
-  vxm_surface_box whole = bounds.box, box;
-  bool is_empty = false;
-  int flat = 0, thin = -1;
-  for (int r = 0; r < 3; r++) {
-    box.begin[r] = vxm_surface_upper(whole.begin[r], pen->tile.begin[r]);
-    box.end[r] = vxm_surface_lower(whole.end[r], pen->tile.end[r]);
-    is_empty |= box.begin[r] >= box.end[r];
-    bool one = whole.end[r] - whole.begin[r] == 1;
-    flat += one;
-    thin = one ? r : thin;
-  }
-  if (is_empty)
+  vxm_surface_box whole = bounds.box, box = whole;
+  if (!vxm_surface_meet(&box, &pen->tile, VXM_FAST) | !vxm_surface_meet(&box, &pen->tile, VXM_MIDDLE) |
+      !vxm_surface_meet(&box, &pen->tile, VXM_SLOW))
     return 1;
+  bool one[3] = {whole.end[0] - whole.begin[0] == 1, whole.end[1] - whole.begin[1] == 1,
+                 whole.end[2] - whole.begin[2] == 1};
+  int flat = one[0] + one[1] + one[2], thin = one[0] ? 0 : one[1] ? 1 : one[2] ? 2 : -1;
   if (pen->kind != VXM_SURFACE_CONSERVATIVE)
     thin = -1; /* the box being one voxel thick does not make the plane pass there */
   else if (flat >= 2)

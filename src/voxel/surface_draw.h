@@ -117,19 +117,31 @@ static inline int64_t vxm_surface_upper(int64_t a, int64_t b) {
   return a ^ ((a ^ b) & -(int64_t)(a < b));
 }
 
+static inline void vxm_surface_bound_role(vxm_surface_bounds *bounds, const vxm_lattice *lattice, int role,
+                                          int64_t a, int64_t b, int64_t c) {
+  int64_t low = vxm_surface_lower(vxm_surface_lower(a, b), c);
+  int64_t high = vxm_surface_upper(vxm_surface_upper(a, b), c);
+  bounds->box.begin[role] = ((low + lattice->unit - 1) >> lattice->bits) - 1;
+  bounds->box.end[role] = (high >> lattice->bits) + 1;
+  bounds->longest = vxm_surface_upper(bounds->longest, high - low);
+}
+
 static inline vxm_surface_bounds vxm_surface_bounds_of(const vxm_lattice *lattice, vxm_layout layout,
                                                        const vxm_point *const v[3]) {
-  const int axis[3] = {layout.fast, layout.middle, layout.slow};
-  vxm_surface_bounds bounds = {.longest = 0};
-  for (int r = 0; r < 3; r++) {
-    int64_t a = v[0]->at[axis[r]], b = v[1]->at[axis[r]], c = v[2]->at[axis[r]];
-    int64_t low = vxm_surface_lower(vxm_surface_lower(a, b), c);
-    int64_t high = vxm_surface_upper(vxm_surface_upper(a, b), c);
-    bounds.box.begin[r] = ((low + lattice->unit - 1) >> lattice->bits) - 1;
-    bounds.box.end[r] = (high >> lattice->bits) + 1;
-    bounds.longest = vxm_surface_upper(bounds.longest, high - low);
-  }
+  const int f = layout.fast, m = layout.middle, s = layout.slow;
+  vxm_surface_bounds bounds;
+  bounds.longest = 0;
+  vxm_surface_bound_role(&bounds, lattice, VXM_FAST, v[0]->at[f], v[1]->at[f], v[2]->at[f]);
+  vxm_surface_bound_role(&bounds, lattice, VXM_MIDDLE, v[0]->at[m], v[1]->at[m], v[2]->at[m]);
+  vxm_surface_bound_role(&bounds, lattice, VXM_SLOW, v[0]->at[s], v[1]->at[s], v[2]->at[s]);
   return bounds;
+}
+
+/** Narrows one role of a box to that of another; whether anything is left. */
+static inline bool vxm_surface_meet(vxm_surface_box *box, const vxm_surface_box *other, int role) {
+  box->begin[role] = vxm_surface_upper(box->begin[role], other->begin[role]);
+  box->end[role] = vxm_surface_lower(box->end[role], other->end[role]);
+  return box->begin[role] < box->end[role];
 }
 
 /** Sets the triangle's voxels within the tile; returns about how many rows it looked at. */

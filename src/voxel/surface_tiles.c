@@ -17,7 +17,8 @@ enum {
   CHUNK = 4096,           /**< triangles that one task sorts, at least */
   COUNTERS_MAX = 1 << 20, /**< for all chunks together, unless one chunk needs more */
   LISTED_MIN = 1 << 20,   /**< triangles listed at once, at least */
-  BOXED_MAX = 4,          /**< tiles up to which a triangle is sorted by its box alone */
+  BOXED_MAX = 4,          /**< bands and tiles in each up to which a triangle is sorted by its box alone */
+  AHEAD = 8,              /**< triangles fetched before they are drawn */
   POLL_ROWS = 1 << 16     /**< rows between two looks at the progress callback */
 };
 
@@ -33,6 +34,7 @@ typedef struct tiling {
   size_t first, end; /**< the tiles that are listed at present */
   size_t *begin;     /**< for each of these where its list begins; one more for the end */
   uint32_t *list;
+  uint32_t *places; /**< for each triangle what the first pass found */
   atomic_size_t done;
   atomic_bool stop;
   vxm_status status;
@@ -113,40 +115,52 @@ static void sort_into(const tiling *t, size_t first, size_t end, size_t *counter
   }
 }
 
-static void sort_triangle(const tiling *t, size_t triangle, size_t *counter, uint32_t *list) {
-  const vxm_window *window = t->pen.window;
-  const vxm_point *v[3];
-  corners_of(t->surface, triangle, v);
-  vxm_surface_box box = vxm_surface_bounds_of(t->pen.lattice, window->layout, v).box;
-  bool is_outside = false;
-  for (int r = 0; r < 3; r++) {
-    box.begin[r] = vxm_surface_upper(box.begin[r], t->pen.tile.begin[r]);
-    box.end[r] = vxm_surface_lower(box.end[r], t->pen.tile.end[r]);
-    is_outside |= box.begin[r] >= box.end[r];
-  }
-  if (is_outside)
-    return;
-  int64_t low = (box.begin[VXM_SLOW] - window->begin) >> t->slice_bits,
-          high = (box.end[VXM_SLOW] - 1 - window->begin) >> t->slice_bits;
-  int64_t left = box.begin[VXM_MIDDLE] >> t->row_bits, right = (box.end[VXM_MIDDLE] - 1) >> t->row_bits;
-  bool by_box = (high - low + 1) * (right - left + 1) <= BOXED_MAX || left == right;
+/** The same for as many tiles from `first` on in each of some bands of slices. */
+static void sort_boxed(const tiling *t, size_t first, size_t bands, size_t width, size_t *counter,
+                       uint32_t *list, uint32_t triangle) {
+  for (size_t b = 0; b < bands; b++, first += t->across)
+    sort_into(t, first, first + width, counter, list, triangle);
+}
+
+/** A triangle that may be large: in each band of slices only the tiles that it may touch there. */
+static void sort_large(const tiling *t, const vxm_point *const v[3], const vxm_surface_box *box,
+                       size_t *counter, uint32_t *list, uint32_t triangle) {
+  int64_t base = t->pen.window->begin, thickness = INT64_C(1) << t->slice_bits;
   vxm_surface_shadow shadow;
-  if (!by_box)
+  bool is_wide = (box->end[VXM_MIDDLE] - 1) >> t->row_bits > box->begin[VXM_MIDDLE] >> t->row_bits;
+  if (is_wide)
     vxm_surface_shadow_of(&shadow, &t->pen, v);
-  for (int64_t band = low; band <= high; band++) {
-    int64_t begin = box.begin[VXM_MIDDLE], end = box.end[VXM_MIDDLE];
-    if (!by_box) {
-      int64_t s_begin = window->begin + (band << t->slice_bits);
-      vxm_surface_shadow_rows(&shadow, vxm_max(s_begin, box.begin[VXM_SLOW]),
-                              vxm_min(s_begin + (INT64_C(1) << t->slice_bits), box.end[VXM_SLOW]), &begin,
-                              &end);
-      if (begin >= end)
-        continue;
-    }
+  int64_t last = (box->end[VXM_SLOW] - 1 - base) >> t->slice_bits;
+  for (int64_t band = (box->begin[VXM_SLOW] - base) >> t->slice_bits; band <= last; band++) {
+    int64_t s_begin = base + (band << t->slice_bits), begin = box->begin[VXM_MIDDLE],
+            end = box->end[VXM_MIDDLE];
+    if (is_wide)
+      vxm_surface_shadow_rows(&shadow, vxm_max(s_begin, box->begin[VXM_SLOW]),
+                              vxm_min(s_begin + thickness, box->end[VXM_SLOW]), &begin, &end);
+    if (begin >= end)
+      continue;
     size_t row = (size_t)band * t->across;
     sort_into(t, row + (size_t)(begin >> t->row_bits), row + (size_t)((end - 1) >> t->row_bits) + 1, counter,
-              list, (uint32_t)triangle);
+              list, triangle);
   }
+}
+
+/** What the first pass notes of a triangle: its first tile, and how many bands and tiles in each less one. */
+static const uint32_t place_nowhere = UINT32_MAX, place_large = UINT32_MAX - 1;
+
+static uint32_t place_triangle(const tiling *t, const vxm_point *const v[3], vxm_surface_box *box) {
+  const vxm_window *window = t->pen.window;
+  *box = vxm_surface_bounds_of(t->pen.lattice, window->layout, v).box;
+  if (!vxm_surface_meet(box, &t->pen.tile, VXM_FAST) | !vxm_surface_meet(box, &t->pen.tile, VXM_MIDDLE) |
+      !vxm_surface_meet(box, &t->pen.tile, VXM_SLOW))
+    return place_nowhere;
+  size_t low = (size_t)(box->begin[VXM_SLOW] - window->begin) >> t->slice_bits;
+  size_t high = (size_t)(box->end[VXM_SLOW] - 1 - window->begin) >> t->slice_bits;
+  size_t left = (size_t)box->begin[VXM_MIDDLE] >> t->row_bits;
+  size_t right = (size_t)(box->end[VXM_MIDDLE] - 1) >> t->row_bits;
+  if (high - low >= BOXED_MAX || right - left >= BOXED_MAX)
+    return place_large;
+  return (uint32_t)(((low * t->across + left) * BOXED_MAX + (high - low)) * BOXED_MAX + (right - left));
 }
 
 static void sort_chunk(size_t chunk, int worker, void *payload) {
@@ -154,8 +168,24 @@ static void sort_chunk(size_t chunk, int worker, void *payload) {
   const tiling *t = payload;
   size_t end = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk + 1);
   size_t *counter = t->counters + chunk * t->tile_count;
-  for (size_t i = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk); i < end; i++)
-    sort_triangle(t, i, counter, t->list);
+  for (size_t i = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk); i < end; i++) {
+    const vxm_point *v[3];
+    vxm_surface_box box;
+    if (!t->list) {
+      corners_of(t->surface, i, v);
+      t->places[i] = place_triangle(t, v, &box);
+    }
+    uint32_t place = t->places[i];
+    if (place == place_nowhere)
+      continue;
+    if (place == place_large) {
+      corners_of(t->surface, i, v);
+      place_triangle(t, v, &box);
+      sort_large(t, v, &box, counter, t->list, (uint32_t)i);
+    } else
+      sort_boxed(t, place / (BOXED_MAX * BOXED_MAX), place / BOXED_MAX % BOXED_MAX + 1, place % BOXED_MAX + 1,
+                 counter, t->list, (uint32_t)i);
+  }
 }
 
 /**
@@ -220,6 +250,18 @@ static void move_tile(const tiling *t, const vxm_surface_pen *pen) {
   }
 }
 
+/** Triangles of a tile lie here and there in a large mesh. */
+static void fetch_ahead(const tiling *t, size_t i, size_t end) {
+  if (i + 2 * AHEAD < end)
+    __builtin_prefetch(t->surface->corners + 3 * (size_t)t->list[i + 2 * AHEAD]);
+  if (i + AHEAD < end) {
+    const vxm_point *v[3];
+    corners_of(t->surface, t->list[i + AHEAD], v);
+    for (int c = 0; c < 3; c++)
+      __builtin_prefetch(v[c]);
+  }
+}
+
 static void draw_tile(size_t task, int worker, void *payload) {
   tiling *t = payload;
   if (is_stopped(t, worker))
@@ -232,8 +274,10 @@ static void draw_tile(size_t task, int worker, void *payload) {
   pen.row_end = pen.row_begin + padded;
   pen.words += (size_t)worker * t->tile_words;
   size_t rows = 0;
-  for (size_t i = t->begin[task]; i < t->begin[task + 1]; i++) {
+  size_t end = t->begin[task + 1];
+  for (size_t i = t->begin[task]; i < end; i++) {
     const vxm_point *v[3];
+    fetch_ahead(t, i, end);
     corners_of(t->surface, t->list[i], v);
     rows += 1 + vxm_surface_draw(&pen, v);
     if (rows < POLL_ROWS)
@@ -285,18 +329,21 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
   choose_tiles(&t);
   size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t.row_bits;
   t.counters = vxm_calloc(context, t.chunks * t.tile_count, sizeof *t.counters, &local);
+  t.places = vxm_alloc(context, surface->triangle_count, sizeof *t.places, &local);
   t.begin = vxm_alloc(context, t.tile_count + 1, sizeof *t.begin, &local);
   t.pen.rows = vxm_alloc(context, workers * rows, sizeof *t.pen.rows, &local);
   t.pen.row_begin = vxm_calloc(context, workers * 2 * (rows + (size_t)2 * VXM_SURFACE_LANES),
                                sizeof *t.pen.row_begin, &local);
   t.pen.words = vxm_calloc(context, workers * t.tile_words, sizeof *t.pen.words, &local);
-  vxm_status status =
-      t.counters && t.begin && t.pen.rows && t.pen.row_begin && t.pen.words ? draw_tiles(&t) : local.code;
+  vxm_status status = t.counters && t.places && t.begin && t.pen.rows && t.pen.row_begin && t.pen.words
+                          ? draw_tiles(&t)
+                          : local.code;
   vxm_free(context, t.list);
   vxm_free(context, t.pen.words);
   vxm_free(context, t.pen.row_begin);
   vxm_free(context, t.pen.rows);
   vxm_free(context, t.begin);
+  vxm_free(context, t.places);
   vxm_free(context, t.counters);
   if (status != VXM_OK && error)
     *error = local;
