@@ -27,8 +27,7 @@ static size_t fill_box(const vxm_surface_pen *pen, const vxm_surface_box *box) {
 size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]) {
   vxm_surface_bounds bounds = vxm_surface_bounds_of(pen->lattice, pen->window->layout, v);
   vxm_surface_box whole = bounds.box, box = whole;
-  if (!vxm_surface_meet(&box, &pen->tile, VXM_FAST) | !vxm_surface_meet(&box, &pen->tile, VXM_MIDDLE) |
-      !vxm_surface_meet(&box, &pen->tile, VXM_SLOW))
+  if (!vxm_surface_meet(&box, &pen->tile))
     return 1;
   bool one[3] = {whole.end[0] - whole.begin[0] == 1, whole.end[1] - whole.begin[1] == 1,
                  whole.end[2] - whole.begin[2] == 1};

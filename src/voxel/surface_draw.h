@@ -137,11 +137,18 @@ static inline vxm_surface_bounds vxm_surface_bounds_of(const vxm_lattice *lattic
   return bounds;
 }
 
-/** Narrows one role of a box to that of another; whether anything is left. */
-static inline bool vxm_surface_meet(vxm_surface_box *box, const vxm_surface_box *other, int role) {
+static inline bool vxm_surface_meet_role(vxm_surface_box *box, const vxm_surface_box *other, int role) {
   box->begin[role] = vxm_surface_upper(box->begin[role], other->begin[role]);
   box->end[role] = vxm_surface_lower(box->end[role], other->end[role]);
   return box->begin[role] < box->end[role];
+}
+
+/** Narrows a box to what it shares with another; whether anything is left. */
+static inline bool vxm_surface_meet(vxm_surface_box *box, const vxm_surface_box *other) {
+  bool fast = vxm_surface_meet_role(box, other, VXM_FAST);
+  bool middle = vxm_surface_meet_role(box, other, VXM_MIDDLE);
+  bool slow = vxm_surface_meet_role(box, other, VXM_SLOW);
+  return fast && middle && slow;
 }
 
 /** Sets the triangle's voxels within the tile; returns about how many rows it looked at. */

@@ -151,8 +151,7 @@ static const uint32_t place_nowhere = UINT32_MAX, place_large = UINT32_MAX - 1;
 static uint32_t place_triangle(const tiling *t, const vxm_point *const v[3], vxm_surface_box *box) {
   const vxm_window *window = t->pen.window;
   *box = vxm_surface_bounds_of(t->pen.lattice, window->layout, v).box;
-  if (!vxm_surface_meet(box, &t->pen.tile, VXM_FAST) | !vxm_surface_meet(box, &t->pen.tile, VXM_MIDDLE) |
-      !vxm_surface_meet(box, &t->pen.tile, VXM_SLOW))
+  if (!vxm_surface_meet(box, &t->pen.tile))
     return place_nowhere;
   size_t low = (size_t)(box->begin[VXM_SLOW] - window->begin) >> t->slice_bits;
   size_t high = (size_t)(box->end[VXM_SLOW] - 1 - window->begin) >> t->slice_bits;

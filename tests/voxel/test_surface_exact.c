@@ -91,7 +91,7 @@ static int64_t random_coordinate(vxm_rng *rng, int64_t unit, int64_t dim) {
   }
 }
 
-enum { FLAT = 1, SLIVER = 4, SEGMENT, POINT, FAR, HUGE_ONE, SMALL, STRAIGHT, KINDS };
+enum { FLAT = 1, SLIVER = 4, SEGMENT, POINT, FAR, HUGE_ONE, SMALL, STRAIGHT, WIDE, KINDS };
 
 static void random_triangle(vxm_rng *rng, const vxm_lattice *lattice, int kind, vxm_point corner[3]) {
   const int64_t *dims = lattice->space.dims, unit = lattice->unit, most = VXM_LATTICE_MAX - 1;
@@ -118,6 +118,19 @@ static void random_triangle(vxm_rng *rng, const vxm_lattice *lattice, int kind, 
     } else if (kind == SMALL) {
       *q = *p + (int64_t)vxm_rng_below(rng, (uint64_t)unit) - unit / 2;
       *r = *p + (int64_t)vxm_rng_below(rng, (uint64_t)unit) - unit / 2;
+    }
+  }
+  if (kind == WIDE) { /* long along two axes, with a border or a centre of the grid in the middle of a side */
+    int64_t far = INT64_C(1) << vxm_rng_below(rng, 22);
+    int kept = (int)vxm_rng_below(rng, 3);
+    for (int a = 0; a < 3; a++) {
+      int64_t reach = a == kept ? 1 : far,
+              middle = 1 + (int64_t)vxm_rng_below(rng, (uint64_t)(2 * dims[a] - 1));
+      int64_t away = (int64_t)vxm_rng_below(rng, (uint64_t)(2 * reach + 1)) - reach;
+      int64_t third = (int64_t)vxm_rng_below(rng, (uint64_t)(a == kept ? 2 * dims[a] + 1 : 4 * far));
+      corner[0].at[a] = (middle - away) * (unit / 2);
+      corner[1].at[a] = (middle + away) * (unit / 2);
+      corner[2].at[a] = (third - (a == kept ? 0 : 2 * far)) * (unit / 2);
     }
   }
   if (kind == STRAIGHT) { /* two of its sides along axes */
@@ -266,19 +279,18 @@ static void test_windows_make_no_difference(void **state) {
   vxm_soup_destroy(soup);
 }
 
-/** More triangles than are listed at once, each in every tile. */
+/** More triangles than are listed at once, each in every tile; each has its own columns. */
 static void test_many_large_triangles(void **state) {
   (void)state;
-  enum { COUNT = 20000, SIDE = 64 };
-  vxm_rng rng = {3};
-  vxm_space space = unit_space(SIDE, SIDE, SIDE);
+  enum { COUNT = 20000, SIDE = 32, LENGTH = 1 << 16 };
+  vxm_space space = unit_space(LENGTH, SIDE, SIDE);
   vxm_lattice lattice = vxm_lattice_of(&space);
   vxm_soup *soup = shape_empty(context);
-  for (uint32_t i = 0; i < COUNT; i++) { /* x stays within a few voxels; y and z cover the grid */
-    double x = (double)vxm_rng_below(&rng, 60);
+  for (uint32_t i = 0; i < COUNT; i++) {
+    double x = 3.25 * i;
     shape_vertex(soup, x, -200, -100);
-    shape_vertex(soup, x + 2, 300, -100);
-    shape_vertex(soup, x + vxm_rng_unit(&rng), 32, 300);
+    shape_vertex(soup, x + 1.5, 300, -100);
+    shape_vertex(soup, x + 0.5, 16, 300);
     shape_triangle(soup, 3 * i, 3 * i + 1, 3 * i + 2);
   }
   vxm_surface *surface = surface_of(soup, &lattice, NULL);
@@ -288,7 +300,7 @@ static void test_many_large_triangles(void **state) {
   draw(surface, &one, VXM_SURFACE_THIN, true);
   surface->context = contexts[2];
   draw(surface, &seven, VXM_SURFACE_THIN, true);
-  assert_memory_equal(one.words, seven.words, SIDE * SIDE * sizeof *one.words);
+  assert_memory_equal(one.words, seven.words, (size_t)SIDE * SIDE * LENGTH / 8);
   surface->context = own;
   free(one.words);
   free(seven.words);
