@@ -1,51 +1,31 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The public functions that make many grids of one mesh. */
-#include "grid/bitgrid.h"
+/** The public functions that make many grids of one mesh: they check arguments and call down. */
+#include "api/api_options.h"
 #include "gridio/gridio.h"
-#include "mesh/soup.h"
 #include "voxel/voxelize.h"
 
 #include <string.h>
 
-struct vxm_model {
-  vxm_context *context;
-  const vxm_mesh *mesh;
-  vxm_voxelize_options options;
-  vxm_notes notes;
-};
-
 vxm_status vxm_model_create(vxm_model **out, const vxm_mesh *mesh, const vxm_voxelize_options *options,
                             vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "model: an argument is NULL");
   vxm_voxelize_options chosen = VXM_VOXELIZE_OPTIONS_INIT;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_model *model = vxm_calloc(mesh->context, 1, sizeof *model, &local);
-  (void)error;
-  model->context = mesh->context;
-  model->mesh = mesh;
-  model->options = options ? *options : chosen;
-  *out = model;
-  return VXM_OK;
-}
-
-void vxm_model_destroy(vxm_model *model) {
-  if (model)
-    vxm_free(model->context, model);
+  if (options)
+    chosen = *options;
+  vxm_status status = vxm_check_voxelize_options(&chosen, error);
+  return status == VXM_OK ? vxm_model_make(out, mesh, &chosen, error) : status;
 }
 
 vxm_status vxm_model_voxelize(vxm_grid *grid, vxm_voxelize_report *report, vxm_model *model,
                               const double transform[12], vxm_error *error) {
-  vxm_voxelize_report local;
-  (void)transform;
-  vxm_grid *made;
-  vxm_voxelize_options options = model->options;
-  options.space.like = &grid->space;
-  vxm_status status = vxm_voxelize(&made, report ? report : &local, model->mesh, &options, error);
-  if (status != VXM_OK)
-    return status;
-  memcpy(grid->words, made->words, grid->word_count * 8);
-  model->notes = made->notes;
-  vxm_grid_destroy(made);
-  return VXM_OK;
+  if (report)
+    memset(report, 0, sizeof *report);
+  if (!grid || !model)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
+  return vxm_voxelize_into(grid, report, model, transform, error);
 }
 
 vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model, const vxm_space *space,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that make grids from meshes: they check arguments and call down. */
+#include "api/api_options.h"
 #include "grid/space.h"
 #include "mesh/soup.h"
 #include "voxel/voxelize.h"
@@ -21,7 +22,7 @@ vxm_status vxm_space_fit(vxm_space *out, const vxm_mesh *mesh, const vxm_space_o
   return status;
 }
 
-static vxm_status check_options(const vxm_voxelize_options *options, vxm_error *error) {
+vxm_status vxm_check_voxelize_options(const vxm_voxelize_options *options, vxm_error *error) {
   if (options->version != 1)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "voxelize: options version %" PRIu32 " is unknown; use the initializer",
@@ -53,7 +54,7 @@ vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, const vxm_m
   if (options)
     chosen = *options;
   vxm_space space;
-  vxm_status status = check_options(&chosen, error);
+  vxm_status status = vxm_check_voxelize_options(&chosen, error);
   if (status == VXM_OK)
     status = vxm_space_choose(&space, mesh, &chosen.space, error);
   if (status == VXM_OK)

@@ -42,6 +42,29 @@ static inline int64_t vxm_max(int64_t a, int64_t b) {
   return a > b ? a : b;
 }
 
+/* A line of the cache is compared as four vectors, which all processors have or take apart; gcc 12 makes a
+ * loop over words of the plain form. */
+
+/** Words of a line of the cache. */
+enum { VXM_LINE_WORDS = 8 };
+
+typedef uint64_t vxm_two_words __attribute__((vector_size(16), aligned(8), may_alias));
+
+/** Whether all words of a line are `value`. */
+static inline bool vxm_line_is(const uint64_t *line, uint64_t value) {
+  const vxm_two_words *w = (const vxm_two_words *)(const void *)line, v = {value, value};
+  vxm_two_words unlike = (w[0] ^ v) | (w[1] ^ v) | (w[2] ^ v) | (w[3] ^ v);
+  return (unlike[0] | unlike[1]) == 0;
+}
+
+/** Whether two lines are the same. */
+static inline bool vxm_lines_equal(const uint64_t *a, const uint64_t *b) {
+  const vxm_two_words *v = (const vxm_two_words *)(const void *)a,
+                      *w = (const vxm_two_words *)(const void *)b;
+  vxm_two_words unlike = (v[0] ^ w[0]) | (v[1] ^ w[1]) | (v[2] ^ w[2]) | (v[3] ^ w[3]);
+  return (unlike[0] | unlike[1]) == 0;
+}
+
 /** Bit c of word r goes to bit r of word c: blocks of 32, 16, ... 1 change places across the diagonal. */
 static inline void vxm_transpose64(uint64_t block[64]) {
   uint64_t mask = UINT64_C(0x00000000ffffffff);

@@ -37,13 +37,21 @@ typedef struct cli_command {
   const char *summary;   /**< one line */
   const char *notes;     /**< shown below the options: defaults and examples */
   const cli_option *options;
-  int (*run)(cli_run *cli); /**< returns an exit status */
+  void (*print_choices)(void); /**< prints lists for the help, shown before the notes; NULL = none */
+  int (*run)(cli_run *cli);    /**< returns an exit status */
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
-    cli_command_compare, cli_command_view;
+    cli_command_compare, cli_command_view, cli_command_bench;
 
 enum { CLI_OPTIONS_MAX = 48 };
+
+/** A text file that the program writes itself: under a temporary name until it is complete. */
+typedef struct cli_file {
+  FILE *stream;     /**< NULL = not open */
+  const char *path; /**< the name it gets in the end */
+  char *temporary;  /**< the name it has until then; NULL if `path` is a device */
+} cli_file;
 
 /** One run of the program. */
 struct cli_run {
@@ -63,10 +71,9 @@ struct cli_run {
   vxm_error error;      /**< hand &cli->error to the library, then cli_fail */
   json_t *warnings;     /**< array of strings for the report */
   int64_t warning_count;
-  FILE *text;        /**< where the summary goes: stdout, or stderr while stdout carries the output */
-  FILE *report_file; /**< the report under its temporary name, open from cli_start to cli_finish */
-  char *report_name; /**< that name; NULL if the report is a device */
-  const char *made;  /**< output file that exists by now; removed if the run still fails */
+  FILE *text;           /**< where the summary goes: stdout, or stderr while stdout carries the output */
+  cli_file report_file; /**< open from cli_start to cli_finish */
+  const char *made;     /**< output file that exists by now; removed if the run still fails */
   const char *made_format;
   char phase[48];
   double drawn; /**< time at which progress was last drawn; 0 = none on the screen */
@@ -135,10 +142,14 @@ json_t *cli_json_numbers(const double *values, int count);
 json_t *cli_json_space(const vxm_space *space);
 /** 16 hexadecimal digits, as JSON has no 64-bit unsigned numbers. */
 json_t *cli_json_hash(uint64_t hash);
+/** Opens a file of the program's own; false with errno set. */
+bool cli_file_open(cli_file *file, const char *path);
+/** Completes the file and gives it its name; false with errno set, then the file is still to be dropped. */
+bool cli_file_commit(cli_file *file);
+/** Drops a file that was not committed; does nothing if none is open. */
+void cli_file_drop(cli_file *file);
 /** Opens the file of --report, so that a wrong name fails before the work. */
 bool cli_report_open(cli_run *cli);
-/** Drops a report that was not finished. */
-void cli_report_close(cli_run *cli);
 /** Prints the report with --json, writes it with --report, and frees it. Returns an exit status. */
 int cli_finish(cli_run *cli, json_t *report);
 
@@ -146,6 +157,8 @@ int cli_finish(cli_run *cli, json_t *report);
 
 /** Sets the context options up for progress on stderr and for cancelling by a signal. */
 void cli_progress_init(cli_run *cli);
+/** Reports progress to the user; true if a signal has asked to stop. */
+bool cli_progress(cli_run *cli, const char *phase, double fraction);
 /** Clears the progress line before something else is printed. */
 void cli_progress_clear(cli_run *cli);
 /** The signal that asked to stop, or 0. */

@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const cli_command *const commands[] = {&cli_command_info,     &cli_command_repair,
-                                              &cli_command_voxelize, &cli_command_convert,
-                                              &cli_command_compare,  &cli_command_view};
+static const cli_command *const commands[] = {
+    &cli_command_info,    &cli_command_repair, &cli_command_voxelize, &cli_command_convert,
+    &cli_command_compare, &cli_command_view,   &cli_command_bench};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static void help(void) {
@@ -70,7 +70,7 @@ static int run(const cli_command *command, int argc, char **argv) {
   int status = flush_output(&cli, command->run(&cli));
   if (status == CLI_FAILED)
     remove_output(&cli);
-  cli_report_close(&cli);
+  cli_file_drop(&cli.report_file);
   vxm_context_destroy(cli.context);
   json_decref(cli.warnings);
   return status;

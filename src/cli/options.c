@@ -50,6 +50,14 @@ static void print_option(const cli_option *option) {
   putchar('\n');
 }
 
+/** Whether a command has an option of its own by the name of a common one, which then stands back. */
+static bool is_replaced(const cli_command *command, const cli_option *common) {
+  for (const cli_option *option = command->options; option->name; option++)
+    if (strcmp(option->name, common->name) == 0)
+      return true;
+  return false;
+}
+
 void cli_help(const cli_command *command) {
   printf("Usage: voxmend %s %s\n%s\n", command->name, command->arguments, command->summary);
   if (command->options[0].name)
@@ -58,7 +66,10 @@ void cli_help(const cli_command *command) {
     print_option(option);
   printf("\nCommon options:\n");
   for (const cli_option *option = common_options; option->name; option++)
-    print_option(option);
+    if (!is_replaced(command, option))
+      print_option(option);
+  if (command->print_choices)
+    command->print_choices();
   printf("\n%s\n\nExit status: 0 done; 1 failed, and no output file is left; 2 wrong usage;\n"
          "3 done with warnings, and only with --strict.\n",
          command->notes);
@@ -69,23 +80,26 @@ void cli_help(const cli_command *command) {
 static struct option long_options[CLI_OPTIONS_MAX + 1];
 static char letters[2 * CLI_OPTIONS_MAX + 2];
 
-static void add_options(const cli_option *options, size_t *count, size_t *used) {
-  for (; options->name && *count < CLI_OPTIONS_MAX; options++) {
-    int takes = options->argument ? required_argument : no_argument;
-    long_options[(*count)++] = (struct option){options->name, takes, NULL, options->key};
-    if (options->key >= CLI_KEY_COMMON)
-      continue;
-    letters[(*used)++] = (char)options->key;
-    if (options->argument)
-      letters[(*used)++] = ':';
-  }
+static void add_option(const cli_option *option, size_t *count, size_t *used) {
+  if (*count >= CLI_OPTIONS_MAX)
+    return;
+  int takes = option->argument ? required_argument : no_argument;
+  long_options[(*count)++] = (struct option){option->name, takes, NULL, option->key};
+  if (option->key >= CLI_KEY_COMMON)
+    return;
+  letters[(*used)++] = (char)option->key;
+  if (option->argument)
+    letters[(*used)++] = ':';
 }
 
 static void build_tables(const cli_run *cli) {
   size_t count = 0, used = 0;
   letters[used++] = ':'; /* tells a missing argument from an unknown option */
-  add_options(cli->command->options, &count, &used);
-  add_options(common_options, &count, &used);
+  for (const cli_option *option = cli->command->options; option->name; option++)
+    add_option(option, &count, &used);
+  for (const cli_option *option = common_options; option->name; option++)
+    if (!is_replaced(cli->command, option))
+      add_option(option, &count, &used);
   opterr = 0;
 }
 

@@ -143,42 +143,56 @@ static bool report_failed(cli_run *cli, int reason) {
   return false;
 }
 
-bool cli_report_open(cli_run *cli) {
-  if (!cli->report)
-    return true;
+bool cli_file_open(cli_file *file, const char *path) {
+  *file = (cli_file){.path = path};
   struct stat info;
-  bool replace = stat(cli->report, &info) != 0 || S_ISREG(info.st_mode);
+  bool replace = stat(path, &info) != 0 || S_ISREG(info.st_mode);
   if (replace) {
-    size_t size = strlen(cli->report) + 32;
-    cli->report_name = malloc(size);
-    if (!cli->report_name)
-      return report_failed(cli, ENOMEM);
-    snprintf(cli->report_name, size, "%s.%ld.tmp", cli->report, (long)getpid());
+    size_t size = strlen(path) + 32;
+    file->temporary = malloc(size);
+    if (!file->temporary)
+      return false;
+    snprintf(file->temporary, size, "%s.%ld.tmp", path, (long)getpid());
   }
-  cli->report_file = fopen(replace ? cli->report_name : cli->report, "we");
-  return cli->report_file || report_failed(cli, errno);
+  file->stream = fopen(replace ? file->temporary : path, "we");
+  if (file->stream)
+    return true;
+  int reason = errno;
+  free(file->temporary);
+  file->temporary = NULL;
+  errno = reason;
+  return false;
 }
 
-void cli_report_close(cli_run *cli) {
-  if (cli->report_file) {
-    fclose(cli->report_file);
-    if (cli->report_name)
-      unlink(cli->report_name);
+bool cli_file_commit(cli_file *file) {
+  if (fflush(file->stream) != 0 || ferror(file->stream))
+    return false;
+  if (file->temporary && rename(file->temporary, file->path) != 0)
+    return false;
+  fclose(file->stream);
+  free(file->temporary);
+  *file = (cli_file){0};
+  return true;
+}
+
+void cli_file_drop(cli_file *file) {
+  if (file->stream) {
+    fclose(file->stream);
+    if (file->temporary)
+      unlink(file->temporary);
   }
-  cli->report_file = NULL;
-  free(cli->report_name);
-  cli->report_name = NULL;
+  free(file->temporary);
+  *file = (cli_file){0};
+}
+
+bool cli_report_open(cli_run *cli) {
+  return !cli->report || cli_file_open(&cli->report_file, cli->report) || report_failed(cli, errno);
 }
 
 static bool write_report(cli_run *cli, const json_t *report) {
-  FILE *file = cli->report_file;
-  bool good = json_dumpf(report, file, JSON_STYLE) == 0 && fputc('\n', file) != EOF && fflush(file) == 0;
-  good = good && (!cli->report_name || rename(cli->report_name, cli->report) == 0);
-  if (!good)
-    return report_failed(cli, errno);
-  fclose(file);
-  cli->report_file = NULL;
-  return true;
+  FILE *stream = cli->report_file.stream;
+  bool good = json_dumpf(report, stream, JSON_STYLE) == 0 && fputc('\n', stream) != EOF;
+  return (good && cli_file_commit(&cli->report_file)) || report_failed(cli, errno);
 }
 
 int cli_finish(cli_run *cli, json_t *report) {

@@ -28,16 +28,15 @@ static void draw(cli_run *cli, double fraction) {
   fprintf(stderr, "\r%-20s [", cli->phase);
   for (int i = 0; i < WIDTH; i++)
     fputc(i < filled ? '#' : ' ', stderr);
-  fprintf(stderr, "] %3d %%", (int)(fraction * 100));
+  fprintf(stderr, "] %3d %%\033[K", (int)(fraction * 100));
   fflush(stderr);
 }
 
-static int on_progress(const char *phase, double fraction, void *payload) {
-  cli_run *cli = payload;
+bool cli_progress(cli_run *cli, const char *phase, double fraction) {
   if (caught)
-    return 1;
+    return true;
   if (strcmp(cli->progress, "never") == 0)
-    return 0;
+    return false;
   bool terminal = isatty(STDERR_FILENO);
   bool begins = strncmp(cli->phase, phase, sizeof cli->phase - 1) != 0;
   if (begins)
@@ -46,7 +45,11 @@ static int on_progress(const char *phase, double fraction, void *payload) {
     draw(cli, fraction);
   else if (begins) /* --progress always into a file: each phase once */
     fprintf(stderr, "voxmend: %s\n", cli->phase);
-  return 0;
+  return false;
+}
+
+static int on_progress(const char *phase, double fraction, void *payload) {
+  return cli_progress(payload, phase, fraction);
 }
 
 void cli_progress_clear(cli_run *cli) {

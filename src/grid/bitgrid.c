@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/bitgrid.h"
-#include "base/hash.h"
 #include "base/threads.h"
+#include "grid/sum.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -102,50 +102,12 @@ const uint64_t *vxm_grid_words(const vxm_grid *grid) {
   return grid->words;
 }
 
-/** One slice of a grid: what it holds, and its hash. */
-typedef struct slice_sum {
-  int64_t count;
-  uint64_t hash;
-} slice_sum;
-
-enum { SLICES_AT_ONCE = 256 };
-
-typedef struct sum_job {
-  const vxm_grid *grid;
-  size_t first;
-  slice_sum sums[SLICES_AT_ONCE];
-} sum_job;
-
-static void sum_slice(size_t task, int worker, void *payload) {
-  (void)worker;
-  sum_job *job = payload;
-  const uint64_t *words = job->grid->words + (job->first + task) * job->grid->slice_words;
-  slice_sum sum = {0, 0};
-  uint64_t lanes[4] = {0, 0, 0, 0}; /* four chains, as one would wait for its own multiplications */
-  for (size_t w = 0; w < job->grid->slice_words; w++) {
-    sum.count += vxm_popcount(words[w]);
-    lanes[w % 4] = vxm_hash_word(lanes[w % 4], words[w]);
-  }
-  for (int l = 0; l < 4; l++)
-    sum.hash = vxm_hash_word(sum.hash, lanes[l]);
-  job->sums[task] = sum;
-}
-
 void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
-  size_t slices = (size_t)grid->space.dims[2];
-  sum_job job = {.grid = grid};
-  *count = 0;
-  *hash = 0;
-  for (int a = 0; a < 3; a++)
-    *hash = vxm_hash_word(*hash, (uint64_t)grid->space.dims[a]);
-  for (; job.first < slices; job.first += SLICES_AT_ONCE) {
-    size_t tasks = slices - job.first < SLICES_AT_ONCE ? slices - job.first : SLICES_AT_ONCE;
-    vxm_parallel(grid->context, tasks, sum_slice, &job);
-    for (size_t t = 0; t < tasks; t++) {
-      *count += job.sums[t].count;
-      *hash = vxm_hash_word(*hash, job.sums[t].hash);
-    }
-  }
+  vxm_window window = vxm_window_of_grid(grid);
+  vxm_sum sum = vxm_sum_start(&grid->space);
+  vxm_sum_add(&sum, grid->context, &window, NULL);
+  *count = sum.count;
+  *hash = sum.hash;
 }
 
 int64_t vxm_grid_count(const vxm_grid *grid) {

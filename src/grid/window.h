@@ -26,8 +26,8 @@ typedef struct vxm_window {
   int64_t fast_dim, middle_dim, slow_dim; /**< of the whole space */
   int64_t begin, end;                     /**< slices, 0 <= begin <= end <= slow_dim */
   size_t row_words;                       /**< (fast_dim + 63) / 64 */
-  size_t slice_words;                     /**< row_words * middle_dim */
-  uint64_t *words;                        /**< (end - begin) * slice_words of them; belongs to the caller */
+  size_t slice_words;                     /**< from one slice to the next: row_words * middle_dim, or more */
+  uint64_t *words;                        /**< of the rows; belong to the caller */
 } vxm_window;
 
 /** The window of slices begin..end-1 with words still to be given. */

@@ -2,13 +2,12 @@
 /* .binvox: a text header, then pairs (value, count) over voxels with y fastest, then z, then x. */
 #include "gridio/format.h"
 #include "gridio/planes.h"
-#include "gridio/runs.h"
+#include "gridio/run_writer.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <locale.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -192,7 +191,8 @@ static unsigned advance(cursor *at, const vxm_planes *planes, size_t used, bool 
 
 static vxm_status read_runs(vxm_grid *grid, const vxm_input *input, size_t data, vxm_error *error) {
   vxm_planes planes;
-  vxm_status status = vxm_planes_create(&planes, grid->context, &grid->space, VXM_PLANE_Y_FAST, error);
+  vxm_status status =
+      vxm_planes_create(&planes, grid->context, &grid->space, (vxm_layout)VXM_PLANE_Y_FAST, error);
   if (status != VXM_OK)
     return status;
   size_t at = data;
@@ -256,73 +256,41 @@ static vxm_status read_binvox(vxm_grid **out, const vxm_input *input, vxm_error 
 
 /* ---- Writing ---- */
 
-/** Pairs are put straight into the output's buffer. */
-typedef struct sink {
-  vxm_output *output;
-  unsigned char *room;
-  size_t used;
-} sink;
-
-enum { ROOM = 4096 };
-
-static void sink_flush(sink *s) {
-  vxm_output_advance(s->output, s->used);
-  s->room = (unsigned char *)vxm_output_reserve(s->output, ROOM);
-  s->used = 0;
+/** The side of the cube. */
+static uint64_t side_of(const vxm_space *space) {
+  return (uint64_t)vxm_max(space->dims[0], vxm_max(space->dims[1], space->dims[2]));
 }
 
-static inline void put_pair(sink *s, bool value, unsigned count) {
-  if (s->used == ROOM)
-    sink_flush(s);
-  s->room[s->used++] = value;
-  s->room[s->used++] = (unsigned char)count;
-}
-
-static inline void put_run(bool value, uint64_t length, void *payload) {
-  sink *s = payload;
-  for (; length > 255; length -= 255)
-    put_pair(s, value, 255);
-  if (length > 0)
-    put_pair(s, value, (unsigned)length);
-}
-
-/** One plane of the cube: the rows of the grid, each followed by padding, then rows of padding. */
-static void put_plane(vxm_run *run, sink *s, const vxm_planes *planes, size_t plane, uint64_t side) {
-  for (size_t row = 0; row < planes->rows; row++) {
-    vxm_run_scan(run, vxm_plane_row(planes, plane, row), planes->length, put_run, s);
-    vxm_run_skip(run, side - planes->length, put_run, s);
-  }
-  vxm_run_skip(run, (side - planes->rows) * side, put_run, s);
-}
-
-/** Pairs of 255 may be written before their run ends: the file is the same, and the writer can be stopped. */
-static void put_full_pairs(vxm_run *run, sink *s) {
-  for (; run->length > 255; run->length -= 255)
-    put_pair(s, run->value, 255);
-}
-
-static vxm_status write_voxels(vxm_output *output, const vxm_grid *grid, vxm_planes *planes, uint64_t side,
-                               vxm_error *error) {
-  sink s = {output, (unsigned char *)vxm_output_reserve(output, ROOM), 0};
-  vxm_run run = {false, 0};
-  uint64_t nx = (uint64_t)grid->space.dims[0];
-  for (uint64_t x = 0; x < side && !vxm_output_failed(output); x++) {
-    if (x < nx && x % 64 == 0)
-      vxm_planes_gather(planes, grid, x / 64, NULL);
-    if (x < nx)
-      put_plane(&run, &s, planes, x % 64, side);
-    else
-      vxm_run_skip(&run, side * side, put_run, &s);
-    put_full_pairs(&run, &s);
-    if (x % 16 == 0 || side > 4096) {
-      vxm_status status = vxm_progress(grid->context, "writing", (double)x / (double)side, error);
-      if (status != VXM_OK)
-        return status;
-    }
-  }
-  put_run(run.value, run.length, &s);
-  vxm_output_advance(output, s.used);
+/** One scale holds the size of all voxels, and all three sides. */
+static vxm_status check_cubic(const vxm_space *space, const char *path, vxm_error *error) {
+  (void)path;
+  const double *size = space->voxel_size;
+  uint64_t side = side_of(space);
+  if (fabs(size[1] - size[0]) > 1e-9 * size[0] || fabs(size[2] - size[0]) > 1e-9 * size[0])
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "binvox holds only voxels that are cubes, these are %g x %g x %g; use .npy, .raw or .rle",
+                    size[0], size[1], size[2]);
+  if (!isfinite(size[0] * (double)side))
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "the side of the grid is too long for binvox; use .npy, .raw or .rle");
+  /* 2 bytes for 255 voxels of padding: a rod of a million voxels would become petabytes. */
+  uint64_t padding = (side * side * side - vxm_space_voxels(space)) / 255 * 2;
+  if (padding >> 34)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "binvox would pad this grid to a cube with %" PRIu64 " GiB; use .npy, .raw or .rle",
+                    padding >> 30);
   return VXM_OK;
+}
+
+/** A slice of the cube: the rows of the grid, each followed by padding, then rows of padding. */
+static vxm_run_shape shape_of(const vxm_space *space) {
+  uint64_t side = side_of(space), ny = (uint64_t)space->dims[1], nz = (uint64_t)space->dims[2];
+  return (vxm_run_shape){VXM_RUN_PAIRS, (size_t)ny, side - ny, (side - nz) * side};
+}
+
+static size_t state_bytes(const vxm_space *space) {
+  vxm_run_shape shape = shape_of(space);
+  return vxm_run_writer_bytes(&shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
 }
 
 static vxm_status write_header(vxm_output *output, const vxm_space *space, uint64_t side, vxm_error *error) {
@@ -340,48 +308,29 @@ static vxm_status write_header(vxm_output *output, const vxm_space *space, uint6
   return VXM_OK;
 }
 
-/** One scale holds the size of all voxels, and all three sides. */
-static vxm_status check_cubic(const vxm_space *space, uint64_t side, vxm_error *error) {
-  const double *size = space->voxel_size;
-  if (fabs(size[1] - size[0]) > 1e-9 * size[0] || fabs(size[2] - size[0]) > 1e-9 * size[0])
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "binvox holds only voxels that are cubes, these are %g x %g x %g; use .npy, .raw or .rle",
-                    size[0], size[1], size[2]);
-  if (!isfinite(size[0] * (double)side))
-    return vxm_fail(error, VXM_ERROR_RANGE,
-                    "the side of the grid is too long for binvox; use .npy, .raw or .rle");
-  /* 2 bytes for 255 voxels of padding: a rod of a million voxels would become petabytes. */
-  uint64_t padding = (side * side * side - vxm_space_voxels(space)) / 255 * 2;
-  if (padding >> 34)
-    return vxm_fail(error, VXM_ERROR_RANGE,
-                    "binvox would pad this grid to a cube with %" PRIu64 " GiB; use .npy, .raw or .rle",
-                    padding >> 30);
+static vxm_status begin(vxm_slices *slices, vxm_error *error) {
+  const vxm_space *space = &slices->space;
+  vxm_run_shape shape = shape_of(space);
+  slices->length = (int64_t)side_of(space);
+  vxm_run_writer_begin(slices->state, &shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
+  return write_header(slices->output, space, side_of(space), error);
+}
+
+/** The padding beyond the grid along x. */
+static vxm_status end(vxm_slices *slices, vxm_error *error) {
+  uint64_t side = side_of(&slices->space);
+  for (uint64_t x = (uint64_t)slices->space.dims[0]; x < side; x++) {
+    vxm_run_writer_skip(slices, side * side);
+    vxm_status status = vxm_slices_step(slices, (double)(x + 1), error);
+    if (status != VXM_OK)
+      return status;
+  }
+  vxm_run_writer_end(slices);
   return VXM_OK;
 }
 
-static vxm_status write_binvox(const vxm_grid *grid, const char *path, vxm_error *error) {
-  const vxm_space *space = &grid->space;
-  uint64_t side = 0;
-  for (int a = 0; a < 3; a++)
-    side = (uint64_t)space->dims[a] > side ? (uint64_t)space->dims[a] : side;
-  vxm_status status = check_cubic(space, side, error);
-  if (status != VXM_OK)
-    return status;
-  vxm_planes planes;
-  status = vxm_planes_create(&planes, grid->context, space, VXM_PLANE_Y_FAST, error);
-  if (status != VXM_OK)
-    return status;
-  vxm_output *output = NULL;
-  status = vxm_output_open(&output, grid->context, path, error);
-  if (status == VXM_OK)
-    status = write_header(output, space, side, error);
-  if (status == VXM_OK)
-    status = write_voxels(output, grid, &planes, side, error);
-  vxm_planes_destroy(&planes);
-  if (status == VXM_OK)
-    return vxm_output_commit(output, error);
-  vxm_output_abort(output);
-  return status;
-}
+static const vxm_slices_kind slices_kind = {
+    VXM_PLANE_Y_FAST, NULL, check_cubic, state_bytes, begin, vxm_run_writer_put, end,
+};
 
-const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, write_binvox};
+const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, &slices_kind};

@@ -1,47 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/format.h"
 #include "gridio/gridio.h"
-#include "meshio/meshio.h"
-
-#include <string.h>
-
-/* ---- The surface as a mesh file ---- */
-
-static vxm_status write_surface(const vxm_grid *grid, const char *path, const char *format,
-                                vxm_error *error) {
-  vxm_soup *surface;
-  vxm_status status = vxm_gridio_surface_mesh(&surface, grid, error);
-  if (status != VXM_OK)
-    return status;
-  status = vxm_meshio_write(surface, path, format, false, error);
-  vxm_soup_destroy(surface);
-  return status;
-}
-
-static vxm_status write_obj(const vxm_grid *grid, const char *path, vxm_error *error) {
-  return write_surface(grid, path, "obj", error);
-}
-
-static vxm_status write_ply(const vxm_grid *grid, const char *path, vxm_error *error) {
-  return write_surface(grid, path, "ply", error);
-}
-
-static vxm_status write_stl(const vxm_grid *grid, const char *path, vxm_error *error) {
-  return write_surface(grid, path, "stl", error);
-}
-
-static vxm_status write_off(const vxm_grid *grid, const char *path, vxm_error *error) {
-  return write_surface(grid, path, "off", error);
-}
-
-static const vxm_grid_format mesh_formats[] = {
-    {"obj", NULL, NULL, write_obj},
-    {"ply", NULL, NULL, write_ply},
-    {"stl", NULL, NULL, write_stl},
-    {"off", NULL, NULL, write_off},
-};
 
 /* ---- The table ---- */
+
+static const vxm_grid_format mesh_formats[] = {
+    {"obj", NULL, NULL, NULL},
+    {"ply", NULL, NULL, NULL},
+    {"stl", NULL, NULL, NULL},
+    {"off", NULL, NULL, NULL},
+};
 
 /** In the order in which the content is asked. */
 static const vxm_grid_format *const formats[] = {
@@ -97,15 +65,18 @@ vxm_status vxm_gridio_read(vxm_grid **out, vxm_context *context, const char *pat
   return status;
 }
 
-vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {
+const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format, vxm_error *error) {
   const char *name = format ? format : vxm_path_extension(path);
   const vxm_grid_format *found = find_name(name);
   if (found)
-    return found->write(grid, path, error);
+    return found;
   if (!format && !*name)
-    return vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
-                       "no format is given and the name has no extension; choose binvox, npy, raw, rle, obj, "
-                       "ply, stl or off");
-  return vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
-                     "unknown grid format \"%s\"; choose binvox, npy, raw, rle, obj, ply, stl or off", name);
+    vxm_fail_at(
+        error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
+        "no format is given and the name has no extension; choose binvox, npy, raw, rle, obj, ply, stl "
+        "or off");
+  else
+    vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
+                "unknown grid format \"%s\"; choose binvox, npy, raw, rle, obj, ply, stl or off", name);
+  return NULL;
 }

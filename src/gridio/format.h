@@ -4,7 +4,45 @@
 #define VXM_GRIDIO_FORMAT_H
 
 #include "base/file.h"
-#include "grid/bitgrid.h"
+#include "gridio/sidecar.h"
+#include "gridio/slices.h"
+
+/** A file in the making; what its format needs lies in `state`. */
+struct vxm_slices {
+  vxm_context *context; /**< one reference held */
+  const struct vxm_grid_format *format;
+  vxm_space space;
+  vxm_output *output;  /**< NULL after its failure has been reported */
+  vxm_output *sidecar; /**< NULL if there is none */
+  char *path;
+  bool report;
+  int64_t next; /**< slice */
+  int64_t
+      length; /**< slices of the file, its padding included; those of the space unless `begin` says more */
+  void *state;
+};
+
+/** How a format is written. */
+typedef struct vxm_slices_kind {
+  vxm_layout layout;
+  const vxm_sidecar_text *sidecar; /**< what the JSON beside the file says; NULL = there is none */
+  /** Refuses what the format cannot hold; NULL = it holds all. */
+  vxm_status (*check)(const vxm_space *space, const char *path, vxm_error *error);
+  size_t (*state_bytes)(const vxm_space *space);
+  /** Sets up `state` and writes the header. */
+  vxm_status (*begin)(vxm_slices *slices, vxm_error *error);
+  vxm_status (*put)(vxm_slices *slices, const vxm_window *window, vxm_error *error);
+  /** Writes what is left after the last slice. */
+  vxm_status (*end)(vxm_slices *slices, vxm_error *error);
+} vxm_slices_kind;
+
+/** For `put` and `end`, now and then: notices a failed write, and reports progress if that is wanted. */
+vxm_status vxm_slices_step(vxm_slices *slices, double slices_done, vxm_error *error);
+/** The same after some rows, counted through the slices of a window. */
+static inline vxm_status vxm_slices_step_rows(vxm_slices *slices, const vxm_window *window, size_t rows,
+                                              vxm_error *error) {
+  return vxm_slices_step(slices, (double)window->begin + (double)rows / (double)window->middle_dim, error);
+}
 
 typedef struct vxm_grid_format {
   const char *name; /**< also the extension */
@@ -12,8 +50,12 @@ typedef struct vxm_grid_format {
   bool (*sniff)(const vxm_input *input);
   /** NULL = the format is only written. */
   vxm_status (*read)(vxm_grid **out, const vxm_input *input, vxm_error *error);
-  vxm_status (*write)(const vxm_grid *grid, const char *path, vxm_error *error);
+  /** NULL = the surface is written as a mesh of this name. */
+  const vxm_slices_kind *slices;
 } vxm_grid_format;
+
+/** The format of a file to be written; NULL with VXM_ERROR_ARGUMENT if there is none. */
+const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format, vxm_error *error);
 
 /** One per file of this room. */
 extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_raw, vxm_format_rle;

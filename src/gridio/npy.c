@@ -84,7 +84,8 @@ static void load_step(vxm_grid *grid, loading *l) {
 /** C order: z fastest and x slowest, through planes. */
 static vxm_status read_c_order(vxm_grid *grid, const unsigned char *data, element e, vxm_error *error) {
   vxm_planes planes;
-  vxm_status status = vxm_planes_create(&planes, grid->context, &grid->space, VXM_PLANE_Z_FAST, error);
+  vxm_status status =
+      vxm_planes_create(&planes, grid->context, &grid->space, (vxm_layout)VXM_PLANE_Z_FAST, error);
   if (status != VXM_OK)
     return status;
   for (size_t w = 0; status == VXM_OK && w < grid->row_words; w++) {
@@ -180,10 +181,16 @@ static vxm_status read_npy(vxm_grid **out, const vxm_input *input, vxm_error *er
 
 enum { CHUNK = 1 << 22 };
 
+/** Rows that are turned into bytes together, at most CHUNK of them; a row is below 2^20 + 1. */
+static size_t chunk_rows(const vxm_space *space) {
+  size_t all = (size_t)space->dims[0] * (size_t)space->dims[1], rows = CHUNK / (size_t)space->dims[2];
+  return rows < all ? rows : all;
+}
+
 typedef struct storing {
-  const vxm_planes *planes;
+  const vxm_window *window;
   unsigned char *bytes;
-  size_t row, rows; /**< those in `bytes`, counted over all planes */
+  size_t row, rows; /**< those in `bytes`, counted over all slices of the window */
 } storing;
 
 static void store_row(unsigned char *to, const uint64_t *row, size_t count) {
@@ -197,68 +204,47 @@ static void store_row(unsigned char *to, const uint64_t *row, size_t count) {
 static void store_rows(size_t task, int worker, void *payload) {
   (void)worker;
   const storing *s = payload;
-  size_t begin = task * ROWS_PER_TASK,
+  size_t begin = task * ROWS_PER_TASK, length = (size_t)s->window->fast_dim,
          end = begin + ROWS_PER_TASK < s->rows ? begin + ROWS_PER_TASK : s->rows;
   for (size_t r = begin; r < end; r++) {
-    size_t plane = (s->row + r) / s->planes->rows, row = (s->row + r) % s->planes->rows;
-    store_row(s->bytes + r * s->planes->length, vxm_plane_row(s->planes, plane, row), s->planes->length);
+    int64_t row = (int64_t)(s->row + r), middles = s->window->middle_dim;
+    store_row(s->bytes + r * length,
+              vxm_window_row(s->window, row % middles, s->window->begin + row / middles), length);
   }
 }
 
-static vxm_status write_array(vxm_output *output, const vxm_grid *grid, vxm_planes *planes,
-                              unsigned char *bytes, size_t chunk_rows, vxm_error *error) {
-  for (size_t w = 0; w < grid->row_words; w++) {
-    vxm_planes_gather(planes, grid, w, NULL);
-    size_t rows = vxm_planes_in(grid, w) * planes->rows;
-    for (size_t row = 0; row < rows && !vxm_output_failed(output); row += chunk_rows) {
-      storing s = {planes, bytes, row, rows - row < chunk_rows ? rows - row : chunk_rows};
-      vxm_parallel(grid->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
-      vxm_output_write(output, bytes, s.rows * planes->length);
-      double done = ((double)w + (double)(row + s.rows) / (double)rows) / (double)grid->row_words;
-      vxm_status status = vxm_progress(grid->context, "writing", done, error);
-      if (status != VXM_OK)
-        return status;
-    }
+static vxm_status put(vxm_slices *slices, const vxm_window *window, vxm_error *error) {
+  size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim,
+         most = chunk_rows(&slices->space);
+  for (size_t row = 0; row < rows; row += most) {
+    storing s = {window, slices->state, row, rows - row < most ? rows - row : most};
+    vxm_parallel(slices->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
+    vxm_output_write(slices->output, s.bytes, s.rows * (size_t)window->fast_dim);
+    vxm_status status = vxm_slices_step_rows(slices, window, row + s.rows, error);
+    if (status != VXM_OK)
+      return status;
   }
   return VXM_OK;
 }
 
-/** Allocates what the writer needs and fills the output. */
-static vxm_status fill_output(vxm_output *output, const vxm_grid *grid, vxm_error *error) {
-  vxm_planes planes;
-  vxm_status status = vxm_planes_create(&planes, grid->context, &grid->space, VXM_PLANE_Z_FAST, error);
-  if (status != VXM_OK)
-    return status;
-  size_t all = planes.count * planes.rows, chunk_rows = CHUNK / planes.length; /* a row is below 2^20 + 1 */
-  if (chunk_rows > all)
-    chunk_rows = all;
-  vxm_error local = VXM_ERROR_INIT;
-  unsigned char *bytes = vxm_alloc(grid->context, chunk_rows, planes.length, &local);
-  if (bytes) {
-    vxm_npy_header_write(output, "|b1", false, grid->space.dims);
-    status = write_array(output, grid, &planes, bytes, chunk_rows, error);
-  } else {
-    status = local.code;
-    if (error)
-      *error = local;
-  }
-  vxm_free(grid->context, bytes);
-  vxm_planes_destroy(&planes);
-  return status;
+static size_t state_bytes(const vxm_space *space) {
+  return chunk_rows(space) * (size_t)space->dims[2];
 }
 
-static vxm_status write_npy(const vxm_grid *grid, const char *path, vxm_error *error) {
-  vxm_output *output = NULL, *sidecar = NULL;
-  vxm_status status = vxm_output_open(&output, grid->context, path, error);
-  if (status == VXM_OK)
-    status = vxm_sidecar_open(&sidecar, grid, path, &description, error);
-  if (status == VXM_OK)
-    status = fill_output(output, grid, error);
-  if (status == VXM_OK)
-    return vxm_sidecar_commit(output, sidecar, path, error);
-  vxm_output_abort(sidecar);
-  vxm_output_abort(output);
-  return status;
+static vxm_status begin(vxm_slices *slices, vxm_error *error) {
+  (void)error;
+  vxm_npy_header_write(slices->output, "|b1", false, slices->space.dims);
+  return VXM_OK;
 }
 
-const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, write_npy};
+static vxm_status end(vxm_slices *slices, vxm_error *error) {
+  (void)slices;
+  (void)error;
+  return VXM_OK;
+}
+
+static const vxm_slices_kind slices_kind = {
+    VXM_PLANE_Z_FAST, &description, NULL, state_bytes, begin, put, end,
+};
+
+const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, &slices_kind};

@@ -6,17 +6,26 @@
 
 enum { ROWS_PER_TASK = 16 };
 
-vxm_status vxm_planes_create(vxm_planes *out, vxm_context *context, const vxm_space *space,
-                             vxm_plane_order order, vxm_error *error) {
-  size_t ny = (size_t)space->dims[1], nz = (size_t)space->dims[2];
-  bool y_fast = order == VXM_PLANE_Y_FAST;
-  *out = (vxm_planes){.context = context, .order = order};
-  out->count = space->dims[0] < 64 ? (size_t)space->dims[0] : 64;
-  out->rows = y_fast ? nz : ny;
-  out->length = y_fast ? ny : nz;
-  out->row_words = (out->length + 63) / 64;
+static vxm_planes planes_of(const vxm_space *space, vxm_layout layout) {
+  vxm_planes planes = {.layout = layout};
+  planes.count = space->dims[0] < 64 ? (size_t)space->dims[0] : 64;
+  planes.rows = (size_t)space->dims[layout.middle];
+  planes.length = (size_t)space->dims[layout.fast];
+  planes.row_words = (planes.length + 63) / 64;
   /* At most 2^20 rows of 2^14 words; the sum makes whole cache lines, an odd number of them. */
-  out->plane_words = ((out->rows * out->row_words + 7) / 8 | 1) * 8;
+  planes.plane_words = ((planes.rows * planes.row_words + 7) / 8 | 1) * 8;
+  return planes;
+}
+
+uint64_t vxm_planes_bytes(const vxm_space *space, vxm_layout layout) {
+  vxm_planes planes = planes_of(space, layout);
+  return (uint64_t)planes.count * planes.plane_words * sizeof *planes.words;
+}
+
+vxm_status vxm_planes_create(vxm_planes *out, vxm_context *context, const vxm_space *space, vxm_layout layout,
+                             vxm_error *error) {
+  *out = planes_of(space, layout);
+  out->context = context;
   vxm_error local = VXM_ERROR_INIT;
   out->words = vxm_calloc(context, out->count * out->plane_words, sizeof *out->words, &local);
   if (out->words)
@@ -35,6 +44,15 @@ void vxm_planes_clear(vxm_planes *planes) {
   memset(planes->words, 0, planes->count * planes->plane_words * sizeof *planes->words);
 }
 
+vxm_window vxm_planes_window(const vxm_planes *planes, const vxm_grid *grid, size_t word) {
+  int64_t begin = (int64_t)(word * 64);
+  vxm_window window =
+      vxm_window_of(&grid->space, planes->layout, begin, begin + (int64_t)vxm_planes_in(grid, word));
+  window.slice_words = planes->plane_words;
+  window.words = planes->words;
+  return window;
+}
+
 typedef struct move {
   const vxm_planes *planes;
   const vxm_grid *grid;
@@ -44,7 +62,7 @@ typedef struct move {
 
 /** Word index in the grid of element 0 of a plane's row, and the step to the next element. */
 static size_t row_start(const move *m, size_t row, size_t *step) {
-  bool y_fast = m->planes->order == VXM_PLANE_Y_FAST;
+  bool y_fast = m->planes->layout.fast == 1;
   *step = y_fast ? m->grid->row_words : m->grid->slice_words;
   return row * (y_fast ? m->grid->slice_words : m->grid->row_words);
 }
@@ -65,15 +83,16 @@ static void gather_rows(size_t task, int worker, void *payload) {
   for (size_t row = task * ROWS_PER_TASK; row < task_end(planes, task); row++) {
     size_t step, start = row_start(m, row, &step);
     for (size_t w = 0; w < planes->row_words; w++) {
-      uint64_t block[64], any = 0;
+      uint64_t block[64], any = 0, all = ~UINT64_C(0);
       size_t used = planes->length - w * 64 < 64 ? planes->length - w * 64 : 64;
       for (size_t e = 0; e < used; e++) {
         const uint64_t *source = m->grid->words + start + (w * 64 + e) * step;
         block[e] = m->load ? m->load(source, m->word, m->grid->row_words) : source[m->word];
         any |= block[e];
+        all &= block[e];
       }
       memset(block + used, 0, (64 - used) * sizeof *block);
-      if (any)
+      if (any && (used < 64 || ~all)) /* all clear and all set are their own transposes */
         vxm_transpose64(block);
       for (size_t p = 0; p < m->planes_used; p++)
         vxm_plane_row(planes, p, row)[w] = block[p];

@@ -7,17 +7,18 @@
 #ifndef VXM_GRIDIO_PLANES_H
 #define VXM_GRIDIO_PLANES_H
 
-#include "grid/bitgrid.h"
+#include "grid/window.h"
 
-typedef enum vxm_plane_order {
-  VXM_PLANE_Y_FAST, /**< row k of a plane runs along y */
-  VXM_PLANE_Z_FAST  /**< row j of a plane runs along z */
-} vxm_plane_order;
+/** The layouts of planes: row k of a plane runs along y, or row j along z. */
+#define VXM_PLANE_Y_FAST \
+  { 1, 2, 0 }
+#define VXM_PLANE_Z_FAST \
+  { 2, 1, 0 }
 
 /** Bits beyond `length` in the last word of a row are zero. */
 typedef struct vxm_planes {
   vxm_context *context;
-  vxm_plane_order order;
+  vxm_layout layout;  /**< one of the two */
   size_t count;       /**< planes: the smaller of 64 and dims[0] */
   size_t rows;        /**< rows of a plane */
   size_t length;      /**< bits of a row */
@@ -27,8 +28,10 @@ typedef struct vxm_planes {
   uint64_t *words;
 } vxm_planes;
 
-vxm_status vxm_planes_create(vxm_planes *out, vxm_context *context, const vxm_space *space,
-                             vxm_plane_order order, vxm_error *error);
+vxm_status vxm_planes_create(vxm_planes *out, vxm_context *context, const vxm_space *space, vxm_layout layout,
+                             vxm_error *error);
+/** What vxm_planes_create allocates. */
+uint64_t vxm_planes_bytes(const vxm_space *space, vxm_layout layout);
 void vxm_planes_destroy(vxm_planes *planes);
 
 static inline uint64_t *vxm_plane_row(const vxm_planes *planes, size_t plane, size_t row) {
@@ -40,6 +43,9 @@ static inline size_t vxm_planes_in(const vxm_grid *grid, size_t word) {
   size_t left = (size_t)grid->space.dims[0] - word * 64;
   return left < 64 ? left : 64;
 }
+
+/** Word column `word` of the grid, which the planes hold, as a window. */
+vxm_window vxm_planes_window(const vxm_planes *planes, const vxm_grid *grid, size_t word);
 
 /** A word made of a row of the grid, such as the row's own word or its exposed faces. */
 typedef uint64_t (*vxm_row_word_fn)(const uint64_t *row, size_t word, size_t row_words);

@@ -96,76 +96,114 @@ static vxm_status read_raw(vxm_grid **out, const vxm_input *input, vxm_error *er
 
 /* ---- Writing ---- */
 
-/** Bits that do not fill a word yet, and the words that wait in the output's buffer. */
+/** The bits that do not fill a word yet. */
 typedef struct packer {
-  vxm_output *output;
-  unsigned char *room;
-  size_t used;
   uint64_t pending;
   unsigned bits; /**< of pending, below 64 */
 } packer;
 
+/** Words that wait in the output's buffer. */
+typedef struct sink {
+  vxm_output *output;
+  unsigned char *room;
+  size_t used;
+} sink;
+
 enum { ROOM = 4096 };
 
-static void put_word(packer *p, uint64_t word) {
-  if (p->used == ROOM) {
-    vxm_output_advance(p->output, p->used);
-    p->room = (unsigned char *)vxm_output_reserve(p->output, ROOM);
-    p->used = 0;
+static void put_word(sink *s, uint64_t word) {
+  if (s->used == ROOM) {
+    vxm_output_advance(s->output, s->used);
+    s->room = (unsigned char *)vxm_output_reserve(s->output, ROOM);
+    s->used = 0;
   }
-  vxm_store_le64(p->room + p->used, word);
-  p->used += 8;
+  vxm_store_le64(s->room + s->used, word);
+  s->used += 8;
 }
 
 /** Appends the `count` low bits of a word whose other bits are 0; 1 to 64. */
-static void put_bits(packer *p, uint64_t word, unsigned count) {
+static inline void put_bits(packer *p, sink *s, uint64_t word, unsigned count) {
   p->pending |= word << p->bits;
   if (p->bits + count < 64) {
     p->bits += count;
     return;
   }
-  put_word(p, p->pending);
+  put_word(s, p->pending);
   p->pending = p->bits ? word >> (64 - p->bits) : 0;
   p->bits = p->bits + count - 64;
 }
 
-static vxm_status write_rows(vxm_output *output, const vxm_grid *grid, vxm_error *error) {
-  packer p = {output, (unsigned char *)vxm_output_reserve(output, ROOM), 0, 0, 0};
-  size_t rows = grid->word_count / grid->row_words;
-  unsigned tail = (unsigned)((grid->space.dims[0] - 1) % 64 + 1);
-  for (size_t r = 0; r < rows && !vxm_output_failed(output); r++) {
-    const uint64_t *row = grid->words + r * grid->row_words;
-    for (size_t w = 0; w + 1 < grid->row_words; w++)
-      put_bits(&p, row[w], 64);
-    put_bits(&p, row[grid->row_words - 1], tail);
-    if (r % 65536 != 0)
-      continue;
-    vxm_status status = vxm_progress(grid->context, "writing", (double)r / (double)rows, error);
-    if (status != VXM_OK)
-      return status;
+static void put_rows(packer *p, vxm_output *output, const vxm_window *window, int64_t slow, int64_t begin,
+                     int64_t end) {
+  sink s = {output, (unsigned char *)vxm_output_reserve(output, ROOM), 0};
+  unsigned tail = (unsigned)((window->fast_dim - 1) % 64 + 1);
+  for (int64_t middle = begin; middle < end; middle++) {
+    const uint64_t *row = vxm_window_row(window, middle, slow);
+    for (size_t w = 0; w + 1 < window->row_words; w++)
+      put_bits(p, &s, row[w], 64);
+    put_bits(p, &s, row[window->row_words - 1], tail);
   }
-  vxm_output_advance(output, p.used);
-  unsigned char last[8];
-  vxm_store_le64(last, p.pending);
-  vxm_output_write(output, last, (p.bits + 7) / 8);
-  return VXM_OK;
+  vxm_output_advance(output, s.used);
 }
 
-static vxm_status write_raw(const vxm_grid *grid, const char *path, vxm_error *error) {
-  if (strcmp(path, "-") == 0)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "raw needs a file, since its dims go into another beside it; use binvox, npy or rle");
-  vxm_output *output = NULL, *sidecar = NULL;
-  vxm_status status = vxm_output_open(&output, grid->context, path, error);
-  if (status == VXM_OK)
-    status = vxm_sidecar_open(&sidecar, grid, path, &description, error);
-  if (status == VXM_OK)
-    status = write_rows(output, grid, error);
-  if (status == VXM_OK)
-    return vxm_sidecar_commit(output, sidecar, path, error);
-  vxm_output_abort(sidecar);
-  vxm_output_abort(output);
+/** Rows of whole words lie in the file as in memory, where that has the file's byte order. */
+static bool is_plain(const vxm_window *window) {
+  return window->fast_dim % 64 == 0 && vxm_le64(1) == 1;
+}
+
+static vxm_status put(vxm_slices *slices, const vxm_window *window, vxm_error *error) {
+  enum { WORDS_PER_STEP = 1 << 19 };
+  int64_t rows = window->middle_dim, some = WORDS_PER_STEP / (int64_t)window->row_words;
+  size_t words = 0; /* since the last step */
+  vxm_status status = VXM_OK;
+  for (int64_t slow = window->begin; status == VXM_OK && slow < window->end; slow++)
+    for (int64_t begin = 0, end; status == VXM_OK && begin < rows; begin = end) {
+      end = vxm_min(begin + some, rows);
+      if (is_plain(window))
+        vxm_output_write(slices->output, vxm_window_row(window, begin, slow),
+                         (size_t)(end - begin) * window->row_words * 8);
+      else
+        put_rows(slices->state, slices->output, window, slow, begin, end);
+      words += (size_t)(end - begin) * window->row_words;
+      bool last = slow + 1 == window->end && end == rows;
+      if (words < WORDS_PER_STEP && !last)
+        continue;
+      words = 0;
+      status = vxm_slices_step(slices, (double)slow + (double)end / (double)rows, error);
+    }
   return status;
 }
 
-const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, write_raw};
+static vxm_status check_path(const vxm_space *space, const char *path, vxm_error *error) {
+  (void)space;
+  if (strcmp(path, "-") != 0)
+    return VXM_OK;
+  return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                  "raw needs a file, since its dims go into another beside it; use binvox, npy or rle");
+}
+
+static size_t state_bytes(const vxm_space *space) {
+  (void)space;
+  return sizeof(packer);
+}
+
+static vxm_status begin(vxm_slices *slices, vxm_error *error) {
+  (void)error;
+  *(packer *)slices->state = (packer){0, 0};
+  return VXM_OK;
+}
+
+static vxm_status end(vxm_slices *slices, vxm_error *error) {
+  (void)error;
+  const packer *p = slices->state;
+  unsigned char last[8];
+  vxm_store_le64(last, p->pending);
+  vxm_output_write(slices->output, last, (p->bits + 7) / 8);
+  return VXM_OK;
+}
+
+static const vxm_slices_kind slices_kind = {
+    VXM_LAYOUT_GRID, &description, check_path, state_bytes, begin, put, end,
+};
+
+const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, &slices_kind};

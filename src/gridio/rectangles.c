@@ -85,7 +85,8 @@ static uint64_t exposed_high_x(const uint64_t *row, size_t w, size_t words) {
 /** Across x the layers of a word column are planes, made from the words of exposed faces. */
 static void merge_x(task_state *task, const vxm_grid *grid, size_t word) {
   vxm_planes planes;
-  task->status = vxm_planes_create(&planes, grid->context, &grid->space, VXM_PLANE_Y_FAST, &task->error);
+  task->status =
+      vxm_planes_create(&planes, grid->context, &grid->space, (vxm_layout)VXM_PLANE_Y_FAST, &task->error);
   if (task->status != VXM_OK)
     return;
   for (uint32_t side = 0; side < 2; side++) {

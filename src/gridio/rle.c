@@ -2,7 +2,7 @@
 /** .rle: a fixed header with the transform, then one byte per run over voxels with x fastest. */
 #include "gridio/bytes.h"
 #include "gridio/format.h"
-#include "gridio/runs.h"
+#include "gridio/run_writer.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -107,38 +107,20 @@ static vxm_status read_rle(vxm_grid **out, const vxm_input *input, vxm_error *er
 
 /* ---- Writing ---- */
 
-typedef struct sink {
-  vxm_output *output;
-  unsigned char *room;
-  size_t used;
-} sink;
-
-enum { ROOM = 4096 };
-
-static inline void put_byte(sink *s, unsigned byte) {
-  if (s->used == ROOM) {
-    vxm_output_advance(s->output, s->used);
-    s->room = (unsigned char *)vxm_output_reserve(s->output, ROOM);
-    s->used = 0;
-  }
-  s->room[s->used++] = (unsigned char)byte;
+static uint64_t row_count(const vxm_space *space) {
+  return (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
 }
 
-static inline void put_run(bool value, uint64_t length, void *payload) {
-  (void)value;
-  sink *s = payload;
-  for (; length >= 255; length -= 255)
-    put_byte(s, 255);
-  put_byte(s, (unsigned)length);
+static size_t state_bytes(const vxm_space *space) {
+  vxm_run_shape shape = {VXM_RUN_BYTES, (size_t)space->dims[0], 0, 0};
+  return vxm_run_writer_bytes(&shape, row_count(space));
 }
 
-/** Bytes of 255 may be written before their run ends: the file is the same, and the writer can be stopped. */
-static void put_full_bytes(vxm_run *run, sink *s) {
-  for (; run->length >= 255; run->length -= 255)
-    put_byte(s, 255);
-}
-
-static void write_header(vxm_output *output, const vxm_space *space) {
+static vxm_status begin(vxm_slices *slices, vxm_error *error) {
+  (void)error;
+  const vxm_space *space = &slices->space;
+  vxm_run_shape shape = {VXM_RUN_BYTES, (size_t)space->dims[0], 0, 0};
+  vxm_run_writer_begin(slices->state, &shape, row_count(space));
   unsigned char header[HEADER];
   memcpy(header, magic, sizeof magic);
   for (int a = 0; a < 3; a++) {
@@ -146,41 +128,18 @@ static void write_header(vxm_output *output, const vxm_space *space) {
     vxm_store_double(header + 32 + 8 * a, space->origin[a]);
     vxm_store_double(header + 56 + 8 * a, space->voxel_size[a]);
   }
-  vxm_output_write(output, header, sizeof header);
-}
-
-static vxm_status write_runs(vxm_output *output, const vxm_grid *grid, vxm_error *error) {
-  sink s = {output, (unsigned char *)vxm_output_reserve(output, ROOM), 0};
-  vxm_run run = {false, 0};
-  size_t nx = (size_t)grid->space.dims[0], rows = grid->word_count / grid->row_words;
-  for (size_t row = 0; row < rows && !vxm_output_failed(output); row++) {
-    vxm_run_scan(&run, grid->words + row * grid->row_words, nx, put_run, &s);
-    if (row % 4096 != 0)
-      continue;
-    put_full_bytes(&run, &s);
-    vxm_status status = vxm_progress(grid->context, "writing", (double)row / (double)rows, error);
-    if (status != VXM_OK)
-      return status;
-  }
-  /* The last run needs no byte to end it. */
-  put_full_bytes(&run, &s);
-  if (run.length > 0)
-    put_byte(&s, (unsigned)run.length);
-  vxm_output_advance(output, s.used);
+  vxm_output_write(slices->output, header, sizeof header);
   return VXM_OK;
 }
 
-static vxm_status write_rle(const vxm_grid *grid, const char *path, vxm_error *error) {
-  vxm_output *output;
-  vxm_status status = vxm_output_open(&output, grid->context, path, error);
-  if (status != VXM_OK)
-    return status;
-  write_header(output, &grid->space);
-  status = write_runs(output, grid, error);
-  if (status == VXM_OK)
-    return vxm_output_commit(output, error);
-  vxm_output_abort(output);
-  return status;
+static vxm_status end(vxm_slices *slices, vxm_error *error) {
+  (void)error;
+  vxm_run_writer_end(slices);
+  return VXM_OK;
 }
 
-const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, write_rle};
+static const vxm_slices_kind slices_kind = {
+    VXM_LAYOUT_GRID, NULL, NULL, state_bytes, begin, vxm_run_writer_put, end,
+};
+
+const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, &slices_kind};

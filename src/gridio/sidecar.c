@@ -55,13 +55,13 @@ static bool has_neighbours(const char *data_path) {
   return strcmp(data_path, "-") != 0 && (stat(data_path, &info) != 0 || S_ISREG(info.st_mode));
 }
 
-vxm_status vxm_sidecar_open(vxm_output **out, const vxm_grid *grid, const char *data_path,
-                            const vxm_sidecar_text *text, vxm_error *error) {
+vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_space *space,
+                            const char *data_path, const vxm_sidecar_text *text, vxm_error *error) {
   *out = NULL;
   if (!has_neighbours(data_path))
     return VXM_OK;
-  char *path = sidecar_path(data_path), *json = describe(&grid->space, text);
-  vxm_status status = path && json ? vxm_output_open(out, grid->context, path, error) : fail_memory(error);
+  char *path = sidecar_path(data_path), *json = describe(space, text);
+  vxm_status status = path && json ? vxm_output_open(out, context, path, error) : fail_memory(error);
   if (status == VXM_OK) {
     vxm_output_write(*out, json, strlen(json));
     vxm_output_write(*out, "\n", 1);

@@ -17,8 +17,8 @@ typedef struct vxm_sidecar_text {
  * Opens the JSON beside `data_path` and fills it. *out is NULL if `data_path` is standard output, a pipe or a
  * device, which have nothing beside them.
  */
-vxm_status vxm_sidecar_open(vxm_output **out, const vxm_grid *grid, const char *data_path,
-                            const vxm_sidecar_text *text, vxm_error *error);
+vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_space *space,
+                            const char *data_path, const vxm_sidecar_text *text, vxm_error *error);
 
 /**
  * Commits the data, then the JSON (which may be NULL). If the JSON cannot be had the data are removed again,

@@ -4,10 +4,12 @@
 
 #include <string.h>
 
+enum { VOTERS = 4 };
+
 typedef struct confidence_job {
   uint8_t *confidence;
-  const vxm_grid *grid, *closed, *settled;
-  vxm_grid *const *voters;
+  const vxm_window *window;
+  const uint64_t *closed, *settled, *voters[VOTERS];
 } confidence_job;
 
 static bool bit(const uint64_t *row, int64_t i) {
@@ -17,29 +19,50 @@ static bool bit(const uint64_t *row, int64_t i) {
 static void fill_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   const confidence_job *job = payload;
-  const int64_t *dims = job->grid->space.dims;
-  int64_t k = (int64_t)slice;
-  for (int64_t j = 0; j < dims[1]; j++) {
-    uint8_t *out = job->confidence + (k * dims[1] + j) * dims[0];
-    const uint64_t *result = vxm_grid_row(job->grid, j, k), *closed = vxm_grid_row(job->closed, j, k);
-    const uint64_t *settled = job->settled ? vxm_grid_row(job->settled, j, k) : NULL;
-    for (int64_t i = 0; i < dims[0]; i++) {
+  const vxm_window *w = job->window;
+  for (int64_t j = 0; j < w->middle_dim; j++) {
+    uint8_t *out = job->confidence + ((int64_t)slice * w->middle_dim + j) * w->fast_dim;
+    size_t row = slice * w->slice_words + (size_t)j * w->row_words;
+    for (int64_t i = 0; i < w->fast_dim; i++) {
       int agree = 0;
-      for (int v = 0; v < 4; v++)
-        agree += (bit(closed, i) || bit(vxm_grid_row(job->voters[v], j, k), i)) == bit(result, i);
-      if (!settled || !bit(settled, i))
-        out[i] = (uint8_t)(255 * agree / 4);
+      for (int v = 0; v < VOTERS; v++)
+        agree += (bit(job->closed + row, i) || bit(job->voters[v] + row, i)) == bit(w->words + row, i);
+      if (!job->settled || !bit(job->settled + row, i))
+        out[i] = (uint8_t)(255 * agree / VOTERS);
     }
   }
 }
 
-void vxm_confidence_fill(uint8_t *confidence, const vxm_grid *grid, const vxm_grid *closed,
-                         vxm_grid *const voters[4], const vxm_grid *settled) {
-  const int64_t *dims = grid->space.dims;
-  if (!voters) {
-    memset(confidence, 255, (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2]);
-    return;
+vxm_status vxm_confidence_fill(vxm_run *run, const vxm_window *window, vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  vxm_method method = shape->options->method;
+  size_t end = shape->facets.split.part_count;
+  size_t begin = method == VXM_METHOD_VOTE ? shape->facets.split.kind_end[VXM_PART_CLOSED] : 0;
+  if (method == VXM_METHOD_WINDING)
+    return VXM_OK; /* which decided every voxel */
+  if (begin == end) {
+    memset(run->confidence, 255,
+           (size_t)window->fast_dim * (size_t)window->middle_dim * (size_t)window->slow_dim);
+    return VXM_OK;
   }
-  confidence_job job = {confidence, grid, closed, settled, voters};
-  vxm_parallel(grid->context, (size_t)dims[2], fill_slice, &job);
+  confidence_job job = {.confidence = run->confidence, .window = window};
+  job.settled = run->escalated > 0 ? run->buffers[VXM_BUFFER_MASK].words : NULL;
+  atomic_uchar *touched = run->touched;
+  run->touched = NULL; /* what these voters see says nothing about the result */
+  vxm_window made;
+  vxm_status status = vxm_run_buffer(run, VXM_BUFFER_CLOSED, window, &made, error);
+  if (status == VXM_OK)
+    status = vxm_run_unite(run, &made, 0, 0, begin, VXM_FACET_TRIANGLE, error);
+  job.closed = made.words;
+  for (int v = 0; v < VOTERS && status == VXM_OK; v++) {
+    status = vxm_run_buffer(run, VXM_BUFFER_VOTERS + v, window, &made, error);
+    unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
+    if (status == VXM_OK)
+      status = vxm_run_unite(run, &made, v == 3 ? 0 : v, begin, end, roles, error);
+    job.voters[v] = made.words;
+  }
+  run->touched = touched;
+  if (status == VXM_OK)
+    vxm_parallel(shape->context, (size_t)(window->end - window->begin), fill_slice, &job);
+  return status;
 }

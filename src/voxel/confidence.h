@@ -3,16 +3,15 @@
 #ifndef VXM_VOXEL_CONFIDENCE_H
 #define VXM_VOXEL_CONFIDENCE_H
 
-#include "grid/bitgrid.h"
+#include "voxel/solid.h"
 
 /**
- * Fills a byte per voxel, x fastest, with 255 times the share of the voters that agree with the grid.
+ * Fills in the run's confidence what the winding number did not decide: 255 where closed parts alone are
+ * asked, else 255 times the share of the voters x, y, z and tetra that agree with the solid.
  *
- * @param closed  what the closed parts fill; there every voter agrees
- * @param voters  x, y, z and tetra of the other parts; NULL if there are none, then every voxel has 255
- * @param settled voxels that keep the byte they have; may be NULL
+ * @param window a whole grid, which vxm_solid_fill has just filled
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-void vxm_confidence_fill(uint8_t *confidence, const vxm_grid *grid, const vxm_grid *closed,
-                         vxm_grid *const voters[4], const vxm_grid *settled);
+vxm_status vxm_confidence_fill(vxm_run *run, const vxm_window *window, vxm_error *error);
 
 #endif

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/facets.h"
 
+#include <math.h>
 #include <string.h>
 
 /** What is needed while facets are made. */
 typedef struct builder {
   vxm_facets *facets;
   const vxm_soup *soup;
+  size_t *next;    /**< per part: where the next facet goes, or how many there are */
   vxm_error error; /**< of the last allocation that failed */
 } builder;
 
@@ -16,19 +18,19 @@ static void *allocate(builder *b, size_t count, size_t size) {
 
 /* ---- Covering polygons by triangles ---- */
 
-static bool comes_before(const vxm_point *p, const vxm_point *q) {
+static bool comes_before(const double *p, const double *q) {
   for (int a = 0; a < 3; a++)
-    if (p->at[a] != q->at[a])
-      return p->at[a] < q->at[a];
+    if (p[a] != q[a])
+      return p[a] < q[a];
   return false;
 }
 
 /** The corner from which a polygon is covered: the first in space, so that equal polygons are covered alike.
  */
-static size_t covering_corner(const vxm_point *points, const uint32_t *corner, size_t n) {
+static size_t covering_corner(const vxm_soup *soup, const uint32_t *corner, size_t n) {
   size_t first = 0;
   for (size_t c = 1; c < n; c++)
-    if (comes_before(&points[corner[c]], &points[corner[first]]))
+    if (comes_before(vxm_position(soup, corner[c]), vxm_position(soup, corner[first])))
       first = c;
   return first;
 }
@@ -38,159 +40,169 @@ static bool has_three_corners(uint32_t p, uint32_t q, uint32_t r) {
   return p != q && q != r && r != p;
 }
 
-/** Counts a facet in its part's `end` (facets NULL) or puts it there. */
-static void add(builder *b, vxm_facet *facets, vxm_facet facet) {
-  size_t *end = &b->facets->parts[facet.part].end;
-  if (facets)
-    facets[*end] = facet;
-  ++*end;
+/** Counts a facet of its part (no facets yet) or puts it in place. */
+static void add(builder *b, uint32_t part, uint32_t p, uint32_t q, uint32_t r) {
+  size_t at = b->next[part]++;
+  if (!b->facets->corners)
+    return;
+  uint32_t *corner = b->facets->corners[at];
+  corner[0] = p;
+  corner[1] = q;
+  corner[2] = r;
+  b->facets->part[at] = part;
 }
 
-static void cover_face(builder *b, size_t face, vxm_facet *facets) {
+static void cover_face(builder *b, size_t face) {
   const vxm_split *split = &b->facets->split;
   size_t n;
   const uint32_t *corner = vxm_face(b->soup, face, &n);
   uint32_t part = split->part[split->component[face]];
-  size_t apex = n > 3 ? covering_corner(b->facets->points, corner, n) : 0;
+  size_t apex = n > 3 ? covering_corner(b->soup, corner, n) : 0;
   for (size_t i = 1; i + 1 < n; i++) {
     uint32_t p = corner[apex], q = corner[(apex + i) % n], r = corner[(apex + i + 1) % n];
     if (has_three_corners(p, q, r))
-      add(b, facets, (vxm_facet){{p, q, r}, part, VXM_FACET_TRIANGLE});
+      add(b, part, p, q, r);
   }
+}
+
+static void add_triangles(builder *b) {
+  for (size_t f = 0; f < b->soup->face_count; f++)
+    cover_face(b, f);
+}
+
+/** The caps of all loops; their own points are numbered behind the soup's vertices in both numberings. */
+static void add_caps(builder *b) {
+  const vxm_split *split = &b->facets->split;
+  for (size_t l = 0; split->cap_begin && l < split->loops.count; l++)
+    for (size_t t = split->cap_begin[l]; t < split->cap_begin[l + 1]; t++) {
+      const uint32_t *v = split->caps.triangles[t];
+      add(b, split->loop_part[l], v[0], v[1], v[2]);
+    }
 }
 
 /** The triangles from the apex of a part to its odd edges. */
-static void add_cones(builder *b, vxm_facet *facets) {
+static void add_cones(builder *b) {
   const vxm_split *split = &b->facets->split;
   const vxm_loops *loops = &split->loops;
   for (size_t l = 0; l < loops->count; l++) {
-    uint32_t part = split->loop_part[l], apex = (uint32_t)(b->facets->first_apex + part);
+    uint32_t part = split->loop_part[l];
     for (size_t s = loops->begin[l]; s < loops->begin[l + 1]; s++) {
       const vxm_edge *edge = &split->edges.edges[loops->edge[s]];
-      add(b, facets, (vxm_facet){{edge->a, edge->b, apex}, part, VXM_FACET_CONE});
+      add(b, part, edge->a, edge->b, vxm_apex_of(b->facets, part));
     }
   }
 }
 
-/** The caps of all loops; their own points are numbered behind the soup's vertices, and here behind the
- * apexes. */
-static void add_caps(builder *b, vxm_facet *facets) {
-  const vxm_split *split = &b->facets->split;
-  size_t vertices = b->soup->vertex_count, first_cap = b->facets->first_cap;
-  for (size_t l = 0; split->cap_begin && l < split->loops.count; l++)
-    for (size_t t = split->cap_begin[l]; t < split->cap_begin[l + 1]; t++) {
-      vxm_facet facet = {{0, 0, 0}, split->loop_part[l], VXM_FACET_CAP};
-      for (int c = 0; c < 3; c++) {
-        uint32_t v = split->caps.triangles[t][c];
-        facet.corner[c] = v < vertices ? v : (uint32_t)(v - vertices + first_cap);
-      }
-      add(b, facets, facet);
-    }
-}
-
-/** Two rounds of the same walk: the first counts the facets of each part, the second puts them in place. */
+/** The same three walks twice: the first time they count, the second time they put facets in place. */
 static vxm_status make_facets(builder *b) {
+  static void (*const walk[3])(builder *) = {add_triangles, add_caps, add_cones};
   vxm_facets *facets = b->facets;
   size_t part_count = facets->split.part_count;
+  b->next = allocate(b, part_count, sizeof *b->next);
   facets->parts = allocate(b, part_count, sizeof *facets->parts);
-  if (!facets->parts)
+  if (!facets->parts || !b->next)
     return b->error.code;
-  for (int round = 0; round < 2; round++) {
-    for (size_t f = 0; f < b->soup->face_count; f++)
-      cover_face(b, f, facets->facets);
-    add_cones(b, facets->facets);
-    add_caps(b, facets->facets);
-    if (round == 1)
-      break;
-    size_t total = 0;
-    for (size_t p = 0; p < part_count; p++) {
-      size_t count = facets->parts[p].end;
-      facets->parts[p].begin = facets->parts[p].end = total;
-      total += count;
-    }
-    if (total > UINT32_MAX)
-      return vxm_fail(&b->error, VXM_ERROR_RANGE, "%zu triangles are too many to number; split the mesh",
-                      total);
-    facets->facet_count = total;
-    facets->facets = allocate(b, total, sizeof *facets->facets);
-    if (!facets->facets)
-      return b->error.code;
+  for (int w = 0; w < 3; w++) {
+    walk[w](b);
+    for (size_t p = 0; p < part_count; p++)
+      *(w == 0   ? &facets->parts[p].caps
+        : w == 1 ? &facets->parts[p].cones
+                 : &facets->parts[p].end) = b->next[p];
   }
+  size_t total = 0;
+  for (size_t p = 0; p < part_count; p++) {
+    vxm_part *part = &facets->parts[p];
+    part->begin = total;
+    part->caps += total;
+    part->cones += total;
+    part->end += total;
+    total = part->end;
+    b->next[p] = part->begin;
+  }
+  if (total > UINT32_MAX)
+    return vxm_fail(&b->error, VXM_ERROR_RANGE, "%zu triangles are too many to number; split the mesh",
+                    total);
+  facets->facet_count = total;
+  facets->part = allocate(b, total, sizeof *facets->part);
+  facets->corners = allocate(b, total, sizeof *facets->corners);
+  if (!facets->corners || !facets->part)
+    return b->error.code;
+  for (int w = 0; w < 3; w++)
+    walk[w](b);
   return VXM_OK;
 }
 
-/* ---- Boxes and apexes ---- */
-
-/** The mean of `count` points, rounded toward zero, so that it stays in their box. */
-static vxm_point mean_of(const vxm_int128 sum[3], size_t count) {
-  vxm_point mean = {{0, 0, 0}};
-  for (int a = 0; a < 3 && count > 0; a++)
-    mean.at[a] = (int64_t)(sum[a] / (vxm_int128)count);
-  return mean;
+static vxm_status number_points(builder *b, vxm_error *error) {
+  vxm_facets *facets = b->facets;
+  facets->first_cap = b->soup->vertex_count;
+  facets->first_apex = facets->first_cap + facets->split.caps.point_count;
+  facets->point_count = facets->first_apex + facets->split.part_count;
+  if (facets->point_count > VXM_VERTICES_MAX)
+    return vxm_fail(error, VXM_ERROR_RANGE, "too many vertices, parts and holes to number; split the mesh");
+  size_t count = facets->split.caps.point_count;
+  facets->cap_points = allocate(b, count, sizeof *facets->cap_points);
+  if (!facets->cap_points)
+    return b->error.code;
+  if (count > 0)
+    memcpy(facets->cap_points, facets->split.caps.points, count * sizeof *facets->cap_points);
+  return VXM_OK;
 }
 
-static void measure_part(vxm_facets *facets, size_t part) {
-  vxm_part *p = &facets->parts[part];
-  vxm_int128 sum[3] = {0, 0, 0};
-  size_t corners = 0;
-  for (int a = 0; a < 3; a++) {
-    p->low.at[a] = VXM_LATTICE_MAX;
-    p->high.at[a] = -VXM_LATTICE_MAX;
-  }
-  for (size_t f = p->begin; f < p->end; f++) {
-    const vxm_facet *facet = &facets->facets[f];
-    if (facet->role != VXM_FACET_TRIANGLE)
-      break;
-    for (int c = 0; c < 3; c++, corners++) {
-      const vxm_point *q = &facets->points[facet->corner[c]];
+/* ---- Sizes ---- */
+
+static const double *position_of(const vxm_facets *facets, uint32_t point) {
+  return point < facets->first_cap ? vxm_position(facets->soup, point)
+                                   : facets->cap_points[point - facets->first_cap];
+}
+
+static double squared_distance(const double *p, const double *q) {
+  double sum = 0;
+  for (int a = 0; a < 3; a++)
+    sum += (p[a] - q[a]) * (p[a] - q[a]);
+  return sum;
+}
+
+/** Sums up how long facets are. A cone reaches from its edge to somewhere among the triangles. */
+static void measure(vxm_facets *facets) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  size_t cones = 0;
+  for (size_t f = 0; f < facets->facet_count; f++) {
+    const uint32_t *corner = facets->corners[f];
+    if (corner[2] >= facets->first_apex) {
+      cones++;
+      continue;
+    }
+    double squared = 0;
+    for (int k = 0; k < 3; k++) {
+      const double *p = position_of(facets, corner[k]);
+      squared = fmax(squared, squared_distance(p, position_of(facets, corner[(k + 1) % 3])));
       for (int a = 0; a < 3; a++) {
-        p->low.at[a] = q->at[a] < p->low.at[a] ? q->at[a] : p->low.at[a];
-        p->high.at[a] = q->at[a] > p->high.at[a] ? q->at[a] : p->high.at[a];
-        sum[a] += q->at[a];
+        low[a] = fmin(low[a], p[a]);
+        high[a] = fmax(high[a], p[a]);
       }
     }
+    facets->length += sqrt(squared);
+    facets->squared_length += squared;
   }
-  p->apex = (uint32_t)(facets->first_apex + part);
-  facets->points[p->apex] = mean_of(sum, corners);
+  if (cones > 0) {
+    facets->length += (double)cones * sqrt(squared_distance(low, high));
+    facets->squared_length += (double)cones * squared_distance(low, high);
+  }
 }
 
-/** Appends room for the apexes to the points. */
-static vxm_status reserve_apexes(builder *b, vxm_error *error) {
-  vxm_facets *facets = b->facets;
-  facets->first_apex = b->soup->vertex_count;
-  facets->first_cap = facets->first_apex + facets->split.part_count;
-  size_t count = facets->first_cap + facets->split.caps.point_count;
-  if (count > VXM_VERTICES_MAX)
-    return vxm_fail(error, VXM_ERROR_RANGE, "too many vertices, parts and holes to number; split the mesh");
-  vxm_point *points = vxm_realloc(facets->context, facets->points, count, sizeof *points, &b->error);
-  if (!points)
-    return b->error.code;
-  facets->points = points;
-  return VXM_OK;
-}
-
-vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, const vxm_lattice *lattice,
-                             vxm_split_rule rule, vxm_error *error) {
-  *out = (vxm_facets){.context = soup->context, .split = {.context = soup->context}};
+vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_rule rule, vxm_error *error) {
+  *out = (vxm_facets){.context = soup->context, .soup = soup, .split = {.context = soup->context}};
   builder b = {.facets = out, .soup = soup, .error = VXM_ERROR_INIT};
   vxm_error local = VXM_ERROR_INIT;
-  vxm_status status = VXM_OK;
-  out->points = allocate(&b, soup->vertex_count, sizeof *out->points);
-  if (!out->points)
-    status = b.error.code;
+  vxm_status status = vxm_split_create(&out->split, soup, rule, &local);
   if (status == VXM_OK)
-    status = vxm_lattice_snap(lattice, soup, out->points, &local);
-  if (status == VXM_OK)
-    status = vxm_split_create(&out->split, soup, lattice, rule, &local);
-  if (status == VXM_OK)
-    status = reserve_apexes(&b, &local);
+    status = number_points(&b, &local);
   if (status == VXM_OK)
     status = make_facets(&b);
+  vxm_free(out->context, b.next);
   if (status == VXM_OK) {
-    for (size_t p = 0; p < out->split.part_count; p++)
-      measure_part(out, p);
-    for (size_t p = 0; p < out->split.caps.point_count; p++)
-      vxm_lattice_place(lattice, out->split.caps.points[p], &out->points[out->first_cap + p]);
+    measure(out);
+    vxm_split_trim(&out->split);
   } else if (error)
     *error = local.code != VXM_OK ? local : b.error;
   return status;
@@ -198,8 +210,9 @@ vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, const vxm_la
 
 void vxm_facets_destroy(vxm_facets *facets) {
   vxm_split_destroy(&facets->split);
+  vxm_free(facets->context, facets->cap_points);
   vxm_free(facets->context, facets->parts);
-  vxm_free(facets->context, facets->facets);
-  vxm_free(facets->context, facets->points);
+  vxm_free(facets->context, facets->part);
+  vxm_free(facets->context, facets->corners);
   *facets = (vxm_facets){.context = facets->context, .split = {.context = facets->context}};
 }

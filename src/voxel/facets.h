@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * The triangles that voxelization works on: polygons covered by triangles, sorted by part, on the lattice.
+ * The triangles that voxelization works on: polygons covered by triangles, sorted by part. They name points
+ * by number; where these lie on a lattice is told by voxel/placed.h, so that one mesh can be placed many
+ * times.
  *
  * A polygon of n corners becomes the n - 2 triangles from one of its corners to its edges. They may overlap
  * or run backwards; counted mod 2 they cover the polygon exactly (2D simplicial covering, Ogayar et al.,
@@ -9,46 +11,55 @@
  *
  * Odd edges (those with an odd number of faces) get two more sets of triangles, each of which closes a part
  * mod 2:
+ *  - caps, which close each loop of odd edges by triangles of its own vertices and its middle
+ * (repair/caps.h).
  *  - cones, from the apex of the part to each odd edge. The XOR of the tetrahedra from that apex to the
  * part's triangles equals the parity of triangles and cones, because the other inner faces of the tetrahedra
  * cancel.
- *  - caps, which close each loop of odd edges by triangles of its own vertices and its middle
- * (repair/caps.h).
  */
 #ifndef VXM_VOXEL_FACETS_H
 #define VXM_VOXEL_FACETS_H
 
 #include "voxel/parts.h"
 
-typedef enum vxm_facet_role { VXM_FACET_TRIANGLE = 1, VXM_FACET_CONE = 2, VXM_FACET_CAP = 4 } vxm_facet_role;
+typedef enum vxm_facet_role { VXM_FACET_TRIANGLE = 1, VXM_FACET_CAP = 2, VXM_FACET_CONE = 4 } vxm_facet_role;
 
-typedef struct vxm_facet {
-  uint32_t corner[3]; /**< into points */
-  uint32_t part;
-  vxm_facet_role role;
-} vxm_facet;
+/** With this a set of roles holds all of them, and roles need not be looked up. */
+#define VXM_FACETS_ALL 8U
 
-/** Box of a part in lattice coordinates; low > high for a part without triangles. */
+/** Facets begin..end-1 belong to a part: first triangles, then from `caps` on its caps, from `cones` on its
+ * cones. */
 typedef struct vxm_part {
-  vxm_point low, high; /**< of its triangles; apexes lie inside */
-  uint32_t apex;     /**< point: the mean of the corners of the part's triangles (Rueda et al., section 3) */
-  size_t begin, end; /**< its facets of all roles */
+  size_t begin, caps, cones, end;
 } vxm_part;
 
 typedef struct vxm_facets {
   vxm_context *context;
-  vxm_point *points; /**< the soup's vertices, then an apex per part, then the caps' own points */
-  size_t first_apex, first_cap;
-  vxm_facet *facets; /**< part after part; in each the triangles first, then the cones and the caps */
+  const vxm_soup *soup;
+  uint32_t (*corners)[3]; /**< points of each facet */
+  uint32_t *part;         /**< of each facet */
   size_t facet_count;
   vxm_part *parts;
-  vxm_split split;
+  /* Points: the soup's vertices, then from first_cap on the caps' own, then an apex for each part. */
+  size_t first_cap, first_apex, point_count;
+  double (*cap_points)[3];       /**< positions of the caps' own points, model units */
+  double length, squared_length; /**< sums over all facets of the longest edge and its square, model units */
+  vxm_split split;               /**< trimmed: counts only */
 } vxm_facets;
 
 /** Splits a soup into parts and covers its polygons. Destroy with vxm_facets_destroy, also after a failure.
  */
-vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, const vxm_lattice *lattice,
-                             vxm_split_rule rule, vxm_error *error);
+vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_rule rule, vxm_error *error);
 void vxm_facets_destroy(vxm_facets *facets);
+
+/** The point that is the apex of a part. */
+static inline uint32_t vxm_apex_of(const vxm_facets *facets, size_t part) {
+  return (uint32_t)(facets->first_apex + part);
+}
+
+static inline vxm_facet_role vxm_role_of(const vxm_facets *facets, size_t facet) {
+  const vxm_part *part = &facets->parts[facets->part[facet]];
+  return facet < part->caps ? VXM_FACET_TRIANGLE : facet < part->cones ? VXM_FACET_CAP : VXM_FACET_CONE;
+}
 
 #endif

@@ -12,7 +12,6 @@
 #define VXM_VOXEL_LATTICE_H
 
 #include "grid/bitgrid.h"
-#include "mesh/soup.h"
 
 typedef struct vxm_lattice {
   int bits;
@@ -31,14 +30,6 @@ typedef struct vxm_point {
 /** Chooses the steps per voxel: as fine as 64-bit products of three differences inside the grid allow, 8 to
  * 16 bits. */
 vxm_lattice vxm_lattice_of(const vxm_space *space);
-
-/**
- * Snaps all vertices of a soup into `points` (vertex_count of them).
- *
- * @return VXM_OK; VXM_ERROR_RANGE if a vertex that a face uses is not finite or lies too far outside the grid
- */
-vxm_status vxm_lattice_snap(const vxm_lattice *lattice, const vxm_soup *soup, vxm_point *points,
-                            vxm_error *error);
 
 /** Snaps one position; false, and nothing stored, if it is not finite or lies too far outside the grid. */
 bool vxm_lattice_place(const vxm_lattice *lattice, const double position[3], vxm_point *point);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/outward.h"
+#include "voxel/winding.h"
 
 #include <math.h>
 
@@ -21,13 +22,14 @@ typedef struct side {
 } side;
 
 typedef struct builder {
-  vxm_outward *out;
+  vxm_turns *out;
   const vxm_facets *facets;
-  const vxm_facet **facet; /**< of every triangle */
+  const vxm_placed *placed;
+  uint32_t *facet; /**< of every triangle */
   uint32_t (*neighbour)[3];
   uint8_t *against; /**< bit k: neighbour k runs along the common edge in the same direction */
   uint8_t *neighbour_count;
-  uint8_t *turn;
+  uint8_t *turn; /**< of every triangle: makes it consistent within its patch */
   uint32_t *patch;
   vxm_error error;
 } builder;
@@ -69,21 +71,22 @@ enum {
 
 static bool find_neighbours(builder *b) {
   size_t n = b->out->count;
-  uint32_t *first = allocate(b, b->facets->first_apex, sizeof *first);
-  uint32_t *valence = allocate(b, b->facets->first_apex, sizeof *valence);
+  uint32_t *first = allocate(b, b->facets->first_cap, sizeof *first);
+  uint32_t *valence = allocate(b, b->facets->first_cap, sizeof *valence);
   side *sides = allocate(b, n, 3 * sizeof *sides);
   bool done = first && valence && sides;
   if (done) {
-    for (size_t v = 0; v < b->facets->first_apex; v++)
+    for (size_t v = 0; v < b->facets->first_cap; v++)
       first[v] = none;
     for (size_t t = 0; t < n; t++)
       for (size_t k = 0; k < 3; k++) {
-        uint32_t p = b->facet[t]->corner[k], q = b->facet[t]->corner[(k + 1) % 3], low = p < q ? p : q;
+        const uint32_t *corner = b->facets->corners[b->facet[t]];
+        uint32_t p = corner[k], q = corner[(k + 1) % 3], low = p < q ? p : q;
         sides[3 * t + k] = (side){p < q ? q : p, (uint32_t)t, first[low], p < q};
         first[low] = (uint32_t)(3 * t + k);
         valence[low]++;
       }
-    for (size_t v = 0; v < b->facets->first_apex; v++)
+    for (size_t v = 0; v < b->facets->first_cap; v++)
       if (valence[v] <= VALENCE_MAX)
         link_at_vertex(b, sides, first[v]);
   }
@@ -140,22 +143,23 @@ static double normal_of(const vxm_triangle *t, double n[3]) {
 }
 
 /** 1 inside, 0 outside by majority; `sure` is cleared if the voters disagree. */
-static int ask(const vxm_grid *const voters[3], const double p[3], bool *sure) {
+static int ask(const builder *b, const uint64_t *const voters[3], const double p[3], bool *sure) {
+  const int64_t *dims = b->placed->lattice.space.dims;
+  for (int a = 0; a < 3; a++)
+    if (!(p[a] >= 0 && p[a] < (double)dims[a]))
+      return 0;
+  size_t row_words = ((size_t)dims[0] + 63) / 64, x = (size_t)p[0];
+  size_t word = ((size_t)p[2] * (size_t)dims[1] + (size_t)p[1]) * row_words + x / 64;
   int votes = 0;
-  for (int v = 0; v < 3; v++) {
-    const int64_t *dims = voters[v]->space.dims;
-    bool inside = true;
-    for (int a = 0; a < 3; a++)
-      inside &= p[a] >= 0 && p[a] < (double)dims[a];
-    votes += inside && vxm_grid_get(voters[v], (int64_t)p[0], (int64_t)p[1], (int64_t)p[2]);
-  }
+  for (int v = 0; v < 3; v++)
+    votes += (int)(voters[v][word] >> (x % 64) & 1);
   *sure &= votes == 0 || votes == 3;
   return votes >= 2;
 }
 
 /** Between -1 and 1: how much more is set behind the triangle than before it. */
-static double evidence_of(const vxm_triangle *t, const double n[3], double length,
-                          const vxm_grid *const voters[3]) {
+static double evidence_of(const builder *b, const vxm_triangle *t, const double n[3], double length,
+                          const uint64_t *const voters[3]) {
   double sum = 0;
   for (int w = 0; w < 4; w++)
     for (size_t s = 0; s < PROBES; s++) {
@@ -168,18 +172,22 @@ static double evidence_of(const vxm_triangle *t, const double n[3], double lengt
         before[a] = at + step;
       }
       bool sure = true;
-      int difference = ask(voters, behind, &sure) - ask(voters, before, &sure);
+      int difference = ask(b, voters, behind, &sure) - ask(b, voters, before, &sure);
       sum += (sure ? 1 : doubtful) * difference;
     }
   return sum / (4 * PROBES);
 }
 
-static void turn_triangle(vxm_triangle *t) {
-  for (int a = 0; a < 3; a++) {
-    double swap = t->corner[1][a];
-    t->corner[1][a] = t->corner[2][a];
-    t->corner[2][a] = swap;
+/** The triangle in voxels, turned as its patch is consistent. */
+static vxm_triangle triangle_of(const builder *b, size_t t) {
+  vxm_triangle out;
+  const uint32_t *corner = b->facets->corners[b->facet[t]];
+  for (int k = 0; k < 3; k++) {
+    vxm_point p = vxm_placed_at(b->placed, corner[b->turn[t] ? (3 - k) % 3 : k]);
+    for (int a = 0; a < 3; a++)
+      out.corner[k][a] = (double)p.at[a] / (double)b->placed->lattice.unit;
   }
+  return out;
 }
 
 /** What speaks for the way a patch faces, each in units of area. */
@@ -187,28 +195,25 @@ typedef struct opinion {
   double area, evidence, came; /**< `came`: how it came, before triangles were made consistent */
 } opinion;
 
-static bool turn_patches(builder *b, const vxm_grid *const voters[3]) {
-  vxm_outward *out = b->out;
+static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
+  vxm_turns *out = b->out;
   opinion *opinions = allocate(b, out->patch_count, sizeof *opinions);
   if (!opinions)
     return false;
   for (size_t t = 0; t < out->count; t++) {
-    vxm_triangle *triangle = &out->triangles[t];
-    if (b->turn[t])
-      turn_triangle(triangle);
-    double n[3], length = normal_of(triangle, n);
+    vxm_triangle triangle = triangle_of(b, t);
+    double n[3], length = normal_of(&triangle, n);
     if (!(length > 0))
       continue;
     opinion *o = &opinions[b->patch[t]];
     o->area += length;
     o->came += b->turn[t] ? -length : length;
-    o->evidence += length * evidence_of(triangle, n, length, voters);
+    o->evidence += length * evidence_of(b, &triangle, n, length, voters);
   }
   for (size_t t = 0; t < out->count; t++) {
     const opinion *o = &opinions[b->patch[t]];
     bool told = fabs(o->evidence) >= evidence_min * o->area;
-    if ((told ? o->evidence : o->came) < 0)
-      turn_triangle(&out->triangles[t]);
+    out->turned[t] = b->turn[t] ^ ((told ? o->evidence : o->came) < 0);
   }
   vxm_free(out->context, opinions);
   return true;
@@ -216,63 +221,53 @@ static bool turn_patches(builder *b, const vxm_grid *const voters[3]) {
 
 /* ---- All of it ---- */
 
-static bool collect_triangles(builder *b, const vxm_lattice *lattice, size_t begin, size_t end) {
-  vxm_outward *out = b->out;
+static bool collect_triangles(builder *b) {
+  vxm_turns *out = b->out;
   const vxm_facets *facets = b->facets;
-  for (size_t f = begin; f < end; f++)
-    out->count += facets->facets[f].role == VXM_FACET_TRIANGLE;
-  out->triangles = allocate(b, out->count, sizeof *out->triangles);
+  for (size_t p = out->part_begin; p < out->part_end; p++)
+    out->count += facets->parts[p].caps - facets->parts[p].begin;
+  out->turned = allocate(b, out->count, sizeof *out->turned);
   b->facet = allocate(b, out->count, sizeof *b->facet);
   b->neighbour = allocate(b, out->count, sizeof *b->neighbour);
   b->against = allocate(b, out->count, sizeof *b->against);
   b->neighbour_count = allocate(b, out->count, sizeof *b->neighbour_count);
   b->turn = allocate(b, out->count, sizeof *b->turn);
   b->patch = allocate(b, out->count, sizeof *b->patch);
-  if (!out->triangles || !b->facet || !b->neighbour || !b->against || !b->neighbour_count || !b->turn ||
+  if (!out->turned || !b->facet || !b->neighbour || !b->against || !b->neighbour_count || !b->turn ||
       !b->patch)
     return false;
   size_t next = 0;
-  for (size_t f = begin; f < end; f++) {
-    const vxm_facet *facet = &facets->facets[f];
-    if (facet->role != VXM_FACET_TRIANGLE)
-      continue;
-    for (int k = 0; k < 3; k++)
-      for (int a = 0; a < 3; a++)
-        out->triangles[next].corner[k][a] =
-            (double)facets->points[facet->corner[k]].at[a] / (double)lattice->unit;
-    b->facet[next++] = facet;
-  }
+  for (size_t p = out->part_begin; p < out->part_end; p++)
+    for (size_t f = facets->parts[p].begin; f < facets->parts[p].caps; f++)
+      b->facet[next++] = (uint32_t)f;
   return true;
 }
 
-vxm_status vxm_outward_create(vxm_outward *out, const vxm_facets *facets, const vxm_lattice *lattice,
-                              size_t part_begin, size_t part_end, const vxm_grid *const voters[3],
-                              vxm_error *error) {
-  *out = (vxm_outward){.context = facets->context};
-  builder b = {.out = out, .facets = facets, .error = VXM_ERROR_INIT};
-  size_t begin = part_begin < part_end ? facets->parts[part_begin].begin : 0;
-  size_t end = part_begin < part_end ? facets->parts[part_end - 1].end : 0;
-  if (end - begin > UINT32_MAX / 3)
-    return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many to turn outward; split the mesh",
-                    end - begin);
-  bool done = collect_triangles(&b, lattice, begin, end) && find_neighbours(&b) && find_patches(&b) &&
-              turn_patches(&b, voters);
+vxm_status vxm_outward_find(vxm_turns *out, const vxm_facets *facets, const vxm_placed *placed,
+                            size_t part_begin, size_t part_end, const uint64_t *const voters[3],
+                            vxm_error *error) {
   vxm_context *context = facets->context;
+  *out = (vxm_turns){.context = context, .part_begin = part_begin, .part_end = part_end};
+  builder b = {.out = out, .facets = facets, .placed = placed, .error = VXM_ERROR_INIT};
+  if (facets->facet_count > UINT32_MAX / 3)
+    return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many to turn outward; split the mesh",
+                    facets->facet_count);
+  bool done = collect_triangles(&b) && find_neighbours(&b) && find_patches(&b) && turn_patches(&b, voters);
   vxm_free(context, b.patch);
   vxm_free(context, b.turn);
   vxm_free(context, b.neighbour_count);
   vxm_free(context, b.against);
   vxm_free(context, b.neighbour);
-  vxm_free(context, (void *)b.facet);
+  vxm_free(context, b.facet);
   if (done)
     return VXM_OK;
-  vxm_outward_destroy(out);
+  vxm_turns_destroy(out);
   if (error)
     *error = b.error;
   return b.error.code;
 }
 
-void vxm_outward_destroy(vxm_outward *outward) {
-  vxm_free(outward->context, outward->triangles);
-  *outward = (vxm_outward){.context = outward->context};
+void vxm_turns_destroy(vxm_turns *turns) {
+  vxm_free(turns->context, turns->turned);
+  *turns = (vxm_turns){.context = turns->context};
 }

@@ -3,18 +3,20 @@
 #ifndef VXM_VOXEL_OUTWARD_H
 #define VXM_VOXEL_OUTWARD_H
 
-#include "voxel/facets.h"
-#include "voxel/winding.h"
+#include "voxel/placed.h"
 
-typedef struct vxm_outward {
+/** Which triangles of parts part_begin..part_end-1 are to be turned, in the order of their facets, cones and
+ * caps left out. */
+typedef struct vxm_turns {
   vxm_context *context;
-  vxm_triangle *triangles; /**< those of the chosen parts, without cones and caps */
+  size_t part_begin, part_end;
   size_t count;
+  uint8_t *turned; /**< of every triangle; NULL = not known yet */
   size_t patch_count;
-} vxm_outward;
+} vxm_turns;
 
 /**
- * Copies the triangles of parts part_begin..part_end-1 and turns them outward.
+ * Finds out which triangles of parts part_begin..part_end-1 face inward.
  *
  * Triangles that meet at an edge of exactly two form patches, consistent within; a patch may consist of one
  * triangle. Which way a patch faces is read from the grid: on which side of it are more voxels set? Voxels on
@@ -22,12 +24,13 @@ typedef struct vxm_outward {
  * orientation that most of its area came with. Unlike ray casting this costs a few look-ups per triangle, and
  * it works across patches that share no edge.
  *
- * @param voters three grids of the lattice's space; the same grid three times if there was no vote
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ * @param placed the points on the lattice of the voters' grid
+ * @param voters words of three grids, x fastest; the same three times if there was no vote
+ * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_outward_create(vxm_outward *out, const vxm_facets *facets, const vxm_lattice *lattice,
-                              size_t part_begin, size_t part_end, const vxm_grid *const voters[3],
-                              vxm_error *error);
-void vxm_outward_destroy(vxm_outward *outward);
+vxm_status vxm_outward_find(vxm_turns *out, const vxm_facets *facets, const vxm_placed *placed,
+                            size_t part_begin, size_t part_end, const uint64_t *const voters[3],
+                            vxm_error *error);
+void vxm_turns_destroy(vxm_turns *turns);
 
 #endif

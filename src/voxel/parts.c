@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/parts.h"
 #include "mesh/components.h"
+#include "mesh/frame.h"
 #include "mesh/geometry.h"
 #include "mesh/nesting.h"
 
@@ -12,7 +13,6 @@ static const double capped_part_max = 0.75;
 typedef struct builder {
   vxm_split *split;
   const vxm_soup *soup;
-  const vxm_lattice *lattice;
   vxm_split_rule rule;
   uint8_t *kind;            /**< of every component */
   uint32_t *loop_component; /**< of every loop */
@@ -83,6 +83,18 @@ static vxm_status make_caps(builder *b, double scale, double *area) {
   return VXM_OK;
 }
 
+/** A scale in which areas neither overflow nor vanish. */
+static vxm_status find_scale(builder *b, double *scale) {
+  uint8_t *used = allocate(b, b->soup->vertex_count, sizeof *used);
+  if (!used)
+    return b->error.code;
+  vxm_extent extent;
+  vxm_extent_of(&extent, b->split->context, b->soup, used);
+  vxm_free(b->split->context, used);
+  *scale = vxm_frame_of(extent.bounds).scale;
+  return VXM_OK;
+}
+
 static vxm_status find_kinds(builder *b) {
   vxm_split *s = b->split;
   b->kind = allocate(b, s->component_count, sizeof *b->kind);
@@ -94,8 +106,10 @@ static vxm_status find_kinds(builder *b) {
     return b->error.code;
   }
   bool measure = b->rule.cap && s->loops.count > 0;
-  double scale = 1 / b->lattice->space.voxel_size[0]; /* lengths in voxels */
-  vxm_status status = measure ? make_caps(b, scale, caps) : VXM_OK;
+  double scale = 1;
+  vxm_status status = measure ? find_scale(b, &scale) : VXM_OK;
+  if (measure && status == VXM_OK)
+    status = make_caps(b, scale, caps);
   for (size_t f = 0; measure && f < b->soup->face_count; f++) {
     size_t n;
     const uint32_t *corner = vxm_face(b->soup, f, &n);
@@ -186,10 +200,9 @@ static vxm_status number_parts(builder *b) {
   return VXM_OK;
 }
 
-vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, const vxm_lattice *lattice,
-                            vxm_split_rule rule, vxm_error *error) {
+vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, vxm_split_rule rule, vxm_error *error) {
   *out = (vxm_split){.context = soup->context};
-  builder b = {.split = out, .soup = soup, .lattice = lattice, .rule = rule, .error = VXM_ERROR_INIT};
+  builder b = {.split = out, .soup = soup, .rule = rule, .error = VXM_ERROR_INIT};
   vxm_error local = VXM_ERROR_INIT;
   vxm_status status = vxm_edges_build(&out->edges, soup->context, soup, NULL, &local);
   if (status == VXM_OK) {
@@ -214,7 +227,7 @@ vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, const vxm_latt
   return status;
 }
 
-void vxm_split_destroy(vxm_split *split) {
+void vxm_split_trim(vxm_split *split) {
   vxm_context *context = split->context;
   if (split->cap_begin)
     vxm_caps_free(&split->caps);
@@ -226,5 +239,11 @@ void vxm_split_destroy(vxm_split *split) {
     vxm_loops_destroy(&split->loops);
   if (split->edges.context)
     vxm_edges_destroy(&split->edges);
-  *split = (vxm_split){.context = context};
+  split->cap_begin = NULL;
+  split->loop_part = split->part = split->component = NULL;
+}
+
+void vxm_split_destroy(vxm_split *split) {
+  vxm_split_trim(split);
+  *split = (vxm_split){.context = split->context};
 }

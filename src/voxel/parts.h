@@ -5,7 +5,6 @@
 
 #include "mesh/loops.h"
 #include "repair/caps.h"
-#include "voxel/lattice.h"
 
 typedef enum vxm_part_kind {
   VXM_PART_CLOSED, /**< every edge has an even number of faces */
@@ -50,8 +49,9 @@ typedef struct vxm_split {
  * @param[out] out freed with vxm_split_destroy, also after a failure
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, const vxm_lattice *lattice,
-                            vxm_split_rule rule, vxm_error *error);
+vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, vxm_split_rule rule, vxm_error *error);
+/** Frees what is needed no more once facets are made: all but the counts and the ends of the kinds. */
+void vxm_split_trim(vxm_split *split);
 void vxm_split_destroy(vxm_split *split);
 
 #endif

@@ -1,40 +1,39 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/**
- * Working in slabs: the grid is cut along one axis into slabs whose scratch bits stay in cache. A slab is
- * done by one thread, which alone writes the grid words in it, and takes the facets that touch it, part after
- * part.
- */
+/** How a window is cut into slabs whose bits stay in cache, and the memory of the threads that fold them. */
 #ifndef VXM_VOXEL_SLABS_H
 #define VXM_VOXEL_SLABS_H
 
-#include "voxel/facets.h"
-#include "voxel/raster.h"
+#include "voxel/bins.h"
+#include "voxel/columns.h"
+#include "voxel/crossings.h"
 
-#include <stdatomic.h>
+/** Memory that is kept from one use to the next. Start from {.context = ...}. */
+typedef struct vxm_workspace {
+  vxm_context *context;
+  vxm_bins bins;
+  vxm_crossings crossings;
+  uint64_t *scratch;
+  size_t scratch_words;
+} vxm_workspace;
 
-/** Which facets are to be united into a grid, and how. */
-typedef struct vxm_unite_job {
-  const vxm_facets *facets;
-  const vxm_lattice *lattice;
-  vxm_axes axes;               /**< slabs are cut along v */
-  size_t part_begin, part_end; /**< these parts only */
-  unsigned roles;              /**< facets of these roles count, or-ed vxm_facet_role */
-  bool to_apex;                /**< a facet reaches from its triangle to the part's apex */
-  atomic_uchar *touched;       /**< per part: set to 1 if it sets a voxel; may be NULL */
-  const char *phase;           /**< for progress */
-} vxm_unite_job;
+vxm_workspace vxm_workspace_of(vxm_context *context);
+void vxm_workspace_destroy(vxm_workspace *workspace);
+/** Room for so many words, zero where the last use left them zero, as every use must. */
+vxm_status vxm_workspace_scratch(vxm_workspace *workspace, size_t words, vxm_error *error);
 
-/** Puts one facet into the bits of a part within a slab. */
-typedef void (*vxm_facet_fn)(const vxm_unite_job *job, const vxm_facet *facet, const vxm_raster *raster);
-/** Moves those bits into the grid and clears words and spans; says whether any voxel was set. */
-typedef bool (*vxm_fold_fn)(vxm_grid *grid, const vxm_raster *raster);
+/** Slabs of 2^shift layers each. */
+typedef struct vxm_slabs {
+  int64_t layers; /**< of the window along the axis that is cut */
+  int shift;
+  size_t count;
+  size_t words; /**< of one slab */
+} vxm_slabs;
 
-/**
- * Runs `draw` for every facet of the job and `fold` for every part in every slab, in parallel over slabs.
- *
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+/** Cuts `layers` of layer_words each: as thick as fits the cache, but several slabs for each of the threads.
  */
-vxm_status vxm_unite(vxm_grid *grid, const vxm_unite_job *job, vxm_facet_fn draw, vxm_fold_fn fold,
-                     vxm_error *error);
+vxm_slabs vxm_slabs_of(int64_t layers, size_t layer_words, int threads);
+
+/** The columns of a window along an axis of the voxel space, with the layers of its slabs cut along v. */
+vxm_columns vxm_columns_of(const vxm_window *window, int axis);
 
 #endif

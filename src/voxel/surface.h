@@ -4,6 +4,7 @@
 #define VXM_VOXEL_SURFACE_H
 
 #include "grid/window.h"
+#include "mesh/soup.h"
 #include "voxel/lattice.h"
 
 typedef enum vxm_surface_kind {

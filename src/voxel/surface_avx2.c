@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Drawing for x86 processors with AVX2. */
-#include "voxel/surface_draw.h"
+#include "voxel/kernels_x86.h"
 
-#if VXM_SURFACE_X86
+#if VXM_KERNELS_X86
 #include <immintrin.h>
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2,bmi,bmi2,popcnt,lzcnt"))), apply_to = function)

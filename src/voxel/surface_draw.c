@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/surface_draw.h"
+#include "voxel/kernels_x86.h"
 
 #include <stdatomic.h>
 
@@ -51,7 +52,7 @@ static _Atomic(const vxm_surface_build *) chosen;
 size_t vxm_surface_builds(const vxm_surface_build *out[3]) {
   size_t count = 0;
   out[count++] = &vxm_surface_build_plain;
-#if VXM_SURFACE_X86
+#if VXM_KERNELS_X86
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))
     out[count++] = &vxm_surface_build_avx2;
   if (count == 2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&

@@ -52,13 +52,6 @@ enum {
   VXM_SURFACE_LANES = 8    /**< most rows worked on together */
 };
 
-/** Whether there are builds for particular x86 processors. */
-#if defined(__x86_64__) && defined(__GNUC__)
-#define VXM_SURFACE_X86 1
-#else
-#define VXM_SURFACE_X86 0
-#endif
-
 typedef struct vxm_surface_build vxm_surface_build;
 
 /** What one task draws with. */

@@ -4,9 +4,9 @@
  * each tile is drawn by one task, in words of its own that stay in cache, and then moved into the window.
  */
 #include "base/threads.h"
+#include "base/watch.h"
 #include "voxel/surface_draw.h"
 
-#include <stdatomic.h>
 #include <string.h>
 
 enum {
@@ -35,13 +35,9 @@ typedef struct tiling {
   size_t *begin;     /**< for each of these where its list begins; one more for the end */
   uint32_t *list;
   uint32_t *places; /**< for each triangle what the first pass found */
-  atomic_size_t done;
-  atomic_bool stop;
-  vxm_status status;
+  vxm_watch watch;
   vxm_error *error;
 } tiling;
-
-static const char phase[] = "voxelizing the surface";
 
 /* ---- Shape of the tiles ---- */
 
@@ -219,18 +215,6 @@ static vxm_status list_tiles(tiling *t) {
 
 /* ---- Drawing ---- */
 
-/** Worker 0 is the calling thread, the only one that may report progress; the others only look whether to
- * stop. */
-static bool is_stopped(tiling *t, int worker) {
-  if (worker == 0 && t->status == VXM_OK) {
-    size_t done = atomic_load_explicit(&t->done, memory_order_relaxed);
-    t->status = vxm_progress(t->surface->context, phase, (double)done / (double)t->tile_count, t->error);
-    if (t->status != VXM_OK)
-      atomic_store_explicit(&t->stop, true, memory_order_relaxed);
-  }
-  return atomic_load_explicit(&t->stop, memory_order_relaxed);
-}
-
 /** Moves what was drawn into the window and leaves the tile's words zero. */
 static void move_tile(const tiling *t, const vxm_surface_pen *pen) {
   const vxm_surface_box *box = &pen->tile;
@@ -263,7 +247,7 @@ static void fetch_ahead(const tiling *t, size_t i, size_t end) {
 
 static void draw_tile(size_t task, int worker, void *payload) {
   tiling *t = payload;
-  if (is_stopped(t, worker))
+  if (vxm_watch_stopped(&t->watch, worker))
     return;
   vxm_surface_pen pen = t->pen;
   pen.tile = tile_box(t, t->first + task);
@@ -282,12 +266,12 @@ static void draw_tile(size_t task, int worker, void *payload) {
     if (rows < POLL_ROWS)
       continue;
     rows = 0;
-    if (is_stopped(t, worker))
+    if (vxm_watch_stopped(&t->watch, worker))
       return;
   }
   if (t->is_fresh || t->begin[task] < t->begin[task + 1])
     move_tile(t, &pen);
-  atomic_fetch_add_explicit(&t->done, 1, memory_order_relaxed);
+  vxm_watch_step(&t->watch);
 }
 
 static vxm_status draw_tiles(tiling *t) {
@@ -299,11 +283,10 @@ static vxm_status draw_tiles(tiling *t) {
     if (status != VXM_OK)
       return status;
     vxm_parallel(context, t->end - t->first, draw_tile, t);
-    if (t->status != VXM_OK)
-      return t->status;
+    if (t->watch.status != VXM_OK)
+      return t->watch.status;
   }
-  /* Other threads may have taken all tiles: ask once more, so that no wish to stop is missed. */
-  return vxm_progress(context, phase, 1.0, t->error);
+  return vxm_watch_end(&t->watch);
 }
 
 vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window, vxm_surface_kind kind,
@@ -323,9 +306,8 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
       .is_fresh = is_fresh,
       .error = &local,
   };
-  atomic_init(&t.done, 0);
-  atomic_init(&t.stop, false);
   choose_tiles(&t);
+  vxm_watch_start(&t.watch, context, "voxelizing the surface", t.tile_count, &local);
   size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t.row_bits;
   t.counters = vxm_calloc(context, t.chunks * t.tile_count, sizeof *t.counters, &local);
   t.places = vxm_alloc(context, surface->triangle_count, sizeof *t.places, &local);

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/tetra.h"
+#include "base/threads.h"
+
+#include <string.h>
 
 /** The inner side of a face of a tetrahedron: normal . (p - origin) >= threshold. */
 typedef struct half_space {
@@ -43,33 +46,34 @@ static vxm_int128 floor_div(vxm_int128 a, vxm_int128 b) {
   return q - (a % b < 0);
 }
 
-/** Narrows [*low, *high], lattice positions along x, to the half-space, for the row at (y, z). */
-static bool clip(const half_space *h, int64_t y, int64_t z, int64_t *low, int64_t *high) {
-  vxm_point p = {{h->origin.at[0], y, z}};
-  vxm_int128 room = along(h->normal, &h->origin, &p) - h->threshold; /* normal_x (x - origin_x) + room >= 0 */
-  vxm_int128 nx = h->normal[0];
-  if (nx == 0)
+/** Narrows [*low, *high], lattice positions along an axis, to the half-space, for the line through p.
+ */
+static bool clip(const half_space *h, const vxm_point *line, int axis, int64_t *low, int64_t *high) {
+  vxm_point p = *line;
+  p.at[axis] = h->origin.at[axis];
+  vxm_int128 room = along(h->normal, &h->origin, &p) - h->threshold; /* normal (x - origin) + room >= 0 */
+  vxm_int128 n = h->normal[axis];
+  if (n == 0)
     return room >= 0;
-  if (nx > 0) {
-    vxm_int128 x = h->origin.at[0] - floor_div(room, nx);
+  if (n > 0) {
+    vxm_int128 x = h->origin.at[axis] - floor_div(room, n);
     if (x > *low)
       *low = x > *high ? *high + 1 : (int64_t)x;
   } else {
-    vxm_int128 x = h->origin.at[0] + floor_div(room, -nx);
+    vxm_int128 x = h->origin.at[axis] + floor_div(room, -n);
     if (x < *high)
       *high = x < *low ? *low - 1 : (int64_t)x;
   }
   return *low <= *high;
 }
 
-static void flip_span(const vxm_raster *raster, int64_t j, int64_t k, int64_t begin, int64_t end) {
-  begin = vxm_max(begin, raster->box.w_begin);
-  end = vxm_min(end, raster->box.w_end);
+/** Flips voxels begin..end-1 of a row, cut to its `length`. */
+static void flip_span(uint64_t *row, int64_t begin, int64_t end, int64_t length) {
+  begin = vxm_max(begin, 0);
+  end = vxm_min(end, length);
   if (begin >= end)
     return;
-  uint64_t *row = raster->words + (size_t)(k - raster->box.v_begin) * raster->v_stride +
-                  (size_t)(j - raster->box.u_begin) * raster->row_words;
-  size_t first = (size_t)(begin - raster->x_first), last = (size_t)(end - 1 - raster->x_first);
+  size_t first = (size_t)begin, last = (size_t)end - 1;
   for (size_t w = first / 64; w <= last / 64; w++) {
     uint64_t mask = ~UINT64_C(0);
     if (w == first / 64)
@@ -80,58 +84,101 @@ static void flip_span(const vxm_raster *raster, int64_t j, int64_t k, int64_t be
   }
 }
 
-static void draw_tetrahedron(const vxm_unite_job *job, const vxm_facet *facet, const vxm_raster *raster) {
-  const vxm_facets *facets = job->facets;
-  const vxm_point *corner[4] = {&facets->points[facet->corner[0]], &facets->points[facet->corner[1]],
-                                &facets->points[facet->corner[2]],
-                                &facets->points[facets->parts[facet->part].apex]};
+typedef struct tetra_state {
+  vxm_workspace *workspace;
+  const vxm_window *window;
+  const vxm_unite_job *job;
+  vxm_slabs slabs;
+  vxm_watch watch;
+} tetra_state;
+
+/** Voxels first..end-1 whose centres may lie between the corners along an axis. */
+static void range_of(const tetra_state *state, const vxm_point corner[4], int axis, int64_t *first,
+                     int64_t *end) {
+  int64_t low = corner[0].at[axis], high = low;
+  for (int c = 1; c < 4; c++) {
+    low = vxm_min(low, corner[c].at[axis]);
+    high = vxm_max(high, corner[c].at[axis]);
+  }
+  const vxm_lattice *lattice = &state->job->placed->lattice;
+  *first = vxm_max(*first, vxm_lattice_first(lattice, low));
+  *end = vxm_min(*end, vxm_lattice_last(lattice, high) + 1);
+}
+
+/** Flips in slices begin..end-1, whose words start at `words`. Whether the tetrahedron reaches them. */
+static bool draw_tetrahedron(const tetra_state *state, size_t facet, int64_t begin, int64_t end,
+                             uint64_t *words) {
+  const vxm_facets *facets = state->job->facets;
+  const vxm_placed *placed = state->job->placed;
+  const vxm_window *window = state->window;
+  const vxm_layout *axes = &window->layout;
+  vxm_point corner[4];
+  for (int k = 0; k < 3; k++)
+    corner[k] = vxm_placed_at(placed, facets->corners[facet][k]);
+  corner[3] = vxm_placed_at(placed, vxm_apex_of(facets, facets->part[facet]));
+  int64_t s_begin = begin, s_end = end, m_begin = 0, m_end = window->middle_dim;
+  range_of(state, corner, axes->slow, &s_begin, &s_end);
+  range_of(state, corner, axes->middle, &m_begin, &m_end);
+  if (s_begin >= s_end || m_begin >= m_end)
+    return false;
   half_space face[4];
   for (int f = 0; f < 4; f++)
-    if (!inner_side(&face[f], corner[(f + 1) % 4], corner[(f + 2) % 4], corner[(f + 3) % 4], corner[f]))
-      return; /* no volume, so no (perturbed) centre inside */
-  vxm_point low = *corner[0], high = low;
-  for (int c = 1; c < 4; c++)
-    for (int a = 0; a < 3; a++) {
-      low.at[a] = vxm_min(low.at[a], corner[c]->at[a]);
-      high.at[a] = vxm_max(high.at[a], corner[c]->at[a]);
-    }
-  const vxm_lattice *lattice = job->lattice;
-  const vxm_box *box = &raster->box;
-  int64_t k_begin = vxm_max(box->v_begin, vxm_lattice_first(lattice, low.at[2]));
-  int64_t k_end = vxm_min(box->v_end, vxm_lattice_last(lattice, high.at[2]) + 1);
-  int64_t j_begin = vxm_max(box->u_begin, vxm_lattice_first(lattice, low.at[1]));
-  int64_t j_end = vxm_min(box->u_end, vxm_lattice_last(lattice, high.at[1]) + 1);
-  for (int64_t k = k_begin; k < k_end; k++)
-    for (int64_t j = j_begin; j < j_end; j++) {
-      int64_t y = vxm_lattice_centre(lattice, j), z = vxm_lattice_centre(lattice, k);
-      int64_t x_low = low.at[0], x_high = high.at[0];
+    if (!inner_side(&face[f], &corner[(f + 1) % 4], &corner[(f + 2) % 4], &corner[(f + 3) % 4], &corner[f]))
+      return false; /* no volume, so no (perturbed) centre inside */
+  const vxm_lattice *lattice = &placed->lattice;
+  for (int64_t s = s_begin; s < s_end; s++)
+    for (int64_t m = m_begin; m < m_end; m++) {
+      vxm_point line = {{0, 0, 0}};
+      line.at[axes->middle] = vxm_lattice_centre(lattice, m);
+      line.at[axes->slow] = vxm_lattice_centre(lattice, s);
+      int64_t low = INT64_MAX, high = INT64_MIN;
+      for (int c = 0; c < 4; c++) {
+        low = vxm_min(low, corner[c].at[axes->fast]);
+        high = vxm_max(high, corner[c].at[axes->fast]);
+      }
       bool inside = true;
       for (int f = 0; f < 4 && inside; f++)
-        inside = clip(&face[f], y, z, &x_low, &x_high);
+        inside = clip(&face[f], &line, axes->fast, &low, &high);
       if (inside)
-        flip_span(raster, j, k, vxm_lattice_first(lattice, x_low), vxm_lattice_last(lattice, x_high) + 1);
+        flip_span(words + (size_t)(s - begin) * window->slice_words + (size_t)m * window->row_words,
+                  vxm_lattice_first(lattice, low), vxm_lattice_last(lattice, high) + 1, window->fast_dim);
     }
+  return true;
 }
 
-static bool fold_presence(vxm_grid *grid, const vxm_raster *raster) {
-  const vxm_box *box = &raster->box;
-  uint64_t any = 0, *words = raster->words;
-  for (int64_t k = box->v_begin; k < box->v_end; k++)
-    for (int64_t j = box->u_begin; j < box->u_end; j++, words += raster->row_words) {
-      uint64_t *row = vxm_grid_row(grid, j, k) + raster->x_first / 64;
-      for (size_t w = 0; w < raster->row_words; w++) {
-        row[w] |= words[w];
-        any |= words[w];
-        words[w] = 0;
-      }
-    }
-  return any != 0;
+static void do_slab(size_t task, int worker, void *payload) {
+  tetra_state *state = payload;
+  const vxm_window *window = state->window;
+  const vxm_facets *facets = state->job->facets;
+  if (vxm_watch_stopped(&state->watch, worker))
+    return;
+  int64_t first = (int64_t)task << state->slabs.shift;
+  int64_t begin = window->begin + first,
+          end = vxm_min(begin + (INT64_C(1) << state->slabs.shift), window->end);
+  uint64_t *out = window->words + (size_t)first * window->slice_words;
+  uint64_t *work = state->workspace->scratch + (size_t)worker * state->slabs.words;
+  size_t count = (size_t)(end - begin) * window->slice_words;
+  if (state->job->fresh)
+    memset(out, 0, count * sizeof *out);
+  for (size_t p = state->job->part_begin; p < state->job->part_end; p++) {
+    bool drawn = false;
+    for (size_t f = facets->parts[p].begin; f < facets->parts[p].caps; f++)
+      drawn |= draw_tetrahedron(state, f, begin, end, work);
+    if (drawn && vxm_kernels_get()->move_or(out, work, count) && state->job->touched)
+      atomic_store_explicit(&state->job->touched[p], 1, memory_order_relaxed);
+  }
+  vxm_watch_step(&state->watch);
 }
 
-vxm_status vxm_tetra_unite(vxm_grid *grid, const vxm_unite_job *job, vxm_error *error) {
-  vxm_unite_job tetra = *job;
-  tetra.axes = vxm_axes_of(0);
-  tetra.roles = VXM_FACET_TRIANGLE;
-  tetra.to_apex = true;
-  return vxm_unite(grid, &tetra, draw_tetrahedron, fold_presence, error);
+vxm_status vxm_tetra_unite(vxm_workspace *workspace, const vxm_window *window, const vxm_unite_job *job,
+                           vxm_error *error) {
+  int threads = vxm_context_threads(workspace->context);
+  tetra_state state = {.workspace = workspace, .window = window, .job = job};
+  state.slabs = vxm_slabs_of(window->end - window->begin, window->slice_words, threads);
+  vxm_status status = vxm_workspace_scratch(workspace, (size_t)threads * state.slabs.words, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_watch_start(&state.watch, workspace->context, job->phase, state.slabs.count, error);
+  vxm_parallel(workspace->context, state.slabs.count, do_slab, &state);
+  return vxm_watch_end(&state.watch);
 }

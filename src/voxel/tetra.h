@@ -8,10 +8,11 @@
 #ifndef VXM_VOXEL_TETRA_H
 #define VXM_VOXEL_TETRA_H
 
-#include "voxel/slabs.h"
+#include "voxel/unite.h"
 
-/** Sets in `grid` every voxel covered by an odd number of tetrahedra of at least one part. Exact; axes are
- * ignored. */
-vxm_status vxm_tetra_unite(vxm_grid *grid, const vxm_unite_job *job, vxm_error *error);
+/** As vxm_unite, with the voxels covered by an odd number of tetrahedra of at least one part. Roles and axis
+ * are ignored; the apexes have been placed. */
+vxm_status vxm_tetra_unite(vxm_workspace *workspace, const vxm_window *window, const vxm_unite_job *job,
+                           vxm_error *error);
 
 #endif

@@ -6,16 +6,23 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/voxmend-interrupt.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/in" "$work/out"
 "$BUILDDIR/samples/generate_samples" "$work/in"
-for delay in 0.05 0.2 0.4; do
-  "$VOXMEND" voxelize "$work/in/rocket.off" -o "$work/out/x.rle" -r 1400 --threads 1 >/dev/null 2>"$work/err" &
-  job=$!
-  sleep "$delay"
-  kill -TERM "$job" 2>/dev/null || true
-  status=0
-  wait "$job" || status=$?
-  if [ "$status" -ne 0 ]; then
-    [ "$status" -eq 143 ] || { echo "FAILED: exit status $status"; cat "$work/err"; exit 1; }
-    [ -z "$(ls "$work/out")" ] || { echo "FAILED: left behind:"; ls "$work/out"; exit 1; }
-  fi
-  rm -f "$work/out/"*
-done
+
+# interrupted COMMAND...: with a signal after some time. Where it was done before that, nothing is told.
+interrupted() {
+  for delay in 0.05 0.2 0.4; do
+    "$VOXMEND" "$@" --threads 1 >/dev/null 2>"$work/err" &
+    job=$!
+    sleep "$delay"
+    kill -TERM "$job" 2>/dev/null || true
+    status=0
+    wait "$job" || status=$?
+    if [ "$status" -ne 0 ]; then
+      [ "$status" -eq 143 ] || { echo "FAILED: exit status $status"; cat "$work/err"; exit 1; }
+      [ -z "$(ls "$work/out")" ] || { echo "FAILED: left behind:"; ls "$work/out"; exit 1; }
+    fi
+    rm -f "$work/out/"*
+  done
+}
+
+interrupted voxelize "$work/in/rocket.off" -o "$work/out/x.rle" -r 1400
+interrupted bench "$work/in/rocket.off" --plot "$work/out/x.svg" --report "$work/out/x.json"

@@ -7,7 +7,7 @@ run 'voxmend --help'
 run 'voxmend --version'
 run 'voxmend --nonsense'
 run 'voxmend nonsense'
-for command in info repair voxelize convert compare view; do
+for command in info repair voxelize convert compare view bench; do
   run "voxmend $command --help"
 done
 
@@ -70,5 +70,15 @@ run 'voxmend view x.npy -o y.png --size 0x600'
 run 'voxmend view x.npy -o y.png --azimuth north'
 run 'voxmend view x.npy -o y.png --elevation 91'
 run 'voxmend view x.npy -o y.png --up w'
+
+say "# bench"
+run 'voxmend bench'
+run 'voxmend bench in/cube.off in/torus.off'
+run 'voxmend bench -'
+for option in '-r 0' '-r 64,' '-r ""' '-r 8x8x8' '-r 8,1048577' '--threads 0' '--threads 1,257' '--threads 2x' '--phases solid' \
+  '--phases load,,repair' '--engine gpu' '--time -1' '--time 5s' '--plot x.png' '--plot svg' '--phases load --plot x.svg' \
+  '--plot x.svg --report x.svg' '--mode solid'; do
+  run "voxmend bench in/cube.off $option"
+done
 run 'ls'
 finish

@@ -3,9 +3,9 @@
 #include "shapes.h"
 
 #include "grid/bitgrid.h"
-#include "voxel/outward.h"
-#include "voxel/parity.h"
+#include "voxel/unite.h"
 #include "voxel/winding.h"
+#include "voxel/wound.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,18 +79,22 @@ static void test_triangles_and_caps_are_closed(void **state) {
     vxm_lattice lattice = vxm_lattice_of(&space);
     vxm_facets facets;
     vxm_split_rule rule = {VXM_PARTS_GROUP, VXM_CAVITIES_FILL, true};
-    assert_int_equal(vxm_facets_create(&facets, soup, &lattice, rule, NULL), VXM_OK);
-    for (int closing = VXM_FACET_CONE; closing <= VXM_FACET_CAP; closing *= 2) {
+    vxm_placed placed = {.context = context};
+    vxm_workspace workspace = vxm_workspace_of(context);
+    assert_int_equal(vxm_facets_create(&facets, soup, rule, NULL), VXM_OK);
+    assert_int_equal(vxm_placed_set(&placed, &facets, &lattice, NULL, true, NULL), VXM_OK);
+    for (int closing = VXM_FACET_CAP; closing <= VXM_FACET_CONE; closing *= 2) {
       vxm_grid *grids[3];
       for (int axis = 0; axis < 3; axis++) {
         assert_int_equal(vxm_grid_create(&grids[axis], context, &space, NULL), VXM_OK);
         vxm_unite_job job = {.facets = &facets,
-                             .lattice = &lattice,
-                             .axes = vxm_axes_of(axis),
+                             .placed = &placed,
+                             .axis = axis,
                              .part_end = facets.split.part_count,
                              .roles = VXM_FACET_TRIANGLE | (unsigned)closing,
                              .phase = "testing"};
-        assert_int_equal(vxm_parity_unite(grids[axis], &job, NULL), VXM_OK);
+        vxm_window window = vxm_window_of_grid(grids[axis]);
+        assert_int_equal(vxm_unite(&workspace, &window, &job, NULL), VXM_OK);
       }
       size_t bytes = grids[0]->word_count * sizeof *grids[0]->words;
       assert_memory_equal(grids[0]->words, grids[1]->words, bytes);
@@ -98,6 +102,8 @@ static void test_triangles_and_caps_are_closed(void **state) {
       for (int axis = 0; axis < 3; axis++)
         vxm_grid_destroy(grids[axis]);
     }
+    vxm_workspace_destroy(&workspace);
+    vxm_placed_destroy(&placed);
     vxm_facets_destroy(&facets);
     vxm_soup_destroy(soup);
   }
@@ -306,22 +312,28 @@ static void test_patches_are_turned_outward(void **state) {
   vxm_lattice lattice = vxm_lattice_of(&cube64);
   vxm_facets facets;
   vxm_split_rule rule = {VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, true};
-  assert_int_equal(vxm_facets_create(&facets, soup, &lattice, rule, NULL), VXM_OK);
-  vxm_outward outward;
-  const vxm_grid *const voters[3] = {truth, truth, truth};
-  assert_int_equal(vxm_outward_create(&outward, &facets, &lattice, 0, facets.split.part_count, voters, NULL),
+  assert_int_equal(vxm_facets_create(&facets, soup, rule, NULL), VXM_OK);
+  vxm_placed placed = {.context = context};
+  assert_int_equal(vxm_placed_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
+  vxm_turns turns;
+  vxm_wound wound;
+  const uint64_t *const voters[3] = {truth->words, truth->words, truth->words};
+  assert_int_equal(vxm_outward_find(&turns, &facets, &placed, 0, facets.split.part_count, voters, NULL),
                    VXM_OK);
-  assert_int_equal(outward.patch_count, soup->face_count);
+  assert_int_equal(turns.patch_count, soup->face_count);
+  assert_int_equal(vxm_wound_create(&wound, &facets, &placed, &turns, false, NULL), VXM_OK);
   double volume = 0;
-  for (size_t t = 0; t < outward.count; t++) {
-    double(*c)[3] = outward.triangles[t].corner;
+  for (size_t t = 0; t < turns.count; t++) {
+    double(*c)[3] = wound.triangles[t].corner;
     for (int a = 0; a < 3; a++)
       volume += (c[0][a] - 32) * ((c[1][(a + 1) % 3] - 32) * (c[2][(a + 2) % 3] - 32) -
                                   (c[1][(a + 2) % 3] - 32) * (c[2][(a + 1) % 3] - 32));
   }
   double true_volume = 2 * M_PI * M_PI * 0.45 * 0.45 / pow(0.05, 3);
   assert_true(fabs(volume / 6 / true_volume - 1) < 0.02);
-  vxm_outward_destroy(&outward);
+  vxm_wound_destroy(&wound);
+  vxm_turns_destroy(&turns);
+  vxm_placed_destroy(&placed);
   vxm_facets_destroy(&facets);
   vxm_grid *grid = voxelize(soup, options, NULL);
   assert_true(iou(grid, truth) > 0.999);

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What the files of `voxmend bench` share: the phases, how they are measured and how that is shown. */
+#ifndef VXM_CLI_BENCH_H
+#define VXM_CLI_BENCH_H
+
+#include "cli/cli.h"
+
+enum { BENCH_LIST_MAX = 32, BENCH_PHASES_MAX = 32, BENCH_RUNS_LEAST = 5, BENCH_RUNS_MOST = 10000 };
+
+/* ---- What is asked for ---- */
+
+typedef struct bench_plan {
+  const char *path, *plot, *engine;
+  int64_t resolutions[BENCH_LIST_MAX], threads[BENCH_LIST_MAX]; /**< ascending, none twice */
+  int resolution_count, thread_count;
+  bool chosen[BENCH_PHASES_MAX]; /**< by position in bench_phases */
+  bool forced;                   /**< the phases were named: none is left out for being slow */
+  double time_ms;                /**< each is repeated for at least as long as this */
+} bench_plan;
+
+/* ---- Phases (bench_phases.c) ---- */
+
+typedef struct bench_team bench_team;
+
+/** What the phases work on, for one number of threads. */
+typedef struct bench_stage {
+  cli_run *cli;
+  const char *path;
+  int threads;
+  vxm_mesh *raw, *mesh; /**< as read, and repaired */
+  vxm_space space;      /**< of the present resolution */
+  vxm_grid *grid;       /**< of that space; made when a phase asks for it */
+  vxm_model *model;     /**< of the present phase */
+  bench_team *team;     /**< of the present phase */
+  int64_t run;          /**< number of the present run */
+  vxm_mesh *made_mesh;  /**< what the run has made: dropped when the clock has stopped */
+  vxm_model *made_model;
+} bench_stage;
+
+typedef struct bench_phase {
+  const char *name; /**< NULL ends the table */
+  const char *help;
+  bool per_grid;                           /**< measured at each resolution, else once */
+  double most_ms;                          /**< left out where a run would take longer; 0 = never */
+  vxm_status (*begin)(bench_stage *stage); /**< makes what a run needs, off the clock; NULL = nothing */
+  vxm_status (*run)(bench_stage *stage);   /**< what is measured */
+} bench_phase;
+
+extern const bench_phase bench_phases[];
+extern const char *const bench_engines[];
+
+/** Reads and repairs the mesh. The stage's context is cli->context. */
+vxm_status bench_stage_open(bench_stage *stage);
+/** Sets the resolution; drops the grid of the one before. */
+vxm_status bench_stage_resize(bench_stage *stage, int64_t resolution);
+/** Drops what a run has made. */
+void bench_stage_drop(bench_stage *stage);
+/** Drops what the phase's begin has made; the grid stays for the next phase. */
+void bench_stage_end_phase(bench_stage *stage);
+void bench_stage_close(bench_stage *stage);
+/** Bytes of a grid of the stage's space. */
+uint64_t bench_grid_bytes(const bench_stage *stage);
+
+/* ---- Filling memory (bench_team.c) ---- */
+
+/** Makes a block of memory as the grids have it, and threads that fill a share of it each. Fills
+ * cli->error. */
+vxm_status bench_team_create(bench_team **out, cli_run *cli, uint64_t bytes, int threads);
+/** Fills the block once. */
+void bench_team_fill(bench_team *team);
+void bench_team_destroy(bench_team *team);
+
+/* ---- Measuring (bench_measure.c) ---- */
+
+typedef struct bench_result {
+  const bench_phase *phase;
+  int64_t resolution; /**< 0 for what does not depend on it */
+  int threads;
+  double median_ms, least_ms;
+  int64_t runs;
+  uint64_t bytes;     /**< of the grid, or of the file for `load`; 0 = does not apply */
+  int64_t voxels;     /**< set voxels */
+  double of_memset;   /**< median over that of memset of as many bytes by as many threads; 0 = not measured */
+  char left_out[560]; /**< why it was not measured, or "" */
+} bench_result;
+
+typedef struct bench_memory {
+  int64_t resolution;
+  int threads;
+  uint64_t peak_bytes; /**< largest number of bytes held by the context so far */
+} bench_memory;
+
+typedef struct bench_results {
+  bench_result *items;
+  int count, room;
+  bench_memory memory[BENCH_LIST_MAX * BENCH_LIST_MAX];
+  int memory_count;
+} bench_results;
+
+/** The result of a phase, or NULL if there is none that was measured. */
+const bench_result *bench_find(const bench_results *results, const char *phase, int64_t resolution,
+                               int threads);
+/** Adds an empty result; NULL without memory. */
+bench_result *bench_add(bench_results *results);
+/**
+ * Measures a phase, or decides to leave it out, and adds the result. A phase that does not fit the memory is
+ * left out too.
+ */
+vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench_plan *plan,
+                         const bench_phase *phase, int64_t resolution);
+
+/* ---- The machine (bench_machine.c) ---- */
+
+typedef struct bench_machine {
+  char processor[128], architecture[32], system[128], compiler[96], huge_pages[16];
+  int cores;
+  uint64_t memory_bytes;
+  struct {
+    int level;
+    char type[16];
+    uint64_t bytes;
+  } caches[8]; /**< those of the first processor */
+  int cache_count;
+} bench_machine;
+
+void bench_machine_read(bench_machine *out);
+json_t *bench_machine_json(const bench_machine *machine);
+/** Bytes that the process held at most, as the system counts them. */
+uint64_t bench_peak_rss(void);
+
+/* ---- Showing (bench_report.c, bench_plot.c) ---- */
+
+/** What the results are of. */
+typedef struct bench_subject {
+  bench_machine machine;
+  cli_input input; /**< its mesh is gone */
+  uint64_t peak_bytes;
+} bench_subject;
+
+void bench_print(const cli_run *cli, const bench_plan *plan, const bench_subject *subject,
+                 const bench_results *results);
+json_t *bench_json(const cli_run *cli, const bench_plan *plan, const bench_subject *subject,
+                   const bench_results *results);
+/** Draws resolution against milliseconds, both on logarithmic scales, as SVG. */
+void bench_plot(FILE *file, const bench_plan *plan, const bench_subject *subject,
+                const bench_results *results);
+
+#endif

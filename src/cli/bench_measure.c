@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Measuring one phase: a run to warm up, then runs until both their number and their time are enough. */
+#include "cli/bench.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* ---- Results ---- */
+
+const bench_result *bench_find(const bench_results *results, const char *phase, int64_t resolution,
+                               int threads) {
+  for (int i = 0; i < results->count; i++) {
+    const bench_result *item = &results->items[i];
+    if (!*item->left_out && item->resolution == resolution && item->threads == threads &&
+        strcmp(item->phase->name, phase) == 0)
+      return item;
+  }
+  return NULL;
+}
+
+bench_result *bench_add(bench_results *results) {
+  if (results->count == results->room) {
+    int room = results->room ? 2 * results->room : 64;
+    bench_result *items = realloc(results->items, (size_t)room * sizeof *items);
+    if (!items)
+      return NULL;
+    results->items = items;
+    results->room = room;
+  }
+  bench_result *item = &results->items[results->count++];
+  *item = (bench_result){0};
+  return item;
+}
+
+/* ---- Runs ---- */
+
+static vxm_status run_once(bench_stage *stage, const bench_phase *phase, double *ms) {
+  double start = cli_clock();
+  vxm_status status = phase->run(stage);
+  *ms = cli_clock() - start;
+  bench_stage_drop(stage);
+  stage->run++;
+  if (status == VXM_OK && cli_signal())
+    status = stage->cli->error.code = VXM_ERROR_CANCELLED;
+  return status;
+}
+
+static int compare(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static vxm_status repeat(bench_result *out, bench_stage *stage, const bench_phase *phase, double time_ms) {
+  static double times[BENCH_RUNS_MOST];
+  double total = 0;
+  int count = 0;
+  while (count < BENCH_RUNS_LEAST || (total < time_ms && count < BENCH_RUNS_MOST)) {
+    vxm_status status = run_once(stage, phase, &times[count]);
+    if (status != VXM_OK)
+      return status;
+    total += times[count++];
+  }
+  qsort(times, (size_t)count, sizeof times[0], compare);
+  out->runs = count;
+  out->least_ms = times[0];
+  out->median_ms = (times[count / 2] + times[(count - 1) / 2]) / 2;
+  return VXM_OK;
+}
+
+static uint64_t result_bytes(const bench_stage *stage, const bench_phase *phase) {
+  struct stat info;
+  if (phase->per_grid)
+    return bench_grid_bytes(stage);
+  return strcmp(phase->name, "load") == 0 && stat(stage->path, &info) == 0 ? (uint64_t)info.st_size : 0;
+}
+
+static vxm_status measure(bench_result *out, bench_stage *stage, const bench_phase *phase, double time_ms) {
+  stage->run = 0;
+  double first;
+  vxm_status status = phase->begin ? phase->begin(stage) : VXM_OK;
+  if (status == VXM_OK)
+    status = run_once(stage, phase, &first);
+  out->bytes = result_bytes(stage, phase);
+  if (status == VXM_OK && stage->model)
+    out->voxels = vxm_grid_count(stage->grid);
+  if (status == VXM_OK)
+    status = repeat(out, stage, phase, time_ms);
+  bench_stage_drop(stage);
+  bench_stage_end_phase(stage);
+  return status;
+}
+
+/* ---- What is left out ---- */
+
+/** Where no smaller resolution has been measured, this one tells how slow a phase is. */
+enum { PROBE = 32 };
+
+static vxm_status probe(double *ms, bench_stage *stage, const bench_phase *phase, int64_t resolution) {
+  vxm_status status = bench_stage_resize(stage, PROBE);
+  if (status == VXM_OK && phase->begin)
+    status = phase->begin(stage);
+  for (int i = 0; i < 2 && status == VXM_OK; i++) /* the first one warms up */
+    status = run_once(stage, phase, ms);
+  bench_stage_drop(stage);
+  bench_stage_end_phase(stage);
+  return status == VXM_OK ? bench_stage_resize(stage, resolution) : status;
+}
+
+/** Judges by the nearest smaller resolution how long a run will take, which grows as the voxels do. */
+static vxm_status leave_out_if_slow(bench_result *out, const bench_results *results, bench_stage *stage) {
+  const bench_phase *phase = out->phase;
+  int64_t from = 0;
+  double ms = 0;
+  for (int i = 0; i < results->count; i++) {
+    const bench_result *item = &results->items[i];
+    if (item->phase != phase || item->threads != out->threads || *item->left_out || item->runs == 0 ||
+        item->resolution <= from || item->resolution >= out->resolution)
+      continue;
+    from = item->resolution;
+    ms = item->median_ms;
+  }
+  if (from == 0 && out->resolution > 2 * PROBE) {
+    vxm_status status = probe(&ms, stage, phase, out->resolution);
+    if (status != VXM_OK)
+      return status;
+    from = PROBE;
+  }
+  if (from == 0)
+    return VXM_OK;
+  double expected = ms * pow((double)out->resolution / (double)from, 3);
+  if (expected > phase->most_ms)
+    snprintf(out->left_out, sizeof out->left_out,
+             "a run would take about %.3g s, judging by %.3g s at %" PRId64 "; --phases %s measures it",
+             expected / 1e3, ms / 1e3, from, phase->name);
+  return VXM_OK;
+}
+
+/** Too little memory for one phase or resolution does not end the others. */
+static vxm_status leave_out_if_memory(bench_result *out, bench_stage *stage, vxm_status status) {
+  if (status != VXM_ERROR_MEMORY && status != VXM_ERROR_MEMORY_LIMIT)
+    return status;
+  snprintf(out->left_out, sizeof out->left_out, "%s", stage->cli->error.text);
+  stage->cli->error = (vxm_error)VXM_ERROR_INIT;
+  return VXM_OK;
+}
+
+vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench_plan *plan,
+                         const bench_phase *phase, int64_t resolution) {
+  bench_result made = {.phase = phase, .resolution = resolution, .threads = stage->threads};
+  vxm_status status = VXM_OK;
+  if (phase->most_ms > 0 && !plan->forced)
+    status = leave_out_if_slow(&made, results, stage);
+  if (status == VXM_OK && !*made.left_out)
+    status = measure(&made, stage, phase, plan->time_ms);
+  status = leave_out_if_memory(&made, stage, status);
+  if (status != VXM_OK)
+    return status;
+  const bench_result *base = bench_find(results, "memset", resolution, stage->threads);
+  if (base && phase->per_grid && phase != base->phase && base->median_ms > 0)
+    made.of_memset = made.median_ms / base->median_ms;
+  bench_result *place = bench_add(results);
+  if (!place) {
+    stage->cli->error.code = VXM_ERROR_MEMORY;
+    snprintf(stage->cli->error.text, sizeof stage->cli->error.text, "out of memory");
+    return VXM_ERROR_MEMORY;
+  }
+  *place = made;
+  return VXM_OK;
+}

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The results of `voxmend bench` as tables and as JSON. */
+#include "cli/bench.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* ---- The table ---- */
+
+/* The chart beside the table: a logarithmic scale from 1 us to 10 s. */
+enum { DECADES = 7, DECADE_WIDTH = 4, CHART_WIDTH = DECADES * DECADE_WIDTH };
+
+/** As many digits as say something, in ten columns. */
+static const char *show_ms(char *text, size_t size, double ms) {
+  snprintf(text, size, "%10.*f", ms < 0.01 ? 6 : ms < 1 ? 4 : ms < 10 ? 3 : ms < 1000 ? 2 : 0, ms);
+  return text;
+}
+
+static const char *show_bar(char bar[CHART_WIDTH + 1], double ms) {
+  int length = ms > 0 ? (int)lround((log10(ms) + 3) * DECADE_WIDTH) : 0;
+  if (length < 1)
+    length = 1;
+  if (length > CHART_WIDTH)
+    length = CHART_WIDTH;
+  memset(bar, '#', (size_t)length);
+  bar[length] = '\0';
+  return bar;
+}
+
+static int name_width(const bench_results *results) {
+  int width = (int)strlen("phase");
+  for (int i = 0; i < results->count; i++) {
+    int length = (int)strlen(results->items[i].phase->name);
+    width = length > width ? length : width;
+  }
+  return width;
+}
+
+static void print_row(const cli_run *cli, const bench_result *item, int width) {
+  char grid[24] = "", of_memset[24] = "", median[32], least[32], bar[CHART_WIDTH + 1];
+  if (item->resolution > 0)
+    snprintf(grid, sizeof grid, "%" PRId64, item->resolution);
+  if (*item->left_out) {
+    fprintf(cli->text, "%-*s %6s  left out: %s\n", width, item->phase->name, grid, item->left_out);
+    return;
+  }
+  if (item->of_memset > 0)
+    snprintf(of_memset, sizeof of_memset, "%.*f", item->of_memset < 100 ? 1 : 0, item->of_memset);
+  double rate = 1e3 / item->median_ms;
+  fprintf(cli->text, "%-*s %6s %s %s %9.*f %8s  %s\n", width, item->phase->name, grid,
+          show_ms(median, sizeof median, item->median_ms), show_ms(least, sizeof least, item->least_ms),
+          rate < 100 ? 2 : 0, rate, of_memset, show_bar(bar, item->median_ms));
+}
+
+static void print_threads(const cli_run *cli, const bench_results *results, int threads) {
+  int width = name_width(results);
+  fprintf(cli->text, "\n%d thread%s\n%-*s %6s %10s %10s %9s %8s  %s\n", threads, threads == 1 ? "" : "s",
+          width, "phase", "grid", "median ms", "least ms", "per s", "x memset", "1us 10  100 1ms 10  100 1s");
+  int64_t last = 0;
+  for (int i = 0; i < results->count; i++) {
+    const bench_result *item = &results->items[i];
+    if (item->threads != threads)
+      continue;
+    if (item->resolution != last && i > 0)
+      fputc('\n', cli->text);
+    last = item->resolution;
+    print_row(cli, item, width);
+  }
+}
+
+/** How much faster the most threads are than the fewest, where both were measured. */
+static void print_speedup(const cli_run *cli, const bench_plan *plan, const bench_results *results) {
+  int few = (int)plan->threads[0], many = (int)plan->threads[plan->thread_count - 1];
+  int width = name_width(results);
+  fprintf(cli->text, "\n%d threads over %d, times as fast\n%-*s", many, few, width, "grid");
+  for (int i = 0; i < plan->resolution_count; i++)
+    fprintf(cli->text, " %6" PRId64, plan->resolutions[i]);
+  fputc('\n', cli->text);
+  for (int p = 0; bench_phases[p].name; p++) {
+    if (!plan->chosen[p] || !bench_phases[p].per_grid)
+      continue;
+    fprintf(cli->text, "%-*s", width, bench_phases[p].name);
+    for (int i = 0; i < plan->resolution_count; i++) {
+      const bench_result *slow = bench_find(results, bench_phases[p].name, plan->resolutions[i], few);
+      const bench_result *fast = bench_find(results, bench_phases[p].name, plan->resolutions[i], many);
+      if (slow && fast && fast->median_ms > 0)
+        fprintf(cli->text, " %6.2f", slow->median_ms / fast->median_ms);
+      else
+        fprintf(cli->text, " %6s", "-");
+    }
+    fputc('\n', cli->text);
+  }
+}
+
+/** The memory that the library held at most until a resolution was done. */
+static void print_memory(const cli_run *cli, const bench_plan *plan, const bench_subject *subject,
+                         const bench_results *results) {
+  if (plan->resolution_count > 0) {
+    fprintf(cli->text, "\nMiB held at most up to each grid\n%-11s", "grid");
+    for (int i = 0; i < plan->resolution_count; i++)
+      fprintf(cli->text, " %7" PRId64, plan->resolutions[i]);
+  }
+  for (int i = 0; i < results->memory_count; i++) {
+    const bench_memory *memory = &results->memory[i];
+    if (i % plan->resolution_count == 0)
+      fprintf(cli->text, "\n%3d %-7s", memory->threads, memory->threads == 1 ? "thread" : "threads");
+    fprintf(cli->text, " %7.1f", (double)memory->peak_bytes / (1 << 20));
+  }
+  fprintf(cli->text, "\n%speak memory %.1f MiB in the library, %.1f MiB resident in all\n",
+          plan->resolution_count > 0 ? "\n" : "", (double)subject->peak_bytes / (1 << 20),
+          (double)bench_peak_rss() / (1 << 20));
+}
+
+static void print_machine(const cli_run *cli, const bench_machine *machine) {
+  fprintf(cli->text, "%-10s %s, %d core%s", "machine",
+          *machine->processor ? machine->processor : machine->architecture, machine->cores,
+          machine->cores == 1 ? "" : "s");
+  for (int i = 0; i < machine->cache_count; i++)
+    if (strcmp(machine->caches[i].type, "Instruction") != 0)
+      fprintf(cli->text, ", L%d %" PRIu64 " KiB", machine->caches[i].level, machine->caches[i].bytes >> 10);
+  fprintf(cli->text, ", %.1f GiB memory; %s; %s\n", (double)machine->memory_bytes / (1 << 30),
+          machine->system, machine->compiler);
+}
+
+void bench_print(const cli_run *cli, const bench_plan *plan, const bench_subject *subject,
+                 const bench_results *results) {
+  const cli_input *input = &subject->input;
+  const vxm_census *mended = &input->repair.after;
+  print_machine(cli, &subject->machine);
+  cli_row(cli, "mesh", "%s (%s): %" PRId64 " vertices, %" PRId64 " faces; repaired %" PRId64 " triangles, %s",
+          input->path, input->format, input->vertices, input->faces, mended->triangles,
+          mended->closed ? "closed" : "open");
+  for (int i = 0; i < plan->thread_count; i++)
+    print_threads(cli, results, (int)plan->threads[i]);
+  if (plan->thread_count > 1 && plan->resolution_count > 0)
+    print_speedup(cli, plan, results);
+  print_memory(cli, plan, subject, results);
+  if (plan->plot)
+    cli_row(cli, "plot", "%s", plan->plot);
+}
+
+/* ---- JSON ---- */
+
+static json_t *key_json(const bench_plan *plan, const bench_result *item) {
+  json_t *object = json_object();
+  json_object_set_new(object, "phase", json_string(item->phase->name));
+  json_object_set_new(object, "engine", json_string(plan->engine));
+  json_object_set_new(object, "resolution", json_integer(item->resolution));
+  json_object_set_new(object, "threads", json_integer(item->threads));
+  return object;
+}
+
+static json_t *result_json(const bench_plan *plan, const bench_result *item) {
+  json_t *object = key_json(plan, item);
+  json_object_set_new(object, "median_ms", json_real(item->median_ms));
+  json_object_set_new(object, "min_ms", json_real(item->least_ms));
+  json_object_set_new(object, "runs", json_integer(item->runs));
+  json_object_set_new(object, "bytes", json_integer((json_int_t)item->bytes));
+  json_object_set_new(object, "voxels", json_integer(item->voxels));
+  json_object_set_new(object, "per_second", cli_json_number(1e3 / item->median_ms));
+  json_object_set_new(object, "of_memset", item->of_memset > 0 ? json_real(item->of_memset) : json_null());
+  return object;
+}
+
+static json_t *memory_json(const bench_memory *memory) {
+  json_t *object = json_object();
+  json_object_set_new(object, "resolution", json_integer(memory->resolution));
+  json_object_set_new(object, "threads", json_integer(memory->threads));
+  json_object_set_new(object, "peak_bytes", json_integer((json_int_t)memory->peak_bytes));
+  return object;
+}
+
+static json_t *mesh_json(const cli_input *input) {
+  json_t *object = json_object();
+  json_object_set_new(object, "file", cli_json_text(input->path));
+  json_object_set_new(object, "format", cli_json_text(input->format));
+  json_object_set_new(object, "vertices", json_integer(input->vertices));
+  json_object_set_new(object, "faces", json_integer(input->faces));
+  json_t *repaired = json_object();
+  cli_census_json(repaired, &input->repair.after);
+  json_object_set_new(object, "triangles", json_integer(input->repair.after.triangles));
+  json_object_set_new(object, "repaired", repaired);
+  return object;
+}
+
+json_t *bench_json(const cli_run *cli, const bench_plan *plan, const bench_subject *subject,
+                   const bench_results *results) {
+  json_t *measured = json_array(), *left_out = json_array(), *memory = json_array();
+  for (int i = 0; i < results->count; i++) {
+    const bench_result *item = &results->items[i];
+    if (!*item->left_out) {
+      json_array_append_new(measured, result_json(plan, item));
+      continue;
+    }
+    json_t *object = key_json(plan, item);
+    json_object_set_new(object, "reason", cli_json_text(item->left_out));
+    json_array_append_new(left_out, object);
+  }
+  for (int i = 0; i < results->memory_count; i++)
+    json_array_append_new(memory, memory_json(&results->memory[i]));
+  json_t *report = json_object();
+  json_object_set_new(report, "machine", bench_machine_json(&subject->machine));
+  json_object_set_new(report, "mesh", mesh_json(&subject->input));
+  json_object_set_new(report, "results", measured);
+  json_object_set_new(report, "left_out", left_out);
+  json_object_set_new(report, "memory", memory);
+  json_object_set_new(report, "peak_bytes", json_integer((json_int_t)subject->peak_bytes));
+  json_object_set_new(report, "peak_rss_bytes", json_integer((json_int_t)bench_peak_rss()));
+  json_object_set(report, "warnings", cli->warnings);
+  return report;
+}

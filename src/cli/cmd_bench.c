@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend bench: how long the phases of the work take on this machine. */
+#include "cli/bench.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEY_LIST_THREADS = CLI_KEY_COMMAND, KEY_PHASES, KEY_ENGINE, KEY_TIME, KEY_PLOT };
+
+static const cli_option known_options[] = {
+    {'r', "resolution", "LIST", "voxels along each axis, such as 64,256 [64,128,256,512,1024]"},
+    {KEY_LIST_THREADS, "threads", "LIST",
+     "numbers of threads, such as 1,2, each 1 to 256 [1 and one per processor]"},
+    {KEY_PHASES, "phases", "LIST",
+     "what to measure, out of the phases below; named here, a phase is measured\n"
+     "however slow it is [all, but what takes over two seconds is left out]"},
+    {KEY_ENGINE, "engine", "E", "who makes the grids: cpu [cpu]"},
+    {KEY_TIME, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]"},
+    {KEY_PLOT, "plot", "FILE.svg", "draw the times over the resolution"},
+    {0, NULL, NULL, NULL}};
+
+/* ---- Options ---- */
+
+enum { ITEM_SIZE = 32 };
+
+/** Takes the next item of a list off *text; false at its end. An item that is too long is cut. */
+static bool next_item(char item[ITEM_SIZE], const char **text) {
+  if (!*text)
+    return false;
+  size_t length = strcspn(*text, ",");
+  snprintf(item, ITEM_SIZE, "%.*s", (int)(length < ITEM_SIZE ? length : ITEM_SIZE), *text);
+  *text = (*text)[length] ? *text + length + 1 : NULL;
+  return true;
+}
+
+/** Numbers separated by commas, into ascending order, none twice; false if they are not. */
+static bool read_list(int64_t *out, int *count, const char *text, int64_t high) {
+  char item[ITEM_SIZE];
+  for (*count = 0; next_item(item, &text);) {
+    int64_t value;
+    if (!cli_read_integer(&value, item, 1, high))
+      return false;
+    int place = 0;
+    while (place < *count && out[place] < value)
+      place++;
+    if (place < *count && out[place] == value)
+      continue;
+    if (*count == BENCH_LIST_MAX)
+      return false;
+    memmove(out + place + 1, out + place, (size_t)(*count - place) * sizeof *out);
+    out[place] = value;
+    ++*count;
+  }
+  return true;
+}
+
+/** One line that lists the choices. */
+static int refuse_choice(cli_run *cli, const char *option, const char *value, const char *const *choices) {
+  char list[512] = "";
+  for (size_t i = 0, used = 0; choices[i] && used < sizeof list; i++)
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", choices[i]);
+  return cli_usage(cli, "--%s '%s' is none of %s", option, value, list);
+}
+
+static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
+  char item[ITEM_SIZE];
+  const char *names[BENCH_PHASES_MAX + 1] = {NULL};
+  for (int i = 0; bench_phases[i].name; i++)
+    names[i] = bench_phases[i].name;
+  memset(plan->chosen, 0, sizeof plan->chosen);
+  plan->forced = true;
+  while (next_item(item, &text)) {
+    int phase = cli_read_choice(item, names);
+    if (phase < 0)
+      return refuse_choice(cli, "phases", item, names);
+    plan->chosen[phase] = true;
+  }
+  return CLI_END;
+}
+
+static int read_engine(cli_run *cli, bench_plan *plan, const char *value) {
+  int choice = cli_read_choice(value, bench_engines);
+  if (choice < 0)
+    return refuse_choice(cli, "engine", value, bench_engines);
+  plan->engine = bench_engines[choice];
+  return CLI_END;
+}
+
+static int read_option(cli_run *cli, bench_plan *plan, int key, const char *value) {
+  int64_t time;
+  switch (key) {
+  case 'r':
+    if (!read_list(plan->resolutions, &plan->resolution_count, value, 1 << 20))
+      return cli_usage(cli, "-r '%s' is not a list such as 64,256 of numbers from 1 to 1048576", value);
+    return CLI_END;
+  case KEY_LIST_THREADS:
+    if (!read_list(plan->threads, &plan->thread_count, value, 256))
+      return cli_usage(cli, "--threads '%s' is not a list such as 1,2 of numbers from 1 to 256", value);
+    return CLI_END;
+  case KEY_PHASES:
+    return read_phases(cli, plan, value);
+  case KEY_ENGINE:
+    return read_engine(cli, plan, value);
+  case KEY_TIME:
+    if (!cli_read_integer(&time, value, 0, 3600000))
+      return cli_usage(cli, "--time '%s' is not a number of milliseconds from 0 to 3600000", value);
+    plan->time_ms = (double)time;
+    return CLI_END;
+  default:
+    plan->plot = value;
+    return CLI_END;
+  }
+}
+
+/** Whether any phase that depends on the resolution is chosen. */
+static bool has_grids(const bench_plan *plan) {
+  for (int i = 0; bench_phases[i].name; i++)
+    if (plan->chosen[i] && bench_phases[i].per_grid)
+      return true;
+  return false;
+}
+
+static int read_arguments(cli_run *cli, bench_plan *plan) {
+  const char *value;
+  int key;
+  for (int i = 0; bench_phases[i].name; i++)
+    plan->chosen[i] = true;
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == CLI_STOP || read_option(cli, plan, key, value) == CLI_STOP)
+      return CLI_STOP;
+  if (cli->argument_count != 1)
+    return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
+  plan->path = cli->arguments[0];
+  if (strcmp(plan->path, "-") == 0)
+    return cli_usage(cli, "the mesh is read many times, which standard input cannot be; name a file");
+  if (plan->plot && !cli_is_extension(plan->plot, "svg"))
+    return cli_usage(cli, "--plot '%s': the name must end in .svg", plan->plot);
+  if (plan->plot && cli->report && strcmp(plan->plot, cli->report) == 0)
+    return cli_usage(cli, "--plot and --report name the same file");
+  if (!has_grids(plan)) {
+    if (plan->plot)
+      return cli_usage(cli, "--plot shows times over the resolution, and none of the phases depends on it");
+    plan->resolution_count = 0;
+  }
+  return CLI_END;
+}
+
+/* ---- Work ---- */
+
+typedef struct bench_work {
+  cli_run *cli;
+  bench_plan plan;
+  bench_subject subject;
+  bench_results results;
+  cli_file plot;
+  int done, total; /**< measurements */
+} bench_work;
+
+static int count_measurements(const bench_plan *plan) {
+  int total = 0;
+  for (int i = 0; bench_phases[i].name; i++)
+    if (plan->chosen[i])
+      total += bench_phases[i].per_grid ? plan->resolution_count : 1;
+  return total * plan->thread_count;
+}
+
+/** Drawing takes time of its own: while the library works, its progress is only asked whether to stop. */
+static int on_progress(const char *phase, double fraction, void *payload) {
+  (void)phase, (void)fraction, (void)payload;
+  return cli_signal() != 0;
+}
+
+static int next_context(cli_run *cli, int threads) {
+  vxm_context_destroy(cli->context);
+  cli->context = NULL;
+  cli->limits.threads = threads;
+  cli->limits.progress = on_progress;
+  return vxm_context_create(&cli->context, &cli->limits, &cli->error) == VXM_OK ? CLI_DONE : cli_fail(cli);
+}
+
+static int measure(bench_work *work, bench_stage *stage, int phase, int64_t resolution) {
+  char label[64];
+  const char *name = bench_phases[phase].name, *plural = stage->threads == 1 ? "" : "s";
+  if (resolution > 0)
+    snprintf(label, sizeof label, "%s %lld, %d thread%s", name, (long long)resolution, stage->threads,
+             plural);
+  else
+    snprintf(label, sizeof label, "%s, %d thread%s", name, stage->threads, plural);
+  work->cli->drawn = 0; /* a phase that takes long is not to run under the name of the one before */
+  cli_progress(work->cli, label, (double)work->done++ / (double)work->total);
+  return bench_measure(&work->results, stage, &work->plan, &bench_phases[phase], resolution) == VXM_OK
+             ? CLI_DONE
+             : cli_fail(work->cli);
+}
+
+/** All phases that depend on the resolution, one after another, so that their ratios are of one moment. */
+static int measure_resolution(bench_work *work, bench_stage *stage, int64_t resolution) {
+  if (bench_stage_resize(stage, resolution) != VXM_OK)
+    return cli_fail(work->cli);
+  for (int i = 0; bench_phases[i].name; i++)
+    if (work->plan.chosen[i] && bench_phases[i].per_grid)
+      if (measure(work, stage, i, resolution) != CLI_DONE)
+        return CLI_FAILED;
+  work->results.memory[work->results.memory_count++] =
+      (bench_memory){resolution, stage->threads, vxm_context_peak_bytes(work->cli->context)};
+  return CLI_DONE;
+}
+
+static int measure_stage(bench_work *work, bench_stage *stage) {
+  if (bench_stage_open(stage) != VXM_OK)
+    return cli_fail(work->cli);
+  for (int i = 0; bench_phases[i].name; i++)
+    if (work->plan.chosen[i] && !bench_phases[i].per_grid)
+      if (measure(work, stage, i, 0) != CLI_DONE)
+        return CLI_FAILED;
+  for (int i = 0; i < work->plan.resolution_count; i++)
+    if (measure_resolution(work, stage, work->plan.resolutions[i]) != CLI_DONE)
+      return CLI_FAILED;
+  return CLI_DONE;
+}
+
+static int measure_threads(bench_work *work, int threads) {
+  cli_run *cli = work->cli;
+  if (next_context(cli, threads) != CLI_DONE)
+    return CLI_FAILED;
+  bench_stage stage = {.cli = cli, .path = work->plan.path, .threads = threads};
+  int status = measure_stage(work, &stage);
+  bench_stage_close(&stage);
+  uint64_t peak = vxm_context_peak_bytes(cli->context);
+  if (peak > work->subject.peak_bytes)
+    work->subject.peak_bytes = peak;
+  return status;
+}
+
+static int fail_plot(const bench_work *work) {
+  return cli_fail_text(work->cli, "%s: cannot write the plot: %s", work->plan.plot, strerror(errno));
+}
+
+static int write_plot(bench_work *work) {
+  bench_plot(work->plot.stream, &work->plan, &work->subject, &work->results);
+  if (!cli_file_commit(&work->plot))
+    return fail_plot(work);
+  work->cli->made = work->plan.plot;
+  work->cli->made_format = "svg";
+  return CLI_DONE;
+}
+
+/** Looks at the mesh once, so that what is wrong with it is told before the work, and once. */
+static int look_at_mesh(bench_work *work) {
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  cli_input *input = &work->subject.input;
+  int status = cli_read_repaired(work->cli, input, work->plan.path, &options);
+  vxm_mesh_destroy(input->mesh);
+  input->mesh = NULL;
+  return status;
+}
+
+/** Without --threads: one, and what the library takes by itself. */
+static void choose_threads(bench_plan *plan, const cli_run *cli) {
+  int most = vxm_context_threads(cli->context);
+  if (plan->thread_count > 0)
+    return;
+  plan->threads[plan->thread_count++] = 1;
+  if (most > 1)
+    plan->threads[plan->thread_count++] = most;
+}
+
+/** An error if nothing at all could be measured. */
+static int check_results(const bench_work *work) {
+  const bench_results *results = &work->results;
+  for (int i = 0; i < results->count; i++)
+    if (!*results->items[i].left_out)
+      return CLI_DONE;
+  return cli_fail_text(work->cli, "nothing was measured; %s: %s", results->items[0].phase->name,
+                       results->items[0].left_out);
+}
+
+static int bench(bench_work *work) {
+  cli_run *cli = work->cli;
+  if (work->plan.plot && !cli_file_open(&work->plot, work->plan.plot))
+    return fail_plot(work);
+  if (look_at_mesh(work) != CLI_DONE)
+    return CLI_FAILED;
+  choose_threads(&work->plan, cli);
+  work->total = count_measurements(&work->plan);
+  for (int i = 0; i < work->plan.thread_count; i++)
+    if (measure_threads(work, (int)work->plan.threads[i]) != CLI_DONE)
+      return CLI_FAILED;
+  cli_progress_clear(cli);
+  if (check_results(work) != CLI_DONE || (work->plan.plot && write_plot(work) != CLI_DONE))
+    return CLI_FAILED;
+  if (cli_summary(cli))
+    bench_print(cli, &work->plan, &work->subject, &work->results);
+  return cli_finish(cli, bench_json(cli, &work->plan, &work->subject, &work->results));
+}
+
+static int run(cli_run *cli) {
+  bench_work work = {.cli = cli,
+                     .plan = {.engine = bench_engines[0],
+                              .resolutions = {64, 128, 256, 512, 1024},
+                              .resolution_count = 5,
+                              .time_ms = 200}};
+  if (read_arguments(cli, &work.plan) == CLI_STOP)
+    return cli->status;
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  bench_machine_read(&work.subject.machine);
+  int status = bench(&work);
+  cli_file_drop(&work.plot);
+  free(work.results.items);
+  return status;
+}
+
+static void print_phases(void) {
+  printf("\nPhases:\n");
+  for (const bench_phase *phase = bench_phases; phase->name; phase++)
+    printf("  %-16s %s\n", phase->name, phase->help);
+}
+
+const cli_command cli_command_bench = {
+    .name = "bench",
+    .arguments = "MESH [OPTION]...",
+    .summary = "measure how long each phase of the work takes",
+    .notes = "Each phase is run once to warm up, then again and again; median and least time are told. The\n"
+             "mesh is repaired first and fills the grid, as by 'voxmend voxelize'. Grids are made into\n"
+             "memory that exists, without a report.\n\n"
+             "Examples:\n"
+             "  voxmend bench bunny.ply\n"
+             "  voxmend bench chair.off -r 32,64,256 --threads 1 --phases memset,solid_vote\n"
+             "  voxmend bench bunny.ply --json --plot bunny.svg >bunny.json",
+    .options = known_options,
+    .print_choices = print_phases,
+    .run = run,
+};

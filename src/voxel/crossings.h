@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * The crossings of triangles with columns, put into bins by all threads: in one round, or in several where
+ * the bins would take too much memory. A part is always wholly in one round.
+ */
+#ifndef VXM_VOXEL_CROSSINGS_H
+#define VXM_VOXEL_CROSSINGS_H
+
+#include "base/watch.h"
+#include "voxel/kernels.h"
+
+/** Facets begin..end-1, for one task. */
+typedef struct vxm_raster_range {
+  size_t begin, end;
+} vxm_raster_range;
+
+typedef struct vxm_crossings {
+  vxm_context *context;
+  const vxm_facets *facets;
+  const vxm_placed *placed;
+  const vxm_columns *columns; /**< of the voters, over the same facets */
+  size_t columns_count;
+  vxm_raster_range *ranges;
+  size_t range_count, range_capacity;
+  size_t *round_end; /**< per round: the range behind its last one */
+  size_t round_count, round_capacity;
+} vxm_crossings;
+
+/**
+ * Plans the tasks and rounds, with the memory of the plan before. Start from {.context = ...}.
+ *
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+vxm_status vxm_crossings_plan(vxm_crossings *crossings, const vxm_facets *facets, const vxm_placed *placed,
+                              const vxm_columns *columns, size_t columns_count, vxm_error *error);
+void vxm_crossings_destroy(vxm_crossings *crossings);
+
+/** Puts the crossings of a round into the bins, which are empty and have a worker for each thread. */
+void vxm_crossings_run(const vxm_crossings *crossings, size_t round, vxm_bins *bins, vxm_watch *watch);
+
+#endif

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * The inner loops, built for several processors from one source (kernels_body.inc) and chosen at run time.
+ * All builds give the same bits: the arithmetic is in integers, or in doubles without contraction.
+ */
+#ifndef VXM_VOXEL_KERNELS_H
+#define VXM_VOXEL_KERNELS_H
+
+#include "voxel/bins.h"
+#include "voxel/columns.h"
+
+/** Takes (x, y, z, 1) to lattice steps: (column_0 x + column_1 y + column_2 z + column_3 - origin) * scale.
+ * The fourth number of each is 0. */
+typedef struct vxm_affine {
+  double column[4][4];
+  double origin[4], scale[4];
+} vxm_affine;
+
+/** The triangles that one task rasters. */
+typedef struct vxm_raster_task {
+  const vxm_placed *placed;
+  const vxm_facets *facets;
+  size_t begin, end; /**< facets */
+  const vxm_columns *columns;
+  size_t columns_count;
+  vxm_bins *bins; /**< voters as in `columns` */
+  size_t worker;
+} vxm_raster_task;
+
+typedef struct vxm_kernels {
+  const char *name;
+  /** Places `count` positions; false if one is not finite or beyond VXM_NARROW_MAX (it is stored as 0). */
+  bool (*place)(int32_t (*out)[4], const double *positions, size_t count, const vxm_affine *affine);
+  /** Puts into the bins what the triangles flip (voxel/columns.h). */
+  void (*raster)(const vxm_raster_task *task);
+  /** Prefix XOR along each of `rows` rows of row_words words, in place; the last word is masked. Returns the
+   * OR of all words. */
+  uint64_t (*fold_rows)(uint64_t *words, size_t row_words, size_t rows, uint64_t tail_mask);
+  /** words[i] ^= words[i - distance] for i = distance to count - 1: prefix XOR of row onto row. */
+  void (*fold_across)(uint64_t *words, size_t distance, size_t count);
+  /** to |= from, from = 0; returns the OR of all words of `from`. */
+  uint64_t (*move_or)(uint64_t *to, uint64_t *from, size_t count);
+  /** vxm_vote_count for some words; returns the contested voxels, and ors into *added the bits newly set. */
+  int64_t (*vote)(uint64_t *out, const uint64_t *const voters[4], uint64_t *mask, size_t count, vxm_vote rule,
+                  uint64_t *added);
+} vxm_kernels;
+
+/** The best build for this processor, or the one forced. */
+const vxm_kernels *vxm_kernels_get(void);
+/** All builds that run on this processor, best last; for tests. */
+size_t vxm_kernels_all(const vxm_kernels *out[4]);
+/** Makes vxm_kernels_get return this one; NULL = the best again. For tests, while nothing runs. */
+void vxm_kernels_force(const vxm_kernels *kernels);
+
+#endif

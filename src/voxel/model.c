@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/model.h"
+#include "voxel/confidence.h"
+#include "voxel/surface.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- Making and freeing ---- */
+
+static vxm_status make_shape(vxm_model *model, const vxm_soup *soup, vxm_error *error) {
+  vxm_shape *shape = &model->shape;
+  const vxm_voxelize_options *options = &model->options;
+  *shape = (vxm_shape){.context = model->context, .soup = soup, .options = options};
+  shape->open_turns.context = shape->all_turns.context = model->context;
+  shape->workspace = vxm_workspace_of(model->context);
+  model->run = (vxm_run){.shape = shape, .placed = {.context = model->context}};
+  model->run.open_wound.context = model->run.all_wound.context = model->context;
+  vxm_split_rule rule = {options->parts, options->cavities, vxm_caps_wanted(options)};
+  vxm_status status = vxm_facets_create(&shape->facets, soup, rule, error);
+  if (status != VXM_OK)
+    return status;
+  if (shape->facets.facet_count == 0)
+    return vxm_fail(error, VXM_ERROR_EMPTY,
+                    "the mesh has no face with three different corners, so there is nothing to voxelize");
+  vxm_error local = VXM_ERROR_INIT;
+  model->run.touched =
+      vxm_calloc(model->context, shape->facets.split.part_count, sizeof *model->run.touched, &local);
+  if (!model->run.touched && error)
+    *error = local;
+  return local.code;
+}
+
+vxm_status vxm_model_make(vxm_model **out, const vxm_soup *soup, const vxm_voxelize_options *options,
+                          vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_model *model = vxm_calloc(soup->context, 1, sizeof *model, &local);
+  *out = NULL;
+  if (!model) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  vxm_status status = vxm_context_acquire(&model->context, soup->context, error);
+  model->options = *options;
+  if (status == VXM_OK)
+    status = make_shape(model, soup, error);
+  if (status != VXM_OK) {
+    vxm_model_destroy(model);
+    return status;
+  }
+  *out = model;
+  return VXM_OK;
+}
+
+void vxm_model_destroy(vxm_model *model) {
+  if (!model)
+    return;
+  vxm_context *context = model->context;
+  vxm_free(context, model->run.touched);
+  vxm_run_destroy(&model->run);
+  vxm_turns_destroy(&model->shape.open_turns);
+  vxm_turns_destroy(&model->shape.all_turns);
+  vxm_workspace_destroy(&model->shape.workspace);
+  vxm_facets_destroy(&model->shape.facets);
+  vxm_free(context, model);
+  vxm_context_release(context);
+}
+
+int vxm_model_windows_held(const vxm_model *model) {
+  /* A byte per voxel is eight bits, beside what closed parts fill. */
+  int confidence = model->options.confidence ? 8 + 1 : 0;
+  int buffers = vxm_run_buffers(&model->shape);
+  return 1 + confidence + (confidence > 0 && buffers < 4 ? 4 : buffers);
+}
+
+/* ---- A run ---- */
+
+static vxm_status check_transform(const double m[12], bool *mirrored, vxm_error *error) {
+  for (int i = 0; i < 12; i++)
+    if (!isfinite(m[i]))
+      return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: element %d of the transform is not finite", i);
+  double determinant = 0;
+  for (int a = 0; a < 3; a++) {
+    int b = (a + 1) % 3, c = (a + 2) % 3;
+    determinant += m[a] * (m[4 + b] * m[8 + c] - m[4 + c] * m[8 + b]);
+  }
+  if (determinant == 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "voxelize: the transform has determinant 0: it flattens the mesh");
+  *mirrored = determinant < 0;
+  return VXM_OK;
+}
+
+vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const double transform[12],
+                           uint8_t *confidence, vxm_error *error) {
+  vxm_run *run = &model->run;
+  vxm_facets *facets = &model->shape.facets;
+  model->notes = (vxm_notes){0};
+  model->space = *space;
+  run->mirrored = false;
+  vxm_status status = transform ? check_transform(transform, &run->mirrored, error) : VXM_OK;
+  if (status != VXM_OK)
+    return status;
+  for (size_t p = 0; p < facets->split.part_count; p++)
+    atomic_store_explicit(&run->touched[p], 0, memory_order_relaxed);
+  run->confidence = confidence;
+  run->contested = run->escalated = 0;
+  run->added = false;
+  vxm_wound_destroy(&run->open_wound);
+  vxm_wound_destroy(&run->all_wound);
+  vxm_lattice lattice = vxm_lattice_of(space);
+  return vxm_placed_set(&run->placed, facets, &lattice, transform, vxm_run_apexes(&model->shape), error);
+}
+
+/** The surface of the whole grid. */
+static vxm_status add_surface(vxm_model *model, const vxm_window *window, vxm_error *error) {
+  vxm_grid grid = {.context = model->context,
+                   .space = model->space,
+                   .row_words = window->row_words,
+                   .slice_words = window->slice_words,
+                   .word_count = window->slice_words * (size_t)window->slow_dim,
+                   .words = window->words};
+  return vxm_surface_unite(&grid, model->shape.soup, &model->run.placed.lattice, model->run.confidence,
+                           error);
+}
+
+vxm_status vxm_model_fill(vxm_model *model, const vxm_window *window, vxm_error *error) {
+  vxm_run *run = &model->run;
+  vxm_mode mode = model->options.mode;
+  vxm_status status = VXM_OK;
+  if (mode == VXM_MODE_SURFACE) {
+    size_t depth = (size_t)(window->end - window->begin);
+    memset(window->words, 0, depth * window->slice_words * sizeof *window->words);
+    if (run->confidence) /* exact everywhere */
+      memset(run->confidence, 255,
+             (size_t)window->fast_dim * (size_t)window->middle_dim * (size_t)window->slow_dim);
+  } else {
+    status = vxm_solid_fill(run, window, error);
+    if (status == VXM_OK && run->confidence)
+      status = vxm_confidence_fill(run, window, error);
+  }
+  if (status == VXM_OK && mode != VXM_MODE_SOLID)
+    status = add_surface(model, window, error);
+  return status;
+}
+
+/* ---- Report and warnings ---- */
+
+/** The open parts count as empty if together they added nothing, whatever single voters held. */
+static void count_empty_parts(vxm_model *model, vxm_voxelize_report *report) {
+  vxm_run *run = &model->run;
+  const vxm_facets *facets = &model->shape.facets;
+  if (!vxm_one_voter(&model->options) && !run->added)
+    for (size_t p = vxm_voted_begin(&model->shape); p < facets->split.part_count; p++)
+      atomic_store_explicit(&run->touched[p], 0, memory_order_relaxed);
+  for (size_t p = 0; p < facets->split.part_count && model->options.mode != VXM_MODE_SURFACE; p++)
+    report->empty_parts += facets->parts[p].begin < facets->parts[p].end &&
+                           !atomic_load_explicit(&run->touched[p], memory_order_relaxed);
+}
+
+/** The first few parts without volume, each by one of its vertices. */
+static void name_empty_parts(vxm_model *model, const vxm_voxelize_report *report) {
+  enum { NAMED = 3 };
+  char names[200] = "";
+  int used = 0, named = 0;
+  const vxm_facets *facets = &model->shape.facets;
+  for (size_t p = 0; p < facets->split.part_count && named < NAMED; p++) {
+    const vxm_part *part = &facets->parts[p];
+    if (atomic_load_explicit(&model->run.touched[p], memory_order_relaxed) || part->begin == part->end)
+      continue;
+    const double *at = vxm_position(model->shape.soup, facets->corners[part->begin][0]);
+    used += snprintf(names + used, sizeof names - (size_t)used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "",
+                     at[0], at[1], at[2]);
+    named++;
+  }
+  vxm_note(&model->notes,
+           "%" PRId64 " of %" PRId64
+           " parts hold no voxel centre, being thinner than a voxel or open sheets: those at "
+           "%s%s; --mode both keeps them, and so may a higher resolution (-r)",
+           report->empty_parts, report->parts, names, report->empty_parts > named ? ", ..." : "");
+}
+
+static void warn(vxm_model *model, const vxm_voxelize_report *report) {
+  vxm_notes *notes = &model->notes;
+  vxm_mode mode = model->options.mode;
+  if (report->voxels == 0 && mode != VXM_MODE_SOLID)
+    vxm_note(notes, "no face meets the grid: check --bounds or --like");
+  else if (report->voxels == 0)
+    vxm_note(notes,
+             "no voxel centre is inside: the model is open, flat or thinner than a voxel; try --mode both "
+             "or a higher resolution (-r)");
+  else if (report->empty_parts > 0 && mode == VXM_MODE_SOLID)
+    name_empty_parts(model, report);
+  if (report->contested > 0)
+    vxm_note(notes,
+             "the model is open (%zu odd edges) and x, y and z disagree on %" PRId64
+             " voxels, decided by %s; "
+             "compare --method winding, --vote majority and --parts whole",
+             model->shape.facets.split.odd_edge_count, report->contested,
+             report->escalated > 0 ? "the winding number" : "the vote");
+}
+
+void vxm_model_end(vxm_model *model, vxm_voxelize_report *report, int64_t voxels, uint64_t hash) {
+  const vxm_split *split = &model->shape.facets.split;
+  *report = (vxm_voxelize_report){
+      .parts = (int64_t)split->part_count,
+      .closed_parts = (int64_t)split->kind_end[VXM_PART_CLOSED],
+      .capped_parts = (int64_t)(split->kind_end[VXM_PART_CAPPED] - split->kind_end[VXM_PART_CLOSED]),
+      .caps = (int64_t)split->capped_loops,
+      .cavities = (int64_t)split->cavity_count,
+      .contested = model->run.contested,
+      .escalated = model->run.escalated,
+      .voxels = voxels,
+      .hash = hash};
+  count_empty_parts(model, report);
+  warn(model, report);
+}

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Which triangles of a shape face inward. It is found once, from a solid of fixed resolution along the
+ * longest side of the mesh, so that it is the same whatever grid is made of the shape.
+ */
+#ifndef VXM_VOXEL_ORIENT_H
+#define VXM_VOXEL_ORIENT_H
+
+#include "voxel/solid.h"
+
+/** Fills shape->open_turns, for the parts that stay open, unless that has been done. */
+vxm_status vxm_orient_open(vxm_shape *shape, vxm_error *error);
+/** Fills shape->all_turns. */
+vxm_status vxm_orient_all(vxm_shape *shape, vxm_error *error);
+
+#endif

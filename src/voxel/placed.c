@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/placed.h"
+#include "base/threads.h"
+#include "voxel/kernels.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+enum { SLICE_POINTS = 8192 };
+
+static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+/** A position of the soup or a cap, transformed. */
+static void position_of(const vxm_placed *placed, const vxm_facets *facets, size_t point, double out[3]) {
+  const double *p = point < facets->first_cap ? vxm_position(facets->soup, point)
+                                              : facets->cap_points[point - facets->first_cap];
+  const double *m = placed->transform;
+  for (int r = 0; r < 3; r++)
+    out[r] = m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3];
+}
+
+/* ---- Narrow points ---- */
+
+typedef struct place_job {
+  vxm_placed *placed;
+  const vxm_facets *facets;
+  const vxm_kernels *kernels;
+  vxm_affine affine;
+  size_t slices;
+  atomic_bool beyond; /**< a point does not fit */
+} place_job;
+
+static vxm_affine affine_of(const vxm_placed *placed) {
+  vxm_affine affine = {0};
+  for (int r = 0; r < 3; r++) {
+    for (int c = 0; c < 4; c++)
+      affine.column[c][r] = placed->transform[4 * r + c];
+    affine.origin[r] = placed->lattice.space.origin[r];
+    affine.scale[r] = (double)placed->lattice.unit / placed->lattice.space.voxel_size[r];
+  }
+  return affine;
+}
+
+static void place_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  place_job *job = payload;
+  size_t count = job->facets->first_cap;
+  size_t begin = vxm_slice_begin(count, job->slices, slice),
+         end = vxm_slice_begin(count, job->slices, slice + 1);
+  if (!job->kernels->place(job->placed->narrow + begin, job->facets->soup->positions + 3 * begin, end - begin,
+                           &job->affine))
+    atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
+}
+
+/** Whether all points fit. */
+static bool place_narrow(vxm_placed *placed, const vxm_facets *facets) {
+  place_job job = {.placed = placed,
+                   .facets = facets,
+                   .kernels = vxm_kernels_get(),
+                   .affine = affine_of(placed),
+                   .slices = 1 + facets->first_cap / SLICE_POINTS};
+  atomic_init(&job.beyond, false);
+  vxm_parallel(placed->context, job.slices, place_slice, &job);
+  bool fits = !atomic_load(&job.beyond);
+  size_t caps = facets->first_apex - facets->first_cap;
+  if (caps > 0)
+    fits &= job.kernels->place(placed->narrow + facets->first_cap, facets->cap_points[0], caps, &job.affine);
+  return fits;
+}
+
+/* ---- Wide points ---- */
+
+static vxm_status fail_vertex(const vxm_facets *facets, uint32_t vertex, vxm_error *error) {
+  const double *p = vxm_position(facets->soup, vertex);
+  vxm_place place = {NULL, 0, -1, vertex};
+  if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
+    return vxm_fail_at(error, VXM_ERROR_RANGE, place,
+                       "vertex %" PRIu32 " of the mesh is not finite; repair the mesh first", vertex);
+  return vxm_fail_at(
+      error, VXM_ERROR_RANGE, place,
+      "vertex %" PRIu32
+      " at (%g, %g, %g) lies too many voxels outside the grid; choose larger voxels or remove it",
+      vertex, p[0], p[1], p[2]);
+}
+
+/** Places all points in 64 bits if one that is used needs it. Those of no face may lie anywhere. */
+static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  placed->wide = vxm_calloc(placed->context, facets->point_count, sizeof *placed->wide, &local);
+  uint8_t *used = vxm_calloc(placed->context, facets->point_count, sizeof *used, &local);
+  vxm_status status = local.code;
+  bool needed = false;
+  for (size_t f = 0; status == VXM_OK && f < facets->facet_count; f++)
+    for (int c = 0; c < 3; c++)
+      used[facets->corners[f][c]] = 1;
+  for (size_t p = 0; status == VXM_OK && p < facets->first_apex; p++) {
+    double at[3];
+    if (!used[p])
+      continue;
+    position_of(placed, facets, p, at);
+    if (!vxm_lattice_place(&placed->lattice, at, &placed->wide[p]))
+      status = p < facets->first_cap
+                   ? fail_vertex(facets, (uint32_t)p, &local)
+                   : vxm_fail(&local, VXM_ERROR_RANGE, "a hole lies too many voxels outside the grid");
+    for (int a = 0; a < 3; a++)
+      needed |= placed->wide[p].at[a] >= VXM_NARROW_MAX || placed->wide[p].at[a] <= -VXM_NARROW_MAX;
+  }
+  vxm_free(placed->context, used);
+  if (status != VXM_OK || !needed) {
+    vxm_free(placed->context, placed->wide);
+    placed->wide = NULL;
+  }
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+/* ---- Apexes ---- */
+
+static void place_apex(vxm_placed *placed, const vxm_facets *facets, size_t part) {
+  const vxm_part *p = &facets->parts[part];
+  vxm_int128 sum[3] = {0, 0, 0};
+  vxm_int128 corners = 3 * (vxm_int128)(p->caps - p->begin);
+  for (size_t f = p->begin; f < p->caps; f++)
+    for (int c = 0; c < 3; c++) {
+      vxm_point q = vxm_placed_at(placed, facets->corners[f][c]);
+      for (int a = 0; a < 3; a++)
+        sum[a] += q.at[a];
+    }
+  uint32_t apex = vxm_apex_of(facets, part);
+  for (int a = 0; a < 3; a++) {
+    int64_t mean = corners > 0 ? (int64_t)(sum[a] / corners) : 0;
+    if (placed->wide)
+      placed->wide[apex].at[a] = mean;
+    else
+      placed->narrow[apex][a] = (int32_t)mean;
+  }
+  if (!placed->wide)
+    placed->narrow[apex][3] = 0;
+}
+
+/* ---- All of it ---- */
+
+vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
+                          const double transform[12], bool apexes, vxm_error *error) {
+  placed->lattice = *lattice;
+  memcpy(placed->transform, transform ? transform : identity, sizeof identity);
+  vxm_free(placed->context, placed->wide);
+  placed->wide = NULL;
+  if (placed->capacity < facets->point_count) {
+    vxm_error local = VXM_ERROR_INIT;
+    vxm_free(placed->context, placed->narrow);
+    placed->capacity = 0;
+    placed->narrow = vxm_alloc(placed->context, facets->point_count, sizeof *placed->narrow, &local);
+    if (!placed->narrow) {
+      if (error)
+        *error = local;
+      return local.code;
+    }
+    placed->capacity = facets->point_count;
+  }
+  if (!place_narrow(placed, facets)) {
+    vxm_status status = place_wide(placed, facets, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  for (size_t p = 0; apexes && p < facets->split.part_count; p++)
+    place_apex(placed, facets, p);
+  return VXM_OK;
+}
+
+void vxm_placed_destroy(vxm_placed *placed) {
+  vxm_free(placed->context, placed->wide);
+  vxm_free(placed->context, placed->narrow);
+  *placed = (vxm_placed){.context = placed->context};
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The points of facets, put on a lattice. */
+#ifndef VXM_VOXEL_PLACED_H
+#define VXM_VOXEL_PLACED_H
+
+#include "voxel/facets.h"
+#include "voxel/lattice.h"
+
+/** Narrow coordinates stay below this, so that differences of two of them fit 31 bits. */
+#define VXM_NARROW_MAX (INT32_C(1) << 29)
+
+typedef struct vxm_placed {
+  vxm_context *context;
+  vxm_lattice lattice;
+  double transform[12];
+  size_t capacity;      /**< of `narrow` */
+  int32_t (*narrow)[4]; /**< points by number; the fourth number is 0 */
+  vxm_point *wide;      /**< used instead where a point lies beyond VXM_NARROW_MAX, else NULL */
+} vxm_placed;
+
+/**
+ * Places the points of facets, keeping the memory of the placing before. Start from {.context = ...}; destroy
+ * with vxm_placed_destroy.
+ *
+ * @param transform NULL, or a 3 x 4 matrix applied to positions first
+ * @param apexes    whether cones or tetrahedra will be used: the apex of a part is the mean of the corners of
+ * its triangles (Rueda et al., section 3), rounded toward zero so that it stays in their box
+ * @return VXM_OK; VXM_ERROR_RANGE if a vertex that a face uses is not finite or lies too far outside the
+ * grid; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
+                          const double transform[12], bool apexes, vxm_error *error);
+void vxm_placed_destroy(vxm_placed *placed);
+
+static inline vxm_point vxm_placed_at(const vxm_placed *placed, uint32_t point) {
+  if (placed->wide)
+    return placed->wide[point];
+  const int32_t *p = placed->narrow[point];
+  return (vxm_point){{p[0], p[1], p[2]}};
+}
+
+#endif

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Several voters on one part at once: while a slab is in cache all of them are folded and combined, so that
+ * only the outcome goes to memory.
+ *
+ * Slabs are cut across slices. Parity along slices needs to know what was open at the begin of a slab: each
+ * thread takes a run of slabs in order and carries it along, starting from the flips in all slabs before.
+ */
+#ifndef VXM_VOXEL_POLL_H
+#define VXM_VOXEL_POLL_H
+
+#include "voxel/slabs.h"
+#include "voxel/vote.h"
+
+typedef struct vxm_poll_job {
+  const vxm_facets *facets;
+  const vxm_placed *placed;
+  size_t part;
+  bool tetra;      /**< ask the tetrahedra, too, as parity with cones */
+  vxm_vote rule;   /**< VXM_VOTE_AUTO elects what x, y and z all hold, and leaves the rest to others */
+  uint64_t *mask;  /**< NULL, or words laid out as the window's that become the contested voxels */
+  uint64_t *carry; /**< a slice of words: what is open along slices at the begin of the window; becomes that
+                      at its end. Zeros for the first window */
+} vxm_poll_job;
+
+/**
+ * Adds to the window the voxels that the voters elect, and adds up the tally. The same bits for any number of
+ * threads.
+ *
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_poll(vxm_workspace *workspace, const vxm_window *window, const vxm_poll_job *job,
+                    vxm_tally *tally, vxm_error *error);
+
+#endif

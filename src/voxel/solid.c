@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/solid.h"
+#include "voxel/orient.h"
+#include "voxel/poll.h"
+#include "voxel/settle.h"
+#include "voxel/tetra.h"
+#include "voxel/unite.h"
+#include "voxel/vote.h"
+
+#include <string.h>
+
+enum { VOTERS = 4 };
+
+static size_t kind_end(const vxm_shape *shape, vxm_part_kind kind) {
+  return shape->facets.split.kind_end[kind];
+}
+
+bool vxm_caps_wanted(const vxm_voxelize_options *options) {
+  return options->method == VXM_METHOD_WINDING ||
+         (options->method == VXM_METHOD_VOTE && options->vote == VXM_VOTE_AUTO);
+}
+
+bool vxm_one_voter(const vxm_voxelize_options *options) {
+  return options->method != VXM_METHOD_VOTE && options->method != VXM_METHOD_WINDING;
+}
+
+size_t vxm_voted_begin(const vxm_shape *shape) {
+  bool all = shape->options->vote_always && !vxm_caps_wanted(shape->options);
+  return all ? 0 : kind_end(shape, VXM_PART_CAPPED);
+}
+
+/** Whether parts from `begin` on have cones, so that the tetrahedra may differ from x. */
+static bool has_cones(const vxm_shape *shape, size_t begin) {
+  for (size_t p = begin; p < shape->facets.split.part_count; p++)
+    if (shape->facets.parts[p].cones < shape->facets.parts[p].end)
+      return true;
+  return false;
+}
+
+int vxm_run_buffers(const vxm_shape *shape) {
+  if (shape->options->mode == VXM_MODE_SURFACE || vxm_one_voter(shape->options) ||
+      vxm_voted_begin(shape) == shape->facets.split.part_count)
+    return 0;
+  bool decide = vxm_caps_wanted(shape->options);
+  if (vxm_voted_begin(shape) + 1 == shape->facets.split.part_count)
+    return decide ? 1 : 0; /* one part: only what is contested */
+  return decide || has_cones(shape, vxm_voted_begin(shape)) ? 4 : 3;
+}
+
+bool vxm_run_apexes(const vxm_shape *shape) {
+  const vxm_voxelize_options *options = shape->options;
+  return options->method == VXM_METHOD_TETRA || options->confidence ||
+         (!vxm_one_voter(options) && !vxm_caps_wanted(options) && has_cones(shape, vxm_voted_begin(shape)));
+}
+
+vxm_status vxm_run_buffer(vxm_run *run, int buffer, const vxm_window *like, vxm_window *out,
+                          vxm_error *error) {
+  vxm_buffer *b = &run->buffers[buffer];
+  size_t count = like->slice_words * (size_t)(like->end - like->begin);
+  if (count > b->count) {
+    vxm_error local = VXM_ERROR_INIT;
+    vxm_free(run->shape->context, b->words);
+    b->words = vxm_alloc(run->shape->context, count, sizeof *b->words, &local);
+    b->count = b->words ? count : 0;
+    if (!b->words) {
+      if (error)
+        *error = local;
+      return local.code;
+    }
+  }
+  *out = *like;
+  out->words = b->words;
+  return VXM_OK;
+}
+
+vxm_status vxm_run_unite(vxm_run *run, const vxm_window *window, int axis, size_t part_begin, size_t part_end,
+                         unsigned roles, vxm_error *error) {
+  static const char *const phase[3] = {"voxelizing along x", "voxelizing along y", "voxelizing along z"};
+  vxm_unite_job job = {.facets = &run->shape->facets,
+                       .placed = &run->placed,
+                       .axis = axis,
+                       .part_begin = part_begin,
+                       .part_end = part_end,
+                       .roles = roles,
+                       .fresh = true,
+                       .touched = run->touched,
+                       .phase = phase[axis]};
+  return vxm_unite(&run->shape->workspace, window, &job, error);
+}
+
+void vxm_run_destroy(vxm_run *run) {
+  for (int b = 0; b < VXM_BUFFERS; b++)
+    vxm_free(run->shape->context, run->buffers[b].words);
+  vxm_placed_destroy(&run->placed);
+  vxm_wound_destroy(&run->open_wound);
+  vxm_wound_destroy(&run->all_wound);
+}
+
+/* ---- Parts that stay open: votes ---- */
+
+/** The x, y, z and, where it may differ, the tetrahedral voter of parts from `begin` on. */
+static vxm_status fill_voters(vxm_run *run, const vxm_window *window, size_t begin, bool tetra,
+                              const uint64_t *voters[VOTERS], vxm_error *error) {
+  vxm_status status = VXM_OK;
+  size_t end = run->shape->facets.split.part_count;
+  for (int v = 0; v < VOTERS; v++)
+    voters[v] = NULL;
+  for (int v = 0; v < (tetra ? VOTERS : 3) && status == VXM_OK; v++) {
+    vxm_window voter;
+    status = vxm_run_buffer(run, VXM_BUFFER_VOTERS + v, window, &voter, error);
+    /* Triangles and cones together are closed: any axis tells their parity. */
+    unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
+    if (status == VXM_OK)
+      status = vxm_run_unite(run, &voter, v == 3 ? window->layout.fast : v, begin, end, roles, error);
+    voters[v] = voter.words;
+  }
+  return status;
+}
+
+static vxm_status settle_contested(vxm_run *run, const vxm_window *window, const uint64_t *mask,
+                                   vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  vxm_status status = VXM_OK;
+  int64_t added = 0;
+  if (!run->open_wound.tree) {
+    status = vxm_orient_open(shape, error);
+    if (status == VXM_OK)
+      status = vxm_wound_create(&run->open_wound, &shape->facets, &run->placed, &shape->open_turns,
+                                run->mirrored, error);
+  }
+  if (status == VXM_OK)
+    status = vxm_settle(window, mask, run->open_wound.tree, shape->context, run->confidence, &added, error);
+  run->added |= added > 0;
+  if (added > 0 && run->touched)
+    for (size_t p = vxm_voted_begin(shape); p < shape->facets.split.part_count; p++)
+      atomic_store_explicit(&run->touched[p], 1, memory_order_relaxed);
+  return status;
+}
+
+/** One part is asked about slab by slab, and the voters are never held as a whole. */
+static vxm_status poll_part(vxm_run *run, const vxm_window *window, size_t part, bool tetra, vxm_vote rule,
+                            uint64_t *mask, vxm_tally *tally, vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  vxm_window slice = *window, carry;
+  slice.begin = 0;
+  slice.end = 1;
+  vxm_status status = vxm_run_buffer(run, VXM_BUFFER_CARRY, &slice, &carry, error);
+  if (status != VXM_OK)
+    return status;
+  if (window->begin == 0)
+    memset(carry.words, 0, carry.slice_words * sizeof *carry.words);
+  vxm_poll_job job = {.facets = &shape->facets,
+                      .placed = &run->placed,
+                      .part = part,
+                      .tetra = tetra,
+                      .rule = rule,
+                      .mask = mask,
+                      .carry = carry.words};
+  return vxm_poll(&shape->workspace, window, &job, tally, error);
+}
+
+static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  size_t begin = vxm_voted_begin(shape), end = shape->facets.split.part_count;
+  if (begin == end)
+    return VXM_OK;
+  bool decide = vxm_caps_wanted(shape->options), tetra = !decide && has_cones(shape, begin);
+  vxm_vote rule = decide ? VXM_VOTE_AUTO : shape->options->vote;
+  vxm_window mask = {.words = NULL};
+  vxm_tally tally = {0, false};
+  vxm_status status = decide ? vxm_run_buffer(run, VXM_BUFFER_MASK, window, &mask, error) : VXM_OK;
+  if (status == VXM_OK && end - begin == 1) {
+    status = poll_part(run, window, begin, tetra, rule, mask.words, &tally, error);
+    if (tally.added && run->touched)
+      atomic_store_explicit(&run->touched[begin], 1, memory_order_relaxed);
+  } else if (status == VXM_OK) {
+    const uint64_t *voters[VOTERS];
+    status = fill_voters(run, window, begin, tetra, voters, error);
+    if (status == VXM_OK)
+      vxm_vote_count(window->words, voters, mask.words,
+                     window->slice_words * (size_t)(window->end - window->begin), rule, shape->context,
+                     &tally);
+  }
+  if (status != VXM_OK)
+    return status;
+  run->contested += tally.contested;
+  run->added |= tally.added;
+  if (!decide || tally.contested == 0)
+    return VXM_OK;
+  run->escalated += tally.contested;
+  return settle_contested(run, window, mask.words, error);
+}
+
+/* ---- Methods ---- */
+
+/** Every voxel by the winding number. */
+static vxm_status fill_by_winding(vxm_run *run, const vxm_window *window, vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  vxm_status status = VXM_OK;
+  if (!run->all_wound.tree) {
+    status = vxm_orient_all(shape, error);
+    if (status == VXM_OK)
+      status = vxm_wound_create(&run->all_wound, &shape->facets, &run->placed, &shape->all_turns,
+                                run->mirrored, error);
+  }
+  if (status != VXM_OK)
+    return status;
+  size_t depth = (size_t)(window->end - window->begin);
+  memset(window->words, 0, depth * window->slice_words * sizeof *window->words);
+  int64_t added = 0;
+  run->escalated += window->fast_dim * window->middle_dim * (int64_t)depth;
+  return vxm_settle(window, NULL, run->all_wound.tree, shape->context, run->confidence, &added, error);
+}
+
+static vxm_status fill_by_one(vxm_run *run, const vxm_window *window, vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  size_t end = shape->facets.split.part_count;
+  vxm_method method = shape->options->method;
+  if (method != VXM_METHOD_TETRA)
+    return vxm_run_unite(run, window, (int)method - VXM_METHOD_X, 0, end, VXM_FACET_TRIANGLE, error);
+  vxm_unite_job job = {.facets = &shape->facets,
+                       .placed = &run->placed,
+                       .part_end = end,
+                       .fresh = true,
+                       .touched = run->touched,
+                       .phase = "voxelizing tetrahedra"};
+  return vxm_tetra_unite(&shape->workspace, window, &job, error);
+}
+
+vxm_status vxm_solid_fill(vxm_run *run, const vxm_window *window, vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  if (vxm_one_voter(shape->options))
+    return fill_by_one(run, window, error);
+  /* Parts that are closed, or closed by caps: one axis settles them. */
+  vxm_status status = vxm_run_unite(run, window, window->layout.fast, 0, vxm_voted_begin(shape),
+                                    VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
+  if (status == VXM_OK)
+    status = decide_open_parts(run, window, error);
+  if (status == VXM_OK && shape->options->method == VXM_METHOD_WINDING)
+    status = fill_by_winding(run, window, error);
+  return status;
+}

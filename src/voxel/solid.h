@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * The solid of facets in the windows of one grid: which parts one axis settles, who votes on the others, and
+ * what the winding number decides.
+ */
+#ifndef VXM_VOXEL_SOLID_H
+#define VXM_VOXEL_SOLID_H
+
+#include "voxel/outward.h"
+#include "voxel/slabs.h"
+#include "voxel/wound.h"
+
+/** Words as a window has, kept from one use to the next. */
+typedef struct vxm_buffer {
+  uint64_t *words;
+  size_t count;
+} vxm_buffer;
+
+enum {
+  VXM_BUFFER_VOTERS = 0, /**< x, y, z and the tetrahedra */
+  VXM_BUFFER_MASK = 4,   /**< contested voxels */
+  VXM_BUFFER_CLOSED,     /**< what closed parts fill */
+  VXM_BUFFER_CARRY,      /**< a slice, for vxm_poll */
+  VXM_BUFFERS
+};
+
+/** What is known of a mesh whatever the grid. */
+typedef struct vxm_shape {
+  vxm_context *context;
+  const vxm_soup *soup;
+  const vxm_voxelize_options *options;
+  vxm_facets facets;
+  vxm_turns open_turns, all_turns; /**< triangles that face inward, of the open parts and of all; found when
+                                      first needed */
+  vxm_workspace workspace;
+} vxm_shape;
+
+/** The voxelization of a shape in one grid, window after window. */
+typedef struct vxm_run {
+  vxm_shape *shape;
+  vxm_placed placed;
+  bool mirrored; /**< the transform turns triangles inside out */
+  vxm_buffer buffers[VXM_BUFFERS];
+  vxm_wound open_wound, all_wound; /**< made when first needed */
+  atomic_uchar *touched;           /**< per part: whether it sets a voxel; NULL = not asked */
+  uint8_t *confidence;             /**< of the whole grid, x fastest; NULL = not asked */
+  int64_t contested, escalated;
+  bool added; /**< whether the open parts set a voxel */
+} vxm_run;
+
+/** Whether holes are capped: only where no rule of the papers was asked for. */
+bool vxm_caps_wanted(const vxm_voxelize_options *options);
+/** Whether the method is one voter for all parts. */
+bool vxm_one_voter(const vxm_voxelize_options *options);
+/** The first part of those that voters decide. */
+size_t vxm_voted_begin(const vxm_shape *shape);
+/** Windows that a run holds beside its result, as far as options and parts tell. */
+int vxm_run_buffers(const vxm_shape *shape);
+/** Whether the run needs apexes placed. */
+bool vxm_run_apexes(const vxm_shape *shape);
+
+/**
+ * Replaces the words of a window by the solid.
+ *
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_solid_fill(vxm_run *run, const vxm_window *window, vxm_error *error);
+
+/** Sets every voxel of parts part_begin to part_end - 1 by parity along an axis; a part of vxm_solid_fill. */
+vxm_status vxm_run_unite(vxm_run *run, const vxm_window *window, int axis, size_t part_begin, size_t part_end,
+                         unsigned roles, vxm_error *error);
+/** A window like another with the words of a buffer. */
+vxm_status vxm_run_buffer(vxm_run *run, int buffer, const vxm_window *like, vxm_window *out,
+                          vxm_error *error);
+/** Frees what the run holds; its placing, buffers and trees. */
+void vxm_run_destroy(vxm_run *run);
+
+#endif
