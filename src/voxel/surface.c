@@ -121,14 +121,13 @@ static vxm_status check_used(const vxm_surface *surface, const vxm_soup *soup, v
   return VXM_OK;
 }
 
-static vxm_status snap(vxm_surface *surface, const vxm_soup *soup, const double *transform,
-                       vxm_error *error) {
-  surface->points = vxm_alloc(surface->context, soup->vertex_count, sizeof *surface->points, error);
-  if (!surface->points)
-    return VXM_ERROR_MEMORY;
-  snap_job job = {surface, soup, transform, 1 + soup->vertex_count / 4096, false};
+vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
+                             vxm_error *error) {
+  size_t count = surface->soup->vertex_count;
+  snap_job job = {surface, surface->soup, transform, 1 + count / 4096, false};
+  surface->lattice = *lattice;
   vxm_parallel(surface->context, job.slices, snap_slice, &job);
-  return atomic_load(&job.is_off) ? check_used(surface, soup, error) : VXM_OK;
+  return atomic_load(&job.is_off) ? check_used(surface, surface->soup, error) : VXM_OK;
 }
 
 vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
@@ -138,11 +137,12 @@ vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm
   vxm_surface *surface = vxm_calloc(soup->context, 1, sizeof *surface, &local);
   vxm_status status = surface ? vxm_context_acquire(&surface->context, soup->context, &local) : local.code;
   if (status == VXM_OK) {
-    surface->lattice = *lattice;
-    status = list_triangles(surface, soup, &local);
+    surface->soup = soup;
+    surface->points = vxm_alloc(surface->context, soup->vertex_count, sizeof *surface->points, &local);
+    status = surface->points ? list_triangles(surface, soup, &local) : local.code;
   }
   if (status == VXM_OK)
-    status = snap(surface, soup, transform, &local);
+    status = vxm_surface_place(surface, lattice, transform, &local);
   if (status == VXM_OK) {
     *out = surface;
     return VXM_OK;

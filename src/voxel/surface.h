@@ -16,6 +16,7 @@ typedef enum vxm_surface_kind {
 /** The triangles of a soup on a lattice. */
 typedef struct vxm_surface {
   vxm_context *context; /**< one reference held */
+  const vxm_soup *soup;
   vxm_lattice lattice;
   vxm_point *points;       /**< one for each vertex of the soup */
   const uint32_t *corners; /**< triangle_count x 3: the soup's own, or `cut` */
@@ -33,6 +34,10 @@ typedef struct vxm_surface {
  */
 vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
                               const double transform[12], vxm_error *error);
+/** Puts the same soup on another lattice, or elsewhere on it; the surface cannot be used if that fails.
+ * Returns as vxm_surface_create. */
+vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
+                             vxm_error *error);
 /** NULL is allowed. */
 void vxm_surface_destroy(vxm_surface *surface);
 

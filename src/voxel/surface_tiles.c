@@ -141,7 +141,10 @@ static void sort_large(const tiling *t, const vxm_point *const v[3], const vxm_s
   }
 }
 
-/** What the first pass notes of a triangle: its first tile, and how many bands and tiles in each less one. */
+/**
+ * What the first pass notes of a triangle: its first tile, and how many bands and tiles in each less one.
+ * There are far fewer than 2^28 tiles, which would be terabytes.
+ */
 static const uint32_t place_nowhere = UINT32_MAX, place_large = UINT32_MAX - 1;
 
 static uint32_t place_triangle(const tiling *t, const vxm_point *const v[3], vxm_surface_box *box) {

@@ -465,6 +465,10 @@ static void test_transform_moves_the_mesh(void **state) {
     shape_face(moved, soup->indices + 3 * f, 3);
   vxm_surface *a = surface_of(soup, &lattice, transform), *b = surface_of(moved, &lattice, NULL);
   assert_memory_equal(a->points, b->points, soup->vertex_count * sizeof *a->points);
+  vxm_surface *again = surface_of(moved, &(vxm_lattice){8, 256, space}, NULL);
+  assert_int_equal(vxm_surface_place(again, &lattice, NULL, NULL), VXM_OK);
+  assert_memory_equal(again->points, b->points, soup->vertex_count * sizeof *again->points);
+  vxm_surface_destroy(again);
   vxm_surface_destroy(a);
   vxm_surface_destroy(b);
   vxm_soup_destroy(soup);
