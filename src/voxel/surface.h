@@ -1,19 +1,61 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The conservative surface: every voxel whose closed box meets a face, exactly. */
+/** The surface of a mesh in voxels, exactly, window by window. */
 #ifndef VXM_VOXEL_SURFACE_H
 #define VXM_VOXEL_SURFACE_H
 
+#include "grid/window.h"
 #include "mesh/soup.h"
 #include "voxel/lattice.h"
 
+typedef enum vxm_surface_kind {
+  VXM_SURFACE_CONSERVATIVE, /**< every voxel whose closed box meets a face, no more and no less */
+  VXM_SURFACE_THIN /**< 6-separating: no path over 6-neighbours crosses a face outside of it (surface_draw.h)
+                    */
+} vxm_surface_kind;
+
+/** The triangles of a soup on a lattice. */
+typedef struct vxm_surface {
+  vxm_context *context; /**< one reference held */
+  const vxm_soup *soup;
+  vxm_lattice lattice;
+  vxm_point *points;       /**< one for each vertex of the soup */
+  const uint32_t *corners; /**< triangle_count x 3: the soup's own, or `cut` */
+  uint32_t *cut;           /**< NULL where all faces are triangles */
+  size_t triangle_count;
+} vxm_surface;
+
 /**
- * Sets in `grid` every voxel whose closed box meets a face of the soup, no more and no less, by the plane
- * test and the projected edge tests of Schwarz & Seidel 2010, section 3.1, in integers. A face on the border
- * of two voxels sets both. Polygons are cut into triangles inside them first.
+ * Snaps a soup to the lattice and cuts its polygons into triangles inside them. The soup must outlive the
+ * surface.
+ *
+ * @param transform NULL, or 3 rows of 4: position p counts as (row . (p, 1)) for each row
+ * @return VXM_OK; VXM_ERROR_RANGE if a vertex that a face uses is not finite or lies too far outside the
+ * grid; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
+                              const double transform[12], vxm_error *error);
+/** Puts the same soup on another lattice, or elsewhere on it; the surface cannot be used if that fails.
+ * Returns as vxm_surface_create. */
+vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
+                             vxm_error *error);
+/** NULL is allowed. */
+void vxm_surface_destroy(vxm_surface *surface);
+
+/**
+ * Sets the voxels of the surface that lie in a window of the lattice's space; the others keep their values.
+ * How the space is cut into windows makes no difference, nor does the number of threads.
+ *
+ * @param is_fresh the words have no values yet: they are cleared along the way, while they are in cache
+ * @return VXM_OK; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window, vxm_surface_kind kind,
+                           bool is_fresh, vxm_error *error);
+
+/**
+ * Adds the conservative surface of a soup to a grid.
  *
  * @param confidence NULL, or a byte per voxel, x fastest: 255 where the surface sets a voxel
- * @return VXM_OK; VXM_ERROR_RANGE as vxm_lattice_snap; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
- * VXM_ERROR_CANCELLED
+ * @return as vxm_surface_create and vxm_surface_add
  */
 vxm_status vxm_surface_unite(vxm_grid *grid, const vxm_soup *soup, const vxm_lattice *lattice,
                              uint8_t *confidence, vxm_error *error);
