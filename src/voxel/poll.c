@@ -68,9 +68,8 @@ static void sum_stripe(size_t stripe, int worker, void *payload) {
   }
 }
 
-/** Folds a voter in its slab; `carry` is a slice for the voter along slices. */
-static void fold_voter(const poll_state *state, size_t voter, uint64_t *words, size_t slices,
-                       uint64_t *carry) {
+/** Folds a voter in its slab. Before the words of the voter along slices lies a slice with what is open. */
+static void fold_voter(const poll_state *state, size_t voter, uint64_t *words, size_t slices) {
   const vxm_window *window = state->window;
   const vxm_kernels *kernels = state->kernels;
   int axis = state->columns[voter].w;
