@@ -48,8 +48,8 @@ run 'voxmend voxelize in/cube.off -o - --format raw -r 8'
 run 'voxmend voxelize in/cube.off -o cube.raw -r 8 -q && wc -c <cube.raw && cat cube.raw.json'
 
 say "# bounded memory, and what it will take"
-run 'voxmend voxelize in/rocket.off -o whole.npy -r 400 | grep -E "^(voxels|hash)"'
-run 'voxmend voxelize in/rocket.off -o pieces.npy -r 400 --memlimit 9M --threads 1 | grep -E "^(estimate|voxels|hash)"'
+run 'voxmend voxelize in/rocket.off -o whole.npy -r 600 | grep -E "^(voxels|hash)"'
+run 'voxmend voxelize in/rocket.off -o pieces.npy -r 600 --memlimit 14M --threads 1 | grep -E "^(estimate|voxels|hash)"'
 run 'cmp whole.npy pieces.npy'
 run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --memlimit 40M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
 run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --json --memlimit 40M --threads 2'
