@@ -115,7 +115,7 @@ VXM_API uint64_t vxm_context_peak_bytes(const vxm_context *context);
 /** Vertices and polygons, with nothing assumed of them: a polygon soup, or a mesh after repair. */
 typedef struct vxm_mesh vxm_mesh;
 
-typedef enum vxm_scalar { VXM_FLOAT64 = 0, VXM_FLOAT32 = 1 } vxm_scalar;
+typedef enum vxm_scalar { VXM_FLOAT64 = 0, VXM_FLOAT32 = 1, VXM_UINT8 = 2 } vxm_scalar;
 
 /** Caller-owned arrays that describe a mesh; they are copied. */
 typedef struct vxm_mesh_arrays {
@@ -580,6 +580,83 @@ VXM_API vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model,
  */
 VXM_API vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
                                    const char *path, const vxm_grid_write_options *options, vxm_error *error);
+
+/* ---- Fields: a number per voxel ---- */
+
+typedef struct vxm_coverage_options {
+  uint32_t version;   /**< 1 */
+  int subdivision;    /**< 2, 4 or 8: a voxel is cut into so many sub-voxels along each axis */
+  vxm_scalar scalar;  /**< VXM_FLOAT32: the fraction, 0 to 1; VXM_UINT8: 255 times that, rounded, halves up */
+  const char *format; /**< of a file: "npy" or "nrrd"; NULL = by extension */
+} vxm_coverage_options;
+
+#define VXM_COVERAGE_OPTIONS_INIT \
+  { 1, 4, VXM_FLOAT32, NULL }
+
+typedef struct vxm_coverage_report {
+  vxm_voxelize_report voxelize; /**< of the sub-voxels, without their hash */
+  int64_t full, partial;        /**< voxels of which all sub-voxels are set, or some */
+  double volume;                /**< sum of the fractions times the volume of a voxel */
+} vxm_coverage_report;
+
+/**
+ * Computes how much of each voxel of a space the model fills: the fraction of its sub-voxels that are set, as
+ * the options of the model say. They are made a few slices at a time, never all at once.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2] float or uint8_t, as [x][y][z] in C order (z fastest)
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_RANGE beyond 2^20 sub-voxels along an axis. After a failure the
+ * values are unspecified
+ */
+VXM_API vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report, vxm_model *model,
+                                      const vxm_space *space, const vxm_coverage_options *options,
+                                      vxm_error *error);
+
+/** As vxm_model_coverage, into a file: .npy (with its .json beside it) or .nrrd; as much at a time as the
+ * memory limit allows. @return as vxm_model_coverage and vxm_grid_write */
+VXM_API vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *model,
+                                            const vxm_space *space, const char *path,
+                                            const vxm_coverage_options *options, vxm_error *error);
+
+typedef struct vxm_distance_options {
+  uint32_t version;   /**< 1 */
+  bool is_unsigned;   /**< false = negative where the centre is inside the solid */
+  double band;        /**< voxels, of the longest side; 0 = everywhere */
+  const char *format; /**< of a file: "npy" or "nrrd"; NULL = by extension */
+} vxm_distance_options;
+
+#define VXM_DISTANCE_OPTIONS_INIT \
+  { 1, false, 3.0, NULL }
+
+typedef struct vxm_distance_report {
+  vxm_voxelize_report voxelize; /**< of the solid that gives the sign, without its hash; zeros if unsigned */
+  int64_t exact;                /**< voxels that are not clamped */
+  double least, greatest;       /**< of all values */
+} vxm_distance_report;
+
+/**
+ * Computes the distance from the centre of each voxel to the faces of the mesh, in model units: exact within
+ * the band, to some 1e-6 voxel and the rounding of a 32-bit float; beyond it, plus or minus the width of the
+ * band, which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With
+ * a band, time follows surface times band, beside that of the solid.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
+ * @param report  may be NULL
+ * @param model   of VXM_MODE_SOLID
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT for another mode. After a failure the values are
+ * unspecified
+ */
+VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report, vxm_model *model,
+                                      const vxm_space *space, const vxm_distance_options *options,
+                                      vxm_error *error);
+
+/** As vxm_model_distance, into a file: .npy (with its .json beside it) or .nrrd; as much at a time as the
+ * memory limit allows. @return as vxm_model_distance and vxm_grid_write */
+VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
+                                            const vxm_space *space, const char *path,
+                                            const vxm_distance_options *options, vxm_error *error);
 
 /** Warnings from the last grid or file made of the model, one line each. */
 VXM_API int64_t vxm_model_warning_count(const vxm_model *model);

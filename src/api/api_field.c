@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions that make a number per voxel: they check arguments and call down. */
+#include "gridio/field.h"
+#include "gridio/planes.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static vxm_status fail_null(const char *what, vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_ARGUMENT, "%s: an argument is NULL", what);
+}
+
+/** The array of a caller: [x][y][z] in C order. */
+static vxm_field_target array_of(void *values) {
+  return (vxm_field_target){.layout = VXM_PLANE_Z_FAST, .whole = values};
+}
+
+static vxm_status check_version(const char *what, uint32_t version, vxm_error *error) {
+  return version == 1
+             ? VXM_OK
+             : vxm_fail(error, VXM_ERROR_ARGUMENT,
+                        "%s: options version %" PRIu32 " is unknown; use the initializer", what, version);
+}
+
+/* ---- Coverage ---- */
+
+static vxm_status check_coverage(vxm_coverage_options *chosen, const vxm_space *space,
+                                 const vxm_coverage_options *options, vxm_error *error) {
+  static const vxm_coverage_options defaults = VXM_COVERAGE_OPTIONS_INIT;
+  *chosen = options ? *options : defaults;
+  vxm_status status = check_version("coverage", chosen->version, error);
+  if (status != VXM_OK)
+    return status;
+  int n = chosen->subdivision;
+  if (n != 2 && n != 4 && n != 8)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "coverage: a subdivision of %d is none of 2, 4 and 8", n);
+  if (chosen->scalar != VXM_FLOAT32 && chosen->scalar != VXM_UINT8)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "coverage: scalar %d is neither VXM_FLOAT32 nor VXM_UINT8",
+                    (int)chosen->scalar);
+  return vxm_space_check(space, error);
+}
+
+vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report, vxm_model *model,
+                              const vxm_space *space, const vxm_coverage_options *options, vxm_error *error) {
+  vxm_coverage_report local;
+  report = report ? report : &local;
+  *report = (vxm_coverage_report){.full = 0};
+  if (!values || !model || !space)
+    return fail_null("coverage", error);
+  vxm_coverage_options chosen;
+  vxm_status status = check_coverage(&chosen, space, options, error);
+  vxm_field_target target = array_of(values);
+  return status == VXM_OK ? vxm_coverage_run(&target, report, model, space, &chosen, error) : status;
+}
+
+vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *model, const vxm_space *space,
+                                    const char *path, const vxm_coverage_options *options, vxm_error *error) {
+  vxm_coverage_report local;
+  report = report ? report : &local;
+  *report = (vxm_coverage_report){.full = 0};
+  if (!model || !space || !path)
+    return fail_null("coverage", error);
+  vxm_coverage_options chosen;
+  vxm_status status = check_coverage(&chosen, space, options, error);
+  if (status == VXM_OK)
+    status = vxm_field_write_coverage(report, model, space, path, &chosen, error);
+  if (status != VXM_OK)
+    *report = (vxm_coverage_report){.full = 0};
+  return status;
+}
+
+/* ---- Distance ---- */
+
+static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *model, const vxm_space *space,
+                                 const vxm_distance_options *options, vxm_error *error) {
+  static const vxm_distance_options defaults = VXM_DISTANCE_OPTIONS_INIT;
+  *chosen = options ? *options : defaults;
+  vxm_status status = check_version("distance", chosen->version, error);
+  if (status != VXM_OK)
+    return status;
+  if (!(chosen->band >= 0))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "distance: a band of %g voxels is not possible", chosen->band);
+  if (!chosen->is_unsigned && model->options.mode != VXM_MODE_SOLID)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "distance: the sign is that of the solid; make the model with VXM_MODE_SOLID");
+  return vxm_space_check(space, error);
+}
+
+vxm_status vxm_model_distance(float *values, vxm_distance_report *report, vxm_model *model,
+                              const vxm_space *space, const vxm_distance_options *options, vxm_error *error) {
+  vxm_distance_report local;
+  report = report ? report : &local;
+  *report = (vxm_distance_report){.exact = 0};
+  if (!values || !model || !space)
+    return fail_null("distance", error);
+  vxm_distance_options chosen;
+  vxm_status status = check_distance(&chosen, model, space, options, error);
+  vxm_field_target target = array_of(values);
+  return status == VXM_OK ? vxm_distance_run(&target, report, model, space, &chosen, error) : status;
+}
+
+vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model, const vxm_space *space,
+                                    const char *path, const vxm_distance_options *options, vxm_error *error) {
+  vxm_distance_report local;
+  report = report ? report : &local;
+  *report = (vxm_distance_report){.exact = 0};
+  if (!model || !space || !path)
+    return fail_null("distance", error);
+  vxm_distance_options chosen;
+  vxm_status status = check_distance(&chosen, model, space, options, error);
+  if (status == VXM_OK)
+    status = vxm_field_write_distance(report, model, space, path, &chosen, error);
+  if (status != VXM_OK)
+    *report = (vxm_distance_report){.exact = 0};
+  return status;
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Files of a number per voxel: .npy and .nrrd. */
+#ifndef VXM_GRIDIO_FIELD_H
+#define VXM_GRIDIO_FIELD_H
+
+#include "voxel/coverage.h"
+#include "voxel/distance.h"
+
+/**
+ * Makes the coverage of a model into a file. Slices are written as they are made, in the order of the file.
+ *
+ * @return as vxm_model_write_coverage in voxmend.h; the options have been checked
+ */
+vxm_status vxm_field_write_coverage(vxm_coverage_report *report, vxm_model *model, const vxm_space *space,
+                                    const char *path, const vxm_coverage_options *options, vxm_error *error);
+
+/** The same for the distance. */
+vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *model, const vxm_space *space,
+                                    const char *path, const vxm_distance_options *options, vxm_error *error);
+
+#endif

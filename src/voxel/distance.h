@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The distance from voxel centres to the faces of a mesh. */
+#ifndef VXM_VOXEL_DISTANCE_H
+#define VXM_VOXEL_DISTANCE_H
+
+#include "voxel/field.h"
+
+/**
+ * Makes the distances of a model, as many slices at a time as fit.
+ *
+ * @param report  its times are not set
+ * @param options checked
+ * @return as vxm_model_distance in voxmend.h; what `put` returns
+ */
+vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report *report, vxm_model *model,
+                            const vxm_space *space, const vxm_distance_options *options, vxm_error *error);
+
+#endif

@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Distances against every triangle asked for every voxel, by another formula. */
+#include "shapes.h"
+
+#include "grid/bitgrid.h"
+#include "voxel/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct vec {
+  double x, y, z;
+} vec;
+
+static vec sub(vec a, vec b) {
+  return (vec){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static double dot(vec a, vec b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static vec along(vec a, vec d, double t) {
+  return (vec){a.x + t * d.x, a.y + t * d.y, a.z + t * d.z};
+}
+
+static double to_segment(vec p, vec a, vec b) {
+  vec ab = sub(b, a);
+  double square = dot(ab, ab), t = square > 0 ? dot(sub(p, a), ab) / square : 0;
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  vec off = sub(p, along(a, ab, t));
+  return sqrt(dot(off, off));
+}
+
+/** The foot on the plane by barycentric coordinates where they are all positive; else the edges. */
+static double to_triangle(vec p, vec a, vec b, vec c) {
+  vec ab = sub(b, a), ac = sub(c, a), ap = sub(p, a);
+  double aa = dot(ab, ab), bb = dot(ac, ac), cc = dot(ab, ac), determinant = aa * bb - cc * cc;
+  if (determinant > 1e-9 * aa * bb) {
+    double u = (dot(ap, ab) * bb - dot(ap, ac) * cc) / determinant;
+    double v = (dot(ap, ac) * aa - dot(ap, ab) * cc) / determinant;
+    if (u >= 0 && v >= 0 && u + v <= 1) {
+      vec off = sub(p, along(along(a, ab, u), ac, v));
+      return sqrt(dot(off, off));
+    }
+  }
+  return fmin(to_segment(p, a, b), fmin(to_segment(p, b, c), to_segment(p, c, a)));
+}
+
+static vec corner_of(const vxm_soup *soup, size_t face, size_t corner) {
+  size_t n;
+  const double *p = vxm_position(soup, vxm_face(soup, face, &n)[corner]);
+  return (vec){p[0], p[1], p[2]};
+}
+
+/** Faces are triangles, or flat and convex. */
+static double brute(const vxm_soup *soup, vec p) {
+  double least = INFINITY;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t n;
+    vxm_face(soup, f, &n);
+    for (size_t c = 2; c < n; c++)
+      least = fmin(least,
+                   to_triangle(p, corner_of(soup, f, 0), corner_of(soup, f, c - 1), corner_of(soup, f, c)));
+  }
+  return least;
+}
+
+static vec centre_of(const vxm_space *s, int64_t i, int64_t j, int64_t k) {
+  return (vec){s->origin[0] + ((double)i + 0.5) * s->voxel_size[0],
+               s->origin[1] + ((double)j + 0.5) * s->voxel_size[1],
+               s->origin[2] + ((double)k + 0.5) * s->voxel_size[2]};
+}
+
+static size_t voxels_of(const vxm_space *space) {
+  return (size_t)(space->dims[0] * space->dims[1] * space->dims[2]);
+}
+
+static vxm_model *model_of(const vxm_soup *soup) {
+  vxm_model *model;
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_model_create(&model, soup, NULL, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  return model;
+}
+
+static vxm_distance_report measure(float *values, vxm_model *model, const vxm_space *space, double band,
+                                   bool is_unsigned) {
+  vxm_distance_options options = VXM_DISTANCE_OPTIONS_INIT;
+  options.band = band;
+  options.is_unsigned = is_unsigned;
+  vxm_distance_report report;
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_model_distance(values, &report, model, space, &options, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  return report;
+}
+
+static void check(const vxm_soup *soup, const vxm_space *space, double band) {
+  double side = fmax(space->voxel_size[0], fmax(space->voxel_size[1], space->voxel_size[2]));
+  double most = band > 0 ? band * side : INFINITY;
+  vxm_model *model = model_of(soup);
+  vxm_grid *solid;
+  assert_int_equal(vxm_grid_create(&solid, soup->context, space, NULL), VXM_OK);
+  assert_int_equal(vxm_model_voxelize(solid, NULL, model, NULL, NULL), VXM_OK);
+  float *signed_values = malloc(voxels_of(space) * sizeof(float)),
+        *values = malloc(voxels_of(space) * sizeof(float));
+  measure(values, model, space, band, true);
+  vxm_distance_report report = measure(signed_values, model, space, band, false);
+  int64_t exact = 0;
+  size_t at = 0;
+  for (int64_t i = 0; i < space->dims[0]; i++)
+    for (int64_t j = 0; j < space->dims[1]; j++)
+      for (int64_t k = 0; k < space->dims[2]; k++, at++) {
+        double right = fmin(most, brute(soup, centre_of(space, i, j, k)));
+        if (fabs((double)values[at] - right) > 1e-5 * side)
+          fail_msg("(%d, %d, %d): %.9g, not %.9g", (int)i, (int)j, (int)k, (double)values[at], right);
+        bool is_inside = vxm_grid_get(solid, i, j, k);
+        assert_true(signed_values[at] == (is_inside ? -values[at] : values[at]));
+        assert_true((double)values[at] <= (double)(float)most);
+        exact += (double)values[at] < (double)(float)most;
+      }
+  assert_true(report.exact >= exact);
+  free(values);
+  free(signed_values);
+  vxm_grid_destroy(solid);
+  vxm_model_destroy(model);
+}
+
+/** Small, large, thin, flat along an axis, or without area; some reach beyond the grid. */
+static void add_triangle(vxm_soup *soup, vxm_rng *rng, int kind) {
+  double size = kind == 0 ? 1 : kind == 1 ? 30 : 8, from[3], to[3] = {0, 0, 0};
+  for (int a = 0; a < 3; a++)
+    from[a] = 20 * vxm_rng_unit(rng) - 2;
+  for (uint32_t c = 0; c < 3; c++) {
+    double p[3], wide = vxm_rng_unit(rng);
+    for (int a = 0; a < 3; a++) {
+      p[a] = from[a] + size * (vxm_rng_unit(rng) - 0.5);
+      to[a] = c == 0 ? size * (vxm_rng_unit(rng) - 0.5) : to[a];
+      if (kind == 3) /* a sliver */
+        p[a] = from[a] + wide * to[a] + 1e-4 * vxm_rng_unit(rng);
+      if (kind == 4) /* a segment */
+        p[a] = from[a] + wide * to[a];
+      if (kind == 5 && a == 1)
+        p[a] = from[a];
+    }
+    shape_vertex(soup, p[0], p[1], p[2]);
+  }
+  uint32_t v = (uint32_t)soup->vertex_count - 3;
+  shape_triangle(soup, v, v + 1, v + 2);
+}
+
+static void test_equals_brute_force(void **state) {
+  (void)state;
+  static const double bands[] = {3, 1.5, 0, 6, 40, 0.3};
+  vxm_rng rng = {21};
+  for (int round = 0; round < 48; round++) {
+    vxm_soup *soup = shape_empty(context);
+    int count = 1 + (int)vxm_rng_below(&rng, round % 4 == 0 ? 60 : 12);
+    for (int t = 0; t < count; t++)
+      add_triangle(soup, &rng, (round + t) % 6);
+    vxm_space space = {{3 + (int64_t)vxm_rng_below(&rng, 20), 3 + (int64_t)vxm_rng_below(&rng, 20),
+                        3 + (int64_t)vxm_rng_below(&rng, 36)},
+                       {-1, 0.3, 0.1},
+                       {1, 1, 1}};
+    if (round % 3 == 1)
+      for (int a = 0; a < 3; a++)
+        space.voxel_size[a] = 0.3 + vxm_rng_unit(&rng);
+    check(soup, &space, bands[round % 6]);
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_closed_shapes(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, (double[]){0.51, 1, 1.5}, (double[]){9, 7.5, 4});
+  vxm_space space = {{11, 9, 7}, {-0.3, 0, 0}, {1, 1, 1}};
+  check(soup, &space, 3);
+  check(soup, &space, 0);
+  space = (vxm_space){{22, 11, 20}, {-0.3, 0, 0}, {0.5, 0.9, 0.3}};
+  check(soup, &space, 2);
+  check(soup, &space, 0);
+  vxm_soup_destroy(soup);
+}
+
+/** Far from the origin, in small units: lengths count in voxels. */
+static void test_scale(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  for (int c = 0; c < 3; c++)
+    shape_vertex(soup, 1000 + 1e-6 * c, -5, 3 + 1e-6 * (c == 1));
+  shape_triangle(soup, 0, 1, 2);
+  vxm_space space = {{20, 9, 9}, {1000 - 3e-6, -5 - 1e-6, 3 - 1e-6}, {5e-7, 5e-7, 5e-7}};
+  check(soup, &space, 3);
+  check(soup, &space, 0);
+  vxm_soup_destroy(soup);
+}
+
+/** Threads and limits change no bit; nor does the file's order change a value beyond rounding. */
+static void test_threads_and_limits(void **state) {
+  (void)state;
+  vxm_space space = {{60, 61, 62}, {-1.55, -1.5, -1.5}, {0.05, 0.05, 0.05}};
+  float *first = malloc(voxels_of(&space) * sizeof *first), *next = malloc(voxels_of(&space) * sizeof *next);
+  for (int round = 0; round < 8; round++) {
+    vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+    options.threads = 1 + round / 2;
+    options.memory_limit = round >= 6 ? UINT64_C(20) << 20 : 0;
+    vxm_context *own;
+    assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
+    vxm_soup *soup = shape_empty(own);
+    shape_torus(soup, 48, 24, 1, 0.4, (double[]){0.01, 0.02, 0.03});
+    vxm_model *model = model_of(soup);
+    measure(round < 2 ? first : next, model, &space, round % 2 ? 3 : 0, false);
+    if (round == 0)
+      memcpy(next, first, voxels_of(&space) * sizeof *first);
+    vxm_model_destroy(model);
+    vxm_soup_destroy(soup);
+    assert_true(options.memory_limit == 0 || vxm_context_peak_bytes(own) <= options.memory_limit);
+    vxm_context_destroy(own);
+    if (round % 2) /* `first` has the band by now */
+      assert_memory_equal(round == 1 ? first : next, first, voxels_of(&space) * sizeof *first);
+    else if (round > 0)
+      for (size_t i = 0; i < voxels_of(&space); i++) {
+        float clamped = fminf(fmaxf(next[i], -0.15f), 0.15f);
+        assert_true(fabsf(clamped - first[i]) < 1e-7f);
+      }
+  }
+  free(next);
+  free(first);
+}
+
+static void test_what_is_refused(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, (double[]){0, 0, 0}, (double[]){1, 1, 1});
+  vxm_voxelize_options surface = VXM_VOXELIZE_OPTIONS_INIT;
+  surface.mode = VXM_MODE_SURFACE;
+  vxm_model *model;
+  assert_int_equal(vxm_model_create(&model, soup, &surface, NULL), VXM_OK);
+  vxm_space space = {{1, 1, 1}, {0, 0, 0}, {1, 1, 1}};
+  vxm_distance_options options = VXM_DISTANCE_OPTIONS_INIT;
+  float value = 7;
+  assert_int_equal(vxm_model_distance(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
+  options.is_unsigned = true;
+  assert_int_equal(vxm_model_distance(&value, NULL, model, &space, &options, NULL), VXM_OK);
+  assert_true(value == 0.5f);
+  options.band = -1;
+  assert_int_equal(vxm_model_distance(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
+  options.band = NAN;
+  assert_int_equal(vxm_model_distance(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
+  options.band = 3;
+  options.version = 2;
+  assert_int_equal(vxm_model_distance(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
+  vxm_model_destroy(model);
+  vxm_soup_destroy(soup);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_equals_brute_force),
+      cmocka_unit_test(test_closed_shapes),
+      cmocka_unit_test(test_scale),
+      cmocka_unit_test(test_threads_and_limits),
+      cmocka_unit_test(test_what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
