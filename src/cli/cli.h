@@ -192,4 +192,34 @@ json_t *cli_passes_json(const vxm_repair_report *report);
  */
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options);
 
+/* ---- field.c: coverage and distance, for voxelize ---- */
+
+typedef struct cli_field {
+  bool coverage, scalar, distance, band; /**< which options were given */
+  vxm_coverage_options coverage_options;
+  vxm_distance_options distance_options;
+  vxm_coverage_report coverage_report;
+  vxm_distance_report distance_report;
+} cli_field;
+
+#define CLI_FIELD_INIT \
+  { .coverage_options = VXM_COVERAGE_OPTIONS_INIT, .distance_options = VXM_DISTANCE_OPTIONS_INIT }
+
+extern const char *const cli_field_formats[];
+/** Whether a number per voxel is wanted rather than a grid. */
+bool cli_field_wanted(const cli_field *field);
+/* The arguments of --coverage, --scalar, --distance and --band: CLI_END or CLI_STOP. */
+int cli_field_read_coverage(cli_run *cli, cli_field *field, const char *value);
+int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value);
+int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value);
+int cli_field_read_band(cli_run *cli, cli_field *field, const char *value);
+/** CLI_STOP if they contradict each other, --mode, --dry-run (`is_tried`) or --confidence (`is_sure`). */
+int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is_tried, bool is_sure);
+/** Writes the file; a failure is in cli->error. */
+vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
+                           const vxm_space *space, const char *path, const char *format);
+/** Adds "coverage" or "distance". */
+void cli_field_json(json_t *report, const cli_field *field);
+void cli_field_summarize(const cli_run *cli, const cli_field *field);
+
 #endif

@@ -17,6 +17,10 @@ enum {
   KEY_VOTE,
   KEY_PARTS,
   KEY_CAVITIES,
+  KEY_COVERAGE,
+  KEY_SCALAR,
+  KEY_DISTANCE,
+  KEY_BAND,
   KEY_CONFIDENCE,
   KEY_NO_REPAIR,
   KEY_WELD,
@@ -60,6 +64,14 @@ static const cli_option known_options[] = {
     {KEY_CAVITIES, "cavities", "auto|keep|fill",
      "what a closed component inside another is: auto = a cavity if it is wound\n"
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
+    {KEY_COVERAGE, "coverage", "2|4|8",
+     "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
+     "each axis; .npy or .nrrd"},
+    {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
+    {KEY_DISTANCE, "distance", "signed|unsigned",
+     "write the distance from each centre to the mesh instead, in model units;\n"
+     "signed: negative inside; .npy or .nrrd"},
+    {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_DRY_RUN, "dry-run", NULL, "tell the grid and the memory it takes, and write nothing"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
@@ -73,6 +85,7 @@ typedef struct request {
       dry_run; /**< which were given */
   vxm_repair_options repair;
   vxm_voxelize_options voxelize;
+  cli_field field;
 } request;
 
 /* ---- Options ---- */
@@ -195,6 +208,14 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     result = read_choice(cli, &choice, "cavities", value, cavities);
     out->voxelize.cavities = (vxm_cavities)choice;
     return result;
+  case KEY_COVERAGE:
+    return cli_field_read_coverage(cli, &out->field, value);
+  case KEY_SCALAR:
+    return cli_field_read_scalar(cli, &out->field, value);
+  case KEY_DISTANCE:
+    return cli_field_read_distance(cli, &out->field, value);
+  case KEY_BAND:
+    return cli_field_read_band(cli, &out->field, value);
   case KEY_CONFIDENCE:
     out->confidence = value;
     out->voxelize.confidence = true;
@@ -246,7 +267,7 @@ static int check_conflicts(cli_run *cli, const request *given) {
     return cli_usage(cli, "--confidence and -o name the same file");
   if (given->no_repair && given->repair_options)
     return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
-  return CLI_END;
+  return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);
 }
 
 static int read_arguments(cli_run *cli, request *out) {
@@ -260,7 +281,8 @@ static int read_arguments(cli_run *cli, request *out) {
   out->input = cli->arguments[0];
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
-  out->format = cli_output_format(cli, out->output, out->format, cli_grid_formats);
+  out->format = cli_output_format(cli, out->output, out->format,
+                                  cli_field_wanted(&out->field) ? cli_field_formats : cli_grid_formats);
   return out->format ? CLI_END : CLI_STOP;
 }
 
@@ -296,7 +318,8 @@ static json_t *make_report(const cli_run *cli, const request *given, const outco
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
-  json_object_set_new(report, "estimate", estimate_json(&results->estimate));
+  if (!cli_field_wanted(&given->field))
+    json_object_set_new(report, "estimate", estimate_json(&results->estimate));
   json_object_set_new(report, "grid", cli_json_space(&results->space));
   if (given->dry_run) {
     json_decref(votes);
@@ -311,8 +334,12 @@ static json_t *make_report(const cli_run *cli, const request *given, const outco
   json_object_set_new(report, "cavities", json_integer(results->voxelize.cavities));
   json_object_set_new(report, "empty_parts", json_integer(results->voxelize.empty_parts));
   json_object_set_new(report, "votes", votes);
-  json_object_set_new(report, "voxels", json_integer(results->voxelize.voxels));
-  json_object_set_new(report, "hash", cli_json_hash(results->voxelize.hash));
+  if (cli_field_wanted(&given->field))
+    cli_field_json(report, &given->field);
+  else {
+    json_object_set_new(report, "voxels", json_integer(results->voxelize.voxels));
+    json_object_set_new(report, "hash", cli_json_hash(results->voxelize.hash));
+  }
   json_object_set_new(report, "time_ms", times);
   json_object_set_new(report, "peak_bytes", json_integer((json_int_t)vxm_context_peak_bytes(cli->context)));
   json_object_set(report, "warnings", cli->warnings);
@@ -377,17 +404,22 @@ static void summarize(const cli_run *cli, const request *given, const outcome *r
   const vxm_voxelize_report *report = &results->voxelize;
   const vxm_space *space = &results->space;
   double cells = (double)space->dims[0] * (double)space->dims[1] * (double)space->dims[2];
-  summarize_parts(cli, report);
+  if (report->parts > 0) /* none were looked for where no solid was made */
+    summarize_parts(cli, report);
   if (report->cavities > 0)
     cli_row(cli, "cavities", "%" PRId64, report->cavities);
-  cli_row(cli, "voxels", "%" PRId64 " (%.2f %%)", report->voxels, 100.0 * (double)report->voxels / cells);
+  if (cli_field_wanted(&given->field))
+    cli_field_summarize(cli, &given->field);
+  else
+    cli_row(cli, "voxels", "%" PRId64 " (%.2f %%)", report->voxels, 100.0 * (double)report->voxels / cells);
   cli_row(cli, "contested", "%" PRId64 "%s", report->contested,
           report->contested == 0  ? ""
           : report->escalated > 0 ? " (open parts, decided by the winding number)"
                                   : " (open parts: the voters disagreed there)");
   if (report->escalated > report->contested)
     cli_row(cli, "winding", "%" PRId64 " voxels decided by the winding number", report->escalated);
-  cli_row(cli, "hash", "%016" PRIx64, report->hash);
+  if (!cli_field_wanted(&given->field))
+    cli_row(cli, "hash", "%016" PRIx64, report->hash);
   cli_row(cli, "time", "%.1f ms: read %.1f, repair %.1f, voxelize %.1f, write %.1f", results->total_ms,
           input->read_ms, input->repair_ms, results->voxelize_ms, results->write_ms);
   if (cli->verbose) {
@@ -432,12 +464,16 @@ static int write_with_confidence(cli_run *cli, const request *given, outcome *re
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
-static int write_model(cli_run *cli, const request *given, outcome *results, vxm_model *model) {
+static int write_model(cli_run *cli, request *given, outcome *results, vxm_model *model) {
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = given->format;
   double start = cli_clock();
-  if (vxm_model_write(&results->voxelize, model, &results->space, given->output, &options, &cli->error) !=
-      VXM_OK)
+  vxm_status status =
+      cli_field_wanted(&given->field)
+          ? cli_field_write(cli, &given->field, &results->voxelize, model, &results->space, given->output,
+                            given->format)
+          : vxm_model_write(&results->voxelize, model, &results->space, given->output, &options, &cli->error);
+  if (status != VXM_OK)
     return cli_fail(cli);
   cli->made = given->output;
   cli->made_format = given->format;
@@ -449,7 +485,7 @@ static int write_model(cli_run *cli, const request *given, outcome *results, vxm
 }
 
 /** Makes the model, tells what it will take, and unless that is all that is wanted writes the grid. */
-static int make_file(cli_run *cli, const request *given, outcome *results) {
+static int make_file(cli_run *cli, request *given, outcome *results) {
   const vxm_mesh *mesh = results->input.mesh;
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = given->format;
@@ -458,7 +494,7 @@ static int make_file(cli_run *cli, const request *given, outcome *results) {
   vxm_status status = vxm_space_fit(&results->space, mesh, &given->voxelize.space, &cli->error);
   if (status == VXM_OK)
     status = vxm_model_create(&model, mesh, &given->voxelize, &cli->error);
-  if (status == VXM_OK)
+  if (status == VXM_OK && !cli_field_wanted(&given->field))
     status =
         vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
   results->voxelize_ms = cli_clock() - start;
@@ -476,7 +512,8 @@ static int make_file(cli_run *cli, const request *given, outcome *results) {
 }
 
 static int run(cli_run *cli) {
-  request given = {.repair = VXM_REPAIR_OPTIONS_INIT, .voxelize = VXM_VOXELIZE_OPTIONS_INIT};
+  request given = {
+      .repair = VXM_REPAIR_OPTIONS_INIT, .voxelize = VXM_VOXELIZE_OPTIONS_INIT, .field = CLI_FIELD_INIT};
   if (read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
@@ -513,6 +550,7 @@ const cli_command cli_command_voxelize = {
              "  voxmend voxelize chair.off -o chair.binvox\n"
              "  voxmend voxelize part.stl -o part.npy --voxel-size 0.5 --fit tight --pad 1\n"
              "  voxmend voxelize second.stl -o second.npy --like part.npy\n"
+             "  voxmend voxelize chair.off -o chair.nrrd --distance signed --band 5\n"
              "  voxmend voxelize chair.off -o - --format rle -r 64 | wc -c",
     .options = known_options,
     .run = run,

@@ -82,9 +82,9 @@ static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_err
 
 /* ---- Who looks for whom ---- */
 
-/** Whether voxels should look for triangles: a search costs as much as some hundred distances. */
+/** Whether voxels should look for triangles: a search costs as much as some tens of distances. */
 static bool should_gather(const vxm_reach *reach, const vxm_space *space) {
-  const double search = 150;
+  const double search = 30;
   double voxels = (double)space->dims[0] * (double)space->dims[1] * (double)space->dims[2];
   return isinf(reach->band) || vxm_reach_volume(reach) > search * voxels;
 }

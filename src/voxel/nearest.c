@@ -15,7 +15,8 @@ typedef struct node {
 
 struct vxm_nearest {
   vxm_context *context;
-  double (*corners)[3][3]; /**< in the order of the leaves */
+  double (*corners)[3][3]; /**< in the order of the leaves; only while the tree is built */
+  vxm_triangle *triangles; /**< the same, made ready: that costs as much as several distances */
   node *nodes;
   size_t node_count;
 };
@@ -26,7 +27,8 @@ static size_t nodes_max(size_t count) {
 }
 
 uint64_t vxm_nearest_bytes(size_t count) {
-  return count * sizeof(double[3][3]) + nodes_max(count) * sizeof(node) + sizeof(vxm_nearest) + 256;
+  return count * (sizeof(double[3][3]) + sizeof(vxm_triangle)) + nodes_max(count) * sizeof(node) +
+         sizeof(vxm_nearest) + 256;
 }
 
 /* ---- Building ---- */
@@ -107,11 +109,16 @@ vxm_status vxm_nearest_create(vxm_nearest **out, vxm_context *context, double (*
   if (tree) {
     tree->context = context;
     tree->corners = corners;
+    tree->triangles = vxm_alloc(context, count, sizeof *tree->triangles, &local);
     tree->nodes = vxm_alloc(context, nodes_max(count), sizeof *tree->nodes, &local);
   } else
     vxm_free(context, corners);
-  if (tree && tree->nodes) {
+  if (tree && tree->nodes && tree->triangles) {
     build(tree, count);
+    for (size_t i = 0; i < count; i++)
+      vxm_triangle_make(&tree->triangles[i], (const double(*)[3])corners[i]);
+    vxm_free(context, tree->corners);
+    tree->corners = NULL;
     *out = tree;
     return VXM_OK;
   }
@@ -124,6 +131,7 @@ vxm_status vxm_nearest_create(vxm_nearest **out, vxm_context *context, double (*
 void vxm_nearest_destroy(vxm_nearest *nearest) {
   if (!nearest)
     return;
+  vxm_free(nearest->context, nearest->triangles);
   vxm_free(nearest->context, nearest->nodes);
   vxm_free(nearest->context, nearest->corners);
   vxm_free(nearest->context, nearest);
@@ -143,9 +151,7 @@ static double to_box2(const node *n, const double p[3]) {
 }
 
 static double to_triangle2(const vxm_nearest *tree, size_t triangle, const double p[3]) {
-  vxm_triangle made;
-  vxm_triangle_make(&made, (const double(*)[3])tree->corners[triangle]);
-  return vxm_triangle_distance2(&made, p);
+  return vxm_triangle_distance2(&tree->triangles[triangle], p);
 }
 
 static double search_leaf(const vxm_nearest *tree, const node *leaf, const double p[3], double least,

@@ -13,6 +13,14 @@ enum {
   LISTED_MIN = 1 << 20   /**< triangles listed at once, at least */
 };
 
+static inline double least(double a, double b) {
+  return a < b ? a : b;
+}
+
+static inline double greatest(double a, double b) {
+  return a > b ? a : b;
+}
+
 vxm_reach vxm_reach_of(const vxm_surface *surface, const vxm_space *space, vxm_layout layout, double band) {
   const double *size = space->voxel_size;
   const int axes[3] = {layout.fast, layout.middle, layout.slow};
@@ -74,6 +82,7 @@ typedef struct scatter {
   size_t *begins;          /**< for each tile of the round where its list begins; one more for the end */
   uint32_t *list;          /**< in any order, which makes no difference to a minimum */
   size_t first, end;       /**< tiles of the round */
+  vxm_triangle_row_fn *lower_row;
   vxm_watch watch;
 } scatter;
 
@@ -90,8 +99,8 @@ static bool box_of(box *out, double low[3], double high[3], const scatter *s, co
   *out = s->window;
   bool is_met = true;
   for (int a = 0; a < 3; a++) {
-    low[a] = fmin(corner[0][a], fmin(corner[1][a], corner[2][a]));
-    high[a] = fmax(corner[0][a], fmax(corner[1][a], corner[2][a]));
+    low[a] = least(corner[0][a], least(corner[1][a], corner[2][a]));
+    high[a] = greatest(corner[0][a], greatest(corner[1][a], corner[2][a]));
     range_of(&out->begin[a], &out->end[a], low[a] - s->reach->band, high[a] + s->reach->band,
              s->reach->step[a]);
     is_met &= out->begin[a] < out->end[a];
@@ -133,17 +142,17 @@ static bool cut_row(double *low, double *high, double from, double slope, double
     return is_two_sided ? fabs(from) <= most + 1e-3 : from <= most + 1e-3;
   double a = (most - from) / slope, b = (-most - from) / slope;
   if (slope > 0) {
-    *high = fmin(*high, a);
-    *low = is_two_sided ? fmax(*low, b) : *low;
+    *high = least(*high, a);
+    *low = is_two_sided ? greatest(*low, b) : *low;
   } else {
-    *low = fmax(*low, a);
-    *high = is_two_sided ? fmin(*high, b) : *high;
+    *low = greatest(*low, a);
+    *high = is_two_sided ? least(*high, b) : *high;
   }
   return *low <= *high + 1e-3;
 }
 
 static double square_off(double p, double low, double high) {
-  double off = fmax(fmax(low - p, p - high), 0);
+  double off = greatest(greatest(low - p, p - high), 0);
   return off * off;
 }
 
@@ -188,7 +197,7 @@ static void draw_triangle(const scatter *s, const box *tile, size_t triangle) {
       range_of(&begin, &end, from, to, reach->step[0]);
       double first[3] = {((double)begin + 0.5) * reach->step[0], y, z};
       float *row = s->values + ((k - s->window.begin[2]) * reach->dims[1] + j) * reach->dims[0];
-      vxm_triangle_lower_row(&t, first, reach->step[0], row + begin, end - begin);
+      s->lower_row(&t, first, reach->step[0], row + begin, end - begin);
     }
   }
 }
@@ -245,6 +254,7 @@ vxm_status vxm_reach_scatter(const vxm_reach *reach, float *values, int64_t begi
                              vxm_error *error) {
   scatter s = {
       .reach = reach, .values = values, .window = {{0, 0, begin}, {reach->dims[0], reach->dims[1], end}}};
+  s.lower_row = vxm_triangle_row_best();
   size_t chunks = (reach->surface->triangle_count + CHUNK - 1) / CHUNK;
   s.across = (size_t)((reach->dims[1] - 1) >> TILE_BITS) + 1;
   s.tile_count = s.across * ((size_t)((end - begin - 1) >> TILE_BITS) + 1);

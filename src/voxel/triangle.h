@@ -27,7 +27,10 @@ double vxm_triangle_distance2(const vxm_triangle *triangle, const double p[3]);
  * @param first the first point
  * @param step  from one to the next
  */
-void vxm_triangle_lower_row(const vxm_triangle *triangle, const double first[3], double step,
-                            float *distances2, int64_t count);
+typedef void vxm_triangle_row_fn(const vxm_triangle *triangle, const double first[3], double step,
+                                 float *distances2, int64_t count);
+
+/** The build for this processor. */
+vxm_triangle_row_fn *vxm_triangle_row_best(void);
 
 #endif

@@ -34,6 +34,17 @@ for options in '--mode surface' '--mode both' '--mode surface --surface shell18'
   run 'cmp whole.npy pieces.npy'
 done
 
+say "# a number per voxel"
+run 'voxmend voxelize in/cube.off -o c.nrrd -r 8 --pad 1 --coverage 4'
+run 'voxmend voxelize in/cube.off -o c.npy -r 8 --pad 1 --coverage 2 --scalar uint8 --json'
+run 'voxmend voxelize in/cube.off -o d.nrrd -r 8 --pad 2 --distance signed --band 2'
+run 'voxmend voxelize in/cube.off -o d.npy -r 8 --distance unsigned --band 0 --json'
+run 'head -n 12 d.nrrd && wc -c <d.nrrd && cat d.npy.json && wc -c <d.npy'
+run 'voxmend voxelize in/cube.off -o - --format nrrd -r 8 --pad 2 --distance signed --band 2 -q | cmp - d.nrrd'
+run 'voxmend voxelize in/rocket.off -o whole.nrrd -r 120 --coverage 8 --scalar uint8 -q'
+run 'voxmend voxelize in/rocket.off -o pieces.nrrd -r 120 --coverage 8 --scalar uint8 -q --memlimit 48M --threads 1'
+run 'cmp whole.nrrd pieces.nrrd'
+
 say "# the same bits for any number of threads"
 for threads in 1 2 7; do
   run "voxmend voxelize in/rocket.off -o t$threads.npy -r 100 --threads $threads | grep -E '^(voxels|hash)'"

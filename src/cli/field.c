@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** A number per voxel instead of a bit: the options, files and reports of coverage and distance. */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+const char *const cli_field_formats[] = {"npy", "nrrd", NULL};
+
+bool cli_field_wanted(const cli_field *field) {
+  return field->coverage || field->distance;
+}
+
+/* ---- Options ---- */
+
+int cli_field_read_coverage(cli_run *cli, cli_field *field, const char *value) {
+  static const char *const choices[] = {"2", "4", "8", NULL};
+  int choice = cli_read_choice(value, choices);
+  if (choice < 0)
+    return cli_usage(cli, "--coverage '%s' is none of 2, 4, 8", value);
+  field->coverage = true;
+  field->coverage_options.subdivision = 2 << choice;
+  return CLI_END;
+}
+
+int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value) {
+  static const char *const choices[] = {"float32", "uint8", NULL};
+  int choice = cli_read_choice(value, choices);
+  if (choice < 0)
+    return cli_usage(cli, "--scalar '%s' is none of float32, uint8", value);
+  field->scalar = true;
+  field->coverage_options.scalar = choice == 0 ? VXM_FLOAT32 : VXM_UINT8;
+  return CLI_END;
+}
+
+int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value) {
+  static const char *const choices[] = {"signed", "unsigned", NULL};
+  int choice = cli_read_choice(value, choices);
+  if (choice < 0)
+    return cli_usage(cli, "--distance '%s' is none of signed, unsigned", value);
+  field->distance = true;
+  field->distance_options.is_unsigned = choice == 1;
+  return CLI_END;
+}
+
+int cli_field_read_band(cli_run *cli, cli_field *field, const char *value) {
+  field->band = true;
+  if (!cli_read_number(&field->distance_options.band, value) || field->distance_options.band < 0)
+    return cli_usage(cli, "--band '%s' is not a number of voxels from 0 on", value);
+  return CLI_END;
+}
+
+int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is_tried, bool is_sure) {
+  const char *name = field->coverage ? "coverage" : "distance";
+  if (field->coverage && field->distance)
+    return cli_usage(cli, "--coverage and --distance exclude each other");
+  if (field->scalar && !field->coverage)
+    return cli_usage(cli, "--scalar goes with --coverage");
+  if (field->band && !field->distance)
+    return cli_usage(cli, "--band goes with --distance");
+  if (!cli_field_wanted(field))
+    return CLI_END;
+  if (is_sure)
+    return cli_usage(cli, "--confidence is of a grid; leave it out with --%s", name);
+  if (is_tried)
+    return cli_usage(cli, "--dry-run tells of a grid; leave it out with --%s", name);
+  if (field->distance && mode != VXM_MODE_SOLID)
+    return cli_usage(cli, "--distance goes with --mode solid, which gives the sign");
+  return CLI_END;
+}
+
+/* ---- Work ---- */
+
+vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
+                           const vxm_space *space, const char *path, const char *format) {
+  vxm_status status;
+  field->coverage_options.format = field->distance_options.format = format;
+  if (field->coverage) {
+    status = vxm_model_write_coverage(&field->coverage_report, model, space, path, &field->coverage_options,
+                                      &cli->error);
+    *report = field->coverage_report.voxelize;
+  } else {
+    status = vxm_model_write_distance(&field->distance_report, model, space, path, &field->distance_options,
+                                      &cli->error);
+    *report = field->distance_report.voxelize;
+  }
+  return status;
+}
+
+/* ---- Results ---- */
+
+static json_t *coverage_json(const cli_field *field) {
+  const vxm_coverage_report *report = &field->coverage_report;
+  json_t *object = json_object();
+  json_object_set_new(object, "subdivision", json_integer(field->coverage_options.subdivision));
+  json_object_set_new(object, "scalar",
+                      json_string(field->coverage_options.scalar == VXM_UINT8 ? "uint8" : "float32"));
+  json_object_set_new(object, "full", json_integer(report->full));
+  json_object_set_new(object, "partial", json_integer(report->partial));
+  json_object_set_new(object, "volume", cli_json_number(report->volume));
+  return object;
+}
+
+static json_t *distance_json(const cli_field *field) {
+  const vxm_distance_report *report = &field->distance_report;
+  json_t *object = json_object();
+  json_object_set_new(object, "signed", json_boolean(!field->distance_options.is_unsigned));
+  json_object_set_new(object, "band", cli_json_number(field->distance_options.band));
+  json_object_set_new(object, "exact", json_integer(report->exact));
+  json_object_set_new(object, "least", cli_json_number(report->least));
+  json_object_set_new(object, "greatest", cli_json_number(report->greatest));
+  return object;
+}
+
+void cli_field_json(json_t *report, const cli_field *field) {
+  if (field->coverage)
+    json_object_set_new(report, "coverage", coverage_json(field));
+  else
+    json_object_set_new(report, "distance", distance_json(field));
+}
+
+void cli_field_summarize(const cli_run *cli, const cli_field *field) {
+  const vxm_coverage_report *coverage = &field->coverage_report;
+  const vxm_distance_report *distance = &field->distance_report;
+  if (field->coverage) {
+    cli_row(cli, "coverage", "%" PRId64 " voxels full, %" PRId64 " in part", coverage->full,
+            coverage->partial);
+    cli_row(cli, "volume", "%.6g", coverage->volume);
+  } else
+    cli_row(cli, "distance", "%.6g to %.6g; %" PRId64 " voxels within the band", distance->least,
+            distance->greatest, distance->exact);
+}
