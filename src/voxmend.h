@@ -120,7 +120,7 @@ typedef enum vxm_scalar { VXM_FLOAT64 = 0, VXM_FLOAT32 = 1, VXM_UINT8 = 2 } vxm_
 /** Caller-owned arrays that describe a mesh; they are copied. */
 typedef struct vxm_mesh_arrays {
   uint32_t version;         /**< 1 */
-  vxm_scalar vertex_scalar; /**< type of the coordinates */
+  vxm_scalar vertex_scalar; /**< type of the coordinates: VXM_FLOAT64 or VXM_FLOAT32 */
   const void *vertices;     /**< vertex_count x 3 coordinates, x y z together, model units */
   int64_t vertex_count;
   const int64_t

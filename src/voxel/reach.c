@@ -137,9 +137,10 @@ static void sort_chunk(size_t chunk, int worker, void *payload) {
 
 /** Cuts low..high to where |from + slope x| (or, one-sided, from + slope x) is at most `most`. */
 static bool cut_row(double *low, double *high, double from, double slope, double most, bool is_two_sided) {
-  const double flat = 1e-9;
+  const double slack = 1e-3, flat = 1e-9; /* of all that rounds, and over 2^20 voxels */
+  most += slack;
   if (fabs(slope) < flat)
-    return is_two_sided ? fabs(from) <= most + 1e-3 : from <= most + 1e-3;
+    return is_two_sided ? fabs(from) <= most : from <= most;
   double a = (most - from) / slope, b = (-most - from) / slope;
   if (slope > 0) {
     *high = least(*high, a);
@@ -148,7 +149,7 @@ static bool cut_row(double *low, double *high, double from, double slope, double
     *low = greatest(*low, a);
     *high = is_two_sided ? least(*high, b) : *high;
   }
-  return *low <= *high + 1e-3;
+  return *low <= *high + slack;
 }
 
 static double square_off(double p, double low, double high) {

@@ -185,6 +185,26 @@ static void test_closed_shapes(void **state) {
   vxm_soup_destroy(soup);
 }
 
+/** Many triangles in a corner: voxels look for them, and pass over those beyond the band. */
+static void test_a_crowd_in_a_corner(void **state) {
+  (void)state;
+  vxm_rng rng = {22};
+  vxm_soup *soup = shape_empty(context);
+  for (int v = 0; v < 6000; v++) {
+    double x = 2 * vxm_rng_unit(&rng), y = 3 + vxm_rng_unit(&rng);
+    shape_vertex(soup, x, y, vxm_rng_unit(&rng));
+  }
+  for (uint32_t t = 0; t < 2000; t++)
+    shape_triangle(soup, 3 * t, 3 * t + 1, 3 * t + 2);
+  shape_vertex(soup, 4, 4, 58.3);
+  shape_triangle(soup, 6000, 6000, 6000);
+  vxm_space space = {{5, 6, 64}, {0, 0, 0}, {1, 1, 1}};
+  check(soup, &space, 4);
+  space = (vxm_space){{64, 5, 6}, {-60, 0, 0}, {1, 1, 1}};
+  check(soup, &space, 5.5);
+  vxm_soup_destroy(soup);
+}
+
 /** Far from the origin, in small units: lengths count in voxels. */
 static void test_scale(void **state) {
   (void)state;
@@ -259,11 +279,9 @@ static void test_what_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_equals_brute_force),
-      cmocka_unit_test(test_closed_shapes),
-      cmocka_unit_test(test_scale),
-      cmocka_unit_test(test_threads_and_limits),
-      cmocka_unit_test(test_what_is_refused),
+      cmocka_unit_test(test_equals_brute_force),  cmocka_unit_test(test_closed_shapes),
+      cmocka_unit_test(test_a_crowd_in_a_corner), cmocka_unit_test(test_scale),
+      cmocka_unit_test(test_threads_and_limits),  cmocka_unit_test(test_what_is_refused),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }
