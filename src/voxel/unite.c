@@ -116,9 +116,13 @@ static void flip_piece(uint64_t *words, const vxm_bin_piece *piece, extent *flip
     flip(words, piece->data, piece->count, flipped);
     return;
   }
+  /* A bitmap is as large as a full slab: behind the layers of the last one it is zero, and no word is there. */
   for (size_t w = 0; w < piece->count; w++)
-    words[w] ^= piece->data[w];
-  *flipped = (extent){0, piece->count - 1};
+    if (piece->data[w]) {
+      words[w] ^= piece->data[w];
+      flipped->first = w < flipped->first ? w : flipped->first;
+      flipped->last = w > flipped->last ? w : flipped->last;
+    }
 }
 
 /** Folds the rows from the first to the last flipped one, in place. */
@@ -226,7 +230,8 @@ static void do_slab(size_t task, int worker, void *payload) {
     return;
   slab s = {.state = state, .begin = (int64_t)task << state->slabs.shift};
   s.end = vxm_min(s.begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
-  s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
+  if (!state->in_place)
+    s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
   if (state->along != ACROSS_SLICES) {
     s.out = window->words + (size_t)s.begin * window->slice_words;
     if (state->clear)
