@@ -139,6 +139,15 @@ static void fold_across_rows(const slab *s, uint64_t *words, extent flipped) {
     s->state->kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
 }
 
+/** Whether a voxel is set from the first flipped word on to the end of the slice of the last one. */
+static bool any_set(const slab *s, const uint64_t *words, extent flipped) {
+  size_t slice = s->state->window->slice_words, end = (flipped.last / slice + 1) * slice;
+  for (size_t w = flipped.first; w < end; w++)
+    if (words[w])
+      return true;
+  return false;
+}
+
 /** Folds what was flipped in the work words into the window and clears them. */
 static bool fold_work(const slab *s, extent flipped) {
   const unite_state *state = s->state;
@@ -185,11 +194,13 @@ static void do_in_place(const slab *s, vxm_bin_reader *reader, uint32_t part) {
       flip_piece(s->out, &piece, &flipped);
   if (flipped.first > flipped.last)
     return;
-  bool any = true;
+  bool any;
   if (state->along == ALONG_ROWS)
     any = fold_rows(s, s->out, flipped);
-  else
+  else {
     fold_across_rows(s, s->out, flipped);
+    any = any_set(s, s->out, flipped);
+  }
   if (any)
     touch(state, part);
 }
