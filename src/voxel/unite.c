@@ -117,9 +117,13 @@ static void flip_piece(uint64_t *words, const vxm_bin_piece *piece, extent *flip
     flip(words, piece->data, piece->count, flipped);
     return;
   }
+  /* A bitmap is as large as a full slab: behind the layers of the last one it is zero, and no word is there. */
   for (size_t w = 0; w < piece->count; w++)
-    words[w] ^= piece->data[w];
-  *flipped = (extent){0, piece->count - 1};
+    if (piece->data[w]) {
+      words[w] ^= piece->data[w];
+      flipped->first = w < flipped->first ? w : flipped->first;
+      flipped->last = w > flipped->last ? w : flipped->last;
+    }
 }
 
 /** Folds the rows from the first to the last flipped one, in place. */
@@ -134,6 +138,15 @@ static void fold_across_rows(const slab *s, uint64_t *words, extent flipped) {
   const vxm_window *window = s->state->window;
   for (size_t k = flipped.first / window->slice_words; k <= flipped.last / window->slice_words; k++)
     s->state->kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
+}
+
+/** Whether a voxel is set from the first flipped word on to the end of the slice of the last one. */
+static bool any_set(const slab *s, const uint64_t *words, extent flipped) {
+  size_t slice = s->state->window->slice_words, end = (flipped.last / slice + 1) * slice;
+  for (size_t w = flipped.first; w < end; w++)
+    if (words[w])
+      return true;
+  return false;
 }
 
 /** Folds what was flipped in the work words into the window and clears them. */
@@ -190,11 +203,13 @@ static void do_in_place(const slab *s, vxm_bin_reader *reader, uint32_t part) {
   }
   if (flipped.first > flipped.last)
     return;
-  bool any = true;
+  bool any;
   if (state->along == ALONG_ROWS)
     any = fold_rows(s, s->out, flipped);
-  else
+  else {
     fold_across_rows(s, s->out, flipped);
+    any = any_set(s, s->out, flipped);
+  }
   if (any)
     touch(state, part);
 }
@@ -235,7 +250,8 @@ static void do_slab(size_t task, int worker, void *payload) {
     return;
   slab s = {.state = state, .begin = (int64_t)task << state->slabs.shift};
   s.end = vxm_min(s.begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
-  s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
+  if (!state->in_place)
+    s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
   if (state->along != ACROSS_SLICES) {
     s.out = window->words + (size_t)s.begin * window->slice_words;
     if (state->clear && !state->past)
