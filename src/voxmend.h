@@ -400,9 +400,19 @@ typedef enum vxm_fit {
 /** Which voxels of a mesh are set. */
 typedef enum vxm_mode {
   VXM_MODE_SOLID = 0, /**< centre inside */
-  VXM_MODE_SURFACE,   /**< closed box meets a face */
+  VXM_MODE_SURFACE,   /**< on the surface, as vxm_surface_kind says */
   VXM_MODE_BOTH       /**< either: thin parts and sheets are kept */
 } vxm_mode;
+
+/** Which voxels are the surface. A shell is a part of the solid, so that it adds nothing in VXM_MODE_BOTH. */
+typedef enum vxm_surface_kind {
+  VXM_SURFACE_CONSERVATIVE = 0, /**< every voxel whose closed box meets a face, no more and no less */
+  VXM_SURFACE_THIN,             /**< 6-separating: no path over 6-neighbours crosses a face outside of it */
+  VXM_SURFACE_SHELL26, /**< voxels of the solid with an empty one among the 26 around; outside the grid all
+                          are empty */
+  VXM_SURFACE_SHELL18, /**< among the 18 that share a face or an edge */
+  VXM_SURFACE_SHELL6   /**< among the 6 that share a face */
+} vxm_surface_kind;
 
 typedef enum vxm_method {
   VXM_METHOD_VOTE = 0, /**< parity along x, y, z and the tetrahedra, combined by vxm_vote */
@@ -471,12 +481,13 @@ typedef struct vxm_voxelize_options {
   bool confidence;  /**< keep for every voxel how sure it is: vxm_grid_confidence */
   bool vote_always; /**< with `vote` majority, any or all: on closed parts too, where the voters agree anyway
                      */
+  vxm_surface_kind surface; /**< with `mode` surface and both */
 } vxm_voxelize_options;
 
 #define VXM_VOXELIZE_OPTIONS_INIT                                                                 \
   {                                                                                               \
     1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, \
-        VXM_MODE_SOLID, false, false                                                              \
+        VXM_MODE_SOLID, false, false, VXM_SURFACE_CONSERVATIVE                                    \
   }
 
 typedef struct vxm_voxelize_report {

@@ -19,9 +19,9 @@ typedef struct plan {
   uint64_t memory;
 } plan;
 
-/** Where the surface or the confidence is wanted the grid is made as one window. */
+/** Where the confidence or a mesh is wanted the grid is made as one window. */
 static bool needs_whole(const vxm_model *model, const plan *p) {
-  return !p->file.streams || model->options.mode != VXM_MODE_SOLID || model->options.confidence;
+  return !p->file.streams || model->options.confidence;
 }
 
 static uint64_t saturating_sum(uint64_t a, uint64_t b) {

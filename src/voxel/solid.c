@@ -38,8 +38,7 @@ static bool has_cones(const vxm_shape *shape, size_t begin) {
 }
 
 int vxm_run_buffers(const vxm_shape *shape) {
-  if (shape->options->mode == VXM_MODE_SURFACE || vxm_one_voter(shape->options) ||
-      vxm_voted_begin(shape) == shape->facets.split.part_count)
+  if (vxm_one_voter(shape->options) || vxm_voted_begin(shape) == shape->facets.split.part_count)
     return 0;
   bool decide = vxm_caps_wanted(shape->options);
   if (vxm_voted_begin(shape) + 1 == shape->facets.split.part_count)
