@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model.h"
 #include "voxel/confidence.h"
+#include "voxel/orient.h"
 #include "voxel/surface.h"
 
 #include <inttypes.h>
@@ -89,10 +90,30 @@ static bool wants_shell(const vxm_model *model) {
 }
 
 int vxm_model_windows_held(const vxm_model *model) {
-  /* A byte per voxel is eight bits, beside what closed parts fill. */
-  int confidence = model->options.confidence ? 8 + 1 : 0;
   int buffers = vxm_model_wants_solid(model) ? vxm_run_buffers(&model->shape) : 0;
-  return 1 + wants_shell(model) + confidence + (confidence > 0 && buffers < 4 ? 4 : buffers);
+  if (model->options
+          .confidence) /* a byte per voxel, four voters, what is contested and what closed parts fill */
+    buffers = 8 + 6;
+  return 1 + wants_shell(model) + buffers;
+}
+
+/** What deciding open parts takes beside windows: patches and trees, the grids by which they are turned, and
+ * slabs along slices. */
+static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) {
+  const vxm_shape *s = &model->shape;
+  const vxm_facets *facets = &s->facets;
+  bool winding = model->options.method == VXM_METHOD_WINDING;
+  size_t begin = winding ? 0 : vxm_voted_begin(s), end = facets->split.part_count;
+  uint64_t threads = (uint64_t)vxm_context_threads(model->context);
+  uint64_t bins = 5 * threads * (uint64_t)(shape->slow_dim + shape->middle_dim) * sizeof(vxm_bin);
+  bool one = vxm_one_voter(&model->options);
+  if (begin >= end && !one)
+    return bins;
+  uint64_t slabs = threads * shape->row_words * (uint64_t)shape->slow_dim * sizeof(uint64_t);
+  if (one || !vxm_caps_wanted(&model->options))
+    return bins + slabs;
+  uint64_t triangles = begin < end ? facets->parts[end - 1].end - facets->parts[begin].begin : 0;
+  return bins + slabs + triangles * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
 }
 
 vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
@@ -114,6 +135,7 @@ vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, cons
   double round = 2 * sizeof(uint64_t) * vxm_crossings_round(model->context);
   if (worst) /* a bin keeps a slab of records of a part before it becomes a bitmap */
     demand.windows += 2 * voters * (int)threads;
+  demand.fixed += decision_bytes(model, shape);
   double crossings = worst ? fmin(round, bound) : bound;
   demand.fixed += crossings < 0x1p62 ? (uint64_t)crossings : UINT64_C(1) << 62;
   if (wants_shell(model)) /* two slices more of the solid */
