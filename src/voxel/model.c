@@ -133,7 +133,8 @@ vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const doubl
   vxm_wound_destroy(&run->open_wound);
   vxm_wound_destroy(&run->all_wound);
   vxm_lattice lattice = vxm_lattice_of(space);
-  return vxm_placed_set(&run->placed, facets, &lattice, transform, vxm_run_apexes(&model->shape), error);
+  bool apexes = confidence || vxm_run_apexes(&model->shape);
+  return vxm_placed_set(&run->placed, facets, &lattice, transform, apexes, error);
 }
 
 /** The surface of the whole grid. */
