@@ -5,6 +5,7 @@
 
 #include "shapes.h"
 
+#include "base/context_struct.h"
 #include "grid/bitgrid.h"
 #include "voxel/lattice.h"
 #include "voxel/voxelize.h"
@@ -112,15 +113,14 @@ static inline vxm_context *context_of(int threads, uint64_t limit) {
   return made;
 }
 
-/** Takes the memory of a context but for about `left` bytes; to be freed. */
-static inline void *leave_memory(vxm_context *owner, size_t left) {
-  enum { BLOCK_EXTRA = 192 };
-  size_t now = vxm_memory_left(owner);
-  if (now < left + BLOCK_EXTRA)
-    return NULL;
-  void *ballast = vxm_alloc(owner, now - left - BLOCK_EXTRA, 1, NULL);
-  assert_non_null(ballast);
-  return ballast;
+/** Leaves a context so many bytes; SIZE_MAX lifts the limit. */
+static inline void leave_memory(vxm_context *owner, size_t left) {
+  size_t used = atomic_load(&owner->used);
+  owner->limit = left > SIZE_MAX - used ? SIZE_MAX : used + left;
+}
+
+static inline size_t memory_used(vxm_context *owner) {
+  return atomic_load(&owner->used);
 }
 
 static inline vxm_space engine_space(int64_t nx, int64_t ny, int64_t nz) {
