@@ -227,6 +227,7 @@ static void warn(vxm_model *model, const vxm_voxelize_report *report) {
 
 void vxm_model_end(vxm_model *model, vxm_voxelize_report *report, int64_t voxels, uint64_t hash) {
   const vxm_split *split = &model->shape.facets.split;
+  model->notes = (vxm_notes){0}; /* a run may be ended twice: for its grid, and for the file of that */
   *report = (vxm_voxelize_report){
       .parts = (int64_t)split->part_count,
       .closed_parts = (int64_t)split->kind_end[VXM_PART_CLOSED],
