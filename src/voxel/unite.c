@@ -116,7 +116,8 @@ static void flip_piece(uint64_t *words, const vxm_bin_piece *piece, extent *flip
     flip(words, piece->data, piece->count, flipped);
     return;
   }
-  /* A bitmap is as large as a full slab: behind the layers of the last one it is zero, and no word is there. */
+  /* A bitmap is as large as a full slab: behind the layers of the last one it is zero, and no word is there.
+   */
   for (size_t w = 0; w < piece->count; w++)
     if (piece->data[w]) {
       words[w] ^= piece->data[w];

@@ -280,7 +280,8 @@ static inline vxm_soup *random_soup(vxm_context *owner, uint64_t seed, int kind,
     break;
   case 6: /* closed and open parts over each other */
     for (uint32_t i = 0; i < 6; i++)
-      random_octahedron(soup, &rng, i % 2 ? low : out_low, i % 2 ? high : out_high, i % 3 == 0 ? 1 + i / 3 : 0);
+      random_octahedron(soup, &rng, i % 2 ? low : out_low, i % 2 ? high : out_high,
+                        i % 3 == 0 ? 1 + i / 3 : 0);
     break;
   default: /* one open part with a large hole, and one behind the grid */
     triangle_box(soup, low, high, 1 + (uint32_t)vxm_rng_below(&rng, 3), false);

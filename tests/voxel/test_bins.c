@@ -307,8 +307,7 @@ static void test_rounds_give_the_same(void **state) {
     rounds[pass / 2] = rounds_of(soup, &space);
     for (int w = 0; w < 3; w++) {
       vxm_voxelize_report report;
-      vxm_grid *grid =
-          engine_method(soup, &space, (vxm_method)(VXM_METHOD_X + w), VXM_PARTS_GROUP, &report);
+      vxm_grid *grid = engine_method(soup, &space, (vxm_method)(VXM_METHOD_X + w), VXM_PARTS_GROUP, &report);
       assert_true(pass == 0 || hash[w] == report.hash);
       assert_int_equal(report.parts, 24);
       hash[w] = report.hash;

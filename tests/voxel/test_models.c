@@ -23,7 +23,8 @@ static vxm_soup *transformed(const vxm_soup *soup, const double m[12]) {
   for (size_t v = 0; v < soup->vertex_count; v++) {
     const double *p = vxm_position(soup, v);
     for (int r = 0; r < 3; r++)
-      copy->positions[3 * v + (size_t)r] = m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3];
+      copy->positions[3 * v + (size_t)r] =
+          m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3];
   }
   return copy;
 }
@@ -196,7 +197,8 @@ static void test_grids_of_one_model_are_those_of_fresh_models(void **state) {
     for (int i = 0; i < (options.method == VXM_METHOD_WINDING ? 3 : 6); i++) {
       vxm_space space = random_space(&rng);
       vxm_voxelize_report want_report, report;
-      vxm_grid *want = engine_solid(soup, &space, &options, &want_report), *grid = engine_grid(context, &space);
+      vxm_grid *want = engine_solid(soup, &space, &options, &want_report),
+               *grid = engine_grid(context, &space);
       assert_int_equal(vxm_model_voxelize(grid, &report, model, NULL, NULL), VXM_OK);
       assert_same_grid(want, grid);
       assert_equal_reports(&want_report, &report);
