@@ -134,7 +134,8 @@ static void test_files_of_the_default(void **state) {
   vxm_space space = engine_space(200, 190, 210);
   for (int k = 0; k < 4; k++) {
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-    check_formats(&options, kinds[k], &space, 1 + k % 3, 2, true);
+    /* What stays open may ask the winding number, which takes more than these grids do. */
+    check_formats(&options, kinds[k], &space, 1 + k % 3, kinds[k] < 4 ? 1 : 2, true);
   }
 }
 
@@ -154,10 +155,10 @@ static void test_files_of_winding_numbers(void **state) {
   (void)state;
   vxm_space space = engine_space(60, 50, 70);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  check_formats(&options, 3, &space, 1, 1, false);
-  check_formats(&options, 6, &space, 2, 1, false);
+  check_formats(&options, 3, &space, 1, 1, true);
+  check_formats(&options, 6, &space, 2, 1, true);
   options.method = VXM_METHOD_WINDING;
-  check_formats(&options, 0, &space, 1, 1, false);
+  check_formats(&options, 0, &space, 1, 1, true);
 }
 
 /** Meshes of the surface, the surface, and the confidence need the whole grid. */

@@ -38,7 +38,7 @@ static void put_some(vxm_bins *bins, size_t worker, vxm_bin *bin, vxm_rng *rng, 
 /** What comes out of a bin is what went in, part after part. */
 static void check_bin(const vxm_bins *bins, vxm_bin *bin, const bool began[PARTS],
                       uint64_t words[PARTS][SLAB_WORDS_MAX], const size_t records[PARTS]) {
-  vxm_bin_reader reader = vxm_bin_read(bin);
+  vxm_bin_reader reader = vxm_bin_read(bin, false);
   for (uint32_t part = 0; part < PARTS; part++) {
     if (!began[part])
       continue;
@@ -352,7 +352,7 @@ static void test_crossings_stay_below_their_bound(void **state) {
                               .columns_count = 1,
                               .bins = &bins};
       vxm_kernels_get()->raster(&task);
-      vxm_bin_reader reader = vxm_bin_read(vxm_bins_at(&bins, 0, 0, 0));
+      vxm_bin_reader reader = vxm_bin_read(vxm_bins_at(&bins, 0, 0, 0), false);
       vxm_bin_piece piece;
       size_t crossings = 0;
       while (reader.part != VXM_BIN_NONE)
