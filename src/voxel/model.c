@@ -181,7 +181,8 @@ vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const doubl
   vxm_lattice lattice = vxm_lattice_of(space);
   vxm_shelling_begin(&model->shelling);
   if (vxm_model_wants_solid(model))
-    status = vxm_placed_set(&run->placed, facets, &lattice, transform, confidence || vxm_run_apexes(&model->shape), error);
+    status = vxm_placed_set(&run->placed, facets, &lattice, transform,
+                            confidence || vxm_run_apexes(&model->shape), error);
   if (status != VXM_OK || !vxm_model_wants_faces(model))
     return status;
   if (model->surface)
