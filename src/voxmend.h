@@ -527,7 +527,7 @@ VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, con
 
 /**
  * A mesh made ready for voxelizing: its parts are found, its holes capped. Making one costs more than a small
- * grid does; every grid after the first costs no allocation.
+ * grid does; all its grids share its memory.
  */
 typedef struct vxm_model vxm_model;
 
@@ -547,7 +547,7 @@ VXM_API void vxm_model_destroy(vxm_model *model);
  * time.
  *
  * @param grid      says the space
- * @param report    NULL = not wanted, which saves counting and hashing
+ * @param report    NULL = not wanted, nor are warnings, which saves counting and hashing
  * @param transform NULL, or the 3 x 4 matrix, row after row, that takes (x, y, z, 1) of the mesh to where it
  * is voxelized, in model units
  * @return as vxm_voxelize; VXM_ERROR_ARGUMENT too for a matrix that is not finite or has determinant 0. After

@@ -442,18 +442,24 @@ static int read_like(cli_run *cli, vxm_space *out, const char *path) {
   return CLI_DONE;
 }
 
+static void warn_of_model(cli_run *cli, const request *given, const vxm_model *model) {
+  for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
+    cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
+}
+
 /** The confidence is written beside the grid, which is therefore made as a whole. */
-static int write_with_confidence(cli_run *cli, const request *given, outcome *results) {
+static int write_with_confidence(cli_run *cli, const request *given, outcome *results, vxm_model *model) {
   double start = cli_clock();
   vxm_grid *grid = NULL;
-  if (vxm_voxelize(&grid, &results->voxelize, results->input.mesh, &given->voxelize, &cli->error) != VXM_OK)
-    return cli_fail(cli);
-  cli_warn_grid(cli, given->input, grid);
+  vxm_status status = vxm_grid_create(&grid, cli->context, &results->space, &cli->error);
+  if (status == VXM_OK)
+    status = vxm_model_voxelize(grid, &results->voxelize, model, NULL, &cli->error);
   double made = cli_clock();
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = given->format;
-  vxm_status status = vxm_grid_write(grid, given->output, &options, &cli->error);
-  results->voxelize_ms = made - start;
+  if (status == VXM_OK)
+    status = vxm_grid_write(grid, given->output, &options, &cli->error);
+  results->voxelize_ms += made - start;
   results->write_ms = cli_clock() - made;
   if (status == VXM_OK) {
     cli->made = given->output;
@@ -461,7 +467,10 @@ static int write_with_confidence(cli_run *cli, const request *given, outcome *re
     status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
   }
   vxm_grid_destroy(grid);
-  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  warn_of_model(cli, given, model);
+  return CLI_DONE;
 }
 
 static int write_model(cli_run *cli, request *given, outcome *results, vxm_model *model) {
@@ -479,8 +488,7 @@ static int write_model(cli_run *cli, request *given, outcome *results, vxm_model
   cli->made_format = given->format;
   results->write_ms = results->voxelize.write_ms;
   results->voxelize_ms += cli_clock() - start - results->write_ms;
-  for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
-    cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
+  warn_of_model(cli, given, model);
   return CLI_DONE;
 }
 
@@ -505,7 +513,7 @@ static int make_file(cli_run *cli, request *given, outcome *results) {
     summarize_estimate(cli, given, results);
   }
   if (result == CLI_DONE && !given->dry_run)
-    result = given->confidence ? write_with_confidence(cli, given, results)
+    result = given->confidence ? write_with_confidence(cli, given, results, model)
                                : write_model(cli, given, results, model);
   vxm_model_destroy(model);
   return result;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model.h"
 #include "voxel/confidence.h"
+#include "voxel/orient.h"
 #include "voxel/surface.h"
 
 #include <inttypes.h>
@@ -89,10 +90,30 @@ static bool wants_shell(const vxm_model *model) {
 }
 
 int vxm_model_windows_held(const vxm_model *model) {
-  /* A byte per voxel is eight bits, beside what closed parts fill. */
-  int confidence = model->options.confidence ? 8 + 1 : 0;
   int buffers = vxm_model_wants_solid(model) ? vxm_run_buffers(&model->shape) : 0;
-  return 1 + wants_shell(model) + confidence + (confidence > 0 && buffers < 4 ? 4 : buffers);
+  if (model->options
+          .confidence) /* a byte per voxel, four voters, what is contested and what closed parts fill */
+    buffers = 8 + 6;
+  return 1 + wants_shell(model) + buffers;
+}
+
+/** What deciding open parts takes beside windows: patches and trees, the grids by which they are turned, and
+ * slabs along slices. */
+static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) {
+  const vxm_shape *s = &model->shape;
+  const vxm_facets *facets = &s->facets;
+  bool winding = model->options.method == VXM_METHOD_WINDING;
+  size_t begin = winding ? 0 : vxm_voted_begin(s), end = facets->split.part_count;
+  uint64_t threads = (uint64_t)vxm_context_threads(model->context);
+  uint64_t bins = 5 * threads * (uint64_t)(shape->slow_dim + shape->middle_dim) * sizeof(vxm_bin);
+  bool one = vxm_one_voter(&model->options);
+  if (begin >= end && !one)
+    return bins;
+  uint64_t slabs = threads * shape->row_words * (uint64_t)shape->slow_dim * sizeof(uint64_t);
+  if (one || !vxm_caps_wanted(&model->options))
+    return bins + slabs;
+  uint64_t triangles = begin < end ? facets->parts[end - 1].end - facets->parts[begin].begin : 0;
+  return bins + slabs + triangles * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
 }
 
 vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
@@ -114,6 +135,7 @@ vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, cons
   double round = 2 * sizeof(uint64_t) * vxm_crossings_round(model->context);
   if (worst) /* a bin keeps a slab of records of a part before it becomes a bitmap */
     demand.windows += 2 * voters * (int)threads;
+  demand.fixed += decision_bytes(model, shape);
   double crossings = worst ? fmin(round, bound) : bound;
   demand.fixed += crossings < 0x1p62 ? (uint64_t)crossings : UINT64_C(1) << 62;
   if (wants_shell(model)) /* two slices more of the solid */
@@ -159,7 +181,8 @@ vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const doubl
   vxm_lattice lattice = vxm_lattice_of(space);
   vxm_shelling_begin(&model->shelling);
   if (vxm_model_wants_solid(model))
-    status = vxm_placed_set(&run->placed, facets, &lattice, transform, vxm_run_apexes(&model->shape), error);
+    status = vxm_placed_set(&run->placed, facets, &lattice, transform,
+                            confidence || vxm_run_apexes(&model->shape), error);
   if (status != VXM_OK || !vxm_model_wants_faces(model))
     return status;
   if (model->surface)
@@ -256,6 +279,7 @@ static void warn(vxm_model *model, const vxm_voxelize_report *report) {
 
 void vxm_model_end(vxm_model *model, vxm_voxelize_report *report, int64_t voxels, uint64_t hash) {
   const vxm_split *split = &model->shape.facets.split;
+  model->notes = (vxm_notes){0}; /* a run may be ended twice: for its grid, and for the file of that */
   *report = (vxm_voxelize_report){
       .parts = (int64_t)split->part_count,
       .closed_parts = (int64_t)split->kind_end[VXM_PART_CLOSED],
