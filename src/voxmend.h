@@ -400,9 +400,19 @@ typedef enum vxm_fit {
 /** Which voxels of a mesh are set. */
 typedef enum vxm_mode {
   VXM_MODE_SOLID = 0, /**< centre inside */
-  VXM_MODE_SURFACE,   /**< closed box meets a face */
+  VXM_MODE_SURFACE,   /**< on the surface, as vxm_surface_kind says */
   VXM_MODE_BOTH       /**< either: thin parts and sheets are kept */
 } vxm_mode;
+
+/** Which voxels are the surface. A shell is a part of the solid, so that it adds nothing in VXM_MODE_BOTH. */
+typedef enum vxm_surface_kind {
+  VXM_SURFACE_CONSERVATIVE = 0, /**< every voxel whose closed box meets a face, no more and no less */
+  VXM_SURFACE_THIN,             /**< 6-separating: no path over 6-neighbours crosses a face outside of it */
+  VXM_SURFACE_SHELL26, /**< voxels of the solid with an empty one among the 26 around; outside the grid all
+                          are empty */
+  VXM_SURFACE_SHELL18, /**< among the 18 that share a face or an edge */
+  VXM_SURFACE_SHELL6   /**< among the 6 that share a face */
+} vxm_surface_kind;
 
 typedef enum vxm_method {
   VXM_METHOD_VOTE = 0, /**< parity along x, y, z and the tetrahedra, combined by vxm_vote */
@@ -471,12 +481,13 @@ typedef struct vxm_voxelize_options {
   bool confidence;  /**< keep for every voxel how sure it is: vxm_grid_confidence */
   bool vote_always; /**< with `vote` majority, any or all: on closed parts too, where the voters agree anyway
                      */
+  vxm_surface_kind surface; /**< with `mode` surface and both */
 } vxm_voxelize_options;
 
 #define VXM_VOXELIZE_OPTIONS_INIT                                                                 \
   {                                                                                               \
     1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, \
-        VXM_MODE_SOLID, false, false                                                              \
+        VXM_MODE_SOLID, false, false, VXM_SURFACE_CONSERVATIVE                                    \
   }
 
 typedef struct vxm_voxelize_report {
@@ -516,7 +527,7 @@ VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, con
 
 /**
  * A mesh made ready for voxelizing: its parts are found, its holes capped. Making one costs more than a small
- * grid does; every grid after the first costs no allocation.
+ * grid does; all its grids share its memory.
  */
 typedef struct vxm_model vxm_model;
 
@@ -536,7 +547,7 @@ VXM_API void vxm_model_destroy(vxm_model *model);
  * time.
  *
  * @param grid      says the space
- * @param report    NULL = not wanted, which saves counting and hashing
+ * @param report    NULL = not wanted, nor are warnings, which saves counting and hashing
  * @param transform NULL, or the 3 x 4 matrix, row after row, that takes (x, y, z, 1) of the mesh to where it
  * is voxelized, in model units
  * @return as vxm_voxelize; VXM_ERROR_ARGUMENT too for a matrix that is not finite or has determinant 0. After

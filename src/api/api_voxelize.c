@@ -33,6 +33,8 @@ vxm_status vxm_check_voxelize_options(const vxm_voxelize_options *options, vxm_e
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: vote %d is unknown", (int)options->vote);
   if ((unsigned)options->mode > VXM_MODE_BOTH)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: mode %d is unknown", (int)options->mode);
+  if ((unsigned)options->surface > VXM_SURFACE_SHELL6)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: surface %d is unknown", (int)options->surface);
   if ((unsigned)options->cavities > VXM_CAVITIES_FILL)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: cavities %d is unknown", (int)options->cavities);
   if ((unsigned)options->parts > VXM_PARTS_WHOLE)

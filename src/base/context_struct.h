@@ -17,12 +17,12 @@ typedef struct vxm_pool {
   pthread_mutex_t mutex;
   pthread_cond_t wake, done;
   pthread_t *threads;
-  int started;      /**< workers that exist */
-  int participants; /**< workers that take part in the present round: those numbered 1 to this */
-  int busy;         /**< of these, those still at work */
-  pid_t process;    /**< the process that the pool belongs to */
-  uint64_t round;   /**< number of the present round */
-  bool quit;
+  int started;                /**< workers that exist */
+  int participants;           /**< workers that take part in the present round: those numbered 1 to this */
+  atomic_int busy;            /**< of these, those still at work */
+  pid_t process;              /**< the process that the pool belongs to */
+  atomic_uint_fast64_t round; /**< number of the present round; changed under the mutex */
+  atomic_bool quit;
   void (*function)(size_t task, int worker, void *payload);
   void *payload;
   size_t task_count;

@@ -19,6 +19,23 @@ void vxm_pool_init(vxm_pool *pool) {
   pthread_cond_init(&pool->done, NULL);
 }
 
+/**
+ * Waits a little for something that will mostly come within microseconds, before the thread goes to sleep:
+ * loops often follow each other closely, and waking a thread takes longer than many of them.
+ */
+#define WAIT_A_LITTLE(condition)                             \
+  for (int spin = 0; spin < SPINS && !(condition); spin++) { \
+    pause_a_moment();                                        \
+  }
+
+enum { SPINS = 1000 /**< some tens of microseconds */ };
+
+static inline void pause_a_moment(void) {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
 static void run_tasks(vxm_pool *pool, int worker) {
   for (;;) {
     size_t task = atomic_fetch_add_explicit(&pool->next_task, 1, memory_order_relaxed);
@@ -33,23 +50,25 @@ static void *worker_main(void *argument) {
   free(argument);
   vxm_pool *pool = start.pool;
   uint64_t seen = 0;
-  pthread_mutex_lock(&pool->mutex);
   for (;;) {
+    WAIT_A_LITTLE(atomic_load(&pool->quit) || atomic_load(&pool->round) != seen);
+    pthread_mutex_lock(&pool->mutex);
     while (!pool->quit && pool->round == seen)
       pthread_cond_wait(&pool->wake, &pool->mutex);
-    if (pool->quit)
-      break;
+    bool quit = pool->quit, takes_part = start.worker <= pool->participants;
     seen = pool->round;
-    if (start.worker > pool->participants)
-      continue; /* fewer tasks than workers */
     pthread_mutex_unlock(&pool->mutex);
+    if (quit)
+      return NULL;
+    if (!takes_part)
+      continue; /* fewer tasks than workers */
     run_tasks(pool, start.worker);
-    pthread_mutex_lock(&pool->mutex);
-    if (--pool->busy == 0)
+    if (atomic_fetch_sub(&pool->busy, 1) == 1) {
+      pthread_mutex_lock(&pool->mutex); /* so that the caller is not between looking and sleeping */
       pthread_cond_signal(&pool->done);
+      pthread_mutex_unlock(&pool->mutex);
+    }
   }
-  pthread_mutex_unlock(&pool->mutex);
-  return NULL;
 }
 
 /**
@@ -117,16 +136,19 @@ void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void
   pool->task_count = count;
   atomic_store_explicit(&pool->next_task, 0, memory_order_relaxed);
   pool->participants = count - 1 < (size_t)pool->started ? (int)(count - 1) : pool->started;
-  pool->busy = pool->participants;
-  pool->round++;
+  atomic_store(&pool->busy, pool->participants);
+  atomic_fetch_add(&pool->round, 1);
   pthread_cond_broadcast(&pool->wake);
   pthread_mutex_unlock(&pool->mutex);
 
   run_tasks(pool, 0);
 
-  pthread_mutex_lock(&pool->mutex);
-  while (pool->busy > 0)
-    pthread_cond_wait(&pool->done, &pool->mutex);
-  pthread_mutex_unlock(&pool->mutex);
+  WAIT_A_LITTLE(atomic_load(&pool->busy) == 0);
+  if (atomic_load(&pool->busy) > 0) {
+    pthread_mutex_lock(&pool->mutex);
+    while (atomic_load(&pool->busy) > 0)
+      pthread_cond_wait(&pool->done, &pool->mutex);
+    pthread_mutex_unlock(&pool->mutex);
+  }
   pthread_mutex_unlock(&pool->owner);
 }

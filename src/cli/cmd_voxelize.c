@@ -12,6 +12,7 @@ enum {
   KEY_PAD,
   KEY_LIKE,
   KEY_MODE,
+  KEY_SURFACE,
   KEY_METHOD,
   KEY_VOTE,
   KEY_PARTS,
@@ -39,8 +40,12 @@ static const cli_option known_options[] = {
     {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1", "cover exactly this box, whatever the model's size"},
     {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
     {KEY_MODE, "mode", "solid|surface|both",
-     "solid: voxels whose centre is inside; surface: voxels whose box meets a face;\n"
-     "both: either, which keeps sheets and parts thinner than a voxel [solid]"},
+     "solid: voxels whose centre is inside; surface: those of --surface; both:\n"
+     "either, which keeps sheets and parts thinner than a voxel [solid]"},
+    {KEY_SURFACE, "surface", "conservative|thin|shell26|shell18|shell6",
+     "conservative: every voxel whose box meets a face; thin: 6-separating, no path\n"
+     "over faces of voxels crosses it; shell26, 18, 6: voxels of the solid beside an\n"
+     "empty one, over corners, edges or faces [conservative]"},
     {KEY_METHOD, "method", "vote|x|y|z|tetra|winding",
      "who says what is inside: parity along one axis, the XOR of tetrahedra, a\n"
      "vote of these four (they agree wherever the mesh is closed), or the winding\n"
@@ -64,7 +69,8 @@ static const cli_option known_options[] = {
 
 typedef struct request {
   const char *input, *output, *format, *like, *confidence;
-  bool resolution, size, fit, pad, bounds, vote, no_repair, repair_options, dry_run; /**< which were given */
+  bool resolution, size, fit, pad, bounds, vote, surface, no_repair, repair_options,
+      dry_run; /**< which were given */
   vxm_repair_options repair;
   vxm_voxelize_options voxelize;
 } request;
@@ -150,6 +156,7 @@ static int read_space_option(cli_run *cli, request *out, int key, const char *va
 
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const modes[] = {"solid", "surface", "both", NULL};
+  static const char *const surfaces[] = {"conservative", "thin", "shell26", "shell18", "shell6", NULL};
   static const char *const methods[] = {"vote", "x", "y", "z", "tetra", "winding", NULL};
   static const char *const votes[] = {"auto", "majority", "any", "all", NULL};
   static const char *const parts[] = {"auto", "group", "whole", NULL};
@@ -165,6 +172,11 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_MODE:
     result = read_choice(cli, &choice, "mode", value, modes);
     out->voxelize.mode = (vxm_mode)choice;
+    return result;
+  case KEY_SURFACE:
+    out->surface = true;
+    result = read_choice(cli, &choice, "surface", value, surfaces);
+    out->voxelize.surface = (vxm_surface_kind)choice;
     return result;
   case KEY_METHOD:
     result = read_choice(cli, &choice, "method", value, methods);
@@ -224,6 +236,10 @@ static int check_conflicts(cli_run *cli, const request *given) {
     return cli_usage(cli, "--bounds is covered exactly; leave out --fit");
   if (given->vote && given->voxelize.method != VXM_METHOD_VOTE)
     return cli_usage(cli, "--vote goes with --method vote only");
+  if (given->surface && given->voxelize.mode == VXM_MODE_SOLID)
+    return cli_usage(cli, "--surface goes with --mode surface or both");
+  if (given->voxelize.mode == VXM_MODE_BOTH && given->voxelize.surface >= VXM_SURFACE_SHELL26)
+    return cli_usage(cli, "a shell is a part of the solid; with --mode both leave out --surface");
   if (given->confidence && !is_npy(given->confidence))
     return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
   if (given->confidence && given->output && strcmp(given->confidence, given->output) == 0)
@@ -394,18 +410,24 @@ static int read_like(cli_run *cli, vxm_space *out, const char *path) {
   return CLI_DONE;
 }
 
+static void warn_of_model(cli_run *cli, const request *given, const vxm_model *model) {
+  for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
+    cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
+}
+
 /** The confidence is written beside the grid, which is therefore made as a whole. */
-static int write_with_confidence(cli_run *cli, const request *given, outcome *results) {
+static int write_with_confidence(cli_run *cli, const request *given, outcome *results, vxm_model *model) {
   double start = cli_clock();
   vxm_grid *grid = NULL;
-  if (vxm_voxelize(&grid, &results->voxelize, results->input.mesh, &given->voxelize, &cli->error) != VXM_OK)
-    return cli_fail(cli);
-  cli_warn_grid(cli, given->input, grid);
+  vxm_status status = vxm_grid_create(&grid, cli->context, &results->space, &cli->error);
+  if (status == VXM_OK)
+    status = vxm_model_voxelize(grid, &results->voxelize, model, NULL, &cli->error);
   double made = cli_clock();
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = given->format;
-  vxm_status status = vxm_grid_write(grid, given->output, &options, &cli->error);
-  results->voxelize_ms = made - start;
+  if (status == VXM_OK)
+    status = vxm_grid_write(grid, given->output, &options, &cli->error);
+  results->voxelize_ms += made - start;
   results->write_ms = cli_clock() - made;
   if (status == VXM_OK) {
     cli->made = given->output;
@@ -413,7 +435,10 @@ static int write_with_confidence(cli_run *cli, const request *given, outcome *re
     status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
   }
   vxm_grid_destroy(grid);
-  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  warn_of_model(cli, given, model);
+  return CLI_DONE;
 }
 
 static int write_model(cli_run *cli, const request *given, outcome *results, vxm_model *model) {
@@ -427,8 +452,7 @@ static int write_model(cli_run *cli, const request *given, outcome *results, vxm
   cli->made_format = given->format;
   results->write_ms = results->voxelize.write_ms;
   results->voxelize_ms += cli_clock() - start - results->write_ms;
-  for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
-    cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
+  warn_of_model(cli, given, model);
   return CLI_DONE;
 }
 
@@ -453,7 +477,7 @@ static int make_file(cli_run *cli, const request *given, outcome *results) {
     summarize_estimate(cli, given, results);
   }
   if (result == CLI_DONE && !given->dry_run)
-    result = given->confidence ? write_with_confidence(cli, given, results)
+    result = given->confidence ? write_with_confidence(cli, given, results, model)
                                : write_model(cli, given, results, model);
   vxm_model_destroy(model);
   return result;

@@ -19,9 +19,9 @@ typedef struct plan {
   uint64_t memory;
 } plan;
 
-/** Where the surface or the confidence is wanted the grid is made as one window. */
+/** Where the confidence or a mesh is wanted the grid is made as one window. */
 static bool needs_whole(const vxm_model *model, const plan *p) {
-  return !p->file.streams || model->options.mode != VXM_MODE_SOLID || model->options.confidence;
+  return !p->file.streams || model->options.confidence;
 }
 
 static uint64_t saturating_sum(uint64_t a, uint64_t b) {
@@ -160,16 +160,15 @@ static vxm_status write_windows(stream *s, const char *path, const char *format,
   return status;
 }
 
-static vxm_status write_whole(stream *s, const char *path, const char *format, vxm_error *error) {
+static vxm_status write_whole(stream *s, vxm_voxelize_report *report, const char *path, const char *format,
+                              vxm_error *error) {
   vxm_grid *grid;
-  vxm_voxelize_report report;
   double start = now_ms();
-  vxm_status status = vxm_voxelize_grid(&grid, &report, s->model, s->space, error);
+  vxm_status status = vxm_voxelize_grid(&grid, report, s->model, s->space, error);
   double made = now_ms();
   s->fill_ms = made - start;
   if (status != VXM_OK)
     return status;
-  s->sum = (vxm_sum){report.voxels, report.hash};
   status = vxm_gridio_write(grid, path, format, error);
   s->write_ms = now_ms() - made;
   vxm_grid_destroy(grid);
@@ -183,11 +182,15 @@ vxm_status vxm_stream_write(vxm_voxelize_report *report, vxm_model *model, const
   if (status != VXM_OK)
     return status;
   stream s = {.model = model, .plan = &p, .space = space};
-  status =
-      needs_whole(model, &p) ? write_whole(&s, path, format, error) : write_windows(&s, path, format, error);
+  if (needs_whole(model, &p))
+    status = write_whole(&s, report, path, format, error);
+  else {
+    status = write_windows(&s, path, format, error);
+    if (status == VXM_OK)
+      vxm_model_end(model, report, s.sum.count, s.sum.hash);
+  }
   if (status != VXM_OK)
     return status;
-  vxm_model_end(model, report, s.sum.count, s.sum.hash);
   report->fill_ms = s.fill_ms;
   report->write_ms = s.write_ms;
   return VXM_OK;

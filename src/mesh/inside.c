@@ -112,11 +112,12 @@ static void set_cells(binning *b, double wanted) {
   }
 }
 
-/** Chooses as many cells as triangles, or fewer if they are so large that they would be in too many cells. */
+/** Chooses as many cells as triangles, or fewer if they are so large that they would be in too many cells: at
+ * last a single one, also of a box that is much longer than wide. */
 static void choose_cells(binning *b) {
   double wanted = (double)b->inside->face_count;
   for (;; wanted /= 4) {
-    set_cells(b, wanted > 1 ? wanted : 1);
+    set_cells(b, wanted);
     b->triangles = b->entries = 0;
     for_each_triangle(b->inside, count_entries, b);
     if (b->entries <= ENTRIES_PER_TRIANGLE * b->triangles || b->bins->cells[0] * b->bins->cells[1] <= 1)

@@ -83,7 +83,7 @@ static vxm_status reserve(vxm_bins *bins, size_t count, vxm_error *error) {
     vxm_free(bins->context, bins->trash);
     bins->trash = vxm_alloc(bins->context, bins->workers * (VXM_BIN_SLACK + 1), sizeof *bins->trash, &local);
     bins->arenas = vxm_calloc(bins->context, bins->workers, sizeof *bins->arenas, &local);
-    bins->arena_capacity = bins->arenas ? bins->workers : 0;
+    bins->arena_capacity = bins->arenas && bins->trash ? bins->workers : 0;
   }
   if (local.code != VXM_OK && error)
     *error = local;

@@ -26,4 +26,10 @@ typedef struct vxm_columns {
   size_t facet_begin, facet_end;
 } vxm_columns;
 
+/** The end of the last part's facets that can have one of the roles. */
+static inline size_t vxm_roles_end(const vxm_facets *facets, size_t part, unsigned roles) {
+  const vxm_part *p = &facets->parts[part];
+  return roles & VXM_FACET_CONE ? p->end : roles & VXM_FACET_CAP ? p->cones : p->caps;
+}
+
 #endif

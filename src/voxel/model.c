@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model.h"
 #include "voxel/confidence.h"
+#include "voxel/orient.h"
 #include "voxel/surface.h"
 
 #include <inttypes.h>
@@ -61,6 +62,8 @@ void vxm_model_destroy(vxm_model *model) {
   vxm_context *context = model->context;
   vxm_free(context, model->run.touched);
   vxm_run_destroy(&model->run);
+  vxm_shelling_destroy(&model->shelling, context);
+  vxm_surface_destroy(model->surface);
   vxm_turns_destroy(&model->shape.open_turns);
   vxm_turns_destroy(&model->shape.all_turns);
   vxm_workspace_destroy(&model->shape.workspace);
@@ -69,31 +72,74 @@ void vxm_model_destroy(vxm_model *model) {
   vxm_context_release(context);
 }
 
+static bool is_shell(const vxm_voxelize_options *options) {
+  return options->surface >= VXM_SURFACE_SHELL26;
+}
+
+bool vxm_model_wants_faces(const vxm_model *model) {
+  return model->options.mode != VXM_MODE_SOLID && !is_shell(&model->options);
+}
+
+bool vxm_model_wants_solid(const vxm_model *model) {
+  return model->options.mode != VXM_MODE_SURFACE || is_shell(&model->options);
+}
+
+/** A shell alone; with the solid it is the solid. */
+static bool wants_shell(const vxm_model *model) {
+  return model->options.mode == VXM_MODE_SURFACE && is_shell(&model->options);
+}
+
 int vxm_model_windows_held(const vxm_model *model) {
-  /* A byte per voxel is eight bits, beside what closed parts fill. */
-  int confidence = model->options.confidence ? 8 + 1 : 0;
-  int buffers = vxm_run_buffers(&model->shape);
-  return 1 + confidence + (confidence > 0 && buffers < 4 ? 4 : buffers);
+  int buffers = vxm_model_wants_solid(model) ? vxm_run_buffers(&model->shape) : 0;
+  if (model->options
+          .confidence) /* a byte per voxel, four voters, what is contested and what closed parts fill */
+    buffers = 8 + 6;
+  return 1 + wants_shell(model) + buffers;
+}
+
+/** What deciding open parts takes beside windows: patches and trees, the grids by which they are turned, and
+ * slabs along slices. */
+static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) {
+  const vxm_shape *s = &model->shape;
+  const vxm_facets *facets = &s->facets;
+  bool winding = model->options.method == VXM_METHOD_WINDING;
+  size_t begin = winding ? 0 : vxm_voted_begin(s), end = facets->split.part_count;
+  uint64_t threads = (uint64_t)vxm_context_threads(model->context);
+  uint64_t bins = 5 * threads * (uint64_t)(shape->slow_dim + shape->middle_dim) * sizeof(vxm_bin);
+  bool one = vxm_one_voter(&model->options);
+  if (begin >= end && !one)
+    return bins;
+  uint64_t slabs = threads * shape->row_words * (uint64_t)shape->slow_dim * sizeof(uint64_t);
+  if (one || !vxm_caps_wanted(&model->options))
+    return bins + slabs;
+  uint64_t triangles = begin < end ? facets->parts[end - 1].end - facets->parts[begin].begin : 0;
+  return bins + slabs + triangles * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
 }
 
 vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
                             bool worst) {
   const vxm_facets *facets = &model->shape.facets;
   uint64_t threads = (uint64_t)vxm_context_threads(model->context);
+  uint64_t surface = vxm_model_wants_faces(model) ? vxm_surface_bytes(model->shape.soup, (int)threads) : 0;
+  if (!vxm_model_wants_solid(model))
+    return (vxm_demand){surface, vxm_model_windows_held(model)};
   bool polled = vxm_voted_begin(&model->shape) < facets->split.part_count;
   int voters = polled ? 4 : 1;
   uint64_t points = facets->point_count * sizeof *model->run.placed.narrow;
   uint64_t slab = (uint64_t)vxm_max(VXM_SLAB_WORDS, (int64_t)shape->slice_words) * sizeof(uint64_t);
   /* A slab for each voter and thread, some slices for what is carried on, and the bins themselves. */
-  vxm_demand demand = {points + (5 * threads + 4) * slab + (UINT64_C(1) << 20),
+  vxm_demand demand = {points + surface + (5 * threads + 4) * slab + (UINT64_C(1) << 20),
                        vxm_model_windows_held(model)};
   /* Chunks of records are half full at worst. */
   double bound = 2 * sizeof(uint64_t) * vxm_crossings_bound(facets, space, NULL) * voters;
   double round = 2 * sizeof(uint64_t) * vxm_crossings_round(model->context);
   if (worst) /* a bin keeps a slab of records of a part before it becomes a bitmap */
     demand.windows += 2 * voters * (int)threads;
+  demand.fixed += decision_bytes(model, shape);
   double crossings = worst ? fmin(round, bound) : bound;
   demand.fixed += crossings < 0x1p62 ? (uint64_t)crossings : UINT64_C(1) << 62;
+  if (wants_shell(model)) /* two slices more of the solid */
+    demand.fixed += 2 * (uint64_t)demand.windows * shape->slice_words * sizeof(uint64_t);
   return demand;
 }
 
@@ -133,39 +179,45 @@ vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const doubl
   vxm_wound_destroy(&run->open_wound);
   vxm_wound_destroy(&run->all_wound);
   vxm_lattice lattice = vxm_lattice_of(space);
-  return vxm_placed_set(&run->placed, facets, &lattice, transform, vxm_run_apexes(&model->shape), error);
+  vxm_shelling_begin(&model->shelling);
+  if (vxm_model_wants_solid(model))
+    status = vxm_placed_set(&run->placed, facets, &lattice, transform, vxm_run_apexes(&model->shape), error);
+  if (status != VXM_OK || !vxm_model_wants_faces(model))
+    return status;
+  if (model->surface)
+    return vxm_surface_place(model->surface, &lattice, transform, error);
+  return vxm_surface_create(&model->surface, model->shape.soup, &lattice, transform, error);
 }
 
-/** The surface of the whole grid. */
-static vxm_status add_surface(vxm_model *model, const vxm_window *window, vxm_error *error) {
-  vxm_grid grid = {.context = model->context,
-                   .space = model->space,
-                   .row_words = window->row_words,
-                   .slice_words = window->slice_words,
-                   .word_count = window->slice_words * (size_t)window->slow_dim,
-                   .words = window->words};
-  return vxm_surface_unite(&grid, model->shape.soup, &model->run.placed.lattice, model->run.confidence,
-                           error);
+static vxm_status fill_solid(const vxm_window *window, void *payload, vxm_error *error) {
+  vxm_run *run = payload;
+  vxm_status status = vxm_solid_fill(run, window, error);
+  return status == VXM_OK && run->confidence ? vxm_confidence_fill(run, window, error) : status;
+}
+
+static vxm_status fill_shell(vxm_model *model, const vxm_window *window, vxm_error *error) {
+  static const vxm_adjacency adjacency[] = {[VXM_SURFACE_SHELL26] = VXM_ADJACENT_26,
+                                            [VXM_SURFACE_SHELL18] = VXM_ADJACENT_18,
+                                            [VXM_SURFACE_SHELL6] = VXM_ADJACENT_6};
+  return vxm_shelling_fill(&model->shelling, window, adjacency[model->options.surface], fill_solid,
+                           &model->run, model->context, error);
 }
 
 vxm_status vxm_model_fill(vxm_model *model, const vxm_window *window, vxm_error *error) {
   vxm_run *run = &model->run;
-  vxm_mode mode = model->options.mode;
-  vxm_status status = VXM_OK;
-  if (mode == VXM_MODE_SURFACE) {
-    size_t depth = (size_t)(window->end - window->begin);
-    memset(window->words, 0, depth * window->slice_words * sizeof *window->words);
-    if (run->confidence) /* exact everywhere */
-      memset(run->confidence, 255,
-             (size_t)window->fast_dim * (size_t)window->middle_dim * (size_t)window->slow_dim);
-  } else {
-    status = vxm_solid_fill(run, window, error);
-    if (status == VXM_OK && run->confidence)
-      status = vxm_confidence_fill(run, window, error);
-  }
-  if (status == VXM_OK && mode != VXM_MODE_SOLID)
-    status = add_surface(model, window, error);
-  return status;
+  vxm_surface_kind kind = model->options.surface;
+  if (wants_shell(model))
+    return fill_shell(model, window, error);
+  bool solid = vxm_model_wants_solid(model);
+  vxm_status status = solid ? fill_solid(window, run, error) : VXM_OK;
+  if (status != VXM_OK || !vxm_model_wants_faces(model))
+    return status;
+  if (solid && run->confidence)
+    return vxm_surface_add_sure(model->surface, window, kind, run->confidence, error);
+  if (run->confidence) /* exact everywhere */
+    memset(run->confidence, 255,
+           (size_t)window->fast_dim * (size_t)window->middle_dim * (size_t)window->slow_dim);
+  return vxm_surface_add(model->surface, window, kind, !solid, error);
 }
 
 /* ---- Report and warnings ---- */
@@ -177,7 +229,7 @@ static void count_empty_parts(vxm_model *model, vxm_voxelize_report *report) {
   if (!vxm_one_voter(&model->options) && !run->added)
     for (size_t p = vxm_voted_begin(&model->shape); p < facets->split.part_count; p++)
       atomic_store_explicit(&run->touched[p], 0, memory_order_relaxed);
-  for (size_t p = 0; p < facets->split.part_count && model->options.mode != VXM_MODE_SURFACE; p++)
+  for (size_t p = 0; p < facets->split.part_count && vxm_model_wants_solid(model); p++)
     report->empty_parts += facets->parts[p].begin < facets->parts[p].end &&
                            !atomic_load_explicit(&run->touched[p], memory_order_relaxed);
 }
@@ -206,14 +258,14 @@ static void name_empty_parts(vxm_model *model, const vxm_voxelize_report *report
 
 static void warn(vxm_model *model, const vxm_voxelize_report *report) {
   vxm_notes *notes = &model->notes;
-  vxm_mode mode = model->options.mode;
-  if (report->voxels == 0 && mode != VXM_MODE_SOLID)
+  bool faces = vxm_model_wants_faces(model);
+  if (report->voxels == 0 && faces)
     vxm_note(notes, "no face meets the grid: check --bounds or --like");
   else if (report->voxels == 0)
     vxm_note(notes,
              "no voxel centre is inside: the model is open, flat or thinner than a voxel; try --mode both "
              "or a higher resolution (-r)");
-  else if (report->empty_parts > 0 && mode == VXM_MODE_SOLID)
+  else if (report->empty_parts > 0 && !faces)
     name_empty_parts(model, report);
   if (report->contested > 0)
     vxm_note(notes,

@@ -3,13 +3,17 @@
 #ifndef VXM_VOXEL_MODEL_H
 #define VXM_VOXEL_MODEL_H
 
+#include "voxel/shelling.h"
 #include "voxel/solid.h"
+#include "voxel/surface.h"
 
 struct vxm_model {
   vxm_context *context; /**< one reference held */
   vxm_voxelize_options options;
   vxm_shape shape;
   vxm_run run;
+  vxm_surface *surface; /**< of the present run; NULL before the first that wants it */
+  vxm_shelling shelling;
   vxm_space space; /**< of the present run */
   vxm_notes notes; /**< of the last run */
 };
@@ -29,6 +33,9 @@ typedef struct vxm_demand {
  * where `worst`, if all of them become bitmaps, of which each thread may have several. */
 vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
                             bool worst);
+/** Whether faces set voxels, and whether the solid is needed. */
+bool vxm_model_wants_faces(const vxm_model *model);
+bool vxm_model_wants_solid(const vxm_model *model);
 /** Windows of words that a run over a whole grid holds at once, its result included. */
 int vxm_model_windows_held(const vxm_model *model);
 
@@ -40,7 +47,7 @@ int vxm_model_windows_held(const vxm_model *model);
  */
 vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const double transform[12],
                            uint8_t *confidence, vxm_error *error);
-/** Replaces the words of a window of the run's grid. */
+/** Replaces the words of a window of the run's grid. Windows come in order, each where the last one ended. */
 vxm_status vxm_model_fill(vxm_model *model, const vxm_window *window, vxm_error *error);
 /** Ends a run: fills the report, and notes what there is to warn of. `voxels` and `hash` are of the grid. */
 void vxm_model_end(vxm_model *model, vxm_voxelize_report *report, int64_t voxels, uint64_t hash);

@@ -15,6 +15,8 @@ typedef struct look {
 
 static vxm_status look_begin(look *out, vxm_shape *shape, vxm_error *error) {
   vxm_context *context = shape->context;
+  out->run = (vxm_run){.shape = shape, .placed = {.context = context}};
+  out->run.open_wound.context = out->run.all_wound.context = context;
   vxm_space_options wanted = VXM_SPACE_OPTIONS_INIT;
   wanted.resolution[0] = VOXELS;
   wanted.pad = 2; /* the outside is asked, too */
@@ -22,8 +24,6 @@ static vxm_status look_begin(look *out, vxm_shape *shape, vxm_error *error) {
   vxm_status status = vxm_space_choose(&space, shape->soup, &wanted, error);
   if (status != VXM_OK)
     return status;
-  out->run = (vxm_run){.shape = shape, .placed = {.context = context}};
-  out->run.open_wound.context = out->run.all_wound.context = context;
   out->window = vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, 0, space.dims[2]);
   vxm_lattice lattice = vxm_lattice_of(&space);
   return vxm_placed_set(&out->run.placed, &shape->facets, &lattice, NULL, vxm_run_apexes(shape), error);

@@ -8,6 +8,11 @@
 
 #include "voxel/solid.h"
 
+/** Bytes that finding out and then using the turns of a triangle takes at most: neighbours, sides, tree. */
+#define VXM_TURNED_BYTES UINT64_C(320)
+/** Bytes of the grids that are looked at: five of 260 voxels along an axis, and scratch. */
+#define VXM_ORIENT_BYTES (UINT64_C(20) << 20)
+
 /** Fills shape->open_turns, for the parts that stay open, unless that has been done. */
 vxm_status vxm_orient_open(vxm_shape *shape, vxm_error *error);
 /** Fills shape->all_turns. */

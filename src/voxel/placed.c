@@ -166,8 +166,11 @@ vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vx
     if (status != VXM_OK)
       return status;
   }
-  for (size_t p = 0; apexes && p < facets->split.part_count; p++)
-    place_apex(placed, facets, p);
+  for (size_t p = 0; p < facets->split.part_count; p++)
+    if (apexes)
+      place_apex(placed, facets, p);
+    else if (!placed->wide) /* cones are looked at, if only to be left out */
+      memset(placed->narrow[vxm_apex_of(facets, p)], 0, sizeof *placed->narrow);
   return VXM_OK;
 }
 

@@ -133,7 +133,7 @@ static void shape(poll_state *state) {
     *columns = vxm_columns_of(window, axis);
     columns->roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
     columns->facet_begin = part->begin;
-    columns->facet_end = part->end;
+    columns->facet_end = vxm_roles_end(job->facets, job->part, columns->roles);
     columns->slab_shift = state->slabs.shift;
     if (axis == window->layout.slow) {
       columns->slab_axis = axis;

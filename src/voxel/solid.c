@@ -38,8 +38,7 @@ static bool has_cones(const vxm_shape *shape, size_t begin) {
 }
 
 int vxm_run_buffers(const vxm_shape *shape) {
-  if (shape->options->mode == VXM_MODE_SURFACE || vxm_one_voter(shape->options) ||
-      vxm_voted_begin(shape) == shape->facets.split.part_count)
+  if (vxm_one_voter(shape->options) || vxm_voted_begin(shape) == shape->facets.split.part_count)
     return 0;
   bool decide = vxm_caps_wanted(shape->options);
   if (vxm_voted_begin(shape) + 1 == shape->facets.split.part_count)
@@ -186,8 +185,8 @@ static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_
     return status;
   run->contested += tally.contested;
   run->added |= tally.added;
-  if (!decide || tally.contested == 0)
-    return VXM_OK;
+  if (!decide || tally.contested == 0 || shape->options->method == VXM_METHOD_WINDING)
+    return VXM_OK; /* the winding number is asked about every voxel anyway */
   run->escalated += tally.contested;
   return settle_contested(run, window, mask.words, error);
 }
@@ -210,7 +209,9 @@ static vxm_status fill_by_winding(vxm_run *run, const vxm_window *window, vxm_er
   memset(window->words, 0, depth * window->slice_words * sizeof *window->words);
   int64_t added = 0;
   run->escalated += window->fast_dim * window->middle_dim * (int64_t)depth;
-  return vxm_settle(window, NULL, run->all_wound.tree, shape->context, run->confidence, &added, error);
+  status = vxm_settle(window, NULL, run->all_wound.tree, shape->context, run->confidence, &added, error);
+  run->added |= added > 0;
+  return status;
 }
 
 static vxm_status fill_by_one(vxm_run *run, const vxm_window *window, vxm_error *error) {

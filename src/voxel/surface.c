@@ -169,10 +169,8 @@ void vxm_surface_destroy(vxm_surface *surface) {
 enum { ASIDE_BYTES = 1 << 22 };
 
 /** Joins a window drawn aside to the grid, and marks its voxels. */
-static void join(vxm_grid *grid, const vxm_window *window, uint8_t *confidence) {
-  uint64_t *to = vxm_window_row(
-      &(vxm_window){.words = grid->words, .slice_words = grid->slice_words, .row_words = grid->row_words}, 0,
-      window->begin);
+static void join(const vxm_window *whole, const vxm_window *window, uint8_t *confidence) {
+  uint64_t *to = vxm_window_row(whole, 0, window->begin);
   size_t rows = (size_t)((window->end - window->begin) * window->middle_dim);
   uint8_t *sure = confidence + (size_t)(window->begin * window->middle_dim * window->fast_dim);
   for (size_t r = 0; r < rows; r++, sure += window->fast_dim)
@@ -184,36 +182,34 @@ static void join(vxm_grid *grid, const vxm_window *window, uint8_t *confidence) 
     }
 }
 
-/** Which voxels the surface sets cannot be told in the grid any more, so they are drawn beside it first. */
-static vxm_status add_aside(const vxm_surface *surface, vxm_grid *grid, uint8_t *confidence,
-                            vxm_error *error) {
-  int64_t slices = vxm_max(1, (int64_t)(ASIDE_BYTES / 8 / grid->slice_words)), dim = grid->space.dims[2];
-  vxm_window window = vxm_window_of(&grid->space, (vxm_layout)VXM_LAYOUT_GRID, 0, vxm_min(slices, dim));
+/* Which voxels the surface sets cannot be told in the grid any more, so they are drawn beside it first. */
+vxm_status vxm_surface_add_sure(const vxm_surface *surface, const vxm_window *whole, vxm_surface_kind kind,
+                                uint8_t *confidence, vxm_error *error) {
+  int64_t slices = vxm_max(1, (int64_t)(ASIDE_BYTES / 8 / whole->slice_words)), dim = whole->slow_dim;
+  vxm_window window = *whole;
+  window.end = vxm_min(slices, dim);
+  vxm_error local = VXM_ERROR_INIT;
   window.words =
-      vxm_alloc(grid->context, (size_t)window.end * window.slice_words, sizeof *window.words, error);
-  vxm_status status = window.words ? VXM_OK : VXM_ERROR_MEMORY;
+      vxm_alloc(surface->context, (size_t)window.end * window.slice_words, sizeof *window.words, &local);
+  vxm_status status = local.code;
   for (int64_t begin = 0; begin < dim && status == VXM_OK; begin += slices) {
     window.begin = begin;
     window.end = vxm_min(begin + slices, dim);
-    status = vxm_surface_add(surface, &window, VXM_SURFACE_CONSERVATIVE, true, error);
+    status = vxm_surface_add(surface, &window, kind, true, &local);
     if (status == VXM_OK)
-      join(grid, &window, confidence);
+      join(whole, &window, confidence);
   }
-  vxm_free(grid->context, window.words);
+  vxm_free(surface->context, window.words);
+  if (status != VXM_OK && error)
+    *error = local;
   return status;
 }
 
-vxm_status vxm_surface_unite(vxm_grid *grid, const vxm_soup *soup, const vxm_lattice *lattice,
-                             uint8_t *confidence, vxm_error *error) {
-  vxm_surface *surface;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_window window = vxm_window_of_grid(grid);
-  vxm_status status = vxm_surface_create(&surface, soup, lattice, NULL, &local);
-  if (status == VXM_OK)
-    status = confidence ? add_aside(surface, grid, confidence, &local)
-                        : vxm_surface_add(surface, &window, VXM_SURFACE_CONSERVATIVE, false, &local);
-  vxm_surface_destroy(surface);
-  if (status != VXM_OK && error)
-    *error = local;
-  return local.code;
+uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads) {
+  /* Points; corners, a place and, as tiles are listed in turn, some five entries for each triangle; the tiles
+   * and counters of the threads. */
+  uint64_t triangles = count_triangles(soup);
+  uint64_t corners = has_triangles_only(soup) ? 0 : 3 * sizeof(uint32_t);
+  return soup->vertex_count * sizeof(vxm_point) + triangles * (corners + 6 * sizeof(uint32_t)) +
+         ((uint64_t)threads + 6) * (UINT64_C(1) << 20);
 }

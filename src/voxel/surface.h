@@ -7,12 +7,6 @@
 #include "mesh/soup.h"
 #include "voxel/lattice.h"
 
-typedef enum vxm_surface_kind {
-  VXM_SURFACE_CONSERVATIVE, /**< every voxel whose closed box meets a face, no more and no less */
-  VXM_SURFACE_THIN /**< 6-separating: no path over 6-neighbours crosses a face outside of it (surface_draw.h)
-                    */
-} vxm_surface_kind;
-
 /** The triangles of a soup on a lattice. */
 typedef struct vxm_surface {
   vxm_context *context; /**< one reference held */
@@ -45,6 +39,7 @@ void vxm_surface_destroy(vxm_surface *surface);
  * Sets the voxels of the surface that lie in a window of the lattice's space; the others keep their values.
  * How the space is cut into windows makes no difference, nor does the number of threads.
  *
+ * @param kind     conservative or thin
  * @param is_fresh the words have no values yet: they are cleared along the way, while they are in cache
  * @return VXM_OK; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
@@ -52,12 +47,15 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
                            bool is_fresh, vxm_error *error);
 
 /**
- * Adds the conservative surface of a soup to a grid.
+ * As vxm_surface_add, onto a whole grid.
  *
- * @param confidence NULL, or a byte per voxel, x fastest: 255 where the surface sets a voxel
- * @return as vxm_surface_create and vxm_surface_add
+ * @param whole      all of a space, in the layout of a grid
+ * @param confidence a byte per voxel, x fastest: 255 where the surface sets a voxel
  */
-vxm_status vxm_surface_unite(vxm_grid *grid, const vxm_soup *soup, const vxm_lattice *lattice,
-                             uint8_t *confidence, vxm_error *error);
+vxm_status vxm_surface_add_sure(const vxm_surface *surface, const vxm_window *whole, vxm_surface_kind kind,
+                                uint8_t *confidence, vxm_error *error);
+
+/** What a surface takes at most, and what adding it takes meanwhile. */
+uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads);
 
 #endif

@@ -98,28 +98,59 @@ static bool spans_across(const slab *s, uint64_t *records, size_t count) {
 
 /* ---- Many records: flipped in the work words, then folded ---- */
 
-/** Which words have been flipped. */
+/** The box of words that have been flipped: of rows, of slices of rows, and of words in a row. */
 typedef struct extent {
-  size_t first, last;
+  size_t first, last;         /**< words of the slab */
+  size_t row_first, row_last; /**< in a slice */
+  size_t slice_first, slice_last;
+  size_t word_first, word_last; /**< in a row */
 } extent;
 
-static void flip(uint64_t *words, const uint64_t *records, size_t count, extent *flipped) {
+static const extent nothing = {SIZE_MAX, 0, SIZE_MAX, 0, SIZE_MAX, 0, SIZE_MAX, 0};
+
+static inline void widen(size_t *first, size_t *last, size_t value) {
+  *first = value < *first ? value : *first;
+  *last = value > *last ? value : *last;
+}
+
+/** Rows of a slice of the slab. */
+static size_t slab_rows(const unite_state *state) {
+  return state->along == ACROSS_SLICES ? (size_t)1 << state->slabs.shift : (size_t)state->window->middle_dim;
+}
+
+/** Notes a flipped word; along rows its place in the slab is enough. */
+static inline void note_word(const unite_state *state, extent *flipped, size_t w) {
+  widen(&flipped->first, &flipped->last, w);
+  if (state->along == ALONG_ROWS || state->in_place)
+    return;
+  size_t row = w / state->window->row_words, slice = row / slab_rows(state);
+  widen(&flipped->word_first, &flipped->word_last, w - row * state->window->row_words);
+  widen(&flipped->row_first, &flipped->row_last, row - slice * slab_rows(state));
+  widen(&flipped->slice_first, &flipped->slice_last, slice);
+}
+
+static void flip(const unite_state *state, uint64_t *words, const uint64_t *records, size_t count,
+                 extent *flipped) {
   for (size_t i = 0; i < count; i++) {
     size_t w = records[i] / 64;
     words[w] ^= UINT64_C(1) << (records[i] % 64);
-    flipped->first = w < flipped->first ? w : flipped->first;
-    flipped->last = w > flipped->last ? w : flipped->last;
+    note_word(state, flipped, w);
   }
 }
 
-static void flip_piece(uint64_t *words, const vxm_bin_piece *piece, extent *flipped) {
+static void flip_piece(const unite_state *state, uint64_t *words, const vxm_bin_piece *piece,
+                       extent *flipped) {
   if (!piece->is_bitmap) {
-    flip(words, piece->data, piece->count, flipped);
+    flip(state, words, piece->data, piece->count, flipped);
     return;
   }
+  /* A bitmap is as large as a full slab: behind the layers of the last one it is zero, and no word is there.
+   */
   for (size_t w = 0; w < piece->count; w++)
-    words[w] ^= piece->data[w];
-  *flipped = (extent){0, piece->count - 1};
+    if (piece->data[w]) {
+      words[w] ^= piece->data[w];
+      note_word(state, flipped, w);
+    }
 }
 
 /** Folds the rows from the first to the last flipped one, in place. */
@@ -130,39 +161,67 @@ static bool fold_rows(const slab *s, uint64_t *words, extent flipped) {
                                       vxm_window_tail_mask(s->state->window)) != 0;
 }
 
-static void fold_across_rows(const slab *s, uint64_t *words, extent flipped) {
+/** Folds whole slices from the first to the last flipped one, in place; whether a voxel is set. */
+static bool fold_across_rows(const slab *s, uint64_t *words, extent flipped) {
   const vxm_window *window = s->state->window;
-  for (size_t k = flipped.first / window->slice_words; k <= flipped.last / window->slice_words; k++)
+  uint64_t any = 0;
+  size_t first = flipped.first / window->slice_words, last = flipped.last / window->slice_words;
+  for (size_t k = first; k <= last; k++)
     s->state->kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
+  for (size_t w = first * window->slice_words; w < (last + 1) * window->slice_words && !any; w++)
+    any |= words[w];
+  return any != 0;
+}
+
+/**
+ * Folds a line of `count` pieces of `width` words, `step` words apart in the work words and `to_step` in the
+ * window, from piece `first` on. Behind the last flipped piece it ends as soon as nothing is open.
+ */
+static bool fold_line(uint64_t *work, size_t step, uint64_t *to, size_t to_step, size_t width, size_t first,
+                      size_t last, size_t count) {
+  uint64_t any = 0, open = 1;
+  const uint64_t *before = NULL;
+  size_t i = first;
+  for (; i < count && (i <= last || open); i++) {
+    uint64_t *words = work + i * step, *out = to + i * to_step;
+    open = 0;
+    for (size_t w = 0; w < width; w++) {
+      words[w] ^= before ? before[w] : 0;
+      open |= words[w];
+      out[w] |= words[w];
+    }
+    any |= open;
+    before = words;
+  }
+  for (size_t k = first; k < i; k++)
+    memset(work + k * step, 0, width * sizeof *work);
+  return any != 0;
 }
 
 /** Folds what was flipped in the work words into the window and clears them. */
 static bool fold_work(const slab *s, extent flipped) {
   const unite_state *state = s->state;
   const vxm_window *window = state->window;
-  const vxm_kernels *kernels = state->kernels;
-  size_t row_words = window->row_words, begin, end;
+  size_t row_words = window->row_words, width = flipped.word_last - flipped.word_first + 1;
+  bool any = false;
   if (state->along == ALONG_ROWS) {
+    size_t begin = flipped.first / row_words * row_words, end = (flipped.last / row_words + 1) * row_words;
     fold_rows(s, s->work, flipped);
-    begin = flipped.first / row_words * row_words;
-    end = (flipped.last / row_words + 1) * row_words;
-    return kernels->move_or(s->out + begin, s->work + begin, end - begin) != 0;
+    return state->kernels->move_or(s->out + begin, s->work + begin, end - begin) != 0;
   }
-  if (state->along == ACROSS_ROWS) {
-    fold_across_rows(s, s->work, flipped);
-    begin = flipped.first / window->slice_words * window->slice_words;
-    end = (flipped.last / window->slice_words + 1) * window->slice_words;
-    return kernels->move_or(s->out + begin, s->work + begin, end - begin) != 0;
-  }
-  /* Slices of the slab follow each other in the work words, and lie apart in the window. */
-  size_t step = row_words << state->slabs.shift, used = (size_t)(s->end - s->begin) * row_words;
-  size_t first = flipped.first / step, count = (size_t)(window->end - window->begin);
-  kernels->fold_across(s->work + first * step, step, (count - first) * step);
-  uint64_t any = 0;
-  for (size_t k = first; k < count; k++)
-    any |= kernels->move_or(window->words + k * window->slice_words + (size_t)s->begin * row_words,
-                            s->work + k * step, used);
-  return any != 0;
+  if (state->along == ACROSS_ROWS)
+    for (size_t k = flipped.slice_first; k <= flipped.slice_last; k++) {
+      size_t at = k * window->slice_words + flipped.word_first;
+      any |= fold_line(s->work + at, row_words, s->out + at, row_words, width, flipped.row_first,
+                       flipped.row_last, (size_t)window->middle_dim);
+    }
+  else
+    for (size_t r = flipped.row_first; r <= flipped.row_last; r++)
+      any |= fold_line(s->work + r * row_words + flipped.word_first, row_words << state->slabs.shift,
+                       window->words + ((size_t)s->begin + r) * row_words + flipped.word_first,
+                       window->slice_words, width, flipped.slice_first, flipped.slice_last,
+                       (size_t)(window->end - window->begin));
+  return any;
 }
 
 /* ---- Parts of a slab ---- */
@@ -176,12 +235,12 @@ static void touch(const unite_state *state, uint32_t part) {
  */
 static void do_in_place(const slab *s, vxm_bin_reader *reader, uint32_t part) {
   const unite_state *state = s->state;
-  extent flipped = {SIZE_MAX, 0};
+  extent flipped = nothing;
   vxm_bin_piece piece;
   uint64_t *words = state->past ? s->work : s->out;
   for (size_t w = 0; w < state->workspace->bins.workers; w++)
     while (reader[w].part == part && vxm_bin_next(&reader[w], &piece))
-      flip_piece(words, &piece, &flipped);
+      flip_piece(state, words, &piece, &flipped);
   if (state->past) {
     size_t rows = (size_t)(s->end - s->begin) * (size_t)state->window->middle_dim;
     if (state->kernels->fold_rows_past(s->out, s->work, state->window->row_words, rows))
@@ -190,11 +249,11 @@ static void do_in_place(const slab *s, vxm_bin_reader *reader, uint32_t part) {
   }
   if (flipped.first > flipped.last)
     return;
-  bool any = true;
+  bool any;
   if (state->along == ALONG_ROWS)
     any = fold_rows(s, s->out, flipped);
   else
-    fold_across_rows(s, s->out, flipped);
+    any = fold_across_rows(s, s->out, flipped);
   if (any)
     touch(state, part);
 }
@@ -203,7 +262,7 @@ static void do_part(const slab *s, vxm_bin_reader *reader, uint32_t part) {
   uint64_t few[FEW];
   size_t count = 0;
   bool many = false;
-  extent flipped = {SIZE_MAX, 0};
+  extent flipped = nothing;
   vxm_bin_piece piece;
   for (size_t w = 0; w < s->state->workspace->bins.workers; w++)
     while (reader[w].part == part && vxm_bin_next(&reader[w], &piece)) {
@@ -213,11 +272,11 @@ static void do_part(const slab *s, vxm_bin_reader *reader, uint32_t part) {
         continue;
       }
       many = true;
-      flip_piece(s->work, &piece, &flipped);
+      flip_piece(s->state, s->work, &piece, &flipped);
     }
   bool any = false;
   if (many) {
-    flip(s->work, few, count, &flipped);
+    flip(s->state, s->work, few, count, &flipped);
     any = fold_work(s, flipped);
   } else if (count > 0)
     any = s->state->along == ALONG_ROWS ? spans_along_rows(s, few, count) : spans_across(s, few, count);
@@ -235,7 +294,9 @@ static void do_slab(size_t task, int worker, void *payload) {
     return;
   slab s = {.state = state, .begin = (int64_t)task << state->slabs.shift};
   s.end = vxm_min(s.begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
-  s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
+  if (!state->in_place)
+    if (!state->in_place || state->past)
+      s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
   if (state->along != ACROSS_SLICES) {
     s.out = window->words + (size_t)s.begin * window->slice_words;
     if (state->clear && !state->past)
@@ -284,7 +345,7 @@ static void shape(unite_state *state) {
   bool closed = job->part_end <= job->facets->split.kind_end[VXM_PART_CLOSED];
   columns->roles = job->roles | (closed ? VXM_FACETS_ALL : 0);
   columns->facet_begin = job->facets->parts[job->part_begin].begin;
-  columns->facet_end = job->facets->parts[job->part_end - 1].end;
+  columns->facet_end = vxm_roles_end(job->facets, job->part_end - 1, job->roles);
   if (slices)
     columns->step[layout->slow] = state->row_bits << state->slabs.shift;
   state->in_place = !slices && job->fresh && job->part_end - job->part_begin == 1;

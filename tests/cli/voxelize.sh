@@ -23,6 +23,17 @@ for options in '--method x' '--method y' '--method z' '--method tetra' '--vote a
   run "voxmend voxelize in/missing.off -o m.npy -r 32 $options | grep -E '^(parts|voxels|contested|hash)'"
 done
 
+say "# surfaces"
+for options in '' '--surface conservative' '--surface thin' '--surface shell26' '--surface shell18' '--surface shell6'; do
+  run "voxmend voxelize in/rocket.off -o s.npy -r 64 --mode surface $options | grep -E '^(voxels|hash)'"
+done
+run "voxmend voxelize in/rocket.off -o s.npy -r 64 --mode both --surface thin | grep -E '^(voxels|hash)'"
+for options in '--mode surface' '--mode both' '--mode surface --surface shell18'; do
+  run "voxmend voxelize in/rocket.off -o whole.npy -r 300 $options | grep -E '^(voxels|hash)'"
+  run "voxmend voxelize in/rocket.off -o pieces.npy -r 300 $options --memlimit 26M --threads 1 | grep -E '^(estimate|voxels|hash)'"
+  run 'cmp whole.npy pieces.npy'
+done
+
 say "# the same bits for any number of threads"
 for threads in 1 2 7; do
   run "voxmend voxelize in/rocket.off -o t$threads.npy -r 100 --threads $threads | grep -E '^(voxels|hash)'"
@@ -37,8 +48,8 @@ run 'voxmend voxelize in/cube.off -o - --format raw -r 8'
 run 'voxmend voxelize in/cube.off -o cube.raw -r 8 -q && wc -c <cube.raw && cat cube.raw.json'
 
 say "# bounded memory, and what it will take"
-run 'voxmend voxelize in/rocket.off -o whole.npy -r 400 | grep -E "^(voxels|hash)"'
-run 'voxmend voxelize in/rocket.off -o pieces.npy -r 400 --memlimit 9M --threads 1 | grep -E "^(estimate|voxels|hash)"'
+run 'voxmend voxelize in/rocket.off -o whole.npy -r 600 | grep -E "^(voxels|hash)"'
+run 'voxmend voxelize in/rocket.off -o pieces.npy -r 600 --memlimit 14M --threads 1 | grep -E "^(estimate|voxels|hash)"'
 run 'cmp whole.npy pieces.npy'
 run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --memlimit 40M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
 run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --json --memlimit 40M --threads 2'

@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Every build of the kernels does the same as plain loops, and gives the same solids. */
+#include "engine.h"
+
+#include "voxel/kernels.h"
+
+enum { WORDS_MAX = 40, ROW_WORDS_MAX = 20 };
+
+static const vxm_kernels *builds[4];
+static size_t build_count;
+
+/** Random words of every density, zeros and ones included. */
+static void random_words(vxm_rng *rng, uint64_t *out, size_t count) {
+  uint64_t density = vxm_rng_below(rng, 6);
+  for (size_t i = 0; i < count; i++) {
+    uint64_t word = vxm_rng_next(rng);
+    for (uint64_t d = 0; d < density; d++)
+      word &= vxm_rng_next(rng);
+    out[i] = density == 5 && vxm_rng_below(rng, 3) ? 0 : word;
+  }
+}
+
+/** A block of exactly `count` words, so that sanitizers see the first word behind it. */
+static uint64_t *copy_of(const uint64_t *words, size_t count) {
+  uint64_t *copy = malloc(count * sizeof *words + (count == 0));
+  assert_non_null(copy);
+  if (count > 0)
+    memcpy(copy, words, count * sizeof *words);
+  return copy;
+}
+
+static void assert_words(const uint64_t *a, const uint64_t *b, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    assert_true(a[i] == b[i]);
+}
+
+/* ---- Prefix XOR ---- */
+
+static void plain_fold_rows(uint64_t *words, size_t row_words, size_t rows, uint64_t tail_mask) {
+  for (size_t r = 0; r < rows; r++) {
+    bool open = false;
+    for (size_t bit = 0; bit < 64 * row_words; bit++) {
+      uint64_t *word = &words[r * row_words + bit / 64], mask = UINT64_C(1) << (bit % 64);
+      open ^= (*word & mask) != 0;
+      *word = open ? *word | mask : *word & ~mask;
+    }
+    words[(r + 1) * row_words - 1] &= tail_mask;
+  }
+}
+
+static void check_fold_rows(const uint64_t *data, size_t row_words, size_t rows, unsigned tail) {
+  size_t count = row_words * rows;
+  uint64_t tail_mask = vxm_low_bits(tail), want_any = 0;
+  uint64_t *start = copy_of(data, count);
+  for (size_t r = 1; r <= rows; r++)
+    start[r * row_words - 1] &= tail_mask; /* nothing is flipped behind the end of a row */
+  uint64_t *want = copy_of(start, count);
+  plain_fold_rows(want, row_words, rows, tail_mask);
+  for (size_t i = 0; i < count; i++)
+    want_any |= want[i];
+  for (size_t b = 0; b < build_count; b++) {
+    uint64_t *got = copy_of(start, count);
+    uint64_t any = builds[b]->fold_rows(got, row_words, rows, tail_mask);
+    assert_words(got, want, count);
+    assert_true((any != 0) == (want_any != 0));
+    free(got);
+  }
+  free(want);
+  free(start);
+}
+
+static void test_rows_are_folded(void **state) {
+  (void)state;
+  vxm_rng rng = {11};
+  uint64_t data[ROW_WORDS_MAX * 20];
+  for (size_t row_words = 1; row_words <= ROW_WORDS_MAX; row_words++)
+    for (size_t rows = 0; rows <= (row_words <= 4 ? WORDS_MAX / row_words : 5); rows++)
+      for (int round = 0; round < 6; round++) {
+        random_words(&rng, data, row_words * rows);
+        check_fold_rows(data, row_words, rows, round < 2 ? 64 : 1 + (unsigned)vxm_rng_below(&rng, 64));
+      }
+}
+
+/** A single bit that is set runs on to the end of its row and no further, from every place. */
+static void test_single_bits_fill_their_row(void **state) {
+  (void)state;
+  for (size_t row_words = 1; row_words <= ROW_WORDS_MAX; row_words++)
+    for (size_t bit = 0; bit < 64 * row_words; bit += 13) {
+      uint64_t data[3 * ROW_WORDS_MAX] = {0};
+      data[row_words + bit / 64] = UINT64_C(1) << (bit % 64);
+      check_fold_rows(data, row_words, 3, 64);
+      check_fold_rows(data, row_words, 3, 40);
+    }
+}
+
+static void test_rows_are_folded_onto_rows(void **state) {
+  (void)state;
+  vxm_rng rng = {12};
+  uint64_t data[WORDS_MAX];
+  for (size_t count = 0; count <= WORDS_MAX; count++)
+    for (size_t distance = 1; distance <= count + 1; distance++) {
+      random_words(&rng, data, count);
+      uint64_t *want = copy_of(data, count);
+      for (size_t i = distance; i < count; i++)
+        want[i] ^= want[i - distance];
+      for (size_t b = 0; b < build_count; b++) {
+        uint64_t *got = copy_of(data, count);
+        builds[b]->fold_across(got, distance, count);
+        assert_words(got, want, count);
+        free(got);
+      }
+      free(want);
+    }
+}
+
+/* ---- Moving and voting ---- */
+
+static void test_words_are_moved(void **state) {
+  (void)state;
+  vxm_rng rng = {13};
+  uint64_t from[WORDS_MAX], to[WORDS_MAX];
+  for (size_t count = 0; count <= WORDS_MAX; count++)
+    for (int round = 0; round < 8; round++) {
+      random_words(&rng, from, count);
+      random_words(&rng, to, count);
+      for (size_t b = 0; b < build_count; b++) {
+        uint64_t *f = copy_of(from, count), *t = copy_of(to, count), want_any = 0;
+        uint64_t any = builds[b]->move_or(t, f, count);
+        for (size_t i = 0; i < count; i++) {
+          want_any |= from[i];
+          assert_true(f[i] == 0 && t[i] == (from[i] | to[i]));
+        }
+        assert_true(any == want_any);
+        free(f);
+        free(t);
+      }
+    }
+}
+
+static void check_vote(vxm_rng *rng, size_t count, vxm_vote rule, bool fourth, bool masked) {
+  uint64_t data[5][WORDS_MAX];
+  for (int v = 0; v < 5; v++)
+    random_words(rng, data[v], count);
+  for (size_t b = 0; b < build_count; b++) {
+    uint64_t *voter[4], *out = copy_of(data[4], count), *mask = copy_of(data[0], count);
+    for (int v = 0; v < 4; v++)
+      voter[v] = copy_of(data[v], count);
+    const uint64_t *const voters[4] = {voter[0], voter[1], voter[2], fourth ? voter[3] : NULL};
+    uint64_t added = 0, want_added = 0;
+    int64_t contested = builds[b]->vote(out, voters, masked ? mask : NULL, count, rule, &added), want = 0;
+    for (size_t i = 0; i < count; i++) {
+      uint64_t x = data[0][i], y = data[1][i], z = data[2][i], t = fourth ? data[3][i] : x;
+      uint64_t any = x | y | z | t, all = x & y & z & t;
+      uint64_t elected = rule == VXM_VOTE_MAJORITY ? (x & y) | (y & z) | (z & x)
+                         : rule == VXM_VOTE_ANY    ? any
+                                                   : all;
+      assert_true(out[i] == (data[4][i] | elected));
+      uint64_t disagree = any & ~all & ~data[4][i];
+      assert_true(mask[i] == (masked ? disagree : data[0][i]));
+      want += vxm_popcount(disagree);
+      want_added |= elected & ~data[4][i];
+    }
+    assert_int_equal(contested, want);
+    assert_true(added == want_added);
+    for (int v = 0; v < 4; v++)
+      free(voter[v]);
+    free(out);
+    free(mask);
+  }
+}
+
+static void test_votes_are_counted(void **state) {
+  (void)state;
+  vxm_rng rng = {14};
+  for (size_t count = 0; count <= WORDS_MAX; count++)
+    for (int rule = VXM_VOTE_AUTO; rule <= VXM_VOTE_ALL; rule++)
+      for (int round = 0; round < 4; round++)
+        check_vote(&rng, count, (vxm_vote)rule, round & 1, round & 2);
+}
+
+/* ---- Placing ---- */
+
+static void check_place(const double *positions, size_t count, const vxm_affine *affine) {
+  for (size_t b = 0; b < build_count; b++) {
+    int32_t(*got)[4] = aligned_alloc(64, (count * sizeof *got + 64) / 64 * 64);
+    assert_non_null(got);
+    bool good = builds[b]->place(got, positions, count, affine), want_good = true;
+    for (size_t i = 0; i < count; i++)
+      for (int a = 0; a < 4; a++) {
+        const double *p = positions + 3 * i;
+        double at = affine->column[0][a] * p[0] + affine->column[1][a] * p[1] + affine->column[2][a] * p[2] +
+                    affine->column[3][a];
+        at = rint((at - affine->origin[a]) * affine->scale[a]);
+        bool fits = a == 3 || fabs(at) < (double)VXM_NARROW_MAX;
+        want_good &= fits;
+        assert_int_equal(got[i][a], a < 3 && fits ? (int32_t)at : 0);
+      }
+    assert_true(good == want_good);
+    free(got);
+  }
+}
+
+static void test_points_are_placed(void **state) {
+  (void)state;
+  static const double far[] = {NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e12, -4e9, 5.4e8, -5.4e8, 0.5, -0.0};
+  vxm_rng rng = {15};
+  for (int round = 0; round < 400; round++) {
+    double positions[3 * 9];
+    size_t count = vxm_rng_below(&rng, 10);
+    vxm_affine affine = {0};
+    for (int a = 0; a < 3; a++) {
+      for (int c = 0; c < 4; c++)
+        affine.column[c][a] = round % 2 ? c == a : 4 * vxm_rng_unit(&rng) - 2;
+      affine.origin[a] = round % 4 < 2 ? 0 : 100 * vxm_rng_unit(&rng);
+      affine.scale[a] = round % 3 ? 1 : 300 * vxm_rng_unit(&rng);
+    }
+    for (size_t i = 0; i < 3 * count; i++)
+      positions[i] = round % 5 == 0 && vxm_rng_below(&rng, 9) == 0
+                         ? far[vxm_rng_below(&rng, 11)]
+                         : (double)(int64_t)vxm_rng_below(&rng, 4001) / 2 - 1000; /* halves, so ties */
+    check_place(positions, count, &affine);
+  }
+  /* The last that fit, and the first that do not. */
+  vxm_affine affine = {.scale = {1, 1, 1, 0}};
+  for (int a = 0; a < 3; a++)
+    affine.column[a][a] = 1;
+  double limit = (double)VXM_NARROW_MAX;
+  for (int a = 0; a < 3; a++)
+    for (int k = 0; k < 4; k++) {
+      double p[3] = {1, 2, 3};
+      p[a] = (k % 2 ? -1 : 1) * (limit - (k < 2 ? 1 : 0));
+      check_place(p, 1, &affine);
+    }
+}
+
+/* ---- Whole solids ---- */
+
+static vxm_grid *forced(const vxm_kernels *build, const vxm_soup *soup, const vxm_space *space,
+                        const vxm_voxelize_options *options, vxm_voxelize_report *report) {
+  vxm_kernels_force(build);
+  vxm_grid *grid = engine_solid(soup, space, options, report);
+  vxm_kernels_force(NULL);
+  return grid;
+}
+
+/** Rows of 1, 2, 3, 8, 9 and 17 words along each axis, full to the last bit or not. */
+static vxm_space random_space(vxm_rng *rng, int round) {
+  static const int64_t row_words[] = {1, 2, 3, 8, 9, 17};
+  vxm_space space = engine_space(1, 1, 1);
+  for (int a = 0; a < 3; a++)
+    space.dims[a] = 1 + (int64_t)vxm_rng_below(rng, 7);
+  space.dims[round % 3] = 64 * row_words[round / 3 % 6] - (int64_t)(round % 2 ? vxm_rng_below(rng, 64) : 0);
+  return space;
+}
+
+static void compare_builds(const vxm_soup *soup, const vxm_space *space,
+                           const vxm_voxelize_options *options) {
+  vxm_voxelize_report first_report, report;
+  vxm_grid *first = forced(builds[0], soup, space, options, &first_report);
+  for (size_t b = 1; b < build_count; b++) {
+    vxm_grid *other = forced(builds[b], soup, space, options, &report);
+    assert_equal_bits(first, other);
+    assert_equal_reports(&first_report, &report);
+    vxm_grid_destroy(other);
+  }
+  vxm_grid_destroy(first);
+}
+
+static void test_solids_are_the_same_in_every_build(void **state) {
+  (void)state;
+  vxm_rng rng = {16};
+  for (int round = 0; round < 108; round++) {
+    vxm_space space = random_space(&rng, round);
+    vxm_soup *soup = random_soup(context, 100 + (uint64_t)round, round % SOUP_KINDS, &space);
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.parts = (vxm_parts)(round / 2 % 3);
+    for (int method = VXM_METHOD_X; method <= (round % 6 ? VXM_METHOD_Z : VXM_METHOD_TETRA); method++) {
+      options.method = (vxm_method)method;
+      compare_builds(soup, &space, &options);
+    }
+    options.method = VXM_METHOD_VOTE;
+    for (int rule = VXM_VOTE_MAJORITY; rule <= VXM_VOTE_ALL; rule++) {
+      options.vote = (vxm_vote)rule;
+      options.vote_always = round % 4 == 0;
+      compare_builds(soup, &space, &options);
+    }
+    options.vote = VXM_VOTE_AUTO;
+    if (round % 9 == 0)
+      compare_builds(soup, &space, &options);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** Each build against the oracle: long rows, ties, and triangles of every shape. */
+static void test_every_build_matches_the_oracle(void **state) {
+  (void)state;
+  vxm_rng rng = {17};
+  for (int round = 0; round < 60; round++) {
+    vxm_space space = random_space(&rng, round % 9);
+    size_t count = (size_t)(space.dims[0] * space.dims[1] * space.dims[2]);
+    if (count > 20000)
+      continue;
+    vxm_soup *soup = random_soup(context, 900 + (uint64_t)round, round % 4 == 3 ? 3 : round % 2, &space);
+    for (int w = 0; w < 3; w++) {
+      uint8_t *want = calloc(count, 1);
+      assert_non_null(want);
+      exact_unite(want, soup, 0, soup->face_count, &space, w);
+      for (size_t b = 0; b < build_count; b++) {
+        vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+        options.method = (vxm_method)(VXM_METHOD_X + w);
+        options.parts = VXM_PARTS_WHOLE;
+        vxm_grid *grid = forced(builds[b], soup, &space, &options, NULL);
+        assert_grid_is(grid, want);
+        vxm_grid_destroy(grid);
+      }
+      free(want);
+    }
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_builds_are_chosen(void **state) {
+  (void)state;
+  assert_in_range(build_count, 1, 4);
+  assert_string_equal(builds[0]->name, "plain");
+  assert_ptr_equal(vxm_kernels_get(), builds[build_count - 1]);
+  for (size_t b = 0; b < build_count; b++) {
+    vxm_kernels_force(builds[b]);
+    assert_ptr_equal(vxm_kernels_get(), builds[b]);
+  }
+  vxm_kernels_force(NULL);
+  assert_ptr_equal(vxm_kernels_get(), builds[build_count - 1]);
+}
+
+int main(void) {
+  build_count = vxm_kernels_all(builds);
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_builds_are_chosen),
+      cmocka_unit_test(test_rows_are_folded),
+      cmocka_unit_test(test_single_bits_fill_their_row),
+      cmocka_unit_test(test_rows_are_folded_onto_rows),
+      cmocka_unit_test(test_words_are_moved),
+      cmocka_unit_test(test_votes_are_counted),
+      cmocka_unit_test(test_points_are_placed),
+      cmocka_unit_test(test_solids_are_the_same_in_every_build),
+      cmocka_unit_test(test_every_build_matches_the_oracle),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
