@@ -294,9 +294,8 @@ static void do_slab(size_t task, int worker, void *payload) {
     return;
   slab s = {.state = state, .begin = (int64_t)task << state->slabs.shift};
   s.end = vxm_min(s.begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
-  if (!state->in_place)
-    if (!state->in_place || state->past)
-      s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
+  if (!state->in_place || state->past)
+    s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
   if (state->along != ACROSS_SLICES) {
     s.out = window->words + (size_t)s.begin * window->slice_words;
     if (state->clear && !state->past)
