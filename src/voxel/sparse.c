@@ -8,7 +8,8 @@ static const uint64_t window_bytes_most = UINT64_C(1) << 26;
 static bool is_direct(const vxm_model *model) {
   const vxm_shape *shape = &model->shape;
   size_t parts = shape->facets.split.part_count;
-  if (model->options.mode != VXM_MODE_SOLID || model->options.method == VXM_METHOD_WINDING)
+  bool solid = model->options.mode != VXM_MODE_SURFACE && !vxm_model_wants_faces(model);
+  if (!solid || model->options.method == VXM_METHOD_WINDING)
     return false;
   if (vxm_one_voter(&model->options)) /* of closed parts all axes tell the same */
     return model->options.method == VXM_METHOD_X || shape->facets.split.kind_end[VXM_PART_CLOSED] == parts;
@@ -27,10 +28,8 @@ static vxm_status unite_directly(vxm_octree_builder *builder, vxm_model *model, 
   return vxm_sparse_unite(builder, &shape->workspace, &job, error);
 }
 
-/** Slices of a range: whole strips, as many as memory allows; all where the surface is wanted. */
+/** Slices of a range: whole strips, as many as memory allows. */
 static int64_t range_slices(const vxm_model *model, const vxm_window *window) {
-  if (model->options.mode != VXM_MODE_SOLID)
-    return window->slow_dim;
   vxm_demand demand = vxm_model_demand(model, &model->space, window, false);
   uint64_t slice = window->slice_words * sizeof *window->words, left = vxm_memory_left(model->context);
   uint64_t room = left > demand.fixed ? (left - demand.fixed) / 2 / (uint64_t)demand.windows : 0;

@@ -313,8 +313,8 @@ static void shape(sparse_state *state) {
                                  .slab_axis = 2,
                                  .slab_shift = SLAB_SHIFT,
                                  .roles = job->roles | (closed ? VXM_FACETS_ALL : 0),
-                                 .facet_begin = job->facets->parts[0].begin,
-                                 .facet_end = job->facets->parts[job->part_end - 1].end};
+                                 .facet_begin = job->facets->parts[0].begin};
+  state->columns.facet_end = vxm_roles_end(job->facets, job->part_end - 1, job->roles);
   int64_t left = n[0] - ((int64_t)state->nodes - 1) * VXM_STRIP_VOXELS;
   for (int b = 0; b < 4; b++)
     state->last[b] =
