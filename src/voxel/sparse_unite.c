@@ -24,6 +24,12 @@ typedef struct desk {
   uint64_t *has_flips, *is_united, *is_full;
 } desk;
 
+/** Where a row of a strip lies: in which row of bricks in the order of vxm_strip_add_node, and at which bits
+ * of them. */
+typedef struct strip_place {
+  uint8_t row, shift;
+} strip_place;
+
 typedef struct sparse_state {
   vxm_octree_builder *builder;
   vxm_bins *bins;
@@ -36,9 +42,7 @@ typedef struct sparse_state {
   bool again;       /**< there may be something in the strips already */
   uint64_t last[4]; /**< per x: the voxels of a brick of the last node that the space has */
   desk *desks;
-  struct {
-    unsigned char row, shift;
-  } places[256]; /**< where rows of a strip lie: which brick in the order of vxm_strip_add_node, which bits */
+  strip_place places[256];
   vxm_watch watch;
 } sparse_state;
 
@@ -62,7 +66,7 @@ static bool reserve(sparse_state *state, desk *d, size_t count) {
   return local.code == VXM_OK;
 }
 
-/** Counts the flips of each strip; returns how many there are. */
+/** Counts the flips of each strip; returns how many there are. Flips come in runs of one strip. */
 static size_t count_flips(const sparse_state *state, desk *d, size_t slab) {
   uint32_t *count = d->strip_end;
   int shift = state->row_shift + 8;
@@ -73,40 +77,69 @@ static size_t count_flips(const sparse_state *state, desk *d, size_t slab) {
     vxm_bin_piece piece;
     while (reader.part != VXM_BIN_NONE)
       while (vxm_bin_next(&reader, &piece)) {
-        if (!piece.is_bitmap) {
-          for (size_t i = 0; i < piece.count; i++)
-            count[piece.data[i] >> shift]++;
-          total += piece.count;
-          continue;
-        }
-        for (size_t i = 0; i < piece.count; i++) {
+        size_t at = 0;
+        for (size_t i = 0; i < piece.count && piece.is_bitmap; i++) {
           size_t flips = (size_t)vxm_popcount(piece.data[i]);
           count[64 * i >> shift] += (uint32_t)flips;
           total += flips;
+        }
+        while (!piece.is_bitmap && at < piece.count) {
+          size_t first = at;
+          uint64_t strip = piece.data[at++] >> shift;
+          while (at < piece.count && piece.data[at] >> shift == strip)
+            at++;
+          count[strip] += (uint32_t)(at - first);
+          total += at - first;
         }
       }
   }
   return total;
 }
 
-/** Puts one where the next flip of its strip goes. */
-static inline void put_flip(const sparse_state *state, desk *d, uint64_t record, uint32_t part) {
-  uint64_t row = record >> state->row_shift;
-  uint32_t at = d->strip_end[row >> 8]++;
-  d->flips[at] = (flip)(record & vxm_low_bits((unsigned)state->row_shift)) << 8 | (flip)(row & 255);
-  if (state->many)
-    d->parts[at] = part;
+/** How records of a slab become flips. */
+typedef struct decoding {
+  int row_shift;
+  uint64_t in_row;
+} decoding;
+
+static inline flip flip_of(decoding how, uint64_t record) {
+  return (flip)(record & how.in_row) << 8 | (flip)(record >> how.row_shift & 255);
 }
 
+/** Puts flips where the next ones of their strip go, the records of a strip in one run. */
+static inline void put_records(decoding how, flip *flips, uint32_t *strip_end, const uint64_t *records,
+                               size_t count) {
+  int shift = how.row_shift + 8;
+  for (const uint64_t *at = records, *end = records + count; at < end;) {
+    uint64_t record = *at, strip = record >> shift;
+    flip *to = flips + strip_end[strip], *first = to;
+    do {
+      *to++ = flip_of(how, record);
+      if (++at == end)
+        break;
+      record = *at;
+    } while (record >> shift == strip);
+    strip_end[strip] += (uint32_t)(to - first);
+  }
+}
+
+/** Puts each flip of a piece where the next one of its strip goes. */
 static void put_piece(const sparse_state *state, desk *d, const vxm_bin_piece *piece, uint32_t part) {
-  if (!piece->is_bitmap) {
-    for (size_t i = 0; i < piece->count; i++)
-      put_flip(state, d, piece->data[i], part);
+  decoding how = {state->row_shift, vxm_low_bits((unsigned)state->row_shift)};
+  if (!state->many && !piece->is_bitmap) {
+    put_records(how, d->flips, d->strip_end, piece->data, piece->count);
     return;
   }
-  for (size_t i = 0; i < piece->count; i++)
-    for (uint64_t left = piece->data[i]; left; left &= left - 1)
-      put_flip(state, d, 64 * i + (unsigned)__builtin_ctzll(left), part);
+  for (size_t i = 0; i < piece->count; i++) {
+    uint64_t left = piece->is_bitmap ? piece->data[i] : 1;
+    for (; left; left &= left - 1) {
+      uint64_t record = piece->is_bitmap ? 64 * i + (unsigned)__builtin_ctzll(left) : piece->data[i];
+      uint32_t to = d->strip_end[record >> (how.row_shift + 8)]++;
+      d->flips[to] = flip_of(how, record);
+      if (state->many)
+        d->parts[to] = part;
+    }
+  }
 }
 
 /** Sorts the flips of a slab by strip, and by part within; false if memory ran out. */
@@ -184,13 +217,35 @@ static void put_gap(sparse_state *state, desk *d, size_t worker, size_t begin, s
   }
 }
 
+/** The bricks of a node, of its flips, which are cleared; `inside` goes on to the next. Returns their OR. */
+static uint64_t fold_node(uint64_t bricks[VXM_STRIP_BRICKS], uint64_t flipped[VXM_STRIP_BRICKS],
+                          uint64_t inside[16]) {
+  const vxm_two_words firsts = {UINT64_C(0x1111111111111111), UINT64_C(0x1111111111111111)};
+  vxm_two_words any = {0, 0}, none = {0, 0};
+  for (int r = 0; r < 16; r += 2) {
+    vxm_two_words in = *(const vxm_two_words *)(const void *)(inside + r);
+    for (int b = r; b < VXM_STRIP_BRICKS; b += 16) {
+      vxm_two_words *from = (vxm_two_words *)(void *)(flipped + b);
+      vxm_two_words bits = *from ^ in, ends = bits >> 3 & firsts;
+      *from = none;
+      *(vxm_two_words *)(void *)(bricks + b) = bits;
+      any |= bits;
+      in = (ends << 4) - ends;
+    }
+    *(vxm_two_words *)(void *)(inside + r) = in;
+  }
+  return any[0] | any[1];
+}
+
 /** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
 static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const flip *flips, size_t count) {
+  uint64_t *flipped = d->flipped, *has_flips = d->has_flips;
+  const strip_place *places = state->places;
   for (size_t i = 0; i < count; i++) {
     flip f = flips[i];
-    unsigned row = state->places[f & 255].row, shift = state->places[f & 255].shift;
-    d->flipped[(f >> 10) * 16 + row] ^= (UINT64_C(15) << (f >> 8 & 3) & 15) << shift;
-    d->has_flips[f >> 18] |= UINT64_C(1) << (f >> 12 & 63);
+    strip_place place = places[f & 255];
+    flipped[(f >> 10) * 16 + place.row] ^= (UINT64_C(15) << (f >> 8 & 3) & 15) << place.shift;
+    has_flips[f >> 18] |= UINT64_C(1) << (f >> 12 & 63);
   }
   uint64_t inside[16] = {0}, any = 0;
   size_t done = 0;
@@ -200,16 +255,8 @@ static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const fl
     for (; left; left &= left - 1) {
       size_t x = 64 * w + (size_t)__builtin_ctzll(left);
       put_gap(state, d, worker, done, x, inside);
-      uint64_t *node = d->flipped + x * VXM_STRIP_BRICKS, bricks[VXM_STRIP_BRICKS];
-      for (int b = 0; b < 4; b++)
-        for (int r = 0; r < 16; r++) {
-          uint64_t bits = node[16 * b + r] ^ inside[r];
-          uint64_t end = bits >> 3 & UINT64_C(0x1111111111111111);
-          bricks[16 * b + r] = bits;
-          any |= bits;
-          inside[r] = (end << 4) - end;
-        }
-      memset(node, 0, VXM_STRIP_BRICKS * sizeof *node);
+      uint64_t bricks[VXM_STRIP_BRICKS];
+      any |= fold_node(bricks, flipped + x * VXM_STRIP_BRICKS, inside);
       put_node(state, d, worker, x, bricks);
       done = x + 1;
     }
@@ -321,8 +368,8 @@ static void shape(sparse_state *state) {
         UINT64_C(0x1111111111111111) * vxm_low_bits((unsigned)vxm_min(vxm_max(left - 4 * b, 0), 4));
   for (unsigned i = 0; i < 256; i++) {
     unsigned y = i >> 4, z = i & 15;
-    state->places[i].row = (unsigned char)((y >> 2 & 1) | (z >> 1 & 2) | (y >> 1 & 4) | (z & 8));
-    state->places[i].shift = (unsigned char)(16 * (z & 3) + 4 * (y & 3));
+    state->places[i].row = (uint8_t)((y >> 2 & 1) | (z >> 1 & 2) | (y >> 1 & 4) | (z & 8));
+    state->places[i].shift = (uint8_t)(16 * (z & 3) + 4 * (y & 3));
   }
 }
 
