@@ -114,6 +114,26 @@ static void test_long_rows(void **state) {
   }
 }
 
+/** Long runs of full nodes side by side that begin and end at any node. */
+static void test_ragged_runs(void **state) {
+  (void)state;
+  vxm_rng rng = {68};
+  for (int round = 0; round < 12; round++) {
+    vxm_grid *grid = new_grid(contexts[round % 3], unit_space(round % 2 ? 2000 : 1024, 64, 128));
+    for (int64_t k = 0; k < 128; k += 16)
+      for (int64_t j = 0; j < 64; j += 16) {
+        int64_t begin = 16 * (int64_t)vxm_rng_below(&rng, round % 3 ? 3 : 20);
+        int64_t end = grid->space.dims[0] - 16 * (int64_t)vxm_rng_below(&rng, round % 3 ? 3 : 20);
+        for (int64_t row = 0; row < 256; row++)
+          vxm_row_set_span(vxm_grid_row(grid, j + row % 16, k + row / 16), begin, end);
+      }
+    vxm_sparse *sparse = octree_of(grid);
+    assert_same_grid(sparse, grid);
+    vxm_sparse_destroy(sparse);
+    vxm_grid_destroy(grid);
+  }
+}
+
 static void check_window(const vxm_sparse *sparse, const vxm_grid *grid, vxm_layout layout, vxm_rng *rng) {
   int64_t slices = grid->space.dims[layout.slow];
   int64_t begin = (int64_t)vxm_rng_below(rng, (uint64_t)slices);
@@ -362,10 +382,11 @@ static void test_memory_limit(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_same_as_grid),    cmocka_unit_test(test_long_rows),
-      cmocka_unit_test(test_windows),         cmocka_unit_test(test_set_operations),
-      cmocka_unit_test(test_wrong_arguments), cmocka_unit_test(test_pieces),
-      cmocka_unit_test(test_files),           cmocka_unit_test(test_memory_limit),
+      cmocka_unit_test(test_same_as_grid),   cmocka_unit_test(test_long_rows),
+      cmocka_unit_test(test_ragged_runs),    cmocka_unit_test(test_windows),
+      cmocka_unit_test(test_set_operations), cmocka_unit_test(test_wrong_arguments),
+      cmocka_unit_test(test_pieces),         cmocka_unit_test(test_files),
+      cmocka_unit_test(test_memory_limit),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }
