@@ -141,6 +141,11 @@ void vxm_strip_add_node(vxm_octree_builder *builder, size_t worker, size_t x,
     set = set << 1 | (bricks[b] != 0);
     full = full << 1 | (bricks[b] == ~UINT64_C(0));
   }
+  vxm_strip_add_known(builder, worker, x, bricks, set, full);
+}
+
+void vxm_strip_add_known(vxm_octree_builder *builder, size_t worker, size_t x,
+                         const uint64_t bricks[VXM_STRIP_BRICKS], uint64_t set, uint64_t full) {
   if (set == 0)
     return;
   if (full == ~UINT64_C(0)) {

@@ -65,6 +65,9 @@ vxm_status vxm_octree_builder_check(const vxm_octree_builder *builder, vxm_error
  */
 void vxm_strip_add_node(vxm_octree_builder *builder, size_t worker, size_t x,
                         const uint64_t bricks[VXM_STRIP_BRICKS]);
+/** The same where it is known which bricks are not empty, and which are full: bit b for brick b. */
+void vxm_strip_add_known(vxm_octree_builder *builder, size_t worker, size_t x,
+                         const uint64_t bricks[VXM_STRIP_BRICKS], uint64_t set, uint64_t full);
 void vxm_strip_add_full(vxm_octree_builder *builder, size_t worker, size_t begin, size_t end);
 /** Puts what was added in the place of the strip (y,z). */
 void vxm_strip_end(vxm_octree_builder *builder, size_t worker, size_t y, size_t z);

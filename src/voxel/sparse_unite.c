@@ -34,6 +34,7 @@ typedef struct sparse_state {
   vxm_octree_builder *builder;
   vxm_bins *bins;
   const vxm_sparse_job *job;
+  const vxm_kernels *kernels;
   vxm_columns columns;
   int row_shift;    /**< a row of records has 2^row_shift of them */
   size_t nodes;     /**< of a strip */
@@ -53,8 +54,13 @@ static bool reserve(sparse_state *state, desk *d, size_t count) {
     return true;
   vxm_context *context = state->builder->context;
   vxm_error local = VXM_ERROR_INIT;
+  if (count > UINT32_MAX) { /* places are counted in 32 bits: 16 GiB of flips in one slab */
+    atomic_store_explicit(&state->builder->failed, VXM_ERROR_MEMORY, memory_order_relaxed);
+    return false;
+  }
   vxm_free(context, d->flips);
   vxm_free(context, d->parts);
+  d->parts = NULL;
   d->capacity = 0;
   size_t wanted = count + count / 4;
   d->flips = vxm_alloc(context, wanted, sizeof *d->flips, &local);
@@ -217,26 +223,6 @@ static void put_gap(sparse_state *state, desk *d, size_t worker, size_t begin, s
   }
 }
 
-/** The bricks of a node, of its flips, which are cleared; `inside` goes on to the next. Returns their OR. */
-static uint64_t fold_node(uint64_t bricks[VXM_STRIP_BRICKS], uint64_t flipped[VXM_STRIP_BRICKS],
-                          uint64_t inside[16]) {
-  const vxm_two_words firsts = {UINT64_C(0x1111111111111111), UINT64_C(0x1111111111111111)};
-  vxm_two_words any = {0, 0}, none = {0, 0};
-  for (int r = 0; r < 16; r += 2) {
-    vxm_two_words in = *(const vxm_two_words *)(const void *)(inside + r);
-    for (int b = r; b < VXM_STRIP_BRICKS; b += 16) {
-      vxm_two_words *from = (vxm_two_words *)(void *)(flipped + b);
-      vxm_two_words bits = *from ^ in, ends = bits >> 3 & firsts;
-      *from = none;
-      *(vxm_two_words *)(void *)(bricks + b) = bits;
-      any |= bits;
-      in = (ends << 4) - ends;
-    }
-    *(vxm_two_words *)(void *)(inside + r) = in;
-  }
-  return any[0] | any[1];
-}
-
 /** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
 static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const flip *flips, size_t count) {
   uint64_t *flipped = d->flipped, *has_flips = d->has_flips;
@@ -255,9 +241,12 @@ static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const fl
     for (; left; left &= left - 1) {
       size_t x = 64 * w + (size_t)__builtin_ctzll(left);
       put_gap(state, d, worker, done, x, inside);
-      uint64_t bricks[VXM_STRIP_BRICKS];
-      any |= fold_node(bricks, flipped + x * VXM_STRIP_BRICKS, inside);
-      put_node(state, d, worker, x, bricks);
+      uint64_t bricks[VXM_STRIP_BRICKS], masks[2];
+      any |= state->kernels->fold_node(bricks, flipped + x * VXM_STRIP_BRICKS, inside, masks);
+      if (state->many || x == state->nodes - 1)
+        put_node(state, d, worker, x, bricks);
+      else
+        vxm_strip_add_known(state->builder, worker, x, bricks, masks[0], masks[1]);
       done = x + 1;
     }
   }
@@ -268,7 +257,7 @@ static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const fl
 /* ---- Strips ---- */
 
 /** Takes what rounds before have left in a strip. */
-static void take_strip(sparse_state *state, desk *d, const vxm_strip *strip) {
+static void take_strip(desk *d, const vxm_strip *strip) {
   for (size_t i = 0; strip->items && i < strip->count; i++) {
     const vxm_strip_item *item = &strip->items[i];
     if (item->seed.full == ~UINT64_C(0)) {
@@ -278,7 +267,6 @@ static void take_strip(sparse_state *state, desk *d, const vxm_strip *strip) {
     vxm_strip_expand(item, d->united + (size_t)item->begin * VXM_STRIP_BRICKS);
     add_bits(d->is_united, item->begin, item->end);
   }
-  (void)state;
 }
 
 /** Adds what was united, and clears it. */
@@ -307,7 +295,7 @@ static void do_strip(sparse_state *state, desk *d, size_t worker, size_t y, size
                      size_t end) {
   vxm_strip *strip = &state->builder->strips[z * state->builder->across + y];
   if (state->again)
-    take_strip(state, d, strip);
+    take_strip(d, strip);
   if (!state->many) {
     if (fold_flips(state, d, worker, d->flips + begin, end - begin))
       touch(state, 0);
@@ -454,7 +442,11 @@ vxm_status vxm_sparse_unite(vxm_octree_builder *builder, vxm_workspace *workspac
                             vxm_error *error) {
   if (job->part_end == 0)
     return VXM_OK;
-  sparse_state state = {.builder = builder, .bins = &workspace->bins, .job = job, .many = job->part_end > 1};
+  sparse_state state = {.builder = builder,
+                        .bins = &workspace->bins,
+                        .job = job,
+                        .kernels = vxm_kernels_get(),
+                        .many = job->part_end > 1};
   shape(&state);
   vxm_status status = make_desks(&state, builder->workers, error);
   vxm_watch_start(&state.watch, builder->context, "voxelizing", 1, error);
