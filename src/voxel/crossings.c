@@ -137,11 +137,13 @@ vxm_status vxm_crossings_plan(vxm_crossings *x, const vxm_facets *facets, const 
   }
   if (begin >= end)
     return end_round(x, error);
-  /* One part is never divided between rounds; estimates would only share out the work better. */
+  /* One part is never divided between rounds; estimates would only share out the work better, which pays
+     where few triangles have very many crossings. */
   bool one_part = facets->part[begin] == facets->part[end - 1];
+  bool sharing = vxm_context_threads(x->context) > 1 && end - begin <= FACETS_MAX;
   double most =
       vxm_crossings_bound(facets, &placed->lattice.space, placed->transform) * (double)columns_count;
-  if (one_part ? end - begin > FACETS_MAX || most <= TASK_CROSSINGS : most <= vxm_crossings_round(x->context))
+  if (one_part ? !sharing || most <= round_most : most <= vxm_crossings_round(x->context))
     return plan_evenly(x, begin, end, error);
   return plan_by_estimate(x, begin, end, error);
 }

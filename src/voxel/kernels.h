@@ -33,8 +33,8 @@ typedef struct vxm_kernels {
   bool (*place)(int32_t (*out)[4], const double *positions, size_t count, const vxm_affine *affine);
   /** Puts into the bins what the triangles flip (voxel/columns.h). */
   void (*raster)(const vxm_raster_task *task);
-  /** Prefix XOR along each of `rows` rows of row_words words, in place; the last word is masked. Returns the
-   * OR of all words. */
+  /** Prefix XOR along each of `rows` rows of row_words words, in place; the last word is masked. Returns
+   * 0 if no bit is set. */
   uint64_t (*fold_rows)(uint64_t *words, size_t row_words, size_t rows, uint64_t tail_mask);
   /** The same for whole lines of 64 bytes, with the result stored past the cache to `to`, and `words`
    * cleared. row_words is a multiple of 8, and both are aligned to lines. */

@@ -181,7 +181,8 @@ vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const doubl
   vxm_lattice lattice = vxm_lattice_of(space);
   vxm_shelling_begin(&model->shelling);
   if (vxm_model_wants_solid(model))
-    status = vxm_placed_set(&run->placed, facets, &lattice, transform, vxm_run_apexes(&model->shape), error);
+    status = vxm_placed_set(&run->placed, facets, &lattice, transform,
+                            confidence || vxm_run_apexes(&model->shape), error);
   if (status != VXM_OK || !vxm_model_wants_faces(model))
     return status;
   if (model->surface)
@@ -278,6 +279,7 @@ static void warn(vxm_model *model, const vxm_voxelize_report *report) {
 
 void vxm_model_end(vxm_model *model, vxm_voxelize_report *report, int64_t voxels, uint64_t hash) {
   const vxm_split *split = &model->shape.facets.split;
+  model->notes = (vxm_notes){0}; /* a run may be ended twice: for its grid, and for the file of that */
   *report = (vxm_voxelize_report){
       .parts = (int64_t)split->part_count,
       .closed_parts = (int64_t)split->kind_end[VXM_PART_CLOSED],

@@ -4,8 +4,7 @@
 vxm_status vxm_voxelize_into(vxm_grid *grid, vxm_voxelize_report *report, vxm_model *model,
                              const double transform[12], vxm_error *error) {
   vxm_window window = vxm_window_of_grid(grid);
-  uint8_t *confidence = model->options.confidence ? grid->confidence : NULL;
-  vxm_status status = vxm_model_begin(model, &grid->space, transform, confidence, error);
+  vxm_status status = vxm_model_begin(model, &grid->space, transform, grid->confidence, error);
   if (status == VXM_OK)
     status = vxm_model_fill(model, &window, error);
   if (status != VXM_OK || !report)

@@ -1,74 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Every mode and surface streamed into every format under a memory limit: the file of the whole grid. */
+/** Models voxelized straight into files: the bytes of the whole grid, in the memory that is left. */
 #include "grids.h"
 
-#include "mesh/soup.h"
+#include "../voxel/engine.h"
 
-#include <math.h>
+#include "gridio/gridio.h"
 
 static const char *const formats[] = {"binvox", "npy", "raw", "rle"};
 
-enum { FORMATS = sizeof formats / sizeof formats[0] };
+enum { FORMATS = 4 };
 
-/** A torus of quads, and an open sheet of triangles through it: a closed part and one to be voted on. */
-static vxm_soup *make_soup(vxm_context *context) {
-  enum { RINGS = 24, SIDES = 12 };
-  vxm_soup *soup;
-  assert_int_equal(vxm_soup_create(&soup, context, "test", NULL), VXM_OK);
-  for (uint32_t r = 0; r < RINGS; r++)
-    for (uint32_t s = 0; s < SIDES; s++) {
-      double a = 2 * M_PI * r / RINGS, b = 2 * M_PI * s / SIDES, across = 1 + 0.4 * cos(b);
-      assert_int_equal(
-          vxm_soup_add_vertex(soup, across * cos(a), across * sin(a), 0.4 * sin(b) + 0.1 * cos(a), NULL),
-          VXM_OK);
-    }
-  for (uint32_t r = 0; r < RINGS; r++)
-    for (uint32_t s = 0; s < SIDES; s++) {
-      uint32_t r1 = (r + 1) % RINGS, s1 = (s + 1) % SIDES;
-      uint32_t corner[4] = {r * SIDES + s, r1 * SIDES + s, r1 * SIDES + s1, r * SIDES + s1};
-      assert_int_equal(vxm_soup_add_face(soup, corner, 4, NULL), VXM_OK);
-    }
-  /* Half a box, open on three sides. */
-  uint32_t v = (uint32_t)soup->vertex_count;
-  for (int i = 0; i < 8; i++)
-    assert_int_equal(
-        vxm_soup_add_vertex(soup, i & 1 ? 0.5 : -0.45, i & 2 ? 0.5 : -0.4, i & 4 ? 0.6 : -0.7, NULL), VXM_OK);
-  static const uint32_t half[6][3] = {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {0, 4, 6}, {0, 6, 2}};
-  for (int f = 0; f < 6; f++)
-    assert_int_equal(
-        vxm_soup_add_face(soup, (uint32_t[]){v + half[f][0], v + half[f][1], v + half[f][2]}, 3, NULL),
-        VXM_OK);
-  return soup;
-}
-
-/** Small slices, of which a limited context takes some at a time. */
-static const vxm_space space = {{150, 150, 150}, {-1.6, -1.55, -1.5}, {0.021, 0.021, 0.021}};
-
-typedef struct result {
-  vxm_voxelize_report report;
-  int64_t windows;
-} result;
-
-static result write_file(const char *path, const vxm_voxelize_options *options, int threads, uint64_t limit) {
-  vxm_context *context = context_with(threads, limit, NULL, NULL);
-  vxm_soup *soup = make_soup(context);
-  vxm_model *model;
-  vxm_error error = VXM_ERROR_INIT;
-  assert_int_equal(vxm_model_create(&model, soup, options, &error), VXM_OK);
-  vxm_estimate estimate = {0};
-  if (vxm_model_estimate(&estimate, model, &space, path, NULL, &error) != VXM_OK)
-    fail_msg("%s", error.text);
-  result r = {.windows = estimate.windows};
-  if (vxm_model_write(&r.report, model, &space, path, NULL, &error) != VXM_OK)
-    fail_msg("%s", error.text);
-  assert_true(limit == 0 || vxm_context_peak_bytes(context) <= limit);
-  vxm_model_destroy(model);
-  vxm_soup_destroy(soup);
-  vxm_context_destroy(context);
-  return r;
-}
-
-static void assert_same(const char *a, const char *b) {
+static void assert_same_file(const char *a, const char *b) {
   size_t sizes[2];
   unsigned char *data[2] = {load_file(a, &sizes[0]), load_file(b, &sizes[1])};
   assert_int_equal(sizes[0], sizes[1]);
@@ -77,145 +19,225 @@ static void assert_same(const char *a, const char *b) {
   free(data[1]);
 }
 
-/** The grid that the library makes at once. */
-static vxm_grid *make_whole(vxm_context *context, const vxm_voxelize_options *options,
-                            vxm_voxelize_report *report) {
-  vxm_soup *soup = make_soup(context);
-  vxm_voxelize_options given = *options;
-  given.space.like = &space;
-  vxm_grid *grid;
-  assert_int_equal(vxm_voxelize(&grid, report, soup, &given, NULL), VXM_OK);
-  vxm_soup_destroy(soup);
-  return grid;
+static void assert_same_warnings(const vxm_model *model, const vxm_grid *grid) {
+  assert_int_equal(vxm_model_warning_count(model), vxm_grid_warning_count(grid));
+  for (int64_t w = 0; w < vxm_grid_warning_count(grid); w++)
+    assert_string_equal(vxm_model_warning(model, w), vxm_grid_warning(grid, w));
 }
 
-/** A limit under which only some slices fit at once. */
-static uint64_t limit_for(const char *path, const vxm_voxelize_options *options, int threads) {
-  for (uint64_t limit = UINT64_C(1) << 20;; limit += limit / 16) {
-    vxm_context *context = context_with(threads, limit, NULL, NULL);
-    vxm_soup *soup = make_soup(context);
-    vxm_model *model;
-    assert_int_equal(vxm_model_create(&model, soup, options, NULL), VXM_OK);
-    vxm_estimate estimate = {0};
-    vxm_status status = vxm_model_estimate(&estimate, model, &space, path, NULL, NULL);
-    vxm_model_destroy(model);
-    vxm_soup_destroy(soup);
-    vxm_context_destroy(context);
-    if (status == VXM_OK)
-      return limit;
-  }
-}
+typedef struct wanted {
+  const vxm_grid *grid;
+  const vxm_voxelize_report *report;
+  const char *file, *folder;
+  bool told; /**< the estimate holds; the winding number, where it is asked, takes memory of its own */
+} wanted;
 
-static void check_mode(const vxm_voxelize_options *options, const char *folder) {
-  vxm_context *context = context_with(2, 0, NULL, NULL);
+/** Writes with so much memory left: the same file within it, or none. Returns the windows, 0 if refused. */
+static int64_t write_within(vxm_context *own, vxm_model *model, const char *path, size_t left,
+                            const wanted *want) {
+  const vxm_space *space = &want->grid->space;
+  vxm_estimate estimate;
+  vxm_error error = VXM_ERROR_INIT;
+  leave_memory(own, left);
+  size_t held = memory_used(own);
+  atomic_store(&own->peak, held);
+  int files = count_files(want->folder);
+  vxm_status told = vxm_model_estimate(&estimate, model, space, path, NULL, &error);
+  assert_int_equal(count_files(want->folder), files);
   vxm_voxelize_report report;
-  vxm_grid *grid = make_whole(context, options, &report);
-  assert_true(report.voxels > 1000);
+  vxm_status status = vxm_model_write(&report, model, space, path, NULL, &error);
+  assert_true(status == told || (!want->told && told == VXM_OK));
+  leave_memory(own, SIZE_MAX);
+  uint64_t peak = vxm_context_peak_bytes(own);
+  assert_true(peak <= held + left || left == SIZE_MAX);
+  if (status != VXM_OK) {
+    assert_int_equal(status, VXM_ERROR_MEMORY_LIMIT);
+    assert_int_equal(error.code, VXM_ERROR_MEMORY_LIMIT);
+    assert_int_equal(count_files(want->folder), files);
+    assert_true(estimate.memory_bytes == 0 || !want->told);
+    assert_int_equal(report.voxels, 0);
+    return 0;
+  }
+  assert_true(estimate.memory_bytes <= left);
+  assert_int_equal(estimate.grid_bytes, vxm_space_bytes(space));
+  assert_in_range(estimate.windows, 1, 1 << 20);
+  if (want->told && peak > held + estimate.memory_bytes)
+    fail_msg("%s took %llu bytes, and %llu were told", path, (unsigned long long)(peak - held),
+             (unsigned long long)estimate.memory_bytes);
+  assert_same_file(want->file, path);
+  assert_equal_reports(&report, want->report);
+  assert_same_warnings(model, want->grid);
+  remove(path);
+  return estimate.windows;
+}
+
+/** With less and less memory, down to too little. Returns the most windows. */
+static int64_t write_in_less_and_less(const vxm_soup *soup, const vxm_voxelize_options *options,
+                                      const char *path, const wanted *want) {
+  vxm_context *own = soup->context;
+  /* Fresh models: what one has kept need not be taken again. */
+  vxm_model *model = engine_model(soup, options);
+  vxm_estimate estimate;
+  assert_int_equal(vxm_model_estimate(&estimate, model, &want->grid->space, path, NULL, NULL), VXM_OK);
+  int64_t windows = write_within(own, model, path, SIZE_MAX, want), most = windows;
+  assert_int_equal(windows, 1);
+  vxm_model_destroy(model);
+  for (size_t left = (size_t)estimate.memory_bytes * 9 / 8; windows > 0; left -= left / 5) {
+    model = engine_model(soup, options);
+    windows = write_within(own, model, path, left, want);
+    if (windows > 0 && left % 3 == 0) /* once more with the same model */
+      assert_int_not_equal(write_within(own, model, path, left, want), 0);
+    vxm_model_destroy(model);
+    most = vxm_max(most, windows);
+  }
+  return most;
+}
+
+static void check_formats(const vxm_voxelize_options *options, int kind, const vxm_space *space, int threads,
+                          int64_t windows, bool told) {
+  char folder[64], whole[100], path[100];
+  make_folder(folder);
+  vxm_soup *soup = random_soup(context, 7, kind, space);
+  vxm_voxelize_report report;
+  vxm_grid *grid = engine_solid(soup, space, options, &report);
   for (int f = 0; f < FORMATS; f++) {
-    char whole[80], pieces[80];
     snprintf(whole, sizeof whole, "%s/whole.%s", folder, formats[f]);
-    snprintf(pieces, sizeof pieces, "%s/pieces.%s", folder, formats[f]);
-    assert_int_equal(vxm_grid_write(grid, whole, NULL, NULL), VXM_OK);
-    for (int threads = 1; threads <= 2; threads++) {
-      result r = write_file(pieces, options, threads, limit_for(pieces, options, threads));
-      assert_true(r.windows > 1);
-      assert_same(whole, pieces);
-      assert_true(r.report.hash == report.hash);
-      assert_int_equal(r.report.voxels, report.voxels);
-      assert_int_equal(r.report.contested, report.contested);
-      assert_int_equal(r.report.escalated, report.escalated);
-      assert_int_equal(r.report.empty_parts, report.empty_parts);
-    }
+    snprintf(path, sizeof path, "%s/stream.%s", folder, formats[f]);
+    assert_int_equal(vxm_gridio_write(grid, whole, NULL, NULL), VXM_OK);
+    vxm_context *own = context_with(threads, 0, NULL, NULL);
+    vxm_soup *own_soup = random_soup(own, 7, kind, space);
+    wanted want = {grid, &report, whole, folder, told};
+    int64_t most = write_in_less_and_less(own_soup, options, path, &want);
+    assert_true(most >= windows);
+    empty_folder(folder);
+    vxm_soup_destroy(own_soup);
+    vxm_context_destroy(own);
   }
   vxm_grid_destroy(grid);
-  vxm_context_destroy(context);
-  empty_folder(folder);
-}
-
-static void test_streams_equal_the_whole(void **state) {
-  (void)state;
-  char folder[64];
-  make_folder(folder);
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  check_mode(&options, folder);
-  options.mode = VXM_MODE_SURFACE;
-  for (int kind = 0; kind <= VXM_SURFACE_SHELL6; kind++) {
-    options.surface = (vxm_surface_kind)kind;
-    check_mode(&options, folder);
-  }
-  options.mode = VXM_MODE_BOTH;
-  for (int kind = 0; kind <= VXM_SURFACE_SHELL26; kind++) {
-    options.surface = (vxm_surface_kind)kind;
-    check_mode(&options, folder);
-  }
+  vxm_soup_destroy(soup);
   remove_folder(folder);
 }
 
-static vxm_grid *make_mode(vxm_context *context, vxm_mode mode, vxm_surface_kind kind, bool confidence) {
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.mode = mode;
-  options.surface = kind;
-  options.confidence = confidence;
-  vxm_voxelize_report report;
-  return make_whole(context, &options, &report);
-}
-
-/** A part of the solid; one within the other; with the solid, the solid; and as sure as the solid is. */
-static void test_shells_lie_in_the_solid(void **state) {
+static void test_files_of_one_voter(void **state) {
   (void)state;
-  vxm_context *context = context_with(2, 0, NULL, NULL);
-  vxm_grid *solid = make_mode(context, VXM_MODE_SOLID, VXM_SURFACE_CONSERVATIVE, true), *last = solid;
-  size_t voxels = (size_t)(space.dims[0] * space.dims[1] * space.dims[2]);
-  for (int kind = VXM_SURFACE_SHELL26; kind <= VXM_SURFACE_SHELL6; kind++) {
-    vxm_grid *shell = make_mode(context, VXM_MODE_SURFACE, (vxm_surface_kind)kind, true),
-             *both = make_mode(context, VXM_MODE_BOTH, (vxm_surface_kind)kind, true);
-    assert_same_bits(solid, both);
-    for (size_t w = 0; w < shell->word_count; w++)
-      assert_true((shell->words[w] & ~last->words[w]) == 0);
-    assert_true(vxm_grid_count(shell) < vxm_grid_count(last));
-    assert_memory_equal(vxm_grid_confidence(shell), vxm_grid_confidence(solid), voxels);
-    vxm_grid_destroy(both);
-    if (last != solid)
-      vxm_grid_destroy(last);
-    last = shell;
+  vxm_space space = engine_space(190, 200, 210);
+  for (int method = VXM_METHOD_X; method <= VXM_METHOD_Z; method++) {
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.method = (vxm_method)method;
+    check_formats(&options, method % 2 ? 4 : 5, &space, 1 + method % 3, 2, true);
   }
-  vxm_grid_destroy(last);
-  vxm_grid_destroy(solid);
-  vxm_context_destroy(context);
 }
 
-/** A transform moves the surface as it moves the solid. */
-static void test_the_surface_is_moved(void **state) {
+static void test_files_of_the_default(void **state) {
   (void)state;
-  static const double shift[12] = {1, 0, 0, 0.042, 0, 1, 0, 0, 0, 0, 1, 0}; /* two voxels along x */
-  vxm_context *context = context_with(2, 0, NULL, NULL);
-  vxm_soup *soup = make_soup(context);
+  static const int kinds[] = {0, 2, 4, 5};
+  vxm_space space = engine_space(200, 190, 210);
+  for (int k = 0; k < 4; k++) {
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    /* What stays open may ask the winding number, which takes more than these grids do. */
+    check_formats(&options, kinds[k], &space, 1 + k % 3, kinds[k] < 4 ? 1 : 2, true);
+  }
+}
+
+static void test_files_of_votes(void **state) {
+  (void)state;
+  static const int kinds[] = {7, 6, 2};
+  vxm_space space = engine_space(110, 120, 130);
+  for (int k = 0; k < 3; k++) {
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.vote = (vxm_vote)(VXM_VOTE_MAJORITY + k);
+    check_formats(&options, kinds[k], &space, 1 + k, 2, true);
+  }
+}
+
+/** Where the winding number decides, its triangles and the look that turns them count, too. */
+static void test_files_of_winding_numbers(void **state) {
+  (void)state;
+  vxm_space space = engine_space(60, 50, 70);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.mode = VXM_MODE_SURFACE;
-  options.surface = VXM_SURFACE_THIN;
-  vxm_model *model;
-  vxm_grid *here = new_grid(context, space), *there = new_grid(context, space);
-  assert_int_equal(vxm_model_create(&model, soup, &options, NULL), VXM_OK);
-  assert_int_equal(vxm_model_voxelize(here, NULL, model, NULL, NULL), VXM_OK);
-  assert_int_equal(vxm_model_voxelize(there, NULL, model, shift, NULL), VXM_OK);
-  int64_t unlike = 0, set = vxm_grid_count(here);
-  for (int64_t k = 0; k < space.dims[2]; k++)
-    for (int64_t j = 0; j < space.dims[1]; j++)
-      for (int64_t i = 2; i < space.dims[0]; i++)
-        unlike += vxm_grid_get(there, i, j, k) != vxm_grid_get(here, i - 2, j, k);
-  assert_true(set > 1000 && unlike < set / 50); /* rounding to the lattice decides a few */
-  vxm_grid_destroy(there);
-  vxm_grid_destroy(here);
+  check_formats(&options, 3, &space, 1, 1, true);
+  check_formats(&options, 6, &space, 2, 1, true);
+  options.method = VXM_METHOD_WINDING;
+  check_formats(&options, 0, &space, 1, 1, true);
+}
+
+/** Meshes of the surface, the surface, and the confidence need the whole grid. */
+static void test_what_needs_the_whole_grid(void **state) {
+  (void)state;
+  static const char *const names[] = {"obj", "ply", "stl", "off", "rle", "binvox"};
+  vxm_space space = engine_space(40, 50, 30);
+  for (int n = 0; n < 6; n++)
+    for (int what = 0; what < 3; what++) {
+      char folder[64], whole[100], path[100];
+      make_folder(folder);
+      snprintf(whole, sizeof whole, "%s/whole.%s", folder, names[n]);
+      snprintf(path, sizeof path, "%s/stream.%s", folder, names[n]);
+      vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+      options.mode = what == 1 ? VXM_MODE_BOTH : VXM_MODE_SOLID;
+      options.confidence = what == 2;
+      vxm_soup *soup = random_soup(context, 8, 5 + n % 3, &space);
+      vxm_voxelize_report want, report;
+      vxm_grid *grid = engine_solid(soup, &space, &options, &want);
+      assert_int_equal(vxm_gridio_write(grid, whole, NULL, NULL), VXM_OK);
+      vxm_model *model = engine_model(soup, &options);
+      vxm_estimate estimate;
+      assert_int_equal(vxm_model_estimate(&estimate, model, &space, path, NULL, NULL), VXM_OK);
+      assert_int_equal(estimate.windows, 1);
+      assert_int_equal(vxm_model_write(&report, model, &space, path, NULL, NULL), VXM_OK);
+      assert_same_file(whole, path);
+      assert_equal_reports(&want, &report);
+      assert_same_warnings(model, grid);
+      vxm_model_destroy(model);
+      vxm_grid_destroy(grid);
+      vxm_soup_destroy(soup);
+      remove_folder(folder);
+    }
+}
+
+/** Cancelled at every window, no file is left, and the model writes the next one. */
+static int stop_after(const char *phase, double fraction, void *payload) {
+  (void)phase;
+  (void)fraction;
+  int *left = payload;
+  return *left >= 0 && (*left)-- == 0;
+}
+
+static void test_cancelled_files_are_not_left(void **state) {
+  (void)state;
+  char folder[64];
+  make_folder(folder);
+  int left = -1;
+  vxm_context *own = context_with(2, 0, stop_after, &left);
+  vxm_space space = engine_space(120, 130, 140);
+  vxm_soup *soup = random_soup(own, 9, 7, &space);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.vote = VXM_VOTE_ANY;
+  vxm_grid *grid = engine_solid(soup, &space, &options, NULL);
+  assert_int_equal(vxm_gridio_write(grid, path_in(folder, "whole.rle"), NULL, NULL), VXM_OK);
+  vxm_model *model = engine_model(soup, &options);
+  vxm_status status = VXM_ERROR_CANCELLED;
+  for (int calls = 0; status != VXM_OK; calls += 1 + calls / 4) {
+    left = calls;
+    status = vxm_model_write(NULL, model, &space, path_in(folder, "stream.rle"), NULL, NULL);
+    assert_true(status == VXM_OK || status == VXM_ERROR_CANCELLED);
+    assert_int_equal(count_files(folder), status == VXM_OK ? 2 : 1);
+  }
+  assert_same_file(path_in(folder, "whole.rle"), path_in(folder, "stream.rle"));
   vxm_model_destroy(model);
+  vxm_grid_destroy(grid);
   vxm_soup_destroy(soup);
-  vxm_context_destroy(context);
+  vxm_context_destroy(own);
+  remove_folder(folder);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_streams_equal_the_whole),
-      cmocka_unit_test(test_shells_lie_in_the_solid),
-      cmocka_unit_test(test_the_surface_is_moved),
+      cmocka_unit_test(test_files_of_one_voter),
+      cmocka_unit_test(test_files_of_the_default),
+      cmocka_unit_test(test_files_of_votes),
+      cmocka_unit_test(test_files_of_winding_numbers),
+      cmocka_unit_test(test_what_needs_the_whole_grid),
+      cmocka_unit_test(test_cancelled_files_are_not_left),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -5,6 +5,7 @@
 
 #include "shapes.h"
 
+#include "base/context_struct.h"
 #include "grid/bitgrid.h"
 #include "voxel/lattice.h"
 #include "voxel/voxelize.h"
@@ -112,15 +113,14 @@ static inline vxm_context *context_of(int threads, uint64_t limit) {
   return made;
 }
 
-/** Takes the memory of a context but for about `left` bytes; to be freed. */
-static inline void *leave_memory(vxm_context *owner, size_t left) {
-  enum { BLOCK_EXTRA = 192 };
-  size_t now = vxm_memory_left(owner);
-  if (now < left + BLOCK_EXTRA)
-    return NULL;
-  void *ballast = vxm_alloc(owner, now - left - BLOCK_EXTRA, 1, NULL);
-  assert_non_null(ballast);
-  return ballast;
+/** Leaves a context so many bytes; SIZE_MAX lifts the limit. */
+static inline void leave_memory(vxm_context *owner, size_t left) {
+  size_t used = atomic_load(&owner->used);
+  owner->limit = left > SIZE_MAX - used ? SIZE_MAX : used + left;
+}
+
+static inline size_t memory_used(vxm_context *owner) {
+  return atomic_load(&owner->used);
 }
 
 static inline vxm_space engine_space(int64_t nx, int64_t ny, int64_t nz) {
@@ -280,7 +280,8 @@ static inline vxm_soup *random_soup(vxm_context *owner, uint64_t seed, int kind,
     break;
   case 6: /* closed and open parts over each other */
     for (uint32_t i = 0; i < 6; i++)
-      random_octahedron(soup, &rng, i % 2 ? low : out_low, i % 2 ? high : out_high, i % 3 == 0 ? 1 + i / 3 : 0);
+      random_octahedron(soup, &rng, i % 2 ? low : out_low, i % 2 ? high : out_high,
+                        i % 3 == 0 ? 1 + i / 3 : 0);
     break;
   default: /* one open part with a large hole, and one behind the grid */
     triangle_box(soup, low, high, 1 + (uint32_t)vxm_rng_below(&rng, 3), false);

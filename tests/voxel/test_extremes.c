@@ -18,8 +18,7 @@ static void assert_exact(const vxm_soup *soup, const vxm_space *space) {
   for (int w = 0; w < 3; w++) {
     memset(want, 0, count);
     exact_unite(want, soup, 0, soup->face_count, space, w);
-    vxm_grid *grid =
-        engine_method(soup, space, (vxm_method)(VXM_METHOD_X + w), VXM_PARTS_WHOLE, NULL);
+    vxm_grid *grid = engine_method(soup, space, (vxm_method)(VXM_METHOD_X + w), VXM_PARTS_WHOLE, NULL);
     assert_grid_is(grid, want);
     vxm_grid_destroy(grid);
   }
@@ -291,8 +290,7 @@ static void test_meshes_outside_the_grid(void **state) {
           triangle_box(soup, low, high, open ? 2 : 0, false);
           for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_TETRA; method++) {
             vxm_voxelize_report report;
-            vxm_grid *grid =
-                engine_method(soup, &space, (vxm_method)method, VXM_PARTS_AUTO, &report);
+            vxm_grid *grid = engine_method(soup, &space, (vxm_method)method, VXM_PARTS_AUTO, &report);
             if (!open || method == VXM_METHOD_VOTE) /* capped */
               assert_int_equal(report.voxels, 0);
             if (!open || method == VXM_METHOD_VOTE)

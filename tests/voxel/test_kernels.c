@@ -93,6 +93,33 @@ static void test_single_bits_fill_their_row(void **state) {
     }
 }
 
+/** Lines folded past the cache are those folded in place, and leave nothing behind. */
+static void test_rows_are_folded_past_the_cache(void **state) {
+  (void)state;
+  enum { ROWS = 5, ROW_MAX = 40 };
+  vxm_rng rng = {14};
+  for (size_t row_words = 8; row_words <= ROW_MAX; row_words += 8)
+    for (int round = 0; round < 20; round++) {
+      _Alignas(64) uint64_t from[ROWS * ROW_MAX], to[ROWS * ROW_MAX], want[ROWS * ROW_MAX];
+      size_t count = ROWS * row_words;
+      random_words(&rng, want, count);
+      for (size_t i = 0; i < count; i++) /* many lines without a flip */
+        want[i] = vxm_rng_below(&rng, 4) ? 0 : want[i];
+      for (size_t b = 0; b < build_count; b++) {
+        uint64_t *folded = copy_of(want, count);
+        memcpy(from, want, count * sizeof *from);
+        memset(to, 0xa5, sizeof to);
+        uint64_t any = builds[b]->fold_rows_past(to, from, row_words, ROWS);
+        uint64_t in_place = builds[b]->fold_rows(folded, row_words, ROWS, ~UINT64_C(0));
+        assert_true((any != 0) == (in_place != 0));
+        assert_words(to, folded, count);
+        for (size_t i = 0; i < count; i++)
+          assert_true(from[i] == 0);
+        free(folded);
+      }
+    }
+}
+
 static void test_rows_are_folded_onto_rows(void **state) {
   (void)state;
   vxm_rng rng = {12};
@@ -186,6 +213,7 @@ static void test_words_are_moved(void **state) {
 
 static void check_vote(vxm_rng *rng, size_t count, vxm_vote rule, bool fourth, bool masked) {
   uint64_t data[5][WORDS_MAX];
+  bool fresh = vxm_rng_below(rng, 2), past = vxm_rng_below(rng, 2);
   for (int v = 0; v < 5; v++)
     random_words(rng, data[v], count);
   for (size_t b = 0; b < build_count; b++) {
@@ -194,18 +222,19 @@ static void check_vote(vxm_rng *rng, size_t count, vxm_vote rule, bool fourth, b
       voter[v] = copy_of(data[v], count);
     const uint64_t *const voters[4] = {voter[0], voter[1], voter[2], fourth ? voter[3] : NULL};
     uint64_t added = 0, want_added = 0;
-    int64_t contested = builds[b]->vote(out, voters, masked ? mask : NULL, count, rule, &added), want = 0;
+    int64_t contested = builds[b]->vote(out, voters, masked ? mask : NULL, count, rule, fresh, past, &added),
+            want = 0;
     for (size_t i = 0; i < count; i++) {
       uint64_t x = data[0][i], y = data[1][i], z = data[2][i], t = fourth ? data[3][i] : x;
       uint64_t any = x | y | z | t, all = x & y & z & t;
       uint64_t elected = rule == VXM_VOTE_MAJORITY ? (x & y) | (y & z) | (z & x)
                          : rule == VXM_VOTE_ANY    ? any
                                                    : all;
-      assert_true(out[i] == (data[4][i] | elected));
-      uint64_t disagree = any & ~all & ~data[4][i];
+      uint64_t before = fresh ? 0 : data[4][i], disagree = any & ~all & ~before;
+      assert_true(out[i] == (before | elected));
       assert_true(mask[i] == (masked ? disagree : data[0][i]));
       want += vxm_popcount(disagree);
-      want_added |= elected & ~data[4][i];
+      want_added |= elected & ~before;
     }
     assert_int_equal(contested, want);
     assert_true(added == want_added);
@@ -385,6 +414,7 @@ int main(void) {
       cmocka_unit_test(test_builds_are_chosen),
       cmocka_unit_test(test_rows_are_folded),
       cmocka_unit_test(test_single_bits_fill_their_row),
+      cmocka_unit_test(test_rows_are_folded_past_the_cache),
       cmocka_unit_test(test_rows_are_folded_onto_rows),
       cmocka_unit_test(test_nodes_are_folded),
       cmocka_unit_test(test_words_are_moved),

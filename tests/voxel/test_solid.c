@@ -409,6 +409,33 @@ static void test_same_bits_for_any_number_of_threads(void **state) {
   }
 }
 
+/** Windows of 32 MiB and more are written past the cache, whole lines at a time: the same bits. */
+static void test_large_grids(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_torus(soup, 48, 24, 1, 0.4, (double[]){0, 0, 0});
+  vxm_space space = {{512, 512, 1025}, {-1.5, -1.5, -0.5}, {3.0 / 512, 3.0 / 512, 1.0 / 1025}};
+  uint64_t hash[3];
+  vxm_grid *grid;
+  assert_int_equal(vxm_grid_create(&grid, context, &space, NULL), VXM_OK);
+  memset(grid->words, 0xa5, grid->word_count * sizeof *grid->words);
+  for (int way = 0; way < 3; way++) { /* along rows, across rows, and a vote */
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.method = way == 2 ? VXM_METHOD_VOTE : (vxm_method)(VXM_METHOD_X + way);
+    options.vote = VXM_VOTE_MAJORITY;
+    options.vote_always = true;
+    vxm_model *model;
+    assert_int_equal(vxm_model_create(&model, soup, &options, NULL), VXM_OK);
+    for (int again = 0; again < 2; again++)
+      assert_int_equal(vxm_model_voxelize(grid, NULL, model, NULL, NULL), VXM_OK);
+    hash[way] = vxm_grid_hash(grid);
+    vxm_model_destroy(model);
+  }
+  assert_true(hash[0] == hash[1] && hash[0] == hash[2]);
+  vxm_grid_destroy(grid);
+  vxm_soup_destroy(soup);
+}
+
 /** The filled volume of a smooth body approaches its volume. */
 static void test_torus_volume(void **state) {
   (void)state;
@@ -439,6 +466,7 @@ int main(void) {
       cmocka_unit_test(test_huge_triangles),
       cmocka_unit_test(test_vertices_too_far_away_are_refused),
       cmocka_unit_test(test_same_bits_for_any_number_of_threads),
+      cmocka_unit_test(test_large_grids),
       cmocka_unit_test(test_torus_volume),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
