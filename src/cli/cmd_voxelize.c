@@ -22,6 +22,8 @@ enum {
   KEY_DISTANCE,
   KEY_BAND,
   KEY_CONFIDENCE,
+  KEY_SPARSE,
+  KEY_COORDS,
   KEY_NO_REPAIR,
   KEY_WELD,
   KEY_KEEP,
@@ -73,6 +75,8 @@ static const cli_option known_options[] = {
      "signed: negative inside; .npy or .nrrd"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
+    {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
+    {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
     {KEY_DRY_RUN, "dry-run", NULL, "tell the grid and the memory it takes, and write nothing"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
@@ -80,9 +84,9 @@ static const cli_option known_options[] = {
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
-  const char *input, *output, *format, *like, *confidence;
-  bool resolution, size, fit, pad, bounds, vote, surface, no_repair, repair_options,
-      dry_run; /**< which were given */
+  const char *input, *output, *format, *like, *confidence, *coords;
+  bool resolution, size, fit, pad, bounds, vote, surface, no_repair, repair_options, dry_run,
+      sparse; /**< which were given */
   vxm_repair_options repair;
   vxm_voxelize_options voxelize;
   cli_field field;
@@ -220,6 +224,12 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     out->confidence = value;
     out->voxelize.confidence = true;
     return CLI_END;
+  case KEY_SPARSE:
+    out->sparse = true;
+    return CLI_END;
+  case KEY_COORDS:
+    out->coords = value;
+    return CLI_END;
   case KEY_DRY_RUN:
     out->dry_run = true;
     return CLI_END;
@@ -265,6 +275,15 @@ static int check_conflicts(cli_run *cli, const request *given) {
     return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
   if (given->confidence && given->output && strcmp(given->confidence, given->output) == 0)
     return cli_usage(cli, "--confidence and -o name the same file");
+  if (given->confidence && given->sparse)
+    return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
+  if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
+    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage and --distance");
+  if (given->coords && !is_npy(given->coords))
+    return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
+  if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
+                        (given->confidence && strcmp(given->coords, given->confidence) == 0)))
+    return cli_usage(cli, "--coords and another output name the same file");
   if (given->no_repair && given->repair_options)
     return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
   return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);
@@ -283,6 +302,9 @@ static int read_arguments(cli_run *cli, request *out) {
     return CLI_STOP;
   out->format = cli_output_format(cli, out->output, out->format,
                                   cli_field_wanted(&out->field) ? cli_field_formats : cli_grid_formats);
+  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", NULL};
+  if (out->format && out->sparse && cli_read_choice(out->format, sliced) < 0)
+    return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
   return out->format ? CLI_END : CLI_STOP;
 }
 
@@ -293,8 +315,20 @@ typedef struct outcome {
   vxm_voxelize_report voxelize;
   vxm_space space;
   vxm_estimate estimate;
+  struct {
+    int64_t bricks, nodes; /**< none without --sparse */
+    uint64_t bytes;
+  } sparse;
   double voxelize_ms, write_ms, total_ms;
 } outcome;
+
+static json_t *sparse_json(const outcome *results) {
+  json_t *object = json_object();
+  json_object_set_new(object, "bricks", json_integer(results->sparse.bricks));
+  json_object_set_new(object, "nodes", json_integer(results->sparse.nodes));
+  json_object_set_new(object, "bytes", json_integer((json_int_t)results->sparse.bytes));
+  return object;
+}
 
 static json_t *estimate_json(const vxm_estimate *estimate) {
   json_t *object = json_object();
@@ -339,6 +373,8 @@ static json_t *make_report(const cli_run *cli, const request *given, const outco
   else {
     json_object_set_new(report, "voxels", json_integer(results->voxelize.voxels));
     json_object_set_new(report, "hash", cli_json_hash(results->voxelize.hash));
+    if (given->sparse)
+      json_object_set_new(report, "sparse", sparse_json(results));
   }
   json_object_set_new(report, "time_ms", times);
   json_object_set_new(report, "peak_bytes", json_integer((json_int_t)vxm_context_peak_bytes(cli->context)));
@@ -418,6 +454,9 @@ static void summarize(const cli_run *cli, const request *given, const outcome *r
                                   : " (open parts: the voters disagreed there)");
   if (report->escalated > report->contested)
     cli_row(cli, "winding", "%" PRId64 " voxels decided by the winding number", report->escalated);
+  if (given->sparse)
+    cli_row(cli, "octree", "%" PRId64 " bricks, %" PRId64 " nodes, %.1f MiB", results->sparse.bricks,
+            results->sparse.nodes, (double)results->sparse.bytes / (1 << 20));
   if (!cli_field_wanted(&given->field))
     cli_row(cli, "hash", "%016" PRIx64, report->hash);
   cli_row(cli, "time", "%.1f ms: read %.1f, repair %.1f, voxelize %.1f, write %.1f", results->total_ms,
@@ -447,8 +486,8 @@ static void warn_of_model(cli_run *cli, const request *given, const vxm_model *m
     cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
 }
 
-/** The confidence is written beside the grid, which is therefore made as a whole. */
-static int write_with_confidence(cli_run *cli, const request *given, outcome *results, vxm_model *model) {
+/** Written beside the grid are its confidence and coordinates: it is made as a whole. */
+static int write_whole(cli_run *cli, const request *given, outcome *results, vxm_model *model) {
   double start = cli_clock();
   vxm_grid *grid = NULL;
   vxm_status status = vxm_grid_create(&grid, cli->context, &results->space, &cli->error);
@@ -464,9 +503,39 @@ static int write_with_confidence(cli_run *cli, const request *given, outcome *re
   if (status == VXM_OK) {
     cli->made = given->output;
     cli->made_format = given->format;
-    status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
+    if (given->confidence)
+      status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
+    if (status == VXM_OK && given->coords)
+      status = vxm_grid_write_coords(grid, given->coords, &cli->error);
   }
   vxm_grid_destroy(grid);
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  warn_of_model(cli, given, model);
+  return CLI_DONE;
+}
+
+static int write_sparse(cli_run *cli, const request *given, outcome *results, vxm_model *model) {
+  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+  options.format = given->format;
+  vxm_sparse *sparse;
+  double start = cli_clock();
+  if (vxm_model_sparse(&sparse, &results->voxelize, model, &results->space, NULL, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  results->sparse.bricks = vxm_sparse_bricks(sparse);
+  results->sparse.nodes = vxm_sparse_nodes(sparse);
+  results->sparse.bytes = vxm_sparse_bytes(sparse);
+  double made = cli_clock();
+  vxm_status status = vxm_sparse_write(sparse, given->output, &options, &cli->error);
+  results->voxelize_ms += made - start;
+  results->write_ms = cli_clock() - made;
+  if (status == VXM_OK) {
+    cli->made = given->output;
+    cli->made_format = given->format;
+    if (given->coords)
+      status = vxm_sparse_write_coords(sparse, given->coords, &cli->error);
+  }
+  vxm_sparse_destroy(sparse);
   if (status != VXM_OK)
     return cli_fail(cli);
   warn_of_model(cli, given, model);
@@ -513,8 +582,9 @@ static int make_file(cli_run *cli, request *given, outcome *results) {
     summarize_estimate(cli, given, results);
   }
   if (result == CLI_DONE && !given->dry_run)
-    result = given->confidence ? write_with_confidence(cli, given, results, model)
-                               : write_model(cli, given, results, model);
+    result = given->sparse                        ? write_sparse(cli, given, results, model)
+             : given->confidence || given->coords ? write_whole(cli, given, results, model)
+                                                  : write_model(cli, given, results, model);
   vxm_model_destroy(model);
   return result;
 }

@@ -20,6 +20,11 @@ static inline uint64_t vxm_load_le64(const unsigned char *bytes) {
   return vxm_le64(word);
 }
 
+static inline void vxm_store_le32(unsigned char *bytes, uint32_t word) {
+  for (int b = 0; b < 4; b++)
+    bytes[b] = (unsigned char)(word >> 8 * b);
+}
+
 static inline void vxm_store_le64(unsigned char *bytes, uint64_t word) {
   word = vxm_le64(word);
   memcpy(bytes, &word, sizeof word);

@@ -188,13 +188,10 @@ vxm_status vxm_npy_header_read(vxm_npy_header *out, const vxm_input *input, vxm_
   return read_dictionary(&s, out);
 }
 
-void vxm_npy_header_write(vxm_output *output, const char *type, bool fortran, const int64_t shape[3]) {
+/** The magic number, the version and the dictionary, of which `text` holds `length` bytes and has room for 64
+ * more. */
+static void write_header(vxm_output *output, char *text, int length) {
   enum { BEGIN = 10, ALIGN = 64 };
-  char text[192];
-  int length =
-      snprintf(text, sizeof text,
-               "{'descr': '%s', 'fortran_order': %s, 'shape': (%" PRId64 ", %" PRId64 ", %" PRId64 "), }",
-               type, fortran ? "True" : "False", shape[0], shape[1], shape[2]);
   /* Spaces and a line end fill the header up to the alignment. */
   size_t used = (size_t)length, total = (BEGIN + used + 1 + ALIGN - 1) / ALIGN * ALIGN - BEGIN;
   memset(text + used, ' ', total - used - 1);
@@ -203,4 +200,21 @@ void vxm_npy_header_write(vxm_output *output, const char *type, bool fortran, co
   vxm_output_write(output, magic, sizeof magic);
   vxm_output_write(output, head, sizeof head);
   vxm_output_write(output, text, total);
+}
+
+void vxm_npy_header_write(vxm_output *output, const char *type, bool fortran, const int64_t shape[3]) {
+  char text[256];
+  int length =
+      snprintf(text, sizeof text,
+               "{'descr': '%s', 'fortran_order': %s, 'shape': (%" PRId64 ", %" PRId64 ", %" PRId64 "), }",
+               type, fortran ? "True" : "False", shape[0], shape[1], shape[2]);
+  write_header(output, text, length);
+}
+
+void vxm_npy_header_write_table(vxm_output *output, const char *type, int64_t rows, int64_t columns) {
+  char text[256];
+  int length = snprintf(text, sizeof text,
+                        "{'descr': '%s', 'fortran_order': False, 'shape': (%" PRId64 ", %" PRId64 "), }",
+                        type, rows, columns);
+  write_header(output, text, length);
 }

@@ -48,6 +48,11 @@ typedef struct vxm_kernels {
    * are whole. */
   int64_t (*vote)(uint64_t *out, const uint64_t *const voters[4], uint64_t *mask, size_t count, vxm_vote rule,
                   bool fresh, bool past, uint64_t *added);
+  /** The bricks of a node of an octree, in the order of vxm_strip_add_node, of what is flipped in it, which
+   * is cleared: a prefix XOR along the four voxels of a row and on into the next brick. `inside` says for
+   * each row of bricks what is inside as the node begins, then as it ends. masks[0] are the bricks that are
+   * not empty, masks[1] the full ones. Returns the OR of all bricks. */
+  uint64_t (*fold_node)(uint64_t bricks[64], uint64_t flipped[64], uint64_t inside[16], uint64_t masks[2]);
 } vxm_kernels;
 
 /** The best build for this processor, or the one forced. */

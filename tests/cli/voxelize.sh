@@ -66,6 +66,18 @@ run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --memlimit 40M 
 run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --json --memlimit 40M --threads 2'
 run 'test -e not.npy || echo nothing written'
 
+say "# octrees and coordinates"
+for options in '' '--mode both' '--mode surface --surface thin' '--vote majority'; do
+  run "voxmend voxelize in/rocket.off -o whole.rle -r 100 --coords whole.npy $options | grep -E '^(voxels|octree|hash)'"
+  run "voxmend voxelize in/rocket.off -o octree.rle -r 100 --coords octree.npy $options --sparse | grep -E '^(voxels|octree|hash)'"
+  run 'cmp whole.rle octree.rle && cmp whole.npy octree.npy'
+done
+run 'voxmend voxelize in/rocket.off -o octree.rle -r 100 --sparse --json | grep -A 4 sparse'
+run 'voxmend voxelize in/cube.off -o x.obj --sparse'
+run 'voxmend voxelize in/cube.off -o x.npy --sparse --confidence y.npy'
+run 'voxmend voxelize in/cube.off -o x.npy --coords x.npy'
+run 'voxmend voxelize in/cube.off -o x.npy --coords x.txt'
+
 say "# failures leave nothing"
 mkdir out
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off

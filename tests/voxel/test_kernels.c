@@ -140,6 +140,53 @@ static void test_rows_are_folded_onto_rows(void **state) {
     }
 }
 
+/** Rows of 16 voxels in four bricks each, as a prefix XOR voxel by voxel. */
+static void test_nodes_are_folded(void **state) {
+  (void)state;
+  vxm_rng rng = {17};
+  for (int round = 0; round < 300; round++) {
+    uint64_t flipped[64], inside[16], want[64] = {0}, want_inside[16] = {0}, all = 0;
+    uint64_t want_masks[2] = {0, 0};
+    random_words(&rng, flipped, 64);
+    for (int r = 0; r < 16; r++) {
+      inside[r] = 0;
+      for (int row = 0; row < 16; row++)
+        inside[r] |= vxm_rng_below(&rng, 2) ? UINT64_C(15) << 4 * row : 0;
+      if (round % 3 == 0) { /* empty and full bricks */
+        inside[r] = r % 2 ? ~UINT64_C(0) : 0;
+        flipped[r] = flipped[16 + r] = 0;
+      }
+      for (int row = 0; row < 16; row++) {
+        unsigned bit = inside[r] >> 4 * row & 1;
+        for (int x = 0; x < 16; x++) {
+          /* A flip is stored as what it changes in its brick: all voxels from it on. */
+          unsigned change = flipped[x / 4 * 16 + r] >> (4 * row + x % 4) & 1;
+          want[x / 4 * 16 + r] |= (uint64_t)(change ^ bit) << (4 * row + x % 4);
+          if (x % 4 == 3)
+            bit ^= change;
+        }
+        want_inside[r] |= bit ? UINT64_C(15) << 4 * row : 0;
+      }
+    }
+    for (int b = 0; b < 64; b++) {
+      all |= want[b];
+      want_masks[0] |= (uint64_t)(want[b] != 0) << b;
+      want_masks[1] |= (uint64_t)(want[b] == ~UINT64_C(0)) << b;
+    }
+    for (size_t b = 0; b < build_count; b++) {
+      uint64_t bricks[64], from[64], in[16], masks[2];
+      static const uint64_t none[64] = {0};
+      memcpy(from, flipped, sizeof from);
+      memcpy(in, inside, sizeof in);
+      assert_true(builds[b]->fold_node(bricks, from, in, masks) == all);
+      assert_memory_equal(bricks, want, sizeof want);
+      assert_memory_equal(in, want_inside, sizeof in);
+      assert_memory_equal(masks, want_masks, sizeof masks);
+      assert_memory_equal(from, none, sizeof from);
+    }
+  }
+}
+
 /* ---- Moving and voting ---- */
 
 static void test_words_are_moved(void **state) {
@@ -369,6 +416,7 @@ int main(void) {
       cmocka_unit_test(test_single_bits_fill_their_row),
       cmocka_unit_test(test_rows_are_folded_past_the_cache),
       cmocka_unit_test(test_rows_are_folded_onto_rows),
+      cmocka_unit_test(test_nodes_are_folded),
       cmocka_unit_test(test_words_are_moved),
       cmocka_unit_test(test_votes_are_counted),
       cmocka_unit_test(test_points_are_placed),

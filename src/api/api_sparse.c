@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions of sparse sets of voxels: they check arguments and call down. */
+#include "gridio/sparse_io.h"
+#include "voxel/sparse.h"
+
+#include <inttypes.h>
+
+vxm_status vxm_model_sparse(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
+                            const vxm_space *space, const double transform[12], vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (report)
+    *report = (vxm_voxelize_report){0};
+  if (!out || !model || !space)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = vxm_space_check(space, error);
+  return status == VXM_OK ? vxm_sparse_make(out, report, model, space, transform, error) : status;
+}
+
+const vxm_space *vxm_sparse_space(const vxm_sparse *sparse) {
+  return &sparse->space;
+}
+
+bool vxm_sparse_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
+  return vxm_octree_get(sparse, i, j, k);
+}
+
+int64_t vxm_sparse_count(const vxm_sparse *sparse) {
+  int64_t count;
+  uint64_t hash;
+  vxm_octree_sum(sparse, &count, &hash);
+  return count;
+}
+
+uint64_t vxm_sparse_hash(const vxm_sparse *sparse) {
+  int64_t count;
+  uint64_t hash;
+  vxm_octree_sum(sparse, &count, &hash);
+  return hash;
+}
+
+int64_t vxm_sparse_bricks(const vxm_sparse *sparse) {
+  return (int64_t)sparse->brick_count;
+}
+
+int64_t vxm_sparse_nodes(const vxm_sparse *sparse) {
+  return (int64_t)vxm_octree_nodes(sparse);
+}
+
+uint64_t vxm_sparse_bytes(const vxm_sparse *sparse) {
+  return vxm_octree_bytes(sparse);
+}
+
+vxm_status vxm_sparse_from_grid(vxm_sparse **out, const vxm_grid *grid, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !grid)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  return vxm_octree_from_grid(out, grid, error);
+}
+
+vxm_status vxm_sparse_to_grid(vxm_grid **out, const vxm_sparse *sparse, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !sparse)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = vxm_grid_create(out, sparse->context, &sparse->space, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_window window = vxm_window_of_grid(*out);
+  vxm_octree_fill(sparse, &window);
+  return VXM_OK;
+}
+
+vxm_status vxm_sparse_combine(vxm_sparse **out, const vxm_sparse *a, const vxm_sparse *b,
+                              vxm_set_operation operation, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !a || (!b && operation != VXM_SET_COMPLEMENT))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  if ((int)operation < VXM_SET_UNION || (int)operation > VXM_SET_COMPLEMENT)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: operation %d is unknown", (int)operation);
+  for (int i = 0; i < 3 && operation != VXM_SET_COMPLEMENT; i++)
+    if (a->space.dims[i] != b->space.dims[i])
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "sparse: sets of %" PRId64 " x %" PRId64 " x %" PRId64 " and %" PRId64 " x %" PRId64
+                      " x %" PRId64 " voxels cannot be combined",
+                      a->space.dims[0], a->space.dims[1], a->space.dims[2], b->space.dims[0],
+                      b->space.dims[1], b->space.dims[2]);
+  return vxm_octree_combine(out, a, b, operation, error);
+}
+
+void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload) {
+  vxm_octree_walk(sparse, 2, 0, sparse->space.dims[2], function, payload);
+}
+
+vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path, const vxm_grid_write_options *options,
+                            vxm_error *error) {
+  if (!sparse || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  if (options && options->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "sparse: options version %" PRIu32 " is unknown; use the initializer", options->version);
+  return vxm_gridio_write_sparse(sparse, path, options ? options->format : NULL, error);
+}
+
+vxm_status vxm_sparse_write_coords(const vxm_sparse *sparse, const char *path, vxm_error *error) {
+  if (!sparse || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "coordinates: an argument is NULL");
+  return vxm_gridio_coords_sparse(sparse, path, error);
+}
+
+vxm_status vxm_grid_write_coords(const vxm_grid *grid, const char *path, vxm_error *error) {
+  if (!grid || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "coordinates: an argument is NULL");
+  return vxm_gridio_coords_grid(grid, path, error);
+}

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "grid/octree.h"
+
+int vxm_octree_levels(const vxm_space *space) {
+  int64_t most = vxm_max(space->dims[0], vxm_max(space->dims[1], space->dims[2]));
+  int levels = 1;
+  while (vxm_octree_side(levels) < most)
+    levels++;
+  return levels;
+}
+
+vxm_status vxm_octree_new(vxm_sparse **out, vxm_context *context, const vxm_space *space, vxm_error *error) {
+  vxm_context *owner;
+  *out = NULL;
+  vxm_status status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_sparse *sparse = vxm_calloc(owner, 1, sizeof *sparse, &local);
+  if (!sparse) {
+    vxm_context_release(owner);
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  sparse->context = owner;
+  sparse->space = *space;
+  sparse->levels = vxm_octree_levels(space);
+  *out = sparse;
+  return VXM_OK;
+}
+
+void vxm_sparse_destroy(vxm_sparse *sparse) {
+  if (!sparse)
+    return;
+  vxm_context *context = sparse->context;
+  for (int l = 0; l < sparse->levels; l++)
+    vxm_free(context, sparse->nodes[l]);
+  vxm_free(context, sparse->bricks);
+  vxm_free(context, sparse);
+  vxm_context_release(context);
+}
+
+bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
+  const int64_t *n = sparse->space.dims;
+  if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2])
+    return false;
+  size_t index = 0;
+  for (int l = sparse->levels - 1; l >= 0; l--) {
+    const vxm_octree_node *node = &sparse->nodes[l][index];
+    int shift = 2 * l + 2;
+    unsigned child = vxm_octree_child((unsigned)(i >> shift), (unsigned)(j >> shift), (unsigned)(k >> shift));
+    if (!(node->mixed >> child & 1))
+      return node->full >> child & 1;
+    index = vxm_octree_index(node, child);
+  }
+  return sparse->bricks[index] >> ((k & 3) * 16 + (j & 3) * 4 + (i & 3)) & 1;
+}
+
+size_t vxm_octree_nodes(const vxm_sparse *sparse) {
+  size_t count = 0;
+  for (int l = 0; l < sparse->levels; l++)
+    count += sparse->node_count[l];
+  return count;
+}
+
+uint64_t vxm_octree_bytes(const vxm_sparse *sparse) {
+  return sizeof *sparse + vxm_octree_nodes(sparse) * sizeof(vxm_octree_node) +
+         sparse->brick_count * sizeof *sparse->bricks;
+}
+
+/* ---- Walking ---- */
+
+typedef struct walk {
+  const vxm_sparse *sparse;
+  int axis;
+  int64_t begin, end;
+  vxm_sparse_fn function;
+  void *payload;
+} walk;
+
+static void walk_node(const walk *w, int level, size_t index, const int64_t at[3]) {
+  const vxm_octree_node *node = &w->sparse->nodes[level][index];
+  size_t next = (size_t)node->first;
+  int64_t side = vxm_octree_side(level);
+  for (uint64_t left = node->mixed | node->full; left; left &= left - 1) {
+    unsigned child = (unsigned)__builtin_ctzll(left);
+    bool mixed = node->mixed >> child & 1;
+    size_t below = next;
+    next += mixed;
+    vxm_sparse_piece piece = {.side = side, .bits = ~UINT64_C(0)};
+    vxm_octree_place(child, piece.at);
+    for (int a = 0; a < 3; a++)
+      piece.at[a] = at[a] + piece.at[a] * side;
+    if (piece.at[w->axis] >= w->end || piece.at[w->axis] + side <= w->begin)
+      continue;
+    if (mixed && level > 0) {
+      walk_node(w, level - 1, below, piece.at);
+      continue;
+    }
+    if (mixed)
+      piece.bits = w->sparse->bricks[below];
+    w->function(&piece, w->payload);
+  }
+}
+
+void vxm_octree_walk(const vxm_sparse *sparse, int axis, int64_t begin, int64_t end, vxm_sparse_fn function,
+                     void *payload) {
+  const walk w = {sparse, axis, begin, end, function, payload};
+  walk_node(&w, sparse->levels - 1, 0, (int64_t[3]){0, 0, 0});
+}

@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/*
+ * The solid as an octree against the dense solid, bit for bit: closed, capped and open soups, many parts, all
+ * methods and modes, all numbers of threads, transforms, memory limits, and real meshes.
+ * VOXMEND_TEST_RESOLUTIONS="64 200" chooses other resolutions for these.
+ */
+#include "shapes.h"
+
+#include "grid/octree.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void check_model(vxm_model *model, const vxm_space *space, const double *transform, const char *name) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_voxelize_report dense, sparse;
+  vxm_grid *grid, *back;
+  vxm_sparse *octree, *expected;
+  assert_int_equal(vxm_grid_create(&grid, context, space, NULL), VXM_OK);
+  if (vxm_model_voxelize(grid, &dense, model, transform, &error) != VXM_OK ||
+      vxm_model_sparse(&octree, &sparse, model, space, transform, &error) != VXM_OK)
+    fail_msg("%s: %s", name, error.text);
+  assert_int_equal(vxm_sparse_to_grid(&back, octree, NULL), VXM_OK);
+  if (memcmp(back->words, grid->words, grid->word_count * sizeof *grid->words) != 0)
+    fail_msg("%s differs", name);
+  assert_true(dense.hash == sparse.hash && dense.voxels == sparse.voxels);
+  assert_true(dense.contested == sparse.contested && dense.empty_parts == sparse.empty_parts);
+  assert_true(dense.parts == sparse.parts && dense.escalated == sparse.escalated);
+  assert_int_equal(vxm_sparse_from_grid(&expected, grid, NULL), VXM_OK);
+  assert_int_equal(octree->brick_count, expected->brick_count);
+  if (octree->brick_count > 0)
+    assert_memory_equal(octree->bricks, expected->bricks, octree->brick_count * sizeof *octree->bricks);
+  assert_int_equal(vxm_sparse_nodes(octree), vxm_sparse_nodes(expected));
+  vxm_sparse_destroy(expected);
+  vxm_sparse_destroy(octree);
+  vxm_grid_destroy(back);
+  vxm_grid_destroy(grid);
+}
+
+static void check(const vxm_soup *soup, const vxm_space *space, const vxm_voxelize_options *options) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_model *model;
+  vxm_status status = vxm_model_create(&model, soup, options, &error);
+  if (status == VXM_ERROR_EMPTY)
+    return;
+  if (status != VXM_OK)
+    fail_msg("%s", error.text);
+  static const double turned[12] = {0.8, -0.6, 0, 1.5, 0.6, 0.8, 0, -2.25, 0, 0, -1, 9.5};
+  char name[64];
+  snprintf(name, sizeof name, "method %d, mode %d, parts %d", options->method, options->mode, options->parts);
+  check_model(model, space, NULL, name);
+  check_model(model, space, turned, name);
+  vxm_model_destroy(model);
+}
+
+static vxm_space random_space(vxm_rng *rng) {
+  static const int64_t sides[] = {1, 2, 4, 5, 16, 17, 33, 48, 64, 65, 130};
+  vxm_space space = {{0, 0, 0}, {0, 0, 0}, {1, 1, 1}};
+  for (int a = 0; a < 3; a++)
+    space.dims[a] = sides[vxm_rng_below(rng, sizeof sides / sizeof *sides)];
+  if (space.dims[0] * space.dims[1] * space.dims[2] > 130 * 65 * 17)
+    space.dims[vxm_rng_below(rng, 3)] = 16;
+  return space;
+}
+
+/** Triangles of random corners: open, and cutting through each other; rows may have an odd number. */
+static void add_open(vxm_soup *soup, vxm_rng *rng, int low, int high, int faces) {
+  uint32_t first = (uint32_t)soup->vertex_count;
+  for (int v = 0; v < faces + 2; v++) {
+    double x = shape_quarter(rng, low, high), y = shape_quarter(rng, low, high);
+    shape_vertex(soup, x, y, shape_quarter(rng, low, high));
+  }
+  for (int f = 0; f < faces; f++)
+    shape_triangle(soup, first + (uint32_t)f, first + (uint32_t)f + 1, first + (uint32_t)f + 2);
+}
+
+static vxm_soup *random_soup(vxm_context *owner, vxm_rng *rng, const vxm_space *space, int round) {
+  vxm_soup *soup = shape_empty(owner);
+  int most = 0;
+  for (int a = 0; a < 3; a++)
+    most = space->dims[a] > most ? (int)space->dims[a] : most;
+  /* Some of them lie partly before the grid or behind it. */
+  int low = round % 4 == 0 ? -6 * most : -8, high = round % 4 == 1 ? 8 * most : 4 * most + 8;
+  int parts = round % 5 == 0 ? 40 : 1 + (int)vxm_rng_below(rng, 4);
+  for (int p = 0; p < parts; p++) {
+    if (round % 3 == 2 && p % 2 == 0)
+      add_open(soup, rng, low, high, 1 + (int)vxm_rng_below(rng, 5));
+    else if (p % 3 == 1) { /* nested: boxes one in the other, of which some are cavities */
+      double from[3] = {1 + p % 7, 2, 1}, to[3] = {3 + p % 7 + most / 2, 2 + most / 2, most - 1};
+      shape_box(soup, from, to);
+    } else
+      shape_random_octahedron(soup, rng, low, high);
+  }
+  return soup;
+}
+
+static void test_random_soups(void **state) {
+  (void)state;
+  static const int threads[3] = {1, 2, 7};
+  vxm_context *shared = context;
+  vxm_rng rng = {71};
+  for (int t = 0; t < 3; t++) {
+    vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
+    limits.threads = threads[t];
+    assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
+    for (int round = 0; round < 60; round++) {
+      vxm_space space = random_space(&rng);
+      vxm_soup *soup = random_soup(context, &rng, &space, round);
+      vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+      options.parts = (vxm_parts)vxm_rng_below(&rng, 3);
+      check(soup, &space, &options);
+      options.method = (vxm_method)(VXM_METHOD_X + (int)vxm_rng_below(&rng, 4));
+      check(soup, &space, &options);
+      if (round % 8 == 0) {
+        options.method = VXM_METHOD_VOTE;
+        options.vote = (vxm_vote)vxm_rng_below(&rng, 4);
+        options.mode = (vxm_mode)vxm_rng_below(&rng, 3);
+        check(soup, &space, &options);
+      }
+      vxm_soup_destroy(soup);
+    }
+    vxm_context_destroy(context);
+  }
+  context = shared;
+}
+
+/** Large enough for several windows of slabs; a smooth part, alone and united with others. */
+static void test_many_slabs(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_torus(soup, 90, 60, 400, 150, (double[3]){600.3, 610.7, 170.1});
+  vxm_space space = {{1203, 1230, 341}, {0, 0, 0}, {1, 1, 1}};
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  check(soup, &space, &options);
+  shape_torus(soup, 70, 50, 300, 160, (double[3]){500.3, 700.7, 150.1});
+  shape_box(soup, (double[3]){10, 20, 30}, (double[3]){1200, 320, 330});
+  check(soup, &space, &options);
+  vxm_soup_destroy(soup);
+}
+
+/** Rounds: under a small limit the parts do not fit the bins together. */
+static void test_rounds_and_limits(void **state) {
+  (void)state;
+  vxm_context *shared = context;
+  int failures = 0, successes = 0;
+  uint64_t expected = 0;
+  for (uint64_t limit = UINT64_C(1) << 36; limit > 1 << 18;
+       limit = limit > 1 << 30 ? 1 << 28 : limit / 4 * 3) {
+    vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
+    limits.threads = 2;
+    limits.memory_limit = limit;
+    assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
+    vxm_soup *soup;
+    vxm_model *model = NULL;
+    vxm_sparse *octree = NULL;
+    vxm_error error = VXM_ERROR_INIT;
+    assert_int_equal(vxm_soup_create(&soup, context, "test", NULL), VXM_OK);
+    for (int p = 0; p < 24; p++)
+      shape_box(soup, (double[3]){10 + 7 * p, 3 + p, 2}, (double[3]){150 + 11 * p, 390 - p, 60 - p});
+    vxm_space space = {{410, 401, 63}, {0, 0, 0}, {1, 1, 1}};
+    vxm_status status = vxm_model_create(&model, soup, NULL, &error);
+    if (status == VXM_OK)
+      status = vxm_model_sparse(&octree, NULL, model, &space, NULL, &error);
+    assert_true(status == VXM_OK || status == VXM_ERROR_MEMORY_LIMIT);
+    assert_int_equal(error.code, status);
+    assert_int_equal(octree != NULL, status == VXM_OK);
+    if (octree) {
+      if (expected)
+        assert_true(vxm_sparse_hash(octree) == expected);
+      expected = vxm_sparse_hash(octree);
+    }
+    failures += status != VXM_OK;
+    successes += status == VXM_OK;
+    vxm_sparse_destroy(octree);
+    vxm_model_destroy(model);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+  }
+  assert_true(failures > 2 && successes > 2);
+  context = shared;
+}
+
+static int stop_late(const char *phase, double fraction, void *payload) {
+  int *left = payload;
+  (void)phase;
+  assert_true(fraction >= 0 && fraction <= 1);
+  return --*left < 0;
+}
+
+static void test_cancelling(void **state) {
+  (void)state;
+  vxm_context *shared = context;
+  bool finished = false;
+  for (int calls = 1; !finished && calls < 4000; calls = calls * 3 / 2 + 1) {
+    int left = calls;
+    vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
+    limits.threads = 2;
+    limits.progress = stop_late;
+    limits.payload = &left;
+    assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
+    vxm_soup *soup = shape_empty(context);
+    shape_torus(soup, 60, 40, 60, 25, (double[3]){100, 100, 40});
+    vxm_space space = {{200, 200, 80}, {0, 0, 0}, {1, 1, 1}};
+    vxm_model *model = NULL;
+    vxm_sparse *octree = NULL;
+    vxm_status status = vxm_model_create(&model, soup, NULL, NULL);
+    if (status == VXM_OK)
+      status = vxm_model_sparse(&octree, NULL, model, &space, NULL, NULL);
+    assert_true(status == VXM_OK || status == VXM_ERROR_CANCELLED);
+    assert_int_equal(octree != NULL, status == VXM_OK);
+    finished = status == VXM_OK;
+    vxm_sparse_destroy(octree);
+    vxm_model_destroy(model);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+  }
+  assert_true(finished);
+  context = shared;
+}
+
+static void test_refusals(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, (double[3]){1, 1, 1}, (double[3]){6, 6, 6});
+  vxm_space space = {{8, 8, 8}, {0, 0, 0}, {1, 1, 1}}, none = {{0, 8, 8}, {0, 0, 0}, {1, 1, 1}};
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.confidence = true;
+  vxm_model *model;
+  vxm_sparse *octree;
+  assert_int_equal(vxm_model_create(&model, soup, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_model_sparse(&octree, NULL, model, &space, NULL, NULL), VXM_ERROR_ARGUMENT);
+  assert_null(octree);
+  vxm_model_destroy(model);
+  assert_int_equal(vxm_model_create(&model, soup, NULL, NULL), VXM_OK);
+  assert_true(vxm_model_sparse(&octree, NULL, model, &none, NULL, NULL) != VXM_OK);
+  assert_int_equal(vxm_model_sparse(&octree, NULL, model, &space, (double[12]){0}, NULL), VXM_ERROR_ARGUMENT);
+  vxm_model_destroy(model);
+  vxm_soup_destroy(soup);
+}
+
+static void check_file(const char *path, const char *resolutions) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_mesh *raw, *mesh;
+  vxm_model *model;
+  if (vxm_mesh_read(&raw, context, path, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  assert_int_equal(vxm_mesh_repair(&mesh, NULL, raw, NULL, &error), VXM_OK);
+  vxm_mesh_destroy(raw);
+  if (vxm_model_create(&model, mesh, NULL, &error) == VXM_OK) {
+    const char *at = resolutions;
+    for (char *end; *at; at = end) {
+      vxm_space_options fit = VXM_SPACE_OPTIONS_INIT;
+      vxm_space space;
+      fit.resolution[0] = strtol(at, &end, 10);
+      if (end == at)
+        break;
+      if (vxm_space_fit(&space, mesh, &fit, NULL) == VXM_OK)
+        check_model(model, &space, NULL, path);
+    }
+    vxm_model_destroy(model);
+  }
+  vxm_mesh_destroy(mesh);
+}
+
+static void test_real_meshes(void **state) {
+  (void)state;
+  static const char *const folders[] = {"cad", "classic", "messy", "modelnet", "paper"};
+  const char *source = getenv("SRCDIR"), *resolutions = getenv("VOXMEND_TEST_RESOLUTIONS");
+  for (size_t f = 0; f < sizeof folders / sizeof *folders; f++) {
+    char folder[2048], path[4096];
+    snprintf(folder, sizeof folder, "%s/../shared/meshes/%s", source ? source : ".", folders[f]);
+    DIR *listing = opendir(folder);
+    if (!listing)
+      skip();
+    for (struct dirent *entry; (entry = readdir(listing));) {
+      if (entry->d_name[0] == '.')
+        continue;
+      snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+      check_file(path, resolutions ? resolutions : "64");
+    }
+    closedir(listing);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_random_soups),      cmocka_unit_test(test_many_slabs),
+      cmocka_unit_test(test_rounds_and_limits), cmocka_unit_test(test_cancelling),
+      cmocka_unit_test(test_refusals),          cmocka_unit_test(test_real_meshes),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
