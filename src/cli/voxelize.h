@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What 'voxmend voxelize' was asked for, what came of it, and how that is told. */
+#ifndef VXM_CLI_VOXELIZE_H
+#define VXM_CLI_VOXELIZE_H
+
+#include "cli/cli.h"
+
+typedef struct voxelize_request {
+  const char *input, *output, *format, *like, *confidence, *coords;
+  bool resolution, size, fit, pad, bounds, vote, surface, no_repair, repair_options, dry_run,
+      sparse; /**< which were given */
+  vxm_repair_options repair;
+  vxm_voxelize_options voxelize;
+  cli_field field;
+} voxelize_request;
+
+typedef struct voxelize_outcome {
+  cli_input input;
+  vxm_voxelize_report voxelize;
+  vxm_space space;
+  vxm_estimate estimate;
+  struct {
+    int64_t bricks, nodes; /**< none without --sparse */
+    uint64_t bytes;
+  } sparse;
+  double voxelize_ms, write_ms, total_ms;
+} voxelize_outcome;
+
+/** The report for --json and --report. */
+json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const voxelize_outcome *results);
+/** What is known before the voxels are made, with the estimate if it is wanted or large. */
+void voxelize_summarize_begin(const cli_run *cli, const voxelize_request *given,
+                              const voxelize_outcome *results);
+/** What came of it. */
+void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const voxelize_outcome *results);
+
+#endif
