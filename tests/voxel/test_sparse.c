@@ -18,7 +18,7 @@ static void check_model(vxm_model *model, const vxm_space *space, const double *
   vxm_error error = VXM_ERROR_INIT;
   vxm_voxelize_report dense, sparse;
   vxm_grid *grid, *back;
-  vxm_sparse *octree, *expected;
+  vxm_sparse *octree = NULL, *expected = NULL;
   assert_int_equal(vxm_grid_create(&grid, context, space, NULL), VXM_OK);
   if (vxm_model_voxelize(grid, &dense, model, transform, &error) != VXM_OK ||
       vxm_model_sparse(&octree, &sparse, model, space, transform, &error) != VXM_OK)
