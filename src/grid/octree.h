@@ -72,6 +72,15 @@ bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
 void vxm_octree_sum(const vxm_sparse *sparse, int64_t *count, uint64_t *hash);
 /** Replaces the words of a window, in any layout, on the threads of the octree's context. */
 void vxm_octree_fill(const vxm_sparse *sparse, const vxm_window *window);
+/** Takes the next slices. */
+typedef vxm_status (*vxm_octree_window_fn)(const vxm_window *window, void *payload, vxm_error *error);
+/**
+ * Goes through the octree in windows of `slices` slices, the last one of fewer.
+ *
+ * @return VXM_OK; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT; what `function` returns first that is another
+ */
+vxm_status vxm_octree_each_window(const vxm_sparse *sparse, vxm_layout layout, int64_t slices,
+                                  vxm_octree_window_fn function, void *payload, vxm_error *error);
 /** Number of nodes of all levels, and bytes that the octree takes. */
 size_t vxm_octree_nodes(const vxm_sparse *sparse);
 uint64_t vxm_octree_bytes(const vxm_sparse *sparse);

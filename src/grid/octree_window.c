@@ -101,6 +101,25 @@ void vxm_octree_fill(const vxm_sparse *sparse, const vxm_window *window) {
   vxm_parallel(sparse->context, tasks, fill_slices, &job);
 }
 
+vxm_status vxm_octree_each_window(const vxm_sparse *sparse, vxm_layout layout, int64_t slices,
+                                  vxm_octree_window_fn function, void *payload, vxm_error *error) {
+  vxm_window window = vxm_window_of(&sparse->space, layout, 0, 0);
+  int64_t step = vxm_min(slices, window.slow_dim);
+  vxm_error local = VXM_ERROR_INIT;
+  window.words = vxm_alloc(sparse->context, window.slice_words * (size_t)step, sizeof *window.words, &local);
+  vxm_status status = local.code;
+  if (!window.words && error)
+    *error = local;
+  for (int64_t begin = 0; begin < window.slow_dim && status == VXM_OK; begin += step) {
+    window.begin = begin;
+    window.end = vxm_min(begin + step, window.slow_dim);
+    vxm_octree_fill(sparse, &window);
+    status = function(&window, payload, error);
+  }
+  vxm_free(sparse->context, window.words);
+  return status;
+}
+
 /* ---- From a window ---- */
 
 enum { BLOCK_WORDS = 64 }; /**< of the rows, looked at together */

@@ -25,34 +25,23 @@ static void put_row(vxm_output *output, const uint64_t *row, size_t words, int64
   }
 }
 
+typedef struct target {
+  vxm_output *output;
+  vxm_context *context; /**< for progress */
+} target;
+
 /** Writes the voxels of a window; stops early after a failed write, which the end reports. */
-static vxm_status put_window(vxm_output *output, vxm_context *context, const vxm_window *window,
-                             vxm_error *error) {
+static vxm_status put_window(const vxm_window *window, void *payload, vxm_error *error) {
+  const target *to = payload;
+  vxm_output *output = to->output;
   for (int64_t i = window->begin; i < window->end && !vxm_output_failed(output); i++)
     for (int64_t j = 0; j < window->middle_dim; j++)
       put_row(output, vxm_window_row(window, j, i), window->row_words, i, j);
-  return vxm_progress(context, "writing", (double)window->end / (double)window->slow_dim, error);
-}
-
-static vxm_status put_sparse(vxm_output *output, const vxm_sparse *sparse, vxm_error *error) {
-  vxm_window window = vxm_window_of(&sparse->space, layout, 0, 0);
-  int64_t step = vxm_min(SLICES, window.slow_dim);
-  vxm_error local = VXM_ERROR_INIT;
-  window.words = vxm_alloc(sparse->context, window.slice_words * (size_t)step, sizeof *window.words, &local);
-  vxm_status status = local.code;
-  if (!window.words && error)
-    *error = local;
-  for (int64_t begin = 0; begin < window.slow_dim && status == VXM_OK; begin += step) {
-    window.begin = begin;
-    window.end = vxm_min(begin + step, window.slow_dim);
-    vxm_octree_fill(sparse, &window);
-    status = put_window(output, sparse->context, &window, error);
-  }
-  vxm_free(sparse->context, window.words);
-  return status;
+  return vxm_progress(to->context, "writing", (double)window->end / (double)window->slow_dim, error);
 }
 
 static vxm_status put_grid(vxm_output *output, const vxm_grid *grid, vxm_error *error) {
+  target to = {output, grid->context};
   vxm_planes planes;
   vxm_status status = vxm_planes_create(&planes, grid->context, &grid->space, layout, error);
   if (status != VXM_OK)
@@ -60,7 +49,7 @@ static vxm_status put_grid(vxm_output *output, const vxm_grid *grid, vxm_error *
   for (size_t w = 0; w < grid->row_words && status == VXM_OK; w++) {
     vxm_planes_gather(&planes, grid, w, NULL);
     vxm_window window = vxm_planes_window(&planes, grid, w);
-    status = put_window(output, grid->context, &window, error);
+    status = put_window(&window, &to, error);
   }
   vxm_planes_destroy(&planes);
   return status;
@@ -89,7 +78,10 @@ vxm_status vxm_gridio_coords_sparse(const vxm_sparse *sparse, const char *path, 
   vxm_output *output;
   vxm_octree_sum(sparse, &count, &hash);
   vxm_status status = begin(&output, sparse->context, path, count, error);
-  return status == VXM_OK ? end(output, put_sparse(output, sparse, error), error) : status;
+  if (status != VXM_OK)
+    return status;
+  target to = {output, sparse->context};
+  return end(output, vxm_octree_each_window(sparse, layout, SLICES, put_window, &to, error), error);
 }
 
 vxm_status vxm_gridio_coords_grid(const vxm_grid *grid, const char *path, vxm_error *error) {

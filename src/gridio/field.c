@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/field.h"
+#include "base/clock.h"
 #include "gridio/bytes.h"
 #include "gridio/format.h"
 #include "gridio/npy_header.h"
 #include "gridio/nrrd.h"
 #include "gridio/planes.h"
-
-#include <time.h>
 
 static const vxm_sidecar_text npy_description = {"voxmend npy", "z fastest, then y, then x", NULL};
 
@@ -16,12 +15,6 @@ typedef struct field_file {
   size_t slice_bytes;
   double write_ms;
 } field_file;
-
-static double now_ms(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 static vxm_status find_format(bool *is_nrrd, const char *path, const char *format, vxm_error *error) {
   const char *name = format ? format : vxm_path_extension(path);
@@ -63,11 +56,11 @@ static vxm_status open_file(field_file *file, vxm_field_target *target, vxm_cont
 static vxm_status put_values(void *payload, const void *values, int64_t begin, int64_t end,
                              vxm_error *error) {
   field_file *file = payload;
-  double start = now_ms();
+  double start = vxm_clock_ms();
   for (int64_t s = begin; s < end && !vxm_output_failed(file->output); s++)
     vxm_output_write(file->output, (const char *)values + (size_t)(s - begin) * file->slice_bytes,
                      file->slice_bytes);
-  file->write_ms += now_ms() - start;
+  file->write_ms += vxm_clock_ms() - start;
   if (!vxm_output_failed(file->output))
     return VXM_OK;
   vxm_output *output = file->output;
@@ -77,14 +70,14 @@ static vxm_status put_values(void *payload, const void *values, int64_t begin, i
 
 /** Ends a file: with `status` not VXM_OK none is left. */
 static vxm_status close_file(field_file *file, const char *path, vxm_status status, vxm_error *error) {
-  double start = now_ms();
+  double start = vxm_clock_ms();
   if (status == VXM_OK)
     status = vxm_sidecar_commit(file->output, file->sidecar, path, error);
   else {
     vxm_output_abort(file->sidecar);
     vxm_output_abort(file->output);
   }
-  file->write_ms += now_ms() - start;
+  file->write_ms += vxm_clock_ms() - start;
   return status;
 }
 
@@ -92,7 +85,7 @@ vxm_status vxm_field_write_coverage(vxm_coverage_report *report, vxm_model *mode
                                     const char *path, const vxm_coverage_options *options, vxm_error *error) {
   field_file file;
   vxm_field_target target = {.put = put_values, .payload = &file};
-  double start = now_ms();
+  double start = vxm_clock_ms();
   vxm_status status =
       open_file(&file, &target, model->context, space, options->scalar, path, options->format, error);
   if (status != VXM_OK)
@@ -100,7 +93,7 @@ vxm_status vxm_field_write_coverage(vxm_coverage_report *report, vxm_model *mode
   status = vxm_coverage_run(&target, report, model, space, options, error);
   status = close_file(&file, path, status, error);
   report->voxelize.write_ms = file.write_ms;
-  report->voxelize.fill_ms = now_ms() - start - file.write_ms;
+  report->voxelize.fill_ms = vxm_clock_ms() - start - file.write_ms;
   return status;
 }
 
@@ -108,7 +101,7 @@ vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *mode
                                     const char *path, const vxm_distance_options *options, vxm_error *error) {
   field_file file;
   vxm_field_target target = {.put = put_values, .payload = &file};
-  double start = now_ms();
+  double start = vxm_clock_ms();
   vxm_status status =
       open_file(&file, &target, model->context, space, VXM_FLOAT32, path, options->format, error);
   if (status != VXM_OK)
@@ -116,6 +109,6 @@ vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *mode
   status = vxm_distance_run(&target, report, model, space, options, error);
   status = close_file(&file, path, status, error);
   report->voxelize.write_ms = file.write_ms;
-  report->voxelize.fill_ms = now_ms() - start - file.write_ms;
+  report->voxelize.fill_ms = vxm_clock_ms() - start - file.write_ms;
   return status;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/stream.h"
+#include "base/clock.h"
 #include "grid/sum.h"
 #include "gridio/gridio.h"
 #include "gridio/slices.h"
 #include "voxel/voxelize.h"
 
 #include <string.h>
-#include <time.h>
 
 /** Words of a window that are made at once though more would fit: 256 MiB; larger ones gain nothing. */
 static const uint64_t window_bytes_max = UINT64_C(1) << 28;
@@ -96,12 +96,6 @@ vxm_status vxm_stream_estimate(vxm_estimate *out, const vxm_model *model, const 
 
 /* ---- Writing ---- */
 
-static double now_ms(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
 typedef struct stream {
   vxm_model *model;
   const plan *plan;
@@ -114,7 +108,7 @@ typedef struct stream {
 } stream;
 
 static vxm_status do_window(stream *s, int64_t begin, vxm_error *error) {
-  double start = now_ms();
+  double start = vxm_clock_ms();
   s->window.begin = begin;
   s->window.end = vxm_min(begin + s->plan->slices, s->window.slow_dim);
   vxm_status status = vxm_model_fill(s->model, &s->window, error);
@@ -123,10 +117,10 @@ static vxm_status do_window(stream *s, int64_t begin, vxm_error *error) {
   vxm_sum_add(&s->sum, s->model->context, &s->window, s->before);
   size_t last = (size_t)(s->window.end - begin - 1) * s->window.slice_words;
   memcpy(s->before, s->window.words + last, s->window.slice_words * sizeof *s->before);
-  double made = now_ms();
+  double made = vxm_clock_ms();
   s->fill_ms += made - start;
   status = vxm_slices_put(s->file, &s->window, error);
-  s->write_ms += now_ms() - made;
+  s->write_ms += vxm_clock_ms() - made;
   return status;
 }
 
@@ -143,18 +137,18 @@ static vxm_status write_windows(stream *s, const char *path, const char *format,
     *error = local;
   if (status == VXM_OK)
     status = vxm_slices_open(&s->file, context, s->space, path, format, error);
-  double start = now_ms();
+  double start = vxm_clock_ms();
   if (status == VXM_OK)
     status = vxm_model_begin(s->model, s->space, NULL, NULL, error);
-  s->fill_ms = now_ms() - start;
+  s->fill_ms = vxm_clock_ms() - start;
   for (int64_t k = 0; k < s->window.slow_dim && status == VXM_OK; k += s->plan->slices)
     status = do_window(s, k, error);
-  start = now_ms();
+  start = vxm_clock_ms();
   if (status == VXM_OK)
     status = vxm_slices_commit(s->file, error);
   else
     vxm_slices_abort(s->file);
-  s->write_ms += now_ms() - start;
+  s->write_ms += vxm_clock_ms() - start;
   vxm_free(context, s->window.words);
   vxm_free(context, s->before);
   return status;
@@ -163,14 +157,14 @@ static vxm_status write_windows(stream *s, const char *path, const char *format,
 static vxm_status write_whole(stream *s, vxm_voxelize_report *report, const char *path, const char *format,
                               vxm_error *error) {
   vxm_grid *grid;
-  double start = now_ms();
+  double start = vxm_clock_ms();
   vxm_status status = vxm_voxelize_grid(&grid, report, s->model, s->space, error);
-  double made = now_ms();
+  double made = vxm_clock_ms();
   s->fill_ms = made - start;
   if (status != VXM_OK)
     return status;
   status = vxm_gridio_write(grid, path, format, error);
-  s->write_ms = now_ms() - made;
+  s->write_ms = vxm_clock_ms() - made;
   vxm_grid_destroy(grid);
   return status;
 }

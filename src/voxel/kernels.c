@@ -10,10 +10,9 @@ size_t vxm_kernels_all(const vxm_kernels *out[4]) {
   size_t count = 0;
   out[count++] = &vxm_kernels_plain;
 #if VXM_KERNELS_X86
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))
+  if (vxm_runs_avx2())
     out[count++] = &vxm_kernels_avx2;
-  if (count == 2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+  if (vxm_runs_avx512())
     out[count++] = &vxm_kernels_avx512;
 #endif
   return count;

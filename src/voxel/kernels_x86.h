@@ -1,13 +1,33 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Whether the kernels for particular x86 processors are built. */
+/** Whether the builds for particular x86 processors are there, and may run on this one. */
 #ifndef VXM_VOXEL_KERNELS_X86_H
 #define VXM_VOXEL_KERNELS_X86_H
+
+#include <stdbool.h>
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define VXM_KERNELS_X86 1
 #else
 #define VXM_KERNELS_X86 0
-typedef int vxm_no_kernels; /* a source file may not be empty */
 #endif
+
+/** Whether the builds for AVX2 may run. */
+static inline bool vxm_runs_avx2(void) {
+#if VXM_KERNELS_X86
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
+#else
+  return false;
+#endif
+}
+
+/** Whether the builds for AVX-512 may run. */
+static inline bool vxm_runs_avx512(void) {
+#if VXM_KERNELS_X86
+  return vxm_runs_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+#else
+  return false;
+#endif
+}
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/lattice.h"
 
+#include <inttypes.h>
 #include <math.h>
 
 enum {
@@ -33,4 +34,16 @@ bool vxm_lattice_place(const vxm_lattice *lattice, const double position[3], vxm
   for (int a = 0; a < 3; a++)
     point->at[a] = (int64_t)llrint(steps[a]);
   return true;
+}
+
+vxm_status vxm_lattice_refuse(uint32_t vertex, const double p[3], vxm_error *error) {
+  vxm_place place = {NULL, 0, -1, vertex};
+  if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
+    return vxm_fail_at(error, VXM_ERROR_RANGE, place,
+                       "vertex %" PRIu32 " of the mesh is not finite; repair the mesh first", vertex);
+  return vxm_fail_at(
+      error, VXM_ERROR_RANGE, place,
+      "vertex %" PRIu32
+      " at (%g, %g, %g) lies too many voxels outside the grid; choose larger voxels or remove it",
+      vertex, p[0], p[1], p[2]);
 }

@@ -34,6 +34,17 @@ vxm_lattice vxm_lattice_of(const vxm_space *space);
 /** Snaps one position; false, and nothing stored, if it is not finite or lies too far outside the grid. */
 bool vxm_lattice_place(const vxm_lattice *lattice, const double position[3], vxm_point *point);
 
+/** Moves a position by a 3 x 4 matrix, row after row. */
+static inline void vxm_transform_position(const double transform[12], const double p[3], double out[3]) {
+  for (int a = 0; a < 3; a++) {
+    const double *row = transform + (ptrdiff_t)4 * a;
+    out[a] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
+  }
+}
+
+/** Fails for a vertex of a mesh that has no place on the lattice. */
+vxm_status vxm_lattice_refuse(uint32_t vertex, const double position[3], vxm_error *error);
+
 /** First voxel whose centre is at or beyond a lattice coordinate. */
 static inline int64_t vxm_lattice_first(const vxm_lattice *lattice, int64_t coordinate) {
   /* ceil((c - unit/2) / unit); arithmetic shifts round down. */

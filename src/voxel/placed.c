@@ -3,8 +3,6 @@
 #include "base/threads.h"
 #include "voxel/kernels.h"
 
-#include <inttypes.h>
-#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -16,9 +14,7 @@ static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 static void position_of(const vxm_placed *placed, const vxm_facets *facets, size_t point, double out[3]) {
   const double *p = point < facets->first_cap ? vxm_position(facets->soup, point)
                                               : facets->cap_points[point - facets->first_cap];
-  const double *m = placed->transform;
-  for (int r = 0; r < 3; r++)
-    out[r] = m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3];
+  vxm_transform_position(placed->transform, p, out);
 }
 
 /* ---- Narrow points ---- */
@@ -72,19 +68,6 @@ static bool place_narrow(vxm_placed *placed, const vxm_facets *facets) {
 
 /* ---- Wide points ---- */
 
-static vxm_status fail_vertex(const vxm_facets *facets, uint32_t vertex, vxm_error *error) {
-  const double *p = vxm_position(facets->soup, vertex);
-  vxm_place place = {NULL, 0, -1, vertex};
-  if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
-    return vxm_fail_at(error, VXM_ERROR_RANGE, place,
-                       "vertex %" PRIu32 " of the mesh is not finite; repair the mesh first", vertex);
-  return vxm_fail_at(
-      error, VXM_ERROR_RANGE, place,
-      "vertex %" PRIu32
-      " at (%g, %g, %g) lies too many voxels outside the grid; choose larger voxels or remove it",
-      vertex, p[0], p[1], p[2]);
-}
-
 /** Places all points in 64 bits if one that is used needs it. Those of no face may lie anywhere. */
 static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
@@ -102,7 +85,7 @@ static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, vxm_e
     position_of(placed, facets, p, at);
     if (!vxm_lattice_place(&placed->lattice, at, &placed->wide[p]))
       status = p < facets->first_cap
-                   ? fail_vertex(facets, (uint32_t)p, &local)
+                   ? vxm_lattice_refuse((uint32_t)p, vxm_position(facets->soup, p), &local)
                    : vxm_fail(&local, VXM_ERROR_RANGE, "a hole lies too many voxels outside the grid");
     for (int a = 0; a < 3; a++)
       needed |= placed->wide[p].at[a] >= VXM_NARROW_MAX || placed->wide[p].at[a] <= -VXM_NARROW_MAX;

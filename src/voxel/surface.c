@@ -3,8 +3,6 @@
 #include "base/threads.h"
 #include "meshio/triangulate.h"
 
-#include <inttypes.h>
-#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -76,13 +74,6 @@ typedef struct snap_job {
   atomic_bool is_off; /**< some vertex is off the lattice, used or not */
 } snap_job;
 
-static void transform_position(const double *transform, const double *p, double out[3]) {
-  for (int a = 0; a < 3; a++) {
-    const double *row = transform + (ptrdiff_t)4 * a;
-    out[a] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
-  }
-}
-
 static void snap_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   snap_job *job = payload;
@@ -92,7 +83,7 @@ static void snap_slice(size_t slice, int worker, void *payload) {
     double moved[3];
     const double *p = vxm_position(job->soup, v);
     if (job->transform) {
-      transform_position(job->transform, p, moved);
+      vxm_transform_position(job->transform, p, moved);
       p = moved;
     }
     if (vxm_lattice_place(&surface->lattice, p, &surface->points[v]))
@@ -105,18 +96,8 @@ static void snap_slice(size_t slice, int worker, void *payload) {
 static vxm_status check_used(const vxm_surface *surface, const vxm_soup *soup, vxm_error *error) {
   for (size_t c = 0; c < 3 * surface->triangle_count; c++) {
     uint32_t vertex = surface->corners[c];
-    if (surface->points[vertex].at[0] != off_lattice)
-      continue;
-    const double *p = vxm_position(soup, vertex);
-    vxm_place place = {NULL, 0, -1, vertex};
-    if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
-      return vxm_fail_at(error, VXM_ERROR_RANGE, place,
-                         "vertex %" PRIu32 " of the mesh is not finite; repair the mesh first", vertex);
-    return vxm_fail_at(
-        error, VXM_ERROR_RANGE, place,
-        "vertex %" PRIu32
-        " at (%g, %g, %g) lies too many voxels outside the grid; choose larger voxels or remove it",
-        vertex, p[0], p[1], p[2]);
+    if (surface->points[vertex].at[0] == off_lattice)
+      return vxm_lattice_refuse(vertex, vxm_position(soup, vertex), error);
   }
   return VXM_OK;
 }

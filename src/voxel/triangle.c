@@ -79,7 +79,7 @@ extern vxm_triangle_row_fn vxm_triangle_lower_row_plain, vxm_triangle_lower_row_
 
 vxm_triangle_row_fn *vxm_triangle_row_best(void) {
 #if VXM_KERNELS_X86
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2"))
+  if (vxm_runs_avx2())
     return vxm_triangle_lower_row_avx2;
 #endif
   return vxm_triangle_lower_row_plain;
