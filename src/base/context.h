@@ -5,6 +5,10 @@
 
 #include "base/error.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /** NULL makes a new default context, otherwise adds a reference. Every object holds one. */
 vxm_status vxm_context_acquire(vxm_context **out, vxm_context *context, vxm_error *error);
 void vxm_context_release(vxm_context *context);
@@ -40,4 +44,7 @@ vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t
 /** Reports progress from the calling thread; VXM_ERROR_CANCELLED if the callback asks to stop. */
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

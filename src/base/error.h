@@ -5,6 +5,10 @@
 
 #include "voxmend.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define VXM_PRINTF(text, first) __attribute__((format(printf, text, first)))
 
 /** Writes the message and returns `code`, so that callers can `return vxm_fail(...)`. */
@@ -25,4 +29,7 @@ vxm_status vxm_fail_at(vxm_error *error, vxm_status code, vxm_place place, const
 /** As vxm_fail_at with VXM_ERROR_IO, followed by what errno says. */
 vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

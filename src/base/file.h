@@ -5,6 +5,10 @@
 
 #include "base/context.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /** The bytes of a file, mapped or (for pipes) read; never written to. */
 typedef struct vxm_input {
   const unsigned char *data;
@@ -44,4 +48,7 @@ const char *vxm_path_extension(const char *path);
 /** ASCII comparison without case. */
 bool vxm_text_equal_nocase(const char *a, const char *b);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

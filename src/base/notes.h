@@ -5,6 +5,10 @@
 
 #include "base/error.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { VXM_NOTES_MAX = 16, VXM_NOTE_LENGTH = 320 };
 
 /**
@@ -18,4 +22,7 @@ typedef struct vxm_notes {
 
 void vxm_note(vxm_notes *notes, const char *format, ...) VXM_PRINTF(2, 3);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Optional parts that need large libraries lie in modules of their own, voxmend-NAME.so, opened when they are
+ * first needed: a program that reads an OFF file does not wait for the 50 ms that the libraries of STEP or
+ * VDB files take to load. A module is made of an adapter and of the base room, and exports one vxm_module.
+ */
+#ifndef VXM_BASE_MODULE_H
+#define VXM_BASE_MODULE_H
+
+#include "voxmend.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What a module exports under the name of VXM_MODULE_SYMBOL. */
+typedef struct vxm_module {
+  const char *version;   /**< of voxmend: has to be that of the library, as both share structures */
+  const char *library;   /**< what it is made with, such as "OpenVDB 10.0.1" */
+  const char *licence;   /**< of the module, an SPDX expression */
+  const void *functions; /**< a structure of function pointers, declared by the room that uses the module */
+} vxm_module;
+
+#define VXM_MODULE_SYMBOL "vxm_module_table"
+
+/** Which module, and how to say that it is missing. */
+typedef struct vxm_module_need {
+  const char *name;    /**< such as "openvdb"; also the name of the option of configure */
+  const char *package; /**< Debian's package to build it with */
+  const char *purpose; /**< what asks for it, such as "writing .vdb files" */
+} vxm_module_need;
+
+/**
+ * Opens a module, which then stays open. It is looked for in $VOXMEND_MODULES, beside the library, and where
+ * it was installed.
+ *
+ * @return VXM_OK; VXM_ERROR_UNAVAILABLE if it is missing, cannot be loaded, or belongs to another version
+ */
+vxm_status vxm_module_open(const vxm_module **out, const vxm_module_need *need, vxm_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
