@@ -8,7 +8,8 @@
 
 vxm_status bench_stage_open(bench_stage *stage) {
   vxm_error *error = &stage->cli->error;
-  vxm_status status = vxm_mesh_read(&stage->raw, stage->cli->context, stage->path, error);
+  vxm_status status =
+      vxm_mesh_read_with(&stage->raw, stage->cli->context, stage->path, &stage->cli->read, error);
   return status == VXM_OK ? vxm_mesh_repair(&stage->mesh, NULL, stage->raw, NULL, error) : status;
 }
 
@@ -60,7 +61,8 @@ static vxm_status run_memset(bench_stage *stage) {
 }
 
 static vxm_status run_load(bench_stage *stage) {
-  return vxm_mesh_read(&stage->made_mesh, stage->cli->context, stage->path, &stage->cli->error);
+  return vxm_mesh_read_with(&stage->made_mesh, stage->cli->context, stage->path, &stage->cli->read,
+                            &stage->cli->error);
 }
 
 static vxm_status run_repair(bench_stage *stage) {

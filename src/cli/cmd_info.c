@@ -2,7 +2,7 @@
 /** voxmend info: what is wrong with a mesh. */
 #include "cli/cli.h"
 
-static const cli_option known_options[] = {{0, NULL, NULL, NULL}};
+static const cli_option known_options[] = {CLI_OPTION_DEFLECTION, {0, NULL, NULL, NULL}};
 
 static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mesh *mesh,
                              const vxm_census *census) {
@@ -26,7 +26,7 @@ static int examine(cli_run *cli, json_t *reports, const char *path) {
   json_array_clear(cli->warnings);
   vxm_mesh *mesh = NULL;
   vxm_census census;
-  if (vxm_mesh_read(&mesh, cli->context, path, &cli->error) != VXM_OK)
+  if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, path, mesh);
   int status = CLI_DONE;

@@ -21,6 +21,7 @@ static const cli_option known_options[] = {
      "which that would only cover a second time, stay open"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
+    CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
