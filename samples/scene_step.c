@@ -38,8 +38,7 @@ static int placement(step_file *out, const double at[3], const double axis[3], c
   return entity(out, "AXIS2_PLACEMENT_3D('',#%d,#%d,#%d)", p, a, s);
 }
 
-static const double origin[3] = {0, 0, 0}, x_axis[3] = {1, 0, 0}, z_axis[3] = {0, 0, 1},
-                    z_down[3] = {0, 0, -1};
+static const double origin[3] = {0, 0, 0}, x_axis[3] = {1, 0, 0}, z_axis[3] = {0, 0, 1};
 
 /** A straight edge along an axis between two vertices. */
 static int straight_edge(step_file *out, int from, int to, const double start[3], const double along[3]) {
@@ -48,10 +47,10 @@ static int straight_edge(step_file *out, int from, int to, const double start[3]
   return entity(out, "EDGE_CURVE('',#%d,#%d,#%d,.T.)", from, to, line);
 }
 
-/** A face that looks along its plane's axis, around the edges of a loop. */
-static int plane_face(step_file *out, int loop, int axes) {
+/** A face around the edges of a loop, which looks along its plane's axis or against it. */
+static int plane_face(step_file *out, int loop, int axes, bool is_along) {
   int bound = entity(out, "FACE_OUTER_BOUND('',#%d,.T.)", loop), plane = entity(out, "PLANE('',#%d)", axes);
-  return entity(out, "ADVANCED_FACE('',(#%d),#%d,.T.)", bound, plane);
+  return entity(out, "ADVANCED_FACE('',(#%d),#%d,%s)", bound, plane, is_along ? ".T." : ".F.");
 }
 
 static int oriented(step_file *out, int edge, bool is_forward) {
@@ -87,9 +86,9 @@ static int block_face(step_file *out, const block *b, int axis, bool is_far) {
   int loop = entity(out, "EDGE_LOOP('',(#%d,#%d,#%d,#%d))", low_u, is_far ? high_v : low_v, high_u,
                     is_far ? low_v : high_v);
   double normal[3] = {0}, side[3] = {0};
-  normal[axis] = is_far ? 1 : -1;
+  normal[axis] = 1;
   side[u] = 1;
-  return plane_face(out, loop, placement(out, b->corner[base], normal, side));
+  return plane_face(out, loop, placement(out, b->corner[base], normal, side), is_far);
 }
 
 /** A block about the z axis, from z = 0 upward. */
@@ -131,7 +130,7 @@ static int wall_face(step_file *out, int bottom, int seam, int top, double radiu
 static int lid_face(step_file *out, int circle, double z, bool is_top) {
   const double at[3] = {0, 0, z};
   int loop = entity(out, "EDGE_LOOP('',(#%d))", oriented(out, circle, is_top));
-  return plane_face(out, loop, placement(out, at, is_top ? z_axis : z_down, x_axis));
+  return plane_face(out, loop, placement(out, at, z_axis, x_axis), is_top);
 }
 
 static int make_cylinder(step_file *out, double radius, double height) {
