@@ -6,6 +6,10 @@
 #include "base/context.h"
 #include "base/notes.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /** Vertices are numbered by uint32_t to halve the memory; the largest number is kept free as "none". */
 #define VXM_NO_VERTEX UINT32_MAX
 #define VXM_VERTICES_MAX ((size_t)UINT32_MAX - 1)
@@ -57,4 +61,7 @@ static inline const double *vxm_position(const vxm_soup *soup, size_t vertex) {
   return soup->positions + 3 * vertex;
 }
 
+#ifdef __cplusplus
+}
+#endif
 #endif
