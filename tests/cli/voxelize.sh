@@ -74,7 +74,7 @@ for options in '' '--mode both' '--mode surface --surface thin' '--vote majority
 done
 run 'voxmend voxelize in/rocket.off -o octree.rle -r 100 --sparse --json | grep -A 4 sparse'
 # large grids that would be held whole are made as octrees by themselves
-large='in/cube.off -r 4096x4096x40 --bounds=-100,-100,-100,100,100,100'
+large='in/cube.off -r 4096x4096x40 --bounds=-20,-20,-20,20,20,20'
 run 'voxmend voxelize $large -o large.rle --coords large.npy | grep -E "^(estimate|voxels|octree|hash)"'
 run 'voxmend voxelize $large -o sparse.rle --coords sparse.npy --sparse -q && cmp large.rle sparse.rle && cmp large.npy sparse.npy'
 run 'voxmend voxelize $large -o dense.rle | grep -E "^(voxels|octree|hash)" && cmp large.rle dense.rle'
