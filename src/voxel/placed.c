@@ -28,13 +28,19 @@ typedef struct place_job {
   atomic_bool beyond; /**< a point does not fit */
 } place_job;
 
+/** The last cell along an axis: all centres lie before it. */
+static int32_t last_cell(const vxm_lattice *lattice, int axis) {
+  return (int32_t)vxm_min(lattice->space.dims[axis], (INT64_C(1) << VXM_CELL_BITS) - 1);
+}
+
 static vxm_affine affine_of(const vxm_placed *placed) {
-  vxm_affine affine = {0};
+  vxm_affine affine = {.bits = placed->lattice.bits};
   for (int r = 0; r < 3; r++) {
     for (int c = 0; c < 4; c++)
       affine.column[c][r] = placed->transform[4 * r + c];
     affine.origin[r] = placed->lattice.space.origin[r];
     affine.scale[r] = (double)placed->lattice.unit / placed->lattice.space.voxel_size[r];
+    affine.cells[r] = last_cell(&placed->lattice, r);
   }
   return affine;
 }
@@ -45,8 +51,8 @@ static void place_slice(size_t slice, int worker, void *payload) {
   size_t count = job->facets->first_cap;
   size_t begin = vxm_slice_begin(count, job->slices, slice),
          end = vxm_slice_begin(count, job->slices, slice + 1);
-  if (!job->kernels->place(job->placed->narrow + begin, job->facets->soup->positions + 3 * begin, end - begin,
-                           &job->affine))
+  if (!job->kernels->place(job->placed->narrow + begin, job->placed->cells + begin,
+                           job->facets->soup->positions + 3 * begin, end - begin, &job->affine))
     atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
 }
 
@@ -62,7 +68,8 @@ static bool place_narrow(vxm_placed *placed, const vxm_facets *facets) {
   bool fits = !atomic_load(&job.beyond);
   size_t caps = facets->first_apex - facets->first_cap;
   if (caps > 0)
-    fits &= job.kernels->place(placed->narrow + facets->first_cap, facets->cap_points[0], caps, &job.affine);
+    fits &= job.kernels->place(placed->narrow + facets->first_cap, placed->cells + facets->first_cap,
+                               facets->cap_points[0], caps, &job.affine);
   return fits;
 }
 
@@ -102,6 +109,17 @@ static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, vxm_e
 
 /* ---- Apexes ---- */
 
+/** Sets an apex of narrow points, and its cell. */
+static void set_apex(vxm_placed *placed, uint32_t apex, const int64_t at[3]) {
+  placed->cells[apex] = 0;
+  placed->narrow[apex][3] = 0;
+  for (int a = 0; a < 3; a++) {
+    int64_t cell = vxm_lattice_first(&placed->lattice, at[a]), last = last_cell(&placed->lattice, a);
+    placed->narrow[apex][a] = (int32_t)at[a];
+    placed->cells[apex] |= (uint64_t)vxm_min(vxm_max(cell, 0), last) << (VXM_CELL_BITS * a);
+  }
+}
+
 static void place_apex(vxm_placed *placed, const vxm_facets *facets, size_t part) {
   const vxm_part *p = &facets->parts[part];
   vxm_int128 sum[3] = {0, 0, 0};
@@ -113,18 +131,30 @@ static void place_apex(vxm_placed *placed, const vxm_facets *facets, size_t part
         sum[a] += q.at[a];
     }
   uint32_t apex = vxm_apex_of(facets, part);
-  for (int a = 0; a < 3; a++) {
-    int64_t mean = corners > 0 ? (int64_t)(sum[a] / corners) : 0;
-    if (placed->wide)
-      placed->wide[apex].at[a] = mean;
-    else
-      placed->narrow[apex][a] = (int32_t)mean;
-  }
-  if (!placed->wide)
-    placed->narrow[apex][3] = 0;
+  vxm_point mean = {{0, 0, 0}};
+  for (int a = 0; a < 3 && corners > 0; a++)
+    mean.at[a] = (int64_t)(sum[a] / corners);
+  if (placed->wide)
+    placed->wide[apex] = mean;
+  else
+    set_apex(placed, apex, mean.at);
 }
 
 /* ---- All of it ---- */
+
+static vxm_status reserve(vxm_placed *placed, size_t count, vxm_error *error) {
+  if (placed->capacity >= count)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(placed->context, placed->narrow);
+  vxm_free(placed->context, placed->cells);
+  placed->narrow = vxm_alloc(placed->context, count, sizeof *placed->narrow, &local);
+  placed->cells = vxm_alloc(placed->context, count, sizeof *placed->cells, &local);
+  placed->capacity = placed->narrow && placed->cells ? count : 0;
+  if (placed->capacity == 0 && error)
+    *error = local;
+  return local.code;
+}
 
 vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
                           const double transform[12], bool apexes, vxm_error *error) {
@@ -132,20 +162,11 @@ vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vx
   memcpy(placed->transform, transform ? transform : identity, sizeof identity);
   vxm_free(placed->context, placed->wide);
   placed->wide = NULL;
-  if (placed->capacity < facets->point_count) {
-    vxm_error local = VXM_ERROR_INIT;
-    vxm_free(placed->context, placed->narrow);
-    placed->capacity = 0;
-    placed->narrow = vxm_alloc(placed->context, facets->point_count, sizeof *placed->narrow, &local);
-    if (!placed->narrow) {
-      if (error)
-        *error = local;
-      return local.code;
-    }
-    placed->capacity = facets->point_count;
-  }
+  vxm_status status = reserve(placed, facets->point_count, error);
+  if (status != VXM_OK)
+    return status;
   if (!place_narrow(placed, facets)) {
-    vxm_status status = place_wide(placed, facets, error);
+    status = place_wide(placed, facets, error);
     if (status != VXM_OK)
       return status;
   }
@@ -153,12 +174,13 @@ vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vx
     if (apexes)
       place_apex(placed, facets, p);
     else if (!placed->wide) /* cones are looked at, if only to be left out */
-      memset(placed->narrow[vxm_apex_of(facets, p)], 0, sizeof *placed->narrow);
+      set_apex(placed, vxm_apex_of(facets, p), (const int64_t[3]){0, 0, 0});
   return VXM_OK;
 }
 
 void vxm_placed_destroy(vxm_placed *placed) {
   vxm_free(placed->context, placed->wide);
   vxm_free(placed->context, placed->narrow);
+  vxm_free(placed->context, placed->cells);
   *placed = (vxm_placed){.context = placed->context};
 }
