@@ -246,7 +246,7 @@ static void name_empty_parts(vxm_model *model, const vxm_voxelize_report *report
     const vxm_part *part = &facets->parts[p];
     if (atomic_load_explicit(&model->run.touched[p], memory_order_relaxed) || part->begin == part->end)
       continue;
-    const double *at = vxm_position(model->shape.soup, facets->corners[part->begin][0]);
+    const double *at = facets->positions[facets->corners[part->begin][0]];
     used += snprintf(names + used, sizeof names - (size_t)used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "",
                      at[0], at[1], at[2]);
     named++;

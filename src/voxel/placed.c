@@ -10,13 +10,6 @@ enum { SLICE_POINTS = 8192 };
 
 static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-/** A position of the soup or a cap, transformed. */
-static void position_of(const vxm_placed *placed, const vxm_facets *facets, size_t point, double out[3]) {
-  const double *p = point < facets->first_cap ? vxm_position(facets->soup, point)
-                                              : facets->cap_points[point - facets->first_cap];
-  vxm_transform_position(placed->transform, p, out);
-}
-
 /* ---- Narrow points ---- */
 
 typedef struct place_job {
@@ -48,11 +41,11 @@ static vxm_affine affine_of(const vxm_placed *placed) {
 static void place_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   place_job *job = payload;
-  size_t count = job->facets->first_cap;
+  size_t count = job->facets->first_apex;
   size_t begin = vxm_slice_begin(count, job->slices, slice),
          end = vxm_slice_begin(count, job->slices, slice + 1);
   if (!job->kernels->place(job->placed->narrow + begin, job->placed->cells + begin,
-                           job->facets->soup->positions + 3 * begin, end - begin, &job->affine))
+                           job->facets->positions[begin], end - begin, &job->affine))
     atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
 }
 
@@ -62,48 +55,38 @@ static bool place_narrow(vxm_placed *placed, const vxm_facets *facets) {
                    .facets = facets,
                    .kernels = vxm_kernels_get(),
                    .affine = affine_of(placed),
-                   .slices = 1 + facets->first_cap / SLICE_POINTS};
+                   .slices = 1 + facets->first_apex / SLICE_POINTS};
   atomic_init(&job.beyond, false);
   vxm_parallel(placed->context, job.slices, place_slice, &job);
-  bool fits = !atomic_load(&job.beyond);
-  size_t caps = facets->first_apex - facets->first_cap;
-  if (caps > 0)
-    fits &= job.kernels->place(placed->narrow + facets->first_cap, placed->cells + facets->first_cap,
-                               facets->cap_points[0], caps, &job.affine);
-  return fits;
+  return !atomic_load(&job.beyond);
 }
 
 /* ---- Wide points ---- */
 
-/** Places all points in 64 bits if one that is used needs it. Those of no face may lie anywhere. */
+static vxm_status refuse(const vxm_facets *facets, size_t point, vxm_error *error) {
+  uint32_t vertex = facets->vertex[point];
+  if (vertex < facets->soup->vertex_count)
+    return vxm_lattice_refuse(vertex, facets->positions[point], error);
+  return vxm_fail(error, VXM_ERROR_RANGE, "a hole lies too many voxels outside the grid");
+}
+
+/** Places all points in 64 bits. */
 static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   placed->wide = vxm_calloc(placed->context, facets->point_count, sizeof *placed->wide, &local);
-  uint8_t *used = vxm_calloc(placed->context, facets->point_count, sizeof *used, &local);
   vxm_status status = local.code;
-  bool needed = false;
-  for (size_t f = 0; status == VXM_OK && f < facets->facet_count; f++)
-    for (int c = 0; c < 3; c++)
-      used[facets->corners[f][c]] = 1;
   for (size_t p = 0; status == VXM_OK && p < facets->first_apex; p++) {
     double at[3];
-    if (!used[p])
-      continue;
-    position_of(placed, facets, p, at);
+    vxm_transform_position(placed->transform, facets->positions[p], at);
     if (!vxm_lattice_place(&placed->lattice, at, &placed->wide[p]))
-      status = p < facets->first_cap
-                   ? vxm_lattice_refuse((uint32_t)p, vxm_position(facets->soup, p), &local)
-                   : vxm_fail(&local, VXM_ERROR_RANGE, "a hole lies too many voxels outside the grid");
-    for (int a = 0; a < 3; a++)
-      needed |= placed->wide[p].at[a] >= VXM_NARROW_MAX || placed->wide[p].at[a] <= -VXM_NARROW_MAX;
+      status = refuse(facets, p, &local);
   }
-  vxm_free(placed->context, used);
-  if (status != VXM_OK || !needed) {
+  if (status != VXM_OK) {
     vxm_free(placed->context, placed->wide);
     placed->wide = NULL;
+    if (error)
+      *error = local;
   }
-  if (status != VXM_OK && error)
-    *error = local;
   return status;
 }
 
