@@ -192,6 +192,21 @@ json_t *cli_passes_json(const vxm_repair_report *report);
  */
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options);
 
+/* ---- defects.c: what is wrong and where, for info and repair ---- */
+
+typedef struct cli_defects {
+  const char *locate; /**< .ply to show them in, or NULL */
+  int64_t list;       /**< list so many of each kind in the report; 0 = none */
+  bool intersections; /**< self-intersections too */
+} cli_defects;
+
+/** The argument of --list: CLI_END or CLI_STOP. */
+int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value);
+/** CLI_STOP if --locate has a wrong name, or that of the output (NULL = none). */
+int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *output);
+/** Finds, lists (NULL if that is not wanted) and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */
+int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, const vxm_mesh *mesh);
+
 /* ---- field.c: coverage and distance, for voxelize ---- */
 
 typedef struct cli_field {

@@ -6,6 +6,10 @@
 #include "base/context.h"
 #include "base/notes.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /** Vertices are numbered by uint32_t to halve the memory; the largest number is kept free as "none". */
 #define VXM_NO_VERTEX UINT32_MAX
 #define VXM_VERTICES_MAX ((size_t)UINT32_MAX - 1)
@@ -28,6 +32,10 @@ struct vxm_mesh {
   size_t vertex_capacity, face_capacity, corner_capacity, tag_capacity; /**< room while a soup grows */
   const char *format;                                                   /**< static text, such as "off" */
   vxm_notes notes;
+  uint32_t
+      *face_parts; /**< face_count: the part of the mesh that was repaired which each comes from, or NULL */
+  vxm_part_change *part_changes; /**< part_count, or NULL */
+  size_t part_count;
 };
 
 /** An empty soup in a context (NULL = a new one). */
@@ -57,4 +65,7 @@ static inline const double *vxm_position(const vxm_soup *soup, size_t vertex) {
   return soup->positions + 3 * vertex;
 }
 
+#ifdef __cplusplus
+}
+#endif
 #endif
