@@ -272,14 +272,17 @@ typedef struct vxm_repair_options {
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
   bool single_precision; /**< keep to positions that 32-bit floats hold, as .stl files do */
   bool part_changes;     /**< keep account of every part: vxm_mesh_part_changes */
-  double max_change; /**< fail where the volume of a closed part, or the bounds of one, change by more than
-                        this fraction (of its volume, of its diagonal); 0 = do not look */
+  double max_change;  /**< fail where the volume of a closed part, or the bounds of one, change by more than
+                         this fraction (of its volume, of its diagonal); 0 = do not look */
+  int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
+  double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
+                         The component with the largest area always stays */
 } vxm_repair_options;
 
 #define VXM_REPAIR_OPTIONS_INIT                                                                           \
   {                                                                                                       \
     1, VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_FILL_FAN, false, 0.0, 0.0, false, false, \
-        0.0                                                                                               \
+        0.0, 0, 0.0                                                                                       \
   }
 
 #define VXM_REPAIR_PASSES_MAX 24
