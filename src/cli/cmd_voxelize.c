@@ -280,6 +280,12 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);
 }
 
+/** Whether a format is written slice by slice. */
+static bool is_sliced(const char *format) {
+  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", NULL};
+  return cli_read_choice(format, sliced) >= 0;
+}
+
 static int read_arguments(cli_run *cli, voxelize_request *out) {
   const char *value;
   int key;
@@ -293,8 +299,7 @@ static int read_arguments(cli_run *cli, voxelize_request *out) {
     return CLI_STOP;
   out->format = cli_output_format(cli, out->output, out->format,
                                   cli_field_wanted(&out->field) ? cli_field_formats : cli_grid_formats);
-  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", NULL};
-  if (out->format && out->sparse && cli_read_choice(out->format, sliced) < 0)
+  if (out->format && out->sparse && !is_sliced(out->format))
     return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
   return out->format ? CLI_END : CLI_STOP;
 }
@@ -331,7 +336,6 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
   if (status == VXM_OK)
     status = vxm_grid_write(grid, given->output, &options, &cli->error);
   results->voxelize_ms += made - start;
-  results->write_ms = cli_clock() - made;
   if (status == VXM_OK) {
     cli->made = given->output;
     cli->made_format = given->format;
@@ -340,6 +344,7 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
     if (status == VXM_OK && given->coords)
       status = vxm_grid_write_coords(grid, given->coords, &cli->error);
   }
+  results->write_ms = cli_clock() - made;
   vxm_grid_destroy(grid);
   if (status != VXM_OK)
     return cli_fail(cli);
@@ -361,13 +366,13 @@ static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_ou
   double made = cli_clock();
   vxm_status status = vxm_sparse_write(sparse, given->output, &options, &cli->error);
   results->voxelize_ms += made - start;
-  results->write_ms = cli_clock() - made;
   if (status == VXM_OK) {
     cli->made = given->output;
     cli->made_format = given->format;
     if (given->coords)
       status = vxm_sparse_write_coords(sparse, given->coords, &cli->error);
   }
+  results->write_ms = cli_clock() - made;
   vxm_sparse_destroy(sparse);
   if (status != VXM_OK)
     return cli_fail(cli);
@@ -394,6 +399,20 @@ static int write_model(cli_run *cli, voxelize_request *given, voxelize_outcome *
   return CLI_DONE;
 }
 
+/** From this size on a grid that would have to be held whole is made as an octree. */
+static const uint64_t LARGE_GRID = UINT64_C(1) << 26;
+
+/**
+ * Whether the voxels are made as an octree. A grid that is written range after range of slices needs none,
+ * and is faster without; what has to be held whole is another matter.
+ */
+static bool takes_octree(const voxelize_request *given, const voxelize_outcome *results) {
+  if (given->sparse)
+    return true;
+  return given->coords && !given->confidence && is_sliced(given->format) &&
+         results->estimate.grid_bytes >= LARGE_GRID;
+}
+
 /** Makes the model, tells what it will take, and unless that is all that is wanted writes the grid. */
 static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
   const vxm_mesh *mesh = results->input.mesh;
@@ -407,6 +426,7 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   if (status == VXM_OK && !cli_field_wanted(&given->field))
     status =
         vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
+  results->octree = takes_octree(given, results);
   results->voxelize_ms = cli_clock() - start;
   int result = status == VXM_OK ? CLI_DONE : cli_fail(cli);
   if (result == CLI_DONE && cli_summary(cli)) {
@@ -414,7 +434,7 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
     voxelize_summarize_begin(cli, given, results);
   }
   if (result == CLI_DONE && !given->dry_run)
-    result = given->sparse                        ? write_sparse(cli, given, results, model)
+    result = results->octree                      ? write_sparse(cli, given, results, model)
              : given->confidence || given->coords ? write_whole(cli, given, results, model)
                                                   : write_model(cli, given, results, model);
   vxm_model_destroy(model);

@@ -114,7 +114,7 @@ static void summarize_parts(const cli_run *cli, const vxm_mesh *mesh) {
 static void summarize_passes(const cli_run *cli, const vxm_repair_report *repair) {
   bool any = false;
   for (int i = 0; i < repair->pass_count; i++) {
-    if (repair->passes[i].count == 0)
+    if (repair->passes[i].count == 0 && !cli->verbose)
       continue;
     if (!any)
       fprintf(cli->text, "\n%-28s %12s\n", "Pass", "Changed");

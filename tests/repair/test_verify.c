@@ -3,6 +3,7 @@
 #include "repairing.h"
 
 #include "mesh/census.h"
+#include "mesh/components.h"
 #include "repair/defects.h"
 #include "repair/fans.h"
 #include "repair/verify.h"
@@ -201,6 +202,20 @@ static void defects_as_counted(void **state) {
   }
 }
 
+/** Every face has the tag of the face that it was; its part has to be the component of that one. */
+static void assert_parts_of_origin(const vxm_soup *soup, const vxm_soup *out) {
+  uint32_t *map = calloc(soup->vertex_count + 1, sizeof *map),
+           *part = calloc(soup->face_count + 1, sizeof *part);
+  size_t count;
+  assert_int_equal(vxm_weld_exact(soup->context, soup->positions, soup->vertex_count, map, NULL, NULL),
+                   VXM_OK);
+  assert_int_equal(vxm_components(soup->context, soup, map, part, &count, NULL), VXM_OK);
+  for (size_t f = 0; f < out->face_count; f++)
+    assert_int_equal(out->face_parts[f], part[out->face_tags[f]]);
+  free(part);
+  free(map);
+}
+
 static void parts_add_up(void **state) {
   vxm_rng rng = {9};
   for (int trial = 0; trial < 500; trial++) {
@@ -209,8 +224,10 @@ static void parts_add_up(void **state) {
     vxm_repair_report report;
     options.part_changes = true;
     options.fill_holes = trial % 2 ? -1 : 0;
+    tag_faces(soup);
     vxm_soup *out = repaired(soup, &options, &report);
     assert_int_equal(out->part_count, report.before.components);
+    assert_parts_of_origin(soup, out);
     vxm_part_state before = {0}, after = {0};
     int64_t flipped = 0;
     for (size_t i = 0; i < out->part_count; i++) {
