@@ -148,9 +148,9 @@ VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const v
 /**
  * Reads a mesh file, its format told by content first and by name second: OFF, OBJ, STL and PLY; glTF, 3MF,
  * COLLADA, FBX, 3DS and more where voxmend was built with Assimp; STEP and IGES where it was built with
- * OpenCASCADE. What the libraries read is read in a process of its own (doc/formats.md); names of parts become
- * face tags.
- * What a damaged file still holds is read, and each kind of damage becomes a warning of the mesh.
+ * OpenCASCADE. What the libraries read is read in a process of its own (doc/formats.md); names of parts
+ * become face tags. What a damaged file still holds is read, and each kind of damage becomes a warning of the
+ * mesh.
  *
  * @param path file to read; "-" reads standard input. A file is mapped: nobody may shorten it meanwhile
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond 2^32 - 2
@@ -214,7 +214,8 @@ VXM_API const uint64_t *vxm_mesh_offsets(const vxm_mesh *mesh);
 VXM_API const uint32_t *vxm_mesh_indices(const vxm_mesh *mesh);
 /** Number of face tags (names of groups or parts, and of materials); 0 if the file had none. */
 VXM_API int64_t vxm_mesh_tag_count(const vxm_mesh *mesh);
-/** Name of a tag, UTF-8 as in the file, "group" or "group/material"; parts of one name are numbered "name#1", "name#2". */
+/** Name of a tag, UTF-8 as in the file, "group" or "group/material"; parts of one name are numbered "name#1",
+ * "name#2". */
 VXM_API const char *vxm_mesh_tag_name(const vxm_mesh *mesh, int64_t tag);
 /** face_count tag numbers, or NULL if there are no tags. */
 VXM_API const uint32_t *vxm_mesh_face_tags(const vxm_mesh *mesh);
@@ -296,14 +297,17 @@ typedef struct vxm_repair_options {
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
   bool single_precision; /**< keep to positions that 32-bit floats hold, as .stl files do */
   bool part_changes;     /**< keep account of every part: vxm_mesh_part_changes */
-  double max_change; /**< fail where the volume of a closed part, or the bounds of one, change by more than
-                        this fraction (of its volume, of its diagonal); 0 = do not look */
+  double max_change;  /**< fail where the volume of a closed part, or the bounds of one, change by more than
+                         this fraction (of its volume, of its diagonal); 0 = do not look */
+  int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
+  double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
+                         The component with the largest area always stays */
 } vxm_repair_options;
 
 #define VXM_REPAIR_OPTIONS_INIT                                                                           \
   {                                                                                                       \
     1, VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_FILL_FAN, false, 0.0, 0.0, false, false, \
-        0.0                                                                                               \
+        0.0, 0, 0.0                                                                                       \
   }
 
 #define VXM_REPAIR_PASSES_MAX 24

@@ -11,11 +11,12 @@
 #include "config.h"
 
 /* Writes DIRECTORY/SUBFOLDERvoxmend-NAME.so if there is such a file. */
-static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size_t length, const char *subfolder,
-                     const char *name) {
+static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size_t length,
+                     const char *subfolder, const char *name) {
   if (length == 0 || length >= VXM_MODULE_PATH_MAX)
     return false;
-  int written = snprintf(path, VXM_MODULE_PATH_MAX, "%.*s/%svoxmend-%s.so", (int)length, directory, subfolder, name);
+  int written =
+      snprintf(path, VXM_MODULE_PATH_MAX, "%.*s/%svoxmend-%s.so", (int)length, directory, subfolder, name);
   return written > 0 && written < VXM_MODULE_PATH_MAX && access(path, R_OK) == 0;
 }
 

@@ -20,6 +20,7 @@ typedef enum vxm_pass {
   VXM_PASS_WRAP,
   VXM_PASS_SEPARATION,
   VXM_PASS_CLOSING,
+  VXM_PASS_SMALL_PARTS,
   VXM_PASS_UNION,
   VXM_PASS_APART,
   VXM_PASS_UNUSED,
@@ -57,6 +58,7 @@ vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error)
 vxm_status vxm_pass_wrap(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_separation(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_small_parts(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_union(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_apart(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_unused(vxm_work *work, bool *changed, vxm_error *error);
