@@ -67,16 +67,18 @@ static void write_accessors(FILE *file, const shape *s, int view) {
       view, s->vertex_count, low[0], low[1], low[2], high[0], high[1], high[2], view + 1, 3 * s->face_count);
 }
 
+/** Turns are by right angles, so that every coordinate is exact. */
 static void write_nodes(FILE *file) {
-  double x = STOOL_WIDTH / 2e3 - 0.05, y = STOOL_DEPTH / 2e3 - 0.05, half = sqrt(0.5);
+  double x = STOOL_WIDTH / 2e3 - 0.05, y = STOOL_DEPTH / 2e3 - 0.05;
   fprintf(file,
-          "\"nodes\":[{\"name\":\"stool\",\"rotation\":[%.17g,0,0,%.17g],\"children\":[1,2,3,4,5]},"
+          "\"nodes\":[{\"name\":\"stool\",\"matrix\":[1,0,0,0,0,0,-1,0,0,1,0,0,0,0,0,1],\"children\":[1,2,3,"
+          "4,5]},"
           "{\"name\":\"seat\",\"mesh\":0,\"translation\":[0,0,%.9g]},"
           "{\"name\":\"leg\",\"mesh\":1,\"translation\":[%.9g,%.9g,0]},"
           "{\"name\":\"leg\",\"mesh\":1,\"translation\":[%.9g,%.9g,0],\"scale\":[-1,1,1]},"
-          "{\"name\":\"leg\",\"mesh\":1,\"translation\":[%.9g,%.9g,0],\"rotation\":[0,0,%.17g,%.17g]},"
+          "{\"name\":\"leg\",\"mesh\":1,\"translation\":[%.9g,%.9g,0],\"rotation\":[0,0,1,0]},"
           "{\"name\":\"leg\",\"mesh\":1,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,%.9g,%.9g,0,1]}],",
-          -half, half, STOOL_LEG / 1e3, x, y, -x, y, -x, -y, half, half, x, -y);
+          STOOL_LEG / 1e3, x, y, -x, y, -x, -y, x, -y);
 }
 
 static void write_json(FILE *file, const shape *seat, const shape *leg) {
