@@ -236,6 +236,32 @@ static void test_middle_of_a_sphere(void **state) {
   free(corners);
 }
 
+/** So far away that floats cannot tell which is nearer. */
+static void test_far_away(void **state) {
+  (void)state;
+  enum { COUNT = 300 };
+  vxm_rng rng = {35};
+  triangle_corners corners[COUNT];
+  vxm_triangle triangles[COUNT];
+  for (int round = 0; round < 12; round++) {
+    double far[3];
+    for (int a = 0; a < 3; a++)
+      far[a] = (vxm_rng_unit(&rng) - 0.5) * pow(10, 3 + round % 4);
+    fill_corners(corners, COUNT, 1e-3, &rng, round);
+    for (size_t t = 0; t < COUNT; t++) {
+      for (int c = 0; c < 3; c++)
+        for (int a = 0; a < 3; a++)
+          corners[t][c][a] += far[a];
+      vxm_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
+    }
+    vxm_nearest *tree;
+    assert_int_equal(vxm_nearest_create(&tree, context, COUNT, corners_of, corners, NULL), VXM_OK);
+    vxm_tile tile = {{0, 0, 0}, {VXM_TILE, VXM_TILE, VXM_TILE}, {1, 1, 1}, INFINITY};
+    check_tile(tree, &tile, triangles, COUNT);
+    vxm_nearest_destroy(tree);
+  }
+}
+
 /** A limit is kept: estimates hold, and what cannot be made leaves nothing behind. */
 static void test_memory(void **state) {
   (void)state;
@@ -269,6 +295,7 @@ int main(void) {
       cmocka_unit_test(test_triangle),
       cmocka_unit_test(test_tiles),
       cmocka_unit_test(test_middle_of_a_sphere),
+      cmocka_unit_test(test_far_away),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
