@@ -146,18 +146,42 @@ VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const v
                                    vxm_error *error);
 
 /**
- * Reads a mesh file: OFF, OBJ, STL or PLY, told by content first and by name second.
+ * Reads a mesh file, its format told by content first and by name second: OFF, OBJ, STL and PLY; glTF, 3MF,
+ * COLLADA, FBX, 3DS and more where voxmend was built with Assimp; STEP and IGES where it was built with
+ * OpenCASCADE. What the libraries read is read in a process of its own (doc/formats.md); names of parts become
+ * face tags.
  * What a damaged file still holds is read, and each kind of damage becomes a warning of the mesh.
  *
  * @param path file to read; "-" reads standard input. A file is mapped: nobody may shorten it meanwhile
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond 2^32 - 2
- * vertices; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * vertices; VXM_ERROR_UNAVAILABLE if the library that reads it is not there; VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error);
 
-/** As vxm_mesh_read, from memory. `name` is used in messages and for its extension. */
+/**
+ * As vxm_mesh_read, from memory. `name` is used in messages and for its extension; if it is a path, files
+ * that the mesh refers to are looked for beside it.
+ */
 VXM_API vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
                                         const char *name, vxm_error *error);
+
+typedef struct vxm_mesh_read_options {
+  uint32_t version;   /**< 1 */
+  const char *format; /**< as vxm_mesh_format says, such as "off" or "step"; NULL = by content, then name */
+  double deflection;  /**< STEP and IGES: how far triangles may lie from a curved surface, as a part of the
+                         model's diagonal, at most 1; 0 = 0.001 */
+} vxm_mesh_read_options;
+
+#define VXM_MESH_READ_OPTIONS_INIT \
+  { 1, NULL, 0.0 }
+
+/* As the two above, with options. @return also VXM_ERROR_ARGUMENT for options out of range */
+VXM_API vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, const char *path,
+                                      const vxm_mesh_read_options *options, vxm_error *error);
+VXM_API vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *context, const void *data,
+                                             size_t size, const char *name,
+                                             const vxm_mesh_read_options *options, vxm_error *error);
 
 typedef struct vxm_mesh_write_options {
   uint32_t version;   /**< 1 */
@@ -188,9 +212,9 @@ VXM_API const double *vxm_mesh_vertices(const vxm_mesh *mesh);
 VXM_API const uint64_t *vxm_mesh_offsets(const vxm_mesh *mesh);
 /** 0-based vertices of all corners, face after face. */
 VXM_API const uint32_t *vxm_mesh_indices(const vxm_mesh *mesh);
-/** Number of face tags (names of OBJ groups and materials); 0 if the file had none. */
+/** Number of face tags (names of groups or parts, and of materials); 0 if the file had none. */
 VXM_API int64_t vxm_mesh_tag_count(const vxm_mesh *mesh);
-/** Name of a tag, UTF-8 as in the file, "group" or "group/material". */
+/** Name of a tag, UTF-8 as in the file, "group" or "group/material"; parts of one name are numbered "name#1", "name#2". */
 VXM_API const char *vxm_mesh_tag_name(const vxm_mesh *mesh, int64_t tag);
 /** face_count tag numbers, or NULL if there are no tags. */
 VXM_API const uint32_t *vxm_mesh_face_tags(const vxm_mesh *mesh);

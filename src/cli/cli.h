@@ -17,7 +17,15 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_WRONG_USAGE = 2, CLI_WARNED = 3 };
 #define CLI_PRINTF(text, first) __attribute__((format(printf, text, first)))
 
 /** Keys of options without a letter. The common options take the numbers below CLI_KEY_COMMAND. */
-enum { CLI_KEY_COMMON = 256, CLI_KEY_COMMAND = 512 };
+enum { CLI_KEY_COMMON = 256, CLI_KEY_DEFLECTION = 511, CLI_KEY_COMMAND = 512 };
+
+/** For the tables of commands that read meshes; cli_next_option puts its value into cli->read. */
+#define CLI_OPTION_DEFLECTION                                                    \
+  {                                                                              \
+    CLI_KEY_DEFLECTION, "deflection", "F",                                       \
+        "STEP and IGES: how far triangles may lie from a curved surface, as a\n" \
+        "part of the model's diagonal [0.001]"                                   \
+  }
 
 /** What cli_next_option returns beside an option's key, and functions that read arguments return. */
 enum { CLI_END = 0, CLI_STOP = -1 };
@@ -66,6 +74,7 @@ struct cli_run {
   const char *report;
   const char *progress;
   vxm_context_options limits;
+  vxm_mesh_read_options read;
 
   vxm_context *context; /**< made by cli_start */
   vxm_error error;      /**< hand &cli->error to the library, then cli_fail */

@@ -66,6 +66,7 @@ static const cli_option known_options[] = {
      "with --locate and --list: faces that cut through others too (CGAL)"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
+    CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
@@ -214,7 +215,7 @@ static int read_arguments(cli_run *cli, request *out) {
 
 static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_mesh *raw = NULL;
-  if (vxm_mesh_read(&raw, cli->context, given->input, &cli->error) != VXM_OK)
+  if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, given->input, raw);
   int status = cli_defects_show(cli, &outcome->defects, &given->defects, raw);

@@ -81,6 +81,7 @@ static const cli_option known_options[] = {
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
+    CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 /* ---- Options ---- */

@@ -125,7 +125,8 @@ vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, cons
     return (vxm_demand){surface, vxm_model_windows_held(model)};
   bool polled = vxm_voted_begin(&model->shape) < facets->split.part_count;
   int voters = polled ? 4 : 1;
-  uint64_t points = facets->point_count * sizeof *model->run.placed.narrow;
+  const vxm_placed *placed = &model->run.placed;
+  uint64_t points = facets->point_count * (sizeof *placed->narrow + sizeof *placed->cells);
   uint64_t slab = (uint64_t)vxm_max(VXM_SLAB_WORDS, (int64_t)shape->slice_words) * sizeof(uint64_t);
   /* A slab for each voter and thread, some slices for what is carried on, and the bins themselves. */
   vxm_demand demand = {points + surface + (5 * threads + 4) * slab + (UINT64_C(1) << 20),
@@ -245,7 +246,7 @@ static void name_empty_parts(vxm_model *model, const vxm_voxelize_report *report
     const vxm_part *part = &facets->parts[p];
     if (atomic_load_explicit(&model->run.touched[p], memory_order_relaxed) || part->begin == part->end)
       continue;
-    const double *at = vxm_position(model->shape.soup, facets->corners[part->begin][0]);
+    const double *at = facets->positions[facets->corners[part->begin][0]];
     used += snprintf(names + used, sizeof names - (size_t)used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "",
                      at[0], at[1], at[2]);
     named++;
