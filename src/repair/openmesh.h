@@ -30,10 +30,13 @@ typedef struct vxm_openmesh {
    * Fills holes of at most max_edges edges (0 = any) without new vertices, see repair/rim.h. The new faces
    * are triangles, come after the others, and have the tag that most faces around the hole have.
    *
-   * Not filled are holes for which there is no filling without faces of no area and without edges that exist
-   * already, and the outer rim of a sheet, which filling would only cover a second time: a component is one
-   * if its vector area is at least VXM_SHEET_PART of its area, and the rim is outer if its filling would face
-   * the other way.
+   * Faces without area are made only where there is no other way, as in a slit whose corners lie in line.
+   * Holes that touch at a vertex are filled each for itself, and that vertex, which is two in a manifold, is
+   * one after.
+   *
+   * Not filled are holes for which there is no filling without edges that exist already, and the outer rim of
+   * a sheet, which filling would only cover a second time: a component is one if its vector area is at least
+   * VXM_SHEET_PART of its area, and the rim is outer if its filling would face the other way.
    *
    * @param soup        manifold, or VXM_ERROR_ARGUMENT is returned
    * @param[out] origin if not NULL, a block of the soup's context: for each face of the result the face of

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -173,7 +174,10 @@ bool filling::is_outer_rim_of_sheet(const rim_loop &loop) {
   const component &c = components_[component_of_.root(loop.vertices[0])];
   const vxm_vec3 area =
       vxm_polygon_area(soup_->positions, loop.vertices.data(), loop.vertices.size(), frame_.scale);
-  return !(vxm_vec3_length(c.vector) < VXM_SHEET_PART * c.area) && !(vxm_vec3_dot(area, c.vector) > 0);
+  /* the fillings of a flat sheet's rims have minus its vector area together: a hole adds to the outer one's
+   */
+  const double whole = vxm_vec3_dot(c.vector, c.vector);
+  return std::sqrt(whole) >= VXM_SHEET_PART * c.area && vxm_vec3_dot(area, c.vector) <= -whole / 4;
 }
 
 /** The first of those faces that have the tag of most of them. */

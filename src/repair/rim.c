@@ -74,7 +74,8 @@ static void choose(table *t, size_t i, size_t k) {
   vxm_vec3 best_normal = {0, 0, 0}, chord = vxm_vec3_between(t->points[k], t->points[i], 1);
   vxm_vec3 beyond = is_last ? outer_normal(t, k) : (vxm_vec3){0, 0, 0};
   uint32_t middle = 0;
-  if (!is_last && t->rim->is_edge(t->loop[i], t->loop[k], t->rim->payload)) {
+  if (!is_last &&
+      (!(vxm_vec3_length(chord) > 0) || t->rim->is_edge(t->loop[i], t->loop[k], t->rim->payload))) {
     put(t, i, k, best, best_normal, middle);
     return;
   }
@@ -90,7 +91,8 @@ static void choose(table *t, size_t i, size_t k) {
     double doubled = vxm_vec3_length(normal);
     if (!(doubled > 2 * t->rim->no_area))
       continue;
-    normal = (vxm_vec3){normal.x / doubled, normal.y / doubled, normal.z / doubled};
+    if (doubled > 0)
+      normal = (vxm_vec3){normal.x / doubled, normal.y / doubled, normal.z / doubled};
     w.area += 0.5 * doubled;
     w.bend = smaller(w.bend, bend_between(&normal, &normal_i[m]));
     w.bend = smaller(w.bend, bend_between(&normal, &normal_k[m]));

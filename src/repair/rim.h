@@ -19,14 +19,15 @@ typedef struct vxm_rim {
   bool (*is_edge)(size_t i, size_t j, void *payload); /**< whether the mesh has an edge between i and j;
                                                          called from any thread */
   void *payload;
-  double no_area; /**< triangles have more area than this */
+  double no_area; /**< triangles have more area than this, if there is a way */
 } vxm_rim;
 
 /**
  * Fills a rim with count - 2 triangles, no two of which share an edge that the mesh has already. Of all ways
  * to do it, that with the least sharp bend between neighbours, the faces beyond the rim included; of these
  * that with the least area (Liepa 2003, sec. 3; Barequet & Sharir 1995), of these that with the shortest
- * inner edges. So a hole in a plane is filled in the plane, whatever its shape. Cubic time and quadratic
+ * inner edges. So a hole in a plane is filled in the plane, whatever its shape. A slit whose corners lie in
+ * line takes triangles without area. Cubic time and quadratic
  * memory: rims of more than VXM_RIM_WHOLE edges are cut by short chords first, and if that turns triangles
  * over, clipped ear by ear.
  *

@@ -279,8 +279,7 @@ static vxm_status fill_whole(uint32_t (*triangles)[3], bool *filled, const vxm_r
   return vxm_rim_fill_part(triangles, filled, rim, loop, rim->count, error);
 }
 
-vxm_status vxm_rim_fill(uint32_t (*triangles)[3], bool *filled, const vxm_rim *rim, vxm_error *error) {
-  *filled = false;
+static vxm_status fill_any(uint32_t (*triangles)[3], bool *filled, const vxm_rim *rim, vxm_error *error) {
   if (rim->count <= VXM_RIM_WHOLE)
     return fill_whole(triangles, filled, rim, error);
   vxm_status status = fill_by_cuts(triangles, filled, rim, error);
@@ -291,4 +290,14 @@ vxm_status vxm_rim_fill(uint32_t (*triangles)[3], bool *filled, const vxm_rim *r
     return VXM_OK;
   }
   return try_ears(triangles, filled, rim, error);
+}
+
+vxm_status vxm_rim_fill(uint32_t (*triangles)[3], bool *filled, const vxm_rim *rim, vxm_error *error) {
+  *filled = false;
+  vxm_status status = fill_any(triangles, filled, rim, error);
+  if (status != VXM_OK || *filled)
+    return status;
+  vxm_rim any = *rim;
+  any.no_area = -1;
+  return fill_any(triangles, filled, &any, error);
 }
