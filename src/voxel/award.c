@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/award.h"
-#include "base/threads.h"
-#include "base/watch.h"
 
 #include <math.h>
 
-/** Voxels along an edge of the blocks that tasks begin with: a part of a word. */
+/** Voxels along an edge of the blocks to begin with: a part of a word. */
 enum { BLOCK = 16 };
 
 /** More than nearness and its distance round, in sides of a voxel, whatever the distance. */
@@ -14,9 +12,7 @@ static const double slack = 1e-3, relative_slack = 1e-6;
 typedef struct job {
   const vxm_award *award;
   double step[3];    /**< from one voxel to the next, in the order of the layout */
-  size_t across[3];  /**< blocks along each axis */
   size_t row, plane; /**< values from one to the next */
-  vxm_watch watch;
 } job;
 
 /** Voxels of the box, in the order of the layout. */
@@ -140,38 +136,21 @@ static void settle(const job *j, const block *b, vxm_near near) {
   }
 }
 
-static void settle_block(size_t task, int worker, void *payload) {
-  job *j = payload;
-  if (vxm_watch_stopped(&j->watch, worker))
-    return;
-  const vxm_window *asked = j->award->asked;
-  const int64_t dims[3] = {asked->fast_dim, asked->middle_dim, asked->end};
-  block b;
-  for (int a = 0; a < 3; a++) {
-    b.at[a] = (int64_t)(task % j->across[a]) * BLOCK;
-    b.size[a] = vxm_min(dims[a] - b.at[a], BLOCK);
-    task /= j->across[a];
-  }
-  settle(j, &b, (vxm_near){INFINITY, 0, 0});
-  vxm_watch_step(&j->watch);
-}
-
-vxm_status vxm_award_voxels(const vxm_award *award, vxm_context *context, vxm_error *error) {
-  const vxm_window *asked = award->asked;
-  const vxm_space *space = award->space;
-  const int64_t dims[3] = {asked->fast_dim, asked->middle_dim, asked->end};
-  const int axis[3] = {asked->layout.fast, asked->layout.middle, asked->layout.slow};
-  const double *size = space->voxel_size;
+void vxm_award_voxels(const vxm_award *award, const int64_t begin[3], const int64_t end[3]) {
+  const vxm_layout *layout = &award->asked->layout;
+  const int axis[3] = {layout->fast, layout->middle, layout->slow};
+  const double *size = award->space->voxel_size;
   double side = fmax(size[0], fmax(size[1], size[2]));
-  job j = {.award = award, .row = (size_t)space->dims[axis[0]]};
-  j.plane = j.row * (size_t)space->dims[axis[1]];
-  size_t blocks = 1;
-  for (int a = 0; a < 3; a++) {
+  job j = {.award = award, .row = (size_t)award->space->dims[layout->fast]};
+  j.plane = j.row * (size_t)award->space->dims[layout->middle];
+  for (int a = 0; a < 3; a++)
     j.step[a] = size[axis[a]] / side;
-    j.across[a] = (size_t)(dims[a] + BLOCK - 1) / BLOCK;
-    blocks *= j.across[a];
-  }
-  vxm_watch_start(&j.watch, context, "labelling", blocks, error);
-  vxm_parallel(context, blocks, settle_block, &j);
-  return vxm_watch_end(&j.watch);
+  block b;
+  for (b.at[2] = begin[2]; b.at[2] < end[2]; b.at[2] += BLOCK)
+    for (b.at[1] = begin[1]; b.at[1] < end[1]; b.at[1] += BLOCK)
+      for (b.at[0] = begin[0]; b.at[0] < end[0]; b.at[0] += BLOCK) {
+        for (int a = 0; a < 3; a++)
+          b.size[a] = vxm_min(end[a] - b.at[a], BLOCK);
+        settle(&j, &b, (vxm_near){INFINITY, 0, 0});
+      }
 }

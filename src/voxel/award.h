@@ -10,20 +10,20 @@
 typedef struct vxm_award {
   const vxm_forest *forest;
   const vxm_space *space;
-  const vxm_window *asked; /**< the voxels in question, of a box of the space */
-  int64_t first[3];        /**< voxel of the space at which the box begins, in the order of the layout */
+  const vxm_window *asked; /**< all slices of a box of the space: the voxels in question */
+  const int64_t *first;    /**< voxel of the space at which the box begins, in the order of the layout */
   uint16_t *values;        /**< of the whole space, in the layout of the window */
   uint32_t label;          /**< takes a voxel where it is nearer than the label there; 0 = the nearest of all
                                 labels takes it, whatever is there */
 } vxm_award;
 
 /**
- * Gives each voxel that is asked about its label. Blocks of voxels are settled at once where the distances of
- * the labels at their middle differ by more than the blocks are wide, so that work follows the boundaries
- * between labels.
+ * Gives voxels begin..end-1 of the box, in the order of the layout, their labels, as far as they are asked
+ * about. Blocks of voxels are settled at once where the distances of labels at their middle differ by more
+ * than the blocks are wide, so that work follows the boundaries between labels.
  *
- * @return VXM_OK, VXM_ERROR_CANCELLED
+ * @param begin the first a multiple of 16
  */
-vxm_status vxm_award_voxels(const vxm_award *award, vxm_context *context, vxm_error *error);
+void vxm_award_voxels(const vxm_award *award, const int64_t begin[3], const int64_t end[3]);
 
 #endif

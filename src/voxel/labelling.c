@@ -192,7 +192,8 @@ static vxm_status make_table(builder *b, vxm_label_by by) {
 }
 
 vxm_status vxm_labelling_create(vxm_labelling *out, const vxm_soup *soup, vxm_label_by by, vxm_error *error) {
-  *out = (vxm_labelling){.soup = soup, .table = {.context = soup->context}};
+  *out =
+      (vxm_labelling){.soup = soup, .table = {.context = soup->context}, .is_by_part = by == VXM_LABEL_PART};
   builder b = {.out = out, .soup = soup, .error = VXM_ERROR_INIT};
   if (soup->face_count > UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu faces are too many to number; split the mesh",

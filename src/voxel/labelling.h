@@ -23,6 +23,7 @@ typedef struct vxm_labelling {
   uint32_t *faces; /**< those of label 1 first, each in the order of the soup */
   size_t *begin;   /**< label l has faces[begin[l - 1]] to faces[begin[l] - 1] */
   vxm_label_table table;
+  bool is_by_part;
   bool is_untagged; /**< groups or materials were asked for, and the soup names none */
 } vxm_labelling;
 

@@ -1,14 +1,29 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/labels.h"
 #include "base/threads.h"
+#include "base/watch.h"
 #include "grid/sum.h"
 #include "voxel/award.h"
 #include "voxel/field.h"
+#include "voxel/piece_solid.h"
 
-#include <stdatomic.h>
 #include <string.h>
 
-enum { ROWS_PER_TASK = 64 };
+enum {
+  TILE = 16, /**< rows and slices of a tile, which is one thread's: no two write the same voxel */
+  BATCH = 256,
+  BATCH_WORDS = 1 << 18, /**< of a batch of small pieces: 2 MiB */
+  SMALL_WORDS = 1 << 12,
+  SMALL_FACES = 1 << 11
+};
+
+/** The solid of a piece at hand. */
+typedef struct solid {
+  const vxm_piece *piece;
+  vxm_window window;
+  int64_t first[3]; /**< voxel of the space at which the box begins, in the order of the layout */
+  atomic_bool is_contested;
+} solid;
 
 typedef struct labels {
   vxm_context *context;
@@ -18,38 +33,71 @@ typedef struct labels {
   vxm_labelling *labelling;
   uint16_t *values;
   vxm_window set;     /**< the voxels of the model; in the end those without a label */
-  uint64_t *several;  /**< voxels that more than one label claims; NULL = none so far */
+  uint64_t *several;  /**< voxels that more than one label claims */
   vxm_forest *forest; /**< NULL = not needed so far */
-  /* Of the label at hand: */
-  uint32_t label;
-  vxm_soup *soup;
-  uint32_t *local;  /**< per vertex of the mesh: where it may be in `soup` */
-  uint32_t *vertex; /**< per vertex of `soup` */
-  int64_t first[3]; /**< voxel at which its box begins, in the order of the layout */
-  vxm_window solid; /**< of the box */
-  atomic_bool is_contested;
-  atomic_int_fast64_t unclaimed; /**< set voxels that no label claims */
-  atomic_int_fast64_t *counts;   /**< of each label, the voxels that have it */
+  vxm_pieces pieces;
+  vxm_piece_desk *desks; /**< of each thread */
+  uint64_t *words;       /**< of the solids at hand */
+  size_t batch;          /**< how many these are: one, or small ones, each made by one thread */
+  solid solids[BATCH];
+  int64_t begin[2], end[2]; /**< rows and slices that are cut into tiles */
+  atomic_bool has_failed;
+  vxm_error *errors; /**< of each thread */
+  atomic_int_fast64_t unclaimed;
+  atomic_int_fast64_t *counts; /**< of each label, the voxels that have it */
+  vxm_watch watch;
 } labels;
 
-/* ---- Rows ---- */
-
-static size_t tasks_of(const vxm_window *window) {
-  size_t rows = (size_t)((window->end - window->begin) * window->middle_dim);
-  return (rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK;
+static size_t grid_words(const labels *l) {
+  return l->set.slice_words * (size_t)l->set.slow_dim;
 }
 
-/** The rows of a task: first..end-1, counted through the slices of a window. */
-static int64_t rows_of(size_t task, const vxm_window *window, int64_t *first) {
-  *first = (int64_t)task * ROWS_PER_TASK;
-  return vxm_min(*first + ROWS_PER_TASK, (window->end - window->begin) * window->middle_dim);
+/* ---- Tiles ---- */
+
+/** Rows and slices begin..end-1. */
+typedef struct tile {
+  int64_t begin[2], end[2];
+} tile;
+
+static size_t tiles_across(const labels *l, int axis) {
+  return (size_t)((l->end[axis] - l->begin[axis] + TILE - 1) / TILE);
 }
 
-static void clear_rows(size_t task, int worker, void *payload) {
-  (void)worker;
-  const labels *l = payload;
-  int64_t row, end = rows_of(task, &l->set, &row), length = l->set.fast_dim;
-  memset(l->values + row * length, 0, (size_t)((end - row) * length) * sizeof *l->values);
+static size_t tile_count(const labels *l) {
+  return tiles_across(l, 0) * tiles_across(l, 1);
+}
+
+static tile tile_at(const labels *l, size_t task) {
+  size_t across = tiles_across(l, 0), at[2] = {task % across, task / across};
+  tile t;
+  for (int a = 0; a < 2; a++) {
+    t.begin[a] = l->begin[a] + (int64_t)at[a] * TILE;
+    t.end[a] = vxm_min(t.begin[a] + TILE, l->end[a]);
+  }
+  return t;
+}
+
+static void tile_all(labels *l) {
+  l->begin[0] = l->begin[1] = 0;
+  l->end[0] = l->set.middle_dim;
+  l->end[1] = l->set.slow_dim;
+}
+
+/** The part of a tile that a box has, as rows and slices of the box; false if there is none. */
+static bool part_of(tile *out, const tile *t, const solid *s) {
+  const int64_t dims[2] = {s->window.middle_dim, s->window.slow_dim};
+  for (int a = 0; a < 2; a++) {
+    out->begin[a] = vxm_max(t->begin[a] - s->first[a + 1], 0);
+    out->end[a] = vxm_min(t->end[a] - s->first[a + 1], dims[a]);
+    if (out->begin[a] >= out->end[a])
+      return false;
+  }
+  return true;
+}
+
+/** Values of a row of the space. */
+static uint16_t *value_row(const labels *l, int64_t middle, int64_t slow) {
+  return l->values + (size_t)(slow * l->set.middle_dim + middle) * (size_t)l->set.fast_dim;
 }
 
 /* ---- The voxels of the model ---- */
@@ -69,228 +117,196 @@ static vxm_status fill_set(labels *l, const vxm_field_plan *plan, vxm_sum *sum, 
   return status;
 }
 
-/* ---- The faces of a label as a soup of their own ---- */
-
-static vxm_status add_vertex(labels *l, uint32_t vertex, uint32_t *out, vxm_error *error) {
-  uint32_t at = l->local[vertex];
-  vxm_status status = VXM_OK;
-  if (at >= l->soup->vertex_count || l->vertex[at] != vertex) {
-    const double *p = vxm_position(l->labelling->soup, vertex);
-    at = l->local[vertex] = (uint32_t)l->soup->vertex_count;
-    l->vertex[at] = vertex;
-    status = vxm_soup_add_vertex(l->soup, p[0], p[1], p[2], error);
-  }
-  *out = at;
-  return status;
+static void clear_tile(size_t task, int worker, void *payload) {
+  (void)worker;
+  const labels *l = payload;
+  tile t = tile_at(l, task);
+  for (int64_t slow = t.begin[1]; slow < t.end[1]; slow++)
+    memset(value_row(l, t.begin[0], slow), 0,
+           (size_t)((t.end[0] - t.begin[0]) * l->set.fast_dim) * sizeof *l->values);
 }
 
-static vxm_status gather_faces(labels *l, vxm_error *error) {
-  const vxm_labelling *from = l->labelling;
-  vxm_soup *soup = l->soup;
-  soup->vertex_count = soup->face_count = soup->corner_count = 0;
-  vxm_status status = VXM_OK;
-  for (size_t i = from->begin[l->label - 1]; i < from->begin[l->label] && status == VXM_OK; i++) {
-    size_t n;
-    const uint32_t *corner = vxm_face(from->soup, from->faces[i], &n);
-    status = vxm_soup_reserve(soup, 0, soup->face_count + 1, soup->corner_count + n, error);
-    for (size_t c = 0; c < n && status == VXM_OK; c++)
-      status = add_vertex(l, corner[c], &soup->indices[soup->corner_count + c], error);
-    soup->corner_count += n;
-    soup->offsets[++soup->face_count] = soup->corner_count;
-  }
-  return status;
+/* ---- The solids of pieces ---- */
+
+static vxm_window box_window(const labels *l, const vxm_piece *piece) {
+  vxm_space space = vxm_piece_space(piece, l->space);
+  return vxm_window_of(&space, l->set.layout, 0, space.dims[l->set.layout.slow]);
 }
 
-/* ---- Boxes ---- */
-
-/** The voxels that a label may claim: begin..end-1 along each axis of the space. */
-typedef struct box {
-  int64_t begin[3], end[3];
-} box;
-
-static void add_to_box(box *b, const vxm_lattice *lattice, const double p[3]) {
-  vxm_point point;
-  if (!vxm_lattice_place(lattice, p, &point))
-    return;
-  for (int a = 0; a < 3; a++) {
-    b->begin[a] = vxm_min(b->begin[a], vxm_lattice_first(lattice, point.at[a]) - 1);
-    b->end[a] = vxm_max(b->end[a], vxm_lattice_last(lattice, point.at[a]) + 2);
-  }
+static size_t box_words(const labels *l, const vxm_piece *piece) {
+  vxm_window window = box_window(l, piece);
+  return window.slice_words * (size_t)window.slow_dim;
 }
 
-/** The box of the voxels whose centres lie within the bounds of a label, with one more on all sides; along
- * rows it begins with a word. */
-static bool box_of(box *out, const labels *l, size_t label) {
-  const vxm_labelling *from = l->labelling;
-  bool is_empty = false;
-  *out = (box){{INT64_MAX, INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN, INT64_MIN}};
-  for (size_t i = from->begin[label - 1]; i < from->begin[label]; i++) {
-    size_t n;
-    const uint32_t *corner = vxm_face(from->soup, from->faces[i], &n);
-    for (size_t c = 0; c < n; c++)
-      add_to_box(out, &l->lattice, vxm_position(from->soup, corner[c]));
-  }
-  for (int a = 0; a < 3; a++) {
-    out->begin[a] = vxm_max(out->begin[a], 0);
-    out->end[a] = vxm_min(out->end[a], l->space->dims[a]);
-    is_empty = is_empty || out->begin[a] >= out->end[a];
-  }
-  int fast = l->set.layout.fast;
-  out->begin[fast] -= is_empty ? 0 : out->begin[fast] % 64;
-  return !is_empty;
+static bool is_small(const labels *l, const vxm_piece *piece) {
+  return piece->face_end - piece->first_face <= SMALL_FACES && box_words(l, piece) <= SMALL_WORDS;
 }
 
-static vxm_space space_of(const labels *l, const box *b) {
-  vxm_space space = *l->space;
-  for (int a = 0; a < 3; a++) {
-    space.origin[a] += (double)b->begin[a] * space.voxel_size[a];
-    space.dims[a] = b->end[a] - b->begin[a];
-  }
-  return space;
-}
-
-/** Words of the largest box. */
-static uint64_t largest_box(const labels *l) {
-  uint64_t most = 0;
-  for (size_t label = 1; label <= l->labelling->table.count; label++) {
-    box b;
-    if (!box_of(&b, l, label))
+/** Lists the solids of pieces from `first` on, and where they go; returns the first piece that is not listed.
+ */
+static size_t list_batch(labels *l, size_t first) {
+  const vxm_layout *layout = &l->set.layout;
+  const int axis[3] = {layout->fast, layout->middle, layout->slow};
+  size_t used = 0, p = first;
+  l->batch = 0;
+  for (; p < l->pieces.count && l->batch < BATCH; p++) {
+    const vxm_piece *piece = &l->pieces.pieces[p];
+    size_t words = box_words(l, piece);
+    bool small = is_small(l, piece);
+    if (words == 0)
       continue;
-    vxm_space space = space_of(l, &b);
-    vxm_window window = vxm_window_of(&space, l->set.layout, 0, 0);
-    uint64_t words = window.slice_words * (uint64_t)window.slow_dim;
-    most = words > most ? words : most;
+    if (l->batch > 0 && (!small || used + words > BATCH_WORDS))
+      break;
+    solid *s = &l->solids[l->batch++];
+    s->piece = piece;
+    s->window = box_window(l, piece);
+    s->window.words = l->words + used;
+    for (int a = 0; a < 3; a++)
+      s->first[a] = piece->begin[axis[a]];
+    atomic_store_explicit(&s->is_contested, false, memory_order_relaxed);
+    used += words;
+    if (!small)
+      return p + 1;
   }
-  return most;
+  return p;
+}
+
+/** Words of the largest batch. */
+static size_t words_needed(const labels *l) {
+  size_t most = 0, small = 0;
+  for (size_t p = 0; p < l->pieces.count; p++) {
+    size_t words = box_words(l, &l->pieces.pieces[p]);
+    most = words > most ? words : most;
+    small += words <= SMALL_WORDS ? words : 0;
+  }
+  small = small < BATCH_WORDS ? small : BATCH_WORDS;
+  return most > small ? most : small;
+}
+
+static void make_solid(size_t task, int worker, void *payload) {
+  labels *l = payload;
+  solid *s = &l->solids[task];
+  if (atomic_load_explicit(&l->has_failed, memory_order_relaxed))
+    return;
+  vxm_status status = vxm_piece_fill(&l->desks[worker], &s->window, &l->pieces, s->piece, &l->model->options,
+                                     &l->lattice, l->batch > 1, &l->errors[worker]);
+  if (status != VXM_OK)
+    atomic_store_explicit(&l->has_failed, true, memory_order_relaxed);
+}
+
+/** One piece is made by all threads; of many each by one, as the loops inside are too short for several. */
+static vxm_status make_solids(labels *l, vxm_error *error) {
+  if (l->batch == 1)
+    make_solid(0, 0, l);
+  else
+    vxm_parallel(l->context, l->batch, make_solid, l);
+  if (!atomic_load_explicit(&l->has_failed, memory_order_relaxed))
+    return VXM_OK;
+  int worker = 0;
+  while (l->errors[worker].code == VXM_OK)
+    worker++;
+  if (error)
+    *error = l->errors[worker];
+  return l->errors[worker].code;
 }
 
 /* ---- Claims ---- */
 
-/** The label takes set voxels of its solid that have none; what is left of the solid are those that have. */
-static void claim_rows(size_t task, int worker, void *payload) {
+/** A label takes the set voxels of a row of its solid that have none; what is left of the solid are those
+ * that have another. Returns whether there are such. */
+static bool claim_row(const labels *l, const solid *s, int64_t middle, int64_t slow) {
+  uint16_t label = (uint16_t)s->piece->label;
+  uint16_t *values = value_row(l, middle + s->first[1], slow + s->first[2]) + s->first[0];
+  uint64_t *claims = vxm_window_row(&s->window, middle, slow), any = 0;
+  size_t place = (size_t)(vxm_window_row(&l->set, middle + s->first[1], slow + s->first[2]) - l->set.words) +
+                 (size_t)s->first[0] / 64;
+  for (size_t w = 0; w < s->window.row_words; w++) {
+    uint64_t left = 0;
+    for (uint64_t bits = claims[w] & l->set.words[place + w]; bits; bits &= bits - 1) {
+      uint16_t *value = &values[64 * w + (size_t)__builtin_ctzll(bits)];
+      *value = *value ? *value : label;
+      left |= *value != label ? bits & -bits : 0;
+    }
+    claims[w] = left;
+    l->several[place + w] |= left;
+    any |= left;
+  }
+  return any != 0;
+}
+
+static void claim_tile(size_t task, int worker, void *payload) {
   (void)worker;
   labels *l = payload;
-  const vxm_window *solid = &l->solid;
-  uint64_t contested = 0;
-  int64_t row, end = rows_of(task, solid, &row);
-  for (; row < end; row++) {
-    int64_t middle = row % solid->middle_dim + l->first[1], slow = row / solid->middle_dim + l->first[2];
-    uint64_t *claims = solid->words + (size_t)row * solid->row_words;
-    const uint64_t *set = vxm_window_row(&l->set, middle, slow) + l->first[0] / 64;
-    uint16_t *values = l->values + (slow * l->set.middle_dim + middle) * l->set.fast_dim + l->first[0];
-    for (size_t w = 0; w < solid->row_words; w++) {
-      uint64_t left = 0;
-      for (uint64_t bits = claims[w] & set[w]; bits; bits &= bits - 1) {
-        uint16_t *value = &values[64 * w + (size_t)__builtin_ctzll(bits)];
-        left |= *value ? bits & -bits : 0;
-        *value = *value ? *value : (uint16_t)l->label;
-      }
-      claims[w] = left;
-      contested |= left;
+  tile t = tile_at(l, task), part;
+  for (size_t i = 0; i < l->batch; i++) {
+    solid *s = &l->solids[i];
+    if (!part_of(&part, &t, s))
+      continue;
+    bool is_contested = false;
+    for (int64_t slow = part.begin[1]; slow < part.end[1]; slow++)
+      for (int64_t middle = part.begin[0]; middle < part.end[0]; middle++)
+        is_contested |= claim_row(l, s, middle, slow);
+    if (is_contested)
+      atomic_store_explicit(&s->is_contested, true, memory_order_relaxed);
+  }
+}
+
+/** Contested voxels go to the nearer of two labels, solid after solid. */
+static void settle_tile(size_t task, int worker, void *payload) {
+  labels *l = payload;
+  tile t = tile_at(l, task), part;
+  if (vxm_watch_stopped(&l->watch, worker))
+    return;
+  for (size_t i = 0; i < l->batch; i++) {
+    const solid *s = &l->solids[i];
+    if (!atomic_load_explicit(&s->is_contested, memory_order_relaxed) || !part_of(&part, &t, s))
+      continue;
+    vxm_award award = {l->forest, l->space, &s->window, s->first, l->values, s->piece->label};
+    const int64_t begin[3] = {0, part.begin[0], part.begin[1]},
+                  end[3] = {s->window.fast_dim, part.end[0], part.end[1]};
+    vxm_award_voxels(&award, begin, end);
+  }
+  vxm_watch_step(&l->watch);
+}
+
+static vxm_status settle_tiles(labels *l, vxm_task_fn function, vxm_error *error) {
+  vxm_status status = l->forest ? VXM_OK : vxm_forest_create(&l->forest, l->labelling, l->space, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_watch_start(&l->watch, l->context, "labelling", tile_count(l), error);
+  vxm_parallel(l->context, tile_count(l), function, l);
+  return vxm_watch_end(&l->watch);
+}
+
+static vxm_status claim_batch(labels *l, vxm_error *error) {
+  bool is_contested = false;
+  l->begin[0] = l->begin[1] = INT64_MAX;
+  l->end[0] = l->end[1] = 0;
+  for (size_t i = 0; i < l->batch; i++) {
+    const solid *s = &l->solids[i];
+    const int64_t dims[2] = {s->window.middle_dim, s->window.slow_dim};
+    for (int a = 0; a < 2; a++) {
+      l->begin[a] = vxm_min(l->begin[a], s->first[a + 1]);
+      l->end[a] = vxm_max(l->end[a], s->first[a + 1] + dims[a]);
     }
   }
-  if (contested)
-    atomic_store_explicit(&l->is_contested, true, memory_order_relaxed);
-}
-
-/** Marks what is contested as claimed by several. */
-static void mark_rows(size_t task, int worker, void *payload) {
-  (void)worker;
-  const labels *l = payload;
-  int64_t row, end = rows_of(task, &l->solid, &row);
-  for (; row < end; row++) {
-    int64_t middle = row % l->solid.middle_dim + l->first[1], slow = row / l->solid.middle_dim + l->first[2];
-    uint64_t *several =
-        l->several + (size_t)(slow * l->set.middle_dim + middle) * l->set.row_words + l->first[0] / 64;
-    for (size_t w = 0; w < l->solid.row_words; w++)
-      several[w] |= l->solid.words[(size_t)row * l->solid.row_words + w];
-  }
-}
-
-static vxm_status need_forest(labels *l, vxm_error *error) {
-  return l->forest ? VXM_OK : vxm_forest_create(&l->forest, l->labelling, l->space, error);
-}
-
-static vxm_status settle_contested(labels *l, vxm_error *error) {
-  vxm_error local = VXM_ERROR_INIT;
-  if (!l->several)
-    l->several =
-        vxm_calloc(l->context, l->set.slice_words * (size_t)l->set.slow_dim, sizeof *l->several, &local);
-  vxm_status status = local.code;
-  if (status == VXM_OK)
-    status = need_forest(l, &local);
-  if (status != VXM_OK) {
-    if (error)
-      *error = local;
-    return status;
-  }
-  vxm_parallel(l->context, tasks_of(&l->solid), mark_rows, l);
-  vxm_award award = {l->forest, l->space, &l->solid, {l->first[0], l->first[1], l->first[2]},
-                     l->values, l->label};
-  return vxm_award_voxels(&award, l->context, error);
-}
-
-/** Fills the box with the label's own solid. */
-static vxm_status fill_solid(labels *l, vxm_model *own, const vxm_space *space, vxm_error *error) {
-  vxm_lattice lattice = l->lattice;
-  lattice.space = *space;
-  vxm_field_plan plan;
-  vxm_status status = vxm_field_plan_of(&plan, own, space, l->set.layout, 1, 0, 0, error);
-  if (status == VXM_OK)
-    status = vxm_model_begin_on(own, &lattice, NULL, NULL, error);
-  vxm_window part = l->solid;
-  for (int64_t begin = 0; begin < l->solid.slow_dim && status == VXM_OK; begin = part.end) {
-    part.begin = begin;
-    part.end = vxm_min(begin + plan.slices, l->solid.slow_dim);
-    part.words = l->solid.words + (size_t)begin * l->solid.slice_words;
-    status = vxm_model_fill(own, &part, error);
-  }
-  return status;
-}
-
-static vxm_status claim(labels *l, vxm_error *error) {
-  box b;
-  if (!box_of(&b, l, l->label))
-    return VXM_OK;
-  vxm_space space = space_of(l, &b);
-  const vxm_layout *layout = &l->set.layout;
-  const int axis[3] = {layout->fast, layout->middle, layout->slow};
-  for (int a = 0; a < 3; a++)
-    l->first[a] = b.begin[axis[a]];
-  uint64_t *words = l->solid.words;
-  l->solid = vxm_window_of(&space, *layout, 0, space.dims[layout->slow]);
-  l->solid.words = words;
-  vxm_voxelize_options options = l->model->options;
-  options.mode = VXM_MODE_SOLID;
-  options.confidence = false;
-  vxm_model *own = NULL;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_status status = gather_faces(l, &local);
-  if (status == VXM_OK)
-    status = vxm_model_make(&own, l->soup, &options, &local);
-  if (status == VXM_ERROR_EMPTY) /* faces without area claim nothing */
-    return VXM_OK;
-  if (status == VXM_OK)
-    status = fill_solid(l, own, &space, &local);
-  vxm_model_destroy(own);
-  if (status != VXM_OK) {
-    if (error)
-      *error = local;
-    return status;
-  }
-  atomic_store_explicit(&l->is_contested, false, memory_order_relaxed);
-  vxm_parallel(l->context, tasks_of(&l->solid), claim_rows, l);
-  return atomic_load_explicit(&l->is_contested, memory_order_relaxed) ? settle_contested(l, error) : VXM_OK;
+  vxm_parallel(l->context, tile_count(l), claim_tile, l);
+  for (size_t i = 0; i < l->batch; i++)
+    is_contested |= atomic_load_explicit(&l->solids[i].is_contested, memory_order_relaxed);
+  return is_contested ? settle_tiles(l, settle_tile, error) : VXM_OK;
 }
 
 static vxm_status claim_all(labels *l, vxm_error *error) {
-  size_t count = l->labelling->table.count;
   vxm_status status = VXM_OK;
-  for (size_t label = 1; label <= count && status == VXM_OK; label++) {
-    l->label = (uint32_t)label;
-    status = claim(l, error);
+  for (size_t p = 0; p < l->pieces.count && status == VXM_OK;) {
+    p = list_batch(l, p);
+    if (l->batch == 0)
+      break;
+    status = make_solids(l, error);
     if (status == VXM_OK)
-      status = vxm_progress(l->context, "labelling", (double)label / (double)count, error);
+      status = claim_batch(l, error);
+    if (status == VXM_OK)
+      status = vxm_progress(l->context, "labelling", (double)p / (double)l->pieces.count, error);
   }
   return status;
 }
@@ -298,55 +314,67 @@ static vxm_status claim_all(labels *l, vxm_error *error) {
 /* ---- What no label claims ---- */
 
 /** Leaves of the set voxels those without a label. */
-static void leave_rows(size_t task, int worker, void *payload) {
+static void leave_tile(size_t task, int worker, void *payload) {
   (void)worker;
   labels *l = payload;
-  int64_t row, end = rows_of(task, &l->set, &row), left = 0;
-  for (; row < end; row++) {
-    const uint16_t *values = l->values + row * l->set.fast_dim;
-    uint64_t *words = l->set.words + (size_t)row * l->set.row_words;
-    for (size_t w = 0; w < l->set.row_words; w++) {
-      for (uint64_t bits = words[w]; bits; bits &= bits - 1)
-        if (values[64 * w + (size_t)__builtin_ctzll(bits)])
-          words[w] ^= bits & -bits;
-      left += vxm_popcount(words[w]);
+  tile t = tile_at(l, task);
+  int64_t left = 0;
+  for (int64_t slow = t.begin[1]; slow < t.end[1]; slow++)
+    for (int64_t middle = t.begin[0]; middle < t.end[0]; middle++) {
+      const uint16_t *values = value_row(l, middle, slow);
+      uint64_t *words = vxm_window_row(&l->set, middle, slow);
+      for (size_t w = 0; w < l->set.row_words; w++) {
+        for (uint64_t bits = words[w]; bits; bits &= bits - 1)
+          words[w] ^= values[64 * w + (size_t)__builtin_ctzll(bits)] ? bits & -bits : 0;
+        left += vxm_popcount(words[w]);
+      }
     }
-  }
   atomic_fetch_add_explicit(&l->unclaimed, left, memory_order_relaxed);
 }
 
+static void settle_left_tile(size_t task, int worker, void *payload) {
+  static const int64_t nowhere[3] = {0, 0, 0};
+  labels *l = payload;
+  if (vxm_watch_stopped(&l->watch, worker))
+    return;
+  tile t = tile_at(l, task);
+  vxm_award award = {l->forest, l->space, &l->set, nowhere, l->values, 0};
+  const int64_t begin[3] = {0, t.begin[0], t.begin[1]}, end[3] = {l->set.fast_dim, t.end[0], t.end[1]};
+  vxm_award_voxels(&award, begin, end);
+  vxm_watch_step(&l->watch);
+}
+
 static vxm_status settle_unclaimed(labels *l, vxm_error *error) {
-  vxm_parallel(l->context, tasks_of(&l->set), leave_rows, l);
+  tile_all(l);
+  vxm_parallel(l->context, tile_count(l), leave_tile, l);
   if (atomic_load_explicit(&l->unclaimed, memory_order_relaxed) == 0)
     return VXM_OK;
-  vxm_status status = need_forest(l, error);
-  if (status != VXM_OK)
-    return status;
-  vxm_award award = {l->forest, l->space, &l->set, {0, 0, 0}, l->values, 0};
-  return vxm_award_voxels(&award, l->context, error);
+  return settle_tiles(l, settle_left_tile, error);
 }
 
 /* ---- Counts ---- */
 
-static void count_rows(size_t task, int worker, void *payload) {
+static void count_tile(size_t task, int worker, void *payload) {
   (void)worker;
   labels *l = payload;
-  int64_t row, end = rows_of(task, &l->set, &row), length = l->set.fast_dim;
-  const uint16_t *at = l->values + row * length, *last = l->values + end * length;
-  while (at < last) {
-    const uint16_t *run = at++;
-    while (at < last && *at == *run)
-      at++;
-    if (*run)
-      atomic_fetch_add_explicit(&l->counts[*run - 1], at - run, memory_order_relaxed);
+  tile t = tile_at(l, task);
+  for (int64_t slow = t.begin[1]; slow < t.end[1]; slow++) {
+    const uint16_t *at = value_row(l, t.begin[0], slow), *last = value_row(l, t.end[0], slow);
+    while (at < last) {
+      const uint16_t *run = at++;
+      while (at < last && *at == *run)
+        at++;
+      if (*run)
+        atomic_fetch_add_explicit(&l->counts[*run - 1], at - run, memory_order_relaxed);
+    }
   }
 }
 
 static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
   vxm_label_table *table = &l->labelling->table;
   vxm_notes *notes = &l->model->notes;
-  size_t words = l->set.slice_words * (size_t)l->set.slow_dim, empty = 0, first = 0;
-  vxm_parallel(l->context, tasks_of(&l->set), count_rows, l);
+  size_t empty = 0, first = 0;
+  vxm_parallel(l->context, tile_count(l), count_tile, l);
   for (size_t label = table->count; label > 0; label--) {
     table->voxels[label - 1] = atomic_load_explicit(&l->counts[label - 1], memory_order_relaxed);
     empty += table->voxels[label - 1] == 0;
@@ -354,7 +382,7 @@ static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
   }
   *report = (vxm_label_report){.labels = (int64_t)table->count};
   report->unclaimed = atomic_load_explicit(&l->unclaimed, memory_order_relaxed);
-  for (size_t w = 0; w < words && l->several; w++)
+  for (size_t w = 0; w < grid_words(l); w++)
     report->contested += vxm_popcount(l->several[w]);
   vxm_model_end(l->model, &report->voxelize, sum->count, sum->hash);
   if (l->labelling->is_untagged)
@@ -367,79 +395,94 @@ static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
 /* ---- All of it ---- */
 
 /** What is held beside the values and the model's own scratch. */
-static uint64_t fixed_bytes(const labels *l, uint64_t box_words) {
-  enum { MODEL_BYTES = 256 /* of a model, for each corner of a face */ };
-  const vxm_labelling *from = l->labelling;
-  uint64_t grid = l->set.slice_words * (uint64_t)l->set.slow_dim, most = 0;
-  for (size_t label = 1; label <= from->table.count; label++) {
-    uint64_t corners = 0;
-    for (size_t i = from->begin[label - 1]; i < from->begin[label]; i++) {
-      size_t n;
-      vxm_face(from->soup, from->faces[i], &n);
-      corners += n;
-    }
-    most = corners > most ? corners : most;
+static uint64_t fixed_bytes(const labels *l) {
+  const vxm_labelling *labelling = l->labelling;
+  uint64_t most = 0;
+  for (size_t p = 0; p < l->pieces.count; p++) {
+    uint64_t bytes = vxm_piece_bytes(&l->pieces, &l->pieces.pieces[p]);
+    most = bytes > most ? bytes : most;
   }
-  return (2 * grid + box_words) * sizeof(uint64_t) + most * MODEL_BYTES + vxm_forest_bytes(from) +
-         2 * from->soup->vertex_count * sizeof(uint32_t) + from->table.count * sizeof *l->counts;
+  return (2 * (uint64_t)grid_words(l) + words_needed(l)) * sizeof(uint64_t) + most +
+         vxm_forest_bytes(labelling) + labelling->table.count * sizeof *l->counts;
 }
 
-static vxm_status allocate(labels *l, uint64_t box_words, vxm_error *error) {
+static vxm_status allocate(labels *l, vxm_error *error) {
+  size_t threads = (size_t)vxm_context_threads(l->context);
   vxm_error local = VXM_ERROR_INIT;
-  size_t vertices = l->labelling->soup->vertex_count, grid = l->set.slice_words * (size_t)l->set.slow_dim;
-  l->set.words = vxm_alloc(l->context, grid, sizeof *l->set.words, &local);
-  l->solid.words = vxm_alloc(l->context, box_words, sizeof *l->solid.words, &local);
-  l->local = vxm_calloc(l->context, vertices, sizeof *l->local, &local);
-  l->vertex = vxm_alloc(l->context, vertices, sizeof *l->vertex, &local);
+  l->set.words = vxm_alloc(l->context, grid_words(l), sizeof *l->set.words, &local);
+  l->several = vxm_calloc(l->context, grid_words(l), sizeof *l->several, &local);
+  l->words = vxm_alloc(l->context, words_needed(l), sizeof *l->words, &local);
   l->counts = vxm_calloc(l->context, l->labelling->table.count, sizeof *l->counts, &local);
-  vxm_status status = local.code;
-  if (status == VXM_OK)
-    status = vxm_soup_create(&l->soup, l->context, "label", &local);
-  if (status != VXM_OK && error)
+  l->errors = vxm_calloc(l->context, threads, sizeof *l->errors, &local);
+  l->desks = vxm_calloc(l->context, threads, sizeof *l->desks, &local);
+  if (local.code != VXM_OK && error)
     *error = local;
-  return status;
+  return local.code;
 }
 
 static void destroy(labels *l) {
-  vxm_forest_destroy(l->forest);
-  vxm_soup_destroy(l->soup);
-  vxm_free(l->context, l->several);
+  for (int w = 0; l->desks && w < vxm_context_threads(l->context); w++)
+    vxm_piece_desk_destroy(&l->desks[w], l->context);
+  vxm_free(l->context, l->desks);
+  vxm_free(l->context, l->errors);
   vxm_free(l->context, l->counts);
-  vxm_free(l->context, l->vertex);
-  vxm_free(l->context, l->local);
-  vxm_free(l->context, l->solid.words);
+  vxm_free(l->context, l->words);
+  vxm_free(l->context, l->several);
   vxm_free(l->context, l->set.words);
+  vxm_forest_destroy(l->forest);
+  vxm_pieces_destroy(&l->pieces);
+}
+
+static vxm_status run(labels *l, vxm_label_report *report, vxm_error *error) {
+  vxm_layout layout = l->set.layout;
+  vxm_field_plan plan;
+  vxm_sum sum;
+  vxm_status status =
+      vxm_pieces_create(&l->pieces, l->labelling, &l->model->options, &l->lattice, layout.fast, error);
+  if (status == VXM_OK)
+    status = vxm_field_plan_of(&plan, l->model, l->space, layout, 1, fixed_bytes(l), 0, error);
+  if (status == VXM_OK)
+    status = allocate(l, error);
+  if (status == VXM_OK)
+    status = fill_set(l, &plan, &sum, error);
+  if (status == VXM_OK) {
+    tile_all(l);
+    vxm_parallel(l->context, tile_count(l), clear_tile, l);
+    status = claim_all(l, error);
+  }
+  if (status == VXM_OK)
+    status = settle_unclaimed(l, error);
+  if (status == VXM_OK)
+    sum_up(l, report, &sum);
+  return status;
 }
 
 vxm_status vxm_labels_run(uint16_t *values, vxm_layout layout, vxm_label_report *report, vxm_model *model,
                           const vxm_space *space, vxm_labelling *labelling, vxm_error *error) {
-  labels l = {.context = model->context,
-              .model = model,
-              .space = space,
-              .lattice = vxm_lattice_of(space),
-              .labelling = labelling,
-              .values = values,
-              .set = vxm_window_of(space, layout, 0, space->dims[layout.slow])};
+  vxm_context *context = model->context;
+  vxm_error local = VXM_ERROR_INIT;
   vxm_label_table_destroy(&model->labels);
-  uint64_t box_words = largest_box(&l);
-  vxm_field_plan plan;
-  vxm_sum sum;
-  vxm_status status = vxm_field_plan_of(&plan, model, space, layout, 1, fixed_bytes(&l, box_words), 0, error);
-  if (status == VXM_OK)
-    status = allocate(&l, box_words, error);
-  if (status == VXM_OK)
-    status = fill_set(&l, &plan, &sum, error);
-  if (status == VXM_OK) {
-    vxm_parallel(l.context, tasks_of(&l.set), clear_rows, &l);
-    status = claim_all(&l, error);
+  labels *l = vxm_calloc(context, 1, sizeof *l, &local);
+  vxm_status status = local.code;
+  if (l) {
+    l->context = context;
+    l->model = model;
+    l->space = space;
+    l->lattice = vxm_lattice_of(space);
+    l->labelling = labelling;
+    l->values = values;
+    l->set = vxm_window_of(space, layout, 0, space->dims[layout.slow]);
+    l->pieces.context = context;
+    status = run(l, report, &local);
+    destroy(l);
+    vxm_free(context, l);
   }
-  if (status == VXM_OK)
-    status = settle_unclaimed(&l, error);
-  if (status == VXM_OK) {
-    sum_up(&l, report, &sum);
-    model->labels = labelling->table;
-    labelling->table = (vxm_label_table){.context = l.context};
+  if (status != VXM_OK) {
+    if (error)
+      *error = local;
+    return status;
   }
-  destroy(&l);
-  return status;
+  model->labels = labelling->table;
+  labelling->table = (vxm_label_table){.context = context};
+  return VXM_OK;
 }
