@@ -836,6 +836,66 @@ VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_mod
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
 
+/* ---- Labels: which part, group or material a voxel belongs to ---- */
+
+/** What faces are labelled by. */
+typedef enum vxm_label_by {
+  VXM_LABEL_PART = 0, /**< connected components */
+  VXM_LABEL_GROUP,    /**< groups, or parts named in the file: of a face tag what lies before the first '/' */
+  VXM_LABEL_MATERIAL  /**< materials: what lies behind it */
+} vxm_label_by;
+
+typedef struct vxm_label_options {
+  uint32_t version; /**< 1 */
+  vxm_label_by by;
+  const char *format; /**< of a file: "npy", "nrrd" or "binvox"; NULL = by extension */
+} vxm_label_options;
+
+#define VXM_LABEL_OPTIONS_INIT \
+  { 1, VXM_LABEL_PART, NULL }
+
+typedef struct vxm_label_report {
+  vxm_voxelize_report voxelize; /**< of the set voxels */
+  int64_t labels;               /**< numbered from 1 in the order of their first faces */
+  int64_t contested; /**< voxels that several labels claim: the one with the nearest face has them */
+  int64_t unclaimed; /**< voxels that none claims: they have the label of the nearest face of all */
+} vxm_label_report;
+
+/**
+ * Labels the voxels of a model: 0 where none is set, else the part, group or material that it belongs to. Set
+ * are the voxels that vxm_model_voxelize sets. A label claims the voxels whose centres are inside its own
+ * faces, voxelized alone as the options of the model say with VXM_MODE_SOLID, within their bounds. Of several
+ * labels that claim a voxel, or of all where none does, it has the one with the face nearest to its centre;
+ * among equally near ones, to seven digits, the lowest. The number of threads makes no difference.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_RANGE beyond 65535 labels. After a failure the values are
+ * unspecified
+ */
+VXM_API vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_model *model,
+                                    const vxm_space *space, const vxm_label_options *options,
+                                    vxm_error *error);
+
+/**
+ * As vxm_model_labels, into a file: .npy, .nrrd, or .binvox (version 2), which holds 255 labels at most. The
+ * table of labels goes into a .json beside it. All values are in memory meanwhile. @return as
+ * vxm_model_labels and vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,
+                                          const char *path, const vxm_label_options *options,
+                                          vxm_error *error);
+
+/** Number of labels of the last labels made of the model; 0 if there are none. */
+VXM_API int64_t vxm_model_label_count(const vxm_model *model);
+/** Name of label 1 to vxm_model_label_count: that of the group or material, or "unnamed"; of a part that of
+ * its tag, or of its group, if its faces share one, else "part " and its number. Names may repeat. "" for
+ * others. */
+VXM_API const char *vxm_model_label_name(const vxm_model *model, int64_t label);
+/** Voxels that have a label. */
+VXM_API int64_t vxm_model_label_voxels(const vxm_model *model, int64_t label);
+
 /** Warnings from the last grid or file made of the model, one line each. */
 VXM_API int64_t vxm_model_warning_count(const vxm_model *model);
 VXM_API const char *vxm_model_warning(const vxm_model *model, int64_t index);

@@ -21,6 +21,7 @@ enum {
   KEY_SCALAR,
   KEY_DISTANCE,
   KEY_BAND,
+  KEY_LABELS,
   KEY_CONFIDENCE,
   KEY_SPARSE,
   KEY_COORDS,
@@ -74,6 +75,9 @@ static const cli_option known_options[] = {
      "write the distance from each centre to the mesh instead, in model units;\n"
      "signed: negative inside; .npy or .nrrd"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
+    {KEY_LABELS, "labels", "part|group|material",
+     "write which part, group or material each voxel belongs to instead, from 1 on;\n"
+     ".npy, .nrrd or .binvox, with the names in a .json beside it"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
@@ -212,6 +216,8 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     return cli_field_read_distance(cli, &out->field, value);
   case KEY_BAND:
     return cli_field_read_band(cli, &out->field, value);
+  case KEY_LABELS:
+    return cli_field_read_labels(cli, &out->field, value);
   case KEY_CONFIDENCE:
     out->confidence = value;
     out->voxelize.confidence = true;
@@ -270,7 +276,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
   if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
-    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage and --distance");
+    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance and "
+                          "--labels");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
   if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
@@ -298,8 +305,9 @@ static int read_arguments(cli_run *cli, voxelize_request *out) {
   out->input = cli->arguments[0];
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
-  out->format = cli_output_format(cli, out->output, out->format,
-                                  cli_field_wanted(&out->field) ? cli_field_formats : cli_grid_formats);
+  out->format =
+      cli_output_format(cli, out->output, out->format,
+                        cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_grid_formats);
   if (out->format && out->sparse && !is_sliced(out->format))
     return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
   return out->format ? CLI_END : CLI_STOP;
@@ -393,7 +401,7 @@ static int write_model(cli_run *cli, voxelize_request *given, voxelize_outcome *
   if (status != VXM_OK)
     return cli_fail(cli);
   cli->made = given->output;
-  cli->made_format = given->format;
+  cli->made_format = given->field.labels ? "npy" : given->format; /* labels have a .json beside them too */
   results->write_ms = results->voxelize.write_ms;
   results->voxelize_ms += cli_clock() - start - results->write_ms;
   warn_of_model(cli, given, model);
@@ -468,7 +476,9 @@ static int run(cli_run *cli) {
   cli_progress_clear(cli);
   if (cli_summary(cli) && !given.dry_run)
     voxelize_summarize(cli, &given, &results);
-  return cli_finish(cli, voxelize_report(cli, &given, &results));
+  status = cli_finish(cli, voxelize_report(cli, &given, &results));
+  json_decref(given.field.label_table);
+  return status;
 }
 
 const cli_command cli_command_voxelize = {
