@@ -22,8 +22,8 @@ static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size
 
 static bool find_file(char path[VXM_MODULE_PATH_MAX], const char *name) {
   const char *chosen = secure_getenv("VOXMEND_MODULES");
-  if (chosen != NULL && found_in(path, chosen, strlen(chosen), "", name))
-    return true;
+  if (chosen != NULL) /* there and nowhere else */
+    return found_in(path, chosen, strlen(chosen), "", name);
   Dl_info self;
   if (dladdr((void *)(uintptr_t)&vxm_module_open, &self) != 0 && self.dli_fname != NULL) {
     const char *end = strrchr(self.dli_fname, '/');
