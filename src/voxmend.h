@@ -52,7 +52,10 @@ typedef enum vxm_status {
   VXM_ERROR_RANGE, /**< a size or coordinate is beyond what can be computed: scale down or choose another grid
                     */
   VXM_ERROR_UNAVAILABLE, /**< this build lacks an optional library: rebuild with it, or use another format */
-  VXM_ERROR_CANCELLED    /**< the progress callback asked to stop: nothing was made */
+  VXM_ERROR_CANCELLED,   /**< the progress callback asked to stop: nothing was made */
+  VXM_ERROR_UNREACHED /**< a repair did not come as far as it was asked to: ask for less, or take what there
+                       * is
+                       */
 } vxm_status;
 
 /** Short fixed name of a status, such as "format". */
@@ -145,9 +148,9 @@ VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const v
 /**
  * Reads a mesh file, its format told by content first and by name second: OFF, OBJ, STL and PLY; glTF, 3MF,
  * COLLADA, FBX, 3DS and more where voxmend was built with Assimp; STEP and IGES where it was built with
- * OpenCASCADE. What the libraries read is read in a process of its own (doc/formats.md); names of parts become
- * face tags.
- * What a damaged file still holds is read, and each kind of damage becomes a warning of the mesh.
+ * OpenCASCADE. What the libraries read is read in a process of its own (doc/formats.md); names of parts
+ * become face tags. What a damaged file still holds is read, and each kind of damage becomes a warning of the
+ * mesh.
  *
  * @param path file to read; "-" reads standard input. A file is mapped: nobody may shorten it meanwhile
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond 2^32 - 2
@@ -211,7 +214,8 @@ VXM_API const uint64_t *vxm_mesh_offsets(const vxm_mesh *mesh);
 VXM_API const uint32_t *vxm_mesh_indices(const vxm_mesh *mesh);
 /** Number of face tags (names of groups or parts, and of materials); 0 if the file had none. */
 VXM_API int64_t vxm_mesh_tag_count(const vxm_mesh *mesh);
-/** Name of a tag, UTF-8 as in the file, "group" or "group/material"; parts of one name are numbered "name#1", "name#2". */
+/** Name of a tag, UTF-8 as in the file, "group" or "group/material"; parts of one name are numbered "name#1",
+ * "name#2". */
 VXM_API const char *vxm_mesh_tag_name(const vxm_mesh *mesh, int64_t tag);
 /** face_count tag numbers, or NULL if there are no tags. */
 VXM_API const uint32_t *vxm_mesh_face_tags(const vxm_mesh *mesh);
@@ -257,19 +261,56 @@ typedef enum vxm_weld {
   VXM_WELD_TOLERANCE /**< bit-identical positions, then all that are no farther apart than weld_tolerance */
 } vxm_weld;
 
+/**
+ * How far a repair goes. Each level includes those before it, and holds of the mesh as it is read back from
+ * its file and welded (vxm_mesh_write_verified).
+ */
+typedef enum vxm_level {
+  VXM_LEVEL_CLEAN = 0, /**< the passes have nothing left to do: repairing again changes nothing */
+  VXM_LEVEL_MANIFOLD, /**< no edge has more than two faces, those two run along it in opposite directions, and
+                         the faces about a vertex form one fan */
+  VXM_LEVEL_CLOSED,   /**< every edge has two faces */
+  VXM_LEVEL_SOLID     /**< no face cuts through another: parts that did are united */
+} vxm_level;
+
+/** What holes are filled with. */
+typedef enum vxm_fill {
+  VXM_FILL_FAN = 0, /**< triangles from a new vertex in the middle of the rim */
+  VXM_FILL_MINIMAL, /**< the triangulation of the rim with the least area; needs the module for OpenMesh */
+  VXM_FILL_SMOOTH   /**< triangles as small as those about the rim, which continue its curvature; needs the
+                       module for   CGAL */
+} vxm_fill;
+
 typedef struct vxm_repair_options {
   uint32_t version; /**< 1 */
   vxm_weld weld;
   double weld_tolerance; /**< model units, with VXM_WELD_TOLERANCE */
   bool keep_duplicates;  /**< leave repeated faces in */
-  bool keep_orientation; /**< leave faces turned as they are */
-  bool close;            /**< close holes: a fan of triangles from the centre of each rim */
+  bool keep_orientation; /**< leave faces turned as they are; not with a level above VXM_LEVEL_CLEAN */
+  vxm_level level;
+  int64_t fill_holes; /**< fill holes with at most so many edges; 0 = none, and from VXM_LEVEL_CLOSED on all;
+                         negative = all */
+  vxm_fill fill;
+  bool unite;         /**< unite parts that cut through each other, as VXM_LEVEL_SOLID does */
+  double wrap_alpha;  /**< put a closed surface around everything instead: the size of the smallest hole that
+                         it goes  into, as a fraction of the diagonal of the bounds; 0 = do not */
+  double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
+  bool single_precision; /**< keep to positions that 32-bit floats hold, as .stl files do */
+  bool part_changes;     /**< keep account of every part: vxm_mesh_part_changes */
+  double max_change;  /**< fail where the volume of a closed part, or the bounds of one, change by more than
+                         this fraction (of its volume, of its diagonal); 0 = do not look */
+  int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
+  double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
+                         The component with the largest area always stays */
 } vxm_repair_options;
 
-#define VXM_REPAIR_OPTIONS_INIT \
-  { 1, VXM_WELD_AUTO, 0.0, false, false, false }
+#define VXM_REPAIR_OPTIONS_INIT                                                                           \
+  {                                                                                                       \
+    1, VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_FILL_FAN, false, 0.0, 0.0, false, false, \
+        0.0, 0, 0.0                                                                                       \
+  }
 
-#define VXM_REPAIR_PASSES_MAX 16
+#define VXM_REPAIR_PASSES_MAX 24
 
 typedef struct vxm_repair_report {
   int pass_count;
@@ -278,23 +319,136 @@ typedef struct vxm_repair_report {
     int64_t count;    /**< vertices or faces that the pass removed, changed or added */
   } passes[VXM_REPAIR_PASSES_MAX];
   int64_t nonorientable_patches; /**< faces joined by edges that cannot all be turned consistently */
-  int64_t open_parts; /**< components that `close` left open: sheets that their closing would cover */
+  int64_t open_parts;     /**< components whose holes were left open: sheets that their closing would cover */
+  int64_t unfilled_holes; /**< that were to be filled and could not be */
+  int64_t ununited_parts; /**< that were to be united and could not be, as they cut through themselves */
+  double moved; /**< largest distance that a vertex was moved, model units; not by a wrap or union */
   vxm_census before, after;
 } vxm_repair_report;
 
 /**
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated
  * corners, faces without area and repeated faces (a face and its reverse become one), and unused vertices;
- * turns faces consistently, outward where they enclose something; closes holes if that is asked for.
- * Applying it to its own result changes nothing. Vertices keep their order and the position of the first one
- * welded; only where a soup was torn apart everywhere do they move, to the middle of the copies joined.
+ * turns faces consistently, outward where they enclose something; then goes as far as the level and the other
+ * options say. Applying it to its own result changes nothing. Vertices keep their order and the position of
+ * the first one welded; only where a soup was torn apart everywhere do they move, to the middle of the copies
+ * joined, and where a vertex had to become several, which are moved apart by some 1e-9 of the diagonal so
+ * that welding leaves them be.
  *
  * @param[out] report may be NULL (then no census is taken)
- * @return VXM_OK (the result may have no faces), VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY,
+ * @return VXM_OK (the result may have no faces); VXM_ERROR_ARGUMENT; VXM_ERROR_UNREACHED beyond max_change;
+ * VXM_ERROR_UNAVAILABLE if something asked for needs a module that is not there; VXM_ERROR_MEMORY,
  * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
                                    const vxm_repair_options *options, vxm_error *error);
+
+/** A part of a mesh, at one time. Edges and holes are taken after welding. */
+typedef struct vxm_part_state {
+  int64_t faces, boundary_edges, nonmanifold_edges, inconsistent_edges;
+  int64_t holes;       /**< closed walks along edges with an odd number of faces */
+  bool closed;         /**< it has faces, and every edge has an even number of them */
+  double area, volume; /**< as in vxm_census */
+  double bounds[6];
+} vxm_part_state;
+
+/** What a repair did to a connected component of the mesh that it was given. */
+typedef struct vxm_part_change {
+  vxm_part_state before, after; /**< after: of all faces that come from this part; none after a wrap */
+  int64_t flipped;              /**< faces that were turned */
+  double moved;                 /**< largest distance that one of its vertices was moved, model units */
+  uint32_t tag;                 /**< of its first face; UINT32_MAX if there are no tags */
+} vxm_part_change;
+
+/** Number of connected components (after welding) of the mesh that was repaired; 0 without
+ * options.part_changes. */
+VXM_API int64_t vxm_mesh_part_change_count(const vxm_mesh *repaired);
+/** What became of each, in the order of their first faces. */
+VXM_API const vxm_part_change *vxm_mesh_part_changes(const vxm_mesh *repaired);
+
+/* ---- What a mesh guarantees, and what is wrong where ---- */
+
+#define VXM_REMAINS_MAX 24
+
+/** Whether a mesh is at a level, and what is in the way. */
+typedef struct vxm_verification {
+  bool reached;
+  int count;
+  struct {
+    const char *what; /**< fixed name such as "boundary_edges" or a pass that would still change something */
+    int64_t count;
+    int64_t element; /**< the first one: a vertex, or for faces and edges a face; -1 = none to tell */
+    double at[3];    /**< where that is, model units */
+  } remains[VXM_REMAINS_MAX];
+} vxm_verification;
+
+/**
+ * Checks what a level guarantees, after welding identical positions.
+ *
+ * @param options those of the repair: `level`, and what is to be kept; NULL = defaults
+ * @return VXM_OK whether or not it is reached; VXM_ERROR_ARGUMENT; VXM_ERROR_UNAVAILABLE if VXM_LEVEL_SOLID
+ * is asked for without the module for CGAL; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_mesh_verify(vxm_verification *out, const vxm_mesh *mesh,
+                                   const vxm_repair_options *options, vxm_error *error);
+
+/**
+ * Writes a mesh as vxm_mesh_write, reads back what was written and verifies it. Where the level is not
+ * reached nothing is left behind, unless `best_effort` is set.
+ *
+ * @param[out] out  filled if the file could be written and read
+ * @return as vxm_mesh_write and vxm_mesh_verify; VXM_ERROR_UNREACHED
+ */
+VXM_API vxm_status vxm_mesh_write_verified(vxm_verification *out, const vxm_mesh *mesh, const char *path,
+                                           const vxm_mesh_write_options *write,
+                                           const vxm_repair_options *repair, bool best_effort,
+                                           vxm_error *error);
+
+typedef enum vxm_defect_kind {
+  VXM_DEFECT_NONFINITE_VERTEX = 0,
+  VXM_DEFECT_DEGENERATE_FACE,
+  VXM_DEFECT_DUPLICATE_FACE,
+  VXM_DEFECT_BOUNDARY_EDGE,
+  VXM_DEFECT_NONMANIFOLD_EDGE,
+  VXM_DEFECT_INCONSISTENT_EDGE,
+  VXM_DEFECT_NONMANIFOLD_VERTEX, /**< its faces form more than one fan, though none of its edges is at fault
+                                  */
+  VXM_DEFECT_SELF_INTERSECTION,  /**< two faces that cut through each other */
+  VXM_DEFECT_KINDS
+} vxm_defect_kind;
+
+/** Something that is wrong with a mesh, and where. */
+typedef struct vxm_defect {
+  vxm_defect_kind kind;
+  int64_t element[2]; /**< a vertex or face, and -1; of an edge its vertices; of an intersection the faces */
+  double at[6]; /**< the vertex, or the middle of the face, twice; the ends of the edge; the middles of both
+                   faces */
+} vxm_defect;
+
+/** The defects of a mesh, ordered by kind, then by element. */
+typedef struct vxm_defects vxm_defects;
+
+/**
+ * Finds what is wrong with a mesh, after welding identical positions.
+ *
+ * @param most          of each kind; 0 = all
+ * @param intersections look for self-intersections too, which needs the module for CGAL
+ * @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_UNAVAILABLE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ * VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int64_t most, bool intersections,
+                                    vxm_error *error);
+VXM_API void vxm_defects_destroy(vxm_defects *defects);
+VXM_API int64_t vxm_defects_count(const vxm_defects *defects);
+VXM_API const vxm_defect *vxm_defects_items(const vxm_defects *defects);
+/** Fixed name of a kind, such as "boundary_edge". */
+VXM_API const char *vxm_defect_name(vxm_defect_kind kind);
+/**
+ * Writes the mesh as .ply with its defects in colour: faces and edges at fault, the edges as elements of
+ * their own; the rest is grey. @return as vxm_mesh_write
+ */
+VXM_API vxm_status vxm_defects_write(const vxm_defects *defects, const vxm_mesh *mesh, const char *path,
+                                     vxm_error *error);
 
 /* ---- Grids ---- */
 
@@ -681,6 +835,66 @@ VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report
 VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
+
+/* ---- Labels: which part, group or material a voxel belongs to ---- */
+
+/** What faces are labelled by. */
+typedef enum vxm_label_by {
+  VXM_LABEL_PART = 0, /**< connected components */
+  VXM_LABEL_GROUP,    /**< groups, or parts named in the file: of a face tag what lies before the first '/' */
+  VXM_LABEL_MATERIAL  /**< materials: what lies behind it */
+} vxm_label_by;
+
+typedef struct vxm_label_options {
+  uint32_t version; /**< 1 */
+  vxm_label_by by;
+  const char *format; /**< of a file: "npy", "nrrd" or "binvox"; NULL = by extension */
+} vxm_label_options;
+
+#define VXM_LABEL_OPTIONS_INIT \
+  { 1, VXM_LABEL_PART, NULL }
+
+typedef struct vxm_label_report {
+  vxm_voxelize_report voxelize; /**< of the set voxels */
+  int64_t labels;               /**< numbered from 1 in the order of their first faces */
+  int64_t contested; /**< voxels that several labels claim: the one with the nearest face has them */
+  int64_t unclaimed; /**< voxels that none claims: they have the label of the nearest face of all */
+} vxm_label_report;
+
+/**
+ * Labels the voxels of a model: 0 where none is set, else the part, group or material that it belongs to. Set
+ * are the voxels that vxm_model_voxelize sets. A label claims the voxels whose centres are inside its own
+ * faces, voxelized alone as the options of the model say with VXM_MODE_SOLID, within their bounds. Of several
+ * labels that claim a voxel, or of all where none does, it has the one with the face nearest to its centre;
+ * among equally near ones, to seven digits, the lowest. The number of threads makes no difference.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_RANGE beyond 65535 labels. After a failure the values are
+ * unspecified
+ */
+VXM_API vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_model *model,
+                                    const vxm_space *space, const vxm_label_options *options,
+                                    vxm_error *error);
+
+/**
+ * As vxm_model_labels, into a file: .npy, .nrrd, or .binvox (version 2), which holds 255 labels at most. The
+ * table of labels goes into a .json beside it. All values are in memory meanwhile. @return as
+ * vxm_model_labels and vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,
+                                          const char *path, const vxm_label_options *options,
+                                          vxm_error *error);
+
+/** Number of labels of the last labels made of the model; 0 if there are none. */
+VXM_API int64_t vxm_model_label_count(const vxm_model *model);
+/** Name of label 1 to vxm_model_label_count: that of the group or material, or "unnamed"; of a part that of
+ * its tag, or of its group, if its faces share one, else "part " and its number. Names may repeat. "" for
+ * others. */
+VXM_API const char *vxm_model_label_name(const vxm_model *model, int64_t label);
+/** Voxels that have a label. */
+VXM_API int64_t vxm_model_label_voxels(const vxm_model *model, int64_t label);
 
 /** Warnings from the last grid or file made of the model, one line each. */
 VXM_API int64_t vxm_model_warning_count(const vxm_model *model);

@@ -4,7 +4,6 @@
 #include "mesh/census.h"
 #include "mesh/soup.h"
 #include "meshio/meshio.h"
-#include "repair/repair.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -220,19 +219,5 @@ vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *err
   vxm_status status = vxm_soup_census(&census, mesh, error);
   if (status == VXM_OK)
     *out = census;
-  return status;
-}
-
-vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
-                           const vxm_repair_options *options, vxm_error *error) {
-  if (out)
-    *out = NULL;
-  if (report)
-    memset(report, 0, sizeof *report);
-  if (!out || !mesh)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: an argument is NULL");
-  vxm_status status = vxm_repair_run(out, report, mesh, options, error);
-  if (status != VXM_OK && report)
-    memset(report, 0, sizeof *report);
   return status;
 }

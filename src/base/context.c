@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/context.h"
 #include "base/context_struct.h"
+#include "base/threads.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -270,7 +271,7 @@ vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t
 }
 
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error) {
-  if (!context->progress || context->progress(phase, fraction, context->payload) == 0)
+  if (!context->progress || vxm_is_worker() || context->progress(phase, fraction, context->payload) == 0)
     return VXM_OK;
   return vxm_fail(error, VXM_ERROR_CANCELLED, "cancelled while %s", phase);
 }

@@ -41,7 +41,8 @@ vxm_status vxm_memory_check(const vxm_context *context, uint64_t bytes, const ch
 vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
                     vxm_error *error);
 
-/** Reports progress from the calling thread; VXM_ERROR_CANCELLED if the callback asks to stop. */
+/** Reports progress; VXM_ERROR_CANCELLED if the callback asks to stop. It is called from the thread that made
+ * the call: in a loop of vxm_parallel the other threads report nothing. */
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error);
 
 #ifdef __cplusplus

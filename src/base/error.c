@@ -35,6 +35,8 @@ const char *vxm_status_name(vxm_status status) {
     return "unavailable";
   case VXM_ERROR_CANCELLED:
     return "cancelled";
+  case VXM_ERROR_UNREACHED:
+    return "unreached";
   }
   return "unknown";
 }

@@ -41,15 +41,9 @@ static vxm_status read_stream(vxm_input *input, int descriptor, vxm_error *error
   return VXM_OK;
 }
 
-vxm_status vxm_input_open(vxm_input *out, vxm_context *context, const char *path, vxm_error *error) {
-  *out = (vxm_input){.name = path, .context = context};
-  if (strcmp(path, "-") == 0) {
-    out->name = "<stdin>";
-    return read_stream(out, STDIN_FILENO, error);
-  }
-  int descriptor = open(path, O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0)
-    return vxm_fail_errno(error, path, "cannot open");
+/** Maps a file, or reads what cannot be mapped. */
+static vxm_status take_in(vxm_input *out, int descriptor, vxm_error *error) {
+  const char *path = out->name;
   struct stat info;
   vxm_status status = VXM_OK;
   if (fstat(descriptor, &info) != 0)
@@ -70,6 +64,19 @@ vxm_status vxm_input_open(vxm_input *out, vxm_context *context, const char *path
     }
   } else
     status = read_stream(out, descriptor, error);
+  return status;
+}
+
+vxm_status vxm_input_open(vxm_input *out, vxm_context *context, const char *path, vxm_error *error) {
+  *out = (vxm_input){.name = path, .context = context};
+  if (strcmp(path, "-") == 0) {
+    out->name = "<stdin>";
+    return read_stream(out, STDIN_FILENO, error);
+  }
+  int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0)
+    return vxm_fail_errno(error, path, "cannot open");
+  vxm_status status = take_in(out, descriptor, error);
   close(descriptor);
   return status;
 }
@@ -90,6 +97,8 @@ struct vxm_output {
   vxm_context *context;
   int descriptor;
   int failure; /**< errno of the first failed write */
+  int target;  /**< where the content goes when it is committed, if it waits in a file without a name; else -1
+                */
   bool is_stdout;
   size_t used;
   char *path;
@@ -112,7 +121,7 @@ static int open_temporary(vxm_output *output, size_t size, mode_t mode) {
   for (int attempt = 0; attempt < 1000; attempt++) {
     snprintf(output->temporary, size, "%.*svoxmend-%ld-%d.tmp", folder, output->path, (long)getpid(),
              attempt);
-    int descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    int descriptor = open(output->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0 && mode != 0 && fchmod(descriptor, mode) != 0) {
       close(descriptor);
       unlink(output->temporary);
@@ -158,6 +167,7 @@ vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *p
   output->context = context;
   output->failure = 0;
   output->used = 0;
+  output->target = -1;
   output->path = NULL;
   output->temporary = NULL;
   output->is_stdout = strcmp(path, "-") == 0;
@@ -189,6 +199,54 @@ static void write_all(vxm_output *output, const char *data, size_t size) {
 static void flush(vxm_output *output) {
   write_all(output, output->buffer, output->used);
   output->used = 0;
+}
+
+vxm_status vxm_output_open_readable(vxm_output **out, vxm_context *context, const char *path,
+                                    vxm_error *error) {
+  vxm_status status = vxm_output_open(out, context, path, error);
+  if (status != VXM_OK || (*out)->temporary)
+    return status;
+  const char *folder = getenv("TMPDIR");
+  int waiting = open(folder && *folder ? folder : "/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (waiting < 0) {
+    vxm_fail_errno(error, path, "cannot write a temporary file for it; set TMPDIR");
+    vxm_output_abort(*out);
+    *out = NULL;
+    return VXM_ERROR_IO;
+  }
+  (*out)->target = (*out)->descriptor;
+  (*out)->descriptor = waiting;
+  return VXM_OK;
+}
+
+vxm_status vxm_output_read_back(vxm_input *out, vxm_output *output, vxm_error *error) {
+  *out = (vxm_input){.name = output->is_stdout ? "<stdout>" : output->path, .context = output->context};
+  flush(output);
+  if (output->failure) {
+    errno = output->failure;
+    return vxm_fail_errno(error, out->name, "cannot write");
+  }
+  return take_in(out, output->descriptor, error);
+}
+
+/** Sends what has waited in a file without a name on to where it was meant to go. */
+static void send_on(vxm_output *output) {
+  int waiting = output->descriptor;
+  off_t at = 0;
+  output->descriptor = output->target;
+  output->target = -1;
+  while (!output->failure) {
+    ssize_t got = pread(waiting, output->buffer, BUFFER, at);
+    if (got < 0 && errno == EINTR)
+      continue;
+    if (got < 0)
+      output->failure = errno;
+    if (got <= 0)
+      break;
+    write_all(output, output->buffer, (size_t)got);
+    at += got;
+  }
+  close(waiting);
 }
 
 void vxm_output_write(vxm_output *output, const void *data, size_t size) {
@@ -232,6 +290,10 @@ bool vxm_output_failed(const vxm_output *output) {
 void vxm_output_abort(vxm_output *output) {
   if (!output)
     return;
+  if (output->target >= 0) {
+    close(output->descriptor);
+    output->descriptor = output->target;
+  }
   if (!output->is_stdout) {
     close(output->descriptor);
     if (output->temporary)
@@ -242,6 +304,8 @@ void vxm_output_abort(vxm_output *output) {
 
 vxm_status vxm_output_commit(vxm_output *output, vxm_error *error) {
   flush(output);
+  if (output->target >= 0)
+    send_on(output);
   if (!output->failure && !output->is_stdout) {
     if (close(output->descriptor) != 0)
       output->failure = errno;

@@ -30,6 +30,13 @@ void vxm_input_close(vxm_input *input);
 typedef struct vxm_output vxm_output;
 
 vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *path, vxm_error *error);
+/** As vxm_output_open, for an output that can be read back; what goes to standard output or a device waits in
+ * a file without a name until it is committed. */
+vxm_status vxm_output_open_readable(vxm_output **out, vxm_context *context, const char *path,
+                                    vxm_error *error);
+/** What was written so far; of an output opened as readable. Closed with vxm_input_close before it is
+ * committed. */
+vxm_status vxm_output_read_back(vxm_input *out, vxm_output *output, vxm_error *error);
 void vxm_output_write(vxm_output *output, const void *data, size_t size);
 void vxm_output_printf(vxm_output *output, const char *format, ...) VXM_PRINTF(2, 3);
 /** A pointer to at least `room` (at most 4096) free bytes of the buffer; say with vxm_output_advance how many

@@ -11,18 +11,19 @@
 #include "config.h"
 
 /* Writes DIRECTORY/SUBFOLDERvoxmend-NAME.so if there is such a file. */
-static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size_t length, const char *subfolder,
-                     const char *name) {
+static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size_t length,
+                     const char *subfolder, const char *name) {
   if (length == 0 || length >= VXM_MODULE_PATH_MAX)
     return false;
-  int written = snprintf(path, VXM_MODULE_PATH_MAX, "%.*s/%svoxmend-%s.so", (int)length, directory, subfolder, name);
+  int written =
+      snprintf(path, VXM_MODULE_PATH_MAX, "%.*s/%svoxmend-%s.so", (int)length, directory, subfolder, name);
   return written > 0 && written < VXM_MODULE_PATH_MAX && access(path, R_OK) == 0;
 }
 
 static bool find_file(char path[VXM_MODULE_PATH_MAX], const char *name) {
   const char *chosen = secure_getenv("VOXMEND_MODULES");
-  if (chosen != NULL && found_in(path, chosen, strlen(chosen), "", name))
-    return true;
+  if (chosen != NULL) /* there and nowhere else */
+    return found_in(path, chosen, strlen(chosen), "", name);
   Dl_info self;
   if (dladdr((void *)(uintptr_t)&vxm_module_open, &self) != 0 && self.dli_fname != NULL) {
     const char *end = strrchr(self.dli_fname, '/');

@@ -53,8 +53,8 @@ static int prepare_signals(posix_spawnattr_t *attributes) {
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
-  int failure = posix_spawnattr_setflags(attributes,
-                                         POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  int failure = posix_spawnattr_setflags(attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK |
+                                                         POSIX_SPAWN_SETSIGDEF);
   if (failure == 0)
     failure = posix_spawnattr_setpgroup(attributes, 0);
   if (failure == 0)
@@ -132,8 +132,7 @@ vxm_status vxm_process_send(vxm_process *process, const void *data, size_t size,
     vxm_status status = wait_for(process, POLLOUT, error);
     if (status != VXM_OK)
       return status;
-    ssize_t sent =
-        send(process->channel, at, size < PIECE ? size : PIECE, MSG_NOSIGNAL | MSG_DONTWAIT);
+    ssize_t sent = send(process->channel, at, size < PIECE ? size : PIECE, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0 && !is_passing(errno))
       return VXM_ERROR_IO;
     if (sent > 0) {

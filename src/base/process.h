@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * A program that does a piece of work in a process of its own, and is talked to over a pair of sockets. Work
- * that may crash, hang or take all memory, such as a foreign library on a damaged file, then ends that process
- * and not the caller's.
+ * that may crash, hang or take all memory, such as a foreign library on a damaged file, then ends that
+ * process and not the caller's.
  */
 #ifndef VXM_BASE_PROCESS_H
 #define VXM_BASE_PROCESS_H

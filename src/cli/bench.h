@@ -32,10 +32,18 @@ typedef struct bench_stage {
   vxm_grid *grid;       /**< of that space; made when a phase asks for it */
   vxm_model *model;     /**< of the present phase */
   bench_team *team;     /**< of the present phase */
+  void *values;         /**< a number per voxel, of the present phase */
   int64_t run;          /**< number of the present run */
   vxm_mesh *made_mesh;  /**< what the run has made: dropped when the clock has stopped */
   vxm_model *made_model;
+  vxm_sparse *made_sparse;
 } bench_stage;
+
+/** What a run has made. */
+typedef struct bench_output {
+  uint64_t bytes;
+  int64_t voxels;
+} bench_output;
 
 typedef struct bench_phase {
   const char *name; /**< NULL ends the table */
@@ -44,6 +52,7 @@ typedef struct bench_phase {
   double most_ms;                          /**< left out where a run would take longer; 0 = never */
   vxm_status (*begin)(bench_stage *stage); /**< makes what a run needs, off the clock; NULL = nothing */
   vxm_status (*run)(bench_stage *stage);   /**< what is measured */
+  void (*tell)(bench_output *out, const bench_stage *stage); /**< after a run; NULL = nothing to tell */
 } bench_phase;
 
 extern const bench_phase bench_phases[];
@@ -51,16 +60,13 @@ extern const char *const bench_engines[];
 
 /** Reads and repairs the mesh. The stage's context is cli->context. */
 vxm_status bench_stage_open(bench_stage *stage);
-/** Sets the resolution; drops the grid of the one before. */
+/** Sets the resolution; drops the grid and the numbers of the one before. */
 vxm_status bench_stage_resize(bench_stage *stage, int64_t resolution);
 /** Drops what a run has made. */
 void bench_stage_drop(bench_stage *stage);
 /** Drops what the phase's begin has made; the grid stays for the next phase. */
 void bench_stage_end_phase(bench_stage *stage);
 void bench_stage_close(bench_stage *stage);
-/** Bytes of a grid of the stage's space. */
-uint64_t bench_grid_bytes(const bench_stage *stage);
-
 /* ---- Filling memory (bench_team.c) ---- */
 
 /** Makes a block of memory as the grids have it, and threads that fill a share of it each. Fills
@@ -78,8 +84,8 @@ typedef struct bench_result {
   int threads;
   double median_ms, least_ms;
   int64_t runs;
-  uint64_t bytes;     /**< of the grid, or of the file for `load`; 0 = does not apply */
-  int64_t voxels;     /**< set voxels */
+  uint64_t bytes;     /**< of what is made, or of the file for `load`; 0 = does not apply */
+  int64_t voxels;     /**< set voxels; those covered in part too, and those inside */
   double of_memset;   /**< median over that of memset of as many bytes by as many threads; 0 = not measured */
   char left_out[560]; /**< why it was not measured, or "" */
 } bench_result;

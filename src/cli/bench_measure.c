@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* ---- Results ---- */
 
@@ -37,10 +36,13 @@ bench_result *bench_add(bench_results *results) {
 
 /* ---- Runs ---- */
 
-static vxm_status run_once(bench_stage *stage, const bench_phase *phase, double *ms) {
+/** @param output NULL = not wanted */
+static vxm_status run_once(bench_stage *stage, const bench_phase *phase, double *ms, bench_output *output) {
   double start = cli_clock();
   vxm_status status = phase->run(stage);
   *ms = cli_clock() - start;
+  if (output && status == VXM_OK && phase->tell)
+    phase->tell(output, stage);
   bench_stage_drop(stage);
   stage->run++;
   if (status == VXM_OK && cli_signal())
@@ -58,7 +60,7 @@ static vxm_status repeat(bench_result *out, bench_stage *stage, const bench_phas
   double total = 0;
   int count = 0;
   while (count < BENCH_RUNS_LEAST || (total < time_ms && count < BENCH_RUNS_MOST)) {
-    vxm_status status = run_once(stage, phase, &times[count]);
+    vxm_status status = run_once(stage, phase, &times[count], NULL);
     if (status != VXM_OK)
       return status;
     total += times[count++];
@@ -70,22 +72,15 @@ static vxm_status repeat(bench_result *out, bench_stage *stage, const bench_phas
   return VXM_OK;
 }
 
-static uint64_t result_bytes(const bench_stage *stage, const bench_phase *phase) {
-  struct stat info;
-  if (phase->per_grid)
-    return bench_grid_bytes(stage);
-  return strcmp(phase->name, "load") == 0 && stat(stage->path, &info) == 0 ? (uint64_t)info.st_size : 0;
-}
-
 static vxm_status measure(bench_result *out, bench_stage *stage, const bench_phase *phase, double time_ms) {
   stage->run = 0;
   double first;
+  bench_output output = {0};
   vxm_status status = phase->begin ? phase->begin(stage) : VXM_OK;
   if (status == VXM_OK)
-    status = run_once(stage, phase, &first);
-  out->bytes = result_bytes(stage, phase);
-  if (status == VXM_OK && stage->model)
-    out->voxels = vxm_grid_count(stage->grid);
+    status = run_once(stage, phase, &first, &output);
+  out->bytes = output.bytes;
+  out->voxels = output.voxels;
   if (status == VXM_OK)
     status = repeat(out, stage, phase, time_ms);
   bench_stage_drop(stage);
@@ -103,7 +98,7 @@ static vxm_status probe(double *ms, bench_stage *stage, const bench_phase *phase
   if (status == VXM_OK && phase->begin)
     status = phase->begin(stage);
   for (int i = 0; i < 2 && status == VXM_OK; i++) /* the first one warms up */
-    status = run_once(stage, phase, ms);
+    status = run_once(stage, phase, ms, NULL);
   bench_stage_drop(stage);
   bench_stage_end_phase(stage);
   return status == VXM_OK ? bench_stage_resize(stage, resolution) : status;

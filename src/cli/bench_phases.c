@@ -3,6 +3,9 @@
 #include "cli/bench.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 
 /* ---- The stage ---- */
 
@@ -24,13 +27,17 @@ vxm_status bench_stage_resize(bench_stage *stage, int64_t resolution) {
 void bench_stage_drop(bench_stage *stage) {
   vxm_mesh_destroy(stage->made_mesh);
   vxm_model_destroy(stage->made_model);
+  vxm_sparse_destroy(stage->made_sparse);
   stage->made_mesh = NULL;
   stage->made_model = NULL;
+  stage->made_sparse = NULL;
 }
 
 void bench_stage_end_phase(bench_stage *stage) {
   vxm_model_destroy(stage->model);
   bench_team_destroy(stage->team);
+  free(stage->values);
+  stage->values = NULL;
   stage->model = NULL;
   stage->team = NULL;
 }
@@ -44,7 +51,7 @@ void bench_stage_close(bench_stage *stage) {
   *stage = (bench_stage){0};
 }
 
-uint64_t bench_grid_bytes(const bench_stage *stage) {
+static uint64_t grid_bytes(const bench_stage *stage) {
   const int64_t *dims = stage->space.dims;
   return (uint64_t)((dims[0] + 63) / 64) * (uint64_t)dims[1] * (uint64_t)dims[2] * sizeof(uint64_t);
 }
@@ -52,7 +59,7 @@ uint64_t bench_grid_bytes(const bench_stage *stage) {
 /* ---- Memory and meshes ---- */
 
 static vxm_status begin_memset(bench_stage *stage) {
-  return bench_team_create(&stage->team, stage->cli, bench_grid_bytes(stage), stage->threads);
+  return bench_team_create(&stage->team, stage->cli, grid_bytes(stage), stage->threads);
 }
 
 static vxm_status run_memset(bench_stage *stage) {
@@ -60,9 +67,19 @@ static vxm_status run_memset(bench_stage *stage) {
   return VXM_OK;
 }
 
+static void tell_memset(bench_output *out, const bench_stage *stage) {
+  out->bytes = grid_bytes(stage);
+}
+
 static vxm_status run_load(bench_stage *stage) {
   return vxm_mesh_read_with(&stage->made_mesh, stage->cli->context, stage->path, &stage->cli->read,
                             &stage->cli->error);
+}
+
+static void tell_load(bench_output *out, const bench_stage *stage) {
+  struct stat info;
+  if (stat(stage->path, &info) == 0)
+    out->bytes = (uint64_t)info.st_size;
 }
 
 static vxm_status run_repair(bench_stage *stage) {
@@ -73,7 +90,7 @@ static vxm_status run_prepare(bench_stage *stage) {
   return vxm_model_create(&stage->made_model, stage->mesh, NULL, &stage->cli->error);
 }
 
-/* ---- Solids ---- */
+/* ---- Solids and surfaces ---- */
 
 /** The model and the grid that the runs of a solid phase need. */
 static vxm_status begin_model(bench_stage *stage, const vxm_voxelize_options *options) {
@@ -130,19 +147,105 @@ static vxm_status run_transform(bench_stage *stage) {
   return vxm_model_voxelize(stage->grid, NULL, stage->model, matrix, &stage->cli->error);
 }
 
+static vxm_status begin_surface(bench_stage *stage, vxm_surface_kind kind) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.mode = VXM_MODE_SURFACE;
+  options.surface = kind;
+  return begin_model(stage, &options);
+}
+
+static vxm_status begin_conservative(bench_stage *stage) {
+  return begin_surface(stage, VXM_SURFACE_CONSERVATIVE);
+}
+
+static vxm_status begin_thin(bench_stage *stage) {
+  return begin_surface(stage, VXM_SURFACE_THIN);
+}
+
+static void tell_grid(bench_output *out, const bench_stage *stage) {
+  *out = (bench_output){grid_bytes(stage), vxm_grid_count(stage->grid)};
+}
+
+/* ---- Octrees and numbers ---- */
+
+static vxm_status begin_sparse(bench_stage *stage) {
+  return vxm_model_create(&stage->model, stage->mesh, NULL, &stage->cli->error);
+}
+
+static vxm_status run_sparse(bench_stage *stage) {
+  return vxm_model_sparse(&stage->made_sparse, NULL, stage->model, &stage->space, NULL, &stage->cli->error);
+}
+
+static void tell_sparse(bench_output *out, const bench_stage *stage) {
+  *out = (bench_output){vxm_sparse_bytes(stage->made_sparse), vxm_sparse_count(stage->made_sparse)};
+}
+
+/** Voxels of the space: below 2^60, as no axis has more than 2^20. */
+static size_t count_values(const bench_stage *stage) {
+  return (size_t)stage->space.dims[0] * (size_t)stage->space.dims[1] * (size_t)stage->space.dims[2];
+}
+
+static vxm_status begin_values(bench_stage *stage) {
+  vxm_error *error = &stage->cli->error;
+  size_t bytes = count_values(stage) * sizeof(float);
+  uint64_t limit = stage->cli->limits.memory_limit;
+  stage->values = limit > 0 && bytes > limit ? NULL : malloc(bytes);
+  if (stage->values) {
+    memset(stage->values, 0, bytes); /* the system hands the memory out now, not within the first run */
+    return vxm_model_create(&stage->model, stage->mesh, NULL, error);
+  }
+  error->code = VXM_ERROR_MEMORY;
+  snprintf(error->text, sizeof error->text, "no memory for %zu bytes of values", bytes);
+  return error->code;
+}
+
+static vxm_status run_coverage(bench_stage *stage) {
+  return vxm_model_coverage(stage->values, NULL, stage->model, &stage->space, NULL, &stage->cli->error);
+}
+
+static void tell_coverage(bench_output *out, const bench_stage *stage) {
+  const float *value = stage->values;
+  out->bytes = count_values(stage) * sizeof *value;
+  for (size_t i = 0; i < count_values(stage); i++)
+    out->voxels += value[i] > 0;
+}
+
+static vxm_status run_distance(bench_stage *stage) {
+  return vxm_model_distance(stage->values, NULL, stage->model, &stage->space, NULL, &stage->cli->error);
+}
+
+static void tell_distance(bench_output *out, const bench_stage *stage) {
+  const float *value = stage->values;
+  out->bytes = count_values(stage) * sizeof *value;
+  for (size_t i = 0; i < count_values(stage); i++)
+    out->voxels += value[i] < 0;
+}
+
 /* ---- The table ---- */
+
+enum { SLOW_MS = 2000 };
 
 const bench_phase bench_phases[] = {
     {"memset", "fill memory of the grid's size: the least that writing it can take", true, 0, begin_memset,
-     run_memset},
-    {"load", "read the file", false, 0, NULL, run_load},
-    {"repair", "repair the mesh", false, 0, NULL, run_repair},
-    {"prepare", "make the model: find parts, cap holes", false, 0, NULL, run_prepare},
-    {"solid_x", "solid by parity along x", true, 0, begin_x, run_solid},
-    {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, 0, begin_default, run_solid},
-    {"solid_majority", "solid by a majority of x, y and z", true, 0, begin_majority, run_solid},
-    {"transform", "solid_vote of the model turned by a small angle", true, 0, begin_default, run_transform},
-    {"winding", "solid by the winding number of every voxel", true, 2000, begin_winding, run_solid},
-    {NULL, NULL, false, 0, NULL, NULL}};
+     run_memset, tell_memset},
+    {"load", "read the file", false, 0, NULL, run_load, tell_load},
+    {"repair", "repair the mesh", false, 0, NULL, run_repair, NULL},
+    {"prepare", "make the model: find parts, cap holes", false, 0, NULL, run_prepare, NULL},
+    {"solid_x", "solid by parity along x", true, 0, begin_x, run_solid, tell_grid},
+    {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, 0, begin_default, run_solid, tell_grid},
+    {"solid_majority", "solid by a majority of x, y and z", true, 0, begin_majority, run_solid, tell_grid},
+    {"transform", "solid_vote of the model turned by a small angle", true, 0, begin_default, run_transform,
+     tell_grid},
+    {"surface_conservative", "every voxel that the surface touches", true, 0, begin_conservative, run_solid,
+     tell_grid},
+    {"surface_thin", "the 6-separating surface", true, 0, begin_thin, run_solid, tell_grid},
+    {"sparse", "solid_vote as an octree", true, 0, begin_sparse, run_sparse, tell_sparse},
+    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, SLOW_MS, begin_values,
+     run_coverage, tell_coverage},
+    {"distance", "signed distance, within 3 voxels of the surface", true, SLOW_MS, begin_values, run_distance,
+     tell_distance},
+    {"winding", "solid by the winding number of every voxel", true, SLOW_MS, begin_winding, run_solid,
+     tell_grid},
+    {NULL, NULL, false, 0, NULL, NULL, NULL}};
 
 const char *const bench_engines[] = {"cpu", NULL};

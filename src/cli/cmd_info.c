@@ -2,14 +2,25 @@
 /** voxmend info: what is wrong with a mesh. */
 #include "cli/cli.h"
 
-static const cli_option known_options[] = {CLI_OPTION_DEFLECTION, {0, NULL, NULL, NULL}};
+enum { KEY_LOCATE = CLI_KEY_COMMAND, KEY_LIST, KEY_INTERSECTIONS };
+
+static const cli_option known_options[] = {
+    {KEY_LOCATE, "locate", "FILE.ply", "show what is wrong, in colour on the mesh; for one mesh"},
+    {KEY_LIST, "list", "N",
+     "list what is wrong in the report, up to N of each kind, with indices and\ncoordinates"},
+    {KEY_INTERSECTIONS, "intersections", NULL,
+     "with --locate and --list: faces that cut through others too (CGAL)"},
+    CLI_OPTION_DEFLECTION,
+    {0, NULL, NULL, NULL}};
 
 static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mesh *mesh,
-                             const vxm_census *census) {
+                             const vxm_census *census, json_t *defects) {
   json_t *object = json_object();
   json_object_set_new(object, "file", cli_json_text(path));
   json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(mesh)));
   cli_census_json(object, census);
+  if (defects)
+    json_object_set_new(object, "defects", defects);
   json_object_set(object, "warnings", cli->warnings);
   return object;
 }
@@ -22,43 +33,62 @@ static void describe(const cli_run *cli, const char *path, const vxm_mesh *mesh,
 }
 
 /** Adds the file's object to `reports` if it can be read. */
-static int examine(cli_run *cli, json_t *reports, const char *path) {
+static int examine(cli_run *cli, json_t *reports, const char *path, const cli_defects *wanted) {
   json_array_clear(cli->warnings);
   vxm_mesh *mesh = NULL;
   vxm_census census;
   if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, path, mesh);
-  int status = CLI_DONE;
-  if (vxm_mesh_census(&census, mesh, &cli->error) != VXM_OK)
+  json_t *defects = NULL;
+  int status = cli_defects_show(cli, &defects, wanted, mesh);
+  if (status == CLI_DONE && vxm_mesh_census(&census, mesh, &cli->error) != VXM_OK)
     status = cli_fail(cli);
-  else {
+  if (status == CLI_DONE) {
     cli_progress_clear(cli);
     if (cli_summary(cli)) {
       if (json_array_size(reports) > 0)
         fputc('\n', cli->text);
       describe(cli, path, mesh, &census);
     }
-    json_array_append_new(reports, describe_json(cli, path, mesh, &census));
+    json_array_append_new(reports, describe_json(cli, path, mesh, &census, defects));
   }
   vxm_mesh_destroy(mesh);
   return status;
 }
 
-static int run(cli_run *cli) {
+static int read_arguments(cli_run *cli, cli_defects *wanted) {
   const char *value;
-  if (cli_next_option(cli, &value) == CLI_STOP)
-    return cli->status;
-  if (cli->argument_count < 1) {
-    cli_usage(cli, "a mesh is missing");
-    return cli->status;
+  int key;
+  while ((key = cli_next_option(cli, &value)) != CLI_END) {
+    if (key == CLI_STOP)
+      return CLI_STOP;
+    if (key == KEY_LOCATE)
+      wanted->locate = value;
+    else if (key == KEY_INTERSECTIONS)
+      wanted->intersections = true;
+    else if (cli_defects_read_list(cli, wanted, value) == CLI_STOP)
+      return CLI_STOP;
   }
+  if (cli->argument_count < 1)
+    return cli_usage(cli, "a mesh is missing");
+  if (wanted->locate && cli->argument_count > 1)
+    return cli_usage(cli, "--locate is for one mesh, not %d", cli->argument_count);
+  if (wanted->intersections && !wanted->locate && !wanted->list)
+    return cli_usage(cli, "--intersections goes with --locate or --list");
+  return cli_defects_check(cli, wanted, NULL);
+}
+
+static int run(cli_run *cli) {
+  cli_defects wanted = {0};
+  if (read_arguments(cli, &wanted) == CLI_STOP)
+    return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
   json_t *reports = json_array();
   int failed = 0;
   for (int i = 0; i < cli->argument_count && !cli_signal(); i++)
-    failed += examine(cli, reports, cli->arguments[i]) != CLI_DONE;
+    failed += examine(cli, reports, cli->arguments[i], &wanted) != CLI_DONE;
   if (failed == cli->argument_count || cli_signal()) {
     json_decref(reports);
     return CLI_FAILED;
@@ -82,7 +112,8 @@ const cli_command cli_command_info = {
         "named, the others are reported, and the exit status is 1.\n\n"
         "Examples:\n"
         "  voxmend info chair.off\n"
-        "  voxmend info --json *.obj > census.json",
+        "  voxmend info --json *.obj > census.json\n"
+        "  voxmend info part.stl --locate wrong.ply",
     .options = known_options,
     .run = run,
 };

@@ -1,14 +1,39 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** voxmend repair: a repaired mesh, and a table of what changed. */
-#include "cli/cli.h"
+/** voxmend repair: a repaired mesh, verified, and a table of what changed. */
+#include "cli/repair.h"
 
-#include <inttypes.h>
 #include <string.h>
 
-enum { KEY_WELD = CLI_KEY_COMMAND, KEY_KEEP, KEY_TURNED, KEY_CLOSE, KEY_ASCII, KEY_FORMAT };
+enum {
+  KEY_LEVEL = CLI_KEY_COMMAND,
+  KEY_BEST_EFFORT,
+  KEY_WELD,
+  KEY_KEEP,
+  KEY_TURNED,
+  KEY_FILL_HOLES,
+  KEY_FILL,
+  KEY_DROP_PARTS,
+  KEY_UNION,
+  KEY_WRAP,
+  KEY_MAX_CHANGE,
+  KEY_LOCATE,
+  KEY_LIST,
+  KEY_INTERSECTIONS,
+  KEY_ASCII,
+  KEY_FORMAT
+};
 
 static const cli_option known_options[] = {
     {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)"},
+    {KEY_LEVEL, "level", "clean|manifold|closed|solid",
+     "how far to go; each includes those before it, and is verified in the\n"
+     "file as it is read back and welded [clean]:\n"
+     "clean     nothing is left to weld, remove or turn\n"
+     "manifold  no edge has more than two faces, no vertex more than one fan\n"
+     "closed    every edge has two faces: holes are filled\n"
+     "solid     no face cuts through another: parts are united"},
+    {KEY_BEST_EFFORT, "best-effort", NULL,
+     "write the mesh, with a warning, although the level is not reached"},
     {KEY_WELD, "weld", "auto|off|EPS",
      "which vertices become one: auto = those at identical positions, and\n"
      "near ones where that closes cracks; off = identical positions only;\n"
@@ -16,9 +41,29 @@ static const cli_option known_options[] = {
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
     {KEY_TURNED, "keep-orientation", NULL,
      "leave faces turned as they are, rather than consistently and outward"},
-    {KEY_CLOSE, "close", NULL,
-     "close holes: triangles from the middle of each rim to its edges. Sheets,\n"
-     "which that would only cover a second time, stay open"},
+    {KEY_FILL_HOLES, "fill-holes", "N|all",
+     "fill holes with at most N edges [none; all from level closed on].\n"
+     "Sheets, which that would only cover a second time, stay open"},
+    {KEY_FILL, "fill", "fan|minimal|smooth",
+     "with what: fan = triangles from the middle of the rim; minimal = the\n"
+     "triangulation of least area (OpenMesh); smooth = small triangles that\n"
+     "continue the surface (CGAL) [fan]"},
+    {KEY_DROP_PARTS, "drop-parts", "faces:N|volume:V",
+     "drop components with fewer than N faces, or closed ones with less volume\n"
+     "than V, in model units cubed; may be given twice, once for each. The\n"
+     "component with the largest area always stays"},
+    {KEY_UNION, "union", NULL, "unite closed parts that cut through each other (CGAL)"},
+    {KEY_WRAP, "wrap", "ALPHA[,OFFSET]",
+     "lay a closed surface around everything: ALPHA is the smallest hole that\n"
+     "it goes into, OFFSET its distance, as fractions of the diagonal, such as\n"
+     "0.02 [OFFSET: ALPHA/30] (CGAL)"},
+    {KEY_MAX_CHANGE, "max-change", "F",
+     "fail if the volume of a closed part, or the bounds of one, change by more\n"
+     "than this fraction, such as 0.01"},
+    {KEY_LOCATE, "locate", "FILE.ply", "show what was wrong, in colour on the mesh as it was read"},
+    {KEY_LIST, "list", "N", "list what was wrong in the report, up to N of each kind"},
+    {KEY_INTERSECTIONS, "intersections", NULL,
+     "with --locate and --list: faces that cut through others too (CGAL)"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
     CLI_OPTION_DEFLECTION,
@@ -26,76 +71,189 @@ static const cli_option known_options[] = {
 
 typedef struct request {
   const char *input, *output, *format;
+  bool fill, best_effort;
   vxm_repair_options repair;
   vxm_mesh_write_options write;
+  cli_defects defects;
 } request;
+
+/* ---- Options ---- */
+
+static int read_fill_holes(cli_run *cli, request *out, const char *value) {
+  if (strcmp(value, "all") == 0)
+    out->repair.fill_holes = -1;
+  else if (!cli_read_integer(&out->repair.fill_holes, value, 3, INT64_MAX))
+    return cli_usage(cli, "--fill-holes '%s' is neither all nor a number of edges from 3 on", value);
+  return CLI_END;
+}
+
+static int read_drop_parts(cli_run *cli, request *out, const char *value) {
+  const char *number = strchr(value, ':');
+  size_t length = number ? (size_t)(number++ - value) : 0;
+  if (length == 5 && strncmp(value, "faces", length) == 0 &&
+      cli_read_integer(&out->repair.drop_faces, number, 1, INT64_MAX))
+    return CLI_END;
+  if (length == 6 && strncmp(value, "volume", length) == 0 &&
+      cli_read_number(&out->repair.drop_volume, number) && out->repair.drop_volume > 0)
+    return CLI_END;
+  return cli_usage(
+      cli, "--drop-parts '%s' is neither faces:N, such as faces:50, nor volume:V, such as volume:0.1", value);
+}
+
+static int read_wrap(cli_run *cli, request *out, const char *value) {
+  double numbers[2] = {0, 0};
+  if (!cli_read_numbers(numbers, strchr(value, ',') ? 2 : 1, value) || !(numbers[0] > 0 && numbers[0] <= 1) ||
+      !(numbers[1] >= 0 && numbers[1] <= 1))
+    return cli_usage(
+        cli, "--wrap '%s' is not a fraction of the diagonal such as 0.02, or two such as 0.02,0.001", value);
+  out->repair.wrap_alpha = numbers[0];
+  out->repair.wrap_offset = numbers[1];
+  return CLI_END;
+}
+
+static int read_choices(cli_run *cli, request *out, int key, const char *value) {
+  static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
+  int choice = cli_read_choice(value, key == KEY_LEVEL ? repair_levels : fills);
+  if (choice < 0)
+    return key == KEY_LEVEL ? cli_usage(cli, "--level '%s' is none of clean, manifold, closed, solid", value)
+                            : cli_usage(cli, "--fill '%s' is none of fan, minimal, smooth", value);
+  if (key == KEY_LEVEL)
+    out->repair.level = (vxm_level)choice;
+  else {
+    out->repair.fill = (vxm_fill)choice;
+    out->fill = true;
+  }
+  return CLI_END;
+}
+
+static int read_option(cli_run *cli, request *out, int key, const char *value) {
+  switch (key) {
+  case 'o':
+    out->output = value;
+    return CLI_END;
+  case KEY_LEVEL:
+  case KEY_FILL:
+    return read_choices(cli, out, key, value);
+  case KEY_BEST_EFFORT:
+    out->best_effort = true;
+    return CLI_END;
+  case KEY_WELD:
+    if (!cli_read_weld(&out->repair, value))
+      return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
+    return CLI_END;
+  case KEY_KEEP:
+    out->repair.keep_duplicates = true;
+    return CLI_END;
+  case KEY_TURNED:
+    out->repair.keep_orientation = true;
+    return CLI_END;
+  case KEY_FILL_HOLES:
+    return read_fill_holes(cli, out, value);
+  case KEY_DROP_PARTS:
+    return read_drop_parts(cli, out, value);
+  case KEY_UNION:
+    out->repair.unite = true;
+    return CLI_END;
+  case KEY_WRAP:
+    return read_wrap(cli, out, value);
+  case KEY_MAX_CHANGE:
+    if (!cli_read_number(&out->repair.max_change, value) || !(out->repair.max_change > 0))
+      return cli_usage(cli, "--max-change '%s' is not a fraction above 0, such as 0.01", value);
+    return CLI_END;
+  case KEY_LOCATE:
+    out->defects.locate = value;
+    return CLI_END;
+  case KEY_LIST:
+    return cli_defects_read_list(cli, &out->defects, value);
+  case KEY_INTERSECTIONS:
+    out->defects.intersections = true;
+    return CLI_END;
+  case KEY_ASCII:
+    out->write.ascii = true;
+    return CLI_END;
+  default:
+    out->format = value;
+    return CLI_END;
+  }
+}
+
+static int check_conflicts(cli_run *cli, const request *given) {
+  const vxm_repair_options *repair = &given->repair;
+  if (repair->keep_orientation && repair->level > VXM_LEVEL_CLEAN)
+    return cli_usage(cli, "--level %s turns faces; leave out --keep-orientation",
+                     repair_levels[repair->level]);
+  if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
+    return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
+  if (repair->wrap_alpha > 0 && (repair->fill_holes != 0 || repair->unite))
+    return cli_usage(cli, "--wrap makes a new surface; leave out --fill-holes and --union");
+  if (given->defects.intersections && !given->defects.list && !given->defects.locate)
+    return cli_usage(cli, "--intersections goes with --locate or --list");
+  return cli_defects_check(cli, &given->defects, given->output);
+}
 
 /** CLI_DONE, or CLI_STOP with cli->status set. */
 static int read_arguments(cli_run *cli, request *out) {
   const char *value;
   int key;
-  while ((key = cli_next_option(cli, &value)) != CLI_END) {
-    switch (key) {
-    case 'o':
-      out->output = value;
-      break;
-    case KEY_WELD:
-      if (!cli_read_weld(&out->repair, value))
-        return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
-      break;
-    case KEY_KEEP:
-      out->repair.keep_duplicates = true;
-      break;
-    case KEY_TURNED:
-      out->repair.keep_orientation = true;
-      break;
-    case KEY_CLOSE:
-      out->repair.close = true;
-      break;
-    case KEY_ASCII:
-      out->write.ascii = true;
-      break;
-    case KEY_FORMAT:
-      out->format = value;
-      break;
-    default:
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
       return CLI_STOP;
-    }
-  }
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
+  if (check_conflicts(cli, out) == CLI_STOP)
+    return CLI_STOP;
   out->write.format = cli_output_format(cli, out->output, out->format, cli_mesh_formats);
-  return out->write.format ? CLI_DONE : CLI_STOP;
+  if (!out->write.format)
+    return CLI_STOP;
+  out->repair.part_changes = true;
+  out->repair.single_precision = strcmp(out->write.format, "stl") == 0;
+  return CLI_DONE;
 }
 
-static json_t *make_report(const cli_run *cli, const request *given, const cli_input *input) {
-  json_t *before = json_object(), *after = json_object(), *report = json_object();
-  cli_census_json(before, &input->repair.before);
-  cli_census_json(after, &input->repair.after);
-  json_object_set_new(report, "input", cli_json_text(given->input));
-  json_object_set_new(report, "output", cli_json_text(given->output));
-  json_object_set_new(report, "passes", cli_passes_json(&input->repair));
-  json_object_set_new(report, "nonorientable_patches", json_integer(input->repair.nonorientable_patches));
-  json_object_set_new(report, "open_parts", json_integer(input->repair.open_parts));
-  json_object_set_new(report, "before", before);
-  json_object_set_new(report, "after", after);
-  json_object_set(report, "warnings", cli->warnings);
-  return report;
+/* ---- Work ---- */
+
+static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
+  vxm_mesh *raw = NULL;
+  if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  cli_warn_mesh(cli, given->input, raw);
+  int status = cli_defects_show(cli, &outcome->defects, &given->defects, raw);
+  if (status == CLI_DONE &&
+      vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &given->repair, &cli->error) != VXM_OK)
+    status = cli_fail(cli);
+  vxm_mesh_destroy(raw);
+  if (status == CLI_DONE && vxm_mesh_face_count(outcome->mesh) == 0)
+    return cli_fail_text(cli, "%s: no face is left after repair", cli_shown(given->input, "<stdin>"));
+  return status;
 }
 
-static void summarize(const cli_run *cli, const vxm_repair_report *repair) {
-  cli_census_print_both(cli, &repair->before, &repair->after);
-  fprintf(cli->text, "\n%-28s %12s\n", "Pass", "Changed");
-  for (int i = 0; i < repair->pass_count; i++)
-    fprintf(cli->text, "  %-26s %12" PRId64 "\n", repair->passes[i].pass, repair->passes[i].count);
-  if (repair->nonorientable_patches > 0)
-    fprintf(cli->text, "\n%" PRId64 " patches cannot be turned consistently (like a Moebius strip)\n",
-            repair->nonorientable_patches);
-  if (repair->open_parts > 0)
-    fprintf(cli->text,
-            "\n%" PRId64 " components stay open: sheets, which closing would only cover a second time\n",
-            repair->open_parts);
+static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
+  vxm_status status = vxm_mesh_write_verified(&outcome->verification, outcome->mesh, given->output,
+                                              &given->write, &given->repair, given->best_effort, &cli->error);
+  if (status == VXM_ERROR_UNREACHED) {
+    cli_fail(cli);
+    if (!cli->quiet)
+      repair_say_remains(cli, stderr, outcome);
+    return CLI_FAILED;
+  }
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  cli->made = given->output;
+  cli->made_format = given->write.format;
+  if (!outcome->verification.reached)
+    cli_warn(cli, "%s: the level %s is not reached; the report lists what remains", given->output,
+             repair_levels[outcome->level]);
+  return CLI_DONE;
+}
+
+static int finish(cli_run *cli, const request *given, repair_outcome *outcome) {
+  if (repair_mesh(cli, given, outcome) != CLI_DONE || write_mesh(cli, given, outcome) != CLI_DONE)
+    return CLI_FAILED;
+  cli_progress_clear(cli);
+  if (cli_summary(cli))
+    repair_summarize(cli, outcome);
+  return cli_finish(cli, repair_report(cli, given->input, given->output, outcome));
 }
 
 static int run(cli_run *cli) {
@@ -104,33 +262,32 @@ static int run(cli_run *cli) {
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
-  cli_input input;
-  if (cli_read_repaired(cli, &input, given.input, &given.repair) != CLI_DONE)
-    return CLI_FAILED;
-  vxm_status status = vxm_mesh_write(input.mesh, given.output, &given.write, &cli->error);
-  vxm_mesh_destroy(input.mesh);
-  if (status != VXM_OK)
-    return cli_fail(cli);
-  cli->made = given.output;
-  cli->made_format = given.write.format;
-  cli_progress_clear(cli);
-  if (cli_summary(cli))
-    summarize(cli, &input.repair);
-  return cli_finish(cli, make_report(cli, &given, &input));
+  repair_outcome outcome = {.level = given.repair.level};
+  int status = finish(cli, &given, &outcome);
+  json_decref(outcome.defects);
+  vxm_mesh_destroy(outcome.mesh);
+  return status;
 }
 
 const cli_command cli_command_repair = {
     .name = "repair",
     .arguments = "MESH -o MESH [OPTION]...",
-    .summary = "mend a mesh, and show it before and after",
+    .summary = "mend a mesh, verify it, and show it before and after",
     .notes =
         "Removes vertices that are not finite with their faces, welds vertices, removes faces without area,\n"
         "repeated faces (of two that lie back to back one stays) and unused vertices, and turns faces\n"
-        "consistently, outward where they enclose something. Repairing the result again changes nothing.\n\n"
+        "consistently, outward where they enclose something; then goes as far as --level says. Repairing "
+        "the\n"
+        "result again changes nothing. Where the level is not reached, the exit status is 1, what remains\n"
+        "is listed, and nothing is written.\n\n"
         "Examples:\n"
         "  voxmend repair scan.obj -o scan.ply\n"
         "  voxmend repair part.stl -o part.off --weld 0.001\n"
-        "  voxmend repair scan.ply -o closed.stl --close\n"
+        "  voxmend repair scan.ply -o closed.stl --level closed\n"
+        "  voxmend repair scan.ply -o main.ply --drop-parts faces:100\n"
+        "  voxmend repair bracket.obj -o bracket.stl --level solid --max-change 0.001\n"
+        "  voxmend repair wreck.obj -o wrapped.ply --wrap 0.02 --level solid\n"
+        "  voxmend repair part.stl -o part.ply --locate wrong.ply --list 10 --json\n"
         "  cat part.stl | voxmend repair - -o - --format obj > part.obj",
     .options = known_options,
     .run = run,

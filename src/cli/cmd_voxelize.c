@@ -21,6 +21,7 @@ enum {
   KEY_SCALAR,
   KEY_DISTANCE,
   KEY_BAND,
+  KEY_LABELS,
   KEY_CONFIDENCE,
   KEY_SPARSE,
   KEY_COORDS,
@@ -74,6 +75,9 @@ static const cli_option known_options[] = {
      "write the distance from each centre to the mesh instead, in model units;\n"
      "signed: negative inside; .npy or .nrrd"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
+    {KEY_LABELS, "labels", "part|group|material",
+     "write which part, group or material each voxel belongs to instead, from 1 on;\n"
+     ".npy, .nrrd or .binvox, with the names in a .json beside it"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
@@ -212,6 +216,8 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     return cli_field_read_distance(cli, &out->field, value);
   case KEY_BAND:
     return cli_field_read_band(cli, &out->field, value);
+  case KEY_LABELS:
+    return cli_field_read_labels(cli, &out->field, value);
   case KEY_CONFIDENCE:
     out->confidence = value;
     out->voxelize.confidence = true;
@@ -270,7 +276,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
   if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
-    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage and --distance");
+    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance and "
+                          "--labels");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
   if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
@@ -279,6 +286,12 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->no_repair && given->repair_options)
     return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
   return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);
+}
+
+/** Whether a format is written slice by slice. */
+static bool is_sliced(const char *format) {
+  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", NULL};
+  return cli_read_choice(format, sliced) >= 0;
 }
 
 static int read_arguments(cli_run *cli, voxelize_request *out) {
@@ -292,10 +305,10 @@ static int read_arguments(cli_run *cli, voxelize_request *out) {
   out->input = cli->arguments[0];
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
-  out->format = cli_output_format(cli, out->output, out->format,
-                                  cli_field_wanted(&out->field) ? cli_field_formats : cli_grid_formats);
-  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", NULL};
-  if (out->format && out->sparse && cli_read_choice(out->format, sliced) < 0)
+  out->format =
+      cli_output_format(cli, out->output, out->format,
+                        cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_grid_formats);
+  if (out->format && out->sparse && !is_sliced(out->format))
     return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
   return out->format ? CLI_END : CLI_STOP;
 }
@@ -332,7 +345,6 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
   if (status == VXM_OK)
     status = vxm_grid_write(grid, given->output, &options, &cli->error);
   results->voxelize_ms += made - start;
-  results->write_ms = cli_clock() - made;
   if (status == VXM_OK) {
     cli->made = given->output;
     cli->made_format = given->format;
@@ -341,6 +353,7 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
     if (status == VXM_OK && given->coords)
       status = vxm_grid_write_coords(grid, given->coords, &cli->error);
   }
+  results->write_ms = cli_clock() - made;
   vxm_grid_destroy(grid);
   if (status != VXM_OK)
     return cli_fail(cli);
@@ -362,13 +375,13 @@ static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_ou
   double made = cli_clock();
   vxm_status status = vxm_sparse_write(sparse, given->output, &options, &cli->error);
   results->voxelize_ms += made - start;
-  results->write_ms = cli_clock() - made;
   if (status == VXM_OK) {
     cli->made = given->output;
     cli->made_format = given->format;
     if (given->coords)
       status = vxm_sparse_write_coords(sparse, given->coords, &cli->error);
   }
+  results->write_ms = cli_clock() - made;
   vxm_sparse_destroy(sparse);
   if (status != VXM_OK)
     return cli_fail(cli);
@@ -388,11 +401,25 @@ static int write_model(cli_run *cli, voxelize_request *given, voxelize_outcome *
   if (status != VXM_OK)
     return cli_fail(cli);
   cli->made = given->output;
-  cli->made_format = given->format;
+  cli->made_format = given->field.labels ? "npy" : given->format; /* labels have a .json beside them too */
   results->write_ms = results->voxelize.write_ms;
   results->voxelize_ms += cli_clock() - start - results->write_ms;
   warn_of_model(cli, given, model);
   return CLI_DONE;
+}
+
+/** From this size on a grid that would have to be held whole is made as an octree. */
+static const uint64_t LARGE_GRID = UINT64_C(1) << 26;
+
+/**
+ * Whether the voxels are made as an octree. A grid that is written range after range of slices needs none,
+ * and is faster without; what has to be held whole is another matter.
+ */
+static bool takes_octree(const voxelize_request *given, const voxelize_outcome *results) {
+  if (given->sparse)
+    return true;
+  return given->coords && !given->confidence && is_sliced(given->format) &&
+         results->estimate.grid_bytes >= LARGE_GRID;
 }
 
 /** Makes the model, tells what it will take, and unless that is all that is wanted writes the grid. */
@@ -408,6 +435,7 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   if (status == VXM_OK && !cli_field_wanted(&given->field))
     status =
         vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
+  results->octree = takes_octree(given, results);
   results->voxelize_ms = cli_clock() - start;
   int result = status == VXM_OK ? CLI_DONE : cli_fail(cli);
   if (result == CLI_DONE && cli_summary(cli)) {
@@ -415,7 +443,7 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
     voxelize_summarize_begin(cli, given, results);
   }
   if (result == CLI_DONE && !given->dry_run)
-    result = given->sparse                        ? write_sparse(cli, given, results, model)
+    result = results->octree                      ? write_sparse(cli, given, results, model)
              : given->confidence || given->coords ? write_whole(cli, given, results, model)
                                                   : write_model(cli, given, results, model);
   vxm_model_destroy(model);
@@ -448,7 +476,9 @@ static int run(cli_run *cli) {
   cli_progress_clear(cli);
   if (cli_summary(cli) && !given.dry_run)
     voxelize_summarize(cli, &given, &results);
-  return cli_finish(cli, voxelize_report(cli, &given, &results));
+  status = cli_finish(cli, voxelize_report(cli, &given, &results));
+  json_decref(given.field.label_table);
+  return status;
 }
 
 const cli_command cli_command_voxelize = {

@@ -19,8 +19,9 @@ typedef struct voxelize_outcome {
   vxm_voxelize_report voxelize;
   vxm_space space;
   vxm_estimate estimate;
+  bool octree; /**< the voxels are made as one: --sparse, or the grid is large */
   struct {
-    int64_t bricks, nodes; /**< none without --sparse */
+    int64_t bricks, nodes; /**< none without an octree */
     uint64_t bytes;
   } sparse;
   double voxelize_ms, write_ms, total_ms;

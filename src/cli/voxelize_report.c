@@ -11,9 +11,11 @@ static json_t *sparse_json(const voxelize_outcome *results) {
   return object;
 }
 
-static json_t *estimate_json(const vxm_estimate *estimate) {
+static json_t *estimate_json(const vxm_estimate *estimate, bool octree) {
   json_t *object = json_object();
   json_object_set_new(object, "grid_bytes", json_integer((json_int_t)estimate->grid_bytes));
+  if (octree) /* its memory follows the surface, which is not known before */
+    return object;
   json_object_set_new(object, "memory_bytes", json_integer((json_int_t)estimate->memory_bytes));
   json_object_set_new(object, "windows", json_integer(estimate->windows));
   return object;
@@ -34,7 +36,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
   if (!cli_field_wanted(&given->field))
-    json_object_set_new(report, "estimate", estimate_json(&results->estimate));
+    json_object_set_new(report, "estimate", estimate_json(&results->estimate, results->octree));
   json_object_set_new(report, "grid", cli_json_space(&results->space));
   if (given->dry_run) {
     json_decref(votes);
@@ -54,7 +56,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   else {
     json_object_set_new(report, "voxels", json_integer(results->voxelize.voxels));
     json_object_set_new(report, "hash", cli_json_hash(results->voxelize.hash));
-    if (given->sparse)
+    if (results->octree)
       json_object_set_new(report, "sparse", sparse_json(results));
   }
   json_object_set_new(report, "time_ms", times);
@@ -111,9 +113,13 @@ static void summarize_estimate(const cli_run *cli, const voxelize_request *given
   double mib = 1 << 20;
   if (!given->dry_run && estimate->grid_bytes < large)
     return;
-  cli_row(cli, "estimate", "%.1f MiB of voxels; up to %.1f MiB of memory, %s",
-          (double)estimate->grid_bytes / mib, (double)estimate->memory_bytes / mib,
-          estimate->windows > 1 ? "slices at a time" : "all at once");
+  if (results->octree)
+    cli_row(cli, "estimate", "%.1f MiB of voxels, made as an octree: its memory follows the surface",
+            (double)estimate->grid_bytes / mib);
+  else
+    cli_row(cli, "estimate", "%.1f MiB of voxels; up to %.1f MiB of memory, %s",
+            (double)estimate->grid_bytes / mib, (double)estimate->memory_bytes / mib,
+            estimate->windows > 1 ? "slices at a time" : "all at once");
   fflush(cli->text);
 }
 
@@ -142,7 +148,7 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
                                   : " (open parts: the voters disagreed there)");
   if (report->escalated > report->contested)
     cli_row(cli, "winding", "%" PRId64 " voxels decided by the winding number", report->escalated);
-  if (given->sparse)
+  if (results->octree)
     cli_row(cli, "octree", "%" PRId64 " bricks, %" PRId64 " nodes, %.1f MiB", results->sparse.bricks,
             results->sparse.nodes, (double)results->sparse.bytes / (1 << 20));
   if (!cli_field_wanted(&given->field))

@@ -40,6 +40,8 @@ void vxm_soup_destroy(vxm_soup *soup) {
   for (size_t t = 0; t < soup->tag_count; t++)
     vxm_free(context, soup->tags[t]);
   vxm_free(context, soup->tags);
+  vxm_free(context, soup->part_changes);
+  vxm_free(context, soup->face_parts);
   vxm_free(context, soup->face_tags);
   vxm_free(context, soup->indices);
   vxm_free(context, soup->offsets);

@@ -32,6 +32,10 @@ struct vxm_mesh {
   size_t vertex_capacity, face_capacity, corner_capacity, tag_capacity; /**< room while a soup grows */
   const char *format;                                                   /**< static text, such as "off" */
   vxm_notes notes;
+  uint32_t
+      *face_parts; /**< face_count: the part of the mesh that was repaired which each comes from, or NULL */
+  vxm_part_change *part_changes; /**< part_count, or NULL */
+  size_t part_count;
 };
 
 /** An empty soup in a context (NULL = a new one). */

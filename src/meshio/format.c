@@ -170,8 +170,40 @@ vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsi
   return VXM_OK;
 }
 
-vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *format, bool ascii,
-                            vxm_error *error) {
+/** Reads what the output holds by now, as a file of the same format. */
+static vxm_status read_back(vxm_soup **out, vxm_output *output, const vxm_soup *soup,
+                            const vxm_format *format, vxm_error *error) {
+  vxm_input input;
+  vxm_status status = vxm_output_read_back(&input, output, error);
+  *out = NULL;
+  if (status != VXM_OK)
+    return status;
+  status = vxm_soup_create(out, soup->context, format->name, error);
+  if (status == VXM_OK)
+    status = format->read(*out, input.data, input.size, input.name, error);
+  if (status != VXM_OK) {
+    vxm_soup_destroy(*out);
+    *out = NULL;
+  }
+  vxm_input_close(&input);
+  return status;
+}
+
+static vxm_status write_and_check(vxm_output *output, const vxm_soup *soup, const vxm_format *format,
+                                  bool ascii, vxm_meshio_check check, void *payload, vxm_error *error) {
+  vxm_soup *back = NULL;
+  vxm_status status = format->write(soup, output, ascii, error);
+  if (status != VXM_OK || vxm_output_failed(output) || !check)
+    return status;
+  status = read_back(&back, output, soup, format, error);
+  if (status == VXM_OK)
+    status = check(back, payload, error);
+  vxm_soup_destroy(back);
+  return status;
+}
+
+vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, const char *format, bool ascii,
+                                    vxm_meshio_check check, void *payload, vxm_error *error) {
   const char *wanted = format ? format : vxm_path_extension(path);
   const vxm_format *row = format ? by_name(format) : by_extension(path);
   if (!row) {
@@ -181,13 +213,19 @@ vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *
                     "%s: mesh format \"%.32s\" is not known; choose off, obj, stl or ply", path, wanted);
   }
   vxm_output *output;
-  vxm_status status = vxm_output_open(&output, soup->context, path, error);
+  vxm_status status =
+      (check ? vxm_output_open_readable : vxm_output_open)(&output, soup->context, path, error);
   if (status != VXM_OK)
     return status;
-  status = row->write(soup, output, ascii, error);
+  status = write_and_check(output, soup, row, ascii, check, payload, error);
   /* A failed output is committed too, for the message that says why. */
   if (status == VXM_OK || vxm_output_failed(output))
     return vxm_output_commit(output, error);
   vxm_output_abort(output);
   return status;
+}
+
+vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *format, bool ascii,
+                            vxm_error *error) {
+  return vxm_meshio_write_checked(soup, path, format, ascii, NULL, NULL, error);
 }

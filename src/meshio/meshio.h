@@ -42,4 +42,33 @@ vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsi
 vxm_status vxm_meshio_write(const vxm_soup *soup, const char *path, const char *format, bool ascii,
                             vxm_error *error);
 
+/** Looks at what was written, as it was read back. A status other than VXM_OK drops the file. */
+typedef vxm_status (*vxm_meshio_check)(const vxm_soup *read_back, void *payload, vxm_error *error);
+
+/** As vxm_meshio_write, but before the file gets its name it is read back and checked. */
+vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, const char *format, bool ascii,
+                                    vxm_meshio_check check, void *payload, vxm_error *error);
+
+typedef struct vxm_colour {
+  uint8_t red, green, blue;
+} vxm_colour;
+
+typedef struct vxm_marked_edge {
+  uint32_t a, b; /**< vertices; the same one twice marks a vertex */
+  vxm_colour colour;
+} vxm_marked_edge;
+
+/** What is shown in colour on a mesh. */
+typedef struct vxm_marks {
+  vxm_colour grey;   /**< of what is not marked */
+  vxm_colour *faces; /**< face_count */
+  vxm_marked_edge *edges;
+  size_t edge_count;
+} vxm_marks;
+
+/** Writes a .ply with coloured faces and edges. @return VXM_OK, VXM_ERROR_ARGUMENT for another extension,
+ * VXM_ERROR_IO */
+vxm_status vxm_meshio_write_marked(const vxm_soup *soup, const vxm_marks *marks, const char *path,
+                                   vxm_error *error);
+
 #endif

@@ -311,8 +311,11 @@ vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error)
   bool done = orient(&o);
   int64_t turned = 0;
   work->nonorientable = 0;
-  for (size_t f = 0; done && f < work->soup->face_count; f++)
+  for (size_t f = 0; done && f < work->soup->face_count; f++) {
     turned += o.turn[f];
+    if (o.turn[f] && work->track && work->soup->face_parts)
+      vxm_track_turn(work->track, work->soup->face_parts[f]);
+  }
   for (size_t i = 0; done && i < o.patch_count; i++)
     work->nonorientable += o.patches[i].conflicts > 0;
   vxm_free(work->context, o.patches);

@@ -9,6 +9,7 @@
  * Repairs a soup into a new one (vxm_mesh_repair).
  *
  * The report lists, in this order:
+ *  - rounding: vertices that were moved to where 32-bit floats are
  *  - nonfinite_vertices: vertices with a NaN or an infinity; they go with their faces
  *  - exact_weld: vertices merged into an earlier one of the same position
  *  - tolerant_weld: vertices merged into an earlier one near by (repair/tolerant_weld.c)
@@ -18,7 +19,11 @@
  *  - duplicate_faces: faces that repeat an earlier one with the same orientation
  *  - opposite_duplicate_faces: faces that repeat an earlier one with the opposite orientation
  *  - orientation: faces that were turned (repair/orient.c)
- *  - closing: faces that were added to close holes (repair/close.c)
+ *  - wrap: faces of the surface that was put around everything (repair/wrap.c)
+ *  - separation: faces that were detached where a vertex or edge had too many (repair/separation.c)
+ *  - closing: faces that were added to close holes (repair/closing.c)
+ *  - union: parts that were united with others (repair/union.c)
+ *  - apart: vertices that were moved apart from others at the same position (repair/apart.c)
  *  - unused_vertices: vertices without a face, apart from those counted above
  * The passes in the middle are run until none of them changes anything, and their counts are sums. A pass
  * that an option leaves out is listed with 0. Repairing the result again gives the same arrays and counts of

@@ -68,6 +68,8 @@ vxm_status vxm_pass_repeated_corners(vxm_work *work, bool *changed, vxm_error *e
       soup->offsets[kept] = end;
       if (soup->face_tags)
         soup->face_tags[kept] = soup->face_tags[f];
+      if (soup->face_parts)
+        soup->face_parts[kept] = soup->face_parts[f];
     }
     kept++;
     end += corners;

@@ -132,9 +132,9 @@ static vxm_status move_to_middle(vxm_work *work, const uint32_t *map, vxm_error 
   for (size_t v = 0; v < vertices; v++) {
     if (work->gone[v] && map[v] == v)
       continue;
-    double share = 1.0 / ++copies[map[v]];
+    double share = 1.0 / ++copies[map[v]], *mean = positions + 3 * (size_t)map[v];
     for (size_t a = 0; a < 3 && map[v] != v; a++)
-      positions[3 * (size_t)map[v] + a] += (positions[3 * v + a] - positions[3 * (size_t)map[v] + a]) * share;
+      mean[a] = vxm_work_round(work, mean[a] + (positions[3 * v + a] - mean[a]) * share);
   }
   vxm_free(work->context, copies);
   return VXM_OK;

@@ -2,6 +2,7 @@
 #include "repair/work.h"
 
 #include "base/threads.h"
+#include "repair/cgal.h"
 
 #include <string.h>
 
@@ -60,6 +61,8 @@ int64_t vxm_work_merge(vxm_work *work, const uint32_t *map) {
       count += !work->gone[v];
       work->gone[v] = 1;
     }
+  if (work->track)
+    vxm_track_merge(work->track, map);
   if (count > 0) {
     merging m = {work->soup, map};
     vxm_parallel(work->context, work->soup->corner_count / CORNERS_PER_SLICE + 1, merge_slice, &m);
@@ -83,6 +86,8 @@ int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove) {
       soup->offsets[kept] = corners;
       if (soup->face_tags)
         soup->face_tags[kept] = soup->face_tags[f];
+      if (soup->face_parts)
+        soup->face_parts[kept] = soup->face_parts[f];
     }
     kept++;
     corners += count;
@@ -94,4 +99,71 @@ int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove) {
   if (removed > 0)
     vxm_work_touch(work);
   return removed;
+}
+
+/* ---- Taking over what a module has made ---- */
+
+/** Gives each face the number that its origin has in `from`, or that of the face before it where it has none.
+ */
+static uint32_t *inherit(vxm_work *work, const uint32_t *from, const vxm_soup *soup, const uint64_t *origin,
+                         vxm_status *status, vxm_error *error) {
+  uint32_t *numbers = vxm_work_scratch(work, soup->face_count, sizeof *numbers, status, error);
+  uint32_t last = 0;
+  for (size_t f = 0; numbers && f < soup->face_count; f++) {
+    if (origin[f] != VXM_NO_FACE)
+      last = from[origin[f]];
+    numbers[f] = last;
+  }
+  return numbers;
+}
+
+static vxm_status take_tags(vxm_work *work, vxm_soup *soup, const uint64_t *origin, vxm_error *error) {
+  const vxm_soup *old = work->soup;
+  vxm_status status = VXM_OK;
+  vxm_free(work->context, soup->face_tags);
+  soup->face_tags = NULL;
+  if (old->face_tags)
+    soup->face_tags = inherit(work, old->face_tags, soup, origin, &status, error);
+  if (status == VXM_OK && old->face_parts)
+    soup->face_parts = inherit(work, old->face_parts, soup, origin, &status, error);
+  for (size_t t = soup->tag_count; soup->face_tags && t < old->tag_count && status == VXM_OK; t++) {
+    uint32_t tag;
+    status = vxm_soup_add_tag(soup, old->tags[t], strlen(old->tags[t]), &tag, error);
+  }
+  return status;
+}
+
+static vxm_status renew_marks(vxm_work *work, size_t vertices, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  vxm_free(work->context, work->gone);
+  vxm_free(work->context, work->used);
+  work->used = NULL;
+  work->gone = vxm_work_scratch(work, vertices, sizeof *work->gone, &status, error);
+  if (work->gone)
+    work->used = vxm_work_scratch(work, vertices, sizeof *work->used, &status, error);
+  return status;
+}
+
+vxm_status vxm_work_adopt(vxm_work *work, vxm_soup *soup, uint64_t *origin, vxm_error *error) {
+  vxm_status status = origin ? take_tags(work, soup, origin, error) : VXM_OK;
+  vxm_free(work->context, origin);
+  if (status != VXM_OK) {
+    vxm_soup_destroy(soup);
+    return status;
+  }
+  for (size_t i = 0; i < 3 * soup->vertex_count; i++)
+    soup->positions[i] = vxm_work_round(work, soup->positions[i]);
+  soup->format = work->soup->format;
+  soup->notes = work->soup->notes;
+  vxm_work_touch(work);
+  vxm_soup_destroy(work->soup);
+  work->soup = soup;
+  status = renew_marks(work, soup->vertex_count, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_extent extent;
+  vxm_work_extent(work, &extent);
+  for (size_t v = 0; v < soup->vertex_count; v++)
+    work->gone[v] = !work->used[v]; /* what the module left over was not unused in the mesh */
+  return VXM_OK;
 }

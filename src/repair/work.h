@@ -5,9 +5,11 @@
 
 #include "mesh/edges.h"
 #include "mesh/frame.h"
+#include "repair/track.h"
 
 typedef enum vxm_pass {
-  VXM_PASS_NONFINITE = 0,
+  VXM_PASS_ROUNDING = 0,
+  VXM_PASS_NONFINITE,
   VXM_PASS_EXACT_WELD,
   VXM_PASS_TOLERANT_WELD,
   VXM_PASS_REPEATED_CORNERS,
@@ -15,7 +17,12 @@ typedef enum vxm_pass {
   VXM_PASS_DUPLICATES,
   VXM_PASS_OPPOSITE_DUPLICATES,
   VXM_PASS_ORIENTATION,
+  VXM_PASS_WRAP,
+  VXM_PASS_SEPARATION,
   VXM_PASS_CLOSING,
+  VXM_PASS_SMALL_PARTS,
+  VXM_PASS_UNION,
+  VXM_PASS_APART,
   VXM_PASS_UNUSED,
   VXM_PASS_COUNT
 } vxm_pass;
@@ -32,11 +39,15 @@ typedef struct vxm_work {
   int64_t counts[VXM_PASS_COUNT];
   int64_t nonorientable; /**< patches, in the last pass of orientation */
   int64_t open_parts;    /**< that the last pass of closing left open */
+  int64_t unfilled;      /**< holes that were to be filled and could not be */
+  int64_t ununited;      /**< parts that were to be united and could not be */
+  vxm_track *track;      /**< what becomes of the parts, or NULL */
 } vxm_work;
 
 /** Runs a pass, adds to the counts and says whether it changed anything. */
 typedef vxm_status (*vxm_pass_fn)(vxm_work *work, bool *changed, vxm_error *error);
 
+vxm_status vxm_pass_rounding(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_nonfinite(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_exact_weld(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_tolerant_weld(vxm_work *work, bool *changed, vxm_error *error);
@@ -44,7 +55,12 @@ vxm_status vxm_pass_repeated_corners(vxm_work *work, bool *changed, vxm_error *e
 vxm_status vxm_pass_zero_area(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_duplicates(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_wrap(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_separation(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_small_parts(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_union(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_apart(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_unused(vxm_work *work, bool *changed, vxm_error *error);
 
 /** A block of scratch, zeroed; on failure NULL, with *status and *error set. */
@@ -59,6 +75,20 @@ int64_t vxm_work_merge(vxm_work *work, const uint32_t *map);
 /** Takes out the faces marked in `remove` (face_count elements), keeping the order of the others. Returns how
  * many. */
 int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove);
+/**
+ * Takes a soup that a module has made in the place of the present one, and frees both it and `origin`.
+ *
+ * @param origin face that each face of `soup` is (a piece of), or VXM_NO_FACE; NULL = none is
+ */
+vxm_status vxm_work_adopt(vxm_work *work, vxm_soup *soup, uint64_t *origin, vxm_error *error);
+/** What a position becomes where positions are to be held by 32-bit floats, else itself. */
+static inline double vxm_work_round(const vxm_work *work, double x) {
+  return work->options.single_precision ? (double)(float)x : x;
+}
+/** Whether the level asks for this much. */
+static inline bool vxm_work_reaches(const vxm_work *work, vxm_level level) {
+  return work->options.level >= level;
+}
 /** Says that faces have changed: what was derived from them is dropped. */
 void vxm_work_touch(vxm_work *work);
 

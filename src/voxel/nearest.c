@@ -1,197 +1,387 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/nearest.h"
-#include "voxel/triangle.h"
+#include "base/bits.h"
+#include "base/rng.h"
+#include "base/threads.h"
+#include "voxel/kernels_x86.h"
+#include "voxel/nearest_tree.h"
 
+#include <math.h>
 #include <string.h>
 
-enum { LEAF = 4, STACK = 64 };
+/** Three times the middle of a triangle, for sorting. */
+typedef struct item {
+  float at[3];
+  uint32_t triangle;
+} item;
 
-/** A box over triangles begin..end-1. The children of a node that is no leaf are `left` and the next. */
-typedef struct node {
-  double low[3], high[3];
-  uint32_t begin, end;
-  uint32_t left; /**< 0 = a leaf */
-} node;
+typedef struct range {
+  size_t begin, end;
+} range;
 
-struct vxm_nearest {
-  vxm_context *context;
-  double (*corners)[3][3]; /**< in the order of the leaves; only while the tree is built */
-  vxm_triangle *triangles; /**< the same, made ready: that costs as much as several distances */
-  node *nodes;
-  size_t node_count;
+enum {
+  RANGES = 64,      /**< that are sorted at the same time, at most */
+  ITEMS_MIN = 4096, /**< in a range that is worth a thread of its own */
+  SLICES = 64       /**< of triangles and packs, for the threads */
 };
 
-/** Leaves have at least (LEAF + 1) / 2 triangles, unless there is one leaf. */
-static size_t nodes_max(size_t count) {
-  return 1 + 2 * (count / ((LEAF + 1) / 2));
+typedef struct builder {
+  vxm_nearest *tree;
+  vxm_nearest_corners_fn corners;
+  const void *payload;
+  item *items;
+  range ranges[RANGES];
+  size_t range_count;
+  double (*boxes)[2][3]; /**< of the packs, then of the families of one level after the other */
+  int level;             /**< whose families are made */
+} builder;
+
+/* ---- Order ---- */
+
+static void make_items(size_t slice, int worker, void *payload) {
+  (void)worker;
+  builder *b = payload;
+  size_t end = vxm_slice_begin(b->tree->count, SLICES, slice + 1);
+  for (size_t i = vxm_slice_begin(b->tree->count, SLICES, slice); i < end; i++) {
+    double corner[3][3];
+    b->corners(corner, i, b->payload);
+    b->items[i].triangle = (uint32_t)i;
+    for (int a = 0; a < 3; a++)
+      b->items[i].at[a] = (float)(corner[0][a] + corner[1][a] + corner[2][a]);
+  }
+}
+
+typedef float four __attribute__((vector_size(16)));
+typedef int32_t four_int __attribute__((vector_size(16)));
+
+static int widest_axis(const item *items, range r) {
+  /* An item as a vector; its number takes part, and is not looked at. */
+  four low, high;
+  memcpy(&low, &items[r.begin], sizeof low);
+  high = low;
+  for (size_t i = r.begin + 1; i < r.end; i++) {
+    four x;
+    memcpy(&x, &items[i], sizeof x);
+    four_int is_below = x<low, is_above = x> high;
+    low = (four)((is_below & (four_int)x) | (~is_below & (four_int)low));
+    high = (four)((is_above & (four_int)x) | (~is_above & (four_int)high));
+  }
+  four size = high - low;
+  int widest = 0;
+  for (int a = 1; a < 3; a++)
+    widest = size[a] > size[widest] ? a : widest;
+  return widest;
+}
+
+/** Moves the items below a bound, or up to it, to the front; returns where the others begin. */
+static size_t move_below(item *items, range r, int axis, float bound, bool with_bound) {
+  size_t end = r.begin;
+  for (size_t i = r.begin; i < r.end; i++) {
+    item at = items[i];
+    bool is_below = with_bound ? at.at[axis] <= bound : at.at[axis] < bound;
+    items[i] = items[end];
+    items[end] = at;
+    end += is_below;
+  }
+  return end;
+}
+
+/**
+ * A bound that as large a part of a range as `part` should lie below, from a sample; a little to the inside,
+ * so that what is sought ends up on the smaller side. The sample is taken by chance, as any regular one could
+ * be led astray by the order of a file.
+ */
+static float guess_bound(const item *items, range r, int axis, double part, vxm_rng *rng) {
+  enum { MOST = 33 };
+  float sample[MOST];
+  int samples = r.end - r.begin > 1024 ? MOST : r.end - r.begin > 64 ? 9 : 3;
+  for (int n = 0; n < samples; n++) {
+    float x = items[r.begin + vxm_rng_below(rng, r.end - r.begin)].at[axis];
+    int place = n;
+    for (; place > 0 && sample[place - 1] > x; place--)
+      sample[place] = sample[place - 1];
+    sample[place] = x;
+  }
+  int inside = samples / 16, rank = (int)(part * (samples - 1) + 0.5);
+  rank += part < 0.5 ? inside : -inside;
+  return sample[rank];
+}
+
+/** Moves the lesser items before place `half`. */
+static void halve(item *items, range r, size_t half, int axis, vxm_rng *rng) {
+  while (r.begin < half && half < r.end) {
+    float bound = guess_bound(items, r, axis, (double)(half - r.begin) / (double)(r.end - r.begin), rng);
+    size_t end = move_below(items, r, axis, bound, false);
+    if (end > half) {
+      r.end = end;
+      continue;
+    }
+    r.begin = end; /* what is left has items at the bound, which may be many */
+    end = move_below(items, r, axis, bound, true);
+    if (end >= half)
+      return;
+    r.begin = end;
+  }
+}
+
+/** Where to cut a range so that what lies before are full families. */
+static size_t half_of(range r) {
+  size_t child = VXM_PACK, count = r.end - r.begin;
+  while (child * VXM_PACK < count)
+    child *= VXM_PACK;
+  return r.begin + (count + child - 1) / child / 2 * child;
+}
+
+static range split(item *items, range *r) {
+  vxm_rng rng = {r->begin};
+  range rest = {half_of(*r), r->end};
+  halve(items, *r, rest.begin, widest_axis(items, *r), &rng);
+  r->end = rest.begin;
+  return rest;
+}
+
+static void sort_range(size_t task, int worker, void *payload) {
+  (void)worker;
+  builder *b = payload;
+  range stack[4 * VXM_NEAREST_LEVELS] = {b->ranges[task]}; /* three cuts in a level */
+  for (size_t depth = 1; depth > 0;) {
+    range *top = &stack[depth - 1];
+    if (top->end - top->begin <= VXM_PACK) {
+      depth--;
+      continue;
+    }
+    range rest = split(b->items, top);
+    stack[depth++] = rest;
+  }
+}
+
+static void split_range(size_t task, int worker, void *payload) {
+  (void)worker;
+  builder *b = payload;
+  range *r = &b->ranges[task];
+  b->ranges[b->range_count + task] =
+      r->end - r->begin > ITEMS_MIN ? split(b->items, r) : (range){r->end, r->end};
+}
+
+static void sort_items(builder *b, int threads) {
+  vxm_context *context = b->tree->context;
+  b->ranges[0] = (range){0, b->tree->count};
+  b->range_count = 1;
+  while (threads > 1 && 2 * b->range_count <= RANGES && b->range_count < 4 * (size_t)threads) {
+    vxm_parallel(context, b->range_count, split_range, b);
+    b->range_count *= 2;
+  }
+  vxm_parallel(context, b->range_count, sort_range, b);
+}
+
+/* ---- Packs ---- */
+
+static void grow(double box[2][3], const double p[3]) {
+  for (int a = 0; a < 3; a++) {
+    box[0][a] = p[a] < box[0][a] ? p[a] : box[0][a];
+    box[1][a] = p[a] > box[1][a] ? p[a] : box[1][a];
+  }
+}
+
+/** A point in the middle of a box, and how far the box reaches from it. */
+static float middle_of(double origin[3], double box[2][3]) {
+  double reach2 = 0;
+  for (int a = 0; a < 3; a++) {
+    origin[a] = (box[0][a] + box[1][a]) / 2;
+    double half = box[1][a] - origin[a];
+    reach2 += half * half;
+  }
+  return (float)(sqrt(reach2) * (1 + 0x1p-20));
+}
+
+static void narrow_triangle(vxm_pack *pack, int lane, const vxm_triangle *t) {
+  for (int a = 0; a < 3; a++) {
+    pack->base[a][lane] = (float)(t->base[a] - pack->origin[a]);
+    for (int b = 0; b < 3; b++)
+      pack->axis[a][b][lane] = (float)t->axis[a][b];
+  }
+  pack->length[lane] = (float)t->length;
+  for (int i = 0; i < 2; i++) {
+    pack->apex[i][lane] = (float)t->apex[i];
+    pack->leg[i][0][lane] = (float)t->leg[i][0];
+    pack->leg[i][1][lane] = (float)t->leg[i][1];
+    pack->leg_length[i][lane] = (float)t->leg_length[i];
+  }
+}
+
+static void make_pack(builder *b, size_t at) {
+  vxm_nearest *tree = b->tree;
+  vxm_pack *pack = &tree->packs[at];
+  size_t first = at * VXM_PACK, end = (size_t)vxm_min((int64_t)(first + VXM_PACK), (int64_t)tree->count);
+  double(*box)[3] = b->boxes[at];
+  for (int a = 0; a < 3; a++) {
+    box[0][a] = INFINITY;
+    box[1][a] = -INFINITY;
+  }
+  for (size_t i = first; i < end; i++) {
+    double corner[3][3];
+    b->corners(corner, b->items[i].triangle, b->payload);
+    vxm_triangle_make(&tree->triangles[i], (const double(*)[3])corner);
+    for (int c = 0; c < 3; c++)
+      grow(box, corner[c]);
+  }
+  pack->reach = middle_of(pack->origin, box);
+  for (int lane = 0; lane < VXM_PACK; lane++) /* the last triangle fills up */
+    narrow_triangle(pack, lane,
+                    &tree->triangles[first + (size_t)lane < end ? first + (size_t)lane : end - 1]);
+}
+
+static void make_packs(size_t slice, int worker, void *payload) {
+  (void)worker;
+  builder *b = payload;
+  size_t end = vxm_slice_begin(b->tree->pack_count, SLICES, slice + 1);
+  for (size_t i = vxm_slice_begin(b->tree->pack_count, SLICES, slice); i < end; i++)
+    make_pack(b, i);
+}
+
+/* ---- Families ---- */
+
+/** Makes family `at` of the level at hand. Its own box takes the place of one that has been seen. */
+static void make_family(builder *b, size_t at) {
+  vxm_nearest *tree = b->tree;
+  vxm_family *family = &tree->families[b->level][at];
+  size_t children = b->level > 0 ? tree->family_count[b->level - 1] : tree->pack_count;
+  size_t first = at * VXM_PACK, count = children - first < VXM_PACK ? children - first : VXM_PACK;
+  double box[2][3];
+  memcpy(box, b->boxes[first], sizeof box);
+  for (size_t c = 1; c < count; c++) {
+    grow(box, b->boxes[first + c][0]);
+    grow(box, b->boxes[first + c][1]);
+  }
+  family->reach = middle_of(family->origin, box);
+  family->valid = (uint32_t)vxm_low_bits((unsigned)count);
+  for (size_t c = 0; c < VXM_PACK; c++)
+    for (int a = 0; a < 3; a++) {
+      double(*child)[3] = b->boxes[first + (c < count ? c : 0)];
+      family->low[a][c] = (float)(child[0][a] - family->origin[a]);
+      family->high[a][c] = (float)(child[1][a] - family->origin[a]);
+    }
+  memcpy(b->boxes[at], box, sizeof box);
+}
+
+static void make_families(builder *b) {
+  vxm_nearest *tree = b->tree;
+  for (b->level = 0; b->level < tree->levels; b->level++)
+    for (size_t i = 0; i < tree->family_count[b->level]; i++)
+      make_family(b, i);
+}
+
+/* ---- The tree ---- */
+
+static size_t families_of(size_t children) {
+  return (children + VXM_PACK - 1) / VXM_PACK;
 }
 
 uint64_t vxm_nearest_bytes(size_t count) {
-  return count * (sizeof(double[3][3]) + sizeof(vxm_triangle)) + nodes_max(count) * sizeof(node) +
-         sizeof(vxm_nearest) + 256;
+  uint64_t packs = families_of(count), families = packs / 7 + VXM_NEAREST_LEVELS;
+  return count * (sizeof(vxm_triangle) + sizeof(item)) + packs * (sizeof(vxm_pack) + 6 * sizeof(double)) +
+         families * sizeof(vxm_family) + sizeof(vxm_nearest) + 4096;
 }
 
-/* ---- Building ---- */
-
-static void bound(node *n, double (*corners)[3][3]) {
-  memcpy(n->low, corners[n->begin][0], sizeof n->low);
-  memcpy(n->high, corners[n->begin][0], sizeof n->high);
-  for (size_t i = n->begin; i < n->end; i++)
-    for (int c = 0; c < 3; c++)
-      for (int a = 0; a < 3; a++) {
-        double x = corners[i][c][a];
-        n->low[a] = x < n->low[a] ? x : n->low[a];
-        n->high[a] = x > n->high[a] ? x : n->high[a];
-      }
-}
-
-static double middle(double (*triangle)[3], int axis) {
-  return triangle[0][axis] + triangle[1][axis] + triangle[2][axis];
-}
-
-static void swap(double (*a)[3], double (*b)[3]) {
-  double kept[3][3];
-  memcpy(kept, a, sizeof kept);
-  memmove(a, b, sizeof kept);
-  memcpy(b, kept, sizeof kept);
-}
-
-/** Cuts begin..end-1, two or more, in two (Hoare): all before the cut are at most those behind, and neither
- * is empty. */
-static size_t cut(double (*corners)[3][3], size_t begin, size_t end, int axis) {
-  double pivot = middle(corners[begin + (end - begin - 1) / 2], axis);
-  for (size_t i = begin, j = end - 1;; i++, j--) {
-    while (middle(corners[i], axis) < pivot)
-      i++;
-    while (middle(corners[j], axis) > pivot)
-      j--;
-    if (i >= j)
-      return j + 1;
-    swap(corners[i], corners[j]);
+/** Fails by its error, whatever could be had being freed with the tree. */
+static void allocate(builder *b, vxm_error *error) {
+  vxm_nearest *tree = b->tree;
+  vxm_context *context = tree->context;
+  tree->pack_count = families_of(tree->count);
+  tree->triangles = vxm_alloc(context, tree->count, sizeof *tree->triangles, error);
+  tree->packs = vxm_alloc(context, tree->pack_count, sizeof *tree->packs, error);
+  for (size_t n = tree->pack_count; tree->levels < 2 || n > 1; tree->levels++) {
+    tree->family_count[tree->levels] = n = families_of(n);
+    tree->families[tree->levels] = vxm_alloc(context, n, sizeof(vxm_family), error);
   }
+  b->items = vxm_alloc(context, tree->count, sizeof *b->items, error);
+  b->boxes = vxm_alloc(context, tree->pack_count, sizeof *b->boxes, error);
 }
 
-/** Moves the triangles with the lesser middles before place `half`. */
-static void halve(double (*corners)[3][3], size_t begin, size_t end, size_t half, int axis) {
-  while (end - begin > 1) {
-    size_t at = cut(corners, begin, end, axis);
-    if (half < at)
-      end = at;
-    else
-      begin = at;
-  }
-}
-
-static void build(vxm_nearest *tree, size_t count) {
-  tree->nodes[0] = (node){.begin = 0, .end = (uint32_t)count};
-  tree->node_count = 1;
-  for (size_t n = 0; n < tree->node_count; n++) {
-    node *at = &tree->nodes[n];
-    bound(at, tree->corners);
-    if (at->end - at->begin <= LEAF)
-      continue;
-    int axis = 0;
-    for (int a = 1; a < 3; a++)
-      axis = at->high[a] - at->low[a] > at->high[axis] - at->low[axis] ? a : axis;
-    uint32_t half = at->begin + (at->end - at->begin) / 2;
-    halve(tree->corners, at->begin, at->end, half, axis);
-    at->left = (uint32_t)tree->node_count;
-    tree->nodes[tree->node_count++] = (node){.begin = at->begin, .end = half};
-    tree->nodes[tree->node_count++] = (node){.begin = half, .end = at->end};
-  }
-}
-
-vxm_status vxm_nearest_create(vxm_nearest **out, vxm_context *context, double (*corners)[3][3], size_t count,
-                              vxm_error *error) {
+vxm_status vxm_nearest_create(vxm_nearest **out, vxm_context *context, size_t count,
+                              vxm_nearest_corners_fn corners, const void *payload, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   vxm_nearest *tree = vxm_calloc(context, 1, sizeof *tree, &local);
+  builder b = {.tree = tree, .corners = corners, .payload = payload};
   *out = NULL;
   if (tree) {
     tree->context = context;
-    tree->corners = corners;
-    tree->triangles = vxm_alloc(context, count, sizeof *tree->triangles, &local);
-    tree->nodes = vxm_alloc(context, nodes_max(count), sizeof *tree->nodes, &local);
-  } else
-    vxm_free(context, corners);
-  if (tree && tree->nodes && tree->triangles) {
-    build(tree, count);
-    for (size_t i = 0; i < count; i++)
-      vxm_triangle_make(&tree->triangles[i], (const double(*)[3])corners[i]);
-    vxm_free(context, tree->corners);
-    tree->corners = NULL;
-    *out = tree;
-    return VXM_OK;
+    tree->count = count;
+    allocate(&b, &local);
   }
-  vxm_nearest_destroy(tree);
-  if (error)
+  if (local.code == VXM_OK) {
+    vxm_parallel(context, SLICES, make_items, &b);
+    sort_items(&b, vxm_context_threads(context));
+    vxm_parallel(context, SLICES, make_packs, &b);
+    make_families(&b);
+    *out = tree;
+  } else if (error)
     *error = local;
+  vxm_free(context, b.boxes);
+  vxm_free(context, b.items);
+  if (local.code != VXM_OK)
+    vxm_nearest_destroy(tree);
   return local.code;
 }
 
 void vxm_nearest_destroy(vxm_nearest *nearest) {
   if (!nearest)
     return;
+  for (int level = 0; level < nearest->levels; level++)
+    vxm_free(nearest->context, nearest->families[level]);
+  vxm_free(nearest->context, nearest->packs);
   vxm_free(nearest->context, nearest->triangles);
-  vxm_free(nearest->context, nearest->nodes);
-  vxm_free(nearest->context, nearest->corners);
   vxm_free(nearest->context, nearest);
 }
 
-/* ---- Asking ---- */
+/* ---- Searches ---- */
 
-static double to_box2(const node *n, const double p[3]) {
-  double sum = 0;
-  for (int a = 0; a < 3; a++) {
-    double below = n->low[a] - p[a], above = p[a] - n->high[a];
-    double off = below > above ? below : above;
-    off = off > 0 ? off : 0;
-    sum += off * off;
-  }
-  return sum;
+uint64_t vxm_nearest_search_bytes(size_t count) {
+  uint64_t narrow = families_of(families_of(count));
+  return (narrow + families_of(narrow)) * sizeof(vxm_some) + sizeof(vxm_search) + 256;
 }
 
-static double to_triangle2(const vxm_nearest *tree, size_t triangle, const double p[3]) {
-  return vxm_triangle_distance2(&tree->triangles[triangle], p);
+vxm_status vxm_search_create(vxm_search **out, const vxm_nearest *nearest, vxm_error *error) {
+  vxm_context *context = nearest->context;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_search *search = vxm_calloc(context, 1, sizeof *search, &local);
+  if (search) {
+    search->tree = nearest;
+    search->wide = vxm_alloc(context, nearest->family_count[1], sizeof *search->wide, &local);
+    search->narrow = vxm_alloc(context, nearest->family_count[0], sizeof *search->narrow, &local);
+  }
+  if (local.code != VXM_OK) {
+    vxm_search_destroy(search);
+    search = NULL;
+    if (error)
+      *error = local;
+  }
+  *out = search;
+  return local.code;
 }
 
-static double search_leaf(const vxm_nearest *tree, const node *leaf, const double p[3], double least,
-                          size_t *triangle) {
-  for (size_t i = leaf->begin; i < leaf->end; i++) {
-    double square = to_triangle2(tree, i, p);
-    if (square < least) {
-      least = square;
-      *triangle = i;
-    }
-  }
-  return least;
+void vxm_search_destroy(vxm_search *search) {
+  if (!search)
+    return;
+  vxm_context *context = search->tree->context;
+  vxm_free(context, search->narrow);
+  vxm_free(context, search->wide);
+  vxm_free(context, search);
 }
 
-double vxm_nearest_distance2(const vxm_nearest *nearest, const double p[3], double least, size_t *triangle) {
-  struct {
-    const node *node;
-    double square;
-  } stack[STACK];
-  int depth = 0;
-  const node *at = nearest->nodes;
-  double square = to_triangle2(nearest, *triangle, p);
-  least = square < least ? square : least;
-  square = to_box2(at, p);
-  for (;;) {
-    if (square < least && at->left) { /* the nearer child first */
-      const node *child = &nearest->nodes[at->left], *other = child + 1;
-      double to_child = to_box2(child, p), to_other = to_box2(other, p);
-      bool is_child = to_child <= to_other;
-      stack[depth].node = is_child ? other : child;
-      stack[depth++].square = is_child ? to_other : to_child;
-      at = is_child ? child : other;
-      square = is_child ? to_child : to_other;
-      continue;
-    }
-    if (square < least)
-      least = search_leaf(nearest, at, p, least, triangle);
-    if (depth == 0)
-      return least;
-    at = stack[--depth].node;
-    square = stack[depth].square;
-  }
+extern vxm_nearest_tile_fn vxm_nearest_tile_plain, vxm_nearest_tile_avx2;
+
+size_t vxm_nearest_tile_all(vxm_nearest_tile_fn *out[2]) {
+  size_t count = 0;
+  out[count++] = vxm_nearest_tile_plain;
+#if VXM_KERNELS_X86
+  if (vxm_runs_avx2())
+    out[count++] = vxm_nearest_tile_avx2;
+#endif
+  return count;
+}
+
+vxm_nearest_tile_fn *vxm_nearest_tile_best(void) {
+  vxm_nearest_tile_fn *all[2];
+  return all[vxm_nearest_tile_all(all) - 1];
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A tree of boxes over triangles, for the nearest one to a point. */
+/** A tree of boxes over triangles, and the distances of blocks of points to the nearest of them. */
 #ifndef VXM_VOXEL_NEAREST_H
 #define VXM_VOXEL_NEAREST_H
 
@@ -7,25 +7,53 @@
 
 typedef struct vxm_nearest vxm_nearest;
 
-/**
- * Makes a tree.
- *
- * @param corners three points of three coordinates for each triangle; the tree takes them over
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT; then the corners are freed too
- */
-vxm_status vxm_nearest_create(vxm_nearest **out, vxm_context *context, double (*corners)[3][3], size_t count,
-                              vxm_error *error);
-/** NULL is allowed. */
-void vxm_nearest_destroy(vxm_nearest *nearest);
-/** Bytes of a tree of so many triangles. */
-uint64_t vxm_nearest_bytes(size_t count);
+/** Takes the corners of a triangle from its owner. */
+typedef void (*vxm_nearest_corners_fn)(double out[3][3], size_t triangle, const void *payload);
 
 /**
- * The squared distance to the nearest triangle, if that is below a bound, else the bound.
+ * Makes a tree over one triangle or more.
  *
- * @param triangle in: one to begin with, such as that of a point nearby; out: the nearest, if there is one
- * below the bound
+ * @param corners called from several threads
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-double vxm_nearest_distance2(const vxm_nearest *nearest, const double p[3], double bound, size_t *triangle);
+vxm_status vxm_nearest_create(vxm_nearest **out, vxm_context *context, size_t count,
+                              vxm_nearest_corners_fn corners, const void *payload, vxm_error *error);
+/** NULL is allowed. */
+void vxm_nearest_destroy(vxm_nearest *nearest);
+/** Bytes that a tree of so many triangles takes at most, and those of a search. */
+uint64_t vxm_nearest_bytes(size_t count);
+uint64_t vxm_nearest_search_bytes(size_t count);
+
+/** What a search works with; each thread has its own. */
+typedef struct vxm_search vxm_search;
+
+vxm_status vxm_search_create(vxm_search **out, const vxm_nearest *nearest, vxm_error *error);
+/** NULL is allowed. */
+void vxm_search_destroy(vxm_search *search);
+
+/** Points along an edge of a tile. */
+enum { VXM_TILE = 16, VXM_TILE_POINTS = VXM_TILE * VXM_TILE * VXM_TILE };
+
+/** Points of a lattice: point (i,j,k) has the coordinates (i + 1/2) * step[0] and so on. */
+typedef struct vxm_tile {
+  int64_t first[3]; /**< the first point of the tile */
+  int count[3];     /**< points along each axis, 1 to VXM_TILE */
+  double step[3];
+  double most; /**< distance from which on it does not matter; INFINITY = it always does */
+} vxm_tile;
+
+/**
+ * Squared distances of the points of a tile to the nearest triangle: the least that vxm_triangle_distance2
+ * gives, in all builds to the bit, where that is below most^2; elsewhere something that is no less than that.
+ *
+ * @param squares VXM_TILE rows of VXM_TILE for each of VXM_TILE slices, of which the points are filled
+ * @return false if no point is nearer than `most`; then there are no squares
+ */
+typedef bool vxm_nearest_tile_fn(vxm_search *search, double *squares, const vxm_tile *tile);
+
+/** The build for this processor. */
+vxm_nearest_tile_fn *vxm_nearest_tile_best(void);
+/** All builds that run on it; returns how many. */
+size_t vxm_nearest_tile_all(vxm_nearest_tile_fn *out[2]);
 
 #endif

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/triangle.h"
-#include "voxel/kernels_x86.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
-
-/** A triangle no higher than this, in voxels, is its edges: what lies inside is nearer to them than that. */
-static const double height_min = 1e-6;
 
 static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -17,70 +14,91 @@ static void cross(double out[3], const double a[3], const double b[3]) {
     out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-static void scale(double a[3], double factor) {
+/** Makes a vector unit, and returns the length it had; it is left as it is if that is 0. */
+static double normalize(double a[3]) {
+  double length = sqrt(dot(a, a));
+  double inverse = length > 0 ? 1 / length : 1;
   for (int i = 0; i < 3; i++)
-    a[i] *= factor;
+    a[i] *= inverse;
+  return length;
+}
+
+/** A unit vector at right angles to a unit vector. */
+static void any_across(double out[3], const double a[3]) {
+  int least = fabs(a[0]) < fabs(a[1]) ? 0 : 1;
+  least = fabs(a[2]) < fabs(a[least]) ? 2 : least;
+  double b[3] = {0, 0, 0};
+  b[least] = 1;
+  cross(out, a, b);
+  normalize(out);
+}
+
+/** A unit vector in the plane, or (1, 0) in place of the zero vector, and the length. */
+static double make_leg(double out[2], double along, double across) {
+  double length = sqrt(along * along + across * across);
+  out[0] = length > 0 ? along / length : 1;
+  out[1] = length > 0 ? across / length : 0;
+  return length;
 }
 
 void vxm_triangle_make(vxm_triangle *out, const double corner[3][3]) {
-  memcpy(out->corner, corner, sizeof out->corner);
-  double length2[3];
+  static const double flat = 1e-15; /* a height of this part of the longest edge is rounding */
+  double edge[3][3], length2[3];
   int longest = 0;
   for (int e = 0; e < 3; e++) {
     for (int a = 0; a < 3; a++)
-      out->edge[e][a] = corner[(e + 1) % 3][a] - corner[e][a];
-    length2[e] = dot(out->edge[e], out->edge[e]);
-    out->inverse[e] = length2[e] > 0 ? 1 / length2[e] : 0;
+      edge[e][a] = corner[(e + 1) % 3][a] - corner[e][a];
+    length2[e] = dot(edge[e], edge[e]);
     longest = length2[e] > length2[longest] ? e : longest;
   }
-  /* The two shorter edges lose the fewest digits. */
-  cross(out->normal, out->edge[(longest + 1) % 3], out->edge[(longest + 2) % 3]);
-  double twice_area = sqrt(dot(out->normal, out->normal));
-  out->has_inside = twice_area > height_min * sqrt(length2[longest]);
-  if (!out->has_inside)
-    return;
-  scale(out->normal, 1 / twice_area);
-  for (int e = 0; e < 3; e++) {
-    cross(out->side[e], out->edge[e], out->normal);
-    scale(out->side[e], sqrt(out->inverse[e]));
+  double *along = out->axis[0], *across = out->axis[1];
+  memcpy(out->base, corner[longest], sizeof out->base);
+  memcpy(along, edge[longest], sizeof edge[longest]);
+  out->length = normalize(along);
+  if (!(out->length > 0))
+    along[0] = 1;
+  out->apex[0] = 0;
+  for (int a = 0; a < 3; a++)
+    across[a] = -edge[(longest + 2) % 3][a];
+  for (int twice = 0; twice < 2; twice++) { /* once leaves a sliver's axis askew */
+    double part = dot(across, along);
+    out->apex[0] += part;
+    for (int a = 0; a < 3; a++)
+      across[a] -= part * along[a];
   }
+  out->apex[1] = normalize(across);
+  if (!(out->apex[1] > flat * out->length)) {
+    out->apex[1] = 0;
+    any_across(across, along);
+  }
+  cross(out->axis[2], along, across);
+  out->leg_length[0] = make_leg(out->leg[0], out->apex[0] - out->length, out->apex[1]);
+  out->leg_length[1] = make_leg(out->leg[1], out->apex[0], out->apex[1]);
 }
 
-double vxm_triangle_distance2(const vxm_triangle *triangle, const double p[3]) {
-  double least = INFINITY, height = 0;
-  bool is_inside = triangle->has_inside;
-  for (int e = 0; e < 3 && is_inside; e++) {
-    double beyond = 0;
-    for (int a = 0; a < 3; a++)
-      beyond += (p[a] - triangle->corner[e][a]) * triangle->side[e][a];
-    is_inside = beyond <= 0;
-  }
-  if (is_inside) {
-    for (int a = 0; a < 3; a++)
-      height += (p[a] - triangle->corner[0][a]) * triangle->normal[a];
-    return height * height;
-  }
-  for (int e = 0; e < 3; e++) {
-    double from[3], square = 0;
-    for (int a = 0; a < 3; a++)
-      from[a] = p[a] - triangle->corner[e][a];
-    double along = dot(from, triangle->edge[e]) * triangle->inverse[e];
-    along = along < 0 ? 0 : along > 1 ? 1 : along;
-    for (int a = 0; a < 3; a++) {
-      double off = from[a] - along * triangle->edge[e][a];
-      square += off * off;
-    }
+static double clamp(double x, double most) {
+  return x < 0 ? 0 : x > most ? most : x;
+}
+
+/* The same operations in the same order as in nearest_body.inc. */
+double vxm_triangle_distance2(const vxm_triangle *t, const double p[3]) {
+  double at[3], off[3], least, square;
+  for (int a = 0; a < 3; a++)
+    off[a] = p[a] - t->base[a];
+  for (int a = 0; a < 3; a++)
+    at[a] = dot(off, t->axis[a]);
+  double height2 = at[2] * at[2];
+  bool is_inside = at[1] > 0;
+  least = at[0] - clamp(at[0], t->length);
+  least = least * least + at[1] * at[1];
+  for (int i = 0; i < 2; i++) {
+    double from = i == 0 ? at[0] - t->length : at[0];
+    double along = from * t->leg[i][0] + at[1] * t->leg[i][1];
+    double beside = at[1] * t->leg[i][0] - from * t->leg[i][1];
+    is_inside = is_inside && (i == 0 ? beside > 0 : beside < 0);
+    along -= clamp(along, t->leg_length[i]);
+    square = along * along + beside * beside;
     least = square < least ? square : least;
   }
-  return least;
-}
-
-extern vxm_triangle_row_fn vxm_triangle_lower_row_plain, vxm_triangle_lower_row_avx2;
-
-vxm_triangle_row_fn *vxm_triangle_row_best(void) {
-#if VXM_KERNELS_X86
-  if (vxm_runs_avx2())
-    return vxm_triangle_lower_row_avx2;
-#endif
-  return vxm_triangle_lower_row_plain;
+  return is_inside ? height2 : least + height2;
 }

@@ -48,6 +48,9 @@ run 'same solid_vote'
 run 'same solid_x --method x'
 run 'same solid_majority --vote majority'
 run 'same winding --method winding'
+run 'same surface_conservative --mode surface'
+run 'same surface_thin --mode surface --surface thin'
+run 'same sparse --sparse'
 run 'a=$(voxels_of transform in/torus.off) b=$(voxels_of solid_vote in/torus.off)
   [ $((10 * (a - b))) -lt "$b" ] && [ $((10 * (b - a))) -lt "$b" ] && echo "a small turn changes little"'
 

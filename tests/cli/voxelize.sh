@@ -73,6 +73,11 @@ for options in '' '--mode both' '--mode surface --surface thin' '--vote majority
   run 'cmp whole.rle octree.rle && cmp whole.npy octree.npy'
 done
 run 'voxmend voxelize in/rocket.off -o octree.rle -r 100 --sparse --json | grep -A 4 sparse'
+# large grids that would be held whole are made as octrees by themselves
+large='in/cube.off -r 4096x4096x40 --bounds=-20,-20,-20,20,20,20'
+run 'voxmend voxelize $large -o large.rle --coords large.npy | grep -E "^(estimate|voxels|octree|hash)"'
+run 'voxmend voxelize $large -o sparse.rle --coords sparse.npy --sparse -q && cmp large.rle sparse.rle && cmp large.npy sparse.npy'
+run 'voxmend voxelize $large -o dense.rle | grep -E "^(voxels|octree|hash)" && cmp large.rle dense.rle'
 run 'voxmend voxelize in/cube.off -o x.obj --sparse'
 run 'voxmend voxelize in/cube.off -o x.npy --sparse --confidence y.npy'
 run 'voxmend voxelize in/cube.off -o x.npy --coords x.npy'

@@ -9,7 +9,7 @@
 
 static vxm_repair_options closing(void) {
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-  options.close = true;
+  options.fill_holes = -1;
   return options;
 }
 

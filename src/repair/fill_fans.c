@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/fill_fans.h"
+
 #include "base/hash.h"
 #include "mesh/components.h"
 #include "mesh/geometry.h"
@@ -16,6 +18,7 @@ typedef struct closing {
   vxm_soup *soup;
   vxm_error error;
   double scale;
+  size_t most; /**< edges of a loop that is closed */
   vxm_loops loops;
   vxm_caps caps;
   uint32_t *label; /**< per face: its component */
@@ -105,6 +108,11 @@ static bool is_sheet(const closing *c, uint32_t component) {
   return !(c->cap_area[component] < SHEET * c->area[component]);
 }
 
+/** Whether a loop is closed. */
+static bool is_wanted(const closing *c, size_t loop) {
+  return c->loops.begin[loop + 1] - c->loops.begin[loop] <= c->most && !is_sheet(c, component_of(c, loop));
+}
+
 /* ---- New vertices: none may have the position of another one, or welding would merge them ---- */
 
 typedef struct place_table {
@@ -139,11 +147,12 @@ static void enter(place_table *places, const vxm_soup *soup, uint32_t vertex) {
 }
 
 /** Moves a taken position a little and a little more toward a vertex, until it is free. */
-static void find_free(const place_table *places, const vxm_soup *soup, double p[3], const double *toward) {
+static void find_free(const vxm_work *work, const place_table *places, const vxm_soup *soup, double p[3],
+                      const double *toward) {
   double from[3] = {p[0], p[1], p[2]}, part = 0x1p-12;
   for (int tries = 0; tries < 64 && places->slots[find_slot(places, soup, p)] != 0; tries++, part *= 1.25)
     for (int a = 0; a < 3; a++)
-      p[a] = from[a] + part * (toward[a] - from[a]);
+      p[a] = vxm_work_round(work, from[a] + part * (toward[a] - from[a]));
 }
 
 /* ---- Adding the caps ---- */
@@ -172,6 +181,12 @@ static bool make_room(closing *c, size_t faces, size_t points) {
       return false;
     soup->face_tags = tags;
   }
+  if (soup->face_parts) {
+    uint32_t *parts = vxm_realloc(soup->context, soup->face_parts, total, sizeof *parts, &c->error);
+    if (!parts)
+      return false;
+    soup->face_parts = parts;
+  }
   return grow_marks(c, soup->vertex_count + points);
 }
 
@@ -182,16 +197,21 @@ static void add_cap(closing *c, place_table *places, size_t loop, size_t first) 
   size_t begin = c->loops.begin[loop], planned = first + c->points[loop], number = soup->vertex_count;
   for (size_t k = c->points[loop]; k < c->points[loop + 1]; k++) {
     double *p = c->caps.points[k];
+    for (int a = 0; a < 3; a++)
+      p[a] = vxm_work_round(c->work, p[a]);
     const double *toward = vxm_position(soup, c->loops.vertex[begin]);
     if (memcmp(toward, p, 3 * sizeof *p) == 0) /* any other place on the rim does as well */
       toward = vxm_position(soup, c->loops.vertex[begin + 1]);
-    find_free(places, soup, p, toward);
+    find_free(c->work, places, soup, p, toward);
     memcpy(soup->positions + 3 * soup->vertex_count, p, 3 * sizeof *p);
     enter(places, soup, (uint32_t)soup->vertex_count++);
   }
   for (size_t t = c->triangles[loop]; t < c->triangles[loop + 1]; t++) {
+    size_t beside = c->edge_face[c->loops.edge[begin]];
     if (soup->face_tags)
-      soup->face_tags[soup->face_count] = soup->face_tags[c->edge_face[c->loops.edge[begin]]];
+      soup->face_tags[soup->face_count] = soup->face_tags[beside];
+    if (soup->face_parts)
+      soup->face_parts[soup->face_count] = soup->face_parts[beside];
     for (int i = 0; i < 3; i++) {
       uint32_t v = c->caps.triangles[t][i];
       soup->indices[soup->corner_count++] = v < first ? v : (uint32_t)(v - planned + number);
@@ -203,7 +223,7 @@ static void add_cap(closing *c, place_table *places, size_t loop, size_t first) 
 static bool add_caps(closing *c) {
   size_t faces = 0, points = 0, first = c->soup->vertex_count, slots = 64;
   for (size_t l = 0; l < c->loops.count; l++)
-    if (!is_sheet(c, component_of(c, l))) {
+    if (is_wanted(c, l)) {
       faces += c->triangles[l + 1] - c->triangles[l];
       points += c->points[l + 1] - c->points[l];
     }
@@ -217,7 +237,7 @@ static bool add_caps(closing *c) {
     for (size_t v = 0; v < first && points > 0; v++)
       enter(&places, c->soup, (uint32_t)v);
     for (size_t l = 0; l < c->loops.count; l++)
-      if (!is_sheet(c, component_of(c, l)))
+      if (is_wanted(c, l))
         add_cap(c, &places, l, first);
     c->work->counts[VXM_PASS_CLOSING] += (int64_t)faces;
   }
@@ -238,7 +258,7 @@ static int64_t count_sheets(closing *c) {
   return count;
 }
 
-static bool close_loops(closing *c) {
+static bool plan(closing *c) {
   c->label = allocate(c, c->soup->face_count, sizeof *c->label);
   if (!c->label || !find_edge_faces(c))
     return false;
@@ -246,7 +266,7 @@ static bool close_loops(closing *c) {
     return false;
   if (vxm_components(c->work->context, c->soup, NULL, c->label, &c->component_count, &c->error) != VXM_OK)
     return false;
-  return plan_caps(c) && add_caps(c);
+  return plan_caps(c);
 }
 
 static void release(closing *c) {
@@ -263,32 +283,42 @@ static void release(closing *c) {
   vxm_free(context, c->label);
 }
 
-/**
- * Closes the loops of odd edges, so that every edge gets an even number of sides. Components that their caps
- * would cover are left open and counted.
- */
-vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error) {
-  *changed = false;
-  work->open_parts = 0;
-  if (!work->options.close)
-    return VXM_OK;
-  vxm_status status = vxm_work_edges(work, error);
-  if (status != VXM_OK || vxm_edges_count_odd(&work->edges) == 0)
-    return status;
+static closing begin(vxm_work *work, size_t most) {
   vxm_extent extent;
   vxm_work_extent(work, &extent);
-  closing c = {
-      .work = work, .soup = work->soup, .error = VXM_ERROR_INIT, .scale = vxm_frame_of(extent.bounds).scale};
+  return (closing){.work = work,
+                   .soup = work->soup,
+                   .error = VXM_ERROR_INIT,
+                   .scale = vxm_frame_of(extent.bounds).scale,
+                   .most = most};
+}
+
+static vxm_status end(closing *c, bool done, vxm_error *error) {
+  release(c);
+  if (!done && error)
+    *error = c->error;
+  return done ? VXM_OK : c->error.code;
+}
+
+vxm_status vxm_fill_fans(vxm_work *work, size_t most, bool *changed, vxm_error *error) {
+  closing c = begin(work, most);
   int64_t before = work->counts[VXM_PASS_CLOSING];
-  bool done = close_loops(&c);
+  bool done = plan(&c) && add_caps(&c);
   if (done) {
     work->open_parts = count_sheets(&c);
     *changed = work->counts[VXM_PASS_CLOSING] > before;
     if (*changed)
       vxm_work_touch(work);
   }
-  release(&c);
-  if (!done && error)
-    *error = c.error;
-  return done ? VXM_OK : c.error.code;
+  return end(&c, done, error);
+}
+
+vxm_status vxm_find_sheets(uint8_t *faces, vxm_work *work, vxm_error *error) {
+  closing c = begin(work, SIZE_MAX);
+  bool done = plan(&c);
+  for (size_t f = 0; done && f < c.soup->face_count; f++)
+    faces[f] = is_sheet(&c, c.label[f]);
+  if (done)
+    work->open_parts = count_sheets(&c);
+  return end(&c, done, error);
 }

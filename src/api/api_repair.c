@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions of repair: they check arguments and call down. */
+#include "repair/defects.h"
+#include "repair/repair.h"
+#include "repair/verify.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
+                           const vxm_repair_options *options, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (report)
+    memset(report, 0, sizeof *report);
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: an argument is NULL");
+  vxm_status status = vxm_repair_run(out, report, mesh, options, error);
+  if (status != VXM_OK && report)
+    memset(report, 0, sizeof *report);
+  return status;
+}
+
+int64_t vxm_mesh_part_change_count(const vxm_mesh *repaired) {
+  return (int64_t)repaired->part_count;
+}
+
+const vxm_part_change *vxm_mesh_part_changes(const vxm_mesh *repaired) {
+  return repaired->part_changes;
+}
+
+static vxm_status check_versions(vxm_repair_options *repair, const vxm_repair_options *given,
+                                 vxm_mesh_write_options *write, const vxm_mesh_write_options *given_write,
+                                 vxm_error *error) {
+  *repair = (vxm_repair_options)VXM_REPAIR_OPTIONS_INIT;
+  *write = (vxm_mesh_write_options)VXM_MESH_WRITE_OPTIONS_INIT;
+  if (given)
+    *repair = *given;
+  if (given_write)
+    *write = *given_write;
+  if (repair->version != 1 || write->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "verify: options version %" PRIu32 " is unknown; use the initializer",
+                    repair->version != 1 ? repair->version : write->version);
+  return VXM_OK;
+}
+
+vxm_status vxm_mesh_verify(vxm_verification *out, const vxm_mesh *mesh, const vxm_repair_options *options,
+                           vxm_error *error) {
+  if (out)
+    memset(out, 0, sizeof *out);
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "verify: an argument is NULL");
+  vxm_repair_options repair;
+  vxm_mesh_write_options write;
+  vxm_status status = check_versions(&repair, options, &write, NULL, error);
+  return status == VXM_OK ? vxm_verify(out, mesh, &repair, error) : status;
+}
+
+vxm_status vxm_mesh_write_verified(vxm_verification *out, const vxm_mesh *mesh, const char *path,
+                                   const vxm_mesh_write_options *write, const vxm_repair_options *repair,
+                                   bool best_effort, vxm_error *error) {
+  if (out)
+    memset(out, 0, sizeof *out);
+  if (!out || !mesh || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
+  vxm_repair_options chosen;
+  vxm_mesh_write_options chosen_write;
+  vxm_status status = check_versions(&chosen, repair, &chosen_write, write, error);
+  if (status != VXM_OK)
+    return status;
+  return vxm_write_verified(out, mesh, path, &chosen_write, &chosen, best_effort, error);
+}
+
+vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int64_t most, bool intersections,
+                            vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !mesh || most < 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "defects: an argument is NULL, or a number of %" PRId64, most);
+  return vxm_defects_find(out, mesh, (size_t)most, intersections, error);
+}
+
+int64_t vxm_defects_count(const vxm_defects *defects) {
+  return (int64_t)defects->count;
+}
+
+const vxm_defect *vxm_defects_items(const vxm_defects *defects) {
+  return defects->items;
+}
+
+const char *vxm_defect_name(vxm_defect_kind kind) {
+  static const char *const names[VXM_DEFECT_KINDS] = {
+      "nonfinite_vertex", "degenerate_face",   "duplicate_face",     "boundary_edge",
+      "nonmanifold_edge", "inconsistent_edge", "nonmanifold_vertex", "self_intersection"};
+  return kind >= 0 && kind < VXM_DEFECT_KINDS ? names[kind] : "";
+}
+
+vxm_status vxm_defects_write(const vxm_defects *defects, const vxm_mesh *mesh, const char *path,
+                             vxm_error *error) {
+  if (!defects || !mesh || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "defects: an argument is NULL");
+  return vxm_defects_paint(defects, mesh, path, error);
+}

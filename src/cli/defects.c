@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What is wrong with a mesh, and where: the options, list and picture of info and repair. */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/** Of each kind in a picture; more would only cover each other. */
+enum { PAINTED_MOST = 1000000 };
+
+int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value) {
+  if (!cli_read_integer(&defects->list, value, 1, 1000000))
+    return cli_usage(cli, "--list '%s' is not a number from 1 to 1000000", value);
+  return CLI_END;
+}
+
+int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *output) {
+  if (!defects->locate)
+    return CLI_END;
+  if (!cli_is_extension(defects->locate, "ply"))
+    return cli_usage(cli, "--locate '%s': the name must end in .ply", defects->locate);
+  if (output && strcmp(defects->locate, output) == 0)
+    return cli_usage(cli, "--locate and -o name the same file");
+  return CLI_END;
+}
+
+static json_t *defect_json(const vxm_defect *defect) {
+  json_t *object = json_object(), *element = json_array();
+  bool pair = defect->element[1] >= 0;
+  bool is_edge = defect->kind >= VXM_DEFECT_BOUNDARY_EDGE && defect->kind <= VXM_DEFECT_INCONSISTENT_EDGE;
+  bool is_vertex =
+      defect->kind == VXM_DEFECT_NONFINITE_VERTEX || defect->kind == VXM_DEFECT_NONMANIFOLD_VERTEX;
+  json_array_append_new(element, json_integer(defect->element[0]));
+  if (pair)
+    json_array_append_new(element, json_integer(defect->element[1]));
+  json_object_set_new(object, "kind", json_string(vxm_defect_name(defect->kind)));
+  json_object_set_new(object, is_edge || is_vertex ? "vertices" : "faces", element);
+  json_t *places = json_array();
+  for (int i = 0; i < (pair ? 2 : 1); i++)
+    json_array_append_new(places, cli_json_numbers(defect->at + 3 * i, 3));
+  json_object_set_new(object, "at", places);
+  return object;
+}
+
+static json_t *list_json(const vxm_defects *found, int64_t most) {
+  json_t *list = json_array();
+  int64_t of_kind[VXM_DEFECT_KINDS] = {0};
+  const vxm_defect *items = vxm_defects_items(found);
+  for (int64_t i = 0; i < vxm_defects_count(found); i++)
+    if (of_kind[items[i].kind]++ < most)
+      json_array_append_new(list, defect_json(&items[i]));
+  return list;
+}
+
+int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, const vxm_mesh *mesh) {
+  vxm_defects *found = NULL;
+  *list = NULL;
+  if (!wanted->list && !wanted->locate)
+    return CLI_DONE;
+  int64_t most = wanted->locate ? PAINTED_MOST : wanted->list;
+  vxm_status status = vxm_mesh_defects(&found, mesh, most, wanted->intersections, &cli->error);
+  if (status == VXM_OK && wanted->locate)
+    status = vxm_defects_write(found, mesh, wanted->locate, &cli->error);
+  if (status == VXM_OK && wanted->list)
+    *list = list_json(found, wanted->list);
+  vxm_defects_destroy(found);
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What came of 'voxmend repair', and how that is told. */
+#ifndef VXM_CLI_REPAIR_H
+#define VXM_CLI_REPAIR_H
+
+#include "cli/cli.h"
+
+typedef struct repair_outcome {
+  vxm_mesh *mesh;
+  vxm_repair_report repair;
+  vxm_level level;
+  vxm_verification verification;
+  json_t *defects; /**< of the mesh as it was read; NULL = not wanted */
+} repair_outcome;
+
+/** Names of the levels, as on the command line. */
+extern const char *const repair_levels[];
+
+/** The report for --json and --report. */
+json_t *repair_report(const cli_run *cli, const char *input, const char *output,
+                      const repair_outcome *outcome);
+void repair_summarize(const cli_run *cli, const repair_outcome *outcome);
+/** A line for each thing that keeps the level from being reached. */
+void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome);
+
+#endif

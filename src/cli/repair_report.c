@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What a repair did, as a table and as JSON. */
+#include "cli/repair.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+const char *const repair_levels[] = {"clean", "manifold", "closed", "solid", NULL};
+
+/* ---- JSON ---- */
+
+static json_t *state_json(const vxm_part_state *state) {
+  json_t *object = json_object();
+  json_object_set_new(object, "faces", json_integer(state->faces));
+  json_object_set_new(object, "boundary_edges", json_integer(state->boundary_edges));
+  json_object_set_new(object, "nonmanifold_edges", json_integer(state->nonmanifold_edges));
+  json_object_set_new(object, "inconsistent_edges", json_integer(state->inconsistent_edges));
+  json_object_set_new(object, "holes", json_integer(state->holes));
+  json_object_set_new(object, "closed", json_boolean(state->closed));
+  json_object_set_new(object, "area", cli_json_number(state->area));
+  json_object_set_new(object, "volume", cli_json_number(state->volume));
+  json_object_set_new(object, "bounds", cli_json_numbers(state->bounds, 6));
+  return object;
+}
+
+static json_t *parts_json(const vxm_mesh *mesh) {
+  json_t *parts = json_array();
+  const vxm_part_change *changes = vxm_mesh_part_changes(mesh);
+  for (int64_t i = 0; i < vxm_mesh_part_change_count(mesh); i++) {
+    json_t *part = json_object();
+    if (changes[i].tag != UINT32_MAX)
+      json_object_set_new(part, "name", cli_json_text(vxm_mesh_tag_name(mesh, changes[i].tag)));
+    json_object_set_new(part, "before", state_json(&changes[i].before));
+    json_object_set_new(part, "after", state_json(&changes[i].after));
+    json_object_set_new(part, "flipped", json_integer(changes[i].flipped));
+    json_object_set_new(part, "moved", cli_json_number(changes[i].moved));
+    json_array_append_new(parts, part);
+  }
+  return parts;
+}
+
+static json_t *verification_json(const repair_outcome *outcome) {
+  json_t *object = json_object(), *remains = json_array();
+  const vxm_verification *found = &outcome->verification;
+  for (int i = 0; i < found->count; i++) {
+    json_t *one = json_object();
+    json_object_set_new(one, "what", json_string(found->remains[i].what));
+    json_object_set_new(one, "count", json_integer(found->remains[i].count));
+    if (found->remains[i].element >= 0) {
+      json_object_set_new(one, "first", json_integer(found->remains[i].element));
+      json_object_set_new(one, "at", cli_json_numbers(found->remains[i].at, 3));
+    }
+    json_array_append_new(remains, one);
+  }
+  json_object_set_new(object, "level", json_string(repair_levels[outcome->level]));
+  json_object_set_new(object, "reached", json_boolean(found->reached));
+  json_object_set_new(object, "remains", remains);
+  return object;
+}
+
+json_t *repair_report(const cli_run *cli, const char *input, const char *output,
+                      const repair_outcome *outcome) {
+  const vxm_repair_report *repair = &outcome->repair;
+  json_t *before = json_object(), *after = json_object(), *report = json_object();
+  cli_census_json(before, &repair->before);
+  cli_census_json(after, &repair->after);
+  json_object_set_new(report, "input", cli_json_text(input));
+  json_object_set_new(report, "output", cli_json_text(output));
+  json_object_set_new(report, "verified", verification_json(outcome));
+  json_object_set_new(report, "passes", cli_passes_json(repair));
+  json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));
+  json_object_set_new(report, "open_parts", json_integer(repair->open_parts));
+  json_object_set_new(report, "unfilled_holes", json_integer(repair->unfilled_holes));
+  json_object_set_new(report, "ununited_parts", json_integer(repair->ununited_parts));
+  json_object_set_new(report, "moved", cli_json_number(repair->moved));
+  json_object_set_new(report, "before", before);
+  json_object_set_new(report, "after", after);
+  json_object_set_new(report, "parts", parts_json(outcome->mesh));
+  if (outcome->defects)
+    json_object_set(report, "defects", outcome->defects);
+  json_object_set(report, "warnings", cli->warnings);
+  return report;
+}
+
+/* ---- Text ---- */
+
+enum { PARTS_SHOWN = 12 };
+
+static void part_row(const cli_run *cli, const vxm_mesh *mesh, int64_t i) {
+  const vxm_part_change *part = &vxm_mesh_part_changes(mesh)[i];
+  const vxm_part_state *a = &part->before, *b = &part->after;
+  char number[24];
+  snprintf(number, sizeof number, "%" PRId64, i);
+  const char *name = part->tag != UINT32_MAX ? vxm_mesh_tag_name(mesh, part->tag) : number;
+  fprintf(cli->text,
+          "  %-14.14s %8" PRId64 " %8" PRId64 " %7" PRId64 " %7" PRId64 " %7" PRId64 " %7" PRId64
+          " %11.5g %11.5g %9.2g\n",
+          name, a->faces, b->faces, a->boundary_edges, b->boundary_edges, a->nonmanifold_edges,
+          b->nonmanifold_edges, a->volume, b->volume, part->moved);
+}
+
+static void summarize_parts(const cli_run *cli, const vxm_mesh *mesh) {
+  int64_t count = vxm_mesh_part_change_count(mesh);
+  if (count < 2)
+    return;
+  fprintf(cli->text, "\n%-16s %17s %15s %15s %23s %9s\n", "Part", "faces", "open edges", "non-manifold",
+          "volume", "moved");
+  for (int64_t i = 0; i < count && i < PARTS_SHOWN; i++)
+    part_row(cli, mesh, i);
+  if (count > PARTS_SHOWN)
+    fprintf(cli->text, "  and %" PRId64 " more; --json lists all\n", count - PARTS_SHOWN);
+}
+
+static void summarize_passes(const cli_run *cli, const vxm_repair_report *repair) {
+  bool any = false;
+  for (int i = 0; i < repair->pass_count; i++) {
+    if (repair->passes[i].count == 0 && !cli->verbose)
+      continue;
+    if (!any)
+      fprintf(cli->text, "\n%-28s %12s\n", "Pass", "Changed");
+    fprintf(cli->text, "  %-26s %12" PRId64 "\n", repair->passes[i].pass, repair->passes[i].count);
+    any = true;
+  }
+  if (!any)
+    fprintf(cli->text, "\nThere was nothing to repair\n");
+}
+
+static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair) {
+  if (repair->nonorientable_patches > 0)
+    fprintf(cli->text, "\n%" PRId64 " patches cannot be turned consistently (like a Moebius strip)\n",
+            repair->nonorientable_patches);
+  if (repair->open_parts > 0)
+    fprintf(cli->text,
+            "\n%" PRId64 " components stay open: sheets, which closing would only cover a second time\n",
+            repair->open_parts);
+  if (repair->unfilled_holes > 0)
+    fprintf(cli->text, "\n%" PRId64 " holes could not be filled\n", repair->unfilled_holes);
+  if (repair->ununited_parts > 0)
+    fprintf(cli->text, "\n%" PRId64 " parts cut through themselves and were not united\n",
+            repair->ununited_parts);
+}
+
+void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome) {
+  (void)cli;
+  const vxm_verification *found = &outcome->verification;
+  for (int i = 0; i < found->count; i++) {
+    fprintf(stream, "  %-26s %12" PRId64, found->remains[i].what, found->remains[i].count);
+    if (found->remains[i].element >= 0)
+      fprintf(stream, "  the first at %.6g %.6g %.6g", found->remains[i].at[0], found->remains[i].at[1],
+              found->remains[i].at[2]);
+    fputc('\n', stream);
+  }
+}
+
+void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
+  cli_census_print_both(cli, &outcome->repair.before, &outcome->repair.after);
+  summarize_passes(cli, &outcome->repair);
+  summarize_parts(cli, outcome->mesh);
+  summarize_rest(cli, &outcome->repair);
+  fprintf(cli->text, "\nLevel %s: %s\n", repair_levels[outcome->level],
+          outcome->verification.reached ? "verified in the file as it was read back" : "not reached");
+  repair_say_remains(cli, cli->text, outcome);
+}

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/part_state.h"
+
+#include "mesh/edges.h"
+#include "mesh/frame.h"
+#include "mesh/geometry.h"
+#include "mesh/loops.h"
+#include "mesh/weld.h"
+
+#include <math.h>
+#include <string.h>
+
+static const uint32_t NO_PART = UINT32_MAX;
+
+typedef struct measuring {
+  vxm_part_state *states;
+  vxm_soup view; /**< the soup with welded corners */
+  const uint32_t *face_parts;
+  uint32_t *vertex_part;
+  vxm_error error;
+} measuring;
+
+static void add_face(measuring *m, const vxm_frame *frame, size_t face) {
+  vxm_part_state *state = &m->states[m->face_parts[face]];
+  size_t count;
+  const uint32_t *corner = vxm_face(&m->view, face, &count);
+  bool first = state->faces++ == 0;
+  for (size_t i = 0; i < count; i++) {
+    const double *p = vxm_position(&m->view, corner[i]);
+    if (m->vertex_part[corner[i]] > m->face_parts[face])
+      m->vertex_part[corner[i]] = m->face_parts[face];
+    if (!vxm_is_finite(p))
+      continue;
+    for (int a = 0; a < 3; a++) {
+      state->bounds[a] = first ? p[a] : fmin(state->bounds[a], p[a]);
+      state->bounds[a + 3] = first ? p[a] : fmax(state->bounds[a + 3], p[a]);
+    }
+    first = false;
+  }
+  if (count == 0)
+    return;
+  vxm_vec3 normal = vxm_polygon_area(m->view.positions, corner, count, frame->scale);
+  vxm_vec3 from = vxm_vec3_between(vxm_position(&m->view, corner[0]), frame->centre, frame->scale);
+  double area = vxm_vec3_length(normal), volume = vxm_polygon_cone(from, normal);
+  if (isfinite(area) && isfinite(volume)) {
+    state->area += area / frame->scale / frame->scale;
+    state->volume += volume / frame->scale / frame->scale / frame->scale;
+  }
+}
+
+static void add_edges(measuring *m, const vxm_edges *edges) {
+  for (size_t e = 0; e < edges->count; e++) {
+    const vxm_edge *edge = &edges->edges[e];
+    vxm_part_state *state = &m->states[m->vertex_part[edge->a]];
+    state->boundary_edges += edge->count == 1;
+    state->nonmanifold_edges += edge->count > 2;
+    state->inconsistent_edges += edge->count == 2 && edge->forward != 1;
+    state->closed = state->closed && !vxm_edge_is_odd(edge);
+  }
+}
+
+static vxm_status measure(measuring *m, size_t part_count) {
+  uint8_t *used = vxm_alloc(m->view.context, m->view.vertex_count, 1, &m->error);
+  if (!used)
+    return m->error.code;
+  vxm_extent extent;
+  vxm_extent_of(&extent, m->view.context, &m->view, used);
+  vxm_free(m->view.context, used);
+  vxm_frame frame = vxm_frame_of(extent.bounds);
+  memset(m->states, 0, part_count * sizeof *m->states);
+  for (size_t v = 0; v < m->view.vertex_count; v++)
+    m->vertex_part[v] = NO_PART;
+  for (size_t f = 0; f < m->view.face_count; f++)
+    add_face(m, &frame, f);
+  for (size_t i = 0; i < part_count; i++)
+    m->states[i].closed = m->states[i].faces > 0;
+  vxm_edges edges;
+  vxm_loops loops;
+  vxm_status status = vxm_edges_build(&edges, m->view.context, &m->view, NULL, &m->error);
+  if (status != VXM_OK)
+    return status;
+  add_edges(m, &edges);
+  status = vxm_loops_build(&loops, &m->view, &edges, &m->error);
+  for (size_t l = 0; status == VXM_OK && l < loops.count; l++)
+    m->states[m->vertex_part[loops.vertex[loops.begin[l]]]].holes++;
+  vxm_loops_destroy(&loops);
+  vxm_edges_destroy(&edges);
+  return status;
+}
+
+vxm_status vxm_part_states(vxm_part_state *out, size_t part_count, const vxm_soup *soup,
+                           const uint32_t *face_parts, vxm_error *error) {
+  measuring m = {.states = out, .view = *soup, .face_parts = face_parts, .error = VXM_ERROR_INIT};
+  vxm_context *context = soup->context;
+  uint32_t *map = vxm_alloc(context, soup->vertex_count, sizeof *map, &m.error);
+  m.view.indices = map ? vxm_alloc(context, soup->corner_count, sizeof *m.view.indices, &m.error) : NULL;
+  m.vertex_part =
+      m.view.indices ? vxm_alloc(context, soup->vertex_count, sizeof *m.vertex_part, &m.error) : NULL;
+  vxm_status status = m.vertex_part
+                          ? vxm_weld_exact(context, soup->positions, soup->vertex_count, map, NULL, &m.error)
+                          : m.error.code;
+  if (status == VXM_OK) {
+    for (size_t c = 0; c < soup->corner_count; c++)
+      m.view.indices[c] = map[soup->indices[c]];
+    status = measure(&m, part_count);
+  }
+  vxm_free(context, m.vertex_part);
+  vxm_free(context, m.view.indices);
+  vxm_free(context, map);
+  if (status != VXM_OK && error)
+    *error = m.error;
+  return status;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What becomes of every part of a mesh under repair. */
+#ifndef VXM_REPAIR_TRACK_H
+#define VXM_REPAIR_TRACK_H
+
+#include "mesh/soup.h"
+
+/**
+ * Parts are the connected components of the mesh that came in, after welding. Faces know theirs by
+ * soup->face_parts, which passes carry along; vertices are followed while they keep their numbers.
+ */
+typedef struct vxm_track vxm_track;
+
+/** @param copy gets its face_parts @param in has to stay */
+vxm_status vxm_track_create(vxm_track **out, vxm_soup *copy, const vxm_soup *in, vxm_error *error);
+void vxm_track_destroy(vxm_track *track);
+/** Vertices merge: map[v] takes the place of v. */
+void vxm_track_merge(vxm_track *track, const uint32_t *map);
+/** A face of a part is turned. */
+void vxm_track_turn(vxm_track *track, uint32_t part);
+/** Sees how far vertices were moved so far, while they still have their numbers. */
+void vxm_track_settle(vxm_track *track, const vxm_soup *soup);
+/** A vertex of a part is moved after that. */
+void vxm_track_move(vxm_track *track, uint32_t part, double distance);
+/**
+ * Fills soup->part_changes.
+ *
+ * @param max_change see vxm_repair_options; 0 = any
+ * @return VXM_OK; VXM_ERROR_UNREACHED if a part changed by more; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+vxm_status vxm_track_finish(vxm_track *track, vxm_soup *soup, double max_change, vxm_error *error);
+
+#endif

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/verify.h"
+
+#include "meshio/meshio.h"
+#include "repair/cgal.h"
+#include "repair/fans.h"
+#include "repair/repair.h"
+#include "repair/sides.h"
+
+#include <string.h>
+
+typedef struct verifying {
+  vxm_verification *out;
+  const vxm_repair_options *options;
+  vxm_work work; /**< the mesh after welding and another repair */
+} verifying;
+
+static void add(verifying *v, const char *what, int64_t count, int64_t element, const double *at) {
+  if (count == 0)
+    return;
+  v->out->reached = false;
+  if (v->out->count == VXM_REMAINS_MAX)
+    return;
+  int i = v->out->count++;
+  v->out->remains[i].what = what;
+  v->out->remains[i].count = count;
+  v->out->remains[i].element = element;
+  for (int a = 0; a < 3; a++)
+    v->out->remains[i].at[a] = at ? at[a] : 0;
+}
+
+/* ---- Clean ---- */
+
+/** A pass that would do something to the mesh again. Those that only number vertices anew do not count: a
+ * file may hold a vertex for every corner. */
+static void add_passes(verifying *v, const vxm_repair_report *report) {
+  static const char *const numbering[] = {"exact_weld", "unused_vertices", NULL};
+  for (int i = 0; i < report->pass_count; i++) {
+    bool skip = false;
+    for (int n = 0; numbering[n]; n++)
+      skip = skip || strcmp(report->passes[i].pass, numbering[n]) == 0;
+    if (!skip)
+      add(v, report->passes[i].pass, report->passes[i].count, -1, NULL);
+  }
+}
+
+static vxm_status verify_clean(verifying *v, const vxm_soup *soup, vxm_error *error) {
+  vxm_repair_options again = *v->options;
+  again.level = VXM_LEVEL_CLEAN;
+  again.fill_holes = 0;
+  again.unite = again.part_changes = false;
+  again.wrap_alpha = again.wrap_offset = again.max_change = 0;
+  if (v->options->level > VXM_LEVEL_CLEAN || v->options->wrap_alpha > 0)
+    again.weld = VXM_WELD_OFF; /* what was cut apart lies near and is not to be joined again */
+  vxm_repair_report report;
+  vxm_status status = vxm_repair_run(&v->work.soup, &report, soup, &again, error);
+  if (status == VXM_OK)
+    add_passes(v, &report);
+  return status;
+}
+
+/* ---- Edges and vertices ---- */
+
+/** The first face that has a side along the edge. */
+static int64_t face_at(const size_t *sides, const vxm_soup *soup, size_t edge) {
+  for (size_t f = 0; f < soup->face_count; f++)
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
+      if (sides[c] == edge)
+        return (int64_t)f;
+  return -1;
+}
+
+static void add_edges(verifying *v, const char *what, int64_t count, size_t first, const size_t *sides) {
+  if (count == 0)
+    return;
+  const vxm_soup *soup = v->work.soup;
+  const vxm_edge *edge = &v->work.edges.edges[first];
+  const double *a = vxm_position(soup, edge->a), *b = vxm_position(soup, edge->b);
+  double middle[3] = {a[0] / 2 + b[0] / 2, a[1] / 2 + b[1] / 2, a[2] / 2 + b[2] / 2};
+  add(v, what, count, face_at(sides, soup, first), middle);
+}
+
+static void verify_edges(verifying *v, const size_t *sides) {
+  enum { BOUNDARY, NONMANIFOLD, INCONSISTENT, KINDS };
+  static const char *const names[KINDS] = {"boundary_edges", "nonmanifold_edges", "inconsistent_edges"};
+  int64_t counts[KINDS] = {0};
+  size_t first[KINDS] = {0};
+  for (size_t e = v->work.edges.count; e-- > 0;) {
+    const vxm_edge *edge = &v->work.edges.edges[e];
+    int kind = edge->count == 1                         ? BOUNDARY
+               : edge->count > 2                        ? NONMANIFOLD
+               : edge->count == 2 && edge->forward != 1 ? INCONSISTENT
+                                                        : KINDS;
+    if (kind == KINDS)
+      continue;
+    counts[kind]++;
+    first[kind] = e;
+  }
+  for (int kind = 0; kind < KINDS; kind++)
+    if (kind != BOUNDARY || v->options->level >= VXM_LEVEL_CLOSED)
+      add_edges(v, names[kind], counts[kind], first[kind], sides);
+}
+
+static vxm_status verify_vertices(verifying *v, vxm_error *error) {
+  uint8_t *fans;
+  vxm_status status = vxm_fans_count(&fans, &v->work, error);
+  if (status != VXM_OK)
+    return status;
+  int64_t count = 0, first = -1;
+  for (size_t i = v->work.soup->vertex_count; i-- > 0;)
+    if (fans[i] > 1) {
+      count++;
+      first = (int64_t)i;
+    }
+  add(v, "nonmanifold_vertices", count, first, first < 0 ? NULL : vxm_position(v->work.soup, (size_t)first));
+  vxm_free(v->work.context, fans);
+  return VXM_OK;
+}
+
+static vxm_status verify_manifold(verifying *v, vxm_error *error) {
+  size_t *sides;
+  vxm_status status = vxm_sides_find(&sides, &v->work, error);
+  if (status != VXM_OK)
+    return status;
+  verify_edges(v, sides);
+  vxm_free(v->work.context, sides);
+  return verify_vertices(v, error);
+}
+
+/* ---- Solid ---- */
+
+enum { PAIRS_MOST = 1000 };
+
+static vxm_status verify_solid(verifying *v, vxm_error *error) {
+  const vxm_cgal *cgal;
+  vxm_face_pairs pairs = {0};
+  vxm_status status = vxm_cgal_open(&cgal, "looking for self-intersections", error);
+  if (status == VXM_OK)
+    status = cgal->self_intersections(&pairs, v->work.soup, PAIRS_MOST, error);
+  if (status == VXM_OK && pairs.count > 0) {
+    size_t count;
+    const uint32_t *corner = vxm_face(v->work.soup, pairs.pairs[0].first, &count);
+    add(v, "self_intersections", (int64_t)pairs.count, (int64_t)pairs.pairs[0].first,
+        vxm_position(v->work.soup, corner[0]));
+  }
+  vxm_free(v->work.context, pairs.pairs);
+  return status;
+}
+
+vxm_status vxm_verify(vxm_verification *out, const vxm_soup *soup, const vxm_repair_options *options,
+                      vxm_error *error) {
+  *out = (vxm_verification){.reached = true};
+  verifying v = {.out = out, .options = options, .work = {.context = soup->context, .options = *options}};
+  vxm_status status = verify_clean(&v, soup, error);
+  if (status == VXM_OK && v.work.soup->face_count == 0)
+    add(&v, "no_faces", 1, -1, NULL);
+  else if (status == VXM_OK && options->level >= VXM_LEVEL_MANIFOLD)
+    status = verify_manifold(&v, error);
+  if (status == VXM_OK && v.work.soup->face_count > 0 && options->level >= VXM_LEVEL_SOLID)
+    status = verify_solid(&v, error);
+  vxm_work_touch(&v.work);
+  vxm_soup_destroy(v.work.soup);
+  if (status != VXM_OK)
+    *out = (vxm_verification){0};
+  return status;
+}
+
+/* ---- Writing ---- */
+
+typedef struct checking {
+  vxm_verification *out;
+  const vxm_repair_options *repair;
+  const char *path;
+  bool best_effort;
+} checking;
+
+static const char *level_name(vxm_level level) {
+  static const char *const names[] = {"clean", "manifold", "closed", "solid"};
+  return names[level];
+}
+
+static vxm_status check(const vxm_soup *read_back, void *payload, vxm_error *error) {
+  const checking *c = payload;
+  vxm_status status = vxm_verify(c->out, read_back, c->repair, error);
+  if (status != VXM_OK || c->out->reached || c->best_effort)
+    return status;
+  return vxm_fail(error, VXM_ERROR_UNREACHED,
+                  "%s: the level %s is not reached: %lld %s remain%s; choose a lower level, fill, drop or "
+                  "wrap what is in "
+                  "the way, or take the best effort",
+                  strcmp(c->path, "-") == 0 ? "<stdout>" : c->path, level_name(c->repair->level),
+                  (long long)c->out->remains[0].count, c->out->remains[0].what,
+                  c->out->count > 1 ? ", and more" : "");
+}
+
+vxm_status vxm_write_verified(vxm_verification *out, const vxm_soup *soup, const char *path,
+                              const vxm_mesh_write_options *write, const vxm_repair_options *repair,
+                              bool best_effort, vxm_error *error) {
+  *out = (vxm_verification){0};
+  checking payload = {out, repair, path, best_effort};
+  return vxm_meshio_write_checked(soup, path, write->format, write->ascii, check, &payload, error);
+}

@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every mesh at every level of repair: reached, or refused with a reason; judged by a reader of its own.
+
+levels.py VOXMEND MESHES [--levels LIST] [--folders LIST] [--markdown FILE] [--timeout SECONDS]
+
+For each mesh and level:
+ - the program ends in time, with status 0, or with 1, what remains in the way, and no file;
+ - what it says it has reached is found in the file by the reader below: after welding, each edge has two faces (closed), or
+   at most two (manifold), of opposite direction;
+ - no part with an area is lost;
+ - parts that were closed and manifold keep their volume to 1e-6 (clean, manifold);
+ - the solid of the repaired mesh is that of the original, IoU at least 0.999 at 64^3, where that was closed and not repaired
+   beyond recognition: no duplicate faces.
+The last line counts. With --markdown the table between the marks of FILE is written anew.
+"""
+import argparse, collections, json, os, re, subprocess, sys, tempfile
+
+import numpy
+
+LEVELS = ["clean", "manifold", "closed", "solid"]
+
+
+def read_ply(path):
+    """Vertices and faces of a binary .ply as voxmend writes it."""
+    with open(path, "rb") as file:
+        header = b""
+        while not header.endswith(b"end_header\n"):
+            header += file.readline()
+        data = file.read()
+    text = header.decode()
+    vertices = int(re.search(r"element vertex (\d+)", text).group(1))
+    faces = int(re.search(r"element face (\d+)", text).group(1))
+    lists = numpy.dtype("<u4" if "list uint" in text else "u1")
+    points = numpy.frombuffer(data, "<f8", 3 * vertices).reshape(-1, 3)
+    at, found = 24 * vertices, []
+    for _ in range(faces):
+        count = int(numpy.frombuffer(data, lists, 1, at)[0])
+        at += lists.itemsize
+        found.append(numpy.frombuffer(data, "<u4", count, at).tolist())
+        at += 4 * count
+    assert at == len(data), "bytes are left over"
+    return points, found
+
+
+def judge(path):
+    """What a program that welds finds in a file: closed, manifold edges."""
+    points, faces = read_ply(path)
+    places = {}
+    name = [places.setdefault((p + 0.0).tobytes(), len(places)) for p in points]
+    sides = collections.Counter()
+    for face in faces:
+        for a, b in zip(face, face[1:] + face[:1]):
+            sides[name[a], name[b]] += 1
+    manifold = all(n == 1 for n in sides.values())
+    closed = manifold and all((b, a) in sides for a, b in sides)
+    return closed, manifold
+
+
+def lost_parts(parts):
+    return sum(p["before"]["area"] > 0 and p["after"]["faces"] == 0 for p in parts)
+
+
+def volume_change(parts):
+    """Largest relative change among the parts that had nothing to repair."""
+    most = 0.0
+    for p in parts:
+        b, a = p["before"], p["after"]
+        if b["closed"] and not p["flipped"] and not b["nonmanifold_edges"] and not b["inconsistent_edges"] and b["volume"]:
+            most = max(most, abs(abs(a["volume"]) - abs(b["volume"])) / abs(b["volume"]))
+    return most
+
+
+class Trial:
+    def __init__(self, program, mesh, work, timeout):
+        self.program, self.mesh, self.work, self.timeout = program, mesh, work, timeout
+
+    def run(self, *arguments):
+        return subprocess.run([self.program, *arguments], capture_output=True, text=True, timeout=self.timeout)
+
+    def iou(self, repaired):
+        """Of the solids of the original and the repaired mesh; both are repaired again before, by the defaults."""
+        first, second = (os.path.join(self.work, name) for name in ("a.rle", "b.rle"))
+        self.run("voxelize", self.mesh, "-o", first, "-r", "64", "-q").check_returncode()
+        self.run("voxelize", repaired, "-o", second, "--like", first, "-q").check_returncode()
+        return json.loads(self.run("compare", first, second, "--json").stdout)["iou"]
+
+    def level(self, level):
+        """(outcome, complaint or None)"""
+        path = os.path.join(self.work, "out.ply")
+        if os.path.exists(path):
+            os.remove(path)
+        try:
+            done = self.run("repair", self.mesh, "-o", path, "--level", level, "--json")
+        except subprocess.TimeoutExpired:
+            return "no end", "took over %d s" % self.timeout
+        if done.returncode == 1 and not os.path.exists(path) and done.stderr.startswith("voxmend: "):
+            missing = re.search(r"is not reached: (.*?) remain", done.stderr)
+            if missing or "module" in done.stderr:
+                return missing.group(1).replace("_", " ") if missing else "module", None
+        if done.returncode != 0:
+            return "failed", "status %d: %s" % (done.returncode, done.stderr.strip())
+        return self.check(level, path, json.loads(done.stdout))
+
+    def check(self, level, path, report):
+        closed, manifold = judge(path)
+        if level in ("closed", "solid") and not closed:
+            return "wrong", "is said to be closed, and is not"
+        if level == "manifold" and not manifold:
+            return "wrong", "is said to be manifold, and is not"
+        lost = lost_parts(report["parts"])
+        if lost and level != "solid":
+            return "lost", "%d parts are lost" % lost
+        if level in ("clean", "manifold") and volume_change(report["parts"]) > 1e-6:
+            return "volume", "a volume changes by %g" % volume_change(report["parts"])
+        before = report["before"]
+        if before["watertight"] and not before["inconsistent_edges"] and self.iou(path) < 0.999:
+            return "iou", "its solid is another one: IoU %g" % self.iou(path)
+        return "yes", None
+
+
+def write_table(path, rows, levels):
+    lines = ["| mesh | parts | " + " | ".join(levels) + " |", "|---|---|" + "---|" * len(levels)]
+    for name, parts, outcomes in rows:
+        lines.append("| %s | %s | %s |" % (name, parts, " | ".join(outcomes)))
+    with open(path) as file:
+        text = file.read()
+    begin, end = "<!-- levels begin -->\n", "<!-- levels end -->"
+    head, tail = text.split(begin)[0], text.split(end)[1]
+    with open(path, "w") as file:
+        file.write(head + begin + "\n".join(lines) + "\n" + end + tail)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("meshes")
+    parser.add_argument("--levels", default=",".join(LEVELS))
+    parser.add_argument("--folders", default="messy,cad,modelnet")
+    parser.add_argument("--markdown")
+    parser.add_argument("--timeout", type=float, default=60)
+    given = parser.parse_args()
+    levels, rows, failures, tried = given.levels.split(","), [], 0, 0
+    reached = collections.Counter()
+    for folder in given.folders.split(","):
+        for name in sorted(os.listdir(os.path.join(given.meshes, folder))):
+            if name.endswith((".mtl", ".tsv", ".md")):
+                continue
+            short = folder + "/" + name
+            with tempfile.TemporaryDirectory() as work:
+                trial = Trial(given.program, os.path.join(given.meshes, short), work, given.timeout)
+                info = trial.run("info", trial.mesh, "--json")
+                parts = json.loads(info.stdout)["components"] if info.returncode == 0 else "?"
+                outcomes = []
+                for level in levels:
+                    outcome, complaint = trial.level(level)
+                    tried += 1
+                    reached[level] += outcome == "yes"
+                    outcomes.append(outcome)
+                    if complaint:
+                        failures += 1
+                        print("FAILED: %s, %s: %s" % (short, level, complaint), flush=True)
+                rows.append((short, parts, outcomes))
+    if given.markdown:
+        write_table(given.markdown, rows, levels)
+    print(", ".join("%s: %d of %d" % (level, reached[level], len(rows)) for level in levels))
+    print("%d tried, %d failures" % (tried, failures))
+    return failures > 0 or tried == 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,10 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# The shared meshes at the levels of repair, judged by a reader of its own (levels.py); skipped where the meshes or numpy
+# are missing. LEVELS and FOLDERS choose others, MARKDOWN=doc/repair.md writes the table anew.
+set -eu
+meshes=$SRCDIR/../shared/meshes
+[ -d "$meshes" ] || exit 77
+python3 -c 'import numpy' 2>/dev/null || exit 77
+exec python3 "$SRCDIR/tests/repair/levels.py" "$VOXMEND" "$meshes" --levels "${LEVELS:-clean,manifold,closed}" \
+  --folders "${FOLDERS:-messy,cad,modelnet}" ${MARKDOWN:+--markdown "$MARKDOWN"}
