@@ -3,11 +3,10 @@
 
 #include <math.h>
 
-/** Voxels along an edge of the blocks to begin with: a part of a word. */
-enum { BLOCK = 16 };
-
-/** More than nearness and its distance round, in sides of a voxel, whatever the distance. */
-static const double slack = 1e-3, relative_slack = 1e-6;
+enum {
+  BLOCK = 16, /**< voxels along an edge of the blocks to begin with: a part of a word */
+  CROWD = 256 /**< triangles looked at for a block; where there are more it is cut first */
+};
 
 typedef struct job {
   const vxm_award *award;
@@ -16,22 +15,22 @@ typedef struct job {
 } job;
 
 /** Voxels of the box, in the order of the layout. */
-typedef struct block {
+typedef struct voxels {
   int64_t at[3], size[3];
-} block;
+} voxels;
 
 /* ---- Voxels ---- */
 
-/** The asked voxels of a row of a block, as bits. A block lies within a word. */
-static uint64_t row_bits(const job *j, const block *b, int64_t middle, int64_t slow) {
-  uint64_t word = vxm_window_row(j->award->asked, middle, slow)[b->at[0] / 64];
-  return word >> (b->at[0] % 64) & vxm_low_bits((unsigned)b->size[0]);
+/** The asked voxels of a row, as bits. They lie within a word. */
+static uint64_t row_bits(const job *j, const voxels *v, int64_t middle, int64_t slow) {
+  uint64_t word = vxm_window_row(j->award->asked, middle, slow)[v->at[0] / 64];
+  return word >> (v->at[0] % 64) & vxm_low_bits((unsigned)v->size[0]);
 }
 
-static bool is_asked(const job *j, const block *b) {
-  for (int64_t slow = b->at[2]; slow < b->at[2] + b->size[2]; slow++)
-    for (int64_t middle = b->at[1]; middle < b->at[1] + b->size[1]; middle++)
-      if (row_bits(j, b, middle, slow))
+static bool is_asked(const job *j, const voxels *v) {
+  for (int64_t slow = v->at[2]; slow < v->at[2] + v->size[2]; slow++)
+    for (int64_t middle = v->at[1]; middle < v->at[1] + v->size[1]; middle++)
+      if (row_bits(j, v, middle, slow))
         return true;
   return false;
 }
@@ -42,13 +41,13 @@ static uint16_t *value_at(const job *j, int64_t fast, int64_t middle, int64_t sl
          (size_t)(fast + first[0]);
 }
 
-/** Calls for each asked voxel of a block; whether all calls returned true. Inlined with the function. */
+/** Calls for each asked voxel; whether all calls returned true. Inlined with the function. */
 static inline __attribute__((always_inline)) bool
-each_value(const job *j, const block *b, bool (*visit)(uint16_t *value, void *payload), void *payload) {
-  for (int64_t slow = b->at[2]; slow < b->at[2] + b->size[2]; slow++)
-    for (int64_t middle = b->at[1]; middle < b->at[1] + b->size[1]; middle++) {
-      uint16_t *values = value_at(j, b->at[0], middle, slow);
-      for (uint64_t bits = row_bits(j, b, middle, slow); bits; bits &= bits - 1)
+each_value(const job *j, const voxels *v, bool (*visit)(uint16_t *value, void *payload), void *payload) {
+  for (int64_t slow = v->at[2]; slow < v->at[2] + v->size[2]; slow++)
+    for (int64_t middle = v->at[1]; middle < v->at[1] + v->size[1]; middle++) {
+      uint16_t *values = value_at(j, v->at[0], middle, slow);
+      for (uint64_t bits = row_bits(j, v, middle, slow); bits; bits &= bits - 1)
         if (!visit(values + __builtin_ctzll(bits), payload))
           return false;
     }
@@ -67,73 +66,133 @@ static inline bool same_value(uint16_t *value, void *payload) {
   return *first == *value;
 }
 
-/* ---- Blocks ---- */
+static void give(const job *j, const voxels *v, uint32_t label) {
+  uint16_t value = (uint16_t)label;
+  each_value(j, v, set_value, &value);
+}
 
-/** The middle of a block of the box as a point of the forest, and how far the centres of its voxels lie from
- * it. */
-static double middle_of(const job *j, const block *b, double out[3]) {
+/** One of the eighths; false if it is empty. */
+static bool eighth(voxels *out, const voxels *v, int number) {
+  for (int a = 0; a < 3; a++) {
+    int64_t half = (v->size[a] + 1) / 2;
+    bool is_upper = number >> a & 1;
+    out->at[a] = v->at[a] + (is_upper ? half : 0);
+    out->size[a] = is_upper ? v->size[a] - half : half;
+    if (out->size[a] == 0)
+      return false;
+  }
+  return true;
+}
+
+/* ---- Labels ---- */
+
+/** The voxels as points of the forest. */
+static vxm_block block_of(const job *j, const voxels *v) {
   const vxm_layout *layout = &j->award->asked->layout;
   const int axis[3] = {layout->fast, layout->middle, layout->slow};
+  vxm_block block;
   double reach2 = 0;
   for (int a = 0; a < 3; a++) {
-    double half = (double)(b->size[a] - 1) / 2 * j->step[a];
-    out[axis[a]] = ((double)(b->at[a] + j->award->first[a]) + (double)b->size[a] / 2) * j->step[a];
+    double half = (double)(v->size[a] - 1) / 2 * j->step[a];
+    block.half[axis[a]] = half;
+    block.middle[axis[a]] = ((double)(v->at[a] + j->award->first[a]) + (double)v->size[a] / 2) * j->step[a];
     reach2 += half * half;
   }
-  return sqrt(reach2);
+  block.reach = sqrt(reach2);
+  return block;
 }
 
-/** The nearest label takes the block if no other is nearer anywhere in it. */
-static bool settle_by_nearest(const job *j, const block *b, const double p[3], double reach, vxm_near *near) {
-  const vxm_forest *forest = j->award->forest;
-  *near = vxm_forest_nearest(forest, p, near);
-  double distance = vxm_forest_distance(near->nearness);
-  double beyond = (distance + 2 * reach) * (1 + relative_slack) + slack;
-  if (reach > 0 && vxm_forest_has_other(forest, p, near->label, beyond))
-    return false;
-  uint16_t label = (uint16_t)near->label;
-  each_value(j, b, set_value, &label);
-  return true;
+/** Triangles that may be the nearest to some voxels; of several labels. */
+typedef struct crowd {
+  size_t count;
+  vxm_near near[CROWD];
+} crowd;
+
+static bool is_nearer(const vxm_near *a, const vxm_near *b) {
+  return a->nearness < b->nearness || (a->nearness == b->nearness && a->label < b->label);
 }
 
-/** Either the label that a block has throughout keeps it, or that of the award takes it. */
-static bool settle_by_two(const job *j, const block *b, const double p[3], double reach) {
-  const vxm_award *award = j->award;
-  uint16_t held = 0, label = (uint16_t)award->label;
-  if (!each_value(j, b, same_value, &held))
-    return false;
-  float to_held = vxm_forest_nearness(award->forest, p, held),
-        to_label = vxm_forest_nearness(award->forest, p, label);
-  bool takes = to_label < to_held || (to_label == to_held && label < held);
-  double near = vxm_forest_distance(takes ? to_label : to_held),
-         far = vxm_forest_distance(takes ? to_held : to_label);
-  if (reach > 0 && far <= (near + 2 * reach) * (1 + relative_slack) + slack)
-    return false;
-  if (takes)
-    each_value(j, b, set_value, &label);
-  return true;
-}
-
-/** Settles a block, or its eighths. */
-static void settle(const job *j, const block *b, vxm_near near) {
-  if (!is_asked(j, b))
-    return;
-  double p[3], reach = middle_of(j, b, p);
-  if (j->award->label ? settle_by_two(j, b, p, reach) : settle_by_nearest(j, b, p, reach, &near))
-    return;
-  for (int part = 0; part < 8; part++) {
-    block smaller = *b;
-    bool is_there = true;
-    for (int a = 0; a < 3; a++) {
-      int64_t half = (b->size[a] + 1) / 2;
-      bool is_upper = part >> a & 1;
-      smaller.at[a] += is_upper ? half : 0;
-      smaller.size[a] = is_upper ? b->size[a] - half : half;
-      is_there = is_there && smaller.size[a] > 0;
-    }
-    if (is_there)
-      settle(j, &smaller, near);
+/** Looks at a crowd from another point, and finds the nearest. */
+static vxm_near look_from(const job *j, crowd *out, const crowd *from, const double p[3]) {
+  vxm_near best = {.nearness = INFINITY};
+  for (size_t i = 0; i < from->count; i++) {
+    out->near[i] = vxm_forest_view(j->award->forest, from->near[i].label, from->near[i].triangle, p);
+    best = is_nearer(&out->near[i], &best) ? out->near[i] : best;
   }
+  out->count = from->count;
+  return best;
+}
+
+/** Leaves out what cannot be the nearest in a block; whether more than one label is left. */
+static bool thin_out(crowd *c, const vxm_block *block, const vxm_near *nearest) {
+  size_t kept = 0;
+  bool is_mixed = false;
+  for (size_t i = 0; i < c->count; i++)
+    if (!vxm_block_excludes(block, nearest, &c->near[i])) {
+      is_mixed |= c->near[i].label != nearest->label;
+      c->near[kept++] = c->near[i];
+    }
+  c->count = kept;
+  return is_mixed;
+}
+
+/** Settles voxels, or their eighths, by a crowd that has the nearest of each of them. */
+static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
+  if (!is_asked(j, v))
+    return;
+  crowd c;
+  vxm_block block = block_of(j, v);
+  vxm_near nearest = look_from(j, &c, from, block.middle);
+  if (block.reach == 0 || !thin_out(&c, &block, &nearest)) {
+    give(j, v, nearest.label);
+    return;
+  }
+  voxels part;
+  for (int n = 0; n < 8; n++)
+    if (eighth(&part, v, n))
+      settle_by_crowd(j, &part, &c);
+}
+
+/** Settles voxels by the nearest label among some; false if they are to be cut first. */
+static bool settle_among(const job *j, const voxels *v, vxm_among among, vxm_near *nearest) {
+  const vxm_forest *forest = j->award->forest;
+  vxm_block block = block_of(j, v);
+  *nearest = vxm_forest_nearest(forest, among, block.middle, nearest);
+  if (block.reach == 0 || !vxm_forest_has_other(forest, among, &block, nearest)) {
+    give(j, v, nearest->label);
+    return true;
+  }
+  crowd c;
+  c.count = vxm_forest_list(forest, among, &block, nearest, c.near, CROWD);
+  if (c.count > CROWD)
+    return false;
+  voxels part;
+  for (int n = 0; n < 8; n++)
+    if (eighth(&part, v, n))
+      settle_by_crowd(j, &part, &c);
+  return true;
+}
+
+/** Settles voxels, or their eighths. `nearest` is that of a larger block. */
+static void settle(const job *j, const voxels *v, vxm_near nearest) {
+  static const vxm_near nothing = {.nearness = INFINITY};
+  uint16_t held = 0;
+  uint32_t label = j->award->label;
+  vxm_among among = {{0, 0}};
+  if (!is_asked(j, v))
+    return;
+  /* Where the label is weighed against that of the voxels, these must all have the same. */
+  bool is_one = label == 0 || each_value(j, v, same_value, &held);
+  if (label) {
+    among = (vxm_among){{held, label}};
+    nearest = nothing;
+  }
+  if (is_one && settle_among(j, v, among, &nearest))
+    return;
+  voxels part;
+  for (int n = 0; n < 8; n++)
+    if (eighth(&part, v, n))
+      settle(j, &part, nearest);
 }
 
 void vxm_award_voxels(const vxm_award *award, const int64_t begin[3], const int64_t end[3]) {
@@ -145,12 +204,12 @@ void vxm_award_voxels(const vxm_award *award, const int64_t begin[3], const int6
   j.plane = j.row * (size_t)award->space->dims[layout->middle];
   for (int a = 0; a < 3; a++)
     j.step[a] = size[axis[a]] / side;
-  block b;
-  for (b.at[2] = begin[2]; b.at[2] < end[2]; b.at[2] += BLOCK)
-    for (b.at[1] = begin[1]; b.at[1] < end[1]; b.at[1] += BLOCK)
-      for (b.at[0] = begin[0]; b.at[0] < end[0]; b.at[0] += BLOCK) {
+  voxels v;
+  for (v.at[2] = begin[2]; v.at[2] < end[2]; v.at[2] += BLOCK)
+    for (v.at[1] = begin[1]; v.at[1] < end[1]; v.at[1] += BLOCK)
+      for (v.at[0] = begin[0]; v.at[0] < end[0]; v.at[0] += BLOCK) {
         for (int a = 0; a < 3; a++)
-          b.size[a] = vxm_min(end[a] - b.at[a], BLOCK);
-        settle(&j, &b, (vxm_near){INFINITY, 0, 0});
+          v.size[a] = vxm_min(end[a] - v.at[a], BLOCK);
+        settle(&j, &v, (vxm_near){.nearness = INFINITY});
       }
 }

@@ -12,6 +12,8 @@ enum { STACK = 64 };
 static const double nearness_floor = 0x1p-20;
 /** A box may be nearer than it is computed by as much. */
 static const double box_slack = 1 - 1e-12;
+/** More than what rounds in distances and gradients, in voxels and of the distance. */
+static const double slack = 1e-3, relative_slack = 1e-6;
 
 void vxm_forest_destroy(vxm_forest *forest) {
   if (!forest)
@@ -26,44 +28,85 @@ static float nearness_of(double square) {
   return (float)(square + nearness_floor);
 }
 
-double vxm_forest_distance(float nearness) {
-  return sqrt(fmax((double)nearness - nearness_floor, 0));
+/* ---- Triangles and boxes from a point ---- */
+
+/** What is seen of a foot; without a gradient where that is too near to have one. */
+static vxm_near seen(const double p[3], const double foot[3], double square) {
+  vxm_near near = {.nearness = nearness_of(square), .distance = (float)sqrt(square)};
+  for (int a = 0; a < 3; a++)
+    near.gradient[a] = near.distance > (float)slack ? (float)(p[a] - foot[a]) / near.distance : 0;
+  return near;
+}
+
+vxm_near vxm_forest_view(const vxm_forest *forest, uint32_t label, uint32_t triangle, const double p[3]) {
+  double foot[3], square = vxm_corners_foot(&forest->triangles[triangle], p, foot);
+  vxm_near near = seen(p, foot, square);
+  near.label = label;
+  near.triangle = triangle;
+  return near;
+}
+
+static vxm_near view_box(const node *n, const double p[3]) {
+  double foot[3], square = 0;
+  for (int a = 0; a < 3; a++) {
+    foot[a] = p[a] < n->low[a] ? n->low[a] : p[a] > n->high[a] ? n->high[a] : p[a];
+    square += (p[a] - foot[a]) * (p[a] - foot[a]);
+  }
+  return seen(p, foot, square);
 }
 
 static float to_box(const node *n, const double p[3]) {
-  double sum = 0;
+  double square = 0;
   for (int a = 0; a < 3; a++) {
     double below = n->low[a] - p[a], above = p[a] - n->high[a];
     double off = below > above ? below : above;
     off = off > 0 ? off : 0;
-    sum += off * off;
+    square += off * off;
   }
-  return nearness_of(sum * box_slack);
+  return nearness_of(square * box_slack);
 }
+
+/**
+ * With u from the middle to a point of the block, distance D and gradient G of the nearest, d and g of the
+ * other: the distance of what is convex is convex, so the other has at least d + g.u; the foot of the nearest
+ * is at most D + G.u + u.u / 2D away, and at most D + |u|.
+ */
+bool vxm_block_excludes(const vxm_block *block, const vxm_near *nearest, const vxm_near *other) {
+  double to_nearest = (double)nearest->distance, to_other = (double)other->distance,
+         ahead = to_other * (1 - relative_slack) - slack - to_nearest, turn = 0;
+  if (ahead > 2 * block->reach)
+    return true;
+  if (to_nearest <= slack)
+    return false;
+  for (int a = 0; a < 3; a++)
+    turn += fabs((double)other->gradient[a] - (double)nearest->gradient[a]) * block->half[a];
+  return ahead > turn + block->reach * block->reach / (2 * to_nearest);
+}
+
+/* ---- The nearest ---- */
 
 /** What is asked of a tree. */
 typedef struct query {
   const vxm_forest *forest;
   const double *p;
-  vxm_near best;    /**< what is to be bettered */
-  uint32_t without; /**< a label that does not count; 0 = all do */
-  bool first;       /**< the first that is found will do */
+  float nearness; /**< what is to be bettered */
+  uint32_t label, triangle;
 } query;
 
 /** Whether something of this nearness in a node could be better; a node of several labels may have any. */
 static bool betters(const query *q, float nearness, uint32_t label) {
-  return nearness < q->best.nearness || (nearness == q->best.nearness && label < q->best.label);
-}
-
-static bool is_worthwhile(const query *q, const node *n, float nearness) {
-  return betters(q, nearness, n->label) && (q->without == 0 || n->label != q->without);
+  return nearness < q->nearness || (nearness == q->nearness && label < q->label);
 }
 
 static void search_leaf(query *q, const node *leaf) {
   for (uint32_t i = leaf->begin; i < leaf->end; i++) {
-    float nearness = nearness_of(vxm_triangle_distance2(&q->forest->triangles[i], q->p));
-    if (betters(q, nearness, leaf->label))
-      q->best = (vxm_near){nearness, leaf->label, i};
+    double foot[3];
+    float nearness = nearness_of(vxm_corners_foot(&q->forest->triangles[i], q->p, foot));
+    if (betters(q, nearness, leaf->label)) {
+      q->nearness = nearness;
+      q->label = leaf->label;
+      q->triangle = i;
+    }
   }
 }
 
@@ -75,7 +118,7 @@ static void search(query *q, const node *at) {
   int depth = 0;
   float nearness = to_box(at, q->p);
   for (;;) {
-    if (is_worthwhile(q, at, nearness) && at->left) { /* the nearer child first */
+    if (betters(q, nearness, at->label) && at->left) { /* the nearer child first */
       const node *child = &q->forest->nodes[at->left], *other = child + 1;
       float to_child = to_box(child, q->p), to_other = to_box(other, q->p);
       bool is_child = to_child <= to_other;
@@ -85,37 +128,91 @@ static void search(query *q, const node *at) {
       nearness = is_child ? to_child : to_other;
       continue;
     }
-    if (is_worthwhile(q, at, nearness))
+    if (betters(q, nearness, at->label))
       search_leaf(q, at);
-    if (depth == 0 || (q->first && q->best.label != UINT32_MAX))
+    if (depth == 0)
       return;
     at = stack[--depth].node;
     nearness = stack[depth].nearness;
   }
 }
 
-vxm_near vxm_forest_nearest(const vxm_forest *forest, const double p[3], const vxm_near *from) {
-  query q = {.forest = forest, .p = p, .best = {INFINITY, 0, 0}};
-  if (from && from->label)
-    q.best = (vxm_near){nearness_of(vxm_triangle_distance2(&forest->triangles[from->triangle], p)),
-                        from->label, from->triangle};
-  search(&q, forest->nodes);
-  return q.best;
+/** The roots of what is asked about; returns how many. */
+static int roots_of(const node *out[2], const vxm_forest *forest, vxm_among among) {
+  int count = 0;
+  if (among.label[0] == 0) {
+    out[0] = forest->nodes;
+    return 1;
+  }
+  for (int i = 0; i < 2; i++) {
+    uint32_t root = forest->root[among.label[i] - 1];
+    if (root != VXM_NO_ROOT)
+      out[count++] = &forest->nodes[root];
+  }
+  return count;
 }
 
-float vxm_forest_nearness(const vxm_forest *forest, const double p[3], uint32_t label) {
-  query q = {.forest = forest, .p = p, .best = {INFINITY, 0, 0}};
-  if (forest->root[label - 1] != VXM_NO_ROOT)
-    search(&q, &forest->nodes[forest->root[label - 1]]);
-  return q.best.nearness;
+vxm_near vxm_forest_nearest(const vxm_forest *forest, vxm_among among, const double p[3],
+                            const vxm_near *from) {
+  query q = {.forest = forest, .p = p, .nearness = INFINITY};
+  if (from && from->label) {
+    q.nearness = vxm_forest_view(forest, from->label, from->triangle, p).nearness;
+    q.label = from->label;
+    q.triangle = from->triangle;
+  }
+  const node *roots[2];
+  int count = roots_of(roots, forest, among);
+  for (int i = 0; i < count; i++)
+    search(&q, roots[i]);
+  return q.label ? vxm_forest_view(forest, q.label, q.triangle, p) : (vxm_near){.nearness = INFINITY};
 }
 
-bool vxm_forest_has_other(const vxm_forest *forest, const double p[3], uint32_t label, double reach) {
-  query q = {.forest = forest,
-             .p = p,
-             .best = {nearness_of(reach * reach), UINT32_MAX, 0},
-             .without = label,
-             .first = true};
-  search(&q, forest->nodes);
-  return q.best.label != UINT32_MAX;
+/* ---- What may be the nearest somewhere in a block ---- */
+
+/** Lists as vxm_forest_list does, below a root and without the nodes of a label (0 = with all). */
+static size_t list_below(const node *at, const vxm_forest *forest, uint32_t without, const vxm_block *block,
+                         const vxm_near *nearest, vxm_near *out, size_t room) {
+  const node *stack[STACK];
+  size_t count = 0;
+  int depth = 0;
+  for (;;) {
+    vxm_near box = view_box(at, block->middle);
+    bool is_met = (without == 0 || at->label != without) && !vxm_block_excludes(block, nearest, &box);
+    if (is_met && at->left) {
+      at = &forest->nodes[at->left];
+      stack[depth++] = at + 1;
+      continue;
+    }
+    for (uint32_t i = at->begin; i < at->end && is_met; i++) {
+      vxm_near near = vxm_forest_view(forest, at->label, i, block->middle);
+      if (vxm_block_excludes(block, nearest, &near))
+        continue;
+      if (count == room)
+        return room + 1;
+      out[count++] = near;
+    }
+    if (depth == 0)
+      return count;
+    at = stack[--depth];
+  }
+}
+
+size_t vxm_forest_list(const vxm_forest *forest, vxm_among among, const vxm_block *block,
+                       const vxm_near *nearest, vxm_near *out, size_t room) {
+  const node *roots[2];
+  int root_count = roots_of(roots, forest, among);
+  size_t count = 0;
+  for (int i = 0; i < root_count && count <= room; i++)
+    count += list_below(roots[i], forest, 0, block, nearest, out + count, room - count);
+  return count;
+}
+
+bool vxm_forest_has_other(const vxm_forest *forest, vxm_among among, const vxm_block *block,
+                          const vxm_near *nearest) {
+  const node *roots[2];
+  int root_count = roots_of(roots, forest, among);
+  bool has_other = false;
+  for (int i = 0; i < root_count && !has_other; i++)
+    has_other = list_below(roots[i], forest, nearest->label, block, nearest, NULL, 0) > 0;
+  return has_other;
 }

@@ -180,7 +180,7 @@ static void grow_tree(size_t task, int worker, void *payload) {
     double corner[3][3];
     for (int c = 0; c < 3; c++)
       place(forest, corner[c], b->items[t].corner[c]);
-    vxm_triangle_make(&forest->triangles[t], (const double(*)[3])corner);
+    vxm_corners_make(&forest->triangles[t], (const double(*)[3])corner);
   }
 }
 
@@ -236,7 +236,7 @@ static size_t nodes_max(size_t triangles, size_t labels) {
 
 uint64_t vxm_forest_bytes(const vxm_labelling *labelling) {
   uint64_t triangles = count_triangles(labelling), labels = labelling->table.count;
-  return triangles * (sizeof(vxm_triangle) + sizeof(item)) + nodes_max(triangles, labels) * sizeof(node) +
+  return triangles * (sizeof(vxm_corners) + sizeof(item)) + nodes_max(triangles, labels) * sizeof(node) +
          labels * (sizeof(node) + sizeof(item) + 3 * sizeof(uint32_t)) + sizeof(vxm_forest) + 2048;
 }
 

@@ -3,8 +3,8 @@
 #ifndef VXM_VOXEL_FOREST_TREE_H
 #define VXM_VOXEL_FOREST_TREE_H
 
+#include "voxel/foot.h"
 #include "voxel/forest.h"
-#include "voxel/triangle.h"
 
 #define VXM_NO_ROOT UINT32_MAX
 
@@ -20,7 +20,7 @@ struct vxm_forest {
   vxm_context *context;
   const vxm_labelling *labelling;
   double origin[3], side;
-  vxm_triangle *triangles;
+  vxm_corners *triangles;
   vxm_forest_node *nodes; /**< first those over the trees, node 0 over all */
   uint32_t *root;         /**< of each label; VXM_NO_ROOT = it has no triangles */
 };

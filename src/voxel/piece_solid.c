@@ -99,9 +99,35 @@ vxm_space vxm_piece_space(const vxm_piece *piece, const vxm_space *whole) {
   return space;
 }
 
+/**
+ * Whether one component stays open: a sheet, or a patch of a surface whose other patches have other labels.
+ * It bounds nothing, while to find out how it is turned would cost more than all else. Several may be panels
+ * of one body, on which the voters agree.
+ */
+static bool has_lone_sheet(const vxm_model *model) {
+  const vxm_split *split = &model->shape.facets.split;
+  const vxm_voxelize_options *options = &model->options;
+  if (options->method != VXM_METHOD_VOTE || options->vote != VXM_VOTE_AUTO ||
+      options->parts == VXM_PARTS_WHOLE)
+    return false;
+  return split->component_count - split->cavity_count - split->kind_end[VXM_PART_CAPPED] == 1;
+}
+
+/** Fills slices with the parts that are closed, or closed by caps. */
+static vxm_status fill_without_sheets(vxm_model *model, const vxm_window *window, vxm_error *error) {
+  size_t end = model->shape.facets.split.kind_end[VXM_PART_CAPPED];
+  if (end > 0)
+    return vxm_run_unite(&model->run, window, window->layout.fast, 0, end, VXM_FACET_TRIANGLE | VXM_FACET_CAP,
+                         error);
+  memset(window->words, 0,
+         window->slice_words * (size_t)(window->end - window->begin) * sizeof *window->words);
+  return VXM_OK;
+}
+
 static vxm_status fill(vxm_model *model, const vxm_window *window, const vxm_lattice *lattice, bool at_once,
                        vxm_error *error) {
   vxm_field_plan plan = {.slices = window->slow_dim};
+  bool is_without = has_lone_sheet(model);
   vxm_status status = VXM_OK;
   if (!at_once)
     status = vxm_field_plan_of(&plan, model, &lattice->space, window->layout, 1, 0, 0, error);
@@ -112,7 +138,7 @@ static vxm_status fill(vxm_model *model, const vxm_window *window, const vxm_lat
     part.begin = begin;
     part.end = vxm_min(begin + plan.slices, window->slow_dim);
     part.words = window->words + (size_t)begin * window->slice_words;
-    status = vxm_model_fill(model, &part, error);
+    status = is_without ? fill_without_sheets(model, &part, error) : vxm_model_fill(model, &part, error);
   }
   return status;
 }
