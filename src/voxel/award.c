@@ -108,19 +108,30 @@ typedef struct crowd {
   vxm_near near[CROWD];
 } crowd;
 
-static bool is_nearer(const vxm_near *a, const vxm_near *b) {
-  return a->nearness < b->nearness || (a->nearness == b->nearness && a->label < b->label);
+/** The nearest label of a crowd to a single point. */
+static uint32_t nearest_label(const job *j, const crowd *c, const double p[3]) {
+  float least = INFINITY;
+  uint32_t label = 0;
+  for (size_t i = 0; i < c->count; i++) {
+    float nearness = vxm_forest_nearness(j->award->forest, c->near[i].triangle, p);
+    if (nearness > least || (nearness == least && c->near[i].label >= label))
+      continue;
+    least = nearness;
+    label = c->near[i].label;
+  }
+  return label;
 }
 
-/** Looks at a crowd from another point, and finds the nearest. */
+/** Looks at a crowd from another point, and finds the nearest; which of several makes no difference. */
 static vxm_near look_from(const job *j, crowd *out, const crowd *from, const double p[3]) {
-  vxm_near best = {.nearness = INFINITY};
+  vxm_near nearest = {.nearness = INFINITY};
   for (size_t i = 0; i < from->count; i++) {
     out->near[i] = vxm_forest_view(j->award->forest, from->near[i].label, from->near[i].triangle, p);
-    best = is_nearer(&out->near[i], &best) ? out->near[i] : best;
+    if (out->near[i].nearness < nearest.nearness)
+      nearest = out->near[i];
   }
   out->count = from->count;
-  return best;
+  return nearest;
 }
 
 /** Leaves out what cannot be the nearest in a block; whether more than one label is left. */
@@ -140,10 +151,14 @@ static bool thin_out(crowd *c, const vxm_block *block, const vxm_near *nearest) 
 static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
   if (!is_asked(j, v))
     return;
-  crowd c;
   vxm_block block = block_of(j, v);
+  if (block.reach == 0) {
+    give(j, v, nearest_label(j, from, block.middle));
+    return;
+  }
+  crowd c;
   vxm_near nearest = look_from(j, &c, from, block.middle);
-  if (block.reach == 0 || !thin_out(&c, &block, &nearest)) {
+  if (!thin_out(&c, &block, &nearest)) {
     give(j, v, nearest.label);
     return;
   }

@@ -32,10 +32,16 @@ static float nearness_of(double square) {
 
 /** What is seen of a foot; without a gradient where that is too near to have one. */
 static vxm_near seen(const double p[3], const double foot[3], double square) {
-  vxm_near near = {.nearness = nearness_of(square), .distance = (float)sqrt(square)};
+  vxm_near near = {.nearness = nearness_of(square), .distance = sqrtf((float)square)};
+  float inverse = near.distance > (float)slack ? 1 / near.distance : 0;
   for (int a = 0; a < 3; a++)
-    near.gradient[a] = near.distance > (float)slack ? (float)(p[a] - foot[a]) / near.distance : 0;
+    near.gradient[a] = (float)(p[a] - foot[a]) * inverse;
   return near;
+}
+
+float vxm_forest_nearness(const vxm_forest *forest, uint32_t triangle, const double p[3]) {
+  double foot[3];
+  return nearness_of(vxm_corners_foot(&forest->triangles[triangle], p, foot));
 }
 
 vxm_near vxm_forest_view(const vxm_forest *forest, uint32_t label, uint32_t triangle, const double p[3]) {
@@ -100,8 +106,7 @@ static bool betters(const query *q, float nearness, uint32_t label) {
 
 static void search_leaf(query *q, const node *leaf) {
   for (uint32_t i = leaf->begin; i < leaf->end; i++) {
-    double foot[3];
-    float nearness = nearness_of(vxm_corners_foot(&q->forest->triangles[i], q->p, foot));
+    float nearness = vxm_forest_nearness(q->forest, i, q->p);
     if (betters(q, nearness, leaf->label)) {
       q->nearness = nearness;
       q->label = leaf->label;
@@ -156,7 +161,7 @@ vxm_near vxm_forest_nearest(const vxm_forest *forest, vxm_among among, const dou
                             const vxm_near *from) {
   query q = {.forest = forest, .p = p, .nearness = INFINITY};
   if (from && from->label) {
-    q.nearness = vxm_forest_view(forest, from->label, from->triangle, p).nearness;
+    q.nearness = vxm_forest_nearness(forest, from->triangle, p);
     q.label = from->label;
     q.triangle = from->triangle;
   }

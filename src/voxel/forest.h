@@ -57,6 +57,8 @@ typedef struct vxm_block {
 vxm_near vxm_forest_nearest(const vxm_forest *forest, vxm_among among, const double p[3],
                             const vxm_near *from);
 
+/** The nearness of a triangle. */
+float vxm_forest_nearness(const vxm_forest *forest, uint32_t triangle, const double p[3]);
 /** A triangle as seen from a point. */
 vxm_near vxm_forest_view(const vxm_forest *forest, uint32_t label, uint32_t triangle, const double p[3]);
 
