@@ -4,7 +4,7 @@
 #include "gridio/bytes.h"
 #include "gridio/format.h"
 #include "gridio/npy_header.h"
-#include "gridio/nrrd.h"
+#include "gridio/nrrd_header.h"
 #include "gridio/planes.h"
 
 static const vxm_sidecar_text npy_description = {"voxmend npy", "z fastest, then y, then x", NULL};
@@ -35,16 +35,17 @@ static vxm_status open_file(field_file *file, vxm_field_target *target, vxm_cont
     status = vxm_output_open(&file->output, context, path, error);
   if (status == VXM_OK && !is_nrrd)
     status = vxm_sidecar_open(&file->sidecar, context, space, path, &npy_description, error);
+  size_t size = vxm_scalar_bytes(scalar);
+  if (status == VXM_OK && is_nrrd)
+    status = vxm_nrrd_header_write(file->output, "a number per voxel, at its centre",
+                                   size == 1 ? "uchar" : "float", size, space, error);
   if (status != VXM_OK) {
     vxm_output_abort(file->output);
     return status;
   }
   target->layout = is_nrrd ? (vxm_layout)VXM_LAYOUT_GRID : (vxm_layout)VXM_PLANE_Z_FAST;
-  size_t size = vxm_scalar_bytes(scalar);
   file->slice_bytes = (size_t)(space->dims[target->layout.fast] * space->dims[target->layout.middle]) * size;
-  if (is_nrrd)
-    vxm_nrrd_header_write(file->output, size == 1 ? "uchar" : "float", size, space);
-  else
+  if (!is_nrrd)
     vxm_npy_header_write(file->output,
                          size == 1          ? "|u1"
                          : vxm_le64(1) == 1 ? "<f4"

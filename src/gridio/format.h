@@ -58,7 +58,8 @@ typedef struct vxm_grid_format {
 const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format, vxm_error *error);
 
 /** One per file of this room. */
-extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_raw, vxm_format_rle;
+extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_nrrd, vxm_format_raw,
+    vxm_format_rle;
 
 /** VXM_ERROR_FORMAT at a byte of the input. */
 #define vxm_fail_byte(error, input, offset, ...) \
