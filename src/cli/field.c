@@ -5,7 +5,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-const char *const cli_field_formats[] = {"npy", "nrrd", NULL};
+const char *const cli_field_formats[] = {"npy", "nrrd", "vdb", NULL};
 
 bool cli_field_wanted(const cli_field *field) {
   return field->coverage || field->distance;

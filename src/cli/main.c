@@ -19,7 +19,8 @@ static void help(void) {
   for (int i = 0; i < COMMANDS; i++)
     printf("  %-10s %s\n", commands[i]->name, commands[i]->summary);
   printf("\n'voxmend COMMAND --help' shows the options of a command; 'voxmend --version' the version.\n"
-         "Meshes: .off .obj .stl .ply. Grids: .binvox .npy .raw .rle. '-' is standard input or output.\n\n"
+         "Meshes: .off .obj .stl .ply. Grids: .binvox .npy .raw .rle .nrrd .vdb.\n"
+         "'-' is standard input or output.\n\n"
          "Examples:\n"
          "  voxmend info chair.off                              what is wrong with it\n"
          "  voxmend repair chair.off -o fixed.ply               mend what can be mended\n"

@@ -111,7 +111,12 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
 }
 
 static const vxm_slices_kind slices_kind = {
-    VXM_PLANE_Z_FAST, &description, NULL, state_bytes, begin, vxm_byte_rows_put, end,
+    .layout = VXM_PLANE_Z_FAST,
+    .sidecar = &description,
+    .state_bytes = state_bytes,
+    .begin = begin,
+    .put = vxm_byte_rows_put,
+    .end = end,
 };
 
-const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, &slices_kind};
+const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, &slices_kind, NULL};

@@ -111,6 +111,13 @@ static double band_of(const vxm_distance_options *options, const vxm_space *spac
   return options->band == 0 || options->band > longest ? INFINITY : options->band;
 }
 
+float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space) {
+  double side = 0;
+  for (int a = 0; a < 3; a++)
+    side = fmax(side, space->voxel_size[a]);
+  return (float)(band_of(options, space) * side);
+}
+
 /* ---- Windows ---- */
 
 static vxm_status measure_windows(measure *m, const vxm_field_target *target, const vxm_field_plan *plan,
@@ -183,7 +190,7 @@ vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report 
                .reach = vxm_reach_of(surface, space, target->layout, band_of(options, space)),
                .is_signed = !options->is_unsigned};
   m.most2 = (float)(m.reach.band * m.reach.band);
-  m.most = (float)(m.reach.band * m.reach.side);
+  m.most = vxm_distance_limit(options, space);
   bool gathers = should_gather(&m.reach, space);
   uint64_t fixed = gathers ? vxm_nearest_bytes(surface->triangle_count)
                            : vxm_reach_scatter_bytes(surface->triangle_count, m.reach.dims);
