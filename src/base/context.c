@@ -251,6 +251,14 @@ vxm_status vxm_memory_check(const vxm_context *context, uint64_t bytes, const ch
   return fail_limit(error, what, bytes, context->limit, used);
 }
 
+vxm_status vxm_memory_take(vxm_context *context, size_t bytes, vxm_error *error) {
+  return reserve(context, bytes, error) ? VXM_OK : VXM_ERROR_MEMORY_LIMIT;
+}
+
+void vxm_memory_give(vxm_context *context, size_t bytes) {
+  unreserve(context, bytes);
+}
+
 vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
                     vxm_error *error) {
   if (needed <= *capacity)

@@ -283,6 +283,27 @@ void vxm_output_printf(vxm_output *output, const char *format, ...) {
     vxm_output_advance(output, (size_t)written < ROOM_MAX ? (size_t)written : ROOM_MAX - 1);
 }
 
+bool vxm_output_can_patch(const vxm_output *output) {
+  return output->temporary != NULL;
+}
+
+void vxm_output_patch(vxm_output *output, uint64_t offset, const void *data, size_t size) {
+  flush(output);
+  const char *from = data;
+  while (size > 0 && !output->failure) {
+    ssize_t done = pwrite(output->descriptor, from, size, (off_t)offset);
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done < 0) {
+      output->failure = errno;
+      return;
+    }
+    from += done;
+    offset += (uint64_t)done;
+    size -= (size_t)done;
+  }
+}
+
 bool vxm_output_failed(const vxm_output *output) {
   return output->failure != 0;
 }

@@ -34,9 +34,10 @@ enum {
 
 static const cli_option known_options[] = {
     {'o', "output", "GRID",
-     "file to write: .binvox, .rle, .npy or .raw (these two with a .json beside\n"
-     "them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", "binvox, npy, raw, rle, obj, ply, stl or off [by the name of the output]"},
+     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (these two with a .json\n"
+     "beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
+    {KEY_FORMAT, "format", "F",
+     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the output]"},
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
     {KEY_FIT, "fit", "cube|tight|sphere",
@@ -69,11 +70,11 @@ static const cli_option known_options[] = {
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
-     "each axis; .npy or .nrrd"},
+     "each axis; .npy, .nrrd or .vdb"},
     {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
-     "signed: negative inside; .npy or .nrrd"},
+     "signed: negative inside; .npy, .nrrd or .vdb"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
@@ -290,7 +291,7 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
 
 /** Whether a format is written slice by slice. */
 static bool is_sliced(const char *format) {
-  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", NULL};
+  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb", NULL};
   return cli_read_choice(format, sliced) >= 0;
 }
 
@@ -432,7 +433,8 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   vxm_status status = vxm_space_fit(&results->space, mesh, &given->voxelize.space, &cli->error);
   if (status == VXM_OK)
     status = vxm_model_create(&model, mesh, &given->voxelize, &cli->error);
-  if (status == VXM_OK && !cli_field_wanted(&given->field))
+  /* What an octree takes is known when it is made. */
+  if (status == VXM_OK && !cli_field_wanted(&given->field) && !given->sparse)
     status =
         vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
   results->octree = takes_octree(given, results);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 const char *const *cli_field_formats(const cli_field *field) {
-  static const char *const numbers[] = {"npy", "nrrd", NULL};
+  static const char *const numbers[] = {"npy", "nrrd", "vdb", NULL};
   static const char *const labels[] = {"npy", "nrrd", "binvox", NULL};
   return field->labels ? labels : numbers;
 }

@@ -25,7 +25,8 @@ static const cli_option common_options[] = {
     {0, NULL, NULL, NULL}};
 
 const char *const cli_mesh_formats[] = {"off", "obj", "stl", "ply", NULL};
-const char *const cli_grid_formats[] = {"binvox", "npy", "raw", "rle", "obj", "ply", "stl", "off", NULL};
+const char *const cli_grid_formats[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb",
+                                        "obj",    "ply", "stl", "off", NULL};
 
 /* ---- Help ---- */
 

@@ -332,7 +332,12 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
 }
 
 static const vxm_slices_kind slices_kind = {
-    VXM_PLANE_Y_FAST, NULL, vxm_binvox_check, state_bytes, begin, vxm_run_writer_put, end,
+    .layout = VXM_PLANE_Y_FAST,
+    .check = vxm_binvox_check,
+    .state_bytes = state_bytes,
+    .begin = begin,
+    .put = vxm_run_writer_put,
+    .end = end,
 };
 
-const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, &slices_kind};
+const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, &slices_kind, NULL};

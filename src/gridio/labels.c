@@ -5,7 +5,7 @@
 #include "gridio/bytes.h"
 #include "gridio/format.h"
 #include "gridio/npy_header.h"
-#include "gridio/nrrd.h"
+#include "gridio/nrrd_header.h"
 #include "gridio/planes.h"
 
 #include <inttypes.h>
@@ -43,9 +43,8 @@ static vxm_status begin_npy(const label_file *file, vxm_error *error) {
 }
 
 static vxm_status begin_nrrd(const label_file *file, vxm_error *error) {
-  (void)error;
-  vxm_nrrd_header_write(file->output, "ushort", sizeof *file->values, file->space);
-  return VXM_OK;
+  return vxm_nrrd_header_write(file->output, "a label per voxel", "ushort", sizeof *file->values, file->space,
+                               error);
 }
 
 static size_t slice_values(const label_file *file) {

@@ -12,9 +12,10 @@ typedef struct vxm_slices vxm_slices;
 
 /** How a file would be written. */
 typedef struct vxm_slices_plan {
-  bool streams;          /**< false for the surface as a mesh; the rest is then 0 */
-  vxm_layout layout;     /**< of the windows to be put */
-  uint64_t bytes;        /**< the most that the writer itself holds */
+  bool streams;      /**< false for the surface as a mesh; the rest is then 0 */
+  vxm_layout layout; /**< of the windows to be put */
+  uint64_t
+      bytes; /**< the most that the writer itself holds; of .vdb, whose tree follows the surface, about */
   uint64_t gather_bytes; /**< what vxm_gridio_write of a whole grid holds besides */
 } vxm_slices_plan;
 

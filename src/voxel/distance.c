@@ -186,6 +186,13 @@ static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_err
   return vxm_watch_end(&m->watch);
 }
 
+float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space) {
+  double side = 0;
+  for (int a = 0; a < 3; a++)
+    side = fmax(side, space->voxel_size[a]);
+  return options->band > 0 ? (float)(options->band * side) : INFINITY;
+}
+
 /* ---- Windows ---- */
 
 static vxm_status measure_windows(measure *m, const vxm_field_target *target, const vxm_field_plan *plan,
