@@ -503,19 +503,21 @@ VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
 VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
 
 /**
- * Reads a grid: .binvox, .npy, .raw (with its .json beside it) or .rle, told by content first and by name
- * second.
+ * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd or .vdb, told by content first
+ * and by name second. Of .vdb, the first grid of bool, mask or float: set where it is active (and true),
+ * below 0 in a level set, above 1/2 in a fog volume.
  * "-" reads standard input (not .raw).
  *
- * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
- *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_UNAVAILABLE for packed values without
+ *         the library that unpacks them (zlib for .nrrd, OpenVDB for .vdb); VXM_ERROR_RANGE,
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
 
 typedef struct vxm_grid_write_options {
-  uint32_t version; /**< 1 */
-  const char
-      *format; /**< "binvox", "npy", "raw", "rle", or "obj", "ply", "stl", "off"; NULL = by extension */
+  uint32_t version;   /**< 1 */
+  const char *format; /**< "binvox", "npy", "raw", "rle", "nrrd", "vdb", or "obj", "ply", "stl", "off"; NULL =
+                         by extension */
 } vxm_grid_write_options;
 
 #define VXM_GRID_WRITE_OPTIONS_INIT \
@@ -527,7 +529,8 @@ typedef struct vxm_grid_write_options {
  * side.
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format, or .binvox with voxels that are not cubes;
- * VXM_ERROR_IO; VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * VXM_ERROR_UNAVAILABLE for .vdb without OpenVDB; VXM_ERROR_IO; VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_grid_write(const vxm_grid *grid, const char *path,
                                   const vxm_grid_write_options *options, vxm_error *error);
@@ -765,7 +768,7 @@ typedef struct vxm_coverage_options {
   uint32_t version;   /**< 1 */
   int subdivision;    /**< 2, 4 or 8: a voxel is cut into so many sub-voxels along each axis */
   vxm_scalar scalar;  /**< VXM_FLOAT32: the fraction, 0 to 1; VXM_UINT8: 255 times that, rounded, halves up */
-  const char *format; /**< of a file: "npy" or "nrrd"; NULL = by extension */
+  const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
 } vxm_coverage_options;
 
 #define VXM_COVERAGE_OPTIONS_INIT \
@@ -791,8 +794,8 @@ VXM_API vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report,
                                       const vxm_space *space, const vxm_coverage_options *options,
                                       vxm_error *error);
 
-/** As vxm_model_coverage, into a file: .npy (with its .json beside it) or .nrrd; as much at a time as the
- * memory limit allows. @return as vxm_model_coverage and vxm_grid_write */
+/** As vxm_model_coverage, into a file: .npy (with its .json beside it), .nrrd or .vdb; as much at a time as
+ * the memory limit allows. @return as vxm_model_coverage and vxm_grid_write */
 VXM_API vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_coverage_options *options, vxm_error *error);
@@ -801,7 +804,7 @@ typedef struct vxm_distance_options {
   uint32_t version;   /**< 1 */
   bool is_unsigned;   /**< false = negative where the centre is inside the solid */
   double band;        /**< voxels, of the longest side; 0 = everywhere */
-  const char *format; /**< of a file: "npy" or "nrrd"; NULL = by extension */
+  const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
 } vxm_distance_options;
 
 #define VXM_DISTANCE_OPTIONS_INIT \
@@ -830,8 +833,8 @@ VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report
                                       const vxm_space *space, const vxm_distance_options *options,
                                       vxm_error *error);
 
-/** As vxm_model_distance, into a file: .npy (with its .json beside it) or .nrrd; as much at a time as the
- * memory limit allows. @return as vxm_model_distance and vxm_grid_write */
+/** As vxm_model_distance, into a file: .npy (with its .json beside it), .nrrd or .vdb; as much at a time as
+ * the memory limit allows. @return as vxm_model_distance and vxm_grid_write */
 VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
@@ -966,7 +969,8 @@ typedef void (*vxm_sparse_fn)(const vxm_sparse_piece *piece, void *payload);
 /** Calls for each piece, in Morton order. */
 VXM_API void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload);
 
-/** As vxm_grid_write, slice by slice: .binvox, .npy, .raw and .rle. */
+/** As vxm_grid_write, slice by slice, but for .vdb, whose tree is made of the octree's pieces; not as a mesh.
+ */
 VXM_API vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path,
                                     const vxm_grid_write_options *options, vxm_error *error);
 

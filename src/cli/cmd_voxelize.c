@@ -34,10 +34,12 @@ enum {
 
 static const cli_option known_options[] = {
     {'o', "output", "GRID",
-     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (these two with a .json\n"
-     "beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
+     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
+     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
+     "standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the output]"},
+     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
+     "output]"},
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
     {KEY_FIT, "fit", "cube|tight|sphere",
@@ -423,6 +425,11 @@ static bool takes_octree(const voxelize_request *given, const voxelize_outcome *
          results->estimate.grid_bytes >= LARGE_GRID;
 }
 
+/** What a grid takes: rows are whole words. */
+static uint64_t bytes_of_bits(const vxm_space *space) {
+  return (uint64_t)(space->dims[0] + 63) / 64 * 8 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
+}
+
 /** Makes the model, tells what it will take, and unless that is all that is wanted writes the grid. */
 static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
   const vxm_mesh *mesh = results->input.mesh;
@@ -433,8 +440,9 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   vxm_status status = vxm_space_fit(&results->space, mesh, &given->voxelize.space, &cli->error);
   if (status == VXM_OK)
     status = vxm_model_create(&model, mesh, &given->voxelize, &cli->error);
-  /* What an octree takes is known when it is made. */
-  if (status == VXM_OK && !cli_field_wanted(&given->field) && !given->sparse)
+  if (status == VXM_OK && given->sparse) /* what an octree takes is known when it is made */
+    results->estimate.grid_bytes = bytes_of_bits(&results->space);
+  else if (status == VXM_OK && !cli_field_wanted(&given->field))
     status =
         vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
   results->octree = takes_octree(given, results);

@@ -20,9 +20,8 @@ static void help(void) {
     printf("  %-10s %s\n", commands[i]->name, commands[i]->summary);
   printf("\n'voxmend COMMAND --help' shows the options of a command; 'voxmend --version' the version.\n"
          "Meshes: .off .obj .stl .ply; where built with them, also .gltf .glb .3mf .dae .fbx .3ds and more\n"
-         "(Assimp), .step and .iges (OpenCASCADE). Grids: .binvox .npy .raw .rle .nrrd .vdb. '-' is standard "
-         "input or\n"
-         "output.\n\n"
+         "(Assimp), .step and .iges (OpenCASCADE). Grids: .binvox .npy .raw .rle .nrrd, and .vdb (OpenVDB).\n"
+         "'-' is standard input or output.\n\n"
          "Examples:\n"
          "  voxmend info chair.off                              what is wrong with it\n"
          "  voxmend repair chair.off -o fixed.ply               mend what can be mended\n"

@@ -35,7 +35,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
-  if (!cli_field_wanted(&given->field) && !given->sparse)
+  if (!cli_field_wanted(&given->field))
     json_object_set_new(report, "estimate", estimate_json(&results->estimate, results->octree));
   json_object_set_new(report, "grid", cli_json_space(&results->space));
   if (given->dry_run) {
@@ -111,9 +111,7 @@ static void summarize_estimate(const cli_run *cli, const voxelize_request *given
   const uint64_t large = UINT64_C(1) << 26; /* 64 MiB */
   const vxm_estimate *estimate = &results->estimate;
   double mib = 1 << 20;
-  if (given->sparse && given->dry_run)
-    cli_row(cli, "estimate", "an octree: its memory follows the surface");
-  if (given->sparse || (!given->dry_run && estimate->grid_bytes < large))
+  if (!given->dry_run && estimate->grid_bytes < large)
     return;
   if (results->octree)
     cli_row(cli, "estimate", "%.1f MiB of voxels, made as an octree: its memory follows the surface",

@@ -43,8 +43,8 @@ static vxm_status begin_npy(const label_file *file, vxm_error *error) {
 }
 
 static vxm_status begin_nrrd(const label_file *file, vxm_error *error) {
-  return vxm_nrrd_header_write(file->output, "a label per voxel", "ushort", sizeof *file->values, file->space,
-                               error);
+  return vxm_nrrd_header_write(file->output, "a number per voxel, at its centre", "ushort",
+                               sizeof *file->values, file->space, error);
 }
 
 static size_t slice_values(const label_file *file) {

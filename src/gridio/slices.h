@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * A grid file that is written slice by slice, in the format's own layout, without the whole grid. All grid
- * formats are written so; the surface as a mesh needs the whole grid.
+ * formats are written so (.vdb keeps what is set in a tree until the end); the surface as a mesh needs the
+ * whole grid.
  */
 #ifndef VXM_GRIDIO_SLICES_H
 #define VXM_GRIDIO_SLICES_H
