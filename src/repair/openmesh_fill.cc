@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <set>
 
 namespace voxmend {
 
@@ -67,8 +66,6 @@ private:
   bool is_outer_rim_of_sheet(const rim_loop &loop);
   bool triangulate(const rim_loop &loop, double fraction);
   bool has_edge(uint32_t v, uint32_t w) const;
-  uint32_t first_twin(uint32_t v) const;
-  void note_edges(const triangle &face);
   size_t lender(std::vector<size_t> faces) const;
   vxm_vec3 area_of(size_t face) const {
     size_t count;
@@ -86,7 +83,6 @@ private:
 
   /* of the rim in hand */
   twins twins_;
-  std::set<std::pair<uint32_t, uint32_t>> edges_made_; /**< between first twins */
   std::vector<triangle> triangles_;
 
   /* planned */
@@ -130,13 +126,10 @@ std::vector<halfedges::halfedge> filling::find_rims() const {
   return rims;
 }
 
-/* ---- Edges that there are already ---- */
-
-uint32_t filling::first_twin(uint32_t v) const {
-  const auto group = twins_.find(v);
-  return group == twins_.end() ? v : group->second.front();
-}
-
+/**
+ * Whether there is an edge already, also between twins, which become one with these vertices perhaps. New
+ * edges need no look: two loops of a rim have at most one vertex in common.
+ */
 bool filling::has_edge(uint32_t v, uint32_t w) const {
   const auto joined = [this](uint32_t p, uint32_t q) {
     return linked_.mesh().find_halfedge(linked_.vertex_of(p), linked_.vertex_of(q)).is_valid();
@@ -153,19 +146,7 @@ bool filling::has_edge(uint32_t v, uint32_t w) const {
     for (size_t j = 0; j < count_w; j++)
       if (joined(some_v[i], some_w[j]))
         return true;
-  const uint32_t first = first_twin(v), second = first_twin(w);
-  return edges_made_.count(std::minmax(first, second)) > 0;
-}
-
-/** Only between vertices with twins may another loop of the same rim want the same edge. */
-void filling::note_edges(const triangle &face) {
-  for (size_t i = 0; i < 3; i++) {
-    const uint32_t v = face[i], w = face[(i + 1) % 3];
-    if (twins_.count(v) == 0 || twins_.count(w) == 0)
-      continue;
-    const uint32_t first = first_twin(v), second = first_twin(w);
-    edges_made_.insert(std::minmax(first, second));
-  }
+  return false;
 }
 
 /* ---- One hole ---- */
@@ -240,7 +221,6 @@ void filling::fill(const rim_loop &loop, double fraction) {
   for (const auto &t : triangles_) {
     faces_.push_back({loop.vertices[t[0]], loop.vertices[t[1]], loop.vertices[t[2]]});
     lenders_.push_back(tagged);
-    note_edges(faces_.back());
   }
   for (const auto &seam : loop.seams)
     becomes_.unite(seam.first, seam.second);
@@ -260,7 +240,6 @@ void filling::plan() {
   for (size_t i = 0; i < rims.size(); i++) {
     const double fraction = static_cast<double>(i) / static_cast<double>(rims.size());
     check(vxm_progress(soup_->context, "filling holes", fraction, &error), error);
-    edges_made_.clear();
     for (const auto &loop : rim_loops(twins_, linked_, soup_, rims[i]))
       fill(loop, fraction);
   }

@@ -120,14 +120,14 @@ static bool face_has_fan(const vxm_umbrellas *fans, uint32_t face, uint32_t fan)
   return false;
 }
 
-/** Looks at the sides of a fan: false if it would meet a vertex twice in the same direction, or itself. */
+/** Looks at the sides of a fan: false if it would meet a vertex twice in the same direction. */
 static bool note_sides(stitching *s, const merging *m, uint32_t fan) {
   const vxm_umbrellas *fans = s->fans;
-  uint32_t self = number_after(m, fan), first = fans->start[fan], c = first;
+  uint32_t first = fans->start[fan], c = first;
   do {
     uint32_t to = number_after(m, end_fan(fans, c));
     uint32_t from = number_after(m, fans->fan[vxm_umbrellas_previous(fans, c)]);
-    if (to == self || from == self || s->left[to] == s->look || s->entered[from] == s->look)
+    if (s->left[to] == s->look || s->entered[from] == s->look)
       return false;
     s->left[to] = s->entered[from] = s->look;
     c = vxm_umbrellas_after(fans, c);

@@ -5,6 +5,8 @@
 
 #include "../mesh/soups.h"
 
+#include "mesh/weld.h"
+
 typedef struct brute_side {
   uint32_t from, to;
   size_t face;
@@ -131,6 +133,17 @@ static inline double volume_of(const vxm_soup *soup) {
     }
   }
   return sum / 6;
+}
+
+/** Puts the first vertex of each position in the place of the others, as a reader that welds does. */
+static inline void weld_positions(vxm_soup *soup) {
+  uint32_t *map = malloc((soup->vertex_count + 1) * sizeof *map);
+  assert_non_null(map);
+  assert_int_equal(vxm_weld_exact(soup->context, soup->positions, soup->vertex_count, map, NULL, NULL),
+                   VXM_OK);
+  for (size_t c = 0; c < soup->corner_count; c++)
+    soup->indices[c] = map[soup->indices[c]];
+  free(map);
 }
 
 /* ---- Soups ---- */

@@ -470,49 +470,144 @@ static void normal_of(const double *p, const double *q, const double *r, double 
     n[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
 }
 
+/** A hole of four edges, p[0] to p[3], with the face beyond each edge given by its third corner, p[4] to
+ * p[7]. */
+static vxm_soup *hole_of_four(vxm_context *context, const double (*p)[3]) {
+  vxm_soup *soup = new_soup(context);
+  for (int v = 0; v < 8; v++)
+    add_vertex(soup, p[v][0], p[v][1], p[v][2]);
+  for (uint32_t v = 0; v < 4; v++) {
+    add_triangle(soup, (v + 1) % 4, v, 4 + v);
+    add_triangle(soup, (v + 1) % 4, 4 + v, 4 + (v + 1) % 4);
+  }
+  return soup;
+}
+
+/** Which diagonal fills the hole: 0 = from 0 to 2, 1 = from 1 to 3. */
+static int way_taken(const vxm_soup *soup) {
+  outcome out = fill(soup, 0);
+  int uses[8] = {0};
+  /* the outer rim is a hole too, if it is not that of a sheet */
+  for (size_t f = soup->face_count; f < out.soup->face_count; f++) {
+    const uint32_t *t = out.soup->indices + out.soup->offsets[f];
+    for (int c = 0; c < 3 && t[0] < 4 && t[1] < 4 && t[2] < 4; c++)
+      uses[t[c]]++;
+  }
+  assert_int_equal(uses[0] + uses[1] + uses[2] + uses[3], 6);
+  drop(soup, out);
+  return uses[0] == 2 ? 0 : 1;
+}
+
 static void four_edges(void **state) {
   vxm_rng rng = {11};
   int taken[2] = {0, 0};
   for (int i = 0; i < 500; i++) {
-    vxm_soup *soup = new_soup(*state);
-    for (int v = 0; v < 5; v++) {
-      static const double base[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0.5}};
-      add_vertex(soup, base[v][0] + 0.3 * vxm_rng_unit(&rng), base[v][1] + 0.3 * vxm_rng_unit(&rng),
-                 vxm_rng_unit(&rng) - (v == 4 ? 3 : 0));
+    double p[8][3], worst[2] = {1, 1};
+    for (int v = 0; v < 8; v++) {
+      static const double base[8][2] = {{0, 0},    {1, 0},   {1, 1},   {0, 1},
+                                        {0.5, -1}, {2, 0.5}, {0.5, 2}, {-1, 0.5}};
+      for (int a = 0; a < 3; a++)
+        p[v][a] = (a < 2 ? base[v][a] : 0) + (a < 2 ? 0.3 : v < 4 ? 0.4 : 3) * (vxm_rng_unit(&rng) - 0.5);
     }
-    for (uint32_t k = 0; k < 4; k++)
-      add_triangle(soup, (k + 1) % 4, k, 4);
-    const double *p[5];
-    for (size_t v = 0; v < 5; v++)
-      p[v] = vxm_position(soup, v);
-    double worst[2] = {1, 1};
     for (int way = 0; way < 2; way++) {
-      double halves[2][3];
+      double half[3];
       for (int h = 0; h < 2; h++) {
-        int a = way + 2 * h, b = (a + 1) % 4, c = (a + 2) % 4, outer[2][2] = {{a, b}, {b, c}};
-        normal_of(p[a % 4], p[b], p[c], halves[h]);
+        int a = way + 2 * h, b = (a + 1) % 4, c = (a + 2) % 4, outer[2][2] = {{a % 4, b}, {b, c}};
+        normal_of(p[a % 4], p[b], p[c], half);
         for (int e = 0; e < 2; e++) {
           double beyond[3];
-          normal_of(p[outer[e][1]], p[outer[e][0] % 4], p[4], beyond);
+          normal_of(p[outer[e][1]], p[outer[e][0]], p[4 + outer[e][0]], beyond);
           worst[way] = fmin(worst[way], bend(p[a % 4], p[b], p[c], beyond));
         }
       }
-      worst[way] = fmin(worst[way], bend(p[way], p[way + 1], p[way + 2], halves[1]));
+      worst[way] = fmin(worst[way], bend(p[way], p[way + 1], p[way + 2], half));
     }
-    outcome out = fill(soup, 0);
-    assert_int_equal(out.filled, 1);
-    const uint32_t *t = out.soup->indices + soup->corner_count;
-    int uses[4] = {0};
-    for (int c = 0; c < 6; c++)
-      uses[t[c]]++;
-    int way = uses[0] == 2 ? 0 : 1;
+    vxm_soup *soup = hole_of_four(*state, (const double(*)[3])p);
+    int way = way_taken(soup);
     if (fabs(worst[0] - worst[1]) > 1e-6)
       assert_true(worst[way] > worst[1 - way]);
     taken[way]++;
-    drop(soup, out);
     vxm_soup_destroy(soup);
   }
   assert_true(taken[0] > 50 && taken[1] > 50);
+}
+
+/** Where both ways to fill four edges have the same worst bend, the smaller one is taken. */
+static void four_edges_bent_alike(void **state) {
+  vxm_rng rng = {12};
+  int checked = 0;
+  for (int i = 0; i < 300; i++) {
+    double p[8][3], n[2][3], up[3];
+    for (int v = 0; v < 4; v++) {
+      static const double base[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+      for (int a = 0; a < 3; a++)
+        p[v][a] = (a < 2 ? base[v][a] : 0) + 0.4 * vxm_rng_unit(&rng);
+    }
+    double area[2], other[3];
+    for (int way = 0; way < 2; way++) {
+      normal_of(p[0], p[1], p[2 + way], n[way]);
+      double size = sqrt(n[way][0] * n[way][0] + n[way][1] * n[way][1] + n[way][2] * n[way][2]);
+      if (way == 1)
+        normal_of(p[1], p[2], p[3], other);
+      else
+        normal_of(p[0], p[2], p[3], other);
+      area[way] = size + sqrt(other[0] * other[0] + other[1] * other[1] + other[2] * other[2]);
+      for (int a = 0; a < 3; a++)
+        n[way][a] /= size;
+    }
+    for (int a = 0; a < 3; a++)
+      up[a] = n[0][a] + n[1][a];
+    double size = sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
+    /* beyond the first edge a face that folds back alike over both, beyond the others faces that go on */
+    for (int v = 0; v < 4; v++) {
+      const double *q = p[v], *r = p[(v + 1) % 4];
+      double d[3] = {q[0] - r[0], q[1] - r[1], q[2] - r[2]}, sign = (v == 0 ? -1 : 1) / size;
+      for (int a = 0; a < 3; a++) {
+        int b = (a + 1) % 3, c = (a + 2) % 3;
+        p[4 + v][a] = (q[a] + r[a]) / 2 + sign * (up[b] * d[c] - up[c] * d[b]);
+      }
+    }
+    vxm_soup *soup = hole_of_four(*state, (const double(*)[3])p);
+    int way = way_taken(soup);
+    if (fabs(area[0] - area[1]) > 1e-3) {
+      assert_true(area[way] < area[1 - way]);
+      checked++;
+    }
+    vxm_soup_destroy(soup);
+  }
+  assert_true(checked > 100);
+}
+
+/** Anything, separated: whatever touches itself on a rim, the result is manifold. */
+static void holes_in_tangles(void **state) {
+  vxm_rng rng = {13};
+  int64_t filled = 0, left = 0;
+  for (int i = 0; i < 1500; i++) {
+    vxm_soup *soup, *apart;
+    if (i % 2) {
+      uint8_t full[27];
+      for (int c = 0; c < 27; c++)
+        full[c] = vxm_rng_below(&rng, 2) == 0;
+      vxm_soup *whole = cell_surface(*state, 3, full);
+      soup = new_soup(*state);
+      for (size_t v = 0; v < whole->vertex_count; v++)
+        add_vertex(soup, vxm_position(whole, v)[0], vxm_position(whole, v)[1], vxm_position(whole, v)[2]);
+      for (size_t f = 0; f < whole->face_count; f++)
+        if (vxm_rng_below(&rng, 3) > 0)
+          add_face(soup, whole->indices + whole->offsets[f], 4);
+      vxm_soup_destroy(whole);
+    } else
+      soup = tangle(*state, &rng, 5 + (size_t)vxm_rng_below(&rng, 10), 40, i % 4 ? 100 : 3);
+    int64_t split, stitched;
+    assert_int_equal(vxm_separate(&apart, &split, &stitched, soup, NULL), VXM_OK);
+    outcome out = fill(apart, 0);
+    filled += out.filled;
+    left += out.left;
+    drop(apart, out);
+    vxm_soup_destroy(apart);
+    vxm_soup_destroy(soup);
+  }
+  assert_true(filled > 2000 && left > 100);
 }
 
 static void tags_of_new_faces(void **state) {
@@ -536,6 +631,35 @@ static void tags_of_new_faces(void **state) {
   assert_same_soup(plain, out.soup);
   vxm_soup_destroy(plain);
   drop(soup, out);
+  vxm_soup_destroy(soup);
+}
+
+/** Filling beside sheets, whose faces are separated too, leaves all of it manifold for readers that weld. */
+static void sheets_beside_a_hole(void **state) {
+  outline o = l_shape();
+  turning turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  vxm_soup *soup = open_prism(*state, &o, 1, &turn, 0);
+  free(o.points);
+  /* five fins about one edge */
+  uint32_t first = (uint32_t)soup->vertex_count;
+  add_vertex(soup, 10, 0, 0);
+  add_vertex(soup, 10, 0, 1);
+  for (uint32_t k = 0; k < 5; k++) {
+    add_vertex(soup, 10 + cos(k), sin(k), 0);
+    add_triangle(soup, first, first + 1, first + 2 + k);
+  }
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.level = VXM_LEVEL_CLOSED;
+  options.fill = VXM_FILL_MINIMAL;
+  vxm_repair_report report;
+  vxm_soup *out = repaired(soup, &options, &report);
+  assert_int_equal(count_of(&report, "closing"), 4);
+  assert_true(report.open_parts > 0);
+  weld_positions(out);
+  brute_report brute = look_brute(out);
+  assert_true(brute.manifold);
+  assert_true(brute.boundary_edges >= 11);
+  vxm_soup_destroy(out);
   vxm_soup_destroy(soup);
 }
 
@@ -647,23 +771,16 @@ int main(void) {
     return 77;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(opinions_agree),
-      cmocka_unit_test(blocks_are_closed),
-      cmocka_unit_test(any_soup_is_inspected),
-      cmocka_unit_test(nothing_is_printed),
-      cmocka_unit_test(from_many_threads),
-      cmocka_unit_test(flat_holes),
-      cmocka_unit_test(long_flat_holes),
-      cmocka_unit_test(holes_in_a_sheet),
-      cmocka_unit_test(holes_in_a_sphere),
-      cmocka_unit_test(ends_of_tubes),
-      cmocka_unit_test(edges_that_exist),
-      cmocka_unit_test(kept_open),
-      cmocka_unit_test(sizes_of_holes),
-      cmocka_unit_test(four_edges),
-      cmocka_unit_test(tags_of_new_faces),
-      cmocka_unit_test(must_be_manifold),
-      cmocka_unit_test(failures),
+      cmocka_unit_test(opinions_agree),        cmocka_unit_test(blocks_are_closed),
+      cmocka_unit_test(any_soup_is_inspected), cmocka_unit_test(nothing_is_printed),
+      cmocka_unit_test(from_many_threads),     cmocka_unit_test(flat_holes),
+      cmocka_unit_test(long_flat_holes),       cmocka_unit_test(holes_in_a_sheet),
+      cmocka_unit_test(holes_in_a_sphere),     cmocka_unit_test(ends_of_tubes),
+      cmocka_unit_test(edges_that_exist),      cmocka_unit_test(kept_open),
+      cmocka_unit_test(sizes_of_holes),        cmocka_unit_test(four_edges),
+      cmocka_unit_test(four_edges_bent_alike), cmocka_unit_test(holes_in_tangles),
+      cmocka_unit_test(tags_of_new_faces),     cmocka_unit_test(sheets_beside_a_hole),
+      cmocka_unit_test(must_be_manifold),      cmocka_unit_test(failures),
       cmocka_unit_test(shared_meshes),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Soups made manifold. */
 #include "manifold.h"
+#include "outlines.h"
 #include "repairing.h"
 
 #include "../mesh/shared.h"
@@ -94,33 +95,69 @@ static void cubes_touch_along_an_edge(void **state) {
   vxm_soup_destroy(soup);
 }
 
-/** Parts that overlap stay whole, also where one begins within the other. */
+/** Parts that overlap stay whole, also where one begins within the other, and along more than one edge. */
 static void prisms_overlap_at_an_edge(void **state) {
   vxm_rng rng = {2};
   for (int i = 0; i < 300; i++) {
-    /* wedges about the z axis, from one angle to another, all with the axis as an edge */
+    /* wedges about the z axis, from one angle to another, all with the axis as their edge */
     size_t wedges = 2 + (size_t)vxm_rng_below(&rng, 3);
+    uint32_t levels = 1 + (uint32_t)vxm_rng_below(&rng, 3);
     vxm_soup *soup = new_soup(*state);
-    add_vertex(soup, 0, 0, 0);
-    add_vertex(soup, 0, 0, 1);
+    for (uint32_t z = 0; z <= levels; z++)
+      add_vertex(soup, 0, 0, z);
     for (size_t w = 0; w < wedges; w++) {
       double from = 6.28 * vxm_rng_unit(&rng), to = from + 0.2 + 2.5 * vxm_rng_unit(&rng),
              size = 1 + (double)w;
-      uint32_t v = (uint32_t)soup->vertex_count;
-      for (int z = 0; z < 2; z++) {
+      uint32_t v = (uint32_t)soup->vertex_count, top = v + 2 * levels;
+      for (uint32_t z = 0; z <= levels; z++) {
         add_vertex(soup, size * cos(from), size * sin(from), z);
         add_vertex(soup, size * cos(to), size * sin(to), z);
       }
-      uint32_t faces[3][4] = {{0, v, v + 2, 1}, {v, v + 1, v + 3, v + 2}, {v + 1, 0, 1, v + 3}};
-      for (int f = 0; f < 3; f++)
-        add_face(soup, faces[f], 4);
+      for (uint32_t z = 0; z < levels; z++) {
+        uint32_t at = v + 2 * z;
+        uint32_t faces[3][4] = {
+            {z, at, at + 2, z + 1}, {at, at + 1, at + 3, at + 2}, {at + 1, z, z + 1, at + 3}};
+        for (int f = 0; f < 3; f++)
+          add_face(soup, faces[f], 4);
+      }
       add_triangle(soup, 0, v + 1, v);
-      add_triangle(soup, 1, v + 2, v + 3);
+      add_triangle(soup, levels, top, top + 1);
     }
     vxm_soup *mixed = shuffled(soup, &rng, 0, false);
     outcome out = check(mixed);
     assert_int_equal(count_components_brute(out.soup), wedges);
     assert_int_equal(look_brute(out.soup).boundary_edges, 0);
+    drop(out);
+    vxm_soup_destroy(mixed);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** Two rooms, each with its half of the wall between them, whatever triangles the halves are of. */
+static void rooms_with_a_wall_each(void **state) {
+  vxm_rng rng = {11};
+  for (int i = 0; i < 300; i++) {
+    vxm_soup *soup = new_soup(*state);
+    static const uint8_t full[2][8] = {{1}, {0, 1}};
+    for (int room = 0; room < 2; room++) {
+      vxm_soup *one = cell_surface(*state, 2, full[room]);
+      for (size_t v = 0; v < one->vertex_count && room == 0; v++)
+        add_vertex(soup, vxm_position(one, v)[0], vxm_position(one, v)[1], vxm_position(one, v)[2]);
+      for (size_t f = 0; f < one->face_count; f++)
+        add_face(soup, one->indices + one->offsets[f], 4);
+      vxm_soup_destroy(one);
+    }
+    turning turn = random_turning(&rng);
+    for (size_t v = 0; v < soup->vertex_count; v++) {
+      double p[3] = {soup->positions[3 * v], soup->positions[3 * v + 1], soup->positions[3 * v + 2]};
+      for (int a = 0; a < 3; a++)
+        soup->positions[3 * v + (size_t)a] = turn.m[a][0] * p[0] + turn.m[a][1] * p[1] + turn.m[a][2] * p[2];
+    }
+    vxm_soup *mixed = shuffled(soup, &rng, 0, true);
+    outcome out = check(mixed);
+    assert_int_equal(look_brute(out.soup).boundary_edges, 0);
+    assert_int_equal(count_components_brute(out.soup), 2);
+    assert_int_equal(out.split, 4);
     drop(out);
     vxm_soup_destroy(mixed);
     vxm_soup_destroy(soup);
@@ -228,6 +265,25 @@ static void turned_faces(void **state) {
     vxm_soup *soup = cell_surface(*state, 3, full), *mixed = shuffled(soup, &rng, 0.2, i % 2);
     drop(check(mixed));
     vxm_soup_destroy(mixed);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** What is separated stays so for readers that weld. */
+static void repaired_to_manifold(void **state) {
+  vxm_rng rng = {10};
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.level = VXM_LEVEL_MANIFOLD;
+  for (int i = 0; i < 600; i++) {
+    uint8_t full[27];
+    for (int c = 0; c < 27; c++)
+      full[c] = vxm_rng_below(&rng, 2) == 0;
+    vxm_soup *soup = i % 2 ? cell_surface(*state, 3, full)
+                           : tangle(*state, &rng, 5 + (size_t)vxm_rng_below(&rng, 20), 40, 100);
+    vxm_soup *out = repaired(soup, &options, NULL);
+    weld_positions(out);
+    assert_true(look_brute(out).manifold);
+    vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
   }
 }
@@ -431,11 +487,13 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cubes_touch_along_an_edge),
       cmocka_unit_test(prisms_overlap_at_an_edge),
+      cmocka_unit_test(rooms_with_a_wall_each),
       cmocka_unit_test(wall_between_two_rooms),
       cmocka_unit_test(blocks_of_cells),
       cmocka_unit_test(edge_twice_between_two_vertices),
       cmocka_unit_test(tangles),
       cmocka_unit_test(turned_faces),
+      cmocka_unit_test(repaired_to_manifold),
       cmocka_unit_test(panels_are_stitched),
       cmocka_unit_test(panels_of_blocks),
       cmocka_unit_test(stitches_refused),
