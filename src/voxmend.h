@@ -786,10 +786,11 @@ typedef struct vxm_distance_report {
 } vxm_distance_report;
 
 /**
- * Computes the distance from the centre of each voxel to the faces of the mesh, in model units: exact within
- * the band, to some 1e-6 voxel and the rounding of a 32-bit float; beyond it, plus or minus the width of the
- * band, which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With
- * a band, time follows surface times band, beside that of the solid.
+ * Computes the distance from the centre of each voxel to the faces of the mesh, in model units. Within the band
+ * it is exact: off by some 1e-14 of the distance and the longest edges, and then rounded to the nearest 32-bit
+ * float (which holds 1e-5 voxel up to 168 voxels). Beyond, it is plus or minus the width of the band, which is
+ * `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With a band, time
+ * follows surface times band, beside that of the solid.
  *
  * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
  * @param report  may be NULL
