@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** generate_samples FOLDER: writes every sample model as OFF, rocket.off, and truth.tsv into a folder. */
+/**
+ * generate_samples FOLDER: writes every sample model as OFF, rocket.off, and truth.tsv into a folder; and a
+ * stool of several parts as stool.glb and stool.step.
+ */
 #include "models.h"
+#include "scenes.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -40,6 +44,18 @@ static void write_truth(FILE *file, const model *entry) {
   fprintf(file, "\t%s\n", entry->text);
 }
 
+static bool write_scene(bool (*write)(FILE *), const char *folder, const char *name) {
+  char path[4096];
+  int length = snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = length > 0 && (size_t)length < sizeof path ? fopen(path, "wb") : NULL;
+  bool good = file && write(file);
+  if (file)
+    good = fclose(file) == 0 && good;
+  if (!good)
+    fprintf(stderr, "generate_samples: cannot write %s\n", path);
+  return good;
+}
+
 int main(int argc, char **argv) {
   if (argc != 2) {
     fprintf(stderr, "usage: generate_samples FOLDER\n");
@@ -62,6 +78,8 @@ int main(int argc, char **argv) {
     write_truth(truth, &models[i]);
   }
   good = good && write_shape(model_rocket(), argv[1], "rocket", true);
+  good = good && write_scene(scene_write_glb, argv[1], "stool.glb");
+  good = good && write_scene(scene_write_step, argv[1], "stool.step");
   good = !ferror(truth) && good;
   return fclose(truth) == 0 && good ? 0 : 1;
 }

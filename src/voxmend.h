@@ -146,18 +146,42 @@ VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const v
                                    vxm_error *error);
 
 /**
- * Reads a mesh file: OFF, OBJ, STL or PLY, told by content first and by name second.
- * What a damaged file still holds is read, and each kind of damage becomes a warning of the mesh.
+ * Reads a mesh file, its format told by content first and by name second: OFF, OBJ, STL and PLY; glTF, 3MF,
+ * COLLADA, FBX, 3DS and more where voxmend was built with Assimp; STEP and IGES where it was built with
+ * OpenCASCADE. What the libraries read is read in a process of its own (doc/formats.md); names of parts
+ * become face tags. What a damaged file still holds is read, and each kind of damage becomes a warning of the
+ * mesh.
  *
  * @param path file to read; "-" reads standard input. A file is mapped: nobody may shorten it meanwhile
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond 2^32 - 2
- * vertices; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * vertices; VXM_ERROR_UNAVAILABLE if the library that reads it is not there; VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error);
 
-/** As vxm_mesh_read, from memory. `name` is used in messages and for its extension. */
+/**
+ * As vxm_mesh_read, from memory. `name` is used in messages and for its extension; if it is a path, files
+ * that the mesh refers to are looked for beside it.
+ */
 VXM_API vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
                                         const char *name, vxm_error *error);
+
+typedef struct vxm_mesh_read_options {
+  uint32_t version;   /**< 1 */
+  const char *format; /**< as vxm_mesh_format says, such as "off" or "step"; NULL = by content, then name */
+  double deflection;  /**< STEP and IGES: how far triangles may lie from a curved surface, as a part of the
+                         model's diagonal, at most 1; 0 = 0.001 */
+} vxm_mesh_read_options;
+
+#define VXM_MESH_READ_OPTIONS_INIT \
+  { 1, NULL, 0.0 }
+
+/* As the two above, with options. @return also VXM_ERROR_ARGUMENT for options out of range */
+VXM_API vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, const char *path,
+                                      const vxm_mesh_read_options *options, vxm_error *error);
+VXM_API vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *context, const void *data,
+                                             size_t size, const char *name,
+                                             const vxm_mesh_read_options *options, vxm_error *error);
 
 typedef struct vxm_mesh_write_options {
   uint32_t version;   /**< 1 */
@@ -188,9 +212,10 @@ VXM_API const double *vxm_mesh_vertices(const vxm_mesh *mesh);
 VXM_API const uint64_t *vxm_mesh_offsets(const vxm_mesh *mesh);
 /** 0-based vertices of all corners, face after face. */
 VXM_API const uint32_t *vxm_mesh_indices(const vxm_mesh *mesh);
-/** Number of face tags (names of OBJ groups and materials); 0 if the file had none. */
+/** Number of face tags (names of groups or parts, and of materials); 0 if the file had none. */
 VXM_API int64_t vxm_mesh_tag_count(const vxm_mesh *mesh);
-/** Name of a tag, UTF-8 as in the file, "group" or "group/material". */
+/** Name of a tag, UTF-8 as in the file, "group" or "group/material"; parts of one name are numbered "name#1",
+ * "name#2". */
 VXM_API const char *vxm_mesh_tag_name(const vxm_mesh *mesh, int64_t tag);
 /** face_count tag numbers, or NULL if there are no tags. */
 VXM_API const uint32_t *vxm_mesh_face_tags(const vxm_mesh *mesh);
@@ -272,14 +297,17 @@ typedef struct vxm_repair_options {
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
   bool single_precision; /**< keep to positions that 32-bit floats hold, as .stl files do */
   bool part_changes;     /**< keep account of every part: vxm_mesh_part_changes */
-  double max_change; /**< fail where the volume of a closed part, or the bounds of one, change by more than
-                        this fraction (of its volume, of its diagonal); 0 = do not look */
+  double max_change;  /**< fail where the volume of a closed part, or the bounds of one, change by more than
+                         this fraction (of its volume, of its diagonal); 0 = do not look */
+  int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
+  double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
+                         The component with the largest area always stays */
 } vxm_repair_options;
 
 #define VXM_REPAIR_OPTIONS_INIT                                                                           \
   {                                                                                                       \
     1, VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_FILL_FAN, false, 0.0, 0.0, false, false, \
-        0.0                                                                                               \
+        0.0, 0, 0.0                                                                                       \
   }
 
 #define VXM_REPAIR_PASSES_MAX 24
@@ -475,19 +503,21 @@ VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
 VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
 
 /**
- * Reads a grid: .binvox, .npy, .raw (with its .json beside it) or .rle, told by content first and by name
- * second.
+ * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd or .vdb, told by content first
+ * and by name second. Of .vdb, the first grid of bool, mask or float: set where it is active (and true),
+ * below 0 in a level set, above 1/2 in a fog volume.
  * "-" reads standard input (not .raw).
  *
- * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
- *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_UNAVAILABLE for packed values without
+ *         the library that unpacks them (zlib for .nrrd, OpenVDB for .vdb); VXM_ERROR_RANGE,
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
 
 typedef struct vxm_grid_write_options {
-  uint32_t version; /**< 1 */
-  const char
-      *format; /**< "binvox", "npy", "raw", "rle", or "obj", "ply", "stl", "off"; NULL = by extension */
+  uint32_t version;   /**< 1 */
+  const char *format; /**< "binvox", "npy", "raw", "rle", "nrrd", "vdb", or "obj", "ply", "stl", "off"; NULL =
+                         by extension */
 } vxm_grid_write_options;
 
 #define VXM_GRID_WRITE_OPTIONS_INIT \
@@ -499,7 +529,8 @@ typedef struct vxm_grid_write_options {
  * side.
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format, or .binvox with voxels that are not cubes;
- * VXM_ERROR_IO; VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * VXM_ERROR_UNAVAILABLE for .vdb without OpenVDB; VXM_ERROR_IO; VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_grid_write(const vxm_grid *grid, const char *path,
                                   const vxm_grid_write_options *options, vxm_error *error);
@@ -737,7 +768,7 @@ typedef struct vxm_coverage_options {
   uint32_t version;   /**< 1 */
   int subdivision;    /**< 2, 4 or 8: a voxel is cut into so many sub-voxels along each axis */
   vxm_scalar scalar;  /**< VXM_FLOAT32: the fraction, 0 to 1; VXM_UINT8: 255 times that, rounded, halves up */
-  const char *format; /**< of a file: "npy" or "nrrd"; NULL = by extension */
+  const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
 } vxm_coverage_options;
 
 #define VXM_COVERAGE_OPTIONS_INIT \
@@ -763,8 +794,8 @@ VXM_API vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report,
                                       const vxm_space *space, const vxm_coverage_options *options,
                                       vxm_error *error);
 
-/** As vxm_model_coverage, into a file: .npy (with its .json beside it) or .nrrd; as much at a time as the
- * memory limit allows. @return as vxm_model_coverage and vxm_grid_write */
+/** As vxm_model_coverage, into a file: .npy (with its .json beside it), .nrrd or .vdb; as much at a time as
+ * the memory limit allows. @return as vxm_model_coverage and vxm_grid_write */
 VXM_API vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_coverage_options *options, vxm_error *error);
@@ -773,7 +804,7 @@ typedef struct vxm_distance_options {
   uint32_t version;   /**< 1 */
   bool is_unsigned;   /**< false = negative where the centre is inside the solid */
   double band;        /**< voxels, of the longest side; 0 = everywhere */
-  const char *format; /**< of a file: "npy" or "nrrd"; NULL = by extension */
+  const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
 } vxm_distance_options;
 
 #define VXM_DISTANCE_OPTIONS_INIT \
@@ -803,11 +834,71 @@ VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report
                                       const vxm_space *space, const vxm_distance_options *options,
                                       vxm_error *error);
 
-/** As vxm_model_distance, into a file: .npy (with its .json beside it) or .nrrd; as much at a time as the
- * memory limit allows. @return as vxm_model_distance and vxm_grid_write */
+/** As vxm_model_distance, into a file: .npy (with its .json beside it), .nrrd or .vdb; as much at a time as
+ * the memory limit allows. @return as vxm_model_distance and vxm_grid_write */
 VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
+
+/* ---- Labels: which part, group or material a voxel belongs to ---- */
+
+/** What faces are labelled by. */
+typedef enum vxm_label_by {
+  VXM_LABEL_PART = 0, /**< connected components */
+  VXM_LABEL_GROUP,    /**< groups, or parts named in the file: of a face tag what lies before the first '/' */
+  VXM_LABEL_MATERIAL  /**< materials: what lies behind it */
+} vxm_label_by;
+
+typedef struct vxm_label_options {
+  uint32_t version; /**< 1 */
+  vxm_label_by by;
+  const char *format; /**< of a file: "npy", "nrrd" or "binvox"; NULL = by extension */
+} vxm_label_options;
+
+#define VXM_LABEL_OPTIONS_INIT \
+  { 1, VXM_LABEL_PART, NULL }
+
+typedef struct vxm_label_report {
+  vxm_voxelize_report voxelize; /**< of the set voxels */
+  int64_t labels;               /**< numbered from 1 in the order of their first faces */
+  int64_t contested; /**< voxels that several labels claim: the one with the nearest face has them */
+  int64_t unclaimed; /**< voxels that none claims: they have the label of the nearest face of all */
+} vxm_label_report;
+
+/**
+ * Labels the voxels of a model: 0 where none is set, else the part, group or material that it belongs to. Set
+ * are the voxels that vxm_model_voxelize sets. A label claims the voxels whose centres are inside its own
+ * faces, voxelized alone as the options of the model say with VXM_MODE_SOLID, within their bounds. Of several
+ * labels that claim a voxel, or of all where none does, it has the one with the face nearest to its centre;
+ * among equally near ones, to seven digits, the lowest. The number of threads makes no difference.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_RANGE beyond 65535 labels. After a failure the values are
+ * unspecified
+ */
+VXM_API vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_model *model,
+                                    const vxm_space *space, const vxm_label_options *options,
+                                    vxm_error *error);
+
+/**
+ * As vxm_model_labels, into a file: .npy, .nrrd, or .binvox (version 2), which holds 255 labels at most. The
+ * table of labels goes into a .json beside it. All values are in memory meanwhile. @return as
+ * vxm_model_labels and vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,
+                                          const char *path, const vxm_label_options *options,
+                                          vxm_error *error);
+
+/** Number of labels of the last labels made of the model; 0 if there are none. */
+VXM_API int64_t vxm_model_label_count(const vxm_model *model);
+/** Name of label 1 to vxm_model_label_count: that of the group or material, or "unnamed"; of a part that of
+ * its tag, or of its group, if its faces share one, else "part " and its number. Names may repeat. "" for
+ * others. */
+VXM_API const char *vxm_model_label_name(const vxm_model *model, int64_t label);
+/** Voxels that have a label. */
+VXM_API int64_t vxm_model_label_voxels(const vxm_model *model, int64_t label);
 
 /** Warnings from the last grid or file made of the model, one line each. */
 VXM_API int64_t vxm_model_warning_count(const vxm_model *model);
@@ -879,7 +970,8 @@ typedef void (*vxm_sparse_fn)(const vxm_sparse_piece *piece, void *payload);
 /** Calls for each piece, in Morton order. */
 VXM_API void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload);
 
-/** As vxm_grid_write, slice by slice: .binvox, .npy, .raw and .rle. */
+/** As vxm_grid_write, slice by slice, but for .vdb, whose tree is made of the octree's pieces; not as a mesh.
+ */
 VXM_API vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path,
                                     const vxm_grid_write_options *options, vxm_error *error);
 

@@ -94,32 +94,59 @@ vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_
   return VXM_OK;
 }
 
-vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
-                                const char *name, vxm_error *error) {
+/** NULL options are fine. */
+static vxm_status check_read_options(const vxm_mesh_read_options *options, vxm_error *error) {
+  if (options && options->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "mesh: options version %" PRIu32 " is unknown; use the initializer", options->version);
+  if (options && !(options->deflection >= 0 && options->deflection <= 1))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: deflection %g is not between 0 and 1",
+                    options->deflection);
+  return VXM_OK;
+}
+
+vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
+                                     const char *name, const vxm_mesh_read_options *options,
+                                     vxm_error *error) {
   if (out)
     *out = NULL;
   if (!out || (!data && size > 0))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
-  return vxm_meshio_read(out, context, data, size, name ? name : "<memory>", error);
+  vxm_status status = check_read_options(options, error);
+  if (status != VXM_OK)
+    return status;
+  return vxm_meshio_read_with(out, context, data, size, name ? name : "<memory>", options, error);
 }
 
-vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error) {
+vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
+                                const char *name, vxm_error *error) {
+  return vxm_mesh_read_memory_with(out, context, data, size, name, NULL, error);
+}
+
+vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, const char *path,
+                              const vxm_mesh_read_options *options, vxm_error *error) {
   if (out)
     *out = NULL;
   if (!out || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
   vxm_context *owner;
-  vxm_status status = vxm_context_acquire(&owner, context, error);
+  vxm_status status = check_read_options(options, error);
+  if (status == VXM_OK)
+    status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
     return status;
   vxm_input input;
   status = vxm_input_open(&input, owner, path, error);
   if (status == VXM_OK) {
-    status = vxm_meshio_read(out, owner, input.data, input.size, input.name, error);
+    status = vxm_meshio_read_with(out, owner, input.data, input.size, input.name, options, error);
     vxm_input_close(&input);
   }
   vxm_context_release(owner);
   return status;
+}
+
+vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error) {
+  return vxm_mesh_read_with(out, context, path, NULL, error);
 }
 
 vxm_status vxm_mesh_write(const vxm_mesh *mesh, const char *path, const vxm_mesh_write_options *options,

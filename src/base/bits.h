@@ -65,6 +65,16 @@ static inline bool vxm_lines_equal(const uint64_t *a, const uint64_t *b) {
   return (unlike[0] | unlike[1]) == 0;
 }
 
+/** Bit c of byte r goes to bit r of byte c: blocks of 1, 2 and 4 bits change places across the diagonal. */
+static inline uint64_t vxm_transpose8(uint64_t m) {
+  uint64_t change = (m ^ m >> 7) & UINT64_C(0x00aa00aa00aa00aa);
+  m ^= change ^ change << 7;
+  change = (m ^ m >> 14) & UINT64_C(0x0000cccc0000cccc);
+  m ^= change ^ change << 14;
+  change = (m ^ m >> 28) & UINT64_C(0x00000000f0f0f0f0);
+  return m ^ change ^ change << 28;
+}
+
 /** Bit c of word r goes to bit r of word c: blocks of 32, 16, ... 1 change places across the diagonal. */
 static inline void vxm_transpose64(uint64_t block[64]) {
   uint64_t mask = UINT64_C(0x00000000ffffffff);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/context.h"
 #include "base/context_struct.h"
+#include "base/threads.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -250,6 +251,14 @@ vxm_status vxm_memory_check(const vxm_context *context, uint64_t bytes, const ch
   return fail_limit(error, what, bytes, context->limit, used);
 }
 
+vxm_status vxm_memory_take(vxm_context *context, size_t bytes, vxm_error *error) {
+  return reserve(context, bytes, error) ? VXM_OK : VXM_ERROR_MEMORY_LIMIT;
+}
+
+void vxm_memory_give(vxm_context *context, size_t bytes) {
+  unreserve(context, bytes);
+}
+
 vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
                     vxm_error *error) {
   if (needed <= *capacity)
@@ -270,7 +279,7 @@ vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t
 }
 
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error) {
-  if (!context->progress || context->progress(phase, fraction, context->payload) == 0)
+  if (!context->progress || vxm_is_worker() || context->progress(phase, fraction, context->payload) == 0)
     return VXM_OK;
   return vxm_fail(error, VXM_ERROR_CANCELLED, "cancelled while %s", phase);
 }

@@ -35,13 +35,23 @@ size_t vxm_memory_left(const vxm_context *context);
 vxm_status vxm_memory_check(const vxm_context *context, uint64_t bytes, const char *what, vxm_error *error);
 
 /**
+ * Counts bytes that a library takes on behalf of this context, before it does.
+ *
+ * @return VXM_OK; VXM_ERROR_MEMORY_LIMIT, then they are not counted
+ */
+vxm_status vxm_memory_take(vxm_context *context, size_t bytes, vxm_error *error);
+/** Counts them no longer. */
+void vxm_memory_give(vxm_context *context, size_t bytes);
+
+/**
  * Makes room for at least `needed` elements in a growing array (doubling), and updates *capacity.
  * `*array` is a block of this context or NULL.
  */
 vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
                     vxm_error *error);
 
-/** Reports progress from the calling thread; VXM_ERROR_CANCELLED if the callback asks to stop. */
+/** Reports progress; VXM_ERROR_CANCELLED if the callback asks to stop. It is called from the thread that made
+ * the call: in a loop of vxm_parallel the other threads report nothing. */
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error);
 
 #ifdef __cplusplus

@@ -208,6 +208,11 @@ vxm_status vxm_output_open_readable(vxm_output **out, vxm_context *context, cons
     return status;
   const char *folder = getenv("TMPDIR");
   int waiting = open(folder && *folder ? folder : "/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (waiting >= 0 && waiting <= STDERR_FILENO) { /* where standard output is closed its number is free */
+    int higher = fcntl(waiting, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    close(waiting);
+    waiting = higher;
+  }
   if (waiting < 0) {
     vxm_fail_errno(error, path, "cannot write a temporary file for it; set TMPDIR");
     vxm_output_abort(*out);
@@ -281,6 +286,27 @@ void vxm_output_printf(vxm_output *output, const char *format, ...) {
   va_end(arguments);
   if (written > 0)
     vxm_output_advance(output, (size_t)written < ROOM_MAX ? (size_t)written : ROOM_MAX - 1);
+}
+
+bool vxm_output_can_patch(const vxm_output *output) {
+  return output->temporary != NULL;
+}
+
+void vxm_output_patch(vxm_output *output, uint64_t offset, const void *data, size_t size) {
+  flush(output);
+  const char *from = data;
+  while (size > 0 && !output->failure) {
+    ssize_t done = pwrite(output->descriptor, from, size, (off_t)offset);
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done < 0) {
+      output->failure = errno;
+      return;
+    }
+    from += done;
+    offset += (uint64_t)done;
+    size -= (size_t)done;
+  }
 }
 
 bool vxm_output_failed(const vxm_output *output) {

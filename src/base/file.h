@@ -43,6 +43,10 @@ void vxm_output_printf(vxm_output *output, const char *format, ...) VXM_PRINTF(2
  * were used. */
 char *vxm_output_reserve(vxm_output *output, size_t room);
 void vxm_output_advance(vxm_output *output, size_t used);
+/** Whether what was written can be replaced: a file can, a pipe or device cannot. */
+bool vxm_output_can_patch(const vxm_output *output);
+/** Replaces `size` bytes from `offset` on, all of which have been written. */
+void vxm_output_patch(vxm_output *output, uint64_t offset, const void *data, size_t size);
 /** Whether an earlier write failed: long writers may stop early. */
 bool vxm_output_failed(const vxm_output *output);
 /** Closes and renames, and frees the output either way. Nothing is left behind on failure. */

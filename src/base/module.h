@@ -30,13 +30,22 @@ typedef struct vxm_module_need {
   const char *purpose; /**< what asks for it, such as "writing .vdb files" */
 } vxm_module_need;
 
+enum { VXM_MODULE_PATH_MAX = 4096 };
+
 /**
- * Opens a module, which then stays open. It is looked for in $VOXMEND_MODULES, beside the library, and where
- * it was installed.
+ * Opens a module, which then stays open. It is looked for in $VOXMEND_MODULES alone if that is set, else
+ * beside the library and where it was installed.
  *
  * @return VXM_OK; VXM_ERROR_UNAVAILABLE if it is missing, cannot be loaded, or belongs to another version
  */
 vxm_status vxm_module_open(const vxm_module **out, const vxm_module_need *need, vxm_error *error);
+
+/* The two steps of it, where another process is to open the module. */
+
+/** Where a module lies. */
+vxm_status vxm_module_find(char path[VXM_MODULE_PATH_MAX], const vxm_module_need *need, vxm_error *error);
+/** Opens the module at a path; `purpose` is what asks for it. */
+vxm_status vxm_module_load(const vxm_module **out, const char *path, const char *purpose, vxm_error *error);
 
 #ifdef __cplusplus
 }

@@ -45,7 +45,14 @@ static void run_tasks(vxm_pool *pool, int worker) {
   }
 }
 
+static _Thread_local bool is_worker;
+
+bool vxm_is_worker(void) {
+  return is_worker;
+}
+
 static void *worker_main(void *argument) {
+  is_worker = true;
   worker_start start = *(worker_start *)argument;
   free(argument);
   vxm_pool *pool = start.pool;

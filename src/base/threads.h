@@ -16,6 +16,9 @@ typedef void (*vxm_task_fn)(size_t task, int worker, void *payload);
  */
 void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void *payload);
 
+/** Whether this is one of the threads that vxm_parallel starts, rather than one that called it. */
+bool vxm_is_worker(void);
+
 /** First element of slice `index` of `total` elements cut into `slices` nearly equal slices. */
 static inline size_t vxm_slice_begin(size_t total, size_t slices, size_t index) {
   size_t base = total / slices, rest = total % slices;

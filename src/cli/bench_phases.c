@@ -11,7 +11,8 @@
 
 vxm_status bench_stage_open(bench_stage *stage) {
   vxm_error *error = &stage->cli->error;
-  vxm_status status = vxm_mesh_read(&stage->raw, stage->cli->context, stage->path, error);
+  vxm_status status =
+      vxm_mesh_read_with(&stage->raw, stage->cli->context, stage->path, &stage->cli->read, error);
   return status == VXM_OK ? vxm_mesh_repair(&stage->mesh, NULL, stage->raw, NULL, error) : status;
 }
 
@@ -71,7 +72,8 @@ static void tell_memset(bench_output *out, const bench_stage *stage) {
 }
 
 static vxm_status run_load(bench_stage *stage) {
-  return vxm_mesh_read(&stage->made_mesh, stage->cli->context, stage->path, &stage->cli->error);
+  return vxm_mesh_read_with(&stage->made_mesh, stage->cli->context, stage->path, &stage->cli->read,
+                            &stage->cli->error);
 }
 
 static void tell_load(bench_output *out, const bench_stage *stage) {

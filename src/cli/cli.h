@@ -17,7 +17,15 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_WRONG_USAGE = 2, CLI_WARNED = 3 };
 #define CLI_PRINTF(text, first) __attribute__((format(printf, text, first)))
 
 /** Keys of options without a letter. The common options take the numbers below CLI_KEY_COMMAND. */
-enum { CLI_KEY_COMMON = 256, CLI_KEY_COMMAND = 512 };
+enum { CLI_KEY_COMMON = 256, CLI_KEY_DEFLECTION = 511, CLI_KEY_COMMAND = 512 };
+
+/** For the tables of commands that read meshes; cli_next_option puts its value into cli->read. */
+#define CLI_OPTION_DEFLECTION                                                    \
+  {                                                                              \
+    CLI_KEY_DEFLECTION, "deflection", "F",                                       \
+        "STEP and IGES: how far triangles may lie from a curved surface, as a\n" \
+        "part of the model's diagonal [0.001]"                                   \
+  }
 
 /** What cli_next_option returns beside an option's key, and functions that read arguments return. */
 enum { CLI_END = 0, CLI_STOP = -1 };
@@ -66,6 +74,7 @@ struct cli_run {
   const char *report;
   const char *progress;
   vxm_context_options limits;
+  vxm_mesh_read_options read;
 
   vxm_context *context; /**< made by cli_start */
   vxm_error error;      /**< hand &cli->error to the library, then cli_fail */
@@ -207,34 +216,47 @@ int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *outp
 /** Finds, lists (NULL if that is not wanted) and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */
 int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, const vxm_mesh *mesh);
 
-/* ---- field.c: coverage and distance, for voxelize ---- */
+/* ---- field.c: coverage and distance, for voxelize; labels.c: labels ---- */
 
 typedef struct cli_field {
-  bool coverage, scalar, distance, band; /**< which options were given */
+  bool coverage, scalar, distance, band, labels; /**< which options were given */
   vxm_coverage_options coverage_options;
   vxm_distance_options distance_options;
+  vxm_label_options label_options;
   vxm_coverage_report coverage_report;
   vxm_distance_report distance_report;
+  vxm_label_report label_report;
+  json_t *label_table; /**< of the labels that were made, or NULL */
 } cli_field;
 
-#define CLI_FIELD_INIT \
-  { .coverage_options = VXM_COVERAGE_OPTIONS_INIT, .distance_options = VXM_DISTANCE_OPTIONS_INIT }
+#define CLI_FIELD_INIT                                                                            \
+  {                                                                                               \
+    .coverage_options = VXM_COVERAGE_OPTIONS_INIT, .distance_options = VXM_DISTANCE_OPTIONS_INIT, \
+    .label_options = VXM_LABEL_OPTIONS_INIT                                                       \
+  }
 
-extern const char *const cli_field_formats[];
+/** The formats of what is wanted. */
+const char *const *cli_field_formats(const cli_field *field);
 /** Whether a number per voxel is wanted rather than a grid. */
 bool cli_field_wanted(const cli_field *field);
-/* The arguments of --coverage, --scalar, --distance and --band: CLI_END or CLI_STOP. */
+/* The arguments of --coverage, --scalar, --distance, --band and --labels: CLI_END or CLI_STOP. */
 int cli_field_read_coverage(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_band(cli_run *cli, cli_field *field, const char *value);
+int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value);
 /** CLI_STOP if they contradict each other, --mode, --dry-run (`is_tried`) or --confidence (`is_sure`). */
 int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is_tried, bool is_sure);
 /** Writes the file; a failure is in cli->error. */
 vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const char *path, const char *format);
-/** Adds "coverage" or "distance". */
+/** Adds "coverage", "distance" or "labels". */
 void cli_field_json(json_t *report, const cli_field *field);
 void cli_field_summarize(const cli_run *cli, const cli_field *field);
+/* The same for labels alone. */
+vxm_status cli_labels_write(cli_run *cli, cli_field *field, vxm_model *model, const vxm_space *space,
+                            const char *path);
+void cli_labels_json(json_t *report, const cli_field *field);
+void cli_labels_summarize(const cli_run *cli, const cli_field *field);
 
 #endif

@@ -18,6 +18,7 @@ static const cli_option known_options[] = {
     {KEY_ENGINE, "engine", "E", "who makes the grids: cpu [cpu]"},
     {KEY_TIME, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]"},
     {KEY_PLOT, "plot", "FILE.svg", "draw the times over the resolution"},
+    CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 /* ---- Options ---- */

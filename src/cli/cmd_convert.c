@@ -8,9 +8,12 @@ enum { KEY_FORMAT = CLI_KEY_COMMAND };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
-     "file to write: .binvox, .rle, .npy or .raw (these two with a .json beside\n"
-     "them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", "binvox, npy, raw, rle, obj, ply, stl or off [by the name of the output]"},
+     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
+     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
+     "standard output"},
+    {KEY_FORMAT, "format", "F",
+     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
+     "output]"},
     {0, NULL, NULL, NULL}};
 
 typedef struct request {

@@ -10,6 +10,7 @@ static const cli_option known_options[] = {
      "list what is wrong in the report, up to N of each kind, with indices and\ncoordinates"},
     {KEY_INTERSECTIONS, "intersections", NULL,
      "with --locate and --list: faces that cut through others too (CGAL)"},
+    CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mesh *mesh,
@@ -36,7 +37,7 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
   json_array_clear(cli->warnings);
   vxm_mesh *mesh = NULL;
   vxm_census census;
-  if (vxm_mesh_read(&mesh, cli->context, path, &cli->error) != VXM_OK)
+  if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, path, mesh);
   json_t *defects = NULL;

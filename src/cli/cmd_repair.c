@@ -12,6 +12,7 @@ enum {
   KEY_TURNED,
   KEY_FILL_HOLES,
   KEY_FILL,
+  KEY_DROP_PARTS,
   KEY_UNION,
   KEY_WRAP,
   KEY_MAX_CHANGE,
@@ -47,6 +48,10 @@ static const cli_option known_options[] = {
      "with what: fan = triangles from the middle of the rim; minimal = the\n"
      "triangulation of least area (OpenMesh); smooth = small triangles that\n"
      "continue the surface (CGAL) [fan]"},
+    {KEY_DROP_PARTS, "drop-parts", "faces:N|volume:V",
+     "drop components with fewer than N faces, or closed ones with less volume\n"
+     "than V, in model units cubed; may be given twice, once for each. The\n"
+     "component with the largest area always stays"},
     {KEY_UNION, "union", NULL, "unite closed parts that cut through each other (CGAL)"},
     {KEY_WRAP, "wrap", "ALPHA[,OFFSET]",
      "lay a closed surface around everything: ALPHA is the smallest hole that\n"
@@ -61,6 +66,7 @@ static const cli_option known_options[] = {
      "with --locate and --list: faces that cut through others too (CGAL)"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
+    CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
@@ -79,6 +85,19 @@ static int read_fill_holes(cli_run *cli, request *out, const char *value) {
   else if (!cli_read_integer(&out->repair.fill_holes, value, 3, INT64_MAX))
     return cli_usage(cli, "--fill-holes '%s' is neither all nor a number of edges from 3 on", value);
   return CLI_END;
+}
+
+static int read_drop_parts(cli_run *cli, request *out, const char *value) {
+  const char *number = strchr(value, ':');
+  size_t length = number ? (size_t)(number++ - value) : 0;
+  if (length == 5 && strncmp(value, "faces", length) == 0 &&
+      cli_read_integer(&out->repair.drop_faces, number, 1, INT64_MAX))
+    return CLI_END;
+  if (length == 6 && strncmp(value, "volume", length) == 0 &&
+      cli_read_number(&out->repair.drop_volume, number) && out->repair.drop_volume > 0)
+    return CLI_END;
+  return cli_usage(
+      cli, "--drop-parts '%s' is neither faces:N, such as faces:50, nor volume:V, such as volume:0.1", value);
 }
 
 static int read_wrap(cli_run *cli, request *out, const char *value) {
@@ -130,6 +149,8 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     return CLI_END;
   case KEY_FILL_HOLES:
     return read_fill_holes(cli, out, value);
+  case KEY_DROP_PARTS:
+    return read_drop_parts(cli, out, value);
   case KEY_UNION:
     out->repair.unite = true;
     return CLI_END;
@@ -194,7 +215,7 @@ static int read_arguments(cli_run *cli, request *out) {
 
 static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_mesh *raw = NULL;
-  if (vxm_mesh_read(&raw, cli->context, given->input, &cli->error) != VXM_OK)
+  if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, given->input, raw);
   int status = cli_defects_show(cli, &outcome->defects, &given->defects, raw);
@@ -263,6 +284,7 @@ const cli_command cli_command_repair = {
         "  voxmend repair scan.obj -o scan.ply\n"
         "  voxmend repair part.stl -o part.off --weld 0.001\n"
         "  voxmend repair scan.ply -o closed.stl --level closed\n"
+        "  voxmend repair scan.ply -o main.ply --drop-parts faces:100\n"
         "  voxmend repair bracket.obj -o bracket.stl --level solid --max-change 0.001\n"
         "  voxmend repair wreck.obj -o wrapped.ply --wrap 0.02 --level solid\n"
         "  voxmend repair part.stl -o part.ply --locate wrong.ply --list 10 --json\n"

@@ -13,6 +13,7 @@ static const cli_option known_options[] = {
     {KEY_AZIMUTH, "azimuth", "DEGREES", "direction to look from, about the up axis [30]"},
     {KEY_ELEVATION, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]"},
     {KEY_UP, "up", "x|y|z", "axis that points up [z]"},
+    CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
@@ -102,7 +103,7 @@ static int voxelize(cli_run *cli, vxm_grid **grid, const char *path) {
 
 /** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
 static int read_input(cli_run *cli, vxm_grid **grid, const char *path) {
-  enum { MESH_FORMATS = 4, GRID_FORMATS = 4 }; /* the first grid formats; the others are meshes */
+  enum { MESH_FORMATS = 4, GRID_FORMATS = 6 }; /* the first grid formats; the others are meshes */
   if (is_named(path, cli_mesh_formats, MESH_FORMATS))
     return voxelize(cli, grid, path);
   vxm_status status = vxm_grid_read(grid, cli->context, path, &cli->error);
@@ -158,12 +159,12 @@ const cli_command cli_command_view = {
     .name = "view",
     .arguments = "GRID|MESH -o FILE.png [OPTION]...",
     .summary = "draw a picture of a grid, or of a mesh",
-    .notes =
-        "A file named .off, .obj, .stl or .ply is repaired and voxelized at 128 voxels along its longest\n"
-        "side first; everything else, standard input too, is read as a grid.\n\n"
-        "Examples:\n"
-        "  voxmend view chair.binvox -o chair.png\n"
-        "  voxmend view bunny.obj -o bunny.png --up y --azimuth 120 --size 1200x900",
+    .notes = "A mesh is repaired and voxelized at 128 voxels along its longest side first. Standard input is "
+             "read\n"
+             "as a grid.\n\n"
+             "Examples:\n"
+             "  voxmend view chair.binvox -o chair.png\n"
+             "  voxmend view bunny.obj -o bunny.png --up y --azimuth 120 --size 1200x900",
     .options = known_options,
     .run = run,
 };

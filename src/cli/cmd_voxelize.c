@@ -21,6 +21,7 @@ enum {
   KEY_SCALAR,
   KEY_DISTANCE,
   KEY_BAND,
+  KEY_LABELS,
   KEY_CONFIDENCE,
   KEY_SPARSE,
   KEY_COORDS,
@@ -33,9 +34,12 @@ enum {
 
 static const cli_option known_options[] = {
     {'o', "output", "GRID",
-     "file to write: .binvox, .rle, .npy or .raw (these two with a .json beside\n"
-     "them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is standard output"},
-    {KEY_FORMAT, "format", "F", "binvox, npy, raw, rle, obj, ply, stl or off [by the name of the output]"},
+     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
+     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
+     "standard output"},
+    {KEY_FORMAT, "format", "F",
+     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
+     "output]"},
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
     {KEY_FIT, "fit", "cube|tight|sphere",
@@ -68,12 +72,15 @@ static const cli_option known_options[] = {
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
-     "each axis; .npy or .nrrd"},
+     "each axis; .npy, .nrrd or .vdb"},
     {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
-     "signed: negative inside; .npy or .nrrd"},
+     "signed: negative inside; .npy, .nrrd or .vdb"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
+    {KEY_LABELS, "labels", "part|group|material",
+     "write which part, group or material each voxel belongs to instead, from 1 on;\n"
+     ".npy, .nrrd or .binvox, with the names in a .json beside it"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
@@ -81,6 +88,7 @@ static const cli_option known_options[] = {
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
+    CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 /* ---- Options ---- */
@@ -211,6 +219,8 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     return cli_field_read_distance(cli, &out->field, value);
   case KEY_BAND:
     return cli_field_read_band(cli, &out->field, value);
+  case KEY_LABELS:
+    return cli_field_read_labels(cli, &out->field, value);
   case KEY_CONFIDENCE:
     out->confidence = value;
     out->voxelize.confidence = true;
@@ -269,7 +279,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
   if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
-    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage and --distance");
+    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance and "
+                          "--labels");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
   if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
@@ -282,7 +293,7 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
 
 /** Whether a format is written slice by slice. */
 static bool is_sliced(const char *format) {
-  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", NULL};
+  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb", NULL};
   return cli_read_choice(format, sliced) >= 0;
 }
 
@@ -297,8 +308,9 @@ static int read_arguments(cli_run *cli, voxelize_request *out) {
   out->input = cli->arguments[0];
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
-  out->format = cli_output_format(cli, out->output, out->format,
-                                  cli_field_wanted(&out->field) ? cli_field_formats : cli_grid_formats);
+  out->format =
+      cli_output_format(cli, out->output, out->format,
+                        cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_grid_formats);
   if (out->format && out->sparse && !is_sliced(out->format))
     return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
   return out->format ? CLI_END : CLI_STOP;
@@ -392,7 +404,7 @@ static int write_model(cli_run *cli, voxelize_request *given, voxelize_outcome *
   if (status != VXM_OK)
     return cli_fail(cli);
   cli->made = given->output;
-  cli->made_format = given->format;
+  cli->made_format = given->field.labels ? "npy" : given->format; /* labels have a .json beside them too */
   results->write_ms = results->voxelize.write_ms;
   results->voxelize_ms += cli_clock() - start - results->write_ms;
   warn_of_model(cli, given, model);
@@ -413,6 +425,11 @@ static bool takes_octree(const voxelize_request *given, const voxelize_outcome *
          results->estimate.grid_bytes >= LARGE_GRID;
 }
 
+/** What a grid takes: rows are whole words. */
+static uint64_t bytes_of_bits(const vxm_space *space) {
+  return (uint64_t)(space->dims[0] + 63) / 64 * 8 * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
+}
+
 /** Makes the model, tells what it will take, and unless that is all that is wanted writes the grid. */
 static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
   const vxm_mesh *mesh = results->input.mesh;
@@ -423,7 +440,9 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   vxm_status status = vxm_space_fit(&results->space, mesh, &given->voxelize.space, &cli->error);
   if (status == VXM_OK)
     status = vxm_model_create(&model, mesh, &given->voxelize, &cli->error);
-  if (status == VXM_OK && !cli_field_wanted(&given->field))
+  if (status == VXM_OK && given->sparse) /* what an octree takes is known when it is made */
+    results->estimate.grid_bytes = bytes_of_bits(&results->space);
+  else if (status == VXM_OK && !cli_field_wanted(&given->field))
     status =
         vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
   results->octree = takes_octree(given, results);
@@ -467,7 +486,9 @@ static int run(cli_run *cli) {
   cli_progress_clear(cli);
   if (cli_summary(cli) && !given.dry_run)
     voxelize_summarize(cli, &given, &results);
-  return cli_finish(cli, voxelize_report(cli, &given, &results));
+  status = cli_finish(cli, voxelize_report(cli, &given, &results));
+  json_decref(given.field.label_table);
+  return status;
 }
 
 const cli_command cli_command_voxelize = {

@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A number per voxel instead of a bit: the options, files and reports of coverage and distance. */
+/** A number per voxel instead of a bit: the options, files and reports of coverage, distance and labels. */
 #include "cli/cli.h"
 
 #include <inttypes.h>
 #include <string.h>
 
-const char *const cli_field_formats[] = {"npy", "nrrd", NULL};
+const char *const *cli_field_formats(const cli_field *field) {
+  static const char *const numbers[] = {"npy", "nrrd", "vdb", NULL};
+  static const char *const labels[] = {"npy", "nrrd", "binvox", NULL};
+  return field->labels ? labels : numbers;
+}
 
 bool cli_field_wanted(const cli_field *field) {
-  return field->coverage || field->distance;
+  return field->coverage || field->distance || field->labels;
 }
 
 /* ---- Options ---- */
@@ -50,10 +54,20 @@ int cli_field_read_band(cli_run *cli, cli_field *field, const char *value) {
   return CLI_END;
 }
 
+int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value) {
+  static const char *const choices[] = {"part", "group", "material", NULL};
+  int choice = cli_read_choice(value, choices);
+  if (choice < 0)
+    return cli_usage(cli, "--labels '%s' is none of part, group, material", value);
+  field->labels = true;
+  field->label_options.by = (vxm_label_by)choice;
+  return CLI_END;
+}
+
 int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is_tried, bool is_sure) {
-  const char *name = field->coverage ? "coverage" : "distance";
-  if (field->coverage && field->distance)
-    return cli_usage(cli, "--coverage and --distance exclude each other");
+  const char *name = field->coverage ? "coverage" : field->distance ? "distance" : "labels";
+  if (field->coverage + field->distance + field->labels > 1)
+    return cli_usage(cli, "--coverage, --distance and --labels exclude each other");
   if (field->scalar && !field->coverage)
     return cli_usage(cli, "--scalar goes with --coverage");
   if (field->band && !field->distance)
@@ -79,6 +93,10 @@ vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
     status = vxm_model_write_coverage(&field->coverage_report, model, space, path, &field->coverage_options,
                                       &cli->error);
     *report = field->coverage_report.voxelize;
+  } else if (field->labels) {
+    field->label_options.format = format;
+    status = cli_labels_write(cli, field, model, space, path);
+    *report = field->label_report.voxelize;
   } else {
     status = vxm_model_write_distance(&field->distance_report, model, space, path, &field->distance_options,
                                       &cli->error);
@@ -115,6 +133,8 @@ static json_t *distance_json(const cli_field *field) {
 void cli_field_json(json_t *report, const cli_field *field) {
   if (field->coverage)
     json_object_set_new(report, "coverage", coverage_json(field));
+  else if (field->labels)
+    cli_labels_json(report, field);
   else
     json_object_set_new(report, "distance", distance_json(field));
 }
@@ -126,7 +146,9 @@ void cli_field_summarize(const cli_run *cli, const cli_field *field) {
     cli_row(cli, "coverage", "%" PRId64 " voxels full, %" PRId64 " in part", coverage->full,
             coverage->partial);
     cli_row(cli, "volume", "%.6g", coverage->volume);
-  } else
+  } else if (field->labels)
+    cli_labels_summarize(cli, field);
+  else
     cli_row(cli, "distance", "%.6g to %.6g; %" PRId64 " voxels within the band", distance->least,
             distance->greatest, distance->exact);
 }

@@ -19,7 +19,9 @@ static void help(void) {
   for (int i = 0; i < COMMANDS; i++)
     printf("  %-10s %s\n", commands[i]->name, commands[i]->summary);
   printf("\n'voxmend COMMAND --help' shows the options of a command; 'voxmend --version' the version.\n"
-         "Meshes: .off .obj .stl .ply. Grids: .binvox .npy .raw .rle. '-' is standard input or output.\n\n"
+         "Meshes: .off .obj .stl .ply; where built with them, also .gltf .glb .3mf .dae .fbx .3ds and more\n"
+         "(Assimp), .step and .iges (OpenCASCADE). Grids: .binvox .npy .raw .rle .nrrd, and .vdb (OpenVDB).\n"
+         "'-' is standard input or output.\n\n"
          "Examples:\n"
          "  voxmend info chair.off                              what is wrong with it\n"
          "  voxmend repair chair.off -o fixed.ply               mend what can be mended\n"
@@ -64,6 +66,7 @@ static int run(const cli_command *command, int argc, char **argv) {
                  .argv = argv,
                  .progress = "auto",
                  .limits = VXM_CONTEXT_OPTIONS_INIT,
+                 .read = VXM_MESH_READ_OPTIONS_INIT,
                  .error = VXM_ERROR_INIT,
                  .warnings = json_array(),
                  .text = stdout};

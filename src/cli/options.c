@@ -25,7 +25,8 @@ static const cli_option common_options[] = {
     {0, NULL, NULL, NULL}};
 
 const char *const cli_mesh_formats[] = {"off", "obj", "stl", "ply", NULL};
-const char *const cli_grid_formats[] = {"binvox", "npy", "raw", "rle", "obj", "ply", "stl", "off", NULL};
+const char *const cli_grid_formats[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb",
+                                        "obj",    "ply", "stl", "off", NULL};
 
 /* ---- Help ---- */
 
@@ -136,7 +137,7 @@ static int refuse(cli_run *cli, int result, const char *word) {
   return cli_usage(cli, "unknown option %s", word);
 }
 
-/** Handles an option that all commands have; CLI_END if it is one, else its key. */
+/** Handles an option that all or several commands have; CLI_END if it is one, else its key. */
 static int common_option(cli_run *cli, int key, const char *value) {
   static const char *const when[] = {"auto", "always", "never", NULL};
   int64_t threads;
@@ -170,6 +171,11 @@ static int common_option(cli_run *cli, int key, const char *value) {
   case KEY_MEMLIMIT:
     if (!cli_read_size(&cli->limits.memory_limit, value))
       return cli_usage(cli, "--memlimit '%s' is not a size such as 512M or 4G", value);
+    return CLI_END;
+  case CLI_KEY_DEFLECTION:
+    if (!cli_read_number(&cli->read.deflection, value) || cli->read.deflection <= 0 ||
+        cli->read.deflection > 1)
+      return cli_usage(cli, "--deflection '%s' is not a number above 0 and up to 1", value);
     return CLI_END;
   case KEY_PROGRESS:
     if (cli_read_choice(value, when) < 0)

@@ -33,7 +33,7 @@ int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vx
   *input = (cli_input){.path = path};
   double start = cli_clock();
   vxm_mesh *raw = NULL;
-  if (vxm_mesh_read(&raw, cli->context, path, &cli->error) != VXM_OK)
+  if (vxm_mesh_read_with(&raw, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, path, raw);
   snprintf(input->format, sizeof input->format, "%s", vxm_mesh_format(raw));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* .binvox: a text header, then pairs (value, count) over voxels with y fastest, then z, then x. */
+#include "gridio/binvox.h"
 #include "gridio/format.h"
 #include "gridio/planes.h"
 #include "gridio/run_writer.h"
@@ -256,16 +257,15 @@ static vxm_status read_binvox(vxm_grid **out, const vxm_input *input, vxm_error 
 
 /* ---- Writing ---- */
 
-/** The side of the cube. */
-static uint64_t side_of(const vxm_space *space) {
+uint64_t vxm_binvox_side(const vxm_space *space) {
   return (uint64_t)vxm_max(space->dims[0], vxm_max(space->dims[1], space->dims[2]));
 }
 
 /** One scale holds the size of all voxels, and all three sides. */
-static vxm_status check_cubic(const vxm_space *space, const char *path, vxm_error *error) {
+vxm_status vxm_binvox_check(const vxm_space *space, const char *path, vxm_error *error) {
   (void)path;
   const double *size = space->voxel_size;
-  uint64_t side = side_of(space);
+  uint64_t side = vxm_binvox_side(space);
   if (fabs(size[1] - size[0]) > 1e-9 * size[0] || fabs(size[2] - size[0]) > 1e-9 * size[0])
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "binvox holds only voxels that are cubes, these are %g x %g x %g; use .npy, .raw or .rle",
@@ -284,7 +284,7 @@ static vxm_status check_cubic(const vxm_space *space, const char *path, vxm_erro
 
 /** A slice of the cube: the rows of the grid, each followed by padding, then rows of padding. */
 static vxm_run_shape shape_of(const vxm_space *space) {
-  uint64_t side = side_of(space), ny = (uint64_t)space->dims[1], nz = (uint64_t)space->dims[2];
+  uint64_t side = vxm_binvox_side(space), ny = (uint64_t)space->dims[1], nz = (uint64_t)space->dims[2];
   return (vxm_run_shape){VXM_RUN_PAIRS, (size_t)ny, side - ny, (side - nz) * side};
 }
 
@@ -293,15 +293,17 @@ static size_t state_bytes(const vxm_space *space) {
   return vxm_run_writer_bytes(&shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
 }
 
-static vxm_status write_header(vxm_output *output, const vxm_space *space, uint64_t side, vxm_error *error) {
+vxm_status vxm_binvox_header_write(vxm_output *output, const vxm_space *space, int version,
+                                   vxm_error *error) {
+  uint64_t side = vxm_binvox_side(space);
   locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
   if (!c)
     return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
   locale_t previous = uselocale(c);
   vxm_output_printf(output,
-                    "#binvox 1\ndim %" PRIu64 " %" PRIu64 " %" PRIu64 "\ntranslate %.9g %.9g %.9g\n"
+                    "#binvox %d\ndim %" PRIu64 " %" PRIu64 " %" PRIu64 "\ntranslate %.9g %.9g %.9g\n"
                     "scale %.9g\ndata\n",
-                    side, side, side, space->origin[0], space->origin[1], space->origin[2],
+                    version, side, side, side, space->origin[0], space->origin[1], space->origin[2],
                     space->voxel_size[0] * (double)side);
   uselocale(previous);
   freelocale(c);
@@ -311,14 +313,14 @@ static vxm_status write_header(vxm_output *output, const vxm_space *space, uint6
 static vxm_status begin(vxm_slices *slices, vxm_error *error) {
   const vxm_space *space = &slices->space;
   vxm_run_shape shape = shape_of(space);
-  slices->length = (int64_t)side_of(space);
+  slices->length = (int64_t)vxm_binvox_side(space);
   vxm_run_writer_begin(slices->state, &shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
-  return write_header(slices->output, space, side_of(space), error);
+  return vxm_binvox_header_write(slices->output, space, 1, error);
 }
 
 /** The padding beyond the grid along x. */
 static vxm_status end(vxm_slices *slices, vxm_error *error) {
-  uint64_t side = side_of(&slices->space);
+  uint64_t side = vxm_binvox_side(&slices->space);
   for (uint64_t x = (uint64_t)slices->space.dims[0]; x < side; x++) {
     vxm_run_writer_skip(slices, side * side);
     vxm_status status = vxm_slices_step(slices, (double)(x + 1), error);
@@ -330,7 +332,12 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
 }
 
 static const vxm_slices_kind slices_kind = {
-    VXM_PLANE_Y_FAST, NULL, check_cubic, state_bytes, begin, vxm_run_writer_put, end,
+    .layout = VXM_PLANE_Y_FAST,
+    .check = vxm_binvox_check,
+    .state_bytes = state_bytes,
+    .begin = begin,
+    .put = vxm_run_writer_put,
+    .end = end,
 };
 
-const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, &slices_kind};
+const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, &slices_kind, NULL};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Files of a number per voxel: .npy and .nrrd. */
+/** Files of a number per voxel: .npy, .nrrd and .vdb. */
 #ifndef VXM_GRIDIO_FIELD_H
 #define VXM_GRIDIO_FIELD_H
 

@@ -5,16 +5,16 @@
 /* ---- The table ---- */
 
 static const vxm_grid_format mesh_formats[] = {
-    {"obj", NULL, NULL, NULL},
-    {"ply", NULL, NULL, NULL},
-    {"stl", NULL, NULL, NULL},
-    {"off", NULL, NULL, NULL},
+    {"obj", NULL, NULL, NULL, NULL},
+    {"ply", NULL, NULL, NULL, NULL},
+    {"stl", NULL, NULL, NULL, NULL},
+    {"off", NULL, NULL, NULL, NULL},
 };
 
 /** In the order in which the content is asked. */
 static const vxm_grid_format *const formats[] = {
-    &vxm_format_raw,  &vxm_format_binvox, &vxm_format_npy,  &vxm_format_rle,
-    &mesh_formats[0], &mesh_formats[1],   &mesh_formats[2], &mesh_formats[3],
+    &vxm_format_raw, &vxm_format_binvox, &vxm_format_npy,  &vxm_format_rle,  &vxm_format_nrrd,
+    &vxm_format_vdb, &mesh_formats[0],   &mesh_formats[1], &mesh_formats[2], &mesh_formats[3],
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -54,8 +54,9 @@ vxm_status vxm_gridio_read(vxm_grid **out, vxm_context *context, const char *pat
   if (!format)
     format = find_name(vxm_path_extension(path));
   if (!format)
-    status = vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input.name, 0, -1, -1},
-                         "not a grid: neither content nor name are those of .binvox, .npy, .raw or .rle");
+    status = vxm_fail_at(
+        error, VXM_ERROR_FORMAT, (vxm_place){input.name, 0, -1, -1},
+        "not a grid: neither content nor name are those of .binvox, .npy, .raw, .rle, .nrrd or .vdb");
   else if (!format->read)
     status = vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input.name, 0, -1, -1},
                          "not a grid but a mesh, by its name; voxelize it first");
@@ -73,10 +74,11 @@ const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format,
   if (!format && !*name)
     vxm_fail_at(
         error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
-        "no format is given and the name has no extension; choose binvox, npy, raw, rle, obj, ply, stl "
-        "or off");
+        "no format is given and the name has no extension; choose binvox, npy, raw, rle, nrrd, vdb, obj, "
+        "ply, stl or off");
   else
     vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
-                "unknown grid format \"%s\"; choose binvox, npy, raw, rle, obj, ply, stl or off", name);
+                "unknown grid format \"%s\"; choose binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off",
+                name);
   return NULL;
 }

@@ -20,6 +20,7 @@ struct vxm_slices {
   int64_t
       length; /**< slices of the file, its padding included; those of the space unless `begin` says more */
   void *state;
+  bool is_begun; /**< `begin` was called */
 };
 
 /** How a format is written. */
@@ -34,6 +35,10 @@ typedef struct vxm_slices_kind {
   vxm_status (*put)(vxm_slices *slices, const vxm_window *window, vxm_error *error);
   /** Writes what is left after the last slice. */
   vxm_status (*end)(vxm_slices *slices, vxm_error *error);
+  /** Frees what `state` holds, whether or not the file was written; NULL = it holds nothing. */
+  void (*drop)(vxm_slices *slices);
+  /** About what `state` holds beside itself; NULL = nothing. */
+  uint64_t (*held_bytes)(const vxm_space *space);
 } vxm_slices_kind;
 
 /** For `put` and `end`, now and then: notices a failed write, and reports progress if that is wanted. */
@@ -52,13 +57,16 @@ typedef struct vxm_grid_format {
   vxm_status (*read)(vxm_grid **out, const vxm_input *input, vxm_error *error);
   /** NULL = the surface is written as a mesh of this name. */
   const vxm_slices_kind *slices;
+  /** Writes an octree as it is; NULL = slice by slice. */
+  vxm_status (*write_sparse)(const vxm_sparse *sparse, const char *path, vxm_error *error);
 } vxm_grid_format;
 
 /** The format of a file to be written; NULL with VXM_ERROR_ARGUMENT if there is none. */
 const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format, vxm_error *error);
 
 /** One per file of this room. */
-extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_raw, vxm_format_rle;
+extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_nrrd, vxm_format_raw,
+    vxm_format_rle, vxm_format_vdb;
 
 /** VXM_ERROR_FORMAT at a byte of the input. */
 #define vxm_fail_byte(error, input, offset, ...) \

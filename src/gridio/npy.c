@@ -1,119 +1,34 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** .npy: an array [x][y][z] of numpy. It holds no transform: that goes into a JSON file beside it. */
-#include "base/threads.h"
-#include "gridio/bytes.h"
+#include "gridio/byte_rows.h"
+#include "gridio/elements.h"
 #include "gridio/format.h"
 #include "gridio/npy_header.h"
-#include "gridio/planes.h"
 #include "gridio/sidecar.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 static const vxm_sidecar_text description = {"voxmend npy", "z fastest, then y, then x", NULL};
 
-enum { ROWS_PER_TASK = 64, ROWS_PER_STEP = 1 << 16 };
-
 /* ---- Reading ---- */
 
-/** What of an element makes it nonzero: all bytes, but for the sign of a floating-point number (-0 is 0). */
-typedef struct element {
-  size_t size;
-  uint64_t mask; /**< over the bytes as they lie in the file, the first lowest */
-} element;
-
-static element element_of(const vxm_npy_header *h) {
-  element e = {h->size, vxm_low_bits((unsigned)h->size * 8)};
-  if (h->kind == 'f')
-    e.mask &= ~(UINT64_C(0x80) << (h->big_endian ? 0 : 8 * (h->size - 1)));
-  return e;
-}
-
-/** Bits of up to 64 consecutive elements; `size` is a constant where this is inlined. */
-static inline __attribute__((always_inline)) uint64_t pack_elements(const unsigned char *from, size_t size,
-                                                                    uint64_t mask, size_t count) {
-  uint64_t word = 0;
-  for (size_t n = 0; n < count; n++) {
-    uint64_t value = 0;
-    memcpy(&value, from + n * size, size);
-    word |= (uint64_t)((vxm_le64(value) & mask) != 0) << n;
-  }
-  return word;
-}
-
-static uint64_t pack_word(const unsigned char *from, element e, size_t count) {
-  if (e.size == 8)
-    return pack_elements(from, 8, e.mask, count);
-  if (e.size == 4)
-    return pack_elements(from, 4, e.mask, count);
-  if (e.size == 2)
-    return pack_elements(from, 2, e.mask, count);
-  uint64_t word = 0;
-  size_t n = 0;
-  for (; n + 8 <= count; n += 8)
-    word |= vxm_pack_bytes(vxm_nonzero_bytes(vxm_load_le64(from + n))) << n;
-  return n < count ? word | pack_elements(from + n, 1, e.mask, count - n) << n : word;
-}
-
-typedef struct loading {
-  const unsigned char *data; /**< of row 0 of this step */
-  element e;
-  size_t rows, length;
-  const vxm_planes *planes; /**< NULL: rows of the grid itself, from `words` on */
-  uint64_t *words;
-  size_t row_words;
-} loading;
-
-static void load_rows(size_t task, int worker, void *payload) {
-  (void)worker;
-  const loading *l = payload;
-  size_t begin = task * ROWS_PER_TASK,
-         end = begin + ROWS_PER_TASK < l->rows ? begin + ROWS_PER_TASK : l->rows;
-  for (size_t r = begin; r < end; r++) {
-    uint64_t *row = l->planes ? vxm_plane_row(l->planes, r / l->planes->rows, r % l->planes->rows)
-                              : l->words + r * l->row_words;
-    const unsigned char *from = l->data + r * l->length * l->e.size;
-    for (size_t n = 0; n < l->length; n += 64)
-      row[n / 64] = pack_word(from + n * l->e.size, l->e, l->length - n < 64 ? l->length - n : 64);
-  }
-}
-
-static void load_step(vxm_grid *grid, loading *l) {
-  vxm_parallel(grid->context, (l->rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, load_rows, l);
-}
-
 /** C order: z fastest and x slowest, through planes. */
-static vxm_status read_c_order(vxm_grid *grid, const unsigned char *data, element e, vxm_error *error) {
+static vxm_status read_c_order(vxm_grid *grid, const unsigned char *data, vxm_element element,
+                               vxm_error *error) {
   vxm_planes planes;
   vxm_status status =
       vxm_planes_create(&planes, grid->context, &grid->space, (vxm_layout)VXM_PLANE_Z_FAST, error);
   if (status != VXM_OK)
     return status;
   for (size_t w = 0; status == VXM_OK && w < grid->row_words; w++) {
-    loading l = {data, e, vxm_planes_in(grid, w) * planes.rows, planes.length, &planes, NULL, 0};
-    load_step(grid, &l);
-    data += l.rows * l.length * e.size;
+    size_t count = vxm_planes_in(grid, w);
+    vxm_elements_to_planes(&planes, count, data, element);
+    data += count * planes.rows * planes.length * element.size;
     vxm_planes_scatter(&planes, grid, w);
     status = vxm_progress(grid->context, "reading", (double)(w + 1) / (double)grid->row_words, error);
   }
   vxm_planes_destroy(&planes);
-  return status;
-}
-
-/** Fortran order: x fastest, as in the grid. */
-static vxm_status read_fortran_order(vxm_grid *grid, const unsigned char *data, element e, vxm_error *error) {
-  vxm_status status = VXM_OK;
-  size_t rows = grid->word_count / grid->row_words, length = (size_t)grid->space.dims[0];
-  for (size_t row = 0; status == VXM_OK && row < rows; row += ROWS_PER_STEP) {
-    loading l = {data + row * length * e.size,
-                 e,
-                 rows - row < ROWS_PER_STEP ? rows - row : ROWS_PER_STEP,
-                 length,
-                 NULL,
-                 grid->words + row * grid->row_words,
-                 grid->row_words};
-    load_step(grid, &l);
-    status = vxm_progress(grid->context, "reading", (double)(row + l.rows) / (double)rows, error);
-  }
   return status;
 }
 
@@ -165,9 +80,9 @@ static vxm_status read_npy(vxm_grid **out, const vxm_input *input, vxm_error *er
   vxm_grid *grid = NULL;
   if (status == VXM_OK)
     status = vxm_grid_create(&grid, input->context, &space, error);
+  vxm_element element = vxm_element_of(h.kind, h.size, h.big_endian);
   if (status == VXM_OK)
-    status =
-        (h.fortran ? read_fortran_order : read_c_order)(grid, input->data + h.data, element_of(&h), error);
+    status = (h.fortran ? vxm_elements_to_grid : read_c_order)(grid, input->data + h.data, element, error);
   if (status != VXM_OK) {
     vxm_grid_destroy(grid);
     return status;
@@ -179,56 +94,8 @@ static vxm_status read_npy(vxm_grid **out, const vxm_input *input, vxm_error *er
 
 /* ---- Writing ---- */
 
-enum { CHUNK = 1 << 22 };
-
-/** Rows that are turned into bytes together, at most CHUNK of them; a row is below 2^20 + 1. */
-static size_t chunk_rows(const vxm_space *space) {
-  size_t all = (size_t)space->dims[0] * (size_t)space->dims[1], rows = CHUNK / (size_t)space->dims[2];
-  return rows < all ? rows : all;
-}
-
-typedef struct storing {
-  const vxm_window *window;
-  unsigned char *bytes;
-  size_t row, rows; /**< those in `bytes`, counted over all slices of the window */
-} storing;
-
-static void store_row(unsigned char *to, const uint64_t *row, size_t count) {
-  size_t n = 0;
-  for (; n + 8 <= count; n += 8)
-    vxm_store_le64(to + n, vxm_unpack_bits(row[n / 64] >> (n % 64)));
-  for (; n < count; n++)
-    to[n] = (unsigned char)(row[n / 64] >> (n % 64) & 1);
-}
-
-static void store_rows(size_t task, int worker, void *payload) {
-  (void)worker;
-  const storing *s = payload;
-  size_t begin = task * ROWS_PER_TASK, length = (size_t)s->window->fast_dim,
-         end = begin + ROWS_PER_TASK < s->rows ? begin + ROWS_PER_TASK : s->rows;
-  for (size_t r = begin; r < end; r++) {
-    int64_t row = (int64_t)(s->row + r), middles = s->window->middle_dim;
-    store_row(s->bytes + r * length,
-              vxm_window_row(s->window, row % middles, s->window->begin + row / middles), length);
-  }
-}
-
-static vxm_status put(vxm_slices *slices, const vxm_window *window, vxm_error *error) {
-  size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim,
-         most = chunk_rows(&slices->space);
-  for (size_t row = 0; row < rows; row += most) {
-    storing s = {window, slices->state, row, rows - row < most ? rows - row : most};
-    vxm_parallel(slices->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
-    vxm_output_write(slices->output, s.bytes, s.rows * (size_t)window->fast_dim);
-    vxm_status status = vxm_slices_step_rows(slices, window, row + s.rows, error);
-    if (status != VXM_OK)
-      return status;
-  }
-  return VXM_OK;
-}
-
 static size_t state_bytes(const vxm_space *space) {
-  return chunk_rows(space) * (size_t)space->dims[2];
+  return vxm_byte_rows_bytes(space, (vxm_layout)VXM_PLANE_Z_FAST);
 }
 
 static vxm_status begin(vxm_slices *slices, vxm_error *error) {
@@ -244,7 +111,12 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
 }
 
 static const vxm_slices_kind slices_kind = {
-    VXM_PLANE_Z_FAST, &description, NULL, state_bytes, begin, put, end,
+    .layout = VXM_PLANE_Z_FAST,
+    .sidecar = &description,
+    .state_bytes = state_bytes,
+    .begin = begin,
+    .put = vxm_byte_rows_put,
+    .end = end,
 };
 
-const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, &slices_kind};
+const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, &slices_kind, NULL};

@@ -203,7 +203,13 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
 }
 
 static const vxm_slices_kind slices_kind = {
-    VXM_LAYOUT_GRID, &description, check_path, state_bytes, begin, put, end,
+    .layout = VXM_LAYOUT_GRID,
+    .sidecar = &description,
+    .check = check_path,
+    .state_bytes = state_bytes,
+    .begin = begin,
+    .put = put,
+    .end = end,
 };
 
-const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, &slices_kind};
+const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, &slices_kind, NULL};

@@ -139,7 +139,11 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
 }
 
 static const vxm_slices_kind slices_kind = {
-    VXM_LAYOUT_GRID, NULL, NULL, state_bytes, begin, vxm_run_writer_put, end,
+    .layout = VXM_LAYOUT_GRID,
+    .state_bytes = state_bytes,
+    .begin = begin,
+    .put = vxm_run_writer_put,
+    .end = end,
 };
 
-const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, &slices_kind};
+const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, &slices_kind, NULL};

@@ -9,8 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A description has some 300 bytes; whatever is far longer is another file. */
-enum { LENGTH_MAX = 1 << 16 };
+/* A description has some 300 bytes, and that of 65535 labels with names of 511 up to 70 million; whatever is
+ * far longer is another file. */
+enum { LENGTH_MAX = 1 << 27 };
 
 /** The JSON's path, to be freed; NULL without memory. */
 static char *sidecar_path(const char *data_path) {
@@ -34,18 +35,47 @@ bool vxm_sidecar_exists(const char *data_path) {
 
 /* ---- Writing ---- */
 
+/** A name, with '?' for what is no UTF-8. */
+static json_t *name_of(const char *name) {
+  json_t *value = json_string(name);
+  char *copy = value ? NULL : strdup(name);
+  for (char *c = copy; c && *c; c++)
+    *c = (unsigned char)*c < 0x80 ? *c : '?';
+  if (copy)
+    value = json_string(copy);
+  free(copy);
+  return value;
+}
+
+/** The table of labels; NULL without memory. */
+static json_t *list_labels(const vxm_label_table *table) {
+  json_t *array = json_array();
+  for (size_t label = 1; array && label <= table->count; label++) {
+    json_t *entry = json_pack("{s:I, s:o, s:I}", "label", (json_int_t)label, "name",
+                              name_of(vxm_label_table_name(table, label)), "voxels",
+                              (json_int_t)table->voxels[label - 1]);
+    if (json_array_append_new(array, entry) != 0) {
+      json_decref(array);
+      return NULL;
+    }
+  }
+  return array;
+}
+
 /** The whole text, to be freed; 17 digits bring every double back bit for bit. */
-static char *describe(const vxm_space *space, const vxm_sidecar_text *text) {
+static char *describe(const vxm_space *space, const vxm_sidecar_text *text, const vxm_label_table *labels) {
   const int64_t *d = space->dims;
   const double *o = space->origin, *s = space->voxel_size;
   json_t *root = json_pack("{s:s, s:i, s:[I,I,I], s:[f,f,f], s:[f,f,f], s:s}", "format", text->format,
                            "version", 1, "dims", (json_int_t)d[0], (json_int_t)d[1], (json_int_t)d[2],
                            "origin", o[0], o[1], o[2], "voxel_size", s[0], s[1], s[2], "order", text->order);
-  if (root && text->bits && json_object_set_new(root, "bits", json_string(text->bits)) != 0) {
+  bool is_whole = root && (!text->bits || json_object_set_new(root, "bits", json_string(text->bits)) == 0) &&
+                  (!labels || json_object_set_new(root, "labels", list_labels(labels)) == 0);
+  if (!is_whole) {
     json_decref(root);
     return NULL;
   }
-  char *json = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
+  char *json = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
   json_decref(root);
   return json;
 }
@@ -57,10 +87,16 @@ static bool has_neighbours(const char *data_path) {
 
 vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_space *space,
                             const char *data_path, const vxm_sidecar_text *text, vxm_error *error) {
+  return vxm_sidecar_open_labels(out, context, space, data_path, text, NULL, error);
+}
+
+vxm_status vxm_sidecar_open_labels(vxm_output **out, vxm_context *context, const vxm_space *space,
+                                   const char *data_path, const vxm_sidecar_text *text,
+                                   const vxm_label_table *labels, vxm_error *error) {
   *out = NULL;
   if (!has_neighbours(data_path))
     return VXM_OK;
-  char *path = sidecar_path(data_path), *json = describe(space, text);
+  char *path = sidecar_path(data_path), *json = describe(space, text, labels);
   vxm_status status = path && json ? vxm_output_open(out, context, path, error) : fail_memory(error);
   if (status == VXM_OK) {
     vxm_output_write(*out, json, strlen(json));

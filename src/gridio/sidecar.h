@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "grid/bitgrid.h"
+#include "voxel/labelling.h"
 
 /** What a format says of itself in its JSON. */
 typedef struct vxm_sidecar_text {
@@ -19,6 +20,11 @@ typedef struct vxm_sidecar_text {
  */
 vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_space *space,
                             const char *data_path, const vxm_sidecar_text *text, vxm_error *error);
+
+/** The same with a table of labels. */
+vxm_status vxm_sidecar_open_labels(vxm_output **out, vxm_context *context, const vxm_space *space,
+                                   const char *data_path, const vxm_sidecar_text *text,
+                                   const vxm_label_table *labels, vxm_error *error);
 
 /**
  * Commits the data, then the JSON (which may be NULL). If the JSON cannot be had the data are removed again,

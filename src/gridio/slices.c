@@ -36,7 +36,8 @@ vxm_status vxm_slices_plan_of(vxm_slices_plan *out, const vxm_space *space, cons
   out->streams = true;
   out->layout = kind->layout;
   out->bytes = sizeof(vxm_slices) + strlen(path) + kind->state_bytes(space) +
-               (kind->sidecar ? 2 : 1) * (uint64_t)OUTPUT_BYTES;
+               (kind->sidecar ? 2 : 1) * (uint64_t)OUTPUT_BYTES +
+               (kind->held_bytes ? kind->held_bytes(space) : 0);
   if (!same_layout(kind->layout, grid_layout))
     out->gather_bytes = vxm_planes_bytes(space, kind->layout);
   return VXM_OK;
@@ -44,6 +45,8 @@ vxm_status vxm_slices_plan_of(vxm_slices_plan *out, const vxm_space *space, cons
 
 static void slices_free(vxm_slices *slices) {
   vxm_context *context = slices->context;
+  if (slices->is_begun && slices->format->slices->drop)
+    slices->format->slices->drop(slices);
   vxm_free(context, slices->state);
   vxm_free(context, slices->path);
   vxm_free(context, slices);
@@ -105,8 +108,10 @@ vxm_status vxm_slices_open(vxm_slices **out, vxm_context *context, const vxm_spa
     status = vxm_output_open(&slices->output, context, path, error);
   if (status == VXM_OK && found->slices->sidecar)
     status = vxm_sidecar_open(&slices->sidecar, context, space, path, found->slices->sidecar, error);
-  if (status == VXM_OK)
+  if (status == VXM_OK) {
+    slices->is_begun = true;
     status = found->slices->begin(slices, error);
+  }
   if (status != VXM_OK) {
     vxm_slices_abort(slices);
     return status;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * A grid file that is written slice by slice, in the format's own layout, without the whole grid. All grid
- * formats are written so; the surface as a mesh needs the whole grid.
+ * formats are written so (.vdb keeps what is set in a tree until the end); the surface as a mesh needs the
+ * whole grid.
  */
 #ifndef VXM_GRIDIO_SLICES_H
 #define VXM_GRIDIO_SLICES_H
@@ -12,9 +13,10 @@ typedef struct vxm_slices vxm_slices;
 
 /** How a file would be written. */
 typedef struct vxm_slices_plan {
-  bool streams;          /**< false for the surface as a mesh; the rest is then 0 */
-  vxm_layout layout;     /**< of the windows to be put */
-  uint64_t bytes;        /**< the most that the writer itself holds */
+  bool streams;      /**< false for the surface as a mesh; the rest is then 0 */
+  vxm_layout layout; /**< of the windows to be put */
+  uint64_t
+      bytes; /**< the most that the writer itself holds; of .vdb, whose tree follows the surface, about */
   uint64_t gather_bytes; /**< what vxm_gridio_write of a whole grid holds besides */
 } vxm_slices_plan;
 

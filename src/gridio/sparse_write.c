@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "gridio/slices.h"
+#include "gridio/format.h"
 #include "gridio/sparse_io.h"
 
 /** Bytes of the windows between an octree and its file, unless a few slices are more. */
@@ -13,6 +13,11 @@ static vxm_status put_window(const vxm_window *window, void *payload, vxm_error 
 
 vxm_status vxm_gridio_write_sparse(const vxm_sparse *sparse, const char *path, const char *format,
                                    vxm_error *error) {
+  const vxm_grid_format *found = vxm_grid_format_for(path, format, error);
+  if (!found)
+    return VXM_ERROR_ARGUMENT;
+  if (found->write_sparse)
+    return found->write_sparse(sparse, path, error);
   vxm_slices *slices;
   vxm_status status = vxm_slices_open(&slices, sparse->context, &sparse->space, path, format, error);
   if (status != VXM_OK)

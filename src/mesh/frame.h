@@ -5,6 +5,10 @@
 
 #include "mesh/soup.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /**
  * A face with at most this part of the squared diagonal of the bounds has no area. The shared meshes' counts
  * of degenerate faces ask for a value between 0.85e-14 and 1.29e-14.
@@ -45,4 +49,7 @@ static inline bool vxm_is_finite(const double p[3]) {
   return p[0] - p[0] + (p[1] - p[1]) + (p[2] - p[2]) == 0;
 }
 
+#ifdef __cplusplus
+}
+#endif
 #endif

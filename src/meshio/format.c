@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "meshio/format.h"
+#include "meshio/foreign.h"
 #include "meshio/meshio.h"
+#include "meshio/reader.h"
 #include "meshio/utf16.h"
 
 #include <string.h>
@@ -29,17 +31,40 @@ static const vxm_format *by_extension(const char *path) {
   return NULL;
 }
 
-static const vxm_format *choose(const unsigned char *data, size_t size, const char *name) {
+/** Who reads a file: one of our own readers, or a library. */
+typedef struct choice {
+  const vxm_format *own;
+  const vxm_foreign *foreign;
+} choice;
+
+static choice choose(const unsigned char *data, size_t size, const char *name) {
   const vxm_format *possible = NULL;
   for (size_t f = 0; f < FORMATS; f++) {
     vxm_likeness likeness = formats[f].sniff(data, size);
     if (likeness == VXM_LIKENESS_CERTAIN)
-      return &formats[f];
+      return (choice){.own = &formats[f]};
     if (likeness == VXM_LIKENESS_POSSIBLE && !possible)
       possible = &formats[f];
   }
-  const vxm_format *named = by_extension(name);
-  return named ? named : possible;
+  choice chosen = {.foreign = vxm_foreign_by_content(data, size)};
+  if (!chosen.foreign)
+    chosen.own = by_extension(name);
+  if (!chosen.foreign && !chosen.own)
+    chosen.foreign = vxm_foreign_by_extension(vxm_path_extension(name));
+  if (!chosen.foreign && !chosen.own)
+    chosen.own = possible;
+  return chosen;
+}
+
+/** The format that the caller names, in the form that the content has; false if there is none. */
+static bool choose_named(choice *out, const unsigned char *data, size_t size, const char *format) {
+  *out = (choice){.own = by_name(format)};
+  if (out->own)
+    return true;
+  const vxm_foreign *told = vxm_foreign_by_content(data, size);
+  bool is_form = told && vxm_text_equal_nocase(told->name, format);
+  out->foreign = is_form ? told : vxm_foreign_by_name(format);
+  return out->foreign != NULL;
 }
 
 /** What people hand in by mistake, by the first bytes. */
@@ -56,39 +81,69 @@ static const struct {
     {"version https://git-lfs", "is a Git LFS pointer, not the mesh itself: run git lfs pull"},
     {"<!DOCTYPE", "is a web page, not a mesh: download the file itself"},
     {"<html", "is a web page, not a mesh: download the file itself"},
-    {"glTF", "is glTF, which cannot be read: convert it to ply or obj"},
     {"#binvox", "is a binvox grid, not a mesh"},
     {"\x93NUMPY", "is a numpy array, not a mesh"},
 };
 
-static vxm_status fail_unknown(const unsigned char *data, size_t size, const char *name, vxm_error *error) {
-  vxm_place place = {name, 0, -1, -1};
+static const char *find_stranger(const unsigned char *data, size_t size) {
   for (size_t s = 0; s < sizeof strangers / sizeof *strangers; s++) {
     size_t length = strlen(strangers[s].magic);
     if (size >= length && memcmp(data, strangers[s].magic, length) == 0)
-      return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "%s", strangers[s].advice);
+      return strangers[s].advice;
   }
+  return NULL;
+}
+
+/** A file that nothing here tells may still be one of the many kinds that Assimp knows by their names. */
+static vxm_status read_unknown(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
+                               const vxm_mesh_read_options *options, vxm_error *error) {
+  vxm_place place = {name, 0, -1, -1};
+  const char *advice = find_stranger(data, size);
+  if (advice)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "%s", advice);
+  vxm_status status =
+      vxm_foreign_read(soup, NULL, vxm_path_extension(name), data, size, name, options->deflection, error);
+  if (status != VXM_ERROR_UNAVAILABLE)
+    return status;
   return vxm_fail_at(error, VXM_ERROR_FORMAT, place,
                      "not a known mesh format: neither off, obj, stl nor ply by content or extension");
 }
 
 static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
-                             vxm_error *error) {
+                             const vxm_mesh_read_options *options, vxm_error *error) {
   if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) {
     data += 3;
     size -= 3;
   }
   if (size == 0)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){name, 0, -1, -1}, "the file is empty");
-  const vxm_format *format = choose(data, size, name);
-  if (!format)
-    return fail_unknown(data, size, name, error);
-  return format->read(soup, data, size, name, error);
+  choice chosen;
+  if (!options->format)
+    chosen = choose(data, size, name);
+  else if (!choose_named(&chosen, data, size, options->format))
+    return vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){name, 0, -1, -1},
+                       "mesh format \"%.32s\" is not known", options->format);
+  if (chosen.own)
+    return chosen.own->read(soup, data, size, name, error);
+  if (chosen.foreign)
+    return vxm_foreign_read(soup, chosen.foreign, vxm_path_extension(name), data, size, name,
+                            options->deflection, error);
+  return read_unknown(soup, data, size, name, options, error);
 }
 
 vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
                            const char *name, vxm_error *error) {
+  return vxm_meshio_read_with(out, context, data, size, name, NULL, error);
+}
+
+vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
+                                const char *name, const vxm_mesh_read_options *options, vxm_error *error) {
   *out = NULL;
+  vxm_mesh_read_options chosen = VXM_MESH_READ_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+  if (chosen.deflection == 0)
+    chosen.deflection = VXM_DEFLECTION_DEFAULT;
   vxm_soup *soup;
   vxm_status status = vxm_soup_create(&soup, context, "", error);
   if (status != VXM_OK)
@@ -103,7 +158,7 @@ vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned 
   if (status == VXM_OK)
     status = vxm_progress(soup->context, "reading", 0.0, error);
   if (status == VXM_OK)
-    status = read_bytes(soup, data, size, name, error);
+    status = read_bytes(soup, data, size, name, &chosen, error);
   if (status == VXM_OK)
     status = vxm_progress(soup->context, "reading", 1.0, error);
   vxm_free(soup->context, text);

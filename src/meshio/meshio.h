@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Mesh files in and out: OFF, OBJ, STL and PLY. */
+/** Mesh files in and out: OFF, OBJ, STL and PLY; others are read through libraries (foreign.h). */
 #ifndef VXM_MESHIO_MESHIO_H
 #define VXM_MESHIO_MESHIO_H
 
@@ -16,11 +16,19 @@
  * @param data need not be terminated; not kept
  * @param name for messages and for its extension
  * @return VXM_OK; VXM_ERROR_FORMAT with line or offset; VXM_ERROR_RANGE beyond VXM_VERTICES_MAX vertices;
- *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. Memory stays below a fixed multiple
- *         of `size`, whatever the file claims.
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. With our own readers memory stays
+ *         below a fixed multiple of `size`, whatever the file claims.
  */
 vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
                            const char *name, vxm_error *error);
+
+/**
+ * As vxm_meshio_read, with options; NULL means defaults.
+ *
+ * @return also VXM_ERROR_ARGUMENT for a format that is not known, and what vxm_foreign_read returns
+ */
+vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
+                                const char *name, const vxm_mesh_read_options *options, vxm_error *error);
 
 /**
  * Writes a mesh; the file appears under its name when it is complete.

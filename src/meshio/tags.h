@@ -5,6 +5,10 @@
 
 #include "mesh/soup.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { VXM_TAG_PART_MAX = 255 };
 
 /** A part of a tag; longer names are cut, so that the tags of a file cannot outgrow it without bound. */
@@ -50,4 +54,7 @@ static inline vxm_status vxm_tagger_face(vxm_tagger *tagger, vxm_error *error) {
   return VXM_OK;
 }
 
+#ifdef __cplusplus
+}
+#endif
 #endif

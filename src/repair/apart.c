@@ -18,7 +18,7 @@ typedef struct moving {
   vxm_work *work;
   vxm_soup *soup;
   uint32_t *map;    /**< vertex: the first one at its position */
-  uint8_t *shared;  /**< first vertex of a position: others are there too */
+  uint8_t *shared;  /**< first vertex of a position: several are there that faces have */
   vxm_vec3 *toward; /**< per vertex: sum of the directions to the middles of its faces */
   uint32_t *part;   /**< per vertex, if parts are followed */
   double step;
@@ -83,8 +83,10 @@ static int64_t move_all(moving *m) {
   int64_t moved = 0;
   size_t vertices = m->soup->vertex_count;
   for (size_t v = 0; v < vertices; v++)
-    if (m->map[v] != v && m->work->used[v] && m->work->used[m->map[v]])
-      m->shared[m->map[v]] = 1;
+    if (m->work->used[v] && m->shared[m->map[v]] < 2)
+      m->shared[m->map[v]]++;
+  for (size_t v = 0; v < vertices; v++)
+    m->shared[v] = m->shared[v] == 2;
   look_around(m);
   for (size_t v = 0; v < vertices; v++) {
     uint8_t *turn = &m->shared[m->map[v]];

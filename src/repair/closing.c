@@ -16,6 +16,16 @@ static size_t largest_hole(const vxm_repair_options *options) {
 
 /* ---- By a module ---- */
 
+/** Gives the faces taken the tags that they have, which decide between those of a rim. */
+static bool take_tags(vxm_soup *taken, const uint64_t *numbers, const vxm_soup *soup, vxm_error *error) {
+  if (!soup->face_tags)
+    return true;
+  taken->face_tags = vxm_alloc(soup->context, taken->face_count, sizeof *taken->face_tags, error);
+  for (size_t f = 0; taken->face_tags && f < taken->face_count; f++)
+    taken->face_tags[f] = soup->face_tags[numbers[f]];
+  return taken->face_tags != NULL;
+}
+
 /** The faces of a soup that are marked so, with all its vertices. */
 static vxm_status take_faces(vxm_soup **out, uint64_t **numbers, const vxm_work *work, const uint8_t *marks,
                              uint8_t mark, vxm_error *error) {
@@ -36,7 +46,8 @@ static vxm_status take_faces(vxm_soup **out, uint64_t **numbers, const vxm_work 
       (*numbers)[(*out)->face_count] = f;
       vxm_soup_add_face(*out, corner, count, NULL); /* there is room */
     }
-    return VXM_OK;
+    if (take_tags(*out, *numbers, soup, &local))
+      return VXM_OK;
   }
   vxm_free(soup->context, *numbers);
   vxm_soup_destroy(*out);

@@ -20,6 +20,7 @@ static const char *const names[VXM_PASS_COUNT] = {
     [VXM_PASS_WRAP] = "wrap",
     [VXM_PASS_SEPARATION] = "separation",
     [VXM_PASS_CLOSING] = "closing",
+    [VXM_PASS_SMALL_PARTS] = "small_parts",
     [VXM_PASS_UNION] = "union",
     [VXM_PASS_APART] = "apart",
     [VXM_PASS_UNUSED] = "unused_vertices",
@@ -54,6 +55,10 @@ static vxm_status check_options(vxm_repair_options *chosen, const vxm_repair_opt
   if (!(options->max_change >= 0) || !isfinite(options->max_change))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
                     options->max_change);
+  if (options->drop_faces < 0 || !(options->drop_volume >= 0))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "repair: parts below %" PRId64 " faces or a volume of %g; both must be 0 or more",
+                    options->drop_faces, options->drop_volume);
   return VXM_OK;
 }
 
@@ -94,9 +99,9 @@ static vxm_status run_further(vxm_work *work, vxm_error *error) {
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{vxm_pass_unused, false}, {vxm_pass_wrap, false},  {vxm_pass_separation, false},
-                 {vxm_pass_closing, true}, {vxm_pass_union, false}, {vxm_pass_apart, false},
-                 {vxm_pass_unused, false}};
+  } further[] = {{vxm_pass_unused, false}, {vxm_pass_wrap, false},       {vxm_pass_separation, true},
+                 {vxm_pass_closing, true}, {vxm_pass_small_parts, true}, {vxm_pass_union, false},
+                 {vxm_pass_apart, true},   {vxm_pass_unused, false}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
   for (int i = 0; i < FURTHER && status == VXM_OK; i++) {

@@ -1,6 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/fans.h"
-#include "repair/openmesh.h"
+#include "repair/separate.h"
+
+/** The separated soup has the faces of the present one, in their order. */
+static vxm_status adopt(vxm_work *work, vxm_soup *soup, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  uint64_t *origin = vxm_work_scratch(work, soup->face_count, sizeof *origin, &status, error);
+  if (!origin) {
+    vxm_soup_destroy(soup);
+    return status;
+  }
+  for (size_t f = 0; f < soup->face_count; f++)
+    origin[f] = f;
+  return vxm_work_adopt(work, soup, origin, error);
+}
 
 /**
  * Makes the faces a manifold: cuts them apart, on vertices of their own at the same positions, where an edge
@@ -14,16 +27,12 @@ vxm_status vxm_pass_separation(vxm_work *work, bool *changed, vxm_error *error) 
   vxm_status status = vxm_is_manifold(&manifold, work, error);
   if (status != VXM_OK || manifold)
     return status;
-  const vxm_openmesh *openmesh;
   vxm_soup *soup;
-  uint64_t *origin;
-  int64_t detached, stitched;
-  status = vxm_openmesh_open(&openmesh, "separating faces at edges and vertices that have too many", error);
-  if (status == VXM_OK)
-    status = openmesh->separate(&soup, &origin, &detached, &stitched, work->soup, error);
+  int64_t split, stitched;
+  status = vxm_separate(&soup, &split, &stitched, work->soup, error);
   if (status != VXM_OK)
     return status;
-  work->counts[VXM_PASS_SEPARATION] += (int64_t)soup->vertex_count - (int64_t)work->soup->vertex_count;
+  work->counts[VXM_PASS_SEPARATION] += split;
   *changed = true;
-  return vxm_work_adopt(work, soup, origin, error);
+  return adopt(work, soup, error);
 }

@@ -37,23 +37,30 @@ typedef struct measure {
   vxm_watch watch;
 } measure;
 
+/** The side of a voxel that a band is counted in. */
+static double longest_side(const vxm_space *space) {
+  const double *size = space->voxel_size;
+  return fmax(fmax(size[0], size[1]), size[2]);
+}
+
+float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space) {
+  return (float)((options->band > 0 ? options->band : INFINITY) * longest_side(space));
+}
+
 static measure measure_of(vxm_model *model, const vxm_surface *surface, const vxm_space *space,
                           vxm_layout layout, const vxm_distance_options *options) {
-  const double *size = space->voxel_size;
   measure m = {.model = model,
                .surface = surface,
                .space = space,
                .axes = {layout.fast, layout.middle, layout.slow},
-               .side = size[0],
+               .side = longest_side(space),
                .band = options->band > 0 ? options->band : INFINITY,
                .is_signed = !options->is_unsigned,
                .find = vxm_nearest_tile_best()};
-  for (int a = 1; a < 3; a++)
-    m.side = size[a] > m.side ? size[a] : m.side;
   for (int a = 0; a < 3; a++)
     m.dims[a] = space->dims[m.axes[a]];
   for (int i = 0; i < VXM_TILE; i++)
-    m.beyond[i] = (float)(m.band * m.side);
+    m.beyond[i] = vxm_distance_limit(options, space);
   m.across = (m.dims[0] + VXM_TILE - 1) / VXM_TILE;
   m.down = (m.dims[1] + VXM_TILE - 1) / VXM_TILE;
   return m;

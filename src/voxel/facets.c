@@ -132,28 +132,72 @@ static vxm_status make_facets(builder *b) {
   return VXM_OK;
 }
 
+/* ---- Points ---- */
+
+/** The numbers before points are counted: the soup's vertices, the caps' own points, an apex for each part.
+ */
 static vxm_status number_points(builder *b, vxm_error *error) {
   vxm_facets *facets = b->facets;
-  facets->first_cap = b->soup->vertex_count;
-  facets->first_apex = facets->first_cap + facets->split.caps.point_count;
+  facets->first_apex = b->soup->vertex_count + facets->split.caps.point_count;
   facets->point_count = facets->first_apex + facets->split.part_count;
   if (facets->point_count > VXM_VERTICES_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "too many vertices, parts and holes to number; split the mesh");
-  size_t count = facets->split.caps.point_count;
-  facets->cap_points = allocate(b, count, sizeof *facets->cap_points);
-  if (!facets->cap_points)
+  return VXM_OK;
+}
+
+static const double *position_of(const builder *b, uint32_t vertex) {
+  size_t count = b->soup->vertex_count;
+  return vertex < count ? vxm_position(b->soup, vertex) : b->facets->split.caps.points[vertex - count];
+}
+
+/** Numbers points anew, as facets have them one after another. */
+static size_t renumber(vxm_facets *facets, uint32_t *number, uint32_t *vertex) {
+  const uint32_t none = UINT32_MAX;
+  size_t count = 0, first_apex = facets->first_apex;
+  for (size_t v = 0; v < first_apex; v++)
+    number[v] = none;
+  for (size_t f = 0; f < facets->facet_count; f++)
+    for (int k = 0; k < 3; k++) {
+      uint32_t *corner = &facets->corners[f][k];
+      if (*corner >= first_apex)
+        continue;
+      if (number[*corner] == none) {
+        vertex[count] = *corner;
+        number[*corner] = (uint32_t)count++;
+      }
+      *corner = number[*corner];
+    }
+  return count;
+}
+
+/** The apexes, once it is known how many points lie before them. */
+static void renumber_apexes(vxm_facets *facets, size_t count) {
+  for (size_t p = 0; p < facets->split.part_count; p++)
+    for (size_t f = facets->parts[p].cones; f < facets->parts[p].end; f++)
+      facets->corners[f][2] = (uint32_t)(count + p);
+  facets->first_apex = count;
+  facets->point_count = count + facets->split.part_count;
+}
+
+static vxm_status gather_points(builder *b) {
+  vxm_facets *facets = b->facets;
+  uint32_t *number = allocate(b, facets->first_apex, sizeof *number);
+  facets->vertex = allocate(b, facets->first_apex, sizeof *facets->vertex);
+  if (!number || !facets->vertex) {
+    vxm_free(facets->context, number);
     return b->error.code;
-  if (count > 0)
-    memcpy(facets->cap_points, facets->split.caps.points, count * sizeof *facets->cap_points);
+  }
+  renumber_apexes(facets, renumber(facets, number, facets->vertex));
+  vxm_free(facets->context, number);
+  facets->positions = allocate(b, facets->first_apex, sizeof *facets->positions);
+  if (!facets->positions)
+    return b->error.code;
+  for (size_t p = 0; p < facets->first_apex; p++)
+    memcpy(facets->positions[p], position_of(b, facets->vertex[p]), sizeof facets->positions[p]);
   return VXM_OK;
 }
 
 /* ---- Sizes ---- */
-
-static const double *position_of(const vxm_facets *facets, uint32_t point) {
-  return point < facets->first_cap ? vxm_position(facets->soup, point)
-                                   : facets->cap_points[point - facets->first_cap];
-}
 
 static double squared_distance(const double *p, const double *q) {
   double sum = 0;
@@ -174,8 +218,8 @@ static void measure(vxm_facets *facets) {
     }
     double squared = 0;
     for (int k = 0; k < 3; k++) {
-      const double *p = position_of(facets, corner[k]);
-      squared = fmax(squared, squared_distance(p, position_of(facets, corner[(k + 1) % 3])));
+      const double *p = facets->positions[corner[k]];
+      squared = fmax(squared, squared_distance(p, facets->positions[corner[(k + 1) % 3]]));
       for (int a = 0; a < 3; a++) {
         low[a] = fmin(low[a], p[a]);
         high[a] = fmax(high[a], p[a]);
@@ -199,6 +243,8 @@ vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_ru
     status = number_points(&b, &local);
   if (status == VXM_OK)
     status = make_facets(&b);
+  if (status == VXM_OK)
+    status = gather_points(&b);
   vxm_free(out->context, b.next);
   if (status == VXM_OK) {
     measure(out);
@@ -210,7 +256,8 @@ vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_ru
 
 void vxm_facets_destroy(vxm_facets *facets) {
   vxm_split_destroy(&facets->split);
-  vxm_free(facets->context, facets->cap_points);
+  vxm_free(facets->context, facets->positions);
+  vxm_free(facets->context, facets->vertex);
   vxm_free(facets->context, facets->parts);
   vxm_free(facets->context, facets->part);
   vxm_free(facets->context, facets->corners);

@@ -40,9 +40,11 @@ typedef struct vxm_facets {
   uint32_t *part;         /**< of each facet */
   size_t facet_count;
   vxm_part *parts;
-  /* Points: the soup's vertices, then from first_cap on the caps' own, then an apex for each part. */
-  size_t first_cap, first_apex, point_count;
-  double (*cap_points)[3];       /**< positions of the caps' own points, model units */
+  /* Points: the vertices that facets have, and the caps' own, in the order in which facets first have them,
+     so that neighbours lie close together in memory; then an apex for each part. */
+  size_t first_apex, point_count;
+  double (*positions)[3];        /**< of the points before first_apex, model units */
+  uint32_t *vertex;              /**< of the same: the soup's vertex; a greater number is a cap's own point */
   double length, squared_length; /**< sums over all facets of the longest edge and its square, model units */
   vxm_split split;               /**< trimmed: counts only */
 } vxm_facets;

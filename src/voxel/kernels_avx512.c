@@ -4,11 +4,11 @@
 
 #if VXM_KERNELS_X86
 #include <immintrin.h>
-#define VXM_TARGET "avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi,bmi2,popcnt,lzcnt"
+#define VXM_TARGET "avx512f,avx512cd,avx512dq,avx512bw,avx512vl,avx2,bmi,bmi2,popcnt,lzcnt"
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target(VXM_TARGET))), apply_to = function)
 #else
-#pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi,bmi2,popcnt,lzcnt")
+#pragma GCC target("avx512f,avx512cd,avx512dq,avx512bw,avx512vl,avx2,bmi,bmi2,popcnt,lzcnt")
 #endif
 
 #define VXM_USE_AVX2 1

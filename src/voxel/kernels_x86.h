@@ -23,8 +23,9 @@ static inline bool vxm_runs_avx2(void) {
 /** Whether the builds for AVX-512 may run. */
 static inline bool vxm_runs_avx512(void) {
 #if VXM_KERNELS_X86
-  return vxm_runs_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+  return vxm_runs_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512vl");
 #else
   return false;
 #endif

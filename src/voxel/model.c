@@ -45,6 +45,7 @@ vxm_status vxm_model_make(vxm_model **out, const vxm_soup *soup, const vxm_voxel
     return local.code;
   }
   vxm_status status = vxm_context_acquire(&model->context, soup->context, error);
+  model->labels.context = model->context;
   model->options = *options;
   if (status == VXM_OK)
     status = make_shape(model, soup, error);
@@ -60,6 +61,7 @@ void vxm_model_destroy(vxm_model *model) {
   if (!model)
     return;
   vxm_context *context = model->context;
+  vxm_label_table_destroy(&model->labels);
   vxm_free(context, model->run.touched);
   vxm_run_destroy(&model->run);
   vxm_shelling_destroy(&model->shelling, context);
@@ -125,7 +127,8 @@ vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, cons
     return (vxm_demand){surface, vxm_model_windows_held(model)};
   bool polled = vxm_voted_begin(&model->shape) < facets->split.part_count;
   int voters = polled ? 4 : 1;
-  uint64_t points = facets->point_count * sizeof *model->run.placed.narrow;
+  const vxm_placed *placed = &model->run.placed;
+  uint64_t points = facets->point_count * (sizeof *placed->narrow + sizeof *placed->cells);
   uint64_t slab = (uint64_t)vxm_max(VXM_SLAB_WORDS, (int64_t)shape->slice_words) * sizeof(uint64_t);
   /* A slab for each voter and thread, some slices for what is carried on, and the bins themselves. */
   vxm_demand demand = {points + surface + (5 * threads + 4) * slab + (UINT64_C(1) << 20),
@@ -163,10 +166,16 @@ static vxm_status check_transform(const double m[12], bool *mirrored, vxm_error 
 
 vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const double transform[12],
                            uint8_t *confidence, vxm_error *error) {
+  vxm_lattice lattice = vxm_lattice_of(space);
+  return vxm_model_begin_on(model, &lattice, transform, confidence, error);
+}
+
+vxm_status vxm_model_begin_on(vxm_model *model, const vxm_lattice *lattice, const double transform[12],
+                              uint8_t *confidence, vxm_error *error) {
   vxm_run *run = &model->run;
   vxm_facets *facets = &model->shape.facets;
   model->notes = (vxm_notes){0};
-  model->space = *space;
+  model->space = lattice->space;
   run->mirrored = false;
   vxm_status status = transform ? check_transform(transform, &run->mirrored, error) : VXM_OK;
   if (status != VXM_OK)
@@ -178,16 +187,15 @@ vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const doubl
   run->added = false;
   vxm_wound_destroy(&run->open_wound);
   vxm_wound_destroy(&run->all_wound);
-  vxm_lattice lattice = vxm_lattice_of(space);
   vxm_shelling_begin(&model->shelling);
   if (vxm_model_wants_solid(model))
-    status = vxm_placed_set(&run->placed, facets, &lattice, transform,
+    status = vxm_placed_set(&run->placed, facets, lattice, transform,
                             confidence || vxm_run_apexes(&model->shape), error);
   if (status != VXM_OK || !vxm_model_wants_faces(model))
     return status;
   if (model->surface)
-    return vxm_surface_place(model->surface, &lattice, transform, error);
-  return vxm_surface_create(&model->surface, model->shape.soup, &lattice, transform, error);
+    return vxm_surface_place(model->surface, lattice, transform, error);
+  return vxm_surface_create(&model->surface, model->shape.soup, lattice, transform, error);
 }
 
 static vxm_status fill_solid(const vxm_window *window, void *payload, vxm_error *error) {
@@ -245,7 +253,7 @@ static void name_empty_parts(vxm_model *model, const vxm_voxelize_report *report
     const vxm_part *part = &facets->parts[p];
     if (atomic_load_explicit(&model->run.touched[p], memory_order_relaxed) || part->begin == part->end)
       continue;
-    const double *at = vxm_position(model->shape.soup, facets->corners[part->begin][0]);
+    const double *at = facets->positions[facets->corners[part->begin][0]];
     used += snprintf(names + used, sizeof names - (size_t)used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "",
                      at[0], at[1], at[2]);
     named++;

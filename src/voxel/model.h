@@ -3,6 +3,7 @@
 #ifndef VXM_VOXEL_MODEL_H
 #define VXM_VOXEL_MODEL_H
 
+#include "voxel/labelling.h"
 #include "voxel/shelling.h"
 #include "voxel/solid.h"
 #include "voxel/surface.h"
@@ -14,8 +15,9 @@ struct vxm_model {
   vxm_run run;
   vxm_surface *surface; /**< of the present run; NULL before the first that wants it */
   vxm_shelling shelling;
-  vxm_space space; /**< of the present run */
-  vxm_notes notes; /**< of the last run */
+  vxm_space space;        /**< of the present run */
+  vxm_notes notes;        /**< of the last run */
+  vxm_label_table labels; /**< of the last run that made labels */
 };
 
 /** See vxm_model_create in voxmend.h; the options have been checked. */
@@ -47,6 +49,9 @@ int vxm_model_windows_held(const vxm_model *model);
  */
 vxm_status vxm_model_begin(vxm_model *model, const vxm_space *space, const double transform[12],
                            uint8_t *confidence, vxm_error *error);
+/** As vxm_model_begin, on a lattice that may be coarser than that of its space needs to be. */
+vxm_status vxm_model_begin_on(vxm_model *model, const vxm_lattice *lattice, const double transform[12],
+                              uint8_t *confidence, vxm_error *error);
 /** Replaces the words of a window of the run's grid. Windows come in order, each where the last one ended. */
 vxm_status vxm_model_fill(vxm_model *model, const vxm_window *window, vxm_error *error);
 /** Ends a run: fills the report, and notes what there is to warn of. `voxels` and `hash` are of the grid. */

@@ -71,12 +71,12 @@ enum {
 
 static bool find_neighbours(builder *b) {
   size_t n = b->out->count;
-  uint32_t *first = allocate(b, b->facets->first_cap, sizeof *first);
-  uint32_t *valence = allocate(b, b->facets->first_cap, sizeof *valence);
+  uint32_t *first = allocate(b, b->facets->first_apex, sizeof *first);
+  uint32_t *valence = allocate(b, b->facets->first_apex, sizeof *valence);
   side *sides = allocate(b, n, 3 * sizeof *sides);
   bool done = first && valence && sides;
   if (done) {
-    for (size_t v = 0; v < b->facets->first_cap; v++)
+    for (size_t v = 0; v < b->facets->first_apex; v++)
       first[v] = none;
     for (size_t t = 0; t < n; t++)
       for (size_t k = 0; k < 3; k++) {
@@ -86,7 +86,7 @@ static bool find_neighbours(builder *b) {
         first[low] = (uint32_t)(3 * t + k);
         valence[low]++;
       }
-    for (size_t v = 0; v < b->facets->first_cap; v++)
+    for (size_t v = 0; v < b->facets->first_apex; v++)
       if (valence[v] <= VALENCE_MAX)
         link_at_vertex(b, sides, first[v]);
   }

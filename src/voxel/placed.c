@@ -10,13 +10,6 @@ enum { SLICE_POINTS = 8192 };
 
 static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-/** A position of the soup or a cap, transformed. */
-static void position_of(const vxm_placed *placed, const vxm_facets *facets, size_t point, double out[3]) {
-  const double *p = point < facets->first_cap ? vxm_position(facets->soup, point)
-                                              : facets->cap_points[point - facets->first_cap];
-  vxm_transform_position(placed->transform, p, out);
-}
-
 /* ---- Narrow points ---- */
 
 typedef struct place_job {
@@ -28,13 +21,19 @@ typedef struct place_job {
   atomic_bool beyond; /**< a point does not fit */
 } place_job;
 
+/** The last cell along an axis: all centres lie before it. */
+static int32_t last_cell(const vxm_lattice *lattice, int axis) {
+  return (int32_t)vxm_min(lattice->space.dims[axis], (INT64_C(1) << VXM_CELL_BITS) - 1);
+}
+
 static vxm_affine affine_of(const vxm_placed *placed) {
-  vxm_affine affine = {0};
+  vxm_affine affine = {.bits = placed->lattice.bits};
   for (int r = 0; r < 3; r++) {
     for (int c = 0; c < 4; c++)
       affine.column[c][r] = placed->transform[4 * r + c];
     affine.origin[r] = placed->lattice.space.origin[r];
     affine.scale[r] = (double)placed->lattice.unit / placed->lattice.space.voxel_size[r];
+    affine.cells[r] = last_cell(&placed->lattice, r);
   }
   return affine;
 }
@@ -42,11 +41,11 @@ static vxm_affine affine_of(const vxm_placed *placed) {
 static void place_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   place_job *job = payload;
-  size_t count = job->facets->first_cap;
+  size_t count = job->facets->first_apex;
   size_t begin = vxm_slice_begin(count, job->slices, slice),
          end = vxm_slice_begin(count, job->slices, slice + 1);
-  if (!job->kernels->place(job->placed->narrow + begin, job->facets->soup->positions + 3 * begin, end - begin,
-                           &job->affine))
+  if (!job->kernels->place(job->placed->narrow + begin, job->placed->cells + begin,
+                           job->facets->positions[begin], end - begin, &job->affine))
     atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
 }
 
@@ -56,51 +55,53 @@ static bool place_narrow(vxm_placed *placed, const vxm_facets *facets) {
                    .facets = facets,
                    .kernels = vxm_kernels_get(),
                    .affine = affine_of(placed),
-                   .slices = 1 + facets->first_cap / SLICE_POINTS};
+                   .slices = 1 + facets->first_apex / SLICE_POINTS};
   atomic_init(&job.beyond, false);
   vxm_parallel(placed->context, job.slices, place_slice, &job);
-  bool fits = !atomic_load(&job.beyond);
-  size_t caps = facets->first_apex - facets->first_cap;
-  if (caps > 0)
-    fits &= job.kernels->place(placed->narrow + facets->first_cap, facets->cap_points[0], caps, &job.affine);
-  return fits;
+  return !atomic_load(&job.beyond);
 }
 
 /* ---- Wide points ---- */
 
-/** Places all points in 64 bits if one that is used needs it. Those of no face may lie anywhere. */
+static vxm_status refuse(const vxm_facets *facets, size_t point, vxm_error *error) {
+  uint32_t vertex = facets->vertex[point];
+  if (vertex < facets->soup->vertex_count)
+    return vxm_lattice_refuse(vertex, facets->positions[point], error);
+  return vxm_fail(error, VXM_ERROR_RANGE, "a hole lies too many voxels outside the grid");
+}
+
+/** Places all points in 64 bits. */
 static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   placed->wide = vxm_calloc(placed->context, facets->point_count, sizeof *placed->wide, &local);
-  uint8_t *used = vxm_calloc(placed->context, facets->point_count, sizeof *used, &local);
   vxm_status status = local.code;
-  bool needed = false;
-  for (size_t f = 0; status == VXM_OK && f < facets->facet_count; f++)
-    for (int c = 0; c < 3; c++)
-      used[facets->corners[f][c]] = 1;
   for (size_t p = 0; status == VXM_OK && p < facets->first_apex; p++) {
     double at[3];
-    if (!used[p])
-      continue;
-    position_of(placed, facets, p, at);
+    vxm_transform_position(placed->transform, facets->positions[p], at);
     if (!vxm_lattice_place(&placed->lattice, at, &placed->wide[p]))
-      status = p < facets->first_cap
-                   ? vxm_lattice_refuse((uint32_t)p, vxm_position(facets->soup, p), &local)
-                   : vxm_fail(&local, VXM_ERROR_RANGE, "a hole lies too many voxels outside the grid");
-    for (int a = 0; a < 3; a++)
-      needed |= placed->wide[p].at[a] >= VXM_NARROW_MAX || placed->wide[p].at[a] <= -VXM_NARROW_MAX;
+      status = refuse(facets, p, &local);
   }
-  vxm_free(placed->context, used);
-  if (status != VXM_OK || !needed) {
+  if (status != VXM_OK) {
     vxm_free(placed->context, placed->wide);
     placed->wide = NULL;
+    if (error)
+      *error = local;
   }
-  if (status != VXM_OK && error)
-    *error = local;
   return status;
 }
 
 /* ---- Apexes ---- */
+
+/** Sets an apex of narrow points, and its cell. */
+static void set_apex(vxm_placed *placed, uint32_t apex, const int64_t at[3]) {
+  placed->cells[apex] = 0;
+  placed->narrow[apex][3] = 0;
+  for (int a = 0; a < 3; a++) {
+    int64_t cell = vxm_lattice_first(&placed->lattice, at[a]), last = last_cell(&placed->lattice, a);
+    placed->narrow[apex][a] = (int32_t)at[a];
+    placed->cells[apex] |= (uint64_t)vxm_min(vxm_max(cell, 0), last) << (VXM_CELL_BITS * a);
+  }
+}
 
 static void place_apex(vxm_placed *placed, const vxm_facets *facets, size_t part) {
   const vxm_part *p = &facets->parts[part];
@@ -113,18 +114,30 @@ static void place_apex(vxm_placed *placed, const vxm_facets *facets, size_t part
         sum[a] += q.at[a];
     }
   uint32_t apex = vxm_apex_of(facets, part);
-  for (int a = 0; a < 3; a++) {
-    int64_t mean = corners > 0 ? (int64_t)(sum[a] / corners) : 0;
-    if (placed->wide)
-      placed->wide[apex].at[a] = mean;
-    else
-      placed->narrow[apex][a] = (int32_t)mean;
-  }
-  if (!placed->wide)
-    placed->narrow[apex][3] = 0;
+  vxm_point mean = {{0, 0, 0}};
+  for (int a = 0; a < 3 && corners > 0; a++)
+    mean.at[a] = (int64_t)(sum[a] / corners);
+  if (placed->wide)
+    placed->wide[apex] = mean;
+  else
+    set_apex(placed, apex, mean.at);
 }
 
 /* ---- All of it ---- */
+
+static vxm_status reserve(vxm_placed *placed, size_t count, vxm_error *error) {
+  if (placed->capacity >= count)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(placed->context, placed->narrow);
+  vxm_free(placed->context, placed->cells);
+  placed->narrow = vxm_alloc(placed->context, count, sizeof *placed->narrow, &local);
+  placed->cells = vxm_alloc(placed->context, count, sizeof *placed->cells, &local);
+  placed->capacity = placed->narrow && placed->cells ? count : 0;
+  if (placed->capacity == 0 && error)
+    *error = local;
+  return local.code;
+}
 
 vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
                           const double transform[12], bool apexes, vxm_error *error) {
@@ -132,20 +145,11 @@ vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vx
   memcpy(placed->transform, transform ? transform : identity, sizeof identity);
   vxm_free(placed->context, placed->wide);
   placed->wide = NULL;
-  if (placed->capacity < facets->point_count) {
-    vxm_error local = VXM_ERROR_INIT;
-    vxm_free(placed->context, placed->narrow);
-    placed->capacity = 0;
-    placed->narrow = vxm_alloc(placed->context, facets->point_count, sizeof *placed->narrow, &local);
-    if (!placed->narrow) {
-      if (error)
-        *error = local;
-      return local.code;
-    }
-    placed->capacity = facets->point_count;
-  }
+  vxm_status status = reserve(placed, facets->point_count, error);
+  if (status != VXM_OK)
+    return status;
   if (!place_narrow(placed, facets)) {
-    vxm_status status = place_wide(placed, facets, error);
+    status = place_wide(placed, facets, error);
     if (status != VXM_OK)
       return status;
   }
@@ -153,12 +157,13 @@ vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vx
     if (apexes)
       place_apex(placed, facets, p);
     else if (!placed->wide) /* cones are looked at, if only to be left out */
-      memset(placed->narrow[vxm_apex_of(facets, p)], 0, sizeof *placed->narrow);
+      set_apex(placed, vxm_apex_of(facets, p), (const int64_t[3]){0, 0, 0});
   return VXM_OK;
 }
 
 void vxm_placed_destroy(vxm_placed *placed) {
   vxm_free(placed->context, placed->wide);
   vxm_free(placed->context, placed->narrow);
+  vxm_free(placed->context, placed->cells);
   *placed = (vxm_placed){.context = placed->context};
 }

@@ -6,15 +6,25 @@
 #include "voxel/facets.h"
 #include "voxel/lattice.h"
 
-/** Narrow coordinates stay below this, so that differences of two of them fit 31 bits. */
-#define VXM_NARROW_MAX (INT32_C(1) << 29)
+/** Narrow coordinates stay below this, so that differences of two of them fit 31 bits, and cells fit theirs.
+ */
+#define VXM_NARROW_MAX ((INT32_C(1) << 29) - (INT32_C(1) << 7))
 
+/** Bits of the number of a cell along one axis. */
+enum { VXM_CELL_BITS = 21 };
+
+/**
+ * Points on a lattice. The cell of a point is the number of voxel centres of the grid before it along each
+ * axis, as they are moved by the perturbation: a triangle covers a column only if its corners lie in
+ * different cells along both axes across the column.
+ */
 typedef struct vxm_placed {
   vxm_context *context;
   vxm_lattice lattice;
   double transform[12];
-  size_t capacity;      /**< of `narrow` */
+  size_t capacity;      /**< of `narrow` and `cells` */
   int32_t (*narrow)[4]; /**< points by number; the fourth number is 0 */
+  uint64_t *cells;      /**< of each point: x from bit 0 on, y from VXM_CELL_BITS, z from twice that */
   vxm_point *wide;      /**< used instead where a point lies beyond VXM_NARROW_MAX, else NULL */
 } vxm_placed;
 
@@ -31,6 +41,11 @@ typedef struct vxm_placed {
 vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
                           const double transform[12], bool apexes, vxm_error *error);
 void vxm_placed_destroy(vxm_placed *placed);
+
+/** The bits of a cell that belong to an axis. */
+static inline uint64_t vxm_cell_mask(int axis) {
+  return ((UINT64_C(1) << VXM_CELL_BITS) - 1) << (VXM_CELL_BITS * axis);
+}
 
 static inline vxm_point vxm_placed_at(const vxm_placed *placed, uint32_t point) {
   if (placed->wide)

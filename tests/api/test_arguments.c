@@ -36,6 +36,8 @@ static void test_outputs_after_refusal(void **state) {
   NULL_AFTER(vxm_mesh, vxm_mesh_create(&created, NULL, NULL, NULL));
   NULL_AFTER(vxm_mesh, vxm_mesh_read(&created, NULL, NULL, NULL));
   NULL_AFTER(vxm_mesh, vxm_mesh_read_memory(&created, NULL, NULL, 5, "x.off", NULL));
+  NULL_AFTER(vxm_mesh, vxm_mesh_read_with(&created, NULL, NULL, NULL, NULL));
+  NULL_AFTER(vxm_mesh, vxm_mesh_read_memory_with(&created, NULL, NULL, 5, "x.off", NULL, NULL));
   NULL_AFTER(vxm_mesh, vxm_mesh_repair(&created, NULL, NULL, NULL, NULL));
   NULL_AFTER(vxm_mesh, vxm_grid_surface_mesh(&created, NULL, NULL));
   NULL_AFTER(vxm_grid, vxm_grid_create(&created, NULL, NULL, NULL));
@@ -202,6 +204,30 @@ static void test_mesh_files(void **state) {
   REFUSED(vxm_mesh_read_memory(&mesh, NULL, "", 0, "x.off", &error), VXM_ERROR_FORMAT);
   REFUSED(vxm_mesh_read_memory(&mesh, NULL, "\x01\x02\x03", 3, NULL, &error), VXM_ERROR_FORMAT);
   assert_null(mesh);
+
+  static const char text[] = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  vxm_mesh_read_options reading = {.version = 9};
+  REFUSED(vxm_mesh_read_with(&mesh, NULL, "x.off", &reading, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_mesh_read_memory_with(&mesh, NULL, text, strlen(text), "x", &reading, &error),
+          VXM_ERROR_ARGUMENT);
+  static const double wrong[] = {-0.5, 1.5, NAN, INFINITY};
+  for (size_t w = 0; w < sizeof wrong / sizeof *wrong; w++) {
+    reading = (vxm_mesh_read_options){.version = 1, .deflection = wrong[w]};
+    REFUSED(vxm_mesh_read_with(&mesh, NULL, "x.off", &reading, &error), VXM_ERROR_ARGUMENT);
+    REFUSED(vxm_mesh_read_memory_with(&mesh, NULL, text, strlen(text), "x", &reading, &error),
+            VXM_ERROR_ARGUMENT);
+  }
+  reading = (vxm_mesh_read_options){.version = 1, .format = "word"};
+  REFUSED(vxm_mesh_read_memory_with(&mesh, NULL, text, strlen(text), "x", &reading, &error),
+          VXM_ERROR_ARGUMENT);
+  assert_null(mesh);
+  reading.format = "OFF";
+  assert_int_equal(vxm_mesh_read_memory_with(&mesh, NULL, text, strlen(text), "x.stl", &reading, &error),
+                   VXM_OK);
+  vxm_mesh_destroy(mesh);
+  reading.format = "stl";
+  REFUSED(vxm_mesh_read_memory_with(&mesh, NULL, text, strlen(text), "x.off", &reading, &error),
+          VXM_ERROR_FORMAT);
 
   vxm_mesh_arrays arrays = tetrahedron();
   assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);

@@ -61,6 +61,14 @@ static void limit_is_kept(void **state) {
     vxm_free(context, blocks[--count]);
   assert_int_equal(vxm_memory_left(context), LIMIT);
   vxm_free(context, NULL);
+  /* what a library takes counts as well */
+  assert_int_equal(vxm_memory_take(context, LIMIT + 1, &error), VXM_ERROR_MEMORY_LIMIT);
+  assert_int_equal(vxm_memory_left(context), LIMIT);
+  assert_int_equal(vxm_memory_take(context, LIMIT, &error), VXM_OK);
+  assert_int_equal(vxm_memory_left(context), 0);
+  assert_null(vxm_alloc(context, 1, 1, &error));
+  vxm_memory_give(context, LIMIT);
+  assert_int_equal(vxm_memory_left(context), LIMIT);
   vxm_context_destroy(context);
 
   context = new_context(1, 0);
@@ -240,6 +248,9 @@ static void bits(void **state) {
     }
     assert_true(vxm_prefix_xor(word) == prefix);
     assert_int_equal(vxm_popcount(word), __builtin_popcountll(word));
+    uint64_t turned = vxm_transpose8(word);
+    for (unsigned i = 0; i < 64; i++)
+      assert_int_equal(turned >> i & 1, word >> (8 * (i % 8) + i / 8) & 1);
     double unit = vxm_rng_unit(&rng);
     assert_true(unit >= 0 && unit < 1);
   }

@@ -93,6 +93,37 @@ static void appears_when_complete(void **state) {
   free(data);
 }
 
+/** Bytes within the buffer, beyond it, and across; what follows goes to the end. */
+static void patches(void **state) {
+  place *p = *state;
+  enum { SIZE = 200000 };
+  char *data = calloc(SIZE, 1);
+  assert_non_null(data);
+  for (int last = 0; last < 2; last++) { /* patched on the way, or at the end */
+    vxm_output *output;
+    assert_int_equal(vxm_output_open(&output, p->context, p->path, NULL), VXM_OK);
+    assert_true(vxm_output_can_patch(output));
+    memset(data, 'a', SIZE);
+    vxm_output_write(output, data, SIZE - 10);
+    if (last)
+      vxm_output_write(output, data, 10);
+    static const size_t places[] = {0, 100, 65530, SIZE - 14};
+    for (int i = 0; i < 4; i++) {
+      vxm_output_patch(output, places[i], "wxyz", 4);
+      memcpy(data + places[i], "wxyz", 4);
+    }
+    if (!last)
+      vxm_output_write(output, "aaaaaaaaaa", 10);
+    assert_int_equal(vxm_output_commit(output, NULL), VXM_OK);
+    assert_holds(p, data, SIZE);
+  }
+  free(data);
+  vxm_output *output;
+  assert_int_equal(vxm_output_open(&output, p->context, "/dev/null", NULL), VXM_OK);
+  assert_false(vxm_output_can_patch(output));
+  vxm_output_abort(output);
+}
+
 static void abort_leaves_what_was_there(void **state) {
   place *p = *state;
   vxm_output *output;
@@ -238,6 +269,7 @@ static void messages(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(appears_when_complete),
+      cmocka_unit_test(patches),
       cmocka_unit_test(abort_leaves_what_was_there),
       cmocka_unit_test(failure_leaves_nothing),
       cmocka_unit_test(devices_are_written_to),

@@ -10,6 +10,11 @@ run 'voxmend convert t.raw -o back.npy -q && voxmend compare t.npy back.npy'
 run 'voxmend convert - -o - --format binvox <t.npy 2>err.log | cmp - t.binvox; cat err.log'
 run 'voxmend convert t.npy -o t.obj -q && voxmend info t.obj'
 run 'voxmend convert t.npy -o t.grid --format rle -q && cmp t.rle t.grid'
+run 'voxmend convert t.npy -o t.nrrd && voxmend compare t.nrrd t.npy --strict -q && voxmend convert t.nrrd -o back.npy -q'
+run 'cmp back.npy t.npy && cmp back.npy.json t.npy.json && head -n 12 t.nrrd'
+run 'voxmend convert t.npy -o - --format nrrd -q | voxmend compare - t.nrrd -q'
+run 'voxmend voxelize in/torus.off -o direct.nrrd --like t.nrrd -q && cmp direct.nrrd t.nrrd'
+run 'voxmend voxelize in/torus.off -o direct.nrrd -r 24 --sparse -q && cmp direct.nrrd t.nrrd'
 
 say "# compare"
 run 'voxmend voxelize in/sphere.off -o s.npy --like t.npy -q'

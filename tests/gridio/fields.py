@@ -15,7 +15,7 @@ def read_nrrd(path):
     header, _, data = open(path, "rb").read().partition(b"\n\n")
     lines = header.decode("ascii").split("\n")
     assert lines[0] == "NRRD0004", lines
-    keys = dict(line.split(": ") for line in lines[1:] if not line.startswith("#"))
+    keys = dict(line.split(": ") for line in lines[1:] if not line.startswith("#") and ":=" not in line)
     assert keys["encoding"] == "raw" and keys["dimension"] == keys["space dimension"] == "3"
     dims = [int(n) for n in keys["sizes"].split()]
     directions = [ast.literal_eval(v) for v in keys["space directions"].split()]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads what write_grids wrote, by readers made from the formats' descriptions alone.
 
-readers.py plain FOLDER: binvox, raw and rle in plain Python.
+readers.py plain FOLDER: binvox, raw, rle and nrrd in plain Python.
 readers.py numpy FOLDER: npy by numpy itself; exits with 77 if there is no numpy.
 """
+import ast
 import json
 import struct
 import sys
@@ -61,10 +62,29 @@ def read_rle(path):
     return dims, origin, size, {unrank(n, dims) for n in range(len(values)) if values[n]}
 
 
+def read_nrrd(path):
+    header, _, data = open(path, "rb").read().partition(b"\n\n")
+    lines = header.decode("ascii").split("\n")
+    assert lines[0] == "NRRD0004", lines
+    keys = dict(line.split(": ") for line in lines[1:] if not line.startswith("#") and ":=" not in line)
+    assert (keys["type"], keys["encoding"], keys["dimension"]) == ("uchar", "raw", "3")
+    dims = [int(n) for n in keys["sizes"].split()]
+    assert len(data) == dims[0] * dims[1] * dims[2] and set(data) <= {0, 1}
+    directions = [ast.literal_eval(v) for v in keys["space directions"].split()]
+    size = [directions[a][a] for a in range(3)]
+    assert all(directions[a][b] == 0 for a in range(3) for b in range(3) if a != b)
+    first = ast.literal_eval(keys["space origin"])
+    pairs = dict(line.split(":=") for line in lines[1:] if ":=" in line)
+    origin = [float(n) for n in pairs["voxmend_origin"].split()]
+    assert all(origin[a] + size[a] / 2 == first[a] for a in range(3))
+    return dims, origin, size, {unrank(n, dims) for n in range(len(data)) if data[n]}
+
+
 def check_plain(path):
     dims, origin, size, voxels = expected = truth(path)
     assert read_raw(path + ".raw") == expected, "raw"
     assert read_rle(path + ".rle") == expected, "rle"
+    assert read_nrrd(path + ".nrrd") == expected, "nrrd"
     d, translate, scale, found = read_binvox(path + ".binvox")
     assert d == max(dims) and found == voxels, "binvox"
     for a in range(3):

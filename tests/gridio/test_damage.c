@@ -27,11 +27,11 @@ typedef struct sample {
   size_t size;
 } sample;
 
-enum { SAMPLES = 4 };
+enum { SAMPLES = 5 };
 
 static void make_samples(sample samples[SAMPLES], const char *folder, vxm_context *context) {
   const vxm_grid_format *formats[SAMPLES] = {&vxm_format_binvox, &vxm_format_npy, &vxm_format_raw,
-                                             &vxm_format_rle};
+                                             &vxm_format_rle, &vxm_format_nrrd};
   vxm_rng rng = {5};
   vxm_grid *grid = new_grid(context, (vxm_space){{11, 9, 7}, {1, 2, 3}, {0.5, 0.5, 0.5}});
   fill_random(grid, &rng, 1);
@@ -326,7 +326,9 @@ static int stop_later(const char *phase, double fraction, void *payload) {
   return --*(int *)payload < 0;
 }
 
-static const char *const all_formats[] = {"binvox", "npy", "raw", "rle", "png"};
+static const char *const all_formats[] = {"binvox", "npy", "raw", "rle", "nrrd", "png"};
+
+enum { ALL_FORMATS = sizeof all_formats / sizeof all_formats[0] };
 
 static vxm_status write_as(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {
   vxm_picture_options options = VXM_PICTURE_OPTIONS_INIT;
@@ -345,7 +347,7 @@ static void test_cancel(void **state) {
   vxm_context *context = context_with(2, 0, stop_later, &calls);
   vxm_grid *grid = new_grid(context, unit_space(130, 20, 40));
   fill_random(grid, &rng, 3);
-  for (int f = 0; f < 5; f++) {
+  for (int f = 0; f < ALL_FORMATS; f++) {
     char path[80];
     snprintf(path, sizeof path, "%s/g.%s", folder, all_formats[f]);
     vxm_error error = VXM_ERROR_INIT;
@@ -387,7 +389,7 @@ static void test_memory_limit(void **state) {
   make_folder(folder);
   vxm_rng rng = {8};
   vxm_space space = unit_space(100, 60, 60);
-  for (int f = 0; f < 5; f++) {
+  for (int f = 0; f < ALL_FORMATS; f++) {
     char path[80];
     snprintf(path, sizeof path, "%s/g.%s", folder, all_formats[f]);
     bool done = false;

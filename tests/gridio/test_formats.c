@@ -21,7 +21,7 @@ static void write_grid(const vxm_grid *grid, const char *path) {
     fail_msg("%s", error.text);
 }
 
-/** raw, rle and npy keep everything bit for bit, in any number of threads. */
+/** raw, rle, npy and nrrd keep everything bit for bit, in any number of threads. */
 static void test_exact_round_trips(void **state) {
   (void)state;
   char folder[64];
@@ -31,8 +31,8 @@ static void test_exact_round_trips(void **state) {
     vxm_context *context = context_with(1 + round % 3 * 3, 0, NULL, NULL);
     vxm_grid *grid = new_grid(context, random_space(&rng, round < 50 ? 140 : 70, false));
     fill_random(grid, &rng, round % KINDS);
-    const char *names[] = {"g.raw", "g.rle", "g.npy"};
-    for (int f = 0; f < 3; f++) {
+    const char *names[] = {"g.raw", "g.rle", "g.npy", "g.nrrd"};
+    for (int f = 0; f < 4; f++) {
       const char *path = path_in(folder, names[f]);
       write_grid(grid, path);
       vxm_grid *back = read_back(context, path);
@@ -69,8 +69,8 @@ static void test_transforms_bit_for_bit(void **state) {
         space.voxel_size[a] = fabs(value);
     }
     vxm_grid *grid = new_grid(context, space);
-    const char *names[] = {"g.raw", "g.rle", "g.npy"};
-    for (int f = 0; f < 3; f++) {
+    const char *names[] = {"g.raw", "g.rle", "g.npy", "g.nrrd"};
+    for (int f = 0; f < 4; f++) {
       write_grid(grid, path_in(folder, names[f]));
       vxm_grid *back = read_back(context, path_in(folder, names[f]));
       assert_memory_equal(&grid->space, &back->space, sizeof grid->space);
@@ -257,6 +257,13 @@ static void test_expected_bytes(void **state) {
                    "\0\0\0\0\0\0\xf8\xbf\x9a\x99\x99\x99\x99\x99\xb9\x3f\x48\xaf\xbc\x9a\xf2\xd7\x8a\x3e"
                    "\0\0\0\0\0\0\xd0\x3f\0\0\0\0\0\0\xd0\x3f\0\0\0\0\0\0\xd0\x3f"
                    "\1\1\3\1\3\1\2"));
+  write_grid(grid, path_in(folder, "t.nrrd"));
+  assert_file(path_in(folder, "t.nrrd"),
+              TEXT("NRRD0004\n# 1 where a voxel is set\ntype: uchar\ndimension: 3\nspace dimension: 3\n"
+                   "sizes: 3 2 2\nspace directions: (0.25,0,0) (0,0.25,0) (0,0,0.25)\n"
+                   "kinds: domain domain domain\ncenterings: cell cell cell\nencoding: raw\n"
+                   "space origin: (-1.375,0.225,0.1250002)\nvoxmend_origin:=-1.5 0.1 2e-07\n\n"
+                   "\0\1\0\0\0\1\0\0\0\1\0\0"));
   vxm_grid_destroy(grid);
   vxm_context_destroy(context);
   remove_folder(folder);

@@ -7,9 +7,9 @@
 #include "gridio/run_writer.h"
 #include "gridio/slices.h"
 
-static const char *const formats[] = {"binvox", "npy", "raw", "rle"};
+static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd"};
 
-enum { FORMATS = 4 };
+enum { FORMATS = 5 };
 
 /** Slices begin..end-1 of a grid in a layout, with noise between slices; the words are to be freed. */
 static vxm_window cut(const vxm_grid *grid, vxm_layout layout, int64_t begin, int64_t end) {

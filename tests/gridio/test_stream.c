@@ -6,9 +6,9 @@
 
 #include "gridio/gridio.h"
 
-static const char *const formats[] = {"binvox", "npy", "raw", "rle"};
+static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd"};
 
-enum { FORMATS = 4 };
+enum { FORMATS = 5 };
 
 static void assert_same_file(const char *a, const char *b) {
   size_t sizes[2];

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-static const char *const formats[] = {"binvox", "npy", "raw", "rle"};
+static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd"};
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 

@@ -38,8 +38,8 @@ static int write_one(const vxm_space *space, const char *folder, int number, vxm
           fprintf(text, "%" PRId64 " %" PRId64 " %" PRId64 "\n", i, j, k);
         }
   int failed = fclose(text) != 0;
-  static const char *const formats[] = {"binvox", "npy", "raw", "rle"};
-  for (int f = 0; f < 4 && !failed; f++) {
+  static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd"};
+  for (int f = 0; f < 5 && !failed; f++) {
     snprintf(path, sizeof path, "%s/%d.%s", folder, number, formats[f]);
     if (vxm_gridio_write(grid, path, NULL, &error) != VXM_OK)
       failed = fail(&error);

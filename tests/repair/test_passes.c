@@ -32,6 +32,7 @@ static void clean_mesh_stays(void **state) {
                                       "wrap",
                                       "separation",
                                       "closing",
+                                      "small_parts",
                                       "union",
                                       "apart",
                                       "unused_vertices"};

@@ -259,9 +259,13 @@ static void test_votes_are_counted(void **state) {
 static void check_place(const double *positions, size_t count, const vxm_affine *affine) {
   for (size_t b = 0; b < build_count; b++) {
     int32_t(*got)[4] = aligned_alloc(64, (count * sizeof *got + 64) / 64 * 64);
+    uint64_t *cells = malloc(count * sizeof *cells + (count == 0));
     assert_non_null(got);
-    bool good = builds[b]->place(got, positions, count, affine), want_good = true;
-    for (size_t i = 0; i < count; i++)
+    assert_non_null(cells);
+    bool good = builds[b]->place(got, cells, positions, count, affine), want_good = true;
+    vxm_lattice lattice = {.bits = affine->bits, .unit = INT64_C(1) << affine->bits};
+    for (size_t i = 0; i < count; i++) {
+      uint64_t want_cells = 0;
       for (int a = 0; a < 4; a++) {
         const double *p = positions + 3 * i;
         double at = affine->column[0][a] * p[0] + affine->column[1][a] * p[1] + affine->column[2][a] * p[2] +
@@ -270,8 +274,14 @@ static void check_place(const double *positions, size_t count, const vxm_affine 
         bool fits = a == 3 || fabs(at) < (double)VXM_NARROW_MAX;
         want_good &= fits;
         assert_int_equal(got[i][a], a < 3 && fits ? (int32_t)at : 0);
+        int64_t cell = vxm_lattice_first(&lattice, got[i][a]);
+        if (a < 3)
+          want_cells |= (uint64_t)vxm_min(vxm_max(cell, 0), affine->cells[a]) << (VXM_CELL_BITS * a);
       }
+      assert_true(cells[i] == want_cells);
+    }
     assert_true(good == want_good);
+    free(cells);
     free(got);
   }
 }
@@ -283,8 +293,9 @@ static void test_points_are_placed(void **state) {
   for (int round = 0; round < 400; round++) {
     double positions[3 * 9];
     size_t count = vxm_rng_below(&rng, 10);
-    vxm_affine affine = {0};
+    vxm_affine affine = {.bits = 8 + round % 9};
     for (int a = 0; a < 3; a++) {
+      affine.cells[a] = (int32_t)vxm_rng_below(&rng, round % 3 ? 10 : 1 << VXM_CELL_BITS);
       for (int c = 0; c < 4; c++)
         affine.column[c][a] = round % 2 ? c == a : 4 * vxm_rng_unit(&rng) - 2;
       affine.origin[a] = round % 4 < 2 ? 0 : 100 * vxm_rng_unit(&rng);
@@ -297,7 +308,8 @@ static void test_points_are_placed(void **state) {
     check_place(positions, count, &affine);
   }
   /* The last that fit, and the first that do not. */
-  vxm_affine affine = {.scale = {1, 1, 1, 0}};
+  const int32_t cell_max = (1 << VXM_CELL_BITS) - 1;
+  vxm_affine affine = {.scale = {1, 1, 1, 0}, .bits = 8, .cells = {cell_max, cell_max, cell_max, 0}};
   for (int a = 0; a < 3; a++)
     affine.column[a][a] = 1;
   double limit = (double)VXM_NARROW_MAX;

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions about labels: they check arguments and call down. */
+#include "gridio/labels.h"
+#include "gridio/planes.h"
+
+#include <inttypes.h>
+
+static vxm_status check(vxm_label_options *chosen, const vxm_space *space, const vxm_label_options *options,
+                        vxm_error *error) {
+  static const vxm_label_options defaults = VXM_LABEL_OPTIONS_INIT;
+  *chosen = options ? *options : defaults;
+  if (chosen->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "labels: options version %" PRIu32 " is unknown; use the initializer", chosen->version);
+  if ((unsigned)chosen->by > VXM_LABEL_MATERIAL)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: %d is none of the kinds of labels", (int)chosen->by);
+  return vxm_space_check(space, error);
+}
+
+vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_model *model,
+                            const vxm_space *space, const vxm_label_options *options, vxm_error *error) {
+  vxm_label_report local;
+  report = report ? report : &local;
+  *report = (vxm_label_report){.labels = 0};
+  if (!values || !model || !space)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: an argument is NULL");
+  vxm_label_options chosen;
+  vxm_status status = check(&chosen, space, options, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_labelling labelling;
+  status = vxm_labelling_create(&labelling, model->shape.soup, chosen.by, error);
+  if (status == VXM_OK)
+    status = vxm_labels_run(values, (vxm_layout)VXM_PLANE_Z_FAST, report, model, space, &labelling, error);
+  vxm_labelling_destroy(&labelling);
+  return status;
+}
+
+vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,
+                                  const char *path, const vxm_label_options *options, vxm_error *error) {
+  vxm_label_report local;
+  report = report ? report : &local;
+  *report = (vxm_label_report){.labels = 0};
+  if (!model || !space || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: an argument is NULL");
+  vxm_label_options chosen;
+  vxm_status status = check(&chosen, space, options, error);
+  if (status == VXM_OK)
+    status = vxm_labels_write(report, model, space, path, &chosen, error);
+  if (status != VXM_OK)
+    *report = (vxm_label_report){.labels = 0};
+  return status;
+}
+
+int64_t vxm_model_label_count(const vxm_model *model) {
+  return (int64_t)model->labels.count;
+}
+
+static bool is_label(const vxm_model *model, int64_t label) {
+  return label >= 1 && label <= (int64_t)model->labels.count;
+}
+
+const char *vxm_model_label_name(const vxm_model *model, int64_t label) {
+  return is_label(model, label) ? vxm_label_table_name(&model->labels, (size_t)label) : "";
+}
+
+int64_t vxm_model_label_voxels(const vxm_model *model, int64_t label) {
+  return is_label(model, label) ? model->labels.voxels[label - 1] : 0;
+}

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gridio/labels.h"
+#include "base/clock.h"
+#include "gridio/binvox.h"
+#include "gridio/bytes.h"
+#include "gridio/format.h"
+#include "gridio/npy_header.h"
+#include "gridio/nrrd_header.h"
+#include "gridio/planes.h"
+
+#include <inttypes.h>
+
+enum { BINVOX_LABELS_MAX = 255 };
+
+/** A file of labels in the making. */
+typedef struct label_file {
+  vxm_context *context;
+  const vxm_space *space;
+  const char *path;
+  const struct kind *kind;
+  vxm_output *output;
+  const uint16_t *values;
+} label_file;
+
+/** How a format holds labels. */
+typedef struct kind {
+  const char *name; /**< also the extension */
+  size_t labels;    /**< at most */
+  vxm_layout layout;
+  vxm_sidecar_text sidecar;
+  vxm_status (*check)(const vxm_space *space, const char *path, vxm_error *error); /**< NULL = it holds all */
+  vxm_status (*begin)(const label_file *file, vxm_error *error);
+  void (*put)(const label_file *file, int64_t slice);
+  void (*end)(const label_file *file); /**< NULL = nothing is left to write */
+} kind;
+
+/* ---- .npy and .nrrd: the values as they are ---- */
+
+static vxm_status begin_npy(const label_file *file, vxm_error *error) {
+  (void)error;
+  vxm_npy_header_write(file->output, vxm_le64(1) == 1 ? "<u2" : ">u2", false, file->space->dims);
+  return VXM_OK;
+}
+
+static vxm_status begin_nrrd(const label_file *file, vxm_error *error) {
+  return vxm_nrrd_header_write(file->output, "a number per voxel, at its centre", "ushort",
+                               sizeof *file->values, file->space, error);
+}
+
+static size_t slice_values(const label_file *file) {
+  const vxm_layout *layout = &file->kind->layout;
+  return (size_t)(file->space->dims[layout->fast] * file->space->dims[layout->middle]);
+}
+
+static void put_plain(const label_file *file, int64_t slice) {
+  size_t count = slice_values(file);
+  vxm_output_write(file->output, file->values + (size_t)slice * count, count * sizeof *file->values);
+}
+
+/* ---- .binvox: pairs of a label and a count, no run going on from slice to slice ---- */
+
+static vxm_status begin_binvox(const label_file *file, vxm_error *error) {
+  return vxm_binvox_header_write(file->output, file->space, 2, error);
+}
+
+/** Writes a run, however long. */
+static void put_run(vxm_output *output, unsigned value, uint64_t length) {
+  while (length > 0) {
+    unsigned count = length < 255 ? (unsigned)length : 255;
+    unsigned char *pair = (unsigned char *)vxm_output_reserve(output, 2);
+    pair[0] = (unsigned char)value;
+    pair[1] = (unsigned char)count;
+    vxm_output_advance(output, 2);
+    length -= count;
+  }
+}
+
+static void put_binvox(const label_file *file, int64_t slice) {
+  uint64_t side = vxm_binvox_side(file->space), run = 0;
+  size_t length = (size_t)file->space->dims[1], rows = (size_t)file->space->dims[2];
+  const uint16_t *values = file->values + (size_t)slice * length * rows;
+  unsigned value = values[0];
+  for (size_t row = 0; row < rows; row++, values += length) {
+    for (size_t i = 0; i < length; i++, run++)
+      if (values[i] != value) {
+        put_run(file->output, value, run);
+        value = values[i];
+        run = 0;
+      }
+    if (side == length)
+      continue;
+    if (value != 0) {
+      put_run(file->output, value, run);
+      value = 0;
+      run = 0;
+    }
+    run += side - length;
+  }
+  put_run(file->output, value, run);
+  put_run(file->output, 0, (side - rows) * side);
+}
+
+static void end_binvox(const label_file *file) {
+  uint64_t side = vxm_binvox_side(file->space);
+  put_run(file->output, 0, (side - (uint64_t)file->space->dims[0]) * side * side);
+}
+
+/* ---- All formats ---- */
+
+static const kind kinds[] = {
+    {"npy",
+     VXM_LABELS_MAX,
+     VXM_PLANE_Z_FAST,
+     {"voxmend npy", "z fastest, then y, then x", NULL},
+     NULL,
+     begin_npy,
+     put_plain,
+     NULL},
+    {"nrrd",
+     VXM_LABELS_MAX,
+     VXM_LAYOUT_GRID,
+     {"voxmend labels", "x fastest, then y, then z", NULL},
+     NULL,
+     begin_nrrd,
+     put_plain,
+     NULL},
+    {"binvox",
+     BINVOX_LABELS_MAX,
+     VXM_PLANE_Y_FAST,
+     {"voxmend labels", "y fastest, then z, then x", NULL},
+     vxm_binvox_check,
+     begin_binvox,
+     put_binvox,
+     end_binvox},
+};
+
+static const kind *find_kind(const char *path, const char *format, vxm_error *error) {
+  const char *name = format ? format : vxm_path_extension(path);
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
+    if (vxm_text_equal_nocase(name, kinds[k].name))
+      return &kinds[k];
+  vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
+              "labels go into .npy, .nrrd or .binvox, not \"%s\"", name);
+  return NULL;
+}
+
+static vxm_status check_kind(const kind *k, const vxm_labelling *labelling, const vxm_space *space,
+                             const char *path, vxm_error *error) {
+  if (labelling->table.count > k->labels)
+    return vxm_fail_at(error, VXM_ERROR_RANGE, (vxm_place){path, 0, -1, -1},
+                       "%zu labels are more than .%s holds, which is %zu; use .npy or .nrrd",
+                       labelling->table.count, k->name, k->labels);
+  return k->check ? k->check(space, path, error) : VXM_OK;
+}
+
+/** The values, which are freed even after a failure. */
+static vxm_status make_values(uint16_t **values, vxm_context *context, const vxm_space *space,
+                              vxm_error *error) {
+  uint64_t count = vxm_space_voxels(space);
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = vxm_memory_check(context, count * sizeof **values, "a label per voxel", &local);
+  if (status == VXM_OK) {
+    *values = vxm_alloc(context, (size_t)count, sizeof **values, &local);
+    status = local.code;
+  }
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+static vxm_status put_values(const label_file *file, vxm_error *error) {
+  int64_t slices = file->space->dims[file->kind->layout.slow];
+  vxm_status status = file->kind->begin(file, error);
+  for (int64_t s = 0; s < slices && status == VXM_OK && !vxm_output_failed(file->output); s++) {
+    file->kind->put(file, s);
+    status = vxm_progress(file->context, "writing", (double)(s + 1) / (double)slices, error);
+  }
+  if (status == VXM_OK && file->kind->end)
+    file->kind->end(file);
+  return status;
+}
+
+/** Writes the values and the table beside them; the output is closed either way. */
+static vxm_status write_file(label_file *file, const vxm_label_table *table, vxm_error *error) {
+  vxm_output *sidecar = NULL;
+  vxm_status status = put_values(file, error);
+  if (status == VXM_OK)
+    status = vxm_sidecar_open_labels(&sidecar, file->context, file->space, file->path, &file->kind->sidecar,
+                                     table, error);
+  if (status == VXM_OK)
+    return vxm_sidecar_commit(file->output, sidecar, file->path, error);
+  vxm_output_abort(file->output);
+  return status;
+}
+
+vxm_status vxm_labels_write(vxm_label_report *report, vxm_model *model, const vxm_space *space,
+                            const char *path, const vxm_label_options *options, vxm_error *error) {
+  double start = vxm_clock_ms();
+  label_file file = {.context = model->context, .space = space, .path = path};
+  file.kind = find_kind(path, options->format, error);
+  if (!file.kind)
+    return VXM_ERROR_ARGUMENT;
+  uint16_t *values = NULL;
+  vxm_labelling labelling;
+  vxm_status status = vxm_labelling_create(&labelling, model->shape.soup, options->by, error);
+  if (status == VXM_OK)
+    status = check_kind(file.kind, &labelling, space, path, error);
+  if (status == VXM_OK)
+    status = make_values(&values, file.context, space, error);
+  if (status == VXM_OK)
+    status = vxm_output_open(&file.output, file.context, path, error);
+  if (status == VXM_OK)
+    status = vxm_labels_run(values, file.kind->layout, report, model, space, &labelling, error);
+  double made = vxm_clock_ms();
+  file.values = values;
+  if (status == VXM_OK)
+    status = write_file(&file, &model->labels, error);
+  else
+    vxm_output_abort(file.output);
+  report->voxelize.fill_ms = made - start;
+  report->voxelize.write_ms = vxm_clock_ms() - made;
+  vxm_labelling_destroy(&labelling);
+  vxm_free(file.context, values);
+  return status;
+}

@@ -1,0 +1,53 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Meshes through Assimp: parts and materials as tags, buffers beside the file, standard input, damage.
+. "$SRCDIR/tests/cli/lib.sh"
+if ! "$VOXMEND" info -q in/stool.glb 2>err.txt; then
+  grep -q 'reading .glb files needs voxmend.s module "assimp".*--with-assimp.*libassimp-dev' err.txt ||
+    { cat err.txt; exit 1; }
+  exit 77
+fi
+# What Assimp says of damage is its own matter.
+told() {
+  "$VOXMEND" "$@" 2>&1 | sed 's/\(Assimp cannot read it\): ..*/\1: .../'
+}
+run 'voxmend info -v in/stool.glb'
+run 'voxmend info --json - <in/stool.glb'
+run 'voxmend repair -q in/stool.glb -o stool.obj && grep -E "^(g|usemtl)" stool.obj'
+run 'voxmend voxelize in/stool.glb -o stool.npy --voxel-size 0.005 --mode solid'
+run 'voxmend view in/stool.glb -o stool.png --up y && head -c 4 stool.png | tail -c 3'
+
+say "# a buffer of its own, in the folder of the file"
+mkdir models
+# A tetrahedron: 4 x 3 numbers 0 or 1, then 12 indices of 16 bits.
+zero='\0\0\0\0' one='\0\0\200\077'
+printf "$zero$zero$zero$one$zero$zero$zero$one$zero$zero$zero$one" >models/wedge.bin
+printf '\0\0\2\0\1\0\0\0\1\0\3\0\1\0\2\0\3\0\2\0\0\0\3\0' >>models/wedge.bin
+cat >models/wedge.gltf <<'END'
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"wedge","mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
+{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
+"buffers":[{"byteLength":72,"uri":"wedge.bin"}]}
+END
+run 'voxmend info models/wedge.gltf'
+run 'cd models && voxmend repair -q wedge.gltf -o ../wedge.off'
+run 'cat wedge.off'
+run 'told info - <models/wedge.gltf'
+mv models/wedge.bin models/away.bin
+run 'told info models/wedge.gltf'
+
+say "# damage"
+head -c 2000 in/stool.glb >cut.glb
+printf 'what is this\n' >words.fbx
+printf '{"asset":{"version":"2.0"}}' >nothing.gltf
+: >empty.glb
+for file in cut.glb words.fbx nothing.gltf empty.glb; do
+  run "told info $file"
+done
+run 'voxmend info cut.glb in/cube.off -q 2>/dev/null'
+run 'voxmend repair cut.glb -o x.off 2>/dev/null'
+run 'voxmend view cut.glb -o x.png 2>/dev/null'
+run 'ls'
+finish

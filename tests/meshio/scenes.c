@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** glTF and other scenes through Assimp: transforms, instances, names, polygons, and damage. */
+#include "foreign_test.h"
+
+#include "scenes.h"
+
+/* ---- glTF as text ---- */
+
+/** A wedge (0,0,0) (1,0,0) (0,1,0) (0,0,1), its volume 1/6: 4 positions, then 12 indices of 16 bits. */
+#define WEDGE \
+  "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAQACAAMAAgAAAAMA"
+
+/** A scene of wedges. `nodes` are the JSON objects of the nodes, of which the first is the root. */
+static bytes gltf(const char *nodes, const char *primitive) {
+  bytes b = {0};
+  bytes_text(&b, "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[%s],",
+             nodes);
+  bytes_text(&b,
+             "\"materials\":[{\"name\":\"red\"},{}],\"meshes\":[{\"name\":\"wedge\",\"primitives\":[{"
+             "\"attributes\":{\"POSITION\":0}%s}]}],",
+             primitive);
+  bytes_text(&b, "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\","
+                 "\"min\":[0,0,0],\"max\":[1,1,1]},{\"bufferView\":1,\"componentType\":5123,\"count\":12,"
+                 "\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},"
+                 "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"buffers\":[{\"byteLength\":72,"
+                 "\"uri\":\"data:application/octet-stream;base64," WEDGE "\"}]}");
+  return b;
+}
+
+#define TRIANGLES ",\"indices\":1,\"material\":0"
+
+static vxm_soup *read_gltf(const char *nodes, const char *primitive) {
+  bytes b = gltf(nodes, primitive);
+  vxm_soup *soup = read_data(b.data, b.size, "dir/a.gltf");
+  assert_string_equal(soup->format, "gltf");
+  bytes_free(&b);
+  return soup;
+}
+
+static void test_transforms(void **state) {
+  (void)state;
+  static const struct {
+    const char *node;
+    double bounds[6], volume;
+  } cases[] = {
+      {"{\"mesh\":0}", {0, 0, 0, 1, 1, 1}, 1.0 / 6},
+      {"{\"mesh\":0,\"translation\":[1,2,3]}", {1, 2, 3, 2, 3, 4}, 1.0 / 6},
+      {"{\"mesh\":0,\"scale\":[2,3,4]}", {0, 0, 0, 2, 3, 4}, 4},
+      {"{\"mesh\":0,\"scale\":[-2,3,4]}", {-2, 0, 0, 0, 3, 4}, 4}, /* mirrored, and outward all the same */
+      {"{\"mesh\":0,\"scale\":[-2,-3,4]}", {-2, -3, 0, 0, 0, 4}, 4},
+      {"{\"mesh\":0,\"rotation\":[0,0,0.70710678118654752,0.70710678118654752]}",
+       {-1, 0, 0, 0, 1, 1},
+       1.0 / 6},
+      {"{\"mesh\":0,\"matrix\":[0,2,0,0,-3,0,0,0,0,0,4,0,5,6,7,1]}", {2, 6, 7, 5, 8, 11}, 4},
+      /* The outer transform comes after the inner one. */
+      {"{\"translation\":[10,0,0],\"scale\":[2,2,2],\"children\":[1]},{\"mesh\":0,\"translation\":[1,0,0]}",
+       {12, 0, 0, 14, 2, 2},
+       8.0 / 6},
+  };
+  if (!has_module("assimp"))
+    skip();
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    vxm_soup *soup = read_gltf(cases[i].node, TRIANGLES);
+    expect_counts(soup, 4, 4);
+    expect_no_notes(soup);
+    expect_body(soup, cases[i].bounds, cases[i].volume, 1e-6);
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_names(void **state) {
+  (void)state;
+  static const struct {
+    const char *nodes, *primitive;
+    size_t faces;
+    const char *tags[8];
+  } cases[] = {
+      {"{\"name\":\"part\",\"mesh\":0}", TRIANGLES, 4, {"wedge/red"}}, /* a root is no part of its own */
+      {"{\"children\":[1]},{\"name\":\"part\",\"mesh\":0}", TRIANGLES, 4, {"part/red"}},
+      {"{\"children\":[1]},{\"name\":\"part\",\"mesh\":0}", ",\"indices\":1", 4, {"part"}},
+      {"{\"children\":[1,2,3]},{\"name\":\"a\",\"mesh\":0},{\"name\":\"b\",\"mesh\":0},{\"name\":\"a\","
+       "\"mesh\":0}",
+       TRIANGLES,
+       12,
+       {"a#1/red", "b/red", "a#2/red"}},
+      {"{\"children\":[1]},{\"name\":\"a\",\"mesh\":0,\"children\":[2]},{\"name\":\"b\",\"mesh\":0}",
+       TRIANGLES,
+       8,
+       {"a/red", "b/red"}},
+      {"{\"children\":[1]},{\"name\":\"  M\\u00fcller/\\u0001b \",\"mesh\":0}",
+       TRIANGLES,
+       4,
+       {"M\xc3\xbcller/?b/red"}},
+  };
+  if (!has_module("assimp"))
+    skip();
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    vxm_soup *soup = read_gltf(cases[i].nodes, cases[i].primitive);
+    assert_int_equal(soup->face_count, cases[i].faces);
+    expect_tags(soup, cases[i].tags);
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_lines_and_points(void **state) {
+  (void)state;
+  if (!has_module("assimp"))
+    skip();
+  for (int mode = 0; mode < 2; mode++) {
+    char primitive[48];
+    snprintf(primitive, sizeof primitive, ",\"indices\":1,\"mode\":%d", mode);
+    vxm_soup *soup = read_gltf("{\"mesh\":0}", primitive);
+    assert_int_equal(soup->face_count, 0);
+    assert_int_equal(soup->tag_count, 0);
+    expect_note(soup, mode == 0 ? "lines and points are skipped (elements: 12)"
+                                : "lines and points are skipped (elements: 6)");
+    expect_note(soup, "the file has no faces");
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_stool(void **state) {
+  (void)state;
+  static const double bounds[6] = {-0.2, 0, -0.15, 0.2, 0.45, 0.15};
+  static const char *const tags[] = {"seat/oak",    "leg#1/steel", "leg#2/steel",
+                                     "leg#3/steel", "leg#4/steel", NULL};
+  static const char *const names[] = {"dir/stool.glb", "stool.GLB", "stool.dat", "stool.gltf",
+                                      "stool",         "-",         "<memory>"};
+  if (!has_module("assimp"))
+    skip();
+  double leg = STOOL_CORNERS / 2.0 * sin(2 * 3.14159265358979323846 / STOOL_CORNERS) * STOOL_RADIUS *
+               STOOL_RADIUS * STOOL_LEG;
+  double volume = (STOOL_LEGS * leg + (double)STOOL_WIDTH * STOOL_DEPTH * STOOL_SEAT) / 1e9;
+  bytes b = scene_bytes(scene_write_glb);
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+    vxm_soup *soup = read_data(b.data, b.size, names[n]);
+    expect_body(soup, bounds, volume, 1e-6);
+    expect_tags(soup, tags);
+    assert_string_equal(soup->format, "gltf");
+    vxm_soup_destroy(soup);
+  }
+  bytes_free(&b);
+}
+
+/* ---- Other formats ---- */
+
+/** An archive of one file that is not packed (PKWARE's application note, 4.3). */
+static void zip_add(bytes *archive, bytes *directory, int *count, const char *name, const char *text) {
+  uint32_t crc = UINT32_MAX, size = (uint32_t)strlen(text), length = (uint32_t)strlen(name);
+  for (uint32_t i = 0; i < size; i++) {
+    crc ^= (unsigned char)text[i];
+    for (int k = 0; k < 8; k++)
+      crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+  }
+  const uint16_t how[] = {20, 0, 0, 0, 0}; /* version, flags, method, time, date */
+  const uint32_t sizes[] = {~crc, size, size};
+  const uint16_t names[] = {(uint16_t)length, 0};
+  const uint16_t rest[] = {0, 0, 0};
+  const uint32_t where[] = {0, (uint32_t)archive->size};
+  bytes_add(directory, "PK\1\2\x14\0", 6);
+  bytes_add(directory, how, sizeof how);
+  bytes_add(directory, sizes, sizeof sizes);
+  bytes_add(directory, names, sizeof names);
+  bytes_add(directory, rest, sizeof rest);
+  bytes_add(directory, where, sizeof where);
+  bytes_add(directory, name, length);
+  bytes_add(archive, "PK\3\4", 4);
+  bytes_add(archive, how, sizeof how);
+  bytes_add(archive, sizes, sizeof sizes);
+  bytes_add(archive, names, sizeof names);
+  bytes_add(archive, name, length);
+  bytes_add(archive, text, size);
+  ++*count;
+}
+
+/** A wedge, and a pair of it; placed twice. */
+static bytes three_mf(void) {
+  static const char model[] =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?><model unit=\"millimeter\" "
+      "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object id=\"1\" "
+      "type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" "
+      "z=\"0\"/><vertex "
+      "x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" "
+      "v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"1\" v2=\"2\" "
+      "v3=\"3\"/><triangle "
+      "v1=\"2\" v2=\"0\" v3=\"3\"/></triangles></mesh></object><object id=\"2\" type=\"model\"><components>"
+      "<component objectid=\"1\"/><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 "
+      "0\"/></components>"
+      "</object></resources><build><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 0 10 0\"/>"
+      "<item objectid=\"1\"/></build></model>";
+  static const char types[] =
+      "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
+      "<Default Extension=\"model\" "
+      "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>";
+  static const char relations[] =
+      "<?xml version=\"1.0\"?><Relationships "
+      "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+      "Target=\"/3D/3dmodel.model\" Id=\"r\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+  bytes archive = {0}, directory = {0};
+  int count = 0;
+  zip_add(&archive, &directory, &count, "[Content_Types].xml", types);
+  zip_add(&archive, &directory, &count, "_rels/.rels", relations);
+  zip_add(&archive, &directory, &count, "3D/3dmodel.model", model);
+  const uint16_t counts[] = {0, 0, (uint16_t)count, (uint16_t)count};
+  const uint32_t place[] = {(uint32_t)directory.size, (uint32_t)archive.size};
+  bytes_add(&archive, directory.data, directory.size);
+  bytes_add(&archive, "PK\5\6", 4);
+  bytes_add(&archive, counts, sizeof counts);
+  bytes_add(&archive, place, sizeof place);
+  bytes_add(&archive, "\0\0", 2);
+  bytes_free(&directory);
+  return archive;
+}
+
+static void test_3mf(void **state) {
+  (void)state;
+  static const double bounds[6] = {0, 0, 0, 6, 11, 1};
+  if (!has_module("assimp"))
+    skip();
+  bytes b = three_mf();
+  static const char *const names[] = {"a.3mf", "a.zip"};
+  for (int n = 0; n < 2; n++) {
+    vxm_soup *soup = read_data(b.data, b.size, names[n]);
+    assert_string_equal(soup->format, "3mf");
+    expect_counts(soup, 12, 12);
+    expect_body(soup, bounds, 0.5, 1e-6);
+    assert_int_equal(soup->tag_count, 3);
+    vxm_soup_destroy(soup);
+  }
+  bytes_free(&b);
+  read_fails("PK\3\4rubbish", 11, "a.zip", VXM_ERROR_FORMAT, "is a zip archive: unpack it first");
+}
+
+#define COLLADA_HEAD                                                                          \
+  "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" " \
+  "version=\"1.4.1\"><asset><unit name=\"cm\" meter=\"0.01\"/><up_axis>Z_UP</up_axis></asset>"
+#define COLLADA_SOURCE                                                                                     \
+  "<library_geometries><geometry id=\"g\" name=\"block\"><mesh><source id=\"p\"><float_array id=\"a\" "    \
+  "count=\"24\">0 0 0 1 0 0 1 2 0 0 2 0 0 0 3 1 0 3 1 2 3 0 2 3</float_array><technique_common><accessor " \
+  "source=\"#a\" count=\"8\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" "            \
+  "type=\"float\"/>"                                                                                       \
+  "<param name=\"Z\" type=\"float\"/></accessor></technique_common></source>"
+#define COLLADA_FACES                                                                                       \
+  "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices><polylist count=\"6\"><input " \
+  "semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><vcount>4 4 4 4 4 4</vcount><p>0 3 2 1 4 5 6 7 0 1 5 4 " \
+  "1 2 6 5 2 3 7 6 3 0 4 7</p></polylist></mesh></geometry></library_geometries>"
+#define COLLADA_SCENE                                                                                        \
+  "<library_visual_scenes><visual_scene id=\"s\"><node id=\"n1\" name=\"box one\"><translate>10 0 0"         \
+  "</translate><instance_geometry url=\"#g\"/></node><node id=\"n2\" name=\"box two\"><scale>2 2 2</scale>"  \
+  "<node id=\"n3\" name=\"inner\"><translate>0 0 1</translate><instance_geometry url=\"#g\"/></node></node>" \
+  "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>"
+
+static const char collada[] = COLLADA_HEAD COLLADA_SOURCE COLLADA_FACES COLLADA_SCENE;
+
+/** Polygons stay polygons; Assimp makes metres of the file's unit and turns z upward into y upward. */
+static void test_collada(void **state) {
+  (void)state;
+  static const double bounds[6] = {0, 0, -0.04, 0.11, 0.08, 0};
+  static const char *const tags[] = {"box one", "inner", NULL};
+  if (!has_module("assimp"))
+    skip();
+  vxm_soup *soup = read_text(collada, "a.txt");
+  assert_string_equal(soup->format, "collada");
+  assert_int_equal(soup->face_count, 12);
+  for (size_t f = 0; f < soup->face_count; f++)
+    assert_int_equal(soup->offsets[f + 1] - soup->offsets[f], 4);
+  expect_body(soup, bounds, 54e-6, 1e-7);
+  expect_tags(soup, tags);
+  vxm_soup_destroy(soup);
+}
+
+#define WEDGE_FACES_X "4; 3;0,2,1;, 3;0,1,3;, 3;1,2,3;, 3;2,0,3;;"
+
+/** One wedge at (5,0,0) in several formats, of which some have z the other way round. */
+static void test_small_formats(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *format;
+    double z; /**< of the lower side */
+  } cases[] = {
+      {"<?xml version=\"1.0\"?><X3D profile=\"Interchange\" version=\"3.0\"><Scene><Transform DEF=\"wedge\" "
+       "translation=\"5 0 0\"><Shape><IndexedFaceSet coordIndex=\"0 2 1 -1 0 1 3 -1 1 2 3 -1 2 0 3 -1\">"
+       "<Coordinate point=\"0 0 0 1 0 0 0 1 0 0 0 1\"/></IndexedFaceSet></Shape></Transform></Scene></X3D>",
+       "x3d", 0},
+      {"AC3Db\nMATERIAL \"grey\" rgb 1 1 1  amb 0 0 0  emis 0 0 0  spec 0 0 0  shi 0  trans 0\nOBJECT world\n"
+       "kids 1\nOBJECT poly\nname \"wedge\"\nloc 5 0 0\nnumvert 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\nnumsurf 4\n"
+       "SURF 0x0\nmat 0\nrefs 3\n0 0 0\n2 0 0\n1 0 0\nSURF 0x0\nmat 0\nrefs 3\n0 0 0\n1 0 0\n3 0 0\n"
+       "SURF 0x0\nmat 0\nrefs 3\n1 0 0\n2 0 0\n3 0 0\nSURF 0x0\nmat 0\nrefs 3\n2 0 0\n0 0 0\n3 0 0\nkids 0\n",
+       "ac3d", 0},
+      {"xof 0303txt 0032\nFrame wedge {\n FrameTransformMatrix { 1.0,0.0,0.0,0.0, 0.0,1.0,0.0,0.0, "
+       "0.0,0.0,1.0,0.0, 5.0,0.0,0.0,1.0;; }\n Mesh m { 4; 0.0;0.0;0.0;, 1.0;0.0;0.0;, 0.0;1.0;0.0;, "
+       "0.0;0.0;1.0;; " WEDGE_FACES_X " }\n}\n",
+       "x", -1},
+  };
+  if (!has_module("assimp"))
+    skip();
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const double bounds[6] = {5, 0, cases[i].z, 6, 1, cases[i].z + 1};
+    vxm_soup *soup = read_text(cases[i].text, "a.txt");
+    assert_string_equal(soup->format, cases[i].format);
+    expect_body(soup, bounds, 1.0 / 6, 1e-6);
+    assert_int_equal(soup->tag_count, 1);
+    assert_memory_equal(soup->tags[0], "wedge", 5);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/* ---- Options, damage ---- */
+
+static void test_options(void **state) {
+  (void)state;
+  if (!has_module("assimp"))
+    skip();
+  vxm_mesh_read_options options = VXM_MESH_READ_OPTIONS_INIT;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_soup *soup;
+  const unsigned char *data = (const unsigned char *)collada;
+  /* The named format decides against content and name. */
+  options.format = "Collada";
+  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.obj", &options, &error),
+                   VXM_OK);
+  vxm_soup_destroy(soup);
+  options.format = "fbx";
+  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
+                   VXM_ERROR_FORMAT);
+  options.format = "off";
+  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
+                   VXM_ERROR_FORMAT);
+  assert_null(strstr(error.text, "Assimp"));
+  options.format = "word";
+  assert_int_equal(vxm_meshio_read_with(&soup, NULL, data, strlen(collada), "a.dae", &options, &error),
+                   VXM_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.text, "mesh format \"word\" is not known"));
+  bytes b = gltf("{\"mesh\":0}", TRIANGLES);
+  options.format = "gltf";
+  assert_int_equal(vxm_meshio_read_with(&soup, NULL, b.data, b.size, "a", &options, &error), VXM_OK);
+  expect_counts(soup, 4, 4);
+  vxm_soup_destroy(soup);
+  bytes_free(&b);
+}
+
+static void test_damage(void **state) {
+  (void)state;
+  enum { TIMES = 40 / SLOWER };
+  if (!has_module("assimp"))
+    skip();
+  bytes glb = scene_bytes(scene_write_glb), zip = three_mf(), text = gltf("{\"mesh\":0}", TRIANGLES),
+        dae = {0};
+  bytes_text(&dae, "%s", COLLADA_HEAD);
+  bytes_text(&dae, "%s%s%s", COLLADA_SOURCE, COLLADA_FACES, COLLADA_SCENE);
+  damage_many(&glb, "a.glb", TIMES);
+  damage_many(&zip, "a.3mf", TIMES);
+  damage_many(&text, "a.gltf", TIMES);
+  damage_many(&dae, "a.dae", TIMES);
+  bytes_free(&glb);
+  bytes_free(&zip);
+  bytes_free(&text);
+  bytes_free(&dae);
+  text_fails("{\"asset\":{\"version\":\"2.0\"}", "a.gltf", "a.gltf: Assimp cannot read it: ");
+  text_fails("glTF\2", "a.dat", "a.dat: Assimp cannot read it: ");
+  text_fails("what is this", "a.fbx", "a.fbx: Assimp cannot read it: ");
+  text_fails("what is this", "a.md3", "a.md3: Assimp cannot read it: ");
+  text_fails("what is this", "a.xyz", "not a known mesh format");
+}
+
+static void test_in_process(void **state) {
+  (void)state;
+  if (!has_module("assimp"))
+    skip();
+  bytes glb = scene_bytes(scene_write_glb), zip = three_mf(), dae = {0};
+  bytes_text(&dae, "%s", COLLADA_HEAD);
+  bytes_text(&dae, "%s%s%s", COLLADA_SOURCE, COLLADA_FACES, COLLADA_SCENE);
+  vxm_soup_destroy(read_in_process("assimp", "glb", &glb));
+  vxm_soup_destroy(read_in_process("assimp", "3mf", &zip));
+  vxm_soup_destroy(read_in_process("assimp", "dae", &dae));
+  bytes_free(&glb);
+  bytes_free(&zip);
+  bytes_free(&dae);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_transforms),
+                                     cmocka_unit_test(test_names),
+                                     cmocka_unit_test(test_lines_and_points),
+                                     cmocka_unit_test(test_stool),
+                                     cmocka_unit_test(test_3mf),
+                                     cmocka_unit_test(test_collada),
+                                     cmocka_unit_test(test_options),
+                                     cmocka_unit_test(test_small_formats),
+                                     cmocka_unit_test(test_damage),
+                                     cmocka_unit_test(test_in_process)};
+  leave_signals_alone();
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

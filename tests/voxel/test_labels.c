@@ -1,0 +1,663 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Labels against brute force, and what they are called. */
+#include "label_oracle.h"
+
+#include "voxel/foot.h"
+#include "voxel/labels.h"
+
+#include <pthread.h>
+#include <string.h>
+
+/* ---- Tagged soups ---- */
+
+/** Gives all faces from `first` on a tag. */
+static void tag_faces(vxm_soup *soup, size_t first, const char *name) {
+  uint32_t tag = UINT32_MAX;
+  for (size_t t = 0; t < soup->tag_count; t++)
+    if (strcmp(soup->tags[t], name) == 0)
+      tag = (uint32_t)t;
+  if (tag == UINT32_MAX)
+    assert_int_equal(vxm_soup_add_tag(soup, name, strlen(name), &tag, NULL), VXM_OK);
+  soup->face_tags =
+      vxm_realloc(soup->context, soup->face_tags, soup->face_count, sizeof *soup->face_tags, NULL);
+  assert_non_null(soup->face_tags);
+  for (size_t f = first; f < soup->face_count; f++)
+    soup->face_tags[f] = tag;
+}
+
+static void tagged_box(vxm_soup *soup, const double low[3], const double high[3], const char *tag) {
+  size_t first = soup->face_count;
+  shape_box(soup, low, high);
+  tag_faces(soup, first, tag);
+}
+
+/** Turns faces from `first` on inside out. */
+static void turn_faces(vxm_soup *soup, size_t first) {
+  for (size_t f = first; f < soup->face_count; f++)
+    for (uint64_t a = soup->offsets[f], b = soup->offsets[f + 1] - 1; a < b; a++, b--) {
+      uint32_t kept = soup->indices[a];
+      soup->indices[a] = soup->indices[b];
+      soup->indices[b] = kept;
+    }
+}
+
+static void sheet(vxm_soup *soup, vxm_rng *rng) {
+  uint32_t v = (uint32_t)soup->vertex_count;
+  double x = shape_quarter(rng, 0, 64), y = shape_quarter(rng, 0, 64), z = shape_quarter(rng, 0, 64);
+  shape_vertex(soup, x, y, z);
+  shape_vertex(soup, x + 4, y, z + 1);
+  shape_vertex(soup, x + 4, y + 3, z + 1);
+  shape_triangle(soup, v, v + 1, v + 2);
+}
+
+/* ---- Against brute force ---- */
+
+static const vxm_layout layouts[] = {{2, 1, 0}, {1, 2, 0}, {0, 1, 2}};
+
+/** Whether a label may be the one of a voxel: the nearest of those asked, the lowest of equally near ones. */
+static bool is_right(uint16_t label, const double *distance, const bool *asked, size_t count, double side) {
+  double least = INFINITY;
+  size_t lowest = 0;
+  if (!asked[label - 1])
+    return false;
+  for (size_t l = 1; l <= count; l++)
+    if (asked[l - 1])
+      least = fmin(least, distance[l - 1]);
+  for (size_t l = count; l >= 1; l--)
+    if (asked[l - 1] && distance[l - 1] <= least + 1e-9 * side)
+      lowest = l;
+  /* Between 1e-9 and what seven digits tell apart either may be taken. */
+  return label == lowest || (distance[label - 1] > least + 1e-9 * side &&
+                             distance[label - 1] <= least * (1 + 2e-7) + 1e-6 * side);
+}
+
+static void check(const vxm_soup *soup, const vxm_space *space, const vxm_voxelize_options *options,
+                  vxm_label_by by) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_labelling l;
+  assert_int_equal(vxm_labelling_create(&l, soup, by, &error), VXM_OK);
+  size_t count = l.table.count, voxels = voxels_of(space);
+  vxm_model *model;
+  vxm_grid *set;
+  assert_int_equal(vxm_model_make(&model, soup, options, &error), VXM_OK);
+  assert_int_equal(vxm_voxelize_grid(&set, &(vxm_voxelize_report){0}, model, space, &error), VXM_OK);
+  vxm_grid **claims = calloc(count, sizeof *claims);
+  for (size_t c = 0; c < count; c++)
+    claims[c] = claims_of(&l, c + 1, space, options);
+  vxm_label_options label_options = VXM_LABEL_OPTIONS_INIT;
+  label_options.by = by;
+  vxm_label_report report;
+  uint16_t *values = malloc(voxels * sizeof *values);
+  if (vxm_model_labels(values, &report, model, space, &label_options, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  assert_int_equal(report.labels, count);
+  assert_true(report.voxelize.hash == vxm_grid_hash(set));
+  int64_t several = 0, none = 0, *counted = calloc(count, sizeof *counted);
+  double side = fmax(space->voxel_size[0], fmax(space->voxel_size[1], space->voxel_size[2]));
+  size_t at = 0;
+  for (int64_t i = 0; i < space->dims[0]; i++)
+    for (int64_t j = 0; j < space->dims[1]; j++)
+      for (int64_t k = 0; k < space->dims[2]; k++, at++) {
+        bool asked[64] = {false};
+        double distance[64];
+        size_t claiming = 0;
+        assert_int_equal(values[at] != 0, vxm_grid_get(set, i, j, k));
+        if (values[at] == 0)
+          continue;
+        assert_true(values[at] <= count && count <= 64);
+        for (size_t c = 0; c < count; c++) {
+          asked[c] = claims[c] && vxm_grid_get(claims[c], i, j, k);
+          claiming += asked[c];
+          distance[c] = to_label(&l, c + 1, centre_of(space, i, j, k));
+        }
+        for (size_t c = 0; c < count && claiming == 0; c++)
+          asked[c] = true;
+        several += claiming > 1;
+        none += claiming == 0;
+        counted[values[at] - 1]++;
+        if (!is_right(values[at], distance, asked, count, side))
+          fail_msg("(%d, %d, %d): label %u, claimed by %zu", (int)i, (int)j, (int)k, values[at], claiming);
+      }
+  assert_int_equal(report.contested, several);
+  assert_int_equal(report.unclaimed, none);
+  for (size_t c = 0; c < count; c++) {
+    assert_int_equal(vxm_model_label_voxels(model, (int64_t)c + 1), counted[c]);
+    vxm_grid_destroy(claims[c]);
+  }
+  free(counted);
+  free(values);
+  free(claims);
+  vxm_grid_destroy(set);
+  vxm_model_destroy(model);
+  vxm_labelling_destroy(&l);
+}
+
+/** Bodies, cavities and sheets in some groups and materials. */
+static vxm_soup *random_soup(vxm_rng *rng, int bodies) {
+  static const char *const tags[] = {"a/red", "b/red", "c", "a/blue", "d/green", "b"};
+  vxm_soup *soup = shape_empty(context);
+  for (int b = 0; b < bodies; b++) {
+    size_t first = soup->face_count;
+    double low[3], high[3];
+    switch (vxm_rng_below(rng, 5)) {
+    case 0:
+      shape_random_octahedron(soup, rng, 0, 60);
+      break;
+    case 1:
+      sheet(soup, rng);
+      break;
+    case 2:
+      shape_torus(soup, 7, 5, 3 + vxm_rng_unit(rng), 1.5,
+                  (double[]){16 * vxm_rng_unit(rng), 16 * vxm_rng_unit(rng), 8});
+      break;
+    default:
+      for (int a = 0; a < 3; a++) {
+        low[a] = shape_quarter(rng, 0, 44);
+        high[a] = low[a] + shape_quarter(rng, 2, 30);
+      }
+      shape_box(soup, low, high);
+      if (vxm_rng_below(rng, 4) == 0)
+        turn_faces(soup, first);
+    }
+    tag_faces(soup, first, tags[vxm_rng_below(rng, 6)]);
+  }
+  return soup;
+}
+
+static void test_equals_brute_force(void **state) {
+  (void)state;
+  vxm_rng rng = {31};
+  for (int round = 0; round < 60; round++) {
+    vxm_soup *soup = random_soup(&rng, 1 + (int)vxm_rng_below(&rng, 12));
+    vxm_space space = {{1 + (int64_t)vxm_rng_below(&rng, 18), 1 + (int64_t)vxm_rng_below(&rng, 18),
+                        1 + (int64_t)vxm_rng_below(&rng, 18)},
+                       {0, 0, 0},
+                       {1, 1, 1}};
+    if (round % 3 == 1)
+      for (int a = 0; a < 3; a++) {
+        space.voxel_size[a] = 0.5 + vxm_rng_unit(&rng);
+        space.origin[a] = 3 * vxm_rng_unit(&rng) - 1;
+      }
+    if (round % 3 == 2)
+      space.dims[round / 3 % 3] = 70;
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.mode = round % 5 == 3 ? VXM_MODE_SURFACE : round % 5 == 4 ? VXM_MODE_BOTH : VXM_MODE_SOLID;
+    options.parts = (vxm_parts)(round % 7 == 5 ? VXM_PARTS_GROUP : round % 7 == 6 ? VXM_PARTS_WHOLE : 0);
+    options.cavities = (vxm_cavities)(round % 11 == 9    ? VXM_CAVITIES_KEEP
+                                      : round % 11 == 10 ? VXM_CAVITIES_FILL
+                                                         : VXM_CAVITIES_AUTO);
+    options.method = round % 13 == 12 ? VXM_METHOD_X : VXM_METHOD_VOTE;
+    options.vote = round % 13 == 11 ? VXM_VOTE_MAJORITY : VXM_VOTE_AUTO;
+    check(soup, &space, &options, (vxm_label_by)(round % 3));
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** Many faces to each block of voxels, whose labels meet inside a solid. */
+static void test_patches_of_a_body(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_torus(soup, 60, 40, 8, 5, (double[]){13, 13.1, 5.3});
+  for (size_t f = 0; f < soup->face_count; f++) {
+    char name[8] = "/m0";
+    name[2] = (char)('0' + f * 7 / soup->face_count);
+    tag_faces(soup, f, name);
+  }
+  vxm_space space = {{27, 27, 11}, {0, 0, 0}, {1, 1, 1}};
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  check(soup, &space, &options, VXM_LABEL_MATERIAL);
+  options.mode = VXM_MODE_SURFACE;
+  options.surface = VXM_SURFACE_THIN;
+  check(soup, &space, &options, VXM_LABEL_MATERIAL);
+  options.surface = VXM_SURFACE_SHELL6;
+  check(soup, &space, &options, VXM_LABEL_MATERIAL);
+  vxm_soup_destroy(soup);
+}
+
+/* ---- What they mean ---- */
+
+static uint16_t *labels_of(vxm_soup *soup, const vxm_space *space, vxm_label_by by,
+                           vxm_label_report *report) {
+  vxm_model *model;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_label_options options = VXM_LABEL_OPTIONS_INIT;
+  options.by = by;
+  uint16_t *values = malloc(voxels_of(space) * sizeof *values);
+  if (vxm_model_create(&model, soup, NULL, &error) != VXM_OK ||
+      vxm_model_labels(values, report, model, space, &options, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  vxm_model_destroy(model);
+  return values;
+}
+
+static uint16_t at(const uint16_t *values, const vxm_space *space, int64_t i, int64_t j, int64_t k) {
+  return values[(i * space->dims[1] + j) * space->dims[2] + k];
+}
+
+/** Overlapping boxes share what both claim by the nearest face; nested ones too. */
+static void test_overlap_and_nesting(void **state) {
+  (void)state;
+  vxm_label_report report;
+  vxm_space space = {{16, 8, 8}, {0, 0, 0}, {1, 1, 1}};
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, (double[]){0, 0, 0}, (double[]){10, 8, 8});
+  shape_box(soup, (double[]){6, 0, 0}, (double[]){16, 8, 8});
+  uint16_t *values = labels_of(soup, &space, VXM_LABEL_PART, &report);
+  assert_int_equal(report.labels, 2);
+  assert_int_equal(report.contested, 4 * 8 * 8);
+  assert_int_equal(report.unclaimed, 0);
+  /* In the middle of the overlap box 2 begins on the left, and box 1 ends on the right. */
+  static const uint16_t row[16] = {1, 1, 1, 1, 1, 1, 2, 2, 1, 1, 2, 2, 2, 2, 2, 2};
+  for (int64_t i = 0; i < 16; i++)
+    assert_int_equal(at(values, &space, i, 3, 3), row[i]);
+  /* Along the walls that both have they are equally near: the lower label. */
+  assert_int_equal(at(values, &space, 7, 0, 0), 1);
+  free(values);
+  vxm_soup_destroy(soup);
+  soup = shape_empty(context);
+  shape_box(soup, (double[]){2, 2, 2}, (double[]){6, 6, 6});
+  shape_box(soup, (double[]){0, 0, 0}, (double[]){16, 8, 8});
+  values = labels_of(soup, &space, VXM_LABEL_PART, &report);
+  assert_int_equal(report.contested, 4 * 4 * 4);
+  for (int64_t i = 0; i < 16; i++)
+    for (int64_t j = 0; j < 8; j++)
+      for (int64_t k = 0; k < 8; k++) {
+        bool is_inside = i >= 2 && i < 6 && j >= 2 && j < 6 && k >= 2 && k < 6;
+        assert_int_equal(at(values, &space, i, j, k), is_inside ? 1 : 2);
+      }
+  free(values);
+  vxm_soup_destroy(soup);
+}
+
+/** A screw where two blocks overlap has its own voxels and no more, though its faces are the nearest around.
+ */
+static void test_bystanders_take_nothing(void **state) {
+  (void)state;
+  vxm_label_report report;
+  vxm_space space = {{24, 24, 24}, {0, 0, 0}, {1, 1, 1}};
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, (double[]){11, 11, 11}, (double[]){13, 13, 13});
+  shape_box(soup, (double[]){0, 0, 0}, (double[]){23, 24, 24});
+  shape_box(soup, (double[]){1, 0, 0}, (double[]){24, 24, 24});
+  uint16_t *values = labels_of(soup, &space, VXM_LABEL_PART, &report);
+  int64_t screw = 0;
+  for (size_t v = 0; v < voxels_of(&space); v++)
+    screw += values[v] == 1;
+  assert_int_equal(screw, 8);
+  free(values);
+  vxm_soup_destroy(soup);
+}
+
+/** The same faces twice, and the same body under two labels: the lower one. */
+static void test_ties(void **state) {
+  (void)state;
+  vxm_label_report report;
+  vxm_space space = {{12, 12, 12}, {-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}};
+  vxm_soup *soup = shape_empty(context);
+  tagged_box(soup, (double[]){0.03, 0.03, 0.03}, (double[]){0.7, 0.7, 0.7}, "low");
+  tagged_box(soup, (double[]){0.03, 0.03, 0.03}, (double[]){0.7, 0.7, 0.7}, "high");
+  uint16_t *values = labels_of(soup, &space, VXM_LABEL_GROUP, &report);
+  assert_int_equal(report.contested, report.voxelize.voxels);
+  for (size_t v = 0; v < voxels_of(&space); v++)
+    assert_true(values[v] <= 1);
+  free(values);
+  vxm_soup_destroy(soup);
+}
+
+/* ---- Threads, memory, cancelling ---- */
+
+static vxm_soup *crowd(vxm_context *owner, int bodies) {
+  vxm_rng rng = {33};
+  vxm_soup *soup = shape_empty(owner);
+  for (int b = 0; b < bodies; b++) {
+    double low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+      low[a] = 100 * vxm_rng_unit(&rng);
+      high[a] = low[a] + 0.5 + 6 * vxm_rng_unit(&rng) * vxm_rng_unit(&rng);
+    }
+    char name[16] = "/many 0";
+    name[6] = (char)('0' + b % 7);
+    tagged_box(soup, low, high, name);
+    size_t first = soup->face_count;
+    if (b == 5) { /* one large body among them */
+      shape_torus(soup, 40, 20, 40, 10, (double[]){50, 50, 50});
+      tag_faces(soup, first, name);
+    }
+  }
+  return soup;
+}
+
+/** Thousands of parts, or scattered bodies under a few labels; any number of threads, with and without a
+ * limit, in all layouts. */
+static void test_threads_and_limits(void **state) {
+  (void)state;
+  vxm_space space = {{90, 80, 70}, {-1, -1, -1}, {1.2, 1.3, 1.5}};
+  uint16_t *first = malloc(voxels_of(&space) * sizeof *first),
+           *next = malloc(voxels_of(&space) * sizeof *next);
+  for (int round = 0; round < 8; round++) {
+    vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+    options.threads = 1 + round / 2;
+    options.memory_limit = round >= 6 ? UINT64_C(60) << 20 : 0;
+    vxm_context *own;
+    assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
+    vxm_soup *soup = crowd(own, 3000);
+    vxm_label_report report;
+    uint16_t *values = labels_of(soup, &space, round % 2 ? VXM_LABEL_MATERIAL : VXM_LABEL_PART, &report);
+    assert_int_equal(report.labels, round % 2 ? 7 : 3001);
+    assert_true(report.contested > 100);
+    uint16_t **kept = round % 2 ? &next : &first;
+    if (round < 2)
+      memcpy(*kept, values, voxels_of(&space) * sizeof *values);
+    assert_memory_equal(*kept, values, voxels_of(&space) * sizeof *values);
+    free(values);
+    vxm_soup_destroy(soup);
+    assert_true(options.memory_limit == 0 || vxm_context_peak_bytes(own) <= options.memory_limit);
+    vxm_context_destroy(own);
+  }
+  free(next);
+  free(first);
+}
+
+/** The layout of the values makes no difference. */
+static void test_layouts(void **state) {
+  (void)state;
+  vxm_space space = {{70, 33, 41}, {-1, -1, -1}, {1.5, 3.2, 2.6}};
+  vxm_soup *soup = crowd(context, 300);
+  vxm_model *model;
+  assert_int_equal(vxm_model_create(&model, soup, NULL, NULL), VXM_OK);
+  uint16_t *values[3];
+  for (int i = 0; i < 3; i++) {
+    vxm_labelling labelling;
+    vxm_label_report report;
+    values[i] = malloc(voxels_of(&space) * sizeof *values[i]);
+    assert_int_equal(vxm_labelling_create(&labelling, soup, VXM_LABEL_MATERIAL, NULL), VXM_OK);
+    assert_int_equal(vxm_labels_run(values[i], layouts[i], &report, model, &space, &labelling, NULL), VXM_OK);
+    vxm_labelling_destroy(&labelling);
+  }
+  for (int64_t x = 0; x < space.dims[0]; x++)
+    for (int64_t y = 0; y < space.dims[1]; y++)
+      for (int64_t z = 0; z < space.dims[2]; z++) {
+        uint16_t right = at(values[0], &space, x, y, z);
+        assert_int_equal(values[1][(x * space.dims[2] + z) * space.dims[1] + y], right);
+        assert_int_equal(values[2][(z * space.dims[1] + y) * space.dims[0] + x], right);
+      }
+  for (int i = 0; i < 3; i++)
+    free(values[i]);
+  vxm_model_destroy(model);
+  vxm_soup_destroy(soup);
+}
+
+typedef struct stopper {
+  pthread_t caller;
+  int calls, last;
+  bool is_elsewhere;
+} stopper;
+
+static int count_calls(const char *phase, double fraction, void *payload) {
+  stopper *s = payload;
+  s->is_elsewhere = s->is_elsewhere || !pthread_equal(s->caller, pthread_self());
+  return ++s->calls >= s->last || phase == NULL || fraction < 0;
+}
+
+/** It can be cancelled at every call, and reports from the caller's thread alone. */
+static void test_cancelling(void **state) {
+  (void)state;
+  vxm_space space = {{30, 30, 30}, {0, 0, 0}, {3.5, 3.5, 3.5}};
+  vxm_status status = VXM_ERROR_CANCELLED;
+  int cancelled = 0;
+  for (int last = 1; status != VXM_OK; last += 1 + last / 8) {
+    stopper s = {pthread_self(), 0, last, false};
+    vxm_context_options options = {1, 3, 0, count_calls, &s};
+    vxm_context *own;
+    vxm_model *model = NULL;
+    assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
+    vxm_soup *soup = crowd(own, 400);
+    uint16_t *values = malloc(voxels_of(&space) * sizeof *values);
+    status = vxm_model_create(&model, soup, NULL, NULL);
+    if (status == VXM_OK)
+      status = vxm_model_labels(values, NULL, model, &space, NULL, NULL);
+    assert_true(status == VXM_OK || status == VXM_ERROR_CANCELLED);
+    assert_false(s.is_elsewhere);
+    cancelled += status != VXM_OK;
+    free(values);
+    vxm_model_destroy(model);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(own);
+  }
+  assert_true(cancelled > 4);
+}
+
+/** Whatever the limit, it is kept: there is an error, or the same labels. */
+static void test_any_limit(void **state) {
+  (void)state;
+  vxm_space space = {{64, 64, 64}, {0, 0, 0}, {1.6, 1.6, 1.6}};
+  uint16_t *first = NULL, *values = malloc(voxels_of(&space) * sizeof *values);
+  int refused = 0, done = 0;
+  for (uint64_t limit = 0; done < 4; limit = limit ? limit + limit / 4 : 1 << 18) {
+    vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+    options.threads = 2;
+    options.memory_limit = limit;
+    vxm_context *own;
+    assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
+    vxm_soup *soup = crowd(context, 300), *copy = NULL;
+    vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
+    int64_t *offsets = malloc((soup->face_count + 1) * sizeof *offsets),
+            *indices = malloc(soup->corner_count * sizeof *indices);
+    for (size_t f = 0; f <= soup->face_count; f++)
+      offsets[f] = (int64_t)soup->offsets[f];
+    for (size_t c = 0; c < soup->corner_count; c++)
+      indices[c] = soup->indices[c];
+    arrays.vertices = soup->positions;
+    arrays.vertex_count = (int64_t)soup->vertex_count;
+    arrays.offsets = offsets;
+    arrays.indices = indices;
+    arrays.face_count = (int64_t)soup->face_count;
+    vxm_model *model = NULL;
+    vxm_error error = VXM_ERROR_INIT;
+    vxm_status status = vxm_mesh_create(&copy, own, &arrays, &error);
+    if (status == VXM_OK)
+      status = vxm_model_create(&model, copy, NULL, &error);
+    if (status == VXM_OK)
+      status = vxm_model_labels(values, NULL, model, &space, NULL, &error);
+    if (status != VXM_OK) {
+      assert_int_equal(status, VXM_ERROR_MEMORY_LIMIT);
+      assert_int_equal(error.code, VXM_ERROR_MEMORY_LIMIT);
+      refused++;
+      assert_true(!model || vxm_model_label_count(model) == 0);
+    } else {
+      done++;
+      if (!first)
+        first = memcpy(malloc(voxels_of(&space) * sizeof *first), values, voxels_of(&space) * sizeof *first);
+      assert_memory_equal(values, first, voxels_of(&space) * sizeof *first);
+    }
+    assert_true(limit == 0 || vxm_context_peak_bytes(own) <= limit);
+    vxm_model_destroy(model);
+    vxm_mesh_destroy(copy);
+    free(indices);
+    free(offsets);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(own);
+  }
+  assert_true(refused > 3);
+  free(first);
+  free(values);
+}
+
+/* ---- Names ---- */
+
+static void check_names(const vxm_soup *soup, vxm_label_by by, const char *const *names) {
+  vxm_labelling l;
+  assert_int_equal(vxm_labelling_create(&l, soup, by, NULL), VXM_OK);
+  for (size_t label = 1; label <= l.table.count; label++) {
+    assert_non_null(names[label - 1]);
+    assert_string_equal(vxm_label_table_name(&l.table, label), names[label - 1]);
+  }
+  assert_null(names[l.table.count]);
+  vxm_labelling_destroy(&l);
+}
+
+static void test_names(void **state) {
+  (void)state;
+  static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1}, low2[3] = {2, 2, 2}, high2[3] = {3, 3, 3},
+                      low3[3] = {4, 4, 4}, high3[3] = {5, 5, 5};
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, low, high);
+  shape_box(soup, low2, high2);
+  check_names(soup, VXM_LABEL_PART, (const char *[]){"part 1", "part 2", NULL});
+  check_names(soup, VXM_LABEL_GROUP, (const char *[]){"unnamed", NULL});
+  check_names(soup, VXM_LABEL_MATERIAL, (const char *[]){"unnamed", NULL});
+  tag_faces(soup, 0, "seat/wood");
+  tag_faces(soup, 4, "seat/wood/oak");
+  tagged_box(soup, low3, high3, "leg");
+  tag_faces(soup, soup->face_count - 1, "/iron");
+  check_names(soup, VXM_LABEL_PART, (const char *[]){"seat", "seat/wood/oak", "part 3", NULL});
+  check_names(soup, VXM_LABEL_GROUP, (const char *[]){"seat", "leg", "unnamed", NULL});
+  check_names(soup, VXM_LABEL_MATERIAL, (const char *[]){"wood", "wood/oak", "unnamed", "iron", NULL});
+  vxm_soup_destroy(soup);
+}
+
+/** A soup of triangles that share no vertices, as of an STL file, has parts all the same. */
+static void test_parts_of_unwelded_soups(void **state) {
+  (void)state;
+  static const double low[3] = {0, 0, 0}, high[3] = {4, 4, 4}, low2[3] = {5, 5, 5}, high2[3] = {8, 8, 8};
+  vxm_soup *welded = shape_empty(context), *soup = shape_empty(context);
+  shape_box(welded, low, high);
+  shape_box(welded, low2, high2);
+  for (size_t f = 0; f < welded->face_count; f++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(welded, f, &n);
+    for (size_t c = 2; c < n; c++) {
+      const uint32_t three[3] = {corner[0], corner[c - 1], corner[c]};
+      uint32_t v = (uint32_t)soup->vertex_count;
+      for (int k = 0; k < 3; k++) {
+        const double *p = vxm_position(welded, three[k]);
+        shape_vertex(soup, p[0], p[1], p[2]);
+      }
+      shape_triangle(soup, v, v + 1, v + 2);
+    }
+  }
+  vxm_space space = {{8, 8, 8}, {0, 0, 0}, {1, 1, 1}};
+  vxm_label_report report;
+  uint16_t *values = labels_of(soup, &space, VXM_LABEL_PART, &report);
+  assert_int_equal(report.labels, 2);
+  assert_int_equal(report.voxelize.voxels, 64 + 27);
+  assert_int_equal(at(values, &space, 1, 2, 3), 1);
+  assert_int_equal(at(values, &space, 6, 6, 6), 2);
+  free(values);
+  vxm_soup_destroy(soup);
+  vxm_soup_destroy(welded);
+}
+
+static void test_too_many(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  for (uint32_t t = 0; t < 65537; t++) {
+    shape_vertex(soup, t, 0, 0);
+    shape_vertex(soup, t, 0, 1);
+    shape_vertex(soup, t, 1, 0);
+    shape_triangle(soup, 3 * t, 3 * t + 1, 3 * t + 2);
+  }
+  vxm_labelling l;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_labelling_create(&l, soup, VXM_LABEL_PART, &error), VXM_ERROR_RANGE);
+  vxm_labelling_destroy(&l);
+  assert_non_null(strstr(error.text, "65537 parts"));
+  assert_non_null(strstr(error.text, "label by group"));
+  for (int less = 0; less < 2; less++) { /* the last face, then its part with it */
+    soup->face_count--;
+    soup->corner_count -= 3;
+    assert_int_equal(vxm_labelling_create(&l, soup, VXM_LABEL_PART, &error),
+                     less == 0 ? VXM_ERROR_RANGE : VXM_OK);
+    assert_int_equal(l.table.count, less == 0 ? 0 : 65535);
+    vxm_labelling_destroy(&l);
+  }
+  vxm_soup_destroy(soup);
+}
+
+static void test_what_is_refused(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, (double[]){0, 0, 0}, (double[]){1, 1, 1});
+  vxm_model *model;
+  assert_int_equal(vxm_model_create(&model, soup, NULL, NULL), VXM_OK);
+  vxm_space space = {{1, 1, 1}, {0, 0, 0}, {1, 1, 1}};
+  vxm_label_options options = VXM_LABEL_OPTIONS_INIT;
+  uint16_t value = 7;
+  assert_int_equal(vxm_model_label_count(model), 0);
+  assert_int_equal(vxm_model_labels(&value, NULL, model, &space, NULL, NULL), VXM_OK);
+  assert_int_equal(value, 1);
+  assert_int_equal(vxm_model_label_count(model), 1);
+  assert_string_equal(vxm_model_label_name(model, 1), "part 1");
+  assert_string_equal(vxm_model_label_name(model, 0), "");
+  assert_string_equal(vxm_model_label_name(model, 2), "");
+  assert_int_equal(vxm_model_label_voxels(model, 1), 1);
+  assert_int_equal(vxm_model_label_voxels(model, 2), 0);
+  assert_int_equal(vxm_model_labels(NULL, NULL, model, &space, NULL, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_model_labels(&value, NULL, NULL, &space, NULL, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_model_labels(&value, NULL, model, NULL, NULL, NULL), VXM_ERROR_ARGUMENT);
+  options.by = (vxm_label_by)3;
+  assert_int_equal(vxm_model_labels(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
+  options.by = VXM_LABEL_GROUP;
+  options.version = 2;
+  assert_int_equal(vxm_model_labels(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
+  options.version = 1;
+  assert_int_equal(vxm_model_write_labels(NULL, model, &space, "x.rle", &options, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_model_write_labels(NULL, model, &space, NULL, &options, NULL), VXM_ERROR_ARGUMENT);
+  space.dims[1] = 0;
+  assert_int_equal(vxm_model_labels(&value, NULL, model, &space, NULL, NULL), VXM_ERROR_ARGUMENT);
+  vxm_model_destroy(model);
+  vxm_soup_destroy(soup);
+}
+
+/* ---- The foot of a point ---- */
+
+static void test_foot(void **state) {
+  (void)state;
+  vxm_rng rng = {34};
+  for (int round = 0; round < 40000; round++) {
+    double at[3][3], p[3], foot[3], sum = 0, size = round % 3 == 0 ? 30 : 2;
+    for (int c = 0; c < 3; c++)
+      for (int a = 0; a < 3; a++)
+        at[c][a] = size * vxm_rng_unit(&rng);
+    double share = 2 * vxm_rng_unit(&rng) - 0.5;
+    for (int a = 0; a < 3 && round % 4 >= 2; a++) /* slivers, segments and points */
+      at[2][a] = at[0][a] + share * (at[1][a] - at[0][a]) + (round % 4 == 2 ? 1e-6 * at[2][a] : 0);
+    if (round % 50 == 0)
+      memcpy(at[1], at[0], sizeof at[1]);
+    if (round % 100 == 0)
+      memcpy(at[2], at[0], sizeof at[2]);
+    for (int a = 0; a < 3; a++)
+      p[a] = 1.5 * size * vxm_rng_unit(&rng) - 0.25 * size;
+    vxm_corners corners;
+    vxm_corners_make(&corners, (const double(*)[3])at);
+    double square = vxm_corners_foot(&corners, p, foot);
+    for (int a = 0; a < 3; a++)
+      sum += (p[a] - foot[a]) * (p[a] - foot[a]);
+    vec v[3], q = {p[0], p[1], p[2]}, f = {foot[0], foot[1], foot[2]};
+    for (int c = 0; c < 3; c++)
+      v[c] = (vec){at[c][0], at[c][1], at[c][2]};
+    assert_true(fabs(sum - square) < 1e-12 * size * size);
+    assert_true(fabs(sqrt(square) - to_triangle(q, v[0], v[1], v[2])) < 1e-7 * size);
+    assert_true(to_triangle(f, v[0], v[1], v[2]) < 1e-7 * size);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_foot),
+      cmocka_unit_test(test_names),
+      cmocka_unit_test(test_too_many),
+      cmocka_unit_test(test_what_is_refused),
+      cmocka_unit_test(test_parts_of_unwelded_soups),
+      cmocka_unit_test(test_overlap_and_nesting),
+      cmocka_unit_test(test_bystanders_take_nothing),
+      cmocka_unit_test(test_ties),
+      cmocka_unit_test(test_equals_brute_force),
+      cmocka_unit_test(test_patches_of_a_body),
+      cmocka_unit_test(test_layouts),
+      cmocka_unit_test(test_threads_and_limits),
+      cmocka_unit_test(test_any_limit),
+      cmocka_unit_test(test_cancelling),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
