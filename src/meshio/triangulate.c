@@ -16,9 +16,11 @@ typedef struct ring {
   vxm_triangulator *tri;
   const uint32_t *corners;
   size_t n, remaining;
-  size_t waiting;     /**< corners in the heap */
-  size_t leaves;      /**< of the tree, a power of two; 0 = there is none */
-  size_t work;        /**< looks that are still allowed */
+  size_t waiting;       /**< corners in the heap */
+  size_t leaves;        /**< of the tree, a power of two; 0 = there is none */
+  size_t looks;         /**< at corners and boxes so far */
+  size_t looks_crossed; /**< of these, those before that */
+  size_t looks_max;   /**< allowed; none too many as long as the polygon has not been found to cross itself */
   bool may_touch;     /**< corners on the rim of an ear do not matter as long as they only touch it */
   uint32_t *triangle; /**< where the next one goes */
 } ring;
@@ -26,7 +28,7 @@ typedef struct ring {
 /* ---- Room ---- */
 
 void vxm_triangulator_open(vxm_triangulator *tri, vxm_context *context) {
-  *tri = (vxm_triangulator){.context = context, .work_left = (size_t)1 << 31};
+  *tri = (vxm_triangulator){.context = context, .looks_left = (size_t)1 << 25};
 }
 
 void vxm_triangulator_close(vxm_triangulator *tri) {
@@ -91,9 +93,10 @@ static double scale_of(const double *positions, const uint32_t *corners, size_t 
   return ldexp(1, exponent < 1023 ? exponent : 1023);
 }
 
-/** The axis on which the vector area (Newell's sum) is largest. */
+/** The axis on which the vector area (Newell's sum) is largest; where that is nothing but rounding, as in
+ * paths there and back, the one on which the areas of its parts are. */
 static size_t widest_axis(const double *positions, const uint32_t *corners, size_t n, double scale) {
-  double area[3] = {0.0, 0.0, 0.0};
+  double area[3] = {0.0, 0.0, 0.0}, parts[3] = {0.0, 0.0, 0.0};
   const double *o = positions + 3 * (size_t)corners[0];
   for (size_t i = 1; i + 1 < n; i++) {
     const double *p = positions + 3 * (size_t)corners[i], *q = positions + 3 * (size_t)corners[i + 1];
@@ -102,14 +105,18 @@ static size_t widest_axis(const double *positions, const uint32_t *corners, size
       a[c] = p[c] * scale - o[c] * scale;
       b[c] = q[c] * scale - o[c] * scale;
     }
-    for (size_t c = 0; c < 3; c++)
-      area[c] += a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+    for (size_t c = 0; c < 3; c++) {
+      double part = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+      area[c] += part;
+      parts[c] += fabs(part);
+    }
   }
-  size_t axis = 0;
-  for (size_t c = 1; c < 3; c++)
-    if (fabs(area[c]) > fabs(area[axis]))
-      axis = c;
-  return axis;
+  size_t axis = 0, broad = 0;
+  for (size_t c = 1; c < 3; c++) {
+    axis = fabs(area[c]) > fabs(area[axis]) ? c : axis;
+    broad = parts[c] > parts[broad] ? c : broad;
+  }
+  return fabs(area[axis]) > 1e-12 * parts[broad] ? axis : broad;
 }
 
 /** Whether the polygon turns right, by twice its area, which two doubles hold. */
@@ -297,7 +304,7 @@ static bool is_same_way(const double *from, const double *a, const double *b) {
 
 /** Whether a corner of the ring forbids to cut off an ear: it lies in it, or an edge leads from it inside. */
 static bool forbids(ring *r, const ear *e, uint32_t k) {
-  r->work -= r->work > 0;
+  r->looks++;
   if (k == e->corner[0] || k == e->corner[1] || k == e->corner[2])
     return false;
   const vxm_triangulator *tri = r->tri;
@@ -334,7 +341,7 @@ static bool is_beside(const ear *e, double (*box)[2]) {
 /** Whether no corner of the ring that is in a node forbids to cut off an ear. */
 static bool is_free_in(ring *r, const ear *e, size_t node) {
   const vxm_triangulator *tri = r->tri;
-  r->work -= r->work > 0;
+  r->looks++;
   if (tri->counts[node] == 0 || is_beside(e, tri->boxes[node]))
     return true;
   if (node < r->leaves)
@@ -394,7 +401,7 @@ static void clip(ring *r, uint32_t i) {
     if (is_spike(r, a)) {
       i = a;
       a = r->tri->before[a];
-    } else if (false) {
+    } else if (is_spike(r, c)) {
       i = c;
       c = r->tri->after[c];
     } else
@@ -410,7 +417,7 @@ static void clip(ring *r, uint32_t i) {
  * been cut off is it tried again. So each corner is tried some three times.
  */
 static void clip_ears(ring *r) {
-  while (r->waiting > 0 && r->remaining > 3 && r->work > 0) {
+  while (r->waiting > 0 && r->remaining > 3 && r->looks < r->looks_max) {
     uint32_t i = r->tri->heap[0];
     ear e = ear_at(r, i);
     take_out(r, i);
@@ -446,9 +453,19 @@ static uint32_t least_corner(ring *r, uint32_t start) {
       least = area;
       found = i;
     }
-    r->work -= r->work > 0;
+    r->looks++;
   } while ((i = r->tri->after[i]) != start);
   return found;
+}
+
+/** Cuts a corner off where there is no ear, as happens only where a polygon crosses itself; from the first
+ * one on, work is limited. */
+static void clip_crossed(ring *r, uint32_t start) {
+  if (r->looks_max == SIZE_MAX) {
+    r->looks_crossed = r->looks;
+    r->looks_max = r->looks + 64 * r->n + r->tri->looks_left;
+  }
+  clip(r, least_corner(r, start));
 }
 
 /** Spikes; ears that nothing touches; then others, and corners in line; then, if a polygon that crosses
@@ -461,13 +478,13 @@ static void clip_all(ring *r) {
   enqueue_all(r, left);
   clip_ears(r);
   r->may_touch = true;
-  while (r->remaining > 3 && r->work > 0) {
+  while (r->remaining > 3 && r->looks < r->looks_max) {
     left = first_left(r, left);
     enqueue_all(r, left);
     clip_ears(r);
     left = first_left(r, left);
     if (r->remaining > 3)
-      clip(r, least_corner(r, left));
+      clip_crossed(r, left);
   }
   left = first_left(r, left);
   for (uint32_t b = r->tri->after[left], c = r->tri->after[b]; c != left; b = c, c = r->tri->after[c])
@@ -490,9 +507,12 @@ vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const
     fan(tri, corners, n);
     return VXM_OK;
   }
-  size_t share = 64 * n + tri->work_left;
-  ring r = {
-      .tri = tri, .corners = corners, .n = n, .remaining = n, .work = share, .triangle = tri->triangles};
+  ring r = {.tri = tri,
+            .corners = corners,
+            .n = n,
+            .remaining = n,
+            .looks_max = SIZE_MAX,
+            .triangle = tri->triangles};
   memset(tri->waits, 0xff, n * sizeof *tri->waits);
   for (size_t i = 0; i < n; i++) {
     tri->before[i] = (uint32_t)(i > 0 ? i - 1 : n - 1);
@@ -501,7 +521,10 @@ vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const
   if (n > ALONE)
     make_tree(&r);
   clip_all(&r);
-  size_t used = share - r.work;
-  tri->work_left -= used < tri->work_left ? used : tri->work_left;
+  tri->looks += r.looks;
+  if (r.looks_max < SIZE_MAX) {
+    size_t used = r.looks - r.looks_crossed;
+    tri->looks_left -= used < tri->looks_left ? used : tri->looks_left;
+  }
   return VXM_OK;
 }

@@ -19,7 +19,8 @@ typedef struct vxm_triangulator {
   double *cuts;             /**< how long a cut it takes to cut them off, squared */
   uint32_t *triangles;      /**< three corners each */
   size_t capacity;
-  size_t work_left; /**< looks at corners and boxes, for all polygons together */
+  size_t looks;      /**< at corners and boxes, for all polygons together */
+  size_t looks_left; /**< for those that are found to cross themselves */
 } vxm_triangulator;
 
 void vxm_triangulator_open(vxm_triangulator *tri, vxm_context *context);
@@ -32,8 +33,11 @@ void vxm_triangulator_close(vxm_triangulator *tri);
  * A polygon that does not cross itself there is covered once and nothing else is. It may touch itself: holes
  * joined to the rim by an edge there and back, corners on edges, spikes, corners in line. The triangles of
  * one that crosses itself cover all points around which it winds, and others. Either way their boundary is
- * that of the polygon. A polygon of m corners takes some m log m steps, few ones up to m^2; when all polygons
- * together have used up a budget of work, what is left becomes fans.
+ * that of the polygon.
+ *
+ * A polygon of m corners takes some m log m steps; needles side by side with a long row of corners may take
+ * m^2 / 64. Those that cross themselves share a budget of work from where that is found; when it is used up
+ * what is left of them becomes a fan.
  *
  * @param[out] triangles 3 (n - 2) vertex numbers, valid until the next call
  */
