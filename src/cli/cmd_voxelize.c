@@ -131,7 +131,10 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
     status = vxm_model_create(&model, mesh, &given->voxelize, &cli->error);
   if (status == VXM_OK && given->sparse) /* what an octree takes is known when it is made */
     results->estimate.grid_bytes = bytes_of_bits(&results->space);
-  else if (status == VXM_OK && !cli_field_wanted(&given->field))
+  else if (status == VXM_OK && cli_field_wanted(&given->field))
+    status = cli_field_estimate(cli, &given->field, &results->estimate, model, &results->space, given->output,
+                                given->format);
+  else if (status == VXM_OK)
     status =
         vxm_model_estimate(&results->estimate, model, &results->space, given->output, &options, &cli->error);
   results->octree = takes_octree(given, results);
