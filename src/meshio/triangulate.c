@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/triangulate.h"
+#include "meshio/ears.h"
 #include "meshio/turn.h"
 
 #include <math.h>
@@ -7,23 +7,8 @@
 
 enum { ALONE = 24 /**< corners of a polygon that needs no tree */ };
 
-/** Stands for the corner after one that has been cut off, and for the place of one that is not in the heap.
- */
-static const uint32_t clipped = UINT32_MAX, nowhere = UINT32_MAX;
-
-/** The polygon at hand. */
-typedef struct ring {
-  vxm_triangulator *tri;
-  const uint32_t *corners;
-  size_t n, remaining;
-  size_t waiting;       /**< corners in the heap */
-  size_t leaves;        /**< of the tree, a power of two; 0 = there is none */
-  size_t looks;         /**< at corners and boxes so far */
-  size_t looks_crossed; /**< of these, those before that */
-  size_t looks_max;   /**< allowed; none too many as long as the polygon has not been found to cross itself */
-  bool may_touch;     /**< corners on the rim of an ear do not matter as long as they only touch it */
-  uint32_t *triangle; /**< where the next one goes */
-} ring;
+/** Stands for the place of a corner that is not in the heap. */
+static const uint32_t nowhere = UINT32_MAX;
 
 /* ---- Room ---- */
 
@@ -167,59 +152,14 @@ static bool is_convex(const double (*plane)[2], size_t n) {
   return changes <= 2;
 }
 
-/* ---- A tree of corners ---- */
-
-static void make_leaf(const ring *r, size_t leaf) {
-  const vxm_triangulator *tri = r->tri;
-  size_t node = r->leaves + leaf, begin = leaf * VXM_ORDER_LEAF, end = begin + VXM_ORDER_LEAF;
-  double(*box)[2] = tri->boxes[node];
-  tri->counts[node] = 0;
-  for (size_t s = begin; s < end && s < r->n; s++) {
-    const double *p = tri->plane[tri->spots[s].index];
-    tri->places[tri->spots[s].index] = (uint32_t)s;
-    for (int c = 0; c < 2; c++) {
-      box[0][c] = s == begin ? p[c] : fmin(box[0][c], p[c]);
-      box[1][c] = s == begin ? p[c] : fmax(box[1][c], p[c]);
-    }
-    tri->counts[node]++;
-  }
-}
-
-static void make_tree(ring *r) {
-  vxm_triangulator *tri = r->tri;
-  for (size_t i = 0; i < r->n; i++)
-    tri->spots[i] = (vxm_spot){{(float)tri->plane[i][0], (float)tri->plane[i][1], 0}, (uint32_t)i};
-  vxm_order_spots(tri->spots, r->n, NULL);
-  for (r->leaves = 1; r->leaves * VXM_ORDER_LEAF < r->n;)
-    r->leaves *= 2;
-  for (size_t leaf = 0; leaf < r->leaves; leaf++)
-    make_leaf(r, leaf);
-  for (size_t node = r->leaves; --node > 0;) {
-    double(*box)[2] = tri->boxes[node], (*left)[2] = tri->boxes[2 * node],
-    (*right)[2] = tri->boxes[2 * node + 1];
-    tri->counts[node] = tri->counts[2 * node] + tri->counts[2 * node + 1];
-    memcpy(box, left, sizeof *tri->boxes);
-    for (int c = 0; c < 2 && tri->counts[2 * node + 1]; c++) {
-      box[0][c] = fmin(box[0][c], right[0][c]);
-      box[1][c] = fmax(box[1][c], right[1][c]);
-    }
-  }
-}
-
-static void drop_from_tree(const ring *r, uint32_t i) {
-  if (r->leaves)
-    for (size_t node = r->leaves + r->tri->places[i] / VXM_ORDER_LEAF; node > 0; node /= 2)
-      r->tri->counts[node]--;
-}
-
 /* ---- A heap of corners that wait ---- */
 
-static void set_place(const ring *r, size_t place, uint32_t i) {
+static void set_place(const vxm_ring *r, size_t place, uint32_t i) {
   r->tri->heap[place] = i;
   r->tri->waits[i] = (uint32_t)place;
 }
 
-static void sift(const ring *r, size_t place) {
+static void sift(const vxm_ring *r, size_t place) {
   const vxm_triangulator *tri = r->tri;
   uint32_t i = tri->heap[place];
   double cut = tri->cuts[i];
@@ -238,7 +178,7 @@ static void sift(const ring *r, size_t place) {
   set_place(r, place, i);
 }
 
-static void take_out(ring *r, uint32_t i) {
+static void take_out(vxm_ring *r, uint32_t i) {
   size_t place = r->tri->waits[i];
   if (place == nowhere)
     return;
@@ -252,7 +192,7 @@ static void take_out(ring *r, uint32_t i) {
 
 /** Has a corner tried, the shorter the cut the sooner: that keeps triangles small, and the looking round that
  * comes before each. Corners in line come last. */
-static void enqueue(ring *r, uint32_t i) {
+static void enqueue(vxm_ring *r, uint32_t i) {
   const double *a = r->tri->plane[r->tri->before[i]], *b = r->tri->plane[i],
                *c = r->tri->plane[r->tri->after[i]];
   int turn = vxm_turn(a, b, c);
@@ -267,110 +207,14 @@ static void enqueue(ring *r, uint32_t i) {
 
 /* ---- Ears ---- */
 
-/** The corners of an ear, turning left. */
-typedef struct ear {
-  uint32_t corner[3];
-  const double *at[3];
-  double low[2], high[2];
-} ear;
-
-static ear ear_at(const ring *r, uint32_t i) {
-  ear e = {.corner = {r->tri->before[i], i, r->tri->after[i]}};
-  for (int k = 0; k < 3; k++)
-    e.at[k] = r->tri->plane[e.corner[k]];
-  for (int c = 0; c < 2; c++) {
-    e.low[c] = fmin(e.at[0][c], fmin(e.at[1][c], e.at[2][c]));
-    e.high[c] = fmax(e.at[0][c], fmax(e.at[1][c], e.at[2][c]));
-  }
-  return e;
-}
-
-/** Whether the way from a place on the rim of an ear to another one leads inside; `side` is 0 for the sides
- * on which the place lies. */
-static bool leads_inside(const ear *e, const int side[3], const double *to) {
-  for (int s = 0; s < 3; s++)
-    if (side[s] == 0 && vxm_turn(e->at[s], e->at[(s + 1) % 3], to) <= 0)
-      return false;
-  return true;
-}
-
-/** Whether two points lie the same way from a third. */
-static bool is_same_way(const double *from, const double *a, const double *b) {
-  for (int c = 0; c < 2; c++)
-    if ((a[c] > from[c] && b[c] <= from[c]) || (a[c] < from[c] && b[c] >= from[c]))
-      return false;
-  return vxm_turn(from, a, b) == 0;
-}
-
-/** Whether a corner of the ring forbids to cut off an ear: it lies in it, or an edge leads from it inside. */
-static bool forbids(ring *r, const ear *e, uint32_t k) {
-  r->looks++;
-  if (k == e->corner[0] || k == e->corner[1] || k == e->corner[2])
-    return false;
-  const vxm_triangulator *tri = r->tri;
-  int side[3], sides = 0;
-  for (int s = 0; s < 3; s++) {
-    side[s] = vxm_turn(e->at[s], e->at[(s + 1) % 3], tri->plane[k]);
-    if (side[s] < 0)
-      return false;
-    sides += side[s] == 0;
-  }
-  if (sides == 0 || (sides == 1 && !r->may_touch))
-    return true;
-  const double *before = tri->plane[tri->before[k]], *after = tri->plane[tri->after[k]];
-  if (side[0] == 0 && side[1] == 0 && is_same_way(e->at[1], e->at[0], after) &&
-      is_same_way(e->at[1], e->at[2], before))
-    return true; /* both sides there and back: nothing tells on which side of them the inside is */
-  return leads_inside(e, side, before) || leads_inside(e, side, after);
-}
-
-/** Whether a box lies beside an ear: beyond one of its sides, or of the sides of its own box. */
-static bool is_beside(const ear *e, double (*box)[2]) {
-  for (int c = 0; c < 2; c++)
-    if (box[0][c] > e->high[c] || box[1][c] < e->low[c])
-      return true;
-  for (int s = 0; s < 3; s++) {
-    const double *p = e->at[s], *q = e->at[(s + 1) % 3];
-    const double leftmost[2] = {box[q[1] <= p[1]][0], box[q[0] >= p[0]][1]};
-    if (vxm_turn(p, q, leftmost) < 0)
-      return true;
-  }
-  return false;
-}
-
-/** Whether no corner of the ring that is in a node forbids to cut off an ear. */
-static bool is_free_in(ring *r, const ear *e, size_t node) {
-  const vxm_triangulator *tri = r->tri;
-  r->looks++;
-  if (tri->counts[node] == 0 || is_beside(e, tri->boxes[node]))
-    return true;
-  if (node < r->leaves)
-    return is_free_in(r, e, 2 * node) && is_free_in(r, e, 2 * node + 1);
-  size_t begin = (node - r->leaves) * VXM_ORDER_LEAF, end = begin + VXM_ORDER_LEAF;
-  for (size_t s = begin; s < end && s < r->n; s++)
-    if (tri->after[tri->spots[s].index] != clipped && forbids(r, e, tri->spots[s].index))
-      return false;
-  return true;
-}
-
-/** Whether no corner of the ring forbids to cut off an ear. */
-static bool is_free(ring *r, const ear *e) {
-  if (r->leaves)
-    return is_free_in(r, e, 1);
-  for (uint32_t k = r->tri->after[e->corner[2]]; k != e->corner[0]; k = r->tri->after[k])
-    if (forbids(r, e, k))
-      return false;
-  return true;
-}
-
-static void put(ring *r, uint32_t a, uint32_t b, uint32_t c) {
+static void put(vxm_ring *r, uint32_t a, uint32_t b, uint32_t c) {
   *r->triangle++ = r->corners[a];
   *r->triangle++ = r->corners[b];
   *r->triangle++ = r->corners[c];
 }
 
 /** Whether a ring turns back at a corner, or has another at the same place beside it. */
-static bool is_spike(const ring *r, uint32_t i) {
+static bool is_spike(const vxm_ring *r, uint32_t i) {
   const double *a = r->tri->plane[r->tri->before[i]], *b = r->tri->plane[i],
                *c = r->tri->plane[r->tri->after[i]];
   for (int k = 0; k < 2; k++) /* in line, b lies between the others where it does so along both axes */
@@ -379,14 +223,14 @@ static bool is_spike(const ring *r, uint32_t i) {
   return vxm_turn(a, b, c) == 0;
 }
 
-static void cut(ring *r, uint32_t i) {
+static void cut(vxm_ring *r, uint32_t i) {
   uint32_t a = r->tri->before[i], c = r->tri->after[i];
   put(r, a, i, c);
   r->tri->after[a] = c;
   r->tri->before[c] = a;
-  r->tri->after[i] = clipped;
+  r->tri->after[i] = VXM_RING_CLIPPED;
   take_out(r, i);
-  drop_from_tree(r, i);
+  vxm_ring_drop(r, i);
   r->remaining--;
 }
 
@@ -394,7 +238,7 @@ static void cut(ring *r, uint32_t i) {
  * Cuts a corner off, and then all spikes that come of it, as where a ring turns back nothing tells its inside
  * from its outside. The neighbours left may have become ears.
  */
-static void clip(ring *r, uint32_t i) {
+static void clip(vxm_ring *r, uint32_t i) {
   uint32_t a = r->tri->before[i], c = r->tri->after[i];
   cut(r, i);
   while (r->remaining > 3) {
@@ -416,17 +260,17 @@ static void clip(ring *r, uint32_t i) {
  * Cuts off all ears. One that is not free does not become so by cutting off others: only when a neighbour has
  * been cut off is it tried again. So each corner is tried some three times.
  */
-static void clip_ears(ring *r) {
+static void clip_ears(vxm_ring *r) {
   while (r->waiting > 0 && r->remaining > 3 && r->looks < r->looks_max) {
     uint32_t i = r->tri->heap[0];
-    ear e = ear_at(r, i);
+    vxm_ear e = vxm_ear_at(r, i);
     take_out(r, i);
-    if (r->tri->cuts[i] == (double)INFINITY || is_free(r, &e))
+    if (r->tri->cuts[i] == (double)INFINITY || vxm_ear_is_free(r, &e))
       clip(r, i);
   }
 }
 
-static void enqueue_all(ring *r, uint32_t start) {
+static void enqueue_all(vxm_ring *r, uint32_t start) {
   uint32_t i = start;
   do
     enqueue(r, i);
@@ -434,19 +278,19 @@ static void enqueue_all(ring *r, uint32_t start) {
 }
 
 /** The first corner from one on that is left. */
-static uint32_t first_left(const ring *r, uint32_t i) {
-  while (r->tri->after[i] == clipped)
+static uint32_t first_left(const vxm_ring *r, uint32_t i) {
+  while (r->tri->after[i] == VXM_RING_CLIPPED)
     i++;
   return i;
 }
 
 /** The corner that turns left over the least area, where a polygon that crosses itself suffers least; else
  * `start`. */
-static uint32_t least_corner(ring *r, uint32_t start) {
+static uint32_t least_corner(vxm_ring *r, uint32_t start) {
   double least = INFINITY;
   uint32_t found = start, i = start;
   do {
-    ear e = ear_at(r, i);
+    vxm_ear e = vxm_ear_at(r, i);
     double area = (e.at[1][0] - e.at[0][0]) * (e.at[2][1] - e.at[0][1]) -
                   (e.at[1][1] - e.at[0][1]) * (e.at[2][0] - e.at[0][0]);
     if (area > 0 && area < least) {
@@ -460,7 +304,7 @@ static uint32_t least_corner(ring *r, uint32_t start) {
 
 /** Cuts a corner off where there is no ear, as happens only where a polygon crosses itself; from the first
  * one on, work is limited. */
-static void clip_crossed(ring *r, uint32_t start) {
+static void clip_crossed(vxm_ring *r, uint32_t start) {
   if (r->looks_max == SIZE_MAX) {
     r->looks_crossed = r->looks;
     r->looks_max = r->looks + 64 * r->n + r->tri->looks_left;
@@ -470,9 +314,9 @@ static void clip_crossed(ring *r, uint32_t start) {
 
 /** Spikes; ears that nothing touches; then others, and corners in line; then, if a polygon that crosses
  * itself has no more, what does the least harm, and so on; and a fan of the rest. */
-static void clip_all(ring *r) {
+static void clip_all(vxm_ring *r) {
   for (size_t i = 0; i < r->n && r->remaining > 3; i++)
-    if (r->tri->after[i] != clipped && is_spike(r, (uint32_t)i))
+    if (r->tri->after[i] != VXM_RING_CLIPPED && is_spike(r, (uint32_t)i))
       clip(r, (uint32_t)i);
   uint32_t left = first_left(r, 0);
   enqueue_all(r, left);
@@ -507,19 +351,19 @@ vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const
     fan(tri, corners, n);
     return VXM_OK;
   }
-  ring r = {.tri = tri,
-            .corners = corners,
-            .n = n,
-            .remaining = n,
-            .looks_max = SIZE_MAX,
-            .triangle = tri->triangles};
+  vxm_ring r = {.tri = tri,
+                .corners = corners,
+                .n = n,
+                .remaining = n,
+                .looks_max = SIZE_MAX,
+                .triangle = tri->triangles};
   memset(tri->waits, 0xff, n * sizeof *tri->waits);
   for (size_t i = 0; i < n; i++) {
     tri->before[i] = (uint32_t)(i > 0 ? i - 1 : n - 1);
     tri->after[i] = (uint32_t)(i + 1 < n ? i + 1 : 0);
   }
   if (n > ALONE)
-    make_tree(&r);
+    vxm_ring_make_tree(&r);
   clip_all(&r);
   tri->looks += r.looks;
   if (r.looks_max < SIZE_MAX) {
