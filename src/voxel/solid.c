@@ -29,7 +29,7 @@ size_t vxm_voted_begin(const vxm_shape *shape) {
   return all ? 0 : kind_end(shape, VXM_PART_CAPPED);
 }
 
-/** Whether parts from `begin` on have cones, so that the tetrahedra may differ from x. */
+/** Whether parts from `begin` on have cones, and so odd edges: without, all voters agree. */
 static bool has_cones(const vxm_shape *shape, size_t begin) {
   for (size_t p = begin; p < shape->facets.split.part_count; p++)
     if (shape->facets.parts[p].cones < shape->facets.parts[p].end)
@@ -43,7 +43,9 @@ int vxm_run_buffers(const vxm_shape *shape) {
   bool decide = vxm_caps_wanted(shape->options);
   if (vxm_voted_begin(shape) + 1 == shape->facets.split.part_count)
     return decide ? 1 : 0; /* one part: only what is contested */
-  return decide || has_cones(shape, vxm_voted_begin(shape)) ? 4 : 3;
+  if (!has_cones(shape, vxm_voted_begin(shape)))
+    return decide ? 2 : 1;
+  return 4;
 }
 
 bool vxm_run_apexes(const vxm_shape *shape) {
@@ -97,20 +99,24 @@ void vxm_run_destroy(vxm_run *run) {
 
 /* ---- Parts that stay open: votes ---- */
 
-/** The x, y, z and, where it may differ, the tetrahedral voter of parts from `begin` on. */
+/** The x, y, z and, if asked for, the tetrahedral voter of parts from `begin` on. */
 static vxm_status fill_voters(vxm_run *run, const vxm_window *window, size_t begin, bool tetra,
                               const uint64_t *voters[VOTERS], vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t end = run->shape->facets.split.part_count;
-  for (int v = 0; v < VOTERS; v++)
-    voters[v] = NULL;
+  bool agree = !has_cones(run->shape, begin);
   for (int v = 0; v < (tetra ? VOTERS : 3) && status == VXM_OK; v++) {
+    if (agree && v > 0) {
+      voters[v] = voters[0];
+      continue;
+    }
     vxm_window voter;
     status = vxm_run_buffer(run, VXM_BUFFER_VOTERS + v, window, &voter, error);
     /* Triangles and cones together are closed: any axis tells their parity. */
     unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
+    int axis = agree || v == 3 ? window->layout.fast : v;
     if (status == VXM_OK)
-      status = vxm_run_unite(run, &voter, v == 3 ? window->layout.fast : v, begin, end, roles, error);
+      status = vxm_run_unite(run, &voter, axis, begin, end, roles, error);
     voters[v] = voter.words;
   }
   return status;
@@ -174,7 +180,7 @@ static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_
     if (tally.added && run->touched)
       atomic_store_explicit(&run->touched[begin], 1, memory_order_relaxed);
   } else if (status == VXM_OK) {
-    const uint64_t *voters[VOTERS];
+    const uint64_t *voters[VOTERS] = {NULL};
     status = fill_voters(run, window, begin, tetra, voters, error);
     if (status == VXM_OK)
       vxm_vote_count(window->words, voters, mask.words,
