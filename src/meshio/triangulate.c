@@ -272,6 +272,7 @@ static void clip_ears(vxm_ring *r) {
 
 static void enqueue_all(vxm_ring *r, uint32_t start) {
   uint32_t i = start;
+  r->looks += 8 * r->remaining;
   do
     enqueue(r, i);
   while ((i = r->tri->after[i]) != start);

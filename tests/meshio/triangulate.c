@@ -324,10 +324,10 @@ static void test_large(void **state) {
   free(positions);
 }
 
-/** A hundred thousand corners anywhere: in time, and with the right boundary. */
+/** Thirty thousand corners anywhere: in time, and with the right boundary. */
 static void test_large_crossings(void **state) {
   (void)state;
-  enum { N = 100000 };
+  enum { N = 30000 };
   vxm_rng rng = {48};
   vxm_triangulator tri;
   vxm_triangulator_open(&tri, context);
