@@ -739,7 +739,7 @@ VXM_API vxm_status vxm_model_voxelize(vxm_grid *grid, vxm_voxelize_report *repor
 
 /** What voxelizing a model into a file takes. */
 typedef struct vxm_estimate {
-  uint64_t grid_bytes;   /**< one bit per voxel */
+  uint64_t grid_bytes;   /**< one bit per voxel; of a field, its values */
   uint64_t memory_bytes; /**< held at most, beyond what the context holds already */
   int64_t windows;       /**< ranges of slices that are made and written one after another; 1 = all at once */
 } vxm_estimate;
@@ -800,6 +800,12 @@ VXM_API vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_mod
                                             const vxm_space *space, const char *path,
                                             const vxm_coverage_options *options, vxm_error *error);
 
+/** Estimates vxm_model_write_coverage, as vxm_model_estimate does; what a .vdb holds until it is written
+ * follows the surface, and is not counted. */
+VXM_API vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model,
+                                               const vxm_space *space, const char *path,
+                                               const vxm_coverage_options *options, vxm_error *error);
+
 typedef struct vxm_distance_options {
   uint32_t version;   /**< 1 */
   bool is_unsigned;   /**< false = negative where the centre is inside the solid */
@@ -817,10 +823,11 @@ typedef struct vxm_distance_report {
 } vxm_distance_report;
 
 /**
- * Computes the distance from the centre of each voxel to the faces of the mesh, in model units: exact within
- * the band, to some 1e-6 voxel and the rounding of a 32-bit float; beyond it, plus or minus the width of the
- * band, which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With
- * a band, time follows surface times band, beside that of the solid.
+ * Computes the distance from the centre of each voxel to the faces of the mesh, in model units. Within the
+ * band it is exact: off by some 1e-14 of the distance and the longest edges, and then rounded to the nearest
+ * 32-bit float (which holds 1e-5 voxel up to 168 voxels). Beyond, it is plus or minus the width of the band,
+ * which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With a
+ * band, time follows surface times band, beside that of the solid.
  *
  * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
  * @param report  may be NULL
@@ -838,6 +845,12 @@ VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report
 VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
+
+/** Estimates vxm_model_write_distance, as vxm_model_estimate does; what a .vdb holds until it is written
+ * follows the surface, and is not counted. */
+VXM_API vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_model *model,
+                                               const vxm_space *space, const char *path,
+                                               const vxm_distance_options *options, vxm_error *error);
 
 /* ---- Labels: which part, group or material a voxel belongs to ---- */
 

@@ -250,6 +250,9 @@ int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is
 /** Writes the file; a failure is in cli->error. */
 vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const char *path, const char *format);
+/** What that will take; zeros for labels. A failure is in cli->error. */
+vxm_status cli_field_estimate(cli_run *cli, const cli_field *field, vxm_estimate *out, const vxm_model *model,
+                              const vxm_space *space, const char *path, const char *format);
 /** Adds "coverage", "distance" or "labels". */
 void cli_field_json(json_t *report, const cli_field *field);
 void cli_field_summarize(const cli_run *cli, const cli_field *field);
