@@ -157,8 +157,12 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   report->open_parts = work->open_parts;
   report->unfilled_holes = work->unfilled;
   report->ununited_parts = work->ununited;
-  for (size_t i = 0; i < work->soup->part_count; i++)
-    report->moved = fmax(report->moved, work->soup->part_changes[i].moved);
+  report->unparted_vertices = work->together;
+  for (size_t i = 0; i < work->soup->part_count; i++) {
+    const vxm_part_change *part = &work->soup->part_changes[i];
+    report->moved = fmax(report->moved, part->moved);
+    report->opened_parts += part->before.closed && part->after.faces > 0 && !part->after.closed;
+  }
   report->pass_count = VXM_PASS_COUNT;
   for (int pass = 0; pass < VXM_PASS_COUNT; pass++) {
     report->passes[pass].pass = names[pass];

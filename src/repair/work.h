@@ -41,6 +41,7 @@ typedef struct vxm_work {
   int64_t open_parts;    /**< that the last pass of closing left open */
   int64_t unfilled;      /**< holes that were to be filled and could not be */
   int64_t ununited;      /**< parts that were to be united and could not be */
+  int64_t together;      /**< vertices that were to be moved apart and could not be */
   vxm_track *track;      /**< what becomes of the parts, or NULL */
 } vxm_work;
 
