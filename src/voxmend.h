@@ -381,7 +381,9 @@ typedef struct vxm_verification {
   struct {
     const char *what; /**< fixed name such as "boundary_edges" or a pass that would still change something */
     int64_t count;
-    int64_t element; /**< the first one: a vertex, or for faces and edges a face; -1 = none to tell */
+    int64_t element; /**< the first one: a vertex, or for faces and edges a face, with its number in the mesh
+                        that is verified, which is that of the file; -1 = none to tell */
+    bool placed;     /**< whether `at` is known */
     double at[3];    /**< where that is, model units */
   } remains[VXM_REMAINS_MAX];
 } vxm_verification;

@@ -46,10 +46,10 @@ static json_t *verification_json(const repair_outcome *outcome) {
     json_t *one = json_object();
     json_object_set_new(one, "what", json_string(found->remains[i].what));
     json_object_set_new(one, "count", json_integer(found->remains[i].count));
-    if (found->remains[i].element >= 0) {
+    if (found->remains[i].element >= 0)
       json_object_set_new(one, "first", json_integer(found->remains[i].element));
+    if (found->remains[i].placed)
       json_object_set_new(one, "at", cli_json_numbers(found->remains[i].at, 3));
-    }
     json_array_append_new(remains, one);
   }
   json_object_set_new(object, "level", json_string(repair_levels[outcome->level]));
@@ -145,7 +145,7 @@ void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *
   const vxm_verification *found = &outcome->verification;
   for (int i = 0; i < found->count; i++) {
     fprintf(stream, "  %-26s %12" PRId64, found->remains[i].what, found->remains[i].count);
-    if (found->remains[i].element >= 0)
+    if (found->remains[i].placed)
       fprintf(stream, "  the first at %.6g %.6g %.6g", found->remains[i].at[0], found->remains[i].at[1],
               found->remains[i].at[2]);
     fputc('\n', stream);

@@ -27,7 +27,6 @@ static const double AXIS = 0.2;
 typedef struct surroundings {
   vxm_vec3 toward;          /**< sum of the directions to the middles of the faces */
   double shortest, longest; /**< edges about the vertex */
-  uint32_t part;
 } surroundings;
 
 typedef struct moving {
@@ -77,8 +76,6 @@ static void look_around(moving *m) {
             (vxm_vec3){s->toward.x + d.x / length, s->toward.y + d.y / length, s->toward.z + d.z / length};
       note_edge(s, p, vxm_position(m->soup, corner[i + 1 < count ? i + 1 : 0]));
       note_edge(s, p, vxm_position(m->soup, corner[i > 0 ? i - 1 : count - 1]));
-      if (m->soup->face_parts)
-        s->part = m->soup->face_parts[f];
     }
   }
 }
@@ -186,9 +183,6 @@ static bool move(moving *m, uint32_t v) {
   for (int a = 0; a < 3 && found; a++)
     p[a] = to[a];
   vxm_places_add(&m->places, v);
-  if (found && m->work->track && m->soup->face_parts)
-    vxm_track_move(m->work->track, s->part,
-                   hypot(hypot(to[0] - by.from[0], to[1] - by.from[1]), to[2] - by.from[2]));
   return found;
 }
 

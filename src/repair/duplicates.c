@@ -21,6 +21,7 @@ vxm_status vxm_pass_duplicates(vxm_work *work, bool *changed, vxm_error *error) 
   if (status == VXM_OK && any)
     status = vxm_fins_mark(work, even, kinds, error);
   if (status == VXM_OK && any) {
+    vxm_work_note_marked(work, found.same > 0 ? VXM_PASS_DUPLICATES : VXM_PASS_OPPOSITE_DUPLICATES, kinds);
     int64_t removed = vxm_work_remove_faces(work, kinds);
     work->counts[VXM_PASS_DUPLICATES] += (int64_t)found.same;
     work->counts[VXM_PASS_OPPOSITE_DUPLICATES] += removed - (int64_t)found.same;

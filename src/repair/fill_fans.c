@@ -155,6 +155,13 @@ static bool make_room(closing *c, size_t faces, size_t points) {
       return false;
     soup->face_parts = parts;
   }
+  if (c->work->turned) {
+    uint8_t *turned = vxm_realloc(soup->context, c->work->turned, total, sizeof *turned, &c->error);
+    if (!turned)
+      return false;
+    memset(turned + soup->face_count, VXM_ADDED, faces);
+    c->work->turned = turned;
+  }
   return grow_marks(c, soup->vertex_count + points);
 }
 
