@@ -3,6 +3,7 @@
 
 #include "repair/fans.h"
 #include "repair/separate.h"
+#include "repair/split.h"
 
 /** A copy of the soup with the vertices merged. */
 static vxm_status make_trial(vxm_work *trial, const vxm_work *work, const uint32_t *map, vxm_error *error) {
@@ -40,16 +41,11 @@ static vxm_status count_used(size_t *count, const vxm_soup *soup, vxm_error *err
 static vxm_status count_after(size_t *after, const vxm_soup *trial, vxm_error *error) {
   vxm_soup *apart;
   int64_t split, stitched;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_status status = vxm_separate(&apart, &split, &stitched, trial, &local);
+  vxm_status status = vxm_separate(&apart, &split, &stitched, trial, error);
   *after = SIZE_MAX;
-  if (status == VXM_ERROR_ARGUMENT) /* a polygon would touch itself */
-    return VXM_OK;
   if (status == VXM_OK)
-    status = count_used(after, apart, &local);
+    status = count_used(after, apart, error);
   vxm_soup_destroy(apart);
-  if (status != VXM_OK && error)
-    *error = local;
   return status;
 }
 
@@ -63,6 +59,8 @@ static vxm_status compare(bool *helps, vxm_work *trial, const vxm_work *work, vx
   if (status != VXM_OK || *helps)
     return status;
   status = count_used(&before, work->soup, error);
+  if (status == VXM_OK)
+    status = vxm_split_polygons(trial, true, error);
   if (status == VXM_OK)
     status = count_after(&after, trial->soup, error);
   *helps = status == VXM_OK && after < before;

@@ -31,7 +31,7 @@ static vxm_status run_pass(vxm_work *work, vxm_pass_fn pass, double fraction, bo
   return status == VXM_OK ? pass(work, changed, error) : status;
 }
 
-enum { SEPARATIONS_MAX = 8 };
+enum { ROUNDS_MAX = 8 };
 
 static const vxm_pass_fn round_passes[] = {vxm_pass_repeated_corners, vxm_pass_zero_area, vxm_pass_duplicates,
                                            vxm_pass_tolerant_weld};
@@ -67,27 +67,37 @@ static vxm_status run_until_quiet(vxm_work *work, vxm_error *error) {
   return VXM_OK;
 }
 
+/** The passes that make work for each other, once more; `changed`: they had some. */
+static vxm_status settle_again(vxm_work *work, bool *changed, vxm_error *error) {
+  int64_t before = count_round(work);
+  bool turned;
+  vxm_status status = work->track ? vxm_track_start(work->track, work->soup, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = run_until_quiet(work, error);
+  *changed = status == VXM_OK && count_round(work) > before;
+  if (!*changed)
+    return status;
+  if (work->track)
+    vxm_track_settle(work->track, work->soup);
+  return vxm_pass_orientation(work, &turned, error);
+}
+
 /** Separation, and what else it makes room for: where faces were cut apart others may come together. */
 static vxm_status separate_until_quiet(vxm_work *work, bool *changed, vxm_error *error) {
+  bool more = true;
+  vxm_status status = VXM_OK;
   *changed = false;
-  for (int round = 0; round < SEPARATIONS_MAX; round++) {
-    bool cut, turned;
-    vxm_status status = vxm_pass_separation(work, &cut, error);
-    if (status != VXM_OK || !cut)
-      return status;
+  for (int round = 0; round < ROUNDS_MAX && more && status == VXM_OK; round++) {
+    bool turned;
+    status = vxm_pass_separation(work, &more, error);
+    if (status != VXM_OK || !more)
+      break;
     *changed = true;
-    int64_t before = count_round(work);
     status = vxm_pass_orientation(work, &turned, error);
-    if (status == VXM_OK && work->track)
-      status = vxm_track_start(work->track, work->soup, error);
     if (status == VXM_OK)
-      status = run_until_quiet(work, error);
-    if (status != VXM_OK || count_round(work) == before)
-      return status;
-    if (work->track)
-      vxm_track_settle(work->track, work->soup);
+      status = settle_again(work, &more, error);
   }
-  return VXM_OK;
+  return status;
 }
 
 static vxm_status move_apart(vxm_work *work, bool *changed, vxm_error *error) {
@@ -99,23 +109,38 @@ static vxm_status move_apart(vxm_work *work, bool *changed, vxm_error *error) {
   return status;
 }
 
-/** The passes that a level or an option asks for; each does nothing where none does. */
-static vxm_status run_further(vxm_work *work, vxm_error *error) {
+/** The passes that a level or an option asks for; each does nothing where none does. `moved`: vertices were
+ * moved apart. */
+static vxm_status run_level(vxm_work *work, bool *moved, vxm_error *error) {
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{vxm_pass_unused, false}, {vxm_pass_wrap, false},       {separate_until_quiet, true},
-                 {vxm_pass_closing, true}, {vxm_pass_small_parts, true}, {vxm_pass_union, false},
-                 {move_apart, true},       {vxm_pass_unused, false}};
+  } further[] = {{separate_until_quiet, true}, {vxm_pass_closing, true},     {vxm_pass_small_parts, true},
+                 {vxm_pass_union, false},      {vxm_pass_separation, false}, {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
   for (int i = 0; i < FURTHER && status == VXM_OK; i++) {
-    bool changed;
-    status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, &changed, error);
-    if (status == VXM_OK && changed && further[i].turns)
-      status = run_pass(work, vxm_pass_orientation, 0.9 + 0.1 * i / FURTHER, &changed, error);
+    bool turned;
+    status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, moved, error);
+    if (status == VXM_OK && *moved && further[i].turns)
+      status = run_pass(work, vxm_pass_orientation, 0.9 + 0.1 * i / FURTHER, &turned, error);
   }
   return status;
+}
+
+/** What was moved apart may let vertices merge that were not to before, which opens nothing but takes
+ * vertices away. */
+static vxm_status run_further(vxm_work *work, vxm_error *error) {
+  bool changed, again = true;
+  vxm_status status = vxm_pass_unused(work, &changed, error);
+  if (status == VXM_OK)
+    status = run_pass(work, vxm_pass_wrap, 0.9, &changed, error);
+  for (int round = 0; round < ROUNDS_MAX && again && status == VXM_OK; round++) {
+    status = run_level(work, &again, error);
+    if (status == VXM_OK && again)
+      status = settle_again(work, &again, error);
+  }
+  return status == VXM_OK ? vxm_pass_unused(work, &changed, error) : status;
 }
 
 /** What comes once: for .stl, polygons are cleaned before they become triangles and are rounded. */
