@@ -322,7 +322,11 @@ typedef struct vxm_repair_report {
   int64_t open_parts;     /**< components whose holes were left open: sheets that their closing would cover */
   int64_t unfilled_holes; /**< that were to be filled and could not be */
   int64_t ununited_parts; /**< that were to be united and could not be, as they cut through themselves */
-  double moved; /**< largest distance that a vertex was moved, model units; not by a wrap or union */
+  int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
+                                positions are too coarse for the faces about them */
+  int64_t opened_parts;      /**< closed before, open after; with options.part_changes, else 0 */
+  double moved;              /**< no vertex was moved farther, model units; not by a wrap or union. With
+                                options.part_changes, else 0 */
   vxm_census before, after;
 } vxm_repair_report;
 
@@ -356,7 +360,7 @@ typedef struct vxm_part_state {
 typedef struct vxm_part_change {
   vxm_part_state before, after; /**< after: of all faces that come from this part; none after a wrap */
   int64_t flipped;              /**< faces that were turned */
-  double moved;                 /**< largest distance that one of its vertices was moved, model units */
+  double moved;                 /**< none of its vertices was moved farther, model units */
   uint32_t tag;                 /**< of its first face; UINT32_MAX if there are no tags */
 } vxm_part_change;
 
@@ -377,7 +381,9 @@ typedef struct vxm_verification {
   struct {
     const char *what; /**< fixed name such as "boundary_edges" or a pass that would still change something */
     int64_t count;
-    int64_t element; /**< the first one: a vertex, or for faces and edges a face; -1 = none to tell */
+    int64_t element; /**< the first one: a vertex, or for faces and edges a face, with its number in the mesh
+                        that is verified, which is that of the file; -1 = none to tell */
+    bool placed;     /**< whether `at` is known */
     double at[3];    /**< where that is, model units */
   } remains[VXM_REMAINS_MAX];
 } vxm_verification;

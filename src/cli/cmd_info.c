@@ -6,8 +6,7 @@ enum { KEY_LOCATE = CLI_KEY_COMMAND, KEY_LIST, KEY_INTERSECTIONS };
 
 static const cli_option known_options[] = {
     {KEY_LOCATE, "locate", "FILE.ply", "show what is wrong, in colour on the mesh; for one mesh"},
-    {KEY_LIST, "list", "N",
-     "list what is wrong in the report, up to N of each kind, with indices and\ncoordinates"},
+    {KEY_LIST, "list", "N", "list what is wrong, up to N of each kind, with indices and coordinates"},
     {KEY_INTERSECTIONS, "intersections", NULL,
      "with --locate and --list: faces that cut through others too (CGAL)"},
     CLI_OPTION_DEFLECTION,
@@ -20,7 +19,7 @@ static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mes
   json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(mesh)));
   cli_census_json(object, census);
   if (defects)
-    json_object_set_new(object, "defects", defects);
+    json_object_set(object, "defects", defects);
   json_object_set(object, "warnings", cli->warnings);
   return object;
 }
@@ -51,8 +50,11 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
         fputc('\n', cli->text);
       describe(cli, path, mesh, &census);
     }
+    if (cli_summary(cli))
+      cli_defects_print(cli, defects);
     json_array_append_new(reports, describe_json(cli, path, mesh, &census, defects));
   }
+  json_decref(defects);
   vxm_mesh_destroy(mesh);
   return status;
 }
@@ -76,7 +78,7 @@ static int read_arguments(cli_run *cli, cli_defects *wanted) {
     return cli_usage(cli, "--locate is for one mesh, not %d", cli->argument_count);
   if (wanted->intersections && !wanted->locate && !wanted->list)
     return cli_usage(cli, "--intersections goes with --locate or --list");
-  return cli_defects_check(cli, wanted, NULL);
+  return cli_defects_check(cli, wanted, cli->arguments[0], NULL);
 }
 
 static int run(cli_run *cli) {
