@@ -5,6 +5,17 @@
 #include "repair/separate.h"
 #include "repair/split.h"
 
+/** One in so many merged vertices has to stay merged, or faces only change their partners, again and again.
+ */
+enum { USEFUL = 8 };
+
+static size_t count_merged(const vxm_work *work, const uint32_t *map) {
+  size_t count = 0;
+  for (size_t v = 0; v < work->soup->vertex_count; v++)
+    count += map[v] != v && !work->gone[v];
+  return count;
+}
+
 /** A copy of the soup with the vertices merged. */
 static vxm_status make_trial(vxm_work *trial, const vxm_work *work, const uint32_t *map, vxm_error *error) {
   vxm_status status = VXM_OK;
@@ -49,9 +60,11 @@ static vxm_status count_after(size_t *after, const vxm_soup *trial, vxm_error *e
   return status;
 }
 
-static vxm_status compare(bool *helps, vxm_work *trial, const vxm_work *work, vxm_error *error) {
+/** @param merged vertices that lose their numbers */
+static vxm_status compare(bool *helps, vxm_work *trial, const vxm_work *work, size_t merged,
+                          vxm_error *error) {
   bool reduced = false, fewer = false;
-  size_t before, after;
+  size_t before, after = 0;
   vxm_status status = vxm_pass_repeated_corners(trial, &reduced, error);
   if (status == VXM_OK)
     status = vxm_pass_duplicates(trial, &fewer, error);
@@ -63,7 +76,7 @@ static vxm_status compare(bool *helps, vxm_work *trial, const vxm_work *work, vx
     status = vxm_split_polygons(trial, true, error);
   if (status == VXM_OK)
     status = count_after(&after, trial->soup, error);
-  *helps = status == VXM_OK && after < before;
+  *helps = status == VXM_OK && after < before && before - after >= merged / USEFUL;
   return status;
 }
 
@@ -77,7 +90,7 @@ vxm_status vxm_merge_helps(bool *helps, vxm_work *work, const uint32_t *map, vxm
   vxm_work trial;
   status = make_trial(&trial, work, map, error);
   if (status == VXM_OK)
-    status = compare(helps, &trial, work, error);
+    status = compare(helps, &trial, work, count_merged(work, map), error);
   vxm_work_touch(&trial);
   vxm_free(trial.context, trial.used);
   vxm_free(trial.context, trial.gone);
