@@ -12,48 +12,6 @@
 
 /* ---- The second opinion ---- */
 
-/** Closed walks along the boundary of a manifold. */
-static int64_t count_holes(const vxm_soup *soup) {
-  brute_side *sides = list_brute_sides(soup);
-  uint32_t *next = malloc((soup->vertex_count + 1) * sizeof *next);
-  assert_non_null(next);
-  for (size_t v = 0; v < soup->vertex_count; v++)
-    next[v] = UINT32_MAX;
-  for (size_t i = 0; i < soup->corner_count; i++) {
-    bool before = i > 0 && sides[i - 1].from == sides[i].to && sides[i - 1].to == sides[i].from;
-    bool after =
-        i + 1 < soup->corner_count && sides[i + 1].from == sides[i].to && sides[i + 1].to == sides[i].from;
-    if (!before && !after)
-      next[sides[i].to] = sides[i].from;
-  }
-  int64_t count = 0;
-  for (size_t v = 0; v < soup->vertex_count; v++) {
-    count += next[v] != UINT32_MAX;
-    for (uint32_t at = (uint32_t)v; next[at] != UINT32_MAX;) {
-      uint32_t to = next[at];
-      next[at] = UINT32_MAX;
-      at = to;
-    }
-  }
-  free(next);
-  free(sides);
-  return count;
-}
-
-static void check_inspection(const vxm_soup *soup) {
-  vxm_halfedge_report report = inspected(soup);
-  brute_report brute = look_brute(soup);
-  assert_int_equal(report.manifold, brute.manifold);
-  assert_int_equal(report.faces + report.rejected, soup->face_count);
-  assert_true(brute.complex_edges == 0 || report.rejected > 0);
-  if (!brute.manifold)
-    return;
-  assert_int_equal(report.rejected, 0);
-  assert_int_equal(report.boundary_edges, brute.boundary_edges);
-  assert_int_equal(report.components, count_components_brute(soup));
-  assert_int_equal(report.holes, count_holes(soup));
-}
-
 /** Soups of all kinds, and what separating makes of them. */
 static void opinions_agree(void **state) {
   vxm_rng rng = {1};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The module for OpenMesh: which rims are filled, in which of several ways, and beside what. */
 #include "halfedges.h"
+#include "outlines.h"
 
 #include "repair/separate.h"
 
