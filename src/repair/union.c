@@ -31,6 +31,6 @@ vxm_status vxm_pass_union(vxm_work *work, bool *changed, vxm_error *error) {
   vxm_free(work->context, report.failed_faces);
   work->ununited = report.failed;
   work->counts[VXM_PASS_UNION] += report.united;
-  *changed = report.united > 0;
+  *changed = report.united > 0 || report.crossing > 0;
   return vxm_work_adopt(work, soup, origin, error);
 }
