@@ -208,6 +208,11 @@ vxm_status vxm_output_open_readable(vxm_output **out, vxm_context *context, cons
     return status;
   const char *folder = getenv("TMPDIR");
   int waiting = open(folder && *folder ? folder : "/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (waiting >= 0 && waiting <= STDERR_FILENO) { /* where standard output is closed its number is free */
+    int higher = fcntl(waiting, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    close(waiting);
+    waiting = higher;
+  }
   if (waiting < 0) {
     vxm_fail_errno(error, path, "cannot write a temporary file for it; set TMPDIR");
     vxm_output_abort(*out);

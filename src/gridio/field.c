@@ -55,7 +55,7 @@ static vxm_status begin_file(field_file *file, file_format format, vxm_context *
 static vxm_status open_file(field_file *file, vxm_field_target *target, vxm_context *context,
                             const vxm_space *space, const vxm_vdb_kind *kind, vxm_scalar scalar,
                             const char *path, const char *format, vxm_error *error) {
-  file_format found;
+  file_format found = NPY;
   *file = (field_file){.path = path};
   vxm_status status = find_format(&found, path, format, error);
   if (status == VXM_OK && found == VDB && scalar != VXM_FLOAT32)

@@ -36,7 +36,7 @@ static rlim_t held_bytes(void) {
   return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
 }
 
-static void limit(int resource, rlim_t value) {
+static void limit(unsigned resource, rlim_t value) {
   struct rlimit both;
   if (getrlimit(resource, &both) != 0)
     return;

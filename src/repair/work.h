@@ -83,7 +83,11 @@ int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove);
 vxm_status vxm_work_adopt(vxm_work *work, vxm_soup *soup, uint64_t *origin, vxm_error *error);
 /** What a position becomes where positions are to be held by 32-bit floats, else itself. */
 static inline double vxm_work_round(const vxm_work *work, double x) {
-  return work->options.single_precision ? (double)(float)x : x;
+  if (!work->options.single_precision)
+    return x;
+  volatile float rounded =
+      (float)x; /* gcc 12 at -O2 loses a plain conversion there and back when it vectorizes */
+  return (double)rounded;
 }
 /** Whether the level asks for this much. */
 static inline bool vxm_work_reaches(const vxm_work *work, vxm_level level) {

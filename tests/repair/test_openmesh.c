@@ -735,7 +735,7 @@ static void failures(void **state) {
 /* ---- Real meshes ---- */
 
 static void shared_mesh_is_filled(const shared_mesh *mesh, void *payload) {
-  vxm_soup *soup = read_soup(payload, mesh->path), *clean, *apart;
+  vxm_soup *soup = read_soup(payload, mesh->path), *clean = NULL, *apart = NULL;
   vxm_error error = VXM_ERROR_INIT;
   if (soup->face_count < 8000) {
     int64_t split, stitched;
