@@ -120,9 +120,6 @@ bool bound_in_doubles(const std::vector<Position> &points, const std::vector<Par
     surface = rounded.take();
     meetings = meetings_of(surface, meter);
     size_t bad = meetings.size() + rounded.dropped();
-    if (getenv("VXM_DEBUG"))
-      fprintf(stderr, "round %d: %zu triangles, %zu meetings, dropped %zu\n", round, surface.sheet.size(),
-              meetings.size(), rounded.dropped());
     if (bad == 0)
       return true;
     if (bad >= last || round == ROUNDS)
