@@ -42,6 +42,8 @@ static vxm_status check_versions(vxm_repair_options *repair, const vxm_repair_op
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "verify: options version %" PRIu32 " is unknown; use the initializer",
                     repair->version != 1 ? repair->version : write->version);
+  if (repair->level < VXM_LEVEL_CLEAN || repair->level > VXM_LEVEL_SOLID)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "verify: level %d is unknown", (int)repair->level);
   return VXM_OK;
 }
 
@@ -100,5 +102,7 @@ vxm_status vxm_defects_write(const vxm_defects *defects, const vxm_mesh *mesh, c
                              vxm_error *error) {
   if (!defects || !mesh || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "defects: an argument is NULL");
+  if (defects->vertex_count != mesh->vertex_count || defects->face_count != mesh->face_count)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "defects: they are of another mesh");
   return vxm_defects_paint(defects, mesh, path, error);
 }

@@ -195,7 +195,8 @@ vxm_status vxm_defects_find(vxm_defects **out, const vxm_soup *soup, size_t most
     return status;
   f.defects = vxm_calloc(context, 1, sizeof *f.defects, &f.error);
   if (f.defects)
-    f.defects->context = context;
+    *f.defects =
+        (vxm_defects){.context = context, .vertex_count = soup->vertex_count, .face_count = soup->face_count};
   bool done = f.defects && prepare(&f) && find(&f, intersections);
   vxm_work_touch(&f.work);
   vxm_soup_destroy(f.work.soup);

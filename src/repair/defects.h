@@ -9,6 +9,7 @@ struct vxm_defects {
   vxm_context *context; /**< one reference held */
   vxm_defect *items;
   size_t count, capacity;
+  size_t vertex_count, face_count; /**< of the mesh */
 };
 
 /** vxm_mesh_defects; `most` is 0 for all. */
