@@ -65,6 +65,7 @@ public:
   void finish(vxm_soup **out, uint64_t **origin) const {
     Added added = add_all();
     Result result(soup_, meter_);
+    result.keep_vertices();
     for (size_t f = 0; f < soup_->face_count; f++)
       result.keep(f);
     result.add_vertices(added.points);

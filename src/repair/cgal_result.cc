@@ -39,9 +39,11 @@ const uint32_t *Result::corners(const Item &item, size_t *count) const {
   return corners_[item.index].data();
 }
 
-/** Vertices that are used, in their order. */
+/** Vertices that are used or to be kept, in their order. */
 void Result::make_vertices(vxm_soup *out, std::vector<uint32_t> *number) const {
   number->assign(soup_->vertex_count + points_.size(), NONE);
+  if (all_vertices_)
+    std::fill_n(number->begin(), soup_->vertex_count, 0U);
   for (const Item &item : items_) {
     size_t count;
     const uint32_t *corner = corners(item, &count);

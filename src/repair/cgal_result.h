@@ -27,6 +27,10 @@ public:
   Result(const vxm_soup *soup, Meter &meter) : soup_(soup), meter_(meter) {
   }
 
+  /** Keeps all vertices of the soup, with their numbers. */
+  void keep_vertices() {
+    all_vertices_ = true;
+  }
   /** Keeps a face of the soup, on its vertices. */
   void keep(uint64_t face) {
     items_.push_back({face, face, face, true});
@@ -44,7 +48,8 @@ public:
     corners_.push_back(corners);
   }
 
-  /** Makes the soup, without vertices that are not used, and tells what each face comes from. */
+  /** Makes the soup, without vertices that are not used unless all are kept, and tells what each face comes
+   * from. */
   vxm_soup *finish(std::vector<uint64_t> *origin);
 
 private:
@@ -65,6 +70,7 @@ private:
   std::vector<Item> items_;
   std::vector<Position> points_;
   std::vector<Corners> corners_;
+  bool all_vertices_ = false;
 };
 
 } // namespace vxm

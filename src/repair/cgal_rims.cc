@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "repair/cgal_rims.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "mesh/loops.h"
@@ -45,7 +46,7 @@ public:
     if (along != 0 && along != out.size())
       return {};
     if (along != 0)
-      out.assign(out.rbegin(), out.rend());
+      std::reverse(out.begin(), out.end());
     return out;
   }
 

@@ -96,7 +96,8 @@ static void check_origins(const vxm_soup *out, const uint64_t *origin, const vxm
         at[s] += n[s][i] * a[i];
       }
     }
-    assert_memory_equal(n[0], n[1], sizeof n[0]);
+    for (int i = 0; i < 3; i++)
+      assert_true(n[0][i] == n[1][i]); /* of either sign where they are zero */
     assert_true(at[0] == at[1]);
   }
 }
@@ -126,7 +127,7 @@ static void boxes_on_a_lattice(void **state) {
         area += !in_boxes(boxes, count, next);
       }
     }
-    assert_true(volume_of(out) == volume);
+    assert_true(fabs(volume_of(out) - volume) < 1e-9 * volume);
     assert_true(fabs(area_of(out) - area) < 1e-9 * area);
     check_origins(out, origin, soup);
     vxm_free(context, origin);

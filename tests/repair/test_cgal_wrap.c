@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Wrapping. */
-#include "solids.h"
-
+/* clang-format off: in this order, no argument hides the context of solids.h */
 #include "../mesh/shared.h"
 #include "repairing.h"
+#include "solids.h"
+/* clang-format on */
 
 static vxm_soup *wrap(const vxm_soup *soup, double alpha, double offset) {
   vxm_soup *out;
