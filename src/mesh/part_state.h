@@ -7,7 +7,7 @@
 
 /**
  * Measures parts, after welding identical positions. An edge that several parts share after welding counts
- * for the first of them.
+ * for the first of them. Self-intersections are left at -1.
  *
  * @param out        part_count elements
  * @param face_parts per face: its part

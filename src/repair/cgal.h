@@ -25,7 +25,7 @@ typedef struct vxm_face_pairs {
 typedef struct vxm_union_report {
   int64_t parts;    /**< closed components that came in */
   int64_t united;   /**< of them, those that were joined with another one, or lay inside one */
-  int64_t crossing; /**< of them, those that cut through themselves */
+  int64_t crossing; /**< of them, those that only cut through themselves, and do no more */
   int64_t failed;   /**< those that are in the result as they were although they should not be */
   uint64_t *
       failed_faces; /**< one face of the input for each failed part; a block of the soup's context, or NULL */
@@ -66,9 +66,10 @@ typedef struct vxm_cgal {
    *
    * The surface is cut exactly and then rounded to doubles; no two of its faces meet elsewhere than in
    * corners and edges they share, and none is without area. Where doubles cannot hold that, the parts
-   * concerned are put on a lattice of up to 2^-22 times the largest coordinate first. Every edge has two
-   * faces; where the union touches itself, there are several vertices at one position. Components that touch
-   * nothing keep their faces and vertices, and come in the order of their faces.
+   * concerned are put on a lattice of up to 2^-22 times the largest coordinate first. Where the union touches
+   * itself, there are several vertices at one position, so that every edge has two faces; but four where the
+   * material is joined around both ends of it, which vxm_separate parts. Components that touch nothing keep
+   * their faces and vertices, and come in the order of their faces.
    */
   vxm_status (*unite)(vxm_soup **out, uint64_t **origin, vxm_union_report *report, const vxm_soup *soup,
                       vxm_error *error);
@@ -80,9 +81,11 @@ typedef struct vxm_cgal {
   /**
    * A closed, oriented, 2-manifold surface around any soup: alpha and offset in model units, both > 0. Also
    * VXM_ERROR_EMPTY if no face has an area, and VXM_ERROR_MEMORY_LIMIT, before anything is done, if the size
-   * of the result can be told to be too large; the message has an alpha that would fit.
+   * of the result can be told to be too large; the message has an alpha that would fit. Here `origin` is the
+   * face of the input that lies nearest to the middle of each face.
    */
-  vxm_status (*wrap)(vxm_soup **out, const vxm_soup *soup, double alpha, double offset, vxm_error *error);
+  vxm_status (*wrap)(vxm_soup **out, uint64_t **origin, const vxm_soup *soup, double alpha, double offset,
+                     vxm_error *error);
 } vxm_cgal;
 
 #define VXM_NO_FACE UINT64_MAX

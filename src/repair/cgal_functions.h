@@ -13,7 +13,8 @@ vxm_status fill(vxm_soup **out, uint64_t **origin, int64_t *filled, int64_t *lef
 vxm_status unite(vxm_soup **out, uint64_t **origin, vxm_union_report *report, const vxm_soup *soup,
                  vxm_error *error);
 vxm_status orient(vxm_soup **out, int64_t *turned, const vxm_soup *soup, vxm_error *error);
-vxm_status wrap(vxm_soup **out, const vxm_soup *soup, double alpha, double offset, vxm_error *error);
+vxm_status wrap(vxm_soup **out, uint64_t **origin, const vxm_soup *soup, double alpha, double offset,
+                vxm_error *error);
 
 } // namespace vxm
 

@@ -202,7 +202,7 @@ public:
     std::vector<uint64_t> failed;
     for (const Known &part : known_) {
       report->parts += part.closed;
-      report->crossing += part.crossing;
+      report->crossing += part.crossing && !part.united && !part.failed;
       report->united += part.united && !part.failed;
       if (part.failed)
         failed.push_back(part.first_face);

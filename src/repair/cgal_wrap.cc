@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "repair/cgal_functions.h"
 
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
@@ -11,7 +14,7 @@
 #include <unistd.h>
 
 #include "repair/cgal_guard.h"
-#include "repair/cgal_triangles.h"
+#include "repair/cgal_result.h"
 
 namespace vxm {
 
@@ -55,11 +58,42 @@ private:
 };
 
 /** Leaves out triangles without area, which the search for the nearest point cannot take. */
-std::vector<Corners> with_area(const Triangles &triangles) {
-  std::vector<Corners> out;
-  for (const Corners &corners : triangles.corners)
-    if (has_area(triangles.points, corners))
-      out.push_back(corners);
+void drop_flat(Triangles *triangles) {
+  size_t kept = 0;
+  for (size_t t = 0; t < triangles->corners.size(); t++)
+    if (has_area(triangles->points, triangles->corners[t])) {
+      triangles->face[kept] = triangles->face[t];
+      triangles->corners[kept++] = triangles->corners[t];
+    }
+  triangles->face.resize(kept);
+  triangles->corners.resize(kept);
+}
+
+/** The face of the input nearest to the middle of each face of the skin. */
+std::vector<uint64_t> nearest_faces(const vxm_soup *skin, const Triangles &triangles, Meter &meter) {
+  using List = std::vector<Kernel::Triangle_3>;
+  using Primitive = CGAL::AABB_triangle_primitive<Kernel, List::const_iterator>;
+  meter.phase("looking for what lies beneath");
+  auto point = [](const double *p) { return Kernel::Point_3(p[0], p[1], p[2]); };
+  List list;
+  list.reserve(triangles.corners.size());
+  for (const Corners &t : triangles.corners)
+    list.emplace_back(point(triangles.points[t[0]].data()), point(triangles.points[t[1]].data()),
+                      point(triangles.points[t[2]].data()));
+  CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> tree(list.cbegin(), list.cend());
+  tree.accelerate_distance_queries();
+  std::vector<uint64_t> out;
+  out.reserve(skin->face_count);
+  for (size_t f = 0; f < skin->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(skin, f, &count);
+    Kernel::Point_3 middle =
+        CGAL::centroid(point(vxm_position(skin, corner[0])), point(vxm_position(skin, corner[1])),
+                       point(vxm_position(skin, corner[2])));
+    auto nearest = tree.closest_point_and_primitive(middle).second;
+    out.push_back(triangles.face[(size_t)(nearest - list.cbegin())]);
+    meter.progress((double)f / (double)skin->face_count);
+  }
   return out;
 }
 
@@ -115,14 +149,18 @@ vxm_soup *soup_of(const Mesh &mesh, const vxm_soup *like, Meter &meter) {
 
 } // namespace
 
-vxm_status wrap(vxm_soup **out, const vxm_soup *soup, double alpha, double offset, vxm_error *error) {
+vxm_status wrap(vxm_soup **out, uint64_t **origin, const vxm_soup *soup, double alpha, double offset,
+                vxm_error *error) {
   *out = nullptr;
+  if (origin != nullptr)
+    *origin = nullptr;
   if (!(alpha > 0) || !(offset > 0) || !std::isfinite(alpha) || !std::isfinite(offset))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "wrapping takes an alpha and an offset above 0, not %g and %g",
                     alpha, offset);
   return guarded(soup->context, "wrapping", error, [&](Meter &meter) {
     Triangles triangles = triangles_of(soup, Naming::by_position, meter);
-    std::vector<Corners> corners = with_area(triangles);
+    drop_flat(&triangles);
+    const std::vector<Corners> &corners = triangles.corners;
     if (corners.empty())
       check(vxm_fail(meter.error(), VXM_ERROR_EMPTY, "there is no face with an area to wrap"));
     double area = area_of(triangles.points, corners);
@@ -135,7 +173,10 @@ vxm_status wrap(vxm_soup **out, const vxm_soup *soup, double alpha, double offse
     Visitor visitor(meter, FACETS * area / (alpha * alpha) + 1);
     CGAL::alpha_wrap_3(points, corners, alpha, offset, mesh, CGAL::parameters::default_values(),
                        CGAL::parameters::visitor(visitor));
-    *out = soup_of(mesh, soup, meter);
+    Owner made(soup_of(mesh, soup, meter));
+    if (origin != nullptr)
+      *origin = copy_list(nearest_faces(made.get(), triangles, meter), meter).release();
+    *out = made.release();
   });
 }
 

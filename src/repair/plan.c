@@ -52,6 +52,11 @@ static vxm_status check_options(vxm_repair_options *chosen, const vxm_repair_opt
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "repair: wrap %g, %g; both are fractions of the diagonal, 0 to 1", options->wrap_alpha,
                     options->wrap_offset);
+  if (options->wrap_alpha > 0 && (options->fill_holes != 0 || options->fill != VXM_FILL_FAN ||
+                                  options->unite || options->max_change > 0))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "repair: a wrap makes a new surface, without holes or parts to compare; leave out "
+                    "fill_holes, fill, unite and max_change");
   if (!(options->max_change >= 0) || !isfinite(options->max_change))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
                     options->max_change);
@@ -99,9 +104,9 @@ static vxm_status run_further(vxm_work *work, vxm_error *error) {
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{vxm_pass_unused, false}, {vxm_pass_wrap, false},       {vxm_pass_separation, true},
-                 {vxm_pass_closing, true}, {vxm_pass_small_parts, true}, {vxm_pass_union, false},
-                 {vxm_pass_apart, true},   {vxm_pass_unused, false}};
+  } further[] = {{vxm_pass_unused, false},     {vxm_pass_wrap, false},       {vxm_pass_separation, true},
+                 {vxm_pass_closing, true},     {vxm_pass_small_parts, true}, {vxm_pass_union, false},
+                 {vxm_pass_separation, false}, {vxm_pass_apart, true},       {vxm_pass_unused, false}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
   for (int i = 0; i < FURTHER && status == VXM_OK; i++) {
@@ -130,7 +135,7 @@ static vxm_status run_passes(vxm_work *work, vxm_error *error) {
 }
 
 static bool keeps_account(const vxm_repair_options *options) {
-  return options->part_changes || options->max_change > 0;
+  return options->part_changes || options->max_change > 0 || options->intersections;
 }
 
 static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, vxm_error *error) {
@@ -145,6 +150,8 @@ static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, vxm_error *err
     status = run_passes(work, error);
   if (status == VXM_OK && work->track)
     status = vxm_track_finish(work->track, work->soup, work->options.max_change, error);
+  if (status == VXM_OK && work->options.intersections)
+    status = vxm_track_count_crossings(work->track, work->soup, work->crossings, error);
   vxm_work_touch(work);
   vxm_track_destroy(work->track);
   vxm_free(work->context, work->used);
@@ -157,6 +164,8 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   report->open_parts = work->open_parts;
   report->unfilled_holes = work->unfilled;
   report->ununited_parts = work->ununited;
+  report->self_intersections_before = work->crossings[0];
+  report->self_intersections_after = work->crossings[1];
   for (size_t i = 0; i < work->soup->part_count; i++)
     report->moved = fmax(report->moved, work->soup->part_changes[i].moved);
   report->pass_count = VXM_PASS_COUNT;
@@ -170,7 +179,7 @@ vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_s
                           const vxm_repair_options *options, vxm_error *error) {
   *out = NULL;
   vxm_repair_report made = {0};
-  vxm_work work = {.context = in->context};
+  vxm_work work = {.context = in->context, .crossings = {-1, -1}};
   vxm_status status = check_options(&work.options, options, error);
   if (status == VXM_OK && report)
     status = vxm_soup_census(&made.before, in, error);

@@ -4,6 +4,7 @@
 #include "mesh/components.h"
 #include "mesh/part_state.h"
 #include "mesh/weld.h"
+#include "repair/crossings.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -19,6 +20,7 @@ struct vxm_track {
   uint32_t *into;          /**< per vertex of `in`: the one that it was merged into, or itself */
   double *settled, *later; /**< per part: largest distance until vertices lost their numbers, and since */
   int64_t *flipped;        /**< per part */
+  uint8_t *left;           /**< per part: not united */
 };
 
 static bool allocate(vxm_track *track, vxm_error *error) {
@@ -37,7 +39,9 @@ static bool allocate_parts(vxm_track *track, vxm_error *error) {
     track->later = vxm_calloc(track->context, track->part_count, sizeof *track->later, error);
   if (track->later)
     track->flipped = vxm_calloc(track->context, track->part_count, sizeof *track->flipped, error);
-  return track->flipped != NULL;
+  if (track->flipped)
+    track->left = vxm_calloc(track->context, track->part_count, sizeof *track->left, error);
+  return track->left != NULL;
 }
 
 static void label(vxm_track *track, vxm_soup *copy) {
@@ -89,6 +93,7 @@ vxm_status vxm_track_create(vxm_track **out, vxm_soup *copy, const vxm_soup *in,
 void vxm_track_destroy(vxm_track *track) {
   if (!track)
     return;
+  vxm_free(track->context, track->left);
   vxm_free(track->context, track->flipped);
   vxm_free(track->context, track->later);
   vxm_free(track->context, track->settled);
@@ -105,6 +110,12 @@ void vxm_track_merge(vxm_track *track, const uint32_t *map) {
 
 void vxm_track_turn(vxm_track *track, uint32_t part) {
   track->flipped[part]++;
+}
+
+bool vxm_track_leave(vxm_track *track, uint32_t part) {
+  bool known = track->left[part] != 0;
+  track->left[part] = 1;
+  return !known;
 }
 
 void vxm_track_settle(vxm_track *track, const vxm_soup *soup) {
@@ -160,7 +171,9 @@ static vxm_status measure(vxm_track *track, vxm_soup *soup, vxm_part_state *stat
     soup->part_changes[i] = (vxm_part_change){.before = states[i],
                                               .flipped = track->flipped[i],
                                               .moved = track->settled[i] + track->later[i],
-                                              .tag = UINT32_MAX};
+                                              .tag = UINT32_MAX,
+                                              .after = {.self_intersections = -1},
+                                              .ununited = track->left[i]};
   for (size_t f = track->in->face_count; status == VXM_OK && track->in->face_tags && f-- > 0;)
     soup->part_changes[track->face_part[f]].tag = track->in->face_tags[f];
   if (status != VXM_OK || !soup->face_parts) /* a wrap has no parts */
@@ -181,6 +194,26 @@ vxm_status vxm_track_finish(vxm_track *track, vxm_soup *soup, double max_change,
   soup->part_count = status == VXM_OK ? track->part_count : 0;
   if (status == VXM_OK && max_change > 0)
     status = check(soup, max_change, &local);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+vxm_status vxm_track_count_crossings(vxm_track *track, vxm_soup *soup, int64_t totals[2], vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_part_state *states = vxm_calloc(track->context, track->part_count, sizeof *states, &local);
+  vxm_status status = local.code;
+  if (status == VXM_OK)
+    status = vxm_crossings_count(&totals[0], states, track->part_count, track->face_part, track->in, &local);
+  for (size_t i = 0; status == VXM_OK && i < track->part_count; i++)
+    soup->part_changes[i].before.self_intersections = states[i].self_intersections;
+  bool parts = soup->face_parts != NULL;
+  if (status == VXM_OK)
+    status = vxm_crossings_count(&totals[1], parts ? states : NULL, track->part_count, soup->face_parts, soup,
+                                 &local);
+  for (size_t i = 0; status == VXM_OK && parts && i < track->part_count; i++)
+    soup->part_changes[i].after.self_intersections = states[i].self_intersections;
+  vxm_free(track->context, states);
   if (status != VXM_OK && error)
     *error = local;
   return status;

@@ -22,6 +22,8 @@ void vxm_track_turn(vxm_track *track, uint32_t part);
 void vxm_track_settle(vxm_track *track, const vxm_soup *soup);
 /** A vertex of a part is moved after that. */
 void vxm_track_move(vxm_track *track, uint32_t part, double distance);
+/** A part was to be united and could not be; false if that was known. */
+bool vxm_track_leave(vxm_track *track, uint32_t part);
 /**
  * Fills soup->part_changes.
  *
@@ -29,5 +31,7 @@ void vxm_track_move(vxm_track *track, uint32_t part, double distance);
  * @return VXM_OK; VXM_ERROR_UNREACHED if a part changed by more; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
 vxm_status vxm_track_finish(vxm_track *track, vxm_soup *soup, double max_change, vxm_error *error);
+/** Then counts self-intersections, by part and in all: before and after. */
+vxm_status vxm_track_count_crossings(vxm_track *track, vxm_soup *soup, int64_t totals[2], vxm_error *error);
 
 #endif

@@ -40,7 +40,8 @@ typedef struct vxm_work {
   int64_t nonorientable; /**< patches, in the last pass of orientation */
   int64_t open_parts;    /**< that the last pass of closing left open */
   int64_t unfilled;      /**< holes that were to be filled and could not be */
-  int64_t ununited;      /**< parts that were to be united and could not be */
+  int64_t ununited;      /**< parts that were to be united and still cut through themselves or others */
+  int64_t crossings[2];  /**< self-intersections before and after, or -1 */
   vxm_track *track;      /**< what becomes of the parts, or NULL */
 } vxm_work;
 

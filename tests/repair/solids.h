@@ -7,6 +7,7 @@
 
 #include "mesh/census.h"
 #include "repair/cgal.h"
+#include "repair/separate.h"
 
 #include <math.h>
 
@@ -165,6 +166,15 @@ static inline void assert_solid(const vxm_soup *soup) {
   assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
   assert_true(census.closed);
   assert_int_equal(count_meetings(soup), 0);
+}
+
+/** The same once edges with four faces are parted, which a union leaves where it touches itself. */
+static inline void assert_united(const vxm_soup *soup) {
+  vxm_soup *apart;
+  int64_t split, stitched;
+  assert_int_equal(vxm_separate(&apart, &split, &stitched, soup, NULL), VXM_OK);
+  assert_solid(apart);
+  vxm_soup_destroy(apart);
 }
 
 #endif

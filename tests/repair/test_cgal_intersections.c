@@ -298,7 +298,7 @@ static void not_finite(void **state) {
     assert_int_equal(cgal->fill(&out, NULL, &filled, &left, soup, 0, NULL), VXM_ERROR_ARGUMENT);
     assert_int_equal(cgal->unite(&out, NULL, NULL, soup, NULL), VXM_ERROR_ARGUMENT);
     assert_int_equal(cgal->orient(&out, &turned, soup, NULL), VXM_ERROR_ARGUMENT);
-    assert_int_equal(cgal->wrap(&out, soup, 0.1, 0.1, NULL), VXM_ERROR_ARGUMENT);
+    assert_int_equal(cgal->wrap(&out, NULL, soup, 0.1, 0.1, NULL), VXM_ERROR_ARGUMENT);
     assert_null(out);
     vxm_soup_destroy(soup);
   }

@@ -17,7 +17,7 @@ static double check_union(vxm_soup *soup, int64_t parts, int64_t united, vxm_sou
   vxm_union_report report;
   uint64_t *origin;
   vxm_soup *out = unite(soup, &origin, &report);
-  assert_solid(out);
+  assert_united(out);
   assert_int_equal(report.parts, parts);
   assert_int_equal(report.united, united);
   assert_int_equal(report.failed, 0);
@@ -112,7 +112,7 @@ static void boxes_on_a_lattice(void **state) {
     uint64_t *origin;
     vxm_union_report report;
     vxm_soup *out = unite(soup, &origin, &report);
-    assert_solid(out);
+    assert_united(out);
     assert_int_equal(report.parts, count);
     assert_int_equal(report.failed, 0);
     double volume = 0, area = 0;
@@ -375,7 +375,7 @@ static void check_voxels(const vxm_soup *soup, const vxm_soup *out, double voxel
 static void check_against_voxels(vxm_soup *soup, int64_t parts, double voxels_off) {
   vxm_union_report report;
   vxm_soup *out = unite(soup, NULL, &report);
-  assert_solid(out);
+  assert_united(out);
   assert_int_equal(report.parts, parts);
   assert_int_equal(report.failed, 0);
   check_voxels(soup, out, voxels_off);
@@ -476,7 +476,7 @@ static void crossing_parts(void **state) {
     }
     vxm_union_report report;
     vxm_soup *out = unite(soup, NULL, &report);
-    assert_solid(out);
+    assert_united(out);
     assert_int_equal(report.failed, 0);
     assert_true(volume_of(out) > 0);
     vxm_soup_destroy(out);
@@ -512,7 +512,7 @@ static void a_loop(void **state) {
   double whole = volume_of(soup);
   vxm_union_report report;
   out = unite(soup, NULL, &report);
-  assert_solid(out);
+  assert_united(out);
   assert_int_equal(report.crossing, 1);
   assert_int_equal(report.united, 0);
   assert_true(fabs(volume_of(out) - (whole - 8)) < 1e-9);

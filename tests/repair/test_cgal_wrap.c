@@ -9,7 +9,7 @@
 static vxm_soup *wrap(const vxm_soup *soup, double alpha, double offset) {
   vxm_soup *out;
   vxm_error error = VXM_ERROR_INIT;
-  if (cgal->wrap(&out, soup, alpha, offset, &error) != VXM_OK)
+  if (cgal->wrap(&out, NULL, soup, alpha, offset, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return out;
 }
@@ -112,17 +112,17 @@ static void arguments(void **state) {
   (void)state;
   vxm_soup *soup = new_soup(context), *out;
   vxm_error error = VXM_ERROR_INIT;
-  assert_int_equal(cgal->wrap(&out, soup, 1, 1, &error), VXM_ERROR_EMPTY);
+  assert_int_equal(cgal->wrap(&out, NULL, soup, 1, 1, &error), VXM_ERROR_EMPTY);
   add_vertex(soup, 0, 0, 0);
   add_vertex(soup, 1, 0, 0);
   add_vertex(soup, 2, 0, 0);
   add_triangle(soup, 0, 1, 2);
-  assert_int_equal(cgal->wrap(&out, soup, 1, 1, &error), VXM_ERROR_EMPTY);
+  assert_int_equal(cgal->wrap(&out, NULL, soup, 1, 1, &error), VXM_ERROR_EMPTY);
   add_cuboid(soup, 0, 0, 0, 1, 1, 1);
   const double bad[4] = {0, -1, NAN, INFINITY};
   for (int i = 0; i < 4; i++) {
-    assert_int_equal(cgal->wrap(&out, soup, bad[i], 1, &error), VXM_ERROR_ARGUMENT);
-    assert_int_equal(cgal->wrap(&out, soup, 1, bad[i], &error), VXM_ERROR_ARGUMENT);
+    assert_int_equal(cgal->wrap(&out, NULL, soup, bad[i], 1, &error), VXM_ERROR_ARGUMENT);
+    assert_int_equal(cgal->wrap(&out, NULL, soup, 1, bad[i], &error), VXM_ERROR_ARGUMENT);
   }
   vxm_soup_destroy(soup);
 }
@@ -136,12 +136,12 @@ static void what_would_fit(void **state) {
   vxm_soup *soup = new_soup(owner), *out;
   add_cuboid(soup, 0, 0, 0, 1, 1, 1);
   vxm_error error = VXM_ERROR_INIT;
-  assert_int_equal(cgal->wrap(&out, soup, 1e-4, 1e-5, &error), VXM_ERROR_MEMORY_LIMIT);
+  assert_int_equal(cgal->wrap(&out, NULL, soup, 1e-4, 1e-5, &error), VXM_ERROR_MEMORY_LIMIT);
   const char *told = strstr(error.text, "; alpha ");
   assert_non_null(told);
   double fits = strtod(told + strlen("; alpha "), NULL);
   assert_true(fits > 1e-3 && fits < 0.5);
-  if (cgal->wrap(&out, soup, fits, fits / 20, &error) != VXM_OK)
+  if (cgal->wrap(&out, NULL, soup, fits, fits / 20, &error) != VXM_OK)
     fail_msg("%s", error.text);
   assert_solid(out);
   assert_true(vxm_context_peak_bytes(owner) <= options.memory_limit);
@@ -166,7 +166,7 @@ static void cancelled(void **state) {
   assert_int_equal(vxm_context_create(&owner, &options, NULL), VXM_OK);
   vxm_soup *soup = new_soup(owner), *out;
   add_ball(soup, (double[]){0, 0, 0}, 1, 12, &upright, false);
-  assert_int_equal(cgal->wrap(&out, soup, 0.01, 0.001, NULL), VXM_ERROR_CANCELLED);
+  assert_int_equal(cgal->wrap(&out, NULL, soup, 0.01, 0.001, NULL), VXM_ERROR_CANCELLED);
   assert_null(out);
   assert_int_equal(calls, 6);
   vxm_soup_destroy(soup);
