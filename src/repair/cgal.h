@@ -81,7 +81,7 @@ typedef struct vxm_cgal {
   /**
    * A closed, oriented, 2-manifold surface around any soup: alpha and offset in model units, both > 0. Also
    * VXM_ERROR_EMPTY if no face has an area, and VXM_ERROR_MEMORY_LIMIT, before anything is done, if the size
-   * of the result can be told to be too large; the message has an alpha that would fit. Here `origin` is the
+   * of the result can be told to be too large; the message says how much larger an alpha would fit. Here `origin` is the
    * face of the input that lies nearest to the middle of each face.
    */
   vxm_status (*wrap)(vxm_soup **out, uint64_t **origin, const vxm_soup *soup, double alpha, double offset,

@@ -120,10 +120,11 @@ void check_size(double area, double alpha, Meter &meter) {
   if (bytes <= room)
     return;
   double fits = std::sqrt(FACETS * BYTES * area / room);
-  check(vxm_fail(
-      meter.error(), VXM_ERROR_MEMORY_LIMIT,
-      "wrapping with alpha %.3g may need %.3g GB of memory, and there are %.3g; alpha %.3g would fit", alpha,
-      bytes * 1e-9, room * 1e-9, 1.05 * fits));
+  check(vxm_fail(meter.error(), VXM_ERROR_MEMORY_LIMIT,
+                 "wrapping as finely as that may need %.3g GB of memory, and there are %.3g; an alpha %.3g "
+                 "times as large "
+                 "would fit",
+                 bytes * 1e-9, room * 1e-9, 1.05 * fits / alpha));
 }
 
 vxm_soup *soup_of(const Mesh &mesh, const vxm_soup *like, Meter &meter) {

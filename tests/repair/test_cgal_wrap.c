@@ -92,6 +92,52 @@ static void a_torn_ball(void **state) {
   vxm_soup_destroy(ball);
 }
 
+/** Each face of the skin is told the face of the soup that is nearest to its middle. */
+static void what_lies_beneath(void **state) {
+  (void)state;
+  vxm_soup *soup = new_soup(context), *out;
+  add_cuboid(soup, 0, 0, 0, 1, 1, 1);
+  add_cuboid(soup, 5, 0, 0, 6, 1, 1);
+  uint64_t *nearest;
+  assert_int_equal(cgal->wrap(&out, &nearest, soup, 0.3, 0.02, NULL), VXM_OK);
+  assert_true(out->face_count > 100);
+  bool seen[24] = {false};
+  for (size_t f = 0; f < out->face_count; f++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(out, f, &n);
+    double middle[3] = {0, 0, 0}, least = 100, of_nearest = 100;
+    for (size_t c = 0; c < 3; c++)
+      for (int i = 0; i < 3; i++)
+        middle[i] += vxm_position(out, corner[c])[i] / 3;
+    assert_true(nearest[f] < soup->face_count);
+    /* the two triangles of a side lie in one plane: distances to the planes' rectangles */
+    for (size_t g = 0; g < soup->face_count; g += 2) {
+      double low[3], high[3], square = 0;
+      for (int i = 0; i < 3; i++) {
+        low[i] = 100;
+        high[i] = -100;
+        for (size_t c = 0; c < 6; c++) {
+          double x = vxm_position(soup, soup->indices[3 * g + c])[i];
+          low[i] = fmin(low[i], x);
+          high[i] = fmax(high[i], x);
+        }
+        double off = fmax(0, fmax(low[i] - middle[i], middle[i] - high[i]));
+        square += off * off;
+      }
+      least = fmin(least, square);
+      if (nearest[f] / 2 == g / 2)
+        of_nearest = square;
+    }
+    assert_true(of_nearest <= least + 1e-12);
+    seen[nearest[f]] = true;
+  }
+  for (int g = 0; g < 24; g++)
+    assert_true(seen[g]);
+  vxm_free(context, nearest);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+}
+
 static void far_apart(void **state) {
   (void)state;
   vxm_soup *soup = new_soup(context);
@@ -137,9 +183,9 @@ static void what_would_fit(void **state) {
   add_cuboid(soup, 0, 0, 0, 1, 1, 1);
   vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(cgal->wrap(&out, NULL, soup, 1e-4, 1e-5, &error), VXM_ERROR_MEMORY_LIMIT);
-  const char *told = strstr(error.text, "; alpha ");
+  const char *told = strstr(error.text, "an alpha ");
   assert_non_null(told);
-  double fits = strtod(told + strlen("; alpha "), NULL);
+  double fits = 1e-4 * strtod(told + strlen("an alpha "), NULL);
   assert_true(fits > 1e-3 && fits < 0.5);
   if (cgal->wrap(&out, NULL, soup, fits, fits / 20, &error) != VXM_OK)
     fail_msg("%s", error.text);
@@ -201,8 +247,9 @@ int main(void) {
   if (!open_cgal())
     return 77;
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_torn_ball),    cmocka_unit_test(far_apart), cmocka_unit_test(arguments),
-      cmocka_unit_test(what_would_fit), cmocka_unit_test(cancelled), cmocka_unit_test(shared_meshes),
+      cmocka_unit_test(a_torn_ball),   cmocka_unit_test(what_lies_beneath), cmocka_unit_test(far_apart),
+      cmocka_unit_test(arguments),     cmocka_unit_test(what_would_fit),    cmocka_unit_test(cancelled),
+      cmocka_unit_test(shared_meshes),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
