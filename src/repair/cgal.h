@@ -23,10 +23,10 @@ typedef struct vxm_face_pairs {
 } vxm_face_pairs;
 
 typedef struct vxm_union_report {
-  int64_t parts;    /**< closed components that came in */
-  int64_t united;   /**< of them, those that were joined with another one, or lay inside one */
-  int64_t crossing; /**< of them, those that only cut through themselves, and do no more */
-  int64_t failed;   /**< those that are in the result as they were although they should not be */
+  int64_t parts;  /**< closed components that came in */
+  int64_t united; /**< of them, those that were joined with another one, or lay inside one */
+  int64_t cut;    /**< of the others, those that were cut along where they meet themselves or touch another */
+  int64_t failed; /**< those that are in the result as they were although they should not be */
   uint64_t *
       failed_faces; /**< one face of the input for each failed part; a block of the soup's context, or NULL */
 } vxm_union_report;
@@ -81,8 +81,8 @@ typedef struct vxm_cgal {
   /**
    * A closed, oriented, 2-manifold surface around any soup: alpha and offset in model units, both > 0. Also
    * VXM_ERROR_EMPTY if no face has an area, and VXM_ERROR_MEMORY_LIMIT, before anything is done, if the size
-   * of the result can be told to be too large; the message says how much larger an alpha would fit. Here `origin` is the
-   * face of the input that lies nearest to the middle of each face.
+   * of the result can be told to be too large; the message says how much larger an alpha would fit. Here
+   * `origin` is the face of the input that lies nearest to the middle of each face.
    */
   vxm_status (*wrap)(vxm_soup **out, uint64_t **origin, const vxm_soup *soup, double alpha, double offset,
                      vxm_error *error);

@@ -63,7 +63,7 @@ private:
     out_.of_face.resize(soup_->face_count);
     size_t count = 0;
     check(vxm_components(meter_.context(), soup_, nullptr, out_.of_face.data(), &count, meter_.error()));
-    out_.parts.assign(count, Part{false, 0, false, 0, UINT64_MAX, 0});
+    out_.parts.assign(count, Part{false, 0, 0, UINT64_MAX, 0});
     for (size_t f = soup_->face_count; f-- > 0;)
       out_.parts[out_.of_face[f]].first_face = f;
   }
@@ -155,8 +155,6 @@ private:
     find_meetings(triangles_.points, corners_, meter_, [&](uint32_t first, uint32_t second) {
       uint32_t t = solid_[first], u = solid_[second];
       meeting_.insert(part_of(t));
-      if (part_of(t) == part_of(u))
-        out_.parts[part_of(t)].crossing = true;
       touch(part_of(t), part_of(u));
       return true;
     });

@@ -11,9 +11,8 @@ constexpr uint32_t NO_PART = UINT32_MAX;
 
 /** A component of the soup: faces connected by vertices. */
 struct Part {
-  bool closed;   /**< every edge is passed as often in either direction */
-  int sign;      /**< 1: wound outward, -1: inward, 0: bounds no volume or is not closed */
-  bool crossing; /**< it meets itself elsewhere than at its edges */
+  bool closed; /**< every edge is passed as often in either direction */
+  int sign;    /**< 1: wound outward, -1: inward, 0: bounds no volume or is not closed */
   uint32_t group;
   uint64_t first_face; /**< of the soup */
   double volume;       /**< absolute */

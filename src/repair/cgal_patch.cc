@@ -7,6 +7,7 @@
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -25,6 +26,9 @@ using Face = Mesh::Face_index;
 /* The search through all triangulations takes the cube of the length; beyond this only Delaunay triangles are
  * tried. */
 constexpr size_t CUBIC = 300;
+/* The equations of fairing are solved in one go, which cannot be stopped: more new points stay where they
+ * are. */
+constexpr size_t FAIRED = 50000;
 
 Mesh mesh_of(const Surroundings &around) {
   Mesh mesh;
@@ -73,6 +77,45 @@ bool are_finite(const std::vector<Position> &points) {
   return true;
 }
 
+/**
+ * Cotangents of the angles opposite to an edge, held within bounds for slivers, over the area about a vertex
+ * (a third of its faces). CGAL's own weights look at the whole mesh for each edge where its checks are on.
+ */
+class Weights {
+public:
+  explicit Weights(const Mesh &mesh) : mesh_(&mesh) {
+  }
+  double w_i(Vertex v) const {
+    double area = 0;
+    for (Mesh::Halfedge_index h : mesh_->halfedges_around_target(mesh_->halfedge(v)))
+      if (!mesh_->is_border(h))
+        area += std::sqrt(CGAL::squared_area(point(mesh_->source(h)), point(v),
+                                             point(mesh_->target(mesh_->next(h))))) /
+                3;
+    return area > 0 ? 0.5 / area : 0;
+  }
+  double w_ij(Mesh::Halfedge_index h) const {
+    return cotangent(h) + cotangent(mesh_->opposite(h));
+  }
+
+private:
+  const Kernel::Point_3 &point(Vertex v) const {
+    return mesh_->point(v);
+  }
+  /** Of the angle opposite to a side; 0 at a border. */
+  double cotangent(Mesh::Halfedge_index h) const {
+    if (mesh_->is_border(h))
+      return 0;
+    const Kernel::Point_3 &tip = point(mesh_->target(mesh_->next(h)));
+    Kernel::Vector_3 a = point(mesh_->source(h)) - tip, b = point(mesh_->target(h)) - tip;
+    double along = a * b, area = std::sqrt(CGAL::cross_product(a, b).squared_length());
+    return area > 0 ? std::max(-STEEPEST, std::min(STEEPEST, along / area)) : 0;
+  }
+
+  static constexpr double STEEPEST = 100; /* an angle of half a degree */
+  const Mesh *mesh_;
+};
+
 void fill(Mesh *mesh, Mesh::Halfedge_index border, size_t rim, Patch *out) {
   std::vector<Face> faces;
   pmp::triangulate_hole(*mesh, border, std::back_inserter(faces),
@@ -95,7 +138,8 @@ void fill(Mesh *mesh, Mesh::Halfedge_index border, size_t rim, Patch *out) {
     return;
   out->refined = corners_of(*mesh, faces, number);
   out->flat = flat;
-  if (!pmp::fair(*mesh, fresh, named::fairing_continuity(1U)))
+  if (fresh.size() > FAIRED ||
+      !pmp::fair(*mesh, fresh, named::weight_calculator(Weights(*mesh)).fairing_continuity(1U)))
     return;
   std::vector<Position> faired = positions(*mesh, fresh);
   if (are_finite(faired))

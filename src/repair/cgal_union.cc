@@ -51,6 +51,9 @@ public:
   bool altered(uint32_t part) const {
     return altered_[part];
   }
+  bool rebuilt(uint32_t part) const {
+    return fates_[parts_.parts[part].group] == Fate::rebuilt;
+  }
   bool failed(uint32_t part) const {
     return fates_[parts_.parts[part].group] == Fate::failed;
   }
@@ -202,7 +205,7 @@ public:
     std::vector<uint64_t> failed;
     for (const Known &part : known_) {
       report->parts += part.closed;
-      report->crossing += part.crossing && !part.united && !part.failed;
+      report->cut += part.rebuilt && !part.united && !part.failed;
       report->united += part.united && !part.failed;
       if (part.failed)
         failed.push_back(part.first_face);
@@ -220,14 +223,14 @@ private:
 
   /** What is known of a part of the input. */
   struct Known {
-    bool closed, crossing, united, failed;
+    bool closed, rebuilt, united, failed;
     uint64_t first_face;
   };
 
   void start(const Parts &parts) {
     of_face_ = parts.of_face;
     for (const Part &part : parts.parts)
-      known_.push_back({part.closed, part.crossing, false, false, part.first_face});
+      known_.push_back({part.closed, false, false, false, part.first_face});
   }
 
   /** Nothing was there to be done. */
@@ -242,6 +245,7 @@ private:
       uint32_t part = parts.of_face[f];
       Known *known = &known_[of_face_[origin_[f]]];
       known->failed = known->failed || step.failed(part);
+      known->rebuilt = known->rebuilt || step.rebuilt(part);
       known->united = known->united || (step.altered(part) && united(parts, part));
     }
   }

@@ -106,6 +106,7 @@ static vxm_status run_further(vxm_work *work, vxm_error *error) {
     bool turns; /**< what it changes may be turned otherwise */
   } further[] = {{vxm_pass_unused, false},     {vxm_pass_wrap, false},       {vxm_pass_separation, true},
                  {vxm_pass_closing, true},     {vxm_pass_small_parts, true}, {vxm_pass_union, false},
+                 {vxm_pass_separation, false}, {vxm_pass_apart, true},       {vxm_pass_reunion, false},
                  {vxm_pass_separation, false}, {vxm_pass_apart, true},       {vxm_pass_unused, false}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;

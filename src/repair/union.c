@@ -46,7 +46,8 @@ static void tell(leaving *l, const vxm_soup *soup) {
       work->ununited += vxm_track_leave(work->track, parts[l->origin[f]]);
 }
 
-/** Counts and names the parts that were left: those of the mesh as it was read, if they are followed. */
+/** Counts and names the parts that were left: those of the mesh as it was read, if they are followed. What is
+ * open or bounds no volume is among them if it cuts through something. */
 static vxm_status find_left(vxm_work *work, const vxm_soup *soup, const uint64_t *origin,
                             const vxm_union_report *report, vxm_error *error) {
   leaving l = {.work = work, .origin = origin};
@@ -67,39 +68,43 @@ static vxm_status find_left(vxm_work *work, const vxm_soup *soup, const uint64_t
   return status;
 }
 
-/** Whether a component has an edge that its faces do not pass as often in one direction as in the other. */
-static bool has_open(const vxm_work *work) {
-  for (size_t e = 0; e < work->edges.count; e++)
-    if (work->edges.edges[e].count != 2 * work->edges.edges[e].forward)
-      return true;
-  return false;
+static bool is_asked_for(const vxm_work *work) {
+  return (work->options.unite || vxm_work_reaches(work, VXM_LEVEL_SOLID)) && !(work->options.wrap_alpha > 0);
 }
 
 /** Unites the closed parts that cut through each other. Open ones have no inside: they stay as they are. */
 vxm_status vxm_pass_union(vxm_work *work, bool *changed, vxm_error *error) {
   *changed = false;
-  if ((!work->options.unite && !vxm_work_reaches(work, VXM_LEVEL_SOLID)) || work->options.wrap_alpha > 0)
+  if (!is_asked_for(work))
     return VXM_OK;
   const vxm_cgal *cgal;
   vxm_soup *soup;
   uint64_t *origin;
   vxm_union_report report;
-  vxm_status status = vxm_work_edges(work, error);
-  if (status == VXM_OK)
-    status = vxm_cgal_open(&cgal, "uniting parts", error);
+  vxm_status status = vxm_cgal_open(&cgal, "uniting parts", error);
   if (status == VXM_OK)
     status = cgal->unite(&soup, &origin, &report, work->soup, error);
   if (status != VXM_OK)
     return status;
-  if (report.failed > 0 || has_open(work))
-    status = find_left(work, soup, origin, &report, error);
+  status = find_left(work, soup, origin, &report, error);
   vxm_free(work->context, report.failed_faces);
-  *changed = report.united > 0 || report.crossing > 0;
+  *changed = report.united > 0 || report.cut > 0;
   if (status == VXM_OK && *changed) {
-    work->counts[VXM_PASS_UNION] += report.united + report.crossing;
+    work->counts[VXM_PASS_UNION] += report.united + report.cut;
     return vxm_work_adopt(work, soup, origin, error);
   }
   vxm_soup_destroy(soup);
   vxm_free(work->context, origin);
   return status;
+}
+
+/** Once more where vertices were moved apart after that: into what lies nearer still, as beside slivers. */
+vxm_status vxm_pass_reunion(vxm_work *work, bool *changed, vxm_error *error) {
+  *changed = false;
+  if (!is_asked_for(work) || work->counts[VXM_PASS_APART] == 0 || work->ununited > 0)
+    return VXM_OK;
+  vxm_face_pairs pairs;
+  vxm_status status = vxm_crossings_find(&pairs, work->soup, 1, error);
+  vxm_free(work->context, pairs.pairs);
+  return status == VXM_OK && pairs.count > 0 ? vxm_pass_union(work, changed, error) : status;
 }

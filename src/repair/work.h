@@ -61,6 +61,7 @@ vxm_status vxm_pass_separation(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_small_parts(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_union(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_reunion(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_apart(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_unused(vxm_work *work, bool *changed, vxm_error *error);
 

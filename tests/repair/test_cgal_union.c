@@ -224,7 +224,7 @@ static void apart(void **state) {
   for (size_t f = 0; f < out->face_count; f++)
     assert_int_equal(origin[f], f);
   assert_int_equal(report.parts, 1000);
-  assert_int_equal(report.united + report.failed + report.crossing, 0);
+  assert_int_equal(report.united + report.failed + report.cut, 0);
   vxm_free(context, origin);
   vxm_soup_destroy(out);
   vxm_soup_destroy(soup);
@@ -513,7 +513,7 @@ static void a_loop(void **state) {
   vxm_union_report report;
   out = unite(soup, NULL, &report);
   assert_united(out);
-  assert_int_equal(report.crossing, 1);
+  assert_int_equal(report.cut, 1);
   assert_int_equal(report.united, 0);
   assert_true(fabs(volume_of(out) - (whole - 8)) < 1e-9);
   vxm_soup_destroy(out);
