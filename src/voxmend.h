@@ -327,7 +327,11 @@ typedef struct vxm_repair_report {
                              which have no inside, and those where the union failed */
   int64_t self_intersections_before, self_intersections_after; /**< pairs of faces, counted up to 4194304;
                                                                   -1 = not looked for */
-  double moved; /**< largest distance that a vertex was moved, model units; not by a wrap or union */
+  int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
+                                positions are too coarse for the faces about them */
+  int64_t opened_parts;      /**< closed before, open after; with options.part_changes, else 0 */
+  double moved;              /**< no vertex was moved farther, model units; not by a wrap or union. With
+                                options.part_changes, else 0 */
   vxm_census before, after;
 } vxm_repair_report;
 
@@ -363,7 +367,7 @@ typedef struct vxm_part_state {
 typedef struct vxm_part_change {
   vxm_part_state before, after; /**< after: of all faces that come from this part; none after a wrap */
   int64_t flipped;              /**< faces that were turned */
-  double moved;                 /**< largest distance that one of its vertices was moved, model units */
+  double moved;                 /**< none of its vertices was moved farther, model units */
   uint32_t tag;                 /**< of its first face; UINT32_MAX if there are no tags */
   bool ununited;                /**< it counts among vxm_repair_report.ununited_parts */
 } vxm_part_change;
@@ -385,7 +389,9 @@ typedef struct vxm_verification {
   struct {
     const char *what; /**< fixed name such as "boundary_edges" or a pass that would still change something */
     int64_t count;
-    int64_t element; /**< the first one: a vertex, or for faces and edges a face; -1 = none to tell */
+    int64_t element; /**< the first one: a vertex, or for faces and edges a face, with its number in the mesh
+                        that is verified, which is that of the file; -1 = none to tell */
+    bool placed;     /**< whether `at` is known */
     double at[3];    /**< where that is, model units */
   } remains[VXM_REMAINS_MAX];
 } vxm_verification;
@@ -750,7 +756,7 @@ VXM_API vxm_status vxm_model_voxelize(vxm_grid *grid, vxm_voxelize_report *repor
 
 /** What voxelizing a model into a file takes. */
 typedef struct vxm_estimate {
-  uint64_t grid_bytes;   /**< one bit per voxel */
+  uint64_t grid_bytes;   /**< one bit per voxel; of a field, its values */
   uint64_t memory_bytes; /**< held at most, beyond what the context holds already */
   int64_t windows;       /**< ranges of slices that are made and written one after another; 1 = all at once */
 } vxm_estimate;
@@ -811,6 +817,12 @@ VXM_API vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_mod
                                             const vxm_space *space, const char *path,
                                             const vxm_coverage_options *options, vxm_error *error);
 
+/** Estimates vxm_model_write_coverage, as vxm_model_estimate does; what a .vdb holds until it is written
+ * follows the surface, and is not counted. */
+VXM_API vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model,
+                                               const vxm_space *space, const char *path,
+                                               const vxm_coverage_options *options, vxm_error *error);
+
 typedef struct vxm_distance_options {
   uint32_t version;   /**< 1 */
   bool is_unsigned;   /**< false = negative where the centre is inside the solid */
@@ -828,10 +840,11 @@ typedef struct vxm_distance_report {
 } vxm_distance_report;
 
 /**
- * Computes the distance from the centre of each voxel to the faces of the mesh, in model units: exact within
- * the band, to some 1e-6 voxel and the rounding of a 32-bit float; beyond it, plus or minus the width of the
- * band, which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With
- * a band, time follows surface times band, beside that of the solid.
+ * Computes the distance from the centre of each voxel to the faces of the mesh, in model units. Within the
+ * band it is exact: off by some 1e-14 of the distance and the longest edges, and then rounded to the nearest
+ * 32-bit float (which holds 1e-5 voxel up to 168 voxels). Beyond, it is plus or minus the width of the band,
+ * which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With a
+ * band, time follows surface times band, beside that of the solid.
  *
  * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
  * @param report  may be NULL
@@ -849,6 +862,12 @@ VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report
 VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
+
+/** Estimates vxm_model_write_distance, as vxm_model_estimate does; what a .vdb holds until it is written
+ * follows the surface, and is not counted. */
+VXM_API vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_model *model,
+                                               const vxm_space *space, const char *path,
+                                               const vxm_distance_options *options, vxm_error *error);
 
 /* ---- Labels: which part, group or material a voxel belongs to ---- */
 

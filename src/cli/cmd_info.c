@@ -6,8 +6,7 @@ enum { KEY_LOCATE = CLI_KEY_COMMAND, KEY_LIST, KEY_INTERSECTIONS };
 
 static const cli_option known_options[] = {
     {KEY_LOCATE, "locate", "FILE.ply", "show what is wrong, in colour on the mesh; for one mesh"},
-    {KEY_LIST, "list", "N",
-     "list what is wrong in the report, up to N of each kind, with indices and\ncoordinates"},
+    {KEY_LIST, "list", "N", "list what is wrong, up to N of each kind, with indices and coordinates"},
     {KEY_INTERSECTIONS, "intersections", NULL,
      "count faces that cut through others, and show them with --locate and\n--list (CGAL)"},
     CLI_OPTION_DEFLECTION,
@@ -22,7 +21,7 @@ static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mes
   if (found->intersections >= 0)
     json_object_set_new(object, "self_intersections", json_integer(found->intersections));
   if (found->list)
-    json_object_set_new(object, "defects", found->list);
+    json_object_set(object, "defects", found->list);
   json_object_set(object, "warnings", cli->warnings);
   return object;
 }
@@ -55,8 +54,11 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
         fputc('\n', cli->text);
       describe(cli, path, mesh, &census, &found);
     }
+    if (cli_summary(cli))
+      cli_defects_print(cli, found.list);
     json_array_append_new(reports, describe_json(cli, path, mesh, &census, &found));
   }
+  json_decref(found.list);
   vxm_mesh_destroy(mesh);
   return status;
 }
@@ -78,7 +80,7 @@ static int read_arguments(cli_run *cli, cli_defects *wanted) {
     return cli_usage(cli, "a mesh is missing");
   if (wanted->locate && cli->argument_count > 1)
     return cli_usage(cli, "--locate is for one mesh, not %d", cli->argument_count);
-  return cli_defects_check(cli, wanted, NULL);
+  return cli_defects_check(cli, wanted, cli->arguments[0], NULL);
 }
 
 static int run(cli_run *cli) {

@@ -46,9 +46,16 @@ static int flush_output(cli_run *cli, int status) {
              : status;
 }
 
+static void remove_file(const char *path) {
+  struct stat info;
+  if (path && lstat(path, &info) == 0 && S_ISREG(info.st_mode))
+    unlink(path);
+}
+
 /** A failed run leaves no output file, not even one that was complete, nor the .json beside it. */
 static void remove_output(const cli_run *cli) {
   struct stat info;
+  remove_file(cli->located);
   if (!cli->made || lstat(cli->made, &info) != 0 || !S_ISREG(info.st_mode))
     return;
   unlink(cli->made);

@@ -49,10 +49,10 @@ static json_t *verification_json(const repair_outcome *outcome) {
     json_t *one = json_object();
     json_object_set_new(one, "what", json_string(found->remains[i].what));
     json_object_set_new(one, "count", json_integer(found->remains[i].count));
-    if (found->remains[i].element >= 0) {
+    if (found->remains[i].element >= 0)
       json_object_set_new(one, "first", json_integer(found->remains[i].element));
+    if (found->remains[i].placed)
       json_object_set_new(one, "at", cli_json_numbers(found->remains[i].at, 3));
-    }
     json_array_append_new(remains, one);
   }
   json_object_set_new(object, "level", json_string(repair_levels[outcome->level]));
@@ -72,13 +72,15 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
     json_object_set_new(after, "self_intersections", json_integer(repair->self_intersections_after));
   }
   json_object_set_new(report, "input", cli_json_text(input));
-  json_object_set_new(report, "output", cli_json_text(output));
+  json_object_set_new(report, "output", output ? cli_json_text(output) : json_null());
   json_object_set_new(report, "verified", verification_json(outcome));
   json_object_set_new(report, "passes", cli_passes_json(repair));
   json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));
   json_object_set_new(report, "open_parts", json_integer(repair->open_parts));
   json_object_set_new(report, "unfilled_holes", json_integer(repair->unfilled_holes));
   json_object_set_new(report, "ununited_parts", json_integer(repair->ununited_parts));
+  json_object_set_new(report, "unparted_vertices", json_integer(repair->unparted_vertices));
+  json_object_set_new(report, "opened_parts", json_integer(repair->opened_parts));
   json_object_set_new(report, "moved", cli_json_number(repair->moved));
   json_object_set_new(report, "before", before);
   json_object_set_new(report, "after", after);
@@ -175,10 +177,16 @@ void repair_warn_ununited(cli_run *cli, const char *input, const repair_outcome 
 
 void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome) {
   (void)cli;
+  if (outcome->repair.unparted_vertices > 0)
+    fprintf(stream,
+            "  %" PRId64
+            " vertices share positions and could not be moved apart: the numbers of the file are too coarse\n"
+            "  there; write another format than .stl, or move the model to the origin\n",
+            outcome->repair.unparted_vertices);
   const vxm_verification *found = &outcome->verification;
   for (int i = 0; i < found->count; i++) {
     fprintf(stream, "  %-26s %12" PRId64, found->remains[i].what, found->remains[i].count);
-    if (found->remains[i].element >= 0)
+    if (found->remains[i].placed)
       fprintf(stream, "  the first at %.6g %.6g %.6g", found->remains[i].at[0], found->remains[i].at[1],
               found->remains[i].at[2]);
     fputc('\n', stream);
@@ -193,6 +201,7 @@ void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
   summarize_passes(cli, &outcome->repair);
   summarize_parts(cli, outcome->mesh);
   summarize_rest(cli, &outcome->repair);
+  cli_defects_print(cli, outcome->found.list);
   fprintf(cli->text, "\nLevel %s: %s\n", repair_levels[outcome->level],
           outcome->verification.reached ? "verified in the file as it was read back" : "not reached");
   repair_say_remains(cli, cli->text, outcome);

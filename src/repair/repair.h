@@ -36,4 +36,7 @@
 vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                           const vxm_repair_options *options, vxm_error *error);
 
+/** Checks options; NULL stands for the defaults. @return VXM_OK, VXM_ERROR_ARGUMENT */
+vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options *options, vxm_error *error);
+
 #endif

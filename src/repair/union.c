@@ -39,6 +39,8 @@ static vxm_status mark_crossing(leaving *l, const vxm_soup *soup, vxm_error *err
 static void tell(leaving *l, const vxm_soup *soup) {
   vxm_work *work = l->work;
   const uint32_t *parts = work->track ? work->soup->face_parts : NULL;
+  if (!parts)
+    work->ununited = 0; /* of an earlier round; parts that are followed count once */
   for (size_t c = 0; !parts && c < l->count; c++)
     work->ununited += l->left[c];
   for (size_t f = 0; parts && f < soup->face_count; f++)
@@ -68,6 +70,27 @@ static vxm_status find_left(vxm_work *work, const vxm_soup *soup, const uint64_t
   return status;
 }
 
+/** Parts that lie inside of others go: they were to. */
+static vxm_status note_swallowed(vxm_work *work, const vxm_soup *soup, const uint64_t *origin,
+                                 vxm_error *error) {
+  const uint32_t *parts = work->soup->face_parts;
+  if (!work->track || !parts)
+    return VXM_OK;
+  vxm_status status = VXM_OK;
+  size_t count = vxm_track_part_count(work->track);
+  uint8_t *here = vxm_work_scratch(work, count, sizeof *here, &status, error);
+  for (size_t f = 0; here && f < work->soup->face_count; f++)
+    here[parts[f]] |= 1;
+  for (size_t f = 0; here && f < soup->face_count; f++)
+    if (origin[f] != VXM_NO_FACE)
+      here[parts[origin[f]]] |= 2;
+  for (size_t p = 0; here && p < count; p++)
+    if (here[p] == 1)
+      vxm_track_drop(work->track, (uint32_t)p);
+  vxm_free(work->context, here);
+  return status;
+}
+
 static bool is_asked_for(const vxm_work *work) {
   return (work->options.unite || vxm_work_reaches(work, VXM_LEVEL_SOLID)) && !(work->options.wrap_alpha > 0);
 }
@@ -88,6 +111,8 @@ vxm_status vxm_pass_union(vxm_work *work, bool *changed, vxm_error *error) {
     return status;
   status = find_left(work, soup, origin, &report, error);
   vxm_free(work->context, report.failed_faces);
+  if (status == VXM_OK)
+    status = note_swallowed(work, soup, origin, error);
   *changed = report.united > 0 || report.cut > 0;
   if (status == VXM_OK && *changed) {
     work->counts[VXM_PASS_UNION] += report.united + report.cut;

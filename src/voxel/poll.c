@@ -1,27 +1,37 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/poll.h"
 #include "base/threads.h"
+#include "voxel/odd_edges.h"
 
 #include <string.h>
 
-enum { VOTERS = 4 };
+/** What is put into bins: the crossings of triangles along the fast axis, those of cones, and where the
+ * parities along the middle and the slow axis differ from that along the fast one. */
+enum { BASE, CONES, MIDDLE, SLOW, SETS };
+
+enum { EDGES_PER_TASK = 1024 };
 
 typedef struct poll_state {
   vxm_workspace *workspace;
   const vxm_window *window;
   const vxm_poll_job *job;
   const vxm_kernels *kernels;
-  vxm_columns columns[VOTERS];
-  size_t voters;
+  vxm_columns columns[SETS];
+  size_t edge_begin, edge_end; /**< the cones of the odd edges; without any, all axes agree */
+  size_t sets;                 /**< in the bins */
   vxm_slabs slabs;
   size_t stripes;
-  size_t words_each; /**< scratch of a worker: a slab for each voter, and a slice */
+  size_t words_each; /**< scratch of a worker: a slab for each set, and a slice */
   bool past;         /**< the window is larger than caches */
   uint64_t *carries; /**< a slice for each stripe, and one for the end */
   atomic_int_fast64_t contested;
   atomic_bool added;
   vxm_watch watch;
 } poll_state;
+
+static bool has_odd_edges(const poll_state *state) {
+  return state->edge_begin < state->edge_end;
+}
 
 static size_t stripe_begin(const poll_state *state, size_t stripe) {
   return vxm_slice_begin(state->slabs.count, state->stripes, stripe);
@@ -36,16 +46,19 @@ static void flip_piece(uint64_t *words, const vxm_bin_piece *piece) {
       words[piece->data[i] / 64] ^= UINT64_C(1) << (piece->data[i] % 64);
 }
 
-/** Flips what all threads put into the bins of a slab. */
-static void flip_slab(const poll_state *state, size_t voter, size_t slab, uint64_t *words) {
+/** Flips what all threads put into the bins of a slab; false if that was nothing. */
+static bool flip_slab(const poll_state *state, size_t set, size_t slab, uint64_t *words) {
   vxm_bins *bins = &state->workspace->bins;
   vxm_bin_piece piece;
+  bool any = false;
   for (size_t w = 0; w < bins->workers; w++) {
-    vxm_bin_reader reader = vxm_bin_read(vxm_bins_at(bins, w, voter, slab), true);
+    vxm_bin_reader reader = vxm_bin_read(vxm_bins_at(bins, w, set, slab), true);
+    any |= reader.part != VXM_BIN_NONE;
     while (reader.part != VXM_BIN_NONE)
       while (vxm_bin_next(&reader, &piece))
         flip_piece(words, &piece);
   }
+  return any;
 }
 
 /** What is open along slices at the begin of a stripe but for the flips before the window: all flips of the
@@ -59,7 +72,8 @@ static void sum_stripe(size_t stripe, int worker, void *payload) {
   if (stripe + 1 == state->stripes || vxm_watch_stopped(&state->watch, worker))
     return;
   for (size_t slab = stripe_begin(state, stripe); slab < stripe_begin(state, stripe + 1); slab++) {
-    flip_slab(state, (size_t)window->layout.slow, slab, words);
+    if (!flip_slab(state, SLOW, slab, words))
+      continue;
     for (size_t k = 0; k < state->slabs.words; k += window->slice_words)
       for (size_t w = 0; w < window->slice_words; w++) {
         carry[w] ^= words[k + w];
@@ -68,48 +82,105 @@ static void sum_stripe(size_t stripe, int worker, void *payload) {
   }
 }
 
-/** Folds a voter in its slab. Before the words of the voter along slices lies a slice with what is open. */
-static void fold_voter(const poll_state *state, size_t voter, uint64_t *words, size_t slices) {
+/** A slab while it is folded: the words of each set, and of those that were used. */
+typedef struct slab {
+  uint64_t *words[SETS];
+  size_t index, slices, count; /**< number, slices and words */
+} slab;
+
+static void fold_fast(const poll_state *state, const slab *s, uint64_t *words) {
+  state->kernels->fold_rows(words, state->window->row_words, s->slices * (size_t)state->window->middle_dim,
+                            vxm_window_tail_mask(state->window));
+}
+
+/** The parity along the middle axis, or NULL where it is that along the fast one. */
+static const uint64_t *fold_middle(const poll_state *state, const slab *s) {
   const vxm_window *window = state->window;
-  const vxm_kernels *kernels = state->kernels;
-  int axis = state->columns[voter].w;
-  if (axis == window->layout.fast)
-    kernels->fold_rows(words, window->row_words, slices * (size_t)window->middle_dim,
-                       vxm_window_tail_mask(window));
-  else if (axis == window->layout.middle)
-    for (size_t k = 0; k < slices; k++)
-      kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
-  else
-    kernels->fold_across(words - window->slice_words, window->slice_words,
-                         (slices + 1) * window->slice_words);
+  uint64_t *words = s->words[MIDDLE];
+  if (!flip_slab(state, MIDDLE, s->index, words))
+    return NULL;
+  for (size_t k = 0; k < s->slices; k++)
+    state->kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
+  fold_fast(state, s, words);
+  for (size_t w = 0; w < s->count; w++)
+    words[w] ^= s->words[BASE][w];
+  return words;
+}
+
+static bool is_zero(const uint64_t *words, size_t count) {
+  uint64_t any = 0;
+  for (size_t w = 0; w < count; w++)
+    any |= words[w];
+  return any == 0;
+}
+
+/** The parity along the slow axis, or NULL where it is that along the fast one. `carry` is what is open along
+ * slices at the begin of the slab, then at its end. */
+static const uint64_t *fold_slow(const poll_state *state, const slab *s, uint64_t *carry) {
+  size_t slice = state->window->slice_words;
+  uint64_t *words = s->words[SLOW];
+  if (!flip_slab(state, SLOW, s->index, words) && is_zero(carry, slice))
+    return NULL;
+  memcpy(words - slice, carry, slice * sizeof *carry);
+  state->kernels->fold_across(words - slice, slice, slice + s->count);
+  memcpy(carry, words + s->count - slice, slice * sizeof *carry);
+  fold_fast(state, s, words);
+  for (size_t w = 0; w < s->count; w++)
+    words[w] ^= s->words[BASE][w];
+  return words;
+}
+
+/** The parity by tetrahedra, which is that of triangles and cones along any axis. */
+static const uint64_t *fold_tetra(const poll_state *state, const slab *s) {
+  uint64_t *words = s->words[CONES];
+  flip_slab(state, CONES, s->index, words);
+  fold_fast(state, s, words);
+  for (size_t w = 0; w < s->count; w++)
+    words[w] ^= s->words[BASE][w];
+  return words;
+}
+
+/** The voters in a slab: three axes, the fast one first, and NULL or the tetrahedra. */
+static void fold_voters(const poll_state *state, const slab *s, uint64_t *carry, const uint64_t *voters[4]) {
+  flip_slab(state, BASE, s->index, s->words[BASE]);
+  fold_fast(state, s, s->words[BASE]);
+  const uint64_t *middle = NULL, *slow = NULL;
+  if (has_odd_edges(state)) {
+    middle = fold_middle(state, s);
+    slow = fold_slow(state, s, carry);
+  }
+  voters[0] = s->words[BASE];
+  voters[1] = middle ? middle : voters[0];
+  voters[2] = slow ? slow : voters[0];
+  voters[3] = state->job->tetra ? fold_tetra(state, s) : NULL;
 }
 
 static void do_stripe(size_t stripe, int worker, void *payload) {
   poll_state *state = payload;
   const vxm_window *window = state->window;
-  size_t slice = window->slice_words, slow = (size_t)window->layout.slow;
+  size_t slice = window->slice_words;
   uint64_t *carry = state->carries + stripe * slice, added = 0;
   uint64_t *scratch = state->workspace->scratch + (size_t)worker * state->words_each;
-  uint64_t *words[VOTERS] = {NULL};
+  slab s = {.words = {NULL}};
   int64_t contested = 0;
-  for (size_t v = 0; v < state->voters; v++)
-    words[v] = scratch + v * state->slabs.words + (v >= slow ? slice : 0);
-  for (size_t slab = stripe_begin(state, stripe); slab < stripe_begin(state, stripe + 1); slab++) {
+  for (size_t set = 0; set < state->sets; set++)
+    s.words[set] = scratch + set * state->slabs.words + (set == SLOW ? slice : 0);
+  for (s.index = stripe_begin(state, stripe); s.index < stripe_begin(state, stripe + 1); s.index++) {
     if (vxm_watch_stopped(&state->watch, worker))
       break;
-    int64_t first = (int64_t)slab << state->slabs.shift;
-    size_t slices = (size_t)vxm_min(INT64_C(1) << state->slabs.shift, state->slabs.layers - first);
-    size_t count = slices * slice, at = (size_t)first * slice;
-    memcpy(words[slow] - slice, carry, slice * sizeof *carry);
-    for (size_t v = 0; v < state->voters; v++) {
-      flip_slab(state, v, slab, words[v]);
-      fold_voter(state, v, words[v], slices);
-    }
-    memcpy(carry, words[slow] + count - slice, slice * sizeof *carry);
-    contested += state->kernels->vote(window->words + at, (const uint64_t *const *)words,
-                                      state->job->mask ? state->job->mask + at : NULL, count,
-                                      state->job->rule, state->job->fresh, state->past, &added);
-    memset(scratch, 0, state->words_each * sizeof *scratch);
+    const uint64_t *voters[4];
+    int64_t first = (int64_t)s.index << state->slabs.shift;
+    s.slices = (size_t)vxm_min(INT64_C(1) << state->slabs.shift, state->slabs.layers - first);
+    s.count = s.slices * slice;
+    size_t at = (size_t)first * slice;
+    fold_voters(state, &s, carry, voters);
+    contested +=
+        state->kernels->vote(window->words + at, voters, state->job->mask ? state->job->mask + at : NULL,
+                             s.count, state->job->rule, state->job->fresh, state->past, &added);
+    for (size_t set = 0; set < state->sets; set++)
+      if (set == BASE || voters[1] == s.words[set] || voters[2] == s.words[set] || voters[3] == s.words[set])
+        memset(s.words[set] - (set == SLOW ? slice : 0), 0,
+               (s.count + (set == SLOW ? slice : 0)) * sizeof *scratch);
     vxm_watch_step(&state->watch);
   }
   atomic_fetch_add_explicit(&state->contested, contested, memory_order_relaxed);
@@ -117,29 +188,54 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
     atomic_store_explicit(&state->added, true, memory_order_relaxed);
 }
 
+/** Columns across slices of the `w` axis, along which the middle or the slow axis is compared with the fast
+ * one. */
+static vxm_columns compared(const poll_state *state, int v, int w) {
+  vxm_columns columns = vxm_columns_of(state->window, state->window->layout.fast);
+  columns.u = state->window->layout.fast;
+  columns.v = v;
+  columns.w = w;
+  columns.slab_axis = state->window->layout.slow;
+  columns.slab_shift = state->slabs.shift;
+  if (v == state->window->layout.slow)
+    columns.keep_before = state->window->begin == 0; /* else the window before has carried it on */
+  return columns;
+}
+
 static void shape(poll_state *state) {
   const vxm_window *window = state->window;
   const vxm_poll_job *job = state->job;
   const vxm_part *part = &job->facets->parts[job->part];
   int threads = vxm_context_threads(state->workspace->context);
-  state->voters = job->tetra ? VOTERS : 3;
+  state->edge_begin = part->cones;
+  state->edge_end = part->end;
+  state->sets = has_odd_edges(state) ? SETS : BASE + 1;
   state->slabs = vxm_slabs_of(window->end - window->begin, window->slice_words, threads);
   state->stripes = (size_t)threads < state->slabs.count ? (size_t)threads : state->slabs.count;
-  state->words_each = state->voters * state->slabs.words + window->slice_words;
+  state->words_each = state->sets * state->slabs.words + window->slice_words;
   state->past = job->fresh && vxm_window_is_large(window);
-  for (size_t v = 0; v < state->voters; v++) {
-    int axis = v == 3 ? window->layout.fast : (int)v; /* with cones the part is closed: any axis tells */
-    vxm_columns *columns = &state->columns[v];
-    *columns = vxm_columns_of(window, axis);
-    columns->roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
-    columns->facet_begin = part->begin;
+  for (size_t set = BASE; set <= CONES; set++) {
+    vxm_columns *columns = &state->columns[set];
+    *columns = vxm_columns_of(window, window->layout.fast);
+    columns->roles = set == BASE ? VXM_FACET_TRIANGLE : VXM_FACET_CONE;
+    columns->facet_begin = set == BASE ? part->begin : part->cones;
     columns->facet_end = vxm_roles_end(job->facets, job->part, columns->roles);
     columns->slab_shift = state->slabs.shift;
-    if (axis == window->layout.slow) {
-      columns->slab_axis = axis;
-      columns->keep_before = window->begin == 0; /* else the window before has carried it on */
-    }
   }
+  state->columns[MIDDLE] = compared(state, window->layout.middle, window->layout.slow);
+  state->columns[SLOW] = compared(state, window->layout.slow, window->layout.middle);
+}
+
+static void put_edges(size_t task, int worker, void *payload) {
+  poll_state *state = payload;
+  if (vxm_watch_stopped(&state->watch, worker))
+    return;
+  size_t begin = state->edge_begin + task * EDGES_PER_TASK;
+  size_t end = state->edge_end - begin < EDGES_PER_TASK ? state->edge_end : begin + EDGES_PER_TASK;
+  for (size_t set = MIDDLE; set <= SLOW; set++)
+    vxm_odd_edges_put(state->job->placed, state->job->facets, begin, end, &state->columns[set],
+                      &state->workspace->bins, (size_t)worker, set);
+  vxm_watch_step(&state->watch);
 }
 
 static void run_stripes(poll_state *state) {
@@ -147,13 +243,15 @@ static void run_stripes(poll_state *state) {
   vxm_context *context = state->workspace->context;
   size_t slice = window->slice_words;
   memcpy(state->carries, state->job->carry, slice * sizeof *state->carries);
-  if (state->stripes > 1)
+  bool differ = has_odd_edges(state);
+  if (differ && state->stripes > 1)
     vxm_parallel(context, state->stripes, sum_stripe, state);
-  for (size_t s = 1; s < state->stripes; s++)
+  for (size_t s = 1; differ && s < state->stripes; s++)
     for (size_t w = 0; w < slice; w++)
       state->carries[s * slice + w] ^= state->carries[(s - 1) * slice + w];
   vxm_parallel(context, state->stripes, do_stripe, state);
-  memcpy(state->job->carry, state->carries + (state->stripes - 1) * slice, slice * sizeof *state->carries);
+  if (differ)
+    memcpy(state->job->carry, state->carries + (state->stripes - 1) * slice, slice * sizeof *state->carries);
 }
 
 vxm_status vxm_poll(vxm_workspace *workspace, const vxm_window *window, const vxm_poll_job *job,
@@ -167,13 +265,13 @@ vxm_status vxm_poll(vxm_workspace *workspace, const vxm_window *window, const vx
   atomic_init(&state.added, false);
   size_t workers = (size_t)vxm_context_threads(context);
   vxm_crossings *crossings = &workspace->crossings;
-  vxm_status status =
-      vxm_crossings_plan(crossings, job->facets, job->placed, state.columns, state.voters, error);
+  vxm_status status = vxm_crossings_plan(crossings, job->facets, job->placed, state.columns,
+                                         job->tetra ? CONES + 1 : BASE + 1, error);
   if (status == VXM_OK)
     status = vxm_workspace_scratch(workspace, workers * state.words_each, error);
   if (status == VXM_OK)
     status =
-        vxm_bins_reset(&workspace->bins, workers, state.voters, state.slabs.count, state.slabs.words, error);
+        vxm_bins_reset(&workspace->bins, workers, state.sets, state.slabs.count, state.slabs.words, error);
   if (status != VXM_OK)
     return status;
   vxm_error local = VXM_ERROR_INIT;
@@ -184,9 +282,11 @@ vxm_status vxm_poll(vxm_workspace *workspace, const vxm_window *window, const vx
       *error = local;
     return local.code;
   }
+  size_t edge_tasks = (state.edge_end - state.edge_begin + EDGES_PER_TASK - 1) / EDGES_PER_TASK;
   vxm_watch_start(&state.watch, context, "voxelizing along x, y, z",
-                  crossings->range_count + state.slabs.count, error);
+                  crossings->range_count + edge_tasks + state.slabs.count, error);
   vxm_crossings_run(crossings, 0, &workspace->bins, &state.watch); /* one part is one round */
+  vxm_parallel(context, edge_tasks, put_edges, &state);
   status = vxm_bins_check(&workspace->bins, error);
   if (status == VXM_OK && state.watch.status == VXM_OK)
     run_stripes(&state);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Several voters on one part at once: while a slab is in cache all of them are folded and combined, so that
- * only the outcome goes to memory.
+ * Several voters on one part at once. Its triangles are rastered along one axis only: where the parities
+ * along the other two differ from that is told by the part's odd edges (voxel/odd_edges.h), and what the
+ * tetrahedra add by its cones. While a slab is in cache all voters are folded and combined, so that only the
+ * outcome goes to memory.
  *
  * Slabs are cut across slices. Parity along slices needs to know what was open at the begin of a slab: each
  * thread takes a run of slabs in order and carries it along, starting from the flips in all slabs before.

@@ -24,17 +24,18 @@ bool vxm_one_voter(const vxm_voxelize_options *options) {
   return options->method != VXM_METHOD_VOTE && options->method != VXM_METHOD_WINDING;
 }
 
-size_t vxm_voted_begin(const vxm_shape *shape) {
-  bool all = shape->options->vote_always && !vxm_caps_wanted(shape->options);
-  return all ? 0 : kind_end(shape, VXM_PART_CAPPED);
-}
-
-/** Whether parts from `begin` on have cones, so that the tetrahedra may differ from x. */
+/** Whether parts from `begin` on have cones, and so odd edges. */
 static bool has_cones(const vxm_shape *shape, size_t begin) {
   for (size_t p = begin; p < shape->facets.split.part_count; p++)
     if (shape->facets.parts[p].cones < shape->facets.parts[p].end)
       return true;
   return false;
+}
+
+size_t vxm_voted_begin(const vxm_shape *shape) {
+  /* Where no edge is odd the axes agree (voxel/odd_edges.h), and there is nothing to vote on. */
+  bool all = shape->options->vote_always && !vxm_caps_wanted(shape->options) && has_cones(shape, 0);
+  return all ? 0 : kind_end(shape, VXM_PART_CAPPED);
 }
 
 int vxm_run_buffers(const vxm_shape *shape) {
@@ -97,13 +98,11 @@ void vxm_run_destroy(vxm_run *run) {
 
 /* ---- Parts that stay open: votes ---- */
 
-/** The x, y, z and, where it may differ, the tetrahedral voter of parts from `begin` on. */
+/** The x, y, z and, if asked for, the tetrahedral voter of parts from `begin` on. */
 static vxm_status fill_voters(vxm_run *run, const vxm_window *window, size_t begin, bool tetra,
                               const uint64_t *voters[VOTERS], vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t end = run->shape->facets.split.part_count;
-  for (int v = 0; v < VOTERS; v++)
-    voters[v] = NULL;
   for (int v = 0; v < (tetra ? VOTERS : 3) && status == VXM_OK; v++) {
     vxm_window voter;
     status = vxm_run_buffer(run, VXM_BUFFER_VOTERS + v, window, &voter, error);
@@ -174,7 +173,7 @@ static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_
     if (tally.added && run->touched)
       atomic_store_explicit(&run->touched[begin], 1, memory_order_relaxed);
   } else if (status == VXM_OK) {
-    const uint64_t *voters[VOTERS];
+    const uint64_t *voters[VOTERS] = {NULL};
     status = fill_voters(run, window, begin, tetra, voters, error);
     if (status == VXM_OK)
       vxm_vote_count(window->words, voters, mask.words,

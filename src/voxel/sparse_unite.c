@@ -5,8 +5,10 @@
 #include <string.h>
 
 enum {
-  SLAB_SHIFT = 4,
-  /**< slabs are as thick as strips */ CROSSINGS = 1 << 22 /**< of a window, at most */
+  SLAB_SHIFT = 4,      /**< slabs are as thick as strips */
+  CROSSINGS = 1 << 22, /**< of a window, at most */
+  STREAMS = 4 /**< what is sorted is read at so many places in turn, so that a step need not wait for the one
+                 before, which mostly goes to the same word */
 };
 
 /** A flip within a strip: its voxel along x, above the 8 bits of its row, 16 y + z. */
@@ -17,11 +19,13 @@ typedef struct desk {
   flip *flips; /**< of a slab, strip after strip */
   uint32_t *parts;
   size_t capacity;
-  uint32_t *strip_end; /**< per strip: behind its flips */
+  uint32_t (*ends)[STREAMS]; /**< per strip and stream: how many flips, then where the next goes, then behind
+                                them */
   /* Of a strip, per brick in the order of vxm_strip_add_node, node after node; clear between strips. */
   uint64_t *flipped, *united;
-  /* Per node: whether it has flips, whether something is united in it, whether all of it is full. */
-  uint64_t *has_flips, *is_united, *is_full;
+  uint8_t *has_flips; /**< per node, in whole words */
+  /* A bit per node: whether something is united in it, whether all of it is full. */
+  uint64_t *is_united, *is_full;
 } desk;
 
 /** Where a row of a strip lies: in which row of bricks in the order of vxm_strip_add_node, and at which bits
@@ -72,30 +76,38 @@ static bool reserve(sparse_state *state, desk *d, size_t count) {
   return local.code == VXM_OK;
 }
 
-/** Counts the flips of each strip; returns how many there are. Flips come in runs of one strip. */
+static void count_records(int shift, uint32_t (*ends)[STREAMS], const uint64_t *records, size_t count) {
+  size_t share = count / STREAMS;
+  const uint64_t *a = records, *b = a + share, *c = b + share, *d = c + share;
+  for (size_t i = 0; i < share; i++) {
+    ends[a[i] >> shift][0]++;
+    ends[b[i] >> shift][1]++;
+    ends[c[i] >> shift][2]++;
+    ends[d[i] >> shift][3]++;
+  }
+  for (size_t i = STREAMS * share; i < count; i++)
+    ends[records[i] >> shift][0]++;
+}
+
+/** Counts the flips of each strip; returns how many there are. */
 static size_t count_flips(const sparse_state *state, desk *d, size_t slab) {
-  uint32_t *count = d->strip_end;
   int shift = state->row_shift + 8;
   size_t total = 0;
-  memset(count, 0, state->builder->across * sizeof *count);
+  memset(d->ends, 0, state->builder->across * sizeof *d->ends);
   for (size_t w = 0; w < state->bins->workers; w++) {
     vxm_bin_reader reader = vxm_bin_read(vxm_bins_at(state->bins, w, 0, slab), !state->many);
     vxm_bin_piece piece;
     while (reader.part != VXM_BIN_NONE)
       while (vxm_bin_next(&reader, &piece)) {
-        size_t at = 0;
+        for (size_t i = 0; i < piece.count && state->many && !piece.is_bitmap; i++)
+          d->ends[piece.data[i] >> shift][0]++;
+        if (!state->many && !piece.is_bitmap)
+          count_records(shift, d->ends, piece.data, piece.count);
+        total += piece.is_bitmap ? 0 : piece.count;
         for (size_t i = 0; i < piece.count && piece.is_bitmap; i++) {
           size_t flips = (size_t)vxm_popcount(piece.data[i]);
-          count[64 * i >> shift] += (uint32_t)flips;
+          d->ends[64 * i >> shift][0] += (uint32_t)flips;
           total += flips;
-        }
-        while (!piece.is_bitmap && at < piece.count) {
-          size_t first = at;
-          uint64_t strip = piece.data[at++] >> shift;
-          while (at < piece.count && piece.data[at] >> shift == strip)
-            at++;
-          count[strip] += (uint32_t)(at - first);
-          total += at - first;
         }
       }
   }
@@ -112,35 +124,34 @@ static inline flip flip_of(decoding how, uint64_t record) {
   return (flip)(record & how.in_row) << 8 | (flip)(record >> how.row_shift & 255);
 }
 
-/** Puts flips where the next ones of their strip go, the records of a strip in one run. */
-static inline void put_records(decoding how, flip *flips, uint32_t *strip_end, const uint64_t *records,
-                               size_t count) {
+/** Puts flips where the next ones of their strip and stream go, as count_records has counted them. */
+static void put_records(decoding how, flip *flips, uint32_t (*ends)[STREAMS], const uint64_t *records,
+                        size_t count) {
   int shift = how.row_shift + 8;
-  for (const uint64_t *at = records, *end = records + count; at < end;) {
-    uint64_t record = *at, strip = record >> shift;
-    flip *to = flips + strip_end[strip], *first = to;
-    do {
-      *to++ = flip_of(how, record);
-      if (++at == end)
-        break;
-      record = *at;
-    } while (record >> shift == strip);
-    strip_end[strip] += (uint32_t)(to - first);
+  size_t share = count / STREAMS;
+  const uint64_t *a = records, *b = a + share, *c = b + share, *d = c + share;
+  for (size_t i = 0; i < share; i++) {
+    flips[ends[a[i] >> shift][0]++] = flip_of(how, a[i]);
+    flips[ends[b[i] >> shift][1]++] = flip_of(how, b[i]);
+    flips[ends[c[i] >> shift][2]++] = flip_of(how, c[i]);
+    flips[ends[d[i] >> shift][3]++] = flip_of(how, d[i]);
   }
+  for (size_t i = STREAMS * share; i < count; i++)
+    flips[ends[records[i] >> shift][0]++] = flip_of(how, records[i]);
 }
 
 /** Puts each flip of a piece where the next one of its strip goes. */
 static void put_piece(const sparse_state *state, desk *d, const vxm_bin_piece *piece, uint32_t part) {
   decoding how = {state->row_shift, vxm_low_bits((unsigned)state->row_shift)};
   if (!state->many && !piece->is_bitmap) {
-    put_records(how, d->flips, d->strip_end, piece->data, piece->count);
+    put_records(how, d->flips, d->ends, piece->data, piece->count);
     return;
   }
   for (size_t i = 0; i < piece->count; i++) {
     uint64_t left = piece->is_bitmap ? piece->data[i] : 1;
     for (; left; left &= left - 1) {
       uint64_t record = piece->is_bitmap ? 64 * i + (unsigned)__builtin_ctzll(left) : piece->data[i];
-      uint32_t to = d->strip_end[record >> (how.row_shift + 8)]++;
+      uint32_t to = d->ends[record >> (how.row_shift + 8)][0]++;
       d->flips[to] = flip_of(how, record);
       if (state->many)
         d->parts[to] = part;
@@ -156,11 +167,12 @@ static bool sort_flips(sparse_state *state, desk *d, size_t slab) {
   if (!reserve(state, d, count_flips(state, d, slab)))
     return false;
   uint32_t sum = 0;
-  for (size_t s = 0; s < state->builder->across; s++) {
-    uint32_t count = d->strip_end[s];
-    d->strip_end[s] = sum;
-    sum += count;
-  }
+  for (size_t s = 0; s < state->builder->across; s++)
+    for (size_t k = 0; k < STREAMS; k++) {
+      uint32_t count = d->ends[s][k];
+      d->ends[s][k] = sum;
+      sum += count;
+    }
   for (size_t w = 0; w < workers; w++)
     reader[w] = vxm_bin_read(vxm_bins_at(state->bins, w, 0, slab), !state->many);
   for (;;) {
@@ -223,32 +235,40 @@ static void put_gap(sparse_state *state, desk *d, size_t worker, size_t begin, s
   }
 }
 
-/** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
-static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const flip *flips, size_t count) {
-  uint64_t *flipped = d->flipped, *has_flips = d->has_flips;
-  const strip_place *places = state->places;
+/** Flips voxels of a strip, and notes the nodes that have flips. */
+static void flip_voxels(const strip_place *restrict places, uint64_t *restrict flipped,
+                        uint8_t *restrict has_flips, const flip *restrict flips, size_t count) {
   for (size_t i = 0; i < count; i++) {
     flip f = flips[i];
     strip_place place = places[f & 255];
     flipped[(f >> 10) * 16 + place.row] ^= (UINT64_C(15) << (f >> 8 & 3) & 15) << place.shift;
-    has_flips[f >> 18] |= UINT64_C(1) << (f >> 12 & 63);
+    has_flips[f >> 12] = 1;
   }
+}
+
+/** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
+static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const flip *flips, size_t count) {
   uint64_t inside[16] = {0}, any = 0;
   size_t done = 0;
-  for (size_t w = 0; w < (state->nodes + 63) / 64; w++) {
-    uint64_t left = d->has_flips[w];
-    d->has_flips[w] = 0;
-    for (; left; left &= left - 1) {
-      size_t x = 64 * w + (size_t)__builtin_ctzll(left);
-      put_gap(state, d, worker, done, x, inside);
-      uint64_t bricks[VXM_STRIP_BRICKS], masks[2];
-      any |= state->kernels->fold_node(bricks, flipped + x * VXM_STRIP_BRICKS, inside, masks);
-      if (state->many || x == state->nodes - 1)
-        put_node(state, d, worker, x, bricks);
-      else
-        vxm_strip_add_known(state->builder, worker, x, bricks, masks[0], masks[1]);
-      done = x + 1;
+  flip_voxels(state->places, d->flipped, d->has_flips, flips, count);
+  for (size_t x = 0; x < state->nodes; x++) {
+    uint64_t eight;
+    memcpy(&eight, d->has_flips + x, sizeof eight);
+    if (x % 8 == 0 && eight == 0) {
+      x += 7;
+      continue;
     }
+    if (!d->has_flips[x])
+      continue;
+    d->has_flips[x] = 0;
+    put_gap(state, d, worker, done, x, inside);
+    uint64_t bricks[VXM_STRIP_BRICKS], masks[2];
+    any |= state->kernels->fold_node(bricks, d->flipped + x * VXM_STRIP_BRICKS, inside, masks);
+    if (state->many || x == state->nodes - 1)
+      put_node(state, d, worker, x, bricks);
+    else
+      vxm_strip_add_known(state->builder, worker, x, bricks, masks[0], masks[1]);
+    done = x + 1;
   }
   put_gap(state, d, worker, done, state->nodes, inside);
   return any;
@@ -320,7 +340,7 @@ static void do_slab(size_t task, int worker, void *payload) {
     return;
   size_t begin = 0;
   for (size_t y = 0; y < state->builder->across; y++) {
-    size_t end = d->strip_end[y];
+    size_t end = d->ends[y][STREAMS - 1];
     if (end > begin)
       do_strip(state, d, (size_t)worker, y, state->first + task, begin, end);
     begin = end;
@@ -368,14 +388,12 @@ static vxm_status make_desks(sparse_state *state, size_t workers, vxm_error *err
   state->desks = vxm_calloc(context, workers, sizeof *state->desks, &local);
   for (size_t w = 0; w < workers && local.code == VXM_OK; w++) {
     desk *d = &state->desks[w];
-    d->strip_end = vxm_alloc(context, state->builder->across, sizeof *d->strip_end, &local);
+    d->ends = vxm_alloc(context, state->builder->across, sizeof *d->ends, &local);
     d->flipped = vxm_calloc(context, words, sizeof *d->flipped, &local);
     d->united = state->many ? vxm_calloc(context, words, sizeof *d->united, &local) : NULL;
-    d->has_flips = vxm_calloc(context, 3 * marks, sizeof *d->has_flips, &local);
-    if (d->has_flips) {
-      d->is_united = d->has_flips + marks;
-      d->is_full = d->has_flips + 2 * marks;
-    }
+    d->has_flips = vxm_calloc(context, 64 * marks, sizeof *d->has_flips, &local);
+    d->is_united = vxm_calloc(context, 2 * marks, sizeof *d->is_united, &local);
+    d->is_full = d->is_united ? d->is_united + marks : NULL;
   }
   if (local.code != VXM_OK && error)
     *error = local;
@@ -388,10 +406,11 @@ static void free_desks(sparse_state *state, size_t workers) {
     desk *d = &state->desks[w];
     vxm_free(context, d->flips);
     vxm_free(context, d->parts);
-    vxm_free(context, d->strip_end);
+    vxm_free(context, d->ends);
     vxm_free(context, d->flipped);
     vxm_free(context, d->united);
     vxm_free(context, d->has_flips);
+    vxm_free(context, d->is_united);
   }
   vxm_free(context, state->desks);
 }

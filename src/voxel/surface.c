@@ -186,11 +186,16 @@ vxm_status vxm_surface_add_sure(const vxm_surface *surface, const vxm_window *wh
   return status;
 }
 
-uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads) {
-  /* Points; corners, a place and, as tiles are listed in turn, some five entries for each triangle; the tiles
-   * and counters of the threads. */
-  uint64_t triangles = count_triangles(soup);
+uint64_t vxm_surface_held_bytes(const vxm_soup *soup, size_t *triangles) {
+  *triangles = count_triangles(soup);
   uint64_t corners = has_triangles_only(soup) ? 0 : 3 * sizeof(uint32_t);
-  return soup->vertex_count * sizeof(vxm_point) + triangles * (corners + 6 * sizeof(uint32_t)) +
-         ((uint64_t)threads + 6) * (UINT64_C(1) << 20);
+  return soup->vertex_count * sizeof(vxm_point) + *triangles * corners + sizeof(vxm_surface);
+}
+
+uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads) {
+  /* A place and, as tiles are listed in turn, some five entries for each triangle; the tiles
+   * and counters of the threads. */
+  size_t triangles;
+  uint64_t held = vxm_surface_held_bytes(soup, &triangles);
+  return held + triangles * 6 * sizeof(uint32_t) + ((uint64_t)threads + 6) * (UINT64_C(1) << 20);
 }

@@ -55,6 +55,8 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
 vxm_status vxm_surface_add_sure(const vxm_surface *surface, const vxm_window *whole, vxm_surface_kind kind,
                                 uint8_t *confidence, vxm_error *error);
 
+/** What a surface of so many triangles holds once it is made. */
+uint64_t vxm_surface_held_bytes(const vxm_soup *soup, size_t *triangles);
 /** What a surface takes at most, and what adding it takes meanwhile. */
 uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads);
 
