@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 
 #include "base/hash.h"
 #include "repair/cgal_arrange.h"
@@ -273,6 +274,8 @@ private:
     if (a == b || constraints_.count(line) != 0)
       return;
     constraints_[line] = triangulation_.insert_constraint(a, b);
+    if (triangulation_.number_of_vertices() > vertices_.size() + CROSSINGS)
+      throw std::length_error("a plane with too many lines that cross");
   }
 
   /** Vertices that the triangulation made where lines cross get their numbers. */
@@ -383,6 +386,9 @@ private:
     bool is_left = face->vertex(Triangulation::ccw(k)) == from;
     return is_left == left ? face : face->neighbor(k);
   }
+
+  /* Each costs up to a millisecond. A mesh has more in a plane where large parts of it lie there in heaps. */
+  static constexpr size_t CROSSINGS = 20000;
 
   const Surface &surface_;
   ExactPoints *points_;

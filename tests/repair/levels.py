@@ -86,8 +86,8 @@ def winding(points, faces, origin, size, dims):
     """How often a closed surface winds around each centre of a grid: what a ray upward crosses, by direction."""
     crossings = numpy.zeros((dims[0], dims[1], dims[2] + 1), numpy.int32)
     # beside the centres, by less than counts, so that no ray runs through an edge
-    flat = (points[:, :2] - origin[:2]) / size[:2] - 0.5 - [1.234567e-7, 7.654321e-8]
-    height = (points[:, 2] - origin[2]) / size[2] - 0.5
+    flat = (points[:, :2] - origin[:2]) / size[:2] - 0.5 - [1.234567e-6, 7.654321e-7]
+    height = (points[:, 2] - origin[2]) / size[2] - 0.5 - 1.111111e-6
     for face in faces:
         for b, c in zip(face[1:-1], face[2:]):
             corners = [face[0], b, c]
@@ -146,17 +146,16 @@ class Trial:
         return json.loads(self.run("compare", first, second, "--json").stdout)["iou"]
 
     def iou_of_winding(self, repaired):
-        """Of the repaired mesh and of where the mesh at level closed winds around a place."""
+        """Of where the repaired mesh and the mesh at level closed wind around a place."""
         closed, grid = (os.path.join(self.work, name) for name in ("closed.ply", "grid.npy"))
         self.run("repair", self.mesh, "-o", closed, "--level", "closed", "-q").check_returncode()
         self.run("voxelize", repaired, "-o", grid, "-r", "64", "-q").check_returncode()
         with open(grid + ".json") as file:
             space = json.load(file)
-        is_solid = numpy.load(grid)
-        points, faces = read_ply(closed)
-        inside = winding(points, faces, space["origin"], space["voxel_size"], space["dims"]) > 0
-        either = (is_solid | inside).sum()
-        return (is_solid & inside).sum() / either if either else 1.0  # thinner than the voxels
+        first, second = (winding(*read_ply(path), space["origin"], space["voxel_size"], space["dims"]) > 0
+                         for path in (closed, repaired))
+        either = (first | second).sum()
+        return (first & second).sum() / either if either else 1.0  # thinner than the voxels
 
     def again(self, level, path):
         """What another repair of the file does; None = nothing."""
