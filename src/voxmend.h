@@ -291,7 +291,7 @@ typedef struct vxm_repair_options {
   int64_t fill_holes; /**< fill holes with at most so many edges; 0 = none, and from VXM_LEVEL_CLOSED on all;
                          negative = all */
   vxm_fill fill;
-  bool unite;         /**< unite parts that cut through each other, as VXM_LEVEL_SOLID does */
+  bool unite;         /**< unite closed parts that cut through each other, as VXM_LEVEL_SOLID does */
   double wrap_alpha;  /**< put a closed surface around everything instead: the size of the smallest hole that
                          it goes  into, as a fraction of the diagonal of the bounds; 0 = do not */
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
@@ -302,12 +302,14 @@ typedef struct vxm_repair_options {
   int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
   double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
                          The component with the largest area always stays */
+  bool intersections; /**< count self-intersections, before and after, in the report and in the account of
+                         parts; needs the module for CGAL */
 } vxm_repair_options;
 
 #define VXM_REPAIR_OPTIONS_INIT                                                                           \
   {                                                                                                       \
     1, VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_FILL_FAN, false, 0.0, 0.0, false, false, \
-        0.0, 0, 0.0                                                                                       \
+        0.0, 0, 0.0, false                                                                                \
   }
 
 #define VXM_REPAIR_PASSES_MAX 24
@@ -321,7 +323,10 @@ typedef struct vxm_repair_report {
   int64_t nonorientable_patches; /**< faces joined by edges that cannot all be turned consistently */
   int64_t open_parts;     /**< components whose holes were left open: sheets that their closing would cover */
   int64_t unfilled_holes; /**< that were to be filled and could not be */
-  int64_t ununited_parts; /**< that were to be united and could not be, as they cut through themselves */
+  int64_t ununited_parts; /**< that were to be united and still cut through themselves or others: open ones,
+                             which have no inside, and those where the union failed */
+  int64_t self_intersections_before, self_intersections_after; /**< pairs of faces, counted up to 4194304;
+                                                                  -1 = not looked for */
   int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
                                 positions are too coarse for the faces about them */
   int64_t opened_parts;      /**< closed before, open after; with options.part_changes, else 0 */
@@ -350,9 +355,11 @@ VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, co
 /** A part of a mesh, at one time. Edges and holes are taken after welding. */
 typedef struct vxm_part_state {
   int64_t faces, boundary_edges, nonmanifold_edges, inconsistent_edges;
-  int64_t holes;       /**< closed walks along edges with an odd number of faces */
-  bool closed;         /**< it has faces, and every edge has an even number of them */
-  double area, volume; /**< as in vxm_census */
+  int64_t holes;              /**< closed walks along edges with an odd number of faces */
+  int64_t self_intersections; /**< pairs of its faces, or of one of them and another part's, that cut through
+                                 each other; -1 = not looked for (vxm_repair_options.intersections) */
+  bool closed;                /**< it has faces, and every edge has an even number of them */
+  double area, volume;        /**< as in vxm_census */
   double bounds[6];
 } vxm_part_state;
 
@@ -362,6 +369,7 @@ typedef struct vxm_part_change {
   int64_t flipped;              /**< faces that were turned */
   double moved;                 /**< none of its vertices was moved farther, model units */
   uint32_t tag;                 /**< of its first face; UINT32_MAX if there are no tags */
+  bool ununited;                /**< it counts among vxm_repair_report.ununited_parts */
 } vxm_part_change;
 
 /** Number of connected components (after welding) of the mesh that was repaired; 0 without
@@ -447,6 +455,9 @@ VXM_API vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int
 VXM_API void vxm_defects_destroy(vxm_defects *defects);
 VXM_API int64_t vxm_defects_count(const vxm_defects *defects);
 VXM_API const vxm_defect *vxm_defects_items(const vxm_defects *defects);
+/** How many of a kind there are, listed or not; self-intersections are counted up to 4194304, -1 = not looked
+ * for. */
+VXM_API int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind);
 /** Fixed name of a kind, such as "boundary_edge". */
 VXM_API const char *vxm_defect_name(vxm_defect_kind kind);
 /**

@@ -85,6 +85,10 @@ const vxm_defect *vxm_defects_items(const vxm_defects *defects) {
   return defects->items;
 }
 
+int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind) {
+  return kind >= 0 && kind < VXM_DEFECT_KINDS ? defects->totals[kind] : 0;
+}
+
 const char *vxm_defect_name(vxm_defect_kind kind) {
   static const char *const names[VXM_DEFECT_KINDS] = {
       "nonfinite_vertex", "degenerate_face",   "duplicate_face",     "boundary_edge",

@@ -180,6 +180,8 @@ int cli_signal(void);
 
 /** A row for each count, with what it means where it is not zero. */
 void cli_census_print(const cli_run *cli, const vxm_census *census);
+/** A row for self-intersections; nothing if they were not looked for (-1). */
+void cli_census_print_intersections(const cli_run *cli, int64_t count);
 /** Both in one table, "Original" and "Final". */
 void cli_census_print_both(const cli_run *cli, const vxm_census *before, const vxm_census *after);
 /** Adds the census's keys to an object. */
@@ -212,14 +214,19 @@ typedef struct cli_defects {
   bool intersections; /**< self-intersections too */
 } cli_defects;
 
+typedef struct cli_found {
+  json_t *list;          /**< NULL = not wanted */
+  int64_t intersections; /**< pairs of faces; -1 = not looked for */
+} cli_found;
+
 /** The argument of --list: CLI_END or CLI_STOP. */
 int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value);
 /** CLI_STOP if --locate has a wrong name, or that of the input, the report, or the output (NULL = none). */
 int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *input, const char *output);
 /** Prints the list that cli_defects_show has made; NULL = none. */
 void cli_defects_print(const cli_run *cli, const json_t *list);
-/** Finds, lists (NULL if that is not wanted) and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */
-int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, const vxm_mesh *mesh);
+/** Finds, lists, counts and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */
+int cli_defects_show(cli_run *cli, cli_found *out, const cli_defects *wanted, const vxm_mesh *mesh);
 
 /* ---- field.c: coverage and distance, for voxelize; labels.c: labels ---- */
 

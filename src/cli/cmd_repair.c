@@ -63,7 +63,9 @@ static const cli_option known_options[] = {
     {KEY_LOCATE, "locate", "FILE.ply", "show what was wrong, in colour on the mesh as it was read"},
     {KEY_LIST, "list", "N", "list what was wrong, up to N of each kind"},
     {KEY_INTERSECTIONS, "intersections", NULL,
-     "with --locate and --list: faces that cut through others too (CGAL)"},
+     "count faces that cut through others, before and after, and show them with\n"
+     "--locate and --list (CGAL). With --union and --level solid they are\n"
+     "counted in any case"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
     CLI_OPTION_DEFLECTION,
@@ -182,12 +184,12 @@ static int check_conflicts(cli_run *cli, const request *given) {
   if (repair->keep_orientation && repair->level > VXM_LEVEL_CLEAN)
     return cli_usage(cli, "--level %s turns faces; leave out --keep-orientation",
                      repair_levels[repair->level]);
+  if (repair->wrap_alpha > 0 &&
+      (repair->fill_holes != 0 || given->fill || repair->unite || repair->max_change > 0))
+    return cli_usage(cli, "--wrap makes a new surface, without holes or parts to compare; leave out "
+                          "--fill-holes, --fill, --union and --max-change");
   if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
-  if (repair->wrap_alpha > 0 && (repair->fill_holes != 0 || repair->unite))
-    return cli_usage(cli, "--wrap makes a new surface; leave out --fill-holes and --union");
-  if (given->defects.intersections && !given->defects.list && !given->defects.locate)
-    return cli_usage(cli, "--intersections goes with --locate or --list");
   return cli_defects_check(cli, &given->defects, given->input, given->output);
 }
 
@@ -207,6 +209,9 @@ static int read_arguments(cli_run *cli, request *out) {
   if (!out->write.format)
     return CLI_STOP;
   out->repair.part_changes = cli_summary(cli) || cli->json || cli->report;
+  out->repair.intersections =
+      out->defects.intersections ||
+      (out->repair.part_changes && (out->repair.unite || out->repair.level == VXM_LEVEL_SOLID));
   out->repair.single_precision = strcmp(out->write.format, "stl") == 0;
   return CLI_DONE;
 }
@@ -222,13 +227,17 @@ static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outco
   if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, given->input, raw);
-  int status = cli_defects_show(cli, &outcome->defects, &given->defects, raw);
+  cli_defects wanted = given->defects; /* the repair counts intersections itself */
+  wanted.intersections = wanted.intersections && (wanted.list || wanted.locate);
+  int status = cli_defects_show(cli, &outcome->found, &wanted, raw);
   if (status == CLI_DONE &&
       vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &given->repair, &cli->error) != VXM_OK)
     status = cli_fail(cli);
   vxm_mesh_destroy(raw);
   if (status == CLI_DONE && vxm_mesh_face_count(outcome->mesh) == 0)
     return cli_fail_text(cli, "%s: no face is left after repair", cli_shown(given->input, "<stdin>"));
+  if (status == CLI_DONE && outcome->repair.ununited_parts > 0)
+    repair_warn_ununited(cli, given->input, outcome);
   return status;
 }
 
@@ -279,7 +288,7 @@ static int run(cli_run *cli) {
     return CLI_FAILED;
   repair_outcome outcome = {.level = given.repair.level};
   int status = finish(cli, &given, &outcome);
-  json_decref(outcome.defects);
+  json_decref(outcome.found.list);
   vxm_mesh_destroy(outcome.mesh);
   return status;
 }

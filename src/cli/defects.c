@@ -54,19 +54,21 @@ static json_t *list_json(const vxm_defects *found, int64_t most) {
   return list;
 }
 
-int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, const vxm_mesh *mesh) {
+int cli_defects_show(cli_run *cli, cli_found *out, const cli_defects *wanted, const vxm_mesh *mesh) {
   vxm_defects *found = NULL;
-  *list = NULL;
-  if (!wanted->list && !wanted->locate)
+  *out = (cli_found){.intersections = -1};
+  if (!wanted->list && !wanted->locate && !wanted->intersections)
     return CLI_DONE;
-  int64_t most = wanted->locate ? 0 : wanted->list;
+  int64_t most = wanted->locate ? 0 : wanted->list ? wanted->list : 1;
   vxm_status status = vxm_mesh_defects(&found, mesh, most, wanted->intersections, &cli->error);
   if (status == VXM_OK && wanted->locate)
     status = vxm_defects_write(found, mesh, wanted->locate, &cli->error);
   if (status == VXM_OK && wanted->locate)
     cli->located = wanted->locate;
   if (status == VXM_OK && wanted->list)
-    *list = list_json(found, wanted->list);
+    out->list = list_json(found, wanted->list);
+  if (status == VXM_OK)
+    out->intersections = vxm_defects_total(found, VXM_DEFECT_SELF_INTERSECTION);
   vxm_defects_destroy(found);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }

@@ -16,6 +16,8 @@ static json_t *state_json(const vxm_part_state *state) {
   json_object_set_new(object, "nonmanifold_edges", json_integer(state->nonmanifold_edges));
   json_object_set_new(object, "inconsistent_edges", json_integer(state->inconsistent_edges));
   json_object_set_new(object, "holes", json_integer(state->holes));
+  if (state->self_intersections >= 0)
+    json_object_set_new(object, "self_intersections", json_integer(state->self_intersections));
   json_object_set_new(object, "closed", json_boolean(state->closed));
   json_object_set_new(object, "area", cli_json_number(state->area));
   json_object_set_new(object, "volume", cli_json_number(state->volume));
@@ -34,6 +36,7 @@ static json_t *parts_json(const vxm_mesh *mesh) {
     json_object_set_new(part, "after", state_json(&changes[i].after));
     json_object_set_new(part, "flipped", json_integer(changes[i].flipped));
     json_object_set_new(part, "moved", cli_json_number(changes[i].moved));
+    json_object_set_new(part, "ununited", json_boolean(changes[i].ununited));
     json_array_append_new(parts, part);
   }
   return parts;
@@ -64,6 +67,10 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_t *before = json_object(), *after = json_object(), *report = json_object();
   cli_census_json(before, &repair->before);
   cli_census_json(after, &repair->after);
+  if (repair->self_intersections_before >= 0) {
+    json_object_set_new(before, "self_intersections", json_integer(repair->self_intersections_before));
+    json_object_set_new(after, "self_intersections", json_integer(repair->self_intersections_after));
+  }
   json_object_set_new(report, "input", cli_json_text(input));
   json_object_set_new(report, "output", output ? cli_json_text(output) : json_null());
   json_object_set_new(report, "verified", verification_json(outcome));
@@ -78,15 +85,15 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "before", before);
   json_object_set_new(report, "after", after);
   json_object_set_new(report, "parts", parts_json(outcome->mesh));
-  if (outcome->defects)
-    json_object_set(report, "defects", outcome->defects);
+  if (outcome->found.list)
+    json_object_set(report, "defects", outcome->found.list);
   json_object_set(report, "warnings", cli->warnings);
   return report;
 }
 
 /* ---- Text ---- */
 
-enum { PARTS_SHOWN = 12 };
+enum { PARTS_SHOWN = 12, NAMED = 5 };
 
 static void part_row(const cli_run *cli, const vxm_mesh *mesh, int64_t i) {
   const vxm_part_change *part = &vxm_mesh_part_changes(mesh)[i];
@@ -138,8 +145,34 @@ static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair) 
   if (repair->unfilled_holes > 0)
     fprintf(cli->text, "\n%" PRId64 " holes could not be filled\n", repair->unfilled_holes);
   if (repair->ununited_parts > 0)
-    fprintf(cli->text, "\n%" PRId64 " parts cut through themselves and were not united\n",
-            repair->ununited_parts);
+    fprintf(cli->text, "\n%" PRId64 " parts were not united\n", repair->ununited_parts);
+}
+
+/** The name of a part, or else its number. */
+static void part_name(char *out, size_t size, const vxm_mesh *mesh, int64_t part) {
+  uint32_t tag = vxm_mesh_part_changes(mesh)[part].tag;
+  if (tag != UINT32_MAX)
+    snprintf(out, size, "%s", vxm_mesh_tag_name(mesh, tag));
+  else
+    snprintf(out, size, "%" PRId64, part);
+}
+
+void repair_warn_ununited(cli_run *cli, const char *input, const repair_outcome *outcome) {
+  char list[256] = "", name[40];
+  size_t length = 0;
+  int64_t count = 0;
+  for (int64_t i = 0; i < vxm_mesh_part_change_count(outcome->mesh); i++) {
+    if (!vxm_mesh_part_changes(outcome->mesh)[i].ununited || count++ >= NAMED)
+      continue;
+    part_name(name, sizeof name, outcome->mesh, i);
+    length += (size_t)snprintf(list + length, sizeof list - length, "%s%s", length ? ", " : "", name);
+  }
+  if (count > NAMED)
+    snprintf(list + length, sizeof list - length, " and %" PRId64 " more", count - NAMED);
+  cli_warn(cli,
+           "%s: %" PRId64
+           " parts still cut through others or themselves, and what is open has no inside to unite: %s",
+           cli_shown(input, "<stdin>"), count, list);
 }
 
 void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome) {
@@ -162,10 +195,13 @@ void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *
 
 void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
   cli_census_print_both(cli, &outcome->repair.before, &outcome->repair.after);
+  if (outcome->repair.self_intersections_before >= 0)
+    fprintf(cli->text, "  %-26s %12" PRId64 " %12" PRId64 "\n", "self intersections",
+            outcome->repair.self_intersections_before, outcome->repair.self_intersections_after);
   summarize_passes(cli, &outcome->repair);
   summarize_parts(cli, outcome->mesh);
   summarize_rest(cli, &outcome->repair);
-  cli_defects_print(cli, outcome->defects);
+  cli_defects_print(cli, outcome->found.list);
   fprintf(cli->text, "\nLevel %s: %s\n", repair_levels[outcome->level],
           outcome->verification.reached ? "verified in the file as it was read back" : "not reached");
   repair_say_remains(cli, cli->text, outcome);

@@ -7,7 +7,7 @@
 
 /**
  * Measures parts, after welding identical positions. An edge that has faces of several parts after welding
- * counts for the first of them.
+ * counts for the first of them. Self-intersections are left at -1.
  *
  * @param out        part_count elements
  * @param face_parts per face: its part

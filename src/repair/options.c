@@ -29,6 +29,11 @@ vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "repair: wrap %g, %g; both are fractions of the diagonal, 0 to 1", options->wrap_alpha,
                     options->wrap_offset);
+  if (options->wrap_alpha > 0 && (options->fill_holes != 0 || options->fill != VXM_FILL_FAN ||
+                                  options->unite || options->max_change > 0))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "repair: a wrap makes a new surface, without holes or parts to compare; leave out "
+                    "fill_holes, fill, unite and max_change");
   if (!(options->max_change >= 0) || !isfinite(options->max_change))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
                     options->max_change);

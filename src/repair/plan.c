@@ -116,13 +116,16 @@ static vxm_status run_level(vxm_work *work, bool *moved, vxm_error *error) {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
   } further[] = {{separate_until_quiet, true}, {vxm_pass_closing, true},     {vxm_pass_small_parts, true},
-                 {vxm_pass_union, false},      {vxm_pass_separation, false}, {move_apart, true}};
+                 {vxm_pass_union, false},      {vxm_pass_separation, false}, {move_apart, true},
+                 {vxm_pass_reunion, false},    {vxm_pass_separation, false}, {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
+  *moved = false;
   for (int i = 0; i < FURTHER && status == VXM_OK; i++) {
-    bool turned;
-    status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, moved, error);
-    if (status == VXM_OK && *moved && further[i].turns)
+    bool changed, turned;
+    status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, &changed, error);
+    *moved = *moved || (changed && further[i].pass == move_apart);
+    if (status == VXM_OK && changed && further[i].turns)
       status = run_pass(work, vxm_pass_orientation, 0.9 + 0.1 * i / FURTHER, &turned, error);
   }
   return status;
@@ -188,7 +191,7 @@ static vxm_status run_passes(vxm_work *work, vxm_error *error) {
 }
 
 static bool keeps_account(const vxm_repair_options *options) {
-  return options->part_changes || options->max_change > 0;
+  return options->part_changes || options->max_change > 0 || options->intersections;
 }
 
 static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, vxm_error *error) {
@@ -203,6 +206,8 @@ static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, vxm_error *err
     status = run_passes(work, error);
   if (status == VXM_OK && work->track)
     status = vxm_track_finish(work->track, work->soup, work->options.max_change, error);
+  if (status == VXM_OK && work->options.intersections)
+    status = vxm_track_count_crossings(work->track, work->soup, work->crossings, error);
   vxm_work_touch(work);
   vxm_track_destroy(work->track);
   vxm_free(work->context, work->turned);
@@ -216,6 +221,8 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   report->open_parts = work->open_parts;
   report->unfilled_holes = work->unfilled;
   report->ununited_parts = work->ununited;
+  report->self_intersections_before = work->crossings[0];
+  report->self_intersections_after = work->crossings[1];
   report->unparted_vertices = work->together;
   for (size_t i = 0; i < work->soup->part_count; i++) {
     const vxm_part_change *part = &work->soup->part_changes[i];
@@ -249,7 +256,7 @@ vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_s
                           const vxm_repair_options *options, vxm_error *error) {
   *out = NULL;
   vxm_repair_report made = {0};
-  vxm_work work = {0};
+  vxm_work work = {.crossings = {-1, -1}};
   vxm_status status = report ? vxm_soup_census(&made.before, in, error) : VXM_OK;
   if (status == VXM_OK)
     status = repair(&work, in, options, error);

@@ -4,6 +4,7 @@
 #include "mesh/components.h"
 #include "mesh/part_state.h"
 #include "mesh/weld.h"
+#include "repair/crossings.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -23,6 +24,7 @@ struct vxm_track {
   double *most;        /**< per part, scratch: largest distance in a stage */
   int64_t *flipped;    /**< per part */
   bool *dropped;       /**< per part: it was to be */
+  bool *left;          /**< per part: it was to be united and was not */
   /* The present stage: as long as it lasts, vertices keep their numbers. */
   size_t vertex_count;
   double *from;          /**< per vertex: where it began */
@@ -47,7 +49,9 @@ static bool allocate_parts(vxm_track *track, vxm_error *error) {
     track->flipped = vxm_calloc(track->context, track->part_count, sizeof *track->flipped, error);
   if (track->flipped)
     track->dropped = vxm_calloc(track->context, track->part_count, sizeof *track->dropped, error);
-  return track->dropped != NULL;
+  if (track->dropped)
+    track->left = vxm_calloc(track->context, track->part_count, sizeof *track->left, error);
+  return track->left != NULL;
 }
 
 vxm_status vxm_track_start(vxm_track *track, const vxm_soup *soup, vxm_error *error) {
@@ -124,6 +128,7 @@ void vxm_track_destroy(vxm_track *track) {
   if (!track)
     return;
   free_stage(track);
+  vxm_free(track->context, track->left);
   vxm_free(track->context, track->dropped);
   vxm_free(track->context, track->flipped);
   vxm_free(track->context, track->most);
@@ -140,6 +145,16 @@ void vxm_track_merge(vxm_track *track, const uint32_t *map) {
 
 void vxm_track_turn(vxm_track *track, uint32_t part) {
   track->flipped[part]++;
+}
+
+size_t vxm_track_part_count(const vxm_track *track) {
+  return track->part_count;
+}
+
+bool vxm_track_leave(vxm_track *track, uint32_t part) {
+  bool known = track->left[part];
+  track->left[part] = true;
+  return !known;
 }
 
 void vxm_track_drop(vxm_track *track, uint32_t part) {
@@ -239,8 +254,12 @@ vxm_status vxm_track_refer(vxm_track *track, const vxm_soup *soup, vxm_error *er
 static vxm_status measure(vxm_track *track, vxm_soup *soup, vxm_part_state *states, vxm_error *error) {
   vxm_status status = vxm_part_states(states, track->part_count, track->in, track->face_part, error);
   for (size_t i = 0; status == VXM_OK && i < track->part_count; i++)
-    soup->part_changes[i] = (vxm_part_change){
-        .before = states[i], .flipped = track->flipped[i], .moved = track->moved[i], .tag = UINT32_MAX};
+    soup->part_changes[i] = (vxm_part_change){.before = states[i],
+                                              .flipped = track->flipped[i],
+                                              .moved = track->moved[i],
+                                              .tag = UINT32_MAX,
+                                              .after = {.self_intersections = -1},
+                                              .ununited = track->left[i]};
   for (size_t f = track->in->face_count; status == VXM_OK && track->in->face_tags && f-- > 0;)
     soup->part_changes[track->face_part[f]].tag = track->in->face_tags[f];
   if (status != VXM_OK || !soup->face_parts) /* a wrap has no parts */
@@ -261,6 +280,26 @@ vxm_status vxm_track_finish(vxm_track *track, vxm_soup *soup, double max_change,
   soup->part_count = status == VXM_OK ? track->part_count : 0;
   if (status == VXM_OK && max_change > 0)
     status = check(track, soup, max_change, &local);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+vxm_status vxm_track_count_crossings(vxm_track *track, vxm_soup *soup, int64_t totals[2], vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_part_state *states = vxm_calloc(track->context, track->part_count, sizeof *states, &local);
+  vxm_status status = local.code;
+  if (status == VXM_OK)
+    status = vxm_crossings_count(&totals[0], states, track->part_count, track->face_part, track->in, &local);
+  for (size_t i = 0; status == VXM_OK && i < track->part_count; i++)
+    soup->part_changes[i].before.self_intersections = states[i].self_intersections;
+  bool parts = soup->face_parts != NULL;
+  if (status == VXM_OK)
+    status = vxm_crossings_count(&totals[1], parts ? states : NULL, track->part_count, soup->face_parts, soup,
+                                 &local);
+  for (size_t i = 0; status == VXM_OK && parts && i < track->part_count; i++)
+    soup->part_changes[i].after.self_intersections = states[i].self_intersections;
+  vxm_free(track->context, states);
   if (status != VXM_OK && error)
     *error = local;
   return status;

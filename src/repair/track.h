@@ -25,6 +25,9 @@ void vxm_track_settle(vxm_track *track, const vxm_soup *soup);
 vxm_status vxm_track_refer(vxm_track *track, const vxm_soup *soup, vxm_error *error);
 /** A face of a part was turned, in the end. */
 void vxm_track_turn(vxm_track *track, uint32_t part);
+size_t vxm_track_part_count(const vxm_track *track);
+/** A part was to be united and could not be; false if that was known. */
+bool vxm_track_leave(vxm_track *track, uint32_t part);
 /** A part is to have no faces. */
 void vxm_track_drop(vxm_track *track, uint32_t part);
 /**
@@ -34,5 +37,7 @@ void vxm_track_drop(vxm_track *track, uint32_t part);
  * @return VXM_OK; VXM_ERROR_UNREACHED if a part changed by more; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
 vxm_status vxm_track_finish(vxm_track *track, vxm_soup *soup, double max_change, vxm_error *error);
+/** Then counts self-intersections, by part and in all: before and after. */
+vxm_status vxm_track_count_crossings(vxm_track *track, vxm_soup *soup, int64_t totals[2], vxm_error *error);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "mesh/weld.h"
 #include "meshio/meshio.h"
-#include "repair/cgal.h"
+#include "repair/crossings.h"
 #include "repair/fans.h"
 #include "repair/sides.h"
 
@@ -45,7 +45,8 @@ static vxm_status verify_rest(verifying *v, const vxm_soup *soup, vxm_error *err
   if (again.level > VXM_LEVEL_MANIFOLD)
     again.level = VXM_LEVEL_MANIFOLD;
   again.fill_holes = again.drop_faces = 0;
-  again.unite = again.part_changes = false;
+  again.fill = VXM_FILL_FAN;
+  again.unite = again.part_changes = again.intersections = false;
   if (again.wrap_alpha > 0)
     again.weld = VXM_WELD_OFF; /* the mesh was welded before it was wrapped, not after */
   again.wrap_alpha = again.wrap_offset = again.max_change = again.drop_volume = 0;
@@ -128,22 +129,39 @@ static vxm_status verify_manifold(verifying *v, vxm_error *error) {
 
 /* ---- Solid ---- */
 
-enum { PAIRS_MOST = 1000 };
+static void add_face(verifying *v, const char *what, int64_t count, size_t first) {
+  size_t corners;
+  const uint32_t *corner = vxm_face(v->work.soup, first, &corners);
+  add(v, what, count, (int64_t)first, vxm_position(v->work.soup, corner[0]));
+}
+
+/** Faces that look into the solid: what is outward and what bounds a cavity follows from where the parts lie.
+ */
+static vxm_status verify_outward(verifying *v, vxm_error *error) {
+  const vxm_soup *soup = v->work.soup;
+  const vxm_cgal *cgal;
+  vxm_soup *turned = NULL;
+  int64_t count = 0;
+  vxm_status status = vxm_cgal_open(&cgal, "looking for the outside", error);
+  if (status == VXM_OK)
+    status = cgal->orient(&turned, &count, soup, error);
+  for (size_t f = 0; status == VXM_OK && count > 0 && f < soup->face_count; f++)
+    if (memcmp(soup->indices + soup->offsets[f], turned->indices + soup->offsets[f],
+               (size_t)(soup->offsets[f + 1] - soup->offsets[f]) * sizeof *soup->indices) != 0) {
+      add_face(v, "inward_faces", count, f);
+      break;
+    }
+  vxm_soup_destroy(turned);
+  return status;
+}
 
 static vxm_status verify_solid(verifying *v, vxm_error *error) {
-  const vxm_cgal *cgal;
-  vxm_face_pairs pairs = {0};
-  vxm_status status = vxm_cgal_open(&cgal, "looking for self-intersections", error);
-  if (status == VXM_OK)
-    status = cgal->self_intersections(&pairs, v->work.soup, PAIRS_MOST, error);
-  if (status == VXM_OK && pairs.count > 0) {
-    size_t count;
-    const uint32_t *corner = vxm_face(v->work.soup, pairs.pairs[0].first, &count);
-    add(v, "self_intersections", (int64_t)pairs.count, (int64_t)pairs.pairs[0].first,
-        vxm_position(v->work.soup, corner[0]));
-  }
+  vxm_face_pairs pairs;
+  vxm_status status = vxm_crossings_find(&pairs, v->work.soup, VXM_CROSSINGS_MOST, error);
+  if (status == VXM_OK && pairs.count > 0)
+    add_face(v, "self_intersections", (int64_t)pairs.count, pairs.pairs[0].first);
   vxm_free(v->work.context, pairs.pairs);
-  return status;
+  return status == VXM_OK && v->out->reached ? verify_outward(v, error) : status;
 }
 
 /** A copy that a program makes which welds: positions that are the same are one vertex, the first one. */

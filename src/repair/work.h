@@ -58,9 +58,10 @@ typedef struct vxm_work {
   int64_t nonorientable;                   /**< patches, in the last pass of orientation */
   int64_t open_parts;                      /**< that the last pass of closing left open */
   int64_t unfilled;                        /**< holes that were to be filled and could not be */
-  int64_t ununited;                        /**< parts that were to be united and could not be */
-  int64_t together;                        /**< vertices that were to be moved apart and could not be */
-  vxm_track *track;                        /**< what becomes of the parts, or NULL */
+  int64_t ununited;     /**< parts that were to be united and still cut through themselves or others */
+  int64_t crossings[2]; /**< self-intersections before and after, or -1 */
+  int64_t together;     /**< vertices that were to be moved apart and could not be */
+  vxm_track *track;     /**< what becomes of the parts, or NULL */
 } vxm_work;
 
 /** Runs a pass, adds to the counts and says whether it changed anything. */
@@ -79,6 +80,7 @@ vxm_status vxm_pass_separation(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_small_parts(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_union(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_reunion(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_apart(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_unused(vxm_work *work, bool *changed, vxm_error *error);
 
