@@ -402,6 +402,9 @@ private:
 
 /* ---- All planes ---- */
 
+/** Points that are made where triangles meet, at most, beside four for each vertex. */
+constexpr size_t FRESH = 200000;
+
 class Planes {
 public:
   explicit Planes(size_t count) : leader_(count) {
@@ -426,11 +429,16 @@ private:
 Pieces arrange(const Surface &surface, const Meetings &meetings, Meter &meter) {
   const Sheet &sheet = surface.sheet;
   Pieces out(surface);
+  /* Each takes some 50 us and memory for exact numbers: a heap of faces would take hours, and has no inside.
+   */
+  size_t most = FRESH + 4 * surface.points.size();
   Crossings crossings(surface, &out.points);
   Planes planes(sheet.size());
   std::vector<std::vector<Line>> lines(sheet.size());
   for (size_t m = 0; m < meetings.size(); m++) {
     meter.progress(0.5 * (double)m / (double)meetings.size());
+    if (out.points.size() > most)
+      throw std::length_error("a part that cuts through itself nearly everywhere");
     uint32_t t = meetings[m].first, u = meetings[m].second;
     std::array<int, 3> t_sides = crossings.sides(t, u);
     if (t_sides[0] == 0 && t_sides[1] == 0 && t_sides[2] == 0) {
