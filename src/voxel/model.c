@@ -17,7 +17,7 @@ static vxm_status make_shape(vxm_model *model, const vxm_soup *soup, vxm_error *
   *shape = (vxm_shape){.context = model->context, .soup = soup, .options = options};
   shape->open_turns.context = shape->all_turns.context = model->context;
   shape->workspace = vxm_workspace_of(model->context);
-  model->run = (vxm_run){.shape = shape, .placed = {.context = model->context}};
+  model->run = (vxm_run){.shape = shape, .placed = {.context = model->context}, .engine = options->engine};
   model->run.open_wound.context = model->run.all_wound.context = model->context;
   vxm_split_rule rule = {options->parts, options->cavities, vxm_caps_wanted(options)};
   vxm_status status = vxm_facets_create(&shape->facets, soup, rule, error);
@@ -226,7 +226,7 @@ vxm_status vxm_model_fill(vxm_model *model, const vxm_window *window, vxm_error 
   if (run->confidence) /* exact everywhere */
     memset(run->confidence, 255,
            (size_t)window->fast_dim * (size_t)window->middle_dim * (size_t)window->slow_dim);
-  return vxm_surface_add(model->surface, window, kind, !solid, error);
+  return vxm_run_surface(run, model->surface, window, kind, !solid, error);
 }
 
 /* ---- Report and warnings ---- */

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Flips the presence of a voxel, in a format in which the driver's XOR passed the self-test. */
+#if defined IMAGE
+layout(r32ui, binding = 0) coherent uniform uimage2DArray presence;
+layout(location = 7) uniform uint layer;
+void main() {
+  imageAtomicXor(presence, ivec3(gl_FragCoord.xy, int(layer)), 1u);
+}
+#elif defined NORMALIZED
+layout(location = 0) out vec4 presence;
+void main() {
+  presence = vec4(1.0);
+}
+#else
+layout(location = 0) out uint presence;
+void main() {
+  presence = 1u;
+}
+#endif

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gpu/opengl.h"
+
+/** Differences of facets that the shaders do: shaders/crossing.glsl. */
+static const int64_t reach = INT64_C(1) << 20;
+
+static bool is_far_point(const vxm_point *p) {
+  for (int a = 0; a < 3; a++)
+    if (p->at[a] >= VXM_NARROW_MAX || p->at[a] <= -VXM_NARROW_MAX)
+      return true;
+  return false;
+}
+
+static bool is_far(const vxm_placed *placed, const uint32_t corners[3]) {
+  vxm_point p[3];
+  bool beyond = false;
+  for (int c = 0; c < 3; c++) {
+    p[c] = vxm_placed_at(placed, corners[c]);
+    beyond |= is_far_point(&p[c]);
+  }
+  for (int a = 0; a < 3; a++) {
+    int64_t low = vxm_min(vxm_min(p[0].at[a], p[1].at[a]), p[2].at[a]);
+    int64_t high = vxm_max(vxm_max(p[0].at[a], p[1].at[a]), p[2].at[a]);
+    beyond |= high - low > reach;
+  }
+  return beyond;
+}
+
+/** Whether all points lie so close together that no facet can be far. */
+static bool are_all_near(const vxm_placed *placed, size_t count) {
+  int32_t low[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, high[3] = {INT32_MIN, INT32_MIN, INT32_MIN};
+  if (placed->wide)
+    return false;
+  for (size_t p = 0; p < count; p++)
+    for (int a = 0; a < 3; a++) {
+      int32_t at = placed->narrow[p][a];
+      low[a] = at < low[a] ? at : low[a];
+      high[a] = at > high[a] ? at : high[a];
+    }
+  for (int a = 0; a < 3; a++)
+    if ((int64_t)high[a] - low[a] > reach)
+      return false;
+  return true;
+}
+
+static vxm_status list_far(vxm_opengl *engine, const vxm_facets *facets, const vxm_placed *placed,
+                           vxm_error *error) {
+  engine->far_count = 0;
+  if (are_all_near(placed, facets->point_count))
+    return VXM_OK;
+  vxm_status status = VXM_OK;
+  for (size_t f = 0; f < facets->facet_count && status == VXM_OK; f++) {
+    if (!is_far(placed, facets->corners[f]))
+      continue;
+    status = vxm_grow(engine->base.context, (void **)&engine->far, &engine->far_capacity,
+                      engine->far_count + 1, sizeof *engine->far, error);
+    if (status == VXM_OK)
+      engine->far[engine->far_count++] = (uint32_t)f;
+  }
+  return status;
+}
+
+/** Points that do not fit 32 bits are marked, and their facets left to the CPU. */
+static vxm_status upload_wide(vxm_opengl *engine, const vxm_placed *placed, size_t count, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  int32_t(*points)[4] = vxm_alloc(engine->base.context, count, sizeof *points, &local);
+  for (size_t p = 0; points && p < count; p++) {
+    points[p][3] = is_far_point(&placed->wide[p]);
+    for (int a = 0; a < 3; a++)
+      points[p][a] = points[p][3] ? 0 : (int32_t)placed->wide[p].at[a];
+  }
+  vxm_status status =
+      points ? vxm_gl_upload(engine, VXM_GL_POINTS, points, count * sizeof *points, &local) : local.code;
+  vxm_free(engine->base.context, points);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+vxm_status vxm_gl_place(vxm_opengl *engine, const vxm_facets *facets, const vxm_placed *placed,
+                        vxm_error *error) {
+  vxm_status status = VXM_OK;
+  if (engine->facets_serial != facets->serial) {
+    engine->facets_serial = 0;
+    status = vxm_gl_upload(engine, VXM_GL_CORNERS, facets->corners,
+                           facets->facet_count * sizeof *facets->corners, error);
+    if (status != VXM_OK)
+      return status;
+    engine->facets_serial = facets->serial;
+  }
+  if (engine->placed_serial == placed->serial)
+    return VXM_OK;
+  engine->placed_serial = 0;
+  size_t count = facets->point_count;
+  status = placed->wide
+               ? upload_wide(engine, placed, count, error)
+               : vxm_gl_upload(engine, VXM_GL_POINTS, placed->narrow, count * sizeof *placed->narrow, error);
+  if (status == VXM_OK)
+    status = list_far(engine, facets, placed, error);
+  if (status == VXM_OK)
+    engine->placed_serial = placed->serial;
+  return status;
+}
