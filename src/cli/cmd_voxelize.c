@@ -88,6 +88,7 @@ static const cli_option known_options[] = {
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
+    CLI_OPTIONS_ENGINE,
     CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
@@ -245,6 +246,11 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
   case KEY_KEEP:
     out->repair_options = out->repair.keep_duplicates = true;
     return CLI_END;
+  case CLI_KEY_ENGINE:
+  case CLI_KEY_GL_METHOD:
+  case CLI_KEY_GL_AXIS:
+  case CLI_KEY_GL_DISPLACE:
+    return cli_engine_read(cli, &out->engine, key, value);
   default:
     return read_space_option(cli, out, key, value);
   }
@@ -286,6 +292,10 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
                         (given->confidence && strcmp(given->coords, given->confidence) == 0)))
     return cli_usage(cli, "--coords and another output name the same file");
+  if (given->engine.name && given->sparse)
+    return cli_usage(cli, "--sparse is made by the CPU; leave out --engine");
+  if (cli_engine_check(cli, &given->engine) == CLI_STOP)
+    return CLI_STOP;
   if (given->no_repair && given->repair_options)
     return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
   return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);
@@ -421,7 +431,7 @@ static const uint64_t LARGE_GRID = UINT64_C(1) << 26;
 static bool takes_octree(const voxelize_request *given, const voxelize_outcome *results) {
   if (given->sparse)
     return true;
-  return given->coords && !given->confidence && is_sliced(given->format) &&
+  return given->coords && !given->confidence && !given->engine.name && is_sliced(given->format) &&
          results->estimate.grid_bytes >= LARGE_GRID;
 }
 
@@ -438,6 +448,9 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   vxm_model *model = NULL;
   double start = cli_clock();
   vxm_status status = vxm_space_fit(&results->space, mesh, &given->voxelize.space, &cli->error);
+  if (status == VXM_OK && !given->dry_run)
+    status = cli_engine_open(cli, &given->engine);
+  given->voxelize.engine = given->engine.engine;
   if (status == VXM_OK)
     status = vxm_model_create(&model, mesh, &given->voxelize, &cli->error);
   if (status == VXM_OK && given->sparse) /* what an octree takes is known when it is made */
@@ -461,8 +474,10 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
 }
 
 static int run(cli_run *cli) {
-  voxelize_request given = {
-      .repair = VXM_REPAIR_OPTIONS_INIT, .voxelize = VXM_VOXELIZE_OPTIONS_INIT, .field = CLI_FIELD_INIT};
+  voxelize_request given = {.repair = VXM_REPAIR_OPTIONS_INIT,
+                            .voxelize = VXM_VOXELIZE_OPTIONS_INIT,
+                            .field = CLI_FIELD_INIT,
+                            .engine = CLI_ENGINE_INIT};
   if (read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
@@ -480,14 +495,15 @@ static int run(cli_run *cli) {
     return CLI_FAILED;
   int status = make_file(cli, &given, &results);
   vxm_mesh_destroy(results.input.mesh);
-  if (status != CLI_DONE)
-    return status;
-  results.total_ms = cli_clock() - start;
-  cli_progress_clear(cli);
-  if (cli_summary(cli) && !given.dry_run)
-    voxelize_summarize(cli, &given, &results);
-  status = cli_finish(cli, voxelize_report(cli, &given, &results));
+  if (status == CLI_DONE) {
+    results.total_ms = cli_clock() - start;
+    cli_progress_clear(cli);
+    if (cli_summary(cli) && !given.dry_run)
+      voxelize_summarize(cli, &given, &results);
+    status = cli_finish(cli, voxelize_report(cli, &given, &results));
+  }
   json_decref(given.field.label_table);
+  vxm_engine_destroy(given.engine.engine);
   return status;
 }
 
