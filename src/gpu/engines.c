@@ -57,6 +57,8 @@ static vxm_status make_any(vxm_engine **out, vxm_context *context, bool hardware
       return status;
     }
   }
+  if (hardware)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "no hardware device with OpenGL 4.3 is found through EGL");
   return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
                   "no OpenGL 4.3 here (%.110s; %.110s; %.110s): install libegl1 and libgl1-mesa-dri, or "
                   "libosmesa6",

@@ -71,11 +71,11 @@
   X(PIXELSTOREI, PixelStorei)                         \
   X(READPIXELS, ReadPixels)                           \
   X(SHADERSOURCE, ShaderSource)                       \
-  X(TEXSTORAGE2D, TexStorage2D)                       \
+  X(TEXPARAMETERI, TexParameteri)                     \
   X(TEXSTORAGE3D, TexStorage3D)                       \
   X(UNIFORM1I, Uniform1i)                             \
   X(UNIFORM1UI, Uniform1ui)                           \
-  X(UNIFORM3UI, Uniform3ui)                           \
+  X(UNIFORM4I, Uniform4i)                             \
   X(UNIFORM4UI, Uniform4ui)                           \
   X(UNMAPBUFFER, UnmapBuffer)                         \
   X(USEPROGRAM, UseProgram)                           \

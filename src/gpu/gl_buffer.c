@@ -58,6 +58,16 @@ vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *da
   return VXM_OK;
 }
 
+void vxm_gl_presence_release(vxm_opengl *engine) {
+  vxm_gl_presence *presence = &engine->presence;
+  if (presence->texture)
+    engine->context.gl.DeleteTextures(1, &presence->texture);
+  if (presence->framebuffer)
+    engine->context.gl.DeleteFramebuffers(1, &presence->framebuffer);
+  vxm_memory_give(engine->base.context, presence->bytes);
+  *presence = (vxm_gl_presence){0};
+}
+
 void vxm_gl_bind(vxm_opengl *engine, GLuint binding, vxm_gl_buffer_id id) {
   GLenum kind = id == VXM_GL_JOB ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
   engine->context.gl.BindBufferBase(kind, binding, engine->buffers[id].name);

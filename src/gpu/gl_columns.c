@@ -12,7 +12,7 @@ enum {
   LARGE_HEADER = 4  /**< words of an indirect draw */
 };
 
-static vxm_gl_job job_of(const vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job) {
+vxm_gl_job vxm_gl_job_of(const vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job) {
   vxm_window part = *tile->window;
   part.begin = tile->begin;
   part.end = tile->end;
@@ -100,7 +100,7 @@ static vxm_status flip_far(vxm_opengl *engine, const vxm_gl_job *gl_job, const v
   return status;
 }
 
-static vxm_status touch(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_gl_passes *passes, size_t pass,
+vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_gl_passes *passes, size_t pass,
                         vxm_error *error) {
   size_t first = pass > 0 ? passes->box_end[pass - 1] : 0, count = passes->box_end[pass] - first;
   vxm_status status = vxm_gl_use(engine, VXM_GL_TOUCH, error);
@@ -145,7 +145,7 @@ static vxm_status fold(vxm_opengl *engine, const vxm_gl_tile *tile, int axis, vx
 
 vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
                           const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
-  vxm_gl_job gl_job = job_of(engine, tile, job);
+  vxm_gl_job gl_job = vxm_gl_job_of(engine, tile, job);
   size_t bytes = tile->words * sizeof(uint64_t), begin = 0;
   vxm_status status = vxm_gl_reserve_zero(engine, VXM_GL_FLIPS, bytes, error);
   if (status == VXM_OK)
@@ -162,7 +162,7 @@ vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm
     if (status == VXM_OK)
       status = flip_far(engine, &gl_job, job, passes, p, error);
     if (status == VXM_OK && job->touched)
-      status = touch(engine, tile, passes, p, error);
+      status = vxm_gl_touch(engine, tile, passes, p, error);
     if (status == VXM_OK)
       status = fold(engine, tile, job->axis, into, p > 0, error);
     if (status == VXM_OK)

@@ -77,6 +77,20 @@ static vxm_status upload_wide(vxm_opengl *engine, const vxm_placed *placed, size
   return status;
 }
 
+static vxm_status upload_apexes(vxm_opengl *engine, const vxm_facets *facets, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  size_t count = facets->facet_count;
+  uint32_t *apex = vxm_alloc(engine->base.context, count, sizeof *apex, &local);
+  for (size_t f = 0; apex && f < count; f++)
+    apex[f] = vxm_apex_of(facets, facets->part[f]);
+  vxm_status status =
+      apex ? vxm_gl_upload(engine, VXM_GL_APEXES, apex, count * sizeof *apex, &local) : local.code;
+  vxm_free(engine->base.context, apex);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
 vxm_status vxm_gl_place(vxm_opengl *engine, const vxm_facets *facets, const vxm_placed *placed,
                         vxm_error *error) {
   vxm_status status = VXM_OK;
@@ -84,6 +98,8 @@ vxm_status vxm_gl_place(vxm_opengl *engine, const vxm_facets *facets, const vxm_
     engine->facets_serial = 0;
     status = vxm_gl_upload(engine, VXM_GL_CORNERS, facets->corners,
                            facets->facet_count * sizeof *facets->corners, error);
+    if (status == VXM_OK && engine->base.wants_apexes)
+      status = upload_apexes(engine, facets, error);
     if (status != VXM_OK)
       return status;
     engine->facets_serial = facets->serial;

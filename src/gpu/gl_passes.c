@@ -54,6 +54,8 @@ static box box_of(const division *d, size_t part) {
           high[a] = vxm_max(high[a], p.at[a]);
         }
       }
+  double move = d->engine->options.displacement;
+  int64_t margin = move > 0 ? (int64_t)(move < 1 << 20 ? move : 1 << 20) + 1 : 0;
   box out = {.part = (uint32_t)part, .row_bits = (uint32_t)(64 * d->window->row_words)};
   for (int i = 0; i < 3 && low[0] <= high[0]; i++) {
     int a = axes[i];
@@ -62,6 +64,8 @@ static box box_of(const division *d, size_t part) {
                                                   : d->window->slow_dim;
     int64_t first = vxm_lattice_first(&job->placed->lattice, low[a]);
     int64_t last = vxm_lattice_first(&job->placed->lattice, high[a]);
+    first -= margin;
+    last += margin;
     if (a == job->axis) /* what an open part flips stays flipped up to the end */
       last = is_closed(job, part) ? last + 2 : dim;
     out.first[i] = (uint32_t)vxm_min(vxm_max(first, 0), dim);
@@ -164,9 +168,8 @@ static vxm_status list_facets(division *d, vxm_error *error) {
       for (size_t f = begin[r]; f < end[r]; f++)
         order[(*to)++] = (uint32_t)f;
   }
-  vxm_status status = vxm_gl_upload(d->engine, VXM_GL_ORDER, order, total * sizeof *order, error);
-  vxm_free(d->engine->base.context, order);
-  return status;
+  passes->order = order;
+  return vxm_gl_upload(d->engine, VXM_GL_ORDER, order, total * sizeof *order, error);
 }
 
 /** Brings the boxes to the device, pass after pass. */
@@ -234,6 +237,7 @@ vxm_status vxm_gl_passes_create(vxm_gl_passes *out, vxm_opengl *engine, const vx
 
 void vxm_gl_passes_destroy(vxm_gl_passes *passes) {
   vxm_free(passes->context, passes->pass_of);
+  vxm_free(passes->context, passes->order);
   vxm_free(passes->context, passes->facet_end);
   vxm_free(passes->context, passes->box_end);
 }

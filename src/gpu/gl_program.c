@@ -97,6 +97,12 @@ vxm_status vxm_gl_use(vxm_opengl *engine, vxm_gl_program_id id, vxm_error *error
       [VXM_GL_FOLD_ACROSS] = {{"fold_across.comp"}, false},
       [VXM_GL_VOTE] = {{"vote.comp"}, false},
       [VXM_GL_TOUCH] = {{"touch.comp"}, false},
+      [VXM_GL_DRAW_SLICES] = {{"cover.glsl section.glsl slices.vert", "cover.glsl section.glsl slices.geom",
+                               "inside.glsl present.frag"},
+                              false},
+      [VXM_GL_DRAW_TETRA] = {{"cover.glsl section.glsl tetra.vert", "inside.glsl present.frag"}, false},
+      [VXM_GL_PACK] = {{"pack.comp"}, false},
+      [VXM_GL_MERGE] = {{"merge.comp"}, false},
   };
   vxm_status status = VXM_OK;
   if (sources[id].wide && !engine->base.info.int64)
@@ -104,9 +110,11 @@ vxm_status vxm_gl_use(vxm_opengl *engine, vxm_gl_program_id id, vxm_error *error
                     "%s has no GL_ARB_gpu_shader_int64, which exact columns need; use --gl-method slices or "
                     "--engine cpu",
                     engine->base.info.renderer);
+  char defines[160];
+  snprintf(defines, sizeof defines, "%s%s#define SECTION\n", sources[id].wide ? int64 : "",
+           engine->format->defines);
   if (!engine->programs[id])
-    status = vxm_gl_program(&engine->programs[id], &engine->context.gl, sources[id].stages,
-                            sources[id].wide ? int64 : "", error);
+    status = vxm_gl_program(&engine->programs[id], &engine->context.gl, sources[id].stages, defines, error);
   if (status == VXM_OK)
     engine->context.gl.UseProgram(engine->programs[id]);
   return status;

@@ -4,9 +4,11 @@
 
 #include <string.h>
 
+/** By the method that was chosen; parts that stay open have no tetrahedra to speak of, and go by columns. */
 static vxm_status make_tile(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
-                            const vxm_gl_passes *passes, vxm_error *error) {
-  return vxm_gl_columns(engine, tile, job, passes, VXM_GL_RESULT, error);
+                            const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
+  bool slices = engine->options.gl_method != VXM_GL_COLUMNS && vxm_gl_can_slice(job);
+  return (slices ? vxm_gl_slices : vxm_gl_columns)(engine, tile, job, passes, into, error);
 }
 
 /** Waits for what is under way after a failure, too: the driver may not lose a buffer that it writes. */
@@ -53,7 +55,7 @@ static vxm_status unite_tiles(vxm_opengl *engine, const vxm_window *window, cons
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
     vxm_gl_tile tile = vxm_gl_tile_of(window, k, slices);
-    status = make_tile(engine, &tile, job, passes, error);
+    status = make_tile(engine, &tile, job, passes, VXM_GL_RESULT, error);
     if (status != VXM_OK)
       break;
     back[which] = (vxm_gl_return){.tile = tile, .is_or = !job->fresh, .staging = which};
@@ -132,7 +134,7 @@ static vxm_status make_voter(vxm_opengl *engine, const vxm_gl_tile *tile, ballot
   vxm_gl_passes passes = {0};
   vxm_status status = vxm_gl_passes_create(&passes, engine, tile->window, &b->job[v], error);
   if (status == VXM_OK)
-    status = vxm_gl_columns(engine, tile, &b->job[v], &passes, b->words[v], error);
+    status = make_tile(engine, tile, &b->job[v], &passes, b->words[v], error);
   vxm_gl_passes_destroy(&passes);
   return status;
 }

@@ -61,18 +61,11 @@ static vxm_status read_limits(vxm_opengl *engine, vxm_error *error) {
 
 enum { TEST_SIDE = 16 };
 
-/** A format of what slices are drawn into, and how its fragments are written. */
-typedef struct format {
-  const char *name, *defines;
-  GLenum internal, read;
-} format;
+static const vxm_gl_format formats[] = {{"r8ui", "", GL_R8UI, GL_RED_INTEGER, 1, false},
+                                        {"r8", "#define NORMALIZED\n", GL_R8, GL_RED, 1, false},
+                                        {"image", "#define IMAGE\n", GL_R32UI, GL_RED_INTEGER, 4, true}};
 
-static const format formats[] = {{"r8ui", "", GL_R8UI, GL_RED_INTEGER},
-                                 {"r8", "#define NORMALIZED\n", GL_R8, GL_RED},
-                                 {"image", "#define IMAGE\n", GL_R32UI, GL_RED_INTEGER}};
-
-static void draw_test(const vxm_gl *gl, GLuint program, GLuint texture, const format *f) {
-  bool is_image = strcmp(f->name, "image") == 0;
+static void draw_test(const vxm_gl *gl, GLuint program, GLuint texture, const vxm_gl_format *f) {
   static const GLuint zeros[4] = {0, 0, 0, 0};
   static const GLfloat black[4] = {0, 0, 0, 0};
   const GLenum to = GL_COLOR_ATTACHMENT0, none = GL_NONE;
@@ -84,7 +77,7 @@ static void draw_test(const vxm_gl *gl, GLuint program, GLuint texture, const fo
   else
     gl->ClearBufferuiv(GL_COLOR, 0, zeros);
   gl->UseProgram(program);
-  if (is_image) {
+  if (f->is_image) {
     gl->DrawBuffers(1, &none);
     gl->BindImageTexture(0, texture, 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32UI);
   } else {
@@ -101,7 +94,7 @@ static void draw_test(const vxm_gl *gl, GLuint program, GLuint texture, const fo
 }
 
 /** Whether what was drawn twice is gone, and what was drawn once is there. */
-static bool passes_test(const vxm_gl *gl, const format *f) {
+static bool passes_test(const vxm_gl *gl, const vxm_gl_format *f) {
   uint32_t wide[TEST_SIDE * TEST_SIDE];
   uint8_t narrow[TEST_SIDE * TEST_SIDE];
   memset(wide, 0x55, sizeof wide);
@@ -120,7 +113,7 @@ static bool passes_test(const vxm_gl *gl, const format *f) {
   return true;
 }
 
-static bool try_format(vxm_opengl *engine, const format *f) {
+static bool try_format(vxm_opengl *engine, const vxm_gl_format *f) {
   static const char *const stages[] = {"test.vert", "present.frag", NULL};
   const vxm_gl *gl = &engine->context.gl;
   GLuint program, texture = 0, framebuffer = 0;
@@ -145,6 +138,7 @@ static vxm_status choose_attachment(vxm_opengl *engine, vxm_error *error) {
   vxm_engine_info *info = &engine->base.info;
   for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
     if (try_format(engine, &formats[i])) {
+      engine->format = &formats[i];
       snprintf(info->attachment, sizeof info->attachment, "%s", formats[i].name);
       return VXM_OK;
     }
@@ -164,6 +158,7 @@ static void destroy(vxm_engine *base) {
         gl->DeleteProgram(engine->programs[p]);
     for (int b = 0; b < VXM_GL_BUFFERS; b++)
       vxm_gl_release(engine, (vxm_gl_buffer_id)b);
+    vxm_gl_presence_release(engine);
     if (engine->framebuffer)
       gl->DeleteFramebuffers(1, &engine->framebuffer);
     if (engine->vertex_array)
@@ -206,6 +201,7 @@ vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_g
     return local.code;
   }
   engine->base.ops = &opengl_ops;
+  engine->base.wants_apexes = options->gl_method != VXM_GL_COLUMNS;
   engine->base.context = context;
   engine->options = *options;
   vxm_opengl_name(engine->base.info.name, sizeof engine->base.info.name, driver, index);

@@ -14,7 +14,10 @@ typedef enum vxm_gl_program_id {
   VXM_GL_FOLD_ACROSS,
   VXM_GL_VOTE,
   VXM_GL_TOUCH,
-  VXM_GL_TEST,
+  VXM_GL_DRAW_SLICES,
+  VXM_GL_DRAW_TETRA,
+  VXM_GL_PACK,
+  VXM_GL_MERGE,
   VXM_GL_PROGRAMS
 } vxm_gl_program_id;
 
@@ -31,6 +34,8 @@ typedef enum vxm_gl_buffer_id {
   VXM_GL_VOTER_T = VXM_GL_VOTER_X + 3,
   VXM_GL_TALLY,
   VXM_GL_BOXES,
+  VXM_GL_APEXES, /**< points that are the apexes of facets; only for slices */
+  VXM_GL_RANDOM, /**< the circular buffer of displacements */
   VXM_GL_TOUCHED,
   VXM_GL_STAGING, /**< two, mapped while the next tile is drawn */
   VXM_GL_STAGING2,
@@ -52,6 +57,21 @@ typedef struct vxm_gl_job {
   int32_t view[4];
 } vxm_gl_job;
 
+/** A format of presence buffers, and how fragments are written into them. */
+typedef struct vxm_gl_format {
+  const char *name, *defines;
+  GLenum internal, read;
+  size_t bytes; /**< of a voxel */
+  bool is_image;
+} vxm_gl_format;
+
+/** Slices as layers of a texture, drawn into with XOR. */
+typedef struct vxm_gl_presence {
+  GLuint texture, framebuffer;
+  int64_t size[3];
+  size_t bytes; /**< counted against the memory limit */
+} vxm_gl_presence;
+
 typedef struct vxm_opengl {
   vxm_engine base; /**< first, so that an engine is one */
   vxm_engine_options options;
@@ -59,6 +79,8 @@ typedef struct vxm_opengl {
   GLuint vertex_array, framebuffer;
   GLuint programs[VXM_GL_PROGRAMS];
   vxm_gl_buffer buffers[VXM_GL_BUFFERS];
+  const vxm_gl_format *format; /**< that passed the self-test */
+  vxm_gl_presence presence;
   uint64_t facets_serial, placed_serial; /**< what Corners and Points hold */
   uint32_t *far;                         /**< facets beyond the numbers of the shaders */
   size_t far_count, far_capacity;
@@ -110,6 +132,8 @@ void vxm_gl_bind(vxm_opengl *engine, GLuint binding, vxm_gl_buffer_id id);
 vxm_status vxm_gl_download(vxm_opengl *engine, vxm_gl_buffer_id id, void *out, size_t bytes,
                            vxm_error *error);
 
+void vxm_gl_presence_release(vxm_opengl *engine);
+
 /* ---- Tiles (gl_tiles.c) ---- */
 
 /** Slices of a window that are made at once: rows lie one behind the other. */
@@ -157,6 +181,7 @@ typedef struct vxm_gl_passes {
   size_t part_begin;
   size_t *facet_end; /**< of each pass: the place behind its last facet */
   bool ordered;      /**< facets are looked up in VXM_GL_ORDER; else they are those from `first` on */
+  uint32_t *order;   /**< what is in VXM_GL_ORDER */
   size_t first;
   size_t *box_end; /**< of each pass: the place behind its last box in VXM_GL_BOXES */
 } vxm_gl_passes;
@@ -175,9 +200,21 @@ vxm_status vxm_gl_far_flips(uint32_t **out, size_t *count, const vxm_opengl *eng
 
 /* ---- Methods ---- */
 
+/** What the passes over a tile have in common. */
+vxm_gl_job vxm_gl_job_of(const vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job);
+/** Notes which parts of a pass have bits in VXM_GL_FLIPS. */
+vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_gl_passes *passes, size_t pass,
+                        vxm_error *error);
+
 /** Parity of the job's parts along its axis, united, into VXM_GL_RESULT or a voter's buffer (gl_columns.c).
  * The passes are those of the job, and on the device. */
 vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
                           const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
+
+/** Whether the job's facets close all of its parts, as tetrahedra need. */
+bool vxm_gl_can_slice(const vxm_unite_job *job);
+/** The XOR of tetrahedra for such a job (gl_slices.c). The apexes have been placed. */
+vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
+                         const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
 
 #endif

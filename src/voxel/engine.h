@@ -37,6 +37,7 @@ typedef struct vxm_engine_ops {
 struct vxm_engine {
   const vxm_engine_ops *ops; /**< NULL: the CPU */
   vxm_context *context;      /**< one reference held */
+  bool wants_apexes;         /**< apexes have to be placed */
   bool falls_back;           /**< where it fails, the CPU does the work, and `info.note` says so */
   vxm_engine_info info;
 };

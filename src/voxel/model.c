@@ -189,8 +189,9 @@ vxm_status vxm_model_begin_on(vxm_model *model, const vxm_lattice *lattice, cons
   vxm_wound_destroy(&run->all_wound);
   vxm_shelling_begin(&model->shelling);
   if (vxm_model_wants_solid(model))
-    status = vxm_placed_set(&run->placed, facets, lattice, transform,
-                            confidence || vxm_run_apexes(&model->shape), error);
+    status = vxm_placed_set(
+        &run->placed, facets, lattice, transform,
+        confidence || vxm_run_apexes(&model->shape) || (run->engine && run->engine->wants_apexes), error);
   if (status != VXM_OK || !vxm_model_wants_faces(model))
     return status;
   if (model->surface)
@@ -276,6 +277,9 @@ static void warn(vxm_model *model, const vxm_voxelize_report *report) {
              "or a higher resolution (-r)");
   else if (report->empty_parts > 0 && !faces)
     name_empty_parts(model, report);
+  const vxm_engine *engine = model->run.engine;
+  if (engine && engine->falls_back && !engine->ops)
+    vxm_note(notes, "%s", engine->info.note);
   if (report->contested > 0)
     vxm_note(notes,
              "the model is open (%zu odd edges) and x, y and z disagree on %" PRId64
