@@ -11,19 +11,22 @@ static bool is_far_point(const vxm_point *p) {
   return false;
 }
 
+bool vxm_gl_is_far(const vxm_point *a, const vxm_point *b, const vxm_point *c) {
+  if (is_far_point(a) || is_far_point(b) || is_far_point(c))
+    return true;
+  for (int i = 0; i < 3; i++) {
+    int64_t low = vxm_min(vxm_min(a->at[i], b->at[i]), c->at[i]);
+    int64_t high = vxm_max(vxm_max(a->at[i], b->at[i]), c->at[i]);
+    if (high - low > reach)
+      return true;
+  }
+  return false;
+}
+
 static bool is_far(const vxm_placed *placed, const uint32_t corners[3]) {
-  vxm_point p[3];
-  bool beyond = false;
-  for (int c = 0; c < 3; c++) {
-    p[c] = vxm_placed_at(placed, corners[c]);
-    beyond |= is_far_point(&p[c]);
-  }
-  for (int a = 0; a < 3; a++) {
-    int64_t low = vxm_min(vxm_min(p[0].at[a], p[1].at[a]), p[2].at[a]);
-    int64_t high = vxm_max(vxm_max(p[0].at[a], p[1].at[a]), p[2].at[a]);
-    beyond |= high - low > reach;
-  }
-  return beyond;
+  vxm_point a = vxm_placed_at(placed, corners[0]), b = vxm_placed_at(placed, corners[1]);
+  vxm_point c = vxm_placed_at(placed, corners[2]);
+  return vxm_gl_is_far(&a, &b, &c);
 }
 
 /** Whether all points lie so close together that no facet can be far. */
@@ -60,18 +63,17 @@ static vxm_status list_far(vxm_opengl *engine, const vxm_facets *facets, const v
   return status;
 }
 
-/** Points that do not fit 32 bits are marked, and their facets left to the CPU. */
-static vxm_status upload_wide(vxm_opengl *engine, const vxm_placed *placed, size_t count, vxm_error *error) {
+vxm_status vxm_gl_upload_points(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_point *points,
+                                size_t count, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  int32_t(*points)[4] = vxm_alloc(engine->base.context, count, sizeof *points, &local);
-  for (size_t p = 0; points && p < count; p++) {
-    points[p][3] = is_far_point(&placed->wide[p]);
+  int32_t(*narrow)[4] = vxm_alloc(engine->base.context, count, sizeof *narrow, &local);
+  for (size_t p = 0; narrow && p < count; p++) {
+    narrow[p][3] = is_far_point(&points[p]);
     for (int a = 0; a < 3; a++)
-      points[p][a] = points[p][3] ? 0 : (int32_t)placed->wide[p].at[a];
+      narrow[p][a] = narrow[p][3] ? 0 : (int32_t)points[p].at[a];
   }
-  vxm_status status =
-      points ? vxm_gl_upload(engine, VXM_GL_POINTS, points, count * sizeof *points, &local) : local.code;
-  vxm_free(engine->base.context, points);
+  vxm_status status = narrow ? vxm_gl_upload(engine, id, narrow, count * sizeof *narrow, &local) : local.code;
+  vxm_free(engine->base.context, narrow);
   if (status != VXM_OK && error)
     *error = local;
   return status;
@@ -109,7 +111,7 @@ vxm_status vxm_gl_place(vxm_opengl *engine, const vxm_facets *facets, const vxm_
   engine->placed_serial = 0;
   size_t count = facets->point_count;
   status = placed->wide
-               ? upload_wide(engine, placed, count, error)
+               ? vxm_gl_upload_points(engine, VXM_GL_POINTS, placed->wide, count, error)
                : vxm_gl_upload(engine, VXM_GL_POINTS, placed->narrow, count * sizeof *placed->narrow, error);
   if (status == VXM_OK)
     status = list_far(engine, facets, placed, error);

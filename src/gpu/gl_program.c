@@ -101,6 +101,10 @@ vxm_status vxm_gl_use(vxm_opengl *engine, vxm_gl_program_id id, vxm_error *error
                                "inside.glsl present.frag"},
                               false},
       [VXM_GL_DRAW_TETRA] = {{"cover.glsl section.glsl tetra.vert", "inside.glsl present.frag"}, false},
+      [VXM_GL_FIND_SURFACE] = {{"touching.glsl surface.comp"}, true},
+      [VXM_GL_DRAW_SURFACE] = {{"surface.vert", "cover.glsl touching.glsl surface.geom",
+                                "touching.glsl surface.frag"},
+                               true},
       [VXM_GL_PACK] = {{"pack.comp"}, false},
       [VXM_GL_MERGE] = {{"merge.comp"}, false},
   };

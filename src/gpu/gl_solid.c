@@ -11,8 +11,7 @@ static vxm_status make_tile(vxm_opengl *engine, const vxm_gl_tile *tile, const v
   return (slices ? vxm_gl_slices : vxm_gl_columns)(engine, tile, job, passes, into, error);
 }
 
-/** Waits for what is under way after a failure, too: the driver may not lose a buffer that it writes. */
-static vxm_status finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status status, vxm_error *error) {
+vxm_status vxm_gl_finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status status, vxm_error *error) {
   for (int i = 0; i < 2; i++) {
     vxm_status ended = vxm_gl_return_end(engine, &back[i], status == VXM_OK ? error : NULL);
     status = status == VXM_OK ? ended : status;
@@ -63,7 +62,7 @@ static vxm_status unite_tiles(vxm_opengl *engine, const vxm_window *window, cons
     if (status == VXM_OK)
       status = vxm_gl_return_end(engine, &back[which ^ 1], error);
   }
-  return finish(engine, back, status, error);
+  return vxm_gl_finish(engine, back, status, error);
 }
 
 static void clear(const vxm_window *window) {
@@ -196,7 +195,7 @@ static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, cons
     if (status == VXM_OK)
       status = vxm_gl_return_end(engine, &back[which ^ 1], error);
   }
-  return finish(engine, back, status, error);
+  return vxm_gl_finish(engine, back, status, error);
 }
 
 vxm_status vxm_gl_elect(vxm_engine *base, const vxm_window *window, const vxm_elect_job *job,

@@ -167,10 +167,11 @@ static void destroy(vxm_engine *base) {
   }
   vxm_gl_context_destroy(&engine->context);
   vxm_free(base->context, engine->far);
-  engine->far = NULL;
+  vxm_free(base->context, engine->far_surface);
 }
 
-static const vxm_engine_ops opengl_ops = {.unite = vxm_gl_unite, .elect = vxm_gl_elect, .destroy = destroy};
+static const vxm_engine_ops opengl_ops = {
+    .unite = vxm_gl_unite, .elect = vxm_gl_elect, .surface = vxm_gl_surface, .destroy = destroy};
 
 static vxm_status start(vxm_opengl *engine, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;

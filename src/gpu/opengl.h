@@ -18,6 +18,8 @@ typedef enum vxm_gl_program_id {
   VXM_GL_DRAW_TETRA,
   VXM_GL_PACK,
   VXM_GL_MERGE,
+  VXM_GL_FIND_SURFACE,
+  VXM_GL_DRAW_SURFACE,
   VXM_GL_PROGRAMS
 } vxm_gl_program_id;
 
@@ -37,6 +39,8 @@ typedef enum vxm_gl_buffer_id {
   VXM_GL_APEXES, /**< points that are the apexes of facets; only for slices */
   VXM_GL_RANDOM, /**< the circular buffer of displacements */
   VXM_GL_TOUCHED,
+  VXM_GL_SURFACE_POINTS,
+  VXM_GL_SURFACE_CORNERS,
   VXM_GL_STAGING, /**< two, mapped while the next tile is drawn */
   VXM_GL_STAGING2,
   VXM_GL_BUFFERS
@@ -84,6 +88,9 @@ typedef struct vxm_opengl {
   uint64_t facets_serial, placed_serial; /**< what Corners and Points hold */
   uint32_t *far;                         /**< facets beyond the numbers of the shaders */
   size_t far_count, far_capacity;
+  uint64_t surface_serial;
+  uint32_t (*far_surface)[3]; /**< corners of triangles of the surface beyond the numbers of the shaders */
+  size_t far_surface_count, far_surface_capacity;
   bool can_pull; /**< vertex shaders may read buffers; else all facets are left to compute shaders */
 } vxm_opengl;
 
@@ -172,6 +179,12 @@ vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error 
 /** Brings points and corners to the device, unless they are there. */
 vxm_status vxm_gl_place(vxm_opengl *engine, const vxm_facets *facets, const vxm_placed *placed,
                         vxm_error *error);
+
+/** Whether a triangle is beyond the numbers of the shaders: shaders/crossing.glsl. */
+bool vxm_gl_is_far(const vxm_point *a, const vxm_point *b, const vxm_point *c);
+/** Brings points to the device in 32 bits; those that do not fit are marked. */
+vxm_status vxm_gl_upload_points(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_point *points,
+                                size_t count, vxm_error *error);
 
 /** Facets of parts in passes: no two parts of a pass have boxes that meet. */
 typedef struct vxm_gl_passes {
