@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Whether the centre of a fragment lies in a triangle of a cross-section. A side has one value for both of its
-   triangles, as its ends are taken in one order; on it decides the perturbation of the lattice. */
+   triangles, as its ends are taken in one order; should that be 0, the order of the axes decides. */
 layout(std140, binding = 0) uniform Job {
   ivec4 axes, view;
   uvec4 random;
@@ -22,7 +22,7 @@ bool is_inside() {
   dvec2 a = dvec2(packDouble2x32(point_a.xy), packDouble2x32(point_a.zw));
   dvec2 b = dvec2(packDouble2x32(point_b.xy), packDouble2x32(point_b.zw));
   dvec2 c = dvec2(packDouble2x32(point_c.xy), packDouble2x32(point_c.zw));
-  dvec2 p = dvec2(floor(gl_FragCoord.xy)) + dvec2(job.view.xy) + 0.5LF;
+  dvec2 p = dvec2(floor(gl_FragCoord.xy)) + dvec2(job.view.xy) + 0.5LF + dvec2(nudge(job.axes.x), nudge(job.axes.y));
   bool ab = is_left(a, b, p), bc = is_left(b, c, p), ca = is_left(c, a, p);
   return ab == bc && bc == ca;
 }

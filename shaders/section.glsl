@@ -47,14 +47,21 @@ vec3 place(uint number) {
   return at;
 }
 
-dvec2 cut(vec3 above, vec3 below, float plane) {
-  precise double part = (double(plane) - double(below.z)) / (double(above.z) - double(below.z));
+/* The apex of a facet's part. Any point will do; this one is a little off the middle, as in symmetric bodies the
+   middle may be the centre of a voxel, where all tetrahedra meet. */
+vec3 place_apex(uint facet) {
+  return place(apexes.apex[facet]) + vec3(0.0137, 0.0271, 0.0314);
+}
+
+dvec2 cut(vec3 above, vec3 below, double plane) {
+  precise double part = (plane - double(below.z)) / (double(above.z) - double(below.z));
   precise dvec2 at = dvec2(below.xy) + part * (dvec2(above.xy) - dvec2(below.xy));
   return at;
 }
 
 /* Corners in order from above; P0 to P3; how many of these there are: 0, 3 or 4. */
-int section(vec3 t[4], float plane, out dvec2 p[4]) {
+int section(vec3 t[4], out dvec2 p[4]) {
+  double plane = double(slice) + 0.5LF + nudge(job.axes.z);
   for (int last = 3; last > 0; last--)
     for (int i = 0; i < last; i++)
       if (t[i].z < t[i + 1].z) {
@@ -63,9 +70,9 @@ int section(vec3 t[4], float plane, out dvec2 p[4]) {
         t[i + 1] = swap;
       }
   p[0] = p[1] = p[2] = p[3] = dvec2(0.0);
-  if (!(t[0].z > plane) || t[3].z > plane)
+  if (!(double(t[0].z) > plane) || double(t[3].z) > plane)
     return 0;
-  bool below_b = t[1].z > plane, below_c = t[2].z > plane; // the plane lies below B, below C
+  bool below_b = double(t[1].z) > plane, below_c = double(t[2].z) > plane; // the plane lies below B, below C
   p[0] = cut(t[0], t[3], plane);
   p[1] = below_b ? cut(t[1], t[3], plane) : cut(t[0], t[1], plane);
   p[2] = below_c ? cut(t[2], t[3], plane) : cut(t[0], t[2], plane);

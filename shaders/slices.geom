@@ -21,7 +21,7 @@ void emit(dvec2 a, dvec2 b, dvec2 c) {
 void main() {
   dvec2 p[4];
   vec3 t[4] = vec3[4](corner[0], corner[1], corner[2], apex[0]);
-  int count = section(t, float(slice) + 0.5, p);
+  int count = section(t, p);
   if (count >= 3)
     emit(p[0], p[1], p[2]);
   if (count == 4)

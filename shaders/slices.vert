@@ -6,5 +6,5 @@ out vec3 apex;
 void main() {
   uint facet = list.facet[list_begin + uint(gl_VertexID) / 3u];
   corner = place(corners.corner[3u * facet + uint(gl_VertexID) % 3u]);
-  apex = place(apexes.apex[facet]);
+  apex = place_apex(facet);
 }

@@ -9,9 +9,9 @@ void main() {
   vec3 t[4];
   for (uint i = 0u; i < 3u; i++)
     t[i] = place(corners.corner[3u * facet + i]);
-  t[3] = place(apexes.apex[facet]);
+  t[3] = place_apex(facet);
   dvec2 p[4];
-  int count = section(t, float(slice) + 0.5, p);
+  int count = section(t, p);
   bool is_main = vertex < 3;
   dvec2 q[3] = is_main ? dvec2[3](p[0], p[1], p[2]) : dvec2[3](p[3], p[2], p[1]);
   point_a = uvec4(unpackDouble2x32(q[0].x), unpackDouble2x32(q[0].y));

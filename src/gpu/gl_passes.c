@@ -54,8 +54,9 @@ static box box_of(const division *d, size_t part) {
           high[a] = vxm_max(high[a], p.at[a]);
         }
       }
+  /* Slices move points, and the apex in any case a little. */
   double move = d->engine->options.displacement;
-  int64_t margin = move > 0 ? (int64_t)(move < 1 << 20 ? move : 1 << 20) + 1 : 0;
+  int64_t margin = d->engine->base.wants_apexes ? (int64_t)(move < 1 << 20 ? move : 1 << 20) + 1 : 0;
   box out = {.part = (uint32_t)part, .row_bits = (uint32_t)(64 * d->window->row_words)};
   for (int i = 0; i < 3 && low[0] <= high[0]; i++) {
     int a = axes[i];

@@ -49,14 +49,15 @@ static bool slices_of(const slicing *s, uint32_t facet, int64_t *begin, int64_t 
   const vxm_facets *facets = s->job->facets;
   const vxm_lattice *lattice = &s->job->placed->lattice;
   int w = s->columns.axes[2];
-  int64_t low = vxm_placed_at(s->job->placed, vxm_apex_of(facets, facets->part[facet])).at[w], high = low;
-  int64_t move = (int64_t)(s->engine->options.displacement * (double)lattice->unit) + 1;
+  int64_t apex = vxm_placed_at(s->job->placed, vxm_apex_of(facets, facets->part[facet])).at[w];
+  int64_t low = apex, high = apex + lattice->unit / 16; /* it is moved a little: shaders/section.glsl */
   for (int c = 0; c < 3; c++) {
     int64_t at = vxm_placed_at(s->job->placed, facets->corners[facet][c]).at[w];
     low = vxm_min(low, at);
     high = vxm_max(high, at);
   }
-  move = s->engine->options.displacement > 0 ? move : 0;
+  double most = s->engine->options.displacement * (double)lattice->unit;
+  int64_t move = most > 0 ? (int64_t)(most < 0x1p40 ? most : 0x1p40) + 1 : 0;
   *begin = vxm_max(vxm_lattice_first(lattice, low - move), s->begin);
   *end = vxm_min(vxm_lattice_first(lattice, high + move), s->end);
   return *begin < *end;
