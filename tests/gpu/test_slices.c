@@ -60,8 +60,7 @@ static void test_agree(void **state) {
   assert_int_equal(differing, 0); /* a quarter of the points lie on centres */
 }
 
-/** Boxes whose faces lie on centres: the rule on ties is the CPU's. On an edge of the box rounding may
- * decide. */
+/** Boxes whose faces and edges lie on centres: ties go the way of the CPU. */
 static void test_ties(void **state) {
   (void)state;
   vxm_space space = engine_space(16, 16, 16);
