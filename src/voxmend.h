@@ -955,6 +955,53 @@ VXM_API vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *m
                                           const char *path, const vxm_label_options *options,
                                           vxm_error *error);
 
+/* ---- Colours ---- */
+
+/** What gives a voxel its colour (Rueda et al., section 5). */
+typedef enum vxm_color_by {
+  VXM_COLOR_NOISE = 0, /**< Perlin's noise in three dimensions, four octaves */
+  VXM_COLOR_POSITION,  /**< red, green and blue along x, y and z */
+  VXM_COLOR_PART,      /**< a hue for each connected component */
+  VXM_COLOR_GLSL       /**< a function in GLSL: needs an engine of OpenGL */
+} vxm_color_by;
+
+typedef struct vxm_color_options {
+  uint32_t version; /**< 1 */
+  vxm_color_by by;
+  const char *source; /**< with VXM_COLOR_GLSL: defines vec3 color(vec3 position, vec3 unit, uint part), of the
+                         centre in model units, the same from the grid's corner on with its longest side as 1,
+                         and the number of the component, from 1 on; may call float noise(vec3), -1 to 1 */
+  const char *format; /**< of a file: "npy", "ply" or "vox"; NULL = by extension */
+} vxm_color_options;
+
+#define VXM_COLOR_OPTIONS_INIT \
+  { 1, VXM_COLOR_NOISE, NULL, NULL }
+
+/**
+ * Gives each set voxel of a model a colour.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2]*4 bytes, as [x][y][z][4] in C order: red, green, blue and
+ *                255; zeros where no voxel is set
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT too, with what the driver says, for a function that does
+ *         not compile; VXM_ERROR_UNAVAILABLE for GLSL without an engine of OpenGL. The engine and the CPU may
+ *         differ by 1 in the built-in functions. After a failure the values are unspecified
+ */
+VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report, vxm_model *model,
+                                    const vxm_space *space, const vxm_color_options *options,
+                                    vxm_error *error);
+
+/**
+ * As vxm_model_colors, into a file: .npy, uint8 [x][y][z][4] (with its .json beside it); .ply, the faces
+ * between set and empty voxels with coloured corners; .vox of MagicaVoxel, where colours are
+ * told apart by 5 bits each and reduced to at most 255, and every 256 voxels along an axis begin another model. @return as vxm_model_colors and
+ * vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write_colors(vxm_voxelize_report *report, vxm_model *model,
+                                          const vxm_space *space, const char *path,
+                                          const vxm_color_options *options, vxm_error *error);
+
 /** Number of labels of the last labels made of the model; 0 if there are none. */
 VXM_API int64_t vxm_model_label_count(const vxm_model *model);
 /** Name of label 1 to vxm_model_label_count: that of the group or material, or "unnamed"; of a part that of

@@ -262,10 +262,12 @@ int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, con
 /* ---- field.c: coverage and distance, for voxelize; labels.c: labels ---- */
 
 typedef struct cli_field {
-  bool coverage, scalar, distance, band, labels; /**< which options were given */
+  bool coverage, scalar, distance, band, labels, color; /**< which options were given */
+  const char *color_name;                               /**< a function that is built in, or a file */
   vxm_coverage_options coverage_options;
   vxm_distance_options distance_options;
   vxm_label_options label_options;
+  vxm_color_options color_options;
   vxm_coverage_report coverage_report;
   vxm_distance_report distance_report;
   vxm_label_report label_report;
@@ -275,7 +277,7 @@ typedef struct cli_field {
 #define CLI_FIELD_INIT                                                                            \
   {                                                                                               \
     .coverage_options = VXM_COVERAGE_OPTIONS_INIT, .distance_options = VXM_DISTANCE_OPTIONS_INIT, \
-    .label_options = VXM_LABEL_OPTIONS_INIT                                                       \
+    .label_options = VXM_LABEL_OPTIONS_INIT, .color_options = VXM_COLOR_OPTIONS_INIT              \
   }
 
 /** The formats of what is wanted. */
@@ -288,12 +290,17 @@ int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_band(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value);
+/** The argument of --color (colors.c). */
+int cli_color_read(cli_run *cli, cli_field *field, const char *value);
+/** Writes the file of --color; a failure is in cli->error. */
+vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
+                           const vxm_space *space, const char *path, const char *format);
 /** CLI_STOP if they contradict each other, --mode, --dry-run (`is_tried`) or --confidence (`is_sure`). */
 int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is_tried, bool is_sure);
 /** Writes the file; a failure is in cli->error. */
 vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const char *path, const char *format);
-/** Adds "coverage", "distance" or "labels". */
+/** Adds "coverage", "distance", "labels" or "color". */
 void cli_field_json(json_t *report, const cli_field *field);
 void cli_field_summarize(const cli_run *cli, const cli_field *field);
 /* The same for labels alone. */

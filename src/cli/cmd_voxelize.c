@@ -22,6 +22,7 @@ enum {
   KEY_DISTANCE,
   KEY_BAND,
   KEY_LABELS,
+  KEY_COLOR,
   KEY_CONFIDENCE,
   KEY_SPARSE,
   KEY_COORDS,
@@ -81,6 +82,9 @@ static const cli_option known_options[] = {
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
      ".npy, .nrrd or .binvox, with the names in a .json beside it"},
+    {KEY_COLOR, "color", "noise|position|part|FILE.frag",
+     "write a colour for each set voxel instead: Perlin's noise, where it is, its part,\n"
+     "or a function in GLSL, which needs --engine opengl; .npy, .ply or .vox"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
@@ -222,6 +226,8 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     return cli_field_read_band(cli, &out->field, value);
   case KEY_LABELS:
     return cli_field_read_labels(cli, &out->field, value);
+  case KEY_COLOR:
+    return cli_color_read(cli, &out->field, value);
   case KEY_CONFIDENCE:
     out->confidence = value;
     out->voxelize.confidence = true;
@@ -285,8 +291,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
   if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
-    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance and "
-                          "--labels");
+    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance, "
+                          "--labels and --color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
   if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||

@@ -32,12 +32,15 @@ static void to_one_line(char *log) {
 }
 
 static vxm_status compile(GLuint program, const vxm_gl *gl, const char *names, const char *defines,
-                          vxm_error *error) {
-  const char *text[PARTS_MAX + 2] = {"#version 430 core\n", defines};
+                          const char *own, vxm_error *error) {
+  const char *text[PARTS_MAX + 3] = {"#version 430 core\n", defines};
   GLsizei count = 2;
   for (const char *at = names; *at && count < PARTS_MAX + 2;) {
     size_t length = strcspn(at, " ");
-    text[count++] = shader_text(at, length);
+    bool is_own = *at == '|';
+    if (is_own) /* its lines are counted from 1 */
+      text[count++] = "\n#line 1\n";
+    text[count++] = is_own ? own : shader_text(at, length);
     at += length + strspn(at + length, " ");
   }
   GLuint shader = gl->CreateShader(stage_of(names));
@@ -50,8 +53,10 @@ static vxm_status compile(GLuint program, const vxm_gl *gl, const char *names, c
     char log[LOG_MAX] = "";
     gl->GetShaderInfoLog(shader, sizeof log, NULL, log);
     to_one_line(log);
-    status =
-        vxm_fail(error, VXM_ERROR_UNAVAILABLE, "the OpenGL driver refuses the shader %s: %s", names, log);
+    status = own && strchr(names, '|')
+                 ? vxm_fail(error, VXM_ERROR_ARGUMENT, "the colour function does not compile: %s", log)
+                 : vxm_fail(error, VXM_ERROR_UNAVAILABLE, "the OpenGL driver refuses the shader %s: %s",
+                            names, log);
   }
   gl->AttachShader(program, shader);
   gl->DeleteShader(shader); /* once the program goes */
@@ -60,10 +65,15 @@ static vxm_status compile(GLuint program, const vxm_gl *gl, const char *names, c
 
 vxm_status vxm_gl_program(GLuint *out, const vxm_gl *gl, const char *const stages[], const char *defines,
                           vxm_error *error) {
+  return vxm_gl_program_with(out, gl, stages, defines, NULL, error);
+}
+
+vxm_status vxm_gl_program_with(GLuint *out, const vxm_gl *gl, const char *const stages[], const char *defines,
+                               const char *own, vxm_error *error) {
   GLuint program = gl->CreateProgram();
   vxm_status status = VXM_OK;
   for (int s = 0; s < STAGES_MAX && stages[s] && status == VXM_OK; s++)
-    status = compile(program, gl, stages[s], defines, error);
+    status = compile(program, gl, stages[s], defines, own, error);
   GLint done = GL_FALSE;
   if (status == VXM_OK) {
     gl->LinkProgram(program);
@@ -73,7 +83,8 @@ vxm_status vxm_gl_program(GLuint *out, const vxm_gl *gl, const char *const stage
     char log[LOG_MAX] = "";
     gl->GetProgramInfoLog(program, sizeof log, NULL, log);
     to_one_line(log);
-    status = vxm_fail(error, VXM_ERROR_UNAVAILABLE, "the OpenGL driver cannot link %s: %s", stages[0], log);
+    status = vxm_fail(error, own ? VXM_ERROR_ARGUMENT : VXM_ERROR_UNAVAILABLE,
+                      "the OpenGL driver cannot link %s: %s", stages[0], log);
   }
   if (status != VXM_OK) {
     gl->DeleteProgram(program);

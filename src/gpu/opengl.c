@@ -170,8 +170,11 @@ static void destroy(vxm_engine *base) {
   vxm_free(base->context, engine->far_surface);
 }
 
-static const vxm_engine_ops opengl_ops = {
-    .unite = vxm_gl_unite, .elect = vxm_gl_elect, .surface = vxm_gl_surface, .destroy = destroy};
+static const vxm_engine_ops opengl_ops = {.unite = vxm_gl_unite,
+                                          .elect = vxm_gl_elect,
+                                          .surface = vxm_gl_surface,
+                                          .color = vxm_gl_color,
+                                          .destroy = destroy};
 
 static vxm_status start(vxm_opengl *engine, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;

@@ -116,6 +116,9 @@ void vxm_opengl_name(char *out, size_t size, const vxm_gl_driver *driver, int in
  */
 vxm_status vxm_gl_program(GLuint *out, const vxm_gl *gl, const char *const stages[], const char *defines,
                           vxm_error *error);
+/** As vxm_gl_program, with the caller's text in place of a file called "|". */
+vxm_status vxm_gl_program_with(GLuint *out, const vxm_gl *gl, const char *const stages[], const char *defines,
+                               const char *text, vxm_error *error);
 /** A program of the engine, made when it is first asked for, and taken into use. */
 vxm_status vxm_gl_use(vxm_opengl *engine, vxm_gl_program_id id, vxm_error *error);
 /** Runs the program in use for at least `count` invocations, 64 or one group of 64 (`groups`) for each. */

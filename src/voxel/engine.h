@@ -20,6 +20,16 @@ typedef struct vxm_elect_job {
   atomic_uchar *touched; /**< as in vxm_unite_job */
 } vxm_elect_job;
 
+/** Voxels to colour. */
+typedef struct vxm_color_job {
+  const vxm_grid *grid;
+  const uint16_t *parts; /**< a number per voxel, [x][y][z] in C order; NULL = not needed */
+  const vxm_color_options *options;
+} vxm_color_job;
+
+/** The longest side of a space, model units. */
+double vxm_color_longest(const vxm_space *space);
+
 /** All but `destroy` may be NULL: the CPU does it then. Each gives the bits that the CPU gives, unless the
  * engine's own documentation says how far it is off. */
 typedef struct vxm_engine_ops {
@@ -31,6 +41,8 @@ typedef struct vxm_engine_ops {
   /** As vxm_surface_add. */
   vxm_status (*surface)(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
                         vxm_surface_kind kind, bool is_fresh, vxm_error *error);
+  /** Fills [x][y][z][4] bytes, 0 where a voxel is not set. */
+  vxm_status (*color)(vxm_engine *engine, uint8_t *values, const vxm_color_job *job, vxm_error *error);
   void (*destroy)(vxm_engine *engine);
 } vxm_engine_ops;
 

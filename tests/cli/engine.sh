@@ -19,4 +19,19 @@ run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --gl-method slices --
 run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --gl-method slices --gl-displace -1'
 run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --gl-method slices --gl-displace 1,x'
 run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --sparse'
+
+say "# colours"
+for by in noise position part; do
+  for format in npy ply vox; do
+    run "voxmend voxelize in/l_prism.off -o $by.$format -r 12 --color $by -q && cksum <$by.$format"
+  done
+done
+run 'voxmend voxelize in/l_prism.off -o c.vox -r 300x20x20 --fit tight --color position | grep -E "^(colour|output)"'
+run 'voxmend voxelize in/cube.off -o c.npy -r 4 --color position --json | grep -A 3 -E "color|voxels"'
+run 'voxmend voxelize in/cube.off -o d.npy --color red'
+run 'voxmend voxelize in/cube.off -o d.npy --color none.frag'
+echo 'vec3 color(vec3 p, vec3 u, uint part) { return u; }' >plain.frag
+run 'voxmend voxelize in/cube.off -o d.npy --color plain.frag'
+run 'voxmend voxelize in/cube.off -o d.binvox --color part'
+run 'voxmend voxelize in/cube.off -o d.npy --color part --labels part'
 finish

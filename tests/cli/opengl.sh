@@ -43,5 +43,19 @@ run 'voxmend voxelize in/rocket.off -o b.npy -r 64 -q --engine opengl --gl-metho
 run 'voxmend voxelize in/rocket.off -o c.npy -r 64 -q --engine opengl --gl-method slices --gl-displace 2,8'
 run 'cmp a.npy b.npy'
 run 'cmp -s a.npy c.npy'
+say "# colours"
+cat >stripes.frag <<'GLSL'
+vec3 color(vec3 position, vec3 unit, uint part) {
+  return vec3(step(0.5, fract(position.z * 4.0)), 0.5 + 0.5 * noise(unit * 9.0), float(part) / 15.0);
+}
+GLSL
+echo 'vec3 color(vec3 position, vec3 unit, uint part) { return vec3(unit.w); }' >ill.frag
+run 'voxmend voxelize in/rocket.off -o s.npy -r 32 --color stripes.frag --engine opengl | grep -E "^(colour|voxels)"'
+run 'voxmend voxelize in/rocket.off -o s.ply -r 16 --color stripes.frag --engine opengl -q'
+run 'voxmend voxelize in/rocket.off -o s.vox -r 16 --color stripes.frag --engine opengl -q'
+run 'head -c 4 s.vox; voxmend info s.ply | sed -n 2,4p'
+run 'voxmend voxelize in/rocket.off -o t.npy -r 32 --color ill.frag --engine opengl 2>&1 | cut -c 1-50'
+run 'ls t.npy'
+
 run 'voxmend voxelize in/rocket.off -o c.npy -r 64 --engine opengl --memlimit 1M'
 finish
