@@ -83,6 +83,11 @@ vxm_status vxm_twin_attach(vxm_twin *twin, const vxm_model *of, vxm_error *error
     twin->soup.context = twin->context;
     twin->soup.positions = (double *)twin->vertices;
     model->shape.soup = model->shape.facets.soup = &twin->soup;
+    /* Polygons are cut as they lie in the other's mesh, whatever variant comes first. */
+    memcpy(twin->vertices, of->shape.soup->positions, twin->soup.vertex_count * sizeof *twin->vertices);
+    status = vxm_surface_make(&model->surface, &twin->soup, error);
+    if (status != VXM_OK)
+      return status;
   }
   twin->of = of;
   return VXM_OK;
