@@ -50,7 +50,7 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
-    cli_command_compare, cli_command_view, cli_command_bench;
+    cli_command_compare, cli_command_augment, cli_command_view, cli_command_bench;
 
 enum { CLI_OPTIONS_MAX = 48 };
 
