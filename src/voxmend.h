@@ -484,6 +484,8 @@ VXM_API int64_t vxm_grid_count(const vxm_grid *grid);
 VXM_API uint64_t vxm_grid_hash(const vxm_grid *grid);
 /** One byte, 0 or 1, per voxel into dims[0]*dims[1]*dims[2] bytes, as [x][y][z] in C order (z fastest). */
 VXM_API void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes);
+/** Sets all voxels from such bytes: those that are not 0. */
+VXM_API void vxm_grid_pack(vxm_grid *grid, const uint8_t *bytes);
 /**
  * How sure each voxel is, 0 (a guess) to 255 (proven), dims[0]*dims[1]*dims[2] bytes with x fastest; NULL
  * unless the grid was made with vxm_voxelize_options.confidence. A voxel decided by closed parts alone has
