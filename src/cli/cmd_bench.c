@@ -6,16 +6,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_LIST_THREADS = CLI_KEY_COMMAND, KEY_PHASES, KEY_ENGINE, KEY_TIME, KEY_PLOT };
+enum {
+  KEY_LIST_THREADS = CLI_KEY_COMMAND,
+  KEY_PHASES,
+  KEY_ENGINE,
+  KEY_AUGMENT,
+  KEY_DISPLACE,
+  KEY_TIME,
+  KEY_PLOT
+};
 
 static const cli_option known_options[] = {
-    {'r', "resolution", "LIST", "voxels along each axis, such as 64,256 [64,128,256,512,1024]"},
+    {'r', "resolution", "LIST",
+     "voxels along each axis, such as 64,256 [64,128,256,512,1024; with\n"
+     "--augment 32,64]"},
     {KEY_LIST_THREADS, "threads", "LIST",
      "numbers of threads, such as 1,2, each 1 to 256 [1 and one per processor]"},
     {KEY_PHASES, "phases", "LIST",
      "what to measure, out of the phases below; named here, a phase is measured\n"
      "however slow it is [all, but what takes over two seconds is left out]"},
     {KEY_ENGINE, "engine", "E", "who makes the grids: cpu [cpu]"},
+    {KEY_AUGMENT, "augment", NULL, "measure making variants for training instead: the augment_ phases below"},
+    {KEY_DISPLACE, "displace", "F",
+     "by how much the vertices of variants are displaced, as in augment [0.01]"},
     {KEY_TIME, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]"},
     {KEY_PLOT, "plot", "FILE.svg", "draw the times over the resolution"},
     CLI_OPTION_DEFLECTION,
@@ -103,6 +116,13 @@ static int read_option(cli_run *cli, bench_plan *plan, int key, const char *valu
     return read_phases(cli, plan, value);
   case KEY_ENGINE:
     return read_engine(cli, plan, value);
+  case KEY_AUGMENT:
+    plan->augment = true;
+    return CLI_END;
+  case KEY_DISPLACE:
+    if (!cli_read_number(&plan->displace, value) || plan->displace < 0 || plan->displace > 0.4)
+      return cli_usage(cli, "--displace '%s' is not a number from 0 to 0.4", value);
+    return CLI_END;
   case KEY_TIME:
     if (!cli_read_integer(&time, value, 0, 3600000))
       return cli_usage(cli, "--time '%s' is not a number of milliseconds from 0 to 3600000", value);
@@ -122,6 +142,15 @@ static bool has_grids(const bench_plan *plan) {
   return false;
 }
 
+/** Without -r: networks take small grids. */
+static void choose_resolutions(bench_plan *plan) {
+  static const int64_t usual[] = {64, 128, 256, 512, 1024, 32, 64};
+  if (plan->resolution_count > 0)
+    return;
+  plan->resolution_count = plan->augment ? 2 : 5;
+  memcpy(plan->resolutions, usual + (plan->augment ? 5 : 0), (size_t)plan->resolution_count * sizeof *usual);
+}
+
 static int read_arguments(cli_run *cli, bench_plan *plan) {
   const char *value;
   int key;
@@ -133,6 +162,11 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   plan->path = cli->arguments[0];
+  if (plan->augment && plan->forced)
+    return cli_usage(cli, "--augment and --phases both say what to measure");
+  choose_resolutions(plan);
+  for (int i = 0; bench_phases[i].name && !plan->forced; i++)
+    plan->chosen[i] = bench_phases[i].augments == plan->augment;
   if (strcmp(plan->path, "-") == 0)
     return cli_usage(cli, "the mesh is read many times, which standard input cannot be; name a file");
   if (plan->plot && !cli_is_extension(plan->plot, "svg"))
@@ -225,7 +259,8 @@ static int measure_threads(bench_work *work, int threads) {
   cli_run *cli = work->cli;
   if (next_context(cli, threads) != CLI_DONE)
     return CLI_FAILED;
-  bench_stage stage = {.cli = cli, .path = work->plan.path, .threads = threads};
+  bench_stage stage = {
+      .cli = cli, .path = work->plan.path, .threads = threads, .displace = work->plan.displace};
   int status = measure_stage(work, &stage);
   bench_stage_close(&stage);
   uint64_t peak = vxm_context_peak_bytes(cli->context);
@@ -297,11 +332,7 @@ static int bench(bench_work *work) {
 }
 
 static int run(cli_run *cli) {
-  bench_work work = {.cli = cli,
-                     .plan = {.engine = bench_engines[0],
-                              .resolutions = {64, 128, 256, 512, 1024},
-                              .resolution_count = 5,
-                              .time_ms = 200}};
+  bench_work work = {.cli = cli, .plan = {.engine = bench_engines[0], .displace = 0.01, .time_ms = 200}};
   if (read_arguments(cli, &work.plan) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
@@ -329,6 +360,7 @@ const cli_command cli_command_bench = {
              "Examples:\n"
              "  voxmend bench bunny.ply\n"
              "  voxmend bench chair.off -r 32,64,256 --threads 1 --phases memset,solid_vote\n"
+             "  voxmend bench bunny.ply --augment -r 32,64\n"
              "  voxmend bench bunny.ply --json --plot bunny.svg >bunny.json",
     .options = known_options,
     .print_choices = print_phases,

@@ -9,8 +9,9 @@
 #include <unistd.h>
 
 static const cli_command *const commands[] = {
-    &cli_command_info,    &cli_command_repair, &cli_command_voxelize, &cli_command_convert,
-    &cli_command_compare, &cli_command_view,   &cli_command_bench,    &cli_command_engines};
+    &cli_command_info,    &cli_command_repair,  &cli_command_voxelize,
+    &cli_command_convert, &cli_command_compare, &cli_command_augment,
+    &cli_command_view,    &cli_command_bench,   &cli_command_engines};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static void help(void) {

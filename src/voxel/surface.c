@@ -113,8 +113,7 @@ vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, c
   return atomic_load(&job.is_off) ? check_used(surface, surface->soup, error) : VXM_OK;
 }
 
-vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
-                              const double transform[12], vxm_error *error) {
+vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *error) {
   *out = NULL;
   vxm_error local = VXM_ERROR_INIT;
   vxm_surface *surface = vxm_calloc(soup->context, 1, sizeof *surface, &local);
@@ -124,8 +123,6 @@ vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm
     surface->points = vxm_alloc(surface->context, soup->vertex_count, sizeof *surface->points, &local);
     status = surface->points ? list_triangles(surface, soup, &local) : local.code;
   }
-  if (status == VXM_OK)
-    status = vxm_surface_place(surface, lattice, transform, &local);
   if (status == VXM_OK) {
     *out = surface;
     return VXM_OK;
@@ -134,6 +131,18 @@ vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm
   if (error)
     *error = local;
   return local.code;
+}
+
+vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
+                              const double transform[12], vxm_error *error) {
+  vxm_status status = vxm_surface_make(out, soup, error);
+  if (status == VXM_OK)
+    status = vxm_surface_place(*out, lattice, transform, error);
+  if (status != VXM_OK) {
+    vxm_surface_destroy(*out);
+    *out = NULL;
+  }
+  return status;
 }
 
 void vxm_surface_destroy(vxm_surface *surface) {

@@ -29,6 +29,8 @@ typedef struct vxm_surface {
  */
 vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
                               const double transform[12], vxm_error *error);
+/** The first half of that: cuts the polygons, as they lie now. Place the surface before it is used. */
+vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *error);
 /** Puts the same soup on another lattice, or elsewhere on it; the surface cannot be used if that fails.
  * Returns as vxm_surface_create. */
 vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],

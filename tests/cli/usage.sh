@@ -7,7 +7,7 @@ run 'voxmend --help'
 run 'voxmend --version'
 run 'voxmend --nonsense'
 run 'voxmend nonsense'
-for command in info repair voxelize convert compare view bench; do
+for command in info repair voxelize convert compare augment view bench; do
   run "voxmend $command --help"
 done
 
