@@ -254,5 +254,7 @@ int augment_read_arguments(cli_run *cli, augment_request *out) {
   out->input = cli->arguments[0];
   if (!out->output)
     return cli_usage(cli, "-o DIR or -o - is missing");
+  if (cli_check_report(cli, NULL) == CLI_STOP)
+    return CLI_STOP;
   return check_format(cli, out) == CLI_STOP ? CLI_STOP : check_conflicts(cli, out);
 }

@@ -203,6 +203,9 @@ bool cli_file_commit(cli_file *file);
 void cli_file_drop(cli_file *file);
 /** Whether two names, neither of which is "-", are of one file, or will be once it is written. */
 bool cli_same_file(const char *a, const char *b);
+/** CLI_STOP if --report names one of the arguments, which are read, or what is written (NULL = nothing is).
+ */
+int cli_check_report(cli_run *cli, const char *output);
 /** Opens the file of --report, so that a wrong name fails before the work. */
 bool cli_report_open(cli_run *cli);
 /** Prints the report with --json, writes it with --report, and frees it. Returns an exit status. */

@@ -162,6 +162,8 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   plan->path = cli->arguments[0];
+  if (cli_check_report(cli, NULL) == CLI_STOP)
+    return CLI_STOP;
   if (plan->augment && plan->forced)
     return cli_usage(cli, "--augment and --phases both say what to measure");
   choose_resolutions(plan);

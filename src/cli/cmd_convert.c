@@ -33,6 +33,8 @@ static int read_arguments(cli_run *cli, request *out) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
+  if (cli_check_report(cli, out->output) == CLI_STOP)
+    return CLI_STOP;
   out->format = cli_output_format(cli, out->output, out->format, cli_grid_formats);
   return out->format ? CLI_END : CLI_STOP;
 }

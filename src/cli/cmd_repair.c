@@ -190,6 +190,8 @@ static int check_conflicts(cli_run *cli, const request *given) {
                           "--fill-holes, --fill, --union and --max-change");
   if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
+  if (cli_check_report(cli, given->output) == CLI_STOP)
+    return CLI_STOP;
   return cli_defects_check(cli, &given->defects, given->input, given->output);
 }
 
@@ -265,6 +267,11 @@ static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcom
   if (outcome->repair.opened_parts > 0)
     cli_warn(cli, "%s: %lld closed parts are open after the repair", given->output,
              (long long)outcome->repair.opened_parts);
+  if (outcome->repair.shared_faces > 0)
+    cli_warn(cli,
+             "%s: %lld faces repeat others, where bodies overlap and share a part of their surfaces; "
+             "--level manifold gives each body its own, --level solid unites them",
+             given->output, (long long)outcome->repair.shared_faces);
   if (!outcome->verification.reached)
     cli_warn(cli, "%s: the level %s is not reached; the report lists what remains", given->output,
              repair_levels[outcome->level]);

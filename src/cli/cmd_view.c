@@ -78,7 +78,7 @@ static int read_arguments(cli_run *cli, request *out) {
     return cli_usage(cli, "-o FILE.png is missing");
   if (!cli_is_extension(out->output, "png"))
     return cli_usage(cli, "the picture is a PNG: '%s' must end in .png", out->output);
-  return CLI_END;
+  return cli_check_report(cli, out->output);
 }
 
 static bool is_named(const char *path, const char *const *formats, int count) {

@@ -213,6 +213,15 @@ bool cli_same_file(const char *a, const char *b) {
   return same;
 }
 
+int cli_check_report(cli_run *cli, const char *output) {
+  for (int i = 0; i < cli->argument_count && cli->report; i++)
+    if (cli_same_file(cli->report, cli->arguments[i]))
+      return cli_usage(cli, "--report would overwrite %s, which is read", cli->arguments[i]);
+  if (cli->report && output && cli_same_file(cli->report, output))
+    return cli_usage(cli, "--report and -o name the same file");
+  return CLI_END;
+}
+
 bool cli_report_open(cli_run *cli) {
   return !cli->report || cli_file_open(&cli->report_file, cli->report) || report_failed(cli, errno);
 }

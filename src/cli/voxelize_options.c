@@ -301,6 +301,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
     return CLI_STOP;
   if (given->no_repair && given->repair_options)
     return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
+  if (cli_check_report(cli, given->output) == CLI_STOP)
+    return CLI_STOP;
   return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);
 }
 

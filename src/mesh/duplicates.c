@@ -175,7 +175,9 @@ static void mark_even(const search *s, const uint64_t *records, size_t count, co
   for (size_t i = 0; i < count; i++) {
     size_t face = record_face(records[i]);
     const tally *t = &tallies[s->kinds[face] == VXM_REPEAT_NONE ? i : tallies[i].forward];
-    s->even[face] = (t->forward + t->backward) % 2 == 0;
+    bool one_way = t->forward == 0 || t->backward == 0;
+    if ((t->forward + t->backward) % 2 == 0)
+      s->even[face] = one_way ? VXM_EVEN_ONE_WAY : VXM_EVEN;
   }
 }
 

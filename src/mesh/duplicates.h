@@ -11,6 +11,14 @@ typedef enum vxm_repeat {
   VXM_REPEAT_OPPOSITE  /**< repeats an earlier face with the opposite orientation only */
 } vxm_repeat;
 
+/** Whether the faces that repeat each other are an even number, so that edges are as even with none of them
+ * as with all. */
+typedef enum vxm_even {
+  VXM_EVEN_NOT = 0,
+  VXM_EVEN,        /**< of both orientations */
+  VXM_EVEN_ONE_WAY /**< all of the same orientation */
+} vxm_even;
+
 typedef struct vxm_duplicates {
   size_t same;           /**< faces beyond the first of each kind and orientation */
   size_t opposite_pairs; /**< per kind, the lesser of the numbers of faces of either orientation */
@@ -22,9 +30,7 @@ typedef struct vxm_duplicates {
  *
  * @param vertex_map vertex to take in place of each vertex, or NULL
  * @param kinds      face_count elements that get a vxm_repeat each; may be NULL
- * @param even       face_count elements that get 1 where the faces that repeat each other are an even number,
- *                   so that edges are as even with none of them as with all, else 0; may be NULL, as it is if
- *                   kinds is
+ * @param even       face_count elements that get a vxm_even each; may be NULL, as it is if kinds is
  *
  * Linear time, also in the corners of large polygons.
  */

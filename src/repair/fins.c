@@ -19,7 +19,8 @@ typedef struct finding {
   const uint8_t *even;
   size_t *sides;           /**< per corner: its edge */
   size_t *parent;          /**< per face: another one of its fin, or itself */
-  size_t *first;           /**< per edge: 1 + the first of the repeated faces at it, or 0 */
+  size_t *first;           /**< per edge, twice: 1 + the first of the repeated faces at it that are of both
+                              orientations, or 0; the same for those of one */
   uint32_t *count;         /**< per edge: their sides */
   uint8_t *hangs, *rimmed; /**< per face that stands for a fin */
   uint32_t *label;         /**< per face: its component */
@@ -41,11 +42,12 @@ static void join_faces(finding *f) {
       size_t edge = f->sides[c];
       if (edge == VXM_NO_EDGE)
         continue;
+      size_t *first = &f->first[2 * edge + (f->even[face] == VXM_EVEN_ONE_WAY)];
       f->count[edge]++;
-      if (f->first[edge] == 0)
-        f->first[edge] = face + 1;
+      if (*first == 0)
+        *first = face + 1;
       else
-        f->parent[root_of(f->parent, face)] = root_of(f->parent, f->first[edge] - 1);
+        f->parent[root_of(f->parent, face)] = root_of(f->parent, *first - 1);
     }
 }
 
@@ -53,11 +55,13 @@ static void join_faces(finding *f) {
 static void look_at_edges(finding *f) {
   const vxm_edges *edges = &f->work->edges;
   for (size_t e = 0; e < edges->count; e++) {
-    if (f->first[e] == 0)
-      continue;
-    size_t fin = root_of(f->parent, f->first[e] - 1);
-    f->hangs[fin] |= edges->edges[e].count > f->count[e];
-    f->rimmed[fin] |= edges->edges[e].count == 2 && f->count[e] == 2;
+    for (size_t k = 2 * e; k < 2 * e + 2; k++) {
+      if (f->first[k] == 0)
+        continue;
+      size_t fin = root_of(f->parent, f->first[k] - 1);
+      f->hangs[fin] |= edges->edges[e].count > f->count[e];
+      f->rimmed[fin] |= edges->edges[e].count == 2 && f->count[e] == 2;
+    }
   }
   for (size_t face = 0; face < f->soup->face_count; face++)
     for (uint64_t c = f->soup->offsets[face]; c < f->soup->offsets[face + 1]; c++)
@@ -81,14 +85,20 @@ static void sum_areas(finding *f) {
   }
 }
 
-static void mark(finding *f, uint8_t *remove) {
+static void mark(finding *f, uint8_t *remove, size_t *kept) {
+  *kept = 0;
   join_faces(f);
   look_at_edges(f);
   sum_areas(f);
   for (size_t face = 0; face < f->soup->face_count; face++) {
     size_t fin = root_of(f->parent, face);
     const component *c = &f->components[f->label[face]];
-    if (f->even[face] && f->hangs[fin] && !c->odd && (!f->rimmed[fin] || c->fins <= FIN_PART * c->rest))
+    if (!f->even[face] || !f->hangs[fin] || c->odd)
+      continue;
+    if (f->even[face] == VXM_EVEN_ONE_WAY && !f->rimmed[fin]) {
+      *kept += remove[face] == VXM_REPEAT_SAME;
+      remove[face] = 0;
+    } else if (!f->rimmed[fin] || c->fins <= FIN_PART * c->rest)
       remove[face] = 1;
   }
 }
@@ -100,7 +110,7 @@ static vxm_status prepare(finding *f, vxm_error *error) {
   if (status == VXM_OK)
     f->parent = vxm_work_scratch(work, faces, sizeof *f->parent, &status, error);
   if (status == VXM_OK)
-    f->first = vxm_work_scratch(work, work->edges.count, sizeof *f->first, &status, error);
+    f->first = vxm_work_scratch(work, 2 * work->edges.count, sizeof *f->first, &status, error);
   if (status == VXM_OK)
     f->count = vxm_work_scratch(work, work->edges.count, sizeof *f->count, &status, error);
   if (status == VXM_OK)
@@ -116,11 +126,12 @@ static vxm_status prepare(finding *f, vxm_error *error) {
   return status;
 }
 
-vxm_status vxm_fins_mark(vxm_work *work, const uint8_t *even, uint8_t *remove, vxm_error *error) {
+vxm_status vxm_fins_mark(vxm_work *work, const uint8_t *even, uint8_t *remove, size_t *kept,
+                         vxm_error *error) {
   finding f = {.work = work, .soup = work->soup, .even = even};
   vxm_status status = prepare(&f, error);
   if (status == VXM_OK)
-    mark(&f, remove);
+    mark(&f, remove, kept);
   vxm_free(work->context, f.components);
   vxm_free(work->context, f.label);
   vxm_free(work->context, f.rimmed);

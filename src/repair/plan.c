@@ -224,6 +224,7 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   report->self_intersections_before = work->crossings[0];
   report->self_intersections_after = work->crossings[1];
   report->unparted_vertices = work->together;
+  report->shared_faces = work->options.level == VXM_LEVEL_CLEAN ? work->shared : 0;
   for (size_t i = 0; i < work->soup->part_count; i++) {
     const vxm_part_change *part = &work->soup->part_changes[i];
     report->moved = fmax(report->moved, part->moved);

@@ -56,6 +56,7 @@ typedef struct vxm_work {
   vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
   bool renumbered;                         /**< faces have other numbers than they came in with */
   int64_t nonorientable;                   /**< patches, in the last pass of orientation */
+  int64_t shared;                          /**< repeated faces that the last pass of duplicates left */
   int64_t open_parts;                      /**< that the last pass of closing left open */
   int64_t unfilled;                        /**< holes that were to be filled and could not be */
   int64_t ununited;     /**< parts that were to be united and still cut through themselves or others */
