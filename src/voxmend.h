@@ -51,7 +51,7 @@ typedef enum vxm_status {
   VXM_ERROR_MEMORY_LIMIT, /**< the context's limit would be exceeded: raise it, or lower the resolution */
   VXM_ERROR_RANGE, /**< a size or coordinate is beyond what can be computed: scale down or choose another grid
                     */
-  VXM_ERROR_UNAVAILABLE, /**< this build lacks an optional library: rebuild with it, or use another format */
+  VXM_ERROR_UNAVAILABLE, /**< this build or machine lacks an optional library: install it, or do without */
   VXM_ERROR_CANCELLED,   /**< the progress callback asked to stop: nothing was made */
   VXM_ERROR_UNREACHED /**< a repair did not come as far as it was asked to: ask for less, or take what there
                        * is
@@ -291,7 +291,7 @@ typedef struct vxm_repair_options {
   int64_t fill_holes; /**< fill holes with at most so many edges; 0 = none, and from VXM_LEVEL_CLOSED on all;
                          negative = all */
   vxm_fill fill;
-  bool unite;         /**< unite parts that cut through each other, as VXM_LEVEL_SOLID does */
+  bool unite;         /**< unite closed parts that cut through each other, as VXM_LEVEL_SOLID does */
   double wrap_alpha;  /**< put a closed surface around everything instead: the size of the smallest hole that
                          it goes  into, as a fraction of the diagonal of the bounds; 0 = do not */
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
@@ -302,12 +302,14 @@ typedef struct vxm_repair_options {
   int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
   double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
                          The component with the largest area always stays */
+  bool intersections; /**< count self-intersections, before and after, in the report and in the account of
+                         parts; needs the module for CGAL */
 } vxm_repair_options;
 
 #define VXM_REPAIR_OPTIONS_INIT                                                                           \
   {                                                                                                       \
     1, VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_FILL_FAN, false, 0.0, 0.0, false, false, \
-        0.0, 0, 0.0                                                                                       \
+        0.0, 0, 0.0, false                                                                                \
   }
 
 #define VXM_REPAIR_PASSES_MAX 24
@@ -321,8 +323,15 @@ typedef struct vxm_repair_report {
   int64_t nonorientable_patches; /**< faces joined by edges that cannot all be turned consistently */
   int64_t open_parts;     /**< components whose holes were left open: sheets that their closing would cover */
   int64_t unfilled_holes; /**< that were to be filled and could not be */
-  int64_t ununited_parts; /**< that were to be united and could not be, as they cut through themselves */
-  double moved; /**< largest distance that a vertex was moved, model units; not by a wrap or union */
+  int64_t ununited_parts; /**< that were to be united and still cut through themselves or others: open ones,
+                             which have no inside, and those where the union failed */
+  int64_t self_intersections_before, self_intersections_after; /**< pairs of faces, counted up to 4194304;
+                                                                  -1 = not looked for */
+  int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
+                                positions are too coarse for the faces about them */
+  int64_t opened_parts;      /**< closed before, open after; with options.part_changes, else 0 */
+  double moved;              /**< no vertex was moved farther, model units; not by a wrap or union. With
+                                options.part_changes, else 0 */
   vxm_census before, after;
 } vxm_repair_report;
 
@@ -346,9 +355,11 @@ VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, co
 /** A part of a mesh, at one time. Edges and holes are taken after welding. */
 typedef struct vxm_part_state {
   int64_t faces, boundary_edges, nonmanifold_edges, inconsistent_edges;
-  int64_t holes;       /**< closed walks along edges with an odd number of faces */
-  bool closed;         /**< it has faces, and every edge has an even number of them */
-  double area, volume; /**< as in vxm_census */
+  int64_t holes;              /**< closed walks along edges with an odd number of faces */
+  int64_t self_intersections; /**< pairs of its faces, or of one of them and another part's, that cut through
+                                 each other; -1 = not looked for (vxm_repair_options.intersections) */
+  bool closed;                /**< it has faces, and every edge has an even number of them */
+  double area, volume;        /**< as in vxm_census */
   double bounds[6];
 } vxm_part_state;
 
@@ -356,8 +367,9 @@ typedef struct vxm_part_state {
 typedef struct vxm_part_change {
   vxm_part_state before, after; /**< after: of all faces that come from this part; none after a wrap */
   int64_t flipped;              /**< faces that were turned */
-  double moved;                 /**< largest distance that one of its vertices was moved, model units */
+  double moved;                 /**< none of its vertices was moved farther, model units */
   uint32_t tag;                 /**< of its first face; UINT32_MAX if there are no tags */
+  bool ununited;                /**< it counts among vxm_repair_report.ununited_parts */
 } vxm_part_change;
 
 /** Number of connected components (after welding) of the mesh that was repaired; 0 without
@@ -377,7 +389,9 @@ typedef struct vxm_verification {
   struct {
     const char *what; /**< fixed name such as "boundary_edges" or a pass that would still change something */
     int64_t count;
-    int64_t element; /**< the first one: a vertex, or for faces and edges a face; -1 = none to tell */
+    int64_t element; /**< the first one: a vertex, or for faces and edges a face, with its number in the mesh
+                        that is verified, which is that of the file; -1 = none to tell */
+    bool placed;     /**< whether `at` is known */
     double at[3];    /**< where that is, model units */
   } remains[VXM_REMAINS_MAX];
 } vxm_verification;
@@ -441,6 +455,9 @@ VXM_API vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int
 VXM_API void vxm_defects_destroy(vxm_defects *defects);
 VXM_API int64_t vxm_defects_count(const vxm_defects *defects);
 VXM_API const vxm_defect *vxm_defects_items(const vxm_defects *defects);
+/** How many of a kind there are, listed or not; self-intersections are counted up to 4194304, -1 = not looked
+ * for. */
+VXM_API int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind);
 /** Fixed name of a kind, such as "boundary_edge". */
 VXM_API const char *vxm_defect_name(vxm_defect_kind kind);
 /**
@@ -572,6 +589,70 @@ typedef struct vxm_comparison {
 VXM_API vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b,
                                     vxm_error *error);
 
+/* ---- Engines: what makes the bits ---- */
+
+/** The CPU, or a context of a graphics driver. */
+typedef struct vxm_engine vxm_engine;
+
+/** What is known of an engine. */
+typedef struct vxm_engine_info {
+  char name[48];       /**< such as "cpu" or "opengl:osmesa" */
+  bool available;      /**< it can be made and works */
+  bool hardware;       /**< not a renderer in software */
+  char renderer[128];  /**< as the driver says; "" if there is none */
+  char version[128];   /**< of OpenGL and of the driver */
+  int64_t block_bytes; /**< largest buffer that a shader may use; larger grids are made in tiles */
+  int64_t viewport;    /**< columns that one pass draws along an axis; more are drawn in several */
+  int64_t layers;      /**< of an array texture: slices drawn at a time */
+  int subpixel_bits;   /**< of the rasterizer */
+  bool int64;          /**< shaders have 64-bit integers, which VXM_GL_COLUMNS and the surface need */
+  char attachment[16]; /**< format in which the XOR self-test passed: "r8ui", "r8" or "image"; "" = none */
+  char note[256];      /**< why it is not available, or why another one was taken */
+} vxm_engine_info;
+
+/** How an engine of OpenGL makes solids. */
+typedef enum vxm_gl_method {
+  VXM_GL_COLUMNS = 0, /**< one pass along an axis, a bit flipped for each crossing; the bits of the CPU */
+  VXM_GL_SLICES,      /**< slice by slice, tetrahedra cut in a geometry shader (Ogayar et al.) */
+  VXM_GL_TETRA_VERTEX /**< the same by a vertex program (Rueda et al.) */
+} vxm_gl_method;
+
+typedef struct vxm_engine_options {
+  uint32_t version; /**< 1 */
+  vxm_gl_method gl_method;
+  int slice_axis;      /**< across which axis the slicing methods cut: 0 = x, 1 = y, 2 = z */
+  double displacement; /**< slicing methods: each vertex is moved at random by up to so many voxels along each
+                          axis (Ogayar et al., section III-B1) */
+  uint64_t seed;       /**< of these moves */
+} vxm_engine_options;
+
+#define VXM_ENGINE_OPTIONS_INIT \
+  { 1, VXM_GL_COLUMNS, 1, 0.0, 0 }
+
+/**
+ * Makes an engine. One thread at a time may use it; many models may, one after another.
+ *
+ * @param context whose memory limit counts what it holds
+ * @param name    "cpu"; "opengl", which prefers a hardware device, then EGL without a surface, then OSMesa;
+ *                one of them by the name that vxm_engines_find gives; or "auto": OpenGL on a hardware device
+ *                that works, else, and wherever it fails later, the CPU
+ * @param options NULL = defaults
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown name; VXM_ERROR_UNAVAILABLE with what is missing;
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_engine_create(vxm_engine **out, vxm_context *context, const char *name,
+                                     const vxm_engine_options *options, vxm_error *error);
+VXM_API void vxm_engine_destroy(vxm_engine *engine);
+/** What the engine is, and under `note` what was taken in its place and why. */
+VXM_API const vxm_engine_info *vxm_engine_describe(const vxm_engine *engine);
+/**
+ * Looks at every engine that this build knows, each tried out. Fills at most `capacity` of them.
+ *
+ * @param[out] count how many there are
+ * @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY
+ */
+VXM_API vxm_status vxm_engines_find(vxm_engine_info *out, int64_t capacity, int64_t *count, vxm_error *error);
+
 /* ---- Voxelization ---- */
 
 typedef enum vxm_fit {
@@ -665,12 +746,13 @@ typedef struct vxm_voxelize_options {
   bool vote_always; /**< with `vote` majority, any or all: on closed parts too, where the voters agree anyway
                      */
   vxm_surface_kind surface; /**< with `mode` surface and both */
+  vxm_engine *engine;       /**< NULL = the CPU. Must outlive the models made with these options */
 } vxm_voxelize_options;
 
 #define VXM_VOXELIZE_OPTIONS_INIT                                                                 \
   {                                                                                               \
     1, VXM_SPACE_OPTIONS_INIT, VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, \
-        VXM_MODE_SOLID, false, false, VXM_SURFACE_CONSERVATIVE                                    \
+        VXM_MODE_SOLID, false, false, VXM_SURFACE_CONSERVATIVE, NULL                              \
   }
 
 typedef struct vxm_voxelize_report {
@@ -905,6 +987,54 @@ VXM_API vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *m
                                           const char *path, const vxm_label_options *options,
                                           vxm_error *error);
 
+/* ---- Colours ---- */
+
+/** What gives a voxel its colour (Rueda et al., section 5). */
+typedef enum vxm_color_by {
+  VXM_COLOR_NOISE = 0, /**< Perlin's noise in three dimensions, four octaves */
+  VXM_COLOR_POSITION,  /**< red, green and blue along x, y and z */
+  VXM_COLOR_PART,      /**< a hue for each connected component */
+  VXM_COLOR_GLSL       /**< a function in GLSL: needs an engine of OpenGL */
+} vxm_color_by;
+
+typedef struct vxm_color_options {
+  uint32_t version; /**< 1 */
+  vxm_color_by by;
+  const char
+      *source; /**< with VXM_COLOR_GLSL: defines vec3 color(vec3 position, vec3 unit, uint part), of the
+                  centre in model units, the same from the grid's corner on with its longest side as 1,
+                  and the number of the component, from 1 on; may call float noise(vec3), -1 to 1 */
+  const char *format; /**< of a file: "npy", "ply" or "vox"; NULL = by extension */
+} vxm_color_options;
+
+#define VXM_COLOR_OPTIONS_INIT \
+  { 1, VXM_COLOR_NOISE, NULL, NULL }
+
+/**
+ * Gives each set voxel of a model a colour.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2]*4 bytes, as [x][y][z][4] in C order: red, green, blue and
+ *                255; zeros where no voxel is set
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT too, with what the driver says, for a function that does
+ *         not compile; VXM_ERROR_UNAVAILABLE for GLSL without an engine of OpenGL. The engine and the CPU may
+ *         differ by 1 in the built-in functions. After a failure the values are unspecified
+ */
+VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report, vxm_model *model,
+                                    const vxm_space *space, const vxm_color_options *options,
+                                    vxm_error *error);
+
+/**
+ * As vxm_model_colors, into a file: .npy, uint8 [x][y][z][4] (with its .json beside it); .ply, the faces
+ * between set and empty voxels with coloured corners; .vox of MagicaVoxel, where colours are
+ * told apart by 5 bits each and reduced to at most 255, and every 256 voxels along an axis begin another
+ * model. @return as vxm_model_colors and vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write_colors(vxm_voxelize_report *report, vxm_model *model,
+                                          const vxm_space *space, const char *path,
+                                          const vxm_color_options *options, vxm_error *error);
+
 /** Number of labels of the last labels made of the model; 0 if there are none. */
 VXM_API int64_t vxm_model_label_count(const vxm_model *model);
 /** Name of label 1 to vxm_model_label_count: that of the group or material, or "unnamed"; of a part that of
@@ -966,7 +1096,7 @@ typedef struct vxm_sampler_options {
                        variants  are mirrored */
   double translate; /**< moved along each axis by up to this part, 0 to 1, of the room on either side */
   bool fill;        /**< the longest side fills the grid rather than the diagonal; without rotation only */
-  vxm_voxelize_options voxelize; /**< how; not its space, nor its confidence */
+  vxm_voxelize_options voxelize; /**< how; not its space, confidence or engine: the CPU makes all variants */
 } vxm_sampler_options;
 
 #define VXM_SAMPLER_OPTIONS_INIT                                                                             \

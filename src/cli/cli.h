@@ -17,7 +17,28 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_WRONG_USAGE = 2, CLI_WARNED = 3 };
 #define CLI_PRINTF(text, first) __attribute__((format(printf, text, first)))
 
 /** Keys of options without a letter. The common options take the numbers below CLI_KEY_COMMAND. */
-enum { CLI_KEY_COMMON = 256, CLI_KEY_DEFLECTION = 511, CLI_KEY_COMMAND = 512 };
+enum {
+  CLI_KEY_COMMON = 256,
+  CLI_KEY_ENGINE = 507,
+  CLI_KEY_GL_METHOD,
+  CLI_KEY_GL_AXIS,
+  CLI_KEY_GL_DISPLACE,
+  CLI_KEY_DEFLECTION,
+  CLI_KEY_COMMAND
+};
+
+/** For the tables of commands that make voxels; cli_engine_read takes their values. */
+#define CLI_OPTIONS_ENGINE                                                                   \
+  {CLI_KEY_ENGINE, "engine", "E",                                                            \
+   "who makes the voxels: cpu; opengl, or one that 'voxmend engines' lists;\n"               \
+   "auto = opengl on a hardware device, or else the cpu [cpu]"},                             \
+      {CLI_KEY_GL_METHOD, "gl-method", "columns|slices|tetra-vertex",                        \
+       "how OpenGL makes solids: columns = a pass along an axis, the same bits as the\n"     \
+       "cpu; slices, tetra-vertex = tetrahedra cut slice by slice, as published [columns]"}, \
+      {CLI_KEY_GL_AXIS, "gl-axis", "x|y|z", "across which axis slices are cut [y]"}, {       \
+    CLI_KEY_GL_DISPLACE, "gl-displace", "D[,SEED]",                                          \
+        "with slices: move each vertex at random by up to D voxels along each axis [0]"      \
+  }
 
 /** For the tables of commands that read meshes; cli_next_option puts its value into cli->read. */
 #define CLI_OPTION_DEFLECTION                                                    \
@@ -50,7 +71,7 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
-    cli_command_compare, cli_command_augment, cli_command_view, cli_command_bench;
+    cli_command_compare, cli_command_augment, cli_command_view, cli_command_bench, cli_command_engines;
 
 enum { CLI_OPTIONS_MAX = 48 };
 
@@ -84,6 +105,7 @@ struct cli_run {
   cli_file report_file; /**< open from cli_start to cli_finish */
   const char *made;     /**< output file that exists by now; removed if the run still fails */
   const char *made_format;
+  const char *located; /**< picture of defects that exists by now; removed in the same way */
   char phase[48];
   double drawn; /**< time at which progress was last drawn; 0 = none on the screen */
 };
@@ -121,6 +143,28 @@ extern const char *const cli_grid_formats[];
 /** Whether a file name ends in '.' and this extension, in any case. */
 bool cli_is_extension(const char *path, const char *extension);
 
+/* ---- engine.c: who makes the voxels ---- */
+
+typedef struct cli_engine {
+  const char *name; /**< NULL = not given */
+  vxm_engine_options options;
+  bool is_tuned, is_slicing; /**< options of OpenGL, and of its slices, were given */
+  vxm_engine *engine;        /**< made by cli_engine_open; NULL = the CPU, as nothing was asked for */
+} cli_engine;
+
+#define CLI_ENGINE_INIT \
+  { NULL, VXM_ENGINE_OPTIONS_INIT, false, false, NULL }
+
+/** Takes the value of one of CLI_OPTIONS_ENGINE. */
+int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value);
+/** CLI_STOP if the options contradict each other. */
+int cli_engine_check(cli_run *cli, const cli_engine *engine);
+/** Makes the engine, if one was named; a failure is in cli->error. */
+vxm_status cli_engine_open(cli_run *cli, cli_engine *engine);
+/** The row, and the object of the report; only where one was named. */
+void cli_engine_summarize(const cli_run *cli, const cli_engine *engine);
+json_t *cli_engine_json(const cli_engine *engine);
+
 /* ---- output.c: messages, tables and reports ---- */
 
 /** Prints cli->error as one line and returns CLI_FAILED. */
@@ -157,6 +201,8 @@ bool cli_file_open(cli_file *file, const char *path);
 bool cli_file_commit(cli_file *file);
 /** Drops a file that was not committed; does nothing if none is open. */
 void cli_file_drop(cli_file *file);
+/** Whether two names, neither of which is "-", are of one file, or will be once it is written. */
+bool cli_same_file(const char *a, const char *b);
 /** Opens the file of --report, so that a wrong name fails before the work. */
 bool cli_report_open(cli_run *cli);
 /** Prints the report with --json, writes it with --report, and frees it. Returns an exit status. */
@@ -177,6 +223,8 @@ int cli_signal(void);
 
 /** A row for each count, with what it means where it is not zero. */
 void cli_census_print(const cli_run *cli, const vxm_census *census);
+/** A row for self-intersections; nothing if they were not looked for (-1). */
+void cli_census_print_intersections(const cli_run *cli, int64_t count);
 /** Both in one table, "Original" and "Final". */
 void cli_census_print_both(const cli_run *cli, const vxm_census *before, const vxm_census *after);
 /** Adds the census's keys to an object. */
@@ -209,20 +257,29 @@ typedef struct cli_defects {
   bool intersections; /**< self-intersections too */
 } cli_defects;
 
+typedef struct cli_found {
+  json_t *list;          /**< NULL = not wanted */
+  int64_t intersections; /**< pairs of faces; -1 = not looked for */
+} cli_found;
+
 /** The argument of --list: CLI_END or CLI_STOP. */
 int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value);
-/** CLI_STOP if --locate has a wrong name, or that of the output (NULL = none). */
-int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *output);
-/** Finds, lists (NULL if that is not wanted) and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */
-int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, const vxm_mesh *mesh);
+/** CLI_STOP if --locate has a wrong name, or that of the input, the report, or the output (NULL = none). */
+int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *input, const char *output);
+/** Prints the list that cli_defects_show has made; NULL = none. */
+void cli_defects_print(const cli_run *cli, const json_t *list);
+/** Finds, lists, counts and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */
+int cli_defects_show(cli_run *cli, cli_found *out, const cli_defects *wanted, const vxm_mesh *mesh);
 
 /* ---- field.c: coverage and distance, for voxelize; labels.c: labels ---- */
 
 typedef struct cli_field {
-  bool coverage, scalar, distance, band, labels; /**< which options were given */
+  bool coverage, scalar, distance, band, labels, color; /**< which options were given */
+  const char *color_name;                               /**< a function that is built in, or a file */
   vxm_coverage_options coverage_options;
   vxm_distance_options distance_options;
   vxm_label_options label_options;
+  vxm_color_options color_options;
   vxm_coverage_report coverage_report;
   vxm_distance_report distance_report;
   vxm_label_report label_report;
@@ -232,7 +289,7 @@ typedef struct cli_field {
 #define CLI_FIELD_INIT                                                                            \
   {                                                                                               \
     .coverage_options = VXM_COVERAGE_OPTIONS_INIT, .distance_options = VXM_DISTANCE_OPTIONS_INIT, \
-    .label_options = VXM_LABEL_OPTIONS_INIT                                                       \
+    .label_options = VXM_LABEL_OPTIONS_INIT, .color_options = VXM_COLOR_OPTIONS_INIT              \
   }
 
 /** The formats of what is wanted. */
@@ -245,6 +302,11 @@ int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_band(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value);
+/** The argument of --color (colors.c). */
+int cli_color_read(cli_run *cli, cli_field *field, const char *value);
+/** Writes the file of --color; a failure is in cli->error. */
+vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
+                           const vxm_space *space, const char *path, const char *format);
 /** CLI_STOP if they contradict each other, --mode, --dry-run (`is_tried`) or --confidence (`is_sure`). */
 int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is_tried, bool is_sure);
 /** Writes the file; a failure is in cli->error. */
@@ -253,7 +315,7 @@ vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
 /** What that will take; zeros for labels. A failure is in cli->error. */
 vxm_status cli_field_estimate(cli_run *cli, const cli_field *field, vxm_estimate *out, const vxm_model *model,
                               const vxm_space *space, const char *path, const char *format);
-/** Adds "coverage", "distance" or "labels". */
+/** Adds "coverage", "distance", "labels" or "color". */
 void cli_field_json(json_t *report, const cli_field *field);
 void cli_field_summarize(const cli_run *cli, const cli_field *field);
 /* The same for labels alone. */

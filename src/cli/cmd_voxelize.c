@@ -110,7 +110,7 @@ static const uint64_t LARGE_GRID = UINT64_C(1) << 26;
 static bool takes_octree(const voxelize_request *given, const voxelize_outcome *results) {
   if (given->sparse)
     return true;
-  return given->coords && !given->confidence && voxelize_is_sliced(given->format) &&
+  return given->coords && !given->confidence && !given->engine.name && voxelize_is_sliced(given->format) &&
          results->estimate.grid_bytes >= LARGE_GRID;
 }
 
@@ -127,6 +127,9 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   vxm_model *model = NULL;
   double start = cli_clock();
   vxm_status status = vxm_space_fit(&results->space, mesh, &given->voxelize.space, &cli->error);
+  if (status == VXM_OK && !given->dry_run)
+    status = cli_engine_open(cli, &given->engine);
+  given->voxelize.engine = given->engine.engine;
   if (status == VXM_OK)
     status = vxm_model_create(&model, mesh, &given->voxelize, &cli->error);
   if (status == VXM_OK && given->sparse) /* what an octree takes is known when it is made */
@@ -153,8 +156,10 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
 }
 
 static int run(cli_run *cli) {
-  voxelize_request given = {
-      .repair = VXM_REPAIR_OPTIONS_INIT, .voxelize = VXM_VOXELIZE_OPTIONS_INIT, .field = CLI_FIELD_INIT};
+  voxelize_request given = {.repair = VXM_REPAIR_OPTIONS_INIT,
+                            .voxelize = VXM_VOXELIZE_OPTIONS_INIT,
+                            .field = CLI_FIELD_INIT,
+                            .engine = CLI_ENGINE_INIT};
   if (voxelize_read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
@@ -172,14 +177,15 @@ static int run(cli_run *cli) {
     return CLI_FAILED;
   int status = make_file(cli, &given, &results);
   vxm_mesh_destroy(results.input.mesh);
-  if (status != CLI_DONE)
-    return status;
-  results.total_ms = cli_clock() - start;
-  cli_progress_clear(cli);
-  if (cli_summary(cli) && !given.dry_run)
-    voxelize_summarize(cli, &given, &results);
-  status = cli_finish(cli, voxelize_report(cli, &given, &results));
+  if (status == CLI_DONE) {
+    results.total_ms = cli_clock() - start;
+    cli_progress_clear(cli);
+    if (cli_summary(cli) && !given.dry_run)
+      voxelize_summarize(cli, &given, &results);
+    status = cli_finish(cli, voxelize_report(cli, &given, &results));
+  }
   json_decref(given.field.label_table);
+  vxm_engine_destroy(given.engine.engine);
   return status;
 }
 

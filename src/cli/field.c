@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A number per voxel instead of a bit: the options, files and reports of coverage, distance and labels. */
+/** A number per voxel instead of a bit: the options, files and reports of coverage, distance, labels and
+ * colours. */
 #include "cli/cli.h"
 
 #include <inttypes.h>
@@ -8,11 +9,14 @@
 const char *const *cli_field_formats(const cli_field *field) {
   static const char *const numbers[] = {"npy", "nrrd", "vdb", NULL};
   static const char *const labels[] = {"npy", "nrrd", "binvox", NULL};
+  static const char *const colors[] = {"npy", "ply", "vox", NULL};
+  if (field->color)
+    return colors;
   return field->labels ? labels : numbers;
 }
 
 bool cli_field_wanted(const cli_field *field) {
-  return field->coverage || field->distance || field->labels;
+  return field->coverage || field->distance || field->labels || field->color;
 }
 
 /* ---- Options ---- */
@@ -65,9 +69,12 @@ int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value) {
 }
 
 int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is_tried, bool is_sure) {
-  const char *name = field->coverage ? "coverage" : field->distance ? "distance" : "labels";
-  if (field->coverage + field->distance + field->labels > 1)
-    return cli_usage(cli, "--coverage, --distance and --labels exclude each other");
+  const char *name = field->coverage   ? "coverage"
+                     : field->distance ? "distance"
+                     : field->labels   ? "labels"
+                                       : "color";
+  if (field->coverage + field->distance + field->labels + field->color > 1)
+    return cli_usage(cli, "--coverage, --distance, --labels and --color exclude each other");
   if (field->scalar && !field->coverage)
     return cli_usage(cli, "--scalar goes with --coverage");
   if (field->band && !field->distance)
@@ -93,7 +100,9 @@ vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
     status = vxm_model_write_coverage(&field->coverage_report, model, space, path, &field->coverage_options,
                                       &cli->error);
     *report = field->coverage_report.voxelize;
-  } else if (field->labels) {
+  } else if (field->color)
+    status = cli_color_write(cli, field, report, model, space, path, format);
+  else if (field->labels) {
     field->label_options.format = format;
     status = cli_labels_write(cli, field, model, space, path);
     *report = field->label_report.voxelize;
@@ -144,6 +153,8 @@ static json_t *distance_json(const cli_field *field) {
 void cli_field_json(json_t *report, const cli_field *field) {
   if (field->coverage)
     json_object_set_new(report, "coverage", coverage_json(field));
+  else if (field->color)
+    json_object_set_new(report, "color", cli_json_text(field->color_name));
   else if (field->labels)
     cli_labels_json(report, field);
   else
@@ -157,7 +168,9 @@ void cli_field_summarize(const cli_run *cli, const cli_field *field) {
     cli_row(cli, "coverage", "%" PRId64 " voxels full, %" PRId64 " in part", coverage->full,
             coverage->partial);
     cli_row(cli, "volume", "%.6g", coverage->volume);
-  } else if (field->labels)
+  } else if (field->color)
+    cli_row(cli, "colour", "%s", field->color_name);
+  else if (field->labels)
     cli_labels_summarize(cli, field);
   else
     cli_row(cli, "distance", "%.6g to %.6g; %" PRId64 " voxels within the band", distance->least,

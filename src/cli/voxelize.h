@@ -12,6 +12,7 @@ typedef struct voxelize_request {
   vxm_repair_options repair;
   vxm_voxelize_options voxelize;
   cli_field field;
+  cli_engine engine;
 } voxelize_request;
 
 typedef struct voxelize_outcome {

@@ -21,6 +21,7 @@ enum {
   KEY_DISTANCE,
   KEY_BAND,
   KEY_LABELS,
+  KEY_COLOR,
   KEY_CONFIDENCE,
   KEY_SPARSE,
   KEY_COORDS,
@@ -80,6 +81,9 @@ const cli_option voxelize_options[] = {
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
      ".npy, .nrrd or .binvox, with the names in a .json beside it"},
+    {KEY_COLOR, "color", "noise|position|part|FILE.frag",
+     "write a colour for each set voxel instead: Perlin's noise, where it is, its part,\n"
+     "or a function in GLSL, which needs --engine opengl; .npy, .ply or .vox"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
@@ -87,6 +91,7 @@ const cli_option voxelize_options[] = {
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
+    CLI_OPTIONS_ENGINE,
     CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
@@ -218,6 +223,8 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     return cli_field_read_band(cli, &out->field, value);
   case KEY_LABELS:
     return cli_field_read_labels(cli, &out->field, value);
+  case KEY_COLOR:
+    return cli_color_read(cli, &out->field, value);
   case KEY_CONFIDENCE:
     out->confidence = value;
     out->voxelize.confidence = true;
@@ -242,6 +249,11 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
   case KEY_KEEP:
     out->repair_options = out->repair.keep_duplicates = true;
     return CLI_END;
+  case CLI_KEY_ENGINE:
+  case CLI_KEY_GL_METHOD:
+  case CLI_KEY_GL_AXIS:
+  case CLI_KEY_GL_DISPLACE:
+    return cli_engine_read(cli, &out->engine, key, value);
   default:
     return read_space_option(cli, out, key, value);
   }
@@ -276,13 +288,17 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
   if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
-    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance and "
-                          "--labels");
+    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance, "
+                          "--labels and --color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
   if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
                         (given->confidence && strcmp(given->coords, given->confidence) == 0)))
     return cli_usage(cli, "--coords and another output name the same file");
+  if (given->engine.name && given->sparse)
+    return cli_usage(cli, "--sparse is made by the CPU; leave out --engine");
+  if (cli_engine_check(cli, &given->engine) == CLI_STOP)
+    return CLI_STOP;
   if (given->no_repair && given->repair_options)
     return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
   return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);

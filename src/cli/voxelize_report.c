@@ -44,6 +44,8 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
     json_object_set(report, "warnings", cli->warnings);
     return report;
   }
+  if (given->engine.engine)
+    json_object_set_new(report, "engine", cli_engine_json(&given->engine));
   json_object_set_new(report, "parts", json_integer(results->voxelize.parts));
   json_object_set_new(report, "closed_parts", json_integer(results->voxelize.closed_parts));
   json_object_set_new(report, "capped_parts", json_integer(results->voxelize.capped_parts));
@@ -134,6 +136,7 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
   const vxm_voxelize_report *report = &results->voxelize;
   const vxm_space *space = &results->space;
   double cells = (double)space->dims[0] * (double)space->dims[1] * (double)space->dims[2];
+  cli_engine_summarize(cli, &given->engine);
   if (report->parts > 0) /* none were looked for where no solid was made */
     summarize_parts(cli, report);
   if (report->cavities > 0)

@@ -14,6 +14,14 @@ static inline uint64_t vxm_le64(uint64_t word) {
 #endif
 }
 
+static inline uint32_t vxm_le32(uint32_t word) {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  return __builtin_bswap32(word);
+#else
+  return word;
+#endif
+}
+
 static inline uint64_t vxm_load_le64(const unsigned char *bytes) {
   uint64_t word;
   memcpy(&word, bytes, sizeof word);

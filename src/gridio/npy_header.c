@@ -211,6 +211,15 @@ void vxm_npy_header_write(vxm_output *output, const char *type, bool fortran, co
   write_header(output, text, length);
 }
 
+void vxm_npy_header_write_bytes(vxm_output *output, const int64_t shape[3], int last) {
+  char text[256];
+  int length = snprintf(text, sizeof text,
+                        "{'descr': '|u1', 'fortran_order': False, 'shape': (%" PRId64 ", %" PRId64
+                        ", %" PRId64 ", %d), }",
+                        shape[0], shape[1], shape[2], last);
+  write_header(output, text, length);
+}
+
 void vxm_npy_header_write_table(vxm_output *output, const char *type, int64_t rows, int64_t columns) {
   char text[256];
   int length = snprintf(text, sizeof text,

@@ -25,6 +25,8 @@ vxm_status vxm_npy_header_read(vxm_npy_header *out, const vxm_input *input, vxm_
  * @param fortran whether the first index is the fastest
  */
 void vxm_npy_header_write(vxm_output *output, const char *type, bool fortran, const int64_t shape[3]);
+/** The same for an array of `last` bytes at each place of `shape`. */
+void vxm_npy_header_write_bytes(vxm_output *output, const int64_t shape[3], int last);
 /** The same for a table of rows, each of which lies together. */
 void vxm_npy_header_write_table(vxm_output *output, const char *type, int64_t rows, int64_t columns);
 

@@ -6,6 +6,10 @@
 #include "mesh/order.h"
 #include "mesh/soup.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /** Room for the largest polygon met so far. */
 typedef struct vxm_triangulator {
   vxm_context *context;
@@ -44,4 +48,7 @@ void vxm_triangulator_close(vxm_triangulator *tri);
 vxm_status vxm_triangulate(vxm_triangulator *tri, const double *positions, const uint32_t *corners, size_t n,
                            const uint32_t **triangles, vxm_error *error);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

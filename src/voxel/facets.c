@@ -2,6 +2,7 @@
 #include "voxel/facets.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 /** What is needed while facets are made. */
@@ -235,7 +236,9 @@ static void measure(vxm_facets *facets) {
 }
 
 vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_rule rule, vxm_error *error) {
+  static atomic_uint_fast64_t last_serial;
   *out = (vxm_facets){.context = soup->context, .soup = soup, .split = {.context = soup->context}};
+  out->serial = atomic_fetch_add(&last_serial, 1) + 1;
   builder b = {.facets = out, .soup = soup, .error = VXM_ERROR_INIT};
   vxm_error local = VXM_ERROR_INIT;
   vxm_status status = vxm_split_create(&out->split, soup, rule, &local);

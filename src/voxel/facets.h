@@ -35,6 +35,7 @@ typedef struct vxm_part {
 
 typedef struct vxm_facets {
   vxm_context *context;
+  uint64_t serial; /**< no two that hold different facets have the same */
   const vxm_soup *soup;
   uint32_t (*corners)[3]; /**< points of each facet */
   uint32_t *part;         /**< of each facet */

@@ -17,7 +17,7 @@ static vxm_status make_shape(vxm_model *model, const vxm_soup *soup, vxm_error *
   *shape = (vxm_shape){.context = model->context, .soup = soup, .options = options};
   shape->open_turns.context = shape->all_turns.context = model->context;
   shape->workspace = vxm_workspace_of(model->context);
-  model->run = (vxm_run){.shape = shape, .placed = {.context = model->context}};
+  model->run = (vxm_run){.shape = shape, .placed = {.context = model->context}, .engine = options->engine};
   model->run.open_wound.context = model->run.all_wound.context = model->context;
   vxm_split_rule rule = {options->parts, options->cavities, vxm_caps_wanted(options)};
   vxm_status status = vxm_facets_create(&shape->facets, soup, rule, error);
@@ -189,8 +189,9 @@ vxm_status vxm_model_begin_on(vxm_model *model, const vxm_lattice *lattice, cons
   vxm_wound_destroy(&run->all_wound);
   vxm_shelling_begin(&model->shelling);
   if (vxm_model_wants_solid(model))
-    status = vxm_placed_set(&run->placed, facets, lattice, transform,
-                            confidence || vxm_run_apexes(&model->shape), error);
+    status = vxm_placed_set(
+        &run->placed, facets, lattice, transform,
+        confidence || vxm_run_apexes(&model->shape) || (run->engine && run->engine->wants_apexes), error);
   if (status != VXM_OK || !vxm_model_wants_faces(model))
     return status;
   if (model->surface)
@@ -226,7 +227,7 @@ vxm_status vxm_model_fill(vxm_model *model, const vxm_window *window, vxm_error 
   if (run->confidence) /* exact everywhere */
     memset(run->confidence, 255,
            (size_t)window->fast_dim * (size_t)window->middle_dim * (size_t)window->slow_dim);
-  return vxm_surface_add(model->surface, window, kind, !solid, error);
+  return vxm_run_surface(run, model->surface, window, kind, !solid, error);
 }
 
 /* ---- Report and warnings ---- */
@@ -276,6 +277,9 @@ static void warn(vxm_model *model, const vxm_voxelize_report *report) {
              "or a higher resolution (-r)");
   else if (report->empty_parts > 0 && !faces)
     name_empty_parts(model, report);
+  const vxm_engine *engine = model->run.engine;
+  if (engine && engine->falls_back && !engine->ops)
+    vxm_note(notes, "%s", engine->info.note);
   if (report->contested > 0)
     vxm_note(notes,
              "the model is open (%zu odd edges) and x, y and z disagree on %" PRId64

@@ -149,6 +149,7 @@ vxm_status vxm_piece_fill(vxm_piece_desk *desk, const vxm_window *window, const 
   vxm_voxelize_options solid = *options;
   solid.mode = VXM_MODE_SOLID;
   solid.confidence = false;
+  solid.engine = NULL; /* pieces are too small for what an engine costs to start */
   vxm_lattice own = *lattice;
   own.space = vxm_piece_space(piece, &lattice->space);
   vxm_model *model = NULL;

@@ -141,6 +141,8 @@ static vxm_status reserve(vxm_placed *placed, size_t count, vxm_error *error) {
 
 vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
                           const double transform[12], bool apexes, vxm_error *error) {
+  static atomic_uint_fast64_t last_serial;
+  placed->serial = atomic_fetch_add(&last_serial, 1) + 1;
   placed->lattice = *lattice;
   memcpy(placed->transform, transform ? transform : identity, sizeof identity);
   vxm_free(placed->context, placed->wide);

@@ -20,6 +20,7 @@ enum { VXM_CELL_BITS = 21 };
  */
 typedef struct vxm_placed {
   vxm_context *context;
+  uint64_t serial; /**< no two that hold different points have the same */
   vxm_lattice lattice;
   double transform[12];
   size_t capacity;      /**< of `narrow` and `cells` */

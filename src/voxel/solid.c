@@ -73,6 +73,18 @@ vxm_status vxm_run_buffer(vxm_run *run, int buffer, const vxm_window *like, vxm_
   return VXM_OK;
 }
 
+/* ---- What another engine may do ---- */
+
+static const vxm_engine_ops *ops_of(const vxm_run *run) {
+  return run->engine ? run->engine->ops : NULL;
+}
+
+static vxm_status unite(vxm_run *run, const vxm_window *window, const vxm_unite_job *job, vxm_error *error) {
+  if (ops_of(run) && ops_of(run)->unite)
+    return ops_of(run)->unite(run->engine, window, job, error);
+  return vxm_unite(&run->shape->workspace, window, job, error);
+}
+
 vxm_status vxm_run_unite(vxm_run *run, const vxm_window *window, int axis, size_t part_begin, size_t part_end,
                          unsigned roles, vxm_error *error) {
   static const char *const phase[3] = {"voxelizing along x", "voxelizing along y", "voxelizing along z"};
@@ -85,7 +97,24 @@ vxm_status vxm_run_unite(vxm_run *run, const vxm_window *window, int axis, size_
                        .fresh = true,
                        .touched = run->touched,
                        .phase = phase[axis]};
-  return vxm_unite(&run->shape->workspace, window, &job, error);
+  return unite(run, window, &job, error);
+}
+
+vxm_status vxm_run_surface(vxm_run *run, const vxm_surface *surface, const vxm_window *window,
+                           vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
+  const vxm_engine_ops *ops = ops_of(run);
+  if (ops && ops->surface) {
+    vxm_error local = VXM_ERROR_INIT;
+    vxm_status status = ops->surface(run->engine, surface, window, kind, is_fresh, &local);
+    if (status == VXM_OK)
+      return VXM_OK;
+    if (!vxm_engine_gives_way(run->engine, &local)) {
+      if (error)
+        *error = local;
+      return status;
+    }
+  }
+  return vxm_surface_add(surface, window, kind, is_fresh, error);
 }
 
 void vxm_run_destroy(vxm_run *run) {
@@ -158,6 +187,23 @@ static vxm_status poll_part(vxm_run *run, const vxm_window *window, size_t part,
   return vxm_poll(&shape->workspace, window, &job, tally, error);
 }
 
+/** By an engine that has votes. */
+static vxm_status elect_elsewhere(vxm_run *run, const vxm_window *window, bool tetra, vxm_vote rule,
+                                  uint64_t *mask, vxm_tally *tally, vxm_error *error) {
+  vxm_shape *shape = run->shape;
+  size_t begin = vxm_voted_begin(shape);
+  vxm_elect_job job = {.facets = &shape->facets,
+                       .placed = &run->placed,
+                       .part_begin = begin,
+                       .part_end = shape->facets.split.part_count,
+                       .agree = !has_cones(shape, begin),
+                       .tetra = tetra,
+                       .rule = rule,
+                       .mask = mask,
+                       .touched = run->touched};
+  return ops_of(run)->elect(run->engine, window, &job, tally, error);
+}
+
 static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_error *error) {
   vxm_shape *shape = run->shape;
   size_t begin = vxm_voted_begin(shape), end = shape->facets.split.part_count;
@@ -168,7 +214,9 @@ static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_
   vxm_window mask = {.words = NULL};
   vxm_tally tally = {0, false};
   vxm_status status = decide ? vxm_run_buffer(run, VXM_BUFFER_MASK, window, &mask, error) : VXM_OK;
-  if (status == VXM_OK && end - begin == 1) {
+  if (status == VXM_OK && ops_of(run) && ops_of(run)->elect)
+    status = elect_elsewhere(run, window, tetra, rule, mask.words, &tally, error);
+  else if (status == VXM_OK && end - begin == 1) {
     status = poll_part(run, window, begin, tetra, rule, mask.words, &tally, error);
     if (tally.added && run->touched)
       atomic_store_explicit(&run->touched[begin], 1, memory_order_relaxed);
@@ -225,21 +273,43 @@ static vxm_status fill_by_one(vxm_run *run, const vxm_window *window, vxm_error 
                        .fresh = true,
                        .touched = run->touched,
                        .phase = "voxelizing tetrahedra"};
+  if (ops_of(run) && ops_of(run)->unite) { /* parity with cones has the same bits */
+    job.axis = window->layout.fast;
+    job.roles = VXM_FACET_TRIANGLE | VXM_FACET_CONE;
+    return unite(run, window, &job, error);
+  }
   return vxm_tetra_unite(&shape->workspace, window, &job, error);
 }
 
-vxm_status vxm_solid_fill(vxm_run *run, const vxm_window *window, vxm_error *error) {
+static vxm_status fill(vxm_run *run, const vxm_window *window, vxm_error *error) {
   vxm_shape *shape = run->shape;
   if (vxm_one_voter(shape->options))
     return fill_by_one(run, window, error);
   /* Parts that are closed, or closed by caps: one axis settles them. Without any, a poll starts afresh. */
   vxm_status status = VXM_OK;
-  if (vxm_voted_begin(shape) > 0 || shape->facets.split.part_count != 1)
+  if (vxm_voted_begin(shape) > 0 || shape->facets.split.part_count != 1 || ops_of(run))
     status = vxm_run_unite(run, window, window->layout.fast, 0, vxm_voted_begin(shape),
                            VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
   if (status == VXM_OK)
     status = decide_open_parts(run, window, error);
   if (status == VXM_OK && shape->options->method == VXM_METHOD_WINDING)
     status = fill_by_winding(run, window, error);
+  return status;
+}
+
+vxm_status vxm_solid_fill(vxm_run *run, const vxm_window *window, vxm_error *error) {
+  int64_t contested = run->contested, escalated = run->escalated;
+  bool added = run->added;
+  vxm_error local = VXM_ERROR_INIT;
+  bool elsewhere = ops_of(run) != NULL;
+  vxm_status status = fill(run, window, &local);
+  if (status != VXM_OK && elsewhere && vxm_engine_gives_way(run->engine, &local)) {
+    run->contested = contested;
+    run->escalated = escalated;
+    run->added = added;
+    status = fill(run, window, &local);
+  }
+  if (status != VXM_OK && error)
+    *error = local;
   return status;
 }

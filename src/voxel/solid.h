@@ -6,6 +6,7 @@
 #ifndef VXM_VOXEL_SOLID_H
 #define VXM_VOXEL_SOLID_H
 
+#include "voxel/engine.h"
 #include "voxel/outward.h"
 #include "voxel/slabs.h"
 #include "voxel/wound.h"
@@ -38,6 +39,7 @@ typedef struct vxm_shape {
 /** The voxelization of a shape in one grid, window after window. */
 typedef struct vxm_run {
   vxm_shape *shape;
+  vxm_engine *engine; /**< NULL = the CPU */
   vxm_placed placed;
   bool mirrored; /**< the transform turns triangles inside out */
   vxm_buffer buffers[VXM_BUFFERS];
@@ -69,6 +71,9 @@ vxm_status vxm_solid_fill(vxm_run *run, const vxm_window *window, vxm_error *err
 /** Sets every voxel of parts part_begin to part_end - 1 by parity along an axis; a part of vxm_solid_fill. */
 vxm_status vxm_run_unite(vxm_run *run, const vxm_window *window, int axis, size_t part_begin, size_t part_end,
                          unsigned roles, vxm_error *error);
+/** The surface in a window, as vxm_surface_add. */
+vxm_status vxm_run_surface(vxm_run *run, const vxm_surface *surface, const vxm_window *window,
+                           vxm_surface_kind kind, bool is_fresh, vxm_error *error);
 /** A window like another with the words of a buffer. */
 vxm_status vxm_run_buffer(vxm_run *run, int buffer, const vxm_window *like, vxm_window *out,
                           vxm_error *error);

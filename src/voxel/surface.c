@@ -105,6 +105,8 @@ static vxm_status check_used(const vxm_surface *surface, const vxm_soup *soup, v
 vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
                              vxm_error *error) {
   size_t count = surface->soup->vertex_count;
+  static atomic_uint_fast64_t last_serial;
+  surface->serial = atomic_fetch_add(&last_serial, 1) + 1;
   snap_job job = {surface, surface->soup, transform, 1 + count / 4096, false};
   surface->lattice = *lattice;
   vxm_parallel(surface->context, job.slices, snap_slice, &job);

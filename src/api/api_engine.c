@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions of engines: they check arguments and call down. */
+#include "gpu/engines.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+vxm_status vxm_engine_create(vxm_engine **out, vxm_context *context, const char *name,
+                             const vxm_engine_options *options, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !name)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: an argument is NULL");
+  vxm_engine_options chosen = VXM_ENGINE_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+  if (chosen.version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "engine: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  if ((unsigned)chosen.gl_method > VXM_GL_TETRA_VERTEX)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: method %d is unknown", (int)chosen.gl_method);
+  if (chosen.slice_axis < 0 || chosen.slice_axis > 2)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: slice axis %d is none of 0, 1, 2", chosen.slice_axis);
+  if (!(chosen.displacement >= 0) || !isfinite(chosen.displacement))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: displacement %g is not 0 or more",
+                    chosen.displacement);
+  return vxm_engines_make(out, context, name, &chosen, error);
+}
+
+const vxm_engine_info *vxm_engine_describe(const vxm_engine *engine) {
+  return engine ? &engine->info : NULL;
+}
+
+vxm_status vxm_engines_find(vxm_engine_info *out, int64_t capacity, int64_t *count, vxm_error *error) {
+  if (count)
+    *count = 0;
+  if (!count || capacity < 0 || (capacity > 0 && !out))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "engines: an argument is NULL or negative");
+  return vxm_engines_list(out, capacity, count, NULL, error);
+}

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend engines: what can make voxels on this machine. */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+
+enum { ENGINES_MAX = 80 };
+
+static const cli_option known_options[] = {{0, NULL, NULL, NULL}};
+
+static json_t *engine_json(const vxm_engine_info *info) {
+  json_t *object = json_object();
+  json_object_set_new(object, "name", json_string(info->name));
+  json_object_set_new(object, "available", json_boolean(info->available));
+  if (*info->renderer) {
+    json_object_set_new(object, "hardware", json_boolean(info->hardware));
+    json_object_set_new(object, "renderer", cli_json_text(info->renderer));
+    json_object_set_new(object, "version", cli_json_text(info->version));
+    json_object_set_new(object, "block_bytes", json_integer(info->block_bytes));
+    json_object_set_new(object, "viewport", json_integer(info->viewport));
+    json_object_set_new(object, "layers", json_integer(info->layers));
+    json_object_set_new(object, "subpixel_bits", json_integer(info->subpixel_bits));
+    json_object_set_new(object, "int64", json_boolean(info->int64));
+    json_object_set_new(object, "xor_test", json_string(info->attachment));
+  }
+  if (*info->note)
+    json_object_set_new(object, "note", cli_json_text(info->note));
+  return object;
+}
+
+static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
+  fprintf(cli->text, "%-24s %s%s\n", info->name, info->available ? "works" : "not here: ", info->note);
+  if (!info->available || !*info->renderer)
+    return;
+  fprintf(cli->text, "  renderer               %s%s\n", info->renderer,
+          info->hardware ? "" : ", in software: slower than cpu");
+  fprintf(cli->text, "  version                %s\n", info->version);
+  fprintf(cli->text,
+          "  limits                 buffers of %" PRId64 " MiB, viewports of %" PRId64 ", %" PRId64
+          " layers, %d sub-pixel bits\n",
+          info->block_bytes >> 20, info->viewport, info->layers, info->subpixel_bits);
+  fprintf(cli->text, "  64-bit integers        %s\n",
+          info->int64 ? "yes" : "no: --gl-method slices and tetra-vertex only");
+  fprintf(cli->text, "  XOR self-test          passed with %s\n", info->attachment);
+}
+
+static int run(cli_run *cli) {
+  static vxm_engine_info found[ENGINES_MAX];
+  const char *value;
+  int64_t count;
+  if (cli_next_option(cli, &value) == CLI_STOP)
+    return cli->status;
+  if (cli->argument_count != 0) {
+    cli_usage(cli, "no argument is expected, not %d", cli->argument_count);
+    return cli->status;
+  }
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  if (vxm_engines_find(found, ENGINES_MAX, &count, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  json_t *report = json_object(), *list = json_array();
+  for (int64_t i = 0; i < count && i < ENGINES_MAX; i++) {
+    if (cli_summary(cli))
+      print_engine(cli, &found[i]);
+    json_array_append_new(list, engine_json(&found[i]));
+  }
+  json_object_set_new(report, "engines", list);
+  json_object_set(report, "warnings", cli->warnings);
+  return cli_finish(cli, report);
+}
+
+const cli_command cli_command_engines = {
+    .name = "engines",
+    .arguments = "[OPTION]...",
+    .summary = "list what can make voxels on this machine",
+    .notes =
+        "Each is tried out. --engine of 'voxmend voxelize' and 'voxmend bench' takes its name; 'opengl'\n"
+        "takes the first that works of a hardware device, EGL without a surface, and OSMesa.\n\n"
+        "Example:\n"
+        "  voxmend engines --json",
+    .options = known_options,
+    .run = run,
+};

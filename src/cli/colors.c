@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend voxelize --color: a colour per voxel. */
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SOURCE_MAX = 1 << 20 };
+
+/** The text of a file of GLSL; NULL after a failure, which is in cli->error. */
+static char *read_source(cli_run *cli, const char *path) {
+  FILE *file = fopen(path, "rb");
+  char *text = file ? malloc(SOURCE_MAX + 1) : NULL;
+  size_t size = text ? fread(text, 1, SOURCE_MAX + 1, file) : 0;
+  bool is_read = text && !ferror(file) && size <= SOURCE_MAX && !memchr(text, 0, size);
+  int reason = errno;
+  if (file)
+    fclose(file);
+  if (is_read) {
+    text[size] = '\0';
+    return text;
+  }
+  free(text);
+  cli->error.code = VXM_ERROR_IO;
+  snprintf(cli->error.text, sizeof cli->error.text, "%.200s: cannot read the colour function: %s", path,
+           file && size > SOURCE_MAX ? "it has more than 1 MiB"
+           : file && size > 0        ? "it is no text"
+                                     : strerror(reason));
+  return NULL;
+}
+
+int cli_color_read(cli_run *cli, cli_field *field, const char *value) {
+  static const char *const choices[] = {"noise", "position", "part", NULL};
+  int choice = cli_read_choice(value, choices);
+  if (choice < 0 && !cli_is_extension(value, "frag"))
+    return cli_usage(cli, "--color '%s' is none of noise, position, part, and no FILE.frag", value);
+  field->color = true;
+  field->color_name = value;
+  field->color_options.by = choice >= 0 ? (vxm_color_by)choice : VXM_COLOR_GLSL;
+  return CLI_END;
+}
+
+vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
+                           const vxm_space *space, const char *path, const char *format) {
+  vxm_color_options options = field->color_options;
+  char *source = NULL;
+  options.format = format;
+  if (options.by == VXM_COLOR_GLSL) {
+    source = read_source(cli, field->color_name);
+    if (!source)
+      return VXM_ERROR_IO;
+    options.source = source;
+  }
+  vxm_status status = vxm_model_write_colors(report, model, space, path, &options, &cli->error);
+  free(source);
+  return status;
+}

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The options that say which engine makes the voxels. */
+#include "cli/cli.h"
+
+#include <string.h>
+
+static int read_displacement(cli_run *cli, cli_engine *out, const char *value) {
+  char text[64];
+  const char *comma = strchr(value, ',');
+  int64_t seed = 0;
+  size_t length = comma ? (size_t)(comma - value) : strlen(value);
+  snprintf(text, sizeof text, "%.*s", (int)(length < sizeof text ? length : sizeof text), value);
+  if (!cli_read_number(&out->options.displacement, text) || out->options.displacement < 0 ||
+      (comma && !cli_read_integer(&seed, comma + 1, 0, INT64_MAX)))
+    return cli_usage(cli, "--gl-displace '%s' is not D or D,SEED: voxels, 0 or more, and a whole number",
+                     value);
+  out->options.seed = (uint64_t)seed;
+  return CLI_END;
+}
+
+int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value) {
+  static const char *const methods[] = {"columns", "slices", "tetra-vertex", NULL};
+  static const char *const axes[] = {"x", "y", "z", NULL};
+  int choice;
+  switch (key) {
+  case CLI_KEY_ENGINE:
+    out->name = value;
+    return CLI_END;
+  case CLI_KEY_GL_METHOD:
+    choice = cli_read_choice(value, methods);
+    out->options.gl_method = (vxm_gl_method)choice;
+    out->is_tuned = true;
+    return choice >= 0 ? CLI_END
+                       : cli_usage(cli, "--gl-method '%s' is none of columns, slices, tetra-vertex", value);
+  case CLI_KEY_GL_AXIS:
+    choice = cli_read_choice(value, axes);
+    out->options.slice_axis = choice;
+    out->is_slicing = true;
+    return choice >= 0 ? CLI_END : cli_usage(cli, "--gl-axis '%s' is none of x, y, z", value);
+  default:
+    out->is_slicing = true;
+    return read_displacement(cli, out, value);
+  }
+}
+
+int cli_engine_check(cli_run *cli, const cli_engine *engine) {
+  bool is_cpu = !engine->name || strcmp(engine->name, "cpu") == 0;
+  if (is_cpu && (engine->is_tuned || engine->is_slicing))
+    return cli_usage(cli, "--gl-method, --gl-axis and --gl-displace go with --engine opengl");
+  if (engine->is_slicing && engine->options.gl_method == VXM_GL_COLUMNS)
+    return cli_usage(cli, "--gl-axis and --gl-displace go with --gl-method slices or tetra-vertex");
+  return CLI_END;
+}
+
+vxm_status cli_engine_open(cli_run *cli, cli_engine *engine) {
+  if (!engine->name)
+    return VXM_OK;
+  return vxm_engine_create(&engine->engine, cli->context, engine->name, &engine->options, &cli->error);
+}
+
+void cli_engine_summarize(const cli_run *cli, const cli_engine *engine) {
+  const vxm_engine_info *info = vxm_engine_describe(engine->engine);
+  if (!info)
+    return;
+  cli_row(cli, "engine", "%s%s%s%s%s%s", info->name, *info->renderer ? " on " : "", info->renderer,
+          *info->note ? " (" : "", info->note, *info->note ? ")" : "");
+}
+
+json_t *cli_engine_json(const cli_engine *engine) {
+  const vxm_engine_info *info = vxm_engine_describe(engine->engine);
+  json_t *object = json_object();
+  json_object_set_new(object, "name", json_string(info->name));
+  json_object_set_new(object, "renderer", cli_json_text(info->renderer));
+  json_object_set_new(object, "note", cli_json_text(info->note));
+  return object;
+}

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gpu/engines.h"
+#include "config.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#ifdef HAVE_OPENGL
+#include "gpu/opengl.h"
+
+/* Those that may be hardware come first; `opengl` takes a software renderer of the last two only. */
+static const vxm_gl_driver *const drivers[] = {&vxm_gl_egl_device, &vxm_gl_egl_surfaceless, &vxm_gl_osmesa};
+enum { DRIVERS = sizeof drivers / sizeof drivers[0] };
+
+/** Frees an engine; the reference to the context stays the caller's. */
+static void drop(vxm_engine *engine, vxm_context *context) {
+  engine->ops->destroy(engine);
+  vxm_free(context, engine);
+}
+
+/** The first hardware device of a driver, or its first context of any kind. */
+static vxm_status make_first(vxm_engine **out, vxm_context *context, const vxm_gl_driver *driver,
+                             bool hardware, const vxm_engine_options *options, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  int count = driver->count(&local);
+  if (count == 0)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "%s: %s", driver->name, local.text);
+  for (int i = 0; i < count; i++) {
+    vxm_status status = vxm_opengl_create(out, context, driver, i, options, &local);
+    if (status == VXM_OK && (!hardware || (*out)->info.hardware))
+      return VXM_OK;
+    if (status == VXM_OK) {
+      vxm_fail(&local, VXM_ERROR_UNAVAILABLE, "%s is a renderer in software", (*out)->info.renderer);
+      drop(*out, context);
+      *out = NULL;
+    } else if (status != VXM_ERROR_UNAVAILABLE) {
+      if (error)
+        *error = local;
+      return status;
+    }
+  }
+  return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "%s: %s", driver->name, local.text);
+}
+
+/** A hardware device, else whatever there is unless only hardware will do. */
+static vxm_status make_any(vxm_engine **out, vxm_context *context, bool hardware,
+                           const vxm_engine_options *options, vxm_error *error) {
+  vxm_error reasons[DRIVERS];
+  for (int d = 0; d < DRIVERS; d++) {
+    bool only_hardware = hardware || drivers[d] == &vxm_gl_egl_device;
+    vxm_status status = make_first(out, context, drivers[d], only_hardware, options, &reasons[d]);
+    if (status == VXM_OK)
+      return VXM_OK;
+    if (status != VXM_ERROR_UNAVAILABLE) {
+      if (error)
+        *error = reasons[d];
+      return status;
+    }
+  }
+  if (hardware)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "no hardware device with OpenGL 4.3 is found through EGL");
+  return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
+                  "no OpenGL 4.3 here (%.110s; %.110s; %.110s): install libegl1 and libgl1-mesa-dri, or "
+                  "libosmesa6",
+                  reasons[0].text, reasons[1].text, reasons[2].text);
+}
+
+/** "osmesa", "egl-surfaceless", "egl-device" (the first hardware one) or "egl-device0". */
+static vxm_status make_named(vxm_engine **out, vxm_context *context, const char *name,
+                             const vxm_engine_options *options, vxm_error *error) {
+  for (int d = 0; d < DRIVERS; d++) {
+    size_t length = strlen(drivers[d]->name);
+    int index = 0, used = 0;
+    if (strcmp(name, drivers[d]->name) == 0)
+      return make_first(out, context, drivers[d], drivers[d] == &vxm_gl_egl_device, options, error);
+    if (drivers[d] == &vxm_gl_egl_device && strncmp(name, drivers[d]->name, length) == 0 &&
+        sscanf(name + length, "%2d%n", &index, &used) == 1 && name[length + (size_t)used] == '\0')
+      return vxm_opengl_create(out, context, drivers[d], index, options, error);
+  }
+  return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                  "engine: 'opengl:%s' is none of opengl:egl-device, opengl:egl-surfaceless, opengl:osmesa",
+                  name);
+}
+
+static vxm_status make_opengl(vxm_engine **out, vxm_context *context, const char *name, bool hardware,
+                              const vxm_engine_options *options, vxm_error *error) {
+  return name ? make_named(out, context, name, options, error)
+              : make_any(out, context, hardware, options, error);
+}
+
+/** Tries out context number `index` of a driver. */
+static void look_at(vxm_engine_info *out, const vxm_gl_driver *driver, int index, vxm_context *context) {
+  static const vxm_engine_options options = VXM_ENGINE_OPTIONS_INIT;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_engine *engine = NULL;
+  *out = (vxm_engine_info){0};
+  if (vxm_opengl_create(&engine, context, driver, index, &options, &local) == VXM_OK) {
+    *out = engine->info;
+    drop(engine, context);
+    return;
+  }
+  vxm_opengl_name(out->name, sizeof out->name, driver, index);
+  snprintf(out->note, sizeof out->note, "%.250s", local.text);
+}
+
+static void list_opengl(vxm_engine_info *out, int64_t capacity, int64_t *count, vxm_context *context) {
+  for (int d = 0; d < DRIVERS; d++) {
+    int found = drivers[d]->count(NULL),
+        contexts = found > 0 ? found : 1; /* also one that is missing, and why */
+    for (int i = 0; i < contexts; i++, ++*count)
+      if (*count < capacity)
+        look_at(&out[*count], drivers[d], i, context);
+  }
+}
+
+#else
+
+static vxm_status make_opengl(vxm_engine **out, vxm_context *context, const char *name, bool hardware,
+                              const vxm_engine_options *options, vxm_error *error) {
+  (void)context, (void)name, (void)hardware, (void)options;
+  *out = NULL;
+  return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
+                  "this voxmend was built without OpenGL (configure --with-opengl; Debian: libgl-dev, "
+                  "libegl-dev)");
+}
+
+static void list_opengl(vxm_engine_info *out, int64_t capacity, int64_t *count, vxm_context *context) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_engine *none;
+  if (*count < capacity) {
+    make_opengl(&none, context, NULL, false, NULL, &local);
+    out[*count] = (vxm_engine_info){.name = "opengl"};
+    snprintf(out[*count].note, sizeof out[*count].note, "%.250s", local.text);
+  }
+  ++*count;
+}
+
+#endif
+
+static const vxm_engine_info cpu_info = {.name = "cpu", .available = true, .hardware = true};
+
+static vxm_status make_cpu(vxm_engine **out, vxm_context *context, const char *note, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  *out = vxm_calloc(context, 1, sizeof **out, &local);
+  if (!*out) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  (*out)->context = context;
+  (*out)->info = cpu_info;
+  snprintf((*out)->info.note, sizeof(*out)->info.note, "%.250s", note);
+  return VXM_OK;
+}
+
+static vxm_status make(vxm_engine **out, vxm_context *context, const char *name,
+                       const vxm_engine_options *options, vxm_error *error) {
+  vxm_error reason = VXM_ERROR_INIT;
+  if (strcmp(name, "cpu") == 0)
+    return make_cpu(out, context, "", error);
+  if (strcmp(name, "opengl") == 0)
+    return make_opengl(out, context, NULL, false, options, error);
+  if (strncmp(name, "opengl:", 7) == 0)
+    return make_opengl(out, context, name + 7, false, options, error);
+  if (strcmp(name, "auto") != 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "engine: '%.40s' is none of auto, cpu, opengl and the names that 'voxmend engines' lists",
+                    name);
+  vxm_status status = make_opengl(out, context, NULL, true, options, &reason);
+  if (status == VXM_OK)
+    (*out)->falls_back = true;
+  return status == VXM_OK ? VXM_OK : make_cpu(out, context, reason.text, error);
+}
+
+vxm_status vxm_engines_make(vxm_engine **out, vxm_context *context, const char *name,
+                            const vxm_engine_options *options, vxm_error *error) {
+  vxm_context *held = NULL;
+  *out = NULL;
+  vxm_status status = vxm_context_acquire(&held, context, error);
+  if (status != VXM_OK)
+    return status;
+  status = make(out, held, name, options, error);
+  if (status != VXM_OK)
+    vxm_context_release(held);
+  return status;
+}
+
+void vxm_engine_destroy(vxm_engine *engine) {
+  if (!engine)
+    return;
+  vxm_context *context = engine->context;
+  if (engine->ops)
+    engine->ops->destroy(engine);
+  vxm_free(context, engine);
+  vxm_context_release(context);
+}
+
+vxm_status vxm_engines_list(vxm_engine_info *out, int64_t capacity, int64_t *count, vxm_context *context,
+                            vxm_error *error) {
+  vxm_context *held = NULL;
+  vxm_status status = vxm_context_acquire(&held, context, error);
+  if (status != VXM_OK)
+    return status;
+  *count = 1;
+  if (capacity > 0)
+    out[0] = cpu_info;
+  list_opengl(out, capacity, count, held);
+  vxm_context_release(held);
+  return VXM_OK;
+}

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Solids by OpenGL: tiles are drawn one after another, and each is taken back while the next is drawn. */
+#include "gpu/gl_solid.h"
+
+#include <string.h>
+
+/** By the method that was chosen; parts that stay open have no tetrahedra to speak of, and go by columns. */
+static vxm_status make_tile(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
+                            const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
+  bool slices = engine->options.gl_method != VXM_GL_COLUMNS && vxm_gl_can_slice(job);
+  return (slices ? vxm_gl_slices : vxm_gl_columns)(engine, tile, job, passes, into, error);
+}
+
+vxm_status vxm_gl_finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status status, vxm_error *error) {
+  for (int i = 0; i < 2; i++) {
+    vxm_status ended = vxm_gl_return_end(engine, &back[i], status == VXM_OK ? error : NULL);
+    status = status == VXM_OK ? ended : status;
+  }
+  if (status != VXM_OK) /* flips may be left in it */
+    vxm_gl_release(engine, VXM_GL_FLIPS);
+  return status;
+}
+
+static vxm_status clear_touched(vxm_opengl *engine, size_t part_count, vxm_error *error) {
+  vxm_status status = vxm_gl_reserve(engine, VXM_GL_TOUCHED, part_count * sizeof(uint32_t), error);
+  if (status != VXM_OK)
+    return status;
+  const vxm_gl *gl = &engine->context.gl;
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_TOUCHED].name);
+  gl->ClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
+  return VXM_OK;
+}
+
+static vxm_status take_touched(vxm_opengl *engine, atomic_uchar *touched, size_t part_count,
+                               vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  uint32_t *set = vxm_alloc(engine->base.context, part_count, sizeof *set, &local);
+  vxm_status status =
+      set ? vxm_gl_download(engine, VXM_GL_TOUCHED, set, part_count * sizeof *set, &local) : local.code;
+  for (size_t p = 0; p < part_count && status == VXM_OK; p++)
+    if (set[p])
+      atomic_store_explicit(&touched[p], 1, memory_order_relaxed);
+  vxm_free(engine->base.context, set);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+static vxm_status unite_tiles(vxm_opengl *engine, const vxm_window *window, const vxm_unite_job *job,
+                              const vxm_gl_passes *passes, vxm_error *error) {
+  vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
+  int64_t slices = 1;
+  int which = 0;
+  vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
+    vxm_gl_tile tile = vxm_gl_tile_of(window, k, slices);
+    status = make_tile(engine, &tile, job, passes, VXM_GL_RESULT, error);
+    if (status != VXM_OK)
+      break;
+    back[which] = (vxm_gl_return){.tile = tile, .is_or = !job->fresh, .staging = which};
+    status = vxm_gl_return_begin(engine, &back[which], error);
+    if (status == VXM_OK)
+      status = vxm_gl_return_end(engine, &back[which ^ 1], error);
+  }
+  return vxm_gl_finish(engine, back, status, error);
+}
+
+static void clear(const vxm_window *window) {
+  for (int64_t k = window->begin; k < window->end; k++)
+    memset(vxm_window_row(window, 0, k), 0,
+           window->row_words * (size_t)window->middle_dim * sizeof *window->words);
+}
+
+vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_unite_job *job,
+                        vxm_error *error) {
+  vxm_opengl *engine = vxm_opengl_of(base);
+  vxm_gl_passes passes = {0};
+  size_t parts = job->facets->split.part_count;
+  if (job->part_begin >= job->part_end) {
+    if (job->fresh)
+      clear(window);
+    return VXM_OK;
+  }
+  vxm_status status = vxm_gl_enter(&engine->context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_gl_place(engine, job->facets, job->placed, error);
+  if (status == VXM_OK)
+    status = vxm_gl_passes_create(&passes, engine, window, job, error);
+  if (status == VXM_OK && job->touched)
+    status = clear_touched(engine, parts, error);
+  if (status == VXM_OK)
+    status = unite_tiles(engine, window, job, &passes, error);
+  if (status == VXM_OK && job->touched)
+    status = take_touched(engine, job->touched, parts, error);
+  vxm_gl_passes_destroy(&passes);
+  vxm_gl_leave(&engine->context);
+  return status;
+}
+
+/* ---- Votes ---- */
+
+enum { VOTERS = 4 };
+
+/** The voters of an election: what is united for each, and where its words are. */
+typedef struct ballot {
+  vxm_unite_job job[VOTERS];
+  vxm_gl_buffer_id words[VOTERS];
+  int count; /**< voters that are united; others vote as the first, as on the CPU */
+} ballot;
+
+static void prepare(ballot *b, const vxm_window *window, const vxm_elect_job *job) {
+  static const char *const phase[VOTERS] = {"voxelizing along x", "voxelizing along y", "voxelizing along z",
+                                            "voxelizing tetrahedra"};
+  b->count = job->agree ? 1 : job->tetra ? VOTERS : VOTERS - 1;
+  for (int v = 0; v < VOTERS; v++)
+    b->words[v] = (vxm_gl_buffer_id)(v < b->count ? VXM_GL_VOTER_X + v : VXM_GL_VOTER_X);
+  for (int v = 0; v < b->count; v++)
+    b->job[v] = (vxm_unite_job){.facets = job->facets,
+                                .placed = job->placed,
+                                .axis = job->agree || v == 3 ? window->layout.fast : v,
+                                .part_begin = job->part_begin,
+                                .part_end = job->part_end,
+                                .roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE,
+                                .touched = job->touched,
+                                .phase = phase[v]};
+}
+
+/** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
+ */
+static vxm_status make_voter(vxm_opengl *engine, const vxm_gl_tile *tile, ballot *b, int v,
+                             vxm_error *error) {
+  vxm_gl_passes passes = {0};
+  vxm_status status = vxm_gl_passes_create(&passes, engine, tile->window, &b->job[v], error);
+  if (status == VXM_OK)
+    status = make_tile(engine, tile, &b->job[v], &passes, b->words[v], error);
+  vxm_gl_passes_destroy(&passes);
+  return status;
+}
+
+static vxm_status count_votes(vxm_opengl *engine, const vxm_gl_tile *tile, const ballot *b, vxm_vote rule,
+                              vxm_error *error) {
+  const vxm_gl *gl = &engine->context.gl;
+  vxm_status status = vxm_gl_use(engine, VXM_GL_VOTE, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_gl_bind(engine, 3, b->words[0]);
+  vxm_gl_bind(engine, 4, b->words[1]);
+  vxm_gl_bind(engine, 5, VXM_GL_RESULT);
+  vxm_gl_bind(engine, 6, b->words[2]);
+  vxm_gl_bind(engine, 7, b->words[3]);
+  vxm_gl_bind(engine, 1, VXM_GL_MASK);
+  vxm_gl_bind(engine, 2, VXM_GL_TALLY);
+  gl->Uniform1ui(0, (GLuint)(2 * tile->words));
+  gl->Uniform1ui(1, rule == VXM_VOTE_MAJORITY ? 1 : rule == VXM_VOTE_ANY ? 2 : 0);
+  vxm_gl_dispatch(gl, 2 * tile->words, false);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return vxm_gl_check(gl, "opengl: counting votes", error);
+}
+
+static vxm_status elect_tile(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_elect_job *job, ballot *b,
+                             vxm_tally *tally, vxm_error *error) {
+  uint32_t counted[2] = {0, 0};
+  vxm_status status = vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
+  if (status == VXM_OK)
+    status = vxm_gl_reserve(engine, VXM_GL_MASK, tile->words * sizeof(uint64_t), error);
+  if (status == VXM_OK)
+    status = vxm_gl_upload(engine, VXM_GL_TALLY, counted, sizeof counted, error);
+  for (int v = 0; v < b->count && status == VXM_OK; v++)
+    status = make_voter(engine, tile, b, v, error);
+  if (status == VXM_OK)
+    status = count_votes(engine, tile, b, job->rule, error);
+  if (status == VXM_OK)
+    status = vxm_gl_download(engine, VXM_GL_TALLY, counted, sizeof counted, error);
+  tally->contested += counted[0];
+  tally->added |= counted[1] != 0;
+  return status;
+}
+
+static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, const vxm_elect_job *job,
+                              vxm_tally *tally, vxm_error *error) {
+  vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
+  ballot b = {.count = 0};
+  int64_t slices = 1;
+  int which = 0;
+  prepare(&b, window, job);
+  vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
+    vxm_gl_tile tile = vxm_gl_tile_of(window, k, slices);
+    status = elect_tile(engine, &tile, job, &b, tally, error);
+    if (status != VXM_OK)
+      break;
+    back[which] = (vxm_gl_return){.tile = tile, .mask = job->mask, .staging = which};
+    status = vxm_gl_return_begin(engine, &back[which], error);
+    if (status == VXM_OK)
+      status = vxm_gl_return_end(engine, &back[which ^ 1], error);
+  }
+  return vxm_gl_finish(engine, back, status, error);
+}
+
+vxm_status vxm_gl_elect(vxm_engine *base, const vxm_window *window, const vxm_elect_job *job,
+                        vxm_tally *tally, vxm_error *error) {
+  vxm_opengl *engine = vxm_opengl_of(base);
+  size_t parts = job->facets->split.part_count;
+  if (job->part_begin >= job->part_end)
+    return VXM_OK;
+  vxm_status status = vxm_gl_enter(&engine->context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_gl_place(engine, job->facets, job->placed, error);
+  if (status == VXM_OK && job->touched)
+    status = clear_touched(engine, parts, error);
+  if (status == VXM_OK)
+    status = elect_tiles(engine, window, job, tally, error);
+  if (status == VXM_OK && job->touched)
+    status = take_touched(engine, job->touched, parts, error);
+  vxm_gl_leave(&engine->context);
+  return status;
+}

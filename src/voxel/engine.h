@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What an engine other than the CPU does: it makes the bits of windows in place of unite.h, poll.h and
+ * surface.h. */
+#ifndef VXM_VOXEL_ENGINE_H
+#define VXM_VOXEL_ENGINE_H
+
+#include "voxel/surface.h"
+#include "voxel/unite.h"
+#include "voxel/vote.h"
+
+/** Parts that voters decide. */
+typedef struct vxm_elect_job {
+  const vxm_facets *facets;
+  const vxm_placed *placed;
+  size_t part_begin, part_end; /**< each voter is the union of these */
+  bool agree;                  /**< no part has odd edges: one axis speaks for all voters */
+  bool tetra;                  /**< ask the tetrahedra, too, as parity with cones */
+  vxm_vote rule;
+  uint64_t *mask;        /**< NULL, or words laid out as the window's that become the contested voxels */
+  atomic_uchar *touched; /**< as in vxm_unite_job */
+} vxm_elect_job;
+
+/** Voxels to colour. */
+typedef struct vxm_color_job {
+  const vxm_grid *grid;
+  const uint16_t *parts; /**< a number per voxel, [x][y][z] in C order; NULL = not needed */
+  const vxm_color_options *options;
+} vxm_color_job;
+
+/** The longest side of a space, model units. */
+double vxm_color_longest(const vxm_space *space);
+
+/** All but `destroy` may be NULL: the CPU does it then. Each gives the bits that the CPU gives, unless the
+ * engine's own documentation says how far it is off. */
+typedef struct vxm_engine_ops {
+  vxm_status (*unite)(vxm_engine *engine, const vxm_window *window, const vxm_unite_job *job,
+                      vxm_error *error);
+  /** Adds to the window's words what the voters elect, as vxm_vote_count does. */
+  vxm_status (*elect)(vxm_engine *engine, const vxm_window *window, const vxm_elect_job *job,
+                      vxm_tally *tally, vxm_error *error);
+  /** As vxm_surface_add. */
+  vxm_status (*surface)(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
+                        vxm_surface_kind kind, bool is_fresh, vxm_error *error);
+  /** Fills [x][y][z][4] bytes, 0 where a voxel is not set. */
+  vxm_status (*color)(vxm_engine *engine, uint8_t *values, const vxm_color_job *job, vxm_error *error);
+  void (*destroy)(vxm_engine *engine);
+} vxm_engine_ops;
+
+struct vxm_engine {
+  const vxm_engine_ops *ops; /**< NULL: the CPU */
+  vxm_context *context;      /**< one reference held */
+  bool wants_apexes;         /**< apexes have to be placed */
+  bool falls_back;           /**< where it fails, the CPU does the work, and `info.note` says so */
+  vxm_engine_info info;
+};
+
+/** Whether the CPU is to do the work after a failure of the engine, which is then switched off and noted. */
+bool vxm_engine_gives_way(vxm_engine *engine, const vxm_error *error);
+
+#endif

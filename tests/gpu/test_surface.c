@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Surfaces by OpenGL have the bits of the CPU: conservative and thin, small triangles and large ones,
+ * slivers, lines and points, ties, other layouts, and triangles that reach far outside the grid. */
+#include "gpu_test.h"
+
+#include "voxel/model.h"
+
+static void check(const vxm_soup *soup, const vxm_space *space) {
+  for (int mode = VXM_MODE_SURFACE; mode <= VXM_MODE_BOTH; mode++)
+    for (int kind = VXM_SURFACE_CONSERVATIVE; kind <= VXM_SURFACE_THIN; kind++) {
+      vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+      options.mode = (vxm_mode)mode;
+      options.surface = (vxm_surface_kind)kind;
+      vxm_grid *expected = engine_solid(soup, space, &options, NULL);
+      options.engine = engine;
+      vxm_grid *found = engine_solid(soup, space, &options, NULL);
+      assert_equal_bits(expected, found);
+      vxm_grid_destroy(expected);
+      vxm_grid_destroy(found);
+    }
+}
+
+/** Three points of a box, at random, on the lattice of quarters, or in a line. */
+static void random_triangle(vxm_soup *soup, vxm_rng *rng, double low, double high) {
+  uint32_t v[3];
+  double p[3][3];
+  uint64_t shape = vxm_rng_below(rng, 8);
+  for (int c = 0; c < 3; c++)
+    for (int a = 0; a < 3; a++) {
+      p[c][a] = low + vxm_rng_unit(rng) * (high - low);
+      if (shape == 0)
+        p[c][a] = floor(4 * p[c][a]) / 4;
+    }
+  for (int a = 0; a < 3; a++) {
+    if (shape == 1)
+      p[2][a] = p[0][a] + 0.3 * (p[1][a] - p[0][a]) + 0.02 * (vxm_rng_unit(rng) - 0.5);
+    if (shape == 2 && a != 1)
+      p[2][a] = p[1][a] = p[0][a];
+  }
+  for (int c = 0; c < 3; c++)
+    v[c] = shape_vertex(soup, p[c][0], p[c][1], p[c][2]);
+  shape_triangle(soup, v[0], v[1], v[2]);
+}
+
+static void test_random(void **state) {
+  (void)state;
+  vxm_rng rng = {31};
+  for (int round = 0; round < 24; round++) {
+    vxm_soup *soup = shape_empty(context);
+    vxm_space space = engine_space(1 + (int64_t)vxm_rng_below(&rng, 80), 1 + (int64_t)vxm_rng_below(&rng, 50),
+                                   1 + (int64_t)vxm_rng_below(&rng, 50));
+    uint64_t count = 1 + vxm_rng_below(&rng, 30);
+    double size = round % 3 == 0 ? 4 : 60;
+    for (uint64_t t = 0; t < count; t++)
+      random_triangle(soup, &rng, round % 2 ? -10 : 3, size + 5);
+    random_octahedron(soup, &rng, (double[3]){1, 1, 1}, (double[3]){size, size, size}, 0);
+    check(soup, &space);
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_ties(void **state) {
+  (void)state;
+  vxm_space space = engine_space(16, 16, 16);
+  for (int offset = 0; offset <= 4; offset++) {
+    vxm_soup *soup = shape_empty(context);
+    double at = offset / 4.0;
+    shape_box(soup, (double[3]){2 + at, 3, 4 + at}, (double[3]){12, 11 + at, 13.5});
+    check(soup, &space);
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_fine(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  shape_torus(soup, 160, 80, 40, 16, (double[3]){64, 64, 32.2});
+  vxm_space space = engine_space(128, 128, 64);
+  check(soup, &space);
+  vxm_soup_destroy(soup);
+}
+
+static void test_far(void **state) {
+  (void)state;
+  vxm_rng rng = {32};
+  for (int round = 0; round < 4; round++) {
+    vxm_soup *soup = shape_empty(context);
+    double reach = round % 2 ? 100 : 40000; /* with 2^16 steps per voxel */
+    for (int t = 0; t < 6; t++)
+      random_triangle(soup, &rng, -reach, reach);
+    random_triangle(soup, &rng, 0, 16);
+    random_octahedron(soup, &rng, (double[3]){0, 0, 0}, (double[3]){16, 16, 16}, 0);
+    vxm_space space = engine_space(16, 16, 16);
+    check(soup, &space);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** Windows in another layout, small tiles and viewports, and no buffers in vertex shaders. */
+static void test_windows(void **state) {
+  (void)state;
+  vxm_rng rng = {33};
+  vxm_engine_info kept = engine->info;
+  vxm_soup *soup = shape_empty(context);
+  for (int t = 0; t < 12; t++)
+    random_triangle(soup, &rng, -3, 36);
+  vxm_space space = engine_space(33, 27, 24);
+  engine->info.viewport = 14;
+  const vxm_layout layouts[3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
+  for (int l = 0; l < 3; l++) {
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.mode = VXM_MODE_SURFACE;
+    vxm_model *by_cpu = engine_model(soup, &options);
+    options.engine = engine;
+    vxm_model *by_gpu = engine_model(soup, &options);
+    assert_int_equal(vxm_model_begin(by_cpu, &space, NULL, NULL, NULL), VXM_OK);
+    assert_int_equal(vxm_model_begin(by_gpu, &space, NULL, NULL, NULL), VXM_OK);
+    int64_t depth = space.dims[layouts[l].slow];
+    for (int64_t begin = 0; begin < depth; begin += 7) {
+      vxm_window window = vxm_window_of(&space, layouts[l], begin, vxm_min(begin + 7, depth));
+      size_t words = window.slice_words * (size_t)(window.end - window.begin);
+      uint64_t *a = malloc(words * 8), *b = malloc(words * 8);
+      assert_true(a && b);
+      window.words = a;
+      assert_int_equal(vxm_model_fill(by_cpu, &window, NULL), VXM_OK);
+      window.words = b;
+      assert_int_equal(vxm_model_fill(by_gpu, &window, NULL), VXM_OK);
+      assert_memory_equal(a, b, words * 8);
+      free(a);
+      free(b);
+    }
+    vxm_model_destroy(by_cpu);
+    vxm_model_destroy(by_gpu);
+  }
+  engine->info.block_bytes = 4096;
+  check(soup, &space);
+  engine->info = kept;
+  vxm_soup_destroy(soup);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_ties),
+                                     cmocka_unit_test(test_fine), cmocka_unit_test(test_far),
+                                     cmocka_unit_test(test_windows)};
+  int status = gpu_test_start(NULL);
+  if (status == 0)
+    status = cmocka_run_group_tests_name("surfaces by " ENGINE, tests, setup, teardown);
+  vxm_engine_destroy(engine);
+  return status;
+}
