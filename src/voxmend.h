@@ -1098,7 +1098,7 @@ typedef struct vxm_sampler_options {
                        variants  are mirrored */
   double translate; /**< moved along each axis by up to this part, 0 to 1, of the room on either side */
   bool fill;        /**< the longest side fills the grid rather than the diagonal; without rotation only */
-  vxm_voxelize_options voxelize; /**< how; not its space, nor its confidence */
+  vxm_voxelize_options voxelize; /**< how; not its space, confidence or engine: the CPU makes all variants */
 } vxm_sampler_options;
 
 #define VXM_SAMPLER_OPTIONS_INIT                                                                             \

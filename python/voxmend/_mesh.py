@@ -119,9 +119,9 @@ class Mesh:
         _core.call(lib.vxm_mesh_census, census, self._pointer)
         return _core.fields(census[0])
 
-    def repair(self, **options: Any) -> "Mesh":
+    def repair(self, level: str = "clean", **options: Any) -> "Mesh":
         """As `voxmend.repair`."""
-        return repair(self, **options)
+        return repair(self, level, **options)
 
     def voxelize(self, *arguments: Any, **options: Any) -> Any:
         """As `voxmend.voxelize`."""

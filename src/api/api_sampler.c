@@ -64,6 +64,9 @@ static vxm_status check(const vxm_sampler_options *options, vxm_error *error) {
   if (options->fill && options->rotation != VXM_ROTATION_NONE)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "sampler: a model whose longest side fills the grid cannot be rotated within it");
+  if (voxelize->engine)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
+                    "sampler: variants are made by the CPU; leave out the engine");
   if (voxelize->confidence)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: variants have no confidence");
   vxm_status status = vxm_check_voxelize_options(voxelize, error);

@@ -426,6 +426,7 @@ static void wrong_arguments_are_refused(void **state) {
   REFUSE(translate, 1.5, VXM_ERROR_ARGUMENT);
   REFUSE(voxelize.method, (vxm_method)99, VXM_ERROR_ARGUMENT);
   REFUSE(voxelize.confidence, true, VXM_ERROR_ARGUMENT);
+  REFUSE(voxelize.engine, (vxm_engine *)&options, VXM_ERROR_UNAVAILABLE);
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
   options.fill = true;
   options.rotation = VXM_ROTATION_ANY;

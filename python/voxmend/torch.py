@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Datasets for PyTorch: variants of the meshes of a folder, made when they are asked for.
+
+    from voxmend.torch import IterableVoxelDataset, VoxelDataset
+    data = VoxelDataset("ModelNet10", "train", 32, rotate="z", scale=0.3, displace=0.01)
+    for voxels, labels in IterableVoxelDataset(data, batch_size=32, epochs=10):
+        ...                                      # (32, 1, 32, 32, 32) float32 and (32,) int64
+"""
+from __future__ import annotations
+
+import collections
+import hashlib
+import os
+import queue
+import threading
+import time
+from typing import Any, Iterator, List, Optional, Sequence, Tuple
+
+import numpy
+import torch
+from torch.utils.data import Dataset, IterableDataset, get_worker_info
+
+from . import __version__, _core
+from ._mesh import Mesh, load, repair
+from ._sampler import Sampler
+
+EXTENSIONS = (".off", ".obj", ".stl", ".ply", ".glb", ".gltf", ".3mf", ".dae", ".fbx", ".step", ".stp", ".iges", ".igs")
+
+
+def _files_of(folder: str) -> List[str]:
+    return sorted(os.path.join(at, name) for at, _, names in os.walk(folder) for name in names
+                  if name.lower().endswith(EXTENSIONS))
+
+
+class VoxelDataset(Dataset):
+    """The meshes of a folder of class folders, as in ModelNet: root/chair/train/chair_0001.off; or root/chair/*.off.
+
+    Item i is variant i // models of model i % models, in the present epoch: the same whoever asks for it, in whatever
+    process, and another one in each epoch.
+
+    Args:
+        root: folder of the class folders, whose sorted names are the classes.
+        split: folder within each of them, such as "train" or "test"; None = all files of a class.
+        resolution: D, voxels along each axis.
+        variants: of each model in an epoch.
+        packed: items are (D, D, ceil(D / 8)) uint8, see `unpack`, rather than (1, D, D, D) float32.
+        seed: of all that is drawn.
+        cache: folder for repaired meshes, so that they are repaired once only; None = repaired in each process.
+        memory: bytes of models to keep at once in each process, more or less.
+        level: how far meshes are repaired.
+        augment: the other options of `voxmend.Sampler`.
+    """
+
+    def __init__(self, root: Any, split: Optional[str] = None, resolution: int = 32, *, variants: int = 1,
+                 packed: bool = False, seed: int = 0, cache: Any = None, memory: int = 1 << 30, level: str = "clean",
+                 **augment: Any):
+        self.root = os.fspath(root)
+        self.classes = sorted(e.name for e in os.scandir(self.root) if e.is_dir() and not e.name.startswith("."))
+        self.files: List[str] = []
+        self.labels: List[int] = []
+        for label, name in enumerate(self.classes):
+            found = _files_of(os.path.join(self.root, name, split or ""))
+            self.files += found
+            self.labels += [label] * len(found)
+        if not self.files:
+            raise _core.EmptyError("%s: no mesh in class folders%s" % (self.root, ", in " + split if split else ""))
+        self.resolution, self.variants, self.packed, self.level = resolution, variants, packed, level
+        self.cache = None if cache is None else os.fspath(cache)
+        self.memory = memory
+        self._options = dict(augment, resolution=resolution, seed=seed)
+        self._epoch = torch.zeros(1, dtype=torch.int64).share_memory_()  # workers that run already see it too
+        self._forget()
+        Sampler(**self._options)  # wrong options are told now, not by a worker
+
+    def _forget(self) -> None:
+        self._sampler: Optional[Sampler] = None
+        self._held: "collections.OrderedDict[int, int]" = collections.OrderedDict()  # model: bytes
+        self._lock = threading.Lock()
+
+    def __getstate__(self) -> dict:
+        state = dict(self.__dict__)
+        for name in ("_sampler", "_held", "_lock"):  # of this process
+            state.pop(name)
+        return state
+
+    def __setstate__(self, state: dict) -> None:
+        self.__dict__.update(state)
+        self._forget()
+
+    def __len__(self) -> int:
+        return len(self.files) * self.variants
+
+    @property
+    def epoch(self) -> int:
+        return int(self._epoch[0])
+
+    def set_epoch(self, epoch: int) -> None:
+        """Chooses the epoch of all items, in running workers too."""
+        self._epoch[0] = epoch
+
+    # ---- Models ----
+
+    def _cached_path(self, path: str) -> Optional[str]:
+        if self.cache is None:
+            return None
+        state = os.stat(path)
+        name = "%s|%d|%d|%s|%s" % (os.path.abspath(path), state.st_size, state.st_mtime_ns, self.level, __version__)
+        return os.path.join(self.cache, hashlib.sha256(name.encode()).hexdigest()[:32] + ".ply")
+
+    def _repaired(self, path: str) -> Mesh:
+        cached = self._cached_path(path)
+        if cached is not None and os.path.exists(cached):
+            return load(cached)
+        mesh = repair(load(path), self.level)
+        if cached is not None:
+            os.makedirs(self.cache, exist_ok=True)
+            mesh.save(cached)  # under another name until it is complete
+        return mesh
+
+    def _need(self, models: Sequence[int]) -> Sampler:
+        if self._sampler is None:
+            self._sampler = Sampler(**self._options)
+        wanted = set(models)
+        for model in wanted:
+            if model in self._held:
+                self._held.move_to_end(model)
+                continue
+            mesh = self._repaired(self.files[model])
+            self._sampler.put(mesh, model)
+            self._held[model] = 64 * len(mesh.indices) + 128 * len(mesh.vertices)
+        total = sum(self._held.values())
+        for model in list(self._held):
+            if total <= self.memory:
+                break
+            if model not in wanted:
+                total -= self._held.pop(model)
+                self._sampler.put(None, model)
+        return self._sampler
+
+    # ---- Items ----
+
+    def batch(self, items: Sequence[int], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
+        """Many items at once, made by all threads: voxels (n, 1, D, D, D), or packed, and labels (n,) int64."""
+        at = numpy.asarray(items, numpy.int64)
+        if at.size and (at.min() < -len(self) or at.max() >= len(self)):
+            raise IndexError("items are from 0 to %d" % (len(self) - 1))
+        at = numpy.where(at < 0, at + len(self), at)
+        models, indices = at % len(self.files), at // len(self.files)
+        names = numpy.stack([models, numpy.full(len(at), self.epoch if epoch is None else epoch), indices], axis=1)
+        with self._lock:
+            sampler = self._need(models.tolist())
+            voxels = sampler.batch(names.reshape(-1, 3), dtype="bits" if self.packed else "float32")
+        return torch.from_numpy(voxels), torch.from_numpy(numpy.asarray(self.labels, numpy.int64)[models])
+
+    def __getitem__(self, item: int) -> Tuple[torch.Tensor, int]:
+        voxels, labels = self.batch([item])
+        return voxels[0], int(labels[0])
+
+    def __getitems__(self, items: Sequence[int]) -> List[Tuple[torch.Tensor, int]]:
+        """What torch.utils.data.DataLoader asks for, if it knows of it, rather than for items one by one."""
+        voxels, labels = self.batch(items)
+        return list(zip(voxels, labels.tolist()))
+
+
+def unpack(packed: torch.Tensor, resolution: int) -> torch.Tensor:
+    """(n, D, D, ceil(D / 8)) uint8 to (n, 1, D, D, D) float32, on whatever device it is."""
+    bits = torch.arange(8, dtype=torch.uint8, device=packed.device)
+    voxels = (packed.unsqueeze(-1) >> bits) & 1
+    return voxels.flatten(-2)[..., :resolution].unsqueeze(1).float()
+
+
+class IterableVoxelDataset(IterableDataset):
+    """Whole batches of a VoxelDataset, epoch after epoch, made ahead by a thread while the network learns.
+
+    Iterate over it as it is, or through DataLoader(..., batch_size=None, num_workers=n): each worker then makes its share.
+
+    Args:
+        dataset: where items come from.
+        batch_size: items of a batch; the last one of an epoch is smaller, unless `drop_last`.
+        epochs: how many; None = without end.
+        shuffle: another order in each epoch, which follows from `seed`.
+        prefetch: batches made ahead; 0 = when they are asked for.
+
+    Attributes:
+        waited: seconds for which the last iteration had to wait for batches.
+    """
+
+    def __init__(self, dataset: VoxelDataset, batch_size: int, *, epochs: Optional[int] = 1, first_epoch: int = 0,
+                 shuffle: bool = True, seed: int = 0, drop_last: bool = False, prefetch: int = 2):
+        if batch_size < 1:
+            raise _core.ArgumentError("batches of %d items" % batch_size)
+        self.dataset, self.batch_size, self.epochs, self.first_epoch = dataset, batch_size, epochs, first_epoch
+        self.shuffle, self.seed, self.drop_last, self.prefetch = shuffle, seed, drop_last, prefetch
+        self.waited = 0.0
+
+    def order(self, epoch: int) -> numpy.ndarray:
+        """The items of an epoch, in order: the same in every process."""
+        if not self.shuffle:
+            return numpy.arange(len(self.dataset))
+        return numpy.random.Generator(numpy.random.Philox(key=[self.seed, epoch])).permutation(len(self.dataset))
+
+    def _batches(self) -> Iterator[Tuple[int, numpy.ndarray]]:
+        worker = get_worker_info()
+        share, shares = (worker.id, worker.num_workers) if worker else (0, 1)
+        number, epoch = 0, self.first_epoch
+        while self.epochs is None or epoch < self.first_epoch + self.epochs:
+            items = self.order(epoch)
+            for begin in range(0, len(items), self.batch_size):
+                chosen = items[begin:begin + self.batch_size]
+                if len(chosen) < self.batch_size and self.drop_last:
+                    break
+                if number % shares == share:
+                    yield epoch, chosen
+                number += 1
+            epoch += 1
+
+    def __iter__(self) -> Iterator[Tuple[torch.Tensor, torch.Tensor]]:
+        self.waited = 0.0
+        if self.prefetch < 1:
+            for epoch, items in self._batches():
+                start = time.perf_counter()
+                made = self.dataset.batch(items, epoch)
+                self.waited += time.perf_counter() - start
+                yield made
+            return
+        ready: "queue.Queue[Any]" = queue.Queue(self.prefetch)
+        stop = threading.Event()
+        worker = threading.Thread(target=self._make_ahead, args=(ready, stop, self._batches()), daemon=True)
+        worker.start()
+        try:
+            while True:
+                start = time.perf_counter()
+                kind, value = ready.get()
+                self.waited += time.perf_counter() - start
+                if kind == "end":
+                    return
+                if kind == "error":
+                    raise value
+                yield value
+        finally:
+            stop.set()
+            while worker.is_alive():  # it may wait for room
+                try:
+                    ready.get_nowait()
+                except queue.Empty:
+                    worker.join(0.01)
+
+    def _make_ahead(self, ready: Any, stop: threading.Event, batches: Any) -> None:
+        try:
+            for epoch, items in batches:
+                if stop.is_set():
+                    return
+                ready.put(("batch", self.dataset.batch(items, epoch)))
+            ready.put(("end", None))
+        except BaseException as problem:  # goes on in the thread that asked
+            ready.put(("error", problem))

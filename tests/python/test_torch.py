@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The datasets for PyTorch. SAMPLES is a folder of what samples/generate_samples makes."""
+import os
+import pickle
+import tempfile
+import threading
+import unittest
+
+import torch
+from torch.utils.data import DataLoader
+
+import voxmend
+from voxmend.torch import IterableVoxelDataset, VoxelDataset, unpack
+
+SAMPLES = os.environ["SAMPLES"]
+
+
+def sample(name):
+    return os.path.join(SAMPLES, name + ".off")
+
+
+class Datasets(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        for name, models in (("ring", ["torus", "doubled"]), ("prism", ["star_prism", "l_prism"]), ("ball", ["sphere"])):
+            for split, chosen in (("train", models), ("test", models[:1])):
+                at = os.path.join(cls.folder.name, name, split)
+                os.makedirs(at)
+                for model in chosen:
+                    with open(sample(model), "rb") as source, open(os.path.join(at, model + ".off"), "wb") as copy:
+                        copy.write(source.read())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def dataset(self, **changed):
+        return VoxelDataset(self.folder.name, **dict(dict(split="train", resolution=24, variants=3, seed=4, rotate="any",
+                                                          scale=0.4, displace=0.01), **changed))
+
+    def test_items(self):
+        data = self.dataset()
+        self.assertEqual(data.classes, ["ball", "prism", "ring"])
+        self.assertEqual(len(data), 15)
+        voxels, label = data[7]
+        self.assertEqual(tuple(voxels.shape), (1, 24, 24, 24))
+        self.assertEqual(voxels.dtype, torch.float32)
+        self.assertEqual(label, data.labels[7 % 5])
+        self.assertEqual(len(self.dataset(split="test")), 9)
+        self.assertEqual(len(self.dataset(split=None)), 24)
+        with self.assertRaises(voxmend.EmptyError):
+            self.dataset(split="none")
+        with self.assertRaises(IndexError):
+            data[15]
+        with self.assertRaises(ValueError):
+            self.dataset(scale=3)
+
+    def test_epochs_and_batches(self):
+        data = self.dataset()
+        first, labels = data.batch(range(15))
+        for item in range(15):
+            self.assertTrue((data[item][0] == first[item]).all())
+        self.assertTrue((data.__getitems__([3, 8])[1][0] == first[8]).all())
+        data.set_epoch(1)
+        self.assertFalse((data.batch(range(15))[0] == first).all())
+        data.set_epoch(0)
+        self.assertTrue((data.batch(range(15))[0] == first).all())
+        self.assertEqual(labels.tolist(), 3 * [0, 1, 1, 2, 2])
+
+    def test_packed(self):
+        packed, _ = self.dataset(packed=True, resolution=21).batch(range(6))
+        self.assertEqual(tuple(packed.shape), (6, 21, 21, 3))
+        self.assertTrue((unpack(packed, 21) == self.dataset(resolution=21).batch(range(6))[0]).all())
+
+    def test_workers(self):
+        data = self.dataset()
+        expected = data.batch(range(15))[0]
+        for workers, method in ((0, None), (2, "fork"), (2, "spawn")):
+            loader = DataLoader(data, batch_size=4, num_workers=workers, multiprocessing_context=method)
+            made = torch.cat([voxels for voxels, _ in loader])
+            self.assertTrue((made == expected).all(), (workers, method))
+        self.assertTrue((pickle.loads(pickle.dumps(data)).batch(range(15))[0] == expected).all())
+
+    def test_models_that_do_not_all_fit(self):
+        data = self.dataset(memory=1)
+        self.assertTrue((data.batch(range(15))[0] == self.dataset().batch(range(15))[0]).all())
+        data.batch([0])
+        self.assertEqual(len(data._held), 1)
+
+    def test_cache(self):
+        with tempfile.TemporaryDirectory() as cache:
+            at = os.path.join(cache, "deep", "er")
+            made = self.dataset(cache=at).batch(range(15))[0]
+            names = sorted(os.listdir(at))
+            self.assertEqual(len(names), 5)
+            self.assertTrue((self.dataset(cache=at).batch(range(15))[0] == made).all())
+            self.assertEqual(sorted(os.listdir(at)), names)
+            self.assertTrue((self.dataset().batch(range(15))[0] == made).all())
+
+    def test_iterable(self):
+        def made(prefetch, workers=0, **options):
+            iterable = IterableVoxelDataset(self.dataset(), 4, **dict(dict(epochs=2, seed=9, prefetch=prefetch), **options))
+            source = DataLoader(iterable, batch_size=None, num_workers=workers) if workers else iterable
+            return [(voxels, labels.tolist()) for voxels, labels in source]
+        one = made(0)
+        self.assertEqual([len(labels) for _, labels in one], [4, 4, 4, 3] * 2)
+        for other in (made(2), made(0, 2), made(2, 2)):
+            self.assertEqual([labels for _, labels in one], [labels for _, labels in other])
+            self.assertTrue(all((a == b).all() for (a, _), (b, _) in zip(one, other)))
+        self.assertNotEqual([labels for _, labels in one[:4]], [labels for _, labels in one[4:]])
+        self.assertEqual(len(made(1, drop_last=True)), 6)
+        self.assertEqual([labels for _, labels in made(1, shuffle=False)][0], [0, 1, 1, 2])
+        endless = iter(IterableVoxelDataset(self.dataset(), 4, epochs=None))
+        for _ in range(9):
+            next(endless)
+        endless.close()  # its thread ends
+        self.assertLess(threading.active_count(), 3)
+
+    def test_errors_of_the_thread_come_through(self):
+        data = self.dataset()
+        data.files[0] = "gone.off"
+        with self.assertRaises(OSError):
+            list(IterableVoxelDataset(data, 4))
+
+
+if __name__ == "__main__":
+    print("torch %s" % torch.__version__)
+    unittest.main(verbosity=1)

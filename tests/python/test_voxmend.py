@@ -1,0 +1,347 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package as its users see it. SAMPLES is a folder of what samples/generate_samples makes."""
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy
+
+import voxmend
+
+SAMPLES = os.environ["SAMPLES"]
+VOXMEND = os.environ.get("VOXMEND")
+
+# What tests/api/test_sampler.c makes too, and its hash.
+ALL = dict(resolution=32, pad=1, seed=0x123456789ABCDEF0, rotate="any", scale=0.5, displace=0.03, mirror="xyz", translate=1)
+KNOWN_HASH = 0x935F9FE6B0A47CDE
+ALL_AS_OPTIONS = ("-r 32 --pad 1 --seed %d --epoch 2 --rotate any --scale 0.5 --displace 0.03 --mirror xyz --translate 1" %
+                  ALL["seed"]).split()
+
+
+def sample(name):
+    return os.path.join(SAMPLES, name + ".off")
+
+
+def cube(size=1.0):
+    corners = numpy.array([[x, y, z] for x in (0, size) for y in (0, size) for z in (0, size)], float)
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    return corners, faces
+
+
+def fnv(data):
+    value = 0xCBF29CE484222325
+    for byte in data:
+        value = (value ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return value
+
+
+class Meshes(unittest.TestCase):
+    def test_load_and_info(self):
+        mesh = voxmend.load(sample("torus"))
+        info = mesh.info()
+        self.assertTrue(info["watertight"] and info["closed"])
+        self.assertEqual(info["faces"], len(mesh.faces))
+        self.assertEqual(info, voxmend.info(sample("torus")))
+        self.assertEqual(len(info["bounds"]), 6)
+        self.assertEqual(mesh.format, "off")
+        self.assertFalse(voxmend.info(sample("missing"))["closed"])
+
+    def test_arrays_are_views(self):
+        mesh = voxmend.load(sample("torus"))
+        first, second = mesh.vertices, mesh.vertices
+        self.assertTrue(numpy.shares_memory(first, second))
+        self.assertFalse(first.flags.writeable)
+        self.assertEqual(first.dtype, numpy.float64)
+        kept = first.copy()
+        del mesh, second  # the array keeps the mesh
+        self.assertTrue((first == kept).all())
+
+    def test_from_arrays(self):
+        vertices, faces = cube()
+        for points in (vertices, vertices.astype(numpy.float32), vertices[::-1][::-1], vertices.tolist()):
+            mesh = voxmend.Mesh(points, faces)
+            self.assertAlmostEqual(mesh.info()["volume"], 1.0)
+            self.assertTrue((mesh.vertices == vertices).all())
+            self.assertEqual(mesh.faces.tolist(), faces)
+        triangles = mesh.triangles()
+        self.assertEqual(triangles.shape, (12, 3))
+        self.assertAlmostEqual(voxmend.Mesh(vertices, triangles).info()["volume"], 1.0)
+
+    def test_repair(self):
+        mended = voxmend.repair(sample("doubled"))
+        self.assertTrue(mended.info()["watertight"])
+        self.assertGreater(mended.report["opposite_duplicate_faces"], 0)
+        self.assertTrue(voxmend.load(sample("open_box")).repair("closed").info()["watertight"])
+        self.assertFalse(voxmend.repair(sample("cracks"), weld="off").info()["watertight"])
+
+    def test_save(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.ply")
+            mesh = voxmend.load(sample("star_prism"))
+            mesh.save(path)
+            self.assertTrue((voxmend.load(path).vertices == mesh.vertices).all())
+
+    def test_errors(self):
+        with self.assertRaises(OSError) as caught:
+            voxmend.load("no/such.off")
+        self.assertIn("no/such.off", str(caught.exception))
+        self.assertEqual(caught.exception.status, "io")
+        with tempfile.NamedTemporaryFile(suffix=".off") as file:
+            file.write(b"OFF\nthis is none\n")
+            file.flush()
+            with self.assertRaises(voxmend.FormatError) as caught:
+                voxmend.load(file.name)
+        self.assertEqual(caught.exception.status, "format")
+        for vertices, faces in ((numpy.zeros((3, 2)), [[0, 1, 2]]), (numpy.zeros((3, 3)), [[0, 1, 3]]),
+                                (numpy.zeros((3, 3)), [0, 1, 2]), (numpy.zeros((3, 3)), [[0.5, 1, 2]])):
+            with self.assertRaises(ValueError):
+                voxmend.Mesh(vertices, faces)
+        with self.assertRaises(ValueError):
+            voxmend.repair(sample("cube"), "perfect")
+        with self.assertRaises(MemoryError):
+            voxmend.configure(memory_limit=10000)
+            try:
+                voxmend.voxelize(sample("torus"), 512)
+            finally:
+                voxmend.configure()
+
+
+class Grids(unittest.TestCase):
+    def test_voxelize(self):
+        grid = voxmend.voxelize(cube(2.0), 10)
+        self.assertEqual(grid.shape, (10, 10, 10))
+        self.assertEqual(grid.filled_count, 1000)
+        self.assertAlmostEqual(grid.volume, 8.0)
+        self.assertTrue(numpy.allclose(grid.bounds, [[0, 0, 0], [2, 2, 2]]))
+        self.assertTrue(numpy.allclose(grid.pitch, 0.2))
+        self.assertEqual(grid.matrix.dtype, numpy.bool_)
+        self.assertTrue(numpy.allclose(grid.points.mean(axis=0), 1))
+        self.assertTrue(numpy.allclose(grid.transform @ [0, 0, 0, 1], [0.1, 0.1, 0.1, 1]))
+        self.assertEqual(grid.report["closed_parts"], 1)
+
+    def test_ways_to_name_a_mesh(self):
+        class Trimesh:  # what matters of one
+            def __init__(self, mesh):
+                self.vertices, self.faces = mesh.vertices.copy(), mesh.faces.astype(numpy.int64)
+        mesh = voxmend.load(sample("torus"))
+        hashes = {voxmend.voxelize(m, 24).hash for m in
+                  (mesh, sample("torus"), (mesh.vertices, mesh.faces), Trimesh(mesh), mesh.repair())}
+        self.assertEqual(len(hashes), 1)
+        self.assertEqual(mesh.voxelize(24).hash, hashes.pop())
+
+    def test_spaces(self):
+        mesh = voxmend.load(sample("torus"))
+        self.assertTrue(numpy.allclose(mesh.voxelize(pitch=0.25).pitch, 0.25))
+        self.assertEqual(mesh.voxelize((8, 9, 10), bounds=[[-3, -3, -3], [3, 3, 3]]).shape, (8, 9, 10))
+        like = mesh.voxelize(16, pad=2, fit="sphere")
+        other = voxmend.voxelize(cube(), like=like)
+        self.assertTrue((other.origin == like.origin).all() and other.shape == like.shape)
+        for wrong in (dict(resolution=8, pitch=1), dict(pitch=-1), dict(resolution=0), dict(resolution=(1, 2)),
+                      dict(fit="round"), dict(bounds=[1, 2, 3]), dict(like=like, pad=1), dict(mode="thin"), dict(method="w")):
+            with self.assertRaises(ValueError, msg=str(wrong)):
+                mesh.voxelize(**wrong)
+
+    def test_packed_and_matrix_agree(self):
+        grid = voxmend.voxelize(sample("star_prism"), 70)
+        packed = grid.packed
+        self.assertTrue(numpy.shares_memory(packed, grid.packed))
+        nx, ny, nz = grid.shape
+        self.assertEqual(packed.shape, (nz, ny, (nx + 63) // 64))
+        bits = numpy.unpackbits(packed.view(numpy.uint8), axis=-1, bitorder="little")[..., :nx]
+        self.assertTrue((bits.transpose(2, 1, 0) == grid.matrix).all())
+        del grid
+        self.assertGreater(int(packed.sum()), 0)
+
+    def test_from_matrix(self):
+        rng = numpy.random.default_rng(3)
+        for shape in ((5, 66, 3), (64, 1, 65), (130, 7, 64)):
+            matrix = rng.random(shape) < 0.3
+            grid = voxmend.VoxelGrid(matrix, (1, 2, 3), (4, 5, 6))
+            self.assertTrue((grid.matrix == matrix).all())
+            self.assertEqual(grid.filled_count, matrix.sum())
+            self.assertEqual(grid.copy().hash, grid.hash)
+            self.assertEqual(numpy.asarray(grid, numpy.float32).sum(), matrix.sum())
+            at = numpy.argwhere(matrix)[3]
+            self.assertEqual(grid.is_filled([grid.indices_to_points(at), [-1, 0, 0], [999, 0, 0]]).tolist(), [True, False, False])
+        with self.assertRaises(ValueError):
+            voxmend.VoxelGrid(numpy.zeros((2, 2)))
+
+    def test_fill_and_hollow(self):
+        solid = voxmend.voxelize(sample("torus"), 40, mode="both")
+        shell = voxmend.voxelize(sample("torus"), 40, mode="surface")
+        self.assertLess(shell.filled_count, solid.filled_count)
+        self.assertEqual(shell.fill().hash, solid.hash)
+        self.assertEqual(solid.hollow().fill().hash, solid.hash)
+        full = voxmend.voxelize(sample("sphere"), 24)
+        self.assertEqual(full.hollow().hash, voxmend.voxelize(sample("sphere"), 24, mode="surface", surface="shell6").hash)
+
+    def test_boxes(self):
+        grid = voxmend.voxelize(sample("star_prism"), 20)
+        boxes = grid.as_boxes().info()
+        self.assertAlmostEqual(boxes["volume"], grid.volume)
+        self.assertTrue(boxes["closed"])
+
+    def test_files(self):
+        grid = voxmend.voxelize(sample("torus"), 21)
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("a.binvox", "a.npy", "a.raw", "a.rle", "a.nrrd"):
+                path = os.path.join(folder, name)
+                voxmend.write(grid, path)
+                again = voxmend.read(path)
+                self.assertEqual(again.hash, grid.hash, name)
+                self.assertTrue(numpy.allclose(again.bounds, grid.bounds, atol=1e-6), name)
+            self.assertTrue((numpy.load(os.path.join(folder, "a.npy")) == grid.matrix).all())
+            grid.save(os.path.join(folder, "b.dat"), "rle")
+            self.assertEqual(grid.compare(voxmend.read(os.path.join(folder, "b.dat")))["iou"], 1.0)
+            with self.assertRaises(ValueError):
+                grid.save(os.path.join(folder, "a.xyz"))
+
+    def test_dlpack(self):
+        grid = voxmend.voxelize(sample("torus"), 16)
+        again = numpy.from_dlpack(grid)
+        self.assertTrue(numpy.shares_memory(again, grid.matrix))
+        self.assertEqual(again.sum(), grid.filled_count)
+
+    def test_fields(self):
+        values, origin, pitch = voxmend.distance(cube(), 16, pad=2, band=0)
+        grid = voxmend.voxelize(cube(), 16, pad=2)
+        self.assertTrue(((values < 0) == grid.matrix).all())
+        self.assertTrue(numpy.allclose(origin, grid.origin) and numpy.allclose(pitch, grid.pitch))
+        values, _, pitch = voxmend.coverage(sample("sphere"), 16)
+        self.assertAlmostEqual(float(values.sum() * pitch.prod()), voxmend.info(sample("sphere"))["volume"], delta=0.05)
+
+
+class Variants(unittest.TestCase):
+    def make(self, **changed):
+        sampler = voxmend.Sampler(**dict(ALL, **changed))
+        sampler.put(voxmend.load(sample("l_prism")))
+        return sampler
+
+    def test_bits_of_the_library(self):
+        for threads in (1, 2, 3):
+            voxmend.configure(threads)
+            try:
+                for _ in range(2):
+                    self.assertEqual(fnv(self.make().batch(24, epoch=2, dtype="bits").tobytes()), KNOWN_HASH)
+            finally:
+                voxmend.configure()
+
+    @unittest.skipUnless(VOXMEND, "VOXMEND names no program")
+    def test_bits_of_the_stream(self):
+        made = subprocess.run([VOXMEND, "augment", sample("l_prism"), "-o", "-", "-q", "-n", "24"] + ALL_AS_OPTIONS,
+                              stdout=subprocess.PIPE, check=True).stdout
+        kind = numpy.dtype([("name", "<u4", 4), ("bits", "u1", (32, 32, 4))])
+        records = numpy.frombuffer(made, kind, offset=64)
+        self.assertTrue((records["bits"] == self.make().batch(24, epoch=2, dtype="bits")).all())
+        self.assertEqual(records["name"].tolist(), [[0, 2, i, 0] for i in range(24)])
+
+    def test_forms_agree(self):
+        for resolution in (32, 21):
+            sampler = self.make(resolution=resolution)
+            bits, bytes_, floats = (sampler.batch(6, dtype=kind) for kind in ("bits", "uint8", "float32"))
+            self.assertEqual(floats.shape, (6, 1) + 3 * (resolution,))
+            self.assertEqual(floats.dtype, numpy.float32)
+            unpacked = numpy.unpackbits(bits, axis=-1, count=resolution, bitorder="little")
+            self.assertTrue((unpacked[:, None] == bytes_).all() and (floats == bytes_).all())
+            self.assertTrue(floats.any(axis=(1, 2, 3, 4)).all())
+
+    def test_any_order_and_into_memory(self):
+        sampler = self.make()
+        sampler.put(voxmend.load(sample("torus")), 5)
+        whole = sampler.batch(10, epoch=1)
+        names = numpy.array([[0, 1, 9], [5, 1, 3], [0, 1, 0], [0, 1, 4]])
+        out = numpy.full(sampler.shape(4), 7, numpy.float32)
+        self.assertIs(sampler.batch(names, out=out), out)
+        self.assertTrue((out[[0, 2, 3]] == whole[[9, 0, 4]]).all())
+        self.assertTrue((out[1] == sampler.batch([3], model=5, epoch=1)[0]).all())
+        for wrong in (out.astype(float), out[:, :, ::2], out[:3], numpy.asfortranarray(out)):
+            with self.assertRaises(ValueError):
+                sampler.batch(names, out=wrong)
+
+    def test_closed_stays_closed(self):
+        for name in ("torus", "star_prism"):
+            made = []
+            for axis in "xyz":
+                sampler = voxmend.Sampler(**dict(ALL, method=axis, parts="whole"))
+                sampler.put(voxmend.load(sample(name)))
+                made.append(sampler.batch(20, dtype="uint8"))
+            self.assertTrue((made[0] == made[1]).all() and (made[0] == made[2]).all())
+
+    def test_poses(self):
+        mesh = voxmend.load(sample("star_prism"))
+        sampler = voxmend.Sampler(**dict(ALL, displace=0))
+        sampler.put(mesh)
+        for index in range(5):
+            pose = sampler.pose(index)
+            moved = mesh.vertices @ pose["transform"][:, :3].T + pose["transform"][:, 3]
+            grid = voxmend.voxelize((moved, mesh.triangles()), (32, 32, 32), bounds=[[0, 0, 0], [32, 32, 32]], repair=False)
+            differ = (grid.matrix != (sampler.batch([index])[0, 0] > 0)).sum()
+            self.assertLessEqual(differ, 2)  # both are rounded
+            self.assertTrue(numpy.allclose(pose["rotation"] @ pose["rotation"].T, numpy.eye(3)))
+
+    def test_ways_to_rotate(self):
+        turns = numpy.array([numpy.eye(3), [[0, -1, 0], [1, 0, 0], [0, 0, 1]]])
+        sampler = voxmend.Sampler(16, rotate=turns)
+        sampler.put(voxmend.load(sample("l_prism")))
+        self.assertTrue((sampler.pose(3)["rotation"] == turns[1]).all())
+        made = sampler.batch(2)[:, 0]
+        self.assertTrue((made[1] == numpy.rot90(made[0], 1, (0, 1))).all())
+        sampler = voxmend.Sampler(16, rotate="z")
+        sampler.put(voxmend.load(sample("l_prism")))
+        self.assertTrue(numpy.allclose(sampler.pose(3)["rotation"][2], [0, 0, 1]))
+        for wrong in ("w", [1, 2], numpy.ones((2, 3, 3)), numpy.zeros((0, 3, 3))):
+            with self.assertRaises(ValueError):
+                voxmend.Sampler(16, rotate=wrong)
+
+    def test_wrong_arguments(self):
+        sampler = self.make()
+        for call in (lambda: sampler.batch(2, model=4), lambda: sampler.batch([-1]), lambda: sampler.batch(2, dtype="int"),
+                     lambda: sampler.batch([[1, 2]]), lambda: sampler.pose(0, model=9), lambda: voxmend.Sampler(0 - 1),
+                     lambda: voxmend.Sampler(mirror="a"), lambda: voxmend.Sampler(scale=2), lambda: voxmend.Sampler(9, pad=5)):
+            with self.assertRaises(ValueError):
+                call()
+        sampler.put(None)
+        with self.assertRaises(voxmend.ArgumentError):
+            sampler.batch(1)
+
+    def test_other_threads_run_meanwhile(self):
+        """While a batch is made, a Python thread counts."""
+        sampler = voxmend.Sampler(256, rotate="any")
+        sampler.put(voxmend.load(sample("torus")))
+        sampler.batch(1, dtype="bits")
+        counts, stop = [0], threading.Event()
+
+        def count():
+            while not stop.is_set():
+                counts[0] += 1
+                time.sleep(0.0002)
+        thread = threading.Thread(target=count)
+        thread.start()
+        before, start = counts[0], time.perf_counter()
+        while time.perf_counter() - start < 0.3:
+            begin = counts[0]
+            sampler.batch(40, dtype="bits")
+            inside = counts[0] - begin
+            if inside > 3:
+                break
+        stop.set()
+        thread.join()
+        self.assertGreater(inside, 3)
+        self.assertGreater(counts[0], before)
+
+    def test_after_a_fork(self):
+        sampler = self.make()
+        expected = sampler.batch(8, dtype="bits")
+        child = os.fork()
+        if child == 0:
+            os._exit(0 if (sampler.batch(8, dtype="bits") == expected).all() else 1)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+
+
+if __name__ == "__main__":
+    print("python %s, numpy %s, voxmend %s" % (sys.version.split()[0], numpy.__version__, voxmend.__version__))
+    unittest.main(verbosity=1)
