@@ -15,7 +15,9 @@ static const cli_option known_options[] = {
     {KEY_PHASES, "phases", "LIST",
      "what to measure, out of the phases below; named here, a phase is measured\n"
      "however slow it is [all, but what takes over two seconds is left out]"},
-    {KEY_ENGINE, "engine", "E", "who makes the grids: cpu [cpu]"},
+    {KEY_ENGINE, "engine", "LIST",
+     "who makes the grids, such as cpu,opengl: as in 'voxmend voxelize'; others\n"
+     "are compared with the first [cpu]"},
     {KEY_TIME, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]"},
     {KEY_PLOT, "plot", "FILE.svg", "draw the times over the resolution"},
     CLI_OPTION_DEFLECTION,
@@ -80,11 +82,13 @@ static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
   return CLI_END;
 }
 
-static int read_engine(cli_run *cli, bench_plan *plan, const char *value) {
-  int choice = cli_read_choice(value, bench_engines);
-  if (choice < 0)
-    return refuse_choice(cli, "engine", value, bench_engines);
-  plan->engine = bench_engines[choice];
+static int read_engines(cli_run *cli, bench_plan *plan, const char *text) {
+  char item[ITEM_SIZE];
+  for (plan->engine_count = 0; next_item(item, &text);) {
+    if (plan->engine_count == BENCH_ENGINES_MAX)
+      return cli_usage(cli, "--engine names more than %d engines", BENCH_ENGINES_MAX);
+    snprintf(plan->engines[plan->engine_count++], sizeof plan->engines[0], "%s", item);
+  }
   return CLI_END;
 }
 
@@ -102,7 +106,7 @@ static int read_option(cli_run *cli, bench_plan *plan, int key, const char *valu
   case KEY_PHASES:
     return read_phases(cli, plan, value);
   case KEY_ENGINE:
-    return read_engine(cli, plan, value);
+    return read_engines(cli, plan, value);
   case KEY_TIME:
     if (!cli_read_integer(&time, value, 0, 3600000))
       return cli_usage(cli, "--time '%s' is not a number of milliseconds from 0 to 3600000", value);
@@ -162,7 +166,8 @@ static int count_measurements(const bench_plan *plan) {
   int total = 0;
   for (int i = 0; bench_phases[i].name; i++)
     if (plan->chosen[i])
-      total += bench_phases[i].per_grid ? plan->resolution_count : 1;
+      total += (bench_phases[i].per_grid ? plan->resolution_count : 1) *
+               (bench_phases[i].by_engine ? plan->engine_count : 1);
   return total * plan->thread_count;
 }
 
@@ -200,16 +205,19 @@ static int measure_resolution(bench_work *work, bench_stage *stage, int64_t reso
   if (bench_stage_resize(stage, resolution) != VXM_OK)
     return cli_fail(work->cli);
   for (int i = 0; bench_phases[i].name; i++)
-    if (work->plan.chosen[i] && bench_phases[i].per_grid)
-      if (measure(work, stage, i, resolution) != CLI_DONE)
+    for (int e = 0; e < (bench_phases[i].by_engine ? work->plan.engine_count : 1); e++) {
+      stage->engine = e;
+      if (work->plan.chosen[i] && bench_phases[i].per_grid && measure(work, stage, i, resolution) != CLI_DONE)
         return CLI_FAILED;
+    }
   work->results.memory[work->results.memory_count++] =
       (bench_memory){resolution, stage->threads, vxm_context_peak_bytes(work->cli->context)};
   return CLI_DONE;
 }
 
 static int measure_stage(bench_work *work, bench_stage *stage) {
-  if (bench_stage_open(stage) != VXM_OK)
+  stage->engine = 0;
+  if (bench_stage_open(stage, &work->plan) != VXM_OK)
     return cli_fail(work->cli);
   for (int i = 0; bench_phases[i].name; i++)
     if (work->plan.chosen[i] && !bench_phases[i].per_grid)
@@ -298,7 +306,8 @@ static int bench(bench_work *work) {
 
 static int run(cli_run *cli) {
   bench_work work = {.cli = cli,
-                     .plan = {.engine = bench_engines[0],
+                     .plan = {.engines = {"cpu"},
+                              .engine_count = 1,
                               .resolutions = {64, 128, 256, 512, 1024},
                               .resolution_count = 5,
                               .time_ms = 200}};

@@ -50,7 +50,7 @@ for option in '-r 0' '-r 8.5' '-r 8x8' '-r 8x8x8x8' '-r 8x8x' '-r 0x8' '-r -8' '
   '--voxel-size 0' '--voxel-size -1' '--voxel-size 1,5' '--voxel-size inf' '--voxel-size 0x1' '--voxel-size ""' \
   '--fit round' '--pad -1' '--pad 1.5' '--bounds 0,0,0,1,1' '--bounds 0,0,0,1,1,1,1' '--bounds 0,0,0,1,0,1' \
   '--bounds 0,0,0,1,1,nan' '--method w' '--vote most' '--parts some' '--weld near' \
-  '--coverage 3' '--surface shell9' '--engine cpu' '--hollow' '--scalar int' '--distance near' '--band -1' '--band x'; do
+  '--coverage 3' '--surface shell9' '--hollow' '--scalar int' '--distance near' '--band -1' '--band x'; do
   run "voxmend voxelize in/cube.off -o x.npy $option"
 done
 for options in '-r 8 --voxel-size 1' '--like y.npy -r 8' '--like y.npy --pad 1' '--bounds 0,0,0,1,1,1 --pad 1' \
