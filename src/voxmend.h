@@ -329,11 +329,11 @@ typedef struct vxm_repair_report {
                                                                   -1 = not looked for */
   int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
                                 positions are too coarse for the faces about them */
-  int64_t shared_faces;      /**< at level clean: that repeat others and stay, as bodies overlap there and both
-                                need theirs; from manifold on each body has its own */
-  int64_t opened_parts;      /**< closed before, open after; with options.part_changes, else 0 */
-  double moved;              /**< no vertex was moved farther, model units; not by a wrap or union. With
-                                options.part_changes, else 0 */
+  int64_t shared_faces; /**< at level clean: that repeat others and stay, as bodies overlap there and both
+                           need theirs; from manifold on each body has its own */
+  int64_t opened_parts; /**< closed before, open after; with options.part_changes, else 0 */
+  double moved;         /**< no vertex was moved farther, model units; not by a wrap or union. With
+                           options.part_changes, else 0 */
   vxm_census before, after;
 } vxm_repair_report;
 

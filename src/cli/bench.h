@@ -5,12 +5,20 @@
 
 #include "cli/cli.h"
 
-enum { BENCH_LIST_MAX = 32, BENCH_PHASES_MAX = 32, BENCH_RUNS_LEAST = 5, BENCH_RUNS_MOST = 10000 };
+enum {
+  BENCH_LIST_MAX = 32,
+  BENCH_PHASES_MAX = 32,
+  BENCH_ENGINES_MAX = 8,
+  BENCH_RUNS_LEAST = 5,
+  BENCH_RUNS_MOST = 10000
+};
 
 /* ---- What is asked for ---- */
 
 typedef struct bench_plan {
-  const char *path, *plot, *engine;
+  const char *path, *plot;
+  char engines[BENCH_ENGINES_MAX][48]; /**< who makes the grids; the first one does what others cannot, too */
+  int engine_count;
   int64_t resolutions[BENCH_LIST_MAX], threads[BENCH_LIST_MAX]; /**< ascending, none twice */
   int resolution_count, thread_count;
   bool chosen[BENCH_PHASES_MAX]; /**< by position in bench_phases */
@@ -30,17 +38,19 @@ typedef struct bench_stage {
   cli_run *cli;
   const char *path;
   int threads;
-  vxm_mesh *raw, *mesh;   /**< as read, and repaired */
-  vxm_space space;        /**< of the present resolution */
-  vxm_grid *grid;         /**< of that space; made when a phase asks for it */
-  vxm_model *model;       /**< of the present phase */
-  bench_team *team;       /**< of the present phase */
-  void *values;           /**< a number per voxel, of the present phase */
-  bench_augment *augment; /**< of the present phase */
-  int64_t variants;       /**< that each of its runs makes: times are for one; 0 = does not apply */
-  double displace;        /**< by how much they are displaced */
-  int64_t run;            /**< number of the present run */
-  vxm_mesh *made_mesh;    /**< what the run has made: dropped when the clock has stopped */
+  vxm_mesh *raw, *mesh;                   /**< as read, and repaired */
+  vxm_space space;                        /**< of the present resolution */
+  vxm_grid *grid;                         /**< of that space; made when a phase asks for it */
+  vxm_engine *engines[BENCH_ENGINES_MAX]; /**< as in the plan */
+  int engine;                             /**< of the present phase: a number of the plan */
+  vxm_model *model;                       /**< of the present phase */
+  bench_team *team;                       /**< of the present phase */
+  void *values;                           /**< a number per voxel, of the present phase */
+  bench_augment *augment;                 /**< of the present phase */
+  int64_t variants;    /**< that each of its runs makes: times are for one; 0 = does not apply */
+  double displace;     /**< by how much they are displaced */
+  int64_t run;         /**< number of the present run */
+  vxm_mesh *made_mesh; /**< what the run has made: dropped when the clock has stopped */
   vxm_model *made_model;
   vxm_sparse *made_sparse;
 } bench_stage;
@@ -55,6 +65,7 @@ typedef struct bench_phase {
   const char *name; /**< NULL ends the table */
   const char *help;
   bool per_grid;                           /**< measured at each resolution, else once */
+  bool by_engine;                          /**< measured with each engine, else with the first */
   bool augments;                           /**< only with --augment, or if it is named */
   double most_ms;                          /**< left out where a run would take longer; 0 = never */
   vxm_status (*begin)(bench_stage *stage); /**< makes what a run needs, off the clock; NULL = nothing */
@@ -63,10 +74,9 @@ typedef struct bench_phase {
 } bench_phase;
 
 extern const bench_phase bench_phases[];
-extern const char *const bench_engines[];
 
-/** Reads and repairs the mesh. The stage's context is cli->context. */
-vxm_status bench_stage_open(bench_stage *stage);
+/** Makes the engines, reads and repairs the mesh. The stage's context is cli->context. */
+vxm_status bench_stage_open(bench_stage *stage, const bench_plan *plan);
 /** Sets the resolution; drops the grid and the numbers of the one before. */
 vxm_status bench_stage_resize(bench_stage *stage, int64_t resolution);
 /** Drops what a run has made. */
@@ -101,6 +111,7 @@ typedef struct bench_result {
   const bench_phase *phase;
   int64_t resolution; /**< 0 for what does not depend on it */
   int threads;
+  int engine; /**< a number of the plan */
   double median_ms, least_ms;
   int64_t runs;
   uint64_t bytes;     /**< of what is made, or of the file for `load`; 0 = does not apply */
@@ -124,7 +135,7 @@ typedef struct bench_results {
 
 /** The result of a phase, or NULL if there is none that was measured. */
 const bench_result *bench_find(const bench_results *results, const char *phase, int64_t resolution,
-                               int threads);
+                               int threads, int engine);
 /** Adds an empty result; NULL without memory. */
 bench_result *bench_add(bench_results *results);
 /**

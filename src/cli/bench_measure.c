@@ -10,11 +10,11 @@
 /* ---- Results ---- */
 
 const bench_result *bench_find(const bench_results *results, const char *phase, int64_t resolution,
-                               int threads) {
+                               int threads, int engine) {
   for (int i = 0; i < results->count; i++) {
     const bench_result *item = &results->items[i];
     if (!*item->left_out && item->resolution == resolution && item->threads == threads &&
-        strcmp(item->phase->name, phase) == 0)
+        item->engine == engine && strcmp(item->phase->name, phase) == 0)
       return item;
   }
   return NULL;
@@ -112,8 +112,8 @@ static vxm_status leave_out_if_slow(bench_result *out, const bench_results *resu
   double ms = 0;
   for (int i = 0; i < results->count; i++) {
     const bench_result *item = &results->items[i];
-    if (item->phase != phase || item->threads != out->threads || *item->left_out || item->runs == 0 ||
-        item->resolution <= from || item->resolution >= out->resolution)
+    if (item->phase != phase || item->threads != out->threads || item->engine != out->engine ||
+        *item->left_out || item->runs == 0 || item->resolution <= from || item->resolution >= out->resolution)
       continue;
     from = item->resolution;
     ms = item->median_ms;
@@ -145,7 +145,8 @@ static vxm_status leave_out_if_memory(bench_result *out, bench_stage *stage, vxm
 
 vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench_plan *plan,
                          const bench_phase *phase, int64_t resolution) {
-  bench_result made = {.phase = phase, .resolution = resolution, .threads = stage->threads};
+  bench_result made = {
+      .phase = phase, .resolution = resolution, .threads = stage->threads, .engine = stage->engine};
   vxm_status status = VXM_OK;
   if (phase->most_ms > 0 && !plan->forced)
     status = leave_out_if_slow(&made, results, stage);
@@ -154,7 +155,7 @@ vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench
   status = leave_out_if_memory(&made, stage, status);
   if (status != VXM_OK)
     return status;
-  const bench_result *base = bench_find(results, "memset", resolution, stage->threads);
+  const bench_result *base = bench_find(results, "memset", resolution, stage->threads, 0);
   if (base && phase->per_grid && phase != base->phase && base->median_ms > 0)
     made.of_memset = made.median_ms / base->median_ms;
   bench_result *place = bench_add(results);

@@ -9,10 +9,14 @@
 
 /* ---- The stage ---- */
 
-vxm_status bench_stage_open(bench_stage *stage) {
+vxm_status bench_stage_open(bench_stage *stage, const bench_plan *plan) {
   vxm_error *error = &stage->cli->error;
-  vxm_status status =
-      vxm_mesh_read_with(&stage->raw, stage->cli->context, stage->path, &stage->cli->read, error);
+  vxm_status status = VXM_OK;
+  for (int e = 0; e < plan->engine_count && status == VXM_OK; e++)
+    status = vxm_engine_create(&stage->engines[e], stage->cli->context, plan->engines[e], NULL, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_mesh_read_with(&stage->raw, stage->cli->context, stage->path, &stage->cli->read, error);
   return status == VXM_OK ? vxm_mesh_repair(&stage->mesh, NULL, stage->raw, NULL, error) : status;
 }
 
@@ -47,6 +51,8 @@ void bench_stage_close(bench_stage *stage) {
   bench_stage_drop(stage);
   bench_stage_end_phase(stage);
   vxm_grid_destroy(stage->grid);
+  for (int e = 0; e < BENCH_ENGINES_MAX; e++)
+    vxm_engine_destroy(stage->engines[e]);
   vxm_mesh_destroy(stage->mesh);
   vxm_mesh_destroy(stage->raw);
   *stage = (bench_stage){0};
@@ -99,7 +105,9 @@ static vxm_status begin_model(bench_stage *stage, const vxm_voxelize_options *op
   vxm_status status = VXM_OK;
   if (!stage->grid)
     status = vxm_grid_create(&stage->grid, stage->cli->context, &stage->space, error);
-  return status == VXM_OK ? vxm_model_create(&stage->model, stage->mesh, options, error) : status;
+  vxm_voxelize_options chosen = *options;
+  chosen.engine = stage->engines[stage->engine];
+  return status == VXM_OK ? vxm_model_create(&stage->model, stage->mesh, &chosen, error) : status;
 }
 
 static vxm_status begin_x(bench_stage *stage) {
@@ -109,7 +117,8 @@ static vxm_status begin_x(bench_stage *stage) {
 }
 
 static vxm_status begin_default(bench_stage *stage) {
-  return begin_model(stage, NULL);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  return begin_model(stage, &options);
 }
 
 static vxm_status begin_majority(bench_stage *stage) {
@@ -227,34 +236,32 @@ static void tell_distance(bench_output *out, const bench_stage *stage) {
 enum { SLOW_MS = 2000 };
 
 const bench_phase bench_phases[] = {
-    {"memset", "fill memory of the grid's size: the least that writing it can take", true, false, 0,
+    {"memset", "fill memory of the grid's size: the least that writing it can take", true, false, false, 0,
      begin_memset, run_memset, tell_memset},
-    {"load", "read the file", false, false, 0, NULL, run_load, tell_load},
-    {"repair", "repair the mesh", false, false, 0, NULL, run_repair, NULL},
-    {"prepare", "make the model: find parts, cap holes", false, false, 0, NULL, run_prepare, NULL},
-    {"solid_x", "solid by parity along x", true, false, 0, begin_x, run_solid, tell_grid},
-    {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, false, 0, begin_default, run_solid,
+    {"load", "read the file", false, false, false, 0, NULL, run_load, tell_load},
+    {"repair", "repair the mesh", false, false, false, 0, NULL, run_repair, NULL},
+    {"prepare", "make the model: find parts, cap holes", false, false, false, 0, NULL, run_prepare, NULL},
+    {"solid_x", "solid by parity along x", true, true, false, 0, begin_x, run_solid, tell_grid},
+    {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, true, false, 0, begin_default, run_solid,
      tell_grid},
-    {"solid_majority", "solid by a majority of x, y and z", true, false, 0, begin_majority, run_solid,
+    {"solid_majority", "solid by a majority of x, y and z", true, true, false, 0, begin_majority, run_solid,
      tell_grid},
-    {"transform", "solid_vote of the model turned by a small angle", true, false, 0, begin_default,
+    {"transform", "solid_vote of the model turned by a small angle", true, true, false, 0, begin_default,
      run_transform, tell_grid},
-    {"surface_conservative", "every voxel that the surface touches", true, false, 0, begin_conservative,
+    {"surface_conservative", "every voxel that the surface touches", true, true, false, 0, begin_conservative,
      run_solid, tell_grid},
-    {"surface_thin", "the 6-separating surface", true, false, 0, begin_thin, run_solid, tell_grid},
-    {"sparse", "solid_vote as an octree", true, false, 0, begin_sparse, run_sparse, tell_sparse},
-    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, false, SLOW_MS,
+    {"surface_thin", "the 6-separating surface", true, true, false, 0, begin_thin, run_solid, tell_grid},
+    {"sparse", "solid_vote as an octree", true, false, false, 0, begin_sparse, run_sparse, tell_sparse},
+    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, false, false, SLOW_MS,
      begin_values, run_coverage, tell_coverage},
-    {"distance", "signed distance, within 3 voxels of the surface", true, false, SLOW_MS, begin_values,
+    {"distance", "signed distance, within 3 voxels of the surface", true, false, false, SLOW_MS, begin_values,
      run_distance, tell_distance},
-    {"winding", "solid by the winding number of every voxel", true, false, SLOW_MS, begin_winding, run_solid,
-     tell_grid},
+    {"winding", "solid by the winding number of every voxel", true, false, false, SLOW_MS, begin_winding,
+     run_solid, tell_grid},
     {"augment_standard", "a variant by a process of its own, which reads the mesh; its file read back", true,
-     true, 0, bench_begin_standard, bench_run_standard, bench_tell_augment},
-    {"augment_batch", "a variant by a process that has the mesh; its file read back", true, true, 0,
+     false, true, 0, bench_begin_standard, bench_run_standard, bench_tell_augment},
+    {"augment_batch", "a variant by a process that has the mesh; its file read back", true, false, true, 0,
      bench_begin_batch, bench_run_batch, bench_tell_augment},
-    {"augment_direct", "a variant, as numbers in memory", true, true, 0, bench_begin_direct, bench_run_direct,
-     bench_tell_augment},
-    {NULL, NULL, false, false, 0, NULL, NULL, NULL}};
-
-const char *const bench_engines[] = {"cpu", NULL};
+    {"augment_direct", "a variant, as numbers in memory", true, false, true, 0, bench_begin_direct,
+     bench_run_direct, bench_tell_augment},
+    {NULL, NULL, false, false, false, 0, NULL, NULL, NULL}};

@@ -130,7 +130,7 @@ static void put_x_axis(FILE *file, const bench_plan *plan, const plot_range *ran
 
 /** A line with a dot at each resolution that was measured. */
 static void put_line(FILE *file, const bench_results *results, const plot_range *range, int phase,
-                     int threads, int style) {
+                     int threads, int engine, int style) {
   const char *separator = "", *colour = colour_of(phase);
   fprintf(file,
           "<g stroke=\"%s\" fill=\"%s\">\n<polyline fill=\"none\" stroke-width=\"2\" stroke-dasharray=\"%s\" "
@@ -138,7 +138,8 @@ static void put_line(FILE *file, const bench_results *results, const plot_range 
           colour, colour, dashes[style % DASHES]);
   for (int i = 0; i < results->count; i++) {
     const bench_result *item = &results->items[i];
-    if (!is_drawn(item) || item->phase != &bench_phases[phase] || item->threads != threads)
+    if (!is_drawn(item) || item->phase != &bench_phases[phase] || item->threads != threads ||
+        item->engine != engine)
       continue;
     fprintf(file, "%s%.1f,%.1f", separator, x_of(range, item->resolution), y_of(range, item->median_ms));
     separator = " ";
@@ -146,7 +147,8 @@ static void put_line(FILE *file, const bench_results *results, const plot_range 
   fputs("\"/>\n", file);
   for (int i = 0; i < results->count; i++) {
     const bench_result *item = &results->items[i];
-    if (!is_drawn(item) || item->phase != &bench_phases[phase] || item->threads != threads)
+    if (!is_drawn(item) || item->phase != &bench_phases[phase] || item->threads != threads ||
+        item->engine != engine)
       continue;
     fprintf(file,
             "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\"><title>%s, %" PRId64
@@ -157,10 +159,11 @@ static void put_line(FILE *file, const bench_results *results, const plot_range 
   fputs("</g>\n", file);
 }
 
-static bool has_line(const bench_results *results, int phase, int threads) {
+static bool has_line(const bench_results *results, int phase, int threads, int engine) {
   for (int i = 0; i < results->count; i++) {
     const bench_result *item = &results->items[i];
-    if (is_drawn(item) && item->phase == &bench_phases[phase] && item->threads == threads)
+    if (is_drawn(item) && item->phase == &bench_phases[phase] && item->threads == threads &&
+        item->engine == engine)
       return true;
   }
   return false;
@@ -169,15 +172,16 @@ static bool has_line(const bench_results *results, int phase, int threads) {
 static void put_lines(FILE *file, const bench_plan *plan, const bench_results *results,
                       const plot_range *range) {
   int y = TOP + ROW / 2;
-  for (int t = plan->thread_count - 1; t >= 0; t--) {
-    int threads = (int)plan->threads[t], style = plan->thread_count - 1 - t;
-    fprintf(file, "<text x=\"%d\" y=\"%d\" font-weight=\"bold\">%d thread%s</text>\n", LEGEND, y, threads,
-            threads == 1 ? "" : "s");
+  for (int group = 0; group < plan->thread_count * plan->engine_count; group++) {
+    int t = plan->thread_count - 1 - group / plan->engine_count, engine = group % plan->engine_count;
+    int threads = (int)plan->threads[t], style = group;
+    fprintf(file, "<text x=\"%d\" y=\"%d\" font-weight=\"bold\">%d thread%s%s%s</text>\n", LEGEND, y, threads,
+            threads == 1 ? "" : "s", engine > 0 ? ", " : "", engine > 0 ? plan->engines[engine] : "");
     y += ROW;
     for (int phase = 0; bench_phases[phase].name; phase++) {
-      if (!has_line(results, phase, threads))
+      if (!has_line(results, phase, threads, engine))
         continue;
-      put_line(file, results, range, phase, threads, style);
+      put_line(file, results, range, phase, threads, engine, style);
       fprintf(file,
               "<line x1=\"%d\" y1=\"%d\" x2=\"%d\" y2=\"%d\" stroke=\"%s\" stroke-width=\"2\" "
               "stroke-dasharray=\"%s\"/>\n",
@@ -192,11 +196,12 @@ static void put_lines(FILE *file, const bench_plan *plan, const bench_results *r
 /** The legend may be longer than the field is high. */
 static int find_height(const bench_plan *plan, const bench_results *results) {
   int height = TOP + ROW;
-  for (int t = 0; t < plan->thread_count; t++) {
-    height += ROW + ROW / 2;
-    for (int phase = 0; bench_phases[phase].name; phase++)
-      height += has_line(results, phase, (int)plan->threads[t]) ? ROW : 0;
-  }
+  for (int t = 0; t < plan->thread_count; t++)
+    for (int e = 0; e < plan->engine_count; e++) {
+      height += ROW + ROW / 2;
+      for (int phase = 0; bench_phases[phase].name; phase++)
+        height += has_line(results, phase, (int)plan->threads[t], e) ? ROW : 0;
+    }
   return height > HEIGHT ? height : HEIGHT;
 }
 

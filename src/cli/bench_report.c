@@ -28,33 +28,44 @@ static const char *show_bar(char bar[CHART_WIDTH + 1], double ms) {
   return bar;
 }
 
-static int name_width(const bench_results *results) {
+/** "solid_x", or "solid_x by opengl" for engines behind the first. */
+static const char *show_name(char *text, size_t size, const bench_plan *plan, const bench_result *item) {
+  bool other = item->engine > 0;
+  snprintf(text, size, "%s%s%s", item->phase->name, other ? " by " : "",
+           other ? plan->engines[item->engine] : "");
+  return text;
+}
+
+static int name_width(const bench_plan *plan, const bench_results *results) {
   int width = (int)strlen("phase");
   for (int i = 0; i < results->count; i++) {
-    int length = (int)strlen(results->items[i].phase->name);
+    char name[96];
+    int length = (int)strlen(show_name(name, sizeof name, plan, &results->items[i]));
     width = length > width ? length : width;
   }
   return width;
 }
 
-static void print_row(const cli_run *cli, const bench_result *item, int width) {
-  char grid[24] = "", of_memset[24] = "", median[32], least[32], bar[CHART_WIDTH + 1];
+static void print_row(const cli_run *cli, const bench_plan *plan, const bench_result *item, int width) {
+  char name[96], grid[24] = "", of_memset[24] = "", median[32], least[32], bar[CHART_WIDTH + 1];
   if (item->resolution > 0)
     snprintf(grid, sizeof grid, "%" PRId64, item->resolution);
+  show_name(name, sizeof name, plan, item);
   if (*item->left_out) {
-    fprintf(cli->text, "%-*s %6s  left out: %s\n", width, item->phase->name, grid, item->left_out);
+    fprintf(cli->text, "%-*s %6s  left out: %s\n", width, name, grid, item->left_out);
     return;
   }
   if (item->of_memset > 0)
     snprintf(of_memset, sizeof of_memset, "%.*f", item->of_memset < 100 ? 1 : 0, item->of_memset);
   double rate = 1e3 / item->median_ms;
-  fprintf(cli->text, "%-*s %6s %s %s %9.*f %8s  %s\n", width, item->phase->name, grid,
+  fprintf(cli->text, "%-*s %6s %s %s %9.*f %8s  %s\n", width, name, grid,
           show_ms(median, sizeof median, item->median_ms), show_ms(least, sizeof least, item->least_ms),
           rate < 100 ? 2 : 0, rate, of_memset, show_bar(bar, item->median_ms));
 }
 
-static void print_threads(const cli_run *cli, const bench_results *results, int threads) {
-  int width = name_width(results);
+static void print_threads(const cli_run *cli, const bench_plan *plan, const bench_results *results,
+                          int threads) {
+  int width = name_width(plan, results);
   fprintf(cli->text, "\n%d thread%s\n%-*s %6s %10s %10s %9s %8s  %s\n", threads, threads == 1 ? "" : "s",
           width, "phase", "grid", "median ms", "least ms", "per s", "x memset", "1us 10  100 1ms 10  100 1s");
   int64_t last = 0;
@@ -65,14 +76,14 @@ static void print_threads(const cli_run *cli, const bench_results *results, int 
     if (item->resolution != last && i > 0)
       fputc('\n', cli->text);
     last = item->resolution;
-    print_row(cli, item, width);
+    print_row(cli, plan, item, width);
   }
 }
 
 /** How much faster the most threads are than the fewest, where both were measured. */
 static void print_speedup(const cli_run *cli, const bench_plan *plan, const bench_results *results) {
   int few = (int)plan->threads[0], many = (int)plan->threads[plan->thread_count - 1];
-  int width = name_width(results);
+  int width = name_width(plan, results);
   fprintf(cli->text, "\n%d threads over %d, times as fast\n%-*s", many, few, width, "grid");
   for (int i = 0; i < plan->resolution_count; i++)
     fprintf(cli->text, " %6" PRId64, plan->resolutions[i]);
@@ -82,14 +93,40 @@ static void print_speedup(const cli_run *cli, const bench_plan *plan, const benc
       continue;
     fprintf(cli->text, "%-*s", width, bench_phases[p].name);
     for (int i = 0; i < plan->resolution_count; i++) {
-      const bench_result *slow = bench_find(results, bench_phases[p].name, plan->resolutions[i], few);
-      const bench_result *fast = bench_find(results, bench_phases[p].name, plan->resolutions[i], many);
+      const bench_result *slow = bench_find(results, bench_phases[p].name, plan->resolutions[i], few, 0);
+      const bench_result *fast = bench_find(results, bench_phases[p].name, plan->resolutions[i], many, 0);
       if (slow && fast && fast->median_ms > 0)
         fprintf(cli->text, " %6.2f", slow->median_ms / fast->median_ms);
       else
         fprintf(cli->text, " %6s", "-");
     }
     fputc('\n', cli->text);
+  }
+}
+
+/** How long the other engines take, in times of the first, with the most threads. */
+static void print_engines(const cli_run *cli, const bench_plan *plan, const bench_results *results) {
+  int width = name_width(plan, results), threads = (int)plan->threads[plan->thread_count - 1];
+  for (int e = 1; e < plan->engine_count; e++) {
+    fprintf(cli->text, "\n%s, times as long as %s\n%-*s", plan->engines[e], plan->engines[0], width, "grid");
+    for (int i = 0; i < plan->resolution_count; i++)
+      fprintf(cli->text, " %6" PRId64, plan->resolutions[i]);
+    fputc('\n', cli->text);
+    for (int p = 0; bench_phases[p].name; p++) {
+      if (!plan->chosen[p] || !bench_phases[p].by_engine)
+        continue;
+      fprintf(cli->text, "%-*s", width, bench_phases[p].name);
+      for (int i = 0; i < plan->resolution_count; i++) {
+        const char *name = bench_phases[p].name;
+        const bench_result *first = bench_find(results, name, plan->resolutions[i], threads, 0);
+        const bench_result *other = bench_find(results, name, plan->resolutions[i], threads, e);
+        if (first && other && first->median_ms > 0)
+          fprintf(cli->text, " %6.2f", other->median_ms / first->median_ms);
+        else
+          fprintf(cli->text, " %6s", "-");
+      }
+      fputc('\n', cli->text);
+    }
   }
 }
 
@@ -132,9 +169,11 @@ void bench_print(const cli_run *cli, const bench_plan *plan, const bench_subject
           input->path, input->format, input->vertices, input->faces, mended->triangles,
           mended->closed ? "closed" : "open");
   for (int i = 0; i < plan->thread_count; i++)
-    print_threads(cli, results, (int)plan->threads[i]);
+    print_threads(cli, plan, results, (int)plan->threads[i]);
   if (plan->thread_count > 1 && plan->resolution_count > 0)
     print_speedup(cli, plan, results);
+  if (plan->resolution_count > 0)
+    print_engines(cli, plan, results);
   print_memory(cli, plan, subject, results);
   if (plan->plot)
     cli_row(cli, "plot", "%s", plan->plot);
@@ -145,7 +184,7 @@ void bench_print(const cli_run *cli, const bench_plan *plan, const bench_subject
 static json_t *key_json(const bench_plan *plan, const bench_result *item) {
   json_t *object = json_object();
   json_object_set_new(object, "phase", json_string(item->phase->name));
-  json_object_set_new(object, "engine", json_string(plan->engine));
+  json_object_set_new(object, "engine", json_string(plan->engines[item->engine]));
   json_object_set_new(object, "resolution", json_integer(item->resolution));
   json_object_set_new(object, "threads", json_integer(item->threads));
   return object;

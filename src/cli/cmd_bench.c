@@ -25,7 +25,9 @@ static const cli_option known_options[] = {
     {KEY_PHASES, "phases", "LIST",
      "what to measure, out of the phases below; named here, a phase is measured\n"
      "however slow it is [all, but what takes over two seconds is left out]"},
-    {KEY_ENGINE, "engine", "E", "who makes the grids: cpu [cpu]"},
+    {KEY_ENGINE, "engine", "LIST",
+     "who makes the grids, such as cpu,opengl: as in 'voxmend voxelize'; others\n"
+     "are compared with the first [cpu]"},
     {KEY_AUGMENT, "augment", NULL, "measure making variants for training instead: the augment_ phases below"},
     {KEY_DISPLACE, "displace", "F",
      "by how much the vertices of variants are displaced, as in augment [0.01]"},
@@ -93,11 +95,13 @@ static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
   return CLI_END;
 }
 
-static int read_engine(cli_run *cli, bench_plan *plan, const char *value) {
-  int choice = cli_read_choice(value, bench_engines);
-  if (choice < 0)
-    return refuse_choice(cli, "engine", value, bench_engines);
-  plan->engine = bench_engines[choice];
+static int read_engines(cli_run *cli, bench_plan *plan, const char *text) {
+  char item[ITEM_SIZE];
+  for (plan->engine_count = 0; next_item(item, &text);) {
+    if (plan->engine_count == BENCH_ENGINES_MAX)
+      return cli_usage(cli, "--engine names more than %d engines", BENCH_ENGINES_MAX);
+    snprintf(plan->engines[plan->engine_count++], sizeof plan->engines[0], "%s", item);
+  }
   return CLI_END;
 }
 
@@ -115,7 +119,7 @@ static int read_option(cli_run *cli, bench_plan *plan, int key, const char *valu
   case KEY_PHASES:
     return read_phases(cli, plan, value);
   case KEY_ENGINE:
-    return read_engine(cli, plan, value);
+    return read_engines(cli, plan, value);
   case KEY_AUGMENT:
     plan->augment = true;
     return CLI_END;
@@ -198,7 +202,8 @@ static int count_measurements(const bench_plan *plan) {
   int total = 0;
   for (int i = 0; bench_phases[i].name; i++)
     if (plan->chosen[i])
-      total += bench_phases[i].per_grid ? plan->resolution_count : 1;
+      total += (bench_phases[i].per_grid ? plan->resolution_count : 1) *
+               (bench_phases[i].by_engine ? plan->engine_count : 1);
   return total * plan->thread_count;
 }
 
@@ -236,16 +241,19 @@ static int measure_resolution(bench_work *work, bench_stage *stage, int64_t reso
   if (bench_stage_resize(stage, resolution) != VXM_OK)
     return cli_fail(work->cli);
   for (int i = 0; bench_phases[i].name; i++)
-    if (work->plan.chosen[i] && bench_phases[i].per_grid)
-      if (measure(work, stage, i, resolution) != CLI_DONE)
+    for (int e = 0; e < (bench_phases[i].by_engine ? work->plan.engine_count : 1); e++) {
+      stage->engine = e;
+      if (work->plan.chosen[i] && bench_phases[i].per_grid && measure(work, stage, i, resolution) != CLI_DONE)
         return CLI_FAILED;
+    }
   work->results.memory[work->results.memory_count++] =
       (bench_memory){resolution, stage->threads, vxm_context_peak_bytes(work->cli->context)};
   return CLI_DONE;
 }
 
 static int measure_stage(bench_work *work, bench_stage *stage) {
-  if (bench_stage_open(stage) != VXM_OK)
+  stage->engine = 0;
+  if (bench_stage_open(stage, &work->plan) != VXM_OK)
     return cli_fail(work->cli);
   for (int i = 0; bench_phases[i].name; i++)
     if (work->plan.chosen[i] && !bench_phases[i].per_grid)
@@ -334,7 +342,8 @@ static int bench(bench_work *work) {
 }
 
 static int run(cli_run *cli) {
-  bench_work work = {.cli = cli, .plan = {.engine = bench_engines[0], .displace = 0.01, .time_ms = 200}};
+  bench_work work = {.cli = cli,
+                     .plan = {.engines = {"cpu"}, .engine_count = 1, .displace = 0.01, .time_ms = 200}};
   if (read_arguments(cli, &work.plan) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))

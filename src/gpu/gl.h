@@ -19,10 +19,8 @@
   X(BUFFERDATA, BufferData)                           \
   X(BUFFERSUBDATA, BufferSubData)                     \
   X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus)   \
-  X(CLEAR, Clear)                                     \
   X(CLEARBUFFERDATA, ClearBufferData)                 \
   X(CLEARBUFFERFV, ClearBufferfv)                     \
-  X(CLEARBUFFERSUBDATA, ClearBufferSubData)           \
   X(CLEARBUFFERUIV, ClearBufferuiv)                   \
   X(CLIENTWAITSYNC, ClientWaitSync)                   \
   X(COMPILESHADER, CompileShader)                     \
@@ -40,16 +38,11 @@
   X(DISPATCHCOMPUTE, DispatchCompute)                 \
   X(DRAWARRAYS, DrawArrays)                           \
   X(DRAWARRAYSINDIRECT, DrawArraysIndirect)           \
-  X(DRAWARRAYSINSTANCED, DrawArraysInstanced)         \
   X(DRAWBUFFERS, DrawBuffers)                         \
-  X(DRAWELEMENTS, DrawElements)                       \
   X(ENABLE, Enable)                                   \
-  X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) \
   X(FENCESYNC, FenceSync)                             \
-  X(FINISH, Finish)                                   \
   X(FLUSH, Flush)                                     \
   X(FRAMEBUFFERPARAMETERI, FramebufferParameteri)     \
-  X(FRAMEBUFFERTEXTURE, FramebufferTexture)           \
   X(FRAMEBUFFERTEXTURELAYER, FramebufferTextureLayer) \
   X(GENBUFFERS, GenBuffers)                           \
   X(GENFRAMEBUFFERS, GenFramebuffers)                 \
@@ -79,7 +72,6 @@
   X(UNIFORM4UI, Uniform4ui)                           \
   X(UNMAPBUFFER, UnmapBuffer)                         \
   X(USEPROGRAM, UseProgram)                           \
-  X(VERTEXATTRIBIPOINTER, VertexAttribIPointer)       \
   X(VIEWPORT, Viewport)
 
 typedef struct vxm_gl {

@@ -6,6 +6,14 @@
 /** Any target will do for making and filling; this one is bound to no shader. */
 static const GLenum target = GL_COPY_WRITE_BUFFER;
 
+void vxm_gl_release(vxm_opengl *engine, vxm_gl_buffer_id id) {
+  vxm_gl_buffer *buffer = &engine->buffers[id];
+  if (buffer->name)
+    engine->context.gl.DeleteBuffers(1, &buffer->name);
+  vxm_memory_give(engine->base.context, buffer->bytes);
+  *buffer = (vxm_gl_buffer){0};
+}
+
 vxm_status vxm_gl_reserve(vxm_opengl *engine, vxm_gl_buffer_id id, size_t bytes, vxm_error *error) {
   vxm_gl_buffer *buffer = &engine->buffers[id];
   const vxm_gl *gl = &engine->context.gl;
@@ -27,7 +35,10 @@ vxm_status vxm_gl_reserve(vxm_opengl *engine, vxm_gl_buffer_id id, size_t bytes,
   bool is_read = id == VXM_GL_STAGING || id == VXM_GL_STAGING2;
   gl->BindBuffer(target, buffer->name);
   gl->BufferData(target, (GLsizeiptr)bytes, NULL, is_read ? GL_STREAM_READ : GL_DYNAMIC_COPY);
-  return vxm_gl_check(gl, "opengl: making a buffer", error);
+  status = vxm_gl_check(gl, "opengl: making a buffer", error);
+  if (status != VXM_OK)
+    vxm_gl_release(engine, id);
+  return status;
 }
 
 vxm_status vxm_gl_reserve_zero(vxm_opengl *engine, vxm_gl_buffer_id id, size_t bytes, vxm_error *error) {
@@ -38,14 +49,6 @@ vxm_status vxm_gl_reserve_zero(vxm_opengl *engine, vxm_gl_buffer_id id, size_t b
     engine->context.gl.ClearBufferData(target, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
   }
   return status;
-}
-
-void vxm_gl_release(vxm_opengl *engine, vxm_gl_buffer_id id) {
-  vxm_gl_buffer *buffer = &engine->buffers[id];
-  if (buffer->name)
-    engine->context.gl.DeleteBuffers(1, &buffer->name);
-  vxm_memory_give(engine->base.context, buffer->bytes);
-  *buffer = (vxm_gl_buffer){0};
 }
 
 vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *data, size_t bytes,

@@ -308,6 +308,10 @@ vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_
                          const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
   slicing s = {.engine = engine, .tile = tile, .job = job, .passes = passes};
   size_t bytes = tile->words * sizeof(uint64_t);
+  if (!engine->can_pull)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
+                    "the vertex shaders of %s read no buffers; use --gl-method columns",
+                    engine->base.info.renderer);
   if (job->placed->wide)
     return vxm_fail(error, VXM_ERROR_RANGE,
                     "a vertex lies too far outside the grid for slices; use --gl-method columns");

@@ -20,7 +20,7 @@ static surface_job job_of(const vxm_opengl *engine, const vxm_surface *surface, 
   surface_job job = {.bits = surface->lattice.bits,
                      .thin = kind == VXM_SURFACE_THIN,
                      .facet_count = (uint32_t)surface->triangle_count,
-                     .few_columns = engine->can_pull ? FEW_COLUMNS : UINT32_MAX};
+                     .few_columns = engine->can_pull_late ? FEW_COLUMNS : UINT32_MAX};
   job.last[layout->fast] = (int32_t)tile->window->fast_dim;
   job.last[layout->middle] = (int32_t)tile->window->middle_dim;
   job.first[layout->slow] = (int32_t)tile->begin;

@@ -31,7 +31,8 @@ static bool is_software(const char *renderer) {
 static vxm_status read_limits(vxm_opengl *engine, vxm_error *error) {
   vxm_engine_info *info = &engine->base.info;
   const vxm_gl *gl = &engine->context.gl;
-  GLint major = 0, minor = 0, viewport[2] = {0, 0}, side[2] = {0, 0}, layers = 0, bits = 0, blocks = 0;
+  GLint major = 0, minor = 0, viewport[2] = {0, 0}, side[2] = {0, 0}, layers = 0, bits = 0, blocks = 0,
+        late = 0;
   copy_string(info->renderer, sizeof info->renderer, gl->GetString(GL_RENDERER));
   copy_string(info->version, sizeof info->version, gl->GetString(GL_VERSION));
   info->hardware = !is_software(info->renderer);
@@ -53,7 +54,9 @@ static vxm_status read_limits(vxm_opengl *engine, vxm_error *error) {
   info->layers = layers;
   info->subpixel_bits = bits;
   info->int64 = has_extension(gl, "GL_ARB_gpu_shader_int64");
+  gl->GetIntegerv(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, &late);
   engine->can_pull = blocks >= 5;
+  engine->can_pull_late = blocks >= 1 && late >= 2;
   return vxm_gl_check(gl, "opengl: asking for limits", error);
 }
 

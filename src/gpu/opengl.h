@@ -91,7 +91,8 @@ typedef struct vxm_opengl {
   uint64_t surface_serial;
   uint32_t (*far_surface)[3]; /**< corners of triangles of the surface beyond the numbers of the shaders */
   size_t far_surface_count, far_surface_capacity;
-  bool can_pull; /**< vertex shaders may read buffers; else all facets are left to compute shaders */
+  /** Vertex and geometry shaders may read buffers; else all facets are left to compute shaders. */
+  bool can_pull, can_pull_late;
 } vxm_opengl;
 
 static inline vxm_opengl *vxm_opengl_of(vxm_engine *engine) {

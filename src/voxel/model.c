@@ -133,6 +133,11 @@ vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, cons
   /* A slab for each voter and thread, some slices for what is carried on, and the bins themselves. */
   vxm_demand demand = {points + surface + (5 * threads + 4) * slab + (UINT64_C(1) << 20),
                        vxm_model_windows_held(model)};
+  if (model->run.engine && model->run.engine->ops) { /* its buffers, and points and facets in them */
+    enum { BUFFERS = 4, BUFFERS_OF_VOTES = 11, BYTES_PER_FACET = 32 };
+    demand.windows += polled ? BUFFERS_OF_VOTES : BUFFERS;
+    demand.fixed += facets->facet_count * BYTES_PER_FACET + points;
+  }
   /* Chunks of records are half full at worst. */
   double bound = 2 * sizeof(uint64_t) * vxm_crossings_bound(facets, space, NULL) * voters;
   double round = 2 * sizeof(uint64_t) * vxm_crossings_round(model->context);

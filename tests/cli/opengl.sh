@@ -43,6 +43,13 @@ run 'voxmend voxelize in/rocket.off -o b.npy -r 64 -q --engine opengl --gl-metho
 run 'voxmend voxelize in/rocket.off -o c.npy -r 64 -q --engine opengl --gl-method slices --gl-displace 2,8'
 run 'cmp a.npy b.npy'
 run 'cmp -s a.npy c.npy'
+say "# the bench compares"
+run 'voxmend bench in/rocket.off -r 24 --phases solid_vote,surface_thin --engine cpu,opengl --time 0 --threads 1 --json |
+  sed -n -E "s/^ *\"(phase|engine|voxels)\": //p" | paste -d " " - - -'
+run 'voxmend bench in/rocket.off -r 8,16 --phases solid_x --engine cpu,opengl --time 0 --threads 1 |
+  grep -A 2 "^opengl" | sed -E "s/ [0-9.]+\.[0-9]+/ N/g; s/ +/ /g"'
+run 'voxmend bench in/rocket.off -r 8 --phases solid_x --engine cpu,opengl --time 0 --threads 1 -q --plot p.svg && grep -c "<polyline" p.svg'
+
 say "# colours"
 cat >stripes.frag <<'GLSL'
 vec3 color(vec3 position, vec3 unit, uint part) {
