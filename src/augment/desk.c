@@ -4,6 +4,7 @@
 #include "base/threads.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { SLICE_POINTS = 8192 };
 
@@ -44,23 +45,39 @@ typedef struct move_job {
   size_t count, slices;
 } move_job;
 
+/** Adds the entries of the noise to points. */
+static void displace(const move_job *job, size_t begin, size_t end) {
+  double(*to)[3] = job->to;
+  const uint32_t *entries = job->entry, offset = job->offset, size = job->size;
+  const float(*noise)[4] = job->noise;
+  for (size_t i = begin; i < end; i++) {
+    uint32_t entry = entries[i] + offset; /* both are below 2^31 */
+    const float *v = noise[entry < size ? entry : entry - size];
+    for (int a = 0; a < 3; a++)
+      to[i][a] += (double)v[a];
+  }
+}
+
 static void move_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   const move_job *job = payload;
-  const double *m = job->matrix;
-  size_t end = vxm_slice_begin(job->count, job->slices, slice + 1);
-  for (size_t i = vxm_slice_begin(job->count, job->slices, slice); i < end; i++) {
-    const double x = job->from[i][0], y = job->from[i][1], z = job->from[i][2];
-    double at[3] = {m[0] * x + m[1] * y + m[2] * z + m[3], m[4] * x + m[5] * y + m[6] * z + m[7],
-                    m[8] * x + m[9] * y + m[10] * z + m[11]};
-    if (job->entry) {
-      uint32_t entry = job->entry[i] + job->offset; /* both are below 2^31 */
-      const float *v = job->noise[entry < job->size ? entry : entry - job->size];
-      for (int a = 0; a < 3; a++)
-        at[a] += (double)v[a];
+  double(*to)[3] = job->to;
+  const double(*from)[3] = job->from;
+  double m[12]; /* a copy that no store can change */
+  memcpy(m, job->matrix, sizeof m);
+  size_t begin = vxm_slice_begin(job->count, job->slices, slice),
+         end = vxm_slice_begin(job->count, job->slices, slice + 1);
+  enum { BLOCK = 256 /**< points that stay in the first-level cache */ };
+  for (; begin < end; begin += BLOCK) {
+    size_t last = end - begin < BLOCK ? end : begin + BLOCK;
+    for (size_t i = begin; i < last; i++) {
+      const double x = from[i][0], y = from[i][1], z = from[i][2];
+      to[i][0] = m[0] * x + m[1] * y + m[2] * z + m[3];
+      to[i][1] = m[4] * x + m[5] * y + m[6] * z + m[7];
+      to[i][2] = m[8] * x + m[9] * y + m[10] * z + m[11];
     }
-    for (int a = 0; a < 3; a++)
-      job->to[i][a] = at[a];
+    if (job->entry)
+      displace(job, begin, last);
   }
 }
 
