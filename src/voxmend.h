@@ -291,7 +291,7 @@ typedef struct vxm_repair_options {
   int64_t fill_holes; /**< fill holes with at most so many edges; 0 = none, and from VXM_LEVEL_CLOSED on all;
                          negative = all */
   vxm_fill fill;
-  bool unite;         /**< unite parts that cut through each other, as VXM_LEVEL_SOLID does */
+  bool unite;         /**< unite closed parts that cut through each other, as VXM_LEVEL_SOLID does */
   double wrap_alpha;  /**< put a closed surface around everything instead: the size of the smallest hole that
                          it goes  into, as a fraction of the diagonal of the bounds; 0 = do not */
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
@@ -302,12 +302,14 @@ typedef struct vxm_repair_options {
   int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
   double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
                          The component with the largest area always stays */
+  bool intersections; /**< count self-intersections, before and after, in the report and in the account of
+                         parts; needs the module for CGAL */
 } vxm_repair_options;
 
 #define VXM_REPAIR_OPTIONS_INIT                                                                           \
   {                                                                                                       \
     1, VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_FILL_FAN, false, 0.0, 0.0, false, false, \
-        0.0, 0, 0.0                                                                                       \
+        0.0, 0, 0.0, false                                                                                \
   }
 
 #define VXM_REPAIR_PASSES_MAX 24
@@ -321,8 +323,15 @@ typedef struct vxm_repair_report {
   int64_t nonorientable_patches; /**< faces joined by edges that cannot all be turned consistently */
   int64_t open_parts;     /**< components whose holes were left open: sheets that their closing would cover */
   int64_t unfilled_holes; /**< that were to be filled and could not be */
-  int64_t ununited_parts; /**< that were to be united and could not be, as they cut through themselves */
-  double moved; /**< largest distance that a vertex was moved, model units; not by a wrap or union */
+  int64_t ununited_parts; /**< that were to be united and still cut through themselves or others: open ones,
+                             which have no inside, and those where the union failed */
+  int64_t self_intersections_before, self_intersections_after; /**< pairs of faces, counted up to 4194304;
+                                                                  -1 = not looked for */
+  int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
+                                positions are too coarse for the faces about them */
+  int64_t opened_parts;      /**< closed before, open after; with options.part_changes, else 0 */
+  double moved;              /**< no vertex was moved farther, model units; not by a wrap or union. With
+                                options.part_changes, else 0 */
   vxm_census before, after;
 } vxm_repair_report;
 
@@ -346,9 +355,11 @@ VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, co
 /** A part of a mesh, at one time. Edges and holes are taken after welding. */
 typedef struct vxm_part_state {
   int64_t faces, boundary_edges, nonmanifold_edges, inconsistent_edges;
-  int64_t holes;       /**< closed walks along edges with an odd number of faces */
-  bool closed;         /**< it has faces, and every edge has an even number of them */
-  double area, volume; /**< as in vxm_census */
+  int64_t holes;              /**< closed walks along edges with an odd number of faces */
+  int64_t self_intersections; /**< pairs of its faces, or of one of them and another part's, that cut through
+                                 each other; -1 = not looked for (vxm_repair_options.intersections) */
+  bool closed;                /**< it has faces, and every edge has an even number of them */
+  double area, volume;        /**< as in vxm_census */
   double bounds[6];
 } vxm_part_state;
 
@@ -356,8 +367,9 @@ typedef struct vxm_part_state {
 typedef struct vxm_part_change {
   vxm_part_state before, after; /**< after: of all faces that come from this part; none after a wrap */
   int64_t flipped;              /**< faces that were turned */
-  double moved;                 /**< largest distance that one of its vertices was moved, model units */
+  double moved;                 /**< none of its vertices was moved farther, model units */
   uint32_t tag;                 /**< of its first face; UINT32_MAX if there are no tags */
+  bool ununited;                /**< it counts among vxm_repair_report.ununited_parts */
 } vxm_part_change;
 
 /** Number of connected components (after welding) of the mesh that was repaired; 0 without
@@ -377,7 +389,9 @@ typedef struct vxm_verification {
   struct {
     const char *what; /**< fixed name such as "boundary_edges" or a pass that would still change something */
     int64_t count;
-    int64_t element; /**< the first one: a vertex, or for faces and edges a face; -1 = none to tell */
+    int64_t element; /**< the first one: a vertex, or for faces and edges a face, with its number in the mesh
+                        that is verified, which is that of the file; -1 = none to tell */
+    bool placed;     /**< whether `at` is known */
     double at[3];    /**< where that is, model units */
   } remains[VXM_REMAINS_MAX];
 } vxm_verification;
@@ -441,6 +455,9 @@ VXM_API vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int
 VXM_API void vxm_defects_destroy(vxm_defects *defects);
 VXM_API int64_t vxm_defects_count(const vxm_defects *defects);
 VXM_API const vxm_defect *vxm_defects_items(const vxm_defects *defects);
+/** How many of a kind there are, listed or not; self-intersections are counted up to 4194304, -1 = not looked
+ * for. */
+VXM_API int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind);
 /** Fixed name of a kind, such as "boundary_edge". */
 VXM_API const char *vxm_defect_name(vxm_defect_kind kind);
 /**
@@ -484,6 +501,8 @@ VXM_API int64_t vxm_grid_count(const vxm_grid *grid);
 VXM_API uint64_t vxm_grid_hash(const vxm_grid *grid);
 /** One byte, 0 or 1, per voxel into dims[0]*dims[1]*dims[2] bytes, as [x][y][z] in C order (z fastest). */
 VXM_API void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes);
+/** Sets all voxels from such bytes: those that are not 0. */
+VXM_API void vxm_grid_pack(vxm_grid *grid, const uint8_t *bytes);
 /**
  * How sure each voxel is, 0 (a guess) to 255 (proven), dims[0]*dims[1]*dims[2] bytes with x fastest; NULL
  * unless the grid was made with vxm_voxelize_options.confidence. A voxel decided by closed parts alone has
@@ -804,7 +823,7 @@ VXM_API vxm_status vxm_model_voxelize(vxm_grid *grid, vxm_voxelize_report *repor
 
 /** What voxelizing a model into a file takes. */
 typedef struct vxm_estimate {
-  uint64_t grid_bytes;   /**< one bit per voxel */
+  uint64_t grid_bytes;   /**< one bit per voxel; of a field, its values */
   uint64_t memory_bytes; /**< held at most, beyond what the context holds already */
   int64_t windows;       /**< ranges of slices that are made and written one after another; 1 = all at once */
 } vxm_estimate;
@@ -865,6 +884,12 @@ VXM_API vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_mod
                                             const vxm_space *space, const char *path,
                                             const vxm_coverage_options *options, vxm_error *error);
 
+/** Estimates vxm_model_write_coverage, as vxm_model_estimate does; what a .vdb holds until it is written
+ * follows the surface, and is not counted. */
+VXM_API vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model,
+                                               const vxm_space *space, const char *path,
+                                               const vxm_coverage_options *options, vxm_error *error);
+
 typedef struct vxm_distance_options {
   uint32_t version;   /**< 1 */
   bool is_unsigned;   /**< false = negative where the centre is inside the solid */
@@ -882,10 +907,11 @@ typedef struct vxm_distance_report {
 } vxm_distance_report;
 
 /**
- * Computes the distance from the centre of each voxel to the faces of the mesh, in model units: exact within
- * the band, to some 1e-6 voxel and the rounding of a 32-bit float; beyond it, plus or minus the width of the
- * band, which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With
- * a band, time follows surface times band, beside that of the solid.
+ * Computes the distance from the centre of each voxel to the faces of the mesh, in model units. Within the
+ * band it is exact: off by some 1e-14 of the distance and the longest edges, and then rounded to the nearest
+ * 32-bit float (which holds 1e-5 voxel up to 168 voxels). Beyond, it is plus or minus the width of the band,
+ * which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With a
+ * band, time follows surface times band, beside that of the solid.
  *
  * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
  * @param report  may be NULL
@@ -903,6 +929,12 @@ VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report
 VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
+
+/** Estimates vxm_model_write_distance, as vxm_model_estimate does; what a .vdb holds until it is written
+ * follows the surface, and is not counted. */
+VXM_API vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_model *model,
+                                               const vxm_space *space, const char *path,
+                                               const vxm_distance_options *options, vxm_error *error);
 
 /* ---- Labels: which part, group or material a voxel belongs to ---- */
 
@@ -968,9 +1000,10 @@ typedef enum vxm_color_by {
 typedef struct vxm_color_options {
   uint32_t version; /**< 1 */
   vxm_color_by by;
-  const char *source; /**< with VXM_COLOR_GLSL: defines vec3 color(vec3 position, vec3 unit, uint part), of the
-                         centre in model units, the same from the grid's corner on with its longest side as 1,
-                         and the number of the component, from 1 on; may call float noise(vec3), -1 to 1 */
+  const char
+      *source; /**< with VXM_COLOR_GLSL: defines vec3 color(vec3 position, vec3 unit, uint part), of the
+                  centre in model units, the same from the grid's corner on with its longest side as 1,
+                  and the number of the component, from 1 on; may call float noise(vec3), -1 to 1 */
   const char *format; /**< of a file: "npy", "ply" or "vox"; NULL = by extension */
 } vxm_color_options;
 
@@ -995,8 +1028,8 @@ VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report
 /**
  * As vxm_model_colors, into a file: .npy, uint8 [x][y][z][4] (with its .json beside it); .ply, the faces
  * between set and empty voxels with coloured corners; .vox of MagicaVoxel, where colours are
- * told apart by 5 bits each and reduced to at most 255, and every 256 voxels along an axis begin another model. @return as vxm_model_colors and
- * vxm_grid_write
+ * told apart by 5 bits each and reduced to at most 255, and every 256 voxels along an axis begin another
+ * model. @return as vxm_model_colors and vxm_grid_write
  */
 VXM_API vxm_status vxm_model_write_colors(vxm_voxelize_report *report, vxm_model *model,
                                           const vxm_space *space, const char *path,
@@ -1014,6 +1047,133 @@ VXM_API int64_t vxm_model_label_voxels(const vxm_model *model, int64_t label);
 /** Warnings from the last grid or file made of the model, one line each. */
 VXM_API int64_t vxm_model_warning_count(const vxm_model *model);
 VXM_API const char *vxm_model_warning(const vxm_model *model, int64_t index);
+
+/* ---- Variants: augmented voxel grids for training ---- */
+
+/** How variants are rotated. */
+typedef enum vxm_rotation {
+  VXM_ROTATION_NONE = 0,
+  VXM_ROTATION_ANY,  /**< uniform over all rotations (Marsaglia 1972) */
+  VXM_ROTATION_AXIS, /**< about `axis`, uniform over all angles */
+  VXM_ROTATION_LIST  /**< variant `index` has rotation `index` modulo `rotation_count` */
+} vxm_rotation;
+
+/** How vertices are displaced. */
+typedef enum vxm_displacement {
+  VXM_DISPLACEMENT_UNIFORM = 0, /**< each coordinate uniform in -displace to displace */
+  VXM_DISPLACEMENT_NORMAL /**< each nearly normal with deviation `displace`, cut off at three times that */
+} vxm_displacement;
+
+/** What a voxel is in memory. */
+typedef enum vxm_voxels {
+  VXM_VOXELS_PACKED = 0, /**< a bit; each row along z begins with a byte of its own: numpy.unpackbits(...,
+                            count=D, bitorder="little") */
+  VXM_VOXELS_UINT8,      /**< a byte, 0 or 1 */
+  VXM_VOXELS_FLOAT32     /**< a float, 0 or 1 */
+} vxm_voxels;
+
+/**
+ * What is drawn at random for each variant. All of it starts from the same box: the model is scaled along its
+ * own axes, mirrored, rotated, and fitted into the grid so that nothing can lie outside of it; then its
+ * vertices are displaced, and it is moved.
+ */
+typedef struct vxm_sampler_options {
+  uint32_t version;   /**< 1 */
+  int64_t resolution; /**< voxels along each axis; 0 = 64 */
+  int64_t pad;        /**< voxels kept free on each side of the model before it is moved */
+  uint64_t seed;
+  vxm_rotation rotation;
+  double axis[3]; /**< with VXM_ROTATION_AXIS; all 0 = z */
+  const double
+      *rotations; /**< with VXM_ROTATION_LIST: rotation_count x 3 x 3, row after row; they are copied */
+  int64_t rotation_count;
+  double scale; /**< each axis is scaled by a factor of its own, uniform in 1 - scale to 1 + scale; below 1 */
+  vxm_displacement displacement;
+  double displace;  /**< as a fraction of the width of the grid; 0 = vertices stay */
+  uint32_t noise;   /**< displacements in the circular buffer that all variants read, each from another place;
+                       0 = 65536 */
+  unsigned mirror;  /**< axes of the model, or-ed 1 (x), 2 (y) and 4 (z), along each of which half of the
+                       variants  are mirrored */
+  double translate; /**< moved along each axis by up to this part, 0 to 1, of the room on either side */
+  bool fill;        /**< the longest side fills the grid rather than the diagonal; without rotation only */
+  vxm_voxelize_options voxelize; /**< how; not its space, nor its confidence */
+} vxm_sampler_options;
+
+#define VXM_SAMPLER_OPTIONS_INIT                                                                             \
+  {                                                                                                          \
+    1, 0, 0, 0, VXM_ROTATION_NONE, {0, 0, 0}, NULL, 0, 0.0, VXM_DISPLACEMENT_UNIFORM, 0.0, 0, 0, 0.0, false, \
+        VXM_VOXELIZE_OPTIONS_INIT                                                                            \
+  }
+
+/** Names a variant. Its voxels follow from this, the options and the mesh: on any machine, in any order. */
+typedef struct vxm_variant {
+  uint32_t model, epoch, index;
+} vxm_variant;
+
+/** How a variant lies in its grid, before its vertices are displaced. */
+typedef struct vxm_pose {
+  double transform[12]; /**< takes (x, y, z, 1) of the mesh to voxels: voxel (i,j,k) is i to i + 1, ... */
+  double rotation[9];   /**< row after row */
+  double scale[3];      /**< voxels per model unit along the model's axes; negative where it is mirrored */
+  double shift[3];      /**< of the middle of its box from the middle of the grid, voxels */
+} vxm_pose;
+
+/**
+ * Makes variants of meshes: Ogayar et al.'s direct connection, with an implicit dataset. Meshes are prepared
+ * once; after the first few variants none takes memory, unless a mesh is open so that voters disagree, or
+ * surfaces of long faces are asked for. One sampler may be used by one thread at a time, and works with all
+ * threads of its context.
+ */
+typedef struct vxm_sampler vxm_sampler;
+
+/**
+ * @param context NULL = a new one
+ * @param options NULL = defaults: no augmentation
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, also if pad and displacement leave no room for a model; VXM_ERROR_RANGE
+ *         beyond 1024 voxels along an axis; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_sampler_create(vxm_sampler **out, vxm_context *context,
+                                      const vxm_sampler_options *options, vxm_error *error);
+VXM_API void vxm_sampler_destroy(vxm_sampler *sampler);
+
+/**
+ * Puts a mesh in as model number `model`, in place of the one that had the number.
+ *
+ * @param mesh as for vxm_model_create; must outlive its use here. NULL takes the model out
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners, or all vertices
+ *         lie in one place; VXM_ERROR_RANGE for vertices that are not finite; VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. After a failure there is no model of this number
+ */
+VXM_API vxm_status vxm_sampler_put(vxm_sampler *sampler, uint32_t model, const vxm_mesh *mesh,
+                                   vxm_error *error);
+
+/** The space of all variants: a cube of side 1 at the origin. */
+VXM_API vxm_space vxm_sampler_space(const vxm_sampler *sampler);
+/** Bytes of one variant in memory; 0 if `voxels` is unknown. */
+VXM_API size_t vxm_sampler_bytes(const vxm_sampler *sampler, vxm_voxels voxels);
+
+/** Tells how a variant lies. @return VXM_OK, VXM_ERROR_ARGUMENT if there is no such model */
+VXM_API vxm_status vxm_sampler_pose(vxm_pose *out, const vxm_sampler *sampler, const vxm_variant *variant,
+                                    vxm_error *error);
+
+/**
+ * Makes one variant in a grid: all its bits are replaced.
+ *
+ * @param grid of the dimensions of vxm_sampler_space
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, also if there is no such model; VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. After a failure the content of the grid is unspecified
+ */
+VXM_API vxm_status vxm_sampler_grid(vxm_grid *grid, vxm_sampler *sampler, const vxm_variant *variant,
+                                    vxm_error *error);
+
+/**
+ * Makes many variants, of one model or of several, one after another in memory: each as [x][y][z] in C order.
+ *
+ * @param out  room for count * vxm_sampler_bytes bytes, aligned as floats are
+ * @return as vxm_sampler_grid. After a failure the content of `out` is unspecified
+ */
+VXM_API vxm_status vxm_sampler_batch(void *out, vxm_sampler *sampler, const vxm_variant *variants,
+                                     size_t count, vxm_voxels voxels, vxm_error *error);
 
 /* ---- Sparse sets of voxels: memory follows the surface ---- */
 

@@ -69,6 +69,18 @@ vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *mode
   return status;
 }
 
+vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
+                                       const char *path, const vxm_coverage_options *options,
+                                       vxm_error *error) {
+  if (out)
+    *out = (vxm_estimate){0};
+  if (!out || !model || !space || !path)
+    return fail_null("coverage", error);
+  vxm_coverage_options chosen;
+  vxm_status status = check_coverage(&chosen, space, options, error);
+  return status == VXM_OK ? vxm_field_estimate_coverage(out, model, space, path, &chosen, error) : status;
+}
+
 /* ---- Distance ---- */
 
 static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *model, const vxm_space *space,
@@ -113,4 +125,16 @@ vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *mode
   if (status != VXM_OK)
     *report = (vxm_distance_report){.exact = 0};
   return status;
+}
+
+vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
+                                       const char *path, const vxm_distance_options *options,
+                                       vxm_error *error) {
+  if (out)
+    *out = (vxm_estimate){0};
+  if (!out || !model || !space || !path)
+    return fail_null("distance", error);
+  vxm_distance_options chosen;
+  vxm_status status = check_distance(&chosen, model, space, options, error);
+  return status == VXM_OK ? vxm_field_estimate_distance(out, model, space, path, &chosen, error) : status;
 }

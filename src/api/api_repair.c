@@ -29,22 +29,16 @@ const vxm_part_change *vxm_mesh_part_changes(const vxm_mesh *repaired) {
   return repaired->part_changes;
 }
 
-static vxm_status check_versions(vxm_repair_options *repair, const vxm_repair_options *given,
-                                 vxm_mesh_write_options *write, const vxm_mesh_write_options *given_write,
-                                 vxm_error *error) {
-  *repair = (vxm_repair_options)VXM_REPAIR_OPTIONS_INIT;
+static vxm_status check_both(vxm_repair_options *repair, const vxm_repair_options *given,
+                             vxm_mesh_write_options *write, const vxm_mesh_write_options *given_write,
+                             vxm_error *error) {
   *write = (vxm_mesh_write_options)VXM_MESH_WRITE_OPTIONS_INIT;
-  if (given)
-    *repair = *given;
   if (given_write)
     *write = *given_write;
-  if (repair->version != 1 || write->version != 1)
+  if (write->version != 1)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "verify: options version %" PRIu32 " is unknown; use the initializer",
-                    repair->version != 1 ? repair->version : write->version);
-  if (repair->level < VXM_LEVEL_CLEAN || repair->level > VXM_LEVEL_SOLID)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "verify: level %d is unknown", (int)repair->level);
-  return VXM_OK;
+                    "verify: options version %" PRIu32 " is unknown; use the initializer", write->version);
+  return vxm_repair_check(repair, given, error);
 }
 
 vxm_status vxm_mesh_verify(vxm_verification *out, const vxm_mesh *mesh, const vxm_repair_options *options,
@@ -55,7 +49,7 @@ vxm_status vxm_mesh_verify(vxm_verification *out, const vxm_mesh *mesh, const vx
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "verify: an argument is NULL");
   vxm_repair_options repair;
   vxm_mesh_write_options write;
-  vxm_status status = check_versions(&repair, options, &write, NULL, error);
+  vxm_status status = check_both(&repair, options, &write, NULL, error);
   return status == VXM_OK ? vxm_verify(out, mesh, &repair, error) : status;
 }
 
@@ -68,7 +62,7 @@ vxm_status vxm_mesh_write_verified(vxm_verification *out, const vxm_mesh *mesh, 
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
   vxm_repair_options chosen;
   vxm_mesh_write_options chosen_write;
-  vxm_status status = check_versions(&chosen, repair, &chosen_write, write, error);
+  vxm_status status = check_both(&chosen, repair, &chosen_write, write, error);
   if (status != VXM_OK)
     return status;
   return vxm_write_verified(out, mesh, path, &chosen_write, &chosen, best_effort, error);
@@ -89,6 +83,10 @@ int64_t vxm_defects_count(const vxm_defects *defects) {
 
 const vxm_defect *vxm_defects_items(const vxm_defects *defects) {
   return defects->items;
+}
+
+int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind) {
+  return kind >= 0 && kind < VXM_DEFECT_KINDS ? defects->totals[kind] : 0;
 }
 
 const char *vxm_defect_name(vxm_defect_kind kind) {

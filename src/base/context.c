@@ -40,6 +40,7 @@ vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *opti
   if (!context)
     return vxm_fail(error, VXM_ERROR_MEMORY, "context: out of memory");
   atomic_init(&context->references, 1);
+  context->account = context;
   atomic_init(&context->used, 0);
   atomic_init(&context->peak, 0);
   context->limit = chosen.memory_limit ? (size_t)chosen.memory_limit : SIZE_MAX;
@@ -64,8 +65,17 @@ vxm_status vxm_context_acquire(vxm_context **out, vxm_context *context, vxm_erro
 void vxm_context_release(vxm_context *context) {
   if (!context || atomic_fetch_sub_explicit(&context->references, 1, memory_order_acq_rel) != 1)
     return;
+  if (context->account != context)
+    vxm_context_release(context->account);
   vxm_pool_destroy(&context->pool);
   free(context);
+}
+
+vxm_status vxm_context_child(vxm_context **out, vxm_context *parent, vxm_error *error) {
+  vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+  options.threads = 1;
+  vxm_status status = vxm_context_create(out, &options, error);
+  return status == VXM_OK ? vxm_context_acquire(&(*out)->account, parent->account, error) : status;
 }
 
 void vxm_context_destroy(vxm_context *context) {
@@ -77,7 +87,7 @@ int vxm_context_threads(const vxm_context *context) {
 }
 
 uint64_t vxm_context_peak_bytes(const vxm_context *context) {
-  return context ? atomic_load_explicit(&context->peak, memory_order_relaxed) : 0;
+  return context ? atomic_load_explicit(&context->account->peak, memory_order_relaxed) : 0;
 }
 
 /** A number of bytes in the largest unit that leaves at least one, rounded up. */
@@ -103,7 +113,8 @@ static vxm_status fail_limit(vxm_error *error, const char *what, uint64_t needed
 }
 
 /** Books `bytes`, or says why not. */
-static bool reserve(vxm_context *context, size_t bytes, vxm_error *error) {
+static bool reserve(const vxm_context *owner, size_t bytes, vxm_error *error) {
+  vxm_context *context = owner->account;
   size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
   do
     if (bytes > context->limit - (used < context->limit ? used : context->limit)) {
@@ -120,8 +131,8 @@ static bool reserve(vxm_context *context, size_t bytes, vxm_error *error) {
   return true;
 }
 
-static void unreserve(vxm_context *context, size_t bytes) {
-  atomic_fetch_sub_explicit(&context->used, bytes, memory_order_relaxed);
+static void unreserve(const vxm_context *context, size_t bytes) {
+  atomic_fetch_sub_explicit(&context->account->used, bytes, memory_order_relaxed);
 }
 
 /** Size of a block with its header and padding, or 0 if the product overflows. */
@@ -237,14 +248,16 @@ void vxm_free(vxm_context *context, void *block) {
   free(header.start);
 }
 
-size_t vxm_memory_left(const vxm_context *context) {
+size_t vxm_memory_left(const vxm_context *owner) {
+  const vxm_context *context = owner->account;
   if (context->limit == SIZE_MAX)
     return SIZE_MAX;
   size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
   return used < context->limit ? context->limit - used : 0;
 }
 
-vxm_status vxm_memory_check(const vxm_context *context, uint64_t bytes, const char *what, vxm_error *error) {
+vxm_status vxm_memory_check(const vxm_context *owner, uint64_t bytes, const char *what, vxm_error *error) {
+  const vxm_context *context = owner->account;
   if (bytes <= vxm_memory_left(context))
     return VXM_OK;
   size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);

@@ -12,6 +12,11 @@ extern "C" {
 /** NULL makes a new default context, otherwise adds a reference. Every object holds one. */
 vxm_status vxm_context_acquire(vxm_context **out, vxm_context *context, vxm_error *error);
 void vxm_context_release(vxm_context *context);
+/**
+ * A context of one thread and without progress, whose memory counts as that of its parent, to which it holds
+ * a reference: for a task that works alone while others like it run beside it.
+ */
+vxm_status vxm_context_child(vxm_context **out, vxm_context *parent, vxm_error *error);
 
 /**
  * Allocates count * size bytes, aligned to 64 bytes, counted against the limit.

@@ -34,6 +34,7 @@ void vxm_pool_destroy(vxm_pool *pool);
 
 struct vxm_context {
   atomic_uint references;
+  vxm_context *account; /**< where memory is counted: itself, or the context that it is a child of */
   atomic_size_t used, peak;
   size_t limit;
   int threads;

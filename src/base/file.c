@@ -56,7 +56,8 @@ static vxm_status take_in(vxm_input *out, int descriptor, vxm_error *error) {
     /* MAP_POPULATE maps the pages in one call rather than by one fault each. */
     void *mapping = mmap(NULL, out->size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
     if (mapping == MAP_FAILED)
-      status = read_stream(out, descriptor, error);
+      status = lseek(descriptor, 0, SEEK_SET) < 0 ? vxm_fail_errno(error, path, "cannot read")
+                                                  : read_stream(out, descriptor, error);
     else {
       out->mapping = mapping;
       out->data = mapping;
@@ -201,13 +202,27 @@ static void flush(vxm_output *output) {
   output->used = 0;
 }
 
+/** Opens a new file in the folder for temporary ones, without leaving it a name; -1 with errno set. */
+static int open_nameless(void) {
+  char path[PATH_MAX];
+  const char *folder = getenv("TMPDIR");
+  int length = snprintf(path, sizeof path, "%s/voxmend-XXXXXX", folder && *folder ? folder : "/tmp");
+  if (length < 0 || (size_t)length >= sizeof path) {
+    errno = ENAMETOOLONG;
+    return -1;
+  }
+  int descriptor = mkostemp(path, O_CLOEXEC);
+  if (descriptor >= 0)
+    unlink(path);
+  return descriptor;
+}
+
 vxm_status vxm_output_open_readable(vxm_output **out, vxm_context *context, const char *path,
                                     vxm_error *error) {
   vxm_status status = vxm_output_open(out, context, path, error);
   if (status != VXM_OK || (*out)->temporary)
     return status;
-  const char *folder = getenv("TMPDIR");
-  int waiting = open(folder && *folder ? folder : "/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  int waiting = open_nameless();
   if (waiting >= 0 && waiting <= STDERR_FILENO) { /* where standard output is closed its number is free */
     int higher = fcntl(waiting, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     close(waiting);

@@ -23,12 +23,15 @@ typedef struct bench_plan {
   int resolution_count, thread_count;
   bool chosen[BENCH_PHASES_MAX]; /**< by position in bench_phases */
   bool forced;                   /**< the phases were named: none is left out for being slow */
-  double time_ms;                /**< each is repeated for at least as long as this */
+  bool augment;                  /**< the phases that make variants, instead of the others */
+  double displace;
+  double time_ms; /**< each is repeated for at least as long as this */
 } bench_plan;
 
 /* ---- Phases (bench_phases.c) ---- */
 
 typedef struct bench_team bench_team;
+typedef struct bench_augment bench_augment;
 
 /** What the phases work on, for one number of threads. */
 typedef struct bench_stage {
@@ -43,8 +46,11 @@ typedef struct bench_stage {
   vxm_model *model;                       /**< of the present phase */
   bench_team *team;                       /**< of the present phase */
   void *values;                           /**< a number per voxel, of the present phase */
-  int64_t run;                            /**< number of the present run */
-  vxm_mesh *made_mesh;                    /**< what the run has made: dropped when the clock has stopped */
+  bench_augment *augment;                 /**< of the present phase */
+  int64_t variants;    /**< that each of its runs makes: times are for one; 0 = does not apply */
+  double displace;     /**< by how much they are displaced */
+  int64_t run;         /**< number of the present run */
+  vxm_mesh *made_mesh; /**< what the run has made: dropped when the clock has stopped */
   vxm_model *made_model;
   vxm_sparse *made_sparse;
 } bench_stage;
@@ -60,6 +66,7 @@ typedef struct bench_phase {
   const char *help;
   bool per_grid;                           /**< measured at each resolution, else once */
   bool by_engine;                          /**< measured with each engine, else with the first */
+  bool augments;                           /**< only with --augment, or if it is named */
   double most_ms;                          /**< left out where a run would take longer; 0 = never */
   vxm_status (*begin)(bench_stage *stage); /**< makes what a run needs, off the clock; NULL = nothing */
   vxm_status (*run)(bench_stage *stage);   /**< what is measured */
@@ -85,6 +92,18 @@ vxm_status bench_team_create(bench_team **out, cli_run *cli, uint64_t bytes, int
 /** Fills the block once. */
 void bench_team_fill(bench_team *team);
 void bench_team_destroy(bench_team *team);
+
+/* ---- Making variants for training (bench_augment.c) ---- */
+
+vxm_status bench_begin_standard(bench_stage *stage);
+vxm_status bench_run_standard(bench_stage *stage);
+vxm_status bench_begin_batch(bench_stage *stage);
+vxm_status bench_run_batch(bench_stage *stage);
+vxm_status bench_begin_direct(bench_stage *stage);
+vxm_status bench_run_direct(bench_stage *stage);
+/** The bytes that a variant takes in files. */
+void bench_tell_augment(bench_output *out, const bench_stage *stage);
+void bench_augment_end(bench_stage *stage);
 
 /* ---- Measuring (bench_measure.c) ---- */
 

@@ -63,7 +63,8 @@ static vxm_status repeat(bench_result *out, bench_stage *stage, const bench_phas
     vxm_status status = run_once(stage, phase, &times[count], NULL);
     if (status != VXM_OK)
       return status;
-    total += times[count++];
+    total += times[count];
+    times[count++] /= stage->variants > 0 ? (double)stage->variants : 1;
   }
   qsort(times, (size_t)count, sizeof times[0], compare);
   out->runs = count;

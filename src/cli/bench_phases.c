@@ -40,6 +40,7 @@ void bench_stage_drop(bench_stage *stage) {
 void bench_stage_end_phase(bench_stage *stage) {
   vxm_model_destroy(stage->model);
   bench_team_destroy(stage->team);
+  bench_augment_end(stage);
   free(stage->values);
   stage->values = NULL;
   stage->model = NULL;
@@ -235,26 +236,32 @@ static void tell_distance(bench_output *out, const bench_stage *stage) {
 enum { SLOW_MS = 2000 };
 
 const bench_phase bench_phases[] = {
-    {"memset", "fill memory of the grid's size: the least that writing it can take", true, false, 0,
+    {"memset", "fill memory of the grid's size: the least that writing it can take", true, false, false, 0,
      begin_memset, run_memset, tell_memset},
-    {"load", "read the file", false, false, 0, NULL, run_load, tell_load},
-    {"repair", "repair the mesh", false, false, 0, NULL, run_repair, NULL},
-    {"prepare", "make the model: find parts, cap holes", false, false, 0, NULL, run_prepare, NULL},
-    {"solid_x", "solid by parity along x", true, true, 0, begin_x, run_solid, tell_grid},
-    {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, true, 0, begin_default, run_solid,
+    {"load", "read the file", false, false, false, 0, NULL, run_load, tell_load},
+    {"repair", "repair the mesh", false, false, false, 0, NULL, run_repair, NULL},
+    {"prepare", "make the model: find parts, cap holes", false, false, false, 0, NULL, run_prepare, NULL},
+    {"solid_x", "solid by parity along x", true, true, false, 0, begin_x, run_solid, tell_grid},
+    {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, true, false, 0, begin_default, run_solid,
      tell_grid},
-    {"solid_majority", "solid by a majority of x, y and z", true, true, 0, begin_majority, run_solid,
+    {"solid_majority", "solid by a majority of x, y and z", true, true, false, 0, begin_majority, run_solid,
      tell_grid},
-    {"transform", "solid_vote of the model turned by a small angle", true, true, 0, begin_default,
+    {"transform", "solid_vote of the model turned by a small angle", true, true, false, 0, begin_default,
      run_transform, tell_grid},
-    {"surface_conservative", "every voxel that the surface touches", true, true, 0, begin_conservative,
+    {"surface_conservative", "every voxel that the surface touches", true, true, false, 0, begin_conservative,
      run_solid, tell_grid},
-    {"surface_thin", "the 6-separating surface", true, true, 0, begin_thin, run_solid, tell_grid},
-    {"sparse", "solid_vote as an octree", true, false, 0, begin_sparse, run_sparse, tell_sparse},
-    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, false, SLOW_MS,
+    {"surface_thin", "the 6-separating surface", true, true, false, 0, begin_thin, run_solid, tell_grid},
+    {"sparse", "solid_vote as an octree", true, false, false, 0, begin_sparse, run_sparse, tell_sparse},
+    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, false, false, SLOW_MS,
      begin_values, run_coverage, tell_coverage},
-    {"distance", "signed distance, within 3 voxels of the surface", true, false, SLOW_MS, begin_values,
+    {"distance", "signed distance, within 3 voxels of the surface", true, false, false, SLOW_MS, begin_values,
      run_distance, tell_distance},
-    {"winding", "solid by the winding number of every voxel", true, false, SLOW_MS, begin_winding, run_solid,
-     tell_grid},
-    {NULL, NULL, false, false, 0, NULL, NULL, NULL}};
+    {"winding", "solid by the winding number of every voxel", true, false, false, SLOW_MS, begin_winding,
+     run_solid, tell_grid},
+    {"augment_standard", "a variant by a process of its own, which reads the mesh; its file read back", true,
+     false, true, 0, bench_begin_standard, bench_run_standard, bench_tell_augment},
+    {"augment_batch", "a variant by a process that has the mesh; its file read back", true, false, true, 0,
+     bench_begin_batch, bench_run_batch, bench_tell_augment},
+    {"augment_direct", "a variant, as numbers in memory", true, false, true, 0, bench_begin_direct,
+     bench_run_direct, bench_tell_augment},
+    {NULL, NULL, false, false, false, 0, NULL, NULL, NULL}};

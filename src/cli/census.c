@@ -74,6 +74,12 @@ void cli_census_print(const cli_run *cli, const vxm_census *census) {
           census->closed ? "" : "  not meaningful: the mesh is not closed");
 }
 
+void cli_census_print_intersections(const cli_run *cli, int64_t count) {
+  if (count >= 0)
+    fprintf(cli->text, "  %-26s %12" PRId64 "%s\n", "self intersections", count,
+            count > 0 ? "  pairs of faces that cut through each other" : "");
+}
+
 void cli_census_print_both(const cli_run *cli, const vxm_census *before, const vxm_census *after) {
   char label[LABEL];
   fprintf(cli->text, "%-28s %12s %12s\n", "", "Original", "Final");

@@ -71,7 +71,7 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
-    cli_command_compare, cli_command_view, cli_command_bench, cli_command_engines;
+    cli_command_compare, cli_command_augment, cli_command_view, cli_command_bench, cli_command_engines;
 
 enum { CLI_OPTIONS_MAX = 48 };
 
@@ -105,6 +105,7 @@ struct cli_run {
   cli_file report_file; /**< open from cli_start to cli_finish */
   const char *made;     /**< output file that exists by now; removed if the run still fails */
   const char *made_format;
+  const char *located; /**< picture of defects that exists by now; removed in the same way */
   char phase[48];
   double drawn; /**< time at which progress was last drawn; 0 = none on the screen */
 };
@@ -200,6 +201,8 @@ bool cli_file_open(cli_file *file, const char *path);
 bool cli_file_commit(cli_file *file);
 /** Drops a file that was not committed; does nothing if none is open. */
 void cli_file_drop(cli_file *file);
+/** Whether two names, neither of which is "-", are of one file, or will be once it is written. */
+bool cli_same_file(const char *a, const char *b);
 /** Opens the file of --report, so that a wrong name fails before the work. */
 bool cli_report_open(cli_run *cli);
 /** Prints the report with --json, writes it with --report, and frees it. Returns an exit status. */
@@ -220,6 +223,8 @@ int cli_signal(void);
 
 /** A row for each count, with what it means where it is not zero. */
 void cli_census_print(const cli_run *cli, const vxm_census *census);
+/** A row for self-intersections; nothing if they were not looked for (-1). */
+void cli_census_print_intersections(const cli_run *cli, int64_t count);
 /** Both in one table, "Original" and "Final". */
 void cli_census_print_both(const cli_run *cli, const vxm_census *before, const vxm_census *after);
 /** Adds the census's keys to an object. */
@@ -252,12 +257,19 @@ typedef struct cli_defects {
   bool intersections; /**< self-intersections too */
 } cli_defects;
 
+typedef struct cli_found {
+  json_t *list;          /**< NULL = not wanted */
+  int64_t intersections; /**< pairs of faces; -1 = not looked for */
+} cli_found;
+
 /** The argument of --list: CLI_END or CLI_STOP. */
 int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value);
-/** CLI_STOP if --locate has a wrong name, or that of the output (NULL = none). */
-int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *output);
-/** Finds, lists (NULL if that is not wanted) and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */
-int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, const vxm_mesh *mesh);
+/** CLI_STOP if --locate has a wrong name, or that of the input, the report, or the output (NULL = none). */
+int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *input, const char *output);
+/** Prints the list that cli_defects_show has made; NULL = none. */
+void cli_defects_print(const cli_run *cli, const json_t *list);
+/** Finds, lists, counts and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */
+int cli_defects_show(cli_run *cli, cli_found *out, const cli_defects *wanted, const vxm_mesh *mesh);
 
 /* ---- field.c: coverage and distance, for voxelize; labels.c: labels ---- */
 
@@ -300,6 +312,9 @@ int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is
 /** Writes the file; a failure is in cli->error. */
 vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const char *path, const char *format);
+/** What that will take; zeros for labels. A failure is in cli->error. */
+vxm_status cli_field_estimate(cli_run *cli, const cli_field *field, vxm_estimate *out, const vxm_model *model,
+                              const vxm_space *space, const char *path, const char *format);
 /** Adds "coverage", "distance", "labels" or "color". */
 void cli_field_json(json_t *report, const cli_field *field);
 void cli_field_summarize(const cli_run *cli, const cli_field *field);

@@ -6,10 +6,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_LIST_THREADS = CLI_KEY_COMMAND, KEY_PHASES, KEY_ENGINE, KEY_TIME, KEY_PLOT };
+enum {
+  KEY_LIST_THREADS = CLI_KEY_COMMAND,
+  KEY_PHASES,
+  KEY_ENGINE,
+  KEY_AUGMENT,
+  KEY_DISPLACE,
+  KEY_TIME,
+  KEY_PLOT
+};
 
 static const cli_option known_options[] = {
-    {'r', "resolution", "LIST", "voxels along each axis, such as 64,256 [64,128,256,512,1024]"},
+    {'r', "resolution", "LIST",
+     "voxels along each axis, such as 64,256 [64,128,256,512,1024; with\n"
+     "--augment 32,64]"},
     {KEY_LIST_THREADS, "threads", "LIST",
      "numbers of threads, such as 1,2, each 1 to 256 [1 and one per processor]"},
     {KEY_PHASES, "phases", "LIST",
@@ -18,6 +28,9 @@ static const cli_option known_options[] = {
     {KEY_ENGINE, "engine", "LIST",
      "who makes the grids, such as cpu,opengl: as in 'voxmend voxelize'; others\n"
      "are compared with the first [cpu]"},
+    {KEY_AUGMENT, "augment", NULL, "measure making variants for training instead: the augment_ phases below"},
+    {KEY_DISPLACE, "displace", "F",
+     "by how much the vertices of variants are displaced, as in augment [0.01]"},
     {KEY_TIME, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]"},
     {KEY_PLOT, "plot", "FILE.svg", "draw the times over the resolution"},
     CLI_OPTION_DEFLECTION,
@@ -107,6 +120,13 @@ static int read_option(cli_run *cli, bench_plan *plan, int key, const char *valu
     return read_phases(cli, plan, value);
   case KEY_ENGINE:
     return read_engines(cli, plan, value);
+  case KEY_AUGMENT:
+    plan->augment = true;
+    return CLI_END;
+  case KEY_DISPLACE:
+    if (!cli_read_number(&plan->displace, value) || plan->displace < 0 || plan->displace > 0.4)
+      return cli_usage(cli, "--displace '%s' is not a number from 0 to 0.4", value);
+    return CLI_END;
   case KEY_TIME:
     if (!cli_read_integer(&time, value, 0, 3600000))
       return cli_usage(cli, "--time '%s' is not a number of milliseconds from 0 to 3600000", value);
@@ -126,6 +146,15 @@ static bool has_grids(const bench_plan *plan) {
   return false;
 }
 
+/** Without -r: networks take small grids. */
+static void choose_resolutions(bench_plan *plan) {
+  static const int64_t usual[] = {64, 128, 256, 512, 1024, 32, 64};
+  if (plan->resolution_count > 0)
+    return;
+  plan->resolution_count = plan->augment ? 2 : 5;
+  memcpy(plan->resolutions, usual + (plan->augment ? 5 : 0), (size_t)plan->resolution_count * sizeof *usual);
+}
+
 static int read_arguments(cli_run *cli, bench_plan *plan) {
   const char *value;
   int key;
@@ -137,6 +166,11 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   plan->path = cli->arguments[0];
+  if (plan->augment && plan->forced)
+    return cli_usage(cli, "--augment and --phases both say what to measure");
+  choose_resolutions(plan);
+  for (int i = 0; bench_phases[i].name && !plan->forced; i++)
+    plan->chosen[i] = bench_phases[i].augments == plan->augment;
   if (strcmp(plan->path, "-") == 0)
     return cli_usage(cli, "the mesh is read many times, which standard input cannot be; name a file");
   if (plan->plot && !cli_is_extension(plan->plot, "svg"))
@@ -233,7 +267,8 @@ static int measure_threads(bench_work *work, int threads) {
   cli_run *cli = work->cli;
   if (next_context(cli, threads) != CLI_DONE)
     return CLI_FAILED;
-  bench_stage stage = {.cli = cli, .path = work->plan.path, .threads = threads};
+  bench_stage stage = {
+      .cli = cli, .path = work->plan.path, .threads = threads, .displace = work->plan.displace};
   int status = measure_stage(work, &stage);
   bench_stage_close(&stage);
   uint64_t peak = vxm_context_peak_bytes(cli->context);
@@ -306,11 +341,7 @@ static int bench(bench_work *work) {
 
 static int run(cli_run *cli) {
   bench_work work = {.cli = cli,
-                     .plan = {.engines = {"cpu"},
-                              .engine_count = 1,
-                              .resolutions = {64, 128, 256, 512, 1024},
-                              .resolution_count = 5,
-                              .time_ms = 200}};
+                     .plan = {.engines = {"cpu"}, .engine_count = 1, .displace = 0.01, .time_ms = 200}};
   if (read_arguments(cli, &work.plan) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
@@ -338,6 +369,7 @@ const cli_command cli_command_bench = {
              "Examples:\n"
              "  voxmend bench bunny.ply\n"
              "  voxmend bench chair.off -r 32,64,256 --threads 1 --phases memset,solid_vote\n"
+             "  voxmend bench bunny.ply --augment -r 32,64\n"
              "  voxmend bench bunny.ply --json --plot bunny.svg >bunny.json",
     .options = known_options,
     .print_choices = print_phases,

@@ -6,30 +6,33 @@ enum { KEY_LOCATE = CLI_KEY_COMMAND, KEY_LIST, KEY_INTERSECTIONS };
 
 static const cli_option known_options[] = {
     {KEY_LOCATE, "locate", "FILE.ply", "show what is wrong, in colour on the mesh; for one mesh"},
-    {KEY_LIST, "list", "N",
-     "list what is wrong in the report, up to N of each kind, with indices and\ncoordinates"},
+    {KEY_LIST, "list", "N", "list what is wrong, up to N of each kind, with indices and coordinates"},
     {KEY_INTERSECTIONS, "intersections", NULL,
-     "with --locate and --list: faces that cut through others too (CGAL)"},
+     "count faces that cut through others, and show them with --locate and\n--list (CGAL)"},
     CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
 static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mesh *mesh,
-                             const vxm_census *census, json_t *defects) {
+                             const vxm_census *census, const cli_found *found) {
   json_t *object = json_object();
   json_object_set_new(object, "file", cli_json_text(path));
   json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(mesh)));
   cli_census_json(object, census);
-  if (defects)
-    json_object_set_new(object, "defects", defects);
+  if (found->intersections >= 0)
+    json_object_set_new(object, "self_intersections", json_integer(found->intersections));
+  if (found->list)
+    json_object_set(object, "defects", found->list);
   json_object_set(object, "warnings", cli->warnings);
   return object;
 }
 
-static void describe(const cli_run *cli, const char *path, const vxm_mesh *mesh, const vxm_census *census) {
+static void describe(const cli_run *cli, const char *path, const vxm_mesh *mesh, const vxm_census *census,
+                     const cli_found *found) {
   fprintf(cli->text, "%s\n  %-26s %12s\n", cli_shown(path, "<stdin>"), "format", vxm_mesh_format(mesh));
   if (cli->verbose && vxm_mesh_tag_count(mesh) > 0)
     fprintf(cli->text, "  %-26s %12lld\n", "tags", (long long)vxm_mesh_tag_count(mesh));
   cli_census_print(cli, census);
+  cli_census_print_intersections(cli, found->intersections);
 }
 
 /** Adds the file's object to `reports` if it can be read. */
@@ -40,8 +43,8 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
   if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, path, mesh);
-  json_t *defects = NULL;
-  int status = cli_defects_show(cli, &defects, wanted, mesh);
+  cli_found found;
+  int status = cli_defects_show(cli, &found, wanted, mesh);
   if (status == CLI_DONE && vxm_mesh_census(&census, mesh, &cli->error) != VXM_OK)
     status = cli_fail(cli);
   if (status == CLI_DONE) {
@@ -49,10 +52,13 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
     if (cli_summary(cli)) {
       if (json_array_size(reports) > 0)
         fputc('\n', cli->text);
-      describe(cli, path, mesh, &census);
+      describe(cli, path, mesh, &census, &found);
     }
-    json_array_append_new(reports, describe_json(cli, path, mesh, &census, defects));
+    if (cli_summary(cli))
+      cli_defects_print(cli, found.list);
+    json_array_append_new(reports, describe_json(cli, path, mesh, &census, &found));
   }
+  json_decref(found.list);
   vxm_mesh_destroy(mesh);
   return status;
 }
@@ -74,9 +80,7 @@ static int read_arguments(cli_run *cli, cli_defects *wanted) {
     return cli_usage(cli, "a mesh is missing");
   if (wanted->locate && cli->argument_count > 1)
     return cli_usage(cli, "--locate is for one mesh, not %d", cli->argument_count);
-  if (wanted->intersections && !wanted->locate && !wanted->list)
-    return cli_usage(cli, "--intersections goes with --locate or --list");
-  return cli_defects_check(cli, wanted, NULL);
+  return cli_defects_check(cli, wanted, cli->arguments[0], NULL);
 }
 
 static int run(cli_run *cli) {

@@ -61,9 +61,11 @@ static const cli_option known_options[] = {
      "fail if the volume of a closed part, or the bounds of one, change by more\n"
      "than this fraction, such as 0.01"},
     {KEY_LOCATE, "locate", "FILE.ply", "show what was wrong, in colour on the mesh as it was read"},
-    {KEY_LIST, "list", "N", "list what was wrong in the report, up to N of each kind"},
+    {KEY_LIST, "list", "N", "list what was wrong, up to N of each kind"},
     {KEY_INTERSECTIONS, "intersections", NULL,
-     "with --locate and --list: faces that cut through others too (CGAL)"},
+     "count faces that cut through others, before and after, and show them with\n"
+     "--locate and --list (CGAL). With --union and --level solid they are\n"
+     "counted in any case"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
     CLI_OPTION_DEFLECTION,
@@ -182,13 +184,13 @@ static int check_conflicts(cli_run *cli, const request *given) {
   if (repair->keep_orientation && repair->level > VXM_LEVEL_CLEAN)
     return cli_usage(cli, "--level %s turns faces; leave out --keep-orientation",
                      repair_levels[repair->level]);
+  if (repair->wrap_alpha > 0 &&
+      (repair->fill_holes != 0 || given->fill || repair->unite || repair->max_change > 0))
+    return cli_usage(cli, "--wrap makes a new surface, without holes or parts to compare; leave out "
+                          "--fill-holes, --fill, --union and --max-change");
   if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
-  if (repair->wrap_alpha > 0 && (repair->fill_holes != 0 || repair->unite))
-    return cli_usage(cli, "--wrap makes a new surface; leave out --fill-holes and --union");
-  if (given->defects.intersections && !given->defects.list && !given->defects.locate)
-    return cli_usage(cli, "--intersections goes with --locate or --list");
-  return cli_defects_check(cli, &given->defects, given->output);
+  return cli_defects_check(cli, &given->defects, given->input, given->output);
 }
 
 /** CLI_DONE, or CLI_STOP with cli->status set. */
@@ -206,41 +208,63 @@ static int read_arguments(cli_run *cli, request *out) {
   out->write.format = cli_output_format(cli, out->output, out->format, cli_mesh_formats);
   if (!out->write.format)
     return CLI_STOP;
-  out->repair.part_changes = true;
+  out->repair.part_changes = cli_summary(cli) || cli->json || cli->report;
+  out->repair.intersections =
+      out->defects.intersections ||
+      (out->repair.part_changes && (out->repair.unite || out->repair.level == VXM_LEVEL_SOLID));
   out->repair.single_precision = strcmp(out->write.format, "stl") == 0;
   return CLI_DONE;
 }
 
 /* ---- Work ---- */
 
+static bool wants_report(const cli_run *cli) {
+  return cli->json || cli->report;
+}
+
 static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_mesh *raw = NULL;
   if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, given->input, raw);
-  int status = cli_defects_show(cli, &outcome->defects, &given->defects, raw);
+  cli_defects wanted = given->defects; /* the repair counts intersections itself */
+  wanted.intersections = wanted.intersections && (wanted.list || wanted.locate);
+  int status = cli_defects_show(cli, &outcome->found, &wanted, raw);
   if (status == CLI_DONE &&
       vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &given->repair, &cli->error) != VXM_OK)
     status = cli_fail(cli);
   vxm_mesh_destroy(raw);
   if (status == CLI_DONE && vxm_mesh_face_count(outcome->mesh) == 0)
     return cli_fail_text(cli, "%s: no face is left after repair", cli_shown(given->input, "<stdin>"));
+  if (status == CLI_DONE && outcome->repair.ununited_parts > 0)
+    repair_warn_ununited(cli, given->input, outcome);
   return status;
+}
+
+/** Says why nothing was written; the report and the picture of what was wrong are what there is to work with.
+ */
+static int refuse(cli_run *cli, const request *given, repair_outcome *outcome) {
+  cli_fail(cli);
+  if (!cli->quiet)
+    repair_say_remains(cli, stderr, outcome);
+  cli->located = NULL;
+  if (wants_report(cli))
+    cli_finish(cli, repair_report(cli, given->input, NULL, outcome));
+  return CLI_FAILED;
 }
 
 static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_status status = vxm_mesh_write_verified(&outcome->verification, outcome->mesh, given->output,
                                               &given->write, &given->repair, given->best_effort, &cli->error);
-  if (status == VXM_ERROR_UNREACHED) {
-    cli_fail(cli);
-    if (!cli->quiet)
-      repair_say_remains(cli, stderr, outcome);
-    return CLI_FAILED;
-  }
+  if (status == VXM_ERROR_UNREACHED)
+    return refuse(cli, given, outcome);
   if (status != VXM_OK)
     return cli_fail(cli);
   cli->made = given->output;
   cli->made_format = given->write.format;
+  if (outcome->repair.opened_parts > 0)
+    cli_warn(cli, "%s: %lld closed parts are open after the repair", given->output,
+             (long long)outcome->repair.opened_parts);
   if (!outcome->verification.reached)
     cli_warn(cli, "%s: the level %s is not reached; the report lists what remains", given->output,
              repair_levels[outcome->level]);
@@ -253,7 +277,7 @@ static int finish(cli_run *cli, const request *given, repair_outcome *outcome) {
   cli_progress_clear(cli);
   if (cli_summary(cli))
     repair_summarize(cli, outcome);
-  return cli_finish(cli, repair_report(cli, given->input, given->output, outcome));
+  return cli_finish(cli, wants_report(cli) ? repair_report(cli, given->input, given->output, outcome) : NULL);
 }
 
 static int run(cli_run *cli) {
@@ -264,7 +288,7 @@ static int run(cli_run *cli) {
     return CLI_FAILED;
   repair_outcome outcome = {.level = given.repair.level};
   int status = finish(cli, &given, &outcome);
-  json_decref(outcome.defects);
+  json_decref(outcome.found.list);
   vxm_mesh_destroy(outcome.mesh);
   return status;
 }
@@ -279,7 +303,7 @@ const cli_command cli_command_repair = {
         "consistently, outward where they enclose something; then goes as far as --level says. Repairing "
         "the\n"
         "result again changes nothing. Where the level is not reached, the exit status is 1, what remains\n"
-        "is listed, and nothing is written.\n\n"
+        "is listed, also in the report, and no mesh is written.\n\n"
         "Examples:\n"
         "  voxmend repair scan.obj -o scan.ply\n"
         "  voxmend repair part.stl -o part.off --weld 0.001\n"

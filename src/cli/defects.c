@@ -5,22 +5,24 @@
 #include <inttypes.h>
 #include <string.h>
 
-/** Of each kind in a picture; more would only cover each other. */
-enum { PAINTED_MOST = 1000000 };
-
 int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value) {
   if (!cli_read_integer(&defects->list, value, 1, 1000000))
     return cli_usage(cli, "--list '%s' is not a number from 1 to 1000000", value);
   return CLI_END;
 }
 
-int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *output) {
-  if (!defects->locate)
+int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *input, const char *output) {
+  const char *locate = defects->locate;
+  if (!locate)
     return CLI_END;
-  if (!cli_is_extension(defects->locate, "ply"))
-    return cli_usage(cli, "--locate '%s': the name must end in .ply", defects->locate);
-  if (output && strcmp(defects->locate, output) == 0)
+  if (!cli_is_extension(locate, "ply"))
+    return cli_usage(cli, "--locate '%s': the name must end in .ply", locate);
+  if (cli_same_file(locate, input))
+    return cli_usage(cli, "--locate would overwrite the mesh that is read");
+  if (output && cli_same_file(locate, output))
     return cli_usage(cli, "--locate and -o name the same file");
+  if (cli->report && cli_same_file(locate, cli->report))
+    return cli_usage(cli, "--locate and --report name the same file");
   return CLI_END;
 }
 
@@ -52,17 +54,56 @@ static json_t *list_json(const vxm_defects *found, int64_t most) {
   return list;
 }
 
-int cli_defects_show(cli_run *cli, json_t **list, const cli_defects *wanted, const vxm_mesh *mesh) {
+int cli_defects_show(cli_run *cli, cli_found *out, const cli_defects *wanted, const vxm_mesh *mesh) {
   vxm_defects *found = NULL;
-  *list = NULL;
-  if (!wanted->list && !wanted->locate)
+  *out = (cli_found){.intersections = -1};
+  if (!wanted->list && !wanted->locate && !wanted->intersections)
     return CLI_DONE;
-  int64_t most = wanted->locate ? PAINTED_MOST : wanted->list;
+  int64_t most = wanted->locate ? 0 : wanted->list ? wanted->list : 1;
   vxm_status status = vxm_mesh_defects(&found, mesh, most, wanted->intersections, &cli->error);
   if (status == VXM_OK && wanted->locate)
     status = vxm_defects_write(found, mesh, wanted->locate, &cli->error);
+  if (status == VXM_OK && wanted->locate)
+    cli->located = wanted->locate;
   if (status == VXM_OK && wanted->list)
-    *list = list_json(found, wanted->list);
+    out->list = list_json(found, wanted->list);
+  if (status == VXM_OK)
+    out->intersections = vxm_defects_total(found, VXM_DEFECT_SELF_INTERSECTION);
   vxm_defects_destroy(found);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+}
+
+static void print_places(const cli_run *cli, const json_t *places) {
+  size_t i;
+  json_t *place;
+  json_array_foreach(places, i, place) {
+    fputs(i > 0 ? "," : "  at", cli->text);
+    for (size_t axis = 0; axis < json_array_size(place); axis++) {
+      const json_t *value = json_array_get(place, axis);
+      if (json_is_number(value))
+        fprintf(cli->text, " %.6g", json_number_value(value));
+      else
+        fputs(" ?", cli->text);
+    }
+  }
+}
+
+void cli_defects_print(const cli_run *cli, const json_t *list) {
+  size_t i, e;
+  json_t *defect, *number;
+  if (!list)
+    return;
+  fprintf(cli->text, "\n%-20s %s\n", "Defect", json_array_size(list) > 0 ? "numbers and places" : "none");
+  json_array_foreach(list, i, defect) {
+    const json_t *vertices = json_object_get(defect, "vertices");
+    const json_t *numbers = vertices ? vertices : json_object_get(defect, "faces");
+    const char *plural = json_array_size(numbers) > 1 ? vertices ? "vertices" : "faces"
+                         : vertices                   ? "vertex"
+                                                      : "face";
+    fprintf(cli->text, "  %-18s %s", json_string_value(json_object_get(defect, "kind")), plural);
+    json_array_foreach(numbers, e, number)
+        fprintf(cli->text, " %" JSON_INTEGER_FORMAT, json_integer_value(number));
+    print_places(cli, json_object_get(defect, "at"));
+    fputc('\n', cli->text);
+  }
 }

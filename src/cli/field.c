@@ -83,8 +83,8 @@ int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is
     return CLI_END;
   if (is_sure)
     return cli_usage(cli, "--confidence is of a grid; leave it out with --%s", name);
-  if (is_tried)
-    return cli_usage(cli, "--dry-run tells of a grid; leave it out with --%s", name);
+  if (is_tried && field->labels)
+    return cli_usage(cli, "--dry-run tells nothing of labels; leave it out with --labels");
   if (field->distance && mode != VXM_MODE_SOLID)
     return cli_usage(cli, "--distance goes with --mode solid, which gives the sign");
   return CLI_END;
@@ -112,6 +112,17 @@ vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
     *report = field->distance_report.voxelize;
   }
   return status;
+}
+
+vxm_status cli_field_estimate(cli_run *cli, const cli_field *field, vxm_estimate *out, const vxm_model *model,
+                              const vxm_space *space, const char *path, const char *format) {
+  vxm_coverage_options coverage = field->coverage_options;
+  vxm_distance_options distance = field->distance_options;
+  coverage.format = distance.format = format;
+  if (field->coverage)
+    return vxm_model_estimate_coverage(out, model, space, path, &coverage, &cli->error);
+  return field->distance ? vxm_model_estimate_distance(out, model, space, path, &distance, &cli->error)
+                         : VXM_OK;
 }
 
 /* ---- Results ---- */

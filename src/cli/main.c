@@ -9,8 +9,9 @@
 #include <unistd.h>
 
 static const cli_command *const commands[] = {
-    &cli_command_info,    &cli_command_repair, &cli_command_voxelize, &cli_command_convert,
-    &cli_command_compare, &cli_command_view,   &cli_command_bench,    &cli_command_engines};
+    &cli_command_info,    &cli_command_repair,  &cli_command_voxelize,
+    &cli_command_convert, &cli_command_compare, &cli_command_augment,
+    &cli_command_view,    &cli_command_bench,   &cli_command_engines};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static void help(void) {
@@ -46,9 +47,16 @@ static int flush_output(cli_run *cli, int status) {
              : status;
 }
 
+static void remove_file(const char *path) {
+  struct stat info;
+  if (path && lstat(path, &info) == 0 && S_ISREG(info.st_mode))
+    unlink(path);
+}
+
 /** A failed run leaves no output file, not even one that was complete, nor the .json beside it. */
 static void remove_output(const cli_run *cli) {
   struct stat info;
+  remove_file(cli->located);
   if (!cli->made || lstat(cli->made, &info) != 0 || !S_ISREG(info.st_mode))
     return;
   unlink(cli->made);

@@ -185,6 +185,34 @@ void cli_file_drop(cli_file *file) {
   *file = (cli_file){0};
 }
 
+/** The folder that a file is in, with all links followed; NULL if there is none. To be freed. */
+static char *folder_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  char *folder = slash ? strndup(path, (size_t)(slash - path + 1)) : strdup(".");
+  char *real = folder ? realpath(folder, NULL) : NULL;
+  free(folder);
+  return real;
+}
+
+bool cli_same_file(const char *a, const char *b) {
+  struct stat first, second;
+  if (strcmp(a, "-") == 0 || strcmp(b, "-") == 0)
+    return false;
+  bool a_is_there = stat(a, &first) == 0, b_is_there = stat(b, &second) == 0;
+  if (a_is_there && b_is_there)
+    return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+  if (a_is_there || b_is_there)
+    return false;
+  const char *a_name = strrchr(a, '/'), *b_name = strrchr(b, '/');
+  if (strcmp(a_name ? a_name + 1 : a, b_name ? b_name + 1 : b) != 0)
+    return false;
+  char *a_folder = folder_of(a), *b_folder = folder_of(b);
+  bool same = a_folder && b_folder && strcmp(a_folder, b_folder) == 0;
+  free(b_folder);
+  free(a_folder);
+  return same;
+}
+
 bool cli_report_open(cli_run *cli) {
   return !cli->report || cli_file_open(&cli->report_file, cli->report) || report_failed(cli, errno);
 }

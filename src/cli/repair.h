@@ -10,15 +10,17 @@ typedef struct repair_outcome {
   vxm_repair_report repair;
   vxm_level level;
   vxm_verification verification;
-  json_t *defects; /**< of the mesh as it was read; NULL = not wanted */
+  cli_found found; /**< in the mesh as it was read */
 } repair_outcome;
 
 /** Names of the levels, as on the command line. */
 extern const char *const repair_levels[];
 
-/** The report for --json and --report. */
+/** The report for --json and --report. @param output NULL = nothing was written */
 json_t *repair_report(const cli_run *cli, const char *input, const char *output,
                       const repair_outcome *outcome);
+/** Says which parts could not be united. */
+void repair_warn_ununited(cli_run *cli, const char *input, const repair_outcome *outcome);
 void repair_summarize(const cli_run *cli, const repair_outcome *outcome);
 /** A line for each thing that keeps the level from being reached. */
 void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome);

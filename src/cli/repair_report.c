@@ -16,6 +16,8 @@ static json_t *state_json(const vxm_part_state *state) {
   json_object_set_new(object, "nonmanifold_edges", json_integer(state->nonmanifold_edges));
   json_object_set_new(object, "inconsistent_edges", json_integer(state->inconsistent_edges));
   json_object_set_new(object, "holes", json_integer(state->holes));
+  if (state->self_intersections >= 0)
+    json_object_set_new(object, "self_intersections", json_integer(state->self_intersections));
   json_object_set_new(object, "closed", json_boolean(state->closed));
   json_object_set_new(object, "area", cli_json_number(state->area));
   json_object_set_new(object, "volume", cli_json_number(state->volume));
@@ -34,6 +36,7 @@ static json_t *parts_json(const vxm_mesh *mesh) {
     json_object_set_new(part, "after", state_json(&changes[i].after));
     json_object_set_new(part, "flipped", json_integer(changes[i].flipped));
     json_object_set_new(part, "moved", cli_json_number(changes[i].moved));
+    json_object_set_new(part, "ununited", json_boolean(changes[i].ununited));
     json_array_append_new(parts, part);
   }
   return parts;
@@ -46,10 +49,10 @@ static json_t *verification_json(const repair_outcome *outcome) {
     json_t *one = json_object();
     json_object_set_new(one, "what", json_string(found->remains[i].what));
     json_object_set_new(one, "count", json_integer(found->remains[i].count));
-    if (found->remains[i].element >= 0) {
+    if (found->remains[i].element >= 0)
       json_object_set_new(one, "first", json_integer(found->remains[i].element));
+    if (found->remains[i].placed)
       json_object_set_new(one, "at", cli_json_numbers(found->remains[i].at, 3));
-    }
     json_array_append_new(remains, one);
   }
   json_object_set_new(object, "level", json_string(repair_levels[outcome->level]));
@@ -64,27 +67,33 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_t *before = json_object(), *after = json_object(), *report = json_object();
   cli_census_json(before, &repair->before);
   cli_census_json(after, &repair->after);
+  if (repair->self_intersections_before >= 0) {
+    json_object_set_new(before, "self_intersections", json_integer(repair->self_intersections_before));
+    json_object_set_new(after, "self_intersections", json_integer(repair->self_intersections_after));
+  }
   json_object_set_new(report, "input", cli_json_text(input));
-  json_object_set_new(report, "output", cli_json_text(output));
+  json_object_set_new(report, "output", output ? cli_json_text(output) : json_null());
   json_object_set_new(report, "verified", verification_json(outcome));
   json_object_set_new(report, "passes", cli_passes_json(repair));
   json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));
   json_object_set_new(report, "open_parts", json_integer(repair->open_parts));
   json_object_set_new(report, "unfilled_holes", json_integer(repair->unfilled_holes));
   json_object_set_new(report, "ununited_parts", json_integer(repair->ununited_parts));
+  json_object_set_new(report, "unparted_vertices", json_integer(repair->unparted_vertices));
+  json_object_set_new(report, "opened_parts", json_integer(repair->opened_parts));
   json_object_set_new(report, "moved", cli_json_number(repair->moved));
   json_object_set_new(report, "before", before);
   json_object_set_new(report, "after", after);
   json_object_set_new(report, "parts", parts_json(outcome->mesh));
-  if (outcome->defects)
-    json_object_set(report, "defects", outcome->defects);
+  if (outcome->found.list)
+    json_object_set(report, "defects", outcome->found.list);
   json_object_set(report, "warnings", cli->warnings);
   return report;
 }
 
 /* ---- Text ---- */
 
-enum { PARTS_SHOWN = 12 };
+enum { PARTS_SHOWN = 12, NAMED = 5 };
 
 static void part_row(const cli_run *cli, const vxm_mesh *mesh, int64_t i) {
   const vxm_part_change *part = &vxm_mesh_part_changes(mesh)[i];
@@ -136,16 +145,48 @@ static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair) 
   if (repair->unfilled_holes > 0)
     fprintf(cli->text, "\n%" PRId64 " holes could not be filled\n", repair->unfilled_holes);
   if (repair->ununited_parts > 0)
-    fprintf(cli->text, "\n%" PRId64 " parts cut through themselves and were not united\n",
-            repair->ununited_parts);
+    fprintf(cli->text, "\n%" PRId64 " parts were not united\n", repair->ununited_parts);
+}
+
+/** The name of a part, or else its number. */
+static void part_name(char *out, size_t size, const vxm_mesh *mesh, int64_t part) {
+  uint32_t tag = vxm_mesh_part_changes(mesh)[part].tag;
+  if (tag != UINT32_MAX)
+    snprintf(out, size, "%s", vxm_mesh_tag_name(mesh, tag));
+  else
+    snprintf(out, size, "%" PRId64, part);
+}
+
+void repair_warn_ununited(cli_run *cli, const char *input, const repair_outcome *outcome) {
+  char list[256] = "", name[40];
+  size_t length = 0;
+  int64_t count = 0;
+  for (int64_t i = 0; i < vxm_mesh_part_change_count(outcome->mesh); i++) {
+    if (!vxm_mesh_part_changes(outcome->mesh)[i].ununited || count++ >= NAMED)
+      continue;
+    part_name(name, sizeof name, outcome->mesh, i);
+    length += (size_t)snprintf(list + length, sizeof list - length, "%s%s", length ? ", " : "", name);
+  }
+  if (count > NAMED)
+    snprintf(list + length, sizeof list - length, " and %" PRId64 " more", count - NAMED);
+  cli_warn(cli,
+           "%s: %" PRId64
+           " parts still cut through others or themselves, and what is open has no inside to unite: %s",
+           cli_shown(input, "<stdin>"), count, list);
 }
 
 void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome) {
   (void)cli;
+  if (outcome->repair.unparted_vertices > 0)
+    fprintf(stream,
+            "  %" PRId64
+            " vertices share positions and could not be moved apart: the numbers of the file are too coarse\n"
+            "  there; write another format than .stl, or move the model to the origin\n",
+            outcome->repair.unparted_vertices);
   const vxm_verification *found = &outcome->verification;
   for (int i = 0; i < found->count; i++) {
     fprintf(stream, "  %-26s %12" PRId64, found->remains[i].what, found->remains[i].count);
-    if (found->remains[i].element >= 0)
+    if (found->remains[i].placed)
       fprintf(stream, "  the first at %.6g %.6g %.6g", found->remains[i].at[0], found->remains[i].at[1],
               found->remains[i].at[2]);
     fputc('\n', stream);
@@ -154,9 +195,13 @@ void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *
 
 void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
   cli_census_print_both(cli, &outcome->repair.before, &outcome->repair.after);
+  if (outcome->repair.self_intersections_before >= 0)
+    fprintf(cli->text, "  %-26s %12" PRId64 " %12" PRId64 "\n", "self intersections",
+            outcome->repair.self_intersections_before, outcome->repair.self_intersections_after);
   summarize_passes(cli, &outcome->repair);
   summarize_parts(cli, outcome->mesh);
   summarize_rest(cli, &outcome->repair);
+  cli_defects_print(cli, outcome->found.list);
   fprintf(cli->text, "\nLevel %s: %s\n", repair_levels[outcome->level],
           outcome->verification.reached ? "verified in the file as it was read back" : "not reached");
   repair_say_remains(cli, cli->text, outcome);

@@ -28,6 +28,13 @@ typedef struct voxelize_outcome {
   double voxelize_ms, write_ms, total_ms;
 } voxelize_outcome;
 
+extern const cli_option voxelize_options[];
+
+/** Reads the command line; CLI_STOP if it is at fault, or all has been said. */
+int voxelize_read_arguments(cli_run *cli, voxelize_request *out);
+/** Whether a format is written slice by slice. */
+bool voxelize_is_sliced(const char *format);
+
 /** The report for --json and --report. */
 json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const voxelize_outcome *results);
 /** What is known before the voxels are made, with the estimate if it is wanted or large. */

@@ -35,7 +35,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
-  if (!cli_field_wanted(&given->field))
+  if (!given->field.labels)
     json_object_set_new(report, "estimate", estimate_json(&results->estimate, results->octree));
   json_object_set_new(report, "grid", cli_json_space(&results->space));
   if (given->dry_run) {
@@ -119,9 +119,9 @@ static void summarize_estimate(const cli_run *cli, const voxelize_request *given
     cli_row(cli, "estimate", "%.1f MiB of voxels, made as an octree: its memory follows the surface",
             (double)estimate->grid_bytes / mib);
   else
-    cli_row(cli, "estimate", "%.1f MiB of voxels; up to %.1f MiB of memory, %s",
-            (double)estimate->grid_bytes / mib, (double)estimate->memory_bytes / mib,
-            estimate->windows > 1 ? "slices at a time" : "all at once");
+    cli_row(cli, "estimate", "%.1f MiB of %s; up to %.1f MiB of memory, %s",
+            (double)estimate->grid_bytes / mib, cli_field_wanted(&given->field) ? "values" : "voxels",
+            (double)estimate->memory_bytes / mib, estimate->windows > 1 ? "slices at a time" : "all at once");
   fflush(cli->text);
 }
 

@@ -4,11 +4,16 @@
 
 #include <string.h>
 
-/** A child of a node, or what stands for it. */
+/** A node of an operand or a brick, or what stands for it. */
 typedef struct cell {
   enum { EMPTY, FULL, MIXED, BOX /**< the whole box, as far as it reaches */ } kind;
   size_t index; /**< of a mixed one */
 } cell;
+
+/** The children of a cell: surely full, and perhaps not empty. */
+typedef struct bounds {
+  uint64_t low, high;
+} bounds;
 
 typedef struct combination {
   const vxm_sparse *operand[2]; /**< NULL for a box */
@@ -19,69 +24,76 @@ typedef struct combination {
   vxm_error *error;
 } combination;
 
-static uint64_t apply(vxm_set_operation op, uint64_t a, uint64_t b) {
+static bounds apply(vxm_set_operation op, bounds a, bounds b) {
   switch (op) {
   case VXM_SET_UNION:
-    return a | b;
+    return (bounds){a.low | b.low, a.high | b.high};
   case VXM_SET_INTERSECTION:
-    return a & b;
+    return (bounds){a.low & b.low, a.high & b.high};
   case VXM_SET_SYMMETRIC_DIFFERENCE:
-    return a ^ b;
+    return (bounds){(a.low & ~b.high) | (b.low & ~a.high), (a.high & ~b.low) | (b.high & ~a.low)};
   default: /* the complement is the difference of the box and the set */
-    return a & ~b;
+    return (bounds){a.low & ~b.high, a.high & ~b.low};
   }
 }
 
-/** The part of the box in a cube: all of it, nothing or some. */
-static cell box_in(const combination *c, const int64_t at[3], int64_t side) {
-  const int64_t *n = c->result->space.dims;
-  bool inside = true, outside = false;
+/** The children that lie before a place along an axis; by place and axis. */
+static const uint64_t before[5][3] = {
+    {0, 0, 0},
+    {UINT64_C(0x0055005500550055), UINT64_C(0x0000333300003333), UINT64_C(0x000000000f0f0f0f)},
+    {UINT64_C(0x00ff00ff00ff00ff), UINT64_C(0x0000ffff0000ffff), UINT64_C(0x00000000ffffffff)},
+    {UINT64_C(0x55ff55ff55ff55ff), UINT64_C(0x3333ffff3333ffff), UINT64_C(0x0f0f0f0fffffffff)},
+    {UINT64_MAX, UINT64_MAX, UINT64_MAX}};
+
+/** The children that the box holds, and those that it meets. */
+static bounds box_in(const combination *c, int level, const int64_t at[3]) {
+  int64_t side = vxm_octree_side(level);
+  bounds box = {UINT64_MAX, UINT64_MAX};
   for (int a = 0; a < 3; a++) {
-    inside &= at[a] + side <= n[a];
-    outside |= at[a] >= n[a];
+    int64_t left = vxm_max(c->result->space.dims[a] - at[a], 0);
+    box.low &= before[vxm_min(left / side, 4)][a];
+    box.high &= before[vxm_min((left + side - 1) / side, 4)][a];
   }
-  return (cell){outside ? EMPTY : inside ? FULL : BOX, 0};
+  return box;
 }
 
-static cell child_of(const combination *c, int which, int level, cell parent, unsigned child,
-                     const int64_t at[3]) {
+static bounds children_of(const combination *c, int which, int level, cell parent, const int64_t at[3]) {
   if (parent.kind == BOX)
-    return box_in(c, at, vxm_octree_side(level));
+    return box_in(c, level, at);
   if (parent.kind != MIXED)
-    return parent;
+    return parent.kind == FULL ? (bounds){UINT64_MAX, UINT64_MAX} : (bounds){0, 0};
   const vxm_octree_node *node = &c->operand[which]->nodes[level][parent.index];
-  if (node->mixed >> child & 1)
-    return (cell){MIXED, vxm_octree_index(node, child)};
-  return (cell){node->full >> child & 1 ? FULL : EMPTY, 0};
+  return (bounds){node->full, node->full | node->mixed};
 }
 
-static uint64_t bits_of(const combination *c, int which, cell brick, const int64_t at[3]) {
-  if (brick.kind == MIXED)
-    return c->operand[which]->bricks[brick.index];
-  if (brick.kind != BOX)
-    return brick.kind == FULL ? ~UINT64_C(0) : 0;
+/** One of the children of a parent, of which all is known. */
+static cell child_of(const combination *c, int which, int level, cell parent, bounds children,
+                     unsigned child) {
+  if (children.low >> child & 1)
+    return (cell){FULL, 0};
+  if (!(children.high >> child & 1))
+    return (cell){EMPTY, 0};
+  if (parent.kind == BOX)
+    return parent;
+  return (cell){MIXED, vxm_octree_index(&c->operand[which]->nodes[level][parent.index], child)};
+}
+
+/** Voxels of a brick: z is the slowest, unlike in nodes. */
+static uint64_t box_bits(const combination *c, const int64_t at[3]) {
+  const int64_t *n = c->result->space.dims;
   uint64_t bits = 0;
-  for (int b = 0; b < 64; b++) {
-    const int64_t voxel[3] = {at[0] + b % 4, at[1] + b / 4 % 4, at[2] + b / 16};
-    bits |= (uint64_t)(box_in(c, voxel, 1).kind == FULL) << b;
-  }
+  for (int b = 0; b < 64; b++)
+    bits |= (uint64_t)(at[0] + b % 4 < n[0] && at[1] + b / 4 % 4 < n[1] && at[2] + b / 16 < n[2]) << b;
   return bits;
 }
 
-/** The result if both cells are uniform, or one of them alone decides; else MIXED. */
-static cell decide(vxm_set_operation op, cell a, cell b) {
-  uint64_t low = UINT64_MAX, high = 0;
-  for (int p = 0; p < 2; p++)
-    for (int q = 0; q < 2; q++) {
-      bool a_may = a.kind == (p ? FULL : EMPTY) || a.kind > FULL;
-      bool b_may = b.kind == (q ? FULL : EMPTY) || b.kind > FULL;
-      if (!a_may || !b_may)
-        continue;
-      uint64_t value = apply(op, p ? UINT64_MAX : 0, q ? UINT64_MAX : 0);
-      low &= value;
-      high |= value;
-    }
-  return (cell){low == high ? (low ? FULL : EMPTY) : MIXED, 0};
+static bounds bits_of(const combination *c, int which, cell brick, const int64_t at[3]) {
+  uint64_t bits = brick.kind == FULL ? UINT64_MAX : 0;
+  if (brick.kind == MIXED)
+    bits = c->operand[which]->bricks[brick.index];
+  if (brick.kind == BOX)
+    bits = box_bits(c, at);
+  return (bounds){bits, bits};
 }
 
 static cell add_brick(combination *c, uint64_t bits) {
@@ -112,18 +124,17 @@ static cell add_node(combination *c, int level, vxm_octree_node node, bool alway
 static cell combine_nodes(combination *c, int level, cell a, cell b, const int64_t at[3]) {
   int64_t side = vxm_octree_side(level);
   size_t first = level > 0 ? c->result->node_count[level - 1] : c->result->brick_count;
-  vxm_octree_node node = {0, 0, 0};
-  for (unsigned child = 0; child < 64 && c->status == VXM_OK; child++) {
+  bounds p = children_of(c, 0, level, a, at), q = children_of(c, 1, level, b, at), all = apply(c->op, p, q);
+  vxm_octree_node node = {.full = all.low};
+  for (uint64_t open = all.high & ~all.low; open && c->status == VXM_OK; open &= open - 1) {
+    unsigned child = (unsigned)__builtin_ctzll(open);
     int64_t below[3];
     vxm_octree_place(child, below);
     for (int i = 0; i < 3; i++)
       below[i] = at[i] + below[i] * side;
-    cell p = child_of(c, 0, level, a, child, below), q = child_of(c, 1, level, b, child, below);
-    cell made = decide(c->op, p, q);
-    if (made.kind == MIXED && level > 0)
-      made = combine_nodes(c, level - 1, p, q, below);
-    else if (made.kind == MIXED)
-      made = add_brick(c, apply(c->op, bits_of(c, 0, p, below), bits_of(c, 1, q, below)));
+    cell x = child_of(c, 0, level, a, p, child), y = child_of(c, 1, level, b, q, child);
+    cell made = level > 0 ? combine_nodes(c, level - 1, x, y, below)
+                          : add_brick(c, apply(c->op, bits_of(c, 0, x, below), bits_of(c, 1, y, below)).low);
     node.mixed |= (uint64_t)(made.kind == MIXED) << child;
     node.full |= (uint64_t)(made.kind == FULL) << child;
   }

@@ -52,15 +52,27 @@ static vxm_status begin_file(field_file *file, file_format format, vxm_context *
   return vxm_sidecar_open(&file->sidecar, context, space, file->path, &npy_description, error);
 }
 
+/** The order in which values are made. */
+static vxm_layout layout_of(file_format format) {
+  return format == NRRD ? (vxm_layout)VXM_LAYOUT_GRID : (vxm_layout)VXM_PLANE_Z_FAST;
+}
+
+/** The format of a file, if it holds such values. */
+static vxm_status choose_format(file_format *out, const char *path, const char *format, vxm_scalar scalar,
+                                vxm_error *error) {
+  vxm_status status = find_format(out, path, format, error);
+  if (status == VXM_OK && *out == VDB && scalar != VXM_FLOAT32)
+    status = vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
+                         ".vdb holds 32-bit floats; choose them, or .npy or .nrrd");
+  return status;
+}
+
 static vxm_status open_file(field_file *file, vxm_field_target *target, vxm_context *context,
                             const vxm_space *space, const vxm_vdb_kind *kind, vxm_scalar scalar,
                             const char *path, const char *format, vxm_error *error) {
   file_format found = NPY;
   *file = (field_file){.path = path};
-  vxm_status status = find_format(&found, path, format, error);
-  if (status == VXM_OK && found == VDB && scalar != VXM_FLOAT32)
-    status = vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
-                         ".vdb holds 32-bit floats; choose them, or .npy or .nrrd");
+  vxm_status status = choose_format(&found, path, format, scalar, error);
   if (status == VXM_OK)
     status = vxm_output_open(&file->output, context, path, error);
   size_t size = vxm_scalar_bytes(scalar);
@@ -70,7 +82,7 @@ static vxm_status open_file(field_file *file, vxm_field_target *target, vxm_cont
     vxm_output_abort(file->output);
     return status;
   }
-  target->layout = found == NRRD ? (vxm_layout)VXM_LAYOUT_GRID : (vxm_layout)VXM_PLANE_Z_FAST;
+  target->layout = layout_of(found);
   file->slice_bytes = (size_t)(space->dims[target->layout.fast] * space->dims[target->layout.middle]) * size;
   return VXM_OK;
 }
@@ -160,5 +172,43 @@ vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *mode
   status = close_file(&file, status, error);
   report->voxelize.write_ms = file.write_ms;
   report->voxelize.fill_ms = vxm_clock_ms() - start - file.write_ms;
+  return status;
+}
+
+/* ---- Estimates ---- */
+
+/** The files' own buffers and the sidecar. */
+static const uint64_t file_bytes = UINT64_C(1) << 19;
+
+static vxm_estimate estimate_of(const vxm_field_plan *plan, const vxm_space *space, vxm_layout layout,
+                                vxm_scalar scalar) {
+  const int64_t *n = space->dims;
+  return (vxm_estimate){(uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2] * vxm_scalar_bytes(scalar),
+                        plan->memory + file_bytes, (n[layout.slow] + plan->slices - 1) / plan->slices};
+}
+
+vxm_status vxm_field_estimate_coverage(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
+                                       const char *path, const vxm_coverage_options *options,
+                                       vxm_error *error) {
+  file_format format = NPY;
+  vxm_field_plan plan;
+  vxm_status status = choose_format(&format, path, options->format, options->scalar, error);
+  if (status == VXM_OK)
+    status = vxm_coverage_plan(&plan, model, space, layout_of(format), false, options, error);
+  if (status == VXM_OK)
+    *out = estimate_of(&plan, space, layout_of(format), options->scalar);
+  return status;
+}
+
+vxm_status vxm_field_estimate_distance(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
+                                       const char *path, const vxm_distance_options *options,
+                                       vxm_error *error) {
+  file_format format = NPY;
+  vxm_field_plan plan;
+  vxm_status status = choose_format(&format, path, options->format, VXM_FLOAT32, error);
+  if (status == VXM_OK)
+    status = vxm_distance_plan(&plan, model, space, layout_of(format), false, options, error);
+  if (status == VXM_OK)
+    *out = estimate_of(&plan, space, layout_of(format), VXM_FLOAT32);
   return status;
 }

@@ -18,4 +18,14 @@ vxm_status vxm_field_write_coverage(vxm_coverage_report *report, vxm_model *mode
 vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *model, const vxm_space *space,
                                     const char *path, const vxm_distance_options *options, vxm_error *error);
 
+/** See vxm_model_estimate_coverage and vxm_model_estimate_distance in voxmend.h; the options have been
+ * checked.
+ */
+vxm_status vxm_field_estimate_coverage(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
+                                       const char *path, const vxm_coverage_options *options,
+                                       vxm_error *error);
+vxm_status vxm_field_estimate_distance(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
+                                       const char *path, const vxm_distance_options *options,
+                                       vxm_error *error);
+
 #endif

@@ -117,7 +117,7 @@ static vxm_status count_edges(taking *t, vxm_error *error) {
 
 static vxm_status count_duplicates(taking *t, vxm_error *error) {
   vxm_duplicates found;
-  vxm_status status = vxm_duplicates_find(&found, t->context, t->soup, t->map, NULL, error);
+  vxm_status status = vxm_duplicates_find(&found, t->context, t->soup, t->map, NULL, NULL, error);
   t->census->duplicate_faces = (int64_t)found.same;
   t->census->opposite_duplicate_faces = (int64_t)found.opposite_pairs;
   return status;

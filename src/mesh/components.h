@@ -5,6 +5,10 @@
 
 #include "mesh/soup.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /**
  * Labels every vertex with the lowest vertex that faces connect it to, by minimum-label propagation
  * (Chen & Tu, sec. 2.1) with pointer jumping.
@@ -32,4 +36,7 @@ vxm_status vxm_group_vertices(vxm_context *context, const vxm_soup *soup, const 
 vxm_status vxm_components(vxm_context *context, const vxm_soup *soup, const uint32_t *vertex_map,
                           uint32_t *face_labels, size_t *count, vxm_error *error);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -90,6 +90,7 @@ static inline size_t record_face(uint64_t record) {
   return (size_t)(record >> 1 & ((UINT64_C(1) << FACE_BITS) - 1));
 }
 
+/** Of the first record of a kind; that of another one has the place of the first one for `forward`, and 0. */
 typedef struct tally {
   uint32_t forward, backward; /**< faces of a kind so far, by direction of their least reading */
 } tally;
@@ -97,7 +98,7 @@ typedef struct tally {
 typedef struct search {
   const vxm_soup *soup;
   const uint32_t *map;
-  uint8_t *kinds;
+  uint8_t *kinds, *even;
   unsigned bucket_shift;
   vxm_buckets buckets;
   uint32_t *tables; /**< one hash table per worker: place of a record in its bucket + 1, or 0 */
@@ -170,6 +171,14 @@ static vxm_repeat count_face(tally *t, bool backward) {
   return theirs > 0 ? VXM_REPEAT_OPPOSITE : VXM_REPEAT_NONE;
 }
 
+static void mark_even(const search *s, const uint64_t *records, size_t count, const tally *tallies) {
+  for (size_t i = 0; i < count; i++) {
+    size_t face = record_face(records[i]);
+    const tally *t = &tallies[s->kinds[face] == VXM_REPEAT_NONE ? i : tallies[i].forward];
+    s->even[face] = (t->forward + t->backward) % 2 == 0;
+  }
+}
+
 static void search_bucket(size_t bucket, int worker, void *payload) {
   search *s = payload;
   const uint64_t *records = s->buckets.records + s->buckets.begin[bucket];
@@ -185,6 +194,8 @@ static void search_bucket(size_t bucket, int worker, void *payload) {
       slot = (slot + 1) & mask;
     if (table[slot] == 0)
       table[slot] = (uint32_t)i + 1;
+    else
+      tallies[i].forward = table[slot] - 1;
     vxm_repeat kind = count_face(&tallies[table[slot] - 1], records[i] & 1);
     same += kind == VXM_REPEAT_SAME;
     if (s->kinds)
@@ -192,15 +203,17 @@ static void search_bucket(size_t bucket, int worker, void *payload) {
   }
   for (size_t i = 0; i < count; i++)
     pairs += tallies[i].forward < tallies[i].backward ? tallies[i].forward : tallies[i].backward;
+  if (s->even)
+    mark_even(s, records, count, tallies);
   atomic_fetch_add_explicit(&s->same, same, memory_order_relaxed);
   atomic_fetch_add_explicit(&s->opposite_pairs, pairs, memory_order_relaxed);
 }
 
 vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const vxm_soup *soup,
-                               const uint32_t *vertex_map, uint8_t *kinds, vxm_error *error) {
+                               const uint32_t *vertex_map, uint8_t *kinds, uint8_t *even, vxm_error *error) {
   *out = (vxm_duplicates){0};
   size_t bucket_count = vxm_buckets_advise(soup->face_count);
-  search s = {.soup = soup, .map = vertex_map, .kinds = kinds};
+  search s = {.soup = soup, .map = vertex_map, .kinds = kinds, .even = even};
   s.bucket_shift = 64 - (unsigned)__builtin_ctzll(bucket_count);
   vxm_status status =
       vxm_buckets_fill(&s.buckets, context, soup->face_count, bucket_count, emit_faces, &s, error);
@@ -208,6 +221,8 @@ vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const 
     return status;
   if (kinds && soup->face_count > 0)
     memset(kinds, VXM_REPEAT_NONE, soup->face_count);
+  if (even && soup->face_count > 0)
+    memset(even, 0, soup->face_count);
   size_t workers = (size_t)vxm_context_threads(context);
   s.table_size = table_slots(s.buckets.largest);
   vxm_error local = VXM_ERROR_INIT;

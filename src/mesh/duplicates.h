@@ -22,10 +22,13 @@ typedef struct vxm_duplicates {
  *
  * @param vertex_map vertex to take in place of each vertex, or NULL
  * @param kinds      face_count elements that get a vxm_repeat each; may be NULL
+ * @param even       face_count elements that get 1 where the faces that repeat each other are an even number,
+ *                   so that edges are as even with none of them as with all, else 0; may be NULL, as it is if
+ *                   kinds is
  *
  * Linear time, also in the corners of large polygons.
  */
 vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const vxm_soup *soup,
-                               const uint32_t *vertex_map, uint8_t *kinds, vxm_error *error);
+                               const uint32_t *vertex_map, uint8_t *kinds, uint8_t *even, vxm_error *error);
 
 #endif

@@ -5,6 +5,10 @@
 
 #include "mesh/soup.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /**
  * An edge a < b. A side is a pair of successive corners of a face, so a polygon that passes an edge twice
  * counts twice.
@@ -66,4 +70,7 @@ static inline bool vxm_face_has_three(const uint32_t *corners, size_t count, con
   return false;
 }
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -5,6 +5,10 @@
 
 #include "mesh/edges.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /**
  * Closed walks that together pass every odd edge once. Step s goes along edge[s] (a place in the edge map)
  * from vertex[s] to vertex[s + 1], the last step of a loop back to its first vertex. A walk may pass a vertex
@@ -37,4 +41,7 @@ typedef struct vxm_loops {
 vxm_status vxm_loops_build(vxm_loops *out, const vxm_soup *soup, const vxm_edges *edges, vxm_error *error);
 void vxm_loops_destroy(vxm_loops *loops);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

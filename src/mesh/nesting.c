@@ -365,7 +365,8 @@ static bool run(builder *b, vxm_nesting *out) {
   b->bodies = allocate(b, b->count + 1, sizeof *b->bodies);
   b->faces = allocate(b, b->soup->face_count, sizeof *b->faces);
   size_t *next = allocate(b, b->count, sizeof *next);
-  if (out->parent && out->volume && b->bodies && b->faces && next) {
+  bool ready = out->parent && out->volume && b->bodies && b->faces && next;
+  if (ready) {
     measure_bodies(b);
     scale_boxes(b);
     list_faces(b, next);
@@ -373,9 +374,8 @@ static bool run(builder *b, vxm_nesting *out) {
     for (size_t i = 0; i < b->count; i++)
       out->parent[i] = VXM_NO_COMPONENT;
   }
-  bool measured = next && b->faces;
   vxm_free(b->context, next);
-  return measured && list_candidates(b) && find_parents(b, out->parent);
+  return ready && list_candidates(b) && find_parents(b, out->parent);
 }
 
 vxm_status vxm_nesting_build(vxm_nesting *out, const vxm_soup *soup, const uint32_t *face_labels,

@@ -16,7 +16,9 @@ typedef struct measuring {
   vxm_part_state *states;
   vxm_soup view; /**< the soup with welded corners */
   const uint32_t *face_parts;
-  uint32_t *vertex_part;
+  uint32_t *vertex_part; /**< per vertex: the first part with a face there */
+  bool shared;           /**< some vertex has faces of several parts */
+  uint32_t *edge_part;   /**< per edge: the first part with a face there; NULL = that of its vertices */
   vxm_error error;
 } measuring;
 
@@ -27,8 +29,9 @@ static void add_face(measuring *m, const vxm_frame *frame, size_t face) {
   bool first = state->faces++ == 0;
   for (size_t i = 0; i < count; i++) {
     const double *p = vxm_position(&m->view, corner[i]);
-    if (m->vertex_part[corner[i]] > m->face_parts[face])
-      m->vertex_part[corner[i]] = m->face_parts[face];
+    uint32_t *part = &m->vertex_part[corner[i]];
+    m->shared = m->shared || (*part != NO_PART && *part != m->face_parts[face]);
+    *part = *part > m->face_parts[face] ? m->face_parts[face] : *part;
     if (!vxm_is_finite(p))
       continue;
     for (int a = 0; a < 3; a++) {
@@ -48,10 +51,39 @@ static void add_face(measuring *m, const vxm_frame *frame, size_t face) {
   }
 }
 
+/** Where parts share vertices, asks the faces which part an edge is of. */
+static vxm_status find_edge_parts(measuring *m, const vxm_edges *edges) {
+  if (!m->shared)
+    return VXM_OK;
+  m->edge_part = vxm_alloc(m->view.context, edges->count, sizeof *m->edge_part, &m->error);
+  if (!m->edge_part)
+    return m->error.code;
+  for (size_t e = 0; e < edges->count; e++)
+    m->edge_part[e] = NO_PART;
+  for (size_t f = 0; f < m->view.face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(&m->view, f, &count);
+    if (!vxm_face_has_three(corner, count, NULL))
+      continue;
+    for (size_t i = 0; i < count; i++) {
+      uint32_t next = corner[i + 1 < count ? i + 1 : 0];
+      if (next == corner[i])
+        continue;
+      uint32_t *part = &m->edge_part[vxm_edges_find(edges, corner[i], next)];
+      *part = *part > m->face_parts[f] ? m->face_parts[f] : *part;
+    }
+  }
+  return VXM_OK;
+}
+
+static uint32_t part_of(const measuring *m, const vxm_edges *edges, size_t edge) {
+  return m->edge_part ? m->edge_part[edge] : m->vertex_part[edges->edges[edge].a];
+}
+
 static void add_edges(measuring *m, const vxm_edges *edges) {
   for (size_t e = 0; e < edges->count; e++) {
     const vxm_edge *edge = &edges->edges[e];
-    vxm_part_state *state = &m->states[m->vertex_part[edge->a]];
+    vxm_part_state *state = &m->states[part_of(m, edges, e)];
     state->boundary_edges += edge->count == 1;
     state->nonmanifold_edges += edge->count > 2;
     state->inconsistent_edges += edge->count == 2 && edge->forward != 1;
@@ -68,6 +100,8 @@ static vxm_status measure(measuring *m, size_t part_count) {
   vxm_free(m->view.context, used);
   vxm_frame frame = vxm_frame_of(extent.bounds);
   memset(m->states, 0, part_count * sizeof *m->states);
+  for (size_t p = 0; p < part_count; p++)
+    m->states[p].self_intersections = -1; /* which another room counts */
   for (size_t v = 0; v < m->view.vertex_count; v++)
     m->vertex_part[v] = NO_PART;
   for (size_t f = 0; f < m->view.face_count; f++)
@@ -79,11 +113,16 @@ static vxm_status measure(measuring *m, size_t part_count) {
   vxm_status status = vxm_edges_build(&edges, m->view.context, &m->view, NULL, &m->error);
   if (status != VXM_OK)
     return status;
-  add_edges(m, &edges);
-  status = vxm_loops_build(&loops, &m->view, &edges, &m->error);
+  loops = (vxm_loops){0};
+  status = find_edge_parts(m, &edges);
+  if (status == VXM_OK) {
+    add_edges(m, &edges);
+    status = vxm_loops_build(&loops, &m->view, &edges, &m->error);
+  }
   for (size_t l = 0; status == VXM_OK && l < loops.count; l++)
-    m->states[m->vertex_part[loops.vertex[loops.begin[l]]]].holes++;
-  vxm_loops_destroy(&loops);
+    m->states[part_of(m, &edges, loops.edge[loops.begin[l]])].holes++;
+  if (loops.context)
+    vxm_loops_destroy(&loops);
   vxm_edges_destroy(&edges);
   return status;
 }
@@ -104,6 +143,7 @@ vxm_status vxm_part_states(vxm_part_state *out, size_t part_count, const vxm_sou
       m.view.indices[c] = map[soup->indices[c]];
     status = measure(&m, part_count);
   }
+  vxm_free(context, m.edge_part);
   vxm_free(context, m.vertex_part);
   vxm_free(context, m.view.indices);
   vxm_free(context, map);

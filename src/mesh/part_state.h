@@ -6,8 +6,8 @@
 #include "mesh/soup.h"
 
 /**
- * Measures parts, after welding identical positions. An edge that several parts share after welding counts
- * for the first of them.
+ * Measures parts, after welding identical positions. An edge that has faces of several parts after welding
+ * counts for the first of them. Self-intersections are left at -1.
  *
  * @param out        part_count elements
  * @param face_parts per face: its part

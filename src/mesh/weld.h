@@ -5,6 +5,10 @@
 
 #include "base/context.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /**
  * Maps every vertex to the lowest vertex of the same position.
  *
@@ -19,4 +23,7 @@
 vxm_status vxm_weld_exact(vxm_context *context, const double *positions, size_t count, uint32_t *map,
                           size_t *distinct, vxm_error *error);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

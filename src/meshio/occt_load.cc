@@ -1,12 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** STEP and IGES from memory into a document. */
 #include <IGESCAFControl_Reader.hxx>
+#include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <StepShape_SolidModel.hxx>
 #include <TCollection_AsciiString.hxx>
+#include <TCollection_ExtendedString.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TDataStd_Comment.hxx>
+#include <TopoDS_Shape.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
 #include <istream>
 #include <streambuf>
 #include <sys/mman.h>
@@ -91,6 +103,23 @@ struct load {
   }
 };
 
+/** Notes the names of bodies beside those of the products that they are or belong to: the library makes an
+ * assembly of a product that has several. */
+void name_bodies(const Handle(TDocStd_Document) & document, const Handle(XSControl_WorkSession) & session) {
+  Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  Handle(Interface_InterfaceModel) model = session->Model();
+  Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
+  for (int e = 1; e <= model->NbEntities(); e++) {
+    Handle(StepShape_SolidModel) body = Handle(StepShape_SolidModel)::DownCast(model->Value(e));
+    if (body.IsNull() || body->Name().IsNull() || body->Name()->IsEmpty())
+      continue;
+    TopoDS_Shape shape = TransferBRep::ShapeResult(made, body);
+    TDF_Label label;
+    if (!shape.IsNull() && shapes->FindShape(shape, label))
+      TDataStd_Comment::Set(label, TCollection_ExtendedString(body->Name()->ToCString(), true));
+  }
+}
+
 void load_step(const load &job) {
   STEPCAFControl_Reader reader; /* its controller makes the parameter known that is set next */
   Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
@@ -111,6 +140,7 @@ void load_step(const load &job) {
   job.progress->check();
   if (!is_done)
     job.fail("its shapes cannot be made");
+  name_bodies(job.document, reader.Reader().WS());
 }
 
 void load_iges(const load &job) {

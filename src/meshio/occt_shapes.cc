@@ -10,6 +10,7 @@
 #include <Precision.hxx>
 #include <TDF_LabelIndexedMap.hxx>
 #include <TDF_LabelSequence.hxx>
+#include <TDataStd_Comment.hxx>
 #include <TDataStd_Name.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
@@ -35,7 +36,8 @@ const double seam = 1e-6;
 struct instance {
   size_t part;
   gp_Trsf where;
-  std::string name;
+  size_t product;   /**< which of the products that stand somewhere it is, or is a body of */
+  std::string body; /**< its name as one of several bodies of a product */
 };
 
 struct part {
@@ -70,10 +72,14 @@ private:
   TDF_LabelIndexedMap known;
   std::vector<part> parts;
   std::vector<instance> instances;
+  std::vector<std::string> products; /**< their names, each as often as it stands */
   int64_t bare_faces = 0, loose_edges = 0;
 
   static std::string name_of(const TDF_Label &label);
+  static std::string name_of_body(const TDF_Label &label);
   void gather_label(const TDF_Label &label, const gp_Trsf &outer, const std::string &name);
+  void gather_assembly(const TDF_Label &label, const gp_Trsf &outer, const std::string &name);
+  void gather_part(const TDF_Label &label, const instance &placed);
   void emit_instance(const instance &placed, uint32_t number);
   void emit_faces(const TopoDS_Shape &shape, TopAbs_ShapeEnum unless_within, const gp_Trsf &where);
   void emit_face(const TopoDS_Face &face, const gp_Trsf &where);
@@ -92,15 +98,22 @@ bool is_telling(const std::string &name) {
   return name.compare(0, 4, "NAUO") != 0 || name.find_first_not_of("0123456789", 4) != std::string::npos;
 }
 
+std::string told(const TCollection_ExtendedString &name) {
+  std::vector<char> text(static_cast<size_t>(name.LengthOfCString()) + 1, '\0');
+  char *begin = text.data();
+  name.ToUTF8CString(begin);
+  return is_telling(begin) ? begin : "";
+}
+
 /** The name of a product or of its use, "" if there is none that tells anything. */
 std::string tessellation::name_of(const TDF_Label &label) {
   Handle(TDataStd_Name) name;
-  if (!label.FindAttribute(TDataStd_Name::GetID(), name))
-    return "";
-  std::vector<char> text(static_cast<size_t>(name->Get().LengthOfCString()) + 1, '\0');
-  char *begin = text.data();
-  name->Get().ToUTF8CString(begin);
-  return is_telling(begin) ? begin : "";
+  return label.FindAttribute(TDataStd_Name::GetID(), name) ? told(name->Get()) : "";
+}
+
+std::string tessellation::name_of_body(const TDF_Label &label) {
+  Handle(TDataStd_Comment) name;
+  return label.FindAttribute(TDataStd_Comment::GetID(), name) ? told(name->Get()) : name_of(label);
 }
 
 void tessellation::gather_label(const TDF_Label &label, const gp_Trsf &outer, const std::string &name) {
@@ -112,19 +125,46 @@ void tessellation::gather_label(const TDF_Label &label, const gp_Trsf &outer, co
     return;
   }
   if (XCAFDoc_ShapeTool::IsAssembly(label)) {
-    TDF_LabelSequence components;
-    XCAFDoc_ShapeTool::GetComponents(label, components);
-    for (const TDF_Label &component : components)
-      gather_label(component, outer, "");
+    gather_assembly(label, outer, name);
     return;
   }
+  products.push_back(name);
+  gather_part(label, {0, outer, products.size() - 1, ""});
+}
+
+/** Uses of products, or the bodies of a product that has several: those have no use that could be named. */
+void tessellation::gather_assembly(const TDF_Label &label, const gp_Trsf &outer, const std::string &name) {
+  TDF_LabelSequence components;
+  XCAFDoc_ShapeTool::GetComponents(label, components);
+  bool has_bodies = false;
+  size_t own = 0;
+  for (const TDF_Label &component : components) {
+    TDF_Label body;
+    Handle(TDataStd_Name) use;
+    if (component.FindAttribute(TDataStd_Name::GetID(), use) ||
+        !XCAFDoc_ShapeTool::GetReferredShape(component, body) || XCAFDoc_ShapeTool::IsAssembly(body)) {
+      gather_label(component, outer, "");
+      continue;
+    }
+    if (!has_bodies) {
+      own = products.size();
+      products.push_back(name);
+    }
+    has_bodies = true;
+    gp_Trsf where = outer * XCAFDoc_ShapeTool::GetLocation(component).Transformation();
+    gather_part(body, {0, where, own, name_of_body(body)});
+  }
+}
+
+void tessellation::gather_part(const TDF_Label &label, const instance &placed) {
   TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
   if (shape.IsNull())
     return;
   size_t index = static_cast<size_t>(known.Add(label)) - 1;
   if (index == parts.size())
     parts.push_back({label, shape});
-  instances.push_back({index, outer, name});
+  instances.push_back(placed);
+  instances.back().part = index;
 }
 
 void tessellation::gather() {
@@ -214,14 +254,15 @@ void tessellation::emit_faces(const TopoDS_Shape &shape, TopAbs_ShapeEnum unless
 /** The names of the bodies of a part that has several stand behind its own, as materials do. */
 void tessellation::emit_instance(const instance &placed, uint32_t number) {
   const part &p = parts[placed.part];
-  if (!placed.name.empty() || tagger.named)
-    vxm_parts_tag(&tagger, placed.name.c_str(), number);
+  const std::string &product = products[placed.product];
+  if (!product.empty() || tagger.named)
+    vxm_parts_tag(&tagger, product.c_str(), number);
   int bodies = 0;
   for (TopExp_Explorer body(p.shape, TopAbs_SOLID); body.More(); body.Next())
     bodies++;
   for (TopExp_Explorer body(p.shape, TopAbs_SOLID); body.More(); body.Next()) {
     TDF_Label label;
-    std::string name;
+    std::string name = placed.body;
     if (bodies > 1 && shapes->FindSubShape(p.label, body.Current(), label))
       name = name_of(label);
     if (!name.empty() || tagger.named)
@@ -237,12 +278,12 @@ void tessellation::emit_instance(const instance &placed, uint32_t number) {
 
 void tessellation::emit() {
   std::vector<const char *> names;
-  for (const instance &placed : instances)
-    names.push_back(placed.name.c_str());
+  for (const std::string &name : products)
+    names.push_back(name.c_str());
   std::vector<uint32_t> numbers(names.size());
   require(vxm_parts_number(numbers.data(), soup->context, names.data(), names.size(), error));
-  for (size_t i = 0; i < instances.size(); i++)
-    emit_instance(instances[i], numbers[i]);
+  for (const instance &placed : instances)
+    emit_instance(placed, numbers[placed.product]);
   if (soup->face_count == 0)
     vxm_tags_drop(soup);
 }

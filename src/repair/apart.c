@@ -6,23 +6,41 @@
  */
 #include "mesh/geometry.h"
 #include "mesh/weld.h"
+#include "repair/places.h"
 #include "repair/work.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 
 /** Of the diagonal: far below any tolerance, and far above the rounding of doubles. */
 static const double STEP = 1e-9;
+/** Of the shortest edge about a vertex at most, as far as the numbers allow it, for parts that are small. */
+static const double STEP_EDGE = 1e-8;
+/** Of the longest edge about a vertex: along all axes only if the step is no larger than this. */
+static const double FINE = 1e-6;
+/** Of the longest edge about a vertex: a larger step would deform the faces, and the vertex stays. */
+static const double COARSE = 1.0 / 64;
+/** Of the direction's length: along an axis that has less of it nothing has to change. */
+static const double AXIS = 0.2;
+
+typedef struct surroundings {
+  vxm_vec3 toward;          /**< sum of the directions to the middles of the faces */
+  double shortest, longest; /**< edges about the vertex */
+} surroundings;
 
 typedef struct moving {
   vxm_work *work;
   vxm_soup *soup;
-  uint32_t *map;    /**< vertex: the first one at its position */
-  uint8_t *shared;  /**< first vertex of a position: several are there that faces have */
-  vxm_vec3 *toward; /**< per vertex: sum of the directions to the middles of its faces */
-  uint32_t *part;   /**< per vertex, if parts are followed */
-  double step;
+  uint32_t *map;        /**< vertex: the first one at its position */
+  uint32_t *number;     /**< vertex: its place among those that share theirs, or VXM_NO_VERTEX */
+  surroundings *around; /**< of those */
+  size_t shared;        /**< how many those are */
+  double diagonal;
+  vxm_places places; /**< what is taken */
 } moving;
+
+/* ---- What lies around a vertex ---- */
 
 static vxm_vec3 middle_of(const vxm_soup *soup, const uint32_t *corner, size_t count) {
   vxm_vec3 sum = {0, 0, 0};
@@ -34,68 +52,166 @@ static vxm_vec3 middle_of(const vxm_soup *soup, const uint32_t *corner, size_t c
   return sum;
 }
 
+static void note_edge(surroundings *s, const double *p, const double *q) {
+  double length = vxm_vec3_length(vxm_vec3_between(p, q, 1));
+  if (length > 0)
+    s->shortest = s->shortest > 0 ? fmin(s->shortest, length) : length;
+  s->longest = fmax(s->longest, length);
+}
+
 static void look_around(moving *m) {
   for (size_t f = 0; f < m->soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(m->soup, f, &count);
     vxm_vec3 middle = middle_of(m->soup, corner, count);
     for (size_t i = 0; i < count; i++) {
-      uint32_t v = corner[i];
-      if (!m->shared[m->map[v]])
+      if (m->number[corner[i]] == VXM_NO_VERTEX)
         continue;
-      const double *p = vxm_position(m->soup, v);
+      surroundings *s = &m->around[m->number[corner[i]]];
+      const double *p = vxm_position(m->soup, corner[i]);
       vxm_vec3 d = {middle.x - p[0], middle.y - p[1], middle.z - p[2]};
       double length = vxm_vec3_length(d);
       if (length > 0)
-        m->toward[v] = (vxm_vec3){m->toward[v].x + d.x / length, m->toward[v].y + d.y / length,
-                                  m->toward[v].z + d.z / length};
-      if (m->part)
-        m->part[v] = m->soup->face_parts[f];
+        s->toward =
+            (vxm_vec3){s->toward.x + d.x / length, s->toward.y + d.y / length, s->toward.z + d.z / length};
+      note_edge(s, p, vxm_position(m->soup, corner[i + 1 < count ? i + 1 : 0]));
+      note_edge(s, p, vxm_position(m->soup, corner[i > 0 ? i - 1 : count - 1]));
     }
   }
 }
 
-/** How far a vertex moves: enough for the numbers that hold its position to differ. */
-static double step_of(const moving *m, const double p[3]) {
-  double most = fmax(fmax(fabs(p[0]), fabs(p[1])), fabs(p[2]));
-  return fmax(m->step,
-              most * (m->work->options.single_precision ? 8 * (double)FLT_EPSILON : 32 * DBL_EPSILON));
+/* ---- A place for a vertex ---- */
+
+/** What a vertex is to be moved by. */
+typedef struct moves {
+  double from[3], toward[3]; /**< toward: of length 1 */
+  double unit[3];            /**< along each axis: what the numbers that hold the position tell apart */
+  double step;               /**< how far to go, where they allow it */
+  double fine, coarse;
+} moves;
+
+/** The distance to the next number beyond x. */
+static double unit_of(const vxm_work *work, double x) {
+  x = fabs(x);
+  if (work->options.single_precision)
+    return (double)nextafterf((float)x, INFINITY) - x;
+  return 4 * (nextafter(x, INFINITY) - x);
 }
 
-/** @param turn how many at this position were moved before: where the faces lie alike, distances still differ
- */
-static void move(moving *m, uint32_t v, uint8_t turn) {
-  double *p = m->soup->positions + 3 * (size_t)v, from[3] = {p[0], p[1], p[2]};
-  vxm_vec3 d = m->toward[v];
-  double length = vxm_vec3_length(d), step = step_of(m, p) * (1 + (double)turn / 4);
-  if (!(length > 0)) {
-    d = (vxm_vec3){turn % 3 == 0, turn % 3 == 1, turn % 3 == 2};
-    length = 1;
+static moves moves_of(const moving *m, uint32_t v, const surroundings *s) {
+  const double *p = vxm_position(m->soup, v);
+  double length = vxm_vec3_length(s->toward);
+  moves by = {.step = fmin(STEP * m->diagonal, STEP_EDGE * s->shortest),
+              .fine = (vxm_work_reaches(m->work, VXM_LEVEL_SOLID) ? COARSE : FINE) * s->longest,
+              .coarse = COARSE * s->longest};
+  const double toward[3] = {s->toward.x, s->toward.y, s->toward.z};
+  for (int a = 0; a < 3; a++) {
+    by.from[a] = p[a];
+    by.toward[a] = length > 0 ? toward[a] / length : sqrt(1.0 / 3); /* any direction where there is none */
+    by.unit[a] = unit_of(m->work, p[a]);
   }
-  p[0] = vxm_work_round(m->work, p[0] + d.x / length * step);
-  p[1] = vxm_work_round(m->work, p[1] + d.y / length * step);
-  p[2] = vxm_work_round(m->work, p[2] + d.z / length * step);
-  if (m->part)
-    vxm_track_move(m->work->track, m->part[v], hypot(hypot(p[0] - from[0], p[1] - from[1]), p[2] - from[2]));
+  return by;
+}
+
+/** Whether a place is free, and no farther than `most` along each axis. */
+static bool fits(const moving *m, const moves *by, const double p[3], double most) {
+  for (int a = 0; a < 3; a++)
+    if (!(fabs(p[a] - by->from[a]) <= most))
+      return false;
+  return !vxm_places_taken(&m->places, p);
+}
+
+/** In the direction of the faces, so that what touched along an edge touches nowhere. */
+static bool find_along(const moving *m, const moves *by, double p[3]) {
+  for (int quarter = 4; quarter <= 12; quarter++) {
+    for (int a = 0; a < 3; a++) {
+      double step = by->step * quarter / 4 * fabs(by->toward[a]);
+      if (fabs(by->toward[a]) > AXIS)
+        step = fmax(step, by->unit[a] * (quarter / 4));
+      p[a] = vxm_work_round(m->work, by->from[a] + copysign(step, by->toward[a]));
+    }
+    if (fits(m, by, p, by->fine))
+      return true;
+  }
+  return false;
+}
+
+typedef struct nearby {
+  double p[3], distance;
+} nearby;
+
+static int by_distance(const void *a, const void *b) {
+  const nearby *p = a, *q = b;
+  return (p->distance > q->distance) - (p->distance < q->distance);
+}
+
+/** Where numbers are coarse: the nearest place that lies on the side of the faces, such as along the one axis
+ * on which they are fine. */
+static bool find_nearest(const moving *m, const moves *by, double p[3]) {
+  enum { STEPS = 4 };
+  nearby places[STEPS * STEPS * STEPS];
+  int count = 0;
+  for (int n = 1; n < STEPS * STEPS * STEPS; n++) {
+    const int steps[3] = {n % STEPS, n / STEPS % STEPS, n / STEPS / STEPS};
+    nearby *place = &places[count];
+    double along = 0, squared = 0;
+    for (int a = 0; a < 3; a++) {
+      double step = copysign(steps[a] * fmax(by->step, by->unit[a]), by->toward[a]);
+      place->p[a] = vxm_work_round(m->work, by->from[a] + step);
+      along += step * by->toward[a];
+      squared += step * step;
+    }
+    place->distance = sqrt(squared);
+    count += along >= AXIS * place->distance;
+  }
+  qsort(places, (size_t)count, sizeof *places, by_distance);
+  for (int i = 0; i < count; i++)
+    if (fits(m, by, places[i].p, by->coarse)) {
+      for (int a = 0; a < 3; a++)
+        p[a] = places[i].p[a];
+      return true;
+    }
+  return false;
+}
+
+/** Whether there is a place. */
+static bool move(moving *m, uint32_t v) {
+  const surroundings *s = &m->around[m->number[v]];
+  moves by = moves_of(m, v, s);
+  double to[3], *p = m->soup->positions + 3 * (size_t)v;
+  bool found = find_along(m, &by, to) || find_nearest(m, &by, to);
+  for (int a = 0; a < 3 && found; a++)
+    p[a] = to[a];
+  vxm_places_add(&m->places, v);
+  return found;
+}
+
+/* ---- All of them ---- */
+
+/** Numbers the vertices that share their position with another one that faces have. */
+static vxm_status list_shared(moving *m, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  size_t vertices = m->soup->vertex_count;
+  uint8_t *seen = vxm_work_scratch(m->work, vertices, sizeof *seen, &status, error);
+  for (size_t v = 0; seen && v < vertices; v++)
+    if (m->work->used[v] && seen[m->map[v]] < 2)
+      seen[m->map[v]]++;
+  for (size_t v = 0; seen && v < vertices; v++)
+    m->number[v] = m->work->used[v] && seen[m->map[v]] == 2 ? (uint32_t)m->shared++ : VXM_NO_VERTEX;
+  vxm_free(m->work->context, seen);
+  return status;
 }
 
 static int64_t move_all(moving *m) {
   int64_t moved = 0;
   size_t vertices = m->soup->vertex_count;
   for (size_t v = 0; v < vertices; v++)
-    if (m->work->used[v] && m->shared[m->map[v]] < 2)
-      m->shared[m->map[v]]++;
-  for (size_t v = 0; v < vertices; v++)
-    m->shared[v] = m->shared[v] == 2;
+    if (m->work->used[v])
+      vxm_places_add(&m->places, (uint32_t)v);
   look_around(m);
-  for (size_t v = 0; v < vertices; v++) {
-    uint8_t *turn = &m->shared[m->map[v]];
-    if (*turn == 0 || !m->work->used[v])
-      continue;
-    move(m, (uint32_t)v, *turn);
-    *turn = *turn < UINT8_MAX ? (uint8_t)(*turn + 1) : 1;
-    moved++;
-  }
+  for (size_t v = 0; v < vertices; v++)
+    if (m->number[v] != VXM_NO_VERTEX)
+      moved += move(m, (uint32_t)v);
   return moved;
 }
 
@@ -103,19 +219,22 @@ static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
   vxm_work *work = m->work;
   size_t vertices = m->soup->vertex_count;
   vxm_status status = VXM_OK;
-  m->shared = vxm_work_scratch(work, vertices, sizeof *m->shared, &status, error);
+  m->number = vxm_work_scratch(work, vertices, sizeof *m->number, &status, error);
   if (status == VXM_OK)
-    m->toward = vxm_work_scratch(work, vertices, sizeof *m->toward, &status, error);
-  if (status == VXM_OK && work->track && m->soup->face_parts)
-    m->part = vxm_work_scratch(work, vertices, sizeof *m->part, &status, error);
+    status = list_shared(m, error);
   if (status == VXM_OK)
+    m->around = vxm_work_scratch(work, m->shared, sizeof *m->around, &status, error);
+  if (status == VXM_OK && m->shared > 0)
+    status = vxm_places_open(&m->places, m->soup, vertices + m->shared, error);
+  if (status == VXM_OK && m->shared > 0)
     *moved = move_all(m);
-  vxm_free(work->context, m->part);
-  vxm_free(work->context, m->toward);
-  vxm_free(work->context, m->shared);
+  vxm_places_close(&m->places);
+  vxm_free(work->context, m->around);
+  vxm_free(work->context, m->number);
   return status;
 }
 
+/** What finds no place stays, for the verification to find. */
 vxm_status vxm_pass_apart(vxm_work *work, bool *changed, vxm_error *error) {
   *changed = false;
   if (!vxm_work_reaches(work, VXM_LEVEL_MANIFOLD))
@@ -124,7 +243,7 @@ vxm_status vxm_pass_apart(vxm_work *work, bool *changed, vxm_error *error) {
   vxm_work_extent(work, &extent);
   const double *b = extent.bounds;
   moving m = {
-      .work = work, .soup = work->soup, .step = STEP * hypot(hypot(b[3] - b[0], b[4] - b[1]), b[5] - b[2])};
+      .work = work, .soup = work->soup, .diagonal = hypot(hypot(b[3] - b[0], b[4] - b[1]), b[5] - b[2])};
   vxm_status status = VXM_OK;
   int64_t moved = 0;
   size_t distinct, vertices = work->soup->vertex_count;
@@ -135,6 +254,7 @@ vxm_status vxm_pass_apart(vxm_work *work, bool *changed, vxm_error *error) {
     status = move_shared(&m, &moved, error);
   vxm_free(work->context, m.map);
   work->counts[VXM_PASS_APART] += moved;
+  work->together = (int64_t)m.shared - moved;
   *changed = moved > 0;
   return status;
 }

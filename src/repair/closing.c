@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/cgal.h"
+#include "repair/fans.h"
 #include "repair/fill_fans.h"
 #include "repair/openmesh.h"
 
@@ -108,12 +109,26 @@ static vxm_status call_module(vxm_soup **out, uint64_t **origin, vxm_work *work,
   return status;
 }
 
+/** What the modules fill has to be a manifold, which it is from that level on. */
+static vxm_status check_manifold(vxm_work *work, vxm_error *error) {
+  bool manifold;
+  vxm_status status = vxm_is_manifold(&manifold, work, error);
+  if (status != VXM_OK || manifold)
+    return status;
+  return vxm_fail(
+      error, VXM_ERROR_ARGUMENT,
+      "some edge has more than two faces, or some vertex more than one fan: only --fill fan works there; "
+      "choose that, or --level manifold");
+}
+
 /** Fills all but sheets, which stay as they are. */
 static vxm_status fill_by_module(vxm_work *work, const uint8_t *sheets, size_t most, bool *changed,
                                  vxm_error *error) {
   vxm_soup *rest, *filled = NULL;
   uint64_t *numbers, *origin = NULL;
-  vxm_status status = take_faces(&rest, &numbers, work, sheets, 0, error);
+  vxm_status status = check_manifold(work, error);
+  if (status == VXM_OK)
+    status = take_faces(&rest, &numbers, work, sheets, 0, error);
   if (status != VXM_OK)
     return status;
   status = call_module(&filled, &origin, work, rest, most, error);

@@ -4,7 +4,7 @@
 #include "mesh/duplicates.h"
 #include "mesh/weld.h"
 #include "meshio/meshio.h"
-#include "repair/cgal.h"
+#include "repair/crossings.h"
 #include "repair/fans.h"
 
 #include <string.h>
@@ -88,8 +88,8 @@ static bool find_degenerate(finding *f) {
 static bool find_duplicates(finding *f) {
   vxm_duplicates found;
   uint8_t *marks = vxm_calloc(f->work.context, f->soup->face_count, 1, &f->error);
-  bool done =
-      marks && vxm_duplicates_find(&found, f->work.context, f->work.soup, NULL, marks, &f->error) == VXM_OK;
+  bool done = marks && vxm_duplicates_find(&found, f->work.context, f->work.soup, NULL, marks, NULL,
+                                           &f->error) == VXM_OK;
   for (size_t i = 0; done && i < f->soup->face_count; i++)
     if (marks[i])
       done = enter_face(f, VXM_DEFECT_DUPLICATE_FACE, i);
@@ -138,11 +138,9 @@ static bool find_vertices(finding *f) {
 }
 
 static bool find_intersections(finding *f) {
-  const vxm_cgal *cgal;
-  vxm_face_pairs pairs = {0};
-  size_t most = f->most < SIZE_MAX ? f->most : f->soup->face_count * 8;
-  bool done = vxm_cgal_open(&cgal, "looking for self-intersections", &f->error) == VXM_OK &&
-              cgal->self_intersections(&pairs, f->work.soup, most, &f->error) == VXM_OK;
+  vxm_face_pairs pairs;
+  /* all are counted, whatever is listed */
+  bool done = vxm_crossings_find(&pairs, f->work.soup, VXM_CROSSINGS_MOST, &f->error) == VXM_OK;
   for (size_t i = 0; done && i < pairs.count; i++) {
     vxm_defect defect = {.kind = VXM_DEFECT_SELF_INTERSECTION,
                          .element = {(int64_t)pairs.pairs[i].first, (int64_t)pairs.pairs[i].second}};
@@ -166,6 +164,8 @@ static bool find(finding *f, bool intersections) {
            : kind == VXM_DEFECT_NONMANIFOLD_VERTEX ? find_vertices(f)
            : kind == VXM_DEFECT_SELF_INTERSECTION  ? !intersections || find_intersections(f)
                                                    : find_edges(f, kind);
+    f->defects->totals[kind] =
+        kind == VXM_DEFECT_SELF_INTERSECTION && !intersections ? -1 : (int64_t)f->of_kind;
   }
   return done;
 }

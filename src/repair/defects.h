@@ -9,7 +9,8 @@ struct vxm_defects {
   vxm_context *context; /**< one reference held */
   vxm_defect *items;
   size_t count, capacity;
-  size_t vertex_count, face_count; /**< of the mesh */
+  size_t vertex_count, face_count;  /**< of the mesh */
+  int64_t totals[VXM_DEFECT_KINDS]; /**< found, listed or not; -1 = not looked for */
 };
 
 /** vxm_mesh_defects; `most` is 0 for all. */

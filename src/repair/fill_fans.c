@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/fill_fans.h"
 
-#include "base/hash.h"
 #include "mesh/components.h"
 #include "mesh/geometry.h"
 #include "repair/caps.h"
+#include "repair/places.h"
 #include "repair/sides.h"
 
 #include <string.h>
@@ -115,42 +115,10 @@ static bool is_wanted(const closing *c, size_t loop) {
 
 /* ---- New vertices: none may have the position of another one, or welding would merge them ---- */
 
-typedef struct place_table {
-  uint32_t *slots; /**< vertex + 1, or 0 */
-  size_t mask;
-} place_table;
-
-static uint64_t hash_position(const double p[3]) {
-  uint64_t hash = 0;
-  for (int a = 0; a < 3; a++) {
-    double value = p[a] + 0.0; /* of both zeros the positive one */
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    hash = vxm_hash_word(hash, bits);
-  }
-  return hash;
-}
-
-/** The slot of a position: that of the vertex that has it, or a free one. */
-static size_t find_slot(const place_table *places, const vxm_soup *soup, const double p[3]) {
-  size_t slot = (size_t)hash_position(p) & places->mask;
-  for (; places->slots[slot] != 0; slot = (slot + 1) & places->mask) {
-    const double *q = vxm_position(soup, places->slots[slot] - 1);
-    if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
-      break;
-  }
-  return slot;
-}
-
-static void enter(place_table *places, const vxm_soup *soup, uint32_t vertex) {
-  places->slots[find_slot(places, soup, vxm_position(soup, vertex))] = vertex + 1;
-}
-
 /** Moves a taken position a little and a little more toward a vertex, until it is free. */
-static void find_free(const vxm_work *work, const place_table *places, const vxm_soup *soup, double p[3],
-                      const double *toward) {
+static void find_free(const vxm_work *work, const vxm_places *places, double p[3], const double *toward) {
   double from[3] = {p[0], p[1], p[2]}, part = 0x1p-12;
-  for (int tries = 0; tries < 64 && places->slots[find_slot(places, soup, p)] != 0; tries++, part *= 1.25)
+  for (int tries = 0; tries < 64 && vxm_places_taken(places, p); tries++, part *= 1.25)
     for (int a = 0; a < 3; a++)
       p[a] = vxm_work_round(work, from[a] + part * (toward[a] - from[a]));
 }
@@ -187,12 +155,19 @@ static bool make_room(closing *c, size_t faces, size_t points) {
       return false;
     soup->face_parts = parts;
   }
+  if (c->work->turned) {
+    uint8_t *turned = vxm_realloc(soup->context, c->work->turned, total, sizeof *turned, &c->error);
+    if (!turned)
+      return false;
+    memset(turned + soup->face_count, VXM_ADDED, faces);
+    c->work->turned = turned;
+  }
   return grow_marks(c, soup->vertex_count + points);
 }
 
 /** Adds the cap of a loop, of which there is room; `first` is the number that new vertices were planned
  * from. */
-static void add_cap(closing *c, place_table *places, size_t loop, size_t first) {
+static void add_cap(closing *c, vxm_places *places, size_t loop, size_t first) {
   vxm_soup *soup = c->soup;
   size_t begin = c->loops.begin[loop], planned = first + c->points[loop], number = soup->vertex_count;
   for (size_t k = c->points[loop]; k < c->points[loop + 1]; k++) {
@@ -202,9 +177,9 @@ static void add_cap(closing *c, place_table *places, size_t loop, size_t first) 
     const double *toward = vxm_position(soup, c->loops.vertex[begin]);
     if (memcmp(toward, p, 3 * sizeof *p) == 0) /* any other place on the rim does as well */
       toward = vxm_position(soup, c->loops.vertex[begin + 1]);
-    find_free(c->work, places, soup, p, toward);
+    find_free(c->work, places, p, toward);
     memcpy(soup->positions + 3 * soup->vertex_count, p, 3 * sizeof *p);
-    enter(places, soup, (uint32_t)soup->vertex_count++);
+    vxm_places_add(places, (uint32_t)soup->vertex_count++);
   }
   for (size_t t = c->triangles[loop]; t < c->triangles[loop + 1]; t++) {
     size_t beside = c->edge_face[c->loops.edge[begin]];
@@ -221,7 +196,7 @@ static void add_cap(closing *c, place_table *places, size_t loop, size_t first) 
 }
 
 static bool add_caps(closing *c) {
-  size_t faces = 0, points = 0, first = c->soup->vertex_count, slots = 64;
+  size_t faces = 0, points = 0, first = c->soup->vertex_count;
   for (size_t l = 0; l < c->loops.count; l++)
     if (is_wanted(c, l)) {
       faces += c->triangles[l + 1] - c->triangles[l];
@@ -229,19 +204,18 @@ static bool add_caps(closing *c) {
     }
   if (faces == 0)
     return true;
-  while (slots < 2 * (first + points))
-    slots *= 2;
-  place_table places = {allocate(c, slots, sizeof *places.slots), slots - 1};
-  bool ready = places.slots && make_room(c, faces, points);
+  vxm_places places;
+  bool ready =
+      vxm_places_open(&places, c->soup, first + points, &c->error) == VXM_OK && make_room(c, faces, points);
   if (ready) {
     for (size_t v = 0; v < first && points > 0; v++)
-      enter(&places, c->soup, (uint32_t)v);
+      vxm_places_add(&places, (uint32_t)v);
     for (size_t l = 0; l < c->loops.count; l++)
       if (is_wanted(c, l))
         add_cap(c, &places, l, first);
     c->work->counts[VXM_PASS_CLOSING] += (int64_t)faces;
   }
-  vxm_free(c->work->context, places.slots);
+  vxm_places_close(&places);
   return ready;
 }
 

@@ -6,8 +6,9 @@ static int64_t mark_vertices(vxm_work *work) {
   int64_t count = 0;
   for (size_t v = 0; v < work->soup->vertex_count; v++)
     if (!vxm_is_finite(vxm_position(work->soup, v))) {
+      count += !work->gone[v];
       work->gone[v] = 1;
-      count++;
+      vxm_work_note_vertex(work, VXM_PASS_NONFINITE, v);
     }
   return count;
 }

@@ -293,6 +293,18 @@ static bool orient(orienting *o) {
   return turn_outward(o);
 }
 
+/** Notes which faces run the other way than when they came in, by this pass and those before. */
+static bool note_turned(orienting *o, bool *changed) {
+  vxm_work *work = o->work;
+  for (size_t f = 0; f < o->soup->face_count && !*changed; f++)
+    *changed = o->turn[f];
+  if (*changed && !work->turned)
+    work->turned = allocate(o, o->soup->face_count, sizeof *work->turned);
+  for (size_t f = 0; f < o->soup->face_count && *changed && work->turned; f++)
+    work->turned[f] ^= o->turn[f];
+  return !*changed || work->turned;
+}
+
 /**
  * Turns faces: consistent within a patch, and patches that are closed or nearly so outward. A patch inside
  * another one that was wound against it is a cavity and stays so. Patches that only together are consistent
@@ -309,13 +321,9 @@ vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error)
   orienting o = {
       .work = work, .soup = work->soup, .error = VXM_ERROR_INIT, .frame = vxm_frame_of(extent.bounds)};
   bool done = orient(&o);
-  int64_t turned = 0;
   work->nonorientable = 0;
-  for (size_t f = 0; done && f < work->soup->face_count; f++) {
-    turned += o.turn[f];
-    if (o.turn[f] && work->track && work->soup->face_parts)
-      vxm_track_turn(work->track, work->soup->face_parts[f]);
-  }
+  if (done)
+    done = note_turned(&o, changed);
   for (size_t i = 0; done && i < o.patch_count; i++)
     work->nonorientable += o.patches[i].conflicts > 0;
   vxm_free(work->context, o.patches);
@@ -329,9 +337,7 @@ vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error)
       *error = o.error;
     return o.error.code;
   }
-  work->counts[VXM_PASS_ORIENTATION] += turned;
-  *changed = turned > 0;
-  if (turned > 0)
+  if (*changed)
     vxm_work_touch(work);
   return VXM_OK;
 }

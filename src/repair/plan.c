@@ -4,7 +4,6 @@
 #include "mesh/census.h"
 #include "repair/work.h"
 
-#include <inttypes.h>
 #include <math.h>
 
 static const char *const names[VXM_PASS_COUNT] = {
@@ -26,46 +25,23 @@ static const char *const names[VXM_PASS_COUNT] = {
     [VXM_PASS_UNUSED] = "unused_vertices",
 };
 
-static vxm_status check_options(vxm_repair_options *chosen, const vxm_repair_options *options,
-                                vxm_error *error) {
-  *chosen = (vxm_repair_options)VXM_REPAIR_OPTIONS_INIT;
-  if (!options)
-    return VXM_OK;
-  *chosen = *options;
-  if (options->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "repair: options version %" PRIu32 " is unknown; use the initializer", options->version);
-  if (options->weld != VXM_WELD_AUTO && options->weld != VXM_WELD_OFF && options->weld != VXM_WELD_TOLERANCE)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: %d is no way of welding", (int)options->weld);
-  if (!isfinite(options->weld_tolerance) || options->weld_tolerance < 0)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a weld tolerance of %g; it must be 0 or more",
-                    options->weld_tolerance);
-  if (options->level < VXM_LEVEL_CLEAN || options->level > VXM_LEVEL_SOLID || options->fill < VXM_FILL_FAN ||
-      options->fill > VXM_FILL_SMOOTH)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: level %d or fill %d is unknown", (int)options->level,
-                    (int)options->fill);
-  if (options->keep_orientation && options->level > VXM_LEVEL_CLEAN)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "repair: a level above clean turns faces; leave out keep_orientation");
-  if (!(options->wrap_alpha >= 0 && options->wrap_alpha <= 1) ||
-      !(options->wrap_offset >= 0 && options->wrap_offset <= 1))
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "repair: wrap %g, %g; both are fractions of the diagonal, 0 to 1", options->wrap_alpha,
-                    options->wrap_offset);
-  if (!(options->max_change >= 0) || !isfinite(options->max_change))
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
-                    options->max_change);
-  if (options->drop_faces < 0 || !(options->drop_volume >= 0))
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "repair: parts below %" PRId64 " faces or a volume of %g; both must be 0 or more",
-                    options->drop_faces, options->drop_volume);
-  return VXM_OK;
-}
-
 static vxm_status run_pass(vxm_work *work, vxm_pass_fn pass, double fraction, bool *changed,
                            vxm_error *error) {
   vxm_status status = vxm_progress(work->context, "repairing", fraction, error);
   return status == VXM_OK ? pass(work, changed, error) : status;
+}
+
+enum { ROUNDS_MAX = 8 };
+
+static const vxm_pass_fn round_passes[] = {vxm_pass_repeated_corners, vxm_pass_zero_area, vxm_pass_duplicates,
+                                           vxm_pass_tolerant_weld};
+enum { PASSES = sizeof round_passes / sizeof *round_passes };
+
+/** How much these have done so far. */
+static int64_t count_round(const vxm_work *work) {
+  return work->counts[VXM_PASS_REPEATED_CORNERS] + work->counts[VXM_PASS_ZERO_AREA] +
+         work->counts[VXM_PASS_DUPLICATES] + work->counts[VXM_PASS_OPPOSITE_DUPLICATES] +
+         work->counts[VXM_PASS_TOLERANT_WELD];
 }
 
 /**
@@ -74,19 +50,16 @@ static vxm_status run_pass(vxm_work *work, vxm_pass_fn pass, double fraction, bo
  * doubled faces hide them, and faces without area may bridge them.
  */
 static vxm_status run_until_quiet(vxm_work *work, vxm_error *error) {
-  static const vxm_pass_fn round[] = {vxm_pass_repeated_corners, vxm_pass_zero_area, vxm_pass_duplicates,
-                                      vxm_pass_tolerant_weld};
-  enum { PASSES = sizeof round / sizeof *round };
   /* a given tolerance applies to the mesh as it is */
   int next = work->options.weld == VXM_WELD_TOLERANCE ? PASSES - 1 : 0, quiet = 0;
   double fraction = 0.3;
   while (quiet < PASSES) {
     bool changed;
-    vxm_status status = run_pass(work, round[next], fraction, &changed, error);
+    vxm_status status = run_pass(work, round_passes[next], fraction, &changed, error);
     if (status != VXM_OK)
       return status;
     /* welding may leave work to itself: a vertex that is no longer in the way lets others merge */
-    bool settled = round[next] != vxm_pass_tolerant_weld;
+    bool settled = round_passes[next] != vxm_pass_tolerant_weld;
     quiet = changed ? settled : quiet + 1;
     next = (next + 1) % PASSES;
     fraction += (0.9 - fraction) / 8;
@@ -94,43 +67,131 @@ static vxm_status run_until_quiet(vxm_work *work, vxm_error *error) {
   return VXM_OK;
 }
 
-/** The passes that a level or an option asks for; each does nothing where none does. */
-static vxm_status run_further(vxm_work *work, vxm_error *error) {
-  static const struct {
-    vxm_pass_fn pass;
-    bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{vxm_pass_unused, false}, {vxm_pass_wrap, false},       {vxm_pass_separation, true},
-                 {vxm_pass_closing, true}, {vxm_pass_small_parts, true}, {vxm_pass_union, false},
-                 {vxm_pass_apart, true},   {vxm_pass_unused, false}};
-  enum { FURTHER = sizeof further / sizeof *further };
+/** The passes that make work for each other, once more; `changed`: they had some. */
+static vxm_status settle_again(vxm_work *work, bool *changed, vxm_error *error) {
+  int64_t before = count_round(work);
+  bool turned;
+  vxm_status status = work->track ? vxm_track_start(work->track, work->soup, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = run_until_quiet(work, error);
+  *changed = status == VXM_OK && count_round(work) > before;
+  if (!*changed)
+    return status;
+  if (work->track)
+    vxm_track_settle(work->track, work->soup);
+  return vxm_pass_orientation(work, &turned, error);
+}
+
+/** Separation, and what else it makes room for: where faces were cut apart others may come together. */
+static vxm_status separate_until_quiet(vxm_work *work, bool *changed, vxm_error *error) {
+  bool more = true;
   vxm_status status = VXM_OK;
-  for (int i = 0; i < FURTHER && status == VXM_OK; i++) {
-    bool changed;
-    status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, &changed, error);
-    if (status == VXM_OK && changed && further[i].turns)
-      status = run_pass(work, vxm_pass_orientation, 0.9 + 0.1 * i / FURTHER, &changed, error);
+  *changed = false;
+  for (int round = 0; round < ROUNDS_MAX && more && status == VXM_OK; round++) {
+    bool turned;
+    status = vxm_pass_separation(work, &more, error);
+    if (status != VXM_OK || !more)
+      break;
+    *changed = true;
+    status = vxm_pass_orientation(work, &turned, error);
+    if (status == VXM_OK)
+      status = settle_again(work, &more, error);
   }
   return status;
 }
 
+static vxm_status move_apart(vxm_work *work, bool *changed, vxm_error *error) {
+  vxm_status status = work->track ? vxm_track_start(work->track, work->soup, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = vxm_pass_apart(work, changed, error);
+  if (status == VXM_OK && work->track)
+    vxm_track_settle(work->track, work->soup);
+  return status;
+}
+
+/** The passes that a level or an option asks for; each does nothing where none does. `moved`: vertices were
+ * moved apart. */
+static vxm_status run_level(vxm_work *work, bool *moved, vxm_error *error) {
+  static const struct {
+    vxm_pass_fn pass;
+    bool turns; /**< what it changes may be turned otherwise */
+  } further[] = {{separate_until_quiet, true}, {vxm_pass_closing, true},     {vxm_pass_small_parts, true},
+                 {vxm_pass_union, false},      {vxm_pass_separation, false}, {move_apart, true},
+                 {vxm_pass_reunion, false},    {vxm_pass_separation, false}, {move_apart, true}};
+  enum { FURTHER = sizeof further / sizeof *further };
+  vxm_status status = VXM_OK;
+  *moved = false;
+  for (int i = 0; i < FURTHER && status == VXM_OK; i++) {
+    bool changed, turned;
+    status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, &changed, error);
+    *moved = *moved || (changed && further[i].pass == move_apart);
+    if (status == VXM_OK && changed && further[i].turns)
+      status = run_pass(work, vxm_pass_orientation, 0.9 + 0.1 * i / FURTHER, &turned, error);
+  }
+  return status;
+}
+
+/** What was moved apart may let vertices merge that were not to before, which opens nothing but takes
+ * vertices away. */
+static vxm_status run_further(vxm_work *work, vxm_error *error) {
+  bool changed, again = true;
+  vxm_status status = vxm_pass_unused(work, &changed, error);
+  if (status == VXM_OK)
+    status = run_pass(work, vxm_pass_wrap, 0.9, &changed, error);
+  for (int round = 0; round < ROUNDS_MAX && again && status == VXM_OK; round++) {
+    status = run_level(work, &again, error);
+    if (status == VXM_OK && again)
+      status = settle_again(work, &again, error);
+  }
+  return status == VXM_OK ? vxm_pass_unused(work, &changed, error) : status;
+}
+
+/** What comes once: for .stl, polygons are cleaned before they become triangles and are rounded. */
+static vxm_status run_first(vxm_work *work, vxm_error *error) {
+  static const vxm_pass_fn first[] = {vxm_pass_nonfinite,  vxm_pass_exact_weld, vxm_pass_repeated_corners,
+                                      vxm_pass_duplicates, vxm_pass_rounding,   vxm_pass_exact_weld};
+  enum { FIRST = sizeof first / sizeof *first, PLAIN = 2 };
+  vxm_status status = VXM_OK;
+  int passes = work->options.single_precision ? FIRST : PLAIN;
+  for (int i = 0; i < passes && status == VXM_OK; i++) {
+    bool changed;
+    status = run_pass(work, first[i], 0.25 * i / passes, &changed, error);
+  }
+  return status;
+}
+
+/** Faces that run the other way in the end than when they came in. */
+static void count_turned(vxm_work *work) {
+  for (size_t f = 0; f < work->soup->face_count && work->turned; f++) {
+    if (work->turned[f] != VXM_TURNED)
+      continue;
+    vxm_work_note_face(work, VXM_PASS_ORIENTATION, f);
+    work->counts[VXM_PASS_ORIENTATION]++;
+    if (work->track && work->soup->face_parts)
+      vxm_track_turn(work->track, work->soup->face_parts[f]);
+  }
+}
+
 static vxm_status run_passes(vxm_work *work, vxm_error *error) {
   bool changed;
-  vxm_status status = run_pass(work, vxm_pass_rounding, 0.0, &changed, error);
-  if (status == VXM_OK)
-    status = run_pass(work, vxm_pass_nonfinite, 0.0, &changed, error);
-  if (status == VXM_OK)
-    status = run_pass(work, vxm_pass_exact_weld, 0.1, &changed, error);
+  vxm_status status = run_first(work, error);
   if (status == VXM_OK)
     status = run_until_quiet(work, error);
   if (status == VXM_OK)
     status = run_pass(work, vxm_pass_orientation, 0.85, &changed, error);
+  if (status == VXM_OK && work->track && work->options.max_change > 0)
+    status = vxm_track_refer(work->track, work->soup, error);
   if (status == VXM_OK && work->track)
     vxm_track_settle(work->track, work->soup);
-  return status == VXM_OK ? run_further(work, error) : status;
+  if (status == VXM_OK)
+    status = run_further(work, error);
+  if (status == VXM_OK)
+    count_turned(work);
+  return status;
 }
 
 static bool keeps_account(const vxm_repair_options *options) {
-  return options->part_changes || options->max_change > 0;
+  return options->part_changes || options->max_change > 0 || options->intersections;
 }
 
 static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, vxm_error *error) {
@@ -145,8 +206,11 @@ static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, vxm_error *err
     status = run_passes(work, error);
   if (status == VXM_OK && work->track)
     status = vxm_track_finish(work->track, work->soup, work->options.max_change, error);
+  if (status == VXM_OK && work->options.intersections)
+    status = vxm_track_count_crossings(work->track, work->soup, work->crossings, error);
   vxm_work_touch(work);
   vxm_track_destroy(work->track);
+  vxm_free(work->context, work->turned);
   vxm_free(work->context, work->used);
   vxm_free(work->context, work->gone);
   return status;
@@ -157,8 +221,14 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   report->open_parts = work->open_parts;
   report->unfilled_holes = work->unfilled;
   report->ununited_parts = work->ununited;
-  for (size_t i = 0; i < work->soup->part_count; i++)
-    report->moved = fmax(report->moved, work->soup->part_changes[i].moved);
+  report->self_intersections_before = work->crossings[0];
+  report->self_intersections_after = work->crossings[1];
+  report->unparted_vertices = work->together;
+  for (size_t i = 0; i < work->soup->part_count; i++) {
+    const vxm_part_change *part = &work->soup->part_changes[i];
+    report->moved = fmax(report->moved, part->moved);
+    report->opened_parts += part->before.closed && part->after.faces > 0 && !part->after.closed;
+  }
   report->pass_count = VXM_PASS_COUNT;
   for (int pass = 0; pass < VXM_PASS_COUNT; pass++) {
     report->passes[pass].pass = names[pass];
@@ -166,29 +236,51 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   }
 }
 
+/** Repairs a copy; after a failure there is none. */
+static vxm_status repair(vxm_work *work, const vxm_soup *in, const vxm_repair_options *options,
+                         vxm_error *error) {
+  work->context = in->context;
+  vxm_status status = vxm_repair_check(&work->options, options, error);
+  if (status == VXM_OK)
+    status = vxm_soup_copy(&work->soup, in, error);
+  if (status == VXM_OK)
+    status = repair_copy(work, in, error);
+  if (status == VXM_OK)
+    return VXM_OK;
+  vxm_soup_destroy(work->soup);
+  work->soup = NULL;
+  return status;
+}
+
 vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                           const vxm_repair_options *options, vxm_error *error) {
   *out = NULL;
   vxm_repair_report made = {0};
-  vxm_work work = {.context = in->context};
-  vxm_status status = check_options(&work.options, options, error);
-  if (status == VXM_OK && report)
-    status = vxm_soup_census(&made.before, in, error);
+  vxm_work work = {.crossings = {-1, -1}};
+  vxm_status status = report ? vxm_soup_census(&made.before, in, error) : VXM_OK;
   if (status == VXM_OK)
-    status = vxm_soup_copy(&work.soup, in, error);
-  if (status == VXM_OK)
-    status = repair_copy(&work, in, error);
+    status = repair(&work, in, options, error);
   if (status == VXM_OK && report)
     status = vxm_soup_census(&made.after, work.soup, error);
-  if (status != VXM_OK) {
-    vxm_soup_destroy(work.soup);
-    work.soup = NULL;
-  } else
+  if (status == VXM_OK)
     list_passes(&made, &work);
+  else
+    vxm_soup_destroy(work.soup);
   if (report)
-    *report = made;
-  if (status != VXM_OK && report)
-    *report = (vxm_repair_report){0};
-  *out = work.soup;
+    *report = status == VXM_OK ? made : (vxm_repair_report){0};
+  *out = status == VXM_OK ? work.soup : NULL;
+  return status;
+}
+
+vxm_status vxm_repair_try(vxm_pass_finding findings[VXM_PASS_COUNT], const vxm_soup *in,
+                          const vxm_repair_options *options, vxm_error *error) {
+  vxm_work work = {0};
+  vxm_status status = repair(&work, in, options, error);
+  for (int pass = 0; pass < VXM_PASS_COUNT && status == VXM_OK; pass++) {
+    findings[pass] = work.firsts[pass];
+    findings[pass].pass = names[pass];
+    findings[pass].count = work.counts[pass];
+  }
+  vxm_soup_destroy(work.soup);
   return status;
 }

@@ -22,7 +22,7 @@
  *  - wrap: faces of the surface that was put around everything (repair/wrap.c)
  *  - separation: faces that were detached where a vertex or edge had too many (repair/separation.c)
  *  - closing: faces that were added to close holes (repair/closing.c)
- *  - union: parts that were united with others (repair/union.c)
+ *  - union: parts that were united with others, or cut along where they met (repair/union.c)
  *  - apart: vertices that were moved apart from others at the same position (repair/apart.c)
  *  - unused_vertices: vertices without a face, apart from those counted above
  * The passes in the middle are run until none of them changes anything, and their counts are sums. A pass
@@ -35,5 +35,8 @@
  */
 vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                           const vxm_repair_options *options, vxm_error *error);
+
+/** Checks options; NULL stands for the defaults. @return VXM_OK, VXM_ERROR_ARGUMENT */
+vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options *options, vxm_error *error);
 
 #endif

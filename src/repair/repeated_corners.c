@@ -57,7 +57,8 @@ vxm_status vxm_pass_repeated_corners(vxm_work *work, bool *changed, vxm_error *e
     size_t corners = (size_t)(soup->offsets[f + 1] - soup->offsets[f]), begin = 0;
     uint32_t *face = soup->indices + soup->offsets[f];
     if (needs_reducing(face, corners)) {
-      count++;
+      if (count++ == 0)
+        vxm_work_note_face(work, VXM_PASS_REPEATED_CORNERS, f);
       corners = reduce(face, corners, &begin);
       if (corners == 0)
         continue;
@@ -66,15 +67,13 @@ vxm_status vxm_pass_repeated_corners(vxm_work *work, bool *changed, vxm_error *e
       for (size_t i = 0; i < corners; i++)
         soup->indices[end + i] = face[begin + i];
       soup->offsets[kept] = end;
-      if (soup->face_tags)
-        soup->face_tags[kept] = soup->face_tags[f];
-      if (soup->face_parts)
-        soup->face_parts[kept] = soup->face_parts[f];
+      vxm_work_renumber(work, f, kept);
     }
     kept++;
     end += corners;
   }
   soup->offsets[kept] = end;
+  work->renumbered |= kept < soup->face_count;
   soup->face_count = kept;
   soup->corner_count = end;
   work->counts[VXM_PASS_REPEATED_CORNERS] += count;

@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "repair/work.h"
+/**
+ * Takes a soup to what .stl files hold: triangles between positions of 32-bit floats, so that everything else
+ * sees what will be written.
+ */
+#include "repair/split.h"
 
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
 
-/** Moves vertices to the nearest positions that 32-bit floats hold, before anything else looks at them. */
-vxm_status vxm_pass_rounding(vxm_work *work, bool *changed, vxm_error *error) {
+/** Moves the vertices of faces to the nearest positions that 32-bit floats hold. */
+static vxm_status round_positions(vxm_work *work, vxm_error *error) {
   vxm_soup *soup = work->soup;
-  *changed = false;
-  if (!work->options.single_precision)
-    return VXM_OK;
-  int64_t moved = 0;
+  vxm_extent extent;
+  vxm_work_extent(work, &extent);
   for (size_t v = 0; v < soup->vertex_count; v++) {
     double *p = soup->positions + 3 * v;
     bool same = true;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3 && work->used[v]; a++) {
       if (isfinite(p[a]) && fabs(p[a]) > (double)FLT_MAX)
         return vxm_fail_at(
             error, VXM_ERROR_RANGE, (vxm_place){NULL, 0, -1, (int64_t)v},
@@ -24,9 +26,23 @@ vxm_status vxm_pass_rounding(vxm_work *work, bool *changed, vxm_error *error) {
       same = same && (rounded == p[a] || isnan(p[a]));
       p[a] = rounded;
     }
-    moved += !same;
+    if (!same)
+      vxm_work_note_vertex(work, VXM_PASS_ROUNDING, v);
+    work->counts[VXM_PASS_ROUNDING] += !same;
   }
-  work->counts[VXM_PASS_ROUNDING] += moved;
-  *changed = moved > 0;
   return VXM_OK;
+}
+
+/** Before it, faces have been reduced, and of those that repeat others one is left: triangles would hide
+ * that. */
+vxm_status vxm_pass_rounding(vxm_work *work, bool *changed, vxm_error *error) {
+  *changed = false;
+  if (!work->options.single_precision)
+    return VXM_OK;
+  int64_t before = work->counts[VXM_PASS_ROUNDING];
+  vxm_status status = vxm_split_polygons(work, false, error);
+  if (status == VXM_OK)
+    status = round_positions(work, error);
+  *changed = work->counts[VXM_PASS_ROUNDING] > before;
+  return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/fans.h"
 #include "repair/separate.h"
+#include "repair/split.h"
 
 /** The separated soup has the faces of the present one, in their order. */
 static vxm_status adopt(vxm_work *work, vxm_soup *soup, vxm_error *error) {
@@ -17,7 +18,8 @@ static vxm_status adopt(vxm_work *work, vxm_soup *soup, vxm_error *error) {
 
 /**
  * Makes the faces a manifold: cuts them apart, on vertices of their own at the same positions, where an edge
- * or vertex has too many. No face is lost. What is manifold already stays as it is.
+ * or vertex has too many. No face is lost; a
+ * polygon that touches itself becomes triangles. What is manifold already stays as it is.
  */
 vxm_status vxm_pass_separation(vxm_work *work, bool *changed, vxm_error *error) {
   *changed = false;
@@ -29,7 +31,9 @@ vxm_status vxm_pass_separation(vxm_work *work, bool *changed, vxm_error *error) 
     return status;
   vxm_soup *soup;
   int64_t split, stitched;
-  status = vxm_separate(&soup, &split, &stitched, work->soup, error);
+  status = vxm_split_polygons(work, true, error);
+  if (status == VXM_OK)
+    status = vxm_separate(&soup, &split, &stitched, work->soup, error);
   if (status != VXM_OK)
     return status;
   work->counts[VXM_PASS_SEPARATION] += split;

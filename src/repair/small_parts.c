@@ -65,6 +65,9 @@ static vxm_status drop(dropping *d, bool *changed, vxm_error *error) {
     return status;
   for (size_t f = 0; f < faces; f++)
     remove[f] = d->label[f] != largest && is_small(d, &d->parts[d->label[f]]);
+  for (size_t f = 0; f < faces && work->track && work->soup->face_parts; f++)
+    if (remove[f])
+      vxm_track_drop(work->track, work->soup->face_parts[f]);
   int64_t count = vxm_work_remove_faces(work, remove);
   work->counts[VXM_PASS_SMALL_PARTS] += count;
   *changed = count > 0;

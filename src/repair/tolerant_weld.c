@@ -4,6 +4,7 @@
 #include "mesh/geometry.h"
 #include "mesh/near.h"
 #include "mesh/sort.h"
+#include "repair/net_merge.h"
 #include "repair/torn.h"
 
 #include <string.h>
@@ -140,6 +141,24 @@ static vxm_status move_to_middle(vxm_work *work, const uint32_t *map, vxm_error 
   return VXM_OK;
 }
 
+/** Merges, if anything is to be, and if that helps; `torn`: to the middle. */
+static vxm_status merge(vxm_work *work, const uint32_t *map, bool torn, int64_t *count, vxm_error *error) {
+  bool helps = false;
+  for (size_t v = 0; v < work->soup->vertex_count && !helps; v++)
+    helps = map[v] != v && !work->gone[v];
+  if (!helps)
+    return VXM_OK;
+  vxm_status status = vxm_merge_helps(&helps, work, map, error);
+  if (status != VXM_OK || !helps)
+    return status;
+  vxm_work_note_merge(work, VXM_PASS_TOLERANT_WELD, map);
+  if (torn)
+    status = move_to_middle(work, map, error);
+  if (status == VXM_OK)
+    *count = vxm_work_merge(work, map);
+  return status;
+}
+
 /**
  * Merges near vertices: with a given tolerance wherever vxm_weld_near merges them, else only where that
  * closes cracks, and where there is none of the usual kind, in soups that were torn apart. As a merged group
@@ -159,12 +178,13 @@ vxm_status vxm_pass_tolerant_weld(vxm_work *work, bool *changed, vxm_error *erro
     status = weld_all(work, map, error);
   else
     status = weld_cracks(work, map, error);
-  int64_t count = status == VXM_OK ? vxm_work_merge(work, map) : 0;
+  int64_t count = 0;
+  if (status == VXM_OK)
+    status = merge(work, map, false, &count, error);
   if (status == VXM_OK && count == 0 && work->options.weld == VXM_WELD_AUTO) {
     status = vxm_torn_match(work, map, error);
     if (status == VXM_OK)
-      status = move_to_middle(work, map, error);
-    count = status == VXM_OK ? vxm_work_merge(work, map) : 0;
+      status = merge(work, map, true, &count, error);
   }
   if (status == VXM_OK) {
     work->counts[VXM_PASS_TOLERANT_WELD] += count;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/verify.h"
 
+#include "mesh/weld.h"
 #include "meshio/meshio.h"
-#include "repair/cgal.h"
+#include "repair/crossings.h"
 #include "repair/fans.h"
-#include "repair/repair.h"
 #include "repair/sides.h"
 
 #include <string.h>
@@ -12,7 +12,7 @@
 typedef struct verifying {
   vxm_verification *out;
   const vxm_repair_options *options;
-  vxm_work work; /**< the mesh after welding and another repair */
+  vxm_work work; /**< the mesh after welding, its faces and vertices numbered as they were */
 } verifying;
 
 static void add(verifying *v, const char *what, int64_t count, int64_t element, const double *at) {
@@ -25,37 +25,37 @@ static void add(verifying *v, const char *what, int64_t count, int64_t element, 
   v->out->remains[i].what = what;
   v->out->remains[i].count = count;
   v->out->remains[i].element = element;
+  v->out->remains[i].placed = at != NULL;
   for (int a = 0; a < 3; a++)
     v->out->remains[i].at[a] = at ? at[a] : 0;
 }
 
-/* ---- Clean ---- */
+/* ---- Nothing left to do ---- */
 
-/** A pass that would do something to the mesh again. Those that only number vertices anew do not count: a
- * file may hold a vertex for every corner. */
-static void add_passes(verifying *v, const vxm_repair_report *report) {
-  static const char *const numbering[] = {"exact_weld", "unused_vertices", NULL};
-  for (int i = 0; i < report->pass_count; i++) {
-    bool skip = false;
-    for (int n = 0; numbering[n]; n++)
-      skip = skip || strcmp(report->passes[i].pass, numbering[n]) == 0;
-    if (!skip)
-      add(v, report->passes[i].pass, report->passes[i].count, -1, NULL);
-  }
+/** Passes that only number vertices anew do not count: a file may hold a vertex for every corner. Nor do
+ * those that cut apart what a look at edges and vertices has found. */
+static bool is_counted(int pass) {
+  return pass != VXM_PASS_EXACT_WELD && pass != VXM_PASS_UNUSED && pass != VXM_PASS_SEPARATION &&
+         pass != VXM_PASS_APART;
 }
 
-static vxm_status verify_clean(verifying *v, const vxm_soup *soup, vxm_error *error) {
+/** What another repair would do. */
+static vxm_status verify_rest(verifying *v, const vxm_soup *soup, vxm_error *error) {
   vxm_repair_options again = *v->options;
-  again.level = VXM_LEVEL_CLEAN;
-  again.fill_holes = 0;
-  again.unite = again.part_changes = false;
-  again.wrap_alpha = again.wrap_offset = again.max_change = 0;
-  if (v->options->level > VXM_LEVEL_CLEAN || v->options->wrap_alpha > 0)
-    again.weld = VXM_WELD_OFF; /* what was cut apart lies near and is not to be joined again */
-  vxm_repair_report report;
-  vxm_status status = vxm_repair_run(&v->work.soup, &report, soup, &again, error);
-  if (status == VXM_OK)
-    add_passes(v, &report);
+  if (again.level > VXM_LEVEL_MANIFOLD)
+    again.level = VXM_LEVEL_MANIFOLD;
+  again.fill_holes = again.drop_faces = 0;
+  again.fill = VXM_FILL_FAN;
+  again.unite = again.part_changes = again.intersections = false;
+  if (again.wrap_alpha > 0)
+    again.weld = VXM_WELD_OFF; /* the mesh was welded before it was wrapped, not after */
+  again.wrap_alpha = again.wrap_offset = again.max_change = again.drop_volume = 0;
+  vxm_pass_finding found[VXM_PASS_COUNT];
+  vxm_status status = vxm_repair_try(found, soup, &again, error);
+  for (int pass = 0; pass < VXM_PASS_COUNT && status == VXM_OK; pass++)
+    if (is_counted(pass))
+      add(v, found[pass].pass, found[pass].count, found[pass].placed ? found[pass].element : -1,
+          found[pass].placed ? found[pass].at : NULL);
   return status;
 }
 
@@ -129,21 +129,62 @@ static vxm_status verify_manifold(verifying *v, vxm_error *error) {
 
 /* ---- Solid ---- */
 
-enum { PAIRS_MOST = 1000 };
+static void add_face(verifying *v, const char *what, int64_t count, size_t first) {
+  size_t corners;
+  const uint32_t *corner = vxm_face(v->work.soup, first, &corners);
+  add(v, what, count, (int64_t)first, vxm_position(v->work.soup, corner[0]));
+}
+
+/** Faces that look into the solid: what is outward and what bounds a cavity follows from where the parts lie.
+ */
+static vxm_status verify_outward(verifying *v, vxm_error *error) {
+  const vxm_soup *soup = v->work.soup;
+  const vxm_cgal *cgal;
+  vxm_soup *turned = NULL;
+  int64_t count = 0;
+  vxm_status status = vxm_cgal_open(&cgal, "looking for the outside", error);
+  if (status == VXM_OK)
+    status = cgal->orient(&turned, &count, soup, error);
+  for (size_t f = 0; status == VXM_OK && count > 0 && f < soup->face_count; f++)
+    if (memcmp(soup->indices + soup->offsets[f], turned->indices + soup->offsets[f],
+               (size_t)(soup->offsets[f + 1] - soup->offsets[f]) * sizeof *soup->indices) != 0) {
+      add_face(v, "inward_faces", count, f);
+      break;
+    }
+  vxm_soup_destroy(turned);
+  return status;
+}
 
 static vxm_status verify_solid(verifying *v, vxm_error *error) {
-  const vxm_cgal *cgal;
-  vxm_face_pairs pairs = {0};
-  vxm_status status = vxm_cgal_open(&cgal, "looking for self-intersections", error);
-  if (status == VXM_OK)
-    status = cgal->self_intersections(&pairs, v->work.soup, PAIRS_MOST, error);
-  if (status == VXM_OK && pairs.count > 0) {
-    size_t count;
-    const uint32_t *corner = vxm_face(v->work.soup, pairs.pairs[0].first, &count);
-    add(v, "self_intersections", (int64_t)pairs.count, (int64_t)pairs.pairs[0].first,
-        vxm_position(v->work.soup, corner[0]));
-  }
+  vxm_face_pairs pairs;
+  vxm_status status = vxm_crossings_find(&pairs, v->work.soup, VXM_CROSSINGS_MOST, error);
+  if (status == VXM_OK && pairs.count > 0)
+    add_face(v, "self_intersections", (int64_t)pairs.count, pairs.pairs[0].first);
   vxm_free(v->work.context, pairs.pairs);
+  return status == VXM_OK && v->out->reached ? verify_outward(v, error) : status;
+}
+
+/** A copy that a program makes which welds: positions that are the same are one vertex, the first one. */
+static vxm_status weld(verifying *v, const vxm_soup *soup, vxm_error *error) {
+  vxm_status status = vxm_soup_copy(&v->work.soup, soup, error);
+  if (status != VXM_OK)
+    return status;
+  uint32_t *map = vxm_work_scratch(&v->work, soup->vertex_count, sizeof *map, &status, error);
+  if (status == VXM_OK)
+    status = vxm_weld_exact(soup->context, soup->positions, soup->vertex_count, map, NULL, error);
+  for (size_t c = 0; c < soup->corner_count && status == VXM_OK; c++)
+    v->work.soup->indices[c] = map[soup->indices[c]];
+  vxm_free(soup->context, map);
+  return status;
+}
+
+static vxm_status verify_level(verifying *v, const vxm_soup *soup, vxm_error *error) {
+  vxm_level level = v->options->level;
+  vxm_status status = level >= VXM_LEVEL_MANIFOLD ? weld(v, soup, error) : VXM_OK;
+  if (status == VXM_OK && level >= VXM_LEVEL_MANIFOLD)
+    status = verify_manifold(v, error);
+  if (status == VXM_OK && level >= VXM_LEVEL_SOLID)
+    status = verify_solid(v, error);
   return status;
 }
 
@@ -151,13 +192,13 @@ vxm_status vxm_verify(vxm_verification *out, const vxm_soup *soup, const vxm_rep
                       vxm_error *error) {
   *out = (vxm_verification){.reached = true};
   verifying v = {.out = out, .options = options, .work = {.context = soup->context, .options = *options}};
-  vxm_status status = verify_clean(&v, soup, error);
-  if (status == VXM_OK && v.work.soup->face_count == 0)
+  vxm_status status = VXM_OK;
+  if (soup->face_count == 0)
     add(&v, "no_faces", 1, -1, NULL);
-  else if (status == VXM_OK && options->level >= VXM_LEVEL_MANIFOLD)
-    status = verify_manifold(&v, error);
-  if (status == VXM_OK && v.work.soup->face_count > 0 && options->level >= VXM_LEVEL_SOLID)
-    status = verify_solid(&v, error);
+  else
+    status = verify_level(&v, soup, error);
+  if (status == VXM_OK)
+    status = verify_rest(&v, soup, error);
   vxm_work_touch(&v.work);
   vxm_soup_destroy(v.work.soup);
   if (status != VXM_OK)
@@ -179,18 +220,25 @@ static const char *level_name(vxm_level level) {
   return names[level];
 }
 
+static const char *advice(const vxm_repair_options *repair) {
+  if (repair->level == VXM_LEVEL_CLEAN)
+    return repair->single_precision ? "write another format than stl, or take what there is (--best-effort)"
+                                    : "repair the result again, or take what there is (--best-effort)";
+  if (repair->level == VXM_LEVEL_MANIFOLD)
+    return "choose --level clean, or take what there is (--best-effort)";
+  return "choose a lower --level, fill or drop what is in the way (--fill-holes, --drop-parts), go around it "
+         "(--wrap), or take what there is (--best-effort)";
+}
+
 static vxm_status check(const vxm_soup *read_back, void *payload, vxm_error *error) {
   const checking *c = payload;
   vxm_status status = vxm_verify(c->out, read_back, c->repair, error);
   if (status != VXM_OK || c->out->reached || c->best_effort)
     return status;
-  return vxm_fail(error, VXM_ERROR_UNREACHED,
-                  "%s: the level %s is not reached: %lld %s remain%s; choose a lower level, fill, drop or "
-                  "wrap what is in "
-                  "the way, or take the best effort",
+  return vxm_fail(error, VXM_ERROR_UNREACHED, "%s: the level %s is not reached: %lld %s remain%s; %s",
                   strcmp(c->path, "-") == 0 ? "<stdout>" : c->path, level_name(c->repair->level),
                   (long long)c->out->remains[0].count, c->out->remains[0].what,
-                  c->out->count > 1 ? ", and more" : "");
+                  c->out->count > 1 ? ", and more" : "", advice(c->repair));
 }
 
 vxm_status vxm_write_verified(vxm_verification *out, const vxm_soup *soup, const char *path,

@@ -35,6 +35,39 @@ void vxm_work_extent(vxm_work *work, vxm_extent *extent) {
   vxm_extent_of(extent, work->context, work->soup, work->used);
 }
 
+/* ---- The first of what a pass changes ---- */
+
+static void note(vxm_pass_finding *first, int64_t element, const double *p) {
+  first->placed = true;
+  first->element = element;
+  for (int a = 0; a < 3; a++)
+    first->at[a] = p[a];
+}
+
+void vxm_work_note_vertex(vxm_work *work, vxm_pass pass, size_t vertex) {
+  if (!work->firsts[pass].placed)
+    note(&work->firsts[pass], (int64_t)vertex, vxm_position(work->soup, vertex));
+}
+
+void vxm_work_note_face(vxm_work *work, vxm_pass pass, size_t face) {
+  size_t count;
+  const uint32_t *corner = vxm_face(work->soup, face, &count);
+  if (!work->firsts[pass].placed && count > 0)
+    note(&work->firsts[pass], work->renumbered ? -1 : (int64_t)face, vxm_position(work->soup, corner[0]));
+}
+
+void vxm_work_note_merge(vxm_work *work, vxm_pass pass, const uint32_t *map) {
+  for (size_t v = 0; v < work->soup->vertex_count && !work->firsts[pass].placed; v++)
+    if (map[v] != v && !work->gone[v])
+      vxm_work_note_vertex(work, pass, v);
+}
+
+void vxm_work_note_marked(vxm_work *work, vxm_pass pass, const uint8_t *marks) {
+  for (size_t f = 0; f < work->soup->face_count && !work->firsts[pass].placed; f++)
+    if (marks[f])
+      vxm_work_note_face(work, pass, f);
+}
+
 /* ---- Merging vertices ---- */
 
 enum { CORNERS_PER_SLICE = 1 << 16 };
@@ -73,6 +106,16 @@ int64_t vxm_work_merge(vxm_work *work, const uint32_t *map) {
 
 /* ---- Removing faces ---- */
 
+void vxm_work_renumber(vxm_work *work, size_t from, size_t to) {
+  vxm_soup *soup = work->soup;
+  if (soup->face_tags)
+    soup->face_tags[to] = soup->face_tags[from];
+  if (soup->face_parts)
+    soup->face_parts[to] = soup->face_parts[from];
+  if (work->turned)
+    work->turned[to] = work->turned[from];
+}
+
 int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove) {
   vxm_soup *soup = work->soup;
   size_t kept = 0, corners = 0;
@@ -84,10 +127,7 @@ int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove) {
     if (kept < f) {
       memmove(soup->indices + corners, soup->indices + begin, count * sizeof *soup->indices);
       soup->offsets[kept] = corners;
-      if (soup->face_tags)
-        soup->face_tags[kept] = soup->face_tags[f];
-      if (soup->face_parts)
-        soup->face_parts[kept] = soup->face_parts[f];
+      vxm_work_renumber(work, f, kept);
     }
     kept++;
     corners += count;
@@ -96,8 +136,10 @@ int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove) {
   soup->offsets[kept] = corners;
   soup->face_count = kept;
   soup->corner_count = corners;
-  if (removed > 0)
+  if (removed > 0) {
+    work->renumbered = true;
     vxm_work_touch(work);
+  }
   return removed;
 }
 
@@ -133,6 +175,20 @@ static vxm_status take_tags(vxm_work *work, vxm_soup *soup, const uint64_t *orig
   return status;
 }
 
+/** Which faces were turned goes on with them. */
+static vxm_status take_turned(vxm_work *work, const vxm_soup *soup, const uint64_t *origin,
+                              vxm_error *error) {
+  if (!work->turned)
+    return VXM_OK;
+  vxm_status status = VXM_OK;
+  uint8_t *turned = vxm_work_scratch(work, soup->face_count, sizeof *turned, &status, error);
+  for (size_t f = 0; turned && f < soup->face_count; f++)
+    turned[f] = origin && origin[f] != VXM_NO_FACE ? work->turned[origin[f]] : VXM_ADDED;
+  vxm_free(work->context, work->turned);
+  work->turned = turned;
+  return status;
+}
+
 static vxm_status renew_marks(vxm_work *work, size_t vertices, vxm_error *error) {
   vxm_status status = VXM_OK;
   vxm_free(work->context, work->gone);
@@ -146,6 +202,8 @@ static vxm_status renew_marks(vxm_work *work, size_t vertices, vxm_error *error)
 
 vxm_status vxm_work_adopt(vxm_work *work, vxm_soup *soup, uint64_t *origin, vxm_error *error) {
   vxm_status status = origin ? take_tags(work, soup, origin, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = take_turned(work, soup, origin, error);
   vxm_free(work->context, origin);
   if (status != VXM_OK) {
     vxm_soup_destroy(soup);
@@ -153,6 +211,7 @@ vxm_status vxm_work_adopt(vxm_work *work, vxm_soup *soup, uint64_t *origin, vxm_
   }
   for (size_t i = 0; i < 3 * soup->vertex_count; i++)
     soup->positions[i] = vxm_work_round(work, soup->positions[i]);
+  work->renumbered = true;
   soup->format = work->soup->format;
   soup->notes = work->soup->notes;
   vxm_work_touch(work);

@@ -27,21 +27,41 @@ typedef enum vxm_pass {
   VXM_PASS_COUNT
 } vxm_pass;
 
+/** What a pass would change, or has changed. */
+typedef struct vxm_pass_finding {
+  const char *pass;
+  int64_t count;
+  int64_t element; /**< of the first one: the number that a vertex or face came in with; -1 = not known */
+  bool placed;     /**< `at` is set */
+  double at[3];    /**< where the first one is */
+} vxm_pass_finding;
+
+/** What has become of a face. */
+enum vxm_turned {
+  VXM_TURNED = 1, /**< it runs the other way than when it came in */
+  VXM_ADDED = 2   /**< it did not come in */
+};
+
 /** A soup under repair. Vertices keep their numbers until the last pass removes those that are not used. */
 typedef struct vxm_work {
   vxm_soup *soup;
   vxm_context *context;
   vxm_repair_options options;
-  uint8_t *gone; /**< vertex_count; 1 = removed or merged by a pass that counted it */
-  uint8_t *used; /**< vertex_count; scratch of vxm_work_extent */
+  uint8_t *gone;   /**< vertex_count; 1 = removed or merged by a pass that counted it */
+  uint8_t *used;   /**< vertex_count; scratch of vxm_work_extent */
+  uint8_t *turned; /**< face_count, or NULL as long as no face was turned: see vxm_turned */
   bool has_edges;
   vxm_edges edges; /**< of the present faces, if has_edges */
   int64_t counts[VXM_PASS_COUNT];
-  int64_t nonorientable; /**< patches, in the last pass of orientation */
-  int64_t open_parts;    /**< that the last pass of closing left open */
-  int64_t unfilled;      /**< holes that were to be filled and could not be */
-  int64_t ununited;      /**< parts that were to be united and could not be */
-  vxm_track *track;      /**< what becomes of the parts, or NULL */
+  vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
+  bool renumbered;                         /**< faces have other numbers than they came in with */
+  int64_t nonorientable;                   /**< patches, in the last pass of orientation */
+  int64_t open_parts;                      /**< that the last pass of closing left open */
+  int64_t unfilled;                        /**< holes that were to be filled and could not be */
+  int64_t ununited;     /**< parts that were to be united and still cut through themselves or others */
+  int64_t crossings[2]; /**< self-intersections before and after, or -1 */
+  int64_t together;     /**< vertices that were to be moved apart and could not be */
+  vxm_track *track;     /**< what becomes of the parts, or NULL */
 } vxm_work;
 
 /** Runs a pass, adds to the counts and says whether it changed anything. */
@@ -60,6 +80,7 @@ vxm_status vxm_pass_separation(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_small_parts(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_union(vxm_work *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_reunion(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_apart(vxm_work *work, bool *changed, vxm_error *error);
 vxm_status vxm_pass_unused(vxm_work *work, bool *changed, vxm_error *error);
 
@@ -72,6 +93,8 @@ void vxm_work_extent(vxm_work *work, vxm_extent *extent);
 /** Puts map[v] in the place of each corner v; vertices that lose their place are marked gone. Returns how
  * many were not gone before. */
 int64_t vxm_work_merge(vxm_work *work, const uint32_t *map);
+/** Moves what is known of a face, beside its corners, to the number `to`, which is not above `from`. */
+void vxm_work_renumber(vxm_work *work, size_t from, size_t to);
 /** Takes out the faces marked in `remove` (face_count elements), keeping the order of the others. Returns how
  * many. */
 int64_t vxm_work_remove_faces(vxm_work *work, const uint8_t *remove);
@@ -93,7 +116,22 @@ static inline double vxm_work_round(const vxm_work *work, double x) {
 static inline bool vxm_work_reaches(const vxm_work *work, vxm_level level) {
   return work->options.level >= level;
 }
+/** Says that a pass changes a vertex or a face, if it is the first one of the pass. */
+void vxm_work_note_vertex(vxm_work *work, vxm_pass pass, size_t vertex);
+void vxm_work_note_face(vxm_work *work, vxm_pass pass, size_t face);
+/** The first vertex with map[v] != v, if there is one. */
+void vxm_work_note_merge(vxm_work *work, vxm_pass pass, const uint32_t *map);
+/** The first face with a mark, if there is one. */
+void vxm_work_note_marked(vxm_work *work, vxm_pass pass, const uint8_t *marks);
 /** Says that faces have changed: what was derived from them is dropped. */
 void vxm_work_touch(vxm_work *work);
+
+/**
+ * Repairs a copy, and tells what there was to do, without a census.
+ *
+ * @return as vxm_repair_run
+ */
+vxm_status vxm_repair_try(vxm_pass_finding findings[VXM_PASS_COUNT], const vxm_soup *in,
+                          const vxm_repair_options *options, vxm_error *error);
 
 #endif

@@ -17,12 +17,16 @@ vxm_status vxm_pass_wrap(vxm_work *work, bool *changed, vxm_error *error) {
   double offset = work->options.wrap_offset > 0 ? work->options.wrap_offset * diagonal : alpha / 30;
   const vxm_cgal *cgal;
   vxm_soup *soup;
+  uint64_t *nearest;
   vxm_status status = vxm_cgal_open(&cgal, "wrapping a mesh", error);
   if (status == VXM_OK)
-    status = cgal->wrap(&soup, work->soup, alpha, offset, error);
+    status = cgal->wrap(&soup, &nearest, work->soup, alpha, offset, error);
   if (status != VXM_OK)
     return status;
   work->counts[VXM_PASS_WRAP] += (int64_t)soup->face_count;
   *changed = true;
-  return vxm_work_adopt(work, soup, NULL, error);
+  /* The tags are those of what lies beneath; parts are no longer told apart. */
+  vxm_free(work->context, work->soup->face_parts);
+  work->soup->face_parts = NULL;
+  return vxm_work_adopt(work, soup, nearest, error);
 }

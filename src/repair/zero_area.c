@@ -152,6 +152,8 @@ vxm_status vxm_pass_zero_area(vxm_work *work, bool *changed, vxm_error *error) {
     status = choose(&r, error);
     for (size_t f = 0; f < work->soup->face_count; f++)
       r.flat[f] = r.flat[f] == 2;
+    if (status == VXM_OK)
+      vxm_work_note_marked(work, VXM_PASS_ZERO_AREA, r.flat);
     int64_t count = status == VXM_OK ? vxm_work_remove_faces(work, r.flat) : 0;
     work->counts[VXM_PASS_ZERO_AREA] += count;
     *changed = count > 0;

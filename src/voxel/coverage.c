@@ -177,6 +177,22 @@ static void sum_up(vxm_coverage_report *report, const reduction *r, const vxm_sp
   vxm_model_end(model, &report->voxelize, subvoxels, 0);
 }
 
+vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
+                             vxm_layout layout, bool is_whole, const vxm_coverage_options *options,
+                             vxm_error *error) {
+  vxm_space finer;
+  vxm_status status = finer_space(&finer, space, options->subdivision, error);
+  if (status != VXM_OK)
+    return status;
+  size_t workers = (size_t)vxm_context_threads(model->context);
+  size_t row_words = vxm_window_of(&finer, layout, 0, 0).row_words;
+  size_t values =
+      (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * vxm_scalar_bytes(options->scalar);
+  size_t scratch = workers * (2 * row_words * sizeof(uint64_t) + sizeof(tally));
+  return vxm_field_plan_of(out, model, &finer, layout, options->subdivision, scratch, is_whole ? 0 : values,
+                           error);
+}
+
 vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_coverage_options *options, vxm_error *error) {
   vxm_context *context = model->context;
@@ -191,13 +207,12 @@ vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report 
   vxm_status status = finer_space(&finer, space, n, error);
   if (status != VXM_OK)
     return status;
-  size_t row_words = vxm_window_of(&finer, layout, 0, 0).row_words;
-  size_t value_bytes = target->whole ? 0 : (size_t)(r.row_length * r.rows) * vxm_scalar_bytes(r.scalar);
-  size_t scratch = (size_t)workers * (2 * row_words * sizeof *r.sums + sizeof *r.tallies);
   vxm_field_plan plan;
-  status = vxm_field_plan_of(&plan, model, &finer, layout, n, scratch, value_bytes, error);
+  status = vxm_coverage_plan(&plan, model, space, layout, target->whole != NULL, options, error);
   if (status != VXM_OK)
     return status;
+  size_t row_words = plan.bits.row_words;
+  size_t value_bytes = target->whole ? 0 : (size_t)(r.row_length * r.rows) * vxm_scalar_bytes(r.scalar);
   vxm_error local = VXM_ERROR_INIT;
   vxm_window fine = plan.bits;
   fine.words = vxm_alloc(context, (size_t)(plan.slices * n) * fine.slice_words, sizeof *fine.words, &local);

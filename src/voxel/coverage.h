@@ -16,4 +16,9 @@
 vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_coverage_options *options, vxm_error *error);
 
+/** How vxm_coverage_run goes about it; `is_whole`: the values are the caller's. Windows are of sub-voxels. */
+vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
+                             vxm_layout layout, bool is_whole, const vxm_coverage_options *options,
+                             vxm_error *error);
+
 #endif

@@ -278,25 +278,36 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
   return status;
 }
 
+vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
+                             vxm_layout layout, bool is_whole, const vxm_distance_options *options,
+                             vxm_error *error) {
+  const vxm_soup *soup = model->shape.soup;
+  size_t triangles;
+  uint64_t held = vxm_surface_held_bytes(soup, &triangles);
+  uint64_t workers = (uint64_t)vxm_context_threads(model->context);
+  uint64_t each =
+      vxm_nearest_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double) + sizeof(tally) + sizeof(void *);
+  uint64_t fixed =
+      held + vxm_nearest_bytes(triangles) + soup->vertex_count * sizeof(double[3]) + workers * each;
+  uint64_t values = (uint64_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(float);
+  return vxm_field_plan_of(out, model, space, layout, options->is_unsigned ? 0 : 1, fixed,
+                           is_whole ? 0 : values, error);
+}
+
 vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_distance_options *options, vxm_error *error) {
+  vxm_field_plan plan;
+  vxm_status status =
+      vxm_distance_plan(&plan, model, space, target->layout, target->whole != NULL, options, error);
+  if (status != VXM_OK)
+    return status;
   vxm_surface *surface;
   vxm_lattice lattice = vxm_lattice_of(space);
-  vxm_status status = vxm_surface_create(&surface, model->shape.soup, &lattice, NULL, error);
+  status = vxm_surface_create(&surface, model->shape.soup, &lattice, NULL, error);
   if (status != VXM_OK)
     return status;
   measure m = measure_of(model, surface, space, target->layout, options);
-  uint64_t workers = (uint64_t)vxm_context_threads(model->context);
-  uint64_t fixed = vxm_nearest_bytes(surface->triangle_count) +
-                   surface->soup->vertex_count * sizeof *m.places +
-                   workers * (vxm_nearest_search_bytes(surface->triangle_count) +
-                              VXM_TILE_POINTS * sizeof *m.squares + sizeof *m.tallies + sizeof *m.searches);
-  uint64_t value_bytes = target->whole ? 0 : (uint64_t)(m.dims[0] * m.dims[1]) * sizeof *m.values;
-  vxm_field_plan plan;
-  status =
-      vxm_field_plan_of(&plan, model, space, target->layout, m.is_signed ? 1 : 0, fixed, value_bytes, error);
-  if (status == VXM_OK)
-    status = make_nearest(&m, error);
+  status = make_nearest(&m, error);
   if (status == VXM_OK)
     status = run_planned(&m, target, report, space, &plan, error);
   vxm_nearest_destroy(m.nearest);

@@ -1,177 +1,36 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/nearest.h"
 #include "base/bits.h"
-#include "base/rng.h"
 #include "base/threads.h"
+#include "mesh/order.h"
 #include "voxel/kernels_x86.h"
 #include "voxel/nearest_tree.h"
 
 #include <math.h>
 #include <string.h>
 
-/** Three times the middle of a triangle, for sorting. */
-typedef struct item {
-  float at[3];
-  uint32_t triangle;
-} item;
-
-typedef struct range {
-  size_t begin, end;
-} range;
-
-enum {
-  RANGES = 64,      /**< that are sorted at the same time, at most */
-  ITEMS_MIN = 4096, /**< in a range that is worth a thread of its own */
-  SLICES = 64       /**< of triangles and packs, for the threads */
-};
+enum { SLICES = 64 /**< of triangles and packs, for the threads */ };
 
 typedef struct builder {
   vxm_nearest *tree;
   vxm_nearest_corners_fn corners;
   const void *payload;
-  item *items;
-  range ranges[RANGES];
-  size_t range_count;
+  vxm_spot *spots;       /**< the triangles, by three times their middles */
   double (*boxes)[2][3]; /**< of the packs, then of the families of one level after the other */
   int level;             /**< whose families are made */
 } builder;
 
-/* ---- Order ---- */
-
-static void make_items(size_t slice, int worker, void *payload) {
+static void make_spots(size_t slice, int worker, void *payload) {
   (void)worker;
   builder *b = payload;
   size_t end = vxm_slice_begin(b->tree->count, SLICES, slice + 1);
   for (size_t i = vxm_slice_begin(b->tree->count, SLICES, slice); i < end; i++) {
     double corner[3][3];
     b->corners(corner, i, b->payload);
-    b->items[i].triangle = (uint32_t)i;
+    b->spots[i].index = (uint32_t)i;
     for (int a = 0; a < 3; a++)
-      b->items[i].at[a] = (float)(corner[0][a] + corner[1][a] + corner[2][a]);
+      b->spots[i].at[a] = (float)(corner[0][a] + corner[1][a] + corner[2][a]);
   }
-}
-
-typedef float four __attribute__((vector_size(16)));
-typedef int32_t four_int __attribute__((vector_size(16)));
-
-static int widest_axis(const item *items, range r) {
-  /* An item as a vector; its number takes part, and is not looked at. */
-  four low, high;
-  memcpy(&low, &items[r.begin], sizeof low);
-  high = low;
-  for (size_t i = r.begin + 1; i < r.end; i++) {
-    four x;
-    memcpy(&x, &items[i], sizeof x);
-    four_int is_below = x<low, is_above = x> high;
-    low = (four)((is_below & (four_int)x) | (~is_below & (four_int)low));
-    high = (four)((is_above & (four_int)x) | (~is_above & (four_int)high));
-  }
-  four size = high - low;
-  int widest = 0;
-  for (int a = 1; a < 3; a++)
-    widest = size[a] > size[widest] ? a : widest;
-  return widest;
-}
-
-/** Moves the items below a bound, or up to it, to the front; returns where the others begin. */
-static size_t move_below(item *items, range r, int axis, float bound, bool with_bound) {
-  size_t end = r.begin;
-  for (size_t i = r.begin; i < r.end; i++) {
-    item at = items[i];
-    bool is_below = with_bound ? at.at[axis] <= bound : at.at[axis] < bound;
-    items[i] = items[end];
-    items[end] = at;
-    end += is_below;
-  }
-  return end;
-}
-
-/**
- * A bound that as large a part of a range as `part` should lie below, from a sample; a little to the inside,
- * so that what is sought ends up on the smaller side. The sample is taken by chance, as any regular one could
- * be led astray by the order of a file.
- */
-static float guess_bound(const item *items, range r, int axis, double part, vxm_rng *rng) {
-  enum { MOST = 33 };
-  float sample[MOST];
-  int samples = r.end - r.begin > 1024 ? MOST : r.end - r.begin > 64 ? 9 : 3;
-  for (int n = 0; n < samples; n++) {
-    float x = items[r.begin + vxm_rng_below(rng, r.end - r.begin)].at[axis];
-    int place = n;
-    for (; place > 0 && sample[place - 1] > x; place--)
-      sample[place] = sample[place - 1];
-    sample[place] = x;
-  }
-  int inside = samples / 16, rank = (int)(part * (samples - 1) + 0.5);
-  rank += part < 0.5 ? inside : -inside;
-  return sample[rank];
-}
-
-/** Moves the lesser items before place `half`. */
-static void halve(item *items, range r, size_t half, int axis, vxm_rng *rng) {
-  while (r.begin < half && half < r.end) {
-    float bound = guess_bound(items, r, axis, (double)(half - r.begin) / (double)(r.end - r.begin), rng);
-    size_t end = move_below(items, r, axis, bound, false);
-    if (end > half) {
-      r.end = end;
-      continue;
-    }
-    r.begin = end; /* what is left has items at the bound, which may be many */
-    end = move_below(items, r, axis, bound, true);
-    if (end >= half)
-      return;
-    r.begin = end;
-  }
-}
-
-/** Where to cut a range so that what lies before are full families. */
-static size_t half_of(range r) {
-  size_t child = VXM_PACK, count = r.end - r.begin;
-  while (child * VXM_PACK < count)
-    child *= VXM_PACK;
-  return r.begin + (count + child - 1) / child / 2 * child;
-}
-
-static range split(item *items, range *r) {
-  vxm_rng rng = {r->begin};
-  range rest = {half_of(*r), r->end};
-  halve(items, *r, rest.begin, widest_axis(items, *r), &rng);
-  r->end = rest.begin;
-  return rest;
-}
-
-static void sort_range(size_t task, int worker, void *payload) {
-  (void)worker;
-  builder *b = payload;
-  range stack[4 * VXM_NEAREST_LEVELS] = {b->ranges[task]}; /* three cuts in a level */
-  for (size_t depth = 1; depth > 0;) {
-    range *top = &stack[depth - 1];
-    if (top->end - top->begin <= VXM_PACK) {
-      depth--;
-      continue;
-    }
-    range rest = split(b->items, top);
-    stack[depth++] = rest;
-  }
-}
-
-static void split_range(size_t task, int worker, void *payload) {
-  (void)worker;
-  builder *b = payload;
-  range *r = &b->ranges[task];
-  b->ranges[b->range_count + task] =
-      r->end - r->begin > ITEMS_MIN ? split(b->items, r) : (range){r->end, r->end};
-}
-
-static void sort_items(builder *b, int threads) {
-  vxm_context *context = b->tree->context;
-  b->ranges[0] = (range){0, b->tree->count};
-  b->range_count = 1;
-  while (threads > 1 && 2 * b->range_count <= RANGES && b->range_count < 4 * (size_t)threads) {
-    vxm_parallel(context, b->range_count, split_range, b);
-    b->range_count *= 2;
-  }
-  vxm_parallel(context, b->range_count, sort_range, b);
 }
 
 /* ---- Packs ---- */
@@ -220,7 +79,7 @@ static void make_pack(builder *b, size_t at) {
   }
   for (size_t i = first; i < end; i++) {
     double corner[3][3];
-    b->corners(corner, b->items[i].triangle, b->payload);
+    b->corners(corner, b->spots[i].index, b->payload);
     vxm_triangle_make(&tree->triangles[i], (const double(*)[3])corner);
     for (int c = 0; c < 3; c++)
       grow(box, corner[c]);
@@ -279,7 +138,7 @@ static size_t families_of(size_t children) {
 
 uint64_t vxm_nearest_bytes(size_t count) {
   uint64_t packs = families_of(count), families = packs / 7 + VXM_NEAREST_LEVELS;
-  return count * (sizeof(vxm_triangle) + sizeof(item)) + packs * (sizeof(vxm_pack) + 6 * sizeof(double)) +
+  return count * (sizeof(vxm_triangle) + sizeof(vxm_spot)) + packs * (sizeof(vxm_pack) + 6 * sizeof(double)) +
          families * sizeof(vxm_family) + sizeof(vxm_nearest) + 4096;
 }
 
@@ -294,7 +153,7 @@ static void allocate(builder *b, vxm_error *error) {
     tree->family_count[tree->levels] = n = families_of(n);
     tree->families[tree->levels] = vxm_alloc(context, n, sizeof(vxm_family), error);
   }
-  b->items = vxm_alloc(context, tree->count, sizeof *b->items, error);
+  b->spots = vxm_alloc(context, tree->count, sizeof *b->spots, error);
   b->boxes = vxm_alloc(context, tree->pack_count, sizeof *b->boxes, error);
 }
 
@@ -310,15 +169,15 @@ vxm_status vxm_nearest_create(vxm_nearest **out, vxm_context *context, size_t co
     allocate(&b, &local);
   }
   if (local.code == VXM_OK) {
-    vxm_parallel(context, SLICES, make_items, &b);
-    sort_items(&b, vxm_context_threads(context));
+    vxm_parallel(context, SLICES, make_spots, &b);
+    vxm_order_spots(b.spots, count, context);
     vxm_parallel(context, SLICES, make_packs, &b);
     make_families(&b);
     *out = tree;
   } else if (error)
     *error = local;
   vxm_free(context, b.boxes);
-  vxm_free(context, b.items);
+  vxm_free(context, b.spots);
   if (local.code != VXM_OK)
     vxm_nearest_destroy(tree);
   return local.code;

@@ -24,17 +24,18 @@ bool vxm_one_voter(const vxm_voxelize_options *options) {
   return options->method != VXM_METHOD_VOTE && options->method != VXM_METHOD_WINDING;
 }
 
-size_t vxm_voted_begin(const vxm_shape *shape) {
-  bool all = shape->options->vote_always && !vxm_caps_wanted(shape->options);
-  return all ? 0 : kind_end(shape, VXM_PART_CAPPED);
-}
-
-/** Whether parts from `begin` on have cones, and so odd edges: without, all voters agree. */
+/** Whether parts from `begin` on have cones, and so odd edges. */
 static bool has_cones(const vxm_shape *shape, size_t begin) {
   for (size_t p = begin; p < shape->facets.split.part_count; p++)
     if (shape->facets.parts[p].cones < shape->facets.parts[p].end)
       return true;
   return false;
+}
+
+size_t vxm_voted_begin(const vxm_shape *shape) {
+  /* Where no edge is odd the axes agree (voxel/odd_edges.h), and there is nothing to vote on. */
+  bool all = shape->options->vote_always && !vxm_caps_wanted(shape->options) && has_cones(shape, 0);
+  return all ? 0 : kind_end(shape, VXM_PART_CAPPED);
 }
 
 int vxm_run_buffers(const vxm_shape *shape) {
@@ -43,9 +44,7 @@ int vxm_run_buffers(const vxm_shape *shape) {
   bool decide = vxm_caps_wanted(shape->options);
   if (vxm_voted_begin(shape) + 1 == shape->facets.split.part_count)
     return decide ? 1 : 0; /* one part: only what is contested */
-  if (!has_cones(shape, vxm_voted_begin(shape)))
-    return decide ? 2 : 1;
-  return 4;
+  return decide || has_cones(shape, vxm_voted_begin(shape)) ? 4 : 3;
 }
 
 bool vxm_run_apexes(const vxm_shape *shape) {
@@ -133,19 +132,13 @@ static vxm_status fill_voters(vxm_run *run, const vxm_window *window, size_t beg
                               const uint64_t *voters[VOTERS], vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t end = run->shape->facets.split.part_count;
-  bool agree = !has_cones(run->shape, begin);
   for (int v = 0; v < (tetra ? VOTERS : 3) && status == VXM_OK; v++) {
-    if (agree && v > 0) {
-      voters[v] = voters[0];
-      continue;
-    }
     vxm_window voter;
     status = vxm_run_buffer(run, VXM_BUFFER_VOTERS + v, window, &voter, error);
     /* Triangles and cones together are closed: any axis tells their parity. */
     unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
-    int axis = agree || v == 3 ? window->layout.fast : v;
     if (status == VXM_OK)
-      status = vxm_run_unite(run, &voter, axis, begin, end, roles, error);
+      status = vxm_run_unite(run, &voter, v == 3 ? window->layout.fast : v, begin, end, roles, error);
     voters[v] = voter.words;
   }
   return status;

@@ -113,8 +113,7 @@ vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, c
   return atomic_load(&job.is_off) ? check_used(surface, surface->soup, error) : VXM_OK;
 }
 
-vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
-                              const double transform[12], vxm_error *error) {
+vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *error) {
   *out = NULL;
   vxm_error local = VXM_ERROR_INIT;
   vxm_surface *surface = vxm_calloc(soup->context, 1, sizeof *surface, &local);
@@ -124,8 +123,6 @@ vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm
     surface->points = vxm_alloc(surface->context, soup->vertex_count, sizeof *surface->points, &local);
     status = surface->points ? list_triangles(surface, soup, &local) : local.code;
   }
-  if (status == VXM_OK)
-    status = vxm_surface_place(surface, lattice, transform, &local);
   if (status == VXM_OK) {
     *out = surface;
     return VXM_OK;
@@ -134,6 +131,18 @@ vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm
   if (error)
     *error = local;
   return local.code;
+}
+
+vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
+                              const double transform[12], vxm_error *error) {
+  vxm_status status = vxm_surface_make(out, soup, error);
+  if (status == VXM_OK)
+    status = vxm_surface_place(*out, lattice, transform, error);
+  if (status != VXM_OK) {
+    vxm_surface_destroy(*out);
+    *out = NULL;
+  }
+  return status;
 }
 
 void vxm_surface_destroy(vxm_surface *surface) {
@@ -188,11 +197,16 @@ vxm_status vxm_surface_add_sure(const vxm_surface *surface, const vxm_window *wh
   return status;
 }
 
-uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads) {
-  /* Points; corners, a place and, as tiles are listed in turn, some five entries for each triangle; the tiles
-   * and counters of the threads. */
-  uint64_t triangles = count_triangles(soup);
+uint64_t vxm_surface_held_bytes(const vxm_soup *soup, size_t *triangles) {
+  *triangles = count_triangles(soup);
   uint64_t corners = has_triangles_only(soup) ? 0 : 3 * sizeof(uint32_t);
-  return soup->vertex_count * sizeof(vxm_point) + triangles * (corners + 6 * sizeof(uint32_t)) +
-         ((uint64_t)threads + 6) * (UINT64_C(1) << 20);
+  return soup->vertex_count * sizeof(vxm_point) + *triangles * corners + sizeof(vxm_surface);
+}
+
+uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads) {
+  /* A place and, as tiles are listed in turn, some five entries for each triangle; the tiles
+   * and counters of the threads. */
+  size_t triangles;
+  uint64_t held = vxm_surface_held_bytes(soup, &triangles);
+  return held + triangles * 6 * sizeof(uint32_t) + ((uint64_t)threads + 6) * (UINT64_C(1) << 20);
 }

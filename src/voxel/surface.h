@@ -29,6 +29,8 @@ typedef struct vxm_surface {
  */
 vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
                               const double transform[12], vxm_error *error);
+/** The first half of that: cuts the polygons, as they lie now. Place the surface before it is used. */
+vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *error);
 /** Puts the same soup on another lattice, or elsewhere on it; the surface cannot be used if that fails.
  * Returns as vxm_surface_create. */
 vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
@@ -56,6 +58,8 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
 vxm_status vxm_surface_add_sure(const vxm_surface *surface, const vxm_window *whole, vxm_surface_kind kind,
                                 uint8_t *confidence, vxm_error *error);
 
+/** What a surface of so many triangles holds once it is made. */
+uint64_t vxm_surface_held_bytes(const vxm_soup *soup, size_t *triangles);
 /** What a surface takes at most, and what adding it takes meanwhile. */
 uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads);
 

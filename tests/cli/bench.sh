@@ -54,6 +54,13 @@ run 'same sparse --sparse'
 run 'a=$(voxels_of transform in/torus.off) b=$(voxels_of solid_vote in/torus.off)
   [ $((10 * (a - b))) -lt "$b" ] && [ $((10 * (b - a))) -lt "$b" ] && echo "a small turn changes little"'
 
+say "# variants, in three ways"
+run 'voxmend bench in/torus.off -r 16,8 --augment --time 0 --threads 1,2 | table'
+run 'voxmend bench in/torus.off -r 8 --phases augment_direct --displace 0.1 $quick --json | report | sed -n "/results/,/left_out/p"'
+run 'TMPDIR=$work/none voxmend bench in/torus.off -r 8 --augment $quick 2>&1 | sed "s|$work|W|; s|bench\..*:|bench.X:|"'
+run 'voxmend bench in/torus.off --augment --phases memset'
+run 'voxmend bench in/torus.off --augment --displace 0.7'
+
 say "# what does not fit or would take too long is left out"
 run 'voxmend bench in/cube.off -r 8,2048 --memlimit 8M $quick | table'
 run 'voxmend bench in/cube.off -r 2048 --memlimit 8M --phases memset,winding $quick'

@@ -42,4 +42,5 @@ OFF
 end
 run 'voxmend repair box.off -o closed.ply --level closed --fill minimal'
 run 'voxmend repair box.off -o closed.ply --ascii --fill-holes 4 --fill minimal --level manifold -q && cat closed.ply'
+run 'voxmend repair box.off -o closed.ply --fill-holes 4 --fill minimal'
 finish

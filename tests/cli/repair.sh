@@ -41,4 +41,15 @@ run 'voxmend repair in/torus.off -o out/x.off --memlimit 64K'
 run 'voxmend repair in/cube.off -o out/x.off --report no/such/r.json'
 run 'voxmend repair in/cube.off -o - --format off >/dev/full'
 run 'ls out'
+
+say "# what asks for a module says which one is missing"
+# without COMMAND...: voxmend where no module is installed
+without() {
+  VOXMEND_MODULES=$work/none "$VOXMEND" "$@"
+}
+run 'without repair in/cube.off -o a.ply --level closed -q'
+for option in '--level solid' --union '--wrap 0.1' --intersections; do
+  run "without repair in/cube.off -o a.ply $option"
+done
+run 'without info in/cube.off --intersections'
 finish

@@ -7,7 +7,7 @@ run 'voxmend --help'
 run 'voxmend --version'
 run 'voxmend --nonsense'
 run 'voxmend nonsense'
-for command in info repair voxelize convert compare view bench; do
+for command in info repair voxelize convert compare augment view bench; do
   run "voxmend $command --help"
 done
 
@@ -50,12 +50,12 @@ for option in '-r 0' '-r 8.5' '-r 8x8' '-r 8x8x8x8' '-r 8x8x' '-r 0x8' '-r -8' '
   '--voxel-size 0' '--voxel-size -1' '--voxel-size 1,5' '--voxel-size inf' '--voxel-size 0x1' '--voxel-size ""' \
   '--fit round' '--pad -1' '--pad 1.5' '--bounds 0,0,0,1,1' '--bounds 0,0,0,1,1,1,1' '--bounds 0,0,0,1,0,1' \
   '--bounds 0,0,0,1,1,nan' '--method w' '--vote most' '--parts some' '--weld near' \
-  '--coverage 3' '--surface shell9' '--hollow' '--scalar int' '--distance near' '--band -1' '--band x'; do
+  '--coverage 3' '--surface shell9' '--engine steam' '--hollow' '--scalar int' '--distance near' '--band -1' '--band x'; do
   run "voxmend voxelize in/cube.off -o x.npy $option"
 done
 for options in '-r 8 --voxel-size 1' '--like y.npy -r 8' '--like y.npy --pad 1' '--bounds 0,0,0,1,1,1 --pad 1' \
   '--bounds 0,0,0,1,1,1 --fit tight' '--method x --vote any' '--surface thin' '--mode solid --surface thin' '--mode both --surface shell6' '--no-repair --weld off' '--no-repair --keep-duplicates' \
-  '--coverage 4 --distance signed' '--scalar uint8' '--band 3' '--coverage 4 --confidence c.npy' '--distance signed --dry-run' \
+  '--coverage 4 --distance signed' '--scalar uint8' '--band 3' '--coverage 4 --confidence c.npy' '--labels part --dry-run' \
   '--distance unsigned --mode surface' '--coverage 2 --format rle'; do
   run "voxmend voxelize in/cube.off -o x.npy $options"
 done

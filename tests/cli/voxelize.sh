@@ -64,7 +64,11 @@ run 'voxmend voxelize in/rocket.off -o pieces.npy -r 600 --memlimit 14M --thread
 run 'cmp whole.npy pieces.npy'
 run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --memlimit 40M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
 run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --json --memlimit 40M --threads 2'
-run 'test -e not.npy || echo nothing written'
+run 'voxmend voxelize in/rocket.off -o not.npy -r 1000 --coverage 4 --dry-run --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
+run 'voxmend voxelize in/rocket.off -o not.npy -r 1000 --coverage 2 --scalar uint8 --dry-run --json --threads 2 | grep -A 4 estimate | sed "s/memory_bytes.: .*,/memory_bytes\": N,/"'
+run 'voxmend voxelize in/rocket.off -o not.nrrd -r 1000 --distance signed --dry-run --memlimit 60M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
+run 'voxmend voxelize in/rocket.off -o not.nrrd -r 1000 --distance unsigned --dry-run --memlimit 1M'
+run 'test -e not.npy || test -e not.nrrd || echo nothing written'
 
 say "# octrees and coordinates"
 for options in '' '--mode both' '--mode surface --surface thin' '--vote majority'; do

@@ -66,6 +66,13 @@ static void check_grid(vxm_context *context, vxm_rng *rng) {
       }
   assert_int_equal(vxm_grid_count(grid), count);
   assert_memory_equal(vxm_grid_space(grid), &space, sizeof space);
+  /* and back, into a grid that was full, from any bytes that are not 0 */
+  uint64_t hash = vxm_grid_hash(grid);
+  for (size_t v = 0; v < total; v++)
+    unpacked[v] = (uint8_t)(unpacked[v] * 0x80);
+  memset(grid->words, 0xff, grid->word_count * sizeof *grid->words);
+  vxm_grid_pack(grid, unpacked);
+  assert_int_equal(vxm_grid_hash(grid), hash);
   free(unpacked);
   free(m.voxels);
   vxm_grid_destroy(grid);

@@ -2,6 +2,7 @@
 /* Files of a number per voxel against the arrays that the library makes, under limits and with failures. */
 #include "grids.h"
 
+#include "base/context_struct.h"
 #include "mesh/soup.h"
 
 #include <math.h>
@@ -48,6 +49,26 @@ static vxm_status make(int kind, vxm_model *model, void *values, const char *pat
               : vxm_model_distance(values, NULL, model, &space, NULL, error);
 }
 
+static vxm_status tell(vxm_estimate *out, int kind, const vxm_model *model, const char *path) {
+  vxm_coverage_options coverage = VXM_COVERAGE_OPTIONS_INIT;
+  coverage.scalar = kind == 0 ? VXM_UINT8 : VXM_FLOAT32;
+  coverage.subdivision = 2;
+  return kind < 2 ? vxm_model_estimate_coverage(out, model, &space, path, &coverage, NULL)
+                  : vxm_model_estimate_distance(out, model, &space, path, NULL, NULL);
+}
+
+/** The file takes no more than was told, and what was told is not all that there is. */
+static void check_estimate(const vxm_estimate *told, int kind, vxm_context *context, uint64_t held,
+                           uint64_t limit) {
+  assert_int_equal(told->grid_bytes,
+                   (uint64_t)(space.dims[0] * space.dims[1] * space.dims[2]) * size_of(kind));
+  assert_int_equal(told->windows > 1, limit > 0);
+  uint64_t taken = vxm_context_peak_bytes(context) - held;
+  if (taken > told->memory_bytes || (limit > 0 && told->memory_bytes > limit))
+    fail_msg("kind %d took %llu bytes, and %llu were told", kind, (unsigned long long)taken,
+             (unsigned long long)told->memory_bytes);
+}
+
 static void check_file(const char *path, const unsigned char *values, size_t size, bool is_nrrd) {
   size_t length, count = (size_t)(space.dims[0] * space.dims[1] * space.dims[2]);
   unsigned char *data = load_file(path, &length);
@@ -86,8 +107,14 @@ static void test_files_equal_arrays(void **state) {
       const char *path = path_in(folder, is_nrrd ? "x.nrrd" : "x.npy");
       if (round == 0)
         assert_int_equal(make(kind, model, values, NULL, &error), VXM_OK);
+      vxm_estimate told;
+      assert_int_equal(tell(&told, kind, model, path), VXM_OK);
+      assert_int_equal(count_files(folder), 0);
+      uint64_t held = atomic_load(&context->used);
+      atomic_store(&context->peak, held);
       if (make(kind, model, NULL, path, &error) != VXM_OK)
         fail_msg("%s", error.text);
+      check_estimate(&told, kind, context, held, limit);
       check_file(path, values, size_of(kind), is_nrrd);
       assert_true(limit == 0 || vxm_context_peak_bytes(context) <= limit);
       assert_int_equal(count_files(folder), is_nrrd ? 1 : 2);

@@ -151,6 +151,45 @@ static void test_names(void **state) {
   bytes_free(&b);
 }
 
+/** The number of the entity whose text holds `part`, the `nth` of those. */
+static int entity_with(const bytes *b, const char *part, int nth) {
+  const char *text = (const char *)b->data, *at = text;
+  for (int n = 0; n <= nth; n++) {
+    at = strstr(n == 0 ? at : at + 1, part);
+    assert_non_null(at);
+  }
+  while (*at != '#' || (at > text && at[-1] != '\n'))
+    at--;
+  return (int)strtol(at + 1, NULL, 10);
+}
+
+/** A product of two bodies: their names stand behind its own. */
+static void test_bodies(void **state) {
+  (void)state;
+  static const char *const tags[] = {"seat/plank", "seat/rod", "leg#1", "leg#2", "leg#3", "leg#4", NULL};
+  if (!has_module("occt"))
+    skip();
+  bytes b = scene_bytes(scene_write_step);
+  bytes_add(&b, "", 1); /* a text for strstr */
+  char one[64], both[64];
+  int plank = entity_with(&b, "MANIFOLD_SOLID_BREP", 0), rod = entity_with(&b, "MANIFOLD_SOLID_BREP", 1);
+  snprintf(one, sizeof one, ",#%d),", plank);
+  snprintf(both, sizeof both, ",#%d,#%d),", plank, rod);
+  bytes joined = replaced(&b, one, both);
+  bytes first = replaced(&joined, "MANIFOLD_SOLID_BREP('',", "MANIFOLD_SOLID_BREP('plank',");
+  bytes second = replaced(&first, "MANIFOLD_SOLID_BREP('',", "MANIFOLD_SOLID_BREP('rod',");
+  second.size--; /* the zero byte */
+  vxm_soup *soup = read_with(&second, "a.step", 0);
+  expect_tags(soup, tags);
+  assert_true(fabs(tag_volume(soup, 0) - seat_volume) < 1e-6 * seat_volume);
+  assert_true(fabs(tag_volume(soup, 1) * STOOL_LEGS - legs_volume) < 0.01 * legs_volume);
+  vxm_soup_destroy(soup);
+  bytes_free(&b);
+  bytes_free(&joined);
+  bytes_free(&first);
+  bytes_free(&second);
+}
+
 static void test_not_step(void **state) {
   (void)state;
   if (!has_module("occt"))
@@ -220,10 +259,10 @@ static void test_in_process(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stool),  cmocka_unit_test(test_deflection),
-                                     cmocka_unit_test(test_units),  cmocka_unit_test(test_names),
-                                     cmocka_unit_test(test_cancel), cmocka_unit_test(test_not_step),
-                                     cmocka_unit_test(test_damage), cmocka_unit_test(test_in_process)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_stool),  cmocka_unit_test(test_deflection), cmocka_unit_test(test_units),
+      cmocka_unit_test(test_names),  cmocka_unit_test(test_cancel),     cmocka_unit_test(test_not_step),
+      cmocka_unit_test(test_damage), cmocka_unit_test(test_bodies),     cmocka_unit_test(test_in_process)};
   leave_signals_alone();
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,17 +2,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every mesh at every level of repair: reached, or refused with a reason; judged by a reader of its own.
 
-levels.py VOXMEND MESHES [--levels LIST] [--folders LIST] [--markdown FILE] [--timeout SECONDS]
+levels.py VOXMEND MESHES [--levels LIST] [--formats LIST] [--folders LIST] [--markdown FILE] [--timeout SECONDS]
 
 For each mesh and level:
  - the program ends in time, with status 0, or with 1, what remains in the way, and no file;
  - what it says it has reached is found in the file by the reader below: after welding, each edge has two faces (closed), or
    at most two (manifold), of opposite direction;
  - no part with an area is lost;
- - parts that were closed and manifold keep their volume to 1e-6 (clean, manifold);
+ - parts that were closed and manifold stay closed and keep their volume to 1e-6 (clean, manifold); in .stl to what moving
+   every vertex by three units in the last place of a 32-bit float can do beside;
+ - the file repaired again at the same level is left as it is, but for the numbers of vertices;
  - the solid of the repaired mesh is that of the original, IoU at least 0.999 at 64^3, where that was closed and not repaired
-   beyond recognition: no duplicate faces.
-The last line counts. With --markdown the table between the marks of FILE is written anew.
+   beyond recognition: no duplicate faces. Where faces cut through each other, what is inside follows from how often the
+   surface winds around a place: the solid (level solid) is where the mesh at level closed winds around it at least once.
+Each format is tried; the table tells of the first one. The last line counts. With --markdown the table between the marks of FILE is written anew.
 """
 import argparse, collections, json, os, re, subprocess, sys, tempfile
 
@@ -43,9 +46,31 @@ def read_ply(path):
     return points, found
 
 
+def read_stl(path):
+    """Of a binary .stl."""
+    with open(path, "rb") as file:
+        data = file.read()
+    count = int(numpy.frombuffer(data, "<u4", 1, 80)[0])
+    facets = numpy.frombuffer(data, numpy.dtype([("normal", "<f4", 3), ("points", "<f4", 9), ("pad", "<u2")]), count, 84)
+    points = facets["points"].reshape(-1, 3).astype("<f8")
+    return points, numpy.arange(len(points)).reshape(-1, 3).tolist()
+
+
+def read_obj(path):
+    points, faces = [], []
+    with open(path) as file:
+        for line in file:
+            words = line.split()
+            if words and words[0] == "v":
+                points.append([float(word) for word in words[1:4]])
+            elif words and words[0] == "f":
+                faces.append([int(word.split("/")[0]) - 1 for word in words[1:]])
+    return numpy.array(points).reshape(-1, 3), faces
+
+
 def judge(path):
     """What a program that welds finds in a file: closed, manifold edges."""
-    points, faces = read_ply(path)
+    points, faces = {"ply": read_ply, "stl": read_stl, "obj": read_obj}[path[-3:]](path)
     places = {}
     name = [places.setdefault((p + 0.0).tobytes(), len(places)) for p in points]
     sides = collections.Counter()
@@ -57,18 +82,53 @@ def judge(path):
     return closed, manifold
 
 
+def winding(points, faces, origin, size, dims):
+    """How often a closed surface winds around each centre of a grid: what a ray upward crosses, by direction."""
+    crossings = numpy.zeros((dims[0], dims[1], dims[2] + 1), numpy.int32)
+    # beside the centres, by less than counts, so that no ray runs through an edge
+    flat = (points[:, :2] - origin[:2]) / size[:2] - 0.5 - [1.234567e-6, 7.654321e-7]
+    height = (points[:, 2] - origin[2]) / size[2] - 0.5 - 1.111111e-6
+    for face in faces:
+        for b, c in zip(face[1:-1], face[2:]):
+            corners = [face[0], b, c]
+            p, z = flat[corners], height[corners]
+            low = numpy.maximum(numpy.ceil(p.min(0)), 0).astype(int)
+            high = numpy.minimum(numpy.floor(p.max(0)), numpy.array(dims[:2]) - 1).astype(int)
+            if (high < low).any():
+                continue
+            x, y = numpy.mgrid[low[0]:high[0] + 1, low[1]:high[1] + 1]
+            (ax, ay), (bx, by) = p[1] - p[0], p[2] - p[0]
+            area = ax * by - ay * bx
+            if area == 0:
+                continue
+            weights = [((p[j][0] - x) * (p[k][1] - y) - (p[j][1] - y) * (p[k][0] - x)) / area
+                       for j, k in ((1, 2), (2, 0), (0, 1))]
+            hit = (weights[0] > 0) & (weights[1] > 0) & (weights[2] > 0)
+            at = (weights[0] * z[0] + weights[1] * z[1] + weights[2] * z[2])[hit]
+            below = numpy.clip(numpy.ceil(at), 0, dims[2]).astype(int)  # centres under the face
+            numpy.add.at(crossings, (x[hit], y[hit], below), 1 if area > 0 else -1)
+    return crossings[:, :, ::-1].cumsum(2)[:, :, ::-1][:, :, 1:]
+
+
 def lost_parts(parts):
     return sum(p["before"]["area"] > 0 and p["after"]["faces"] == 0 for p in parts)
 
 
-def volume_change(parts):
-    """Largest relative change among the parts that had nothing to repair."""
-    most = 0.0
-    for p in parts:
+def complaint_of(parts, single):
+    """What is wrong with the parts that had nothing to repair."""
+    for i, p in enumerate(parts):
         b, a = p["before"], p["after"]
-        if b["closed"] and not p["flipped"] and not b["nonmanifold_edges"] and not b["inconsistent_edges"] and b["volume"]:
-            most = max(most, abs(abs(a["volume"]) - abs(b["volume"])) / abs(b["volume"]))
-    return most
+        if not b["closed"] or p["flipped"] or b["nonmanifold_edges"] or b["inconsistent_edges"] or not b["volume"]:
+            continue
+        slack = 1e-6 * abs(b["volume"])
+        if single:
+            slack += 3 * b["area"] * 2.0**-23 * max(map(abs, b["bounds"]))
+        change = abs(abs(a["volume"]) - abs(b["volume"]))
+        if change > slack:
+            return "the volume of part %d changes by %g of %g" % (i, change, b["volume"])
+        if not a["closed"] and a["faces"] and (not single or abs(b["volume"]) > slack):
+            return "part %d is open" % i
+    return None
 
 
 class Trial:
@@ -85,9 +145,31 @@ class Trial:
         self.run("voxelize", repaired, "-o", second, "--like", first, "-q").check_returncode()
         return json.loads(self.run("compare", first, second, "--json").stdout)["iou"]
 
-    def level(self, level):
+    def iou_of_winding(self, repaired):
+        """Of where the repaired mesh and the mesh at level closed wind around a place."""
+        closed, grid = (os.path.join(self.work, name) for name in ("closed.ply", "grid.npy"))
+        self.run("repair", self.mesh, "-o", closed, "--level", "closed", "-q").check_returncode()
+        self.run("voxelize", repaired, "-o", grid, "-r", "64", "-q").check_returncode()
+        with open(grid + ".json") as file:
+            space = json.load(file)
+        first, second = (winding(*read_ply(path), space["origin"], space["voxel_size"], space["dims"]) > 0
+                         for path in (closed, repaired))
+        either = (first | second).sum()
+        return (first & second).sum() / either if either else 1.0  # thinner than the voxels
+
+    def again(self, level, path):
+        """What another repair of the file does; None = nothing."""
+        done = self.run("repair", path, "-o", os.path.join(self.work, "again." + path[-3:]), "--level", level, "--json")
+        if done.returncode != 0:
+            return "repaired again: " + done.stderr.strip()
+        for entry in json.loads(done.stdout)["passes"]:
+            if entry["count"] and entry["pass"] not in ("exact_weld", "unused_vertices"):
+                return "repaired again: %s %d" % (entry["pass"], entry["count"])
+        return None
+
+    def level(self, level, form):
         """(outcome, complaint or None)"""
-        path = os.path.join(self.work, "out.ply")
+        path = os.path.join(self.work, "out." + form)
         if os.path.exists(path):
             os.remove(path)
         try:
@@ -111,9 +193,16 @@ class Trial:
         lost = lost_parts(report["parts"])
         if lost and level != "solid":
             return "lost", "%d parts are lost" % lost
-        if level in ("clean", "manifold") and volume_change(report["parts"]) > 1e-6:
-            return "volume", "a volume changes by %g" % volume_change(report["parts"])
+        changed = complaint_of(report["parts"], path.endswith(".stl")) if level in ("clean", "manifold") else None
+        if changed:
+            return "volume", changed
+        changed = self.again(level, path)
+        if changed:
+            return "busy", changed
         before = report["before"]
+        if level == "solid" and before["self_intersections"]:
+            iou = self.iou_of_winding(path)
+            return ("yes", None) if iou >= 0.999 else ("iou", "its solid is another one: IoU %g" % iou)
         if before["watertight"] and not before["inconsistent_edges"] and self.iou(path) < 0.999:
             return "iou", "its solid is another one: IoU %g" % self.iou(path)
         return "yes", None
@@ -136,6 +225,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("meshes")
     parser.add_argument("--levels", default=",".join(LEVELS))
+    parser.add_argument("--formats", default="ply,stl,obj")
     parser.add_argument("--folders", default="messy,cad,modelnet")
     parser.add_argument("--markdown")
     parser.add_argument("--timeout", type=float, default=60)
@@ -153,17 +243,19 @@ def main():
                 parts = json.loads(info.stdout)["components"] if info.returncode == 0 else "?"
                 outcomes = []
                 for level in levels:
-                    outcome, complaint = trial.level(level)
-                    tried += 1
-                    reached[level] += outcome == "yes"
-                    outcomes.append(outcome)
-                    if complaint:
-                        failures += 1
-                        print("FAILED: %s, %s: %s" % (short, level, complaint), flush=True)
+                    for form in given.formats.split(","):
+                        outcome, complaint = trial.level(level, form)
+                        tried += 1
+                        reached[level] += outcome == "yes"
+                        if len(outcomes) <= levels.index(level):
+                            outcomes.append(outcome)
+                        if complaint:
+                            failures += 1
+                            print("FAILED: %s, %s, .%s: %s" % (short, level, form, complaint), flush=True)
                 rows.append((short, parts, outcomes))
     if given.markdown:
         write_table(given.markdown, rows, levels)
-    print(", ".join("%s: %d of %d" % (level, reached[level], len(rows)) for level in levels))
+    print(", ".join("%s: %d of %d" % (level, reached[level], len(rows) * len(given.formats.split(","))) for level in levels))
     print("%d tried, %d failures" % (tried, failures))
     return failures > 0 or tried == 0
 

@@ -163,6 +163,62 @@ static void zero_area_faces_that_close(void **state) {
   vxm_soup_destroy(soup);
 }
 
+/** Fins and walls of what is closed go altogether, so that it stays closed; sheets keep one of two faces. */
+static void fins(void **state) {
+  vxm_repair_report report;
+  vxm_soup *soup = new_soup(*state);
+  add_cube(soup, 0);
+  add_vertex(soup, 0.5, -0.5, 0.5); /* a fin of two triangles back to back at the edge 0 1 */
+  add_triangle(soup, 0, 1, 8);
+  add_triangle(soup, 1, 0, 8);
+  vxm_soup *out = repaired(soup, NULL, &report);
+  assert_int_equal(count_of(&report, "opposite_duplicate_faces"), 2);
+  assert_true(report.after.closed && report.after.volume > 0.999999 && report.after.volume < 1.000001);
+  assert_int_equal(out->face_count, 6);
+  assert_repair_is_done(out, NULL);
+  vxm_soup_destroy(out);
+  /* as large as the body, it is a sheet that hangs on it */
+  soup->positions[3 * 8 + 1] = -20;
+  out = repaired(soup, NULL, &report);
+  assert_int_equal(count_of(&report, "opposite_duplicate_faces"), 1);
+  assert_int_equal(out->face_count, 7);
+  assert_repair_is_done(out, NULL);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+  /* of what is open one stays, and of what is nothing else */
+  for (int open = 0; open < 2; open++) {
+    soup = new_soup(*state);
+    for (int v = 0; v < 4; v++)
+      add_vertex(soup, v & 1, v >> 1, 0);
+    add_triangle(soup, 0, 1, 2);
+    add_triangle(soup, 2, 1, 0);
+    add_triangle(soup, 1, 3, 2);
+    if (!open)
+      add_triangle(soup, 2, 3, 1);
+    out = repaired(soup, NULL, &report);
+    assert_int_equal(out->face_count, 2);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+  /* two rooms that each have the wall between them become one */
+  for (int same = 0; same < 2; same++) {
+    soup = new_soup(*state);
+    add_cube(soup, 0);
+    add_cube(soup, 1);
+    for (size_t c = 24; c < 48 && same; c += 4) { /* the second one inside out */
+      uint32_t kept = soup->indices[c + 1];
+      soup->indices[c + 1] = soup->indices[c + 3];
+      soup->indices[c + 3] = kept;
+    }
+    out = repaired(soup, NULL, &report);
+    assert_int_equal(out->face_count, 10);
+    assert_true(report.after.watertight && report.after.volume > 1.999999 && report.after.volume < 2.000001);
+    assert_repair_is_done(out, NULL);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** A strip of slivers, each of which can only go when the next one has gone. */
 static void zero_area_chain(void **state) {
   enum { N = 60000 };
@@ -280,6 +336,7 @@ int main(void) {
       cmocka_unit_test(zero_area_faces_that_close),
       cmocka_unit_test(zero_area_chain),
       cmocka_unit_test(duplicates),
+      cmocka_unit_test(fins),
       cmocka_unit_test(unused),
       cmocka_unit_test(notes_format_and_nothing),
       cmocka_unit_test(bad_options),

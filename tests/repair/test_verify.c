@@ -350,6 +350,172 @@ static void unreached_leaves_nothing(void **state) {
   vxm_soup_destroy(open);
 }
 
+/* ---- After separation ---- */
+
+/** What was cut apart is turned, counted once, and left as it is; a vertex that was in the way is told by its
+ * number in the mesh that is verified. */
+static void after_separation(void **state) {
+  static const double edge[2][3] = {{0, 0, 0}, {1, 1, 0}};
+  for (int turned = 0; turned < 3; turned++) {
+    vxm_soup *soup = cubes(*state, 2, edge, 0);
+    for (size_t c = 24; c < (turned == 0   ? 24u
+                             : turned == 1 ? 28u
+                                           : 48u);
+         c += 4) { /* none, a face, or all of a cube */
+      uint32_t kept = soup->indices[c + 1];
+      soup->indices[c + 1] = soup->indices[c + 3];
+      soup->indices[c + 3] = kept;
+    }
+    for (int single = 0; single < 2; single++) {
+      vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+      vxm_repair_report report;
+      options.level = VXM_LEVEL_CLOSED;
+      options.part_changes = true;
+      options.single_precision = single;
+      vxm_soup *out = repaired(soup, &options, &report);
+      int64_t faces = turned == 0 ? 0 : turned == 1 ? 1 : 6;
+      assert_int_equal(count_of(&report, "orientation"), faces * (single ? 2 : 1));
+      assert_int_equal(out->part_changes[0].flipped, faces * (single ? 2 : 1));
+      assert_true(fabs(report.after.volume - 2) < 1e-5);
+      vxm_verification found;
+      assert_int_equal(vxm_verify(&found, out, &options, NULL), VXM_OK);
+      assert_true(found.reached);
+      assert_repair_is_done(out, &options);
+      vxm_soup_destroy(out);
+    }
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** Numbers are those of the mesh that is verified, also behind what a repair would remove. */
+static void elements_of_the_file(void **state) {
+  static const double one[1][3] = {{0, 0, 0}};
+  vxm_soup *soup = new_soup(*state);
+  add_box(soup, 0, 0, 0, 1, 0);
+  add_triangle(soup, 3, 3, 4);  /* face 6: none */
+  add_box(soup, 0, 0, 0, 1, 5); /* face 7: again, on vertices 11 to 18 */
+  vxm_verification found = verified(soup, VXM_LEVEL_CLEAN);
+  assert_int_equal(remains_of(&found, "repeated_corners"), 1);
+  assert_int_equal(remains_of(&found, "duplicate_faces"), 1);
+  for (int i = 0; i < found.count; i++) {
+    assert_true(found.remains[i].placed);
+    if (strcmp(found.remains[i].what, "repeated_corners") == 0)
+      assert_int_equal(found.remains[i].element, 6);
+  }
+  vxm_soup_destroy(soup);
+  /* an open edge behind a face that would go */
+  soup = new_soup(*state);
+  add_box(soup, 0, 0, 0, 1, 0);
+  add_triangle(soup, 0, 0, 1);
+  add_box(soup, 4, 0, 0, 1, 1);
+  found = verified(soup, VXM_LEVEL_CLOSED);
+  assert_int_equal(remains_of(&found, "boundary_edges"), 4);
+  assert_int_equal(found.remains[0].element, 8); /* the second box begins with face 7, which has none */
+  vxm_soup_destroy(soup);
+  soup = cubes(*state, 1, one, 0);
+  uint32_t kept = soup->indices[9];
+  soup->indices[9] = soup->indices[11];
+  soup->indices[11] = kept;
+  found = verified(soup, VXM_LEVEL_CLEAN);
+  assert_int_equal(found.count, 1);
+  assert_string_equal(found.remains[0].what, "orientation");
+  assert_int_equal(found.remains[0].element, 2);
+  vxm_soup_destroy(soup);
+}
+
+/** Options are checked as for a repair. */
+static void options_are_checked(void **state) {
+  static const double one[1][3] = {{0, 0, 0}};
+  vxm_soup *soup = cubes(*state, 1, one, 0);
+  vxm_repair_options keep = VXM_REPAIR_OPTIONS_INIT, wrap = keep, version = keep;
+  vxm_verification found;
+  keep.keep_orientation = true;
+  keep.level = VXM_LEVEL_CLOSED;
+  wrap.wrap_alpha = NAN;
+  version.version = 2;
+  assert_int_equal(vxm_mesh_verify(&found, soup, &keep, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_mesh_verify(&found, soup, &wrap, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_mesh_verify(&found, soup, &version, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_mesh_verify(&found, soup, NULL, NULL), VXM_OK);
+  vxm_soup_destroy(soup);
+}
+
+/* ---- Parts ---- */
+
+/** A box without its bottom, and half of the bottom a crack apart: edges are of the part that their faces are
+ * of. */
+static void joined_parts(void **state) {
+  static const double one[1][3] = {{0, 0, 0}};
+  static const uint32_t bottom[3] = {0, 2, 3};
+  vxm_soup *soup = cubes(*state, 1, one, 1);
+  uint32_t first = (uint32_t)soup->vertex_count;
+  for (int i = 0; i < 3; i++) {
+    const double p[3] = {vxm_position(soup, bottom[i])[0], vxm_position(soup, bottom[i])[1], 0};
+    add_vertex(soup, p[0] + 1e-7, p[1], p[2]);
+  }
+  add_triangle(soup, first, first + 1, first + 2);
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  vxm_repair_report report;
+  options.part_changes = true;
+  vxm_soup *out = repaired(soup, &options, &report);
+  assert_int_equal(out->part_count, 2);
+  const vxm_part_change *box = &out->part_changes[0], *half = &out->part_changes[1];
+  assert_int_equal(box->before.boundary_edges, 4);
+  assert_int_equal(half->before.boundary_edges, 3);
+  /* of the box's rim two edges are left open, of the triangle's the long one */
+  assert_int_equal(box->after.boundary_edges, 2);
+  assert_int_equal(half->after.boundary_edges, 1);
+  assert_int_equal(report.after.boundary_edges, 3);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+}
+
+/** What changes no more than it has to passes, and what vanishes does not. */
+static void bounded_changes(void **state) {
+  static const double one[1][3] = {{0, 0, 0}}, same[2][3] = {{0, 0, 0}, {0, 0, 0}},
+                      two[2][3] = {{0, 0, 0}, {5, 0, 0}};
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.max_change = 1e-9;
+  vxm_soup *soup = cubes(*state, 1, one, 0), *out;
+  uint32_t kept = soup->indices[1];
+  soup->indices[1] = soup->indices[3];
+  soup->indices[3] = kept;
+  assert_int_equal(vxm_repair_run(&out, NULL, soup, &options, NULL), VXM_OK); /* a face was turned */
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+  soup = cubes(*state, 2, same, 0);
+  assert_int_equal(vxm_repair_run(&out, NULL, soup, &options, NULL), VXM_OK); /* a part was there twice */
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+  soup = cubes(*state, 1, one, 0);
+  add_box(soup, 5, 0, 0, 0.125, 0);
+  options.weld = VXM_WELD_TOLERANCE;
+  options.weld_tolerance = 0.3;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_repair_run(&out, NULL, soup, &options, &error),
+                   VXM_ERROR_UNREACHED); /* one vanishes */
+  assert_non_null(strstr(error.text, "nothing of part 1"));
+  options.weld = VXM_WELD_AUTO;
+  options.drop_volume = 0.5;
+  assert_int_equal(vxm_repair_run(&out, NULL, soup, &options, NULL), VXM_OK); /* as it is to */
+  assert_int_equal(out->face_count, 6);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+  /* with faces of both, a volume that does change is seen */
+  soup = cubes(*state, 2, two, 0);
+  kept = soup->indices[1];
+  soup->indices[1] = soup->indices[3];
+  soup->indices[3] = kept;
+  soup->positions[3 * 15 + 2] = 1.2;
+  options = (vxm_repair_options)VXM_REPAIR_OPTIONS_INIT;
+  options.max_change = 1e-3;
+  options.weld = VXM_WELD_TOLERANCE;
+  options.weld_tolerance = 0.5;
+  assert_int_equal(vxm_repair_run(&out, NULL, soup, &options, NULL), VXM_OK);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
+}
+
 static int set_up(void **state) {
   *state = context_of_threads(2);
   return 0;
@@ -362,10 +528,19 @@ static int tear_down(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(levels),          cmocka_unit_test(closing_reaches),
-      cmocka_unit_test(fans_by_walking), cmocka_unit_test(defects_as_counted),
-      cmocka_unit_test(parts_add_up),    cmocka_unit_test(moved_and_bounded),
-      cmocka_unit_test(fits_stl),        cmocka_unit_test(unreached_leaves_nothing),
+      cmocka_unit_test(levels),
+      cmocka_unit_test(closing_reaches),
+      cmocka_unit_test(fans_by_walking),
+      cmocka_unit_test(defects_as_counted),
+      cmocka_unit_test(parts_add_up),
+      cmocka_unit_test(moved_and_bounded),
+      cmocka_unit_test(after_separation),
+      cmocka_unit_test(elements_of_the_file),
+      cmocka_unit_test(options_are_checked),
+      cmocka_unit_test(joined_parts),
+      cmocka_unit_test(bounded_changes),
+      cmocka_unit_test(fits_stl),
+      cmocka_unit_test(unreached_leaves_nothing),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The surface, conservative and thin, against brute force in exact integers, however the work is divided. */
-#include "shapes.h"
-
 #include "surface_oracle.h"
+#include "surfaces.h"
+
 #include "voxel/surface_draw.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const vxm_layout layouts[6] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
 static const int thread_counts[3] = {1, 2, 7};
 static vxm_context *contexts[3];
 static const vxm_surface_build *builds[3];
@@ -48,30 +47,9 @@ static void scene_start(scene *s, const vxm_space *space, int bits) {
     s->corners[c] = c;
 }
 
-static vxm_space unit_space(int64_t nx, int64_t ny, int64_t nz) {
-  return (vxm_space){{nx, ny, nz}, {0, 0, 0}, {1, 1, 1}};
-}
-
-static vxm_window window_make(const vxm_space *space, vxm_layout layout, int64_t begin, int64_t end) {
-  vxm_window window = vxm_window_of(space, layout, begin, end);
-  window.words = malloc((size_t)(end - begin) * window.slice_words * sizeof *window.words + 1);
-  return window;
-}
-
 static void window_fill(vxm_window *window, uint64_t value) {
   for (size_t i = 0; i < (size_t)(window->end - window->begin) * window->slice_words; i++)
     window->words[i] = value;
-}
-
-static bool window_get(const vxm_window *window, const int64_t voxel[3]) {
-  int64_t f = voxel[window->layout.fast], m = voxel[window->layout.middle], s = voxel[window->layout.slow];
-  return vxm_window_row(window, m, s)[f / 64] >> (f % 64) & 1;
-}
-
-static void draw(const vxm_surface *surface, const vxm_window *window, vxm_surface_kind kind, bool is_fresh) {
-  vxm_error error = VXM_ERROR_INIT;
-  if (vxm_surface_add(surface, window, kind, is_fresh, &error) != VXM_OK)
-    fail_msg("%s", error.text);
 }
 
 /* ---- Random triangles ---- */
@@ -215,14 +193,6 @@ static vxm_soup *random_mesh(vxm_rng *rng, const vxm_space *space) {
   return soup;
 }
 
-static vxm_surface *surface_of(const vxm_soup *soup, const vxm_lattice *lattice, const double *transform) {
-  vxm_surface *surface;
-  vxm_error error = VXM_ERROR_INIT;
-  if (vxm_surface_create(&surface, soup, lattice, transform, &error) != VXM_OK)
-    fail_msg("%s", error.text);
-  return surface;
-}
-
 static void assert_same_window(const vxm_window *whole, const vxm_window *part, const uint64_t *before) {
   size_t words = (size_t)(part->end - part->begin) * part->slice_words;
   const uint64_t *from = vxm_window_row(whole, 0, part->begin);
@@ -306,145 +276,6 @@ static void test_many_large_triangles(void **state) {
   free(seven.words);
   vxm_surface_destroy(surface);
   vxm_soup_destroy(soup);
-}
-
-/* ---- What a surface is for ---- */
-
-/** Two 6-neighbours outside the thin surface are both inside the mesh or both outside. */
-static void assert_separates(const vxm_soup *soup, const vxm_space *space) {
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = space;
-  options.method = VXM_METHOD_X;
-  options.parts = VXM_PARTS_WHOLE;
-  vxm_grid *solid;
-  assert_int_equal(vxm_voxelize(&solid, NULL, soup, &options, NULL), VXM_OK);
-  vxm_lattice lattice = vxm_lattice_of(space);
-  vxm_surface *surface = surface_of(soup, &lattice, NULL);
-  vxm_window thin = window_make(space, layouts[0], 0, space->dims[2]);
-  draw(surface, &thin, VXM_SURFACE_THIN, true);
-  int64_t v[3], steps = 0;
-  for (v[2] = 0; v[2] < space->dims[2]; v[2]++)
-    for (v[1] = 0; v[1] < space->dims[1]; v[1]++)
-      for (v[0] = 0; v[0] < space->dims[0]; v[0]++)
-        for (int a = 0; a < 3; a++) {
-          int64_t next[3] = {v[0] + (a == 0), v[1] + (a == 1), v[2] + (a == 2)};
-          if (next[a] == space->dims[a] || window_get(&thin, v) || window_get(&thin, next))
-            continue;
-          assert_int_equal(vxm_grid_get(solid, v[0], v[1], v[2]),
-                           vxm_grid_get(solid, next[0], next[1], next[2]));
-          steps++;
-        }
-  assert_true(steps > 0);
-  free(thin.words);
-  vxm_surface_destroy(surface);
-  vxm_grid_destroy(solid);
-}
-
-/** What a flood from the corner of the grid reaches over 6-neighbours outside the thin surface. */
-static size_t flood(const vxm_window *thin, const vxm_space *space, uint8_t *reached) {
-  const int64_t *d = space->dims;
-  size_t count = (size_t)(d[0] * d[1] * d[2]), top = 0, done = 0;
-  int64_t(*stack)[3] = malloc(count * sizeof *stack);
-  memset(reached, 0, count);
-  reached[0] = 1;
-  memset(stack[top++], 0, sizeof *stack);
-  while (top > 0) {
-    int64_t v[3];
-    memcpy(v, stack[--top], sizeof v);
-    done++;
-    for (int side = 0; side < 6; side++) {
-      int64_t next[3] = {v[0], v[1], v[2]};
-      next[side / 2] += side % 2 ? 1 : -1;
-      if (next[side / 2] < 0 || next[side / 2] == d[side / 2] || window_get(thin, next))
-        continue;
-      uint8_t *mark = &reached[(next[2] * d[1] + next[1]) * d[0] + next[0]];
-      if (!*mark)
-        memcpy(stack[top++], next, sizeof next);
-      *mark = 1;
-    }
-  }
-  free(stack);
-  return done;
-}
-
-static void test_thin_separates(void **state) {
-  (void)state;
-  vxm_rng rng = {4};
-  vxm_space space = unit_space(14, 13, 12);
-  for (int round = 0; round < 400; round++) {
-    vxm_soup *soup = shape_empty(context);
-    shape_random_octahedron(soup, &rng, 4, 44);
-    if (round % 2)
-      shape_random_octahedron(soup, &rng, 4, 44);
-    assert_separates(soup, &space);
-    vxm_soup_destroy(soup);
-  }
-}
-
-/** Boxes whose faces lie on borders, on centres and between: the flood stays outside, the inside is left
- * free. */
-static void test_flood_stays_outside(void **state) {
-  (void)state;
-  vxm_space space = unit_space(12, 12, 12);
-  vxm_lattice lattice = vxm_lattice_of(&space);
-  uint8_t *reached = malloc(12 * 12 * 12);
-  for (int shift = 0; shift < 4; shift++) {
-    vxm_soup *soup = shape_empty(context);
-    double low = 2 + 0.25 * shift, high = 9 + 0.25 * shift;
-    shape_box(soup, (double[]){low, low, low}, (double[]){high, high, high});
-    vxm_surface *surface = surface_of(soup, &lattice, NULL);
-    vxm_window thin = window_make(&space, layouts[0], 0, 12);
-    draw(surface, &thin, VXM_SURFACE_THIN, true);
-    size_t outside = flood(&thin, &space, reached);
-    assert_false(reached[(5 * 12 + 5) * 12 + 5]);
-    /* On a border both voxels beside it belong to the surface, elsewhere one layer does. */
-    size_t across = shift == 0 ? 9 : 8;
-    assert_int_equal(outside, 12 * 12 * 12 - across * across * across);
-    free(thin.words);
-    vxm_surface_destroy(surface);
-    vxm_soup_destroy(soup);
-  }
-  free(reached);
-}
-
-/** A flat polygon covers the same voxels however it is cut into triangles. */
-static void test_planar_faces_do_not_depend_on_their_triangles(void **state) {
-  (void)state;
-  enum { CORNERS = 6 };
-  static const int shape[CORNERS][2] = {{0, 0}, {4, -1}, {7, 1}, {8, 4}, {5, 7}, {1, 5}};
-  vxm_rng rng = {5};
-  vxm_space space = unit_space(16, 16, 16);
-  vxm_lattice lattice = vxm_lattice_of(&space);
-  for (int round = 0; round < 60; round++) {
-    double u[3], v[3];
-    for (int a = 0; a < 3; a++) {
-      u[a] = shape_quarter(&rng, -5, 5) + (double)vxm_rng_below(&rng, 9) / 64;
-      v[a] = shape_quarter(&rng, -5, 5) - (double)vxm_rng_below(&rng, 9) / 64;
-    }
-    vxm_window first = window_make(&space, layouts[0], 0, 16), other = window_make(&space, layouts[0], 0, 16);
-    for (int turn = 0; turn <= CORNERS; turn++) {
-      vxm_soup *soup = shape_empty(context);
-      uint32_t corner[CORNERS];
-      for (int i = 0; i < CORNERS; i++) {
-        const int *at = shape[(i + turn) % CORNERS];
-        corner[i] = shape_vertex(soup, 8 + at[0] * u[0] + at[1] * v[0] - 4 * u[0] - 3 * v[0],
-                                 8 + at[0] * u[1] + at[1] * v[1] - 4 * u[1] - 3 * v[1],
-                                 8 + at[0] * u[2] + at[1] * v[2] - 4 * u[2] - 3 * v[2]);
-      }
-      if (turn == CORNERS) /* as one polygon; otherwise as a fan around one of its corners */
-        shape_face(soup, corner, CORNERS);
-      for (uint32_t i = 1; i + 1 < CORNERS && turn < CORNERS; i++)
-        shape_triangle(soup, corner[0], corner[i], corner[i + 1]);
-      vxm_surface *surface = surface_of(soup, &lattice, NULL);
-      draw(surface, turn == 0 ? &first : &other, VXM_SURFACE_CONSERVATIVE, true);
-      if (turn > 0)
-        assert_memory_equal(first.words, other.words, 256 * sizeof *first.words);
-      vxm_surface_destroy(surface);
-      vxm_soup_destroy(soup);
-    }
-    free(first.words);
-    free(other.words);
-  }
 }
 
 /* ---- The rest ---- */
@@ -537,15 +368,9 @@ static void test_cancelling_and_running_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_triangles_match_brute_force),
-      cmocka_unit_test(test_windows_make_no_difference),
-      cmocka_unit_test(test_many_large_triangles),
-      cmocka_unit_test(test_thin_separates),
-      cmocka_unit_test(test_flood_stays_outside),
-      cmocka_unit_test(test_planar_faces_do_not_depend_on_their_triangles),
-      cmocka_unit_test(test_transform_moves_the_mesh),
-      cmocka_unit_test(test_positions_without_a_place),
-      cmocka_unit_test(test_cancelling_and_running_out),
+      cmocka_unit_test(test_triangles_match_brute_force), cmocka_unit_test(test_windows_make_no_difference),
+      cmocka_unit_test(test_many_large_triangles),        cmocka_unit_test(test_transform_moves_the_mesh),
+      cmocka_unit_test(test_positions_without_a_place),   cmocka_unit_test(test_cancelling_and_running_out),
   };
   return cmocka_run_group_tests(tests, setup_all, teardown_all);
 }

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""voxmend: repairs messy meshes and turns them into voxel grids, exactly.
+
+    import voxmend
+    mesh = voxmend.load("chair.off")                    # tells what is wrong: mesh.info()
+    grid = voxmend.voxelize(mesh, 64)                   # repairs it, then 64 x 64 x 64 voxels
+    grid.save("chair.binvox")
+    sampler = voxmend.Sampler(32, rotate="any", scale=0.3)
+    sampler.put(mesh.repair())
+    batch = sampler.batch(16)                           # (16, 1, 32, 32, 32) float32
+"""
+from ._core import (ArgumentError, EmptyError, FileError, FormatError, OutOfMemoryError, RangeError, UnavailableError,
+                    UnreachedError, VoxmendError, configure, lib as _lib, text as _text)
+from ._grid import VoxelGrid, coverage, distance, read, voxelize, write
+from ._mesh import Mesh, info, load, repair
+from ._sampler import Sampler
+
+__version__ = _text(_lib.vxm_version())
+
+__all__ = [
+    "ArgumentError", "EmptyError", "FileError", "FormatError", "Mesh", "OutOfMemoryError", "RangeError", "Sampler",
+    "UnavailableError", "UnreachedError", "VoxelGrid", "VoxmendError", "configure", "coverage", "distance", "info",
+    "load", "read", "repair", "voxelize", "write"
+]

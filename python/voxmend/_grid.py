@@ -1,0 +1,332 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Voxel grids, by the names that users of trimesh know, and how they are made."""
+from __future__ import annotations
+
+from typing import Any, Iterable, Optional, Sequence, Union
+
+import numpy
+
+from . import _core
+from ._core import ffi, lib
+from ._mesh import Mesh, MeshLike, as_mesh, repair as repair_mesh
+
+
+def _space(dims: Sequence[int], origin: Sequence[float], size: Sequence[float]) -> Any:
+    out = ffi.new("vxm_space *")
+    out.dims[0:3] = [int(d) for d in dims]
+    out.origin[0:3] = [float(o) for o in origin]
+    out.voxel_size[0:3] = [float(s) for s in size]
+    return out
+
+
+class VoxelGrid:
+    """A box of voxels that are set or not. Voxel (i, j, k) has its centre at origin + ((i, j, k) + 1/2) * pitch.
+
+    Args:
+        matrix: (nx, ny, nz) array; what is not 0 is set.
+        pitch: side of a voxel in model units, one number or three.
+        origin: minimum corner of the box, model units.
+    """
+
+    def __init__(self, matrix: Any, pitch: Union[float, Sequence[float]] = 1.0, origin: Sequence[float] = (0.0, 0.0, 0.0)):
+        filled = numpy.ascontiguousarray(numpy.asarray(matrix) != 0).view(numpy.uint8)
+        if filled.ndim != 3:
+            raise _core.ArgumentError("grid: the matrix has %d dimensions, not 3" % filled.ndim)
+        space = _space(filled.shape, origin, numpy.broadcast_to(pitch, 3))
+        self._pointer = _core.create("vxm_grid", lib.vxm_grid_create, _core.context(), space, destroy=lib.vxm_grid_destroy)
+        lib.vxm_grid_pack(self._pointer, ffi.cast("uint8_t *", filled.ctypes.data))
+        self.report: dict = {}
+        self._matrix: Optional[numpy.ndarray] = None
+
+    @classmethod
+    def _of(cls, pointer: Any, report: Optional[dict] = None) -> "VoxelGrid":
+        self = cls.__new__(cls)
+        self._pointer, self.report, self._matrix = pointer, report or {}, None
+        return self
+
+    def __repr__(self) -> str:
+        return "<voxmend.VoxelGrid: %d x %d x %d voxels, %d set>" % (*self.shape, self.filled_count)
+
+    # ---- Where it is ----
+
+    @property
+    def _own_space(self) -> Any:
+        return lib.vxm_grid_space(self._pointer)
+
+    @property
+    def shape(self) -> tuple:
+        """(nx, ny, nz)"""
+        return tuple(self._own_space.dims)
+
+    @property
+    def origin(self) -> numpy.ndarray:
+        """(3,) minimum corner of the box, model units."""
+        return numpy.array(list(self._own_space.origin))
+
+    @property
+    def pitch(self) -> numpy.ndarray:
+        """(3,) sides of a voxel, model units."""
+        return numpy.array(list(self._own_space.voxel_size))
+
+    @property
+    def bounds(self) -> numpy.ndarray:
+        """(2, 3) corners of the box, model units."""
+        return numpy.stack([self.origin, self.origin + self.pitch * self.shape])
+
+    @property
+    def transform(self) -> numpy.ndarray:
+        """(4, 4): takes (i, j, k, 1) to the centre of the voxel, as in trimesh."""
+        out = numpy.diag([*self.pitch, 1.0])
+        out[:3, 3] = self.origin + self.pitch / 2
+        return out
+
+    def indices_to_points(self, indices: Any) -> numpy.ndarray:
+        """Centres of voxels, (n, 3), of their (n, 3) indices."""
+        return self.origin + (numpy.asarray(indices) + 0.5) * self.pitch
+
+    def points_to_indices(self, points: Any) -> numpy.ndarray:
+        """(n, 3) indices of the voxels in which points lie; they may lie outside of the grid."""
+        return numpy.floor((numpy.asarray(points) - self.origin) / self.pitch).astype(numpy.int64)
+
+    # ---- What is set ----
+
+    @property
+    def matrix(self) -> numpy.ndarray:
+        """(nx, ny, nz) bool, made when it is first asked for. Changing it does not change the grid."""
+        if self._matrix is None:
+            out = numpy.empty(self.shape, numpy.uint8)
+            lib.vxm_grid_unpack(self._pointer, ffi.cast("uint8_t *", out.ctypes.data))
+            self._matrix = out.view(numpy.bool_)
+        return self._matrix
+
+    @property
+    def packed(self) -> numpy.ndarray:
+        """(nz, ny, words) uint64, the grid's own memory: bit i % 64 of word i // 64 is voxel (i, j, k); read-only."""
+        nx, ny, nz = self.shape
+        words = lib.vxm_grid_row_words(self._pointer)
+        return _core.view(self, lib.vxm_grid_words(self._pointer), (nz, ny, words), "<u8")
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> numpy.ndarray:
+        out = self.matrix
+        if dtype is not None and numpy.dtype(dtype) != out.dtype:
+            return out.astype(dtype)
+        return out.copy() if copy else out
+
+    def __dlpack__(self, **arguments: Any) -> Any:
+        """The matrix as uint8, without a copy: torch.from_dlpack(grid)."""
+        return self.matrix.view(numpy.uint8).__dlpack__(**arguments)
+
+    def __dlpack_device__(self) -> Any:
+        return self.matrix.view(numpy.uint8).__dlpack_device__()
+
+    @property
+    def filled_count(self) -> int:
+        """Number of set voxels."""
+        return lib.vxm_grid_count(self._pointer)
+
+    @property
+    def volume(self) -> float:
+        """Of the set voxels, model units cubed."""
+        return self.filled_count * float(numpy.prod(self.pitch))
+
+    @property
+    def sparse_indices(self) -> numpy.ndarray:
+        """(n, 3) int64 indices of set voxels."""
+        return numpy.argwhere(self.matrix)
+
+    @property
+    def points(self) -> numpy.ndarray:
+        """(n, 3) centres of set voxels, model units."""
+        return self.indices_to_points(self.sparse_indices)
+
+    def is_filled(self, points: Any) -> numpy.ndarray:
+        """(n,) bool: whether points lie in set voxels."""
+        at = self.points_to_indices(points)
+        inside = ((at >= 0) & (at < self.shape)).all(axis=-1)
+        out = numpy.zeros(inside.shape, numpy.bool_)
+        out[inside] = self.matrix[tuple(at[inside].T)]
+        return out
+
+    @property
+    def hash(self) -> int:
+        """Of dimensions and voxels, the same on every machine."""
+        return lib.vxm_grid_hash(self._pointer)
+
+    @property
+    def warnings(self) -> list:
+        return [_core.text(lib.vxm_grid_warning(self._pointer, i)) for i in range(lib.vxm_grid_warning_count(self._pointer))]
+
+    # ---- Others made of it ----
+
+    def _like(self, matrix: numpy.ndarray) -> "VoxelGrid":
+        return VoxelGrid(matrix, self.pitch, self.origin)
+
+    def copy(self) -> "VoxelGrid":
+        return self._like(self.matrix)
+
+    def fill(self) -> "VoxelGrid":
+        """A new grid, with all that cannot be reached from outside over faces of empty voxels set too."""
+        empty = numpy.pad(~self.matrix, 1, constant_values=True)
+        reached = numpy.zeros_like(empty)
+        reached[0], reached[-1] = True, True
+        reached[:, 0], reached[:, -1] = True, True
+        reached[:, :, 0], reached[:, :, -1] = True, True
+        before = -1
+        while before != (before := int(reached.sum())):
+            for axis in range(3):
+                slices, open_ = numpy.moveaxis(reached, axis, 0), numpy.moveaxis(empty, axis, 0)
+                for i in range(1, len(slices)):
+                    slices[i] |= slices[i - 1] & open_[i]
+                for i in range(len(slices) - 2, -1, -1):
+                    slices[i] |= slices[i + 1] & open_[i]
+        return self._like(~reached[1:-1, 1:-1, 1:-1])
+
+    def hollow(self) -> "VoxelGrid":
+        """A new grid of those set voxels that have an empty one beside a face, or lie at the border."""
+        full = numpy.pad(self.matrix, 1)
+        inner = full.copy()
+        for axis in range(3):
+            inner &= numpy.roll(full, 1, axis) & numpy.roll(full, -1, axis)
+        return self._like((full & ~inner)[1:-1, 1:-1, 1:-1])
+
+    def as_boxes(self) -> Mesh:
+        """The faces between set and empty voxels, merged into rectangles, in model units."""
+        return Mesh._of(_core.create("vxm_mesh", lib.vxm_grid_surface_mesh, self._pointer, destroy=lib.vxm_mesh_destroy))
+
+    def compare(self, other: "VoxelGrid") -> dict:
+        """Counts of voxels in both and in one only, and `iou`, for grids of equal shape."""
+        out = ffi.new("vxm_comparison *")
+        _core.call(lib.vxm_grid_compare, out, self._pointer, other._pointer)
+        return _core.fields(out[0])
+
+    def save(self, path: Any, format: Optional[str] = None) -> None:
+        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, or the surface as .obj, .ply, .stl, .off."""
+        options = _core.new("vxm_grid_write_options")
+        name = ffi.new("char[]", format.encode()) if format else ffi.NULL
+        options.format = name
+        _core.call(lib.vxm_grid_write, self._pointer, _core.path_bytes(path), options)
+
+
+def read(path: Any) -> VoxelGrid:
+    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd or .vdb."""
+    return VoxelGrid._of(_core.create("vxm_grid", lib.vxm_grid_read, _core.context(), _core.path_bytes(path),
+                                      destroy=lib.vxm_grid_destroy))
+
+
+def write(grid: VoxelGrid, path: Any, format: Optional[str] = None) -> None:
+    """As `VoxelGrid.save`."""
+    grid.save(path, format)
+
+
+# ---- From meshes ----
+
+def _space_options(resolution: Any, pitch: Optional[float], fit: str, pad: int, bounds: Any, like: Optional[VoxelGrid]) -> tuple:
+    """The options, and what they point to."""
+    options = _core.new("vxm_space_options", pad=pad, fit=_core.choice(fit, "VXM_FIT_"))
+    if resolution is not None and pitch is not None:
+        raise _core.ArgumentError("voxelize: resolution and pitch exclude each other")
+    if like is not None and (resolution is not None or pitch is not None or bounds is not None or pad):
+        raise _core.ArgumentError("voxelize: `like` takes the whole space of a grid; leave out the others")
+    if pitch is not None:
+        if not pitch > 0:
+            raise _core.ArgumentError("voxelize: the pitch %r is not a positive number" % (pitch,))
+        options.voxel_size = pitch
+    if resolution is not None:
+        wanted = [int(resolution), 0, 0] if numpy.ndim(resolution) == 0 else [int(n) for n in resolution]
+        if len(wanted) != 3 or min(wanted) < 0 or wanted[0] < 1:
+            raise _core.ArgumentError("voxelize: the resolution %r is neither one positive number nor three" % (resolution,))
+        options.resolution[0:3] = wanted
+    if bounds is not None:
+        corners = numpy.asarray(bounds, numpy.float64).reshape(-1)
+        if corners.size != 6:
+            raise _core.ArgumentError("voxelize: bounds are not two corners of three numbers")
+        options.use_bounds = True
+        options.bounds[0:6] = corners.tolist()
+    kept = None
+    if like is not None:
+        kept = _space(like.shape, like.origin, like.pitch)
+        options.like = kept
+    return options, kept
+
+
+def _prepare(mesh: MeshLike, repair: bool) -> Mesh:
+    source = as_mesh(mesh)
+    return repair_mesh(source) if repair else source
+
+
+def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None, *, pitch: Optional[float] = None,
+             fit: str = "cube", pad: int = 0, bounds: Any = None, like: Optional[VoxelGrid] = None, mode: str = "solid",
+             surface: str = "conservative", method: str = "vote", vote: str = "auto", parts: str = "auto",
+             cavities: str = "auto", repair: bool = True) -> VoxelGrid:
+    """Voxelizes a mesh: a voxel is set where its centre is inside.
+
+    Args:
+        mesh: Mesh, path, (vertices, faces), or an object with these, such as trimesh's.
+        resolution: voxels along the longest side, or three numbers; 128 if neither this nor `pitch` is given.
+        pitch: side of a voxel in model units.
+        fit: "cube": equal dimensions, filled by the longest side; "tight": the box of the model; "sphere": equal
+            dimensions, filled by the diagonal of the box.
+        pad: voxels kept free on each side.
+        bounds: (2, 3) corners of the box to cover, model units.
+        like: a grid whose space is taken.
+        mode: "solid", "surface" or "both".
+        surface: "conservative", "thin", "shell26", "shell18" or "shell6".
+        method, vote, parts, cavities: as in `voxmend voxelize --help`.
+        repair: repair the mesh first, as `voxmend.repair` does.
+
+    Returns:
+        the grid; its `report` has counts of parts, contested voxels and so on.
+    """
+    source = _prepare(mesh, repair)
+    options = _core.new("vxm_voxelize_options")
+    space_options, kept = _space_options(resolution, pitch, fit, pad, bounds, like)
+    options.space = space_options[0]
+    options.mode = _core.choice(mode, "VXM_MODE_")
+    options.surface = _core.choice(surface, "VXM_SURFACE_")
+    options.method = _core.choice(method, "VXM_METHOD_")
+    options.vote = _core.choice(vote, "VXM_VOTE_")
+    options.parts = _core.choice(parts, "VXM_PARTS_")
+    options.cavities = _core.choice(cavities, "VXM_CAVITIES_")
+    report = ffi.new("vxm_voxelize_report *")
+    made = _core.create("vxm_grid", lib.vxm_voxelize, report, source._pointer, options, destroy=lib.vxm_grid_destroy)
+    del kept  # until now the options point to it
+    return VoxelGrid._of(made, _core.fields(report[0]))
+
+
+def _field(mesh: MeshLike, space_of: tuple, repair: bool, kind: str, options: Any, dtype: Any) -> tuple:
+    source = _prepare(mesh, repair)
+    space_options, kept = _space_options(*space_of)
+    space = ffi.new("vxm_space *")
+    _core.call(lib.vxm_space_fit, space, source._pointer, space_options)
+    del kept
+    model = _core.create("vxm_model", lib.vxm_model_create, source._pointer, ffi.NULL, destroy=lib.vxm_model_destroy)
+    values = numpy.empty(tuple(space.dims), dtype)
+    pointer = ffi.cast("float *", values.ctypes.data)
+    _core.call(getattr(lib, "vxm_model_" + kind), pointer, ffi.NULL, model, space, options)
+    return values, numpy.array(list(space.origin)), numpy.array(list(space.voxel_size))
+
+
+def distance(mesh: MeshLike, resolution: Any = None, *, pitch: Optional[float] = None, fit: str = "cube", pad: int = 0,
+             bounds: Any = None, like: Optional[VoxelGrid] = None, band: float = 3.0, unsigned: bool = False,
+             repair: bool = True) -> tuple:
+    """Distances from the centres of voxels to the mesh, negative inside.
+
+    Args:
+        band: voxels from the mesh within which they are exact; 0 = everywhere.
+
+    Returns:
+        (nx, ny, nz) float32 in model units, origin (3,), pitch (3,)
+    """
+    options = _core.new("vxm_distance_options", band=band, is_unsigned=unsigned)
+    return _field(mesh, (resolution, pitch, fit, pad, bounds, like), repair, "distance", options, numpy.float32)
+
+
+def coverage(mesh: MeshLike, resolution: Any = None, *, pitch: Optional[float] = None, fit: str = "cube", pad: int = 0,
+             bounds: Any = None, like: Optional[VoxelGrid] = None, subdivision: int = 4, repair: bool = True) -> tuple:
+    """How much of each voxel is filled, by 2, 4 or 8 sub-voxels along each axis.
+
+    Returns:
+        (nx, ny, nz) float32 from 0 to 1, origin (3,), pitch (3,), both in model units
+    """
+    options = _core.new("vxm_coverage_options", subdivision=subdivision)
+    return _field(mesh, (resolution, pitch, fit, pad, bounds, like), repair, "coverage", options, numpy.float32)

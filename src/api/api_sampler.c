@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions that make variants for training: they check arguments and call down. */
+#include "api/api_options.h"
+#include "augment/sampler.h"
+#include "augment/spread.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum { RESOLUTION = 64, RESOLUTION_MOST = 1024, NOISE = 1 << 16, NOISE_MOST = 1 << 24 };
+
+static vxm_status check_rotations(const vxm_sampler_options *options, vxm_error *error) {
+  for (int a = 0; a < 3; a++)
+    if (!isfinite(options->axis[a]))
+      return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the axis is not finite");
+  if (options->rotation != VXM_ROTATION_LIST)
+    return VXM_OK;
+  if (!options->rotations || options->rotation_count < 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: a list of rotations is asked for, but not given");
+  for (int64_t r = 0; r < options->rotation_count; r++)
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < 3; k++) {
+        const double *m = options->rotations + 9 * r, *p = m + (ptrdiff_t)3 * i, *q = m + (ptrdiff_t)3 * k;
+        double product = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        if (!(fabs(product - (i == k)) < 1e-3))
+          return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                          "sampler: matrix %" PRId64 " of the list is not a rotation", r);
+      }
+  return VXM_OK;
+}
+
+static bool is_part(double value) {
+  return value >= 0 && value <= 1;
+}
+
+static vxm_status check(const vxm_sampler_options *options, vxm_error *error) {
+  const vxm_voxelize_options *voxelize = &options->voxelize;
+  if (options->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "sampler: options version %" PRIu32 " is unknown; use the initializer", options->version);
+  if (options->resolution < 1 || options->pad < 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: resolution and pad cannot be negative");
+  if (options->resolution > RESOLUTION_MOST)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "sampler: %" PRId64 " voxels along an axis; at most %d can be made", options->resolution,
+                    RESOLUTION_MOST);
+  if ((unsigned)options->rotation > VXM_ROTATION_LIST)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: rotation %d is unknown", (int)options->rotation);
+  if ((unsigned)options->displacement > VXM_DISPLACEMENT_NORMAL)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: displacement %d is unknown",
+                    (int)options->displacement);
+  if (!(options->scale >= 0 && options->scale < 1))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: scale %g is not from 0 to below 1", options->scale);
+  if (!is_part(options->displace) || !is_part(options->translate))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: displace %g or translate %g is not from 0 to 1",
+                    options->displace, options->translate);
+  if (options->mirror > 7)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: mirror %u names other axes than x, y and z",
+                    options->mirror);
+  if (options->noise > NOISE_MOST)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: %" PRIu32 " displacements; at most %d can be kept",
+                    options->noise, NOISE_MOST);
+  if (options->fill && options->rotation != VXM_ROTATION_NONE)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "sampler: a model whose longest side fills the grid cannot be rotated within it");
+  if (voxelize->confidence)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: variants have no confidence");
+  vxm_status status = vxm_check_voxelize_options(voxelize, error);
+  return status == VXM_OK ? check_rotations(options, error) : status;
+}
+
+/** Pad and displacement must leave a model its room. */
+static vxm_status check_room(const vxm_sampler_options *options, vxm_error *error) {
+  vxm_pose_rules rules = {.options = *options,
+                          .reach = vxm_noise_reach(options->displacement, options->displace)};
+  double room = vxm_pose_room(&rules);
+  if (room * (double)options->resolution >= 1)
+    return VXM_OK;
+  return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                  "sampler: a pad of %" PRId64
+                  " voxels and displacements of up to %g of the width on each side "
+                  "leave no room in %" PRId64 " voxels",
+                  options->pad, rules.reach, options->resolution);
+}
+
+vxm_status vxm_sampler_create(vxm_sampler **out, vxm_context *context, const vxm_sampler_options *options,
+                              vxm_error *error) {
+  if (!out)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the output argument is NULL");
+  *out = NULL;
+  vxm_sampler_options chosen = VXM_SAMPLER_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+  if (chosen.resolution == 0)
+    chosen.resolution = RESOLUTION;
+  if (chosen.noise == 0)
+    chosen.noise = NOISE;
+  vxm_status status = check(&chosen, error);
+  if (status == VXM_OK)
+    status = check_room(&chosen, error);
+  return status == VXM_OK ? vxm_sampler_make(out, context, &chosen, error) : status;
+}
+
+vxm_status vxm_sampler_put(vxm_sampler *sampler, uint32_t model, const vxm_mesh *mesh, vxm_error *error) {
+  if (!sampler)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
+  return vxm_sampler_set(sampler, model, mesh, error);
+}
+
+vxm_space vxm_sampler_space(const vxm_sampler *sampler) {
+  return vxm_desk_space(sampler->rules.options.resolution);
+}
+
+size_t vxm_sampler_bytes(const vxm_sampler *sampler, vxm_voxels voxels) {
+  if ((unsigned)voxels > VXM_VOXELS_FLOAT32)
+    return 0;
+  size_t dim = (size_t)sampler->rules.options.resolution;
+  return vxm_spread_row_bytes(voxels, sampler->rules.options.resolution) * dim * dim;
+}
+
+vxm_status vxm_sampler_pose(vxm_pose *out, const vxm_sampler *sampler, const vxm_variant *variant,
+                            vxm_error *error) {
+  if (out)
+    *out = (vxm_pose){0};
+  if (!out || !sampler || !variant)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
+  const vxm_subject *subject = vxm_sampler_find(sampler, variant->model, error);
+  if (!subject)
+    return VXM_ERROR_ARGUMENT;
+  vxm_placement placement;
+  vxm_pose_draw(&placement, &sampler->rules, &subject->extent, variant);
+  double voxels = (double)sampler->rules.options.resolution;
+  for (int i = 0; i < 12; i++)
+    out->transform[i] = placement.matrix[i] * voxels;
+  for (int a = 0; a < 3; a++) {
+    out->scale[a] = placement.scale[a] * voxels;
+    out->shift[a] = placement.shift[a] * voxels;
+  }
+  memcpy(out->rotation, placement.rotation, sizeof out->rotation);
+  return VXM_OK;
+}
+
+vxm_status vxm_sampler_grid(vxm_grid *grid, vxm_sampler *sampler, const vxm_variant *variant,
+                            vxm_error *error) {
+  if (!grid || !sampler || !variant)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
+  int64_t dim = sampler->rules.options.resolution;
+  for (int a = 0; a < 3; a++)
+    if (grid->space.dims[a] != dim)
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "sampler: the grid is not of %" PRId64 " x %" PRId64 " x %" PRId64 " voxels", dim, dim,
+                      dim);
+  return vxm_sampler_fill(sampler, grid, variant, error);
+}
+
+vxm_status vxm_sampler_batch(void *out, vxm_sampler *sampler, const vxm_variant *variants, size_t count,
+                             vxm_voxels voxels, vxm_error *error) {
+  if (!out || !sampler || !variants)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
+  if ((unsigned)voxels > VXM_VOXELS_FLOAT32)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: voxels %d are unknown", (int)voxels);
+  if (voxels == VXM_VOXELS_FLOAT32 && (uintptr_t)out % sizeof(float) != 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the memory is not aligned as floats are");
+  return vxm_sampler_write(sampler, out, variants, count, voxels, error);
+}

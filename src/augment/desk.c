@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "augment/desk.h"
+#include "augment/spread.h"
+#include "base/threads.h"
+
+#include <math.h>
+
+enum { SLICE_POINTS = 8192 };
+
+/** z runs fastest, as in numpy arrays. */
+static const vxm_layout layout_of_arrays = {2, 1, 0};
+
+vxm_space vxm_desk_space(int64_t resolution) {
+  double size = 1 / (double)resolution;
+  return (vxm_space){{resolution, resolution, resolution}, {0, 0, 0}, {size, size, size}};
+}
+
+vxm_status vxm_desk_create(vxm_desk *out, vxm_context *context, bool alone, vxm_error *error) {
+  *out = (vxm_desk){0};
+  vxm_status status = alone ? vxm_context_child(&out->context, context, error)
+                            : vxm_context_acquire(&out->context, context, error);
+  out->twin.context = out->context;
+  return status;
+}
+
+void vxm_desk_destroy(vxm_desk *desk) {
+  if (!desk->context)
+    return;
+  vxm_twin_destroy(&desk->twin);
+  vxm_free(desk->context, desk->words);
+  vxm_context_release(desk->context);
+  *desk = (vxm_desk){0};
+}
+
+/* ---- Points ---- */
+
+typedef struct move_job {
+  double (*to)[3];
+  const double (*from)[3];
+  const uint32_t *entry; /**< of each point in the noise; NULL = not displaced */
+  const float (*noise)[4];
+  uint32_t offset, size; /**< of the noise */
+  const double *matrix;
+  size_t count, slices;
+} move_job;
+
+static void move_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  const move_job *job = payload;
+  const double *m = job->matrix;
+  size_t end = vxm_slice_begin(job->count, job->slices, slice + 1);
+  for (size_t i = vxm_slice_begin(job->count, job->slices, slice); i < end; i++) {
+    const double x = job->from[i][0], y = job->from[i][1], z = job->from[i][2];
+    double at[3] = {m[0] * x + m[1] * y + m[2] * z + m[3], m[4] * x + m[5] * y + m[6] * z + m[7],
+                    m[8] * x + m[9] * y + m[10] * z + m[11]};
+    if (job->entry) {
+      uint32_t entry = job->entry[i] + job->offset; /* both are below 2^31 */
+      const float *v = job->noise[entry < job->size ? entry : entry - job->size];
+      for (int a = 0; a < 3; a++)
+        at[a] += (double)v[a];
+    }
+    for (int a = 0; a < 3; a++)
+      job->to[i][a] = at[a];
+  }
+}
+
+/** Moves points to where they lie in the unit cube, each displaced by its entry of the noise. */
+static void move(vxm_context *context, double (*to)[3], const double *from, const uint32_t *entry,
+                 size_t count, const vxm_placement *placement, const vxm_noise *noise) {
+  move_job job = {.to = to,
+                  .from = (const double(*)[3])from,
+                  .entry = entry,
+                  .noise = (const float(*)[4])noise->vectors,
+                  .offset = noise->size > 0 ? placement->offset % noise->size : 0,
+                  .size = noise->size,
+                  .matrix = placement->matrix,
+                  .count = count,
+                  .slices = 1 + count / SLICE_POINTS};
+  vxm_parallel(context, job.slices, move_slice, &job);
+}
+
+/* ---- Variants ---- */
+
+vxm_status vxm_desk_fill(vxm_desk *desk, const vxm_window *window, const vxm_subject *subject,
+                         const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
+  vxm_twin *twin = &desk->twin;
+  vxm_status status = vxm_twin_attach(twin, subject->model, error);
+  if (status != VXM_OK)
+    return status;
+  const vxm_facets *facets = &subject->model->shape.facets;
+  move(desk->context, twin->positions, &facets->positions[0][0], subject->entry, facets->first_apex,
+       placement, noise);
+  if (vxm_model_wants_faces(subject->model))
+    move(desk->context, twin->vertices, facets->soup->positions, subject->vertex_entry,
+         facets->soup->vertex_count, placement, noise);
+  vxm_space space = vxm_desk_space(window->fast_dim);
+  vxm_lattice lattice = vxm_lattice_of(&space);
+  /* Both ends of an edge may be displaced, along three axes. */
+  double reach = 2 * sqrt(3.0) * noise->reach;
+  return vxm_twin_fill(twin, window, &lattice, placement->stretch, reach, placement->mirrored, error);
+}
+
+static vxm_status make_room(vxm_desk *desk, size_t words, vxm_error *error) {
+  if (words <= desk->word_room)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(desk->context, desk->words);
+  desk->words = vxm_alloc(desk->context, words, sizeof *desk->words, &local);
+  desk->word_room = desk->words ? words : 0;
+  if (!desk->words && error)
+    *error = local;
+  return local.code;
+}
+
+/** Whether packed voxels have the form of a window's words, so that it can be filled where they belong. */
+static bool is_window(const void *out, vxm_voxels voxels, int64_t resolution) {
+  const uint16_t one = 1;
+  return voxels == VXM_VOXELS_PACKED && resolution % 64 == 0 && (uintptr_t)out % sizeof(uint64_t) == 0 &&
+         *(const unsigned char *)&one == 1;
+}
+
+vxm_status vxm_desk_write(vxm_desk *desk, void *out, vxm_voxels voxels, int64_t resolution,
+                          const vxm_subject *subject, const vxm_placement *placement, const vxm_noise *noise,
+                          vxm_error *error) {
+  vxm_space space = vxm_desk_space(resolution);
+  vxm_window window = vxm_window_of(&space, layout_of_arrays, 0, resolution);
+  bool direct = is_window(out, voxels, resolution);
+  if (!direct) {
+    vxm_status status = make_room(desk, window.slice_words * (size_t)resolution, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  window.words = direct ? out : desk->words;
+  vxm_status status = vxm_desk_fill(desk, &window, subject, placement, noise, error);
+  if (status == VXM_OK && !direct)
+    vxm_spread(out, voxels, window.words, (size_t)resolution * (size_t)resolution, resolution);
+  return status;
+}

@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "augment/sampler.h"
+#include "augment/spread.h"
+#include "base/threads.h"
+#include "base/watch.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* ---- Making and freeing ---- */
+
+static vxm_status copy_rotations(vxm_sampler *sampler, vxm_error *error) {
+  vxm_sampler_options *options = &sampler->rules.options;
+  if (options->rotation != VXM_ROTATION_LIST)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  size_t count = 9 * (size_t)options->rotation_count;
+  sampler->rotations = vxm_alloc(sampler->context, count, sizeof *sampler->rotations, &local);
+  if (!sampler->rotations) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  memcpy(sampler->rotations, options->rotations, count * sizeof *sampler->rotations);
+  options->rotations = sampler->rotations;
+  return VXM_OK;
+}
+
+static void set_axis(vxm_pose_rules *rules) {
+  const double *given = rules->options.axis;
+  double longest = fmax(fabs(given[0]), fmax(fabs(given[1]), fabs(given[2]))), squared = 0;
+  for (int a = 0; a < 3; a++) { /* squares of what is at most 1 neither overflow nor all vanish */
+    rules->axis[a] = longest > 0 ? given[a] / longest : a == 2;
+    squared += rules->axis[a] * rules->axis[a];
+  }
+  for (int a = 0; a < 3; a++)
+    rules->axis[a] /= sqrt(squared);
+}
+
+vxm_status vxm_sampler_make(vxm_sampler **out, vxm_context *context, const vxm_sampler_options *options,
+                            vxm_error *error) {
+  vxm_context *own = NULL;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = vxm_context_acquire(&own, context, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_sampler *sampler = vxm_calloc(own, 1, sizeof *sampler, &local);
+  if (!sampler) {
+    vxm_context_release(own);
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  sampler->context = own;
+  sampler->rules.options = *options;
+  sampler->rules.reach = vxm_noise_reach(options->displacement, options->displace);
+  set_axis(&sampler->rules);
+  sampler->desks = vxm_calloc(own, (size_t)vxm_context_threads(own) + 1, sizeof *sampler->desks, &local);
+  status = local.code;
+  if (status == VXM_OK)
+    status = copy_rotations(sampler, &local);
+  if (status == VXM_OK)
+    status = vxm_noise_create(&sampler->noise, own, options->seed, options->displacement, options->displace,
+                              options->noise, &local);
+  if (status == VXM_OK) {
+    *out = sampler;
+    return VXM_OK;
+  }
+  vxm_sampler_destroy(sampler);
+  if (error)
+    *error = local;
+  return status;
+}
+
+void vxm_sampler_destroy(vxm_sampler *sampler) {
+  if (!sampler)
+    return;
+  vxm_context *context = sampler->context;
+  for (int d = 0; sampler->desks && d <= vxm_context_threads(context); d++)
+    vxm_desk_destroy(&sampler->desks[d]);
+  for (size_t s = 0; s < sampler->subject_count; s++)
+    vxm_subject_destroy(&sampler->subjects[s]);
+  vxm_noise_destroy(&sampler->noise, context);
+  vxm_free(context, sampler->rotations);
+  vxm_free(context, sampler->subjects);
+  vxm_free(context, sampler->desks);
+  vxm_free(context, sampler);
+  vxm_context_release(context);
+}
+
+/* ---- Models ---- */
+
+/** The first subject whose number is not below `model`. */
+static size_t place_of(const vxm_sampler *sampler, uint32_t model) {
+  size_t low = 0, high = sampler->subject_count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (sampler->subjects[middle].number < model)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static bool is_there(const vxm_sampler *sampler, size_t place, uint32_t model) {
+  return place < sampler->subject_count && sampler->subjects[place].number == model;
+}
+
+/** Desks must not go on with a model that is gone, or with another at the same address. */
+static void detach(vxm_sampler *sampler) {
+  for (int d = 0; d <= vxm_context_threads(sampler->context); d++)
+    sampler->desks[d].twin.of = NULL;
+}
+
+static void take_out(vxm_sampler *sampler, size_t place) {
+  detach(sampler);
+  vxm_subject_destroy(&sampler->subjects[place]);
+  sampler->subject_count--;
+  memmove(sampler->subjects + place, sampler->subjects + place + 1,
+          (sampler->subject_count - place) * sizeof *sampler->subjects);
+}
+
+vxm_status vxm_sampler_set(vxm_sampler *sampler, uint32_t model, const vxm_soup *soup, vxm_error *error) {
+  size_t place = place_of(sampler, model);
+  if (is_there(sampler, place, model))
+    take_out(sampler, place);
+  if (!soup)
+    return VXM_OK;
+  vxm_subject made;
+  vxm_status status = vxm_grow(sampler->context, (void **)&sampler->subjects, &sampler->subject_room,
+                               sampler->subject_count + 1, sizeof *sampler->subjects, error);
+  if (status == VXM_OK)
+    status = vxm_subject_create(&made, model, soup, &sampler->rules.options.voxelize, &sampler->noise, error);
+  if (status != VXM_OK)
+    return status;
+  memmove(sampler->subjects + place + 1, sampler->subjects + place,
+          (sampler->subject_count - place) * sizeof *sampler->subjects);
+  sampler->subjects[place] = made;
+  sampler->subject_count++;
+  return VXM_OK;
+}
+
+const vxm_subject *vxm_sampler_find(const vxm_sampler *sampler, uint32_t model, vxm_error *error) {
+  size_t place = place_of(sampler, model);
+  if (is_there(sampler, place, model))
+    return &sampler->subjects[place];
+  vxm_fail(error, VXM_ERROR_ARGUMENT,
+           "sampler: there is no model %" PRIu32 "; give it with vxm_sampler_put first", model);
+  return NULL;
+}
+
+/* ---- One variant, by all threads ---- */
+
+static vxm_status need_desk(vxm_sampler *sampler, int desk, bool alone, vxm_error *error) {
+  vxm_desk *at = &sampler->desks[desk];
+  return at->context ? VXM_OK : vxm_desk_create(at, sampler->context, alone, error);
+}
+
+/** The desk at which all threads work together. */
+static vxm_status need_table(vxm_desk **out, vxm_sampler *sampler, vxm_error *error) {
+  int table = vxm_context_threads(sampler->context);
+  *out = &sampler->desks[table];
+  return need_desk(sampler, table, false, error);
+}
+
+vxm_status vxm_sampler_fill(vxm_sampler *sampler, vxm_grid *grid, const vxm_variant *variant,
+                            vxm_error *error) {
+  vxm_desk *desk;
+  const vxm_subject *subject = vxm_sampler_find(sampler, variant->model, error);
+  if (!subject)
+    return VXM_ERROR_ARGUMENT;
+  vxm_status status = need_table(&desk, sampler, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_placement placement;
+  vxm_pose_draw(&placement, &sampler->rules, &subject->extent, variant);
+  vxm_window window = vxm_window_of_grid(grid);
+  return vxm_desk_fill(desk, &window, subject, &placement, &sampler->noise, error);
+}
+
+/* ---- Many variants ---- */
+
+/** Grids up to this resolution are made by one thread each: they fit its cache, and need no waiting. */
+enum { ALONE_MOST = 256 };
+
+typedef struct batch_job {
+  vxm_sampler *sampler;
+  const vxm_variant *variants;
+  unsigned char *out;
+  size_t step; /**< bytes of a variant */
+  vxm_voxels voxels;
+  vxm_watch watch;
+  atomic_int failed; /**< a vxm_status */
+  vxm_error error;   /**< of the one that failed first */
+} batch_job;
+
+static vxm_status write_one(const batch_job *job, size_t v, vxm_desk *desk, vxm_error *error) {
+  const vxm_sampler *sampler = job->sampler;
+  const vxm_subject *subject = vxm_sampler_find(sampler, job->variants[v].model, error);
+  if (!subject)
+    return VXM_ERROR_ARGUMENT;
+  vxm_placement placement;
+  vxm_pose_draw(&placement, &sampler->rules, &subject->extent, &job->variants[v]);
+  return vxm_desk_write(desk, job->out + v * job->step, job->voxels, sampler->rules.options.resolution,
+                        subject, &placement, &sampler->noise, error);
+}
+
+static void write_task(size_t v, int worker, void *payload) {
+  batch_job *job = payload;
+  if (vxm_watch_stopped(&job->watch, worker))
+    return;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_status status = write_one(job, v, &job->sampler->desks[worker], &error);
+  int none = VXM_OK;
+  if (status != VXM_OK && atomic_compare_exchange_strong(&job->failed, &none, (int)status)) {
+    job->error = error;
+    atomic_store_explicit(&job->watch.stop, true, memory_order_relaxed);
+  }
+  vxm_watch_step(&job->watch);
+}
+
+/** One variant for each thread at a time. */
+static vxm_status write_alone(batch_job *job, size_t count, vxm_error *error) {
+  vxm_sampler *sampler = job->sampler;
+  for (int d = 0; d < vxm_context_threads(sampler->context); d++) {
+    vxm_status status = need_desk(sampler, d, true, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  vxm_watch_start(&job->watch, sampler->context, "making variants", count, error);
+  vxm_parallel(sampler->context, count, write_task, job);
+  if (job->failed == VXM_OK)
+    return vxm_watch_end(&job->watch);
+  if (error)
+    *error = job->error;
+  return (vxm_status)job->failed;
+}
+
+vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant *variants, size_t count,
+                             vxm_voxels voxels, vxm_error *error) {
+  int64_t resolution = sampler->rules.options.resolution;
+  batch_job job = {.sampler = sampler,
+                   .variants = variants,
+                   .out = out,
+                   .step = vxm_spread_row_bytes(voxels, resolution) * (size_t)resolution * (size_t)resolution,
+                   .voxels = voxels,
+                   .error = VXM_ERROR_INIT};
+  atomic_init(&job.failed, VXM_OK);
+  if (count > 1 && resolution <= ALONE_MOST)
+    return write_alone(&job, count, error);
+  vxm_desk *desk;
+  vxm_status status = need_table(&desk, sampler, error);
+  for (size_t v = 0; v < count && status == VXM_OK; v++)
+    status = write_one(&job, v, desk, error);
+  return status;
+}

@@ -1,0 +1,329 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend voxelize: its options. */
+#include "cli/voxelize.h"
+
+#include <string.h>
+
+enum {
+  KEY_SIZE = CLI_KEY_COMMAND,
+  KEY_FIT,
+  KEY_BOUNDS,
+  KEY_PAD,
+  KEY_LIKE,
+  KEY_MODE,
+  KEY_SURFACE,
+  KEY_METHOD,
+  KEY_VOTE,
+  KEY_PARTS,
+  KEY_CAVITIES,
+  KEY_COVERAGE,
+  KEY_SCALAR,
+  KEY_DISTANCE,
+  KEY_BAND,
+  KEY_LABELS,
+  KEY_COLOR,
+  KEY_CONFIDENCE,
+  KEY_SPARSE,
+  KEY_COORDS,
+  KEY_NO_REPAIR,
+  KEY_WELD,
+  KEY_KEEP,
+  KEY_FORMAT,
+  KEY_DRY_RUN
+};
+
+const cli_option voxelize_options[] = {
+    {'o', "output", "GRID",
+     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
+     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
+     "standard output"},
+    {KEY_FORMAT, "format", "F",
+     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
+     "output]"},
+    {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
+    {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
+    {KEY_FIT, "fit", "cube|tight|sphere",
+     "cube: N x N x N, the model's longest side fills it, the model is centred;\n"
+     "tight: the box of the model; sphere: N x N x N, the diagonal of the box\n"
+     "fills it, so that every rotation stays inside [cube]"},
+    {KEY_PAD, "pad", "P", "keep P voxels free on each side: within -r, in addition to --voxel-size [0]"},
+    {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1", "cover exactly this box, whatever the model's size"},
+    {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
+    {KEY_MODE, "mode", "solid|surface|both",
+     "solid: voxels whose centre is inside; surface: those of --surface; both:\n"
+     "either, which keeps sheets and parts thinner than a voxel [solid]"},
+    {KEY_SURFACE, "surface", "conservative|thin|shell26|shell18|shell6",
+     "conservative: every voxel whose box meets a face; thin: 6-separating, no path\n"
+     "over faces of voxels crosses it; shell26, 18, 6: voxels of the solid beside an\n"
+     "empty one, over corners, edges or faces [conservative]"},
+    {KEY_METHOD, "method", "vote|x|y|z|tetra|winding",
+     "who says what is inside: parity along one axis, the XOR of tetrahedra, a\n"
+     "vote of these four (they agree wherever the mesh is closed), or the winding\n"
+     "number, which is slow and always has an answer [vote]"},
+    {KEY_VOTE, "vote", "auto|majority|any|all",
+     "what is inside where the mesh is open: auto = close holes by caps over their\n"
+     "rims, and ask the winding number where that cannot be; majority = what two\n"
+     "of x, y and z say; any, all = what any or all of the four say [auto]"},
+    {KEY_PARTS, "parts", "auto|group|whole",
+     "what is voxelized alone, then united: auto = each closed component, and\n"
+     "all others together; group = each component; whole = no splitting [auto]"},
+    {KEY_CAVITIES, "cavities", "auto|keep|fill",
+     "what a closed component inside another is: auto = a cavity if it is wound\n"
+     "against that, else solid; keep = a cavity; fill = solid [auto]"},
+    {KEY_COVERAGE, "coverage", "2|4|8",
+     "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
+     "each axis; .npy, .nrrd or .vdb"},
+    {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
+    {KEY_DISTANCE, "distance", "signed|unsigned",
+     "write the distance from each centre to the mesh instead, in model units;\n"
+     "signed: negative inside; .npy, .nrrd or .vdb"},
+    {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
+    {KEY_LABELS, "labels", "part|group|material",
+     "write which part, group or material each voxel belongs to instead, from 1 on;\n"
+     ".npy, .nrrd or .binvox, with the names in a .json beside it"},
+    {KEY_COLOR, "color", "noise|position|part|FILE.frag",
+     "write a colour for each set voxel instead: Perlin's noise, where it is, its part,\n"
+     "or a function in GLSL, which needs --engine opengl; .npy, .ply or .vox"},
+    {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
+    {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
+    {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
+    {KEY_DRY_RUN, "dry-run", NULL, "tell the grid and the memory it takes, and write nothing"},
+    {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
+    {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
+    {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
+    CLI_OPTIONS_ENGINE,
+    CLI_OPTION_DEFLECTION,
+    {0, NULL, NULL, NULL}};
+
+/** "64", or "64x32x16". */
+static bool read_resolution(int64_t out[3], const char *text) {
+  enum { MOST = 1 << 20 };
+  int64_t value[3] = {0, 0, 0};
+  int count = 0;
+  for (;;) {
+    size_t digits = strspn(text, "0123456789");
+    char number[16] = "";
+    if (digits >= sizeof number || count == 3)
+      return false;
+    memcpy(number, text, digits);
+    if (!cli_read_integer(&value[count++], number, 1, MOST))
+      return false;
+    text += digits;
+    if (!*text)
+      break;
+    if (*text++ != 'x')
+      return false;
+  }
+  if (count == 2)
+    return false;
+  memcpy(out, value, sizeof value);
+  return true;
+}
+
+static int read_choice(cli_run *cli, int *out, const char *name, const char *value,
+                       const char *const *choices) {
+  *out = cli_read_choice(value, choices);
+  if (*out >= 0)
+    return CLI_END;
+  char list[96] = "";
+  for (size_t i = 0, used = 0; choices[i] && used < sizeof list; i++)
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", choices[i]);
+  return cli_usage(cli, "--%s '%s' is none of %s", name, value, list);
+}
+
+/** The options that choose the voxel space. */
+static int read_space_option(cli_run *cli, voxelize_request *out, int key, const char *value) {
+  static const char *const fits[] = {"cube", "tight", "sphere", NULL};
+  vxm_space_options *space = &out->voxelize.space;
+  int choice;
+  switch (key) {
+  case 'r':
+    out->resolution = true;
+    if (!read_resolution(space->resolution, value))
+      return cli_usage(cli, "-r '%s' is neither N nor NXxNYxNZ, each from 1 to 1048576", value);
+    return CLI_END;
+  case KEY_SIZE:
+    out->size = true;
+    if (!cli_read_number(&space->voxel_size, value) || space->voxel_size <= 0)
+      return cli_usage(cli, "--voxel-size '%s' is not a positive number", value);
+    return CLI_END;
+  case KEY_FIT:
+    out->fit = true;
+    if (read_choice(cli, &choice, "fit", value, fits) == CLI_STOP)
+      return CLI_STOP;
+    space->fit = (vxm_fit)choice;
+    return CLI_END;
+  case KEY_PAD:
+    out->pad = true;
+    if (!cli_read_integer(&space->pad, value, 0, 1 << 19))
+      return cli_usage(cli, "--pad '%s' is not a number of voxels from 0 to 524288", value);
+    return CLI_END;
+  case KEY_BOUNDS:
+    out->bounds = space->use_bounds = true;
+    if (!cli_read_numbers(space->bounds, 6, value))
+      return cli_usage(cli, "--bounds '%s' is not X0,Y0,Z0,X1,Y1,Z1", value);
+    for (int axis = 0; axis < 3; axis++)
+      if (!(space->bounds[axis] < space->bounds[axis + 3]))
+        return cli_usage(cli, "--bounds '%s' is empty along %c", value, 'x' + axis);
+    return CLI_END;
+  default:
+    out->like = value;
+    return CLI_END;
+  }
+}
+
+static int read_option(cli_run *cli, voxelize_request *out, int key, const char *value) {
+  static const char *const modes[] = {"solid", "surface", "both", NULL};
+  static const char *const surfaces[] = {"conservative", "thin", "shell26", "shell18", "shell6", NULL};
+  static const char *const methods[] = {"vote", "x", "y", "z", "tetra", "winding", NULL};
+  static const char *const votes[] = {"auto", "majority", "any", "all", NULL};
+  static const char *const parts[] = {"auto", "group", "whole", NULL};
+  static const char *const cavities[] = {"auto", "keep", "fill", NULL};
+  int choice = 0, result = CLI_END;
+  switch (key) {
+  case 'o':
+    out->output = value;
+    return CLI_END;
+  case KEY_FORMAT:
+    out->format = value;
+    return CLI_END;
+  case KEY_MODE:
+    result = read_choice(cli, &choice, "mode", value, modes);
+    out->voxelize.mode = (vxm_mode)choice;
+    return result;
+  case KEY_SURFACE:
+    out->surface = true;
+    result = read_choice(cli, &choice, "surface", value, surfaces);
+    out->voxelize.surface = (vxm_surface_kind)choice;
+    return result;
+  case KEY_METHOD:
+    result = read_choice(cli, &choice, "method", value, methods);
+    out->voxelize.method = (vxm_method)choice;
+    return result;
+  case KEY_VOTE:
+    out->vote = true;
+    result = read_choice(cli, &choice, "vote", value, votes);
+    out->voxelize.vote = (vxm_vote)choice;
+    return result;
+  case KEY_PARTS:
+    result = read_choice(cli, &choice, "parts", value, parts);
+    out->voxelize.parts = (vxm_parts)choice;
+    return result;
+  case KEY_CAVITIES:
+    result = read_choice(cli, &choice, "cavities", value, cavities);
+    out->voxelize.cavities = (vxm_cavities)choice;
+    return result;
+  case KEY_COVERAGE:
+    return cli_field_read_coverage(cli, &out->field, value);
+  case KEY_SCALAR:
+    return cli_field_read_scalar(cli, &out->field, value);
+  case KEY_DISTANCE:
+    return cli_field_read_distance(cli, &out->field, value);
+  case KEY_BAND:
+    return cli_field_read_band(cli, &out->field, value);
+  case KEY_LABELS:
+    return cli_field_read_labels(cli, &out->field, value);
+  case KEY_COLOR:
+    return cli_color_read(cli, &out->field, value);
+  case KEY_CONFIDENCE:
+    out->confidence = value;
+    out->voxelize.confidence = true;
+    return CLI_END;
+  case KEY_SPARSE:
+    out->sparse = true;
+    return CLI_END;
+  case KEY_COORDS:
+    out->coords = value;
+    return CLI_END;
+  case KEY_DRY_RUN:
+    out->dry_run = true;
+    return CLI_END;
+  case KEY_NO_REPAIR:
+    out->no_repair = true;
+    return CLI_END;
+  case KEY_WELD:
+    out->repair_options = true;
+    if (!cli_read_weld(&out->repair, value))
+      return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
+    return CLI_END;
+  case KEY_KEEP:
+    out->repair_options = out->repair.keep_duplicates = true;
+    return CLI_END;
+  case CLI_KEY_ENGINE:
+  case CLI_KEY_GL_METHOD:
+  case CLI_KEY_GL_AXIS:
+  case CLI_KEY_GL_DISPLACE:
+    return cli_engine_read(cli, &out->engine, key, value);
+  default:
+    return read_space_option(cli, out, key, value);
+  }
+}
+
+static bool is_npy(const char *path) {
+  size_t length = strlen(path);
+  return length > 4 && strcmp(path + length - 4, ".npy") == 0;
+}
+
+/** Options that contradict each other. */
+static int check_conflicts(cli_run *cli, const voxelize_request *given) {
+  if (given->like && (given->resolution || given->size || given->fit || given->pad || given->bounds))
+    return cli_usage(cli, "--like takes the whole grid from a file; leave out -r, --voxel-size, --fit, "
+                          "--pad and --bounds");
+  if (given->resolution && given->size)
+    return cli_usage(cli, "-r and --voxel-size exclude each other");
+  if (given->bounds && given->pad)
+    return cli_usage(cli, "--bounds is covered exactly; leave out --pad");
+  if (given->bounds && given->fit)
+    return cli_usage(cli, "--bounds is covered exactly; leave out --fit");
+  if (given->vote && given->voxelize.method != VXM_METHOD_VOTE)
+    return cli_usage(cli, "--vote goes with --method vote only");
+  if (given->surface && given->voxelize.mode == VXM_MODE_SOLID)
+    return cli_usage(cli, "--surface goes with --mode surface or both");
+  if (given->voxelize.mode == VXM_MODE_BOTH && given->voxelize.surface >= VXM_SURFACE_SHELL26)
+    return cli_usage(cli, "a shell is a part of the solid; with --mode both leave out --surface");
+  if (given->confidence && !is_npy(given->confidence))
+    return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
+  if (given->confidence && given->output && strcmp(given->confidence, given->output) == 0)
+    return cli_usage(cli, "--confidence and -o name the same file");
+  if (given->confidence && given->sparse)
+    return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
+  if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
+    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance, "
+                          "--labels and --color");
+  if (given->coords && !is_npy(given->coords))
+    return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
+  if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
+                        (given->confidence && strcmp(given->coords, given->confidence) == 0)))
+    return cli_usage(cli, "--coords and another output name the same file");
+  if (given->engine.name && given->sparse)
+    return cli_usage(cli, "--sparse is made by the CPU; leave out --engine");
+  if (cli_engine_check(cli, &given->engine) == CLI_STOP)
+    return CLI_STOP;
+  if (given->no_repair && given->repair_options)
+    return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
+  return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);
+}
+
+bool voxelize_is_sliced(const char *format) {
+  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb", NULL};
+  return cli_read_choice(format, sliced) >= 0;
+}
+
+int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
+  const char *value;
+  int key;
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
+      return CLI_STOP;
+  if (cli->argument_count != 1)
+    return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
+  out->input = cli->arguments[0];
+  if (check_conflicts(cli, out) == CLI_STOP)
+    return CLI_STOP;
+  out->format =
+      cli_output_format(cli, out->output, out->format,
+                        cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_grid_formats);
+  if (out->format && out->sparse && !voxelize_is_sliced(out->format))
+    return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
+  return out->format ? CLI_END : CLI_STOP;
+}

@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/twin.h"
+#include "voxel/orient.h"
+
+#include <string.h>
+
+vxm_status vxm_twin_prepare(vxm_model *model, vxm_error *error) {
+  vxm_shape *shape = &model->shape;
+  const vxm_voxelize_options *options = &model->options;
+  if (!vxm_model_wants_solid(model))
+    return VXM_OK;
+  if (options->method == VXM_METHOD_WINDING) {
+    vxm_status status = vxm_orient_all(shape, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  bool decides = vxm_caps_wanted(options) && vxm_voted_begin(shape) < shape->facets.split.part_count;
+  return decides ? vxm_orient_open(shape, error) : VXM_OK;
+}
+
+/** Makes room for `count` elements, whose content is lost. */
+static vxm_status make_room(vxm_context *context, void **block, size_t *room, size_t count, size_t size,
+                            vxm_error *error) {
+  if (count <= *room)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(context, *block);
+  *block = vxm_alloc(context, count, size, &local);
+  *room = *block ? count : 0;
+  if (!*block && error)
+    *error = local;
+  return local.code;
+}
+
+static void begin(vxm_twin *twin) {
+  vxm_model *model = &twin->model;
+  model->context = twin->context;
+  model->shape.context = twin->context;
+  model->shape.workspace = vxm_workspace_of(twin->context);
+  model->run = (vxm_run){.shape = &model->shape, .placed = {.context = twin->context}};
+  model->run.open_wound.context = model->run.all_wound.context = twin->context;
+}
+
+static vxm_status reserve(vxm_twin *twin, const vxm_model *of, vxm_error *error) {
+  const vxm_facets *facets = &of->shape.facets;
+  void *positions = twin->positions, *vertices = twin->vertices, *touched = twin->model.run.touched;
+  vxm_status status = make_room(twin->context, &positions, &twin->position_room, facets->first_apex,
+                                sizeof *twin->positions, error);
+  if (status == VXM_OK && vxm_model_wants_faces(of))
+    status = make_room(twin->context, &vertices, &twin->vertex_room, facets->soup->vertex_count,
+                       sizeof *twin->vertices, error);
+  if (status == VXM_OK)
+    status = make_room(twin->context, &touched, &twin->part_room, facets->split.part_count,
+                       sizeof *twin->model.run.touched, error);
+  twin->positions = positions;
+  twin->vertices = vertices;
+  twin->model.run.touched = touched;
+  return status;
+}
+
+vxm_status vxm_twin_attach(vxm_twin *twin, const vxm_model *of, vxm_error *error) {
+  if (twin->of == of)
+    return VXM_OK;
+  vxm_model *model = &twin->model;
+  if (!model->context)
+    begin(twin);
+  twin->of = NULL;
+  vxm_surface_destroy(model->surface);
+  model->surface = NULL;
+  vxm_status status = reserve(twin, of, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_workspace workspace = model->shape.workspace;
+  model->options = of->options;
+  model->shape = of->shape;
+  model->shape.context = twin->context;
+  model->shape.options = &model->options;
+  model->shape.workspace = workspace;
+  model->shape.facets.context = twin->context;
+  model->shape.facets.positions = twin->positions;
+  if (vxm_model_wants_faces(of)) {
+    twin->soup = *of->shape.soup;
+    twin->soup.context = twin->context;
+    twin->soup.positions = (double *)twin->vertices;
+    model->shape.soup = model->shape.facets.soup = &twin->soup;
+    /* Polygons are cut as they lie in the other's mesh, whatever variant comes first. */
+    memcpy(twin->vertices, of->shape.soup->positions, twin->soup.vertex_count * sizeof *twin->vertices);
+    status = vxm_surface_make(&model->surface, &twin->soup, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  twin->of = of;
+  return VXM_OK;
+}
+
+vxm_status vxm_twin_fill(vxm_twin *twin, const vxm_window *window, const vxm_lattice *lattice, double stretch,
+                         double reach, bool mirrored, vxm_error *error) {
+  vxm_model *model = &twin->model;
+  vxm_facets *facets = &model->shape.facets;
+  const vxm_facets *own = &twin->of->shape.facets;
+  double count = (double)facets->facet_count;
+  /* (a + b)^2 <= 2 a^2 + 2 b^2 */
+  facets->length = own->length * stretch + count * reach;
+  facets->squared_length = 2 * (own->squared_length * stretch * stretch + count * reach * reach);
+  vxm_status status = vxm_model_begin_on(model, lattice, NULL, NULL, error);
+  model->run.mirrored = mirrored;
+  return status == VXM_OK ? vxm_model_fill(model, window, error) : status;
+}
+
+void vxm_twin_destroy(vxm_twin *twin) {
+  vxm_model *model = &twin->model;
+  if (model->context) {
+    vxm_surface_destroy(model->surface);
+    vxm_free(twin->context, model->run.touched);
+    vxm_run_destroy(&model->run);
+    vxm_shelling_destroy(&model->shelling, twin->context);
+    vxm_workspace_destroy(&model->shape.workspace);
+  }
+  vxm_free(twin->context, twin->vertices);
+  vxm_free(twin->context, twin->positions);
+  *twin = (vxm_twin){.context = twin->context};
+}

@@ -1,0 +1,63 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# voxmend augment: the same variants as files and as a stream, with any number of threads, from any first one on; and what is
+# refused. tests/api/test_sampler.c makes the variants of the checksum too.
+. "$SRCDIR/tests/cli/lib.sh"
+all='-r 32 --pad 1 --seed 1311768467463790320 --epoch 2 --rotate any --scale 0.5 --displace 0.03 --mirror xyz --translate 1'
+
+# The summary without times and with N for the bytes of files, which differ between machines for no format.
+timeless() {
+  sed -E -e 's/^(time +).*/\1T/' -e 's/("(read|repair|prepare|make|total)": )[0-9][0-9.e+-]*/\1T/'
+}
+
+# record FILE SIZE NUMBER: the voxels of a record of so many bytes.
+record() {
+  tail -c +$((64 + $3 * ($2 + 16) + 16 + 1)) "$1" | head -c "$2"
+}
+
+say "# a stream"
+run 'voxmend augment in/l_prism.off -o - -n 24 $all -q >a.bin; head -c 64 a.bin | od -A d -t u4 | head -n 5'
+run 'tail -c +65 a.bin | head -c 16 | od -A n -t u4; tail -c +$((65 + 23 * 4112)) a.bin | head -c 16 | od -A n -t u4; wc -c <a.bin'
+run 'cksum <a.bin'
+run 'for t in 1 2 3; do voxmend augment in/l_prism.off -o - -n 24 $all -q --threads $t | cmp - a.bin && echo equal; done'
+run 'voxmend augment in/l_prism.off -o - -n 3 --first 20 $all -q | tail -c +65 >b.bin; tail -c +$((65 + 20 * 4112)) a.bin | head -c $((3 * 4112)) | cmp - b.bin && echo equal'
+run 'voxmend augment - -o - -n 24 $all -q <in/l_prism.off | cmp - a.bin && echo equal'
+run 'voxmend augment in/l_prism.off -o - -n 0 $all -q --progress never | head -c 98752 | tail -c +65 | cksum; tail -c +65 a.bin | cksum'
+run 'voxmend augment in/l_prism.off -o - -n 2 $all --format uint8 2>&1 >c.bin | timeless; wc -c <c.bin'
+run 'voxmend augment in/l_prism.off -o - -n 2 $all --format float32 -q >d.bin; wc -c <d.bin'
+
+say "# files: the same voxels"
+run 'voxmend augment in/l_prism.off -o npy -n 2 $all --format npy | timeless; ls npy'
+run 'for i in 0 1; do record c.bin 32768 $i >x; tail -c 32768 npy/00000$i.npy | cmp - x && echo equal; done; rm x'
+run 'for f in rle raw binvox nrrd; do voxmend augment in/l_prism.off -o $f -n 2 $all --format $f -q; voxmend compare $f/000001.$f npy/000001.npy --json; done | grep iou'
+run 'voxmend augment in/l_prism.off -o rle -n 2 --first 999999 $all -q; ls rle'
+run 'voxmend augment in/l_prism.off -o json -n 1 --json | timeless | sed -E "/peak_bytes|file_bytes/s/[0-9]+/N/"'
+
+say "# each augmentation"
+printf '0 -1 0 1 0 0 0 0 1\n1,0,0, 0,0,-1, 0,1,0\n' >turns.txt
+for option in '--rotate none' '--rotate x' '--rotate z' '--rotate 1,2,-2' '--rotate turns.txt' '--scale 0.3' '--displace 0.02' \
+  '--displace 0.02,normal' '--displace 0.02 --noise 50' '--mirror y' '--translate 0.5 --pad 4' '--fill' '--pad 3' '--mode both' \
+  '--mode surface' '--mode surface --surface shell6' '--no-repair' '--weld off' '--model 7' '--keep-duplicates'; do
+  run "voxmend augment in/l_prism.off -o - -n 4 -r 16 $option -q | tail -c +65 | cksum"
+done
+
+say "# what is refused"
+for options in '' '-o' '-o x -n -1' '-o x -n 0' '-o x -n 5000000000' '-o x --first 4294967295 -n 2' '-o x -r 0' '-o x -r 2000' '-o x --seed -3' \
+  '-o x --rotate 0,0,0' '-o x --rotate no/such' '-o x --scale 1' '-o x --scale -0.1' '-o x --displace 2' '-o x --displace 0.1,uniform' \
+  '-o x --displace 0.5' '-o x --mirror w' '-o x --translate 2' '-o x --fill --rotate any' '-o x --noise 5' '-o x --surface thin' \
+  '-o x --mode both --surface shell6' '-o x --mode solid --surface thin' '-o x --format vdb' '-o - --format rle' '-o x --pad 32' \
+  '-o - --json' '-o x --no-repair --weld off' '-o no/such/x' '-o in/cube.off'; do
+  run "voxmend augment in/l_prism.off $options"
+done
+printf '1 0 0 0 1 0 0 0\n' >short.txt
+printf '1 0 0 0 1 0 0 0 one\n' >word.txt
+printf '1 0.5 0 0 1 0 0 0 1\n' >shear.txt
+run 'for f in short word shear; do voxmend augment in/l_prism.off -o x --rotate $f.txt; done'
+run 'voxmend augment in/cube.off in/torus.off -o x'
+run 'voxmend augment missing.off -o x'
+run 'voxmend augment in/l_prism.off -o - -n 3 -r 16 -q >/dev/full'
+run 'voxmend augment in/l_prism.off -o x -n 3 --memlimit 20K'
+mkdir -p x2/000001.rle
+run 'voxmend augment in/l_prism.off -o x2 -n 3; ls x2'
+run 'ls -d x'
+finish

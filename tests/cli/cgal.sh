@@ -1,0 +1,83 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# What repair and info do with the module for CGAL: self-intersections, unions, wraps, smooth fillings.
+. "$SRCDIR/tests/cli/lib.sh"
+[ -e "$BUILDDIR/.libs/voxmend-cgal.so" ] || exit 77
+
+# box NAME X Y Z SIDE FIRST: a cube with an edge of SIDE, whose vertices begin with number FIRST
+box() {
+  awk -v name="$1" -v x="$2" -v y="$3" -v z="$4" -v s="$5" -v n="$6" 'BEGIN {
+    print "o " name
+    for (i = 0; i < 8; i++)
+      printf "v %g %g %g\n", x + s * (i % 2), y + s * (int(i / 2) % 2), z + s * int(i / 4)
+    split("1 3 4 2  5 6 8 7  1 2 6 5  3 7 8 4  1 5 7 3  2 4 8 6", c, " +")
+    for (i = 1; i <= 24; i += 4)
+      printf "f %d %d %d %d\n", n + c[i] - 1, n + c[i + 1] - 1, n + c[i + 2] - 1, n + c[i + 3] - 1
+  }'
+}
+# facts: the lines of a summary that tell most
+facts() {
+  grep -E '^  (faces|components|boundary|closed|volume|self|inconsistent|union|wrap|closing|[a-z]+ +[0-9]+ +[0-9]+ +[0-9])|^Level|could not|were not'
+}
+
+box left 0 0 0 2 1 >left.obj
+box right 1 1 1 2 9 >right.obj
+cat left.obj right.obj >two.obj
+{
+  cat two.obj
+  printf 'o plate\nv -1 -1 1.5\nv 5 -1 1.5\nv 2 5 1.5\nf 17 18 19\n'
+} >plate.obj
+
+say "# --intersections"
+run 'voxmend info two.obj --intersections | facts'
+run 'voxmend info two.obj --intersections --list 1 --json | grep -A 40 self_intersections'
+run 'voxmend info two.obj plate.obj left.obj --intersections --json | grep -E "file|self"'
+printf 'OFF\n4 2 0\n0 0 0\n1 0 0\n0 nan 0\n0 0 1\n3 0 1 3\n3 0 1 2\n' >nan.off
+run 'voxmend info nan.off --intersections | facts'
+run 'voxmend info two.obj --intersections --locate where.ply -q && grep -a -c "element edge" where.ply'
+run 'voxmend repair two.obj -o a.ply --intersections --max-change 0.001 --json -q | grep self'
+
+say "# --union"
+run 'voxmend repair two.obj -o a.ply --union | facts'
+run 'voxmend repair plate.obj -o a.obj --union | facts'
+run 'voxmend info -v a.obj --intersections | facts'
+run 'voxmend repair plate.obj -o a.ply --union --json -q | grep -E "\"(name|ununited|self_intersections|ununited_parts)\""'
+run 'voxmend repair two.obj -o a.ply --union --max-change 0.01'
+box inner 0.5 0.5 0.5 1 9 | cat left.obj - >nested.obj
+run 'voxmend repair nested.obj -o a.ply --union | facts'
+run 'voxmend repair nested.obj -o a.ply --union --keep-orientation | facts'
+
+say "# --level solid"
+run 'voxmend repair two.obj -o a.ply --level solid | facts'
+run 'voxmend repair two.obj -o a.stl --level solid | facts'
+run 'voxmend repair plate.obj -o no.ply --level solid'
+run 'test -e no.ply'
+run 'voxmend repair plate.obj -o a.ply --level solid --best-effort | facts'
+run 'voxmend repair plate.obj -o a.ply --level solid --drop-parts faces:2 | facts'
+run 'voxmend repair nested.obj -o a.ply --level solid | facts'
+say "# a cube upon a cube, one beside along an edge, and one at a corner"
+box b 0 0 2 2 9 | cat left.obj - >upon.obj
+box b 2 2 0 2 9 | cat left.obj - >beside.obj
+box b 2 2 2 2 9 | cat left.obj - >corner.obj
+for mesh in upon beside corner; do
+  run "voxmend repair $mesh.obj -o a.ply --level solid | facts && voxmend info a.ply --intersections | facts"
+done
+
+say "# --wrap"
+run 'voxmend repair plate.obj -o a.obj --wrap 0.05,0.002 --level solid | facts'
+run 'voxmend info -v a.obj | grep -E "tags|closed" && grep -c -E "^[og] (left|right|plate)" a.obj'
+run 'voxmend repair plate.obj -o a.ply --wrap 0.05 --level solid --json -q | grep "\"name\""'
+run 'voxmend repair plate.obj -o a.ply --wrap 0.0001 --memlimit 256M'
+for option in '--fill smooth' '--fill-holes all' '--union' '--max-change 0.1'; do
+  run "voxmend repair plate.obj -o a.ply --level closed --wrap 0.05 $option"
+done
+run 'voxmend repair two.obj -o a.ply --wrap 0'
+run 'voxmend repair two.obj -o a.ply --wrap 0.05,2'
+
+say "# --fill smooth"
+awk 'NR == 2 { print $1, $2 - 6, $3; next } { print }' in/sphere.off | head -n -6 >open.off
+run 'voxmend info open.off | facts'
+run 'voxmend repair open.off -o a.ply --level closed --fill smooth | facts'
+run 'voxmend repair open.off -o a.ply --level solid --fill smooth | facts'
+run 'voxmend repair two.obj -o a.ply --fill smooth'
+finish
