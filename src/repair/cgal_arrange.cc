@@ -403,7 +403,12 @@ private:
 /* ---- All planes ---- */
 
 /** Points that are made where triangles meet, at most, beside four for each vertex. */
-constexpr size_t FRESH = 200000;
+constexpr size_t FRESH = 50000;
+
+void check_count(const ExactPoints &points, size_t most) {
+  if (points.size() > most)
+    throw std::length_error("a part that cuts through itself nearly everywhere");
+}
 
 class Planes {
 public:
@@ -437,8 +442,7 @@ Pieces arrange(const Surface &surface, const Meetings &meetings, Meter &meter) {
   std::vector<std::vector<Line>> lines(sheet.size());
   for (size_t m = 0; m < meetings.size(); m++) {
     meter.progress(0.5 * (double)m / (double)meetings.size());
-    if (out.points.size() > most)
-      throw std::length_error("a part that cuts through itself nearly everywhere");
+    check_count(out.points, most);
     uint32_t t = meetings[m].first, u = meetings[m].second;
     std::array<int, 3> t_sides = crossings.sides(t, u);
     if (t_sides[0] == 0 && t_sides[1] == 0 && t_sides[2] == 0) {
@@ -465,6 +469,7 @@ Pieces arrange(const Surface &surface, const Meetings &meetings, Meter &meter) {
       continue;
     }
     Plane(surface, &out.points, meter).cut(members[t], lines, &out.sheet);
+    check_count(out.points, most); /* lines that cross make more of them */
   }
   return out;
 }

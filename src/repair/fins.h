@@ -18,8 +18,9 @@
  * tenth of the area of the rest of the component, as a chair that is mostly sheets of two sides is not to
  * lose them.
  *
- * A fin of one orientation without a rim is no wall: two bodies overlap there, and share a part of their
- * surfaces. Neither body is closed without its own, so all of it stays.
+ * A fin of one orientation without a rim may be no wall: where the faces it hangs on lie on the same side of
+ * it, two bodies overlap there, and share a part of their surfaces. Neither is closed without its own, so all
+ * of it stays. (Where they lie on both sides it is the wall of rooms of which one is turned inside out.)
  *
  * @param even     per face: a vxm_even (vxm_duplicates_find)
  * @param remove   per face: a vxm_repeat; not 0 becomes what goes

@@ -200,6 +200,21 @@ static void fins(void **state) {
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
   }
+  /* two bodies that overlap and share a part of their surfaces both keep it: a cube in the lower half of
+   * another */
+  soup = new_soup(*state);
+  add_cube(soup, 0);
+  add_cube(soup, 0);
+  for (size_t v = 8; v < 16; v++)
+    if (soup->positions[3 * v + 2] > 0)
+      soup->positions[3 * v + 2] = 0.5;
+  out = repaired(soup, NULL, &report);
+  assert_int_equal(report.shared_faces, 1);
+  assert_int_equal(out->face_count, 12);
+  assert_true(report.after.closed && report.after.volume > 1.499999 && report.after.volume < 1.500001);
+  assert_repair_is_done(out, NULL);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(soup);
   /* two rooms that each have the wall between them become one */
   for (int same = 0; same < 2; same++) {
     soup = new_soup(*state);

@@ -33,7 +33,7 @@ static void repair_mesh(const shared_mesh *mesh, void *payload) {
   vxm_repair_report report;
   vxm_soup *out = repaired(soup, NULL, &report);
   const vxm_census *before = &report.before, *after = &report.after;
-  bool fine = after->duplicate_faces == 0 && after->opposite_duplicate_faces == 0 &&
+  bool fine = after->duplicate_faces == report.shared_faces && after->opposite_duplicate_faces == 0 &&
               after->unused_vertices == 0 && after->nonfinite_vertices == 0 &&
               after->components == after->components_raw &&
               after->degenerate_faces <= before->degenerate_faces && after->components <= before->components;
