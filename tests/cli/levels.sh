@@ -31,6 +31,9 @@ done
 run 'voxmend info in.ply --locate ./in.ply'
 run 'voxmend repair open.off -o new.ply --locate ./new.ply'
 run 'voxmend repair open.off -o x.off --report new.ply --locate ../$(basename "$PWD")/new.ply'
+run 'voxmend repair open.off -o new.ply --report ./new.ply'
+run 'voxmend voxelize open.off -o new.npy --report ./open.off'
+run 'voxmend info open.off --report open.off'
 run 'ls new.ply'
 
 say "# how much may change"
