@@ -113,36 +113,27 @@ static int read_wrap(cli_run *cli, request *out, const char *value) {
   return CLI_END;
 }
 
-static int read_choices(cli_run *cli, request *out, int key, const char *value) {
-  static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
-  int choice = cli_read_choice(value, key == KEY_LEVEL ? repair_levels : fills);
-  if (choice < 0)
-    return key == KEY_LEVEL ? cli_usage(cli, "--level '%s' is none of clean, manifold, closed, solid", value)
-                            : cli_usage(cli, "--fill '%s' is none of fan, minimal, smooth", value);
-  if (key == KEY_LEVEL)
-    out->repair.level = (vxm_level)choice;
-  else {
-    out->repair.fill = (vxm_fill)choice;
-    out->fill = true;
-  }
-  return CLI_END;
-}
-
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
+  static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
+  int choice = 0, result;
   switch (key) {
   case 'o':
     out->output = value;
     return CLI_END;
   case KEY_LEVEL:
+    result = cli_choose(cli, &choice, "level", value, repair_levels);
+    out->repair.level = (vxm_level)choice;
+    return result;
   case KEY_FILL:
-    return read_choices(cli, out, key, value);
+    out->fill = true;
+    result = cli_choose(cli, &choice, "fill", value, fills);
+    out->repair.fill = (vxm_fill)choice;
+    return result;
   case KEY_BEST_EFFORT:
     out->best_effort = true;
     return CLI_END;
   case KEY_WELD:
-    if (!cli_read_weld(&out->repair, value))
-      return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
-    return CLI_END;
+    return cli_read_weld(cli, &out->repair, value);
   case KEY_KEEP:
     out->repair.keep_duplicates = true;
     return CLI_END;
