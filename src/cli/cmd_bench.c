@@ -169,7 +169,7 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
     return cli_usage(cli, "the mesh is read many times, which standard input cannot be; name a file");
   if (plan->plot && !cli_is_extension(plan->plot, "svg"))
     return cli_usage(cli, "--plot '%s': the name must end in .svg", plan->plot);
-  if (plan->plot && cli->report && strcmp(plan->plot, cli->report) == 0)
+  if (plan->plot && cli->report && cli_same_file(plan->plot, cli->report))
     return cli_usage(cli, "--plot and --report name the same file");
   if (!has_grids(plan)) {
     if (plan->plot)

@@ -261,7 +261,7 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
     return CLI_STOP;
   if (given->confidence && !is_npy(given->confidence))
     return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
-  if (given->confidence && given->output && strcmp(given->confidence, given->output) == 0)
+  if (given->confidence && given->output && cli_same_file(given->confidence, given->output))
     return cli_usage(cli, "--confidence and -o name the same file");
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
@@ -270,8 +270,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
                           "--labels and --color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
-  if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
-                        (given->confidence && strcmp(given->coords, given->confidence) == 0)))
+  if (given->coords && ((given->output && cli_same_file(given->coords, given->output)) ||
+                        (given->confidence && cli_same_file(given->coords, given->confidence))))
     return cli_usage(cli, "--coords and another output name the same file");
   if (given->engine.name && given->sparse)
     return cli_usage(cli, "--sparse is made by the CPU; leave out --engine");

@@ -58,6 +58,7 @@ done
 for options in '-r 8 --voxel-size 1' '--like y.npy -r 8' '--like y.npy --pad 1' '--bounds 0,0,0,1,1,1 --pad 1' \
   '--bounds 0,0,0,1,1,1 --fit tight' '--method x --vote any' '--surface thin' '--mode solid --surface thin' '--mode both --surface shell6' '--no-repair --weld off' '--no-repair --keep-duplicates' \
   '--coverage 4 --distance signed' '--scalar uint8' '--band 3' '--coverage 4 --confidence c.npy' '--labels part --dry-run' \
+  '--confidence ./x.npy' '--coords in/../x.npy' \
   '--distance unsigned --mode surface' '--coverage 2 --format rle'; do
   run "voxmend voxelize in/cube.off -o x.npy $options"
 done
@@ -81,7 +82,7 @@ run 'voxmend bench in/cube.off in/torus.off'
 run 'voxmend bench -'
 for option in '-r 0' '-r 64,' '-r ""' '-r 8x8x8' '-r 8,1048577' '--threads 0' '--threads 1,257' '--threads 2x' '--phases solid' \
   '--phases load,,repair' '--engine gpu' '--time -1' '--time 5s' '--plot x.png' '--plot svg' '--phases load --plot x.svg' \
-  '--plot x.svg --report x.svg' '--mode solid'; do
+  '--plot x.svg --report x.svg' '--plot x.svg --report ./x.svg' '--mode solid'; do
   run "voxmend bench in/cube.off $option"
 done
 run 'ls'
