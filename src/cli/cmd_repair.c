@@ -215,6 +215,37 @@ static bool wants_report(const cli_run *cli) {
   return cli->json || cli->report;
 }
 
+/** Says why nothing is written; the report and the picture of what was wrong are what there is to work with.
+ */
+static int refuse(cli_run *cli, const request *given, repair_outcome *outcome) {
+  cli_fail(cli);
+  if (!cli->quiet && outcome->verification.count > 0)
+    repair_say_remains(cli, stderr, outcome);
+  cli->located = NULL;
+  if (wants_report(cli) && outcome->mesh)
+    cli_finish(cli, repair_report(cli, given->input, NULL, outcome));
+  return CLI_FAILED;
+}
+
+static int try_repair(cli_run *cli, const request *given, repair_outcome *outcome, const vxm_mesh *raw) {
+  vxm_status status = vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &given->repair, &cli->error);
+  if (status == VXM_OK && vxm_mesh_face_count(outcome->mesh) > 0)
+    return CLI_DONE;
+  if (status == VXM_OK) {
+    cli->error.code = VXM_ERROR_EMPTY;
+    snprintf(cli->error.text, sizeof cli->error.text, "%.400s: no face is left after repair",
+             cli_shown(given->input, "<stdin>"));
+  } else if (status != VXM_ERROR_UNREACHED)
+    return cli_fail(cli);
+  else if (wants_report(cli)) { /* what changes by too much is told nevertheless */
+    vxm_repair_options any = given->repair;
+    vxm_error ignored = VXM_ERROR_INIT;
+    any.max_change = 0;
+    vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &any, &ignored);
+  }
+  return refuse(cli, given, outcome);
+}
+
 static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_mesh *raw = NULL;
   if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
@@ -223,27 +254,12 @@ static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outco
   cli_defects wanted = given->defects; /* the repair counts intersections itself */
   wanted.intersections = wanted.intersections && (wanted.list || wanted.locate);
   int status = cli_defects_show(cli, &outcome->found, &wanted, raw);
-  if (status == CLI_DONE &&
-      vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &given->repair, &cli->error) != VXM_OK)
-    status = cli_fail(cli);
+  if (status == CLI_DONE)
+    status = try_repair(cli, given, outcome, raw);
   vxm_mesh_destroy(raw);
-  if (status == CLI_DONE && vxm_mesh_face_count(outcome->mesh) == 0)
-    return cli_fail_text(cli, "%s: no face is left after repair", cli_shown(given->input, "<stdin>"));
   if (status == CLI_DONE && outcome->repair.ununited_parts > 0)
     repair_warn_ununited(cli, given->input, outcome);
   return status;
-}
-
-/** Says why nothing was written; the report and the picture of what was wrong are what there is to work with.
- */
-static int refuse(cli_run *cli, const request *given, repair_outcome *outcome) {
-  cli_fail(cli);
-  if (!cli->quiet)
-    repair_say_remains(cli, stderr, outcome);
-  cli->located = NULL;
-  if (wants_report(cli))
-    cli_finish(cli, repair_report(cli, given->input, NULL, outcome));
-  return CLI_FAILED;
 }
 
 static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
