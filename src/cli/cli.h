@@ -73,7 +73,7 @@ typedef struct cli_command {
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
     cli_command_compare, cli_command_augment, cli_command_view, cli_command_bench, cli_command_engines;
 
-enum { CLI_OPTIONS_MAX = 48 };
+enum { CLI_OPTIONS_MAX = 48, CLI_LIST_MAX = 512 };
 
 /** A text file that the program writes itself: under a temporary name until it is complete. */
 typedef struct cli_file {
@@ -132,6 +132,11 @@ bool cli_read_numbers(double *out, int count, const char *text);
 bool cli_read_size(uint64_t *out, const char *text);
 /** Position of `text` in the list, which ends with NULL, or -1. */
 int cli_read_choice(const char *text, const char *const *choices);
+/** "x, y, z" */
+const char *cli_list(char list[CLI_LIST_MAX], const char *const *choices);
+/** The position of an option's value in the list; CLI_STOP, and a line that lists all, if it is none of them.
+ */
+int cli_choose(cli_run *cli, int *choice, const char *option, const char *value, const char *const *choices);
 
 /**
  * Format that the output's name or --format asks for, out of `known`; NULL with cli->status set if there is
@@ -142,6 +147,14 @@ extern const char *const cli_mesh_formats[];
 extern const char *const cli_grid_formats[];
 /** Whether a file name ends in '.' and this extension, in any case. */
 bool cli_is_extension(const char *path, const char *extension);
+
+/* ---- making.c: what is made of a mesh, for voxelize and augment ---- */
+
+/** The arguments of --mode and --surface: CLI_END or CLI_STOP. */
+int cli_read_mode(cli_run *cli, vxm_voxelize_options *options, const char *value);
+int cli_read_surface(cli_run *cli, vxm_voxelize_options *options, const char *value);
+/** CLI_STOP if --surface, where it was given, does not go with the mode. */
+int cli_check_surface(cli_run *cli, const vxm_voxelize_options *options, bool is_given);
 
 /* ---- engine.c: who makes the voxels ---- */
 
@@ -245,8 +258,10 @@ typedef struct cli_input {
   double read_ms, repair_ms;
 } cli_input;
 
-/** Reads --weld's argument; false if it is neither auto, off nor a positive distance. */
-bool cli_read_weld(vxm_repair_options *options, const char *text);
+/** The argument of --weld: CLI_END or CLI_STOP. */
+int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value);
+/** CLI_STOP if options about the repair were given with --no-repair. */
+int cli_check_repair(cli_run *cli, bool no_repair, bool repair_options);
 json_t *cli_passes_json(const vxm_repair_report *report);
 /** Reads, and repairs unless `options` is NULL. After CLI_FAILED a line was printed and input->mesh is NULL.
  */

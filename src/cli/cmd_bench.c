@@ -71,14 +71,6 @@ static bool read_list(int64_t *out, int *count, const char *text, int64_t high) 
   return true;
 }
 
-/** One line that lists the choices. */
-static int refuse_choice(cli_run *cli, const char *option, const char *value, const char *const *choices) {
-  char list[512] = "";
-  for (size_t i = 0, used = 0; choices[i] && used < sizeof list; i++)
-    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", choices[i]);
-  return cli_usage(cli, "--%s '%s' is none of %s", option, value, list);
-}
-
 static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
   char item[ITEM_SIZE];
   const char *names[BENCH_PHASES_MAX + 1] = {NULL};
@@ -87,9 +79,9 @@ static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
   memset(plan->chosen, 0, sizeof plan->chosen);
   plan->forced = true;
   while (next_item(item, &text)) {
-    int phase = cli_read_choice(item, names);
-    if (phase < 0)
-      return refuse_choice(cli, "phases", item, names);
+    int phase;
+    if (cli_choose(cli, &phase, "phases", item, names) == CLI_STOP)
+      return CLI_STOP;
     plan->chosen[phase] = true;
   }
   return CLI_END;
@@ -177,7 +169,7 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
     return cli_usage(cli, "the mesh is read many times, which standard input cannot be; name a file");
   if (plan->plot && !cli_is_extension(plan->plot, "svg"))
     return cli_usage(cli, "--plot '%s': the name must end in .svg", plan->plot);
-  if (plan->plot && cli->report && strcmp(plan->plot, cli->report) == 0)
+  if (plan->plot && cli->report && cli_same_file(plan->plot, cli->report))
     return cli_usage(cli, "--plot and --report name the same file");
   if (!has_grids(plan)) {
     if (plan->plot)

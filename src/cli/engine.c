@@ -21,22 +21,21 @@ static int read_displacement(cli_run *cli, cli_engine *out, const char *value) {
 int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value) {
   static const char *const methods[] = {"columns", "slices", "tetra-vertex", NULL};
   static const char *const axes[] = {"x", "y", "z", NULL};
-  int choice;
+  int choice = 0, result;
   switch (key) {
   case CLI_KEY_ENGINE:
     out->name = value;
     return CLI_END;
   case CLI_KEY_GL_METHOD:
-    choice = cli_read_choice(value, methods);
-    out->options.gl_method = (vxm_gl_method)choice;
     out->is_tuned = true;
-    return choice >= 0 ? CLI_END
-                       : cli_usage(cli, "--gl-method '%s' is none of columns, slices, tetra-vertex", value);
+    result = cli_choose(cli, &choice, "gl-method", value, methods);
+    out->options.gl_method = (vxm_gl_method)choice;
+    return result;
   case CLI_KEY_GL_AXIS:
-    choice = cli_read_choice(value, axes);
-    out->options.slice_axis = choice;
     out->is_slicing = true;
-    return choice >= 0 ? CLI_END : cli_usage(cli, "--gl-axis '%s' is none of x, y, z", value);
+    result = cli_choose(cli, &choice, "gl-axis", value, axes);
+    out->options.slice_axis = choice;
+    return result;
   default:
     out->is_slicing = true;
     return read_displacement(cli, out, value);

@@ -106,19 +106,19 @@ enum { VOTERS = 4 };
 typedef struct ballot {
   vxm_unite_job job[VOTERS];
   vxm_gl_buffer_id words[VOTERS];
-  int count; /**< voters that are united; others vote as the first, as on the CPU */
+  int count; /**< voters that are united; the tetrahedra, if not asked, vote as x does */
 } ballot;
 
 static void prepare(ballot *b, const vxm_window *window, const vxm_elect_job *job) {
   static const char *const phase[VOTERS] = {"voxelizing along x", "voxelizing along y", "voxelizing along z",
                                             "voxelizing tetrahedra"};
-  b->count = job->agree ? 1 : job->tetra ? VOTERS : VOTERS - 1;
+  b->count = job->tetra ? VOTERS : VOTERS - 1;
   for (int v = 0; v < VOTERS; v++)
     b->words[v] = (vxm_gl_buffer_id)(v < b->count ? VXM_GL_VOTER_X + v : VXM_GL_VOTER_X);
   for (int v = 0; v < b->count; v++)
     b->job[v] = (vxm_unite_job){.facets = job->facets,
                                 .placed = job->placed,
-                                .axis = job->agree || v == 3 ? window->layout.fast : v,
+                                .axis = v == 3 ? window->layout.fast : v,
                                 .part_begin = job->part_begin,
                                 .part_end = job->part_end,
                                 .roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE,

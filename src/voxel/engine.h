@@ -8,12 +8,11 @@
 #include "voxel/unite.h"
 #include "voxel/vote.h"
 
-/** Parts that voters decide. */
+/** Parts that voters decide; some of them have odd edges, else all voters would agree. */
 typedef struct vxm_elect_job {
   const vxm_facets *facets;
   const vxm_placed *placed;
   size_t part_begin, part_end; /**< each voter is the union of these */
-  bool agree;                  /**< no part has odd edges: one axis speaks for all voters */
   bool tetra;                  /**< ask the tetrahedra, too, as parity with cones */
   vxm_vote rule;
   uint64_t *mask;        /**< NULL, or words laid out as the window's that become the contested voxels */

@@ -21,4 +21,12 @@ static inline int gpu_test_start(const vxm_engine_options *options) {
   return status == VXM_ERROR_UNAVAILABLE ? 77 : 1;
 }
 
+/** A box within 16 voxels along each axis. Two of its faces lie at the same part of a voxel, 0.5 being the
+ * centres; others are moved by `offset`. */
+static inline vxm_soup *box_with_ties(double offset, double part) {
+  vxm_soup *soup = shape_empty(context);
+  shape_box(soup, (double[3]){2 + offset, 3 + part, 4 + offset}, (double[3]){12 + part, 11 + offset, 13.5});
+  return soup;
+}
+
 #endif
