@@ -13,6 +13,8 @@ enum { FILES_MAX = 6, LOG_MAX = 400, GROUP_LEAST = 8 };
 static const char *const sources[VXM_CL_PROGRAMS][FILES_MAX] = {
     [VXM_CL_SOLID] = {"lattice.cl", "columns.cl", "fold.cl", "vote.cl"},
     [VXM_CL_SURFACE] = {"lattice.cl", "surface.cl"},
+    [VXM_CL_SORT] = {"sort.cl"},
+    [VXM_CL_TILES_PROGRAM] = {"lattice.cl", "tiles.cl"},
 };
 
 static const struct {
@@ -28,6 +30,14 @@ static const struct {
     [VXM_CL_VOTE] = {"vote", VXM_CL_SOLID},
     [VXM_CL_SET_SURFACE] = {"set_surface", VXM_CL_SURFACE},
     [VXM_CL_SET_LARGE] = {"set_large", VXM_CL_SURFACE},
+    [VXM_CL_SCAN_BLOCKS] = {"scan_blocks", VXM_CL_SORT},
+    [VXM_CL_SCAN_ADD] = {"scan_add", VXM_CL_SORT},
+    [VXM_CL_SORT_COUNT] = {"sort_count", VXM_CL_SORT},
+    [VXM_CL_SORT_SCATTER] = {"sort_scatter", VXM_CL_SORT},
+    [VXM_CL_COUNT_TILES] = {"count_tiles", VXM_CL_TILES_PROGRAM},
+    [VXM_CL_LIST_TILES] = {"list_tiles", VXM_CL_TILES_PROGRAM},
+    [VXM_CL_FIND_TILES] = {"find_tiles", VXM_CL_TILES_PROGRAM},
+    [VXM_CL_FILL_TILES] = {"fill_tiles", VXM_CL_TILES_PROGRAM},
 };
 
 static const char *source_text(const char *name) {

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+enum { PASSES_MOST = 4 /**< of what is done triangle by triangle, unless that is asked for */ };
+
 static vxm_status clear_touched(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error) {
   return vxm_cl_clear(engine, VXM_CL_TOUCHED, facets->split.part_count * sizeof(uint32_t), error);
 }
@@ -37,6 +39,25 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
 
 /* ---- Unions ---- */
 
+/** Makes the words of a tile: by `passes`, or by tiles of columns where these are NULL. */
+static vxm_status make_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                            const vxm_passes *passes, vxm_cl_buffer_id into, vxm_error *error) {
+  return passes->count > 0 ? vxm_cl_columns(engine, tile, job, passes, into, error)
+                           : vxm_cl_tiles(engine, tile, job, into, error);
+}
+
+/** Divides the parts into passes, or into none where tiles of columns are the better way. */
+static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job,
+                         vxm_passes *passes, vxm_error *error) {
+  vxm_cl_method method = vxm_cl_can_tile(engine, window, job) ? engine->options.cl_method : VXM_CL_TRIANGLES;
+  if (method == VXM_CL_TILES)
+    return VXM_OK;
+  vxm_status status = vxm_cl_passes_create(passes, engine, window, job, error);
+  if (status == VXM_OK && method == VXM_CL_AUTO && passes->count > PASSES_MOST)
+    passes->count = 0;
+  return status;
+}
+
 static vxm_status unite_tiles(vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job,
                               const vxm_passes *passes, vxm_error *error) {
   vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_RESULT2}};
@@ -47,7 +68,7 @@ static vxm_status unite_tiles(vxm_opencl *engine, const vxm_window *window, cons
     vxm_tile tile = vxm_tile_of(window, k, slices);
     status = vxm_cl_return_end(engine, &back[which], status, error);
     if (status == VXM_OK)
-      status = vxm_cl_columns(engine, &tile, job, passes, back[which].from, error);
+      status = make_tile(engine, &tile, job, passes, back[which].from, error);
     back[which].tile = tile;
     back[which].words = window->words;
     back[which].is_or = !job->fresh;
@@ -66,7 +87,7 @@ static void clear(const vxm_window *window) {
 vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_unite_job *job,
                         vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
-  vxm_passes passes = {0};
+  vxm_passes passes = {.context = base->context};
   if (job->part_begin >= job->part_end) {
     if (job->fresh)
       clear(window);
@@ -74,7 +95,7 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_un
   }
   vxm_status status = vxm_cl_place(engine, job->facets, job->placed, error);
   if (status == VXM_OK)
-    status = vxm_cl_passes_create(&passes, engine, window, job, error);
+    status = choose(engine, window, job, &passes, error);
   if (status == VXM_OK && job->touched)
     status = clear_touched(engine, job->facets, error);
   if (status == VXM_OK)
@@ -116,10 +137,10 @@ static void prepare(ballot *b, const vxm_window *window, const vxm_elect_job *jo
 /** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
  */
 static vxm_status make_voter(vxm_opencl *engine, const vxm_tile *tile, ballot *b, int v, vxm_error *error) {
-  vxm_passes passes = {0};
-  vxm_status status = vxm_cl_passes_create(&passes, engine, tile->window, &b->job[v], error);
+  vxm_passes passes = {.context = engine->base.context};
+  vxm_status status = choose(engine, tile->window, &b->job[v], &passes, error);
   if (status == VXM_OK)
-    status = vxm_cl_columns(engine, tile, &b->job[v], &passes, b->words[v], error);
+    status = make_tile(engine, tile, &b->job[v], &passes, b->words[v], error);
   vxm_passes_destroy(&passes);
   return status;
 }

@@ -22,4 +22,10 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
 vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,
                           const vxm_passes *passes, vxm_cl_buffer_id into, vxm_error *error);
 
+/** Whether the job can be done tile by tile: its columns run along the bits, and no facet is far. */
+bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job);
+/** The same for such a job, tile of columns by tile of columns (cl_tiles.c). */
+vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                        vxm_cl_buffer_id into, vxm_error *error);
+
 #endif

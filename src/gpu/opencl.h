@@ -8,7 +8,13 @@
 #include "voxel/engine.h"
 
 /** Programs: each is compiled when one of its kernels is first asked for. */
-typedef enum vxm_cl_program_id { VXM_CL_SOLID = 0, VXM_CL_SURFACE, VXM_CL_PROGRAMS } vxm_cl_program_id;
+typedef enum vxm_cl_program_id {
+  VXM_CL_SOLID = 0, /**< triangle by triangle */
+  VXM_CL_SURFACE,
+  VXM_CL_SORT,
+  VXM_CL_TILES_PROGRAM,
+  VXM_CL_PROGRAMS
+} vxm_cl_program_id;
 
 typedef enum vxm_cl_kernel_id {
   VXM_CL_FLIP_COLUMNS = 0,
@@ -20,6 +26,14 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_VOTE,
   VXM_CL_SET_SURFACE,
   VXM_CL_SET_LARGE,
+  VXM_CL_SCAN_BLOCKS,
+  VXM_CL_SCAN_ADD,
+  VXM_CL_SORT_COUNT,
+  VXM_CL_SORT_SCATTER,
+  VXM_CL_COUNT_TILES,
+  VXM_CL_LIST_TILES,
+  VXM_CL_FIND_TILES,
+  VXM_CL_FILL_TILES,
   VXM_CL_KERNELS
 } vxm_cl_kernel_id;
 
@@ -39,6 +53,15 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_TOUCHED,
   VXM_CL_SURFACE_POINTS,
   VXM_CL_SURFACE_CORNERS,
+  VXM_CL_SUMS,   /**< of blocks of what is scanned */
+  VXM_CL_DIGITS, /**< how often each occurs in each block of what is sorted */
+  VXM_CL_SORT_KEYS,
+  VXM_CL_SORT_VALUES,
+  VXM_CL_PARTS,  /**< of each facet the part, and above it the role */
+  VXM_CL_COUNTS, /**< tiles of each facet, then where its pairs begin */
+  VXM_CL_TILE_KEYS,
+  VXM_CL_TILE_FACETS,
+  VXM_CL_LISTS, /**< where the pairs of each tile begin and end */
   VXM_CL_BUFFERS
 } vxm_cl_buffer_id;
 
@@ -59,7 +82,7 @@ typedef struct vxm_opencl {
   cl_kernel kernels[VXM_CL_KERNELS];
   size_t group; /**< work-items of a group: a power of two that all kernels made so far can have */
   vxm_cl_buffer buffers[VXM_CL_BUFFERS];
-  uint64_t facets_serial, placed_serial, surface_serial; /**< what the buffers hold */
+  uint64_t facets_serial, parts_serial, placed_serial, surface_serial; /**< what the buffers hold */
   vxm_far far;
   vxm_far_surface far_surface;
 } vxm_opencl;
