@@ -273,8 +273,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->coords && ((given->output && cli_same_file(given->coords, given->output)) ||
                         (given->confidence && cli_same_file(given->coords, given->confidence))))
     return cli_usage(cli, "--coords and another output name the same file");
-  if (given->engine.name && given->sparse)
-    return cli_usage(cli, "--sparse is made by the CPU; leave out --engine");
+  if (given->engine.name && given->sparse && strncmp(given->engine.name, "opengl", 6) == 0)
+    return cli_usage(cli, "--sparse is made by the CPU or by OpenCL; give --engine cpu or opencl");
   if (cli_engine_check(cli, &given->engine) == CLI_STOP)
     return CLI_STOP;
   if (cli_check_repair(cli, given->no_repair, given->repair_options) == CLI_STOP)

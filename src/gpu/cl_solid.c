@@ -10,7 +10,7 @@ static vxm_status clear_touched(vxm_opencl *engine, const vxm_facets *facets, vx
   return vxm_cl_clear(engine, VXM_CL_TOUCHED, facets->split.part_count * sizeof(uint32_t), error);
 }
 
-static vxm_status take_touched(vxm_opencl *engine, atomic_uchar *touched, const vxm_facets *facets,
+vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *touched, const vxm_facets *facets,
                                vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   size_t parts = facets->split.part_count;
@@ -101,7 +101,7 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_un
   if (status == VXM_OK)
     status = unite_tiles(engine, window, job, &passes, error);
   if (status == VXM_OK && job->touched)
-    status = take_touched(engine, job->touched, job->facets, error);
+    status = vxm_cl_touched_take(engine, job->touched, job->facets, error);
   vxm_passes_destroy(&passes);
   return status;
 }
@@ -209,6 +209,6 @@ vxm_status vxm_cl_elect(vxm_engine *base, const vxm_window *window, const vxm_el
   if (status == VXM_OK)
     status = elect_tiles(engine, window, job, tally, error);
   if (status == VXM_OK && job->touched)
-    status = take_touched(engine, job->touched, job->facets, error);
+    status = vxm_cl_touched_take(engine, job->touched, job->facets, error);
   return status;
 }

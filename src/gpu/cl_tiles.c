@@ -19,7 +19,7 @@ typedef struct tiling {
 } tiling;
 
 /** Parts of facets, and their roles, on the device. */
-static vxm_status place_parts(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error) {
+vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   if (engine->parts_serial == facets->serial)
     return VXM_OK;
@@ -133,7 +133,7 @@ vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_tile *tile, const vxm_unit
   if (status == VXM_OK)
     status = vxm_cl_ready(engine, VXM_CL_TILES_PROGRAM, error); /* the group may have shrunk */
   if (status == VXM_OK)
-    status = place_parts(engine, job->facets, error);
+    status = vxm_cl_place_parts(engine, job->facets, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
   if (status == VXM_OK && !job->touched) /* written all the same */

@@ -25,7 +25,7 @@ static void destroy(vxm_engine *base) {
 }
 
 static const vxm_engine_ops opencl_ops = {
-    .unite = vxm_cl_unite, .elect = vxm_cl_elect, .surface = vxm_cl_surface, .destroy = destroy};
+    .unite = vxm_cl_unite, .elect = vxm_cl_elect, .surface = vxm_cl_surface, .sparse = vxm_cl_sparse, .destroy = destroy};
 
 static vxm_status start(vxm_opencl *engine, vxm_error *error) {
   const vxm_cl *cl = engine->cl;
