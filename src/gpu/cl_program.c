@@ -11,12 +11,13 @@
 enum { FILES_MAX = 6, LOG_MAX = 400, GROUP_LEAST = 8 };
 
 static const char *const sources[VXM_CL_PROGRAMS][FILES_MAX] = {
-    [VXM_CL_SOLID] = {"lattice.cl", "flips.cl", "cover.cl", "columns.cl", "fold.cl", "vote.cl"},
+    [VXM_CL_SOLID] = {"lattice.cl", "flips.cl", "flip_area.cl", "columns.cl", "fold.cl", "vote.cl"},
     [VXM_CL_SURFACE] = {"touching.cl", "surface.cl"},
     [VXM_CL_SORT] = {"sort.cl"},
     [VXM_CL_TILES_PROGRAM] = {"lattice.cl", "tiles.cl"},
     [VXM_CL_TREE] = {"touching.cl", "cells.cl", "nodes.cl", "prune.cl"},
-    [VXM_CL_BRICK_FLIPS] = {"lattice.cl", "brick_flips.cl", "cover.cl", "bricks.cl"},
+    [VXM_CL_BRICK_FLIPS] = {"lattice.cl", "brick_flips.cl", "flip_area.cl", "bricks.cl"},
+    [VXM_CL_COVERAGE] = {"coverage.cl"},
 };
 
 static const struct {
@@ -61,6 +62,7 @@ static const struct {
     [VXM_CL_FLIP_BRICKS_LARGE] = {"flip_bricks_large", VXM_CL_BRICK_FLIPS},
     [VXM_CL_FOLD_BRICKS] = {"fold_bricks", VXM_CL_BRICK_FLIPS},
     [VXM_CL_PUSH_BRICKS] = {"push_bricks", VXM_CL_BRICK_FLIPS},
+    [VXM_CL_COUNT_GROUPS] = {"count_groups", VXM_CL_COVERAGE},
 };
 
 static const char *source_text(const char *name) {

@@ -15,6 +15,7 @@ typedef enum vxm_cl_program_id {
   VXM_CL_TILES_PROGRAM,
   VXM_CL_TREE,        /**< octrees: their nodes */
   VXM_CL_BRICK_FLIPS, /**< and their voxels */
+  VXM_CL_COVERAGE,
   VXM_CL_PROGRAMS
 } vxm_cl_program_id;
 
@@ -57,6 +58,7 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_FLIP_BRICKS_LARGE,
   VXM_CL_FOLD_BRICKS,
   VXM_CL_PUSH_BRICKS,
+  VXM_CL_COUNT_GROUPS,
   VXM_CL_KERNELS
 } vxm_cl_kernel_id;
 
@@ -106,6 +108,8 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_KEPT2,
   VXM_CL_TAKEN, /**< nodes or bricks to be read */
   VXM_CL_OCTREE_END = VXM_CL_TAKEN,
+  VXM_CL_GROUPS, /**< how many voxels of each are set */
+  VXM_CL_LISTS,  /**< where the pairs of each tile begin and end */
   VXM_CL_BUFFERS
 } vxm_cl_buffer_id;
 
