@@ -18,7 +18,7 @@ vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *touched, const 
   vxm_status status =
       set ? vxm_cl_download(engine, VXM_CL_TOUCHED, 0, set, parts * sizeof *set, &local) : local.code;
   for (size_t p = 0; p < parts && status == VXM_OK; p++)
-    if (set[p])
+    if (set[p] == 1)
       atomic_store_explicit(&touched[p], 1, memory_order_relaxed);
   vxm_free(engine->base.context, set);
   if (status != VXM_OK && error)

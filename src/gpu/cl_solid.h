@@ -25,7 +25,9 @@ vxm_status vxm_cl_count(vxm_engine *engine, uint16_t *counts, const vxm_window *
  * Returns `status`, or the first failure. */
 vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error);
 
-/** Reads which parts set a voxel. */
+/** In VXM_CL_TOUCHED: a part that sets no voxel, and is not looked at. */
+#define VXM_CL_NOT_ASKED UINT32_MAX
+/** Reads which parts set a voxel: those that have 1. */
 vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *touched, const vxm_facets *facets,
                                vxm_error *error);
 

@@ -158,6 +158,7 @@ static vxm_status make_passes(making *m, vxm_error *error) {
   const vxm_passes *passes = &m->passes;
   double since = vxm_clock_ms();
   size_t begin = 0;
+  m->columns.ordered = passes->ordered;
   vxm_status status = reserve(m, error);
   for (size_t p = 0; p < passes->count && status == VXM_OK; p++) {
     m->columns.facet_first = (uint32_t)(passes->ordered ? begin : passes->first);
@@ -181,18 +182,38 @@ static vxm_status make_passes(making *m, vxm_error *error) {
   return status;
 }
 
+/** 0 for parts that are still to be asked about; those without a box set nothing, and may share their pass
+ * with others at the border of the grid. */
+static vxm_status upload_touched(const making *m, vxm_error *error) {
+  vxm_opencl *engine = m->engine;
+  vxm_error local = VXM_ERROR_INIT;
+  size_t parts = m->job->facets->split.part_count;
+  uint32_t *touched = vxm_alloc(engine->base.context, parts, sizeof *touched, &local);
+  for (size_t p = 0; touched && p < parts; p++)
+    touched[p] = VXM_CL_NOT_ASKED;
+  for (size_t b = 0; touched && b < m->passes.box_count; b++)
+    touched[m->passes.boxes[b].part] = 0;
+  vxm_status status =
+      touched ? vxm_cl_upload(engine, VXM_CL_TOUCHED, touched, parts * sizeof *touched, &local) : local.code;
+  vxm_free(engine->base.context, touched);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
 static vxm_status prepare(making *m, const vxm_space *space, vxm_error *error) {
   vxm_opencl *engine = m->engine;
   const vxm_window window = vxm_window_of(space, (vxm_layout)VXM_LAYOUT_GRID, 0, space->dims[2]);
   const vxm_unite_job job = {.facets = m->job->facets,
                              .placed = m->job->placed,
                              .part_end = m->job->part_end,
-                             .roles = m->job->roles};
+                             .roles = m->job->roles,
+                             .touched = m->job->touched};
   vxm_status status = vxm_cl_passes_create(&m->passes, engine, &window, &job, error);
   if (status == VXM_OK)
     status = vxm_cl_place_parts(engine, job.facets, error);
   if (status == VXM_OK)
-    status = vxm_cl_clear(engine, VXM_CL_TOUCHED, job.facets->split.part_count * sizeof(uint32_t), error);
+    status = upload_touched(m, error);
   if (status == VXM_OK)
     status = vxm_cl_tree_create(&m->tree, engine, space, m->job, &m->passes, error);
   if (status == VXM_OK)

@@ -86,7 +86,8 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_COUNTS, /**< tiles of each facet, then where its pairs begin */
   VXM_CL_TILE_KEYS,
   VXM_CL_TILE_FACETS,
-  VXM_CL_LISTS, /**< where the pairs of each tile begin and end */
+  VXM_CL_GROUPS, /**< how many voxels of each are set */
+  VXM_CL_LISTS,  /**< where the pairs of each tile begin and end */
   /* Octrees, freed when one is made. Arrays "of all nodes" hold level after level, the lowest first. */
   VXM_CL_CELLS,  /**< a bit for each cell of 16^3 voxels: whether it is a node */
   VXM_CL_BEFORE, /**< of each word of them: how many nodes lie before it */
@@ -108,8 +109,6 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_KEPT2,
   VXM_CL_TAKEN, /**< nodes or bricks to be read */
   VXM_CL_OCTREE_END = VXM_CL_TAKEN,
-  VXM_CL_GROUPS, /**< how many voxels of each are set */
-  VXM_CL_LISTS,  /**< where the pairs of each tile begin and end */
   VXM_CL_BUFFERS
 } vxm_cl_buffer_id;
 
