@@ -7,7 +7,7 @@
 #include "gpu/cl_tree.h"
 
 enum {
-  FEW_COLUMNS = 256, /**< of a facet that one work-item does */
+  FEW_COLUMNS = 2048, /**< of a facet that one work-item does */
   BRICKS = 64        /**< of a node */
 };
 
