@@ -19,7 +19,9 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_WRONG_USAGE = 2, CLI_WARNED = 3 };
 /** Keys of options without a letter. The common options take the numbers below CLI_KEY_COMMAND. */
 enum {
   CLI_KEY_COMMON = 256,
-  CLI_KEY_ENGINE = 507,
+  CLI_KEY_ENGINE = 505,
+  CLI_KEY_DEVICE,
+  CLI_KEY_CL_METHOD,
   CLI_KEY_GL_METHOD,
   CLI_KEY_GL_AXIS,
   CLI_KEY_GL_DISPLACE,
@@ -30,8 +32,14 @@ enum {
 /** For the tables of commands that make voxels; cli_engine_read takes their values. */
 #define CLI_OPTIONS_ENGINE                                                                   \
   {CLI_KEY_ENGINE, "engine", "E",                                                            \
-   "who makes the voxels: cpu; opengl, or one that 'voxmend engines' lists;\n"               \
-   "auto = opengl on a hardware device, or else the cpu [cpu]"},                             \
+   "who makes the voxels: cpu; opencl, opengl, or one that 'voxmend engines' lists;\n"       \
+   "auto = a GPU by opencl or opengl, or else the cpu [cpu]"},                               \
+      {CLI_KEY_DEVICE, "device", "N|NAME",                                                   \
+       "the OpenCL device: its number in 'voxmend engines', or a part of its name or its\n"  \
+       "platform's [a GPU, else the first]"},                                                \
+      {CLI_KEY_CL_METHOD, "cl-method", "auto|triangles|tiles",                               \
+       "how OpenCL makes solids: triangles = each flips bits by itself; tiles = sorted by\n" \
+       "tiles of columns; both have the bits of the cpu [auto]"},                            \
       {CLI_KEY_GL_METHOD, "gl-method", "columns|slices|tetra-vertex",                        \
        "how OpenGL makes solids: columns = a pass along an axis, the same bits as the\n"     \
        "cpu; slices, tetra-vertex = tetrahedra cut slice by slice, as published [columns]"}, \
@@ -158,15 +166,19 @@ int cli_check_surface(cli_run *cli, const vxm_voxelize_options *options, bool is
 
 /* ---- engine.c: who makes the voxels ---- */
 
+/** The words for --cl-method and --gl-method, in the order of their enums; NULL ends each list. */
+extern const char *const cli_cl_methods[], *const cli_gl_methods[];
+
 typedef struct cli_engine {
   const char *name; /**< NULL = not given */
   vxm_engine_options options;
+  bool is_cl_tuned;          /**< options of OpenCL were given */
   bool is_tuned, is_slicing; /**< options of OpenGL, and of its slices, were given */
   vxm_engine *engine;        /**< made by cli_engine_open; NULL = the CPU, as nothing was asked for */
 } cli_engine;
 
 #define CLI_ENGINE_INIT \
-  { NULL, VXM_ENGINE_OPTIONS_INIT, false, false, NULL }
+  { NULL, VXM_ENGINE_OPTIONS_INIT, false, false, false, NULL }
 
 /** Takes the value of one of CLI_OPTIONS_ENGINE. */
 int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What the tests of the OpenGL engine share. Each is compiled once for every context: ENGINE is its name. */
+/** What the tests of engines share. Each is compiled once for every context or device: ENGINE is its name,
+ * CL_METHOD how OpenCL makes solids. */
 #ifndef TEST_GPU_TEST_H
 #define TEST_GPU_TEST_H
 
@@ -14,7 +15,13 @@ static vxm_engine *engine;
 /** Exit status 77 where there is no such context: the test counts as skipped, and says why. */
 static inline int gpu_test_start(const vxm_engine_options *options) {
   vxm_error error = VXM_ERROR_INIT;
-  vxm_status status = vxm_engine_create(&engine, NULL, ENGINE, options, &error);
+  vxm_engine_options chosen = VXM_ENGINE_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+#ifdef CL_METHOD
+  chosen.cl_method = CL_METHOD;
+#endif
+  vxm_status status = vxm_engine_create(&engine, NULL, ENGINE, &chosen, &error);
   if (status == VXM_OK)
     return 0;
   fprintf(stderr, "%s: %s\n", status == VXM_ERROR_UNAVAILABLE ? "skipped" : "failed", error.text);

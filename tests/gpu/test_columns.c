@@ -201,7 +201,7 @@ static void test_limits(void **state) {
   info->block_bytes = 16 * 70 * 6; /* three slices beside what else is held */
   info->viewport = 17;
   check_all(soup, &space);
-  info->block_bytes = 16 * 70;
+  info->block_bytes = 16 * 70 / 2;
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.space.like = &space;
   options.engine = engine;
