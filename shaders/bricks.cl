@@ -57,7 +57,7 @@ __kernel void flip_bricks_large(__global const int4 *points, __global const uint
 }
 
 /* Carries flips along x through the bricks of nodes that follow each other, for each of the 4 x 4 rows of
-   bricks; within a brick that is done. All columns agree where the nodes end. */
+   bricks; within a brick that is done. All columns of the grid agree where the nodes end. */
 __kernel void fold_bricks(__global ulong *bricks, __global const uint *next, __global uint *exits,
                           const uint count) {
   size_t i = get_global_id(0);

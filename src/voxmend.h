@@ -1208,7 +1208,8 @@ typedef struct vxm_sparse vxm_sparse;
 
 /**
  * Voxelizes a model into an octree, straight from the triangles where its parts are closed, or closed by
- * caps; else, and for surfaces, by way of ranges of slices. The voxels are those of vxm_model_voxelize.
+ * caps (then an OpenCL engine makes it on its device); else, and for surfaces, by way of ranges of slices.
+ * The voxels are those of vxm_model_voxelize.
  *
  * @param report    NULL = not wanted, which saves counting and hashing
  * @param space     the octree's

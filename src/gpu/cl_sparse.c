@@ -8,7 +8,7 @@
 
 enum {
   FEW_COLUMNS = 2048, /**< of a facet that one work-item does */
-  BRICKS = 64        /**< of a node */
+  BRICKS = 64         /**< of a node */
 };
 
 typedef struct making {
@@ -39,13 +39,13 @@ static bool has_far(const vxm_far *far, const vxm_sparse_job *job) {
 
 /* ---- Flips ---- */
 
-/** Columns along x. Those up to the end of the last cells count, so that all columns of a node agree where it
- * is left; what they fill is cut off in the end. */
+/** Columns along x. Those of a node beyond the grid have no flips; its first column, which tells how it is
+ * left, lies in the grid. */
 static vxm_tile_columns columns_of(const vxm_cl_tree *tree, const vxm_lattice *lattice) {
   vxm_tile_columns columns = {
       .axes = {1, 2, 0}, .bits = lattice->bits, .keep_before = 1, .few_columns = FEW_COLUMNS};
   for (int i = 0; i < 3; i++)
-    columns.last[i] = 16 * tree->cells[columns.axes[i]];
+    columns.last[i] = (int32_t)tree->space.dims[columns.axes[i]];
   columns.step[0] = (uint32_t)tree->cells[0];
   columns.step[1] = (uint32_t)(tree->cells[0] + tree->cells[1]);
   return columns;
@@ -54,9 +54,7 @@ static vxm_tile_columns columns_of(const vxm_cl_tree *tree, const vxm_lattice *l
 /** Flips what the facets of a pass flip or, with `asks`, finds out which of their parts flip something. */
 static vxm_status flip(making *m, cl_uint asks, vxm_error *error) {
   vxm_opencl *engine = m->engine;
-  vxm_tile_columns columns = m->columns;
-  for (int i = 0; i < 3 && asks; i++)
-    columns.last[i] = (int32_t)m->tree.space.dims[columns.axes[i]];
+  const vxm_tile_columns columns = m->columns;
   vxm_status status = vxm_cl_clear(engine, VXM_CL_LARGE, sizeof(uint32_t), error);
   if (status == VXM_OK)
     status = vxm_cl_run(engine, VXM_CL_FLIP_BRICKS, columns.facet_count,
