@@ -89,7 +89,7 @@ static void print_speedup(const cli_run *cli, const bench_plan *plan, const benc
     fprintf(cli->text, " %6" PRId64, plan->resolutions[i]);
   fputc('\n', cli->text);
   for (int p = 0; bench_phases[p].name; p++) {
-    if (!plan->chosen[p] || !bench_phases[p].per_grid)
+    if (!plan->chosen[p] || !bench_phases[p].per_grid || !bench_takes_part(plan, &bench_phases[p], 0))
       continue;
     fprintf(cli->text, "%-*s", width, bench_phases[p].name);
     for (int i = 0; i < plan->resolution_count; i++) {
@@ -113,7 +113,8 @@ static void print_engines(const cli_run *cli, const bench_plan *plan, const benc
       fprintf(cli->text, " %6" PRId64, plan->resolutions[i]);
     fputc('\n', cli->text);
     for (int p = 0; bench_phases[p].name; p++) {
-      if (!plan->chosen[p] || !bench_phases[p].by_engine)
+      if (!plan->chosen[p] || !bench_phases[p].by_engine || !bench_takes_part(plan, &bench_phases[p], 0) ||
+          !bench_takes_part(plan, &bench_phases[p], e))
         continue;
       fprintf(cli->text, "%-*s", width, bench_phases[p].name);
       for (int i = 0; i < plan->resolution_count; i++) {

@@ -13,6 +13,7 @@ typedef enum vxm_cl_program_id {
   VXM_CL_SURFACE,
   VXM_CL_SORT,
   VXM_CL_TILES_PROGRAM,
+  VXM_CL_PUBLISHED,
   VXM_CL_PROGRAMS
 } vxm_cl_program_id;
 
@@ -34,6 +35,8 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_LIST_TILES,
   VXM_CL_FIND_TILES,
   VXM_CL_FILL_TILES,
+  VXM_CL_PUBLISHED_FACETS,
+  VXM_CL_PUBLISHED_VOXELS,
   VXM_CL_KERNELS
 } vxm_cl_kernel_id;
 
