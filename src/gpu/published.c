@@ -7,9 +7,9 @@
 #include <string.h>
 
 enum {
-  AXIS_MOST = 1 << 24,              /**< whole numbers up to this are floats */
-  FACETS_AT_ONCE = 1 << 20,         /**< between two looks at whether to stop */
-  TESTS_AT_ONCE = INT32_C(1) << 30, /**< the same, voxel by voxel */
+  AXIS_MOST = 1 << 24,      /**< whole numbers up to this are floats */
+  FACETS_AT_ONCE = 1 << 20, /**< between two looks at whether to stop */
+  TESTS_AT_ONCE = 1 << 28,  /**< the same, voxel by voxel */
   COUNTS_AT_ONCE = 1 << 17
 };
 
@@ -295,10 +295,11 @@ static vxm_status add_tests(int64_t *sum, const vxm_published *published, vxm_er
   return status;
 }
 
-/** Work-items between two looks at whether to stop: whole groups. */
+/** Work-items between two looks at whether to stop: whole groups, and enough to keep the device busy. */
 static size_t items_at_once(const vxm_published *published, size_t group) {
+  size_t units = (size_t)vxm_max(1, published->engine->base.info.compute_units);
   size_t items = published->by_voxel ? (size_t)TESTS_AT_ONCE / published->job.facets : FACETS_AT_ONCE;
-  return items > group ? items / group * group : group;
+  return items > units * group ? items / group * group : units * group;
 }
 
 vxm_status vxm_cl_published_voxelize(vxm_published_report *report, vxm_published *published,
