@@ -12,51 +12,23 @@ typedef struct SurfaceJob { /* vxm_tile_surface */
   uint facet_count, few_columns, unused[2];
 } SurfaceJob;
 
+/* A side seen along an axis: a voxel meets it where the value is 0 or more. It belongs to the first voxel of the box and
+   changes from voxel to voxel along the two other axes. */
+typedef struct Line {
+  long at, p_step, q_step;
+} Line;
+
+/* A triangle along u, v, w: axes in cyclic order, of which w is the one looked along. */
 typedef struct Shape {
-  int corner[3][3]; /* of each corner x, y, z */
-  long normal[3];
-  int u, v, w;          /* axes, w the one looked along */
-  int begin[3], end[3]; /* voxels whose closed boxes meet that of the triangle, within the tile */
+  int3 corner[3];
+  long3 normal;
+  int3 begin, end; /* voxels whose closed boxes meet that of the triangle, within the tile */
+  int3 first;      /* voxel of the tile */
+  uint3 step;
 } Shape;
 
-inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points, __global const uint *corners,
-                       uint facet) {
-  int low[3], high[3];
-  for (int c = 0; c < 3; c++) {
-    int4 p = points[corners[3 * facet + c]];
-    if (p.w != 0)
-      return false;
-    t->corner[c][0] = p.x;
-    t->corner[c][1] = p.y;
-    t->corner[c][2] = p.z;
-  }
-  int unit = 1 << job->bits;
-  bool is_some = true;
-  for (int i = 0; i < 3; i++) {
-    low[i] = min(min(t->corner[0][i], t->corner[1][i]), t->corner[2][i]);
-    high[i] = max(max(t->corner[0][i], t->corner[1][i]), t->corner[2][i]);
-    if (high[i] - low[i] > 1 << 20)
-      return false;
-    t->begin[i] = max(((low[i] + (unit - 1)) >> job->bits) - 1, job->first[i]);
-    t->end[i] = min((high[i] >> job->bits) + 1, job->last[i]);
-    is_some = is_some && t->begin[i] < t->end[i];
-  }
-  if (!is_some)
-    return false;
-  long size[3];
-  for (int i = 0; i < 3; i++) {
-    int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
-    t->normal[i] = (long)(t->corner[1][j] - t->corner[0][j]) * (t->corner[2][k] - t->corner[0][k]) -
-                   (long)(t->corner[1][k] - t->corner[0][k]) * (t->corner[2][j] - t->corner[0][j]);
-    size[i] = (long)abs(t->normal[i]);
-  }
-  if (size[0] == 0 && size[1] == 0 && size[2] == 0)
-    for (int i = 0; i < 3; i++)
-      size[i] = high[i] - low[i]; /* a line: along its longest side */
-  t->w = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
-  t->u = t->w == 2 ? 0 : t->w + 1;
-  t->v = t->w == 0 ? 2 : t->w - 1;
-  return true;
+inline int3 turned(int x, int y, int z, int w) {
+  return w == 0 ? (int3)(y, z, x) : w == 1 ? (int3)(z, x, y) : (int3)(x, y, z);
 }
 
 inline long reach_of(bool thin, long a, long b, long c) {
@@ -66,47 +38,106 @@ inline long reach_of(bool thin, long a, long b, long c) {
   return thin ? max(max(a, b), c) : a + b + c;
 }
 
-/* The three edges seen along axis w: whether the voxel with centre `at` meets all of them. */
-inline bool meets_edges(const Shape *t, const SurfaceJob *job, const int at[3], int w) {
-  int u = w == 2 ? 0 : w + 1, v = w == 0 ? 2 : w - 1;
-  long half_unit = (1 << job->bits) / 2;
-  for (int e = 0; e < 3; e++) {
-    int next = e == 2 ? 0 : e + 1;
-    long du = t->corner[next][u] - t->corner[e][u], dv = t->corner[next][v] - t->corner[e][v];
-    long beside = du * (at[v] - t->corner[e][v]) - dv * (at[u] - t->corner[e][u]);
-    if (t->normal[w] < 0)
-      beside = -beside;
-    if (beside + half_unit * reach_of(job->thin != 0, du, dv, 0) < 0)
-      return false;
+/* False if it has no voxel of the tile, or is one of those that the CPU does. */
+inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points, __global const uint *corners,
+                       uint facet) {
+  int4 a = points[corners[3 * facet]], b = points[corners[3 * facet + 1]], c = points[corners[3 * facet + 2]];
+  int4 low = min(min(a, b), c), high = max(max(a, b), c), size = high - low;
+  int unit = 1 << job->bits;
+  if ((a.w | b.w | c.w) != 0 || size.x > 1 << 20 || size.y > 1 << 20 || size.z > 1 << 20)
+    return false;
+  int4 begin = max(((low + (unit - 1)) >> job->bits) - 1, (int4)(job->first[0], job->first[1], job->first[2], 0));
+  int4 end = min((high >> job->bits) + 1, (int4)(job->last[0], job->last[1], job->last[2], 0));
+  if (begin.x >= end.x || begin.y >= end.y || begin.z >= end.z)
+    return false;
+  int4 p = b - a, q = c - a;
+  long nx = (long)p.y * q.z - (long)p.z * q.y, ny = (long)p.z * q.x - (long)p.x * q.z;
+  long nz = (long)p.x * q.y - (long)p.y * q.x;
+  long lean_x = (long)abs(nx), lean_y = (long)abs(ny), lean_z = (long)abs(nz);
+  if ((lean_x | lean_y | lean_z) == 0) { /* a line: along its longest side */
+    lean_x = size.x;
+    lean_y = size.y;
+    lean_z = size.z;
   }
+  int w = lean_x >= lean_y && lean_x >= lean_z ? 0 : lean_y >= lean_z ? 1 : 2;
+  t->corner[0] = turned(a.x, a.y, a.z, w);
+  t->corner[1] = turned(b.x, b.y, b.z, w);
+  t->corner[2] = turned(c.x, c.y, c.z, w);
+  t->normal = w == 0 ? (long3)(ny, nz, nx) : w == 1 ? (long3)(nz, nx, ny) : (long3)(nx, ny, nz);
+  t->begin = turned(begin.x, begin.y, begin.z, w);
+  t->end = turned(end.x, end.y, end.z, w);
+  t->first = turned(job->first[0], job->first[1], job->first[2], w);
+  t->step = w == 0   ? (uint3)(job->step[1], job->step[2], job->step[0])
+            : w == 1 ? (uint3)(job->step[2], job->step[0], job->step[1])
+                     : (uint3)(job->step[0], job->step[1], job->step[2]);
   return true;
 }
 
-/* Sets what the triangle has in the column (u, v). */
-inline void set_column(const Shape *t, const SurfaceJob *job, int u, int v, __global uint *bits) {
-  int unit = 1 << job->bits, begin = t->begin[t->w], end = t->end[t->w], at[3];
-  at[t->u] = u * unit + unit / 2;
-  at[t->v] = v * unit + unit / 2;
-  at[t->w] = t->corner[0][t->w];
-  if (!meets_edges(t, job, at, t->w))
-    return;
-  long nw = t->normal[t->w];
-  long reach = (unit / 2) * reach_of(job->thin != 0, t->normal[0], t->normal[1], t->normal[2]);
-  long across = t->normal[t->u] * (at[t->u] - t->corner[0][t->u]) + t->normal[t->v] * (at[t->v] - t->corner[0][t->v]);
-  if (nw != 0) { /* the plane passes at most 1.5 voxels from the centres of its voxels */
-    float middle = -((float)across / (float)nw) / (float)unit + (float)(t->corner[0][t->w] & (unit - 1)) / (float)unit;
-    int around = (int)floor(middle) + (t->corner[0][t->w] >> job->bits);
-    begin = max(begin, around - 3);
-    end = min(end, around + 4);
+/* The side from (p0, q0) to (p1, q1), of a triangle with this component of the normal along the axis looked along, at
+   voxel (p, q). */
+inline Line line_of(const SurfaceJob *job, int p0, int q0, int p1, int q1, long normal, int p, int q) {
+  long dp = p1 - p0, dq = q1 - q0, middle = (1 << job->bits) / 2;
+  if (normal < 0) {
+    dp = -dp;
+    dq = -dq;
   }
-  uint base = (uint)(u - job->first[t->u]) * job->step[t->u] + (uint)(v - job->first[t->v]) * job->step[t->v];
-  for (int k = begin; k < end; k++) {
-    at[t->w] = k * unit + unit / 2;
-    long off = across + nw * (at[t->w] - t->corner[0][t->w]);
-    if ((long)abs(off) > reach || !meets_edges(t, job, at, t->u) || !meets_edges(t, job, at, t->v))
-      continue;
-    uint bit = base + (uint)(k - job->first[t->w]) * job->step[t->w];
-    atomic_or(&bits[bit >> 5], 1u << (bit & 31u));
+  Line line;
+  line.at = dp * ((q << job->bits) + middle - q0) - dq * ((p << job->bits) + middle - p0) +
+            middle * reach_of(job->thin != 0, dp, dq, 0);
+  line.p_step = -(dq << job->bits);
+  line.q_step = dp << job->bits;
+  return line;
+}
+
+inline long value_at(const Line *line, int p, int q) {
+  return line->at + p * line->p_step + q * line->q_step;
+}
+
+/* Sets what the triangle has in some columns: of the rows from `v_first` on every `v_stride`-th, from u_begin to
+   u_end - 1, all of them counted from the box's first. */
+inline void set_columns(const Shape *t, const SurfaceJob *job, int v_first, int v_stride, int u_begin, int u_end,
+                        __global uint *bits) {
+  int bits_below = job->bits, unit = 1 << bits_below, middle = unit / 2;
+  Line along_u[3], along_v[3], along_w[3];
+  for (int e = 0; e < 3; e++) {
+    int3 p = t->corner[e], q = t->corner[e == 2 ? 0 : e + 1];
+    along_w[e] = line_of(job, p.x, p.y, q.x, q.y, t->normal.z, t->begin.x, t->begin.y);
+    along_u[e] = line_of(job, p.y, p.z, q.y, q.z, t->normal.x, t->begin.y, t->begin.z);
+    along_v[e] = line_of(job, p.z, p.x, q.z, q.x, t->normal.y, t->begin.z, t->begin.x);
+  }
+  long3 n = t->normal;
+  long reach = middle * reach_of(job->thin != 0, n.x, n.y, n.z);
+  long to_u = (t->begin.x << bits_below) + middle - t->corner[0].x, to_v = (t->begin.y << bits_below) + middle - t->corner[0].y;
+  float down = (float)(t->corner[0].z & (unit - 1)) / (float)unit;
+  for (int v = v_first; v < t->end.y - t->begin.y; v += v_stride) {
+    long e0 = value_at(&along_w[0], u_begin, v), e1 = value_at(&along_w[1], u_begin, v);
+    long e2 = value_at(&along_w[2], u_begin, v);
+    for (int u = u_begin; u < u_end; u++) {
+      bool meets = (e0 | e1 | e2) >= 0;
+      e0 += along_w[0].p_step;
+      e1 += along_w[1].p_step;
+      e2 += along_w[2].p_step;
+      if (!meets)
+        continue;
+      long across = n.x * (to_u + ((long)u << bits_below)) + n.y * (to_v + ((long)v << bits_below));
+      int begin = t->begin.z, end = t->end.z;
+      if (n.z != 0) { /* the plane passes at most 1.5 voxels from the centres of its voxels */
+        int around = (int)floor(down - ((float)across / (float)n.z) / (float)unit) + (t->corner[0].z >> bits_below);
+        begin = max(begin, around - 3);
+        end = min(end, around + 4);
+      }
+      uint base = (uint)(u + t->begin.x - t->first.x) * t->step.x + (uint)(v + t->begin.y - t->first.y) * t->step.y;
+      for (int k = begin; k < end; k++) {
+        long off = across + n.z * ((k << bits_below) + middle - t->corner[0].z);
+        int w = k - t->begin.z;
+        if ((long)abs(off) > reach ||
+            (value_at(&along_u[0], v, w) | value_at(&along_u[1], v, w) | value_at(&along_u[2], v, w)) < 0 ||
+            (value_at(&along_v[0], w, u) | value_at(&along_v[1], w, u) | value_at(&along_v[2], w, u)) < 0)
+          continue;
+        uint bit = base + (uint)(k - t->first.z) * t->step.z;
+        atomic_or(&bits[bit >> 5], 1u << (bit & 31u));
+      }
+    }
   }
 }
 
@@ -117,25 +148,26 @@ __kernel void set_surface(__global const int4 *points, __global const uint *corn
   Shape t;
   if (i >= job.facet_count || !load_shape(&t, &job, points, corners, i))
     return;
-  if ((long)(t.end[t.u] - t.begin[t.u]) * (t.end[t.v] - t.begin[t.v]) > job.few_columns) {
+  int3 size = t.end - t.begin;
+  if ((long)size.x * size.y > job.few_columns) {
     large[1 + atomic_inc(&large[0])] = i;
     return;
   }
-  for (int v = t.begin[t.v]; v < t.end[t.v]; v++)
-    for (int u = t.begin[t.u]; u < t.end[t.u]; u++)
-      set_column(&t, &job, u, v, bits);
+  set_columns(&t, &job, 0, 1, 0, size.x, bits);
 }
 
-/* Work-groups take turns with the listed triangles; work-items with the columns of each. */
+/* Work-groups take turns with the listed triangles; work-items with the rows of each, and with parts of rows where
+   these are few. */
 __kernel void set_large(__global const int4 *points, __global const uint *corners, __global uint *bits,
                         __global const uint *large, const SurfaceJob job) {
   uint count = large[0];
   for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
     Shape t;
     load_shape(&t, &job, points, corners, large[1 + i]);
-    int width = t.end[t.u] - t.begin[t.u];
-    ulong all = (ulong)width * (ulong)(t.end[t.v] - t.begin[t.v]);
-    for (ulong c = get_local_id(0); c < all; c += GROUP)
-      set_column(&t, &job, t.begin[t.u] + (int)(c % (ulong)width), t.begin[t.v] + (int)(c / (ulong)width), bits);
+    int3 size = t.end - t.begin;
+    int parts = max(1, GROUP / size.y), share = (size.x + parts - 1) / parts;
+    int row = (int)get_local_id(0) / parts, part = (int)get_local_id(0) % parts;
+    if (row < GROUP / parts)
+      set_columns(&t, &job, row, GROUP / parts, part * share, min((part + 1) * share, size.x), bits);
   }
 }

@@ -15,6 +15,7 @@ static const char *const sources[VXM_CL_PROGRAMS][FILES_MAX] = {
     [VXM_CL_SURFACE] = {"lattice.cl", "surface.cl"},
     [VXM_CL_SORT] = {"sort.cl"},
     [VXM_CL_TILES_PROGRAM] = {"lattice.cl", "tiles.cl"},
+    [VXM_CL_COVERAGE] = {"coverage.cl"},
     [VXM_CL_PUBLISHED] = {"published.cl"},
 };
 
@@ -39,6 +40,7 @@ static const struct {
     [VXM_CL_LIST_TILES] = {"list_tiles", VXM_CL_TILES_PROGRAM},
     [VXM_CL_FIND_TILES] = {"find_tiles", VXM_CL_TILES_PROGRAM},
     [VXM_CL_FILL_TILES] = {"fill_tiles", VXM_CL_TILES_PROGRAM},
+    [VXM_CL_COUNT_GROUPS] = {"count_groups", VXM_CL_COVERAGE},
     [VXM_CL_PUBLISHED_FACETS] = {"published_facets", VXM_CL_PUBLISHED},
     [VXM_CL_PUBLISHED_VOXELS] = {"published_voxels", VXM_CL_PUBLISHED},
 };

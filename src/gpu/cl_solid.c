@@ -163,10 +163,10 @@ static vxm_status elect_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm
   vxm_status status = vxm_cl_tile_upload(engine, result, tile, error);
   if (status == VXM_OK)
     status = vxm_cl_reserve(engine, VXM_CL_MASK, tile->words * sizeof(uint64_t), error);
-  if (status == VXM_OK)
-    status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof counted, error);
   for (int v = 0; v < b->count && status == VXM_OK; v++)
     status = make_voter(engine, tile, b, v, error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof counted, error);
   if (status == VXM_OK)
     status = count_votes(engine, tile, b, job->rule, result, error);
   if (status == VXM_OK)

@@ -13,6 +13,10 @@ vxm_status vxm_cl_elect(vxm_engine *engine, const vxm_window *window, const vxm_
 vxm_status vxm_cl_surface(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error);
 
+/** See vxm_engine_ops (cl_coverage.c). */
+vxm_status vxm_cl_count(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
+                        vxm_error *error);
+
 /** Ends what is under way; after a failure, when flips may be left over and something may still run, too.
  * Returns `status`, or the first failure. */
 vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error);

@@ -24,8 +24,11 @@ static void destroy(vxm_engine *base) {
   vxm_far_surface_destroy(&engine->far_surface);
 }
 
-static const vxm_engine_ops opencl_ops = {
-    .unite = vxm_cl_unite, .elect = vxm_cl_elect, .surface = vxm_cl_surface, .destroy = destroy};
+static const vxm_engine_ops opencl_ops = {.unite = vxm_cl_unite,
+                                          .elect = vxm_cl_elect,
+                                          .surface = vxm_cl_surface,
+                                          .count = vxm_cl_count,
+                                          .destroy = destroy};
 
 static vxm_status start(vxm_opencl *engine, vxm_error *error) {
   const vxm_cl *cl = engine->cl;

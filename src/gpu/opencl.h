@@ -13,6 +13,7 @@ typedef enum vxm_cl_program_id {
   VXM_CL_SURFACE,
   VXM_CL_SORT,
   VXM_CL_TILES_PROGRAM,
+  VXM_CL_COVERAGE,
   VXM_CL_PUBLISHED,
   VXM_CL_PROGRAMS
 } vxm_cl_program_id;
@@ -35,6 +36,7 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_LIST_TILES,
   VXM_CL_FIND_TILES,
   VXM_CL_FILL_TILES,
+  VXM_CL_COUNT_GROUPS,
   VXM_CL_PUBLISHED_FACETS,
   VXM_CL_PUBLISHED_VOXELS,
   VXM_CL_KERNELS
@@ -64,7 +66,8 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_COUNTS, /**< tiles of each facet, then where its pairs begin */
   VXM_CL_TILE_KEYS,
   VXM_CL_TILE_FACETS,
-  VXM_CL_LISTS, /**< where the pairs of each tile begin and end */
+  VXM_CL_GROUPS, /**< how many voxels of each are set */
+  VXM_CL_LISTS,  /**< where the pairs of each tile begin and end */
   VXM_CL_BUFFERS
 } vxm_cl_buffer_id;
 

@@ -42,6 +42,10 @@ typedef struct vxm_engine_ops {
                         vxm_surface_kind kind, bool is_fresh, vxm_error *error);
   /** Fills [x][y][z][4] bytes, 0 where a voxel is not set. */
   vxm_status (*color)(vxm_engine *engine, uint8_t *values, const vxm_color_job *job, vxm_error *error);
+  /** Counts the voxels that are set in each group of n x n x n of a window, which begins and ends between
+   * groups: a number for each, along bits, then rows, then slices. */
+  vxm_status (*count)(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
+                      vxm_error *error);
   void (*destroy)(vxm_engine *engine);
 } vxm_engine_ops;
 
