@@ -47,11 +47,13 @@ typedef struct bench_stage {
   vxm_model *model;                       /**< of the present phase */
   bench_team *team;                       /**< of the present phase */
   void *values;                           /**< a number per voxel, of the present phase */
-  bench_augment *augment;                 /**< of the present phase */
-  int64_t variants;    /**< that each of its runs makes: times are for one; 0 = does not apply */
-  double displace;     /**< by how much they are displaced */
-  int64_t run;         /**< number of the present run */
-  vxm_mesh *made_mesh; /**< what the run has made: dropped when the clock has stopped */
+  vxm_published *published;               /**< of the present phase, with value_count voxels */
+  size_t value_count;
+  bench_augment *augment; /**< of the present phase */
+  int64_t variants;       /**< that each of its runs makes: times are for one; 0 = does not apply */
+  double displace;        /**< by how much they are displaced */
+  int64_t run;            /**< number of the present run */
+  vxm_mesh *made_mesh;    /**< what the run has made: dropped when the clock has stopped */
   vxm_model *made_model;
   vxm_sparse *made_sparse;
 } bench_stage;
@@ -62,12 +64,19 @@ typedef struct bench_output {
   int64_t voxels;
 } bench_output;
 
+/** When a phase is measured, unless it is named. */
+typedef enum bench_kind {
+  BENCH_USUAL = 0,
+  BENCH_AUGMENT, /**< with --augment, in place of the others */
+  BENCH_OPENCL   /**< where an engine of OpenCL is named, and by such engines only */
+} bench_kind;
+
 typedef struct bench_phase {
   const char *name; /**< NULL ends the table */
   const char *help;
-  bool per_grid;                           /**< measured at each resolution, else once */
-  bool by_engine;                          /**< measured with each engine, else with the first */
-  bool augments;                           /**< only with --augment, or if it is named */
+  bool per_grid;  /**< measured at each resolution, else once */
+  bool by_engine; /**< measured with each engine, else with the first */
+  bench_kind kind;
   double most_ms;                          /**< left out where a run would take longer; 0 = never */
   vxm_status (*begin)(bench_stage *stage); /**< makes what a run needs, off the clock; NULL = nothing */
   vxm_status (*run)(bench_stage *stage);   /**< what is measured */
@@ -105,6 +114,20 @@ vxm_status bench_run_direct(bench_stage *stage);
 /** The bytes that a variant takes in files. */
 void bench_tell_augment(bench_output *out, const bench_stage *stage);
 void bench_augment_end(bench_stage *stage);
+
+/* ---- A published OpenCL program (bench_opencl.c) ---- */
+
+bool bench_names_opencl(const bench_plan *plan);
+/** Whether an engine of the plan has a say in a phase. Where none is of OpenCL, the first one is asked for
+ * what needs it, so that the table has the reason why it is left out. */
+bool bench_takes_part(const bench_plan *plan, const bench_phase *phase, int engine);
+vxm_status bench_begin_published_facets(bench_stage *stage);
+vxm_status bench_begin_published_voxels(bench_stage *stage);
+vxm_status bench_run_published(bench_stage *stage);
+vxm_status bench_begin_transfer(bench_stage *stage);
+vxm_status bench_run_transfer_read(bench_stage *stage);
+vxm_status bench_run_transfer_map(bench_stage *stage);
+void bench_tell_published(bench_output *out, const bench_stage *stage);
 
 /* ---- Measuring (bench_measure.c) ---- */
 

@@ -92,10 +92,11 @@ static vxm_status measure(bench_result *out, bench_stage *stage, const bench_pha
 /* ---- What is left out ---- */
 
 /** Where no smaller resolution has been measured, this one tells how slow a phase is. */
-enum { PROBE = 32 };
+enum { PROBE = 32, PROBE_OPENCL = 8 };
 
-static vxm_status probe(double *ms, bench_stage *stage, const bench_phase *phase, int64_t resolution) {
-  vxm_status status = bench_stage_resize(stage, PROBE);
+static vxm_status probe(double *ms, bench_stage *stage, const bench_phase *phase, int64_t at,
+                        int64_t resolution) {
+  vxm_status status = bench_stage_resize(stage, at);
   if (status == VXM_OK && phase->begin)
     status = phase->begin(stage);
   for (int i = 0; i < 2 && status == VXM_OK; i++) /* the first one warms up */
@@ -108,7 +109,7 @@ static vxm_status probe(double *ms, bench_stage *stage, const bench_phase *phase
 /** Judges by the nearest smaller resolution how long a run will take, which grows as the voxels do. */
 static vxm_status leave_out_if_slow(bench_result *out, const bench_results *results, bench_stage *stage) {
   const bench_phase *phase = out->phase;
-  int64_t from = 0;
+  int64_t from = 0, at = phase->kind == BENCH_OPENCL ? PROBE_OPENCL : PROBE;
   double ms = 0;
   for (int i = 0; i < results->count; i++) {
     const bench_result *item = &results->items[i];
@@ -118,11 +119,11 @@ static vxm_status leave_out_if_slow(bench_result *out, const bench_results *resu
     from = item->resolution;
     ms = item->median_ms;
   }
-  if (from == 0 && out->resolution > 2 * PROBE) {
-    vxm_status status = probe(&ms, stage, phase, out->resolution);
+  if (from == 0 && out->resolution > 2 * at) {
+    vxm_status status = probe(&ms, stage, phase, at, out->resolution);
     if (status != VXM_OK)
       return status;
-    from = PROBE;
+    from = at;
   }
   if (from == 0)
     return VXM_OK;
@@ -134,9 +135,12 @@ static vxm_status leave_out_if_slow(bench_result *out, const bench_results *resu
   return VXM_OK;
 }
 
-/** Too little memory for one phase or resolution does not end the others. */
-static vxm_status leave_out_if_memory(bench_result *out, bench_stage *stage, vxm_status status) {
-  if (status != VXM_ERROR_MEMORY && status != VXM_ERROR_MEMORY_LIMIT)
+/** Too little memory for one phase or resolution does not end the others, nor does an engine that is not of
+ * OpenCL, or a buffer too small for a byte per voxel. */
+static vxm_status leave_out_if_impossible(bench_result *out, bench_stage *stage, vxm_status status) {
+  bool no_memory = status == VXM_ERROR_MEMORY || status == VXM_ERROR_MEMORY_LIMIT;
+  bool not_here = status == VXM_ERROR_UNAVAILABLE || status == VXM_ERROR_RANGE;
+  if (!no_memory && (!not_here || out->phase->kind != BENCH_OPENCL))
     return status;
   snprintf(out->left_out, sizeof out->left_out, "%s", stage->cli->error.text);
   stage->cli->error = (vxm_error)VXM_ERROR_INIT;
@@ -152,11 +156,11 @@ vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench
     status = leave_out_if_slow(&made, results, stage);
   if (status == VXM_OK && !*made.left_out)
     status = measure(&made, stage, phase, plan->time_ms);
-  status = leave_out_if_memory(&made, stage, status);
+  status = leave_out_if_impossible(&made, stage, status);
   if (status != VXM_OK)
     return status;
   const bench_result *base = bench_find(results, "memset", resolution, stage->threads, 0);
-  if (base && phase->per_grid && phase != base->phase && base->median_ms > 0)
+  if (base && phase->per_grid && phase->kind != BENCH_OPENCL && phase != base->phase && base->median_ms > 0)
     made.of_memset = made.median_ms / base->median_ms;
   bench_result *place = bench_add(results);
   if (!place) {

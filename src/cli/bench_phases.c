@@ -45,7 +45,9 @@ void bench_stage_end_phase(bench_stage *stage) {
   vxm_model_destroy(stage->model);
   bench_team_destroy(stage->team);
   bench_augment_end(stage);
+  vxm_published_destroy(stage->published);
   free(stage->values);
+  stage->published = NULL;
   stage->values = NULL;
   stage->model = NULL;
   stage->team = NULL;
@@ -242,32 +244,42 @@ static void tell_distance(bench_output *out, const bench_stage *stage) {
 enum { SLOW_MS = 2000 };
 
 const bench_phase bench_phases[] = {
-    {"memset", "fill memory of the grid's size: the least that writing it can take", true, false, false, 0,
-     begin_memset, run_memset, tell_memset},
-    {"load", "read the file", false, false, false, 0, NULL, run_load, tell_load},
-    {"repair", "repair the mesh", false, false, false, 0, NULL, run_repair, NULL},
-    {"prepare", "make the model: find parts, cap holes", false, false, false, 0, NULL, run_prepare, NULL},
-    {"solid_x", "solid by parity along x", true, true, false, 0, begin_x, run_solid, tell_grid},
-    {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, true, false, 0, begin_default, run_solid,
-     tell_grid},
-    {"solid_majority", "solid by a majority of x, y and z", true, true, false, 0, begin_majority, run_solid,
-     tell_grid},
-    {"transform", "solid_vote of the model turned by a small angle", true, true, false, 0, begin_default,
-     run_transform, tell_grid},
-    {"surface_conservative", "every voxel that the surface touches", true, true, false, 0, begin_conservative,
+    {"memset", "fill memory of the grid's size: the least that writing it can take", true, false, BENCH_USUAL,
+     0, begin_memset, run_memset, tell_memset},
+    {"load", "read the file", false, false, BENCH_USUAL, 0, NULL, run_load, tell_load},
+    {"repair", "repair the mesh", false, false, BENCH_USUAL, 0, NULL, run_repair, NULL},
+    {"prepare", "make the model: find parts, cap holes", false, false, BENCH_USUAL, 0, NULL, run_prepare,
+     NULL},
+    {"solid_x", "solid by parity along x", true, true, BENCH_USUAL, 0, begin_x, run_solid, tell_grid},
+    {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, true, BENCH_USUAL, 0, begin_default,
      run_solid, tell_grid},
-    {"surface_thin", "the 6-separating surface", true, true, false, 0, begin_thin, run_solid, tell_grid},
-    {"sparse", "solid_vote as an octree", true, true, false, 0, begin_sparse, run_sparse, tell_sparse},
-    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, true, false, SLOW_MS,
-     begin_values, run_coverage, tell_coverage},
-    {"distance", "signed distance, within 3 voxels of the surface", true, false, false, SLOW_MS, begin_values,
-     run_distance, tell_distance},
-    {"winding", "solid by the winding number of every voxel", true, false, false, SLOW_MS, begin_winding,
+    {"solid_majority", "solid by a majority of x, y and z", true, true, BENCH_USUAL, 0, begin_majority,
      run_solid, tell_grid},
+    {"transform", "solid_vote of the model turned by a small angle", true, true, BENCH_USUAL, 0,
+     begin_default, run_transform, tell_grid},
+    {"surface_conservative", "every voxel that the surface touches", true, true, BENCH_USUAL, 0,
+     begin_conservative, run_solid, tell_grid},
+    {"surface_thin", "the 6-separating surface", true, true, BENCH_USUAL, 0, begin_thin, run_solid,
+     tell_grid},
+    {"sparse", "solid_vote as an octree", true, true, BENCH_USUAL, 0, begin_sparse, run_sparse, tell_sparse},
+    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, true, BENCH_USUAL,
+     SLOW_MS, begin_values, run_coverage, tell_coverage},
+    {"distance", "signed distance, within 3 voxels of the surface", true, false, BENCH_USUAL, SLOW_MS,
+     begin_values, run_distance, tell_distance},
+    {"winding", "solid by the winding number of every voxel", true, false, BENCH_USUAL, SLOW_MS,
+     begin_winding, run_solid, tell_grid},
     {"augment_standard", "a variant by a process of its own, which reads the mesh; its file read back", true,
-     false, true, 0, bench_begin_standard, bench_run_standard, bench_tell_augment},
-    {"augment_batch", "a variant by a process that has the mesh; its file read back", true, false, true, 0,
-     bench_begin_batch, bench_run_batch, bench_tell_augment},
-    {"augment_direct", "a variant, as numbers in memory", true, false, true, 0, bench_begin_direct,
+     false, BENCH_AUGMENT, 0, bench_begin_standard, bench_run_standard, bench_tell_augment},
+    {"augment_batch", "a variant by a process that has the mesh; its file read back", true, false,
+     BENCH_AUGMENT, 0, bench_begin_batch, bench_run_batch, bench_tell_augment},
+    {"augment_direct", "a variant, as numbers in memory", true, false, BENCH_AUGMENT, 0, bench_begin_direct,
      bench_run_direct, bench_tell_augment},
-    {NULL, NULL, false, false, false, 0, NULL, NULL, NULL}};
+    {"published_facets", "surface by a published OpenCL program, a work-item for each facet", true, true,
+     BENCH_OPENCL, 0, bench_begin_published_facets, bench_run_published, bench_tell_published},
+    {"published_voxels", "the same, a work-item for each voxel over all facets", true, true, BENCH_OPENCL,
+     SLOW_MS, bench_begin_published_voxels, bench_run_published, bench_tell_published},
+    {"transfer_read", "a byte for each voxel from the OpenCL device, by clEnqueueReadBuffer", true, true,
+     BENCH_OPENCL, 0, bench_begin_transfer, bench_run_transfer_read, bench_tell_published},
+    {"transfer_map", "the same by clEnqueueMapBuffer", true, true, BENCH_OPENCL, 0, bench_begin_transfer,
+     bench_run_transfer_map, bench_tell_published},
+    {NULL, NULL, false, false, BENCH_USUAL, 0, NULL, NULL, NULL}};

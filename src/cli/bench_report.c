@@ -89,7 +89,7 @@ static void print_speedup(const cli_run *cli, const bench_plan *plan, const benc
     fprintf(cli->text, " %6" PRId64, plan->resolutions[i]);
   fputc('\n', cli->text);
   for (int p = 0; bench_phases[p].name; p++) {
-    if (!plan->chosen[p] || !bench_phases[p].per_grid)
+    if (!plan->chosen[p] || !bench_phases[p].per_grid || !bench_takes_part(plan, &bench_phases[p], 0))
       continue;
     fprintf(cli->text, "%-*s", width, bench_phases[p].name);
     for (int i = 0; i < plan->resolution_count; i++) {
@@ -104,6 +104,13 @@ static void print_speedup(const cli_run *cli, const bench_plan *plan, const benc
   }
 }
 
+/** Whether a phase is measured with an engine and with the first. */
+static bool is_compared(const bench_plan *plan, int phase, int engine) {
+  return plan->chosen[phase] && bench_phases[phase].by_engine &&
+         bench_takes_part(plan, &bench_phases[phase], 0) &&
+         bench_takes_part(plan, &bench_phases[phase], engine);
+}
+
 /** How long the other engines take, in times of the first, with the most threads. */
 static void print_engines(const cli_run *cli, const bench_plan *plan, const bench_results *results) {
   int width = name_width(plan, results), threads = (int)plan->threads[plan->thread_count - 1];
@@ -113,7 +120,7 @@ static void print_engines(const cli_run *cli, const bench_plan *plan, const benc
       fprintf(cli->text, " %6" PRId64, plan->resolutions[i]);
     fputc('\n', cli->text);
     for (int p = 0; bench_phases[p].name; p++) {
-      if (!plan->chosen[p] || !bench_phases[p].by_engine)
+      if (!is_compared(plan, p, e))
         continue;
       fprintf(cli->text, "%-*s", width, bench_phases[p].name);
       for (int i = 0; i < plan->resolution_count; i++) {

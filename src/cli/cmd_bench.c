@@ -24,7 +24,8 @@ static const cli_option known_options[] = {
      "numbers of threads, such as 1,2, each 1 to 256 [1 and one per processor]"},
     {KEY_PHASES, "phases", "LIST",
      "what to measure, out of the phases below; named here, a phase is measured\n"
-     "however slow it is [all, but what takes over two seconds is left out]"},
+     "however slow it is; 'solid' is all that begin with solid_ [all, but what takes\n"
+     "over two seconds is left out, and what needs OpenCL without --engine opencl]"},
     {KEY_ENGINE, "engine", "LIST",
      "who makes the grids, such as cpu,opencl,opencl/tiles: as in 'voxmend voxelize',\n"
      "and behind a '/' the method; others are compared with the first [cpu]"},
@@ -71,6 +72,18 @@ static bool read_list(int64_t *out, int *count, const char *text, int64_t high) 
   return true;
 }
 
+/** Chooses all phases of a group, such as transfer_read and transfer_map of "transfer"; false if there is no
+ * such group. */
+static bool choose_group(bench_plan *plan, const char *group) {
+  size_t length = strlen(group);
+  bool found = false;
+  for (int i = 0; bench_phases[i].name; i++)
+    if (length > 0 && strncmp(bench_phases[i].name, group, length) == 0 &&
+        bench_phases[i].name[length] == '_')
+      found = plan->chosen[i] = true;
+  return found;
+}
+
 static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
   char item[ITEM_SIZE];
   const char *names[BENCH_PHASES_MAX + 1] = {NULL};
@@ -80,6 +93,8 @@ static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
   plan->forced = true;
   while (next_item(item, &text)) {
     int phase;
+    if (choose_group(plan, item))
+      continue;
     if (cli_choose(cli, &phase, "phases", item, names) == CLI_STOP)
       return CLI_STOP;
     plan->chosen[phase] = true;
@@ -167,6 +182,13 @@ static void choose_resolutions(bench_plan *plan) {
   memcpy(plan->resolutions, usual + (plan->augment ? 5 : 0), (size_t)plan->resolution_count * sizeof *usual);
 }
 
+/** Whether a phase is measured where none is named. */
+static bool is_usual(const bench_plan *plan, const bench_phase *phase) {
+  if (plan->augment)
+    return phase->kind == BENCH_AUGMENT;
+  return phase->kind == BENCH_USUAL || (phase->kind == BENCH_OPENCL && bench_names_opencl(plan));
+}
+
 static int read_arguments(cli_run *cli, bench_plan *plan) {
   const char *value;
   int key;
@@ -184,7 +206,7 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
     return cli_usage(cli, "--augment and --phases both say what to measure");
   choose_resolutions(plan);
   for (int i = 0; bench_phases[i].name && !plan->forced; i++)
-    plan->chosen[i] = bench_phases[i].augments == plan->augment;
+    plan->chosen[i] = is_usual(plan, &bench_phases[i]);
   if (strcmp(plan->path, "-") == 0)
     return cli_usage(cli, "the mesh is read many times, which standard input cannot be; name a file");
   if (plan->plot && !cli_is_extension(plan->plot, "svg"))
@@ -213,9 +235,9 @@ typedef struct bench_work {
 static int count_measurements(const bench_plan *plan) {
   int total = 0;
   for (int i = 0; bench_phases[i].name; i++)
-    if (plan->chosen[i])
-      total += (bench_phases[i].per_grid ? plan->resolution_count : 1) *
-               (bench_phases[i].by_engine ? plan->engine_count : 1);
+    for (int e = 0; e < plan->engine_count; e++)
+      if (plan->chosen[i] && bench_takes_part(plan, &bench_phases[i], e))
+        total += bench_phases[i].per_grid ? plan->resolution_count : 1;
   return total * plan->thread_count;
 }
 
@@ -253,9 +275,11 @@ static int measure_resolution(bench_work *work, bench_stage *stage, int64_t reso
   if (bench_stage_resize(stage, resolution) != VXM_OK)
     return cli_fail(work->cli);
   for (int i = 0; bench_phases[i].name; i++)
-    for (int e = 0; e < (bench_phases[i].by_engine ? work->plan.engine_count : 1); e++) {
+    for (int e = 0; e < work->plan.engine_count; e++) {
       stage->engine = e;
-      if (work->plan.chosen[i] && bench_phases[i].per_grid && measure(work, stage, i, resolution) != CLI_DONE)
+      if (work->plan.chosen[i] && bench_phases[i].per_grid &&
+          bench_takes_part(&work->plan, &bench_phases[i], e) &&
+          measure(work, stage, i, resolution) != CLI_DONE)
         return CLI_FAILED;
     }
   work->results.memory[work->results.memory_count++] =

@@ -16,6 +16,7 @@ typedef enum vxm_cl_program_id {
   VXM_CL_TREE,        /**< octrees: their nodes */
   VXM_CL_BRICK_FLIPS, /**< and their voxels */
   VXM_CL_COVERAGE,
+  VXM_CL_PUBLISHED,
   VXM_CL_PROGRAMS
 } vxm_cl_program_id;
 
@@ -59,6 +60,8 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_FOLD_BRICKS,
   VXM_CL_PUSH_BRICKS,
   VXM_CL_COUNT_GROUPS,
+  VXM_CL_PUBLISHED_FACETS,
+  VXM_CL_PUBLISHED_VOXELS,
   VXM_CL_KERNELS
 } vxm_cl_kernel_id;
 

@@ -80,7 +80,7 @@ say "# bench"
 run 'voxmend bench'
 run 'voxmend bench in/cube.off in/torus.off'
 run 'voxmend bench -'
-for option in '-r 0' '-r 64,' '-r ""' '-r 8x8x8' '-r 8,1048577' '--threads 0' '--threads 1,257' '--threads 2x' '--phases solid' \
+for option in '-r 0' '-r 64,' '-r ""' '-r 8x8x8' '-r 8,1048577' '--threads 0' '--threads 1,257' '--threads 2x' '--phases hollow' \
   '--phases load,,repair' '--engine gpu' '--time -1' '--time 5s' '--plot x.png' '--plot svg' '--phases load --plot x.svg' \
   '--plot x.svg --report x.svg' '--plot x.svg --report ./x.svg' '--mode solid'; do
   run "voxmend bench in/cube.off $option"

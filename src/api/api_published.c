@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions of the published OpenCL program: they check arguments and call down. */
+#include "config.h"
+#include "voxel/engine.h"
+
+#ifdef HAVE_OPENCL
+#include "gpu/published.h"
+#endif
+
+#include <float.h>
+#include <inttypes.h>
+#include <string.h>
+
+static vxm_status check(const vxm_engine *engine, const vxm_published_options *options, vxm_error *error) {
+  if (options->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "published program: options version %" PRIu32 " is unknown; use the initializer",
+                    options->version);
+  if (!(options->voxel_size >= (double)FLT_MIN && options->voxel_size <= 1 / (double)FLT_MIN))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "published program: voxel size %g is not a positive number that a 32-bit float holds",
+                    options->voxel_size);
+  if (!engine->ops || strncmp(engine->info.name, "opencl:", 7) != 0)
+    return vxm_fail(
+        error, VXM_ERROR_UNAVAILABLE,
+        "the published program needs an engine of OpenCL, and this one is %s; use --engine opencl",
+        engine->info.name);
+  return VXM_OK;
+}
+
+vxm_status vxm_published_create(vxm_published **out, vxm_space *space, vxm_engine *engine,
+                                const vxm_mesh *mesh, const vxm_published_options *options,
+                                vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (space)
+    *space = (vxm_space){0};
+  if (!out || !engine || !mesh || !options)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "published program: an argument is NULL");
+  vxm_status status = check(engine, options, error);
+#ifdef HAVE_OPENCL
+  vxm_space local;
+  vxm_published_options chosen = *options;
+  chosen.material = chosen.material ? chosen.material : 1;
+  if (status == VXM_OK)
+    status =
+        vxm_cl_published_create(out, space ? space : &local, vxm_opencl_of(engine), mesh, &chosen, error);
+#endif
+  return status;
+}
+
+vxm_status vxm_published_voxelize(vxm_published_report *report, vxm_published *published, vxm_error *error) {
+  vxm_published_report local;
+  report = report ? report : &local;
+  *report = (vxm_published_report){0};
+  if (!published)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "published program: an argument is NULL");
+#ifdef HAVE_OPENCL
+  return vxm_cl_published_voxelize(report, published, error);
+#else
+  return VXM_OK; /* there are none to voxelize */
+#endif
+}
+
+vxm_status vxm_published_take(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
+                              vxm_error *error) {
+  double local;
+  ms = ms ? ms : &local;
+  *ms = 0;
+  if (!published)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "published program: an argument is NULL");
+  if ((unsigned)how > VXM_TRANSFER_READ)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "published program: transfer %d is unknown", (int)how);
+  if (how == VXM_TRANSFER_READ && !voxels)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "published program: voxels are read into memory, not into NULL");
+#ifdef HAVE_OPENCL
+  return vxm_cl_published_take(voxels, ms, published, how, error);
+#else
+  return VXM_OK;
+#endif
+}
+
+void vxm_published_destroy(vxm_published *published) {
+#ifdef HAVE_OPENCL
+  vxm_cl_published_destroy(published);
+#else
+  (void)published;
+#endif
+}
