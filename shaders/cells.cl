@@ -7,7 +7,8 @@
  * Morton order without the bits of axes that all cells have clear.
  */
 inline void mark_cell(const Voxels *cells, const SurfaceJob *job, int3 at) {
-  ulong cell = cells->places[at.x] | cells->places[job->last[0] + at.y] | cells->places[job->last[0] + job->last[1] + at.z];
+  ulong cell = cells->places[at.x] | cells->places[job->last[0] + at.y] |
+               cells->places[job->last[0] + job->last[1] + at.z];
   uint bit = 1u << (uint)(cell & 31);
   if ((cells->bits[cell >> 5] & bit) == 0) /* most are set already */
     atomic_or(&cells->bits[cell >> 5], bit);
@@ -22,7 +23,8 @@ inline void set_voxel(const Voxels *cells, const Shape *t, const SurfaceJob *job
   mark_cell(cells, job, turned_back((int3)(u, v, w), t->w));
 }
 
-/* What lies before the grid flips its first voxels: the cells there that have the triangle before them along x. */
+/* What lies before the grid flips its first voxels: the cells there that have the triangle before them along
+ * x. */
 inline void mark_shadow(const Shape *t, const SurfaceJob *job, const int3 corner[3], int first, int stride,
                         const Voxels *cells) {
   int3 begin = turned_back(t->begin, t->w), size = turned_back(t->end, t->w) - begin;
@@ -89,9 +91,9 @@ __kernel void mark_box(__global uint *bits, __global const ulong *places, const 
   size_t i = get_global_id(0);
   if (i >= (size_t)size.x * size.y * size.z)
     return;
-  int at[3] = {first.x + (int)(i % size.x), first.y + (int)(i / size.x % size.y),
-               first.z + (int)(i / size.x / size.y)};
-  mark_cell(bits, places, &job, at);
+  const Voxels cells = {bits, places};
+  int x = (int)(i % size.x), y = (int)(i / size.x % size.y), z = (int)(i / size.x / size.y);
+  mark_cell(&cells, &job, first.xyz + (int3)(x, y, z));
 }
 
 __kernel void count_cells(__global const uint *bits, __global uint *before, const uint words) {

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * Surfaces, triangle by triangle, in the integers and by the tests of the CPU (surface_draw.h, after Schwarz & Seidel
- * 2010, sections 3.1 and 3.4): the box, the plane, and the edges seen along each axis. A triangle is looked at along the
- * axis w that its normal leans to most, so that it has few voxels in each column. Differences are at most 2^20 and a
- * voxel 2^16 steps, so that all sums fit 63 bits.
+ * Surfaces, triangle by triangle, in the integers and by the tests of the CPU (surface_draw.h, after Schwarz
+ * & Seidel 2010, sections 3.1 and 3.4): the box, the plane, and the edges seen along each axis. A triangle is
+ * looked at along the axis w that its normal leans to most, so that it has few voxels in each column.
+ * Differences are at most 2^20 and a voxel 2^16 steps, so that all sums fit 63 bits.
  */
 typedef struct SurfaceJob { /* vxm_tile_surface */
   int first[3], bits;
   int last[3], thin;
   uint step[4];
   uint facet_count, few_columns;
-  int shift, shadow; /* along x: by how much points are moved; whether what lies before the first voxel counts for it */
+  int shift, shadow; /* along x: by how much points are moved; whether what lies before the first voxel counts
+                        for it */
 } SurfaceJob;
 
 /* Where the voxels go: a bit for each. */
@@ -19,8 +20,8 @@ typedef struct Voxels {
   __global const ulong *places; /* of cells only */
 } Voxels;
 
-/* A side seen along an axis: a voxel meets it where the value is 0 or more. It belongs to the first voxel of the box and
-   changes from voxel to voxel along the two other axes. */
+/* A side seen along an axis: a voxel meets it where the value is 0 or more. It belongs to the first voxel of
+   the box and changes from voxel to voxel along the two other axes. */
 typedef struct Line {
   long at, p_step, q_step;
 } Line;
@@ -50,8 +51,8 @@ inline long reach_of(bool thin, long a, long b, long c) {
 }
 
 /* False if it has no voxel of the tile, or is one of those that the CPU does. */
-inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points, __global const uint *corners,
-                       uint facet) {
+inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points,
+                       __global const uint *corners, uint facet) {
   int4 a = points[corners[3 * facet]], b = points[corners[3 * facet + 1]], c = points[corners[3 * facet + 2]];
   a.x += job->shift;
   b.x += job->shift;
@@ -60,7 +61,8 @@ inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *poi
   int unit = 1 << job->bits;
   if ((a.w | b.w | c.w) != 0 || size.x > 1 << 20 || size.y > 1 << 20 || size.z > 1 << 20)
     return false;
-  int4 begin = max(((low + (unit - 1)) >> job->bits) - 1, (int4)(job->first[0], job->first[1], job->first[2], 0));
+  int4 begin =
+      max(((low + (unit - 1)) >> job->bits) - 1, (int4)(job->first[0], job->first[1], job->first[2], 0));
   int4 end = min((high >> job->bits) + 1, (int4)(job->last[0], job->last[1], job->last[2], 0));
   if (job->shadow != 0)
     end.x = max(end.x, 1);
@@ -90,8 +92,8 @@ inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *poi
   return true;
 }
 
-/* The side from (p0, q0) to (p1, q1), of a triangle with this component of the normal along the axis looked along, at
-   voxel (p, q). */
+/* The side from (p0, q0) to (p1, q1), of a triangle with this component of the normal along the axis looked
+   along, at voxel (p, q). */
 inline Line line_of(const SurfaceJob *job, int p0, int q0, int p1, int q1, long normal, int p, int q) {
   long dp = p1 - p0, dq = q1 - q0, middle = (1 << job->bits) / 2;
   if (normal < 0) {
@@ -110,10 +112,10 @@ inline long value_at(const Line *line, int p, int q) {
   return line->at + p * line->p_step + q * line->q_step;
 }
 
-/* Sets what the triangle has in some columns: of the rows from `v_first` on every `v_stride`-th, from u_begin to
-   u_end - 1, all of them counted from the box's first. */
-inline void set_columns(const Shape *t, const SurfaceJob *job, int v_first, int v_stride, int u_begin, int u_end,
-                        const Voxels *voxels) {
+/* Sets what the triangle has in some columns: of the rows from `v_first` on every `v_stride`-th, from u_begin
+   to u_end - 1, all of them counted from the box's first. */
+inline void set_columns(const Shape *t, const SurfaceJob *job, int v_first, int v_stride, int u_begin,
+                        int u_end, const Voxels *voxels) {
   int bits_below = job->bits, unit = 1 << bits_below, middle = unit / 2;
   Line along_u[3], along_v[3], along_w[3];
   for (int e = 0; e < 3; e++) {
@@ -124,7 +126,8 @@ inline void set_columns(const Shape *t, const SurfaceJob *job, int v_first, int 
   }
   long3 n = t->normal;
   long reach = middle * reach_of(job->thin != 0, n.x, n.y, n.z);
-  long to_u = (t->begin.x << bits_below) + middle - t->corner[0].x, to_v = (t->begin.y << bits_below) + middle - t->corner[0].y;
+  long to_u = (t->begin.x << bits_below) + middle - t->corner[0].x,
+       to_v = (t->begin.y << bits_below) + middle - t->corner[0].y;
   float down = (float)(t->corner[0].z & (unit - 1)) / (float)unit;
   for (int v = v_first; v < t->end.y - t->begin.y; v += v_stride) {
     long e0 = value_at(&along_w[0], u_begin, v), e1 = value_at(&along_w[1], u_begin, v);
@@ -139,7 +142,8 @@ inline void set_columns(const Shape *t, const SurfaceJob *job, int v_first, int 
       long across = n.x * (to_u + ((long)u << bits_below)) + n.y * (to_v + ((long)v << bits_below));
       int begin = t->begin.z, end = t->end.z;
       if (n.z != 0) { /* the plane passes at most 1.5 voxels from the centres of its voxels */
-        int around = (int)floor(down - ((float)across / (float)n.z) / (float)unit) + (t->corner[0].z >> bits_below);
+        int around =
+            (int)floor(down - ((float)across / (float)n.z) / (float)unit) + (t->corner[0].z >> bits_below);
         begin = max(begin, around - 3);
         end = min(end, around + 4);
       }

@@ -84,11 +84,18 @@ static vxm_status unite_by_windows(vxm_octree_builder *builder, vxm_model *model
   return status;
 }
 
+/** Whether the run's engine makes windows, but no octrees. */
+static bool makes_windows(const vxm_model *model) {
+  const vxm_engine *engine = model->run.engine;
+  return engine && engine->ops && !engine->ops->sparse;
+}
+
 static vxm_status build(vxm_sparse **out, vxm_model *model, vxm_error *error) {
   vxm_octree_builder builder;
   vxm_status status = vxm_octree_builder_create(&builder, model->context, &model->space, error);
   if (status == VXM_OK)
-    status = (is_direct(model) ? unite_directly : unite_by_windows)(&builder, model, error);
+    status = (is_direct(model) && !makes_windows(model) ? unite_directly : unite_by_windows)(&builder, model,
+                                                                                             error);
   if (status == VXM_OK)
     status = vxm_octree_builder_end(out, &builder, error);
   vxm_octree_builder_destroy(&builder);

@@ -223,6 +223,32 @@ static void test_empty_and_full(void **state) {
   }
 }
 
+/** A part that lies before the grid, where it flips first voxels twice, over one that reaches into it. */
+static void test_before(void **state) {
+  (void)state;
+  vxm_space space = engine_space(40, 20, 20);
+  vxm_soup *soup = shape_empty(context);
+  triangle_box(soup, (double[3]){-6, 2, 2}, (double[3]){-3.2, 9, 9}, 0, false);
+  triangle_box(soup, (double[3]){-1, 3, 3}, (double[3]){5, 12, 12}, 0, false);
+  check_parts(soup, &space);
+  vxm_soup_destroy(soup);
+}
+
+/** Four levels: walls deep in what is inside, so that it is handed down from node to node. */
+static void test_deep(void **state) {
+  (void)state;
+  vxm_space space = engine_space(1100, 300, 290);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.parts = VXM_PARTS_WHOLE;
+  vxm_soup *soup = shape_empty(context);
+  shape_torus(soup, 5, 4, 120, 100, (double[3]){500, 200, 150});
+  triangle_box(soup, (double[3]){3, 3, 3}, (double[3]){1090, 290, 280}, 0, false);
+  triangle_box(soup, (double[3]){300, 90, 90}, (double[3]){330, 110, 111}, 0, false);
+  triangle_box(soup, (double[3]){700, 140, 90}, (double[3]){702, 240, 200}, 0, false);
+  check(soup, &space, options);
+  vxm_soup_destroy(soup);
+}
+
 /** Limits of the memory and of the device: one of the known failures, with a text, and no leak. */
 static void test_limits(void **state) {
   (void)state;
@@ -345,7 +371,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_random),         cmocka_unit_test(test_cut),
                                      cmocka_unit_test(test_many_parts),     cmocka_unit_test(test_ties),
                                      cmocka_unit_test(test_shapes),         cmocka_unit_test(test_far),
-                                     cmocka_unit_test(test_empty_and_full), cmocka_unit_test(test_limits),
+                                     cmocka_unit_test(test_empty_and_full), cmocka_unit_test(test_before),
+                                     cmocka_unit_test(test_deep),           cmocka_unit_test(test_limits),
                                      cmocka_unit_test(test_real_meshes)};
   int status = gpu_test_start(NULL);
   if (status == 0) {
