@@ -10,7 +10,7 @@ typedef struct Flips {
 } Flips;
 
 /* Flips a voxel and those behind it in its row of four; columns run along x, u is y, v is z. */
-inline void flip_bit(Flips *flips, const Job *job, int u, int v, int w) {
+static inline void flip_bit(Flips *flips, const Job *job, int u, int v, int w) {
   if (w >= job->last[2])
     return;
   w = max(w, 0);
@@ -18,6 +18,8 @@ inline void flip_bit(Flips *flips, const Job *job, int u, int v, int w) {
       flips->places[w >> 4] | flips->places[job->step[0] + (u >> 4)] | flips->places[job->step[1] + (v >> 4)];
   size_t word = (size_t)(cell >> 5);
   uint below = (1u << (uint)(cell & 31)) - 1;
+  if ((flips->cells[word] >> (uint)(cell & 31) & 1u) == 0) /* every cell that is flipped has a node; none is written for another */
+    return;
   size_t node = flips->before[word] + (uint)popcount(flips->cells[word] & below);
   const uint spread[4] = {0, 1, 8, 9};
   uint brick = spread[w >> 2 & 3] | spread[u >> 2 & 3] << 1 | spread[v >> 2 & 3] << 2;

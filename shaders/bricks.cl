@@ -5,7 +5,7 @@
 enum { PART_MASK = 0x1fffffff /* of a facet's number of part, above which is its role */ };
 
 /* Whether a facet has to be looked at: not to ask whether its part has a flip where it is known. */
-inline bool is_asked(__global const uint *parts, __global const uint *touched, uint facet, uint asks) {
+static inline bool is_asked(__global const uint *parts, __global const uint *touched, uint facet, uint asks) {
   return asks == 0 || touched[parts[facet] & PART_MASK] == 0;
 }
 

@@ -6,7 +6,7 @@
  * every cell that it leaves neither empty nor full, also as a wall along x. There is a bit for each cell, in
  * Morton order without the bits of axes that all cells have clear.
  */
-inline void mark_cell(const Voxels *cells, const SurfaceJob *job, int3 at) {
+static inline void mark_cell(const Voxels *cells, const SurfaceJob *job, int3 at) {
   ulong cell = cells->places[at.x] | cells->places[job->last[0] + at.y] |
                cells->places[job->last[0] + job->last[1] + at.z];
   uint bit = 1u << (uint)(cell & 31);
@@ -15,17 +15,17 @@ inline void mark_cell(const Voxels *cells, const SurfaceJob *job, int3 at) {
 }
 
 /* Back to x, y, z. */
-inline int3 turned_back(int3 p, int w) {
+static inline int3 turned_back(int3 p, int w) {
   return w == 0 ? (int3)(p.z, p.x, p.y) : w == 1 ? (int3)(p.y, p.z, p.x) : p;
 }
 
-inline void set_voxel(const Voxels *cells, const Shape *t, const SurfaceJob *job, int u, int v, int w) {
+static inline void set_voxel(const Voxels *cells, const Shape *t, const SurfaceJob *job, int u, int v, int w) {
   mark_cell(cells, job, turned_back((int3)(u, v, w), t->w));
 }
 
 /* What lies before the grid flips its first voxels: the cells there that have the triangle before them along
  * x. */
-inline void mark_shadow(const Shape *t, const SurfaceJob *job, const int3 corner[3], int first, int stride,
+static inline void mark_shadow(const Shape *t, const SurfaceJob *job, const int3 corner[3], int first, int stride,
                         const Voxels *cells) {
   int3 begin = turned_back(t->begin, t->w), size = turned_back(t->end, t->w) - begin;
   long normal = t->w == 0 ? t->normal.z : t->w == 1 ? t->normal.y : t->normal.x;
@@ -41,7 +41,7 @@ inline void mark_shadow(const Shape *t, const SurfaceJob *job, const int3 corner
 }
 
 /* By one work-item, or by a group. */
-inline void mark_triangle(const Shape *t, const SurfaceJob *job, bool is_shared, const Voxels *cells) {
+static inline void mark_triangle(const Shape *t, const SurfaceJob *job, bool is_shared, const Voxels *cells) {
   int3 corner[3];
   for (int c = 0; c < 3; c++)
     corner[c] = turned_back(t->corner[c], t->w);
@@ -103,7 +103,7 @@ __kernel void count_cells(__global const uint *bits, __global uint *before, cons
 }
 
 /* Puts the bits of a cell's number where `axes` has ones. */
-inline ulong code_of(ulong number, ulong axes) {
+static inline ulong code_of(ulong number, ulong axes) {
   ulong code = 0;
   for (; axes != 0 && number != 0; axes &= axes - 1, number >>= 1)
     if (number & 1)

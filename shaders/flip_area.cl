@@ -4,7 +4,7 @@
 
 /* Flips what the triangle flips in rows of columns: those of `area` from row `first` on, every `stride`-th.
  */
-inline void flip_area(const Triangle *t, const Job *job, int4 area, int first, int stride, Flips *flips) {
+static inline void flip_area(const Triangle *t, const Job *job, int4 area, int first, int stride, Flips *flips) {
   bool u_first = job->axes[0] < job->axes[1];
   int middle = (1 << job->bits) / 2;
   int pu = (area.x << job->bits) + middle - t->a.x, pv = ((area.y + first) << job->bits) + middle - t->a.y;
@@ -32,7 +32,7 @@ inline void flip_area(const Triangle *t, const Job *job, int4 area, int first, i
 }
 
 /* The share of one work-item where its group flips all that a triangle does: rows of columns. */
-inline void flip_share(const Triangle *t, const Job *job, Flips *flips) {
+static inline void flip_share(const Triangle *t, const Job *job, Flips *flips) {
   int4 area = columns_of(t, job);
   int first = (int)get_local_id(0);
   /* Low and wide ones are shared by columns. */

@@ -16,13 +16,13 @@ typedef struct Triangle {
   long nw; /* twice the area of the projection, above 0 */
 } Triangle;
 
-inline int part_of(int4 p, int axis) {
+static inline int part_of(int4 p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
 
 /* False if the facet covers no column by its area, or is one of those that the CPU does: their points are marked or
    lie too far apart. */
-inline bool load_triangle(Triangle *t, const Job *job, __global const int4 *points, __global const uint *corners,
+static inline bool load_triangle(Triangle *t, const Job *job, __global const int4 *points, __global const uint *corners,
                           uint facet) {
   int4 p = points[corners[3 * facet]], q = points[corners[3 * facet + 1]], r = points[corners[3 * facet + 2]];
   int4 low = min(min(p, q), r), size = max(max(p, q), r) - low;
@@ -50,7 +50,7 @@ typedef struct Side {
 
 /* The side from (u0, v0) by (du, dv), with its value at column (pu, pv). On the line itself the perturbation decides:
    the axis that comes first has the larger one. */
-inline Side side_of(int u0, int v0, int du, int dv, int pu, int pv, int bits, bool u_first) {
+static inline Side side_of(int u0, int v0, int du, int dv, int pu, int pv, int bits, bool u_first) {
   bool on = u_first ? (dv != 0 ? dv < 0 : du > 0) : (du != 0 ? du > 0 : dv < 0);
   Side side;
   side.value = (long)du * (pv - v0) - (long)dv * (pu - u0) - (on ? 0 : 1);
@@ -65,7 +65,7 @@ typedef struct Plane {
   int base;
 } Plane;
 
-inline Plane plane_of(const Triangle *t, const Job *job, int pu, int pv) {
+static inline Plane plane_of(const Triangle *t, const Job *job, int pu, int pv) {
   long nu = (long)t->b.y * t->c.z - (long)t->b.z * t->c.y, nv = (long)t->b.z * t->c.x - (long)t->b.x * t->c.z;
   /* A centre on the plane lies beyond it if the perturbation moves it along the normal: its first component in the
      order x, y, z that is not 0 decides. */
@@ -86,20 +86,20 @@ inline Plane plane_of(const Triangle *t, const Job *job, int pu, int pv) {
 
 /* The first voxel of a column beyond the triangle. Within the triangle the quotient is below 2^13, so that an estimate
    in floats is off by less than one; the rest tells. */
-inline int crossing(const Plane *plane, long across) {
+static inline int crossing(const Plane *plane, long across) {
   int quotient = (int)floor((float)across / (float)plane->step);
   long rest = across - quotient * plane->step;
   return plane->base + 1 + quotient - (rest < 0 ? 1 : 0) + (rest >= plane->step ? 1 : 0);
 }
 
 /* First voxel whose centre lies at or beyond a coordinate. */
-inline int first_voxel(int at, int bits) {
+static inline int first_voxel(int at, int bits) {
   return (at + ((1 << bits) / 2 - 1)) >> bits;
 }
 
 /* The columns of the tile among which are all that the triangle covers: u in x and z, v in y and w; none if z <= x or
    w <= y. */
-inline int4 columns_of(const Triangle *t, const Job *job) {
+static inline int4 columns_of(const Triangle *t, const Job *job) {
   int u0 = t->a.x + min(min(t->b.x, t->c.x), 0), u1 = t->a.x + max(max(t->b.x, t->c.x), 0);
   int v0 = t->a.y + min(min(t->b.y, t->c.y), 0), v1 = t->a.y + max(max(t->b.y, t->c.y), 0);
   return (int4)(max(first_voxel(u0, job->bits), job->first[0]), max(first_voxel(v0, job->bits), job->first[1]),

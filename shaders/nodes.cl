@@ -19,7 +19,7 @@ __kernel void count_nodes(__global const ulong *codes, __global uint *counts, co
   }
 }
 
-inline bool begins_parent(__global const ulong *codes, uint i) {
+static inline bool begins_parent(__global const ulong *codes, uint i) {
   return i == 0 || (codes[i] >> 6) != (codes[i - 1] >> 6);
 }
 
@@ -51,7 +51,7 @@ __kernel void make_parents(__global ulong *codes, __global const uint *before, _
 
 enum { NO_NODE = 0x7fffffff };
 
-inline uint find_node(__global const ulong *codes, uint count, ulong code) {
+static inline uint find_node(__global const ulong *codes, uint count, ulong code) {
   uint low = 0, high = count;
   while (low < high) {
     uint middle = low + (high - low) / 2;
@@ -76,7 +76,7 @@ __kernel void link_nodes(__global const ulong *codes, __global uint *next, const
   next[level.x + i] = after | (follows ? 1u << 31 : 0);
 }
 
-inline uint child_at(uint x, uint y, uint z) {
+static inline uint child_at(uint x, uint y, uint z) {
   const uint spread[4] = {0, 1, 8, 9};
   return spread[x] | spread[y] << 1 | spread[z] << 2;
 }
@@ -113,7 +113,7 @@ __kernel void fold_nodes(__global const ulong *children, __global const uint *fi
 }
 
 /* Whether a node's parent says that it is inside. */
-inline uint is_node_inside(__global const ulong *codes, __global const uint *parents,
+static inline uint is_node_inside(__global const ulong *codes, __global const uint *parents,
                            __global const uchar *inside, uint node, uint above) {
   uint c = (uint)(codes[node] & 63);
   uint x = (c & 1) | (c >> 2 & 2), y = (c >> 1 & 1) | (c >> 3 & 2), z = (c >> 2 & 1) | (c >> 4 & 2);

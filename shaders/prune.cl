@@ -3,7 +3,7 @@
    beyond the dimensions are clear. */
 
 /* Coordinate of a code along an axis. */
-inline uint along(ulong code, uint axis) {
+static inline uint along(ulong code, uint axis) {
   uint at = 0;
   code >>= axis;
   for (uint b = 0; code != 0; b++, code >>= 3)
@@ -11,12 +11,12 @@ inline uint along(ulong code, uint axis) {
   return at;
 }
 
-inline uint coordinate_of(uint child, uint axis) {
+static inline uint coordinate_of(uint child, uint axis) {
   return (child >> axis & 1) | (child >> (axis + 2) & 2);
 }
 
 /* Voxels of a brick that the space has: so many along each axis. */
-inline ulong voxels_of(int x, int y, int z) {
+static inline ulong voxels_of(int x, int y, int z) {
   x = clamp(x, 0, 4);
   y = clamp(y, 0, 4);
   z = clamp(z, 0, 4);
@@ -82,7 +82,7 @@ __kernel void prune_nodes(__global const ulong *codes, __global const ulong *chi
   full[node] = is_full;
 }
 
-inline bool stays(ulong mixed, ulong full) {
+static inline bool stays(ulong mixed, ulong full) {
   return (mixed | full) != 0 && full != ~(ulong)0;
 }
 

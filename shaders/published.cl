@@ -26,11 +26,11 @@ typedef struct Sides {
   float normal[3][2], reach[3]; /* of each edge (3.6) and (3.7) */
 } Sides;
 
-inline float dot3(const float a[3], const float b[3]) {
+static inline float dot3(const float a[3], const float b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-inline Triangle triangle_of(__global const float *vertices, size_t i) {
+static inline Triangle triangle_of(__global const float *vertices, size_t i) {
   Triangle t;
   for (int c = 0; c < 3; c++)
     for (int a = 0; a < 3; a++)
@@ -39,12 +39,12 @@ inline Triangle triangle_of(__global const float *vertices, size_t i) {
 }
 
 /* The minimum corner of a voxel, by (3.1). */
-inline void corner_of(float p[3], const PublishedJob *job, const uint voxel[3]) {
+static inline void corner_of(float p[3], const PublishedJob *job, const uint voxel[3]) {
   for (int a = 0; a < 3; a++)
     p[a] = job->first[a] + job->size[a] * (float)voxel[a];
 }
 
-inline Plane plane_of(const Triangle *t, const PublishedJob *job) {
+static inline Plane plane_of(const Triangle *t, const PublishedJob *job) {
   Plane plane;
   float near[3], far[3];
   for (int a = 0; a < 3; a++) {
@@ -62,13 +62,13 @@ inline Plane plane_of(const Triangle *t, const PublishedJob *job) {
   return plane;
 }
 
-inline bool meets_plane(const Plane *plane, const float p[3]) {
+static inline bool meets_plane(const Plane *plane, const float p[3]) {
   float at = dot3(plane->normal, p);
   return (at + plane->near) * (at + plane->far) <= 0; /* (3.5) */
 }
 
 /* Seen along axis w; u and v follow it in turn, so that the edges run the same way round on all three planes. */
-inline Sides sides_of(const Triangle *t, const Plane *plane, const PublishedJob *job, int w) {
+static inline Sides sides_of(const Triangle *t, const Plane *plane, const PublishedJob *job, int w) {
   int u = w == 2 ? 0 : w + 1, v = w == 0 ? 2 : w - 1;
   float sign = plane->normal[w] >= 0 ? 1 : -1;
   Sides sides;
@@ -83,7 +83,7 @@ inline Sides sides_of(const Triangle *t, const Plane *plane, const PublishedJob 
   return sides;
 }
 
-inline bool meets_sides(const Sides *sides, const float p[3], int w) {
+static inline bool meets_sides(const Sides *sides, const float p[3], int w) {
   int u = w == 2 ? 0 : w + 1, v = w == 0 ? 2 : w - 1;
   for (int e = 0; e < 3; e++)
     if (!(sides->normal[e][0] * p[u] + sides->normal[e][1] * p[v] + sides->reach[e] >= 0)) /* (3.8) */
@@ -92,7 +92,7 @@ inline bool meets_sides(const Sides *sides, const float p[3], int w) {
 }
 
 /* The voxels of the grid whose closed boxes meet that of the triangle. */
-inline bool box_of(uint begin[3], uint end[3], const Triangle *t, const PublishedJob *job) {
+static inline bool box_of(uint begin[3], uint end[3], const Triangle *t, const PublishedJob *job) {
   bool is_some = true;
   for (int a = 0; a < 3; a++) {
     float low = fmin(fmin(t->at[0][a], t->at[1][a]), t->at[2][a]) - job->first[a];

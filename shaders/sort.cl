@@ -39,7 +39,7 @@ __kernel void scan_add(__global uint *data, __global const uint *sums, const uin
       data[from + block + i] += before;
 }
 
-inline uint digit_of(ulong key, uint shift) {
+static inline uint digit_of(ulong key, uint shift) {
   return (uint)(key >> shift) & (DIGITS - 1);
 }
 

@@ -19,12 +19,12 @@ typedef struct Cover {
   int4 area, tiles; /* columns; tiles: first along u and v, last along u and v */
 } Cover;
 
-inline Side moved(Side side, int u, int v) {
+static inline Side moved(Side side, int u, int v) {
   side.value += side.u_step * u + side.v_step * v;
   return side;
 }
 
-inline bool cover_of(Cover *cover, Triangle *t, const Job *job, __global const int4 *points,
+static inline bool cover_of(Cover *cover, Triangle *t, const Job *job, __global const int4 *points,
                      __global const uint *corners, __global const uint *parts, uint facet, uint roles) {
   if (((roles >> (parts[facet] >> ROLE_SHIFT)) & 1) == 0 || !load_triangle(t, job, points, corners, facet))
     return false;
@@ -44,13 +44,13 @@ inline bool cover_of(Cover *cover, Triangle *t, const Job *job, __global const i
 }
 
 /* Whether a side leaves any column of a tile: the one that lies farthest inside tells. */
-inline bool leaves_some(const Side *side, int u0, int v0, int u1, int v1) {
+static inline bool leaves_some(const Side *side, int u0, int v0, int u1, int v1) {
   long u = side->u_step > 0 ? u1 : u0, v = side->v_step > 0 ? v1 : v0;
   return side->value + side->u_step * u + side->v_step * v >= 0;
 }
 
 /* Columns of the area that a tile has, relative to the area's first. */
-inline bool meets_tile(const Cover *cover, const Job *job, int tu, int tv) {
+static inline bool meets_tile(const Cover *cover, const Job *job, int tu, int tv) {
   int u0 = max(job->first[0] + tu * TILE_U - cover->area.x, 0), v0 = max(job->first[1] + tv * TILE_V - cover->area.y, 0);
   int u1 = min(job->first[0] + (tu + 1) * TILE_U, cover->area.z) - 1 - cover->area.x;
   int v1 = min(job->first[1] + (tv + 1) * TILE_V, cover->area.w) - 1 - cover->area.y;
@@ -100,15 +100,16 @@ __kernel void list_tiles(__global const int4 *points, __global const uint *corne
       }
 }
 
-/* Where the list of each tile begins and ends; both are 0 for others. */
-__kernel void find_tiles(__global const ulong *keys, __global uint2 *lists, const uint count) {
+/* Where the list of each tile begins and ends; both are 0 for others. Two work-items write these, so that they are no
+   uint2, which a compiler may write as a whole. */
+__kernel void find_tiles(__global const ulong *keys, __global uint *lists, const uint count) {
   uint i = (uint)get_global_id(0);
   if (i >= count)
     return;
   if (i == 0 || keys[i - 1] != keys[i])
-    lists[keys[i]].x = i;
+    lists[2 * keys[i]] = i;
   if (i + 1 == count || keys[i + 1] != keys[i])
-    lists[keys[i]].y = i + 1;
+    lists[2 * keys[i] + 1] = i + 1;
 }
 
 /* A triangle as the columns of a tile ask it; numbers belong to the tile's first column. */
@@ -120,7 +121,7 @@ typedef struct Ready {
 
 /* Unites what a part has inside a column; the flips are cleared. `shape`: words of the column, valid bits of the
    last. */
-inline bool fold_column(__local uint *flips, __global uint *column, uint low, uint high, uint2 shape) {
+static inline bool fold_column(__local uint *flips, __global uint *column, uint low, uint high, uint2 shape) {
   uint carry = 0, some = 0;
   for (uint w = low; w < shape.x && (w <= high || carry != 0); w++) {
     uint x = flips[w * GROUP];

@@ -37,13 +37,13 @@ typedef struct Shape {
 } Shape;
 
 /* Takes a voxel of the triangle. */
-inline void set_voxel(const Voxels *voxels, const Shape *t, const SurfaceJob *job, int u, int v, int w);
+static inline void set_voxel(const Voxels *voxels, const Shape *t, const SurfaceJob *job, int u, int v, int w);
 
-inline int3 turned(int x, int y, int z, int w) {
+static inline int3 turned(int x, int y, int z, int w) {
   return w == 0 ? (int3)(y, z, x) : w == 1 ? (int3)(z, x, y) : (int3)(x, y, z);
 }
 
-inline long reach_of(bool thin, long a, long b, long c) {
+static inline long reach_of(bool thin, long a, long b, long c) {
   a = (long)abs(a);
   b = (long)abs(b);
   c = (long)abs(c);
@@ -51,7 +51,7 @@ inline long reach_of(bool thin, long a, long b, long c) {
 }
 
 /* False if it has no voxel of the tile, or is one of those that the CPU does. */
-inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points,
+static inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points,
                        __global const uint *corners, uint facet) {
   int4 a = points[corners[3 * facet]], b = points[corners[3 * facet + 1]], c = points[corners[3 * facet + 2]];
   a.x += job->shift;
@@ -94,7 +94,7 @@ inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *poi
 
 /* The side from (p0, q0) to (p1, q1), of a triangle with this component of the normal along the axis looked
    along, at voxel (p, q). */
-inline Line line_of(const SurfaceJob *job, int p0, int q0, int p1, int q1, long normal, int p, int q) {
+static inline Line line_of(const SurfaceJob *job, int p0, int q0, int p1, int q1, long normal, int p, int q) {
   long dp = p1 - p0, dq = q1 - q0, middle = (1 << job->bits) / 2;
   if (normal < 0) {
     dp = -dp;
@@ -108,13 +108,13 @@ inline Line line_of(const SurfaceJob *job, int p0, int q0, int p1, int q1, long 
   return line;
 }
 
-inline long value_at(const Line *line, int p, int q) {
+static inline long value_at(const Line *line, int p, int q) {
   return line->at + p * line->p_step + q * line->q_step;
 }
 
 /* Sets what the triangle has in some columns: of the rows from `v_first` on every `v_stride`-th, from u_begin
    to u_end - 1, all of them counted from the box's first. */
-inline void set_columns(const Shape *t, const SurfaceJob *job, int v_first, int v_stride, int u_begin,
+static inline void set_columns(const Shape *t, const SurfaceJob *job, int v_first, int v_stride, int u_begin,
                         int u_end, const Voxels *voxels) {
   int bits_below = job->bits, unit = 1 << bits_below, middle = unit / 2;
   Line along_u[3], along_v[3], along_w[3];
@@ -161,7 +161,7 @@ inline void set_columns(const Shape *t, const SurfaceJob *job, int v_first, int 
 }
 
 /* The share of one work-item where its group does a triangle: rows, and parts of rows where these are few. */
-inline void set_share(const Shape *t, const SurfaceJob *job, const Voxels *voxels) {
+static inline void set_share(const Shape *t, const SurfaceJob *job, const Voxels *voxels) {
   int3 size = t->end - t->begin;
   int parts = max(1, GROUP / size.y), share = (size.x + parts - 1) / parts;
   int row = (int)get_local_id(0) / parts, part = (int)get_local_id(0) % parts;

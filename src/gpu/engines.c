@@ -92,7 +92,8 @@ static vxm_status make_named(vxm_engine **out, vxm_context *context, const char 
     if (strcmp(name, drivers[d]->name) == 0)
       return make_first(out, context, drivers[d], drivers[d] == &vxm_gl_egl_device, options, error);
     if (drivers[d] == &vxm_gl_egl_device && strncmp(name, drivers[d]->name, length) == 0 &&
-        sscanf(name + length, "%2d%n", &index, &used) == 1 && name[length + (size_t)used] == '\0')
+        name[length] >= '0' && name[length] <= '9' && sscanf(name + length, "%2d%n", &index, &used) == 1 &&
+        name[length + (size_t)used] == '\0')
       return vxm_opengl_create(out, context, drivers[d], index, options, error);
   }
   return vxm_fail(error, VXM_ERROR_ARGUMENT,

@@ -82,9 +82,10 @@ vxm_status vxm_gl_download(vxm_opengl *engine, vxm_gl_buffer_id id, void *out, s
   gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
   gl->BindBuffer(target, engine->buffers[id].name);
   const void *data = gl->MapBufferRange(target, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
-  if (data)
+  if (data) {
     memcpy(out, data, bytes);
-  gl->UnmapBuffer(target);
+    gl->UnmapBuffer(target);
+  }
   vxm_status status = vxm_gl_check(gl, "opengl: reading a buffer", error);
   if (status == VXM_OK && !data)
     return vxm_fail(error, VXM_ERROR_MEMORY, "the OpenGL driver cannot map a buffer of %zu bytes", bytes);

@@ -38,7 +38,7 @@ static vxm_status find(vxm_opengl *engine, const vxm_gl_job *gl_job, vxm_error *
   vxm_gl_bind(engine, 3, VXM_GL_FLIPS);
   vxm_gl_bind(engine, 4, VXM_GL_LARGE);
   vxm_gl_dispatch(gl, gl_job->columns.facet_count, false);
-  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   return VXM_OK;
 }
 
@@ -99,6 +99,8 @@ vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_tile *tile, const vxm_pass
   engine->context.gl.Uniform4ui(0, (GLuint)first, (GLuint)count, (GLuint)tile->begin, (GLuint)tile->end);
   engine->context.gl.Uniform1ui(1, (GLuint)tile->window->middle_dim);
   vxm_gl_dispatch(&engine->context.gl, count, true);
+  /* What comes next clears the flips. */
+  engine->context.gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return VXM_OK;
 }
 
@@ -144,7 +146,7 @@ vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_tile *tile, const vxm_un
     begin = passes->facet_end[p];
     if (gl_job.columns.facet_count > 0)
       status = find(engine, &gl_job, error);
-    if (status == VXM_OK && gl_job.columns.facet_count > 0)
+    if (status == VXM_OK && gl_job.columns.facet_count > 0 && engine->can_pull)
       status = draw(engine, &gl_job, error);
     if (status == VXM_OK)
       status = flip_far(engine, &gl_job, job, passes, p, error);

@@ -11,14 +11,14 @@ typedef struct vxm_gl_driver vxm_gl_driver;
 typedef struct vxm_gl_context {
   const vxm_gl_driver *driver;
   void *handle, *display; /**< the driver's own */
-  void *before[4];        /**< what was current in the thread before */
+  void *before[4];        /**< what was current in the thread before; OSMesa leaves nothing current */
+  unsigned api_before;    /**< the same of EGL's interfaces */
   vxm_gl gl;
 } vxm_gl_context;
 
 /** How contexts are made by one library. */
 struct vxm_gl_driver {
   const char *name;     /**< such as "osmesa"; devices have their number behind it */
-  const char *packages; /**< of Debian, that bring it */
   /** How many of its kind there are, without making any: 0 or 1, or the number of devices. */
   int (*count)(vxm_error *error);
   /** Makes context number `index`, not yet current. */

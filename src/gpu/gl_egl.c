@@ -20,6 +20,7 @@ static struct {
   PFNEGLQUERYSTRINGPROC query_string;
   PFNEGLINITIALIZEPROC initialize;
   PFNEGLBINDAPIPROC bind_api;
+  PFNEGLQUERYAPIPROC query_api;
   PFNEGLCHOOSECONFIGPROC choose_config;
   PFNEGLCREATECONTEXTPROC create_context;
   PFNEGLDESTROYCONTEXTPROC destroy_context;
@@ -46,7 +47,7 @@ static void load(void) {
     return;
   egl.complete =
       find(&egl.getproc, "eglGetProcAddress") && find(&egl.query_string, "eglQueryString") &&
-      find(&egl.initialize, "eglInitialize") && find(&egl.bind_api, "eglBindAPI") &&
+      find(&egl.initialize, "eglInitialize") && find(&egl.bind_api, "eglBindAPI") && find(&egl.query_api, "eglQueryAPI") &&
       find(&egl.choose_config, "eglChooseConfig") && find(&egl.create_context, "eglCreateContext") &&
       find(&egl.destroy_context, "eglDestroyContext") && find(&egl.make_current, "eglMakeCurrent") &&
       find(&egl.current_context, "eglGetCurrentContext") &&
@@ -108,20 +109,16 @@ static int count_devices(vxm_error *error) {
   return devices(found, error);
 }
 
-/** Displays are shared by all contexts on them and stay initialized: ending one would end the others'. */
-static vxm_status create_on(vxm_gl_context *out, EGLenum platform, void *native, vxm_error *error) {
-  static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                      4,
-                                      EGL_CONTEXT_MINOR_VERSION,
-                                      3,
-                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                      EGL_NONE};
-  EGLDisplay display = egl.platform_display(platform, native, NULL);
-  if (display == EGL_NO_DISPLAY || !egl.initialize(display, NULL, NULL))
-    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "EGL cannot open the display (no driver for it?)");
-  if (!egl.bind_api(EGL_OPENGL_API))
-    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "EGL offers no OpenGL here");
+static EGLContext make_context(EGLDisplay display, bool tells_resets) {
+  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                               4,
+                               EGL_CONTEXT_MINOR_VERSION,
+                               3,
+                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                               tells_resets ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+                               EGL_LOSE_CONTEXT_ON_RESET,
+                               EGL_NONE};
   EGLConfig config = EGL_NO_CONFIG_KHR;
   EGLContext context = egl.create_context(display, config, EGL_NO_CONTEXT, attributes);
   if (context == EGL_NO_CONTEXT) { /* without EGL_KHR_no_config_context */
@@ -130,6 +127,20 @@ static vxm_status create_on(vxm_gl_context *out, EGLenum platform, void *native,
     if (egl.choose_config(display, any, &config, 1, &count) && count == 1)
       context = egl.create_context(display, config, EGL_NO_CONTEXT, attributes);
   }
+  return context;
+}
+
+/** Displays are shared by all contexts on them and stay initialized: ending one would end the others'. */
+static vxm_status create_on(vxm_gl_context *out, EGLenum platform, void *native, vxm_error *error) {
+  EGLDisplay display = egl.platform_display(platform, native, NULL);
+  if (display == EGL_NO_DISPLAY || !egl.initialize(display, NULL, NULL))
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "EGL cannot open the display (no driver for it?)");
+  if (!egl.bind_api(EGL_OPENGL_API))
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "EGL offers no OpenGL here");
+  /* Only a context that asks for it is told when the driver was reset. */
+  EGLContext context = make_context(display, true);
+  if (context == EGL_NO_CONTEXT)
+    context = make_context(display, false);
   if (context == EGL_NO_CONTEXT)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "EGL makes no context of OpenGL 4.3 here");
   out->display = display;
@@ -148,7 +159,7 @@ static vxm_status create_on_device(vxm_gl_context *out, int index, vxm_error *er
   int count = devices(found, error);
   if (count == 0)
     return VXM_ERROR_UNAVAILABLE;
-  if (index >= count)
+  if (index < 0 || index >= count)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "EGL has no device %d, only %d of them", index, count);
   return create_on(out, EGL_PLATFORM_DEVICE_EXT, found[index], error);
 }
@@ -158,6 +169,7 @@ static bool enter(vxm_gl_context *context) {
   context->before[1] = egl.current_surface(EGL_DRAW);
   context->before[2] = egl.current_surface(EGL_READ);
   context->before[3] = egl.current_context();
+  context->api_before = egl.query_api();
   return egl.bind_api(EGL_OPENGL_API) &&
          egl.make_current(context->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context->handle);
 }
@@ -168,6 +180,7 @@ static void leave(vxm_gl_context *context) {
     egl.make_current(before[0], before[1], before[2], before[3]);
   else
     egl.make_current(context->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  egl.bind_api(context->api_before);
 }
 
 static void destroy(vxm_gl_context *context) {
@@ -179,7 +192,6 @@ static vxm_gl_function getproc(const char *name) {
 }
 
 const vxm_gl_driver vxm_gl_egl_surfaceless = {.name = "egl-surfaceless",
-                                              .packages = "libegl1 libgl1-mesa-dri",
                                               .count = count_surfaceless,
                                               .create = create_surfaceless,
                                               .enter = enter,
@@ -188,7 +200,6 @@ const vxm_gl_driver vxm_gl_egl_surfaceless = {.name = "egl-surfaceless",
                                               .getproc = getproc};
 
 const vxm_gl_driver vxm_gl_egl_device = {.name = "egl-device",
-                                         .packages = "libegl1 libgl1-mesa-dri",
                                          .count = count_devices,
                                          .create = create_on_device,
                                          .enter = enter,

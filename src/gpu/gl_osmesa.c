@@ -107,7 +107,6 @@ static vxm_gl_function getproc(const char *name) {
 }
 
 const vxm_gl_driver vxm_gl_osmesa = {.name = "osmesa",
-                                     .packages = "libosmesa6",
                                      .count = count,
                                      .create = create,
                                      .enter = enter,

@@ -136,7 +136,10 @@ static vxm_status reserve_presence(slicing *s, int64_t width, int64_t height, in
                    (GLsizei)layers);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  return vxm_gl_check(gl, "opengl: making the presence buffer", error);
+  status = vxm_gl_check(gl, "opengl: making the presence buffer", error);
+  if (status != VXM_OK)
+    vxm_gl_presence_release(engine);
+  return status;
 }
 
 /* ---- Drawing ---- */
@@ -254,16 +257,22 @@ static vxm_status draw_slab(slicing *s, vxm_error *error) {
 /** The circular buffer, which is filled once: its start is chosen by the seed. */
 static vxm_status start_random(slicing *s, vxm_error *error) {
   vxm_opengl *engine = s->engine;
-  static float value[RANDOM];
   vxm_rng rng = {1}, start = {engine->options.seed};
   s->gl_job.random[0] = RANDOM;
   s->gl_job.random[1] = (uint32_t)vxm_rng_below(&start, RANDOM);
   s->gl_job.amount[0] = (float)engine->options.displacement;
   if (engine->buffers[VXM_GL_RANDOM].bytes > 0)
     return VXM_OK;
-  for (int i = 0; i < RANDOM; i++)
+  vxm_error local = VXM_ERROR_INIT;
+  float *value = vxm_alloc(engine->base.context, RANDOM, sizeof *value, &local);
+  for (int i = 0; value && i < RANDOM; i++)
     value[i] = (float)(2 * vxm_rng_unit(&rng) - 1);
-  return vxm_gl_upload(engine, VXM_GL_RANDOM, value, sizeof value, error);
+  vxm_status status =
+      value ? vxm_gl_upload(engine, VXM_GL_RANDOM, value, RANDOM * sizeof *value, &local) : local.code;
+  vxm_free(engine->base.context, value);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
 }
 
 static vxm_status merge(slicing *s, vxm_gl_buffer_id into, bool is_added, vxm_error *error) {

@@ -61,7 +61,7 @@ static vxm_status find(vxm_opengl *engine, const surface_job *job, vxm_error *er
     return status;
   bind(engine);
   vxm_gl_dispatch(gl, job->tile.facet_count, false);
-  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   return VXM_OK;
 }
 
@@ -103,7 +103,7 @@ static vxm_status draw_tile(vxm_opengl *engine, const vxm_surface *surface, cons
   gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_RESULT].name);
   gl->ClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
   status = find(engine, &job, error);
-  if (status == VXM_OK)
+  if (status == VXM_OK && engine->can_pull_late)
     status = draw(engine, &job, error);
   if (status == VXM_OK)
     status = vxm_gl_check(gl, "opengl: drawing a surface", error);

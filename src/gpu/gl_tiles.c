@@ -5,15 +5,18 @@
 
 /** Two tiles under way, their flips and four voters are held: no more than needed to keep a device busy. */
 static const int64_t tile_bytes_most = INT64_C(64) << 20;
+static const int64_t slice_bytes_most = INT64_C(256) << 20;
 
 vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
                               vxm_error *error) {
   int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
   int64_t most = vxm_min(engine->base.info.block_bytes, tile_bytes_most);
-  if (slice > engine->base.info.block_bytes / 2) /* the staging buffer may hold two */
+  /* The staging buffer may hold two; shaders count the bits of a tile in 32 bits. */
+  if (slice > engine->base.info.block_bytes / 2 || slice > slice_bytes_most)
     return vxm_fail(error, VXM_ERROR_RANGE,
-                    "one slice of the grid takes more memory than %s lets a shader use; use --engine cpu",
-                    engine->base.info.renderer);
+                    "one slice of the grid takes %lld MiB; %s can do %lld; use --engine cpu",
+                    (long long)(slice >> 20), engine->base.info.renderer,
+                    (long long)(vxm_min(engine->base.info.block_bytes / 2, slice_bytes_most) >> 20));
   *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
   return VXM_OK;
 }
@@ -60,7 +63,8 @@ vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error 
   GLenum waited;
   do
     waited = gl->ClientWaitSync(back->fence, GL_SYNC_FLUSH_COMMANDS_BIT, WAIT_NS);
-  while (waited == GL_TIMEOUT_EXPIRED);
+  while (waited == GL_TIMEOUT_EXPIRED &&
+         (!gl->GetGraphicsResetStatus || gl->GetGraphicsResetStatus() == GL_NO_ERROR));
   gl->DeleteSync(back->fence);
   back->fence = NULL;
   const vxm_tile *tile = &back->tile;

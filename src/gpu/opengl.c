@@ -32,7 +32,7 @@ static vxm_status read_limits(vxm_opengl *engine, vxm_error *error) {
   vxm_engine_info *info = &engine->base.info;
   const vxm_gl *gl = &engine->context.gl;
   GLint major = 0, minor = 0, viewport[2] = {0, 0}, side[2] = {0, 0}, layers = 0, bits = 0, blocks = 0,
-        late = 0;
+        late = 0, all = 0, texture = 0;
   copy_string(info->renderer, sizeof info->renderer, gl->GetString(GL_RENDERER));
   copy_string(info->version, sizeof info->version, gl->GetString(GL_VERSION));
   info->hardware = !is_software(info->renderer);
@@ -51,12 +51,15 @@ static vxm_status read_limits(vxm_opengl *engine, vxm_error *error) {
   gl->GetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &blocks);
   info->block_bytes = block;
   info->viewport = vxm_min(vxm_min(viewport[0], viewport[1]), vxm_min(side[0], side[1]));
+  gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+  info->viewport = vxm_min(info->viewport, texture);
   info->layers = layers;
   info->subpixel_bits = bits;
   info->int64 = has_extension(gl, "GL_ARB_gpu_shader_int64");
   gl->GetIntegerv(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, &late);
-  engine->can_pull = blocks >= 5;
-  engine->can_pull_late = blocks >= 1 && late >= 2;
+  gl->GetIntegerv(GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS, &all);
+  engine->can_pull = blocks >= 5 && all >= 9;
+  engine->can_pull_late = blocks >= 1 && late >= 3 && all >= 7;
   return vxm_gl_check(gl, "opengl: asking for limits", error);
 }
 
@@ -152,22 +155,30 @@ static vxm_status choose_attachment(vxm_opengl *engine, vxm_error *error) {
 
 /* ---- Making and freeing ---- */
 
+static void delete_objects(vxm_opengl *engine) {
+  const vxm_gl *gl = &engine->context.gl;
+  for (int p = 0; p < VXM_GL_PROGRAMS; p++)
+    if (engine->programs[p])
+      gl->DeleteProgram(engine->programs[p]);
+  for (int b = 0; b < VXM_GL_BUFFERS; b++)
+    vxm_gl_release(engine, (vxm_gl_buffer_id)b);
+  vxm_gl_presence_release(engine);
+  if (engine->framebuffer)
+    gl->DeleteFramebuffers(1, &engine->framebuffer);
+  if (engine->vertex_array)
+    gl->DeleteVertexArrays(1, &engine->vertex_array);
+}
+
 static void destroy(vxm_engine *base) {
   vxm_opengl *engine = vxm_opengl_of(base);
-  const vxm_gl *gl = &engine->context.gl;
   if (engine->context.handle && vxm_gl_enter(&engine->context, NULL) == VXM_OK) {
-    for (int p = 0; p < VXM_GL_PROGRAMS; p++)
-      if (engine->programs[p])
-        gl->DeleteProgram(engine->programs[p]);
-    for (int b = 0; b < VXM_GL_BUFFERS; b++)
-      vxm_gl_release(engine, (vxm_gl_buffer_id)b);
-    vxm_gl_presence_release(engine);
-    if (engine->framebuffer)
-      gl->DeleteFramebuffers(1, &engine->framebuffer);
-    if (engine->vertex_array)
-      gl->DeleteVertexArrays(1, &engine->vertex_array);
+    delete_objects(engine);
     vxm_gl_leave(&engine->context);
   }
+  /* Of a context that is lost, what it held is given back to the memory limit all the same. */
+  for (int b = 0; b < VXM_GL_BUFFERS; b++)
+    vxm_memory_give(base->context, engine->buffers[b].bytes);
+  vxm_memory_give(base->context, engine->presence.bytes);
   vxm_gl_context_destroy(&engine->context);
   vxm_far_destroy(&engine->far);
   vxm_far_surface_destroy(&engine->far_surface);
