@@ -96,10 +96,21 @@ __kernel void mark_box(__global uint *bits, __global const ulong *places, const 
   mark_cell(&cells, &job, first.xyz + (int3)(x, y, z));
 }
 
-__kernel void count_cells(__global const uint *bits, __global uint *before, const uint words) {
+__kernel void count_cells(__global const uint *bits, __global uint *before, __global uint *total, const uint words) {
+  __local uint all;
   uint w = (uint)get_global_id(0);
-  if (w < words)
-    before[w] = (uint)popcount(bits[w]);
+  if (get_local_id(0) == 0)
+    all = 0;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (w < words) {
+    uint count = (uint)popcount(bits[w]);
+    before[w] = count;
+    if (count > 0)
+      atomic_add(&all, count);
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (get_local_id(0) == 0 && all > 0 && atomic_add(&total[0], all) > ~0u - all)
+    atomic_inc(&total[1]);
 }
 
 /* Puts the bits of a cell's number where `axes` has ones. */

@@ -4,6 +4,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 vxm_status vxm_engine_create(vxm_engine **out, vxm_context *context, const char *name,
                              const vxm_engine_options *options, vxm_error *error) {
@@ -19,11 +20,17 @@ vxm_status vxm_engine_create(vxm_engine **out, vxm_context *context, const char 
                     "engine: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
   if ((unsigned)chosen.gl_method > VXM_GL_TETRA_VERTEX)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: method %d is unknown", (int)chosen.gl_method);
+  if ((unsigned)chosen.cl_method > VXM_CL_TILES)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: OpenCL method %d is unknown", (int)chosen.cl_method);
   if (chosen.slice_axis < 0 || chosen.slice_axis > 2)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: slice axis %d is none of 0, 1, 2", chosen.slice_axis);
   if (!(chosen.displacement >= 0) || !isfinite(chosen.displacement))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: displacement %g is not 0 or more",
                     chosen.displacement);
+  if (chosen.displacement > 0 &&
+      (strncmp(name, "opengl", strlen("opengl")) != 0 || chosen.gl_method == VXM_GL_COLUMNS))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "engine: only OpenGL's slicing methods displace vertices, not '%.40s'", name);
   return vxm_engines_make(out, context, name, &chosen, error);
 }
 

@@ -17,7 +17,6 @@
   X(CreateKernel)              \
   X(CreateProgramWithBinary)   \
   X(CreateProgramWithSource)   \
-  X(EnqueueCopyBuffer)         \
   X(EnqueueFillBuffer)         \
   X(EnqueueMapBuffer)          \
   X(EnqueueMarkerWithWaitList) \

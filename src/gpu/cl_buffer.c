@@ -88,10 +88,9 @@ vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_
   if (left / (size_t)buffers < (size_t)most)
     most = (int64_t)(left / (size_t)buffers);
   if (slice > bytes_most || slice > info->block_bytes)
-    return vxm_fail(error, VXM_ERROR_RANGE,
-                    "one slice of the grid takes %lld MiB; %s can do %lld; use --engine cpu",
-                    (long long)(slice >> 20), info->renderer,
-                    (long long)(vxm_min(info->block_bytes, bytes_most) >> 20));
+    return vxm_fail(
+        error, VXM_ERROR_RANGE, "one slice of the grid takes %lld MiB; %s can do %lld; use --engine cpu",
+        (long long)(slice >> 20), info->renderer, (long long)(vxm_min(info->block_bytes, bytes_most) >> 20));
   *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
   return VXM_OK;
 }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { PATH_BYTES = 1024 };
 
@@ -50,8 +51,10 @@ static bool folder_of(char out[PATH_BYTES]) {
   mkdir(out, 0700); /* what already is there stays as it is */
   strcat(out, "/voxmend");
   mkdir(out, 0700);
+  /* A program is code: nobody else may have put it there. */
   struct stat found;
-  return stat(out, &found) == 0 && S_ISDIR(found.st_mode);
+  return lstat(out, &found) == 0 && S_ISDIR(found.st_mode) && found.st_uid == geteuid() &&
+         (found.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
 static bool path_of(char out[PATH_BYTES + 64], const vxm_cl_key *key) {

@@ -86,29 +86,6 @@ static int find_named(const vxm_cl *cl, const vxm_cl_device *devices, int count,
   return -1;
 }
 
-int vxm_cl_device_find(const vxm_cl *cl, const vxm_cl_device *devices, int count, const char *choice,
-                       vxm_error *error) {
-  if (!choice || !*choice) {
-    for (int d = 0; d < count; d++)
-      if (type_of(cl, &devices[d]) & (CL_DEVICE_TYPE_GPU | CL_DEVICE_TYPE_ACCELERATOR))
-        return d;
-    return 0;
-  }
-  if (strspn(choice, "0123456789") == strlen(choice)) {
-    long number = strlen(choice) < 4 ? strtol(choice, NULL, 10) : VXM_CL_DEVICES_MAX;
-    if (number < count)
-      return (int)number;
-    vxm_fail(error, VXM_ERROR_ARGUMENT, "there is no OpenCL device %.20s: 'voxmend engines' lists 0 to %d",
-             choice, count - 1);
-    return -1;
-  }
-  int found = find_named(cl, devices, count, choice);
-  if (found < 0)
-    vxm_fail(error, VXM_ERROR_ARGUMENT,
-             "no OpenCL device or platform is called '%.60s'; 'voxmend engines' lists what there is", choice);
-  return found;
-}
-
 /** What is missing, or NULL. */
 static const char *lack_of(const vxm_cl *cl, cl_device_id device) {
   char version[TEXT_MAX], profile[TEXT_MAX];
@@ -125,6 +102,34 @@ static const char *lack_of(const vxm_cl *cl, cl_device_id device) {
     return "the driver has no compiler";
   return device_number(cl, device, CL_DEVICE_AVAILABLE, sizeof(cl_bool)) ? NULL
                                                                          : "the device is not available";
+}
+
+int vxm_cl_device_find(const vxm_cl *cl, const vxm_cl_device *devices, int count, const char *choice,
+                       vxm_error *error) {
+  if (!choice || !*choice) {
+    int first = -1;
+    for (int d = 0; d < count; d++) {
+      if (lack_of(cl, devices[d].id))
+        continue;
+      if (type_of(cl, &devices[d]) & (CL_DEVICE_TYPE_GPU | CL_DEVICE_TYPE_ACCELERATOR))
+        return d;
+      first = first < 0 ? d : first;
+    }
+    return first < 0 ? 0 : first;
+  }
+  if (strspn(choice, "0123456789") == strlen(choice)) {
+    long number = strlen(choice) < 4 ? strtol(choice, NULL, 10) : VXM_CL_DEVICES_MAX;
+    if (number < count)
+      return (int)number;
+    vxm_fail(error, VXM_ERROR_ARGUMENT, "there is no OpenCL device %.20s: 'voxmend engines' lists 0 to %d",
+             choice, count - 1);
+    return -1;
+  }
+  int found = find_named(cl, devices, count, choice);
+  if (found < 0)
+    vxm_fail(error, VXM_ERROR_ARGUMENT,
+             "no OpenCL device or platform is called '%.60s'; 'voxmend engines' lists what there is", choice);
+  return found;
 }
 
 void vxm_cl_device_describe(vxm_engine_info *out, const vxm_cl *cl, const vxm_cl_device *device, int number) {

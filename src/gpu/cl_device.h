@@ -20,7 +20,7 @@ int vxm_cl_devices(vxm_cl_device out[VXM_CL_DEVICES_MAX], const vxm_cl *cl, vxm_
  * Finds a device by its number, or by a part of its name or its platform's, in any case of letters; the first
  * one that fits.
  *
- * @param choice NULL: a GPU or accelerator if there is one, else the first device
+ * @param choice NULL: the first GPU or accelerator that will do, else the first device that will
  * @return its number; -1, and which there are in `error`
  */
 int vxm_cl_device_find(const vxm_cl *cl, const vxm_cl_device *devices, int count, const char *choice,

@@ -56,8 +56,8 @@ vxm_status vxm_cl_place_surface(vxm_opencl *engine, const vxm_surface *surface, 
 }
 
 vxm_status vxm_cl_passes_create(vxm_passes *out, vxm_opencl *engine, const vxm_window *window,
-                                const vxm_unite_job *job, vxm_error *error) {
-  vxm_status status = vxm_passes_create(out, engine->base.context, window, job, 0, error);
+                                const vxm_unite_job *job, size_t most, vxm_error *error) {
+  vxm_status status = vxm_passes_create(out, engine->base.context, window, job, 0, most, error);
   if (status == VXM_OK && out->order)
     status = vxm_cl_upload(engine, VXM_CL_ORDER, out->order, out->order_count * sizeof *out->order, error);
   if (status == VXM_OK && out->boxes)

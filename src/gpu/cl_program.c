@@ -8,7 +8,7 @@
 
 #include "shaders/kernels.inc"
 
-enum { FILES_MAX = 6, LOG_MAX = 400, GROUP_LEAST = 8 };
+enum { FILES_MAX = 6, LOG_MAX = 400 };
 
 static const char *const sources[VXM_CL_PROGRAMS][FILES_MAX] = {
     [VXM_CL_SOLID] = {"lattice.cl", "flips.cl", "flip_area.cl", "columns.cl", "fold.cl", "vote.cl"},
@@ -142,16 +142,21 @@ static void store_program(const vxm_opencl *engine, cl_program program, const vx
 /** The compiler's words in one line. */
 static vxm_status fail_build(const vxm_opencl *engine, cl_program program, const char *name,
                              vxm_error *error) {
-  static char log[1 << 16];
+  char shown[LOG_MAX] = "it gives no reason";
   size_t size = 0;
-  log[0] = '\0';
-  engine->cl->GetProgramBuildInfo(program, engine->device.id, CL_PROGRAM_BUILD_LOG, sizeof log, log, &size);
-  log[LOG_MAX] = '\0';
-  for (char *c = log; *c; c++)
+  engine->cl->GetProgramBuildInfo(program, engine->device.id, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
+  char *log = vxm_calloc(engine->base.context, size + 1, 1, NULL);
+  if (log &&
+      engine->cl->GetProgramBuildInfo(program, engine->device.id, CL_PROGRAM_BUILD_LOG, size, log, NULL) ==
+          CL_SUCCESS &&
+      *log)
+    snprintf(shown, sizeof shown, "%s", log);
+  vxm_free(engine->base.context, log);
+  for (char *c = shown; *c; c++)
     if ((unsigned char)*c < ' ')
       *c = ' ';
   return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "the OpenCL driver of %s refuses the kernels of %s: %s",
-                  engine->base.info.renderer, name, log);
+                  engine->base.info.renderer, name, shown);
 }
 
 static vxm_status compile(vxm_opencl *engine, vxm_cl_program_id id, vxm_error *error) {
@@ -218,9 +223,9 @@ vxm_status vxm_cl_ready(vxm_opencl *engine, vxm_cl_program_id id, vxm_error *err
     vxm_cl_programs_release(engine);
     while (engine->group > most)
       engine->group /= 2;
-    if (engine->group < GROUP_LEAST)
+    if (engine->group < VXM_CL_GROUP_LEAST)
       return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "%s runs groups of %zu work-items only; %d are needed",
-                      engine->base.info.renderer, most, GROUP_LEAST);
+                      engine->base.info.renderer, most, VXM_CL_GROUP_LEAST);
   }
   return VXM_OK;
 }

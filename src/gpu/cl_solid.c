@@ -39,27 +39,38 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
 
 /* ---- Unions ---- */
 
-/** Makes the words of a tile: by `passes`, or by tiles of columns where these are NULL. */
-static vxm_status make_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,
-                            const vxm_passes *passes, vxm_cl_buffer_id into, vxm_error *error) {
-  return passes->count > 0 ? vxm_cl_columns(engine, tile, job, passes, into, error)
-                           : vxm_cl_tiles(engine, tile, job, into, error);
-}
-
 /** Divides the parts into passes, or into none where tiles of columns are the better way. */
 static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job,
                          vxm_passes *passes, vxm_error *error) {
   vxm_cl_method method = vxm_cl_can_tile(engine, window, job) ? engine->options.cl_method : VXM_CL_TRIANGLES;
   if (method == VXM_CL_TILES)
     return VXM_OK;
-  vxm_status status = vxm_cl_passes_create(passes, engine, window, job, error);
-  if (status == VXM_OK && method == VXM_CL_AUTO && passes->count > PASSES_MOST)
-    passes->count = 0;
-  return status;
+  return vxm_cl_passes_create(passes, engine, window, job, method == VXM_CL_AUTO ? PASSES_MOST : SIZE_MAX,
+                              error);
+}
+
+/** Makes the words of a tile: by `passes`, or by tiles of columns where there are none. */
+static vxm_status make_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                            vxm_passes *passes, vxm_cl_buffer_id into, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
+  if (passes->count == 0) {
+    status = vxm_cl_tiles(engine, tile, job, into, &local);
+    if (status == VXM_OK)
+      return VXM_OK;
+    if (status != VXM_ERROR_RANGE || engine->options.cl_method == VXM_CL_TILES) {
+      if (error)
+        *error = local;
+      return status;
+    }
+    vxm_passes_destroy(passes); /* the lists of tiles are too long: what nobody asked for is left again */
+    status = vxm_cl_passes_create(passes, engine, tile->window, job, SIZE_MAX, error);
+  }
+  return status == VXM_OK ? vxm_cl_columns(engine, tile, job, passes, into, error) : status;
 }
 
 static vxm_status unite_tiles(vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job,
-                              const vxm_passes *passes, vxm_error *error) {
+                              vxm_passes *passes, vxm_error *error) {
   vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_RESULT2}};
   int64_t slices = 1;
   int which = 0;

@@ -207,7 +207,7 @@ static vxm_status prepare(making *m, const vxm_space *space, vxm_error *error) {
                              .part_end = m->job->part_end,
                              .roles = m->job->roles,
                              .touched = m->job->touched};
-  vxm_status status = vxm_cl_passes_create(&m->passes, engine, &window, &job, error);
+  vxm_status status = vxm_cl_passes_create(&m->passes, engine, &window, &job, SIZE_MAX, error);
   if (status == VXM_OK)
     status = vxm_cl_place_parts(engine, job.facets, error);
   if (status == VXM_OK)

@@ -6,9 +6,9 @@
 #include "gpu/cl_sort.h"
 
 enum {
-  CELL_BITS = 4,    /**< a cell is 2^4 voxels wide */
-  FEW_COLUMNS = 64, /**< of cells, of a facet that one work-item does */
-  NODES_MOST = 0x7ffffffe
+  CELL_BITS = 4,        /**< a cell is 2^4 voxels wide */
+  FEW_COLUMNS = 64,     /**< of cells, of a facet that one work-item does */
+  CELLS_MOST = 1 << 25, /**< so that their bricks are counted in 32 bits, and nodes of all levels in 31 */
 };
 
 vxm_status vxm_cl_stage_end(vxm_opencl *engine, size_t stage, double *since, vxm_error *error) {
@@ -159,18 +159,26 @@ static vxm_status mark(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_sp
 
 /** Counts the cells before each word; all of them are level 0. */
 static vxm_status count_cells(vxm_opencl *engine, vxm_cl_tree *tree, vxm_error *error) {
+  cl_uint total[2] = {0, 0}; /* the low and the high half */
   vxm_status status =
       vxm_cl_reserve(engine, VXM_CL_BEFORE, ((size_t)tree->words + 1) * sizeof(cl_uint), error);
   if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof total, error);
+  if (status == VXM_OK)
     status = vxm_cl_run(engine, VXM_CL_COUNT_CELLS, tree->words,
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_CELLS), VXM_CL_MEM(engine, VXM_CL_BEFORE),
-                                    VXM_CL_VALUE(tree->words)),
+                                    VXM_CL_MEM(engine, VXM_CL_TALLY), VXM_CL_VALUE(tree->words)),
                         error);
   if (status == VXM_OK)
-    status = vxm_cl_scan(engine, VXM_CL_BEFORE, tree->words, error);
+    status = vxm_cl_download(engine, VXM_CL_TALLY, 0, total, sizeof total, error);
+  if (status == VXM_OK && (total[1] > 0 || total[0] > CELLS_MOST))
+    return vxm_fail(
+        error, VXM_ERROR_RANGE,
+        "an octree of %llu cells of 16 x 16 x 16 voxels is too large for OpenCL; use --engine cpu",
+        (unsigned long long)total[1] << 32 | total[0]);
   if (status == VXM_OK)
-    status = vxm_cl_download(engine, VXM_CL_BEFORE, tree->words * sizeof(cl_uint), &tree->level[0].count,
-                             sizeof(cl_uint), error);
+    status = vxm_cl_scan(engine, VXM_CL_BEFORE, tree->words, error);
+  tree->level[0].count = total[0];
   return status;
 }
 
@@ -200,10 +208,6 @@ static vxm_status count_nodes(vxm_opencl *engine, vxm_cl_tree *tree, vxm_error *
     tree->level[l] = (vxm_cl_level){(cl_uint)total, counts[l]};
     total += counts[l];
   }
-  if (status == VXM_OK && total > NODES_MOST)
-    return vxm_fail(error, VXM_ERROR_RANGE,
-                    "an octree of %llu nodes is too large for OpenCL; use --engine cpu",
-                    (unsigned long long)total);
   tree->node_count = (cl_uint)total;
   return status;
 }

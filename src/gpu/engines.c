@@ -189,10 +189,13 @@ static void list_opencl(vxm_engine_info *out, int64_t capacity, int64_t *count, 
     if (*count >= capacity)
       continue;
     vxm_cl_device_describe(&out[*count], cl, &devices[d], d);
-    if (vxm_opencl_create(&engine, context, cl, &devices[d], d, &options, &local) == VXM_OK) {
+    vxm_status status = vxm_opencl_create(&engine, context, cl, &devices[d], d, &options, &local);
+    if (status == VXM_OK) {
+      status = vxm_cl_ready(vxm_opencl_of(engine), VXM_CL_SOLID, &local);
       drop(engine, context);
-      continue;
     }
+    if (status == VXM_OK)
+      continue;
     out[*count].available = false;
     snprintf(out[*count].note, sizeof out->note, "%.250s", local.text);
   }
@@ -255,8 +258,11 @@ static vxm_status make(vxm_engine **out, vxm_context *context, const char *name,
         "lists",
         name);
   vxm_status status = make_opencl(out, context, NULL, true, options, &reason);
-  if (status == VXM_ERROR_UNAVAILABLE && !options->device)
-    status = make_opengl(out, context, NULL, true, options, &reason);
+  if (status == VXM_ERROR_UNAVAILABLE && !options->device) {
+    vxm_error other = VXM_ERROR_INIT;
+    status = make_opengl(out, context, NULL, true, options, &other);
+    snprintf(reason.text + strlen(reason.text), sizeof reason.text - strlen(reason.text), "; %s", other.text);
+  }
   if (status == VXM_ERROR_ARGUMENT) /* a device that is not there */
     return vxm_fail(error, status, "%s", reason.text);
   if (status == VXM_OK)

@@ -18,7 +18,7 @@ typedef struct vxm_gl_context {
 
 /** How contexts are made by one library. */
 struct vxm_gl_driver {
-  const char *name;     /**< such as "osmesa"; devices have their number behind it */
+  const char *name; /**< such as "osmesa"; devices have their number behind it */
   /** How many of its kind there are, without making any: 0 or 1, or the number of devices. */
   int (*count)(vxm_error *error);
   /** Makes context number `index`, not yet current. */

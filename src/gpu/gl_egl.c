@@ -47,10 +47,10 @@ static void load(void) {
     return;
   egl.complete =
       find(&egl.getproc, "eglGetProcAddress") && find(&egl.query_string, "eglQueryString") &&
-      find(&egl.initialize, "eglInitialize") && find(&egl.bind_api, "eglBindAPI") && find(&egl.query_api, "eglQueryAPI") &&
-      find(&egl.choose_config, "eglChooseConfig") && find(&egl.create_context, "eglCreateContext") &&
-      find(&egl.destroy_context, "eglDestroyContext") && find(&egl.make_current, "eglMakeCurrent") &&
-      find(&egl.current_context, "eglGetCurrentContext") &&
+      find(&egl.initialize, "eglInitialize") && find(&egl.bind_api, "eglBindAPI") &&
+      find(&egl.query_api, "eglQueryAPI") && find(&egl.choose_config, "eglChooseConfig") &&
+      find(&egl.create_context, "eglCreateContext") && find(&egl.destroy_context, "eglDestroyContext") &&
+      find(&egl.make_current, "eglMakeCurrent") && find(&egl.current_context, "eglGetCurrentContext") &&
       find(&egl.current_display, "eglGetCurrentDisplay") &&
       find(&egl.current_surface, "eglGetCurrentSurface");
   if (!egl.complete)

@@ -60,7 +60,7 @@ vxm_status vxm_gl_passes_create(vxm_passes *out, vxm_opengl *engine, const vxm_w
   /* Slices move points, and the apex in any case a little. */
   double move = engine->options.displacement;
   int64_t margin = engine->base.wants_apexes ? (int64_t)(move < 1 << 20 ? move : 1 << 20) + 1 : 0;
-  vxm_status status = vxm_passes_create(out, engine->base.context, window, job, margin, error);
+  vxm_status status = vxm_passes_create(out, engine->base.context, window, job, margin, SIZE_MAX, error);
   if (status == VXM_OK && out->order)
     status = vxm_gl_upload(engine, VXM_GL_ORDER, out->order, out->order_count * sizeof *out->order, error);
   if (status == VXM_OK && out->boxes)

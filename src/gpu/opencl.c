@@ -49,6 +49,9 @@ static vxm_status start(vxm_opencl *engine, vxm_error *error) {
   engine->group = 1;
   while (2 * engine->group <= GROUP_MOST && 2 * (int64_t)engine->group <= info->work_group)
     engine->group *= 2;
+  if (engine->group < VXM_CL_GROUP_LEAST)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "%s runs groups of %lld work-items only; %d are needed",
+                    info->renderer, (long long)info->work_group, VXM_CL_GROUP_LEAST);
   return VXM_OK;
 }
 

@@ -7,6 +7,9 @@
 #include "gpu/far.h"
 #include "voxel/engine.h"
 
+/** Work-items that every group can have. */
+enum { VXM_CL_GROUP_LEAST = 8 };
+
 /** Programs: each is compiled when one of its kernels is first asked for. */
 typedef enum vxm_cl_program_id {
   VXM_CL_SOLID = 0, /**< triangle by triangle */
@@ -235,6 +238,6 @@ vxm_status vxm_cl_place_surface(vxm_opencl *engine, const vxm_surface *surface, 
 /** Divides the facets of a job's parts, and brings the lists to the device. Destroy with vxm_passes_destroy,
  * also after a failure. */
 vxm_status vxm_cl_passes_create(vxm_passes *out, vxm_opencl *engine, const vxm_window *window,
-                                const vxm_unite_job *job, vxm_error *error);
+                                const vxm_unite_job *job, size_t most, vxm_error *error);
 
 #endif

@@ -4,13 +4,18 @@
 
 #include <string.h>
 
-enum { CELLS = 32 /**< along each axis: one bit of a word for each along bits */ };
+enum {
+  CELLS = 32, /**< along each axis: one bit of a word for each along bits */
+  PARTS_PER_PROGRESS = 1024
+};
 
 typedef struct division {
   vxm_context *context;
   const vxm_window *window;
   const vxm_unite_job *job;
   int64_t margin;
+  size_t most; /**< passes */
+  bool is_over;
   vxm_pass_box *boxes;              /**< of each part */
   uint32_t (*taken)[CELLS * CELLS]; /**< cells of each pass in which a part has its box */
   size_t taken_capacity;
@@ -107,6 +112,9 @@ static vxm_status find_pass(division *d, size_t index, vxm_error *error) {
   uint32_t mask = cells_of(d, b, first, last);
   while (pass < passes->count && !is_free(d->taken[pass], mask, first, last))
     pass++;
+  d->is_over = pass == d->most;
+  if (d->is_over)
+    return VXM_OK;
   if (pass == passes->count) {
     vxm_status status =
         vxm_grow(d->context, (void **)&d->taken, &d->taken_capacity, pass + 1, sizeof *d->taken, error);
@@ -198,12 +206,16 @@ static vxm_status divide(division *d, vxm_error *error) {
   d->boxes = passes->pass_of ? vxm_alloc(context, parts, sizeof *d->boxes, error) : NULL;
   if (!d->boxes)
     return VXM_ERROR_MEMORY;
-  for (size_t i = 0; i < parts && status == VXM_OK; i++) {
+  for (size_t i = 0; i < parts && status == VXM_OK && !d->is_over; i++) {
     d->boxes[i] = box_of(d, d->job->part_begin + i);
     status = find_pass(d, i, error);
+    if (status == VXM_OK && i % PARTS_PER_PROGRESS == 0) /* many that meet take long */
+      status = vxm_progress(context, d->job->phase, 0.0, error);
   }
-  if (status != VXM_OK)
+  if (status != VXM_OK || d->is_over) {
+    passes->count = 0;
     return status;
+  }
   passes->count = passes->count > 0 ? passes->count : 1;
   passes->facet_end = vxm_alloc(context, passes->count, sizeof *passes->facet_end, error);
   passes->box_end =
@@ -215,10 +227,11 @@ static vxm_status divide(division *d, vxm_error *error) {
 }
 
 vxm_status vxm_passes_create(vxm_passes *out, vxm_context *context, const vxm_window *window,
-                             const vxm_unite_job *job, int64_t margin, vxm_error *error) {
+                             const vxm_unite_job *job, int64_t margin, size_t most, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   *out = (vxm_passes){.context = context, .part_begin = job->part_begin};
-  division d = {.context = context, .window = window, .job = job, .margin = margin, .passes = out};
+  division d = {
+      .context = context, .window = window, .job = job, .margin = margin, .most = most, .passes = out};
   vxm_status status = divide(&d, &local);
   vxm_free(context, d.boxes);
   vxm_free(context, d.taken);

@@ -28,10 +28,14 @@ typedef struct vxm_passes {
   size_t *box_end; /**< of each pass: the place behind its last box */
 } vxm_passes;
 
-/** Divides the facets of a job's parts. `margin`: voxels by which an engine moves points at most. Destroy
- * with vxm_passes_destroy, also after a failure. */
+/**
+ * Divides the facets of a job's parts. Destroy with vxm_passes_destroy, also after a failure.
+ *
+ * @param margin voxels by which an engine moves points at most
+ * @param most   where more passes than that were needed `count` is 0, and there are no lists
+ */
 vxm_status vxm_passes_create(vxm_passes *out, vxm_context *context, const vxm_window *window,
-                             const vxm_unite_job *job, int64_t margin, vxm_error *error);
+                             const vxm_unite_job *job, int64_t margin, size_t most, vxm_error *error);
 void vxm_passes_destroy(vxm_passes *passes);
 
 #endif

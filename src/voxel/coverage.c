@@ -161,7 +161,7 @@ static vxm_status count_elsewhere(reduction *r, vxm_engine *engine, const vxm_wi
   vxm_status status = engine->ops->count(engine, counts, fine, r->n, &local);
   if (status == VXM_OK)
     r->counts = counts;
-  else if (vxm_engine_gives_way(engine, &local))
+  else if (status == VXM_ERROR_RANGE || vxm_engine_gives_way(engine, &local)) /* the bits are here already */
     return VXM_OK;
   else if (error)
     *error = local;

@@ -206,7 +206,7 @@ static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_
   vxm_status status = decide ? vxm_run_buffer(run, VXM_BUFFER_MASK, window, &mask, error) : VXM_OK;
   if (status == VXM_OK && ops_of(run) && ops_of(run)->elect)
     status = elect_elsewhere(run, window, tetra, rule, mask.words, &tally, error);
-  else if (status == VXM_OK && end - begin == 1) {
+  else if (status == VXM_OK && end - begin == 1 && !run->no_poll) {
     status = poll_part(run, window, begin, tetra, rule, mask.words, &tally, error);
     if (tally.added && run->touched)
       atomic_store_explicit(&run->touched[begin], 1, memory_order_relaxed);
@@ -277,7 +277,7 @@ static vxm_status fill(vxm_run *run, const vxm_window *window, vxm_error *error)
     return fill_by_one(run, window, error);
   /* Parts that are closed, or closed by caps: one axis settles them. Without any, a poll starts afresh. */
   vxm_status status = VXM_OK;
-  if (vxm_voted_begin(shape) > 0 || shape->facets.split.part_count != 1 || ops_of(run))
+  if (vxm_voted_begin(shape) > 0 || shape->facets.split.part_count != 1 || ops_of(run) || run->no_poll)
     status = vxm_run_unite(run, window, window->layout.fast, 0, vxm_voted_begin(shape),
                            VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
   if (status == VXM_OK)
@@ -292,11 +292,13 @@ vxm_status vxm_solid_fill(vxm_run *run, const vxm_window *window, vxm_error *err
   bool added = run->added;
   vxm_error local = VXM_ERROR_INIT;
   bool elsewhere = ops_of(run) != NULL;
+  run->no_poll &= window->begin > 0;
   vxm_status status = fill(run, window, &local);
   if (status != VXM_OK && elsewhere && vxm_engine_gives_way(run->engine, &local)) {
     run->contested = contested;
     run->escalated = escalated;
     run->added = added;
+    run->no_poll = window->begin > 0;
     status = fill(run, window, &local);
   }
   if (status != VXM_OK && error)

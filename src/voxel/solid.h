@@ -47,7 +47,8 @@ typedef struct vxm_run {
   atomic_uchar *touched;           /**< per part: whether it sets a voxel; NULL = not asked */
   uint8_t *confidence;             /**< of the whole grid, x fastest; NULL = not asked */
   int64_t contested, escalated;
-  bool added; /**< whether the open parts set a voxel */
+  bool added;   /**< whether the open parts set a voxel */
+  bool no_poll; /**< an engine gave way behind the first window, so that a poll has no state to go on from */
 } vxm_run;
 
 /** Whether holes are capped: only where no rule of the papers was asked for. */
