@@ -261,7 +261,9 @@ static vxm_status make(vxm_engine **out, vxm_context *context, const char *name,
   if (status == VXM_ERROR_UNAVAILABLE && !options->device) {
     vxm_error other = VXM_ERROR_INIT;
     status = make_opengl(out, context, NULL, true, options, &other);
-    snprintf(reason.text + strlen(reason.text), sizeof reason.text - strlen(reason.text), "; %s", other.text);
+    vxm_error both = VXM_ERROR_INIT;
+    vxm_fail(&both, other.code, "%.200s; %.200s", reason.text, other.text);
+    reason = both;
   }
   if (status == VXM_ERROR_ARGUMENT) /* a device that is not there */
     return vxm_fail(error, status, "%s", reason.text);
