@@ -18,8 +18,7 @@ vxm_space vxm_desk_space(int64_t resolution) {
 
 vxm_status vxm_desk_create(vxm_desk *out, vxm_context *context, bool alone, vxm_error *error) {
   *out = (vxm_desk){0};
-  vxm_status status = alone ? vxm_context_child(&out->context, context, error)
-                            : vxm_context_acquire(&out->context, context, error);
+  vxm_status status = vxm_context_child(&out->context, context, alone, error);
   out->twin.context = out->context;
   return status;
 }
