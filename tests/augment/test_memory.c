@@ -68,7 +68,7 @@ static vxm_mesh *make_torus(vxm_context *context, int missing, int sieve) {
   return mesh;
 }
 
-enum { BATCH = 24, RESOLUTION = 40 };
+enum { BATCH = 24, RESOLUTION = 24 };
 
 static void run(vxm_sampler *sampler, void *out, uint32_t first, vxm_voxels voxels) {
   vxm_variant variants[BATCH];
