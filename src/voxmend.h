@@ -593,22 +593,29 @@ VXM_API vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, cons
 
 /* ---- Engines: what makes the bits ---- */
 
-/** The CPU, or a context of a graphics driver. */
+/** The CPU, a context of a graphics driver, or an OpenCL device. */
 typedef struct vxm_engine vxm_engine;
 
 /** What is known of an engine. */
 typedef struct vxm_engine_info {
-  char name[48];       /**< such as "cpu" or "opengl:osmesa" */
+  char name[48];       /**< such as "cpu", "opengl:osmesa" or "opencl:0" */
   bool available;      /**< it can be made and works */
   bool hardware;       /**< not a renderer in software */
   char renderer[128];  /**< as the driver says; "" if there is none */
-  char version[128];   /**< of OpenGL and of the driver */
+  char version[128];   /**< of OpenGL or OpenCL, and of the driver */
   int64_t block_bytes; /**< largest buffer that a shader may use; larger grids are made in tiles */
   int64_t viewport;    /**< columns that one pass draws along an axis; more are drawn in several */
   int64_t layers;      /**< of an array texture: slices drawn at a time */
   int subpixel_bits;   /**< of the rasterizer */
   bool int64;          /**< shaders have 64-bit integers, which VXM_GL_COLUMNS and the surface need */
   char attachment[16]; /**< format in which the XOR self-test passed: "r8ui", "r8" or "image"; "" = none */
+  char platform[128];  /**< of OpenCL; "" for others, as all below is 0 */
+  char driver[128];    /**< version of the OpenCL driver */
+  int compute_units;
+  int64_t global_bytes; /**< memory of the device */
+  int64_t local_bytes;  /**< memory that a work-group shares */
+  int64_t work_group;   /**< most work-items of a group */
+  bool int64_atomics;   /**< not needed */
   char note[256];      /**< why it is not available, or why another one was taken */
 } vxm_engine_info;
 
@@ -619,6 +626,13 @@ typedef enum vxm_gl_method {
   VXM_GL_TETRA_VERTEX /**< the same by a vertex program (Rueda et al.) */
 } vxm_gl_method;
 
+/** How an engine of OpenCL makes solids; both have the bits of the CPU (Schwarz & Seidel 2010, section 4). */
+typedef enum vxm_cl_method {
+  VXM_CL_AUTO = 0,  /**< by tiles where many triangles share few columns, or many parts meet; else by triangles */
+  VXM_CL_TRIANGLES, /**< a work-item for each triangle, which flips bits by atomic XOR; then a prefix XOR */
+  VXM_CL_TILES      /**< triangles sorted by tiles of columns, a work-group for each tile, no atomics */
+} vxm_cl_method;
+
 typedef struct vxm_engine_options {
   uint32_t version; /**< 1 */
   vxm_gl_method gl_method;
@@ -626,10 +640,13 @@ typedef struct vxm_engine_options {
   double displacement; /**< slicing methods: each vertex is moved at random by up to so many voxels along each
                           axis (Ogayar et al., section III-B1) */
   uint64_t seed;       /**< of these moves */
+  vxm_cl_method cl_method;
+  const char *device; /**< OpenCL: the number of a device, or a part of its name or its platform's; NULL = a GPU
+                         or accelerator, else the first */
 } vxm_engine_options;
 
 #define VXM_ENGINE_OPTIONS_INIT \
-  { 1, VXM_GL_COLUMNS, 1, 0.0, 0 }
+  { 1, VXM_GL_COLUMNS, 1, 0.0, 0, VXM_CL_AUTO, NULL }
 
 /**
  * Makes an engine. One thread at a time may use it; many models may, one after another.

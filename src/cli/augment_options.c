@@ -118,22 +118,6 @@ static int read_mirror(cli_run *cli, augment_request *out, const char *value) {
   return CLI_END;
 }
 
-static int read_voxelize_option(cli_run *cli, augment_request *out, int key, const char *value) {
-  static const char *const modes[] = {"solid", "surface", "both", NULL};
-  static const char *const surfaces[] = {"conservative", "thin", "shell26", "shell18", "shell6", NULL};
-  int choice = cli_read_choice(value, key == KEY_MODE ? modes : surfaces);
-  if (choice < 0 && key == KEY_MODE)
-    return cli_usage(cli, "--mode '%s' is none of solid, surface, both", value);
-  if (choice < 0)
-    return cli_usage(cli, "--surface '%s' is none of conservative, thin, shell26, shell18, shell6", value);
-  if (key == KEY_MODE)
-    out->sampler.voxelize.mode = (vxm_mode)choice;
-  else
-    out->sampler.voxelize.surface = (vxm_surface_kind)choice;
-  out->surface |= key == KEY_SURFACE;
-  return CLI_END;
-}
-
 static int read_option(cli_run *cli, augment_request *out, int key, const char *value) {
   const int64_t most = UINT32_MAX;
   int64_t number = 0;
@@ -190,14 +174,15 @@ static int read_option(cli_run *cli, augment_request *out, int key, const char *
     return CLI_END;
   case KEY_WELD:
     out->repair_options = true;
-    if (!cli_read_weld(&out->repair, value))
-      return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
-    return CLI_END;
+    return cli_read_weld(cli, &out->repair, value);
   case KEY_KEEP:
     out->repair_options = out->repair.keep_duplicates = true;
     return CLI_END;
+  case KEY_MODE:
+    return cli_read_mode(cli, &out->sampler.voxelize, value);
   default:
-    return read_voxelize_option(cli, out, key, value);
+    out->surface = true;
+    return cli_read_surface(cli, &out->sampler.voxelize, value);
   }
 }
 
@@ -209,12 +194,12 @@ bool augment_is_stream(const augment_request *given) {
 static int check_format(cli_run *cli, augment_request *given) {
   static const char *const files[] = {"rle", "raw", "binvox", "npy", "nrrd", NULL};
   static const char *const streams[] = {"bits", "uint8", "float32", NULL};
+  char list[CLI_LIST_MAX];
   bool stream = augment_is_stream(given);
   int choice = given->format ? cli_read_choice(given->format, stream ? streams : files) : 0;
   if (choice < 0)
-    return cli_usage(cli, "--format '%s' is none of %s", given->format,
-                     stream ? "bits, uint8, float32, which a stream has"
-                            : "rle, raw, binvox, npy, nrrd, which files have");
+    return cli_usage(cli, "--format '%s' is none of %s, which %s", given->format,
+                     cli_list(list, stream ? streams : files), stream ? "a stream has" : "files have");
   given->format = stream ? streams[choice] : files[choice];
   given->voxels = (vxm_voxels)choice;
   if (stream && cli->json)
@@ -234,13 +219,9 @@ static int check_conflicts(cli_run *cli, const augment_request *given) {
     return cli_usage(cli, "--fill leaves no room to rotate in; leave out --rotate");
   if (given->noise && sampler->displace == 0)
     return cli_usage(cli, "--noise goes with --displace");
-  if (given->surface && sampler->voxelize.mode == VXM_MODE_SOLID)
-    return cli_usage(cli, "--surface goes with --mode surface or both");
-  if (sampler->voxelize.mode == VXM_MODE_BOTH && sampler->voxelize.surface >= VXM_SURFACE_SHELL26)
-    return cli_usage(cli, "a shell is a part of the solid; with --mode both leave out --surface");
-  if (given->no_repair && given->repair_options)
-    return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
-  return CLI_END;
+  if (cli_check_surface(cli, &sampler->voxelize, given->surface) == CLI_STOP)
+    return CLI_STOP;
+  return cli_check_repair(cli, given->no_repair, given->repair_options);
 }
 
 int augment_read_arguments(cli_run *cli, augment_request *out) {

@@ -18,6 +18,7 @@ enum {
 typedef struct bench_plan {
   const char *path, *plot;
   char engines[BENCH_ENGINES_MAX][48]; /**< who makes the grids; the first one does what others cannot, too */
+  vxm_engine_options engine_options[BENCH_ENGINES_MAX]; /**< of each: how it is to make solids */
   int engine_count;
   int64_t resolutions[BENCH_LIST_MAX], threads[BENCH_LIST_MAX]; /**< ascending, none twice */
   int resolution_count, thread_count;

@@ -12,8 +12,12 @@
 vxm_status bench_stage_open(bench_stage *stage, const bench_plan *plan) {
   vxm_error *error = &stage->cli->error;
   vxm_status status = VXM_OK;
-  for (int e = 0; e < plan->engine_count && status == VXM_OK; e++)
-    status = vxm_engine_create(&stage->engines[e], stage->cli->context, plan->engines[e], NULL, error);
+  for (int e = 0; e < plan->engine_count && status == VXM_OK; e++) {
+    char name[sizeof plan->engines[0]]; /* what stands before a method */
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(plan->engines[e], "/"), plan->engines[e]);
+    status =
+        vxm_engine_create(&stage->engines[e], stage->cli->context, name, &plan->engine_options[e], error);
+  }
   if (status != VXM_OK)
     return status;
   status = vxm_mesh_read_with(&stage->raw, stage->cli->context, stage->path, &stage->cli->read, error);
@@ -179,7 +183,9 @@ static void tell_grid(bench_output *out, const bench_stage *stage) {
 /* ---- Octrees and numbers ---- */
 
 static vxm_status begin_sparse(bench_stage *stage) {
-  return vxm_model_create(&stage->model, stage->mesh, NULL, &stage->cli->error);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.engine = stage->engines[stage->engine];
+  return vxm_model_create(&stage->model, stage->mesh, &options, &stage->cli->error);
 }
 
 static vxm_status run_sparse(bench_stage *stage) {
@@ -202,7 +208,7 @@ static vxm_status begin_values(bench_stage *stage) {
   stage->values = limit > 0 && bytes > limit ? NULL : malloc(bytes);
   if (stage->values) {
     memset(stage->values, 0, bytes); /* the system hands the memory out now, not within the first run */
-    return vxm_model_create(&stage->model, stage->mesh, NULL, error);
+    return begin_sparse(stage);
   }
   error->code = VXM_ERROR_MEMORY;
   snprintf(error->text, sizeof error->text, "no memory for %zu bytes of values", bytes);
@@ -251,8 +257,8 @@ const bench_phase bench_phases[] = {
     {"surface_conservative", "every voxel that the surface touches", true, true, false, 0, begin_conservative,
      run_solid, tell_grid},
     {"surface_thin", "the 6-separating surface", true, true, false, 0, begin_thin, run_solid, tell_grid},
-    {"sparse", "solid_vote as an octree", true, false, false, 0, begin_sparse, run_sparse, tell_sparse},
-    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, false, false, SLOW_MS,
+    {"sparse", "solid_vote as an octree", true, true, false, 0, begin_sparse, run_sparse, tell_sparse},
+    {"coverage", "share of each voxel that is filled, by 4 x 4 x 4 sub-voxels", true, true, false, SLOW_MS,
      begin_values, run_coverage, tell_coverage},
     {"distance", "signed distance, within 3 voxels of the surface", true, false, false, SLOW_MS, begin_values,
      run_distance, tell_distance},

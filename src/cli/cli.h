@@ -19,7 +19,9 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_WRONG_USAGE = 2, CLI_WARNED = 3 };
 /** Keys of options without a letter. The common options take the numbers below CLI_KEY_COMMAND. */
 enum {
   CLI_KEY_COMMON = 256,
-  CLI_KEY_ENGINE = 507,
+  CLI_KEY_ENGINE = 505,
+  CLI_KEY_DEVICE,
+  CLI_KEY_CL_METHOD,
   CLI_KEY_GL_METHOD,
   CLI_KEY_GL_AXIS,
   CLI_KEY_GL_DISPLACE,
@@ -30,8 +32,14 @@ enum {
 /** For the tables of commands that make voxels; cli_engine_read takes their values. */
 #define CLI_OPTIONS_ENGINE                                                                   \
   {CLI_KEY_ENGINE, "engine", "E",                                                            \
-   "who makes the voxels: cpu; opengl, or one that 'voxmend engines' lists;\n"               \
-   "auto = opengl on a hardware device, or else the cpu [cpu]"},                             \
+   "who makes the voxels: cpu; opencl, opengl, or one that 'voxmend engines' lists;\n"       \
+   "auto = a GPU by opencl or opengl, or else the cpu [cpu]"},                               \
+      {CLI_KEY_DEVICE, "device", "N|NAME",                                                   \
+       "the OpenCL device: its number in 'voxmend engines', or a part of its name or its\n"  \
+       "platform's [a GPU, else the first]"},                                                \
+      {CLI_KEY_CL_METHOD, "cl-method", "auto|triangles|tiles",                               \
+       "how OpenCL makes solids: triangles = each flips bits by itself; tiles = sorted by\n" \
+       "tiles of columns; both have the bits of the cpu [auto]"},                            \
       {CLI_KEY_GL_METHOD, "gl-method", "columns|slices|tetra-vertex",                        \
        "how OpenGL makes solids: columns = a pass along an axis, the same bits as the\n"     \
        "cpu; slices, tetra-vertex = tetrahedra cut slice by slice, as published [columns]"}, \
@@ -73,7 +81,7 @@ typedef struct cli_command {
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
     cli_command_compare, cli_command_augment, cli_command_view, cli_command_bench, cli_command_engines;
 
-enum { CLI_OPTIONS_MAX = 48 };
+enum { CLI_OPTIONS_MAX = 48, CLI_LIST_MAX = 512 };
 
 /** A text file that the program writes itself: under a temporary name until it is complete. */
 typedef struct cli_file {
@@ -132,6 +140,11 @@ bool cli_read_numbers(double *out, int count, const char *text);
 bool cli_read_size(uint64_t *out, const char *text);
 /** Position of `text` in the list, which ends with NULL, or -1. */
 int cli_read_choice(const char *text, const char *const *choices);
+/** "x, y, z" */
+const char *cli_list(char list[CLI_LIST_MAX], const char *const *choices);
+/** The position of an option's value in the list; CLI_STOP, and a line that lists all, if it is none of them.
+ */
+int cli_choose(cli_run *cli, int *choice, const char *option, const char *value, const char *const *choices);
 
 /**
  * Format that the output's name or --format asks for, out of `known`; NULL with cli->status set if there is
@@ -143,17 +156,29 @@ extern const char *const cli_grid_formats[];
 /** Whether a file name ends in '.' and this extension, in any case. */
 bool cli_is_extension(const char *path, const char *extension);
 
+/* ---- making.c: what is made of a mesh, for voxelize and augment ---- */
+
+/** The arguments of --mode and --surface: CLI_END or CLI_STOP. */
+int cli_read_mode(cli_run *cli, vxm_voxelize_options *options, const char *value);
+int cli_read_surface(cli_run *cli, vxm_voxelize_options *options, const char *value);
+/** CLI_STOP if --surface, where it was given, does not go with the mode. */
+int cli_check_surface(cli_run *cli, const vxm_voxelize_options *options, bool is_given);
+
 /* ---- engine.c: who makes the voxels ---- */
+
+/** The words for --cl-method and --gl-method, in the order of their enums; NULL ends each list. */
+extern const char *const cli_cl_methods[], *const cli_gl_methods[];
 
 typedef struct cli_engine {
   const char *name; /**< NULL = not given */
   vxm_engine_options options;
+  bool is_cl_tuned;          /**< options of OpenCL were given */
   bool is_tuned, is_slicing; /**< options of OpenGL, and of its slices, were given */
   vxm_engine *engine;        /**< made by cli_engine_open; NULL = the CPU, as nothing was asked for */
 } cli_engine;
 
 #define CLI_ENGINE_INIT \
-  { NULL, VXM_ENGINE_OPTIONS_INIT, false, false, NULL }
+  { NULL, VXM_ENGINE_OPTIONS_INIT, false, false, false, NULL }
 
 /** Takes the value of one of CLI_OPTIONS_ENGINE. */
 int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value);
@@ -245,8 +270,10 @@ typedef struct cli_input {
   double read_ms, repair_ms;
 } cli_input;
 
-/** Reads --weld's argument; false if it is neither auto, off nor a positive distance. */
-bool cli_read_weld(vxm_repair_options *options, const char *text);
+/** The argument of --weld: CLI_END or CLI_STOP. */
+int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value);
+/** CLI_STOP if options about the repair were given with --no-repair. */
+int cli_check_repair(cli_run *cli, bool no_repair, bool repair_options);
 json_t *cli_passes_json(const vxm_repair_report *report);
 /** Reads, and repairs unless `options` is NULL. After CLI_FAILED a line was printed and input->mesh is NULL.
  */

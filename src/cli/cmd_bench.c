@@ -26,8 +26,8 @@ static const cli_option known_options[] = {
      "what to measure, out of the phases below; named here, a phase is measured\n"
      "however slow it is [all, but what takes over two seconds is left out]"},
     {KEY_ENGINE, "engine", "LIST",
-     "who makes the grids, such as cpu,opengl: as in 'voxmend voxelize'; others\n"
-     "are compared with the first [cpu]"},
+     "who makes the grids, such as cpu,opencl,opencl/tiles: as in 'voxmend voxelize',\n"
+     "and behind a '/' the method; others are compared with the first [cpu]"},
     {KEY_AUGMENT, "augment", NULL, "measure making variants for training instead: the augment_ phases below"},
     {KEY_DISPLACE, "displace", "F",
      "by how much the vertices of variants are displaced, as in augment [0.01]"},
@@ -71,14 +71,6 @@ static bool read_list(int64_t *out, int *count, const char *text, int64_t high) 
   return true;
 }
 
-/** One line that lists the choices. */
-static int refuse_choice(cli_run *cli, const char *option, const char *value, const char *const *choices) {
-  char list[512] = "";
-  for (size_t i = 0, used = 0; choices[i] && used < sizeof list; i++)
-    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", choices[i]);
-  return cli_usage(cli, "--%s '%s' is none of %s", option, value, list);
-}
-
 static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
   char item[ITEM_SIZE];
   const char *names[BENCH_PHASES_MAX + 1] = {NULL};
@@ -87,22 +79,42 @@ static int read_phases(cli_run *cli, bench_plan *plan, const char *text) {
   memset(plan->chosen, 0, sizeof plan->chosen);
   plan->forced = true;
   while (next_item(item, &text)) {
-    int phase = cli_read_choice(item, names);
-    if (phase < 0)
-      return refuse_choice(cli, "phases", item, names);
+    int phase;
+    if (cli_choose(cli, &phase, "phases", item, names) == CLI_STOP)
+      return CLI_STOP;
     plan->chosen[phase] = true;
   }
   return CLI_END;
 }
 
+/** The method behind a '/' in the name of an engine. */
+static int read_method(cli_run *cli, vxm_engine_options *options, const char *name) {
+  const char *slash = strchr(name, '/');
+  int result = CLI_END, choice = 0;
+  *options = (vxm_engine_options)VXM_ENGINE_OPTIONS_INIT;
+  if (!slash)
+    return CLI_END;
+  if (strncmp(name, "opencl", 6) == 0) {
+    result = cli_choose(cli, &choice, "engine opencl/", slash + 1, cli_cl_methods);
+    options->cl_method = (vxm_cl_method)choice;
+  } else if (strncmp(name, "opengl", 6) == 0) {
+    result = cli_choose(cli, &choice, "engine opengl/", slash + 1, cli_gl_methods);
+    options->gl_method = (vxm_gl_method)choice;
+  } else
+    result = cli_usage(cli, "--engine '%s': only opencl and opengl have methods", name);
+  return result;
+}
+
 static int read_engines(cli_run *cli, bench_plan *plan, const char *text) {
   char item[ITEM_SIZE];
-  for (plan->engine_count = 0; next_item(item, &text);) {
+  int result = CLI_END;
+  for (plan->engine_count = 0; result == CLI_END && next_item(item, &text); plan->engine_count++) {
     if (plan->engine_count == BENCH_ENGINES_MAX)
       return cli_usage(cli, "--engine names more than %d engines", BENCH_ENGINES_MAX);
-    snprintf(plan->engines[plan->engine_count++], sizeof plan->engines[0], "%s", item);
+    snprintf(plan->engines[plan->engine_count], sizeof plan->engines[0], "%s", item);
+    result = read_method(cli, &plan->engine_options[plan->engine_count], item);
   }
-  return CLI_END;
+  return result;
 }
 
 static int read_option(cli_run *cli, bench_plan *plan, int key, const char *value) {
@@ -177,7 +189,7 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
     return cli_usage(cli, "the mesh is read many times, which standard input cannot be; name a file");
   if (plan->plot && !cli_is_extension(plan->plot, "svg"))
     return cli_usage(cli, "--plot '%s': the name must end in .svg", plan->plot);
-  if (plan->plot && cli->report && strcmp(plan->plot, cli->report) == 0)
+  if (plan->plot && cli->report && cli_same_file(plan->plot, cli->report))
     return cli_usage(cli, "--plot and --report name the same file");
   if (!has_grids(plan)) {
     if (plan->plot)
@@ -343,7 +355,11 @@ static int bench(bench_work *work) {
 
 static int run(cli_run *cli) {
   bench_work work = {.cli = cli,
-                     .plan = {.engines = {"cpu"}, .engine_count = 1, .displace = 0.01, .time_ms = 200}};
+                     .plan = {.engines = {"cpu"},
+                              .engine_options = {VXM_ENGINE_OPTIONS_INIT},
+                              .engine_count = 1,
+                              .displace = 0.01,
+                              .time_ms = 200}};
   if (read_arguments(cli, &work.plan) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))

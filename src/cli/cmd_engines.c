@@ -8,6 +8,16 @@ enum { ENGINES_MAX = 80 };
 
 static const cli_option known_options[] = {{0, NULL, NULL, NULL}};
 
+static void add_opencl(json_t *object, const vxm_engine_info *info) {
+  json_object_set_new(object, "platform", cli_json_text(info->platform));
+  json_object_set_new(object, "driver", cli_json_text(info->driver));
+  json_object_set_new(object, "compute_units", json_integer(info->compute_units));
+  json_object_set_new(object, "global_bytes", json_integer(info->global_bytes));
+  json_object_set_new(object, "local_bytes", json_integer(info->local_bytes));
+  json_object_set_new(object, "work_group", json_integer(info->work_group));
+  json_object_set_new(object, "int64_atomics", json_boolean(info->int64_atomics));
+}
+
 static json_t *engine_json(const vxm_engine_info *info) {
   json_t *object = json_object();
   json_object_set_new(object, "name", json_string(info->name));
@@ -17,6 +27,10 @@ static json_t *engine_json(const vxm_engine_info *info) {
     json_object_set_new(object, "renderer", cli_json_text(info->renderer));
     json_object_set_new(object, "version", cli_json_text(info->version));
     json_object_set_new(object, "block_bytes", json_integer(info->block_bytes));
+  }
+  if (*info->platform)
+    add_opencl(object, info);
+  else if (*info->renderer) {
     json_object_set_new(object, "viewport", json_integer(info->viewport));
     json_object_set_new(object, "layers", json_integer(info->layers));
     json_object_set_new(object, "subpixel_bits", json_integer(info->subpixel_bits));
@@ -32,9 +46,21 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
   fprintf(cli->text, "%-24s %s%s\n", info->name, info->available ? "works" : "not here: ", info->note);
   if (!info->available || !*info->renderer)
     return;
-  fprintf(cli->text, "  renderer               %s%s\n", info->renderer,
+  bool is_opencl = *info->platform != '\0';
+  if (is_opencl)
+    fprintf(cli->text, "  platform               %s\n", info->platform);
+  fprintf(cli->text, "  %-22s %s%s\n", is_opencl ? "device" : "renderer", info->renderer,
           info->hardware ? "" : ", in software: slower than cpu");
   fprintf(cli->text, "  version                %s\n", info->version);
+  if (is_opencl) {
+    fprintf(cli->text,
+            "  limits                 %d compute units, groups of %" PRId64 "; memory of %" PRId64
+            " MiB, buffers of %" PRId64 " MiB,\n                         %" PRId64 " KiB shared by a group\n",
+            info->compute_units, info->work_group, info->global_bytes >> 20, info->block_bytes >> 20,
+            info->local_bytes >> 10);
+    fprintf(cli->text, "  64-bit atomics         %s\n", info->int64_atomics ? "yes" : "no (not needed)");
+    return;
+  }
   fprintf(cli->text,
           "  limits                 buffers of %" PRId64 " MiB, viewports of %" PRId64 ", %" PRId64
           " layers, %d sub-pixel bits\n",
@@ -74,8 +100,9 @@ const cli_command cli_command_engines = {
     .arguments = "[OPTION]...",
     .summary = "list what can make voxels on this machine",
     .notes =
-        "Each is tried out. --engine of 'voxmend voxelize' and 'voxmend bench' takes its name; 'opengl'\n"
-        "takes the first that works of a hardware device, EGL without a surface, and OSMesa.\n\n"
+        "Each is tried out. --engine of 'voxmend voxelize' and 'voxmend bench' takes its name; 'opencl'\n"
+        "takes a GPU, or else the first device (--device chooses); 'opengl' the first that works of a\n"
+        "hardware device, EGL without a surface, and OSMesa.\n\n"
         "Example:\n"
         "  voxmend engines --json",
     .options = known_options,

@@ -113,36 +113,27 @@ static int read_wrap(cli_run *cli, request *out, const char *value) {
   return CLI_END;
 }
 
-static int read_choices(cli_run *cli, request *out, int key, const char *value) {
-  static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
-  int choice = cli_read_choice(value, key == KEY_LEVEL ? repair_levels : fills);
-  if (choice < 0)
-    return key == KEY_LEVEL ? cli_usage(cli, "--level '%s' is none of clean, manifold, closed, solid", value)
-                            : cli_usage(cli, "--fill '%s' is none of fan, minimal, smooth", value);
-  if (key == KEY_LEVEL)
-    out->repair.level = (vxm_level)choice;
-  else {
-    out->repair.fill = (vxm_fill)choice;
-    out->fill = true;
-  }
-  return CLI_END;
-}
-
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
+  static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
+  int choice = 0, result;
   switch (key) {
   case 'o':
     out->output = value;
     return CLI_END;
   case KEY_LEVEL:
+    result = cli_choose(cli, &choice, "level", value, repair_levels);
+    out->repair.level = (vxm_level)choice;
+    return result;
   case KEY_FILL:
-    return read_choices(cli, out, key, value);
+    out->fill = true;
+    result = cli_choose(cli, &choice, "fill", value, fills);
+    out->repair.fill = (vxm_fill)choice;
+    return result;
   case KEY_BEST_EFFORT:
     out->best_effort = true;
     return CLI_END;
   case KEY_WELD:
-    if (!cli_read_weld(&out->repair, value))
-      return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
-    return CLI_END;
+    return cli_read_weld(cli, &out->repair, value);
   case KEY_KEEP:
     out->repair.keep_duplicates = true;
     return CLI_END;
@@ -224,6 +215,37 @@ static bool wants_report(const cli_run *cli) {
   return cli->json || cli->report;
 }
 
+/** Says why nothing is written; the report and the picture of what was wrong are what there is to work with.
+ */
+static int refuse(cli_run *cli, const request *given, repair_outcome *outcome) {
+  cli_fail(cli);
+  if (!cli->quiet && outcome->verification.count > 0)
+    repair_say_remains(cli, stderr, outcome);
+  cli->located = NULL;
+  if (wants_report(cli) && outcome->mesh)
+    cli_finish(cli, repair_report(cli, given->input, NULL, outcome));
+  return CLI_FAILED;
+}
+
+static int try_repair(cli_run *cli, const request *given, repair_outcome *outcome, const vxm_mesh *raw) {
+  vxm_status status = vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &given->repair, &cli->error);
+  if (status == VXM_OK && vxm_mesh_face_count(outcome->mesh) > 0)
+    return CLI_DONE;
+  if (status == VXM_OK) {
+    cli->error.code = VXM_ERROR_EMPTY;
+    snprintf(cli->error.text, sizeof cli->error.text, "%.400s: no face is left after repair",
+             cli_shown(given->input, "<stdin>"));
+  } else if (status != VXM_ERROR_UNREACHED)
+    return cli_fail(cli);
+  else if (wants_report(cli)) { /* what changes by too much is told nevertheless */
+    vxm_repair_options any = given->repair;
+    vxm_error ignored = VXM_ERROR_INIT;
+    any.max_change = 0;
+    vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &any, &ignored);
+  }
+  return refuse(cli, given, outcome);
+}
+
 static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_mesh *raw = NULL;
   if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
@@ -232,27 +254,12 @@ static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outco
   cli_defects wanted = given->defects; /* the repair counts intersections itself */
   wanted.intersections = wanted.intersections && (wanted.list || wanted.locate);
   int status = cli_defects_show(cli, &outcome->found, &wanted, raw);
-  if (status == CLI_DONE &&
-      vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &given->repair, &cli->error) != VXM_OK)
-    status = cli_fail(cli);
+  if (status == CLI_DONE)
+    status = try_repair(cli, given, outcome, raw);
   vxm_mesh_destroy(raw);
-  if (status == CLI_DONE && vxm_mesh_face_count(outcome->mesh) == 0)
-    return cli_fail_text(cli, "%s: no face is left after repair", cli_shown(given->input, "<stdin>"));
   if (status == CLI_DONE && outcome->repair.ununited_parts > 0)
     repair_warn_ununited(cli, given->input, outcome);
   return status;
-}
-
-/** Says why nothing was written; the report and the picture of what was wrong are what there is to work with.
- */
-static int refuse(cli_run *cli, const request *given, repair_outcome *outcome) {
-  cli_fail(cli);
-  if (!cli->quiet)
-    repair_say_remains(cli, stderr, outcome);
-  cli->located = NULL;
-  if (wants_report(cli))
-    cli_finish(cli, repair_report(cli, given->input, NULL, outcome));
-  return CLI_FAILED;
 }
 
 static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {

@@ -41,6 +41,7 @@ static bool read_size(vxm_picture_options *out, const char *text) {
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const axes[] = {"x", "y", "z", NULL};
   vxm_picture_options *picture = &out->picture;
+  int choice = 0, result;
   switch (key) {
   case 'o':
     out->output = value;
@@ -58,10 +59,9 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
       return cli_usage(cli, "--elevation '%s' is not a number of degrees from -90 to 90", value);
     return CLI_END;
   default:
-    picture->up = cli_read_choice(value, axes) + 1;
-    if (picture->up == 0)
-      return cli_usage(cli, "--up '%s' is none of x, y, z", value);
-    return CLI_END;
+    result = cli_choose(cli, &choice, "up", value, axes);
+    picture->up = choice + 1;
+    return result;
   }
 }
 

@@ -33,8 +33,9 @@ static char *read_source(cli_run *cli, const char *path) {
 int cli_color_read(cli_run *cli, cli_field *field, const char *value) {
   static const char *const choices[] = {"noise", "position", "part", NULL};
   int choice = cli_read_choice(value, choices);
+  char list[CLI_LIST_MAX];
   if (choice < 0 && !cli_is_extension(value, "frag"))
-    return cli_usage(cli, "--color '%s' is none of noise, position, part, and no FILE.frag", value);
+    return cli_usage(cli, "--color '%s' is none of %s, and no FILE.frag", value, cli_list(list, choices));
   field->color = true;
   field->color_name = value;
   field->color_options.by = choice >= 0 ? (vxm_color_by)choice : VXM_COLOR_GLSL;

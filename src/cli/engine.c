@@ -4,6 +4,9 @@
 
 #include <string.h>
 
+const char *const cli_cl_methods[] = {"auto", "triangles", "tiles", NULL};
+const char *const cli_gl_methods[] = {"columns", "slices", "tetra-vertex", NULL};
+
 static int read_displacement(cli_run *cli, cli_engine *out, const char *value) {
   char text[64];
   const char *comma = strchr(value, ',');
@@ -19,24 +22,30 @@ static int read_displacement(cli_run *cli, cli_engine *out, const char *value) {
 }
 
 int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value) {
-  static const char *const methods[] = {"columns", "slices", "tetra-vertex", NULL};
   static const char *const axes[] = {"x", "y", "z", NULL};
-  int choice;
+  int choice = 0, result;
   switch (key) {
   case CLI_KEY_ENGINE:
     out->name = value;
     return CLI_END;
+  case CLI_KEY_DEVICE:
+    out->options.device = value;
+    return CLI_END;
+  case CLI_KEY_CL_METHOD:
+    out->is_cl_tuned = true;
+    result = cli_choose(cli, &choice, "cl-method", value, cli_cl_methods);
+    out->options.cl_method = (vxm_cl_method)choice;
+    return result;
   case CLI_KEY_GL_METHOD:
-    choice = cli_read_choice(value, methods);
-    out->options.gl_method = (vxm_gl_method)choice;
     out->is_tuned = true;
-    return choice >= 0 ? CLI_END
-                       : cli_usage(cli, "--gl-method '%s' is none of columns, slices, tetra-vertex", value);
+    result = cli_choose(cli, &choice, "gl-method", value, cli_gl_methods);
+    out->options.gl_method = (vxm_gl_method)choice;
+    return result;
   case CLI_KEY_GL_AXIS:
-    choice = cli_read_choice(value, axes);
-    out->options.slice_axis = choice;
     out->is_slicing = true;
-    return choice >= 0 ? CLI_END : cli_usage(cli, "--gl-axis '%s' is none of x, y, z", value);
+    result = cli_choose(cli, &choice, "gl-axis", value, axes);
+    out->options.slice_axis = choice;
+    return result;
   default:
     out->is_slicing = true;
     return read_displacement(cli, out, value);
@@ -44,8 +53,14 @@ int cli_engine_read(cli_run *cli, cli_engine *out, int key, const char *value) {
 }
 
 int cli_engine_check(cli_run *cli, const cli_engine *engine) {
-  bool is_cpu = !engine->name || strcmp(engine->name, "cpu") == 0;
-  if (is_cpu && (engine->is_tuned || engine->is_slicing))
+  bool is_auto = engine->name && strcmp(engine->name, "auto") == 0;
+  bool is_opencl = engine->name && strncmp(engine->name, "opencl", 6) == 0;
+  bool is_opengl = engine->name && strncmp(engine->name, "opengl", 6) == 0;
+  if (!is_opencl && !is_auto && (engine->options.device || engine->is_cl_tuned))
+    return cli_usage(cli, "--device and --cl-method go with --engine opencl");
+  if (is_opencl && engine->options.device && strcmp(engine->name, "opencl") != 0)
+    return cli_usage(cli, "--engine %s names a device already; leave out --device", engine->name);
+  if (!is_opengl && !is_auto && (engine->is_tuned || engine->is_slicing))
     return cli_usage(cli, "--gl-method, --gl-axis and --gl-displace go with --engine opengl");
   if (engine->is_slicing && engine->options.gl_method == VXM_GL_COLUMNS)
     return cli_usage(cli, "--gl-axis and --gl-displace go with --gl-method slices or tetra-vertex");

@@ -23,9 +23,9 @@ bool cli_field_wanted(const cli_field *field) {
 
 int cli_field_read_coverage(cli_run *cli, cli_field *field, const char *value) {
   static const char *const choices[] = {"2", "4", "8", NULL};
-  int choice = cli_read_choice(value, choices);
-  if (choice < 0)
-    return cli_usage(cli, "--coverage '%s' is none of 2, 4, 8", value);
+  int choice;
+  if (cli_choose(cli, &choice, "coverage", value, choices) == CLI_STOP)
+    return CLI_STOP;
   field->coverage = true;
   field->coverage_options.subdivision = 2 << choice;
   return CLI_END;
@@ -33,9 +33,9 @@ int cli_field_read_coverage(cli_run *cli, cli_field *field, const char *value) {
 
 int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value) {
   static const char *const choices[] = {"float32", "uint8", NULL};
-  int choice = cli_read_choice(value, choices);
-  if (choice < 0)
-    return cli_usage(cli, "--scalar '%s' is none of float32, uint8", value);
+  int choice;
+  if (cli_choose(cli, &choice, "scalar", value, choices) == CLI_STOP)
+    return CLI_STOP;
   field->scalar = true;
   field->coverage_options.scalar = choice == 0 ? VXM_FLOAT32 : VXM_UINT8;
   return CLI_END;
@@ -43,9 +43,9 @@ int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value) {
 
 int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value) {
   static const char *const choices[] = {"signed", "unsigned", NULL};
-  int choice = cli_read_choice(value, choices);
-  if (choice < 0)
-    return cli_usage(cli, "--distance '%s' is none of signed, unsigned", value);
+  int choice;
+  if (cli_choose(cli, &choice, "distance", value, choices) == CLI_STOP)
+    return CLI_STOP;
   field->distance = true;
   field->distance_options.is_unsigned = choice == 1;
   return CLI_END;
@@ -60,9 +60,9 @@ int cli_field_read_band(cli_run *cli, cli_field *field, const char *value) {
 
 int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value) {
   static const char *const choices[] = {"part", "group", "material", NULL};
-  int choice = cli_read_choice(value, choices);
-  if (choice < 0)
-    return cli_usage(cli, "--labels '%s' is none of part, group, material", value);
+  int choice;
+  if (cli_choose(cli, &choice, "labels", value, choices) == CLI_STOP)
+    return CLI_STOP;
   field->labels = true;
   field->label_options.by = (vxm_label_by)choice;
   return CLI_END;

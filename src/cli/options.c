@@ -141,6 +141,7 @@ static int refuse(cli_run *cli, int result, const char *word) {
 static int common_option(cli_run *cli, int key, const char *value) {
   static const char *const when[] = {"auto", "always", "never", NULL};
   int64_t threads;
+  int choice;
   switch (key) {
   case 'h':
     cli_help(cli->command);
@@ -178,10 +179,8 @@ static int common_option(cli_run *cli, int key, const char *value) {
       return cli_usage(cli, "--deflection '%s' is not a number above 0 and up to 1", value);
     return CLI_END;
   case KEY_PROGRESS:
-    if (cli_read_choice(value, when) < 0)
-      return cli_usage(cli, "--progress '%s' is none of auto, always, never", value);
     cli->progress = value;
-    return CLI_END;
+    return cli_choose(cli, &choice, "progress", value, when);
   default:
     return key;
   }
@@ -284,6 +283,22 @@ int cli_read_choice(const char *text, const char *const *choices) {
   return -1;
 }
 
+const char *cli_list(char list[CLI_LIST_MAX], const char *const *choices) {
+  list[0] = '\0';
+  for (size_t i = 0, used = 0; choices[i] && used < CLI_LIST_MAX; i++)
+    used += (size_t)snprintf(list + used, CLI_LIST_MAX - used, "%s%s", i > 0 ? ", " : "", choices[i]);
+  return list;
+}
+
+int cli_choose(cli_run *cli, int *choice, const char *option, const char *value, const char *const *choices) {
+  char list[CLI_LIST_MAX];
+  int found = cli_read_choice(value, choices);
+  if (found < 0)
+    return cli_usage(cli, "--%s '%s' is none of %s", option, value, cli_list(list, choices));
+  *choice = found;
+  return CLI_END;
+}
+
 /* ---- Names of formats ---- */
 
 /** Part of a name behind the last '.', or "". */
@@ -312,17 +327,9 @@ static const char *find_format(const char *name, const char *const *known) {
   return NULL;
 }
 
-/** "off, obj, stl, ply" */
-static const char *list_formats(char *list, size_t size, const char *const *known) {
-  size_t used = 0;
-  for (int i = 0; known[i] && used < size; i++)
-    used += (size_t)snprintf(list + used, size - used, "%s%s", i ? ", " : "", known[i]);
-  return list;
-}
-
 const char *cli_output_format(cli_run *cli, const char *path, const char *format, const char *const *known) {
-  char list[96];
-  list_formats(list, sizeof list, known);
+  char list[CLI_LIST_MAX];
+  cli_list(list, known);
   if (!path) {
     cli_usage(cli, "-o FILE is missing");
     return NULL;

@@ -14,12 +14,25 @@
 
 /* ---- Messages ---- */
 
+/** Errors about memory end with a hint that is of use only where the resolution can be chosen. */
+static void trim_hint(cli_run *cli) {
+  static const char hint[] = " or lower the resolution (-r)";
+  size_t length = strlen(cli->error.text), tail = sizeof hint - 1;
+  for (const cli_option *option = cli->command->options; option->name; option++)
+    if (option->key == 'r')
+      return;
+  if (length > tail && strcmp(cli->error.text + length - tail, hint) == 0)
+    cli->error.text[length - tail] = '\0';
+}
+
 int cli_fail(cli_run *cli) {
   cli_progress_clear(cli);
   if (cli->error.code == VXM_ERROR_CANCELLED && cli_signal())
     fprintf(stderr, "voxmend: interrupted\n");
-  else
+  else {
+    trim_hint(cli);
     fprintf(stderr, "voxmend: %s\n", cli->error.text);
+  }
   return CLI_FAILED;
 }
 

@@ -3,13 +3,29 @@
 #include "cli/cli.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 static volatile sig_atomic_t caught;
 
-static void on_signal(int signal) {
-  caught = signal;
+/** When the first signal came, in milliseconds and not 0; any thread may be the one that takes a signal. */
+static atomic_llong caught_at;
+
+/** A later signal ends the program at once, should the work not come to its next report. Signals that come
+ * together (a terminal's and a parent's, for one) are one request, for which nothing is to be left behind. */
+static void on_signal(int number) {
+  enum { TOGETHER_MS = 500 };
+  struct timespec time;
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  long long now = 1 + 1000 * (long long)time.tv_sec + time.tv_nsec / 1000000, first = 0;
+  if (atomic_compare_exchange_strong(&caught_at, &first, now))
+    caught = number;
+  else if (now - first >= TOGETHER_MS) {
+    signal(number, SIG_DFL);
+    raise(number);
+  }
 }
 
 int cli_signal(void) {
@@ -63,8 +79,7 @@ void cli_progress_init(cli_run *cli) {
     cli->progress = "never";
   cli->limits.progress = on_progress;
   cli->limits.payload = cli;
-  /* A second signal ends the program at once, should the work not come to its next report. */
-  struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND | SA_RESTART};
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   sigaction(SIGHUP, &action, NULL);

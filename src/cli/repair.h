@@ -16,7 +16,8 @@ typedef struct repair_outcome {
 /** Names of the levels, as on the command line. */
 extern const char *const repair_levels[];
 
-/** The report for --json and --report. @param output NULL = nothing was written */
+/** The report for --json and --report. @param output NULL = nothing was written, for the reason in cli->error
+ */
 json_t *repair_report(const cli_run *cli, const char *input, const char *output,
                       const repair_outcome *outcome);
 /** Says which parts could not be united. */

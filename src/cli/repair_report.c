@@ -73,6 +73,8 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   }
   json_object_set_new(report, "input", cli_json_text(input));
   json_object_set_new(report, "output", output ? cli_json_text(output) : json_null());
+  if (!output)
+    json_object_set_new(report, "refused", cli_json_text(cli->error.text));
   json_object_set_new(report, "verified", verification_json(outcome));
   json_object_set_new(report, "passes", cli_passes_json(repair));
   json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));

@@ -4,18 +4,24 @@
 
 #include <string.h>
 
-bool cli_read_weld(vxm_repair_options *options, const char *text) {
+int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value) {
   double tolerance;
-  if (strcmp(text, "auto") == 0)
+  if (strcmp(value, "auto") == 0)
     options->weld = VXM_WELD_AUTO;
-  else if (strcmp(text, "off") == 0)
+  else if (strcmp(value, "off") == 0)
     options->weld = VXM_WELD_OFF;
-  else if (cli_read_number(&tolerance, text) && tolerance > 0) {
+  else if (cli_read_number(&tolerance, value) && tolerance > 0) {
     options->weld = VXM_WELD_TOLERANCE;
     options->weld_tolerance = tolerance;
   } else
-    return false;
-  return true;
+    return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
+  return CLI_END;
+}
+
+int cli_check_repair(cli_run *cli, bool no_repair, bool repair_options) {
+  if (no_repair && repair_options)
+    return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
+  return CLI_END;
 }
 
 json_t *cli_passes_json(const vxm_repair_report *report) {

@@ -120,22 +120,11 @@ static bool read_resolution(int64_t out[3], const char *text) {
   return true;
 }
 
-static int read_choice(cli_run *cli, int *out, const char *name, const char *value,
-                       const char *const *choices) {
-  *out = cli_read_choice(value, choices);
-  if (*out >= 0)
-    return CLI_END;
-  char list[96] = "";
-  for (size_t i = 0, used = 0; choices[i] && used < sizeof list; i++)
-    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "", choices[i]);
-  return cli_usage(cli, "--%s '%s' is none of %s", name, value, list);
-}
-
 /** The options that choose the voxel space. */
 static int read_space_option(cli_run *cli, voxelize_request *out, int key, const char *value) {
   static const char *const fits[] = {"cube", "tight", "sphere", NULL};
   vxm_space_options *space = &out->voxelize.space;
-  int choice;
+  int choice = 0, result;
   switch (key) {
   case 'r':
     out->resolution = true;
@@ -149,10 +138,9 @@ static int read_space_option(cli_run *cli, voxelize_request *out, int key, const
     return CLI_END;
   case KEY_FIT:
     out->fit = true;
-    if (read_choice(cli, &choice, "fit", value, fits) == CLI_STOP)
-      return CLI_STOP;
+    result = cli_choose(cli, &choice, "fit", value, fits);
     space->fit = (vxm_fit)choice;
-    return CLI_END;
+    return result;
   case KEY_PAD:
     out->pad = true;
     if (!cli_read_integer(&space->pad, value, 0, 1 << 19))
@@ -173,8 +161,6 @@ static int read_space_option(cli_run *cli, voxelize_request *out, int key, const
 }
 
 static int read_option(cli_run *cli, voxelize_request *out, int key, const char *value) {
-  static const char *const modes[] = {"solid", "surface", "both", NULL};
-  static const char *const surfaces[] = {"conservative", "thin", "shell26", "shell18", "shell6", NULL};
   static const char *const methods[] = {"vote", "x", "y", "z", "tetra", "winding", NULL};
   static const char *const votes[] = {"auto", "majority", "any", "all", NULL};
   static const char *const parts[] = {"auto", "group", "whole", NULL};
@@ -188,29 +174,25 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     out->format = value;
     return CLI_END;
   case KEY_MODE:
-    result = read_choice(cli, &choice, "mode", value, modes);
-    out->voxelize.mode = (vxm_mode)choice;
-    return result;
+    return cli_read_mode(cli, &out->voxelize, value);
   case KEY_SURFACE:
     out->surface = true;
-    result = read_choice(cli, &choice, "surface", value, surfaces);
-    out->voxelize.surface = (vxm_surface_kind)choice;
-    return result;
+    return cli_read_surface(cli, &out->voxelize, value);
   case KEY_METHOD:
-    result = read_choice(cli, &choice, "method", value, methods);
+    result = cli_choose(cli, &choice, "method", value, methods);
     out->voxelize.method = (vxm_method)choice;
     return result;
   case KEY_VOTE:
     out->vote = true;
-    result = read_choice(cli, &choice, "vote", value, votes);
+    result = cli_choose(cli, &choice, "vote", value, votes);
     out->voxelize.vote = (vxm_vote)choice;
     return result;
   case KEY_PARTS:
-    result = read_choice(cli, &choice, "parts", value, parts);
+    result = cli_choose(cli, &choice, "parts", value, parts);
     out->voxelize.parts = (vxm_parts)choice;
     return result;
   case KEY_CAVITIES:
-    result = read_choice(cli, &choice, "cavities", value, cavities);
+    result = cli_choose(cli, &choice, "cavities", value, cavities);
     out->voxelize.cavities = (vxm_cavities)choice;
     return result;
   case KEY_COVERAGE:
@@ -243,9 +225,7 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     return CLI_END;
   case KEY_WELD:
     out->repair_options = true;
-    if (!cli_read_weld(&out->repair, value))
-      return cli_usage(cli, "--weld '%s' is neither auto, off nor a positive distance", value);
-    return CLI_END;
+    return cli_read_weld(cli, &out->repair, value);
   case KEY_KEEP:
     out->repair_options = out->repair.keep_duplicates = true;
     return CLI_END;
@@ -277,13 +257,11 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
     return cli_usage(cli, "--bounds is covered exactly; leave out --fit");
   if (given->vote && given->voxelize.method != VXM_METHOD_VOTE)
     return cli_usage(cli, "--vote goes with --method vote only");
-  if (given->surface && given->voxelize.mode == VXM_MODE_SOLID)
-    return cli_usage(cli, "--surface goes with --mode surface or both");
-  if (given->voxelize.mode == VXM_MODE_BOTH && given->voxelize.surface >= VXM_SURFACE_SHELL26)
-    return cli_usage(cli, "a shell is a part of the solid; with --mode both leave out --surface");
+  if (cli_check_surface(cli, &given->voxelize, given->surface) == CLI_STOP)
+    return CLI_STOP;
   if (given->confidence && !is_npy(given->confidence))
     return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
-  if (given->confidence && given->output && strcmp(given->confidence, given->output) == 0)
+  if (given->confidence && given->output && cli_same_file(given->confidence, given->output))
     return cli_usage(cli, "--confidence and -o name the same file");
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
@@ -292,15 +270,15 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
                           "--labels and --color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
-  if (given->coords && ((given->output && strcmp(given->coords, given->output) == 0) ||
-                        (given->confidence && strcmp(given->coords, given->confidence) == 0)))
+  if (given->coords && ((given->output && cli_same_file(given->coords, given->output)) ||
+                        (given->confidence && cli_same_file(given->coords, given->confidence))))
     return cli_usage(cli, "--coords and another output name the same file");
   if (given->engine.name && given->sparse)
     return cli_usage(cli, "--sparse is made by the CPU; leave out --engine");
   if (cli_engine_check(cli, &given->engine) == CLI_STOP)
     return CLI_STOP;
-  if (given->no_repair && given->repair_options)
-    return cli_usage(cli, "--weld and --keep-duplicates are about the repair; leave out --no-repair");
+  if (cli_check_repair(cli, given->no_repair, given->repair_options) == CLI_STOP)
+    return CLI_STOP;
   if (cli_check_report(cli, given->output) == CLI_STOP)
     return CLI_STOP;
   return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);

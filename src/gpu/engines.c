@@ -7,16 +7,34 @@
 
 #ifdef HAVE_OPENGL
 #include "gpu/opengl.h"
+#endif
+#ifdef HAVE_OPENCL
+#include "gpu/opencl.h"
+#endif
 
-/* Those that may be hardware come first; `opengl` takes a software renderer of the last two only. */
-static const vxm_gl_driver *const drivers[] = {&vxm_gl_egl_device, &vxm_gl_egl_surfaceless, &vxm_gl_osmesa};
-enum { DRIVERS = sizeof drivers / sizeof drivers[0] };
-
+#if defined HAVE_OPENGL || defined HAVE_OPENCL
 /** Frees an engine; the reference to the context stays the caller's. */
 static void drop(vxm_engine *engine, vxm_context *context) {
   engine->ops->destroy(engine);
   vxm_free(context, engine);
 }
+#endif
+
+/** Lists a kind of engine of which there is none here, and why. */
+static void list_missing(vxm_engine_info *out, int64_t capacity, int64_t *count, const char *name,
+                         const vxm_error *error) {
+  if (*count < capacity) {
+    out[*count] = (vxm_engine_info){0};
+    snprintf(out[*count].name, sizeof out->name, "%s", name);
+    snprintf(out[*count].note, sizeof out->note, "%.250s", error->text);
+  }
+  ++*count;
+}
+
+#ifdef HAVE_OPENGL
+/* Those that may be hardware come first; `opengl` takes a software renderer of the last two only. */
+static const vxm_gl_driver *const drivers[] = {&vxm_gl_egl_device, &vxm_gl_egl_surfaceless, &vxm_gl_osmesa};
+enum { DRIVERS = sizeof drivers / sizeof drivers[0] };
 
 /** The first hardware device of a driver, or its first context of any kind. */
 static vxm_status make_first(vxm_engine **out, vxm_context *context, const vxm_gl_driver *driver,
@@ -127,12 +145,75 @@ static vxm_status make_opengl(vxm_engine **out, vxm_context *context, const char
 static void list_opengl(vxm_engine_info *out, int64_t capacity, int64_t *count, vxm_context *context) {
   vxm_error local = VXM_ERROR_INIT;
   vxm_engine *none;
-  if (*count < capacity) {
-    make_opengl(&none, context, NULL, false, NULL, &local);
-    out[*count] = (vxm_engine_info){.name = "opengl"};
-    snprintf(out[*count].note, sizeof out[*count].note, "%.250s", local.text);
+  make_opengl(&none, context, NULL, false, NULL, &local);
+  list_missing(out, capacity, count, "opengl", &local);
+}
+
+#endif
+
+#ifdef HAVE_OPENCL
+
+/** The device that `name` (a number, or NULL) or the options choose. */
+static vxm_status make_opencl(vxm_engine **out, vxm_context *context, const char *name, bool hardware,
+                              const vxm_engine_options *options, vxm_error *error) {
+  vxm_cl_device devices[VXM_CL_DEVICES_MAX];
+  const vxm_cl *cl = vxm_cl_load(error);
+  if (!cl)
+    return VXM_ERROR_UNAVAILABLE;
+  int count = vxm_cl_devices(devices, cl, error);
+  if (count == 0)
+    return VXM_ERROR_UNAVAILABLE;
+  vxm_error local = VXM_ERROR_INIT;
+  int chosen = vxm_cl_device_find(cl, devices, count, name ? name : options->device, &local);
+  if (chosen < 0) {
+    if (error)
+      *error = local;
+    return local.code;
   }
-  ++*count;
+  vxm_engine_info info;
+  vxm_cl_device_describe(&info, cl, &devices[chosen], chosen);
+  if (hardware && !info.hardware)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "no OpenCL device here is a GPU or an accelerator");
+  return vxm_opencl_create(out, context, cl, &devices[chosen], chosen, options, error);
+}
+
+static void list_opencl(vxm_engine_info *out, int64_t capacity, int64_t *count, vxm_context *context) {
+  static const vxm_engine_options options = VXM_ENGINE_OPTIONS_INIT;
+  vxm_cl_device devices[VXM_CL_DEVICES_MAX];
+  vxm_error local = VXM_ERROR_INIT;
+  const vxm_cl *cl = vxm_cl_load(&local);
+  int found = cl ? vxm_cl_devices(devices, cl, &local) : 0;
+  for (int d = 0; d < found; d++, ++*count) {
+    vxm_engine *engine;
+    if (*count >= capacity)
+      continue;
+    vxm_cl_device_describe(&out[*count], cl, &devices[d], d);
+    if (vxm_opencl_create(&engine, context, cl, &devices[d], d, &options, &local) == VXM_OK) {
+      drop(engine, context);
+      continue;
+    }
+    out[*count].available = false;
+    snprintf(out[*count].note, sizeof out->note, "%.250s", local.text);
+  }
+  if (found == 0)
+    list_missing(out, capacity, count, "opencl", &local);
+}
+
+#else
+
+static vxm_status make_opencl(vxm_engine **out, vxm_context *context, const char *name, bool hardware,
+                              const vxm_engine_options *options, vxm_error *error) {
+  (void)context, (void)name, (void)hardware, (void)options;
+  *out = NULL;
+  return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
+                  "this voxmend was built without OpenCL (configure --with-opencl; Debian: opencl-headers)");
+}
+
+static void list_opencl(vxm_engine_info *out, int64_t capacity, int64_t *count, vxm_context *context) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_engine *none;
+  make_opencl(&none, context, NULL, false, NULL, &local);
+  list_missing(out, capacity, count, "opencl", &local);
 }
 
 #endif
@@ -162,11 +243,21 @@ static vxm_status make(vxm_engine **out, vxm_context *context, const char *name,
     return make_opengl(out, context, NULL, false, options, error);
   if (strncmp(name, "opengl:", 7) == 0)
     return make_opengl(out, context, name + 7, false, options, error);
+  if (strcmp(name, "opencl") == 0)
+    return make_opencl(out, context, NULL, false, options, error);
+  if (strncmp(name, "opencl:", 7) == 0)
+    return make_opencl(out, context, name + 7, false, options, error);
   if (strcmp(name, "auto") != 0)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "engine: '%.40s' is none of auto, cpu, opengl and the names that 'voxmend engines' lists",
-                    name);
-  vxm_status status = make_opengl(out, context, NULL, true, options, &reason);
+    return vxm_fail(
+        error, VXM_ERROR_ARGUMENT,
+        "engine: '%.40s' is none of auto, cpu, opencl, opengl and the names that 'voxmend engines' "
+        "lists",
+        name);
+  vxm_status status = make_opencl(out, context, NULL, true, options, &reason);
+  if (status == VXM_ERROR_UNAVAILABLE && !options->device)
+    status = make_opengl(out, context, NULL, true, options, &reason);
+  if (status == VXM_ERROR_ARGUMENT) /* a device that is not there */
+    return vxm_fail(error, status, "%s", reason.text);
   if (status == VXM_OK)
     (*out)->falls_back = true;
   return status == VXM_OK ? VXM_OK : make_cpu(out, context, reason.text, error);
@@ -204,6 +295,7 @@ vxm_status vxm_engines_list(vxm_engine_info *out, int64_t capacity, int64_t *cou
   *count = 1;
   if (capacity > 0)
     out[0] = cpu_info;
+  list_opencl(out, capacity, count, held);
   list_opengl(out, capacity, count, held);
   vxm_context_release(held);
   return VXM_OK;

@@ -12,29 +12,16 @@ enum {
   LARGE_HEADER = 4  /**< words of an indirect draw */
 };
 
-vxm_gl_job vxm_gl_job_of(const vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job) {
-  vxm_window part = *tile->window;
-  part.begin = tile->begin;
-  part.end = tile->end;
-  part.slice_words = part.row_words * (size_t)part.middle_dim;
-  vxm_columns columns = vxm_columns_of(&part, job->axis);
-  const int axes[3] = {columns.u, columns.v, columns.w};
-  vxm_gl_job out = {.bits = job->placed->lattice.bits,
-                    .keep_before = columns.keep_before,
-                    .few_columns = engine->can_pull ? FEW_COLUMNS : UINT32_MAX};
-  for (int i = 0; i < 3; i++) {
-    out.axes[i] = axes[i];
-    out.first[i] = (int32_t)columns.begin[axes[i]];
-    out.last[i] = (int32_t)columns.end[axes[i]];
-    out.step[i] = (uint32_t)columns.step[axes[i]];
-  }
+static vxm_gl_job job_of(const vxm_opengl *engine, const vxm_tile *tile, const vxm_unite_job *job) {
+  vxm_gl_job out = {.columns = vxm_tile_columns_of(tile, job)};
+  out.columns.few_columns = engine->can_pull ? FEW_COLUMNS : UINT32_MAX;
   return out;
 }
 
 static vxm_status find(vxm_opengl *engine, const vxm_gl_job *gl_job, vxm_error *error) {
   static const uint32_t header[LARGE_HEADER] = {0, 1, 0, 0};
   const vxm_gl *gl = &engine->context.gl;
-  size_t large = (LARGE_HEADER + (size_t)gl_job->facet_count) * sizeof(uint32_t);
+  size_t large = (LARGE_HEADER + (size_t)gl_job->columns.facet_count) * sizeof(uint32_t);
   vxm_status status = vxm_gl_reserve(engine, VXM_GL_LARGE, large, error);
   if (status == VXM_OK)
     status = vxm_gl_upload(engine, VXM_GL_LARGE, header, sizeof header, error);
@@ -50,7 +37,7 @@ static vxm_status find(vxm_opengl *engine, const vxm_gl_job *gl_job, vxm_error *
   vxm_gl_bind(engine, 2, VXM_GL_ORDER);
   vxm_gl_bind(engine, 3, VXM_GL_FLIPS);
   vxm_gl_bind(engine, 4, VXM_GL_LARGE);
-  vxm_gl_dispatch(gl, gl_job->facet_count, false);
+  vxm_gl_dispatch(gl, gl_job->columns.facet_count, false);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   return VXM_OK;
 }
@@ -62,12 +49,12 @@ static vxm_status draw(vxm_opengl *engine, vxm_gl_job *gl_job, vxm_error *error)
   vxm_status status = vxm_gl_use(engine, VXM_GL_DRAW_COLUMNS, error);
   gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, engine->framebuffer);
   gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, engine->buffers[VXM_GL_LARGE].name);
-  for (int64_t v = gl_job->first[1]; v < gl_job->last[1] && status == VXM_OK; v += most)
-    for (int64_t u = gl_job->first[0]; u < gl_job->last[0] && status == VXM_OK; u += most) {
+  for (int64_t v = gl_job->columns.first[1]; v < gl_job->columns.last[1] && status == VXM_OK; v += most)
+    for (int64_t u = gl_job->columns.first[0]; u < gl_job->columns.last[0] && status == VXM_OK; u += most) {
       gl_job->view[0] = (int32_t)u;
       gl_job->view[1] = (int32_t)v;
-      gl_job->view[2] = (int32_t)vxm_min(most, gl_job->last[0] - u);
-      gl_job->view[3] = (int32_t)vxm_min(most, gl_job->last[1] - v);
+      gl_job->view[2] = (int32_t)vxm_min(most, gl_job->columns.last[0] - u);
+      gl_job->view[3] = (int32_t)vxm_min(most, gl_job->columns.last[1] - v);
       status = vxm_gl_upload(engine, VXM_GL_JOB, gl_job, sizeof *gl_job, error);
       gl->FramebufferParameteri(GL_DRAW_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, gl_job->view[2]);
       gl->FramebufferParameteri(GL_DRAW_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, gl_job->view[3]);
@@ -79,12 +66,12 @@ static vxm_status draw(vxm_opengl *engine, vxm_gl_job *gl_job, vxm_error *error)
 }
 
 static vxm_status flip_far(vxm_opengl *engine, const vxm_gl_job *gl_job, const vxm_unite_job *job,
-                           const vxm_gl_passes *passes, size_t pass, vxm_error *error) {
+                           const vxm_passes *passes, size_t pass, vxm_error *error) {
   uint32_t *bits = NULL;
   size_t count = 0;
-  if (engine->far_count == 0)
+  if (engine->far.count == 0)
     return VXM_OK;
-  vxm_status status = vxm_gl_far_flips(&bits, &count, engine, gl_job, job, passes, pass, error);
+  vxm_status status = vxm_far_flips(&bits, &count, &engine->far, &gl_job->columns, job, passes, pass, error);
   if (status == VXM_OK && count > 0)
     status = vxm_gl_upload(engine, VXM_GL_LARGE, bits, count * sizeof *bits, error);
   if (status == VXM_OK && count > 0)
@@ -100,7 +87,7 @@ static vxm_status flip_far(vxm_opengl *engine, const vxm_gl_job *gl_job, const v
   return status;
 }
 
-vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_gl_passes *passes, size_t pass,
+vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_tile *tile, const vxm_passes *passes, size_t pass,
                         vxm_error *error) {
   size_t first = pass > 0 ? passes->box_end[pass - 1] : 0, count = passes->box_end[pass] - first;
   vxm_status status = vxm_gl_use(engine, VXM_GL_TOUCH, error);
@@ -115,7 +102,7 @@ vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_g
   return VXM_OK;
 }
 
-static vxm_status fold(vxm_opengl *engine, const vxm_gl_tile *tile, int axis, vxm_gl_buffer_id into,
+static vxm_status fold(vxm_opengl *engine, const vxm_tile *tile, int axis, vxm_gl_buffer_id into,
                        bool is_added, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   const vxm_window *window = tile->window;
@@ -143,21 +130,21 @@ static vxm_status fold(vxm_opengl *engine, const vxm_gl_tile *tile, int axis, vx
   return VXM_OK;
 }
 
-vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
-                          const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
-  vxm_gl_job gl_job = vxm_gl_job_of(engine, tile, job);
+vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                          const vxm_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
+  vxm_gl_job gl_job = job_of(engine, tile, job);
   size_t bytes = tile->words * sizeof(uint64_t), begin = 0;
   vxm_status status = vxm_gl_reserve_zero(engine, VXM_GL_FLIPS, bytes, error);
   if (status == VXM_OK)
     status = vxm_gl_reserve(engine, into, bytes, error);
   for (size_t p = 0; p < passes->count && status == VXM_OK; p++) {
-    gl_job.ordered = passes->ordered;
-    gl_job.facet_first = (uint32_t)(passes->ordered ? begin : passes->first);
-    gl_job.facet_count = (uint32_t)(passes->facet_end[p] - begin);
+    gl_job.columns.ordered = passes->ordered;
+    gl_job.columns.facet_first = (uint32_t)(passes->ordered ? begin : passes->first);
+    gl_job.columns.facet_count = (uint32_t)(passes->facet_end[p] - begin);
     begin = passes->facet_end[p];
-    if (gl_job.facet_count > 0)
+    if (gl_job.columns.facet_count > 0)
       status = find(engine, &gl_job, error);
-    if (status == VXM_OK && gl_job.facet_count > 0)
+    if (status == VXM_OK && gl_job.columns.facet_count > 0)
       status = draw(engine, &gl_job, error);
     if (status == VXM_OK)
       status = flip_far(engine, &gl_job, job, passes, p, error);

@@ -28,11 +28,11 @@ typedef struct slice_job {
 
 typedef struct slicing {
   vxm_opengl *engine;
-  const vxm_gl_tile *tile;
+  const vxm_tile *tile;
   const vxm_unite_job *job;
-  const vxm_gl_passes *passes;
+  const vxm_passes *passes;
   size_t facet_begin, facet_end; /**< places in the lists of the passes */
-  vxm_gl_job columns;            /**< axes and voxels of the tile */
+  vxm_tile_columns columns;      /**< axes and voxels of the tile */
   slice_job gl_job;
   int64_t begin, end;       /**< slices that are drawn together */
   size_t first[LAYERS + 1]; /**< of each slice: where its facets begin in the list */
@@ -304,8 +304,8 @@ bool vxm_gl_can_slice(const vxm_unite_job *job) {
          ((job->roles & VXM_FACET_CAP) && job->part_end <= split->kind_end[VXM_PART_CAPPED]);
 }
 
-vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
-                         const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
+vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                         const vxm_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
   slicing s = {.engine = engine, .tile = tile, .job = job, .passes = passes};
   size_t bytes = tile->words * sizeof(uint64_t);
   if (!engine->can_pull)
@@ -317,7 +317,7 @@ vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_
                     "a vertex lies too far outside the grid for slices; use --gl-method columns");
   vxm_unite_job turned = *job;
   turned.axis = engine->options.slice_axis;
-  s.columns = vxm_gl_job_of(engine, tile, &turned);
+  s.columns = vxm_tile_columns_of(tile, &turned);
   memcpy(s.gl_job.axes, s.columns.axes, sizeof s.gl_job.axes);
   s.gl_job.bits = s.columns.bits;
   vxm_status status = vxm_gl_reserve_zero(engine, VXM_GL_FLIPS, bytes, error);

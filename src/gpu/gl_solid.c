@@ -5,8 +5,8 @@
 #include <string.h>
 
 /** By the method that was chosen; parts that stay open have no tetrahedra to speak of, and go by columns. */
-static vxm_status make_tile(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
-                            const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
+static vxm_status make_tile(vxm_opengl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                            const vxm_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
   bool slices = engine->options.gl_method != VXM_GL_COLUMNS && vxm_gl_can_slice(job);
   return (slices ? vxm_gl_slices : vxm_gl_columns)(engine, tile, job, passes, into, error);
 }
@@ -47,13 +47,13 @@ static vxm_status take_touched(vxm_opengl *engine, atomic_uchar *touched, size_t
 }
 
 static vxm_status unite_tiles(vxm_opengl *engine, const vxm_window *window, const vxm_unite_job *job,
-                              const vxm_gl_passes *passes, vxm_error *error) {
+                              const vxm_passes *passes, vxm_error *error) {
   vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
   int64_t slices = 1;
   int which = 0;
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_gl_tile tile = vxm_gl_tile_of(window, k, slices);
+    vxm_tile tile = vxm_tile_of(window, k, slices);
     status = make_tile(engine, &tile, job, passes, VXM_GL_RESULT, error);
     if (status != VXM_OK)
       break;
@@ -74,7 +74,7 @@ static void clear(const vxm_window *window) {
 vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_unite_job *job,
                         vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
-  vxm_gl_passes passes = {0};
+  vxm_passes passes = {0};
   size_t parts = job->facets->split.part_count;
   if (job->part_begin >= job->part_end) {
     if (job->fresh)
@@ -93,7 +93,7 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_un
     status = unite_tiles(engine, window, job, &passes, error);
   if (status == VXM_OK && job->touched)
     status = take_touched(engine, job->touched, parts, error);
-  vxm_gl_passes_destroy(&passes);
+  vxm_passes_destroy(&passes);
   vxm_gl_leave(&engine->context);
   return status;
 }
@@ -106,19 +106,19 @@ enum { VOTERS = 4 };
 typedef struct ballot {
   vxm_unite_job job[VOTERS];
   vxm_gl_buffer_id words[VOTERS];
-  int count; /**< voters that are united; others vote as the first, as on the CPU */
+  int count; /**< voters that are united; the tetrahedra, if not asked, vote as x does */
 } ballot;
 
 static void prepare(ballot *b, const vxm_window *window, const vxm_elect_job *job) {
   static const char *const phase[VOTERS] = {"voxelizing along x", "voxelizing along y", "voxelizing along z",
                                             "voxelizing tetrahedra"};
-  b->count = job->agree ? 1 : job->tetra ? VOTERS : VOTERS - 1;
+  b->count = job->tetra ? VOTERS : VOTERS - 1;
   for (int v = 0; v < VOTERS; v++)
     b->words[v] = (vxm_gl_buffer_id)(v < b->count ? VXM_GL_VOTER_X + v : VXM_GL_VOTER_X);
   for (int v = 0; v < b->count; v++)
     b->job[v] = (vxm_unite_job){.facets = job->facets,
                                 .placed = job->placed,
-                                .axis = job->agree || v == 3 ? window->layout.fast : v,
+                                .axis = v == 3 ? window->layout.fast : v,
                                 .part_begin = job->part_begin,
                                 .part_end = job->part_end,
                                 .roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE,
@@ -128,17 +128,16 @@ static void prepare(ballot *b, const vxm_window *window, const vxm_elect_job *jo
 
 /** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
  */
-static vxm_status make_voter(vxm_opengl *engine, const vxm_gl_tile *tile, ballot *b, int v,
-                             vxm_error *error) {
-  vxm_gl_passes passes = {0};
+static vxm_status make_voter(vxm_opengl *engine, const vxm_tile *tile, ballot *b, int v, vxm_error *error) {
+  vxm_passes passes = {0};
   vxm_status status = vxm_gl_passes_create(&passes, engine, tile->window, &b->job[v], error);
   if (status == VXM_OK)
     status = make_tile(engine, tile, &b->job[v], &passes, b->words[v], error);
-  vxm_gl_passes_destroy(&passes);
+  vxm_passes_destroy(&passes);
   return status;
 }
 
-static vxm_status count_votes(vxm_opengl *engine, const vxm_gl_tile *tile, const ballot *b, vxm_vote rule,
+static vxm_status count_votes(vxm_opengl *engine, const vxm_tile *tile, const ballot *b, vxm_vote rule,
                               vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   vxm_status status = vxm_gl_use(engine, VXM_GL_VOTE, error);
@@ -158,7 +157,7 @@ static vxm_status count_votes(vxm_opengl *engine, const vxm_gl_tile *tile, const
   return vxm_gl_check(gl, "opengl: counting votes", error);
 }
 
-static vxm_status elect_tile(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_elect_job *job, ballot *b,
+static vxm_status elect_tile(vxm_opengl *engine, const vxm_tile *tile, const vxm_elect_job *job, ballot *b,
                              vxm_tally *tally, vxm_error *error) {
   uint32_t counted[2] = {0, 0};
   vxm_status status = vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
@@ -186,7 +185,7 @@ static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, cons
   prepare(&b, window, job);
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_gl_tile tile = vxm_gl_tile_of(window, k, slices);
+    vxm_tile tile = vxm_tile_of(window, k, slices);
     status = elect_tile(engine, &tile, job, &b, tally, error);
     if (status != VXM_OK)
       break;

@@ -7,47 +7,18 @@ enum { FEW_COLUMNS = 32, LARGE_HEADER = 4 };
 
 /** The uniform block of shaders/touching.glsl. */
 typedef struct surface_job {
-  int32_t first[3], bits;
-  int32_t last[3], thin;
-  uint32_t step[4];
-  uint32_t facet_count, few_columns, unused[2];
+  vxm_tile_surface tile;
   int32_t view[4];
 } surface_job;
 
-static surface_job job_of(const vxm_opengl *engine, const vxm_surface *surface, const vxm_gl_tile *tile,
+static surface_job job_of(const vxm_opengl *engine, const vxm_surface *surface, const vxm_tile *tile,
                           vxm_surface_kind kind) {
-  const vxm_layout *layout = &tile->window->layout;
-  surface_job job = {.bits = surface->lattice.bits,
-                     .thin = kind == VXM_SURFACE_THIN,
-                     .facet_count = (uint32_t)surface->triangle_count,
-                     .few_columns = engine->can_pull_late ? FEW_COLUMNS : UINT32_MAX};
-  job.last[layout->fast] = (int32_t)tile->window->fast_dim;
-  job.last[layout->middle] = (int32_t)tile->window->middle_dim;
-  job.first[layout->slow] = (int32_t)tile->begin;
-  job.last[layout->slow] = (int32_t)tile->end;
-  job.step[layout->fast] = 1;
-  job.step[layout->middle] = (uint32_t)(64 * tile->row_words);
-  job.step[layout->slow] = (uint32_t)(64 * tile->row_words) * (uint32_t)tile->window->middle_dim;
+  surface_job job = {.tile = vxm_tile_surface_of(tile, surface, kind)};
+  job.tile.few_columns = engine->can_pull_late ? FEW_COLUMNS : UINT32_MAX;
   return job;
 }
 
 /* ---- Triangles ---- */
-
-static vxm_status list_far(vxm_opengl *engine, const vxm_surface *surface, vxm_error *error) {
-  vxm_status status = VXM_OK;
-  engine->far_surface_count = 0;
-  for (size_t t = 0; t < surface->triangle_count && status == VXM_OK; t++) {
-    const uint32_t *corner = surface->corners + 3 * t;
-    if (!vxm_gl_is_far(&surface->points[corner[0]], &surface->points[corner[1]], &surface->points[corner[2]]))
-      continue;
-    status = vxm_grow(engine->base.context, (void **)&engine->far_surface, &engine->far_surface_capacity,
-                      engine->far_surface_count + 1, sizeof *engine->far_surface, error);
-    for (int c = 0; c < 3 && status == VXM_OK; c++)
-      engine->far_surface[engine->far_surface_count][c] = corner[c];
-    engine->far_surface_count++;
-  }
-  return status;
-}
 
 static vxm_status place(vxm_opengl *engine, const vxm_surface *surface, vxm_error *error) {
   size_t count = surface->soup->vertex_count;
@@ -59,7 +30,7 @@ static vxm_status place(vxm_opengl *engine, const vxm_surface *surface, vxm_erro
     status = vxm_gl_upload(engine, VXM_GL_SURFACE_CORNERS, surface->corners,
                            surface->triangle_count * 3 * sizeof *surface->corners, error);
   if (status == VXM_OK)
-    status = list_far(engine, surface, error);
+    status = vxm_far_surface_find(&engine->far_surface, surface, error);
   if (status == VXM_OK)
     engine->surface_serial = surface->serial;
   return status;
@@ -78,8 +49,8 @@ static void bind(vxm_opengl *engine) {
 static vxm_status find(vxm_opengl *engine, const surface_job *job, vxm_error *error) {
   static const uint32_t header[LARGE_HEADER] = {0, 1, 0, 0};
   const vxm_gl *gl = &engine->context.gl;
-  vxm_status status = vxm_gl_reserve(engine, VXM_GL_LARGE,
-                                     (LARGE_HEADER + (size_t)job->facet_count) * sizeof(uint32_t), error);
+  vxm_status status = vxm_gl_reserve(
+      engine, VXM_GL_LARGE, (LARGE_HEADER + (size_t)job->tile.facet_count) * sizeof(uint32_t), error);
   if (status == VXM_OK)
     status = vxm_gl_upload(engine, VXM_GL_LARGE, header, sizeof header, error);
   if (status == VXM_OK)
@@ -89,7 +60,7 @@ static vxm_status find(vxm_opengl *engine, const surface_job *job, vxm_error *er
   if (status != VXM_OK)
     return status;
   bind(engine);
-  vxm_gl_dispatch(gl, job->facet_count, false);
+  vxm_gl_dispatch(gl, job->tile.facet_count, false);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   return VXM_OK;
 }
@@ -99,7 +70,7 @@ static vxm_status draw(vxm_opengl *engine, surface_job *job, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   int64_t most = engine->base.info.viewport, longest = 0;
   for (int a = 0; a < 3; a++)
-    longest = vxm_max(longest, job->last[a]);
+    longest = vxm_max(longest, job->tile.last[a]);
   vxm_status status = vxm_gl_use(engine, VXM_GL_DRAW_SURFACE, error);
   if (status != VXM_OK)
     return status;
@@ -122,7 +93,7 @@ static vxm_status draw(vxm_opengl *engine, surface_job *job, vxm_error *error) {
   return status;
 }
 
-static vxm_status draw_tile(vxm_opengl *engine, const vxm_surface *surface, const vxm_gl_tile *tile,
+static vxm_status draw_tile(vxm_opengl *engine, const vxm_surface *surface, const vxm_tile *tile,
                             vxm_surface_kind kind, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   surface_job job = job_of(engine, surface, tile, kind);
@@ -150,7 +121,7 @@ static vxm_status draw_tiles(vxm_opengl *engine, const vxm_surface *surface, con
   int which = 0;
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_gl_tile tile = vxm_gl_tile_of(window, k, slices);
+    vxm_tile tile = vxm_tile_of(window, k, slices);
     status = draw_tile(engine, surface, &tile, kind, error);
     if (status != VXM_OK)
       break;
@@ -172,10 +143,5 @@ vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vx
   if (status == VXM_OK)
     status = draw_tiles(engine, surface, window, kind, is_fresh, error);
   vxm_gl_leave(&engine->context);
-  if (status != VXM_OK || engine->far_surface_count == 0)
-    return status;
-  vxm_surface far = *surface;
-  far.corners = engine->far_surface[0];
-  far.triangle_count = engine->far_surface_count;
-  return vxm_surface_add(&far, window, kind, false, error);
+  return status == VXM_OK ? vxm_far_surface_add(&engine->far_surface, surface, window, kind, error) : status;
 }

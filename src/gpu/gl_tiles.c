@@ -18,35 +18,17 @@ vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_
   return VXM_OK;
 }
 
-vxm_gl_tile vxm_gl_tile_of(const vxm_window *window, int64_t begin, int64_t slices) {
-  vxm_gl_tile tile = {.window = window,
-                      .begin = begin,
-                      .end = vxm_min(begin + slices, window->end),
-                      .row_words = window->row_words};
-  tile.words = tile.row_words * (size_t)window->middle_dim * (size_t)(tile.end - begin);
-  return tile;
-}
-
-/** Words of a slice of a tile, which lie close together; in the window there may be room between slices. */
-static size_t slice_words(const vxm_gl_tile *tile) {
-  return tile->row_words * (size_t)tile->window->middle_dim;
-}
-
-static uint64_t *slice_at(const vxm_gl_tile *tile, uint64_t *words, int64_t slice) {
-  return words + (size_t)(slice - tile->window->begin) * tile->window->slice_words;
-}
-
-vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_gl_tile *tile,
+vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_tile *tile,
                               vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
-  size_t bytes = slice_words(tile) * sizeof(uint64_t);
+  size_t bytes = vxm_tile_slice_words(tile) * sizeof(uint64_t);
   vxm_status status = vxm_gl_reserve(engine, id, tile->words * sizeof(uint64_t), error);
   if (status != VXM_OK)
     return status;
   gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[id].name);
   for (int64_t k = tile->begin; k < tile->end; k++)
     gl->BufferSubData(GL_COPY_WRITE_BUFFER, (GLintptr)((size_t)(k - tile->begin) * bytes), (GLsizeiptr)bytes,
-                      slice_at(tile, tile->window->words, k));
+                      vxm_tile_slice_at(tile, tile->window->words, k));
   return VXM_OK;
 }
 
@@ -70,18 +52,6 @@ vxm_status vxm_gl_return_begin(vxm_opengl *engine, vxm_gl_return *back, vxm_erro
   return vxm_gl_check(gl, "opengl: drawing", error);
 }
 
-static void take(const vxm_gl_tile *tile, uint64_t *words, const uint64_t *from, bool is_or) {
-  size_t count = slice_words(tile);
-  for (int64_t k = tile->begin; k < tile->end; k++, from += count) {
-    uint64_t *to = slice_at(tile, words, k);
-    if (!is_or)
-      memcpy(to, from, count * sizeof *to);
-    else
-      for (size_t w = 0; w < count; w++)
-        to[w] |= from[w];
-  }
-}
-
 vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error) {
   enum { WAIT_NS = 1000000000 };
   const vxm_gl *gl = &engine->context.gl;
@@ -93,14 +63,14 @@ vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error 
   while (waited == GL_TIMEOUT_EXPIRED);
   gl->DeleteSync(back->fence);
   back->fence = NULL;
-  const vxm_gl_tile *tile = &back->tile;
+  const vxm_tile *tile = &back->tile;
   size_t bytes = tile->words * sizeof(uint64_t), all = back->mask ? 2 * bytes : bytes;
   gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_STAGING + back->staging].name);
   const uint64_t *data = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)all, GL_MAP_READ_BIT);
   if (data) {
-    take(tile, tile->window->words, data, back->is_or);
+    vxm_tile_take(tile, tile->window->words, data, back->is_or);
     if (back->mask)
-      take(tile, back->mask, data + tile->words, false);
+      vxm_tile_take(tile, back->mask, data + tile->words, false);
     gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
   }
   vxm_status status = vxm_gl_check(gl, "opengl: reading voxels", error);

@@ -169,8 +169,8 @@ static void destroy(vxm_engine *base) {
     vxm_gl_leave(&engine->context);
   }
   vxm_gl_context_destroy(&engine->context);
-  vxm_free(base->context, engine->far);
-  vxm_free(base->context, engine->far_surface);
+  vxm_far_destroy(&engine->far);
+  vxm_far_surface_destroy(&engine->far_surface);
 }
 
 static const vxm_engine_ops opengl_ops = {.unite = vxm_gl_unite,
@@ -210,6 +210,7 @@ vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_g
   engine->base.ops = &opengl_ops;
   engine->base.wants_apexes = options->gl_method != VXM_GL_COLUMNS;
   engine->base.context = context;
+  engine->far.context = engine->far_surface.context = context;
   engine->options = *options;
   vxm_opengl_name(engine->base.info.name, sizeof engine->base.info.name, driver, index);
   vxm_status status = vxm_gl_context_create(&engine->context, driver, index, error);

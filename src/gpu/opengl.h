@@ -3,6 +3,7 @@
 #ifndef VXM_GPU_OPENGL_H
 #define VXM_GPU_OPENGL_H
 
+#include "gpu/far.h"
 #include "gpu/gl_context.h"
 #include "voxel/engine.h"
 
@@ -53,11 +54,7 @@ typedef struct vxm_gl_buffer {
 
 /** The uniform block of shaders/job.glsl. */
 typedef struct vxm_gl_job {
-  int32_t axes[3], bits;
-  int32_t first[3], keep_before;
-  int32_t last[3], unused;
-  uint32_t step[4];
-  uint32_t facet_first, facet_count, ordered, few_columns;
+  vxm_tile_columns columns;
   int32_t view[4];
 } vxm_gl_job;
 
@@ -86,11 +83,9 @@ typedef struct vxm_opengl {
   const vxm_gl_format *format; /**< that passed the self-test */
   vxm_gl_presence presence;
   uint64_t facets_serial, placed_serial; /**< what Corners and Points hold */
-  uint32_t *far;                         /**< facets beyond the numbers of the shaders */
-  size_t far_count, far_capacity;
   uint64_t surface_serial;
-  uint32_t (*far_surface)[3]; /**< corners of triangles of the surface beyond the numbers of the shaders */
-  size_t far_surface_count, far_surface_capacity;
+  vxm_far far; /**< facets and triangles beyond the numbers of the shaders */
+  vxm_far_surface far_surface;
   /** Vertex and geometry shaders may read buffers; else all facets are left to compute shaders. */
   bool can_pull, can_pull_late;
 } vxm_opengl;
@@ -147,25 +142,16 @@ void vxm_gl_presence_release(vxm_opengl *engine);
 
 /* ---- Tiles (gl_tiles.c) ---- */
 
-/** Slices of a window that are made at once: rows lie one behind the other. */
-typedef struct vxm_gl_tile {
-  const vxm_window *window;
-  int64_t begin, end; /**< slices of the window's space */
-  size_t row_words;   /**< of 64 bits */
-  size_t words;       /**< of 64 bits, in all */
-} vxm_gl_tile;
-
 /** How many slices of a window fit a tile. @return VXM_OK; VXM_ERROR_RANGE if not even one does */
 vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
                               vxm_error *error);
-vxm_gl_tile vxm_gl_tile_of(const vxm_window *window, int64_t begin, int64_t slices);
 /** Puts the words of a tile into a buffer. */
-vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_gl_tile *tile,
+vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_tile *tile,
                               vxm_error *error);
 
 /** A tile on its way back. Start from {0}. */
 typedef struct vxm_gl_return {
-  vxm_gl_tile tile;
+  vxm_tile tile;
   uint64_t *mask; /**< NULL, or laid out as the window's words: it takes the second half of the staging buffer
                    */
   bool is_or;     /**< added to the window's words */
@@ -184,54 +170,30 @@ vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error 
 vxm_status vxm_gl_place(vxm_opengl *engine, const vxm_facets *facets, const vxm_placed *placed,
                         vxm_error *error);
 
-/** Whether a triangle is beyond the numbers of the shaders: shaders/crossing.glsl. */
-bool vxm_gl_is_far(const vxm_point *a, const vxm_point *b, const vxm_point *c);
 /** Brings points to the device in 32 bits; those that do not fit are marked. */
 vxm_status vxm_gl_upload_points(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_point *points,
                                 size_t count, vxm_error *error);
 
-/** Facets of parts in passes: no two parts of a pass have boxes that meet. */
-typedef struct vxm_gl_passes {
-  vxm_context *context;
-  size_t count;
-  uint32_t *pass_of; /**< of each part from part_begin on */
-  size_t part_begin;
-  size_t *facet_end; /**< of each pass: the place behind its last facet */
-  bool ordered;      /**< facets are looked up in VXM_GL_ORDER; else they are those from `first` on */
-  uint32_t *order;   /**< what is in VXM_GL_ORDER */
-  size_t first;
-  size_t *box_end; /**< of each pass: the place behind its last box in VXM_GL_BOXES */
-} vxm_gl_passes;
-
-/** Divides the facets of a job's parts, and brings the lists to the device. Destroy with
- * vxm_gl_passes_destroy, also after a failure. */
-vxm_status vxm_gl_passes_create(vxm_gl_passes *out, vxm_opengl *engine, const vxm_window *window,
+/** Divides the facets of a job's parts, and brings the lists to the device. Destroy with vxm_passes_destroy,
+ * also after a failure. */
+vxm_status vxm_gl_passes_create(vxm_passes *out, vxm_opengl *engine, const vxm_window *window,
                                 const vxm_unite_job *job, vxm_error *error);
-void vxm_gl_passes_destroy(vxm_gl_passes *passes);
-
-/** Finds what facets beyond the numbers of the shaders flip: bits of a tile, in a new block. `count` is 0 and
- * the block NULL if there are none. */
-vxm_status vxm_gl_far_flips(uint32_t **out, size_t *count, const vxm_opengl *engine, const vxm_gl_job *tile,
-                            const vxm_unite_job *job, const vxm_gl_passes *passes, size_t pass,
-                            vxm_error *error);
 
 /* ---- Methods ---- */
 
-/** What the passes over a tile have in common. */
-vxm_gl_job vxm_gl_job_of(const vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job);
 /** Notes which parts of a pass have bits in VXM_GL_FLIPS. */
-vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_gl_passes *passes, size_t pass,
+vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_tile *tile, const vxm_passes *passes, size_t pass,
                         vxm_error *error);
 
 /** Parity of the job's parts along its axis, united, into VXM_GL_RESULT or a voter's buffer (gl_columns.c).
  * The passes are those of the job, and on the device. */
-vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
-                          const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
+vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                          const vxm_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
 
 /** Whether the job's facets close all of its parts, as tetrahedra need. */
 bool vxm_gl_can_slice(const vxm_unite_job *job);
 /** The XOR of tetrahedra for such a job (gl_slices.c). The apexes have been placed. */
-vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_gl_tile *tile, const vxm_unite_job *job,
-                         const vxm_gl_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
+vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                         const vxm_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
 
 #endif

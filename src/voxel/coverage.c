@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/coverage.h"
 #include "base/threads.h"
+#include "voxel/engine.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -22,7 +23,8 @@ typedef struct reduction {
   int64_t row_length, rows; /**< of a slice of the coverage */
   int64_t slices;           /**< at hand */
   unsigned char *values;
-  uint64_t *sums; /**< for each worker two words for each of a row: groups 0, 2, 4, ... and 1, 3, 5, ... */
+  uint16_t *counts; /**< of the groups at hand, where an engine counts them; else NULL */
+  uint64_t *sums;   /**< for each worker two words for each of a row: groups 0, 2, 4, ... and 1, 3, 5, ... */
   tally *tallies;
 } reduction;
 
@@ -77,6 +79,13 @@ static void store_same(const reduction *r, size_t at, size_t some, unsigned coun
     store(r, at + i, count);
 }
 
+static void store_count(const reduction *r, size_t at, unsigned count, unsigned most, tally *t) {
+  store(r, at, count);
+  t->subvoxels += count;
+  t->full += count == most;
+  t->partial += count > 0 && count < most;
+}
+
 /** Values of the groups of one word, `some` of them. */
 static void store_word(const reduction *r, const uint64_t pair[2], size_t at, size_t some, tally *t) {
   unsigned n = (unsigned)r->n, most = n * n * n;
@@ -87,11 +96,17 @@ static void store_word(const reduction *r, const uint64_t pair[2], size_t at, si
   }
   for (size_t g = 0; g < some; g++) {
     unsigned count = (unsigned)(pair[g % 2] >> (g / 2 * 2 * n) & field);
-    store(r, at + g, count);
-    t->subvoxels += count;
-    t->full += count == most;
-    t->partial += count > 0 && count < most;
+    store_count(r, at + g, count, most, t);
   }
+}
+
+/** Values of rows whose groups an engine has counted. */
+static void store_rows(size_t task, int worker, void *payload) {
+  const reduction *r = payload;
+  unsigned n = (unsigned)r->n, most = n * n * n;
+  int64_t end = vxm_min(((int64_t)task + 1) * ROWS_PER_TASK, r->rows * r->slices);
+  for (size_t at = task * ROWS_PER_TASK * (size_t)r->row_length; at < (size_t)(end * r->row_length); at++)
+    store_count(r, at, r->counts[at], most, &r->tallies[worker]);
 }
 
 static void reduce_rows(size_t task, int worker, void *payload) {
@@ -131,6 +146,28 @@ static vxm_status finer_space(vxm_space *out, const vxm_space *space, int n, vxm
   return vxm_space_check(out, error);
 }
 
+static bool has_counts(const vxm_engine *engine) {
+  return engine && engine->ops && engine->ops->count;
+}
+
+/** Lets the engine count the groups of a window, if it can. */
+static vxm_status count_elsewhere(reduction *r, vxm_engine *engine, const vxm_window *fine,
+                                  vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  uint16_t *counts = r->counts;
+  r->counts = NULL;
+  if (!counts || !has_counts(engine))
+    return VXM_OK;
+  vxm_status status = engine->ops->count(engine, counts, fine, r->n, &local);
+  if (status == VXM_OK)
+    r->counts = counts;
+  else if (vxm_engine_gives_way(engine, &local))
+    return VXM_OK;
+  else if (error)
+    *error = local;
+  return status;
+}
+
 static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, vxm_window fine,
                                  const vxm_field_plan *plan, vxm_model *model, vxm_error *error) {
   vxm_status status = VXM_OK;
@@ -147,8 +184,11 @@ static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, v
       break;
     r->slices = end - begin;
     r->values = target->whole ? (unsigned char *)target->whole + (size_t)begin * slice_bytes : block;
+    status = count_elsewhere(r, model->run.engine, &fine, error);
+    if (status != VXM_OK)
+      break;
     vxm_parallel(model->context, (size_t)((r->rows * r->slices + ROWS_PER_TASK - 1) / ROWS_PER_TASK),
-                 reduce_rows, r);
+                 r->counts ? store_rows : reduce_rows, r);
     if (!target->whole)
       status = target->put(target->payload, r->values, begin, end, error);
   }
@@ -189,8 +229,11 @@ vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const 
   size_t values =
       (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * vxm_scalar_bytes(options->scalar);
   size_t scratch = workers * (2 * row_words * sizeof(uint64_t) + sizeof(tally));
-  return vxm_field_plan_of(out, model, &finer, layout, options->subdivision, scratch, is_whole ? 0 : values,
-                           error);
+  size_t counts = has_counts(model->options.engine)
+                      ? (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(uint16_t)
+                      : 0;
+  return vxm_field_plan_of(out, model, &finer, layout, options->subdivision, scratch,
+                           (is_whole ? 0 : values) + counts, error);
 }
 
 vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report *report, vxm_model *model,
@@ -220,13 +263,17 @@ vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report 
   r.tallies = vxm_calloc(context, (size_t)workers, sizeof *r.tallies, &local);
   void *block = vxm_alloc(context, (size_t)plan.slices, value_bytes, &local);
   r.values = block;
-  status = fine.words && r.sums && r.tallies && block ? VXM_OK : local.code;
+  size_t count_bytes = has_counts(model->run.engine) ? (size_t)(r.row_length * r.rows) * sizeof *r.counts : 0;
+  uint16_t *counts = vxm_alloc(context, (size_t)plan.slices, count_bytes, &local);
+  r.counts = count_bytes > 0 ? counts : NULL;
+  status = fine.words && r.sums && r.tallies && block && counts ? VXM_OK : local.code;
   if (status == VXM_OK)
     status = vxm_model_begin(model, &finer, NULL, NULL, &local);
   if (status == VXM_OK)
     status = reduce_windows(&r, target, fine, &plan, model, &local);
   if (status == VXM_OK)
     sum_up(report, &r, space, workers, model);
+  vxm_free(context, counts);
   vxm_free(context, block);
   vxm_free(context, r.tallies);
   vxm_free(context, r.sums);

@@ -8,12 +8,11 @@
 #include "voxel/unite.h"
 #include "voxel/vote.h"
 
-/** Parts that voters decide. */
+/** Parts that voters decide; some of them have odd edges, else all voters would agree. */
 typedef struct vxm_elect_job {
   const vxm_facets *facets;
   const vxm_placed *placed;
   size_t part_begin, part_end; /**< each voter is the union of these */
-  bool agree;                  /**< no part has odd edges: one axis speaks for all voters */
   bool tetra;                  /**< ask the tetrahedra, too, as parity with cones */
   vxm_vote rule;
   uint64_t *mask;        /**< NULL, or words laid out as the window's that become the contested voxels */
@@ -43,6 +42,10 @@ typedef struct vxm_engine_ops {
                         vxm_surface_kind kind, bool is_fresh, vxm_error *error);
   /** Fills [x][y][z][4] bytes, 0 where a voxel is not set. */
   vxm_status (*color)(vxm_engine *engine, uint8_t *values, const vxm_color_job *job, vxm_error *error);
+  /** Counts the voxels that are set in each group of n x n x n of a window, which begins and ends between
+   * groups: a number for each, along bits, then rows, then slices. */
+  vxm_status (*count)(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
+                      vxm_error *error);
   void (*destroy)(vxm_engine *engine);
 } vxm_engine_ops;
 

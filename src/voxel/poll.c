@@ -17,8 +17,7 @@ typedef struct poll_state {
   const vxm_poll_job *job;
   const vxm_kernels *kernels;
   vxm_columns columns[SETS];
-  size_t edge_begin, edge_end; /**< the cones of the odd edges; without any, all axes agree */
-  size_t sets;                 /**< in the bins */
+  size_t edge_begin, edge_end; /**< the cones of the odd edges */
   vxm_slabs slabs;
   size_t stripes;
   size_t words_each; /**< scratch of a worker: a slab for each set, and a slice */
@@ -28,10 +27,6 @@ typedef struct poll_state {
   atomic_bool added;
   vxm_watch watch;
 } poll_state;
-
-static bool has_odd_edges(const poll_state *state) {
-  return state->edge_begin < state->edge_end;
-}
 
 static size_t stripe_begin(const poll_state *state, size_t stripe) {
   return vxm_slice_begin(state->slabs.count, state->stripes, stripe);
@@ -82,29 +77,37 @@ static void sum_stripe(size_t stripe, int worker, void *payload) {
   }
 }
 
-/** A slab while it is folded: the words of each set, and of those that were used. */
+/** A slab while it is folded. */
 typedef struct slab {
-  uint64_t *words[SETS];
+  uint64_t *words[SETS];       /**< zeros, but for sets in use */
+  bool used[SETS];             /**< whether anything was flipped */
   size_t index, slices, count; /**< number, slices and words */
 } slab;
 
-static void fold_fast(const poll_state *state, const slab *s, uint64_t *words) {
-  state->kernels->fold_rows(words, state->window->row_words, s->slices * (size_t)state->window->middle_dim,
+static void fold_fast(const poll_state *state, const slab *s, int set) {
+  state->kernels->fold_rows(s->words[set], state->window->row_words,
+                            s->slices * (size_t)state->window->middle_dim,
                             vxm_window_tail_mask(state->window));
 }
 
-/** The parity along the middle axis, or NULL where it is that along the fast one. */
-static const uint64_t *fold_middle(const poll_state *state, const slab *s) {
+/** The voter that differs from the fast axis by what a set flips; the fast axis itself where that is nothing.
+ */
+static const uint64_t *voter_of(const poll_state *state, const slab *s, int set) {
+  if (!s->used[set])
+    return s->words[BASE];
+  fold_fast(state, s, set);
+  for (size_t w = 0; w < s->count; w++)
+    s->words[set][w] ^= s->words[BASE][w];
+  return s->words[set];
+}
+
+/** The flips along the middle axis, folded along it. */
+static void fold_middle(const poll_state *state, slab *s) {
   const vxm_window *window = state->window;
   uint64_t *words = s->words[MIDDLE];
-  if (!flip_slab(state, MIDDLE, s->index, words))
-    return NULL;
-  for (size_t k = 0; k < s->slices; k++)
+  s->used[MIDDLE] = flip_slab(state, MIDDLE, s->index, words);
+  for (size_t k = 0; s->used[MIDDLE] && k < s->slices; k++)
     state->kernels->fold_across(words + k * window->slice_words, window->row_words, window->slice_words);
-  fold_fast(state, s, words);
-  for (size_t w = 0; w < s->count; w++)
-    words[w] ^= s->words[BASE][w];
-  return words;
 }
 
 static bool is_zero(const uint64_t *words, size_t count) {
@@ -114,45 +117,41 @@ static bool is_zero(const uint64_t *words, size_t count) {
   return any == 0;
 }
 
-/** The parity along the slow axis, or NULL where it is that along the fast one. `carry` is what is open along
- * slices at the begin of the slab, then at its end. */
-static const uint64_t *fold_slow(const poll_state *state, const slab *s, uint64_t *carry) {
+/** The flips along the slow axis, folded along it. `carry` is what is open along slices at the begin of the
+ * slab, then at its end. */
+static void fold_slow(const poll_state *state, slab *s, uint64_t *carry) {
   size_t slice = state->window->slice_words;
   uint64_t *words = s->words[SLOW];
-  if (!flip_slab(state, SLOW, s->index, words) && is_zero(carry, slice))
-    return NULL;
+  s->used[SLOW] = flip_slab(state, SLOW, s->index, words) || !is_zero(carry, slice);
+  if (!s->used[SLOW])
+    return;
   memcpy(words - slice, carry, slice * sizeof *carry);
   state->kernels->fold_across(words - slice, slice, slice + s->count);
   memcpy(carry, words + s->count - slice, slice * sizeof *carry);
-  fold_fast(state, s, words);
-  for (size_t w = 0; w < s->count; w++)
-    words[w] ^= s->words[BASE][w];
-  return words;
 }
 
-/** The parity by tetrahedra, which is that of triangles and cones along any axis. */
-static const uint64_t *fold_tetra(const poll_state *state, const slab *s) {
-  uint64_t *words = s->words[CONES];
-  flip_slab(state, CONES, s->index, words);
-  fold_fast(state, s, words);
-  for (size_t w = 0; w < s->count; w++)
-    words[w] ^= s->words[BASE][w];
-  return words;
-}
-
-/** The voters in a slab: three axes, the fast one first, and NULL or the tetrahedra. */
-static void fold_voters(const poll_state *state, const slab *s, uint64_t *carry, const uint64_t *voters[4]) {
-  flip_slab(state, BASE, s->index, s->words[BASE]);
-  fold_fast(state, s, s->words[BASE]);
-  const uint64_t *middle = NULL, *slow = NULL;
-  if (has_odd_edges(state)) {
-    middle = fold_middle(state, s);
-    slow = fold_slow(state, s, carry);
-  }
+/** The voters in a slab: three axes, the fast one first, and the tetrahedra, whose parity is that of
+ * triangles and cones along any axis. Where the tetrahedra are not asked they vote as the fast axis does. */
+static void fold_voters(const poll_state *state, slab *s, uint64_t *carry, const uint64_t *voters[4]) {
+  s->used[BASE] = flip_slab(state, BASE, s->index, s->words[BASE]);
+  s->used[CONES] = flip_slab(state, CONES, s->index, s->words[CONES]);
+  fold_middle(state, s);
+  fold_slow(state, s, carry);
+  if (s->used[BASE])
+    fold_fast(state, s, BASE);
   voters[0] = s->words[BASE];
-  voters[1] = middle ? middle : voters[0];
-  voters[2] = slow ? slow : voters[0];
-  voters[3] = state->job->tetra ? fold_tetra(state, s) : NULL;
+  voters[1] = voter_of(state, s, MIDDLE);
+  voters[2] = voter_of(state, s, SLOW);
+  voters[3] = voter_of(state, s, CONES);
+}
+
+/** Makes the words of a slab zeros again; those of SLOW have a slice before them. */
+static void clear(slab *s, size_t slice) {
+  for (int set = 0; set < SETS; set++) {
+    size_t before = set == SLOW ? slice : 0;
+    if (s->used[set])
+      memset(s->words[set] - before, 0, (before + s->count) * sizeof *s->words[set]);
+  }
 }
 
 static void do_stripe(size_t stripe, int worker, void *payload) {
@@ -163,7 +162,7 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
   uint64_t *scratch = state->workspace->scratch + (size_t)worker * state->words_each;
   slab s = {.words = {NULL}};
   int64_t contested = 0;
-  for (size_t set = 0; set < state->sets; set++)
+  for (size_t set = 0; set < SETS; set++)
     s.words[set] = scratch + set * state->slabs.words + (set == SLOW ? slice : 0);
   for (s.index = stripe_begin(state, stripe); s.index < stripe_begin(state, stripe + 1); s.index++) {
     if (vxm_watch_stopped(&state->watch, worker))
@@ -177,10 +176,7 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
     contested +=
         state->kernels->vote(window->words + at, voters, state->job->mask ? state->job->mask + at : NULL,
                              s.count, state->job->rule, state->job->fresh, state->past, &added);
-    for (size_t set = 0; set < state->sets; set++)
-      if (set == BASE || voters[1] == s.words[set] || voters[2] == s.words[set] || voters[3] == s.words[set])
-        memset(s.words[set] - (set == SLOW ? slice : 0), 0,
-               (s.count + (set == SLOW ? slice : 0)) * sizeof *scratch);
+    clear(&s, slice);
     vxm_watch_step(&state->watch);
   }
   atomic_fetch_add_explicit(&state->contested, contested, memory_order_relaxed);
@@ -209,10 +205,9 @@ static void shape(poll_state *state) {
   int threads = vxm_context_threads(state->workspace->context);
   state->edge_begin = part->cones;
   state->edge_end = part->end;
-  state->sets = has_odd_edges(state) ? SETS : BASE + 1;
   state->slabs = vxm_slabs_of(window->end - window->begin, window->slice_words, threads);
   state->stripes = (size_t)threads < state->slabs.count ? (size_t)threads : state->slabs.count;
-  state->words_each = state->sets * state->slabs.words + window->slice_words;
+  state->words_each = SETS * state->slabs.words + window->slice_words;
   state->past = job->fresh && vxm_window_is_large(window);
   for (size_t set = BASE; set <= CONES; set++) {
     vxm_columns *columns = &state->columns[set];
@@ -243,15 +238,13 @@ static void run_stripes(poll_state *state) {
   vxm_context *context = state->workspace->context;
   size_t slice = window->slice_words;
   memcpy(state->carries, state->job->carry, slice * sizeof *state->carries);
-  bool differ = has_odd_edges(state);
-  if (differ && state->stripes > 1)
+  if (state->stripes > 1)
     vxm_parallel(context, state->stripes, sum_stripe, state);
-  for (size_t s = 1; differ && s < state->stripes; s++)
+  for (size_t s = 1; s < state->stripes; s++)
     for (size_t w = 0; w < slice; w++)
       state->carries[s * slice + w] ^= state->carries[(s - 1) * slice + w];
   vxm_parallel(context, state->stripes, do_stripe, state);
-  if (differ)
-    memcpy(state->job->carry, state->carries + (state->stripes - 1) * slice, slice * sizeof *state->carries);
+  memcpy(state->job->carry, state->carries + (state->stripes - 1) * slice, slice * sizeof *state->carries);
 }
 
 vxm_status vxm_poll(vxm_workspace *workspace, const vxm_window *window, const vxm_poll_job *job,
@@ -270,8 +263,7 @@ vxm_status vxm_poll(vxm_workspace *workspace, const vxm_window *window, const vx
   if (status == VXM_OK)
     status = vxm_workspace_scratch(workspace, workers * state.words_each, error);
   if (status == VXM_OK)
-    status =
-        vxm_bins_reset(&workspace->bins, workers, state.sets, state.slabs.count, state.slabs.words, error);
+    status = vxm_bins_reset(&workspace->bins, workers, SETS, state.slabs.count, state.slabs.words, error);
   if (status != VXM_OK)
     return status;
   vxm_error local = VXM_ERROR_INIT;

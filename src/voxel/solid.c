@@ -24,33 +24,25 @@ bool vxm_one_voter(const vxm_voxelize_options *options) {
   return options->method != VXM_METHOD_VOTE && options->method != VXM_METHOD_WINDING;
 }
 
-/** Whether parts from `begin` on have cones, and so odd edges. */
-static bool has_cones(const vxm_shape *shape, size_t begin) {
-  for (size_t p = begin; p < shape->facets.split.part_count; p++)
-    if (shape->facets.parts[p].cones < shape->facets.parts[p].end)
-      return true;
-  return false;
-}
-
 size_t vxm_voted_begin(const vxm_shape *shape) {
   /* Where no edge is odd the axes agree (voxel/odd_edges.h), and there is nothing to vote on. */
-  bool all = shape->options->vote_always && !vxm_caps_wanted(shape->options) && has_cones(shape, 0);
+  bool differ = shape->facets.split.odd_edge_count > 0;
+  bool all = shape->options->vote_always && !vxm_caps_wanted(shape->options) && differ;
   return all ? 0 : kind_end(shape, VXM_PART_CAPPED);
 }
 
 int vxm_run_buffers(const vxm_shape *shape) {
   if (vxm_one_voter(shape->options) || vxm_voted_begin(shape) == shape->facets.split.part_count)
     return 0;
-  bool decide = vxm_caps_wanted(shape->options);
   if (vxm_voted_begin(shape) + 1 == shape->facets.split.part_count)
-    return decide ? 1 : 0; /* one part: only what is contested */
-  return decide || has_cones(shape, vxm_voted_begin(shape)) ? 4 : 3;
+    return vxm_caps_wanted(shape->options) ? 1 : 0; /* one part: only what is contested */
+  return 4;                                         /* three axes, and what is contested or the tetrahedra */
 }
 
 bool vxm_run_apexes(const vxm_shape *shape) {
   const vxm_voxelize_options *options = shape->options;
-  return options->method == VXM_METHOD_TETRA || options->confidence ||
-         (!vxm_one_voter(options) && !vxm_caps_wanted(options) && has_cones(shape, vxm_voted_begin(shape)));
+  bool polled = !vxm_one_voter(options) && vxm_voted_begin(shape) < shape->facets.split.part_count;
+  return options->method == VXM_METHOD_TETRA || options->confidence || (polled && !vxm_caps_wanted(options));
 }
 
 vxm_status vxm_run_buffer(vxm_run *run, int buffer, const vxm_window *like, vxm_window *out,
@@ -191,12 +183,10 @@ static vxm_status poll_part(vxm_run *run, const vxm_window *window, size_t part,
 static vxm_status elect_elsewhere(vxm_run *run, const vxm_window *window, bool tetra, vxm_vote rule,
                                   uint64_t *mask, vxm_tally *tally, vxm_error *error) {
   vxm_shape *shape = run->shape;
-  size_t begin = vxm_voted_begin(shape);
   vxm_elect_job job = {.facets = &shape->facets,
                        .placed = &run->placed,
-                       .part_begin = begin,
+                       .part_begin = vxm_voted_begin(shape),
                        .part_end = shape->facets.split.part_count,
-                       .agree = !has_cones(shape, begin),
                        .tetra = tetra,
                        .rule = rule,
                        .mask = mask,
@@ -209,7 +199,7 @@ static vxm_status decide_open_parts(vxm_run *run, const vxm_window *window, vxm_
   size_t begin = vxm_voted_begin(shape), end = shape->facets.split.part_count;
   if (begin == end)
     return VXM_OK;
-  bool decide = vxm_caps_wanted(shape->options), tetra = !decide && has_cones(shape, begin);
+  bool decide = vxm_caps_wanted(shape->options), tetra = !decide;
   vxm_vote rule = decide ? VXM_VOTE_AUTO : shape->options->vote;
   vxm_window mask = {.words = NULL};
   vxm_tally tally = {0, false};

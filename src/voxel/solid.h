@@ -54,7 +54,7 @@ typedef struct vxm_run {
 bool vxm_caps_wanted(const vxm_voxelize_options *options);
 /** Whether the method is one voter for all parts. */
 bool vxm_one_voter(const vxm_voxelize_options *options);
-/** The first part of those that voters decide. */
+/** The first part of those that voters decide. If there are any, they have odd edges. */
 size_t vxm_voted_begin(const vxm_shape *shape);
 /** Windows that a run holds beside its result, as far as options and parts tell. */
 int vxm_run_buffers(const vxm_shape *shape);

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# A signal in the middle of the work leaves no file, and the program ends by that signal.
+# A signal in the middle of the work leaves no file, and the program ends by that signal; two at once are as one.
+# A second one later ends the program at once.
 set -eu
 work=$(mktemp -d "${TMPDIR:-/tmp}/voxmend-interrupt.XXXXXX")
 trap 'rm -rf "$work"' EXIT
@@ -9,10 +10,11 @@ mkdir "$work/in" "$work/out"
 
 # interrupted COMMAND...: with a signal after some time. Where it was done before that, nothing is told.
 interrupted() {
-  for delay in 0.05 0.2 0.4; do
+  for delay in 0.05 0.1 0.2 0.3 0.4; do
     "$VOXMEND" "$@" --threads 1 >/dev/null 2>"$work/err" &
     job=$!
     sleep "$delay"
+    kill -TERM "$job" 2>/dev/null || true
     kill -TERM "$job" 2>/dev/null || true
     status=0
     wait "$job" || status=$?
@@ -26,3 +28,19 @@ interrupted() {
 
 interrupted voxelize "$work/in/rocket.off" -o "$work/out/x.rle" -r 1400
 interrupted bench "$work/in/rocket.off" --plot "$work/out/x.svg" --report "$work/out/x.json"
+
+# Where the work does not come to an end by itself: it waits for more to read.
+mkfifo "$work/fifo"
+exec 3<>"$work/fifo"
+"$VOXMEND" info - <"$work/fifo" >/dev/null 2>&1 3<&- &
+job=$!
+for delay in 0.1 0.8; do
+  sleep "$delay"
+  kill -TERM "$job"
+done
+(sleep 5; kill -KILL "$job") 2>/dev/null 3<&- &
+watch=$!
+status=0
+wait "$job" || status=$?
+kill "$watch" 2>/dev/null || true
+[ "$status" -eq 143 ] || { echo "FAILED: exit status $status of a second signal"; exit 1; }

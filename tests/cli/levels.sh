@@ -47,6 +47,17 @@ run 'voxmend repair twice.off -o x.off --max-change 1e-9 -q && voxmend info x.of
 { echo OFF; echo 16 12 0; sed -n 3,10p in/cube.off; sed -n 3,10p in/cube.off | awk '{ print $1 / 10 + 5, $2 / 10, $3 / 10 }'
   tail -n 6 in/cube.off; tail -n 6 in/cube.off | awk '{ print $1, $2 + 8, $3 + 8, $4 + 8, $5 + 8 }'; } >small.off
 run 'voxmend repair small.off -o x.off --weld 0.3 --max-change 0.5'
+refused() { # COMMAND...: what the report says, and that nothing else was written
+  rm -f x.off x.json
+  "$@" -o x.off --report x.json || echo "status $?"
+  [ ! -e x.off ] || echo 'x.off is written'
+  grep -E '"(output|refused|reached)"|"after"|"faces"' x.json
+}
+run 'refused voxmend repair small.off --weld 0.3 --max-change 0.5'
+run 'voxmend repair small.off -o x.off --weld 0.3 --max-change 0.5 --locate found.ply --json -q | grep refused; ls found.ply'
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
+run 'refused voxmend repair flat.off'
+run 'refused voxmend repair open.off --level closed --fill-holes 3'
 run 'voxmend repair small.off -o x.off --drop-parts volume:0.5 --max-change 0.5 -q && voxmend info x.off | grep components'
 
 say "# .stl: triangles and 32-bit floats"

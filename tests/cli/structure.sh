@@ -17,7 +17,7 @@ for room in base mesh meshio repair grid voxel gpu gridio augment batch api; do
   [ -d "$room" ] || continue
   allowed=$(echo "$seen" | sed 's/^ //; s/ /|/g')
   found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' "$room" --include='*.[ch]' --include='*.cc' --include='*.inc' |
-    grep -vE "\"(($allowed)/[^\"]*|voxmend\.h|config\.h|shaders/shaders\.inc)\"" || true)
+    grep -vE "\"(($allowed)/[^\"]*|voxmend\.h|config\.h|shaders/(kernels|shaders)\.inc)\"" || true)
   [ -z "$found" ] || complain "$room includes what does not come before it" "$found"
 done
 found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' cli | grep -vE '"(cli/[^"]*|voxmend\.h|config\.h)"' || true)

@@ -81,10 +81,8 @@ static void test_many_parts(void **state) {
 static void test_ties(void **state) {
   (void)state;
   vxm_space space = engine_space(16, 16, 16);
-  for (int offset = 0; offset <= 8; offset++) {
-    vxm_soup *soup = shape_empty(context);
-    double at = offset / 8.0;
-    shape_box(soup, (double[3]){2 + at, 3.5, 4 + at}, (double[3]){12.5, 11 + at, 13.5});
+  for (int eighths = 0; eighths <= 8; eighths++) {
+    vxm_soup *soup = box_with_ties(eighths / 8.0, 0.5);
     check_all(soup, &space);
     vxm_soup_destroy(soup);
   }
@@ -203,7 +201,7 @@ static void test_limits(void **state) {
   info->block_bytes = 16 * 70 * 6; /* three slices beside what else is held */
   info->viewport = 17;
   check_all(soup, &space);
-  info->block_bytes = 16 * 70;
+  info->block_bytes = 16 * 70 / 2;
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.space.like = &space;
   options.engine = engine;

@@ -68,10 +68,8 @@ static void test_ties(void **state) {
     for (int axis = 0; axis < 3; axis++) {
       vxm_engine_options options = with((vxm_gl_method)method, axis);
       vxm_engine *by = engine_with(&options);
-      for (int offset = 0; offset <= 4; offset++) {
-        vxm_soup *soup = shape_empty(context);
-        double at = offset / 4.0;
-        shape_box(soup, (double[3]){2 + at, 3.5, 4 + at}, (double[3]){12.5, 11 + at, 13.5});
+      for (int quarters = 0; quarters <= 4; quarters++) {
+        vxm_soup *soup = box_with_ties(quarters / 4.0, 0.5);
         assert_int_equal(check(soup, &space, by, VXM_PARTS_AUTO), 0);
         vxm_soup_destroy(soup);
       }

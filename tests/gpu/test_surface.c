@@ -59,13 +59,12 @@ static void test_random(void **state) {
   }
 }
 
+/** Faces on the sides of voxels. */
 static void test_ties(void **state) {
   (void)state;
   vxm_space space = engine_space(16, 16, 16);
-  for (int offset = 0; offset <= 4; offset++) {
-    vxm_soup *soup = shape_empty(context);
-    double at = offset / 4.0;
-    shape_box(soup, (double[3]){2 + at, 3, 4 + at}, (double[3]){12, 11 + at, 13.5});
+  for (int quarters = 0; quarters <= 4; quarters++) {
+    vxm_soup *soup = box_with_ties(quarters / 4.0, 0);
     check(soup, &space);
     vxm_soup_destroy(soup);
   }

@@ -17,6 +17,7 @@
 
 #include "base/rng.h"
 #include "grid/bitgrid.h"
+#include "gridio/gridio.h"
 
 static inline vxm_context *context_with(int threads, uint64_t limit, vxm_progress_fn progress,
                                         void *payload) {
@@ -99,6 +100,29 @@ static inline void assert_same_bits(const vxm_grid *a, const vxm_grid *b) {
 }
 
 /* ---- Files ---- */
+
+static inline void write_grid(const vxm_grid *grid, const char *path) {
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_gridio_write(grid, path, NULL, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+}
+
+static inline vxm_grid *read_back(vxm_context *context, const char *path) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_grid *grid = NULL;
+  if (vxm_gridio_read(&grid, context, path, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  return grid;
+}
+
+/** The file is the grid, bit for bit, and nothing is noted of it. */
+static inline void assert_reads_back(const vxm_grid *grid, const char *path) {
+  vxm_grid *back = read_back(grid->context, path);
+  assert_same_bits(grid, back);
+  assert_memory_equal(&grid->space, &back->space, sizeof grid->space);
+  assert_int_equal(back->notes.count, 0);
+  vxm_grid_destroy(back);
+}
 
 /** An empty folder of its own in the present one. */
 static inline void make_folder(char folder[64]) {

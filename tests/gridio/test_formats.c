@@ -2,24 +2,8 @@
 /** What is written comes back; what is written is what doc/formats.md and the published formats say. */
 #include "grids.h"
 
-#include "gridio/gridio.h"
-
 #include <inttypes.h>
 #include <math.h>
-
-static vxm_grid *read_back(vxm_context *context, const char *path) {
-  vxm_error error = VXM_ERROR_INIT;
-  vxm_grid *grid = NULL;
-  if (vxm_gridio_read(&grid, context, path, &error) != VXM_OK)
-    fail_msg("%s", error.text);
-  return grid;
-}
-
-static void write_grid(const vxm_grid *grid, const char *path) {
-  vxm_error error = VXM_ERROR_INIT;
-  if (vxm_gridio_write(grid, path, NULL, &error) != VXM_OK)
-    fail_msg("%s", error.text);
-}
 
 /** raw, rle, npy and nrrd keep everything bit for bit, in any number of threads. */
 static void test_exact_round_trips(void **state) {
@@ -35,11 +19,7 @@ static void test_exact_round_trips(void **state) {
     for (int f = 0; f < 4; f++) {
       const char *path = path_in(folder, names[f]);
       write_grid(grid, path);
-      vxm_grid *back = read_back(context, path);
-      assert_same_bits(grid, back);
-      assert_memory_equal(&grid->space, &back->space, sizeof grid->space);
-      assert_int_equal(back->notes.count, 0);
-      vxm_grid_destroy(back);
+      assert_reads_back(grid, path);
     }
     vxm_grid_destroy(grid);
     vxm_context_destroy(context);
@@ -72,9 +52,7 @@ static void test_transforms_bit_for_bit(void **state) {
     const char *names[] = {"g.raw", "g.rle", "g.npy", "g.nrrd"};
     for (int f = 0; f < 4; f++) {
       write_grid(grid, path_in(folder, names[f]));
-      vxm_grid *back = read_back(context, path_in(folder, names[f]));
-      assert_memory_equal(&grid->space, &back->space, sizeof grid->space);
-      vxm_grid_destroy(back);
+      assert_reads_back(grid, path_in(folder, names[f]));
     }
     vxm_grid_destroy(grid);
   }
@@ -289,9 +267,7 @@ static void test_long_runs(void **state) {
       size_t full = (size_t)(lengths[l] / 255), rest = (size_t)(lengths[l] % 255);
       assert_int_equal(size, 80 + 1 + full + (rest > 0 || tail) + (size_t)tail);
       free(data);
-      vxm_grid *back = read_back(context, path);
-      assert_same_bits(grid, back);
-      vxm_grid_destroy(back);
+      assert_reads_back(grid, path);
       vxm_grid_destroy(grid);
     }
   vxm_context_destroy(context);
@@ -416,16 +392,12 @@ static void test_format_choice(void **state) {
   /* The format given wins over the extension, in any case. */
   assert_int_equal(vxm_gridio_write(grid, path_in(folder, "a.npy"), "RLE", &error), VXM_OK);
   assert_int_equal(count_files(folder), 1);
-  vxm_grid *back = read_back(context, path_in(folder, "a.npy"));
-  assert_same_bits(grid, back);
-  vxm_grid_destroy(back);
+  assert_reads_back(grid, path_in(folder, "a.npy"));
   /* A raw grid whose voxels spell another format's first bytes is still a raw grid. */
   vxm_grid *spelt = new_grid(context, unit_space(64, 1, 1));
   memcpy(spelt->words, "VXMRLE1\n", 8);
   write_grid(spelt, path_in(folder, "s.RAW"));
-  back = read_back(context, path_in(folder, "s.RAW"));
-  assert_same_bits(spelt, back);
-  vxm_grid_destroy(back);
+  assert_reads_back(spelt, path_in(folder, "s.RAW"));
   vxm_grid_destroy(spelt);
   /* Voxels that are no cubes do not fit binvox; nothing is left behind. */
   empty_folder(folder);

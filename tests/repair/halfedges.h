@@ -120,16 +120,6 @@ static inline void areas_from(const vxm_soup *soup, size_t first, double *sum, d
   *of_sum = sqrt(total[0] * total[0] + total[1] * total[1] + total[2] * total[2]);
 }
 
-static inline int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static inline int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 /** Opens the module; where it is missing, 77, which is that a test was skipped, and else 0. */
 static inline int open_openmesh(void) {
   vxm_error error = VXM_ERROR_INIT;

@@ -14,13 +14,13 @@
 static const vxm_cgal *cgal;
 static vxm_context *context;
 
-static int make_context(void **state) {
+static inline int hold_context(void **state) {
   (void)state;
   context = context_of_threads(2);
   return 0;
 }
 
-static int drop_context(void **state) {
+static inline int release_context(void **state) {
   (void)state;
   vxm_context_destroy(context);
   return 0;

@@ -289,5 +289,5 @@ int main(void) {
       cmocka_unit_test(cancelled),
       cmocka_unit_test(the_same_each_time),
   };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  return cmocka_run_group_tests(tests, hold_context, release_context);
 }

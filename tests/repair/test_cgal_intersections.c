@@ -315,5 +315,5 @@ int main(void) {
       cmocka_unit_test(nothing_to_find),
       cmocka_unit_test(not_finite),
   };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  return cmocka_run_group_tests(tests, hold_context, release_context);
 }

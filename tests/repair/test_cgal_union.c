@@ -658,5 +658,5 @@ int main(void) {
       cmocka_unit_test(cancelled),
       cmocka_unit_test(too_little_memory),
   };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  return cmocka_run_group_tests(tests, hold_context, release_context);
 }

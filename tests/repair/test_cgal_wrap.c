@@ -251,5 +251,5 @@ int main(void) {
       cmocka_unit_test(arguments),     cmocka_unit_test(what_would_fit),    cmocka_unit_test(cancelled),
       cmocka_unit_test(shared_meshes),
   };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  return cmocka_run_group_tests(tests, hold_context, release_context);
 }

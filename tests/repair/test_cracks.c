@@ -199,16 +199,6 @@ static void cracks_under_doubled_faces(void **state) {
   assert_int_equal(auto_merges(soup), 2);
 }
 
-static int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(torn_sphere_closes),         cmocka_unit_test(any_size_of_model),

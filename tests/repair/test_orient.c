@@ -352,16 +352,6 @@ static void memory_may_run_out(void **state) {
   }
 }
 
-static int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(boxes_turn_outward),

@@ -332,16 +332,6 @@ static void bad_options(void **state) {
   vxm_soup_destroy(soup);
 }
 
-static int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(clean_mesh_stays),

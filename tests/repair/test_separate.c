@@ -473,16 +473,6 @@ static void failures(void **state) {
   }
 }
 
-static int make_context(void **state) {
-  *state = context_of_threads(2);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  vxm_context_destroy(*state);
-  return 0;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cubes_touch_along_an_edge),

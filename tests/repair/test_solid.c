@@ -246,5 +246,5 @@ int main(void) {
       cmocka_unit_test(counted_beyond_the_list),
       cmocka_unit_test(stopped_anywhere),
   };
-  return cmocka_run_group_tests(tests, make_context, drop_context);
+  return cmocka_run_group_tests(tests, hold_context, release_context);
 }

@@ -1,25 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Parts that do not meet can be made in one pass: their parities do not mix. */
-#include "gpu/opengl.h"
+#include "gpu/passes.h"
 
 #include <string.h>
 
 enum { CELLS = 32 /**< along each axis: one bit of a word for each along bits */ };
 
-/** Voxels that a part may flip or set, along bits, rows and slices: those behind `last` are left out. */
-typedef struct box {
-  uint32_t part, row_bits;
-  uint32_t first[3], last[3];
-} box;
-
 typedef struct division {
-  vxm_opengl *engine;
+  vxm_context *context;
   const vxm_window *window;
   const vxm_unite_job *job;
-  box *boxes;                       /**< of each part */
+  int64_t margin;
+  vxm_pass_box *boxes;              /**< of each part */
   uint32_t (*taken)[CELLS * CELLS]; /**< cells of each pass in which a part has its box */
   size_t taken_capacity;
-  vxm_gl_passes *passes;
+  vxm_passes *passes;
 } division;
 
 /** Where the facets of a part that count lie; of one part they are two ranges at most. */
@@ -38,7 +33,7 @@ static bool is_closed(const vxm_unite_job *job, size_t part) {
          (part < split->kind_end[VXM_PART_CAPPED] && (job->roles & VXM_FACET_CAP));
 }
 
-static box box_of(const division *d, size_t part) {
+static vxm_pass_box box_of(const division *d, size_t part) {
   const vxm_unite_job *job = d->job;
   const vxm_layout *layout = &d->window->layout;
   const int axes[3] = {layout->fast, layout->middle, layout->slow};
@@ -54,10 +49,7 @@ static box box_of(const division *d, size_t part) {
           high[a] = vxm_max(high[a], p.at[a]);
         }
       }
-  /* Slices move points, and the apex in any case a little. */
-  double move = d->engine->options.displacement;
-  int64_t margin = d->engine->base.wants_apexes ? (int64_t)(move < 1 << 20 ? move : 1 << 20) + 1 : 0;
-  box out = {.part = (uint32_t)part, .row_bits = (uint32_t)(64 * d->window->row_words)};
+  vxm_pass_box out = {.part = (uint32_t)part, .row_bits = (uint32_t)(64 * d->window->row_words)};
   for (int i = 0; i < 3 && low[0] <= high[0]; i++) {
     int a = axes[i];
     int64_t dim = d->window->layout.fast == a     ? d->window->fast_dim
@@ -65,8 +57,8 @@ static box box_of(const division *d, size_t part) {
                                                   : d->window->slow_dim;
     int64_t first = vxm_lattice_first(&job->placed->lattice, low[a]);
     int64_t last = vxm_lattice_first(&job->placed->lattice, high[a]);
-    first -= margin;
-    last += margin;
+    first -= d->margin;
+    last += d->margin;
     if (a == job->axis) /* what an open part flips stays flipped up to the end */
       last = is_closed(job, part) ? last + 2 : dim;
     out.first[i] = (uint32_t)vxm_min(vxm_max(first, 0), dim);
@@ -75,12 +67,12 @@ static box box_of(const division *d, size_t part) {
   return out;
 }
 
-static bool is_empty(const box *b) {
+static bool is_empty(const vxm_pass_box *b) {
   return b->first[0] >= b->last[0] || b->first[1] >= b->last[1] || b->first[2] >= b->last[2];
 }
 
 /** The cells of a box: a mask along bits, ranges along rows and slices. */
-static uint32_t cells_of(const division *d, const box *b, size_t first[2], size_t last[2]) {
+static uint32_t cells_of(const division *d, const vxm_pass_box *b, size_t first[2], size_t last[2]) {
   const int64_t dims[3] = {d->window->fast_dim, d->window->middle_dim, d->window->slow_dim};
   size_t cell[3][2];
   for (int i = 0; i < 3; i++) {
@@ -105,8 +97,8 @@ static bool is_free(const uint32_t *taken, uint32_t mask, const size_t first[2],
 
 /** Finds the first pass in which the box meets no other one, or begins a pass. */
 static vxm_status find_pass(division *d, size_t index, vxm_error *error) {
-  vxm_gl_passes *passes = d->passes;
-  const box *b = &d->boxes[index];
+  vxm_passes *passes = d->passes;
+  const vxm_pass_box *b = &d->boxes[index];
   size_t first[2], last[2], pass = 0;
   if (is_empty(b)) { /* it flips nothing; any pass will do */
     passes->pass_of[index] = 0;
@@ -116,8 +108,8 @@ static vxm_status find_pass(division *d, size_t index, vxm_error *error) {
   while (pass < passes->count && !is_free(d->taken[pass], mask, first, last))
     pass++;
   if (pass == passes->count) {
-    vxm_status status = vxm_grow(d->engine->base.context, (void **)&d->taken, &d->taken_capacity, pass + 1,
-                                 sizeof *d->taken, error);
+    vxm_status status =
+        vxm_grow(d->context, (void **)&d->taken, &d->taken_capacity, pass + 1, sizeof *d->taken, error);
     if (status != VXM_OK)
       return status;
     memset(d->taken[pass], 0, sizeof d->taken[pass]);
@@ -132,7 +124,7 @@ static vxm_status find_pass(division *d, size_t index, vxm_error *error) {
 
 /** Lists the facets of each pass, or finds that they lie one behind the other. */
 static vxm_status list_facets(division *d, vxm_error *error) {
-  vxm_gl_passes *passes = d->passes;
+  vxm_passes *passes = d->passes;
   const vxm_unite_job *job = d->job;
   size_t begin[2], end[2], parts = job->part_end - job->part_begin, total = 0, at = 0;
   if (parts == 1) {
@@ -148,7 +140,7 @@ static vxm_status list_facets(division *d, vxm_error *error) {
     ranges_of(job, job->part_begin + i, begin, end);
     total += end[0] - begin[0] + (end[1] - begin[1]);
   }
-  uint32_t *order = vxm_alloc(d->engine->base.context, total, sizeof *order, error);
+  uint32_t *order = vxm_alloc(d->context, total, sizeof *order, error);
   if (!order)
     return VXM_ERROR_MEMORY;
   /* The place of each part's facets: those of the passes before it, then of the parts before it. */
@@ -170,14 +162,15 @@ static vxm_status list_facets(division *d, vxm_error *error) {
         order[(*to)++] = (uint32_t)f;
   }
   passes->order = order;
-  return vxm_gl_upload(d->engine, VXM_GL_ORDER, order, total * sizeof *order, error);
+  passes->order_count = total;
+  return VXM_OK;
 }
 
-/** Brings the boxes to the device, pass after pass. */
+/** Puts the boxes that are not empty pass after pass. */
 static vxm_status list_boxes(division *d, vxm_error *error) {
-  vxm_gl_passes *passes = d->passes;
+  vxm_passes *passes = d->passes;
   size_t parts = d->job->part_end - d->job->part_begin, at = 0;
-  box *sorted = vxm_alloc(d->engine->base.context, parts, sizeof *sorted, error);
+  vxm_pass_box *sorted = vxm_alloc(d->context, parts, sizeof *sorted, error);
   if (!sorted)
     return VXM_ERROR_MEMORY;
   memset(passes->box_end, 0, passes->count * sizeof *passes->box_end);
@@ -191,14 +184,14 @@ static vxm_status list_boxes(division *d, vxm_error *error) {
   for (size_t i = 0; i < parts; i++)
     if (!is_empty(&d->boxes[i]))
       sorted[passes->box_end[passes->pass_of[i]]++] = d->boxes[i];
-  vxm_status status = vxm_gl_upload(d->engine, VXM_GL_BOXES, sorted, at * sizeof *sorted, error);
-  vxm_free(d->engine->base.context, sorted);
-  return status;
+  passes->boxes = sorted;
+  passes->box_count = at;
+  return VXM_OK;
 }
 
 static vxm_status divide(division *d, vxm_error *error) {
-  vxm_gl_passes *passes = d->passes;
-  vxm_context *context = d->engine->base.context;
+  vxm_passes *passes = d->passes;
+  vxm_context *context = d->context;
   size_t parts = d->job->part_end - d->job->part_begin;
   vxm_status status = VXM_OK;
   passes->pass_of = vxm_calloc(context, parts, sizeof *passes->pass_of, error);
@@ -221,14 +214,14 @@ static vxm_status divide(division *d, vxm_error *error) {
   return status == VXM_OK && d->job->touched ? list_boxes(d, error) : status;
 }
 
-vxm_status vxm_gl_passes_create(vxm_gl_passes *out, vxm_opengl *engine, const vxm_window *window,
-                                const vxm_unite_job *job, vxm_error *error) {
+vxm_status vxm_passes_create(vxm_passes *out, vxm_context *context, const vxm_window *window,
+                             const vxm_unite_job *job, int64_t margin, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  *out = (vxm_gl_passes){.context = engine->base.context, .part_begin = job->part_begin};
-  division d = {.engine = engine, .window = window, .job = job, .passes = out};
+  *out = (vxm_passes){.context = context, .part_begin = job->part_begin};
+  division d = {.context = context, .window = window, .job = job, .margin = margin, .passes = out};
   vxm_status status = divide(&d, &local);
-  vxm_free(engine->base.context, d.boxes);
-  vxm_free(engine->base.context, d.taken);
+  vxm_free(context, d.boxes);
+  vxm_free(context, d.taken);
   if (status == VXM_OK)
     return VXM_OK;
   if (error)
@@ -236,9 +229,10 @@ vxm_status vxm_gl_passes_create(vxm_gl_passes *out, vxm_opengl *engine, const vx
   return local.code; /* that of the allocation, where it was one */
 }
 
-void vxm_gl_passes_destroy(vxm_gl_passes *passes) {
+void vxm_passes_destroy(vxm_passes *passes) {
   vxm_free(passes->context, passes->pass_of);
   vxm_free(passes->context, passes->order);
   vxm_free(passes->context, passes->facet_end);
   vxm_free(passes->context, passes->box_end);
+  vxm_free(passes->context, passes->boxes);
 }

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Solids by OpenCL: tiles are made one after another, and each is taken back while the next is made. */
+#include "gpu/cl_solid.h"
+
+#include <string.h>
+
+enum { PASSES_MOST = 4 /**< of what is done triangle by triangle, unless that is asked for */ };
+
+static vxm_status clear_touched(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error) {
+  return vxm_cl_clear(engine, VXM_CL_TOUCHED, facets->split.part_count * sizeof(uint32_t), error);
+}
+
+static vxm_status take_touched(vxm_opencl *engine, atomic_uchar *touched, const vxm_facets *facets,
+                               vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  size_t parts = facets->split.part_count;
+  uint32_t *set = vxm_alloc(engine->base.context, parts, sizeof *set, &local);
+  vxm_status status =
+      set ? vxm_cl_download(engine, VXM_CL_TOUCHED, 0, set, parts * sizeof *set, &local) : local.code;
+  for (size_t p = 0; p < parts && status == VXM_OK; p++)
+    if (set[p])
+      atomic_store_explicit(&touched[p], 1, memory_order_relaxed);
+  vxm_free(engine->base.context, set);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error) {
+  for (int i = 0; i < 2; i++)
+    status = vxm_cl_return_end(engine, &back[i], status, error);
+  if (status != VXM_OK) {
+    engine->cl->Finish(engine->queue);
+    engine->cl->Finish(engine->transfer);
+    vxm_cl_release(engine, VXM_CL_FLIPS);
+  }
+  return status;
+}
+
+/* ---- Unions ---- */
+
+/** Makes the words of a tile: by `passes`, or by tiles of columns where these are NULL. */
+static vxm_status make_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                            const vxm_passes *passes, vxm_cl_buffer_id into, vxm_error *error) {
+  return passes->count > 0 ? vxm_cl_columns(engine, tile, job, passes, into, error)
+                           : vxm_cl_tiles(engine, tile, job, into, error);
+}
+
+/** Divides the parts into passes, or into none where tiles of columns are the better way. */
+static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job,
+                         vxm_passes *passes, vxm_error *error) {
+  vxm_cl_method method = vxm_cl_can_tile(engine, window, job) ? engine->options.cl_method : VXM_CL_TRIANGLES;
+  if (method == VXM_CL_TILES)
+    return VXM_OK;
+  vxm_status status = vxm_cl_passes_create(passes, engine, window, job, error);
+  if (status == VXM_OK && method == VXM_CL_AUTO && passes->count > PASSES_MOST)
+    passes->count = 0;
+  return status;
+}
+
+static vxm_status unite_tiles(vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job,
+                              const vxm_passes *passes, vxm_error *error) {
+  vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_RESULT2}};
+  int64_t slices = 1;
+  int which = 0;
+  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
+    vxm_tile tile = vxm_tile_of(window, k, slices);
+    status = vxm_cl_return_end(engine, &back[which], status, error);
+    if (status == VXM_OK)
+      status = make_tile(engine, &tile, job, passes, back[which].from, error);
+    back[which].tile = tile;
+    back[which].words = window->words;
+    back[which].is_or = !job->fresh;
+    if (status == VXM_OK)
+      status = vxm_cl_return_begin(engine, &back[which], error);
+  }
+  return vxm_cl_finish(engine, back, status, error);
+}
+
+static void clear(const vxm_window *window) {
+  for (int64_t k = window->begin; k < window->end; k++)
+    memset(vxm_window_row(window, 0, k), 0,
+           window->row_words * (size_t)window->middle_dim * sizeof *window->words);
+}
+
+vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_unite_job *job,
+                        vxm_error *error) {
+  vxm_opencl *engine = vxm_opencl_of(base);
+  vxm_passes passes = {.context = base->context};
+  if (job->part_begin >= job->part_end) {
+    if (job->fresh)
+      clear(window);
+    return VXM_OK;
+  }
+  vxm_status status = vxm_cl_place(engine, job->facets, job->placed, error);
+  if (status == VXM_OK)
+    status = choose(engine, window, job, &passes, error);
+  if (status == VXM_OK && job->touched)
+    status = clear_touched(engine, job->facets, error);
+  if (status == VXM_OK)
+    status = unite_tiles(engine, window, job, &passes, error);
+  if (status == VXM_OK && job->touched)
+    status = take_touched(engine, job->touched, job->facets, error);
+  vxm_passes_destroy(&passes);
+  return status;
+}
+
+/* ---- Votes ---- */
+
+enum { VOTERS = 4 };
+
+/** The voters of an election: what is united for each, and where its words are. */
+typedef struct ballot {
+  vxm_unite_job job[VOTERS];
+  vxm_cl_buffer_id words[VOTERS];
+  int count; /**< voters that are united; others vote as the first, as on the CPU */
+} ballot;
+
+static void prepare(ballot *b, const vxm_window *window, const vxm_elect_job *job) {
+  static const char *const phase[VOTERS] = {"voxelizing along x", "voxelizing along y", "voxelizing along z",
+                                            "voxelizing tetrahedra"};
+  b->count = job->tetra ? VOTERS : VOTERS - 1;
+  for (int v = 0; v < VOTERS; v++)
+    b->words[v] = (vxm_cl_buffer_id)(v < b->count ? VXM_CL_VOTER_X + v : VXM_CL_VOTER_X);
+  for (int v = 0; v < b->count; v++)
+    b->job[v] = (vxm_unite_job){.facets = job->facets,
+                                .placed = job->placed,
+                                .axis = v == 3 ? window->layout.fast : v,
+                                .part_begin = job->part_begin,
+                                .part_end = job->part_end,
+                                .roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE,
+                                .touched = job->touched,
+                                .phase = phase[v]};
+}
+
+/** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
+ */
+static vxm_status make_voter(vxm_opencl *engine, const vxm_tile *tile, ballot *b, int v, vxm_error *error) {
+  vxm_passes passes = {.context = engine->base.context};
+  vxm_status status = choose(engine, tile->window, &b->job[v], &passes, error);
+  if (status == VXM_OK)
+    status = make_tile(engine, tile, &b->job[v], &passes, b->words[v], error);
+  vxm_passes_destroy(&passes);
+  return status;
+}
+
+static vxm_status count_votes(vxm_opencl *engine, const vxm_tile *tile, const ballot *b, vxm_vote rule,
+                              vxm_cl_buffer_id result, vxm_error *error) {
+  const cl_uint count = (cl_uint)(2 * tile->words);
+  const cl_uint number = rule == VXM_VOTE_MAJORITY ? 1 : rule == VXM_VOTE_ANY ? 2 : 0;
+  return vxm_cl_run(engine, VXM_CL_VOTE, count,
+                    VXM_CL_ARGS(VXM_CL_MEM(engine, b->words[0]), VXM_CL_MEM(engine, b->words[1]),
+                                VXM_CL_MEM(engine, b->words[2]), VXM_CL_MEM(engine, b->words[3]),
+                                VXM_CL_MEM(engine, result), VXM_CL_MEM(engine, VXM_CL_MASK),
+                                VXM_CL_MEM(engine, VXM_CL_TALLY), VXM_CL_VALUE(count), VXM_CL_VALUE(number)),
+                    error);
+}
+
+static vxm_status elect_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm_elect_job *job, ballot *b,
+                             vxm_cl_buffer_id result, vxm_tally *tally, vxm_error *error) {
+  uint32_t counted[2] = {0, 0};
+  vxm_status status = vxm_cl_tile_upload(engine, result, tile, error);
+  if (status == VXM_OK)
+    status = vxm_cl_reserve(engine, VXM_CL_MASK, tile->words * sizeof(uint64_t), error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof counted, error);
+  for (int v = 0; v < b->count && status == VXM_OK; v++)
+    status = make_voter(engine, tile, b, v, error);
+  if (status == VXM_OK)
+    status = count_votes(engine, tile, b, job->rule, result, error);
+  if (status == VXM_OK)
+    status = vxm_cl_download(engine, VXM_CL_TALLY, 0, counted, sizeof counted, error);
+  tally->contested += counted[0];
+  tally->added |= counted[1] != 0;
+  return status;
+}
+
+static vxm_status elect_tiles(vxm_opencl *engine, const vxm_window *window, const vxm_elect_job *job,
+                              vxm_tally *tally, vxm_error *error) {
+  vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_MASK}};
+  int64_t slices = 1;
+  ballot b = {.count = 0};
+  prepare(&b, window, job);
+  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices) {
+    vxm_tile tile = vxm_tile_of(window, k, slices);
+    for (int i = 0; i < 2; i++)
+      status = vxm_cl_return_end(engine, &back[i], status, error);
+    if (status == VXM_OK)
+      status = elect_tile(engine, &tile, job, &b, VXM_CL_RESULT, tally, error);
+    back[0].tile = back[1].tile = tile;
+    back[0].words = window->words;
+    back[1].words = job->mask;
+    for (int i = 0; i < (job->mask ? 2 : 1) && status == VXM_OK; i++)
+      status = vxm_cl_return_begin(engine, &back[i], error);
+  }
+  return vxm_cl_finish(engine, back, status, error);
+}
+
+vxm_status vxm_cl_elect(vxm_engine *base, const vxm_window *window, const vxm_elect_job *job,
+                        vxm_tally *tally, vxm_error *error) {
+  vxm_opencl *engine = vxm_opencl_of(base);
+  if (job->part_begin >= job->part_end)
+    return VXM_OK;
+  vxm_status status = vxm_cl_place(engine, job->facets, job->placed, error);
+  if (status == VXM_OK && job->touched)
+    status = clear_touched(engine, job->facets, error);
+  if (status == VXM_OK)
+    status = elect_tiles(engine, window, job, tally, error);
+  if (status == VXM_OK && job->touched)
+    status = take_touched(engine, job->touched, job->facets, error);
+  return status;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Solids and surfaces by OpenCL; see vxm_engine_ops. */
+#ifndef VXM_GPU_CL_SOLID_H
+#define VXM_GPU_CL_SOLID_H
+
+#include "gpu/opencl.h"
+
+vxm_status vxm_cl_unite(vxm_engine *engine, const vxm_window *window, const vxm_unite_job *job,
+                        vxm_error *error);
+vxm_status vxm_cl_elect(vxm_engine *engine, const vxm_window *window, const vxm_elect_job *job,
+                        vxm_tally *tally, vxm_error *error);
+/** As vxm_surface_add (cl_surface.c). */
+vxm_status vxm_cl_surface(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
+                          vxm_surface_kind kind, bool is_fresh, vxm_error *error);
+
+/** See vxm_engine_ops (cl_coverage.c). */
+vxm_status vxm_cl_count(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
+                        vxm_error *error);
+
+/** Ends what is under way; after a failure, when flips may be left over and something may still run, too.
+ * Returns `status`, or the first failure. */
+vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error);
+
+/** Parity of the job's parts along its axis, united, in a buffer of a tile, triangle by triangle
+ * (cl_columns.c). The passes are those of the job, and on the device. */
+vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                          const vxm_passes *passes, vxm_cl_buffer_id into, vxm_error *error);
+
+/** Whether the job can be done tile by tile: its columns run along the bits, and no facet is far. */
+bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job);
+/** The same for such a job, tile of columns by tile of columns (cl_tiles.c). */
+vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,
+                        vxm_cl_buffer_id into, vxm_error *error);
+
+#endif

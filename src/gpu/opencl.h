@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** An engine on an OpenCL device: its programs and buffers, kept from one grid to the next. */
+#ifndef VXM_GPU_OPENCL_H
+#define VXM_GPU_OPENCL_H
+
+#include "gpu/cl_device.h"
+#include "gpu/far.h"
+#include "voxel/engine.h"
+
+/** Programs: each is compiled when one of its kernels is first asked for. */
+typedef enum vxm_cl_program_id {
+  VXM_CL_SOLID = 0, /**< triangle by triangle */
+  VXM_CL_SURFACE,
+  VXM_CL_SORT,
+  VXM_CL_TILES_PROGRAM,
+  VXM_CL_COVERAGE,
+  VXM_CL_PROGRAMS
+} vxm_cl_program_id;
+
+typedef enum vxm_cl_kernel_id {
+  VXM_CL_FLIP_COLUMNS = 0,
+  VXM_CL_FLIP_LARGE,
+  VXM_CL_FLIP_BITS,
+  VXM_CL_FOLD_ROWS,
+  VXM_CL_FOLD_ACROSS,
+  VXM_CL_TOUCH,
+  VXM_CL_VOTE,
+  VXM_CL_SET_SURFACE,
+  VXM_CL_SET_LARGE,
+  VXM_CL_SCAN_BLOCKS,
+  VXM_CL_SCAN_ADD,
+  VXM_CL_SORT_COUNT,
+  VXM_CL_SORT_SCATTER,
+  VXM_CL_COUNT_TILES,
+  VXM_CL_LIST_TILES,
+  VXM_CL_FIND_TILES,
+  VXM_CL_FILL_TILES,
+  VXM_CL_COUNT_GROUPS,
+  VXM_CL_KERNELS
+} vxm_cl_kernel_id;
+
+typedef enum vxm_cl_buffer_id {
+  VXM_CL_POINTS = 0,
+  VXM_CL_CORNERS,
+  VXM_CL_ORDER,  /**< numbers of facets, pass after pass */
+  VXM_CL_FLIPS,  /**< a bit per voxel of a tile; zero between uses */
+  VXM_CL_LARGE,  /**< how many facets of many columns, and which */
+  VXM_CL_RESULT, /**< two: one is read while the other is made */
+  VXM_CL_RESULT2,
+  VXM_CL_MASK,    /**< contested voxels of a tile */
+  VXM_CL_VOTER_X, /**< four of them */
+  VXM_CL_VOTER_T = VXM_CL_VOTER_X + 3,
+  VXM_CL_TALLY,
+  VXM_CL_BOXES,
+  VXM_CL_TOUCHED,
+  VXM_CL_SURFACE_POINTS,
+  VXM_CL_SURFACE_CORNERS,
+  VXM_CL_SUMS,   /**< of blocks of what is scanned */
+  VXM_CL_DIGITS, /**< how often each occurs in each block of what is sorted */
+  VXM_CL_SORT_KEYS,
+  VXM_CL_SORT_VALUES,
+  VXM_CL_PARTS,  /**< of each facet the part, and above it the role */
+  VXM_CL_COUNTS, /**< tiles of each facet, then where its pairs begin */
+  VXM_CL_TILE_KEYS,
+  VXM_CL_TILE_FACETS,
+  VXM_CL_GROUPS, /**< how many voxels of each are set */
+  VXM_CL_LISTS,  /**< where the pairs of each tile begin and end */
+  VXM_CL_BUFFERS
+} vxm_cl_buffer_id;
+
+typedef struct vxm_cl_buffer {
+  cl_mem mem;
+  size_t bytes; /**< counted against the memory limit */
+} vxm_cl_buffer;
+
+typedef struct vxm_opencl {
+  vxm_engine base; /**< first, so that an engine is one */
+  vxm_engine_options options;
+  const vxm_cl *cl;
+  vxm_cl_device device;
+  cl_context context;
+  cl_command_queue queue;    /**< kernels, in order */
+  cl_command_queue transfer; /**< what is read while kernels run */
+  cl_program programs[VXM_CL_PROGRAMS];
+  cl_kernel kernels[VXM_CL_KERNELS];
+  size_t group; /**< work-items of a group: a power of two that all kernels made so far can have */
+  vxm_cl_buffer buffers[VXM_CL_BUFFERS];
+  uint64_t facets_serial, parts_serial, placed_serial, surface_serial; /**< what the buffers hold */
+  vxm_far far;
+  vxm_far_surface far_surface;
+} vxm_opencl;
+
+static inline vxm_opencl *vxm_opencl_of(vxm_engine *engine) {
+  return (vxm_opencl *)engine;
+}
+
+/** Makes an engine on a device; the reference to `context` is the caller's. @return VXM_OK,
+ * VXM_ERROR_UNAVAILABLE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_cl *cl,
+                             const vxm_cl_device *device, int number, const vxm_engine_options *options,
+                             vxm_error *error);
+
+/* ---- Programs (cl_program.c) ---- */
+
+/** Makes a program and all its kernels, if that is still to be done; `group` may shrink and what was made for
+ * a larger one goes. */
+vxm_status vxm_cl_ready(vxm_opencl *engine, vxm_cl_program_id id, vxm_error *error);
+void vxm_cl_programs_release(vxm_opencl *engine);
+
+/** An argument of a kernel. */
+typedef struct vxm_cl_arg {
+  size_t size;
+  const void *value; /**< NULL: so many bytes of local memory */
+} vxm_cl_arg;
+#define VXM_CL_VALUE(variable) \
+  { sizeof(variable), &(variable) }
+#define VXM_CL_MEM(engine, id) \
+  { sizeof(cl_mem), &(engine)->buffers[id].mem }
+#define VXM_CL_ARGS(...) \
+  (const vxm_cl_arg[]){__VA_ARGS__}, sizeof((const vxm_cl_arg[]){__VA_ARGS__}) / sizeof(vxm_cl_arg)
+
+/** Queues a kernel for at least `items` work-items in groups of engine->group; its program is ready. */
+vxm_status vxm_cl_run(vxm_opencl *engine, vxm_cl_kernel_id id, uint64_t items, const vxm_cl_arg *args,
+                      size_t count, vxm_error *error);
+/** As vxm_cl_run, for so many groups. */
+vxm_status vxm_cl_run_groups(vxm_opencl *engine, vxm_cl_kernel_id id, uint64_t groups, const vxm_cl_arg *args,
+                             size_t count, vxm_error *error);
+/** Groups that keep the device busy where each goes on to another piece of work. */
+uint64_t vxm_cl_busy_groups(const vxm_opencl *engine);
+
+/* ---- Buffers (cl_buffer.c) ---- */
+
+/** Room for so many bytes; what was in it is lost if it grows. @return VXM_OK, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_RANGE (more than the device gives to one buffer) */
+vxm_status vxm_cl_reserve(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error);
+/** As vxm_cl_reserve, with all bytes zero if it grows. */
+vxm_status vxm_cl_reserve_zero(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error);
+/** Room, and the first bytes zero. */
+vxm_status vxm_cl_clear(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error);
+void vxm_cl_release(vxm_opencl *engine, vxm_cl_buffer_id id);
+/** Room, and these bytes in it; the data may go when this returns. */
+vxm_status vxm_cl_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const void *data, size_t bytes,
+                         vxm_error *error);
+/** Reads bytes of a buffer, once all is done that was queued. */
+vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, void *out, size_t bytes,
+                           vxm_error *error);
+
+/* ---- Tiles (cl_buffer.c) ---- */
+
+/** How many slices of a window fit a tile. @return VXM_OK; VXM_ERROR_RANGE if not even one does */
+vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_window *window,
+                              vxm_error *error);
+/** Puts the words of a tile into a buffer. */
+vxm_status vxm_cl_tile_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const vxm_tile *tile,
+                              vxm_error *error);
+
+/** A tile on its way back. Start from {0}. */
+typedef struct vxm_cl_return {
+  vxm_tile tile;
+  vxm_cl_buffer_id from;
+  uint64_t *words; /**< laid out as the window's */
+  bool is_or;      /**< added to them */
+  uint64_t *block; /**< what is added waits here */
+  cl_event event;  /**< NULL: none is under way */
+} vxm_cl_return;
+
+/** Begins to take back a tile, once all is done that was queued. */
+vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_error *error);
+/** Waits for it; also after a failure. Returns `status`, or the first failure. */
+vxm_status vxm_cl_return_end(vxm_opencl *engine, vxm_cl_return *back, vxm_status status, vxm_error *error);
+
+/* ---- Facets (cl_facets.c) ---- */
+
+/** Brings points and corners to the device, unless they are there. */
+vxm_status vxm_cl_place(vxm_opencl *engine, const vxm_facets *facets, const vxm_placed *placed,
+                        vxm_error *error);
+vxm_status vxm_cl_place_surface(vxm_opencl *engine, const vxm_surface *surface, vxm_error *error);
+/** Divides the facets of a job's parts, and brings the lists to the device. Destroy with vxm_passes_destroy,
+ * also after a failure. */
+vxm_status vxm_cl_passes_create(vxm_passes *out, vxm_opencl *engine, const vxm_window *window,
+                                const vxm_unite_job *job, vxm_error *error);
+
+#endif

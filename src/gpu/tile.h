@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Slices of a window that an engine makes at once, and what its shaders are told of them. */
+#ifndef VXM_GPU_TILE_H
+#define VXM_GPU_TILE_H
+
+#include "voxel/surface.h"
+#include "voxel/unite.h"
+
+/** Rows lie one behind the other, without room between slices. */
+typedef struct vxm_tile {
+  const vxm_window *window;
+  int64_t begin, end; /**< slices of the window's space */
+  size_t row_words;   /**< of 64 bits */
+  size_t words;       /**< of 64 bits, in all */
+} vxm_tile;
+
+vxm_tile vxm_tile_of(const vxm_window *window, int64_t begin, int64_t slices);
+/** Words of a slice. */
+size_t vxm_tile_slice_words(const vxm_tile *tile);
+/** Where a slice lies in words that are laid out as the window's. */
+uint64_t *vxm_tile_slice_at(const vxm_tile *tile, uint64_t *words, int64_t slice);
+/** Moves a tile's words into the window's, or (`is_or`) adds them. */
+void vxm_tile_take(const vxm_tile *tile, uint64_t *words, const uint64_t *from, bool is_or);
+
+/** The columns of a tile and the facets that flip them; axes in the order u, v, w, w along the columns. The
+ * layout is that of shaders/job.glsl and shaders/lattice.cl. */
+typedef struct vxm_tile_columns {
+  int32_t axes[3], bits;         /**< bits of the lattice below a voxel */
+  int32_t first[3], keep_before; /**< first voxel; whether a flip before it along w counts for it */
+  int32_t last[3], unused;       /**< voxel behind the last */
+  uint32_t step[4];              /**< bits from a voxel to the next one */
+  uint32_t facet_first, facet_count, ordered, few_columns;
+} vxm_tile_columns;
+
+/** What the passes over a tile have in common; the facets are still to be told. */
+vxm_tile_columns vxm_tile_columns_of(const vxm_tile *tile, const vxm_unite_job *job);
+
+/** The voxels of a tile along x, y, z and the triangles of a surface. The layout is that of
+ * shaders/touching.glsl and shaders/surface.cl. */
+typedef struct vxm_tile_surface {
+  int32_t first[3], bits;
+  int32_t last[3], thin;
+  uint32_t step[4];
+  uint32_t facet_count, few_columns, unused[2];
+} vxm_tile_surface;
+
+vxm_tile_surface vxm_tile_surface_of(const vxm_tile *tile, const vxm_surface *surface, vxm_surface_kind kind);
+
+#endif
