@@ -266,8 +266,8 @@ const bench_phase bench_phases[] = {
      run_solid, tell_grid},
     {"augment_standard", "a variant by a process of its own, which reads the mesh; its file read back", true,
      false, true, 0, bench_begin_standard, bench_run_standard, bench_tell_augment},
-    {"augment_batch", "a variant by a process that has the mesh; its file read back", true, false, true, 0,
+    {"augment_batch", "a variant by a process that has the mesh; its file read back", true, true, true, 0,
      bench_begin_batch, bench_run_batch, bench_tell_augment},
-    {"augment_direct", "a variant, as numbers in memory", true, false, true, 0, bench_begin_direct,
+    {"augment_direct", "a variant, as numbers in memory", true, true, true, 0, bench_begin_direct,
      bench_run_direct, bench_tell_augment},
     {NULL, NULL, false, false, false, 0, NULL, NULL, NULL}};

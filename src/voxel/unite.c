@@ -5,7 +5,7 @@
 #include <string.h>
 
 enum {
-  FEW = 64,               /**< records of a part in a slab that are sorted rather than folded */
+  FEW = 64,                /**< records of a part in a slab that are sorted rather than folded */
   STRAIGHT_WORDS = 1 << 16 /**< of a window that is flipped as it is, as it stays in cache */
 };
 
@@ -368,7 +368,8 @@ static void unite_straight(unite_state *state) {
   vxm_crossings_flip(&state->workspace->crossings, window->words, &state->watch);
   slab s = {.state = state};
   extent all = {.first = 0, .last = count - 1};
-  if (state->along == ALONG_ROWS ? fold_rows(&s, window->words, all) : fold_across_rows(&s, window->words, all))
+  if (state->along == ALONG_ROWS ? fold_rows(&s, window->words, all)
+                                 : fold_across_rows(&s, window->words, all))
     touch(state, (uint32_t)state->job->part_begin);
 }
 

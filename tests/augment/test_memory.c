@@ -110,8 +110,7 @@ static void takes_none(const load *given) {
   limits.threads = given->threads;
   vxm_context *context;
   assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
-  vxm_mesh *closed = make_torus(context, 0, 0),
-           *holed = make_torus(context, given->missing, given->sieve);
+  vxm_mesh *closed = make_torus(context, 0, 0), *holed = make_torus(context, given->missing, given->sieve);
   assert_int_equal(is_contested(holed), given->sieve > 0);
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
   options.resolution = RESOLUTION;
@@ -169,8 +168,8 @@ static void contested_solids_take_no_memory(void **state) {
 
 static void surfaces_take_no_memory(void **state) {
   (void)state;
-  takes_none(
-      &(load){.threads = 1, .mode = VXM_MODE_SURFACE, .surface = VXM_SURFACE_SHELL6, .missing = 1, .warm = 2});
+  takes_none(&(load){
+      .threads = 1, .mode = VXM_MODE_SURFACE, .surface = VXM_SURFACE_SHELL6, .missing = 1, .warm = 2});
   /* how many rows triangles meet is a matter of how they lie */
   takes_none(&(load){.threads = 1, .mode = VXM_MODE_BOTH, .missing = 1, .warm = 24});
 }
