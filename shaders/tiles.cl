@@ -58,18 +58,28 @@ inline bool meets_tile(const Cover *cover, const Job *job, int tu, int tv) {
          leaves_some(&cover->side[2], u0, v0, u1, v1);
 }
 
+/* `total`: the sum of all counts, its low and its high half; those of a group fit the low half. */
 __kernel void count_tiles(__global const int4 *points, __global const uint *corners, __global const uint *parts,
-                          __global uint *counts, const Job job, const uint roles) {
+                          __global uint *counts, __global uint *total, const Job job, const uint roles) {
+  __local uint all;
   uint i = (uint)get_global_id(0), count = 0;
-  Cover cover;
-  Triangle t;
-  if (i >= job.facet_count)
-    return;
-  if (cover_of(&cover, &t, &job, points, corners, parts, job.facet_first + i, roles))
-    for (int v = cover.tiles.y; v <= cover.tiles.w; v++)
-      for (int u = cover.tiles.x; u <= cover.tiles.z; u++)
-        count += meets_tile(&cover, &job, u, v) ? 1 : 0;
-  counts[i] = count;
+  if (get_local_id(0) == 0)
+    all = 0;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (i < job.facet_count) {
+    Cover cover;
+    Triangle t;
+    if (cover_of(&cover, &t, &job, points, corners, parts, job.facet_first + i, roles))
+      for (int v = cover.tiles.y; v <= cover.tiles.w; v++)
+        for (int u = cover.tiles.x; u <= cover.tiles.z; u++)
+          count += meets_tile(&cover, &job, u, v) ? 1 : 0;
+    counts[i] = count;
+    if (count > 0)
+      atomic_add(&all, count);
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (get_local_id(0) == 0 && all > 0 && atomic_add(&total[0], all) > ~0u - all)
+    atomic_inc(&total[1]);
 }
 
 __kernel void list_tiles(__global const int4 *points, __global const uint *corners, __global const uint *parts,

@@ -314,6 +314,9 @@ typedef struct vxm_repair_options {
 
 #define VXM_REPAIR_PASSES_MAX 24
 
+/** Self-intersections are counted up to this number, which then means that there are at least so many. */
+#define VXM_SELF_INTERSECTIONS_MAX 4194304
+
 typedef struct vxm_repair_report {
   int pass_count;
   struct {
@@ -325,8 +328,9 @@ typedef struct vxm_repair_report {
   int64_t unfilled_holes; /**< that were to be filled and could not be */
   int64_t ununited_parts; /**< that were to be united and still cut through themselves or others: open ones,
                              which have no inside, and those where the union failed */
-  int64_t self_intersections_before, self_intersections_after; /**< pairs of faces, counted up to 4194304;
-                                                                  -1 = not looked for */
+  int64_t self_intersections_before, self_intersections_after; /**< pairs of faces, counted up to
+                                                                  VXM_SELF_INTERSECTIONS_MAX; -1 = not looked
+                                                                  for */
   int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
                                 positions are too coarse for the faces about them */
   int64_t shared_faces; /**< at level clean: that repeat others and stay, as bodies overlap there and both
@@ -653,8 +657,8 @@ typedef struct vxm_engine_options {
  * Makes an engine. One thread at a time may use it; many models may, one after another.
  *
  * @param context whose memory limit counts what it holds
- * @param name    "cpu"; "opengl", which prefers a hardware device, then EGL without a surface, then OSMesa;
- *                one of them by the name that vxm_engines_find gives; or "auto": OpenGL on a hardware device
+ * @param name    "cpu"; "opencl", on the device that the options choose; "opengl", which prefers a hardware device, then EGL without a surface, then OSMesa;
+ *                one of them by the name that vxm_engines_find gives; or "auto": a GPU by OpenCL or OpenGL
  *                that works, else, and wherever it fails later, the CPU
  * @param options NULL = defaults
  * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown name; VXM_ERROR_UNAVAILABLE with what is missing;

@@ -74,9 +74,22 @@ void cli_census_print(const cli_run *cli, const vxm_census *census) {
           census->closed ? "" : "  not meaningful: the mesh is not closed");
 }
 
-void cli_census_print_intersections(const cli_run *cli, int64_t count) {
+const char *cli_intersections_text(char text[32], int64_t count) {
+  snprintf(text, 32, "%s%" PRId64, count >= VXM_SELF_INTERSECTIONS_MAX ? "at least " : "", count);
+  return text;
+}
+
+void cli_intersections_json(json_t *object, int64_t count) {
   if (count >= 0)
-    fprintf(cli->text, "  %-26s %12" PRId64 "%s\n", "self intersections", count,
+    json_object_set_new(object, "self_intersections", json_integer(count));
+  if (count >= VXM_SELF_INTERSECTIONS_MAX)
+    json_object_set_new(object, "self_intersections_at_least", json_true());
+}
+
+void cli_census_print_intersections(const cli_run *cli, int64_t count) {
+  char text[32];
+  if (count >= 0)
+    fprintf(cli->text, "  %-22s %16s%s\n", "self intersections", cli_intersections_text(text, count),
             count > 0 ? "  pairs of faces that cut through each other" : "");
 }
 

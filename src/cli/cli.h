@@ -251,6 +251,11 @@ int cli_signal(void);
 
 /** A row for each count, with what it means where it is not zero. */
 void cli_census_print(const cli_run *cli, const vxm_census *census);
+/** A number of self-intersections, which is "at least" one where they were not counted to the end. */
+const char *cli_intersections_text(char text[32], int64_t count);
+/** Adds "self_intersections", and where they were not counted to the end "self_intersections_at_least": true;
+ * nothing if they were not looked for (-1). */
+void cli_intersections_json(json_t *object, int64_t count);
 /** A row for self-intersections; nothing if they were not looked for (-1). */
 void cli_census_print_intersections(const cli_run *cli, int64_t count);
 /** Both in one table, "Original" and "Final". */

@@ -95,10 +95,10 @@ static int read_method(cli_run *cli, vxm_engine_options *options, const char *na
   if (!slash)
     return CLI_END;
   if (strncmp(name, "opencl", 6) == 0) {
-    result = cli_choose(cli, &choice, "engine opencl/", slash + 1, cli_cl_methods);
+    result = cli_choose(cli, &choice, "engine opencl/...", slash + 1, cli_cl_methods);
     options->cl_method = (vxm_cl_method)choice;
   } else if (strncmp(name, "opengl", 6) == 0) {
-    result = cli_choose(cli, &choice, "engine opengl/", slash + 1, cli_gl_methods);
+    result = cli_choose(cli, &choice, "engine opengl/...", slash + 1, cli_gl_methods);
     options->gl_method = (vxm_gl_method)choice;
   } else
     result = cli_usage(cli, "--engine '%s': only opencl and opengl have methods", name);

@@ -18,8 +18,7 @@ static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mes
   json_object_set_new(object, "file", cli_json_text(path));
   json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(mesh)));
   cli_census_json(object, census);
-  if (found->intersections >= 0)
-    json_object_set_new(object, "self_intersections", json_integer(found->intersections));
+  cli_intersections_json(object, found->intersections);
   if (found->list)
     json_object_set(object, "defects", found->list);
   json_object_set(object, "warnings", cli->warnings);

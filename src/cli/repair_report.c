@@ -9,7 +9,8 @@ const char *const repair_levels[] = {"clean", "manifold", "closed", "solid", NUL
 
 /* ---- JSON ---- */
 
-static json_t *state_json(const vxm_part_state *state) {
+/** @param cut the self-intersections of all parts were not counted to the end */
+static json_t *state_json(const vxm_part_state *state, bool cut) {
   json_t *object = json_object();
   json_object_set_new(object, "faces", json_integer(state->faces));
   json_object_set_new(object, "boundary_edges", json_integer(state->boundary_edges));
@@ -18,6 +19,8 @@ static json_t *state_json(const vxm_part_state *state) {
   json_object_set_new(object, "holes", json_integer(state->holes));
   if (state->self_intersections >= 0)
     json_object_set_new(object, "self_intersections", json_integer(state->self_intersections));
+  if (state->self_intersections >= 0 && cut)
+    json_object_set_new(object, "self_intersections_at_least", json_true());
   json_object_set_new(object, "closed", json_boolean(state->closed));
   json_object_set_new(object, "area", cli_json_number(state->area));
   json_object_set_new(object, "volume", cli_json_number(state->volume));
@@ -25,15 +28,21 @@ static json_t *state_json(const vxm_part_state *state) {
   return object;
 }
 
-static json_t *parts_json(const vxm_mesh *mesh) {
+static bool is_cut(int64_t intersections) {
+  return intersections >= VXM_SELF_INTERSECTIONS_MAX;
+}
+
+static json_t *parts_json(const vxm_mesh *mesh, const vxm_repair_report *repair) {
   json_t *parts = json_array();
   const vxm_part_change *changes = vxm_mesh_part_changes(mesh);
   for (int64_t i = 0; i < vxm_mesh_part_change_count(mesh); i++) {
     json_t *part = json_object();
     if (changes[i].tag != UINT32_MAX)
       json_object_set_new(part, "name", cli_json_text(vxm_mesh_tag_name(mesh, changes[i].tag)));
-    json_object_set_new(part, "before", state_json(&changes[i].before));
-    json_object_set_new(part, "after", state_json(&changes[i].after));
+    json_object_set_new(part, "before",
+                        state_json(&changes[i].before, is_cut(repair->self_intersections_before)));
+    json_object_set_new(part, "after",
+                        state_json(&changes[i].after, is_cut(repair->self_intersections_after)));
     json_object_set_new(part, "flipped", json_integer(changes[i].flipped));
     json_object_set_new(part, "moved", cli_json_number(changes[i].moved));
     json_object_set_new(part, "ununited", json_boolean(changes[i].ununited));
@@ -49,6 +58,8 @@ static json_t *verification_json(const repair_outcome *outcome) {
     json_t *one = json_object();
     json_object_set_new(one, "what", json_string(found->remains[i].what));
     json_object_set_new(one, "count", json_integer(found->remains[i].count));
+    if (strcmp(found->remains[i].what, "self_intersections") == 0 && is_cut(found->remains[i].count))
+      json_object_set_new(one, "at_least", json_true());
     if (found->remains[i].element >= 0)
       json_object_set_new(one, "first", json_integer(found->remains[i].element));
     if (found->remains[i].placed)
@@ -67,10 +78,8 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_t *before = json_object(), *after = json_object(), *report = json_object();
   cli_census_json(before, &repair->before);
   cli_census_json(after, &repair->after);
-  if (repair->self_intersections_before >= 0) {
-    json_object_set_new(before, "self_intersections", json_integer(repair->self_intersections_before));
-    json_object_set_new(after, "self_intersections", json_integer(repair->self_intersections_after));
-  }
+  cli_intersections_json(before, repair->self_intersections_before);
+  cli_intersections_json(after, repair->self_intersections_after);
   json_object_set_new(report, "input", cli_json_text(input));
   json_object_set_new(report, "output", output ? cli_json_text(output) : json_null());
   if (!output)
@@ -87,7 +96,7 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "moved", cli_json_number(repair->moved));
   json_object_set_new(report, "before", before);
   json_object_set_new(report, "after", after);
-  json_object_set_new(report, "parts", parts_json(outcome->mesh));
+  json_object_set_new(report, "parts", parts_json(outcome->mesh, repair));
   if (outcome->found.list)
     json_object_set(report, "defects", outcome->found.list);
   json_object_set(report, "warnings", cli->warnings);
@@ -198,9 +207,11 @@ void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *
 
 void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
   cli_census_print_both(cli, &outcome->repair.before, &outcome->repair.after);
+  char before[32], after[32];
   if (outcome->repair.self_intersections_before >= 0)
-    fprintf(cli->text, "  %-26s %12" PRId64 " %12" PRId64 "\n", "self intersections",
-            outcome->repair.self_intersections_before, outcome->repair.self_intersections_after);
+    fprintf(cli->text, "  %-22s %16s %12s\n", "self intersections",
+            cli_intersections_text(before, outcome->repair.self_intersections_before),
+            cli_intersections_text(after, outcome->repair.self_intersections_after));
   summarize_passes(cli, &outcome->repair);
   summarize_parts(cli, outcome->mesh);
   summarize_rest(cli, &outcome->repair);

@@ -230,6 +230,8 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     out->repair_options = out->repair.keep_duplicates = true;
     return CLI_END;
   case CLI_KEY_ENGINE:
+  case CLI_KEY_DEVICE:
+  case CLI_KEY_CL_METHOD:
   case CLI_KEY_GL_METHOD:
   case CLI_KEY_GL_AXIS:
   case CLI_KEY_GL_DISPLACE:
@@ -273,8 +275,6 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->coords && ((given->output && cli_same_file(given->coords, given->output)) ||
                         (given->confidence && cli_same_file(given->coords, given->confidence))))
     return cli_usage(cli, "--coords and another output name the same file");
-  if (given->engine.name && given->sparse)
-    return cli_usage(cli, "--sparse is made by the CPU; leave out --engine");
   if (cli_engine_check(cli, &given->engine) == CLI_STOP)
     return CLI_STOP;
   if (cli_check_repair(cli, given->no_repair, given->repair_options) == CLI_STOP)

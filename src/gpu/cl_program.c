@@ -11,10 +11,12 @@
 enum { FILES_MAX = 6, LOG_MAX = 400, GROUP_LEAST = 8 };
 
 static const char *const sources[VXM_CL_PROGRAMS][FILES_MAX] = {
-    [VXM_CL_SOLID] = {"lattice.cl", "columns.cl", "fold.cl", "vote.cl"},
-    [VXM_CL_SURFACE] = {"lattice.cl", "surface.cl"},
+    [VXM_CL_SOLID] = {"lattice.cl", "flips.cl", "flip_area.cl", "columns.cl", "fold.cl", "vote.cl"},
+    [VXM_CL_SURFACE] = {"touching.cl", "surface.cl"},
     [VXM_CL_SORT] = {"sort.cl"},
     [VXM_CL_TILES_PROGRAM] = {"lattice.cl", "tiles.cl"},
+    [VXM_CL_TREE] = {"touching.cl", "cells.cl", "nodes.cl", "prune.cl"},
+    [VXM_CL_BRICK_FLIPS] = {"lattice.cl", "brick_flips.cl", "flip_area.cl", "bricks.cl"},
     [VXM_CL_COVERAGE] = {"coverage.cl"},
 };
 
@@ -39,6 +41,27 @@ static const struct {
     [VXM_CL_LIST_TILES] = {"list_tiles", VXM_CL_TILES_PROGRAM},
     [VXM_CL_FIND_TILES] = {"find_tiles", VXM_CL_TILES_PROGRAM},
     [VXM_CL_FILL_TILES] = {"fill_tiles", VXM_CL_TILES_PROGRAM},
+    [VXM_CL_MARK_CELLS] = {"mark_cells", VXM_CL_TREE},
+    [VXM_CL_MARK_LARGE] = {"mark_large", VXM_CL_TREE},
+    [VXM_CL_MARK_BOX] = {"mark_box", VXM_CL_TREE},
+    [VXM_CL_COUNT_CELLS] = {"count_cells", VXM_CL_TREE},
+    [VXM_CL_LIST_CELLS] = {"list_cells", VXM_CL_TREE},
+    [VXM_CL_COUNT_NODES] = {"count_nodes", VXM_CL_TREE},
+    [VXM_CL_FLAG_PARENTS] = {"flag_parents", VXM_CL_TREE},
+    [VXM_CL_MAKE_PARENTS] = {"make_parents", VXM_CL_TREE},
+    [VXM_CL_LINK_NODES] = {"link_nodes", VXM_CL_TREE},
+    [VXM_CL_FOLD_NODES] = {"fold_nodes", VXM_CL_TREE},
+    [VXM_CL_PUSH_NODES] = {"push_nodes", VXM_CL_TREE},
+    [VXM_CL_UNITE_NODES] = {"unite_nodes", VXM_CL_TREE},
+    [VXM_CL_PRUNE_BRICKS] = {"prune_bricks", VXM_CL_TREE},
+    [VXM_CL_PRUNE_NODES] = {"prune_nodes", VXM_CL_TREE},
+    [VXM_CL_COUNT_KEPT] = {"count_kept", VXM_CL_TREE},
+    [VXM_CL_TAKE_NODES] = {"take_nodes", VXM_CL_TREE},
+    [VXM_CL_TAKE_BRICKS] = {"take_bricks", VXM_CL_TREE},
+    [VXM_CL_FLIP_BRICKS] = {"flip_bricks", VXM_CL_BRICK_FLIPS},
+    [VXM_CL_FLIP_BRICKS_LARGE] = {"flip_bricks_large", VXM_CL_BRICK_FLIPS},
+    [VXM_CL_FOLD_BRICKS] = {"fold_bricks", VXM_CL_BRICK_FLIPS},
+    [VXM_CL_PUSH_BRICKS] = {"push_bricks", VXM_CL_BRICK_FLIPS},
     [VXM_CL_COUNT_GROUPS] = {"count_groups", VXM_CL_COVERAGE},
 };
 

@@ -10,7 +10,7 @@ static vxm_status clear_touched(vxm_opencl *engine, const vxm_facets *facets, vx
   return vxm_cl_clear(engine, VXM_CL_TOUCHED, facets->split.part_count * sizeof(uint32_t), error);
 }
 
-static vxm_status take_touched(vxm_opencl *engine, atomic_uchar *touched, const vxm_facets *facets,
+vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *touched, const vxm_facets *facets,
                                vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   size_t parts = facets->split.part_count;
@@ -18,7 +18,7 @@ static vxm_status take_touched(vxm_opencl *engine, atomic_uchar *touched, const 
   vxm_status status =
       set ? vxm_cl_download(engine, VXM_CL_TOUCHED, 0, set, parts * sizeof *set, &local) : local.code;
   for (size_t p = 0; p < parts && status == VXM_OK; p++)
-    if (set[p])
+    if (set[p] == 1)
       atomic_store_explicit(&touched[p], 1, memory_order_relaxed);
   vxm_free(engine->base.context, set);
   if (status != VXM_OK && error)
@@ -101,7 +101,7 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_un
   if (status == VXM_OK)
     status = unite_tiles(engine, window, job, &passes, error);
   if (status == VXM_OK && job->touched)
-    status = take_touched(engine, job->touched, job->facets, error);
+    status = vxm_cl_touched_take(engine, job->touched, job->facets, error);
   vxm_passes_destroy(&passes);
   return status;
 }
@@ -163,10 +163,10 @@ static vxm_status elect_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm
   vxm_status status = vxm_cl_tile_upload(engine, result, tile, error);
   if (status == VXM_OK)
     status = vxm_cl_reserve(engine, VXM_CL_MASK, tile->words * sizeof(uint64_t), error);
-  if (status == VXM_OK)
-    status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof counted, error);
   for (int v = 0; v < b->count && status == VXM_OK; v++)
     status = make_voter(engine, tile, b, v, error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof counted, error);
   if (status == VXM_OK)
     status = count_votes(engine, tile, b, job->rule, result, error);
   if (status == VXM_OK)
@@ -209,6 +209,6 @@ vxm_status vxm_cl_elect(vxm_engine *base, const vxm_window *window, const vxm_el
   if (status == VXM_OK)
     status = elect_tiles(engine, window, job, tally, error);
   if (status == VXM_OK && job->touched)
-    status = take_touched(engine, job->touched, job->facets, error);
+    status = vxm_cl_touched_take(engine, job->touched, job->facets, error);
   return status;
 }

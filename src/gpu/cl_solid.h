@@ -13,6 +13,10 @@ vxm_status vxm_cl_elect(vxm_engine *engine, const vxm_window *window, const vxm_
 vxm_status vxm_cl_surface(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error);
 
+/** See vxm_engine_ops (cl_sparse.c). Open parts and facets that reach far are left to the CPU. */
+vxm_status vxm_cl_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_space *space,
+                         const vxm_sparse_job *job, vxm_error *error);
+
 /** See vxm_engine_ops (cl_coverage.c). */
 vxm_status vxm_cl_count(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
                         vxm_error *error);
@@ -20,6 +24,12 @@ vxm_status vxm_cl_count(vxm_engine *engine, uint16_t *counts, const vxm_window *
 /** Ends what is under way; after a failure, when flips may be left over and something may still run, too.
  * Returns `status`, or the first failure. */
 vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error);
+
+/** In VXM_CL_TOUCHED: a part that sets no voxel, and is not looked at. */
+#define VXM_CL_NOT_ASKED UINT32_MAX
+/** Reads which parts set a voxel: those that have 1. */
+vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *touched, const vxm_facets *facets,
+                               vxm_error *error);
 
 /** Parity of the job's parts along its axis, united, in a buffer of a tile, triangle by triangle
  * (cl_columns.c). The passes are those of the job, and on the device. */

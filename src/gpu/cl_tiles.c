@@ -19,7 +19,7 @@ typedef struct tiling {
 } tiling;
 
 /** Parts of facets, and their roles, on the device. */
-static vxm_status place_parts(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error) {
+vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   if (engine->parts_serial == facets->serial)
     return VXM_OK;
@@ -63,21 +63,29 @@ static vxm_status list_facets(tiling *t, cl_uint *pairs, vxm_error *error) {
   int bits = 0;
   while (bits < 32 && t->count > UINT64_C(1) << bits)
     bits++;
+  cl_uint total[2] = {0, 0};
   vxm_status status = vxm_cl_reserve(engine, VXM_CL_COUNTS, (facets + 1) * sizeof(cl_uint), error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof total, error);
   if (status == VXM_OK)
     status = vxm_cl_run(engine, VXM_CL_COUNT_TILES, facets,
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
                                     VXM_CL_MEM(engine, VXM_CL_PARTS), VXM_CL_MEM(engine, VXM_CL_COUNTS),
-                                    VXM_CL_VALUE(t->columns), VXM_CL_VALUE(t->roles)),
+                                    VXM_CL_MEM(engine, VXM_CL_TALLY), VXM_CL_VALUE(t->columns),
+                                    VXM_CL_VALUE(t->roles)),
                         error);
+  if (status == VXM_OK)
+    status = vxm_cl_download(engine, VXM_CL_TALLY, 0, total, sizeof total, error);
+  if (status == VXM_OK && total[1] > 0)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "opencl: the triangles meet more than 2^32 tiles of columns; use --cl-method triangles");
+  *pairs = total[0];
   if (status == VXM_OK)
     status = vxm_cl_scan(engine, VXM_CL_COUNTS, facets, error);
   if (status == VXM_OK)
-    status = vxm_cl_download(engine, VXM_CL_COUNTS, facets * sizeof(cl_uint), pairs, sizeof *pairs, error);
+    status = vxm_cl_reserve(engine, VXM_CL_TILE_KEYS, (size_t)*pairs * sizeof(uint64_t), error);
   if (status == VXM_OK)
-    status = vxm_cl_reserve(engine, VXM_CL_TILE_KEYS, *pairs * sizeof(uint64_t), error);
-  if (status == VXM_OK)
-    status = vxm_cl_reserve(engine, VXM_CL_TILE_FACETS, *pairs * sizeof(cl_uint), error);
+    status = vxm_cl_reserve(engine, VXM_CL_TILE_FACETS, (size_t)*pairs * sizeof(cl_uint), error);
   if (status == VXM_OK)
     status =
         vxm_cl_run(engine, VXM_CL_LIST_TILES, facets,
@@ -133,7 +141,7 @@ vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_tile *tile, const vxm_unit
   if (status == VXM_OK)
     status = vxm_cl_ready(engine, VXM_CL_TILES_PROGRAM, error); /* the group may have shrunk */
   if (status == VXM_OK)
-    status = place_parts(engine, job->facets, error);
+    status = vxm_cl_place_parts(engine, job->facets, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
   if (status == VXM_OK && !job->touched) /* written all the same */

@@ -27,6 +27,7 @@ static void destroy(vxm_engine *base) {
 static const vxm_engine_ops opencl_ops = {.unite = vxm_cl_unite,
                                           .elect = vxm_cl_elect,
                                           .surface = vxm_cl_surface,
+                                          .sparse = vxm_cl_sparse,
                                           .count = vxm_cl_count,
                                           .destroy = destroy};
 

@@ -13,6 +13,8 @@ typedef enum vxm_cl_program_id {
   VXM_CL_SURFACE,
   VXM_CL_SORT,
   VXM_CL_TILES_PROGRAM,
+  VXM_CL_TREE,        /**< octrees: their nodes */
+  VXM_CL_BRICK_FLIPS, /**< and their voxels */
   VXM_CL_COVERAGE,
   VXM_CL_PROGRAMS
 } vxm_cl_program_id;
@@ -35,6 +37,27 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_LIST_TILES,
   VXM_CL_FIND_TILES,
   VXM_CL_FILL_TILES,
+  VXM_CL_MARK_CELLS,
+  VXM_CL_MARK_LARGE,
+  VXM_CL_MARK_BOX,
+  VXM_CL_COUNT_CELLS,
+  VXM_CL_LIST_CELLS,
+  VXM_CL_COUNT_NODES,
+  VXM_CL_FLAG_PARENTS,
+  VXM_CL_MAKE_PARENTS,
+  VXM_CL_LINK_NODES,
+  VXM_CL_FOLD_NODES,
+  VXM_CL_PUSH_NODES,
+  VXM_CL_UNITE_NODES,
+  VXM_CL_PRUNE_BRICKS,
+  VXM_CL_PRUNE_NODES,
+  VXM_CL_COUNT_KEPT,
+  VXM_CL_TAKE_NODES,
+  VXM_CL_TAKE_BRICKS,
+  VXM_CL_FLIP_BRICKS,
+  VXM_CL_FLIP_BRICKS_LARGE,
+  VXM_CL_FOLD_BRICKS,
+  VXM_CL_PUSH_BRICKS,
   VXM_CL_COUNT_GROUPS,
   VXM_CL_KERNELS
 } vxm_cl_kernel_id;
@@ -65,6 +88,27 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_TILE_FACETS,
   VXM_CL_GROUPS, /**< how many voxels of each are set */
   VXM_CL_LISTS,  /**< where the pairs of each tile begin and end */
+  /* Octrees, freed when one is made. Arrays "of all nodes" hold level after level, the lowest first. */
+  VXM_CL_CELLS,  /**< a bit for each cell of 16^3 voxels: whether it is a node */
+  VXM_CL_BEFORE, /**< of each word of them: how many nodes lie before it */
+  VXM_CL_PLACES, /**< of each x, y and z what it adds to the number of a cell */
+  VXM_CL_LEVELS, /**< how many nodes each has */
+  VXM_CL_CODES,  /**< of all nodes: Morton codes, in order within a level */
+  VXM_CL_PARENTS,
+  VXM_CL_NEXT,     /**< of all nodes: the next one along x */
+  VXM_CL_EXITS,    /**< of all nodes: whether a row of nodes that ends here leaves flipped what follows */
+  VXM_CL_CHILDREN, /**< of all nodes: a bit for each child that is a node */
+  VXM_CL_FIRSTS,   /**< of all nodes: the first of these */
+  VXM_CL_INSIDE,   /**< of all nodes: 4 bits for each row of children */
+  VXM_CL_UNITED_INSIDE,
+  VXM_CL_MIXED,  /**< of all nodes: a bit for each child that is neither empty nor full */
+  VXM_CL_FULL,   /**< of all nodes: a bit for each child that is full */
+  VXM_CL_BRICKS, /**< 64 words for each node of the lowest level, in Morton order; zero between passes */
+  VXM_CL_UNITED_BRICKS,
+  VXM_CL_KEPT, /**< two: nodes that stay, then how many before */
+  VXM_CL_KEPT2,
+  VXM_CL_TAKEN, /**< nodes or bricks to be read */
+  VXM_CL_OCTREE_END = VXM_CL_TAKEN,
   VXM_CL_BUFFERS
 } vxm_cl_buffer_id;
 
@@ -72,6 +116,13 @@ typedef struct vxm_cl_buffer {
   cl_mem mem;
   size_t bytes; /**< counted against the memory limit */
 } vxm_cl_buffer;
+
+/** How long the stages of an octree take, in milliseconds (Schwarz & Seidel 2010, table 3), and its nodes
+ * before it is pruned. */
+typedef struct vxm_cl_stages {
+  double cells, construct, voxelize, propagate, prune;
+  size_t cells_active, nodes;
+} vxm_cl_stages;
 
 typedef struct vxm_opencl {
   vxm_engine base; /**< first, so that an engine is one */
@@ -87,6 +138,7 @@ typedef struct vxm_opencl {
   vxm_cl_buffer buffers[VXM_CL_BUFFERS];
   /** What the buffers hold. */
   uint64_t facets_serial, parts_serial, placed_serial, surface_serial, surface_corners_serial;
+  vxm_cl_stages *stages; /**< NULL; else the device is waited for after each, and its time is added */
   vxm_far far;
   vxm_far_surface far_surface;
 } vxm_opencl;
@@ -175,6 +227,8 @@ vxm_status vxm_cl_return_end(vxm_opencl *engine, vxm_cl_return *back, vxm_status
 /** Brings points and corners to the device, unless they are there. */
 vxm_status vxm_cl_place(vxm_opencl *engine, const vxm_facets *facets, const vxm_placed *placed,
                         vxm_error *error);
+/** Brings to the device which part each facet belongs to, and above ROLE_SHIFT its role (cl_tiles.c). */
+vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error);
 vxm_status vxm_cl_place_surface(vxm_opencl *engine, const vxm_surface *surface, vxm_error *error);
 /** Divides the facets of a job's parts, and brings the lists to the device. Destroy with vxm_passes_destroy,
  * also after a failure. */

@@ -36,12 +36,13 @@ typedef struct vxm_tile_columns {
 vxm_tile_columns vxm_tile_columns_of(const vxm_tile *tile, const vxm_unite_job *job);
 
 /** The voxels of a tile along x, y, z and the triangles of a surface. The layout is that of
- * shaders/touching.glsl and shaders/surface.cl. */
+ * shaders/touching.glsl and shaders/touching.cl. */
 typedef struct vxm_tile_surface {
   int32_t first[3], bits;
   int32_t last[3], thin;
   uint32_t step[4];
-  uint32_t facet_count, few_columns, unused[2];
+  uint32_t facet_count, few_columns;
+  int32_t shift, shadow; /**< 0; see shaders/touching.cl */
 } vxm_tile_surface;
 
 vxm_tile_surface vxm_tile_surface_of(const vxm_tile *tile, const vxm_surface *surface, vxm_surface_kind kind);

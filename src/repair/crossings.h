@@ -6,7 +6,7 @@
 #include "repair/cgal.h"
 
 /** Pairs that are counted at most; a mesh with more is a heap of faces. */
-enum { VXM_CROSSINGS_MOST = 1 << 22 };
+enum { VXM_CROSSINGS_MOST = VXM_SELF_INTERSECTIONS_MAX };
 
 /**
  * Finds at most `most` pairs. Faces with a vertex that is not finite take no part.

@@ -1,8 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/frame.h"
 #include "repair/cgal.h"
 #include "repair/work.h"
 
-#include <math.h>
+/** Into the frame of the bounds: the wrap computes with products of lengths, which overflow or vanish where
+ * models are huge or tiny. All is multiplied by a power of two, which changes no digit. */
+static void shrink(vxm_soup *soup, double scale) {
+  for (size_t i = 0; i < 3 * soup->vertex_count; i++)
+    soup->positions[i] *= scale;
+}
+
+/** Back again; the inverse of the scale might be beyond the numbers. */
+static void regrow(vxm_soup *soup, double scale) {
+  for (size_t i = 0; i < 3 * soup->vertex_count; i++)
+    soup->positions[i] /= scale;
+}
 
 /** The last resort, which always gives a closed surface: one that is laid around everything. */
 vxm_status vxm_pass_wrap(vxm_work *work, bool *changed, vxm_error *error) {
@@ -11,18 +23,20 @@ vxm_status vxm_pass_wrap(vxm_work *work, bool *changed, vxm_error *error) {
     return VXM_OK;
   vxm_extent extent;
   vxm_work_extent(work, &extent);
-  const double *b = extent.bounds;
-  double diagonal = hypot(hypot(b[3] - b[0], b[4] - b[1]), b[5] - b[2]);
-  double alpha = work->options.wrap_alpha * diagonal;
-  double offset = work->options.wrap_offset > 0 ? work->options.wrap_offset * diagonal : alpha / 30;
+  vxm_frame frame = vxm_frame_of(extent.bounds);
+  double alpha = work->options.wrap_alpha * frame.diagonal;
+  double offset = work->options.wrap_offset > 0 ? work->options.wrap_offset * frame.diagonal : alpha / 30;
   const vxm_cgal *cgal;
   vxm_soup *soup;
   uint64_t *nearest;
   vxm_status status = vxm_cgal_open(&cgal, "wrapping a mesh", error);
-  if (status == VXM_OK)
-    status = cgal->wrap(&soup, &nearest, work->soup, alpha, offset, error);
   if (status != VXM_OK)
     return status;
+  shrink(work->soup, frame.scale);
+  status = cgal->wrap(&soup, &nearest, work->soup, alpha, offset, error);
+  if (status != VXM_OK)
+    return status;
+  regrow(soup, frame.scale);
   work->counts[VXM_PASS_WRAP] += (int64_t)soup->face_count;
   *changed = true;
   /* The tags are those of what lies beneath; parts are no longer told apart. */

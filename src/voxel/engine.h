@@ -4,6 +4,7 @@
 #ifndef VXM_VOXEL_ENGINE_H
 #define VXM_VOXEL_ENGINE_H
 
+#include "voxel/sparse_job.h"
 #include "voxel/surface.h"
 #include "voxel/unite.h"
 #include "voxel/vote.h"
@@ -40,6 +41,9 @@ typedef struct vxm_engine_ops {
   /** As vxm_surface_add. */
   vxm_status (*surface)(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
                         vxm_surface_kind kind, bool is_fresh, vxm_error *error);
+  /** The octree of a job; `*out` stays NULL, and that is no failure, where the CPU has to make it. */
+  vxm_status (*sparse)(vxm_engine *engine, vxm_sparse **out, const vxm_space *space,
+                       const vxm_sparse_job *job, vxm_error *error);
   /** Fills [x][y][z][4] bytes, 0 where a voxel is not set. */
   vxm_status (*color)(vxm_engine *engine, uint8_t *values, const vxm_color_job *job, vxm_error *error);
   /** Counts the voxels that are set in each group of n x n x n of a window, which begins and ends between

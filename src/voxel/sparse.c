@@ -16,7 +16,7 @@ static bool is_direct(const vxm_model *model) {
   return vxm_voted_begin(shape) == parts;
 }
 
-static vxm_status unite_directly(vxm_octree_builder *builder, vxm_model *model, vxm_error *error) {
+static vxm_sparse_job job_of(vxm_model *model) {
   vxm_shape *shape = &model->shape;
   vxm_sparse_job job = {.facets = &shape->facets,
                         .placed = &model->run.placed,
@@ -25,7 +25,27 @@ static vxm_status unite_directly(vxm_octree_builder *builder, vxm_model *model, 
                         .touched = model->run.touched};
   if (!vxm_one_voter(&model->options))
     job.roles |= VXM_FACET_CAP;
-  return vxm_sparse_unite(builder, &shape->workspace, &job, error);
+  return job;
+}
+
+static vxm_status unite_directly(vxm_octree_builder *builder, vxm_model *model, vxm_error *error) {
+  vxm_sparse_job job = job_of(model);
+  return vxm_sparse_unite(builder, &model->shape.workspace, &job, error);
+}
+
+/** By the run's engine; `*out` stays NULL where that is for the CPU. */
+static vxm_status unite_elsewhere(vxm_sparse **out, vxm_model *model, vxm_error *error) {
+  vxm_engine *engine = model->run.engine;
+  vxm_error local = VXM_ERROR_INIT;
+  if (!engine || !engine->ops || !engine->ops->sparse || !is_direct(model))
+    return VXM_OK;
+  vxm_sparse_job job = job_of(model);
+  vxm_status status = engine->ops->sparse(engine, out, &model->space, &job, &local);
+  if (status == VXM_OK || vxm_engine_gives_way(engine, &local))
+    return VXM_OK;
+  if (error)
+    *error = local;
+  return status;
 }
 
 /** Slices of a range: whole strips, as many as memory allows. */
@@ -64,21 +84,27 @@ static vxm_status unite_by_windows(vxm_octree_builder *builder, vxm_model *model
   return status;
 }
 
-vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
-                           const vxm_space *space, const double transform[12], vxm_error *error) {
-  *out = NULL;
-  if (model->options.confidence)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: the confidence needs the whole grid");
+static vxm_status build(vxm_sparse **out, vxm_model *model, vxm_error *error) {
   vxm_octree_builder builder;
-  vxm_status status = vxm_model_begin(model, space, transform, NULL, error);
-  if (status != VXM_OK)
-    return status;
-  status = vxm_octree_builder_create(&builder, model->context, space, error);
+  vxm_status status = vxm_octree_builder_create(&builder, model->context, &model->space, error);
   if (status == VXM_OK)
     status = (is_direct(model) ? unite_directly : unite_by_windows)(&builder, model, error);
   if (status == VXM_OK)
     status = vxm_octree_builder_end(out, &builder, error);
   vxm_octree_builder_destroy(&builder);
+  return status;
+}
+
+vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
+                           const vxm_space *space, const double transform[12], vxm_error *error) {
+  *out = NULL;
+  if (model->options.confidence)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: the confidence needs the whole grid");
+  vxm_status status = vxm_model_begin(model, space, transform, NULL, error);
+  if (status == VXM_OK)
+    status = unite_elsewhere(out, model, error);
+  if (status == VXM_OK && !*out)
+    status = build(out, model, error);
   if (status != VXM_OK || !report)
     return status;
   int64_t voxels;

@@ -6,15 +6,6 @@
 #include "grid/octree_build.h"
 #include "voxel/model.h"
 
-/** Which facets are united. */
-typedef struct vxm_sparse_job {
-  const vxm_facets *facets;
-  const vxm_placed *placed;
-  size_t part_end;       /**< parts 0 to part_end - 1 */
-  unsigned roles;        /**< facets of these roles count, or-ed vxm_facet_role */
-  atomic_uchar *touched; /**< per part: set to 1 if it sets a voxel */
-} vxm_sparse_job;
-
 /**
  * Makes the strips of every voxel inside at least one of the job's parts, by parity along x, as vxm_unite
  * does for a window; exact, and the same for any number of threads.

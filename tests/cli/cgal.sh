@@ -63,6 +63,15 @@ for mesh in upon beside corner; do
   run "voxmend repair $mesh.obj -o a.ply --level solid | facts && voxmend info a.ply --intersections | facts"
 done
 
+say "# more than are counted"
+awk 'BEGIN { n = 2060
+  print "OFF"; print 6 * n, 2 * n, 0
+  for (i = 0; i < n; i++) { x = (i + 0.5) / n; print x, -1, 0; print x, 2, 0; print x, 0.5, 1 }
+  for (i = 0; i < n; i++) { y = (i + 0.5) / n; print -1, y, 0.1; print 2, y, 0.1; print 0.5, y, -1 }
+  for (i = 0; i < 2 * n; i++) print 3, 3 * i, 3 * i + 1, 3 * i + 2 }' >comb.off
+run 'voxmend info comb.off --intersections --report comb.json | grep self; grep self comb.json'
+run 'voxmend repair comb.off -o a.ply --intersections --keep-orientation --report comb.json | grep "^  self"; grep -c at_least comb.json'
+
 say "# --wrap"
 run 'voxmend repair plate.obj -o a.obj --wrap 0.05,0.002 --level solid | facts'
 run 'voxmend info -v a.obj | grep -E "tags|closed" && grep -c -E "^[og] (left|right|plate)" a.obj'

@@ -18,7 +18,14 @@ run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --gl-method lines'
 run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --gl-method slices --gl-axis w'
 run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --gl-method slices --gl-displace -1'
 run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --gl-method slices --gl-displace 1,x'
-run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --sparse'
+run 'voxmend engines --json | grep -c "\"name\": \"opencl"  | grep -c "[1-9]"'
+run 'voxmend voxelize in/cube.off -o d.npy --device 0'
+run 'voxmend voxelize in/cube.off -o d.npy --engine opengl --cl-method tiles'
+run 'voxmend voxelize in/cube.off -o d.npy --engine opencl --gl-method columns'
+run 'voxmend voxelize in/cube.off -o d.npy --engine opencl --cl-method fast'
+run 'voxmend voxelize in/cube.off -o d.npy --engine opencl:0 --device 0'
+run 'voxmend bench in/cube.off -r 8 --engine cpu/tiles'
+run 'voxmend bench in/cube.off -r 8 --engine opencl/columns'
 
 say "# colours"
 for by in noise position part; do

@@ -34,9 +34,9 @@ mkfifo "$work/fifo"
 exec 3<>"$work/fifo"
 "$VOXMEND" info - <"$work/fifo" >/dev/null 2>&1 3<&- &
 job=$!
-for delay in 0.1 0.8; do
+for delay in 0.3 0.8; do
   sleep "$delay"
-  kill -TERM "$job"
+  kill -TERM "$job" 2>/dev/null || true # gone where the first one came before the program had begun
 done
 (sleep 5; kill -KILL "$job") 2>/dev/null 3<&- &
 watch=$!

@@ -243,13 +243,40 @@ static void shared_meshes(void **state) {
   }
 }
 
+/** A power of two changes no digit, however large or small the model is by it. */
+static void any_size(void **state) {
+  (void)state;
+  static const int powers[] = {500, -500, 1000, -900};
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  vxm_repair_report report;
+  options.wrap_alpha = 0.1;
+  vxm_soup *ball = new_soup(context);
+  add_ball(ball, (double[]){3, 0, 0}, 1, 8, &upright, false);
+  vxm_soup *usual = repaired(ball, &options, &report);
+  assert_true(usual->face_count > 100);
+  for (size_t p = 0; p < sizeof powers / sizeof *powers; p++) {
+    vxm_soup *sized;
+    assert_int_equal(vxm_soup_copy(&sized, ball, NULL), VXM_OK);
+    for (size_t i = 0; i < 3 * sized->vertex_count; i++)
+      sized->positions[i] = ldexp(sized->positions[i], powers[p]);
+    vxm_soup *wrapped = repaired(sized, &options, &report);
+    for (size_t i = 0; i < 3 * wrapped->vertex_count; i++)
+      wrapped->positions[i] = ldexp(wrapped->positions[i], -powers[p]);
+    assert_same_soup(usual, wrapped);
+    vxm_soup_destroy(wrapped);
+    vxm_soup_destroy(sized);
+  }
+  vxm_soup_destroy(usual);
+  vxm_soup_destroy(ball);
+}
+
 int main(void) {
   if (!open_cgal())
     return 77;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_torn_ball),   cmocka_unit_test(what_lies_beneath), cmocka_unit_test(far_apart),
       cmocka_unit_test(arguments),     cmocka_unit_test(what_would_fit),    cmocka_unit_test(cancelled),
-      cmocka_unit_test(shared_meshes),
+      cmocka_unit_test(shared_meshes), cmocka_unit_test(any_size),
   };
   return cmocka_run_group_tests(tests, hold_context, release_context);
 }

@@ -15,12 +15,12 @@
 /** The context of a test program, made and dropped around its tests. */
 static vxm_context *context;
 
-static int setup(void **state) {
+static inline int setup(void **state) {
   (void)state;
   return vxm_context_create(&context, NULL, NULL) != VXM_OK;
 }
 
-static int teardown(void **state) {
+static inline int teardown(void **state) {
   (void)state;
   vxm_context_destroy(context);
   return 0;
