@@ -37,7 +37,7 @@ void *__wrap_realloc(void *block, size_t size) {
   return __real_realloc(block, size);
 }
 
-enum { AROUND = 48, ACROSS = 24, VERTICES = AROUND * ACROSS };
+enum { AROUND = 32, ACROSS = 16, VERTICES = AROUND * ACROSS };
 
 /** A torus, with its last `missing` quadrilaterals left out, and of the others every one of a `sieve`. */
 static vxm_mesh *make_torus(vxm_context *context, int missing, int sieve) {
@@ -68,7 +68,7 @@ static vxm_mesh *make_torus(vxm_context *context, int missing, int sieve) {
   return mesh;
 }
 
-enum { BATCH = 24, RESOLUTION = 24 };
+enum { BATCH = 8, RESOLUTION = 16 };
 
 static void run(vxm_sampler *sampler, void *out, uint32_t first, vxm_voxels voxels) {
   vxm_variant variants[BATCH];
@@ -138,10 +138,10 @@ static void takes_none(const load *given) {
   }
   size_t before = atomic_load(&taken);
   uint64_t peak = vxm_context_peak_bytes(context);
-  for (uint32_t epoch = 100; epoch < 110; epoch++)
+  for (uint32_t epoch = 100; epoch < 104; epoch++)
     for (int voxels = VXM_VOXELS_PACKED; voxels <= VXM_VOXELS_FLOAT32; voxels++)
       run(sampler, out, epoch * BATCH, (vxm_voxels)voxels);
-  for (uint32_t epoch = 100; epoch < 110; epoch++)
+  for (uint32_t epoch = 100; epoch < 104; epoch++)
     run_together(sampler, grid, epoch);
   assert_int_equal(atomic_load(&taken), before);
   assert_int_equal(vxm_context_peak_bytes(context), peak);
@@ -162,8 +162,8 @@ static void solids_take_no_memory(void **state) {
 
 static void contested_solids_take_no_memory(void **state) {
   (void)state;
-  takes_none(&(load){.threads = 1, .missing = 300, .sieve = 2, .warm = 24});
-  takes_none(&(load){.threads = 2, .missing = 300, .sieve = 2, .warm = 40});
+  takes_none(&(load){.threads = 1, .missing = 100, .sieve = 2, .warm = 24});
+  takes_none(&(load){.threads = 2, .missing = 100, .sieve = 2, .warm = 40});
 }
 
 static void surfaces_take_no_memory(void **state) {
