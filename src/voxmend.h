@@ -620,7 +620,7 @@ typedef struct vxm_engine_info {
   int64_t local_bytes;  /**< memory that a work-group shares */
   int64_t work_group;   /**< most work-items of a group */
   bool int64_atomics;   /**< not needed */
-  char note[256];      /**< why it is not available, or why another one was taken */
+  char note[256];       /**< why it is not available, or why another one was taken */
 } vxm_engine_info;
 
 /** How an engine of OpenGL makes solids. */
@@ -632,7 +632,8 @@ typedef enum vxm_gl_method {
 
 /** How an engine of OpenCL makes solids; both have the bits of the CPU (Schwarz & Seidel 2010, section 4). */
 typedef enum vxm_cl_method {
-  VXM_CL_AUTO = 0,  /**< by tiles where many triangles share few columns, or many parts meet; else by triangles */
+  VXM_CL_AUTO =
+      0, /**< by tiles where many triangles share few columns, or many parts meet; else by triangles */
   VXM_CL_TRIANGLES, /**< a work-item for each triangle, which flips bits by atomic XOR; then a prefix XOR */
   VXM_CL_TILES      /**< triangles sorted by tiles of columns, a work-group for each tile, no atomics */
 } vxm_cl_method;
@@ -645,8 +646,8 @@ typedef struct vxm_engine_options {
                           axis (Ogayar et al., section III-B1) */
   uint64_t seed;       /**< of these moves */
   vxm_cl_method cl_method;
-  const char *device; /**< OpenCL: the number of a device, or a part of its name or its platform's; NULL = a GPU
-                         or accelerator, else the first */
+  const char *device; /**< OpenCL: the number of a device, or a part of its name or its platform's; NULL = a
+                         GPU or accelerator, else the first */
 } vxm_engine_options;
 
 #define VXM_ENGINE_OPTIONS_INIT \
@@ -1195,7 +1196,8 @@ typedef struct vxm_sampler_options {
                        variants  are mirrored */
   double translate; /**< moved along each axis by up to this part, 0 to 1, of the room on either side */
   bool fill;        /**< the longest side fills the grid rather than the diagonal; without rotation only */
-  vxm_voxelize_options voxelize; /**< how; not its space, confidence or engine: the CPU makes all variants */
+  vxm_voxelize_options voxelize; /**< how; not its space or confidence. An engine, which must outlive the
+                                    sampler, makes one variant after another of points that the CPU placed */
 } vxm_sampler_options;
 
 #define VXM_SAMPLER_OPTIONS_INIT                                                                             \
@@ -1219,9 +1221,8 @@ typedef struct vxm_pose {
 
 /**
  * Makes variants of meshes: Ogayar et al.'s direct connection, with an implicit dataset. Meshes are prepared
- * once; after the first few variants none takes memory, unless a mesh is open so that voters disagree, or
- * surfaces of long faces are asked for. One sampler may be used by one thread at a time, and works with all
- * threads of its context.
+ * once; after the first few variants none takes memory, but what an engine takes. One sampler may be used by
+ * one thread at a time, and works with all threads of its context.
  */
 typedef struct vxm_sampler vxm_sampler;
 
@@ -1273,6 +1274,18 @@ VXM_API vxm_status vxm_sampler_grid(vxm_grid *grid, vxm_sampler *sampler, const 
  */
 VXM_API vxm_status vxm_sampler_batch(void *out, vxm_sampler *sampler, const vxm_variant *variants,
                                      size_t count, vxm_voxels voxels, vxm_error *error);
+
+/**
+ * Makes many variants, and writes each into a file of its own.
+ *
+ * @param paths   one for each variant, all different; written as by vxm_grid_write
+ * @param options NULL = defaults
+ * @param[out] written NULL, or for each variant whether its file was written: after a failure some may be
+ * @return as vxm_sampler_grid and vxm_grid_write
+ */
+VXM_API vxm_status vxm_sampler_files(const char *const *paths, vxm_sampler *sampler,
+                                     const vxm_variant *variants, size_t count,
+                                     const vxm_grid_write_options *options, bool *written, vxm_error *error);
 
 /* ---- Sparse sets of voxels: memory follows the surface ---- */
 

@@ -30,6 +30,8 @@ class Sampler:
         translate: part of the room on each side, 0 to 1, by which variants are moved.
         fill: the longest side fills the grid rather than the diagonal; without rotation.
         mode, surface, method, vote, parts, cavities: as for `voxmend.voxelize`.
+        engine: who makes the voxels: "cpu"; "opengl", "opencl" or one that the command 'voxmend engines' lists, one variant
+            after another; "auto": a GPU, or else the CPU. Variants have the same bits.
 
     A sampler may be used by one thread at a time; a call works with several, and other Python threads run meanwhile.
     """
@@ -37,7 +39,8 @@ class Sampler:
     def __init__(self, resolution: int = 64, *, pad: int = 0, seed: int = 0, rotate: Any = None, scale: float = 0.0,
                  displace: float = 0.0, displacement: str = "uniform", noise: int = 65536, mirror: str = "",
                  translate: float = 0.0, fill: bool = False, mode: str = "solid", surface: str = "conservative",
-                 method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto"):
+                 method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto",
+                 engine: Optional[str] = None):
         options = _core.new("vxm_sampler_options", resolution=resolution, pad=pad, seed=seed, scale=scale,
                             displace=displace, noise=noise, translate=translate, fill=fill)
         kept = self._set_rotation(options, rotate)
@@ -53,6 +56,11 @@ class Sampler:
         voxelize.vote = _core.choice(vote, "VXM_VOTE_")
         voxelize.parts = _core.choice(parts, "VXM_PARTS_")
         voxelize.cavities = _core.choice(cavities, "VXM_CAVITIES_")
+        self._engine = ffi.NULL
+        if engine not in (None, "cpu"):
+            self._engine = _core.create("vxm_engine", lib.vxm_engine_create, _core.context(), engine.encode(), ffi.NULL,
+                                        destroy=lib.vxm_engine_destroy)
+        voxelize.engine = self._engine
         self._pointer = _core.create("vxm_sampler", lib.vxm_sampler_create, _core.context(), options,
                                      destroy=lib.vxm_sampler_destroy)
         del kept  # the library has copied it

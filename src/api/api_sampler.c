@@ -64,9 +64,6 @@ static vxm_status check(const vxm_sampler_options *options, vxm_error *error) {
   if (options->fill && options->rotation != VXM_ROTATION_NONE)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "sampler: a model whose longest side fills the grid cannot be rotated within it");
-  if (voxelize->engine)
-    return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
-                    "sampler: variants are made by the CPU; leave out the engine");
   if (voxelize->confidence)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: variants have no confidence");
   vxm_status status = vxm_check_voxelize_options(voxelize, error);
@@ -166,4 +163,24 @@ vxm_status vxm_sampler_batch(void *out, vxm_sampler *sampler, const vxm_variant 
   if (voxels == VXM_VOXELS_FLOAT32 && (uintptr_t)out % sizeof(float) != 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the memory is not aligned as floats are");
   return vxm_sampler_write(sampler, out, variants, count, voxels, error);
+}
+
+vxm_status vxm_sampler_files(const char *const *paths, vxm_sampler *sampler, const vxm_variant *variants,
+                             size_t count, const vxm_grid_write_options *options, bool *written,
+                             vxm_error *error) {
+  if (!paths || !sampler || !variants)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
+  vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+  if (chosen.version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "grid: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  for (size_t v = 0; v < count; v++) {
+    if (written)
+      written[v] = false;
+    if (!paths[v])
+      return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the path of variant %zu is NULL", v);
+  }
+  return vxm_sampler_save(sampler, paths, variants, count, chosen.format, written, error);
 }

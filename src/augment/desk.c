@@ -2,6 +2,7 @@
 #include "augment/desk.h"
 #include "augment/spread.h"
 #include "base/threads.h"
+#include "gridio/gridio.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,8 +19,7 @@ vxm_space vxm_desk_space(int64_t resolution) {
 
 vxm_status vxm_desk_create(vxm_desk *out, vxm_context *context, bool alone, vxm_error *error) {
   *out = (vxm_desk){0};
-  vxm_status status = alone ? vxm_context_child(&out->context, context, error)
-                            : vxm_context_acquire(&out->context, context, error);
+  vxm_status status = vxm_context_child(&out->context, context, alone, error);
   out->twin.context = out->context;
   return status;
 }
@@ -29,6 +29,7 @@ void vxm_desk_destroy(vxm_desk *desk) {
     return;
   vxm_twin_destroy(&desk->twin);
   vxm_free(desk->context, desk->words);
+  vxm_grid_destroy(desk->grid);
   vxm_context_release(desk->context);
   *desk = (vxm_desk){0};
 }
@@ -152,4 +153,16 @@ vxm_status vxm_desk_write(vxm_desk *desk, void *out, vxm_voxels voxels, int64_t 
   if (status == VXM_OK && !direct)
     vxm_spread(out, voxels, window.words, (size_t)resolution * (size_t)resolution, resolution);
   return status;
+}
+
+vxm_status vxm_desk_save(vxm_desk *desk, const char *path, const char *format, int64_t resolution,
+                         const vxm_subject *subject, const vxm_placement *placement, const vxm_noise *noise,
+                         vxm_error *error) {
+  vxm_space space = vxm_desk_space(resolution);
+  vxm_status status = desk->grid ? VXM_OK : vxm_grid_create(&desk->grid, desk->context, &space, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_window window = vxm_window_of_grid(desk->grid);
+  status = vxm_desk_fill(desk, &window, subject, placement, noise, error);
+  return status == VXM_OK ? vxm_gridio_write(desk->grid, path, format, error) : status;
 }

@@ -8,6 +8,7 @@
 typedef struct vxm_desk {
   vxm_context *context; /**< one reference held; NULL = not made yet */
   vxm_twin twin;
+  vxm_grid *grid;  /**< a variant on its way to a file; NULL before the first */
   uint64_t *words; /**< of a window, where what is asked for has another form */
   size_t word_room;
 } vxm_desk;
@@ -24,6 +25,11 @@ vxm_status vxm_desk_fill(vxm_desk *desk, const vxm_window *window, const vxm_sub
 vxm_status vxm_desk_write(vxm_desk *desk, void *out, vxm_voxels voxels, int64_t resolution,
                           const vxm_subject *subject, const vxm_placement *placement, const vxm_noise *noise,
                           vxm_error *error);
+
+/** The same into a file. */
+vxm_status vxm_desk_save(vxm_desk *desk, const char *path, const char *format, int64_t resolution,
+                         const vxm_subject *subject, const vxm_placement *placement, const vxm_noise *noise,
+                         vxm_error *error);
 
 /** The voxel space of all variants: the unit cube. */
 vxm_space vxm_desk_space(int64_t resolution);

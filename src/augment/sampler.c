@@ -3,6 +3,7 @@
 #include "augment/spread.h"
 #include "base/threads.h"
 #include "base/watch.h"
+#include "voxel/engine.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -188,31 +189,43 @@ enum { ALONE_MOST = 256 };
 typedef struct batch_job {
   vxm_sampler *sampler;
   const vxm_variant *variants;
+  /* into memory */
   unsigned char *out;
   size_t step; /**< bytes of a variant */
   vxm_voxels voxels;
+  /* or into files, if there are paths */
+  const char *const *paths;
+  const char *format;
+  bool *written;
   vxm_watch watch;
   atomic_int failed; /**< a vxm_status */
   vxm_error error;   /**< of the one that failed first */
 } batch_job;
 
-static vxm_status write_one(const batch_job *job, size_t v, vxm_desk *desk, vxm_error *error) {
+static vxm_status make_one(const batch_job *job, size_t v, vxm_desk *desk, vxm_error *error) {
   const vxm_sampler *sampler = job->sampler;
   const vxm_subject *subject = vxm_sampler_find(sampler, job->variants[v].model, error);
   if (!subject)
     return VXM_ERROR_ARGUMENT;
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, &job->variants[v]);
-  return vxm_desk_write(desk, job->out + v * job->step, job->voxels, sampler->rules.options.resolution,
-                        subject, &placement, &sampler->noise, error);
+  int64_t resolution = sampler->rules.options.resolution;
+  if (!job->paths)
+    return vxm_desk_write(desk, job->out + v * job->step, job->voxels, resolution, subject, &placement,
+                          &sampler->noise, error);
+  vxm_status status = vxm_desk_save(desk, job->paths[v], job->format, resolution, subject, &placement,
+                                    &sampler->noise, error);
+  if (job->written)
+    job->written[v] = status == VXM_OK;
+  return status;
 }
 
-static void write_task(size_t v, int worker, void *payload) {
+static void make_task(size_t v, int worker, void *payload) {
   batch_job *job = payload;
   if (vxm_watch_stopped(&job->watch, worker))
     return;
   vxm_error error = VXM_ERROR_INIT;
-  vxm_status status = write_one(job, v, &job->sampler->desks[worker], &error);
+  vxm_status status = make_one(job, v, &job->sampler->desks[worker], &error);
   int none = VXM_OK;
   if (status != VXM_OK && atomic_compare_exchange_strong(&job->failed, &none, (int)status)) {
     job->error = error;
@@ -222,7 +235,7 @@ static void write_task(size_t v, int worker, void *payload) {
 }
 
 /** One variant for each thread at a time. */
-static vxm_status write_alone(batch_job *job, size_t count, vxm_error *error) {
+static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
   vxm_sampler *sampler = job->sampler;
   for (int d = 0; d < vxm_context_threads(sampler->context); d++) {
     vxm_status status = need_desk(sampler, d, true, error);
@@ -230,7 +243,7 @@ static vxm_status write_alone(batch_job *job, size_t count, vxm_error *error) {
       return status;
   }
   vxm_watch_start(&job->watch, sampler->context, "making variants", count, error);
-  vxm_parallel(sampler->context, count, write_task, job);
+  vxm_parallel(sampler->context, count, make_task, job);
   if (job->failed == VXM_OK)
     return vxm_watch_end(&job->watch);
   if (error)
@@ -238,21 +251,39 @@ static vxm_status write_alone(batch_job *job, size_t count, vxm_error *error) {
   return (vxm_status)job->failed;
 }
 
-vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant *variants, size_t count,
-                             vxm_voxels voxels, vxm_error *error) {
-  int64_t resolution = sampler->rules.options.resolution;
-  batch_job job = {.sampler = sampler,
-                   .variants = variants,
-                   .out = out,
-                   .step = vxm_spread_row_bytes(voxels, resolution) * (size_t)resolution * (size_t)resolution,
-                   .voxels = voxels,
-                   .error = VXM_ERROR_INIT};
-  atomic_init(&job.failed, VXM_OK);
-  if (count > 1 && resolution <= ALONE_MOST)
-    return write_alone(&job, count, error);
+/** Whether variants are made by something that does one thing at a time. */
+static bool has_engine(const vxm_sampler *sampler) {
+  const vxm_engine *engine = sampler->rules.options.voxelize.engine;
+  return engine && engine->ops;
+}
+
+static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
+  vxm_sampler *sampler = job->sampler;
+  job->error = (vxm_error)VXM_ERROR_INIT;
+  atomic_init(&job->failed, VXM_OK);
+  if (count > 1 && sampler->rules.options.resolution <= ALONE_MOST && !has_engine(sampler))
+    return make_alone(job, count, error);
   vxm_desk *desk;
   vxm_status status = need_table(&desk, sampler, error);
   for (size_t v = 0; v < count && status == VXM_OK; v++)
-    status = write_one(&job, v, desk, error);
+    status = make_one(job, v, desk, error);
   return status;
+}
+
+vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant *variants, size_t count,
+                             vxm_voxels voxels, vxm_error *error) {
+  size_t n = (size_t)sampler->rules.options.resolution;
+  batch_job job = {.sampler = sampler,
+                   .variants = variants,
+                   .out = out,
+                   .step = vxm_spread_row_bytes(voxels, (int64_t)n) * n * n,
+                   .voxels = voxels};
+  return make_all(&job, count, error);
+}
+
+vxm_status vxm_sampler_save(vxm_sampler *sampler, const char *const *paths, const vxm_variant *variants,
+                            size_t count, const char *format, bool *written, vxm_error *error) {
+  batch_job job = {
+      .sampler = sampler, .variants = variants, .paths = paths, .format = format, .written = written};
+  return make_all(&job, count, error);
 }

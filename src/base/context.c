@@ -12,6 +12,8 @@
 /* Every block is preceded by one cache line that holds its size, so that the counter can be lowered again. */
 enum { HEADER = 64 };
 
+static void empty_store(vxm_context *context);
+
 static int available_processors(void) {
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) == 0) {
@@ -40,7 +42,7 @@ vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *opti
   if (!context)
     return vxm_fail(error, VXM_ERROR_MEMORY, "context: out of memory");
   atomic_init(&context->references, 1);
-  context->account = context;
+  context->account = context->crew = context;
   atomic_init(&context->used, 0);
   atomic_init(&context->peak, 0);
   context->limit = chosen.memory_limit ? (size_t)chosen.memory_limit : SIZE_MAX;
@@ -65,17 +67,31 @@ vxm_status vxm_context_acquire(vxm_context **out, vxm_context *context, vxm_erro
 void vxm_context_release(vxm_context *context) {
   if (!context || atomic_fetch_sub_explicit(&context->references, 1, memory_order_acq_rel) != 1)
     return;
+  if (context->keeps) {
+    empty_store(context);
+    pthread_mutex_destroy(&context->store.mutex);
+  }
+  if (context->crew != context)
+    vxm_context_release(context->crew);
   if (context->account != context)
     vxm_context_release(context->account);
   vxm_pool_destroy(&context->pool);
   free(context);
 }
 
-vxm_status vxm_context_child(vxm_context **out, vxm_context *parent, vxm_error *error) {
+vxm_status vxm_context_child(vxm_context **out, vxm_context *parent, bool alone, vxm_error *error) {
   vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
-  options.threads = 1;
+  options.threads = alone ? 1 : parent->threads;
+  options.progress = alone ? NULL : parent->progress;
+  options.payload = parent->payload;
   vxm_status status = vxm_context_create(out, &options, error);
-  return status == VXM_OK ? vxm_context_acquire(&(*out)->account, parent->account, error) : status;
+  if (status != VXM_OK)
+    return status;
+  vxm_context *child = *out;
+  child->keeps = true;
+  pthread_mutex_init(&child->store.mutex, NULL);
+  status = vxm_context_acquire(&child->account, parent->account, error);
+  return alone || status != VXM_OK ? status : vxm_context_acquire(&child->crew, parent->crew, error);
 }
 
 void vxm_context_destroy(vxm_context *context) {
@@ -150,9 +166,10 @@ static void fail_memory(vxm_error *error, size_t bytes) {
 
 /* Large zeroed blocks come from calloc, whose fresh pages need no clearing; calloc aligns to 16 only, so the
    block is placed at the next multiple of 64 and the start is remembered. */
-typedef struct block_header {
+typedef struct vxm_block_header {
   void *start;
   size_t bytes;
+  struct vxm_block_header *next; /**< of those in a store */
 } block_header;
 
 static block_header *header_of(void *block) {
@@ -174,6 +191,85 @@ static void advise_large(char *start, size_t bytes) {
 #endif
 }
 
+/* ---- Blocks that wait for a use ---- */
+
+/** Gives a block back to the system. */
+static void give_back(vxm_context *context, const block_header *header) {
+  unreserve(context, header->bytes);
+  free(header->start);
+}
+
+static void empty_store(vxm_context *context) {
+  for (block_header *header = context->store.first, *next; header; header = next) {
+    next = header->next;
+    give_back(context, header);
+  }
+  context->store.first = NULL;
+}
+
+/** Takes the least block of at least so many bytes out of the store; NULL if there is none. */
+static block_header *take_least(vxm_store *store, size_t bytes) {
+  block_header **best = NULL;
+  for (block_header **at = &store->first; *at; at = &(*at)->next)
+    if ((*at)->bytes >= bytes && (!best || (*at)->bytes < (*best)->bytes))
+      best = at;
+  if (!best)
+    return NULL;
+  block_header *header = *best;
+  *best = header->next;
+  return header;
+}
+
+/** Gives the greatest block of the store back: a greater one takes its place, and so the store does not grow
+ * without end. */
+static void drop_greatest(vxm_context *context) {
+  block_header **most = &context->store.first;
+  for (block_header **at = most; *at; at = &(*at)->next)
+    if ((*at)->bytes > (*most)->bytes)
+      most = at;
+  block_header *header = *most;
+  if (!header)
+    return;
+  *most = header->next;
+  give_back(context, header);
+}
+
+/** Rounds up by a quarter at most, so that sizes which vary a little do not each want a block of their own.
+ */
+static size_t round_up(size_t bytes) {
+  size_t step = HEADER;
+  while (step < bytes / 8)
+    step *= 2;
+  return (bytes + step - 1) / step * step;
+}
+
+/** A block from the store; NULL if a new one of *bytes bytes is to be made, whatever is kept. */
+static void *take_kept(vxm_context *context, size_t *bytes, bool zero) {
+  *bytes = round_up(*bytes);
+  pthread_mutex_lock(&context->store.mutex);
+  block_header *header = take_least(&context->store, *bytes);
+  if (!header)
+    drop_greatest(context);
+  if (!header && *bytes > vxm_memory_left(context))
+    empty_store(context);
+  pthread_mutex_unlock(&context->store.mutex);
+  if (!header)
+    return NULL;
+  void *block = (char *)header + HEADER;
+  if (zero)
+    memset(block, 0, *bytes - 2 * HEADER);
+  return block;
+}
+
+static void keep(vxm_context *context, block_header *header) {
+  pthread_mutex_lock(&context->store.mutex);
+  header->next = context->store.first;
+  context->store.first = header;
+  pthread_mutex_unlock(&context->store.mutex);
+}
+
+/* ---- Allocating ---- */
+
 static void *allocate(vxm_context *context, size_t count, size_t size, bool zero, vxm_error *error) {
   size_t bytes = block_bytes(count, size);
   if (bytes == 0) {
@@ -182,6 +278,11 @@ static void *allocate(vxm_context *context, size_t count, size_t size, bool zero
     return NULL;
   }
   bytes += HEADER;
+  if (context->keeps) {
+    void *kept = take_kept(context, &bytes, zero);
+    if (kept)
+      return kept;
+  }
   if (!reserve(context, bytes, error))
     return NULL;
   char *start = zero ? calloc(1, bytes) : malloc(bytes);
@@ -193,7 +294,7 @@ static void *allocate(vxm_context *context, size_t count, size_t size, bool zero
   advise_large(start, bytes);
   uintptr_t aligned = ((uintptr_t)start + HEADER + HEADER - 1) / HEADER * HEADER;
   void *block = start + (aligned - (uintptr_t)start);
-  *header_of(block) = (block_header){start, bytes};
+  *header_of(block) = (block_header){start, bytes, NULL};
   return block;
 }
 
@@ -205,6 +306,16 @@ void *vxm_calloc(vxm_context *context, size_t count, size_t size, vxm_error *err
   return allocate(context, count, size, true, error);
 }
 
+/** Into a block that is larger. */
+static void *move_block(vxm_context *context, void *block, size_t count, size_t size, vxm_error *error) {
+  void *moved = vxm_alloc(context, count, size, error);
+  if (!moved)
+    return NULL;
+  memcpy(moved, block, header_of(block)->bytes - 2 * HEADER);
+  vxm_free(context, block);
+  return moved;
+}
+
 void *vxm_realloc(vxm_context *context, void *block, size_t count, size_t size, vxm_error *error) {
   if (!block)
     return vxm_alloc(context, count, size, error);
@@ -213,8 +324,10 @@ void *vxm_realloc(vxm_context *context, void *block, size_t count, size_t size, 
   if (bytes == 0)
     return vxm_alloc(context, count, size, error);
   bytes += HEADER;
-  if (bytes == old.bytes)
+  if (bytes == old.bytes || (context->keeps && bytes < old.bytes))
     return block;
+  if (context->keeps)
+    return move_block(context, block, count, size, error);
   if (bytes > old.bytes && !reserve(context, bytes - old.bytes, error))
     return NULL;
   size_t old_shift = (size_t)((char *)block - (char *)old.start);
@@ -236,16 +349,18 @@ void *vxm_realloc(vxm_context *context, void *block, size_t count, size_t size, 
   if (shift != old_shift)
     memmove(start + shift, start + old_shift, kept);
   void *moved = start + shift;
-  *header_of(moved) = (block_header){start, bytes};
+  *header_of(moved) = (block_header){start, bytes, NULL};
   return moved;
 }
 
 void vxm_free(vxm_context *context, void *block) {
   if (!block)
     return;
-  block_header header = *header_of(block);
-  unreserve(context, header.bytes);
-  free(header.start);
+  block_header *header = header_of(block);
+  if (context->keeps)
+    keep(context, header);
+  else
+    give_back(context, header);
 }
 
 size_t vxm_memory_left(const vxm_context *owner) {

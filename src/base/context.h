@@ -13,10 +13,14 @@ extern "C" {
 vxm_status vxm_context_acquire(vxm_context **out, vxm_context *context, vxm_error *error);
 void vxm_context_release(vxm_context *context);
 /**
- * A context of one thread and without progress, whose memory counts as that of its parent, to which it holds
- * a reference: for a task that works alone while others like it run beside it.
+ * A context whose memory counts as that of its parent, to which it holds a reference, and which keeps what is
+ * freed for the next that needs it: for work that is done again and again. What is kept counts as in use, but
+ * is given back before an allocation would fail for it.
+ *
+ * @param alone whether it has one thread and no progress, for a task that works while others like it run
+ * beside it; else it works with its parent's
  */
-vxm_status vxm_context_child(vxm_context **out, vxm_context *parent, vxm_error *error);
+vxm_status vxm_context_child(vxm_context **out, vxm_context *parent, bool alone, vxm_error *error);
 
 /**
  * Allocates count * size bytes, aligned to 64 bytes, counted against the limit.

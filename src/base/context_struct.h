@@ -32,9 +32,18 @@ typedef struct vxm_pool {
 void vxm_pool_init(vxm_pool *pool);
 void vxm_pool_destroy(vxm_pool *pool);
 
+/** Blocks that were freed and wait for a use. */
+typedef struct vxm_store {
+  pthread_mutex_t mutex;
+  struct vxm_block_header *first;
+} vxm_store;
+
 struct vxm_context {
   atomic_uint references;
   vxm_context *account; /**< where memory is counted: itself, or the context that it is a child of */
+  vxm_context *crew;    /**< whose threads work: itself, or its parent */
+  bool keeps;           /**< freed blocks go to the store */
+  vxm_store store;
   atomic_size_t used, peak;
   size_t limit;
   int threads;

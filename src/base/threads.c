@@ -128,7 +128,7 @@ void vxm_pool_destroy(vxm_pool *pool) {
 }
 
 void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void *payload) {
-  vxm_pool *pool = &context->pool;
+  vxm_pool *pool = &context->crew->pool;
   /* trylock fails for a nested loop and for a second caller: both work alone. */
   if (context->threads < 2 || count < 2 || is_forked(pool) || pthread_mutex_trylock(&pool->owner) != 0) {
     for (size_t task = 0; task < count; task++)

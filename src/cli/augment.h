@@ -12,6 +12,7 @@ typedef struct augment_request {
   vxm_variant variant;   /**< model and epoch */
   bool no_repair, repair_options, noise;
   bool surface;
+  cli_engine engine;
   vxm_voxels voxels; /**< of a stream */
   vxm_repair_options repair;
   vxm_sampler_options sampler;

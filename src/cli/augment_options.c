@@ -55,6 +55,10 @@ const cli_option augment_options[] = {
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
+    {CLI_KEY_ENGINE, "engine", "E",
+     "who makes the voxels: cpu, or as in 'voxmend voxelize'; one variant after another,\n"
+     "of vertices that the cpu has moved [cpu]"},
+    {CLI_KEY_DEVICE, "device", "N|NAME", "the OpenCL device, as in 'voxmend voxelize'"},
     CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
@@ -178,6 +182,9 @@ static int read_option(cli_run *cli, augment_request *out, int key, const char *
   case KEY_KEEP:
     out->repair_options = out->repair.keep_duplicates = true;
     return CLI_END;
+  case CLI_KEY_ENGINE:
+  case CLI_KEY_DEVICE:
+    return cli_engine_read(cli, &out->engine, key, value);
   case KEY_MODE:
     return cli_read_mode(cli, &out->sampler.voxelize, value);
   default:
@@ -235,7 +242,7 @@ int augment_read_arguments(cli_run *cli, augment_request *out) {
   out->input = cli->arguments[0];
   if (!out->output)
     return cli_usage(cli, "-o DIR or -o - is missing");
-  if (cli_check_report(cli, NULL) == CLI_STOP)
+  if (cli_check_report(cli, NULL) == CLI_STOP || cli_engine_check(cli, &out->engine) == CLI_STOP)
     return CLI_STOP;
   return check_format(cli, out) == CLI_STOP ? CLI_STOP : check_conflicts(cli, out);
 }

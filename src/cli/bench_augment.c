@@ -50,6 +50,7 @@ static vxm_status begin_sampler(bench_stage *stage) {
   options.displace = stage->displace;
   options.mirror = 7;
   options.translate = 1;
+  options.voxelize.engine = stage->engines[stage->engine];
   vxm_error *error = &stage->cli->error;
   vxm_status status = vxm_sampler_create(&stage->augment->sampler, stage->cli->context, &options, error);
   return status == VXM_OK ? vxm_sampler_put(stage->augment->sampler, 0, stage->mesh, error) : status;
@@ -133,6 +134,8 @@ vxm_status bench_run_standard(bench_stage *stage) {
                              displace,
                              "--threads",
                              threads,
+                             "--engine",
+                             (char *)(uintptr_t)vxm_engine_describe(stage->engines[0])->name,
                              "-o",
                              augment->folder,
                              "--",
@@ -156,28 +159,25 @@ vxm_status bench_begin_batch(bench_stage *stage) {
   vxm_status status = begin(stage, BATCH_MOST);
   if (status == VXM_OK)
     status = begin_folder(stage);
-  if (status == VXM_OK)
-    status = begin_sampler(stage);
-  vxm_space space = status == VXM_OK ? vxm_sampler_space(stage->augment->sampler) : stage->space;
-  if (status == VXM_OK && !stage->grid)
-    status = vxm_grid_create(&stage->grid, stage->cli->context, &space, &stage->cli->error);
-  return status;
+  return status == VXM_OK ? begin_sampler(stage) : status;
 }
 
 vxm_status bench_run_batch(bench_stage *stage) {
   bench_augment *augment = stage->augment;
-  vxm_status status = VXM_OK;
-  char path[2 * PATH_SIZE];
+  static char names[BATCH_MOST][2 * PATH_SIZE];
+  const char *paths[BATCH_MOST];
+  vxm_variant variants[BATCH_MOST];
+  size_t count = (size_t)stage->variants;
   augment->file_bytes = 0;
-  for (uint32_t i = 0; i < (uint32_t)stage->variants && status == VXM_OK; i++) {
-    vxm_variant variant = {0, 0, first_of(stage) + i};
-    name_file(path, augment, variant.index);
-    status = vxm_sampler_grid(stage->grid, augment->sampler, &variant, &stage->cli->error);
-    if (status == VXM_OK)
-      status = vxm_grid_write(stage->grid, path, NULL, &stage->cli->error);
+  for (size_t i = 0; i < count; i++) {
+    variants[i] = (vxm_variant){0, 0, first_of(stage) + (uint32_t)i};
+    name_file(names[i], augment, variants[i].index);
+    paths[i] = names[i];
   }
-  for (uint32_t i = 0; i < (uint32_t)stage->variants && status == VXM_OK; i++)
-    status = read_back(stage, first_of(stage) + i);
+  vxm_status status =
+      vxm_sampler_files(paths, augment->sampler, variants, count, NULL, NULL, &stage->cli->error);
+  for (size_t i = 0; i < count && status == VXM_OK; i++)
+    status = read_back(stage, variants[i].index);
   return status;
 }
 

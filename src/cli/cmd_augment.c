@@ -59,36 +59,45 @@ static int read_rotations(cli_run *cli, augment_request *given, double **numbers
 
 /* ---- Files ---- */
 
+enum {
+  CHUNK = 64, /**< files made by all threads between two looks at the progress */
+  PATH_SIZE = 4096
+};
+
 /** A folder of files, and how far it has come. */
 typedef struct folder {
   const augment_request *given;
   vxm_sampler *sampler;
-  vxm_grid *grid;
+  char *paths[CHUNK]; /**< of the present files, PATH_SIZE each */
+  bool written[CHUNK];
   bool made; /**< the folder itself was made here */
 } folder;
 
-static void name_file(char *out, size_t size, const augment_request *given, int64_t made,
-                      const char *behind) {
-  snprintf(out, size, "%s/%06" PRId64 ".%s%s", given->output, given->first + made, given->format, behind);
+static void name_file(char *out, const augment_request *given, int64_t made, const char *behind) {
+  snprintf(out, PATH_SIZE, "%s/%06" PRId64 ".%s%s", given->output, given->first + made, given->format,
+           behind);
 }
 
-enum { PATH_SIZE = 4096 };
-
-static int write_file(cli_run *cli, const folder *f, augment_outcome *results) {
+static int write_files(cli_run *cli, folder *f, size_t count, augment_outcome *results) {
   const augment_request *given = f->given;
-  char path[PATH_SIZE];
-  vxm_variant variant = given->variant;
-  variant.index = (uint32_t)(given->first + results->made);
+  vxm_variant variants[CHUNK];
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = given->format;
-  name_file(path, sizeof path, given, results->made, "");
-  if (vxm_sampler_grid(f->grid, f->sampler, &variant, &cli->error) != VXM_OK ||
-      vxm_grid_write(f->grid, path, &options, &cli->error) != VXM_OK)
+  for (size_t i = 0; i < count; i++) {
+    variants[i] = given->variant;
+    variants[i].index = (uint32_t)(given->first + results->made + (int64_t)i);
+    name_file(f->paths[i], given, results->made + (int64_t)i, "");
+  }
+  const char *const *paths = (const char *const *)f->paths;
+  if (vxm_sampler_files(paths, f->sampler, variants, count, &options, f->written, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  results->made++;
-  struct stat info;
-  if (stat(path, &info) == 0)
-    results->bytes += (uint64_t)info.st_size;
+  results->made += (int64_t)count;
+  for (size_t i = 0; i < count; i++) {
+    struct stat info;
+    f->written[i] = false; /* but counted */
+    if (stat(f->paths[i], &info) == 0)
+      results->bytes += (uint64_t)info.st_size;
+  }
   return CLI_DONE;
 }
 
@@ -96,14 +105,29 @@ static int write_file(cli_run *cli, const folder *f, augment_outcome *results) {
 static void remove_files(const folder *f, const augment_outcome *results) {
   static const char *const behind[] = {"", ".json"};
   bool has_json = strcmp(f->given->format, "raw") == 0 || strcmp(f->given->format, "npy") == 0;
-  for (int64_t i = 0; i < results->made; i++)
+  for (int64_t i = 0; i < results->made + CHUNK; i++)
     for (int k = 0; k < 1 + has_json; k++) {
       char path[PATH_SIZE];
-      name_file(path, sizeof path, f->given, i, behind[k]);
-      unlink(path);
+      name_file(path, f->given, i, behind[k]);
+      if (i < results->made || f->written[i - results->made])
+        unlink(path);
     }
   if (f->made)
     rmdir(f->given->output);
+}
+
+static int write_chunks(cli_run *cli, folder *f, augment_outcome *results) {
+  int64_t count = f->given->count;
+  while (results->made < count) {
+    if (cli_progress(cli, "augmenting", (double)results->made / (double)count)) {
+      cli->error.code = VXM_ERROR_CANCELLED;
+      return cli_fail(cli);
+    }
+    int64_t left = count - results->made;
+    if (write_files(cli, f, left < CHUNK ? (size_t)left : CHUNK, results) != CLI_DONE)
+      return CLI_FAILED;
+  }
+  return CLI_DONE;
 }
 
 static int write_folder(cli_run *cli, const augment_request *given, vxm_sampler *sampler,
@@ -111,22 +135,20 @@ static int write_folder(cli_run *cli, const augment_request *given, vxm_sampler 
   folder f = {.given = given, .sampler = sampler};
   if (strlen(given->output) > PATH_SIZE - 64)
     return cli_fail_text(cli, "the name of the folder is too long");
+  char *names = malloc((size_t)CHUNK * PATH_SIZE);
+  if (!names)
+    return cli_fail_text(cli, "out of memory");
+  for (size_t i = 0; i < CHUNK; i++)
+    f.paths[i] = names + i * PATH_SIZE;
+  int status = CLI_DONE;
   f.made = mkdir(given->output, 0777) == 0;
   if (!f.made && errno != EEXIST)
-    return cli_fail_text(cli, "%s: cannot make the folder: %s", given->output, strerror(errno));
-  vxm_space space = vxm_sampler_space(sampler);
-  int status =
-      vxm_grid_create(&f.grid, cli->context, &space, &cli->error) == VXM_OK ? CLI_DONE : cli_fail(cli);
-  while (status == CLI_DONE && results->made < given->count) {
-    if (cli_progress(cli, "augmenting", (double)results->made / (double)given->count)) {
-      cli->error.code = VXM_ERROR_CANCELLED;
-      status = cli_fail(cli);
-    } else
-      status = write_file(cli, &f, results);
-  }
+    status = cli_fail_text(cli, "%s: cannot make the folder: %s", given->output, strerror(errno));
+  else
+    status = write_chunks(cli, &f, results);
   if (status != CLI_DONE)
     remove_files(&f, results);
-  vxm_grid_destroy(f.grid);
+  free(names);
   return status;
 }
 
@@ -136,6 +158,9 @@ static int make_variants(cli_run *cli, augment_request *given, augment_outcome *
   vxm_sampler *sampler = NULL;
   double start = cli_clock();
   vxm_status status = vxm_mesh_census(&results->census, results->input.mesh, &cli->error);
+  if (status == VXM_OK)
+    status = cli_engine_open(cli, &given->engine);
+  given->sampler.voxelize.engine = given->engine.engine;
   if (status == VXM_OK)
     status = vxm_sampler_create(&sampler, cli->context, &given->sampler, &cli->error);
   if (status == VXM_OK)
@@ -169,6 +194,8 @@ static json_t *report(const cli_run *cli, const augment_request *given, const au
   json_object_set_new(object, "first", json_integer(given->first));
   json_object_set_new(object, "variants", json_integer(results->made));
   json_object_set_new(object, "file_bytes", json_integer((json_int_t)results->bytes));
+  if (given->engine.engine)
+    json_object_set_new(object, "engine", cli_engine_json(&given->engine));
   json_object_set_new(time, "read", cli_json_number(results->input.read_ms));
   json_object_set_new(time, "repair", cli_json_number(results->input.repair_ms));
   json_object_set_new(time, "prepare", cli_json_number(results->prepare_ms));
@@ -190,6 +217,7 @@ static void summarize(const cli_run *cli, const augment_request *given, const au
           "%" PRId64 " of %" PRId64 " x %" PRId64 " x %" PRId64 " voxels, from %" PRId64 " of epoch %" PRIu32
           " on, seed %" PRIu64,
           results->made, n, n, n, given->first, given->variant.epoch, given->sampler.seed);
+  cli_engine_summarize(cli, &given->engine);
   if (augment_is_stream(given))
     cli_row(cli, "output", "<stdout> (%s)", given->format);
   else
@@ -199,8 +227,10 @@ static void summarize(const cli_run *cli, const augment_request *given, const au
 }
 
 static int run(cli_run *cli) {
-  augment_request given = {
-      .count = 16, .repair = VXM_REPAIR_OPTIONS_INIT, .sampler = VXM_SAMPLER_OPTIONS_INIT};
+  augment_request given = {.count = 16,
+                           .repair = VXM_REPAIR_OPTIONS_INIT,
+                           .sampler = VXM_SAMPLER_OPTIONS_INIT,
+                           .engine = {.options = VXM_ENGINE_OPTIONS_INIT}};
   given.sampler.resolution = 64;
   if (augment_read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
@@ -215,13 +245,15 @@ static int run(cli_run *cli) {
     status = make_variants(cli, &given, &results);
   free(rotations);
   vxm_mesh_destroy(results.input.mesh);
-  if (status != CLI_DONE)
-    return status;
-  results.total_ms = cli_clock() - start;
-  cli_progress_clear(cli);
-  if (cli_summary(cli))
-    summarize(cli, &given, &results);
-  return cli_finish(cli, report(cli, &given, &results));
+  if (status == CLI_DONE) {
+    results.total_ms = cli_clock() - start;
+    cli_progress_clear(cli);
+    if (cli_summary(cli))
+      summarize(cli, &given, &results);
+    status = cli_finish(cli, report(cli, &given, &results));
+  }
+  vxm_engine_destroy(given.engine.engine);
+  return status;
 }
 
 const cli_command cli_command_augment = {

@@ -45,9 +45,13 @@ vxm_status vxm_cl_place_surface(vxm_opencl *engine, const vxm_surface *surface, 
   engine->surface_serial = 0;
   vxm_status status =
       upload_points(engine, VXM_CL_SURFACE_POINTS, surface->points, surface->soup->vertex_count, error);
-  if (status == VXM_OK)
+  if (status == VXM_OK && engine->surface_corners_serial != surface->corners_serial) {
+    engine->surface_corners_serial = 0;
     status = vxm_cl_upload(engine, VXM_CL_SURFACE_CORNERS, surface->corners,
                            surface->triangle_count * 3 * sizeof *surface->corners, error);
+    if (status == VXM_OK)
+      engine->surface_corners_serial = surface->corners_serial;
+  }
   if (status == VXM_OK)
     status = vxm_far_surface_find(&engine->far_surface, surface, error);
   if (status == VXM_OK)

@@ -26,9 +26,13 @@ static vxm_status place(vxm_opengl *engine, const vxm_surface *surface, vxm_erro
     return VXM_OK;
   engine->surface_serial = 0;
   vxm_status status = vxm_gl_upload_points(engine, VXM_GL_SURFACE_POINTS, surface->points, count, error);
-  if (status == VXM_OK)
+  if (status == VXM_OK && engine->surface_corners_serial != surface->corners_serial) {
+    engine->surface_corners_serial = 0;
     status = vxm_gl_upload(engine, VXM_GL_SURFACE_CORNERS, surface->corners,
                            surface->triangle_count * 3 * sizeof *surface->corners, error);
+    if (status == VXM_OK)
+      engine->surface_corners_serial = surface->corners_serial;
+  }
   if (status == VXM_OK)
     status = vxm_far_surface_find(&engine->far_surface, surface, error);
   if (status == VXM_OK)

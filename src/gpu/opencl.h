@@ -142,7 +142,8 @@ typedef struct vxm_opencl {
   cl_kernel kernels[VXM_CL_KERNELS];
   size_t group; /**< work-items of a group: a power of two that all kernels made so far can have */
   vxm_cl_buffer buffers[VXM_CL_BUFFERS];
-  uint64_t facets_serial, parts_serial, placed_serial, surface_serial; /**< what the buffers hold */
+  /** What the buffers hold. */
+  uint64_t facets_serial, parts_serial, placed_serial, surface_serial, surface_corners_serial;
   vxm_cl_stages *stages; /**< NULL; else the device is waited for after each, and its time is added */
   vxm_far far;
   vxm_far_surface far_surface;

@@ -83,7 +83,7 @@ typedef struct vxm_opengl {
   const vxm_gl_format *format; /**< that passed the self-test */
   vxm_gl_presence presence;
   uint64_t facets_serial, placed_serial; /**< what Corners and Points hold */
-  uint64_t surface_serial;
+  uint64_t surface_serial, surface_corners_serial;
   vxm_far far; /**< facets and triangles beyond the numbers of the shaders */
   vxm_far_surface far_surface;
   /** Vertex and geometry shaders may read buffers; else all facets are left to compute shaders. */

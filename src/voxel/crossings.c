@@ -154,6 +154,7 @@ typedef struct raster_job {
   const vxm_crossings *crossings;
   const vxm_kernels *kernels;
   vxm_bins *bins;
+  uint64_t *words;
   size_t first; /**< range of the round */
   vxm_watch *watch;
 } raster_job;
@@ -171,6 +172,7 @@ static void raster_range(size_t task, int worker, void *payload) {
                             .columns = x->columns,
                             .columns_count = x->columns_count,
                             .bins = job->bins,
+                            .words = job->words,
                             .worker = (size_t)worker};
   job->kernels->raster(&raster);
   vxm_watch_step(job->watch);
@@ -178,6 +180,12 @@ static void raster_range(size_t task, int worker, void *payload) {
 
 void vxm_crossings_run(const vxm_crossings *x, size_t round, vxm_bins *bins, vxm_watch *watch) {
   size_t first = round > 0 ? x->round_end[round - 1] : 0;
-  raster_job job = {x, vxm_kernels_get(), bins, first, watch};
+  raster_job job = {x, vxm_kernels_get(), bins, NULL, first, watch};
   vxm_parallel(x->context, x->round_end[round] - first, raster_range, &job);
+}
+
+void vxm_crossings_flip(const vxm_crossings *x, uint64_t *words, vxm_watch *watch) {
+  raster_job job = {x, vxm_kernels_get(), NULL, words, 0, watch};
+  for (size_t task = 0; task < x->range_count; task++)
+    raster_range(task, 0, &job);
 }

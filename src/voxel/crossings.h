@@ -42,5 +42,8 @@ void vxm_crossings_destroy(vxm_crossings *crossings);
 
 /** Puts the crossings of a round into the bins, which are empty and have a worker for each thread. */
 void vxm_crossings_run(const vxm_crossings *crossings, size_t round, vxm_bins *bins, vxm_watch *watch);
+/** Flips the words of a window at each crossing of one part, in a context of one thread (see
+ * vxm_raster_task). */
+void vxm_crossings_flip(const vxm_crossings *crossings, uint64_t *words, vxm_watch *watch);
 
 #endif

@@ -25,7 +25,9 @@ typedef struct vxm_raster_task {
   size_t begin, end; /**< facets */
   const vxm_columns *columns;
   size_t columns_count;
-  vxm_bins *bins; /**< voters as in `columns` */
+  vxm_bins *bins;  /**< voters as in `columns` */
+  uint64_t *words; /**< NULL; or flips go straight to these: of a window that is one slab with one voter, the
+                      slabs of which are cut along v, and of one part. Bins are not used then */
   size_t worker;
 } vxm_raster_task;
 

@@ -115,11 +115,13 @@ vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, c
 
 vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *error) {
   *out = NULL;
+  static atomic_uint_fast64_t last_corners;
   vxm_error local = VXM_ERROR_INIT;
   vxm_surface *surface = vxm_calloc(soup->context, 1, sizeof *surface, &local);
   vxm_status status = surface ? vxm_context_acquire(&surface->context, soup->context, &local) : local.code;
   if (status == VXM_OK) {
     surface->soup = soup;
+    surface->corners_serial = atomic_fetch_add(&last_corners, 1) + 1;
     surface->points = vxm_alloc(surface->context, soup->vertex_count, sizeof *surface->points, &local);
     status = surface->points ? list_triangles(surface, soup, &local) : local.code;
   }

@@ -9,8 +9,9 @@
 
 /** The triangles of a soup on a lattice. */
 typedef struct vxm_surface {
-  vxm_context *context; /**< one reference held */
-  uint64_t serial;      /**< no two that hold different points have the same */
+  vxm_context *context;    /**< one reference held */
+  uint64_t serial;         /**< no two that hold different points have the same */
+  uint64_t corners_serial; /**< no two that hold different corners have the same */
   const vxm_soup *soup;
   vxm_lattice lattice;
   vxm_point *points;       /**< one for each vertex of the soup */

@@ -72,6 +72,7 @@ vxm_status vxm_twin_attach(vxm_twin *twin, const vxm_model *of, vxm_error *error
     return status;
   vxm_workspace workspace = model->shape.workspace;
   model->options = of->options;
+  model->run.engine = of->options.engine;
   model->shape = of->shape;
   model->shape.context = twin->context;
   model->shape.options = &model->options;

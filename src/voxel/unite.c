@@ -4,7 +4,10 @@
 
 #include <string.h>
 
-enum { FEW = 64 /**< records of a part in a slab that are sorted rather than folded */ };
+enum {
+  FEW = 64,                /**< records of a part in a slab that are sorted rather than folded */
+  STRAIGHT_WORDS = 1 << 16 /**< of a window that is flipped as it is, as it stays in cache */
+};
 
 typedef enum direction { ALONG_ROWS, ACROSS_ROWS, ACROSS_SLICES } direction;
 
@@ -18,6 +21,7 @@ typedef struct unite_state {
   direction along;
   bool in_place; /**< there is but one part: its flips go straight to the window's words */
   bool past;     /**< in place, but by way of the work words and past the cache */
+  bool straight; /**< in place, and triangles flip the window's words themselves: no bins */
   bool clear;    /**< the slabs are still to be cleared */
   size_t row_bits;
   vxm_watch watch;
@@ -350,6 +354,23 @@ static void shape(unite_state *state) {
   state->in_place = !slices && job->fresh && job->part_end - job->part_begin == 1;
   state->past = state->in_place && state->along == ALONG_ROWS && vxm_window_is_large(window) &&
                 window->fast_dim % 512 == 0 && (uintptr_t)window->words % 64 == 0;
+  state->straight = state->in_place && vxm_context_threads(state->workspace->context) == 1 &&
+                    (size_t)depth * window->slice_words <= STRAIGHT_WORDS;
+  if (state->straight)
+    columns->slab_shift = 62; /* all is one slab */
+}
+
+/** All at once, without bins. */
+static void unite_straight(unite_state *state) {
+  const vxm_window *window = state->window;
+  size_t count = (size_t)(window->end - window->begin) * window->slice_words;
+  memset(window->words, 0, count * sizeof *window->words);
+  vxm_crossings_flip(&state->workspace->crossings, window->words, &state->watch);
+  slab s = {.state = state};
+  extent all = {.first = 0, .last = count - 1};
+  if (state->along == ALONG_ROWS ? fold_rows(&s, window->words, all)
+                                 : fold_across_rows(&s, window->words, all))
+    touch(state, (uint32_t)state->job->part_begin);
 }
 
 vxm_status vxm_unite(vxm_workspace *workspace, const vxm_window *window, const vxm_unite_job *job,
@@ -378,6 +399,10 @@ vxm_status vxm_unite(vxm_workspace *workspace, const vxm_window *window, const v
     status = vxm_workspace_scratch(workspace, workers * state.slabs.words, error);
   vxm_watch_start(&state.watch, context, job->phase,
                   crossings->range_count + crossings->round_count * state.slabs.count, error);
+  if (status == VXM_OK && state.straight) {
+    unite_straight(&state);
+    return vxm_watch_end(&state.watch);
+  }
   for (size_t round = 0; round < crossings->round_count && status == VXM_OK; round++) {
     status = vxm_bins_reset(&workspace->bins, workers, 1, state.slabs.count, state.slabs.words, error);
     if (status != VXM_OK)

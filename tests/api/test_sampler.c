@@ -4,7 +4,9 @@
 #include "api_support.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 static vxm_context *context_of(int threads) {
   vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
@@ -426,7 +428,6 @@ static void wrong_arguments_are_refused(void **state) {
   REFUSE(translate, 1.5, VXM_ERROR_ARGUMENT);
   REFUSE(voxelize.method, (vxm_method)99, VXM_ERROR_ARGUMENT);
   REFUSE(voxelize.confidence, true, VXM_ERROR_ARGUMENT);
-  REFUSE(voxelize.engine, (vxm_engine *)&options, VXM_ERROR_UNAVAILABLE);
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
   options.fill = true;
   options.rotation = VXM_ROTATION_ANY;
@@ -528,6 +529,63 @@ static void batches_can_be_cancelled(void **state) {
   vxm_mesh_destroy(mesh);
 }
 
+/** The bits of files are those in memory, whoever makes them; and what fails is told. */
+static void files_hold_the_same(void **state) {
+  (void)state;
+  enum { FILES = 9 };
+  vxm_sampler_options options = all_options();
+  vxm_engine *cpu;
+  assert_int_equal(vxm_engine_create(&cpu, NULL, "cpu", NULL, NULL), VXM_OK);
+  char folder[] = "/tmp/vxm-sampler.XXXXXX", names[FILES][64];
+  const char *paths[FILES];
+  vxm_variant variants[FILES];
+  bool written[FILES];
+  assert_non_null(mkdtemp(folder));
+  for (int i = 0; i < FILES; i++) {
+    snprintf(names[i], sizeof names[i], "%s/%d.rle", folder, i);
+    paths[i] = names[i];
+    variants[i] = (vxm_variant){0, 2, (uint32_t)i};
+  }
+  for (int threads = 1; threads <= 2; threads++) {
+    vxm_context *context = context_of(threads);
+    vxm_mesh *mesh = mesh_of_model(context, "l_prism");
+    options.voxelize.engine = threads == 1 ? cpu : NULL;
+    vxm_sampler *sampler = sampler_of(context, &options, mesh);
+    uint8_t *expected = make(sampler, 0, FILES, VXM_VOXELS_UINT8);
+    assert_int_equal(vxm_sampler_files(paths, sampler, variants, FILES, NULL, written, NULL), VXM_OK);
+    for (int i = 0; i < FILES; i++) {
+      vxm_grid *grid;
+      assert_true(written[i]);
+      assert_int_equal(vxm_grid_read(&grid, context, paths[i], NULL), VXM_OK);
+      const uint8_t *voxel = expected + (size_t)i * 32 * 32 * 32;
+      for (int64_t x = 0; x < 32; x++)
+        for (int64_t y = 0; y < 32; y++)
+          for (int64_t z = 0; z < 32; z++)
+            assert_int_equal(vxm_grid_get(grid, x, y, z), *voxel++);
+      vxm_grid_destroy(grid);
+      unlink(paths[i]);
+    }
+    paths[4] = "/no/such/folder/4.rle";
+    assert_int_equal(vxm_sampler_files(paths, sampler, variants, FILES, NULL, written, NULL), VXM_ERROR_IO);
+    assert_false(written[4]);
+    paths[4] = names[4];
+    for (int i = 0; i < FILES; i++)
+      assert_int_equal(unlink(paths[i]) == 0, written[i]);
+    vxm_grid_write_options wrong = VXM_GRID_WRITE_OPTIONS_INIT;
+    wrong.version = 2;
+    assert_int_equal(vxm_sampler_files(paths, sampler, variants, 1, &wrong, NULL, NULL), VXM_ERROR_ARGUMENT);
+    assert_int_equal(vxm_sampler_files(NULL, sampler, variants, 1, NULL, NULL, NULL), VXM_ERROR_ARGUMENT);
+    assert_int_equal(vxm_sampler_files((const char *[]){NULL}, sampler, variants, 1, NULL, NULL, NULL),
+                     VXM_ERROR_ARGUMENT);
+    free(expected);
+    vxm_sampler_destroy(sampler);
+    vxm_mesh_destroy(mesh);
+    vxm_context_destroy(context);
+  }
+  assert_int_equal(rmdir(folder), 0);
+  vxm_engine_destroy(cpu);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(same_bits_for_any_threads_and_order),
@@ -541,6 +599,7 @@ int main(void) {
       cmocka_unit_test(wrong_arguments_are_refused),
       cmocka_unit_test(all_ways_to_voxelize_work),
       cmocka_unit_test(batches_can_be_cancelled),
+      cmocka_unit_test(files_hold_the_same),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

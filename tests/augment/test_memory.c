@@ -37,34 +37,38 @@ void *__wrap_realloc(void *block, size_t size) {
   return __real_realloc(block, size);
 }
 
-enum { AROUND = 48, ACROSS = 24, VERTICES = AROUND * ACROSS };
+enum { AROUND = 32, ACROSS = 16, VERTICES = AROUND * ACROSS };
 
-/** A torus, with its last `missing` quadrilaterals left out. */
-static vxm_mesh *make_torus(vxm_context *context, int missing) {
+/** A torus, with its last `missing` quadrilaterals left out, and of the others every one of a `sieve`. */
+static vxm_mesh *make_torus(vxm_context *context, int missing, int sieve) {
   static double at[VERTICES][3];
   static int64_t offsets[VERTICES + 1], corners[4 * VERTICES];
+  int faces = 0;
   for (int u = 0; u < AROUND; u++)
     for (int v = 0; v < ACROSS; v++) {
       double a = u * 6.283185307179586 / AROUND, b = v * 6.283185307179586 / ACROSS, r = 2 + cos(b);
       int i = u * ACROSS + v, next_u = (u + 1) % AROUND, next_v = (v + 1) % ACROSS;
       at[i][0] = r * cos(a), at[i][1] = r * sin(a), at[i][2] = sin(b);
-      offsets[i] = 4 * (int64_t)i;
-      corners[4 * i] = i, corners[4 * i + 1] = next_u * ACROSS + v;
-      corners[4 * i + 2] = next_u * ACROSS + next_v, corners[4 * i + 3] = u * ACROSS + next_v;
+      if (i >= VERTICES - missing || (sieve > 0 && i % sieve == 0))
+        continue;
+      int64_t *corner = corners + (ptrdiff_t)4 * faces;
+      corner[0] = i, corner[1] = next_u * ACROSS + v;
+      corner[2] = next_u * ACROSS + next_v, corner[3] = u * ACROSS + next_v;
+      faces++;
+      offsets[faces] = 4 * (int64_t)faces;
     }
-  offsets[VERTICES] = 4 * VERTICES;
   vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
   arrays.vertices = at;
   arrays.vertex_count = VERTICES;
   arrays.offsets = offsets;
   arrays.indices = corners;
-  arrays.face_count = VERTICES - missing;
+  arrays.face_count = faces;
   vxm_mesh *mesh;
   assert_int_equal(vxm_mesh_create(&mesh, context, &arrays, NULL), VXM_OK);
   return mesh;
 }
 
-enum { BATCH = 24, RESOLUTION = 40 };
+enum { BATCH = 8, RESOLUTION = 16 };
 
 static void run(vxm_sampler *sampler, void *out, uint32_t first, vxm_voxels voxels) {
   vxm_variant variants[BATCH];
@@ -73,13 +77,41 @@ static void run(vxm_sampler *sampler, void *out, uint32_t first, vxm_voxels voxe
   assert_int_equal(vxm_sampler_batch(out, sampler, variants, BATCH, voxels, NULL), VXM_OK);
 }
 
-/** Two models by turns: one closed, one closed by a cap. */
-static void takes_none(int threads, vxm_mode mode, vxm_surface_kind surface, bool warm_only_once) {
+/** One variant of each model at a time, by all threads. */
+static void run_together(vxm_sampler *sampler, vxm_grid *grid, uint32_t epoch) {
+  for (uint32_t i = 0; i < 4; i++)
+    assert_int_equal(vxm_sampler_grid(grid, sampler, &(vxm_variant){i % 2, epoch, i}, NULL), VXM_OK);
+}
+
+/** What the models by turns are, and how they are voxelized. */
+typedef struct load {
+  int threads;
+  vxm_mode mode;
+  vxm_surface_kind surface;
+  vxm_method method;
+  int missing, sieve; /**< of the second model; the first is closed */
+  int warm;           /**< batches before memory is counted */
+} load;
+
+/** Whether the voters of a mesh disagree. */
+static bool is_contested(const vxm_mesh *mesh) {
+  vxm_grid *grid;
+  vxm_voxelize_report report;
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  for (int a = 0; a < 3; a++)
+    options.space.resolution[a] = RESOLUTION;
+  assert_int_equal(vxm_voxelize(&grid, &report, mesh, &options, NULL), VXM_OK);
+  vxm_grid_destroy(grid);
+  return report.contested > 0;
+}
+
+static void takes_none(const load *given) {
   vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
-  limits.threads = threads;
+  limits.threads = given->threads;
   vxm_context *context;
   assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
-  vxm_mesh *closed = make_torus(context, 0), *holed = make_torus(context, 1);
+  vxm_mesh *closed = make_torus(context, 0, 0), *holed = make_torus(context, given->missing, given->sieve);
+  assert_int_equal(is_contested(holed), given->sieve > 0);
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
   options.resolution = RESOLUTION;
   options.rotation = VXM_ROTATION_ANY;
@@ -88,24 +120,33 @@ static void takes_none(int threads, vxm_mode mode, vxm_surface_kind surface, boo
   options.translate = 1;
   options.displace = 0.02;
   options.displacement = VXM_DISPLACEMENT_NORMAL;
-  options.voxelize.mode = mode;
-  options.voxelize.surface = surface;
+  options.voxelize.mode = given->mode;
+  options.voxelize.surface = given->surface;
+  options.voxelize.method = given->method;
   vxm_sampler *sampler;
   assert_int_equal(vxm_sampler_create(&sampler, context, &options, NULL), VXM_OK);
   assert_int_equal(vxm_sampler_put(sampler, 0, closed, NULL), VXM_OK);
   assert_int_equal(vxm_sampler_put(sampler, 1, holed, NULL), VXM_OK);
   void *out = malloc(BATCH * vxm_sampler_bytes(sampler, VXM_VOXELS_FLOAT32));
   assert_non_null(out);
-  for (uint32_t epoch = 0; epoch < (warm_only_once ? 2 : 8); epoch++)
+  vxm_grid *grid;
+  vxm_space space = vxm_sampler_space(sampler);
+  assert_int_equal(vxm_grid_create(&grid, context, &space, NULL), VXM_OK);
+  for (uint32_t epoch = 0; epoch < (uint32_t)given->warm; epoch++) {
     run(sampler, out, epoch * BATCH, VXM_VOXELS_FLOAT32);
+    run_together(sampler, grid, epoch);
+  }
   size_t before = atomic_load(&taken);
   uint64_t peak = vxm_context_peak_bytes(context);
-  for (uint32_t epoch = 100; epoch < 110; epoch++)
+  for (uint32_t epoch = 100; epoch < 104; epoch++)
     for (int voxels = VXM_VOXELS_PACKED; voxels <= VXM_VOXELS_FLOAT32; voxels++)
       run(sampler, out, epoch * BATCH, (vxm_voxels)voxels);
+  for (uint32_t epoch = 100; epoch < 104; epoch++)
+    run_together(sampler, grid, epoch);
   assert_int_equal(atomic_load(&taken), before);
   assert_int_equal(vxm_context_peak_bytes(context), peak);
   free(out);
+  vxm_grid_destroy(grid);
   vxm_sampler_destroy(sampler);
   vxm_mesh_destroy(closed);
   vxm_mesh_destroy(holed);
@@ -114,20 +155,30 @@ static void takes_none(int threads, vxm_mode mode, vxm_surface_kind surface, boo
 
 static void solids_take_no_memory(void **state) {
   (void)state;
-  takes_none(1, VXM_MODE_SOLID, VXM_SURFACE_CONSERVATIVE, true);
+  takes_none(&(load){.threads = 1, .missing = 1, .warm = 2});
   /* which thread has what is a matter of chance: each must have seen enough */
-  takes_none(2, VXM_MODE_SOLID, VXM_SURFACE_CONSERVATIVE, false);
+  takes_none(&(load){.threads = 2, .missing = 1, .warm = 24});
 }
 
-static void shells_take_no_memory(void **state) {
+static void contested_solids_take_no_memory(void **state) {
   (void)state;
-  takes_none(1, VXM_MODE_SURFACE, VXM_SURFACE_SHELL6, true);
+  takes_none(&(load){.threads = 1, .missing = 100, .sieve = 2, .warm = 24});
+  takes_none(&(load){.threads = 2, .missing = 100, .sieve = 2, .warm = 40});
+}
+
+static void surfaces_take_no_memory(void **state) {
+  (void)state;
+  takes_none(&(load){
+      .threads = 1, .mode = VXM_MODE_SURFACE, .surface = VXM_SURFACE_SHELL6, .missing = 1, .warm = 2});
+  /* how many rows triangles meet is a matter of how they lie */
+  takes_none(&(load){.threads = 1, .mode = VXM_MODE_BOTH, .missing = 1, .warm = 24});
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(solids_take_no_memory),
-      cmocka_unit_test(shells_take_no_memory),
+      cmocka_unit_test(contested_solids_take_no_memory),
+      cmocka_unit_test(surfaces_take_no_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -149,6 +149,43 @@ static void bad_options(void **state) {
   assert_int_equal(vxm_context_create(NULL, NULL, NULL), VXM_ERROR_ARGUMENT);
 }
 
+/** Work that is done again and again takes the blocks it had. */
+static void children_keep_what_is_freed(void **state) {
+  (void)state;
+  vxm_context *parent = new_context(2, 1 << 20), *child;
+  for (int alone = 0; alone < 2; alone++) {
+    assert_int_equal(vxm_context_child(&child, parent, alone, NULL), VXM_OK);
+    assert_int_equal(vxm_context_threads(child), alone ? 1 : 2);
+    unsigned char *large = vxm_alloc(child, 300000, 1, NULL), *small = vxm_alloc(child, 1000, 1, NULL);
+    assert_true(large && small);
+    memset(large, 255, 300000);
+    memset(small, 255, 1000);
+    size_t left = vxm_memory_left(parent);
+    vxm_free(child, large);
+    vxm_free(child, small);
+    assert_int_equal(vxm_memory_left(parent), left); /* which counts as in use */
+    /* the least block that is large enough, and zero where that is asked for */
+    unsigned char *again = vxm_calloc(child, 250, 4, NULL);
+    assert_ptr_equal(again, small);
+    for (int i = 0; i < 1000; i++)
+      assert_int_equal(again[i], 0);
+    assert_ptr_equal(vxm_realloc(child, again, 900, 1, NULL), small);
+    again[899] = 77;
+    again = vxm_realloc(child, again, 200000, 1, NULL);
+    assert_ptr_equal(again, large);
+    assert_int_equal(again[899], 77);
+    /* what is kept gives way before a limit is in the way */
+    vxm_free(child, again);
+    void *most = vxm_alloc(child, 900000, 1, NULL);
+    assert_non_null(most);
+    assert_null(vxm_alloc(child, 900000, 1, NULL));
+    vxm_free(child, most);
+    vxm_context_release(child);
+    assert_int_equal(vxm_memory_left(parent), 1 << 20); /* and nothing is kept for ever */
+  }
+  vxm_context_destroy(parent);
+}
+
 /* ---- Parallel loops ---- */
 
 enum { TASKS = 500, INNER = 40 };
@@ -263,6 +300,7 @@ int main(void) {
       cmocka_unit_test(blocks_keep_content_and_alignment),
       cmocka_unit_test(references_keep_a_context),
       cmocka_unit_test(bad_options),
+      cmocka_unit_test(children_keep_what_is_freed),
       cmocka_unit_test(every_task_runs_once),
       cmocka_unit_test(slices_cover),
       cmocka_unit_test(progress_cancels),

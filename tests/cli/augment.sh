@@ -41,6 +41,16 @@ for option in '--rotate none' '--rotate x' '--rotate z' '--rotate 1,2,-2' '--rot
   run "voxmend augment in/l_prism.off -o - -n 4 -r 16 $option -q | tail -c +65 | cksum"
 done
 
+say "# who makes them: the same bits"
+run 'voxmend augment in/l_prism.off -o - -n 24 $all -q --engine cpu | cmp - a.bin && echo equal'
+run 'voxmend augment in/l_prism.off -o - -n 2 -r 16 --engine cpu 2>&1 >/dev/null | grep engine'
+for engine in opengl:osmesa opengl:egl-surfaceless opencl; do
+  voxmend engines | grep -q "^$engine.* works" || continue
+  voxmend augment in/l_prism.off -o - -n 24 $all -q --engine $engine | cmp - a.bin || say "$engine differs"
+done
+run 'voxmend augment in/l_prism.off -o x --engine cpu --device 0'
+run 'voxmend augment in/l_prism.off -o x --engine vulkan'
+
 say "# what is refused"
 for options in '' '-o' '-o x -n -1' '-o x -n 0' '-o x -n 5000000000' '-o x --first 4294967295 -n 2' '-o x -r 0' '-o x -r 2000' '-o x --seed -3' \
   '-o x --rotate 0,0,0' '-o x --rotate no/such' '-o x --scale 1' '-o x --scale -0.1' '-o x --displace 2' '-o x --displace 0.1,uniform' \

@@ -230,6 +230,18 @@ class Variants(unittest.TestCase):
             finally:
                 voxmend.configure()
 
+    def test_bits_of_engines(self):
+        self.assertEqual(fnv(self.make(engine="cpu").batch(24, epoch=2, dtype="bits").tobytes()), KNOWN_HASH)
+        for engine in ("opengl:osmesa", "opengl:egl-surfaceless", "opencl"):
+            with self.subTest(engine=engine):
+                try:
+                    sampler = self.make(engine=engine)
+                except voxmend.UnavailableError as error:
+                    self.skipTest(str(error))
+                self.assertEqual(fnv(sampler.batch(24, epoch=2, dtype="bits").tobytes()), KNOWN_HASH)
+        with self.assertRaises(ValueError):
+            self.make(engine="vulkan")
+
     @unittest.skipUnless(VOXMEND, "VOXMEND names no program")
     def test_bits_of_the_stream(self):
         made = subprocess.run([VOXMEND, "augment", sample("l_prism"), "-o", "-", "-q", "-n", "24"] + ALL_AS_OPTIONS,

@@ -367,6 +367,80 @@ static void test_crossings_stay_below_their_bound(void **state) {
   }
 }
 
+/** Puts what facets flip into words, straight or by way of bins. */
+static uint64_t *flipped(const vxm_placed *placed, const vxm_facets *facets, const vxm_columns *columns,
+                         size_t words, bool straight) {
+  uint64_t *out = calloc(words, sizeof *out);
+  assert_non_null(out);
+  vxm_bins bins = {.context = context};
+  assert_int_equal(vxm_bins_reset(&bins, 1, 1, 1, words, NULL), VXM_OK);
+  vxm_raster_task task = {.placed = placed,
+                          .facets = facets,
+                          .end = facets->facet_count,
+                          .columns = columns,
+                          .columns_count = 1,
+                          .bins = straight ? NULL : &bins,
+                          .words = straight ? out : NULL};
+  vxm_kernels_get()->raster(&task);
+  vxm_bin_piece piece;
+  for (vxm_bin_reader r = vxm_bin_read(vxm_bins_at(&bins, 0, 0, 0), false); r.part != VXM_BIN_NONE;)
+    while (vxm_bin_next(&r, &piece))
+      for (size_t i = 0; i < piece.count; i++)
+        if (piece.is_bitmap)
+          out[i] ^= piece.data[i];
+        else
+          out[piece.data[i] / 64] ^= UINT64_C(1) << (piece.data[i] % 64);
+  vxm_bins_destroy(&bins);
+  return out;
+}
+
+/** Every build flips words as it fills bins: small triangles and those of many tiles, narrow, far and wide,
+ * in windows along two axes. */
+static void test_words_get_what_bins_get(void **state) {
+  (void)state;
+  const vxm_kernels *builds[4];
+  size_t count = vxm_kernels_all(builds);
+  for (int round = 0; round < 48; round++) {
+    vxm_space space = engine_space(9 + 2 * round, 8 + round, 12 + 3 * (round % 24));
+    vxm_rng rng = {(uint64_t)round};
+    vxm_soup *soup = shape_empty(context);
+    for (int i = 0; i < 40; i++) {
+      int low = (int)vxm_rng_below(&rng, 200) - 30, side = i % 4 ? 3 + (int)vxm_rng_below(&rng, 60) : 700;
+      shape_random_octahedron(soup, &rng, i % 4 ? low : -300, i % 4 ? low + side : 400);
+    }
+    if (round % 8 == 7) /* coordinates of 64 bits */
+      shape_random_octahedron(soup, &rng, -40000000, 40000000);
+    vxm_facets facets;
+    assert_int_equal(vxm_facets_create(&facets, soup, (vxm_split_rule){.parts = VXM_PARTS_WHOLE}, NULL),
+                     VXM_OK);
+    vxm_lattice lattice = vxm_lattice_of(&space);
+    vxm_placed placed = {.context = context};
+    assert_int_equal(vxm_placed_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
+    vxm_window window =
+        vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, round % 3, space.dims[2] - round % 5);
+    size_t words = window.slice_words * (size_t)(window.end - window.begin);
+    for (int axis = 0; axis < 2; axis++) { /* those with slabs along v */
+      vxm_columns columns = vxm_columns_of(&window, axis);
+      columns.roles = VXM_FACET_TRIANGLE | VXM_FACETS_ALL;
+      columns.facet_end = facets.facet_count;
+      columns.slab_shift = 62;
+      columns.keep_before = round % 2 == 0;
+      for (size_t b = 0; b < count; b++) {
+        vxm_kernels_force(builds[b]);
+        uint64_t *expected = flipped(&placed, &facets, &columns, words, false);
+        uint64_t *found = flipped(&placed, &facets, &columns, words, true);
+        assert_memory_equal(expected, found, words * sizeof *found);
+        free(expected);
+        free(found);
+      }
+      vxm_kernels_force(NULL);
+    }
+    vxm_placed_destroy(&placed);
+    vxm_facets_destroy(&facets);
+    vxm_soup_destroy(soup);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_bins_give_back_what_was_put),
@@ -376,6 +450,7 @@ int main(void) {
       cmocka_unit_test(test_parts_of_few_flips),
       cmocka_unit_test(test_rounds_give_the_same),
       cmocka_unit_test(test_crossings_stay_below_their_bound),
+      cmocka_unit_test(test_words_get_what_bins_get),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Variants for training have the bits of the CPU: closed meshes and open ones on which voters disagree,
+ * solids and surfaces, several models by turns, into memory and into a grid; and facets are brought to the
+ * device once. */
+#include "gpu_test.h"
+
+#include "grid/window.h"
+
+enum { COUNT = 12, RESOLUTION = 33 };
+
+/** Everything at once. */
+static vxm_sampler *make_sampler(vxm_mode mode, vxm_vote vote, vxm_engine *by) {
+  vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
+  options.resolution = RESOLUTION;
+  options.seed = 77;
+  options.rotation = VXM_ROTATION_ANY;
+  options.scale = 0.5;
+  options.displace = 0.03;
+  options.mirror = 7;
+  options.translate = 1;
+  options.voxelize.mode = mode;
+  options.voxelize.vote = vote;
+  options.voxelize.engine = by;
+  vxm_sampler *sampler;
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_sampler_create(&sampler, context, &options, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  return sampler;
+}
+
+static void check(const vxm_soup *const soups[], uint32_t soup_count, vxm_mode mode, vxm_vote vote) {
+  vxm_sampler *sampler[2] = {make_sampler(mode, vote, NULL), make_sampler(mode, vote, engine)};
+  size_t bytes = vxm_sampler_bytes(sampler[0], VXM_VOXELS_PACKED), set = 0;
+  uint8_t *out[2] = {malloc(COUNT * bytes), malloc(COUNT * bytes)};
+  vxm_variant variants[COUNT];
+  vxm_space space = vxm_sampler_space(sampler[0]);
+  for (uint32_t v = 0; v < COUNT; v++)
+    variants[v] = (vxm_variant){v % soup_count, 5, v};
+  for (int s = 0; s < 2; s++) {
+    vxm_error error = VXM_ERROR_INIT;
+    vxm_grid *grid;
+    assert_non_null(out[s]);
+    for (uint32_t m = 0; m < soup_count; m++)
+      assert_int_equal(vxm_sampler_put(sampler[s], m, soups[m], NULL), VXM_OK);
+    if (vxm_sampler_batch(out[s], sampler[s], variants, COUNT, VXM_VOXELS_PACKED, &error) != VXM_OK)
+      fail_msg("%s", error.text);
+    assert_int_equal(vxm_grid_create(&grid, context, &space, NULL), VXM_OK);
+    assert_int_equal(vxm_sampler_grid(grid, sampler[s], &variants[1], NULL), VXM_OK);
+    for (int64_t x = 0; x < RESOLUTION; x++)
+      for (int64_t y = 0; y < RESOLUTION; y++)
+        for (int64_t z = 0; z < RESOLUTION; z++) {
+          size_t row = (size_t)(x * RESOLUTION + y) * ((RESOLUTION + 7) / 8);
+          assert_int_equal(vxm_grid_get(grid, x, y, z), out[0][bytes + row + (size_t)z / 8] >> (z % 8) & 1);
+        }
+    vxm_grid_destroy(grid);
+    vxm_sampler_destroy(sampler[s]);
+  }
+  assert_memory_equal(out[0], out[1], COUNT * bytes);
+  for (size_t b = 0; b < COUNT * bytes; b++)
+    set += out[0][b] != 0;
+  assert_true(set > COUNT * 20);
+  free(out[0]);
+  free(out[1]);
+}
+
+/** Every second face of a torus is left out. */
+static vxm_soup *sieve(void) {
+  vxm_soup *whole = shape_empty(context), *out = shape_empty(context);
+  shape_torus(whole, 24, 12, 10, 4, (double[3]){0, 0, 0});
+  for (size_t v = 0; v < whole->vertex_count; v++)
+    shape_vertex(out, whole->positions[3 * v], whole->positions[3 * v + 1], whole->positions[3 * v + 2]);
+  for (size_t f = 0; f < whole->face_count; f += 2) {
+    size_t n;
+    const uint32_t *corner = vxm_face(whole, f, &n);
+    shape_face(out, corner, n);
+  }
+  vxm_soup_destroy(whole);
+  return out;
+}
+
+static void test_variants(void **state) {
+  (void)state;
+  vxm_soup *torus = shape_empty(context), *boxes = shape_empty(context), *open = sieve();
+  shape_torus(torus, 40, 20, 10, 4, (double[3]){0, 0, 0});
+  shape_box(boxes, (double[3]){0, 0, 0}, (double[3]){8, 8, 8});
+  shape_box(boxes, (double[3]){5, 5, 5}, (double[3]){12, 11, 13});
+  const vxm_soup *soups[] = {torus, boxes, open};
+  check(soups, 3, VXM_MODE_SOLID, VXM_VOTE_AUTO);
+  check(soups, 3, VXM_MODE_SOLID, VXM_VOTE_MAJORITY);
+  check(soups, 3, VXM_MODE_BOTH, VXM_VOTE_AUTO);
+  check(soups, 2, VXM_MODE_SURFACE, VXM_VOTE_AUTO);
+  vxm_soup_destroy(torus);
+  vxm_soup_destroy(boxes);
+  vxm_soup_destroy(open);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_variants)};
+  int status = gpu_test_start(NULL);
+  if (status == 0)
+    status = cmocka_run_group_tests_name("variants by " ENGINE, tests, setup, teardown);
+  vxm_engine_destroy(engine);
+  return status;
+}
