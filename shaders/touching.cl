@@ -3,7 +3,7 @@
  * Surfaces, triangle by triangle, in the integers and by the tests of the CPU (surface_draw.h, after Schwarz
  * & Seidel 2010, sections 3.1 and 3.4): the box, the plane, and the edges seen along each axis. A triangle is
  * looked at along the axis w that its normal leans to most, so that it has few voxels in each column.
- * Differences are at most 2^20 and a voxel 2^16 steps, so that all sums fit 63 bits.
+ * Differences are at most 2^20 steps, as is a voxel, so that all sums stay below 5 x 2^60 and fit 63 bits.
  */
 typedef struct SurfaceJob { /* vxm_tile_surface */
   int first[3], bits;

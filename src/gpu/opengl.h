@@ -86,7 +86,8 @@ typedef struct vxm_opengl {
   uint64_t surface_serial, surface_corners_serial;
   vxm_far far; /**< facets and triangles beyond the numbers of the shaders */
   vxm_far_surface far_surface;
-  /** Vertex and geometry shaders may read buffers; else all facets are left to compute shaders. */
+  /** Vertex and geometry shaders may read buffers; else compute shaders do all facets, and slices are
+   * refused. */
   bool can_pull, can_pull_late;
 } vxm_opengl;
 
