@@ -632,7 +632,7 @@ typedef enum vxm_gl_method {
 
 /** How an engine of OpenCL makes solids; both have the bits of the CPU (Schwarz & Seidel 2010, section 4). */
 typedef enum vxm_cl_method {
-  VXM_CL_AUTO = 0,  /**< by tiles where many parts meet, else by triangles */
+  VXM_CL_AUTO = 0,  /**< by tiles where many parts meet or rows have 1024 voxels, else by triangles */
   VXM_CL_TRIANGLES, /**< a work-item for each triangle, which flips bits by atomic XOR; then a prefix XOR */
   VXM_CL_TILES      /**< triangles sorted by tiles of columns, a work-group for each tile, no atomics */
 } vxm_cl_method;

@@ -4,7 +4,11 @@
 
 #include <string.h>
 
-enum { PASSES_MOST = 4 /**< of what is done triangle by triangle, unless that is asked for */ };
+/** What is done triangle by triangle, unless that is asked for (doc/engines.md has the times). */
+enum {
+  PASSES_MOST = 4,   /**< so few passes */
+  LONG_COLUMN = 1024 /**< columns of fewer voxels */
+};
 
 static vxm_status clear_touched(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error) {
   return vxm_cl_clear(engine, VXM_CL_TOUCHED, facets->split.part_count * sizeof(uint32_t), error);
@@ -43,7 +47,7 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
 static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job,
                          vxm_passes *passes, vxm_error *error) {
   vxm_cl_method method = vxm_cl_can_tile(engine, window, job) ? engine->options.cl_method : VXM_CL_TRIANGLES;
-  if (method == VXM_CL_TILES)
+  if (method == VXM_CL_TILES || (method == VXM_CL_AUTO && window->fast_dim >= LONG_COLUMN))
     return VXM_OK;
   return vxm_cl_passes_create(passes, engine, window, job, method == VXM_CL_AUTO ? PASSES_MOST : SIZE_MAX,
                               error);
