@@ -2,7 +2,8 @@
 /*
  * Voxels by the overlap test of Faieghi, Tutunea-Fatan and Eagleson, "Fast and cross-vendor OpenCL-based implementation
  * for voxelization of triangular mesh models", in 32-bit floats as they have it; the numbers are their equations. One
- * byte for each voxel gets a material. Products and sums are rounded one by one, so that every device has the same bits.
+ * byte for each voxel gets a material. Products and sums are rounded one by one, so that all devices that keep subnormal numbers have
+ * the same bits.
  */
 #pragma OPENCL FP_CONTRACT OFF
 

@@ -656,9 +656,9 @@ typedef struct vxm_engine_options {
  * Makes an engine. One thread at a time may use it; many models may, one after another.
  *
  * @param context whose memory limit counts what it holds
- * @param name    "cpu"; "opencl", on the device that the options choose; "opengl", which prefers a hardware device, then EGL without a surface, then OSMesa;
- *                one of them by the name that vxm_engines_find gives; or "auto": a GPU by OpenCL or OpenGL
- *                that works, else, and wherever it fails later, the CPU
+ * @param name    "cpu"; "opencl", on the device that the options choose; "opengl", which prefers a hardware
+ * device, then EGL without a surface, then OSMesa; one of them by the name that vxm_engines_find gives; or
+ * "auto": a GPU by OpenCL or OpenGL that works, else, and wherever it fails later, the CPU
  * @param options NULL = defaults
  * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown name; VXM_ERROR_UNAVAILABLE with what is missing;
  *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT

@@ -302,11 +302,21 @@ static size_t items_at_once(const vxm_published *published, size_t group) {
   return items > units * group ? items / group * group : units * group;
 }
 
+/** An `auto` engine may have given way to the CPU meanwhile. */
+static vxm_status check_engine(const vxm_published *published, vxm_error *error) {
+  if (published->engine->base.ops)
+    return VXM_OK;
+  return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "published: the OpenCL engine has failed before: %s",
+                  published->engine->base.info.note);
+}
+
 vxm_status vxm_cl_published_voxelize(vxm_published_report *report, vxm_published *published,
                                      vxm_error *error) {
   vxm_opencl *engine = published->engine;
   size_t items = published->by_voxel ? published->voxel_count : published->job.facets, group = 1;
-  vxm_status status = vxm_cl_ready(engine, VXM_CL_PUBLISHED, error);
+  vxm_status status = check_engine(published, error);
+  if (status == VXM_OK)
+    status = vxm_cl_ready(engine, VXM_CL_PUBLISHED, error);
   if (status != VXM_OK)
     return status;
   cl_kernel kernel = engine->kernels[published->by_voxel ? VXM_CL_PUBLISHED_VOXELS : VXM_CL_PUBLISHED_FACETS];
@@ -364,9 +374,11 @@ static vxm_status map_voxels(uint8_t *voxels, double *ms, const vxm_published *p
 
 vxm_status vxm_cl_published_take(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
                                  vxm_error *error) {
+  vxm_status status = check_engine(published, error);
   /* What was queued before is not the transfer's. */
-  vxm_status status =
-      vxm_cl_check(published->engine->cl->Finish(published->queue), "running the published program", error);
+  if (status == VXM_OK)
+    status =
+        vxm_cl_check(published->engine->cl->Finish(published->queue), "running the published program", error);
   if (status != VXM_OK)
     return status;
   return how == VXM_TRANSFER_READ ? read_voxels(voxels, ms, published, error)
