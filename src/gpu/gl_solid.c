@@ -100,39 +100,30 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_un
 
 /* ---- Votes ---- */
 
-enum { VOTERS = 4 };
-
-/** The voters of an election: what is united for each, and where its words are. */
+/** The voters of an election: how many are united, and where the words of each are. */
 typedef struct ballot {
-  vxm_unite_job job[VOTERS];
-  vxm_gl_buffer_id words[VOTERS];
-  int count; /**< voters that are united; the tetrahedra, if not asked, vote as x does */
+  const vxm_elect_job *job;
+  vxm_gl_buffer_id words[VXM_VOTERS];
+  int count;
 } ballot;
 
-static void prepare(ballot *b, const vxm_window *window, const vxm_elect_job *job) {
-  static const char *const phase[VOTERS] = {"voxelizing along x", "voxelizing along y", "voxelizing along z",
-                                            "voxelizing tetrahedra"};
-  b->count = job->tetra ? VOTERS : VOTERS - 1;
-  for (int v = 0; v < VOTERS; v++)
-    b->words[v] = (vxm_gl_buffer_id)(v < b->count ? VXM_GL_VOTER_X + v : VXM_GL_VOTER_X);
-  for (int v = 0; v < b->count; v++)
-    b->job[v] = (vxm_unite_job){.facets = job->facets,
-                                .placed = job->placed,
-                                .axis = v == 3 ? window->layout.fast : v,
-                                .part_begin = job->part_begin,
-                                .part_end = job->part_end,
-                                .roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE,
-                                .touched = job->touched,
-                                .phase = phase[v]};
+/** The tetrahedra, if not asked, vote as x does. */
+static ballot ballot_of(const vxm_elect_job *job) {
+  ballot b = {.job = job, .count = job->tetra ? VXM_VOTERS : VXM_VOTERS - 1};
+  for (int v = 0; v < VXM_VOTERS; v++)
+    b.words[v] = (vxm_gl_buffer_id)(v < b.count ? VXM_GL_VOTER_X + v : VXM_GL_VOTER_X);
+  return b;
 }
 
 /** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
  */
-static vxm_status make_voter(vxm_opengl *engine, const vxm_tile *tile, ballot *b, int v, vxm_error *error) {
+static vxm_status make_voter(vxm_opengl *engine, const vxm_tile *tile, const ballot *b, int v,
+                             vxm_error *error) {
+  vxm_unite_job job = vxm_elect_voter(b->job, tile->window, v);
   vxm_passes passes = {0};
-  vxm_status status = vxm_gl_passes_create(&passes, engine, tile->window, &b->job[v], error);
+  vxm_status status = vxm_gl_passes_create(&passes, engine, tile->window, &job, error);
   if (status == VXM_OK)
-    status = make_tile(engine, tile, &b->job[v], &passes, b->words[v], error);
+    status = make_tile(engine, tile, &job, &passes, b->words[v], error);
   vxm_passes_destroy(&passes);
   return status;
 }
@@ -157,8 +148,8 @@ static vxm_status count_votes(vxm_opengl *engine, const vxm_tile *tile, const ba
   return vxm_gl_check(gl, "opengl: counting votes", error);
 }
 
-static vxm_status elect_tile(vxm_opengl *engine, const vxm_tile *tile, const vxm_elect_job *job, ballot *b,
-                             vxm_tally *tally, vxm_error *error) {
+static vxm_status elect_tile(vxm_opengl *engine, const vxm_tile *tile, const vxm_elect_job *job,
+                             const ballot *b, vxm_tally *tally, vxm_error *error) {
   uint32_t counted[2] = {0, 0};
   vxm_status status = vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
   if (status == VXM_OK)
@@ -179,10 +170,9 @@ static vxm_status elect_tile(vxm_opengl *engine, const vxm_tile *tile, const vxm
 static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, const vxm_elect_job *job,
                               vxm_tally *tally, vxm_error *error) {
   vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
-  ballot b = {.count = 0};
+  ballot b = ballot_of(job);
   int64_t slices = 1;
   int which = 0;
-  prepare(&b, window, job);
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
     vxm_tile tile = vxm_tile_of(window, k, slices);

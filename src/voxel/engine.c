@@ -3,6 +3,20 @@
 
 #include <stdio.h>
 
+vxm_unite_job vxm_elect_voter(const vxm_elect_job *job, const vxm_window *window, int voter) {
+  static const char *const phase[VXM_VOTERS] = {"voxelizing along x", "voxelizing along y",
+                                                "voxelizing along z", "voxelizing tetrahedra"};
+  bool tetra = voter == 3;
+  return (vxm_unite_job){.facets = job->facets,
+                         .placed = job->placed,
+                         .axis = tetra ? window->layout.fast : voter,
+                         .part_begin = job->part_begin,
+                         .part_end = job->part_end,
+                         .roles = tetra ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE,
+                         .touched = job->touched,
+                         .phase = phase[voter]};
+}
+
 bool vxm_engine_gives_way(vxm_engine *engine, const vxm_error *error) {
   if (!engine->falls_back || error->code == VXM_ERROR_CANCELLED || error->code == VXM_ERROR_MEMORY_LIMIT)
     return false;

@@ -20,6 +20,12 @@ typedef struct vxm_elect_job {
   atomic_uchar *touched; /**< as in vxm_unite_job */
 } vxm_elect_job;
 
+/** Voters of an election: x, y, z, and the tetrahedra as parity with cones. */
+enum { VXM_VOTERS = 4 };
+
+/** What a voter unites. */
+vxm_unite_job vxm_elect_voter(const vxm_elect_job *job, const vxm_window *window, int voter);
+
 /** Voxels to colour. */
 typedef struct vxm_color_job {
   const vxm_grid *grid;

@@ -7,11 +7,9 @@
  */
 #include "gpu_test.h"
 
+#include "../voxel/meshes.h"
 #include "tolerance.h"
 
-#include <dirent.h>
-
-static const char *const folders[] = {"cad", "classic", "messy", "modelnet", "paper"};
 static const char *const methods[] = {"columns", "slices", "tetra-vertex"};
 
 static vxm_engine *engines[3];
@@ -58,7 +56,8 @@ static void check_at(const vxm_mesh *mesh, const char *name, int64_t resolution,
   vxm_grid_destroy(expected);
 }
 
-static void check_file(const char *path, const char *name, tally *sum) {
+static void check_file(const char *path, const char *name, void *payload) {
+  tally *sum = payload;
   const char *resolutions = getenv("VOXMEND_TEST_RESOLUTIONS"), *chosen = getenv("VOXMEND_TEST_METHODS");
   vxm_mesh *raw, *mesh;
   vxm_census census;
@@ -83,32 +82,20 @@ static void check_file(const char *path, const char *name, tally *sum) {
 
 static void test_closed_meshes(void **state) {
   (void)state;
-  const char *source = getenv("SRCDIR");
   tally sum = {0, 0, 0, 0};
   for (int m = 0; m < 3; m++) {
     vxm_engine_options options = VXM_ENGINE_OPTIONS_INIT;
     options.gl_method = (vxm_gl_method)m;
     assert_int_equal(vxm_engine_create(&engines[m], context, ENGINE, &options, NULL), VXM_OK);
   }
-  for (size_t f = 0; f < sizeof folders / sizeof *folders; f++) {
-    char folder[2048];
-    snprintf(folder, sizeof folder, "%s/../shared/meshes/%s", source ? source : ".", folders[f]);
-    DIR *listing = opendir(folder);
-    if (!listing)
-      skip();
-    for (struct dirent *entry; (entry = readdir(listing));) {
-      char path[4096];
-      snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-      if (entry->d_name[0] != '.')
-        check_file(path, entry->d_name, &sum);
-    }
-    closedir(listing);
-  }
+  int files = each_mesh_file(SIZE_MAX, check_file, &sum);
   print_message("%lld closed meshes, %lld grids: %lld of %lld surface voxels differ\n", (long long)sum.meshes,
                 (long long)sum.grids, (long long)sum.differing, (long long)sum.surface);
-  assert_true(sum.meshes > 0 && sum.differing * 100000 <= sum.surface);
   for (int m = 0; m < 3; m++)
     vxm_engine_destroy(engines[m]);
+  if (files == 0)
+    skip();
+  assert_true(sum.meshes > 0 && sum.differing * 100000 <= sum.surface);
 }
 
 int main(void) {

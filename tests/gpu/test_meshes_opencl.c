@@ -6,9 +6,7 @@
  */
 #include "gpu_test.h"
 
-#include <dirent.h>
-
-static const char *const folders[] = {"cad", "classic", "messy", "modelnet", "paper"};
+#include "../voxel/meshes.h"
 
 static vxm_engine *by_triangles, *by_tiles;
 static long long meshes, grids;
@@ -90,7 +88,8 @@ static void check_at(const vxm_mesh *mesh, const char *name, int64_t resolution)
   check_coverage(mesh, name, &space);
 }
 
-static void check_file(const char *path, const char *name) {
+static void check_file(const char *path, const char *name, void *payload) {
+  (void)payload;
   const char *at = getenv("VOXMEND_TEST_RESOLUTIONS");
   vxm_mesh *raw, *mesh;
   vxm_error error = VXM_ERROR_INIT;
@@ -123,27 +122,15 @@ static vxm_engine *engine_of(vxm_cl_method method) {
 
 static void test_all_meshes(void **state) {
   (void)state;
-  const char *source = getenv("SRCDIR");
   by_triangles = engine_of(VXM_CL_TRIANGLES);
   by_tiles = engine_of(VXM_CL_TILES);
-  for (size_t f = 0; f < sizeof folders / sizeof *folders; f++) {
-    char folder[2048];
-    snprintf(folder, sizeof folder, "%s/../shared/meshes/%s", source ? source : ".", folders[f]);
-    DIR *listing = opendir(folder);
-    if (!listing)
-      skip();
-    for (struct dirent *entry; (entry = readdir(listing));) {
-      char path[4096];
-      snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-      if (entry->d_name[0] != '.')
-        check_file(path, entry->d_name);
-    }
-    closedir(listing);
-  }
+  int files = each_mesh_file(SIZE_MAX, check_file, NULL);
   print_message("%lld meshes, %lld grids, octrees and coverages: none differs\n", meshes, grids);
-  assert_true(meshes > 0);
   vxm_engine_destroy(by_triangles);
   vxm_engine_destroy(by_tiles);
+  if (files == 0)
+    skip();
+  assert_true(meshes > 0);
 }
 
 int main(void) {

@@ -13,11 +13,11 @@
 
 #include "gpu_test.h"
 
+#include "../voxel/meshes.h"
+
 #ifdef HAVE_OPENCL
 #include "base/clock.h"
 #include "grid/octree.h"
-
-#include <dirent.h>
 
 static vxm_cl_stages stages;
 static int made_here; /* octrees by the device, and not left to the CPU */
@@ -342,29 +342,20 @@ static void check_file(const char *path, const char *resolutions) {
   vxm_mesh_destroy(mesh);
 }
 
+static void check_named(const char *path, const char *name, void *payload) {
+  (void)name;
+  check_file(path, payload);
+}
+
 static void test_real_meshes(void **state) {
   (void)state;
-  static const char *const folders[] = {"classic", "cad", "messy", "modelnet", "paper"};
-  const char *source = getenv("SRCDIR"), *given = getenv("VOXMEND_TEST_RESOLUTIONS");
-  const char *resolutions = given ? given : "100", *one = getenv("VOXMEND_TEST_MESH");
-  if (one) {
+  const char *given = getenv("VOXMEND_TEST_RESOLUTIONS"), *one = getenv("VOXMEND_TEST_MESH");
+  char resolutions[64];
+  snprintf(resolutions, sizeof resolutions, "%s", given ? given : "100");
+  if (one)
     check_file(one, resolutions);
-    return;
-  }
-  for (size_t f = 0; f < (given ? sizeof folders / sizeof *folders : 2); f++) {
-    char folder[2048], path[4096];
-    snprintf(folder, sizeof folder, "%s/../shared/meshes/%s", source ? source : ".", folders[f]);
-    DIR *listing = opendir(folder);
-    if (!listing)
-      skip();
-    for (struct dirent *entry; (entry = readdir(listing));) {
-      if (entry->d_name[0] == '.')
-        continue;
-      snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-      check_file(path, resolutions);
-    }
-    closedir(listing);
-  }
+  else if (each_mesh_file(given ? SIZE_MAX : 2, check_named, resolutions) == 0)
+    skip();
 }
 
 int main(void) {

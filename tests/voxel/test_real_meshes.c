@@ -9,7 +9,6 @@
 #include "grid/bitgrid.h"
 #include "mesh/soup.h"
 
-#include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -18,7 +17,10 @@
 
 #include <cmocka.h>
 
-static const char *const folders[] = {"cad", "classic", "messy", "modelnet", "paper"};
+#include "meshes.h"
+
+static vxm_rng rng = {11};
+static int closed;
 
 static uint64_t hash_of(const vxm_mesh *mesh, const vxm_voxelize_options *options, const char *path) {
   vxm_error error = VXM_ERROR_INIT;
@@ -30,13 +32,13 @@ static uint64_t hash_of(const vxm_mesh *mesh, const vxm_voxelize_options *option
   return hash;
 }
 
-static void check_mesh(const vxm_mesh *mesh, const char *path, int64_t resolution, bool tetra, vxm_rng *rng) {
+static void check_mesh(const vxm_mesh *mesh, const char *path, int64_t resolution, bool tetra) {
   vxm_space_options fit = VXM_SPACE_OPTIONS_INIT;
   fit.resolution[0] = resolution;
   vxm_space space;
   assert_int_equal(vxm_space_fit(&space, mesh, &fit, NULL), VXM_OK);
   for (int a = 0; a < 3; a++)
-    space.origin[a] += vxm_rng_unit(rng) * space.voxel_size[a];
+    space.origin[a] += vxm_rng_unit(&rng) * space.voxel_size[a];
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.space.like = &space;
   for (int parts = VXM_PARTS_GROUP; parts <= VXM_PARTS_WHOLE; parts++) {
@@ -51,8 +53,11 @@ static void check_mesh(const vxm_mesh *mesh, const char *path, int64_t resolutio
   }
 }
 
-/** Says whether the mesh is closed after repair, and checks it if so. */
-static bool check_file(const char *path, const char *resolutions, int64_t tetra_max, vxm_rng *rng) {
+/** Checks the mesh if it is closed after repair. */
+static void check_file(const char *path, const char *name, void *payload) {
+  const char *resolutions = getenv("VOXMEND_TEST_RESOLUTIONS"), *tetra = getenv("VOXMEND_TEST_TETRA");
+  int64_t tetra_max = tetra ? strtol(tetra, NULL, 10) : 17;
+  (void)name, (void)payload;
   vxm_error error = VXM_ERROR_INIT;
   vxm_mesh *raw, *mesh;
   vxm_census census;
@@ -62,41 +67,23 @@ static bool check_file(const char *path, const char *resolutions, int64_t tetra_
   vxm_mesh_destroy(raw);
   assert_int_equal(vxm_mesh_census(&census, mesh, &error), VXM_OK);
   if (census.closed) {
-    const char *at = resolutions;
+    const char *at = resolutions ? resolutions : "17 64";
     for (char *end; *at; at = end) {
       int64_t resolution = strtol(at, &end, 10);
       if (end == at)
         break;
-      check_mesh(mesh, path, resolution, resolution <= tetra_max, rng);
+      check_mesh(mesh, path, resolution, resolution <= tetra_max);
     }
   }
   vxm_mesh_destroy(mesh);
-  return census.closed;
+  closed += census.closed;
 }
 
 static void test_closed_meshes_agree(void **state) {
   (void)state;
-  const char *source = getenv("SRCDIR"), *resolutions = getenv("VOXMEND_TEST_RESOLUTIONS");
-  const char *tetra = getenv("VOXMEND_TEST_TETRA");
-  vxm_rng rng = {11};
-  int closed = 0, all = 0;
-  for (size_t f = 0; f < sizeof folders / sizeof *folders; f++) {
-    char folder[2048];
-    snprintf(folder, sizeof folder, "%s/../shared/meshes/%s", source ? source : ".", folders[f]);
-    DIR *listing = opendir(folder);
-    if (!listing)
-      skip();
-    for (struct dirent *entry; (entry = readdir(listing));) {
-      if (entry->d_name[0] == '.')
-        continue;
-      char path[4096];
-      snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-      closed +=
-          check_file(path, resolutions ? resolutions : "17 64", tetra ? strtol(tetra, NULL, 10) : 17, &rng);
-      all++;
-    }
-    closedir(listing);
-  }
+  int all = each_mesh_file(SIZE_MAX, check_file, NULL);
+  if (all == 0)
+    skip();
   print_message("%d of %d meshes are closed\n", closed, all);
   assert_true(closed > 0);
 }
