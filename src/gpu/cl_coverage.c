@@ -32,6 +32,10 @@ vxm_status vxm_cl_count(vxm_engine *base, uint16_t *counts, const vxm_window *wi
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices) {
     vxm_tile tile = vxm_tile_of(window, k, slices);
     status = count_tile(engine, &tile, n, counts + (size_t)((k - window->begin) / n) * slice, error);
+    if (status == VXM_OK)
+      status =
+          vxm_progress(base->context, "counting voxels",
+                       (double)(tile.end - window->begin) / (double)(window->end - window->begin), error);
   }
   return status;
 }

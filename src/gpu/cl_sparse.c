@@ -206,7 +206,8 @@ static vxm_status prepare(making *m, const vxm_space *space, vxm_error *error) {
                              .placed = m->job->placed,
                              .part_end = m->job->part_end,
                              .roles = m->job->roles,
-                             .touched = m->job->touched};
+                             .touched = m->job->touched,
+                             .phase = "voxelizing"};
   vxm_status status = vxm_cl_passes_create(&m->passes, engine, &window, &job, SIZE_MAX, error);
   if (status == VXM_OK)
     status = vxm_cl_place_parts(engine, job.facets, error);
