@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Engines: what holds on every machine, whatever drivers it has.
 . "$SRCDIR/tests/cli/lib.sh"
+without_leak_check
 run 'voxmend engines | head -n 1'
 run 'voxmend engines --json | grep -c "\"name\": \"opengl"  | grep -c "[1-9]"'
 run 'voxmend engines in/cube.off'

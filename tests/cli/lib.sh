@@ -20,6 +20,12 @@ voxmend() {
 }
 : >transcript
 
+# OpenCL's drivers keep what they make once, and LeakSanitizer stumbles over their threads.
+without_leak_check() {
+  ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
+  export ASAN_OPTIONS
+}
+
 # Times, memory and the number of processors differ between runs and machines.
 mask() {
   sed -E \

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # voxmend bench on an OpenCL device: the published program and the transfers of voxels. Skipped without a device.
 . "$SRCDIR/tests/cli/lib.sh"
+without_leak_check
 quick='--time 0 --threads 1'
 if ! voxmend voxelize in/cube.off -o c.npy -r 8 -q --engine opencl 2>why.txt; then
   cat why.txt
