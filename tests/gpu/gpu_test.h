@@ -14,7 +14,7 @@ static vxm_engine *engine;
 
 #ifdef DRIVER_LEAKS
 /** PoCL keeps what it makes once, and LeakSanitizer stumbles over its threads: it is told to stay away. */
-int __lsan_is_turned_off(void);
+__attribute__((visibility("default"))) int __lsan_is_turned_off(void);
 int __lsan_is_turned_off(void) {
   return 1;
 }
