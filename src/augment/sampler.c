@@ -198,8 +198,10 @@ typedef struct batch_job {
   const char *format;
   bool *written;
   vxm_watch watch;
-  atomic_int failed; /**< a vxm_status */
-  vxm_error error;   /**< of the one that failed first */
+  atomic_flag lock; /**< of what follows */
+  atomic_size_t
+      failed_at;   /**< the first in order that failed, whichever thread came first; SIZE_MAX = none */
+  vxm_error error; /**< of that one */
 } batch_job;
 
 static vxm_status make_one(const batch_job *job, size_t v, vxm_desk *desk, vxm_error *error) {
@@ -220,17 +222,30 @@ static vxm_status make_one(const batch_job *job, size_t v, vxm_desk *desk, vxm_e
   return status;
 }
 
+/** Those before it in order have all begun, and may still fail. */
+static void note_failure(batch_job *job, size_t v, const vxm_error *error) {
+  while (atomic_flag_test_and_set_explicit(&job->lock, memory_order_acquire))
+    ;
+  if (v < atomic_load(&job->failed_at)) {
+    atomic_store(&job->failed_at, v);
+    job->error = *error;
+  }
+  atomic_flag_clear_explicit(&job->lock, memory_order_release);
+  atomic_store_explicit(&job->watch.stop, true, memory_order_release);
+}
+
 static void make_task(size_t v, int worker, void *payload) {
   batch_job *job = payload;
-  if (vxm_watch_stopped(&job->watch, worker))
-    return;
+  if (vxm_watch_stopped(&job->watch, worker)) {
+    atomic_thread_fence(memory_order_acquire);
+    size_t failed_at = atomic_load(&job->failed_at);
+    if (failed_at == SIZE_MAX || v > failed_at)
+      return; /* one before the failure is made all the same, as it may fail too */
+  }
   vxm_error error = VXM_ERROR_INIT;
   vxm_status status = make_one(job, v, &job->sampler->desks[worker], &error);
-  int none = VXM_OK;
-  if (status != VXM_OK && atomic_compare_exchange_strong(&job->failed, &none, (int)status)) {
-    job->error = error;
-    atomic_store_explicit(&job->watch.stop, true, memory_order_relaxed);
-  }
+  if (status != VXM_OK)
+    note_failure(job, v, &error);
   vxm_watch_step(&job->watch);
 }
 
@@ -244,11 +259,11 @@ static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
   }
   vxm_watch_start(&job->watch, sampler->context, "making variants", count, error);
   vxm_parallel(sampler->context, count, make_task, job);
-  if (job->failed == VXM_OK)
+  if (atomic_load(&job->failed_at) == SIZE_MAX)
     return vxm_watch_end(&job->watch);
   if (error)
     *error = job->error;
-  return (vxm_status)job->failed;
+  return job->error.code;
 }
 
 /** Whether variants are made by something that does one thing at a time. */
@@ -260,7 +275,8 @@ static bool has_engine(const vxm_sampler *sampler) {
 static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
   vxm_sampler *sampler = job->sampler;
   job->error = (vxm_error)VXM_ERROR_INIT;
-  atomic_init(&job->failed, VXM_OK);
+  atomic_init(&job->failed_at, SIZE_MAX);
+  atomic_flag_clear(&job->lock);
   if (count > 1 && sampler->rules.options.resolution <= ALONE_MOST && !has_engine(sampler))
     return make_alone(job, count, error);
   vxm_desk *desk;
