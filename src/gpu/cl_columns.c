@@ -6,12 +6,7 @@
 enum { FEW_COLUMNS = 256 /**< of a facet that one work-item does */ };
 
 static vxm_status flip(vxm_opencl *engine, const vxm_tile_columns *columns, vxm_error *error) {
-  vxm_status status =
-      vxm_cl_reserve(engine, VXM_CL_LARGE, (1 + (size_t)columns->facet_count) * sizeof(uint32_t), error);
-  if (status == VXM_OK)
-    status = vxm_cl_clear(engine, VXM_CL_LARGE, sizeof(uint32_t), error);
-  if (status == VXM_OK) /* an argument has to be a buffer, also where it is not used */
-    status = vxm_cl_reserve(engine, VXM_CL_ORDER, sizeof(uint32_t), error);
+  vxm_status status = vxm_cl_clear_large(engine, columns->facet_count, error);
   if (status == VXM_OK)
     status = vxm_cl_run(engine, VXM_CL_FLIP_COLUMNS, columns->facet_count,
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),

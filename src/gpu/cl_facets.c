@@ -68,3 +68,11 @@ vxm_status vxm_cl_passes_create(vxm_passes *out, vxm_opencl *engine, const vxm_w
     status = vxm_cl_upload(engine, VXM_CL_BOXES, out->boxes, out->box_count * sizeof *out->boxes, error);
   return status;
 }
+
+vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t facets, vxm_error *error) {
+  vxm_status status = vxm_cl_reserve(engine, VXM_CL_LARGE, (1 + facets) * sizeof(uint32_t), error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_LARGE, sizeof(uint32_t), error);
+  /* An argument has to be a buffer, also where facets are not looked up. */
+  return status == VXM_OK ? vxm_cl_reserve(engine, VXM_CL_ORDER, sizeof(uint32_t), error) : status;
+}

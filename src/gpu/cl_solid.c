@@ -41,6 +41,26 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
   return status;
 }
 
+vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_tile_fn make,
+                            void *payload, vxm_error *error) {
+  vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_RESULT2}};
+  int64_t slices = 1;
+  int which = 0;
+  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
+    vxm_tile tile = vxm_tile_of(window, k, slices);
+    status = vxm_cl_return_end(engine, &back[which], status, error);
+    if (status == VXM_OK)
+      status = make(engine, &tile, back[which].from, payload, error);
+    back[which].tile = tile;
+    back[which].words = window->words;
+    back[which].is_or = is_or;
+    if (status == VXM_OK)
+      status = vxm_cl_return_begin(engine, &back[which], error);
+  }
+  return vxm_cl_finish(engine, back, status, error);
+}
+
 /* ---- Unions ---- */
 
 /** Divides the parts into passes, or into none where tiles of columns are the better way. */
@@ -73,24 +93,15 @@ static vxm_status make_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm_
   return status == VXM_OK ? vxm_cl_columns(engine, tile, job, passes, into, error) : status;
 }
 
-static vxm_status unite_tiles(vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job,
-                              vxm_passes *passes, vxm_error *error) {
-  vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_RESULT2}};
-  int64_t slices = 1;
-  int which = 0;
-  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
-  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_tile tile = vxm_tile_of(window, k, slices);
-    status = vxm_cl_return_end(engine, &back[which], status, error);
-    if (status == VXM_OK)
-      status = make_tile(engine, &tile, job, passes, back[which].from, error);
-    back[which].tile = tile;
-    back[which].words = window->words;
-    back[which].is_or = !job->fresh;
-    if (status == VXM_OK)
-      status = vxm_cl_return_begin(engine, &back[which], error);
-  }
-  return vxm_cl_finish(engine, back, status, error);
+typedef struct union_job {
+  const vxm_unite_job *job;
+  vxm_passes *passes;
+} union_job;
+
+static vxm_status unite_tile(vxm_opencl *engine, const vxm_tile *tile, vxm_cl_buffer_id into, void *payload,
+                             vxm_error *error) {
+  const union_job *u = payload;
+  return make_tile(engine, tile, u->job, u->passes, into, error);
 }
 
 static void clear(const vxm_window *window) {
@@ -114,7 +125,7 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_un
   if (status == VXM_OK && job->touched)
     status = clear_touched(engine, job->facets, error);
   if (status == VXM_OK)
-    status = unite_tiles(engine, window, job, &passes, error);
+    status = vxm_cl_each_tile(engine, window, !job->fresh, unite_tile, &(union_job){job, &passes}, error);
   if (status == VXM_OK && job->touched)
     status = vxm_cl_touched_take(engine, job->touched, job->facets, error);
   vxm_passes_destroy(&passes);

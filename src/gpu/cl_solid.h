@@ -31,6 +31,13 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
 vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *touched, const vxm_facets *facets,
                                vxm_error *error);
 
+/** Makes the words of a tile in a buffer. */
+typedef vxm_status (*vxm_cl_tile_fn)(vxm_opencl *engine, const vxm_tile *tile, vxm_cl_buffer_id into,
+                                     void *payload, vxm_error *error);
+/** Makes a window tile by tile, and takes each back while the next is made; `is_or`: adds to the window. */
+vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_tile_fn make,
+                            void *payload, vxm_error *error);
+
 /** Parity of the job's parts along its axis, united, in a buffer of a tile, triangle by triangle
  * (cl_columns.c). The passes are those of the job, and on the device. */
 vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_tile *tile, const vxm_unite_job *job,

@@ -83,12 +83,7 @@ static vxm_tile_surface surface_of(const vxm_cl_tree *tree, const vxm_lattice *l
 static vxm_status mark_triangles(vxm_opencl *engine, const vxm_tile_surface *job, const vxm_passes *passes,
                                  vxm_error *error) {
   const cl_uint2 list = {{passes->ordered ? 0 : (cl_uint)passes->first, passes->ordered}};
-  vxm_status status =
-      vxm_cl_reserve(engine, VXM_CL_LARGE, (1 + (size_t)job->facet_count) * sizeof(uint32_t), error);
-  if (status == VXM_OK)
-    status = vxm_cl_clear(engine, VXM_CL_LARGE, sizeof(uint32_t), error);
-  if (status == VXM_OK) /* an argument has to be a buffer, also where it is not used */
-    status = vxm_cl_reserve(engine, VXM_CL_ORDER, sizeof(uint32_t), error);
+  vxm_status status = vxm_cl_clear_large(engine, job->facet_count, error);
   if (status == VXM_OK)
     status = vxm_cl_run(engine, VXM_CL_MARK_CELLS, job->facet_count,
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),

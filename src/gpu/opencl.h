@@ -241,4 +241,7 @@ vxm_status vxm_cl_place_surface(vxm_opencl *engine, const vxm_surface *surface, 
 vxm_status vxm_cl_passes_create(vxm_passes *out, vxm_opencl *engine, const vxm_window *window,
                                 const vxm_unite_job *job, size_t most, vxm_error *error);
 
+/** Empties the list of facets that work-groups do, with room for all of so many. */
+vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t facets, vxm_error *error);
+
 #endif
