@@ -620,7 +620,8 @@ typedef struct vxm_engine_info {
   int64_t local_bytes;  /**< memory that a work-group shares */
   int64_t work_group;   /**< most work-items of a group */
   bool int64_atomics;   /**< not needed */
-  char note[256];       /**< why it is not available, or why another one was taken */
+  bool moves;     /**< moves the vertices of variants for training (vxm_sampler) itself; else the CPU does */
+  char note[256]; /**< why it is not available, or why another one was taken */
 } vxm_engine_info;
 
 /** How an engine of OpenGL makes solids. */

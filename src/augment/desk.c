@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "augment/desk.h"
 #include "augment/spread.h"
-#include "base/threads.h"
 #include "gridio/gridio.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { SLICE_POINTS = 8192 };
 
 /** z runs fastest, as in numpy arrays. */
 static const vxm_layout layout_of_arrays = {2, 1, 0};
@@ -34,70 +31,23 @@ void vxm_desk_destroy(vxm_desk *desk) {
   *desk = (vxm_desk){0};
 }
 
-/* ---- Points ---- */
-
-typedef struct move_job {
-  double (*to)[3];
-  const double (*from)[3];
-  const uint32_t *entry; /**< of each point in the noise; NULL = not displaced */
-  const float (*noise)[4];
-  uint32_t offset, size; /**< of the noise */
-  const double *matrix;
-  size_t count, slices;
-} move_job;
-
-/** Adds the entries of the noise to points. */
-static void displace(const move_job *job, size_t begin, size_t end) {
-  double(*to)[3] = job->to;
-  const uint32_t *entries = job->entry, offset = job->offset, size = job->size;
-  const float(*noise)[4] = job->noise;
-  for (size_t i = begin; i < end; i++) {
-    uint32_t entry = entries[i] + offset; /* both are below 2^31 */
-    const float *v = noise[entry < size ? entry : entry - size];
-    for (int a = 0; a < 3; a++)
-      to[i][a] += (double)v[a];
-  }
-}
-
-static void move_slice(size_t slice, int worker, void *payload) {
-  (void)worker;
-  const move_job *job = payload;
-  double(*to)[3] = job->to;
-  const double(*from)[3] = job->from;
-  double m[12]; /* a copy that no store can change */
-  memcpy(m, job->matrix, sizeof m);
-  size_t begin = vxm_slice_begin(job->count, job->slices, slice),
-         end = vxm_slice_begin(job->count, job->slices, slice + 1);
-  enum { BLOCK = 256 /**< points that stay in the first-level cache */ };
-  for (; begin < end; begin += BLOCK) {
-    size_t last = end - begin < BLOCK ? end : begin + BLOCK;
-    for (size_t i = begin; i < last; i++) {
-      const double x = from[i][0], y = from[i][1], z = from[i][2];
-      to[i][0] = m[0] * x + m[1] * y + m[2] * z + m[3];
-      to[i][1] = m[4] * x + m[5] * y + m[6] * z + m[7];
-      to[i][2] = m[8] * x + m[9] * y + m[10] * z + m[11];
-    }
-    if (job->entry)
-      displace(job, begin, last);
-  }
-}
-
-/** Moves points to where they lie in the unit cube, each displaced by its entry of the noise. */
-static void move(vxm_context *context, double (*to)[3], const double *from, const uint32_t *entry,
-                 size_t count, const vxm_placement *placement, const vxm_noise *noise) {
-  move_job job = {.to = to,
-                  .from = (const double(*)[3])from,
-                  .entry = entry,
-                  .noise = (const float(*)[4])noise->vectors,
-                  .offset = noise->size > 0 ? placement->offset % noise->size : 0,
-                  .size = noise->size,
-                  .matrix = placement->matrix,
-                  .count = count,
-                  .slices = 1 + count / SLICE_POINTS};
-  vxm_parallel(context, job.slices, move_slice, &job);
-}
-
 /* ---- Variants ---- */
+
+/** How the points of a subject move; those of its facets, or the vertices of its mesh. */
+static vxm_motion motion_of(const vxm_subject *subject, const vxm_placement *placement,
+                            const vxm_noise *noise, bool vertices) {
+  const vxm_facets *facets = &subject->model->shape.facets;
+  return (vxm_motion){.from = vertices ? (const double(*)[3])facets->soup->positions
+                                       : (const double(*)[3])facets->positions,
+                      .count = vertices ? facets->soup->vertex_count : facets->first_apex,
+                      .matrix = placement->matrix,
+                      .entry = vertices ? subject->vertex_entry : subject->entry,
+                      .noise = (const float(*)[4])noise->vectors,
+                      .noise_size = noise->size,
+                      .offset = noise->size > 0 ? placement->offset % noise->size : 0,
+                      .from_serial = facets->serial,
+                      .noise_serial = noise->serial};
+}
 
 vxm_status vxm_desk_fill(vxm_desk *desk, const vxm_window *window, const vxm_subject *subject,
                          const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
@@ -105,14 +55,19 @@ vxm_status vxm_desk_fill(vxm_desk *desk, const vxm_window *window, const vxm_sub
   vxm_status status = vxm_twin_attach(twin, subject->model, error);
   if (status != VXM_OK)
     return status;
-  const vxm_facets *facets = &subject->model->shape.facets;
-  move(desk->context, twin->positions, &facets->positions[0][0], subject->entry, facets->first_apex,
-       placement, noise);
-  if (vxm_model_wants_faces(subject->model))
-    move(desk->context, twin->vertices, facets->soup->positions, subject->vertex_entry,
-         facets->soup->vertex_count, placement, noise);
   vxm_space space = vxm_desk_space(window->fast_dim);
   vxm_lattice lattice = vxm_lattice_of(&space);
+  vxm_motion motion = motion_of(subject, placement, noise, false);
+  bool is_placed = false;
+  status = vxm_twin_place(twin, &motion, &lattice, &is_placed, error);
+  if (status != VXM_OK)
+    return status;
+  if (!is_placed)
+    vxm_motion_apply(desk->context, twin->positions, &motion);
+  if (vxm_model_wants_faces(subject->model)) {
+    motion = motion_of(subject, placement, noise, true);
+    vxm_motion_apply(desk->context, twin->vertices, &motion);
+  }
   /* Both ends of an edge may be displaced, along three axes. */
   double reach = 2 * sqrt(3.0) * noise->reach;
   return vxm_twin_fill(twin, window, &lattice, placement->stretch, reach, placement->mirrored, error);

@@ -3,6 +3,8 @@
 #include "augment/draw.h"
 #include "base/threads.h"
 
+#include <stdatomic.h>
+
 enum { NORMAL_REACH = 3, SLICE = 1024 };
 
 typedef struct noise_job {
@@ -33,6 +35,7 @@ double vxm_noise_reach(vxm_displacement kind, double amount) {
 
 vxm_status vxm_noise_create(vxm_noise *out, vxm_context *context, uint64_t seed, vxm_displacement kind,
                             double amount, uint32_t size, vxm_error *error) {
+  static atomic_uint_fast64_t last_serial;
   *out = (vxm_noise){0};
   if (amount == 0)
     return VXM_OK;
@@ -44,6 +47,7 @@ vxm_status vxm_noise_create(vxm_noise *out, vxm_context *context, uint64_t seed,
     return local.code;
   }
   out->size = size;
+  out->serial = atomic_fetch_add(&last_serial, 1) + 1;
   out->reach = vxm_noise_reach(kind, amount);
   noise_job job = {out, seed, kind, amount};
   vxm_parallel(context, ((size_t)size + SLICE - 1) / SLICE, fill_slice, &job);

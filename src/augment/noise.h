@@ -9,6 +9,7 @@
 #include "base/context.h"
 
 typedef struct vxm_noise {
+  uint64_t serial;     /**< no two that hold other vectors have the same */
   uint32_t size;       /**< vectors; 0 = no displacement */
   double reach;        /**< the most that any coordinate is displaced */
   float (*vectors)[4]; /**< in units of the voxel space; the fourth number is 0 */

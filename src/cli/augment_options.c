@@ -56,9 +56,9 @@ const cli_option augment_options[] = {
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
     {CLI_KEY_ENGINE, "engine", "E",
-     "who makes the voxels: cpu, or as in 'voxmend voxelize'; one variant after another,\n"
-     "of vertices that the cpu has moved [cpu]"},
-    {CLI_KEY_DEVICE, "device", "N|NAME", "the OpenCL device, as in 'voxmend voxelize'"},
+     "who moves the vertices and makes the voxels, one variant after another: cpu; or as\n"
+     "in 'voxmend voxelize' [cpu]"},
+    CLI_OPTIONS_ENGINE_METHODS,
     CLI_OPTION_DEFLECTION,
     {0, NULL, NULL, NULL}};
 
@@ -184,6 +184,9 @@ static int read_option(cli_run *cli, augment_request *out, int key, const char *
     return CLI_END;
   case CLI_KEY_ENGINE:
   case CLI_KEY_DEVICE:
+  case CLI_KEY_CL_METHOD:
+  case CLI_KEY_GL_METHOD:
+  case CLI_KEY_GL_AXIS:
     return cli_engine_read(cli, &out->engine, key, value);
   case KEY_MODE:
     return cli_read_mode(cli, &out->sampler.voxelize, value);

@@ -30,22 +30,26 @@ enum {
 };
 
 /** For the tables of commands that make voxels; cli_engine_read takes their values. */
-#define CLI_OPTIONS_ENGINE                                                                   \
-  {CLI_KEY_ENGINE, "engine", "E",                                                            \
-   "who makes the voxels: cpu; opencl, opengl, or one that 'voxmend engines' lists;\n"       \
-   "auto = a GPU by opencl or opengl, or else the cpu [cpu]"},                               \
-      {CLI_KEY_DEVICE, "device", "N|NAME",                                                   \
-       "the OpenCL device: its number in 'voxmend engines', or a part of its name or its\n"  \
-       "platform's [a GPU, else the first]"},                                                \
+#define CLI_OPTIONS_ENGINE_METHODS                                                           \
+  {CLI_KEY_DEVICE, "device", "N|NAME",                                                       \
+   "the OpenCL device: its number in 'voxmend engines', or a part of its name or its\n"      \
+   "platform's [a GPU, else the first]"},                                                    \
       {CLI_KEY_CL_METHOD, "cl-method", "auto|triangles|tiles",                               \
        "how OpenCL makes solids: triangles = each flips bits by itself; tiles = sorted by\n" \
        "tiles of columns; both have the bits of the cpu [auto]"},                            \
       {CLI_KEY_GL_METHOD, "gl-method", "columns|slices|tetra-vertex",                        \
        "how OpenGL makes solids: columns = a pass along an axis, the same bits as the\n"     \
        "cpu; slices, tetra-vertex = tetrahedra cut slice by slice, as published [columns]"}, \
-      {CLI_KEY_GL_AXIS, "gl-axis", "x|y|z", "across which axis slices are cut [y]"}, {       \
-    CLI_KEY_GL_DISPLACE, "gl-displace", "D[,SEED]",                                          \
-        "with slices: move each vertex at random by up to D voxels along each axis [0]"      \
+  {                                                                                          \
+    CLI_KEY_GL_AXIS, "gl-axis", "x|y|z", "across which axis slices are cut [y]"              \
+  }
+#define CLI_OPTIONS_ENGINE                                                              \
+  {CLI_KEY_ENGINE, "engine", "E",                                                       \
+   "who makes the voxels: cpu; opencl, opengl, or one that 'voxmend engines' lists;\n"  \
+   "auto = a GPU by opencl or opengl, or else the cpu [cpu]"},                          \
+      CLI_OPTIONS_ENGINE_METHODS, {                                                     \
+    CLI_KEY_GL_DISPLACE, "gl-displace", "D[,SEED]",                                     \
+        "with slices: move each vertex at random by up to D voxels along each axis [0]" \
   }
 
 /** For the tables of commands that read meshes; cli_next_option puts its value into cli->read. */

@@ -27,6 +27,7 @@ static json_t *engine_json(const vxm_engine_info *info) {
     json_object_set_new(object, "renderer", cli_json_text(info->renderer));
     json_object_set_new(object, "version", cli_json_text(info->version));
     json_object_set_new(object, "block_bytes", json_integer(info->block_bytes));
+    json_object_set_new(object, "moves", json_boolean(info->moves));
   }
   if (*info->platform)
     add_opencl(object, info);
@@ -52,6 +53,8 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
   fprintf(cli->text, "  %-22s %s%s\n", is_opencl ? "device" : "renderer", info->renderer,
           info->hardware ? "" : ", in software: slower than cpu");
   fprintf(cli->text, "  version                %s\n", info->version);
+  fprintf(cli->text, "  moves variants         %s\n",
+          info->moves ? "yes" : "no: the CPU does (voxmend augment)");
   if (is_opencl) {
     fprintf(cli->text,
             "  limits                 %d compute units, groups of %" PRId64 "; memory of %" PRId64

@@ -56,14 +56,24 @@ vxm_status vxm_cl_clear(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, v
   return status == VXM_OK && bytes > 0 ? fill_zero(engine, id, bytes, error) : status;
 }
 
-vxm_status vxm_cl_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const void *data, size_t bytes,
-                         vxm_error *error) {
-  vxm_status status = vxm_cl_reserve(engine, id, bytes, error);
-  if (status != VXM_OK || bytes == 0)
+static vxm_status upload_at(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, const void *data,
+                            size_t bytes, vxm_error *error) {
+  vxm_status status = vxm_cl_reserve(engine, id, offset + bytes, error);
+  if (status != VXM_OK || bytes == 0 || !data)
     return status;
-  return vxm_cl_check(engine->cl->EnqueueWriteBuffer(engine->queue, engine->buffers[id].mem, CL_TRUE, 0,
+  return vxm_cl_check(engine->cl->EnqueueWriteBuffer(engine->queue, engine->buffers[id].mem, CL_TRUE, offset,
                                                      bytes, data, 0, NULL, NULL),
                       "sending a buffer", error);
+}
+
+vxm_status vxm_cl_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const void *data, size_t bytes,
+                         vxm_error *error) {
+  return upload_at(engine, id, 0, data, bytes, error);
+}
+
+vxm_status vxm_cl_resident_upload(vxm_engine *base, vxm_resident_id id, size_t offset, const void *data,
+                                  size_t bytes, vxm_error *error) {
+  return upload_at(vxm_opencl_of(base), (vxm_cl_buffer_id)id, offset, data, bytes, error);
 }
 
 vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, void *out, size_t bytes,

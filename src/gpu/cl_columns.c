@@ -5,6 +5,14 @@
 
 enum { FEW_COLUMNS = 256 /**< of a facet that one work-item does */ };
 
+vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t facets, vxm_error *error) {
+  vxm_status status = vxm_cl_reserve(engine, VXM_CL_LARGE, (1 + facets) * sizeof(uint32_t), error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_LARGE, sizeof(uint32_t), error);
+  /* An argument has to be a buffer, also where facets are not looked up. */
+  return status == VXM_OK ? vxm_cl_reserve(engine, VXM_CL_ORDER, sizeof(uint32_t), error) : status;
+}
+
 static vxm_status flip(vxm_opencl *engine, const vxm_tile_columns *columns, vxm_error *error) {
   vxm_status status = vxm_cl_clear_large(engine, columns->facet_count, error);
   if (status == VXM_OK)
@@ -27,9 +35,9 @@ static vxm_status flip_far(vxm_opencl *engine, const vxm_tile_columns *columns, 
                            const vxm_passes *passes, size_t pass, vxm_error *error) {
   uint32_t *bits = NULL;
   size_t found = 0;
-  if (engine->far.count == 0)
+  if (engine->resident.far.count == 0)
     return VXM_OK;
-  vxm_status status = vxm_far_flips(&bits, &found, &engine->far, columns, job, passes, pass, error);
+  vxm_status status = vxm_far_flips(&bits, &found, &engine->resident.far, columns, job, passes, pass, error);
   uint32_t count = (uint32_t)found;
   if (status == VXM_OK && count > 0)
     status = vxm_cl_upload(engine, VXM_CL_LARGE, bits, found * sizeof *bits, error);

@@ -151,6 +151,7 @@ void vxm_cl_device_describe(vxm_engine_info *out, const vxm_cl *cl, const vxm_cl
     out->work_group = (int64_t)group;
   if (cl->GetDeviceInfo(id, CL_DEVICE_EXTENSIONS, sizeof extensions, extensions, NULL) == CL_SUCCESS)
     out->int64_atomics = strstr(extensions, "cl_khr_int64_extended_atomics") != NULL;
+  out->moves = device_number(cl, id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof(cl_device_fp_config)) != 0;
   const char *lack = lack_of(cl, id);
   out->available = lack == NULL;
   if (lack)

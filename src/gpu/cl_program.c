@@ -18,6 +18,7 @@ static const char *const sources[VXM_CL_PROGRAMS][FILES_MAX] = {
     [VXM_CL_TREE] = {"touching.cl", "cells.cl", "nodes.cl", "prune.cl"},
     [VXM_CL_BRICK_FLIPS] = {"lattice.cl", "brick_flips.cl", "flip_area.cl", "bricks.cl"},
     [VXM_CL_COVERAGE] = {"coverage.cl"},
+    [VXM_CL_MOVE] = {"move.cl"},
     [VXM_CL_PUBLISHED] = {"published.cl"},
 };
 
@@ -63,6 +64,7 @@ static const struct {
     [VXM_CL_FLIP_BRICKS_LARGE] = {"flip_bricks_large", VXM_CL_BRICK_FLIPS},
     [VXM_CL_FOLD_BRICKS] = {"fold_bricks", VXM_CL_BRICK_FLIPS},
     [VXM_CL_PUSH_BRICKS] = {"push_bricks", VXM_CL_BRICK_FLIPS},
+    [VXM_CL_MOVE_POINTS] = {"move_points", VXM_CL_MOVE},
     [VXM_CL_COUNT_GROUPS] = {"count_groups", VXM_CL_COVERAGE},
     [VXM_CL_PUBLISHED_FACETS] = {"published_facets", VXM_CL_PUBLISHED},
     [VXM_CL_PUBLISHED_VOXELS] = {"published_voxels", VXM_CL_PUBLISHED},

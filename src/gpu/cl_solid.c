@@ -69,8 +69,8 @@ static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm
   vxm_cl_method method = vxm_cl_can_tile(engine, window, job) ? engine->options.cl_method : VXM_CL_TRIANGLES;
   if (method == VXM_CL_TILES || (method == VXM_CL_AUTO && window->fast_dim >= LONG_COLUMN))
     return VXM_OK;
-  return vxm_cl_passes_create(passes, engine, window, job, method == VXM_CL_AUTO ? PASSES_MOST : SIZE_MAX,
-                              error);
+  return vxm_resident_passes(passes, &engine->resident, window, job, 0,
+                             method == VXM_CL_AUTO ? PASSES_MOST : SIZE_MAX, error);
 }
 
 /** Makes the words of a tile: by `passes`, or by tiles of columns where there are none. */
@@ -88,7 +88,7 @@ static vxm_status make_tile(vxm_opencl *engine, const vxm_tile *tile, const vxm_
       return status;
     }
     vxm_passes_destroy(passes); /* the lists of tiles are too long: what nobody asked for is left again */
-    status = vxm_cl_passes_create(passes, engine, tile->window, job, SIZE_MAX, error);
+    status = vxm_resident_passes(passes, &engine->resident, tile->window, job, 0, SIZE_MAX, error);
   }
   return status == VXM_OK ? vxm_cl_columns(engine, tile, job, passes, into, error) : status;
 }
@@ -119,7 +119,7 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_un
       clear(window);
     return VXM_OK;
   }
-  vxm_status status = vxm_cl_place(engine, job->facets, job->placed, error);
+  vxm_status status = vxm_resident_facets(&engine->resident, job->facets, job->placed, error);
   if (status == VXM_OK)
     status = choose(engine, window, job, &passes, error);
   if (status == VXM_OK && job->touched)
@@ -219,7 +219,7 @@ vxm_status vxm_cl_elect(vxm_engine *base, const vxm_window *window, const vxm_el
   vxm_opencl *engine = vxm_opencl_of(base);
   if (job->part_begin >= job->part_end)
     return VXM_OK;
-  vxm_status status = vxm_cl_place(engine, job->facets, job->placed, error);
+  vxm_status status = vxm_resident_facets(&engine->resident, job->facets, job->placed, error);
   if (status == VXM_OK && job->touched)
     status = clear_touched(engine, job->facets, error);
   if (status == VXM_OK)

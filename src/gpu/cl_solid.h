@@ -5,6 +5,8 @@
 
 #include "gpu/opencl.h"
 
+vxm_status vxm_cl_move(vxm_engine *engine, vxm_placed *placed, const vxm_move_job *job, bool *done,
+                       vxm_error *error);
 vxm_status vxm_cl_unite(vxm_engine *engine, const vxm_window *window, const vxm_unite_job *job,
                         vxm_error *error);
 vxm_status vxm_cl_elect(vxm_engine *engine, const vxm_window *window, const vxm_elect_job *job,

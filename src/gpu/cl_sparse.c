@@ -208,7 +208,7 @@ static vxm_status prepare(making *m, const vxm_space *space, vxm_error *error) {
                              .roles = m->job->roles,
                              .touched = m->job->touched,
                              .phase = "voxelizing"};
-  vxm_status status = vxm_cl_passes_create(&m->passes, engine, &window, &job, SIZE_MAX, error);
+  vxm_status status = vxm_resident_passes(&m->passes, &engine->resident, &window, &job, 0, SIZE_MAX, error);
   if (status == VXM_OK)
     status = vxm_cl_place_parts(engine, job.facets, error);
   if (status == VXM_OK)
@@ -243,8 +243,8 @@ vxm_status vxm_cl_sparse(vxm_engine *base, vxm_sparse **out, const vxm_space *sp
   *out = NULL;
   if (job->part_end == 0 || !are_closed(job))
     return VXM_OK;
-  vxm_status status = vxm_cl_place(engine, job->facets, job->placed, error);
-  if (status != VXM_OK || has_far(&engine->far, job))
+  vxm_status status = vxm_resident_facets(&engine->resident, job->facets, job->placed, error);
+  if (status != VXM_OK || has_far(&engine->resident.far, job))
     return status;
   making m = {.engine = engine, .job = job, .passes = {.context = base->context}};
   status = make(out, &m, space, error);

@@ -35,8 +35,9 @@ static vxm_status set_tile(vxm_opencl *engine, const vxm_tile *tile, vxm_cl_buff
 vxm_status vxm_cl_surface(vxm_engine *base, const vxm_surface *surface, const vxm_window *window,
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
-  vxm_status status = vxm_cl_place_surface(engine, surface, error);
+  vxm_status status = vxm_resident_surface(&engine->resident, surface, error);
   if (status == VXM_OK)
     status = vxm_cl_each_tile(engine, window, !is_fresh, set_tile, &(surface_job){surface, kind}, error);
-  return status == VXM_OK ? vxm_far_surface_add(&engine->far_surface, surface, window, kind, error) : status;
+  return status == VXM_OK ? vxm_far_surface_add(&engine->resident.far_surface, surface, window, kind, error)
+                          : status;
 }

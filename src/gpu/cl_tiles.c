@@ -158,6 +158,6 @@ vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_tile *tile, const vxm_unit
 }
 
 bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_unite_job *job) {
-  return job->axis == window->layout.fast && engine->far.count == 0 &&
+  return job->axis == window->layout.fast && engine->resident.far.count == 0 &&
          job->facets->split.part_count < (size_t)1 << ROLE_SHIFT;
 }

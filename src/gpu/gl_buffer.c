@@ -51,14 +51,24 @@ vxm_status vxm_gl_reserve_zero(vxm_opengl *engine, vxm_gl_buffer_id id, size_t b
   return status;
 }
 
-vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *data, size_t bytes,
-                         vxm_error *error) {
-  vxm_status status = vxm_gl_reserve(engine, id, bytes, error);
-  if (status != VXM_OK || bytes == 0)
+static vxm_status upload_at(vxm_opengl *engine, vxm_gl_buffer_id id, size_t offset, const void *data,
+                            size_t bytes, vxm_error *error) {
+  vxm_status status = vxm_gl_reserve(engine, id, offset + bytes, error);
+  if (status != VXM_OK || bytes == 0 || !data)
     return status;
   engine->context.gl.BindBuffer(target, engine->buffers[id].name);
-  engine->context.gl.BufferSubData(target, 0, (GLsizeiptr)bytes, data);
+  engine->context.gl.BufferSubData(target, (GLintptr)offset, (GLsizeiptr)bytes, data);
   return VXM_OK;
+}
+
+vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *data, size_t bytes,
+                         vxm_error *error) {
+  return upload_at(engine, id, 0, data, bytes, error);
+}
+
+vxm_status vxm_gl_resident_upload(vxm_engine *base, vxm_resident_id id, size_t offset, const void *data,
+                                  size_t bytes, vxm_error *error) {
+  return upload_at(vxm_opengl_of(base), (vxm_gl_buffer_id)id, offset, data, bytes, error);
 }
 
 void vxm_gl_presence_release(vxm_opengl *engine) {

@@ -119,6 +119,7 @@ vxm_status vxm_gl_use(vxm_opengl *engine, vxm_gl_program_id id, vxm_error *error
       [VXM_GL_DRAW_SURFACE] = {{"surface.vert", "cover.glsl touching.glsl surface.geom",
                                 "touching.glsl surface.frag"},
                                true},
+      [VXM_GL_MOVE] = {{"move.vert"}, false},
       [VXM_GL_PACK] = {{"pack.comp"}, false},
       [VXM_GL_MERGE] = {{"merge.comp"}, false},
   };

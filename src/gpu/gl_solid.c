@@ -21,6 +21,14 @@ vxm_status vxm_gl_finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status s
   return status;
 }
 
+static vxm_status create_passes(vxm_passes *out, vxm_opengl *engine, const vxm_window *window,
+                                const vxm_unite_job *job, vxm_error *error) {
+  /* Slices move points, and the apex in any case a little. */
+  double move = engine->options.displacement;
+  int64_t margin = engine->base.wants_apexes ? (int64_t)(move < 1 << 20 ? move : 1 << 20) + 1 : 0;
+  return vxm_resident_passes(out, &engine->resident, window, job, margin, SIZE_MAX, error);
+}
+
 static vxm_status clear_touched(vxm_opengl *engine, size_t part_count, vxm_error *error) {
   vxm_status status = vxm_gl_reserve(engine, VXM_GL_TOUCHED, part_count * sizeof(uint32_t), error);
   if (status != VXM_OK)
@@ -84,9 +92,9 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_un
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_gl_place(engine, job->facets, job->placed, error);
+  status = vxm_resident_facets(&engine->resident, job->facets, job->placed, error);
   if (status == VXM_OK)
-    status = vxm_gl_passes_create(&passes, engine, window, job, error);
+    status = create_passes(&passes, engine, window, job, error);
   if (status == VXM_OK && job->touched)
     status = clear_touched(engine, parts, error);
   if (status == VXM_OK)
@@ -121,7 +129,7 @@ static vxm_status make_voter(vxm_opengl *engine, const vxm_tile *tile, const bal
                              vxm_error *error) {
   vxm_unite_job job = vxm_elect_voter(b->job, tile->window, v);
   vxm_passes passes = {0};
-  vxm_status status = vxm_gl_passes_create(&passes, engine, tile->window, &job, error);
+  vxm_status status = create_passes(&passes, engine, tile->window, &job, error);
   if (status == VXM_OK)
     status = make_tile(engine, tile, &job, &passes, b->words[v], error);
   vxm_passes_destroy(&passes);
@@ -196,7 +204,7 @@ vxm_status vxm_gl_elect(vxm_engine *base, const vxm_window *window, const vxm_el
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_gl_place(engine, job->facets, job->placed, error);
+  status = vxm_resident_facets(&engine->resident, job->facets, job->placed, error);
   if (status == VXM_OK && job->touched)
     status = clear_touched(engine, parts, error);
   if (status == VXM_OK)

@@ -18,30 +18,6 @@ static surface_job job_of(const vxm_opengl *engine, const vxm_surface *surface, 
   return job;
 }
 
-/* ---- Triangles ---- */
-
-static vxm_status place(vxm_opengl *engine, const vxm_surface *surface, vxm_error *error) {
-  size_t count = surface->soup->vertex_count;
-  if (engine->surface_serial == surface->serial)
-    return VXM_OK;
-  engine->surface_serial = 0;
-  vxm_status status = vxm_gl_upload_points(engine, VXM_GL_SURFACE_POINTS, surface->points, count, error);
-  if (status == VXM_OK && engine->surface_corners_serial != surface->corners_serial) {
-    engine->surface_corners_serial = 0;
-    status = vxm_gl_upload(engine, VXM_GL_SURFACE_CORNERS, surface->corners,
-                           surface->triangle_count * 3 * sizeof *surface->corners, error);
-    if (status == VXM_OK)
-      engine->surface_corners_serial = surface->corners_serial;
-  }
-  if (status == VXM_OK)
-    status = vxm_far_surface_find(&engine->far_surface, surface, error);
-  if (status == VXM_OK)
-    engine->surface_serial = surface->serial;
-  return status;
-}
-
-/* ---- Drawing ---- */
-
 static void bind(vxm_opengl *engine) {
   vxm_gl_bind(engine, 0, VXM_GL_JOB);
   vxm_gl_bind(engine, 0, VXM_GL_SURFACE_POINTS);
@@ -143,9 +119,10 @@ vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vx
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = place(engine, surface, error);
+  status = vxm_resident_surface(&engine->resident, surface, error);
   if (status == VXM_OK)
     status = draw_tiles(engine, surface, window, kind, is_fresh, error);
   vxm_gl_leave(&engine->context);
-  return status == VXM_OK ? vxm_far_surface_add(&engine->far_surface, surface, window, kind, error) : status;
+  return status == VXM_OK ? vxm_far_surface_add(&engine->resident.far_surface, surface, window, kind, error)
+                          : status;
 }

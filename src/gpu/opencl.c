@@ -20,11 +20,11 @@ static void destroy(vxm_engine *base) {
     cl->ReleaseCommandQueue(engine->transfer);
   if (engine->context)
     cl->ReleaseContext(engine->context);
-  vxm_far_destroy(&engine->far);
-  vxm_far_surface_destroy(&engine->far_surface);
+  vxm_resident_destroy(&engine->resident);
 }
 
-static const vxm_engine_ops opencl_ops = {.unite = vxm_cl_unite,
+static const vxm_engine_ops opencl_ops = {.move = vxm_cl_move,
+                                          .unite = vxm_cl_unite,
                                           .elect = vxm_cl_elect,
                                           .surface = vxm_cl_surface,
                                           .sparse = vxm_cl_sparse,
@@ -68,7 +68,7 @@ vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_c
   }
   engine->base.ops = &opencl_ops;
   engine->base.context = context;
-  engine->far.context = engine->far_surface.context = context;
+  engine->resident = vxm_resident_of(&engine->base, vxm_cl_resident_upload);
   engine->options = *options;
   engine->options.device = NULL; /* the caller's */
   engine->cl = cl;

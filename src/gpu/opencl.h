@@ -4,7 +4,7 @@
 #define VXM_GPU_OPENCL_H
 
 #include "gpu/cl_device.h"
-#include "gpu/far.h"
+#include "gpu/resident.h"
 #include "voxel/engine.h"
 
 /** Work-items that every group can have. */
@@ -19,6 +19,7 @@ typedef enum vxm_cl_program_id {
   VXM_CL_TREE,        /**< octrees: their nodes */
   VXM_CL_BRICK_FLIPS, /**< and their voxels */
   VXM_CL_COVERAGE,
+  VXM_CL_MOVE,
   VXM_CL_PUBLISHED,
   VXM_CL_PROGRAMS
 } vxm_cl_program_id;
@@ -63,27 +64,31 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_FOLD_BRICKS,
   VXM_CL_PUSH_BRICKS,
   VXM_CL_COUNT_GROUPS,
+  VXM_CL_MOVE_POINTS,
   VXM_CL_PUBLISHED_FACETS,
   VXM_CL_PUBLISHED_VOXELS,
   VXM_CL_KERNELS
 } vxm_cl_kernel_id;
 
 typedef enum vxm_cl_buffer_id {
-  VXM_CL_POINTS = 0,
-  VXM_CL_CORNERS,
-  VXM_CL_ORDER,  /**< numbers of facets, pass after pass */
-  VXM_CL_FLIPS,  /**< a bit per voxel of a tile; zero between uses */
-  VXM_CL_LARGE,  /**< how many facets of many columns, and which */
-  VXM_CL_RESULT, /**< two: one is read while the other is made */
+  VXM_CL_POINTS = VXM_RESIDENT_POINTS,
+  VXM_CL_CORNERS = VXM_RESIDENT_CORNERS,
+  VXM_CL_ORDER = VXM_RESIDENT_ORDER,
+  VXM_CL_BOXES = VXM_RESIDENT_BOXES,
+  VXM_CL_SURFACE_POINTS = VXM_RESIDENT_SURFACE_POINTS,
+  VXM_CL_SURFACE_CORNERS = VXM_RESIDENT_SURFACE_CORNERS,
+  VXM_CL_ORIGINALS = VXM_RESIDENT_ORIGINALS,
+  VXM_CL_ENTRIES = VXM_RESIDENT_ENTRIES,
+  VXM_CL_NOISE = VXM_RESIDENT_NOISE,
+  VXM_CL_FLIPS = VXM_RESIDENTS, /**< a bit per voxel of a tile; zero between uses */
+  VXM_CL_LARGE,                 /**< how many facets of many columns, and which */
+  VXM_CL_RESULT,                /**< two: one is read while the other is made */
   VXM_CL_RESULT2,
   VXM_CL_MASK,    /**< contested voxels of a tile */
   VXM_CL_VOTER_X, /**< four of them */
   VXM_CL_VOTER_T = VXM_CL_VOTER_X + 3,
   VXM_CL_TALLY,
-  VXM_CL_BOXES,
   VXM_CL_TOUCHED,
-  VXM_CL_SURFACE_POINTS,
-  VXM_CL_SURFACE_CORNERS,
   VXM_CL_SUMS,   /**< of blocks of what is scanned */
   VXM_CL_DIGITS, /**< how often each occurs in each block of what is sorted */
   VXM_CL_SORT_KEYS,
@@ -142,11 +147,9 @@ typedef struct vxm_opencl {
   cl_kernel kernels[VXM_CL_KERNELS];
   size_t group; /**< work-items of a group: a power of two that all kernels made so far can have */
   vxm_cl_buffer buffers[VXM_CL_BUFFERS];
-  /** What the buffers hold. */
-  uint64_t facets_serial, parts_serial, placed_serial, surface_serial, surface_corners_serial;
+  vxm_resident resident;
+  uint64_t parts_serial; /**< of the facets whose parts are there, too */
   vxm_cl_stages *stages; /**< NULL; else the device is waited for after each, and its time is added */
-  vxm_far far;
-  vxm_far_surface far_surface;
 } vxm_opencl;
 
 static inline vxm_opencl *vxm_opencl_of(vxm_engine *engine) {
@@ -200,6 +203,9 @@ void vxm_cl_release(vxm_opencl *engine, vxm_cl_buffer_id id);
 /** Room, and these bytes in it; the data may go when this returns. */
 vxm_status vxm_cl_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const void *data, size_t bytes,
                          vxm_error *error);
+/** What the engine's residents are brought with. */
+vxm_status vxm_cl_resident_upload(vxm_engine *engine, vxm_resident_id id, size_t offset, const void *data,
+                                  size_t bytes, vxm_error *error);
 /** Reads bytes of a buffer, once all is done that was queued. */
 vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, void *out, size_t bytes,
                            vxm_error *error);
@@ -228,19 +234,10 @@ vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_erro
 /** Waits for it; also after a failure. Returns `status`, or the first failure. */
 vxm_status vxm_cl_return_end(vxm_opencl *engine, vxm_cl_return *back, vxm_status status, vxm_error *error);
 
-/* ---- Facets (cl_facets.c) ---- */
+/* ---- Facets ---- */
 
-/** Brings points and corners to the device, unless they are there. */
-vxm_status vxm_cl_place(vxm_opencl *engine, const vxm_facets *facets, const vxm_placed *placed,
-                        vxm_error *error);
 /** Brings to the device which part each facet belongs to, and above ROLE_SHIFT its role (cl_tiles.c). */
 vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_facets *facets, vxm_error *error);
-vxm_status vxm_cl_place_surface(vxm_opencl *engine, const vxm_surface *surface, vxm_error *error);
-/** Divides the facets of a job's parts, and brings the lists to the device. Destroy with vxm_passes_destroy,
- * also after a failure. */
-vxm_status vxm_cl_passes_create(vxm_passes *out, vxm_opencl *engine, const vxm_window *window,
-                                const vxm_unite_job *job, size_t most, vxm_error *error);
-
 /** Empties the list of facets that work-groups do, with room for all of so many. */
 vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t facets, vxm_error *error);
 

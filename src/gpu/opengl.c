@@ -58,7 +58,7 @@ static vxm_status read_limits(vxm_opengl *engine, vxm_error *error) {
   info->int64 = has_extension(gl, "GL_ARB_gpu_shader_int64");
   gl->GetIntegerv(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, &late);
   gl->GetIntegerv(GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS, &all);
-  engine->can_pull = blocks >= 5 && all >= 9;
+  engine->can_pull = info->moves = blocks >= 5 && all >= 9;
   engine->can_pull_late = blocks >= 1 && late >= 3 && all >= 7;
   return vxm_gl_check(gl, "opengl: asking for limits", error);
 }
@@ -180,11 +180,11 @@ static void destroy(vxm_engine *base) {
     vxm_memory_give(base->context, engine->buffers[b].bytes);
   vxm_memory_give(base->context, engine->presence.bytes);
   vxm_gl_context_destroy(&engine->context);
-  vxm_far_destroy(&engine->far);
-  vxm_far_surface_destroy(&engine->far_surface);
+  vxm_resident_destroy(&engine->resident);
 }
 
-static const vxm_engine_ops opengl_ops = {.unite = vxm_gl_unite,
+static const vxm_engine_ops opengl_ops = {.move = vxm_gl_move,
+                                          .unite = vxm_gl_unite,
                                           .elect = vxm_gl_elect,
                                           .surface = vxm_gl_surface,
                                           .color = vxm_gl_color,
@@ -221,7 +221,7 @@ vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_g
   engine->base.ops = &opengl_ops;
   engine->base.wants_apexes = options->gl_method != VXM_GL_COLUMNS;
   engine->base.context = context;
-  engine->far.context = engine->far_surface.context = context;
+  engine->resident = vxm_resident_of(&engine->base, vxm_gl_resident_upload);
   engine->options = *options;
   vxm_opengl_name(engine->base.info.name, sizeof engine->base.info.name, driver, index);
   vxm_status status = vxm_gl_context_create(&engine->context, driver, index, error);

@@ -3,8 +3,8 @@
 #ifndef VXM_GPU_OPENGL_H
 #define VXM_GPU_OPENGL_H
 
-#include "gpu/far.h"
 #include "gpu/gl_context.h"
+#include "gpu/resident.h"
 #include "voxel/engine.h"
 
 typedef enum vxm_gl_program_id {
@@ -21,27 +21,31 @@ typedef enum vxm_gl_program_id {
   VXM_GL_MERGE,
   VXM_GL_FIND_SURFACE,
   VXM_GL_DRAW_SURFACE,
+  VXM_GL_MOVE,
   VXM_GL_PROGRAMS
 } vxm_gl_program_id;
 
 typedef enum vxm_gl_buffer_id {
-  VXM_GL_POINTS = 0,
-  VXM_GL_CORNERS,
-  VXM_GL_ORDER,   /**< numbers of facets, pass after pass */
-  VXM_GL_FLIPS,   /**< a bit per voxel of a tile; zero between uses */
-  VXM_GL_LARGE,   /**< the indirect draw, and its facets */
-  VXM_GL_JOB,     /**< vxm_gl_job */
-  VXM_GL_RESULT,  /**< what is inside, a bit per voxel of a tile */
-  VXM_GL_MASK,    /**< contested voxels of a tile */
-  VXM_GL_VOTER_X, /**< four of them */
+  VXM_GL_POINTS = VXM_RESIDENT_POINTS,
+  VXM_GL_CORNERS = VXM_RESIDENT_CORNERS,
+  VXM_GL_APEXES = VXM_RESIDENT_APEXES,
+  VXM_GL_ORDER = VXM_RESIDENT_ORDER,
+  VXM_GL_BOXES = VXM_RESIDENT_BOXES,
+  VXM_GL_SURFACE_POINTS = VXM_RESIDENT_SURFACE_POINTS,
+  VXM_GL_SURFACE_CORNERS = VXM_RESIDENT_SURFACE_CORNERS,
+  VXM_GL_ORIGINALS = VXM_RESIDENT_ORIGINALS,
+  VXM_GL_ENTRIES = VXM_RESIDENT_ENTRIES,
+  VXM_GL_NOISE = VXM_RESIDENT_NOISE,
+  VXM_GL_FLIPS = VXM_RESIDENTS, /**< a bit per voxel of a tile; zero between uses */
+  VXM_GL_LARGE,                 /**< the indirect draw, and its facets */
+  VXM_GL_JOB,                   /**< vxm_gl_job */
+  VXM_GL_RESULT,                /**< what is inside, a bit per voxel of a tile */
+  VXM_GL_MASK,                  /**< contested voxels of a tile */
+  VXM_GL_VOTER_X,               /**< four of them */
   VXM_GL_VOTER_T = VXM_GL_VOTER_X + 3,
   VXM_GL_TALLY,
-  VXM_GL_BOXES,
-  VXM_GL_APEXES, /**< points that are the apexes of facets; only for slices */
-  VXM_GL_RANDOM, /**< the circular buffer of displacements */
+  VXM_GL_RANDOM, /**< the circular buffer of displacements of slices */
   VXM_GL_TOUCHED,
-  VXM_GL_SURFACE_POINTS,
-  VXM_GL_SURFACE_CORNERS,
   VXM_GL_STAGING, /**< two, mapped while the next tile is drawn */
   VXM_GL_STAGING2,
   VXM_GL_BUFFERS
@@ -82,10 +86,7 @@ typedef struct vxm_opengl {
   vxm_gl_buffer buffers[VXM_GL_BUFFERS];
   const vxm_gl_format *format; /**< that passed the self-test */
   vxm_gl_presence presence;
-  uint64_t facets_serial, placed_serial; /**< what Corners and Points hold */
-  uint64_t surface_serial, surface_corners_serial;
-  vxm_far far; /**< facets and triangles beyond the numbers of the shaders */
-  vxm_far_surface far_surface;
+  vxm_resident resident;
   /** Vertex and geometry shaders may read buffers; else compute shaders do all facets, and slices are
    * refused. */
   bool can_pull, can_pull_late;
@@ -133,6 +134,9 @@ void vxm_gl_release(vxm_opengl *engine, vxm_gl_buffer_id id);
 /** Room, and these bytes in it. */
 vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *data, size_t bytes,
                          vxm_error *error);
+/** What the engine's residents are brought with. */
+vxm_status vxm_gl_resident_upload(vxm_engine *engine, vxm_resident_id id, size_t offset, const void *data,
+                                  size_t bytes, vxm_error *error);
 /** Binds a buffer to where shaders look for it. */
 void vxm_gl_bind(vxm_opengl *engine, GLuint binding, vxm_gl_buffer_id id);
 /** Reads the first bytes of a buffer, once all is done that writes them. */
@@ -164,21 +168,6 @@ typedef struct vxm_gl_return {
 vxm_status vxm_gl_return_begin(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error);
 /** Waits for it and moves it into the window. Does nothing if none is under way. */
 vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error);
-
-/* ---- Facets (gl_facets.c) ---- */
-
-/** Brings points and corners to the device, unless they are there. */
-vxm_status vxm_gl_place(vxm_opengl *engine, const vxm_facets *facets, const vxm_placed *placed,
-                        vxm_error *error);
-
-/** Brings points to the device in 32 bits; those that do not fit are marked. */
-vxm_status vxm_gl_upload_points(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_point *points,
-                                size_t count, vxm_error *error);
-
-/** Divides the facets of a job's parts, and brings the lists to the device. Destroy with vxm_passes_destroy,
- * also after a failure. */
-vxm_status vxm_gl_passes_create(vxm_passes *out, vxm_opengl *engine, const vxm_window *window,
-                                const vxm_unite_job *job, vxm_error *error);
 
 /* ---- Methods ---- */
 

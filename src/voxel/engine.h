@@ -4,6 +4,7 @@
 #ifndef VXM_VOXEL_ENGINE_H
 #define VXM_VOXEL_ENGINE_H
 
+#include "voxel/motion.h"
 #include "voxel/sparse_job.h"
 #include "voxel/surface.h"
 #include "voxel/unite.h"
@@ -36,9 +37,21 @@ typedef struct vxm_color_job {
 /** The longest side of a space, model units. */
 double vxm_color_longest(const vxm_space *space);
 
+/** Points of facets to be moved and placed. */
+typedef struct vxm_move_job {
+  const vxm_facets *facets;
+  const vxm_motion *motion; /**< of the points before first_apex */
+  bool apexes;              /**< as for vxm_placed_set */
+} vxm_move_job;
+
 /** All but `destroy` may be NULL: the CPU does it then. Each gives the bits that the CPU gives, unless the
  * engine's own documentation says how far it is off. */
 typedef struct vxm_engine_ops {
+  /** Moves points as vxm_motion_apply does and places them as vxm_placed_set: `placed`, which was begun,
+   * becomes what that makes of it, and the points are where `unite` and `elect` look for them. `*done` stays
+   * false, and that is no failure, where the CPU has to do it. */
+  vxm_status (*move)(vxm_engine *engine, vxm_placed *placed, const vxm_move_job *job, bool *done,
+                     vxm_error *error);
   vxm_status (*unite)(vxm_engine *engine, const vxm_window *window, const vxm_unite_job *job,
                       vxm_error *error);
   /** Adds to the window's words what the voters elect, as vxm_vote_count does. */

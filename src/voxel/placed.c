@@ -12,6 +12,25 @@ static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 /* ---- Narrow points ---- */
 
+double vxm_placed_scale(const vxm_placed *placed, int axis) {
+  return (double)placed->lattice.unit / placed->lattice.space.voxel_size[axis];
+}
+
+/** The last cell along an axis: all centres lie before it. */
+static int32_t last_cell(const vxm_lattice *lattice, int axis) {
+  return (int32_t)vxm_min(lattice->space.dims[axis], (INT64_C(1) << VXM_CELL_BITS) - 1);
+}
+
+/** The cell of a narrow point. */
+static uint64_t cell_of(const vxm_placed *placed, const int32_t at[3]) {
+  uint64_t cells = 0;
+  for (int a = 0; a < 3; a++) {
+    int64_t cell = vxm_lattice_first(&placed->lattice, at[a]), last = last_cell(&placed->lattice, a);
+    cells |= (uint64_t)vxm_min(vxm_max(cell, 0), last) << (VXM_CELL_BITS * a);
+  }
+  return cells;
+}
+
 typedef struct place_job {
   vxm_placed *placed;
   const vxm_facets *facets;
@@ -21,18 +40,13 @@ typedef struct place_job {
   atomic_bool beyond; /**< a point does not fit */
 } place_job;
 
-/** The last cell along an axis: all centres lie before it. */
-static int32_t last_cell(const vxm_lattice *lattice, int axis) {
-  return (int32_t)vxm_min(lattice->space.dims[axis], (INT64_C(1) << VXM_CELL_BITS) - 1);
-}
-
 static vxm_affine affine_of(const vxm_placed *placed) {
   vxm_affine affine = {.bits = placed->lattice.bits};
   for (int r = 0; r < 3; r++) {
     for (int c = 0; c < 4; c++)
       affine.column[c][r] = placed->transform[4 * r + c];
     affine.origin[r] = placed->lattice.space.origin[r];
-    affine.scale[r] = (double)placed->lattice.unit / placed->lattice.space.voxel_size[r];
+    affine.scale[r] = vxm_placed_scale(placed, r);
     affine.cells[r] = last_cell(&placed->lattice, r);
   }
   return affine;
@@ -58,6 +72,28 @@ static bool place_narrow(vxm_placed *placed, const vxm_facets *facets) {
                    .slices = 1 + facets->first_apex / SLICE_POINTS};
   atomic_init(&job.beyond, false);
   vxm_parallel(placed->context, job.slices, place_slice, &job);
+  return !atomic_load(&job.beyond);
+}
+
+static void take_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  place_job *job = payload;
+  vxm_placed *placed = job->placed;
+  int32_t misfit = 0;
+  size_t count = job->facets->first_apex;
+  size_t end = vxm_slice_begin(count, job->slices, slice + 1);
+  for (size_t p = vxm_slice_begin(count, job->slices, slice); p < end; p++) {
+    placed->cells[p] = cell_of(placed, placed->narrow[p]);
+    misfit |= placed->narrow[p][3];
+  }
+  if (misfit)
+    atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
+}
+
+bool vxm_placed_take(vxm_placed *placed, const vxm_facets *facets) {
+  place_job job = {.placed = placed, .facets = facets, .slices = 1 + facets->first_apex / SLICE_POINTS};
+  atomic_init(&job.beyond, false);
+  vxm_parallel(placed->context, job.slices, take_slice, &job);
   return !atomic_load(&job.beyond);
 }
 
@@ -92,15 +128,11 @@ static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, vxm_e
 
 /* ---- Apexes ---- */
 
-/** Sets an apex of narrow points, and its cell. */
 static void set_apex(vxm_placed *placed, uint32_t apex, const int64_t at[3]) {
-  placed->cells[apex] = 0;
-  placed->narrow[apex][3] = 0;
-  for (int a = 0; a < 3; a++) {
-    int64_t cell = vxm_lattice_first(&placed->lattice, at[a]), last = last_cell(&placed->lattice, a);
+  for (int a = 0; a < 3; a++)
     placed->narrow[apex][a] = (int32_t)at[a];
-    placed->cells[apex] |= (uint64_t)vxm_min(vxm_max(cell, 0), last) << (VXM_CELL_BITS * a);
-  }
+  placed->narrow[apex][3] = 0;
+  placed->cells[apex] = cell_of(placed, placed->narrow[apex]);
 }
 
 static void place_apex(vxm_placed *placed, const vxm_facets *facets, size_t part) {
@@ -139,28 +171,33 @@ static vxm_status reserve(vxm_placed *placed, size_t count, vxm_error *error) {
   return local.code;
 }
 
-vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
-                          const double transform[12], bool apexes, vxm_error *error) {
+vxm_status vxm_placed_begin(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
+                            const double transform[12], vxm_error *error) {
   static atomic_uint_fast64_t last_serial;
   placed->serial = atomic_fetch_add(&last_serial, 1) + 1;
   placed->lattice = *lattice;
   memcpy(placed->transform, transform ? transform : identity, sizeof identity);
   vxm_free(placed->context, placed->wide);
   placed->wide = NULL;
-  vxm_status status = reserve(placed, facets->point_count, error);
-  if (status != VXM_OK)
-    return status;
-  if (!place_narrow(placed, facets)) {
-    status = place_wide(placed, facets, error);
-    if (status != VXM_OK)
-      return status;
-  }
+  return reserve(placed, facets->point_count, error);
+}
+
+void vxm_placed_apexes(vxm_placed *placed, const vxm_facets *facets, bool apexes) {
   for (size_t p = 0; p < facets->split.part_count; p++)
     if (apexes)
       place_apex(placed, facets, p);
     else if (!placed->wide) /* cones are looked at, if only to be left out */
       set_apex(placed, vxm_apex_of(facets, p), (const int64_t[3]){0, 0, 0});
-  return VXM_OK;
+}
+
+vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
+                          const double transform[12], bool apexes, vxm_error *error) {
+  vxm_status status = vxm_placed_begin(placed, facets, lattice, transform, error);
+  if (status == VXM_OK && !place_narrow(placed, facets))
+    status = place_wide(placed, facets, error);
+  if (status == VXM_OK)
+    vxm_placed_apexes(placed, facets, apexes);
+  return status;
 }
 
 void vxm_placed_destroy(vxm_placed *placed) {

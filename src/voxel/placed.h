@@ -41,6 +41,20 @@ typedef struct vxm_placed {
  */
 vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
                           const double transform[12], bool apexes, vxm_error *error);
+
+/* The same in steps, where something else than the CPU places the points before first_apex: it writes
+ * `narrow`, with a fourth number that is not 0 where a point does not fit. */
+
+/** Begins a placing. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+vxm_status vxm_placed_begin(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
+                            const double transform[12], vxm_error *error);
+/** What a coordinate is multiplied by, less the origin of the space, to become steps. */
+double vxm_placed_scale(const vxm_placed *placed, int axis);
+/** Finds the cells; false if a point does not fit. */
+bool vxm_placed_take(vxm_placed *placed, const vxm_facets *facets);
+/** Places the apexes, behind all other points. */
+void vxm_placed_apexes(vxm_placed *placed, const vxm_facets *facets, bool apexes);
+
 void vxm_placed_destroy(vxm_placed *placed);
 
 /** The bits of a cell that belong to an axis. */

@@ -41,7 +41,8 @@ typedef struct vxm_run {
   vxm_shape *shape;
   vxm_engine *engine; /**< NULL = the CPU */
   vxm_placed placed;
-  bool mirrored; /**< the transform turns triangles inside out */
+  bool is_placed; /**< for the run that begins next, by the engine */
+  bool mirrored;  /**< the transform turns triangles inside out */
   vxm_buffer buffers[VXM_BUFFERS];
   vxm_wound open_wound, all_wound; /**< made when first needed */
   atomic_uchar *touched;           /**< per part: whether it sets a voxel; NULL = not asked */

@@ -94,6 +94,29 @@ vxm_status vxm_twin_attach(vxm_twin *twin, const vxm_model *of, vxm_error *error
   return VXM_OK;
 }
 
+vxm_status vxm_twin_place(vxm_twin *twin, const vxm_motion *motion, const vxm_lattice *lattice, bool *done,
+                          vxm_error *error) {
+  vxm_model *model = &twin->model;
+  vxm_run *run = &model->run;
+  vxm_engine *engine = run->engine;
+  *done = run->is_placed = false;
+  if (!engine || !engine->ops || !engine->ops->move || !vxm_model_wants_solid(model))
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_move_job job = {&model->shape.facets, motion, vxm_model_apexes(model)};
+  vxm_status status = vxm_placed_begin(&run->placed, job.facets, lattice, NULL, &local);
+  if (status == VXM_OK)
+    status = engine->ops->move(engine, &run->placed, &job, &run->is_placed, &local);
+  if (status != VXM_OK && !vxm_engine_gives_way(engine, &local)) {
+    if (error)
+      *error = local;
+    return status;
+  }
+  run->is_placed &= status == VXM_OK;
+  *done = run->is_placed;
+  return VXM_OK;
+}
+
 vxm_status vxm_twin_fill(vxm_twin *twin, const vxm_window *window, const vxm_lattice *lattice, double stretch,
                          double reach, bool mirrored, vxm_error *error) {
   vxm_model *model = &twin->model;

@@ -12,7 +12,8 @@
 typedef struct vxm_twin {
   vxm_context *context;   /**< whose threads work */
   const vxm_model *of;    /**< NULL = attached to none */
-  double (*positions)[3]; /**< of the facets' points before first_apex: to be filled before each run */
+  double (*positions)[3]; /**< of the facets' points before first_apex: to be filled before each run, unless
+                             an engine moves them */
   double (*vertices)[3];  /**< of the soup, to be filled too; NULL unless faces set voxels */
   size_t position_room, vertex_room, part_room;
   vxm_soup soup; /**< the other's, but for `vertices` */
@@ -25,6 +26,15 @@ vxm_status vxm_twin_prepare(vxm_model *model, vxm_error *error);
 /** Attaches a twin to a model that has been prepared and stays as it is. Memory is kept from one to the next.
  */
 vxm_status vxm_twin_attach(vxm_twin *twin, const vxm_model *of, vxm_error *error);
+
+/**
+ * Has the engine move and place the points for the next run, if there is one that does.
+ *
+ * @param done becomes whether that is so; else `positions` are to be filled
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_UNAVAILABLE
+ */
+vxm_status vxm_twin_place(vxm_twin *twin, const vxm_motion *motion, const vxm_lattice *lattice, bool *done,
+                          vxm_error *error);
 
 /**
  * Voxelizes the points into a window, which is all of the lattice's space.

@@ -43,6 +43,13 @@ run 'voxmend voxelize in/rocket.off -o b.npy -r 64 -q --engine opengl --gl-metho
 run 'voxmend voxelize in/rocket.off -o c.npy -r 64 -q --engine opengl --gl-method slices --gl-displace 2,8'
 run 'cmp a.npy b.npy'
 run 'cmp -s a.npy c.npy'
+say "# variants: a vertex shader moves and displaces the points, tetrahedra are cut slice by slice"
+all='--rotate any --scale 0.5 --displace 0.02 --mirror xyz --translate 1'
+run "voxmend augment in/rocket.off -o - -n 6 -r 48 $all -q >cpu.bin"
+for tuned in '--gl-method columns' '--gl-method slices --gl-axis x' '--gl-method tetra-vertex'; do
+  run "voxmend augment in/rocket.off -o - -n 6 -r 48 $all -q --engine opengl $tuned | cmp - cpu.bin && echo equal"
+done
+run 'voxmend augment in/rocket.off -o x --gl-method slices'
 say "# the bench compares"
 run 'voxmend bench in/rocket.off -r 24 --phases solid_vote,surface_thin --engine cpu,opengl --time 0 --threads 1 --json |
   sed -n -E "s/^ *\"(phase|engine|voxels)\": //p" | paste -d " " - - -'

@@ -9,7 +9,7 @@
 enum { COUNT = 12, RESOLUTION = 33 };
 
 /** Everything at once. */
-static vxm_sampler *make_sampler(vxm_mode mode, vxm_vote vote, vxm_engine *by) {
+static vxm_sampler *make_sampler(vxm_mode mode, vxm_method method, vxm_vote vote, vxm_engine *by) {
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
   options.resolution = RESOLUTION;
   options.seed = 77;
@@ -19,6 +19,7 @@ static vxm_sampler *make_sampler(vxm_mode mode, vxm_vote vote, vxm_engine *by) {
   options.mirror = 7;
   options.translate = 1;
   options.voxelize.mode = mode;
+  options.voxelize.method = method;
   options.voxelize.vote = vote;
   options.voxelize.engine = by;
   vxm_sampler *sampler;
@@ -28,8 +29,10 @@ static vxm_sampler *make_sampler(vxm_mode mode, vxm_vote vote, vxm_engine *by) {
   return sampler;
 }
 
-static void check(const vxm_soup *const soups[], uint32_t soup_count, vxm_mode mode, vxm_vote vote) {
-  vxm_sampler *sampler[2] = {make_sampler(mode, vote, NULL), make_sampler(mode, vote, engine)};
+static void check(const vxm_soup *const soups[], uint32_t soup_count, vxm_mode mode, vxm_method method,
+                  vxm_vote vote) {
+  vxm_sampler *sampler[2] = {make_sampler(mode, method, vote, NULL),
+                             make_sampler(mode, method, vote, engine)};
   size_t bytes = vxm_sampler_bytes(sampler[0], VXM_VOXELS_PACKED), set = 0;
   uint8_t *out[2] = {malloc(COUNT * bytes), malloc(COUNT * bytes)};
   vxm_variant variants[COUNT];
@@ -85,10 +88,11 @@ static void test_variants(void **state) {
   shape_box(boxes, (double[3]){0, 0, 0}, (double[3]){8, 8, 8});
   shape_box(boxes, (double[3]){5, 5, 5}, (double[3]){12, 11, 13});
   const vxm_soup *soups[] = {torus, boxes, open};
-  check(soups, 3, VXM_MODE_SOLID, VXM_VOTE_AUTO);
-  check(soups, 3, VXM_MODE_SOLID, VXM_VOTE_MAJORITY);
-  check(soups, 3, VXM_MODE_BOTH, VXM_VOTE_AUTO);
-  check(soups, 2, VXM_MODE_SURFACE, VXM_VOTE_AUTO);
+  check(soups, 3, VXM_MODE_SOLID, VXM_METHOD_VOTE, VXM_VOTE_AUTO);
+  check(soups, 3, VXM_MODE_SOLID, VXM_METHOD_VOTE, VXM_VOTE_MAJORITY);
+  check(soups, 3, VXM_MODE_SOLID, VXM_METHOD_TETRA, VXM_VOTE_AUTO); /* the apexes are on the device, too */
+  check(soups, 3, VXM_MODE_BOTH, VXM_METHOD_VOTE, VXM_VOTE_AUTO);
+  check(soups, 2, VXM_MODE_SURFACE, VXM_METHOD_VOTE, VXM_VOTE_AUTO);
   vxm_soup_destroy(torus);
   vxm_soup_destroy(boxes);
   vxm_soup_destroy(open);

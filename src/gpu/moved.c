@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gpu/moved.h"
+
+#include <string.h>
+
+enum { TRIED = 512 /**< points that the CPU moves, too */ };
+
+vxm_moved_job vxm_moved_job_of(const vxm_placed *placed, const vxm_motion *motion) {
+  vxm_moved_job job = {.size = motion->entry ? motion->noise_size : 0,
+                       .offset = motion->offset,
+                       .count = (uint32_t)motion->count};
+  memcpy(job.row, motion->matrix, sizeof job.row);
+  for (int a = 0; a < 3; a++) {
+    job.origin[a] = placed->lattice.space.origin[a];
+    job.scale[a] = vxm_placed_scale(placed, a);
+  }
+  job.scale[3] = VXM_NARROW_MAX;
+  return job;
+}
+
+bool vxm_moved_alike(const vxm_placed *placed, const vxm_motion *motion) {
+  double moved[TRIED][3];
+  size_t count = motion->count < TRIED ? motion->count : TRIED;
+  vxm_motion_range(moved, motion, 0, count);
+  for (size_t p = 0; p < count; p++) {
+    vxm_point point;
+    if (!vxm_lattice_place(&placed->lattice, moved[p], &point))
+      return false;
+    for (int a = 0; a < 3; a++)
+      if (placed->narrow[p][a] != point.at[a])
+        return false;
+  }
+  return true;
+}
+
+bool vxm_moved_take(vxm_placed *placed, const vxm_move_job *job) {
+  if (!vxm_placed_take(placed, job->facets))
+    return false;
+  vxm_placed_apexes(placed, job->facets, job->apexes);
+  return true;
+}

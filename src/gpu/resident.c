@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gpu/resident.h"
+
+vxm_resident vxm_resident_of(vxm_engine *engine, vxm_resident_upload upload) {
+  return (vxm_resident){.engine = engine,
+                        .upload = upload,
+                        .far.context = engine->context,
+                        .far_surface.context = engine->context};
+}
+
+void vxm_resident_destroy(vxm_resident *resident) {
+  vxm_far_destroy(&resident->far);
+  vxm_far_surface_destroy(&resident->far_surface);
+}
+
+static vxm_status put(vxm_resident *resident, vxm_resident_id id, const void *data, size_t bytes,
+                      vxm_error *error) {
+  return resident->upload(resident->engine, id, 0, data, bytes, error);
+}
+
+/* ---- Facets ---- */
+
+/** Brings points in 32 bits; those that do not fit are marked. */
+static vxm_status put_points(vxm_resident *resident, vxm_resident_id id, const vxm_point *points,
+                             size_t count, vxm_error *error) {
+  vxm_context *context = resident->engine->context;
+  vxm_error local = VXM_ERROR_INIT;
+  int32_t(*narrow)[4] = vxm_alloc(context, count, sizeof *narrow, &local);
+  if (narrow)
+    vxm_far_narrow(narrow, points, count);
+  vxm_status status = narrow ? put(resident, id, narrow, count * sizeof *narrow, &local) : local.code;
+  vxm_free(context, narrow);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+static vxm_status put_apexes(vxm_resident *resident, const vxm_facets *facets, vxm_error *error) {
+  vxm_context *context = resident->engine->context;
+  vxm_error local = VXM_ERROR_INIT;
+  size_t count = facets->facet_count;
+  uint32_t *apex = vxm_alloc(context, count, sizeof *apex, &local);
+  for (size_t f = 0; apex && f < count; f++)
+    apex[f] = vxm_apex_of(facets, facets->part[f]);
+  vxm_status status =
+      apex ? put(resident, VXM_RESIDENT_APEXES, apex, count * sizeof *apex, &local) : local.code;
+  vxm_free(context, apex);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+static vxm_status put_corners(vxm_resident *resident, const vxm_facets *facets, vxm_error *error) {
+  if (resident->facets == facets->serial)
+    return VXM_OK;
+  resident->facets = 0;
+  vxm_status status = put(resident, VXM_RESIDENT_CORNERS, facets->corners,
+                          facets->facet_count * sizeof *facets->corners, error);
+  if (status == VXM_OK && resident->engine->wants_apexes)
+    status = put_apexes(resident, facets, error);
+  if (status == VXM_OK)
+    resident->facets = facets->serial;
+  return status;
+}
+
+vxm_status vxm_resident_facets(vxm_resident *resident, const vxm_facets *facets, const vxm_placed *placed,
+                               vxm_error *error) {
+  vxm_status status = put_corners(resident, facets, error);
+  if (status != VXM_OK || resident->placed == placed->serial)
+    return status;
+  resident->placed = 0;
+  size_t count = facets->point_count;
+  status = placed->wide
+               ? put_points(resident, VXM_RESIDENT_POINTS, placed->wide, count, error)
+               : put(resident, VXM_RESIDENT_POINTS, placed->narrow, count * sizeof *placed->narrow, error);
+  if (status == VXM_OK)
+    status = vxm_far_find(&resident->far, facets, placed, error);
+  if (status == VXM_OK)
+    resident->placed = placed->serial;
+  return status;
+}
+
+vxm_status vxm_resident_surface(vxm_resident *resident, const vxm_surface *surface, vxm_error *error) {
+  if (resident->surface == surface->serial)
+    return VXM_OK;
+  resident->surface = 0;
+  vxm_status status =
+      put_points(resident, VXM_RESIDENT_SURFACE_POINTS, surface->points, surface->soup->vertex_count, error);
+  if (status == VXM_OK && resident->surface_corners != surface->corners_serial) {
+    resident->surface_corners = 0;
+    status = put(resident, VXM_RESIDENT_SURFACE_CORNERS, surface->corners,
+                 surface->triangle_count * 3 * sizeof *surface->corners, error);
+    if (status == VXM_OK)
+      resident->surface_corners = surface->corners_serial;
+  }
+  if (status == VXM_OK)
+    status = vxm_far_surface_find(&resident->far_surface, surface, error);
+  if (status == VXM_OK)
+    resident->surface = surface->serial;
+  return status;
+}
+
+vxm_status vxm_resident_passes(vxm_passes *out, vxm_resident *resident, const vxm_window *window,
+                               const vxm_unite_job *job, int64_t margin, size_t most, vxm_error *error) {
+  vxm_status status = vxm_passes_create(out, resident->engine->context, window, job, margin, most, error);
+  if (status == VXM_OK && out->order)
+    status = put(resident, VXM_RESIDENT_ORDER, out->order, out->order_count * sizeof *out->order, error);
+  if (status == VXM_OK && out->boxes)
+    status = put(resident, VXM_RESIDENT_BOXES, out->boxes, out->box_count * sizeof *out->boxes, error);
+  return status;
+}
+
+/* ---- Variants ---- */
+
+static vxm_status put_originals(vxm_resident *resident, const vxm_motion *motion, vxm_error *error) {
+  if (resident->originals == motion->from_serial)
+    return VXM_OK;
+  resident->originals = 0;
+  vxm_status status =
+      put(resident, VXM_RESIDENT_ORIGINALS, motion->from, motion->count * sizeof *motion->from, error);
+  /* A shader has to have a buffer also where it does not read it. */
+  if (status == VXM_OK)
+    status = put(resident, VXM_RESIDENT_ENTRIES, motion->entry,
+                 motion->entry ? motion->count * sizeof *motion->entry : sizeof *motion->entry, error);
+  if (status == VXM_OK)
+    resident->originals = motion->from_serial;
+  return status;
+}
+
+static vxm_status put_noise(vxm_resident *resident, const vxm_motion *motion, vxm_error *error) {
+  if (!motion->entry)
+    return put(resident, VXM_RESIDENT_NOISE, NULL, sizeof *motion->noise, error);
+  if (resident->noise == motion->noise_serial)
+    return VXM_OK;
+  resident->noise = 0;
+  vxm_status status =
+      put(resident, VXM_RESIDENT_NOISE, motion->noise, motion->noise_size * sizeof *motion->noise, error);
+  if (status == VXM_OK)
+    resident->noise = motion->noise_serial;
+  return status;
+}
+
+vxm_status vxm_resident_motion(vxm_resident *resident, const vxm_motion *motion, size_t points,
+                               vxm_error *error) {
+  resident->placed = 0;
+  vxm_status status = put_originals(resident, motion, error);
+  if (status == VXM_OK)
+    status = put_noise(resident, motion, error);
+  return status == VXM_OK ? put(resident, VXM_RESIDENT_POINTS, NULL, points * sizeof(int32_t[4]), error)
+                          : status;
+}
+
+vxm_status vxm_resident_moved(vxm_resident *resident, vxm_placed *placed, const vxm_move_job *job, bool *done,
+                              vxm_error *error) {
+  const vxm_facets *facets = job->facets;
+  size_t first = facets->first_apex, size = sizeof *placed->narrow;
+  vxm_engine_info *info = &resident->engine->info;
+  if (!vxm_moved_take(placed, job))
+    return VXM_OK;
+  if (!resident->is_tried) {
+    resident->is_tried = true;
+    info->moves = vxm_moved_alike(placed, job->motion);
+  }
+  if (!info->moves)
+    return VXM_OK;
+  vxm_status status = resident->upload(resident->engine, VXM_RESIDENT_POINTS, first * size,
+                                       placed->narrow + first, (facets->point_count - first) * size, error);
+  if (status == VXM_OK)
+    status = vxm_far_find(&resident->far, facets, placed, error);
+  if (status == VXM_OK)
+    resident->placed = placed->serial;
+  *done = status == VXM_OK;
+  return status;
+}

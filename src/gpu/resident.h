@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What stays on a device from one use to the next, the same for OpenGL and OpenCL: facets and their points,
+ * lists of passes, surfaces, and what variants are made of. */
+#ifndef VXM_GPU_RESIDENT_H
+#define VXM_GPU_RESIDENT_H
+
+#include "gpu/far.h"
+#include "gpu/moved.h"
+
+/** Buffers; those of each engine begin with them. */
+typedef enum vxm_resident_id {
+  VXM_RESIDENT_POINTS = 0,
+  VXM_RESIDENT_CORNERS,
+  VXM_RESIDENT_APEXES, /**< points that are the apexes of facets; only where they are wanted */
+  VXM_RESIDENT_ORDER,  /**< numbers of facets, pass after pass */
+  VXM_RESIDENT_BOXES,
+  VXM_RESIDENT_SURFACE_POINTS,
+  VXM_RESIDENT_SURFACE_CORNERS,
+  VXM_RESIDENT_ORIGINALS, /**< points before they are moved */
+  VXM_RESIDENT_ENTRIES,   /**< of each of them in the noise */
+  VXM_RESIDENT_NOISE,
+  VXM_RESIDENTS
+} vxm_resident_id;
+
+/** Makes room for so many bytes in a buffer and, unless data is NULL, puts these into it from `offset` on;
+ * those before it stay if there was room. */
+typedef vxm_status (*vxm_resident_upload)(vxm_engine *engine, vxm_resident_id id, size_t offset,
+                                          const void *data, size_t bytes, vxm_error *error);
+
+typedef struct vxm_resident {
+  vxm_engine *engine;
+  vxm_resident_upload upload;
+  vxm_far far; /**< facets and triangles beyond the numbers of the shaders */
+  vxm_far_surface far_surface;
+  bool is_tried; /**< that points are moved alike */
+  /** Of what the buffers hold. */
+  uint64_t facets, placed, surface, surface_corners, originals, noise;
+} vxm_resident;
+
+vxm_resident vxm_resident_of(vxm_engine *engine, vxm_resident_upload upload);
+void vxm_resident_destroy(vxm_resident *resident);
+
+/** Brings points and corners, unless they are there. @return VXM_OK, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_RANGE (more than fits a buffer), VXM_ERROR_UNAVAILABLE; as all of these
+ */
+vxm_status vxm_resident_facets(vxm_resident *resident, const vxm_facets *facets, const vxm_placed *placed,
+                               vxm_error *error);
+/** The same for a surface. */
+vxm_status vxm_resident_surface(vxm_resident *resident, const vxm_surface *surface, vxm_error *error);
+/** Divides the facets of a job's parts as vxm_passes_create does, and brings the lists. Destroy with
+ * vxm_passes_destroy, also after a failure. */
+vxm_status vxm_resident_passes(vxm_passes *out, vxm_resident *resident, const vxm_window *window,
+                               const vxm_unite_job *job, int64_t margin, size_t most, vxm_error *error);
+
+/** Brings what variants have in common, and makes room for so many points. */
+vxm_status vxm_resident_motion(vxm_resident *resident, const vxm_motion *motion, size_t points,
+                               vxm_error *error);
+/** Completes what the device has moved, here and there; `*done` stays false where the CPU has to do it all.
+ */
+vxm_status vxm_resident_moved(vxm_resident *resident, vxm_placed *placed, const vxm_move_job *job, bool *done,
+                              vxm_error *error);
+
+#endif
