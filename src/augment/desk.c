@@ -57,20 +57,13 @@ vxm_status vxm_desk_fill(vxm_desk *desk, const vxm_window *window, const vxm_sub
     return status;
   vxm_space space = vxm_desk_space(window->fast_dim);
   vxm_lattice lattice = vxm_lattice_of(&space);
-  vxm_motion motion = motion_of(subject, placement, noise, false);
-  bool is_placed = false;
-  status = vxm_twin_place(twin, &motion, &lattice, &is_placed, error);
-  if (status != VXM_OK)
-    return status;
-  if (!is_placed)
-    vxm_motion_apply(desk->context, twin->positions, &motion);
-  if (vxm_model_wants_faces(subject->model)) {
-    motion = motion_of(subject, placement, noise, true);
-    vxm_motion_apply(desk->context, twin->vertices, &motion);
-  }
-  /* Both ends of an edge may be displaced, along three axes. */
-  double reach = 2 * sqrt(3.0) * noise->reach;
-  return vxm_twin_fill(twin, window, &lattice, placement->stretch, reach, placement->mirrored, error);
+  vxm_variation variation = {.points = motion_of(subject, placement, noise, false),
+                             .vertices = motion_of(subject, placement, noise, true),
+                             .stretch = placement->stretch,
+                             /* Both ends of an edge may be displaced, along three axes. */
+                             .reach = 2 * sqrt(3.0) * noise->reach,
+                             .mirrored = placement->mirrored};
+  return vxm_twin_fill(twin, window, &lattice, &variation, error);
 }
 
 static vxm_status make_room(vxm_desk *desk, size_t words, vxm_error *error) {

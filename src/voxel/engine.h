@@ -47,7 +47,7 @@ typedef struct vxm_move_job {
 /** All but `destroy` may be NULL: the CPU does it then. Each gives the bits that the CPU gives, unless the
  * engine's own documentation says how far it is off. */
 typedef struct vxm_engine_ops {
-  /** Moves points as vxm_motion_apply does and places them as vxm_placed_set: `placed`, which was begun,
+  /** Moves and places points as vxm_placed_move does: `placed`, which was begun,
    * becomes what that makes of it, and the points are where `unite` and `elect` look for them. `*done` stays
    * false, and that is no failure, where the CPU has to do it. */
   vxm_status (*move)(vxm_engine *engine, vxm_placed *placed, const vxm_move_job *job, bool *done,

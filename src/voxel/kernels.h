@@ -13,6 +13,9 @@
  * The fourth number of each is 0. */
 typedef struct vxm_affine {
   double column[4][4];
+  const float (
+      *noise)[4]; /**< added before the origin is taken away, if there are entries (voxel/motion.h) */
+  uint32_t noise_size, offset;
   double origin[4], scale[4];
   int bits;         /**< of the lattice */
   int32_t cells[4]; /**< the last cell along each axis */
@@ -33,10 +36,10 @@ typedef struct vxm_raster_task {
 
 typedef struct vxm_kernels {
   const char *name;
-  /** Places `count` positions, with their cells; false if one is not finite or beyond VXM_NARROW_MAX (it is
-   * stored as 0). */
-  bool (*place)(int32_t (*out)[4], uint64_t *cells, const double *positions, size_t count,
-                const vxm_affine *affine);
+  /** Places `count` positions, with their cells, each displaced by its entry of the noise (NULL = none);
+   * false if one is not finite or beyond VXM_NARROW_MAX (it is stored as 0). */
+  bool (*place)(int32_t (*out)[4], uint64_t *cells, const double *positions, const uint32_t *entries,
+                size_t count, const vxm_affine *affine);
   /** Puts into the bins what the triangles flip (voxel/columns.h). */
   void (*raster)(const vxm_raster_task *task);
   /** Prefix XOR along each of `rows` rows of row_words words, in place; the last word is masked. Returns

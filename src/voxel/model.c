@@ -86,11 +86,6 @@ bool vxm_model_wants_solid(const vxm_model *model) {
   return model->options.mode != VXM_MODE_SURFACE || is_shell(&model->options);
 }
 
-bool vxm_model_apexes(const vxm_model *model) {
-  const vxm_engine *engine = model->run.engine;
-  return vxm_run_apexes(&model->shape) || (engine && engine->wants_apexes);
-}
-
 /** A shell alone; with the solid it is the solid. */
 static bool wants_shell(const vxm_model *model) {
   return model->options.mode == VXM_MODE_SURFACE && is_shell(&model->options);
@@ -184,10 +179,9 @@ vxm_status vxm_model_begin_on(vxm_model *model, const vxm_lattice *lattice, cons
                               uint8_t *confidence, vxm_error *error) {
   vxm_run *run = &model->run;
   vxm_facets *facets = &model->shape.facets;
-  bool is_placed = run->is_placed;
   model->notes = (vxm_notes){0};
   model->space = lattice->space;
-  run->mirrored = run->is_placed = false;
+  run->mirrored = false;
   vxm_status status = transform ? check_transform(transform, &run->mirrored, error) : VXM_OK;
   if (status != VXM_OK)
     return status;
@@ -199,9 +193,8 @@ vxm_status vxm_model_begin_on(vxm_model *model, const vxm_lattice *lattice, cons
   vxm_wound_destroy(&run->open_wound);
   vxm_wound_destroy(&run->all_wound);
   vxm_shelling_begin(&model->shelling);
-  if (vxm_model_wants_solid(model) && !is_placed)
-    status = vxm_placed_set(&run->placed, facets, lattice, transform, confidence || vxm_model_apexes(model),
-                            error);
+  if (vxm_model_wants_solid(model))
+    status = vxm_run_place(run, lattice, transform, confidence != NULL, error);
   if (status != VXM_OK || !vxm_model_wants_faces(model))
     return status;
   if (model->surface)

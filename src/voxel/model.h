@@ -38,8 +38,6 @@ vxm_demand vxm_model_demand(const vxm_model *model, const vxm_space *space, cons
 /** Whether faces set voxels, and whether the solid is needed. */
 bool vxm_model_wants_faces(const vxm_model *model);
 bool vxm_model_wants_solid(const vxm_model *model);
-/** Whether apexes have to be placed, beside what confidence needs. */
-bool vxm_model_apexes(const vxm_model *model);
 /** Windows of words that a run over a whole grid holds at once, its result included. */
 int vxm_model_windows_held(const vxm_model *model);
 

@@ -33,18 +33,21 @@ static uint64_t cell_of(const vxm_placed *placed, const int32_t at[3]) {
 
 typedef struct place_job {
   vxm_placed *placed;
-  const vxm_facets *facets;
+  const vxm_motion *motion;
   const vxm_kernels *kernels;
   vxm_affine affine;
   size_t slices;
   atomic_bool beyond; /**< a point does not fit */
 } place_job;
 
-static vxm_affine affine_of(const vxm_placed *placed) {
-  vxm_affine affine = {.bits = placed->lattice.bits};
+static vxm_affine affine_of(const vxm_placed *placed, const vxm_motion *motion) {
+  vxm_affine affine = {.bits = placed->lattice.bits,
+                       .noise = motion->noise,
+                       .noise_size = motion->noise_size,
+                       .offset = motion->offset};
   for (int r = 0; r < 3; r++) {
     for (int c = 0; c < 4; c++)
-      affine.column[c][r] = placed->transform[4 * r + c];
+      affine.column[c][r] = motion->matrix[4 * r + c];
     affine.origin[r] = placed->lattice.space.origin[r];
     affine.scale[r] = vxm_placed_scale(placed, r);
     affine.cells[r] = last_cell(&placed->lattice, r);
@@ -55,67 +58,55 @@ static vxm_affine affine_of(const vxm_placed *placed) {
 static void place_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   place_job *job = payload;
-  size_t count = job->facets->first_apex;
-  size_t begin = vxm_slice_begin(count, job->slices, slice),
-         end = vxm_slice_begin(count, job->slices, slice + 1);
-  if (!job->kernels->place(job->placed->narrow + begin, job->placed->cells + begin,
-                           job->facets->positions[begin], end - begin, &job->affine))
+  const vxm_motion *motion = job->motion;
+  size_t begin = vxm_slice_begin(motion->count, job->slices, slice),
+         end = vxm_slice_begin(motion->count, job->slices, slice + 1);
+  if (!job->kernels->place(job->placed->narrow + begin, job->placed->cells + begin, motion->from[begin],
+                           motion->entry ? motion->entry + begin : NULL, end - begin, &job->affine))
     atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
 }
 
 /** Whether all points fit. */
-static bool place_narrow(vxm_placed *placed, const vxm_facets *facets) {
+static bool place_narrow(vxm_placed *placed, const vxm_motion *motion) {
   place_job job = {.placed = placed,
-                   .facets = facets,
+                   .motion = motion,
                    .kernels = vxm_kernels_get(),
-                   .affine = affine_of(placed),
-                   .slices = 1 + facets->first_apex / SLICE_POINTS};
+                   .affine = affine_of(placed, motion),
+                   .slices = 1 + motion->count / SLICE_POINTS};
   atomic_init(&job.beyond, false);
   vxm_parallel(placed->context, job.slices, place_slice, &job);
   return !atomic_load(&job.beyond);
 }
 
-static void take_slice(size_t slice, int worker, void *payload) {
-  (void)worker;
-  place_job *job = payload;
-  vxm_placed *placed = job->placed;
+bool vxm_placed_take(vxm_placed *placed, const vxm_facets *facets) {
   int32_t misfit = 0;
-  size_t count = job->facets->first_apex;
-  size_t end = vxm_slice_begin(count, job->slices, slice + 1);
-  for (size_t p = vxm_slice_begin(count, job->slices, slice); p < end; p++) {
+  for (size_t p = 0; p < facets->first_apex; p++) {
     placed->cells[p] = cell_of(placed, placed->narrow[p]);
     misfit |= placed->narrow[p][3];
   }
-  if (misfit)
-    atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
-}
-
-bool vxm_placed_take(vxm_placed *placed, const vxm_facets *facets) {
-  place_job job = {.placed = placed, .facets = facets, .slices = 1 + facets->first_apex / SLICE_POINTS};
-  atomic_init(&job.beyond, false);
-  vxm_parallel(placed->context, job.slices, take_slice, &job);
-  return !atomic_load(&job.beyond);
+  return misfit == 0;
 }
 
 /* ---- Wide points ---- */
 
-static vxm_status refuse(const vxm_facets *facets, size_t point, vxm_error *error) {
+static vxm_status refuse(const vxm_facets *facets, size_t point, const double from[3], vxm_error *error) {
   uint32_t vertex = facets->vertex[point];
   if (vertex < facets->soup->vertex_count)
-    return vxm_lattice_refuse(vertex, facets->positions[point], error);
+    return vxm_lattice_refuse(vertex, from, error);
   return vxm_fail(error, VXM_ERROR_RANGE, "a hole lies too many voxels outside the grid");
 }
 
 /** Places all points in 64 bits. */
-static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, vxm_error *error) {
+static vxm_status place_wide(vxm_placed *placed, const vxm_facets *facets, const vxm_motion *motion,
+                             vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   placed->wide = vxm_calloc(placed->context, facets->point_count, sizeof *placed->wide, &local);
   vxm_status status = local.code;
   for (size_t p = 0; status == VXM_OK && p < facets->first_apex; p++) {
-    double at[3];
-    vxm_transform_position(placed->transform, facets->positions[p], at);
-    if (!vxm_lattice_place(&placed->lattice, at, &placed->wide[p]))
-      status = refuse(facets, p, &local);
+    double at[1][3];
+    vxm_motion_range(at, motion, p, p + 1);
+    if (!vxm_lattice_place(&placed->lattice, at[0], &placed->wide[p]))
+      status = refuse(facets, p, motion->from[p], &local);
   }
   if (status != VXM_OK) {
     vxm_free(placed->context, placed->wide);
@@ -172,11 +163,11 @@ static vxm_status reserve(vxm_placed *placed, size_t count, vxm_error *error) {
 }
 
 vxm_status vxm_placed_begin(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
-                            const double transform[12], vxm_error *error) {
+                            vxm_error *error) {
   static atomic_uint_fast64_t last_serial;
   placed->serial = atomic_fetch_add(&last_serial, 1) + 1;
   placed->lattice = *lattice;
-  memcpy(placed->transform, transform ? transform : identity, sizeof identity);
+  memcpy(placed->transform, identity, sizeof identity);
   vxm_free(placed->context, placed->wide);
   placed->wide = NULL;
   return reserve(placed, facets->point_count, error);
@@ -190,13 +181,23 @@ void vxm_placed_apexes(vxm_placed *placed, const vxm_facets *facets, bool apexes
       set_apex(placed, vxm_apex_of(facets, p), (const int64_t[3]){0, 0, 0});
 }
 
-vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
-                          const double transform[12], bool apexes, vxm_error *error) {
-  vxm_status status = vxm_placed_begin(placed, facets, lattice, transform, error);
-  if (status == VXM_OK && !place_narrow(placed, facets))
-    status = place_wide(placed, facets, error);
+vxm_status vxm_placed_move(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
+                           const vxm_motion *motion, bool apexes, vxm_error *error) {
+  vxm_status status = vxm_placed_begin(placed, facets, lattice, error);
+  if (status == VXM_OK && !place_narrow(placed, motion))
+    status = place_wide(placed, facets, motion, error);
   if (status == VXM_OK)
     vxm_placed_apexes(placed, facets, apexes);
+  return status;
+}
+
+vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
+                          const double transform[12], bool apexes, vxm_error *error) {
+  vxm_motion motion = {.from = (const double(*)[3])facets->positions,
+                       .count = facets->first_apex,
+                       .matrix = transform ? transform : identity};
+  vxm_status status = vxm_placed_move(placed, facets, lattice, &motion, apexes, error);
+  memcpy(placed->transform, motion.matrix, sizeof identity);
   return status;
 }
 

@@ -5,6 +5,7 @@
 
 #include "voxel/facets.h"
 #include "voxel/lattice.h"
+#include "voxel/motion.h"
 
 /** Narrow coordinates stay below this, so that differences of two of them fit 31 bits, and cells fit theirs.
  */
@@ -22,8 +23,9 @@ typedef struct vxm_placed {
   vxm_context *context;
   uint64_t serial; /**< no two that hold different points have the same */
   vxm_lattice lattice;
-  double transform[12];
-  size_t capacity;      /**< of `narrow` and `cells` */
+  double
+      transform[12]; /**< what takes the lengths that the facets tell to those here; that of vxm_placed_set */
+  size_t capacity;   /**< of `narrow` and `cells` */
   int32_t (*narrow)[4]; /**< points by number; the fourth number is 0 */
   uint64_t *cells;      /**< of each point: x from bit 0 on, y from VXM_CELL_BITS, z from twice that */
   vxm_point *wide;      /**< used instead where a point lies beyond VXM_NARROW_MAX, else NULL */
@@ -41,13 +43,16 @@ typedef struct vxm_placed {
  */
 vxm_status vxm_placed_set(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
                           const double transform[12], bool apexes, vxm_error *error);
+/** The same for points that move first; `from` has those before first_apex. */
+vxm_status vxm_placed_move(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
+                           const vxm_motion *motion, bool apexes, vxm_error *error);
 
 /* The same in steps, where something else than the CPU places the points before first_apex: it writes
  * `narrow`, with a fourth number that is not 0 where a point does not fit. */
 
 /** Begins a placing. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_placed_begin(vxm_placed *placed, const vxm_facets *facets, const vxm_lattice *lattice,
-                            const double transform[12], vxm_error *error);
+                            vxm_error *error);
 /** What a coordinate is multiplied by, less the origin of the space, to become steps. */
 double vxm_placed_scale(const vxm_placed *placed, int axis);
 /** Finds the cells; false if a point does not fit. */

@@ -71,6 +71,35 @@ static const vxm_engine_ops *ops_of(const vxm_run *run) {
   return run->engine ? run->engine->ops : NULL;
 }
 
+static vxm_status move_elsewhere(vxm_run *run, const vxm_lattice *lattice, bool apexes, bool *done,
+                                 vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_move_job job = {&run->shape->facets, run->motion, apexes};
+  vxm_status status = vxm_placed_begin(&run->placed, job.facets, lattice, &local);
+  if (status == VXM_OK)
+    status = ops_of(run)->move(run->engine, &run->placed, &job, done, &local);
+  *done &= status == VXM_OK;
+  if (status == VXM_OK || vxm_engine_gives_way(run->engine, &local))
+    return VXM_OK;
+  if (error)
+    *error = local;
+  return status;
+}
+
+vxm_status vxm_run_place(vxm_run *run, const vxm_lattice *lattice, const double transform[12],
+                         bool confidence, vxm_error *error) {
+  const vxm_facets *facets = &run->shape->facets;
+  bool apexes = confidence || vxm_run_apexes(run->shape) || (run->engine && run->engine->wants_apexes),
+       done = false;
+  if (!run->motion)
+    return vxm_placed_set(&run->placed, facets, lattice, transform, apexes, error);
+  vxm_status status =
+      ops_of(run) && ops_of(run)->move ? move_elsewhere(run, lattice, apexes, &done, error) : VXM_OK;
+  return status == VXM_OK && !done
+             ? vxm_placed_move(&run->placed, facets, lattice, run->motion, apexes, error)
+             : status;
+}
+
 static vxm_status unite(vxm_run *run, const vxm_window *window, const vxm_unite_job *job, vxm_error *error) {
   if (ops_of(run) && ops_of(run)->unite)
     return ops_of(run)->unite(run->engine, window, job, error);

@@ -41,8 +41,8 @@ typedef struct vxm_run {
   vxm_shape *shape;
   vxm_engine *engine; /**< NULL = the CPU */
   vxm_placed placed;
-  bool is_placed; /**< for the run that begins next, by the engine */
-  bool mirrored;  /**< the transform turns triangles inside out */
+  const vxm_motion *motion; /**< how points move before they are placed; NULL = only by a transform */
+  bool mirrored;            /**< the transform turns triangles inside out */
   vxm_buffer buffers[VXM_BUFFERS];
   vxm_wound open_wound, all_wound; /**< made when first needed */
   atomic_uchar *touched;           /**< per part: whether it sets a voxel; NULL = not asked */
@@ -62,6 +62,9 @@ size_t vxm_voted_begin(const vxm_shape *shape);
 int vxm_run_buffers(const vxm_shape *shape);
 /** Whether the run needs apexes placed. */
 bool vxm_run_apexes(const vxm_shape *shape);
+/** Places the points, as vxm_placed_set or vxm_placed_move; by the engine, if it moves points. */
+vxm_status vxm_run_place(vxm_run *run, const vxm_lattice *lattice, const double transform[12],
+                         bool confidence, vxm_error *error);
 
 /**
  * Replaces the words of a window by the solid.

@@ -43,16 +43,14 @@ static void begin(vxm_twin *twin) {
 
 static vxm_status reserve(vxm_twin *twin, const vxm_model *of, vxm_error *error) {
   const vxm_facets *facets = &of->shape.facets;
-  void *positions = twin->positions, *vertices = twin->vertices, *touched = twin->model.run.touched;
-  vxm_status status = make_room(twin->context, &positions, &twin->position_room, facets->first_apex,
-                                sizeof *twin->positions, error);
-  if (status == VXM_OK && vxm_model_wants_faces(of))
+  void *vertices = twin->vertices, *touched = twin->model.run.touched;
+  vxm_status status = VXM_OK;
+  if (vxm_model_wants_faces(of))
     status = make_room(twin->context, &vertices, &twin->vertex_room, facets->soup->vertex_count,
                        sizeof *twin->vertices, error);
   if (status == VXM_OK)
     status = make_room(twin->context, &touched, &twin->part_room, facets->split.part_count,
                        sizeof *twin->model.run.touched, error);
-  twin->positions = positions;
   twin->vertices = vertices;
   twin->model.run.touched = touched;
   return status;
@@ -78,7 +76,6 @@ vxm_status vxm_twin_attach(vxm_twin *twin, const vxm_model *of, vxm_error *error
   model->shape.options = &model->options;
   model->shape.workspace = workspace;
   model->shape.facets.context = twin->context;
-  model->shape.facets.positions = twin->positions;
   if (vxm_model_wants_faces(of)) {
     twin->soup = *of->shape.soup;
     twin->soup.context = twin->context;
@@ -94,40 +91,21 @@ vxm_status vxm_twin_attach(vxm_twin *twin, const vxm_model *of, vxm_error *error
   return VXM_OK;
 }
 
-vxm_status vxm_twin_place(vxm_twin *twin, const vxm_motion *motion, const vxm_lattice *lattice, bool *done,
-                          vxm_error *error) {
-  vxm_model *model = &twin->model;
-  vxm_run *run = &model->run;
-  vxm_engine *engine = run->engine;
-  *done = run->is_placed = false;
-  if (!engine || !engine->ops || !engine->ops->move || !vxm_model_wants_solid(model))
-    return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_move_job job = {&model->shape.facets, motion, vxm_model_apexes(model)};
-  vxm_status status = vxm_placed_begin(&run->placed, job.facets, lattice, NULL, &local);
-  if (status == VXM_OK)
-    status = engine->ops->move(engine, &run->placed, &job, &run->is_placed, &local);
-  if (status != VXM_OK && !vxm_engine_gives_way(engine, &local)) {
-    if (error)
-      *error = local;
-    return status;
-  }
-  run->is_placed &= status == VXM_OK;
-  *done = run->is_placed;
-  return VXM_OK;
-}
-
-vxm_status vxm_twin_fill(vxm_twin *twin, const vxm_window *window, const vxm_lattice *lattice, double stretch,
-                         double reach, bool mirrored, vxm_error *error) {
+vxm_status vxm_twin_fill(vxm_twin *twin, const vxm_window *window, const vxm_lattice *lattice,
+                         const vxm_variation *variation, vxm_error *error) {
   vxm_model *model = &twin->model;
   vxm_facets *facets = &model->shape.facets;
   const vxm_facets *own = &twin->of->shape.facets;
-  double count = (double)facets->facet_count;
+  double count = (double)facets->facet_count, stretch = variation->stretch, reach = variation->reach;
   /* (a + b)^2 <= 2 a^2 + 2 b^2 */
   facets->length = own->length * stretch + count * reach;
   facets->squared_length = 2 * (own->squared_length * stretch * stretch + count * reach * reach);
+  model->run.motion = &variation->points;
+  if (vxm_model_wants_faces(model))
+    vxm_motion_apply(twin->context, twin->vertices, &variation->vertices);
   vxm_status status = vxm_model_begin_on(model, lattice, NULL, NULL, error);
-  model->run.mirrored = mirrored;
+  model->run.motion = NULL;
+  model->run.mirrored = variation->mirrored;
   return status == VXM_OK ? vxm_model_fill(model, window, error) : status;
 }
 
@@ -141,6 +119,5 @@ void vxm_twin_destroy(vxm_twin *twin) {
     vxm_workspace_destroy(&model->shape.workspace);
   }
   vxm_free(twin->context, twin->vertices);
-  vxm_free(twin->context, twin->positions);
   *twin = (vxm_twin){.context = twin->context};
 }

@@ -48,34 +48,30 @@ static void stop(scene *s) {
 /** Whether the engine moves them; then all it made must be what the CPU makes. */
 static bool moves_alike(scene *s, uint32_t offset, uint64_t noise_serial, bool displaced, bool apexes) {
   vxm_placed by[2] = {{.context = context}, {.context = context}};
-  vxm_facets facets = *s->facets;
-  vxm_motion motion = {.from = (const double(*)[3])s->facets->positions,
-                       .count = facets.first_apex,
+  const vxm_facets *facets = s->facets;
+  vxm_motion motion = {.from = (const double(*)[3])facets->positions,
+                       .count = facets->first_apex,
                        .matrix = s->matrix,
                        .entry = displaced ? s->entry : NULL,
                        .noise = (const float(*)[4])s->noise,
                        .noise_size = NOISE,
                        .offset = offset,
-                       .from_serial = facets.serial * 2 + displaced,
+                       .from_serial = facets->serial * 2 + displaced,
                        .noise_serial = noise_serial};
-  vxm_move_job job = {s->facets, &motion, apexes};
+  vxm_move_job job = {facets, &motion, apexes};
   vxm_error error = VXM_ERROR_INIT;
   bool done = false;
-  facets.positions = malloc(facets.first_apex * sizeof *facets.positions);
-  assert_non_null(facets.positions);
-  vxm_motion_apply(context, facets.positions, &motion);
-  vxm_status status = vxm_placed_set(&by[0], &facets, &s->lattice, NULL, apexes, &error);
-  assert_int_equal(vxm_placed_begin(&by[1], s->facets, &s->lattice, NULL, NULL), VXM_OK);
+  vxm_status status = vxm_placed_move(&by[0], facets, &s->lattice, &motion, apexes, &error);
+  assert_int_equal(vxm_placed_begin(&by[1], facets, &s->lattice, NULL), VXM_OK);
   if (engine->ops->move(engine, &by[1], &job, &done, &error) != VXM_OK)
     fail_msg("%s", error.text);
   if (done) {
     assert_int_equal(status, VXM_OK);
     assert_null(by[0].wide);
-    assert_memory_equal(by[0].narrow, by[1].narrow, facets.point_count * sizeof *by[0].narrow);
-    assert_memory_equal(by[0].cells, by[1].cells, facets.point_count * sizeof *by[0].cells);
+    assert_memory_equal(by[0].narrow, by[1].narrow, facets->point_count * sizeof *by[0].narrow);
+    assert_memory_equal(by[0].cells, by[1].cells, facets->point_count * sizeof *by[0].cells);
   } else
     assert_true(status != VXM_OK || by[0].wide);
-  free(facets.positions);
   vxm_placed_destroy(&by[0]);
   vxm_placed_destroy(&by[1]);
   return done;

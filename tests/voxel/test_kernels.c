@@ -256,13 +256,14 @@ static void test_votes_are_counted(void **state) {
 
 /* ---- Placing ---- */
 
-static void check_place(const double *positions, size_t count, const vxm_affine *affine) {
+static void check_place(const double *positions, const uint32_t *entries, size_t count,
+                        const vxm_affine *affine) {
   for (size_t b = 0; b < build_count; b++) {
     int32_t(*got)[4] = aligned_alloc(64, (count * sizeof *got + 64) / 64 * 64);
     uint64_t *cells = malloc(count * sizeof *cells + (count == 0));
     assert_non_null(got);
     assert_non_null(cells);
-    bool good = builds[b]->place(got, cells, positions, count, affine), want_good = true;
+    bool good = builds[b]->place(got, cells, positions, entries, count, affine), want_good = true;
     vxm_lattice lattice = {.bits = affine->bits, .unit = INT64_C(1) << affine->bits};
     for (size_t i = 0; i < count; i++) {
       uint64_t want_cells = 0;
@@ -270,6 +271,8 @@ static void check_place(const double *positions, size_t count, const vxm_affine 
         const double *p = positions + 3 * i;
         double at = affine->column[0][a] * p[0] + affine->column[1][a] * p[1] + affine->column[2][a] * p[2] +
                     affine->column[3][a];
+        uint32_t entry = entries ? (entries[i] + affine->offset) % affine->noise_size : 0;
+        at += entries ? (double)affine->noise[entry][a] : 0;
         at = rint((at - affine->origin[a]) * affine->scale[a]);
         bool fits = a == 3 || fabs(at) < (double)VXM_NARROW_MAX;
         want_good &= fits;
@@ -305,7 +308,17 @@ static void test_points_are_placed(void **state) {
       positions[i] = round % 5 == 0 && vxm_rng_below(&rng, 9) == 0
                          ? far[vxm_rng_below(&rng, 11)]
                          : (double)(int64_t)vxm_rng_below(&rng, 4001) / 2 - 1000; /* halves, so ties */
-    check_place(positions, count, &affine);
+    float noise[7][4] = {{0}};
+    uint32_t entries[9];
+    for (int e = 0; e < 7; e++)
+      for (int a = 0; a < 3; a++)
+        noise[e][a] = (float)(3 * vxm_rng_unit(&rng) - 1.5);
+    affine.noise = (const float(*)[4])noise;
+    affine.noise_size = 1 + (uint32_t)vxm_rng_below(&rng, 7);
+    affine.offset = (uint32_t)vxm_rng_below(&rng, affine.noise_size);
+    for (int i = 0; i < 9; i++)
+      entries[i] = (uint32_t)vxm_rng_below(&rng, affine.noise_size);
+    check_place(positions, round % 7 < 3 ? entries : NULL, count, &affine);
   }
   /* The last that fit, and the first that do not. */
   const int32_t cell_max = (1 << VXM_CELL_BITS) - 1;
@@ -317,7 +330,7 @@ static void test_points_are_placed(void **state) {
     for (int k = 0; k < 4; k++) {
       double p[3] = {1, 2, 3};
       p[a] = (k % 2 ? -1 : 1) * (limit - (k < 2 ? 1 : 0));
-      check_place(p, 1, &affine);
+      check_place(p, NULL, 1, &affine);
     }
 }
 
