@@ -109,15 +109,31 @@ static vxm_status move_apart(vxm_work *work, bool *changed, vxm_error *error) {
   return status;
 }
 
+/** The union. Where it touches itself it has vertices of their own for each sheet, which vertices at one
+ * position are only from VXM_LEVEL_MANIFOLD on. */
+static vxm_status unite(vxm_work *work, bool *changed, vxm_error *error) {
+  bool welded = false, more;
+  vxm_status status = vxm_pass_union(work, changed, error);
+  if (status == VXM_OK && *changed && !vxm_work_reaches(work, VXM_LEVEL_MANIFOLD))
+    status = vxm_pass_exact_weld(work, &welded, error);
+  return status == VXM_OK && welded ? settle_again(work, &more, error) : status;
+}
+
 /** The passes that a level or an option asks for; each does nothing where none does. `moved`: vertices were
  * moved apart. */
 static vxm_status run_level(vxm_work *work, bool *moved, vxm_error *error) {
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{separate_until_quiet, true}, {vxm_pass_closing, true},     {vxm_pass_small_parts, true},
-                 {vxm_pass_union, false},      {vxm_pass_separation, false}, {move_apart, true},
-                 {vxm_pass_reunion, false},    {vxm_pass_separation, false}, {move_apart, true}};
+  } further[] = {{separate_until_quiet, true},
+                 {vxm_pass_closing, true},
+                 {vxm_pass_small_parts, true},
+                 {unite, false},
+                 {vxm_pass_separation, false},
+                 {move_apart, true},
+                 {vxm_pass_reunion, false},
+                 {vxm_pass_separation, false},
+                 {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
   *moved = false;

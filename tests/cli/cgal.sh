@@ -47,6 +47,15 @@ box inner 0.5 0.5 0.5 1 9 | cat left.obj - >nested.obj
 run 'voxmend repair nested.obj -o a.ply --union | facts'
 run 'voxmend repair nested.obj -o a.ply --union --keep-orientation | facts'
 
+say "# united again, nothing changes: two cubes meet along an edge, which a third covers half of"
+{
+  cat left.obj
+  box b 2 2 0 2 9
+  box c 1 1 0 2 17 | awk '$1 == "v" && $4 == 2 { $4 = 1 } { print }'
+} >edge.obj
+run 'voxmend repair edge.obj -o a.off --union | facts'
+run 'voxmend repair a.off -o b.off --union -q && cmp a.off b.off'
+
 say "# --level solid"
 run 'voxmend repair two.obj -o a.ply --level solid | facts'
 run 'voxmend repair two.obj -o a.stl --level solid | facts'
