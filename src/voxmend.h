@@ -326,6 +326,7 @@ typedef struct vxm_repair_report {
   int64_t nonorientable_patches; /**< faces joined by edges that cannot all be turned consistently */
   int64_t open_parts;     /**< components whose holes were left open: sheets that their closing would cover */
   int64_t unfilled_holes; /**< that were to be filled and could not be */
+  int64_t fanned_holes;   /**< that VXM_FILL_MINIMAL or VXM_FILL_SMOOTH left to fans */
   int64_t ununited_parts; /**< that were to be united and still cut through themselves or others: open ones,
                              which have no inside, and those where the union failed */
   int64_t self_intersections_before, self_intersections_after; /**< pairs of faces, counted up to

@@ -89,6 +89,7 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));
   json_object_set_new(report, "open_parts", json_integer(repair->open_parts));
   json_object_set_new(report, "unfilled_holes", json_integer(repair->unfilled_holes));
+  json_object_set_new(report, "fanned_holes", json_integer(repair->fanned_holes));
   json_object_set_new(report, "ununited_parts", json_integer(repair->ununited_parts));
   json_object_set_new(report, "unparted_vertices", json_integer(repair->unparted_vertices));
   json_object_set_new(report, "shared_faces", json_integer(repair->shared_faces));
@@ -156,6 +157,9 @@ static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair) 
             repair->open_parts);
   if (repair->unfilled_holes > 0)
     fprintf(cli->text, "\n%" PRId64 " holes could not be filled\n", repair->unfilled_holes);
+  if (repair->fanned_holes > 0)
+    fprintf(cli->text, "\n%" PRId64 " holes could not be filled as asked for, and were by fans\n",
+            repair->fanned_holes);
   if (repair->ununited_parts > 0)
     fprintf(cli->text, "\n%" PRId64 " parts were not united\n", repair->ununited_parts);
 }

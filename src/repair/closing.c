@@ -153,6 +153,18 @@ static vxm_status fill_by_module(vxm_work *work, const uint8_t *sheets, size_t m
   return status;
 }
 
+/** What a module leaves, such as rims that touch themselves, goes to fans. */
+static vxm_status fan_the_rest(vxm_work *work, size_t most, bool *changed, vxm_error *error) {
+  int64_t closed = 0;
+  vxm_status status = vxm_work_edges(work, error);
+  if (status == VXM_OK)
+    status = vxm_fill_fans(work, most, &closed, error);
+  work->fanned += closed;
+  work->unfilled = closed < work->unfilled ? work->unfilled - closed : 0;
+  *changed |= closed > 0;
+  return status;
+}
+
 /** Fills holes as the options say. Components that this would only cover a second time, sheets, stay open. */
 vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error) {
   *changed = false;
@@ -163,13 +175,19 @@ vxm_status vxm_pass_closing(vxm_work *work, bool *changed, vxm_error *error) {
   vxm_status status = vxm_work_edges(work, error);
   if (status != VXM_OK || vxm_edges_count_odd(&work->edges) == 0)
     return status;
-  if (work->options.fill == VXM_FILL_FAN)
-    return vxm_fill_fans(work, most, changed, error);
+  if (work->options.fill == VXM_FILL_FAN) {
+    int64_t closed;
+    status = vxm_fill_fans(work, most, &closed, error);
+    *changed = status == VXM_OK && closed > 0;
+    return status;
+  }
   uint8_t *sheets = vxm_work_scratch(work, work->soup->face_count, sizeof *sheets, &status, error);
   if (sheets)
     status = vxm_find_sheets(sheets, work, error);
   if (status == VXM_OK)
     status = fill_by_module(work, sheets, most, changed, error);
+  if (status == VXM_OK && work->unfilled > 0)
+    status = fan_the_rest(work, most, changed, error);
   vxm_free(work->context, sheets);
   return status;
 }

@@ -274,14 +274,15 @@ static vxm_status end(closing *c, bool done, vxm_error *error) {
   return done ? VXM_OK : c->error.code;
 }
 
-vxm_status vxm_fill_fans(vxm_work *work, size_t most, bool *changed, vxm_error *error) {
+vxm_status vxm_fill_fans(vxm_work *work, size_t most, int64_t *closed, vxm_error *error) {
   closing c = begin(work, most);
-  int64_t before = work->counts[VXM_PASS_CLOSING];
   bool done = plan(&c) && add_caps(&c);
+  *closed = 0;
   if (done) {
+    for (size_t l = 0; l < c.loops.count; l++)
+      *closed += is_wanted(&c, l);
     work->open_parts = count_sheets(&c);
-    *changed = work->counts[VXM_PASS_CLOSING] > before;
-    if (*changed)
+    if (*closed > 0)
       vxm_work_touch(work);
   }
   return end(&c, done, error);

@@ -236,6 +236,7 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   report->nonorientable_patches = work->nonorientable;
   report->open_parts = work->open_parts;
   report->unfilled_holes = work->unfilled;
+  report->fanned_holes = work->fanned;
   report->ununited_parts = work->ununited;
   report->self_intersections_before = work->crossings[0];
   report->self_intersections_after = work->crossings[1];

@@ -59,6 +59,7 @@ typedef struct vxm_work {
   int64_t shared;                          /**< repeated faces that the last pass of duplicates left */
   int64_t open_parts;                      /**< that the last pass of closing left open */
   int64_t unfilled;                        /**< holes that were to be filled and could not be */
+  int64_t fanned;                          /**< holes that a module left to fans */
   int64_t ununited;     /**< parts that were to be united and still cut through themselves or others */
   int64_t crossings[2]; /**< self-intersections before and after, or -1 */
   int64_t together;     /**< vertices that were to be moved apart and could not be */

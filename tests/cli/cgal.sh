@@ -17,7 +17,7 @@ box() {
 }
 # facts: the lines of a summary that tell most
 facts() {
-  grep -E '^  (faces|components|boundary|closed|volume|self|inconsistent|union|wrap|closing|[a-z]+ +[0-9]+ +[0-9]+ +[0-9])|^Level|could not|were not'
+  grep -E '^  (faces|components|boundary|closed|volume|self|inconsistent|union|wrap|closing|[a-z]+ +[0-9]+ +[0-9]+ +[0-9])|^Level|could not|were not|by fans'
 }
 
 box left 0 0 0 2 1 >left.obj
@@ -98,4 +98,8 @@ run 'voxmend info open.off | facts'
 run 'voxmend repair open.off -o a.ply --level closed --fill smooth | facts'
 run 'voxmend repair open.off -o a.ply --level solid --fill smooth | facts'
 run 'voxmend repair two.obj -o a.ply --fill smooth'
+say "# an octahedron: two holes touch at a vertex, where their rim passes twice"
+printf 'OFF\n6 6 0\n1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0 0 1\n0 0 -1\n3 1 2 4\n3 3 0 4\n3 1 0 5\n3 2 1 5\n3 3 2 5\n3 0 3 5\n' >twice.off
+run 'voxmend repair twice.off -o a.ply --level closed --fill smooth | facts; voxmend repair a.ply -o b.ply --level closed --fill smooth -q && cmp a.ply b.ply'
+run 'voxmend repair twice.off -o a.ply --level closed --fill smooth --json -q | grep -E "(unfilled|fanned)_holes"'
 finish
