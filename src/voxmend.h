@@ -1198,7 +1198,8 @@ typedef struct vxm_sampler_options {
   double translate; /**< moved along each axis by up to this part, 0 to 1, of the room on either side */
   bool fill;        /**< the longest side fills the grid rather than the diagonal; without rotation only */
   vxm_voxelize_options voxelize; /**< how; not its space or confidence. An engine, which must outlive the
-                                    sampler, makes one variant after another of points that the CPU placed */
+                                    sampler, makes one variant after another, and moves the vertices if it says so
+                                    (vxm_engine_info.moves) */
 } vxm_sampler_options;
 
 #define VXM_SAMPLER_OPTIONS_INIT                                                                             \

@@ -45,7 +45,7 @@ static vxm_motion motion_of(const vxm_subject *subject, const vxm_placement *pla
                       .noise = (const float(*)[4])noise->vectors,
                       .noise_size = noise->size,
                       .offset = noise->size > 0 ? placement->offset % noise->size : 0,
-                      .from_serial = facets->serial,
+                      .from_serial = vertices ? 0 : facets->serial,
                       .noise_serial = noise->serial};
 }
 

@@ -61,7 +61,7 @@ int cli_engine_check(cli_run *cli, const cli_engine *engine) {
   if (is_opencl && engine->options.device && strcmp(engine->name, "opencl") != 0)
     return cli_usage(cli, "--engine %s names a device already; leave out --device", engine->name);
   if (!is_opengl && (engine->is_tuned || engine->is_slicing))
-    return cli_usage(cli, "--gl-method, --gl-axis and --gl-displace go with --engine opengl");
+    return cli_usage(cli, "options that begin with --gl go with --engine opengl");
   if (engine->is_slicing && engine->options.gl_method == VXM_GL_COLUMNS)
     return cli_usage(cli, "--gl-axis and --gl-displace go with --gl-method slices or tetra-vertex");
   return CLI_END;

@@ -7,15 +7,15 @@ vxm_status vxm_cl_move(vxm_engine *base, vxm_placed *placed, const vxm_move_job 
   vxm_opencl *engine = vxm_opencl_of(base);
   const vxm_facets *facets = job->facets;
   vxm_moved_job cl_job = vxm_moved_job_of(placed, job->motion);
-  if (!engine->base.info.moves)
+  if (engine->base.info.moves)
+    engine->base.info.moves = vxm_cl_ready(engine, VXM_CL_MOVE, NULL) == VXM_OK;
+  if (!engine->base.info.moves || !vxm_resident_motion(&engine->resident, job->motion, facets->point_count))
     return VXM_OK;
-  vxm_status status = vxm_resident_motion(&engine->resident, job->motion, facets->point_count, error);
-  if (status == VXM_OK)
-    status = vxm_cl_run(engine, VXM_CL_MOVE_POINTS, facets->first_apex,
-                        VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_ORIGINALS), VXM_CL_MEM(engine, VXM_CL_ENTRIES),
-                                    VXM_CL_MEM(engine, VXM_CL_NOISE), VXM_CL_MEM(engine, VXM_CL_POINTS),
-                                    VXM_CL_VALUE(cl_job)),
-                        error);
+  vxm_status status = vxm_cl_run(
+      engine, VXM_CL_MOVE_POINTS, facets->first_apex,
+      VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_ORIGINALS), VXM_CL_MEM(engine, VXM_CL_ENTRIES),
+                  VXM_CL_MEM(engine, VXM_CL_NOISE), VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_VALUE(cl_job)),
+      error);
   if (status == VXM_OK)
     status = vxm_cl_download(engine, VXM_CL_POINTS, 0, placed->narrow,
                              facets->first_apex * sizeof *placed->narrow, error);

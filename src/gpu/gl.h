@@ -48,6 +48,7 @@
   X(GENFRAMEBUFFERS, GenFramebuffers)                 \
   X(GENTEXTURES, GenTextures)                         \
   X(GENVERTEXARRAYS, GenVertexArrays)                 \
+  X(GETBUFFERSUBDATA, GetBufferSubData)               \
   X(GETERROR, GetError)                               \
   X(GETINTEGER64V, GetInteger64v)                     \
   X(GETINTEGERV, GetIntegerv)                         \

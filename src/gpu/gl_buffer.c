@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gpu/opengl.h"
 
-#include <string.h>
-
 /** Any target will do for making and filling; this one is bound to no shader. */
 static const GLenum target = GL_COPY_WRITE_BUFFER;
 
@@ -66,6 +64,10 @@ vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *da
   return upload_at(engine, id, 0, data, bytes, error);
 }
 
+void vxm_gl_resident_release(vxm_engine *base, vxm_resident_id id) {
+  vxm_gl_release(vxm_opengl_of(base), (vxm_gl_buffer_id)id);
+}
+
 vxm_status vxm_gl_resident_upload(vxm_engine *base, vxm_resident_id id, size_t offset, const void *data,
                                   size_t bytes, vxm_error *error) {
   return upload_at(vxm_opengl_of(base), (vxm_gl_buffer_id)id, offset, data, bytes, error);
@@ -89,15 +91,8 @@ void vxm_gl_bind(vxm_opengl *engine, GLuint binding, vxm_gl_buffer_id id) {
 vxm_status vxm_gl_download(vxm_opengl *engine, vxm_gl_buffer_id id, void *out, size_t bytes,
                            vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
-  gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+  gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   gl->BindBuffer(target, engine->buffers[id].name);
-  const void *data = gl->MapBufferRange(target, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
-  if (data) {
-    memcpy(out, data, bytes);
-    gl->UnmapBuffer(target);
-  }
-  vxm_status status = vxm_gl_check(gl, "opengl: reading a buffer", error);
-  if (status == VXM_OK && !data)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "the OpenGL driver cannot map a buffer of %zu bytes", bytes);
-  return status;
+  gl->GetBufferSubData(target, 0, (GLsizeiptr)bytes, out); /* mapped, it might move to the host's memory */
+  return vxm_gl_check(gl, "opengl: reading a buffer", error);
 }

@@ -30,9 +30,9 @@ static vxm_status move(vxm_opengl *engine, vxm_placed *placed, const vxm_move_jo
                        vxm_error *error) {
   const vxm_facets *facets = job->facets;
   vxm_moved_job gl_job = vxm_moved_job_of(placed, job->motion);
-  vxm_status status = vxm_resident_motion(&engine->resident, job->motion, facets->point_count, error);
-  if (status == VXM_OK)
-    status = draw(engine, &gl_job, error);
+  if (!vxm_resident_motion(&engine->resident, job->motion, facets->point_count))
+    return VXM_OK;
+  vxm_status status = draw(engine, &gl_job, error);
   if (status == VXM_OK)
     status = vxm_gl_download(engine, VXM_GL_POINTS, placed->narrow,
                              facets->first_apex * sizeof *placed->narrow, error);
@@ -42,12 +42,14 @@ static vxm_status move(vxm_opengl *engine, vxm_placed *placed, const vxm_move_jo
 vxm_status vxm_gl_move(vxm_engine *base, vxm_placed *placed, const vxm_move_job *job, bool *done,
                        vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
-  if (!engine->base.info.moves || job->motion->count > INT32_MAX)
+  if (!engine->base.info.moves)
     return VXM_OK;
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = move(engine, placed, job, done, error);
+  engine->base.info.moves = vxm_gl_use(engine, VXM_GL_MOVE, NULL) == VXM_OK;
+  if (engine->base.info.moves)
+    status = move(engine, placed, job, done, error);
   vxm_gl_leave(&engine->context);
   return status;
 }

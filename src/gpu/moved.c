@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-enum { TRIED = 512 /**< points that the CPU moves, too */ };
-
 vxm_moved_job vxm_moved_job_of(const vxm_placed *placed, const vxm_motion *motion) {
   vxm_moved_job job = {.size = motion->entry ? motion->noise_size : 0,
                        .offset = motion->offset,
@@ -19,8 +17,8 @@ vxm_moved_job vxm_moved_job_of(const vxm_placed *placed, const vxm_motion *motio
 }
 
 bool vxm_moved_alike(const vxm_placed *placed, const vxm_motion *motion) {
-  double moved[TRIED][3];
-  size_t count = motion->count < TRIED ? motion->count : TRIED;
+  double moved[VXM_MOVED_TRIED][3];
+  size_t count = motion->count < VXM_MOVED_TRIED ? motion->count : VXM_MOVED_TRIED;
   vxm_motion_range(moved, motion, 0, count);
   for (size_t p = 0; p < count; p++) {
     vxm_point point;
@@ -30,12 +28,5 @@ bool vxm_moved_alike(const vxm_placed *placed, const vxm_motion *motion) {
       if (placed->narrow[p][a] != point.at[a])
         return false;
   }
-  return true;
-}
-
-bool vxm_moved_take(vxm_placed *placed, const vxm_move_job *job) {
-  if (!vxm_placed_take(placed, job->facets))
-    return false;
-  vxm_placed_apexes(placed, job->facets, job->apexes);
   return true;
 }

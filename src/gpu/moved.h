@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Points that a device moves and places for variants: what its shaders are told, and what is made of what
- * they found. */
+/** Points that a device moves and places for variants: what its shaders are told, and whether they
+ * found what the CPU finds. */
 #ifndef VXM_GPU_MOVED_H
 #define VXM_GPU_MOVED_H
 
@@ -17,10 +17,10 @@ typedef struct vxm_moved_job {
 
 vxm_moved_job vxm_moved_job_of(const vxm_placed *placed, const vxm_motion *motion);
 
-/** Completes a placing of which the device has found the narrow points. False where a point does not fit. */
-bool vxm_moved_take(vxm_placed *placed, const vxm_move_job *job);
+enum { VXM_MOVED_TRIED = 512 };
 
-/** Whether the device rounds as IEEE 754 has it: its first points are where the CPU finds them. */
+/** Whether the device rounds as IEEE 754 has it: up to VXM_MOVED_TRIED of its points are where the CPU finds
+ * them. */
 bool vxm_moved_alike(const vxm_placed *placed, const vxm_motion *motion);
 
 #endif

@@ -68,7 +68,7 @@ vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_c
   }
   engine->base.ops = &opencl_ops;
   engine->base.context = context;
-  engine->resident = vxm_resident_of(&engine->base, vxm_cl_resident_upload);
+  engine->resident = vxm_resident_of(&engine->base, vxm_cl_resident_upload, vxm_cl_resident_release);
   engine->options = *options;
   engine->options.device = NULL; /* the caller's */
   engine->cl = cl;

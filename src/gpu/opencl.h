@@ -206,6 +206,7 @@ vxm_status vxm_cl_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const void *da
 /** What the engine's residents are brought with. */
 vxm_status vxm_cl_resident_upload(vxm_engine *engine, vxm_resident_id id, size_t offset, const void *data,
                                   size_t bytes, vxm_error *error);
+void vxm_cl_resident_release(vxm_engine *engine, vxm_resident_id id);
 /** Reads bytes of a buffer, once all is done that was queued. */
 vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, void *out, size_t bytes,
                            vxm_error *error);

@@ -58,7 +58,8 @@ static vxm_status read_limits(vxm_opengl *engine, vxm_error *error) {
   info->int64 = has_extension(gl, "GL_ARB_gpu_shader_int64");
   gl->GetIntegerv(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, &late);
   gl->GetIntegerv(GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS, &all);
-  engine->can_pull = info->moves = blocks >= 5 && all >= 9;
+  engine->can_pull = blocks >= 5 && all >= 9;
+  info->moves = blocks >= 4;
   engine->can_pull_late = blocks >= 1 && late >= 3 && all >= 7;
   return vxm_gl_check(gl, "opengl: asking for limits", error);
 }
@@ -221,7 +222,7 @@ vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_g
   engine->base.ops = &opengl_ops;
   engine->base.wants_apexes = options->gl_method != VXM_GL_COLUMNS;
   engine->base.context = context;
-  engine->resident = vxm_resident_of(&engine->base, vxm_gl_resident_upload);
+  engine->resident = vxm_resident_of(&engine->base, vxm_gl_resident_upload, vxm_gl_resident_release);
   engine->options = *options;
   vxm_opengl_name(engine->base.info.name, sizeof engine->base.info.name, driver, index);
   vxm_status status = vxm_gl_context_create(&engine->context, driver, index, error);

@@ -137,6 +137,7 @@ vxm_status vxm_gl_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const void *da
 /** What the engine's residents are brought with. */
 vxm_status vxm_gl_resident_upload(vxm_engine *engine, vxm_resident_id id, size_t offset, const void *data,
                                   size_t bytes, vxm_error *error);
+void vxm_gl_resident_release(vxm_engine *engine, vxm_resident_id id);
 /** Binds a buffer to where shaders look for it. */
 void vxm_gl_bind(vxm_opengl *engine, GLuint binding, vxm_gl_buffer_id id);
 /** Reads the first bytes of a buffer, once all is done that writes them. */

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gpu/resident.h"
 
-vxm_resident vxm_resident_of(vxm_engine *engine, vxm_resident_upload upload) {
+vxm_resident vxm_resident_of(vxm_engine *engine, vxm_resident_upload upload, vxm_resident_release release) {
   return (vxm_resident){.engine = engine,
                         .upload = upload,
+                        .release = release,
                         .far.context = engine->context,
                         .far_surface.context = engine->context};
 }
@@ -51,24 +52,24 @@ static vxm_status put_apexes(vxm_resident *resident, const vxm_facets *facets, v
 }
 
 static vxm_status put_corners(vxm_resident *resident, const vxm_facets *facets, vxm_error *error) {
-  if (resident->facets == facets->serial)
+  if (resident->facets_serial == facets->serial)
     return VXM_OK;
-  resident->facets = 0;
+  resident->facets_serial = 0;
   vxm_status status = put(resident, VXM_RESIDENT_CORNERS, facets->corners,
                           facets->facet_count * sizeof *facets->corners, error);
   if (status == VXM_OK && resident->engine->wants_apexes)
     status = put_apexes(resident, facets, error);
   if (status == VXM_OK)
-    resident->facets = facets->serial;
+    resident->facets_serial = facets->serial;
   return status;
 }
 
 vxm_status vxm_resident_facets(vxm_resident *resident, const vxm_facets *facets, const vxm_placed *placed,
                                vxm_error *error) {
   vxm_status status = put_corners(resident, facets, error);
-  if (status != VXM_OK || resident->placed == placed->serial)
+  if (status != VXM_OK || resident->placed_serial == placed->serial)
     return status;
-  resident->placed = 0;
+  resident->placed_serial = 0;
   size_t count = facets->point_count;
   status = placed->wide
                ? put_points(resident, VXM_RESIDENT_POINTS, placed->wide, count, error)
@@ -76,27 +77,27 @@ vxm_status vxm_resident_facets(vxm_resident *resident, const vxm_facets *facets,
   if (status == VXM_OK)
     status = vxm_far_find(&resident->far, facets, placed, error);
   if (status == VXM_OK)
-    resident->placed = placed->serial;
+    resident->placed_serial = placed->serial;
   return status;
 }
 
 vxm_status vxm_resident_surface(vxm_resident *resident, const vxm_surface *surface, vxm_error *error) {
-  if (resident->surface == surface->serial)
+  if (resident->surface_serial == surface->serial)
     return VXM_OK;
-  resident->surface = 0;
+  resident->surface_serial = 0;
   vxm_status status =
       put_points(resident, VXM_RESIDENT_SURFACE_POINTS, surface->points, surface->soup->vertex_count, error);
-  if (status == VXM_OK && resident->surface_corners != surface->corners_serial) {
-    resident->surface_corners = 0;
+  if (status == VXM_OK && resident->surface_corners_serial != surface->corners_serial) {
+    resident->surface_corners_serial = 0;
     status = put(resident, VXM_RESIDENT_SURFACE_CORNERS, surface->corners,
                  surface->triangle_count * 3 * sizeof *surface->corners, error);
     if (status == VXM_OK)
-      resident->surface_corners = surface->corners_serial;
+      resident->surface_corners_serial = surface->corners_serial;
   }
   if (status == VXM_OK)
     status = vxm_far_surface_find(&resident->far_surface, surface, error);
   if (status == VXM_OK)
-    resident->surface = surface->serial;
+    resident->surface_serial = surface->serial;
   return status;
 }
 
@@ -113,9 +114,9 @@ vxm_status vxm_resident_passes(vxm_passes *out, vxm_resident *resident, const vx
 /* ---- Variants ---- */
 
 static vxm_status put_originals(vxm_resident *resident, const vxm_motion *motion, vxm_error *error) {
-  if (resident->originals == motion->from_serial)
+  if (resident->originals_serial == motion->from_serial)
     return VXM_OK;
-  resident->originals = 0;
+  resident->originals_serial = 0;
   vxm_status status =
       put(resident, VXM_RESIDENT_ORIGINALS, motion->from, motion->count * sizeof *motion->from, error);
   /* A shader has to have a buffer also where it does not read it. */
@@ -123,31 +124,45 @@ static vxm_status put_originals(vxm_resident *resident, const vxm_motion *motion
     status = put(resident, VXM_RESIDENT_ENTRIES, motion->entry,
                  motion->entry ? motion->count * sizeof *motion->entry : sizeof *motion->entry, error);
   if (status == VXM_OK)
-    resident->originals = motion->from_serial;
+    resident->originals_serial = motion->from_serial;
   return status;
 }
 
 static vxm_status put_noise(vxm_resident *resident, const vxm_motion *motion, vxm_error *error) {
   if (!motion->entry)
     return put(resident, VXM_RESIDENT_NOISE, NULL, sizeof *motion->noise, error);
-  if (resident->noise == motion->noise_serial)
+  if (resident->noise_serial == motion->noise_serial)
     return VXM_OK;
-  resident->noise = 0;
+  resident->noise_serial = 0;
   vxm_status status =
       put(resident, VXM_RESIDENT_NOISE, motion->noise, motion->noise_size * sizeof *motion->noise, error);
   if (status == VXM_OK)
-    resident->noise = motion->noise_serial;
+    resident->noise_serial = motion->noise_serial;
   return status;
 }
 
-vxm_status vxm_resident_motion(vxm_resident *resident, const vxm_motion *motion, size_t points,
-                               vxm_error *error) {
-  resident->placed = 0;
-  vxm_status status = put_originals(resident, motion, error);
-  if (status == VXM_OK)
-    status = put_noise(resident, motion, error);
-  return status == VXM_OK ? put(resident, VXM_RESIDENT_POINTS, NULL, points * sizeof(int32_t[4]), error)
-                          : status;
+/** Whether there is room for it beside all that is to come: it takes no more than a quarter of what is left.
+ */
+static bool has_room(const vxm_resident *resident, const vxm_motion *motion) {
+  size_t bytes = 0;
+  if (resident->originals_serial != motion->from_serial)
+    bytes += motion->count * (sizeof *motion->from + sizeof *motion->entry);
+  if (motion->entry && resident->noise_serial != motion->noise_serial)
+    bytes += motion->noise_size * sizeof *motion->noise;
+  return bytes <= vxm_memory_left(resident->engine->context) / 4;
+}
+
+bool vxm_resident_motion(vxm_resident *resident, const vxm_motion *motion, size_t points) {
+  static const vxm_resident_id own[] = {VXM_RESIDENT_ORIGINALS, VXM_RESIDENT_ENTRIES, VXM_RESIDENT_NOISE};
+  resident->placed_serial = 0;
+  if (motion->from_serial != 0 && motion->count <= UINT32_MAX / 3 && has_room(resident, motion) &&
+      put_originals(resident, motion, NULL) == VXM_OK && put_noise(resident, motion, NULL) == VXM_OK &&
+      put(resident, VXM_RESIDENT_POINTS, NULL, points * sizeof(int32_t[4]), NULL) == VXM_OK)
+    return true;
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    resident->release(resident->engine, own[i]);
+  resident->originals_serial = resident->noise_serial = 0;
+  return false;
 }
 
 vxm_status vxm_resident_moved(vxm_resident *resident, vxm_placed *placed, const vxm_move_job *job, bool *done,
@@ -155,20 +170,22 @@ vxm_status vxm_resident_moved(vxm_resident *resident, vxm_placed *placed, const 
   const vxm_facets *facets = job->facets;
   size_t first = facets->first_apex, size = sizeof *placed->narrow;
   vxm_engine_info *info = &resident->engine->info;
-  if (!vxm_moved_take(placed, job))
+  size_t *tried = &resident->tried[job->motion->entry != NULL];
+  if (!vxm_placed_take(placed, facets))
     return VXM_OK;
-  if (!resident->is_tried) {
-    resident->is_tried = true;
+  if (*tried < VXM_MOVED_TRIED) {
+    *tried += job->motion->count;
     info->moves = vxm_moved_alike(placed, job->motion);
+    if (!info->moves)
+      return VXM_OK;
   }
-  if (!info->moves)
-    return VXM_OK;
+  vxm_placed_apexes(placed, facets, job->apexes);
   vxm_status status = resident->upload(resident->engine, VXM_RESIDENT_POINTS, first * size,
                                        placed->narrow + first, (facets->point_count - first) * size, error);
   if (status == VXM_OK)
     status = vxm_far_find(&resident->far, facets, placed, error);
   if (status == VXM_OK)
-    resident->placed = placed->serial;
+    resident->placed_serial = placed->serial;
   *done = status == VXM_OK;
   return status;
 }

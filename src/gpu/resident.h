@@ -27,17 +27,21 @@ typedef enum vxm_resident_id {
 typedef vxm_status (*vxm_resident_upload)(vxm_engine *engine, vxm_resident_id id, size_t offset,
                                           const void *data, size_t bytes, vxm_error *error);
 
+typedef void (*vxm_resident_release)(vxm_engine *engine, vxm_resident_id id);
+
 typedef struct vxm_resident {
   vxm_engine *engine;
   vxm_resident_upload upload;
+  vxm_resident_release release;
   vxm_far far; /**< facets and triangles beyond the numbers of the shaders */
   vxm_far_surface far_surface;
-  bool is_tried; /**< that points are moved alike */
-  /** Of what the buffers hold. */
-  uint64_t facets, placed, surface, surface_corners, originals, noise;
+  size_t tried[2]; /**< points that the CPU has moved, too: without displacements and with them */
+  /** What the buffers hold; 0 = nothing. */
+  uint64_t facets_serial, placed_serial, surface_serial, surface_corners_serial, originals_serial,
+      noise_serial;
 } vxm_resident;
 
-vxm_resident vxm_resident_of(vxm_engine *engine, vxm_resident_upload upload);
+vxm_resident vxm_resident_of(vxm_engine *engine, vxm_resident_upload upload, vxm_resident_release release);
 void vxm_resident_destroy(vxm_resident *resident);
 
 /** Brings points and corners, unless they are there. @return VXM_OK, VXM_ERROR_MEMORY,
@@ -52,9 +56,9 @@ vxm_status vxm_resident_surface(vxm_resident *resident, const vxm_surface *surfa
 vxm_status vxm_resident_passes(vxm_passes *out, vxm_resident *resident, const vxm_window *window,
                                const vxm_unite_job *job, int64_t margin, size_t most, vxm_error *error);
 
-/** Brings what variants have in common, and makes room for so many points. */
-vxm_status vxm_resident_motion(vxm_resident *resident, const vxm_motion *motion, size_t points,
-                               vxm_error *error);
+/** Brings what variants have in common, and makes room for so many points. False where that is more than the
+ * device or the memory limit has room for: the CPU moves the points then. */
+bool vxm_resident_motion(vxm_resident *resident, const vxm_motion *motion, size_t points);
 /** Completes what the device has moved, here and there; `*done` stays false where the CPU has to do it all.
  */
 vxm_status vxm_resident_moved(vxm_resident *resident, vxm_placed *placed, const vxm_move_job *job, bool *done,

@@ -9,14 +9,14 @@
 #include "voxel/bins.h"
 #include "voxel/columns.h"
 
-/** Takes (x, y, z, 1) to lattice steps: (column_0 x + column_1 y + column_2 z + column_3 - origin) * scale.
- * The fourth number of each is 0. */
+/** Takes (x, y, z, 1) to lattice steps: (column_0 x + column_1 y + column_2 z + column_3 + noise - origin) *
+ * scale. The fourth number of each column, of `origin` and `scale` is 0. */
 typedef struct vxm_affine {
   double column[4][4];
-  const float (
-      *noise)[4]; /**< added before the origin is taken away, if there are entries (voxel/motion.h) */
-  uint32_t noise_size, offset;
   double origin[4], scale[4];
+  /** Looked at only where points have entries in it (voxel/motion.h). */
+  const float (*noise)[4];
+  uint32_t noise_size, offset;
   int bits;         /**< of the lattice */
   int32_t cells[4]; /**< the last cell along each axis */
 } vxm_affine;

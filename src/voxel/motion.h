@@ -17,8 +17,9 @@ typedef struct vxm_motion {
   const uint32_t *entry;   /**< of each point, where in the noise its displacement is; NULL = not displaced */
   const float (*noise)[4]; /**< a circular buffer of vectors; the fourth number is 0 */
   uint32_t noise_size;
-  uint32_t offset;      /**< where it begins; below noise_size */
-  uint64_t from_serial; /**< of points and entries: no two that hold others have the same */
+  uint32_t offset; /**< where it begins; below noise_size */
+  uint64_t
+      from_serial; /**< of points and entries: no two that hold others have the same; 0 = not for engines */
   uint64_t noise_serial;
 } vxm_motion;
 

@@ -78,13 +78,32 @@ static bool place_narrow(vxm_placed *placed, const vxm_motion *motion) {
   return !atomic_load(&job.beyond);
 }
 
-bool vxm_placed_take(vxm_placed *placed, const vxm_facets *facets) {
+typedef struct take_job {
+  vxm_placed *placed;
+  size_t count, slices;
+  atomic_bool beyond;
+} take_job;
+
+static void take_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  take_job *job = payload;
+  vxm_placed *placed = job->placed;
   int32_t misfit = 0;
-  for (size_t p = 0; p < facets->first_apex; p++) {
+  size_t end = vxm_slice_begin(job->count, job->slices, slice + 1);
+  for (size_t p = vxm_slice_begin(job->count, job->slices, slice); p < end; p++) {
     placed->cells[p] = cell_of(placed, placed->narrow[p]);
     misfit |= placed->narrow[p][3];
   }
-  return misfit == 0;
+  if (misfit)
+    atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
+}
+
+bool vxm_placed_take(vxm_placed *placed, const vxm_facets *facets) {
+  take_job job = {
+      .placed = placed, .count = facets->first_apex, .slices = 1 + facets->first_apex / SLICE_POINTS};
+  atomic_init(&job.beyond, false);
+  vxm_parallel(placed->context, job.slices, take_slice, &job);
+  return !atomic_load(&job.beyond);
 }
 
 /* ---- Wide points ---- */

@@ -23,9 +23,9 @@ typedef struct vxm_placed {
   vxm_context *context;
   uint64_t serial; /**< no two that hold different points have the same */
   vxm_lattice lattice;
-  double
-      transform[12]; /**< what takes the lengths that the facets tell to those here; that of vxm_placed_set */
-  size_t capacity;   /**< of `narrow` and `cells` */
+  /** Takes the lengths that the facets tell to those here: that of vxm_placed_set, else nothing. */
+  double transform[12];
+  size_t capacity;      /**< of `narrow` and `cells` */
   int32_t (*narrow)[4]; /**< points by number; the fourth number is 0 */
   uint64_t *cells;      /**< of each point: x from bit 0 on, y from VXM_CELL_BITS, z from twice that */
   vxm_point *wide;      /**< used instead where a point lies beyond VXM_NARROW_MAX, else NULL */

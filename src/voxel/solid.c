@@ -75,9 +75,10 @@ static vxm_status move_elsewhere(vxm_run *run, const vxm_lattice *lattice, bool 
                                  vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   vxm_move_job job = {&run->shape->facets, run->motion, apexes};
-  vxm_status status = vxm_placed_begin(&run->placed, job.facets, lattice, &local);
-  if (status == VXM_OK)
-    status = ops_of(run)->move(run->engine, &run->placed, &job, done, &local);
+  vxm_status status = vxm_placed_begin(&run->placed, job.facets, lattice, error);
+  if (status != VXM_OK)
+    return status;
+  status = ops_of(run)->move(run->engine, &run->placed, &job, done, &local);
   *done &= status == VXM_OK;
   if (status == VXM_OK || vxm_engine_gives_way(run->engine, &local))
     return VXM_OK;

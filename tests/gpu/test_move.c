@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "voxel/model.h"
 
-enum { RESOLUTION = 48, NOISE = 300 };
+enum { RESOLUTION = 48, SHIFT = 6, NOISE = 300 };
 
 typedef struct scene {
   vxm_model *model;
@@ -21,14 +21,14 @@ static double uniform(vxm_rng *rng, double reach) {
   return reach * (2 * vxm_rng_unit(rng) - 1);
 }
 
-static void start(scene *s, const vxm_soup *soup, vxm_rng *rng) {
+static void start(scene *s, const vxm_soup *soup, int64_t resolution, vxm_rng *rng) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.engine = engine;
   vxm_error error = VXM_ERROR_INIT;
   if (vxm_model_make(&s->model, soup, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
-  double size = 1.0 / RESOLUTION;
-  vxm_space space = {{RESOLUTION, RESOLUTION, RESOLUTION}, {0, 0, 0}, {size, size, size}};
+  double size = 1.0 / (double)resolution;
+  vxm_space space = {{resolution, resolution, resolution}, {0, 0, 0}, {size, size, size}};
   s->lattice = vxm_lattice_of(&space);
   s->facets = &s->model->shape.facets;
   s->entry = malloc(s->facets->first_apex * sizeof *s->entry);
@@ -83,7 +83,7 @@ static void test_random_matrices(void **state) {
   vxm_soup *soup = shape_empty(context);
   shape_torus(soup, 60, 30, 0.3, 0.1, (double[3]){0.01, 0.02, 0.03});
   scene s;
-  start(&s, soup, &rng);
+  start(&s, soup, RESOLUTION, &rng);
   for (int i = 0; i < 60; i++) {
     double reach = i % 3 == 0 ? 1e-3 : i % 3 == 1 ? 1 : 100;
     for (int k = 0; k < 12; k++)
@@ -97,8 +97,8 @@ static void test_random_matrices(void **state) {
   vxm_soup_destroy(soup);
 }
 
-/** Points on a lattice twice as fine: every second one lies halfway between two steps, and is rounded to
- * even. */
+/** Points on a lattice twice as fine: every second coordinate lies halfway between two steps, and is rounded
+ * to even. */
 static void test_ties(void **state) {
   (void)state;
   vxm_rng rng = {4};
@@ -112,8 +112,8 @@ static void test_ties(void **state) {
     shape_face(soup, corner, 3);
   }
   scene s;
-  start(&s, soup, &rng);
-  double half = 0.5 / (RESOLUTION * (double)s.lattice.unit);
+  start(&s, soup, 1 << SHIFT, &rng);
+  double half = 0.5 / ((double)(1 << SHIFT) * (double)s.lattice.unit); /* exact, as is all that follows */
   memset(s.matrix, 0, sizeof s.matrix);
   for (int a = 0; a < 3; a++) {
     s.matrix[5 * a] = half;
@@ -130,7 +130,7 @@ static void test_beyond(void **state) {
   vxm_soup *soup = shape_empty(context);
   shape_box(soup, (double[3]){0, 0, 0}, (double[3]){1, 1, 1});
   scene s;
-  start(&s, soup, &rng);
+  start(&s, soup, RESOLUTION, &rng);
   const double far[] = {1e3, 1e9, 1e300, INFINITY, NAN};
   for (size_t i = 0; i < sizeof far / sizeof far[0]; i++) {
     memset(s.matrix, 0, sizeof s.matrix);

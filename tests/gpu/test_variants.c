@@ -1,12 +1,40 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Variants for training have the bits of the CPU: closed meshes and open ones on which voters disagree,
- * solids and surfaces, several models by turns, into memory and into a grid; and facets are brought to the
- * device once. */
+ * solids and surfaces, several models and samplers by turns, into memory and into a grid; the engine moves
+ * the points, and the CPU does where it does not. */
 #include "gpu_test.h"
 
+#include "base/rng.h"
 #include "grid/window.h"
 
 enum { COUNT = 12, RESOLUTION = 33 };
+
+/* ---- The engine, watched ---- */
+
+static vxm_engine_ops watched;
+static const vxm_engine_ops *own;
+static int moved;
+static bool fails; /**< the next move */
+
+static vxm_status watch_move(vxm_engine *by, vxm_placed *placed, const vxm_move_job *job, bool *done,
+                             vxm_error *error) {
+  if (fails) {
+    fails = false;
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "lost");
+  }
+  vxm_status status = own->move(by, placed, job, done, error);
+  moved += *done;
+  return status;
+}
+
+static void watch(void) {
+  own = engine->ops;
+  watched = *own;
+  watched.move = watch_move;
+  engine->ops = &watched;
+}
+
+/* ---- Variants ---- */
 
 /** Everything at once. */
 static vxm_sampler *make_sampler(vxm_mode mode, vxm_method method, vxm_vote vote, vxm_engine *by) {
@@ -58,6 +86,9 @@ static void check(const vxm_soup *const soups[], uint32_t soup_count, vxm_mode m
     vxm_grid_destroy(grid);
     vxm_sampler_destroy(sampler[s]);
   }
+  if (mode != VXM_MODE_SURFACE) /* each in the batch, and one into a grid */
+    assert_int_equal(moved, engine->ops && engine->info.moves ? COUNT + 1 : 0);
+  moved = 0;
   assert_memory_equal(out[0], out[1], COUNT * bytes);
   for (size_t b = 0; b < COUNT * bytes; b++)
     set += out[0][b] != 0;
@@ -98,9 +129,90 @@ static void test_variants(void **state) {
   vxm_soup_destroy(open);
 }
 
+static void save(uint8_t *out, vxm_sampler *sampler, uint32_t model, uint32_t index) {
+  vxm_variant variant = {model, 1, index};
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_sampler_batch(out, sampler, &variant, 1, VXM_VOXELS_PACKED, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+}
+
+/** Two samplers with noises of their own and one without share the engine with plain voxelizing; models are
+ * replaced in between. */
+static void test_shared_engine(void **state) {
+  (void)state;
+  enum { SAMPLERS = 3, ROUNDS = 30 };
+  vxm_soup *soups[2] = {shape_empty(context), shape_empty(context)};
+  shape_torus(soups[0], 40, 20, 10, 4, (double[3]){0, 0, 0});
+  shape_box(soups[1], (double[3]){0, 0, 0}, (double[3]){8, 9, 7});
+  vxm_sampler *samplers[SAMPLERS][2];
+  vxm_space space = engine_space(20, 20, 20);
+  for (int s = 0; s < SAMPLERS; s++)
+    for (int by = 0; by < 2; by++) {
+      vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
+      options.resolution = RESOLUTION;
+      options.seed = (uint64_t)s;
+      options.rotation = VXM_ROTATION_ANY;
+      options.displace = 0.02 * s;
+      options.noise = s == 1 ? 70 : 500;
+      options.voxelize.engine = by ? engine : NULL;
+      assert_int_equal(vxm_sampler_create(&samplers[s][by], context, &options, NULL), VXM_OK);
+    }
+  size_t bytes = vxm_sampler_bytes(samplers[0][0], VXM_VOXELS_PACKED);
+  uint8_t *out[2] = {malloc(bytes), malloc(bytes)};
+  vxm_rng rng = {8};
+  for (uint32_t round = 0; round < ROUNDS; round++) {
+    size_t s = round < SAMPLERS ? round : vxm_rng_below(&rng, SAMPLERS);
+    uint32_t model = (uint32_t)vxm_rng_below(&rng, 2), first = (uint32_t)vxm_rng_below(&rng, 2);
+    bool puts = round < SAMPLERS || vxm_rng_below(&rng, 4) == 0;
+    for (int by = 0; by < 2; by++)
+      for (uint32_t m = 0; m < 2 && puts; m++)
+        assert_int_equal(vxm_sampler_put(samplers[s][by], m, soups[(m + first) % 2], NULL), VXM_OK);
+    save(out[0], samplers[s][0], model, round);
+    save(out[1], samplers[s][1], model, round);
+    assert_memory_equal(out[0], out[1], bytes);
+    if (round % 3 == 0) {
+      vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+      vxm_voxelize_report reports[2];
+      for (int by = 0; by < 2; by++) {
+        options.engine = by ? engine : NULL;
+        vxm_grid_destroy(engine_solid(soups[model], &space, &options, &reports[by]));
+      }
+      assert_true(reports[0].hash == reports[1].hash);
+    }
+  }
+  moved = 0;
+  for (int s = 0; s < SAMPLERS; s++)
+    for (int by = 0; by < 2; by++)
+      vxm_sampler_destroy(samplers[s][by]);
+  for (int i = 0; i < 2; i++) {
+    vxm_soup_destroy(soups[i]);
+    free(out[i]);
+  }
+}
+
+/** Last: the engine is gone afterwards. */
+static void test_the_cpu_goes_on(void **state) {
+  (void)state;
+  vxm_soup *torus = shape_empty(context);
+  shape_torus(torus, 40, 20, 10, 4, (double[3]){0, 0, 0});
+  const vxm_soup *soups[] = {torus};
+  bool moves = engine->info.moves;
+  engine->info.moves = false;
+  check(soups, 1, VXM_MODE_SOLID, VXM_METHOD_VOTE, VXM_VOTE_AUTO);
+  engine->info.moves = moves;
+  check(soups, 1, VXM_MODE_SOLID, VXM_METHOD_VOTE, VXM_VOTE_AUTO);
+  engine->falls_back = fails = true;
+  check(soups, 1, VXM_MODE_SOLID, VXM_METHOD_VOTE, VXM_VOTE_AUTO);
+  assert_null(engine->ops);
+  vxm_soup_destroy(torus);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_variants)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_variants), cmocka_unit_test(test_shared_engine),
+                                     cmocka_unit_test(test_the_cpu_goes_on)};
   int status = gpu_test_start(NULL);
+  if (status == 0)
+    watch();
   if (status == 0)
     status = cmocka_run_group_tests_name("variants by " ENGINE, tests, setup, teardown);
   vxm_engine_destroy(engine);
