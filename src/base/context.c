@@ -406,7 +406,21 @@ vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t
   return VXM_OK;
 }
 
+static _Thread_local vxm_progress_part part = {0, 1};
+
+vxm_progress_part vxm_progress_enter(double begin, double end) {
+  vxm_progress_part before = part;
+  part.begin += part.span * begin;
+  part.span *= end - begin;
+  return before;
+}
+
+void vxm_progress_leave(vxm_progress_part before) {
+  part = before;
+}
+
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error) {
+  fraction = part.begin + part.span * fraction;
   if (!context->progress || vxm_is_worker() || context->progress(phase, fraction, context->payload) == 0)
     return VXM_OK;
   return vxm_fail(error, VXM_ERROR_CANCELLED, "cancelled while %s", phase);

@@ -63,6 +63,16 @@ vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t
  * the call: in a loop of vxm_parallel the other threads report nothing. */
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error);
 
+/** A part of a longer piece of work. */
+typedef struct vxm_progress_part {
+  double begin, span;
+} vxm_progress_part;
+
+/** Until vxm_progress_leave is called with what this returns, fractions that the thread tells are those of
+ * the part from `begin` to `end` of what it tells them of now. */
+vxm_progress_part vxm_progress_enter(double begin, double end);
+void vxm_progress_leave(vxm_progress_part before);
+
 #ifdef __cplusplus
 }
 #endif

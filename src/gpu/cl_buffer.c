@@ -91,6 +91,23 @@ vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offse
 
 /* ---- Tiles ---- */
 
+/** What a tile may take under the memory limit: of what is left, and what its buffers have already. */
+static int64_t tile_share(const vxm_opencl *engine) {
+  enum {
+    BUFFERS =
+        12 /**< flips, two results, mask and four voters; and as much for lists of tiles and what is added */
+  };
+  static const vxm_cl_buffer_id own[] = {VXM_CL_FLIPS,       VXM_CL_RESULT,     VXM_CL_RESULT2,
+                                         VXM_CL_MASK,        VXM_CL_VOTER_X,    VXM_CL_VOTER_X + 1,
+                                         VXM_CL_VOTER_X + 2, VXM_CL_VOTER_X + 3};
+  size_t left = vxm_memory_left(engine->base.context);
+  if (left > INT64_MAX / 2) /* there is no limit */
+    return INT64_MAX;
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    left += engine->buffers[own[i]].bytes;
+  return (int64_t)(left / BUFFERS);
+}
+
 vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_window *window,
                               vxm_error *error) {
   /* Bits of a tile are counted in 32 bits; flips, two results and four voters may be held. */
@@ -98,9 +115,7 @@ vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_
   const vxm_engine_info *info = &engine->base.info;
   int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
   int64_t most = vxm_min(vxm_min(info->block_bytes, info->global_bytes / buffers), bytes_most);
-  size_t left = vxm_memory_left(engine->base.context);
-  if (left / (size_t)buffers < (size_t)most)
-    most = (int64_t)(left / (size_t)buffers);
+  most = vxm_min(most, tile_share(engine));
   if (slice > bytes_most || slice > info->block_bytes)
     return vxm_fail(
         error, VXM_ERROR_RANGE, "one slice of the grid takes %lld MiB; %s can do %lld; use --engine cpu",

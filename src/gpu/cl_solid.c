@@ -50,8 +50,10 @@ vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool i
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
     vxm_tile tile = vxm_tile_of(window, k, slices);
     status = vxm_cl_return_end(engine, &back[which], status, error);
+    vxm_progress_part before = vxm_tile_progress(&tile);
     if (status == VXM_OK)
       status = make(engine, &tile, back[which].from, payload, error);
+    vxm_progress_leave(before);
     back[which].tile = tile;
     back[which].words = window->words;
     back[which].is_or = is_or;
@@ -155,10 +157,12 @@ static vxm_status make_voter(vxm_opencl *engine, const vxm_tile *tile, const bal
                              vxm_error *error) {
   vxm_unite_job job = vxm_elect_voter(b->job, tile->window, v);
   vxm_passes passes = {.context = engine->base.context};
+  vxm_progress_part before = vxm_progress_enter((double)v / b->count, (v + 1.0) / b->count);
   vxm_status status = choose(engine, tile->window, &job, &passes, error);
   if (status == VXM_OK)
     status = make_tile(engine, tile, &job, &passes, b->words[v], error);
   vxm_passes_destroy(&passes);
+  vxm_progress_leave(before);
   return status;
 }
 
@@ -203,8 +207,10 @@ static vxm_status elect_tiles(vxm_opencl *engine, const vxm_window *window, cons
     vxm_tile tile = vxm_tile_of(window, k, slices);
     for (int i = 0; i < 2; i++)
       status = vxm_cl_return_end(engine, &back[i], status, error);
+    vxm_progress_part before = vxm_tile_progress(&tile);
     if (status == VXM_OK)
       status = elect_tile(engine, &tile, job, &b, VXM_CL_RESULT, tally, error);
+    vxm_progress_leave(before);
     back[0].tile = back[1].tile = tile;
     back[0].words = window->words;
     back[1].words = job->mask;

@@ -209,7 +209,7 @@ vxm_status vxm_far_flips(uint32_t **out, size_t *count, const vxm_far *far, cons
     if (load(&t, job->placed, facets->corners[f], tile->axes))
       status = put_facet(&found, &t, &job->placed->lattice, tile, error);
     if (status == VXM_OK) /* each may cover all columns */
-      status = vxm_progress(far->context, job->phase, 0.0, error);
+      status = vxm_progress(far->context, job->phase, (double)pass / (double)passes->count, error);
   }
   if (status != VXM_OK) {
     vxm_free(found.context, found.bit);

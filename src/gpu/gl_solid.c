@@ -62,7 +62,9 @@ static vxm_status unite_tiles(vxm_opengl *engine, const vxm_window *window, cons
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
     vxm_tile tile = vxm_tile_of(window, k, slices);
+    vxm_progress_part before = vxm_tile_progress(&tile);
     status = make_tile(engine, &tile, job, passes, VXM_GL_RESULT, error);
+    vxm_progress_leave(before);
     if (status != VXM_OK)
       break;
     back[which] = (vxm_gl_return){.tile = tile, .is_or = !job->fresh, .staging = which};
@@ -129,10 +131,12 @@ static vxm_status make_voter(vxm_opengl *engine, const vxm_tile *tile, const bal
                              vxm_error *error) {
   vxm_unite_job job = vxm_elect_voter(b->job, tile->window, v);
   vxm_passes passes = {0};
+  vxm_progress_part before = vxm_progress_enter((double)v / b->count, (v + 1.0) / b->count);
   vxm_status status = create_passes(&passes, engine, tile->window, &job, error);
   if (status == VXM_OK)
     status = make_tile(engine, tile, &job, &passes, b->words[v], error);
   vxm_passes_destroy(&passes);
+  vxm_progress_leave(before);
   return status;
 }
 
@@ -184,7 +188,9 @@ static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, cons
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
     vxm_tile tile = vxm_tile_of(window, k, slices);
+    vxm_progress_part before = vxm_tile_progress(&tile);
     status = elect_tile(engine, &tile, job, &b, tally, error);
+    vxm_progress_leave(before);
     if (status != VXM_OK)
       break;
     back[which] = (vxm_gl_return){.tile = tile, .mask = job->mask, .staging = which};

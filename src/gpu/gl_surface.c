@@ -102,7 +102,9 @@ static vxm_status draw_tiles(vxm_opengl *engine, const vxm_surface *surface, con
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
     vxm_tile tile = vxm_tile_of(window, k, slices);
+    vxm_progress_part before = vxm_tile_progress(&tile);
     status = draw_tile(engine, surface, &tile, kind, error);
+    vxm_progress_leave(before);
     if (status != VXM_OK)
       break;
     back[which] = (vxm_gl_return){.tile = tile, .is_or = !is_fresh, .staging = which};

@@ -7,10 +7,26 @@
 static const int64_t tile_bytes_most = INT64_C(64) << 20;
 static const int64_t slice_bytes_most = INT64_C(256) << 20;
 
+/** What a tile may take under the memory limit: of what is left, and what its buffers have already. */
+static int64_t tile_share(const vxm_opengl *engine) {
+  enum {
+    BUFFERS = 12 /**< flips, result, mask, four voters, two staging buffers twice as large; and one spare */
+  };
+  static const vxm_gl_buffer_id own[] = {VXM_GL_FLIPS,       VXM_GL_RESULT,      VXM_GL_MASK,
+                                         VXM_GL_VOTER_X,     VXM_GL_VOTER_X + 1, VXM_GL_VOTER_X + 2,
+                                         VXM_GL_VOTER_X + 3, VXM_GL_STAGING,     VXM_GL_STAGING2};
+  size_t left = vxm_memory_left(engine->base.context);
+  if (left > INT64_MAX / 2) /* there is no limit */
+    return INT64_MAX;
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    left += engine->buffers[own[i]].bytes;
+  return (int64_t)(left / BUFFERS);
+}
+
 vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
                               vxm_error *error) {
   int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
-  int64_t most = vxm_min(engine->base.info.block_bytes, tile_bytes_most);
+  int64_t most = vxm_min(vxm_min(engine->base.info.block_bytes, tile_bytes_most), tile_share(engine));
   /* The staging buffer may hold two; shaders count the bits of a tile in 32 bits. */
   if (slice > engine->base.info.block_bytes / 2 || slice > slice_bytes_most)
     return vxm_fail(error, VXM_ERROR_RANGE,

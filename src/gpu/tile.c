@@ -20,6 +20,13 @@ uint64_t *vxm_tile_slice_at(const vxm_tile *tile, uint64_t *words, int64_t slice
   return words + (size_t)(slice - tile->window->begin) * tile->window->slice_words;
 }
 
+vxm_progress_part vxm_tile_progress(const vxm_tile *tile) {
+  const vxm_window *window = tile->window;
+  double all = (double)(window->end - window->begin);
+  return vxm_progress_enter((double)(tile->begin - window->begin) / all,
+                            (double)(tile->end - window->begin) / all);
+}
+
 void vxm_tile_take(const vxm_tile *tile, uint64_t *words, const uint64_t *from, bool is_or) {
   size_t count = vxm_tile_slice_words(tile);
   for (int64_t k = tile->begin; k < tile->end; k++, from += count) {

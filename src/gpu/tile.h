@@ -19,6 +19,8 @@ vxm_tile vxm_tile_of(const vxm_window *window, int64_t begin, int64_t slices);
 size_t vxm_tile_slice_words(const vxm_tile *tile);
 /** Where a slice lies in words that are laid out as the window's. */
 uint64_t *vxm_tile_slice_at(const vxm_tile *tile, uint64_t *words, int64_t slice);
+/** As vxm_progress_enter, for the tile's part of its window. */
+vxm_progress_part vxm_tile_progress(const vxm_tile *tile);
 /** Moves a tile's words into the window's, or (`is_or`) adds them. */
 void vxm_tile_take(const vxm_tile *tile, uint64_t *words, const uint64_t *from, bool is_or);
 

@@ -272,6 +272,35 @@ static void progress_cancels(void **state) {
   vxm_context_destroy(context);
 }
 
+static int note(const char *phase, double fraction, void *payload) {
+  (void)phase;
+  *(double *)payload = fraction;
+  return 0;
+}
+
+static void progress_has_parts(void **state) {
+  (void)state;
+  double told = -1;
+  vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+  options.progress = note;
+  options.payload = &told;
+  vxm_context *context;
+  assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
+  vxm_progress_part whole = vxm_progress_enter(0.5, 1);
+  assert_int_equal(vxm_progress(context, "counting", 0, NULL), VXM_OK);
+  assert_true(told == 0.5);
+  vxm_progress_part half = vxm_progress_enter(0.5, 0.75);
+  assert_int_equal(vxm_progress(context, "counting", 1, NULL), VXM_OK);
+  assert_true(told == 0.875);
+  vxm_progress_leave(half);
+  assert_int_equal(vxm_progress(context, "counting", 0.5, NULL), VXM_OK);
+  assert_true(told == 0.75);
+  vxm_progress_leave(whole);
+  assert_int_equal(vxm_progress(context, "counting", 0.5, NULL), VXM_OK);
+  assert_true(told == 0.5);
+  vxm_context_destroy(context);
+}
+
 /* ---- Bits ---- */
 
 static void bits(void **state) {
@@ -304,6 +333,7 @@ int main(void) {
       cmocka_unit_test(every_task_runs_once),
       cmocka_unit_test(slices_cover),
       cmocka_unit_test(progress_cancels),
+      cmocka_unit_test(progress_has_parts),
       cmocka_unit_test(bits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

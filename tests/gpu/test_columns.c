@@ -214,11 +214,64 @@ static void test_limits(void **state) {
   vxm_soup_destroy(soup);
 }
 
+typedef struct told {
+  int calls, falls;
+  double last;
+} told;
+
+static int note(const char *phase, double fraction, void *payload) {
+  told *t = payload;
+  (void)phase;
+  t->calls++;
+  t->falls += fraction < t->last;
+  t->last = fraction;
+  return 0;
+}
+
+/** Progress rises over tiles, passes and voters. */
+static void test_progress(void **state) {
+  (void)state;
+  told seen = {0};
+  vxm_context_options of_context = VXM_CONTEXT_OPTIONS_INIT;
+  of_context.progress = note;
+  of_context.payload = &seen;
+  of_context.memory_limit = 1200 << 10; /* some tiles */
+  vxm_context *own;
+  vxm_engine *usual = engine;
+  vxm_engine_options of_engine = VXM_ENGINE_OPTIONS_INIT;
+#ifdef CL_METHOD
+  of_engine.cl_method = CL_METHOD;
+#endif
+  assert_int_equal(vxm_context_create(&own, &of_context, NULL), VXM_OK);
+  assert_int_equal(vxm_engine_create(&engine, own, ENGINE, &of_engine, NULL), VXM_OK);
+  vxm_space space = engine_space(128, 128, 128);
+  vxm_soup *open = shape_empty(context), *boxes = shape_empty(context);
+  shape_torus(open, 30, 20, 40, 20, (double[3]){64, 64, 64});
+  open->face_count -= 7;
+  for (int b = 0; b < 3; b++)
+    shape_box(boxes, (double[3]){3.0 + b, 2, 1}, (double[3]){70 + 9.0 * b, 80, 120});
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.vote = VXM_VOTE_MAJORITY;
+  check(open, &space, options);
+  assert_true(seen.calls >= 9);
+  assert_int_equal(seen.falls, 0);
+  seen = (told){0};
+  check(boxes, &space, options);
+  assert_true(seen.calls >= 3);
+  assert_int_equal(seen.falls, 0);
+  open->face_count += 7;
+  vxm_soup_destroy(open);
+  vxm_soup_destroy(boxes);
+  vxm_engine_destroy(engine);
+  vxm_context_destroy(own);
+  engine = usual;
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_many_parts),
-                                     cmocka_unit_test(test_ties),   cmocka_unit_test(test_sizes),
-                                     cmocka_unit_test(test_far),    cmocka_unit_test(test_windows),
-                                     cmocka_unit_test(test_turns),  cmocka_unit_test(test_limits)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_progress), cmocka_unit_test(test_random), cmocka_unit_test(test_many_parts),
+      cmocka_unit_test(test_ties),     cmocka_unit_test(test_sizes),  cmocka_unit_test(test_far),
+      cmocka_unit_test(test_windows),  cmocka_unit_test(test_turns),  cmocka_unit_test(test_limits)};
   int status = gpu_test_start(NULL);
   if (status == 0)
     status = cmocka_run_group_tests_name("columns by " ENGINE, tests, setup, teardown);
