@@ -17,7 +17,7 @@ int main(int argc, char **argv) {
   options.space.resolution[0] = argc > 3 ? strtoll(argv[3], NULL, 10) : 64;
 
   if (vxm_mesh_read(&mesh, NULL, argv[1], &error) == VXM_OK &&
-      vxm_mesh_repair(&repaired, NULL, mesh, NULL, &error) == VXM_OK &&
+      vxm_mesh_prepare(&repaired, NULL, mesh, NULL, &error) == VXM_OK &&
       vxm_voxelize(&grid, NULL, repaired, &options, &error) == VXM_OK &&
       vxm_grid_write(grid, argv[2], NULL, &error) == VXM_OK)
     printf("%lld voxels\n", (long long)vxm_grid_count(grid));

@@ -359,6 +359,16 @@ typedef struct vxm_repair_report {
 VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
                                    const vxm_repair_options *options, vxm_error *error);
 
+/**
+ * Repairs a mesh to be voxelized: as vxm_mesh_repair; but where bodies share faces at VXM_LEVEL_CLEAN, at
+ * VXM_LEVEL_MANIFOLD, which gives each body its own: together they are one component, and its parity is that of their
+ * difference. With keep_orientation they stay together. It is what voxmend voxelize and the Python package do.
+ *
+ * @return as vxm_mesh_repair
+ */
+VXM_API vxm_status vxm_mesh_prepare(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
+                                    const vxm_repair_options *options, vxm_error *error);
+
 /** A part of a mesh, at one time. Edges and holes are taken after welding. */
 typedef struct vxm_part_state {
   int64_t faces, boundary_edges, nonmanifold_edges, inconsistent_edges;

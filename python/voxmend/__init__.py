@@ -6,7 +6,7 @@
     grid = voxmend.voxelize(mesh, 64)                   # repairs it, then 64 x 64 x 64 voxels
     grid.save("chair.binvox")
     sampler = voxmend.Sampler(32, rotate="any", scale=0.3)
-    sampler.put(mesh.repair())
+    sampler.put(mesh.repair(separate=True))
     batch = sampler.batch(16)                           # (16, 1, 32, 32, 32) float32
 """
 from ._core import (ArgumentError, EmptyError, FileError, FormatError, OutOfMemoryError, RangeError, UnavailableError,

@@ -251,7 +251,7 @@ def _space_options(resolution: Any, pitch: Optional[float], fit: str, pad: int, 
 
 def _prepare(mesh: MeshLike, repair: bool) -> Mesh:
     source = as_mesh(mesh)
-    return repair_mesh(source) if repair else source
+    return repair_mesh(source, separate=True) if repair else source
 
 
 def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None, *, pitch: Optional[float] = None,

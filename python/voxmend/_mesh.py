@@ -173,7 +173,7 @@ def info(mesh: MeshLike) -> dict:
 def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "auto", keep_duplicates: bool = False,
            keep_orientation: bool = False, fill_holes: Union[int, str] = 0, fill: str = "fan", union: bool = False,
            wrap_alpha: float = 0.0, wrap_offset: float = 0.0, max_change: float = 0.0, drop_faces: int = 0,
-           drop_volume: float = 0.0) -> Mesh:
+           drop_volume: float = 0.0, separate: bool = False) -> Mesh:
     """A repaired copy; its `report` tells how many vertices or faces each pass has changed.
 
     Args:
@@ -183,6 +183,8 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
         fill_holes: those of at most so many edges, or "all".
         fill: with what: "fan", "minimal" or "smooth".
         drop_faces, drop_volume: components with fewer faces, or less volume (model units cubed), are dropped.
+        separate: where bodies share faces each gets its own (level "manifold"), so that no body is lost between others
+            when they are voxelized. `voxelize` and the datasets do that.
     """
     source = as_mesh(mesh)
     options = _core.new("vxm_repair_options", keep_duplicates=keep_duplicates, keep_orientation=keep_orientation,
@@ -196,6 +198,7 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
     else:
         options.weld, options.weld_tolerance = lib.VXM_WELD_TOLERANCE, weld
     report = ffi.new("vxm_repair_report *")
-    made = _core.create("vxm_mesh", lib.vxm_mesh_repair, report, source._pointer, options, destroy=lib.vxm_mesh_destroy)
+    function = lib.vxm_mesh_prepare if separate else lib.vxm_mesh_repair
+    made = _core.create("vxm_mesh", function, report, source._pointer, options, destroy=lib.vxm_mesh_destroy)
     passes = {_core.text(getattr(report.passes[i], "pass")): report.passes[i].count for i in range(report.pass_count)}
     return Mesh._of(made, passes)

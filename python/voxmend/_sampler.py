@@ -90,7 +90,8 @@ class Sampler:
         return values
 
     def put(self, mesh: Optional[MeshLike], model: int = 0) -> None:
-        """Puts a mesh in as number `model`; None takes the model out. Repair it before: `voxmend.repair`."""
+        """Puts a mesh in as number `model`; None takes the model out. Repair it before:
+        `voxmend.repair(mesh, separate=True)`."""
         own = None if mesh is None else as_mesh(mesh)
         self._meshes.pop(model, None)
         _core.call(lib.vxm_sampler_put, self._pointer, model, ffi.NULL if own is None else own._pointer)

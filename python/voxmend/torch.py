@@ -104,14 +104,14 @@ class VoxelDataset(Dataset):
         if self.cache is None:
             return None
         state = os.stat(path)
-        name = "%s|%d|%d|%s|%s" % (os.path.abspath(path), state.st_size, state.st_mtime_ns, self.level, __version__)
+        name = "%s|%d|%d|%s|separate|%s" % (os.path.abspath(path), state.st_size, state.st_mtime_ns, self.level, __version__)
         return os.path.join(self.cache, hashlib.sha256(name.encode()).hexdigest()[:32] + ".ply")
 
     def _repaired(self, path: str) -> Mesh:
         cached = self._cached_path(path)
         if cached is not None and os.path.exists(cached):
             return load(cached)
-        mesh = repair(load(path), self.level)
+        mesh = repair(load(path), self.level, separate=True)
         if cached is not None:
             os.makedirs(self.cache, exist_ok=True)
             mesh.save(cached)  # under another name until it is complete

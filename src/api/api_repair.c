@@ -7,18 +7,28 @@
 #include <inttypes.h>
 #include <string.h>
 
-vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
-                           const vxm_repair_options *options, vxm_error *error) {
+static vxm_status run(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
+                      const vxm_repair_options *options, bool separates, vxm_error *error) {
   if (out)
     *out = NULL;
   if (report)
     memset(report, 0, sizeof *report);
   if (!out || !mesh)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: an argument is NULL");
-  vxm_status status = vxm_repair_run(out, report, mesh, options, error);
+  vxm_status status = (separates ? vxm_repair_prepare : vxm_repair_run)(out, report, mesh, options, error);
   if (status != VXM_OK && report)
     memset(report, 0, sizeof *report);
   return status;
+}
+
+vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
+                           const vxm_repair_options *options, vxm_error *error) {
+  return run(out, report, mesh, options, false, error);
+}
+
+vxm_status vxm_mesh_prepare(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
+                            const vxm_repair_options *options, vxm_error *error) {
+  return run(out, report, mesh, options, true, error);
 }
 
 int64_t vxm_mesh_part_change_count(const vxm_mesh *repaired) {

@@ -21,7 +21,7 @@ vxm_status bench_stage_open(bench_stage *stage, const bench_plan *plan) {
   if (status != VXM_OK)
     return status;
   status = vxm_mesh_read_with(&stage->raw, stage->cli->context, stage->path, &stage->cli->read, error);
-  return status == VXM_OK ? vxm_mesh_repair(&stage->mesh, NULL, stage->raw, NULL, error) : status;
+  return status == VXM_OK ? vxm_mesh_prepare(&stage->mesh, NULL, stage->raw, NULL, error) : status;
 }
 
 vxm_status bench_stage_resize(bench_stage *stage, int64_t resolution) {

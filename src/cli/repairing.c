@@ -51,15 +51,7 @@ int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vx
     input->mesh = raw;
     return CLI_DONE;
   }
-  vxm_status status = vxm_mesh_repair(&input->mesh, &input->repair, raw, options, &cli->error);
-  if (status == VXM_OK && input->repair.shared_faces > 0 && !options->keep_orientation) {
-    /* Bodies that share a part of their surfaces are one component, whose parity is that of their difference.
-     */
-    vxm_repair_options apart = *options;
-    apart.level = VXM_LEVEL_MANIFOLD;
-    vxm_mesh_destroy(input->mesh);
-    status = vxm_mesh_repair(&input->mesh, &input->repair, raw, &apart, &cli->error);
-  }
+  vxm_status status = vxm_mesh_prepare(&input->mesh, &input->repair, raw, options, &cli->error);
   input->repair_ms = cli_clock() - read;
   vxm_mesh_destroy(raw);
   if (status != VXM_OK)

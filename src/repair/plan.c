@@ -270,8 +270,9 @@ static vxm_status repair(vxm_work *work, const vxm_soup *in, const vxm_repair_op
   return status;
 }
 
-vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
-                          const vxm_repair_options *options, vxm_error *error) {
+/** `*shared` becomes the number of faces that repeat others and stayed, at the level clean. */
+static vxm_status run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
+                      const vxm_repair_options *options, int64_t *shared, vxm_error *error) {
   *out = NULL;
   vxm_repair_report made = {0};
   vxm_work work = {.crossings = {-1, -1}};
@@ -287,7 +288,28 @@ vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_s
   if (report)
     *report = status == VXM_OK ? made : (vxm_repair_report){0};
   *out = status == VXM_OK ? work.soup : NULL;
+  *shared = made.shared_faces;
   return status;
+}
+
+vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
+                          const vxm_repair_options *options, vxm_error *error) {
+  int64_t shared;
+  return run(out, report, in, options, &shared, error);
+}
+
+vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
+                              const vxm_repair_options *options, vxm_error *error) {
+  int64_t shared;
+  vxm_repair_options apart = VXM_REPAIR_OPTIONS_INIT;
+  vxm_status status = run(out, report, in, options, &shared, error);
+  if (options)
+    apart = *options;
+  if (status != VXM_OK || shared == 0 || apart.keep_orientation)
+    return status;
+  vxm_soup_destroy(*out);
+  apart.level = VXM_LEVEL_MANIFOLD;
+  return run(out, report, in, &apart, &shared, error);
 }
 
 vxm_status vxm_repair_try(vxm_pass_finding findings[VXM_PASS_COUNT], const vxm_soup *in,

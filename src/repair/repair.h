@@ -36,6 +36,10 @@
 vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                           const vxm_repair_options *options, vxm_error *error);
 
+/** As vxm_repair_run, with bodies separated that share faces; see vxm_mesh_prepare in voxmend.h. */
+vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
+                              const vxm_repair_options *options, vxm_error *error);
+
 /** Checks options; NULL stands for the defaults. @return VXM_OK, VXM_ERROR_ARGUMENT */
 vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options *options, vxm_error *error);
 

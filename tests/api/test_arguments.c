@@ -39,6 +39,7 @@ static void test_outputs_after_refusal(void **state) {
   NULL_AFTER(vxm_mesh, vxm_mesh_read_with(&created, NULL, NULL, NULL, NULL));
   NULL_AFTER(vxm_mesh, vxm_mesh_read_memory_with(&created, NULL, NULL, 5, "x.off", NULL, NULL));
   NULL_AFTER(vxm_mesh, vxm_mesh_repair(&created, NULL, NULL, NULL, NULL));
+  NULL_AFTER(vxm_mesh, vxm_mesh_prepare(&created, NULL, NULL, NULL, NULL));
   NULL_AFTER(vxm_mesh, vxm_grid_surface_mesh(&created, NULL, NULL));
   NULL_AFTER(vxm_grid, vxm_grid_create(&created, NULL, NULL, NULL));
   NULL_AFTER(vxm_grid, vxm_grid_read(&created, NULL, NULL, NULL));

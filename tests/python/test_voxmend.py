@@ -133,6 +133,17 @@ class Grids(unittest.TestCase):
         self.assertEqual(len(hashes), 1)
         self.assertEqual(mesh.voxelize(24).hash, hashes.pop())
 
+    def test_bodies_that_share_faces(self):
+        cube = numpy.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+        faces = numpy.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
+        triangles = numpy.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
+        both = (numpy.concatenate([cube, cube * [1, 1, 0.5]]), numpy.concatenate([triangles, triangles + 8]))
+        self.assertEqual(voxmend.voxelize(both, 16).filled_count, 16 ** 3)  # not their difference
+        self.assertEqual(voxmend.repair(both, separate=True).info()["components"], 2)
+        sampler = voxmend.Sampler(16, fill=True)
+        sampler.put(voxmend.repair(both, separate=True))
+        self.assertEqual(int(sampler.batch(1).sum()), 16 ** 3)
+
     def test_spaces(self):
         mesh = voxmend.load(sample("torus"))
         self.assertTrue(numpy.allclose(mesh.voxelize(pitch=0.25).pitch, 0.25))
