@@ -361,8 +361,9 @@ VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, co
 
 /**
  * Repairs a mesh to be voxelized: as vxm_mesh_repair; but where bodies share faces at VXM_LEVEL_CLEAN, at
- * VXM_LEVEL_MANIFOLD, which gives each body its own: together they are one component, and its parity is that of their
- * difference. With keep_orientation they stay together. It is what voxmend voxelize and the Python package do.
+ * VXM_LEVEL_MANIFOLD, which gives each body its own: together they are one component, and its parity is that
+ * of their difference. With keep_orientation they stay together. It is what voxmend voxelize and the Python
+ * package do.
  *
  * @return as vxm_mesh_repair
  */
@@ -1208,8 +1209,8 @@ typedef struct vxm_sampler_options {
   double translate; /**< moved along each axis by up to this part, 0 to 1, of the room on either side */
   bool fill;        /**< the longest side fills the grid rather than the diagonal; without rotation only */
   vxm_voxelize_options voxelize; /**< how; not its space or confidence. An engine, which must outlive the
-                                    sampler, makes one variant after another, and moves the vertices if it says so
-                                    (vxm_engine_info.moves) */
+                                    sampler, makes one variant after another, and moves the vertices if it
+                                    says so (vxm_engine_info.moves) */
 } vxm_sampler_options;
 
 #define VXM_SAMPLER_OPTIONS_INIT                                                                             \
