@@ -138,7 +138,7 @@ static vxm_status run_level(vxm_work *work, bool *moved, vxm_error *error) {
   vxm_status status = VXM_OK;
   *moved = false;
   for (int i = 0; i < FURTHER && status == VXM_OK; i++) {
-    bool changed, turned;
+    bool changed = false, turned;
     status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, &changed, error);
     *moved = *moved || (changed && further[i].pass == move_apart);
     if (status == VXM_OK && changed && further[i].turns)
