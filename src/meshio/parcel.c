@@ -87,7 +87,7 @@ static vxm_status receive_failure(vxm_process *sender, vxm_error *error) {
     return status;
   tame(sent.text, sizeof sent.text);
   tame(sent.file, sizeof sent.file);
-  if (sent.code <= VXM_OK || sent.code > VXM_ERROR_CANCELLED)
+  if (sent.code <= VXM_OK || sent.code > VXM_ERROR_CANCELLED || !sent.text[0])
     return not_a_soup(error);
   if (error)
     *error = sent;
@@ -111,7 +111,7 @@ static vxm_status receive_arrays(vxm_soup *soup, vxm_process *sender, const parc
     return status;
   bool good = soup->offsets[0] == 0 && soup->offsets[counts->faces] == counts->corners;
   for (uint64_t f = 0; f < counts->faces; f++)
-    good &= soup->offsets[f] <= soup->offsets[f + 1];
+    good &= soup->offsets[f] <= soup->offsets[f + 1] && soup->offsets[f + 1] - soup->offsets[f] >= 3;
   for (uint64_t c = 0; c < counts->corners; c++)
     good &= soup->indices[c] < counts->vertices;
   if (!good) {
@@ -181,7 +181,10 @@ static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *e
     status =
         vxm_process_receive(sender, soup->notes.text, (size_t)counts.notes * sizeof *soup->notes.text, error);
   for (uint64_t n = 0; status == VXM_OK && n < counts.notes; n++)
-    tame(soup->notes.text[n], sizeof soup->notes.text[n]);
+    if (soup->notes.text[n][0])
+      tame(soup->notes.text[n], sizeof soup->notes.text[n]);
+    else
+      status = not_a_soup(error);
   if (status == VXM_OK)
     soup->notes.count = (int)counts.notes;
   return status;

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Any bytes through the readers of grids, and of the JSON beside them. */
+#include "fuzz.h"
+#include "fuzz_soup.h"
+
+#include "gridio/format.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+/** What a grid may take: run lengths make much of little, and the limit is what stops them. */
+enum { BESIDES = 1 << 22, RATE = 64 };
+
+static const vxm_grid_format *format_of(const char *name) {
+  static const vxm_grid_format *const formats[] = {&vxm_format_binvox, &vxm_format_npy, &vxm_format_nrrd,
+                                                   &vxm_format_rle, &vxm_format_vdb};
+  for (size_t f = 0; f < sizeof formats / sizeof *formats; f++)
+    if (strcmp(name, formats[f]->name) == 0)
+      return formats[f];
+  return &vxm_format_raw;
+}
+
+/** Padding that is not 0 would be counted. */
+static void check_padding(const vxm_grid *grid) {
+  uint64_t beyond = ~vxm_grid_tail_mask(grid);
+  for (size_t w = grid->row_words - 1; w < grid->word_count; w += grid->row_words)
+    fuzz_require((grid->words[w] & beyond) == 0, "rows end with zeros");
+}
+
+static void check_grid(const vxm_grid *grid) {
+  fuzz_require(vxm_space_check(&grid->space, NULL) == VXM_OK, "the space is one");
+  check_padding(grid);
+  for (int n = 0; n < grid->notes.count; n++)
+    fuzz_require(grid->notes.text[n][0] && !strchr(grid->notes.text[n], '\n'), "notes are one line");
+}
+
+static void read_as(const char *name, const char *path, const uint8_t *data, size_t size) {
+  vxm_context *context = fuzz_context(size, RATE, BESIDES);
+  vxm_input input = {.data = data, .size = size, .name = path, .context = context};
+  vxm_grid *grid = NULL;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_status status = format_of(name)->read(&grid, &input, &error);
+  fuzz_require((status == VXM_OK) == (grid != NULL), "a grid comes with success alone");
+  if (status == VXM_OK)
+    check_grid(grid);
+  else
+    fuzz_check_error(&error, status);
+  vxm_grid_destroy(grid);
+  vxm_context_destroy(context);
+}
+
+void fuzz_grid(const char *name, const uint8_t *data, size_t size) {
+  const vxm_grid_format *format = format_of(name);
+  vxm_input input = {.data = data, .size = size, .name = "fuzz"};
+  (void)format->sniff(&input);
+  read_as(name, "fuzz", data, size);
+}
+
+/* ---- The JSON beside a file ---- */
+
+static char data_path[64], json_path[80];
+static int json = -1;
+
+static void remove_folder(void) {
+  unlink(json_path);
+  *strrchr(data_path, '/') = '\0';
+  rmdir(data_path);
+}
+
+/** The JSON is a link to memory: disks are slow. */
+static void make_folder(void) {
+  char folder[] = "/tmp/voxmend-fuzz.XXXXXX", memory[40];
+  json = memfd_create("json", MFD_CLOEXEC);
+  fuzz_require(json >= 0 && mkdtemp(folder) != NULL, "there is a folder for files");
+  snprintf(data_path, sizeof data_path, "%s/x.raw", folder);
+  snprintf(json_path, sizeof json_path, "%s.json", data_path);
+  snprintf(memory, sizeof memory, "/proc/self/fd/%d", json);
+  fuzz_require(symlink(memory, json_path) == 0, "there is a link");
+  atexit(remove_folder);
+}
+
+/** Puts the bytes where the JSON of data_path lies. */
+static void put_json(const uint8_t *data, size_t size) {
+  if (json < 0)
+    make_folder();
+  fuzz_require(ftruncate(json, 0) == 0 && pwrite(json, data, size, 0) == (ssize_t)size,
+               "the JSON is written");
+}
+
+void fuzz_sidecar(const char *name, const uint8_t *data, size_t size) {
+  (void)name;
+  put_json(data, size);
+  vxm_context *context = fuzz_context(size, RATE, BESIDES);
+  vxm_space space;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_status status = vxm_sidecar_read(&space, context, data_path, "voxmend raw", &error);
+  if (status == VXM_OK)
+    fuzz_require(vxm_space_check(&space, NULL) == VXM_OK, "the space is one");
+  else
+    fuzz_check_error(&error, status);
+  vxm_context_destroy(context);
+}
+
+/** The JSON, a zero byte, and the voxels. */
+void fuzz_raw(const char *name, const uint8_t *data, size_t size) {
+  const uint8_t *zero = memchr(data, 0, size);
+  size_t length = zero ? (size_t)(zero - data) : size, rest = zero ? size - length - 1 : 0;
+  put_json(data, length);
+  uint8_t *voxels = malloc(rest ? rest : 1); /* a block of just this size, for sanitizers */
+  fuzz_require(voxels != NULL, "there is memory");
+  if (rest > 0)
+    memcpy(voxels, zero + 1, rest);
+  read_as(name, data_path, voxels, rest);
+  free(voxels);
+}
