@@ -113,6 +113,42 @@ VXM_API int vxm_context_threads(const vxm_context *context);
 /** Largest number of bytes held at once by the context so far. */
 VXM_API uint64_t vxm_context_peak_bytes(const vxm_context *context);
 
+/* ---- Files ---- */
+
+/*
+ * A file that is written appears under its name when it is complete, and replaces what was there. Until then
+ * it has no name where the file system can do that (O_TMPFILE), and only its user can read it. A new file has
+ * the rights that the umask or its folder's default list gives; one that replaces a file of the same owner
+ * keeps that one's, but never setuid, setgid and sticky bits. Links are followed, but no other user's in a
+ * folder that everybody may write to. What goes to "-" (standard output), a pipe or a device is written as it
+ * comes.
+ */
+
+/**
+ * From now on files that are written with this context, or with objects made in it, wait when they are
+ * complete, until vxm_context_publish_files names all of them. A second one of the same name is refused.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT if the context is NULL
+ */
+VXM_API vxm_status vxm_context_hold_files(vxm_context *context, vxm_error *error);
+/**
+ * Names the files that wait, and ends the waiting. They appear in the order in which they were written.
+ *
+ * @return VXM_OK; VXM_ERROR_IO: none appears, and those that were replaced are back (a file system without
+ *         renameat2 cannot give these back: then the new ones stay)
+ */
+VXM_API vxm_status vxm_context_publish_files(vxm_context *context, vxm_error *error);
+/** Drops the files that wait, and ends the waiting; so does destroying the context. */
+VXM_API void vxm_context_drop_files(vxm_context *context);
+/**
+ * Writes a file as this library writes its own.
+ *
+ * @param context may be NULL
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, VXM_ERROR_IO, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_file_write(vxm_context *context, const char *path, const void *data, size_t size,
+                                  vxm_error *error);
+
 /* ---- Meshes ---- */
 
 /** Vertices and polygons, with nothing assumed of them: a polygon soup, or a mesh after repair. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/context.h"
 #include "base/context_struct.h"
+#include "base/size_text.h"
 #include "base/threads.h"
 
 #include <inttypes.h>
@@ -52,6 +53,7 @@ vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *opti
   context->progress = chosen.progress;
   context->payload = chosen.payload;
   vxm_pool_init(&context->pool);
+  pthread_mutex_init(&context->held.mutex, NULL);
   *out = context;
   return VXM_OK;
 }
@@ -76,6 +78,8 @@ void vxm_context_release(vxm_context *context) {
   if (context->account != context)
     vxm_context_release(context->account);
   vxm_pool_destroy(&context->pool);
+  vxm_held_drop(context->held.first);
+  pthread_mutex_destroy(&context->held.mutex);
   free(context);
 }
 
@@ -106,26 +110,12 @@ uint64_t vxm_context_peak_bytes(const vxm_context *context) {
   return context ? atomic_load_explicit(&context->account->peak, memory_order_relaxed) : 0;
 }
 
-/** A number of bytes in the largest unit that leaves at least one, rounded up. */
-typedef struct readable {
-  uint64_t count;
-  const char *unit;
-} readable;
-
-static readable readable_bytes(uint64_t bytes) {
-  static const char *const unit[] = {"bytes", "KiB", "MiB", "GiB"};
-  int u = 0;
-  for (; u < 3 && bytes >= 10240; u++)
-    bytes = (bytes + 1023) / 1024;
-  return (readable){bytes, unit[u]};
-}
-
 static vxm_status fail_limit(vxm_error *error, const char *what, uint64_t needed, size_t limit, size_t used) {
-  readable n = readable_bytes(needed), l = readable_bytes(limit), u = readable_bytes(used);
   return vxm_fail(error, VXM_ERROR_MEMORY_LIMIT,
-                  "%s needs %" PRIu64 " %s, but the memory limit is %" PRIu64 " %s and %" PRIu64
-                  " %s of it are in use; raise it (--memlimit) or lower the resolution (-r)",
-                  what, n.count, n.unit, l.count, l.unit, u.count, u.unit);
+                  "%s needs %s, but the memory limit is %s and %s of it are in use; raise it (--memlimit) or "
+                  "lower the resolution (-r)",
+                  what, vxm_size_text_of(needed).text, vxm_size_text_of(limit).text,
+                  vxm_size_text_of(used).text);
 }
 
 /** Books `bytes`, or says why not. */
@@ -160,8 +150,8 @@ static size_t block_bytes(size_t count, size_t size) {
 }
 
 static void fail_memory(vxm_error *error, size_t bytes) {
-  vxm_fail(error, VXM_ERROR_MEMORY,
-           "out of memory (%zu MiB asked for); lower the resolution or free some memory", (bytes >> 20) + 1);
+  vxm_fail(error, VXM_ERROR_MEMORY, "out of memory (%s asked for); lower the resolution or free some memory",
+           vxm_size_text_of(bytes).text);
 }
 
 /* Large zeroed blocks come from calloc, whose fresh pages need no clearing; calloc aligns to 16 only, so the

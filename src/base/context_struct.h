@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The fields of a context; for context.c and threads.c only. */
+/** The fields of a context; for context.c, held.c and threads.c only. */
 #ifndef VXM_BASE_CONTEXT_STRUCT_H
 #define VXM_BASE_CONTEXT_STRUCT_H
 
-#include "base/context.h"
+#include "base/held.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -50,6 +50,7 @@ struct vxm_context {
   vxm_progress_fn progress;
   void *payload;
   vxm_pool pool;
+  vxm_held held; /**< of the account */
 };
 
 #endif

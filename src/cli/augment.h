@@ -25,6 +25,24 @@ int augment_read_arguments(cli_run *cli, augment_request *out);
 /** Whether variants go to standard output. */
 bool augment_is_stream(const augment_request *given);
 
+/** A folder of files, and how far it has come. */
+typedef struct augment_folder {
+  int64_t made;
+  int64_t replaced;         /**< of these, those that were there before */
+  uint64_t bytes;           /**< of all */
+  unsigned char *was_there; /**< for each file made or begun; to be freed */
+  bool is_new;              /**< the folder was made here */
+  bool written[64];         /**< of those that are being made: what is complete */
+  uint64_t sizes[64];       /**< of the last that were made */
+} augment_folder;
+
+/** CLI_STOP if a file in the folder would be one that is read, or the report. */
+int augment_check_folder(cli_run *cli, const augment_request *given);
+/** Writes the files; CLI_DONE or CLI_FAILED. */
+int augment_write_folder(cli_run *cli, augment_folder *f, const augment_request *given, vxm_sampler *sampler);
+/** A failed run leaves no file behind that was not there before. */
+void augment_remove_files(const augment_folder *f, const augment_request *given);
+
 /** Writes the records of a stream to standard output (doc/training.md has its form); CLI_DONE or CLI_FAILED.
  */
 int augment_stream(cli_run *cli, const augment_request *given, vxm_sampler *sampler, int64_t *made);

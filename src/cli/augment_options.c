@@ -245,7 +245,11 @@ int augment_read_arguments(cli_run *cli, augment_request *out) {
   out->input = cli->arguments[0];
   if (!out->output)
     return cli_usage(cli, "-o DIR or -o - is missing");
-  if (cli_check_report(cli, NULL) == CLI_STOP || cli_engine_check(cli, &out->engine) == CLI_STOP)
+  cli_reads(cli, out->rotations);
+  if (augment_is_stream(out))
+    cli_writes(cli, "-o", out->output, false);
+  if (cli_check_names(cli) == CLI_STOP || cli_engine_check(cli, &out->engine) == CLI_STOP ||
+      check_format(cli, out) == CLI_STOP || check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
-  return check_format(cli, out) == CLI_STOP ? CLI_STOP : check_conflicts(cli, out);
+  return augment_is_stream(out) ? CLI_END : augment_check_folder(cli, out);
 }

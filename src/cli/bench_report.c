@@ -151,9 +151,10 @@ static void print_memory(const cli_run *cli, const bench_plan *plan, const bench
       fprintf(cli->text, "\n%3d %-7s", memory->threads, memory->threads == 1 ? "thread" : "threads");
     fprintf(cli->text, " %7.1f", (double)memory->peak_bytes / (1 << 20));
   }
-  fprintf(cli->text, "\n%speak memory %.1f MiB in the library, %.1f MiB resident in all\n",
-          plan->resolution_count > 0 ? "\n" : "", (double)subject->peak_bytes / (1 << 20),
-          (double)bench_peak_rss() / (1 << 20));
+  char peak[24], resident[24];
+  fprintf(cli->text, "\n%speak memory %s in the library, %s resident in all\n",
+          plan->resolution_count > 0 ? "\n" : "", cli_bytes_text(peak, subject->peak_bytes),
+          cli_bytes_text(resident, (uint64_t)bench_peak_rss()));
 }
 
 static void print_machine(const cli_run *cli, const bench_machine *machine) {

@@ -73,9 +73,9 @@ void bench_team_destroy(bench_team *team) {
 }
 
 static vxm_status fail(cli_run *cli, vxm_status code, uint64_t bytes, const char *why) {
+  char size[24];
   cli->error.code = code;
-  snprintf(cli->error.text, sizeof cli->error.text, "memset of %" PRIu64 " MiB: %s",
-           (bytes + (1 << 20) - 1) >> 20, why);
+  snprintf(cli->error.text, sizeof cli->error.text, "memset of %s: %s", cli_bytes_text(size, bytes), why);
   return code;
 }
 

@@ -85,14 +85,13 @@ typedef struct cli_command {
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
     cli_command_compare, cli_command_augment, cli_command_view, cli_command_bench, cli_command_engines;
 
-enum { CLI_OPTIONS_MAX = 48, CLI_LIST_MAX = 512 };
+enum { CLI_OPTIONS_MAX = 48, CLI_LIST_MAX = 512, CLI_NAMES_MAX = 8 };
 
-/** A text file that the program writes itself: under a temporary name until it is complete. */
-typedef struct cli_file {
-  FILE *stream;     /**< NULL = not open */
-  const char *path; /**< the name it gets in the end */
-  char *temporary;  /**< the name it has until then; NULL if `path` is a device */
-} cli_file;
+/** A file that a run writes. */
+typedef struct cli_written {
+  const char *option, *path;
+  bool has_json; /**< and "PATH.json" beside it */
+} cli_written;
 
 /** One run of the program. */
 struct cli_run {
@@ -113,11 +112,10 @@ struct cli_run {
   vxm_error error;      /**< hand &cli->error to the library, then cli_fail */
   json_t *warnings;     /**< array of strings for the report */
   int64_t warning_count;
-  FILE *text;           /**< where the summary goes: stdout, or stderr while stdout carries the output */
-  cli_file report_file; /**< open from cli_start to cli_finish */
-  const char *made;     /**< output file that exists by now; removed if the run still fails */
-  const char *made_format;
-  const char *located; /**< picture of defects that exists by now; removed in the same way */
+  FILE *text; /**< where the summary goes: stdout, or stderr while stdout carries the output */
+  const char *reads[CLI_NAMES_MAX];  /**< beside the arguments, which are all read */
+  cli_written writes[CLI_NAMES_MAX]; /**< the output first; --report is added in the end */
+  int read_count, write_count;
   char phase[48];
   double drawn; /**< time at which progress was last drawn; 0 = none on the screen */
 };
@@ -132,7 +130,10 @@ int cli_next_option(cli_run *cli, const char **value);
 /** Prints one line about wrong usage, sets cli->status and returns CLI_STOP. */
 int cli_usage(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 void cli_help(const cli_command *command);
-/** Makes the context and opens the report; false after a failure that has been printed. */
+/**
+ * Makes the context, which holds the files that are written until cli_finish, and tries the report, so that a
+ * wrong name fails before the work; false after a failure that has been printed.
+ */
 bool cli_start(cli_run *cli);
 
 /* Strict readings: the whole text must be the value, in the C locale; false if it is not. */
@@ -157,6 +158,8 @@ int cli_choose(cli_run *cli, int *choice, const char *option, const char *value,
 const char *cli_output_format(cli_run *cli, const char *path, const char *format, const char *const *known);
 extern const char *const cli_mesh_formats[];
 extern const char *const cli_grid_formats[];
+/** Whether a grid of this format has a .json beside it. */
+bool cli_has_json(const char *format);
 /** Whether a file name ends in '.' and this extension, in any case. */
 bool cli_is_extension(const char *path, const char *extension);
 
@@ -224,21 +227,33 @@ json_t *cli_json_numbers(const double *values, int count);
 json_t *cli_json_space(const vxm_space *space);
 /** 16 hexadecimal digits, as JSON has no 64-bit unsigned numbers. */
 json_t *cli_json_hash(uint64_t hash);
-/** Opens a file of the program's own; false with errno set. */
-bool cli_file_open(cli_file *file, const char *path);
-/** Completes the file and gives it its name; false with errno set, then the file is still to be dropped. */
-bool cli_file_commit(cli_file *file);
-/** Drops a file that was not committed; does nothing if none is open. */
-void cli_file_drop(cli_file *file);
-/** Whether two names, neither of which is "-", are of one file, or will be once it is written. */
-bool cli_same_file(const char *a, const char *b);
-/** CLI_STOP if --report names one of the arguments, which are read, or what is written (NULL = nothing is).
+/** Whether a file may be written there, before anything else is; false after a line. */
+bool cli_try_file(cli_run *cli, const char *path);
+/**
+ * Names the files that were written: from here on they are there, all of them. Nothing but this replaces a
+ * file. CLI_FAILED after a line; then all is as it was before.
  */
-int cli_check_report(cli_run *cli, const char *output);
-/** Opens the file of --report, so that a wrong name fails before the work. */
-bool cli_report_open(cli_run *cli);
-/** Prints the report with --json, writes it with --report, and frees it. Returns an exit status. */
+int cli_publish(cli_run *cli);
+/** "1.5 GiB" */
+const char *cli_bytes_text(char text[24], uint64_t bytes);
+/** Prints the report with --json, writes it with --report, frees it, and publishes. Returns an exit status.
+ */
 int cli_finish(cli_run *cli, json_t *report);
+
+/* ---- names.c: which files are read and written ---- */
+
+/* A file that is read beside the arguments, or written; NULL = none. All are told before cli_check_names. */
+void cli_reads(cli_run *cli, const char *path);
+void cli_writes(cli_run *cli, const char *option, const char *path, bool has_json);
+/**
+ * CLI_STOP if a file that is written is one that is read, by whatever name or link, or belongs to it, or if
+ * two that are written are the same.
+ */
+int cli_check_names(cli_run *cli);
+/** For what is made of a grid: CLI_STOP if it is a surface and would replace a file. */
+int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced);
+#define CLI_OPTION_FORCE(key) \
+  { key, "force", NULL, "replace a file that is there by a surface: .obj, .ply, .stl or .off" }
 
 /* ---- progress.c ---- */
 
@@ -303,8 +318,8 @@ typedef struct cli_found {
 
 /** The argument of --list: CLI_END or CLI_STOP. */
 int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value);
-/** CLI_STOP if --locate has a wrong name, or that of the input, the report, or the output (NULL = none). */
-int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *input, const char *output);
+/** CLI_STOP if --locate has a wrong name. */
+int cli_defects_check(cli_run *cli, const cli_defects *defects);
 /** Prints the list that cli_defects_show has made; NULL = none. */
 void cli_defects_print(const cli_run *cli, const json_t *list);
 /** Finds, lists, counts and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */

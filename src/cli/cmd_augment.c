@@ -6,14 +6,12 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 typedef struct augment_outcome {
   cli_input input;
   vxm_census census;
+  augment_folder folder;
   int64_t made;
-  uint64_t bytes; /**< of the files */
   double prepare_ms, make_ms, total_ms;
 } augment_outcome;
 
@@ -57,101 +55,6 @@ static int read_rotations(cli_run *cli, augment_request *given, double **numbers
   return CLI_DONE;
 }
 
-/* ---- Files ---- */
-
-enum {
-  CHUNK = 64, /**< files made by all threads between two looks at the progress */
-  PATH_SIZE = 4096
-};
-
-/** A folder of files, and how far it has come. */
-typedef struct folder {
-  const augment_request *given;
-  vxm_sampler *sampler;
-  char *paths[CHUNK]; /**< of the present files, PATH_SIZE each */
-  bool written[CHUNK];
-  bool made; /**< the folder itself was made here */
-} folder;
-
-static void name_file(char *out, const augment_request *given, int64_t made, const char *behind) {
-  snprintf(out, PATH_SIZE, "%s/%06" PRId64 ".%s%s", given->output, given->first + made, given->format,
-           behind);
-}
-
-static int write_files(cli_run *cli, folder *f, size_t count, augment_outcome *results) {
-  const augment_request *given = f->given;
-  vxm_variant variants[CHUNK];
-  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
-  options.format = given->format;
-  for (size_t i = 0; i < count; i++) {
-    variants[i] = given->variant;
-    variants[i].index = (uint32_t)(given->first + results->made + (int64_t)i);
-    name_file(f->paths[i], given, results->made + (int64_t)i, "");
-  }
-  const char *const *paths = (const char *const *)f->paths;
-  if (vxm_sampler_files(paths, f->sampler, variants, count, &options, f->written, &cli->error) != VXM_OK)
-    return cli_fail(cli);
-  results->made += (int64_t)count;
-  for (size_t i = 0; i < count; i++) {
-    struct stat info;
-    f->written[i] = false; /* but counted */
-    if (stat(f->paths[i], &info) == 0)
-      results->bytes += (uint64_t)info.st_size;
-  }
-  return CLI_DONE;
-}
-
-/** A failed run leaves nothing behind. */
-static void remove_files(const folder *f, const augment_outcome *results) {
-  static const char *const behind[] = {"", ".json"};
-  bool has_json = strcmp(f->given->format, "raw") == 0 || strcmp(f->given->format, "npy") == 0;
-  for (int64_t i = 0; i < results->made + CHUNK; i++)
-    for (int k = 0; k < 1 + has_json; k++) {
-      char path[PATH_SIZE];
-      name_file(path, f->given, i, behind[k]);
-      if (i < results->made || f->written[i - results->made])
-        unlink(path);
-    }
-  if (f->made)
-    rmdir(f->given->output);
-}
-
-static int write_chunks(cli_run *cli, folder *f, augment_outcome *results) {
-  int64_t count = f->given->count;
-  while (results->made < count) {
-    if (cli_progress(cli, "augmenting", (double)results->made / (double)count)) {
-      cli->error.code = VXM_ERROR_CANCELLED;
-      return cli_fail(cli);
-    }
-    int64_t left = count - results->made;
-    if (write_files(cli, f, left < CHUNK ? (size_t)left : CHUNK, results) != CLI_DONE)
-      return CLI_FAILED;
-  }
-  return CLI_DONE;
-}
-
-static int write_folder(cli_run *cli, const augment_request *given, vxm_sampler *sampler,
-                        augment_outcome *results) {
-  folder f = {.given = given, .sampler = sampler};
-  if (strlen(given->output) > PATH_SIZE - 64)
-    return cli_fail_text(cli, "the name of the folder is too long");
-  char *names = malloc((size_t)CHUNK * PATH_SIZE);
-  if (!names)
-    return cli_fail_text(cli, "out of memory");
-  for (size_t i = 0; i < CHUNK; i++)
-    f.paths[i] = names + i * PATH_SIZE;
-  int status = CLI_DONE;
-  f.made = mkdir(given->output, 0777) == 0;
-  if (!f.made && errno != EEXIST)
-    status = cli_fail_text(cli, "%s: cannot make the folder: %s", given->output, strerror(errno));
-  else
-    status = write_chunks(cli, &f, results);
-  if (status != CLI_DONE)
-    remove_files(&f, results);
-  free(names);
-  return status;
-}
-
 /* ---- Work ---- */
 
 static int make_variants(cli_run *cli, augment_request *given, augment_outcome *results) {
@@ -169,7 +72,9 @@ static int make_variants(cli_run *cli, augment_request *given, augment_outcome *
   results->prepare_ms = made - start;
   int result = status != VXM_OK           ? cli_fail(cli)
                : augment_is_stream(given) ? augment_stream(cli, given, sampler, &results->made)
-                                          : write_folder(cli, given, sampler, results);
+                                          : augment_write_folder(cli, &results->folder, given, sampler);
+  if (!augment_is_stream(given))
+    results->made = results->folder.made;
   results->make_ms = cli_clock() - made;
   vxm_sampler_destroy(sampler);
   return result;
@@ -193,7 +98,7 @@ static json_t *report(const cli_run *cli, const augment_request *given, const au
   json_object_set_new(object, "epoch", json_integer(given->variant.epoch));
   json_object_set_new(object, "first", json_integer(given->first));
   json_object_set_new(object, "variants", json_integer(results->made));
-  json_object_set_new(object, "file_bytes", json_integer((json_int_t)results->bytes));
+  json_object_set_new(object, "file_bytes", json_integer((json_int_t)results->folder.bytes));
   if (given->engine.engine)
     json_object_set_new(object, "engine", cli_engine_json(&given->engine));
   json_object_set_new(time, "read", cli_json_number(results->input.read_ms));
@@ -221,7 +126,7 @@ static void summarize(const cli_run *cli, const augment_request *given, const au
   if (augment_is_stream(given))
     cli_row(cli, "output", "<stdout> (%s)", given->format);
   else
-    cli_row(cli, "output", "%s (%s), %" PRIu64 " bytes", given->output, given->format, results->bytes);
+    cli_row(cli, "output", "%s (%s), %" PRIu64 " bytes", given->output, given->format, results->folder.bytes);
   cli_row(cli, "time", "%.1f ms: read %.1f, repair %.1f, prepare %.1f, make %.1f", results->total_ms,
           input->read_ms, input->repair_ms, results->prepare_ms, results->make_ms);
 }
@@ -252,6 +157,9 @@ static int run(cli_run *cli) {
       summarize(cli, &given, &results);
     status = cli_finish(cli, report(cli, &given, &results));
   }
+  if (status == CLI_FAILED)
+    augment_remove_files(&results.folder, &given);
+  free(results.folder.was_there);
   vxm_engine_destroy(given.engine.engine);
   return status;
 }

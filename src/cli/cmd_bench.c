@@ -200,8 +200,6 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   plan->path = cli->arguments[0];
-  if (cli_check_report(cli, NULL) == CLI_STOP)
-    return CLI_STOP;
   if (plan->augment && plan->forced)
     return cli_usage(cli, "--augment and --phases both say what to measure");
   choose_resolutions(plan);
@@ -211,8 +209,9 @@ static int read_arguments(cli_run *cli, bench_plan *plan) {
     return cli_usage(cli, "the mesh is read many times, which standard input cannot be; name a file");
   if (plan->plot && !cli_is_extension(plan->plot, "svg"))
     return cli_usage(cli, "--plot '%s': the name must end in .svg", plan->plot);
-  if (plan->plot && cli->report && cli_same_file(plan->plot, cli->report))
-    return cli_usage(cli, "--plot and --report name the same file");
+  cli_writes(cli, "--plot", plan->plot, false);
+  if (cli_check_names(cli) == CLI_STOP)
+    return CLI_STOP;
   if (!has_grids(plan)) {
     if (plan->plot)
       return cli_usage(cli, "--plot shows times over the resolution, and none of the phases depends on it");
@@ -228,7 +227,6 @@ typedef struct bench_work {
   bench_plan plan;
   bench_subject subject;
   bench_results results;
-  cli_file plot;
   int done, total; /**< measurements */
 } bench_work;
 
@@ -315,17 +313,21 @@ static int measure_threads(bench_work *work, int threads) {
   return status;
 }
 
-static int fail_plot(const bench_work *work) {
-  return cli_fail_text(work->cli, "%s: cannot write the plot: %s", work->plan.plot, strerror(errno));
-}
-
 static int write_plot(bench_work *work) {
-  bench_plot(work->plot.stream, &work->plan, &work->subject, &work->results);
-  if (!cli_file_commit(&work->plot))
-    return fail_plot(work);
-  work->cli->made = work->plan.plot;
-  work->cli->made_format = "svg";
-  return CLI_DONE;
+  cli_run *cli = work->cli;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *stream = open_memstream(&text, &size);
+  if (stream)
+    bench_plot(stream, &work->plan, &work->subject, &work->results);
+  if (!stream || fclose(stream) != 0)
+    return cli_fail_text(cli, "%s: cannot write the plot: %s", work->plan.plot, strerror(errno));
+  vxm_status status =
+      vxm_context_hold_files(cli->context, &cli->error); /* the context is the last of several */
+  if (status == VXM_OK)
+    status = vxm_file_write(cli->context, work->plan.plot, text, size, &cli->error);
+  free(text);
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
 /** Looks at the mesh once, so that what is wrong with it is told before the work, and once. */
@@ -360,8 +362,8 @@ static int check_results(const bench_work *work) {
 
 static int bench(bench_work *work) {
   cli_run *cli = work->cli;
-  if (work->plan.plot && !cli_file_open(&work->plot, work->plan.plot))
-    return fail_plot(work);
+  if (work->plan.plot && !cli_try_file(cli, work->plan.plot))
+    return CLI_FAILED;
   if (look_at_mesh(work) != CLI_DONE)
     return CLI_FAILED;
   choose_threads(&work->plan, cli);
@@ -390,7 +392,6 @@ static int run(cli_run *cli) {
     return CLI_FAILED;
   bench_machine_read(&work.subject.machine);
   int status = bench(&work);
-  cli_file_drop(&work.plot);
   free(work.results.items);
   return status;
 }

@@ -59,7 +59,7 @@ static int run(cli_run *cli) {
     cli_usage(cli, "two grids are expected, not %d", cli->argument_count);
     return cli->status;
   }
-  if (cli_check_report(cli, NULL) == CLI_STOP)
+  if (cli_check_names(cli) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;

@@ -4,7 +4,7 @@
 
 #include <inttypes.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND };
+enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
@@ -14,10 +14,12 @@ static const cli_option known_options[] = {
     {KEY_FORMAT, "format", "F",
      "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
      "output]"},
+    CLI_OPTION_FORCE(KEY_FORCE),
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output, *format;
+  bool force;
 } request;
 
 static int read_arguments(cli_run *cli, request *out) {
@@ -28,15 +30,20 @@ static int read_arguments(cli_run *cli, request *out) {
       out->output = value;
     else if (key == KEY_FORMAT)
       out->format = value;
+    else if (key == KEY_FORCE)
+      out->force = true;
     else
       return CLI_STOP;
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
-  if (cli_check_report(cli, out->output) == CLI_STOP)
-    return CLI_STOP;
   out->format = cli_output_format(cli, out->output, out->format, cli_grid_formats);
-  return out->format ? CLI_END : CLI_STOP;
+  if (!out->format)
+    return CLI_STOP;
+  cli_writes(cli, "-o", out->output, cli_has_json(out->format));
+  if (cli_check_names(cli) == CLI_STOP)
+    return CLI_STOP;
+  return cli_check_surface_file(cli, out->output, out->format, out->force);
 }
 
 static json_t *make_report(const cli_run *cli, const request *given, const vxm_grid *grid) {
@@ -55,8 +62,6 @@ static int convert(cli_run *cli, const request *given, const vxm_grid *grid) {
   write.format = given->format;
   if (vxm_grid_write(grid, given->output, &write, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli->made = given->output;
-  cli->made_format = given->format;
   cli_progress_clear(cli);
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));

@@ -55,19 +55,21 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
   fprintf(cli->text, "  version                %s\n", info->version);
   fprintf(cli->text, "  moves variants         %s\n",
           info->moves ? "yes" : "no: the CPU does (voxmend augment)");
+  char memory[24], buffers[24];
+  cli_bytes_text(memory, (uint64_t)info->global_bytes);
+  cli_bytes_text(buffers, (uint64_t)info->block_bytes);
   if (is_opencl) {
     fprintf(cli->text,
-            "  limits                 %d compute units, groups of %" PRId64 "; memory of %" PRId64
-            " MiB, buffers of %" PRId64 " MiB,\n                         %" PRId64 " KiB shared by a group\n",
-            info->compute_units, info->work_group, info->global_bytes >> 20, info->block_bytes >> 20,
-            info->local_bytes >> 10);
+            "  limits                 %d compute units, groups of %" PRId64
+            "; memory of %s, buffers of %s,\n                         %" PRId64 " KiB shared by a group\n",
+            info->compute_units, info->work_group, memory, buffers, info->local_bytes >> 10);
     fprintf(cli->text, "  64-bit atomics         %s\n", info->int64_atomics ? "yes" : "no (not needed)");
     return;
   }
   fprintf(cli->text,
-          "  limits                 buffers of %" PRId64 " MiB, viewports of %" PRId64 ", %" PRId64
+          "  limits                 buffers of %s, viewports of %" PRId64 ", %" PRId64
           " layers, %d sub-pixel bits\n",
-          info->block_bytes >> 20, info->viewport, info->layers, info->subpixel_bits);
+          buffers, info->viewport, info->layers, info->subpixel_bits);
   fprintf(cli->text, "  64-bit integers        %s\n",
           info->int64 ? "yes" : "no: --gl-method slices and tetra-vertex only");
   fprintf(cli->text, "  XOR self-test          passed with %s\n", info->attachment);

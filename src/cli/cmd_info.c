@@ -79,9 +79,10 @@ static int read_arguments(cli_run *cli, cli_defects *wanted) {
     return cli_usage(cli, "a mesh is missing");
   if (wanted->locate && cli->argument_count > 1)
     return cli_usage(cli, "--locate is for one mesh, not %d", cli->argument_count);
-  if (cli_check_report(cli, NULL) == CLI_STOP)
+  if (cli_defects_check(cli, wanted) == CLI_STOP)
     return CLI_STOP;
-  return cli_defects_check(cli, wanted, cli->arguments[0], NULL);
+  cli_writes(cli, "--locate", wanted->locate, false);
+  return cli_check_names(cli);
 }
 
 static int run(cli_run *cli) {

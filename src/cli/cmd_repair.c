@@ -181,9 +181,7 @@ static int check_conflicts(cli_run *cli, const request *given) {
                           "--fill-holes, --fill, --union and --max-change");
   if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
-  if (cli_check_report(cli, given->output) == CLI_STOP)
-    return CLI_STOP;
-  return cli_defects_check(cli, &given->defects, given->input, given->output);
+  return cli_defects_check(cli, &given->defects);
 }
 
 /** CLI_DONE, or CLI_STOP with cli->status set. */
@@ -200,6 +198,10 @@ static int read_arguments(cli_run *cli, request *out) {
     return CLI_STOP;
   out->write.format = cli_output_format(cli, out->output, out->format, cli_mesh_formats);
   if (!out->write.format)
+    return CLI_STOP;
+  cli_writes(cli, "-o", out->output, false);
+  cli_writes(cli, "--locate", out->defects.locate, false);
+  if (cli_check_names(cli) == CLI_STOP)
     return CLI_STOP;
   out->repair.part_changes = cli_summary(cli) || cli->json || cli->report;
   out->repair.intersections =
@@ -221,9 +223,10 @@ static int refuse(cli_run *cli, const request *given, repair_outcome *outcome) {
   cli_fail(cli);
   if (!cli->quiet && outcome->verification.count > 0)
     repair_say_remains(cli, stderr, outcome);
-  cli->located = NULL;
   if (wants_report(cli) && outcome->mesh)
     cli_finish(cli, repair_report(cli, given->input, NULL, outcome));
+  else
+    cli_publish(cli);
   return CLI_FAILED;
 }
 
@@ -269,8 +272,6 @@ static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcom
     return refuse(cli, given, outcome);
   if (status != VXM_OK)
     return cli_fail(cli);
-  cli->made = given->output;
-  cli->made_format = given->write.format;
   if (outcome->repair.opened_parts > 0)
     cli_warn(cli, "%s: %lld closed parts are open after the repair", given->output,
              (long long)outcome->repair.opened_parts);

@@ -78,7 +78,8 @@ static int read_arguments(cli_run *cli, request *out) {
     return cli_usage(cli, "-o FILE.png is missing");
   if (!cli_is_extension(out->output, "png"))
     return cli_usage(cli, "the picture is a PNG: '%s' must end in .png", out->output);
-  return cli_check_report(cli, out->output);
+  cli_writes(cli, "-o", out->output, false);
+  return cli_check_names(cli);
 }
 
 static bool is_named(const char *path, const char *const *formats, int count) {
@@ -129,8 +130,6 @@ static int draw(cli_run *cli, const request *given, const vxm_grid *grid) {
   cli_warn_grid(cli, given->input, grid);
   if (vxm_grid_picture(grid, given->output, &given->picture, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli->made = given->output;
-  cli->made_format = "png";
   cli_progress_clear(cli);
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));

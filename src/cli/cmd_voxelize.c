@@ -38,8 +38,6 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
     status = vxm_grid_write(grid, given->output, &options, &cli->error);
   results->voxelize_ms += made - start;
   if (status == VXM_OK) {
-    cli->made = given->output;
-    cli->made_format = given->format;
     if (given->confidence)
       status = vxm_grid_write_confidence(grid, given->confidence, &cli->error);
     if (status == VXM_OK && given->coords)
@@ -68,8 +66,6 @@ static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_ou
   vxm_status status = vxm_sparse_write(sparse, given->output, &options, &cli->error);
   results->voxelize_ms += made - start;
   if (status == VXM_OK) {
-    cli->made = given->output;
-    cli->made_format = given->format;
     if (given->coords)
       status = vxm_sparse_write_coords(sparse, given->coords, &cli->error);
   }
@@ -92,8 +88,6 @@ static int write_model(cli_run *cli, voxelize_request *given, voxelize_outcome *
           : vxm_model_write(&results->voxelize, model, &results->space, given->output, &options, &cli->error);
   if (status != VXM_OK)
     return cli_fail(cli);
-  cli->made = given->output;
-  cli->made_format = given->field.labels ? "npy" : given->format; /* labels have a .json beside them too */
   results->write_ms = results->voxelize.write_ms;
   results->voxelize_ms += cli_clock() - start - results->write_ms;
   warn_of_model(cli, given, model);

@@ -11,18 +11,12 @@ int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value)
   return CLI_END;
 }
 
-int cli_defects_check(cli_run *cli, const cli_defects *defects, const char *input, const char *output) {
+int cli_defects_check(cli_run *cli, const cli_defects *defects) {
   const char *locate = defects->locate;
   if (!locate)
     return CLI_END;
   if (!cli_is_extension(locate, "ply"))
     return cli_usage(cli, "--locate '%s': the name must end in .ply", locate);
-  if (cli_same_file(locate, input))
-    return cli_usage(cli, "--locate would overwrite the mesh that is read");
-  if (output && cli_same_file(locate, output))
-    return cli_usage(cli, "--locate and -o name the same file");
-  if (cli->report && cli_same_file(locate, cli->report))
-    return cli_usage(cli, "--locate and --report name the same file");
   return CLI_END;
 }
 
@@ -63,8 +57,6 @@ int cli_defects_show(cli_run *cli, cli_found *out, const cli_defects *wanted, co
   vxm_status status = vxm_mesh_defects(&found, mesh, most, wanted->intersections, &cli->error);
   if (status == VXM_OK && wanted->locate)
     status = vxm_defects_write(found, mesh, wanted->locate, &cli->error);
-  if (status == VXM_OK && wanted->locate)
-    cli->located = wanted->locate;
   if (status == VXM_OK && wanted->list)
     out->list = list_json(found, wanted->list);
   if (status == VXM_OK)

@@ -5,8 +5,6 @@
 #include <errno.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static const cli_command *const commands[] = {
     &cli_command_info,    &cli_command_repair,  &cli_command_voxelize,
@@ -47,27 +45,6 @@ static int flush_output(cli_run *cli, int status) {
              : status;
 }
 
-static void remove_file(const char *path) {
-  struct stat info;
-  if (path && lstat(path, &info) == 0 && S_ISREG(info.st_mode))
-    unlink(path);
-}
-
-/** A failed run leaves no output file, not even one that was complete, nor the .json beside it. */
-static void remove_output(const cli_run *cli) {
-  struct stat info;
-  remove_file(cli->located);
-  if (!cli->made || lstat(cli->made, &info) != 0 || !S_ISREG(info.st_mode))
-    return;
-  unlink(cli->made);
-  if (strcmp(cli->made_format, "raw") != 0 && strcmp(cli->made_format, "npy") != 0)
-    return;
-  char beside[4096];
-  int length = snprintf(beside, sizeof beside, "%s.json", cli->made);
-  if (length > 0 && (size_t)length < sizeof beside)
-    unlink(beside);
-}
-
 static int run(const cli_command *command, int argc, char **argv) {
   cli_run cli = {.command = command,
                  .argc = argc,
@@ -79,9 +56,7 @@ static int run(const cli_command *command, int argc, char **argv) {
                  .warnings = json_array(),
                  .text = stdout};
   int status = flush_output(&cli, command->run(&cli));
-  if (status == CLI_FAILED)
-    remove_output(&cli);
-  cli_file_drop(&cli.report_file);
+  vxm_context_drop_files(cli.context); /* a failed run leaves no output file */
   vxm_context_destroy(cli.context);
   json_decref(cli.warnings);
   return status;
@@ -107,6 +82,7 @@ int main(int argc, char **argv) {
     cli_usage(&none, name[0] == '-' ? "unknown option %s" : "unknown command '%s'", name);
     return none.status;
   }
+  signal(SIGXFSZ, SIG_IGN); /* a write beyond ulimit -f fails, and says so */
   int status = run(command, argc - 1, argv + 1);
   if (status == CLI_FAILED && cli_signal()) {
     signal(cli_signal(), SIG_DFL); /* ends as the sender of the signal expects */

@@ -208,8 +208,9 @@ int cli_next_option(cli_run *cli, const char **value) {
 
 bool cli_start(cli_run *cli) {
   cli_progress_init(cli);
-  if (vxm_context_create(&cli->context, &cli->limits, &cli->error) == VXM_OK)
-    return cli_report_open(cli);
+  if (vxm_context_create(&cli->context, &cli->limits, &cli->error) == VXM_OK &&
+      vxm_context_hold_files(cli->context, &cli->error) == VXM_OK)
+    return !cli->report || cli_try_file(cli, cli->report);
   cli_fail(cli);
   return false;
 }
@@ -314,6 +315,10 @@ static bool equal_nocase(const char *a, const char *b) {
     b++;
   }
   return !*a && !*b;
+}
+
+bool cli_has_json(const char *format) {
+  return strcmp(format, "raw") == 0 || strcmp(format, "npy") == 0;
 }
 
 bool cli_is_extension(const char *path, const char *extension) {

@@ -10,7 +10,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
-#include <unistd.h>
 
 /* ---- Messages ---- */
 
@@ -151,109 +150,64 @@ json_t *cli_json_hash(uint64_t hash) {
 
 enum { JSON_STYLE = JSON_INDENT(2) | JSON_REAL_PRECISION(17) };
 
-static bool report_failed(cli_run *cli, int reason) {
-  cli_fail_text(cli, "%s: cannot write the report: %s", cli->report, strerror(reason));
-  return false;
-}
+/* ---- Files ---- */
 
-bool cli_file_open(cli_file *file, const char *path) {
-  *file = (cli_file){.path = path};
+bool cli_try_file(cli_run *cli, const char *path) {
   struct stat info;
-  bool replace = stat(path, &info) != 0 || S_ISREG(info.st_mode);
-  if (replace) {
-    size_t size = strlen(path) + 32;
-    file->temporary = malloc(size);
-    if (!file->temporary)
-      return false;
-    snprintf(file->temporary, size, "%s.%ld.tmp", path, (long)getpid());
-  }
-  file->stream = fopen(replace ? file->temporary : path, "we");
-  if (file->stream)
-    return true;
-  int reason = errno;
-  free(file->temporary);
-  file->temporary = NULL;
-  errno = reason;
-  return false;
+  if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))
+    return true; /* opening a pipe and closing it again is noticed at its other end */
+  vxm_status status = vxm_file_write(cli->context, path, "", 0, &cli->error);
+  vxm_context_drop_files(cli->context);
+  if (status == VXM_OK)
+    status = vxm_context_hold_files(cli->context, &cli->error);
+  return status == VXM_OK || cli_fail(cli) == CLI_DONE;
 }
 
-bool cli_file_commit(cli_file *file) {
-  if (fflush(file->stream) != 0 || ferror(file->stream))
-    return false;
-  if (file->temporary && rename(file->temporary, file->path) != 0)
-    return false;
-  fclose(file->stream);
-  free(file->temporary);
-  *file = (cli_file){0};
-  return true;
+int cli_publish(cli_run *cli) {
+  return vxm_context_publish_files(cli->context, &cli->error) == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
-void cli_file_drop(cli_file *file) {
-  if (file->stream) {
-    fclose(file->stream);
-    if (file->temporary)
-      unlink(file->temporary);
-  }
-  free(file->temporary);
-  *file = (cli_file){0};
+static int write_report(cli_run *cli, const json_t *report) {
+  char *text = json_dumps(report, JSON_STYLE);
+  size_t length = text ? strlen(text) : 0;
+  if (!text)
+    return cli_fail_text(cli, "%s: cannot write the report: out of memory", cli->report);
+  text[length] = '\n'; /* in place of the terminator */
+  vxm_status status = vxm_file_write(cli->context, cli->report, text, length + 1, &cli->error);
+  free(text);
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
-/** The folder that a file is in, with all links followed; NULL if there is none. To be freed. */
-static char *folder_of(const char *path) {
-  const char *slash = strrchr(path, '/');
-  char *folder = slash ? strndup(path, (size_t)(slash - path + 1)) : strdup(".");
-  char *real = folder ? realpath(folder, NULL) : NULL;
-  free(folder);
-  return real;
-}
-
-bool cli_same_file(const char *a, const char *b) {
-  struct stat first, second;
-  if (strcmp(a, "-") == 0 || strcmp(b, "-") == 0)
-    return false;
-  bool a_is_there = stat(a, &first) == 0, b_is_there = stat(b, &second) == 0;
-  if (a_is_there && b_is_there)
-    return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
-  if (a_is_there || b_is_there)
-    return false;
-  const char *a_name = strrchr(a, '/'), *b_name = strrchr(b, '/');
-  if (strcmp(a_name ? a_name + 1 : a, b_name ? b_name + 1 : b) != 0)
-    return false;
-  char *a_folder = folder_of(a), *b_folder = folder_of(b);
-  bool same = a_folder && b_folder && strcmp(a_folder, b_folder) == 0;
-  free(b_folder);
-  free(a_folder);
-  return same;
-}
-
-int cli_check_report(cli_run *cli, const char *output) {
-  for (int i = 0; i < cli->argument_count && cli->report; i++)
-    if (cli_same_file(cli->report, cli->arguments[i]))
-      return cli_usage(cli, "--report would overwrite %s, which is read", cli->arguments[i]);
-  if (cli->report && output && cli_same_file(cli->report, output))
-    return cli_usage(cli, "--report and -o name the same file");
-  return CLI_END;
-}
-
-bool cli_report_open(cli_run *cli) {
-  return !cli->report || cli_file_open(&cli->report_file, cli->report) || report_failed(cli, errno);
-}
-
-static bool write_report(cli_run *cli, const json_t *report) {
-  FILE *stream = cli->report_file.stream;
-  bool good = json_dumpf(report, stream, JSON_STYLE) == 0 && fputc('\n', stream) != EOF;
-  return (good && cli_file_commit(&cli->report_file)) || report_failed(cli, errno);
+/** What was printed may still be lost when it is flushed, on a full disk for one. */
+static int flush_output(cli_run *cli) {
+  return fflush(stdout) == 0 && !ferror(stdout)
+             ? CLI_DONE
+             : cli_fail_text(cli, "<stdout>: cannot write: %s", strerror(errno));
 }
 
 int cli_finish(cli_run *cli, json_t *report) {
   cli_progress_clear(cli);
-  bool good = true;
+  int status = CLI_DONE;
   if (cli->json && (json_dumpf(report, stdout, JSON_STYLE) != 0 || putchar('\n') == EOF))
-    good = cli_fail_text(cli, "<stdout>: cannot write the report") == CLI_DONE;
-  if (good && cli->report)
-    good = write_report(cli, report);
+    status = cli_fail_text(cli, "<stdout>: cannot write: %s", strerror(errno));
+  if (status == CLI_DONE)
+    status = flush_output(cli);
+  if (status == CLI_DONE && cli->report)
+    status = write_report(cli, report);
   json_decref(report);
-  if (!good)
-    return CLI_FAILED;
+  if (status == CLI_DONE)
+    status = cli_publish(cli);
+  if (status != CLI_DONE)
+    return status;
   return cli->strict && cli->warning_count > 0 ? CLI_WARNED : CLI_DONE;
+}
+
+const char *cli_bytes_text(char text[24], uint64_t bytes) {
+  static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+  double value = (double)bytes;
+  int unit = 0;
+  for (; unit < 4 && value >= (unit == 0 ? 1024 : 1023.95); unit++) /* 1024.0 of one is 1.0 of the next */
+    value /= 1024;
+  snprintf(text, 24, unit == 0 ? "%.0f %s" : "%.1f %s", value, units[unit]);
+  return text;
 }

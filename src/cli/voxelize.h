@@ -7,8 +7,8 @@
 
 typedef struct voxelize_request {
   const char *input, *output, *format, *like, *confidence, *coords;
-  bool resolution, size, fit, pad, bounds, vote, surface, no_repair, repair_options, dry_run,
-      sparse; /**< which were given */
+  bool resolution, size, fit, pad, bounds, vote, surface, no_repair, repair_options, dry_run, sparse,
+      force; /**< which were given */
   vxm_repair_options repair;
   vxm_voxelize_options voxelize;
   cli_field field;

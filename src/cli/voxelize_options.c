@@ -29,6 +29,7 @@ enum {
   KEY_WELD,
   KEY_KEEP,
   KEY_FORMAT,
+  KEY_FORCE,
   KEY_DRY_RUN
 };
 
@@ -40,6 +41,7 @@ const cli_option voxelize_options[] = {
     {KEY_FORMAT, "format", "F",
      "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
      "output]"},
+    CLI_OPTION_FORCE(KEY_FORCE),
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
     {KEY_FIT, "fit", "cube|tight|sphere",
@@ -217,6 +219,9 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
   case KEY_COORDS:
     out->coords = value;
     return CLI_END;
+  case KEY_FORCE:
+    out->force = true;
+    return CLI_END;
   case KEY_DRY_RUN:
     out->dry_run = true;
     return CLI_END;
@@ -263,8 +268,6 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
     return CLI_STOP;
   if (given->confidence && !is_npy(given->confidence))
     return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
-  if (given->confidence && given->output && cli_same_file(given->confidence, given->output))
-    return cli_usage(cli, "--confidence and -o name the same file");
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
   if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
@@ -272,16 +275,23 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
                           "--labels and --color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
-  if (given->coords && ((given->output && cli_same_file(given->coords, given->output)) ||
-                        (given->confidence && cli_same_file(given->coords, given->confidence))))
-    return cli_usage(cli, "--coords and another output name the same file");
   if (cli_engine_check(cli, &given->engine) == CLI_STOP)
     return CLI_STOP;
   if (cli_check_repair(cli, given->no_repair, given->repair_options) == CLI_STOP)
     return CLI_STOP;
-  if (cli_check_report(cli, given->output) == CLI_STOP)
-    return CLI_STOP;
   return cli_field_check(cli, &given->field, given->voxelize.mode, given->dry_run, given->confidence);
+}
+
+static int check_names(cli_run *cli, const voxelize_request *given) {
+  cli_reads(cli, given->like);
+  if (given->field.color && given->field.color_options.by == VXM_COLOR_GLSL)
+    cli_reads(cli, given->field.color_name);
+  cli_writes(cli, "-o", given->output, cli_has_json(given->format) || given->field.labels);
+  cli_writes(cli, "--confidence", given->confidence, false);
+  cli_writes(cli, "--coords", given->coords, false);
+  if (cli_check_names(cli) == CLI_STOP)
+    return CLI_STOP;
+  return cli_check_surface_file(cli, given->output, given->format, given->force || given->dry_run);
 }
 
 bool voxelize_is_sliced(const char *format) {
@@ -305,5 +315,5 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
                         cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_grid_formats);
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
     return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
-  return out->format ? CLI_END : CLI_STOP;
+  return out->format ? check_names(cli, out) : CLI_STOP;
 }

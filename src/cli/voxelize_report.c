@@ -112,16 +112,17 @@ static void summarize_estimate(const cli_run *cli, const voxelize_request *given
                                const voxelize_outcome *results) {
   const uint64_t large = UINT64_C(1) << 26; /* 64 MiB */
   const vxm_estimate *estimate = &results->estimate;
-  double mib = 1 << 20;
+  char size[24], memory[24];
+  cli_bytes_text(size, estimate->grid_bytes);
   if (!given->dry_run && estimate->grid_bytes < large)
     return;
   if (results->octree)
-    cli_row(cli, "estimate", "%.1f MiB of voxels, made as an octree: its memory follows the surface",
-            (double)estimate->grid_bytes / mib);
+    cli_row(cli, "estimate", "%s of voxels, made as an octree: its memory follows the surface", size);
   else
-    cli_row(cli, "estimate", "%.1f MiB of %s; up to %.1f MiB of memory, %s",
-            (double)estimate->grid_bytes / mib, cli_field_wanted(&given->field) ? "values" : "voxels",
-            (double)estimate->memory_bytes / mib, estimate->windows > 1 ? "slices at a time" : "all at once");
+    cli_row(cli, "estimate", "%s of %s; up to %s of memory, %s", size,
+            cli_field_wanted(&given->field) ? "values" : "voxels",
+            cli_bytes_text(memory, estimate->memory_bytes),
+            estimate->windows > 1 ? "slices at a time" : "all at once");
   fflush(cli->text);
 }
 
@@ -136,6 +137,7 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
   const vxm_voxelize_report *report = &results->voxelize;
   const vxm_space *space = &results->space;
   double cells = (double)space->dims[0] * (double)space->dims[1] * (double)space->dims[2];
+  char bytes[24];
   cli_engine_summarize(cli, &given->engine);
   if (report->parts > 0) /* none were looked for where no solid was made */
     summarize_parts(cli, report);
@@ -152,15 +154,15 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
   if (report->escalated > report->contested)
     cli_row(cli, "winding", "%" PRId64 " voxels decided by the winding number", report->escalated);
   if (results->octree)
-    cli_row(cli, "octree", "%" PRId64 " bricks, %" PRId64 " nodes, %.1f MiB", results->sparse.bricks,
-            results->sparse.nodes, (double)results->sparse.bytes / (1 << 20));
+    cli_row(cli, "octree", "%" PRId64 " bricks, %" PRId64 " nodes, %s", results->sparse.bricks,
+            results->sparse.nodes, cli_bytes_text(bytes, results->sparse.bytes));
   if (!cli_field_wanted(&given->field))
     cli_row(cli, "hash", "%016" PRIx64, report->hash);
   cli_row(cli, "time", "%.1f ms: read %.1f, repair %.1f, voxelize %.1f, write %.1f", results->total_ms,
           input->read_ms, input->repair_ms, results->voxelize_ms, results->write_ms);
   if (cli->verbose) {
     cli_row(cli, "threads", "%d", vxm_context_threads(cli->context));
-    cli_row(cli, "memory", "%.1f MiB", (double)vxm_context_peak_bytes(cli->context) / (1 << 20));
+    cli_row(cli, "memory", "%s", cli_bytes_text(bytes, vxm_context_peak_bytes(cli->context)));
   }
   cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Buffers of the device, and tiles on their way to and from it. */
+#include "base/size_text.h"
 #include "gpu/opencl.h"
 
 #include <string.h>
@@ -117,9 +118,9 @@ vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_
   int64_t most = vxm_min(vxm_min(info->block_bytes, info->global_bytes / buffers), bytes_most);
   most = vxm_min(most, tile_share(engine));
   if (slice > bytes_most || slice > info->block_bytes)
-    return vxm_fail(
-        error, VXM_ERROR_RANGE, "one slice of the grid takes %lld MiB; %s can do %lld; use --engine cpu",
-        (long long)(slice >> 20), info->renderer, (long long)(vxm_min(info->block_bytes, bytes_most) >> 20));
+    return vxm_fail(error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
+                    vxm_size_text_of((uint64_t)slice).text, info->renderer,
+                    vxm_size_text_of((uint64_t)vxm_min(info->block_bytes, bytes_most)).text);
   *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
   return VXM_OK;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gpu/cl_cache.h"
-#include "base/file.h"
 #include "base/hash.h"
+#include "base/output.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -97,5 +97,5 @@ void vxm_cl_cache_store(const vxm_cl_key *key, vxm_context *context, const unsig
     return;
   vxm_output_write(output, &head, sizeof head);
   vxm_output_write(output, binary, size);
-  vxm_output_commit(output, NULL);
+  vxm_output_commit_now(output, NULL);
 }

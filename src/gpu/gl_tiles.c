@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/size_text.h"
 #include "gpu/opengl.h"
 
 #include <string.h>
@@ -29,10 +30,10 @@ vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_
   int64_t most = vxm_min(vxm_min(engine->base.info.block_bytes, tile_bytes_most), tile_share(engine));
   /* The staging buffer may hold two; shaders count the bits of a tile in 32 bits. */
   if (slice > engine->base.info.block_bytes / 2 || slice > slice_bytes_most)
-    return vxm_fail(error, VXM_ERROR_RANGE,
-                    "one slice of the grid takes %lld MiB; %s can do %lld; use --engine cpu",
-                    (long long)(slice >> 20), engine->base.info.renderer,
-                    (long long)(vxm_min(engine->base.info.block_bytes / 2, slice_bytes_most) >> 20));
+    return vxm_fail(
+        error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
+        vxm_size_text_of((uint64_t)slice).text, engine->base.info.renderer,
+        vxm_size_text_of((uint64_t)vxm_min(engine->base.info.block_bytes / 2, slice_bytes_most)).text);
   *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
   return VXM_OK;
 }

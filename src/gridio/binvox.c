@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* .binvox: a text header, then pairs (value, count) over voxels with y fastest, then z, then x. */
 #include "gridio/binvox.h"
+#include "base/size_text.h"
 #include "gridio/format.h"
 #include "gridio/planes.h"
 #include "gridio/run_writer.h"
@@ -277,8 +278,8 @@ vxm_status vxm_binvox_check(const vxm_space *space, const char *path, vxm_error 
   uint64_t padding = (side * side * side - vxm_space_voxels(space)) / 255 * 2;
   if (padding >> 34)
     return vxm_fail(error, VXM_ERROR_RANGE,
-                    "binvox would pad this grid to a cube with %" PRIu64 " GiB; use .npy, .raw or .rle",
-                    padding >> 30);
+                    "binvox would pad this grid to a cube with %s; use .npy, .raw or .rle",
+                    vxm_size_text_of(padding).text);
   return VXM_OK;
 }
 
@@ -331,6 +332,11 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
   return VXM_OK;
 }
 
+uint64_t vxm_binvox_bytes(const vxm_space *space) {
+  uint64_t side = vxm_binvox_side(space);
+  return side * side * side / 255 * 2;
+}
+
 static const vxm_slices_kind slices_kind = {
     .layout = VXM_PLANE_Y_FAST,
     .check = vxm_binvox_check,
@@ -338,6 +344,7 @@ static const vxm_slices_kind slices_kind = {
     .begin = begin,
     .put = vxm_run_writer_put,
     .end = end,
+    .file_bytes = vxm_binvox_bytes,
 };
 
 const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, &slices_kind, NULL};

@@ -3,12 +3,14 @@
 #ifndef VXM_GRIDIO_BINVOX_H
 #define VXM_GRIDIO_BINVOX_H
 
-#include "base/file.h"
+#include "base/output.h"
 
 /** The side of the cube that a space is padded to. */
 uint64_t vxm_binvox_side(const vxm_space *space);
 /** Refuses voxels that are not cubes, and a cube far larger than the grid. */
 vxm_status vxm_binvox_check(const vxm_space *space, const char *path, vxm_error *error);
+/** What a file has at least, without the header: two bytes for 255 voxels. */
+uint64_t vxm_binvox_bytes(const vxm_space *space);
 /** @param version 1, or 2 where values are labels */
 vxm_status vxm_binvox_header_write(vxm_output *output, const vxm_space *space, int version, vxm_error *error);
 

@@ -2,15 +2,17 @@
 #include "gridio/colors.h"
 #include "base/clock.h"
 #include "gridio/bytes.h"
+#include "gridio/format.h"
 #include "gridio/npy_header.h"
-#include "gridio/sidecar.h"
 
 #include <string.h>
 
 /* ---- .npy ---- */
 
 static vxm_status write_npy(vxm_output *output, const vxm_colored *c, vxm_error *error) {
-  (void)error;
+  vxm_status status = vxm_output_expect(output, vxm_space_voxels(c->space) * 4, error);
+  if (status != VXM_OK)
+    return status;
   const int64_t *dims = c->space->dims;
   vxm_npy_header_write_bytes(output, dims, 4);
   vxm_output_write(output, c->values, 4 * (size_t)(dims[0] * dims[1] * dims[2]));
@@ -69,6 +71,9 @@ static vxm_status write_ply(vxm_output *output, const vxm_colored *c, vxm_error 
   for_faces(c, count_face, &faces);
   if (faces > INT32_MAX / 4)
     return vxm_fail(error, VXM_ERROR_RANGE, ".ply holds fewer than 2^31 corners of faces; use .npy");
+  vxm_status status = vxm_output_expect(output, (uint64_t)faces * (4 * 15 + 17), error);
+  if (status != VXM_OK)
+    return status;
   vxm_output_printf(
       output,
       "ply\nformat binary_little_endian 1.0\ncomment voxmend: voxels in colour\nelement vertex %lld\n"
@@ -119,7 +124,7 @@ static vxm_status write_file(const vxm_colored *colored, const kind *k, const ch
   if (status == VXM_OK && k->has_sidecar)
     status = vxm_sidecar_open(&sidecar, colored->context, colored->space, path, &text, error);
   if (status == VXM_OK)
-    return vxm_sidecar_commit(output, sidecar, path, error);
+    return vxm_output_commit_both(output, sidecar, error);
   vxm_output_abort(output);
   return status;
 }

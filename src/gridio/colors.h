@@ -3,7 +3,7 @@
 #ifndef VXM_GRIDIO_COLORS_H
 #define VXM_GRIDIO_COLORS_H
 
-#include "base/file.h"
+#include "base/output.h"
 #include "voxel/color.h"
 
 /** Colours to write: [x][y][z][4] in C order, the fourth 0 where there is no voxel. */

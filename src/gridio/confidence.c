@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The confidence of a grid as a .npy file. */
+#include "gridio/format.h"
 #include "gridio/gridio.h"
 #include "gridio/npy_header.h"
 
@@ -13,6 +14,11 @@ vxm_status vxm_gridio_confidence(const vxm_grid *grid, const char *path, vxm_err
   vxm_status status = vxm_output_open(&output, grid->context, path, error);
   if (status != VXM_OK)
     return status;
+  status = vxm_output_expect(output, vxm_space_voxels(&grid->space), error);
+  if (status != VXM_OK) {
+    vxm_output_abort(output);
+    return status;
+  }
   /* The bytes lie with x fastest, which numpy calls Fortran order: it indexes them [x][y][z] all the same. */
   const int64_t *dims = grid->space.dims;
   vxm_npy_header_write(output, "|u1", true, dims);

@@ -60,8 +60,13 @@ static vxm_status begin(vxm_output **output, vxm_context *context, const char *p
   if (!vxm_text_equal_nocase(vxm_path_extension(path), "npy"))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "%s: coordinates are written as .npy only", path);
   vxm_status status = vxm_output_open(output, context, path, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_output_expect(*output, (uint64_t)count * 12, error);
   if (status == VXM_OK)
     vxm_npy_header_write_table(*output, "<i4", count, 3);
+  else
+    vxm_output_abort(*output);
   return status;
 }
 

@@ -41,6 +41,9 @@ static vxm_status begin_file(field_file *file, file_format format, vxm_context *
                              vxm_error *error) {
   if (format == VDB)
     return vxm_vdb_field_create(&file->tree, context, space, kind, error);
+  vxm_status status = vxm_output_expect(file->output, vxm_space_voxels(space) * size, error);
+  if (status != VXM_OK)
+    return status;
   if (format == NRRD)
     return vxm_nrrd_header_write(file->output, "a number per voxel, at its centre",
                                  size == 1 ? "uchar" : "float", size, space, error);
@@ -117,7 +120,7 @@ static vxm_status close_file(field_file *file, vxm_status status, vxm_error *err
   if (status == VXM_ERROR_IO && file->output && vxm_output_failed(file->output))
     status = give_up(file, error);
   if (status == VXM_OK)
-    status = vxm_sidecar_commit(file->output, file->sidecar, file->path, error);
+    status = vxm_output_commit_both(file->output, file->sidecar, error);
   else {
     vxm_output_abort(file->sidecar);
     vxm_output_abort(file->output);

@@ -3,7 +3,7 @@
 #ifndef VXM_GRIDIO_FORMAT_H
 #define VXM_GRIDIO_FORMAT_H
 
-#include "base/file.h"
+#include "base/output.h"
 #include "gridio/sidecar.h"
 #include "gridio/slices.h"
 
@@ -14,7 +14,6 @@ struct vxm_slices {
   vxm_space space;
   vxm_output *output;  /**< NULL after its failure has been reported */
   vxm_output *sidecar; /**< NULL if there is none */
-  char *path;
   bool report;
   int64_t next; /**< slice */
   int64_t
@@ -22,6 +21,11 @@ struct vxm_slices {
   void *state;
   bool is_begun; /**< `begin` was called */
 };
+
+/** Voxels of a checked space; below 2^60 and so a plain product. A byte each is what .npy and .nrrd take. */
+static inline uint64_t vxm_space_voxels(const vxm_space *space) {
+  return (uint64_t)space->dims[0] * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
+}
 
 /** How a format is written. */
 typedef struct vxm_slices_kind {
@@ -39,6 +43,8 @@ typedef struct vxm_slices_kind {
   void (*drop)(vxm_slices *slices);
   /** About what `state` holds beside itself; NULL = nothing. */
   uint64_t (*held_bytes)(const vxm_space *space);
+  /** What the file will have at least, without its header; NULL = that is not known. */
+  uint64_t (*file_bytes)(const vxm_space *space);
 } vxm_slices_kind;
 
 /** For `put` and `end`, now and then: notices a failed write, and reports progress if that is wanted. */
@@ -78,10 +84,5 @@ extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_nrrd,
  */
 vxm_status vxm_space_check_file(const vxm_space *space, const vxm_input *input, size_t offset,
                                 vxm_error *error);
-
-/** Voxels of a checked space; below 2^60 and so a plain product. */
-static inline uint64_t vxm_space_voxels(const vxm_space *space) {
-  return (uint64_t)space->dims[0] * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
-}
 
 #endif

@@ -31,7 +31,8 @@ typedef struct kind {
   vxm_status (*check)(const vxm_space *space, const char *path, vxm_error *error); /**< NULL = it holds all */
   vxm_status (*begin)(const label_file *file, vxm_error *error);
   void (*put)(const label_file *file, int64_t slice);
-  void (*end)(const label_file *file); /**< NULL = nothing is left to write */
+  void (*end)(const label_file *file);            /**< NULL = nothing is left to write */
+  uint64_t (*file_bytes)(const vxm_space *space); /**< at least, without the header */
 } kind;
 
 /* ---- .npy and .nrrd: the values as they are ---- */
@@ -55,6 +56,10 @@ static size_t slice_values(const label_file *file) {
 static void put_plain(const label_file *file, int64_t slice) {
   size_t count = slice_values(file);
   vxm_output_write(file->output, file->values + (size_t)slice * count, count * sizeof *file->values);
+}
+
+static uint64_t plain_bytes(const vxm_space *space) {
+  return vxm_space_voxels(space) * sizeof(uint16_t);
 }
 
 /* ---- .binvox: pairs of a label and a count, no run going on from slice to slice ---- */
@@ -115,7 +120,8 @@ static const kind kinds[] = {
      NULL,
      begin_npy,
      put_plain,
-     NULL},
+     NULL,
+     plain_bytes},
     {"nrrd",
      VXM_LABELS_MAX,
      VXM_LAYOUT_GRID,
@@ -123,7 +129,8 @@ static const kind kinds[] = {
      NULL,
      begin_nrrd,
      put_plain,
-     NULL},
+     NULL,
+     plain_bytes},
     {"binvox",
      BINVOX_LABELS_MAX,
      VXM_PLANE_Y_FAST,
@@ -131,7 +138,8 @@ static const kind kinds[] = {
      vxm_binvox_check,
      begin_binvox,
      put_binvox,
-     end_binvox},
+     end_binvox,
+     vxm_binvox_bytes},
 };
 
 static const kind *find_kind(const char *path, const char *format, vxm_error *error) {
@@ -188,7 +196,7 @@ static vxm_status write_file(label_file *file, const vxm_label_table *table, vxm
     status = vxm_sidecar_open_labels(&sidecar, file->context, file->space, file->path, &file->kind->sidecar,
                                      table, error);
   if (status == VXM_OK)
-    return vxm_sidecar_commit(file->output, sidecar, file->path, error);
+    return vxm_output_commit_both(file->output, sidecar, error);
   vxm_output_abort(file->output);
   return status;
 }
@@ -209,6 +217,8 @@ vxm_status vxm_labels_write(vxm_label_report *report, vxm_model *model, const vx
     status = make_values(&values, file.context, space, error);
   if (status == VXM_OK)
     status = vxm_output_open(&file.output, file.context, path, error);
+  if (status == VXM_OK)
+    status = vxm_output_expect(file.output, file.kind->file_bytes(space), error);
   if (status == VXM_OK)
     status = vxm_labels_run(values, file.kind->layout, report, model, space, &labelling, error);
   double made = vxm_clock_ms();

@@ -117,6 +117,7 @@ static const vxm_slices_kind slices_kind = {
     .begin = begin,
     .put = vxm_byte_rows_put,
     .end = end,
+    .file_bytes = vxm_space_voxels,
 };
 
 const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, &slices_kind, NULL};

@@ -3,7 +3,7 @@
 #ifndef VXM_GRIDIO_NPY_HEADER_H
 #define VXM_GRIDIO_NPY_HEADER_H
 
-#include "base/file.h"
+#include "base/output.h"
 
 typedef struct vxm_npy_header {
   char kind;           /**< 'b' boolean, 'i' signed, 'u' unsigned, 'f' floating */

@@ -171,6 +171,7 @@ static const vxm_slices_kind slices_kind = {
     .begin = begin,
     .put = vxm_byte_rows_put,
     .end = end,
+    .file_bytes = vxm_space_voxels,
 };
 
 const vxm_grid_format vxm_format_nrrd = {"nrrd", vxm_nrrd_sniff, read_nrrd, &slices_kind, NULL};

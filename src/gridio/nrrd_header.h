@@ -5,8 +5,8 @@
 #ifndef VXM_GRIDIO_NRRD_HEADER_H
 #define VXM_GRIDIO_NRRD_HEADER_H
 
-#include "base/file.h"
 #include "base/notes.h"
+#include "base/output.h"
 
 typedef struct vxm_nrrd_header {
   char kind;       /**< 'i' signed, 'u' unsigned, 'f' floating */

@@ -3,7 +3,7 @@
 #ifndef VXM_GRIDIO_PNG_WRITE_H
 #define VXM_GRIDIO_PNG_WRITE_H
 
-#include "base/file.h"
+#include "base/output.h"
 
 typedef struct vxm_png vxm_png;
 

@@ -202,6 +202,10 @@ static vxm_status end(vxm_slices *slices, vxm_error *error) {
   return VXM_OK;
 }
 
+static uint64_t file_bytes(const vxm_space *space) {
+  return (vxm_space_voxels(space) + 7) / 8;
+}
+
 static const vxm_slices_kind slices_kind = {
     .layout = VXM_LAYOUT_GRID,
     .sidecar = &description,
@@ -210,6 +214,7 @@ static const vxm_slices_kind slices_kind = {
     .begin = begin,
     .put = put,
     .end = end,
+    .file_bytes = file_bytes,
 };
 
 const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, &slices_kind, NULL};

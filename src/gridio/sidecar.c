@@ -107,21 +107,6 @@ vxm_status vxm_sidecar_open_labels(vxm_output **out, vxm_context *context, const
   return status;
 }
 
-vxm_status vxm_sidecar_commit(vxm_output *data, vxm_output *sidecar, const char *data_path,
-                              vxm_error *error) {
-  vxm_status status = vxm_output_commit(data, error);
-  if (!sidecar)
-    return status;
-  if (status != VXM_OK) {
-    vxm_output_abort(sidecar);
-    return status;
-  }
-  status = vxm_output_commit(sidecar, error);
-  if (status != VXM_OK)
-    unlink(data_path);
-  return status;
-}
-
 /* ---- Reading ---- */
 
 static bool read_numbers(const json_t *root, const char *key, double values[3]) {

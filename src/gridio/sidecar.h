@@ -3,7 +3,7 @@
 #ifndef VXM_GRIDIO_SIDECAR_H
 #define VXM_GRIDIO_SIDECAR_H
 
-#include "base/file.h"
+#include "base/output.h"
 #include "grid/bitgrid.h"
 #include "voxel/labelling.h"
 
@@ -25,12 +25,6 @@ vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_sp
 vxm_status vxm_sidecar_open_labels(vxm_output **out, vxm_context *context, const vxm_space *space,
                                    const char *data_path, const vxm_sidecar_text *text,
                                    const vxm_label_table *labels, vxm_error *error);
-
-/**
- * Commits the data, then the JSON (which may be NULL). If the JSON cannot be had the data are removed again,
- * so that no grid stands without its transform.
- */
-vxm_status vxm_sidecar_commit(vxm_output *data, vxm_output *sidecar, const char *data_path, vxm_error *error);
 
 /** Whether there is a JSON file beside `data_path`. */
 bool vxm_sidecar_exists(const char *data_path);

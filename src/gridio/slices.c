@@ -5,7 +5,6 @@
 #include "meshio/meshio.h"
 
 #include <inttypes.h>
-#include <string.h>
 
 /** More than a vxm_output takes, its buffer included. */
 enum { OUTPUT_BYTES = 72 << 10 };
@@ -35,7 +34,7 @@ vxm_status vxm_slices_plan_of(vxm_slices_plan *out, const vxm_space *space, cons
   const vxm_slices_kind *kind = found->slices;
   out->streams = true;
   out->layout = kind->layout;
-  out->bytes = sizeof(vxm_slices) + strlen(path) + kind->state_bytes(space) +
+  out->bytes = sizeof(vxm_slices) + kind->state_bytes(space) +
                (kind->sidecar ? 2 : 1) * (uint64_t)OUTPUT_BYTES +
                (kind->held_bytes ? kind->held_bytes(space) : 0);
   if (!same_layout(kind->layout, grid_layout))
@@ -48,7 +47,6 @@ static void slices_free(vxm_slices *slices) {
   if (slices->is_begun && slices->format->slices->drop)
     slices->format->slices->drop(slices);
   vxm_free(context, slices->state);
-  vxm_free(context, slices->path);
   vxm_free(context, slices);
   vxm_context_release(context);
 }
@@ -63,7 +61,7 @@ void vxm_slices_abort(vxm_slices *slices) {
 
 /** Allocates all that the writer holds, but for the outputs. */
 static vxm_status create(vxm_slices **out, vxm_context *context, const vxm_grid_format *format,
-                         const vxm_space *space, const char *path, vxm_error *error) {
+                         const vxm_space *space, vxm_error *error) {
   vxm_context *owner;
   vxm_status status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
@@ -80,16 +78,13 @@ static vxm_status create(vxm_slices **out, vxm_context *context, const vxm_grid_
   slices->format = format;
   slices->space = *space;
   slices->length = space->dims[format->slices->layout.slow];
-  slices->path = vxm_alloc(owner, strlen(path) + 1, 1, &local);
-  if (slices->path)
-    slices->state = vxm_alloc(owner, format->slices->state_bytes(space), 1, &local);
-  if (!slices->path || !slices->state) {
+  slices->state = vxm_alloc(owner, format->slices->state_bytes(space), 1, &local);
+  if (!slices->state) {
     slices_free(slices);
     if (error)
       *error = local;
     return local.code;
   }
-  strcpy(slices->path, path);
   *out = slices;
   return VXM_OK;
 }
@@ -103,9 +98,11 @@ vxm_status vxm_slices_open(vxm_slices **out, vxm_context *context, const vxm_spa
     status = vxm_fail(error, VXM_ERROR_ARGUMENT, "the surface as .%s needs the whole grid", found->name);
   vxm_slices *slices = NULL;
   if (status == VXM_OK)
-    status = create(&slices, context, found, space, path, error);
+    status = create(&slices, context, found, space, error);
   if (status == VXM_OK)
     status = vxm_output_open(&slices->output, context, path, error);
+  if (status == VXM_OK && found->slices->file_bytes)
+    status = vxm_output_expect(slices->output, found->slices->file_bytes(space), error);
   if (status == VXM_OK && found->slices->sidecar)
     status = vxm_sidecar_open(&slices->sidecar, context, space, path, found->slices->sidecar, error);
   if (status == VXM_OK) {
@@ -159,7 +156,7 @@ vxm_status vxm_slices_commit(vxm_slices *slices, vxm_error *error) {
   if (status == VXM_OK)
     status = slices->format->slices->end(slices, error);
   if (status == VXM_OK) {
-    status = vxm_sidecar_commit(slices->output, slices->sidecar, slices->path, error);
+    status = vxm_output_commit_both(slices->output, slices->sidecar, error);
     slices->output = slices->sidecar = NULL;
   }
   vxm_slices_abort(slices);

@@ -10,7 +10,7 @@
 #ifndef VXM_GRIDIO_VDB_H
 #define VXM_GRIDIO_VDB_H
 
-#include "base/file.h"
+#include "base/output.h"
 
 #ifdef __cplusplus
 extern "C" {

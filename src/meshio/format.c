@@ -189,10 +189,23 @@ static vxm_status read_back(vxm_soup **out, vxm_output *output, const vxm_soup *
   return status;
 }
 
+/** What a file has at the least: each number of a text is a digit and what separates it. */
+static uint64_t least_bytes(const vxm_soup *soup, const vxm_format *format, bool ascii) {
+  uint64_t vertices = soup->vertex_count, faces = soup->face_count, corners = soup->corner_count;
+  uint64_t triangles = corners > 2 * faces ? corners - 2 * faces : 0;
+  if (strcmp(format->name, "stl") == 0)
+    return triangles * (ascii ? 100 : 50);
+  if (strcmp(format->name, "ply") == 0 && !ascii)
+    return vertices * 24 + faces + corners * 4;
+  return vertices * 6 + corners * 2;
+}
+
 static vxm_status write_and_check(vxm_output *output, const vxm_soup *soup, const vxm_format *format,
                                   bool ascii, vxm_meshio_check check, void *payload, vxm_error *error) {
   vxm_soup *back = NULL;
-  vxm_status status = format->write(soup, output, ascii, error);
+  vxm_status status = vxm_output_expect(output, least_bytes(soup, format, ascii), error);
+  if (status == VXM_OK)
+    status = format->write(soup, output, ascii, error);
   if (status != VXM_OK || vxm_output_failed(output) || !check)
     return status;
   status = read_back(&back, output, soup, format, error);

@@ -3,7 +3,7 @@
 #ifndef VXM_MESHIO_FORMAT_H
 #define VXM_MESHIO_FORMAT_H
 
-#include "base/file.h"
+#include "base/output.h"
 #include "mesh/soup.h"
 
 /** How sure a format is, from the content alone, that it is its own. */

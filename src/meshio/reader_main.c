@@ -13,6 +13,7 @@
 #include <stdio.h>
 
 #include "base/file.h"
+#include "base/size_text.h"
 #include "meshio/apart.h"
 #include "meshio/parcel.h"
 
@@ -74,9 +75,9 @@ static vxm_status read_file(vxm_soup *soup, const vxm_module *module, char **arg
 static vxm_status explain_memory(char **arguments, vxm_error *error) {
   double bytes = strtod(arguments[VXM_APART_MEMORY], NULL);
   return vxm_fail_at(error, VXM_ERROR_MEMORY_LIMIT, (vxm_place){arguments[VXM_APART_NAME], 0, -1, -1},
-                     "reading takes more than %.0f MiB: the file is damaged, or the memory limit must allow "
+                     "reading takes more than %s: the file is damaged, or the memory limit must allow "
                      "more (half of it is for reading)",
-                     bytes / (1 << 20));
+                     vxm_size_text_of((uint64_t)bytes).text);
 }
 
 static vxm_status serve(vxm_soup *soup, char **arguments, vxm_error *error) {

@@ -3,7 +3,7 @@
 #ifndef VXM_MESHIO_TEXT_OUT_H
 #define VXM_MESHIO_TEXT_OUT_H
 
-#include "base/file.h"
+#include "base/output.h"
 #include "mesh/soup.h"
 #include "meshio/number.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** PLY with coloured faces and edges, as MeshLab and Blender show them. */
+#include "base/output.h"
 #include "meshio/bytes.h"
 #include "meshio/meshio.h"
 

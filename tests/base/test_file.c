@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "base/file.h"
 #include "base/notes.h"
+#include "base/output.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -85,7 +85,7 @@ static void appears_when_complete(void **state) {
     }
     assert_false(vxm_output_failed(output));
     assert_int_equal(access(p->path, F_OK), -1);
-    assert_int_equal(files_in(p->folder), 1);
+    assert_true(files_in(p->folder) <= 1); /* none where the file system has files without names */
     assert_int_equal(vxm_output_commit(output, NULL), VXM_OK);
     assert_int_equal(files_in(p->folder), 1);
     assert_holds(p, data, SIZE);

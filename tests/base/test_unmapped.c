@@ -13,7 +13,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/output.h"
 
 /** Takes the place of mmap for the library that is tested (ld --wrap). */
 void *__wrap_mmap(void *address, size_t length, int protection, int flags, int descriptor, off_t offset);

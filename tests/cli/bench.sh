@@ -8,7 +8,7 @@ quick='--time 0 --threads 1'
 # The table with N for all numbers.
 table() {
   sed -E -e '/^machine/d' -e '/left out/!s/#+/#/' -e 's/1us.*1s/1us to 1s/' -e 's/[0-9]+(\.[0-9]+)?(e[+-]?[0-9]+)?/N/g' -e 's/ +/ /g' \
-    -e '/left out/s/N (bytes|KiB|MiB|GiB)/N bytes/g'
+    -e '/left out/s/N (bytes|KiB|MiB|GiB|TiB)/N bytes/g' -e '/^peak memory/s/N [A-Za-z]+ (in|resident)/N MiB \1/g'
 }
 
 # The report with N for all that differs between runs, and without the machine.

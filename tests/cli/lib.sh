@@ -33,8 +33,8 @@ mask() {
     -e 's/("(read|repair|voxelize|write|total)": )[0-9][0-9.e+-]*/\1T/' \
     -e 's/("(peak|memory)_bytes": )[0-9]+/\1N/' \
     -e 's/^(threads +)[0-9]+/\1N/' \
-    -e '/memory limit/s/[0-9]+ (bytes|KiB|MiB|GiB)/N bytes/g' \
-    -e 's/^(memory +)[0-9.]+ MiB/\1N MiB/'
+    -e '/memory limit/s/[0-9.]+ (bytes|KiB|MiB|GiB|TiB)/N bytes/g' \
+    -e 's/^(memory +)[0-9.]+ [KMG]iB/\1N MiB/'
 }
 
 say() {

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * A file that appears under its name when it is complete, with its rights. Until then it has no name at all,
+ * where the file system can do that, so that a program that is killed leaves nothing; elsewhere it has a
+ * temporary one, "voxmend-HASH-N.tmp", which the next file for the same place removes if nobody holds it.
+ *
+ * Steps: open, write, prepare, publish, close. All return false with errno set.
+ */
+#ifndef VXM_BASE_NEW_FILE_H
+#define VXM_BASE_NEW_FILE_H
+
+#include "base/spot.h"
+
+typedef struct vxm_new_file {
+  vxm_spot spot;
+  int descriptor;
+  char temporary[48]; /**< its present name in the folder; of a published file that of what it replaced; "" =
+                           none */
+  bool is_published, has_replaced;
+} vxm_new_file;
+
+/** Opens a file for a spot that is no device, and takes the spot over. Only its user may read it. */
+bool vxm_new_file_open(vxm_new_file *out, const vxm_spot *spot);
+/**
+ * After the last write: what a close would tell is told, and the rights are set. These are those of the file
+ * that is replaced if that has the same owner, without setuid, setgid and sticky bits; else those that a new
+ * file has in its folder.
+ */
+bool vxm_new_file_prepare(vxm_new_file *file);
+/** Gives a prepared file its name. If `keeps_old`, what was replaced stays for vxm_new_file_revert. */
+bool vxm_new_file_publish(vxm_new_file *file, bool keeps_old);
+/** Takes a published file away again; what it had replaced is back, if it was kept. */
+void vxm_new_file_revert(vxm_new_file *file);
+/** Closes it. What was not published is gone, what was kept too. */
+void vxm_new_file_close(vxm_new_file *file);
+
+#endif
