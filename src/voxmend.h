@@ -10,6 +10,9 @@
  *    some options start from the matching VXM_..._INIT.
  *  - What a call creates belongs to the caller and has a destroy function that accepts NULL. What a getter
  *    returns belongs to its object and lives as long as it.
+ *  - NULL is defined everywhere. A call that can fail returns VXM_ERROR_ARGUMENT for it where it is not said
+ *    to be allowed; any other gives 0, false, NULL or "" for it, or does nothing. So does an index, an enum
+ *    or a count that is out of range. What cannot be seen is that an array is shorter than it is said to be.
  *  - Distinct objects may be used from distinct threads at the same time, also when they share a context.
  *    One object may be read by many threads at once.
  *  - The same input gives the same bits whatever the number of threads.
@@ -283,10 +286,11 @@ typedef struct vxm_census {
   bool closed;          /**< at least one face, and every edge has an even number of incident faces */
   double bounds[6]; /**< x0 y0 z0 x1 y1 z1 of the finite vertices used by faces; zeros if there are none */
   double area;      /**< model units squared; polygons by their vector area */
-  double volume;    /**< signed; positive if faces point outward. Meaningful if closed */
+  double volume;    /**< signed; positive if faces point outward. Meaningful if closed. This and the area are
+                       infinite where they are beyond the range of numbers */
 } vxm_census;
 
-/** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED */
+/** @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED */
 VXM_API vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error);
 
 /* ---- Repair ---- */

@@ -90,7 +90,7 @@ static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *
   vxm_status status = check_version("distance", chosen->version, error);
   if (status != VXM_OK)
     return status;
-  if (!(chosen->band >= 0))
+  if (!(chosen->band >= 0) || isinf(chosen->band))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "distance: a band of %g voxels is not possible", chosen->band);
   if (!chosen->is_unsigned && model->options.mode != VXM_MODE_SOLID)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,

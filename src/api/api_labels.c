@@ -53,11 +53,11 @@ vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, co
 }
 
 int64_t vxm_model_label_count(const vxm_model *model) {
-  return (int64_t)model->labels.count;
+  return model ? (int64_t)model->labels.count : 0;
 }
 
 static bool is_label(const vxm_model *model, int64_t label) {
-  return label >= 1 && label <= (int64_t)model->labels.count;
+  return model && label >= 1 && label <= (int64_t)model->labels.count;
 }
 
 const char *vxm_model_label_name(const vxm_model *model, int64_t label) {

@@ -112,6 +112,8 @@ vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *context, const
     *out = NULL;
   if (!out || (!data && size > 0))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
+  if (size > PTRDIFF_MAX)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: %zu bytes are more than memory can hold", size);
   vxm_status status = check_read_options(options, error);
   if (status != VXM_OK)
     return status;
@@ -167,47 +169,47 @@ void vxm_mesh_destroy(vxm_mesh *mesh) {
 }
 
 int64_t vxm_mesh_vertex_count(const vxm_mesh *mesh) {
-  return (int64_t)mesh->vertex_count;
+  return mesh ? (int64_t)mesh->vertex_count : 0;
 }
 
 int64_t vxm_mesh_face_count(const vxm_mesh *mesh) {
-  return (int64_t)mesh->face_count;
+  return mesh ? (int64_t)mesh->face_count : 0;
 }
 
 const double *vxm_mesh_vertices(const vxm_mesh *mesh) {
-  return mesh->positions;
+  return mesh ? mesh->positions : NULL;
 }
 
 const uint64_t *vxm_mesh_offsets(const vxm_mesh *mesh) {
-  return mesh->offsets;
+  return mesh ? mesh->offsets : NULL;
 }
 
 const uint32_t *vxm_mesh_indices(const vxm_mesh *mesh) {
-  return mesh->indices;
+  return mesh ? mesh->indices : NULL;
 }
 
 int64_t vxm_mesh_tag_count(const vxm_mesh *mesh) {
-  return (int64_t)mesh->tag_count;
+  return mesh ? (int64_t)mesh->tag_count : 0;
 }
 
 const char *vxm_mesh_tag_name(const vxm_mesh *mesh, int64_t tag) {
-  return tag >= 0 && (size_t)tag < mesh->tag_count ? mesh->tags[tag] : "";
+  return mesh && tag >= 0 && (size_t)tag < mesh->tag_count ? mesh->tags[tag] : "";
 }
 
 const uint32_t *vxm_mesh_face_tags(const vxm_mesh *mesh) {
-  return mesh->face_tags;
+  return mesh ? mesh->face_tags : NULL;
 }
 
 const char *vxm_mesh_format(const vxm_mesh *mesh) {
-  return mesh->format;
+  return mesh ? mesh->format : "";
 }
 
 int64_t vxm_mesh_warning_count(const vxm_mesh *mesh) {
-  return mesh->notes.count;
+  return mesh ? mesh->notes.count : 0;
 }
 
 const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index) {
-  return index >= 0 && index < mesh->notes.count ? mesh->notes.text[index] : "";
+  return mesh && index >= 0 && index < mesh->notes.count ? mesh->notes.text[index] : "";
 }
 
 vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error) {

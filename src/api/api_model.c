@@ -69,9 +69,9 @@ vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const 
 }
 
 int64_t vxm_model_warning_count(const vxm_model *model) {
-  return model->notes.count;
+  return model ? model->notes.count : 0;
 }
 
 const char *vxm_model_warning(const vxm_model *model, int64_t index) {
-  return index >= 0 && index < model->notes.count ? model->notes.text[index] : "";
+  return model && index >= 0 && index < model->notes.count ? model->notes.text[index] : "";
 }

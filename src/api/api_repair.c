@@ -32,11 +32,11 @@ vxm_status vxm_mesh_prepare(vxm_mesh **out, vxm_repair_report *report, const vxm
 }
 
 int64_t vxm_mesh_part_change_count(const vxm_mesh *repaired) {
-  return (int64_t)repaired->part_count;
+  return repaired ? (int64_t)repaired->part_count : 0;
 }
 
 const vxm_part_change *vxm_mesh_part_changes(const vxm_mesh *repaired) {
-  return repaired->part_changes;
+  return repaired ? repaired->part_changes : NULL;
 }
 
 static vxm_status check_both(vxm_repair_options *repair, const vxm_repair_options *given,
@@ -88,15 +88,15 @@ vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int64_t mos
 }
 
 int64_t vxm_defects_count(const vxm_defects *defects) {
-  return (int64_t)defects->count;
+  return defects ? (int64_t)defects->count : 0;
 }
 
 const vxm_defect *vxm_defects_items(const vxm_defects *defects) {
-  return defects->items;
+  return defects ? defects->items : NULL;
 }
 
 int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind) {
-  return kind >= 0 && kind < VXM_DEFECT_KINDS ? defects->totals[kind] : 0;
+  return defects && kind >= 0 && kind < VXM_DEFECT_KINDS ? defects->totals[kind] : 0;
 }
 
 const char *vxm_defect_name(vxm_defect_kind kind) {

@@ -18,6 +18,9 @@ static vxm_status check_rotations(const vxm_sampler_options *options, vxm_error 
     return VXM_OK;
   if (!options->rotations || options->rotation_count < 1)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: a list of rotations is asked for, but not given");
+  if (options->rotation_count > (int64_t)(PTRDIFF_MAX / (9 * sizeof *options->rotations)))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: %" PRId64 " rotations are more than memory can hold",
+                    options->rotation_count);
   for (int64_t r = 0; r < options->rotation_count; r++)
     for (int i = 0; i < 3; i++)
       for (int k = 0; k < 3; k++) {
@@ -109,11 +112,11 @@ vxm_status vxm_sampler_put(vxm_sampler *sampler, uint32_t model, const vxm_mesh 
 }
 
 vxm_space vxm_sampler_space(const vxm_sampler *sampler) {
-  return vxm_desk_space(sampler->rules.options.resolution);
+  return sampler ? vxm_desk_space(sampler->rules.options.resolution) : (vxm_space){.dims = {0}};
 }
 
 size_t vxm_sampler_bytes(const vxm_sampler *sampler, vxm_voxels voxels) {
-  if ((unsigned)voxels > VXM_VOXELS_FLOAT32)
+  if (!sampler || (unsigned)voxels > VXM_VOXELS_FLOAT32)
     return 0;
   size_t dim = (size_t)sampler->rules.options.resolution;
   return vxm_spread_row_bytes(voxels, sampler->rules.options.resolution) * dim * dim;
@@ -154,6 +157,13 @@ vxm_status vxm_sampler_grid(vxm_grid *grid, vxm_sampler *sampler, const vxm_vari
   return vxm_sampler_fill(sampler, grid, variant, error);
 }
 
+/** Of arrays that memory cannot hold no more than the beginning can be there. */
+static vxm_status check_count(size_t count, size_t bytes, vxm_error *error) {
+  if (count <= PTRDIFF_MAX / bytes)
+    return VXM_OK;
+  return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: %zu variants are more than memory can hold", count);
+}
+
 vxm_status vxm_sampler_batch(void *out, vxm_sampler *sampler, const vxm_variant *variants, size_t count,
                              vxm_voxels voxels, vxm_error *error) {
   if (!out || !sampler || !variants)
@@ -162,6 +172,10 @@ vxm_status vxm_sampler_batch(void *out, vxm_sampler *sampler, const vxm_variant 
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: voxels %d are unknown", (int)voxels);
   if (voxels == VXM_VOXELS_FLOAT32 && (uintptr_t)out % sizeof(float) != 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the memory is not aligned as floats are");
+  size_t bytes = vxm_sampler_bytes(sampler, voxels);
+  vxm_status status = check_count(count, bytes > sizeof *variants ? bytes : sizeof *variants, error);
+  if (status != VXM_OK)
+    return status;
   return vxm_sampler_write(sampler, out, variants, count, voxels, error);
 }
 
@@ -176,6 +190,9 @@ vxm_status vxm_sampler_files(const char *const *paths, vxm_sampler *sampler, con
   if (chosen.version != 1)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "grid: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  vxm_status status = check_count(count, sizeof *variants, error);
+  if (status != VXM_OK)
+    return status;
   for (size_t v = 0; v < count; v++) {
     if (written)
       written[v] = false;

@@ -18,37 +18,39 @@ vxm_status vxm_model_sparse(vxm_sparse **out, vxm_voxelize_report *report, vxm_m
 }
 
 const vxm_space *vxm_sparse_space(const vxm_sparse *sparse) {
-  return &sparse->space;
+  return sparse ? &sparse->space : NULL;
 }
 
 bool vxm_sparse_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
-  return vxm_octree_get(sparse, i, j, k);
+  return sparse && vxm_octree_get(sparse, i, j, k);
 }
 
 int64_t vxm_sparse_count(const vxm_sparse *sparse) {
-  int64_t count;
-  uint64_t hash;
-  vxm_octree_sum(sparse, &count, &hash);
+  int64_t count = 0;
+  uint64_t hash = 0;
+  if (sparse)
+    vxm_octree_sum(sparse, &count, &hash);
   return count;
 }
 
 uint64_t vxm_sparse_hash(const vxm_sparse *sparse) {
-  int64_t count;
-  uint64_t hash;
-  vxm_octree_sum(sparse, &count, &hash);
+  int64_t count = 0;
+  uint64_t hash = 0;
+  if (sparse)
+    vxm_octree_sum(sparse, &count, &hash);
   return hash;
 }
 
 int64_t vxm_sparse_bricks(const vxm_sparse *sparse) {
-  return (int64_t)sparse->brick_count;
+  return sparse ? (int64_t)sparse->brick_count : 0;
 }
 
 int64_t vxm_sparse_nodes(const vxm_sparse *sparse) {
-  return (int64_t)vxm_octree_nodes(sparse);
+  return sparse ? (int64_t)vxm_octree_nodes(sparse) : 0;
 }
 
 uint64_t vxm_sparse_bytes(const vxm_sparse *sparse) {
-  return vxm_octree_bytes(sparse);
+  return sparse ? vxm_octree_bytes(sparse) : 0;
 }
 
 vxm_status vxm_sparse_from_grid(vxm_sparse **out, const vxm_grid *grid, vxm_error *error) {
@@ -91,7 +93,8 @@ vxm_status vxm_sparse_combine(vxm_sparse **out, const vxm_sparse *a, const vxm_s
 }
 
 void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload) {
-  vxm_octree_walk(sparse, 2, 0, sparse->space.dims[2], function, payload);
+  if (sparse && function)
+    vxm_octree_walk(sparse, 2, 0, sparse->space.dims[2], function, payload);
 }
 
 vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path, const vxm_grid_write_options *options,

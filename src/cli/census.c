@@ -3,6 +3,7 @@
 #include "cli/cli.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -53,6 +54,14 @@ static const char *yes(bool value) {
   return value ? "yes" : "no";
 }
 
+const char *cli_measure_text(char text[24], int digits, double value) {
+  if (isfinite(value))
+    snprintf(text, 24, "%.*g", digits, value);
+  else
+    snprintf(text, 24, "%s", "out of range");
+  return text;
+}
+
 void cli_census_print(const cli_run *cli, const vxm_census *census) {
   char label[LABEL];
   for (int i = 0; i < COUNTS; i++) {
@@ -69,8 +78,9 @@ void cli_census_print(const cli_run *cli, const vxm_census *census) {
           census->closed ? "" : "  some edge has an odd number of faces");
   fprintf(cli->text, "  %-26s %12.6g %.6g %.6g\n", "least corner", b[0], b[1], b[2]);
   fprintf(cli->text, "  %-26s %12.6g %.6g %.6g\n", "greatest corner", b[3], b[4], b[5]);
-  fprintf(cli->text, "  %-26s %12.6g\n", "area", census->area);
-  fprintf(cli->text, "  %-26s %12.6g%s\n", "volume", census->volume,
+  char number[24];
+  fprintf(cli->text, "  %-26s %12s\n", "area", cli_measure_text(number, 6, census->area));
+  fprintf(cli->text, "  %-26s %12s%s\n", "volume", cli_measure_text(number, 6, census->volume),
           census->closed ? "" : "  not meaningful: the mesh is not closed");
 }
 
@@ -101,8 +111,11 @@ void cli_census_print_both(const cli_run *cli, const vxm_census *before, const v
             value_of(before, &counts[i]), value_of(after, &counts[i]));
   fprintf(cli->text, "  %-26s %12s %12s\n", "watertight", yes(before->watertight), yes(after->watertight));
   fprintf(cli->text, "  %-26s %12s %12s\n", "closed", yes(before->closed), yes(after->closed));
-  fprintf(cli->text, "  %-26s %12.6g %12.6g\n", "area", before->area, after->area);
-  fprintf(cli->text, "  %-26s %12.6g %12.6g\n", "volume", before->volume, after->volume);
+  char one[24], other[24];
+  fprintf(cli->text, "  %-26s %12s %12s\n", "area", cli_measure_text(one, 6, before->area),
+          cli_measure_text(other, 6, after->area));
+  fprintf(cli->text, "  %-26s %12s %12s\n", "volume", cli_measure_text(one, 6, before->volume),
+          cli_measure_text(other, 6, after->volume));
 }
 
 void cli_census_json(json_t *object, const vxm_census *census) {

@@ -269,6 +269,8 @@ int cli_signal(void);
 /* ---- census.c ---- */
 
 /** A row for each count, with what it means where it is not zero. */
+/** An area or volume, or that it is beyond the range of numbers. */
+const char *cli_measure_text(char text[24], int digits, double value);
 void cli_census_print(const cli_run *cli, const vxm_census *census);
 /** A number of self-intersections, which is "at least" one where they were not counted to the end. */
 const char *cli_intersections_text(char text[32], int64_t count);

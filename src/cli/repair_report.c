@@ -111,14 +111,15 @@ enum { PARTS_SHOWN = 12, NAMED = 5 };
 static void part_row(const cli_run *cli, const vxm_mesh *mesh, int64_t i) {
   const vxm_part_change *part = &vxm_mesh_part_changes(mesh)[i];
   const vxm_part_state *a = &part->before, *b = &part->after;
-  char number[24];
+  char number[24], one[24], other[24];
   snprintf(number, sizeof number, "%" PRId64, i);
   const char *name = part->tag != UINT32_MAX ? vxm_mesh_tag_name(mesh, part->tag) : number;
   fprintf(cli->text,
           "  %-14.14s %8" PRId64 " %8" PRId64 " %7" PRId64 " %7" PRId64 " %7" PRId64 " %7" PRId64
-          " %11.5g %11.5g %9.2g\n",
+          " %11s %11s %9.2g\n",
           name, a->faces, b->faces, a->boundary_edges, b->boundary_edges, a->nonmanifold_edges,
-          b->nonmanifold_edges, a->volume, b->volume, part->moved);
+          b->nonmanifold_edges, cli_measure_text(one, 5, a->volume), cli_measure_text(other, 5, b->volume),
+          part->moved);
 }
 
 static void summarize_parts(const cli_run *cli, const vxm_mesh *mesh) {

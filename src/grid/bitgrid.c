@@ -23,6 +23,10 @@ vxm_status vxm_space_check(const vxm_space *space, vxm_error *error) {
                       "size positive",
                       space->voxel_size[a], space->origin[a], axis_name[a]);
   }
+  for (int a = 0; a < 3; a++)
+    if (!isfinite(space->origin[a] + (double)space->dims[a] * space->voxel_size[a]))
+      return vxm_fail(error, VXM_ERROR_RANGE,
+                      "the grid would reach beyond the largest number along %c; scale it down", axis_name[a]);
   /* At most 2^14 words x 2^20 x 2^20 rows: the bytes fit 64 bits. */
   return VXM_OK;
 }
@@ -90,26 +94,26 @@ static bool inside(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
 }
 
 bool vxm_grid_get(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
-  return inside(grid, i, j, k) && (vxm_grid_row(grid, j, k)[i / 64] >> (i % 64) & 1);
+  return grid && inside(grid, i, j, k) && (vxm_grid_row(grid, j, k)[i / 64] >> (i % 64) & 1);
 }
 
 void vxm_grid_set(vxm_grid *grid, int64_t i, int64_t j, int64_t k, bool value) {
-  if (!inside(grid, i, j, k))
+  if (!grid || !inside(grid, i, j, k))
     return;
   uint64_t *word = vxm_grid_row(grid, j, k) + i / 64, bit = UINT64_C(1) << (i % 64);
   *word = value ? *word | bit : *word & ~bit;
 }
 
 const vxm_space *vxm_grid_space(const vxm_grid *grid) {
-  return &grid->space;
+  return grid ? &grid->space : NULL;
 }
 
 int64_t vxm_grid_row_words(const vxm_grid *grid) {
-  return (int64_t)grid->row_words;
+  return grid ? (int64_t)grid->row_words : 0;
 }
 
 const uint64_t *vxm_grid_words(const vxm_grid *grid) {
-  return grid->words;
+  return grid ? grid->words : NULL;
 }
 
 void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
@@ -121,16 +125,18 @@ void vxm_grid_sum(const vxm_grid *grid, int64_t *count, uint64_t *hash) {
 }
 
 int64_t vxm_grid_count(const vxm_grid *grid) {
-  int64_t count;
-  uint64_t hash;
-  vxm_grid_sum(grid, &count, &hash);
+  int64_t count = 0;
+  uint64_t hash = 0;
+  if (grid)
+    vxm_grid_sum(grid, &count, &hash);
   return count;
 }
 
 uint64_t vxm_grid_hash(const vxm_grid *grid) {
-  int64_t count;
-  uint64_t hash;
-  vxm_grid_sum(grid, &count, &hash);
+  int64_t count = 0;
+  uint64_t hash = 0;
+  if (grid)
+    vxm_grid_sum(grid, &count, &hash);
   return hash;
 }
 
@@ -187,25 +193,27 @@ static void pack_layer(size_t j, int worker, void *payload) {
 }
 
 const uint8_t *vxm_grid_confidence(const vxm_grid *grid) {
-  return grid->confidence;
+  return grid ? grid->confidence : NULL;
 }
 
 void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes) {
   unpacking u = {grid, bytes};
-  vxm_parallel(grid->context, (size_t)grid->space.dims[1], unpack_layer, &u);
+  if (grid && bytes)
+    vxm_parallel(grid->context, (size_t)grid->space.dims[1], unpack_layer, &u);
 }
 
 void vxm_grid_pack(vxm_grid *grid, const uint8_t *bytes) {
   packing p = {grid, bytes};
-  vxm_parallel(grid->context, (size_t)grid->space.dims[1], pack_layer, &p);
+  if (grid && bytes)
+    vxm_parallel(grid->context, (size_t)grid->space.dims[1], pack_layer, &p);
 }
 
 int64_t vxm_grid_warning_count(const vxm_grid *grid) {
-  return grid->notes.count;
+  return grid ? grid->notes.count : 0;
 }
 
 const char *vxm_grid_warning(const vxm_grid *grid, int64_t index) {
-  return index >= 0 && index < grid->notes.count ? grid->notes.text[index] : "";
+  return grid && index >= 0 && index < grid->notes.count ? grid->notes.text[index] : "";
 }
 
 vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b, vxm_error *error) {

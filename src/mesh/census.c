@@ -9,12 +9,15 @@
 #include "mesh/weld.h"
 
 #include <float.h>
+#include <string.h>
 
 /* Sums are taken over slices of a fixed length, so that they do not depend on the number of threads. */
 enum { FACES_PER_SLICE = 4096 };
+enum { WIDE_AREA, WIDE_VOLUME, WIDE_VALUES };
 
 typedef struct face_sums {
-  double area, volume; /**< in the frame */
+  double area, volume;           /**< in the frame */
+  long double wide[WIDE_VALUES]; /**< the same as it is, of an extreme mesh */
   size_t triangles, degenerate, largest;
 } face_sums;
 
@@ -24,10 +27,44 @@ typedef struct taking {
   vxm_context *context;
   uint32_t *map; /**< vertex_count: first vertex of the same position */
   vxm_frame frame;
+  bool is_extreme; /**< the frame loses what lies beyond the range of its numbers */
   face_sums *sums; /**< per slice of faces */
 } taking;
 
 /* ---- Faces ---- */
+
+/** Whether areas and volumes, or their squares, leave the range of doubles. */
+static bool is_extreme(const double bounds[6]) {
+  const double least = ldexp(1.0, -250), most = ldexp(1.0, 250);
+  bool found = false;
+  for (int axis = 0; axis < 3; axis++) {
+    double length = bounds[3 + axis] - bounds[axis];
+    found |= (length > 0 && length < least) || length > most || fabs(bounds[axis]) > most;
+  }
+  return found;
+}
+
+/** Area and volume without a frame: the exponents of long double hold the cube of any double. */
+static void add_wide(const taking *t, const uint32_t *corners, size_t count, face_sums *sums) {
+  const double *origin = vxm_position(t->soup, corners[0]);
+  long double last[3], sum[3] = {0, 0, 0}, volume = 0;
+  for (size_t i = 1; i < count; i++) {
+    const double *p = vxm_position(t->soup, corners[i]);
+    long double next[3];
+    for (int a = 0; a < 3; a++)
+      next[a] = (long double)p[a] - (long double)origin[a];
+    for (int a = 0, b = 1, c = 2; i > 1 && a < 3; a++, b = (a + 1) % 3, c = (a + 2) % 3)
+      sum[a] += last[b] * next[c] - last[c] * next[b];
+    memcpy(last, next, sizeof last);
+  }
+  for (int a = 0; a < 3; a++)
+    volume += ((long double)origin[a] - (long double)t->frame.centre[a]) * sum[a];
+  long double area = sqrtl(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+  if (!isfinite(area) || !isfinite(volume))
+    return;
+  sums->wide[WIDE_AREA] += area / 2;
+  sums->wide[WIDE_VOLUME] += volume / 6;
+}
 
 static void add_face(const taking *t, size_t face, face_sums *sums) {
   size_t count;
@@ -40,6 +77,8 @@ static void add_face(const taking *t, size_t face, face_sums *sums) {
     sums->degenerate++;
   if (count == 0)
     return;
+  if (t->is_extreme)
+    add_wide(t, corners, count, sums);
   vxm_vec3 corner = vxm_vec3_between(vxm_position(t->soup, corners[0]), t->frame.centre, t->frame.scale);
   double volume = vxm_polygon_cone(corner, normal);
   if (isfinite(area) && isfinite(volume)) {
@@ -58,10 +97,9 @@ static void add_slice(size_t slice, int worker, void *payload) {
   t->sums[slice] = sums;
 }
 
-static double clamp_finite(double x) {
-  if (x > DBL_MAX)
-    return DBL_MAX;
-  return x < -DBL_MAX ? -DBL_MAX : x + 0.0;
+/** Infinite beyond the range of doubles, NaN where long double has no more range than these; never -0.0. */
+static double narrow(long double x) {
+  return LDBL_MAX_EXP > 4 * DBL_MAX_EXP ? (double)x + 0.0 : NAN;
 }
 
 static vxm_status measure_faces(taking *t, vxm_error *error) {
@@ -78,14 +116,17 @@ static vxm_status measure_faces(taking *t, vxm_error *error) {
   for (size_t i = 0; i < slices; i++) {
     all.area += t->sums[i].area;
     all.volume += t->sums[i].volume;
+    for (int w = 0; w < WIDE_VALUES; w++)
+      all.wide[w] += t->sums[i].wide[w];
     all.triangles += t->sums[i].triangles;
     all.degenerate += t->sums[i].degenerate;
     all.largest = t->sums[i].largest > all.largest ? t->sums[i].largest : all.largest;
   }
   vxm_free(t->context, t->sums);
   double scale = t->frame.scale;
-  t->census->area = clamp_finite(all.area / scale / scale);
-  t->census->volume = clamp_finite(all.volume / scale / scale / scale);
+  t->census->area = t->is_extreme ? narrow(all.wide[WIDE_AREA]) : all.area / scale / scale;
+  t->census->volume =
+      t->is_extreme ? narrow(all.wide[WIDE_VOLUME]) : all.volume / scale / scale / scale + 0.0;
   t->census->triangles = (int64_t)all.triangles;
   t->census->degenerate_faces = (int64_t)all.degenerate;
   t->census->largest_face = (int64_t)all.largest;
@@ -142,6 +183,7 @@ static void measure_vertices(taking *t, uint8_t *used) {
   for (int i = 0; i < 6; i++)
     t->census->bounds[i] = extent.bounds[i];
   t->frame = vxm_frame_of(extent.bounds);
+  t->is_extreme = is_extreme(extent.bounds);
 }
 
 static vxm_status take(taking *t, vxm_error *error) {

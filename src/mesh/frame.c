@@ -102,7 +102,7 @@ vxm_frame vxm_frame_of(const double bounds[6]) {
     frame.scale = ldexp(1.0, exponent < -1020 ? 1020 : -exponent);
   }
   for (int axis = 0; axis < 3; axis++) {
-    double length = bounds[3 + axis] * frame.scale - bounds[axis] * frame.scale;
+    double length = vxm_scaled_between(bounds[3 + axis], bounds[axis], frame.scale);
     squared += length * length;
   }
   frame.diagonal = sqrt(squared);

@@ -23,9 +23,15 @@ static inline double vxm_vec3_length(vxm_vec3 a) {
   return sqrt(vxm_vec3_dot(a, a));
 }
 
-/** (p - q) * scale; with a power of two that brings the mesh to unit size nothing overflows. */
+/** (p - q) * scale; with a power of two that brings the mesh to unit size nothing overflows: differences do
+ * in a large mesh, and products in a small one far from the origin. */
+static inline double vxm_scaled_between(double p, double q, double scale) {
+  return scale < 1 ? p * scale - q * scale : (p - q) * scale;
+}
+
 static inline vxm_vec3 vxm_vec3_between(const double *p, const double *q, double scale) {
-  return (vxm_vec3){p[0] * scale - q[0] * scale, p[1] * scale - q[1] * scale, p[2] * scale - q[2] * scale};
+  return (vxm_vec3){vxm_scaled_between(p[0], q[0], scale), vxm_scaled_between(p[1], q[1], scale),
+                    vxm_scaled_between(p[2], q[2], scale)};
 }
 
 /**

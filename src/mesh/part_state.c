@@ -46,8 +46,8 @@ static void add_face(measuring *m, const vxm_frame *frame, size_t face) {
   vxm_vec3 from = vxm_vec3_between(vxm_position(&m->view, corner[0]), frame->centre, frame->scale);
   double area = vxm_vec3_length(normal), volume = vxm_polygon_cone(from, normal);
   if (isfinite(area) && isfinite(volume)) {
-    state->area += area / frame->scale / frame->scale;
-    state->volume += volume / frame->scale / frame->scale / frame->scale;
+    state->area += area;
+    state->volume += volume;
   }
 }
 
@@ -106,8 +106,13 @@ static vxm_status measure(measuring *m, size_t part_count) {
     m->vertex_part[v] = NO_PART;
   for (size_t f = 0; f < m->view.face_count; f++)
     add_face(m, &frame, f);
-  for (size_t i = 0; i < part_count; i++)
-    m->states[i].closed = m->states[i].faces > 0;
+  for (size_t i = 0; i < part_count; i++) {
+    vxm_part_state *state = &m->states[i];
+    state->closed = state->faces > 0;
+    /* only now: what is beyond the range of doubles becomes infinite, and cancels nothing */
+    state->area = state->area / frame.scale / frame.scale;
+    state->volume = state->volume / frame.scale / frame.scale / frame.scale;
+  }
   vxm_edges edges;
   vxm_loops loops;
   vxm_status status = vxm_edges_build(&edges, m->view.context, &m->view, NULL, &m->error);

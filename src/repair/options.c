@@ -37,7 +37,7 @@ vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options
   if (!(options->max_change >= 0) || !isfinite(options->max_change))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
                     options->max_change);
-  if (options->drop_faces < 0 || !(options->drop_volume >= 0))
+  if (options->drop_faces < 0 || !(options->drop_volume >= 0) || isinf(options->drop_volume))
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "repair: parts below %" PRId64 " faces or a volume of %g; both must be 0 or more",
                     options->drop_faces, options->drop_volume);

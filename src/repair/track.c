@@ -198,6 +198,8 @@ static double change_of(const vxm_track *track, const vxm_soup *soup, size_t i) 
     most = fmax(most, fabs(after->bounds[a] - before->bounds[a]) / diagonal);
   /* Turning a part over changes the sign of its volume, which is what orientation is for. */
   double volume = fabs(track->reference[i]), difference = fabs(fabs(after->volume) - volume);
+  if (before->closed && !isfinite(difference))
+    return INFINITY;
   if (before->closed && volume > 0)
     most = fmax(most, difference / volume);
   return most;
@@ -213,6 +215,12 @@ static vxm_status check(const vxm_track *track, const vxm_soup *soup, double max
       return vxm_fail(error, VXM_ERROR_UNREACHED,
                       "the repair leaves nothing of part %zu (%" PRId64
                       " faces); leave out --max-change, or ask for less",
+                      i, part->before.faces);
+    if (!isfinite(change))
+      return vxm_fail(error, VXM_ERROR_RANGE,
+                      "the volume or bounds of part %zu (%" PRId64
+                      " faces) are beyond the range of numbers, so that --max-change cannot hold them; scale "
+                      "the mesh down",
                       i, part->before.faces);
     return vxm_fail(
         error, VXM_ERROR_UNREACHED,
