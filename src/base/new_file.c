@@ -38,7 +38,10 @@ static bool has_name(const vxm_new_file *file, int descriptor) {
 /** Removes what a killed program left under a temporary name: whoever still writes to it holds its lock. */
 static bool remove_abandoned(const vxm_new_file *file) {
   struct stat info;
-  int descriptor = openat(file->spot.folder, file->temporary, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  const int flags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  int descriptor = openat(file->spot.folder, file->temporary, O_RDWR | flags); /* as locks of NFS need it */
+  if (descriptor < 0)
+    descriptor = openat(file->spot.folder, file->temporary, O_RDONLY | flags);
   if (descriptor < 0)
     return false;
   bool is_abandoned = fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid() &&

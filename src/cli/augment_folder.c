@@ -86,23 +86,25 @@ static bool note_present(augment_folder *f, const augment_request *given, size_t
   return true;
 }
 
-/** The files made so far say what the others will take; half a chunk of them says it well enough. */
+/** The first files say what the others will take. */
 static int check_room(cli_run *cli, const augment_folder *f, const augment_request *given) {
   struct statvfs disk;
   char needed[24], room[24];
-  if (f->made != CHUNK || statvfs(given->output, &disk) != 0 || disk.f_blocks == 0)
+  /* What is replaced makes room. */
+  if (f->made != CHUNK || f->replaced > 0 || statvfs(given->output, &disk) != 0 || disk.f_blocks == 0)
     return CLI_DONE;
   double block = (double)disk.f_frsize, each = 0;
   for (int64_t i = 0; i < f->made; i++) /* in whole blocks, as they lie on the disk */
     each += block * (double)((f->sizes[i] + disk.f_frsize - 1) / disk.f_frsize) / (double)f->made;
   double wanted = each * (double)(given->count - f->made);
   double available = block * (double)(geteuid() == 0 ? disk.f_bfree : disk.f_bavail);
-  if (wanted <= available || f->replaced > 0) /* what is replaced makes room */
+  if (wanted <= available)
     return CLI_DONE;
   return cli_fail_text(cli,
                        "%s: cannot write: the other %" PRId64 " files need about %s, and %s are free on "
                        "its disk",
-                       given->output, given->count - f->made, cli_bytes_text(needed, (uint64_t)wanted),
+                       given->output, given->count - f->made,
+                       cli_bytes_text(needed, (uint64_t)(wanted < 1e19 ? wanted : 1e19)),
                        cli_bytes_text(room, (uint64_t)available));
 }
 

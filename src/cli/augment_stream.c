@@ -6,6 +6,9 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
 enum {
   HEADER_BYTES = 64,
@@ -101,6 +104,23 @@ static int write_all(cli_run *cli, stream *s, int64_t *made) {
   return fflush(stdout) == 0 ? CLI_DONE : end_of_writing(cli, s);
 }
 
+/** A stream of known length that goes into a file needs room on its disk. */
+static int check_room(cli_run *cli, const stream *s) {
+  struct stat info;
+  struct statvfs disk;
+  char needed[24], room[24];
+  if (s->given->count == 0 || fstat(STDOUT_FILENO, &info) != 0 || !S_ISREG(info.st_mode) ||
+      fstatvfs(STDOUT_FILENO, &disk) != 0 || disk.f_blocks == 0)
+    return CLI_DONE;
+  double wanted = (double)s->given->count * (double)(s->voxel_bytes + NAME_BYTES);
+  double available = (double)disk.f_frsize * (double)(geteuid() == 0 ? disk.f_bfree : disk.f_bavail);
+  return wanted <= available
+             ? CLI_DONE
+             : cli_fail_text(cli, "<stdout>: cannot write: %s are needed, and %s are free on its disk",
+                             cli_bytes_text(needed, (uint64_t)(wanted < 1e19 ? wanted : 1e19)),
+                             cli_bytes_text(room, (uint64_t)available));
+}
+
 int augment_stream(cli_run *cli, const augment_request *given, vxm_sampler *sampler, int64_t *made) {
   stream s = {.given = given, .sampler = sampler, .voxel_bytes = vxm_sampler_bytes(sampler, given->voxels)};
   s.batch = BATCH_BYTES / s.voxel_bytes;
@@ -109,8 +129,9 @@ int augment_stream(cli_run *cli, const augment_request *given, vxm_sampler *samp
   s.variants = malloc(s.batch * sizeof *s.variants);
   *made = 0;
   signal(SIGPIPE, SIG_IGN); /* write fails instead */
-  int status = s.voxels && s.variants ? write_all(cli, &s, made)
-                                      : cli_fail_text(cli, "out of memory for %zu variants", s.batch);
+  int status = check_room(cli, &s) != CLI_DONE ? CLI_FAILED
+               : s.voxels && s.variants        ? write_all(cli, &s, made)
+                                        : cli_fail_text(cli, "out of memory for %zu variants", s.batch);
   free(s.voxels);
   free(s.variants);
   return status;

@@ -87,28 +87,55 @@ static const char *beside(char out[PATH_SIZE], const char *path, size_t kept, co
   return out;
 }
 
-/** Whether there is a description of a grid beside a file, and not a report, say, of the same name. */
-static bool has_description(char out[PATH_SIZE], const char *path) {
-  json_t *root = json_load_file(beside(out, path, strlen(path), ".json"), 0, NULL);
+/** The JSON in a file; NULL if there is none, or more than can be looked through in passing. */
+static json_t *load_json(const char *path) {
+  const off_t most = 64 << 20;
+  struct stat info;
+  return stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size <= most
+             ? json_load_file(path, 0, NULL)
+             : NULL;
+}
+
+/** Whether a file is the description of a grid, and not a report, say, of the same name. */
+static bool is_description(const char *path) {
+  json_t *root = load_json(path);
   const char *format = json_string_value(json_object_get(root, "format"));
   bool is_one = format && strncmp(format, "voxmend ", strlen("voxmend ")) == 0;
   json_decref(root);
   return is_one;
 }
 
+/** A relative name out of a URI, where "%20" stands for a blank. */
+static void decode(char *text) {
+  char *to = text;
+  unsigned code;
+  int used;
+  for (const char *from = text; *from; from++, to++) {
+    used = 0;
+    *to = *from;
+    if (*from == '%' && sscanf(from, "%%%2x%n", &code, &used) == 1 && used == 3) {
+      *to = (char)code;
+      from += 2;
+    }
+  }
+  *to = '\0';
+}
+
 /** Whether a glTF file names the output as one of its buffers or pictures. */
 static bool is_part_of_gltf(const char *path, const char *output, int standard) {
   static const char *const lists[] = {"buffers", "images"};
-  json_t *root = json_load_file(path, 0, NULL), *item;
+  json_t *root = load_json(path), *item;
   const char *slash = strrchr(path, '/');
   bool found = false;
   for (size_t l = 0, i; l < 2 && !found; l++)
     json_array_foreach(json_object_get(root, lists[l]), i, item) {
       char name[PATH_SIZE];
       const char *uri = json_string_value(json_object_get(item, "uri"));
-      if (uri && uri[0] != '/' && strncmp(uri, "data:", strlen("data:")) != 0)
-        found |=
-            is_same(beside(name, path, slash ? (size_t)(slash - path + 1) : 0, uri), 0, output, standard);
+      if (!uri || uri[0] == '/' || strncmp(uri, "data:", strlen("data:")) == 0)
+        continue;
+      int length = snprintf(name, sizeof name, "%.*s%s", slash ? (int)(slash - path + 1) : 0, path, uri);
+      decode(name);
+      found |= length > 0 && length < PATH_SIZE && is_same(name, 0, output, standard);
     }
   json_decref(root);
   return found;
@@ -117,14 +144,15 @@ static bool is_part_of_gltf(const char *path, const char *output, int standard) 
 /** Whether an output is a file without which one that is read is not what it was. */
 static bool is_companion(const char *input, const char *output, int standard) {
   char name[PATH_SIZE];
-  if (strcmp(input, "-") == 0)
+  struct stat info;
+  if (strcmp(input, "-") == 0 || !look_at(&info, output, standard) || !S_ISREG(info.st_mode))
     return false;
   if (cli_is_extension(input, "gltf") && is_part_of_gltf(input, output, standard))
     return true;
   if (cli_is_extension(input, "obj") &&
       is_same(beside(name, input, strlen(input) - strlen("obj"), "mtl"), 0, output, standard))
     return true;
-  return has_description(name, input) && is_same(name, 0, output, standard);
+  return is_same(beside(name, input, strlen(input), ".json"), 0, output, standard) && is_description(name);
 }
 
 /* ---- Checks ---- */

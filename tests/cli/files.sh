@@ -38,9 +38,12 @@ run "voxmend augment rocket.off -o many -n 3 -r 8 --report many/000001.rle"
 run "voxmend convert rocket.raw -o b.npy --report rocket.raw.json"
 run "voxmend convert rocket.binvox -o b.npy --report rocket.binvox.json -q"
 run "voxmend convert rocket.binvox -o b.npy --report rocket.binvox.json -q"
-printf '{"asset":{"version":"2.0"},"buffers":[{"uri":"data.raw","byteLength":4}]}' >scene.gltf
-printf abcd >data.raw
-run "voxmend voxelize scene.gltf -o data.raw"
+printf '{"asset":{"version":"2.0"},"buffers":[{"uri":"the%%20data.raw","byteLength":4}]}' >scene.gltf
+printf abcd >'the data.raw'
+run "voxmend voxelize scene.gltf -o 'the data.raw'"
+touch rocket.mtl coat.mtl
+ln -s rocket.off rocket.obj
+run "voxmend info rocket.obj --report rocket.mtl"
 
 # Two outputs that are one, also where neither is there yet.
 run "voxmend voxelize rocket.off -o new.npy --confidence here/new.npy"
@@ -80,4 +83,5 @@ run "cksum late/* | cmp - before"
 # Room on the disk is looked for before the work.
 run "voxmend voxelize rocket.off -o huge.nrrd -r 4096x4096x1048576 -q 2>&1 | sed 's/and .* are free/and N are free/'"
 run "test ! -e huge.nrrd"
+run "(ulimit -f 8; voxmend augment rocket.off -o - -n 1000000 -r 1024 --format float32 >stream) 2>&1 | sed 's/and .* are free/and N are free/'"
 finish
