@@ -3,6 +3,7 @@
 #include "meshio/foreign.h"
 #include "meshio/meshio.h"
 #include "meshio/reader.h"
+#include "meshio/stl.h"
 #include "meshio/utf16.h"
 
 #include <string.h>
@@ -31,6 +32,9 @@ static const vxm_format *by_extension(const char *path) {
   return NULL;
 }
 
+/** What a file is that is no mesh, or NULL. */
+static const char *find_stranger(const unsigned char *data, size_t size);
+
 /** Who reads a file: one of our own readers, or a library. */
 typedef struct choice {
   const vxm_format *own;
@@ -39,6 +43,9 @@ typedef struct choice {
 
 static choice choose(const unsigned char *data, size_t size, const char *name) {
   const vxm_format *possible = NULL;
+  /* Before all else: the first 80 bytes of such a file are free, and some begin like another format. */
+  if (vxm_stl_is_binary(data, size))
+    return (choice){.own = by_name("stl")};
   for (size_t f = 0; f < FORMATS; f++) {
     vxm_likeness likeness = formats[f].sniff(data, size);
     if (likeness == VXM_LIKENESS_CERTAIN)
@@ -47,7 +54,7 @@ static choice choose(const unsigned char *data, size_t size, const char *name) {
       possible = &formats[f];
   }
   choice chosen = {.foreign = vxm_foreign_by_content(data, size)};
-  if (!chosen.foreign)
+  if (!chosen.foreign && !find_stranger(data, size))
     chosen.own = by_extension(name);
   if (!chosen.foreign && !chosen.own)
     chosen.foreign = vxm_foreign_by_extension(vxm_path_extension(name));
@@ -80,6 +87,7 @@ static const struct {
     {"\x28\xb5\x2f\xfd", "is compressed by zstd: unpack it first"},
     {"version https://git-lfs", "is a Git LFS pointer, not the mesh itself: run git lfs pull"},
     {"<!DOCTYPE", "is a web page, not a mesh: download the file itself"},
+    {"<!doctype", "is a web page, not a mesh: download the file itself"},
     {"<html", "is a web page, not a mesh: download the file itself"},
     {"#binvox", "is a binvox grid, not a mesh"},
     {"\x93NUMPY", "is a numpy array, not a mesh"},
@@ -111,7 +119,7 @@ static vxm_status read_unknown(vxm_soup *soup, const unsigned char *data, size_t
 
 static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                              const vxm_mesh_read_options *options, vxm_error *error) {
-  if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) {
+  if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0 && !vxm_stl_is_binary(data, size)) {
     data += 3;
     size -= 3;
   }
@@ -149,7 +157,7 @@ vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsi
   if (status != VXM_OK)
     return status;
   unsigned char *text = NULL;
-  if (vxm_utf16_is(data, size) && vxm_stl_sniff(data, size) != VXM_LIKENESS_CERTAIN) {
+  if (vxm_utf16_is(data, size)) {
     size_t text_size;
     status = vxm_utf16_to_utf8(&text, &text_size, soup->context, data, size, error);
     data = text;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Wavefront OBJ: vertices and polygons, with groups and materials as face tags; the rest is passed over. */
+#include "meshio/cut.h"
 #include "meshio/format.h"
 #include "meshio/scan.h"
 #include "meshio/tags.h"
@@ -15,6 +16,9 @@ typedef struct obj_reader {
   uint64_t largest; /**< 1-based, among the positive indices of the faces that were kept */
   uint64_t lines_and_points;
   bool any_statement;
+  bool ends_in_face;                /**< the last line is a face that was kept */
+  const unsigned char *last_vertex; /**< the vertex in the last line, if that has no end */
+  const unsigned char *cut_vertex;  /**< a vertex within which the file ends */
   vxm_tally numbers, flat, short_vertices, zero, beyond, small_faces, bad_faces;
 } obj_reader;
 
@@ -47,14 +51,21 @@ static vxm_status read_vertex(obj_reader *reader, vxm_error *error) {
   const unsigned char *first = scan->at;
   double p[3] = {0.0, 0.0, 0.0};
   int count = 0;
+  uint64_t words = 0;
   for (; count < 3 && more(scan); count++)
     if (__builtin_expect(!vxm_scan_double(scan, &p[count]), 0)) {
       if (is_comment(scan))
         break;
-      vxm_tally_add(&reader->numbers, first);
+      words++;
       p[count] = (double)NAN;
       vxm_skip_token(scan);
     }
+  if (__builtin_expect((count < 3 || words > 0) && scan->at == scan->end, 0) && reader->flat.count == 0) {
+    reader->cut_vertex = first;
+    return VXM_OK;
+  }
+  for (; words > 0; words--)
+    vxm_tally_add(&reader->numbers, first);
   if (__builtin_expect(count == 2, 0))
     vxm_tally_add(&reader->flat, first);
   else if (__builtin_expect(count < 2, 0)) {
@@ -62,6 +73,7 @@ static vxm_status read_vertex(obj_reader *reader, vxm_error *error) {
     for (; count < 3; count++)
       p[count] = (double)NAN;
   }
+  reader->last_vertex = scan->at == scan->end ? first : NULL;
   return vxm_soup_add_vertex(reader->soup, p[0], p[1], p[2], error);
 }
 
@@ -200,6 +212,7 @@ static vxm_status read_statements(obj_reader *reader, vxm_error *error) {
       scan->at++;
       reader->any_statement = true;
       status = read_face(reader, error);
+      reader->ends_in_face = scan->at == scan->end;
     } else if (c != '#' && c != 'v')
       status = read_rare(reader, error);
     if (status == VXM_OK)
@@ -240,12 +253,90 @@ static void drop_beyond(obj_reader *reader) {
   reader->beyond.count += vxm_soup_drop_bad_faces(soup);
 }
 
+/** Vertices that no face uses, and how many of them are the last ones. */
+static vxm_status count_unused(const vxm_soup *soup, size_t *unused, size_t *last, vxm_error *error) {
+  size_t words = soup->vertex_count / 64 + 1;
+  vxm_error local = VXM_ERROR_INIT;
+  uint64_t *used = vxm_calloc(soup->context, words, sizeof *used, &local);
+  if (!used) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  for (size_t c = 0; c < soup->corner_count; c++)
+    used[soup->indices[c] / 64] |= UINT64_C(1) << soup->indices[c] % 64;
+  *unused = soup->vertex_count;
+  for (size_t w = 0; w < words; w++)
+    *unused -= (size_t)__builtin_popcountll(used[w]);
+  size_t v = soup->vertex_count;
+  while (v > 0 && !(used[(v - 1) / 64] >> (v - 1) % 64 & 1))
+    v--;
+  *last = soup->vertex_count - v;
+  vxm_free(soup->context, used);
+  return VXM_OK;
+}
+
+static size_t count_slashes(const unsigned char *from, const unsigned char *to) {
+  size_t slashes = 0;
+  for (; from < to; from++)
+    slashes += *from == '/';
+  return slashes;
+}
+
+/** Whether the last corner has fewer numbers than the one before it, as "3/4" behind "1/2/1". */
+static bool ends_in_part_of_corner(const vxm_scan *scan) {
+  vxm_scan before = *scan;
+  const unsigned char *last = vxm_last_token(scan);
+  before.end = last;
+  while (before.end > before.begin && vxm_is_blank(before.end[-1]))
+    before.end--;
+  return last < scan->end &&
+         count_slashes(last, scan->end) < count_slashes(vxm_last_token(&before), before.end);
+}
+
+/**
+ * Nothing in this format says how much there should be. Signs of a file that was cut off are vertices that no
+ * face uses, most of all the last ones, and in a last line without an end a face that does not fit those
+ * before it.
+ */
+static vxm_status note_cut(const obj_reader *reader, vxm_error *error) {
+  const vxm_scan *scan = &reader->scan;
+  vxm_soup *soup = reader->soup;
+  int64_t line = vxm_scan_line(scan, scan->end);
+  if (reader->cut_vertex)
+    vxm_note(&soup->notes, "line %" PRId64 ": the file ends within a vertex; skipped",
+             vxm_scan_line(scan, reader->cut_vertex));
+  if (soup->face_count == 0 || reader->lines_and_points > 0 || reader->cut_vertex)
+    return VXM_OK;
+  size_t unused = 0, last = 0;
+  vxm_status status = count_unused(soup, &unused, &last, error);
+  if (status != VXM_OK)
+    return status;
+  bool no_line_end = scan->end > scan->begin && !vxm_is_newline(scan->end[-1]);
+  bool skipped =
+      reader->zero.count + reader->beyond.count + reader->small_faces.count + reader->bad_faces.count > 0;
+  if (no_line_end &&
+      (unused > 0 || reader->last_vertex ||
+       (reader->ends_in_face && (ends_in_part_of_corner(scan) || vxm_last_index_may_be_cut(soup, 1) ||
+                                 vxm_last_face_may_be_short(soup)))))
+    vxm_note(&soup->notes, "line %" PRId64 ": the file ends without a line end; its last line may be cut off",
+             line);
+  else if (!skipped && (last > 0 || unused > soup->vertex_count / 100))
+    vxm_note(&soup->notes, "line %" PRId64 ": the file may be cut off: no face uses %zu of its %zu vertices",
+             line, unused, soup->vertex_count);
+  return VXM_OK;
+}
+
 static vxm_status finish(obj_reader *reader, vxm_error *error) {
   const vxm_scan *scan = &reader->scan;
   vxm_soup *soup = reader->soup;
   if (!reader->any_statement)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){scan->name, 0, -1, -1},
                        "not a mesh: no line is an OBJ vertex (v x y z) or face (f a b c)");
+  if (reader->last_vertex && reader->largest > soup->vertex_count) { /* more should follow */
+    soup->vertex_count--;
+    reader->cut_vertex = reader->last_vertex;
+  }
   drop_beyond(reader);
   if (soup->face_count == 0)
     vxm_tags_drop(soup);
@@ -263,7 +354,7 @@ static vxm_status finish(obj_reader *reader, vxm_error *error) {
              reader->lines_and_points);
   else if (soup->face_count == 0)
     vxm_note(&soup->notes, "the file has no faces");
-  return VXM_OK;
+  return note_cut(reader, error);
 }
 
 vxm_status vxm_obj_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** OFF as text: by lines where the file keeps to lines, by tokens where it does not. */
 #include "meshio/off.h"
+#include "meshio/cut.h"
 #include "meshio/format.h"
 
 #include <inttypes.h>
@@ -8,7 +9,7 @@
 
 /** The damage a text file can have. */
 typedef struct off_damage {
-  vxm_tally numbers, short_vertices, beyond, small_faces, bad_faces, short_faces;
+  vxm_tally numbers, short_vertices, beyond, small_faces, bad_faces, short_faces, cut;
 } off_damage;
 
 /* ---- The header ---- */
@@ -136,10 +137,18 @@ static off_layout vertex_layout(const vxm_scan *scan, const vxm_off_header *head
     return BY_LINES;
   if (tokens < position)
     return BY_TOKENS;
-  if (tokens == position) /* no colours or normals here: left out, or on lines of their own? */
+  vxm_scan second = *scan;
+  vxm_skip_line(&second);
+  bool own_lines = skip_to_data(&second) && vxm_tokens_on_line(&second, '#') == whole - position;
+  if (tokens == position && whole != 2 * position) /* no colours here: left out, or on lines of their own? */
+    return own_lines ? BY_TOKENS : BY_LINES;
+  if (tokens == position)
     return vxm_lines_with_data(scan, '#', 2 * vertices + faces) == 2 * vertices + faces ? BY_TOKENS
                                                                                         : BY_LINES;
-  /* More numbers than announced, colours of another length, or several vertices to a line. */
+  /* More numbers than announced, colours of another length, or several vertices to a line. How many lines
+     there are says less than how wide they are, as the file may be cut off. */
+  if (vxm_lines_of_width(scan, '#', tokens, vertices) == vertices)
+    return BY_LINES;
   uint64_t lines = vxm_lines_with_data(scan, '#', vertices + faces);
   return lines < vertices || (tokens % whole == 0 && lines < vertices + faces) ? BY_TOKENS : BY_LINES;
 }
@@ -196,29 +205,25 @@ static vxm_status read_vertices(vxm_scan *scan, const vxm_off_header *header, ui
     return status;
   size_t kept = header->dimension < 3 ? header->dimension : 3;
   size_t skipped = header->dimension - kept + vxm_off_extras(header);
-  if (skip_to_data(scan) && vertex_layout(scan, header, vertices, faces) == BY_TOKENS) {
-    for (; soup->vertex_count < vertices && status == VXM_OK; soup->vertex_count++) {
-      double *p = soup->positions + 3 * soup->vertex_count;
-      p[2] = p[1] = 0.0;
-      if (!read_vertex_by_tokens(scan, p, kept, skipped, damage))
-        break;
-      status = vxm_scan_progress(scan, error);
-    }
-    return status;
-  }
+  bool by_tokens = skip_to_data(scan) && vertex_layout(scan, header, vertices, faces) == BY_TOKENS;
+  const unsigned char *const end = scan->end, *const last = vxm_last_token(scan);
   for (; soup->vertex_count < vertices && status == VXM_OK; soup->vertex_count++) {
     double *p = soup->positions + 3 * soup->vertex_count;
     p[2] = p[1] = 0.0;
-    if (!read_vertex_by_line(scan, p, kept, damage))
+    scan->end = soup->vertex_count + 1 < vertices ? last : end;
+    if (by_tokens ? !read_vertex_by_tokens(scan, p, kept, skipped, damage)
+                  : !read_vertex_by_line(scan, p, kept, damage))
       break;
     status = vxm_scan_progress(scan, error);
   }
+  scan->end = end;
   return status;
 }
 
 /* ---- Faces ---- */
 
-/** Whether the line from the cursor to its end is a whole number of faces one after the other. */
+/** Whether the line from the cursor to its end is one face after the other; the last may be cut off with the
+ * file. */
 static bool is_run_of_faces(const vxm_scan *scan, uint64_t vertices) {
   vxm_scan ahead = *scan;
   while (vxm_more_on_line(&ahead) && *ahead.at != '#') {
@@ -226,7 +231,9 @@ static bool is_run_of_faces(const vxm_scan *scan, uint64_t vertices) {
     if (!vxm_scan_uint(&ahead, &n) || n < 3)
       return false;
     for (; n > 0; n--)
-      if (!vxm_more_on_line(&ahead) || !vxm_scan_uint(&ahead, &index) || index >= vertices)
+      if (!vxm_more_on_line(&ahead))
+        return ahead.at == ahead.end;
+      else if (!vxm_scan_uint(&ahead, &index) || index >= vertices)
         return false;
   }
   return true;
@@ -311,7 +318,21 @@ static inline off_outcome read_corners(vxm_scan *scan, uint64_t n, bool by_lines
   return FACE_READ;
 }
 
-/** Reads the faces; *done is how many of those announced were met. */
+/** Whether the token that touches the end of the file is the last index of the face of n that begins at
+ * `first`. */
+static bool ends_in_index(const vxm_scan *scan, const unsigned char *first, uint64_t n) {
+  vxm_scan ahead = *scan;
+  ahead.at = first;
+  for (uint64_t t = 0; t < n && skip_to_data(&ahead); t++)
+    vxm_skip_token(&ahead);
+  const unsigned char *last = vxm_last_token(scan);
+  return last < scan->end && skip_to_data(&ahead) && ahead.at == last;
+}
+
+/**
+ * Reads the faces; *done is how many of those announced were met. The token that touches the end of the file,
+ * which may be half a number, is believed only where it completes the last of them.
+ */
 static vxm_status read_faces(vxm_scan *scan, uint64_t faces, uint64_t *done, off_damage *damage,
                              vxm_error *error) {
   vxm_soup *soup = scan->soup;
@@ -322,7 +343,11 @@ static vxm_status read_faces(vxm_scan *scan, uint64_t faces, uint64_t *done, off
   /* A triangle takes 8 bytes at least. */
   uint64_t room = (uint64_t)(scan->end - scan->at) / 8 + 1, expected = faces < room ? faces : room;
   vxm_status status = vxm_soup_reserve(soup, 0, (size_t)expected, (size_t)expected * 3, error);
-  for (; status == VXM_OK && *done < faces && skip_to_data(scan); ++*done) {
+  const unsigned char *const end = scan->end, *const last = vxm_last_token(scan);
+  for (; status == VXM_OK && *done < faces; ++*done) {
+    scan->end = *done + 1 < faces ? last : end;
+    if (!skip_to_data(scan))
+      break;
     const unsigned char *first = scan->at;
     uint64_t n;
     if (!vxm_scan_uint(scan, &n)) {
@@ -345,7 +370,11 @@ static vxm_status read_faces(vxm_scan *scan, uint64_t faces, uint64_t *done, off
       status = vxm_face_end(soup, (size_t)n, error);
     if (status == VXM_OK)
       status = vxm_scan_progress(scan, error);
+    if (outcome == FACE_READ && *done + 1 == faces && ends_in_index(scan, first, n) &&
+        vxm_last_index_may_be_cut(soup, 0))
+      vxm_tally_add(&damage->cut, first);
   }
+  scan->end = end;
   return status;
 }
 
@@ -370,6 +399,8 @@ static void note_damage(vxm_scan *scan, const vxm_off_header *header, const off_
                       "faces");
   vxm_tally_note_line(scan, &damage->beyond, "face names a vertex that does not exist; skipped", "faces");
   vxm_tally_note_line(scan, &damage->small_faces, "face has fewer than 3 corners; skipped", "faces");
+  vxm_tally_note_line(scan, &damage->cut, "the file ends without a line end; its last number may be cut off",
+                      "");
 }
 
 static vxm_status finish(vxm_scan *scan, uint64_t vertices, uint64_t faces, uint64_t done, vxm_error *error) {

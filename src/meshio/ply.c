@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** PLY: header, body and what they came to. */
 #include "meshio/ply.h"
+#include "meshio/cut.h"
 #include "meshio/format.h"
 
 #include <inttypes.h>
@@ -103,6 +104,11 @@ static vxm_status finish(vxm_scan *scan, const vxm_ply_header *header, vxm_ply_b
              (size_t)(scan->at - scan->begin), (size_t)(scan->end - scan->at));
   if (!header->ascii && (body->cut || body->beyond.count > 0))
     vxm_note_text_conversion(scan);
+  if (body->last && vxm_last_token(scan) < scan->end &&
+      (body->faces_first || vxm_last_index_may_be_cut(soup, 0)))
+    vxm_note(&soup->notes,
+             "line %" PRId64 ": the file ends without a line end; its last number may be cut off",
+             vxm_scan_line(scan, body->last));
   if (soup->vertex_count == 0)
     vxm_note(&soup->notes, "the file has no vertices");
   else if (soup->face_count == 0)

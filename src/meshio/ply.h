@@ -60,7 +60,9 @@ typedef struct vxm_ply_body {
   vxm_tally numbers, short_lines, long_lines, beyond, small_faces, bad_faces, bad_strips;
   const vxm_ply_element *cut; /**< the element within which the file ends, or NULL */
   uint64_t cut_done;          /**< how many of it were whole */
+  const unsigned char *last;  /**< the last line of a text, if half a number there could be a mesh's */
   bool lines_counted;         /**< whether `few_lines` is known */
+  bool by_tokens;             /**< those there are wider than an element, and not all alike */
   bool few_lines;             /**< a text has fewer lines than elements */
   bool faces_first;           /**< faces came before vertices, so that indices are checked at the end */
 } vxm_ply_body;

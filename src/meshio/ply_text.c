@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The body of an ascii PLY: one element to a line, or any run of tokens where the file does not keep to
  * that. */
+#include "meshio/cut.h"
 #include "meshio/ply.h"
 
 #include <inttypes.h>
@@ -15,6 +16,8 @@ typedef struct text_reader {
   const vxm_ply_property *properties;
   vxm_ply_body *body;
   bool by_lines;
+  bool is_last;                     /**< no element behind this one has lines */
+  const unsigned char *end, *whole; /**< of the file, and before the token that touches its end */
 } text_reader;
 
 /** Moves to the next value of the element; false at the end of its line or of the file. */
@@ -69,7 +72,13 @@ static bool is_by_lines(const text_reader *reader) {
     body->few_lines = vxm_lines_with_data(reader->scan, 0, lines) < lines;
     body->lines_counted = true;
   }
-  if (body->few_lines)
+  /* Few lines may mean that the file is cut off: lines of one width all through an element are its own. */
+  if (body->few_lines && !body->by_tokens) {
+    size_t width = vxm_tokens_on_line(reader->scan, 0);
+    uint64_t count = reader->element->count;
+    body->by_tokens = vxm_lines_of_width(reader->scan, 0, width, count) < count;
+  }
+  if (body->by_tokens)
     return false;
   vxm_tally_add(&reader->body->long_lines, reader->scan->at);
   return true;
@@ -170,7 +179,7 @@ static inline vxm_status read_vertex(text_reader *reader, bool xyz_first, bool *
   if (status != VXM_OK)
     return status;
   if (__builtin_expect(!*there, 0)) {
-    if (!reader->by_lines)
+    if (!reader->by_lines || scan->at == scan->end)
       return VXM_OK;
     /* Half a vertex is none, but it keeps its number, so that the faces stay right. */
     vxm_tally_add(&reader->body->short_lines, first);
@@ -322,8 +331,13 @@ static vxm_status read_element(text_reader *reader, vxm_error *error) {
   vxm_status status = reserve(reader, error);
   bool xyz_first = has_xyz_first(reader);
   size_t corners = corners_of(reader);
+  bool more_behind = element->role == VXM_PLY_FACES && corners + 1 < element->properties;
   uint64_t limit = vxm_ply_index_limit(scan, reader->header, reader->body);
   for (uint64_t i = 0; i < element->count && status == VXM_OK; i++) {
+    /* Half a number may touch the end of the file: it is believed only where it completes all that is
+     * announced. */
+    bool is_last = reader->is_last && i + 1 == element->count && !more_behind;
+    scan->end = is_last ? reader->end : reader->whole;
     bool there = vxm_skip_space(scan), any = there;
     const unsigned char *first = scan->at;
     if (there && element->role == VXM_PLY_VERTICES)
@@ -344,15 +358,26 @@ static vxm_status read_element(text_reader *reader, vxm_error *error) {
       reader->body->cut_done = i;
       return VXM_OK;
     }
+    if (is_last && (element->role == VXM_PLY_FACES || reader->body->faces_first))
+      reader->body->last = first;
     if (status == VXM_OK)
       status = vxm_scan_progress(scan, error);
   }
   return status;
 }
 
+/** No element with lines follows the one at `e`. */
+static bool is_last_element(const vxm_ply_header *header, size_t e) {
+  while (++e < header->element_count)
+    if (header->elements[e].count > 0 && header->elements[e].properties > 0)
+      return false;
+  return true;
+}
+
 vxm_status vxm_ply_read_text(vxm_scan *scan, const vxm_ply_header *header, vxm_ply_body *body,
                              vxm_error *error) {
   vxm_status status = VXM_OK;
+  const unsigned char *const end = scan->end, *const whole = vxm_last_token(scan);
   for (size_t e = 0; e < header->element_count && status == VXM_OK && !body->cut; e++) {
     const vxm_ply_element *element = &header->elements[e];
     text_reader reader = {.scan = scan,
@@ -360,8 +385,15 @@ vxm_status vxm_ply_read_text(vxm_scan *scan, const vxm_ply_header *header, vxm_p
                           .header = header,
                           .element = element,
                           .properties = element->properties ? header->properties + element->first : NULL,
-                          .body = body};
+                          .body = body,
+                          .is_last = is_last_element(header, e),
+                          .end = end,
+                          .whole = whole};
+    scan->end = end;
     status = read_element(&reader, error);
   }
+  scan->end = end;
+  if (body->cut)
+    scan->at = end;
   return status;
 }

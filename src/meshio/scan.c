@@ -138,6 +138,20 @@ uint64_t vxm_lines_with_data(const vxm_scan *scan, unsigned char comment, uint64
   return lines;
 }
 
+uint64_t vxm_lines_of_width(const vxm_scan *scan, unsigned char comment, size_t tokens, uint64_t enough) {
+  vxm_scan ahead = *scan;
+  uint64_t lines = 0;
+  while (lines < enough && vxm_skip_space(&ahead)) {
+    if (comment == 0 || *ahead.at != comment) {
+      if (vxm_tokens_on_line(&ahead, comment) != tokens)
+        break;
+      lines++;
+    }
+    vxm_skip_line(&ahead);
+  }
+  return lines;
+}
+
 enum { SAMPLES = 64, SAMPLE_BYTES = 2048, LINE_BYTES = 4096 };
 
 /** Adds the lines between two positions, each counted `weight` times. */

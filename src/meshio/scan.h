@@ -131,6 +131,9 @@ size_t vxm_tokens_on_line(const vxm_scan *scan, unsigned char comment);
 /** Lines from the cursor on that hold a token, comments not counted; stops counting at `enough`. */
 uint64_t vxm_lines_with_data(const vxm_scan *scan, unsigned char comment, uint64_t enough);
 
+/** Lines from the cursor on that have as many tokens each, as vxm_lines_with_data. */
+uint64_t vxm_lines_of_width(const vxm_scan *scan, unsigned char comment, size_t tokens, uint64_t enough);
+
 /** About how many lines begin with a word, and how many tokens they have, by the word's first letter. */
 typedef struct vxm_line_kinds {
   double letter[128], letter_tokens[128]; /**< words of one letter */

@@ -8,8 +8,9 @@
 
 /* ---- Which of the two ---- */
 
-static bool starts_with_solid(const unsigned char *data, size_t size) {
-  static const char word[] = "solid";
+enum { HEAD = 4096 };
+
+static bool starts_with(const unsigned char *data, size_t size, const char *word) {
   size_t at = 0;
   while (at < size && (vxm_is_blank(data[at]) || vxm_is_newline(data[at])))
     at++;
@@ -19,23 +20,30 @@ static bool starts_with_solid(const unsigned char *data, size_t size) {
   return at == size || data[at] <= ' ';
 }
 
-static uint64_t announced(const unsigned char *data) {
-  return vxm_load_u32(data + VXM_STL_COUNT_AT, vxm_must_swap(false));
+/** Whether a word stands near the beginning, in any case. */
+static bool has_word(const unsigned char *data, size_t size, const char *word) {
+  size_t length = strlen(word), head = size < HEAD ? size : HEAD;
+  for (size_t at = 0; at + length <= head; at++) {
+    size_t i = 0;
+    while (i < length && (data[at + i] | 0x20) == word[i])
+      i++;
+    if (i == length)
+      return true;
+  }
+  return false;
 }
 
-static bool size_fits(const unsigned char *data, size_t size) {
-  return size >= VXM_STL_FACETS_AT && size == VXM_STL_FACETS_AT + announced(data) * VXM_STL_FACET;
-}
-
-/** Many binary files begin with "solid" too, but their first facets hold zero bytes, which text never does.
- */
+/** Text may lack its first line, or have a stray control code in its name; binary facets have many. */
 static bool is_text(const unsigned char *data, size_t size) {
-  return starts_with_solid(data, size) && !size_fits(data, size) &&
-         memchr(data, '\0', size < 1024 ? size : 1024) == NULL;
+  size_t head = size < HEAD ? size : HEAD;
+  if (vxm_stl_is_binary(data, size) || vxm_control_bytes(data, head) * 16 > head)
+    return false;
+  return starts_with(data, size, "solid") ||
+         (has_word(data, size, "facet") && has_word(data, size, "vertex"));
 }
 
 vxm_likeness vxm_stl_sniff(const unsigned char *data, size_t size) {
-  if (size_fits(data, size) || starts_with_solid(data, size))
+  if (vxm_stl_is_binary(data, size) || starts_with(data, size, "solid") || starts_with(data, size, "facet"))
     return VXM_LIKENESS_CERTAIN;
   return VXM_LIKENESS_NONE;
 }
@@ -80,11 +88,16 @@ static vxm_status read_binary(vxm_scan *scan, vxm_error *error) {
   if (size < VXM_STL_FACETS_AT)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){scan->name, 0, (int64_t)size, -1},
                        "neither text (no \"solid\") nor binary STL, which has at least 84 bytes");
-  uint64_t wanted = announced(scan->begin), room = (size - VXM_STL_FACETS_AT) / VXM_STL_FACET;
+  uint64_t wanted = vxm_stl_announced(scan->begin), room = (size - VXM_STL_FACETS_AT) / VXM_STL_FACET;
   uint64_t count = wanted < room ? wanted : room;
-  /* A count of 0 before many facets was never filled in; another count that is too small is believed less
-     than the size of the file too. */
-  if (wanted < room && (size - VXM_STL_FACETS_AT) % VXM_STL_FACET == 0)
+  bool sound = vxm_stl_is_binary(scan->begin, size);
+  if (!sound && vxm_control_bytes(scan->begin + VXM_STL_COUNT_AT, size - VXM_STL_COUNT_AT) == 0)
+    return vxm_fail_at(
+        error, VXM_ERROR_FORMAT, (vxm_place){scan->name, 0, 0, -1},
+        "neither text STL (no \"facet\" with \"vertex\") nor binary: all of it is some other text");
+  /* A count of 0 before facets was never filled in; another count that is too small is believed less than the
+     size of the file too. */
+  if (wanted < room && ((wanted == 0 && sound) || (size - VXM_STL_FACETS_AT) % VXM_STL_FACET == 0))
     count = room;
   if (wanted > 0 && room == 0)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){scan->name, 0, (int64_t)size, 0},

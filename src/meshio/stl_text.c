@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** STL as text: words in any case, any number of solids, facets of any size. */
+#include "meshio/cut.h"
 #include "meshio/stl.h"
 #include "meshio/tags.h"
 
@@ -13,6 +14,7 @@ typedef struct text_reader {
   const unsigned char *facet; /**< where the open facet began, NULL outside of facets */
   size_t facet_vertex;        /**< first vertex of the open facet */
   bool facet_bad;
+  bool open; /**< a solid that has not ended */
   uint64_t solids;
   vxm_tally numbers, small, polygons, stray, unknown;
 } text_reader;
@@ -57,6 +59,7 @@ static vxm_status end_facet(text_reader *reader, vxm_error *error) {
 
 static void begin_facet(text_reader *reader, const unsigned char *at) {
   reader->facet = at;
+  reader->open = true;
   reader->facet_vertex = reader->soup->vertex_count;
   reader->facet_bad = false;
   /* The normal says nothing that the corners do not. */
@@ -73,6 +76,8 @@ static vxm_status read_vertex(text_reader *reader, const unsigned char *at, vxm_
   for (size_t c = 0; c < 3 && good; c++)
     good = vxm_more_on_line(scan) && vxm_scan_double(scan, &p[c]);
   if (__builtin_expect(!good, 0)) {
+    if (scan->at == scan->end) /* cut off: the facet ends before it */
+      return VXM_OK;
     vxm_skip_rest(scan);
     reader->facet_bad = true;
     return VXM_OK;
@@ -89,6 +94,7 @@ static void begin_solid(text_reader *reader) {
   const unsigned char *name = scan->at;
   vxm_skip_rest(scan);
   reader->solids++;
+  reader->open = true;
   for (const unsigned char *p = name; p < scan->at; p++)
     if (*p > ' ') {
       vxm_tagger_group(&reader->tagger, name, (size_t)(scan->at - name));
@@ -129,6 +135,7 @@ static vxm_status read_word(text_reader *reader, vxm_error *error) {
       return end_facet(reader, error);
     if (take_word(scan, "endsolid", 8)) {
       vxm_skip_rest(scan);
+      reader->open = false;
       return end_facet(reader, error);
     }
     break;
@@ -158,6 +165,9 @@ static void note_damage(text_reader *reader, bool cut_off) {
   if (cut_off)
     vxm_note(&reader->soup->notes, "line %" PRId64 ": the file ends within a facet",
              vxm_scan_line(scan, scan->end));
+  else if (reader->open)
+    vxm_note(&reader->soup->notes, "line %" PRId64 ": the file ends without endsolid; it may be cut off",
+             vxm_scan_line(scan, scan->end));
   if (reader->soup->face_count == 0)
     vxm_note(&reader->soup->notes, "the file has no faces");
 }
@@ -176,6 +186,10 @@ vxm_status vxm_stl_read_text(vxm_scan *scan, vxm_error *error) {
   text_reader reader = {.scan = scan, .soup = soup};
   vxm_tagger_open(&reader.tagger, soup);
   make_room(scan);
+  /* A number that touches the end of the file may be half a number. */
+  const unsigned char *const end = scan->end, *const last = vxm_last_token(scan);
+  if (last < end && strchr("+-.0123456789", *last))
+    scan->end = last;
   vxm_status status = VXM_OK;
   while (status == VXM_OK && vxm_skip_space(scan)) {
     status = read_word(&reader, error);
@@ -186,6 +200,7 @@ vxm_status vxm_stl_read_text(vxm_scan *scan, vxm_error *error) {
   if (status == VXM_OK)
     status = end_facet(&reader, error);
   vxm_tagger_close(&reader.tagger);
+  scan->end = end;
   if (status != VXM_OK)
     return status;
   note_damage(&reader, cut_off);

@@ -1,21 +1,26 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "meshio/utf16.h"
 
-enum { REPLACEMENT = 0xfffd, UNITS_LOOKED_AT = 32 };
+enum { REPLACEMENT = 0xfffd, LOOKS = 64, UNITS_LOOKED_AT = 16 };
 
 static uint32_t unit(const unsigned char *p, bool big) {
   return big ? (uint32_t)p[0] << 8 | p[1] : (uint32_t)p[1] << 8 | p[0];
 }
 
 bool vxm_utf16_is(const unsigned char *data, size_t size) {
-  if (size < 4 || size % 2 || !((data[0] == 0xfe && data[1] == 0xff) || (data[0] == 0xff && data[1] == 0xfe)))
+  if (size < 4 || !((data[0] == 0xfe && data[1] == 0xff) || (data[0] == 0xff && data[1] == 0xfe)))
     return false;
-  /* A binary file may begin with these two bytes as well: the text of a mesh is all but wholly ASCII. */
+  /* A binary file may begin with these two bytes as well, and go on as text for a while: the text of a mesh
+     is all but wholly ASCII wherever one looks. */
   bool big = data[0] == 0xfe;
-  size_t looked = 0, plain = 0;
-  for (size_t at = 2; at + 2 <= size && looked < UNITS_LOOKED_AT; at += 2, looked++) {
-    uint32_t u = unit(data + at, big);
-    plain += u < 0x80 && u >= '\t';
+  size_t units = size / 2 - 1, looked = 0, plain = 0;
+  size_t looks = units > LOOKS * UNITS_LOOKED_AT ? LOOKS : units / UNITS_LOOKED_AT + 1;
+  for (size_t l = 0; l < looks; l++) {
+    size_t first = units / looks * l;
+    for (size_t i = first; i < units && i < first + UNITS_LOOKED_AT; i++, looked++) {
+      uint32_t u = unit(data + 2 + 2 * i, big);
+      plain += u < 0x80 && u >= '\t';
+    }
   }
   return plain * 2 > looked;
 }

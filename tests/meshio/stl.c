@@ -26,11 +26,37 @@ static void test_text(void **state) {
              "ENDLOOP\nENDFACET\nENDSOLID\n");
   expect_one("solid x\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet "
              "endsolid");
-  expect_one("solid x\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n");
+  expect_one(
+      "solid x\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n");
+  expect_one(ONE "endsolid name\n");
   expect_one(
       "solid x\nfacet normal nan 1.#IND x\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
-      "endfacet\n");
+      "endfacet\nendsolid\n");
   expect_one("solid a\n" ONE "endsolid a\nsolid b\nendsolid b\n");
+}
+
+static void test_odd_beginnings(void **state) {
+  (void)state;
+  vxm_soup *soup = read_text("color 1 2 3\rsolid_name\n" ONE "endsolid name\n", "x.stl");
+  expect_counts(soup, 3, 1);
+  assert_string_equal(soup->format, "stl ascii");
+  vxm_soup_destroy(soup);
+  bytes b = {0};
+  bytes_add(&b, "solid a\0b\0\n", 11);
+  bytes_text(&b, ONE "endsolid\n");
+  soup = read_data(b.data, b.size, "x.stl");
+  expect_counts(soup, 3, 1);
+  assert_string_equal(soup->format, "stl ascii");
+  vxm_soup_destroy(soup);
+  bytes_free(&b);
+  soup = read_text("solid x\n" ONE, "x.stl");
+  expect_counts(soup, 3, 1);
+  expect_note(soup, "line 9: the file ends without endsolid; it may be cut off");
+  vxm_soup_destroy(soup);
+  /* Some other text under this name is not taken for facets. */
+  char text[500];
+  memset(text, 'x', sizeof text);
+  read_fails(text, sizeof text, "x.stl", VXM_ERROR_FORMAT, "nor binary: all of it is some other text");
 }
 
 static void test_solids(void **state) {
@@ -196,6 +222,7 @@ static void test_random_files(void **state) {
                    vxm_position(soup, v)[2], newline);
       bytes_text(&b, "    endloop%s  endfacet%s", newline, newline);
     }
+    bytes_text(&b, "endsolid");
     vxm_soup *back = read_data(b.data, b.size, "x.stl");
     expect_same(soup, back);
     expect_no_notes(back);
@@ -211,10 +238,13 @@ static void test_random_files(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_text),          cmocka_unit_test(test_solids),
-      cmocka_unit_test(test_damaged_text),  cmocka_unit_test(test_binary),
-      cmocka_unit_test(test_binary_counts), cmocka_unit_test(test_text_conversion),
-      cmocka_unit_test(test_random_files)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_text),
+                                     cmocka_unit_test(test_odd_beginnings),
+                                     cmocka_unit_test(test_solids),
+                                     cmocka_unit_test(test_damaged_text),
+                                     cmocka_unit_test(test_binary),
+                                     cmocka_unit_test(test_binary_counts),
+                                     cmocka_unit_test(test_text_conversion),
+                                     cmocka_unit_test(test_random_files)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

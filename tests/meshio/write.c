@@ -65,7 +65,7 @@ static void test_round_trips(void **state) {
       vxm_soup *back = read_file(forms[k].name);
       assert_string_equal(back->format, forms[k].format);
       expect_same(soup, back);
-      expect_no_notes(back);
+      expect_no_damage(back);
       vxm_soup_destroy(back);
       unlink(path_of(forms[k].name));
     }
