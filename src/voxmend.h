@@ -918,6 +918,8 @@ typedef struct vxm_voxelize_report {
   int64_t voxels;       /**< set voxels */
   uint64_t hash;        /**< vxm_grid_hash */
   int64_t empty_parts;  /**< parts that set no voxel; of open parts, all if together they set none */
+  int64_t
+      outside_parts; /**< parts that set none because they lie outside of the grid: not among empty_parts */
   double fill_ms, write_ms; /**< of vxm_model_write: time for making and for writing the voxels; else 0 */
 } vxm_voxelize_report;
 

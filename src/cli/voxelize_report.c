@@ -52,6 +52,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "caps", json_integer(results->voxelize.caps));
   json_object_set_new(report, "cavities", json_integer(results->voxelize.cavities));
   json_object_set_new(report, "empty_parts", json_integer(results->voxelize.empty_parts));
+  json_object_set_new(report, "outside_parts", json_integer(results->voxelize.outside_parts));
   json_object_set_new(report, "votes", votes);
   if (cli_field_wanted(&given->field))
     cli_field_json(report, &given->field);

@@ -2,6 +2,7 @@
 #include "voxel/model.h"
 #include "voxel/confidence.h"
 #include "voxel/orient.h"
+#include "voxel/outside.h"
 #include "voxel/surface.h"
 
 #include <inttypes.h>
@@ -235,6 +236,12 @@ vxm_status vxm_model_fill(vxm_model *model, const vxm_window *window, vxm_error 
 
 /* ---- Report and warnings ---- */
 
+/** A part that has facets, of which none set a voxel. */
+static bool is_empty(const vxm_run *run, size_t part) {
+  const vxm_part *p = &run->shape->facets.parts[part];
+  return p->begin < p->end && !atomic_load_explicit(&run->touched[part], memory_order_relaxed);
+}
+
 /** The open parts count as empty if together they added nothing, whatever single voters held. */
 static void count_empty_parts(vxm_model *model, vxm_voxelize_report *report) {
   vxm_run *run = &model->run;
@@ -242,31 +249,47 @@ static void count_empty_parts(vxm_model *model, vxm_voxelize_report *report) {
   if (!vxm_one_voter(&model->options) && !run->added)
     for (size_t p = vxm_voted_begin(&model->shape); p < facets->split.part_count; p++)
       atomic_store_explicit(&run->touched[p], 0, memory_order_relaxed);
-  for (size_t p = 0; p < facets->split.part_count && vxm_model_wants_solid(model); p++)
-    report->empty_parts += facets->parts[p].begin < facets->parts[p].end &&
-                           !atomic_load_explicit(&run->touched[p], memory_order_relaxed);
+  bool placed = vxm_model_wants_solid(model) && (run->placed.narrow || run->placed.wide);
+  for (size_t p = 0; p < facets->split.part_count && placed; p++)
+    if (is_empty(run, p)) {
+      bool outside = vxm_part_is_outside(run, p);
+      report->outside_parts += outside;
+      report->empty_parts += !outside;
+    }
 }
 
-/** The first few parts without volume, each by one of its vertices. */
-static void name_empty_parts(vxm_model *model, const vxm_voxelize_report *report) {
+/** The first few parts that set no voxel, inside or outside of the grid, each by one of its vertices. */
+static const char *name_parts(const vxm_model *model, bool outside, int64_t count, char names[200]) {
   enum { NAMED = 3 };
-  char names[200] = "";
-  int used = 0, named = 0;
+  size_t used = 0;
+  int named = 0;
   const vxm_facets *facets = &model->shape.facets;
+  names[0] = '\0';
   for (size_t p = 0; p < facets->split.part_count && named < NAMED; p++) {
-    const vxm_part *part = &facets->parts[p];
-    if (atomic_load_explicit(&model->run.touched[p], memory_order_relaxed) || part->begin == part->end)
+    if (!is_empty(&model->run, p) || vxm_part_is_outside(&model->run, p) != outside)
       continue;
-    const double *at = facets->positions[facets->corners[part->begin][0]];
-    used += snprintf(names + used, sizeof names - (size_t)used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "",
-                     at[0], at[1], at[2]);
+    const double *at = facets->positions[facets->corners[facets->parts[p].begin][0]];
+    used += (size_t)snprintf(names + used, 200 - used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "", at[0],
+                             at[1], at[2]);
     named++;
   }
-  vxm_note(&model->notes,
-           "%" PRId64 " of %" PRId64
-           " parts hold no voxel centre, being thinner than a voxel or open sheets: those at "
-           "%s%s; --mode both keeps them, and so may a higher resolution (-r)",
-           report->empty_parts, report->parts, names, report->empty_parts > named ? ", ..." : "");
+  if (count > named)
+    snprintf(names + used, 200 - used, ", ...");
+  return names;
+}
+
+static void warn_of_empty_parts(vxm_model *model, const vxm_voxelize_report *report) {
+  char names[200];
+  if (report->empty_parts > 0 && report->voxels > 0 && !vxm_model_wants_faces(model))
+    vxm_note(&model->notes,
+             "%" PRId64 " of %" PRId64
+             " parts hold no voxel centre, being thinner than a voxel or open sheets: those at "
+             "%s; --mode both keeps them, and so may a higher resolution (-r)",
+             report->empty_parts, report->parts, name_parts(model, false, report->empty_parts, names));
+  if (report->outside_parts > 0 && report->voxels > 0)
+    vxm_note(&model->notes,
+             "%" PRId64 " of %" PRId64 " parts lie outside of the grid: those at %s; see --bounds and --like",
+             report->outside_parts, report->parts, name_parts(model, true, report->outside_parts, names));
 }
 
 static void warn(vxm_model *model, const vxm_voxelize_report *report) {
@@ -274,12 +297,13 @@ static void warn(vxm_model *model, const vxm_voxelize_report *report) {
   bool faces = vxm_model_wants_faces(model);
   if (report->voxels == 0 && faces)
     vxm_note(notes, "no face meets the grid: check --bounds or --like");
+  else if (report->voxels == 0 && report->outside_parts > 0 && report->empty_parts == 0)
+    vxm_note(notes, "the model lies outside of the grid: check --bounds or --like");
   else if (report->voxels == 0)
     vxm_note(notes,
              "no voxel centre is inside: the model is open, flat or thinner than a voxel; try --mode both "
              "or a higher resolution (-r)");
-  else if (report->empty_parts > 0 && !faces)
-    name_empty_parts(model, report);
+  warn_of_empty_parts(model, report);
   const vxm_engine *engine = model->run.engine;
   if (engine && engine->falls_back && !engine->ops)
     vxm_note(notes, "%s", engine->info.note);

@@ -15,6 +15,8 @@ run 'voxmend voxelize in/l_prism.off -o a.npy -r 16 --pad 2'
 run 'voxmend voxelize in/l_prism.off -o a.npy --voxel-size 0.25 --fit tight --pad 1'
 run 'voxmend voxelize in/l_prism.off -o a.npy --bounds 0,0,0,2,2,1 -r 16'
 run 'voxmend voxelize in/l_prism.off -o b.npy --bounds -1,-1,-1,3,3,3 --voxel-size 0.5'
+run 'voxmend voxelize in/rocket.off -o r.npy --bounds=-1,-1,2,1,1,4 -r 16'
+run 'voxmend voxelize in/rocket.off -o r.npy --bounds 9,9,9,10,10,10 -r 16'
 run 'voxmend voxelize in/cube.off -o c.npy --like b.npy'
 run 'voxmend voxelize in/cube.off -o c.npy --like in/cube.off'
 

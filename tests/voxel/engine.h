@@ -179,6 +179,7 @@ static inline void assert_equal_reports(const vxm_voxelize_report *a, const vxm_
   assert_int_equal(a->voxels, b->voxels);
   assert_true(a->hash == b->hash);
   assert_int_equal(a->empty_parts, b->empty_parts);
+  assert_int_equal(a->outside_parts, b->outside_parts);
 }
 
 /* ---- Soups ---- */

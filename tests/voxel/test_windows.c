@@ -217,6 +217,45 @@ static void test_empty_parts_are_counted_alike(void **state) {
     }
 }
 
+/** Parts where the grid is not are told apart from parts that are too thin for it. */
+static void test_parts_outside(void **state) {
+  (void)state;
+  static const struct {
+    double low[3], high[3];
+    bool outside;
+  } parts[] = {
+      {{-9, 1, 1}, {-2, 9, 9}, true},        /* before the grid */
+      {{20, 20, 20}, {29, 29, 29}, true},    /* behind it */
+      {{3, -5, 3}, {9, 0, 9}, true},         /* at its side */
+      {{3, 3, 13.75}, {9, 9, 30}, true},     /* reaches in, but not to a layer of centres */
+      {{3.6, 1, 1}, {4.4, 9, 9}, false},     /* between two layers */
+      {{1, 1, -0.125}, {9, 9, 0.125}, false} /* a sheet at the side of the grid */
+  };
+  enum { PARTS = sizeof parts / sizeof *parts };
+  vxm_space space = engine_space(12, 13, 14);
+  for (int with = 0; with < 2; with++)
+    for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_TETRA; method++) {
+      vxm_soup *soup = shape_empty(context);
+      int64_t outside = 0;
+      for (size_t p = 0; p < PARTS; p++) {
+        triangle_box(soup, parts[p].low, parts[p].high, 0, false);
+        outside += parts[p].outside;
+      }
+      if (with)
+        triangle_box(soup, (double[3]){2, 2, 2}, (double[3]){8, 8, 8}, 0, false);
+      vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+      options.method = (vxm_method)method;
+      options.parts = VXM_PARTS_GROUP;
+      vxm_voxelize_report report;
+      vxm_grid *grid = engine_solid(soup, &space, &options, &report);
+      assert_int_equal(report.parts, PARTS + with);
+      assert_int_equal(report.outside_parts, outside);
+      assert_int_equal(report.empty_parts, PARTS - outside);
+      vxm_grid_destroy(grid);
+      vxm_soup_destroy(soup);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_windows_of_one_voter),
@@ -225,6 +264,7 @@ int main(void) {
       cmocka_unit_test(test_windows_of_the_winding_number),
       cmocka_unit_test(test_sheets_are_carried_to_the_end),
       cmocka_unit_test(test_empty_parts_are_counted_alike),
+      cmocka_unit_test(test_parts_outside),
   };
   return cmocka_run_group_tests(tests, setup_contexts, teardown_contexts);
 }
