@@ -198,22 +198,30 @@ VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const v
  */
 VXM_API vxm_status vxm_mesh_read(vxm_mesh **out, vxm_context *context, const char *path, vxm_error *error);
 
-/**
- * As vxm_mesh_read, from memory. `name` is used in messages and for its extension; if it is a path, files
- * that the mesh refers to are looked for beside it.
- */
+/** As vxm_mesh_read, from memory. `name` is used in messages and for its extension. */
 VXM_API vxm_status vxm_mesh_read_memory(vxm_mesh **out, vxm_context *context, const void *data, size_t size,
                                         const char *name, vxm_error *error);
+
+/** Which other files a mesh may refer to, such as the buffers of a glTF. What is refused becomes a warning of
+ * the mesh, and an error where it cannot be read without. */
+typedef enum vxm_external {
+  VXM_EXTERNAL_FOLDER = 0, /**< regular files in the folder of the mesh or below, never by a way out of it;
+                              none where the mesh comes from memory or standard input */
+  VXM_EXTERNAL_ANY = 1,    /**< any regular file, by whatever path the mesh says; relative ones begin in the
+                              folder of the mesh, or of the name that bytes in memory are given */
+  VXM_EXTERNAL_NONE = 2    /**< none */
+} vxm_external;
 
 typedef struct vxm_mesh_read_options {
   uint32_t version;   /**< 1 */
   const char *format; /**< as vxm_mesh_format says, such as "off" or "step"; NULL = by content, then name */
   double deflection;  /**< STEP and IGES: how far triangles may lie from a curved surface, as a part of the
                          model's diagonal, at most 1; 0 = 0.001 */
+  vxm_external external; /**< files that the mesh refers to */
 } vxm_mesh_read_options;
 
 #define VXM_MESH_READ_OPTIONS_INIT \
-  { 1, NULL, 0.0 }
+  { 1, NULL, 0.0, VXM_EXTERNAL_FOLDER }
 
 /* As the two above, with options. @return also VXM_ERROR_ARGUMENT for options out of range */
 VXM_API vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, const char *path,
@@ -221,6 +229,17 @@ VXM_API vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, cons
 VXM_API vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *context, const void *data,
                                              size_t size, const char *name,
                                              const vxm_mesh_read_options *options, vxm_error *error);
+
+/** How meshes are read that are left to foreign libraries, each file in a process of its own. */
+typedef struct vxm_reading_info {
+  bool assimp, occt;                         /**< whether these libraries' modules are installed */
+  const char *assimp_formats, *occt_formats; /**< the extensions of what they are given, such as "gltf glb" */
+  bool filter;  /**< the process may make no system calls but those that computing takes (libseccomp) */
+  int landlock; /**< version of Landlock in this kernel, by which the process has no files; 0 = none */
+} vxm_reading_info;
+
+/** @return VXM_OK, VXM_ERROR_ARGUMENT */
+VXM_API vxm_status vxm_reading_find(vxm_reading_info *out, vxm_error *error);
 
 typedef struct vxm_mesh_write_options {
   uint32_t version;   /**< 1 */

@@ -139,15 +139,17 @@ class Mesh:
 MeshLike = Union[Mesh, str, "os.PathLike[str]", tuple, Any]
 
 
-def load(path: Any, format: Optional[str] = None, deflection: float = 0.0) -> Mesh:
+def load(path: Any, format: Optional[str] = None, deflection: float = 0.0, external: str = "folder") -> Mesh:
     """Reads a mesh file; what a damaged file still holds is read, see `Mesh.warnings`.
 
     Args:
         path: .off, .obj, .stl, .ply; .gltf, .3mf, .step and more where the library was built with their modules.
         format: by content, then name, if None.
         deflection: STEP and IGES: how far triangles may lie from a curved surface, as a part of the diagonal; 0 = 0.001.
+        external: which other files the mesh may refer to, such as the buffers of a glTF: "folder" = in its own folder or below,
+            "any" = wherever it says, "none". What is refused is a warning, or an error where the mesh cannot be read without.
     """
-    options = _core.new("vxm_mesh_read_options", deflection=deflection)
+    options = _core.new("vxm_mesh_read_options", deflection=deflection, external=_core.choice(external, "VXM_EXTERNAL_"))
     name = ffi.new("char[]", format.encode()) if format else ffi.NULL
     options.format = name
     return Mesh._of(_core.create("vxm_mesh", lib.vxm_mesh_read_with, _core.context(), _core.path_bytes(path), options,

@@ -102,6 +102,8 @@ static vxm_status check_read_options(const vxm_mesh_read_options *options, vxm_e
   if (options && !(options->deflection >= 0 && options->deflection <= 1))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: deflection %g is not between 0 and 1",
                     options->deflection);
+  if (options && ((int)options->external < VXM_EXTERNAL_FOLDER || options->external > VXM_EXTERNAL_NONE))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: external %d is not known", (int)options->external);
   return VXM_OK;
 }
 
@@ -137,12 +139,7 @@ vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, const char *
     status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
     return status;
-  vxm_input input;
-  status = vxm_input_open(&input, owner, path, error);
-  if (status == VXM_OK) {
-    status = vxm_meshio_read_with(out, owner, input.data, input.size, input.name, options, error);
-    vxm_input_close(&input);
-  }
+  status = vxm_meshio_read_file(out, owner, path, options, error);
   vxm_context_release(owner);
   return status;
 }

@@ -2,9 +2,11 @@
 #include "base/module.h"
 
 #include <dlfcn.h>
+#include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/auxv.h>
 #include <unistd.h>
 
 #include "base/error.h"
@@ -20,18 +22,42 @@ static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size
   return written > 0 && written < VXM_MODULE_PATH_MAX && access(path, R_OK) == 0;
 }
 
+/**
+ * The file that this code lies in, a library or a program. Only what is beyond doubt is believed: the
+ * loader's path of a library if it is absolute, and what the kernel says of the program, never argv[0].
+ */
+static bool find_self(char path[VXM_MODULE_PATH_MAX]) {
+  Dl_info info;
+  struct link_map *map = NULL;
+  void *here = (void *)(uintptr_t)&vxm_module_open;
+  if (dladdr1(here, &info, (void **)&map, RTLD_DL_LINKMAP) == 0 || map == NULL)
+    return false;
+  ssize_t length;
+  if (map->l_name[0] == '\0') /* the program itself */
+    length = readlink("/proc/self/exe", path, VXM_MODULE_PATH_MAX - 1);
+  else
+    length = snprintf(path, VXM_MODULE_PATH_MAX, "%s", map->l_name);
+  if (length <= 0 || length >= VXM_MODULE_PATH_MAX - 1 || path[0] != '/')
+    return false;
+  path[length] = '\0';
+  return true;
+}
+
+static bool find_beside(char path[VXM_MODULE_PATH_MAX], const char *name) {
+  char self[VXM_MODULE_PATH_MAX];
+  if (!find_self(self))
+    return false;
+  size_t length = (size_t)(strrchr(self, '/') - self);
+  return found_in(path, self, length, "voxmend/", name) || found_in(path, self, length, "", name);
+}
+
+/** A program with rights that its user lacks opens what was installed, and nothing else. */
 static bool find_file(char path[VXM_MODULE_PATH_MAX], const char *name) {
   const char *chosen = secure_getenv("VOXMEND_MODULES");
   if (chosen != NULL) /* there and nowhere else */
     return found_in(path, chosen, strlen(chosen), "", name);
-  Dl_info self;
-  if (dladdr((void *)(uintptr_t)&vxm_module_open, &self) != 0 && self.dli_fname != NULL) {
-    const char *end = strrchr(self.dli_fname, '/');
-    size_t length = end == NULL ? 0 : (size_t)(end - self.dli_fname);
-    if (found_in(path, self.dli_fname, length, "voxmend/", name) ||
-        found_in(path, self.dli_fname, length, "", name))
-      return true;
-  }
+  if (getauxval(AT_SECURE) == 0 && find_beside(path, name))
+    return true;
   return found_in(path, VXM_MODULE_DIR, strlen(VXM_MODULE_DIR), "", name);
 }
 
@@ -43,6 +69,12 @@ static vxm_status missing(const vxm_module_need *need, vxm_error *error) {
 }
 
 vxm_status vxm_module_find(char path[VXM_MODULE_PATH_MAX], const vxm_module_need *need, vxm_error *error) {
+  const char *chosen = secure_getenv("VOXMEND_MODULES");
+  if (chosen != NULL && chosen[0] != '/')
+    return vxm_fail(
+        error, VXM_ERROR_UNAVAILABLE,
+        "%s: the variable VOXMEND_MODULES has to name a folder by an absolute path, not \"%.200s\"",
+        need->purpose, chosen);
   return find_file(path, need->name) ? VXM_OK : missing(need, error);
 }
 

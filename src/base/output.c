@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/output.h"
+#include "base/folders.h"
 #include "base/held.h"
 #include "base/size_text.h"
 
@@ -101,8 +102,10 @@ vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *p
 /** Opens a new file in the folder for temporary ones, without leaving it a name; -1 with errno set. */
 static int open_nameless(void) {
   char path[PATH_MAX];
-  const char *folder = getenv("TMPDIR");
-  int length = snprintf(path, sizeof path, "%s/voxmend-XXXXXX", folder && *folder ? folder : "/tmp");
+  const char *folder = vxm_folder_temporary();
+  if (folder == NULL)
+    return -1;
+  int length = snprintf(path, sizeof path, "%s/voxmend-XXXXXX", folder);
   if (length < 0 || (size_t)length >= sizeof path) {
     errno = ENAMETOOLONG;
     return -1;

@@ -59,7 +59,7 @@ const cli_option augment_options[] = {
      "who moves the vertices and makes the voxels, one variant after another: cpu; or as\n"
      "in 'voxmend voxelize' [cpu]"},
     CLI_OPTIONS_ENGINE_METHODS,
-    CLI_OPTION_DEFLECTION,
+    CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 /** A whole number into *out, or a line about wrong usage. */

@@ -58,9 +58,9 @@ static vxm_status begin_sampler(bench_stage *stage) {
 
 static vxm_status begin_folder(bench_stage *stage) {
   bench_augment *augment = stage->augment;
-  const char *parent = getenv("TMPDIR");
+  const char *parent = secure_getenv("TMPDIR");
   snprintf(augment->folder, sizeof augment->folder, "%s/voxmend-bench.XXXXXX",
-           parent && *parent ? parent : "/tmp");
+           parent && *parent == '/' ? parent : "/tmp");
   if (mkdtemp(augment->folder))
     return VXM_OK;
   int reason = errno;

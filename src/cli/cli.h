@@ -26,6 +26,7 @@ enum {
   CLI_KEY_GL_AXIS,
   CLI_KEY_GL_DISPLACE,
   CLI_KEY_DEFLECTION,
+  CLI_KEY_EXTERNAL,
   CLI_KEY_COMMAND
 };
 
@@ -52,12 +53,15 @@ enum {
         "with slices: move each vertex at random by up to D voxels along each axis [0]" \
   }
 
-/** For the tables of commands that read meshes; cli_next_option puts its value into cli->read. */
-#define CLI_OPTION_DEFLECTION                                                    \
-  {                                                                              \
-    CLI_KEY_DEFLECTION, "deflection", "F",                                       \
-        "STEP and IGES: how far triangles may lie from a curved surface, as a\n" \
-        "part of the model's diagonal [0.001]"                                   \
+/** For the tables of commands that read meshes; cli_next_option puts their values into cli->read. */
+#define CLI_OPTIONS_READ                                                                 \
+  {CLI_KEY_DEFLECTION, "deflection", "F",                                                \
+   "STEP and IGES: how far triangles may lie from a curved surface, as a\n"              \
+   "part of the model's diagonal [0.001]"},                                              \
+  {                                                                                      \
+    CLI_KEY_EXTERNAL, "external", "folder|any|none",                                     \
+        "glTF and others: which files the mesh may refer to; folder = in its own\n"      \
+        "folder or below, and none from standard input; any = wherever it says [folder]" \
   }
 
 /** What cli_next_option returns beside an option's key, and functions that read arguments return. */

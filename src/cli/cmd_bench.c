@@ -34,7 +34,7 @@ static const cli_option known_options[] = {
      "by how much the vertices of variants are displaced, as in augment [0.01]"},
     {KEY_TIME, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]"},
     {KEY_PLOT, "plot", "FILE.svg", "draw the times over the resolution"},
-    CLI_OPTION_DEFLECTION,
+    CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 /* ---- Options ---- */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** voxmend engines: what can make voxels on this machine. */
+/** voxmend engines: what can make voxels on this machine, and what reads foreign formats. */
 #include "cli/cli.h"
 
 #include <inttypes.h>
@@ -75,10 +75,32 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
   fprintf(cli->text, "  XOR self-test          passed with %s\n", info->attachment);
 }
 
+static const char *presence(bool is_there) {
+  return is_there ? "reads" : "not here, would read";
+}
+
+/** What reads foreign formats, and how little the process that does may do. */
+static void print_reading(const cli_run *cli, const vxm_reading_info *info) {
+  fprintf(cli->text, "%-24s %s %s\n", "assimp", presence(info->assimp), info->assimp_formats);
+  fprintf(cli->text, "%-24s %s %s\n", "occt", presence(info->occt), info->occt_formats);
+  char landlock[40] = "no Landlock in this kernel";
+  if (info->landlock > 0)
+    snprintf(landlock, sizeof landlock, "Landlock %d", info->landlock);
+  fprintf(cli->text, "  reader process         %s, %s\n",
+          info->filter ? "system calls are filtered" : "no filter of system calls in this build", landlock);
+}
+
+static json_t *reading_json(const vxm_reading_info *info) {
+  return json_pack("{s{sbss}s{sbss}sbsi}", "assimp", "available", info->assimp, "formats",
+                   info->assimp_formats, "occt", "available", info->occt, "formats", info->occt_formats,
+                   "filter", info->filter, "landlock", info->landlock);
+}
+
 static int run(cli_run *cli) {
   static vxm_engine_info found[ENGINES_MAX];
   const char *value;
   int64_t count;
+  vxm_reading_info reading;
   if (cli_next_option(cli, &value) == CLI_STOP)
     return cli->status;
   if (cli->argument_count != 0) {
@@ -87,7 +109,8 @@ static int run(cli_run *cli) {
   }
   if (!cli_start(cli))
     return CLI_FAILED;
-  if (vxm_engines_find(found, ENGINES_MAX, &count, &cli->error) != VXM_OK)
+  if (vxm_engines_find(found, ENGINES_MAX, &count, &cli->error) != VXM_OK ||
+      vxm_reading_find(&reading, &cli->error) != VXM_OK)
     return cli_fail(cli);
   json_t *report = json_object(), *list = json_array();
   for (int64_t i = 0; i < count && i < ENGINES_MAX; i++) {
@@ -95,7 +118,10 @@ static int run(cli_run *cli) {
       print_engine(cli, &found[i]);
     json_array_append_new(list, engine_json(&found[i]));
   }
+  if (cli_summary(cli))
+    print_reading(cli, &reading);
   json_object_set_new(report, "engines", list);
+  json_object_set_new(report, "reading", reading_json(&reading));
   json_object_set(report, "warnings", cli->warnings);
   return cli_finish(cli, report);
 }
@@ -103,11 +129,13 @@ static int run(cli_run *cli) {
 const cli_command cli_command_engines = {
     .name = "engines",
     .arguments = "[OPTION]...",
-    .summary = "list what can make voxels on this machine",
+    .summary = "list what can make voxels on this machine, and what reads further formats",
     .notes =
         "Each is tried out. --engine of 'voxmend voxelize' and 'voxmend bench' takes its name; 'opencl'\n"
         "takes a GPU, or else the first device (--device chooses); 'opengl' the first that works of a\n"
         "hardware device, EGL without a surface, and OSMesa.\n\n"
+        "Below stand the libraries that read further mesh formats, with the extensions of what they are\n"
+        "given, and how the process that they work in is confined.\n\n"
         "Example:\n"
         "  voxmend engines --json",
     .options = known_options,

@@ -9,7 +9,7 @@ static const cli_option known_options[] = {
     {KEY_LIST, "list", "N", "list what is wrong, up to N of each kind, with indices and coordinates"},
     {KEY_INTERSECTIONS, "intersections", NULL,
      "count faces that cut through others, and show them with --locate and\n--list (CGAL)"},
-    CLI_OPTION_DEFLECTION,
+    CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mesh *mesh,

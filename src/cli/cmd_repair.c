@@ -68,7 +68,7 @@ static const cli_option known_options[] = {
      "counted in any case"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
-    CLI_OPTION_DEFLECTION,
+    CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {

@@ -13,7 +13,7 @@ static const cli_option known_options[] = {
     {KEY_AZIMUTH, "azimuth", "DEGREES", "direction to look from, about the up axis [30]"},
     {KEY_ELEVATION, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]"},
     {KEY_UP, "up", "x|y|z", "axis that points up [z]"},
-    CLI_OPTION_DEFLECTION,
+    CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {

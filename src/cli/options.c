@@ -140,8 +140,9 @@ static int refuse(cli_run *cli, int result, const char *word) {
 /** Handles an option that all or several commands have; CLI_END if it is one, else its key. */
 static int common_option(cli_run *cli, int key, const char *value) {
   static const char *const when[] = {"auto", "always", "never", NULL};
+  static const char *const external[] = {"folder", "any", "none", NULL};
   int64_t threads;
-  int choice;
+  int choice = 0;
   switch (key) {
   case 'h':
     cli_help(cli->command);
@@ -177,6 +178,11 @@ static int common_option(cli_run *cli, int key, const char *value) {
     if (!cli_read_number(&cli->read.deflection, value) || cli->read.deflection <= 0 ||
         cli->read.deflection > 1)
       return cli_usage(cli, "--deflection '%s' is not a number above 0 and up to 1", value);
+    return CLI_END;
+  case CLI_KEY_EXTERNAL:
+    if (cli_choose(cli, &choice, "external", value, external) == CLI_STOP)
+      return CLI_STOP;
+    cli->read.external = (vxm_external)choice; /* in the order of the enumeration */
     return CLI_END;
   case KEY_PROGRESS:
     cli->progress = value;

@@ -94,7 +94,7 @@ const cli_option voxelize_options[] = {
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
     CLI_OPTIONS_ENGINE,
-    CLI_OPTION_DEFLECTION,
+    CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 /** "64", or "64x32x16". */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gpu/cl_cache.h"
+#include "base/folders.h"
 #include "base/hash.h"
 #include "base/output.h"
 
@@ -38,17 +39,19 @@ void vxm_cl_key_add(vxm_cl_key *key, const char *text) {
 
 /** The folder, made if need be. */
 static bool folder_of(char out[PATH_BYTES]) {
-  const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+  const char *cache = vxm_folder_variable("XDG_CACHE_HOME"), *home = vxm_folder_variable("HOME");
   int used;
-  if (cache && *cache == '/')
+  if (cache)
     used = snprintf(out, PATH_BYTES, "%s", cache);
-  else if (home && *home == '/')
+  else if (home)
     used = snprintf(out, PATH_BYTES, "%s/.cache", home);
   else
     return false;
   if (used < 0 || used >= PATH_BYTES - 16)
     return false;
   mkdir(out, 0700); /* what already is there stays as it is */
+  if (!vxm_folder_is_safe(out))
+    return false;
   strcat(out, "/voxmend");
   mkdir(out, 0700);
   /* A program is code: nobody else may have put it there. */

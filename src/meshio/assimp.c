@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "base/module.h"
 #include "config.h"
 
@@ -40,21 +39,10 @@ static struct aiPropertyStore *make_properties(void) {
   return properties;
 }
 
-/** Assimp goes by the extension: a file of another name is shown to it with one more. */
-static vxm_status make_path(char **out, const vxm_reader_request *request, vxm_context *context,
-                            vxm_error *error) {
-  size_t size = strlen(request->name) + strlen(request->hint) + 2;
-  vxm_error local = VXM_ERROR_INIT;
-  char *path = vxm_alloc(context, size, 1, &local);
-  if (!path) {
-    if (error)
-      *error = local;
-    return local.code;
-  }
-  bool is_plain = vxm_text_equal_nocase(vxm_path_extension(request->name), request->hint);
-  snprintf(path, size, is_plain ? "%s" : "%s.%s", request->name, request->hint);
-  *out = path;
-  return VXM_OK;
+/** Assimp goes by the extension, and puts the folder of this name before those that the file refers to: it
+ * gets a name without one, and so asks for what stands in the file. */
+static void make_path(char *path, size_t size, const vxm_reader_request *request) {
+  snprintf(path, size, "voxmend-mesh.%s", request->hint);
 }
 
 static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, const char *path,
@@ -74,20 +62,21 @@ static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, cons
 }
 
 static vxm_status read_scene(vxm_soup *soup, const vxm_reader_request *request, vxm_error *error) {
-  char extension[24], *path;
+  char extension[24], path[48];
   snprintf(extension, sizeof extension, ".%s", request->hint);
   if (!aiIsExtensionSupported(extension))
     return vxm_fail_at(error, VXM_ERROR_UNAVAILABLE, (vxm_place){request->name, 0, -1, -1},
                        "this build of Assimp does not read %s files", extension);
-  vxm_status status = make_path(&path, request, soup->context, error);
-  if (status != VXM_OK)
-    return status;
-  status = import(soup, request, path, error);
-  vxm_free(soup->context, path);
-  return status;
+  make_path(path, sizeof path, request);
+  return import(soup, request, path, error);
 }
 
-static const vxm_reader reader = {read_scene};
+/** The first question makes all importers; nothing is loaded later. */
+static void prepare(void) {
+  aiIsExtensionSupported(".glb");
+}
+
+static const vxm_reader reader = {prepare, read_scene};
 
 __attribute__((visibility("default"))) extern const vxm_module vxm_module_table;
 const vxm_module vxm_module_table = {PACKAGE_VERSION, "Assimp " VXM_ASSIMP_VERSION, "BSD-3-Clause", &reader};

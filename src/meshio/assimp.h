@@ -8,7 +8,7 @@
 
 #include "meshio/reader.h"
 
-/** The file in memory and those beside it, as Assimp sees them. */
+/** The file in memory and those that it refers to, as Assimp sees them. */
 typedef struct vxm_assimp_files {
   struct aiFileIO io;
   const vxm_reader_request *request;

@@ -152,14 +152,27 @@ const vxm_foreign *vxm_foreign_by_name(const char *name) {
   return NULL;
 }
 
-/* ---- Reading ---- */
+/* ---- What is not read ---- */
 
-static vxm_status read_with(vxm_soup *soup, const vxm_module_need *need, const vxm_reader_request *request,
-                            const char *format, vxm_error *error) {
-  vxm_status status = vxm_read_apart(soup, need, request, error);
-  soup->format = format;
-  return status;
+const char *vxm_foreign_refusal(const char *extension) {
+  /* Scenes that say which other files to put where. */
+  static const char *const importing[] = {"lws", "irr", "mot",  "scn", "pk3",
+                                          "bsp", "md3", "usda", "usd", NULL};
+  /* Read by Assimp too, and by few others: their readers are not looked after. */
+  static const char *const others[] = {"ase", "b3d",     "bvh",  "cob", "csm",     "dxf", "hmp",    "ifczip",
+                                       "iqm", "irrmesh", "m3d",  "md2", "md5mesh", "mdc", "mdl",    "ms3d",
+                                       "ndo", "nff",     "ogex", "pmx", "q3o",     "q3s", "sib",    "smd",
+                                       "ter", "uc",      "vta",  "xgl", "zgl",     "wrl", "assbin", NULL};
+  for (const char *const *e = importing; *e; e++)
+    if (vxm_text_equal_nocase(extension, *e))
+      return "this kind of scene imports other files, and is not read: export it as .glb or .obj";
+  for (const char *const *e = others; *e; e++)
+    if (vxm_text_equal_nocase(extension, *e))
+      return "this kind of file is not read: export it as .glb or .obj";
+  return NULL;
 }
+
+/* ---- Reading ---- */
 
 /** Extensions are handed on in lower case, and only if they can be some. */
 static bool take_extension(char hint[16], const char *extension) {
@@ -174,27 +187,10 @@ static bool take_extension(char hint[16], const char *extension) {
 }
 
 vxm_status vxm_foreign_read(vxm_soup *soup, const vxm_foreign *format, const char *extension,
-                            const unsigned char *data, size_t size, const char *name, double deflection,
-                            vxm_error *error) {
+                            const vxm_reader_request *file, vxm_references *references, vxm_error *error) {
   char purpose[48], hint[16];
   vxm_module_need need = {"assimp", "libassimp-dev", purpose};
-  /* "<stdin>" and the like are no files, and nothing lies beside them. */
-  vxm_reader_request request = {.data = data,
-                                .size = size,
-                                .name = name,
-                                .is_beside = name[0] != '<',
-                                .hint = hint,
-                                .deflection = deflection};
-  if (format == NULL) {
-    if (!take_extension(hint, extension))
-      return VXM_ERROR_UNAVAILABLE;
-    snprintf(purpose, sizeof purpose, "reading .%s files", hint);
-    vxm_error ignored = VXM_ERROR_INIT;
-    vxm_status status = read_with(soup, &need, &request, "assimp", &ignored);
-    if (status != VXM_OK && status != VXM_ERROR_UNAVAILABLE && error)
-      *error = ignored;
-    return status;
-  }
+  vxm_reader_request request = *file;
   request.hint = format->hint;
   if (vxm_foreign_by_extension(extension) == format)
     if (take_extension(hint, extension))
@@ -204,5 +200,7 @@ vxm_status vxm_foreign_read(vxm_soup *soup, const vxm_foreign *format, const cha
     need.name = "occt";
     need.package = "libocct-data-exchange-dev libocct-modeling-algorithms-dev libocct-ocaf-dev";
   }
-  return read_with(soup, &need, &request, format->name, error);
+  vxm_status status = vxm_read_apart(soup, &need, &request, references, error);
+  soup->format = format->name;
+  return status;
 }

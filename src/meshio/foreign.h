@@ -4,8 +4,14 @@
 #define VXM_MESHIO_FOREIGN_H
 
 #include "mesh/soup.h"
+#include "meshio/reader.h"
+#include "meshio/references.h"
 
 enum { VXM_FOREIGN_EXTENSIONS = 4 };
+
+/* The extensions of the table, for those who ask what is read (a test compares them). */
+#define VXM_ASSIMP_FORMATS "gltf glb 3mf dae zae fbx 3ds x3d amf blend lwo lxo x ac ac3d acc ifc"
+#define VXM_OCCT_FORMATS "step stp p21 iges igs"
 
 typedef struct vxm_foreign {
   const char *name; /**< as vxm_mesh_format says */
@@ -20,17 +26,19 @@ const vxm_foreign *vxm_foreign_by_extension(const char *extension);
 /** By the name of a format; NULL if there is none. */
 const vxm_foreign *vxm_foreign_by_name(const char *name);
 
+/** What to say of a file with an extension that Assimp may know and we do not hand to it; NULL if it is none.
+ */
+const char *vxm_foreign_refusal(const char *extension);
+
 /**
  * Reads into an empty soup through the library.
  *
- * @param format    NULL lets Assimp say whether it knows files with this extension
- * @param extension of the file, or what stands for it
- * @param name      of the file; those that it refers to are looked for beside it
- * @return as vxm_read_apart; VXM_ERROR_UNAVAILABLE without a message if `format` is NULL and Assimp is not
- *         there or does not know the extension
+ * @param extension  of the file, or what stands for it
+ * @param file       its data, size and name, and the deflection
+ * @param references where files may lie that it refers to
+ * @return as vxm_read_apart
  */
 vxm_status vxm_foreign_read(vxm_soup *soup, const vxm_foreign *format, const char *extension,
-                            const unsigned char *data, size_t size, const char *name, double deflection,
-                            vxm_error *error);
+                            const vxm_reader_request *file, vxm_references *references, vxm_error *error);
 
 #endif

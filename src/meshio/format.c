@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "meshio/format.h"
+#include "base/beneath.h"
 #include "meshio/foreign.h"
 #include "meshio/meshio.h"
 #include "meshio/reader.h"
@@ -7,6 +8,7 @@
 #include "meshio/utf16.h"
 
 #include <string.h>
+#include <unistd.h>
 
 static const vxm_format formats[] = {
     {"off", {"off", NULL}, vxm_off_sniff, vxm_off_read, vxm_off_write},
@@ -102,23 +104,20 @@ static const char *find_stranger(const unsigned char *data, size_t size) {
   return NULL;
 }
 
-/** A file that nothing here tells may still be one of the many kinds that Assimp knows by their names. */
-static vxm_status read_unknown(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
-                               const vxm_mesh_read_options *options, vxm_error *error) {
+static vxm_status refuse_unknown(const unsigned char *data, size_t size, const char *name, vxm_error *error) {
   vxm_place place = {name, 0, -1, -1};
   const char *advice = find_stranger(data, size);
+  if (!advice)
+    advice = vxm_foreign_refusal(vxm_path_extension(name));
   if (advice)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "%s", advice);
-  vxm_status status =
-      vxm_foreign_read(soup, NULL, vxm_path_extension(name), data, size, name, options->deflection, error);
-  if (status != VXM_ERROR_UNAVAILABLE)
-    return status;
   return vxm_fail_at(error, VXM_ERROR_FORMAT, place,
                      "not a known mesh format: neither off, obj, stl nor ply by content or extension");
 }
 
 static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
-                             const vxm_mesh_read_options *options, vxm_error *error) {
+                             const vxm_mesh_read_options *options, vxm_references *references,
+                             vxm_error *error) {
   if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0 && !vxm_stl_is_binary(data, size)) {
     data += 3;
     size -= 3;
@@ -133,10 +132,11 @@ static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t s
                        "mesh format \"%.32s\" is not known", options->format);
   if (chosen.own)
     return chosen.own->read(soup, data, size, name, error);
-  if (chosen.foreign)
-    return vxm_foreign_read(soup, chosen.foreign, vxm_path_extension(name), data, size, name,
-                            options->deflection, error);
-  return read_unknown(soup, data, size, name, options, error);
+  if (!chosen.foreign)
+    return refuse_unknown(data, size, name, error);
+  const vxm_reader_request file = {
+      .data = data, .size = size, .name = name, .deflection = options->deflection};
+  return vxm_foreign_read(soup, chosen.foreign, vxm_path_extension(name), &file, references, error);
 }
 
 vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
@@ -144,14 +144,18 @@ vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned 
   return vxm_meshio_read_with(out, context, data, size, name, NULL, error);
 }
 
-vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
-                                const char *name, const vxm_mesh_read_options *options, vxm_error *error) {
-  *out = NULL;
+static vxm_mesh_read_options chosen_options(const vxm_mesh_read_options *options) {
   vxm_mesh_read_options chosen = VXM_MESH_READ_OPTIONS_INIT;
   if (options)
     chosen = *options;
   if (chosen.deflection == 0)
     chosen.deflection = VXM_DEFLECTION_DEFAULT;
+  return chosen;
+}
+
+static vxm_status read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
+                            const char *name, const vxm_mesh_read_options *chosen, vxm_references *references,
+                            vxm_error *error) {
   vxm_soup *soup;
   vxm_status status = vxm_soup_create(&soup, context, "", error);
   if (status != VXM_OK)
@@ -166,7 +170,7 @@ vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsi
   if (status == VXM_OK)
     status = vxm_progress(soup->context, "reading", 0.0, error);
   if (status == VXM_OK)
-    status = read_bytes(soup, data, size, name, &chosen, error);
+    status = read_bytes(soup, data, size, name, chosen, references, error);
   if (status == VXM_OK)
     status = vxm_progress(soup->context, "reading", 1.0, error);
   vxm_free(soup->context, text);
@@ -176,6 +180,54 @@ vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsi
   }
   *out = soup;
   return VXM_OK;
+}
+
+vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
+                                const char *name, const vxm_mesh_read_options *options, vxm_error *error) {
+  *out = NULL;
+  vxm_mesh_read_options chosen = chosen_options(options);
+  vxm_references references = {.allowed = chosen.external, .folder = -1};
+  /* Bytes in memory have no folder, whatever they are called: a name is a stranger's as likely as not. */
+  if (chosen.external == VXM_EXTERNAL_ANY)
+    references.folder = vxm_folder_open(name);
+  vxm_status status = read_with(out, context, data, size, name, &chosen, &references, error);
+  if (references.folder >= 0)
+    close(references.folder);
+  return status;
+}
+
+/** Opens a mesh file within its folder, so that both belong together whoever renames what meanwhile; what is
+ * not in it (a link that leads elsewhere, a pipe, standard input) has no folder. */
+static vxm_status open_file(vxm_input *input, vxm_references *references, vxm_context *context,
+                            const char *path, vxm_error *error) {
+  const char *slash = strrchr(path, '/');
+  bool is_stream = strcmp(path, "-") == 0;
+  references->folder = is_stream && references->allowed != VXM_EXTERNAL_ANY ? -1 : vxm_folder_open(path);
+  int file = is_stream || references->folder < 0
+                 ? -1
+                 : vxm_regular_open(references->folder, slash ? slash + 1 : path, VXM_BENEATH);
+  if (file < 0)
+    return vxm_input_open(input, context, path, error);
+  references->is_inside = true;
+  vxm_status status = vxm_input_take(input, context, path, file, error);
+  close(file);
+  return status;
+}
+
+vxm_status vxm_meshio_read_file(vxm_soup **out, vxm_context *context, const char *path,
+                                const vxm_mesh_read_options *options, vxm_error *error) {
+  *out = NULL;
+  vxm_input input;
+  vxm_mesh_read_options chosen = chosen_options(options);
+  vxm_references references = {.allowed = chosen.external};
+  vxm_status status = open_file(&input, &references, context, path, error);
+  if (status == VXM_OK) {
+    status = read_with(out, context, input.data, input.size, input.name, &chosen, &references, error);
+    vxm_input_close(&input);
+  }
+  if (references.folder >= 0)
+    close(references.folder);
+  return status;
 }
 
 /** Reads what the output holds by now, as a file of the same format. */

@@ -30,6 +30,11 @@ vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned 
 vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
                                 const char *name, const vxm_mesh_read_options *options, vxm_error *error);
 
+/** As vxm_meshio_read_with, from a file; "-" is standard input. Files that the mesh refers to are those of
+ * its folder, or as options->external says. @return also VXM_ERROR_IO */
+vxm_status vxm_meshio_read_file(vxm_soup **out, vxm_context *context, const char *path,
+                                const vxm_mesh_read_options *options, vxm_error *error);
+
 /**
  * Writes a mesh; the file appears under its name when it is complete.
  *

@@ -78,7 +78,16 @@ static vxm_status read_cad(vxm_soup *soup, const vxm_reader_request *request, vx
   }
 }
 
-static const vxm_reader reader = {read_cad};
+/** What fails now fails again, and then there is somebody to tell. */
+static void prepare() {
+  try {
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+    vxm_occt_prepare();
+  } catch (...) {
+  }
+}
+
+static const vxm_reader reader = {prepare, read_cad};
 
 VXM_API extern const vxm_module vxm_module_table;
 const vxm_module vxm_module_table = {PACKAGE_VERSION, "OpenCASCADE " OCC_VERSION_COMPLETE,

@@ -38,6 +38,9 @@ void vxm_occt_load(const Handle(TDocStd_Document) & document, vxm_soup *soup,
                    const vxm_reader_request *request, const Handle(vxm_occt_progress) & progress,
                    vxm_error *error);
 
+/** Makes the library read its message files and settings, and look up what it writes into headers. */
+void vxm_occt_prepare();
+
 /** Turns the shapes of a document into triangles. Throws vxm_occt_failure. */
 void vxm_occt_tessellate(vxm_soup *soup, const Handle(TDocStd_Document) & document, double deflection,
                          const Handle(vxm_occt_progress) & progress, vxm_error *error);

@@ -7,6 +7,7 @@
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <ShapeExtend.hxx>
 #include <StepShape_SolidModel.hxx>
 #include <TCollection_AsciiString.hxx>
 #include <TCollection_ExtendedString.hxx>
@@ -15,6 +16,7 @@
 #include <TopoDS_Shape.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
+#include <XCAFApp_Application.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_TransferReader.hxx>
@@ -143,16 +145,12 @@ void load_step(const load &job) {
   name_bodies(job.document, reader.Reader().WS());
 }
 
-void load_iges(const load &job) {
-  memory_file file(job.request->data, job.request->size);
-  if (!file.is_open())
-    throw vxm_occt_failure{vxm_fail_at(job.error, VXM_ERROR_MEMORY, vxm_place{job.request->name, 0, -1, -1},
-                                       "not enough memory for a copy of the file")};
+void load_iges_from(const load &job, const char *path) {
   IGESCAFControl_Reader reader;
   reader.SetNameMode(true);
   reader.SetColorMode(false);
   reader.SetLayerMode(false);
-  if (reader.ReadFile(file.path().c_str()) != IFSelect_RetDone || reader.NbRootsForTransfer() == 0)
+  if (reader.ReadFile(path) != IFSelect_RetDone || reader.NbRootsForTransfer() == 0)
     job.fail("no IGES file with shapes");
   Handle(TDocStd_Document) document = job.document;
   bool is_done = reader.Transfer(document, job.progress->Start());
@@ -161,7 +159,27 @@ void load_iges(const load &job) {
     job.fail("its shapes cannot be made");
 }
 
+void load_iges(const load &job) {
+  if (job.request->path)
+    return load_iges_from(job, job.request->path);
+  memory_file file(job.request->data, job.request->size);
+  if (!file.is_open())
+    throw vxm_occt_failure{vxm_fail_at(job.error, VXM_ERROR_MEMORY, vxm_place{job.request->name, 0, -1, -1},
+                                       "not enough memory for a copy of the file")};
+  load_iges_from(job, file.path().c_str());
+}
+
 } // namespace
+
+void vxm_occt_prepare() {
+  STEPCAFControl_Reader step;
+  IGESCAFControl_Reader iges;
+  ShapeExtend::Init();
+  Handle(TDocStd_Document) document;
+  Handle(XCAFApp_Application) application = XCAFApp_Application::GetApplication();
+  application->NewDocument("MDTV-XCAF", document);
+  application->Close(document);
+}
 
 void vxm_occt_load(const Handle(TDocStd_Document) & document, vxm_soup *soup,
                    const vxm_reader_request *request, const Handle(vxm_occt_progress) & progress,

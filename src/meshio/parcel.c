@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 /** What comes next. Both sides are of one build, so structures go over as they are. */
-typedef enum parcel_kind { PROGRESS = 1, FAILURE, SOUP } parcel_kind;
+typedef enum parcel_kind { PROGRESS = 1, FAILURE, SOUP, REFERENCE, ATTEMPT } parcel_kind;
 
 /** Ahead of the arrays of a soup, which follow in the order of these counts. */
 typedef struct parcel_counts {
@@ -45,6 +45,33 @@ bool vxm_parcel_send_failure(int channel, const vxm_error *error) {
   return put_kind(channel, FAILURE) && put(channel, error, sizeof *error);
 }
 
+bool vxm_parcel_send_attempt(int channel, int64_t call) {
+  return put_kind(channel, ATTEMPT) && put(channel, &call, sizeof call);
+}
+
+bool vxm_parcel_get(int channel, void *data, size_t size) {
+  char *at = data;
+  while (size > 0) {
+    ssize_t got = read(channel, at, size);
+    if (got < 0 && errno == EINTR)
+      continue;
+    if (got <= 0)
+      return false;
+    at += got;
+    size -= (size_t)got;
+  }
+  return true;
+}
+
+bool vxm_parcel_get_size(int channel, uint64_t *size) {
+  return vxm_parcel_get(channel, size, sizeof *size);
+}
+
+bool vxm_parcel_ask(int channel, const char *name) {
+  uint64_t length = strlen(name);
+  return put_kind(channel, REFERENCE) && put(channel, &length, sizeof length) && put(channel, name, length);
+}
+
 bool vxm_parcel_send_soup(int channel, const vxm_soup *soup) {
   parcel_counts counts = {.vertices = soup->vertex_count,
                           .faces = soup->face_count,
@@ -67,6 +94,10 @@ bool vxm_parcel_send_soup(int channel, const vxm_soup *soup) {
 }
 
 /* ---- Receiving ---- */
+
+vxm_status vxm_parcel_send_size(vxm_process *receiver, uint64_t size, vxm_error *error) {
+  return vxm_process_send(receiver, &size, sizeof size, error);
+}
 
 static vxm_status not_a_soup(vxm_error *error) {
   return vxm_fail(error, VXM_ERROR_FORMAT, "what the reading process sent is damaged");
@@ -190,23 +221,65 @@ static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *e
   return status;
 }
 
-vxm_status vxm_parcel_receive(vxm_soup *soup, vxm_process *sender, vxm_error *error) {
+static vxm_status receive_progress(vxm_process *sender, vxm_error *error) {
+  double fraction;
+  vxm_status status = vxm_process_receive(sender, &fraction, sizeof fraction, error);
+  if (status == VXM_OK && isfinite(fraction))
+    sender->fraction = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
+  return status;
+}
+
+static vxm_status receive_reference(vxm_process *sender, vxm_parcel_listener *listener, vxm_error *error) {
+  char name[VXM_PARCEL_NAME_MAX + 1];
+  uint64_t length;
+  vxm_status status = vxm_process_receive(sender, &length, sizeof length, error);
+  if (status == VXM_OK && length > VXM_PARCEL_NAME_MAX)
+    status = not_a_soup(error);
+  if (status == VXM_OK)
+    status = vxm_process_receive(sender, name, (size_t)length, error);
+  if (status != VXM_OK)
+    return status;
+  name[length] = '\0';
+  if (strlen(name) != length)
+    return not_a_soup(error);
+  return listener->answer(listener->payload, sender, name, error);
+}
+
+static vxm_status receive_attempt(vxm_process *sender, vxm_parcel_listener *listener, vxm_error *error) {
+  int64_t call;
+  vxm_status status = vxm_process_receive(sender, &call, sizeof call, error);
+  if (status == VXM_OK)
+    listener->attempt = call < 0 ? 0 : call;
+  return status == VXM_OK ? VXM_ERROR_IO : status;
+}
+
+vxm_status vxm_parcel_receive(vxm_soup *soup, vxm_process *sender, vxm_parcel_listener *listener,
+                              vxm_error *error) {
+  listener->has_failed = false;
+  listener->attempt = -1;
   for (;;) {
     uint64_t kind;
     vxm_status status = vxm_process_receive(sender, &kind, sizeof kind, error);
     if (status != VXM_OK)
       return status;
-    if (kind == SOUP)
+    switch (kind) {
+    case PROGRESS:
+      status = receive_progress(sender, error);
+      break;
+    case REFERENCE:
+      status = receive_reference(sender, listener, error);
+      break;
+    case ATTEMPT:
+      return receive_attempt(sender, listener, error);
+    case SOUP:
       return receive_soup(soup, sender, error);
-    if (kind == FAILURE)
+    case FAILURE:
+      listener->has_failed = true;
       return receive_failure(sender, error);
-    double fraction;
-    if (kind != PROGRESS)
+    default:
       return not_a_soup(error);
-    status = vxm_process_receive(sender, &fraction, sizeof fraction, error);
+    }
     if (status != VXM_OK)
       return status;
-    if (isfinite(fraction))
-      sender->fraction = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
   }
 }

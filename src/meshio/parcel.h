@@ -1,25 +1,50 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** How a soup, or a failure, goes from the reading process to ours. */
+/** What goes between the reading process and ours: a mesh file over there, a soup or a failure back. */
 #ifndef VXM_MESHIO_PARCEL_H
 #define VXM_MESHIO_PARCEL_H
 
 #include "base/process.h"
 #include "mesh/soup.h"
 
-/* The sender's side. Each is false if the receiver has gone. */
+/* The reading side. Each is false if our process has gone. */
 
 bool vxm_parcel_send_progress(int channel, double fraction);
 bool vxm_parcel_send_failure(int channel, const vxm_error *error);
 bool vxm_parcel_send_soup(int channel, const vxm_soup *soup);
+/** That a system call was tried that a reader has no business with. May be called in a signal handler. */
+bool vxm_parcel_send_attempt(int channel, int64_t call);
+/** How many bytes follow. */
+bool vxm_parcel_get_size(int channel, uint64_t *size);
+bool vxm_parcel_get(int channel, void *data, size_t size);
+/** Asks for a file that the mesh refers to; vxm_parcel_get_size gives its size, VXM_PARCEL_REFUSED if it is
+ * not to be had, and its bytes follow. */
+bool vxm_parcel_ask(int channel, const char *name);
+
+#define VXM_PARCEL_REFUSED UINT64_MAX
+enum { VXM_PARCEL_NAME_MAX = 4096 };
+
+/* Our side. */
+
+vxm_status vxm_parcel_send_size(vxm_process *receiver, uint64_t size, vxm_error *error);
+
+/** What comes from the reader beside the soup. */
+typedef struct vxm_parcel_listener {
+  /** Sends what vxm_parcel_ask waits for. The name is that of the file, as it stands in the mesh. */
+  vxm_status (*answer)(void *payload, vxm_process *reader, const char *name, vxm_error *error);
+  void *payload;
+  bool has_failed; /**< the error is what the reader says, not that of our own work */
+  int64_t attempt; /**< the system call that it was stopped for, or -1 */
+} vxm_parcel_listener;
 
 /**
  * Waits for the soup and fills an empty one. Nothing that arrives is trusted: the sender may have been
  * damaged by the file that it read.
  *
- * @return VXM_OK; the sender's failure; VXM_ERROR_IO without a message if the sender has gone;
- *         VXM_ERROR_FORMAT if what arrives is no soup; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ * @return VXM_OK; the sender's failure; VXM_ERROR_IO without a message if the sender has gone, is late or was
+ *         stopped; VXM_ERROR_FORMAT if what arrives is no soup; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
  *         VXM_ERROR_CANCELLED
  */
-vxm_status vxm_parcel_receive(vxm_soup *soup, vxm_process *sender, vxm_error *error);
+vxm_status vxm_parcel_receive(vxm_soup *soup, vxm_process *sender, vxm_parcel_listener *listener,
+                              vxm_error *error);
 
 #endif

@@ -1,20 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * voxmend-reader: reads one mesh file through a module, for a process that must outlive it (apart.h). The
- * file comes over standard input, which is a socket, and the soup goes back over it.
+ * file comes over standard input, which is a socket, and the soup goes back over it. Before it looks at the
+ * file it gives up all that reading does not take (confine.h).
  */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <signal.h>
-#include <stdio.h>
-
-#include "base/file.h"
-#include "base/size_text.h"
+#include "base/context.h"
 #include "meshio/apart.h"
+#include "meshio/confine.h"
+#include "meshio/memory_name.h"
 #include "meshio/parcel.h"
 
 enum { CHANNEL = STDIN_FILENO, WRONG_CALL = 2, GONE = 1 };
@@ -25,59 +23,68 @@ static int tell(const char *phase, double fraction, void *payload) {
   return !vxm_parcel_send_progress(CHANNEL, fraction);
 }
 
-/** Bytes of private writable memory, of which the limit is one; 0 if they are not known. */
-static rlim_t held_bytes(void) {
-  unsigned long pages = 0;
-  FILE *file = fopen("/proc/self/statm", "r");
-  if (file == NULL)
-    return 0;
-  if (fscanf(file, "%*s %*s %*s %*s %*s %lu", &pages) != 1)
-    pages = 0;
-  fclose(file);
-  return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
+static vxm_status cut_off(vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_IO, "the process that asked has gone");
 }
 
-static void limit(unsigned resource, rlim_t value) {
-  struct rlimit both;
-  if (getrlimit(resource, &both) != 0)
-    return;
-  if (value < both.rlim_cur) {
-    both.rlim_cur = value;
-    setrlimit(resource, &both);
+/** Takes so many bytes from the channel. */
+static vxm_status take(unsigned char **out, vxm_context *context, uint64_t size, vxm_error *error) {
+  unsigned char *data = vxm_alloc(context, (size_t)size, 1, error);
+  if (data == NULL)
+    return error->code;
+  if (!vxm_parcel_get(CHANNEL, data, (size_t)size)) {
+    vxm_free(context, data);
+    return cut_off(error);
   }
+  *out = data;
+  return VXM_OK;
 }
 
-/** No file but the channel, no core dump, and an end together with the process that asked. */
-static void settle_down(void) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  closefrom(STDERR_FILENO + 1);
-  limit(RLIMIT_CORE, 0);
+/** Without memory for it there is nothing to do but to end: its bytes would come as an answer to something
+ * else. */
+static bool fetch(void *payload, vxm_context *context, const char *name, vxm_reader_file *out) {
+  vxm_error *failure = payload;
+  uint64_t size;
+  if (failure->code != VXM_OK || strlen(name) > VXM_PARCEL_NAME_MAX)
+    return false;
+  if (!vxm_parcel_ask(CHANNEL, name) || !vxm_parcel_get_size(CHANNEL, &size)) {
+    cut_off(failure);
+    return false;
+  }
+  if (size == VXM_PARCEL_REFUSED || take(&out->data, context, size, failure) != VXM_OK)
+    return false;
+  out->size = (size_t)size;
+  return true;
 }
 
-static vxm_status read_file(vxm_soup *soup, const vxm_module *module, char **arguments, vxm_error *error) {
-  vxm_input input;
-  vxm_status status = vxm_input_open(&input, soup->context, "-", error);
+static vxm_status read_mesh(vxm_soup *soup, const vxm_reader *reader, char **arguments, vxm_error *error) {
+  unsigned char *data;
+  uint64_t size;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status =
+      vxm_parcel_get_size(CHANNEL, &size) ? take(&data, soup->context, size, error) : cut_off(error);
   if (status != VXM_OK)
     return status;
-  vxm_reader_request request = {.data = input.data,
-                                .size = input.size,
+  vxm_memory_name(data, (size_t)size);
+  vxm_reader_request request = {.data = data,
+                                .size = (size_t)size,
                                 .name = arguments[VXM_APART_NAME],
-                                .is_beside = strcmp(arguments[VXM_APART_BESIDE], "1") == 0,
                                 .hint = arguments[VXM_APART_HINT],
-                                .deflection = strtod(arguments[VXM_APART_DEFLECTION], NULL)};
-  const vxm_reader *reader = module->functions;
+                                .deflection = strtod(arguments[VXM_APART_DEFLECTION], NULL),
+                                .path = VXM_MEMORY_NAME,
+                                .fetch = fetch,
+                                .payload = &local};
   status = reader->read(soup, &request, error);
-  vxm_input_close(&input);
+  vxm_free(soup->context, data);
+  if (local.code != VXM_OK) {
+    *error = local;
+    return local.code;
+  }
   return status;
 }
 
-/** A lack of memory is that of our limit, as good as always. */
-static vxm_status explain_memory(char **arguments, vxm_error *error) {
-  double bytes = strtod(arguments[VXM_APART_MEMORY], NULL);
-  return vxm_fail_at(error, VXM_ERROR_MEMORY_LIMIT, (vxm_place){arguments[VXM_APART_NAME], 0, -1, -1},
-                     "reading takes more than %s: the file is damaged, or the memory limit must allow "
-                     "more (half of it is for reading)",
-                     vxm_size_text_of((uint64_t)bytes).text);
+static uint64_t number(char **arguments, int which) {
+  return strtoull(arguments[which], NULL, 10);
 }
 
 static vxm_status serve(vxm_soup *soup, char **arguments, vxm_error *error) {
@@ -85,17 +92,23 @@ static vxm_status serve(vxm_soup *soup, char **arguments, vxm_error *error) {
   vxm_status status = vxm_module_load(&module, arguments[VXM_APART_MODULE], "reading this file", error);
   if (status != VXM_OK)
     return status;
-  limit(RLIMIT_CPU, strtoull(arguments[VXM_APART_SECONDS], NULL, 10));
-  /* Only what is held from now on counts: libraries bring some megabytes with them. */
-  limit(RLIMIT_DATA, held_bytes() + strtoull(arguments[VXM_APART_MEMORY], NULL, 10));
-  status = read_file(soup, module, arguments, error);
-  return status == VXM_ERROR_MEMORY ? explain_memory(arguments, error) : status;
+  const vxm_reader *reader = module->functions;
+  const vxm_confinement confinement = {.channel = CHANNEL,
+                                       .memory = number(arguments, VXM_APART_MEMORY),
+                                       .memory_max = number(arguments, VXM_APART_MEMORY_MAX),
+                                       .seconds = number(arguments, VXM_APART_SECONDS)};
+  reader->prepare();
+  const char *missing = vxm_confine(&confinement);
+  if (missing)
+    vxm_note(&soup->notes, "the reader could not be confined as usual: %s", missing);
+  return read_mesh(soup, reader, arguments, error);
 }
 
 int main(int argc, char **argv) {
   if (argc != VXM_APART_ARGUMENTS)
     return WRONG_CALL;
-  settle_down();
+  if (!vxm_confine_early((pid_t)number(argv, VXM_APART_PARENT)))
+    return GONE;
   vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
   options.threads = 1;
   options.progress = tell;

@@ -38,6 +38,40 @@ run 'told info - <models/wedge.gltf'
 mv models/wedge.bin models/away.bin
 run 'told info models/wedge.gltf'
 
+mv models/away.bin models/wedge.bin
+
+say "# a buffer of somebody else's"
+cp models/wedge.bin secret.bin
+ln -s ../secret.bin models/out.bin
+ln -s wedge.bin models/within.bin
+mkfifo models/pipe.bin
+for uri in ../secret.bin "$work/secret.bin" /etc/passwd /proc/self/environ file:///etc/passwd out.bin pipe.bin .; do
+  sed "s|wedge.bin|$uri|" models/wedge.gltf >models/other.gltf
+  say "# $(echo "$uri" | sed "s|$work|WORK|")"
+  run 'voxmend info -q models/other.gltf 2>&1 | sed "s|$work|WORK|"'
+done
+say "# a link that stays within; and where Assimp looks for the same name in the folder, which it finds"
+for uri in within.bin ../models/wedge.bin; do
+  sed "s|wedge.bin|$uri|" models/wedge.gltf >models/other.gltf
+  run 'voxmend info models/other.gltf --strict | grep -E "  vertices|  faces"'
+done
+sed "s|wedge.bin|../secret.bin|" models/wedge.gltf >models/other.gltf
+run 'voxmend info models/other.gltf --external any | grep -E "  vertices|  faces"'
+run 'voxmend info models/wedge.gltf --external none'
+run 'voxmend info models/wedge.gltf --external nothing'
+run 'cd models && voxmend info - --external any <wedge.gltf | grep -E "  vertices|  faces"'
+run 'cd models && voxmend info /dev/stdin <wedge.gltf'
+ln -s models/wedge.gltf linked.gltf
+run 'voxmend info linked.gltf'
+
+say "# formats that import others"
+printf 'LWSC\n3\nLoadObjectLayer 1 secret.lwo\n' >scene.lws
+printf '<?xml version="1.0"?><irr_scene></irr_scene>\n' >scene.irr
+printf 'version 1\n' >doll.smd
+for file in scene.lws scene.irr doll.smd; do
+  run "voxmend info $file"
+done
+
 say "# damage"
 head -c 2000 in/stool.glb >cut.glb
 printf 'what is this\n' >words.fbx

@@ -14,6 +14,15 @@ enum { MOST = 1 << 16 };
 /** Bytes that the soup may take for each that is sent: none is believed before it has come. */
 enum { RATE = 64, BESIDES = 1 << 20 };
 
+/** Files are not to be had. */
+static vxm_status refuse(void *payload, vxm_process *reader, const char *name, vxm_error *error) {
+  (void)payload;
+  (void)reader;
+  (void)error;
+  fuzz_require(strlen(name) <= VXM_PARCEL_NAME_MAX, "a name has its length");
+  return VXM_OK;
+}
+
 void fuzz_parcel(const char *name, const uint8_t *data, size_t size) {
   (void)name;
   int ends[2];
@@ -25,10 +34,11 @@ void fuzz_parcel(const char *name, const uint8_t *data, size_t size) {
   close(ends[1]);
   vxm_context *context = fuzz_context(size, RATE, BESIDES);
   vxm_process sender = {.channel = ends[0], .context = context, .phase = "reading"};
+  vxm_parcel_listener listener = {.answer = refuse};
   vxm_soup *soup;
   vxm_error error = VXM_ERROR_INIT;
   fuzz_require(vxm_soup_create(&soup, context, "", &error) == VXM_OK, "a soup can be made");
-  vxm_status status = vxm_parcel_receive(soup, &sender, &error);
+  vxm_status status = vxm_parcel_receive(soup, &sender, &listener, &error);
   if (status == VXM_OK)
     fuzz_check_soup(soup);
   else if (status != VXM_ERROR_IO) /* then the caller knows what became of the process */

@@ -3,15 +3,22 @@
 #include "foreign_test.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/beneath.h"
 #include "base/clock.h"
+#include "config.h"
 #include "meshio/apart.h"
 #include "meshio/parcel.h"
 
 static const vxm_module_need need = {"ill", "none", "reading .ill files"};
+
+/** What the next mesh may refer to. */
+static vxm_references references = VXM_REFERENCES_NONE;
 
 /** Reads what makes the module do something. */
 static vxm_status ask(vxm_soup **soup, vxm_context *context, const char *data, size_t size,
@@ -19,12 +26,11 @@ static vxm_status ask(vxm_soup **soup, vxm_context *context, const char *data, s
   vxm_reader_request request = {.data = (const unsigned char *)data,
                                 .size = size,
                                 .name = "dir/a.ill",
-                                .is_beside = true,
                                 .hint = "ill",
                                 .deflection = 0.125};
   *error = (vxm_error)VXM_ERROR_INIT;
   assert_int_equal(vxm_soup_create(soup, context, "ill", NULL), VXM_OK);
-  vxm_status status = vxm_read_apart(*soup, &need, &request, error);
+  vxm_status status = vxm_read_apart(*soup, &need, &request, &references, error);
   assert_int_equal(status, status == VXM_OK ? VXM_OK : error->code);
   if (status == VXM_OK)
     check_invariants(*soup);
@@ -74,7 +80,7 @@ static void test_soup(void **state) {
 static void test_failures(void **state) {
   (void)state;
   fails("fail", VXM_ERROR_FORMAT, "dir/a.ill:7: as the file wants");
-  fails("hint", VXM_ERROR_RANGE, "dir/a.ill 1 ill 0.125");
+  fails("hint", VXM_ERROR_RANGE, "dir/a.ill ill 0.125");
   fails("crash", VXM_ERROR_FORMAT, "dir/a.ill: the library that reads .ill files crashed (signal 11)");
   fails("abort", VXM_ERROR_FORMAT, "crashed (signal 6)");
   fails("quit", VXM_ERROR_UNAVAILABLE, "ended without an answer (status 9)");
@@ -95,7 +101,7 @@ static void test_missing(void **state) {
   vxm_module_need other = {"nosuch", "libnosuch-dev", "reading .nosuch files"};
   vxm_reader_request request = {.name = "a", .hint = "nosuch"};
   assert_int_equal(vxm_soup_create(&soup, NULL, "", NULL), VXM_OK);
-  assert_int_equal(vxm_read_apart(soup, &other, &request, &error), VXM_ERROR_UNAVAILABLE);
+  assert_int_equal(vxm_read_apart(soup, &other, &request, &references, &error), VXM_ERROR_UNAVAILABLE);
   assert_non_null(strstr(error.text, "reading .nosuch files needs voxmend's module \"nosuch\""));
   assert_non_null(strstr(error.text, "libnosuch-dev"));
   vxm_soup_destroy(soup);
@@ -167,28 +173,195 @@ static void test_cancel(void **state) {
     }
 }
 
-/** A reader that computes for ever ends by itself: its time is limited. */
-static void test_time(void **state) {
-  (void)state;
-  char module[VXM_MODULE_PATH_MAX], program[VXM_MODULE_PATH_MAX + 32], deflection[] = "0x1p-10", one[] = "1";
+/** A reader that computes, or waits, for ever: by itself at its limit, or by ours on the clock. */
+static int run_long(const char *word, const char *seconds, double limit_ms, bool *is_late) {
+  char module[VXM_MODULE_PATH_MAX], program[VXM_MODULE_PATH_MAX + 32], parent[24];
   assert_int_equal(vxm_module_find(module, &need, NULL), VXM_OK);
   snprintf(program, sizeof program, "%s/voxmend-reader", getenv("BUILDDIR"));
-  char name[] = "voxmend-reader", memory[] = "100000000";
-  char *const arguments[VXM_APART_ARGUMENTS + 1] = {name,       module, name, one, one,
-                                                    deflection, memory, one,  NULL};
-  vxm_context *context;
+  snprintf(parent, sizeof parent, "%ld", (long)getpid());
+  const char *arguments[VXM_APART_ARGUMENTS + 1] = {"voxmend-reader", module,      parent,      "name", "ill",
+                                                    "0x1p-10",        "100000000", "100000000", seconds};
   vxm_process reader;
   vxm_soup *soup;
+  vxm_parcel_listener listener = {0};
   vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(vxm_soup_create(&soup, NULL, "", NULL), VXM_OK);
-  context = soup->context;
-  assert_int_equal(vxm_process_start(&reader, context, "reading", program, arguments, &error), VXM_OK);
-  assert_int_equal(vxm_process_send(&reader, "spin", 4, &error), VXM_OK);
-  vxm_process_sent(&reader);
-  assert_int_equal(vxm_parcel_receive(soup, &reader, &error), VXM_ERROR_IO);
+  assert_int_equal(vxm_process_start(&reader, soup->context, "reading", program,
+                                     (char *const *)(uintptr_t)arguments, &error),
+                   VXM_OK);
+  reader.limit_ms = limit_ms;
+  assert_int_equal(vxm_parcel_send_size(&reader, strlen(word), &error), VXM_OK);
+  assert_int_equal(vxm_process_send(&reader, word, strlen(word), &error), VXM_OK);
+  assert_int_equal(vxm_parcel_receive(soup, &reader, &listener, &error), VXM_ERROR_IO);
+  *is_late = vxm_process_is_late(&reader);
   int end = vxm_process_end(&reader);
-  assert_true(WIFSIGNALED(end) && WTERMSIG(end) == SIGXCPU);
   vxm_soup_destroy(soup);
+  return end;
+}
+
+static void test_time(void **state) {
+  (void)state;
+  bool is_late;
+  int end = run_long("spin", "1", 0, &is_late);
+  assert_true(WIFSIGNALED(end) && WTERMSIG(end) == SIGXCPU && !is_late);
+  static const char *const idle[] = {"sleep", "wait"}; /* the second tells progress all the time */
+  for (size_t i = 0; i < 2; i++) {
+    double start = vxm_clock_ms();
+    end = run_long(idle[i], "1000", 700, &is_late);
+    assert_true(WIFSIGNALED(end) && WTERMSIG(end) == SIGKILL && is_late);
+    assert_true(vxm_clock_ms() - start >= 700);
+  }
+}
+
+/* ---- What a reader may not ---- */
+
+#define STOPPED "dir/a.ill: the reader was stopped: it tried to "
+
+static void test_attempts(void **state) {
+  (void)state;
+  static const struct {
+    const char *word, *text;
+  } attempts[] = {
+      {"try open", "open a file"},
+      {"try openat", "open a file"},
+      {"try creat", "open a file"},
+      {"try fopen", "open a file"},
+      {"try opendir", "open a file"},
+      {"try stat", "look at files"},
+      {"try unlink", "change files"},
+      {"try socket", "use the network"},
+      {"try connect", "use the network"},
+      {"try fork", "start a process"},
+      {"try system", "do what a reader may not"}, /* with all signals blocked */
+      {"try execve", "run a program"},
+      {"try kill parent", "signal another process"},
+      {"try kill group", "signal another process"},
+      {"try ptrace", "look into another process"},
+      {"try peek", "look into another process"},
+      {"try execute", "map memory that is shared or executable"},
+      {"try share", "map memory that is shared or executable"},
+      {"try protect", "make memory executable"},
+      {"try descriptors", "make file descriptors"},
+      {"try memfd", "make file descriptors"},
+      {"try limits", "do what a reader may not (system call "},
+      {"try setuid", "do what a reader may not (system call "},
+  };
+#if !HAVE_SECCOMP
+  skip();
+#endif
+  if (SANITIZED)
+    skip();
+  static const char victim[] = "/tmp/voxmend-ill-victim";
+  int file = open(victim, O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  assert_true(file >= 0);
+  close(file);
+  for (size_t a = 0; a < sizeof attempts / sizeof *attempts; a++) {
+    char text[160];
+    snprintf(text, sizeof text, STOPPED "%s", attempts[a].text);
+    fails(attempts[a].word, VXM_ERROR_FORMAT, text);
+  }
+  /* A thread takes memory first, in ways that differ between C libraries. */
+  fails("try thread", VXM_ERROR_FORMAT, STOPPED);
+  assert_int_equal(access("/tmp/voxmend-ill-trace", F_OK), -1);
+  assert_int_equal(unlink(victim), 0);
+}
+
+static void test_surroundings(void **state) {
+  (void)state;
+  vxm_soup *soup;
+  vxm_error error;
+  int open_here = open("/dev/null", O_RDONLY); /* to be inherited */
+  assert_true(open_here > STDERR_FILENO);
+  setenv("VOXMEND_SECRET", "secret", 1);
+  assert_int_equal(ask(&soup, NULL, "look", 4, &error), VXM_ERROR_RANGE);
+  assert_null(strstr(error.text, "SECRET"));
+  assert_non_null(strstr(error.text, "LANG LC_ALL PATH TZ"));
+  assert_null(strstr(error.text, "VOXMEND"));
+  assert_non_null(strstr(error.text, "descriptors: 3")); /* the channel, and twice /dev/null */
+  unsetenv("VOXMEND_SECRET");
+  close(open_here);
+}
+
+/* ---- What a mesh refers to ---- */
+
+static void make_file(const char *folder, const char *name, size_t size) {
+  char path[200];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  for (size_t i = 0; i < size; i++)
+    fputc('x', file);
+  fclose(file);
+}
+
+static void test_references(void **state) {
+  (void)state;
+  char folder[] = "/tmp/voxmend-test-XXXXXX", command[300];
+  assert_non_null(mkdtemp(folder));
+  snprintf(command, sizeof command,
+           "cd %s && mkdir -p in/sub && mkfifo in/fifo && ln -s /etc/passwd in/out && ln -s sub/large "
+           "in/within && "
+           "ln -s ../outside in/up",
+           folder);
+  assert_int_equal(system(command), 0);
+  make_file(folder, "in/small", 3);
+  make_file(folder, "in/empty", 0);
+  make_file(folder, "in/sub/large", 300000);
+  make_file(folder, "outside", 10);
+  snprintf(command, sizeof command, "%s/in/mesh.ill", folder);
+  int within = vxm_folder_open(command);
+  assert_true(within >= 0);
+  static const char list[] =
+      "ask small\nsub/large\nempty\nwithin\n/etc/passwd\n../outside\nup\nout\nfifo\nsub\n"
+      "nothing\n/proc/self/environ\nfile:///etc/passwd\n";
+  static const struct {
+    vxm_external allowed;
+    bool has_folder, is_inside;
+    const char *got;
+    uint64_t refused;
+  } cases[] = {
+      {VXM_EXTERNAL_FOLDER, true, true, "got 3 300000 0 300000 -1 -1 -1 -1 -1 -1 -1 -1 -1", 9},
+      {VXM_EXTERNAL_FOLDER, true, false, "got -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1", 13},
+      {VXM_EXTERNAL_FOLDER, false, false, "got -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1", 13},
+      {VXM_EXTERNAL_NONE, true, true, "got -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1", 13},
+      {VXM_EXTERNAL_ANY, true, true, "got 3 300000 0 300000 ", 4},
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    references = (vxm_references){.allowed = cases[c].allowed,
+                                  .folder = cases[c].has_folder ? within : -1,
+                                  .is_inside = cases[c].is_inside};
+    fails(list, VXM_ERROR_RANGE, cases[c].got);
+    assert_int_equal(references.asked, 13);
+    assert_int_equal(references.refused, cases[c].refused);
+    assert_true(references.notes.count > 0 && references.notes.count <= VXM_NOTES_MAX / 2);
+  }
+  assert_non_null(
+      strstr(references.notes.text[0], "\"fifo\", which it refers to, was not opened: it is not a regular"));
+  /* Not without end. */
+  references = (vxm_references){.folder = within, .is_inside = true};
+  fails("nag", VXM_ERROR_RANGE, "got 4096");
+  assert_non_null(strstr(references.first, "too many files"));
+  close(within);
+  references = (vxm_references)VXM_REFERENCES_NONE;
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
+/** A module on a path that depends on the current folder is nobody's. */
+static void test_relative_modules(void **state) {
+  (void)state;
+  char path[VXM_MODULE_PATH_MAX], *before = strdup(getenv("VOXMEND_MODULES"));
+  vxm_error error = VXM_ERROR_INIT;
+  char here[VXM_MODULE_PATH_MAX];
+  assert_non_null(getcwd(here, sizeof here));
+  assert_int_equal(chdir(before), 0);
+  setenv("VOXMEND_MODULES", ".", 1);
+  assert_int_equal(vxm_module_find(path, &need, &error), VXM_ERROR_UNAVAILABLE);
+  assert_non_null(strstr(error.text, "absolute path, not \".\""));
+  assert_int_equal(chdir(here), 0);
+  setenv("VOXMEND_MODULES", before, 1);
+  free(before);
+  assert_int_equal(vxm_module_find(path, &need, &error), VXM_OK);
 }
 
 static void test_no_program(void **state) {
@@ -222,7 +395,9 @@ int main(void) {
       cmocka_unit_test(test_soup),       cmocka_unit_test(test_failures),
       cmocka_unit_test(test_missing),    cmocka_unit_test(test_memory),
       cmocka_unit_test(test_cancel),     cmocka_unit_test(test_time),
-      cmocka_unit_test(test_no_program), cmocka_unit_test(test_ignored_children)};
+      cmocka_unit_test(test_no_program), cmocka_unit_test(test_ignored_children),
+      cmocka_unit_test(test_attempts),   cmocka_unit_test(test_surroundings),
+      cmocka_unit_test(test_references), cmocka_unit_test(test_relative_modules)};
   leave_signals_alone();
   alarm(100);
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -360,7 +360,9 @@ static void test_damage(void **state) {
   text_fails("{\"asset\":{\"version\":\"2.0\"}", "a.gltf", "a.gltf: Assimp cannot read it: ");
   text_fails("glTF\2", "a.dat", "a.dat: Assimp cannot read it: ");
   text_fails("what is this", "a.fbx", "a.fbx: Assimp cannot read it: ");
-  text_fails("what is this", "a.md3", "a.md3: Assimp cannot read it: ");
+  text_fails("what is this", "a.lws", "a.lws: this kind of scene imports other files, and is not read");
+  text_fails("what is this", "a.IRR", "a.IRR: this kind of scene imports other files, and is not read");
+  text_fails("what is this", "a.smd", "a.smd: this kind of file is not read: export it as .glb or .obj");
   text_fails("what is this", "a.xyz", "not a known mesh format");
 }
 

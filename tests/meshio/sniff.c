@@ -2,6 +2,8 @@
 /** Which reader is chosen, UTF-16, foreign files, the memory limit and cancelling. */
 #include "meshio_test.h"
 
+#include "meshio/foreign.h"
+
 #define OFF_TEXT "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
 #define OBJ_TEXT "# made\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 #define STL_TEXT \
@@ -140,9 +142,30 @@ static void test_cancel(void **state) {
   bytes_free(&b);
 }
 
+/** The lists of what libraries are given name each extension of the table, and no other. */
+static void test_lists(void **state) {
+  (void)state;
+  static const char *const lists[] = {VXM_ASSIMP_FORMATS, VXM_OCCT_FORMATS};
+  for (int l = 0; l < 2; l++) {
+    char list[200], *next = NULL;
+    snprintf(list, sizeof list, "%s", lists[l]);
+    for (char *word = strtok_r(list, " ", &next); word; word = strtok_r(NULL, " ", &next)) {
+      const vxm_foreign *format = vxm_foreign_by_extension(word);
+      assert_non_null(format);
+      assert_int_equal(format->is_cad, l == 1);
+      assert_null(vxm_foreign_refusal(word));
+      for (int e = 0; e < VXM_FOREIGN_EXTENSIONS && format->extensions[e]; e++)
+        assert_non_null(strstr(lists[l], format->extensions[e]));
+    }
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_content_before_name), cmocka_unit_test(test_utf16),
-                                     cmocka_unit_test(test_strangers), cmocka_unit_test(test_memory_limit),
-                                     cmocka_unit_test(test_cancel)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_content_before_name),
+                                     cmocka_unit_test(test_utf16),
+                                     cmocka_unit_test(test_strangers),
+                                     cmocka_unit_test(test_memory_limit),
+                                     cmocka_unit_test(test_cancel),
+                                     cmocka_unit_test(test_lists)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/error.h"
+#include "base/module.h"
+#include "config.h"
+#include "meshio/foreign.h"
+#include "meshio/landlock.h"
+
+#if HAVE_SECCOMP && !defined(__SANITIZE_ADDRESS__)
+enum { HAS_FILTER = 1 };
+#else
+enum { HAS_FILTER = 0 };
+#endif
+
+static bool has_module(const char *name) {
+  char path[VXM_MODULE_PATH_MAX];
+  vxm_module_need need = {name, "", ""};
+  return vxm_module_find(path, &need, NULL) == VXM_OK;
+}
+
+vxm_status vxm_reading_find(vxm_reading_info *out, vxm_error *error) {
+  if (!out)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "reading: an argument is NULL");
+  *out = (vxm_reading_info){.assimp = has_module("assimp"),
+                            .occt = has_module("occt"),
+                            .assimp_formats = VXM_ASSIMP_FORMATS,
+                            .occt_formats = VXM_OCCT_FORMATS,
+                            .filter = HAS_FILTER,
+                            .landlock = vxm_landlock_version()};
+  return VXM_OK;
+}
