@@ -56,9 +56,9 @@ typedef enum vxm_status {
                     */
   VXM_ERROR_UNAVAILABLE, /**< this build or machine lacks an optional library: install it, or do without */
   VXM_ERROR_CANCELLED,   /**< the progress callback asked to stop: nothing was made */
-  VXM_ERROR_UNREACHED /**< a repair did not come as far as it was asked to: ask for less, or take what there
-                       * is
-                       */
+  VXM_ERROR_UNREACHED, /**< a repair did not come as far as it was asked to: ask for less, or take what there
+                        * is */
+  VXM_ERROR_NUMBERS    /**< the file holds numbers, not set and clear voxels: vxm_field_read takes them */
 } vxm_status;
 
 /** Short fixed name of a status, such as "format". */
@@ -157,7 +157,20 @@ VXM_API vxm_status vxm_file_write(vxm_context *context, const char *path, const 
 /** Vertices and polygons, with nothing assumed of them: a polygon soup, or a mesh after repair. */
 typedef struct vxm_mesh vxm_mesh;
 
-typedef enum vxm_scalar { VXM_FLOAT64 = 0, VXM_FLOAT32 = 1, VXM_UINT8 = 2 } vxm_scalar;
+/** Types of numbers. Those from VXM_FLOAT16 on occur only in fields (vxm_field). */
+typedef enum vxm_scalar {
+  VXM_FLOAT64 = 0,
+  VXM_FLOAT32 = 1,
+  VXM_UINT8 = 2,
+  VXM_FLOAT16,
+  VXM_INT8,
+  VXM_UINT16,
+  VXM_INT16,
+  VXM_UINT32,
+  VXM_INT32,
+  VXM_UINT64,
+  VXM_INT64
+} vxm_scalar;
 
 /** Caller-owned arrays that describe a mesh; they are copied. */
 typedef struct vxm_mesh_arrays {
@@ -600,13 +613,16 @@ VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
 
 /**
  * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd or .vdb, told by content first
- * and by name second. Of .vdb, the first grid of bool, mask or float: set where it is active (and true),
- * below 0 in a level set, above 1/2 in a fog volume.
- * "-" reads standard input (not .raw).
+ * and by name second. Of .vdb, the first grid of bool, mask or float: of bool and mask, what is active (and
+ * true) is set. "-" reads standard input (not .raw).
  *
- * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_UNAVAILABLE for packed values without
- *         the library that unpacks them (zlib for .nrrd, OpenVDB for .vdb); VXM_ERROR_RANGE,
- *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ * Numbers are taken as voxels only if nothing is lost: where all of them are 0 or 1, whatever their type, or
+ * unsigned bytes of which some are 0 and the others 255. Distances and confidences, and colours, never are.
+ *
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_NUMBERS for other numbers, which
+ *         vxm_field_read reads; VXM_ERROR_UNAVAILABLE for packed values without the library that unpacks them
+ *         (zlib for .nrrd, OpenVDB for .vdb); VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ *         VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
 
@@ -657,6 +673,14 @@ typedef struct vxm_picture_options {
 VXM_API vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path,
                                     const vxm_picture_options *options, vxm_error *error);
 
+/**
+ * Reads only where the voxels of a grid or field lie: a grid in which none is set.
+ *
+ * @return as vxm_grid_read, without VXM_ERROR_NUMBERS
+ */
+VXM_API vxm_status vxm_grid_read_space(vxm_grid **out, vxm_context *context, const char *path,
+                                       vxm_error *error);
+
 typedef struct vxm_comparison {
   int64_t voxels_a, voxels_b, both, only_a, only_b;
   double iou; /**< both / (both + only_a + only_b); 1 if both grids are empty */
@@ -665,6 +689,137 @@ typedef struct vxm_comparison {
 /** Compares two grids of equal dimensions. @return VXM_OK; VXM_ERROR_ARGUMENT if the dimensions differ */
 VXM_API vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b,
                                     vxm_error *error);
+
+/* ---- Fields in files: numbers, labels and colours ---- */
+
+/** What the numbers of a field are, as far as its file says. */
+typedef enum vxm_field_kind {
+  VXM_FIELD_NUMBERS = 0, /**< it does not say */
+  VXM_FIELD_DISTANCE,    /**< model units, negative inside where it has a sign */
+  VXM_FIELD_COVERAGE,    /**< the share of a voxel that is filled: 0 to 1, or 0 to 255 of unsigned bytes */
+  VXM_FIELD_LABELS,      /**< 0 = none */
+  VXM_FIELD_CONFIDENCE,  /**< 0 = a guess, to 255 = proven */
+  VXM_FIELD_COLORS       /**< red, green, blue and opacity, 0 = no voxel: VXM_UINT8, four channels */
+} vxm_field_kind;
+
+/** One number (or colour) for each voxel of a space. It does not change once it is made. */
+typedef struct vxm_field vxm_field;
+
+/**
+ * Makes a field of a copy of values.
+ *
+ * @param values [x][y][z] in C order (z fastest); of VXM_FIELD_COLORS [x][y][z][4]
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_field_create(vxm_field **out, vxm_context *context, const vxm_space *space,
+                                    vxm_field_kind kind, vxm_scalar scalar, const void *values,
+                                    vxm_error *error);
+
+/**
+ * Reads the numbers of a file as they are: .npy, .nrrd, .vdb, or .binvox. Files that hold bits give 0 and 1,
+ * as VXM_UINT8. Floats of 16 bits in .vdb become VXM_FLOAT32.
+ *
+ * @return as vxm_grid_read, without VXM_ERROR_NUMBERS
+ */
+VXM_API vxm_status vxm_field_read(vxm_field **out, vxm_context *context, const char *path, vxm_error *error);
+
+/**
+ * Reads what a file holds: a grid where it stores bits (booleans, or unsigned bytes of which all are 0 or 1),
+ * else a field. Of *grid and *field one is NULL. @return as vxm_field_read
+ */
+VXM_API vxm_status vxm_grid_or_field_read(vxm_grid **grid, vxm_field **field, vxm_context *context,
+                                          const char *path, vxm_error *error);
+VXM_API void vxm_field_destroy(vxm_field *field);
+
+VXM_API const vxm_space *vxm_field_space(const vxm_field *field);
+VXM_API vxm_field_kind vxm_field_kind_of(const vxm_field *field);
+VXM_API vxm_scalar vxm_field_scalar(const vxm_field *field);
+/** 4 of colours, else 1. */
+VXM_API int vxm_field_channels(const vxm_field *field);
+/** [x][y][z] in C order (z fastest), of colours [x][y][z][4]. */
+VXM_API const void *vxm_field_values(const vxm_field *field);
+/** Short fixed name of a kind, such as "distance", or "" for none. */
+VXM_API const char *vxm_field_kind_name(vxm_field_kind kind);
+/** Name of a type as numpy has it, such as "float32", or "" for none. */
+VXM_API const char *vxm_scalar_name(vxm_scalar scalar);
+
+typedef struct vxm_field_range {
+  double least, greatest; /**< of those that are numbers; of colours the opacity; 0 and 0 if none are */
+  int64_t not_numbers;    /**< NaN */
+} vxm_field_range;
+
+/** The range of the values. @return VXM_OK, VXM_ERROR_ARGUMENT */
+VXM_API vxm_status vxm_field_measure(vxm_field_range *out, const vxm_field *field, vxm_error *error);
+
+/** Number of labels that have an entry in the table beside the file, numbered from 1; 0 if there is none. */
+VXM_API int64_t vxm_field_label_count(const vxm_field *field);
+/** Name of label 1 to vxm_field_label_count; "" for others. */
+VXM_API const char *vxm_field_label_name(const vxm_field *field, int64_t label);
+
+/** What else a file says of its values, such as units, as pairs of texts; it goes along into .npy (its
+ * .json), .nrrd and .vdb. */
+VXM_API int64_t vxm_field_metadata_count(const vxm_field *field);
+VXM_API const char *vxm_field_metadata_key(const vxm_field *field, int64_t index);
+VXM_API const char *vxm_field_metadata_value(const vxm_field *field, int64_t index);
+
+/** Warnings from reading, one line each. */
+VXM_API int64_t vxm_field_warning_count(const vxm_field *field);
+VXM_API const char *vxm_field_warning(const vxm_field *field, int64_t index);
+
+/** Whether the numbers are bits in another type, of which nothing is lost: see vxm_grid_read. */
+VXM_API bool vxm_field_is_mask(const vxm_field *field);
+
+typedef struct vxm_threshold_options {
+  uint32_t version;  /**< 1 */
+  bool use_at_least; /**< at least one of the two */
+  double at_least;   /**< voxels are set where the value is this or greater */
+  bool use_below;
+  double below; /**< and less than this */
+} vxm_threshold_options;
+
+#define VXM_THRESHOLD_OPTIONS_INIT \
+  { 1, false, 0.0, false, 0.0 }
+
+/**
+ * Makes a grid of a field: voxel (i,j,k) is set where its value is at least one number, below another, or
+ * both. -0 counts as below 0: a distance has it inside, on the surface. What is not a number is never set. Of
+ * colours the opacity counts.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT without a bound, or if one is not a number; VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_field_threshold(vxm_grid **out, const vxm_field *field,
+                                       const vxm_threshold_options *options, vxm_error *error);
+
+/**
+ * Writes a field, under a temporary name first; "-" writes standard output.
+ *
+ * .npy (with its .json beside it) and .nrrd hold every type (VXM_FLOAT16 becomes VXM_FLOAT32 in .nrrd), .vdb
+ * 32-bit floats, if each value is one exactly; it remembers the type. .binvox (version 2) holds whole numbers
+ * from 0 to 255. Colours go into .npy, .nrrd, .ply or .vox. Labels have their table in a .json beside the
+ * file.
+ *
+ * @param options NULL = defaults
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for a format that holds only bits or is unknown; VXM_ERROR_RANGE if it
+ *         cannot hold the values; as vxm_grid_write
+ */
+VXM_API vxm_status vxm_field_write(const vxm_field *field, const char *path,
+                                   const vxm_grid_write_options *options, vxm_error *error);
+
+/**
+ * Draws a field into a PNG file as vxm_grid_picture does: of distances what is below 0, or nearer than half a
+ * voxel's diagonal if none is; coverage from one half on; labels in colours that depend on the label alone;
+ * confidence below 255; colours as they are. Numbers of which the file does not say what they are count as
+ * labels if they are whole and not negative, as distances if some are below 0 and some above, as coverage if
+ * all are from 0 to 1.
+ *
+ * @param options   NULL = defaults
+ * @param threshold the voxels to be drawn; NULL = as above
+ * @return as vxm_grid_picture; VXM_ERROR_NUMBERS for other numbers without a threshold
+ */
+VXM_API vxm_status vxm_field_picture(const vxm_field *field, const char *path,
+                                     const vxm_picture_options *options,
+                                     const vxm_threshold_options *threshold, vxm_error *error);
 
 /* ---- Engines: what makes the bits ---- */
 

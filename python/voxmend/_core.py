@@ -40,6 +40,10 @@ class FormatError(VoxmendError, ValueError):
     """The content is not a known format, or is damaged beyond reading."""
 
 
+class NumbersError(FormatError):
+    """The file holds numbers, not set and clear voxels: `voxmend.read_field` reads them."""
+
+
 class EmptyError(VoxmendError, ValueError):
     """There is nothing to work on."""
 
@@ -70,6 +74,7 @@ _classes = {
     lib.VXM_ERROR_RANGE: RangeError,
     lib.VXM_ERROR_UNAVAILABLE: UnavailableError,
     lib.VXM_ERROR_UNREACHED: UnreachedError,
+    lib.VXM_ERROR_NUMBERS: NumbersError,
 }
 
 

@@ -207,8 +207,18 @@ class VoxelGrid:
         _core.call(lib.vxm_grid_write, self._pointer, _core.path_bytes(path), options)
 
 
-def read(path: Any) -> VoxelGrid:
-    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd or .vdb."""
+def read(path: Any, *, at_least: Optional[float] = None, below: Optional[float] = None) -> VoxelGrid:
+    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd or .vdb.
+
+    Numbers are taken as set and clear voxels only if nothing is lost: all are 0 or 1, or unsigned bytes 0 and 255. Other
+    files raise NumbersError; `read_field` reads them, or a bound says which voxels are set.
+
+    Args:
+        at_least, below: voxels are set where the number is in between, see `Field.threshold`.
+    """
+    if at_least is not None or below is not None:
+        from ._field import read_field
+        return read_field(path).threshold(at_least, below)
     return VoxelGrid._of(_core.create("vxm_grid", lib.vxm_grid_read, _core.context(), _core.path_bytes(path),
                                       destroy=lib.vxm_grid_destroy))
 

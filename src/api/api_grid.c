@@ -45,7 +45,7 @@ vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path, const vxm_pi
   if (!grid || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: an argument is NULL");
   vxm_picture_options chosen = VXM_PICTURE_OPTIONS_INIT;
-  return vxm_gridio_picture(grid, path, options ? options : &chosen, error);
+  return vxm_gridio_picture(grid, NULL, NULL, path, options ? options : &chosen, error);
 }
 
 vxm_status vxm_grid_write_confidence(const vxm_grid *grid, const char *path, vxm_error *error) {

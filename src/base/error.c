@@ -37,6 +37,8 @@ const char *vxm_status_name(vxm_status status) {
     return "cancelled";
   case VXM_ERROR_UNREACHED:
     return "unreached";
+  case VXM_ERROR_NUMBERS:
+    return "numbers";
   }
   return "unknown";
 }

@@ -19,6 +19,8 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_WRONG_USAGE = 2, CLI_WARNED = 3 };
 /** Keys of options without a letter. The common options take the numbers below CLI_KEY_COMMAND. */
 enum {
   CLI_KEY_COMMON = 256,
+  CLI_KEY_THRESHOLD = 500,
+  CLI_KEY_BELOW,
   CLI_KEY_ENGINE = 505,
   CLI_KEY_DEVICE,
   CLI_KEY_CL_METHOD,
@@ -51,6 +53,18 @@ enum {
       CLI_OPTIONS_ENGINE_METHODS, {                                                     \
     CLI_KEY_GL_DISPLACE, "gl-displace", "D[,SEED]",                                     \
         "with slices: move each vertex at random by up to D voxels along each axis [0]" \
+  }
+
+/** For the tables of commands that make voxels of the numbers in a file; cli_threshold_read takes their
+ * values. */
+#define CLI_OPTIONS_THRESHOLD                                                              \
+  {CLI_KEY_THRESHOLD, "threshold", "T",                                                    \
+   "numbers in a file: voxels are set where the number is T or greater, such as\n"         \
+   "0.5 of a coverage (128 where it is bytes) or 1 of labels"},                            \
+  {                                                                                        \
+    CLI_KEY_BELOW, "below", "T",                                                           \
+        "voxels are set where the number is less than T, such as 0 of a signed distance\n" \
+        "(-0 too); with --threshold, where both hold"                                      \
   }
 
 /** For the tables of commands that read meshes; cli_next_option puts their values into cli->read. */
@@ -258,6 +272,34 @@ int cli_check_names(cli_run *cli);
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced);
 #define CLI_OPTION_FORCE(key) \
   { key, "force", NULL, "replace a file that is there by a surface: .obj, .ply, .stl or .off" }
+
+/* ---- values.c: bits and numbers in files ---- */
+
+/** What a file holds: bits, or numbers; the other is NULL. */
+typedef struct cli_values {
+  vxm_grid *grid;
+  vxm_field *field;
+} cli_values;
+
+/** The argument of --threshold or --below: CLI_END or CLI_STOP. */
+int cli_threshold_read(cli_run *cli, vxm_threshold_options *out, int key, const char *value);
+/** Whether one of them was given. */
+bool cli_threshold_given(const vxm_threshold_options *threshold);
+/** Reads either and tells the warnings; a failure is in cli->error. */
+vxm_status cli_values_read(cli_run *cli, cli_values *out, const char *path);
+void cli_values_free(cli_values *values);
+const vxm_space *cli_values_space(const cli_values *values);
+/**
+ * Makes bits of numbers: by the threshold, or if none is given where nothing is lost by it. CLI_FAILED, and a
+ * line that names the options, where something would be.
+ *
+ * @param why why they have to be bits, for that line
+ */
+int cli_values_to_bits(cli_run *cli, cli_values *values, const vxm_threshold_options *threshold,
+                       const char *path, const char *why);
+/** The row about voxels or numbers, and the keys of the report. */
+void cli_values_row(const cli_run *cli, const cli_values *values);
+void cli_values_json(json_t *report, const cli_values *values, bool has_hash);
 
 /* ---- progress.c ---- */
 

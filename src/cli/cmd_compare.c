@@ -5,7 +5,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-static const cli_option known_options[] = {{0, NULL, NULL, NULL}};
+static const cli_option known_options[] = {CLI_OPTIONS_THRESHOLD, {0, NULL, NULL, NULL}};
 
 /** Files hold origins and sizes to about nine digits; what is below a thousandth of a voxel is not a move. */
 static void warn_of_places(cli_run *cli, const vxm_space *a, const vxm_space *b) {
@@ -35,8 +35,6 @@ static json_t *make_report(const cli_run *cli, const vxm_comparison *found) {
 
 static int compare(cli_run *cli, const vxm_grid *a, const vxm_grid *b) {
   vxm_comparison found;
-  cli_warn_grid(cli, cli->arguments[0], a);
-  cli_warn_grid(cli, cli->arguments[1], b);
   if (vxm_grid_compare(&found, a, b, &cli->error) != VXM_OK)
     return cli_fail(cli);
   warn_of_places(cli, vxm_grid_space(a), vxm_grid_space(b));
@@ -51,27 +49,38 @@ static int compare(cli_run *cli, const vxm_grid *a, const vxm_grid *b) {
   return cli_finish(cli, make_report(cli, &found));
 }
 
-static int run(cli_run *cli) {
+static int read_arguments(cli_run *cli, vxm_threshold_options *threshold) {
   const char *value;
-  if (cli_next_option(cli, &value) == CLI_STOP)
-    return cli->status;
-  if (cli->argument_count != 2) {
-    cli_usage(cli, "two grids are expected, not %d", cli->argument_count);
-    return cli->status;
-  }
-  if (cli_check_names(cli) == CLI_STOP)
+  int key;
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == CLI_STOP || cli_threshold_read(cli, threshold, key, value) == CLI_STOP)
+      return CLI_STOP;
+  if (cli->argument_count != 2)
+    return cli_usage(cli, "two grids are expected, not %d", cli->argument_count);
+  return cli_check_names(cli);
+}
+
+static int read_bits(cli_run *cli, cli_values *out, const vxm_threshold_options *threshold,
+                     const char *path) {
+  if (cli_values_read(cli, out, path) != VXM_OK)
+    return cli_fail(cli);
+  return cli_values_to_bits(cli, out, threshold, path, "only set and clear voxels can be compared");
+}
+
+static int run(cli_run *cli) {
+  vxm_threshold_options threshold = VXM_THRESHOLD_OPTIONS_INIT;
+  if (read_arguments(cli, &threshold) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
-  vxm_grid *grids[2] = {NULL, NULL};
+  cli_values values[2] = {{NULL, NULL}, {NULL, NULL}};
   int status = CLI_DONE;
   for (int i = 0; i < 2 && status == CLI_DONE; i++)
-    if (vxm_grid_read(&grids[i], cli->context, cli->arguments[i], &cli->error) != VXM_OK)
-      status = cli_fail(cli);
+    status = read_bits(cli, &values[i], &threshold, cli->arguments[i]);
   if (status == CLI_DONE)
-    status = compare(cli, grids[0], grids[1]);
-  vxm_grid_destroy(grids[0]);
-  vxm_grid_destroy(grids[1]);
+    status = compare(cli, values[0].grid, values[1].grid);
+  cli_values_free(&values[0]);
+  cli_values_free(&values[1]);
   return status;
 }
 
@@ -81,9 +90,11 @@ const cli_command cli_command_compare = {
     .summary = "count the voxels in which two grids differ",
     .notes =
         "The grids must have equal dimensions. IoU is the number of voxels set in both over the number set\n"
-        "in either. The exit status is 0 also when the grids differ.\n\n"
-        "Example:\n"
-        "  voxmend compare before.binvox after.npy --json",
+        "in either. The exit status is 0 also when the grids differ. Numbers in a file become set and clear\n"
+        "voxels by --threshold or --below; a file of set and clear voxels is taken as it is.\n\n"
+        "Examples:\n"
+        "  voxmend compare before.binvox after.npy --json\n"
+        "  voxmend compare distance.nrrd solid.binvox --below 0",
     .options = known_options,
     .run = run,
 };

@@ -12,15 +12,28 @@ static const cli_option known_options[] = {
      ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
      "standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
+     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl, off or vox [by the name of the\n"
      "output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
+    CLI_OPTIONS_THRESHOLD,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output, *format;
   bool force;
+  vxm_threshold_options threshold;
 } request;
+
+/** Those of grids, and one of colours alone. */
+static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb",
+                                      "obj",    "ply", "stl", "off", "vox",  NULL};
+
+/** Beside which there is a .json if they hold labels. */
+static const char *const with_labels[] = {"nrrd", "vdb", "binvox", NULL};
+
+static bool is_one_of(const char *format, const char *const *choices) {
+  return cli_read_choice(format, choices) >= 0;
+}
 
 static int read_arguments(cli_run *cli, request *out) {
   const char *value;
@@ -32,58 +45,90 @@ static int read_arguments(cli_run *cli, request *out) {
       out->format = value;
     else if (key == KEY_FORCE)
       out->force = true;
-    else
+    else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
       return CLI_STOP;
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
-  out->format = cli_output_format(cli, out->output, out->format, cli_grid_formats);
+  out->format = cli_output_format(cli, out->output, out->format, formats);
   if (!out->format)
     return CLI_STOP;
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format));
+  cli_writes(cli, "-o", out->output, cli_has_json(out->format) || is_one_of(out->format, with_labels));
   if (cli_check_names(cli) == CLI_STOP)
     return CLI_STOP;
   return cli_check_surface_file(cli, out->output, out->format, out->force);
 }
 
-static json_t *make_report(const cli_run *cli, const request *given, const vxm_grid *grid) {
+static json_t *make_report(const cli_run *cli, const request *given, const cli_values *values) {
   json_t *report = json_object();
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
-  json_object_set_new(report, "grid", cli_json_space(vxm_grid_space(grid)));
-  json_object_set_new(report, "voxels", json_integer(vxm_grid_count(grid)));
-  json_object_set_new(report, "hash", cli_json_hash(vxm_grid_hash(grid)));
+  json_object_set_new(report, "grid", cli_json_space(cli_values_space(values)));
+  cli_values_json(report, values, true);
   json_object_set(report, "warnings", cli->warnings);
   return report;
 }
 
-static int convert(cli_run *cli, const request *given, const vxm_grid *grid) {
+/** Whether the numbers are whole, and labels as far as one knows; bits in another type are bits. */
+static bool are_labels(const vxm_field *field) {
+  vxm_scalar scalar = vxm_field_scalar(field);
+  vxm_field_kind kind = vxm_field_kind_of(field);
+  bool is_float = scalar == VXM_FLOAT64 || scalar == VXM_FLOAT32 || scalar == VXM_FLOAT16;
+  return kind == VXM_FIELD_LABELS || (kind == VXM_FIELD_NUMBERS && !is_float && !vxm_field_is_mask(field));
+}
+
+/** Whether the output can have the numbers as they are. */
+static bool keeps_numbers(const request *given, const vxm_field *field) {
+  static const char *const all[] = {"npy", "nrrd", "vdb", NULL}, *const colors[] = {"ply", "vox", NULL},
+                           *const labels[] = {"binvox", NULL};
+  if (is_one_of(given->format, labels))
+    return are_labels(field);
+  return is_one_of(given->format, all) ||
+         (vxm_field_kind_of(field) == VXM_FIELD_COLORS && is_one_of(given->format, colors));
+}
+
+/** Numbers stay numbers where the output holds them; else they become bits, or are refused. */
+static int settle(cli_run *cli, const request *given, cli_values *values) {
+  char why[64];
+  if (values->grid && cli_threshold_given(&given->threshold))
+    cli_warn(cli, "%s holds set and clear voxels already: --threshold and --below are not applied",
+             cli_shown(given->input, "<stdin>"));
+  if (values->grid || (!cli_threshold_given(&given->threshold) && keeps_numbers(given, values->field)))
+    return CLI_DONE;
+  snprintf(why, sizeof why, ".%s holds only set and clear voxels", given->format);
+  return cli_values_to_bits(cli, values, &given->threshold, given->input, why);
+}
+
+static int convert(cli_run *cli, const request *given, const cli_values *values) {
   vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
   write.format = given->format;
-  if (vxm_grid_write(grid, given->output, &write, &cli->error) != VXM_OK)
+  vxm_status status = values->grid ? vxm_grid_write(values->grid, given->output, &write, &cli->error)
+                                   : vxm_field_write(values->field, given->output, &write, &cli->error);
+  if (status != VXM_OK)
     return cli_fail(cli);
   cli_progress_clear(cli);
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
-    cli_rows_space(cli, vxm_grid_space(grid));
-    cli_row(cli, "voxels", "%" PRId64, vxm_grid_count(grid));
+    cli_rows_space(cli, cli_values_space(values));
+    cli_values_row(cli, values);
     cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
   }
-  return cli_finish(cli, make_report(cli, given, grid));
+  return cli_finish(cli, make_report(cli, given, values));
 }
 
 static int run(cli_run *cli) {
-  request given = {0};
+  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
   if (read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
-  vxm_grid *grid = NULL;
-  if (vxm_grid_read(&grid, cli->context, given.input, &cli->error) != VXM_OK)
+  cli_values values;
+  if (cli_values_read(cli, &values, given.input) != VXM_OK)
     return cli_fail(cli);
-  cli_warn_grid(cli, given.input, grid);
-  int status = convert(cli, &given, grid);
-  vxm_grid_destroy(grid);
+  int status = settle(cli, &given, &values);
+  if (status == CLI_DONE)
+    status = convert(cli, &given, &values);
+  cli_values_free(&values);
   return status;
 }
 
@@ -93,9 +138,15 @@ const cli_command cli_command_convert = {
     .summary = "write a grid in another format, or as a mesh",
     .notes =
         "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units.\n\n"
+        "Numbers (distances, coverage, labels, confidence, colours) stay the numbers they are, in .npy,\n"
+        ".nrrd and .vdb; labels up to 255 also in .binvox, colours in .npy, .nrrd, .ply and .vox.\n"
+        "They become set and clear voxels only by --threshold or --below, or where nothing is lost: all are\n"
+        "0 or 1, or unsigned bytes 0 and 255.\n\n"
         "Examples:\n"
         "  voxmend convert chair.binvox -o chair.npy\n"
-        "  voxmend convert chair.npy -o blocks.obj",
+        "  voxmend convert chair.npy -o blocks.obj\n"
+        "  voxmend convert distance.nrrd -o distance.vdb\n"
+        "  voxmend convert distance.nrrd --below 0 -o solid.binvox",
     .options = known_options,
     .run = run,
 };

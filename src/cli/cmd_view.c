@@ -13,12 +13,14 @@ static const cli_option known_options[] = {
     {KEY_AZIMUTH, "azimuth", "DEGREES", "direction to look from, about the up axis [30]"},
     {KEY_ELEVATION, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]"},
     {KEY_UP, "up", "x|y|z", "axis that points up [z]"},
+    CLI_OPTIONS_THRESHOLD,
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output;
   vxm_picture_options picture;
+  vxm_threshold_options threshold;
 } request;
 
 /** "800x600" */
@@ -58,6 +60,9 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     if (!cli_read_number(&picture->elevation, value) || picture->elevation < -90 || picture->elevation > 90)
       return cli_usage(cli, "--elevation '%s' is not a number of degrees from -90 to 90", value);
     return CLI_END;
+  case CLI_KEY_THRESHOLD:
+  case CLI_KEY_BELOW:
+    return cli_threshold_read(cli, &out->threshold, key, value);
   default:
     result = cli_choose(cli, &choice, "up", value, axes);
     picture->up = choice + 1;
@@ -103,54 +108,62 @@ static int voxelize(cli_run *cli, vxm_grid **grid, const char *path) {
 }
 
 /** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
-static int read_input(cli_run *cli, vxm_grid **grid, const char *path) {
+static int read_input(cli_run *cli, cli_values *values, const char *path) {
   enum { MESH_FORMATS = 4, GRID_FORMATS = 6 }; /* the first grid formats; the others are meshes */
   if (is_named(path, cli_mesh_formats, MESH_FORMATS))
-    return voxelize(cli, grid, path);
-  vxm_status status = vxm_grid_read(grid, cli->context, path, &cli->error);
+    return voxelize(cli, &values->grid, path);
+  vxm_status status = cli_values_read(cli, values, path);
   if (status == VXM_OK)
     return CLI_DONE;
   bool maybe_mesh = status == VXM_ERROR_FORMAT && strcmp(path, "-") != 0;
   if (maybe_mesh && !is_named(path, cli_grid_formats, GRID_FORMATS))
-    return voxelize(cli, grid, path);
+    return voxelize(cli, &values->grid, path);
   return cli_fail(cli);
 }
 
-static json_t *make_report(const cli_run *cli, const request *given, const vxm_grid *grid) {
+static json_t *make_report(const cli_run *cli, const request *given, const cli_values *values) {
   json_t *report = json_object();
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
-  json_object_set_new(report, "grid", cli_json_space(vxm_grid_space(grid)));
-  json_object_set_new(report, "voxels", json_integer(vxm_grid_count(grid)));
+  json_object_set_new(report, "grid", cli_json_space(cli_values_space(values)));
+  cli_values_json(report, values, false);
   json_object_set(report, "warnings", cli->warnings);
   return report;
 }
 
-static int draw(cli_run *cli, const request *given, const vxm_grid *grid) {
-  cli_warn_grid(cli, given->input, grid);
-  if (vxm_grid_picture(grid, given->output, &given->picture, &cli->error) != VXM_OK)
+/** Bits as they are, or numbers by the threshold, or else by what they are. */
+static vxm_status draw(cli_run *cli, const request *given, const cli_values *values) {
+  bool is_given = cli_threshold_given(&given->threshold);
+  if (values->grid)
+    return vxm_grid_picture(values->grid, given->output, &given->picture, &cli->error);
+  return vxm_field_picture(values->field, given->output, &given->picture, is_given ? &given->threshold : NULL,
+                           &cli->error);
+}
+
+static int make_picture(cli_run *cli, const request *given, const cli_values *values) {
+  if (draw(cli, given, values) != VXM_OK)
     return cli_fail(cli);
   cli_progress_clear(cli);
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
-    cli_rows_space(cli, vxm_grid_space(grid));
-    cli_row(cli, "voxels", "%" PRId64, vxm_grid_count(grid));
+    cli_rows_space(cli, cli_values_space(values));
+    cli_values_row(cli, values);
     cli_row(cli, "output", "%s", given->output);
   }
-  return cli_finish(cli, make_report(cli, given, grid));
+  return cli_finish(cli, make_report(cli, given, values));
 }
 
 static int run(cli_run *cli) {
-  request given = {.picture = VXM_PICTURE_OPTIONS_INIT};
+  request given = {.picture = VXM_PICTURE_OPTIONS_INIT, .threshold = VXM_THRESHOLD_OPTIONS_INIT};
   if (read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
-  vxm_grid *grid = NULL;
-  if (read_input(cli, &grid, given.input) != CLI_DONE)
+  cli_values values = {NULL, NULL};
+  if (read_input(cli, &values, given.input) != CLI_DONE)
     return CLI_FAILED;
-  int status = draw(cli, &given, grid);
-  vxm_grid_destroy(grid);
+  int status = make_picture(cli, &given, &values);
+  cli_values_free(&values);
   return status;
 }
 
@@ -158,12 +171,18 @@ const cli_command cli_command_view = {
     .name = "view",
     .arguments = "GRID|MESH -o FILE.png [OPTION]...",
     .summary = "draw a picture of a grid, or of a mesh",
-    .notes = "A mesh is repaired and voxelized at 128 voxels along its longest side first. Standard input is "
-             "read\n"
-             "as a grid.\n\n"
-             "Examples:\n"
-             "  voxmend view chair.binvox -o chair.png\n"
-             "  voxmend view bunny.obj -o bunny.png --up y --azimuth 120 --size 1200x900",
+    .notes =
+        "A mesh is repaired and voxelized at 128 voxels along its longest side first. Standard input is "
+        "read\n"
+        "as a grid.\n\n"
+        "Of numbers are drawn: signed distances below 0, others nearer than half a voxel's diagonal;\n"
+        "coverage from one half on; confidence below 255, which is what was not proven; labels and colours\n"
+        "in their colours. What the numbers are the file says; if not, whole ones are labels, those on both\n"
+        "sides of 0 distances, those from 0 to 1 coverage. --threshold and --below choose others.\n\n"
+        "Examples:\n"
+        "  voxmend view chair.binvox -o chair.png\n"
+        "  voxmend view bunny.obj -o bunny.png --up y --azimuth 120 --size 1200x900\n"
+        "  voxmend view distance.nrrd -o inside.png --below -0.1",
     .options = known_options,
     .run = run,
 };

@@ -7,10 +7,10 @@
 
 /* ---- Work ---- */
 
-/** Takes the space of the grid named by --like. */
+/** Takes the space of the grid, or field, named by --like. */
 static int read_like(cli_run *cli, vxm_space *out, const char *path) {
   vxm_grid *grid = NULL;
-  if (vxm_grid_read(&grid, cli->context, path, &cli->error) != VXM_OK)
+  if (vxm_grid_read_space(&grid, cli->context, path, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_grid(cli, path, grid);
   *out = *vxm_grid_space(grid);

@@ -287,7 +287,7 @@ static int check_names(cli_run *cli, const voxelize_request *given) {
   if (given->field.color && given->field.color_options.by == VXM_COLOR_GLSL)
     cli_reads(cli, given->field.color_name);
   cli_writes(cli, "-o", given->output, cli_has_json(given->format) || given->field.labels);
-  cli_writes(cli, "--confidence", given->confidence, false);
+  cli_writes(cli, "--confidence", given->confidence, true);
   cli_writes(cli, "--coords", given->coords, false);
   if (cli_check_names(cli) == CLI_STOP)
     return CLI_STOP;

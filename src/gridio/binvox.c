@@ -136,7 +136,8 @@ static void header_space(const header *h, vxm_space *space) {
 /* ---- Reading the voxels ---- */
 
 typedef struct oddities {
-  bool odd, labels; /**< a lone byte at the end; values above 1 */
+  bool odd; /**< a lone byte at the end */
+  unsigned seen;
 } oddities;
 
 /** Adds up the counts before anything is allocated. */
@@ -145,10 +146,15 @@ static vxm_status check_runs(oddities *found, const vxm_input *input, size_t dat
   const unsigned char *pairs = input->data + data;
   size_t pair_count = (input->size - data) / 2;
   uint64_t sum = 0;
-  unsigned char values = 0;
+  unsigned seen = 0;
   for (size_t p = 0; p < pair_count; p++) {
+    unsigned value = pairs[2 * p];
     sum += pairs[2 * p + 1];
-    values |= pairs[2 * p] & 0xfe;
+    if (pairs[2 * p + 1] > 0)
+      seen |= value == 0     ? VXM_SEEN_ZERO
+              : value == 1   ? VXM_SEEN_ONE
+              : value == 255 ? VXM_SEEN_FULL
+                             : VXM_SEEN_OTHER;
   }
   if (sum > voxels) {
     uint64_t before = 0;
@@ -162,7 +168,7 @@ static vxm_status check_runs(oddities *found, const vxm_input *input, size_t dat
     return vxm_fail_byte(error, input, input->size,
                          "the data end after %" PRIu64 " of %" PRIu64 " voxels: the file is cut short", sum,
                          voxels);
-  *found = (oddities){(input->size - data) % 2 != 0, values != 0};
+  *found = (oddities){(input->size - data) % 2 != 0, seen};
   return VXM_OK;
 }
 
@@ -215,34 +221,45 @@ static vxm_status read_runs(vxm_grid *grid, const vxm_input *input, size_t data,
   return status;
 }
 
-static void add_notes(vxm_grid *grid, const header *h, const oddities *found) {
+static void add_notes(vxm_notes *notes, const header *h, const oddities *found) {
   if (!h->has_translate)
-    vxm_note(&grid->notes, "the header has no translate line: 0 0 0 is taken");
+    vxm_note(notes, "the header has no translate line: 0 0 0 is taken");
   if (!h->has_scale)
-    vxm_note(&grid->notes, "the header has no scale line: 1 is taken");
+    vxm_note(notes, "the header has no scale line: 1 is taken");
   if (h->unknown)
-    vxm_note(&grid->notes, "%zu header line%s with an unknown key skipped", h->unknown,
-             h->unknown == 1 ? "" : "s");
+    vxm_note(notes, "%zu header line%s with an unknown key skipped", h->unknown, h->unknown == 1 ? "" : "s");
   if (h->dims[0] != h->dims[1] || h->dims[1] != h->dims[2])
-    vxm_note(&grid->notes, "the dims differ: they are taken as x, z and y, slowest first");
-  if (found->labels)
-    vxm_note(&grid->notes, "values above 1 (labels) are read as set voxels");
+    vxm_note(notes, "the dims differ: they are taken as x, z and y, slowest first");
   if (found->odd)
-    vxm_note(&grid->notes, "a lone byte behind the last run is ignored");
+    vxm_note(notes, "a lone byte behind the last run is ignored");
 }
 
-static vxm_status read_binvox(vxm_grid **out, const vxm_input *input, vxm_error *error) {
-  header h;
-  vxm_space space;
-  oddities found = {false, false};
-  vxm_status status = read_header(&h, input, error);
+/** All that stands before the voxels, and the sum of the runs. */
+static vxm_status read_front(header *h, vxm_space *space, oddities *found, const vxm_input *input,
+                             vxm_error *error) {
+  vxm_status status = read_header(h, input, error);
   if (status != VXM_OK)
     return status;
-  header_space(&h, &space);
-  status = vxm_space_check_file(&space, input, h.dims_offset, error);
-  if (status == VXM_OK)
-    status = check_runs(&found, input, h.data, vxm_space_voxels(&space), error);
+  header_space(h, space);
+  status = vxm_space_check_file(space, input, h->dims_offset, error);
+  return status == VXM_OK ? check_runs(found, input, h->data, vxm_space_voxels(space), error) : status;
+}
+
+/** Version 2 is meant for labels, even if there is only one. */
+static bool holds_labels(const vxm_input *input) {
+  return input->size > 8 && input->data[7] == ' ' && input->data[8] == '2';
+}
+
+static vxm_status read_binvox(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  header h;
+  vxm_space space;
+  oddities found;
   vxm_grid *grid = NULL;
+  const vxm_element byte = vxm_element_of('u', 1, false);
+  vxm_status status = read_front(&h, &space, &found, input, error);
+  bool is_meant = rule == VXM_BITS_STORED && holds_labels(input);
+  if (status == VXM_OK && (is_meant || !vxm_seen_bits(found.seen, byte, rule)))
+    status = vxm_fail_numbers(error, input->name, "labels");
   if (status == VXM_OK)
     status = vxm_grid_create(&grid, input->context, &space, error);
   if (status == VXM_OK)
@@ -251,9 +268,78 @@ static vxm_status read_binvox(vxm_grid **out, const vxm_input *input, vxm_error 
     vxm_grid_destroy(grid);
     return status;
   }
-  add_notes(grid, &h, &found);
+  add_notes(&grid->notes, &h, &found);
   *out = grid;
   return VXM_OK;
+}
+
+/* ---- Labels ---- */
+
+/** Fills a field of the cube, or of its near corner; false if a label lies outside of that. */
+static bool fill_labels(vxm_field *field, const header *h, const vxm_input *input) {
+  const int64_t *n = field->space.dims;
+  const unsigned char *pair = input->data + h->data;
+  int64_t at[3] = {0, 0, 0}; /* x, z, y */
+  bool is_whole = true;
+  for (; at[0] < h->dims[0]; pair += 2)
+    for (unsigned left = pair[1]; left > 0; left--) {
+      if (at[0] < n[0] && at[1] < n[2] && at[2] < n[1])
+        field->values[(at[0] * n[1] + at[2]) * n[2] + at[1]] = pair[0];
+      else if (pair[0] != 0)
+        is_whole = false;
+      if (++at[2] < h->dims[2])
+        continue;
+      at[2] = 0;
+      if (++at[1] < h->dims[1])
+        continue;
+      at[1] = 0;
+      at[0]++;
+    }
+  return is_whole;
+}
+
+/** Whether a space is one that would be padded to the cube of another, with its voxels in the same places. */
+static bool is_padded(const vxm_space *space, const vxm_space *cube) {
+  bool is_same = vxm_binvox_side(space) == (uint64_t)cube->dims[0];
+  for (int a = 0; a < 3; a++) {
+    double slack = 1e-6 * cube->voxel_size[a];
+    is_same = is_same && fabs(space->voxel_size[a] - cube->voxel_size[a]) <= slack &&
+              fabs(space->origin[a] - cube->origin[a]) <= slack + 1e-8 * fabs(cube->origin[a]);
+  }
+  return is_same;
+}
+
+static vxm_status read_labels(vxm_field **out, const vxm_space *space, const header *h, bool *is_whole,
+                              const vxm_input *input, vxm_error *error) {
+  vxm_status status = vxm_field_make(out, input->context, space, VXM_FIELD_LABELS, VXM_UINT8, error);
+  if (status == VXM_OK)
+    *is_whole = fill_labels(*out, h, input);
+  return status;
+}
+
+static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error *error) {
+  header h;
+  vxm_space cube, beside;
+  oddities found;
+  vxm_field *field = NULL;
+  vxm_about about = {.is_declared = false};
+  bool is_whole = false;
+  vxm_status status = read_front(&h, &cube, &found, input, error);
+  if (status != VXM_OK)
+    return status;
+  if (vxm_sidecar_read_labels(&beside, &about, input) && is_padded(&beside, &cube))
+    status = read_labels(&field, &beside, &h, &is_whole, input, error);
+  if (status == VXM_OK && !is_whole) {
+    vxm_field_destroy(field);
+    status = read_labels(&field, &cube, &h, &is_whole, input, error);
+  }
+  if (status != VXM_OK) {
+    vxm_about_destroy(&about);
+    return status;
+  }
+  vxm_field_describe(field, &about);
+  add_notes(&field->notes, &h, &found);
+  return vxm_field_hand_over(out, field, vxm_progress(input->context, "reading", 1, error));
 }
 
 /* ---- Writing ---- */
@@ -319,6 +405,47 @@ static vxm_status begin(vxm_slices *slices, vxm_error *error) {
   return vxm_binvox_header_write(slices->output, space, 1, error);
 }
 
+/** Writes a run, however long. */
+static void put_run(vxm_output *output, unsigned value, uint64_t length) {
+  while (length > 0) {
+    unsigned count = length < 255 ? (unsigned)length : 255;
+    unsigned char *pair = (unsigned char *)vxm_output_reserve(output, 2);
+    pair[0] = (unsigned char)value;
+    pair[1] = (unsigned char)count;
+    vxm_output_advance(output, 2);
+    length -= count;
+  }
+}
+
+void vxm_binvox_put_slice(vxm_output *output, const vxm_space *space, const uint16_t *values) {
+  uint64_t side = vxm_binvox_side(space), run = 0;
+  size_t length = (size_t)space->dims[1], rows = (size_t)space->dims[2];
+  unsigned value = values[0];
+  for (size_t row = 0; row < rows; row++, values += length) {
+    for (size_t i = 0; i < length; i++, run++)
+      if (values[i] != value) {
+        put_run(output, value, run);
+        value = values[i];
+        run = 0;
+      }
+    if (side == length)
+      continue;
+    if (value != 0) {
+      put_run(output, value, run);
+      value = 0;
+      run = 0;
+    }
+    run += side - length;
+  }
+  put_run(output, value, run);
+  put_run(output, 0, (side - rows) * side);
+}
+
+void vxm_binvox_put_end(vxm_output *output, const vxm_space *space) {
+  uint64_t side = vxm_binvox_side(space);
+  put_run(output, 0, (side - (uint64_t)space->dims[0]) * side * side);
+}
+
 /** The padding beyond the grid along x. */
 static vxm_status end(vxm_slices *slices, vxm_error *error) {
   uint64_t side = vxm_binvox_side(&slices->space);
@@ -347,4 +474,4 @@ static const vxm_slices_kind slices_kind = {
     .file_bytes = vxm_binvox_bytes,
 };
 
-const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, &slices_kind, NULL};
+const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, read_field, &slices_kind, NULL};

@@ -3,6 +3,7 @@
 #ifndef VXM_GRIDIO_BYTES_H
 #define VXM_GRIDIO_BYTES_H
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -53,6 +54,17 @@ static inline void vxm_store_double(unsigned char *bytes, double value) {
   uint64_t word;
   memcpy(&word, &value, sizeof word);
   vxm_store_le64(bytes, word);
+}
+
+/** The IEEE number of 16 bits. */
+static inline float vxm_half_value(unsigned bits) {
+  int exponent = (int)(bits >> 10 & 31);
+  float fraction = (float)(bits & 1023), value;
+  if (exponent == 31)
+    value = fraction > 0 ? NAN : INFINITY;
+  else
+    value = exponent == 0 ? ldexpf(fraction, -24) : ldexpf(fraction + 1024, exponent - 25);
+  return bits >> 15 ? -value : value;
 }
 
 /**

@@ -114,7 +114,8 @@ static const kind *find_kind(const char *path, const char *format, vxm_error *er
   return NULL;
 }
 
-static vxm_status write_file(const vxm_colored *colored, const kind *k, const char *path, vxm_error *error) {
+static vxm_status write_file(const vxm_colored *colored, const vxm_about *about, const kind *k,
+                             const char *path, vxm_error *error) {
   static const vxm_sidecar_text text = {"voxmend colors", "z fastest, then y, then x", NULL};
   vxm_output *output = NULL, *sidecar = NULL;
   vxm_status status = vxm_output_open(&output, colored->context, path, error);
@@ -122,7 +123,7 @@ static vxm_status write_file(const vxm_colored *colored, const kind *k, const ch
     return status;
   status = k->write(output, colored, error);
   if (status == VXM_OK && k->has_sidecar)
-    status = vxm_sidecar_open(&sidecar, colored->context, colored->space, path, &text, error);
+    status = vxm_sidecar_open(&sidecar, colored->context, colored->space, path, &text, about, error);
   if (status == VXM_OK)
     return vxm_output_commit_both(output, sidecar, error);
   vxm_output_abort(output);
@@ -131,6 +132,7 @@ static vxm_status write_file(const vxm_colored *colored, const kind *k, const ch
 
 vxm_status vxm_colors_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
                             const char *path, const vxm_color_options *options, vxm_error *error) {
+  const vxm_about about = {.is_declared = true, .kind = VXM_FIELD_COLORS};
   double start = vxm_clock_ms();
   vxm_error local = VXM_ERROR_INIT;
   const kind *k = find_kind(path, options->format, error);
@@ -146,10 +148,16 @@ vxm_status vxm_colors_write(vxm_voxelize_report *report, vxm_model *model, const
   status = values ? vxm_colors_run(values, report, model, space, options, &local) : local.code;
   report->fill_ms = vxm_clock_ms() - start;
   if (status == VXM_OK)
-    status = write_file(&(vxm_colored){model->context, space, values}, k, path, &local);
+    status = write_file(&(vxm_colored){model->context, space, values}, &about, k, path, &local);
   report->write_ms = vxm_clock_ms() - start - report->fill_ms;
   vxm_free(model->context, values);
   if (status != VXM_OK && error)
     *error = local;
   return status;
+}
+
+vxm_status vxm_colored_write(const vxm_colored *colored, const vxm_about *about, const char *path,
+                             const char *format, vxm_error *error) {
+  const kind *k = find_kind(path, format, error);
+  return k ? write_file(colored, about, k, path, error) : VXM_ERROR_ARGUMENT;
 }

@@ -4,6 +4,7 @@
 #define VXM_GRIDIO_COLORS_H
 
 #include "base/output.h"
+#include "gridio/values.h"
 #include "voxel/color.h"
 
 /** Colours to write: [x][y][z][4] in C order, the fourth 0 where there is no voxel. */
@@ -17,6 +18,10 @@ typedef struct vxm_colored {
  * been checked */
 vxm_status vxm_colors_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
                             const char *path, const vxm_color_options *options, vxm_error *error);
+
+/** Writes colours into a file: .npy, .ply or .vox. @param about goes along into .npy; NULL = nothing */
+vxm_status vxm_colored_write(const vxm_colored *colored, const vxm_about *about, const char *path,
+                             const char *format, vxm_error *error);
 
 /** Writes MagicaVoxel's format (vox.c). @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
  * VXM_ERROR_MEMORY_LIMIT */

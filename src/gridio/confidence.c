@@ -3,6 +3,7 @@
 #include "gridio/format.h"
 #include "gridio/gridio.h"
 #include "gridio/npy_header.h"
+#include "gridio/sidecar.h"
 
 vxm_status vxm_gridio_confidence(const vxm_grid *grid, const char *path, vxm_error *error) {
   if (!vxm_text_equal_nocase(vxm_path_extension(path), "npy"))
@@ -24,5 +25,12 @@ vxm_status vxm_gridio_confidence(const vxm_grid *grid, const char *path, vxm_err
   vxm_npy_header_write(output, "|u1", true, dims);
   for (int64_t k = 0; k < dims[2]; k++)
     vxm_output_write(output, grid->confidence + k * dims[0] * dims[1], (size_t)(dims[0] * dims[1]));
-  return vxm_output_commit(output, error);
+  static const vxm_sidecar_text text = {"voxmend npy", "x fastest, then y, then z", NULL};
+  const vxm_about about = {.is_declared = true, .kind = VXM_FIELD_CONFIDENCE};
+  vxm_output *sidecar;
+  status = vxm_sidecar_open(&sidecar, grid->context, &grid->space, path, &text, &about, error);
+  if (status == VXM_OK)
+    return vxm_output_commit_both(output, sidecar, error);
+  vxm_output_abort(output);
+  return status;
 }

@@ -37,22 +37,24 @@ static vxm_status find_format(file_format *out, const char *path, const char *fo
 
 /** What stands before the values, or the tree that they make; the output is open. */
 static vxm_status begin_file(field_file *file, file_format format, vxm_context *context,
-                             const vxm_space *space, const vxm_vdb_kind *kind, size_t size,
-                             vxm_error *error) {
+                             const vxm_space *space, const vxm_vdb_kind *kind, vxm_field_kind values,
+                             vxm_scalar scalar, vxm_error *error) {
+  const vxm_about about = {.is_declared = true, .kind = values};
+  const vxm_nrrd_values header = {"a number per voxel, at its centre", scalar, 1, &about};
   if (format == VDB)
     return vxm_vdb_field_create(&file->tree, context, space, kind, error);
-  vxm_status status = vxm_output_expect(file->output, vxm_space_voxels(space) * size, error);
+  vxm_status status =
+      vxm_output_expect(file->output, vxm_space_voxels(space) * vxm_scalar_bytes(scalar), error);
   if (status != VXM_OK)
     return status;
   if (format == NRRD)
-    return vxm_nrrd_header_write(file->output, "a number per voxel, at its centre",
-                                 size == 1 ? "uchar" : "float", size, space, error);
+    return vxm_nrrd_header_write(file->output, &header, space, error);
   vxm_npy_header_write(file->output,
-                       size == 1          ? "|u1"
-                       : vxm_le64(1) == 1 ? "<f4"
-                                          : ">f4",
+                       scalar == VXM_UINT8 ? "|u1"
+                       : vxm_le64(1) == 1  ? "<f4"
+                                           : ">f4",
                        false, space->dims);
-  return vxm_sidecar_open(&file->sidecar, context, space, file->path, &npy_description, error);
+  return vxm_sidecar_open(&file->sidecar, context, space, file->path, &npy_description, &about, error);
 }
 
 /** The order in which values are made. */
@@ -71,8 +73,8 @@ static vxm_status choose_format(file_format *out, const char *path, const char *
 }
 
 static vxm_status open_file(field_file *file, vxm_field_target *target, vxm_context *context,
-                            const vxm_space *space, const vxm_vdb_kind *kind, vxm_scalar scalar,
-                            const char *path, const char *format, vxm_error *error) {
+                            const vxm_space *space, const vxm_vdb_kind *kind, vxm_field_kind values,
+                            vxm_scalar scalar, const char *path, const char *format, vxm_error *error) {
   file_format found = NPY;
   *file = (field_file){.path = path};
   vxm_status status = choose_format(&found, path, format, scalar, error);
@@ -80,7 +82,7 @@ static vxm_status open_file(field_file *file, vxm_field_target *target, vxm_cont
     status = vxm_output_open(&file->output, context, path, error);
   size_t size = vxm_scalar_bytes(scalar);
   if (status == VXM_OK)
-    status = begin_file(file, found, context, space, kind, size, error);
+    status = begin_file(file, found, context, space, kind, values, scalar, error);
   if (status != VXM_OK) {
     vxm_output_abort(file->output);
     return status;
@@ -134,12 +136,12 @@ static vxm_status close_file(field_file *file, vxm_status status, vxm_error *err
 
 vxm_status vxm_field_write_coverage(vxm_coverage_report *report, vxm_model *model, const vxm_space *space,
                                     const char *path, const vxm_coverage_options *options, vxm_error *error) {
-  static const vxm_vdb_kind kind = {VXM_VDB_FOG, "coverage", 0};
+  static const vxm_vdb_kind kind = {VXM_VDB_FOG, "coverage", 0, NULL};
   field_file file;
   vxm_field_target target = {.put = put_values, .payload = &file};
   double start = vxm_clock_ms();
-  vxm_status status =
-      open_file(&file, &target, model->context, space, &kind, options->scalar, path, options->format, error);
+  vxm_status status = open_file(&file, &target, model->context, space, &kind, VXM_FIELD_COVERAGE,
+                                options->scalar, path, options->format, error);
   if (status != VXM_OK)
     return status;
   status = vxm_coverage_run(&target, report, model, space, options, error);
@@ -152,7 +154,7 @@ vxm_status vxm_field_write_coverage(vxm_coverage_report *report, vxm_model *mode
 /** Without a band there is no number for what lies beyond: that of the diagonal stands for it. */
 static vxm_vdb_kind distance_kind(const vxm_distance_options *options, const vxm_space *space) {
   vxm_vdb_kind kind = {options->is_unsigned ? VXM_VDB_NUMBERS : VXM_VDB_LEVEL_SET, "distance",
-                       vxm_distance_limit(options, space)};
+                       vxm_distance_limit(options, space), NULL};
   double square = 0;
   for (int a = 0; a < 3; a++)
     square += pow((double)space->dims[a] * space->voxel_size[a], 2);
@@ -167,8 +169,8 @@ vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *mode
   field_file file;
   vxm_field_target target = {.put = put_values, .payload = &file};
   double start = vxm_clock_ms();
-  vxm_status status =
-      open_file(&file, &target, model->context, space, &kind, VXM_FLOAT32, path, options->format, error);
+  vxm_status status = open_file(&file, &target, model->context, space, &kind, VXM_FIELD_DISTANCE, VXM_FLOAT32,
+                                path, options->format, error);
   if (status != VXM_OK)
     return status;
   status = vxm_distance_run(&target, report, model, space, options, error);

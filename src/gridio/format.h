@@ -4,6 +4,7 @@
 #define VXM_GRIDIO_FORMAT_H
 
 #include "base/output.h"
+#include "gridio/elements.h"
 #include "gridio/sidecar.h"
 #include "gridio/slices.h"
 
@@ -59,8 +60,11 @@ typedef struct vxm_grid_format {
   const char *name; /**< also the extension */
   /** Whether the content is this format; NULL = never told by content. */
   bool (*sniff)(const vxm_input *input);
-  /** NULL = the format is only written. */
-  vxm_status (*read)(vxm_grid **out, const vxm_input *input, vxm_error *error);
+  /** Reads bits; VXM_ERROR_NUMBERS if there are numbers that the rule does not take for them. NULL = the
+   * format is only written. */
+  vxm_status (*read)(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error);
+  /** Reads numbers, where `read` does not take them for bits; NULL = it holds only bits. */
+  vxm_status (*read_field)(vxm_field **out, const vxm_input *input, vxm_error *error);
   /** NULL = the surface is written as a mesh of this name. */
   const vxm_slices_kind *slices;
   /** Writes an octree as it is; NULL = slice by slice. */

@@ -4,7 +4,8 @@
 #ifndef VXM_GRIDIO_GRIDIO_H
 #define VXM_GRIDIO_GRIDIO_H
 
-#include "grid/bitgrid.h"
+#include "gridio/shade.h"
+#include "gridio/values.h"
 #include "mesh/soup.h"
 
 /**
@@ -13,11 +14,17 @@
  *
  * @param context not NULL
  * @param path    "-" reads standard input (not raw, which needs the JSON file beside it)
- * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with the byte offset; VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE,
- *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. The whole file is checked for length
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with the byte offset; VXM_ERROR_NUMBERS for numbers that
+ *         are not bits; VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ *         VXM_ERROR_CANCELLED. The whole file is checked for length
  *         before the grid is allocated: a short file cannot ask for a large grid.
  */
 vxm_status vxm_gridio_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
+/** Reads a grid where the file stores bits, else a field; see vxm_grid_or_field_read in voxmend.h. */
+vxm_status vxm_gridio_read_either(vxm_grid **grid, vxm_field **field, vxm_context *context, const char *path,
+                                  vxm_error *error);
+/** Reads only where the voxels lie; see vxm_grid_read_space in voxmend.h. */
+vxm_status vxm_gridio_read_space(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
 
 /**
  * Writes a grid; the file appears under its name when it is complete.
@@ -45,11 +52,17 @@ vxm_status vxm_gridio_confidence(const vxm_grid *grid, const char *path, vxm_err
 /**
  * Draws the grid into a PNG file.
  *
+ * @param paint   the colours of its voxels, as payload `painted` has them; NULL = all have one
  * @param options not NULL
  * @return VXM_OK; VXM_ERROR_UNAVAILABLE without libpng; VXM_ERROR_ARGUMENT, VXM_ERROR_IO, VXM_ERROR_MEMORY,
  *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_gridio_picture(const vxm_grid *grid, const char *path, const vxm_picture_options *options,
-                              vxm_error *error);
+vxm_status vxm_gridio_picture(const vxm_grid *grid, vxm_paint_fn paint, const void *painted, const char *path,
+                              const vxm_picture_options *options, vxm_error *error);
+
+/** Draws a field; see vxm_field_picture in voxmend.h. @param options not NULL */
+vxm_status vxm_gridio_field_picture(const vxm_field *field, const char *path,
+                                    const vxm_picture_options *options,
+                                    const vxm_threshold_options *threshold, vxm_error *error);
 
 #endif

@@ -44,8 +44,9 @@ static vxm_status begin_npy(const label_file *file, vxm_error *error) {
 }
 
 static vxm_status begin_nrrd(const label_file *file, vxm_error *error) {
-  return vxm_nrrd_header_write(file->output, "a number per voxel, at its centre", "ushort",
-                               sizeof *file->values, file->space, error);
+  const vxm_about about = {.is_declared = true, .kind = VXM_FIELD_LABELS};
+  const vxm_nrrd_values values = {"a number per voxel, at its centre", VXM_UINT16, 1, &about};
+  return vxm_nrrd_header_write(file->output, &values, file->space, error);
 }
 
 static size_t slice_values(const label_file *file) {
@@ -68,46 +69,12 @@ static vxm_status begin_binvox(const label_file *file, vxm_error *error) {
   return vxm_binvox_header_write(file->output, file->space, 2, error);
 }
 
-/** Writes a run, however long. */
-static void put_run(vxm_output *output, unsigned value, uint64_t length) {
-  while (length > 0) {
-    unsigned count = length < 255 ? (unsigned)length : 255;
-    unsigned char *pair = (unsigned char *)vxm_output_reserve(output, 2);
-    pair[0] = (unsigned char)value;
-    pair[1] = (unsigned char)count;
-    vxm_output_advance(output, 2);
-    length -= count;
-  }
-}
-
 static void put_binvox(const label_file *file, int64_t slice) {
-  uint64_t side = vxm_binvox_side(file->space), run = 0;
-  size_t length = (size_t)file->space->dims[1], rows = (size_t)file->space->dims[2];
-  const uint16_t *values = file->values + (size_t)slice * length * rows;
-  unsigned value = values[0];
-  for (size_t row = 0; row < rows; row++, values += length) {
-    for (size_t i = 0; i < length; i++, run++)
-      if (values[i] != value) {
-        put_run(file->output, value, run);
-        value = values[i];
-        run = 0;
-      }
-    if (side == length)
-      continue;
-    if (value != 0) {
-      put_run(file->output, value, run);
-      value = 0;
-      run = 0;
-    }
-    run += side - length;
-  }
-  put_run(file->output, value, run);
-  put_run(file->output, 0, (side - rows) * side);
+  vxm_binvox_put_slice(file->output, file->space, file->values + (size_t)slice * slice_values(file));
 }
 
 static void end_binvox(const label_file *file) {
-  uint64_t side = vxm_binvox_side(file->space);
-  put_run(file->output, 0, (side - (uint64_t)file->space->dims[0]) * side * side);
+  vxm_binvox_put_end(file->output, file->space);
 }
 
 /* ---- All formats ---- */
@@ -191,10 +158,11 @@ static vxm_status put_values(const label_file *file, vxm_error *error) {
 /** Writes the values and the table beside them; the output is closed either way. */
 static vxm_status write_file(label_file *file, const vxm_label_table *table, vxm_error *error) {
   vxm_output *sidecar = NULL;
+  const vxm_about about = {.is_declared = true, .kind = VXM_FIELD_LABELS, .table = *table};
   vxm_status status = put_values(file, error);
   if (status == VXM_OK)
-    status = vxm_sidecar_open_labels(&sidecar, file->context, file->space, file->path, &file->kind->sidecar,
-                                     table, error);
+    status = vxm_sidecar_open(&sidecar, file->context, file->space, file->path, &file->kind->sidecar, &about,
+                              error);
   if (status == VXM_OK)
     return vxm_output_commit_both(file->output, sidecar, error);
   vxm_output_abort(file->output);

@@ -122,9 +122,25 @@ static vxm_status read_shape(scanner *s, vxm_npy_header *h) {
     if (status != VXM_OK)
       return status;
   }
+  h->channels = 1;
+  bool is_more = accept(s, ',');
+  if (accept(s, ')'))
+    return VXM_OK;
+  int64_t channels = 0;
+  vxm_status status = is_more ? read_extent(s, &channels) : VXM_OK;
+  if (status != VXM_OK)
+    return status;
   accept(s, ',');
-  if (!accept(s, ')'))
-    return fail(s, "a grid has three dimensions");
+  if (channels != 4 || !accept(s, ')'))
+    return fail(s, "a grid has three dimensions, and colours a fourth of 4 bytes");
+  h->channels = 4;
+  return VXM_OK;
+}
+
+/** Colours are bytes, each four of them together. */
+static vxm_status check_channels(const scanner *s, const vxm_npy_header *h) {
+  if (h->channels == 4 && (h->kind != 'u' || h->size != 1 || h->fortran))
+    return fail(s, "a grid has three dimensions, and colours a fourth of 4 bytes");
   return VXM_OK;
 }
 
@@ -185,7 +201,8 @@ vxm_status vxm_npy_header_read(vxm_npy_header *out, const vxm_input *input, vxm_
     return vxm_fail_byte(error, input, input->size, "the file ends within its header");
   out->data = begin + length;
   scanner s = {input, error, begin, out->data};
-  return read_dictionary(&s, out);
+  vxm_status status = read_dictionary(&s, out);
+  return status == VXM_OK ? check_channels(&s, out) : status;
 }
 
 /** The magic number, the version and the dictionary, of which `text` holds `length` bytes and has room for 64

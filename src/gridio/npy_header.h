@@ -11,6 +11,7 @@ typedef struct vxm_npy_header {
   size_t size;         /**< bytes of an element: 1, 2, 4 or 8 */
   bool fortran;        /**< the first index is the fastest */
   int64_t shape[3];    /**< not checked */
+  int channels;        /**< 4 if each place has four bytes, a colour; else 1 */
   size_t data;         /**< offset of the first element */
   size_t shape_offset; /**< for messages */
 } vxm_npy_header;

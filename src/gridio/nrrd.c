@@ -2,6 +2,7 @@
 /** .nrrd: a byte per voxel behind a header with the transform, x fastest, then y, then z. */
 #include "config.h"
 #include "gridio/byte_rows.h"
+#include "gridio/bytes.h"
 #include "gridio/elements.h"
 #include "gridio/nrrd_header.h"
 
@@ -18,15 +19,16 @@ static vxm_status check_length(const vxm_nrrd_header *h, const vxm_input *input,
                                vxm_error *error) {
   /* Deflate makes at most 1032 bytes of one. */
   enum { LARGEST_RATIO = 1032 };
+  size_t size = h->size * (size_t)h->channels;
   uint64_t voxels = vxm_space_voxels(&h->space), there = input->size - h->data;
-  if (h->gzip && voxels * h->size / LARGEST_RATIO <= there)
+  if (h->gzip && voxels * size / LARGEST_RATIO <= there)
     return VXM_OK;
-  if (h->gzip || there / h->size < voxels)
+  if (h->gzip || there / size < voxels)
     return vxm_fail_byte(error, input, input->size,
                          "the file is cut short: %" PRIu64 " bytes cannot hold %" PRIu64 " values", there,
                          voxels);
-  if (there > voxels * h->size)
-    vxm_note(notes, "%" PRIu64 " bytes behind the values are ignored", there - voxels * h->size);
+  if (there > voxels * size)
+    vxm_note(notes, "%" PRIu64 " bytes behind the values are ignored", there - voxels * size);
   return VXM_OK;
 }
 
@@ -71,32 +73,53 @@ static vxm_status unpack_bytes(unpacking *u, unsigned char *to, size_t size) {
   return VXM_OK;
 }
 
-/** Rows that are unpacked together: up to 4 MiB, but at least one. */
-static size_t rows_at_once(const vxm_grid *grid, size_t row_bytes) {
+/** Where values go, row after row along x. */
+typedef struct rows_to {
+  vxm_grid *grid;   /**< or, if NULL, */
+  vxm_field *field; /**< whose rows come in whole slices */
+  vxm_element element;
+  atomic_uint *seen;
+  bool is_swapped;
+} rows_to;
+
+/** Rows that are unpacked together: up to 4 MiB, but at least one; of fields, whole slices. */
+static size_t rows_at_once(const vxm_space *space, bool is_field, size_t row_bytes) {
   enum { CHUNK = 1 << 22 };
-  size_t all = grid->word_count / grid->row_words, some = row_bytes < CHUNK ? CHUNK / row_bytes : 1;
-  return some < all ? some : all;
+  size_t step = is_field ? (size_t)space->dims[1] : 1, all = (size_t)space->dims[1] * (size_t)space->dims[2],
+         some = row_bytes < CHUNK ? CHUNK / row_bytes / step * step : step;
+  return some < step ? step : some < all ? some : all;
 }
 
-static vxm_status unpack_rows(unpacking *u, vxm_grid *grid, const vxm_nrrd_header *h) {
-  size_t row_bytes = (size_t)grid->space.dims[0] * h->size, all = grid->word_count / grid->row_words,
-         most = rows_at_once(grid, row_bytes);
-  vxm_element element = vxm_element_of(h->kind, h->size, h->big_endian);
-  unsigned char *bytes = vxm_alloc(grid->context, most, row_bytes, &u->error);
+static void put_rows(const rows_to *to, size_t row, size_t rows, const unsigned char *bytes) {
+  if (to->grid) {
+    vxm_elements_to_rows(to->grid, row, rows, bytes, to->element, to->seen);
+    return;
+  }
+  size_t step = (size_t)to->field->space.dims[1];
+  vxm_field_put_slices(to->field, bytes, (int64_t)(row / step), (int64_t)((row + rows) / step),
+                       to->is_swapped);
+}
+
+static vxm_status unpack_rows(unpacking *u, const rows_to *to, const vxm_nrrd_header *h) {
+  vxm_context *context = u->input->context;
+  size_t row_bytes = (size_t)h->space.dims[0] * h->size * (size_t)h->channels,
+         all = (size_t)h->space.dims[1] * (size_t)h->space.dims[2],
+         most = rows_at_once(&h->space, !to->grid, row_bytes);
+  unsigned char *bytes = vxm_alloc(context, most, row_bytes, &u->error);
   vxm_status status = u->error.code;
   for (size_t row = 0; row < all && status == VXM_OK; row += most) {
     size_t rows = all - row < most ? all - row : most;
     status = unpack_bytes(u, bytes, rows * row_bytes);
     if (status != VXM_OK)
       break;
-    vxm_elements_to_rows(grid, row, rows, bytes, element);
-    status = vxm_progress(grid->context, "reading", (double)(row + rows) / (double)all, &u->error);
+    put_rows(to, row, rows, bytes);
+    status = vxm_progress(context, "reading", (double)(row + rows) / (double)all, &u->error);
   }
-  vxm_free(grid->context, bytes);
+  vxm_free(context, bytes);
   return status;
 }
 
-static vxm_status read_gzip(vxm_grid *grid, const vxm_nrrd_header *h, const vxm_input *input,
+static vxm_status read_gzip(const rows_to *to, const vxm_nrrd_header *h, const vxm_input *input,
                             vxm_error *error) {
   enum { ANY_HEADER = 32 /* gzip's or zlib's own */ };
   unpacking u = {.z = {.zalloc = take, .zfree = give, .next_in = input->data + h->data},
@@ -107,7 +130,7 @@ static vxm_status read_gzip(vxm_grid *grid, const vxm_nrrd_header *h, const vxm_
   if (inflateInit2(&u.z, ANY_HEADER + MAX_WBITS) != Z_OK)
     status = u.error.code != VXM_OK ? u.error.code : vxm_fail(&u.error, VXM_ERROR_MEMORY, "out of memory");
   if (status == VXM_OK) {
-    status = unpack_rows(&u, grid, h);
+    status = unpack_rows(&u, to, h);
     inflateEnd(&u.z);
   }
   if (status != VXM_OK && error)
@@ -115,31 +138,67 @@ static vxm_status read_gzip(vxm_grid *grid, const vxm_nrrd_header *h, const vxm_
   return status;
 }
 #else
-static vxm_status read_gzip(vxm_grid *grid, const vxm_nrrd_header *h, const vxm_input *input,
+/** Where values go. */
+typedef struct rows_to {
+  vxm_grid *grid;
+  vxm_field *field;
+  vxm_element element;
+  atomic_uint *seen;
+  bool is_swapped;
+} rows_to;
+
+static vxm_status read_gzip(const rows_to *to, const vxm_nrrd_header *h, const vxm_input *input,
                             vxm_error *error) {
-  (void)grid;
+  (void)to;
   return vxm_fail_at(error, VXM_ERROR_UNAVAILABLE, (vxm_place){input->name, 0, (int64_t)h->data, -1},
                      "compressed values need zlib, without which this build was made (configure --with-zlib; "
                      "Debian: zlib1g-dev); write the file with the encoding raw");
 }
 #endif
 
-static vxm_status read_nrrd(vxm_grid **out, const vxm_input *input, vxm_error *error) {
+static vxm_status read_front(vxm_nrrd_header *h, vxm_notes *notes, const vxm_input *input, vxm_error *error) {
+  vxm_status status = vxm_nrrd_header_read(h, input, notes, error);
+  if (status == VXM_OK)
+    status = vxm_space_check_file(&h->space, input, h->sizes_offset, error);
+  return status == VXM_OK ? check_length(h, input, notes, error) : status;
+}
+
+static const char *type_of(const vxm_nrrd_header *h) {
+  return h->channels == 4 ? "colors" : vxm_scalar_name(vxm_scalar_of(h->kind, h->size));
+}
+
+static vxm_status read_bits(vxm_grid *grid, const vxm_nrrd_header *h, const vxm_input *input,
+                            vxm_bits_rule rule, vxm_error *error) {
+  atomic_uint seen = 0;
+  vxm_element element = vxm_element_of(h->kind, h->size, h->big_endian);
+  const rows_to to = {.grid = grid, .element = element, .seen = &seen};
+  vxm_status status = VXM_OK;
+  if (h->gzip)
+    status = read_gzip(&to, h, input, error);
+  else
+    status = vxm_elements_to_grid(grid, input->data + h->data, element, &seen, error);
+  if (status == VXM_OK && !vxm_seen_bits(seen, element, rule))
+    status = vxm_fail_numbers(error, input->name, type_of(h));
+  return status;
+}
+
+static bool may_be_bits(const vxm_nrrd_header *h, vxm_bits_rule rule) {
+  return h->channels == 1 && vxm_about_may_be_bits(&h->about, rule) &&
+         vxm_element_may_be_bits(vxm_element_of(h->kind, h->size, h->big_endian), rule);
+}
+
+static vxm_status read_nrrd(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
   vxm_nrrd_header h;
   vxm_notes notes = {0};
-  vxm_status status = vxm_nrrd_header_read(&h, input, &notes, error);
-  if (status == VXM_OK)
-    status = vxm_space_check_file(&h.space, input, h.sizes_offset, error);
-  if (status == VXM_OK)
-    status = check_length(&h, input, &notes, error);
   vxm_grid *grid = NULL;
+  vxm_status status = read_front(&h, &notes, input, error);
+  if (status == VXM_OK && rule != VXM_BITS_NONE && !may_be_bits(&h, rule))
+    status = vxm_fail_numbers(error, input->name, type_of(&h));
   if (status == VXM_OK)
     status = vxm_grid_create(&grid, input->context, &h.space, error);
-  if (status == VXM_OK && h.gzip)
-    status = read_gzip(grid, &h, input, error);
-  else if (status == VXM_OK)
-    status =
-        vxm_elements_to_grid(grid, input->data + h.data, vxm_element_of(h.kind, h.size, h.big_endian), error);
+  if (status == VXM_OK && rule != VXM_BITS_NONE)
+    status = read_bits(grid, &h, input, rule, error);
+  vxm_about_destroy(&h.about);
   if (status != VXM_OK) {
     vxm_grid_destroy(grid);
     return status;
@@ -149,6 +208,32 @@ static vxm_status read_nrrd(vxm_grid **out, const vxm_input *input, vxm_error *e
   return VXM_OK;
 }
 
+static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error *error) {
+  vxm_nrrd_header h;
+  vxm_notes notes = {0};
+  vxm_field *field = NULL;
+  vxm_status status = read_front(&h, &notes, input, error);
+  if (status == VXM_OK)
+    status = vxm_field_make(&field, input->context, &h.space,
+                            h.channels == 4 ? VXM_FIELD_COLORS : VXM_FIELD_NUMBERS,
+                            vxm_scalar_of(h.kind, h.size), error);
+  if (status != VXM_OK) {
+    vxm_about_destroy(&h.about);
+    return status;
+  }
+  const rows_to to = {.field = field, .is_swapped = h.size > 1 && h.big_endian != (vxm_le64(1) != 1)};
+  vxm_sidecar_take_labels(&h.about, h.space.dims, input);
+  vxm_field_describe(field, &h.about);
+  field->notes = notes;
+  if (h.gzip)
+    status = read_gzip(&to, &h, input, error);
+  else
+    vxm_field_put_slices(field, input->data + h.data, 0, h.space.dims[2], to.is_swapped);
+  if (status == VXM_OK)
+    status = vxm_progress(input->context, "reading", 1, error);
+  return vxm_field_hand_over(out, field, status);
+}
+
 /* ---- Writing ---- */
 
 static size_t state_bytes(const vxm_space *space) {
@@ -156,7 +241,8 @@ static size_t state_bytes(const vxm_space *space) {
 }
 
 static vxm_status begin(vxm_slices *slices, vxm_error *error) {
-  return vxm_nrrd_header_write(slices->output, "1 where a voxel is set", "uchar", 1, &slices->space, error);
+  const vxm_nrrd_values values = {"1 where a voxel is set", VXM_UINT8, 1, NULL};
+  return vxm_nrrd_header_write(slices->output, &values, &slices->space, error);
 }
 
 static vxm_status end(vxm_slices *slices, vxm_error *error) {
@@ -174,4 +260,4 @@ static const vxm_slices_kind slices_kind = {
     .file_bytes = vxm_space_voxels,
 };
 
-const vxm_grid_format vxm_format_nrrd = {"nrrd", vxm_nrrd_sniff, read_nrrd, &slices_kind, NULL};
+const vxm_grid_format vxm_format_nrrd = {"nrrd", vxm_nrrd_sniff, read_nrrd, read_field, &slices_kind, NULL};

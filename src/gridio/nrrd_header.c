@@ -65,7 +65,8 @@ typedef struct fields {
   bool has_type, has_dimension, has_sizes, has_encoding, has_endian, has_spacings, has_directions, has_origin,
       has_mins, has_maxs, has_corner;
   double spacings[3], directions[3], first[3], mins[3], maxs[3], corner[3];
-  bool at_nodes[3]; /**< samples lie at the ends of the axis, not in the middle of cells */
+  bool has_kinds, is_color; /**< the kinds are given, and the first axis is one of colours */
+  bool at_nodes[3];         /**< samples lie at the ends of the axis, not in the middle of cells */
 } fields;
 
 static vxm_status fail(const fields *f, const char *what) {
@@ -76,6 +77,13 @@ static bool read_number(const fields *f, text *line, const char *stops, double *
   text word;
   return next_word(line, &word, stops) &&
          vxm_number_parse(word.at, (size_t)(word.end - word.at), f->c_locale, value);
+}
+
+/** Goes behind what is said of the axis of colours, where there is one. */
+static void skip_color(const fields *f, text *line) {
+  text word;
+  if (f->header->channels == 4)
+    next_word(line, &word, "");
 }
 
 /** Three numbers and nothing else. */
@@ -122,13 +130,26 @@ static vxm_status read_type(fields *f, text line) {
   return fail(f, "the type must be an integer of 8 to 64 bits, float or double");
 }
 
+static const char dimensions[] = "a grid has three dimensions, and colours (of kind RGBA-color) a fourth";
+
 static vxm_status read_dimension(fields *f, text line) {
-  return equals(line, "3") ? VXM_OK : fail(f, "a grid has three dimensions");
+  f->header->channels = equals(line, "4") ? 4 : 1;
+  return f->header->channels == 4 || equals(line, "3") ? VXM_OK : fail(f, dimensions);
+}
+
+static vxm_status read_kinds(fields *f, text line) {
+  text word;
+  f->is_color = next_word(&line, &word, "") && (equals(word, "RGBA-color") || equals(word, "4-color"));
+  return VXM_OK;
 }
 
 static vxm_status read_sizes(fields *f, text line) {
   double sizes[3];
   f->header->sizes_offset = f->line;
+  text colors = line, word;
+  if (f->header->channels == 4 && !(next_word(&colors, &word, "") && equals(word, "4")))
+    return fail(f, dimensions);
+  skip_color(f, &line);
   if (!read_three(f, line, sizes))
     return fail(f, "the sizes must be three whole numbers");
   for (int a = 0; a < 3; a++) {
@@ -152,19 +173,23 @@ static vxm_status read_endian(fields *f, text line) {
 }
 
 static vxm_status read_spacings(fields *f, text line) {
+  skip_color(f, &line);
   return read_three(f, line, f->spacings) ? VXM_OK : fail(f, "the spacings must be three numbers");
 }
 
 static vxm_status read_mins(fields *f, text line) {
+  skip_color(f, &line);
   return read_three(f, line, f->mins) ? VXM_OK : fail(f, "the axis mins must be three numbers");
 }
 
 static vxm_status read_maxs(fields *f, text line) {
+  skip_color(f, &line);
   return read_three(f, line, f->maxs) ? VXM_OK : fail(f, "the axis maxs must be three numbers");
 }
 
 static vxm_status read_centerings(fields *f, text line) {
   text word;
+  skip_color(f, &line);
   for (int a = 0; a < 3 && next_word(&line, &word, ""); a++)
     f->at_nodes[a] = equals(word, "node");
   return VXM_OK;
@@ -172,6 +197,7 @@ static vxm_status read_centerings(fields *f, text line) {
 
 /** Axes that are turned, swapped or mirrored are not those of a grid. */
 static vxm_status read_directions(fields *f, text line) {
+  skip_color(f, &line);
   for (int a = 0; a < 3; a++) {
     double v[3];
     if (!read_vector(f, &line, v))
@@ -197,6 +223,18 @@ static vxm_status read_detached(fields *f, text line) {
   return fail(f, "the values are in another file; only files that hold both can be read");
 }
 
+/** Fields that are carried along, by the names of their pairs. */
+static const struct {
+  const char *field, *key;
+} carried[] = {{"space", "nrrd_space"}, {"space units", "nrrd_space_units"}, {"content", "nrrd_content"}};
+
+enum { CARRIED = sizeof carried / sizeof carried[0] };
+
+static void carry(fields *f, const char *key, text value) {
+  vxm_pairs_add(&f->header->about.pairs, f->input->context, key, strlen(key), (const char *)value.at,
+                (size_t)(value.end - value.at));
+}
+
 /** Fields not named here say nothing that matters for a grid. */
 static vxm_status read_field(fields *f, text name, text value) {
   const struct {
@@ -213,6 +251,7 @@ static vxm_status read_field(fields *f, text name, text value) {
                {{"space origin", NULL}, read_origin, &f->has_origin},
                {{"axis mins", "axismins"}, read_mins, &f->has_mins},
                {{"axis maxs", "axismaxs"}, read_maxs, &f->has_maxs},
+               {{"kinds", NULL}, read_kinds, &f->has_kinds},
                {{"centerings", "centers"}, read_centerings, NULL},
                {{"line skip", "lineskip"}, read_skip, NULL},
                {{"byte skip", "byteskip"}, read_skip, NULL},
@@ -225,10 +264,29 @@ static vxm_status read_field(fields *f, text name, text value) {
         *known[k].seen = true;
       return known[k].read(f, value);
     }
+  for (int c = 0; c < CARRIED; c++)
+    if (equals(name, carried[c].field))
+      carry(f, carried[c].key, value);
   return VXM_OK;
 }
 
-static const char corner_key[] = "voxmend_origin";
+static const char corner_key[] = "voxmend_origin", values_key[] = "voxmend_values";
+
+static vxm_status read_pair(fields *f, text name, text value) {
+  vxm_about *about = &f->header->about;
+  char kind[16];
+  size_t length = (size_t)(value.end - value.at);
+  if (equals(name, corner_key))
+    f->has_corner = read_three(f, value, f->corner);
+  else if (equals(name, values_key) && length < sizeof kind) {
+    memcpy(kind, value.at, length);
+    kind[length] = '\0';
+    about->is_declared = vxm_field_kind_find(&about->kind, kind);
+  } else
+    vxm_pairs_add(&about->pairs, f->input->context, (const char *)name.at, (size_t)(name.end - name.at),
+                  (const char *)value.at, length);
+  return VXM_OK;
+}
 
 static vxm_status read_line(fields *f, text line) {
   trim(&line);
@@ -244,9 +302,7 @@ static vxm_status read_line(fields *f, text line) {
   trim(&value);
   if (!is_key)
     return read_field(f, name, value);
-  if (equals(name, corner_key))
-    f->has_corner = read_three(f, value, f->corner);
-  return VXM_OK;
+  return read_pair(f, name, value);
 }
 
 /* ---- The transform ---- */
@@ -297,6 +353,8 @@ static vxm_status check_fields(const fields *f) {
     return fail(f, "type, dimension, sizes and encoding are needed");
   if (f->header->size > 1 && !f->has_endian)
     return fail(f, "endian is needed for values longer than a byte");
+  if (f->header->channels == 4 && (!f->is_color || f->header->kind != 'u' || f->header->size != 1))
+    return fail(f, dimensions);
   return VXM_OK;
 }
 
@@ -322,7 +380,7 @@ static vxm_status read_lines(fields *f) {
 
 vxm_status vxm_nrrd_header_read(vxm_nrrd_header *out, const vxm_input *input, vxm_notes *notes,
                                 vxm_error *error) {
-  *out = (vxm_nrrd_header){0};
+  *out = (vxm_nrrd_header){.channels = 1};
   if (!vxm_nrrd_sniff(input))
     return vxm_fail_byte(error, input, 0, "not a nrrd file: it does not begin with \"NRRD000\"");
   fields f = {.input = input, .error = error, .header = out};
@@ -348,26 +406,114 @@ static void write_numbers(vxm_output *output, locale_t c_locale, const char *for
       vxm_output_write(output, form, 1);
 }
 
-vxm_status vxm_nrrd_header_write(vxm_output *output, const char *what, const char *type, size_t size,
-                                 const vxm_space *space, vxm_error *error) {
+static const char *type_name(vxm_scalar scalar) {
+  switch (scalar) {
+  case VXM_UINT8:
+    return "uchar";
+  case VXM_INT8:
+    return "signed char";
+  case VXM_UINT16:
+    return "ushort";
+  case VXM_INT16:
+    return "short";
+  case VXM_UINT32:
+    return "uint";
+  case VXM_INT32:
+    return "int";
+  case VXM_UINT64:
+    return "ulonglong";
+  case VXM_INT64:
+    return "longlong";
+  case VXM_FLOAT64:
+    return "double";
+  default:
+    return "float";
+  }
+}
+
+/** Writes a text that stays in its line; in keys ':' would end them. */
+static void write_text(vxm_output *output, const char *word, bool is_key) {
+  for (; *word; word++)
+    if ((unsigned char)*word < 0x20 || *word == 0x7f)
+      vxm_output_write(output, *word == '\n' && !is_key ? "\\n" : " ", *word == '\n' && !is_key ? 2 : 1);
+    else
+      vxm_output_write(output, is_key && *word == ':' ? "_" : word, 1);
+}
+
+static void write_pair(vxm_output *output, const char *key, const char *value) {
+  write_text(output, key, true);
+  vxm_output_write(output, ":=", 2);
+  write_text(output, value, false);
+  vxm_output_write(output, "\n", 1);
+}
+
+static const char *pair_of(const vxm_nrrd_values *values, const char *key) {
+  return values->about ? vxm_pairs_find(&values->about->pairs, key) : NULL;
+}
+
+/** The name of the space, where one is carried along, or else how many dimensions it has. */
+static void write_space_name(vxm_output *output, const vxm_nrrd_values *values) {
+  const char *name = pair_of(values, carried[0].key);
+  if (!name) {
+    vxm_output_printf(output, "space dimension: 3\n");
+    return;
+  }
+  vxm_output_printf(output, "space: ");
+  write_text(output, name, false);
+  vxm_output_printf(output, "\n");
+}
+
+/** What was carried along. */
+static void write_about(vxm_output *output, const vxm_nrrd_values *values) {
+  const vxm_about *about = values->about;
+  if (!about)
+    return;
+  for (int c = 1; c < CARRIED; c++) {
+    const char *value = pair_of(values, carried[c].key);
+    if (!value)
+      continue;
+    vxm_output_printf(output, "%s: ", carried[c].field);
+    write_text(output, value, false);
+    vxm_output_printf(output, "\n");
+  }
+  if (about->is_declared)
+    write_pair(output, values_key, vxm_field_kind_name(about->kind));
+  for (const char *key = NULL; (key = vxm_pairs_next(&about->pairs, key)) != NULL;) {
+    int c = 0;
+    while (c < CARRIED && strcmp(carried[c].key, key) != 0)
+      c++;
+    if (c == CARRIED)
+      write_pair(output, key, vxm_pairs_value(key));
+  }
+}
+
+vxm_status vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *values, const vxm_space *space,
+                                 vxm_error *error) {
   const int64_t *dims = space->dims;
+  bool is_color = values->channels == 4;
   locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
   if (!c_locale)
     return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
   double first[3];
   for (int a = 0; a < 3; a++)
     first[a] = space->origin[a] + space->voxel_size[a] / 2;
-  vxm_output_printf(output, "NRRD0004\n# %s\ntype: %s\ndimension: 3\n", what, type);
-  vxm_output_printf(output, "space dimension: 3\nsizes: %" PRId64 " %" PRId64 " %" PRId64 "\n", dims[0],
+  vxm_output_printf(output, "NRRD0004\n# %s\ntype: %s\ndimension: %d\n", values->what,
+                    type_name(values->scalar), is_color ? 4 : 3);
+  write_space_name(output, values);
+  vxm_output_printf(output, "sizes: %s%" PRId64 " %" PRId64 " %" PRId64 "\n", is_color ? "4 " : "", dims[0],
                     dims[1], dims[2]);
-  write_numbers(output, c_locale, "space directions: (*,0,0) (0,*,0) (0,0,*)\n", space->voxel_size);
-  vxm_output_printf(output, "kinds: domain domain domain\ncenterings: cell cell cell\n");
-  if (size > 1)
+  vxm_output_printf(output, "space directions: %s", is_color ? "none " : "");
+  write_numbers(output, c_locale, "(*,0,0) (0,*,0) (0,0,*)\n", space->voxel_size);
+  vxm_output_printf(output, "kinds: %sdomain domain domain\ncenterings: %scell cell cell\n",
+                    is_color ? "RGBA-color " : "", is_color ? "none " : "");
+  if (vxm_scalar_bytes(values->scalar) > 1)
     vxm_output_printf(output, "endian: %s\n", vxm_le64(1) == 1 ? "little" : "big");
   vxm_output_printf(output, "encoding: raw\n");
   write_numbers(output, c_locale, "space origin: (*,*,*)\n", first);
   vxm_output_printf(output, "%s:=", corner_key);
-  write_numbers(output, c_locale, "* * *\n\n", space->origin);
+  write_numbers(output, c_locale, "* * *\n", space->origin);
   freelocale(c_locale);
+  write_about(output, values);
+  vxm_output_write(output, "\n", 1);
   return VXM_OK;
 }

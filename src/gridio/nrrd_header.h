@@ -5,15 +5,17 @@
 #ifndef VXM_GRIDIO_NRRD_HEADER_H
 #define VXM_GRIDIO_NRRD_HEADER_H
 
-#include "base/notes.h"
 #include "base/output.h"
+#include "gridio/values.h"
 
 typedef struct vxm_nrrd_header {
   char kind;       /**< 'i' signed, 'u' unsigned, 'f' floating */
   size_t size;     /**< bytes of a value: 1, 2, 4 or 8 */
   bool big_endian; /**< of values longer than a byte */
   bool gzip;       /**< the values are compressed */
+  int channels;    /**< 4 if the fastest axis is that of a colour, else 1 */
   vxm_space space; /**< not checked */
+  vxm_about about; /**< destroyed by the caller, also after a failure */
   size_t sizes_offset, data;
 } vxm_nrrd_header;
 
@@ -21,15 +23,21 @@ bool vxm_nrrd_sniff(const vxm_input *input);
 /** VXM_ERROR_FORMAT with the offset of what is wrong, or of what voxmend cannot take as a grid. */
 vxm_status vxm_nrrd_header_read(vxm_nrrd_header *out, const vxm_input *input, vxm_notes *notes,
                                 vxm_error *error);
+/** What a header to be written says of the values. */
+typedef struct vxm_nrrd_values {
+  const char *what; /**< a comment */
+  vxm_scalar scalar;
+  int channels;           /**< 4 of colours, else 1 */
+  const vxm_about *about; /**< NULL = nothing more */
+} vxm_nrrd_values;
+
 /**
- * Writes the header, an empty line last. The values follow raw, x fastest, then y, then z.
+ * Writes the header, an empty line last. The values follow raw, x fastest, then y, then z. 16-bit floats are
+ * none of NRRD's types.
  *
- * @param what a comment that says what the values are
- * @param type NRRD's name of the values, such as "uchar" or "float"
- * @param size of a value in bytes
  * @return VXM_OK, VXM_ERROR_MEMORY
  */
-vxm_status vxm_nrrd_header_write(vxm_output *output, const char *what, const char *type, size_t size,
-                                 const vxm_space *space, vxm_error *error);
+vxm_status vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *values, const vxm_space *space,
+                                 vxm_error *error);
 
 #endif

@@ -225,6 +225,9 @@ void describe(openvdb::GridBase &grid, const vxm_vdb &vdb) {
     grid.setGridClass(GRID_LEVEL_SET);
   if (vdb.kind.content == VXM_VDB_FOG)
     grid.setGridClass(GRID_FOG_VOLUME);
+  for (const char *const *text = vdb.kind.texts; text && *text; text += 2)
+    if (!grid[text[0]])
+      grid.insertMeta(text[0], StringMetadata(text[1]));
   grid.insertMeta("voxmend_dims",
                   Vec3IMetadata(Vec3i(int(space.dims[0]), int(space.dims[1]), int(space.dims[2]))));
   grid.insertMeta("voxmend_origin", Vec3DMetadata(vector_of(space.origin)));

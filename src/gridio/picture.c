@@ -288,8 +288,8 @@ static vxm_status check_options(const vxm_picture_options *o, vxm_error *error) 
   return VXM_OK;
 }
 
-vxm_status vxm_gridio_picture(const vxm_grid *grid, const char *path, const vxm_picture_options *options,
-                              vxm_error *error) {
+vxm_status vxm_gridio_picture(const vxm_grid *grid, vxm_paint_fn paint, const void *painted, const char *path,
+                              const vxm_picture_options *options, vxm_error *error) {
   vxm_status status = check_options(options, error);
   if (status == VXM_OK)
     status = vxm_png_check(error);
@@ -297,7 +297,7 @@ vxm_status vxm_gridio_picture(const vxm_grid *grid, const char *path, const vxm_
     return status;
   camera cam = {.width = options->width ? options->width : 800,
                 .height = options->height ? options->height : 600};
-  vxm_scene scene = {.grid = grid};
+  vxm_scene scene = {.grid = grid, .paint = paint, .painted = painted};
   set_steps(&scene, &grid->space);
   vxm_scene_weigh(&scene);
   status = vxm_pyramid_create(&scene.pyramid, grid, error);

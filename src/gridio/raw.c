@@ -67,12 +67,13 @@ static vxm_status check_length(const vxm_input *input, uint64_t voxels, vxm_erro
   return VXM_OK;
 }
 
-static vxm_status read_raw(vxm_grid **out, const vxm_input *input, vxm_error *error) {
+static vxm_status read_raw(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  (void)rule;
   vxm_space space;
   if (!vxm_sidecar_exists(input->name))
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
                        "a raw grid needs the file of the same name with .json added, which holds its dims");
-  vxm_status status = vxm_sidecar_read(&space, input->context, input->name, description.format, error);
+  vxm_status status = vxm_sidecar_read(&space, NULL, input->context, input->name, description.format, error);
   if (status == VXM_OK)
     status = check_length(input, vxm_space_voxels(&space), error);
   vxm_grid *grid = NULL;
@@ -217,4 +218,4 @@ static const vxm_slices_kind slices_kind = {
     .file_bytes = file_bytes,
 };
 
-const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, &slices_kind, NULL};
+const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, NULL, &slices_kind, NULL};

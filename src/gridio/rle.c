@@ -87,7 +87,8 @@ static vxm_status read_runs(vxm_grid *grid, const vxm_input *input, vxm_error *e
   return VXM_OK;
 }
 
-static vxm_status read_rle(vxm_grid **out, const vxm_input *input, vxm_error *error) {
+static vxm_status read_rle(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  (void)rule;
   vxm_space space;
   vxm_status status = read_header(&space, input, error);
   if (status == VXM_OK)
@@ -146,4 +147,4 @@ static const vxm_slices_kind slices_kind = {
     .end = end,
 };
 
-const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, &slices_kind, NULL};
+const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, NULL, &slices_kind, NULL};

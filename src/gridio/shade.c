@@ -175,10 +175,10 @@ static vxm_vec3 shade_voxel(const vxm_scene *scene, const vxm_hit *hit, const do
     direct = toward;
   double upward = 0.5 + 0.5 * vxm_vec3_dot(normal, scene->up);
   double line = 1 - 0.30 * crisp * (1 - off_line(scene->line_width, part));
-  vxm_vec3 colour;
+  vxm_vec3 colour, own = scene->paint ? scene->paint(scene->painted, hit->voxel) : surface;
   for (int n = 0; n < 3; n++) {
     double ambient = open * (upward * sky.c[n] + (1 - upward) * ground.c[n]);
-    colour.c[n] = line * surface.c[n] * (direct * sun.c[n] + ambient);
+    colour.c[n] = line * own.c[n] * (direct * sun.c[n] + ambient);
   }
   return colour;
 }

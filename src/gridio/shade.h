@@ -10,8 +10,13 @@
  * Scene coordinates are voxel coordinates times `step`, so that the longest side of the grid is 1 and angles
  * are those of the model.
  */
+/** The linear colour of a set voxel. */
+typedef vxm_vec3 (*vxm_paint_fn)(const void *payload, const int64_t voxel[3]);
+
 typedef struct vxm_scene {
   const vxm_grid *grid;
+  vxm_paint_fn paint;  /**< NULL = all voxels have one colour */
+  const void *painted; /**< handed to paint */
   vxm_pyramid pyramid;
   double step[3];
   vxm_vec3 up, light; /**< unit; toward the light */

@@ -62,15 +62,41 @@ static json_t *list_labels(const vxm_label_table *table) {
   return array;
 }
 
+static json_t *list_pairs(const vxm_pairs *pairs) {
+  json_t *object = json_object();
+  for (const char *key = NULL; object && (key = vxm_pairs_next(pairs, key)) != NULL;) {
+    json_t *name = name_of(key);
+    int result = json_object_set_new(object, json_string_value(name), name_of(vxm_pairs_value(key)));
+    json_decref(name);
+    if (result != 0) {
+      json_decref(object);
+      return NULL;
+    }
+  }
+  return object;
+}
+
+/** Adds what is said of the values; false without memory. */
+static bool add_about(json_t *root, const vxm_about *about) {
+  if (!about)
+    return true;
+  if (about->is_declared &&
+      json_object_set_new(root, "values", json_string(vxm_field_kind_name(about->kind))) != 0)
+    return false;
+  if (about->table.count > 0 && json_object_set_new(root, "labels", list_labels(&about->table)) != 0)
+    return false;
+  return about->pairs.count == 0 || json_object_set_new(root, "metadata", list_pairs(&about->pairs)) == 0;
+}
+
 /** The whole text, to be freed; 17 digits bring every double back bit for bit. */
-static char *describe(const vxm_space *space, const vxm_sidecar_text *text, const vxm_label_table *labels) {
+static char *describe(const vxm_space *space, const vxm_sidecar_text *text, const vxm_about *about) {
   const int64_t *d = space->dims;
   const double *o = space->origin, *s = space->voxel_size;
   json_t *root = json_pack("{s:s, s:i, s:[I,I,I], s:[f,f,f], s:[f,f,f], s:s}", "format", text->format,
                            "version", 1, "dims", (json_int_t)d[0], (json_int_t)d[1], (json_int_t)d[2],
                            "origin", o[0], o[1], o[2], "voxel_size", s[0], s[1], s[2], "order", text->order);
   bool is_whole = root && (!text->bits || json_object_set_new(root, "bits", json_string(text->bits)) == 0) &&
-                  (!labels || json_object_set_new(root, "labels", list_labels(labels)) == 0);
+                  add_about(root, about);
   if (!is_whole) {
     json_decref(root);
     return NULL;
@@ -86,17 +112,12 @@ static bool has_neighbours(const char *data_path) {
 }
 
 vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_space *space,
-                            const char *data_path, const vxm_sidecar_text *text, vxm_error *error) {
-  return vxm_sidecar_open_labels(out, context, space, data_path, text, NULL, error);
-}
-
-vxm_status vxm_sidecar_open_labels(vxm_output **out, vxm_context *context, const vxm_space *space,
-                                   const char *data_path, const vxm_sidecar_text *text,
-                                   const vxm_label_table *labels, vxm_error *error) {
+                            const char *data_path, const vxm_sidecar_text *text, const vxm_about *about,
+                            vxm_error *error) {
   *out = NULL;
   if (!has_neighbours(data_path))
     return VXM_OK;
-  char *path = sidecar_path(data_path), *json = describe(space, text, labels);
+  char *path = sidecar_path(data_path), *json = describe(space, text, about);
   vxm_status status = path && json ? vxm_output_open(out, context, path, error) : fail_memory(error);
   if (status == VXM_OK) {
     vxm_output_write(*out, json, strlen(json));
@@ -135,6 +156,39 @@ static bool read_dims(const json_t *root, int64_t dims[3]) {
   return true;
 }
 
+/** The table, if it numbers its labels from 1 on. */
+static void read_labels(vxm_about *about, vxm_context *context, const json_t *root) {
+  const json_t *array = json_object_get(root, "labels");
+  size_t count = json_array_size(array);
+  for (size_t l = 0; l < count && l < VXM_LABELS_MAX; l++) {
+    const json_t *entry = json_array_get(array, l);
+    const char *name = json_string_value(json_object_get(entry, "name"));
+    int64_t voxels = (int64_t)json_integer_value(json_object_get(entry, "voxels"));
+    if (!name || json_integer_value(json_object_get(entry, "label")) != (json_int_t)l + 1 ||
+        !vxm_label_table_add(&about->table, context, name, voxels))
+      break;
+  }
+  if (about->table.count > 0 && !about->is_declared) {
+    about->is_declared = true;
+    about->kind = VXM_FIELD_LABELS;
+  }
+}
+
+static void read_about(vxm_about *about, vxm_context *context, const json_t *root) {
+  const char *kind = json_string_value(json_object_get(root, "values")), *key;
+  const json_t *metadata = json_object_get(root, "metadata");
+  about->is_declared = kind && vxm_field_kind_find(&about->kind, kind);
+  read_labels(about, context, root);
+  for (void *at = json_object_iter((json_t *)metadata); at;
+       at = json_object_iter_next((json_t *)metadata, at)) {
+    const json_t *value = json_object_iter_value(at);
+    key = json_object_iter_key(at);
+    if (json_is_string(value))
+      vxm_pairs_add(&about->pairs, context, key, strlen(key), json_string_value(value),
+                    json_string_length(value));
+  }
+}
+
 static vxm_status read_root(vxm_space *space, const json_t *root, const vxm_input *input, const char *format,
                             vxm_error *error) {
   const char *name = json_string_value(json_object_get(root, "format"));
@@ -149,7 +203,8 @@ static vxm_status read_root(vxm_space *space, const json_t *root, const vxm_inpu
   return vxm_space_check_file(space, input, 0, error);
 }
 
-static vxm_status parse(vxm_space *space, const vxm_input *input, const char *format, vxm_error *error) {
+static vxm_status parse(vxm_space *space, vxm_about *about, const vxm_input *input, const char *format,
+                        vxm_error *error) {
   if (input->size > LENGTH_MAX)
     return vxm_fail_byte(error, input, LENGTH_MAX, "too long to be the description of a grid");
   json_error_t what;
@@ -157,21 +212,42 @@ static vxm_status parse(vxm_space *space, const vxm_input *input, const char *fo
   if (!root)
     return vxm_fail_byte(error, input, what.position, "not JSON: %s", what.text);
   vxm_status status = read_root(space, root, input, format, error);
+  if (status == VXM_OK && about)
+    read_about(about, input->context, root);
   json_decref(root);
   return status;
 }
 
-vxm_status vxm_sidecar_read(vxm_space *space, vxm_context *context, const char *data_path, const char *format,
-                            vxm_error *error) {
+vxm_status vxm_sidecar_read(vxm_space *space, vxm_about *about, vxm_context *context, const char *data_path,
+                            const char *format, vxm_error *error) {
   char *path = sidecar_path(data_path);
   if (!path)
     return fail_memory(error);
   vxm_input input;
   vxm_status status = vxm_input_open(&input, context, path, error);
   if (status == VXM_OK) {
-    status = parse(space, &input, format, error);
+    status = parse(space, about, &input, format, error);
     vxm_input_close(&input);
   }
   free(path);
   return status;
+}
+
+bool vxm_sidecar_read_labels(vxm_space *space, vxm_about *about, const vxm_input *input) {
+  bool is_file = input->mapping || strcmp(input->name, "<stdin>") != 0;
+  if (!is_file || !vxm_sidecar_exists(input->name) || (about->is_declared && about->kind != VXM_FIELD_LABELS))
+    return false;
+  return vxm_sidecar_read(space, about, input->context, input->name, "voxmend labels", NULL) == VXM_OK;
+}
+
+void vxm_sidecar_take_labels(vxm_about *about, const int64_t dims[3], const vxm_input *input) {
+  vxm_space space;
+  vxm_about found = {.is_declared = about->is_declared, .kind = about->kind};
+  if (vxm_sidecar_read_labels(&space, &found, input) && memcmp(space.dims, dims, sizeof space.dims) == 0) {
+    about->table = found.table;
+    about->is_declared = found.is_declared;
+    about->kind = found.kind;
+    found.table = (vxm_label_table){.count = 0};
+  }
+  vxm_about_destroy(&found);
 }

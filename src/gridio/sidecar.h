@@ -4,8 +4,7 @@
 #define VXM_GRIDIO_SIDECAR_H
 
 #include "base/output.h"
-#include "grid/bitgrid.h"
-#include "voxel/labelling.h"
+#include "gridio/values.h"
 
 /** What a format says of itself in its JSON. */
 typedef struct vxm_sidecar_text {
@@ -17,14 +16,12 @@ typedef struct vxm_sidecar_text {
 /**
  * Opens the JSON beside `data_path` and fills it. *out is NULL if `data_path` is standard output, a pipe or a
  * device, which have nothing beside them.
+ *
+ * @param about what the values are, and the table of labels; NULL = nothing
  */
 vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_space *space,
-                            const char *data_path, const vxm_sidecar_text *text, vxm_error *error);
-
-/** The same with a table of labels. */
-vxm_status vxm_sidecar_open_labels(vxm_output **out, vxm_context *context, const vxm_space *space,
-                                   const char *data_path, const vxm_sidecar_text *text,
-                                   const vxm_label_table *labels, vxm_error *error);
+                            const char *data_path, const vxm_sidecar_text *text, const vxm_about *about,
+                            vxm_error *error);
 
 /** Whether there is a JSON file beside `data_path`. */
 bool vxm_sidecar_exists(const char *data_path);
@@ -32,10 +29,23 @@ bool vxm_sidecar_exists(const char *data_path);
 /**
  * Reads the JSON beside `data_path`, and checks the space in it.
  *
+ * @param about takes what it says of the values; destroyed by the caller, also after a failure; NULL = that
+ *              is not wanted
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT if it is not the JSON of such a format; VXM_ERROR_RANGE,
  *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_sidecar_read(vxm_space *space, vxm_context *context, const char *data_path, const char *format,
-                            vxm_error *error);
+vxm_status vxm_sidecar_read(vxm_space *space, vxm_about *about, vxm_context *context, const char *data_path,
+                            const char *format, vxm_error *error);
+
+/**
+ * Reads the table of labels beside a file whose transform it has itself, unless the file says that its values
+ * are not labels.
+ *
+ * @param space takes the space that the JSON has; the one of the file is to be compared with it
+ * @return whether there is a table that can be read
+ */
+bool vxm_sidecar_read_labels(vxm_space *space, vxm_about *about, const vxm_input *input);
+/** The same, if it has the dims of the file. */
+void vxm_sidecar_take_labels(vxm_about *about, const int64_t dims[3], const vxm_input *input);
 
 #endif

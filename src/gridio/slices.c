@@ -104,7 +104,7 @@ vxm_status vxm_slices_open(vxm_slices **out, vxm_context *context, const vxm_spa
   if (status == VXM_OK && found->slices->file_bytes)
     status = vxm_output_expect(slices->output, found->slices->file_bytes(space), error);
   if (status == VXM_OK && found->slices->sidecar)
-    status = vxm_sidecar_open(&slices->sidecar, context, space, path, found->slices->sidecar, error);
+    status = vxm_sidecar_open(&slices->sidecar, context, space, path, found->slices->sidecar, NULL, error);
   if (status == VXM_OK) {
     slices->is_begun = true;
     status = found->slices->begin(slices, error);

@@ -30,6 +30,8 @@ typedef struct vxm_vdb_kind {
   vxm_vdb_content content;
   const char *name;
   float background; /**< value of voxels that are not there */
+  /** Keys and values in turn, which become metadata; NULL ends them, and stands for none. */
+  const char *const *texts;
 } vxm_vdb_kind;
 
 /** A grid of OpenVDB in the making. */

@@ -82,11 +82,43 @@ typedef struct addition {
   vxm_space space;
 } addition;
 
-static void read_pair(vxm_vdb_grid *grid, addition *added, text name, text type, text value) {
-  if (equals(name, "class") && equals(type, "string"))
-    grid->rule = equals(value, "level set")    ? VXM_VDB_BELOW_ZERO
-                 : equals(value, "fog volume") ? VXM_VDB_ABOVE_HALF
-                                               : VXM_VDB_BY_BACKGROUND;
+/** Texts that OpenVDB itself writes, or that are told in another way. */
+static bool is_own(text name) {
+  static const char *const own[] = {"class",       "name",          "creator",       "value_type",
+                                    "vector_type", "file_bbox_max", "file_bbox_min", "file_compression"};
+  for (size_t n = 0; n < sizeof own / sizeof own[0]; n++)
+    if (equals(name, own[n]))
+      return true;
+  return false;
+}
+
+static void declare(vxm_about *about, vxm_field_kind kind) {
+  about->is_declared = true;
+  about->kind = kind;
+}
+
+/** What a text says of the values. What voxmend says counts more than the class. */
+static void read_words(vxm_vdb_grid *grid, vxm_context *context, text name, text value) {
+  char word[64];
+  vxm_field_kind kind;
+  copy_text(word, value);
+  if (equals(name, "class") && !grid->about.is_declared && equals(value, "level set"))
+    declare(&grid->about, VXM_FIELD_DISTANCE);
+  else if (equals(name, "class") && !grid->about.is_declared && equals(value, "fog volume"))
+    declare(&grid->about, VXM_FIELD_COVERAGE);
+  else if (equals(name, "voxmend_values") && vxm_field_kind_find(&kind, word))
+    declare(&grid->about, kind);
+  else if (equals(name, "voxmend_scalar"))
+    vxm_scalar_find(&grid->scalar, word);
+  else if (!is_own(name))
+    vxm_pairs_add(&grid->about.pairs, context, (const char *)name.at, name.size, (const char *)value.at,
+                  value.size);
+}
+
+static void read_pair(vxm_vdb_grid *grid, vxm_context *context, addition *added, text name, text type,
+                      text value) {
+  if (equals(type, "string"))
+    read_words(grid, context, name, value);
   if (equals(name, "voxmend_dims") && equals(type, "vec3i") && value.size == 12) {
     added->dims = true;
     for (int a = 0; a < 3; a++)
@@ -113,7 +145,7 @@ static bool read_metadata(scanner *s, vxm_vdb_grid *grid, addition *added) {
     if (!take_text(s, &name) || !take_text(s, &type) || !take_text(s, &value))
       return false;
     if (grid)
-      read_pair(grid, added, name, type, value);
+      read_pair(grid, s->input->context, added, name, type, value);
   }
   return true;
 }
@@ -216,7 +248,7 @@ static void take_addition(vxm_vdb_grid *grid, const addition *added) {
 static vxm_status read_grid(scanner *s, vxm_vdb_grid *grid) {
   addition added = {.dims = false};
   size_t begin = s->at;
-  grid->rule = VXM_VDB_BY_BACKGROUND;
+  grid->scalar = VXM_FLOAT32;
   if (!take_u32(s, &grid->compression))
     return VXM_ERROR_FORMAT;
   if (grid->compression > (VXM_VDB_ZIP | VXM_VDB_ACTIVE_ONLY | VXM_VDB_BLOSC))
@@ -229,6 +261,17 @@ static vxm_status read_grid(scanner *s, vxm_vdb_grid *grid) {
   take_addition(grid, &added);
   grid->tree = s->at;
   return VXM_OK;
+}
+
+/** The name by which voxmend calls unsigned distances says what they are; other names are carried along. */
+static void take_name(vxm_vdb_grid *grid, vxm_context *context) {
+  const char *name = grid->name;
+  vxm_field_kind kind = grid->about.kind;
+  if (!grid->about.is_declared && strcmp(name, vxm_field_kind_name(VXM_FIELD_DISTANCE)) == 0)
+    declare(&grid->about, VXM_FIELD_DISTANCE);
+  else if (*name && strcmp(name, vxm_field_kind_name(kind)) != 0)
+    vxm_pairs_add(&grid->about.pairs, context, VXM_VDB_NAME_KEY, strlen(VXM_VDB_NAME_KEY), name,
+                  strlen(name));
 }
 
 static vxm_status fail_types(const scanner *s, size_t begin, text type, uint32_t count) {
@@ -259,7 +302,10 @@ static vxm_status find_grid(scanner *s, vxm_vdb_grid *grid, bool has_offsets, ui
                                                 : "the offsets of a grid are damaged");
     if (parent.size == 0 && find_type(grid, type)) {
       copy_text(grid->name, name);
-      return read_grid(s, grid);
+      vxm_status status = read_grid(s, grid);
+      if (status == VXM_OK)
+        take_name(grid, s->input->context);
+      return status;
     }
     if (!has_offsets)
       break;

@@ -6,17 +6,12 @@
 #ifndef VXM_GRIDIO_VDB_FILE_H
 #define VXM_GRIDIO_VDB_FILE_H
 
-#include "base/file.h"
-#include "base/notes.h"
+#include "gridio/values.h"
+
+/** Under which the name of a grid is carried along. */
+#define VXM_VDB_NAME_KEY "vdb_name"
 
 typedef enum vxm_vdb_type { VXM_VDB_TYPE_BOOL, VXM_VDB_TYPE_MASK, VXM_VDB_TYPE_FLOAT } vxm_vdb_type;
-
-/** When a voxel of numbers is set. */
-typedef enum vxm_vdb_rule {
-  VXM_VDB_BELOW_ZERO,
-  VXM_VDB_ABOVE_HALF,
-  VXM_VDB_BY_BACKGROUND /**< the file does not say: below 0 if the background is above, else above 1/2 */
-} vxm_vdb_rule;
 
 /** How values are packed, bits of `compression`. */
 enum { VXM_VDB_ZIP = 1, VXM_VDB_ACTIVE_ONLY = 2, VXM_VDB_BLOSC = 4 };
@@ -27,16 +22,18 @@ typedef struct vxm_vdb_grid {
   vxm_vdb_type type;
   bool is_half; /**< numbers of 16 bits */
   uint32_t compression;
-  vxm_vdb_rule rule;
-  double size[3];  /**< of a voxel */
-  double first[3]; /**< centre of the voxel with index 0 0 0 */
-  bool has_space;  /**< voxmend has written it, for this voxel size */
+  vxm_about about;   /**< destroyed by the caller, also after a failure */
+  vxm_scalar scalar; /**< of the numbers before they became floats */
+  double size[3];    /**< of a voxel */
+  double first[3];   /**< centre of the voxel with index 0 0 0 */
+  bool has_space;    /**< voxmend has written it, for this voxel size */
   vxm_space space;
   size_t tree; /**< offset */
 } vxm_vdb_grid;
 
 bool vxm_vdb_sniff(const vxm_input *input);
-/** Finds the first grid that can be read. VXM_ERROR_FORMAT with the offset of what is wrong. */
+/** Finds the first grid that can be read, and sets out->about in any case. VXM_ERROR_FORMAT with the offset
+ * of what is wrong. */
 vxm_status vxm_vdb_file_read(vxm_vdb_grid *out, const vxm_input *input, vxm_notes *notes, vxm_error *error);
 
 #endif

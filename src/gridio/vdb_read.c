@@ -3,6 +3,8 @@
 #include "gridio/format.h"
 #include "gridio/vdb_tree.h"
 
+#include <string.h>
+
 /* ---- Bits ---- */
 
 typedef struct filling {
@@ -52,6 +54,55 @@ static void put_cube(const int64_t at[3], int64_t side, void *payload) {
       vxm_row_set_span(vxm_grid_row(f->grid, y, z), begin[0], end[0]);
 }
 
+/* ---- Numbers ---- */
+
+typedef struct numbering {
+  vxm_field *field;
+  int64_t low[3];
+} numbering;
+
+/** The part of a cube that the field has, counted from its first voxel; false if there is none. */
+static bool clip(const numbering *n, const int64_t at[3], int64_t side, int64_t begin[3], int64_t end[3]) {
+  for (int a = 0; a < 3; a++) {
+    begin[a] = vxm_max(at[a] - n->low[a], 0);
+    end[a] = vxm_min(at[a] - n->low[a] + side, n->field->space.dims[a]);
+    if (begin[a] >= end[a])
+      return false;
+  }
+  return true;
+}
+
+static float *place_of(const numbering *n, int64_t x, int64_t y, int64_t z) {
+  const int64_t *dims = n->field->space.dims;
+  return (float *)n->field->values + (size_t)((x * dims[1] + y) * dims[2] + z);
+}
+
+static void put_numbers(const int64_t at[3], const float numbers[512], void *payload) {
+  const numbering *n = payload;
+  int64_t begin[3], end[3];
+  if (!clip(n, at, 8, begin, end))
+    return;
+  for (int64_t x = begin[0]; x < end[0]; x++)
+    for (int64_t y = begin[1]; y < end[1]; y++) {
+      int64_t dx = x + n->low[0] - at[0], dy = y + n->low[1] - at[1], dz = begin[2] + n->low[2] - at[2];
+      memcpy(place_of(n, x, y, begin[2]), numbers + (dx * 8 + dy) * 8 + dz,
+             (size_t)(end[2] - begin[2]) * sizeof *numbers);
+    }
+}
+
+static void put_number(const int64_t at[3], int64_t side, float number, void *payload) {
+  const numbering *n = payload;
+  int64_t begin[3], end[3];
+  if (!clip(n, at, side, begin, end))
+    return;
+  for (int64_t x = begin[0]; x < end[0]; x++)
+    for (int64_t y = begin[1]; y < end[1]; y++) {
+      float *row = place_of(n, x, y, begin[2]);
+      for (int64_t z = begin[2]; z < end[2]; z++)
+        *row++ = number;
+    }
+}
+
 /* ---- The grid ---- */
 
 /** The dimensions that voxmend has written, if they hold all that is active. */
@@ -80,31 +131,100 @@ static vxm_status find_space(vxm_space *space, int64_t low[3], const vxm_vdb_gri
   return vxm_space_check_file(space, input, grid->tree, error);
 }
 
-vxm_status vxm_vdb_read(vxm_grid **out, const vxm_input *input, vxm_error *error) {
-  vxm_vdb_grid found;
+/** All that is known before the values are read. */
+typedef struct front {
+  vxm_vdb_grid grid;
   vxm_vdb_extent extent;
   vxm_space space;
-  vxm_notes notes = {0};
-  filling f = {.grid = NULL};
-  vxm_status status = vxm_vdb_file_read(&found, input, &notes, error);
+  int64_t low[3]; /**< index of the voxel that becomes (0,0,0) */
+  vxm_notes notes;
+} front;
+
+static vxm_status read_front(front *f, const vxm_input *input, vxm_error *error) {
+  f->notes.count = 0;
+  vxm_status status = vxm_vdb_file_read(&f->grid, input, &f->notes, error);
   if (status == VXM_OK)
-    status = vxm_vdb_tree_measure(&extent, &found, input, error);
+    status = vxm_vdb_tree_measure(&f->extent, &f->grid, input, error);
+  return status == VXM_OK ? find_space(&f->space, f->low, &f->grid, &f->extent, input, error) : status;
+}
+
+static vxm_status read_numbers(vxm_field **out, front *f, const vxm_input *input, vxm_error *error) {
+  numbering n = {.low = {f->low[0], f->low[1], f->low[2]}};
+  vxm_status status =
+      vxm_field_make(&n.field, input->context, &f->space, VXM_FIELD_NUMBERS, VXM_FLOAT32, error);
+  if (status != VXM_OK)
+    return status;
+  float *values = (float *)n.field->values;
+  for (size_t v = 0, count = vxm_field_count(n.field); v < count; v++)
+    values[v] = f->extent.background;
+  const vxm_vdb_visitor visitor = {.numbers = put_numbers, .number = put_number, .payload = &n};
+  status = vxm_vdb_tree_visit(&visitor, &f->grid, &f->extent, input, error);
+  vxm_sidecar_take_labels(&f->grid.about, f->space.dims, input);
+  vxm_field_describe(n.field, &f->grid.about);
+  n.field->notes = f->notes;
   if (status == VXM_OK)
-    status = find_space(&space, f.low, &found, &extent, input, error);
-  if (status == VXM_OK)
-    status = vxm_grid_create(&f.grid, input->context, &space, error);
-  const vxm_vdb_visitor visitor = {put_block, put_cube, &f};
-  if (status == VXM_OK)
-    status = vxm_vdb_tree_visit(&visitor, &found, &extent, input, error);
+    status = vxm_field_narrow(n.field, f->grid.scalar, error);
+  return vxm_field_hand_over(out, n.field, status);
+}
+
+static vxm_status read_bits(vxm_grid **out, front *f, const vxm_input *input, vxm_bits_rule rule,
+                            vxm_error *error) {
+  filling filled = {.low = {f->low[0], f->low[1], f->low[2]}};
+  vxm_status status = vxm_grid_create(&filled.grid, input->context, &f->space, error);
+  const vxm_vdb_visitor visitor = {.block = put_block, .cube = put_cube, .payload = &filled};
+  if (status == VXM_OK && rule != VXM_BITS_NONE)
+    status = vxm_vdb_tree_visit(&visitor, &f->grid, &f->extent, input, error);
   if (status != VXM_OK) {
-    vxm_grid_destroy(f.grid);
+    vxm_grid_destroy(filled.grid);
     return status;
   }
-  if (found.type == VXM_VDB_TYPE_FLOAT && found.rule == VXM_VDB_BY_BACKGROUND)
-    vxm_note(&notes,
-             "\"%s\" is called neither a level set nor a fog volume: by its background, voxels %s are set",
-             found.name, extent.is_below ? "below 0" : "above 1/2");
-  f.grid->notes = notes;
-  *out = f.grid;
+  filled.grid->notes = f->notes;
+  *out = filled.grid;
   return VXM_OK;
+}
+
+/** Floats are bits only if all of them are 0 or 1, and nothing says that they are something else. */
+static vxm_status read_mask(vxm_grid **out, front *f, const vxm_input *input, vxm_bits_rule rule,
+                            vxm_error *error) {
+  vxm_field *field;
+  if (rule != VXM_BITS_ANY || !vxm_about_may_be_bits(&f->grid.about, rule))
+    return vxm_fail_numbers(error, input->name, vxm_scalar_name(f->grid.scalar));
+  vxm_status status = read_numbers(&field, f, input, error);
+  if (status == VXM_OK)
+    status = vxm_field_to_bits(out, field, input->name, error);
+  vxm_field_destroy(field);
+  return status;
+}
+
+vxm_status vxm_vdb_read(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
+  front f;
+  vxm_status status = read_front(&f, input, error);
+  bool is_float = f.grid.type == VXM_VDB_TYPE_FLOAT && rule != VXM_BITS_NONE;
+  if (status == VXM_OK)
+    status = (is_float ? read_mask : read_bits)(out, &f, input, rule, error);
+  vxm_about_destroy(&f.grid.about);
+  return status;
+}
+
+/** Bits as the numbers 0 and 1. */
+static vxm_status read_bits_as_numbers(vxm_field **out, front *f, const vxm_input *input, vxm_error *error) {
+  vxm_grid *grid;
+  vxm_status status = read_bits(&grid, f, input, VXM_BITS_ANY, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_field_make(out, input->context, &f->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
+  if (status == VXM_OK)
+    vxm_field_put_grid(*out, grid);
+  vxm_grid_destroy(grid);
+  return status;
+}
+
+vxm_status vxm_vdb_read_field(vxm_field **out, const vxm_input *input, vxm_error *error) {
+  front f;
+  vxm_status status = read_front(&f, input, error);
+  bool is_float = f.grid.type == VXM_VDB_TYPE_FLOAT;
+  if (status == VXM_OK)
+    status = (is_float ? read_numbers : read_bits_as_numbers)(out, &f, input, error);
+  vxm_about_destroy(&f.grid.about);
+  return status;
 }

@@ -25,7 +25,6 @@ typedef struct walk {
   vxm_vdb_extent *extent; /**< to be measured; NULL = values are read */
   const vxm_vdb_visitor *visitor;
   size_t leaf_at; /**< in the values of leaves */
-  bool is_below;
   uint64_t leaves, all_leaves;
   struct room {
     float lower[16 * 16 * 16], upper[32 * 32 * 32], leaf[512];
@@ -57,12 +56,8 @@ static bool take_mask(walk *w, size_t *at, uint64_t *mask, size_t words) {
 
 /* ---- What is set ---- */
 
-/** Bool and mask grids say so by their active voxels, numbers by their values, active or not. */
-static bool is_set(const walk *w, float value, bool is_active) {
-  const vxm_vdb_grid *grid = w->values.grid;
-  if (grid->type != VXM_VDB_TYPE_FLOAT)
-    return is_active && (grid->type == VXM_VDB_TYPE_MASK || value != 0);
-  return w->is_below ? value < 0 : value > 0.5f;
+static bool is_float(const walk *w) {
+  return w->values.grid->type == VXM_VDB_TYPE_FLOAT;
 }
 
 static void include(vxm_vdb_extent *e, const int64_t low[3], const int64_t high[3]) {
@@ -76,7 +71,12 @@ static void include(vxm_vdb_extent *e, const int64_t low[3], const int64_t high[
 static void tile(walk *w, const int64_t at[3], int64_t side, float value, bool is_active) {
   if (w->extent && is_active)
     include(w->extent, at, (int64_t[3]){at[0] + side - 1, at[1] + side - 1, at[2] + side - 1});
-  if (!w->extent && is_set(w, value, is_active))
+  if (w->extent)
+    return;
+  if (is_float(w)) {
+    if (value != w->values.background)
+      w->visitor->number(at, side, value, w->visitor->payload);
+  } else if (is_active && (w->values.grid->type == VXM_VDB_TYPE_MASK || value != 0))
     w->visitor->cube(at, side, w->visitor->payload);
 }
 
@@ -120,28 +120,25 @@ static vxm_status check_origin(walk *w, const int64_t at[3]) {
   return VXM_OK;
 }
 
-static void pack_numbers(const walk *w, uint64_t bits[LEAF_WORDS]) {
-  for (size_t v = 0; v < 512; v++)
-    bits[v / 64] |= (uint64_t)is_set(w, w->room->leaf[v], true) << (v % 64);
+static vxm_status read_numbers(walk *w, const int64_t at[3], const uint64_t mask[LEAF_WORDS]) {
+  vxm_status status = vxm_vdb_values_read(&w->values, &w->leaf_at, mask, 512, w->room->leaf);
+  if (status == VXM_OK)
+    w->visitor->numbers(at, w->room->leaf, w->visitor->payload);
+  return status;
 }
 
 static vxm_status read_leaf(walk *w, const int64_t at[3]) {
   uint64_t mask[LEAF_WORDS], bits[LEAF_WORDS] = {0};
   if (!take_mask(w, &w->leaf_at, mask, LEAF_WORDS))
     return VXM_ERROR_FORMAT;
-  vxm_status status;
-  if (w->values.grid->type == VXM_VDB_TYPE_FLOAT) {
-    status = vxm_vdb_values_read(&w->values, &w->leaf_at, mask, 512, w->room->leaf);
-    if (status == VXM_OK)
-      pack_numbers(w, bits);
-  } else {
-    status = check_origin(w, at);
-    bool is_mask = w->values.grid->type == VXM_VDB_TYPE_MASK;
-    if (status == VXM_OK && !is_mask && !take_mask(w, &w->leaf_at, bits, LEAF_WORDS))
-      status = VXM_ERROR_FORMAT;
-    for (int x = 0; x < LEAF_WORDS; x++)
-      bits[x] = is_mask ? mask[x] : bits[x] & mask[x];
-  }
+  if (is_float(w))
+    return read_numbers(w, at, mask);
+  vxm_status status = check_origin(w, at);
+  bool is_mask = w->values.grid->type == VXM_VDB_TYPE_MASK;
+  if (status == VXM_OK && !is_mask && !take_mask(w, &w->leaf_at, bits, LEAF_WORDS))
+    status = VXM_ERROR_FORMAT;
+  for (int x = 0; x < LEAF_WORDS; x++)
+    bits[x] = is_mask ? mask[x] : bits[x] & mask[x];
   if (status == VXM_OK)
     w->visitor->block(at, bits, w->visitor->payload);
   return status;
@@ -241,8 +238,6 @@ static vxm_status root(walk *w) {
   if (vxm_load_le32(head) != 1)
     return fail(w, begin, "the number of buffers of the tree is not 1");
   w->values.background = vxm_vdb_value_at(w->values.grid, head + 4);
-  w->is_below = w->values.grid->rule == VXM_VDB_BELOW_ZERO ||
-                (w->values.grid->rule == VXM_VDB_BY_BACKGROUND && w->values.background > 0);
   uint32_t tiles = vxm_load_le32(head + 4 + size), children = vxm_load_le32(head + 4 + size + 4);
   int64_t place[3] = {0, 0, 0};
   vxm_status status = VXM_OK;
@@ -269,7 +264,7 @@ vxm_status vxm_vdb_tree_measure(vxm_vdb_extent *out, const vxm_vdb_grid *grid, c
   w.extent = out;
   vxm_status status = root(&w);
   out->leaves = w.leaves;
-  out->is_below = w.is_below;
+  out->background = w.values.background;
   out->values = w.at;
   return status;
 }

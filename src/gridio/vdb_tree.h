@@ -14,7 +14,7 @@ typedef struct vxm_vdb_extent {
   bool is_empty;           /**< no active voxel; the box is then not set */
   int64_t low[3], high[3]; /**< active voxels, both included */
   uint64_t leaves;
-  bool is_below; /**< voxels are set where their number is below 0, by the rule or the background */
+  float background;
   size_t values; /**< offset of those of the leaves */
 } vxm_vdb_extent;
 
@@ -22,12 +22,16 @@ typedef struct vxm_vdb_extent {
 vxm_status vxm_vdb_tree_measure(vxm_vdb_extent *out, const vxm_vdb_grid *grid, const vxm_input *input,
                                 vxm_error *error);
 
-/** Takes what is set; blocks and cubes do not overlap. */
+/** Takes what is set, or of a grid of floats the numbers; blocks and cubes do not overlap. */
 typedef struct vxm_vdb_visitor {
   /** A block of 8 x 8 x 8: voxel (x,y,z) of it is bit 8 y + z of word x. */
   void (*block)(const int64_t at[3], const uint64_t bits[8], void *payload);
   /** A cube of which all voxels are set. */
   void (*cube)(const int64_t at[3], int64_t side, void *payload);
+  /** A block of numbers, z fastest, then y, then x. */
+  void (*numbers)(const int64_t at[3], const float numbers[512], void *payload);
+  /** A cube of numbers that are alike, and not the background. */
+  void (*number)(const int64_t at[3], int64_t side, float number, void *payload);
   void *payload;
 } vxm_vdb_visitor;
 

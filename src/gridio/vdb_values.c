@@ -4,8 +4,6 @@
 #include "gridio/bytes.h"
 #include "gridio/format.h"
 
-#include <math.h>
-
 /** Which inactive values of a node stand in the file; the others are the background. */
 enum {
   ALL_BACKGROUND,       /**< none */
@@ -16,17 +14,6 @@ enum {
   ONE_OR_OTHER,         /**< two, and a mask of which are the second */
   EVERY_VALUE           /**< all, in their places */
 };
-
-/** The IEEE number of 16 bits. */
-static float half_value(unsigned bits) {
-  int exponent = (int)(bits >> 10 & 31);
-  float fraction = (float)(bits & 1023), value;
-  if (exponent == 31)
-    value = fraction > 0 ? NAN : INFINITY;
-  else
-    value = exponent == 0 ? ldexpf(fraction, -24) : ldexpf(fraction + 1024, exponent - 25);
-  return bits >> 15 ? -value : value;
-}
 
 float vxm_vdb_value_at(const vxm_vdb_grid *grid, const unsigned char *bytes) {
   if (grid->type != VXM_VDB_TYPE_FLOAT)
@@ -59,7 +46,7 @@ static size_t item_bytes(const vxm_vdb_grid *grid) {
 
 static void convert(float *out, const vxm_vdb_grid *grid, const unsigned char *bytes, size_t count) {
   for (size_t i = 0; i < count; i++)
-    out[i] = grid->is_half ? half_value(bytes[2 * i] | (unsigned)bytes[2 * i + 1] << 8)
+    out[i] = grid->is_half ? vxm_half_value(bytes[2 * i] | (unsigned)bytes[2 * i + 1] << 8)
                            : vxm_vdb_value_at(grid, bytes + i * item_bytes(grid));
 }
 

@@ -16,7 +16,7 @@ vxm_status vxm_vdb_open(const vxm_vdb_functions **out, const char *purpose, vxm_
   return status;
 }
 
-static const vxm_vdb_kind solid = {VXM_VDB_BITS, "solid", 0};
+static const vxm_vdb_kind solid = {VXM_VDB_BITS, "solid", 0, NULL};
 
 vxm_status vxm_vdb_open_writer(const vxm_vdb_functions **out, const vxm_space *space, vxm_error *error) {
   vxm_status status = vxm_vdb_open(out, "writing .vdb files", error);
@@ -159,4 +159,5 @@ static vxm_status write_sparse(const vxm_sparse *sparse, const char *path, vxm_e
   return status;
 }
 
-const vxm_grid_format vxm_format_vdb = {"vdb", vxm_vdb_sniff, vxm_vdb_read, &slices_kind, write_sparse};
+const vxm_grid_format vxm_format_vdb = {"vdb",        vxm_vdb_sniff, vxm_vdb_read, vxm_vdb_read_field,
+                                        &slices_kind, write_sparse};

@@ -3,6 +3,7 @@
 #ifndef VXM_VOXEL_FIELD_H
 #define VXM_VOXEL_FIELD_H
 
+#include "base/scalar.h"
 #include "voxel/model.h"
 
 typedef struct vxm_field_target {
@@ -33,10 +34,5 @@ typedef struct vxm_field_plan {
 vxm_status vxm_field_plan_of(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
                              vxm_layout layout, int subdivision, uint64_t fixed, uint64_t value_bytes,
                              vxm_error *error);
-
-/** Bytes of a value. */
-static inline size_t vxm_scalar_bytes(vxm_scalar scalar) {
-  return scalar == VXM_UINT8 ? 1 : scalar == VXM_FLOAT32 ? 4 : 8;
-}
 
 #endif

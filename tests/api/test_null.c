@@ -30,6 +30,7 @@ static vxm_engine *engine;
 static vxm_model *model;
 static vxm_sampler *sampler;
 static vxm_sparse *sparse;
+static vxm_field *field;
 
 static const vxm_space space = {{4, 4, 4}, {0, 0, 0}, {0.25, 0.25, 0.25}};
 static const double unmoved[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -42,6 +43,7 @@ static vxm_mesh_read_options read_options = VXM_MESH_READ_OPTIONS_INIT;
 static vxm_mesh_write_options mesh_write = VXM_MESH_WRITE_OPTIONS_INIT;
 static vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
 static vxm_grid_write_options grid_write = VXM_GRID_WRITE_OPTIONS_INIT;
+static vxm_threshold_options threshold = {1, true, 0.5, false, 0};
 static vxm_picture_options picture = VXM_PICTURE_OPTIONS_INIT;
 static vxm_engine_options engine_options = VXM_ENGINE_OPTIONS_INIT;
 static vxm_published_options published_options = VXM_PUBLISHED_OPTIONS_INIT;
@@ -64,6 +66,8 @@ static struct {
   vxm_model *model;
   vxm_sampler *sampler;
   vxm_sparse *sparse;
+  vxm_field *field;
+  vxm_field_range range;
   vxm_census census;
   vxm_repair_report repair;
   vxm_verification verification;
@@ -93,6 +97,7 @@ static void drop_made(void) {
   vxm_model_destroy(out.model);
   vxm_sampler_destroy(out.sampler);
   vxm_sparse_destroy(out.sparse);
+  vxm_field_destroy(out.field);
   memset(&out, 0, sizeof out);
 }
 
@@ -182,11 +187,43 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   X(vxm_grid_warning_count, 1, 1, ANYTHING(vxm_grid_warning_count(P(0, grid))))                            \
   X(vxm_grid_warning, 1, 1, ANYTHING(vxm_grid_warning(P(0, grid), 0)))                                     \
   X(vxm_grid_read, 4, 5, vxm_grid_read(P(0, &out.grid), P(1, context), P(2, "in.npy"), P(3, &error)))      \
+  X(vxm_grid_read_space, 4, 5,                                                                             \
+    vxm_grid_read_space(P(0, &out.grid), P(1, context), P(2, "in.npy"), P(3, &error)))                     \
   X(vxm_grid_write, 4, 3, vxm_grid_write(P(0, grid), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))    \
   X(vxm_grid_surface_mesh, 3, 3, vxm_grid_surface_mesh(P(0, &out.mesh), P(1, grid), P(2, &error)))         \
   X(vxm_grid_picture, 4, 3, vxm_grid_picture(P(0, grid), P(1, "out.png"), P(2, &picture), P(3, &error)))   \
   X(vxm_grid_compare, 4, 7, vxm_grid_compare(P(0, &out.comparison), P(1, grid), P(2, grid), P(3, &error))) \
   X(vxm_grid_write_coords, 3, 3, vxm_grid_write_coords(P(0, grid), P(1, "out.npy"), P(2, &error)))
+
+#define FIELD_CALLS(X)                                                                                      \
+  X(vxm_field_create, 5, 13,                                                                                \
+    vxm_field_create(P(0, &out.field), P(1, context), P(2, &space), VXM_FIELD_LABELS, VXM_UINT8,            \
+                     P(3, out.values), P(4, &error)))                                                       \
+  X(vxm_field_read, 4, 5, vxm_field_read(P(0, &out.field), P(1, context), P(2, "in.npy"), P(3, &error)))    \
+  X(vxm_grid_or_field_read, 5, 11,                                                                          \
+    vxm_grid_or_field_read(P(0, &out.grid), P(1, &out.field), P(2, context), P(3, "in.npy"), P(4, &error))) \
+  X(vxm_field_destroy, 1, 0, (vxm_field_destroy(NULL), VXM_OK))                                             \
+  X(vxm_field_space, 1, 1, GIVES(vxm_field_space(P(0, field))))                                             \
+  X(vxm_field_kind_of, 1, 1, GIVES(vxm_field_kind_of(P(0, field))))                                         \
+  X(vxm_field_scalar, 1, 1, GIVES(vxm_field_scalar(P(0, field))))                                           \
+  X(vxm_field_channels, 1, 1, GIVES(vxm_field_channels(P(0, field))))                                       \
+  X(vxm_field_values, 1, 1, GIVES(vxm_field_values(P(0, field))))                                           \
+  X(vxm_field_kind_name, 0, 0, GIVES_TEXT(vxm_field_kind_name(VXM_FIELD_NUMBERS)))                          \
+  X(vxm_scalar_name, 0, 0, GIVES_TEXT(vxm_scalar_name(VXM_UINT8)))                                          \
+  X(vxm_field_measure, 3, 3, vxm_field_measure(P(0, &out.range), P(1, field), P(2, &error)))                \
+  X(vxm_field_label_count, 1, 1, ANYTHING(vxm_field_label_count(P(0, field))))                              \
+  X(vxm_field_label_name, 1, 1, ANYTHING(vxm_field_label_name(P(0, field), 1)))                             \
+  X(vxm_field_metadata_count, 1, 1, ANYTHING(vxm_field_metadata_count(P(0, field))))                        \
+  X(vxm_field_metadata_key, 1, 1, ANYTHING(vxm_field_metadata_key(P(0, field), 0)))                         \
+  X(vxm_field_metadata_value, 1, 1, ANYTHING(vxm_field_metadata_value(P(0, field), 0)))                     \
+  X(vxm_field_warning_count, 1, 1, ANYTHING(vxm_field_warning_count(P(0, field))))                          \
+  X(vxm_field_warning, 1, 1, ANYTHING(vxm_field_warning(P(0, field), 0)))                                   \
+  X(vxm_field_is_mask, 1, 1, GIVES(vxm_field_is_mask(P(0, field))))                                         \
+  X(vxm_field_threshold, 4, 7,                                                                              \
+    vxm_field_threshold(P(0, &out.grid), P(1, field), P(2, &threshold), P(3, &error)))                      \
+  X(vxm_field_write, 4, 3, vxm_field_write(P(0, field), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))  \
+  X(vxm_field_picture, 5, 3,                                                                                \
+    vxm_field_picture(P(0, field), P(1, "out.png"), P(2, &picture), P(3, &threshold), P(4, &error)))
 
 #define ENGINE_CALLS(X)                                                                                    \
   X(vxm_engine_create, 5, 5,                                                                               \
@@ -297,6 +334,7 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   ERROR_AND_CONTEXT_CALLS(X) \
   MESH_CALLS(X)              \
   GRID_CALLS(X)              \
+  FIELD_CALLS(X)             \
   ENGINE_CALLS(X)            \
   MODEL_CALLS(X)             \
   SAMPLER_CALLS(X)           \
@@ -410,6 +448,9 @@ static int set_up(void **state) {
   assert_int_equal(vxm_mesh_defects(&defects, mesh, 0, false, NULL), VXM_OK);
   assert_int_equal(vxm_voxelize(&grid, NULL, mesh, &voxelize_options, NULL), VXM_OK);
   assert_int_equal(vxm_grid_write(grid, "in.npy", NULL, NULL), VXM_OK);
+  static const uint8_t labels[4 * 4 * 4] = {1, 0, 1};
+  assert_int_equal(vxm_field_create(&field, context, &space, VXM_FIELD_LABELS, VXM_UINT8, labels, NULL),
+                   VXM_OK);
   assert_int_equal(vxm_engine_create(&engine, context, "cpu", NULL, NULL), VXM_OK);
   voxelize_options.confidence = false;
   assert_int_equal(vxm_model_create(&model, mesh, &voxelize_options, NULL), VXM_OK);
@@ -430,6 +471,7 @@ static int tear_down(void **state) {
   vxm_sampler_destroy(sampler);
   vxm_mesh_destroy(mesh);
   vxm_grid_destroy(grid);
+  vxm_field_destroy(field);
   vxm_defects_destroy(defects);
   vxm_sparse_destroy(sparse);
   static const char *const files[] = {"in.off",  "in.obj",      "in.npy",          "in.npy.json",

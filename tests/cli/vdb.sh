@@ -21,10 +21,13 @@ run 'voxmend voxelize in/torus.off -o x.vdb -r 24 --sparse --dry-run'
 
 say "# a number per voxel"
 run 'voxmend voxelize in/sphere.off -o d.vdb -r 24 --pad 4 --distance signed --json | grep -A 6 distance'
-run 'voxmend voxelize in/sphere.off -o solid.npy -r 24 --pad 4 -q && voxmend compare d.vdb solid.npy'
+run 'voxmend voxelize in/sphere.off -o solid.npy -r 24 --pad 4 -q && voxmend compare d.vdb solid.npy --below 0'
+run 'voxmend convert d.vdb -o d.npy && voxmend convert d.npy -o d2.vdb -q && cmp d2.vdb d.vdb'
+run 'voxmend convert d.vdb -o d.rle'
 run 'voxmend voxelize in/sphere.off -o c.vdb -r 24 --pad 4 --coverage 4'
-run 'voxmend compare c.vdb solid.npy --strict'
-run 'voxmend voxelize in/sphere.off -o u.vdb -r 24 --distance unsigned -q && voxmend convert u.vdb -o u.rle'
+run 'voxmend compare c.vdb solid.npy --threshold 0.5'
+run 'voxmend voxelize in/sphere.off -o l.npy -r 24 --labels part -q && voxmend convert l.npy -o l.vdb && voxmend convert l.vdb -o l2.npy -q && cmp l2.npy l.npy && cmp l2.npy.json l.npy.json'
+run 'voxmend voxelize in/sphere.off -o u.vdb -r 24 --distance unsigned -q && voxmend convert u.vdb -o u.rle --below 0.5'
 run 'voxmend voxelize in/sphere.off -o x.vdb -r 24 --coverage 2 --scalar uint8'
 
 say "# failures leave nothing"

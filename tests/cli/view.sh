@@ -20,6 +20,20 @@ run 'cp t.npy grid; voxmend view grid -o grid.png -q && cmp grid.png t.png'
 run 'cp in/torus.off mesh; voxmend view mesh -o mesh.png'
 run 'voxmend view - -o pipe.png -q <t.npy && cmp pipe.png t.png'
 run 'voxmend view t.npy -o again.png -q --threads 7 && cmp again.png t.png'
+say "# numbers: what of them is drawn"
+run 'voxmend voxelize in/torus.off -o d.npy --like t.npy --distance signed -q && voxmend view d.npy -o d.png && cmp d.png t.png'
+run 'voxmend view d.npy -o wide.png --below 0.1 -q && cmp -s wide.png t.png'
+run 'voxmend voxelize in/torus.off -o c.npy --like t.npy --coverage 8 -q && voxmend view c.npy -o c.png --json'
+run 'voxmend convert c.npy -o half.rle --threshold 0.5 -q && voxmend view half.rle -o half.png -q && cmp half.png c.png'
+run 'voxmend voxelize in/torus.off -o l.npy --like t.npy --labels part -q && voxmend view l.npy -o l.png -q && cmp -s l.png t.png'
+run 'voxmend convert l.npy -o l.binvox -q && voxmend view l.binvox -o l2.png -q && cmp l2.png l.png'
+run 'voxmend voxelize in/torus.off -o k.npy --like t.npy --color position -q && voxmend view k.npy -o k.png -q && cmp -s k.png t.png'
+run 'voxmend convert k.npy -o k.nrrd -q && voxmend view k.nrrd -o k2.png -q && cmp k2.png k.png'
+(printf '\223NUMPY\001\000\166\000%-117s\n' "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 1, 2), }" && printf '\000\000\200\077\000\000\000\100') >f.npy
+run 'voxmend view f.npy -o out.png'
+run 'voxmend view f.npy -o f.png --threshold 1.5 -q && size f.png'
+
+say "# failures"
 run 'voxmend view missing.npy -o out.png'
 run 'voxmend view in/truth.tsv -o out.png'
 run 'voxmend view t.npy -o no/such/out.png'

@@ -37,12 +37,44 @@ static void check_grid(const vxm_grid *grid) {
     fuzz_require(grid->notes.text[n][0] && !strchr(grid->notes.text[n], '\n'), "notes are one line");
 }
 
+/** Numbers, where there are some: they can be looked at and made into bits. */
+static void check_field(const vxm_field *field) {
+  vxm_field_range range;
+  vxm_threshold_options half = VXM_THRESHOLD_OPTIONS_INIT;
+  vxm_grid *grid;
+  half.use_at_least = true;
+  half.at_least = 0.5;
+  fuzz_require(vxm_space_check(&field->space, NULL) == VXM_OK, "the space is one");
+  fuzz_require(vxm_field_measure(&range, field, NULL) == VXM_OK && range.least <= range.greatest,
+               "the range is one");
+  if (vxm_field_threshold(&grid, field, &half, NULL) != VXM_OK)
+    return;
+  check_grid(grid);
+  vxm_grid_destroy(grid);
+}
+
+static void read_numbers(const char *name, const char *path, const uint8_t *data, size_t size) {
+  const vxm_grid_format *format = format_of(name);
+  vxm_context *context = fuzz_context(size, RATE, BESIDES);
+  vxm_input input = {.data = data, .size = size, .name = path, .context = context};
+  vxm_field *field = NULL;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_status status = format->read_field(&field, &input, &error);
+  fuzz_require((status == VXM_OK) == (field != NULL), "a field comes with success alone");
+  if (status == VXM_OK)
+    check_field(field);
+  else
+    fuzz_check_error(&error, status);
+  vxm_field_destroy(field);
+  vxm_context_destroy(context);
+}
+
 static void read_as(const char *name, const char *path, const uint8_t *data, size_t size) {
   vxm_context *context = fuzz_context(size, RATE, BESIDES);
   vxm_input input = {.data = data, .size = size, .name = path, .context = context};
   vxm_grid *grid = NULL;
   vxm_error error = VXM_ERROR_INIT;
-  vxm_status status = format_of(name)->read(&grid, &input, &error);
+  vxm_status status = format_of(name)->read(&grid, &input, VXM_BITS_ANY, &error);
   fuzz_require((status == VXM_OK) == (grid != NULL), "a grid comes with success alone");
   if (status == VXM_OK)
     check_grid(grid);
@@ -57,6 +89,8 @@ void fuzz_grid(const char *name, const uint8_t *data, size_t size) {
   vxm_input input = {.data = data, .size = size, .name = "fuzz"};
   (void)format->sniff(&input);
   read_as(name, "fuzz", data, size);
+  if (format->read_field)
+    read_numbers(name, "fuzz", data, size);
 }
 
 /* ---- The JSON beside a file ---- */
@@ -96,11 +130,13 @@ void fuzz_sidecar(const char *name, const uint8_t *data, size_t size) {
   vxm_context *context = fuzz_context(size, RATE, BESIDES);
   vxm_space space;
   vxm_error error = VXM_ERROR_INIT;
-  vxm_status status = vxm_sidecar_read(&space, context, data_path, "voxmend raw", &error);
+  vxm_about about = {.is_declared = false};
+  vxm_status status = vxm_sidecar_read(&space, &about, context, data_path, "voxmend raw", &error);
   if (status == VXM_OK)
     fuzz_require(vxm_space_check(&space, NULL) == VXM_OK, "the space is one");
   else
     fuzz_check_error(&error, status);
+  vxm_about_destroy(&about);
   vxm_context_destroy(context);
 }
 

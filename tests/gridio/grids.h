@@ -99,6 +99,19 @@ static inline void assert_same_bits(const vxm_grid *a, const vxm_grid *b) {
   assert_memory_equal(a->words, b->words, a->word_count * sizeof *a->words);
 }
 
+/** The number 1 as a file has it. */
+static inline void put_one(unsigned char *to, size_t size, bool is_float, bool is_big) {
+  unsigned char one[8] = {1};
+  if (is_float) {
+    one[0] = 0;
+    one[size - 1] = size == 2 ? 0x3c : 0x3f;
+    if (size > 2)
+      one[size - 2] = size == 4 ? 0x80 : 0xf0;
+  }
+  for (size_t b = 0; b < size; b++)
+    to[b] = one[is_big ? size - 1 - b : b];
+}
+
 /* ---- Files ---- */
 
 static inline void write_grid(const vxm_grid *grid, const char *path) {

@@ -15,7 +15,7 @@ static vxm_status read_bytes(vxm_grid **grid, const vxm_grid_format *format, vxm
   memcpy(copy, data, size);
   vxm_input input = {.data = copy, .size = size, .name = name, .context = context};
   *grid = NULL;
-  vxm_status status = format->read(grid, &input, error);
+  vxm_status status = format->read(grid, &input, VXM_BITS_ANY, error);
   free(copy);
   return status;
 }
@@ -124,7 +124,7 @@ static void test_mutation(void **state) {
       vxm_status status = read_bytes(&grid, samples[s].format, context, samples[s].path, data, size, &error);
       assert_int_equal(grid != NULL, status == VXM_OK);
       if (status != VXM_OK) {
-        assert_true(status == VXM_ERROR_FORMAT || status == VXM_ERROR_RANGE);
+        assert_true(status == VXM_ERROR_FORMAT || status == VXM_ERROR_RANGE || status == VXM_ERROR_NUMBERS);
         assert_true(error.text[0] != '\0');
         continue;
       }
@@ -183,7 +183,7 @@ static const refused cases[] = {
     CASE("a.npy", NPY("{'descr': '|b1', 'fortran_order': False, 'shape': (1, 1), }                     \0"),
          VXM_ERROR_FORMAT, 65, "three dimensions"),
     CASE("a.npy", NPY("{'descr': '|b1', 'fortran_order': False, 'shape': (1, 1, 1, 1), }               \0"),
-         VXM_ERROR_FORMAT, 70, "three dimensions"),
+         VXM_ERROR_FORMAT, 71, "three dimensions"),
     CASE("a.npy", NPY("{'descr': '|b1', 'fortran_order': False, 'shape': (1, 0, 1), }                  \0"),
          VXM_ERROR_FORMAT, 60, "0 voxels"),
     CASE("a.npy", NPY("{'descr': '|b1', 'fortran_order': False, 'shape': (1, -1, 1), }                 \0"),
@@ -333,7 +333,7 @@ enum { ALL_FORMATS = sizeof all_formats / sizeof all_formats[0] };
 static vxm_status write_as(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {
   vxm_picture_options options = VXM_PICTURE_OPTIONS_INIT;
   options.width = options.height = 64;
-  return strcmp(format, "png") == 0 ? vxm_gridio_picture(grid, path, &options, error)
+  return strcmp(format, "png") == 0 ? vxm_gridio_picture(grid, NULL, NULL, path, &options, error)
                                     : vxm_gridio_write(grid, path, format, error);
 }
 

@@ -19,7 +19,7 @@ static vxm_status read_bytes(vxm_grid **grid, vxm_context *context, const void *
   memcpy(copy, data, size);
   vxm_input input = {.data = copy, .size = size, .name = "a.nrrd", .context = context};
   *grid = NULL;
-  vxm_status status = vxm_format_nrrd.read(grid, &input, error);
+  vxm_status status = vxm_format_nrrd.read(grid, &input, VXM_BITS_ANY, error);
   free(copy);
   return status;
 }
@@ -72,7 +72,7 @@ static void test_types(void **state) {
       for (size_t v = 0; v < COUNT; v++) {
         uint64_t choice = vxm_rng_below(&rng, 3);
         if (choice == 0)
-          values[v * size + vxm_rng_below(&rng, size)] = (unsigned char)(1 + vxm_rng_below(&rng, 127));
+          put_one(values + v * size, size, types[t].is_float, big);
         else if (choice == 1 && types[t].is_float) /* minus zero is zero */
           values[v * size + (big ? 0 : size - 1)] = 0x80;
       }
@@ -190,7 +190,10 @@ static const refused cases[] = {
     {"NRRD0004\ntype: uchar\n", VXM_ERROR_FORMAT, 21, "empty line"},
     {"NRRD0004\n\n", VXM_ERROR_FORMAT, 9, "are needed"},
     {"NRRD0004\ntype: block\n\n", VXM_ERROR_FORMAT, 9, "type"},
-    {"NRRD0004\ndimension: 4\n\n", VXM_ERROR_FORMAT, 9, "three dimensions"},
+    {"NRRD0004\ndimension: 5\n\n", VXM_ERROR_FORMAT, 9, "three dimensions"},
+    {"NRRD0004\ndimension: 4\nsizes: 3 2 2 2\n\n", VXM_ERROR_FORMAT, 22, "three dimensions"},
+    {"NRRD0004\ntype: uchar\ndimension: 4\nsizes: 4 2 2 2\nencoding: raw\n\n", VXM_ERROR_FORMAT, 63,
+     "RGBA-color"},
     {"NRRD0004\nsizes: 2 2\n\n", VXM_ERROR_FORMAT, 9, "three whole numbers"},
     {"NRRD0004\nsizes: 2 2 2 2\n\n", VXM_ERROR_FORMAT, 9, "three whole numbers"},
     {"NRRD0004\nsizes: 2 2 2.5\n\n", VXM_ERROR_FORMAT, 9, "three whole numbers"},
@@ -258,7 +261,7 @@ static unsigned char *packed_file(size_t *size, const vxm_grid *grid, int wbits)
   unsigned char *values = calloc(PACKED, 4), *file = malloc(PACKED * 4);
   for (size_t v = 0; v < PACKED; v++)
     if (vxm_grid_get(grid, (int64_t)v % 100, (int64_t)v / 100 % 71, (int64_t)v / 7100))
-      values[4 * v + v % 3] = 1;
+      put_one(values + 4 * v, 4, true, false);
   *size = join(file, gzip_head, "", 0);
   *size += pack(file + *size, PACKED * 4 - *size, values, PACKED * 4, wbits);
   free(values);
@@ -291,7 +294,7 @@ static void test_gzip(void **state) {
       if (read_bytes(&back, context, file, size, &error) == VXM_OK)
         vxm_grid_destroy(back);
       else
-        assert_int_equal(error.code, VXM_ERROR_FORMAT);
+        assert_true(error.code == VXM_ERROR_FORMAT || error.code == VXM_ERROR_NUMBERS);
       file[at] ^= bit;
     }
     free(file);

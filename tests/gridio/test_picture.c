@@ -142,7 +142,7 @@ typedef struct image {
 
 static image draw(const vxm_grid *grid, const char *path, const vxm_picture_options *options) {
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_gridio_picture(grid, path, options, &error) != VXM_OK)
+  if (vxm_gridio_picture(grid, NULL, NULL, path, options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   png_image png = {.version = PNG_IMAGE_VERSION};
   assert_true(png_image_begin_read_from_file(&png, path));
@@ -267,7 +267,7 @@ static void test_same_for_all_threads(void **state) {
     vxm_grid *grid = new_grid(context, unit_space(70, 60, 50));
     fill_random(grid, &rng, 3);
     vxm_picture_options options = small();
-    assert_int_equal(vxm_gridio_picture(grid, path_in(folder, "p.png"), &options, NULL), VXM_OK);
+    assert_int_equal(vxm_gridio_picture(grid, NULL, NULL, path_in(folder, "p.png"), &options, NULL), VXM_OK);
     size_t size;
     unsigned char *data = load_file(path_in(folder, "p.png"), &size);
     if (first) {
@@ -312,11 +312,13 @@ static void test_options(void **state) {
   bad[8].azimuth = INFINITY;
   for (int b = 0; b < 9; b++) {
     vxm_error error = VXM_ERROR_INIT;
-    assert_int_equal(vxm_gridio_picture(grid, path_in(folder, "p.png"), &bad[b], &error), VXM_ERROR_ARGUMENT);
+    assert_int_equal(vxm_gridio_picture(grid, NULL, NULL, path_in(folder, "p.png"), &bad[b], &error),
+                     VXM_ERROR_ARGUMENT);
     assert_true(error.text[0] != '\0');
   }
   assert_int_equal(count_files(folder), 0);
-  assert_int_equal(vxm_gridio_picture(grid, path_in(folder, "no/p.png"), &options, NULL), VXM_ERROR_IO);
+  assert_int_equal(vxm_gridio_picture(grid, NULL, NULL, path_in(folder, "no/p.png"), &options, NULL),
+                   VXM_ERROR_IO);
   vxm_grid_destroy(grid);
   vxm_context_destroy(context);
   remove_folder(folder);
@@ -330,7 +332,7 @@ static void test_unavailable(void **state) {
   vxm_grid *grid = new_grid(context, unit_space(5, 5, 5));
   vxm_picture_options options = VXM_PICTURE_OPTIONS_INIT;
   vxm_error error = VXM_ERROR_INIT;
-  assert_int_equal(vxm_gridio_picture(grid, "no.png", &options, &error), VXM_ERROR_UNAVAILABLE);
+  assert_int_equal(vxm_gridio_picture(grid, NULL, NULL, "no.png", &options, &error), VXM_ERROR_UNAVAILABLE);
   assert_non_null(strstr(error.text, "libpng"));
   vxm_grid_destroy(grid);
   vxm_context_destroy(context);

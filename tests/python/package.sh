@@ -3,3 +3,4 @@
 # The package voxmend with numpy.
 . "$SRCDIR/tests/python/lib.sh"
 "$PYTHON" "$SRCDIR/tests/python/test_voxmend.py"
+"$PYTHON" "$SRCDIR/tests/python/test_fields.py"

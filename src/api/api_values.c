@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The public functions about fields in files: they check arguments and call down. */
+#include "gridio/gridio.h"
+#include "gridio/values_write.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+static vxm_status fail_null(vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: an argument is NULL");
+}
+
+/* ---- Making and reading ---- */
+
+static vxm_status check_new(const vxm_space *space, vxm_field_kind kind, vxm_scalar scalar,
+                            vxm_error *error) {
+  if (!*vxm_field_kind_name(kind))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: %d is none of the kinds of fields", (int)kind);
+  if (!*vxm_scalar_name(scalar) || (kind == VXM_FIELD_COLORS && scalar != VXM_UINT8))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: scalar %d is none that %s can have", (int)scalar,
+                    vxm_field_kind_name(kind));
+  return vxm_space_check(space, error);
+}
+
+vxm_status vxm_field_create(vxm_field **out, vxm_context *context, const vxm_space *space,
+                            vxm_field_kind kind, vxm_scalar scalar, const void *values, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !space || !values)
+    return fail_null(error);
+  vxm_context *owner;
+  vxm_status status = check_new(space, kind, scalar, error);
+  if (status == VXM_OK)
+    status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_field_make(out, owner, space, kind, scalar, error);
+  vxm_context_release(owner);
+  if (status != VXM_OK)
+    return status;
+  (*out)->about.is_declared = kind != VXM_FIELD_NUMBERS;
+  vxm_field_put_all(*out, values, false);
+  return VXM_OK;
+}
+
+vxm_status vxm_grid_or_field_read(vxm_grid **grid, vxm_field **field, vxm_context *context, const char *path,
+                                  vxm_error *error) {
+  if (grid)
+    *grid = NULL;
+  if (field)
+    *field = NULL;
+  if (!grid || !field || !path)
+    return fail_null(error);
+  vxm_context *owner;
+  vxm_status status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_gridio_read_either(grid, field, owner, path, error);
+  vxm_context_release(owner);
+  return status;
+}
+
+/** Bits as numbers. */
+static vxm_status spread(vxm_field **out, const vxm_grid *grid, vxm_error *error) {
+  vxm_status status = vxm_field_make(out, grid->context, &grid->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_field_put_grid(*out, grid);
+  (*out)->notes = grid->notes;
+  return VXM_OK;
+}
+
+vxm_status vxm_field_read(vxm_field **out, vxm_context *context, const char *path, vxm_error *error) {
+  vxm_grid *grid;
+  if (out)
+    *out = NULL;
+  if (!out || !path)
+    return fail_null(error);
+  vxm_status status = vxm_grid_or_field_read(&grid, out, context, path, error);
+  if (status == VXM_OK && grid)
+    status = spread(out, grid, error);
+  vxm_grid_destroy(grid);
+  return status;
+}
+
+vxm_status vxm_grid_read_space(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
+  vxm_context *owner;
+  vxm_status status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_gridio_read_space(out, owner, path, error);
+  vxm_context_release(owner);
+  return status;
+}
+
+/* ---- What it holds ---- */
+
+const vxm_space *vxm_field_space(const vxm_field *field) {
+  return field ? &field->space : NULL;
+}
+
+vxm_field_kind vxm_field_kind_of(const vxm_field *field) {
+  return field ? field->about.kind : VXM_FIELD_NUMBERS;
+}
+
+vxm_scalar vxm_field_scalar(const vxm_field *field) {
+  return field ? field->scalar : VXM_FLOAT64;
+}
+
+int vxm_field_channels(const vxm_field *field) {
+  return field ? field->channels : 0;
+}
+
+const void *vxm_field_values(const vxm_field *field) {
+  return field ? field->values : NULL;
+}
+
+int64_t vxm_field_label_count(const vxm_field *field) {
+  return field ? (int64_t)field->about.table.count : 0;
+}
+
+const char *vxm_field_label_name(const vxm_field *field, int64_t label) {
+  bool is_there = label >= 1 && label <= vxm_field_label_count(field);
+  return is_there ? vxm_label_table_name(&field->about.table, (size_t)label) : "";
+}
+
+int64_t vxm_field_metadata_count(const vxm_field *field) {
+  return field ? (int64_t)field->about.pairs.count : 0;
+}
+
+const char *vxm_field_metadata_key(const vxm_field *field, int64_t index) {
+  const char *key = field ? vxm_pairs_next(&field->about.pairs, NULL) : NULL;
+  for (int64_t i = 0; i < index && key; i++)
+    key = vxm_pairs_next(&field->about.pairs, key);
+  return index >= 0 && key ? key : "";
+}
+
+const char *vxm_field_metadata_value(const vxm_field *field, int64_t index) {
+  const char *key = vxm_field_metadata_key(field, index);
+  return *key ? vxm_pairs_value(key) : "";
+}
+
+int64_t vxm_field_warning_count(const vxm_field *field) {
+  return field ? field->notes.count : 0;
+}
+
+const char *vxm_field_warning(const vxm_field *field, int64_t index) {
+  return field && index >= 0 && index < field->notes.count ? field->notes.text[index] : "";
+}
+
+/* ---- Writing ---- */
+
+vxm_status vxm_field_write(const vxm_field *field, const char *path, const vxm_grid_write_options *options,
+                           vxm_error *error) {
+  if (!field || !path)
+    return fail_null(error);
+  vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
+  if (options)
+    chosen = *options;
+  if (chosen.version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "field: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  return vxm_gridio_write_field(field, path, chosen.format, error);
+}
+
+vxm_status vxm_field_picture(const vxm_field *field, const char *path, const vxm_picture_options *options,
+                             const vxm_threshold_options *threshold, vxm_error *error) {
+  if (!field || !path)
+    return fail_null(error);
+  vxm_picture_options chosen = VXM_PICTURE_OPTIONS_INIT;
+  return vxm_gridio_field_picture(field, path, options ? options : &chosen, threshold, error);
+}

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers in files through the package, against numpy's own reading of them. SAMPLES is a folder of sample meshes."""
+import os
+import unittest
+
+import numpy
+
+import voxmend
+
+SAMPLES = os.environ["SAMPLES"]
+TYPES = "float64 float32 float16 uint8 int8 uint16 int16 uint32 int32 uint64 int64".split()
+
+
+def read_nrrd(path):
+    """Values as [x][y][z], by the format's description alone."""
+    with open(path, "rb") as file:
+        head, data = file.read().split(b"\n\n", 1)
+    lines = dict(line.split(": ", 1) for line in head.decode().split("\n") if ": " in line and not line.startswith("#"))
+    names = {"uchar": "u1", "signed char": "i1", "ushort": "u2", "short": "i2", "uint": "u4", "int": "i4",
+             "ulonglong": "u8", "longlong": "i8", "float": "f4", "double": "f8"}
+    order = {"little": "<", "big": ">"}[lines.get("endian", "little")]
+    sizes = [int(n) for n in lines["sizes"].split()]
+    array = numpy.frombuffer(data, order + names[lines["type"]]).reshape(sizes[::-1])
+    return array.transpose(2, 1, 0, 3) if len(sizes) == 4 else array.transpose()
+
+
+class Fields(unittest.TestCase):
+    def path(self, name):
+        return os.path.join(SAMPLES, name)
+
+    def random(self, kind):
+        rng = numpy.random.default_rng(5)
+        values = rng.integers(0, 256, (9, 11, 7, numpy.dtype(kind).itemsize), numpy.uint8).view(kind)[..., 0]
+        return numpy.nan_to_num(values) if kind.startswith("float") else values
+
+    def test_every_type_there_and_back(self):
+        for kind in TYPES:
+            for array in (self.random(kind), numpy.asfortranarray(self.random(kind)), self.random(kind).byteswap().newbyteorder()):
+                numpy.save(self.path("a.npy"), array)
+                field = voxmend.read_field(self.path("a.npy"))
+                self.assertEqual(field.values.dtype, kind)
+                numpy.testing.assert_array_equal(field.values, array)
+                field.save(self.path("b.nrrd"))
+                numpy.testing.assert_array_equal(read_nrrd(self.path("b.nrrd")), array)
+                voxmend.read_field(self.path("b.nrrd")).save(self.path("c.npy"))
+                numpy.testing.assert_array_equal(numpy.load(self.path("c.npy")), array)
+                with self.assertRaises(voxmend.NumbersError) as raised:
+                    voxmend.read(self.path("a.npy"))
+                self.assertIn(kind, str(raised.exception))
+                self.assertEqual(raised.exception.status, "numbers")
+
+    def test_made_of_arrays(self):
+        for kind in TYPES:
+            field = voxmend.Field(self.random(kind), pitch=(1, 2, 3), origin=(4, 5, 6), kind="labels")
+            numpy.testing.assert_array_equal(field.values, self.random(kind))
+            self.assertEqual((tuple(field.pitch), tuple(field.origin), field.kind), ((1, 2, 3), (4, 5, 6), "labels"))
+            self.assertFalse(field.values.flags.writeable)
+        with self.assertRaises(voxmend.ArgumentError):
+            voxmend.Field(numpy.zeros((2, 2)))
+        with self.assertRaises(voxmend.ArgumentError):
+            voxmend.Field(numpy.zeros((2, 2, 2), complex))
+        with self.assertRaises(voxmend.ArgumentError):
+            voxmend.Field(numpy.zeros((2, 2, 2)), kind="temperature")
+        with self.assertRaises(voxmend.ArgumentError):
+            voxmend.Field(numpy.zeros((2, 2, 2, 4)), kind="colors")
+
+    def test_distance_and_solid(self):
+        values, origin, pitch = voxmend.distance(self.path("torus.off"), 24, pad=2)
+        field = voxmend.Field(values, pitch, origin, kind="distance")
+        field.save(self.path("d.npy"))
+        solid = voxmend.voxelize(self.path("torus.off"), like=field)
+        for grid in (field.threshold(below=0), voxmend.read(self.path("d.npy"), below=0)):
+            self.assertEqual(grid.compare(solid)["iou"], 1.0)
+        back = voxmend.read_field(self.path("d.npy"))
+        self.assertEqual(back.kind, "distance")
+        numpy.testing.assert_array_equal(back.values, values)
+        self.assertRaises(voxmend.ArgumentError, field.threshold)
+        self.assertRaises(voxmend.ArgumentError, field.save, self.path("d.rle"))
+
+    def test_masks(self):
+        rng = numpy.random.default_rng(6)
+        bits = rng.random((5, 6, 7)) < 0.5
+        for array in (bits, bits.astype("uint8"), bits.astype("uint8") * 255, bits.astype("float32"), bits.astype(">i4")):
+            numpy.save(self.path("m.npy"), array)
+            numpy.testing.assert_array_equal(voxmend.read(self.path("m.npy")).matrix, bits)
+        for array in (bits.astype("uint8") * 7, bits * -1.0, bits * 0.5, bits.astype("uint16") * 255):
+            numpy.save(self.path("m.npy"), array)
+            self.assertRaises(voxmend.NumbersError, voxmend.read, self.path("m.npy"))
+
+    def test_colors_and_warnings(self):
+        colors = numpy.random.default_rng(7).integers(0, 256, (3, 4, 5, 4), numpy.uint8)
+        voxmend.Field(colors, kind="colors").save(self.path("k.nrrd"))
+        numpy.testing.assert_array_equal(read_nrrd(self.path("k.nrrd")), colors.transpose(0, 1, 2, 3))
+        numpy.testing.assert_array_equal(voxmend.read_field(self.path("k.nrrd")).values, colors)
+        numpy.save(self.path("w.npy"), self.random("float32"))
+        self.assertEqual(len(voxmend.read_field(self.path("w.npy")).warnings), 1)
+
+    def test_metadata(self):
+        with open(self.path("u.nrrd"), "wb") as file:
+            file.write(b"NRRD0004\ntype: uint16\ndimension: 3\nsizes: 2 1 1\nendian: little\nencoding: raw\n"
+                       b"space: left-posterior-superior\nspace units: \"mm\" \"mm\" \"mm\"\nspace origin: (0,0,0)\n"
+                       b"space directions: (1,0,0) (0,1,0) (0,0,1)\npatient:=nobody\n\n\x05\x00\x00\x01")
+        voxmend.read_field(self.path("u.nrrd")).save(self.path("u.npy"))
+        voxmend.read_field(self.path("u.npy")).save(self.path("u2.nrrd"))
+        field = voxmend.read_field(self.path("u2.nrrd"))
+        self.assertEqual(field.values.tolist(), [[[5]], [[256]]])
+        self.assertEqual(field.metadata, {"nrrd_space": "left-posterior-superior", "nrrd_space_units": "\"mm\" \"mm\" \"mm\"",
+                                          "patient": "nobody"})
+        with open(self.path("u2.nrrd"), "rb") as file:
+            text = file.read()
+        for line in (b"\nspace: left-posterior-superior\n", b"\nspace units: \"mm\" \"mm\" \"mm\"\n", b"\npatient:=nobody\n"):
+            self.assertIn(line, text)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
