@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "meshio/filter.h"
 
+#include <stddef.h>
+
 #include "config.h"
 
 #if HAVE_SECCOMP
