@@ -5,7 +5,7 @@
  * vdb_peer dump FILE NX NY NZ: prints type, class, name and transform of the first grid, and writes the
  * values of voxels (0,0,0) to (NX-1,NY-1,NZ-1) to FILE.values, 32-bit floats or bytes, z fastest, then y,
  * then x. vdb_peer write FOLDER: writes grids of many kinds, and what is set in them as .raw grids of
- * voxmend.
+ * voxmend; of floats also the numbers in the box of what is active, as .values.
  */
 #include <openvdb/io/File.h>
 #include <openvdb/io/Stream.h>
@@ -33,11 +33,11 @@ static void put(FILE *to, bool value) {
 }
 
 template <typename Tree>
-static void dump_values(const Tree &tree, const std::string &path, const int dims[3]) {
+static void dump_values(const Tree &tree, const std::string &path, const CoordBBox &box) {
   FILE *to = fopen(path.c_str(), "wb");
-  for (int x = 0; x < dims[0]; x++)
-    for (int y = 0; y < dims[1]; y++)
-      for (int z = 0; z < dims[2]; z++)
+  for (int x = box.min()[0]; x <= box.max()[0]; x++)
+    for (int y = box.min()[1]; y <= box.max()[1]; y++)
+      for (int z = box.min()[2]; z <= box.max()[2]; z++)
         put(to, tree.root().getValue(Coord(x, y, z)));
   fclose(to);
 }
@@ -52,15 +52,16 @@ static int dump(const std::string &path, const int dims[3]) {
          static_cast<unsigned long long>(grid->activeVoxelCount()));
   printf("first centre %.9g %.9g %.9g, voxel size %.9g %.9g %.9g\n", first[0], first[1], first[2], size[0],
          size[1], size[2]);
-  CoordBBox box = grid->evalActiveVoxelBoundingBox();
+  CoordBBox box = grid->evalActiveVoxelBoundingBox(),
+            whole(Coord(0), Coord(dims[0], dims[1], dims[2]) - Coord(1));
   printf("active %d %d %d to %d %d %d\n", box.min()[0], box.min()[1], box.min()[2], box.max()[0],
          box.max()[1], box.max()[2]);
   if (grid->type() == "Tree_bool_5_4_3")
-    dump_values(static_cast<const BoolTree &>(grid->constBaseTree()), path + ".values", dims);
+    dump_values(static_cast<const BoolTree &>(grid->constBaseTree()), path + ".values", whole);
   else {
     const auto &tree = static_cast<const FloatTree &>(grid->constBaseTree());
     printf("background %.9g\n", double(tree.root().background()));
-    dump_values(tree, path + ".values", dims);
+    dump_values(tree, path + ".values", whole);
   }
   return 0;
 }
@@ -183,6 +184,17 @@ static void write_file(const std::string &path, const GridCPtrVec &grids, uint32
   file.write(grids);
 }
 
+/** The numbers of the floats in a file, as OpenVDB reads them again. */
+static void write_numbers(const std::string &path) {
+  io::File file(path + ".vdb");
+  file.open(false);
+  GridPtrVecPtr grids = file.getGrids();
+  for (const GridBase::Ptr &grid : *grids)
+    if (grid->isType<FloatGrid>())
+      dump_values(static_cast<const FloatTree &>(grid->constBaseTree()), path + ".values",
+                  grid->evalActiveVoxelBoundingBox());
+}
+
 static void write_kinds(const std::string &folder) {
   const uint32_t usual = io::COMPRESS_BLOSC | io::COMPRESS_ACTIVE_MASK;
   truth ball, mist, mask, set;
@@ -215,6 +227,8 @@ static void write_kinds(const std::string &folder) {
   write_file(folder + "/half_plain", {surface}, io::COMPRESS_ACTIVE_MASK);
   for (const char *name : {"level_set", "zip", "plain", "zip_all", "stream", "second", "half", "half_plain"})
     write_truth(folder + "/" + name, ball);
+  for (const char *name : {"level_set", "zip", "plain", "zip_all", "second", "half", "half_plain", "fog"})
+    write_numbers(folder + "/" + name);
   write_truth(folder + "/fog", mist);
   write_truth(folder + "/mask", mask);
   write_truth(folder + "/bool", set);
@@ -222,6 +236,7 @@ static void write_kinds(const std::string &folder) {
   truth unnamed;
   write_file(folder + "/unknown", {fog(unnamed, GRID_UNKNOWN)}, usual);
   write_truth(folder + "/unknown", unnamed);
+  write_numbers(folder + "/unknown");
 }
 
 /** Grids that cannot be read as voxels along x, y and z. */
