@@ -99,12 +99,20 @@ static bool is_set(double value, const vxm_threshold_options *o) {
          (!o->use_below || is_below(value, o->below));
 }
 
-/** Large numbers of 64 bits, which a double rounds. */
+/** Whether a whole number of 64 bits, which a double may round, is less than a bound. */
+static bool is_long_below(const vxm_field *field, size_t at, double bound) {
+  double least = ceil(bound); /* what is below the bound is below the next whole number */
+  if (field->scalar == VXM_UINT64) {
+    uint64_t value = ((const uint64_t *)(const void *)field->values)[at];
+    return least >= 0x1p64 || (least > 0 && value < (uint64_t)least);
+  }
+  int64_t value = ((const int64_t *)(const void *)field->values)[at];
+  return least >= 0x1p63 || (least > -0x1p63 && value < (int64_t)least);
+}
+
 static bool is_long_set(const vxm_field *field, size_t at, const vxm_threshold_options *o) {
-  long double value = field->scalar == VXM_INT64 ? (long double)((const int64_t *)(void *)field->values)[at]
-                                                 : (long double)((const uint64_t *)(void *)field->values)[at];
-  return !(o->use_at_least && value < (long double)o->at_least) &&
-         (!o->use_below || value < (long double)o->below);
+  return !(o->use_at_least && is_long_below(field, at, o->at_least)) &&
+         (!o->use_below || is_long_below(field, at, o->below));
 }
 
 static void cut_piece(uint64_t *row, const cutting *c, size_t at, size_t count, size_t bit) {

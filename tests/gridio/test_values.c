@@ -9,6 +9,9 @@
 #include "gridio/values_write.h"
 
 #include <math.h>
+#if HAVE_ZLIB
+#include <zlib.h>
+#endif
 
 static const struct {
   vxm_scalar scalar;
@@ -95,15 +98,27 @@ static void put_npy(const char *path, const vxm_field *field, const char *type, 
   free(data);
 }
 
-static void put_nrrd(const char *path, const vxm_field *field, const char *type, bool is_big) {
+static void put_nrrd(const char *path, const vxm_field *field, const char *type, bool is_big,
+                     bool is_packed) {
+  size_t size = COUNT * vxm_scalar_bytes(field->scalar);
   unsigned char *data = lay_out(field, true, is_big);
   char head[400];
   int length = snprintf(head, sizeof head,
-                        "NRRD0004\ntype: %s\ndimension: 3\nsizes: %d %d %d\nencoding: raw\nendian: %s\n"
+                        "NRRD0004\ntype: %s\ndimension: 3\nsizes: %d %d %d\nencoding: %s\nendian: %s\n"
                         "space directions: (0.25,0,0) (0,0.25,0) (0,0,0.25)\nspace origin: (0,0,0)\n"
                         "space units: \"mm\" \"mm\" \"mm\"\nmade by:=hand\n\n",
-                        type, NX, NY, NZ, is_big ? "big" : "little");
-  put_file(path, head, (size_t)length, data, COUNT * vxm_scalar_bytes(field->scalar));
+                        type, NX, NY, NZ, is_packed ? "gzip" : "raw", is_big ? "big" : "little");
+#if HAVE_ZLIB
+  if (is_packed) {
+    uLongf packed = compressBound(size);
+    unsigned char *more = malloc(packed);
+    assert_int_equal(compress(more, &packed, data, size), Z_OK);
+    free(data);
+    data = more;
+    size = packed;
+  }
+#endif
+  put_file(path, head, (size_t)length, data, size);
   free(data);
 }
 
@@ -133,8 +148,8 @@ static void test_foreign(void **state) {
       put_npy(path_in(folder, "a.npy"), field, types[t].name, form & 1, form & 2);
       check_foreign(context, path_in(folder, "a.npy"), field);
     }
-    for (int big = 0; big < 2 && types[t].nrrd; big++) {
-      put_nrrd(path_in(folder, "a.nrrd"), field, types[t].nrrd, big);
+    for (int form = 0; form < (HAVE_ZLIB ? 4 : 2) && types[t].nrrd; form++) {
+      put_nrrd(path_in(folder, "a.nrrd"), field, types[t].nrrd, form & 1, form & 2);
       check_foreign(context, path_in(folder, "a.nrrd"), field);
     }
     vxm_field_destroy(field);
@@ -407,22 +422,39 @@ static void test_threshold(void **state) {
   vxm_context_destroy(context);
 }
 
-/** Neighbours of 2^53 and beyond, which a double rounds together. */
+/** Neighbours of 2^53 and beyond, which a double rounds together; and bounds beyond all of them. */
 static void test_long_threshold(void **state) {
   (void)state;
   vxm_context *context = context_with(1, 0, NULL, NULL);
-  const vxm_space row = unit_space(1, 1, 3);
-  const uint64_t values[3] = {(UINT64_C(1) << 60) - 1, UINT64_C(1) << 60, (UINT64_C(1) << 60) + 1};
-  const vxm_threshold_options from = {1, true, 0x1p60, false, 0};
-  vxm_field *field;
+  const vxm_space row = unit_space(1, 1, 5);
+  const uint64_t whole[5] = {0, (UINT64_C(1) << 60) - 1, UINT64_C(1) << 60, (UINT64_C(1) << 60) + 1,
+                             UINT64_MAX};
+  const int64_t with_sign[5] = {INT64_MIN, -(INT64_C(1) << 60) - 1, -(INT64_C(1) << 60), 0, INT64_MAX};
+  static const struct {
+    double bound;
+    unsigned whole, with_sign; /* those that are at least the bound */
+  } cases[] = {{0x1p60, 0x1c, 0x10},    {-0x1p60, 0x1f, 0x1c}, {0.5, 0x1e, 0x10}, {-0.5, 0x1f, 0x18},
+               {0x1p63, 0x10, 0},       {-0x1p63, 0x1f, 0x1f}, {0x1p64, 0, 0},    {INFINITY, 0, 0},
+               {-INFINITY, 0x1f, 0x1f}, {-1e300, 0x1f, 0x1f}};
+  vxm_field *fields[2];
   vxm_grid *grid;
-  assert_int_equal(vxm_field_create(&field, context, &row, VXM_FIELD_LABELS, VXM_UINT64, values, NULL),
+  assert_int_equal(vxm_field_create(&fields[0], context, &row, VXM_FIELD_LABELS, VXM_UINT64, whole, NULL),
                    VXM_OK);
-  assert_int_equal(vxm_field_threshold(&grid, field, &from, NULL), VXM_OK);
-  assert_false(vxm_grid_get(grid, 0, 0, 0));
-  assert_true(vxm_grid_get(grid, 0, 0, 1) && vxm_grid_get(grid, 0, 0, 2));
-  vxm_grid_destroy(grid);
-  vxm_field_destroy(field);
+  assert_int_equal(vxm_field_create(&fields[1], context, &row, VXM_FIELD_LABELS, VXM_INT64, with_sign, NULL),
+                   VXM_OK);
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++)
+    for (int f = 0; f < 2; f++)
+      for (int below = 0; below < 2; below++) {
+        const vxm_threshold_options options = {1, !below, cases[c].bound, below, cases[c].bound};
+        unsigned bits = f == 0 ? cases[c].whole : cases[c].with_sign;
+        assert_int_equal(vxm_field_threshold(&grid, fields[f], &options, NULL), VXM_OK);
+        for (int64_t v = 0; v < 5; v++)
+          if (vxm_grid_get(grid, 0, 0, v) != ((bits >> v & 1) != (unsigned)below))
+            fail_msg("case %zu, field %d, value %lld", c, f, (long long)v);
+        vxm_grid_destroy(grid);
+      }
+  vxm_field_destroy(fields[0]);
+  vxm_field_destroy(fields[1]);
   vxm_context_destroy(context);
 }
 
