@@ -124,7 +124,10 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   X(vxm_context_create, 3, 1, vxm_context_create(P(0, &out.context), P(1, &context_options), P(2, &error))) \
   X(vxm_context_destroy, 1, 0, (vxm_context_destroy(NULL), VXM_OK))                                         \
   X(vxm_context_threads, 1, 0, GIVES(vxm_context_threads(P(0, context))))                                   \
-  X(vxm_context_peak_bytes, 1, 1, GIVES(vxm_context_peak_bytes(P(0, context))))
+  X(vxm_context_peak_bytes, 1, 1, GIVES(vxm_context_peak_bytes(P(0, context))))                             \
+  X(vxm_context_hold_files, 2, 1, vxm_context_hold_files(P(0, context), P(1, &error)))                      \
+  X(vxm_context_publish_files, 2, 0, vxm_context_publish_files(P(0, context), P(1, &error)))                \
+  X(vxm_context_drop_files, 1, 0, (vxm_context_drop_files(P(0, context)), VXM_OK))
 
 #define MESH_CALLS(X)                                                                                      \
   X(vxm_mesh_create, 4, 5, vxm_mesh_create(P(0, &out.mesh), P(1, context), P(2, &arrays), P(3, &error)))   \
