@@ -385,10 +385,16 @@ vxm_status vxm_file_write(vxm_context *context, const char *path, const void *da
                           vxm_error *error) {
   if (!path || (!data && size > 0))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "file: an argument is NULL");
+  vxm_context *owner;
   vxm_output *output;
-  vxm_status status = vxm_output_open(&output, context, path, error);
+  vxm_status status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
     return status;
-  vxm_output_write(output, data, size);
-  return vxm_output_commit(output, error);
+  status = vxm_output_open(&output, owner, path, error);
+  if (status == VXM_OK) {
+    vxm_output_write(output, data, size);
+    status = vxm_output_commit(output, error);
+  }
+  vxm_context_release(owner);
+  return status;
 }

@@ -68,6 +68,7 @@ static struct {
   vxm_sparse *sparse;
   vxm_field *field;
   vxm_field_range range;
+  vxm_reading_info reading;
   vxm_census census;
   vxm_repair_report repair;
   vxm_verification verification;
@@ -127,6 +128,8 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   X(vxm_context_peak_bytes, 1, 1, GIVES(vxm_context_peak_bytes(P(0, context))))                             \
   X(vxm_context_hold_files, 2, 1, vxm_context_hold_files(P(0, context), P(1, &error)))                      \
   X(vxm_context_publish_files, 2, 0, vxm_context_publish_files(P(0, context), P(1, &error)))                \
+  X(vxm_file_write, 4, 6,                                                                                   \
+    vxm_file_write(P(0, context), P(1, "out.off"), P(2, off_text), strlen(off_text), P(3, &error)))         \
   X(vxm_context_drop_files, 1, 0, (vxm_context_drop_files(P(0, context)), VXM_OK))
 
 #define MESH_CALLS(X)                                                                                      \
@@ -140,6 +143,7 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   X(vxm_mesh_read_memory_with, 6, 5,                                                                       \
     vxm_mesh_read_memory_with(P(0, &out.mesh), P(1, context), P(2, off_text), strlen(off_text), P(3, "x"), \
                               P(4, &read_options), P(5, &error)))                                          \
+  X(vxm_reading_find, 2, 1, vxm_reading_find(P(0, &out.reading), P(1, &error)))                            \
   X(vxm_mesh_write, 4, 3, vxm_mesh_write(P(0, mesh), P(1, "out.off"), P(2, &mesh_write), P(3, &error)))    \
   X(vxm_mesh_destroy, 1, 0, (vxm_mesh_destroy(NULL), VXM_OK))                                              \
   X(vxm_mesh_vertex_count, 1, 1, GIVES(vxm_mesh_vertex_count(P(0, mesh))))                                 \
