@@ -98,7 +98,8 @@ typedef struct tally {
 typedef struct search {
   const vxm_soup *soup;
   const uint32_t *map;
-  uint8_t *kinds, *even;
+  uint8_t *kinds;
+  vxm_copies *copies;
   unsigned bucket_shift;
   vxm_buckets buckets;
   uint32_t *tables; /**< one hash table per worker: place of a record in its bucket + 1, or 0 */
@@ -171,13 +172,17 @@ static vxm_repeat count_face(tally *t, bool backward) {
   return theirs > 0 ? VXM_REPEAT_OPPOSITE : VXM_REPEAT_NONE;
 }
 
-static void mark_even(const search *s, const uint64_t *records, size_t count, const tally *tallies) {
+/** Tells of every face of a bucket what it repeats. */
+static void list_copies(const search *s, const uint64_t *records, size_t count, const tally *tallies) {
   for (size_t i = 0; i < count; i++) {
-    size_t face = record_face(records[i]);
-    const tally *t = &tallies[s->kinds[face] == VXM_REPEAT_NONE ? i : tallies[i].forward];
-    bool one_way = t->forward == 0 || t->backward == 0;
-    if ((t->forward + t->backward) % 2 == 0)
-      s->even[face] = one_way ? VXM_EVEN_ONE_WAY : VXM_EVEN;
+    size_t face = record_face(records[i]), first = s->kinds[face] == VXM_REPEAT_NONE ? i : tallies[i].forward;
+    const tally *t = &tallies[first];
+    bool backward = records[i] & 1;
+    vxm_copies *c = &s->copies[face];
+    c->first = record_face(records[first]);
+    c->turned = backward != (records[first] & 1);
+    c->same = backward ? t->backward : t->forward;
+    c->opposite = backward ? t->forward : t->backward;
   }
 }
 
@@ -198,24 +203,28 @@ static void search_bucket(size_t bucket, int worker, void *payload) {
       table[slot] = (uint32_t)i + 1;
     else
       tallies[i].forward = table[slot] - 1;
-    vxm_repeat kind = count_face(&tallies[table[slot] - 1], records[i] & 1);
+    tally *of_kind = &tallies[table[slot] - 1];
+    if (s->copies)
+      s->copies[record_face(records[i])].rank = records[i] & 1 ? of_kind->backward : of_kind->forward;
+    vxm_repeat kind = count_face(of_kind, records[i] & 1);
     same += kind == VXM_REPEAT_SAME;
     if (s->kinds)
       s->kinds[record_face(records[i])] = (uint8_t)kind;
   }
   for (size_t i = 0; i < count; i++)
     pairs += tallies[i].forward < tallies[i].backward ? tallies[i].forward : tallies[i].backward;
-  if (s->even)
-    mark_even(s, records, count, tallies);
+  if (s->copies)
+    list_copies(s, records, count, tallies);
   atomic_fetch_add_explicit(&s->same, same, memory_order_relaxed);
   atomic_fetch_add_explicit(&s->opposite_pairs, pairs, memory_order_relaxed);
 }
 
 vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const vxm_soup *soup,
-                               const uint32_t *vertex_map, uint8_t *kinds, uint8_t *even, vxm_error *error) {
+                               const uint32_t *vertex_map, uint8_t *kinds, vxm_copies *copies,
+                               vxm_error *error) {
   *out = (vxm_duplicates){0};
   size_t bucket_count = vxm_buckets_advise(soup->face_count);
-  search s = {.soup = soup, .map = vertex_map, .kinds = kinds, .even = even};
+  search s = {.soup = soup, .map = vertex_map, .kinds = kinds, .copies = copies};
   s.bucket_shift = 64 - (unsigned)__builtin_ctzll(bucket_count);
   vxm_status status =
       vxm_buckets_fill(&s.buckets, context, soup->face_count, bucket_count, emit_faces, &s, error);
@@ -223,8 +232,8 @@ vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const 
     return status;
   if (kinds && soup->face_count > 0)
     memset(kinds, VXM_REPEAT_NONE, soup->face_count);
-  if (even && soup->face_count > 0)
-    memset(even, 0, soup->face_count);
+  for (size_t f = 0; copies && f < soup->face_count; f++)
+    copies[f] = (vxm_copies){.first = f, .same = 1};
   size_t workers = (size_t)vxm_context_threads(context);
   s.table_size = table_slots(s.buckets.largest);
   vxm_error local = VXM_ERROR_INIT;

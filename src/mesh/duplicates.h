@@ -11,13 +11,13 @@ typedef enum vxm_repeat {
   VXM_REPEAT_OPPOSITE  /**< repeats an earlier face with the opposite orientation only */
 } vxm_repeat;
 
-/** Whether the faces that repeat each other are an even number, so that edges are as even with none of them
- * as with all. */
-typedef enum vxm_even {
-  VXM_EVEN_NOT = 0,
-  VXM_EVEN,        /**< of both orientations */
-  VXM_EVEN_ONE_WAY /**< all of the same orientation */
-} vxm_even;
+/** What a face repeats. A face with fewer than three distinct corners repeats only itself. */
+typedef struct vxm_copies {
+  size_t first;            /**< the first face with its corners, in either orientation */
+  uint32_t rank;           /**< faces before it that have its corners in its own orientation */
+  uint32_t same, opposite; /**< faces in all, itself among them, of its orientation and of the other */
+  bool turned;             /**< it runs the other way than the first */
+} vxm_copies;
 
 typedef struct vxm_duplicates {
   size_t same;           /**< faces beyond the first of each kind and orientation */
@@ -30,11 +30,12 @@ typedef struct vxm_duplicates {
  *
  * @param vertex_map vertex to take in place of each vertex, or NULL
  * @param kinds      face_count elements that get a vxm_repeat each; may be NULL
- * @param even       face_count elements that get a vxm_even each; may be NULL, as it is if kinds is
+ * @param copies     face_count elements; may be NULL, as it is if kinds is
  *
  * Linear time, also in the corners of large polygons.
  */
 vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const vxm_soup *soup,
-                               const uint32_t *vertex_map, uint8_t *kinds, uint8_t *even, vxm_error *error);
+                               const uint32_t *vertex_map, uint8_t *kinds, vxm_copies *copies,
+                               vxm_error *error);
 
 #endif

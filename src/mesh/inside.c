@@ -65,7 +65,7 @@ static void for_each_triangle(const vxm_inside *inside, triangle_fn visit, void 
     /* in an order that does not change when the face is reversed, nor then does the rounding */
     for (size_t c = 2; c < count && finite; c++) {
       uint32_t p = corner[c - 1], q = corner[c];
-      visit(&(triangle){{corner[0], p < q ? p : q, p < q ? q : p}}, payload);
+      visit(&(triangle){{corner[0], p < q ? p : q, p < q ? q : p}, p > q}, payload);
     }
   }
 }
@@ -175,8 +175,10 @@ static bool edge_crosses(const vxm_inside *inside, plane across, uint32_t a, uin
   return bv > av ? turn > 0 : turn < 0;
 }
 
-/** Height of the triangle over the point, relative to it. */
-static double height_over(const vxm_inside *inside, plane across, const triangle *t, const double point[3]) {
+/** Height of the triangle over the point, relative to it. `turn`: 1 if its corners run to the left as seen
+ * from above, else -1. */
+static double height_over(const vxm_inside *inside, plane across, const triangle *t, const double point[3],
+                          int *turn) {
   double d[3][3];
   for (int c = 0; c < 3; c++) {
     d[c][0] = coordinate(inside, t->v[c], across.u) - point[across.u];
@@ -190,14 +192,17 @@ static double height_over(const vxm_inside *inside, plane across, const triangle
     weight += part;
     sum += part * d[c][2];
   }
+  *turn = (weight > 0) != t->reversed ? 1 : -1;
   return weight != 0 ? sum / weight : d[0][2];
 }
 
-vxm_status vxm_inside_vote(vxm_inside *inside, const double point[3], int axis, int *votes,
-                           vxm_error *error) {
+/** Calls the visitor for every triangle that the line through the point along an axis meets. */
+typedef void (*crossing_fn)(double height, int turn, void *payload);
+
+static vxm_status for_each_crossing(vxm_inside *inside, const double point[3], int axis, crossing_fn visit,
+                                    void *payload, vxm_error *error) {
   vxm_inside_bins *bins = &inside->bins[axis];
   plane across = plane_across(axis);
-  *votes = 0;
   for (int a = 0; a < 3; a++)
     if (!(point[a] >= inside->box[a] && point[a] <= inside->box[a + 3]))
       return VXM_OK;
@@ -206,17 +211,54 @@ vxm_status vxm_inside_vote(vxm_inside *inside, const double point[3], int axis, 
     return status;
   size_t cell = cell_of(bins, 1, point[across.v] - inside->box[across.v]) * bins->cells[0] +
                 cell_of(bins, 0, point[across.u] - inside->box[across.u]);
-  int odd[2] = {0, 0};
   for (size_t i = bins->begin[cell]; i < bins->begin[cell + 1]; i++) {
     const triangle *t = &bins->triangles[i];
     bool covers = false;
     for (int c = 0; c < 3; c++)
       covers ^= edge_crosses(inside, across, t->v[c], t->v[(c + 1) % 3], point);
-    if (covers)
-      odd[height_over(inside, across, t, point) > 0] ^= 1;
+    if (!covers)
+      continue;
+    int turn;
+    double height = height_over(inside, across, t, point, &turn);
+    visit(height, turn, payload);
   }
-  *votes = odd[0] + odd[1];
   return VXM_OK;
+}
+
+static void count_odd(double height, int turn, void *payload) {
+  int *odd = payload;
+  (void)turn;
+  odd[height > 0] ^= 1;
+}
+
+vxm_status vxm_inside_vote(vxm_inside *inside, const double point[3], int axis, int *votes,
+                           vxm_error *error) {
+  int odd[2] = {0, 0};
+  vxm_status status = for_each_crossing(inside, point, axis, count_odd, odd, error);
+  *votes = status == VXM_OK ? odd[0] + odd[1] : 0;
+  return status;
+}
+
+typedef struct winding {
+  double gap;
+  int above, below;
+} winding;
+
+static void count_turns(double height, int turn, void *payload) {
+  winding *w = payload;
+  if (height > w->gap)
+    w->above += turn;
+  else if (height < -w->gap)
+    w->below -= turn;
+}
+
+vxm_status vxm_inside_winding(vxm_inside *inside, const double point[3], int axis, double gap, int *above,
+                              int *below, vxm_error *error) {
+  winding w = {.gap = gap};
+  vxm_status status = for_each_crossing(inside, point, axis, count_turns, &w, error);
+  *above = w.above;
+  *below = w.below;
+  return status;
 }
 
 void vxm_inside_release(vxm_inside *inside) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Whether points lie inside a set of faces, by crossings of lines along the axes. */
+/** Whether points lie inside a set of faces, and how often it winds round them, by crossings of lines along
+ * the axes. */
 #ifndef VXM_MESH_INSIDE_H
 #define VXM_MESH_INSIDE_H
 
@@ -13,6 +14,7 @@ typedef struct vxm_inside_bins {
   size_t *begin;      /**< cells[0] * cells[1] + 1 */
   struct vxm_inside_triangle {
     uint32_t v[3];
+    bool reversed; /**< the face has the corners in the other order */
   } * triangles;
 } vxm_inside_bins;
 
@@ -37,6 +39,17 @@ typedef struct vxm_inside {
  * odd as it should. The first call along an axis sorts the faces into cells, in time linear in their corners.
  */
 vxm_status vxm_inside_vote(vxm_inside *inside, const double point[3], int axis, int *votes, vxm_error *error);
+/**
+ * As vxm_inside_vote, with the turn of the faces counted: how often they wind round a point, as rays up and
+ * down the axis tell it. The two are equal for faces that balance along every edge (as many sides run along
+ * it one way as the other); for outward faces of a body they are 1 within it.
+ *
+ * @param gap         scaled; faces that the line meets nearer to the point than this are passed over
+ * @param[out] above  just above the point and those faces
+ * @param[out] below  just below them
+ */
+vxm_status vxm_inside_winding(vxm_inside *inside, const double point[3], int axis, double gap, int *above,
+                              int *below, vxm_error *error);
 /** Frees the bins. */
 void vxm_inside_release(vxm_inside *inside);
 

@@ -1,37 +1,63 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/duplicates.h"
-#include "repair/fins.h"
+#include "repair/repeated_faces.h"
 
-/** Leaves the first of all faces with the same corners in the same or the opposite cyclic order, and none of
- * the faces of fins. */
+/** What is counted: faces that go, and how many stay beside another one with the same corners. */
+static void count_faces(vxm_work *work, const vxm_copies *copies, const uint8_t *kinds, const uint8_t *remove,
+                        uint8_t *seen) {
+  int64_t same = 0, opposite = 0;
+  for (size_t f = 0; f < work->soup->face_count; f++) {
+    same += remove[f] && kinds[f] == VXM_REPEAT_SAME;
+    opposite += remove[f] && kinds[f] != VXM_REPEAT_SAME;
+    work->shared += !remove[f] && seen[copies[f].first];
+    seen[copies[f].first] |= !remove[f];
+  }
+  if (same + opposite > 0)
+    vxm_work_note_marked(work, same > 0 ? VXM_PASS_DUPLICATES : VXM_PASS_OPPOSITE_DUPLICATES, remove);
+  work->counts[VXM_PASS_DUPLICATES] += same;
+  work->counts[VXM_PASS_OPPOSITE_DUPLICATES] += opposite;
+}
+
+static vxm_status remove_repeated(vxm_work *work, const uint8_t *kinds, bool *changed, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  size_t faces = work->soup->face_count;
+  vxm_duplicates found;
+  uint8_t *remove = NULL, *seen = NULL, *again = NULL;
+  vxm_copies *copies = vxm_work_scratch(work, faces, sizeof *copies, &status, error);
+  if (copies)
+    again = vxm_work_scratch(work, faces, sizeof *again, &status, error);
+  if (again)
+    remove = vxm_work_scratch(work, faces, sizeof *remove, &status, error);
+  if (remove)
+    seen = vxm_work_scratch(work, faces, sizeof *seen, &status, error);
+  if (seen)
+    status = vxm_duplicates_find(&found, work->context, work->soup, NULL, again, copies, error);
+  if (status == VXM_OK)
+    status = vxm_repeated_faces_mark(work, copies, remove, error);
+  if (status == VXM_OK) {
+    count_faces(work, copies, kinds, remove, seen);
+    *changed = vxm_work_remove_faces(work, remove) > 0;
+  }
+  vxm_free(work->context, seen);
+  vxm_free(work->context, remove);
+  vxm_free(work->context, again);
+  vxm_free(work->context, copies);
+  return status;
+}
+
+/** Of the faces that repeat each other leaves as many as are needed. */
 vxm_status vxm_pass_duplicates(vxm_work *work, bool *changed, vxm_error *error) {
   *changed = false;
   work->shared = 0;
   if (work->options.keep_duplicates)
     return VXM_OK;
   vxm_status status = VXM_OK;
-  vxm_soup *soup = work->soup;
-  uint8_t *kinds = vxm_work_scratch(work, soup->face_count, sizeof *kinds, &status, error), *even = NULL;
-  if (kinds)
-    even = vxm_work_scratch(work, soup->face_count, sizeof *even, &status, error);
+  uint8_t *kinds = vxm_work_scratch(work, work->soup->face_count, sizeof *kinds, &status, error);
   vxm_duplicates found = {0};
-  if (even)
-    status = vxm_duplicates_find(&found, work->context, soup, NULL, kinds, even, error);
-  bool any = found.same + found.opposite_pairs > 0;
-  size_t kept = 0;
-  /* a face that is not the first of its orientation repeats that one; the first may repeat the other's */
-  if (status == VXM_OK && any)
-    status = vxm_fins_mark(work, even, kinds, &kept, error);
-  work->shared = (int64_t)kept;
-  if (status == VXM_OK && (found.same > kept || found.opposite_pairs > 0)) {
-    int64_t same = (int64_t)(found.same - kept);
-    vxm_work_note_marked(work, same > 0 ? VXM_PASS_DUPLICATES : VXM_PASS_OPPOSITE_DUPLICATES, kinds);
-    int64_t removed = vxm_work_remove_faces(work, kinds);
-    work->counts[VXM_PASS_DUPLICATES] += same;
-    work->counts[VXM_PASS_OPPOSITE_DUPLICATES] += removed - same;
-    *changed = true;
-  }
-  vxm_free(work->context, even);
+  if (kinds)
+    status = vxm_duplicates_find(&found, work->context, work->soup, NULL, kinds, NULL, error);
+  if (status == VXM_OK && found.same + found.opposite_pairs > 0)
+    status = remove_repeated(work, kinds, changed, error);
   vxm_free(work->context, kinds);
   return status;
 }

@@ -2,6 +2,7 @@
 #include "repair/repair.h"
 
 #include "mesh/census.h"
+#include "repair/bodies.h"
 #include "repair/work.h"
 
 #include <math.h>
@@ -201,6 +202,8 @@ static vxm_status run_passes(vxm_work *work, vxm_error *error) {
     vxm_track_settle(work->track, work->soup);
   if (status == VXM_OK)
     status = run_further(work, error);
+  if (status == VXM_OK && work->divides)
+    status = vxm_pass_bodies(work, &changed, error);
   if (status == VXM_OK)
     count_turned(work);
   return status;
@@ -272,10 +275,10 @@ static vxm_status repair(vxm_work *work, const vxm_soup *in, const vxm_repair_op
 
 /** `*shared` becomes the number of faces that repeat others and stayed, at the level clean. */
 static vxm_status run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
-                      const vxm_repair_options *options, int64_t *shared, vxm_error *error) {
+                      const vxm_repair_options *options, bool divides, int64_t *shared, vxm_error *error) {
   *out = NULL;
   vxm_repair_report made = {0};
-  vxm_work work = {.crossings = {-1, -1}};
+  vxm_work work = {.divides = divides, .crossings = {-1, -1}};
   vxm_status status = report ? vxm_soup_census(&made.before, in, error) : VXM_OK;
   if (status == VXM_OK)
     status = repair(&work, in, options, error);
@@ -295,21 +298,21 @@ static vxm_status run(vxm_soup **out, vxm_repair_report *report, const vxm_soup 
 vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                           const vxm_repair_options *options, vxm_error *error) {
   int64_t shared;
-  return run(out, report, in, options, &shared, error);
+  return run(out, report, in, options, false, &shared, error);
 }
 
 vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                               const vxm_repair_options *options, vxm_error *error) {
   int64_t shared;
   vxm_repair_options apart = VXM_REPAIR_OPTIONS_INIT;
-  vxm_status status = run(out, report, in, options, &shared, error);
   if (options)
     apart = *options;
+  vxm_status status = run(out, report, in, options, !apart.keep_orientation, &shared, error);
   if (status != VXM_OK || shared == 0 || apart.keep_orientation)
     return status;
   vxm_soup_destroy(*out);
   apart.level = VXM_LEVEL_MANIFOLD;
-  return run(out, report, in, &apart, &shared, error);
+  return run(out, report, in, &apart, true, &shared, error);
 }
 
 vxm_status vxm_repair_try(vxm_pass_finding findings[VXM_PASS_COUNT], const vxm_soup *in,

@@ -47,6 +47,7 @@ typedef struct vxm_work {
   vxm_soup *soup;
   vxm_context *context;
   vxm_repair_options options;
+  bool divides;    /**< bodies that share faces, edges or vertices each get their own in the end */
   uint8_t *gone;   /**< vertex_count; 1 = removed or merged by a pass that counted it */
   uint8_t *used;   /**< vertex_count; scratch of vxm_work_extent */
   uint8_t *turned; /**< face_count, or NULL as long as no face was turned: see vxm_turned */

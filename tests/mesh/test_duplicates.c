@@ -49,18 +49,25 @@ static vxm_repeat kind_by_search(const vxm_soup *soup, const uint32_t *map, size
   return opposite ? VXM_REPEAT_OPPOSITE : VXM_REPEAT_NONE;
 }
 
-/** Whether an even number of faces, with this one, repeat each other. */
-static bool even_by_search(const vxm_soup *soup, const uint32_t *map, size_t f) {
-  size_t count, other, like = 0;
+static vxm_copies copies_by_search(const vxm_soup *soup, const uint32_t *map, size_t f) {
+  size_t count, other;
   const uint32_t *face = vxm_face(soup, f, &count);
+  vxm_copies copies = {.first = SIZE_MAX};
   if (distinct_corners(face, count, map) < 3)
-    return false;
+    return (vxm_copies){.first = f, .same = 1};
   for (size_t g = 0; g < soup->face_count; g++) {
     const uint32_t *second = vxm_face(soup, g, &other);
-    like += other == count &&
-            (repeats(face, second, count, map, false) || repeats(face, second, count, map, true));
+    bool same = other == count && repeats(face, second, count, map, false);
+    bool opposite = !same && other == count && repeats(face, second, count, map, true);
+    if ((same || opposite) && copies.first == SIZE_MAX) {
+      copies.first = g;
+      copies.turned = opposite;
+    }
+    copies.same += same;
+    copies.opposite += opposite;
+    copies.rank += same && g < f;
   }
-  return like % 2 == 0;
+  return copies;
 }
 
 /** Faces later than f that make pairs with it: used to count pairs of opposite faces greedily. */
@@ -97,14 +104,20 @@ static void equals_search(void **state) {
     for (uint32_t v = 0; v < vertices; v++)
       map_array[v] = v > 0 && vxm_rng_below(&rng, 4) == 0 ? map_array[vxm_rng_below(&rng, v)] : v;
     const uint32_t *map = round % 2 ? map_array : NULL;
-    uint8_t kinds[64], even[64];
+    uint8_t kinds[64];
+    vxm_copies copies[64];
     vxm_duplicates found, counted;
-    assert_int_equal(vxm_duplicates_find(&found, context, soup, map, kinds, even, NULL), VXM_OK);
+    assert_int_equal(vxm_duplicates_find(&found, context, soup, map, kinds, copies, NULL), VXM_OK);
     assert_int_equal(vxm_duplicates_find(&counted, context, soup, map, NULL, NULL, NULL), VXM_OK);
     size_t same = 0;
     for (size_t f = 0; f < soup->face_count; f++) {
       assert_int_equal(kinds[f], kind_by_search(soup, map, f));
-      assert_int_equal(even[f] != VXM_EVEN_NOT, even_by_search(soup, map, f));
+      vxm_copies wanted = copies_by_search(soup, map, f);
+      assert_int_equal(copies[f].first, wanted.first);
+      assert_int_equal(copies[f].rank, wanted.rank);
+      assert_int_equal(copies[f].same, wanted.same);
+      assert_int_equal(copies[f].opposite, wanted.opposite);
+      assert_int_equal(copies[f].turned, wanted.turned);
       same += kinds[f] == VXM_REPEAT_SAME;
       seen[kinds[f]]++;
     }

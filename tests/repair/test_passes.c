@@ -217,8 +217,8 @@ static void fins(void **state) {
   /* and for voxelizing each gets its own */
   assert_int_equal(vxm_repair_prepare(&out, &report, soup, NULL, NULL), VXM_OK);
   assert_int_equal(report.shared_faces, 0);
-  assert_int_equal(report.after.components, 2);
-  assert_true(report.after.watertight && report.after.volume > 1.499999 && report.after.volume < 1.500001);
+  assert_int_equal(report.after.components_raw, 2);
+  assert_true(report.after.closed && report.after.volume > 1.499999 && report.after.volume < 1.500001);
   vxm_soup_destroy(out);
   vxm_repair_options as_turned = VXM_REPAIR_OPTIONS_INIT;
   as_turned.keep_orientation = true;
