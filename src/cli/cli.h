@@ -347,6 +347,8 @@ int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value);
 /** CLI_STOP if options about the repair were given with --no-repair. */
 int cli_check_repair(cli_run *cli, bool no_repair, bool repair_options);
 json_t *cli_passes_json(const vxm_repair_report *report);
+/** Warns of parts that the repair has lost. */
+void cli_warn_lost(cli_run *cli, const char *path, const vxm_repair_report *report);
 /** Reads, and repairs unless `options` is NULL. After CLI_FAILED a line was printed and input->mesh is NULL.
  */
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options);

@@ -272,6 +272,7 @@ static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcom
     return refuse(cli, given, outcome);
   if (status != VXM_OK)
     return cli_fail(cli);
+  cli_warn_lost(cli, given->input, &outcome->repair);
   if (outcome->repair.opened_parts > 0)
     cli_warn(cli, "%s: %lld closed parts are open after the repair", given->output,
              (long long)outcome->repair.opened_parts);

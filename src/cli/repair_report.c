@@ -93,6 +93,7 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "ununited_parts", json_integer(repair->ununited_parts));
   json_object_set_new(report, "unparted_vertices", json_integer(repair->unparted_vertices));
   json_object_set_new(report, "shared_faces", json_integer(repair->shared_faces));
+  json_object_set_new(report, "lost_parts", json_integer(repair->lost_parts));
   json_object_set_new(report, "opened_parts", json_integer(repair->opened_parts));
   json_object_set_new(report, "moved", cli_json_number(repair->moved));
   json_object_set_new(report, "before", before);

@@ -35,6 +35,15 @@ json_t *cli_passes_json(const vxm_repair_report *report) {
   return passes;
 }
 
+void cli_warn_lost(cli_run *cli, const char *path, const vxm_repair_report *report) {
+  if (report->lost_parts > 0)
+    cli_warn(
+        cli,
+        "%s: %lld parts enclose less after the repair than before; --keep-duplicates or --weld off may keep "
+        "them, and voxmend voxelize --no-repair takes them as they are",
+        cli_shown(path, "<stdin>"), (long long)report->lost_parts);
+}
+
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options) {
   *input = (cli_input){.path = path};
   double start = cli_clock();
@@ -56,6 +65,7 @@ int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vx
   vxm_mesh_destroy(raw);
   if (status != VXM_OK)
     return cli_fail(cli);
+  cli_warn_lost(cli, path, &input->repair);
   if (vxm_mesh_face_count(input->mesh) > 0)
     return CLI_DONE;
   vxm_mesh_destroy(input->mesh);

@@ -189,14 +189,40 @@ static void count_turned(vxm_work *work) {
   }
 }
 
-static vxm_status run_passes(vxm_work *work, vxm_error *error) {
+/** Whether passes that came so far have taken away faces, or may have made some meet. */
+static bool has_removed(const vxm_work *work) {
+  return count_round(work) > 0 || work->counts[VXM_PASS_NONFINITE] > 0;
+}
+
+/** Looks whether a part is lost; *again: then the repair is to begin anew, with more care. */
+static vxm_status look_for_lost(vxm_work *work, const vxm_soup *in, bool *again, vxm_error *error) {
+  *again = false;
+  if (!has_removed(work))
+    return VXM_OK;
+  vxm_lost_parts lost;
+  vxm_status status = vxm_lost_parts_find(&lost, in, work->soup, error);
+  if (status == VXM_OK && lost.count > 0 && !work->guards) {
+    work->lost = lost;
+    *again = true;
+    return VXM_OK;
+  }
+  work->lost_parts = status == VXM_OK ? (int64_t)lost.count : 0;
+  vxm_lost_parts_free(&lost, work->context);
+  return status;
+}
+
+static vxm_status run_passes(vxm_work *work, const vxm_soup *in, bool *again, vxm_error *error) {
   bool changed;
   vxm_status status = run_first(work, error);
   if (status == VXM_OK)
     status = run_until_quiet(work, error);
   if (status == VXM_OK)
     status = run_pass(work, vxm_pass_orientation, 0.85, &changed, error);
-  if (status == VXM_OK && work->track && work->options.max_change > 0)
+  if (status == VXM_OK)
+    status = look_for_lost(work, in, again, error);
+  if (status != VXM_OK || *again)
+    return status;
+  if (work->track && work->options.max_change > 0)
     status = vxm_track_refer(work->track, work->soup, error);
   if (status == VXM_OK && work->track)
     vxm_track_settle(work->track, work->soup);
@@ -213,7 +239,19 @@ static bool keeps_account(const vxm_repair_options *options) {
   return options->part_changes || options->max_change > 0 || options->intersections;
 }
 
-static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, vxm_error *error) {
+/** Gives the faces of the copy their parts where nothing else does. */
+static vxm_status name_guarded(vxm_work *work, const vxm_soup *in, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  if (!work->guards || work->track)
+    return status;
+  work->soup->face_parts =
+      vxm_work_scratch(work, in->face_count, sizeof *work->soup->face_parts, &status, error);
+  for (size_t f = 0; status == VXM_OK && f < in->face_count; f++)
+    work->soup->face_parts[f] = work->lost.face_part[f];
+  return status;
+}
+
+static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, bool *again, vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t vertices = work->soup->vertex_count;
   work->gone = vxm_work_scratch(work, vertices, sizeof *work->gone, &status, error);
@@ -222,11 +260,17 @@ static vxm_status repair_copy(vxm_work *work, const vxm_soup *in, vxm_error *err
   if (work->used && keeps_account(&work->options))
     status = vxm_track_create(&work->track, work->soup, in, error);
   if (work->used && status == VXM_OK)
-    status = run_passes(work, error);
-  if (status == VXM_OK && work->track)
+    status = name_guarded(work, in, error);
+  if (work->used && status == VXM_OK)
+    status = run_passes(work, in, again, error);
+  if (status == VXM_OK && !*again && work->track)
     status = vxm_track_finish(work->track, work->soup, work->options.max_change, error);
-  if (status == VXM_OK && work->options.intersections)
+  if (status == VXM_OK && !*again && work->options.intersections)
     status = vxm_track_count_crossings(work->track, work->soup, work->crossings, error);
+  if (!work->track && work->soup->face_parts) { /* they were for the guard alone */
+    vxm_free(work->context, work->soup->face_parts);
+    work->soup->face_parts = NULL;
+  }
   vxm_work_touch(work);
   vxm_track_destroy(work->track);
   vxm_free(work->context, work->turned);
@@ -244,6 +288,7 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   report->self_intersections_before = work->crossings[0];
   report->self_intersections_after = work->crossings[1];
   report->unparted_vertices = work->together;
+  report->lost_parts = work->lost_parts;
   report->shared_faces = work->options.level == VXM_LEVEL_CLEAN ? work->shared : 0;
   for (size_t i = 0; i < work->soup->part_count; i++) {
     const vxm_part_change *part = &work->soup->part_changes[i];
@@ -257,19 +302,31 @@ static void list_passes(vxm_repair_report *report, const vxm_work *work) {
   }
 }
 
-/** Repairs a copy; after a failure there is none. */
+/** Repairs a copy; after a failure there is none. Where that would lose a part it is done once more, with
+ * that one guarded. */
 static vxm_status repair(vxm_work *work, const vxm_soup *in, const vxm_repair_options *options,
                          vxm_error *error) {
-  work->context = in->context;
-  vxm_status status = vxm_repair_check(&work->options, options, error);
-  if (status == VXM_OK)
-    status = vxm_soup_copy(&work->soup, in, error);
-  if (status == VXM_OK)
-    status = repair_copy(work, in, error);
-  if (status == VXM_OK)
-    return VXM_OK;
-  vxm_soup_destroy(work->soup);
-  work->soup = NULL;
+  const bool divides = work->divides;
+  bool again = false;
+  vxm_lost_parts lost = {0};
+  vxm_status status;
+  do {
+    *work = (vxm_work){
+        .context = in->context, .divides = divides, .guards = again, .lost = lost, .crossings = {-1, -1}};
+    again = false;
+    status = vxm_repair_check(&work->options, options, error);
+    if (status == VXM_OK)
+      status = vxm_soup_copy(&work->soup, in, error);
+    if (status == VXM_OK)
+      status = repair_copy(work, in, &again, error);
+    lost = work->lost;
+    if (status != VXM_OK || again)
+      vxm_soup_destroy(work->soup);
+  } while (status == VXM_OK && again);
+  vxm_lost_parts_free(&lost, in->context);
+  work->lost = lost;
+  if (status != VXM_OK)
+    work->soup = NULL;
   return status;
 }
 
@@ -278,7 +335,7 @@ static vxm_status run(vxm_soup **out, vxm_repair_report *report, const vxm_soup 
                       const vxm_repair_options *options, bool divides, int64_t *shared, vxm_error *error) {
   *out = NULL;
   vxm_repair_report made = {0};
-  vxm_work work = {.divides = divides, .crossings = {-1, -1}};
+  vxm_work work = {.divides = divides};
   vxm_status status = report ? vxm_soup_census(&made.before, in, error) : VXM_OK;
   if (status == VXM_OK)
     status = repair(&work, in, options, error);

@@ -239,6 +239,8 @@ static void settle(deciding *d, const uint8_t *within) {
     const vxm_copies *c = &d->copies[face];
     bool balanced = d->groups.groups[group].balanced, sheet = d->kinds[face] == SHEET;
     uint32_t *keep = &d->keep[2 * face];
+    if (vxm_work_guards(d->work, face))
+      continue;
     bool drifts = f->touches && f->unbalanced && balanced; /* one side of it would turn what is balanced */
     if (within[root] ||
         (sheet && f->hangs && f->rimmed && d->fin_area[group] <= FIN_PART * d->rest_area[group]))

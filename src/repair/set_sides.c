@@ -62,7 +62,8 @@ static void find_box(vxm_inside *inside) {
   }
 }
 
-/** The middle of the largest triangle from the first corner: polygons need not be plane, and rays meet these. */
+/** The middle of the largest triangle from the first corner: polygons need not be plane, and rays meet these.
+ */
 static void find_middle(const asking *a, size_t face, double middle[3]) {
   size_t count, best = 2;
   const uint32_t *corner = vxm_face(a->work->soup, face, &count);

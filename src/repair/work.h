@@ -5,6 +5,7 @@
 
 #include "mesh/edges.h"
 #include "mesh/frame.h"
+#include "repair/lost_parts.h"
 #include "repair/track.h"
 
 typedef enum vxm_pass {
@@ -65,6 +66,10 @@ typedef struct vxm_work {
   int64_t crossings[2]; /**< self-intersections before and after, or -1 */
   int64_t together;     /**< vertices that were to be moved apart and could not be */
   vxm_track *track;     /**< what becomes of the parts, or NULL */
+  vxm_lost_parts lost;  /**< parts that a first run would have lost; while soup->face_parts tells a face's
+                           part, no  kind of repeated face of theirs goes altogether */
+  bool guards;          /**< this run is to keep those */
+  int64_t lost_parts;   /**< that are lost for all that */
 } vxm_work;
 
 /** Runs a pass, adds to the counts and says whether it changed anything. */
@@ -118,6 +123,10 @@ static inline double vxm_work_round(const vxm_work *work, double x) {
 /** Whether the level asks for this much. */
 static inline bool vxm_work_reaches(const vxm_work *work, vxm_level level) {
   return work->options.level >= level;
+}
+/** Whether a face is of a part that a first run would have lost. */
+static inline bool vxm_work_guards(const vxm_work *work, size_t face) {
+  return work->guards && work->soup->face_parts && work->lost.lost[work->soup->face_parts[face]];
 }
 /** Says that a pass changes a vertex or a face, if it is the first one of the pass. */
 void vxm_work_note_vertex(vxm_work *work, vxm_pass pass, size_t vertex);

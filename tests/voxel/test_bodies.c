@@ -196,6 +196,7 @@ static void assert_union(vxm_context *context, uint64_t seed, const manner *how,
     vxm_soup *clean;
     vxm_repair_report report;
     assert_int_equal(vxm_repair_run(&clean, &report, soup, NULL, NULL), VXM_OK);
+    assert_int_equal(report.lost_parts, 0);
 
     vxm_soup_destroy(soup);
     soup = clean;
