@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "mesh/components.h"
+#include "mesh/edges.h"
 #include "mesh/frame.h"
 #include "mesh/weld.h"
 
@@ -13,6 +14,9 @@ enum { PARTS_ASKED = 1 << 15, CELLS_MAX = 256 };
 
 /** Of what a part enclosed: with no more than this gone it is not lost. */
 static const double LOST = 0.01;
+
+/** Of the longest side of the bounds: what is not thicker is between faces that lie on each other. */
+static const double NO_DEPTH = 1e-7;
 
 /** A line along the axis that is asked, through the box of a part. */
 typedef struct line {
@@ -36,10 +40,11 @@ typedef struct asking {
   vxm_context *context;
   const vxm_soup *before, *after;
   const uint32_t *part_before;
+  uint8_t *open; /**< per part of `before` */
   uint32_t *part_after;
   size_t parts, per_side; /**< lines through a part: per_side x per_side along each axis */
   double *box;            /**< per part: x0 y0 z0 x1 y1 z1 */
-  double bounds[6];
+  double bounds[6], no_depth;
   int axis, u, v;
   line *lines;
   size_t line_count;
@@ -53,13 +58,40 @@ typedef struct asking {
 
 /* ---- Parts and lines ---- */
 
-static vxm_status find_parts(const vxm_soup *soup, uint32_t *part, size_t *count, vxm_error *error) {
+/** Which parts have an edge with an odd number of sides: those enclose nothing for sure. */
+static vxm_status find_open(const vxm_soup *soup, const uint32_t *map, const uint32_t *part, uint8_t *open,
+                            vxm_error *error) {
+  vxm_edges edges;
+  vxm_status status = vxm_edges_build(&edges, soup->context, soup, map, error);
+  uint32_t *part_at =
+      status == VXM_OK ? vxm_alloc(soup->context, soup->vertex_count, sizeof *part_at, error) : NULL;
+  if (part_at) {
+    for (size_t f = 0; f < soup->face_count; f++)
+      for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
+        part_at[map[soup->indices[c]]] = part[f];
+    for (size_t e = 0; e < edges.count; e++)
+      if (vxm_edge_is_odd(&edges.edges[e]))
+        open[part_at[edges.edges[e].a]] = 1;
+  } else if (status == VXM_OK)
+    status = error->code;
+  vxm_free(soup->context, part_at);
+  vxm_edges_destroy(&edges);
+  return status;
+}
+
+/** @param[out] open per part, owned by the caller; NULL = it is not asked for */
+static vxm_status find_parts(const vxm_soup *soup, uint32_t *part, size_t *count, uint8_t **open,
+                             vxm_error *error) {
   uint32_t *map = vxm_alloc(soup->context, soup->vertex_count, sizeof *map, error);
   if (!map)
     return error->code;
   vxm_status status = vxm_weld_exact(soup->context, soup->positions, soup->vertex_count, map, NULL, error);
   if (status == VXM_OK)
     status = vxm_components(soup->context, soup, map, part, count, error);
+  if (status == VXM_OK && open) {
+    *open = vxm_calloc(soup->context, *count, sizeof **open, error);
+    status = *open ? find_open(soup, map, part, *open, error) : error->code;
+  }
   vxm_free(soup->context, map);
   return status;
 }
@@ -95,7 +127,7 @@ static void place_lines(asking *a) {
   a->line_count = 0;
   for (size_t p = 0; p < a->parts; p += step) {
     const double *box = a->box + 6 * p;
-    for (size_t i = 0; i < a->per_side * a->per_side && box[a->u] <= box[a->u + 3]; i++) {
+    for (size_t i = 0; i < a->per_side * a->per_side && !a->open[p] && box[a->u] <= box[a->u + 3]; i++) {
       uint64_t key = (p * 3 + (uint64_t)a->axis) << 16 | i << 1;
       double x = ((double)(i % a->per_side) + scatter(key)) / (double)a->per_side;
       double y = ((double)(i / a->per_side) + scatter(key + 1)) / (double)a->per_side;
@@ -276,7 +308,7 @@ static void compare_line(asking *a, stretch before, const crossing *begin, const
     double low = k->height, high = k[1].height;
     winding += k->turn;
     const bool inside[2] = {before.winds && winding != 0, before.alternates && (k - before.begin) % 2 == 0};
-    if (!inside[0] && !inside[1])
+    if ((!inside[0] && !inside[1]) || !(high - low > a->no_depth))
       continue;
     double left = high - low - covered(begin, end, low, high);
     for (int kind = 0; kind < 2; kind++) {
@@ -334,7 +366,7 @@ static bool prepare(asking *a) {
   a->lines = a->gone ? vxm_alloc(a->context, lines, sizeof *a->lines, &a->error) : NULL;
   a->in_cell = a->lines ? vxm_alloc(a->context, lines, sizeof *a->in_cell, &a->error) : NULL;
   a->begin = a->in_cell ? vxm_alloc(a->context, a->cells * a->cells + 1, sizeof *a->begin, &a->error) : NULL;
-  return a->begin && find_parts(a->after, a->part_after, &parts, &a->error) == VXM_OK;
+  return a->begin && find_parts(a->after, a->part_after, &parts, NULL, &a->error) == VXM_OK;
 }
 
 static void judge(asking *a) {
@@ -349,6 +381,8 @@ static bool ask(asking *a) {
   if (!prepare(a))
     return false;
   find_boxes(a);
+  for (int x = 0; x < 3; x++)
+    a->no_depth = fmax(a->no_depth, NO_DEPTH * (a->bounds[x + 3] - a->bounds[x]));
   for (int axis = 0; axis < 3; axis++)
     if (!ask_axis(a, axis))
       return false;
@@ -362,7 +396,8 @@ vxm_status vxm_lost_parts_find(vxm_lost_parts *out, const vxm_soup *before, cons
   asking a = {
       .context = before->context, .before = before, .after = after, .out = out, .error = VXM_ERROR_INIT};
   out->face_part = vxm_alloc(a.context, before->face_count, sizeof *out->face_part, &a.error);
-  bool done = out->face_part && find_parts(before, out->face_part, &out->part_count, &a.error) == VXM_OK;
+  bool done =
+      out->face_part && find_parts(before, out->face_part, &out->part_count, &a.open, &a.error) == VXM_OK;
   out->lost = done ? vxm_calloc(a.context, out->part_count, sizeof *out->lost, &a.error) : NULL;
   a.part_before = out->face_part;
   a.parts = out->part_count;
@@ -376,6 +411,7 @@ vxm_status vxm_lost_parts_find(vxm_lost_parts *out, const vxm_soup *before, cons
   vxm_free(a.context, a.inside);
   vxm_free(a.context, a.box);
   vxm_free(a.context, a.part_after);
+  vxm_free(a.context, a.open);
   if (!done && error)
     *error = a.error;
   return done ? VXM_OK : a.error.code;

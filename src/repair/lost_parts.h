@@ -14,10 +14,11 @@ typedef struct vxm_lost_parts {
 } vxm_lost_parts;
 
 /**
- * Sends lines along the axes through every component of a mesh, and compares what they meet there with what
- * they meet in another mesh that has come of it. Inside is where a component winds round the line, and where
- * an odd number of its faces was crossed; a line with an end that is inside tells nothing. A part is lost if
- * more than a hundredth of its inside, of one kind or the other, is inside no component any more.
+ * Sends lines along the axes through every closed component of a mesh, one in which every edge has an even
+ * number of sides, and compares what they meet there with what they meet in another mesh that has come of it.
+ * Inside is where a component winds round the line, and where an odd number of its faces was crossed; a line
+ * with an end that is inside tells nothing. A part is lost if more than a hundredth of its inside, of one
+ * kind or the other, is inside no component any more.
  *
  * @param[out] out freed with vxm_lost_parts_free in any case
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
