@@ -408,9 +408,9 @@ typedef struct vxm_repair_report {
                                 positions are too coarse for the faces about them */
   int64_t shared_faces; /**< at level clean: that repeat others and stay, as bodies overlap there and both
                            need theirs; from manifold on each body has its own */
-  int64_t lost_parts; /**< components of which something that they enclosed, by how often their faces wind round it
-                         or by their parity, is enclosed no more, and could not be kept; what levels and options
-                         above VXM_LEVEL_CLEAN take away is not looked at */
+  int64_t lost_parts;   /**< components of which something that they enclosed, by how often their faces wind
+                           round it   or by their parity, is enclosed no more, and could not be kept; what levels
+                           and options   above VXM_LEVEL_CLEAN take away is not looked at */
   int64_t opened_parts; /**< closed before, open after; with options.part_changes, else 0 */
   double moved;         /**< no vertex was moved farther, model units; not by a wrap or union. With
                            options.part_changes, else 0 */
@@ -435,9 +435,11 @@ VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, co
                                    const vxm_repair_options *options, vxm_error *error);
 
 /**
- * Repairs a mesh to be voxelized: as vxm_mesh_repair; but where bodies share faces at VXM_LEVEL_CLEAN, at
- * VXM_LEVEL_MANIFOLD, which gives each body its own: together they are one component, and its parity is that
- * of their difference. With keep_orientation they stay together. It is what voxmend voxelize and the Python
+ * Repairs a mesh to be voxelized: as vxm_mesh_repair; then closed bodies that share faces, edges or vertices
+ * each get their own vertices, at the same positions, and what several of them cover becomes layers that
+ * nest: together they would be one component, and its parity that of their difference. Where faces cut
+ * through each other so that there are no layers, bodies that share faces are separated as at
+ * VXM_LEVEL_MANIFOLD. With keep_orientation they stay together. It is what voxmend voxelize and the Python
  * package do.
  *
  * @return as vxm_mesh_repair

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The net under the repair: what it finds lost, and what not. */
+#include "repairing.h"
+#include "solids.h"
+
+#include "repair/lost_parts.h"
+
+/** Three bodies: a box, a ball, and a small box in a far corner. */
+static vxm_soup *three_bodies(bool ball, bool small) {
+  vxm_soup *soup = new_soup(context);
+  add_cuboid(soup, 0, 0, 0, 3, 2, 1);
+  if (ball)
+    add_ball(soup, (double[]){6, 6, 6}, 2, 8, &upright, false);
+  if (small)
+    add_cuboid(soup, 9.9, 9.9, 9.9, 10, 10, 10);
+  return soup;
+}
+
+static size_t count_lost(const vxm_soup *before, const vxm_soup *after, size_t lost_part) {
+  vxm_lost_parts lost;
+  assert_int_equal(vxm_lost_parts_find(&lost, before, after, NULL), VXM_OK);
+  size_t count = lost.count;
+  if (lost_part != SIZE_MAX)
+    assert_true(lost.lost[lost_part]);
+  vxm_lost_parts_free(&lost, context);
+  return count;
+}
+
+static void missing_bodies_are_found(void **state) {
+  (void)state;
+  vxm_soup *all = three_bodies(true, true), *no_ball = three_bodies(false, true),
+           *no_small = three_bodies(true, false);
+  assert_int_equal(count_lost(all, all, SIZE_MAX), 0);
+  assert_int_equal(count_lost(all, no_ball, 1), 1);
+  assert_int_equal(count_lost(all, no_small, 2), 1);
+  vxm_soup *none = new_soup(context);
+  assert_int_equal(count_lost(all, none, 0), 3);
+  vxm_soup_destroy(none);
+  vxm_soup_destroy(no_small);
+  vxm_soup_destroy(no_ball);
+  vxm_soup_destroy(all);
+}
+
+/** One body instead of two equal ones, faces turned over, and a wall less between two rooms are no loss. */
+static void mended_bodies_are_not(void **state) {
+  (void)state;
+  vxm_soup *before = three_bodies(true, true), *after = three_bodies(true, true);
+  add_cuboid(before, 0, 0, 0, 3, 2, 1);
+  turn_faces(before, 20);
+  assert_int_equal(count_lost(before, after, SIZE_MAX), 0);
+  vxm_soup_destroy(before);
+  vxm_soup_destroy(after);
+  before = new_soup(context);
+  after = new_soup(context);
+  add_cuboid(before, 0, 0, 0, 1, 1, 1);
+  add_cuboid(before, 1, 0, 0, 2, 1, 1);
+  add_cuboid(after, 0, 0, 0, 2, 1, 1);
+  assert_int_equal(count_lost(before, after, SIZE_MAX), 0);
+  vxm_soup_destroy(before);
+  vxm_soup_destroy(after);
+}
+
+static void halves_and_what_is_open(void **state) {
+  (void)state;
+  vxm_soup *whole = new_soup(context), *half = new_soup(context);
+  add_cuboid(whole, 0, 0, 0, 2, 1, 1);
+  add_cuboid(half, 0, 0, 0, 1, 1, 1);
+  assert_int_equal(count_lost(whole, half, 0), 1);
+  assert_int_equal(count_lost(half, whole, SIZE_MAX), 0);
+  add_triangle(whole, 0, 1, 2); /* open now: it encloses nothing for sure */
+  assert_int_equal(count_lost(whole, half, SIZE_MAX), 0);
+  vxm_soup_destroy(whole);
+  vxm_soup_destroy(half);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(missing_bodies_are_found),
+                                     cmocka_unit_test(mended_bodies_are_not),
+                                     cmocka_unit_test(halves_and_what_is_open)};
+  return cmocka_run_group_tests(tests, hold_context, release_context);
+}
