@@ -408,9 +408,9 @@ typedef struct vxm_repair_report {
                                 positions are too coarse for the faces about them */
   int64_t shared_faces; /**< at level clean: that repeat others and stay, as bodies overlap there and both
                            need theirs; from manifold on each body has its own */
-  int64_t lost_parts;   /**< components of which something that they enclosed, by how often their faces wind
-                           round it   or by their parity, is enclosed no more, and could not be kept; what levels
-                           and options   above VXM_LEVEL_CLEAN take away is not looked at */
+  int64_t lost_parts;   /**< closed components of which something that they enclosed, by winding or by parity,
+                           is enclosed no more and could not be kept; what levels and options beyond
+                           VXM_LEVEL_CLEAN take away is not looked at */
   int64_t opened_parts; /**< closed before, open after; with options.part_changes, else 0 */
   double moved;         /**< no vertex was moved farther, model units; not by a wrap or union. With
                            options.part_changes, else 0 */
