@@ -237,6 +237,9 @@ const char *cli_shown(const char *path, const char *standard);
 /** Milliseconds since an arbitrary start. */
 double cli_clock(void);
 
+/** Once, before any JSON: notices where jansson lacks memory, which it seldom tells; cli_finish fails then.
+ */
+void cli_json_start(void);
 /* JSON values that jansson would refuse: not UTF-8, not finite. */
 json_t *cli_json_text(const char *text);
 json_t *cli_json_number(double value);

@@ -82,6 +82,7 @@ int main(int argc, char **argv) {
     cli_usage(&none, name[0] == '-' ? "unknown option %s" : "unknown command '%s'", name);
     return none.status;
   }
+  cli_json_start();
   signal(SIGXFSZ, SIG_IGN); /* a write beyond ulimit -f fails, and says so */
   int status = run(command, argc - 1, argv + 1);
   if (status == CLI_FAILED && cli_signal()) {

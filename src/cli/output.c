@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -167,14 +168,36 @@ int cli_publish(cli_run *cli) {
   return vxm_context_publish_files(cli->context, &cli->error) == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
-static int write_report(cli_run *cli, const json_t *report) {
+/** Set where jansson found no memory: it leaves out what it cannot hold, and seldom says so. */
+static atomic_bool json_starved;
+
+static void *json_allocate(size_t size) {
+  void *block = malloc(size);
+  if (!block)
+    json_starved = true;
+  return block;
+}
+
+void cli_json_start(void) {
+  json_set_alloc_funcs(json_allocate, free);
+}
+
+/** The report as text that ends with a line, to be freed; NULL after a failure that has been told. */
+static char *report_text(cli_run *cli, const json_t *report) {
   char *text = json_dumps(report, JSON_STYLE);
   size_t length = text ? strlen(text) : 0;
-  if (!text)
-    return cli_fail_text(cli, "%s: cannot write the report: out of memory", cli->report);
-  text[length] = '\n'; /* in place of the terminator */
-  vxm_status status = vxm_file_write(cli->context, cli->report, text, length + 1, &cli->error);
-  free(text);
+  char *line = text ? realloc(text, length + 2) : NULL;
+  if (line && !json_starved) {
+    memcpy(line + length, "\n", 2);
+    return line;
+  }
+  free(line ? line : text);
+  cli_fail_text(cli, "out of memory for the report: free some");
+  return NULL;
+}
+
+static int write_report(cli_run *cli, const char *text) {
+  vxm_status status = vxm_file_write(cli->context, cli->report, text, strlen(text), &cli->error);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
@@ -187,14 +210,19 @@ static int flush_output(cli_run *cli) {
 
 int cli_finish(cli_run *cli, json_t *report) {
   cli_progress_clear(cli);
+  bool is_wanted = cli->json || cli->report;
+  char *text = is_wanted ? report_text(cli, report) : NULL;
+  json_decref(report);
+  if (is_wanted && !text)
+    return CLI_FAILED;
   int status = CLI_DONE;
-  if (cli->json && (json_dumpf(report, stdout, JSON_STYLE) != 0 || putchar('\n') == EOF))
+  if (cli->json && fputs(text, stdout) == EOF)
     status = cli_fail_text(cli, "<stdout>: cannot write: %s", strerror(errno));
   if (status == CLI_DONE)
     status = flush_output(cli);
   if (status == CLI_DONE && cli->report)
-    status = write_report(cli, report);
-  json_decref(report);
+    status = write_report(cli, text);
+  free(text);
   if (status == CLI_DONE)
     status = cli_publish(cli);
   if (status != CLI_DONE)

@@ -339,7 +339,7 @@ static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error 
   }
   vxm_field_describe(field, &about);
   add_notes(&field->notes, &h, &found);
-  return vxm_field_hand_over(out, field, vxm_progress(input->context, "reading", 1, error));
+  return vxm_field_hand_over(out, field, vxm_progress(input->context, "reading", 1, error), error);
 }
 
 /* ---- Writing ---- */

@@ -34,8 +34,8 @@ static vxm_status read_c_order(vxm_grid *grid, const unsigned char *data, vxm_el
 }
 
 /** The transform from the JSON, and what it says of the values, if there is one and it is of this array. */
-static void find_space(vxm_space *space, vxm_about *about, const vxm_npy_header *h, const vxm_input *input,
-                       vxm_notes *notes) {
+static vxm_status find_space(vxm_space *space, vxm_about *about, const vxm_npy_header *h,
+                             const vxm_input *input, vxm_notes *notes, vxm_error *error) {
   const char *format = h->channels == 4 ? "voxmend colors" : description.format;
   for (int a = 0; a < 3; a++) {
     space->origin[a] = 0;
@@ -44,21 +44,27 @@ static void find_space(vxm_space *space, vxm_about *about, const vxm_npy_header 
   bool is_file = input->mapping || strcmp(input->name, "<stdin>") != 0;
   if (!is_file || !vxm_sidecar_exists(input->name)) {
     vxm_note(notes, "no .json beside the array: origin 0 0 0 and voxel size 1 are taken");
-    return;
+    return VXM_OK;
   }
   vxm_space beside;
   vxm_about found = {.is_declared = false};
   vxm_error why = VXM_ERROR_INIT;
-  if (vxm_sidecar_read(&beside, &found, input->context, input->name, format, &why) != VXM_OK)
+  vxm_status status = vxm_sidecar_read(&beside, &found, input->context, input->name, format, &why);
+  if (vxm_is_memory(status)) {
+    vxm_about_destroy(&found);
+    return vxm_fail(error, status, "%s", why.text);
+  }
+  if (status != VXM_OK)
     vxm_note(notes, "origin 0 0 0 and voxel size 1 are taken: %s", why.text);
   else if (memcmp(beside.dims, space->dims, sizeof space->dims) != 0)
     vxm_note(notes, "origin 0 0 0 and voxel size 1 are taken: the .json beside the array has other dims");
   else {
     *space = beside;
     *about = found;
-    return;
+    return VXM_OK;
   }
   vxm_about_destroy(&found);
+  return VXM_OK;
 }
 
 static vxm_status check_length(const vxm_npy_header *h, const vxm_space *space, const vxm_input *input,
@@ -89,8 +95,9 @@ static vxm_status read_front(front *f, const vxm_input *input, vxm_error *error)
   if (status != VXM_OK)
     return status;
   memcpy(f->space.dims, h->shape, sizeof f->space.dims);
-  find_space(&f->space, &f->about, h, input, &f->notes);
-  status = vxm_space_check_file(&f->space, input, h->shape_offset, error);
+  status = find_space(&f->space, &f->about, h, input, &f->notes, error);
+  if (status == VXM_OK)
+    status = vxm_space_check_file(&f->space, input, h->shape_offset, error);
   return status == VXM_OK ? check_length(h, &f->space, input, &f->notes, error) : status;
 }
 
@@ -151,7 +158,7 @@ static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error 
     vxm_field_put_all(field, input->data + h->data, is_swapped);
   vxm_field_describe(field, &f.about);
   field->notes = f.notes;
-  return vxm_field_hand_over(out, field, vxm_progress(input->context, "reading", 1, error));
+  return vxm_field_hand_over(out, field, vxm_progress(input->context, "reading", 1, error), error);
 }
 
 /* ---- Writing ---- */

@@ -231,7 +231,7 @@ static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error 
     vxm_field_put_slices(field, input->data + h.data, 0, h.space.dims[2], to.is_swapped);
   if (status == VXM_OK)
     status = vxm_progress(input->context, "reading", 1, error);
-  return vxm_field_hand_over(out, field, status);
+  return vxm_field_hand_over(out, field, status, error);
 }
 
 /* ---- Writing ---- */

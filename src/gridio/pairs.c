@@ -38,8 +38,10 @@ bool vxm_pairs_add(vxm_pairs *pairs, vxm_context *context, const char *key, size
       memchr(value, '\0', value_size))
     return false;
   char *text = vxm_alloc(context, pairs->size + more, 1, NULL);
-  if (!text)
+  if (!text) {
+    pairs->starved = true;
     return false;
+  }
   if (pairs->size > 0)
     memcpy(text, pairs->text, pairs->size);
   char *begin = text + pairs->size, *end = put(put(begin, key, key_size), value, value_size);
@@ -47,9 +49,10 @@ bool vxm_pairs_add(vxm_pairs *pairs, vxm_context *context, const char *key, size
     vxm_free(context, text);
     return true;
   }
-  vxm_pairs_destroy(pairs);
   size_t count = pairs->count + 1;
-  *pairs = (vxm_pairs){context, count, text, (size_t)(end - text)};
+  bool starved = pairs->starved;
+  vxm_pairs_destroy(pairs);
+  *pairs = (vxm_pairs){context, count, text, (size_t)(end - text), starved};
   return true;
 }
 

@@ -8,8 +8,9 @@
 typedef struct vxm_pairs {
   vxm_context *context;
   size_t count;
-  char *text;  /**< key and value of each in turn, with their zero bytes */
-  size_t size; /**< of the text */
+  char *text;   /**< key and value of each in turn, with their zero bytes */
+  size_t size;  /**< of the text */
+  bool starved; /**< one found no memory */
 } vxm_pairs;
 
 /** All of a file together; what goes beyond is left out. */

@@ -2,7 +2,9 @@
 #include "gridio/sidecar.h"
 #include "gridio/format.h"
 
+#include <errno.h>
 #include <jansson.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,13 +15,15 @@
  * far longer is another file. */
 enum { LENGTH_MAX = 1 << 27 };
 
-/** The JSON's path, to be freed; NULL without memory. */
-static char *sidecar_path(const char *data_path) {
-  size_t length = strlen(data_path);
-  char *path = malloc(length + 6);
-  if (path)
-    snprintf(path, length + 6, "%s.json", data_path);
-  return path;
+/** The JSON's path; false if no file can have so long a one. */
+static bool sidecar_path(char path[PATH_MAX], const char *data_path) {
+  int length = snprintf(path, PATH_MAX, "%s.json", data_path);
+  return length > 0 && length < PATH_MAX;
+}
+
+static vxm_status fail_path(const char *data_path, vxm_error *error) {
+  errno = ENAMETOOLONG;
+  return vxm_fail_errno(error, data_path, "cannot have a .json beside it");
 }
 
 static vxm_status fail_memory(vxm_error *error) {
@@ -27,10 +31,8 @@ static vxm_status fail_memory(vxm_error *error) {
 }
 
 bool vxm_sidecar_exists(const char *data_path) {
-  char *path = sidecar_path(data_path);
-  bool exists = path && access(path, F_OK) == 0;
-  free(path);
-  return exists;
+  char path[PATH_MAX];
+  return sidecar_path(path, data_path) && access(path, F_OK) == 0;
 }
 
 /* ---- Writing ---- */
@@ -38,6 +40,7 @@ bool vxm_sidecar_exists(const char *data_path) {
 /** A name, with '?' for what is no UTF-8. */
 static json_t *name_of(const char *name) {
   json_t *value = json_string(name);
+  value = value ? value : json_string(name); /* was it for want of memory? */
   char *copy = value ? NULL : strdup(name);
   for (char *c = copy; c && *c; c++)
     *c = (unsigned char)*c < 0x80 ? *c : '?';
@@ -88,7 +91,41 @@ static bool add_about(json_t *root, const vxm_about *about) {
   return about->pairs.count == 0 || json_object_set_new(root, "metadata", list_pairs(&about->pairs)) == 0;
 }
 
-/** The whole text, to be freed; 17 digits bring every double back bit for bit. */
+/** A growing text; NULL as soon as memory failed, of which jansson does not always tell. */
+typedef struct json_text {
+  char *data;
+  size_t size, room;
+  bool failed;
+} json_text;
+
+static int append_text(const char *data, size_t size, void *payload) {
+  json_text *text = payload;
+  size_t needed = text->size + size + 1;
+  if (!text->failed && needed > text->room) {
+    char *grown = realloc(text->data, 2 * needed);
+    text->failed = !grown;
+    text->data = grown ? grown : text->data;
+    text->room = grown ? 2 * needed : text->room;
+  }
+  if (text->failed)
+    return -1;
+  memcpy(text->data + text->size, data, size);
+  text->size += size;
+  text->data[text->size] = '\0';
+  return 0;
+}
+
+/** NULL without memory; 17 digits bring every double back bit for bit. */
+static char *text_of(const json_t *root) {
+  json_text text = {0};
+  if (json_dump_callback(root, append_text, &text, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0 &&
+      !text.failed)
+    return text.data;
+  free(text.data);
+  return NULL;
+}
+
+/** The whole text, to be freed. */
 static char *describe(const vxm_space *space, const vxm_sidecar_text *text, const vxm_about *about) {
   const int64_t *d = space->dims;
   const double *o = space->origin, *s = space->voxel_size;
@@ -101,7 +138,7 @@ static char *describe(const vxm_space *space, const vxm_sidecar_text *text, cons
     json_decref(root);
     return NULL;
   }
-  char *json = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+  char *json = text_of(root);
   json_decref(root);
   return json;
 }
@@ -117,14 +154,16 @@ vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_sp
   *out = NULL;
   if (!has_neighbours(data_path))
     return VXM_OK;
-  char *path = sidecar_path(data_path), *json = describe(space, text, about);
-  vxm_status status = path && json ? vxm_output_open(out, context, path, error) : fail_memory(error);
+  char path[PATH_MAX];
+  if (!sidecar_path(path, data_path))
+    return fail_path(data_path, error);
+  char *json = describe(space, text, about);
+  vxm_status status = json ? vxm_output_open(out, context, path, error) : fail_memory(error);
   if (status == VXM_OK) {
     vxm_output_write(*out, json, strlen(json));
     vxm_output_write(*out, "\n", 1);
   }
   free(json);
-  free(path);
   return status;
 }
 
@@ -164,9 +203,12 @@ static void read_labels(vxm_about *about, vxm_context *context, const json_t *ro
     const json_t *entry = json_array_get(array, l);
     const char *name = json_string_value(json_object_get(entry, "name"));
     int64_t voxels = (int64_t)json_integer_value(json_object_get(entry, "voxels"));
-    if (!name || json_integer_value(json_object_get(entry, "label")) != (json_int_t)l + 1 ||
-        !vxm_label_table_add(&about->table, context, name, voxels))
+    if (!name || json_integer_value(json_object_get(entry, "label")) != (json_int_t)l + 1)
       break;
+    if (!vxm_label_table_add(&about->table, context, name, voxels)) {
+      about->starved = true;
+      break;
+    }
   }
   if (about->table.count > 0 && !about->is_declared) {
     about->is_declared = true;
@@ -208,7 +250,10 @@ static vxm_status parse(vxm_space *space, vxm_about *about, const vxm_input *inp
   if (input->size > LENGTH_MAX)
     return vxm_fail_byte(error, input, LENGTH_MAX, "too long to be the description of a grid");
   json_error_t what;
-  json_t *root = json_loadb((const char *)input->data, input->size, JSON_REJECT_DUPLICATES, &what);
+  const char *text = (const char *)input->data;
+  json_t *root = json_loadb(text, input->size, JSON_REJECT_DUPLICATES, &what);
+  if (!root) /* it calls a want of memory by many names; what is damaged fails again */
+    root = json_loadb(text, input->size, JSON_REJECT_DUPLICATES, &what);
   if (!root)
     return vxm_fail_byte(error, input, what.position, "not JSON: %s", what.text);
   vxm_status status = read_root(space, root, input, format, error);
@@ -220,16 +265,15 @@ static vxm_status parse(vxm_space *space, vxm_about *about, const vxm_input *inp
 
 vxm_status vxm_sidecar_read(vxm_space *space, vxm_about *about, vxm_context *context, const char *data_path,
                             const char *format, vxm_error *error) {
-  char *path = sidecar_path(data_path);
-  if (!path)
-    return fail_memory(error);
+  char path[PATH_MAX];
+  if (!sidecar_path(path, data_path))
+    return fail_path(data_path, error);
   vxm_input input;
   vxm_status status = vxm_input_open(&input, context, path, error);
   if (status == VXM_OK) {
     status = parse(space, about, &input, format, error);
     vxm_input_close(&input);
   }
-  free(path);
   return status;
 }
 
@@ -237,7 +281,9 @@ bool vxm_sidecar_read_labels(vxm_space *space, vxm_about *about, const vxm_input
   bool is_file = input->mapping || strcmp(input->name, "<stdin>") != 0;
   if (!is_file || !vxm_sidecar_exists(input->name) || (about->is_declared && about->kind != VXM_FIELD_LABELS))
     return false;
-  return vxm_sidecar_read(space, about, input->context, input->name, "voxmend labels", NULL) == VXM_OK;
+  vxm_status status = vxm_sidecar_read(space, about, input->context, input->name, "voxmend labels", NULL);
+  about->starved |= vxm_is_memory(status);
+  return status == VXM_OK;
 }
 
 void vxm_sidecar_take_labels(vxm_about *about, const int64_t dims[3], const vxm_input *input) {
@@ -249,5 +295,6 @@ void vxm_sidecar_take_labels(vxm_about *about, const int64_t dims[3], const vxm_
     about->kind = found.kind;
     found.table = (vxm_label_table){.count = 0};
   }
+  about->starved |= found.starved;
   vxm_about_destroy(&found);
 }

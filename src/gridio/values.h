@@ -18,6 +18,7 @@ typedef struct vxm_about {
   vxm_field_kind kind;   /**< VXM_FIELD_NUMBERS if it does not */
   vxm_label_table table; /**< count 0 = none */
   vxm_pairs pairs;
+  bool starved; /**< the table, or the file beside the values, found no memory */
 } vxm_about;
 
 struct vxm_field {
@@ -34,8 +35,12 @@ struct vxm_field {
 vxm_status vxm_field_make(vxm_field **out, vxm_context *context, const vxm_space *space, vxm_field_kind kind,
                           vxm_scalar scalar, vxm_error *error);
 
-/** Ends the making: *out is the field if `status`, which is returned, is VXM_OK; else it is destroyed. */
-static inline vxm_status vxm_field_hand_over(vxm_field **out, vxm_field *field, vxm_status status) {
+/** Ends the making: *out is the field if `status` is VXM_OK, and what is said of its values found memory;
+ * else it is destroyed. */
+static inline vxm_status vxm_field_hand_over(vxm_field **out, vxm_field *field, vxm_status status,
+                                             vxm_error *error) {
+  if (status == VXM_OK && (field->about.starved || field->about.pairs.starved))
+    status = vxm_fail(error, VXM_ERROR_MEMORY, "out of memory for what the file says of its values");
   *out = status == VXM_OK ? field : NULL;
   if (status != VXM_OK)
     vxm_field_destroy(field);

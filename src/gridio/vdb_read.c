@@ -164,7 +164,7 @@ static vxm_status read_numbers(vxm_field **out, front *f, const vxm_input *input
   n.field->notes = f->notes;
   if (status == VXM_OK)
     status = vxm_field_narrow(n.field, f->grid.scalar, error);
-  return vxm_field_hand_over(out, n.field, status);
+  return vxm_field_hand_over(out, n.field, status, error);
 }
 
 static vxm_status read_bits(vxm_grid **out, front *f, const vxm_input *input, vxm_bits_rule rule,
