@@ -31,5 +31,5 @@ run 'left in/torus.off -r 512 --engine opencl --phases memset,transfer_map --mem
 run 'left in/torus.off -r 8 --phases memset,transfer,published_facets'
 run 'voxmend bench in/torus.off -r 8 --phases transfer $quick'
 run 'voxmend bench in/torus.off -r 8 --phases transfers --engine opencl $quick 2>&1 | cut -c 1-60'
-run 'voxmend bench in/torus.off -r 8,16 --engine cpu,opencl --phases solid_x,transfer $quick | grep -A 9 "^opencl, " | sed -E "s/[0-9]+\.[0-9]+/N/g; s/ +/ /g"'
+run 'voxmend bench in/torus.off -r 8,16 --engine cpu,opencl --phases solid_x,transfer $quick | grep -A 9 "^opencl, " | sed -E "s/[0-9.]+ [KMG]iB/N MiB/g; s/[0-9]+\.[0-9]+/N/g; s/ +/ /g"'
 finish
