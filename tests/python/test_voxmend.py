@@ -139,7 +139,7 @@ class Grids(unittest.TestCase):
         triangles = numpy.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
         both = (numpy.concatenate([cube, cube * [1, 1, 0.5]]), numpy.concatenate([triangles, triangles + 8]))
         self.assertEqual(voxmend.voxelize(both, 16).filled_count, 16 ** 3)  # not their difference
-        self.assertEqual(voxmend.repair(both, separate=True).info()["components"], 2)
+        self.assertEqual(voxmend.repair(both, separate=True).info()["components_raw"], 2)
         sampler = voxmend.Sampler(16, fill=True)
         sampler.put(voxmend.repair(both, separate=True))
         self.assertEqual(int(sampler.batch(1).sum()), 16 ** 3)
