@@ -319,8 +319,9 @@ static void compare_line(asking *a, stretch before, const crossing *begin, const
 }
 
 static void compare(asking *a) {
-  const crossing *b = a->of_before.items, *b_end = b + a->of_before.count;
-  const crossing *c = a->of_after.items, *c_end = c + a->of_after.count;
+  static const crossing none;
+  const crossing *b = a->of_before.count > 0 ? a->of_before.items : &none, *b_end = b + a->of_before.count;
+  const crossing *c = a->of_after.count > 0 ? a->of_after.items : &none, *c_end = c + a->of_after.count;
   while (b < b_end) {
     stretch s = next_stretch(b, b_end);
     while (c < c_end && c->line < b->line)

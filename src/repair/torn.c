@@ -74,8 +74,10 @@ static inline double most(double a, double b) {
   return a > b ? a : b;
 }
 
-/** floor, of what is known to be small. */
+/** floor; 0 where that is no whole number of 64 bits, of a mesh that is tiny against its coordinates. */
 static inline int64_t whole_below(double x) {
+  if (!(fabs(x) < 0x1p62))
+    return 0;
   int64_t toward_zero = (int64_t)x;
   return toward_zero - (x < (double)toward_zero);
 }
