@@ -2,7 +2,8 @@
 """Makes the binding voxmend._voxmend from voxmend.h itself, so that the two cannot differ.
 
 The library is found by pkg-config. VOXMEND_INCLUDE and VOXMEND_LIB, the folders of voxmend.h and of libvoxmend.so, take
-precedence: for a library that was built and not installed.
+precedence: for a library that was built and not installed. When the package runs, the system finds the library as any other
+(ldconfig, LD_LIBRARY_PATH); VOXMEND_RPATH=1 has the extension remember the folder in which it was found.
 """
 import os
 import re
@@ -14,10 +15,12 @@ from cffi import FFI
 
 
 def find_library():
-    """Folders of headers and libraries, and those to remember for when the program runs."""
+    """Folders of headers and libraries."""
     include, lib = os.environ.get("VOXMEND_INCLUDE"), os.environ.get("VOXMEND_LIB")
+    if bool(include) != bool(lib):
+        sys.exit("of VOXMEND_INCLUDE and VOXMEND_LIB one is set: set both or none")
     if include and lib:
-        return [include], [lib], [lib]
+        return [include], [lib]
     try:
         flags = subprocess.run(
             ["pkg-config", "--cflags-only-I", "--libs-only-L", "--keep-system-cflags", "--keep-system-libs", "voxmend"],
@@ -29,7 +32,17 @@ def find_library():
     words = shlex.split(flags)
     includes = [w[2:] for w in words if w.startswith("-I")] or ["/usr/include"]
     libs = [w[2:] for w in words if w.startswith("-L")]
-    return includes, libs, [d for d in libs if not d.startswith("/usr/lib")]
+    return includes, libs
+
+
+def remembered(folders):
+    """Folders for the extension's rpath: none, unless they are asked for."""
+    wanted = os.environ.get("VOXMEND_RPATH", "")
+    if wanted in ("", "0"):
+        return []
+    if wanted != "1":
+        sys.exit("VOXMEND_RPATH is %r: set it to 1, or leave it out" % wanted)
+    return [os.path.abspath(folder) for folder in folders]
 
 
 def read_header(folders):
@@ -63,18 +76,72 @@ def initializers(header):
     return ["vxm_" + name.lower() for name in found]
 
 
-include_dirs, library_dirs, runtime_dirs = find_library()
+# How a call that takes long is ended: the library asks now and then whether to go on. In a thread that has a flag to stop at,
+# that is looked at; in Python's main thread the interpreter, now and then, whether a handler of signals has raised something.
+PROGRESS = r"""
+#include <stdint.h>
+#include <time.h>
+
+static int voxmend_ask(void);
+
+static _Thread_local int asks;
+static _Thread_local const volatile int *stop_at;
+static _Thread_local int64_t asked_ms;
+
+static int voxmend_enter(int ask) {
+  int before = asks;
+  asks = ask;
+  return before;
+}
+
+static void voxmend_leave(int before) {
+  asks = before;
+}
+
+static int *voxmend_stop_at(int *flag) {
+  int *before = (int *)stop_at;
+  stop_at = flag;
+  return before;
+}
+
+static int voxmend_on_progress(const char *phase, double fraction, void *payload) {
+  enum { ASK_MS = 50 /* each time costs a turn of the interpreter */ };
+  struct timespec time;
+  (void)phase;
+  (void)fraction;
+  (void)payload;
+  if (stop_at && *stop_at)
+    return 1;
+  if (!asks)
+    return 0;
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  int64_t now = (int64_t)time.tv_sec * 1000 + time.tv_nsec / 1000000;
+  if (now - asked_ms < ASK_MS)
+    return 0;
+  asked_ms = now;
+  return voxmend_ask();
+}
+"""
+DECLARED = """
+extern "Python" int voxmend_ask(void);
+int voxmend_enter(int ask);
+void voxmend_leave(int before);
+int *voxmend_stop_at(int *flag);
+int voxmend_on_progress(const char *phase, double fraction, void *payload);
+"""
+
+include_dirs, library_dirs = find_library()
 HEADER = read_header(include_dirs)
 NAMES = initializers(HEADER)
 
 ffi = FFI()
-ffi.cdef(declarations(HEADER) + "".join("void voxmend_init_%s(%s *out);\n" % (n, n) for n in NAMES))
+ffi.cdef(declarations(HEADER) + "".join("void voxmend_init_%s(%s *out);\n" % (n, n) for n in NAMES) + DECLARED)
 ffi.set_source(
     "voxmend._voxmend",
     '#include "voxmend.h"\n' + "".join(
         "static void voxmend_init_%s(%s *out) { %s value = %s_INIT; *out = value; }\n" % (n, n, n, n.upper())
-        for n in NAMES),
-    include_dirs=include_dirs, library_dirs=library_dirs, runtime_library_dirs=runtime_dirs, libraries=["voxmend"])
+        for n in NAMES) + PROGRESS,
+    include_dirs=include_dirs, library_dirs=library_dirs, runtime_library_dirs=remembered(library_dirs), libraries=["voxmend"])
 
 if __name__ == "__main__":
     ffi.compile(verbose=False, tmpdir=sys.argv[1] if len(sys.argv) > 1 else ".")

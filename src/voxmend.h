@@ -72,10 +72,11 @@ typedef struct vxm_error {
   int64_t element; /**< 0-based vertex, face or record, -1 if none applies */
   char file[256];  /**< file concerned, "" if none, shortened at the front if long */
   char text[512];  /**< the whole message, file and line included, without a line end */
+  int system;      /**< errno of what the system refused, with VXM_ERROR_IO; 0 if none applies */
 } vxm_error;
 
 #define VXM_ERROR_INIT \
-  { VXM_OK, 0, -1, -1, "", "" }
+  { VXM_OK, 0, -1, -1, "", "", 0 }
 
 /* ---- Context: threads, memory limit, progress ---- */
 
@@ -182,16 +183,19 @@ typedef struct vxm_mesh_arrays {
       *offsets; /**< face f has corners indices[offsets[f]] to indices[offsets[f+1]-1]; NULL = triangles */
   const int64_t *indices; /**< 0-based vertices of the corners */
   int64_t face_count;
+  const char *const *tags;   /**< tag_count names, as vxm_mesh_tag_name gives them */
+  const uint32_t *face_tags; /**< face_count tag numbers; not looked at without tags */
+  int64_t tag_count;         /**< 0 = faces have no tags */
 } vxm_mesh_arrays;
 
 #define VXM_MESH_ARRAYS_INIT \
-  { 1, VXM_FLOAT64, NULL, 0, NULL, NULL, 0 }
+  { 1, VXM_FLOAT64, NULL, 0, NULL, NULL, 0, NULL, NULL, 0 }
 
 /**
  * Makes a mesh from arrays.
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT with `element` the face whose offsets run backwards, that has fewer than
- * three corners, or that names a vertex that does not exist; VXM_ERROR_RANGE beyond 2^32 - 2 vertices;
+ * three corners, or that names a vertex or tag that does not exist; VXM_ERROR_RANGE beyond 2^32 - 2 vertices;
  *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
 VXM_API vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_arrays *arrays,
@@ -599,6 +603,26 @@ VXM_API void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes);
 /** Sets all voxels from such bytes: those that are not 0. */
 VXM_API void vxm_grid_pack(vxm_grid *grid, const uint8_t *bytes);
 /**
+ * As vxm_grid_unpack, of the voxels (i,j,k) with i from begin to end - 1, into (end - begin)*dims[1]*dims[2]
+ * bytes; with progress, and to be cancelled.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT if an argument is NULL or the range does not lie within the grid;
+ *         VXM_ERROR_CANCELLED, then the bytes are unspecified
+ */
+VXM_API vxm_status vxm_grid_unpack_range(const vxm_grid *grid, int64_t begin, int64_t end, uint8_t *bytes,
+                                         vxm_error *error);
+/** The same the other way; voxels outside of the range stay. @return as vxm_grid_unpack_range; after
+ * VXM_ERROR_CANCELLED some are set */
+VXM_API vxm_status vxm_grid_pack_range(vxm_grid *grid, int64_t begin, int64_t end, const uint8_t *bytes,
+                                       vxm_error *error);
+/**
+ * Sets all voxels from words as vxm_grid_words gives them; bits beyond the end of a row are left out.
+ *
+ * @param count row_words * dims[1] * dims[2]
+ * @return VXM_OK; VXM_ERROR_ARGUMENT if an argument is NULL or `count` is another number
+ */
+VXM_API vxm_status vxm_grid_set_words(vxm_grid *grid, const uint64_t *words, size_t count, vxm_error *error);
+/**
  * How sure each voxel is, 0 (a guess) to 255 (proven), dims[0]*dims[1]*dims[2] bytes with x fastest; NULL
  * unless the grid was made with vxm_voxelize_options.confidence. A voxel decided by closed parts alone has
  * 255, one decided by the winding number w has 255 times the smaller of 1 and |2 w - 1|, any other the share
@@ -766,6 +790,17 @@ VXM_API const char *vxm_field_label_name(const vxm_field *field, int64_t label);
 VXM_API int64_t vxm_field_metadata_count(const vxm_field *field);
 VXM_API const char *vxm_field_metadata_key(const vxm_field *field, int64_t index);
 VXM_API const char *vxm_field_metadata_value(const vxm_field *field, int64_t index);
+
+/**
+ * Adds the next label to the table of a field that has just been made, or a pair to its metadata.
+ *
+ * @param voxels that have the label
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_RANGE beyond what a file may say, which is 1 MiB;
+ * VXM_ERROR_MEMORY
+ */
+VXM_API vxm_status vxm_field_add_label(vxm_field *field, const char *name, int64_t voxels, vxm_error *error);
+VXM_API vxm_status vxm_field_add_metadata(vxm_field *field, const char *key, const char *value,
+                                          vxm_error *error);
 
 /** Warnings from reading, one line each. */
 VXM_API int64_t vxm_field_warning_count(const vxm_field *field);

@@ -9,8 +9,10 @@
     sampler.put(mesh.repair(separate=True))
     batch = sampler.batch(16)                           # (16, 1, 32, 32, 32) float32
 """
-from ._core import (ArgumentError, EmptyError, FileError, FormatError, NumbersError, OutOfMemoryError, RangeError,
-                    UnavailableError, UnreachedError, VoxmendError, configure, lib as _lib, text as _text)
+from ._core import configure, lib as _lib, text as _text
+from ._errors import (ArgumentError, BusyError, CancelledError, EmptyError, FileError, FormatError, KindError,
+                      NumbersError, OutOfMemoryError, RangeError, UnavailableError, UnreachedError,
+                      VoxmendError, VoxmendWarning)
 from ._field import Field, read_field
 from ._grid import VoxelGrid, coverage, distance, read, voxelize, write
 from ._mesh import Mesh, info, load, repair
@@ -19,7 +21,8 @@ from ._sampler import Sampler
 __version__ = _text(_lib.vxm_version())
 
 __all__ = [
-    "ArgumentError", "EmptyError", "Field", "FileError", "FormatError", "Mesh", "NumbersError", "OutOfMemoryError",
-    "RangeError", "Sampler", "UnavailableError", "UnreachedError", "VoxelGrid", "VoxmendError", "configure", "coverage",
-    "distance", "info", "load", "read", "read_field", "repair", "voxelize", "write"
+    "ArgumentError", "BusyError", "CancelledError", "EmptyError", "Field", "FileError", "FormatError", "KindError", "Mesh",
+    "NumbersError", "OutOfMemoryError", "RangeError", "Sampler", "UnavailableError", "UnreachedError", "VoxelGrid",
+    "VoxmendError", "VoxmendWarning", "configure", "coverage", "distance", "info", "load", "read", "read_field", "repair",
+    "voxelize", "write"
 ]

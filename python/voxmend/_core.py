@@ -1,81 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors, the context, and how C and Python see each other's values."""
+"""Calling the library: its context, its objects and arrays, and how Ctrl-C ends a call."""
 from __future__ import annotations
 
-import os
-from typing import Any, Optional
+import contextlib
+import sys
+import threading
+import warnings
+from typing import Any, Iterator, Optional
 
 import numpy
 
-from ._voxmend import ffi, lib
+from . import _errors, _values
+from ._errors import ArgumentError, CancelledError, VoxmendWarning
 
-
-class VoxmendError(Exception):
-    """A call that failed, with the library's own text.
-
-    Attributes:
-        status: short fixed name of the failure, such as "format".
-        file: file concerned, or "".
-        line: line in a text file, or 0.
-        offset: byte in a binary file, or -1.
-        element: vertex, face or record, or -1.
-    """
-
-    status: str = ""
-    file: str = ""
-    line: int = 0
-    offset: int = -1
-    element: int = -1
-
-
-class ArgumentError(VoxmendError, ValueError):
-    """An argument is out of its range."""
-
-
-class FileError(VoxmendError, OSError):
-    """The system refused to open, read, write or rename."""
-
-
-class FormatError(VoxmendError, ValueError):
-    """The content is not a known format, or is damaged beyond reading."""
-
-
-class NumbersError(FormatError):
-    """The file holds numbers, not set and clear voxels: `voxmend.read_field` reads them."""
-
-
-class EmptyError(VoxmendError, ValueError):
-    """There is nothing to work on."""
-
-
-class OutOfMemoryError(VoxmendError, MemoryError):
-    """The system has no memory left, or the limit would be exceeded."""
-
-
-class RangeError(VoxmendError, ValueError):
-    """A size or coordinate is beyond what can be computed."""
-
-
-class UnavailableError(VoxmendError, NotImplementedError):
-    """The library was built without what this needs."""
-
-
-class UnreachedError(VoxmendError, RuntimeError):
-    """A repair did not come as far as it was asked to."""
-
-
-_classes = {
-    lib.VXM_ERROR_ARGUMENT: ArgumentError,
-    lib.VXM_ERROR_IO: FileError,
-    lib.VXM_ERROR_FORMAT: FormatError,
-    lib.VXM_ERROR_EMPTY: EmptyError,
-    lib.VXM_ERROR_MEMORY: OutOfMemoryError,
-    lib.VXM_ERROR_MEMORY_LIMIT: OutOfMemoryError,
-    lib.VXM_ERROR_RANGE: RangeError,
-    lib.VXM_ERROR_UNAVAILABLE: UnavailableError,
-    lib.VXM_ERROR_UNREACHED: UnreachedError,
-    lib.VXM_ERROR_NUMBERS: NumbersError,
-}
+try:
+    from ._voxmend import ffi, lib
+except ImportError as problem:
+    if "libvoxmend" not in str(problem):
+        raise
+    raise ImportError("%s: the library of the package voxmend is not where the system looks for libraries; run ldconfig "
+                      "after 'make install', set LD_LIBRARY_PATH to its folder, or install the package anew with "
+                      "VOXMEND_RPATH=1 to remember the folder" % problem) from None
 
 
 def text(pointer: Any) -> str:
@@ -92,36 +37,114 @@ def new(name: str, **values: Any) -> Any:
     return out
 
 
-def check(status: int, error: Any) -> None:
-    """Raises what a call has failed with."""
-    if status == lib.VXM_OK:
-        return
-    made = _classes.get(status, VoxmendError)(text(error.text))
+# ---- Failures ----
+
+_classes = {
+    lib.VXM_ERROR_ARGUMENT: _errors.ArgumentError,
+    lib.VXM_ERROR_IO: _errors.FileError,
+    lib.VXM_ERROR_FORMAT: _errors.FormatError,
+    lib.VXM_ERROR_EMPTY: _errors.EmptyError,
+    lib.VXM_ERROR_MEMORY: _errors.OutOfMemoryError,
+    lib.VXM_ERROR_MEMORY_LIMIT: _errors.OutOfMemoryError,
+    lib.VXM_ERROR_RANGE: _errors.RangeError,
+    lib.VXM_ERROR_UNAVAILABLE: _errors.UnavailableError,
+    lib.VXM_ERROR_UNREACHED: _errors.UnreachedError,
+    lib.VXM_ERROR_CANCELLED: _errors.CancelledError,
+    lib.VXM_ERROR_NUMBERS: _errors.NumbersError,
+}
+
+
+def failure(status: int, error: Any, path: Any = None) -> _errors.VoxmendError:
+    """The exception for what a call has failed with; `path` is what the caller named a file by."""
+    message, file = text(error.text), ffi.string(error.file)
+    if status == lib.VXM_ERROR_IO:
+        made: Any = _errors.file_error(message, error.system, file, path)
+    else:
+        made = _classes.get(status, _errors.VoxmendError)(message)
     made.status = text(lib.vxm_status_name(status))
-    made.file = text(error.file)
+    made.file = file.decode("utf-8", "replace")
     made.line, made.offset, made.element = error.line, error.offset, error.element
-    raise made
+    return made
 
 
-def call(function: Any, *arguments: Any) -> None:
-    """Calls a function whose last argument is a vxm_error. Other Python threads run meanwhile."""
+# ---- Calls, and what interrupts them ----
+
+class _Interrupt(threading.local):
+    """What a signal handler of Python raised while the library worked: KeyboardInterrupt for one."""
+    raised: Optional[BaseException] = None
+
+
+_interrupt = _Interrupt()
+
+
+def _keep(kind: Any, raised: BaseException, traceback: Any) -> None:
+    _interrupt.raised = raised
+
+
+@ffi.def_extern(error=1, onerror=_keep)
+def voxmend_ask() -> int:
+    """Called by the library now and then in the main thread: handlers of signals run here."""
+    for _ in (0,):  # the interpreter looks for signals where a loop begins anew
+        pass
+    return 0
+
+
+def call(function: Any, *arguments: Any, path: Any = None) -> None:
+    """Calls a function whose last argument is a vxm_error. Other Python threads run meanwhile; in the main thread handlers
+    of signals do, and what one raises ends the call."""
     error = new("vxm_error")
-    check(function(*arguments, error), error)
+    before = lib.voxmend_enter(threading.get_ident() == threading.main_thread().ident)
+    try:
+        status = function(*arguments, error)
+    finally:
+        lib.voxmend_leave(before)
+    raised, _interrupt.raised = _interrupt.raised, None
+    if raised is not None:
+        raise raised
+    if status != lib.VXM_OK:
+        raise failure(status, error, path)
 
 
-def create(type_name: str, function: Any, *arguments: Any, destroy: Any) -> Any:
+def create(type_name: str, function: Any, *arguments: Any, destroy: Any, path: Any = None) -> Any:
     """Calls a function that makes an object, which is destroyed when Python drops it."""
     out = ffi.new(type_name + " **")
-    call(function, out, *arguments)
-    return ffi.gc(out[0], destroy)
+    try:
+        call(function, out, *arguments, path=path)
+        return ffi.gc(out[0], destroy)
+    except BaseException:  # of a handler of signals, as the call came to its end
+        if out[0] != ffi.NULL:
+            destroy(out[0])
+        raise
 
+
+@contextlib.contextmanager
+def stoppable(flag: Any) -> Iterator[None]:
+    """Calls of this thread end with CancelledError once the flag, of ffi.new("int *"), is not 0."""
+    before = lib.voxmend_stop_at(flag)
+    try:
+        yield
+    finally:
+        lib.voxmend_stop_at(before)
+
+
+def warn(lines: Any) -> None:
+    """Tells the warnings of an object, as from the line of the user's program that asked for it."""
+    if not lines:
+        return
+    level, frame = 1, sys._getframe()
+    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "voxmend":
+        level, frame = level + 1, frame.f_back
+    for line in lines:
+        warnings.warn(line, VoxmendWarning, stacklevel=level)
+
+
+# ---- The context ----
 
 _context: Any = None
 
 
 def context() -> Any:
     """The context of all objects: its threads, and its memory limit."""
-    global _context
     if _context is None:
         configure()
     return _context
@@ -135,37 +158,49 @@ def configure(threads: int = 0, memory_limit: int = 0) -> None:
         memory_limit: bytes that all objects may hold together; 0 = no limit.
     """
     global _context
-    options = new("vxm_context_options", threads=threads, memory_limit=memory_limit)
+    options = new("vxm_context_options", threads=_values.whole("configure: threads", threads, 0, 0x7FFFFFFF),
+                  memory_limit=_values.whole("configure: memory_limit", memory_limit, 0, 0xFFFFFFFFFFFFFFFF))
+    options.progress = ffi.addressof(lib, "voxmend_on_progress")
     _context = create("vxm_context", lib.vxm_context_create, options, destroy=lib.vxm_context_destroy)
 
 
-def path_bytes(path: Any) -> bytes:
-    return os.fsencode(os.fspath(path))
-
+# ---- Arrays ----
 
 class _Holder:
     """Memory of the library that numpy looks at; it holds the object to which it belongs."""
 
-    def __init__(self, owner: Any, pointer: Any, shape: tuple, kind: str, strides: Optional[tuple]):
+    def __init__(self, owner: Any, address: int, shape: tuple, kind: str):
         self.owner = owner
-        self.__array_interface__ = {
-            "version": 3, "shape": shape, "typestr": kind, "strides": strides,
-            "data": (int(ffi.cast("uintptr_t", pointer)), True)}
+        self.__array_interface__ = {"version": 3, "shape": shape, "typestr": kind, "data": (address, True)}
 
 
-def view(owner: Any, pointer: Any, shape: tuple, kind: str, strides: Optional[tuple] = None) -> numpy.ndarray:
+def view(owner: Any, pointer: Any, shape: tuple, kind: str) -> numpy.ndarray:
     """A read-only array over the library's memory, without a copy, which keeps its owner alive."""
     if pointer == ffi.NULL or 0 in shape:
-        return numpy.zeros(shape, kind)
-    return numpy.asarray(_Holder(owner, pointer, shape, kind, strides))
+        out = numpy.zeros(shape, kind)
+        out.flags.writeable = False
+        return out
+    return numpy.asarray(_Holder(owner, int(ffi.cast("uintptr_t", pointer)), shape, kind))
 
 
-def choice(value: str, prefix: str) -> int:
+def read_only(array: numpy.ndarray) -> numpy.ndarray:
+    """The same memory, which nobody can make writeable again."""
+    if array.size == 0:
+        return array
+    return numpy.asarray(_Holder(array, array.ctypes.data, array.shape, array.dtype.str))
+
+
+def pointer(kind: str, array: numpy.ndarray) -> Any:
+    """What C sees of an array; the caller keeps the array until the call is over."""
+    return ffi.cast(kind, array.ctypes.data)
+
+
+def choice(name: str, value: str, prefix: str) -> int:
     """The number of an enum's value by its name, such as "cube" of VXM_FIT_."""
-    number = getattr(lib, prefix + str(value).upper(), None)
-    if number is None:
+    number = getattr(lib, prefix + _values.word(name, value).upper(), None)
+    if not isinstance(number, int):
         names = [n[len(prefix):].lower() for n in dir(lib) if n.startswith(prefix) and not n.endswith("_KINDS")]
-        raise ArgumentError("%r is none of %s" % (value, ", ".join(sorted(names))))
+        raise ArgumentError("%s %r is none of %s" % (name, value, ", ".join(sorted(names))))
     return number
 
 

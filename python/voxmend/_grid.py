@@ -2,25 +2,48 @@
 """Voxel grids, by the names that users of trimesh know, and how they are made."""
 from __future__ import annotations
 
+import os
 from typing import Any, Iterable, Optional, Sequence, Union
 
 import numpy
 
-from . import _core
+from . import _core, _values
 from ._core import ffi, lib
-from ._mesh import Mesh, MeshLike, as_mesh, repair as repair_mesh
+from ._errors import ArgumentError, KindError
+from ._mesh import Mesh, MeshLike, as_mesh, format_name, repair as repair_mesh
 
 
-def _space(dims: Sequence[int], origin: Sequence[float], size: Sequence[float]) -> Any:
+def _space(dims: Sequence[int], origin: Any, size: Any) -> Any:
     out = ffi.new("vxm_space *")
     out.dims[0:3] = [int(d) for d in dims]
-    out.origin[0:3] = [float(o) for o in origin]
-    out.voxel_size[0:3] = [float(s) for s in size]
+    out.origin[0:3] = _values.reals("grid: origin", origin, (3,)).tolist()
+    out.voxel_size[0:3] = _values.reals("grid: pitch", size, (3,)).tolist()
     return out
+
+
+def _empty_grid(space: Any) -> Any:
+    return _core.create("vxm_grid", lib.vxm_grid_create, _core.context(), space, destroy=lib.vxm_grid_destroy)
+
+
+def _filled(matrix: Any) -> numpy.ndarray:
+    """(nx, ny, nz) uint8, not 0 where a voxel is set."""
+    values = _values.array("grid: the matrix", matrix, "biuf", "numbers or truth values")
+    if values.ndim != 3:
+        raise ArgumentError("grid: the matrix has %d dimensions, not 3" % values.ndim)
+    if values.dtype == numpy.bool_ and values.flags.c_contiguous:
+        return values.view(numpy.uint8)
+    out = numpy.empty(values.shape, numpy.bool_)
+    for layer, filled in zip(values, out):  # one at a time, between which Ctrl-C is heard
+        if layer.dtype.kind == "f" and numpy.isnan(layer).any():
+            raise ArgumentError("grid: the matrix has numbers that are NaN, neither 0 nor another")
+        numpy.not_equal(layer, 0, out=filled)
+    return out.view(numpy.uint8)
 
 
 class VoxelGrid:
     """A box of voxels that are set or not. Voxel (i, j, k) has its centre at origin + ((i, j, k) + 1/2) * pitch.
+
+    It does not change; pickles and copies hold the same content.
 
     Args:
         matrix: (nx, ny, nz) array; what is not 0 is set.
@@ -29,20 +52,25 @@ class VoxelGrid:
     """
 
     def __init__(self, matrix: Any, pitch: Union[float, Sequence[float]] = 1.0, origin: Sequence[float] = (0.0, 0.0, 0.0)):
-        filled = numpy.ascontiguousarray(numpy.asarray(matrix) != 0).view(numpy.uint8)
-        if filled.ndim != 3:
-            raise _core.ArgumentError("grid: the matrix has %d dimensions, not 3" % filled.ndim)
-        space = _space(filled.shape, origin, numpy.broadcast_to(pitch, 3))
-        self._pointer = _core.create("vxm_grid", lib.vxm_grid_create, _core.context(), space, destroy=lib.vxm_grid_destroy)
-        lib.vxm_grid_pack(self._pointer, ffi.cast("uint8_t *", filled.ctypes.data))
-        self.report: dict = {}
+        filled = _filled(matrix)
+        made = _empty_grid(_space(filled.shape, origin, pitch))
+        _core.call(lib.vxm_grid_pack_range, made, 0, filled.shape[0], _core.pointer("uint8_t *", filled))
+        self._take(made)
+
+    def _take(self, pointer: Any, report: Optional[dict] = None) -> "VoxelGrid":
+        self._pointer = pointer
+        self.report: dict = report or {}
         self._matrix: Optional[numpy.ndarray] = None
+        self._told: Optional[list] = None  # warnings, where another grid was made
+        return self
 
     @classmethod
     def _of(cls, pointer: Any, report: Optional[dict] = None) -> "VoxelGrid":
-        self = cls.__new__(cls)
-        self._pointer, self.report, self._matrix = pointer, report or {}, None
-        return self
+        return cls.__new__(cls)._take(pointer, report)
+
+    def __reduce__(self) -> tuple:
+        place = (self.shape, self.origin, self.pitch)
+        return _restore, (type(self), place, self.packed.astype("<u8"), self.report, self.warnings)
 
     def __repr__(self) -> str:
         return "<voxmend.VoxelGrid: %d x %d x %d voxels, %d set>" % (*self.shape, self.filled_count)
@@ -82,29 +110,33 @@ class VoxelGrid:
 
     def indices_to_points(self, indices: Any) -> numpy.ndarray:
         """Centres of voxels, (n, 3), of their (n, 3) indices."""
-        return self.origin + (numpy.asarray(indices) + 0.5) * self.pitch
+        return self.origin + (_values.array("grid: indices", indices, "iuf", "numbers") + 0.5) * self.pitch
 
     def points_to_indices(self, points: Any) -> numpy.ndarray:
         """(n, 3) indices of the voxels in which points lie; they may lie outside of the grid."""
-        return numpy.floor((numpy.asarray(points) - self.origin) / self.pitch).astype(numpy.int64)
+        at = numpy.floor((_values.reals("grid: points", points) - self.origin) / self.pitch)
+        return numpy.clip(at, -(2.0 ** 62), 2.0 ** 62).astype(numpy.int64)
 
     # ---- What is set ----
 
     @property
     def matrix(self) -> numpy.ndarray:
-        """(nx, ny, nz) bool, made when it is first asked for. Changing it does not change the grid."""
+        """(nx, ny, nz) bool, read-only, made when it is first asked for. For another grid change a copy: VoxelGrid(copy)."""
         if self._matrix is None:
-            out = numpy.empty(self.shape, numpy.uint8)
-            lib.vxm_grid_unpack(self._pointer, ffi.cast("uint8_t *", out.ctypes.data))
-            self._matrix = out.view(numpy.bool_)
+            self._matrix = _core.read_only(self._unpacked().view(numpy.bool_))
         return self._matrix
+
+    def _unpacked(self) -> numpy.ndarray:
+        out = numpy.empty(self.shape, numpy.uint8)
+        _core.call(lib.vxm_grid_unpack_range, self._pointer, 0, self.shape[0], _core.pointer("uint8_t *", out))
+        return out
 
     @property
     def packed(self) -> numpy.ndarray:
         """(nz, ny, words) uint64, the grid's own memory: bit i % 64 of word i // 64 is voxel (i, j, k); read-only."""
         nx, ny, nz = self.shape
         words = lib.vxm_grid_row_words(self._pointer)
-        return _core.view(self, lib.vxm_grid_words(self._pointer), (nz, ny, words), "<u8")
+        return _core.view(self._pointer, lib.vxm_grid_words(self._pointer), (nz, ny, words), "<u8")
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> numpy.ndarray:
         out = self.matrix
@@ -113,11 +145,11 @@ class VoxelGrid:
         return out.copy() if copy else out
 
     def __dlpack__(self, **arguments: Any) -> Any:
-        """The matrix as uint8, without a copy: torch.from_dlpack(grid)."""
-        return self.matrix.view(numpy.uint8).__dlpack__(**arguments)
+        """The voxels as uint8, in memory of their own, which may be written to: torch.from_dlpack(grid)."""
+        return self._unpacked().__dlpack__(**arguments)
 
-    def __dlpack_device__(self) -> Any:
-        return self.matrix.view(numpy.uint8).__dlpack_device__()
+    def __dlpack_device__(self) -> tuple:
+        return 1, 0  # the CPU
 
     @property
     def filled_count(self) -> int:
@@ -154,6 +186,9 @@ class VoxelGrid:
 
     @property
     def warnings(self) -> list:
+        """What reading or voxelizing met, one line each, told as VoxmendWarning too."""
+        if self._told is not None:
+            return list(self._told)
         return [_core.text(lib.vxm_grid_warning(self._pointer, i)) for i in range(lib.vxm_grid_warning_count(self._pointer))]
 
     # ---- Others made of it ----
@@ -166,28 +201,38 @@ class VoxelGrid:
 
     def fill(self) -> "VoxelGrid":
         """A new grid, with all that cannot be reached from outside over faces of empty voxels set too."""
-        empty = numpy.pad(~self.matrix, 1, constant_values=True)
+        matrix = self.matrix
+        empty = numpy.ones([n + 2 for n in matrix.shape], numpy.bool_)
+        for layer, filled in zip(empty[1:-1], matrix):
+            numpy.logical_not(filled, out=layer[1:-1, 1:-1])
         reached = numpy.zeros_like(empty)
         reached[0], reached[-1] = True, True
         reached[:, 0], reached[:, -1] = True, True
         reached[:, :, 0], reached[:, :, -1] = True, True
         before = -1
-        while before != (before := int(reached.sum())):
+        while before != (before := sum(int(layer.sum()) for layer in reached)):
             for axis in range(3):
                 slices, open_ = numpy.moveaxis(reached, axis, 0), numpy.moveaxis(empty, axis, 0)
                 for i in range(1, len(slices)):
                     slices[i] |= slices[i - 1] & open_[i]
                 for i in range(len(slices) - 2, -1, -1):
                     slices[i] |= slices[i + 1] & open_[i]
-        return self._like(~reached[1:-1, 1:-1, 1:-1])
+        out = numpy.empty(matrix.shape, numpy.bool_)
+        for layer, filled in zip(reached[1:-1], out):
+            numpy.logical_not(layer[1:-1, 1:-1], out=filled)
+        return self._like(out)
 
     def hollow(self) -> "VoxelGrid":
         """A new grid of those set voxels that have an empty one beside a face, or lie at the border."""
-        full = numpy.pad(self.matrix, 1)
-        inner = full.copy()
-        for axis in range(3):
-            inner &= numpy.roll(full, 1, axis) & numpy.roll(full, -1, axis)
-        return self._like((full & ~inner)[1:-1, 1:-1, 1:-1])
+        matrix = self.matrix
+        out = numpy.zeros(matrix.shape, numpy.bool_)
+        for i, full in enumerate(matrix):
+            border = numpy.pad(full, 1)
+            inner = border[:-2, 1:-1] & border[2:, 1:-1] & border[1:-1, :-2] & border[1:-1, 2:]
+            for beside in (i - 1, i + 1):
+                inner = inner & matrix[beside] if 0 <= beside < len(matrix) else numpy.zeros_like(inner)
+            out[i] = full & ~inner
+        return self._like(out)
 
     def as_boxes(self) -> Mesh:
         """The faces between set and empty voxels, merged into rectangles, in model units."""
@@ -195,20 +240,35 @@ class VoxelGrid:
 
     def compare(self, other: "VoxelGrid") -> dict:
         """Counts of voxels in both and in one only, and `iou`, for grids of equal shape."""
+        if not isinstance(other, VoxelGrid):
+            raise KindError("compare: %s is not a VoxelGrid" % type(other).__name__)
         out = ffi.new("vxm_comparison *")
         _core.call(lib.vxm_grid_compare, out, self._pointer, other._pointer)
+        for name in ("origin", "pitch"):
+            if (getattr(self, name) != getattr(other, name)).any():
+                _core.warn(["the grids differ in %s; voxels are compared by index" % name])
         return _core.fields(out[0])
 
     def save(self, path: Any, format: Optional[str] = None) -> None:
         """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, or the surface as .obj, .ply, .stl, .off."""
         options = _core.new("vxm_grid_write_options")
-        name = ffi.new("char[]", format.encode()) if format else ffi.NULL
+        name = format_name("save", format)
         options.format = name
-        _core.call(lib.vxm_grid_write, self._pointer, _core.path_bytes(path), options)
+        _core.call(lib.vxm_grid_write, self._pointer, _values.path(path), options, path=path)
+
+
+def _restore(kind: type, place: tuple, words: numpy.ndarray, report: dict, warnings: list) -> VoxelGrid:
+    """A grid from its pickle."""
+    made = _empty_grid(_space(*place))
+    native = numpy.ascontiguousarray(words, numpy.uint64)
+    _core.call(lib.vxm_grid_set_words, made, _core.pointer("uint64_t *", native), native.size)
+    grid = kind.__new__(kind)._take(made, report)
+    grid._told = warnings
+    return grid
 
 
 def read(path: Any, *, at_least: Optional[float] = None, below: Optional[float] = None) -> VoxelGrid:
-    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd or .vdb.
+    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd or .vdb; what is odd about it is told as VoxmendWarning.
 
     Numbers are taken as set and clear voxels only if nothing is lost: all are 0 or 1, or unsigned bytes 0 and 255. Other
     files raise NumbersError; `read_field` reads them, or a bound says which voxels are set.
@@ -219,12 +279,16 @@ def read(path: Any, *, at_least: Optional[float] = None, below: Optional[float] 
     if at_least is not None or below is not None:
         from ._field import read_field
         return read_field(path).threshold(at_least, below)
-    return VoxelGrid._of(_core.create("vxm_grid", lib.vxm_grid_read, _core.context(), _core.path_bytes(path),
-                                      destroy=lib.vxm_grid_destroy))
+    made = VoxelGrid._of(_core.create("vxm_grid", lib.vxm_grid_read, _core.context(), _values.path(path),
+                                      destroy=lib.vxm_grid_destroy, path=path))
+    _core.warn(["%s: %s" % (os.fsdecode(path), line) for line in made.warnings])
+    return made
 
 
 def write(grid: VoxelGrid, path: Any, format: Optional[str] = None) -> None:
     """As `VoxelGrid.save`."""
+    if not isinstance(grid, VoxelGrid):
+        raise KindError("write: %s is not a VoxelGrid" % type(grid).__name__)
     grid.save(path, format)
 
 
@@ -232,36 +296,46 @@ def write(grid: VoxelGrid, path: Any, format: Optional[str] = None) -> None:
 
 def _space_options(resolution: Any, pitch: Optional[float], fit: str, pad: int, bounds: Any, like: Optional[VoxelGrid]) -> tuple:
     """The options, and what they point to."""
-    options = _core.new("vxm_space_options", pad=pad, fit=_core.choice(fit, "VXM_FIT_"))
+    options = _core.new("vxm_space_options", pad=_values.whole("voxelize: pad", pad, 0),
+                        fit=_core.choice("voxelize: fit", fit, "VXM_FIT_"))
     if resolution is not None and pitch is not None:
-        raise _core.ArgumentError("voxelize: resolution and pitch exclude each other")
+        raise ArgumentError("voxelize: resolution and pitch exclude each other")
     if like is not None and (resolution is not None or pitch is not None or bounds is not None or pad):
-        raise _core.ArgumentError("voxelize: `like` takes the whole space of a grid; leave out the others")
+        raise ArgumentError("voxelize: `like` takes the whole space of a grid; leave out the others")
     if pitch is not None:
-        if not pitch > 0:
-            raise _core.ArgumentError("voxelize: the pitch %r is not a positive number" % (pitch,))
-        options.voxel_size = pitch
+        options.voxel_size = _values.real("voxelize: pitch", pitch)
+        if not options.voxel_size > 0:
+            raise ArgumentError("voxelize: the pitch %r is not a positive number" % (pitch,))
     if resolution is not None:
-        wanted = [int(resolution), 0, 0] if numpy.ndim(resolution) == 0 else [int(n) for n in resolution]
-        if len(wanted) != 3 or min(wanted) < 0 or wanted[0] < 1:
-            raise _core.ArgumentError("voxelize: the resolution %r is neither one positive number nor three" % (resolution,))
-        options.resolution[0:3] = wanted
+        options.resolution[0:3] = _resolution(resolution)
     if bounds is not None:
-        corners = numpy.asarray(bounds, numpy.float64).reshape(-1)
+        corners = _values.reals("voxelize: bounds", bounds).reshape(-1)
         if corners.size != 6:
-            raise _core.ArgumentError("voxelize: bounds are not two corners of three numbers")
+            raise ArgumentError("voxelize: bounds are not two corners of three numbers")
         options.use_bounds = True
         options.bounds[0:6] = corners.tolist()
     kept = None
     if like is not None:
+        if not all(hasattr(like, name) for name in ("shape", "origin", "pitch")):
+            raise KindError("voxelize: `like` is %s, which has no shape, origin and pitch" % type(like).__name__)
         kept = _space(like.shape, like.origin, like.pitch)
         options.like = kept
     return options, kept
 
 
+def _resolution(wanted: Any) -> list:
+    name = "voxelize: the resolution"
+    if isinstance(wanted, (str, bytes)) or numpy.ndim(wanted) == 0:
+        return [_values.whole(name, wanted, 1), 0, 0]
+    numbers = [_values.whole(name, n, 1) for n in wanted]
+    if len(numbers) != 3:
+        raise ArgumentError("%s %r is neither one number nor three" % (name, wanted))
+    return numbers
+
+
 def _prepare(mesh: MeshLike, repair: bool) -> Mesh:
     source = as_mesh(mesh)
-    return repair_mesh(source, separate=True) if repair else source
+    return repair_mesh(source, separate=True) if _values.flag("voxelize: repair", repair) else source
 
 
 def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None, *, pitch: Optional[float] = None,
@@ -291,16 +365,18 @@ def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None,
     options = _core.new("vxm_voxelize_options")
     space_options, kept = _space_options(resolution, pitch, fit, pad, bounds, like)
     options.space = space_options[0]
-    options.mode = _core.choice(mode, "VXM_MODE_")
-    options.surface = _core.choice(surface, "VXM_SURFACE_")
-    options.method = _core.choice(method, "VXM_METHOD_")
-    options.vote = _core.choice(vote, "VXM_VOTE_")
-    options.parts = _core.choice(parts, "VXM_PARTS_")
-    options.cavities = _core.choice(cavities, "VXM_CAVITIES_")
+    options.mode = _core.choice("voxelize: mode", mode, "VXM_MODE_")
+    options.surface = _core.choice("voxelize: surface", surface, "VXM_SURFACE_")
+    options.method = _core.choice("voxelize: method", method, "VXM_METHOD_")
+    options.vote = _core.choice("voxelize: vote", vote, "VXM_VOTE_")
+    options.parts = _core.choice("voxelize: parts", parts, "VXM_PARTS_")
+    options.cavities = _core.choice("voxelize: cavities", cavities, "VXM_CAVITIES_")
     report = ffi.new("vxm_voxelize_report *")
     made = _core.create("vxm_grid", lib.vxm_voxelize, report, source._pointer, options, destroy=lib.vxm_grid_destroy)
     del kept  # until now the options point to it
-    return VoxelGrid._of(made, _core.fields(report[0]))
+    grid = VoxelGrid._of(made, _core.fields(report[0]))
+    _core.warn(grid.warnings)
+    return grid
 
 
 def _field(mesh: MeshLike, space_of: tuple, repair: bool, kind: str, options: Any, dtype: Any) -> tuple:
@@ -311,8 +387,8 @@ def _field(mesh: MeshLike, space_of: tuple, repair: bool, kind: str, options: An
     del kept
     model = _core.create("vxm_model", lib.vxm_model_create, source._pointer, ffi.NULL, destroy=lib.vxm_model_destroy)
     values = numpy.empty(tuple(space.dims), dtype)
-    pointer = ffi.cast("float *", values.ctypes.data)
-    _core.call(getattr(lib, "vxm_model_" + kind), pointer, ffi.NULL, model, space, options)
+    _core.call(getattr(lib, "vxm_model_" + kind), _core.pointer("float *", values), ffi.NULL, model, space, options)
+    _core.warn([_core.text(lib.vxm_model_warning(model, i)) for i in range(lib.vxm_model_warning_count(model))])
     return values, numpy.array(list(space.origin)), numpy.array(list(space.voxel_size))
 
 
@@ -327,7 +403,8 @@ def distance(mesh: MeshLike, resolution: Any = None, *, pitch: Optional[float] =
     Returns:
         (nx, ny, nz) float32 in model units, origin (3,), pitch (3,)
     """
-    options = _core.new("vxm_distance_options", band=band, is_unsigned=unsigned)
+    options = _core.new("vxm_distance_options", band=_values.real("distance: band", band, 0),
+                        is_unsigned=_values.flag("distance: unsigned", unsigned))
     return _field(mesh, (resolution, pitch, fit, pad, bounds, like), repair, "distance", options, numpy.float32)
 
 
@@ -338,5 +415,5 @@ def coverage(mesh: MeshLike, resolution: Any = None, *, pitch: Optional[float] =
     Returns:
         (nx, ny, nz) float32 from 0 to 1, origin (3,), pitch (3,), both in model units
     """
-    options = _core.new("vxm_coverage_options", subdivision=subdivision)
+    options = _core.new("vxm_coverage_options", subdivision=_values.whole("coverage: subdivision", subdivision, 2, 8))
     return _field(mesh, (resolution, pitch, fit, pad, bounds, like), repair, "coverage", options, numpy.float32)

@@ -2,15 +2,56 @@
 """Augmented variants of meshes, straight into arrays."""
 from __future__ import annotations
 
+import os
+import threading
+import weakref
 from typing import Any, Optional, Sequence, Union
 
 import numpy
 
-from . import _core
+from . import _core, _values
 from ._core import ffi, lib
+from ._errors import ArgumentError, BusyError, KindError
 from ._mesh import MeshLike, as_mesh
 
+_UINT32_MAX = 0xFFFFFFFF
 _VOXELS = {"bits": lib.VXM_VOXELS_PACKED, "uint8": lib.VXM_VOXELS_UINT8, "float32": lib.VXM_VOXELS_FLOAT32}
+
+
+class Turn:
+    """Lets one thread at a time in, others wait; a thread that is inside already is refused rather than stuck."""
+
+    def __init__(self) -> None:
+        self._lock, self._holder = threading.Lock(), 0
+
+    def __enter__(self) -> None:
+        if self._holder == threading.get_ident():
+            raise BusyError("the object is at work for this very thread, whose signal handler asks it for more")
+        self._lock.acquire()
+        self._holder = threading.get_ident()
+
+    def __exit__(self, *_: Any) -> None:
+        self._holder = 0
+        self._lock.release()
+
+    def is_taken(self) -> bool:
+        return self._lock.locked()
+
+
+_living: "weakref.WeakSet[Any]" = weakref.WeakSet()
+
+
+def watch_forks(holder: Any) -> None:
+    """Has holder._after_fork called in a process that a fork makes."""
+    _living.add(holder)
+
+
+def _after_fork() -> None:
+    for holder in list(_living):
+        holder._after_fork()
+
+
+os.register_at_fork(after_in_child=_after_fork)
 
 
 class Sampler:
@@ -33,7 +74,9 @@ class Sampler:
         engine: who makes the voxels: "cpu"; "opengl", "opencl" or one that the command 'voxmend engines' lists, one variant
             after another; "auto": a GPU, or else the CPU. Variants have the same bits.
 
-    A sampler may be used by one thread at a time; a call works with several, and other Python threads run meanwhile.
+    Several threads may use one sampler: they take turns. A call works with all threads of the library, and other Python
+    threads run meanwhile. Which variant is which follows from model, epoch and index alone, so that neither turns, nor
+    pickles and copies, which hold the models too, make a difference.
     """
 
     def __init__(self, resolution: int = 64, *, pad: int = 0, seed: int = 0, rotate: Any = None, scale: float = 0.0,
@@ -41,68 +84,119 @@ class Sampler:
                  translate: float = 0.0, fill: bool = False, mode: str = "solid", surface: str = "conservative",
                  method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto",
                  engine: Optional[str] = None):
-        options = _core.new("vxm_sampler_options", resolution=resolution, pad=pad, seed=seed, scale=scale,
-                            displace=displace, noise=noise, translate=translate, fill=fill)
-        kept = self._set_rotation(options, rotate)
-        options.displacement = _core.choice(displacement, "VXM_DISPLACEMENT_")
-        for axis in mirror:
-            if axis not in "xyz":
-                raise _core.ArgumentError("sampler: mirror %r names other axes than x, y and z" % mirror)
-            options.mirror |= 1 << "xyz".index(axis)
-        voxelize = options.voxelize
-        voxelize.mode = _core.choice(mode, "VXM_MODE_")
-        voxelize.surface = _core.choice(surface, "VXM_SURFACE_")
-        voxelize.method = _core.choice(method, "VXM_METHOD_")
-        voxelize.vote = _core.choice(vote, "VXM_VOTE_")
-        voxelize.parts = _core.choice(parts, "VXM_PARTS_")
-        voxelize.cavities = _core.choice(cavities, "VXM_CAVITIES_")
-        self._engine = ffi.NULL
-        if engine not in (None, "cpu"):
-            self._engine = _core.create("vxm_engine", lib.vxm_engine_create, _core.context(), engine.encode(), ffi.NULL,
-                                        destroy=lib.vxm_engine_destroy)
-        voxelize.engine = self._engine
-        self._pointer = _core.create("vxm_sampler", lib.vxm_sampler_create, _core.context(), options,
-                                     destroy=lib.vxm_sampler_destroy)
-        del kept  # the library has copied it
-        self.resolution = int(lib.vxm_sampler_space(self._pointer).dims[0])
+        if isinstance(rotate, (list, tuple, numpy.ndarray)):
+            rotate = numpy.array(rotate)  # a copy
+        self._options = dict(resolution=resolution, pad=pad, seed=seed, rotate=rotate, scale=scale, displace=displace,
+                             displacement=displacement, noise=noise, mirror=mirror, translate=translate, fill=fill,
+                             mode=mode, surface=surface, method=method, vote=vote, parts=parts, cavities=cavities,
+                             engine=engine)
         self._meshes: dict = {}
+        self._turn = Turn()
+        self._torn = False  # by a fork in the middle of a call
+        self._pointer = self._make()
+        self.resolution = int(lib.vxm_sampler_space(self._pointer).dims[0])
+        watch_forks(self)
+
+    def _make(self) -> Any:
+        """The library's sampler of the options, without models."""
+        given = self._options
+        options = _core.new("vxm_sampler_options")
+        for name, least, most in (("resolution", 1, _values.INT64_MAX), ("pad", 0, _values.INT64_MAX),
+                                  ("seed", 0, 0xFFFFFFFFFFFFFFFF), ("noise", 0, _UINT32_MAX)):
+            setattr(options, name, _values.whole("sampler: " + name, given[name], least, most))
+        for name in ("scale", "displace", "translate"):
+            setattr(options, name, _values.real("sampler: " + name, given[name], 0))
+        options.fill = _values.flag("sampler: fill", given["fill"])
+        options.displacement = _core.choice("sampler: displacement", given["displacement"], "VXM_DISPLACEMENT_")
+        for axis in _values.word("sampler: mirror", given["mirror"]):
+            if axis not in "xyz":
+                raise ArgumentError("sampler: mirror %r names other axes than x, y and z" % given["mirror"])
+            options.mirror |= 1 << "xyz".index(axis)
+        for name in ("mode", "surface", "method", "vote", "parts", "cavities"):
+            setattr(options.voxelize, name, _core.choice("sampler: " + name, given[name], "VXM_%s_" % name.upper()))
+        rotations = self._set_rotation(options, given["rotate"])
+        options.voxelize.engine = engine = self._make_engine(given["engine"])
+
+        def destroy(sampler: Any, kept: tuple = (engine, self._meshes)) -> None:  # which outlive the sampler
+            lib.vxm_sampler_destroy(sampler)
+        made = _core.create("vxm_sampler", lib.vxm_sampler_create, _core.context(), options, destroy=destroy)
+        del rotations  # the library has copied them
+        return made
+
+    @staticmethod
+    def _make_engine(name: Optional[str]) -> Any:
+        if name is None or _values.word("sampler: engine", name) == "cpu":
+            return ffi.NULL
+        return _core.create("vxm_engine", lib.vxm_engine_create, _core.context(), name.encode(), ffi.NULL,
+                            destroy=lib.vxm_engine_destroy)
+
+    # ---- Copies, and processes that are forked ----
+
+    def __reduce__(self) -> tuple:
+        with self._turn:
+            return _restore, (type(self), self._options, dict(self._meshes))
+
+    def _after_fork(self) -> None:
+        if self._turn.is_taken():  # by a thread that is not in this process, in the middle of something
+            self._turn, self._torn = Turn(), True
+
+    def _ready(self) -> Any:
+        """The library's sampler; made anew where a fork came upon it in the middle of a call."""
+        if self._torn:
+            ffi.gc(self._pointer, None)  # left as it is: nobody knows how
+            self._pointer = self._make()
+            for model, mesh in self._meshes.items():
+                _core.call(lib.vxm_sampler_put, self._pointer, model, mesh._pointer)
+            self._torn = False
+        return self._pointer
 
     @staticmethod
     def _set_rotation(options: Any, rotate: Any) -> Any:
         if rotate is None or (isinstance(rotate, str) and rotate == "none"):
             return None
+        if isinstance(rotate, (bytes, bool)):
+            raise KindError("sampler: rotate is %r, neither a name, an axis nor matrices" % rotate)
         if isinstance(rotate, str) and rotate == "any":
             options.rotation = lib.VXM_ROTATION_ANY
             return None
         if isinstance(rotate, str):
             if rotate not in ("x", "y", "z"):
-                raise _core.ArgumentError("sampler: rotate %r is none of any, x, y, z, an axis or matrices" % rotate)
+                raise ArgumentError("sampler: rotate %r is none of any, x, y, z, an axis or matrices" % rotate)
             rotate = numpy.eye(3)["xyz".index(rotate)]
-        values = numpy.ascontiguousarray(rotate, numpy.float64)
+        values = _values.reals("sampler: rotate", rotate)
         if values.shape == (3,):
             options.rotation = lib.VXM_ROTATION_AXIS
             options.axis[0:3] = values.tolist()
             return None
         if values.ndim != 3 or values.shape[1:] != (3, 3):
-            raise _core.ArgumentError("sampler: rotate has shape %s, neither (3,) nor (n, 3, 3)" % (values.shape,))
+            raise ArgumentError("sampler: rotate has shape %s, neither (3,) nor (n, 3, 3)" % (values.shape,))
         options.rotation, options.rotation_count = lib.VXM_ROTATION_LIST, len(values)
-        options.rotations = ffi.cast("double *", values.ctypes.data)
+        options.rotations = _core.pointer("double *", values)
         return values
 
     def put(self, mesh: Optional[MeshLike], model: int = 0) -> None:
         """Puts a mesh in as number `model`; None takes the model out. Repair it before:
         `voxmend.repair(mesh, separate=True)`."""
         own = None if mesh is None else as_mesh(mesh)
-        self._meshes.pop(model, None)
-        _core.call(lib.vxm_sampler_put, self._pointer, model, ffi.NULL if own is None else own._pointer)
-        if own is not None:
-            self._meshes[model] = own  # the library looks at it as long as the model is there
+        number = _values.whole("sampler: model", model, 0, _UINT32_MAX)
+        with self._turn:
+            at = self._ready()
+            try:
+                _core.call(lib.vxm_sampler_put, at, number, ffi.NULL if own is None else own._pointer)
+            except BaseException:
+                _core.call(lib.vxm_sampler_put, at, number, ffi.NULL)  # there is none, whenever the failure came
+                self._meshes.pop(number, None)
+                raise
+            self._meshes.pop(number, None)  # only now: until it was replaced the library looked at it
+            if own is not None:
+                self._meshes[number] = own
 
     def shape(self, count: int, dtype: str = "float32") -> tuple:
         """Of an array of `count` variants."""
         d = self.resolution
-        if dtype not in _VOXELS:
-            raise _core.ArgumentError("sampler: dtype %r is none of float32, uint8, bits" % (dtype,))
+        count = _values.whole("sampler: count", count, 0)
+        if _values.word("sampler: dtype", dtype) not in _VOXELS:
+            raise ArgumentError("sampler: dtype %r is none of float32, uint8, bits" % (dtype,))
         return (count, d, d, (d + 7) // 8) if dtype == "bits" else (count, 1, d, d, d)
 
     def batch(self, variants: Union[int, Sequence[int], numpy.ndarray], *, model: int = 0, epoch: int = 0,
@@ -119,23 +213,32 @@ class Sampler:
             (n, 1, D, D, D), indexed [n, 0, x, y, z]; as bits (n, D, D, ceil(D / 8)) uint8, to be unpacked by
             numpy.unpackbits(..., axis=-1, count=D, bitorder="little")
         """
-        names = numpy.arange(variants) if numpy.ndim(variants) == 0 else numpy.asarray(variants)
-        if names.ndim == 1:
-            names = numpy.stack([numpy.full(len(names), model), numpy.full(len(names), epoch), names], axis=1)
-        if names.ndim != 2 or names.shape[1] != 3:
-            raise _core.ArgumentError("sampler: variants have shape %s, neither (n,) nor (n, 3)" % (names.shape,))
-        if names.size and (names.min() < 0 or names.max() > 0xFFFFFFFF):
-            raise _core.ArgumentError("sampler: model, epoch and index are from 0 to 4294967295")
-        names = numpy.ascontiguousarray(names, numpy.uint32)
+        names = self._names(variants, model, epoch)
         shape, kind = self.shape(len(names), dtype), numpy.float32 if dtype == "float32" else numpy.uint8
         if out is None:
             out = numpy.empty(shape, kind)
-        if out.shape != shape or out.dtype != kind or not out.flags.c_contiguous or not out.flags.writeable:
-            raise _core.ArgumentError("sampler: out is not a writeable C-contiguous array of %s of shape %s" %
-                                      (numpy.dtype(kind).name, shape))
-        _core.call(lib.vxm_sampler_batch, ffi.cast("void *", out.ctypes.data), self._pointer,
-                   ffi.cast("vxm_variant *", names.ctypes.data), len(names), _VOXELS[dtype])
+        if not isinstance(out, numpy.ndarray):
+            raise KindError("sampler: out is %s, not a numpy array" % type(out).__name__)
+        if out.shape != shape or out.dtype != kind or not out.flags.carray:
+            raise ArgumentError("sampler: out is not a writeable C-contiguous array of %s of shape %s" %
+                                (numpy.dtype(kind).name, shape))
+        with self._turn:
+            _core.call(lib.vxm_sampler_batch, _core.pointer("void *", out), self._ready(),
+                       _core.pointer("vxm_variant *", names), len(names), _VOXELS[dtype])
         return out
+
+    @staticmethod
+    def _names(variants: Any, model: Any, epoch: Any) -> numpy.ndarray:
+        """(n, 3) uint32: model, epoch and index of each variant."""
+        if numpy.ndim(variants) == 0:
+            variants = numpy.arange(_values.whole("sampler: variants", variants, 0, _UINT32_MAX))
+        names = _values.wholes("sampler: model, epoch and index", variants, 0, _UINT32_MAX)
+        if names.ndim == 1:
+            names = numpy.stack([numpy.full(len(names), _values.whole("sampler: model", model, 0, _UINT32_MAX)),
+                                 numpy.full(len(names), _values.whole("sampler: epoch", epoch, 0, _UINT32_MAX)), names], axis=1)
+        if names.ndim != 2 or names.shape[1] != 3:
+            raise ArgumentError("sampler: variants have shape %s, neither (n,) nor (n, 3)" % (names.shape,))
+        return numpy.ascontiguousarray(names, numpy.uint32)
 
     def pose(self, index: int, *, model: int = 0, epoch: int = 0) -> dict:
         """How a variant lies, before its vertices are displaced.
@@ -145,9 +248,18 @@ class Sampler:
             unit, negative where mirrored; shift (3,) in voxels
         """
         out = ffi.new("vxm_pose *")
-        variant = ffi.new("vxm_variant *", {"model": model, "epoch": epoch, "index": index})
-        _core.call(lib.vxm_sampler_pose, out, self._pointer, variant)
+        variant = ffi.new("vxm_variant *", {name: _values.whole("sampler: " + name, value, 0, _UINT32_MAX)
+                                            for name, value in (("model", model), ("epoch", epoch), ("index", index))})
+        with self._turn:
+            _core.call(lib.vxm_sampler_pose, out, self._ready(), variant)
         shapes = {"transform": (3, 4), "rotation": (3, 3), "scale": (3,), "shift": (3,)}
         return {key: numpy.array(list(getattr(out, key))).reshape(shape) for key, shape in shapes.items()}
 
 
+def _restore(kind: type, options: dict, meshes: dict) -> Sampler:
+    """A sampler from its pickle."""
+    made = kind.__new__(kind)
+    Sampler.__init__(made, **options)
+    for model, mesh in meshes.items():
+        made.put(mesh, model)
+    return made

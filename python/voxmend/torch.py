@@ -20,9 +20,11 @@ import numpy
 import torch
 from torch.utils.data import Dataset, IterableDataset, get_worker_info
 
-from . import __version__, _core
+from . import __version__, _core, _values
+from ._core import ffi
+from ._errors import EmptyError
 from ._mesh import Mesh, load, repair
-from ._sampler import Sampler
+from ._sampler import Sampler, Turn, watch_forks
 
 EXTENSIONS = (".off", ".obj", ".stl", ".ply", ".glb", ".gltf", ".3mf", ".dae", ".fbx", ".step", ".stp", ".iges", ".igs")
 
@@ -54,7 +56,9 @@ class VoxelDataset(Dataset):
     def __init__(self, root: Any, split: Optional[str] = None, resolution: int = 32, *, variants: int = 1,
                  packed: bool = False, seed: int = 0, cache: Any = None, memory: int = 1 << 30, level: str = "clean",
                  **augment: Any):
-        self.root = os.fspath(root)
+        self.root = os.fsdecode(_values.path(root))
+        for name, value, least in (("resolution", resolution, 1), ("variants", variants, 0), ("memory", memory, 0)):
+            _values.whole("dataset: " + name, value, least)
         self.classes = sorted(e.name for e in os.scandir(self.root) if e.is_dir() and not e.name.startswith("."))
         self.files: List[str] = []
         self.labels: List[int] = []
@@ -63,7 +67,7 @@ class VoxelDataset(Dataset):
             self.files += found
             self.labels += [label] * len(found)
         if not self.files:
-            raise _core.EmptyError("%s: no mesh in class folders%s" % (self.root, ", in " + split if split else ""))
+            raise EmptyError("%s: no mesh in class folders%s" % (self.root, ", in " + split if split else ""))
         self.resolution, self.variants, self.packed, self.level = resolution, variants, packed, level
         self.cache = None if cache is None else os.fspath(cache)
         self.memory = memory
@@ -75,11 +79,16 @@ class VoxelDataset(Dataset):
     def _forget(self) -> None:
         self._sampler: Optional[Sampler] = None
         self._held: "collections.OrderedDict[int, int]" = collections.OrderedDict()  # model: bytes
-        self._lock = threading.Lock()
+        self._turn = Turn()
+        watch_forks(self)
+
+    def _after_fork(self) -> None:
+        if self._turn.is_taken():  # by a thread that is not in this process
+            self._forget()
 
     def __getstate__(self) -> dict:
         state = dict(self.__dict__)
-        for name in ("_sampler", "_held", "_lock"):  # of this process
+        for name in ("_sampler", "_held", "_turn"):  # of this process
             state.pop(name)
         return state
 
@@ -141,13 +150,14 @@ class VoxelDataset(Dataset):
 
     def batch(self, items: Sequence[int], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
         """Many items at once, made by all threads: voxels (n, 1, D, D, D), or packed, and labels (n,) int64."""
-        at = numpy.asarray(items, numpy.int64)
+        at = _values.array("dataset: items", items, "iu", "whole numbers").reshape(-1)
         if at.size and (at.min() < -len(self) or at.max() >= len(self)):
             raise IndexError("items are from 0 to %d" % (len(self) - 1))
+        at = at.astype(numpy.int64)
         at = numpy.where(at < 0, at + len(self), at)
         models, indices = at % len(self.files), at // len(self.files)
         names = numpy.stack([models, numpy.full(len(at), self.epoch if epoch is None else epoch), indices], axis=1)
-        with self._lock:
+        with self._turn:
             sampler = self._need(models.tolist())
             voxels = sampler.batch(names.reshape(-1, 3), dtype="bits" if self.packed else "float32")
         return torch.from_numpy(voxels), torch.from_numpy(numpy.asarray(self.labels, numpy.int64)[models])
@@ -187,8 +197,9 @@ class IterableVoxelDataset(IterableDataset):
 
     def __init__(self, dataset: VoxelDataset, batch_size: int, *, epochs: Optional[int] = 1, first_epoch: int = 0,
                  shuffle: bool = True, seed: int = 0, drop_last: bool = False, prefetch: int = 2):
-        if batch_size < 1:
-            raise _core.ArgumentError("batches of %d items" % batch_size)
+        _values.whole("batches: batch_size", batch_size, 1)
+        for name, value in (("epochs", epochs or 0), ("first_epoch", first_epoch), ("seed", seed), ("prefetch", prefetch)):
+            _values.whole("batches: " + name, value, 0)
         self.dataset, self.batch_size, self.epochs, self.first_epoch = dataset, batch_size, epochs, first_epoch
         self.shuffle, self.seed, self.drop_last, self.prefetch = shuffle, seed, drop_last, prefetch
         self.waited = 0.0
@@ -224,7 +235,7 @@ class IterableVoxelDataset(IterableDataset):
                 yield made
             return
         ready: "queue.Queue[Any]" = queue.Queue(self.prefetch)
-        stop = threading.Event()
+        stop = ffi.new("int *")
         worker = threading.Thread(target=self._make_ahead, args=(ready, stop, self._batches()), daemon=True)
         worker.start()
         try:
@@ -238,19 +249,20 @@ class IterableVoxelDataset(IterableDataset):
                     raise value
                 yield value
         finally:
-            stop.set()
+            stop[0] = 1  # ends the call in which it may be
             while worker.is_alive():  # it may wait for room
                 try:
                     ready.get_nowait()
                 except queue.Empty:
                     worker.join(0.01)
 
-    def _make_ahead(self, ready: Any, stop: threading.Event, batches: Any) -> None:
+    def _make_ahead(self, ready: Any, stop: Any, batches: Any) -> None:
         try:
-            for epoch, items in batches:
-                if stop.is_set():
-                    return
-                ready.put(("batch", self.dataset.batch(items, epoch)))
+            with _core.stoppable(stop):
+                for epoch, items in batches:
+                    if stop[0]:
+                        return
+                    ready.put(("batch", self.dataset.batch(items, epoch)))
             ready.put(("end", None))
         except BaseException as problem:  # goes on in the thread that asked
             ready.put(("error", problem))

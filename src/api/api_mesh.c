@@ -26,6 +26,10 @@ static vxm_status check_arrays(const vxm_mesh_arrays *arrays, vxm_error *error) 
   if (arrays->face_count > INT64_MAX / 3)
     return vxm_fail(error, VXM_ERROR_RANGE, "%" PRId64 " faces are beyond what can be addressed",
                     arrays->face_count);
+  if (arrays->tag_count < 0 || arrays->tag_count > UINT32_MAX)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: %" PRId64 " tags", arrays->tag_count);
+  if (arrays->tag_count > 0 && (!arrays->tags || !arrays->face_tags))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: tags are NULL but their count is not 0");
   if (arrays->offsets && arrays->offsets[0] != 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: offsets[0] is %" PRId64 "; it must be 0",
                     arrays->offsets[0]);
@@ -68,6 +72,33 @@ static vxm_status copy_face(vxm_soup *soup, const vxm_mesh_arrays *arrays, int64
   return VXM_OK;
 }
 
+/** Names of tags, and which tag each face has. */
+static vxm_status copy_tags(vxm_soup *soup, const vxm_mesh_arrays *arrays, vxm_error *error) {
+  if (arrays->tag_count == 0)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  soup->face_tags = vxm_alloc(soup->context, soup->face_count, sizeof *soup->face_tags, &local);
+  if (!soup->face_tags) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  vxm_status status = VXM_OK;
+  uint32_t tag;
+  for (int64_t t = 0; status == VXM_OK && t < arrays->tag_count; t++) {
+    const char *name = arrays->tags[t] ? arrays->tags[t] : "";
+    status = vxm_soup_add_tag(soup, name, strlen(name), &tag, error);
+  }
+  for (int64_t face = 0; status == VXM_OK && face < arrays->face_count; face++) {
+    if (arrays->face_tags[face] >= arrays->tag_count)
+      return vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){NULL, 0, -1, face},
+                         "mesh: face %" PRId64 " has tag %" PRIu32 ", but there are %" PRId64, face,
+                         arrays->face_tags[face], arrays->tag_count);
+    soup->face_tags[face] = arrays->face_tags[face];
+  }
+  return status;
+}
+
 vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_arrays *arrays,
                            vxm_error *error) {
   if (out)
@@ -86,6 +117,8 @@ vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_
     status = copy_vertices(soup, arrays);
   for (int64_t face = 0; status == VXM_OK && face < arrays->face_count; face++)
     status = copy_face(soup, arrays, face, error);
+  if (status == VXM_OK)
+    status = copy_tags(soup, arrays, error);
   if (status != VXM_OK) {
     vxm_soup_destroy(soup);
     return status;

@@ -144,6 +144,26 @@ const char *vxm_field_metadata_value(const vxm_field *field, int64_t index) {
   return *key ? vxm_pairs_value(key) : "";
 }
 
+vxm_status vxm_field_add_label(vxm_field *field, const char *name, int64_t voxels, vxm_error *error) {
+  if (!field || !name)
+    return fail_null(error);
+  if (voxels < 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: a label of %" PRId64 " voxels", voxels);
+  if (!vxm_label_table_add(&field->about.table, field->context, name, voxels))
+    return vxm_fail(error, VXM_ERROR_MEMORY, "field: no room for another label");
+  return VXM_OK;
+}
+
+vxm_status vxm_field_add_metadata(vxm_field *field, const char *key, const char *value, vxm_error *error) {
+  if (!field || !key || !value)
+    return fail_null(error);
+  if (!*key)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: metadata without a key");
+  if (!vxm_pairs_add(&field->about.pairs, field->context, key, strlen(key), value, strlen(value)))
+    return vxm_fail(error, VXM_ERROR_RANGE, "field: no room for more metadata");
+  return VXM_OK;
+}
+
 int64_t vxm_field_warning_count(const vxm_field *field) {
   return field ? field->notes.count : 0;
 }

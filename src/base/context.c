@@ -5,9 +5,11 @@
 #include "base/threads.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <time.h>
 #include <unistd.h>
 
 /* Every block is preceded by one cache line that holds its size, so that the counter can be lowered again. */
@@ -43,13 +45,14 @@ vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *opti
   if (!context)
     return vxm_fail(error, VXM_ERROR_MEMORY, "context: out of memory");
   atomic_init(&context->references, 1);
-  context->account = context->crew = context;
+  context->account = context->crew = context->asks = context;
   atomic_init(&context->used, 0);
   atomic_init(&context->peak, 0);
   context->limit = chosen.memory_limit ? (size_t)chosen.memory_limit : SIZE_MAX;
   context->threads = chosen.threads ? chosen.threads : available_processors();
   if (context->threads > VXM_THREADS_MAX)
     context->threads = VXM_THREADS_MAX;
+  context->ask_ms = 20;
   context->progress = chosen.progress;
   context->payload = chosen.payload;
   vxm_pool_init(&context->pool);
@@ -93,6 +96,7 @@ vxm_status vxm_context_child(vxm_context **out, vxm_context *parent, bool alone,
     return status;
   vxm_context *child = *out;
   child->keeps = true;
+  child->asks = parent->asks; /* which lives as long as the account does */
   pthread_mutex_init(&child->store.mutex, NULL);
   status = vxm_context_acquire(&child->account, parent->account, error);
   return alone || status != VXM_OK ? status : vxm_context_acquire(&child->crew, parent->crew, error);
@@ -409,9 +413,48 @@ void vxm_progress_leave(vxm_progress_part before) {
   part = before;
 }
 
-vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error) {
-  fraction = part.begin + part.span * fraction;
-  if (!context->progress || vxm_is_worker() || context->progress(phase, fraction, context->payload) == 0)
+/** What the thread told last, and when: vxm_ask tells it again. */
+static _Thread_local struct told {
+  char phase[48];
+  double fraction;
+  int64_t ms;
+} told = {"working", 0, 0};
+
+static int64_t coarse_ms(void) {
+  struct timespec time;
+  clock_gettime(CLOCK_MONOTONIC_COARSE, &time);
+  return (int64_t)time.tv_sec * 1000 + time.tv_nsec / 1000000;
+}
+
+vxm_status vxm_fail_cancelled(vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_CANCELLED, "cancelled while %s", told.phase);
+}
+
+static vxm_status tell(const vxm_context *context, vxm_error *error) {
+  if (context->progress(told.phase, told.fraction, context->payload) == 0)
     return VXM_OK;
-  return vxm_fail(error, VXM_ERROR_CANCELLED, "cancelled while %s", phase);
+  vxm_loop_stop();
+  return vxm_fail_cancelled(error);
+}
+
+vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error) {
+  if (!context->progress || vxm_is_worker())
+    return VXM_OK;
+  snprintf(told.phase, sizeof told.phase, "%s", phase);
+  told.fraction = part.begin + part.span * fraction;
+  told.ms = coarse_ms();
+  return tell(context, error);
+}
+
+vxm_status vxm_ask(vxm_context *context, vxm_error *error) {
+  if (vxm_is_worker())
+    return vxm_loop_stopped() ? vxm_fail_cancelled(error) : VXM_OK;
+  const vxm_context *asks = context->asks;
+  if (!asks->progress)
+    return VXM_OK;
+  int64_t now = coarse_ms();
+  if (now - told.ms < asks->ask_ms)
+    return VXM_OK;
+  told.ms = now;
+  return tell(asks, error);
 }

@@ -63,6 +63,22 @@ vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t
  * the call: in a loop of vxm_parallel the other threads report nothing. */
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error);
 
+/**
+ * Asks whether to go on, with what the thread has told last, where some time has passed since it did. For
+ * loops over all elements of something large, which are to end soon when the work is cancelled: to be called
+ * every so many thousand steps, within some milliseconds. A worker of vxm_parallel hears whether the loop's
+ * caller was told to stop. @return VXM_OK, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_ask(vxm_context *context, vxm_error *error);
+
+/** Steps of a simple loop between two calls of vxm_ask. */
+enum { VXM_ASK_STEPS = 1 << 14 };
+
+/** vxm_ask at every VXM_ASK_STEPS-th step of a loop. */
+static inline vxm_status vxm_ask_at(size_t step, vxm_context *context, vxm_error *error) {
+  return step % VXM_ASK_STEPS != 0 ? VXM_OK : vxm_ask(context, error);
+}
+
 /** A part of a longer piece of work. */
 typedef struct vxm_progress_part {
   double begin, span;

@@ -23,6 +23,7 @@ typedef struct vxm_pool {
   pid_t process;              /**< the process that the pool belongs to */
   atomic_uint_fast64_t round; /**< number of the present round; changed under the mutex */
   atomic_bool quit;
+  atomic_bool stop; /**< the present round's caller has been told to stop */
   void (*function)(size_t task, int worker, void *payload);
   void *payload;
   size_t task_count;
@@ -42,11 +43,13 @@ struct vxm_context {
   atomic_uint references;
   vxm_context *account; /**< where memory is counted: itself, or the context that it is a child of */
   vxm_context *crew;    /**< whose threads work: itself, or its parent */
+  vxm_context *asks;    /**< whose caller is asked whether to go on: itself, or its parent's; no reference */
   bool keeps;           /**< freed blocks go to the store */
   vxm_store store;
   atomic_size_t used, peak;
   size_t limit;
   int threads;
+  int ask_ms; /**< between two questions whether to go on, at least; tests that want all of them make it 0 */
   vxm_progress_fn progress;
   void *payload;
   vxm_pool pool;

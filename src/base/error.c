@@ -96,5 +96,9 @@ vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what) 
   char reason[128];
   /* The GNU strerror_r may return a static text instead of filling the buffer. */
   const char *text = strerror_r(saved, reason, sizeof reason);
-  return vxm_fail_at(error, VXM_ERROR_IO, (vxm_place){file, 0, -1, -1}, "%s: %s", what, text);
+  vxm_fail_at(error, VXM_ERROR_IO, (vxm_place){file, 0, -1, -1}, "%s: %s", what, text);
+  if (error)
+    error->system = saved;
+  errno = saved;
+  return VXM_ERROR_IO;
 }

@@ -36,6 +36,18 @@ static inline void pause_a_moment(void) {
 #endif
 }
 
+/** The pool whose loop the thread works on. */
+static _Thread_local vxm_pool *at_work;
+
+void vxm_loop_stop(void) {
+  if (at_work)
+    atomic_store_explicit(&at_work->stop, true, memory_order_relaxed);
+}
+
+bool vxm_loop_stopped(void) {
+  return at_work && atomic_load_explicit(&at_work->stop, memory_order_relaxed);
+}
+
 static void run_tasks(vxm_pool *pool, int worker) {
   for (;;) {
     size_t task = atomic_fetch_add_explicit(&pool->next_task, 1, memory_order_relaxed);
@@ -55,7 +67,7 @@ static void *worker_main(void *argument) {
   is_worker = true;
   worker_start start = *(worker_start *)argument;
   free(argument);
-  vxm_pool *pool = start.pool;
+  vxm_pool *pool = at_work = start.pool;
   uint64_t seen = 0;
   for (;;) {
     WAIT_A_LITTLE(atomic_load(&pool->quit) || atomic_load(&pool->round) != seen);
@@ -142,13 +154,17 @@ void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void
   pool->payload = payload;
   pool->task_count = count;
   atomic_store_explicit(&pool->next_task, 0, memory_order_relaxed);
+  atomic_store_explicit(&pool->stop, false, memory_order_relaxed);
   pool->participants = count - 1 < (size_t)pool->started ? (int)(count - 1) : pool->started;
   atomic_store(&pool->busy, pool->participants);
   atomic_fetch_add(&pool->round, 1);
   pthread_cond_broadcast(&pool->wake);
   pthread_mutex_unlock(&pool->mutex);
 
+  vxm_pool *before = at_work;
+  at_work = pool;
   run_tasks(pool, 0);
+  at_work = before;
 
   WAIT_A_LITTLE(atomic_load(&pool->busy) == 0);
   if (atomic_load(&pool->busy) > 0) {
@@ -158,4 +174,31 @@ void vxm_parallel(vxm_context *context, size_t count, vxm_task_fn function, void
     pthread_mutex_unlock(&pool->mutex);
   }
   pthread_mutex_unlock(&pool->owner);
+}
+
+typedef struct asked {
+  vxm_task_fn function;
+  void *payload;
+  vxm_context *context;
+  atomic_bool stop;
+  vxm_status status; /**< written by worker 0 only, which is the caller */
+  vxm_error *error;
+} asked;
+
+static void run_asked(size_t task, int worker, void *payload) {
+  asked *p = payload;
+  if (worker == 0 && p->status == VXM_OK) {
+    p->status = vxm_ask(p->context, p->error);
+    if (p->status != VXM_OK)
+      atomic_store_explicit(&p->stop, true, memory_order_relaxed);
+  }
+  if (!atomic_load_explicit(&p->stop, memory_order_relaxed))
+    p->function(task, worker, p->payload);
+}
+
+vxm_status vxm_parallel_asked(vxm_context *context, size_t count, vxm_task_fn function, void *payload,
+                              vxm_error *error) {
+  asked p = {.function = function, .payload = payload, .context = context, .error = error};
+  vxm_parallel(context, count, run_asked, &p);
+  return p.status == VXM_OK ? vxm_ask(context, error) : p.status;
 }

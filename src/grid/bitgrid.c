@@ -140,72 +140,8 @@ uint64_t vxm_grid_hash(const vxm_grid *grid) {
   return hash;
 }
 
-typedef struct unpacking {
-  const vxm_grid *grid;
-  uint8_t *bytes;
-} unpacking;
-
-/** All voxels of one j: 64 x 64 bits at a time are turned from running along x to running along z. */
-static void unpack_layer(size_t j, int worker, void *payload) {
-  (void)worker;
-  const unpacking *u = payload;
-  const vxm_grid *grid = u->grid;
-  size_t nx = (size_t)grid->space.dims[0], ny = (size_t)grid->space.dims[1], nz = (size_t)grid->space.dims[2];
-  for (size_t w = 0; w < grid->row_words; w++)
-    for (size_t k0 = 0; k0 < nz; k0 += 64) {
-      uint64_t block[64] = {0};
-      size_t count = nz - k0 < 64 ? nz - k0 : 64, columns = nx - w * 64 < 64 ? nx - w * 64 : 64;
-      for (size_t k = 0; k < count; k++)
-        block[k] = vxm_grid_row(grid, (int64_t)j, (int64_t)(k0 + k))[w];
-      vxm_transpose64(block);
-      for (size_t c = 0; c < columns; c++) {
-        uint8_t *to = u->bytes + ((w * 64 + c) * ny + j) * nz + k0;
-        for (size_t k = 0; k < count; k++)
-          to[k] = (uint8_t)(block[c] >> k & 1);
-      }
-    }
-}
-
-typedef struct packing {
-  vxm_grid *grid;
-  const uint8_t *bytes;
-} packing;
-
-/** The same the other way. */
-static void pack_layer(size_t j, int worker, void *payload) {
-  (void)worker;
-  const packing *p = payload;
-  const vxm_grid *grid = p->grid;
-  size_t nx = (size_t)grid->space.dims[0], ny = (size_t)grid->space.dims[1], nz = (size_t)grid->space.dims[2];
-  for (size_t w = 0; w < grid->row_words; w++)
-    for (size_t k0 = 0; k0 < nz; k0 += 64) {
-      uint64_t block[64] = {0};
-      size_t count = nz - k0 < 64 ? nz - k0 : 64, columns = nx - w * 64 < 64 ? nx - w * 64 : 64;
-      for (size_t c = 0; c < columns; c++) {
-        const uint8_t *from = p->bytes + ((w * 64 + c) * ny + j) * nz + k0;
-        for (size_t k = 0; k < count; k++)
-          block[c] |= (uint64_t)(from[k] != 0) << k;
-      }
-      vxm_transpose64(block);
-      for (size_t k = 0; k < count; k++)
-        vxm_grid_row(grid, (int64_t)j, (int64_t)(k0 + k))[w] = block[k];
-    }
-}
-
 const uint8_t *vxm_grid_confidence(const vxm_grid *grid) {
   return grid ? grid->confidence : NULL;
-}
-
-void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes) {
-  unpacking u = {grid, bytes};
-  if (grid && bytes)
-    vxm_parallel(grid->context, (size_t)grid->space.dims[1], unpack_layer, &u);
-}
-
-void vxm_grid_pack(vxm_grid *grid, const uint8_t *bytes) {
-  packing p = {grid, bytes};
-  if (grid && bytes)
-    vxm_parallel(grid->context, (size_t)grid->space.dims[1], pack_layer, &p);
 }
 
 int64_t vxm_grid_warning_count(const vxm_grid *grid) {

@@ -5,7 +5,12 @@
 
 #include <string.h>
 
-enum { BUCKETS_MAX = 2048, RECORDS_WANTED = 2048, ITEMS_PER_SLICE = 4096 };
+enum {
+  BUCKETS_MAX = 2048,
+  RECORDS_WANTED = 2048,
+  ITEMS_PER_SLICE = 4096,
+  SLICES_LEAST = 64 /**< of what is large: between two of them it can be cancelled */
+};
 
 size_t vxm_buckets_advise(size_t records) {
   size_t count = 2;
@@ -55,21 +60,18 @@ vxm_status vxm_buckets_fill(vxm_buckets *out, vxm_context *context, size_t items
   *out = (vxm_buckets){.context = context, .count = bucket_count};
   size_t slices = items / ITEMS_PER_SLICE + 1, most = 4 * (size_t)vxm_context_threads(context);
   distribution d = {.buckets = out, .items = items, .emit = emit, .payload = payload};
+  most = most > SLICES_LEAST ? most : SLICES_LEAST;
   d.slices = slices < most ? slices : most;
   vxm_error local = VXM_ERROR_INIT;
   d.next = vxm_calloc(context, d.slices * bucket_count, sizeof *d.next, &local);
   if (d.next)
     out->begin = vxm_alloc(context, bucket_count + 1, sizeof *out->begin, &local);
-  if (out->begin) {
-    vxm_parallel(context, d.slices, run_slice, &d);
+  if (out->begin && vxm_parallel_asked(context, d.slices, run_slice, &d, &local) == VXM_OK)
     out->records = vxm_alloc(context, place_records(&d), sizeof *out->records, &local);
-  }
-  if (out->records) {
-    d.records = out->records;
-    vxm_parallel(context, d.slices, run_slice, &d);
-  }
+  d.records = out->records;
+  bool done = d.records && vxm_parallel_asked(context, d.slices, run_slice, &d, &local) == VXM_OK;
   vxm_free(context, d.next);
-  if (out->records)
+  if (done)
     return VXM_OK;
   vxm_buckets_free(out);
   if (error)

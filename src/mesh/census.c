@@ -111,9 +111,9 @@ static vxm_status measure_faces(taking *t, vxm_error *error) {
       *error = local;
     return local.code;
   }
-  vxm_parallel(t->context, slices, add_slice, t);
+  vxm_status status = vxm_parallel_asked(t->context, slices, add_slice, t, error);
   face_sums all = {0};
-  for (size_t i = 0; i < slices; i++) {
+  for (size_t i = 0; i < slices && status == VXM_OK; i++) {
     all.area += t->sums[i].area;
     all.volume += t->sums[i].volume;
     for (int w = 0; w < WIDE_VALUES; w++)
@@ -130,7 +130,7 @@ static vxm_status measure_faces(taking *t, vxm_error *error) {
   t->census->triangles = (int64_t)all.triangles;
   t->census->degenerate_faces = (int64_t)all.degenerate;
   t->census->largest_face = (int64_t)all.largest;
-  return VXM_OK;
+  return status;
 }
 
 /* ---- Edges, duplicates, components ---- */

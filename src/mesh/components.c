@@ -107,16 +107,20 @@ vxm_status vxm_group_vertices(vxm_context *context, const vxm_soup *soup, const 
   grouping g = {.soup = soup, .map = vertex_map, .labels = (_Atomic uint32_t *)labels};
   g.face_slices = soup->face_count / PER_SLICE + 1;
   g.vertex_slices = soup->vertex_count / PER_SLICE + 1;
-  vxm_parallel(context, g.vertex_slices, start_slice, &g);
+  vxm_status status = vxm_parallel_asked(context, g.vertex_slices, start_slice, &g, error);
+  if (status != VXM_OK)
+    return status;
   int round = 0;
   do {
-    vxm_status status = vxm_progress(context, "grouping", 1.0 - 1.0 / (1.0 + round), error);
+    status = vxm_progress(context, "grouping", 1.0 - 1.0 / (1.0 + round), error);
     if (status != VXM_OK)
       return status;
     atomic_store_explicit(&g.changed, false, memory_order_relaxed);
-    vxm_parallel(context, g.face_slices, join_slice, &g);
-    if (atomic_load_explicit(&g.changed, memory_order_relaxed))
-      vxm_parallel(context, g.vertex_slices, jump_slice, &g);
+    status = vxm_parallel_asked(context, g.face_slices, join_slice, &g, error);
+    if (status == VXM_OK && atomic_load_explicit(&g.changed, memory_order_relaxed))
+      status = vxm_parallel_asked(context, g.vertex_slices, jump_slice, &g, error);
+    if (status != VXM_OK)
+      return status;
     round++;
   } while (atomic_load_explicit(&g.changed, memory_order_relaxed));
   if (rounds)
@@ -125,12 +129,16 @@ vxm_status vxm_group_vertices(vxm_context *context, const vxm_soup *soup, const 
 }
 
 /** Numbers the labels in the order in which faces meet them. */
-static vxm_status number_faces(const vxm_soup *soup, const uint32_t *map, const uint32_t *labels,
-                               uint32_t *numbers, uint32_t *face_labels, size_t *count, vxm_error *error) {
+static vxm_status number_faces(vxm_context *context, const vxm_soup *soup, const uint32_t *map,
+                               const uint32_t *labels, uint32_t *numbers, uint32_t *face_labels,
+                               size_t *count, vxm_error *error) {
   for (size_t v = 0; v < soup->vertex_count; v++)
     numbers[v] = UINT32_MAX;
   size_t next = 0;
   for (size_t f = 0; f < soup->face_count; f++) {
+    vxm_status status = vxm_ask_at(f, context, error);
+    if (status != VXM_OK)
+      return status;
     if (next == UINT32_MAX)
       return vxm_fail(error, VXM_ERROR_RANGE, "more than %" PRIu32 " components: split the mesh", UINT32_MAX);
     size_t corners;
@@ -160,7 +168,7 @@ vxm_status vxm_components(vxm_context *context, const vxm_soup *soup, const uint
   if (status == VXM_OK)
     status = vxm_group_vertices(context, soup, vertex_map, labels, NULL, &local);
   if (status == VXM_OK)
-    status = number_faces(soup, vertex_map, labels, numbers, face_labels, count, &local);
+    status = number_faces(context, soup, vertex_map, labels, numbers, face_labels, count, &local);
   vxm_free(context, numbers);
   vxm_free(context, labels);
   if (status != VXM_OK && error)

@@ -239,14 +239,11 @@ vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const 
   vxm_error local = VXM_ERROR_INIT;
   s.tables = vxm_alloc(context, workers * s.table_size, sizeof *s.tables, &local);
   s.tallies = s.tables ? vxm_alloc(context, workers * s.buckets.largest, sizeof *s.tallies, &local) : NULL;
-  if (s.tallies) {
-    vxm_parallel(context, bucket_count, search_bucket, &s);
+  status = s.tallies ? vxm_parallel_asked(context, bucket_count, search_bucket, &s, &local) : local.code;
+  if (status == VXM_OK)
     *out = (vxm_duplicates){atomic_load(&s.same), atomic_load(&s.opposite_pairs)};
-  } else {
-    status = local.code;
-    if (error)
-      *error = local;
-  }
+  else if (error)
+    *error = local;
   vxm_free(context, s.tallies);
   vxm_free(context, s.tables);
   vxm_buckets_free(&s.buckets);

@@ -134,8 +134,8 @@ static vxm_status sort_and_write(building *b, vxm_edges *out, vxm_context *conte
     b->scratch = vxm_alloc(context, workers * b->buckets.largest, sizeof *b->scratch, &local);
   if (b->scratch)
     b->counts = vxm_alloc(context, workers * b->counts_size, sizeof *b->counts, &local);
-  if (b->counts) {
-    vxm_parallel(context, b->buckets.count, sort_bucket, b);
+  bool sorted = b->counts && vxm_parallel_asked(context, b->buckets.count, sort_bucket, b, &local) == VXM_OK;
+  if (sorted) {
     size_t total = 0;
     for (size_t i = 0; i < b->buckets.count; i++) {
       size_t count = b->first_edge[i];
@@ -144,17 +144,18 @@ static vxm_status sort_and_write(building *b, vxm_edges *out, vxm_context *conte
     }
     out->count = total;
   }
-  bool sorted = b->counts != NULL;
   vxm_free(context, b->counts);
   vxm_free(context, b->scratch);
   if (sorted)
     out->edges = b->edges = vxm_alloc(context, out->count, sizeof *out->edges, &local);
-  if (b->edges)
-    vxm_parallel(context, b->buckets.count, write_bucket, b);
+  bool written = b->edges && vxm_parallel_asked(context, b->buckets.count, write_bucket, b, &local) == VXM_OK;
   vxm_free(context, b->first_edge);
-  if (!b->edges && error)
+  if (written)
+    return VXM_OK;
+  vxm_free(context, out->edges);
+  if (error)
     *error = local;
-  return b->edges ? VXM_OK : local.code;
+  return local.code;
 }
 
 vxm_status vxm_edges_build(vxm_edges *out, vxm_context *context, const vxm_soup *soup,

@@ -55,9 +55,13 @@ static cell_range range_of(const vxm_inside *inside, const vxm_inside_bins *bins
 /** Calls the visitor for all fan triangles whose corners are finite. */
 typedef void (*triangle_fn)(const triangle *t, void *payload);
 
-static void for_each_triangle(const vxm_inside *inside, triangle_fn visit, void *payload) {
+static vxm_status for_each_triangle(const vxm_inside *inside, triangle_fn visit, void *payload,
+                                    vxm_error *error) {
   for (size_t i = 0; i < inside->face_count; i++) {
     size_t count;
+    vxm_status status = vxm_ask_at(i, inside->soup->context, error);
+    if (status != VXM_OK)
+      return status;
     const uint32_t *corner = vxm_face(inside->soup, inside->faces[i], &count);
     bool finite = true;
     for (size_t c = 0; c < count && finite; c++)
@@ -68,6 +72,7 @@ static void for_each_triangle(const vxm_inside *inside, triangle_fn visit, void 
       visit(&(triangle){{corner[0], p < q ? p : q, p < q ? q : p}, p > q}, payload);
     }
   }
+  return VXM_OK;
 }
 
 typedef struct binning {
@@ -114,38 +119,48 @@ static void set_cells(binning *b, double wanted) {
 
 /** Chooses as many cells as triangles, or fewer if they are so large that they would be in too many cells: at
  * last a single one, also of a box that is much longer than wide. */
-static void choose_cells(binning *b) {
+static vxm_status choose_cells(binning *b, vxm_error *error) {
   double wanted = (double)b->inside->face_count;
   for (;; wanted /= 4) {
     set_cells(b, wanted);
     b->triangles = b->entries = 0;
-    for_each_triangle(b->inside, count_entries, b);
-    if (b->entries <= ENTRIES_PER_TRIANGLE * b->triangles || b->bins->cells[0] * b->bins->cells[1] <= 1)
-      return;
+    vxm_status status = for_each_triangle(b->inside, count_entries, b, error);
+    if (status != VXM_OK || b->entries <= ENTRIES_PER_TRIANGLE * b->triangles ||
+        b->bins->cells[0] * b->bins->cells[1] <= 1)
+      return status;
   }
+}
+
+/** Counts the triangles of every cell, then lists them. */
+static vxm_status fill_cells(binning *b, vxm_error *error) {
+  vxm_inside_bins *bins = b->bins;
+  size_t cells = bins->cells[0] * bins->cells[1];
+  vxm_status status = for_each_triangle(b->inside, count_cells, b, error);
+  for (size_t c = 0; c < cells; c++)
+    bins->begin[c + 1] += bins->begin[c];
+  return status == VXM_OK ? for_each_triangle(b->inside, put_entries, b, error) : status;
 }
 
 static vxm_status build(vxm_inside *inside, int axis, vxm_error *error) {
   vxm_context *context = inside->soup->context;
   vxm_inside_bins *bins = &inside->bins[axis];
   binning b = {.inside = inside, .bins = bins, .across = plane_across(axis)};
-  choose_cells(&b);
-  size_t cells = bins->cells[0] * bins->cells[1];
   vxm_error local = VXM_ERROR_INIT;
-  bins->begin = vxm_calloc(context, cells + 1, sizeof *bins->begin, &local);
+  bool done = choose_cells(&b, &local) == VXM_OK;
+  size_t cells = bins->cells[0] * bins->cells[1];
+  if (done)
+    bins->begin = vxm_calloc(context, cells + 1, sizeof *bins->begin, &local);
   if (bins->begin)
     bins->triangles = vxm_alloc(context, b.entries, sizeof *bins->triangles, &local);
-  if (!bins->triangles) {
+  done = bins->triangles && fill_cells(&b, &local) == VXM_OK;
+  if (!done) {
+    vxm_free(context, bins->triangles);
     vxm_free(context, bins->begin);
     *bins = (vxm_inside_bins){0};
     if (error)
       *error = local;
     return local.code;
   }
-  for_each_triangle(inside, count_cells, &b);
-  for (size_t c = 0; c < cells; c++)
-    bins->begin[c + 1] += bins->begin[c];
-  for_each_triangle(inside, put_entries, &b);
   /* every begin has moved to its end */
   for (size_t c = cells; c > 0; c--)
     bins->begin[c] = bins->begin[c - 1];

@@ -33,7 +33,7 @@ typedef struct vxm_inside {
  *
  * @param point  scaled
  * @param[out] votes how many of the two rays cross the faces an odd number of times: 0 to 2
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * A line through an edge between faces crosses one of them or both or none, so that the number stays even or
  * odd as it should. The first call along an axis sorts the faces into cells, in time linear in their corners.

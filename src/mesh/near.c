@@ -367,7 +367,9 @@ static vxm_status fill_cells(search *s, vxm_context *context, vxm_error *error) 
   if (!s->homes)
     return error->code;
   s->slices = s->count / 16384 + 1;
-  vxm_parallel(context, s->slices, start_slice, s);
+  vxm_status status = vxm_parallel_asked(context, s->slices, start_slice, s, error);
+  if (status != VXM_OK)
+    return status;
   size_t bucket_count = vxm_buckets_advise(2 * members);
   s->bucket_shift = 64 - (unsigned)__builtin_ctzll(bucket_count);
   return vxm_buckets_fill(&s->buckets, context, s->count, bucket_count, emit_vertices, s, error);
@@ -379,8 +381,7 @@ static vxm_status link_all(search *s, vxm_context *context, vxm_error *error) {
   s->scratch = vxm_alloc(context, workers * (s->table_size + s->buckets.largest), sizeof *s->scratch, error);
   if (!s->scratch)
     return error->code;
-  vxm_parallel(context, s->buckets.count, link_bucket, s);
-  return VXM_OK;
+  return vxm_parallel_asked(context, s->buckets.count, link_bucket, s, error);
 }
 
 vxm_status vxm_weld_near(vxm_context *context, const double *positions, size_t count, const uint8_t *roles,

@@ -74,7 +74,7 @@ static void empty_box(double box[6]) {
 }
 
 /** Boxes in model units, and how many faces each component has. */
-static void measure_bodies(builder *b) {
+static bool measure_bodies(builder *b) {
   for (size_t i = 0; i < b->count; i++) {
     empty_box(b->bodies[i].box);
     b->bodies[i].component = (uint32_t)i;
@@ -82,6 +82,8 @@ static void measure_bodies(builder *b) {
   for (size_t f = 0; f < b->soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(b->soup, f, &count);
+    if (vxm_ask_at(f, b->context, &b->error) != VXM_OK)
+      return false;
     b->bodies[b->labels[f] + 1].first++;
     for (size_t c = 0; c < count; c++) {
       const double *p = vxm_position(b->soup, corner[c]);
@@ -95,6 +97,7 @@ static void measure_bodies(builder *b) {
     b->bodies[i + 1].first += b->bodies[i].first;
     include_box(b->bounds, b->bodies[i].box);
   }
+  return true;
 }
 
 static void scale_boxes(builder *b) {
@@ -118,11 +121,13 @@ static void list_faces(builder *b, size_t *next) {
     b->faces[next[b->labels[f]]++] = f;
 }
 
-static void sum_volumes(const builder *b, double *volume) {
+static bool sum_volumes(builder *b, double *volume) {
   double scale = b->frame.scale;
   for (size_t f = 0; f < b->soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(b->soup, f, &count);
+    if (vxm_ask_at(f, b->context, &b->error) != VXM_OK)
+      return false;
     if (count < 3 || !face_is_finite(b->soup, corner, count))
       continue;
     const double *box = b->bodies[b->labels[f]].box, *p = vxm_position(b->soup, corner[0]);
@@ -133,6 +138,7 @@ static void sum_volumes(const builder *b, double *volume) {
   }
   for (size_t i = 0; i < b->count; i++)
     volume[i] = volume[i] / scale / scale / scale;
+  return true;
 }
 
 /* ---- Candidates: a coarse grid whose cells list the boxes that meet them ---- */
@@ -352,7 +358,8 @@ static bool find_parents(builder *b, uint32_t *parents) {
   if (!b->inside)
     return false;
   for (size_t i = 0; i < b->order_count; i++)
-    if (find_parent(b, b->order[i], &parents[b->order[i]]) != VXM_OK)
+    if (vxm_ask(b->context, &b->error) != VXM_OK ||
+        find_parent(b, b->order[i], &parents[b->order[i]]) != VXM_OK)
       return false;
   return true;
 }
@@ -366,11 +373,11 @@ static bool run(builder *b, vxm_nesting *out) {
   b->faces = allocate(b, b->soup->face_count, sizeof *b->faces);
   size_t *next = allocate(b, b->count, sizeof *next);
   bool ready = out->parent && out->volume && b->bodies && b->faces && next;
+  ready = ready && measure_bodies(b);
   if (ready) {
-    measure_bodies(b);
     scale_boxes(b);
     list_faces(b, next);
-    sum_volumes(b, out->volume);
+    ready = sum_volumes(b, out->volume);
     for (size_t i = 0; i < b->count; i++)
       out->parent[i] = VXM_NO_COMPONENT;
   }

@@ -3,6 +3,7 @@
 #include "base/rng.h"
 #include "base/threads.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 enum {
@@ -18,6 +19,8 @@ typedef struct sorter {
   vxm_spot *spots;
   range ranges[RANGES];
   size_t count;
+  vxm_context *context;
+  atomic_bool stop;
 } sorter;
 
 /* ---- Cutting in two ---- */
@@ -109,12 +112,20 @@ static range split(vxm_spot *spots, range *r) {
   return rest;
 }
 
+static bool goes_on(sorter *s) {
+  if (s->context && vxm_ask(s->context, NULL) != VXM_OK)
+    atomic_store_explicit(&s->stop, true, memory_order_relaxed);
+  return !atomic_load_explicit(&s->stop, memory_order_relaxed);
+}
+
 static void sort_range(size_t task, int worker, void *payload) {
   (void)worker;
-  const sorter *s = payload;
+  sorter *s = payload;
   range stack[64] = {s->ranges[task]}; /* each at most half of the one below, but for the first */
   for (size_t depth = 1; depth > 0;) {
     range *top = &stack[depth - 1];
+    if (top->end - top->begin > SHARE_MIN && !goes_on(s))
+      return;
     if (top->end - top->begin > VXM_ORDER_LEAF)
       stack[depth++] = split(s->spots, top);
     else
@@ -129,14 +140,15 @@ static void split_range(size_t task, int worker, void *payload) {
   s->ranges[s->count + task] = r->end - r->begin > SHARE_MIN ? split(s->spots, r) : (range){r->end, r->end};
 }
 
-void vxm_order_spots(vxm_spot *spots, size_t count, vxm_context *context) {
-  sorter s = {.spots = spots, .ranges = {{0, count}}, .count = 1};
+vxm_status vxm_order_spots(vxm_spot *spots, size_t count, vxm_context *context, vxm_error *error) {
+  sorter s = {.spots = spots, .ranges = {{0, count}}, .count = 1, .context = context};
   size_t wanted = context ? 4 * (size_t)vxm_context_threads(context) : 1;
   if (wanted <= 4) {
     sort_range(0, 0, &s);
-    return;
+    return atomic_load(&s.stop) ? vxm_fail_cancelled(error) : VXM_OK;
   }
-  for (; 2 * s.count <= RANGES && s.count < wanted; s.count *= 2)
+  for (; 2 * s.count <= RANGES && s.count < wanted && goes_on(&s); s.count *= 2)
     vxm_parallel(context, s.count, split_range, &s);
   vxm_parallel(context, s.count, sort_range, &s);
+  return atomic_load(&s.stop) ? vxm_fail_cancelled(error) : VXM_OK;
 }

@@ -18,8 +18,9 @@ enum { VXM_ORDER_LEAF = 8 };
  * multiple of its length is a node: cut in two along its longest side, none on one side being farther along
  * than one on the other. Takes n log n steps.
  *
- * @param context its threads sort; NULL = the calling thread alone
+ * @param context its threads sort; NULL = the calling thread alone, which then cannot be cancelled
+ * @return VXM_OK, VXM_ERROR_CANCELLED
  */
-void vxm_order_spots(vxm_spot *spots, size_t count, vxm_context *context);
+vxm_status vxm_order_spots(vxm_spot *spots, size_t count, vxm_context *context, vxm_error *error);
 
 #endif

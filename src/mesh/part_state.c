@@ -63,6 +63,8 @@ static vxm_status find_edge_parts(measuring *m, const vxm_edges *edges) {
   for (size_t f = 0; f < m->view.face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(&m->view, f, &count);
+    if (vxm_ask_at(f, m->view.context, &m->error) != VXM_OK)
+      return m->error.code;
     if (!vxm_face_has_three(corner, count, NULL))
       continue;
     for (size_t i = 0; i < count; i++) {
@@ -104,8 +106,11 @@ static vxm_status measure(measuring *m, size_t part_count) {
     m->states[p].self_intersections = -1; /* which another room counts */
   for (size_t v = 0; v < m->view.vertex_count; v++)
     m->vertex_part[v] = NO_PART;
-  for (size_t f = 0; f < m->view.face_count; f++)
+  for (size_t f = 0; f < m->view.face_count; f++) {
+    if (vxm_ask_at(f, m->view.context, &m->error) != VXM_OK)
+      return m->error.code;
     add_face(m, &frame, f);
+  }
   for (size_t i = 0; i < part_count; i++) {
     vxm_part_state *state = &m->states[i];
     state->closed = state->faces > 0;

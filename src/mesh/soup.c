@@ -116,6 +116,18 @@ vxm_status vxm_soup_add_tag(vxm_soup *soup, const char *name, size_t length, uin
   return VXM_OK;
 }
 
+/** So much at a time that the copy of a large soup can be cancelled. */
+static vxm_status copy_bytes(vxm_context *context, void *to, const void *from, size_t size,
+                             vxm_error *error) {
+  enum { CHUNK = 1 << 22 };
+  vxm_status status = VXM_OK;
+  for (size_t done = 0; done < size && status == VXM_OK; done += CHUNK) {
+    memcpy((char *)to + done, (const char *)from + done, size - done < CHUNK ? size - done : CHUNK);
+    status = vxm_ask(context, error);
+  }
+  return status;
+}
+
 vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error) {
   vxm_soup *copy;
   vxm_status status = vxm_soup_create(&copy, soup->context, soup->format, error);
@@ -136,16 +148,21 @@ vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error)
     uint32_t tag;
     status = vxm_soup_add_tag(copy, soup->tags[t], strlen(soup->tags[t]), &tag, error);
   }
+  vxm_context *context = copy->context;
+  if (status == VXM_OK)
+    status = copy_bytes(context, copy->positions, soup->positions,
+                        3 * soup->vertex_count * sizeof *copy->positions, error);
+  if (status == VXM_OK)
+    status = copy_bytes(context, copy->offsets, soup->offsets, (soup->face_count + 1) * sizeof *copy->offsets,
+                        error);
+  if (status == VXM_OK)
+    status =
+        copy_bytes(context, copy->indices, soup->indices, soup->corner_count * sizeof *copy->indices, error);
   if (status != VXM_OK) {
     vxm_soup_destroy(copy);
     *out = NULL;
     return status;
   }
-  if (soup->vertex_count)
-    memcpy(copy->positions, soup->positions, 3 * soup->vertex_count * sizeof *copy->positions);
-  memcpy(copy->offsets, soup->offsets, (soup->face_count + 1) * sizeof *copy->offsets);
-  if (soup->corner_count)
-    memcpy(copy->indices, soup->indices, soup->corner_count * sizeof *copy->indices);
   copy->vertex_count = soup->vertex_count;
   copy->face_count = soup->face_count;
   copy->corner_count = soup->corner_count;

@@ -95,14 +95,10 @@ vxm_status vxm_weld_exact(vxm_context *context, const double *positions, size_t 
   vxm_error local = VXM_ERROR_INIT;
   w.tables =
       vxm_alloc(context, (size_t)vxm_context_threads(context) * w.table_size, sizeof *w.tables, &local);
-  if (w.tables) {
-    vxm_parallel(context, bucket_count, weld_bucket, &w);
-    vxm_free(context, w.tables);
-  } else {
-    status = local.code;
-    if (error)
-      *error = local;
-  }
+  status = w.tables ? vxm_parallel_asked(context, bucket_count, weld_bucket, &w, &local) : local.code;
+  if (status != VXM_OK && error)
+    *error = local;
+  vxm_free(context, w.tables);
   vxm_buckets_free(&w.buckets);
   if (status == VXM_OK && distinct) {
     *distinct = 0;

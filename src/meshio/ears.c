@@ -27,7 +27,7 @@ void vxm_ring_make_tree(vxm_ring *r) {
   vxm_triangulator *tri = r->tri;
   for (size_t i = 0; i < r->n; i++)
     tri->spots[i] = (vxm_spot){{(float)tri->plane[i][0], (float)tri->plane[i][1], 0}, (uint32_t)i};
-  vxm_order_spots(tri->spots, r->n, NULL);
+  (void)vxm_order_spots(tri->spots, r->n, NULL, NULL); /* as it cannot be cancelled */
   for (r->leaves = 1; r->leaves * VXM_ORDER_LEAF < r->n;)
     r->leaves *= 2;
   for (size_t leaf = 0; leaf < r->leaves; leaf++)

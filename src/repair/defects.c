@@ -78,6 +78,8 @@ static bool find_degenerate(finding *f) {
   for (size_t i = 0; i < f->soup->face_count; i++) {
     size_t count;
     const uint32_t *corner = vxm_face(f->work.soup, i, &count);
+    if (vxm_ask_at(i, f->work.context, &f->error) != VXM_OK)
+      return false;
     bool bad = vxm_frame_no_area(&frame, f->soup, i) || !vxm_face_has_three(corner, count, NULL);
     if (bad && !enter_face(f, VXM_DEFECT_DEGENERATE_FACE, i))
       return false;

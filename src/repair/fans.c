@@ -22,8 +22,12 @@ static void join(size_t *parent, size_t a, size_t b) {
 }
 
 /** Joins at both ends of every edge the corners of the faces along it. */
-static void join_corners(const vxm_soup *soup, const size_t *sides, size_t (*first)[2], size_t *parent) {
+static vxm_status join_corners(const vxm_soup *soup, const size_t *sides, size_t (*first)[2], size_t *parent,
+                               vxm_error *error) {
   for (size_t f = 0; f < soup->face_count; f++) {
+    vxm_status status = vxm_ask_at(f, soup->context, error);
+    if (status != VXM_OK)
+      return status;
     size_t count, begin = (size_t)soup->offsets[f];
     const uint32_t *corner = vxm_face(soup, f, &count);
     for (size_t i = 0; i < count; i++) {
@@ -40,6 +44,7 @@ static void join_corners(const vxm_soup *soup, const size_t *sides, size_t (*fir
       }
     }
   }
+  return VXM_OK;
 }
 
 vxm_status vxm_fans_count(uint8_t **fans, vxm_work *work, vxm_error *error) {
@@ -54,16 +59,23 @@ vxm_status vxm_fans_count(uint8_t **fans, vxm_work *work, vxm_error *error) {
   if (status == VXM_OK)
     *fans = vxm_work_scratch(work, soup->vertex_count, 1, &status, error);
   if (status == VXM_OK) {
-    for (size_t c = 0; c < soup->corner_count; c++)
+    for (size_t c = 0; c < soup->corner_count && status == VXM_OK; c++) {
       parent[c] = c;
-    join_corners(soup, sides, first, parent);
-    for (size_t c = 0; c < soup->corner_count; c++)
+      status = vxm_ask_at(c, work->context, error);
+    }
+    if (status == VXM_OK)
+      status = join_corners(soup, sides, first, parent, error);
+    for (size_t c = 0; c < soup->corner_count && status == VXM_OK; c++)
       if (parent[c] == c && (*fans)[soup->indices[c]] < UINT8_MAX)
         (*fans)[soup->indices[c]]++;
   }
   vxm_free(work->context, first);
   vxm_free(work->context, parent);
   vxm_free(work->context, sides);
+  if (status != VXM_OK) {
+    vxm_free(work->context, *fans);
+    *fans = NULL;
+  }
   return status;
 }
 

@@ -39,16 +39,28 @@ static void *allocate(orienting *o, size_t count, size_t size) {
 
 /* ---- Patches ---- */
 
-static void pair_faces(orienting *o) {
+/** To be asked at every so many steps: false if the work has been cancelled. */
+static bool goes_on(orienting *o, size_t step) {
+  return vxm_ask_at(step, o->work->context, &o->error) == VXM_OK;
+}
+
+static bool pair_faces(orienting *o) {
   const vxm_edges *edges = &o->work->edges;
-  for (size_t e = 0; e < edges->count; e++)
+  for (size_t e = 0; e < edges->count; e++) {
+    if (!goes_on(o, e))
+      return false;
     o->pair[e][0] = o->pair[e][1] = SIZE_MAX;
-  for (size_t f = 0; f < o->soup->face_count; f++)
+  }
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    if (!goes_on(o, f))
+      return false;
     for (uint64_t c = o->soup->offsets[f]; c < o->soup->offsets[f + 1]; c++) {
       size_t e = o->sides[c];
       if (e != VXM_NO_EDGE && edges->edges[e].count == 2)
         o->pair[e][o->pair[e][0] != SIZE_MAX] = f;
     }
+  }
+  return true;
 }
 
 /** Whether the sides of a face are walked backward: a walk that is the same for the face and its reverse
@@ -100,8 +112,13 @@ static bool find_patches(orienting *o) {
     o->patches[o->patch_count] = (patch){0};
     o->label[f] = (uint32_t)o->patch_count++;
     o->queue[0] = f;
-    for (size_t next = 0, queued = 1; next < queued; next++)
+    for (size_t next = 0, queued = 1; next < queued; next++) {
       queued = visit(o, o->queue[next], queued);
+      if (!goes_on(o, next + 1))
+        return false;
+    }
+    if (!goes_on(o, f + 1))
+      return false;
   }
   return true;
 }
@@ -127,14 +144,14 @@ static vxm_vec3 area_of(const orienting *o, size_t face) {
 }
 
 /** Makes patches consistent, with most of their area as it was; without a gain they stay as they are. */
-static void make_consistent(orienting *o) {
-  for (size_t f = 0; f < o->soup->face_count; f++) {
+static bool make_consistent(orienting *o) {
+  for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
     patch *p = &o->patches[o->label[f]];
     double area = vxm_vec3_length(area_of(o, f));
     p->area += area;
     p->turned_area += o->turn[f] ? area : 0;
   }
-  for (size_t f = 0; f < o->soup->face_count; f++) {
+  for (size_t f = 0; f < o->soup->face_count && o->error.code == VXM_OK && goes_on(o, f); f++) {
     patch *p = &o->patches[o->label[f]];
     if (p->inconsistent <= p->conflicts)
       o->turn[f] = 0;
@@ -146,6 +163,7 @@ static void make_consistent(orienting *o) {
     p->vector_area =
         (vxm_vec3){p->vector_area.x + area.x, p->vector_area.y + area.y, p->vector_area.z + area.z};
   }
+  return o->error.code == VXM_OK;
 }
 
 /* ---- Patches that together are consistent about an edge with four sides or more ---- */
@@ -165,9 +183,11 @@ static int by_edge_then_patch(const void *a, const void *b) {
 }
 
 /** Lists (or, with NULL, counts) the sides at crossings, as the faces are turned by now. */
-static size_t list_crossings(const orienting *o, crossing *crossings) {
+static bool list_crossings(orienting *o, crossing *crossings, size_t *out) {
   size_t listed = 0;
   for (size_t f = 0; f < o->soup->face_count; f++) {
+    if (!goes_on(o, f))
+      return false;
     size_t count;
     const uint32_t *corner = vxm_face(o->soup, f, &count);
     for (size_t i = 0; i < count; i++) {
@@ -180,7 +200,8 @@ static size_t list_crossings(const orienting *o, crossing *crossings) {
       listed++;
     }
   }
-  return listed;
+  *out = listed;
+  return true;
 }
 
 /** Marks the patches that are out of balance about an edge by themselves, but in balance together. */
@@ -201,17 +222,17 @@ static void mark_held(const crossing *crossings, size_t count, uint8_t *held) {
 /** Such patches hold each other: turned alone, one would open what is closed. As all of them about an edge
  * stay, they stay in balance. */
 static bool find_held(orienting *o, uint8_t *held) {
-  size_t count = list_crossings(o, NULL);
-  crossing *crossings = allocate(o, count, sizeof *crossings);
-  if (!crossings)
+  size_t count;
+  if (!list_crossings(o, NULL, &count))
     return false;
-  if (count > 0) {
-    list_crossings(o, crossings);
+  crossing *crossings = allocate(o, count, sizeof *crossings);
+  bool done = crossings && (count == 0 || list_crossings(o, crossings, &count));
+  if (done && count > 0) {
     qsort(crossings, count, sizeof *crossings, by_edge_then_patch);
     mark_held(crossings, count, held);
   }
   vxm_free(o->work->context, crossings);
-  return true;
+  return done;
 }
 
 /* ---- Outward ---- */
@@ -286,11 +307,7 @@ static bool orient(orienting *o) {
   o->queue = allocate(o, faces, sizeof *o->queue);
   if (!o->pair || !o->label || !o->turn || !o->queue)
     return false;
-  pair_faces(o);
-  if (!find_patches(o))
-    return false;
-  make_consistent(o);
-  return turn_outward(o);
+  return pair_faces(o) && find_patches(o) && make_consistent(o) && turn_outward(o);
 }
 
 /** Notes which faces run the other way than when they came in, by this pass and those before. */

@@ -79,8 +79,8 @@ static vxm_status settle_again(vxm_work *work, bool *changed, vxm_error *error) 
   if (!*changed)
     return status;
   if (work->track)
-    vxm_track_settle(work->track, work->soup);
-  return vxm_pass_orientation(work, &turned, error);
+    status = vxm_track_settle(work->track, work->soup, error);
+  return status == VXM_OK ? vxm_pass_orientation(work, &turned, error) : status;
 }
 
 /** Separation, and what else it makes room for: where faces were cut apart others may come together. */
@@ -106,7 +106,7 @@ static vxm_status move_apart(vxm_work *work, bool *changed, vxm_error *error) {
   if (status == VXM_OK)
     status = vxm_pass_apart(work, changed, error);
   if (status == VXM_OK && work->track)
-    vxm_track_settle(work->track, work->soup);
+    status = vxm_track_settle(work->track, work->soup, error);
   return status;
 }
 
@@ -225,7 +225,7 @@ static vxm_status run_passes(vxm_work *work, const vxm_soup *in, bool *again, vx
   if (work->track && work->options.max_change > 0)
     status = vxm_track_refer(work->track, work->soup, error);
   if (status == VXM_OK && work->track)
-    vxm_track_settle(work->track, work->soup);
+    status = vxm_track_settle(work->track, work->soup, error);
   if (status == VXM_OK)
     status = run_further(work, error);
   if (status == VXM_OK && work->divides)

@@ -18,11 +18,14 @@ static size_t find_between(const vxm_edges *edges, size_t begin, size_t end, uin
   return VXM_NO_EDGE;
 }
 
-static void fill(size_t *sides, const vxm_work *work, const size_t *begin) {
+static vxm_status fill(size_t *sides, const vxm_work *work, const size_t *begin, vxm_error *error) {
   const vxm_soup *soup = work->soup;
   for (size_t f = 0; f < soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count);
+    vxm_status status = vxm_ask_at(f, work->context, error);
+    if (status != VXM_OK)
+      return status;
     bool counts = vxm_face_has_three(corner, count, NULL);
     for (size_t c = 0; c < count; c++) {
       uint32_t a = corner[c], b = corner[c + 1 < count ? c + 1 : 0], low = a < b ? a : b;
@@ -31,6 +34,7 @@ static void fill(size_t *sides, const vxm_work *work, const size_t *begin) {
                            : VXM_NO_EDGE;
     }
   }
+  return VXM_OK;
 }
 
 vxm_status vxm_sides_find(size_t **sides, vxm_work *work, vxm_error *error) {
@@ -47,8 +51,12 @@ vxm_status vxm_sides_find(size_t **sides, vxm_work *work, vxm_error *error) {
       begin[work->edges.edges[e].a + 1]++;
     for (size_t v = 0; v < vertices; v++)
       begin[v + 1] += begin[v];
-    fill(*sides, work, begin);
+    status = fill(*sides, work, begin, error);
   }
   vxm_free(work->context, begin);
+  if (status != VXM_OK) {
+    vxm_free(work->context, *sides);
+    *sides = NULL;
+  }
   return status;
 }

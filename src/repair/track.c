@@ -78,10 +78,13 @@ vxm_status vxm_track_start(vxm_track *track, const vxm_soup *soup, vxm_error *er
     track->vertex_part[v] = NO_PART;
     track->into[v] = (uint32_t)v;
   }
-  for (size_t f = 0; f < soup->face_count; f++)
+  vxm_status status = VXM_OK;
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    status = vxm_ask_at(f, track->context, error);
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
       track->vertex_part[soup->indices[c]] = soup->face_parts[f];
-  return VXM_OK;
+  }
+  return status;
 }
 
 static vxm_status find_parts(vxm_track *track, vxm_error *error) {
@@ -161,11 +164,14 @@ void vxm_track_drop(vxm_track *track, uint32_t part) {
   track->dropped[part] = true;
 }
 
-void vxm_track_settle(vxm_track *track, const vxm_soup *soup) {
+vxm_status vxm_track_settle(vxm_track *track, const vxm_soup *soup, vxm_error *error) {
   for (size_t i = 0; i < track->part_count; i++)
     track->most[i] = 0;
   for (size_t v = 0; v < track->vertex_count; v++) {
     const double *from = track->from + 3 * v, *to = vxm_position(soup, track->into[v]);
+    vxm_status status = vxm_ask_at(v, track->context, error);
+    if (status != VXM_OK)
+      return status;
     double distance = hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
     uint32_t part = track->vertex_part[v];
     if (part != NO_PART && isfinite(distance))
@@ -174,6 +180,7 @@ void vxm_track_settle(vxm_track *track, const vxm_soup *soup) {
   for (size_t i = 0; i < track->part_count; i++)
     track->moved[i] += track->most[i];
   free_stage(track);
+  return VXM_OK;
 }
 
 /* ---- The account ---- */

@@ -19,7 +19,7 @@ vxm_status vxm_track_start(vxm_track *track, const vxm_soup *soup, vxm_error *er
 /** Vertices merge: map[v] takes the place of v. Between stages nobody looks. */
 void vxm_track_merge(vxm_track *track, const uint32_t *map);
 /** Ends a stage: sees how far vertices were moved in it. */
-void vxm_track_settle(vxm_track *track, const vxm_soup *soup);
+vxm_status vxm_track_settle(vxm_track *track, const vxm_soup *soup, vxm_error *error);
 /** Notes the volumes that max_change refers to, in the first stage, once faces are turned and repeated ones
  * gone. */
 vxm_status vxm_track_refer(vxm_track *track, const vxm_soup *soup, vxm_error *error);

@@ -147,8 +147,9 @@ vxm_status vxm_pass_zero_area(vxm_work *work, bool *changed, vxm_error *error) {
   r.flat = vxm_work_scratch(work, work->soup->face_count, sizeof *r.flat, &status, error);
   if (!r.flat)
     return status;
-  vxm_parallel(work->context, work->soup->face_count / FACES_PER_SLICE + 1, flag_slice, &r);
-  if (atomic_load(&r.sides) > 0) {
+  status =
+      vxm_parallel_asked(work->context, work->soup->face_count / FACES_PER_SLICE + 1, flag_slice, &r, error);
+  if (status == VXM_OK && atomic_load(&r.sides) > 0) {
     status = choose(&r, error);
     for (size_t f = 0; f < work->soup->face_count; f++)
       r.flat[f] = r.flat[f] == 2;

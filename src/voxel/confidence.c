@@ -63,6 +63,7 @@ vxm_status vxm_confidence_fill(vxm_run *run, const vxm_window *window, vxm_error
   }
   run->touched = touched;
   if (status == VXM_OK)
-    vxm_parallel(shape->context, (size_t)(window->end - window->begin), fill_slice, &job);
+    status =
+        vxm_parallel_asked(shape->context, (size_t)(window->end - window->begin), fill_slice, &job, error);
   return status;
 }

@@ -66,23 +66,28 @@ static void cover_face(builder *b, size_t face) {
   }
 }
 
-static void add_triangles(builder *b) {
-  for (size_t f = 0; f < b->soup->face_count; f++)
+static bool add_triangles(builder *b) {
+  for (size_t f = 0; f < b->soup->face_count; f++) {
+    if (vxm_ask_at(f, b->facets->context, &b->error) != VXM_OK)
+      return false;
     cover_face(b, f);
+  }
+  return true;
 }
 
 /** The caps of all loops; their own points are numbered behind the soup's vertices in both numberings. */
-static void add_caps(builder *b) {
+static bool add_caps(builder *b) {
   const vxm_split *split = &b->facets->split;
   for (size_t l = 0; split->cap_begin && l < split->loops.count; l++)
     for (size_t t = split->cap_begin[l]; t < split->cap_begin[l + 1]; t++) {
       const uint32_t *v = split->caps.triangles[t];
       add(b, split->loop_part[l], v[0], v[1], v[2]);
     }
+  return true;
 }
 
 /** The triangles from the apex of a part to its odd edges. */
-static void add_cones(builder *b) {
+static bool add_cones(builder *b) {
   const vxm_split *split = &b->facets->split;
   const vxm_loops *loops = &split->loops;
   for (size_t l = 0; l < loops->count; l++) {
@@ -92,11 +97,12 @@ static void add_cones(builder *b) {
       add(b, part, edge->a, edge->b, vxm_apex_of(b->facets, part));
     }
   }
+  return true;
 }
 
 /** The same three walks twice: the first time they count, the second time they put facets in place. */
 static vxm_status make_facets(builder *b) {
-  static void (*const walk[3])(builder *) = {add_triangles, add_caps, add_cones};
+  static bool (*const walk[3])(builder *) = {add_triangles, add_caps, add_cones};
   vxm_facets *facets = b->facets;
   size_t part_count = facets->split.part_count;
   b->next = allocate(b, part_count, sizeof *b->next);
@@ -104,7 +110,8 @@ static vxm_status make_facets(builder *b) {
   if (!facets->parts || !b->next)
     return b->error.code;
   for (int w = 0; w < 3; w++) {
-    walk[w](b);
+    if (!walk[w](b))
+      return b->error.code;
     for (size_t p = 0; p < part_count; p++)
       *(w == 0   ? &facets->parts[p].caps
         : w == 1 ? &facets->parts[p].cones
@@ -129,7 +136,8 @@ static vxm_status make_facets(builder *b) {
   if (!facets->corners || !facets->part)
     return b->error.code;
   for (int w = 0; w < 3; w++)
-    walk[w](b);
+    if (!walk[w](b))
+      return b->error.code;
   return VXM_OK;
 }
 
@@ -151,13 +159,16 @@ static const double *position_of(const builder *b, uint32_t vertex) {
   return vertex < count ? vxm_position(b->soup, vertex) : b->facets->split.caps.points[vertex - count];
 }
 
-/** Numbers points anew, as facets have them one after another. */
-static size_t renumber(vxm_facets *facets, uint32_t *number, uint32_t *vertex) {
+/** Numbers points anew, as facets have them one after another; false if it was cancelled. */
+static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *points) {
+  vxm_facets *facets = b->facets;
   const uint32_t none = UINT32_MAX;
   size_t count = 0, first_apex = facets->first_apex;
   for (size_t v = 0; v < first_apex; v++)
     number[v] = none;
-  for (size_t f = 0; f < facets->facet_count; f++)
+  for (size_t f = 0; f < facets->facet_count; f++) {
+    if (vxm_ask_at(f, facets->context, &b->error) != VXM_OK)
+      return false;
     for (int k = 0; k < 3; k++) {
       uint32_t *corner = &facets->corners[f][k];
       if (*corner >= first_apex)
@@ -168,7 +179,9 @@ static size_t renumber(vxm_facets *facets, uint32_t *number, uint32_t *vertex) {
       }
       *corner = number[*corner];
     }
-  return count;
+  }
+  *points = count;
+  return true;
 }
 
 /** The apexes, once it is known how many points lie before them. */
@@ -182,19 +195,22 @@ static void renumber_apexes(vxm_facets *facets, size_t count) {
 
 static vxm_status gather_points(builder *b) {
   vxm_facets *facets = b->facets;
+  size_t count = 0;
   uint32_t *number = allocate(b, facets->first_apex, sizeof *number);
   facets->vertex = allocate(b, facets->first_apex, sizeof *facets->vertex);
-  if (!number || !facets->vertex) {
-    vxm_free(facets->context, number);
-    return b->error.code;
-  }
-  renumber_apexes(facets, renumber(facets, number, facets->vertex));
+  bool done = number && facets->vertex && renumber(b, number, facets->vertex, &count);
   vxm_free(facets->context, number);
+  if (!done)
+    return b->error.code;
+  renumber_apexes(facets, count);
   facets->positions = allocate(b, facets->first_apex, sizeof *facets->positions);
   if (!facets->positions)
     return b->error.code;
-  for (size_t p = 0; p < facets->first_apex; p++)
+  for (size_t p = 0; p < facets->first_apex; p++) {
+    if (vxm_ask_at(p, facets->context, &b->error) != VXM_OK)
+      return b->error.code;
     memcpy(facets->positions[p], position_of(b, facets->vertex[p]), sizeof facets->positions[p]);
+  }
   return VXM_OK;
 }
 
@@ -208,11 +224,14 @@ static double squared_distance(const double *p, const double *q) {
 }
 
 /** Sums up how long facets are. A cone reaches from its edge to somewhere among the triangles. */
-static void measure(vxm_facets *facets) {
+static vxm_status measure(vxm_facets *facets, vxm_error *error) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   size_t cones = 0;
   for (size_t f = 0; f < facets->facet_count; f++) {
     const uint32_t *corner = facets->corners[f];
+    vxm_status status = vxm_ask_at(f, facets->context, error);
+    if (status != VXM_OK)
+      return status;
     if (corner[2] >= facets->first_apex) {
       cones++;
       continue;
@@ -233,6 +252,7 @@ static void measure(vxm_facets *facets) {
     facets->length += (double)cones * sqrt(squared_distance(low, high));
     facets->squared_length += (double)cones * squared_distance(low, high);
   }
+  return VXM_OK;
 }
 
 vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_rule rule, vxm_error *error) {
@@ -249,10 +269,11 @@ vxm_status vxm_facets_create(vxm_facets *out, const vxm_soup *soup, vxm_split_ru
   if (status == VXM_OK)
     status = gather_points(&b);
   vxm_free(out->context, b.next);
-  if (status == VXM_OK) {
-    measure(out);
+  if (status == VXM_OK)
+    status = measure(out, &local);
+  if (status == VXM_OK)
     vxm_split_trim(&out->split);
-  } else if (error)
+  else if (error)
     *error = local.code != VXM_OK ? local : b.error;
   return status;
 }

@@ -123,11 +123,15 @@ static void make_family(builder *b, size_t at) {
   memcpy(b->boxes[at], box, sizeof box);
 }
 
-static void make_families(builder *b) {
+static vxm_status make_families(builder *b, vxm_error *error) {
   vxm_nearest *tree = b->tree;
-  for (b->level = 0; b->level < tree->levels; b->level++)
-    for (size_t i = 0; i < tree->family_count[b->level]; i++)
+  vxm_status status = VXM_OK;
+  for (b->level = 0; b->level < tree->levels && status == VXM_OK; b->level++)
+    for (size_t i = 0; i < tree->family_count[b->level] && status == VXM_OK; i++) {
       make_family(b, i);
+      status = vxm_ask_at(i, tree->context, error);
+    }
+  return status;
 }
 
 /* ---- The tree ---- */
@@ -168,13 +172,13 @@ vxm_status vxm_nearest_create(vxm_nearest **out, vxm_context *context, size_t co
     tree->count = count;
     allocate(&b, &local);
   }
-  if (local.code == VXM_OK) {
-    vxm_parallel(context, SLICES, make_spots, &b);
-    vxm_order_spots(b.spots, count, context);
-    vxm_parallel(context, SLICES, make_packs, &b);
-    make_families(&b);
+  bool done = local.code == VXM_OK && vxm_parallel_asked(context, SLICES, make_spots, &b, &local) == VXM_OK &&
+              vxm_order_spots(b.spots, count, context, &local) == VXM_OK &&
+              vxm_parallel_asked(context, SLICES, make_packs, &b, &local) == VXM_OK &&
+              make_families(&b, &local) == VXM_OK;
+  if (done)
     *out = tree;
-  } else if (error)
+  else if (error)
     *error = local;
   vxm_free(context, b.boxes);
   vxm_free(context, b.spots);

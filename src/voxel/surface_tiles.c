@@ -162,13 +162,14 @@ static uint32_t place_triangle(const tiling *t, const vxm_point *const v[3], vxm
 }
 
 static void sort_chunk(size_t chunk, int worker, void *payload) {
-  (void)worker;
-  const tiling *t = payload;
+  tiling *t = payload;
   size_t end = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk + 1);
   size_t *counter = t->counters + chunk * t->tile_count;
   for (size_t i = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk); i < end; i++) {
     const vxm_point *v[3];
     vxm_surface_box box;
+    if (i % VXM_ASK_STEPS == 0 && vxm_watch_stopped(&t->watch, worker))
+      return;
     if (!t->list) {
       corners_of(t->surface, i, v);
       t->places[i] = place_triangle(t, v, &box);
@@ -213,7 +214,7 @@ static vxm_status list_tiles(tiling *t) {
     return t->error->code;
   if (total > 0)
     vxm_parallel(context, t->chunks, sort_chunk, t);
-  return VXM_OK;
+  return t->watch.status;
 }
 
 /* ---- Drawing ---- */
@@ -281,6 +282,8 @@ static vxm_status draw_tiles(tiling *t) {
   vxm_context *context = t->surface->context;
   t->end = t->tile_count;
   vxm_parallel(context, t->chunks, sort_chunk, t); /* counts only, while there is no list */
+  if (t->watch.status != VXM_OK)
+    return t->watch.status;
   for (t->first = 0; t->first < t->tile_count; t->first = t->end) {
     vxm_status status = list_tiles(t);
     if (status != VXM_OK)

@@ -146,6 +146,8 @@ static bool draw_tetrahedron(const tetra_state *state, size_t facet, int64_t beg
   return true;
 }
 
+enum { ASK_FACETS = 1024 /**< between two questions whether to go on, where none reaches the slab */ };
+
 static void do_slab(size_t task, int worker, void *payload) {
   tetra_state *state = payload;
   const vxm_window *window = state->window;
@@ -162,8 +164,14 @@ static void do_slab(size_t task, int worker, void *payload) {
     memset(out, 0, count * sizeof *out);
   for (size_t p = state->job->part_begin; p < state->job->part_end; p++) {
     bool drawn = false;
-    for (size_t f = facets->parts[p].begin; f < facets->parts[p].caps; f++)
-      drawn |= draw_tetrahedron(state, f, begin, end, work);
+    for (size_t f = facets->parts[p].begin; f < facets->parts[p].caps; f++) {
+      bool reaches = draw_tetrahedron(state, f, begin, end, work);
+      drawn |= reaches;
+      if ((reaches || f % ASK_FACETS == 0) && vxm_watch_stopped(&state->watch, worker)) {
+        memset(work, 0, count * sizeof *work); /* as whoever comes next expects it */
+        return;
+      }
+    }
     if (drawn && vxm_kernels_get()->move_or(out, work, count) && state->job->touched)
       atomic_store_explicit(&state->job->touched[p], 1, memory_order_relaxed);
   }

@@ -173,8 +173,8 @@ vxm_status vxm_winding_create(vxm_winding **out, vxm_context *context, vxm_trian
       w->leaf_count *= 2;
     w->nodes = vxm_calloc(context, 2 * w->leaf_count, sizeof *w->nodes, &local);
   }
-  if (w && w->nodes && sort_triangles(context, triangles, count, &local) == VXM_OK) {
-    vxm_parallel(context, 2 * w->leaf_count - 1, fill_node_task, w);
+  if (w && w->nodes && sort_triangles(context, triangles, count, &local) == VXM_OK &&
+      vxm_parallel_asked(context, 2 * w->leaf_count - 1, fill_node_task, w, &local) == VXM_OK) {
     *out = w;
     return VXM_OK;
   }

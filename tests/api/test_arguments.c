@@ -2,6 +2,7 @@
 /** Every public function with arguments that it must refuse, and what it says then. */
 #include "api_support.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -191,6 +192,36 @@ static void test_kinds_of_arrays(void **state) {
   }
 }
 
+static void test_mesh_tags(void **state) {
+  (void)state;
+  static const double points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  static const int64_t numbers[6] = {0, 1, 2, 1, 2, 3};
+  static const char *const names[2] = {"one/red", "two"};
+  uint32_t tags[2] = {1, 0};
+  vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
+  arrays.vertices = points;
+  arrays.vertex_count = 4;
+  arrays.indices = numbers;
+  arrays.face_count = 2;
+  arrays.tags = names;
+  arrays.face_tags = tags;
+  arrays.tag_count = 2;
+  vxm_mesh *mesh = NULL;
+  assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);
+  assert_int_equal(vxm_mesh_tag_count(mesh), 2);
+  assert_string_equal(vxm_mesh_tag_name(mesh, 0), "one/red");
+  assert_string_equal(vxm_mesh_tag_name(mesh, 1), "two");
+  assert_memory_equal(vxm_mesh_face_tags(mesh), tags, sizeof tags);
+  vxm_mesh_destroy(mesh);
+  tags[1] = 2;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(error.element, 1);
+  arrays.face_tags = NULL;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+  arrays.tag_count = -1;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+}
+
 static void test_mesh_files(void **state) {
   (void)state;
   vxm_mesh *mesh = junk;
@@ -199,8 +230,10 @@ static void test_mesh_files(void **state) {
   REFUSED(vxm_mesh_read(&mesh, NULL, "no/such/file.off", &error), VXM_ERROR_IO);
   assert_null(mesh);
   assert_string_equal(error.file, "no/such/file.off");
+  assert_int_equal(error.system, ENOENT);
   assert_non_null(strstr(error.text, "no/such/file.off"));
   REFUSED(vxm_mesh_read(&mesh, NULL, ".", &error), VXM_ERROR_IO);
+  assert_int_equal(error.system, EISDIR);
   REFUSED(vxm_mesh_read_memory(&mesh, NULL, NULL, 5, "x.off", &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_mesh_read_memory(&mesh, NULL, "", 0, "x.off", &error), VXM_ERROR_FORMAT);
   REFUSED(vxm_mesh_read_memory(&mesh, NULL, "\x01\x02\x03", 3, NULL, &error), VXM_ERROR_FORMAT);
@@ -490,6 +523,7 @@ int main(void) {
       cmocka_unit_test(test_mesh_arrays),
       cmocka_unit_test(test_faces_at_fault),
       cmocka_unit_test(test_kinds_of_arrays),
+      cmocka_unit_test(test_mesh_tags),
       cmocka_unit_test(test_mesh_files),
       cmocka_unit_test(test_census_and_repair),
       cmocka_unit_test(test_grids),

@@ -167,7 +167,7 @@ static vxm_status sample(const void *options) {
 
 static const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const int64_t indices[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
-static const vxm_mesh_arrays arrays = {1, VXM_FLOAT64, corners, 4, NULL, indices, 4};
+static const vxm_mesh_arrays arrays = {1, VXM_FLOAT64, corners, 4, NULL, indices, 4, NULL, NULL, 0};
 static const vxm_context_options context_options = VXM_CONTEXT_OPTIONS_INIT;
 static const vxm_mesh_read_options read_options = {.version = 1, .deflection = 0.5};
 static const vxm_mesh_write_options mesh_write = {.version = 1, .format = "off"};
@@ -391,7 +391,7 @@ static vxm_mesh *box(const double low[3], const double high[3]) {
     positions[3 * v + 1] = y ? high[1] : low[1];
     positions[3 * v + 2] = z ? high[2] : low[2];
   }
-  vxm_mesh_arrays a = {1, VXM_FLOAT64, positions, 8, offsets, faces, 6};
+  vxm_mesh_arrays a = {1, VXM_FLOAT64, positions, 8, offsets, faces, 6, NULL, NULL, 0};
   vxm_mesh *made;
   assert_int_equal(vxm_mesh_create(&made, context, &a, NULL), VXM_OK);
   return made;

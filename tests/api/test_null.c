@@ -33,6 +33,7 @@ static vxm_sparse *sparse;
 static vxm_field *field;
 
 static const vxm_space space = {{4, 4, 4}, {0, 0, 0}, {0.25, 0.25, 0.25}};
+static const uint64_t words_of_grid[16];
 static const double unmoved[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 static const char off_text[] = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 static const vxm_variant variant;
@@ -189,6 +190,11 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   X(vxm_grid_hash, 1, 1, GIVES(vxm_grid_hash(P(0, grid))))                                                 \
   X(vxm_grid_unpack, 2, 3, DOES(vxm_grid_unpack(P(0, grid), P(1, (uint8_t *)out.values))))                 \
   X(vxm_grid_pack, 2, 3, DOES(vxm_grid_pack(P(0, grid), P(1, (const uint8_t *)unmoved))))                  \
+  X(vxm_grid_unpack_range, 3, 3,                                                                           \
+    vxm_grid_unpack_range(P(0, grid), 0, 4, P(1, (uint8_t *)out.values), P(2, &error)))                    \
+  X(vxm_grid_pack_range, 3, 3,                                                                             \
+    vxm_grid_pack_range(P(0, grid), 0, 4, P(1, (const uint8_t *)unmoved), P(2, &error)))                   \
+  X(vxm_grid_set_words, 3, 3, vxm_grid_set_words(P(0, grid), P(1, words_of_grid), 16, P(2, &error)))       \
   X(vxm_grid_confidence, 1, 1, GIVES(vxm_grid_confidence(P(0, grid))))                                     \
   X(vxm_grid_write_confidence, 3, 3, vxm_grid_write_confidence(P(0, grid), P(1, "out.npy"), P(2, &error))) \
   X(vxm_grid_warning_count, 1, 1, ANYTHING(vxm_grid_warning_count(P(0, grid))))                            \
@@ -223,6 +229,9 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   X(vxm_field_metadata_count, 1, 1, ANYTHING(vxm_field_metadata_count(P(0, field))))                        \
   X(vxm_field_metadata_key, 1, 1, ANYTHING(vxm_field_metadata_key(P(0, field), 0)))                         \
   X(vxm_field_metadata_value, 1, 1, ANYTHING(vxm_field_metadata_value(P(0, field), 0)))                     \
+  X(vxm_field_add_label, 3, 3, vxm_field_add_label(P(0, field), P(1, "label"), 1, P(2, &error)))            \
+  X(vxm_field_add_metadata, 4, 7,                                                                           \
+    vxm_field_add_metadata(P(0, field), P(1, "key"), P(2, "value"), P(3, &error)))                          \
   X(vxm_field_warning_count, 1, 1, ANYTHING(vxm_field_warning_count(P(0, field))))                          \
   X(vxm_field_warning, 1, 1, ANYTHING(vxm_field_warning(P(0, field), 0)))                                   \
   X(vxm_field_is_mask, 1, 1, GIVES(vxm_field_is_mask(P(0, field))))                                         \

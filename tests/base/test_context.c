@@ -10,6 +10,7 @@
 
 #include "base/bits.h"
 #include "base/context.h"
+#include "base/context_struct.h"
 #include "base/rng.h"
 #include "base/threads.h"
 
@@ -22,6 +23,89 @@ static vxm_context *new_context(int threads, uint64_t limit) {
   vxm_context *context;
   assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
   return context;
+}
+
+/* ---- Asking whether to go on ---- */
+
+typedef struct asking {
+  int calls, stop_at;
+  double fraction;
+  char phase[32];
+} asking;
+
+static int answer(const char *phase, double fraction, void *payload) {
+  asking *a = payload;
+  a->fraction = fraction;
+  strncpy(a->phase, phase, sizeof a->phase - 1);
+  return ++a->calls >= a->stop_at;
+}
+
+static vxm_context *asking_context(int threads, asking *a) {
+  vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+  options.threads = threads;
+  options.progress = answer;
+  options.payload = a;
+  vxm_context *context;
+  assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
+  return context;
+}
+
+static void questions_repeat_what_was_told(void **state) {
+  (void)state;
+  asking a = {.stop_at = 4};
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_context *context = asking_context(1, &a);
+  assert_int_equal(vxm_progress(context, "weighing", 0.25, &error), VXM_OK);
+  for (int i = 0; i < 1000; i++) /* too soon after it */
+    assert_int_equal(vxm_ask(context, &error), VXM_OK);
+  assert_true(a.calls < 4);
+  context->ask_ms = 0;
+  a.calls = 1;
+  assert_int_equal(vxm_ask(context, &error), VXM_OK);
+  assert_int_equal(vxm_ask_at(VXM_ASK_STEPS - 1, context, &error), VXM_OK);
+  assert_int_equal(a.calls, 2);
+  assert_string_equal(a.phase, "weighing");
+  assert_true(a.fraction == 0.25);
+  assert_int_equal(vxm_ask_at(VXM_ASK_STEPS, context, &error), VXM_OK);
+  assert_int_equal(vxm_ask(context, &error), VXM_ERROR_CANCELLED);
+  assert_string_equal(error.text, "cancelled while weighing");
+  vxm_context_destroy(context);
+}
+
+typedef struct counted {
+  atomic_size_t done;
+  vxm_context *asks;
+  bool inside; /**< tasks ask too, until they are told to stop */
+} counted;
+
+static void count_task(size_t task, int worker, void *payload) {
+  (void)task, (void)worker;
+  counted *c = payload;
+  while (c->inside && vxm_ask(c->asks, NULL) == VXM_OK)
+    ;
+  atomic_fetch_add(&c->done, 1);
+}
+
+static void loops_end_when_told_to(void **state) {
+  (void)state;
+  enum { TASKS = 5000 };
+  for (int threads = 1; threads <= 3; threads++)
+    for (int inside = 0; inside < 2; inside++) {
+      asking a = {.stop_at = 20};
+      vxm_error error = VXM_ERROR_INIT;
+      vxm_context *context = asking_context(threads, &a), *child;
+      context->ask_ms = 0;
+      assert_int_equal(vxm_context_child(&child, context, true, &error), VXM_OK);
+      counted c = {.asks = child, .inside = inside}; /* a child asks as its parent does */
+      assert_int_equal(vxm_parallel_asked(context, TASKS, count_task, &c, &error), VXM_ERROR_CANCELLED);
+      assert_true(atomic_load(&c.done) < TASKS);
+      a.stop_at = INT32_MAX; /* which the next loop knows nothing of */
+      c = (counted){.asks = child};
+      assert_int_equal(vxm_parallel_asked(context, TASKS, count_task, &c, &error), VXM_OK);
+      assert_int_equal(atomic_load(&c.done), TASKS);
+      vxm_context_destroy(child);
+      vxm_context_destroy(context);
+    }
 }
 
 /* ---- Memory ---- */
@@ -325,6 +409,8 @@ static void bits(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(questions_repeat_what_was_told),
+      cmocka_unit_test(loops_end_when_told_to),
       cmocka_unit_test(limit_is_kept),
       cmocka_unit_test(blocks_keep_content_and_alignment),
       cmocka_unit_test(references_keep_a_context),

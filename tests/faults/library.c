@@ -60,7 +60,7 @@ static vxm_status use_meshes(made *m) {
                                     3, 7, 6, 3, 0, 4, 7, 8, 9, 10, 8, 11, 9, 0, 1, 11};
   static const char text[] =
       "g a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\ng b\nf 2 3 4\nf 3 1 4\nf 9 9 9\n";
-  vxm_mesh_arrays arrays = {1, VXM_FLOAT64, corners, 12, offsets, indices, 9};
+  vxm_mesh_arrays arrays = {1, VXM_FLOAT64, corners, 12, offsets, indices, 9, NULL, NULL, 0};
   vxm_census census;
   vxm_status status = vxm_mesh_create(&m->mesh, m->context, &arrays, &m->error);
   if (status == VXM_OK)

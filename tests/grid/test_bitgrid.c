@@ -22,6 +22,52 @@ static uint8_t *at(const model *m, int64_t i, int64_t j, int64_t k) {
   return &m->voxels[(k * m->dims[1] + j) * m->dims[0] + i];
 }
 
+/** A part of the columns, taken out and put into a full grid: what lies beside it stays. */
+static void check_ranges(const vxm_grid *grid, const uint8_t *unpacked, vxm_rng *rng) {
+  const vxm_space *space = vxm_grid_space(grid);
+  int64_t nx = space->dims[0], begin = (int64_t)vxm_rng_below(rng, (uint64_t)nx + 1),
+          end = begin + (int64_t)vxm_rng_below(rng, (uint64_t)(nx - begin) + 1);
+  size_t column = (size_t)(space->dims[1] * space->dims[2]), count = (size_t)(end - begin) * column;
+  uint8_t *part = malloc(count + 1);
+  part[count] = 77;
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_grid_unpack_range(grid, begin, end, part, &error), VXM_OK);
+  for (size_t v = 0; v < count; v++)
+    assert_int_equal(part[v], unpacked[(size_t)begin * column + v] != 0);
+  assert_int_equal(part[count], 77);
+  vxm_grid *full = new_grid(grid->context, *space);
+  for (int64_t k = 0; k < space->dims[2]; k++)
+    for (int64_t j = 0; j < space->dims[1]; j++)
+      vxm_row_set_span(vxm_grid_row(full, j, k), 0, nx);
+  assert_int_equal(vxm_grid_pack_range(full, begin, end, part, &error), VXM_OK);
+  assert_padding_clear(full);
+  for (int64_t k = 0; k < space->dims[2]; k++)
+    for (int64_t j = 0; j < space->dims[1]; j++)
+      for (int64_t i = 0; i < nx; i++)
+        assert_int_equal(vxm_grid_get(full, i, j, k), i < begin || i >= end || vxm_grid_get(grid, i, j, k));
+  assert_int_equal(vxm_grid_unpack_range(grid, -1, end, part, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_unpack_range(grid, begin, nx + 1, part, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_pack_range(full, end + 1, end, part, &error), VXM_ERROR_ARGUMENT);
+  free(part);
+  vxm_grid_destroy(full);
+}
+
+/** Words make the same grid, whatever they have beyond the rows. */
+static void check_words(const vxm_grid *grid) {
+  vxm_grid *other = new_grid(grid->context, *vxm_grid_space(grid));
+  uint64_t *words = malloc(grid->word_count * sizeof *words);
+  memcpy(words, vxm_grid_words(grid), grid->word_count * sizeof *words);
+  for (size_t w = grid->row_words - 1; w < grid->word_count; w += grid->row_words)
+    words[w] |= ~vxm_grid_tail_mask(grid);
+  vxm_error error = VXM_ERROR_INIT;
+  assert_int_equal(vxm_grid_set_words(other, words, grid->word_count - 1, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_set_words(other, words, grid->word_count, &error), VXM_OK);
+  assert_padding_clear(other);
+  assert_int_equal(vxm_grid_hash(other), vxm_grid_hash(grid));
+  free(words);
+  vxm_grid_destroy(other);
+}
+
 /** Random sets and clears, a third of them outside; then everything that can be asked. */
 static void check_grid(vxm_context *context, vxm_rng *rng) {
   vxm_space space = random_space(rng, 90, false);
@@ -73,6 +119,8 @@ static void check_grid(vxm_context *context, vxm_rng *rng) {
   memset(grid->words, 0xff, grid->word_count * sizeof *grid->words);
   vxm_grid_pack(grid, unpacked);
   assert_int_equal(vxm_grid_hash(grid), hash);
+  check_ranges(grid, unpacked, rng);
+  check_words(grid);
   free(unpacked);
   free(m.voxels);
   vxm_grid_destroy(grid);

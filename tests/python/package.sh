@@ -4,3 +4,4 @@
 . "$SRCDIR/tests/python/lib.sh"
 "$PYTHON" "$SRCDIR/tests/python/test_voxmend.py"
 "$PYTHON" "$SRCDIR/tests/python/test_fields.py"
+"$PYTHON" "$SRCDIR/tests/python/test_robust.py"

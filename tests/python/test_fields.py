@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers in files through the package, against numpy's own reading of them. SAMPLES is a folder of sample meshes."""
+import copy
 import os
+import pickle
 import unittest
 
 import numpy
@@ -57,7 +59,7 @@ class Fields(unittest.TestCase):
             self.assertFalse(field.values.flags.writeable)
         with self.assertRaises(voxmend.ArgumentError):
             voxmend.Field(numpy.zeros((2, 2)))
-        with self.assertRaises(voxmend.ArgumentError):
+        with self.assertRaises(voxmend.KindError):
             voxmend.Field(numpy.zeros((2, 2, 2), complex))
         with self.assertRaises(voxmend.ArgumentError):
             voxmend.Field(numpy.zeros((2, 2, 2)), kind="temperature")
@@ -93,7 +95,9 @@ class Fields(unittest.TestCase):
         numpy.testing.assert_array_equal(read_nrrd(self.path("k.nrrd")), colors.transpose(0, 1, 2, 3))
         numpy.testing.assert_array_equal(voxmend.read_field(self.path("k.nrrd")).values, colors)
         numpy.save(self.path("w.npy"), self.random("float32"))
-        self.assertEqual(len(voxmend.read_field(self.path("w.npy")).warnings), 1)
+        with self.assertWarns(voxmend.VoxmendWarning):
+            field = voxmend.read_field(self.path("w.npy"))
+        self.assertEqual(len(field.warnings), 1)
 
     def test_metadata(self):
         with open(self.path("u.nrrd"), "wb") as file:
@@ -110,6 +114,31 @@ class Fields(unittest.TestCase):
             text = file.read()
         for line in (b"\nspace: left-posterior-superior\n", b"\nspace units: \"mm\" \"mm\" \"mm\"\n", b"\npatient:=nobody\n"):
             self.assertIn(line, text)
+
+    def test_copies(self):
+        labels = numpy.zeros((3, 4, 5), numpy.uint16)
+        labels[1], labels[2, 0] = 1, 2
+        field = voxmend.Field(labels, (1, 2, 3), (4, 5, 6), "labels")
+        from voxmend import _core
+        for name, count in ((b"wood", 20), (b"steel", 5)):
+            _core.call(_core.lib.vxm_field_add_label, field._pointer, name, count)
+        _core.call(_core.lib.vxm_field_add_metadata, field._pointer, b"units", b"mm")
+        field.save(self.path("l.npy"))
+        read = voxmend.read_field(self.path("l.npy"))
+        for each in (field, read):
+            for again in (pickle.loads(pickle.dumps(each)), copy.deepcopy(each)):
+                numpy.testing.assert_array_equal(again.values, labels)
+                self.assertEqual((again.kind, again.label_names, again.metadata, again.warnings, again.values.dtype),
+                                 (each.kind, {1: "wood", 2: "steel"}, {"units": "mm"}, each.warnings, labels.dtype))
+                again.save(self.path("l2.npy"))
+                for end in ("", ".json"):
+                    with open(self.path("l.npy" + end), "rb") as one, open(self.path("l2.npy" + end), "rb") as other:
+                        self.assertEqual(one.read(), other.read().replace(b"l2.npy", b"l.npy"))
+        colors = voxmend.Field(numpy.ones((2, 2, 2, 4), numpy.uint8), kind="colors")
+        self.assertEqual(copy.copy(colors).kind, "colors")
+        values = field.values
+        del field, read, each, again
+        numpy.testing.assert_array_equal(values, labels)
 
 
 if __name__ == "__main__":
