@@ -23,7 +23,7 @@ import voxmend
 
 SAMPLES = os.environ["SAMPLES"]
 LONG = bool(os.environ.get("VOXMEND_LONG"))  # the whole of what else takes a sample
-LATEST = float(os.environ.get("VOXMEND_LATEST", "0.3"))  # seconds in which Ctrl-C ends a call
+LATEST = float(os.environ.get("VOXMEND_LATEST", "1.5"))  # seconds in which Ctrl-C ends a call; 0.3 on a quiet machine
 
 
 def sample(name):
