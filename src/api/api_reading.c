@@ -5,7 +5,7 @@
 #include "meshio/foreign.h"
 #include "meshio/landlock.h"
 
-#if HAVE_SECCOMP && !defined(__SANITIZE_ADDRESS__)
+#if defined(HAVE_SECCOMP) && !defined(__SANITIZE_ADDRESS__)
 enum { HAS_FILTER = 1 };
 #else
 enum { HAS_FILTER = 0 };

@@ -8,7 +8,7 @@
 
 #include <inttypes.h>
 #include <string.h>
-#if HAVE_ZLIB
+#ifdef HAVE_ZLIB
 #define ZLIB_CONST
 #include <zlib.h>
 #endif
@@ -32,7 +32,7 @@ static vxm_status check_length(const vxm_nrrd_header *h, const vxm_input *input,
   return VXM_OK;
 }
 
-#if HAVE_ZLIB
+#ifdef HAVE_ZLIB
 /** zlib at work, with memory of the context. */
 typedef struct unpacking {
   z_stream z;

@@ -3,7 +3,7 @@
 
 #include "gridio/png_write.h"
 
-#if defined(HAVE_PNG)
+#ifdef HAVE_PNG
 
 #include <png.h>
 

@@ -5,7 +5,7 @@
 
 #include "config.h"
 
-#if HAVE_SECCOMP
+#ifdef HAVE_SECCOMP
 
 #include <errno.h>
 #include <fcntl.h>
@@ -69,7 +69,7 @@ static int allow_all(scmp_filter_ctx filter) {
       return failure;
   }
   /* A signal to itself, of which abort() is made. */
-  const struct scmp_arg_cmp self = SCMP_A0(SCMP_CMP_EQ, (scmp_datum_t)getpid());
+  const struct scmp_arg_cmp self = {.arg = 0, .op = SCMP_CMP_EQ, .datum_a = (scmp_datum_t)getpid()};
   int failure = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1, self);
   if (failure == 0)
     failure = allow_memory(filter);

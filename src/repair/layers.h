@@ -12,7 +12,6 @@ typedef struct vxm_layers {
   const vxm_copies *copies;
   const vxm_edge_groups *groups;
   const uint8_t *asked; /**< per group: it is balanced, and to be looked at */
-  uint8_t *failed;      /**< per group: it was looked at in vain */
   /* Faces of one orientation that go on over edges where only two kinds meet are a patch: on each side of it
      the winding number is one and the same, unless another face cuts through it. */
   size_t

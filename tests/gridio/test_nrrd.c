@@ -8,7 +8,7 @@
 
 #include <locale.h>
 #include <math.h>
-#if HAVE_ZLIB
+#ifdef HAVE_ZLIB
 #include <zlib.h>
 #endif
 
@@ -238,7 +238,7 @@ static void test_refusals(void **state) {
 
 /* ---- Compressed values ---- */
 
-#if HAVE_ZLIB
+#ifdef HAVE_ZLIB
 static size_t pack(unsigned char *to, size_t room, const unsigned char *from, size_t size, int wbits) {
   z_stream z = {.next_in = (unsigned char *)(uintptr_t)from, .avail_in = (unsigned)size};
   assert_int_equal(deflateInit2(&z, 6, Z_DEFLATED, wbits, 8, Z_DEFAULT_STRATEGY), Z_OK);

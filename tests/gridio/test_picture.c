@@ -131,7 +131,7 @@ static void test_pyramid(void **state) {
   vxm_context_destroy(context);
 }
 
-#if defined(HAVE_PNG)
+#ifdef HAVE_PNG
 
 #include <png.h>
 
@@ -345,7 +345,7 @@ int main(void) {
     cmocka_unit_test(test_rays),
     cmocka_unit_test(test_rays_along_axes),
     cmocka_unit_test(test_pyramid),
-#if defined(HAVE_PNG)
+#ifdef HAVE_PNG
     cmocka_unit_test(test_framing),
     cmocka_unit_test(test_way_up),
     cmocka_unit_test(test_same_for_all_threads),

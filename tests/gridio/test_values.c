@@ -9,7 +9,7 @@
 #include "gridio/values_write.h"
 
 #include <math.h>
-#if HAVE_ZLIB
+#ifdef HAVE_ZLIB
 #include <zlib.h>
 #endif
 
@@ -108,7 +108,7 @@ static void put_nrrd(const char *path, const vxm_field *field, const char *type,
                         "space directions: (0.25,0,0) (0,0.25,0) (0,0,0.25)\nspace origin: (0,0,0)\n"
                         "space units: \"mm\" \"mm\" \"mm\"\nmade by:=hand\n\n",
                         type, NX, NY, NZ, is_packed ? "gzip" : "raw", is_big ? "big" : "little");
-#if HAVE_ZLIB
+#ifdef HAVE_ZLIB
   if (is_packed) {
     uLongf packed = compressBound(size);
     unsigned char *more = malloc(packed);

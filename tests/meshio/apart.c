@@ -246,7 +246,7 @@ static void test_attempts(void **state) {
       {"try limits", "do what a reader may not (system call "},
       {"try setuid", "do what a reader may not (system call "},
   };
-#if !HAVE_SECCOMP
+#ifndef HAVE_SECCOMP
   skip();
 #endif
   if (SANITIZED)
