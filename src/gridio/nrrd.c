@@ -32,6 +32,15 @@ static vxm_status check_length(const vxm_nrrd_header *h, const vxm_input *input,
   return VXM_OK;
 }
 
+/** Where values go, row after row along x. */
+typedef struct rows_to {
+  vxm_grid *grid;   /**< or, if NULL, */
+  vxm_field *field; /**< whose rows come in whole slices */
+  vxm_element element;
+  atomic_uint *seen;
+  bool is_swapped;
+} rows_to;
+
 #ifdef HAVE_ZLIB
 /** zlib at work, with memory of the context. */
 typedef struct unpacking {
@@ -72,15 +81,6 @@ static vxm_status unpack_bytes(unpacking *u, unsigned char *to, size_t size) {
   }
   return VXM_OK;
 }
-
-/** Where values go, row after row along x. */
-typedef struct rows_to {
-  vxm_grid *grid;   /**< or, if NULL, */
-  vxm_field *field; /**< whose rows come in whole slices */
-  vxm_element element;
-  atomic_uint *seen;
-  bool is_swapped;
-} rows_to;
 
 /** Rows that are unpacked together: up to 4 MiB, but at least one; of fields, whole slices. */
 static size_t rows_at_once(const vxm_space *space, bool is_field, size_t row_bytes) {
@@ -138,15 +138,6 @@ static vxm_status read_gzip(const rows_to *to, const vxm_nrrd_header *h, const v
   return status;
 }
 #else
-/** Where values go. */
-typedef struct rows_to {
-  vxm_grid *grid;
-  vxm_field *field;
-  vxm_element element;
-  atomic_uint *seen;
-  bool is_swapped;
-} rows_to;
-
 static vxm_status read_gzip(const rows_to *to, const vxm_nrrd_header *h, const vxm_input *input,
                             vxm_error *error) {
   (void)to;

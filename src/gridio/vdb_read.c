@@ -186,7 +186,7 @@ static vxm_status read_bits(vxm_grid **out, front *f, const vxm_input *input, vx
 /** Floats are bits only if all of them are 0 or 1, and nothing says that they are something else. */
 static vxm_status read_mask(vxm_grid **out, front *f, const vxm_input *input, vxm_bits_rule rule,
                             vxm_error *error) {
-  vxm_field *field;
+  vxm_field *field = NULL;
   if (rule != VXM_BITS_ANY || !vxm_about_may_be_bits(&f->grid.about, rule))
     return vxm_fail_numbers(error, input->name, vxm_scalar_name(f->grid.scalar));
   vxm_status status = read_numbers(&field, f, input, error);
