@@ -13,11 +13,19 @@ typedef struct piece {
   bool reversed;
 } piece;
 
+/** A vertex where a group is open. */
+typedef struct rim_vertex {
+  size_t group;
+  uint32_t vertex;
+} rim_vertex;
+
 typedef struct parting {
   vxm_work *work;
   const vxm_soup *soup;
   vxm_copies *copies;
   vxm_edge_groups groups;
+  rim_vertex *rims; /**< sorted */
+  size_t rim_count;
   uint8_t *asked;  /**< per group: it is to be divided into layers */
   uint8_t *failed; /**< per group: it was asked and could not be */
   vxm_layers layers;
@@ -38,17 +46,55 @@ static void *scratch(parting *p, size_t count, size_t size) {
 
 /* ---- Which groups ---- */
 
-/** Groups of which one vertex is in several. */
+static int by_vertex_then_group(const void *a, const void *b) {
+  const rim_vertex *s = a, *t = b;
+  if (s->vertex != t->vertex)
+    return s->vertex < t->vertex ? -1 : 1;
+  return s->group < t->group ? -1 : s->group > t->group;
+}
+
+static bool find_rims(parting *p) {
+  const vxm_soup *soup = p->soup;
+  const vxm_edge *edges = p->work->edges.edges;
+  size_t count = 0;
+  for (size_t c = 0; c < soup->corner_count; c++)
+    count += p->groups.sides[c] != VXM_NO_EDGE && vxm_edge_is_odd(&edges[p->groups.sides[c]]);
+  p->rims = scratch(p, 2 * count, sizeof *p->rims);
+  if (!p->rims)
+    return false;
+  for (size_t f = 0; count > 0 && f < soup->face_count; f++)
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
+      size_t edge = p->groups.sides[c];
+      if (edge == VXM_NO_EDGE || !vxm_edge_is_odd(&edges[edge]))
+        continue;
+      p->rims[p->rim_count++] = (rim_vertex){p->groups.of_face[f], edges[edge].a};
+      p->rims[p->rim_count++] = (rim_vertex){p->groups.of_face[f], edges[edge].b};
+    }
+  qsort(p->rims, p->rim_count, sizeof *p->rims, by_vertex_then_group);
+  return true;
+}
+
+static bool is_open_at(const parting *p, size_t group, uint32_t vertex) {
+  rim_vertex wanted = {group, vertex};
+  return !p->groups.groups[group].closed &&
+         bsearch(&wanted, p->rims, p->rim_count, sizeof *p->rims, by_vertex_then_group);
+}
+
+/** Groups that are closed round a vertex which is in others, too. Where they are open it may be one surface
+ * with a slit, so there they stay together. */
 static bool mark_touching(parting *p, uint8_t *touches) {
   const vxm_soup *soup = p->soup;
   size_t *group_at = scratch(p, soup->vertex_count, sizeof *group_at);
   for (size_t f = 0; group_at && f < soup->face_count; f++)
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
-      size_t *at = &group_at[soup->indices[c]], group = p->groups.of_face[f];
+      uint32_t vertex = soup->indices[c];
+      size_t *at = &group_at[vertex], group = p->groups.of_face[f];
       if (*at == 0)
         *at = group + 1;
-      else if (*at != group + 1)
-        touches[group] = touches[*at - 1] = 1;
+      else if (*at != group + 1) {
+        touches[group] |= !is_open_at(p, group, vertex);
+        touches[*at - 1] |= !is_open_at(p, *at - 1, vertex);
+      }
     }
   vxm_free(p->work->context, group_at);
   return group_at != NULL;
@@ -92,7 +138,7 @@ static bool put_pieces(parting *p, const uint8_t *touches) {
   for (size_t f = 0; f < p->soup->face_count && done; f++) {
     size_t group = p->groups.of_face[f];
     if (!p->asked[group] || p->failed[group])
-      done = put(p, touches[group] && p->groups.groups[group].closed ? key_of(group, 0) : 0, f, false);
+      done = put(p, touches[group] ? key_of(group, 0) : 0, f, false);
     else if (vxm_layers_surplus(&p->layers, f) == 0)
       done = p->copies[f].first != f || put(p, 0, f, false); /* a sheet, of which one side is enough */
     else if (vxm_layers_stands(&p->layers, f))
@@ -161,13 +207,18 @@ static int by_vertex_then_key(const void *a, const void *b) {
   return s->key < t->key ? -1 : s->key > t->key;
 }
 
+/** The body that has the vertex of a piece. */
+static uint64_t key_at(const parting *p, const piece *q, uint32_t vertex) {
+  return q->key != 0 && is_open_at(p, p->groups.of_face[q->face], vertex) ? 0 : q->key;
+}
+
 /** Lists which bodies have which vertices, once each. The first one of a vertex keeps it. */
 static size_t list_claims(const parting *p, claim *claims) {
   size_t count = 0, distinct = 0;
   for (size_t i = 0; i < p->piece_count; i++) {
     const piece *q = &p->pieces[i];
     for (uint64_t c = p->soup->offsets[q->face]; c < p->soup->offsets[q->face + 1]; c++)
-      claims[count++] = (claim){q->key, p->soup->indices[c], 0};
+      claims[count++] = (claim){key_at(p, q, p->soup->indices[c]), p->soup->indices[c], 0};
   }
   qsort(claims, count, sizeof *claims, by_vertex_then_key);
   for (size_t i = 0; i < count; i++)
@@ -193,16 +244,17 @@ static vxm_status add_vertices(vxm_soup *out, claim *claims, size_t count, const
   return status;
 }
 
-static vxm_status add_piece(vxm_soup *out, const piece *q, const claim *claims, size_t count,
-                            const vxm_soup *soup, uint32_t *corners, vxm_error *error) {
+static vxm_status add_piece(parting *p, vxm_soup *out, const piece *q, const claim *claims, size_t count,
+                            uint32_t *corners) {
   size_t size;
-  const uint32_t *corner = vxm_face(soup, q->face, &size);
+  const uint32_t *corner = vxm_face(p->soup, q->face, &size);
   for (size_t c = 0; c < size; c++) {
-    claim wanted = {q->key, corner[q->reversed ? size - 1 - c : c], 0};
+    uint32_t vertex = corner[q->reversed ? size - 1 - c : c];
+    claim wanted = {key_at(p, q, vertex), vertex, 0};
     const claim *found = bsearch(&wanted, claims, count, sizeof *claims, by_vertex_then_key);
     corners[c] = found->number;
   }
-  return vxm_soup_add_face(out, corners, size, error);
+  return vxm_soup_add_face(out, corners, size, &p->error);
 }
 
 static size_t largest_face(const vxm_soup *soup) {
@@ -230,7 +282,7 @@ static vxm_status build(parting *p, int64_t *added) {
   if (status == VXM_OK)
     status = add_vertices(out, claims, count, p->soup, &p->error);
   for (size_t i = 0; i < p->piece_count && status == VXM_OK; i++) {
-    status = add_piece(out, &p->pieces[i], claims, count, p->soup, room, &p->error);
+    status = add_piece(p, out, &p->pieces[i], claims, count, room);
     origin[i] = p->pieces[i].face;
     if (p->pieces[i].reversed && work->turned)
       work->turned[origin[i]] ^= VXM_TURNED;
@@ -312,12 +364,12 @@ static bool find_groups(parting *p, bool *any, uint8_t **touches) {
     return false;
   *touches = scratch(p, p->groups.count, sizeof **touches);
   p->asked = *touches ? scratch(p, p->groups.count, sizeof *p->asked) : NULL;
-  if (!p->asked || !mark_touching(p, *touches))
+  if (!p->asked || !find_rims(p) || !mark_touching(p, *touches))
     return false;
   for (size_t g = 0; g < p->groups.count; g++) {
     const vxm_edge_group *group = &p->groups.groups[g];
     p->asked[g] = group->balanced && !group->manifold;
-    *any = *any || p->asked[g] || ((*touches)[g] && group->closed);
+    *any = *any || p->asked[g] || (*touches)[g];
   }
   return true;
 }
@@ -333,6 +385,7 @@ vxm_status vxm_pass_bodies(vxm_work *work, bool *changed, vxm_error *error) {
   if (done && any)
     done = divide(&p, touches, changed);
   vxm_free(work->context, p.pieces);
+  vxm_free(work->context, p.rims);
   vxm_free(work->context, p.failed);
   vxm_free(work->context, p.layers.known);
   vxm_free(work->context, p.layers.front);

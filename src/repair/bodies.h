@@ -8,7 +8,9 @@
 
 /**
  * Cuts apart what is closed, on vertices of its own at the same positions:
- *  - Groups of faces that edges connect, where they touch others at vertices.
+ *  - Groups of faces that edges connect, where they touch others at vertices and have no rim there. So an eye
+ *    that touches a head is a body of its own even if both have holes elsewhere; patches that meet with
+ *    their rims at a vertex stay together.
  *  - Groups that are balanced (repair/edge_groups.h) and have edges with more than two sides, into layers:
  * the winding number is then a whole one everywhere, and layer k is the surface of what the faces wind round
  * k times or more. So two boxes that share a side, overlap or are equal become their union and, within it,

@@ -2,7 +2,7 @@
 /**
  * Bodies that are doubled, share faces, touch, nest or are turned over: the solid after the repair is the
  * union of the bodies, cell by cell. Bodies are sets of unit cells, so faces that lie on each other are
- * equal, and which cells are inside is known without any geometry.
+ * equal, and which cells are inside is known without any geometry. Two more have holes, and are not of cells.
  */
 #include "../mesh/soups.h"
 
@@ -239,6 +239,85 @@ static void solids_stay_in_any_direction(void **state) {
   }
 }
 
+/* ---- Bodies with holes ---- */
+
+/** A cube of side 4 without one of its squares. */
+static void add_open_cube(vxm_soup *soup) {
+  static const uint32_t square[][4] = {{2, 6, 7, 3}, {4, 5, 7, 6}, {0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}};
+  uint32_t first = (uint32_t)soup->vertex_count;
+  for (int i = 0; i < 8; i++)
+    add_vertex(soup, i & 1 ? 4 : 0, i & 2 ? 4 : 0, i & 4 ? 4 : 0);
+  for (size_t f = 0; f < sizeof square / sizeof *square; f++) {
+    uint32_t face[4];
+    for (size_t c = 0; c < 4; c++)
+      face[c] = first + square[f][c];
+    add_face(soup, face, 4);
+  }
+}
+
+/** An octahedron of radius 2 without one of its triangles; its top is a corner of that cube. */
+static void add_open_octahedron(vxm_soup *soup) {
+  uint32_t first = (uint32_t)soup->vertex_count, bottom = first + 4, top = first + 5;
+  static const double ring[4][2] = {{2, 0}, {0, 2}, {-2, 0}, {0, -2}};
+  for (int i = 0; i < 4; i++)
+    add_vertex(soup, 4 + ring[i][0], 4 + ring[i][1], 2);
+  add_vertex(soup, 4, 4, 0);
+  add_vertex(soup, 4, 4, 4);
+  for (uint32_t i = 0; i < 4; i++) {
+    uint32_t a = first + i, b = first + (i + 1) % 4;
+    add_triangle(soup, a, b, top);
+    if (i > 0)
+      add_triangle(soup, b, a, bottom);
+  }
+}
+
+/** Both have holes elsewhere, so neither is closed; together they are what either covers all the same. */
+static void bodies_with_holes_touch(void **state) {
+  enum { FINE = 25 };
+  vxm_soup *soup = new_soup(*state);
+  add_open_cube(soup);
+  add_open_octahedron(soup);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  vxm_space space = {
+      .dims = {FINE, FINE, FINE}, .voxel_size = {0.27, 0.27, 0.27}, .origin = {-0.123, -0.127, -0.131}};
+  options.space.like = &space;
+  vxm_soup *prepared;
+  assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
+  vxm_grid *grid;
+  assert_int_equal(vxm_voxelize(&grid, NULL, prepared, &options, NULL), VXM_OK);
+  for (int64_t z = 0; z < FINE; z++)
+    for (int64_t y = 0; y < FINE; y++)
+      for (int64_t x = 0; x < FINE; x++) {
+        const int64_t at[3] = {x, y, z};
+        double p[3];
+        bool in_cube = true;
+        for (int a = 0; a < 3; a++) {
+          p[a] = space.origin[a] + ((double)at[a] + 0.5) * space.voxel_size[a];
+          in_cube = in_cube && p[a] > 0 && p[a] < 4;
+        }
+        double beyond = fabs(p[0] - 4) + fabs(p[1] - 4) + fabs(p[2] - 2) - 2;
+        if (fabs(beyond) > 1e-9 && vxm_grid_get(grid, x, y, z) != (in_cube || beyond < 0))
+          fail_msg("the voxel at %g %g %g is wrong", p[0], p[1], p[2]);
+      }
+  vxm_grid_destroy(grid);
+  vxm_soup_destroy(prepared);
+  vxm_soup_destroy(soup);
+}
+
+/** Patches that meet with their rims at a vertex may be one surface with slits. */
+static void patches_stay_together(void **state) {
+  vxm_soup *soup = new_soup(*state);
+  for (int i = 0; i < 5; i++)
+    add_vertex(soup, i == 0 ? 0 : i < 3 ? 1 : -1, i % 2, i > 2);
+  add_triangle(soup, 0, 1, 2);
+  add_triangle(soup, 0, 3, 4);
+  vxm_soup *prepared;
+  assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
+  assert_int_equal(prepared->vertex_count, 5);
+  vxm_soup_destroy(prepared);
+  vxm_soup_destroy(soup);
+}
+
 static int make_context(void **state) {
   *state = context_of_threads(2);
   return 0;
@@ -250,8 +329,9 @@ static int drop_context(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(solids_stay),
-                                     cmocka_unit_test(solids_stay_in_triangles),
-                                     cmocka_unit_test(solids_stay_in_any_direction)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(solids_stay), cmocka_unit_test(solids_stay_in_triangles),
+      cmocka_unit_test(solids_stay_in_any_direction), cmocka_unit_test(bodies_with_holes_touch),
+      cmocka_unit_test(patches_stay_together)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
