@@ -356,5 +356,6 @@ vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error)
   }
   if (*changed)
     vxm_work_touch(work);
+  work->patches = o.patch_count; /* turning changes none */
   return VXM_OK;
 }

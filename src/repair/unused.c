@@ -28,8 +28,12 @@ vxm_status vxm_pass_unused(vxm_work *work, bool *changed, vxm_error *error) {
   for (size_t c = 0; c < soup->corner_count; c++)
     soup->indices[c] = number[soup->indices[c]];
   soup->vertex_count = kept;
+  for (size_t e = 0; work->has_edges && e < work->edges.count; e++) { /* which stay in order */
+    vxm_edge *edge = &work->edges.edges[e];
+    edge->a = number[edge->a];
+    edge->b = number[edge->b];
+  }
   vxm_free(work->context, number);
-  vxm_work_touch(work);
   *changed = true;
   return VXM_OK;
 }

@@ -29,6 +29,7 @@ void vxm_work_touch(vxm_work *work) {
   if (work->has_edges)
     vxm_edges_destroy(&work->edges);
   work->has_edges = false;
+  work->patches = 0;
 }
 
 void vxm_work_extent(vxm_work *work, vxm_extent *extent) {
