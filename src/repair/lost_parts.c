@@ -6,11 +6,18 @@
 #include "mesh/edges.h"
 #include "mesh/frame.h"
 #include "mesh/weld.h"
+#include "repair/line_spans.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-enum { PARTS_ASKED = 1 << 15, CELLS_MAX = 256 };
+enum {
+  PARTS_ASKED = 1 << 15,
+  CELLS_MAX = 256,
+  CROSSINGS_MAX = 1 << 20, /**< with more of them, or */
+  TESTS_MAX = 1 << 27,     /**< of triangles with lines, every second line is left out: of thousands of plates
+                              every line may meet all */
+  ASK_TESTS = 1 << 18      /**< between two questions whether to go on */
+};
 
 /** Of what a part enclosed: with no more than this gone it is not lost. */
 static const double LOST = 0.01;
@@ -24,18 +31,6 @@ typedef struct line {
   uint32_t part;
 } line;
 
-typedef struct crossing {
-  size_t line;
-  uint32_t part;
-  int turn; /**< -1 where the line enters, 1 where it leaves */
-  double height;
-} crossing;
-
-typedef struct crossings {
-  crossing *items;
-  size_t count, room;
-} crossings;
-
 typedef struct asking {
   vxm_context *context;
   const vxm_soup *before, *after;
@@ -48,9 +43,13 @@ typedef struct asking {
   int axis, u, v;
   line *lines;
   size_t line_count;
+  size_t step;             /**< of the lines only those whose number it divides are asked */
+  size_t *first_line;      /**< per part of `before`, or SIZE_MAX */
   size_t *begin, *in_cell; /**< lines by cell */
   size_t cells;            /**< along each side */
-  crossings of_before, of_after;
+  size_t tests, ask_after;
+  vxm_crossings of_before, of_after;
+  vxm_spans covered;     /**< on one line, by parts of `after` */
   double *inside, *gone; /**< per part, twice: length by winding and by parity */
   vxm_lost_parts *out;
   vxm_error error;
@@ -125,9 +124,13 @@ static double scatter(uint64_t key) {
 static void place_lines(asking *a) {
   size_t step = a->parts / PARTS_ASKED + 1;
   a->line_count = 0;
+  a->step = 1;
+  for (size_t p = 0; p < a->parts; p++)
+    a->first_line[p] = SIZE_MAX;
   for (size_t p = 0; p < a->parts; p += step) {
     const double *box = a->box + 6 * p;
-    for (size_t i = 0; i < a->per_side * a->per_side && !a->open[p] && box[a->u] <= box[a->u + 3]; i++) {
+    a->first_line[p] = !a->open[p] && box[a->u] <= box[a->u + 3] ? a->line_count : SIZE_MAX;
+    for (size_t i = 0; i < a->per_side * a->per_side && a->first_line[p] != SIZE_MAX; i++) {
       uint64_t key = (p * 3 + (uint64_t)a->axis) << 16 | i << 1;
       double x = ((double)(i % a->per_side) + scatter(key)) / (double)a->per_side;
       double y = ((double)(i / a->per_side) + scatter(key + 1)) / (double)a->per_side;
@@ -138,10 +141,11 @@ static void place_lines(asking *a) {
   }
 }
 
-static size_t cell_along(const asking *a, int axis, double x) {
-  double side = a->bounds[axis + 3] - a->bounds[axis];
-  double cell = side > 0 ? (x - a->bounds[axis]) / side * (double)a->cells : 0;
-  return cell > 0 ? (cell < (double)(a->cells - 1) ? (size_t)cell : a->cells - 1) : 0;
+/** @param box of a part, or of all */
+static size_t cell_along(const double *box, size_t cells, int axis, double x) {
+  double side = box[axis + 3] - box[axis];
+  double cell = side > 0 ? (x - box[axis]) / side * (double)cells : 0;
+  return cell > 0 ? (cell < (double)(cells - 1) ? (size_t)cell : cells - 1) : 0;
 }
 
 static void sort_lines(asking *a) {
@@ -149,9 +153,9 @@ static void sort_lines(asking *a) {
   for (size_t c = 0; c <= cells; c++)
     a->begin[c] = 0;
   for (int pass = 0; pass < 2; pass++) {
-    for (size_t l = 0; l < a->line_count; l++) {
-      size_t cell =
-          cell_along(a, a->v, a->lines[l].at[1]) * a->cells + cell_along(a, a->u, a->lines[l].at[0]);
+    for (size_t l = 0; l < a->line_count; l += a->step) {
+      size_t cell = cell_along(a->bounds, a->cells, a->v, a->lines[l].at[1]) * a->cells +
+                    cell_along(a->bounds, a->cells, a->u, a->lines[l].at[0]);
       if (pass == 0)
         a->begin[cell + 1]++;
       else
@@ -178,7 +182,7 @@ static bool edge_crosses(const asking *a, const vxm_soup *soup, uint32_t p, uint
   return hv > lv ? turn > 0 : turn < 0;
 }
 
-static bool note_crossing(asking *a, crossings *list, const vxm_soup *soup, const uint32_t v[3], size_t l,
+static bool note_crossing(asking *a, vxm_crossings *list, const vxm_soup *soup, const uint32_t v[3], size_t l,
                           uint32_t part) {
   const double *at = a->lines[l].at;
   bool covers = false;
@@ -193,106 +197,110 @@ static bool note_crossing(asking *a, crossings *list, const vxm_soup *soup, cons
     weight += part_weight;
     sum += part_weight * vxm_position(soup, v[c])[a->axis];
   }
-  if (list->count == list->room) {
-    void *block = list->items;
-    if (vxm_grow(a->context, &block, &list->room, list->count + 1, sizeof *list->items, &a->error) != VXM_OK)
-      return false;
-    list->items = block;
-  }
   double height = weight != 0 ? sum / weight : vxm_position(soup, v[0])[a->axis];
-  list->items[list->count++] = (crossing){l, part, weight > 0 ? 1 : -1, height};
-  return true;
+  const vxm_crossing crossing = {l, part, weight > 0 ? 1 : -1, height};
+  return vxm_crossings_add(list, a->context, &crossing, &a->error) == VXM_OK;
 }
 
-/** @param own faces tell only of the lines through their own part */
-static bool cross_triangle(asking *a, crossings *list, const vxm_soup *soup, const uint32_t v[3],
-                           uint32_t part, bool own) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+/** Where a triangle lies across the axis; false if it has a corner that is not finite. */
+static bool find_bounds(const asking *a, const vxm_soup *soup, const uint32_t v[3], double low[2],
+                        double high[2]) {
+  low[0] = low[1] = INFINITY;
+  high[0] = high[1] = -INFINITY;
   for (int c = 0; c < 3; c++) {
     const double *p = vxm_position(soup, v[c]);
     if (!vxm_is_finite(p))
-      return true;
+      return false;
     low[0] = fmin(low[0], p[a->u]), high[0] = fmax(high[0], p[a->u]);
     low[1] = fmin(low[1], p[a->v]), high[1] = fmax(high[1], p[a->v]);
   }
-  size_t left = cell_along(a, a->u, low[0]), right = cell_along(a, a->u, high[0]);
-  size_t top = cell_along(a, a->v, high[1]);
-  for (size_t j = cell_along(a, a->v, low[1]); j <= top; j++)
-    for (size_t i = a->begin[j * a->cells + left]; i < a->begin[j * a->cells + right + 1]; i++) {
-      size_t l = a->in_cell[i];
-      if ((!own || a->lines[l].part == part) && !note_crossing(a, list, soup, v, l, part))
+  return true;
+}
+
+/** Crosses a triangle of `before` with the lines through its own part: place_lines has put one into each
+ * square of the box. */
+static bool cross_before(asking *a, const uint32_t v[3], uint32_t part) {
+  double low[2], high[2];
+  const double *box = a->box + 6 * (size_t)part;
+  if (a->first_line[part] == SIZE_MAX || !find_bounds(a, a->before, v, low, high))
+    return true;
+  size_t left = cell_along(box, a->per_side, a->u, low[0]),
+         right = cell_along(box, a->per_side, a->u, high[0]);
+  size_t top = cell_along(box, a->per_side, a->v, high[1]);
+  for (size_t j = cell_along(box, a->per_side, a->v, low[1]); j <= top; j++)
+    for (size_t i = left; i <= right; i++) {
+      size_t l = a->first_line[part] + j * a->per_side + i;
+      a->tests++;
+      if (l % a->step == 0 && !note_crossing(a, &a->of_before, a->before, v, l, part))
         return false;
     }
   return true;
 }
 
-static bool cross_soup(asking *a, crossings *list, const vxm_soup *soup, const uint32_t *parts, bool own) {
-  list->count = 0;
-  for (size_t f = 0; f < soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(soup, f, &count);
-    for (size_t c = 2; c < count; c++)
-      if (!cross_triangle(a, list, soup, (uint32_t[]){corner[0], corner[c - 1], corner[c]}, parts[f], own))
+/** Crosses a triangle of `after` with all lines. */
+static bool cross_after(asking *a, const uint32_t v[3], uint32_t part) {
+  double low[2], high[2];
+  if (!find_bounds(a, a->after, v, low, high))
+    return true;
+  size_t left = cell_along(a->bounds, a->cells, a->u, low[0]);
+  size_t right = cell_along(a->bounds, a->cells, a->u, high[0]);
+  size_t top = cell_along(a->bounds, a->cells, a->v, high[1]);
+  for (size_t j = cell_along(a->bounds, a->cells, a->v, low[1]); j <= top; j++) {
+    size_t begin = a->begin[j * a->cells + left], end = a->begin[j * a->cells + right + 1];
+    a->tests += end - begin + 1;
+    for (size_t i = begin; i < end; i++)
+      if (!note_crossing(a, &a->of_after, a->after, v, a->in_cell[i], part))
         return false;
   }
   return true;
 }
 
-static int by_line_part_height(const void *a, const void *b) {
-  const crossing *p = a, *q = b;
-  if (p->line != q->line)
-    return p->line < q->line ? -1 : 1;
-  if (p->part != q->part)
-    return p->part < q->part ? -1 : 1;
-  return p->height < q->height ? -1 : p->height > q->height;
+static void keep_lines(vxm_crossings *list, size_t step) {
+  size_t kept = 0;
+  for (size_t i = 0; i < list->count; i++)
+    if (list->items[i].line % step == 0)
+      list->items[kept++] = list->items[i];
+  list->count = kept;
+}
+
+/** Leaves out every second line where they tell more than is needed; asks whether to go on. */
+static bool thin(asking *a) {
+  if (a->tests >= a->ask_after) {
+    a->ask_after = a->tests + ASK_TESTS;
+    if (vxm_ask(a->context, &a->error) != VXM_OK)
+      return false;
+  }
+  if (a->step >= a->line_count ||
+      (a->tests <= TESTS_MAX && a->of_before.count <= CROSSINGS_MAX && a->of_after.count <= CROSSINGS_MAX))
+    return true;
+  a->step *= 2;
+  keep_lines(&a->of_before, a->step);
+  keep_lines(&a->of_after, a->step);
+  sort_lines(a);
+  a->tests = a->ask_after = 0;
+  return true;
+}
+
+static bool cross_soup(asking *a, const vxm_soup *soup, const uint32_t *parts,
+                       bool (*cross)(asking *a, const uint32_t v[3], uint32_t part)) {
+  a->tests = a->ask_after = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count);
+    for (size_t c = 2; c < count; c++) {
+      a->tests++;
+      if (!cross(a, (uint32_t[]){corner[0], corner[c - 1], corner[c]}, parts[f]) || !thin(a))
+        return false;
+    }
+  }
+  return true;
 }
 
 /* ---- Comparing ---- */
 
-/** The crossings of one part with one line. */
-typedef struct stretch {
-  const crossing *begin, *end;
-  bool winds, alternates; /**< with respect to winding, and to parity, it ends outside */
-} stretch;
-
-static stretch next_stretch(const crossing *begin, const crossing *end) {
-  stretch s = {.begin = begin, .end = begin};
-  int sum = 0;
-  for (; s.end < end && s.end->line == begin->line && s.end->part == begin->part; s.end++)
-    sum += s.end->turn;
-  s.winds = sum == 0;
-  s.alternates = (s.end - s.begin) % 2 == 0;
-  return s;
-}
-
-/** How much of the way from `low` to `high` is inside one of the parts that the line meets; they may overlap,
- * so the way is gone along from end to end of what covers it. */
-static double covered(const crossing *begin, const crossing *end, double low, double high) {
-  double at = low, sum = 0;
-  while (at < high) {
-    double reach = at, next = high;
-    for (const crossing *c = begin; c < end;) {
-      stretch s = next_stretch(c, end);
-      int winding = 0;
-      for (const crossing *k = s.begin; k + 1 < s.end; k++) {
-        winding += k->turn;
-        bool inside = (s.winds && winding != 0) || (s.alternates && (k - s.begin) % 2 == 0);
-        if (inside && k->height <= at && k[1].height > reach)
-          reach = k[1].height;
-        if (inside && k->height > at && k->height < next)
-          next = k->height;
-      }
-      c = s.end;
-    }
-    sum += reach > at ? fmin(reach, high) - at : 0;
-    at = reach > at ? reach : next;
-  }
-  return sum;
-}
-
-static bool is_clear(const crossing *begin, const crossing *end) {
-  for (const crossing *c = begin; c < end;) {
-    stretch s = next_stretch(c, end);
+static bool is_clear(const vxm_crossing *begin, const vxm_crossing *end) {
+  for (const vxm_crossing *c = begin; c < end;) {
+    vxm_stretch s = vxm_stretch_next(c, end);
     if (!s.winds && !s.alternates)
       return false;
     c = s.end;
@@ -300,17 +308,17 @@ static bool is_clear(const crossing *begin, const crossing *end) {
   return true;
 }
 
-/** @param begin, end what the line meets afterwards */
-static void compare_line(asking *a, stretch before, const crossing *begin, const crossing *end) {
+static void compare_line(asking *a, vxm_stretch before) {
   uint32_t part = before.begin->part;
+  size_t next = 0;
   int winding = 0;
-  for (const crossing *k = before.begin; k + 1 < before.end; k++) {
+  for (const vxm_crossing *k = before.begin; k + 1 < before.end; k++) {
     double low = k->height, high = k[1].height;
     winding += k->turn;
     const bool inside[2] = {before.winds && winding != 0, before.alternates && (k - before.begin) % 2 == 0};
     if ((!inside[0] && !inside[1]) || !(high - low > a->no_depth))
       continue;
-    double left = high - low - covered(begin, end, low, high);
+    double left = high - low - vxm_spans_cover(&a->covered, &next, low, high);
     for (int kind = 0; kind < 2; kind++) {
       a->inside[2 * part + (size_t)kind] += inside[kind] ? high - low : 0;
       a->gone[2 * part + (size_t)kind] += inside[kind] ? left : 0;
@@ -318,38 +326,43 @@ static void compare_line(asking *a, stretch before, const crossing *begin, const
   }
 }
 
-static void compare(asking *a) {
-  static const crossing none;
-  const crossing *b = a->of_before.count > 0 ? a->of_before.items : &none, *b_end = b + a->of_before.count;
-  const crossing *c = a->of_after.count > 0 ? a->of_after.items : &none, *c_end = c + a->of_after.count;
+static bool compare(asking *a) {
+  static const vxm_crossing none;
+  const vxm_crossing *b = a->of_before.count > 0 ? a->of_before.items : &none,
+                     *b_end = b + a->of_before.count;
+  const vxm_crossing *c = a->of_after.count > 0 ? a->of_after.items : &none, *c_end = c + a->of_after.count;
   while (b < b_end) {
-    stretch s = next_stretch(b, b_end);
+    vxm_stretch s = vxm_stretch_next(b, b_end);
     while (c < c_end && c->line < b->line)
       c++;
-    const crossing *end = c;
+    const vxm_crossing *end = c;
     while (end < c_end && end->line == b->line)
       end++;
-    if (is_clear(c, end))
-      compare_line(a, s, c, end);
+    if (vxm_ask(a->context, &a->error) != VXM_OK)
+      return false;
+    if (is_clear(c, end)) {
+      if (vxm_spans_find(&a->covered, a->context, c, end, &a->error) != VXM_OK)
+        return false;
+      compare_line(a, s);
+    }
     b = s.end;
   }
+  return true;
 }
 
 static bool ask_axis(asking *a, int axis) {
   a->axis = axis;
   a->u = (axis + 1) % 3;
   a->v = (axis + 2) % 3;
+  a->of_before.count = a->of_after.count = 0;
   place_lines(a);
   sort_lines(a);
-  if (!cross_soup(a, &a->of_before, a->before, a->part_before, true) ||
-      !cross_soup(a, &a->of_after, a->after, a->part_after, false))
+  if (!cross_soup(a, a->before, a->part_before, cross_before) ||
+      !cross_soup(a, a->after, a->part_after, cross_after))
     return false;
-  if (a->of_before.count > 0)
-    qsort(a->of_before.items, a->of_before.count, sizeof *a->of_before.items, by_line_part_height);
-  if (a->of_after.count > 0)
-    qsort(a->of_after.items, a->of_after.count, sizeof *a->of_after.items, by_line_part_height);
-  compare(a);
-  return true;
+  vxm_crossings_sort(&a->of_before);
+  vxm_crossings_sort(&a->of_after);
+  return compare(a);
 }
 
 /* ---- All of it ---- */
@@ -365,7 +378,8 @@ static bool prepare(asking *a) {
   a->inside = a->box ? vxm_calloc(a->context, a->parts, 2 * sizeof *a->inside, &a->error) : NULL;
   a->gone = a->inside ? vxm_calloc(a->context, a->parts, 2 * sizeof *a->gone, &a->error) : NULL;
   a->lines = a->gone ? vxm_alloc(a->context, lines, sizeof *a->lines, &a->error) : NULL;
-  a->in_cell = a->lines ? vxm_alloc(a->context, lines, sizeof *a->in_cell, &a->error) : NULL;
+  a->first_line = a->lines ? vxm_alloc(a->context, a->parts, sizeof *a->first_line, &a->error) : NULL;
+  a->in_cell = a->first_line ? vxm_alloc(a->context, lines, sizeof *a->in_cell, &a->error) : NULL;
   a->begin = a->in_cell ? vxm_alloc(a->context, a->cells * a->cells + 1, sizeof *a->begin, &a->error) : NULL;
   return a->begin && find_parts(a->after, a->part_after, &parts, NULL, &a->error) == VXM_OK;
 }
@@ -403,10 +417,12 @@ vxm_status vxm_lost_parts_find(vxm_lost_parts *out, const vxm_soup *before, cons
   a.part_before = out->face_part;
   a.parts = out->part_count;
   done = out->lost && (a.parts == 0 || ask(&a));
+  vxm_free(a.context, a.covered.items);
   vxm_free(a.context, a.of_after.items);
   vxm_free(a.context, a.of_before.items);
   vxm_free(a.context, a.begin);
   vxm_free(a.context, a.in_cell);
+  vxm_free(a.context, a.first_line);
   vxm_free(a.context, a.lines);
   vxm_free(a.context, a.gone);
   vxm_free(a.context, a.inside);

@@ -23,7 +23,8 @@ typedef struct vxm_lost_parts {
  * @param[out] out freed with vxm_lost_parts_free in any case
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
- * Time is about linear in the faces of both. Of very many components only some are asked.
+ * Time is about linear in the faces of both. Of very many components only some are asked,
+ * and of lines that meet very many faces.
  */
 vxm_status vxm_lost_parts_find(vxm_lost_parts *out, const vxm_soup *before, const vxm_soup *after,
                                vxm_error *error);
