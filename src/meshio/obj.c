@@ -302,7 +302,6 @@ static bool ends_in_part_of_corner(const vxm_scan *scan) {
 static vxm_status note_cut(const obj_reader *reader, vxm_error *error) {
   const vxm_scan *scan = &reader->scan;
   vxm_soup *soup = reader->soup;
-  int64_t line = vxm_scan_line(scan, scan->end);
   if (reader->cut_vertex)
     vxm_note(&soup->notes, "line %" PRId64 ": the file ends within a vertex; skipped",
              vxm_scan_line(scan, reader->cut_vertex));
@@ -320,10 +319,10 @@ static vxm_status note_cut(const obj_reader *reader, vxm_error *error) {
        (reader->ends_in_face && (ends_in_part_of_corner(scan) || vxm_last_index_may_be_cut(soup, 1) ||
                                  vxm_last_face_may_be_short(soup)))))
     vxm_note(&soup->notes, "line %" PRId64 ": the file ends without a line end; its last line may be cut off",
-             line);
+             vxm_scan_line(scan, scan->end));
   else if (!skipped && (last > 0 || unused > soup->vertex_count / 100))
     vxm_note(&soup->notes, "line %" PRId64 ": the file may be cut off: no face uses %zu of its %zu vertices",
-             line, unused, soup->vertex_count);
+             vxm_scan_line(scan, scan->end), unused, soup->vertex_count);
   return VXM_OK;
 }
 

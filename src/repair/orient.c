@@ -31,6 +31,7 @@ typedef struct orienting {
   size_t *queue;
   patch *patches;
   size_t patch_count, patch_capacity;
+  bool many_sides; /**< an edge has more than two */
 } orienting;
 
 static void *allocate(orienting *o, size_t count, size_t size) {
@@ -50,6 +51,7 @@ static bool pair_faces(orienting *o) {
     if (!goes_on(o, e))
       return false;
     o->pair[e][0] = o->pair[e][1] = SIZE_MAX;
+    o->many_sides |= edges->edges[e].count > 2;
   }
   for (size_t f = 0; f < o->soup->face_count; f++) {
     if (!goes_on(o, f))
@@ -356,6 +358,6 @@ vxm_status vxm_pass_orientation(vxm_work *work, bool *changed, vxm_error *error)
   }
   if (*changed)
     vxm_work_touch(work);
-  work->patches = o.patch_count; /* turning changes none */
+  work->patches = o.many_sides ? 0 : o.patch_count; /* turning changes none */
   return VXM_OK;
 }

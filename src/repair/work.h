@@ -54,7 +54,8 @@ typedef struct vxm_work {
   uint8_t *turned; /**< face_count, or NULL as long as no face was turned: see vxm_turned */
   bool has_edges;
   vxm_edges edges; /**< of the present faces, if has_edges */
-  size_t patches;  /**< how many the present faces form, joined by edges with two sides; 0 = not known */
+  size_t patches;  /**< into how many the edges of the present faces join them, if none has more than two
+                      sides; 0 = not known */
   int64_t counts[VXM_PASS_COUNT];
   vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
   bool renumbered;                         /**< faces have other numbers than they came in with */
