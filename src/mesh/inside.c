@@ -228,6 +228,9 @@ static vxm_status for_each_crossing(vxm_inside *inside, const double point[3], i
                 cell_of(bins, 0, point[across.u] - inside->box[across.u]);
   for (size_t i = bins->begin[cell]; i < bins->begin[cell + 1]; i++) {
     const triangle *t = &bins->triangles[i];
+    status = vxm_ask_at(++inside->tests, inside->soup->context, error);
+    if (status != VXM_OK)
+      return status;
     bool covers = false;
     for (int c = 0; c < 3; c++)
       covers ^= edge_crosses(inside, across, t->v[c], t->v[(c + 1) % 3], point);

@@ -26,6 +26,7 @@ typedef struct vxm_inside {
   double scale;  /**< of all positions, see vxm_frame */
   double box[6]; /**< x0 y0 z0 x1 y1 z1 of the faces, scaled */
   vxm_inside_bins bins[3];
+  size_t tests; /**< of triangles with lines so far */
 } vxm_inside;
 
 /**

@@ -321,8 +321,9 @@ static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
   for (size_t face = 0; sets && face < faces; face++)
     if (is_asked(d, face)) {
       size_t root = vxm_set_of(d->parent, face);
+      bool wall = may_be_wall(d, face);
       sets[asked++] =
-          (vxm_set_side){.face = may_be_wall(d, face) ? face : d->fins[root].largest, .set = root};
+          (vxm_set_side){.face = wall ? face : d->fins[root].largest, .set = root, .asks_within = !wall};
     }
   if (sets)
     status = ask(d, sets, asked, bound, within, error);

@@ -95,9 +95,11 @@ static vxm_status ask(vxm_set_side *set, const asking *a, vxm_inside *inside, bo
   for (int axis = 0; axis < 3; axis++)
     dominant = fabs(along[axis]) > fabs(along[dominant]) ? axis : dominant;
   for (int axis = 0; axis < 3; axis++) {
-    int above, below, votes;
+    int above, below, votes = 0;
+    if (!set->asks_within && axis != dominant)
+      continue;
     vxm_status status = vxm_inside_winding(inside, middle, axis, gap, &above, &below, error);
-    if (status == VXM_OK && !balanced)
+    if (status == VXM_OK && set->asks_within && !balanced)
       status = vxm_inside_vote(inside, middle, axis, &votes, error);
     if (status != VXM_OK)
       return status;
@@ -107,7 +109,7 @@ static vxm_status ask(vxm_set_side *set, const asking *a, vxm_inside *inside, bo
       set->back = along[axis] > 0 ? below : above;
     }
   }
-  set->within = in > 3;
+  set->within = set->asks_within && in > 3;
   return VXM_OK;
 }
 

@@ -6,8 +6,9 @@
 #include "repair/edge_groups.h"
 
 typedef struct vxm_set_side {
-  size_t face; /**< the face of the set that is asked */
-  size_t set;  /**< for the caller */
+  size_t face;      /**< the face of the set that is asked */
+  size_t set;       /**< for the caller */
+  bool asks_within; /**< whether `within` is to be told, which takes rays along three axes instead of one */
   int front,
       back;    /**< how often the faces of its group wind round the points before it (where its normal points)
                   and behind it, as a ray to either side tells; themselves at the face passed over */
@@ -19,7 +20,9 @@ typedef struct vxm_set_side {
  * Asks one face of each set. Sets are put in another order: by group.
  *
  * @param bound per face: whether it counts
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ *
+ * A ray takes as long as there are faces along it: of n walls upon each other, each asked, n * n are met.
  */
 vxm_status vxm_set_sides_find(vxm_set_side *sets, size_t count, vxm_work *work, const vxm_edge_groups *groups,
                               const uint8_t *bound, vxm_error *error);

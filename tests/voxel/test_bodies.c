@@ -6,6 +6,7 @@
  */
 #include "../mesh/soups.h"
 
+#include "base/context_struct.h"
 #include "repair/repair.h"
 
 #include <math.h>
@@ -239,6 +240,42 @@ static void solids_stay_in_any_direction(void **state) {
   }
 }
 
+/* ---- Many bodies ---- */
+
+static int count_question(const char *phase, double fraction, void *payload) {
+  (void)phase, (void)fraction;
+  ++*(int *)payload;
+  return 0;
+}
+
+/** A column of boxes, each second one turned over: every ray along it meets all of them, which takes a while.
+ */
+static void rays_ask_whether_to_go_on(void **state) {
+  (void)state;
+  enum { BOXES = 600 };
+  int asked = 0;
+  vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+  options.progress = count_question;
+  options.payload = &asked;
+  options.threads = 1;
+  vxm_context *context = NULL;
+  assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
+  context->ask_ms = 0;
+  vxm_soup *soup = new_soup(context), *prepared;
+  vxm_rng rng = {1};
+  for (int z = 0; z < BOXES; z++)
+    for (int side = 0; side < 6; side++) {
+      int corner[3] = {0, 0, z}, axis = side / 2, up = side % 2;
+      corner[axis] += up;
+      add_square(soup, &squares, corner, axis, (up == 1) != (z % 2 == 1), &rng);
+    }
+  assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
+  assert_true(asked > 500);
+  vxm_soup_destroy(prepared);
+  vxm_soup_destroy(soup);
+  vxm_context_destroy(context);
+}
+
 /* ---- Bodies with holes ---- */
 
 /** A cube of side 4 without one of its squares. */
@@ -329,9 +366,11 @@ static int drop_context(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(solids_stay), cmocka_unit_test(solids_stay_in_triangles),
-      cmocka_unit_test(solids_stay_in_any_direction), cmocka_unit_test(bodies_with_holes_touch),
-      cmocka_unit_test(patches_stay_together)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(solids_stay),
+                                     cmocka_unit_test(solids_stay_in_triangles),
+                                     cmocka_unit_test(solids_stay_in_any_direction),
+                                     cmocka_unit_test(bodies_with_holes_touch),
+                                     cmocka_unit_test(patches_stay_together),
+                                     cmocka_unit_test(rays_ask_whether_to_go_on)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
