@@ -45,6 +45,11 @@ static void *scratch(parting *p, size_t count, size_t size) {
   return vxm_work_scratch(p->work, count, size, &status, &p->error);
 }
 
+/** Asks now and then whether to go on. */
+static bool goes_on(parting *p, size_t step) {
+  return vxm_ask_at(step, p->work->context, &p->error) == VXM_OK;
+}
+
 /* ---- Which groups ---- */
 
 static int by_vertex_then_group(const void *a, const void *b) {
@@ -86,7 +91,9 @@ static bool is_open_at(const parting *p, size_t group, uint32_t vertex) {
 static bool mark_touching(parting *p, uint8_t *touches) {
   const vxm_soup *soup = p->soup;
   size_t *group_at = scratch(p, soup->vertex_count, sizeof *group_at);
-  for (size_t f = 0; group_at && f < soup->face_count; f++)
+  bool done = group_at != NULL;
+  for (size_t f = 0; done && f < soup->face_count; f++) {
+    done = goes_on(p, f);
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
       uint32_t vertex = soup->indices[c];
       size_t *at = &group_at[vertex], group = p->groups.of_face[f];
@@ -97,8 +104,9 @@ static bool mark_touching(parting *p, uint8_t *touches) {
         touches[*at - 1] |= !is_open_at(p, *at - 1, vertex);
       }
     }
+  }
   vxm_free(p->work->context, group_at);
-  return group_at != NULL;
+  return done;
 }
 
 /* ---- Layers ---- */
@@ -116,12 +124,10 @@ static bool put(parting *p, uint64_t key, size_t face, bool reversed) {
   return true;
 }
 
-enum { LAYERS_MAX = 1 << 15 };
-
 /** Layer k > 0 bounds what the faces wind round at least k times, layer k < 0 what they wind round -k times
  * or more the other way, with the faces turned. */
 static uint64_t key_of(size_t group, int64_t layer) {
-  return ((uint64_t)group + 1) << 17 | (uint64_t)(layer + LAYERS_MAX);
+  return ((uint64_t)group + 1) << 32 | (uint64_t)(layer + INT32_MAX);
 }
 
 static bool put_layers(parting *p, size_t face) {
@@ -144,6 +150,7 @@ static bool put_pieces(parting *p, const uint8_t *touches) {
       done = p->copies[f].first != f || put(p, 0, f, false); /* a sheet, of which one side is enough */
     else if (vxm_layers_stands(&p->layers, f))
       done = put_layers(p, f);
+    done = done && goes_on(p, f);
   }
   return done;
 }
@@ -162,7 +169,7 @@ static int by_edge_then_key(const void *a, const void *b) {
 }
 
 /** A layer that is not closed for itself is none: faces cut through each other elsewhere than at their edges.
- */
+ * Along edges with two sides they are, as both are of one patch. */
 static bool check_layers(parting *p) {
   const vxm_soup *soup = p->soup;
   size_t count = 0;
@@ -179,7 +186,7 @@ static bool check_layers(parting *p) {
          c < soup->offsets[q->face + 1] && q->key != 0 && p->asked[group] && !p->failed[group]; c++) {
       size_t edge = p->groups.sides[c];
       bool forward = edge != VXM_NO_EDGE && soup->indices[c] == p->work->edges.edges[edge].a;
-      if (edge != VXM_NO_EDGE)
+      if (edge != VXM_NO_EDGE && p->work->edges.edges[edge].count > 2)
         sides[count++] = (side){group, edge, q->key, forward != q->reversed ? 1 : -1};
     }
   }
@@ -213,14 +220,39 @@ static uint64_t key_at(const parting *p, const piece *q, uint32_t vertex) {
   return q->key != 0 && is_open_at(p, p->groups.of_face[q->face], vertex) ? 0 : q->key;
 }
 
-/** Lists which bodies have which vertices, once each. The first one of a vertex keeps it. */
-static size_t list_claims(const parting *p, claim *claims) {
-  size_t count = 0, distinct = 0;
+/** The body of the lowest key keeps a vertex. */
+static bool find_keepers(parting *p, uint64_t *keeper) {
+  for (size_t v = 0; v < p->soup->vertex_count; v++)
+    keeper[v] = UINT64_MAX;
+  for (size_t i = 0; i < p->piece_count && goes_on(p, i); i++) {
+    const piece *q = &p->pieces[i];
+    for (uint64_t c = p->soup->offsets[q->face]; c < p->soup->offsets[q->face + 1]; c++) {
+      uint64_t key = key_at(p, q, p->soup->indices[c]), *least = &keeper[p->soup->indices[c]];
+      *least = key < *least ? key : *least;
+    }
+  }
+  return p->error.code == VXM_OK;
+}
+
+/** Lists which other bodies have which vertices; without a list only counts their corners. */
+static size_t list_claims(const parting *p, const uint64_t *keeper, claim *claims) {
+  size_t count = 0;
   for (size_t i = 0; i < p->piece_count; i++) {
     const piece *q = &p->pieces[i];
-    for (uint64_t c = p->soup->offsets[q->face]; c < p->soup->offsets[q->face + 1]; c++)
-      claims[count++] = (claim){key_at(p, q, p->soup->indices[c]), p->soup->indices[c], 0};
+    for (uint64_t c = p->soup->offsets[q->face]; c < p->soup->offsets[q->face + 1]; c++) {
+      uint32_t vertex = p->soup->indices[c];
+      uint64_t key = key_at(p, q, vertex);
+      if (key != keeper[vertex] && claims)
+        claims[count] = (claim){key, vertex, 0};
+      count += key != keeper[vertex];
+    }
   }
+  return count;
+}
+
+/** Sorts them, each once. */
+static size_t sort_claims(claim *claims, size_t count) {
+  size_t distinct = 0;
   qsort(claims, count, sizeof *claims, by_vertex_then_key);
   for (size_t i = 0; i < count; i++)
     if (i == 0 || by_vertex_then_key(&claims[i], &claims[distinct - 1]) != 0)
@@ -234,28 +266,25 @@ static vxm_status add_vertices(vxm_soup *out, claim *claims, size_t count, const
   for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
     const double *x = vxm_position(soup, v);
     status = vxm_soup_add_vertex(out, x[0], x[1], x[2], error);
+    if (status == VXM_OK)
+      status = vxm_ask_at(v, soup->context, error);
   }
   for (size_t i = 0; i < count && status == VXM_OK; i++) {
-    bool keeps = i == 0 || claims[i].vertex != claims[i - 1].vertex;
     const double *x = vxm_position(soup, claims[i].vertex);
-    claims[i].number = keeps ? claims[i].vertex : (uint32_t)out->vertex_count;
-    if (!keeps)
-      status = vxm_soup_add_vertex(out, x[0], x[1], x[2], error);
+    claims[i].number = (uint32_t)out->vertex_count;
+    status = vxm_soup_add_vertex(out, x[0], x[1], x[2], error);
   }
   return status;
 }
 
-static vxm_status add_piece(parting *p, vxm_soup *out, const piece *q, const claim *claims, size_t count,
-                            uint32_t *corners) {
-  size_t size;
-  const uint32_t *corner = vxm_face(p->soup, q->face, &size);
-  for (size_t c = 0; c < size; c++) {
-    uint32_t vertex = corner[q->reversed ? size - 1 - c : c];
-    claim wanted = {key_at(p, q, vertex), vertex, 0};
-    const claim *found = bsearch(&wanted, claims, count, sizeof *claims, by_vertex_then_key);
-    corners[c] = found->number;
-  }
-  return vxm_soup_add_face(out, corners, size, &p->error);
+/** What a body has in the place of a vertex. */
+static uint32_t vertex_of(uint64_t key, uint32_t vertex, const uint64_t *keeper, const claim *claims,
+                          size_t count) {
+  const claim wanted = {key, vertex, 0};
+  if (key == keeper[vertex])
+    return vertex;
+  const claim *found = bsearch(&wanted, claims, count, sizeof *claims, by_vertex_then_key);
+  return found->number;
 }
 
 static size_t largest_face(const vxm_soup *soup) {
@@ -267,33 +296,63 @@ static size_t largest_face(const vxm_soup *soup) {
   return largest;
 }
 
+/** Adds the pieces; `corners` is scratch per corner of the largest face. */
+static vxm_status add_pieces(parting *p, vxm_soup *out, const uint64_t *keeper, const claim *claims,
+                             size_t count, uint32_t *corners) {
+  vxm_status status = VXM_OK;
+  for (size_t i = 0; i < p->piece_count && status == VXM_OK; i++) {
+    const piece *q = &p->pieces[i];
+    size_t size;
+    const uint32_t *corner = vxm_face(p->soup, q->face, &size);
+    for (size_t c = 0; c < size; c++) {
+      uint32_t vertex = corner[q->reversed ? size - 1 - c : c];
+      corners[c] = vertex_of(key_at(p, q, vertex), vertex, keeper, claims, count);
+    }
+    status = vxm_soup_add_face(out, corners, size, &p->error);
+    if (status == VXM_OK && !goes_on(p, i))
+      status = p->error.code;
+  }
+  return status;
+}
+
+/** Makes a soup of the pieces; `keeper` is scratch per vertex. */
+static vxm_status make_soup(parting *p, vxm_soup *out, uint64_t *keeper) {
+  if (!find_keepers(p, keeper))
+    return p->error.code;
+  size_t count = list_claims(p, keeper, NULL);
+  claim *claims = scratch(p, count, sizeof *claims);
+  uint32_t *corners = claims ? scratch(p, largest_face(p->soup), sizeof *corners) : NULL;
+  vxm_status status = corners ? VXM_OK : p->error.code;
+  if (status == VXM_OK) {
+    list_claims(p, keeper, claims);
+    count = sort_claims(claims, count);
+    status = add_vertices(out, claims, count, p->soup, &p->error);
+  }
+  if (status == VXM_OK)
+    status = add_pieces(p, out, keeper, claims, count, corners);
+  vxm_free(p->work->context, corners);
+  vxm_free(p->work->context, claims);
+  return status;
+}
+
 /** Puts the pieces in the place of the faces; *added: vertices that there are more. */
 static vxm_status build(parting *p, int64_t *added) {
   vxm_work *work = p->work;
   vxm_soup *out = NULL;
   vxm_status status = vxm_soup_create(&out, work->context, "", &p->error);
-  size_t corners = 0;
-  for (size_t i = 0; i < p->piece_count; i++)
-    corners += (size_t)(p->soup->offsets[p->pieces[i].face + 1] - p->soup->offsets[p->pieces[i].face]);
-  claim *claims = status == VXM_OK ? scratch(p, corners, sizeof *claims) : NULL;
-  uint32_t *room = claims ? scratch(p, largest_face(p->soup), sizeof *room) : NULL;
-  uint64_t *origin = room ? scratch(p, p->piece_count, sizeof *origin) : NULL;
-  status = origin ? VXM_OK : p->error.code;
-  size_t count = origin ? list_claims(p, claims) : 0;
-  if (status == VXM_OK)
-    status = add_vertices(out, claims, count, p->soup, &p->error);
-  for (size_t i = 0; i < p->piece_count && status == VXM_OK; i++) {
-    status = add_piece(p, out, &p->pieces[i], claims, count, room);
-    origin[i] = p->pieces[i].face;
-    if (p->pieces[i].reversed && work->turned)
-      work->turned[origin[i]] ^= VXM_TURNED;
-  }
-  vxm_free(work->context, room);
-  vxm_free(work->context, claims);
+  uint64_t *keeper = status == VXM_OK ? scratch(p, p->soup->vertex_count, sizeof *keeper) : NULL;
+  uint64_t *origin = keeper ? scratch(p, p->piece_count, sizeof *origin) : NULL;
+  status = origin ? make_soup(p, out, keeper) : p->error.code;
+  vxm_free(work->context, keeper);
   if (status != VXM_OK) {
     vxm_free(work->context, origin);
     vxm_soup_destroy(out);
     return status;
+  }
+  for (size_t i = 0; i < p->piece_count; i++) {
+    origin[i] = p->pieces[i].face;
+    if (p->pieces[i].reversed && work->turned)
+      work->turned[origin[i]] ^= VXM_TURNED;
   }
   *added = (int64_t)(out->vertex_count - p->soup->vertex_count);
   return vxm_work_adopt(work, out, origin, &p->error);

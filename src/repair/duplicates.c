@@ -18,21 +18,18 @@ static void count_faces(vxm_work *work, const vxm_copies *copies, const uint8_t 
   work->counts[VXM_PASS_OPPOSITE_DUPLICATES] += opposite;
 }
 
-static vxm_status remove_repeated(vxm_work *work, const uint8_t *kinds, bool *changed, vxm_error *error) {
-  vxm_status status = VXM_OK;
+/** Decides about them, and takes out those that are not needed; fills `kinds` and `copies`, which are scratch
+ * per face. */
+static vxm_status remove_repeated(vxm_work *work, uint8_t *kinds, vxm_copies *copies, bool *changed,
+                                  vxm_error *error) {
   size_t faces = work->soup->face_count;
   vxm_duplicates found;
-  uint8_t *remove = NULL, *seen = NULL, *again = NULL;
-  vxm_copies *copies = vxm_work_scratch(work, faces, sizeof *copies, &status, error);
-  if (copies)
-    again = vxm_work_scratch(work, faces, sizeof *again, &status, error);
-  if (again)
-    remove = vxm_work_scratch(work, faces, sizeof *remove, &status, error);
+  uint8_t *seen = NULL;
+  vxm_status status = vxm_duplicates_find(&found, work->context, work->soup, NULL, kinds, copies, error);
+  uint8_t *remove = status == VXM_OK ? vxm_work_scratch(work, faces, sizeof *remove, &status, error) : NULL;
   if (remove)
     seen = vxm_work_scratch(work, faces, sizeof *seen, &status, error);
   if (seen)
-    status = vxm_duplicates_find(&found, work->context, work->soup, NULL, again, copies, error);
-  if (status == VXM_OK)
     status = vxm_repeated_faces_mark(work, copies, remove, error);
   if (status == VXM_OK) {
     count_faces(work, copies, kinds, remove, seen);
@@ -40,8 +37,6 @@ static vxm_status remove_repeated(vxm_work *work, const uint8_t *kinds, bool *ch
   }
   vxm_free(work->context, seen);
   vxm_free(work->context, remove);
-  vxm_free(work->context, again);
-  vxm_free(work->context, copies);
   return status;
 }
 
@@ -51,13 +46,16 @@ vxm_status vxm_pass_duplicates(vxm_work *work, bool *changed, vxm_error *error) 
   work->shared = 0;
   if (work->options.keep_duplicates)
     return VXM_OK;
-  vxm_status status = VXM_OK;
-  uint8_t *kinds = vxm_work_scratch(work, work->soup->face_count, sizeof *kinds, &status, error);
-  vxm_duplicates found = {0};
-  if (kinds)
-    status = vxm_duplicates_find(&found, work->context, work->soup, NULL, kinds, NULL, error);
-  if (status == VXM_OK && found.same + found.opposite_pairs > 0)
-    status = remove_repeated(work, kinds, changed, error);
+  vxm_duplicates found; /* without a list of them, as most meshes have none */
+  vxm_status status = vxm_duplicates_find(&found, work->context, work->soup, NULL, NULL, NULL, error);
+  if (status != VXM_OK || found.same + found.opposite_pairs == 0)
+    return status;
+  size_t faces = work->soup->face_count;
+  uint8_t *kinds = vxm_work_scratch(work, faces, sizeof *kinds, &status, error);
+  vxm_copies *copies = kinds ? vxm_work_scratch(work, faces, sizeof *copies, &status, error) : NULL;
+  if (copies)
+    status = remove_repeated(work, kinds, copies, changed, error);
+  vxm_free(work->context, copies);
   vxm_free(work->context, kinds);
   return status;
 }

@@ -4,10 +4,14 @@
 #include "repair/sides.h"
 
 /** Joins the faces along every edge; `first` is scratch per edge: 1 + a face there. */
-static void join_faces(const vxm_edge_groups *g, const vxm_soup *soup, size_t *first) {
+static vxm_status join_faces(const vxm_edge_groups *g, const vxm_soup *soup, size_t *first,
+                             vxm_error *error) {
   for (size_t f = 0; f < soup->face_count; f++)
     g->of_face[f] = f;
-  for (size_t f = 0; f < soup->face_count; f++)
+  for (size_t f = 0; f < soup->face_count; f++) {
+    vxm_status status = vxm_ask_at(f, soup->context, error);
+    if (status != VXM_OK)
+      return status;
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
       if (g->sides[c] == VXM_NO_EDGE)
         continue;
@@ -17,6 +21,8 @@ static void join_faces(const vxm_edge_groups *g, const vxm_soup *soup, size_t *f
       else
         g->of_face[vxm_set_of(g->of_face, f)] = vxm_set_of(g->of_face, *other - 1);
     }
+  }
+  return VXM_OK;
 }
 
 /** Numbers the sets in the order of their first faces; `number` is scratch per face. */
@@ -34,11 +40,14 @@ static void number_groups(vxm_edge_groups *g, size_t faces, size_t *number) {
     g->of_face[f] = number[g->of_face[f]];
 }
 
-static void look_at_edges(const vxm_edge_groups *g, const vxm_work *work) {
+static vxm_status look_at_edges(const vxm_edge_groups *g, const vxm_work *work, vxm_error *error) {
   const vxm_soup *soup = work->soup;
   for (size_t i = 0; i < g->count; i++)
     g->groups[i] = (vxm_edge_group){true, true, true};
-  for (size_t f = 0; f < soup->face_count; f++)
+  for (size_t f = 0; f < soup->face_count; f++) {
+    vxm_status status = vxm_ask_at(f, soup->context, error);
+    if (status != VXM_OK)
+      return status;
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
       if (g->sides[c] == VXM_NO_EDGE)
         continue;
@@ -48,6 +57,8 @@ static void look_at_edges(const vxm_edge_groups *g, const vxm_work *work) {
       group->balanced = group->balanced && 2 * (uint64_t)edge->forward == edge->count;
       group->manifold = group->manifold && edge->count <= 2;
     }
+  }
+  return VXM_OK;
 }
 
 vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_work *work, vxm_error *error) {
@@ -60,14 +71,15 @@ vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_work *work, vxm_error 
   if (status == VXM_OK)
     scratch = vxm_work_scratch(work, work->edges.count > faces ? work->edges.count : faces, sizeof *scratch,
                                &status, error);
+  if (status == VXM_OK)
+    status = join_faces(out, work->soup, scratch, error);
   if (status == VXM_OK) {
-    join_faces(out, work->soup, scratch);
     number_groups(out, faces, scratch);
     out->groups = vxm_work_scratch(work, out->count, sizeof *out->groups, &status, error);
   }
   vxm_free(work->context, scratch);
   if (status == VXM_OK)
-    look_at_edges(out, work);
+    status = look_at_edges(out, work, error);
   return status;
 }
 

@@ -22,7 +22,8 @@ typedef struct vxm_edge_groups {
   size_t count;
 } vxm_edge_groups;
 
-/** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT; the groups are to be freed in any case */
+/** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; the groups are to be freed
+ * in any case */
 vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_work *work, vxm_error *error);
 void vxm_edge_groups_free(vxm_edge_groups *groups, vxm_context *context);
 

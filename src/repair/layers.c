@@ -8,6 +8,10 @@
 
 enum { SAMPLES = 5 };
 
+static bool is_asked(const vxm_layers *l, size_t face) {
+  return l->asked[l->groups->of_face[face]] && vxm_layers_stands(l, face);
+}
+
 /** Joins the faces that stand for their kinds over edges where two of them meet and no others do. */
 static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
   const vxm_soup *soup = l->work->soup;
@@ -15,9 +19,10 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
   size_t edges = l->work->edges.count;
   size_t *pair = vxm_work_scratch(l->work, edges, 2 * sizeof *pair, &status, error);
   uint8_t *count = pair ? vxm_work_scratch(l->work, edges, sizeof *count, &status, error) : NULL;
-  for (size_t f = 0; count && f < soup->face_count; f++) {
+  for (size_t f = 0; status == VXM_OK && f < soup->face_count; f++) {
     l->patch[f] = f;
-    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1] && vxm_layers_stands(l, f); c++) {
+    status = vxm_ask_at(f, l->work->context, error);
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1] && is_asked(l, f); c++) {
       size_t e = l->groups->sides[c];
       if (e == VXM_NO_EDGE || count[e] > 2)
         continue;
@@ -26,16 +31,12 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
       count[e]++;
     }
   }
-  for (size_t e = 0; count && e < edges; e++)
+  for (size_t e = 0; status == VXM_OK && e < edges; e++)
     if (count[e] == 2)
       l->patch[vxm_set_of(l->patch, pair[2 * e])] = vxm_set_of(l->patch, pair[2 * e + 1]);
   vxm_free(l->work->context, count);
   vxm_free(l->work->context, pair);
   return status;
-}
-
-static bool is_asked(const vxm_layers *l, size_t face) {
-  return l->asked[l->groups->of_face[face]] && vxm_layers_stands(l, face);
 }
 
 /** Lists some faces of each patch, spread over it, and all that count. @param size scratch per face, twice */
@@ -87,7 +88,9 @@ static int by_set_then_face(const void *a, const void *b) {
 static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, size_t *size, int32_t *reach,
                               vxm_error *error) {
   size_t count = list_samples(l, bound, sets, size);
-  vxm_status status = vxm_set_sides_find(sets, count, l->work, l->groups, bound, error);
+  vxm_status status = vxm_ask(l->work->context, error);
+  if (status == VXM_OK)
+    status = vxm_set_sides_find(sets, count, l->work, l->groups, bound, error);
   if (status != VXM_OK)
     return status;
   qsort(sets, count, sizeof *sets, by_set_then_face);
