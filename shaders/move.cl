@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Moves the points of a model, displaces each by a vector of a circular buffer and puts them on the lattice, with every
-   product and sum rounded by itself as the CPU has them (voxel/motion.h). */
+   product and sum rounded by itself as the CPU has them (voxel/lattice/vertex_transform.h). */
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Moves a point of a model, displaces it by a vector of a circular buffer and puts it on the lattice (Ogayar et al.,
-   section III-B). "precise" keeps every product and sum rounded by itself, as the CPU has them (voxel/motion.h). */
+   section III-B). "precise" keeps every product and sum rounded by itself, as the CPU has them (voxel/lattice/vertex_transform.h). */
 layout(std430, binding = 0) readonly buffer Originals {
   double at[]; // three for each point
 } originals;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Perlin's noise in three dimensions (Perlin 2002): gradients to the middles of a cube's edges, blended by a curve of
-   the fifth degree; chosen by a hash of the corner rather than by a table. src/voxel/color.c has the same. */
+   the fifth degree; chosen by a hash of the corner rather than by a table. src/voxel/labels/color.c has the same. */
 float corner_gradient(ivec3 corner, vec3 p) {
   uint h = uint(corner.x) * 0x8da6b343u ^ uint(corner.y) * 0xd8163841u ^ uint(corner.z) * 0xcb1ab31fu;
   h ^= h >> 13;

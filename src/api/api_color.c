@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about colours: they check arguments and call down. */
-#include "gridio/colors.h"
+#include "export/colors.h"
 
 #include <inttypes.h>
 

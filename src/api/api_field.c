@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that make a number per voxel: they check arguments and call down. */
-#include "gridio/field.h"
-#include "gridio/planes.h"
+#include "export/field.h"
+#include "grid/bit_transpose.h"
 
 #include <inttypes.h>
 #include <math.h>

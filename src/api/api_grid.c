@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that read, write and draw grids: they check arguments and call down. */
 #include "grid/bitgrid.h"
+#include "gridio/formats/confidence.h"
 #include "gridio/gridio.h"
+#include "gridio/mesh/surface_mesh.h"
+#include "gridio/picture/picture.h"
 
 #include <inttypes.h>
 

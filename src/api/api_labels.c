@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about labels: they check arguments and call down. */
-#include "gridio/labels.h"
-#include "gridio/planes.h"
+#include "export/labels.h"
+#include "grid/bit_transpose.h"
 
 #include <inttypes.h>
 
@@ -28,11 +28,11 @@ vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_mode
   vxm_status status = check(&chosen, space, options, error);
   if (status != VXM_OK)
     return status;
-  vxm_labelling labelling;
-  status = vxm_labelling_create(&labelling, model->shape.soup, chosen.by, error);
+  vxm_face_labels labelling;
+  status = vxm_face_labels_create(&labelling, model->shape.soup, chosen.by, error);
   if (status == VXM_OK)
     status = vxm_labels_run(values, (vxm_layout)VXM_PLANE_Z_FAST, report, model, space, &labelling, error);
-  vxm_labelling_destroy(&labelling);
+  vxm_face_labels_destroy(&labelling);
   return status;
 }
 

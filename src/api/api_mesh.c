@@ -235,11 +235,11 @@ const char *vxm_mesh_format(const vxm_mesh *mesh) {
 }
 
 int64_t vxm_mesh_warning_count(const vxm_mesh *mesh) {
-  return mesh ? mesh->notes.count : 0;
+  return mesh ? mesh->warnings.count : 0;
 }
 
 const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index) {
-  return mesh && index >= 0 && index < mesh->notes.count ? mesh->notes.text[index] : "";
+  return mesh && index >= 0 && index < mesh->warnings.count ? mesh->warnings.text[index] : "";
 }
 
 vxm_status vxm_mesh_census(vxm_census *out, const vxm_mesh *mesh, vxm_error *error) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that make many grids of one mesh: they check arguments and call down. */
 #include "api/api_options.h"
-#include "gridio/stream.h"
-#include "voxel/voxelize.h"
+#include "export/model_writer.h"
+#include "voxel/model/voxelize.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -48,7 +48,7 @@ vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model, const v
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
   vxm_status status = check_write(space, path, options, error);
   return status == VXM_OK
-             ? vxm_stream_estimate(out, model, space, path, options ? options->format : NULL, error)
+             ? vxm_model_writer_estimate(out, model, space, path, options ? options->format : NULL, error)
              : status;
 }
 
@@ -62,16 +62,16 @@ vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const 
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
   vxm_status status = check_write(space, path, options, error);
   if (status == VXM_OK)
-    status = vxm_stream_write(report, model, space, path, options ? options->format : NULL, error);
+    status = vxm_model_writer_write(report, model, space, path, options ? options->format : NULL, error);
   if (status != VXM_OK)
     *report = (vxm_voxelize_report){0};
   return status;
 }
 
 int64_t vxm_model_warning_count(const vxm_model *model) {
-  return model ? model->notes.count : 0;
+  return model ? model->warnings.count : 0;
 }
 
 const char *vxm_model_warning(const vxm_model *model, int64_t index) {
-  return model && index >= 0 && index < model->notes.count ? model->notes.text[index] : "";
+  return model && index >= 0 && index < model->warnings.count ? model->warnings.text[index] : "";
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of the published OpenCL program: they check arguments and call down. */
 #include "config.h"
-#include "voxel/engine.h"
+#include "voxel/engine/engine.h"
 
 #ifdef HAVE_OPENCL
-#include "gpu/published.h"
+#include "gpu/opencl/faieghi.h"
 #endif
 
 #include <float.h>

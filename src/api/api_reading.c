@@ -2,8 +2,8 @@
 #include "base/error.h"
 #include "base/module.h"
 #include "config.h"
-#include "meshio/foreign.h"
-#include "meshio/landlock.h"
+#include "meshio/external/external_formats.h"
+#include "meshio/external/landlock.h"
 
 #if defined(HAVE_SECCOMP) && !defined(__SANITIZE_ADDRESS__)
 enum { HAS_FILTER = 1 };

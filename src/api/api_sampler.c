@@ -2,7 +2,7 @@
 /** The public functions that make variants for training: they check arguments and call down. */
 #include "api/api_options.h"
 #include "augment/sampler.h"
-#include "augment/spread.h"
+#include "augment/unpack_bits.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -112,14 +112,14 @@ vxm_status vxm_sampler_put(vxm_sampler *sampler, uint32_t model, const vxm_mesh 
 }
 
 vxm_space vxm_sampler_space(const vxm_sampler *sampler) {
-  return sampler ? vxm_desk_space(sampler->rules.options.resolution) : (vxm_space){.dims = {0}};
+  return sampler ? vxm_worker_space(sampler->rules.options.resolution) : (vxm_space){.dims = {0}};
 }
 
 size_t vxm_sampler_bytes(const vxm_sampler *sampler, vxm_voxels voxels) {
   if (!sampler || (unsigned)voxels > VXM_VOXELS_FLOAT32)
     return 0;
   size_t dim = (size_t)sampler->rules.options.resolution;
-  return vxm_spread_row_bytes(voxels, sampler->rules.options.resolution) * dim * dim;
+  return vxm_unpack_row_bytes(voxels, sampler->rules.options.resolution) * dim * dim;
 }
 
 vxm_status vxm_sampler_pose(vxm_pose *out, const vxm_sampler *sampler, const vxm_variant *variant,
@@ -128,7 +128,7 @@ vxm_status vxm_sampler_pose(vxm_pose *out, const vxm_sampler *sampler, const vxm
     *out = (vxm_pose){0};
   if (!out || !sampler || !variant)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
-  const vxm_subject *subject = vxm_sampler_find(sampler, variant->model, error);
+  const vxm_sampler_model *subject = vxm_sampler_find(sampler, variant->model, error);
   if (!subject)
     return VXM_ERROR_ARGUMENT;
   vxm_placement placement;

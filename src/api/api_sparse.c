@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of sparse sets of voxels: they check arguments and call down. */
-#include "gridio/sparse_io.h"
-#include "voxel/sparse.h"
+#include "gridio/formats/coords.h"
+#include "gridio/sparse_write.h"
+#include "voxel/sparse/sparse.h"
 
 #include <inttypes.h>
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about fields in files: they check arguments and call down. */
+#include "export/values_write.h"
 #include "gridio/gridio.h"
-#include "gridio/values_write.h"
+#include "gridio/picture/picture.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -66,7 +67,7 @@ static vxm_status spread(vxm_field **out, const vxm_grid *grid, vxm_error *error
   if (status != VXM_OK)
     return status;
   vxm_field_put_grid(*out, grid);
-  (*out)->notes = grid->notes;
+  (*out)->warnings = grid->warnings;
   return VXM_OK;
 }
 
@@ -133,15 +134,15 @@ int64_t vxm_field_metadata_count(const vxm_field *field) {
 }
 
 const char *vxm_field_metadata_key(const vxm_field *field, int64_t index) {
-  const char *key = field ? vxm_pairs_next(&field->about.pairs, NULL) : NULL;
+  const char *key = field ? vxm_metadata_next(&field->about.pairs, NULL) : NULL;
   for (int64_t i = 0; i < index && key; i++)
-    key = vxm_pairs_next(&field->about.pairs, key);
+    key = vxm_metadata_next(&field->about.pairs, key);
   return index >= 0 && key ? key : "";
 }
 
 const char *vxm_field_metadata_value(const vxm_field *field, int64_t index) {
   const char *key = vxm_field_metadata_key(field, index);
-  return *key ? vxm_pairs_value(key) : "";
+  return *key ? vxm_metadata_value(key) : "";
 }
 
 vxm_status vxm_field_add_label(vxm_field *field, const char *name, int64_t voxels, vxm_error *error) {
@@ -159,17 +160,17 @@ vxm_status vxm_field_add_metadata(vxm_field *field, const char *key, const char 
     return fail_null(error);
   if (!*key)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: metadata without a key");
-  if (!vxm_pairs_add(&field->about.pairs, field->context, key, strlen(key), value, strlen(value)))
+  if (!vxm_metadata_add(&field->about.pairs, field->context, key, strlen(key), value, strlen(value)))
     return vxm_fail(error, VXM_ERROR_RANGE, "field: no room for more metadata");
   return VXM_OK;
 }
 
 int64_t vxm_field_warning_count(const vxm_field *field) {
-  return field ? field->notes.count : 0;
+  return field ? field->warnings.count : 0;
 }
 
 const char *vxm_field_warning(const vxm_field *field, int64_t index) {
-  return field && index >= 0 && index < field->notes.count ? field->notes.text[index] : "";
+  return field && index >= 0 && index < field->warnings.count ? field->warnings.text[index] : "";
 }
 
 /* ---- Writing ---- */

@@ -3,7 +3,7 @@
 #include "api/api_options.h"
 #include "grid/space.h"
 #include "mesh/soup.h"
-#include "voxel/voxelize.h"
+#include "voxel/model/voxelize.h"
 
 #include <inttypes.h>
 #include <string.h>

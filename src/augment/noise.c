@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "augment/noise.h"
-#include "augment/draw.h"
+#include "augment/random.h"
 #include "base/threads.h"
 
 #include <stdatomic.h>
@@ -19,11 +19,11 @@ static void fill_slice(size_t slice, int worker, void *payload) {
   const noise_job *job = payload;
   uint32_t begin = (uint32_t)slice * SLICE, end = begin + SLICE;
   for (uint32_t v = begin; v < end && v < job->noise->size; v++) {
-    vxm_draw draw = vxm_draw_begin(job->seed, (const uint32_t[3]){v, 0, 0}, VXM_DRAW_NOISE);
+    vxm_random draw = vxm_random_begin(job->seed, (const uint32_t[3]){v, 0, 0}, VXM_DRAW_NOISE);
     float *vector = job->noise->vectors[v];
     for (int a = 0; a < 3; a++) {
       bool normal = job->kind == VXM_DISPLACEMENT_NORMAL;
-      vector[a] = (float)(job->amount * (normal ? vxm_draw_normal(&draw) : vxm_draw_signed(&draw)));
+      vector[a] = (float)(job->amount * (normal ? vxm_random_normal(&draw) : vxm_random_signed(&draw)));
     }
     vector[3] = 0;
   }

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "augment/pose.h"
-#include "augment/draw.h"
+#include "augment/random.h"
 
 #include <math.h>
 #include <string.h>
 
-static vxm_draw begin(const vxm_pose_rules *rules, const vxm_variant *variant, vxm_purpose purpose) {
-  return vxm_draw_begin(rules->options.seed,
-                        (const uint32_t[3]){variant->model, variant->epoch, variant->index}, purpose);
+static vxm_random begin(const vxm_pose_rules *rules, const vxm_variant *variant, vxm_purpose purpose) {
+  return vxm_random_begin(rules->options.seed,
+                          (const uint32_t[3]){variant->model, variant->epoch, variant->index}, purpose);
 }
 
 static void draw_rotation(double m[9], const vxm_pose_rules *rules, const vxm_variant *variant) {
   static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const vxm_sampler_options *options = &rules->options;
-  vxm_draw draw = begin(rules, variant, VXM_DRAW_ROTATION);
+  vxm_random draw = begin(rules, variant, VXM_DRAW_ROTATION);
   switch (options->rotation) {
   case VXM_ROTATION_ANY:
-    vxm_draw_rotation(m, &draw);
+    vxm_random_rotation(m, &draw);
     break;
   case VXM_ROTATION_AXIS:
-    vxm_draw_turn(m, rules->axis, &draw);
+    vxm_random_turn(m, rules->axis, &draw);
     break;
   case VXM_ROTATION_LIST:
     memcpy(m, options->rotations + 9 * (size_t)(variant->index % (uint64_t)options->rotation_count),
@@ -32,12 +32,12 @@ static void draw_rotation(double m[9], const vxm_pose_rules *rules, const vxm_va
 
 /** Factors along the model's axes; one is negative where the model is mirrored along it. */
 static bool draw_scale(double scale[3], const vxm_pose_rules *rules, const vxm_variant *variant) {
-  vxm_draw stretch = begin(rules, variant, VXM_DRAW_SCALE), mirror = begin(rules, variant, VXM_DRAW_MIRROR);
-  uint32_t flips = vxm_draw_word(&mirror) & rules->options.mirror;
+  vxm_random stretch = begin(rules, variant, VXM_DRAW_SCALE), mirror = begin(rules, variant, VXM_DRAW_MIRROR);
+  uint32_t flips = vxm_random_word(&mirror) & rules->options.mirror;
   bool mirrored = false;
   for (int a = 0; a < 3; a++) {
     bool flip = flips >> a & 1;
-    scale[a] = (1 + rules->options.scale * vxm_draw_signed(&stretch)) * (flip ? -1 : 1);
+    scale[a] = (1 + rules->options.scale * vxm_random_signed(&stretch)) * (flip ? -1 : 1);
     mirrored ^= flip;
   }
   return mirrored;
@@ -51,7 +51,7 @@ double vxm_pose_room(const vxm_pose_rules *rules) {
  * The factor by which the scaled box fits its room: its diagonal, so that every rotation does (Ogayar et al.,
  * section III-B); or its longest side.
  */
-static double fit(const double scale[3], const vxm_pose_rules *rules, const vxm_girth *extent) {
+static double fit(const double scale[3], const vxm_pose_rules *rules, const vxm_model_extent *extent) {
   double longest = 0, squared = 0;
   for (int a = 0; a < 3; a++) {
     double side = fabs(scale[a]) * extent->side[a];
@@ -61,7 +61,7 @@ static double fit(const double scale[3], const vxm_pose_rules *rules, const vxm_
   return vxm_pose_room(rules) / (rules->options.fill ? longest : sqrt(squared));
 }
 
-void vxm_pose_draw(vxm_placement *out, const vxm_pose_rules *rules, const vxm_girth *extent,
+void vxm_pose_draw(vxm_placement *out, const vxm_pose_rules *rules, const vxm_model_extent *extent,
                    const vxm_variant *variant) {
   draw_rotation(out->rotation, rules, variant);
   out->mirrored = draw_scale(out->scale, rules, variant);
@@ -71,7 +71,7 @@ void vxm_pose_draw(vxm_placement *out, const vxm_pose_rules *rules, const vxm_gi
     most = fmax(most, fabs(out->scale[a]));
   }
   out->stretch = most * 1.0625; /* a list may hold what is a rotation but for rounding */
-  vxm_draw translation = begin(rules, variant, VXM_DRAW_TRANSLATION);
+  vxm_random translation = begin(rules, variant, VXM_DRAW_TRANSLATION);
   for (int row = 0; row < 3; row++) {
     double *m = out->matrix + (ptrdiff_t)4 * row, half = 0, moved = 0;
     for (int c = 0; c < 3; c++) {
@@ -80,9 +80,9 @@ void vxm_pose_draw(vxm_placement *out, const vxm_pose_rules *rules, const vxm_gi
       moved += m[c] * extent->centre[c];
     }
     double free = fmax(0, 0.5 - rules->reach - half);
-    out->shift[row] = rules->options.translate * free * vxm_draw_signed(&translation);
+    out->shift[row] = rules->options.translate * free * vxm_random_signed(&translation);
     m[3] = 0.5 + out->shift[row] - moved;
   }
-  vxm_draw offset = begin(rules, variant, VXM_DRAW_OFFSET);
-  out->offset = vxm_draw_word(&offset);
+  vxm_random offset = begin(rules, variant, VXM_DRAW_OFFSET);
+  out->offset = vxm_random_word(&offset);
 }

@@ -6,9 +6,9 @@
 #include "base/context.h"
 
 /** What is known of a model: the box of its points. */
-typedef struct vxm_girth {
+typedef struct vxm_model_extent {
   double centre[3], side[3]; /**< model units */
-} vxm_girth;
+} vxm_model_extent;
 
 /** What all variants have in common. */
 typedef struct vxm_pose_rules {
@@ -29,7 +29,7 @@ typedef struct vxm_placement {
 double vxm_pose_room(const vxm_pose_rules *rules);
 
 /** Draws the pose of a variant. */
-void vxm_pose_draw(vxm_placement *out, const vxm_pose_rules *rules, const vxm_girth *extent,
+void vxm_pose_draw(vxm_placement *out, const vxm_pose_rules *rules, const vxm_model_extent *extent,
                    const vxm_variant *variant);
 
 #endif

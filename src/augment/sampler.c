@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "augment/sampler.h"
-#include "augment/spread.h"
+#include "augment/unpack_bits.h"
+#include "base/task_progress.h"
 #include "base/threads.h"
-#include "base/watch.h"
-#include "voxel/engine.h"
+#include "voxel/engine/engine.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -79,9 +79,9 @@ void vxm_sampler_destroy(vxm_sampler *sampler) {
     return;
   vxm_context *context = sampler->context;
   for (int d = 0; sampler->desks && d <= vxm_context_threads(context); d++)
-    vxm_desk_destroy(&sampler->desks[d]);
+    vxm_worker_destroy(&sampler->desks[d]);
   for (size_t s = 0; s < sampler->subject_count; s++)
-    vxm_subject_destroy(&sampler->subjects[s]);
+    vxm_sampler_model_destroy(&sampler->subjects[s]);
   vxm_noise_destroy(&sampler->noise, context);
   vxm_free(context, sampler->rotations);
   vxm_free(context, sampler->subjects);
@@ -117,7 +117,7 @@ static void detach(vxm_sampler *sampler) {
 
 static void take_out(vxm_sampler *sampler, size_t place) {
   detach(sampler);
-  vxm_subject_destroy(&sampler->subjects[place]);
+  vxm_sampler_model_destroy(&sampler->subjects[place]);
   sampler->subject_count--;
   memmove(sampler->subjects + place, sampler->subjects + place + 1,
           (sampler->subject_count - place) * sizeof *sampler->subjects);
@@ -129,11 +129,12 @@ vxm_status vxm_sampler_set(vxm_sampler *sampler, uint32_t model, const vxm_soup 
     take_out(sampler, place);
   if (!soup)
     return VXM_OK;
-  vxm_subject made;
+  vxm_sampler_model made;
   vxm_status status = vxm_grow(sampler->context, (void **)&sampler->subjects, &sampler->subject_room,
                                sampler->subject_count + 1, sizeof *sampler->subjects, error);
   if (status == VXM_OK)
-    status = vxm_subject_create(&made, model, soup, &sampler->rules.options.voxelize, &sampler->noise, error);
+    status = vxm_sampler_model_create(&made, model, soup, &sampler->rules.options.voxelize, &sampler->noise,
+                                      error);
   if (status != VXM_OK)
     return status;
   memmove(sampler->subjects + place + 1, sampler->subjects + place,
@@ -143,7 +144,7 @@ vxm_status vxm_sampler_set(vxm_sampler *sampler, uint32_t model, const vxm_soup 
   return VXM_OK;
 }
 
-const vxm_subject *vxm_sampler_find(const vxm_sampler *sampler, uint32_t model, vxm_error *error) {
+const vxm_sampler_model *vxm_sampler_find(const vxm_sampler *sampler, uint32_t model, vxm_error *error) {
   size_t place = place_of(sampler, model);
   if (is_there(sampler, place, model))
     return &sampler->subjects[place];
@@ -155,12 +156,12 @@ const vxm_subject *vxm_sampler_find(const vxm_sampler *sampler, uint32_t model, 
 /* ---- One variant, by all threads ---- */
 
 static vxm_status need_desk(vxm_sampler *sampler, int desk, bool alone, vxm_error *error) {
-  vxm_desk *at = &sampler->desks[desk];
-  return at->context ? VXM_OK : vxm_desk_create(at, sampler->context, alone, error);
+  vxm_worker *at = &sampler->desks[desk];
+  return at->context ? VXM_OK : vxm_worker_create(at, sampler->context, alone, error);
 }
 
 /** The desk at which all threads work together. */
-static vxm_status need_table(vxm_desk **out, vxm_sampler *sampler, vxm_error *error) {
+static vxm_status need_table(vxm_worker **out, vxm_sampler *sampler, vxm_error *error) {
   int table = vxm_context_threads(sampler->context);
   *out = &sampler->desks[table];
   return need_desk(sampler, table, false, error);
@@ -168,8 +169,8 @@ static vxm_status need_table(vxm_desk **out, vxm_sampler *sampler, vxm_error *er
 
 vxm_status vxm_sampler_fill(vxm_sampler *sampler, vxm_grid *grid, const vxm_variant *variant,
                             vxm_error *error) {
-  vxm_desk *desk;
-  const vxm_subject *subject = vxm_sampler_find(sampler, variant->model, error);
+  vxm_worker *desk;
+  const vxm_sampler_model *subject = vxm_sampler_find(sampler, variant->model, error);
   if (!subject)
     return VXM_ERROR_ARGUMENT;
   vxm_status status = need_table(&desk, sampler, error);
@@ -178,7 +179,7 @@ vxm_status vxm_sampler_fill(vxm_sampler *sampler, vxm_grid *grid, const vxm_vari
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, variant);
   vxm_window window = vxm_window_of_grid(grid);
-  return vxm_desk_fill(desk, &window, subject, &placement, &sampler->noise, error);
+  return vxm_worker_fill(desk, &window, subject, &placement, &sampler->noise, error);
 }
 
 /* ---- Many variants ---- */
@@ -197,26 +198,26 @@ typedef struct batch_job {
   const char *const *paths;
   const char *format;
   bool *written;
-  vxm_watch watch;
+  vxm_task_progress watch;
   atomic_flag lock; /**< of what follows */
   atomic_size_t
       failed_at;   /**< the first in order that failed, whichever thread came first; SIZE_MAX = none */
   vxm_error error; /**< of that one */
 } batch_job;
 
-static vxm_status make_one(const batch_job *job, size_t v, vxm_desk *desk, vxm_error *error) {
+static vxm_status make_one(const batch_job *job, size_t v, vxm_worker *desk, vxm_error *error) {
   const vxm_sampler *sampler = job->sampler;
-  const vxm_subject *subject = vxm_sampler_find(sampler, job->variants[v].model, error);
+  const vxm_sampler_model *subject = vxm_sampler_find(sampler, job->variants[v].model, error);
   if (!subject)
     return VXM_ERROR_ARGUMENT;
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, &job->variants[v]);
   int64_t resolution = sampler->rules.options.resolution;
   if (!job->paths)
-    return vxm_desk_write(desk, job->out + v * job->step, job->voxels, resolution, subject, &placement,
-                          &sampler->noise, error);
-  vxm_status status = vxm_desk_save(desk, job->paths[v], job->format, resolution, subject, &placement,
-                                    &sampler->noise, error);
+    return vxm_worker_write(desk, job->out + v * job->step, job->voxels, resolution, subject, &placement,
+                            &sampler->noise, error);
+  vxm_status status = vxm_worker_save(desk, job->paths[v], job->format, resolution, subject, &placement,
+                                      &sampler->noise, error);
   if (job->written)
     job->written[v] = status == VXM_OK;
   return status;
@@ -236,7 +237,7 @@ static void note_failure(batch_job *job, size_t v, const vxm_error *error) {
 
 static void make_task(size_t v, int worker, void *payload) {
   batch_job *job = payload;
-  if (vxm_watch_stopped(&job->watch, worker)) {
+  if (vxm_task_progress_stopped(&job->watch, worker)) {
     atomic_thread_fence(memory_order_acquire);
     size_t failed_at = atomic_load(&job->failed_at);
     if (failed_at == SIZE_MAX || v > failed_at)
@@ -246,7 +247,7 @@ static void make_task(size_t v, int worker, void *payload) {
   vxm_status status = make_one(job, v, &job->sampler->desks[worker], &error);
   if (status != VXM_OK)
     note_failure(job, v, &error);
-  vxm_watch_step(&job->watch);
+  vxm_task_progress_step(&job->watch);
 }
 
 /** One variant for each thread at a time. */
@@ -257,10 +258,10 @@ static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
     if (status != VXM_OK)
       return status;
   }
-  vxm_watch_start(&job->watch, sampler->context, "making variants", count, error);
+  vxm_task_progress_start(&job->watch, sampler->context, "making variants", count, error);
   vxm_parallel(sampler->context, count, make_task, job);
   if (atomic_load(&job->failed_at) == SIZE_MAX)
-    return vxm_watch_end(&job->watch);
+    return vxm_task_progress_end(&job->watch);
   if (error)
     *error = job->error;
   return job->error.code;
@@ -279,7 +280,7 @@ static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
   atomic_flag_clear(&job->lock);
   if (count > 1 && sampler->rules.options.resolution <= ALONE_MOST && !has_engine(sampler))
     return make_alone(job, count, error);
-  vxm_desk *desk;
+  vxm_worker *desk;
   vxm_status status = need_table(&desk, sampler, error);
   for (size_t v = 0; v < count && status == VXM_OK; v++)
     status = make_one(job, v, desk, error);
@@ -292,7 +293,7 @@ vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant 
   batch_job job = {.sampler = sampler,
                    .variants = variants,
                    .out = out,
-                   .step = vxm_spread_row_bytes(voxels, (int64_t)n) * n * n,
+                   .step = vxm_unpack_row_bytes(voxels, (int64_t)n) * n * n,
                    .voxels = voxels};
   return make_all(&job, count, error);
 }

@@ -3,16 +3,16 @@
 #ifndef VXM_AUGMENT_SAMPLER_H
 #define VXM_AUGMENT_SAMPLER_H
 
-#include "augment/desk.h"
+#include "augment/worker.h"
 
 struct vxm_sampler {
   vxm_context *context; /**< one reference held */
   vxm_pose_rules rules;
   double *rotations; /**< a copy of the list */
   vxm_noise noise;
-  vxm_subject *subjects; /**< in the order of their numbers */
+  vxm_sampler_model *subjects; /**< in the order of their numbers */
   size_t subject_count, subject_room;
-  vxm_desk *desks; /**< one for each thread, and then one for all of them together */
+  vxm_worker *desks; /**< one for each thread, and then one for all of them together */
 };
 
 /** See vxm_sampler_create in voxmend.h; the options have been checked. */
@@ -21,7 +21,7 @@ vxm_status vxm_sampler_make(vxm_sampler **out, vxm_context *context, const vxm_s
 /** See vxm_sampler_put; `soup` may be NULL. */
 vxm_status vxm_sampler_set(vxm_sampler *sampler, uint32_t model, const vxm_soup *soup, vxm_error *error);
 /** The model of a variant; NULL after a failure. */
-const vxm_subject *vxm_sampler_find(const vxm_sampler *sampler, uint32_t model, vxm_error *error);
+const vxm_sampler_model *vxm_sampler_find(const vxm_sampler *sampler, uint32_t model, vxm_error *error);
 /** See vxm_sampler_grid. */
 vxm_status vxm_sampler_fill(vxm_sampler *sampler, vxm_grid *grid, const vxm_variant *variant,
                             vxm_error *error);

@@ -81,7 +81,7 @@ void vxm_context_release(vxm_context *context) {
   if (context->account != context)
     vxm_context_release(context->account);
   vxm_pool_destroy(&context->pool);
-  vxm_held_drop(context->held.first);
+  vxm_file_transaction_drop(context->held.first);
   pthread_mutex_destroy(&context->held.mutex);
   free(context);
 }

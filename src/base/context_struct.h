@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The fields of a context; for context.c, held.c and threads.c only. */
+/** The fields of a context; for context.c, file_transaction.c and threads.c only. */
 #ifndef VXM_BASE_CONTEXT_STRUCT_H
 #define VXM_BASE_CONTEXT_STRUCT_H
 
-#include "base/held.h"
+#include "base/file_transaction.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -53,7 +53,7 @@ struct vxm_context {
   vxm_progress_fn progress;
   void *payload;
   vxm_pool pool;
-  vxm_held held; /**< of the account */
+  vxm_file_transaction held; /**< of the account */
 };
 
 #endif

@@ -107,7 +107,7 @@ static bool open_named(vxm_new_file *file) {
 }
 
 /** What the rename in the end would be refused for is refused before the work. */
-static bool may_replace(const vxm_spot *spot) {
+static bool may_replace(const vxm_output_path *spot) {
   struct stat file, folder;
   uid_t user = geteuid();
   if (user == 0 || fstatat(spot->folder, spot->name, &file, AT_SYMLINK_NOFOLLOW) != 0 ||
@@ -117,7 +117,7 @@ static bool may_replace(const vxm_spot *spot) {
   return file.st_uid == user || folder.st_uid == user;
 }
 
-bool vxm_new_file_open(vxm_new_file *out, const vxm_spot *spot) {
+bool vxm_new_file_open(vxm_new_file *out, const vxm_output_path *spot) {
   *out = (vxm_new_file){.spot = *spot, .descriptor = -1};
   if (!may_replace(spot))
     return false;
@@ -193,7 +193,7 @@ void vxm_new_file_close(vxm_new_file *file) {
     unlinkat(file->spot.folder, file->temporary, 0);
   if (file->descriptor >= 0)
     close(file->descriptor);
-  vxm_spot_close(&file->spot);
+  vxm_output_path_close(&file->spot);
   file->descriptor = -1;
   file->temporary[0] = '\0';
 }

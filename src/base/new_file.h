@@ -9,10 +9,10 @@
 #ifndef VXM_BASE_NEW_FILE_H
 #define VXM_BASE_NEW_FILE_H
 
-#include "base/spot.h"
+#include "base/output_path.h"
 
 typedef struct vxm_new_file {
-  vxm_spot spot;
+  vxm_output_path spot;
   int descriptor;
   char temporary[48]; /**< its present name in the folder; of a published file that of what it replaced; "" =
                            none */
@@ -20,7 +20,7 @@ typedef struct vxm_new_file {
 } vxm_new_file;
 
 /** Opens a file for a spot that is no device, and takes the spot over. Only its user may read it. */
-bool vxm_new_file_open(vxm_new_file *out, const vxm_spot *spot);
+bool vxm_new_file_open(vxm_new_file *out, const vxm_output_path *spot);
 /**
  * After the last write: what a close would tell is told, and the rights are set. These are those of the file
  * that is replaced if that has the same owner, without setuid, setgid and sticky bits; else those that a new

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/output.h"
+#include "base/file_transaction.h"
 #include "base/folders.h"
-#include "base/held.h"
 #include "base/size_text.h"
 
 #include <errno.h>
@@ -48,11 +48,11 @@ static void output_free(vxm_output *output) {
 
 /** A device or pipe (/dev/null) cannot be replaced by a rename, and is written straight to. */
 static vxm_status open_path(vxm_output *output, const char *path, vxm_error *error) {
-  vxm_spot spot;
+  vxm_output_path spot;
   output->path = strdup(path);
   if (!output->path)
     return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  if (!vxm_spot_find(&spot, path))
+  if (!vxm_output_path_find(&spot, path))
     return vxm_fail_errno(
         error, path,
         spot.is_strangers ? "cannot write through another user's link in a folder that everybody may write to"
@@ -60,12 +60,12 @@ static vxm_status open_path(vxm_output *output, const char *path, vxm_error *err
   if (spot.device >= 0) {
     output->descriptor = spot.device;
     spot.device = -1;
-    vxm_spot_close(&spot);
+    vxm_output_path_close(&spot);
     return VXM_OK;
   }
   if (!vxm_new_file_open(&output->file, &spot)) {
     vxm_fail_errno(error, path, "cannot write");
-    vxm_spot_close(&spot);
+    vxm_output_path_close(&spot);
     return VXM_ERROR_IO;
   }
   output->is_file = true;
@@ -333,11 +333,11 @@ static void complete(vxm_output *output) {
 }
 
 /** Completes and frees an output; *held is the file, which is still to be named, or NULL if it is none. */
-static vxm_status end_output(vxm_held_file **held, vxm_output *output, vxm_error *error) {
+static vxm_status end_output(vxm_file_transaction_file **held, vxm_output *output, vxm_error *error) {
   *held = NULL;
   complete(output);
   if (!output->failure && output->is_file) {
-    *held = vxm_held_file_create(&output->file, output->path);
+    *held = vxm_file_transaction_file_create(&output->file, output->path);
     output->failure = *held ? 0 : ENOMEM;
   }
   if (output->failure) {
@@ -351,7 +351,7 @@ static vxm_status end_output(vxm_held_file **held, vxm_output *output, vxm_error
 }
 
 vxm_status vxm_output_commit_both(vxm_output *first, vxm_output *second, vxm_error *error) {
-  vxm_held_file *held, *other = NULL;
+  vxm_file_transaction_file *held, *other = NULL;
   vxm_context *context = first->context;
   vxm_status status = end_output(&held, first, error);
   if (status != VXM_OK) {
@@ -361,14 +361,14 @@ vxm_status vxm_output_commit_both(vxm_output *first, vxm_output *second, vxm_err
   if (second)
     status = end_output(&other, second, error);
   if (status != VXM_OK) {
-    vxm_held_drop(held);
+    vxm_file_transaction_drop(held);
     return status;
   }
   if (held)
     held->next = other;
   else
     held = other;
-  return held ? vxm_held_take(context, held, error) : VXM_OK;
+  return held ? vxm_file_transaction_take(context, held, error) : VXM_OK;
 }
 
 vxm_status vxm_output_commit(vxm_output *output, vxm_error *error) {
@@ -376,9 +376,9 @@ vxm_status vxm_output_commit(vxm_output *output, vxm_error *error) {
 }
 
 vxm_status vxm_output_commit_now(vxm_output *output, vxm_error *error) {
-  vxm_held_file *held;
+  vxm_file_transaction_file *held;
   vxm_status status = end_output(&held, output, error);
-  return status == VXM_OK && held ? vxm_held_publish(held, error) : status;
+  return status == VXM_OK && held ? vxm_file_transaction_publish(held, error) : status;
 }
 
 vxm_status vxm_file_write(vxm_context *context, const char *path, const void *data, size_t size,

@@ -6,10 +6,10 @@
 #include <string.h>
 
 #ifdef HAVE_OPENGL
-#include "gpu/opengl.h"
+#include "gpu/opengl/opengl.h"
 #endif
 #ifdef HAVE_OPENCL
-#include "gpu/opencl.h"
+#include "gpu/opencl/opencl.h"
 #endif
 
 #if defined HAVE_OPENGL || defined HAVE_OPENCL

@@ -3,7 +3,7 @@
 #ifndef VXM_GPU_ENGINES_H
 #define VXM_GPU_ENGINES_H
 
-#include "voxel/engine.h"
+#include "voxel/engine/engine.h"
 
 /** See vxm_engine_create in voxmend.h; the options have been checked. */
 vxm_status vxm_engines_make(vxm_engine **out, vxm_context *context, const char *name,

@@ -145,11 +145,11 @@ const uint8_t *vxm_grid_confidence(const vxm_grid *grid) {
 }
 
 int64_t vxm_grid_warning_count(const vxm_grid *grid) {
-  return grid ? grid->notes.count : 0;
+  return grid ? grid->warnings.count : 0;
 }
 
 const char *vxm_grid_warning(const vxm_grid *grid, int64_t index) {
-  return grid && index >= 0 && index < grid->notes.count ? grid->notes.text[index] : "";
+  return grid && index >= 0 && index < grid->warnings.count ? grid->warnings.text[index] : "";
 }
 
 vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b, vxm_error *error) {

@@ -5,7 +5,7 @@
 
 #include "base/bits.h"
 #include "base/context.h"
-#include "base/notes.h"
+#include "base/warnings.h"
 
 /** Largest number of voxels along an axis; lattice coordinates and products are sized for it. */
 #define VXM_DIM_MAX (INT64_C(1) << 20)
@@ -18,7 +18,7 @@ struct vxm_grid {
   size_t word_count;   /**< slice_words * dims[2] */
   uint64_t *words;     /**< bits beyond dims[0] in the last word of a row are zero: every writer keeps that */
   uint8_t *confidence; /**< a byte per voxel, x fastest, or NULL */
-  vxm_notes notes;
+  vxm_warnings warnings;
 };
 
 /** Checks dims (1 to VXM_DIM_MAX, ), finite origin, positive finite voxel size. */

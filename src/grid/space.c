@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/space.h"
 #include "grid/bitgrid.h"
-#include "mesh/frame.h"
+#include "mesh/unit_scale.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -20,6 +20,15 @@ typedef struct vxm_layout {
 #define VXM_LAYOUT_GRID \
   { 0, 1, 2 }
 
+static inline bool vxm_layouts_equal(vxm_layout a, vxm_layout b) {
+  return a.fast == b.fast && a.middle == b.middle && a.slow == b.slow;
+}
+
+/** Whether it is that of a grid in memory. */
+static inline bool vxm_layout_is_grid(vxm_layout layout) {
+  return vxm_layouts_equal(layout, (vxm_layout)VXM_LAYOUT_GRID);
+}
+
 /** Slices begin..end-1 of a voxel space. Bits beyond the end of a row are zero: every writer keeps that. */
 typedef struct vxm_window {
   vxm_layout layout;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "gridio/format.h"
+#include "gridio/common/format.h"
 #include "gridio/gridio.h"
 
 #include <string.h>

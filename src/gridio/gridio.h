@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Grid files in and out, the surface of a grid as a mesh, and its picture. doc/formats.md has the formats.
- */
+/** Grid files in and out. doc/formats.md has the formats. */
 #ifndef VXM_GRIDIO_GRIDIO_H
 #define VXM_GRIDIO_GRIDIO_H
 
-#include "gridio/shade.h"
-#include "gridio/values.h"
-#include "mesh/soup.h"
+#include "gridio/common/values.h"
 
 /**
  * Reads a grid. The format is told by content first and by the extension second. What a file leaves out or
@@ -36,33 +33,5 @@ vxm_status vxm_gridio_read_space(vxm_grid **out, vxm_context *context, const cha
  *         VXM_ERROR_IO, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error);
-
-/**
- * Makes a mesh of the exposed voxel faces, merged into rectangles that share vertices. It is closed mod 2:
- * every edge has an even number of faces.
- *
- * @return VXM_OK; VXM_ERROR_RANGE for more than 2^30 rectangles; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
- *         VXM_ERROR_CANCELLED
- */
-vxm_status vxm_gridio_surface_mesh(vxm_soup **out, const vxm_grid *grid, vxm_error *error);
-
-/** Writes the confidence of a grid as .npy; see vxm_grid_write_confidence in voxmend.h. */
-vxm_status vxm_gridio_confidence(const vxm_grid *grid, const char *path, vxm_error *error);
-
-/**
- * Draws the grid into a PNG file.
- *
- * @param paint   the colours of its voxels, as payload `painted` has them; NULL = all have one
- * @param options not NULL
- * @return VXM_OK; VXM_ERROR_UNAVAILABLE without libpng; VXM_ERROR_ARGUMENT, VXM_ERROR_IO, VXM_ERROR_MEMORY,
- *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
- */
-vxm_status vxm_gridio_picture(const vxm_grid *grid, vxm_paint_fn paint, const void *painted, const char *path,
-                              const vxm_picture_options *options, vxm_error *error);
-
-/** Draws a field; see vxm_field_picture in voxmend.h. @param options not NULL */
-vxm_status vxm_gridio_field_picture(const vxm_field *field, const char *path,
-                                    const vxm_picture_options *options,
-                                    const vxm_threshold_options *threshold, vxm_error *error);
 
 #endif

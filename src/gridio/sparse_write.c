@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "gridio/format.h"
-#include "gridio/sparse_io.h"
+#include "gridio/sparse_write.h"
+#include "gridio/common/format.h"
 
 /** Bytes of the windows between an octree and its file, unless a few slices are more. */
 static const uint64_t window_bytes = UINT64_C(1) << 24;
@@ -8,7 +8,7 @@ static const uint64_t window_bytes = UINT64_C(1) << 24;
 enum { SLICES_LEAST = 4 };
 
 static vxm_status put_window(const vxm_window *window, void *payload, vxm_error *error) {
-  return vxm_slices_put(payload, window, error);
+  return vxm_grid_writer_put(payload, window, error);
 }
 
 vxm_status vxm_gridio_write_sparse(const vxm_sparse *sparse, const char *path, const char *format,
@@ -18,18 +18,18 @@ vxm_status vxm_gridio_write_sparse(const vxm_sparse *sparse, const char *path, c
     return VXM_ERROR_ARGUMENT;
   if (found->write_sparse)
     return found->write_sparse(sparse, path, error);
-  vxm_slices *slices;
-  vxm_status status = vxm_slices_open(&slices, sparse->context, &sparse->space, path, format, error);
+  vxm_grid_writer *slices;
+  vxm_status status = vxm_grid_writer_open(&slices, sparse->context, &sparse->space, path, format, error);
   if (status != VXM_OK)
     return status;
-  vxm_slices_report(slices);
-  vxm_layout layout = vxm_slices_layout(slices);
+  vxm_grid_writer_report(slices);
+  vxm_layout layout = vxm_grid_writer_layout(slices);
   uint64_t slice = vxm_window_of(&sparse->space, layout, 0, 0).slice_words * sizeof(uint64_t);
   int64_t step = (int64_t)(window_bytes / slice) / SLICES_LEAST * SLICES_LEAST;
   step = vxm_max(step, SLICES_LEAST);
   status = vxm_octree_each_window(sparse, layout, step, put_window, slices, error);
   if (status == VXM_OK)
-    return vxm_slices_commit(slices, error);
-  vxm_slices_abort(slices);
+    return vxm_grid_writer_commit(slices, error);
+  vxm_grid_writer_abort(slices);
   return status;
 }

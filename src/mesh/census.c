@@ -26,7 +26,7 @@ typedef struct taking {
   const vxm_soup *soup;
   vxm_context *context;
   uint32_t *map; /**< vertex_count: first vertex of the same position */
-  vxm_frame frame;
+  vxm_unit_scale frame;
   bool is_extreme; /**< the frame loses what lies beyond the range of its numbers */
   face_sums *sums; /**< per slice of faces */
 } taking;
@@ -73,7 +73,7 @@ static void add_face(const taking *t, size_t face, face_sums *sums) {
   sums->triangles += count > 2 ? count - 2 : 0;
   vxm_vec3 normal = vxm_polygon_area(t->soup->positions, corners, count, t->frame.scale);
   double area = vxm_vec3_length(normal);
-  if (vxm_frame_no_area(&t->frame, t->soup, face) || !vxm_face_has_three(corners, count, t->map))
+  if (vxm_unit_scale_no_area(&t->frame, t->soup, face) || !vxm_face_has_three(corners, count, t->map))
     sums->degenerate++;
   if (count == 0)
     return;
@@ -182,7 +182,7 @@ static void measure_vertices(taking *t, uint8_t *used) {
   t->census->unused_vertices = (int64_t)extent.unused;
   for (int i = 0; i < 6; i++)
     t->census->bounds[i] = extent.bounds[i];
-  t->frame = vxm_frame_of(extent.bounds);
+  t->frame = vxm_unit_scale_of(extent.bounds);
   t->is_extreme = is_extreme(extent.bounds);
 }
 

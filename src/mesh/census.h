@@ -3,13 +3,13 @@
 #ifndef VXM_MESH_CENSUS_H
 #define VXM_MESH_CENSUS_H
 
-#include "mesh/frame.h"
+#include "mesh/unit_scale.h"
 
 /**
  * Takes the census of a soup (vxm_mesh_census).
  *
  * Vertices are taken by position, that is after vxm_weld_exact, except for components_raw. In detail:
- *  - degenerate_faces: fewer than three distinct corners, or no area (vxm_frame_no_area).
+ *  - degenerate_faces: fewer than three distinct corners, or no area (vxm_unit_scale_no_area).
  *  - Faces with fewer than three distinct corners have no edges and are no duplicates of each other. Faces
  *    without area but with three distinct corners do and are, as they may be what keeps a mesh closed.
  *  - duplicate_faces, opposite_duplicate_faces: as `same` and `opposite_pairs` of vxm_duplicates. Two faces

@@ -3,8 +3,8 @@
 
 #include "base/hash.h"
 #include "base/threads.h"
-#include "mesh/buckets.h"
 #include "mesh/edges.h"
+#include "mesh/radix_partition.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -101,7 +101,7 @@ typedef struct search {
   uint8_t *kinds;
   vxm_copies *copies;
   unsigned bucket_shift;
-  vxm_buckets buckets;
+  vxm_radix_partition buckets;
   uint32_t *tables; /**< one hash table per worker: place of a record in its bucket + 1, or 0 */
   size_t table_size;
   tally *tallies; /**< per worker, by place of the first record of a kind */
@@ -223,11 +223,11 @@ vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const 
                                const uint32_t *vertex_map, uint8_t *kinds, vxm_copies *copies,
                                vxm_error *error) {
   *out = (vxm_duplicates){0};
-  size_t bucket_count = vxm_buckets_advise(soup->face_count);
+  size_t bucket_count = vxm_radix_partition_advise(soup->face_count);
   search s = {.soup = soup, .map = vertex_map, .kinds = kinds, .copies = copies};
   s.bucket_shift = 64 - (unsigned)__builtin_ctzll(bucket_count);
   vxm_status status =
-      vxm_buckets_fill(&s.buckets, context, soup->face_count, bucket_count, emit_faces, &s, error);
+      vxm_radix_partition_fill(&s.buckets, context, soup->face_count, bucket_count, emit_faces, &s, error);
   if (status != VXM_OK)
     return status;
   if (kinds && soup->face_count > 0)
@@ -246,6 +246,6 @@ vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const 
     *error = local;
   vxm_free(context, s.tallies);
   vxm_free(context, s.tables);
-  vxm_buckets_free(&s.buckets);
+  vxm_radix_partition_free(&s.buckets);
   return status;
 }

@@ -2,7 +2,7 @@
 #include "mesh/edges.h"
 
 #include "base/threads.h"
-#include "mesh/buckets.h"
+#include "mesh/radix_partition.h"
 #include "mesh/sort.h"
 
 #include <string.h>
@@ -15,7 +15,7 @@ typedef struct building {
   const vxm_soup *soup;
   const uint32_t *map;
   unsigned low_bits; /**< bits of a within a bucket */
-  vxm_buckets buckets;
+  vxm_radix_partition buckets;
   uint64_t *scratch; /**< per worker: as many records as the largest bucket has */
   uint32_t *counts;  /**< per worker: see counts_size */
   size_t counts_size;
@@ -162,14 +162,14 @@ vxm_status vxm_edges_build(vxm_edges *out, vxm_context *context, const vxm_soup 
                            const uint32_t *vertex_map, vxm_error *error) {
   *out = (vxm_edges){.context = context};
   building b = {.soup = soup, .map = vertex_map};
-  size_t bucket_count = vxm_buckets_advise(soup->corner_count);
+  size_t bucket_count = vxm_radix_partition_advise(soup->corner_count);
   while (soup->vertex_count > bucket_count << b.low_bits)
     b.low_bits++;
   vxm_status status =
-      vxm_buckets_fill(&b.buckets, context, soup->face_count, bucket_count, emit_sides, &b, error);
+      vxm_radix_partition_fill(&b.buckets, context, soup->face_count, bucket_count, emit_sides, &b, error);
   if (status == VXM_OK) {
     status = sort_and_write(&b, out, context, error);
-    vxm_buckets_free(&b.buckets);
+    vxm_radix_partition_free(&b.buckets);
   }
   if (status != VXM_OK)
     *out = (vxm_edges){0};

@@ -166,7 +166,7 @@ vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error)
   copy->vertex_count = soup->vertex_count;
   copy->face_count = soup->face_count;
   copy->corner_count = soup->corner_count;
-  copy->notes = soup->notes;
+  copy->warnings = soup->warnings;
   *out = copy;
   return VXM_OK;
 }

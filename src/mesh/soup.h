@@ -4,7 +4,7 @@
 #define VXM_MESH_SOUP_H
 
 #include "base/context.h"
-#include "base/notes.h"
+#include "base/warnings.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,7 +31,7 @@ struct vxm_mesh {
   size_t vertex_count, face_count, corner_count, tag_count;
   size_t vertex_capacity, face_capacity, corner_capacity, tag_capacity; /**< room while a soup grows */
   const char *format;                                                   /**< static text, such as "off" */
-  vxm_notes notes;
+  vxm_warnings warnings;
   uint32_t
       *face_parts; /**< face_count: the part of the mesh that was repaired which each comes from, or NULL */
   vxm_part_change *part_changes; /**< part_count, or NULL */
@@ -42,7 +42,7 @@ struct vxm_mesh {
 vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *format, vxm_error *error);
 /** Same as vxm_mesh_destroy; NULL is allowed. */
 void vxm_soup_destroy(vxm_soup *soup);
-/** Copies everything, notes included. */
+/** Copies everything, warnings included. */
 vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
 
 /** Makes room for at least so many elements in all (amortized doubling beyond what is there). */

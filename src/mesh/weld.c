@@ -3,7 +3,7 @@
 
 #include "base/hash.h"
 #include "base/threads.h"
-#include "mesh/buckets.h"
+#include "mesh/radix_partition.h"
 
 #include <math.h>
 #include <string.h>
@@ -31,7 +31,7 @@ typedef struct welding {
   const double *positions;
   uint32_t *map;
   unsigned bucket_shift;
-  vxm_buckets buckets;
+  vxm_radix_partition buckets;
   uint32_t *tables; /**< one hash table per worker: place of a record in its bucket + 1, or 0 */
   size_t table_size;
 } welding;
@@ -85,10 +85,11 @@ static void weld_bucket(size_t bucket, int worker, void *payload) {
 
 vxm_status vxm_weld_exact(vxm_context *context, const double *positions, size_t count, uint32_t *map,
                           size_t *distinct, vxm_error *error) {
-  size_t bucket_count = vxm_buckets_advise(count);
+  size_t bucket_count = vxm_radix_partition_advise(count);
   welding w = {.positions = positions, .map = map};
   w.bucket_shift = 64 - (unsigned)__builtin_ctzll(bucket_count);
-  vxm_status status = vxm_buckets_fill(&w.buckets, context, count, bucket_count, emit_vertices, &w, error);
+  vxm_status status =
+      vxm_radix_partition_fill(&w.buckets, context, count, bucket_count, emit_vertices, &w, error);
   if (status != VXM_OK)
     return status;
   w.table_size = table_slots(w.buckets.largest);
@@ -99,7 +100,7 @@ vxm_status vxm_weld_exact(vxm_context *context, const double *positions, size_t 
   if (status != VXM_OK && error)
     *error = local;
   vxm_free(context, w.tables);
-  vxm_buckets_free(&w.buckets);
+  vxm_radix_partition_free(&w.buckets);
   if (status == VXM_OK && distinct) {
     *distinct = 0;
     for (size_t v = 0; v < count; v++)

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/format.h"
-#include "base/beneath.h"
-#include "meshio/foreign.h"
+#include "meshio/common/format.h"
+#include "base/open_beneath.h"
+#include "meshio/common/utf16.h"
+#include "meshio/external/external_formats.h"
+#include "meshio/external/reader.h"
+#include "meshio/formats/stl.h"
 #include "meshio/meshio.h"
-#include "meshio/reader.h"
-#include "meshio/stl.h"
-#include "meshio/utf16.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -40,7 +40,7 @@ static const char *find_stranger(const unsigned char *data, size_t size);
 /** Who reads a file: one of our own readers, or a library. */
 typedef struct choice {
   const vxm_format *own;
-  const vxm_foreign *foreign;
+  const vxm_external_format *foreign;
 } choice;
 
 static choice choose(const unsigned char *data, size_t size, const char *name) {
@@ -55,11 +55,11 @@ static choice choose(const unsigned char *data, size_t size, const char *name) {
     if (likeness == VXM_LIKENESS_POSSIBLE && !possible)
       possible = &formats[f];
   }
-  choice chosen = {.foreign = vxm_foreign_by_content(data, size)};
+  choice chosen = {.foreign = vxm_external_format_by_content(data, size)};
   if (!chosen.foreign && !find_stranger(data, size))
     chosen.own = by_extension(name);
   if (!chosen.foreign && !chosen.own)
-    chosen.foreign = vxm_foreign_by_extension(vxm_path_extension(name));
+    chosen.foreign = vxm_external_format_by_extension(vxm_path_extension(name));
   if (!chosen.foreign && !chosen.own)
     chosen.own = possible;
   return chosen;
@@ -70,9 +70,9 @@ static bool choose_named(choice *out, const unsigned char *data, size_t size, co
   *out = (choice){.own = by_name(format)};
   if (out->own)
     return true;
-  const vxm_foreign *told = vxm_foreign_by_content(data, size);
+  const vxm_external_format *told = vxm_external_format_by_content(data, size);
   bool is_form = told && vxm_text_equal_nocase(told->name, format);
-  out->foreign = is_form ? told : vxm_foreign_by_name(format);
+  out->foreign = is_form ? told : vxm_external_format_by_name(format);
   return out->foreign != NULL;
 }
 
@@ -108,7 +108,7 @@ static vxm_status refuse_unknown(const unsigned char *data, size_t size, const c
   vxm_place place = {name, 0, -1, -1};
   const char *advice = find_stranger(data, size);
   if (!advice)
-    advice = vxm_foreign_refusal(vxm_path_extension(name));
+    advice = vxm_external_format_refusal(vxm_path_extension(name));
   if (advice)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "%s", advice);
   return vxm_fail_at(error, VXM_ERROR_FORMAT, place,
@@ -136,7 +136,7 @@ static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t s
     return refuse_unknown(data, size, name, error);
   const vxm_reader_request file = {
       .data = data, .size = size, .name = name, .deflection = options->deflection};
-  return vxm_foreign_read(soup, chosen.foreign, vxm_path_extension(name), &file, references, error);
+  return vxm_external_format_read(soup, chosen.foreign, vxm_path_extension(name), &file, references, error);
 }
 
 vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Mesh files in and out: OFF, OBJ, STL and PLY; others are read through libraries (foreign.h). */
+/** Mesh files in and out: OFF, OBJ, STL and PLY; others are read through libraries (external/). */
 #ifndef VXM_MESHIO_MESHIO_H
 #define VXM_MESHIO_MESHIO_H
 
@@ -10,8 +10,8 @@
  * Reads a mesh from memory. The format is told by content first and by the extension of `name` second.
  * Text in UTF-16 with a byte order mark is read too.
  *
- * What a damaged file still holds is read; each kind of damage becomes one line of the soup's notes with the
- * line or byte offset where it was met first.
+ * What a damaged file still holds is read; each kind of damage becomes one line of the soup's warnings with
+ * the line or byte offset where it was met first.
  *
  * @param data need not be terminated; not kept
  * @param name for messages and for its extension
@@ -25,7 +25,7 @@ vxm_status vxm_meshio_read(vxm_soup **out, vxm_context *context, const unsigned 
 /**
  * As vxm_meshio_read, with options; NULL means defaults.
  *
- * @return also VXM_ERROR_ARGUMENT for a format that is not known, and what vxm_foreign_read returns
+ * @return also VXM_ERROR_ARGUMENT for a format that is not known, and what vxm_external_format_read returns
  */
 vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsigned char *data, size_t size,
                                 const char *name, const vxm_mesh_read_options *options, vxm_error *error);
@@ -53,27 +53,5 @@ typedef vxm_status (*vxm_meshio_check)(const vxm_soup *read_back, void *payload,
 /** As vxm_meshio_write, but before the file gets its name it is read back and checked. */
 vxm_status vxm_meshio_write_checked(const vxm_soup *soup, const char *path, const char *format, bool ascii,
                                     vxm_meshio_check check, void *payload, vxm_error *error);
-
-typedef struct vxm_colour {
-  uint8_t red, green, blue;
-} vxm_colour;
-
-typedef struct vxm_marked_edge {
-  uint32_t a, b; /**< vertices; the same one twice marks a vertex */
-  vxm_colour colour;
-} vxm_marked_edge;
-
-/** What is shown in colour on a mesh. */
-typedef struct vxm_marks {
-  vxm_colour grey;   /**< of what is not marked */
-  vxm_colour *faces; /**< face_count */
-  vxm_marked_edge *edges;
-  size_t edge_count;
-} vxm_marks;
-
-/** Writes a .ply with coloured faces and edges. @return VXM_OK, VXM_ERROR_ARGUMENT for another extension,
- * VXM_ERROR_IO */
-vxm_status vxm_meshio_write_marked(const vxm_soup *soup, const vxm_marks *marks, const char *path,
-                                   vxm_error *error);
 
 #endif

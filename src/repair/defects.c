@@ -3,9 +3,9 @@
 
 #include "mesh/duplicates.h"
 #include "mesh/weld.h"
-#include "meshio/meshio.h"
-#include "repair/crossings.h"
-#include "repair/fans.h"
+#include "meshio/formats/write_marked.h"
+#include "repair/state/self_intersections.h"
+#include "repair/state/vertex_fans.h"
 
 #include <string.h>
 
@@ -13,8 +13,8 @@ typedef struct finding {
   vxm_defects *defects;
   const vxm_soup *soup;
   size_t most;
-  size_t of_kind; /**< found of the present kind */
-  vxm_work work;  /**< on a copy with welded corners */
+  size_t of_kind;        /**< found of the present kind */
+  vxm_repair_state work; /**< on a copy with welded corners */
   uint32_t *map;
   vxm_error error;
 } finding;
@@ -73,14 +73,14 @@ static bool find_nonfinite(finding *f) {
 
 static bool find_degenerate(finding *f) {
   vxm_extent extent;
-  vxm_work_extent(&f->work, &extent);
-  vxm_frame frame = vxm_frame_of(extent.bounds);
+  vxm_repair_state_extent(&f->work, &extent);
+  vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
   for (size_t i = 0; i < f->soup->face_count; i++) {
     size_t count;
     const uint32_t *corner = vxm_face(f->work.soup, i, &count);
     if (vxm_ask_at(i, f->work.context, &f->error) != VXM_OK)
       return false;
-    bool bad = vxm_frame_no_area(&frame, f->soup, i) || !vxm_face_has_three(corner, count, NULL);
+    bool bad = vxm_unit_scale_no_area(&frame, f->soup, i) || !vxm_face_has_three(corner, count, NULL);
     if (bad && !enter_face(f, VXM_DEFECT_DEGENERATE_FACE, i))
       return false;
   }
@@ -125,7 +125,7 @@ static bool find_edges(finding *f, vxm_defect_kind kind) {
 /** Vertices of more than one fan, but for those of edges with too many faces, which tell it themselves. */
 static bool find_vertices(finding *f) {
   uint8_t *fans;
-  if (vxm_fans_count(&fans, &f->work, &f->error) != VXM_OK)
+  if (vxm_vertex_fans_count(&fans, &f->work, &f->error) != VXM_OK)
     return false;
   const vxm_edges *edges = &f->work.edges;
   for (size_t e = 0; e < edges->count; e++)
@@ -142,7 +142,7 @@ static bool find_vertices(finding *f) {
 static bool find_intersections(finding *f) {
   vxm_face_pairs pairs;
   /* all are counted, whatever is listed */
-  bool done = vxm_crossings_find(&pairs, f->work.soup, VXM_CROSSINGS_MOST, &f->error) == VXM_OK;
+  bool done = vxm_self_intersections_find(&pairs, f->work.soup, VXM_CROSSINGS_MOST, &f->error) == VXM_OK;
   for (size_t i = 0; done && i < pairs.count; i++) {
     vxm_defect defect = {.kind = VXM_DEFECT_SELF_INTERSECTION,
                          .element = {(int64_t)pairs.pairs[i].first, (int64_t)pairs.pairs[i].second}};
@@ -184,7 +184,7 @@ static bool prepare(finding *f) {
     return false;
   for (size_t c = 0; c < f->soup->corner_count; c++)
     f->work.soup->indices[c] = f->map[f->soup->indices[c]];
-  return vxm_work_edges(&f->work, &f->error) == VXM_OK;
+  return vxm_repair_state_edges(&f->work, &f->error) == VXM_OK;
 }
 
 vxm_status vxm_defects_find(vxm_defects **out, const vxm_soup *soup, size_t most, bool intersections,
@@ -200,7 +200,7 @@ vxm_status vxm_defects_find(vxm_defects **out, const vxm_soup *soup, size_t most
     *f.defects =
         (vxm_defects){.context = context, .vertex_count = soup->vertex_count, .face_count = soup->face_count};
   bool done = f.defects && prepare(&f) && find(&f, intersections);
-  vxm_work_touch(&f.work);
+  vxm_repair_state_touch(&f.work);
   vxm_soup_destroy(f.work.soup);
   vxm_free(context, f.work.used);
   vxm_free(context, f.map);

@@ -12,18 +12,20 @@
  *  - rounding: vertices that were moved to where 32-bit floats are
  *  - nonfinite_vertices: vertices with a NaN or an infinity; they go with their faces
  *  - exact_weld: vertices merged into an earlier one of the same position
- *  - tolerant_weld: vertices merged into an earlier one near by (repair/tolerant_weld.c)
+ *  - tolerant_weld: vertices merged into an earlier one near by (repair/weld/tolerant_weld.c)
  *  - repeated_corners: faces that lost corners which repeat the one before, or a spike there and back; below
  *    three corners the face goes
  *  - zero_area_faces: faces without area that went; those without which more edges would be odd stay
  *  - duplicate_faces: faces that repeat an earlier one with the same orientation
  *  - opposite_duplicate_faces: faces that repeat an earlier one with the opposite orientation
- *  - orientation: faces that were turned (repair/orient.c)
- *  - wrap: faces of the surface that was put around everything (repair/wrap.c)
- *  - separation: faces that were detached where a vertex or edge had too many (repair/separation.c)
- *  - closing: faces that were added to close holes (repair/closing.c)
- *  - union: parts that were united with others, or cut along where they met (repair/union.c)
- *  - apart: vertices that were moved apart from others at the same position (repair/apart.c)
+ *  - orientation: faces that were turned (repair/clean/orient.c)
+ *  - wrap: faces of the surface that was put around everything (repair/exact/wrap.c)
+ *  - separation: faces that were detached where a vertex or edge had too many
+ * (repair/manifold/cut_nonmanifold_pass.c)
+ *  - closing: faces that were added to close holes (repair/holes/closing.c)
+ *  - union: parts that were united with others, or cut along where they met (repair/exact/union.c)
+ *  - apart: vertices that were moved apart from others at the same position
+ * (repair/manifold/perturb_coincident.c)
  *  - unused_vertices: vertices without a face, apart from those counted above
  * The passes in the middle are run until none of them changes anything, and their counts are sums. A pass
  * that an option leaves out is listed with 0. Repairing the result again gives the same arrays and counts of

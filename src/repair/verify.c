@@ -3,16 +3,16 @@
 
 #include "mesh/weld.h"
 #include "meshio/meshio.h"
-#include "repair/crossings.h"
-#include "repair/fans.h"
-#include "repair/sides.h"
+#include "repair/state/halfedges.h"
+#include "repair/state/self_intersections.h"
+#include "repair/state/vertex_fans.h"
 
 #include <string.h>
 
 typedef struct verifying {
   vxm_verification *out;
   const vxm_repair_options *options;
-  vxm_work work; /**< the mesh after welding, its faces and vertices numbered as they were */
+  vxm_repair_state work; /**< the mesh after welding, its faces and vertices numbered as they were */
 } verifying;
 
 static void add(verifying *v, const char *what, int64_t count, int64_t element, const double *at) {
@@ -103,7 +103,7 @@ static void verify_edges(verifying *v, const size_t *sides) {
 
 static vxm_status verify_vertices(verifying *v, vxm_error *error) {
   uint8_t *fans;
-  vxm_status status = vxm_fans_count(&fans, &v->work, error);
+  vxm_status status = vxm_vertex_fans_count(&fans, &v->work, error);
   if (status != VXM_OK)
     return status;
   int64_t count = 0, first = -1;
@@ -119,7 +119,7 @@ static vxm_status verify_vertices(verifying *v, vxm_error *error) {
 
 static vxm_status verify_manifold(verifying *v, vxm_error *error) {
   size_t *sides;
-  vxm_status status = vxm_sides_find(&sides, &v->work, error);
+  vxm_status status = vxm_halfedges_find(&sides, &v->work, error);
   if (status != VXM_OK)
     return status;
   verify_edges(v, sides);
@@ -157,7 +157,7 @@ static vxm_status verify_outward(verifying *v, vxm_error *error) {
 
 static vxm_status verify_solid(verifying *v, vxm_error *error) {
   vxm_face_pairs pairs;
-  vxm_status status = vxm_crossings_find(&pairs, v->work.soup, VXM_CROSSINGS_MOST, error);
+  vxm_status status = vxm_self_intersections_find(&pairs, v->work.soup, VXM_CROSSINGS_MOST, error);
   if (status == VXM_OK && pairs.count > 0)
     add_face(v, "self_intersections", (int64_t)pairs.count, pairs.pairs[0].first);
   vxm_free(v->work.context, pairs.pairs);
@@ -169,7 +169,7 @@ static vxm_status weld(verifying *v, const vxm_soup *soup, vxm_error *error) {
   vxm_status status = vxm_soup_copy(&v->work.soup, soup, error);
   if (status != VXM_OK)
     return status;
-  uint32_t *map = vxm_work_scratch(&v->work, soup->vertex_count, sizeof *map, &status, error);
+  uint32_t *map = vxm_repair_state_scratch(&v->work, soup->vertex_count, sizeof *map, &status, error);
   if (status == VXM_OK)
     status = vxm_weld_exact(soup->context, soup->positions, soup->vertex_count, map, NULL, error);
   for (size_t c = 0; c < soup->corner_count && status == VXM_OK; c++)
@@ -199,7 +199,7 @@ vxm_status vxm_verify(vxm_verification *out, const vxm_soup *soup, const vxm_rep
     status = verify_level(&v, soup, error);
   if (status == VXM_OK)
     status = verify_rest(&v, soup, error);
-  vxm_work_touch(&v.work);
+  vxm_repair_state_touch(&v.work);
   vxm_soup_destroy(v.work.soup);
   if (status != VXM_OK)
     *out = (vxm_verification){0};

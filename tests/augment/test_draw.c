@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "augment/draw.h"
+#include "augment/random.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,12 +42,12 @@ static void philox_gives_the_published_answers(void **state) {
 static void words_are_counted(void **state) {
   (void)state;
   const uint32_t counters[3] = {7, 8, 9};
-  vxm_draw draw = vxm_draw_begin(5, counters, VXM_DRAW_SCALE);
+  vxm_random draw = vxm_random_begin(5, counters, VXM_DRAW_SCALE);
   for (uint32_t block = 0; block < 3; block++) {
     vxm_philox_block expected =
         vxm_philox((vxm_philox_block){{7, 8, 9, (uint32_t)VXM_DRAW_SCALE << 24 | block}}, 5);
     for (int w = 0; w < 4; w++)
-      assert_int_equal(vxm_draw_word(&draw), expected.word[w]);
+      assert_int_equal(vxm_random_word(&draw), expected.word[w]);
   }
 }
 
@@ -70,16 +70,16 @@ static void count_in(int count[BINS], double unit) {
   count[bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin]++;
 }
 
-static vxm_draw draw_of(uint32_t index, vxm_purpose purpose) {
-  return vxm_draw_begin(11, (const uint32_t[3]){0, 0, index}, purpose);
+static vxm_random draw_of(uint32_t index, vxm_purpose purpose) {
+  return vxm_random_begin(11, (const uint32_t[3]){0, 0, index}, purpose);
 }
 
 static void units_are_uniform(void **state) {
   (void)state;
   int count[BINS] = {0};
   for (uint32_t i = 0; i < DRAWS; i++) {
-    vxm_draw draw = draw_of(i, VXM_DRAW_SCALE);
-    double unit = vxm_draw_unit(&draw);
+    vxm_random draw = draw_of(i, VXM_DRAW_SCALE);
+    double unit = vxm_random_unit(&draw);
     assert_true(unit > 0 && unit < 1);
     count_in(count, unit);
   }
@@ -107,8 +107,8 @@ static void rotations_are_uniform(void **state) {
   int height[3][BINS] = {{0}}, longitude[3][BINS] = {{0}}, angle[BINS] = {0}, fixed[BINS] = {0};
   for (uint32_t i = 0; i < DRAWS; i++) {
     double m[9];
-    vxm_draw draw = draw_of(i, VXM_DRAW_ROTATION);
-    vxm_draw_rotation(m, &draw);
+    vxm_random draw = draw_of(i, VXM_DRAW_ROTATION);
+    vxm_random_rotation(m, &draw);
     assert_rotation(m);
     for (int a = 0; a < 3; a++) {
       count_in(height[a], (m[6 + a] + 1) / 2);
@@ -136,8 +136,8 @@ static void turns_are_uniform(void **state) {
     int count[BINS] = {0};
     for (uint32_t i = 0; i < DRAWS; i++) {
       double m[9];
-      vxm_draw draw = draw_of(i, VXM_DRAW_ROTATION);
-      vxm_draw_turn(m, axis, &draw);
+      vxm_random draw = draw_of(i, VXM_DRAW_ROTATION);
+      vxm_random_turn(m, axis, &draw);
       assert_rotation(m);
       for (int row = 0; row < 3; row++)
         assert_true(fabs(dot(m + 3 * row, axis) - axis[row]) < 1e-12);
@@ -153,8 +153,8 @@ static void normals_are_nearly_normal(void **state) {
   (void)state;
   double sum = 0, squares = 0, within = 0;
   for (uint32_t i = 0; i < DRAWS; i++) {
-    vxm_draw draw = draw_of(i, VXM_DRAW_NOISE);
-    double value = vxm_draw_normal(&draw);
+    vxm_random draw = draw_of(i, VXM_DRAW_NOISE);
+    double value = vxm_random_normal(&draw);
     assert_true(fabs(value) <= 3);
     sum += value;
     squares += value * value;

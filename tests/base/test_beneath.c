@@ -15,8 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/beneath.h"
 #include "base/folders.h"
+#include "base/open_beneath.h"
 
 static char folder[] = "/tmp/voxmend-beneath-XXXXXX";
 

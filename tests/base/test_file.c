@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "base/notes.h"
 #include "base/output.h"
+#include "base/warnings.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -255,12 +255,12 @@ static void messages(void **state) {
   assert_string_equal(error.text, "a.ply: cannot open: No such file or directory");
   assert_int_equal(vxm_fail(NULL, VXM_ERROR_EMPTY, "nothing"), VXM_ERROR_EMPTY);
 
-  static vxm_notes notes;
+  static vxm_warnings warnings;
   for (int i = 0; i < VXM_NOTES_MAX + 3; i++)
-    vxm_note(&notes, "note %d: %s", i, noise);
-  assert_int_equal(notes.count, VXM_NOTES_MAX);
-  for (int i = 0; i < notes.count; i++)
-    assert_one_printable_line(notes.text[i], VXM_NOTE_LENGTH);
+    vxm_warn(&warnings, "note %d: %s", i, noise);
+  assert_int_equal(warnings.count, VXM_NOTES_MAX);
+  for (int i = 0; i < warnings.count; i++)
+    assert_one_printable_line(warnings.text[i], VXM_NOTE_LENGTH);
   assert_string_equal(vxm_status_name(VXM_OK), "ok");
   assert_string_equal(vxm_status_name(VXM_ERROR_CANCELLED), "cancelled");
   assert_string_equal(vxm_version(), "0.1.0");

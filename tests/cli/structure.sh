@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The order of the rooms: each includes only those before it, the command line sees voxmend.h alone, and nothing
-# below it prints or ends the program.
+# The order of the rooms: each folder of src/ includes only its own files and those of folders before it, so that no
+# circle leaves a folder; the command line sees voxmend.h alone, and nothing below it prints or ends the program.
 set -eu
 cd "$SRCDIR/src"
 bad=0
@@ -11,23 +11,48 @@ complain() {
   bad=1
 }
 
+# What each folder may include comes before it. Within a room the folder of the same name, with its front, is the last.
+order="base mesh
+  meshio/common meshio/formats meshio/external meshio
+  repair/external repair/state repair/clean repair/manifold repair/weld repair/holes repair/exact repair/bodies repair
+  grid
+  voxel/lattice voxel/parts voxel/parity voxel/winding voxel/surface voxel/closest voxel/engine voxel/solid voxel/model
+  voxel/sparse voxel/fields voxel/labels
+  gpu/common gpu/opencl gpu/opengl gpu
+  gridio/common gridio/formats gridio/mesh gridio/picture gridio
+  export augment batch api
+  modules/assimp modules/occt modules/openmesh modules/cgal modules/openvdb"
+
+# Modules share the rooms that their makefile lists, and not each other.
+listed=" $(echo $order) cli "
+for folder in $(find . -name '*.[ch]' -o -name '*.cc' -o -name '*.inc' | sed 's|^\./||; s|/*[^/]*$||' | sort -u); do
+  case $listed in
+  *" $folder "*) ;;
+  *) complain "src/$folder has no place in the order of tests/cli/structure.sh" "" ;;
+  esac
+done
+
 seen=
-for room in base mesh meshio repair grid voxel gpu gridio augment batch api; do
-  seen="$seen $room"
-  [ -d "$room" ] || continue
-  allowed=$(echo "$seen" | sed 's/^ //; s/ /|/g')
-  found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' "$room" --include='*.[ch]' --include='*.cc' --include='*.inc' |
-    grep -vE "\"(($allowed)/[^\"]*|voxmend\.h|config\.h|shaders/(kernels|shaders)\.inc)\"" || true)
-  [ -z "$found" ] || complain "$room includes what does not come before it" "$found"
+for folder in $order; do
+  [ -d "$folder" ] || continue
+  allowed="$seen $folder"
+  case $folder in
+  modules/*) ;;
+  *) seen=$allowed ;;
+  esac
+  pattern=$(echo $allowed | sed 's/ /|/g')
+  found=$(grep -nE '#[[:space:]]*include[[:space:]]+"' $(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cc' -o -maxdepth 1 -name '*.inc') |
+    grep -vE "\"(($pattern)/[^/\"]*|voxmend\.h|config\.h|shaders/(kernels|shaders)\.inc)\"" || true)
+  [ -z "$found" ] || complain "$folder includes what does not come before it" "$found"
 done
 found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' cli | grep -vE '"(cli/[^"]*|voxmend\.h|config\.h)"' || true)
 [ -z "$found" ] || complain "cli includes more than voxmend.h and its own headers" "$found"
 
-for room in $seen; do
-  [ -d "$room" ] || continue
-  found=$(grep -rnE '(^|[^a-zA-Z_])(printf|puts|putchar|vprintf|perror|exit|abort|_exit)[[:space:]]*\(|(^|[^a-zA-Z_<])std(out|err)[^a-zA-Z_]' "$room" \
-    --include='*.[ch]' --include='*.cc' --include='*.inc' | grep -vE ':[[:space:]]*(/\*|\*|//)' || true)
-  [ -z "$found" ] || complain "$room prints or ends the program" "$found"
+for folder in $order; do
+  [ -d "$folder" ] || continue
+  found=$(grep -nE '(^|[^a-zA-Z_])(printf|puts|putchar|vprintf|perror|exit|abort|_exit)[[:space:]]*\(|(^|[^a-zA-Z_<])std(out|err)[^a-zA-Z_]' \
+    $(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cc' -o -maxdepth 1 -name '*.inc') /dev/null | grep -vE ':[[:space:]]*(/\*|\*|//)' || true)
+  [ -z "$found" ] || complain "$folder prints or ends the program" "$found"
 done
 
 found=$(for file in $(find . ../tests ../samples -name '*.[ch]' -o -name '*.cc'); do

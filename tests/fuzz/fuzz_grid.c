@@ -3,7 +3,7 @@
 #include "fuzz.h"
 #include "fuzz_soup.h"
 
-#include "gridio/format.h"
+#include "gridio/common/format.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,8 +33,8 @@ static void check_padding(const vxm_grid *grid) {
 static void check_grid(const vxm_grid *grid) {
   fuzz_require(vxm_space_check(&grid->space, NULL) == VXM_OK, "the space is one");
   check_padding(grid);
-  for (int n = 0; n < grid->notes.count; n++)
-    fuzz_require(grid->notes.text[n][0] && !strchr(grid->notes.text[n], '\n'), "notes are one line");
+  for (int n = 0; n < grid->warnings.count; n++)
+    fuzz_require(grid->warnings.text[n][0] && !strchr(grid->warnings.text[n], '\n'), "warnings are one line");
 }
 
 /** Numbers, where there are some: they can be looked at and made into bits. */

@@ -3,8 +3,8 @@
 #include "fuzz.h"
 #include "fuzz_soup.h"
 
-#include "meshio/foreign.h"
-#include "meshio/format.h"
+#include "meshio/common/format.h"
+#include "meshio/external/external_formats.h"
 #include "meshio/meshio.h"
 
 #include <stdio.h>
@@ -41,8 +41,8 @@ void fuzz_check_soup(const vxm_soup *soup) {
   fuzz_require((soup->face_tags != NULL) == (soup->tag_count > 0), "tags go with their names");
   for (size_t f = 0; soup->face_tags && f < soup->face_count; f++)
     fuzz_require(soup->face_tags[f] < soup->tag_count, "tags have names");
-  for (int n = 0; n < soup->notes.count; n++)
-    fuzz_require(soup->notes.text[n][0] && !strchr(soup->notes.text[n], '\n'), "notes are one line");
+  for (int n = 0; n < soup->warnings.count; n++)
+    fuzz_require(soup->warnings.text[n][0] && !strchr(soup->warnings.text[n], '\n'), "warnings are one line");
 }
 
 void fuzz_check_error(const vxm_error *error, vxm_status status) {
@@ -65,7 +65,7 @@ vxm_context *fuzz_context(size_t size, uint64_t rate, uint64_t besides) {
 
 void fuzz_mesh(const char *name, const uint8_t *data, size_t size) {
   reader_of_meshes *reader = reader_for(name);
-  if (!reader && vxm_foreign_by_content(data, size)) /* other targets' business, as most are */
+  if (!reader && vxm_external_format_by_content(data, size)) /* other targets' business, as most are */
     return;
   vxm_context *context = fuzz_context(size, RATE, BESIDES);
   vxm_soup *soup = NULL;

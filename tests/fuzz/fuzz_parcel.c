@@ -3,7 +3,7 @@
 #include "fuzz.h"
 #include "fuzz_soup.h"
 
-#include "meshio/parcel.h"
+#include "meshio/external/wire_format.h"
 
 #include <string.h>
 #include <sys/socket.h>
@@ -19,7 +19,7 @@ static vxm_status refuse(void *payload, vxm_process *reader, const char *name, v
   (void)payload;
   (void)reader;
   (void)error;
-  fuzz_require(strlen(name) <= VXM_PARCEL_NAME_MAX, "a name has its length");
+  fuzz_require(strlen(name) <= VXM_WIRE_NAME_MAX, "a name has its length");
   return VXM_OK;
 }
 
@@ -34,11 +34,11 @@ void fuzz_parcel(const char *name, const uint8_t *data, size_t size) {
   close(ends[1]);
   vxm_context *context = fuzz_context(size, RATE, BESIDES);
   vxm_process sender = {.channel = ends[0], .context = context, .phase = "reading"};
-  vxm_parcel_listener listener = {.answer = refuse};
+  vxm_wire_listener listener = {.answer = refuse};
   vxm_soup *soup;
   vxm_error error = VXM_ERROR_INIT;
   fuzz_require(vxm_soup_create(&soup, context, "", &error) == VXM_OK, "a soup can be made");
-  vxm_status status = vxm_parcel_receive(soup, &sender, &listener, &error);
+  vxm_status status = vxm_wire_receive(soup, &sender, &listener, &error);
   if (status == VXM_OK)
     fuzz_check_soup(soup);
   else if (status != VXM_ERROR_IO) /* then the caller knows what became of the process */

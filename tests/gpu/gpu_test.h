@@ -6,7 +6,7 @@
 
 #include "../voxel/engine.h"
 
-#include "voxel/engine.h"
+#include "voxel/engine/engine.h"
 
 #include <stdio.h>
 

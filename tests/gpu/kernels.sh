@@ -20,7 +20,7 @@ for target in amdgcn-amd-amdhsa:gfx906 amdgcn-amd-amdhsa:gfx1030 nvptx64-nvidia-
       ${cpu:+-mcpu=$cpu} -nogpulib $form -o "$2" "$1"
   }
   compile_this "$work/nothing.cl" "$work/nothing.o" >"$work/why.txt" 2>&1 || continue
-  sed -n '/^static const char \*const sources/,/^};/p' "$SRCDIR/src/gpu/cl_program.c" |
+  sed -n '/^static const char \*const sources/,/^};/p' "$SRCDIR/src/gpu/opencl/cl_program.c" |
     sed -n -E 's/^ *\[(VXM_CL_[A-Z_]*)\] = \{(.*)\},?$/\1 \2/p' | tr -d '",' >"$work/programs.txt"
   test "$(wc -l <"$work/programs.txt")" -ge 8
   while read -r program files; do

@@ -89,7 +89,7 @@ static void test_glsl(void **state) {
 }
 
 /** An engine that fails when it is asked for anything. */
-static vxm_status fail_unite(vxm_engine *by, const vxm_window *window, const vxm_unite_job *job,
+static vxm_status fail_unite(vxm_engine *by, const vxm_window *window, const vxm_parity_union_job *job,
                              vxm_error *error) {
   (void)by, (void)window, (void)job;
   return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "the context was lost");

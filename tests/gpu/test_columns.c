@@ -3,7 +3,7 @@
  * method, rule and axis, odd dimensions, tiles and windows, and points far outside the grid. */
 #include "gpu_test.h"
 
-#include "voxel/model.h"
+#include "voxel/model/model.h"
 
 /** By both engines, bit for bit. */
 static void check(const vxm_soup *soup, const vxm_space *space, vxm_voxelize_options options) {

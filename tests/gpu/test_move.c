@@ -4,13 +4,13 @@
 #include "gpu_test.h"
 
 #include "base/rng.h"
-#include "voxel/model.h"
+#include "voxel/model/model.h"
 
 enum { RESOLUTION = 48, SHIFT = 6, NOISE = 300 };
 
 typedef struct scene {
   vxm_model *model;
-  const vxm_facets *facets;
+  const vxm_triangle_set *facets;
   vxm_lattice lattice;
   uint32_t *entry;
   float noise[NOISE][4];
@@ -47,22 +47,22 @@ static void stop(scene *s) {
 
 /** Whether the engine moves them; then all it made must be what the CPU makes. */
 static bool moves_alike(scene *s, uint32_t offset, uint64_t noise_serial, bool displaced, bool apexes) {
-  vxm_placed by[2] = {{.context = context}, {.context = context}};
-  const vxm_facets *facets = s->facets;
-  vxm_motion motion = {.from = (const double(*)[3])facets->positions,
-                       .count = facets->first_apex,
-                       .matrix = s->matrix,
-                       .entry = displaced ? s->entry : NULL,
-                       .noise = (const float(*)[4])s->noise,
-                       .noise_size = NOISE,
-                       .offset = offset,
-                       .from_serial = facets->serial * 2 + displaced,
-                       .noise_serial = noise_serial};
+  vxm_snapped_points by[2] = {{.context = context}, {.context = context}};
+  const vxm_triangle_set *facets = s->facets;
+  vxm_vertex_transform motion = {.from = (const double(*)[3])facets->positions,
+                                 .count = facets->first_apex,
+                                 .matrix = s->matrix,
+                                 .entry = displaced ? s->entry : NULL,
+                                 .noise = (const float(*)[4])s->noise,
+                                 .noise_size = NOISE,
+                                 .offset = offset,
+                                 .from_serial = facets->serial * 2 + displaced,
+                                 .noise_serial = noise_serial};
   vxm_move_job job = {facets, &motion, apexes};
   vxm_error error = VXM_ERROR_INIT;
   bool done = false;
-  vxm_status status = vxm_placed_move(&by[0], facets, &s->lattice, &motion, apexes, &error);
-  assert_int_equal(vxm_placed_begin(&by[1], facets, &s->lattice, NULL), VXM_OK);
+  vxm_status status = vxm_snapped_points_move(&by[0], facets, &s->lattice, &motion, apexes, &error);
+  assert_int_equal(vxm_snapped_points_begin(&by[1], facets, &s->lattice, NULL), VXM_OK);
   if (engine->ops->move(engine, &by[1], &job, &done, &error) != VXM_OK)
     fail_msg("%s", error.text);
   if (done) {
@@ -72,8 +72,8 @@ static bool moves_alike(scene *s, uint32_t offset, uint64_t noise_serial, bool d
     assert_memory_equal(by[0].cells, by[1].cells, facets->point_count * sizeof *by[0].cells);
   } else
     assert_true(status != VXM_OK || by[0].wide);
-  vxm_placed_destroy(&by[0]);
-  vxm_placed_destroy(&by[1]);
+  vxm_snapped_points_destroy(&by[0]);
+  vxm_snapped_points_destroy(&by[1]);
   return done;
 }
 

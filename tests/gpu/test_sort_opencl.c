@@ -3,7 +3,7 @@
  * and many different keys, groups of several sizes; equal keys keep their order. */
 #include "config.h"
 #ifdef HAVE_OPENCL
-#include "gpu/cl_sort.h" /* before the test's own `engine` */
+#include "gpu/opencl/cl_sort.h" /* before the test's own `engine` */
 #endif
 
 #include "gpu_test.h"

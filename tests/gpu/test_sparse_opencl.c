@@ -8,7 +8,7 @@
  */
 #include "config.h"
 #ifdef HAVE_OPENCL
-#include "gpu/opencl.h" /* before the test's own `engine` */
+#include "gpu/opencl/opencl.h" /* before the test's own `engine` */
 #endif
 
 #include "gpu_test.h"

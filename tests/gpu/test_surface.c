@@ -3,7 +3,7 @@
  * slivers, lines and points, ties, other layouts, and triangles that reach far outside the grid. */
 #include "gpu_test.h"
 
-#include "voxel/model.h"
+#include "voxel/model/model.h"
 
 static void check(const vxm_soup *soup, const vxm_space *space) {
   for (int mode = VXM_MODE_SURFACE; mode <= VXM_MODE_BOTH; mode++)

@@ -16,7 +16,7 @@ static const vxm_engine_ops *own;
 static int moved;
 static bool fails; /**< the next move */
 
-static vxm_status watch_move(vxm_engine *by, vxm_placed *placed, const vxm_move_job *job, bool *done,
+static vxm_status watch_move(vxm_engine *by, vxm_snapped_points *placed, const vxm_move_job *job, bool *done,
                              vxm_error *error) {
   if (fails) {
     fails = false;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "tolerance.h"
 
-#include "voxel/triangle.h"
+#include "voxel/closest/triangle_distance.h"
 
 double distance_of(const vxm_soup *soup, const vxm_space *space, const int64_t at[3]) {
   double p[3], least = INFINITY;
@@ -16,8 +16,8 @@ double distance_of(const vxm_soup *soup, const vxm_space *space, const int64_t a
       for (int c = 0; c < 3; c++)
         for (int a = 0; a < 3; a++)
           q[c][a] = (soup->positions[3 * (size_t)v[c] + (size_t)a] - space->origin[a]) / space->voxel_size[a];
-      vxm_triangle triangle;
-      vxm_triangle_make(&triangle, q);
+      vxm_distance_triangle triangle;
+      vxm_distance_triangle_make(&triangle, q);
       double d = vxm_triangle_distance2(&triangle, p);
       least = d < least ? d : least;
     }

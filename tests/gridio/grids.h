@@ -133,7 +133,7 @@ static inline void assert_reads_back(const vxm_grid *grid, const char *path) {
   vxm_grid *back = read_back(grid->context, path);
   assert_same_bits(grid, back);
   assert_memory_equal(&grid->space, &back->space, sizeof grid->space);
-  assert_int_equal(back->notes.count, 0);
+  assert_int_equal(back->warnings.count, 0);
   vxm_grid_destroy(back);
 }
 

@@ -2,8 +2,9 @@
 /** Damaged files end in an error with an offset, in bounded memory; failed writes leave no file. */
 #include "grids.h"
 
-#include "gridio/format.h"
+#include "gridio/common/format.h"
 #include "gridio/gridio.h"
+#include "gridio/picture/picture.h"
 
 #include <sys/stat.h>
 

@@ -112,7 +112,7 @@ static void test_binvox(void **state) {
     double translate[3], scale;
     unsigned char *values = plain_binvox_reader(path, &d, translate, &scale);
     vxm_grid *back = read_back(context, path);
-    assert_int_equal(back->notes.count, 0);
+    assert_int_equal(back->warnings.count, 0);
     assert_padding_clear(back);
     int64_t longest = 0;
     for (int a = 0; a < 3; a++) {

@@ -3,7 +3,7 @@
 #include "config.h"
 #include "grids.h"
 
-#include "gridio/format.h"
+#include "gridio/common/format.h"
 #include "gridio/gridio.h"
 
 #include <locale.h>
@@ -82,7 +82,7 @@ static void test_types(void **state) {
                "encoding: raw\nendian: %s\nspacings: 1 2 3\naxis mins: 0 0 0\n\n",
                types[t].name, NX, NY, NZ, big ? "big" : "little");
       vxm_grid *grid = must_read(context, file, join(file, header, values, COUNT * size));
-      assert_int_equal(grid->notes.count, 0);
+      assert_int_equal(grid->warnings.count, 0);
       for (size_t v = 0; v < COUNT; v++) {
         bool set = false;
         for (size_t b = 0; b < size; b++)
@@ -100,7 +100,7 @@ static void test_types(void **state) {
 typedef struct placed {
   const char *lines;
   double origin[3], size[3];
-  int notes;
+  int warnings;
 } placed;
 
 /** Sizes are 4 2 3. */
@@ -141,7 +141,7 @@ static void test_transforms(void **state) {
     snprintf(header, sizeof header, "NRRD0005\ntype: uint8\ndimension: 3\n%ssizes: 4 2 3\nencoding: RAW\n\n",
              places[p].lines);
     vxm_grid *grid = must_read(context, file, join(file, header, values, sizeof values));
-    assert_int_equal(grid->notes.count, places[p].notes);
+    assert_int_equal(grid->warnings.count, places[p].warnings);
     assert_memory_equal(grid->space.origin, places[p].origin, sizeof grid->space.origin);
     assert_memory_equal(grid->space.voxel_size, places[p].size, sizeof grid->space.voxel_size);
     assert_true(vxm_grid_count(grid) == 1 && vxm_grid_get(grid, 1, 0, 0));

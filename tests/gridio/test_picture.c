@@ -5,7 +5,8 @@
 #include "grids.h"
 
 #include "gridio/gridio.h"
-#include "gridio/trace.h"
+#include "gridio/picture/picture.h"
+#include "gridio/picture/raycast.h"
 
 #include <math.h>
 
@@ -53,8 +54,8 @@ static void test_rays(void **state) {
         p[a] = (int64_t)vxm_rng_below(&rng, (uint64_t)space.dims[a]);
       vxm_grid_set(grid, p[0], p[1], p[2], true);
     }
-    vxm_pyramid pyramid;
-    assert_int_equal(vxm_pyramid_create(&pyramid, grid, NULL), VXM_OK);
+    vxm_occupancy_mips pyramid;
+    assert_int_equal(vxm_occupancy_mips_create(&pyramid, grid, NULL), VXM_OK);
     for (int r = 0; r < 40; r++) {
       double o[3], d[3];
       for (int a = 0; a < 3; a++) {
@@ -62,14 +63,14 @@ static void test_rays(void **state) {
         d[a] = vxm_rng_unit(&rng) * (double)space.dims[a] - o[a]; /* toward the grid */
       }
       vxm_hit fast, slow;
-      bool hit = vxm_trace(&fast, grid, &pyramid, o, d);
+      bool hit = vxm_raycast(&fast, grid, &pyramid, o, d);
       assert_int_equal(hit, slow_trace(&slow, grid, o, d));
       if (hit) {
         assert_memory_equal(fast.voxel, slow.voxel, sizeof fast.voxel);
         assert_true(fabs(fast.t - slow.t) < 1e-9);
       }
     }
-    vxm_pyramid_destroy(&pyramid);
+    vxm_occupancy_mips_destroy(&pyramid);
     vxm_grid_destroy(grid);
   }
   vxm_context_destroy(context);
@@ -81,22 +82,22 @@ static void test_rays_along_axes(void **state) {
   vxm_context *context = context_of(1);
   vxm_grid *grid = new_grid(context, unit_space(70, 30, 20));
   vxm_grid_set(grid, 66, 10, 5, true);
-  vxm_pyramid pyramid;
-  assert_int_equal(vxm_pyramid_create(&pyramid, grid, NULL), VXM_OK);
+  vxm_occupancy_mips pyramid;
+  assert_int_equal(vxm_occupancy_mips_create(&pyramid, grid, NULL), VXM_OK);
   for (int axis = 0; axis < 3; axis++)
     for (int forward = 0; forward < 2; forward++) {
       double o[3] = {66.5, 10.5, 5.5}, d[3] = {0, 0, 0};
       o[axis] = forward ? -3 : 200;
       d[axis] = forward ? 2 : -2;
       vxm_hit hit;
-      assert_true(vxm_trace(&hit, grid, &pyramid, o, d));
+      assert_true(vxm_raycast(&hit, grid, &pyramid, o, d));
       assert_true(hit.axis == axis && hit.positive == !forward && hit.voxel[0] == 66);
       o[(axis + 1) % 3] += 1;
-      assert_false(vxm_trace(&hit, grid, &pyramid, o, d));
+      assert_false(vxm_raycast(&hit, grid, &pyramid, o, d));
       o[(axis + 1) % 3] = -1;
-      assert_false(vxm_trace(&hit, grid, &pyramid, o, d));
+      assert_false(vxm_raycast(&hit, grid, &pyramid, o, d));
     }
-  vxm_pyramid_destroy(&pyramid);
+  vxm_occupancy_mips_destroy(&pyramid);
   vxm_grid_destroy(grid);
   vxm_context_destroy(context);
 }
@@ -110,8 +111,8 @@ static void test_pyramid(void **state) {
     vxm_grid *grid = new_grid(context, random_space(&rng, 70, false));
     fill_random(grid, &rng, round % KINDS);
     const int64_t *n = grid->space.dims;
-    vxm_pyramid pyramid;
-    assert_int_equal(vxm_pyramid_create(&pyramid, grid, NULL), VXM_OK);
+    vxm_occupancy_mips pyramid;
+    assert_int_equal(vxm_occupancy_mips_create(&pyramid, grid, NULL), VXM_OK);
     for (int l = 0; l < pyramid.levels; l++) {
       int64_t side = INT64_C(4) << l;
       for (int64_t k = 0; k < n[2]; k += side)
@@ -121,11 +122,11 @@ static void test_pyramid(void **state) {
             for (int64_t v = 0; v < side * side * side; v++)
               count += vxm_grid_get(grid, i + v % side, j + v / side % side, k + v / side / side);
             double part = 255.0 * (double)count / (double)(side * side * side);
-            uint8_t cell = vxm_pyramid_cell(&pyramid, l, (int64_t[3]){i, j, k});
+            uint8_t cell = vxm_occupancy_mips_cell(&pyramid, l, (int64_t[3]){i, j, k});
             assert_true(cell >= part - 1e-9 && cell < part + l + 1 && (cell == 0) == (count == 0));
           }
     }
-    vxm_pyramid_destroy(&pyramid);
+    vxm_occupancy_mips_destroy(&pyramid);
     vxm_grid_destroy(grid);
   }
   vxm_context_destroy(context);
@@ -342,16 +343,16 @@ static void test_unavailable(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_rays),
-    cmocka_unit_test(test_rays_along_axes),
-    cmocka_unit_test(test_pyramid),
+      cmocka_unit_test(test_rays),
+      cmocka_unit_test(test_rays_along_axes),
+      cmocka_unit_test(test_pyramid),
 #ifdef HAVE_PNG
-    cmocka_unit_test(test_framing),
-    cmocka_unit_test(test_way_up),
-    cmocka_unit_test(test_same_for_all_threads),
-    cmocka_unit_test(test_options),
+      cmocka_unit_test(test_framing),
+      cmocka_unit_test(test_way_up),
+      cmocka_unit_test(test_same_for_all_threads),
+      cmocka_unit_test(test_options),
 #else
-    cmocka_unit_test(test_unavailable),
+      cmocka_unit_test(test_unavailable),
 #endif
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,9 +3,9 @@
  */
 #include "grids.h"
 
+#include "gridio/common/grid_writer.h"
+#include "gridio/formats/rle_encoder.h"
 #include "gridio/gridio.h"
-#include "gridio/run_writer.h"
-#include "gridio/slices.h"
 
 static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd"};
 
@@ -34,22 +34,22 @@ static vxm_window cut(const vxm_grid *grid, vxm_layout layout, int64_t begin, in
   return window;
 }
 
-static vxm_slices *open_slices(vxm_context *context, const vxm_space *space, const char *path) {
+static vxm_grid_writer *open_slices(vxm_context *context, const vxm_space *space, const char *path) {
   vxm_error error = VXM_ERROR_INIT;
-  vxm_slices *slices;
-  if (vxm_slices_open(&slices, context, space, path, NULL, &error) != VXM_OK)
+  vxm_grid_writer *slices;
+  if (vxm_grid_writer_open(&slices, context, space, path, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return slices;
 }
 
 /** Puts windows of a random number of slices, up to slice `end`. */
-static vxm_status put_until(vxm_slices *slices, const vxm_grid *grid, int64_t end, vxm_rng *rng,
+static vxm_status put_until(vxm_grid_writer *slices, const vxm_grid *grid, int64_t end, vxm_rng *rng,
                             vxm_error *error) {
   vxm_status status = VXM_OK;
   for (int64_t at = 0, next; at < end && status == VXM_OK; at = next) {
     next = at + 1 + (int64_t)vxm_rng_below(rng, (uint64_t)(end - at));
-    vxm_window window = cut(grid, vxm_slices_layout(slices), at, next);
-    status = vxm_slices_put(slices, &window, error);
+    vxm_window window = cut(grid, vxm_grid_writer_layout(slices), at, next);
+    status = vxm_grid_writer_put(slices, &window, error);
     free(window.words);
   }
   return status;
@@ -72,14 +72,14 @@ static void check_format(const vxm_grid *grid, const char *folder, const char *f
   snprintf(whole, sizeof whole, "%s/whole.%s", folder, format);
   snprintf(pieces, sizeof pieces, "%s/pieces.%s", folder, format);
   assert_int_equal(vxm_gridio_write(grid, whole, NULL, NULL), VXM_OK);
-  vxm_slices_plan plan;
-  assert_int_equal(vxm_slices_plan_of(&plan, &grid->space, pieces, NULL, NULL), VXM_OK);
+  vxm_grid_writer_plan plan;
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &grid->space, pieces, NULL, NULL), VXM_OK);
   assert_true(plan.streams);
-  vxm_slices *slices = open_slices(context, &grid->space, pieces);
-  vxm_layout layout = vxm_slices_layout(slices);
+  vxm_grid_writer *slices = open_slices(context, &grid->space, pieces);
+  vxm_layout layout = vxm_grid_writer_layout(slices);
   assert_memory_equal(&layout, &plan.layout, sizeof layout);
   assert_int_equal(put_until(slices, grid, grid->space.dims[layout.slow], rng, NULL), VXM_OK);
-  assert_int_equal(vxm_slices_commit(slices, NULL), VXM_OK);
+  assert_int_equal(vxm_grid_writer_commit(slices, NULL), VXM_OK);
   assert_true(vxm_context_peak_bytes(context) <= plan.bytes);
   assert_true(vxm_context_peak_bytes(context) + 8192 * 2 + 512 >= plan.bytes);
   vxm_context_destroy(context);
@@ -168,7 +168,7 @@ static void test_rough_binvox(void **state) {
 /* ---- Runs alone ---- */
 
 typedef struct code {
-  vxm_run_code kind;
+  vxm_rle_code kind;
   bool value;
   uint64_t length;
   unsigned char *bytes;
@@ -207,16 +207,16 @@ static void add_code(code *c, bool value, uint64_t count) {
 }
 
 /** A window without a grid around it, with gaps of any length. */
-static void check_runs(vxm_context *context, const char *folder, const vxm_run_shape *shape, int64_t rows,
+static void check_runs(vxm_context *context, const char *folder, const vxm_rle_shape *shape, int64_t rows,
                        int64_t slices, uint64_t sparse, vxm_rng *rng) {
   vxm_space space = unit_space((int64_t)shape->length, rows, slices);
   const char *path = path_in(folder, "runs");
   uint64_t all = (uint64_t)(rows * slices);
-  vxm_slices file = {.context = context, .space = space, .length = slices};
+  vxm_grid_writer file = {.context = context, .space = space, .length = slices};
   assert_int_equal(vxm_output_open(&file.output, context, path, NULL), VXM_OK);
-  file.state = vxm_alloc(context, vxm_run_writer_bytes(shape, all), 1, NULL);
+  file.state = vxm_alloc(context, vxm_rle_encoder_bytes(shape, all), 1, NULL);
   assert_non_null(file.state);
-  vxm_run_writer_begin(file.state, shape, all);
+  vxm_rle_encoder_begin(file.state, shape, all);
   vxm_grid *grid = new_grid(context, space);
   code expected = {.kind = shape->code};
   for (int64_t k = 0; k < slices; k++) {
@@ -233,9 +233,9 @@ static void check_runs(vxm_context *context, const char *folder, const vxm_run_s
   add_code(&expected, false, 12345);
   end_code(&expected, true);
   vxm_window window = vxm_window_of_grid(grid);
-  assert_int_equal(vxm_run_writer_put(&file, &window, NULL), VXM_OK);
-  vxm_run_writer_skip(&file, 12345);
-  vxm_run_writer_end(&file);
+  assert_int_equal(vxm_rle_encoder_put(&file, &window, NULL), VXM_OK);
+  vxm_rle_encoder_skip(&file, 12345);
+  vxm_rle_encoder_end(&file);
   assert_int_equal(vxm_output_commit(file.output, NULL), VXM_OK);
   vxm_free(context, file.state);
   vxm_grid_destroy(grid);
@@ -256,12 +256,12 @@ static void test_runs(void **state) {
   static const uint64_t gaps[] = {0, 1, 254, 255, 256, 510, 1000, 20000};
   for (int round = 0; round < 120; round++) {
     vxm_context *context = context_with(1 + round % 2, 0, NULL, NULL);
-    vxm_run_shape shape = {round % 3 ? VXM_RUN_PAIRS : VXM_RUN_BYTES, 1 + vxm_rng_below(&rng, 130),
+    vxm_rle_shape shape = {round % 3 ? VXM_RUN_PAIRS : VXM_RUN_BYTES, 1 + vxm_rng_below(&rng, 130),
                            gaps[vxm_rng_below(&rng, 8)], gaps[vxm_rng_below(&rng, 8)]};
     int64_t rows = 1 + (int64_t)vxm_rng_below(&rng, 40), slices = 1 + (int64_t)vxm_rng_below(&rng, 30);
     check_runs(context, folder, &shape, rows, slices, 1 + vxm_rng_below(&rng, 3), &rng);
     if (round < 6) {
-      shape = (vxm_run_shape){shape.code, 1 + (size_t)round % 3, 10000 + 255 * (uint64_t)round, 700000};
+      shape = (vxm_rle_shape){shape.code, 1 + (size_t)round % 3, 10000 + 255 * (uint64_t)round, 700000};
       check_runs(context, folder, &shape, 5000, 2, 300, &rng);
       check_runs(context, folder, &shape, 5000, 2, 3, &rng);
     }
@@ -276,33 +276,33 @@ static void test_plan(void **state) {
   (void)state;
   vxm_space space = unit_space(100, 200, 300);
   vxm_error error = VXM_ERROR_INIT;
-  vxm_slices_plan plan;
+  vxm_grid_writer_plan plan;
   static const char *const meshes[] = {"obj", "ply", "stl", "off"};
   for (int m = 0; m < 4; m++) {
-    assert_int_equal(vxm_slices_plan_of(&plan, &space, "-", meshes[m], &error), VXM_OK);
+    assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, "-", meshes[m], &error), VXM_OK);
     assert_true(!plan.streams && plan.bytes == 0);
-    vxm_slices *slices;
-    assert_int_equal(vxm_slices_open(&slices, NULL, &space, "x", meshes[m], &error), VXM_ERROR_ARGUMENT);
+    vxm_grid_writer *slices;
+    assert_int_equal(vxm_grid_writer_open(&slices, NULL, &space, "x", meshes[m], &error), VXM_ERROR_ARGUMENT);
     assert_null(slices);
   }
-  assert_int_equal(vxm_slices_plan_of(&plan, &space, "a.xyz", NULL, &error), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_slices_plan_of(&plan, &space, "-", NULL, &error), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_slices_plan_of(&plan, &space, "-", "raw", &error), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_slices_plan_of(&plan, &space, "-", "RLE", &error), VXM_OK);
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, "a.xyz", NULL, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, "-", NULL, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, "-", "raw", &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, "-", "RLE", &error), VXM_OK);
   assert_true(plan.streams && plan.layout.fast == 0 && plan.gather_bytes == 0);
-  assert_int_equal(vxm_slices_plan_of(&plan, &space, "a.binvox", NULL, &error), VXM_OK);
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, "a.binvox", NULL, &error), VXM_OK);
   assert_true(plan.layout.fast == 1 && plan.layout.middle == 2 && plan.layout.slow == 0);
   assert_true(plan.gather_bytes >= 64 * 300 * 4 * 8);
-  assert_int_equal(vxm_slices_plan_of(&plan, &space, "a.npy", NULL, &error), VXM_OK);
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, "a.npy", NULL, &error), VXM_OK);
   assert_true(plan.layout.fast == 2 && plan.layout.middle == 1 && plan.layout.slow == 0);
   /* The writer stays small however large the grid. */
   space = unit_space(VXM_DIM_MAX, VXM_DIM_MAX, VXM_DIM_MAX);
   for (int f = 0; f < FORMATS; f++)
-    if (vxm_slices_plan_of(&plan, &space, "a", formats[f], &error) == VXM_OK)
+    if (vxm_grid_writer_plan_of(&plan, &space, "a", formats[f], &error) == VXM_OK)
       assert_true(plan.bytes < 5 << 20);
   space = unit_space(9, 9, 9);
   space.voxel_size[1] = 2;
-  assert_int_equal(vxm_slices_plan_of(&plan, &space, "a.binvox", NULL, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, "a.binvox", NULL, &error), VXM_ERROR_ARGUMENT);
   assert_non_null(strstr(error.text, "cubes"));
 }
 
@@ -319,23 +319,23 @@ static void test_order_of_slices(void **state) {
     snprintf(path, sizeof path, "%s/a.%s", folder, formats[f]);
     for (int wrong = 0; wrong < 4; wrong++) {
       vxm_error error = VXM_ERROR_INIT;
-      vxm_slices *slices = open_slices(context, &grid->space, path);
-      vxm_layout layout = vxm_slices_layout(slices);
+      vxm_grid_writer *slices = open_slices(context, &grid->space, path);
+      vxm_layout layout = vxm_grid_writer_layout(slices);
       assert_int_equal(put_until(slices, grid, 5, &rng, &error), VXM_OK);
       if (wrong == 1)
         layout = (vxm_layout){layout.middle, layout.fast, layout.slow};
       vxm_window window = cut(grid, layout, wrong == 2 ? 6 : wrong == 3 ? 4 : 5, 8);
       if (wrong > 0) {
-        assert_int_equal(vxm_slices_put(slices, &window, &error), VXM_ERROR_ARGUMENT);
-        vxm_slices_abort(slices);
+        assert_int_equal(vxm_grid_writer_put(slices, &window, &error), VXM_ERROR_ARGUMENT);
+        vxm_grid_writer_abort(slices);
       } else
-        assert_int_equal(vxm_slices_commit(slices, &error), VXM_ERROR_ARGUMENT);
+        assert_int_equal(vxm_grid_writer_commit(slices, &error), VXM_ERROR_ARGUMENT);
       free(window.words);
       assert_int_equal(error.code, VXM_ERROR_ARGUMENT);
       assert_int_equal(count_files(folder), 0);
     }
   }
-  vxm_slices_abort(NULL);
+  vxm_grid_writer_abort(NULL);
   vxm_grid_destroy(grid);
   vxm_context_destroy(context);
   remove_folder(folder);
@@ -348,14 +348,14 @@ static void test_memory_limit(void **state) {
   vxm_space space = unit_space(300, 300, 300);
   for (int f = 0; f < FORMATS; f++) {
     const char *path = path_in(folder, "a");
-    vxm_slices_plan plan;
-    assert_int_equal(vxm_slices_plan_of(&plan, &space, path, formats[f], NULL), VXM_OK);
+    vxm_grid_writer_plan plan;
+    assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, path, formats[f], NULL), VXM_OK);
     for (int enough = 0; enough < 2; enough++) {
       vxm_context *context = context_with(1, enough ? plan.bytes : plan.bytes / 2, NULL, NULL);
-      vxm_slices *slices;
-      assert_int_equal(vxm_slices_open(&slices, context, &space, path, formats[f], NULL),
+      vxm_grid_writer *slices;
+      assert_int_equal(vxm_grid_writer_open(&slices, context, &space, path, formats[f], NULL),
                        enough ? VXM_OK : VXM_ERROR_MEMORY_LIMIT);
-      vxm_slices_abort(slices);
+      vxm_grid_writer_abort(slices);
       vxm_context_destroy(context);
       assert_int_equal(count_files(folder), 0);
     }
@@ -374,14 +374,14 @@ static void test_full_disk(void **state) {
   fill_random(grid, &rng, 1);
   for (int f = 0; f < FORMATS; f++) {
     vxm_error error = VXM_ERROR_INIT;
-    vxm_slices *slices;
-    assert_int_equal(vxm_slices_open(&slices, context, &grid->space, "/dev/full", formats[f], &error),
+    vxm_grid_writer *slices;
+    assert_int_equal(vxm_grid_writer_open(&slices, context, &grid->space, "/dev/full", formats[f], &error),
                      VXM_OK);
     vxm_status status = put_until(slices, grid, 130, &rng, &error);
     if (status == VXM_OK)
-      status = vxm_slices_commit(slices, &error);
+      status = vxm_grid_writer_commit(slices, &error);
     else
-      vxm_slices_abort(slices);
+      vxm_grid_writer_abort(slices);
     assert_int_equal(status, VXM_ERROR_IO);
     assert_non_null(strstr(error.text, "/dev/full"));
     assert_int_equal(vxm_gridio_write(grid, "/dev/full", formats[f], &error), VXM_ERROR_IO);
@@ -416,14 +416,14 @@ static void test_progress(void **state) {
   for (int f = 0; f < FORMATS; f++) {
     const char *path = path_in(folder, "a");
     vxm_error error = VXM_ERROR_INIT;
-    vxm_slices *slices;
+    vxm_grid_writer *slices;
     c = (calls){0};
-    assert_int_equal(vxm_slices_open(&slices, context, &grid->space, path, formats[f], &error), VXM_OK);
-    assert_int_equal(put_until(slices, grid, grid->space.dims[vxm_slices_layout(slices).slow], &rng, &error),
-                     VXM_OK);
+    assert_int_equal(vxm_grid_writer_open(&slices, context, &grid->space, path, formats[f], &error), VXM_OK);
+    assert_int_equal(
+        put_until(slices, grid, grid->space.dims[vxm_grid_writer_layout(slices).slow], &rng, &error), VXM_OK);
     assert_int_equal(c.count, 0);
     c.stop_at = f == 0 ? 7 : 0; /* in the padding of the cube */
-    assert_int_equal(vxm_slices_commit(slices, &error), f == 0 ? VXM_ERROR_CANCELLED : VXM_OK);
+    assert_int_equal(vxm_grid_writer_commit(slices, &error), f == 0 ? VXM_ERROR_CANCELLED : VXM_OK);
     assert_int_equal(count_files(folder), f == 0 ? 0 : f < 3 ? 2 : 1);
     empty_folder(folder);
 

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "gridio/gridio.h"
+#include "gridio/mesh/surface_mesh.h"
 #include "meshio/meshio.h"
 
 #include <math.h>

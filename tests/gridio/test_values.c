@@ -4,9 +4,9 @@
 #include "config.h"
 #include "grids.h"
 
-#include "gridio/format.h"
+#include "export/values_write.h"
+#include "gridio/common/format.h"
 #include "gridio/gridio.h"
-#include "gridio/values_write.h"
 
 #include <math.h>
 #ifdef HAVE_ZLIB
@@ -170,7 +170,7 @@ static void test_round_trips(void **state) {
     vxm_field *field = random_field(context, &rng, types[t].scalar);
     field->about.kind = VXM_FIELD_DISTANCE;
     field->about.is_declared = true;
-    vxm_pairs_add(&field->about.pairs, context, "unit", 4, "mm", 2);
+    vxm_metadata_add(&field->about.pairs, context, "unit", 4, "mm", 2);
     write_field(field, path_in(folder, "a.npy"));
     vxm_field *npy = read_field(context, path_in(folder, "a.npy"));
     assert_same_values(field, npy);

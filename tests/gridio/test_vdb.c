@@ -5,10 +5,10 @@
  */
 #include "grids.h"
 
-#include "gridio/format.h"
-#include "gridio/sparse_io.h"
-#include "gridio/vdb.h"
-#include "gridio/vdb_field.h"
+#include "gridio/common/format.h"
+#include "gridio/formats/vdb.h"
+#include "gridio/formats/vdb_field.h"
+#include "gridio/sparse_write.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -25,8 +25,8 @@ static bool same_files(const char *a, const char *b) {
 /* ---- What is written comes back ---- */
 
 static void write_pieces(const vxm_grid *grid, const char *path, vxm_rng *rng) {
-  vxm_slices *slices;
-  assert_int_equal(vxm_slices_open(&slices, grid->context, &grid->space, path, NULL, NULL), VXM_OK);
+  vxm_grid_writer *slices;
+  assert_int_equal(vxm_grid_writer_open(&slices, grid->context, &grid->space, path, NULL, NULL), VXM_OK);
   int64_t all = grid->space.dims[2];
   for (int64_t at = 0, next; at < all; at = next) {
     next = at + 1 + (int64_t)vxm_rng_below(rng, (uint64_t)(vxm_min(all - at, 20)));
@@ -34,9 +34,9 @@ static void write_pieces(const vxm_grid *grid, const char *path, vxm_rng *rng) {
     window.words = vxm_grid_row(grid, 0, at);
     window.begin = at;
     window.end = next;
-    assert_int_equal(vxm_slices_put(slices, &window, NULL), VXM_OK);
+    assert_int_equal(vxm_grid_writer_put(slices, &window, NULL), VXM_OK);
   }
-  assert_int_equal(vxm_slices_commit(slices, NULL), VXM_OK);
+  assert_int_equal(vxm_grid_writer_commit(slices, NULL), VXM_OK);
 }
 
 /** Grids, pieces of them and octrees make the same bytes, which are the grid again. */
@@ -258,8 +258,8 @@ static void test_plan(void **state) {
   make_folder(folder);
   vxm_context *context = context_with(1, 0, NULL, NULL);
   vxm_space space = unit_space(300, 300, 300);
-  vxm_slices_plan plan;
-  assert_int_equal(vxm_slices_plan_of(&plan, &space, path_in(folder, "a.vdb"), NULL, NULL), VXM_OK);
+  vxm_grid_writer_plan plan;
+  assert_int_equal(vxm_grid_writer_plan_of(&plan, &space, path_in(folder, "a.vdb"), NULL, NULL), VXM_OK);
   assert_true(plan.streams && plan.layout.fast == 0 && plan.layout.slow == 2 && plan.gather_bytes == 0);
   vxm_grid *grid = new_grid(context, space);
   for (int64_t k = 0; k < 300; k++)

@@ -325,10 +325,10 @@ static void compare_column(comparison *c, const shared_mesh *mesh, const char *c
 }
 
 static int64_t unused_by_notes(const shared_mesh *mesh) {
-  const char *notes = shared_value(mesh, "notes"), *found = strstr(notes, " vertices used by no face");
+  const char *warnings = shared_value(mesh, "notes"), *found = strstr(warnings, " vertices used by no face");
   if (!found)
     return 0;
-  while (found > notes && found[-1] >= '0' && found[-1] <= '9')
+  while (found > warnings && found[-1] >= '0' && found[-1] <= '9')
     found--;
   return strtoll(found, NULL, 10);
 }

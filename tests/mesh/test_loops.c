@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "shared.h"
 
-#include "mesh/loops.h"
+#include "mesh/boundary_loops.h"
 
 #include <math.h>
 #include <time.h>
 
 typedef struct found {
   vxm_edges edges;
-  vxm_loops loops;
+  vxm_boundary_loops loops;
 } found;
 
 /** Every odd edge once, and walks that close. */
@@ -16,7 +16,7 @@ static found find_loops(const vxm_soup *soup) {
   found f;
   vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(vxm_edges_build(&f.edges, soup->context, soup, NULL, &error), VXM_OK);
-  if (vxm_loops_build(&f.loops, soup, &f.edges, &error) != VXM_OK)
+  if (vxm_boundary_loops_build(&f.loops, soup, &f.edges, &error) != VXM_OK)
     fail_msg("%s", error.text);
   uint8_t *seen = calloc(f.edges.count + 1, 1);
   assert_non_null(seen);
@@ -40,7 +40,7 @@ static found find_loops(const vxm_soup *soup) {
 }
 
 static void found_free(found *f) {
-  vxm_loops_destroy(&f->loops);
+  vxm_boundary_loops_destroy(&f->loops);
   vxm_edges_destroy(&f->edges);
 }
 
@@ -258,9 +258,9 @@ static void memory_may_run_out(void **state) {
     vxm_soup *soup = fan(context, 100, 0.5);
     vxm_edges edges;
     if (vxm_edges_build(&edges, context, soup, NULL, NULL) == VXM_OK) {
-      vxm_loops loops;
+      vxm_boundary_loops loops;
       vxm_error error = VXM_ERROR_INIT;
-      vxm_status status = vxm_loops_build(&loops, soup, &edges, &error);
+      vxm_status status = vxm_boundary_loops_build(&loops, soup, &edges, &error);
       if (status == VXM_OK)
         passed++;
       else {
@@ -270,7 +270,7 @@ static void memory_may_run_out(void **state) {
         assert_null(loops.edge);
         assert_int_equal(loops.count, 0);
       }
-      vxm_loops_destroy(&loops);
+      vxm_boundary_loops_destroy(&loops);
       vxm_edges_destroy(&edges);
     }
     vxm_soup_destroy(soup);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "soups.h"
 
-#include "mesh/near.h"
+#include "mesh/weld_tolerance.h"
 
 #include <math.h>
 

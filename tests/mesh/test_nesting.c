@@ -2,13 +2,13 @@
 #include "soups.h"
 
 #include "mesh/components.h"
-#include "mesh/nesting.h"
+#include "mesh/containment.h"
 
 #include <math.h>
 #include <time.h>
 
 typedef struct nested {
-  vxm_nesting nesting;
+  vxm_containment nesting;
   uint32_t *labels;
   size_t count;
 } nested;
@@ -19,14 +19,14 @@ static nested nest(vxm_soup *soup, const uint8_t *solid) {
   assert_non_null(n.labels);
   assert_int_equal(vxm_components(soup->context, soup, NULL, n.labels, &n.count, NULL), VXM_OK);
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_nesting_build(&n.nesting, soup, n.labels, n.count, solid, &error) != VXM_OK)
+  if (vxm_containment_build(&n.nesting, soup, n.labels, n.count, solid, &error) != VXM_OK)
     fail_msg("%s", error.text);
   assert_int_equal(n.nesting.count, n.count);
   return n;
 }
 
 static void nested_free(nested *n) {
-  vxm_nesting_destroy(&n->nesting);
+  vxm_containment_destroy(&n->nesting);
   free(n->labels);
 }
 
@@ -287,16 +287,16 @@ static void many_in_one(void **state) {
   size_t count;
   assert_int_equal(vxm_components(context, soup, NULL, labels, &count, NULL), VXM_OK);
   assert_int_equal(count, INNER + 1);
-  vxm_nesting nesting;
+  vxm_containment nesting;
   double start = seconds();
-  assert_int_equal(vxm_nesting_build(&nesting, soup, labels, count, NULL, NULL), VXM_OK);
+  assert_int_equal(vxm_containment_build(&nesting, soup, labels, count, NULL, NULL), VXM_OK);
   double took = seconds() - start;
   print_message("%d cubes in a sphere of %zu faces: %.3f s\n", INNER, soup->face_count - 6 * (size_t)INNER,
                 took);
   for (size_t i = 0; i <= INNER; i++)
     assert_int_equal(nesting.parent[i], i == 0 ? VXM_NO_COMPONENT : 0);
   assert_true(took < 20); /* a bound for the slowest machine and sanitizers */
-  vxm_nesting_destroy(&nesting);
+  vxm_containment_destroy(&nesting);
   free(labels);
   vxm_soup_destroy(soup);
   vxm_context_destroy(context);
@@ -352,9 +352,9 @@ static void memory_may_run_out(void **state) {
     size_t count;
     assert_true(soup->face_count <= 1000);
     if (vxm_components(context, soup, NULL, labels, &count, NULL) == VXM_OK) {
-      vxm_nesting nesting;
+      vxm_containment nesting;
       vxm_error error = VXM_ERROR_INIT;
-      vxm_status status = vxm_nesting_build(&nesting, soup, labels, count, NULL, &error);
+      vxm_status status = vxm_containment_build(&nesting, soup, labels, count, NULL, &error);
       if (status == VXM_OK)
         passed++;
       else {
@@ -364,7 +364,7 @@ static void memory_may_run_out(void **state) {
         assert_null(nesting.parent);
         assert_null(nesting.volume);
       }
-      vxm_nesting_destroy(&nesting);
+      vxm_containment_destroy(&nesting);
     }
     vxm_soup_destroy(soup);
     vxm_context_destroy(context);

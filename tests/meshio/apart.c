@@ -9,11 +9,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/beneath.h"
 #include "base/clock.h"
+#include "base/open_beneath.h"
 #include "config.h"
-#include "meshio/apart.h"
-#include "meshio/parcel.h"
+#include "meshio/external/sandbox.h"
+#include "meshio/external/wire_format.h"
 
 static const vxm_module_need need = {"ill", "none", "reading .ill files"};
 
@@ -30,7 +30,7 @@ static vxm_status ask(vxm_soup **soup, vxm_context *context, const char *data, s
                                 .deflection = 0.125};
   *error = (vxm_error)VXM_ERROR_INIT;
   assert_int_equal(vxm_soup_create(soup, context, "ill", NULL), VXM_OK);
-  vxm_status status = vxm_read_apart(*soup, &need, &request, &references, error);
+  vxm_status status = vxm_sandbox_read(*soup, &need, &request, &references, error);
   assert_int_equal(status, status == VXM_OK ? VXM_OK : error->code);
   if (status == VXM_OK)
     check_invariants(*soup);
@@ -70,8 +70,8 @@ static void test_soup(void **state) {
     assert_string_equal(soup->tags[1], "");
     for (size_t f = 0; f < sizes[i]; f++)
       assert_int_equal(soup->face_tags[f], f % 2);
-    assert_int_equal(soup->notes.count, 1);
-    assert_string_equal(soup->notes.text[0], "a note?of two lines"); /* notes keep to one line */
+    assert_int_equal(soup->warnings.count, 1);
+    assert_string_equal(soup->warnings.text[0], "a note?of two lines"); /* warnings keep to one line */
     vxm_soup_destroy(soup);
     free(data);
   }
@@ -101,7 +101,7 @@ static void test_missing(void **state) {
   vxm_module_need other = {"nosuch", "libnosuch-dev", "reading .nosuch files"};
   vxm_reader_request request = {.name = "a", .hint = "nosuch"};
   assert_int_equal(vxm_soup_create(&soup, NULL, "", NULL), VXM_OK);
-  assert_int_equal(vxm_read_apart(soup, &other, &request, &references, &error), VXM_ERROR_UNAVAILABLE);
+  assert_int_equal(vxm_sandbox_read(soup, &other, &request, &references, &error), VXM_ERROR_UNAVAILABLE);
   assert_non_null(strstr(error.text, "reading .nosuch files needs voxmend's module \"nosuch\""));
   assert_non_null(strstr(error.text, "libnosuch-dev"));
   vxm_soup_destroy(soup);
@@ -183,16 +183,16 @@ static int run_long(const char *word, const char *seconds, double limit_ms, bool
                                                     "0x1p-10",        "100000000", "100000000", seconds};
   vxm_process reader;
   vxm_soup *soup;
-  vxm_parcel_listener listener = {0};
+  vxm_wire_listener listener = {0};
   vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(vxm_soup_create(&soup, NULL, "", NULL), VXM_OK);
   assert_int_equal(vxm_process_start(&reader, soup->context, "reading", program,
                                      (char *const *)(uintptr_t)arguments, &error),
                    VXM_OK);
   reader.limit_ms = limit_ms;
-  assert_int_equal(vxm_parcel_send_size(&reader, strlen(word), &error), VXM_OK);
+  assert_int_equal(vxm_wire_send_size(&reader, strlen(word), &error), VXM_OK);
   assert_int_equal(vxm_process_send(&reader, word, strlen(word), &error), VXM_OK);
-  assert_int_equal(vxm_parcel_receive(soup, &reader, &listener, &error), VXM_ERROR_IO);
+  assert_int_equal(vxm_wire_receive(soup, &reader, &listener, &error), VXM_ERROR_IO);
   *is_late = vxm_process_is_late(&reader);
   int end = vxm_process_end(&reader);
   vxm_soup_destroy(soup);
@@ -333,10 +333,10 @@ static void test_references(void **state) {
     fails(list, VXM_ERROR_RANGE, cases[c].got);
     assert_int_equal(references.asked, 13);
     assert_int_equal(references.refused, cases[c].refused);
-    assert_true(references.notes.count > 0 && references.notes.count <= VXM_NOTES_MAX / 2);
+    assert_true(references.warnings.count > 0 && references.warnings.count <= VXM_NOTES_MAX / 2);
   }
-  assert_non_null(
-      strstr(references.notes.text[0], "\"fifo\", which it refers to, was not opened: it is not a regular"));
+  assert_non_null(strstr(references.warnings.text[0],
+                         "\"fifo\", which it refers to, was not opened: it is not a regular"));
   /* Not without end. */
   references = (vxm_references){.folder = within, .is_inside = true};
   fails("nag", VXM_ERROR_RANGE, "got 4096");

@@ -159,8 +159,8 @@ static void make_binary_ply(file *f, const shape *s, int variant) {
 /* ---- The cuts ---- */
 
 static bool has_note(const vxm_soup *soup, const char *part) {
-  for (int n = 0; n < soup->notes.count; n++)
-    if (strstr(soup->notes.text[n], part))
+  for (int n = 0; n < soup->warnings.count; n++)
+    if (strstr(soup->warnings.text[n], part))
       return true;
   return false;
 }
@@ -205,7 +205,7 @@ static void check_cut(const file *f, const shape *s, const char *name, size_t si
   bool is_whole =
       size >= f->face_end[QUADS - 1] && soup->face_count == QUADS && (!f->solid || size + 7 >= f->b.size);
   bool could_be = !f->counts && soup->face_count + TUBE + 2 >= QUADS;
-  if (soup->notes.count == 0 && !is_whole && !could_be)
+  if (soup->warnings.count == 0 && !is_whole && !could_be)
     fail_msg("%s cut to %zu of %zu bytes says nothing; %zu faces", name, size, f->b.size, soup->face_count);
   vxm_soup_destroy(soup);
 }

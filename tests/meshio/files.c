@@ -94,8 +94,8 @@ static void expect_row(const row *r) {
              soup->face_count, over, vertices, faces, polygons);
   if (!damaged) {
     assert_string_equal(soup->format, r->field[FORMAT]);
-    if (soup->notes.count)
-      fail_msg("%s: %s", file, soup->notes.text[0]);
+    if (soup->warnings.count)
+      fail_msg("%s: %s", file, soup->warnings.text[0]);
   }
   vxm_soup_destroy(soup);
 }

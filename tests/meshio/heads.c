@@ -3,7 +3,7 @@
  * A binary STL is told whatever its header and its count say, and nothing else is taken for one, though its
  * size be that of an STL.
  */
-#include "meshio/stl.h"
+#include "meshio/formats/stl.h"
 #include "meshio_test.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))

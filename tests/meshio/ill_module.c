@@ -20,7 +20,7 @@
 
 #include "base/module.h"
 #include "config.h"
-#include "meshio/reader.h"
+#include "meshio/external/reader.h"
 
 static vxm_status make_strip(vxm_soup *soup, size_t faces, vxm_error *error) {
   vxm_status status = VXM_OK;
@@ -40,7 +40,7 @@ static vxm_status make_strip(vxm_soup *soup, size_t faces, vxm_error *error) {
   soup->face_tags = vxm_alloc(soup->context, faces, sizeof *soup->face_tags, error);
   for (size_t f = 0; f < faces && soup->face_tags; f++)
     soup->face_tags[f] = (uint32_t)(f % 2);
-  vxm_note(&soup->notes, "a note\nof two lines");
+  vxm_warn(&soup->warnings, "a note\nof two lines");
   return soup->face_tags ? VXM_OK : error->code;
 }
 
@@ -70,7 +70,7 @@ static void send_rubbish(void) {
     raise(SIGABRT);
 }
 
-/** A header of a soup (see parcel.c) whose counts no memory holds, or whose arrays contradict them. */
+/** A header of a soup (see wire_format.c) whose counts no memory holds, or whose arrays contradict them. */
 static void send_lies(bool is_huge) {
   const uint64_t most = is_huge ? UINT64_MAX / 3 : 1;
   const uint64_t header[] = {3, most, most, is_huge ? most : 3, 0, 0, 0};

@@ -138,23 +138,23 @@ static inline void expect_vertex(const vxm_soup *soup, size_t vertex, double x, 
 }
 
 static inline void expect_note(const vxm_soup *soup, const char *part) {
-  for (int n = 0; n < soup->notes.count; n++)
-    if (strstr(soup->notes.text[n], part))
+  for (int n = 0; n < soup->warnings.count; n++)
+    if (strstr(soup->warnings.text[n], part))
       return;
-  fail_msg("no note \"%s\" among %d; first: \"%s\"", part, soup->notes.count,
-           soup->notes.count ? soup->notes.text[0] : "");
+  fail_msg("no note \"%s\" among %d; first: \"%s\"", part, soup->warnings.count,
+           soup->warnings.count ? soup->warnings.text[0] : "");
 }
 
 static inline void expect_no_notes(const vxm_soup *soup) {
-  if (soup->notes.count)
-    fail_msg("unexpected note \"%s\"", soup->notes.text[0]);
+  if (soup->warnings.count)
+    fail_msg("unexpected note \"%s\"", soup->warnings.text[0]);
 }
 
 /** As expect_no_notes for soups made at random, which have vertices that no face uses. */
 static inline void expect_no_damage(const vxm_soup *soup) {
-  for (int n = 0; n < soup->notes.count; n++)
-    if (!strstr(soup->notes.text[n], "may be cut off: no face uses"))
-      fail_msg("unexpected note \"%s\"", soup->notes.text[n]);
+  for (int n = 0; n < soup->warnings.count; n++)
+    if (!strstr(soup->warnings.text[n], "may be cut off: no face uses"))
+      fail_msg("unexpected note \"%s\"", soup->warnings.text[n]);
 }
 
 /* ---- Random soups ---- */

@@ -2,7 +2,7 @@
 /** Numbers: against strtod on random and hard cases, and written numbers read back. */
 #include "meshio_test.h"
 
-#include "meshio/scan.h"
+#include "meshio/common/tokenizer.h"
 
 #include <locale.h>
 
@@ -15,8 +15,8 @@ static bool scan_number(const char *text, size_t padding, double *value) {
   assert_non_null(copy);
   memcpy(copy, text, length);
   memset(copy + length, ' ', padding);
-  vxm_scan scan = {.begin = copy, .at = copy, .end = copy + length + padding, .c_locale = c_locale};
-  bool good = vxm_scan_double(&scan, value);
+  vxm_tokenizer scan = {.begin = copy, .at = copy, .end = copy + length + padding, .c_locale = c_locale};
+  bool good = vxm_tokenizer_double(&scan, value);
   assert_int_equal(scan.at - copy, good ? length : 0);
   free(copy);
   return good;
@@ -208,8 +208,9 @@ static void test_whole_numbers(void **state) {
     int length = snprintf(text, sizeof text, "%llu ", (unsigned long long)expected) - 1;
     for (int padding = 0; padding < 2; padding++) {
       memset(text + length + 1, ' ', 20);
-      vxm_scan scan = {.at = (unsigned char *)text, .end = (unsigned char *)text + length + 20 * padding};
-      assert_true(vxm_scan_uint(&scan, &value));
+      vxm_tokenizer scan = {.at = (unsigned char *)text,
+                            .end = (unsigned char *)text + length + 20 * padding};
+      assert_true(vxm_tokenizer_uint(&scan, &value));
       assert_true(value == expected);
       assert_int_equal(scan.at - (unsigned char *)text, length);
     }
@@ -217,15 +218,16 @@ static void test_whole_numbers(void **state) {
   static const char *const no[] = {"-1", "1.0", "x", "1x", "12345678x", ""};
   for (size_t i = 0; i < sizeof no / sizeof *no; i++) {
     uint64_t value;
-    vxm_scan scan = {.at = (const unsigned char *)no[i], .end = (const unsigned char *)no[i] + strlen(no[i])};
-    assert_false(vxm_scan_uint(&scan, &value));
+    vxm_tokenizer scan = {.at = (const unsigned char *)no[i],
+                          .end = (const unsigned char *)no[i] + strlen(no[i])};
+    assert_false(vxm_tokenizer_uint(&scan, &value));
     assert_ptr_equal(scan.at, no[i]);
   }
   uint64_t huge;
   const char *digits = "99999999999999999999999999";
-  vxm_scan scan = {.at = (const unsigned char *)digits,
-                   .end = (const unsigned char *)digits + strlen(digits)};
-  assert_true(vxm_scan_uint(&scan, &huge));
+  vxm_tokenizer scan = {.at = (const unsigned char *)digits,
+                        .end = (const unsigned char *)digits + strlen(digits)};
+  assert_true(vxm_tokenizer_uint(&scan, &huge));
   assert_true(huge == UINT64_C(1) << 63);
 }
 

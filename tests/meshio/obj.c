@@ -80,7 +80,7 @@ static void test_damage(void **state) {
   expect_note(soup, "line 7: face names a vertex that does not exist; skipped, 3 such");
   expect_note(soup, "line 8: face has fewer than 3 corners; skipped, 2 such");
   expect_note(soup, "line 10: face has a corner that is no vertex number; skipped, 2 such");
-  assert_int_equal(soup->notes.count, 4);
+  assert_int_equal(soup->warnings.count, 4);
   vxm_soup_destroy(soup);
   soup = read_text(QUAD "l 1 2 3\n", "x.obj");
   expect_counts(soup, 4, 0);

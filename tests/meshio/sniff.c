@@ -2,7 +2,7 @@
 /** Which reader is chosen, UTF-16, foreign files, the memory limit and cancelling. */
 #include "meshio_test.h"
 
-#include "meshio/foreign.h"
+#include "meshio/external/external_formats.h"
 
 #define OFF_TEXT "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
 #define OBJ_TEXT "# made\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -150,10 +150,10 @@ static void test_lists(void **state) {
     char list[200], *next = NULL;
     snprintf(list, sizeof list, "%s", lists[l]);
     for (char *word = strtok_r(list, " ", &next); word; word = strtok_r(NULL, " ", &next)) {
-      const vxm_foreign *format = vxm_foreign_by_extension(word);
+      const vxm_external_format *format = vxm_external_format_by_extension(word);
       assert_non_null(format);
       assert_int_equal(format->is_cad, l == 1);
-      assert_null(vxm_foreign_refusal(word));
+      assert_null(vxm_external_format_refusal(word));
       for (int e = 0; e < VXM_FOREIGN_EXTENSIONS && format->extensions[e]; e++)
         assert_non_null(strstr(lists[l], format->extensions[e]));
     }

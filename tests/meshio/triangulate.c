@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Polygons into triangles: exact, whatever touches what; and fast. */
-#include "meshio/triangulate.h"
-#include "meshio/turn.h"
+#include "mesh/triangulate.h"
+#include "mesh/orient2d.h"
 #include "polygons.h"
 
 #include "base/bits.h"
@@ -49,8 +49,8 @@ static void test_turn(void **state) {
         at[i][c] = (double)p[i][c] * scale;
     int right = turn_of(p[0], p[1], p[2]);
     zeros += right == 0;
-    assert_int_equal(vxm_turn(at[0], at[1], at[2]), right);
-    assert_int_equal(vxm_turn_exact(at[0], at[1], at[2]), right);
+    assert_int_equal(vxm_orient2d(at[0], at[1], at[2]), right);
+    assert_int_equal(vxm_orient2d_exact(at[0], at[1], at[2]), right);
   }
   assert_true(zeros > 1000);
 }
@@ -313,7 +313,7 @@ static void test_large(void **state) {
     for (size_t t = 0; t < N - 2; t++) {
       const uint32_t *c = triangles + 3 * t;
       const double *a = positions;
-      wrong += vxm_turn(a + 3 * c[0], a + 3 * c[1], a + 3 * c[2]) == (area > 0 ? -1 : 1);
+      wrong += vxm_orient2d(a + 3 * c[0], a + 3 * c[1], a + 3 * c[2]) == (area > 0 ? -1 : 1);
     }
     if (wrong)
       fail_msg("kind %d: %zu triangles are turned round", kind, wrong);

@@ -2,7 +2,7 @@
 /** What is written comes back: bit for bit from OFF, OBJ and PLY, as triangles of floats from STL. */
 #include "meshio_test.h"
 
-#include "meshio/triangulate.h"
+#include "mesh/triangulate.h"
 
 #include <dirent.h>
 #include <fcntl.h>

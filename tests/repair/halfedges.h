@@ -6,7 +6,7 @@
 #include "manifold.h"
 #include "repairing.h"
 
-#include "repair/openmesh.h"
+#include "repair/external/openmesh.h"
 
 #include <math.h>
 

@@ -6,8 +6,8 @@
 #include "manifold.h"
 
 #include "mesh/census.h"
-#include "repair/cgal.h"
-#include "repair/separate.h"
+#include "repair/external/cgal.h"
+#include "repair/manifold/cut_nonmanifold.h"
 
 #include <math.h>
 
@@ -172,7 +172,7 @@ static inline void assert_solid(const vxm_soup *soup) {
 static inline void assert_united(const vxm_soup *soup) {
   vxm_soup *apart;
   int64_t split, stitched;
-  assert_int_equal(vxm_separate(&apart, &split, &stitched, soup, NULL), VXM_OK);
+  assert_int_equal(vxm_cut_nonmanifold(&apart, &split, &stitched, soup, NULL), VXM_OK);
   assert_solid(apart);
   vxm_soup_destroy(apart);
 }

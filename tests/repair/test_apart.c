@@ -3,7 +3,7 @@
  * the origin and far from it. */
 #include "repairing.h"
 
-#include "mesh/part_state.h"
+#include "mesh/part_census.h"
 #include "repair/verify.h"
 
 #include <float.h>

@@ -3,7 +3,7 @@
 #include "repairing.h"
 #include "solids.h"
 
-#include "repair/lost_parts.h"
+#include "repair/state/lost_parts.h"
 
 /** Three bodies: a box, a ball, and a small box in a far corner. */
 static vxm_soup *three_bodies(bool ball, bool small) {

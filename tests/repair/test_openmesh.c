@@ -3,7 +3,7 @@
 #include "halfedges.h"
 
 #include "../mesh/shared.h"
-#include "repair/separate.h"
+#include "repair/manifold/cut_nonmanifold.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -23,7 +23,7 @@ static void opinions_agree(void **state) {
     int64_t split, stitched;
     manifold += look_brute(soup).manifold;
     check_inspection(soup);
-    assert_int_equal(vxm_separate(&apart, &split, &stitched, soup, NULL), VXM_OK);
+    assert_int_equal(vxm_cut_nonmanifold(&apart, &split, &stitched, soup, NULL), VXM_OK);
     check_inspection(apart);
     vxm_soup_destroy(apart);
     vxm_soup_destroy(soup);
@@ -40,7 +40,7 @@ static void blocks_are_closed(void **state) {
     vxm_soup *soup = cell_surface(*state, 3, full), *mixed = shuffled(soup, &rng, 0, i % 2), *apart;
     int64_t split, stitched;
     check_inspection(mixed);
-    assert_int_equal(vxm_separate(&apart, &split, &stitched, mixed, NULL), VXM_OK);
+    assert_int_equal(vxm_cut_nonmanifold(&apart, &split, &stitched, mixed, NULL), VXM_OK);
     check_inspection(apart);
     assert_int_equal(inspected(apart).boundary_edges, 0);
     vxm_soup_destroy(apart);
@@ -194,7 +194,7 @@ static void shared_mesh_is_filled(const shared_mesh *mesh, void *payload) {
   if (soup->face_count < 8000) {
     int64_t split, stitched;
     if (vxm_repair_run(&clean, NULL, soup, NULL, &error) != VXM_OK ||
-        vxm_separate(&apart, &split, &stitched, clean, &error) != VXM_OK)
+        vxm_cut_nonmanifold(&apart, &split, &stitched, clean, &error) != VXM_OK)
       fail_msg("%s: %s", mesh->path, error.text);
     drop(apart, fill(apart, 100));
     vxm_soup_destroy(apart);

@@ -3,7 +3,7 @@
 #include "halfedges.h"
 #include "outlines.h"
 
-#include "repair/separate.h"
+#include "repair/manifold/cut_nonmanifold.h"
 
 /** Fills the open end of a prism over the outline: flat, covered once, closed. */
 static void check_outline(vxm_context *context, outline o, vxm_rng *rng, double shift) {
@@ -61,7 +61,7 @@ static void holes_in_a_sheet(void **state) {
         add_face(soup, face, count);
     }
     int64_t split, stitched;
-    assert_int_equal(vxm_separate(&apart, &split, &stitched, soup, NULL), VXM_OK);
+    assert_int_equal(vxm_cut_nonmanifold(&apart, &split, &stitched, soup, NULL), VXM_OK);
     outcome out = fill(apart, 0);
     double sum, of_sum;
     areas_from(out.soup, 0, &sum, &of_sum);
@@ -102,7 +102,7 @@ static void holes_in_a_sphere(void **state) {
           add_face(soup, quad, 4);
       }
     int64_t split, stitched;
-    assert_int_equal(vxm_separate(&apart, &split, &stitched, soup, NULL), VXM_OK);
+    assert_int_equal(vxm_cut_nonmanifold(&apart, &split, &stitched, soup, NULL), VXM_OK);
     outcome out = fill(apart, 0);
     if (inspected(apart).components == 1) {
       assert_int_equal(out.left, 0);

@@ -3,7 +3,7 @@
 #include "halfedges.h"
 #include "outlines.h"
 
-#include "repair/separate.h"
+#include "repair/manifold/cut_nonmanifold.h"
 
 #include <math.h>
 
@@ -241,7 +241,7 @@ static void holes_in_tangles(void **state) {
     } else
       soup = tangle(*state, &rng, 5 + (size_t)vxm_rng_below(&rng, 10), 40, i % 4 ? 100 : 3);
     int64_t split, stitched;
-    assert_int_equal(vxm_separate(&apart, &split, &stitched, soup, NULL), VXM_OK);
+    assert_int_equal(vxm_cut_nonmanifold(&apart, &split, &stitched, soup, NULL), VXM_OK);
     outcome out = fill(apart, 0);
     filled += out.filled;
     left += out.left;

@@ -308,11 +308,11 @@ static void unused(void **state) {
 
 static void notes_format_and_nothing(void **state) {
   vxm_soup *soup = new_soup(*state);
-  vxm_note(&soup->notes, "line 3: something was odd");
+  vxm_warn(&soup->warnings, "line 3: something was odd");
   vxm_repair_report report;
   vxm_soup *out = repaired(soup, NULL, &report);
-  assert_int_equal(out->notes.count, 1);
-  assert_string_equal(out->notes.text[0], "line 3: something was odd");
+  assert_int_equal(out->warnings.count, 1);
+  assert_string_equal(out->warnings.text[0], "line 3: something was odd");
   assert_string_equal(out->format, soup->format);
   assert_int_equal(out->face_count, 0);
   assert_int_equal(count_all(&report), 0);

@@ -4,8 +4,8 @@
 
 #include "mesh/census.h"
 #include "mesh/edges.h"
-#include "mesh/frame.h"
 #include "mesh/geometry.h"
+#include "mesh/unit_scale.h"
 
 #include <math.h>
 
@@ -84,11 +84,11 @@ static size_t odd_edges(const vxm_soup *soup, const uint32_t *map) {
 
 /** Faces without area that are left must be needed: without one of them more edges are odd. */
 static void check_flat_faces(const vxm_soup *out, const vxm_census *after) {
-  vxm_frame frame = vxm_frame_of(after->bounds);
+  vxm_unit_scale frame = vxm_unit_scale_of(after->bounds);
   size_t odd = odd_edges(out, NULL);
   int64_t flat = 0;
   for (size_t f = 0; f < out->face_count; f++) {
-    if (!vxm_frame_no_area(&frame, out, f))
+    if (!vxm_unit_scale_no_area(&frame, out, f))
       continue;
     flat++;
     vxm_soup *without = new_soup(out->context);
@@ -107,7 +107,7 @@ static void check_flat_faces(const vxm_soup *out, const vxm_census *after) {
 }
 
 /** Whether the polygon has no area, from some corner: where it touches itself the first corner matters. */
-static bool is_flat(const vxm_soup *names, const vxm_frame *frame, const word *w) {
+static bool is_flat(const vxm_soup *names, const vxm_unit_scale *frame, const word *w) {
   bool flat = false;
   for (size_t turn = 0; turn < w->length; turn++) {
     uint32_t corners[WORD_MAX];
@@ -127,7 +127,7 @@ static void check_faces(const vxm_soup *in, const vxm_soup *out, const vxm_repai
   int64_t repeated = 0;
   vxm_census before;
   assert_int_equal(vxm_soup_census(&before, in, NULL), VXM_OK);
-  vxm_frame frame = vxm_frame_of(before.bounds);
+  vxm_unit_scale frame = vxm_unit_scale_of(before.bounds);
   for (size_t f = 0; f < in->face_count; f++) {
     word wanted = word_of(in, f, in);
     reduce_word(&wanted);

@@ -6,7 +6,7 @@
 
 #include "../mesh/shared.h"
 #include "mesh/components.h"
-#include "repair/separate.h"
+#include "repair/manifold/cut_nonmanifold.h"
 
 #include <math.h>
 
@@ -18,7 +18,7 @@ typedef struct outcome {
 static outcome separated(const vxm_soup *soup) {
   outcome out;
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_separate(&out.soup, &out.split, &out.stitched, soup, &error) != VXM_OK)
+  if (vxm_cut_nonmanifold(&out.soup, &out.split, &out.stitched, soup, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return out;
 }
@@ -402,7 +402,7 @@ static void faces_refused(void **state) {
     vxm_soup *soup = soup_of(*state, positions, 4, bad[i], 2), *out;
     int64_t split, stitched;
     vxm_error error = VXM_ERROR_INIT;
-    assert_int_equal(vxm_separate(&out, &split, &stitched, soup, &error), VXM_ERROR_ARGUMENT);
+    assert_int_equal(vxm_cut_nonmanifold(&out, &split, &stitched, soup, &error), VXM_ERROR_ARGUMENT);
     assert_int_equal(error.element, 1);
     assert_null(out);
     vxm_soup_destroy(soup);
@@ -461,7 +461,7 @@ static void failures(void **state) {
     }
     int64_t split, stitched;
     vxm_error error = VXM_ERROR_INIT;
-    vxm_status status = vxm_separate(&out, &split, &stitched, copy ? copy : panels, &error);
+    vxm_status status = vxm_cut_nonmanifold(&out, &split, &stitched, copy ? copy : panels, &error);
     assert_int_equal(out == NULL, status != VXM_OK);
     assert_true(status == VXM_OK || status == (round % 2 ? VXM_ERROR_CANCELLED : VXM_ERROR_MEMORY_LIMIT));
     assert_true(status == VXM_OK || error.text[0] != '\0');

@@ -5,7 +5,7 @@
 #include "mesh/census.h"
 #include "mesh/components.h"
 #include "repair/defects.h"
-#include "repair/fans.h"
+#include "repair/state/vertex_fans.h"
 #include "repair/verify.h"
 
 #include <math.h>
@@ -166,13 +166,13 @@ static void fans_by_walking(void **state) {
       if (a != b && b != c && c != a)
         add_triangle(soup, a, b, c);
     }
-    vxm_work work = {.soup = soup, .context = *state};
+    vxm_repair_state work = {.soup = soup, .context = *state};
     uint8_t *fans;
-    assert_int_equal(vxm_fans_count(&fans, &work, NULL), VXM_OK);
+    assert_int_equal(vxm_vertex_fans_count(&fans, &work, NULL), VXM_OK);
     for (uint32_t v = 0; v < vertices; v++)
       assert_int_equal(fans[v], count_fans(soup, v));
     vxm_free(*state, fans);
-    vxm_work_touch(&work);
+    vxm_repair_state_touch(&work);
     vxm_soup_destroy(soup);
   }
 }

@@ -7,8 +7,8 @@
 
 #include "base/context_struct.h"
 #include "grid/bitgrid.h"
-#include "voxel/lattice.h"
-#include "voxel/voxelize.h"
+#include "voxel/lattice/lattice.h"
+#include "voxel/model/voxelize.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,8 +9,8 @@
 #include "shapes.h"
 
 #include "mesh/components.h"
-#include "voxel/labelling.h"
-#include "voxel/voxelize.h"
+#include "voxel/model/voxelize.h"
+#include "voxel/parts/face_labels.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -60,7 +60,7 @@ static inline vec position(const vxm_soup *soup, uint32_t vertex) {
 }
 
 /** Distance to the faces of a label, which are triangles, or flat and convex. */
-static inline double to_label(const vxm_labelling *l, size_t label, vec p) {
+static inline double to_label(const vxm_face_labels *l, size_t label, vec p) {
   double least = INFINITY;
   for (size_t i = l->begin[label - 1]; i < l->begin[label]; i++) {
     size_t n;
@@ -135,7 +135,7 @@ static inline void drop_lone_sheet(const vxm_soup *from, uint8_t *taken,
 }
 
 /** The voxels that a label claims; NULL = none. */
-static inline vxm_grid *claims_of(const vxm_labelling *l, size_t label, const vxm_space *space,
+static inline vxm_grid *claims_of(const vxm_face_labels *l, size_t label, const vxm_space *space,
                                   const vxm_voxelize_options *options) {
   vxm_voxelize_options solid = *options;
   solid.mode = VXM_MODE_SOLID;

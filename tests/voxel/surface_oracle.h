@@ -8,7 +8,7 @@
 #define TEST_VOXEL_SURFACE_ORACLE_H
 
 #include "base/bits.h"
-#include "voxel/lattice.h"
+#include "voxel/lattice/lattice.h"
 
 typedef vxm_int128 oracle_wide;
 

@@ -5,7 +5,7 @@
 
 #include "shapes.h"
 
-#include "voxel/surface.h"
+#include "voxel/surface/surface.h"
 
 #include <stdlib.h>
 

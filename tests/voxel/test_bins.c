@@ -2,18 +2,18 @@
 /** The bins between triangles and slabs, and solids in which parts have few flips or very many. */
 #include "engine.h"
 
-#include "voxel/bins.h"
-#include "voxel/crossings.h"
-#include "voxel/kernels.h"
-#include "voxel/slabs.h"
+#include "voxel/parity/crossing_bins.h"
+#include "voxel/parity/kernels.h"
+#include "voxel/parity/raster_schedule.h"
+#include "voxel/parity/slabs.h"
 
 /* ---- Bins alone ---- */
 
 enum { PARTS = 12, SLAB_WORDS_MAX = 60 };
 
 /** Puts records one by one, or as vectors are stored: eight at once, of which some count. */
-static void put_some(vxm_bins *bins, size_t worker, vxm_bin *bin, vxm_rng *rng, size_t count,
-                     uint64_t words[]) {
+static void put_some(vxm_crossing_bins *bins, size_t worker, vxm_crossing_bin *bin, vxm_rng *rng,
+                     size_t count, uint64_t words[]) {
   for (size_t i = 0; i < count;) {
     uint64_t eight[8];
     size_t used = 1 + vxm_rng_below(rng, 8);
@@ -24,10 +24,10 @@ static void put_some(vxm_bins *bins, size_t worker, vxm_bin *bin, vxm_rng *rng, 
       words[eight[k] / 64] ^= UINT64_C(1) << (eight[k] % 64);
     if (vxm_rng_below(rng, 2)) {
       for (size_t k = 0; k < used; k++)
-        vxm_bin_put(bins, worker, bin, eight[k]);
+        vxm_crossing_bin_put(bins, worker, bin, eight[k]);
     } else {
       if (bin->at >= bin->limit)
-        vxm_bin_grow(bins, worker, bin);
+        vxm_crossing_bin_grow(bins, worker, bin);
       memcpy(bin->at, eight, sizeof eight);
       bin->at += used;
     }
@@ -36,17 +36,17 @@ static void put_some(vxm_bins *bins, size_t worker, vxm_bin *bin, vxm_rng *rng, 
 }
 
 /** What comes out of a bin is what went in, part after part. */
-static void check_bin(const vxm_bins *bins, vxm_bin *bin, const bool began[PARTS],
+static void check_bin(const vxm_crossing_bins *bins, vxm_crossing_bin *bin, const bool began[PARTS],
                       uint64_t words[PARTS][SLAB_WORDS_MAX], const size_t records[PARTS]) {
-  vxm_bin_reader reader = vxm_bin_read(bin, false);
+  vxm_crossing_bin_reader reader = vxm_crossing_bin_read(bin, false);
   for (uint32_t part = 0; part < PARTS; part++) {
     if (!began[part])
       continue;
     assert_int_equal(reader.part, part);
     size_t read = 0;
     bool bitmap = false;
-    vxm_bin_piece piece;
-    while (vxm_bin_next(&reader, &piece)) {
+    vxm_crossing_bin_piece piece;
+    while (vxm_crossing_bin_next(&reader, &piece)) {
       bitmap |= piece.is_bitmap;
       read += piece.count;
       if (piece.is_bitmap)
@@ -69,14 +69,14 @@ static void check_bin(const vxm_bins *bins, vxm_bin *bin, const bool began[PARTS
 static void test_bins_give_back_what_was_put(void **state) {
   (void)state;
   vxm_rng rng = {21};
-  vxm_bins bins = {.context = context};
+  vxm_crossing_bins bins = {.context = context};
   for (int round = 0; round < 150; round++) {
     size_t workers = 1 + vxm_rng_below(&rng, 3), voters = 1 + vxm_rng_below(&rng, 4),
            slabs = 1 + vxm_rng_below(&rng, 3), slab_words = 1 + vxm_rng_below(&rng, SLAB_WORDS_MAX);
-    assert_int_equal(vxm_bins_reset(&bins, workers, voters, slabs, slab_words, NULL), VXM_OK);
+    assert_int_equal(vxm_crossing_bins_reset(&bins, workers, voters, slabs, slab_words, NULL), VXM_OK);
     for (size_t w = 0; w < workers; w++)
       for (size_t b = 0; b < voters * slabs; b++) {
-        vxm_bin *bin = vxm_bins_at(&bins, w, b / slabs, b % slabs);
+        vxm_crossing_bin *bin = vxm_crossing_bins_at(&bins, w, b / slabs, b % slabs);
         uint64_t words[PARTS][SLAB_WORDS_MAX] = {{0}};
         size_t records[PARTS] = {0};
         bool began[PARTS] = {false};
@@ -86,16 +86,16 @@ static void test_bins_give_back_what_was_put(void **state) {
             continue;
           records[part] = vxm_rng_below(&rng, most[vxm_rng_below(&rng, round % 4 ? 3 : 5)]);
           began[part] = true;
-          vxm_bin_begin(&bins, w, bin, part);
+          vxm_crossing_bin_begin(&bins, w, bin, part);
           put_some(&bins, w, bin, &rng, records[part] / 2, words[part]);
-          vxm_bin_begin(&bins, w, bin, part); /* the same part goes on */
+          vxm_crossing_bin_begin(&bins, w, bin, part); /* the same part goes on */
           put_some(&bins, w, bin, &rng, records[part] - records[part] / 2, words[part]);
         }
         check_bin(&bins, bin, began, words, records);
       }
-    assert_int_equal(vxm_bins_check(&bins, NULL), VXM_OK);
+    assert_int_equal(vxm_crossing_bins_check(&bins, NULL), VXM_OK);
   }
-  vxm_bins_destroy(&bins);
+  vxm_crossing_bins_destroy(&bins);
 }
 
 /** When memory runs out records are dropped, the failure is told, and the bins can be used again. */
@@ -103,38 +103,38 @@ static void test_bins_survive_a_lack_of_memory(void **state) {
   (void)state;
   vxm_rng rng = {22};
   vxm_context *own = context_of(1, 0);
-  vxm_bins bins = {.context = own};
+  vxm_crossing_bins bins = {.context = own};
   uint64_t words[SLAB_WORDS_MAX] = {0};
   for (size_t left = 0; left < 6000; left += 64) { /* the small blocks, one after another */
     leave_memory(own, left);
     vxm_error error = VXM_ERROR_INIT;
-    vxm_status status = vxm_bins_reset(&bins, 7, 2, 1, 50, &error);
+    vxm_status status = vxm_crossing_bins_reset(&bins, 7, 2, 1, 50, &error);
     assert_true(status == VXM_OK || (status == VXM_ERROR_MEMORY_LIMIT && error.code == status));
     if (status == VXM_OK) {
-      vxm_bin *bin = vxm_bins_at(&bins, 6, 1, 0);
-      vxm_bin_begin(&bins, 6, bin, 3);
+      vxm_crossing_bin *bin = vxm_crossing_bins_at(&bins, 6, 1, 0);
+      vxm_crossing_bin_begin(&bins, 6, bin, 3);
       put_some(&bins, 6, bin, &rng, 300, words);
-      assert_int_equal(vxm_bins_check(&bins, &error), VXM_ERROR_MEMORY_LIMIT);
+      assert_int_equal(vxm_crossing_bins_check(&bins, &error), VXM_ERROR_MEMORY_LIMIT);
     }
   }
   for (size_t left = 0; left < 600000; left += 7000) {
     leave_memory(own, left);
     memset(words, 0, sizeof words);
-    assert_int_equal(vxm_bins_reset(&bins, 7, 2, 1, 50, NULL), VXM_OK);
+    assert_int_equal(vxm_crossing_bins_reset(&bins, 7, 2, 1, 50, NULL), VXM_OK);
     size_t records[PARTS] = {0};
     bool began[PARTS] = {false};
     uint64_t put[PARTS][SLAB_WORDS_MAX] = {{0}};
-    vxm_bin *bin = vxm_bins_at(&bins, 0, 0, 0);
+    vxm_crossing_bin *bin = vxm_crossing_bins_at(&bins, 0, 0, 0);
     for (uint32_t part = 0; part < PARTS; part++) {
       began[part] = true;
       records[part] = 2000;
-      vxm_bin_begin(&bins, 0, bin, part);
+      vxm_crossing_bin_begin(&bins, 0, bin, part);
       put_some(&bins, 0, bin, &rng, records[part], put[part]);
     }
-    if (vxm_bins_check(&bins, NULL) == VXM_OK)
+    if (vxm_crossing_bins_check(&bins, NULL) == VXM_OK)
       check_bin(&bins, bin, began, put, records);
   }
-  vxm_bins_destroy(&bins);
+  vxm_crossing_bins_destroy(&bins);
   assert_int_equal(memory_used(own), 0);
   vxm_context_destroy(own);
 }
@@ -263,17 +263,17 @@ static void test_parts_of_few_flips(void **state) {
 
 /** How many rounds a union takes under a limit. */
 static size_t rounds_of(const vxm_soup *soup, const vxm_space *space) {
-  vxm_facets facets;
+  vxm_triangle_set facets;
   vxm_split_rule rule = {VXM_PARTS_GROUP, VXM_CAVITIES_AUTO, false};
-  assert_int_equal(vxm_facets_create(&facets, soup, rule, NULL), VXM_OK);
+  assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
   vxm_lattice lattice = vxm_lattice_of(space);
-  vxm_placed placed = {.context = soup->context};
-  assert_int_equal(vxm_placed_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
+  vxm_snapped_points placed = {.context = soup->context};
+  assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
   vxm_window window = vxm_window_of(space, (vxm_layout)VXM_LAYOUT_GRID, 0, space->dims[2]);
   vxm_columns columns = vxm_columns_of(&window, 0);
   columns.facet_end = facets.facet_count;
-  vxm_crossings crossings = {.context = soup->context};
-  assert_int_equal(vxm_crossings_plan(&crossings, &facets, &placed, &columns, 1, NULL), VXM_OK);
+  vxm_raster_schedule crossings = {.context = soup->context};
+  assert_int_equal(vxm_raster_schedule_plan(&crossings, &facets, &placed, &columns, 1, NULL), VXM_OK);
   size_t rounds = crossings.round_count, at = 0;
   /* The ranges are all facets in order, and rounds end between parts. */
   for (size_t r = 0; r < crossings.range_count; r++) {
@@ -286,9 +286,9 @@ static size_t rounds_of(const vxm_soup *soup, const vxm_space *space) {
     assert_true(facets.part[next] != facets.part[next - 1]);
   }
   assert_int_equal(crossings.round_end[rounds - 1], crossings.range_count);
-  vxm_crossings_destroy(&crossings);
-  vxm_placed_destroy(&placed);
-  vxm_facets_destroy(&facets);
+  vxm_raster_schedule_destroy(&crossings);
+  vxm_snapped_points_destroy(&placed);
+  vxm_triangle_set_destroy(&facets);
   return rounds;
 }
 
@@ -327,24 +327,24 @@ static void test_crossings_stay_below_their_bound(void **state) {
     vxm_space space = engine_space(20 + round, 33, 5 + round / 2);
     space.voxel_size[round % 3] = 0.6;
     vxm_soup *soup = random_soup(context, (uint64_t)round, round % SOUP_KINDS, &space);
-    vxm_facets facets;
+    vxm_triangle_set facets;
     vxm_split_rule rule = {VXM_PARTS_GROUP, VXM_CAVITIES_AUTO, round % 2 != 0};
-    assert_int_equal(vxm_facets_create(&facets, soup, rule, NULL), VXM_OK);
+    assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
     double transform[12] = {0.7, -0.8, 0, 1, 0.9, 0.6, 0.1, 0, 0, -0.2, 1.3, 2};
     vxm_lattice lattice = vxm_lattice_of(&space);
-    vxm_placed placed = {.context = context};
+    vxm_snapped_points placed = {.context = context};
     const double *matrix = round % 3 ? transform : NULL;
-    assert_int_equal(vxm_placed_set(&placed, &facets, &lattice, matrix, true, NULL), VXM_OK);
+    assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, matrix, true, NULL), VXM_OK);
     vxm_window window = vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, 0, space.dims[2]);
-    double bound = vxm_crossings_bound(&facets, &space, matrix);
+    double bound = vxm_raster_schedule_bound(&facets, &space, matrix);
     for (int axis = 0; axis < 3; axis++) {
       vxm_columns columns = vxm_columns_of(&window, axis);
       columns.roles = VXM_FACET_TRIANGLE | VXM_FACET_CAP;
       columns.facet_end = facets.facet_count;
       columns.slab_shift = 20;
-      vxm_bins bins = {.context = context};
+      vxm_crossing_bins bins = {.context = context};
       size_t words = window.slice_words * (size_t)space.dims[2] + (64 << 20);
-      assert_int_equal(vxm_bins_reset(&bins, 1, 1, 1, words, NULL), VXM_OK);
+      assert_int_equal(vxm_crossing_bins_reset(&bins, 1, 1, 1, words, NULL), VXM_OK);
       vxm_raster_task task = {.placed = &placed,
                               .facets = &facets,
                               .end = facets.facet_count,
@@ -352,28 +352,28 @@ static void test_crossings_stay_below_their_bound(void **state) {
                               .columns_count = 1,
                               .bins = &bins};
       vxm_kernels_get()->raster(&task);
-      vxm_bin_reader reader = vxm_bin_read(vxm_bins_at(&bins, 0, 0, 0), false);
-      vxm_bin_piece piece;
+      vxm_crossing_bin_reader reader = vxm_crossing_bin_read(vxm_crossing_bins_at(&bins, 0, 0, 0), false);
+      vxm_crossing_bin_piece piece;
       size_t crossings = 0;
       while (reader.part != VXM_BIN_NONE)
-        while (vxm_bin_next(&reader, &piece))
+        while (vxm_crossing_bin_next(&reader, &piece))
           crossings += piece.count;
       assert_true((double)crossings <= bound);
-      vxm_bins_destroy(&bins);
+      vxm_crossing_bins_destroy(&bins);
     }
-    vxm_placed_destroy(&placed);
-    vxm_facets_destroy(&facets);
+    vxm_snapped_points_destroy(&placed);
+    vxm_triangle_set_destroy(&facets);
     vxm_soup_destroy(soup);
   }
 }
 
 /** Puts what facets flip into words, straight or by way of bins. */
-static uint64_t *flipped(const vxm_placed *placed, const vxm_facets *facets, const vxm_columns *columns,
-                         size_t words, bool straight) {
+static uint64_t *flipped(const vxm_snapped_points *placed, const vxm_triangle_set *facets,
+                         const vxm_columns *columns, size_t words, bool straight) {
   uint64_t *out = calloc(words, sizeof *out);
   assert_non_null(out);
-  vxm_bins bins = {.context = context};
-  assert_int_equal(vxm_bins_reset(&bins, 1, 1, 1, words, NULL), VXM_OK);
+  vxm_crossing_bins bins = {.context = context};
+  assert_int_equal(vxm_crossing_bins_reset(&bins, 1, 1, 1, words, NULL), VXM_OK);
   vxm_raster_task task = {.placed = placed,
                           .facets = facets,
                           .end = facets->facet_count,
@@ -382,15 +382,16 @@ static uint64_t *flipped(const vxm_placed *placed, const vxm_facets *facets, con
                           .bins = straight ? NULL : &bins,
                           .words = straight ? out : NULL};
   vxm_kernels_get()->raster(&task);
-  vxm_bin_piece piece;
-  for (vxm_bin_reader r = vxm_bin_read(vxm_bins_at(&bins, 0, 0, 0), false); r.part != VXM_BIN_NONE;)
-    while (vxm_bin_next(&r, &piece))
+  vxm_crossing_bin_piece piece;
+  for (vxm_crossing_bin_reader r = vxm_crossing_bin_read(vxm_crossing_bins_at(&bins, 0, 0, 0), false);
+       r.part != VXM_BIN_NONE;)
+    while (vxm_crossing_bin_next(&r, &piece))
       for (size_t i = 0; i < piece.count; i++)
         if (piece.is_bitmap)
           out[i] ^= piece.data[i];
         else
           out[piece.data[i] / 64] ^= UINT64_C(1) << (piece.data[i] % 64);
-  vxm_bins_destroy(&bins);
+  vxm_crossing_bins_destroy(&bins);
   return out;
 }
 
@@ -410,12 +411,12 @@ static void test_words_get_what_bins_get(void **state) {
     }
     if (round % 8 == 7) /* coordinates of 64 bits */
       shape_random_octahedron(soup, &rng, -40000000, 40000000);
-    vxm_facets facets;
-    assert_int_equal(vxm_facets_create(&facets, soup, (vxm_split_rule){.parts = VXM_PARTS_WHOLE}, NULL),
+    vxm_triangle_set facets;
+    assert_int_equal(vxm_triangle_set_create(&facets, soup, (vxm_split_rule){.parts = VXM_PARTS_WHOLE}, NULL),
                      VXM_OK);
     vxm_lattice lattice = vxm_lattice_of(&space);
-    vxm_placed placed = {.context = context};
-    assert_int_equal(vxm_placed_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
+    vxm_snapped_points placed = {.context = context};
+    assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
     vxm_window window =
         vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, round % 3, space.dims[2] - round % 5);
     size_t words = window.slice_words * (size_t)(window.end - window.begin);
@@ -435,8 +436,8 @@ static void test_words_get_what_bins_get(void **state) {
       }
       vxm_kernels_force(NULL);
     }
-    vxm_placed_destroy(&placed);
-    vxm_facets_destroy(&facets);
+    vxm_snapped_points_destroy(&placed);
+    vxm_triangle_set_destroy(&facets);
     vxm_soup_destroy(soup);
   }
 }

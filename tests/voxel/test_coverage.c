@@ -3,7 +3,7 @@
 #include "shapes.h"
 
 #include "grid/bitgrid.h"
-#include "voxel/model.h"
+#include "voxel/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>

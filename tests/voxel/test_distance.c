@@ -3,8 +3,8 @@
 #include "shapes.h"
 
 #include "grid/bitgrid.h"
-#include "voxel/distance.h"
-#include "voxel/model.h"
+#include "voxel/fields/distance.h"
+#include "voxel/model/model.h"
 
 #include <math.h>
 #include <stdlib.h>

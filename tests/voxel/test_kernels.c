@@ -2,7 +2,7 @@
 /* Every build of the kernels does the same as plain loops, and gives the same solids. */
 #include "engine.h"
 
-#include "voxel/kernels.h"
+#include "voxel/parity/kernels.h"
 
 enum { WORDS_MAX = 40, ROW_WORDS_MAX = 20 };
 

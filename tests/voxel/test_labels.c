@@ -2,8 +2,8 @@
 /* Labels against brute force, and what they are called. */
 #include "label_oracle.h"
 
-#include "voxel/foot.h"
-#include "voxel/labels.h"
+#include "voxel/closest/closest_point.h"
+#include "voxel/labels/labels.h"
 
 #include <pthread.h>
 #include <string.h>
@@ -74,8 +74,8 @@ static bool is_right(uint16_t label, const double *distance, const bool *asked, 
 static void check(const vxm_soup *soup, const vxm_space *space, const vxm_voxelize_options *options,
                   vxm_label_by by) {
   vxm_error error = VXM_ERROR_INIT;
-  vxm_labelling l;
-  assert_int_equal(vxm_labelling_create(&l, soup, by, &error), VXM_OK);
+  vxm_face_labels l;
+  assert_int_equal(vxm_face_labels_create(&l, soup, by, &error), VXM_OK);
   size_t count = l.table.count, voxels = voxels_of(space);
   vxm_model *model;
   vxm_grid *set;
@@ -129,7 +129,7 @@ static void check(const vxm_soup *soup, const vxm_space *space, const vxm_voxeli
   free(claims);
   vxm_grid_destroy(set);
   vxm_model_destroy(model);
-  vxm_labelling_destroy(&l);
+  vxm_face_labels_destroy(&l);
 }
 
 /** Bodies, cavities and sheets in some groups and materials. */
@@ -367,12 +367,12 @@ static void test_layouts(void **state) {
   assert_int_equal(vxm_model_create(&model, soup, NULL, NULL), VXM_OK);
   uint16_t *values[3];
   for (int i = 0; i < 3; i++) {
-    vxm_labelling labelling;
+    vxm_face_labels labelling;
     vxm_label_report report;
     values[i] = malloc(voxels_of(&space) * sizeof *values[i]);
-    assert_int_equal(vxm_labelling_create(&labelling, soup, VXM_LABEL_MATERIAL, NULL), VXM_OK);
+    assert_int_equal(vxm_face_labels_create(&labelling, soup, VXM_LABEL_MATERIAL, NULL), VXM_OK);
     assert_int_equal(vxm_labels_run(values[i], layouts[i], &report, model, &space, &labelling, NULL), VXM_OK);
-    vxm_labelling_destroy(&labelling);
+    vxm_face_labels_destroy(&labelling);
   }
   for (int64_t x = 0; x < space.dims[0]; x++)
     for (int64_t y = 0; y < space.dims[1]; y++)
@@ -486,14 +486,14 @@ static void test_any_limit(void **state) {
 /* ---- Names ---- */
 
 static void check_names(const vxm_soup *soup, vxm_label_by by, const char *const *names) {
-  vxm_labelling l;
-  assert_int_equal(vxm_labelling_create(&l, soup, by, NULL), VXM_OK);
+  vxm_face_labels l;
+  assert_int_equal(vxm_face_labels_create(&l, soup, by, NULL), VXM_OK);
   for (size_t label = 1; label <= l.table.count; label++) {
     assert_non_null(names[label - 1]);
     assert_string_equal(vxm_label_table_name(&l.table, label), names[label - 1]);
   }
   assert_null(names[l.table.count]);
-  vxm_labelling_destroy(&l);
+  vxm_face_labels_destroy(&l);
 }
 
 static void test_names(void **state) {
@@ -557,19 +557,19 @@ static void test_too_many(void **state) {
     shape_vertex(soup, t, 1, 0);
     shape_triangle(soup, 3 * t, 3 * t + 1, 3 * t + 2);
   }
-  vxm_labelling l;
+  vxm_face_labels l;
   vxm_error error = VXM_ERROR_INIT;
-  assert_int_equal(vxm_labelling_create(&l, soup, VXM_LABEL_PART, &error), VXM_ERROR_RANGE);
-  vxm_labelling_destroy(&l);
+  assert_int_equal(vxm_face_labels_create(&l, soup, VXM_LABEL_PART, &error), VXM_ERROR_RANGE);
+  vxm_face_labels_destroy(&l);
   assert_non_null(strstr(error.text, "65537 parts"));
   assert_non_null(strstr(error.text, "label by group"));
   for (int less = 0; less < 2; less++) { /* the last face, then its part with it */
     soup->face_count--;
     soup->corner_count -= 3;
-    assert_int_equal(vxm_labelling_create(&l, soup, VXM_LABEL_PART, &error),
+    assert_int_equal(vxm_face_labels_create(&l, soup, VXM_LABEL_PART, &error),
                      less == 0 ? VXM_ERROR_RANGE : VXM_OK);
     assert_int_equal(l.table.count, less == 0 ? 0 : 65535);
-    vxm_labelling_destroy(&l);
+    vxm_face_labels_destroy(&l);
   }
   vxm_soup_destroy(soup);
 }
@@ -628,9 +628,9 @@ static void test_foot(void **state) {
       memcpy(at[2], at[0], sizeof at[2]);
     for (int a = 0; a < 3; a++)
       p[a] = 1.5 * size * vxm_rng_unit(&rng) - 0.25 * size;
-    vxm_corners corners;
-    vxm_corners_make(&corners, (const double(*)[3])at);
-    double square = vxm_corners_foot(&corners, p, foot);
+    vxm_closest_triangle corners;
+    vxm_closest_triangle_make(&corners, (const double(*)[3])at);
+    double square = vxm_closest_point(&corners, p, foot);
     for (int a = 0; a < 3; a++)
       sum += (p[a] - foot[a]) * (p[a] - foot[a]);
     vec v[3], q = {p[0], p[1], p[2]}, f = {foot[0], foot[1], foot[2]};

@@ -7,8 +7,8 @@
 
 #include "base/bits.h"
 #include "base/rng.h"
-#include "voxel/nearest.h"
-#include "voxel/triangle.h"
+#include "voxel/closest/distance_bvh.h"
+#include "voxel/closest/triangle_distance.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -94,8 +94,8 @@ static void test_triangle(void **state) {
         corners[c][a] = (double)corner[c].at[a];
         longest = fmax(longest, fabs((double)(corner[c].at[a] - corner[(c + 1) % 3].at[a])));
       }
-    vxm_triangle triangle;
-    vxm_triangle_make(&triangle, (const double(*)[3])corners);
+    vxm_distance_triangle triangle;
+    vxm_distance_triangle_make(&triangle, (const double(*)[3])corners);
     for (int n = 0; n < 10; n++) {
       int64_t range = INT64_C(1) << (1 + vxm_rng_below(&rng, 20));
       vec p;
@@ -145,9 +145,9 @@ static void fill_corners(triangle_corners *corners, size_t count, double extent,
   }
 }
 
-static vxm_tile random_tile(double extent, vxm_rng *rng, int kind) {
+static vxm_point_block random_tile(double extent, vxm_rng *rng, int kind) {
   static const double most[] = {INFINITY, 3, INFINITY, 0.4, 20};
-  vxm_tile tile = {.most = most[kind % 5]};
+  vxm_point_block tile = {.most = most[kind % 5]};
   for (int a = 0; a < 3; a++) {
     tile.step[a] = kind % 4 == 3 ? 0.3 + 0.7 * vxm_rng_unit(rng) : 1;
     tile.first[a] = (int64_t)vxm_rng_below(rng, (uint64_t)extent + 1);
@@ -156,11 +156,11 @@ static vxm_tile random_tile(double extent, vxm_rng *rng, int kind) {
   return tile;
 }
 
-static void check_tile(const vxm_nearest *tree, const vxm_tile *tile, const vxm_triangle *triangles,
-                       size_t count) {
+static void check_tile(const vxm_distance_bvh *tree, const vxm_point_block *tile,
+                       const vxm_distance_triangle *triangles, size_t count) {
   static double squares[2][VXM_TILE_POINTS];
-  vxm_nearest_tile_fn *builds[2];
-  size_t build_count = vxm_nearest_tile_all(builds);
+  vxm_distance_bvh_tile_fn *builds[2];
+  size_t build_count = vxm_distance_bvh_tile_all(builds);
   bool is_met[2];
   for (size_t b = 0; b < build_count; b++) {
     vxm_search *search;
@@ -193,17 +193,17 @@ static void test_tiles(void **state) {
     size_t count = counts[round % 9];
     double extent = round % 4 == 0 ? 100 : 16;
     triangle_corners *corners = malloc(count * sizeof *corners);
-    vxm_triangle *triangles = malloc(count * sizeof *triangles);
+    vxm_distance_triangle *triangles = malloc(count * sizeof *triangles);
     fill_corners(corners, count, extent, &rng, round / 9 + round);
     for (size_t t = 0; t < count; t++)
-      vxm_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
-    vxm_nearest *tree;
-    assert_int_equal(vxm_nearest_create(&tree, context, count, corners_of, corners, NULL), VXM_OK);
+      vxm_distance_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
+    vxm_distance_bvh *tree;
+    assert_int_equal(vxm_distance_bvh_create(&tree, context, count, corners_of, corners, NULL), VXM_OK);
     for (int n = 0; n < 2; n++) {
-      vxm_tile tile = random_tile(extent, &rng, round + n);
+      vxm_point_block tile = random_tile(extent, &rng, round + n);
       check_tile(tree, &tile, triangles, count);
     }
-    vxm_nearest_destroy(tree);
+    vxm_distance_bvh_destroy(tree);
     free(triangles);
     free(corners);
   }
@@ -215,7 +215,7 @@ static void test_middle_of_a_sphere(void **state) {
   enum { COUNT = 2000 };
   vxm_rng rng = {33};
   triangle_corners *corners = malloc(COUNT * sizeof *corners);
-  vxm_triangle *triangles = malloc(COUNT * sizeof *triangles);
+  vxm_distance_triangle *triangles = malloc(COUNT * sizeof *triangles);
   for (size_t t = 0; t < COUNT; t++) {
     double out[3], length = 0;
     for (int a = 0; a < 3; a++) {
@@ -225,13 +225,13 @@ static void test_middle_of_a_sphere(void **state) {
     for (int c = 0; c < 3; c++)
       for (int a = 0; a < 3; a++)
         corners[t][c][a] = 8 + 100 * out[a] / sqrt(length) + 0.01 * vxm_rng_unit(&rng);
-    vxm_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
+    vxm_distance_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
   }
-  vxm_nearest *tree;
-  assert_int_equal(vxm_nearest_create(&tree, context, COUNT, corners_of, corners, NULL), VXM_OK);
-  vxm_tile tile = {{0, 0, 0}, {VXM_TILE, VXM_TILE, VXM_TILE}, {1, 1, 1}, INFINITY};
+  vxm_distance_bvh *tree;
+  assert_int_equal(vxm_distance_bvh_create(&tree, context, COUNT, corners_of, corners, NULL), VXM_OK);
+  vxm_point_block tile = {{0, 0, 0}, {VXM_TILE, VXM_TILE, VXM_TILE}, {1, 1, 1}, INFINITY};
   check_tile(tree, &tile, triangles, COUNT);
-  vxm_nearest_destroy(tree);
+  vxm_distance_bvh_destroy(tree);
   free(triangles);
   free(corners);
 }
@@ -242,7 +242,7 @@ static void test_far_away(void **state) {
   enum { COUNT = 300 };
   vxm_rng rng = {35};
   triangle_corners corners[COUNT];
-  vxm_triangle triangles[COUNT];
+  vxm_distance_triangle triangles[COUNT];
   for (int round = 0; round < 12; round++) {
     double far[3];
     for (int a = 0; a < 3; a++)
@@ -252,13 +252,13 @@ static void test_far_away(void **state) {
       for (int c = 0; c < 3; c++)
         for (int a = 0; a < 3; a++)
           corners[t][c][a] += far[a];
-      vxm_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
+      vxm_distance_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
     }
-    vxm_nearest *tree;
-    assert_int_equal(vxm_nearest_create(&tree, context, COUNT, corners_of, corners, NULL), VXM_OK);
-    vxm_tile tile = {{0, 0, 0}, {VXM_TILE, VXM_TILE, VXM_TILE}, {1, 1, 1}, INFINITY};
+    vxm_distance_bvh *tree;
+    assert_int_equal(vxm_distance_bvh_create(&tree, context, COUNT, corners_of, corners, NULL), VXM_OK);
+    vxm_point_block tile = {{0, 0, 0}, {VXM_TILE, VXM_TILE, VXM_TILE}, {1, 1, 1}, INFINITY};
     check_tile(tree, &tile, triangles, COUNT);
-    vxm_nearest_destroy(tree);
+    vxm_distance_bvh_destroy(tree);
   }
 }
 
@@ -272,19 +272,19 @@ static void test_memory(void **state) {
   for (int part = 0; part <= 10; part++) {
     vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
     options.memory_limit =
-        (vxm_nearest_bytes(COUNT) + vxm_nearest_search_bytes(COUNT)) * (uint64_t)part / 10 + 1;
+        (vxm_distance_bvh_bytes(COUNT) + vxm_distance_bvh_search_bytes(COUNT)) * (uint64_t)part / 10 + 1;
     vxm_context *own;
     assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
-    vxm_nearest *tree;
+    vxm_distance_bvh *tree;
     vxm_search *search = NULL;
-    vxm_status status = vxm_nearest_create(&tree, own, COUNT, corners_of, corners, NULL);
+    vxm_status status = vxm_distance_bvh_create(&tree, own, COUNT, corners_of, corners, NULL);
     if (status == VXM_OK)
       status = vxm_search_create(&search, tree, NULL);
     assert_true(status == VXM_OK || status == VXM_ERROR_MEMORY_LIMIT);
     assert_true((status == VXM_OK) == (search != NULL));
     assert_true(part < 10 || status == VXM_OK);
     vxm_search_destroy(search);
-    vxm_nearest_destroy(tree);
+    vxm_distance_bvh_destroy(tree);
     vxm_context_destroy(own);
   }
   free(corners);

@@ -3,9 +3,9 @@
 #include "shapes.h"
 
 #include "grid/bitgrid.h"
-#include "voxel/unite.h"
-#include "voxel/winding.h"
-#include "voxel/wound.h"
+#include "voxel/parity/parity_union.h"
+#include "voxel/winding/winding.h"
+#include "voxel/winding/winding_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -77,24 +77,24 @@ static void test_triangles_and_caps_are_closed(void **state) {
     }
     vxm_space space = {{7, 7, 7}, {0, 0, 0}, {1, 1, 1}};
     vxm_lattice lattice = vxm_lattice_of(&space);
-    vxm_facets facets;
+    vxm_triangle_set facets;
     vxm_split_rule rule = {VXM_PARTS_GROUP, VXM_CAVITIES_FILL, true};
-    vxm_placed placed = {.context = context};
+    vxm_snapped_points placed = {.context = context};
     vxm_workspace workspace = vxm_workspace_of(context);
-    assert_int_equal(vxm_facets_create(&facets, soup, rule, NULL), VXM_OK);
-    assert_int_equal(vxm_placed_set(&placed, &facets, &lattice, NULL, true, NULL), VXM_OK);
+    assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
+    assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, true, NULL), VXM_OK);
     for (int closing = VXM_FACET_CAP; closing <= VXM_FACET_CONE; closing *= 2) {
       vxm_grid *grids[3];
       for (int axis = 0; axis < 3; axis++) {
         assert_int_equal(vxm_grid_create(&grids[axis], context, &space, NULL), VXM_OK);
-        vxm_unite_job job = {.facets = &facets,
-                             .placed = &placed,
-                             .axis = axis,
-                             .part_end = facets.split.part_count,
-                             .roles = VXM_FACET_TRIANGLE | (unsigned)closing,
-                             .phase = "testing"};
+        vxm_parity_union_job job = {.facets = &facets,
+                                    .placed = &placed,
+                                    .axis = axis,
+                                    .part_end = facets.split.part_count,
+                                    .roles = VXM_FACET_TRIANGLE | (unsigned)closing,
+                                    .phase = "testing"};
         vxm_window window = vxm_window_of_grid(grids[axis]);
-        assert_int_equal(vxm_unite(&workspace, &window, &job, NULL), VXM_OK);
+        assert_int_equal(vxm_parity_union(&workspace, &window, &job, NULL), VXM_OK);
       }
       size_t bytes = grids[0]->word_count * sizeof *grids[0]->words;
       assert_memory_equal(grids[0]->words, grids[1]->words, bytes);
@@ -103,8 +103,8 @@ static void test_triangles_and_caps_are_closed(void **state) {
         vxm_grid_destroy(grids[axis]);
     }
     vxm_workspace_destroy(&workspace);
-    vxm_placed_destroy(&placed);
-    vxm_facets_destroy(&facets);
+    vxm_snapped_points_destroy(&placed);
+    vxm_triangle_set_destroy(&facets);
     vxm_soup_destroy(soup);
   }
 }
@@ -209,7 +209,7 @@ static void test_cavities(void **state) {
 /* ---- Winding numbers ---- */
 
 /** The sum of solid angles in doubles, term by term. */
-static double winding_of(const vxm_triangle *triangles, size_t count, const double q[3]) {
+static double winding_of(const vxm_winding_triangle *triangles, size_t count, const double q[3]) {
   double sum = 0;
   for (size_t t = 0; t < count; t++) {
     double v[3][3], length[3], dot[3];
@@ -235,7 +235,7 @@ static void test_winding_numbers_match_the_sum(void **state) {
   enum { COUNT = 400 };
   vxm_rng rng = {3};
   for (int round = 0; round < 12; round++) {
-    vxm_triangle triangles[COUNT], sorted[COUNT];
+    vxm_winding_triangle triangles[COUNT], sorted[COUNT];
     double size = pow(0.5, round % 6), worst = 0;
     for (int t = 0; t < COUNT; t++) {
       double centre[3];
@@ -265,7 +265,7 @@ static void test_winding_numbers_match_the_sum(void **state) {
 
 static void test_no_triangles_wind_around_nothing(void **state) {
   (void)state;
-  vxm_triangle none;
+  vxm_winding_triangle none;
   vxm_winding *winding;
   float value[VXM_BRICK];
   assert_int_equal(vxm_winding_create(&winding, context, &none, 0, NULL), VXM_OK);
@@ -310,18 +310,18 @@ static void test_patches_are_turned_outward(void **state) {
   vxm_voxelize_options options = in_space(&cube64);
   vxm_grid *truth = voxelize(clean, options, NULL);
   vxm_lattice lattice = vxm_lattice_of(&cube64);
-  vxm_facets facets;
+  vxm_triangle_set facets;
   vxm_split_rule rule = {VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, true};
-  assert_int_equal(vxm_facets_create(&facets, soup, rule, NULL), VXM_OK);
-  vxm_placed placed = {.context = context};
-  assert_int_equal(vxm_placed_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
-  vxm_turns turns;
-  vxm_wound wound;
+  assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
+  vxm_snapped_points placed = {.context = context};
+  assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
+  vxm_flip_mask turns;
+  vxm_winding_mesh wound;
   const uint64_t *const voters[3] = {truth->words, truth->words, truth->words};
-  assert_int_equal(vxm_outward_find(&turns, &facets, &placed, 0, facets.split.part_count, voters, NULL),
-                   VXM_OK);
+  assert_int_equal(
+      vxm_orient_patches_find(&turns, &facets, &placed, 0, facets.split.part_count, voters, NULL), VXM_OK);
   assert_int_equal(turns.patch_count, soup->face_count);
-  assert_int_equal(vxm_wound_create(&wound, &facets, &placed, &turns, false, NULL), VXM_OK);
+  assert_int_equal(vxm_winding_mesh_create(&wound, &facets, &placed, &turns, false, NULL), VXM_OK);
   double volume = 0;
   for (size_t t = 0; t < turns.count; t++) {
     double(*c)[3] = wound.triangles[t].corner;
@@ -331,10 +331,10 @@ static void test_patches_are_turned_outward(void **state) {
   }
   double true_volume = 2 * M_PI * M_PI * 0.45 * 0.45 / pow(0.05, 3);
   assert_true(fabs(volume / 6 / true_volume - 1) < 0.02);
-  vxm_wound_destroy(&wound);
-  vxm_turns_destroy(&turns);
-  vxm_placed_destroy(&placed);
-  vxm_facets_destroy(&facets);
+  vxm_winding_mesh_destroy(&wound);
+  vxm_flip_mask_destroy(&turns);
+  vxm_snapped_points_destroy(&placed);
+  vxm_triangle_set_destroy(&facets);
   vxm_grid *grid = voxelize(soup, options, NULL);
   assert_true(iou(grid, truth) > 0.999);
   vxm_grid_destroy(grid);

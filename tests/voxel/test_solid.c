@@ -4,7 +4,7 @@
 
 #include "grid/bitgrid.h"
 #include "oracle.h"
-#include "voxel/voxelize.h"
+#include "voxel/model/voxelize.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "surface_oracle.h"
 #include "surfaces.h"
 
-#include "voxel/surface_draw.h"
+#include "voxel/surface/surface_draw.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -130,19 +130,19 @@ static void check_voxels(const scene *s, const vxm_window *cover, const vxm_wind
   for (v[2] = 0; v[2] < dims[2]; v[2]++)
     for (v[1] = 0; v[1] < dims[1]; v[1]++)
       for (v[0] = 0; v[0] < dims[0]; v[0]++) {
-        bool touched = false, on_thin = false;
+        bool has_voxels = false, on_thin = false;
         for (size_t t = 0; t < s->surface.triangle_count; t++) {
-          touched |= oracle_touches(s->points + 3 * t, v, lattice->unit);
+          has_voxels |= oracle_touches(s->points + 3 * t, v, lattice->unit);
           on_thin |= oracle_thin(s->points + 3 * t, v, lattice->unit);
         }
         bool cover_bit = window_get(cover, v), thin_bit = window_get(thin, v);
-        if (cover_bit == touched && thin_bit == on_thin && cover_bit >= thin_bit)
+        if (cover_bit == has_voxels && thin_bit == on_thin && cover_bit >= thin_bit)
           continue;
         const vxm_point *p = s->points;
         fail_msg(
             "kind %d bits %d voxel %d %d %d: %d %d, should be %d %d; first triangle (%lld %lld %lld) (%lld "
             "%lld %lld) (%lld %lld %lld)",
-            kind, lattice->bits, (int)v[0], (int)v[1], (int)v[2], cover_bit, thin_bit, touched, on_thin,
+            kind, lattice->bits, (int)v[0], (int)v[1], (int)v[2], cover_bit, thin_bit, has_voxels, on_thin,
             (long long)p[0].at[0], (long long)p[0].at[1], (long long)p[0].at[2], (long long)p[1].at[0],
             (long long)p[1].at[1], (long long)p[1].at[2], (long long)p[2].at[0], (long long)p[2].at[1],
             (long long)p[2].at[2]);

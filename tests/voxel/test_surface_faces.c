@@ -3,7 +3,7 @@
 #include "../meshio/polygons.h"
 #include "surfaces.h"
 
-#include "voxel/voxelize.h"
+#include "voxel/model/voxelize.h"
 
 #include <string.h>
 

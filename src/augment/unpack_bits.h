@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Rows of bits as bytes, floats, or bits without padding. */
+#ifndef VXM_AUGMENT_UNPACK_BITS_H
+#define VXM_AUGMENT_UNPACK_BITS_H
+
+#include "base/context.h"
+
+/** Bytes of a row of `dim` voxels. */
+size_t vxm_unpack_row_bytes(vxm_voxels voxels, int64_t dim);
+
+/**
+ * Writes `rows` rows of `dim` voxels one after another.
+ *
+ * @param words each row in whole words, its unused bits zero
+ */
+void vxm_unpack_row(void *out, vxm_voxels voxels, const uint64_t *words, size_t rows, int64_t dim);
+
+#endif

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "augment/worker.h"
+#include "augment/unpack_bits.h"
+#include "gridio/gridio.h"
+
+#include <math.h>
+#include <string.h>
+
+/** z runs fastest, as in numpy arrays. */
+static const vxm_layout layout_of_arrays = {2, 1, 0};
+
+vxm_space vxm_worker_space(int64_t resolution) {
+  double size = 1 / (double)resolution;
+  return (vxm_space){{resolution, resolution, resolution}, {0, 0, 0}, {size, size, size}};
+}
+
+vxm_status vxm_worker_create(vxm_worker *out, vxm_context *context, bool alone, vxm_error *error) {
+  *out = (vxm_worker){0};
+  vxm_status status = vxm_context_child(&out->context, context, alone, error);
+  out->twin.context = out->context;
+  return status;
+}
+
+void vxm_worker_destroy(vxm_worker *desk) {
+  if (!desk->context)
+    return;
+  vxm_model_instance_destroy(&desk->twin);
+  vxm_free(desk->context, desk->words);
+  vxm_grid_destroy(desk->grid);
+  vxm_context_release(desk->context);
+  *desk = (vxm_worker){0};
+}
+
+/* ---- Variants ---- */
+
+/** How the points of a subject move; those of its facets, or the vertices of its mesh. */
+static vxm_vertex_transform motion_of(const vxm_sampler_model *subject, const vxm_placement *placement,
+                                      const vxm_noise *noise, bool vertices) {
+  const vxm_triangle_set *facets = &subject->model->shape.facets;
+  return (vxm_vertex_transform){.from = vertices ? (const double(*)[3])facets->soup->positions
+                                                 : (const double(*)[3])facets->positions,
+                                .count = vertices ? facets->soup->vertex_count : facets->first_apex,
+                                .matrix = placement->matrix,
+                                .entry = vertices ? subject->vertex_entry : subject->entry,
+                                .noise = (const float(*)[4])noise->vectors,
+                                .noise_size = noise->size,
+                                .offset = noise->size > 0 ? placement->offset % noise->size : 0,
+                                .from_serial = vertices ? 0 : facets->serial,
+                                .noise_serial = noise->serial};
+}
+
+vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
+                           const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
+  vxm_model_instance *twin = &desk->twin;
+  vxm_status status = vxm_model_instance_attach(twin, subject->model, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_space space = vxm_worker_space(window->fast_dim);
+  vxm_lattice lattice = vxm_lattice_of(&space);
+  vxm_variation variation = {.points = motion_of(subject, placement, noise, false),
+                             .vertices = motion_of(subject, placement, noise, true),
+                             .stretch = placement->stretch,
+                             /* Both ends of an edge may be displaced, along three axes. */
+                             .reach = 2 * sqrt(3.0) * noise->reach,
+                             .mirrored = placement->mirrored};
+  return vxm_model_instance_fill(twin, window, &lattice, &variation, error);
+}
+
+static vxm_status make_room(vxm_worker *desk, size_t words, vxm_error *error) {
+  if (words <= desk->word_room)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(desk->context, desk->words);
+  desk->words = vxm_alloc(desk->context, words, sizeof *desk->words, &local);
+  desk->word_room = desk->words ? words : 0;
+  if (!desk->words && error)
+    *error = local;
+  return local.code;
+}
+
+/** Whether packed voxels have the form of a window's words, so that it can be filled where they belong. */
+static bool is_window(const void *out, vxm_voxels voxels, int64_t resolution) {
+  const uint16_t one = 1;
+  return voxels == VXM_VOXELS_PACKED && resolution % 64 == 0 && (uintptr_t)out % sizeof(uint64_t) == 0 &&
+         *(const unsigned char *)&one == 1;
+}
+
+vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxels voxels, int64_t resolution,
+                            const vxm_sampler_model *subject, const vxm_placement *placement,
+                            const vxm_noise *noise, vxm_error *error) {
+  vxm_space space = vxm_worker_space(resolution);
+  vxm_window window = vxm_window_of(&space, layout_of_arrays, 0, resolution);
+  bool direct = is_window(out, voxels, resolution);
+  if (!direct) {
+    vxm_status status = make_room(desk, window.slice_words * (size_t)resolution, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  window.words = direct ? out : desk->words;
+  vxm_status status = vxm_worker_fill(desk, &window, subject, placement, noise, error);
+  if (status == VXM_OK && !direct)
+    vxm_unpack_row(out, voxels, window.words, (size_t)resolution * (size_t)resolution, resolution);
+  return status;
+}
+
+vxm_status vxm_worker_save(vxm_worker *desk, const char *path, const char *format, int64_t resolution,
+                           const vxm_sampler_model *subject, const vxm_placement *placement,
+                           const vxm_noise *noise, vxm_error *error) {
+  vxm_space space = vxm_worker_space(resolution);
+  vxm_status status = desk->grid ? VXM_OK : vxm_grid_create(&desk->grid, desk->context, &space, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_window window = vxm_window_of_grid(desk->grid);
+  status = vxm_worker_fill(desk, &window, subject, placement, noise, error);
+  return status == VXM_OK ? vxm_gridio_write(desk->grid, path, format, error) : status;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What one thread makes variants with; its memory is kept from one to the next. */
+#ifndef VXM_AUGMENT_WORKER_H
+#define VXM_AUGMENT_WORKER_H
+
+#include "augment/sampler_model.h"
+
+typedef struct vxm_worker {
+  vxm_context *context; /**< one reference held; NULL = not made yet */
+  vxm_model_instance twin;
+  vxm_grid *grid;  /**< a variant on its way to a file; NULL before the first */
+  uint64_t *words; /**< of a window, where what is asked for has another form */
+  size_t word_room;
+} vxm_worker;
+
+/** @param alone whether one thread works here while others work elsewhere; else all of the context's do */
+vxm_status vxm_worker_create(vxm_worker *out, vxm_context *context, bool alone, vxm_error *error);
+void vxm_worker_destroy(vxm_worker *desk);
+
+/** Voxelizes a variant into a window, which is all of a cube. @return as vxm_sampler_batch */
+vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
+                           const vxm_placement *placement, const vxm_noise *noise, vxm_error *error);
+
+/** The same into memory, as [x][y][z] in C order. */
+vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxels voxels, int64_t resolution,
+                            const vxm_sampler_model *subject, const vxm_placement *placement,
+                            const vxm_noise *noise, vxm_error *error);
+
+/** The same into a file. */
+vxm_status vxm_worker_save(vxm_worker *desk, const char *path, const char *format, int64_t resolution,
+                           const vxm_sampler_model *subject, const vxm_placement *placement,
+                           const vxm_noise *noise, vxm_error *error);
+
+/** The voxel space of all variants: the unit cube. */
+vxm_space vxm_worker_space(int64_t resolution);
+
+#endif

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/file_transaction.h"
+#include "base/context_struct.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Lists ---- */
+
+vxm_file_transaction_file *vxm_file_transaction_file_create(const vxm_new_file *file, const char *path) {
+  vxm_file_transaction_file *held = malloc(sizeof *held);
+  char *name = held ? strdup(path) : NULL;
+  if (!name) {
+    free(held);
+    return NULL;
+  }
+  *held = (vxm_file_transaction_file){NULL, *file, name};
+  return held;
+}
+
+void vxm_file_transaction_drop(vxm_file_transaction_file *list) {
+  while (list) {
+    vxm_file_transaction_file *next = list->next;
+    vxm_new_file_close(&list->file);
+    free(list->path);
+    free(list);
+    list = next;
+  }
+}
+
+vxm_status vxm_file_transaction_publish(vxm_file_transaction_file *list, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  for (vxm_file_transaction_file *held = list; held && status == VXM_OK; held = held->next)
+    if (!vxm_new_file_publish(&held->file, held->next != NULL)) /* the last one can only fail itself */
+      status = vxm_fail_errno(error, held->path, "cannot write");
+  for (vxm_file_transaction_file *held = list; held && status != VXM_OK; held = held->next)
+    vxm_new_file_revert(&held->file);
+  vxm_file_transaction_drop(list);
+  return status;
+}
+
+/* ---- Contexts ---- */
+
+static bool is_same_spot(const vxm_output_path *a, const vxm_output_path *b) {
+  struct stat first, second;
+  return strcmp(a->name, b->name) == 0 && fstat(a->folder, &first) == 0 && fstat(b->folder, &second) == 0 &&
+         first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
+/** The place behind the last file; NULL if one of the list is there already. */
+static vxm_file_transaction_file **find_end(vxm_file_transaction *held,
+                                            const vxm_file_transaction_file *list) {
+  vxm_file_transaction_file **at = &held->first;
+  for (; *at; at = &(*at)->next)
+    for (const vxm_file_transaction_file *other = list; other; other = other->next)
+      if (is_same_spot(&(*at)->file.spot, &other->file.spot))
+        return NULL;
+  return at;
+}
+
+vxm_status vxm_file_transaction_take(vxm_context *context, vxm_file_transaction_file *list,
+                                     vxm_error *error) {
+  vxm_file_transaction *held = context ? &context->account->held : NULL;
+  bool holds = false;
+  vxm_file_transaction_file **end = NULL;
+  if (held) {
+    pthread_mutex_lock(&held->mutex);
+    holds = held->holds;
+    end = holds ? find_end(held, list) : NULL;
+    if (end)
+      *end = list;
+    pthread_mutex_unlock(&held->mutex);
+  }
+  if (!holds)
+    return vxm_file_transaction_publish(list, error);
+  if (end)
+    return VXM_OK;
+  vxm_fail(error, VXM_ERROR_ARGUMENT, "%s: two files are to be written under this name; choose another",
+           list->path);
+  vxm_file_transaction_drop(list);
+  return VXM_ERROR_ARGUMENT;
+}
+
+/** Ends the holding, and hands the files to the caller. */
+static vxm_file_transaction_file *take_all(vxm_context *context) {
+  vxm_file_transaction *held = &context->account->held;
+  pthread_mutex_lock(&held->mutex);
+  vxm_file_transaction_file *list = held->first;
+  held->first = NULL;
+  held->holds = false;
+  pthread_mutex_unlock(&held->mutex);
+  return list;
+}
+
+vxm_status vxm_context_hold_files(vxm_context *context, vxm_error *error) {
+  if (!context)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "context: files are held by a context, not by NULL");
+  vxm_file_transaction *held = &context->account->held;
+  pthread_mutex_lock(&held->mutex);
+  held->holds = true;
+  pthread_mutex_unlock(&held->mutex);
+  return VXM_OK;
+}
+
+vxm_status vxm_context_publish_files(vxm_context *context, vxm_error *error) {
+  return context ? vxm_file_transaction_publish(take_all(context), error) : VXM_OK;
+}
+
+void vxm_context_drop_files(vxm_context *context) {
+  if (context)
+    vxm_file_transaction_drop(take_all(context));
+}

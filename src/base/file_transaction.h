@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Complete files that wait for others, to get their names together: all or none. */
+#ifndef VXM_BASE_FILE_TRANSACTION_H
+#define VXM_BASE_FILE_TRANSACTION_H
+
+#include "base/context.h"
+#include "base/new_file.h"
+
+#include <pthread.h>
+
+/** A prepared file. */
+typedef struct vxm_file_transaction_file {
+  struct vxm_file_transaction_file *next;
+  vxm_new_file file;
+  char *path; /**< for messages */
+} vxm_file_transaction_file;
+
+/** Of a context. */
+typedef struct vxm_file_transaction {
+  pthread_mutex_t mutex;
+  bool holds;
+  vxm_file_transaction_file *first;
+} vxm_file_transaction;
+
+/** NULL without memory, then the file is still the caller's. */
+vxm_file_transaction_file *vxm_file_transaction_file_create(const vxm_new_file *file, const char *path);
+/** Names all files of a list, or, after a failure, none. Frees the list. */
+vxm_status vxm_file_transaction_publish(vxm_file_transaction_file *list, vxm_error *error);
+void vxm_file_transaction_drop(vxm_file_transaction_file *list);
+/**
+ * Takes a list over if the context holds files, else names them.
+ *
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_ARGUMENT if a file of that name is held already
+ */
+vxm_status vxm_file_transaction_take(vxm_context *context, vxm_file_transaction_file *list, vxm_error *error);
+
+#endif

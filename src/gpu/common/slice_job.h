@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Slices of a window that an engine makes at once, and what its shaders are told of them. */
+#ifndef VXM_GPU_COMMON_SLICE_JOB_H
+#define VXM_GPU_COMMON_SLICE_JOB_H
+
+#include "voxel/parity/parity_union.h"
+#include "voxel/surface/surface.h"
+
+/** Rows lie one behind the other, without room between slices. */
+typedef struct vxm_slice_job {
+  const vxm_window *window;
+  int64_t begin, end; /**< slices of the window's space */
+  size_t row_words;   /**< of 64 bits */
+  size_t words;       /**< of 64 bits, in all */
+} vxm_slice_job;
+
+vxm_slice_job vxm_slice_job_of(const vxm_window *window, int64_t begin, int64_t slices);
+/** Words of a slice. */
+size_t vxm_slice_job_slice_words(const vxm_slice_job *tile);
+/** Where a slice lies in words that are laid out as the window's. */
+uint64_t *vxm_slice_job_slice_at(const vxm_slice_job *tile, uint64_t *words, int64_t slice);
+/** As vxm_progress_enter, for the tile's part of its window. */
+vxm_progress_part vxm_slice_job_progress(const vxm_slice_job *tile);
+/** Moves a tile's words into the window's, or (`is_or`) adds them. */
+void vxm_slice_job_take(const vxm_slice_job *tile, uint64_t *words, const uint64_t *from, bool is_or);
+
+/** The columns of a tile and the facets that flip them; axes in the order u, v, w, w along the columns. The
+ * layout is that of shaders/job.glsl and shaders/lattice.cl. */
+typedef struct vxm_slice_job_columns {
+  int32_t axes[3], bits;         /**< bits of the lattice below a voxel */
+  int32_t first[3], keep_before; /**< first voxel; whether a flip before it along w counts for it */
+  int32_t last[3], unused;       /**< voxel behind the last */
+  uint32_t step[4];              /**< bits from a voxel to the next one */
+  uint32_t facet_first, facet_count, ordered, few_columns;
+} vxm_slice_job_columns;
+
+/** What the passes over a tile have in common; the facets are still to be told. */
+vxm_slice_job_columns vxm_slice_job_columns_of(const vxm_slice_job *tile, const vxm_parity_union_job *job);
+
+/** The voxels of a tile along x, y, z and the triangles of a surface. The layout is that of
+ * shaders/touching.glsl and shaders/touching.cl. */
+typedef struct vxm_slice_job_surface {
+  int32_t first[3], bits;
+  int32_t last[3], thin;
+  uint32_t step[4];
+  uint32_t facet_count, few_columns;
+  int32_t shift, shadow; /**< 0; see shaders/touching.cl */
+} vxm_slice_job_surface;
+
+vxm_slice_job_surface vxm_slice_job_surface_of(const vxm_slice_job *tile, const vxm_surface *surface,
+                                               vxm_surface_kind kind);
+
+#endif

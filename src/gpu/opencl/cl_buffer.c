@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Buffers of the device, and tiles on their way to and from it. */
+#include "base/size_text.h"
+#include "gpu/opencl/opencl.h"
+
+#include <string.h>
+
+void vxm_cl_release(vxm_opencl *engine, vxm_cl_buffer_id id) {
+  vxm_cl_buffer *buffer = &engine->buffers[id];
+  if (buffer->mem)
+    engine->cl->ReleaseMemObject(buffer->mem);
+  vxm_memory_give(engine->base.context, buffer->bytes);
+  *buffer = (vxm_cl_buffer){0};
+}
+
+vxm_status vxm_cl_reserve(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error) {
+  vxm_cl_buffer *buffer = &engine->buffers[id];
+  cl_int code;
+  bytes = bytes > sizeof(uint64_t) ? bytes : sizeof(uint64_t);
+  if (buffer->bytes >= bytes)
+    return VXM_OK;
+  if (bytes > (uint64_t)engine->base.info.block_bytes)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "%zu bytes are more than the %lld that %s gives to a buffer; use --engine cpu", bytes,
+                    (long long)engine->base.info.block_bytes, engine->base.info.renderer);
+  vxm_cl_release(engine, id); /* after all that was queued, which the driver counts */
+  vxm_status status = vxm_memory_take(engine->base.context, bytes, error);
+  if (status != VXM_OK)
+    return status;
+  buffer->bytes = bytes;
+  buffer->mem = engine->cl->CreateBuffer(engine->context, CL_MEM_READ_WRITE, bytes, NULL, &code);
+  if (code == CL_SUCCESS)
+    return VXM_OK;
+  buffer->mem = NULL;
+  vxm_cl_release(engine, id);
+  return vxm_cl_check(code, "making a buffer", error);
+}
+
+static vxm_status fill_zero(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error) {
+  static const uint32_t zero = 0;
+  bytes = (bytes + sizeof zero - 1) / sizeof zero * sizeof zero;
+  return vxm_cl_check(engine->cl->EnqueueFillBuffer(engine->queue, engine->buffers[id].mem, &zero,
+                                                    sizeof zero, 0, bytes, 0, NULL, NULL),
+                      "clearing a buffer", error);
+}
+
+vxm_status vxm_cl_reserve_zero(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error) {
+  cl_mem before = engine->buffers[id].bytes >= bytes ? engine->buffers[id].mem : NULL;
+  vxm_status status = vxm_cl_reserve(engine, id, bytes, error);
+  if (status != VXM_OK || before)
+    return status;
+  return fill_zero(engine, id, engine->buffers[id].bytes, error);
+}
+
+vxm_status vxm_cl_clear(vxm_opencl *engine, vxm_cl_buffer_id id, size_t bytes, vxm_error *error) {
+  vxm_status status = vxm_cl_reserve(engine, id, bytes, error);
+  return status == VXM_OK && bytes > 0 ? fill_zero(engine, id, bytes, error) : status;
+}
+
+static vxm_status upload_at(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, const void *data,
+                            size_t bytes, vxm_error *error) {
+  vxm_status status = vxm_cl_reserve(engine, id, offset + bytes, error);
+  if (status != VXM_OK || bytes == 0 || !data)
+    return status;
+  return vxm_cl_check(engine->cl->EnqueueWriteBuffer(engine->queue, engine->buffers[id].mem, CL_TRUE, offset,
+                                                     bytes, data, 0, NULL, NULL),
+                      "sending a buffer", error);
+}
+
+vxm_status vxm_cl_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const void *data, size_t bytes,
+                         vxm_error *error) {
+  return upload_at(engine, id, 0, data, bytes, error);
+}
+
+void vxm_cl_resident_release(vxm_engine *base, vxm_device_cache_id id) {
+  vxm_cl_release(vxm_opencl_of(base), (vxm_cl_buffer_id)id);
+}
+
+vxm_status vxm_cl_resident_upload(vxm_engine *base, vxm_device_cache_id id, size_t offset, const void *data,
+                                  size_t bytes, vxm_error *error) {
+  return upload_at(vxm_opencl_of(base), (vxm_cl_buffer_id)id, offset, data, bytes, error);
+}
+
+vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offset, void *out, size_t bytes,
+                           vxm_error *error) {
+  if (bytes == 0)
+    return VXM_OK;
+  return vxm_cl_check(engine->cl->EnqueueReadBuffer(engine->queue, engine->buffers[id].mem, CL_TRUE, offset,
+                                                    bytes, out, 0, NULL, NULL),
+                      "reading a buffer", error);
+}
+
+/* ---- Tiles ---- */
+
+/** What a tile may take under the memory limit: of what is left, and what its buffers have already. */
+static int64_t tile_share(const vxm_opencl *engine) {
+  enum {
+    BUFFERS =
+        12 /**< flips, two results, mask and four voters; and as much for lists of tiles and what is added */
+  };
+  static const vxm_cl_buffer_id own[] = {VXM_CL_FLIPS,       VXM_CL_RESULT,     VXM_CL_RESULT2,
+                                         VXM_CL_MASK,        VXM_CL_VOTER_X,    VXM_CL_VOTER_X + 1,
+                                         VXM_CL_VOTER_X + 2, VXM_CL_VOTER_X + 3};
+  size_t left = vxm_memory_left(engine->base.context);
+  if (left > INT64_MAX / 2) /* there is no limit */
+    return INT64_MAX;
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    left += engine->buffers[own[i]].bytes;
+  return (int64_t)(left / BUFFERS);
+}
+
+vxm_status vxm_cl_tile_slices(int64_t *out, const vxm_opencl *engine, const vxm_window *window,
+                              vxm_error *error) {
+  /* Bits of a tile are counted in 32 bits; flips, two results and four voters may be held. */
+  const int64_t bytes_most = INT64_C(256) << 20, buffers = 8;
+  const vxm_engine_info *info = &engine->base.info;
+  int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
+  int64_t most = vxm_min(vxm_min(info->block_bytes, info->global_bytes / buffers), bytes_most);
+  most = vxm_min(most, tile_share(engine));
+  if (slice > bytes_most || slice > info->block_bytes)
+    return vxm_fail(error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
+                    vxm_size_text_of((uint64_t)slice).text, info->renderer,
+                    vxm_size_text_of((uint64_t)vxm_min(info->block_bytes, bytes_most)).text);
+  *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
+  return VXM_OK;
+}
+
+vxm_status vxm_cl_tile_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const vxm_slice_job *tile,
+                              vxm_error *error) {
+  size_t bytes = vxm_slice_job_slice_words(tile) * sizeof(uint64_t);
+  vxm_status status = vxm_cl_reserve(engine, id, tile->words * sizeof(uint64_t), error);
+  for (int64_t k = tile->begin; k < tile->end && status == VXM_OK; k++)
+    status = vxm_cl_check(engine->cl->EnqueueWriteBuffer(engine->queue, engine->buffers[id].mem, CL_TRUE,
+                                                         (size_t)(k - tile->begin) * bytes, bytes,
+                                                         vxm_slice_job_slice_at(tile, tile->window->words, k),
+                                                         0, NULL, NULL),
+                          "sending voxels", error);
+  return status;
+}
+
+/** Whether the words of the tile lie in the window as they do in the tile. */
+static bool is_dense(const vxm_slice_job *tile) {
+  return tile->window->slice_words == vxm_slice_job_slice_words(tile) || tile->end - tile->begin == 1;
+}
+
+vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_error *error) {
+  const vxm_cl *cl = engine->cl;
+  size_t bytes = back->tile.words * sizeof(uint64_t);
+  cl_event made = NULL;
+  uint64_t *to = vxm_slice_job_slice_at(&back->tile, back->words, back->tile.begin);
+  if (back->is_or || !is_dense(&back->tile)) {
+    vxm_error local = VXM_ERROR_INIT;
+    to = back->block = vxm_alloc(engine->base.context, back->tile.words, sizeof *to, &local);
+    if (!to) {
+      if (error)
+        *error = local;
+      return local.code;
+    }
+  }
+  cl_int code = cl->EnqueueMarkerWithWaitList(engine->queue, 0, NULL, &made);
+  if (code == CL_SUCCESS)
+    code = cl->EnqueueReadBuffer(engine->transfer, engine->buffers[back->from].mem, CL_FALSE, 0, bytes, to, 1,
+                                 &made, &back->event);
+  if (made)
+    cl->ReleaseEvent(made);
+  if (code == CL_SUCCESS)
+    code = cl->Flush(engine->queue);
+  if (code == CL_SUCCESS)
+    code = cl->Flush(engine->transfer);
+  return vxm_cl_check(code, "reading voxels", error);
+}
+
+vxm_status vxm_cl_return_end(vxm_opencl *engine, vxm_cl_return *back, vxm_status status, vxm_error *error) {
+  if (back->event) {
+    cl_int code = engine->cl->WaitForEvents(1, &back->event);
+    engine->cl->ReleaseEvent(back->event);
+    back->event = NULL;
+    vxm_status ended = vxm_cl_check(code, "reading voxels", status == VXM_OK ? error : NULL);
+    if (ended == VXM_OK && back->block)
+      vxm_slice_job_take(&back->tile, back->words, back->block, back->is_or);
+    status = status == VXM_OK ? ended : status;
+  }
+  vxm_free(engine->base.context, back->block);
+  back->block = NULL;
+  return status;
+}

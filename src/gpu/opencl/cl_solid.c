@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Solids by OpenCL: tiles are made one after another, and each is taken back while the next is made. */
+#include "gpu/opencl/cl_solid.h"
+
+#include <string.h>
+
+/** What is done triangle by triangle, unless that is asked for (doc/engines.md has the times). */
+enum {
+  PASSES_MOST = 4,   /**< so few passes */
+  LONG_COLUMN = 1024 /**< columns of fewer voxels */
+};
+
+static vxm_status clear_touched(vxm_opencl *engine, const vxm_triangle_set *facets, vxm_error *error) {
+  return vxm_cl_clear(engine, VXM_CL_TOUCHED, facets->split.part_count * sizeof(uint32_t), error);
+}
+
+vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels, const vxm_triangle_set *facets,
+                               vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  size_t parts = facets->split.part_count;
+  uint32_t *set = vxm_alloc(engine->base.context, parts, sizeof *set, &local);
+  vxm_status status =
+      set ? vxm_cl_download(engine, VXM_CL_TOUCHED, 0, set, parts * sizeof *set, &local) : local.code;
+  for (size_t p = 0; p < parts && status == VXM_OK; p++)
+    if (set[p] == 1)
+      atomic_store_explicit(&has_voxels[p], 1, memory_order_relaxed);
+  vxm_free(engine->base.context, set);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error) {
+  for (int i = 0; i < 2; i++)
+    status = vxm_cl_return_end(engine, &back[i], status, error);
+  if (status != VXM_OK) {
+    engine->cl->Finish(engine->queue);
+    engine->cl->Finish(engine->transfer);
+    vxm_cl_release(engine, VXM_CL_FLIPS);
+  }
+  return status;
+}
+
+vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_tile_fn make,
+                            void *payload, vxm_error *error) {
+  vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_RESULT2}};
+  int64_t slices = 1;
+  int which = 0;
+  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
+    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
+    status = vxm_cl_return_end(engine, &back[which], status, error);
+    vxm_progress_part before = vxm_slice_job_progress(&tile);
+    if (status == VXM_OK)
+      status = make(engine, &tile, back[which].from, payload, error);
+    vxm_progress_leave(before);
+    back[which].tile = tile;
+    back[which].words = window->words;
+    back[which].is_or = is_or;
+    if (status == VXM_OK)
+      status = vxm_cl_return_begin(engine, &back[which], error);
+  }
+  return vxm_cl_finish(engine, back, status, error);
+}
+
+/* ---- Unions ---- */
+
+/** Divides the parts into passes, or into none where tiles of columns are the better way. */
+static vxm_status choose(vxm_opencl *engine, const vxm_window *window, const vxm_parity_union_job *job,
+                         vxm_disjoint_passes *passes, vxm_error *error) {
+  vxm_cl_method method = vxm_cl_can_tile(engine, window, job) ? engine->options.cl_method : VXM_CL_TRIANGLES;
+  if (method == VXM_CL_TILES || (method == VXM_CL_AUTO && window->fast_dim >= LONG_COLUMN))
+    return VXM_OK;
+  return vxm_device_cache_passes(passes, &engine->resident, window, job, 0,
+                                 method == VXM_CL_AUTO ? PASSES_MOST : SIZE_MAX, error);
+}
+
+/** Makes the words of a tile: by `passes`, or by tiles of columns where there are none. */
+static vxm_status make_tile(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+                            vxm_disjoint_passes *passes, vxm_cl_buffer_id into, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
+  if (passes->count == 0) {
+    status = vxm_cl_tiles(engine, tile, job, into, &local);
+    if (status == VXM_OK)
+      return VXM_OK;
+    if (status != VXM_ERROR_RANGE || engine->options.cl_method == VXM_CL_TILES) {
+      if (error)
+        *error = local;
+      return status;
+    }
+    vxm_disjoint_passes_destroy(
+        passes); /* the lists of tiles are too long: what nobody asked for is left again */
+    status = vxm_device_cache_passes(passes, &engine->resident, tile->window, job, 0, SIZE_MAX, error);
+  }
+  return status == VXM_OK ? vxm_cl_columns(engine, tile, job, passes, into, error) : status;
+}
+
+typedef struct union_job {
+  const vxm_parity_union_job *job;
+  vxm_disjoint_passes *passes;
+} union_job;
+
+static vxm_status unite_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id into,
+                             void *payload, vxm_error *error) {
+  const union_job *u = payload;
+  return make_tile(engine, tile, u->job, u->passes, into, error);
+}
+
+static void clear(const vxm_window *window) {
+  for (int64_t k = window->begin; k < window->end; k++)
+    memset(vxm_window_row(window, 0, k), 0,
+           window->row_words * (size_t)window->middle_dim * sizeof *window->words);
+}
+
+vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_parity_union_job *job,
+                        vxm_error *error) {
+  vxm_opencl *engine = vxm_opencl_of(base);
+  vxm_disjoint_passes passes = {.context = base->context};
+  if (job->part_begin >= job->part_end) {
+    if (job->fresh)
+      clear(window);
+    return VXM_OK;
+  }
+  vxm_status status = vxm_device_cache_facets(&engine->resident, job->facets, job->placed, error);
+  if (status == VXM_OK)
+    status = choose(engine, window, job, &passes, error);
+  if (status == VXM_OK && job->has_voxels)
+    status = clear_touched(engine, job->facets, error);
+  if (status == VXM_OK)
+    status = vxm_cl_each_tile(engine, window, !job->fresh, unite_tile, &(union_job){job, &passes}, error);
+  if (status == VXM_OK && job->has_voxels)
+    status = vxm_cl_touched_take(engine, job->has_voxels, job->facets, error);
+  vxm_disjoint_passes_destroy(&passes);
+  return status;
+}
+
+/* ---- Votes ---- */
+
+/** The voters of an election: how many are united, and where the words of each are. */
+typedef struct ballot {
+  const vxm_vote_job *job;
+  vxm_cl_buffer_id words[VXM_VOTERS];
+  int count;
+} ballot;
+
+/** The tetrahedra, if not asked, vote as x does. */
+static ballot ballot_of(const vxm_vote_job *job) {
+  ballot b = {.job = job, .count = job->tetra ? VXM_VOTERS : VXM_VOTERS - 1};
+  for (int v = 0; v < VXM_VOTERS; v++)
+    b.words[v] = (vxm_cl_buffer_id)(v < b.count ? VXM_CL_VOTER_X + v : VXM_CL_VOTER_X);
+  return b;
+}
+
+/** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
+ */
+static vxm_status make_voter(vxm_opencl *engine, const vxm_slice_job *tile, const ballot *b, int v,
+                             vxm_error *error) {
+  vxm_parity_union_job job = vxm_voter(b->job, tile->window, v);
+  vxm_disjoint_passes passes = {.context = engine->base.context};
+  vxm_progress_part before = vxm_progress_enter((double)v / b->count, (v + 1.0) / b->count);
+  vxm_status status = choose(engine, tile->window, &job, &passes, error);
+  if (status == VXM_OK)
+    status = make_tile(engine, tile, &job, &passes, b->words[v], error);
+  vxm_disjoint_passes_destroy(&passes);
+  vxm_progress_leave(before);
+  return status;
+}
+
+static vxm_status count_votes(vxm_opencl *engine, const vxm_slice_job *tile, const ballot *b, vxm_vote rule,
+                              vxm_cl_buffer_id result, vxm_error *error) {
+  const cl_uint count = (cl_uint)(2 * tile->words);
+  const cl_uint number = rule == VXM_VOTE_MAJORITY ? 1 : rule == VXM_VOTE_ANY ? 2 : 0;
+  return vxm_cl_run(engine, VXM_CL_VOTE, count,
+                    VXM_CL_ARGS(VXM_CL_MEM(engine, b->words[0]), VXM_CL_MEM(engine, b->words[1]),
+                                VXM_CL_MEM(engine, b->words[2]), VXM_CL_MEM(engine, b->words[3]),
+                                VXM_CL_MEM(engine, result), VXM_CL_MEM(engine, VXM_CL_MASK),
+                                VXM_CL_MEM(engine, VXM_CL_TALLY), VXM_CL_VALUE(count), VXM_CL_VALUE(number)),
+                    error);
+}
+
+static vxm_status elect_tile(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_vote_job *job,
+                             const ballot *b, vxm_cl_buffer_id result, vxm_vote_tally *tally,
+                             vxm_error *error) {
+  uint32_t counted[2] = {0, 0};
+  vxm_status status = vxm_cl_tile_upload(engine, result, tile, error);
+  if (status == VXM_OK)
+    status = vxm_cl_reserve(engine, VXM_CL_MASK, tile->words * sizeof(uint64_t), error);
+  for (int v = 0; v < b->count && status == VXM_OK; v++)
+    status = make_voter(engine, tile, b, v, error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof counted, error);
+  if (status == VXM_OK)
+    status = count_votes(engine, tile, b, job->rule, result, error);
+  if (status == VXM_OK)
+    status = vxm_cl_download(engine, VXM_CL_TALLY, 0, counted, sizeof counted, error);
+  tally->contested += counted[0];
+  tally->added |= counted[1] != 0;
+  return status;
+}
+
+static vxm_status elect_tiles(vxm_opencl *engine, const vxm_window *window, const vxm_vote_job *job,
+                              vxm_vote_tally *tally, vxm_error *error) {
+  vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_MASK}};
+  int64_t slices = 1;
+  ballot b = ballot_of(job);
+  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices) {
+    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
+    for (int i = 0; i < 2; i++)
+      status = vxm_cl_return_end(engine, &back[i], status, error);
+    vxm_progress_part before = vxm_slice_job_progress(&tile);
+    if (status == VXM_OK)
+      status = elect_tile(engine, &tile, job, &b, VXM_CL_RESULT, tally, error);
+    vxm_progress_leave(before);
+    back[0].tile = back[1].tile = tile;
+    back[0].words = window->words;
+    back[1].words = job->mask;
+    for (int i = 0; i < (job->mask ? 2 : 1) && status == VXM_OK; i++)
+      status = vxm_cl_return_begin(engine, &back[i], error);
+  }
+  return vxm_cl_finish(engine, back, status, error);
+}
+
+vxm_status vxm_cl_elect(vxm_engine *base, const vxm_window *window, const vxm_vote_job *job,
+                        vxm_vote_tally *tally, vxm_error *error) {
+  vxm_opencl *engine = vxm_opencl_of(base);
+  if (job->part_begin >= job->part_end)
+    return VXM_OK;
+  vxm_status status = vxm_device_cache_facets(&engine->resident, job->facets, job->placed, error);
+  if (status == VXM_OK && job->has_voxels)
+    status = clear_touched(engine, job->facets, error);
+  if (status == VXM_OK)
+    status = elect_tiles(engine, window, job, tally, error);
+  if (status == VXM_OK && job->has_voxels)
+    status = vxm_cl_touched_take(engine, job->has_voxels, job->facets, error);
+  return status;
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Solids and surfaces by OpenCL; see vxm_engine_ops. */
+#ifndef VXM_GPU_OPENCL_CL_SOLID_H
+#define VXM_GPU_OPENCL_CL_SOLID_H
+
+#include "gpu/opencl/opencl.h"
+
+vxm_status vxm_cl_move(vxm_engine *engine, vxm_snapped_points *placed, const vxm_move_job *job, bool *done,
+                       vxm_error *error);
+vxm_status vxm_cl_unite(vxm_engine *engine, const vxm_window *window, const vxm_parity_union_job *job,
+                        vxm_error *error);
+vxm_status vxm_cl_elect(vxm_engine *engine, const vxm_window *window, const vxm_vote_job *job,
+                        vxm_vote_tally *tally, vxm_error *error);
+/** As vxm_surface_add (cl_surface.c). */
+vxm_status vxm_cl_surface(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
+                          vxm_surface_kind kind, bool is_fresh, vxm_error *error);
+
+/** See vxm_engine_ops (cl_sparse.c). Open parts and facets that reach far are left to the CPU. */
+vxm_status vxm_cl_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_space *space,
+                         const vxm_sparse_job *job, vxm_error *error);
+
+/** See vxm_engine_ops (cl_coverage.c). */
+vxm_status vxm_cl_count(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
+                        vxm_error *error);
+
+/** Ends what is under way; after a failure, when flips may be left over and something may still run, too.
+ * Returns `status`, or the first failure. */
+vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error);
+
+/** In VXM_CL_TOUCHED: a part that sets no voxel, and is not looked at. */
+#define VXM_CL_NOT_ASKED UINT32_MAX
+/** Reads which parts set a voxel: those that have 1. */
+vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels, const vxm_triangle_set *facets,
+                               vxm_error *error);
+
+/** Makes the words of a tile in a buffer. */
+typedef vxm_status (*vxm_cl_tile_fn)(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id into,
+                                     void *payload, vxm_error *error);
+/** Makes a window tile by tile, and takes each back while the next is made; `is_or`: adds to the window. */
+vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool is_or, vxm_cl_tile_fn make,
+                            void *payload, vxm_error *error);
+
+/** Parity of the job's parts along its axis, united, in a buffer of a tile, triangle by triangle
+ * (cl_columns.c). The passes are those of the job, and on the device. */
+vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+                          const vxm_disjoint_passes *passes, vxm_cl_buffer_id into, vxm_error *error);
+
+/** Whether the job can be done tile by tile: its columns run along the bits, and no facet is far. */
+bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_parity_union_job *job);
+/** The same for such a job, tile of columns by tile of columns (cl_tiles.c). */
+vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+                        vxm_cl_buffer_id into, vxm_error *error);
+
+#endif

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Surfaces by OpenCL: shaders/surface.cl tells exactly which voxels belong to a triangle. */
+#include "gpu/opencl/cl_solid.h"
+
+enum { FEW_COLUMNS = 64 /**< of a triangle that one work-item does */ };
+
+typedef struct surface_job {
+  const vxm_surface *surface;
+  vxm_surface_kind kind;
+} surface_job;
+
+static vxm_status set_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id into,
+                           void *payload, vxm_error *error) {
+  const surface_job *s = payload;
+  vxm_slice_job_surface job = vxm_slice_job_surface_of(tile, s->surface, s->kind);
+  job.few_columns = FEW_COLUMNS;
+  vxm_status status = vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear_large(engine, job.facet_count, error);
+  const vxm_cl_arg args[] = {VXM_CL_MEM(engine, VXM_CL_SURFACE_POINTS),
+                             VXM_CL_MEM(engine, VXM_CL_SURFACE_CORNERS), VXM_CL_MEM(engine, into),
+                             VXM_CL_MEM(engine, VXM_CL_LARGE), VXM_CL_VALUE(job)};
+  const size_t count = sizeof args / sizeof args[0];
+  if (status == VXM_OK)
+    status = vxm_cl_run(engine, VXM_CL_SET_SURFACE, job.facet_count, args, count, error);
+  if (status == VXM_OK)
+    status = vxm_cl_run_groups(engine, VXM_CL_SET_LARGE, vxm_cl_busy_groups(engine), args, count, error);
+  return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface",
+                                         (double)(tile->end - tile->window->begin) /
+                                             (double)(tile->window->end - tile->window->begin),
+                                         error)
+                          : status;
+}
+
+vxm_status vxm_cl_surface(vxm_engine *base, const vxm_surface *surface, const vxm_window *window,
+                          vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
+  vxm_opencl *engine = vxm_opencl_of(base);
+  vxm_status status = vxm_device_cache_surface(&engine->resident, surface, error);
+  if (status == VXM_OK)
+    status = vxm_cl_each_tile(engine, window, !is_fresh, set_tile, &(surface_job){surface, kind}, error);
+  return status == VXM_OK
+             ? vxm_oversized_surface_add(&engine->resident.far_surface, surface, window, kind, error)
+             : status;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The solid by OpenGL; see vxm_engine_ops. */
+#ifndef VXM_GPU_OPENGL_GL_SOLID_H
+#define VXM_GPU_OPENGL_GL_SOLID_H
+
+#include "gpu/opengl/opengl.h"
+
+vxm_status vxm_gl_move(vxm_engine *engine, vxm_snapped_points *placed, const vxm_move_job *job, bool *done,
+                       vxm_error *error);
+vxm_status vxm_gl_unite(vxm_engine *engine, const vxm_window *window, const vxm_parity_union_job *job,
+                        vxm_error *error);
+vxm_status vxm_gl_elect(vxm_engine *engine, const vxm_window *window, const vxm_vote_job *job,
+                        vxm_vote_tally *tally, vxm_error *error);
+
+/** As vxm_surface_add (gl_surface.c). */
+vxm_status vxm_gl_surface(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
+                          vxm_surface_kind kind, bool is_fresh, vxm_error *error);
+
+/** See vxm_engine_ops (gl_color.c). */
+vxm_status vxm_gl_color(vxm_engine *engine, uint8_t *values, const vxm_color_job *job, vxm_error *error);
+
+/** Ends what is under way, after a failure too: a driver may not lose a buffer that it writes. Returns
+ * `status`, or the first failure. */
+vxm_status vxm_gl_finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status status, vxm_error *error);
+
+#endif

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Surfaces by OpenGL: small triangles in a compute shader, large ones dilated in a geometry shader and
+ * drawn. Which voxels belong to a triangle is told exactly, by the tests of the CPU. */
+#include "gpu/opengl/gl_solid.h"
+
+enum { FEW_COLUMNS = 32, LARGE_HEADER = 4 };
+
+/** The uniform block of shaders/touching.glsl. */
+typedef struct surface_job {
+  vxm_slice_job_surface tile;
+  int32_t view[4];
+} surface_job;
+
+static surface_job job_of(const vxm_opengl *engine, const vxm_surface *surface, const vxm_slice_job *tile,
+                          vxm_surface_kind kind) {
+  surface_job job = {.tile = vxm_slice_job_surface_of(tile, surface, kind)};
+  job.tile.few_columns = engine->can_pull_late ? FEW_COLUMNS : UINT32_MAX;
+  return job;
+}
+
+static void bind(vxm_opengl *engine) {
+  vxm_gl_bind(engine, 0, VXM_GL_JOB);
+  vxm_gl_bind(engine, 0, VXM_GL_SURFACE_POINTS);
+  vxm_gl_bind(engine, 1, VXM_GL_SURFACE_CORNERS);
+  vxm_gl_bind(engine, 3, VXM_GL_RESULT);
+  vxm_gl_bind(engine, 4, VXM_GL_LARGE);
+}
+
+static vxm_status find(vxm_opengl *engine, const surface_job *job, vxm_error *error) {
+  static const uint32_t header[LARGE_HEADER] = {0, 1, 0, 0};
+  const vxm_gl *gl = &engine->context.gl;
+  vxm_status status = vxm_gl_reserve(
+      engine, VXM_GL_LARGE, (LARGE_HEADER + (size_t)job->tile.facet_count) * sizeof(uint32_t), error);
+  if (status == VXM_OK)
+    status = vxm_gl_upload(engine, VXM_GL_LARGE, header, sizeof header, error);
+  if (status == VXM_OK)
+    status = vxm_gl_upload(engine, VXM_GL_JOB, job, sizeof *job, error);
+  if (status == VXM_OK)
+    status = vxm_gl_use(engine, VXM_GL_FIND_SURFACE, error);
+  if (status != VXM_OK)
+    return status;
+  bind(engine);
+  vxm_gl_dispatch(gl, job->tile.facet_count, false);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  return VXM_OK;
+}
+
+/** One viewport serves triangles seen along any axis, so that it is as wide and high as the longest. */
+static vxm_status draw(vxm_opengl *engine, surface_job *job, vxm_error *error) {
+  const vxm_gl *gl = &engine->context.gl;
+  int64_t most = engine->base.info.viewport, longest = 0;
+  for (int a = 0; a < 3; a++)
+    longest = vxm_max(longest, job->tile.last[a]);
+  vxm_status status = vxm_gl_use(engine, VXM_GL_DRAW_SURFACE, error);
+  if (status != VXM_OK)
+    return status;
+  bind(engine);
+  gl->BindFramebuffer(GL_FRAMEBUFFER, engine->framebuffer);
+  gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, engine->buffers[VXM_GL_LARGE].name);
+  for (int64_t v = 0; v < longest && status == VXM_OK; v += most)
+    for (int64_t u = 0; u < longest && status == VXM_OK; u += most) {
+      job->view[0] = (int32_t)u;
+      job->view[1] = (int32_t)v;
+      job->view[2] = (int32_t)vxm_min(most, longest - u);
+      job->view[3] = (int32_t)vxm_min(most, longest - v);
+      status = vxm_gl_upload(engine, VXM_GL_JOB, job, sizeof *job, error);
+      gl->FramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, job->view[2]);
+      gl->FramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, job->view[3]);
+      gl->Viewport(0, 0, job->view[2], job->view[3]);
+      gl->DrawArraysIndirect(GL_POINTS, NULL);
+    }
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return status;
+}
+
+static vxm_status draw_tile(vxm_opengl *engine, const vxm_surface *surface, const vxm_slice_job *tile,
+                            vxm_surface_kind kind, vxm_error *error) {
+  const vxm_gl *gl = &engine->context.gl;
+  surface_job job = job_of(engine, surface, tile, kind);
+  vxm_status status = vxm_gl_reserve(engine, VXM_GL_RESULT, tile->words * sizeof(uint64_t), error);
+  if (status != VXM_OK)
+    return status;
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_RESULT].name);
+  gl->ClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
+  status = find(engine, &job, error);
+  if (status == VXM_OK && engine->can_pull_late)
+    status = draw(engine, &job, error);
+  if (status == VXM_OK)
+    status = vxm_gl_check(gl, "opengl: drawing a surface", error);
+  return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface",
+                                         (double)(tile->end - tile->window->begin) /
+                                             (double)(tile->window->end - tile->window->begin),
+                                         error)
+                          : status;
+}
+
+static vxm_status draw_tiles(vxm_opengl *engine, const vxm_surface *surface, const vxm_window *window,
+                             vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
+  vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
+  int64_t slices = 1;
+  int which = 0;
+  vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
+    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
+    vxm_progress_part before = vxm_slice_job_progress(&tile);
+    status = draw_tile(engine, surface, &tile, kind, error);
+    vxm_progress_leave(before);
+    if (status != VXM_OK)
+      break;
+    back[which] = (vxm_gl_return){.tile = tile, .is_or = !is_fresh, .staging = which};
+    status = vxm_gl_return_begin(engine, &back[which], error);
+    if (status == VXM_OK)
+      status = vxm_gl_return_end(engine, &back[which ^ 1], error);
+  }
+  return vxm_gl_finish(engine, back, status, error);
+}
+
+vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vxm_window *window,
+                          vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
+  vxm_opengl *engine = vxm_opengl_of(base);
+  vxm_status status = vxm_gl_enter(&engine->context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_device_cache_surface(&engine->resident, surface, error);
+  if (status == VXM_OK)
+    status = draw_tiles(engine, surface, window, kind, is_fresh, error);
+  vxm_gl_leave(&engine->context);
+  return status == VXM_OK
+             ? vxm_oversized_surface_add(&engine->resident.far_surface, surface, window, kind, error)
+             : status;
+}

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/size_text.h"
+#include "gpu/opengl/opengl.h"
+
+#include <string.h>
+
+/** Two tiles under way, their flips and four voters are held: no more than needed to keep a device busy. */
+static const int64_t tile_bytes_most = INT64_C(64) << 20;
+static const int64_t slice_bytes_most = INT64_C(256) << 20;
+
+/** What a tile may take under the memory limit: of what is left, and what its buffers have already. */
+static int64_t tile_share(const vxm_opengl *engine) {
+  enum {
+    BUFFERS = 12 /**< flips, result, mask, four voters, two staging buffers twice as large; and one spare */
+  };
+  static const vxm_gl_buffer_id own[] = {VXM_GL_FLIPS,       VXM_GL_RESULT,      VXM_GL_MASK,
+                                         VXM_GL_VOTER_X,     VXM_GL_VOTER_X + 1, VXM_GL_VOTER_X + 2,
+                                         VXM_GL_VOTER_X + 3, VXM_GL_STAGING,     VXM_GL_STAGING2};
+  size_t left = vxm_memory_left(engine->base.context);
+  if (left > INT64_MAX / 2) /* there is no limit */
+    return INT64_MAX;
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    left += engine->buffers[own[i]].bytes;
+  return (int64_t)(left / BUFFERS);
+}
+
+vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_window *window,
+                              vxm_error *error) {
+  int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
+  int64_t most = vxm_min(vxm_min(engine->base.info.block_bytes, tile_bytes_most), tile_share(engine));
+  /* The staging buffer may hold two; shaders count the bits of a tile in 32 bits. */
+  if (slice > engine->base.info.block_bytes / 2 || slice > slice_bytes_most)
+    return vxm_fail(
+        error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
+        vxm_size_text_of((uint64_t)slice).text, engine->base.info.renderer,
+        vxm_size_text_of((uint64_t)vxm_min(engine->base.info.block_bytes / 2, slice_bytes_most)).text);
+  *out = vxm_max(1, vxm_min(most / slice, window->end - window->begin));
+  return VXM_OK;
+}
+
+vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm_slice_job *tile,
+                              vxm_error *error) {
+  const vxm_gl *gl = &engine->context.gl;
+  size_t bytes = vxm_slice_job_slice_words(tile) * sizeof(uint64_t);
+  vxm_status status = vxm_gl_reserve(engine, id, tile->words * sizeof(uint64_t), error);
+  if (status != VXM_OK)
+    return status;
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[id].name);
+  for (int64_t k = tile->begin; k < tile->end; k++)
+    gl->BufferSubData(GL_COPY_WRITE_BUFFER, (GLintptr)((size_t)(k - tile->begin) * bytes), (GLsizeiptr)bytes,
+                      vxm_slice_job_slice_at(tile, tile->window->words, k));
+  return VXM_OK;
+}
+
+vxm_status vxm_gl_return_begin(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error) {
+  const vxm_gl *gl = &engine->context.gl;
+  size_t bytes = back->tile.words * sizeof(uint64_t);
+  vxm_gl_buffer_id staging = (vxm_gl_buffer_id)(VXM_GL_STAGING + back->staging);
+  vxm_status status = vxm_gl_reserve(engine, staging, back->mask ? 2 * bytes : bytes, error);
+  if (status != VXM_OK)
+    return status;
+  gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[staging].name);
+  gl->BindBuffer(GL_COPY_READ_BUFFER, engine->buffers[VXM_GL_RESULT].name);
+  gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, (GLsizeiptr)bytes);
+  if (back->mask) {
+    gl->BindBuffer(GL_COPY_READ_BUFFER, engine->buffers[VXM_GL_MASK].name);
+    gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, (GLintptr)bytes, (GLsizeiptr)bytes);
+  }
+  back->fence = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl->Flush();
+  return vxm_gl_check(gl, "opengl: drawing", error);
+}
+
+vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error) {
+  enum { WAIT_NS = 1000000000 };
+  const vxm_gl *gl = &engine->context.gl;
+  if (!back->fence)
+    return VXM_OK;
+  GLenum waited;
+  do
+    waited = gl->ClientWaitSync(back->fence, GL_SYNC_FLUSH_COMMANDS_BIT, WAIT_NS);
+  while (waited == GL_TIMEOUT_EXPIRED &&
+         (!gl->GetGraphicsResetStatus || gl->GetGraphicsResetStatus() == GL_NO_ERROR));
+  gl->DeleteSync(back->fence);
+  back->fence = NULL;
+  const vxm_slice_job *tile = &back->tile;
+  size_t bytes = tile->words * sizeof(uint64_t), all = back->mask ? 2 * bytes : bytes;
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_STAGING + back->staging].name);
+  const uint64_t *data = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)all, GL_MAP_READ_BIT);
+  if (data) {
+    vxm_slice_job_take(tile, tile->window->words, data, back->is_or);
+    if (back->mask)
+      vxm_slice_job_take(tile, back->mask, data + tile->words, false);
+    gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
+  }
+  vxm_status status = vxm_gl_check(gl, "opengl: reading voxels", error);
+  if (status == VXM_OK && (!data || waited == GL_WAIT_FAILED))
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "opengl: the driver does not give the voxels back");
+  return status;
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gridio/common/byte_rows.h"
+#include "base/endian.h"
+#include "base/threads.h"
+
+enum { CHUNK = 1 << 22, ROWS_PER_TASK = 64 };
+
+/** Rows that are turned into bytes together, at most CHUNK of them; a row is below 2^20 + 1. */
+static size_t chunk_rows(const vxm_space *space, vxm_layout layout) {
+  size_t all = (size_t)space->dims[layout.middle] * (size_t)space->dims[layout.slow],
+         rows = CHUNK / (size_t)space->dims[layout.fast];
+  return rows < all ? rows : all;
+}
+
+size_t vxm_byte_rows_bytes(const vxm_space *space, vxm_layout layout) {
+  return chunk_rows(space, layout) * (size_t)space->dims[layout.fast];
+}
+
+typedef struct storing {
+  const vxm_window *window;
+  unsigned char *bytes;
+  size_t row, rows; /**< those in `bytes`, counted over all slices of the window */
+} storing;
+
+static void store_row(unsigned char *to, const uint64_t *row, size_t count) {
+  size_t n = 0;
+  for (; n + 8 <= count; n += 8)
+    vxm_store_le64(to + n, vxm_unpack_bits(row[n / 64] >> (n % 64)));
+  for (; n < count; n++)
+    to[n] = (unsigned char)(row[n / 64] >> (n % 64) & 1);
+}
+
+static void store_rows(size_t task, int worker, void *payload) {
+  (void)worker;
+  const storing *s = payload;
+  size_t begin = task * ROWS_PER_TASK, length = (size_t)s->window->fast_dim,
+         end = begin + ROWS_PER_TASK < s->rows ? begin + ROWS_PER_TASK : s->rows;
+  for (size_t r = begin; r < end; r++) {
+    int64_t row = (int64_t)(s->row + r), middles = s->window->middle_dim;
+    store_row(s->bytes + r * length,
+              vxm_window_row(s->window, row % middles, s->window->begin + row / middles), length);
+  }
+}
+
+vxm_status vxm_byte_rows_put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error) {
+  size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim,
+         most = chunk_rows(&slices->space, window->layout);
+  for (size_t row = 0; row < rows; row += most) {
+    storing s = {window, slices->state, row, rows - row < most ? rows - row : most};
+    vxm_parallel(slices->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
+    vxm_output_write(slices->output, s.bytes, s.rows * (size_t)window->fast_dim);
+    vxm_status status = vxm_grid_writer_step_rows(slices, window, row + s.rows, error);
+    if (status != VXM_OK)
+      return status;
+  }
+  return VXM_OK;
+}

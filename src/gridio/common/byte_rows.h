@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** For formats with a byte per voxel, 0 or 1: the rows of windows as bytes. */
+#ifndef VXM_GRIDIO_COMMON_BYTE_ROWS_H
+#define VXM_GRIDIO_COMMON_BYTE_ROWS_H
+
+#include "gridio/common/format.h"
+
+/** What the state of such a format takes (vxm_grid_writer_kind.state_bytes). */
+size_t vxm_byte_rows_bytes(const vxm_space *space, vxm_layout layout);
+/** Writes the slices of a window (vxm_grid_writer_kind.put), on the threads of the context. */
+vxm_status vxm_byte_rows_put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error);
+
+#endif

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The surface of a grid as a mesh. */
+#ifndef VXM_GRIDIO_MESH_SURFACE_MESH_H
+#define VXM_GRIDIO_MESH_SURFACE_MESH_H
+
+#include "grid/bitgrid.h"
+#include "mesh/soup.h"
+
+/**
+ * Makes a mesh of the exposed voxel faces, merged into rectangles that share vertices. It is closed mod 2:
+ * every edge has an even number of faces.
+ *
+ * @return VXM_OK; VXM_ERROR_RANGE for more than 2^30 rectangles; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ *         VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_gridio_surface_mesh(vxm_soup **out, const vxm_grid *grid, vxm_error *error);
+
+#endif

@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The picture of a grid: a camera, bands of rows drawn by all threads, and PNG. */
+#include "gridio/picture/picture.h"
+#include "base/threads.h"
+#include "gridio/picture/png_write.h"
+#include "gridio/picture/shade.h"
+
+#include <string.h>
+
+enum { SIZE_MAX_PIXELS = 16384, BAND = 32, SAMPLES = 4 };
+
+typedef struct camera {
+  vxm_ray_vec3 eye, back, right, top; /**< unit vectors; the camera looks along -back */
+  double pixel;                       /**< width of a pixel at distance 1 */
+  int width, height;
+} camera;
+
+/* ---- What is to be seen ---- */
+
+typedef struct box {
+  int64_t low[3], high[3]; /**< high is exclusive */
+} box;
+
+/** The smallest box around the set voxels; the whole grid if there are none. */
+static box occupied_box(const vxm_grid *grid) {
+  const int64_t *dims = grid->space.dims;
+  box b = {{dims[0], dims[1], dims[2]}, {0, 0, 0}};
+  for (int64_t k = 0; k < dims[2]; k++)
+    for (int64_t j = 0; j < dims[1]; j++) {
+      const uint64_t *row = vxm_grid_row(grid, j, k);
+      int64_t first = -1, last = -1;
+      for (size_t w = 0; w < grid->row_words; w++)
+        if (row[w]) {
+          if (first < 0)
+            first = (int64_t)w * 64 + __builtin_ctzll(row[w]);
+          last = (int64_t)w * 64 + 63 - __builtin_clzll(row[w]);
+        }
+      if (first < 0)
+        continue;
+      const int64_t low[3] = {first, j, k}, high[3] = {last + 1, j + 1, k + 1};
+      for (int a = 0; a < 3; a++) {
+        b.low[a] = low[a] < b.low[a] ? low[a] : b.low[a];
+        b.high[a] = high[a] > b.high[a] ? high[a] : b.high[a];
+      }
+    }
+  if (b.high[0] == 0)
+    b = (box){{0, 0, 0}, {dims[0], dims[1], dims[2]}};
+  return b;
+}
+
+/** The corner of the box that the bits of `corner` choose, in scene coordinates. */
+static vxm_ray_vec3 box_corner(const box *b, const double step[3], int corner) {
+  vxm_ray_vec3 p;
+  for (int a = 0; a < 3; a++)
+    p.c[a] = (double)(corner >> a & 1 ? b->high[a] : b->low[a]) * step[a];
+  return p;
+}
+
+/** Points whose hull holds all set voxels closely. */
+typedef struct outline {
+  vxm_ray_vec3 *points;
+  size_t count;
+} outline;
+
+static void add_cell(outline *o, const box *limits, const double step[3], const int64_t cell[3],
+                     int64_t side) {
+  box b;
+  for (int a = 0; a < 3; a++) {
+    b.low[a] = cell[a] * side > limits->low[a] ? cell[a] * side : limits->low[a];
+    b.high[a] = (cell[a] + 1) * side < limits->high[a] ? (cell[a] + 1) * side : limits->high[a];
+  }
+  for (int corner = 0; corner < 8; corner++)
+    o->points[o->count++] = box_corner(&b, step, corner);
+}
+
+/** The first and last cell of each row of a coarse level, cut to the occupied box; the box if all is empty.
+ */
+static vxm_status find_outline(outline *o, const vxm_scene *scene, const box *limits, vxm_error *error) {
+  const vxm_occupancy_mips *pyramid = &scene->pyramid;
+  int level = 0;
+  while (level + 1 < pyramid->levels && pyramid->level[level].dims[1] * pyramid->level[level].dims[2] > 1024)
+    level++;
+  const int64_t *dims = pyramid->level[level].dims;
+  vxm_error local = VXM_ERROR_INIT;
+  size_t most = 16 * (size_t)(dims[1] * dims[2]);
+  o->count = 0;
+  o->points = vxm_alloc(scene->grid->context, most, sizeof *o->points, &local);
+  if (!o->points) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  int64_t side = INT64_C(4) << level;
+  for (int64_t row = 0; row < dims[1] * dims[2]; row++) {
+    const uint8_t *cells = pyramid->level[level].cells + row * dims[0];
+    int64_t first = 0, last = dims[0] - 1;
+    while (first < dims[0] && !cells[first])
+      first++;
+    if (first == dims[0])
+      continue;
+    while (!cells[last])
+      last--;
+    add_cell(o, limits, scene->step, (int64_t[3]){first, row % dims[1], row / dims[1]}, side);
+    add_cell(o, limits, scene->step, (int64_t[3]){last, row % dims[1], row / dims[1]}, side);
+  }
+  for (int corner = 0; o->count < 8; corner++)
+    o->points[o->count++] = box_corner(limits, scene->step, corner);
+  return VXM_OK;
+}
+
+/** Steps in proportion to the voxel sizes; a millionth of the longest side is the least that can be seen. */
+static void set_steps(vxm_scene *scene, const vxm_space *space) {
+  double longest = 0;
+  for (int a = 0; a < 3; a++) {
+    double side = (double)space->dims[a] * 0x1p-60 * space->voxel_size[a];
+    longest = side > longest ? side : longest;
+  }
+  for (int a = 0; a < 3; a++) {
+    double step = space->voxel_size[a] * 0x1p-60 / longest, least = 1e-6 / (double)space->dims[a];
+    scene->step[a] = step > least ? step : least;
+  }
+}
+
+static vxm_ray_vec3 axis_vector(int axis) {
+  vxm_ray_vec3 v = {{0, 0, 0}};
+  v.c[axis % 3] = 1;
+  return v;
+}
+
+/* ---- The camera ---- */
+
+/** Moves the camera back along its axis until the whole outline is in the picture, and centres it. */
+static void frame(camera *cam, const outline *o, vxm_ray_vec3 target) {
+  const double half_angle_tangent = 0.24, margin = 0.88;
+  double shorter = cam->width < cam->height ? cam->width : cam->height;
+  cam->pixel = 2 * half_angle_tangent / shorter;
+  double reach[2] = {margin * cam->pixel * cam->width / 2, margin * cam->pixel * cam->height / 2};
+  for (int round = 0; round < 8; round++) {
+    double distance = 0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (size_t i = 0; i < o->count; i++) {
+      vxm_ray_vec3 p = vxm_ray_vec3_add(o->points[i], -1, target);
+      double x = fabs(vxm_ray_vec3_dot(p, cam->right)), y = fabs(vxm_ray_vec3_dot(p, cam->top));
+      double needed = fmax(x / reach[0], y / reach[1]) + vxm_ray_vec3_dot(p, cam->back);
+      distance = needed > distance ? needed : distance;
+    }
+    cam->eye = vxm_ray_vec3_add(target, distance, cam->back);
+    for (size_t i = 0; i < o->count; i++) {
+      vxm_ray_vec3 p = vxm_ray_vec3_add(o->points[i], -1, target);
+      double depth = distance - vxm_ray_vec3_dot(p, cam->back);
+      double at[2] = {vxm_ray_vec3_dot(p, cam->right) / depth, vxm_ray_vec3_dot(p, cam->top) / depth};
+      for (int n = 0; n < 2; n++) {
+        low[n] = at[n] < low[n] ? at[n] : low[n];
+        high[n] = at[n] > high[n] ? at[n] : high[n];
+      }
+    }
+    target = vxm_ray_vec3_add(target, distance * (low[0] + high[0]) / 2, cam->right);
+    target = vxm_ray_vec3_add(target, distance * (low[1] + high[1]) / 2, cam->top);
+  }
+}
+
+/** Azimuth turns about the up axis from the axis that follows it (x, if z is up) to the one after. */
+static vxm_status set_up(camera *cam, vxm_scene *scene, const vxm_picture_options *options,
+                         vxm_error *error) {
+  const double degree = 3.14159265358979323846 / 180;
+  int up = options->up == 0 ? 2 : options->up - 1;
+  double azimuth = options->azimuth * degree, elevation = options->elevation * degree;
+  vxm_ray_vec3 e1 = axis_vector(up + 1), e2 = axis_vector(up + 2);
+  scene->up = axis_vector(up);
+  vxm_ray_vec3 level = vxm_ray_vec3_add(vxm_ray_vec3_scale(cos(azimuth), e1), sin(azimuth), e2);
+  cam->back = vxm_ray_vec3_add(vxm_ray_vec3_scale(cos(elevation), level), sin(elevation), scene->up);
+  cam->right = vxm_ray_vec3_add(vxm_ray_vec3_scale(-sin(azimuth), e1), cos(azimuth), e2);
+  cam->top = vxm_ray_vec3_cross(cam->back, cam->right);
+
+  box b = occupied_box(scene->grid);
+  vxm_ray_vec3 low = box_corner(&b, scene->step, 0), high = box_corner(&b, scene->step, 7);
+  scene->centre = vxm_ray_vec3_scale(0.5, vxm_ray_vec3_add(low, 1, high));
+  vxm_ray_vec3 half = vxm_ray_vec3_add(high, -1, scene->centre);
+  scene->radius = sqrt(vxm_ray_vec3_dot(half, half));
+  scene->floor = low.c[up];
+  outline o;
+  vxm_status status = find_outline(&o, scene, &b, error);
+  if (status != VXM_OK)
+    return status;
+  frame(cam, &o, scene->centre);
+  vxm_free(scene->grid->context, o.points);
+
+  /* The sun stands behind the left shoulder, high. */
+  vxm_ray_vec3 light = vxm_ray_vec3_add(vxm_ray_vec3_scale(-0.45, cam->right), 0.95, scene->up);
+  scene->light = vxm_ray_vec3_unit(vxm_ray_vec3_add(light, 0.24, level));
+  scene->side[0] = vxm_ray_vec3_unit(vxm_ray_vec3_cross(scene->light, cam->right));
+  scene->side[1] = vxm_ray_vec3_cross(scene->light, scene->side[0]);
+
+  /* Voxels of 10 pixels are drawn as cubes with lines between them, those of 2 as a smooth surface. */
+  vxm_ray_vec3 away = vxm_ray_vec3_add(cam->eye, -1, scene->centre);
+  double step = fmax(scene->step[0], fmax(scene->step[1], scene->step[2]));
+  double pixels = step / (cam->pixel * sqrt(vxm_ray_vec3_dot(away, away)));
+  scene->smoothness = fmin(fmax((10 - pixels) / 8, 0), 1) * 0.9;
+  scene->line_width = 1.2 / pixels;
+  return VXM_OK;
+}
+
+/* ---- Drawing ---- */
+
+typedef struct drawing {
+  const camera *cam;
+  const vxm_scene *scene;
+  int row; /**< first of the band */
+  unsigned char *pixels;
+} drawing;
+
+/** The sRGB value of linear light (IEC 61966-2-1). */
+static unsigned char encode(double light) {
+  if (!(light > 0))
+    return 0;
+  double value = light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
+  return value >= 1 ? 255 : (unsigned char)(255 * value + 0.5);
+}
+
+/** A pixel is the mean of four rays, spread so that no two share a row or column of its 4 x 4 parts. */
+static void draw_pixel(const drawing *d, int x, int y, unsigned char *rgb) {
+  static const double offset[SAMPLES][2] = {{0.375, 0.125}, {0.875, 0.375}, {0.125, 0.625}, {0.625, 0.875}};
+  const camera *cam = d->cam;
+  /* Neighbouring pixels look at different points of the sun; their mean is even (Jimenez 2014). */
+  double start = 52.9829189 * fmod(0.06711056 * x + 0.00583715 * y, 1);
+  start -= floor(start);
+  vxm_ray_vec3 sum = {{0, 0, 0}};
+  for (int s = 0; s < SAMPLES; s++) {
+    double across = (x + offset[s][0] - 0.5 * cam->width) * cam->pixel;
+    double upward = (0.5 * cam->height - y - offset[s][1]) * cam->pixel;
+    vxm_ray_vec3 direction = vxm_ray_vec3_add(vxm_ray_vec3_scale(across, cam->right), upward, cam->top);
+    direction = vxm_ray_vec3_unit(vxm_ray_vec3_add(direction, -1, cam->back));
+    double jitter[2] = {start + 0.25 * s, (s * 2 % SAMPLES + s / 2 + 0.5) / SAMPLES};
+    vxm_ray_vec3 light = vxm_shade(d->scene, cam->eye, direction, jitter);
+    for (int n = 0; n < 3; n++)
+      sum.c[n] += fmin(light.c[n], 1.0) / SAMPLES;
+  }
+  for (int n = 0; n < 3; n++)
+    rgb[n] = encode(sum.c[n]);
+}
+
+static void draw_row(size_t task, int worker, void *payload) {
+  (void)worker;
+  const drawing *d = payload;
+  unsigned char *row = d->pixels + task * 3 * (size_t)d->cam->width;
+  for (int x = 0; x < d->cam->width; x++)
+    draw_pixel(d, x, d->row + (int)task, row + 3 * x);
+}
+
+static vxm_status draw(vxm_output *output, const camera *cam, const vxm_scene *scene, vxm_error *error) {
+  vxm_context *context = scene->grid->context;
+  vxm_error local = VXM_ERROR_INIT;
+  unsigned char *pixels = vxm_alloc(context, (size_t)BAND * 3, (size_t)cam->width, &local);
+  if (!pixels) {
+    if (error)
+      *error = local;
+    return local.code;
+  }
+  vxm_png *png;
+  vxm_status status = vxm_png_create(&png, context, output, cam->width, cam->height, error);
+  for (int row = 0; status == VXM_OK && row < cam->height; row += BAND) {
+    int rows = cam->height - row < BAND ? cam->height - row : BAND;
+    drawing d = {cam, scene, row, pixels};
+    vxm_parallel(context, (size_t)rows, draw_row, &d);
+    status = vxm_png_rows(png, pixels, rows, error);
+    if (status == VXM_OK)
+      status = vxm_progress(context, "drawing", (double)(row + rows) / cam->height, error);
+  }
+  if (status == VXM_OK)
+    status = vxm_png_finish(png, error);
+  vxm_png_destroy(png);
+  vxm_free(context, pixels);
+  return status;
+}
+
+static vxm_status check_options(const vxm_picture_options *o, vxm_error *error) {
+  if (o->version != 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: options version %u is unknown; use the initializer",
+                    (unsigned)o->version);
+  if (o->width < 0 || o->height < 0 || o->width > SIZE_MAX_PIXELS || o->height > SIZE_MAX_PIXELS)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: %d x %d pixels; choose 1 to %d each", o->width,
+                    o->height, SIZE_MAX_PIXELS);
+  if (!isfinite(o->azimuth) || !(fabs(o->elevation) <= 90))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "picture: azimuth %g and elevation %g; choose a finite azimuth and -90 to 90 degrees",
+                    o->azimuth, o->elevation);
+  if (o->up < 0 || o->up > 3)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: up axis %d; choose 1 (x), 2 (y) or 3 (z)", o->up);
+  return VXM_OK;
+}
+
+vxm_status vxm_gridio_picture(const vxm_grid *grid, vxm_paint_fn paint, const void *painted, const char *path,
+                              const vxm_picture_options *options, vxm_error *error) {
+  vxm_status status = check_options(options, error);
+  if (status == VXM_OK)
+    status = vxm_png_check(error);
+  if (status != VXM_OK)
+    return status;
+  camera cam = {.width = options->width ? options->width : 800,
+                .height = options->height ? options->height : 600};
+  vxm_scene scene = {.grid = grid, .paint = paint, .painted = painted};
+  set_steps(&scene, &grid->space);
+  vxm_scene_weigh(&scene);
+  status = vxm_occupancy_mips_create(&scene.pyramid, grid, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_output *output;
+  status = set_up(&cam, &scene, options, error);
+  if (status == VXM_OK)
+    status = vxm_output_open(&output, grid->context, path, error);
+  if (status == VXM_OK) {
+    status = draw(output, &cam, &scene, error);
+    if (status == VXM_OK)
+      status = vxm_output_commit(output, error);
+    else
+      vxm_output_abort(output);
+  }
+  vxm_occupancy_mips_destroy(&scene.pyramid);
+  return status;
+}

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The picture of a field: which of its voxels are drawn, and in what colours. */
+#include "gridio/picture/picture.h"
+
+#include <math.h>
+
+/* ---- What is drawn ---- */
+
+/** What numbers seem to be of which the file does not say it; VXM_FIELD_NUMBERS if that cannot be told. */
+static vxm_field_kind guess(const vxm_field *field, const vxm_field_range *range) {
+  vxm_field_kind kind = field->about.kind;
+  if (kind != VXM_FIELD_NUMBERS)
+    return kind;
+  if (!vxm_scalar_is_float(field->scalar))
+    return range->least >= 0 ? VXM_FIELD_LABELS : kind;
+  if (range->least < 0 && range->greatest > 0)
+    return VXM_FIELD_DISTANCE;
+  return range->least >= 0 && range->greatest <= 1 ? VXM_FIELD_COVERAGE : kind;
+}
+
+static vxm_threshold_options from(double at_least) {
+  return (vxm_threshold_options){1, true, at_least, false, 0};
+}
+
+static vxm_threshold_options below(double bound) {
+  return (vxm_threshold_options){1, false, 0, true, bound};
+}
+
+/** The level of a distance: 0, or, without a sign, as far as a surface in a voxel can be from its centre. */
+static double distance_level(const vxm_field *field, const vxm_field_range *range) {
+  const double *size = field->space.voxel_size;
+  if (range->least < 0)
+    return 0;
+  return 0.5 * sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
+}
+
+/** The voxels that are drawn without being told; VXM_ERROR_NUMBERS if what they are cannot be known. */
+static vxm_status choose(vxm_threshold_options *out, vxm_field_kind kind, const vxm_field *field,
+                         const vxm_field_range *range, vxm_error *error) {
+  bool is_byte = field->scalar == VXM_UINT8;
+  switch (kind) {
+  case VXM_FIELD_DISTANCE:
+    *out = below(distance_level(field, range));
+    return VXM_OK;
+  case VXM_FIELD_COVERAGE:
+    *out = from(is_byte ? 127.5 : 0.5);
+    return VXM_OK;
+  case VXM_FIELD_LABELS:
+    *out = from(1);
+    return VXM_OK;
+  case VXM_FIELD_COLORS:
+    *out = from(1);
+    return VXM_OK;
+  case VXM_FIELD_CONFIDENCE:
+    *out = below(255);
+    return VXM_OK;
+  case VXM_FIELD_NUMBERS:
+    break;
+  }
+  return vxm_fail(error, VXM_ERROR_NUMBERS,
+                  "picture: what the numbers (%s from %g to %g) are is not known: choose which are drawn, by "
+                  "--threshold or --below",
+                  vxm_scalar_name(field->scalar), range->least, range->greatest);
+}
+
+/* ---- Colours ---- */
+
+/** The linear light of an sRGB value from 0 to 1 (IEC 61966-2-1). */
+static double linear(double value) {
+  return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+}
+
+static size_t index_of(const vxm_field *field, const int64_t voxel[3]) {
+  const int64_t *n = field->space.dims;
+  return (size_t)((voxel[0] * n[1] + voxel[1]) * n[2] + voxel[2]);
+}
+
+static vxm_ray_vec3 paint_color(const void *payload, const int64_t voxel[3]) {
+  const vxm_field *field = payload;
+  const unsigned char *rgb = field->values + 4 * index_of(field, voxel);
+  return vxm_ray_vec3_of(linear(rgb[0] / 255.0), linear(rgb[1] / 255.0), linear(rgb[2] / 255.0));
+}
+
+/** A hue from 0 to 1 as sRGB, of some saturation and brightness. */
+static vxm_ray_vec3 color_of_hue(double hue, double saturation, double brightness) {
+  vxm_ray_vec3 color;
+  for (int n = 0; n < 3; n++) {
+    double at = fmod(hue * 6 + (n == 0 ? 5 : n == 1 ? 3 : 1), 6);
+    color.c[n] = linear(brightness * (1 - saturation * fmax(0, fmin(fmin(at, 4 - at), 1))));
+  }
+  return color;
+}
+
+/** Hues a golden section apart, so that labels near each other look different; every other one is paler. */
+static vxm_ray_vec3 paint_label(const void *payload, const int64_t voxel[3]) {
+  const vxm_field *field = payload;
+  const double golden = 0.61803398874989485;
+  double label;
+  vxm_field_doubles(&label, field, index_of(field, voxel), 1);
+  double hue = fmod((label - 1) * golden, 1), pale = fmod(label, 2);
+  return color_of_hue(hue < 0 ? hue + 1 : hue, pale == 0 ? 0.45 : 0.7, pale == 0 ? 0.75 : 0.9);
+}
+
+/* ---- The picture ---- */
+
+vxm_status vxm_gridio_field_picture(const vxm_field *field, const char *path,
+                                    const vxm_picture_options *options,
+                                    const vxm_threshold_options *threshold, vxm_error *error) {
+  vxm_field_range range = {0, 0, 0};
+  vxm_threshold_options own;
+  vxm_status status = vxm_field_measure(&range, field, error);
+  vxm_field_kind kind = guess(field, &range);
+  if (status == VXM_OK && !threshold) {
+    status = choose(&own, kind, field, &range, error);
+    threshold = &own;
+  }
+  vxm_grid *grid = NULL;
+  if (status == VXM_OK)
+    status = vxm_field_threshold(&grid, field, threshold, error);
+  vxm_paint_fn paint = kind == VXM_FIELD_COLORS ? paint_color : kind == VXM_FIELD_LABELS ? paint_label : NULL;
+  if (status == VXM_OK)
+    status = vxm_gridio_picture(grid, paint, field, path, options, error);
+  vxm_grid_destroy(grid);
+  return status;
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The loops that the odd edges of a soup form: the rims of its holes and sheets. */
+#ifndef VXM_MESH_BOUNDARY_LOOPS_H
+#define VXM_MESH_BOUNDARY_LOOPS_H
+
+#include "mesh/edges.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/**
+ * Closed walks that together pass every odd edge once. Step s goes along edge[s] (a place in the edge map)
+ * from vertex[s] to vertex[s + 1], the last step of a loop back to its first vertex. A walk may pass a vertex
+ * twice.
+ *
+ * Every face has two sides at each of its corners, so a vertex has an even number of odd edges and the walks
+ * always close. Where a vertex has more than two, the rim of a hole leads from the end of one fan of faces to
+ * the beginning of the next, never back along its own fan: odd edges of different fans are joined, the
+ * smallest angle first. So the slits along T-junctions become loops of their own, and panels that share
+ * corners are not taken for holes.
+ */
+typedef struct vxm_boundary_loops {
+  vxm_context *context;
+  size_t count;
+  size_t *begin;    /**< loop l has steps begin[l] to begin[l + 1] - 1 */
+  size_t *edge;     /**< of every step */
+  uint32_t *vertex; /**< of every step */
+} vxm_boundary_loops;
+
+/**
+ * Finds the loops.
+ *
+ * @param[out] out freed with vxm_boundary_loops_destroy; empty after a failure
+ * @param edges    of the same soup, without a vertex map
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ *
+ * Linear time, but for sorting the edges at vertices with more than two odd ones. At a vertex with more than
+ * 32 of them only those that are near in direction are compared.
+ */
+vxm_status vxm_boundary_loops_build(vxm_boundary_loops *out, const vxm_soup *soup, const vxm_edges *edges,
+                                    vxm_error *error);
+void vxm_boundary_loops_destroy(vxm_boundary_loops *loops);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

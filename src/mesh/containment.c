@@ -1,0 +1,423 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/containment.h"
+
+#include "mesh/geometry.h"
+#include "mesh/point_in_mesh.h"
+#include "mesh/unit_scale.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  SAMPLES = 3,                /**< points per component */
+  REGISTRATIONS_PER_BODY = 8, /**< in the grid of candidates, at most, on average */
+  CELLS_MAX = 1024            /**< of that grid along an axis */
+};
+
+typedef struct body {
+  double box[6]; /**< scaled; low above high if no corner is finite */
+  double size;   /**< volume of the box */
+  size_t first;  /**< of its faces in `faces` */
+  uint32_t component;
+} body;
+
+typedef struct builder {
+  const vxm_soup *soup;
+  const uint32_t *labels;
+  const uint8_t *solid;
+  vxm_context *context;
+  vxm_error error;
+  size_t count;
+  vxm_unit_scale frame;
+  double bounds[6]; /**< scaled */
+  body *bodies;     /**< per component, and one more that ends the last one's faces */
+  size_t *faces;    /**< grouped by component */
+  uint32_t *order;  /**< solid components by increasing box */
+  size_t order_count;
+  size_t cells[3];
+  double per_unit[3];
+  size_t *begin;              /**< per cell */
+  uint32_t *listed;           /**< places in `order`, increasing within a cell */
+  vxm_point_in_mesh **inside; /**< per component, NULL until asked */
+} builder;
+
+static void *allocate(builder *b, size_t count, size_t size) {
+  return vxm_calloc(b->context, count, size, &b->error);
+}
+
+static bool is_solid(const builder *b, size_t component) {
+  return (!b->solid || b->solid[component]) && b->bodies[component].box[0] <= b->bodies[component].box[3];
+}
+
+/* ---- Boxes, faces and volumes ---- */
+
+static bool face_is_finite(const vxm_soup *soup, const uint32_t *corner, size_t count) {
+  for (size_t c = 0; c < count; c++)
+    if (!vxm_is_finite(vxm_position(soup, corner[c])))
+      return false;
+  return true;
+}
+
+static void include_box(double box[6], const double other[6]) {
+  for (int a = 0; a < 3; a++) {
+    box[a] = fmin(box[a], other[a]);
+    box[a + 3] = fmax(box[a + 3], other[a + 3]);
+  }
+}
+
+static void empty_box(double box[6]) {
+  for (int a = 0; a < 3; a++) {
+    box[a] = INFINITY;
+    box[a + 3] = -INFINITY;
+  }
+}
+
+/** Boxes in model units, and how many faces each component has. */
+static bool measure_bodies(builder *b) {
+  for (size_t i = 0; i < b->count; i++) {
+    empty_box(b->bodies[i].box);
+    b->bodies[i].component = (uint32_t)i;
+  }
+  for (size_t f = 0; f < b->soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(b->soup, f, &count);
+    if (vxm_ask_at(f, b->context, &b->error) != VXM_OK)
+      return false;
+    b->bodies[b->labels[f] + 1].first++;
+    for (size_t c = 0; c < count; c++) {
+      const double *p = vxm_position(b->soup, corner[c]);
+      double at[6] = {p[0], p[1], p[2], p[0], p[1], p[2]};
+      if (vxm_is_finite(p))
+        include_box(b->bodies[b->labels[f]].box, at);
+    }
+  }
+  empty_box(b->bounds);
+  for (size_t i = 0; i < b->count; i++) {
+    b->bodies[i + 1].first += b->bodies[i].first;
+    include_box(b->bounds, b->bodies[i].box);
+  }
+  return true;
+}
+
+static void scale_boxes(builder *b) {
+  static const double nowhere[6] = {0};
+  bool somewhere = b->bounds[0] <= b->bounds[3];
+  b->frame = vxm_unit_scale_of(somewhere ? b->bounds : nowhere);
+  for (int a = 0; a < 6; a++)
+    b->bounds[a] = somewhere ? b->bounds[a] * b->frame.scale : 0;
+  for (size_t i = 0; i < b->count; i++) {
+    double *box = b->bodies[i].box;
+    for (int a = 0; a < 6; a++)
+      box[a] *= b->frame.scale;
+    b->bodies[i].size = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2]);
+  }
+}
+
+static void list_faces(builder *b, size_t *next) {
+  for (size_t i = 0; i < b->count; i++)
+    next[i] = b->bodies[i].first;
+  for (size_t f = 0; f < b->soup->face_count; f++)
+    b->faces[next[b->labels[f]]++] = f;
+}
+
+static bool sum_volumes(builder *b, double *volume) {
+  double scale = b->frame.scale;
+  for (size_t f = 0; f < b->soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(b->soup, f, &count);
+    if (vxm_ask_at(f, b->context, &b->error) != VXM_OK)
+      return false;
+    if (count < 3 || !face_is_finite(b->soup, corner, count))
+      continue;
+    const double *box = b->bodies[b->labels[f]].box, *p = vxm_position(b->soup, corner[0]);
+    vxm_vec3 first = {p[0] * scale - (box[0] + box[3]) / 2, p[1] * scale - (box[1] + box[4]) / 2,
+                      p[2] * scale - (box[2] + box[5]) / 2};
+    volume[b->labels[f]] +=
+        vxm_polygon_cone(first, vxm_polygon_area(b->soup->positions, corner, count, scale));
+  }
+  for (size_t i = 0; i < b->count; i++)
+    volume[i] = volume[i] / scale / scale / scale;
+  return true;
+}
+
+/* ---- Candidates: a coarse grid whose cells list the boxes that meet them ---- */
+
+static size_t cell_of(const builder *b, int axis, double at) {
+  double cell = (at - b->bounds[axis]) * b->per_unit[axis];
+  if (!(cell > 0))
+    return 0;
+  return cell < (double)(b->cells[axis] - 1) ? (size_t)cell : b->cells[axis] - 1;
+}
+
+static void set_cells(builder *b, double wanted) {
+  double size[3], largest = 0;
+  for (int a = 0; a < 3; a++) {
+    size[a] = b->bounds[a + 3] - b->bounds[a];
+    largest = fmax(largest, size[a]);
+  }
+  for (int a = 0; a < 3; a++) {
+    double cells = largest > 0 ? cbrt(wanted) * size[a] / largest : 1;
+    b->cells[a] = cells > 1 ? (cells < CELLS_MAX ? (size_t)cells : CELLS_MAX) : 1;
+    b->per_unit[a] = size[a] > 0 ? (double)b->cells[a] / size[a] : 0;
+  }
+}
+
+typedef struct cell_range {
+  size_t low[3], high[3];
+} cell_range;
+
+static cell_range range_of(const builder *b, const body *of) {
+  cell_range r;
+  for (int a = 0; a < 3; a++) {
+    r.low[a] = cell_of(b, a, of->box[a]);
+    r.high[a] = cell_of(b, a, of->box[a + 3]);
+  }
+  return r;
+}
+
+/** As many cells as bodies, or fewer if their boxes are so large that they would be in too many. */
+static size_t choose_cells(builder *b) {
+  for (double wanted = (double)b->order_count;; wanted /= 8) {
+    set_cells(b, wanted > 1 ? wanted : 1);
+    size_t registered = 0;
+    for (size_t i = 0; i < b->order_count; i++) {
+      cell_range r = range_of(b, &b->bodies[b->order[i]]);
+      registered += (r.high[0] - r.low[0] + 1) * (r.high[1] - r.low[1] + 1) * (r.high[2] - r.low[2] + 1);
+    }
+    if (registered <= REGISTRATIONS_PER_BODY * b->order_count || b->cells[0] * b->cells[1] * b->cells[2] == 1)
+      return registered;
+  }
+}
+
+/** Counts (listed NULL) or lists the bodies of every cell, in the order of their size. */
+static void register_bodies(builder *b, uint32_t *listed) {
+  for (size_t i = 0; i < b->order_count; i++) {
+    cell_range r = range_of(b, &b->bodies[b->order[i]]);
+    for (size_t z = r.low[2]; z <= r.high[2]; z++)
+      for (size_t y = r.low[1]; y <= r.high[1]; y++)
+        for (size_t x = r.low[0]; x <= r.high[0]; x++) {
+          size_t cell = (z * b->cells[1] + y) * b->cells[0] + x;
+          if (listed)
+            listed[b->begin[cell + 1]++] = (uint32_t)i;
+          else
+            b->begin[cell + 2]++;
+        }
+  }
+}
+
+static int smaller_first(const void *p, const void *q) {
+  const body *a = p, *b = q;
+  if (a->size != b->size)
+    return a->size < b->size ? -1 : 1;
+  return a->component < b->component ? -1 : a->component > b->component;
+}
+
+static bool order_bodies(builder *b) {
+  body *sorted = allocate(b, b->count, sizeof *sorted);
+  b->order = allocate(b, b->count, sizeof *b->order);
+  if (sorted && b->order) {
+    for (size_t i = 0; i < b->count; i++)
+      if (is_solid(b, i))
+        sorted[b->order_count++] = b->bodies[i];
+    qsort(sorted, b->order_count, sizeof *sorted, smaller_first);
+    for (size_t i = 0; i < b->order_count; i++)
+      b->order[i] = sorted[i].component;
+  }
+  vxm_free(b->context, sorted);
+  return b->order != NULL && sorted != NULL;
+}
+
+static bool list_candidates(builder *b) {
+  if (!order_bodies(b))
+    return false;
+  size_t registered = choose_cells(b), cells = b->cells[0] * b->cells[1] * b->cells[2];
+  b->begin = allocate(b, cells + 2, sizeof *b->begin);
+  b->listed = allocate(b, registered, sizeof *b->listed);
+  if (!b->begin || !b->listed)
+    return false;
+  /* counted two places on, the sums are the begins, and listing moves each to the next one's begin */
+  register_bodies(b, NULL);
+  for (size_t c = 2; c < cells + 2; c++)
+    b->begin[c] += b->begin[c - 1];
+  register_bodies(b, b->listed);
+  return true;
+}
+
+/* ---- Containment ---- */
+
+/** A point on a face of the component, off the lines on which edges use to lie. The same if the face is
+ * reversed about its first corner: turning faces must not change what lies inside what. */
+static bool sample(const builder *b, uint32_t component, int number, double point[3]) {
+  static const double weights[SAMPLES] = {0.35355339, 0.31415927, 0.33873241}; /* of the first corner */
+  size_t first = b->bodies[component].first, faces = b->bodies[component + 1].first - first;
+  size_t start = faces * (2 * (size_t)number + 1) / (2 * SAMPLES);
+  for (size_t i = 0; i < faces; i++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(b->soup, b->faces[first + (start + i) % faces], &count);
+    if (count < 3 || !face_is_finite(b->soup, corner, count))
+      continue;
+    const double *p = vxm_position(b->soup, corner[0]), *q = vxm_position(b->soup, corner[1]);
+    const double *r = vxm_position(b->soup, corner[count - 1]);
+    for (int a = 0; a < 3; a++)
+      point[a] = weights[number] * (p[a] * b->frame.scale) +
+                 (1 - weights[number]) / 2 * (q[a] * b->frame.scale + r[a] * b->frame.scale);
+    return true;
+  }
+  return false;
+}
+
+static vxm_point_in_mesh *inside_of(builder *b, uint32_t component) {
+  vxm_point_in_mesh *inside = b->inside[component];
+  if (!inside)
+    inside = b->inside[component] = allocate(b, 1, sizeof *inside);
+  if (inside && !inside->soup) {
+    size_t first = b->bodies[component].first;
+    *inside = (vxm_point_in_mesh){.soup = b->soup,
+                                  .faces = b->faces + first,
+                                  .face_count = b->bodies[component + 1].first - first,
+                                  .scale = b->frame.scale};
+    memcpy(inside->box, b->bodies[component].box, sizeof inside->box);
+  }
+  return inside;
+}
+
+/** By the rays along z if they are all of one mind, else by half of those along all axes. */
+static vxm_status contains(builder *b, uint32_t outer, uint32_t inner, bool *result) {
+  vxm_point_in_mesh *inside = inside_of(b, outer);
+  if (!inside)
+    return b->error.code;
+  int rays = 0, votes = 0;
+  for (int axis = 2; axis >= 0; axis--) {
+    for (int s = 0; s < SAMPLES; s++) {
+      double point[3];
+      int more;
+      if (!sample(b, inner, s, point))
+        continue;
+      vxm_status status = vxm_point_in_mesh_vote(inside, point, axis, &more, &b->error);
+      if (status != VXM_OK)
+        return status;
+      rays += 2;
+      votes += more;
+    }
+    if (votes == 0 || votes == rays)
+      break;
+  }
+  /* a missing face turns a ray that should be odd; outside, most rays cross nothing that could be missing */
+  *result = rays > 0 && 2 * votes >= rays;
+  return VXM_OK;
+}
+
+static bool box_within(const double inner[6], const double outer[6]) {
+  for (int a = 0; a < 3; a++)
+    if (inner[a] < outer[a] || inner[a + 3] > outer[a + 3])
+      return false;
+  return true;
+}
+
+/** First place in the list of a cell whose body is larger than the given one. */
+static size_t first_larger(const builder *b, size_t begin, size_t end, double size) {
+  while (begin < end) {
+    size_t middle = begin + (end - begin) / 2;
+    if (b->bodies[b->order[b->listed[middle]]].size > size)
+      end = middle;
+    else
+      begin = middle + 1;
+  }
+  return begin;
+}
+
+/** Components whose box is around another one's that are looked at as its parent; of the nearest so many one
+ * will do. */
+enum { TRIES_MAX = 256 };
+
+static vxm_status find_parent(builder *b, uint32_t component, uint32_t *parent) {
+  const body *inner = &b->bodies[component];
+  size_t cell[3];
+  for (int a = 0; a < 3; a++)
+    cell[a] = cell_of(b, a, inner->box[a]);
+  size_t place = (cell[2] * b->cells[1] + cell[1]) * b->cells[0] + cell[0], end = b->begin[place + 1];
+  int tries = 0;
+  for (size_t i = first_larger(b, b->begin[place], end, inner->size); i < end && tries < TRIES_MAX; i++) {
+    uint32_t outer = b->order[b->listed[i]];
+    bool within = box_within(inner->box, b->bodies[outer].box);
+    vxm_status status = within ? contains(b, outer, component, &within) : VXM_OK;
+    tries += box_within(inner->box, b->bodies[outer].box);
+    if (status != VXM_OK)
+      return status;
+    if (within) {
+      *parent = outer;
+      return VXM_OK;
+    }
+  }
+  return VXM_OK;
+}
+
+static bool find_parents(builder *b, uint32_t *parents) {
+  b->inside = allocate(b, b->count, sizeof *b->inside);
+  if (!b->inside)
+    return false;
+  for (size_t i = 0; i < b->order_count; i++)
+    if (vxm_ask(b->context, &b->error) != VXM_OK ||
+        find_parent(b, b->order[i], &parents[b->order[i]]) != VXM_OK)
+      return false;
+  return true;
+}
+
+/* ---- All together ---- */
+
+static bool run(builder *b, vxm_containment *out) {
+  out->parent = allocate(b, b->count, sizeof *out->parent);
+  out->volume = allocate(b, b->count, sizeof *out->volume);
+  b->bodies = allocate(b, b->count + 1, sizeof *b->bodies);
+  b->faces = allocate(b, b->soup->face_count, sizeof *b->faces);
+  size_t *next = allocate(b, b->count, sizeof *next);
+  bool ready = out->parent && out->volume && b->bodies && b->faces && next;
+  ready = ready && measure_bodies(b);
+  if (ready) {
+    scale_boxes(b);
+    list_faces(b, next);
+    ready = sum_volumes(b, out->volume);
+    for (size_t i = 0; i < b->count; i++)
+      out->parent[i] = VXM_NO_COMPONENT;
+  }
+  vxm_free(b->context, next);
+  return ready && list_candidates(b) && find_parents(b, out->parent);
+}
+
+vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, const uint32_t *face_labels,
+                                 size_t count, const uint8_t *solid, vxm_error *error) {
+  *out = (vxm_containment){.context = soup->context, .count = count};
+  builder b = {.soup = soup,
+               .labels = face_labels,
+               .solid = solid,
+               .context = soup->context,
+               .error = VXM_ERROR_INIT,
+               .count = count};
+  bool done = run(&b, out);
+  for (size_t i = 0; b.inside && i < count; i++)
+    if (b.inside[i]) {
+      vxm_point_in_mesh_release(b.inside[i]);
+      vxm_free(b.context, b.inside[i]);
+    }
+  vxm_free(b.context, b.inside);
+  vxm_free(b.context, b.listed);
+  vxm_free(b.context, b.begin);
+  vxm_free(b.context, b.order);
+  vxm_free(b.context, b.faces);
+  vxm_free(b.context, b.bodies);
+  if (done)
+    return VXM_OK;
+  vxm_containment_destroy(out);
+  if (error)
+    *error = b.error;
+  return b.error.code;
+}
+
+void vxm_containment_destroy(vxm_containment *nesting) {
+  if (!nesting->context)
+    return;
+  vxm_free(nesting->context, nesting->volume);
+  vxm_free(nesting->context, nesting->parent);
+  *nesting = (vxm_containment){0};
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Which component of a soup lies inside which, and which way each is wound. */
+#ifndef VXM_MESH_CONTAINMENT_H
+#define VXM_MESH_CONTAINMENT_H
+
+#include "mesh/soup.h"
+
+#define VXM_NO_COMPONENT UINT32_MAX
+
+typedef struct vxm_containment {
+  vxm_context *context;
+  size_t count;     /**< components */
+  uint32_t *parent; /**< the smallest solid component around each, or VXM_NO_COMPONENT */
+  double *volume;   /**< signed, about the middle of the component's box: negative if it is wound inward */
+} vxm_containment;
+
+/**
+ * Finds for every solid component the smallest other solid component that it lies inside of.
+ *
+ * @param[out] out     freed with vxm_containment_destroy; empty after a failure
+ * @param face_labels  component of every face, below `count` (vxm_components)
+ * @param solid        per component: whether it bounds a volume; the others have and are no parents. NULL =
+ * all
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ *
+ * A component lies inside another one if its box does and if most of a few sample points on it do, by
+ * crossings of rays along the axes, so that a few missing or turned faces do no harm.
+ */
+vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, const uint32_t *face_labels,
+                                 size_t count, const uint8_t *solid, vxm_error *error);
+void vxm_containment_destroy(vxm_containment *nesting);
+
+#endif

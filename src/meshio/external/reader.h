@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What a module that reads foreign formats offers. It runs in a process of its own (sandbox.h). */
+#ifndef VXM_MESHIO_EXTERNAL_READER_H
+#define VXM_MESHIO_EXTERNAL_READER_H
+
+#include "mesh/soup.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The deflection of vxm_mesh_read_options where it is 0. */
+#define VXM_DEFLECTION_DEFAULT 0.001
+
+/** A file that the mesh refers to. */
+typedef struct vxm_reader_file {
+  unsigned char *data; /**< a block of the context */
+  size_t size;
+} vxm_reader_file;
+
+typedef struct vxm_reader_request {
+  const unsigned char *data; /**< the file */
+  size_t size;
+  const char *name; /**< of the file, for messages */
+  const char *hint; /**< the extension that stands for its format, without the dot */
+  double
+      deflection;   /**< how far triangles may lie from a curved surface, as a part of the model's diagonal */
+  const char *path; /**< under which fopen finds the file; NULL if it does not */
+  /** Gets a file by the name that stands in the mesh; false if it is not to be had. NULL if none is. */
+  bool (*fetch)(void *payload, vxm_context *context, const char *name, vxm_reader_file *out);
+  void *payload;
+} vxm_reader_request;
+
+/** The functions of such a module. */
+typedef struct vxm_reader {
+  /**
+   * Makes the library load what it loads when it is first used. Files can be opened until this returns, and
+   * none after it.
+   */
+  void (*prepare)(void);
+  /**
+   * Fills an empty soup, but for its format; on failure the caller destroys it.
+   *
+   * @return VXM_OK; VXM_ERROR_FORMAT; VXM_ERROR_UNAVAILABLE if the format is none of the module's;
+   *         VXM_ERROR_RANGE, VXM_ERROR_MEMORY
+   */
+  vxm_status (*read)(vxm_soup *soup, const vxm_reader_request *request, vxm_error *error);
+} vxm_reader;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * voxmend-reader: reads one mesh file through a module, for a process that must outlive it (sandbox.h). The
+ * file comes over standard input, which is a socket, and the soup goes back over it. Before it looks at the
+ * file it gives up all that reading does not take (confine.h).
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/context.h"
+#include "meshio/external/confine.h"
+#include "meshio/external/memory_name.h"
+#include "meshio/external/sandbox.h"
+#include "meshio/external/wire_format.h"
+
+enum { CHANNEL = STDIN_FILENO, WRONG_CALL = 2, GONE = 1 };
+
+static int tell(const char *phase, double fraction, void *payload) {
+  (void)phase;
+  (void)payload;
+  return !vxm_wire_send_progress(CHANNEL, fraction);
+}
+
+static vxm_status cut_off(vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_IO, "the process that asked has gone");
+}
+
+/** Takes so many bytes from the channel. */
+static vxm_status take(unsigned char **out, vxm_context *context, uint64_t size, vxm_error *error) {
+  unsigned char *data = vxm_alloc(context, (size_t)size, 1, error);
+  if (data == NULL)
+    return error->code;
+  if (!vxm_wire_get(CHANNEL, data, (size_t)size)) {
+    vxm_free(context, data);
+    return cut_off(error);
+  }
+  *out = data;
+  return VXM_OK;
+}
+
+/** Without memory for it there is nothing to do but to end: its bytes would come as an answer to something
+ * else. */
+static bool fetch(void *payload, vxm_context *context, const char *name, vxm_reader_file *out) {
+  vxm_error *failure = payload;
+  uint64_t size;
+  if (failure->code != VXM_OK || strlen(name) > VXM_WIRE_NAME_MAX)
+    return false;
+  if (!vxm_wire_ask(CHANNEL, name) || !vxm_wire_get_size(CHANNEL, &size)) {
+    cut_off(failure);
+    return false;
+  }
+  if (size == VXM_WIRE_REFUSED || take(&out->data, context, size, failure) != VXM_OK)
+    return false;
+  out->size = (size_t)size;
+  return true;
+}
+
+static vxm_status read_mesh(vxm_soup *soup, const vxm_reader *reader, char **arguments, vxm_error *error) {
+  unsigned char *data;
+  uint64_t size;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status =
+      vxm_wire_get_size(CHANNEL, &size) ? take(&data, soup->context, size, error) : cut_off(error);
+  if (status != VXM_OK)
+    return status;
+  vxm_memory_name(data, (size_t)size);
+  vxm_reader_request request = {.data = data,
+                                .size = (size_t)size,
+                                .name = arguments[VXM_APART_NAME],
+                                .hint = arguments[VXM_APART_HINT],
+                                .deflection = strtod(arguments[VXM_APART_DEFLECTION], NULL),
+                                .path = VXM_MEMORY_NAME,
+                                .fetch = fetch,
+                                .payload = &local};
+  status = reader->read(soup, &request, error);
+  vxm_free(soup->context, data);
+  if (local.code != VXM_OK) {
+    *error = local;
+    return local.code;
+  }
+  return status;
+}
+
+static uint64_t number(char **arguments, int which) {
+  return strtoull(arguments[which], NULL, 10);
+}
+
+static vxm_status serve(vxm_soup *soup, char **arguments, vxm_error *error) {
+  const vxm_module *module;
+  vxm_status status = vxm_module_load(&module, arguments[VXM_APART_MODULE], "reading this file", error);
+  if (status != VXM_OK)
+    return status;
+  const vxm_reader *reader = module->functions;
+  const vxm_confinement confinement = {.channel = CHANNEL,
+                                       .memory = number(arguments, VXM_APART_MEMORY),
+                                       .memory_max = number(arguments, VXM_APART_MEMORY_MAX),
+                                       .seconds = number(arguments, VXM_APART_SECONDS)};
+  reader->prepare();
+  const char *missing = vxm_confine(&confinement);
+  if (missing)
+    vxm_warn(&soup->warnings, "the reader could not be confined as usual: %s", missing);
+  return read_mesh(soup, reader, arguments, error);
+}
+
+int main(int argc, char **argv) {
+  if (argc != VXM_APART_ARGUMENTS)
+    return WRONG_CALL;
+  if (!vxm_confine_early((pid_t)number(argv, VXM_APART_PARENT)))
+    return GONE;
+  vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+  options.threads = 1;
+  options.progress = tell;
+  vxm_context *context = NULL;
+  vxm_soup *soup = NULL;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_status status = vxm_context_create(&context, &options, &error);
+  if (status == VXM_OK)
+    status = vxm_soup_create(&soup, context, "", &error);
+  if (status == VXM_OK)
+    status = serve(soup, argv, &error);
+  bool sent = status == VXM_OK ? vxm_wire_send_soup(CHANNEL, soup) : vxm_wire_send_failure(CHANNEL, &error);
+  vxm_soup_destroy(soup);
+  vxm_context_destroy(context);
+  return sent ? 0 : GONE;
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Reading through a foreign library, apart from our process. Such libraries crash on many a damaged file
+ * (doc/formats.md has figures), keep state of their own, print, and hold memory that our limit does not see;
+ * the program voxmend-reader opens the module and sends the soup. It opens no files, and has none but the
+ * channel to us (confine.h): what the mesh refers to it asks us for.
+ */
+#ifndef VXM_MESHIO_EXTERNAL_SANDBOX_H
+#define VXM_MESHIO_EXTERNAL_SANDBOX_H
+
+#include "base/module.h"
+#include "meshio/external/reader.h"
+#include "meshio/external/references.h"
+
+/**
+ * Fills an empty soup, but for its format. Under a memory limit the reading process may hold half of what is
+ * left, otherwise what goes with the size of the file and of those that it refers to; so does its time,
+ * counted both as computing and on the clock.
+ *
+ * @param request    its data, size, name, hint and deflection; the rest is the reader's
+ * @param references where files may lie that the mesh refers to; those refused become warnings of the soup
+ * @return VXM_OK; VXM_ERROR_UNAVAILABLE if module or program are missing, or the module does not know the
+ *         format; VXM_ERROR_FORMAT, also if the library crashes or tries what a reader may not;
+ * VXM_ERROR_RANGE, also if it takes too long; VXM_ERROR_IO if the program cannot be started;
+ * VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_sandbox_read(vxm_soup *soup, const vxm_module_need *need, const vxm_reader_request *request,
+                            vxm_references *references, vxm_error *error);
+
+/** The arguments of voxmend-reader, in their order. Over the channel it gets the size of the file in 64 bits,
+ * and its bytes. */
+enum {
+  VXM_APART_PROGRAM,
+  VXM_APART_MODULE, /**< path */
+  VXM_APART_PARENT, /**< number of our process */
+  VXM_APART_NAME,   /**< of the file */
+  VXM_APART_HINT,
+  VXM_APART_DEFLECTION, /**< %a */
+  VXM_APART_MEMORY,     /**< bytes that it may hold */
+  VXM_APART_MEMORY_MAX, /**< to which we may raise that, as further files come */
+  VXM_APART_SECONDS,    /**< of computing */
+  VXM_APART_ARGUMENTS
+};
+
+#endif

@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "meshio/external/wire_format.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+/** What comes next. Both sides are of one build, so structures go over as they are. */
+typedef enum parcel_kind { PROGRESS = 1, FAILURE, SOUP, REFERENCE, ATTEMPT } parcel_kind;
+
+/** Ahead of the arrays of a soup, which follow in the order of these counts. */
+typedef struct parcel_counts {
+  uint64_t vertices, faces, corners;
+  uint64_t tags, tag_bytes; /**< each name ends with a zero byte */
+  uint64_t warnings;
+} parcel_counts;
+
+/* ---- Sending ---- */
+
+static bool put(int channel, const void *data, size_t size) {
+  const char *at = data;
+  while (size > 0) {
+    ssize_t written = write(channel, at, size);
+    if (written < 0 && errno == EINTR)
+      continue;
+    if (written <= 0)
+      return false;
+    at += written;
+    size -= (size_t)written;
+  }
+  return true;
+}
+
+static bool put_kind(int channel, parcel_kind kind) {
+  uint64_t word = (uint64_t)kind;
+  return put(channel, &word, sizeof word);
+}
+
+bool vxm_wire_send_progress(int channel, double fraction) {
+  return put_kind(channel, PROGRESS) && put(channel, &fraction, sizeof fraction);
+}
+
+bool vxm_wire_send_failure(int channel, const vxm_error *error) {
+  return put_kind(channel, FAILURE) && put(channel, error, sizeof *error);
+}
+
+bool vxm_wire_send_attempt(int channel, int64_t call) {
+  return put_kind(channel, ATTEMPT) && put(channel, &call, sizeof call);
+}
+
+bool vxm_wire_get(int channel, void *data, size_t size) {
+  char *at = data;
+  while (size > 0) {
+    ssize_t got = read(channel, at, size);
+    if (got < 0 && errno == EINTR)
+      continue;
+    if (got <= 0)
+      return false;
+    at += got;
+    size -= (size_t)got;
+  }
+  return true;
+}
+
+bool vxm_wire_get_size(int channel, uint64_t *size) {
+  return vxm_wire_get(channel, size, sizeof *size);
+}
+
+bool vxm_wire_ask(int channel, const char *name) {
+  uint64_t length = strlen(name);
+  return put_kind(channel, REFERENCE) && put(channel, &length, sizeof length) && put(channel, name, length);
+}
+
+bool vxm_wire_send_soup(int channel, const vxm_soup *soup) {
+  parcel_counts counts = {.vertices = soup->vertex_count,
+                          .faces = soup->face_count,
+                          .corners = soup->corner_count,
+                          .tags = soup->tag_count,
+                          .warnings = (uint64_t)soup->warnings.count};
+  for (size_t t = 0; t < soup->tag_count; t++)
+    counts.tag_bytes += strlen(soup->tags[t]) + 1;
+  if (!put_kind(channel, SOUP) || !put(channel, &counts, sizeof counts) ||
+      !put(channel, soup->positions, 3 * soup->vertex_count * sizeof *soup->positions) ||
+      !put(channel, soup->offsets, (soup->face_count + 1) * sizeof *soup->offsets) ||
+      !put(channel, soup->indices, soup->corner_count * sizeof *soup->indices))
+    return false;
+  if (soup->tag_count > 0 && !put(channel, soup->face_tags, soup->face_count * sizeof *soup->face_tags))
+    return false;
+  for (size_t t = 0; t < soup->tag_count; t++)
+    if (!put(channel, soup->tags[t], strlen(soup->tags[t]) + 1))
+      return false;
+  return put(channel, soup->warnings.text, counts.warnings * sizeof *soup->warnings.text);
+}
+
+/* ---- Receiving ---- */
+
+vxm_status vxm_wire_send_size(vxm_process *receiver, uint64_t size, vxm_error *error) {
+  return vxm_process_send(receiver, &size, sizeof size, error);
+}
+
+static vxm_status not_a_soup(vxm_error *error) {
+  return vxm_fail(error, VXM_ERROR_FORMAT, "what the reading process sent is damaged");
+}
+
+/** Ends a text, and keeps it to one line. */
+static void tame(char *text, size_t size) {
+  text[size - 1] = '\0';
+  for (; *text; text++)
+    if ((unsigned char)*text < ' ')
+      *text = ' ';
+}
+
+static vxm_status receive_failure(vxm_process *sender, vxm_error *error) {
+  vxm_error sent;
+  vxm_status status = vxm_process_receive(sender, &sent, sizeof sent, error);
+  if (status != VXM_OK)
+    return status;
+  tame(sent.text, sizeof sent.text);
+  tame(sent.file, sizeof sent.file);
+  if (sent.code <= VXM_OK || sent.code > VXM_ERROR_CANCELLED || !sent.text[0])
+    return not_a_soup(error);
+  if (error)
+    *error = sent;
+  return sent.code;
+}
+
+static vxm_status receive_arrays(vxm_soup *soup, vxm_process *sender, const parcel_counts *counts,
+                                 vxm_error *error) {
+  vxm_status status =
+      vxm_soup_reserve(soup, (size_t)counts->vertices, (size_t)counts->faces, (size_t)counts->corners, error);
+  if (status == VXM_OK)
+    status = vxm_process_receive(sender, soup->positions,
+                                 3 * (size_t)counts->vertices * sizeof *soup->positions, error);
+  if (status == VXM_OK)
+    status = vxm_process_receive(sender, soup->offsets, ((size_t)counts->faces + 1) * sizeof *soup->offsets,
+                                 error);
+  if (status == VXM_OK)
+    status =
+        vxm_process_receive(sender, soup->indices, (size_t)counts->corners * sizeof *soup->indices, error);
+  if (status != VXM_OK)
+    return status;
+  bool good = soup->offsets[0] == 0 && soup->offsets[counts->faces] == counts->corners;
+  for (uint64_t f = 0; f < counts->faces; f++)
+    good &= soup->offsets[f] <= soup->offsets[f + 1] && soup->offsets[f + 1] - soup->offsets[f] >= 3;
+  for (uint64_t c = 0; c < counts->corners; c++)
+    good &= soup->indices[c] < counts->vertices;
+  if (!good) {
+    soup->offsets[0] = 0;
+    return not_a_soup(error);
+  }
+  soup->vertex_count = (size_t)counts->vertices;
+  soup->face_count = (size_t)counts->faces;
+  soup->corner_count = (size_t)counts->corners;
+  return VXM_OK;
+}
+
+/** Adds the names in a block of `size` bytes, the last of which is zero. */
+static vxm_status take_names(vxm_soup *soup, const char *names, const parcel_counts *counts,
+                             vxm_error *error) {
+  vxm_status status = VXM_OK;
+  const char *end = names + counts->tag_bytes;
+  for (uint64_t t = 0; t < counts->tags && status == VXM_OK; t++) {
+    if (names == end)
+      return not_a_soup(error);
+    size_t length = strlen(names);
+    uint32_t tag;
+    status = vxm_soup_add_tag(soup, names, length, &tag, error);
+    names += length + 1;
+  }
+  return status == VXM_OK && names != end ? not_a_soup(error) : status;
+}
+
+static vxm_status receive_tags(vxm_soup *soup, vxm_process *sender, const parcel_counts *counts,
+                               vxm_error *error) {
+  if (counts->tags == 0)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  soup->face_tags = vxm_alloc(soup->context, (size_t)counts->faces, sizeof *soup->face_tags, &local);
+  char *names = vxm_alloc(soup->context, (size_t)counts->tag_bytes, 1, &local);
+  vxm_status status = soup->face_tags && names ? VXM_OK : local.code;
+  if (status != VXM_OK && error)
+    *error = local;
+  if (status == VXM_OK)
+    status =
+        vxm_process_receive(sender, soup->face_tags, (size_t)counts->faces * sizeof *soup->face_tags, error);
+  if (status == VXM_OK)
+    status = vxm_process_receive(sender, names, (size_t)counts->tag_bytes, error);
+  bool good = status == VXM_OK && counts->tag_bytes >= counts->tags && names[counts->tag_bytes - 1] == '\0';
+  for (uint64_t f = 0; good && f < counts->faces; f++)
+    good = soup->face_tags[f] < counts->tags;
+  if (status == VXM_OK)
+    status = good ? take_names(soup, names, counts, error) : not_a_soup(error);
+  vxm_free(soup->context, names);
+  return status;
+}
+
+static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *error) {
+  parcel_counts counts;
+  vxm_status status = vxm_process_receive(sender, &counts, sizeof counts, error);
+  if (status != VXM_OK)
+    return status;
+  /* What no memory holds is not asked for either, so that products of sizes stay in range. */
+  const uint64_t most = UINT64_C(1) << 40;
+  if (counts.vertices > VXM_VERTICES_MAX || counts.faces > most || counts.corners > most ||
+      counts.tags > UINT32_MAX || counts.tag_bytes > most || counts.warnings > VXM_NOTES_MAX)
+    return not_a_soup(error);
+  status = receive_arrays(soup, sender, &counts, error);
+  if (status == VXM_OK)
+    status = receive_tags(soup, sender, &counts, error);
+  if (status == VXM_OK)
+    status = vxm_process_receive(sender, soup->warnings.text,
+                                 (size_t)counts.warnings * sizeof *soup->warnings.text, error);
+  for (uint64_t n = 0; status == VXM_OK && n < counts.warnings; n++)
+    if (soup->warnings.text[n][0])
+      tame(soup->warnings.text[n], sizeof soup->warnings.text[n]);
+    else
+      status = not_a_soup(error);
+  if (status == VXM_OK)
+    soup->warnings.count = (int)counts.warnings;
+  return status;
+}
+
+static vxm_status receive_progress(vxm_process *sender, vxm_error *error) {
+  double fraction;
+  vxm_status status = vxm_process_receive(sender, &fraction, sizeof fraction, error);
+  if (status == VXM_OK && isfinite(fraction))
+    sender->fraction = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
+  return status;
+}
+
+static vxm_status receive_reference(vxm_process *sender, vxm_wire_listener *listener, vxm_error *error) {
+  char name[VXM_WIRE_NAME_MAX + 1];
+  uint64_t length;
+  vxm_status status = vxm_process_receive(sender, &length, sizeof length, error);
+  if (status == VXM_OK && length > VXM_WIRE_NAME_MAX)
+    status = not_a_soup(error);
+  if (status == VXM_OK)
+    status = vxm_process_receive(sender, name, (size_t)length, error);
+  if (status != VXM_OK)
+    return status;
+  name[length] = '\0';
+  if (strlen(name) != length)
+    return not_a_soup(error);
+  return listener->answer(listener->payload, sender, name, error);
+}
+
+static vxm_status receive_attempt(vxm_process *sender, vxm_wire_listener *listener, vxm_error *error) {
+  int64_t call;
+  vxm_status status = vxm_process_receive(sender, &call, sizeof call, error);
+  if (status == VXM_OK)
+    listener->attempt = call < 0 ? 0 : call;
+  return status == VXM_OK ? VXM_ERROR_IO : status;
+}
+
+vxm_status vxm_wire_receive(vxm_soup *soup, vxm_process *sender, vxm_wire_listener *listener,
+                            vxm_error *error) {
+  listener->has_failed = false;
+  listener->attempt = -1;
+  for (;;) {
+    uint64_t kind;
+    vxm_status status = vxm_process_receive(sender, &kind, sizeof kind, error);
+    if (status != VXM_OK)
+      return status;
+    switch (kind) {
+    case PROGRESS:
+      status = receive_progress(sender, error);
+      break;
+    case REFERENCE:
+      status = receive_reference(sender, listener, error);
+      break;
+    case ATTEMPT:
+      return receive_attempt(sender, listener, error);
+    case SOUP:
+      return receive_soup(soup, sender, error);
+    case FAILURE:
+      listener->has_failed = true;
+      return receive_failure(sender, error);
+    default:
+      return not_a_soup(error);
+    }
+    if (status != VXM_OK)
+      return status;
+  }
+}

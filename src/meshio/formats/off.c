@@ -1,0 +1,499 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** OFF as text: by lines where the file keeps to lines, by tokens where it does not. */
+#include "meshio/formats/off.h"
+#include "meshio/common/cut.h"
+#include "meshio/common/format.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+/** The damage a text file can have. */
+typedef struct off_damage {
+  vxm_text_defect numbers, short_vertices, beyond, small_faces, bad_faces, short_faces, cut;
+} off_damage;
+
+/* ---- The header ---- */
+
+/** Skips blanks, line ends and comments; false at the end of the file. */
+static bool skip_to_data(vxm_tokenizer *scan) {
+  while (vxm_skip_space(scan) && *scan->at == '#')
+    vxm_skip_line(scan);
+  return scan->at < scan->end;
+}
+
+static bool starts_with(const vxm_tokenizer *scan, const char *word) {
+  const unsigned char *p = scan->at;
+  for (; *word; word++, p++)
+    if (p == scan->end || (*p & 0xdf) != *word)
+      return false;
+  return true;
+}
+
+/** Reads the first word; false if it is not one of OFF's. The cursor ends behind it, before glued counts. */
+static bool read_word(vxm_tokenizer *scan, vxm_off_header *header) {
+  *header = (vxm_off_header){.dimension = 3};
+  for (int prefix = 0; prefix < 6; prefix++) {
+    if (starts_with(scan, "OFF")) {
+      scan->at += 3;
+      return scan->at == scan->end || *scan->at <= ' ' || *scan->at == '#' || vxm_is_digit(*scan->at);
+    }
+    if (starts_with(scan, "ST")) {
+      header->textures = true;
+      scan->at++;
+    } else if (scan->at < scan->end && *scan->at == 'C')
+      header->colours = true;
+    else if (scan->at < scan->end && *scan->at == 'N')
+      header->normals = true;
+    else if (scan->at < scan->end && *scan->at == 'n')
+      header->n_dimensional = true;
+    else if (scan->at < scan->end && *scan->at == '4')
+      header->four = true;
+    else
+      return false;
+    scan->at++;
+  }
+  return false;
+}
+
+vxm_likeness vxm_off_sniff(const unsigned char *data, size_t size) {
+  vxm_tokenizer scan = {.begin = data, .at = data, .end = data + size};
+  vxm_off_header header;
+  if (!skip_to_data(&scan))
+    return VXM_LIKENESS_NONE;
+  vxm_tokenizer counts = scan;
+  if (read_word(&scan, &header))
+    return VXM_LIKENESS_CERTAIN;
+  /* Without the word: a line of two or three whole numbers. */
+  size_t numbers = 0;
+  uint64_t count;
+  while (vxm_more_on_line(&counts) && vxm_tokenizer_uint(&counts, &count))
+    numbers++;
+  return vxm_at_line_end(&counts) && (numbers == 2 || numbers == 3) ? VXM_LIKENESS_POSSIBLE
+                                                                    : VXM_LIKENESS_NONE;
+}
+
+static vxm_status read_count(vxm_tokenizer *scan, const char *what, uint64_t *count, vxm_error *error) {
+  if (!skip_to_data(scan))
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->end),
+                       "the file ends before the number of %s", what);
+  if (vxm_tokenizer_uint(scan, count))
+    return VXM_OK;
+  char quote[VXM_QUOTE];
+  return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->at),
+                     "the number of %s is not a whole number: \"%s\"", what,
+                     vxm_quote(quote, scan->at, vxm_token_length(scan)));
+}
+
+/** Skips the number of edges, which says nothing and is often left out. */
+static void skip_edge_count(vxm_tokenizer *scan, bool one_per_line) {
+  uint64_t edges;
+  vxm_tokenizer ahead = *scan;
+  vxm_skip_blanks(&ahead);
+  if (vxm_at_line_end(&ahead) || *ahead.at == '#') {
+    /* Where the other counts had a line each, this one may have too. */
+    if (!one_per_line || !skip_to_data(&ahead) || vxm_tokens_on_line(&ahead, '#') != 1)
+      return;
+  }
+  if (vxm_tokenizer_uint(&ahead, &edges))
+    *scan = ahead;
+}
+
+static vxm_status read_counts(vxm_tokenizer *scan, uint64_t *vertices, uint64_t *faces, vxm_error *error) {
+  vxm_status status = read_count(scan, "vertices", vertices, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_skip_blanks(scan);
+  bool one_per_line = vxm_at_line_end(scan);
+  status = read_count(scan, "faces", faces, error);
+  if (status == VXM_OK)
+    skip_edge_count(scan, one_per_line);
+  return status;
+}
+
+/** Every number takes a digit and a separator, so the file's size bounds what it can hold. */
+static vxm_status check_vertex_count(const vxm_tokenizer *scan, uint64_t vertices, size_t dimension,
+                                     vxm_error *error) {
+  uint64_t room = ((uint64_t)(scan->end - scan->at) + 1) / (2 * (uint64_t)dimension);
+  if (vertices > room)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->at),
+                       "%" PRIu64 " vertices are announced, but the file has room for %" PRIu64 " at most",
+                       vertices, room);
+  return VXM_OK;
+}
+
+/* ---- Vertices ---- */
+
+/** How a list of vertices or faces is laid out. */
+typedef enum off_layout {
+  BY_TOKENS, /**< line ends are blanks */
+  BY_LINES   /**< each begins on its own line, and what follows on that line belongs to it */
+} off_layout;
+
+static off_layout vertex_layout(const vxm_tokenizer *scan, const vxm_off_header *header, uint64_t vertices,
+                                uint64_t faces) {
+  size_t tokens = vxm_tokens_on_line(scan, '#');
+  size_t position = header->dimension, whole = position + vxm_off_extras(header);
+  if (tokens == whole)
+    return BY_LINES;
+  if (tokens < position)
+    return BY_TOKENS;
+  vxm_tokenizer second = *scan;
+  vxm_skip_line(&second);
+  bool own_lines = skip_to_data(&second) && vxm_tokens_on_line(&second, '#') == whole - position;
+  if (tokens == position && whole != 2 * position) /* no colours here: left out, or on lines of their own? */
+    return own_lines ? BY_TOKENS : BY_LINES;
+  if (tokens == position)
+    return vxm_lines_with_data(scan, '#', 2 * vertices + faces) == 2 * vertices + faces ? BY_TOKENS
+                                                                                        : BY_LINES;
+  /* More numbers than announced, colours of another length, or several vertices to a line. How many lines
+     there are says less than how wide they are, as the file may be cut off. */
+  if (vxm_lines_of_width(scan, '#', tokens, vertices) == vertices)
+    return BY_LINES;
+  uint64_t lines = vxm_lines_with_data(scan, '#', vertices + faces);
+  return lines < vertices || (tokens % whole == 0 && lines < vertices + faces) ? BY_TOKENS : BY_LINES;
+}
+
+/** One number of a vertex, whose token is at the cursor. */
+static inline double read_number(vxm_tokenizer *scan, off_damage *damage) {
+  double value;
+  if (__builtin_expect(vxm_tokenizer_double(scan, &value), 1))
+    return value;
+  vxm_text_defect_add(&damage->numbers, scan->at);
+  vxm_skip_token(scan);
+  return (double)NAN;
+}
+
+static void skip_tokens(vxm_tokenizer *scan, size_t count) {
+  while (count-- > 0 && skip_to_data(scan))
+    vxm_skip_token(scan);
+}
+
+/** Reads `kept` coordinates; false where the file ends first. */
+static bool read_vertex_by_tokens(vxm_tokenizer *scan, double p[3], size_t kept, size_t skipped,
+                                  off_damage *damage) {
+  for (size_t c = 0; c < kept; c++) {
+    if (!skip_to_data(scan))
+      return false;
+    p[c] = read_number(scan, damage);
+  }
+  skip_tokens(scan, skipped);
+  return true;
+}
+
+static inline bool read_vertex_by_line(vxm_tokenizer *scan, double p[3], size_t kept, off_damage *damage) {
+  if (!skip_to_data(scan))
+    return false;
+  for (size_t c = 0; c < kept; c++) {
+    if (__builtin_expect(!vxm_more_on_line(scan), 0)) {
+      vxm_text_defect_add(&damage->short_vertices, scan->at);
+      for (; c < kept; c++)
+        p[c] = (double)NAN;
+      break;
+    }
+    p[c] = read_number(scan, damage);
+  }
+  if (vxm_more_on_line(scan))
+    vxm_skip_rest(scan);
+  return true;
+}
+
+static vxm_status read_vertices(vxm_tokenizer *scan, const vxm_off_header *header, uint64_t vertices,
+                                uint64_t faces, off_damage *damage, vxm_error *error) {
+  vxm_soup *soup = scan->soup;
+  vxm_status status = vxm_soup_reserve(soup, (size_t)vertices, 0, 0, error);
+  if (status != VXM_OK || vertices == 0)
+    return status;
+  size_t kept = header->dimension < 3 ? header->dimension : 3;
+  size_t skipped = header->dimension - kept + vxm_off_extras(header);
+  bool by_tokens = skip_to_data(scan) && vertex_layout(scan, header, vertices, faces) == BY_TOKENS;
+  const unsigned char *const end = scan->end, *const last = vxm_last_token(scan);
+  for (; soup->vertex_count < vertices && status == VXM_OK; soup->vertex_count++) {
+    double *p = soup->positions + 3 * soup->vertex_count;
+    p[2] = p[1] = 0.0;
+    scan->end = soup->vertex_count + 1 < vertices ? last : end;
+    if (by_tokens ? !read_vertex_by_tokens(scan, p, kept, skipped, damage)
+                  : !read_vertex_by_line(scan, p, kept, damage))
+      break;
+    status = vxm_tokenizer_progress(scan, error);
+  }
+  scan->end = end;
+  return status;
+}
+
+/* ---- Faces ---- */
+
+/** Whether the line from the cursor to its end is one face after the other; the last may be cut off with the
+ * file. */
+static bool is_run_of_faces(const vxm_tokenizer *scan, uint64_t vertices) {
+  vxm_tokenizer ahead = *scan;
+  while (vxm_more_on_line(&ahead) && *ahead.at != '#') {
+    uint64_t n, index;
+    if (!vxm_tokenizer_uint(&ahead, &n) || n < 3)
+      return false;
+    for (; n > 0; n--)
+      if (!vxm_more_on_line(&ahead))
+        return ahead.at == ahead.end;
+      else if (!vxm_tokenizer_uint(&ahead, &index) || index >= vertices)
+        return false;
+  }
+  return true;
+}
+
+/**
+ * A line ended after `there` of `n` indices: is the next one its continuation, or a face of its own?
+ */
+static bool is_continued(const vxm_tokenizer *scan, uint64_t n, uint64_t there) {
+  vxm_tokenizer ahead = *scan;
+  uint64_t next;
+  if (there == 0) /* a count alone on its line is a habit, not damage */
+    return true;
+  if (!skip_to_data(&ahead))
+    return false;
+  size_t tokens = vxm_tokens_on_line(&ahead, '#');
+  if (!vxm_tokenizer_uint(&ahead, &next))
+    return false;
+  bool whole_face = next >= 3 && (next + 1 == tokens || (next + 1 < tokens && tokens != n - there));
+  return !whole_face;
+}
+
+static off_layout face_layout(const vxm_tokenizer *scan, uint64_t vertices, uint64_t faces) {
+  uint64_t n;
+  vxm_tokenizer ahead = *scan;
+  if (!vxm_tokenizer_uint(&ahead, &n))
+    return BY_LINES;
+  size_t tokens = vxm_tokens_on_line(&ahead, '#');
+  vxm_skip_rest(&ahead);
+  if (tokens < n && is_continued(&ahead, n, tokens))
+    return BY_TOKENS;
+  /* Colours follow the indices on their line, unless the lines are too few for that. */
+  bool few = tokens > n && vxm_lines_with_data(scan, '#', faces) < faces;
+  return few && is_run_of_faces(scan, vertices) ? BY_TOKENS : BY_LINES;
+}
+
+/** How reading a face came out. */
+typedef enum off_outcome { FACE_READ, FACE_DROPPED, FACE_MISSING } off_outcome;
+
+/**
+ * Reads the corners of a face of n behind those the soup has. The cursor stands behind n.
+ * `first` is where the face began, for messages.
+ */
+static inline off_outcome read_corners(vxm_tokenizer *scan, uint64_t n, bool by_lines, off_damage *damage,
+                                       const unsigned char *first) {
+  vxm_soup *soup = scan->soup;
+  uint32_t *corner = soup->indices + soup->corner_count;
+  const size_t vertices = soup->vertex_count;
+  bool beyond = false;
+  for (uint64_t c = 0; c < n; c++) {
+    if (__builtin_expect(!vxm_more_on_line(scan) || *scan->at == '#', 0)) {
+      bool continued = !by_lines || is_continued(scan, n, c);
+      if (!skip_to_data(scan))
+        return FACE_MISSING;
+      if (!continued) {
+        vxm_text_defect_add(&damage->short_faces, first);
+        return FACE_DROPPED;
+      }
+    }
+    uint64_t index;
+    if (__builtin_expect(!vxm_tokenizer_uint(scan, &index), 0)) {
+      vxm_text_defect_add(&damage->bad_faces, first);
+      if (by_lines)
+        vxm_skip_rest(scan);
+      else
+        vxm_skip_token(scan);
+      return FACE_DROPPED;
+    }
+    beyond |= index >= vertices;
+    corner[c] = (uint32_t)index;
+  }
+  if (by_lines && vxm_more_on_line(scan))
+    vxm_skip_rest(scan);
+  if (__builtin_expect(beyond, 0)) {
+    vxm_text_defect_add(&damage->beyond, first);
+    return FACE_DROPPED;
+  }
+  if (__builtin_expect(n < 3, 0)) {
+    vxm_text_defect_add(&damage->small_faces, first);
+    return FACE_DROPPED;
+  }
+  return FACE_READ;
+}
+
+/** Whether the token that touches the end of the file is the last index of the face of n that begins at
+ * `first`. */
+static bool ends_in_index(const vxm_tokenizer *scan, const unsigned char *first, uint64_t n) {
+  vxm_tokenizer ahead = *scan;
+  ahead.at = first;
+  for (uint64_t t = 0; t < n && skip_to_data(&ahead); t++)
+    vxm_skip_token(&ahead);
+  const unsigned char *last = vxm_last_token(scan);
+  return last < scan->end && skip_to_data(&ahead) && ahead.at == last;
+}
+
+/**
+ * Reads the faces; *done is how many of those announced were met. The token that touches the end of the file,
+ * which may be half a number, is believed only where it completes the last of them.
+ */
+static vxm_status read_faces(vxm_tokenizer *scan, uint64_t faces, uint64_t *done, off_damage *damage,
+                             vxm_error *error) {
+  vxm_soup *soup = scan->soup;
+  *done = 0;
+  if (faces == 0 || !skip_to_data(scan))
+    return VXM_OK;
+  bool by_lines = face_layout(scan, soup->vertex_count, faces) == BY_LINES;
+  /* A triangle takes 8 bytes at least. */
+  uint64_t room = (uint64_t)(scan->end - scan->at) / 8 + 1, expected = faces < room ? faces : room;
+  vxm_status status = vxm_soup_reserve(soup, 0, (size_t)expected, (size_t)expected * 3, error);
+  const unsigned char *const end = scan->end, *const last = vxm_last_token(scan);
+  for (; status == VXM_OK && *done < faces; ++*done) {
+    scan->end = *done + 1 < faces ? last : end;
+    if (!skip_to_data(scan))
+      break;
+    const unsigned char *first = scan->at;
+    uint64_t n;
+    if (!vxm_tokenizer_uint(scan, &n)) {
+      vxm_text_defect_add(&damage->bad_faces, first);
+      if (by_lines)
+        vxm_skip_rest(scan);
+      else
+        vxm_skip_token(scan);
+      continue;
+    }
+    /* Each index takes a byte at least: a count beyond that meets the end of the file first. */
+    uint64_t rest = (uint64_t)(scan->end - scan->at);
+    status = vxm_corners_reserve(soup, (size_t)(n < rest ? n : rest), error);
+    if (status != VXM_OK)
+      break;
+    off_outcome outcome = read_corners(scan, n, by_lines, damage, first);
+    if (outcome == FACE_MISSING)
+      break;
+    if (outcome == FACE_READ)
+      status = vxm_face_end(soup, (size_t)n, error);
+    if (status == VXM_OK)
+      status = vxm_tokenizer_progress(scan, error);
+    if (outcome == FACE_READ && *done + 1 == faces && ends_in_index(scan, first, n) &&
+        vxm_last_index_may_be_cut(soup, 0))
+      vxm_text_defect_add(&damage->cut, first);
+  }
+  scan->end = end;
+  return status;
+}
+
+/* ---- The file ---- */
+
+static void note_damage(vxm_tokenizer *scan, const vxm_off_header *header, const off_damage *damage) {
+  vxm_warnings *warnings = &scan->soup->warnings;
+  int64_t line = vxm_tokenizer_line(scan, header->at);
+  if (header->missing)
+    vxm_warn(warnings, "line %" PRId64 ": no OFF keyword; the file begins with its counts", line);
+  if (header->dimension > 3)
+    vxm_warn(warnings, "line %" PRId64 ": vertices have %zu coordinates; the first three are taken as x y z",
+             line, header->dimension);
+  if (header->dimension < 3)
+    vxm_warn(warnings, "line %" PRId64 ": vertices have %zu coordinates; the missing ones are 0", line,
+             header->dimension);
+  vxm_text_defect_note_line(scan, &damage->numbers, "coordinate is not a number; taken as NaN", "numbers");
+  vxm_text_defect_note_line(scan, &damage->short_vertices, "vertex has too few coordinates; taken as NaN",
+                            "vertices");
+  vxm_text_defect_note_line(scan, &damage->bad_faces, "face is not a list of whole numbers; skipped",
+                            "faces");
+  vxm_text_defect_note_line(scan, &damage->short_faces, "face has fewer indices than it announces; skipped",
+                            "faces");
+  vxm_text_defect_note_line(scan, &damage->beyond, "face names a vertex that does not exist; skipped",
+                            "faces");
+  vxm_text_defect_note_line(scan, &damage->small_faces, "face has fewer than 3 corners; skipped", "faces");
+  vxm_text_defect_note_line(scan, &damage->cut,
+                            "the file ends without a line end; its last number may be cut off", "");
+}
+
+static vxm_status finish(vxm_tokenizer *scan, uint64_t vertices, uint64_t faces, uint64_t done,
+                         vxm_error *error) {
+  vxm_soup *soup = scan->soup;
+  vxm_place end = vxm_tokenizer_place(scan, scan->end);
+  if (soup->vertex_count < vertices && faces > 0)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, end,
+                       "the file ends after %zu of %" PRIu64 " vertices, before any face", soup->vertex_count,
+                       vertices);
+  if (soup->vertex_count < vertices)
+    vxm_warn(&soup->warnings, "line %" PRId64 ": the file ends after %zu of %" PRIu64 " vertices", end.line,
+             soup->vertex_count, vertices);
+  else if (done < faces && soup->face_count == 0)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, end,
+                       "the file ends after %" PRIu64 " of %" PRIu64 " faces, none of which can be used",
+                       done, faces);
+  else if (done < faces)
+    vxm_warn(&soup->warnings, "line %" PRId64 ": the file ends after %" PRIu64 " of %" PRIu64 " faces",
+             end.line, done, faces);
+  else if (skip_to_data(scan))
+    vxm_warn(&soup->warnings, "line %" PRId64 ": more than announced; ignored (lines: %" PRIu64 ")",
+             vxm_tokenizer_line(scan, scan->at), vxm_lines_with_data(scan, '#', UINT64_MAX));
+  if (soup->face_count == 0)
+    vxm_warn(&soup->warnings, "the file has no faces");
+  return VXM_OK;
+}
+
+static vxm_status read_text(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error) {
+  uint64_t vertices = 0, faces = 0, done = 0;
+  off_damage damage = {0};
+  vxm_status status = read_counts(scan, &vertices, &faces, error);
+  if (status == VXM_OK)
+    status = check_vertex_count(scan, vertices, header->dimension, error);
+  if (status == VXM_OK)
+    status = read_vertices(scan, header, vertices, faces, &damage, error);
+  if (status == VXM_OK)
+    status = read_faces(scan, faces, &done, &damage, error);
+  if (status != VXM_OK)
+    return status;
+  note_damage(scan, header, &damage);
+  return finish(scan, vertices, faces, done, error);
+}
+
+static vxm_status read_header(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error) {
+  bool any = skip_to_data(scan);
+  const unsigned char *first = scan->at;
+  if (!any || !read_word(scan, header)) {
+    if (!any || !vxm_is_digit(*first)) {
+      char quote[VXM_QUOTE];
+      size_t length = (size_t)(vxm_find_newline(first, scan->end) - first);
+      return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, first), "no OFF header: \"%s\"",
+                         vxm_quote(quote, first, length));
+    }
+    *header = (vxm_off_header){.missing = true, .dimension = 3};
+    scan->at = first;
+  }
+  header->at = first;
+  vxm_skip_blanks(scan);
+  if (starts_with(scan, "BINARY")) {
+    header->binary = true;
+    vxm_skip_line(scan);
+    return VXM_OK;
+  }
+  uint64_t dimension = 3;
+  if (header->n_dimensional) {
+    vxm_status status = read_count(scan, "dimensions", &dimension, error);
+    if (status != VXM_OK)
+      return status;
+    if (dimension == 0 || dimension > (uint64_t)(scan->end - scan->begin))
+      return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->at),
+                         "%" PRIu64 " dimensions cannot be read", dimension);
+  }
+  header->dimension = (size_t)dimension + header->four;
+  return VXM_OK;
+}
+
+vxm_status vxm_off_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
+                        vxm_error *error) {
+  vxm_tokenizer scan;
+  vxm_off_header header;
+  vxm_status status = vxm_tokenizer_open(&scan, soup, data, size, name, error);
+  if (status != VXM_OK)
+    return status;
+  status = read_header(&scan, &header, error);
+  if (status == VXM_OK) {
+    soup->format = header.binary ? "off binary" : "off";
+    status = header.binary ? vxm_off_read_binary(&scan, &header, error) : read_text(&scan, &header, error);
+  }
+  vxm_tokenizer_close(&scan);
+  if (status == VXM_OK)
+    vxm_soup_trim(soup);
+  return status;
+}

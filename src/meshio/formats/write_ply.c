@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** PLY out: doubles, little-endian or as text. */
+#include "base/endian.h"
+#include "meshio/common/format.h"
+#include "meshio/common/text_out.h"
+
+static size_t largest_face(const vxm_soup *soup) {
+  size_t largest = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t corners = (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
+    if (corners > largest)
+      largest = corners;
+  }
+  return largest;
+}
+
+static void write_header(const vxm_soup *soup, vxm_output *output, bool ascii, bool long_lists) {
+  vxm_output_printf(output, "ply\nformat %s 1.0\ncomment voxmend\nelement vertex %zu\n",
+                    ascii ? "ascii" : "binary_little_endian", soup->vertex_count);
+  for (int c = 'x'; c <= 'z'; c++)
+    vxm_output_printf(output, "property double %c\n", c);
+  /* Readers know int for indices best; uint is for those beyond it. */
+  vxm_output_printf(output, "element face %zu\nproperty list %s %s vertex_indices\nend_header\n",
+                    soup->face_count, long_lists ? "uint" : "uchar",
+                    soup->vertex_count > INT32_MAX ? "uint" : "int");
+}
+
+static vxm_status write_text(const vxm_soup *soup, vxm_output *output, vxm_error *error) {
+  vxm_text_out text;
+  vxm_status status = vxm_text_open(&text, soup, output, error);
+  if (status != VXM_OK)
+    return status;
+  for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
+    vxm_text_vertex(&text, "", vxm_position(soup, v));
+    status = vxm_write_progress(soup, output, v, soup->vertex_count, 0.0, 0.6, error);
+  }
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    vxm_text_uint(&text, soup->offsets[f + 1] - soup->offsets[f]);
+    vxm_text_corners(&text, f, 0);
+    status = vxm_write_progress(soup, output, f, soup->face_count, 0.6, 1.0, error);
+  }
+  vxm_text_close(&text);
+  return status;
+}
+
+static void write_face(vxm_output *output, const uint32_t *corner, size_t count, bool long_lists, bool swap) {
+  unsigned char *room = (unsigned char *)vxm_output_reserve(output, 4);
+  if (long_lists)
+    vxm_store_u32(room, (uint32_t)count, swap);
+  else
+    room[0] = (unsigned char)count;
+  vxm_output_advance(output, long_lists ? 4 : 1);
+  for (size_t c = 0; c < count; c++) {
+    vxm_store_u32(vxm_output_reserve(output, 4), corner[c], swap);
+    vxm_output_advance(output, 4);
+  }
+}
+
+static vxm_status write_binary(const vxm_soup *soup, vxm_output *output, bool long_lists, vxm_error *error) {
+  const bool swap = vxm_must_swap(false);
+  vxm_status status = VXM_OK;
+  for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
+    const double *p = vxm_position(soup, v);
+    char *room = vxm_output_reserve(output, 24);
+    for (size_t c = 0; c < 3; c++)
+      vxm_store_f64(room + 8 * c, p[c], swap);
+    vxm_output_advance(output, 24);
+    status = vxm_write_progress(soup, output, v, soup->vertex_count, 0.0, 0.6, error);
+  }
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count);
+    write_face(output, corner, count, long_lists, swap);
+    status = vxm_write_progress(soup, output, f, soup->face_count, 0.6, 1.0, error);
+  }
+  return status;
+}
+
+vxm_status vxm_ply_write(const vxm_soup *soup, vxm_output *output, bool ascii, vxm_error *error) {
+  size_t largest = largest_face(soup);
+  if (largest > UINT32_MAX)
+    return vxm_fail(error, VXM_ERROR_RANGE, "a face has %zu corners, more than PLY can hold", largest);
+  bool long_lists = largest > UINT8_MAX;
+  write_header(soup, output, ascii, long_lists);
+  return ascii ? write_text(soup, output, error) : write_binary(soup, output, long_lists, error);
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/** The parts of a soup: which are closed, which touch, which lie inside of which. */
+#ifndef VXM_MODULES_CGAL_PARTS_H
+#define VXM_MODULES_CGAL_PARTS_H
+
+#include "modules/cgal/triangles.h"
+
+namespace vxm {
+
+constexpr uint32_t NO_PART = UINT32_MAX;
+
+/** A component of the soup: faces connected by vertices. */
+struct Part {
+  bool closed; /**< every edge is passed as often in either direction */
+  int sign;    /**< 1: wound outward, -1: inward, 0: bounds no volume or is not closed */
+  uint32_t group;
+  uint64_t first_face; /**< of the soup */
+  double volume;       /**< absolute */
+};
+
+/** Parts with a sign that are connected by touching; other parts are alone. */
+struct Group {
+  std::vector<uint32_t> parts;
+  bool meets; /**< they meet elsewhere than at corners and edges they share, or one of them meets itself */
+  std::vector<uint32_t>
+      around; /**< parts of other groups that the group lies inside of, in increasing order */
+};
+
+struct Parts {
+  std::vector<Part> parts;
+  std::vector<uint32_t> of_face; /**< of the soup */
+  std::vector<Group> groups;
+  /** Per part: for one that is wound inward, the smallest outward one that it lies inside of without touching
+   * it; else NO_PART. */
+  std::vector<uint32_t> host;
+};
+
+Parts parts_of(const vxm_soup *soup, const Triangles &triangles, Meter &meter);
+
+} // namespace vxm
+
+#endif

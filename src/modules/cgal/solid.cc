@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "modules/cgal/solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "modules/cgal/outer_boundary.h"
+
+namespace vxm {
+
+namespace {
+
+/*
+ * The cut surface is exact; in doubles its thinnest slivers may turn over and meet. If cutting it again for a
+ * few rounds does not help, the same is done from the beginning with all points on a lattice, coarser by so
+ * many bits than the doubles of the largest coordinate: what is thinner than its spacing is then gone, and
+ * what is left has room.
+ */
+constexpr int LATTICES[] = {0, 18, 24, 30};
+constexpr int ROUNDS = 3;
+
+/** Collects triangles into a surface without repetitions. */
+class Collector {
+public:
+  void add(const std::vector<Position> &points, const Corners &corners, const Cover &cover) {
+    Corners local;
+    for (size_t k = 0; k < 3; k++)
+      local[k] = number(points[corners[k]]);
+    if (local[0] == local[1] || local[1] == local[2] || local[2] == local[0] ||
+        !has_area(surface_.points, local)) {
+      dropped_++;
+      return;
+    }
+    /* Turned so that the smallest corner is first, the same triangle differs by its direction alone. */
+    std::rotate(local.begin(), std::min_element(local.begin(), local.end()), local.end());
+    bool backward = local[1] > local[2];
+    if (backward)
+      std::swap(local[1], local[2]);
+    all_.emplace_back(local, Cover{cover.part, backward ? -cover.sign : cover.sign, cover.face});
+  }
+
+  /** Triangles that were left out because they have no area. */
+  size_t dropped() const {
+    return dropped_;
+  }
+
+  Surface take() {
+    std::stable_sort(all_.begin(), all_.end(),
+                     [](const auto &a, const auto &b) { return a.first < b.first; });
+    for (size_t i = 0; i < all_.size(); i++) {
+      if (i == 0 || all_[i].first != all_[i - 1].first)
+        surface_.sheet.add(all_[i].first);
+      surface_.sheet.cover(all_[i].second);
+    }
+    return std::move(surface_);
+  }
+
+private:
+  uint32_t number(Position p) {
+    for (double &x : p)
+      x = x == 0 ? 0 : x;
+    auto known = numbers_.emplace(p, (uint32_t)surface_.points.size());
+    if (known.second)
+      surface_.points.push_back(p);
+    return known.first->second;
+  }
+
+  Surface surface_;
+  std::map<Position, uint32_t> numbers_;
+  std::vector<std::pair<Corners, Cover>> all_;
+  size_t dropped_ = 0;
+};
+
+double largest(const std::vector<Position> &points) {
+  double out = 0;
+  for (const Position &p : points)
+    for (double x : p)
+      out = std::max(out, std::abs(x));
+  return out;
+}
+
+std::vector<Position> on_lattice(const std::vector<Position> &points, int bits) {
+  if (bits == 0)
+    return points;
+  double spacing = std::ldexp(1.0, std::ilogb(largest(points)) - 52 + bits);
+  std::vector<Position> out = points;
+  for (Position &p : out)
+    for (double &x : p)
+      x = std::round(x / spacing) * spacing;
+  return out;
+}
+
+Meetings meetings_of(const Surface &surface, Meter &meter) {
+  Meetings out;
+  find_meetings(surface.points, surface.sheet.corners, meter, [&](uint32_t first, uint32_t second) {
+    out.emplace_back(first, second);
+    return true;
+  });
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/** One attempt; true if the outcome is good in doubles. */
+bool bound_in_doubles(const std::vector<Position> &points, const std::vector<PartTriangle> &triangles,
+                      size_t part_count, const Inside &inside, Meter &meter, Skin *out) {
+  Collector input;
+  for (const PartTriangle &t : triangles)
+    input.add(points, t.corners, Cover{t.part, 1, t.face});
+  Surface surface = input.take();
+  Meetings meetings = meetings_of(surface, meter);
+  *out = find_skin(surface, meetings, part_count, inside, meter);
+  /* Far away from all parts there may be material too, around cavities. */
+  int everywhere = inside(std::vector<int>(part_count)) ? 1 : 0;
+  size_t last = SIZE_MAX;
+  for (int round = 0;; round++) {
+    Collector rounded;
+    for (size_t t = 0; t < out->corners.size(); t++)
+      rounded.add(out->points, out->corners[t], Cover{0, 1, out->face[t]});
+    surface = rounded.take();
+    meetings = meetings_of(surface, meter);
+    size_t bad = meetings.size() + rounded.dropped();
+    if (bad == 0)
+      return true;
+    if (bad >= last || round == ROUNDS)
+      return false;
+    last = bad;
+    /* The surface is that of the material now, a part by itself. */
+    Skin next = find_skin(
+        surface, meetings, 1, [=](const std::vector<int> &winding) { return winding[0] + everywhere > 0; },
+        meter);
+    next.altered = out->altered;
+    *out = std::move(next);
+  }
+}
+
+} // namespace
+
+bool bound_solid(const std::vector<Position> &points, const std::vector<PartTriangle> &triangles,
+                 size_t part_count, const Inside &inside, Meter &meter, Skin *out) {
+  for (int bits : LATTICES)
+    if (bound_in_doubles(on_lattice(points, bits), triangles, part_count, inside, meter, out))
+      return true;
+  return false;
+}
+
+} // namespace vxm

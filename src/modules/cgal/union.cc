@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "modules/cgal/functions.h"
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <numeric>
+
+#include "modules/cgal/exception_barrier.h"
+#include "modules/cgal/parts.h"
+#include "modules/cgal/result.h"
+#include "modules/cgal/solid.h"
+
+namespace vxm {
+
+namespace {
+
+/** What becomes of a group of parts. */
+enum class Fate {
+  kept,    /**< as it is */
+  covered, /**< all of it lies in the material of other parts */
+  rebuilt, /**< the surface of its union is in the result */
+  failed   /**< kept as it is, because nothing else could be done */
+};
+
+/** Takes the parts of a soup once and unites those that touch. */
+class Union {
+public:
+  Union(const vxm_soup *soup, const Triangles &triangles, const Parts &parts, Meter &meter)
+      : soup_(soup), triangles_(triangles), parts_(parts), meter_(meter), result_(soup, meter),
+        triangles_of_group_(parts.groups.size()), fates_(parts.groups.size(), Fate::kept),
+        altered_(parts.parts.size()) {
+    for (uint32_t t = 0; t < triangles.corners.size(); t++)
+      triangles_of_group_[group_of(triangles.face[t])].push_back(t);
+  }
+
+  void run() {
+    meter_.phase("uniting parts");
+    size_t done = 0;
+    for (uint32_t g = 0; g < parts_.groups.size(); g++) {
+      meter_.progress((double)done / (double)(triangles_.corners.size() + 1));
+      done += triangles_of_group_[g].size();
+      fates_[g] = settle(g);
+      if (fates_[g] == Fate::covered)
+        for (uint32_t part : parts_.groups[g].parts)
+          altered_[part] = true;
+    }
+  }
+
+  /** Whether a part's surface is not all in the result, or in one with that of another part. */
+  bool altered(uint32_t part) const {
+    return altered_[part];
+  }
+  bool rebuilt(uint32_t part) const {
+    return fates_[parts_.parts[part].group] == Fate::rebuilt;
+  }
+  bool failed(uint32_t part) const {
+    return fates_[parts_.parts[part].group] == Fate::failed;
+  }
+
+  Owner finish(std::vector<uint64_t> *origin) {
+    for (size_t f = 0; f < soup_->face_count; f++) {
+      Fate fate = fates_[group_of(f)];
+      if (fate == Fate::kept || fate == Fate::failed)
+        result_.keep(f);
+    }
+    return Owner(result_.finish(origin));
+  }
+
+private:
+  uint32_t group_of(uint64_t face) const {
+    return parts_.parts[parts_.of_face[face]].group;
+  }
+
+  /** The outward parts of other groups that have a group in their material. */
+  std::vector<uint32_t> bodies_around(const Group &group) const {
+    std::vector<uint32_t> out;
+    for (uint32_t solid : group.around) {
+      if (parts_.parts[solid].sign < 0)
+        continue;
+      bool in_cavity = false;
+      for (uint32_t cavity : group.around)
+        in_cavity = in_cavity || parts_.host[cavity] == solid;
+      if (!in_cavity)
+        out.push_back(solid);
+    }
+    return out;
+  }
+
+  Fate settle(uint32_t g) {
+    const Group &group = parts_.groups[g];
+    if (parts_.parts[group.parts[0]].sign == 0)
+      return Fate::kept;
+    std::vector<uint32_t> bodies = bodies_around(group);
+    bool cavity_of_body = false, only_cavities = true;
+    for (uint32_t part : group.parts) {
+      only_cavities = only_cavities && parts_.parts[part].sign < 0;
+      cavity_of_body = cavity_of_body || (bodies.size() == 1 && parts_.host[part] == bodies[0]);
+    }
+    if (!bodies.empty() && !cavity_of_body)
+      return Fate::covered;
+    if (bodies.empty() && only_cavities)
+      return Fate::failed;
+    if (group.parts.size() == 1 && !group.meets)
+      return Fate::kept;
+    return rebuild(g, bodies.empty() ? NO_PART : bodies[0]);
+  }
+
+  /** Whether there is material, by the rules of repair/external/cgal.h; `body` is around the group, or
+   * NO_PART. */
+  Inside material(const std::vector<uint32_t> &group, uint32_t body) const {
+    return [this, &group, body](const std::vector<int> &windings) {
+      auto in_cavity_of = [&](uint32_t host) {
+        for (size_t i = 0; i < group.size(); i++)
+          if (parts_.parts[group[i]].sign < 0 && windings[i] < 0 && parts_.host[group[i]] == host)
+            return true;
+        return false;
+      };
+      if (in_cavity_of(NO_PART))
+        return false;
+      if (body != NO_PART && !in_cavity_of(body))
+        return true;
+      for (size_t i = 0; i < group.size(); i++)
+        if (parts_.parts[group[i]].sign > 0 && windings[i] > 0 && !in_cavity_of(group[i]))
+          return true;
+      return false;
+    };
+  }
+
+  Fate rebuild(uint32_t g, uint32_t body) {
+    const std::vector<uint32_t> &group = parts_.groups[g].parts;
+    std::vector<PartTriangle> triangles;
+    for (uint32_t t : triangles_of_group_[g]) {
+      uint64_t face = triangles_.face[t];
+      auto at = std::lower_bound(group.begin(), group.end(), parts_.of_face[face]);
+      triangles.push_back({triangles_.corners[t], (uint32_t)(at - group.begin()), face});
+    }
+    Skin skin;
+    try {
+      if (!bound_solid(triangles_.points, triangles, group.size(), material(group, body), meter_, &skin))
+        return Fate::failed;
+    } catch (const std::bad_alloc &) {
+      throw; /* also to stop */
+    } catch (const std::exception &) {
+      return Fate::failed;
+    }
+    for (size_t i = 0; i < group.size(); i++)
+      altered_[group[i]] = skin.altered[i];
+    add(skin);
+    return Fate::rebuilt;
+  }
+
+  void add(const Skin &skin) {
+    uint32_t first = result_.add_vertices(skin.points);
+    for (size_t t = 0; t < skin.corners.size(); t++) {
+      Corners corners = skin.corners[t];
+      for (uint32_t &v : corners)
+        v += first;
+      result_.add_piece(corners, skin.face[t]);
+    }
+  }
+
+  const vxm_soup *soup_;
+  const Triangles &triangles_;
+  const Parts &parts_;
+  Meter &meter_;
+  Result result_;
+  std::vector<std::vector<uint32_t>> triangles_of_group_;
+  std::vector<Fate> fates_;
+  std::vector<bool> altered_;
+};
+
+/**
+ * The union of all. Rounding moves vertices a little, so that parts which did not touch may do so afterwards:
+ * then the result is taken for the input once more.
+ */
+class Passes {
+public:
+  Passes(const vxm_soup *soup, Meter &meter) : soup_(soup), meter_(meter), origin_(soup->face_count) {
+    std::iota(origin_.begin(), origin_.end(), UINT64_C(0));
+  }
+
+  void run() {
+    for (int pass = 0; pass < PASSES; pass++) {
+      const vxm_soup *now = made_ != nullptr ? made_.get() : soup_;
+      Triangles triangles = triangles_of(now, Naming::by_position, meter_);
+      Parts parts = parts_of(now, triangles, meter_);
+      if (pass == 0)
+        start(parts);
+      else if (std::none_of(parts.groups.begin(), parts.groups.end(), [](const Group &g) { return g.meets; }))
+        return;
+      Union step(now, triangles, parts, meter_);
+      step.run();
+      note(parts, step);
+      std::vector<uint64_t> origin;
+      made_ = step.finish(&origin);
+      for (uint64_t &face : origin)
+        face = origin_[face];
+      origin_ = std::move(origin);
+      if (untouched(parts))
+        return;
+    }
+  }
+
+  void finish(vxm_soup **out, uint64_t **origin, vxm_union_report *report) {
+    std::vector<uint64_t> failed;
+    for (const Known &part : known_) {
+      report->parts += part.closed;
+      report->cut += part.rebuilt && !part.united && !part.failed;
+      report->united += part.united && !part.failed;
+      if (part.failed)
+        failed.push_back(part.first_face);
+    }
+    Block origins = copy_list(origin_, meter_), failed_faces = copy_list(failed, meter_);
+    if (origin != nullptr)
+      *origin = origins.release();
+    report->failed = (int64_t)failed.size();
+    report->failed_faces = failed.empty() ? nullptr : failed_faces.release();
+    *out = made_.release();
+  }
+
+private:
+  static constexpr int PASSES = 3;
+
+  /** What is known of a part of the input. */
+  struct Known {
+    bool closed, rebuilt, united, failed;
+    uint64_t first_face;
+  };
+
+  void start(const Parts &parts) {
+    of_face_ = parts.of_face;
+    for (const Part &part : parts.parts)
+      known_.push_back({part.closed, false, false, false, part.first_face});
+  }
+
+  /** Nothing was there to be done. */
+  static bool untouched(const Parts &parts) {
+    return std::none_of(parts.groups.begin(), parts.groups.end(),
+                        [](const Group &g) { return g.meets || g.parts.size() > 1; });
+  }
+
+  /** Carries what became of the parts over to those of the input. */
+  void note(const Parts &parts, const Union &step) {
+    for (size_t f = 0; f < origin_.size(); f++) {
+      uint32_t part = parts.of_face[f];
+      Known *known = &known_[of_face_[origin_[f]]];
+      known->failed = known->failed || step.failed(part);
+      known->rebuilt = known->rebuilt || step.rebuilt(part);
+      known->united = known->united || (step.altered(part) && united(parts, part));
+    }
+  }
+
+  /** A part that only meets itself is mended, not united. */
+  static bool united(const Parts &parts, uint32_t part) {
+    const Group &group = parts.groups[parts.parts[part].group];
+    return group.parts.size() > 1 || !group.meets;
+  }
+
+  const vxm_soup *soup_;
+  Meter &meter_;
+  Owner made_;
+  std::vector<uint64_t> origin_;
+  std::vector<uint32_t> of_face_;
+  std::vector<Known> known_;
+};
+
+} // namespace
+
+vxm_status unite(vxm_soup **out, uint64_t **origin, vxm_union_report *report, const vxm_soup *soup,
+                 vxm_error *error) {
+  *out = nullptr;
+  if (origin != nullptr)
+    *origin = nullptr;
+  vxm_union_report local;
+  vxm_union_report *told = report != nullptr ? report : &local;
+  *told = vxm_union_report();
+  return guarded(soup->context, "looking for parts that touch", error, [&](Meter &meter) {
+    Passes passes(soup, meter);
+    passes.run();
+    passes.finish(out, origin, told);
+  });
+}
+
+} // namespace vxm

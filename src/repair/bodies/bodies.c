@@ -1,0 +1,474 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/bodies/bodies.h"
+
+#include "mesh/components.h"
+#include "repair/bodies/layers.h"
+#include "repair/state/halfedges.h"
+
+#include <stdlib.h>
+
+/** A face of the result. */
+typedef struct piece {
+  uint64_t key; /**< of the body it belongs to; 0 = it is of none and stays as it is */
+  size_t face;  /**< which it is a copy of */
+  bool reversed;
+} piece;
+
+/** A vertex where a group is open. */
+typedef struct rim_vertex {
+  size_t group;
+  uint32_t vertex;
+} rim_vertex;
+
+typedef struct parting {
+  vxm_repair_state *work;
+  const vxm_soup *soup;
+  vxm_copies *copies;
+  vxm_edge_groups groups;
+  rim_vertex *rims; /**< sorted */
+  size_t rim_count;
+  uint8_t *asked;  /**< per group: it is to be divided into layers */
+  uint8_t *failed; /**< per group: it was asked and could not be */
+  vxm_layers layers;
+  piece *pieces;
+  size_t piece_count, piece_room;
+  vxm_error error;
+} parting;
+
+static bool fail(parting *p, vxm_status status) {
+  p->error.code = status;
+  return false;
+}
+
+static void *scratch(parting *p, size_t count, size_t size) {
+  vxm_status status = VXM_OK;
+  return vxm_repair_state_scratch(p->work, count, size, &status, &p->error);
+}
+
+/** Asks now and then whether to go on. */
+static bool goes_on(parting *p, size_t step) {
+  return vxm_ask_at(step, p->work->context, &p->error) == VXM_OK;
+}
+
+/* ---- Which groups ---- */
+
+static int by_vertex_then_group(const void *a, const void *b) {
+  const rim_vertex *s = a, *t = b;
+  if (s->vertex != t->vertex)
+    return s->vertex < t->vertex ? -1 : 1;
+  return s->group < t->group ? -1 : s->group > t->group;
+}
+
+static bool find_rims(parting *p) {
+  const vxm_soup *soup = p->soup;
+  const vxm_edge *edges = p->work->edges.edges;
+  size_t count = 0;
+  for (size_t c = 0; c < soup->corner_count; c++)
+    count += p->groups.sides[c] != VXM_NO_EDGE && vxm_edge_is_odd(&edges[p->groups.sides[c]]);
+  p->rims = scratch(p, 2 * count, sizeof *p->rims);
+  if (!p->rims)
+    return false;
+  for (size_t f = 0; count > 0 && f < soup->face_count; f++)
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
+      size_t edge = p->groups.sides[c];
+      if (edge == VXM_NO_EDGE || !vxm_edge_is_odd(&edges[edge]))
+        continue;
+      p->rims[p->rim_count++] = (rim_vertex){p->groups.of_face[f], edges[edge].a};
+      p->rims[p->rim_count++] = (rim_vertex){p->groups.of_face[f], edges[edge].b};
+    }
+  qsort(p->rims, p->rim_count, sizeof *p->rims, by_vertex_then_group);
+  return true;
+}
+
+static bool is_open_at(const parting *p, size_t group, uint32_t vertex) {
+  rim_vertex wanted = {group, vertex};
+  return !p->groups.groups[group].closed &&
+         bsearch(&wanted, p->rims, p->rim_count, sizeof *p->rims, by_vertex_then_group);
+}
+
+/** Groups that are closed round a vertex which is in others, too. Where they are open it may be one surface
+ * with a slit, so there they stay together. */
+static bool mark_touching(parting *p, uint8_t *touches) {
+  const vxm_soup *soup = p->soup;
+  size_t *group_at = scratch(p, soup->vertex_count, sizeof *group_at);
+  bool done = group_at != NULL;
+  for (size_t f = 0; done && f < soup->face_count; f++) {
+    done = goes_on(p, f);
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
+      uint32_t vertex = soup->indices[c];
+      size_t *at = &group_at[vertex], group = p->groups.of_face[f];
+      if (*at == 0)
+        *at = group + 1;
+      else if (*at != group + 1) {
+        touches[group] |= !is_open_at(p, group, vertex);
+        touches[*at - 1] |= !is_open_at(p, *at - 1, vertex);
+      }
+    }
+  }
+  vxm_free(p->work->context, group_at);
+  return done;
+}
+
+/* ---- Layers ---- */
+
+static bool put(parting *p, uint64_t key, size_t face, bool reversed) {
+  if (p->piece_count == p->piece_room) {
+    void *block = p->pieces;
+    vxm_status status =
+        vxm_grow(p->work->context, &block, &p->piece_room, p->piece_count + 1, sizeof *p->pieces, &p->error);
+    if (status != VXM_OK)
+      return fail(p, status);
+    p->pieces = block;
+  }
+  p->pieces[p->piece_count++] = (piece){key, face, reversed};
+  return true;
+}
+
+/** Layer k > 0 bounds what the faces wind round at least k times, layer k < 0 what they wind round -k times
+ * or more the other way, with the faces turned. */
+static uint64_t key_of(size_t group, int64_t layer) {
+  return ((uint64_t)group + 1) << 32 | (uint64_t)(layer + INT32_MAX);
+}
+
+static bool put_layers(parting *p, size_t face) {
+  size_t group = p->groups.of_face[face];
+  int64_t front = p->layers.front[vxm_set_of(p->layers.patch, face)];
+  int64_t behind = front + vxm_layers_surplus(&p->layers, face);
+  bool done = true;
+  for (int64_t k = front + 1; k <= behind && done; k++)
+    done = put(p, key_of(group, k > 0 ? k : k - 1), face, k <= 0);
+  return done;
+}
+
+static bool put_pieces(parting *p, const uint8_t *touches) {
+  bool done = true;
+  for (size_t f = 0; f < p->soup->face_count && done; f++) {
+    size_t group = p->groups.of_face[f];
+    if (!p->asked[group] || p->failed[group])
+      done = put(p, touches[group] ? key_of(group, 0) : 0, f, false);
+    else if (vxm_layers_surplus(&p->layers, f) == 0)
+      done = p->copies[f].first != f || put(p, 0, f, false); /* a sheet, of which one side is enough */
+    else if (vxm_layers_stands(&p->layers, f))
+      done = put_layers(p, f);
+    done = done && goes_on(p, f);
+  }
+  return done;
+}
+
+typedef struct side {
+  size_t group, edge;
+  uint64_t key;
+  int turn;
+} side;
+
+static int by_edge_then_key(const void *a, const void *b) {
+  const side *s = a, *t = b;
+  if (s->edge != t->edge)
+    return s->edge < t->edge ? -1 : 1;
+  return s->key < t->key ? -1 : s->key > t->key;
+}
+
+/** A layer that is not closed for itself is none: faces cut through each other elsewhere than at their edges.
+ * Along edges with two sides they are, as both are of one patch. */
+static bool check_layers(parting *p) {
+  const vxm_soup *soup = p->soup;
+  size_t count = 0;
+  for (size_t i = 0; i < p->piece_count; i++)
+    count += (size_t)(soup->offsets[p->pieces[i].face + 1] - soup->offsets[p->pieces[i].face]);
+  side *sides = scratch(p, count, sizeof *sides);
+  if (!sides)
+    return false;
+  count = 0;
+  for (size_t i = 0; i < p->piece_count; i++) {
+    const piece *q = &p->pieces[i];
+    size_t group = p->groups.of_face[q->face];
+    for (uint64_t c = soup->offsets[q->face];
+         c < soup->offsets[q->face + 1] && q->key != 0 && p->asked[group] && !p->failed[group]; c++) {
+      size_t edge = p->groups.sides[c];
+      bool forward = edge != VXM_NO_EDGE && soup->indices[c] == p->work->edges.edges[edge].a;
+      if (edge != VXM_NO_EDGE && p->work->edges.edges[edge].count > 2)
+        sides[count++] = (side){group, edge, q->key, forward != q->reversed ? 1 : -1};
+    }
+  }
+  qsort(sides, count, sizeof *sides, by_edge_then_key);
+  for (size_t i = 0, j; i < count; i = j) {
+    int sum = 0;
+    for (j = i; j < count && by_edge_then_key(&sides[i], &sides[j]) == 0; j++)
+      sum += sides[j].turn;
+    p->failed[sides[i].group] |= sum != 0;
+  }
+  vxm_free(p->work->context, sides);
+  return true;
+}
+
+/* ---- The result ---- */
+
+typedef struct claim {
+  uint64_t key;
+  uint32_t vertex, number;
+} claim;
+
+static int by_vertex_then_key(const void *a, const void *b) {
+  const claim *s = a, *t = b;
+  if (s->vertex != t->vertex)
+    return s->vertex < t->vertex ? -1 : 1;
+  return s->key < t->key ? -1 : s->key > t->key;
+}
+
+/** The body that has the vertex of a piece. */
+static uint64_t key_at(const parting *p, const piece *q, uint32_t vertex) {
+  return q->key != 0 && is_open_at(p, p->groups.of_face[q->face], vertex) ? 0 : q->key;
+}
+
+/** The body of the lowest key keeps a vertex. */
+static bool find_keepers(parting *p, uint64_t *keeper) {
+  for (size_t v = 0; v < p->soup->vertex_count; v++)
+    keeper[v] = UINT64_MAX;
+  for (size_t i = 0; i < p->piece_count && goes_on(p, i); i++) {
+    const piece *q = &p->pieces[i];
+    for (uint64_t c = p->soup->offsets[q->face]; c < p->soup->offsets[q->face + 1]; c++) {
+      uint64_t key = key_at(p, q, p->soup->indices[c]), *least = &keeper[p->soup->indices[c]];
+      *least = key < *least ? key : *least;
+    }
+  }
+  return p->error.code == VXM_OK;
+}
+
+/** Lists which other bodies have which vertices; without a list only counts their corners. */
+static size_t list_claims(const parting *p, const uint64_t *keeper, claim *claims) {
+  size_t count = 0;
+  for (size_t i = 0; i < p->piece_count; i++) {
+    const piece *q = &p->pieces[i];
+    for (uint64_t c = p->soup->offsets[q->face]; c < p->soup->offsets[q->face + 1]; c++) {
+      uint32_t vertex = p->soup->indices[c];
+      uint64_t key = key_at(p, q, vertex);
+      if (key != keeper[vertex] && claims)
+        claims[count] = (claim){key, vertex, 0};
+      count += key != keeper[vertex];
+    }
+  }
+  return count;
+}
+
+/** Sorts them, each once. */
+static size_t sort_claims(claim *claims, size_t count) {
+  size_t distinct = 0;
+  qsort(claims, count, sizeof *claims, by_vertex_then_key);
+  for (size_t i = 0; i < count; i++)
+    if (i == 0 || by_vertex_then_key(&claims[i], &claims[distinct - 1]) != 0)
+      claims[distinct++] = claims[i];
+  return distinct;
+}
+
+static vxm_status add_vertices(vxm_soup *out, claim *claims, size_t count, const vxm_soup *soup,
+                               vxm_error *error) {
+  vxm_status status = VXM_OK;
+  for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
+    const double *x = vxm_position(soup, v);
+    status = vxm_soup_add_vertex(out, x[0], x[1], x[2], error);
+    if (status == VXM_OK)
+      status = vxm_ask_at(v, soup->context, error);
+  }
+  for (size_t i = 0; i < count && status == VXM_OK; i++) {
+    const double *x = vxm_position(soup, claims[i].vertex);
+    claims[i].number = (uint32_t)out->vertex_count;
+    status = vxm_soup_add_vertex(out, x[0], x[1], x[2], error);
+  }
+  return status;
+}
+
+/** What a body has in the place of a vertex. */
+static uint32_t vertex_of(uint64_t key, uint32_t vertex, const uint64_t *keeper, const claim *claims,
+                          size_t count) {
+  const claim wanted = {key, vertex, 0};
+  if (key == keeper[vertex])
+    return vertex;
+  const claim *found = bsearch(&wanted, claims, count, sizeof *claims, by_vertex_then_key);
+  return found->number;
+}
+
+static size_t largest_face(const vxm_soup *soup) {
+  size_t largest = 0;
+  for (size_t f = 0; f < soup->face_count; f++)
+    largest = soup->offsets[f + 1] - soup->offsets[f] > largest
+                  ? (size_t)(soup->offsets[f + 1] - soup->offsets[f])
+                  : largest;
+  return largest;
+}
+
+/** Adds the pieces; `corners` is scratch per corner of the largest face. */
+static vxm_status add_pieces(parting *p, vxm_soup *out, const uint64_t *keeper, const claim *claims,
+                             size_t count, uint32_t *corners) {
+  vxm_status status = VXM_OK;
+  for (size_t i = 0; i < p->piece_count && status == VXM_OK; i++) {
+    const piece *q = &p->pieces[i];
+    size_t size;
+    const uint32_t *corner = vxm_face(p->soup, q->face, &size);
+    for (size_t c = 0; c < size; c++) {
+      uint32_t vertex = corner[q->reversed ? size - 1 - c : c];
+      corners[c] = vertex_of(key_at(p, q, vertex), vertex, keeper, claims, count);
+    }
+    status = vxm_soup_add_face(out, corners, size, &p->error);
+    if (status == VXM_OK && !goes_on(p, i))
+      status = p->error.code;
+  }
+  return status;
+}
+
+/** Makes a soup of the pieces; `keeper` is scratch per vertex. */
+static vxm_status make_soup(parting *p, vxm_soup *out, uint64_t *keeper) {
+  if (!find_keepers(p, keeper))
+    return p->error.code;
+  size_t count = list_claims(p, keeper, NULL);
+  claim *claims = scratch(p, count, sizeof *claims);
+  uint32_t *corners = claims ? scratch(p, largest_face(p->soup), sizeof *corners) : NULL;
+  vxm_status status = corners ? VXM_OK : p->error.code;
+  if (status == VXM_OK) {
+    list_claims(p, keeper, claims);
+    count = sort_claims(claims, count);
+    status = add_vertices(out, claims, count, p->soup, &p->error);
+  }
+  if (status == VXM_OK)
+    status = add_pieces(p, out, keeper, claims, count, corners);
+  vxm_free(p->work->context, corners);
+  vxm_free(p->work->context, claims);
+  return status;
+}
+
+/** Puts the pieces in the place of the faces; *added: vertices that there are more. */
+static vxm_status build(parting *p, int64_t *added) {
+  vxm_repair_state *work = p->work;
+  vxm_soup *out = NULL;
+  vxm_status status = vxm_soup_create(&out, work->context, "", &p->error);
+  uint64_t *keeper = status == VXM_OK ? scratch(p, p->soup->vertex_count, sizeof *keeper) : NULL;
+  uint64_t *origin = keeper ? scratch(p, p->piece_count, sizeof *origin) : NULL;
+  status = origin ? make_soup(p, out, keeper) : p->error.code;
+  vxm_free(work->context, keeper);
+  if (status != VXM_OK) {
+    vxm_free(work->context, origin);
+    vxm_soup_destroy(out);
+    return status;
+  }
+  for (size_t i = 0; i < p->piece_count; i++) {
+    origin[i] = p->pieces[i].face;
+    if (p->pieces[i].reversed && work->turned)
+      work->turned[origin[i]] ^= VXM_TURNED;
+  }
+  *added = (int64_t)(out->vertex_count - p->soup->vertex_count);
+  return vxm_repair_state_adopt(work, out, origin, &p->error);
+}
+
+/* ---- The pass ---- */
+
+/** A group of which a patch is not known has no layers. */
+static void fail_unknown(parting *p) {
+  for (size_t f = 0; f < p->soup->face_count; f++) {
+    size_t group = p->groups.of_face[f];
+    if (p->asked[group] && vxm_layers_stands(&p->layers, f))
+      p->failed[group] |= !p->layers.known[vxm_set_of(p->layers.patch, f)];
+  }
+}
+
+static bool find_layers(parting *p) {
+  size_t faces = p->soup->face_count;
+  vxm_duplicates found;
+  vxm_layers *l = &p->layers;
+  uint8_t *kinds = scratch(p, faces, sizeof *kinds);
+  p->copies = kinds ? scratch(p, faces, sizeof *p->copies) : NULL;
+  l->patch = p->copies ? scratch(p, faces, sizeof *l->patch) : NULL;
+  l->front = l->patch ? scratch(p, faces, sizeof *l->front) : NULL;
+  l->known = l->front ? scratch(p, faces, sizeof *l->known) : NULL;
+  p->failed = l->known ? scratch(p, p->groups.count, sizeof *p->failed) : NULL;
+  bool done = p->failed && vxm_duplicates_find(&found, p->work->context, p->soup, NULL, kinds, p->copies,
+                                               &p->error) == VXM_OK;
+  l->work = p->work;
+  l->copies = p->copies;
+  l->groups = &p->groups;
+  l->asked = p->asked;
+  done = done && vxm_layers_find(l, &p->error) == VXM_OK;
+  if (done)
+    fail_unknown(p);
+  vxm_free(p->work->context, kinds);
+  return done;
+}
+
+/** Repeated faces that stay where they are: of groups that could not be divided. */
+static int64_t count_shared(const parting *p) {
+  int64_t count = 0;
+  for (size_t f = 0; f < p->soup->face_count; f++) {
+    size_t group = p->groups.of_face[f];
+    count += p->copies[f].first != f && (!p->asked[group] || p->failed[group]);
+  }
+  return count;
+}
+
+static bool divide(parting *p, const uint8_t *touches, bool *changed) {
+  vxm_repair_state *work = p->work;
+  if (!find_layers(p) || !put_pieces(p, touches) || !check_layers(p))
+    return false;
+  p->piece_count = 0;
+  if (!put_pieces(p, touches)) /* once more, without what is none */
+    return false;
+  work->shared = count_shared(p);
+  int64_t added = 0;
+  vxm_status status = build(p, &added);
+  if (status != VXM_OK)
+    return fail(p, status);
+  work->counts[VXM_PASS_SEPARATION] += added;
+  *changed = true;
+  return true;
+}
+
+static bool find_groups(parting *p, bool *any, uint8_t **touches) {
+  if (vxm_edge_groups_find(&p->groups, p->work, &p->error) != VXM_OK)
+    return false;
+  *touches = scratch(p, p->groups.count, sizeof **touches);
+  p->asked = *touches ? scratch(p, p->groups.count, sizeof *p->asked) : NULL;
+  if (!p->asked || !find_rims(p) || !mark_touching(p, *touches))
+    return false;
+  for (size_t g = 0; g < p->groups.count; g++) {
+    const vxm_edge_group *group = &p->groups.groups[g];
+    p->asked[g] = group->balanced && !group->manifold;
+    *any = *any || p->asked[g] || (*touches)[g];
+  }
+  return true;
+}
+
+/** Whether it is plain that there is nothing to divide, as in most meshes: there are no more patches than
+ * what vertices connect, so none touches another. That costs a tenth of looking at the groups. */
+static vxm_status is_apart(const vxm_repair_state *work, bool *apart, vxm_error *error) {
+  size_t components = 1;
+  vxm_status status = VXM_OK;
+  if (work->patches > 1)
+    status = vxm_components(work->context, work->soup, NULL, NULL, &components, error);
+  *apart = status == VXM_OK && work->patches == components;
+  return status;
+}
+
+vxm_status vxm_pass_bodies(vxm_repair_state *work, bool *changed, vxm_error *error) {
+  *changed = false;
+  if (work->soup->face_count == 0)
+    return VXM_OK;
+  parting p = {.work = work, .soup = work->soup, .error = VXM_ERROR_INIT};
+  uint8_t *touches = NULL;
+  bool any = false, apart;
+  bool done = is_apart(work, &apart, &p.error) == VXM_OK;
+  if (done && apart)
+    return VXM_OK;
+  done = done && vxm_repair_state_edges(work, &p.error) == VXM_OK && find_groups(&p, &any, &touches);
+  if (done && any)
+    done = divide(&p, touches, changed);
+  vxm_free(work->context, p.pieces);
+  vxm_free(work->context, p.rims);
+  vxm_free(work->context, p.failed);
+  vxm_free(work->context, p.layers.known);
+  vxm_free(work->context, p.layers.front);
+  vxm_free(work->context, p.layers.patch);
+  vxm_free(work->context, p.copies);
+  vxm_free(work->context, p.asked);
+  vxm_free(work->context, touches);
+  vxm_edge_groups_free(&p.groups, work->context);
+  if (!done && error)
+    *error = p.error;
+  return done ? VXM_OK : p.error.code;
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Bodies that share faces, edges or vertices each get their own, for what takes parts apart by their
+ * vertices. */
+#ifndef VXM_REPAIR_BODIES_BODIES_H
+#define VXM_REPAIR_BODIES_BODIES_H
+
+#include "repair/state/repair_state.h"
+
+/**
+ * Cuts apart what is closed, on vertices of its own at the same positions:
+ *  - Groups of faces that edges connect, where they touch others at vertices and have no rim there. So an eye
+ *    that touches a head is a body of its own even if both have holes elsewhere; patches that meet with
+ *    their rims at a vertex stay together.
+ *  - Groups that are balanced (repair/state/edge_groups.h) and have edges with more than two sides, into
+ * layers: the winding number is then a whole one everywhere, and layer k is the surface of what the faces
+ * wind round k times or more. So two boxes that share a side, overlap or are equal become their union and,
+ * within it, what they have in common. The parity of each layer tells its inside, and they nest: nothing
+ * cancels, as it does in the parity of all together. What winds the other way round is turned over. Faces
+ * that lie back to back and so bound nothing are left as a sheet with one side.
+ *
+ * A group where faces cut through each other between their edges may have no layers of whole faces; then it
+ * stays as it is. Counted as separation: vertices that there are more. work->shared becomes the number of
+ * repeated faces that are left.
+ */
+vxm_status vxm_pass_bodies(vxm_repair_state *work, bool *changed, vxm_error *error);
+
+#endif

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/bodies/layers.h"
+
+#include "repair/state/halfedges.h"
+#include "repair/state/set_sides.h"
+
+#include <stdlib.h>
+
+enum { SAMPLES = 5 };
+
+static bool is_asked(const vxm_layers *l, size_t face) {
+  return l->asked[l->groups->of_face[face]] && vxm_layers_stands(l, face);
+}
+
+/** Joins the faces that stand for their kinds over edges where two of them meet and no others do. */
+static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
+  const vxm_soup *soup = l->work->soup;
+  vxm_status status = VXM_OK;
+  size_t edges = l->work->edges.count;
+  size_t *pair = vxm_repair_state_scratch(l->work, edges, 2 * sizeof *pair, &status, error);
+  uint8_t *count = pair ? vxm_repair_state_scratch(l->work, edges, sizeof *count, &status, error) : NULL;
+  for (size_t f = 0; status == VXM_OK && f < soup->face_count; f++) {
+    l->patch[f] = f;
+    status = vxm_ask_at(f, l->work->context, error);
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1] && is_asked(l, f); c++) {
+      size_t e = l->groups->sides[c];
+      if (e == VXM_NO_EDGE || count[e] > 2)
+        continue;
+      if (count[e] < 2)
+        pair[2 * e + count[e]] = f;
+      count[e]++;
+    }
+  }
+  for (size_t e = 0; status == VXM_OK && e < edges; e++)
+    if (count[e] == 2)
+      l->patch[vxm_set_of(l->patch, pair[2 * e])] = vxm_set_of(l->patch, pair[2 * e + 1]);
+  vxm_free(l->work->context, count);
+  vxm_free(l->work->context, pair);
+  return status;
+}
+
+/** Lists some faces of each patch, spread over it, and all that count. @param size scratch per face, twice */
+static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, size_t *size) {
+  size_t faces = l->work->soup->face_count, count = 0, *seen = size + faces;
+  for (size_t f = 0; f < faces; f++) {
+    int64_t surplus = vxm_layers_surplus(l, f);
+    bound[f] = l->asked[l->groups->of_face[f]] && surplus > 0 && l->copies[f].rank < (uint64_t)surplus;
+    size[vxm_set_of(l->patch, f)] += is_asked(l, f);
+  }
+  for (size_t f = 0; f < faces; f++) {
+    if (!is_asked(l, f))
+      continue;
+    size_t root = vxm_set_of(l->patch, f), step = size[root] / SAMPLES + 1;
+    if (seen[root]++ % step == 0)
+      sets[count++] = (vxm_set_side){.face = f, .set = root};
+  }
+  return count;
+}
+
+/** Takes what most of the samples of a patch say; where none has sides that differ by its copies, warnings
+ * between what they lie. */
+static void take_answers(vxm_layers *l, const vxm_set_side *sets, size_t count, int32_t *reach) {
+  size_t root = sets[0].set;
+  int64_t surplus = vxm_layers_surplus(l, root);
+  int most = 0;
+  for (size_t i = 0; i < count; i++) {
+    int votes = 0;
+    for (size_t j = 0; j < count; j++)
+      votes += sets[j].front == sets[i].front && sets[j].back == sets[i].back;
+    bool fits = sets[i].back - sets[i].front == surplus;
+    if (votes > (fits && !l->known[root] ? 0 : most) && (fits || !l->known[root])) {
+      most = votes;
+      l->known[root] = fits;
+      l->front[root] = sets[i].front;
+      reach[2 * root] = sets[i].front < sets[i].back ? sets[i].front : sets[i].back;
+      reach[2 * root + 1] = sets[i].front < sets[i].back ? sets[i].back : sets[i].front;
+    }
+  }
+}
+
+static int by_set_then_face(const void *a, const void *b) {
+  const vxm_set_side *s = a, *t = b;
+  if (s->set != t->set)
+    return s->set < t->set ? -1 : 1;
+  return s->face < t->face ? -1 : s->face > t->face;
+}
+
+static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, size_t *size, int32_t *reach,
+                              vxm_error *error) {
+  size_t count = list_samples(l, bound, sets, size);
+  vxm_status status = vxm_ask(l->work->context, error);
+  if (status == VXM_OK)
+    status = vxm_set_sides_find(sets, count, l->work, l->groups, bound, error);
+  if (status != VXM_OK)
+    return status;
+  qsort(sets, count, sizeof *sets, by_set_then_face);
+  bool all = true;
+  for (size_t i = 0, j; i < count; i = j) {
+    for (j = i; j < count && sets[j].set == sets[i].set;)
+      j++;
+    take_answers(l, sets + i, j - i, reach);
+    all = all && l->known[sets[i].set];
+  }
+  return all ? VXM_OK : vxm_layers_balance(l, reach, error);
+}
+
+vxm_status vxm_layers_find(vxm_layers *layers, vxm_error *error) {
+  vxm_repair_state *work = layers->work;
+  size_t faces = work->soup->face_count;
+  vxm_set_side *sets = NULL;
+  size_t *size = NULL;
+  int32_t *reach = NULL;
+  vxm_status status = find_patches(layers, error);
+  uint8_t *bound =
+      status == VXM_OK ? vxm_repair_state_scratch(work, faces, sizeof *bound, &status, error) : NULL;
+  if (bound)
+    sets = vxm_repair_state_scratch(work, faces, sizeof *sets, &status, error);
+  if (sets)
+    size = vxm_repair_state_scratch(work, 2 * faces, sizeof *size, &status, error);
+  if (size)
+    reach = vxm_repair_state_scratch(work, 2 * faces, sizeof *reach, &status, error);
+  if (reach)
+    status = ask_patches(layers, bound, sets, size, reach, error);
+  vxm_free(work->context, reach);
+  vxm_free(work->context, size);
+  vxm_free(work->context, sets);
+  vxm_free(work->context, bound);
+  return status;
+}

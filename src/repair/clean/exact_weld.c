@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/state/repair_state.h"
+
+#include "mesh/weld.h"
+
+/** Merges every vertex into the first one of the same position. */
+vxm_status vxm_pass_exact_weld(vxm_repair_state *work, bool *changed, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  vxm_soup *soup = work->soup;
+  *changed = false;
+  uint32_t *map = vxm_repair_state_scratch(work, soup->vertex_count, sizeof *map, &status, error);
+  if (!map)
+    return status;
+  status = vxm_weld_exact(work->context, soup->positions, soup->vertex_count, map, NULL, error);
+  if (status == VXM_OK) {
+    int64_t count = vxm_repair_state_merge(work, map);
+    work->counts[VXM_PASS_EXACT_WELD] += count;
+    *changed = count > 0;
+  }
+  vxm_free(work->context, map);
+  return status;
+}

@@ -1,0 +1,363 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/containment.h"
+#include "mesh/geometry.h"
+#include "repair/state/halfedges.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/** A patch whose vector area is at least this part of its area is a sheet; of a hemisphere it is half. */
+static const double SHEET = 0.45;
+/** A volume of at most this part of the area times the diagonal is none. */
+static const double NO_VOLUME = 1e-12;
+
+/** Faces joined by edges that have exactly two sides. */
+typedef struct patch {
+  int64_t conflicts;    /**< sides along edges that no turning makes consistent */
+  int64_t inconsistent; /**< sides along edges that are not consistent in the input */
+  double area, turned_area;
+  vxm_vec3 vector_area;
+} patch;
+
+typedef struct orienting {
+  vxm_repair_state *work;
+  vxm_soup *soup;
+  vxm_error error;
+  vxm_unit_scale frame;
+  size_t *sides;     /**< per corner: its edge */
+  size_t (*pair)[2]; /**< per edge with two sides: their faces */
+  uint32_t *label;   /**< per face: its patch */
+  uint8_t *turn;     /**< per face: 1 = against the first face of its patch, later: against the input */
+  size_t *queue;
+  patch *patches;
+  size_t patch_count, patch_capacity;
+  bool many_sides; /**< an edge has more than two */
+} orienting;
+
+static void *allocate(orienting *o, size_t count, size_t size) {
+  return vxm_calloc(o->work->context, count, size, &o->error);
+}
+
+/* ---- Patches ---- */
+
+/** To be asked at every so many steps: false if the work has been cancelled. */
+static bool goes_on(orienting *o, size_t step) {
+  return vxm_ask_at(step, o->work->context, &o->error) == VXM_OK;
+}
+
+static bool pair_faces(orienting *o) {
+  const vxm_edges *edges = &o->work->edges;
+  for (size_t e = 0; e < edges->count; e++) {
+    if (!goes_on(o, e))
+      return false;
+    o->pair[e][0] = o->pair[e][1] = SIZE_MAX;
+    o->many_sides |= edges->edges[e].count > 2;
+  }
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    if (!goes_on(o, f))
+      return false;
+    for (uint64_t c = o->soup->offsets[f]; c < o->soup->offsets[f + 1]; c++) {
+      size_t e = o->sides[c];
+      if (e != VXM_NO_EDGE && edges->edges[e].count == 2)
+        o->pair[e][o->pair[e][0] != SIZE_MAX] = f;
+    }
+  }
+  return true;
+}
+
+/** Whether the sides of a face are walked backward: a walk that is the same for the face and its reverse
+ * makes the walk over a patch the same after it was turned. */
+static bool walks_backward(const uint32_t *corner, size_t count) {
+  for (size_t i = 1; i < count; i++)
+    if (corner[i] != corner[count - i])
+      return corner[i] > corner[count - i];
+  return false;
+}
+
+/** Meets the neighbours of a face: labels and queues the new ones, counts conflicts with the old ones. */
+static size_t visit(orienting *o, size_t face, size_t queued) {
+  patch *p = &o->patches[o->label[face]];
+  size_t count;
+  const uint32_t *corner = vxm_face(o->soup, face, &count);
+  bool backward = walks_backward(corner, count);
+  for (size_t i = 0; i < count; i++) {
+    size_t e = o->sides[o->soup->offsets[face] + (backward ? count - 1 - i : i)];
+    if (e == VXM_NO_EDGE || o->work->edges.edges[e].count != 2)
+      continue;
+    size_t other = o->pair[e][o->pair[e][0] == face];
+    uint8_t against = o->work->edges.edges[e].forward != 1, turn = o->turn[face] ^ against;
+    p->inconsistent += against;
+    if (other == face)
+      p->conflicts += against;
+    else if (o->label[other] != VXM_NO_COMPONENT)
+      p->conflicts += o->turn[other] != turn;
+    else {
+      o->label[other] = o->label[face];
+      o->turn[other] = turn;
+      o->queue[queued++] = other;
+    }
+  }
+  return queued;
+}
+
+static bool find_patches(orienting *o) {
+  for (size_t f = 0; f < o->soup->face_count; f++)
+    o->label[f] = VXM_NO_COMPONENT;
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    if (o->label[f] != VXM_NO_COMPONENT)
+      continue;
+    void *patches = o->patches;
+    if (vxm_grow(o->work->context, &patches, &o->patch_capacity, o->patch_count + 1, sizeof *o->patches,
+                 &o->error) != VXM_OK)
+      return false;
+    o->patches = patches;
+    o->patches[o->patch_count] = (patch){0};
+    o->label[f] = (uint32_t)o->patch_count++;
+    o->queue[0] = f;
+    for (size_t next = 0, queued = 1; next < queued; next++) {
+      queued = visit(o, o->queue[next], queued);
+      if (!goes_on(o, next + 1))
+        return false;
+    }
+    if (!goes_on(o, f + 1))
+      return false;
+  }
+  return true;
+}
+
+/* ---- Turning ---- */
+
+/** Reverses a face about its first corner. */
+static void reverse(vxm_soup *soup, size_t face) {
+  uint32_t *corner = soup->indices + soup->offsets[face];
+  size_t count = (size_t)(soup->offsets[face + 1] - soup->offsets[face]);
+  for (size_t i = 1, j = count; i < j; i++) {
+    j--;
+    uint32_t kept = corner[i];
+    corner[i] = corner[j];
+    corner[j] = kept;
+  }
+}
+
+static vxm_vec3 area_of(const orienting *o, size_t face) {
+  size_t count;
+  const uint32_t *corner = vxm_face(o->soup, face, &count);
+  return vxm_polygon_area(o->soup->positions, corner, count, o->frame.scale);
+}
+
+/** Makes patches consistent, with most of their area as it was; without a gain they stay as they are. */
+static bool make_consistent(orienting *o) {
+  for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
+    patch *p = &o->patches[o->label[f]];
+    double area = vxm_vec3_length(area_of(o, f));
+    p->area += area;
+    p->turned_area += o->turn[f] ? area : 0;
+  }
+  for (size_t f = 0; f < o->soup->face_count && o->error.code == VXM_OK && goes_on(o, f); f++) {
+    patch *p = &o->patches[o->label[f]];
+    if (p->inconsistent <= p->conflicts)
+      o->turn[f] = 0;
+    else
+      o->turn[f] ^= 2 * p->turned_area > p->area;
+    if (o->turn[f])
+      reverse(o->soup, f);
+    vxm_vec3 area = area_of(o, f);
+    p->vector_area =
+        (vxm_vec3){p->vector_area.x + area.x, p->vector_area.y + area.y, p->vector_area.z + area.z};
+  }
+  return o->error.code == VXM_OK;
+}
+
+/* ---- Patches that together are consistent about an edge with four sides or more ---- */
+
+/** A side along an edge with an even number of sides, four or more. */
+typedef struct crossing {
+  size_t edge;
+  uint32_t patch;
+  int along; /**< 1 upward, -1 downward */
+} crossing;
+
+static int by_edge_then_patch(const void *a, const void *b) {
+  const crossing *p = a, *q = b;
+  if (p->edge != q->edge)
+    return p->edge < q->edge ? -1 : 1;
+  return p->patch < q->patch ? -1 : p->patch > q->patch;
+}
+
+/** Lists (or, with NULL, counts) the sides at crossings, as the faces are turned by now. */
+static bool list_crossings(orienting *o, crossing *crossings, size_t *out) {
+  size_t listed = 0;
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    if (!goes_on(o, f))
+      return false;
+    size_t count;
+    const uint32_t *corner = vxm_face(o->soup, f, &count);
+    for (size_t i = 0; i < count; i++) {
+      size_t e = o->sides[o->soup->offsets[f] + (o->turn[f] ? count - 1 - i : i)];
+      if (e == VXM_NO_EDGE || o->work->edges.edges[e].count < 4 || vxm_edge_is_odd(&o->work->edges.edges[e]))
+        continue;
+      int along = corner[i] < corner[i + 1 < count ? i + 1 : 0] ? 1 : -1;
+      if (crossings)
+        crossings[listed] = (crossing){e, o->label[f], along};
+      listed++;
+    }
+  }
+  *out = listed;
+  return true;
+}
+
+/** Marks the patches that are out of balance about an edge by themselves, but in balance together. */
+static void mark_held(const crossing *crossings, size_t count, uint8_t *held) {
+  for (size_t i = 0, j; i < count; i = j) {
+    int balance = 0;
+    for (j = i; j < count && crossings[j].edge == crossings[i].edge; j++)
+      balance += crossings[j].along;
+    for (size_t k = i, next; k < j && balance == 0; k = next) {
+      int own = 0;
+      for (next = k; next < j && crossings[next].patch == crossings[k].patch; next++)
+        own += crossings[next].along;
+      held[crossings[k].patch] |= own != 0;
+    }
+  }
+}
+
+/** Such patches hold each other: turned alone, one would open what is closed. As all of them about an edge
+ * stay, they stay in balance. */
+static bool find_held(orienting *o, uint8_t *held) {
+  size_t count;
+  if (!list_crossings(o, NULL, &count))
+    return false;
+  crossing *crossings = allocate(o, count, sizeof *crossings);
+  bool done = crossings && (count == 0 || list_crossings(o, crossings, &count));
+  if (done && count > 0) {
+    qsort(crossings, count, sizeof *crossings, by_edge_then_patch);
+    mark_held(crossings, count, held);
+  }
+  vxm_free(o->work->context, crossings);
+  return done;
+}
+
+/* ---- Outward ---- */
+
+static bool is_closed_or_nearly(const patch *p) {
+  return p->conflicts == 0 && p->area > 0 && vxm_vec3_length(p->vector_area) < SHEET * p->area;
+}
+
+/** Which patches to turn over: outward those that bound a volume, but for cavities. */
+static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, const uint8_t *held,
+                         uint8_t *over, uint8_t *known, size_t *chain) {
+  for (size_t i = 0; i < nesting->count; i++) {
+    size_t depth = 0, at = i;
+    for (; !known[at] && solid[at]; at = nesting->parent[at]) {
+      chain[depth++] = at;
+      if (nesting->parent[at] == VXM_NO_COMPONENT)
+        break;
+    }
+    while (depth > 0) {
+      size_t child = chain[--depth];
+      uint32_t parent = nesting->parent[child];
+      bool inward = nesting->volume[child] < 0;
+      over[child] = inward;
+      if (parent != VXM_NO_COMPONENT && inward != (nesting->volume[parent] < 0))
+        over[child] = over[parent]; /* against the parent it stays */
+      if (held[child])
+        over[child] = 0;
+      known[child] = 1;
+    }
+  }
+}
+
+static bool turn_outward(orienting *o) {
+  size_t count = o->patch_count;
+  uint8_t *solid = allocate(o, count, sizeof *solid), *over = allocate(o, count, sizeof *over);
+  uint8_t *known = allocate(o, count, sizeof *known), *held = allocate(o, count, sizeof *held);
+  size_t *chain = allocate(o, count, sizeof *chain);
+  vxm_containment nesting = {0};
+  bool done = solid && over && known && held && chain && find_held(o, held);
+  for (size_t i = 0; done && i < count; i++)
+    solid[i] = is_closed_or_nearly(&o->patches[i]);
+  if (done)
+    done = vxm_containment_build(&nesting, o->soup, o->label, count, solid, &o->error) == VXM_OK;
+  if (done) {
+    double unit = o->frame.scale * o->frame.scale * o->frame.scale;
+    for (size_t i = 0; i < count; i++)
+      if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
+        nesting.volume[i] = 0;
+    choose_sides(&nesting, solid, held, over, known, chain);
+    for (size_t f = 0; f < o->soup->face_count; f++)
+      if (over[o->label[f]]) {
+        o->turn[f] ^= 1;
+        reverse(o->soup, f);
+      }
+  }
+  vxm_containment_destroy(&nesting);
+  vxm_free(o->work->context, chain);
+  vxm_free(o->work->context, held);
+  vxm_free(o->work->context, known);
+  vxm_free(o->work->context, over);
+  vxm_free(o->work->context, solid);
+  return done;
+}
+
+static bool orient(orienting *o) {
+  size_t faces = o->soup->face_count;
+  if (vxm_halfedges_find(&o->sides, o->work, &o->error) != VXM_OK)
+    return false;
+  o->pair = allocate(o, o->work->edges.count, sizeof *o->pair);
+  o->label = allocate(o, faces, sizeof *o->label);
+  o->turn = allocate(o, faces, sizeof *o->turn);
+  o->queue = allocate(o, faces, sizeof *o->queue);
+  if (!o->pair || !o->label || !o->turn || !o->queue)
+    return false;
+  return pair_faces(o) && find_patches(o) && make_consistent(o) && turn_outward(o);
+}
+
+/** Notes which faces run the other way than when they came in, by this pass and those before. */
+static bool note_turned(orienting *o, bool *changed) {
+  vxm_repair_state *work = o->work;
+  for (size_t f = 0; f < o->soup->face_count && !*changed; f++)
+    *changed = o->turn[f];
+  if (*changed && !work->turned)
+    work->turned = allocate(o, o->soup->face_count, sizeof *work->turned);
+  for (size_t f = 0; f < o->soup->face_count && *changed && work->turned; f++)
+    work->turned[f] ^= o->turn[f];
+  return !*changed || work->turned;
+}
+
+/**
+ * Turns faces: consistent within a patch, and patches that are closed or nearly so outward. A patch inside
+ * another one that was wound against it is a cavity and stays so. Patches that only together are consistent
+ * about an edge stay as they are. Sheets keep the side that most of their
+ * area has. A patch that no turning makes consistent gets as few inconsistent edges as a walk over its faces
+ * leaves.
+ */
+vxm_status vxm_pass_orientation(vxm_repair_state *work, bool *changed, vxm_error *error) {
+  *changed = false;
+  if (work->options.keep_orientation || work->soup->face_count == 0)
+    return VXM_OK;
+  vxm_extent extent;
+  vxm_repair_state_extent(work, &extent);
+  orienting o = {
+      .work = work, .soup = work->soup, .error = VXM_ERROR_INIT, .frame = vxm_unit_scale_of(extent.bounds)};
+  bool done = orient(&o);
+  work->nonorientable = 0;
+  if (done)
+    done = note_turned(&o, changed);
+  for (size_t i = 0; done && i < o.patch_count; i++)
+    work->nonorientable += o.patches[i].conflicts > 0;
+  vxm_free(work->context, o.patches);
+  vxm_free(work->context, o.queue);
+  vxm_free(work->context, o.turn);
+  vxm_free(work->context, o.label);
+  vxm_free(work->context, o.pair);
+  vxm_free(work->context, o.sides);
+  if (!done) {
+    if (error)
+      *error = o.error;
+    return o.error.code;
+  }
+  if (*changed)
+    vxm_repair_state_touch(work);
+  work->patches = o.many_sides ? 0 : o.patch_count; /* turning changes none */
+  return VXM_OK;
+}

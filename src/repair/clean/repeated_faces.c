@@ -1,0 +1,414 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/clean/repeated_faces.h"
+
+#include "mesh/geometry.h"
+#include "repair/state/edge_groups.h"
+#include "repair/state/halfedges.h"
+#include "repair/state/set_sides.h"
+
+#include <string.h>
+
+/** Of the area of the rest of a group: fins that have no more are removed. */
+static const double FIN_PART = 0.1;
+
+enum { PEELS_MAX = 16 };
+
+/** What is to be decided about a kind: all faces with the same corners. */
+typedef enum kind {
+  PLAIN = 0, /**< nothing */
+  SHEET, /**< as many of one orientation as of the other, or, where the group is not balanced, an even number
+            in both */
+  SAME_WAY /**< several more of one orientation than of the other; where the group is not balanced, an even
+              number, all of one orientation */
+} kind;
+
+/** A set of kinds that edges connect, all sheets or all of the same way; told at the face that stands for it.
+ */
+typedef struct fin {
+  bool touches;    /**< along an edge there are other faces */
+  bool hangs;      /**< along such an edge an odd number of its kinds end */
+  bool rimmed;     /**< the same along an edge without others */
+  bool unbalanced; /**< of its kinds, taken once, more sides run along an edge one way than the other */
+  int overlaps; /**< edges where the other faces lie on one side of it, less those where they lie on both */
+  uint32_t least, most; /**< copies of any of its kinds that stay */
+  size_t largest;       /**< its largest face */
+  double area;          /**< of that */
+} fin;
+
+typedef struct deciding {
+  vxm_repair_state *work;
+  const vxm_soup *soup;
+  const vxm_copies *copies;
+  vxm_edge_groups groups;
+  double scale;
+  uint8_t *kinds;   /**< per face: of the first of its kind */
+  uint32_t *keep;   /**< per first face, twice: how many stay that run as it does, and the other way */
+  size_t *parent;   /**< per first face: another one of its fin, or itself */
+  fin *fins;        /**< per face that stands for one */
+  size_t *at_edge;  /**< per edge, twice: 1 + the first sheet at it; the same for the same way */
+  uint32_t *single; /**< per edge, twice: sides of such kinds, each taken once */
+  uint32_t *sides;  /**< per edge, twice: sides of all their faces */
+  int32_t *balance; /**< per edge, twice: of those of `single`, the ones that run forward less the others */
+  double *fin_area, *rest_area; /**< per group: of the rimmed sheets, taken once, and of plain faces */
+  uint8_t *tangled; /**< per group: without its fins, too, it has edges with more than two sides */
+} deciding;
+
+static bool is_first(const deciding *d, size_t face) {
+  return d->copies[face].first == face;
+}
+
+static int64_t surplus_of(const vxm_copies *c) {
+  return (int64_t)c->same - (int64_t)c->opposite;
+}
+
+/* ---- Kinds ---- */
+
+/** What stays where nothing speaks against it. */
+static void begin_kind(deciding *d, size_t face) {
+  const vxm_copies *c = &d->copies[face];
+  const vxm_edge_group *group = &d->groups.groups[d->groups.of_face[face]];
+  int64_t surplus = surplus_of(c);
+  d->keep[2 * face] = 1;
+  d->keep[2 * face + 1] = 0;
+  if (group->balanced && surplus != 0) {
+    d->keep[2 * face] = surplus > 0 ? (uint32_t)surplus : 0;
+    d->keep[2 * face + 1] = surplus < 0 ? (uint32_t)-surplus : 0;
+    d->kinds[face] = surplus > 1 || surplus < -1 ? SAME_WAY : PLAIN;
+  } else if (group->balanced)
+    d->kinds[face] = SHEET;
+  else if (group->closed && (c->same + c->opposite) % 2 == 0)
+    d->kinds[face] = c->opposite > 0 ? SHEET : SAME_WAY;
+}
+
+static uint32_t kept_of(const deciding *d, size_t face) {
+  return d->keep[2 * face] + d->keep[2 * face + 1];
+}
+
+/* ---- Fins ---- */
+
+static void look_at_kind(deciding *d, size_t face) {
+  size_t fin_face = vxm_set_of(d->parent, face), count;
+  fin *f = &d->fins[fin_face];
+  const uint32_t *corner = vxm_face(d->soup, face, &count);
+  double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->scale));
+  if (f->least == 0 || kept_of(d, face) < f->least)
+    f->least = kept_of(d, face);
+  if (kept_of(d, face) > f->most)
+    f->most = kept_of(d, face);
+  if (!(area <= f->area)) {
+    f->area = area;
+    f->largest = face;
+  }
+  for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
+    size_t edge = d->groups.sides[c];
+    if (edge == VXM_NO_EDGE)
+      continue;
+    size_t place = 2 * edge + (d->kinds[face] == SAME_WAY);
+    bool odd = d->single[place] % 2 == 1, others = d->work->edges.edges[edge].count > d->sides[place];
+    f->touches |= others;
+    f->hangs |= odd && others;
+    f->rimmed |= odd && !others;
+    f->unbalanced |= d->balance[place] != 0;
+  }
+}
+
+/** Joins kinds to fins, and sees what the edges tell of these. */
+static void find_fins(deciding *d) {
+  memset(d->at_edge, 0, 2 * d->work->edges.count * sizeof *d->at_edge);
+  memset(d->single, 0, 2 * d->work->edges.count * sizeof *d->single);
+  memset(d->sides, 0, 2 * d->work->edges.count * sizeof *d->sides);
+  memset(d->balance, 0, 2 * d->work->edges.count * sizeof *d->balance);
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    d->parent[face] = face;
+    d->fins[face] = (fin){0};
+  }
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    const vxm_copies *copies = &d->copies[face];
+    bool same_way = d->kinds[face] == SAME_WAY, turned = surplus_of(copies) < 0;
+    for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
+      size_t edge = d->groups.sides[c], place = 2 * edge + same_way;
+      if (d->kinds[face] == PLAIN || edge == VXM_NO_EDGE)
+        continue;
+      d->single[place]++;
+      d->sides[place] += copies->same + copies->opposite;
+      d->balance[place] += (d->soup->indices[c] == d->work->edges.edges[edge].a) != turned ? 1 : -1;
+      if (d->at_edge[place] == 0)
+        d->at_edge[place] = face + 1;
+      else
+        d->parent[vxm_set_of(d->parent, face)] = vxm_set_of(d->parent, d->at_edge[place] - 1);
+    }
+  }
+  for (size_t face = 0; face < d->soup->face_count; face++)
+    if (d->kinds[face] != PLAIN)
+      look_at_kind(d, face);
+}
+
+/**
+ * A body that is there several times needs no more than one of them: where the kinds of a fin, each taken
+ * once, are balanced, so is what stays without them. What is left of a doubled body that shares faces with
+ * another one is found anew. Returns whether there was one.
+ */
+static bool peel(deciding *d) {
+  bool any = false;
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    if (d->kinds[face] != SAME_WAY || !d->groups.groups[d->groups.of_face[face]].balanced)
+      continue;
+    const fin *f = &d->fins[vxm_set_of(d->parent, face)];
+    if (f->unbalanced || f->least < 2)
+      continue;
+    uint32_t *keep = &d->keep[2 * face + (surplus_of(&d->copies[face]) < 0)];
+    *keep -= f->least - 1;
+    if (*keep == 1)
+      d->kinds[face] = PLAIN;
+    any = true;
+  }
+  return any;
+}
+
+static void sum_areas(deciding *d) {
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    if (!is_first(d, face) || (d->kinds[face] != PLAIN && !d->fins[vxm_set_of(d->parent, face)].rimmed))
+      continue;
+    size_t count, group = d->groups.of_face[face];
+    const uint32_t *corner = vxm_face(d->soup, face, &count);
+    double area = vxm_vec3_length(vxm_polygon_area(d->soup->positions, corner, count, d->scale));
+    if (d->kinds[face] == PLAIN)
+      d->rest_area[group] += area;
+    else
+      d->fin_area[group] += area;
+  }
+}
+
+/* ---- Which bodies lie on the same side of a fin ---- */
+
+/** On which side of a face another one lies that shares an edge with it: 1 above, -1 below, 0 in its plane.
+ */
+static int side_of(const deciding *d, size_t face, size_t other) {
+  size_t count;
+  const uint32_t *corner = vxm_face(d->soup, face, &count);
+  vxm_vec3 normal = vxm_polygon_area(d->soup->positions, corner, count, d->scale), sum = {0, 0, 0};
+  const double *origin = vxm_position(d->soup, corner[0]);
+  corner = vxm_face(d->soup, other, &count);
+  for (size_t c = 0; c < count; c++) {
+    vxm_vec3 to = vxm_vec3_between(vxm_position(d->soup, corner[c]), origin, d->scale);
+    sum = (vxm_vec3){sum.x + to.x, sum.y + to.y, sum.z + to.z};
+  }
+  double above = vxm_vec3_dot(normal, sum), none = 1e-9 * vxm_vec3_length(normal) * vxm_vec3_length(sum);
+  return above > none ? 1 : above < -none ? -1 : 0;
+}
+
+/** Sees where two plain faces hang on a fin of the same way; `tally` is scratch per edge, twice. */
+static void look_at_sides(deciding *d, int8_t *tally) {
+  for (size_t face = 0; face < d->soup->face_count; face++)
+    for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
+      size_t e = d->groups.sides[c];
+      if (e == VXM_NO_EDGE || d->at_edge[2 * e + 1] == 0 || d->work->edges.edges[e].count != 4 ||
+          d->kinds[d->copies[face].first] != PLAIN)
+        continue;
+      int side = side_of(d, d->at_edge[2 * e + 1] - 1, face);
+      tally[2 * e] = (int8_t)(tally[2 * e] + side);
+      tally[2 * e + 1] = (int8_t)(tally[2 * e + 1] + (side != 0));
+    }
+  for (size_t e = 0; e < d->work->edges.count; e++)
+    if (tally[2 * e + 1] == 2)
+      d->fins[vxm_set_of(d->parent, d->at_edge[2 * e + 1] - 1)].overlaps += tally[2 * e] != 0 ? 1 : -1;
+}
+
+/* ---- What lies within the solid ---- */
+
+/** Whether a face stays as far as has been decided. */
+static bool stays(const deciding *d, size_t face) {
+  const vxm_copies *c = &d->copies[face];
+  return c->rank < d->keep[2 * c->first + c->turned];
+}
+
+/** The faces that tell what is inside: of groups that are not balanced the plain ones alone. */
+static bool bounds(const deciding *d, size_t face) {
+  kind k = (kind)d->kinds[d->copies[face].first];
+  bool balanced = d->groups.groups[d->groups.of_face[face]].balanced;
+  return stays(d, face) && (k == PLAIN || (k == SAME_WAY && balanced));
+}
+
+/** Decides about the fins, of which `within` are inside the solid. */
+static void settle(deciding *d, const uint8_t *within) {
+  for (size_t face = 0; face < d->soup->face_count; face++) {
+    if (d->kinds[face] == PLAIN)
+      continue;
+    size_t root = vxm_set_of(d->parent, face), group = d->groups.of_face[face];
+    const fin *f = &d->fins[root];
+    const vxm_copies *c = &d->copies[face];
+    bool balanced = d->groups.groups[group].balanced, sheet = d->kinds[face] == SHEET;
+    uint32_t *keep = &d->keep[2 * face];
+    if (vxm_repair_state_guards(d->work, face))
+      continue;
+    bool drifts = f->touches && f->unbalanced && balanced; /* one side of it would turn what is balanced */
+    if (within[root] ||
+        (sheet && f->hangs && f->rimmed && d->fin_area[group] <= FIN_PART * d->rest_area[group]))
+      keep[0] = keep[1] = 0;
+    else if (sheet && !f->rimmed && (f->hangs || drifts))
+      keep[0] = keep[1] = 1;
+    else if (!sheet && !balanced && f->hangs && !f->rimmed && f->overlaps > 0)
+      keep[0] = c->same;
+  }
+}
+
+/**
+ * A wall between a room and another one that is inside out may go only where the rooms can be turned alike
+ * afterwards: where no edge of the group has more than two sides without it.
+ */
+static void keep_tangled(deciding *d, uint8_t *within) {
+  uint32_t *going = d->single;
+  memset(going, 0, d->work->edges.count * sizeof *going);
+  for (size_t face = 0; face < d->soup->face_count; face++)
+    for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++)
+      if (d->kinds[face] != PLAIN && d->groups.sides[c] != VXM_NO_EDGE && within[vxm_set_of(d->parent, face)])
+        going[d->groups.sides[c]] += d->copies[face].same + d->copies[face].opposite;
+  for (size_t face = 0; face < d->soup->face_count; face++)
+    for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
+      size_t e = d->groups.sides[c];
+      if (e != VXM_NO_EDGE && d->work->edges.edges[e].count > going[e] + 2)
+        d->tangled[d->groups.of_face[face]] = 1;
+    }
+  for (size_t face = 0; face < d->soup->face_count; face++)
+    if (d->kinds[face] == SAME_WAY && d->tangled[d->groups.of_face[face]])
+      within[face] = 0;
+}
+
+/** Whether the sides of a face of the same way, in a balanced group, have to be asked: all of these, as a fin
+ * may go on from a wall between bodies to a skin that two of them share. */
+static bool may_be_wall(const deciding *d, size_t face) {
+  return d->kinds[face] == SAME_WAY && d->groups.groups[d->groups.of_face[face]].balanced &&
+         d->fins[vxm_set_of(d->parent, face)].most == 2;
+}
+
+static bool is_asked(const deciding *d, size_t face) {
+  size_t root = vxm_set_of(d->parent, face);
+  if (d->kinds[face] == PLAIN || !d->fins[root].touches)
+    return false;
+  bool whole = d->kinds[face] == SHEET || !d->groups.groups[d->groups.of_face[face]].balanced;
+  return whole ? root == face : may_be_wall(d, face);
+}
+
+/** Asks one face of a fin, or all of them, whether they lie within the solid. */
+static vxm_status ask(deciding *d, vxm_set_side *sets, size_t asked, const uint8_t *bound, uint8_t *within,
+                      vxm_error *error) {
+  vxm_status status = vxm_set_sides_find(sets, asked, d->work, &d->groups, bound, error);
+  for (size_t i = 0; status == VXM_OK && i < asked; i++)
+    within[sets[i].set] = 1;
+  for (size_t i = 0; status == VXM_OK && i < asked; i++) {
+    const vxm_set_side *s = &sets[i];
+    /* between a room and another one that is inside out */
+    bool wall = may_be_wall(d, s->face) ? s->front == -1 && s->back == 1 : s->within;
+    within[s->set] = within[s->set] && wall;
+  }
+  if (status == VXM_OK && asked > 0)
+    keep_tangled(d, within);
+  return status;
+}
+
+static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  size_t faces = d->soup->face_count, asked = 0;
+  uint8_t *bound = vxm_repair_state_scratch(d->work, faces, sizeof *bound, &status, error);
+  vxm_set_side *sets = NULL;
+  for (size_t face = 0; bound && face < faces; face++) {
+    bound[face] = bounds(d, face);
+    asked += is_asked(d, face);
+  }
+  if (bound)
+    sets = vxm_repair_state_scratch(d->work, asked, sizeof *sets, &status, error);
+  asked = 0;
+  for (size_t face = 0; sets && face < faces; face++)
+    if (is_asked(d, face)) {
+      size_t root = vxm_set_of(d->parent, face);
+      bool wall = may_be_wall(d, face);
+      sets[asked++] =
+          (vxm_set_side){.face = wall ? face : d->fins[root].largest, .set = root, .asks_within = !wall};
+    }
+  if (sets)
+    status = ask(d, sets, asked, bound, within, error);
+  vxm_free(d->work->context, sets);
+  vxm_free(d->work->context, bound);
+  return status;
+}
+
+/* ---- All of it ---- */
+
+static vxm_status decide(deciding *d, int8_t *tally, uint8_t *within, uint8_t *remove, vxm_error *error) {
+  for (size_t face = 0; face < d->soup->face_count; face++)
+    if (is_first(d, face))
+      begin_kind(d, face);
+  find_fins(d);
+  for (int round = 0; round < PEELS_MAX && peel(d); round++)
+    find_fins(d);
+  sum_areas(d);
+  look_at_sides(d, tally);
+  vxm_status status = find_within(d, within, error);
+  if (status != VXM_OK)
+    return status;
+  settle(d, within);
+  for (size_t face = 0; face < d->soup->face_count; face++)
+    remove[face] = !stays(d, face);
+  return VXM_OK;
+}
+
+static vxm_status prepare(deciding *d, int8_t **tally, uint8_t **within, vxm_error *error) {
+  vxm_repair_state *work = d->work;
+  size_t faces = d->soup->face_count;
+  vxm_status status = vxm_edge_groups_find(&d->groups, work, error);
+  if (status == VXM_OK)
+    d->kinds = vxm_repair_state_scratch(work, faces, sizeof *d->kinds, &status, error);
+  if (status == VXM_OK)
+    d->keep = vxm_repair_state_scratch(work, 2 * faces, sizeof *d->keep, &status, error);
+  if (status == VXM_OK)
+    d->parent = vxm_repair_state_scratch(work, faces, sizeof *d->parent, &status, error);
+  if (status == VXM_OK)
+    d->fins = vxm_repair_state_scratch(work, faces, sizeof *d->fins, &status, error);
+  if (status == VXM_OK)
+    d->at_edge = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof *d->at_edge, &status, error);
+  if (status == VXM_OK)
+    d->single = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof *d->single, &status, error);
+  if (status == VXM_OK)
+    d->sides = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof *d->sides, &status, error);
+  if (status == VXM_OK)
+    d->balance = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof *d->balance, &status, error);
+  if (status == VXM_OK)
+    d->fin_area = vxm_repair_state_scratch(work, d->groups.count, sizeof *d->fin_area, &status, error);
+  if (status == VXM_OK)
+    d->rest_area = vxm_repair_state_scratch(work, d->groups.count, sizeof *d->rest_area, &status, error);
+  if (status == VXM_OK)
+    d->tangled = vxm_repair_state_scratch(work, d->groups.count, sizeof *d->tangled, &status, error);
+  if (status == VXM_OK)
+    *tally = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof **tally, &status, error);
+  if (status == VXM_OK)
+    *within = vxm_repair_state_scratch(work, faces, sizeof **within, &status, error);
+  return status;
+}
+
+vxm_status vxm_repeated_faces_mark(vxm_repair_state *work, const vxm_copies *copies, uint8_t *remove,
+                                   vxm_error *error) {
+  vxm_extent extent;
+  vxm_repair_state_extent(work, &extent);
+  deciding d = {
+      .work = work, .soup = work->soup, .copies = copies, .scale = vxm_unit_scale_of(extent.bounds).scale};
+  int8_t *tally = NULL;
+  uint8_t *within = NULL;
+  vxm_status status = prepare(&d, &tally, &within, error);
+  if (status == VXM_OK)
+    status = decide(&d, tally, within, remove, error);
+  vxm_free(work->context, within);
+  vxm_free(work->context, tally);
+  vxm_free(work->context, d.tangled);
+  vxm_free(work->context, d.rest_area);
+  vxm_free(work->context, d.fin_area);
+  vxm_free(work->context, d.balance);
+  vxm_free(work->context, d.sides);
+  vxm_free(work->context, d.single);
+  vxm_free(work->context, d.at_edge);
+  vxm_free(work->context, d.fins);
+  vxm_free(work->context, d.parent);
+  vxm_free(work->context, d.keep);
+  vxm_free(work->context, d.kinds);
+  vxm_edge_groups_free(&d.groups, work->context);
+  return status;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** How many of the faces that repeat each other are to stay. */
+#ifndef VXM_REPAIR_CLEAN_REPEATED_FACES_H
+#define VXM_REPAIR_CLEAN_REPEATED_FACES_H
+
+#include "mesh/duplicates.h"
+#include "repair/state/repair_state.h"
+
+/**
+ * Marks the faces that may go without the loss of a body, and without opening what is closed.
+ *
+ * A group is what edges connect (repair/state/edge_groups.h). Where it is open, of faces that repeat each
+ * other one stays: a sheet that was drawn from both sides is one sheet. Where it is closed, a set of repeated
+ * faces that edges connect is judged as a whole:
+ *  - If it is closed for itself, as a body that is there twice, one of each of its faces stays.
+ *  - If it lies within the solid on both sides, as the wall between two rooms, all of it goes.
+ *  - A fin, drawn from both sides, with a rim of its own goes, as long as such fins have no more than a tenth
+ *    of the area of the rest of their group: one side of it would leave the body open. A chair that is mostly
+ *    sheets of two sides does not lose them.
+ *  - Else bodies share it, and neither is closed without. Where the group is balanced, so many stay as there
+ *    are more of one orientation than of the other: how often the faces wind round any point does not change.
+ *    Of as many one way as the other, one of each stays.
+ *  - Where the group is closed but not balanced (faces are turned against each other), all copies of one
+ *    orientation stay if two bodies lie on the same side of them; else one does.
+ *
+ * @param copies      per face (vxm_duplicates_find)
+ * @param[out] remove per face: 1 = it goes
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+vxm_status vxm_repeated_faces_mark(vxm_repair_state *work, const vxm_copies *copies, uint8_t *remove,
+                                   vxm_error *error);
+
+#endif

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/external/openmesh.h"
+
+#include "base/module.h"
+
+vxm_status vxm_openmesh_open(const vxm_openmesh **out, const char *purpose, vxm_error *error) {
+  const vxm_module *module;
+  vxm_status status = vxm_module_open(
+      &module, &(vxm_module_need){.name = "openmesh", .package = "libopenmesh-dev", .purpose = purpose},
+      error);
+  *out = status == VXM_OK ? module->functions : NULL;
+  return status;
+}

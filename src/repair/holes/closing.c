@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/external/cgal.h"
+#include "repair/external/openmesh.h"
+#include "repair/holes/fill_fans.h"
+#include "repair/state/vertex_fans.h"
+
+#include <string.h>
+
+/** Edges that a hole may have to be filled; 0 = none is. */
+static size_t largest_hole(const vxm_repair_options *options) {
+  if (options->wrap_alpha > 0)
+    return 0;
+  if (options->fill_holes < 0 || (options->fill_holes == 0 && options->level >= VXM_LEVEL_CLOSED))
+    return SIZE_MAX;
+  return (size_t)options->fill_holes;
+}
+
+/* ---- By a module ---- */
+
+/** Gives the faces taken the tags that they have, which decide between those of a rim. */
+static bool take_tags(vxm_soup *taken, const uint64_t *numbers, const vxm_soup *soup, vxm_error *error) {
+  if (!soup->face_tags)
+    return true;
+  taken->face_tags = vxm_alloc(soup->context, taken->face_count, sizeof *taken->face_tags, error);
+  for (size_t f = 0; taken->face_tags && f < taken->face_count; f++)
+    taken->face_tags[f] = soup->face_tags[numbers[f]];
+  return taken->face_tags != NULL;
+}
+
+/** The faces of a soup that are marked so, with all its vertices. */
+static vxm_status take_faces(vxm_soup **out, uint64_t **numbers, const vxm_repair_state *work,
+                             const uint8_t *marks, uint8_t mark, vxm_error *error) {
+  const vxm_soup *soup = work->soup;
+  vxm_error local = VXM_ERROR_INIT;
+  *numbers = vxm_alloc(soup->context, soup->face_count, sizeof **numbers, &local);
+  *out = NULL;
+  if (*numbers && vxm_soup_create(out, soup->context, soup->format, &local) == VXM_OK &&
+      vxm_soup_reserve(*out, soup->vertex_count, soup->face_count, soup->corner_count, &local) == VXM_OK) {
+    if (soup->vertex_count > 0)
+      memcpy((*out)->positions, soup->positions, 3 * soup->vertex_count * sizeof *soup->positions);
+    (*out)->vertex_count = soup->vertex_count;
+    for (size_t f = 0; f < soup->face_count; f++) {
+      size_t count;
+      const uint32_t *corner = vxm_face(soup, f, &count);
+      if (marks[f] != mark)
+        continue;
+      (*numbers)[(*out)->face_count] = f;
+      vxm_soup_add_face(*out, corner, count, NULL); /* there is room */
+    }
+    if (take_tags(*out, *numbers, soup, &local))
+      return VXM_OK;
+  }
+  vxm_free(soup->context, *numbers);
+  vxm_soup_destroy(*out);
+  *numbers = NULL;
+  *out = NULL;
+  if (error)
+    *error = local;
+  return local.code;
+}
+
+/** Adds the faces marked as sheets, which the module has not seen, on vertices of their own. */
+static vxm_status add_sheets(vxm_soup *filled, uint64_t **origin, const vxm_repair_state *work,
+                             const uint8_t *sheets, vxm_error *error) {
+  const vxm_soup *soup = work->soup;
+  vxm_error local = VXM_ERROR_INIT;
+  size_t first = filled->vertex_count, total = filled->face_count + soup->face_count;
+  uint64_t *grown = vxm_realloc(soup->context, *origin, total, sizeof *grown, &local);
+  vxm_status status = local.code;
+  if (grown)
+    *origin = grown;
+  for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
+    const double *p = vxm_position(soup, v);
+    status = vxm_soup_add_vertex(filled, p[0], p[1], p[2], &local);
+  }
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count);
+    if (!sheets[f])
+      continue;
+    (*origin)[filled->face_count] = f;
+    status = vxm_soup_add_face(filled, corner, count, &local);
+    for (size_t i = 0; i < count && status == VXM_OK; i++)
+      filled->indices[filled->corner_count - count + i] += (uint32_t)first;
+  }
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+static vxm_status call_module(vxm_soup **out, uint64_t **origin, vxm_repair_state *work, const vxm_soup *soup,
+                              size_t most, vxm_error *error) {
+  int64_t filled, left;
+  size_t edges = most == SIZE_MAX ? 0 : most;
+  vxm_status status;
+  if (work->options.fill == VXM_FILL_SMOOTH) {
+    const vxm_cgal *cgal;
+    status = vxm_cgal_open(&cgal, "filling holes smoothly", error);
+    if (status == VXM_OK)
+      status = cgal->fill(out, origin, &filled, &left, soup, edges, error);
+  } else {
+    const vxm_openmesh *openmesh;
+    status = vxm_openmesh_open(&openmesh, "filling holes with the least area", error);
+    if (status == VXM_OK)
+      status = openmesh->fill(out, origin, &filled, &left, soup, edges, error);
+  }
+  if (status == VXM_OK)
+    work->unfilled = left;
+  return status;
+}
+
+/** What the modules fill has to be a manifold, which it is from that level on. */
+static vxm_status check_manifold(vxm_repair_state *work, vxm_error *error) {
+  bool manifold;
+  vxm_status status = vxm_is_manifold(&manifold, work, error);
+  if (status != VXM_OK || manifold)
+    return status;
+  return vxm_fail(
+      error, VXM_ERROR_ARGUMENT,
+      "some edge has more than two faces, or some vertex more than one fan: only --fill fan works there; "
+      "choose that, or --level manifold");
+}
+
+/** Fills all but sheets, which stay as they are. */
+static vxm_status fill_by_module(vxm_repair_state *work, const uint8_t *sheets, size_t most, bool *changed,
+                                 vxm_error *error) {
+  vxm_soup *rest, *filled = NULL;
+  uint64_t *numbers, *origin = NULL;
+  vxm_status status = check_manifold(work, error);
+  if (status == VXM_OK)
+    status = take_faces(&rest, &numbers, work, sheets, 0, error);
+  if (status != VXM_OK)
+    return status;
+  status = call_module(&filled, &origin, work, rest, most, error);
+  if (status == VXM_OK) {
+    int64_t added = (int64_t)filled->face_count - (int64_t)rest->face_count;
+    for (size_t f = 0; f < filled->face_count; f++)
+      origin[f] = origin[f] == VXM_NO_FACE ? VXM_NO_FACE : numbers[origin[f]];
+    *changed = added > 0;
+    work->counts[VXM_PASS_CLOSING] += added;
+    if (work->open_parts > 0)
+      status = add_sheets(filled, &origin, work, sheets, error);
+    if (status == VXM_OK && *changed) {
+      status = vxm_repair_state_adopt(work, filled, origin, error);
+      filled = NULL;
+      origin = NULL;
+    }
+  }
+  vxm_soup_destroy(filled);
+  vxm_free(work->context, origin);
+  vxm_free(work->context, numbers);
+  vxm_soup_destroy(rest);
+  return status;
+}
+
+/** What a module leaves, such as rims that touch themselves, goes to fans. */
+static vxm_status fan_the_rest(vxm_repair_state *work, size_t most, bool *changed, vxm_error *error) {
+  int64_t closed = 0;
+  vxm_status status = vxm_repair_state_edges(work, error);
+  if (status == VXM_OK)
+    status = vxm_fill_fans(work, most, &closed, error);
+  work->fanned += closed;
+  work->unfilled = closed < work->unfilled ? work->unfilled - closed : 0;
+  *changed |= closed > 0;
+  return status;
+}
+
+/** Fills holes as the options say. Components that this would only cover a second time, sheets, stay open. */
+vxm_status vxm_pass_closing(vxm_repair_state *work, bool *changed, vxm_error *error) {
+  *changed = false;
+  work->open_parts = 0;
+  size_t most = largest_hole(&work->options);
+  if (most == 0)
+    return VXM_OK;
+  vxm_status status = vxm_repair_state_edges(work, error);
+  if (status != VXM_OK || vxm_edges_count_odd(&work->edges) == 0)
+    return status;
+  if (work->options.fill == VXM_FILL_FAN) {
+    int64_t closed;
+    status = vxm_fill_fans(work, most, &closed, error);
+    *changed = status == VXM_OK && closed > 0;
+    return status;
+  }
+  uint8_t *sheets = vxm_repair_state_scratch(work, work->soup->face_count, sizeof *sheets, &status, error);
+  if (sheets)
+    status = vxm_find_sheets(sheets, work, error);
+  if (status == VXM_OK)
+    status = fill_by_module(work, sheets, most, changed, error);
+  if (status == VXM_OK && work->unfilled > 0)
+    status = fan_the_rest(work, most, changed, error);
+  vxm_free(work->context, sheets);
+  return status;
+}

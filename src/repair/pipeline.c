@@ -1,0 +1,386 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/repair.h"
+
+#include "mesh/census.h"
+#include "repair/bodies/bodies.h"
+#include "repair/state/repair_state.h"
+
+#include <math.h>
+
+static const char *const names[VXM_PASS_COUNT] = {
+    [VXM_PASS_ROUNDING] = "rounding",
+    [VXM_PASS_NONFINITE] = "nonfinite_vertices",
+    [VXM_PASS_EXACT_WELD] = "exact_weld",
+    [VXM_PASS_TOLERANT_WELD] = "tolerant_weld",
+    [VXM_PASS_REPEATED_CORNERS] = "repeated_corners",
+    [VXM_PASS_ZERO_AREA] = "zero_area_faces",
+    [VXM_PASS_DUPLICATES] = "duplicate_faces",
+    [VXM_PASS_OPPOSITE_DUPLICATES] = "opposite_duplicate_faces",
+    [VXM_PASS_ORIENTATION] = "orientation",
+    [VXM_PASS_WRAP] = "wrap",
+    [VXM_PASS_SEPARATION] = "separation",
+    [VXM_PASS_CLOSING] = "closing",
+    [VXM_PASS_SMALL_PARTS] = "small_parts",
+    [VXM_PASS_UNION] = "union",
+    [VXM_PASS_APART] = "apart",
+    [VXM_PASS_UNUSED] = "unused_vertices",
+};
+
+static vxm_status run_pass(vxm_repair_state *work, vxm_pass_fn pass, double fraction, bool *changed,
+                           vxm_error *error) {
+  vxm_status status = vxm_progress(work->context, "repairing", fraction, error);
+  return status == VXM_OK ? pass(work, changed, error) : status;
+}
+
+enum { ROUNDS_MAX = 8 };
+
+static const vxm_pass_fn round_passes[] = {vxm_pass_repeated_corners, vxm_pass_zero_area, vxm_pass_duplicates,
+                                           vxm_pass_tolerant_weld};
+enum { PASSES = sizeof round_passes / sizeof *round_passes };
+
+/** How much these have done so far. */
+static int64_t count_round(const vxm_repair_state *work) {
+  return work->counts[VXM_PASS_REPEATED_CORNERS] + work->counts[VXM_PASS_ZERO_AREA] +
+         work->counts[VXM_PASS_DUPLICATES] + work->counts[VXM_PASS_OPPOSITE_DUPLICATES] +
+         work->counts[VXM_PASS_TOLERANT_WELD];
+}
+
+/**
+ * Runs the passes that may make work for each other round and round, until each has found nothing to do since
+ * the last change; as each change takes away vertices or corners, this ends. Cracks are looked for last:
+ * doubled faces hide them, and faces without area may bridge them.
+ */
+static vxm_status run_until_quiet(vxm_repair_state *work, vxm_error *error) {
+  /* a given tolerance applies to the mesh as it is */
+  int next = work->options.weld == VXM_WELD_TOLERANCE ? PASSES - 1 : 0, quiet = 0;
+  double fraction = 0.3;
+  while (quiet < PASSES) {
+    bool changed;
+    vxm_status status = run_pass(work, round_passes[next], fraction, &changed, error);
+    if (status != VXM_OK)
+      return status;
+    /* welding may leave work to itself: a vertex that is no longer in the way lets others merge */
+    bool settled = round_passes[next] != vxm_pass_tolerant_weld;
+    quiet = changed ? settled : quiet + 1;
+    next = (next + 1) % PASSES;
+    fraction += (0.9 - fraction) / 8;
+  }
+  return VXM_OK;
+}
+
+/** The passes that make work for each other, once more; `changed`: they had some. */
+static vxm_status settle_again(vxm_repair_state *work, bool *changed, vxm_error *error) {
+  int64_t before = count_round(work);
+  bool turned;
+  vxm_status status = work->track ? vxm_provenance_start(work->track, work->soup, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = run_until_quiet(work, error);
+  *changed = status == VXM_OK && count_round(work) > before;
+  if (!*changed)
+    return status;
+  if (work->track)
+    status = vxm_provenance_settle(work->track, work->soup, error);
+  return status == VXM_OK ? vxm_pass_orientation(work, &turned, error) : status;
+}
+
+/** Separation, and what else it makes room for: where faces were cut apart others may come together. */
+static vxm_status separate_until_quiet(vxm_repair_state *work, bool *changed, vxm_error *error) {
+  bool more = true;
+  vxm_status status = VXM_OK;
+  *changed = false;
+  for (int round = 0; round < ROUNDS_MAX && more && status == VXM_OK; round++) {
+    bool turned;
+    status = vxm_pass_separation(work, &more, error);
+    if (status != VXM_OK || !more)
+      break;
+    *changed = true;
+    status = vxm_pass_orientation(work, &turned, error);
+    if (status == VXM_OK)
+      status = settle_again(work, &more, error);
+  }
+  return status;
+}
+
+static vxm_status move_apart(vxm_repair_state *work, bool *changed, vxm_error *error) {
+  vxm_status status = work->track ? vxm_provenance_start(work->track, work->soup, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = vxm_pass_apart(work, changed, error);
+  if (status == VXM_OK && work->track)
+    status = vxm_provenance_settle(work->track, work->soup, error);
+  return status;
+}
+
+/** The union. Where it touches itself it has vertices of their own for each sheet, which vertices at one
+ * position are only from VXM_LEVEL_MANIFOLD on. */
+static vxm_status unite(vxm_repair_state *work, bool *changed, vxm_error *error) {
+  bool welded = false, more;
+  vxm_status status = vxm_pass_union(work, changed, error);
+  if (status == VXM_OK && *changed && !vxm_repair_state_reaches(work, VXM_LEVEL_MANIFOLD))
+    status = vxm_pass_exact_weld(work, &welded, error);
+  return status == VXM_OK && welded ? settle_again(work, &more, error) : status;
+}
+
+/** The passes that a level or an option asks for; each does nothing where none does. `moved`: vertices were
+ * moved apart. */
+static vxm_status run_level(vxm_repair_state *work, bool *moved, vxm_error *error) {
+  static const struct {
+    vxm_pass_fn pass;
+    bool turns; /**< what it changes may be turned otherwise */
+  } further[] = {{separate_until_quiet, true},
+                 {vxm_pass_closing, true},
+                 {vxm_pass_small_parts, true},
+                 {unite, false},
+                 {vxm_pass_separation, false},
+                 {move_apart, true},
+                 {vxm_pass_reunion, false},
+                 {vxm_pass_separation, false},
+                 {move_apart, true}};
+  enum { FURTHER = sizeof further / sizeof *further };
+  vxm_status status = VXM_OK;
+  *moved = false;
+  for (int i = 0; i < FURTHER && status == VXM_OK; i++) {
+    bool changed = false, turned;
+    status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, &changed, error);
+    *moved = *moved || (changed && further[i].pass == move_apart);
+    if (status == VXM_OK && changed && further[i].turns)
+      status = run_pass(work, vxm_pass_orientation, 0.9 + 0.1 * i / FURTHER, &turned, error);
+  }
+  return status;
+}
+
+/** What was moved apart may let vertices merge that were not to before, which opens nothing but takes
+ * vertices away. */
+static vxm_status run_further(vxm_repair_state *work, vxm_error *error) {
+  bool changed, again = true;
+  vxm_status status = vxm_pass_unused(work, &changed, error);
+  if (status == VXM_OK)
+    status = run_pass(work, vxm_pass_wrap, 0.9, &changed, error);
+  for (int round = 0; round < ROUNDS_MAX && again && status == VXM_OK; round++) {
+    status = run_level(work, &again, error);
+    if (status == VXM_OK && again)
+      status = settle_again(work, &again, error);
+  }
+  return status == VXM_OK ? vxm_pass_unused(work, &changed, error) : status;
+}
+
+/** What comes once: for .stl, polygons are cleaned before they become triangles and are rounded. */
+static vxm_status run_first(vxm_repair_state *work, vxm_error *error) {
+  static const vxm_pass_fn first[] = {vxm_pass_nonfinite,  vxm_pass_exact_weld, vxm_pass_repeated_corners,
+                                      vxm_pass_duplicates, vxm_pass_rounding,   vxm_pass_exact_weld};
+  enum { FIRST = sizeof first / sizeof *first, PLAIN = 2 };
+  vxm_status status = VXM_OK;
+  int passes = work->options.single_precision ? FIRST : PLAIN;
+  for (int i = 0; i < passes && status == VXM_OK; i++) {
+    bool changed;
+    status = run_pass(work, first[i], 0.25 * i / passes, &changed, error);
+  }
+  return status;
+}
+
+/** Faces that run the other way in the end than when they came in. */
+static void count_turned(vxm_repair_state *work) {
+  for (size_t f = 0; f < work->soup->face_count && work->turned; f++) {
+    if (work->turned[f] != VXM_TURNED)
+      continue;
+    vxm_repair_state_note_face(work, VXM_PASS_ORIENTATION, f);
+    work->counts[VXM_PASS_ORIENTATION]++;
+    if (work->track && work->soup->face_parts)
+      vxm_provenance_turn(work->track, work->soup->face_parts[f]);
+  }
+}
+
+/** Whether passes that came so far have taken away faces, or may have made some meet. */
+static bool has_removed(const vxm_repair_state *work) {
+  return count_round(work) > 0 || work->counts[VXM_PASS_NONFINITE] > 0;
+}
+
+/** Looks whether a part is lost; *again: then the repair is to begin anew, with more care. */
+static vxm_status look_for_lost(vxm_repair_state *work, const vxm_soup *in, bool *again, vxm_error *error) {
+  *again = false;
+  if (!has_removed(work))
+    return VXM_OK;
+  vxm_lost_parts lost;
+  vxm_status status = vxm_lost_parts_find(&lost, in, work->soup, error);
+  if (status == VXM_OK && lost.count > 0 && !work->guards) {
+    work->lost = lost;
+    *again = true;
+    return VXM_OK;
+  }
+  work->lost_parts = status == VXM_OK ? (int64_t)lost.count : 0;
+  vxm_lost_parts_free(&lost, work->context);
+  return status;
+}
+
+static vxm_status run_passes(vxm_repair_state *work, const vxm_soup *in, bool *again, vxm_error *error) {
+  bool changed;
+  vxm_status status = run_first(work, error);
+  if (status == VXM_OK)
+    status = run_until_quiet(work, error);
+  if (status == VXM_OK)
+    status = run_pass(work, vxm_pass_orientation, 0.85, &changed, error);
+  if (status == VXM_OK)
+    status = look_for_lost(work, in, again, error);
+  if (status != VXM_OK || *again)
+    return status;
+  if (work->track && work->options.max_change > 0)
+    status = vxm_provenance_refer(work->track, work->soup, error);
+  if (status == VXM_OK && work->track)
+    status = vxm_provenance_settle(work->track, work->soup, error);
+  if (status == VXM_OK)
+    status = run_further(work, error);
+  if (status == VXM_OK && work->divides)
+    status = vxm_pass_bodies(work, &changed, error);
+  if (status == VXM_OK)
+    count_turned(work);
+  return status;
+}
+
+static bool keeps_account(const vxm_repair_options *options) {
+  return options->part_changes || options->max_change > 0 || options->intersections;
+}
+
+/** Gives the faces of the copy their parts where nothing else does. */
+static vxm_status name_guarded(vxm_repair_state *work, const vxm_soup *in, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  if (!work->guards || work->track)
+    return status;
+  work->soup->face_parts =
+      vxm_repair_state_scratch(work, in->face_count, sizeof *work->soup->face_parts, &status, error);
+  for (size_t f = 0; status == VXM_OK && f < in->face_count; f++)
+    work->soup->face_parts[f] = work->lost.face_part[f];
+  return status;
+}
+
+static vxm_status repair_copy(vxm_repair_state *work, const vxm_soup *in, bool *again, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  size_t vertices = work->soup->vertex_count;
+  work->gone = vxm_repair_state_scratch(work, vertices, sizeof *work->gone, &status, error);
+  if (work->gone)
+    work->used = vxm_repair_state_scratch(work, vertices, sizeof *work->used, &status, error);
+  if (work->used && keeps_account(&work->options))
+    status = vxm_provenance_create(&work->track, work->soup, in, error);
+  if (work->used && status == VXM_OK)
+    status = name_guarded(work, in, error);
+  if (work->used && status == VXM_OK)
+    status = run_passes(work, in, again, error);
+  if (status == VXM_OK && !*again && work->track)
+    status = vxm_provenance_finish(work->track, work->soup, work->options.max_change, error);
+  if (status == VXM_OK && !*again && work->options.intersections)
+    status = vxm_provenance_count_crossings(work->track, work->soup, work->crossings, error);
+  if (!work->track && work->soup->face_parts) { /* they were for the guard alone */
+    vxm_free(work->context, work->soup->face_parts);
+    work->soup->face_parts = NULL;
+  }
+  vxm_repair_state_touch(work);
+  vxm_provenance_destroy(work->track);
+  vxm_free(work->context, work->turned);
+  vxm_free(work->context, work->used);
+  vxm_free(work->context, work->gone);
+  return status;
+}
+
+static void list_passes(vxm_repair_report *report, const vxm_repair_state *work) {
+  report->nonorientable_patches = work->nonorientable;
+  report->open_parts = work->open_parts;
+  report->unfilled_holes = work->unfilled;
+  report->fanned_holes = work->fanned;
+  report->ununited_parts = work->ununited;
+  report->self_intersections_before = work->crossings[0];
+  report->self_intersections_after = work->crossings[1];
+  report->unparted_vertices = work->together;
+  report->lost_parts = work->lost_parts;
+  report->shared_faces = work->options.level == VXM_LEVEL_CLEAN ? work->shared : 0;
+  for (size_t i = 0; i < work->soup->part_count; i++) {
+    const vxm_part_change *part = &work->soup->part_changes[i];
+    report->moved = fmax(report->moved, part->moved);
+    report->opened_parts += part->before.closed && part->after.faces > 0 && !part->after.closed;
+  }
+  report->pass_count = VXM_PASS_COUNT;
+  for (int pass = 0; pass < VXM_PASS_COUNT; pass++) {
+    report->passes[pass].pass = names[pass];
+    report->passes[pass].count = work->counts[pass];
+  }
+}
+
+/** Repairs a copy; after a failure there is none. Where that would lose a part it is done once more, with
+ * that one guarded. */
+static vxm_status repair(vxm_repair_state *work, const vxm_soup *in, const vxm_repair_options *options,
+                         vxm_error *error) {
+  const bool divides = work->divides;
+  bool again = false;
+  vxm_lost_parts lost = {0};
+  vxm_status status;
+  do {
+    *work = (vxm_repair_state){
+        .context = in->context, .divides = divides, .guards = again, .lost = lost, .crossings = {-1, -1}};
+    again = false;
+    status = vxm_repair_check(&work->options, options, error);
+    if (status == VXM_OK)
+      status = vxm_soup_copy(&work->soup, in, error);
+    if (status == VXM_OK)
+      status = repair_copy(work, in, &again, error);
+    lost = work->lost;
+    if (status != VXM_OK || again)
+      vxm_soup_destroy(work->soup);
+  } while (status == VXM_OK && again);
+  vxm_lost_parts_free(&lost, in->context);
+  work->lost = lost;
+  if (status != VXM_OK)
+    work->soup = NULL;
+  return status;
+}
+
+/** `*shared` becomes the number of faces that repeat others and stayed, at the level clean. */
+static vxm_status run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
+                      const vxm_repair_options *options, bool divides, int64_t *shared, vxm_error *error) {
+  *out = NULL;
+  vxm_repair_report made = {0};
+  vxm_repair_state work = {.divides = divides};
+  vxm_status status = report ? vxm_soup_census(&made.before, in, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = repair(&work, in, options, error);
+  if (status == VXM_OK && report)
+    status = vxm_soup_census(&made.after, work.soup, error);
+  if (status == VXM_OK)
+    list_passes(&made, &work);
+  else
+    vxm_soup_destroy(work.soup);
+  if (report)
+    *report = status == VXM_OK ? made : (vxm_repair_report){0};
+  *out = status == VXM_OK ? work.soup : NULL;
+  *shared = made.shared_faces;
+  return status;
+}
+
+vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
+                          const vxm_repair_options *options, vxm_error *error) {
+  int64_t shared;
+  return run(out, report, in, options, false, &shared, error);
+}
+
+vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
+                              const vxm_repair_options *options, vxm_error *error) {
+  int64_t shared;
+  vxm_repair_options apart = VXM_REPAIR_OPTIONS_INIT;
+  if (options)
+    apart = *options;
+  vxm_status status = run(out, report, in, options, !apart.keep_orientation, &shared, error);
+  if (status != VXM_OK || shared == 0 || apart.keep_orientation)
+    return status;
+  vxm_soup_destroy(*out);
+  apart.level = VXM_LEVEL_MANIFOLD;
+  return run(out, report, in, &apart, true, &shared, error);
+}
+
+vxm_status vxm_repair_try(vxm_pass_finding findings[VXM_PASS_COUNT], const vxm_soup *in,
+                          const vxm_repair_options *options, vxm_error *error) {
+  vxm_repair_state work = {0};
+  vxm_status status = repair(&work, in, options, error);
+  for (int pass = 0; pass < VXM_PASS_COUNT && status == VXM_OK; pass++) {
+    findings[pass] = work.firsts[pass];
+    findings[pass].pass = names[pass];
+    findings[pass].count = work.counts[pass];
+  }
+  vxm_soup_destroy(work.soup);
+  return status;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Faces that edges connect, and whether they are closed. */
+#ifndef VXM_REPAIR_STATE_EDGE_GROUPS_H
+#define VXM_REPAIR_STATE_EDGE_GROUPS_H
+
+#include "repair/state/repair_state.h"
+
+/** What the edges of a group tell. */
+typedef struct vxm_edge_group {
+  bool closed;   /**< every edge has an even number of sides */
+  bool balanced; /**< as many sides run along every edge one way as the other: how often the faces wind round
+                    a point is a whole number, and it changes at the faces alone */
+  bool manifold; /**< no edge has more than two sides */
+} vxm_edge_group;
+
+/** The faces of a soup by group: those that share edges, however many faces an edge has. Faces without an
+ * edge are groups of their own, and closed. */
+typedef struct vxm_edge_groups {
+  size_t *sides;   /**< per corner: its edge (vxm_halfedges_find) */
+  size_t *of_face; /**< per face: its group */
+  vxm_edge_group *groups;
+  size_t count;
+} vxm_edge_groups;
+
+/** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; the groups are to be freed
+ * in any case */
+vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *work, vxm_error *error);
+void vxm_edge_groups_free(vxm_edge_groups *groups, vxm_context *context);
+
+/** The representative of a set, with path halving; `parent` of a new set is itself. */
+static inline size_t vxm_set_of(size_t *parent, size_t member) {
+  while (parent[member] != member)
+    member = parent[member] = parent[parent[member]];
+  return member;
+}
+
+#endif

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What the passes of a repair work on, and what they share. */
+#ifndef VXM_REPAIR_STATE_REPAIR_STATE_H
+#define VXM_REPAIR_STATE_REPAIR_STATE_H
+
+#include "mesh/edges.h"
+#include "mesh/unit_scale.h"
+#include "repair/state/lost_parts.h"
+#include "repair/state/provenance.h"
+
+typedef enum vxm_pass {
+  VXM_PASS_ROUNDING = 0,
+  VXM_PASS_NONFINITE,
+  VXM_PASS_EXACT_WELD,
+  VXM_PASS_TOLERANT_WELD,
+  VXM_PASS_REPEATED_CORNERS,
+  VXM_PASS_ZERO_AREA,
+  VXM_PASS_DUPLICATES,
+  VXM_PASS_OPPOSITE_DUPLICATES,
+  VXM_PASS_ORIENTATION,
+  VXM_PASS_WRAP,
+  VXM_PASS_SEPARATION,
+  VXM_PASS_CLOSING,
+  VXM_PASS_SMALL_PARTS,
+  VXM_PASS_UNION,
+  VXM_PASS_APART,
+  VXM_PASS_UNUSED,
+  VXM_PASS_COUNT
+} vxm_pass;
+
+/** What a pass would change, or has changed. */
+typedef struct vxm_pass_finding {
+  const char *pass;
+  int64_t count;
+  int64_t element; /**< of the first one: the number that a vertex or face came in with; -1 = not known */
+  bool placed;     /**< `at` is set */
+  double at[3];    /**< where the first one is */
+} vxm_pass_finding;
+
+/** What has become of a face. */
+enum vxm_turned {
+  VXM_TURNED = 1, /**< it runs the other way than when it came in */
+  VXM_ADDED = 2   /**< it did not come in */
+};
+
+/** A soup under repair. Vertices keep their numbers until the last pass removes those that are not used. */
+typedef struct vxm_repair_state {
+  vxm_soup *soup;
+  vxm_context *context;
+  vxm_repair_options options;
+  bool divides;    /**< bodies that share faces, edges or vertices each get their own in the end */
+  uint8_t *gone;   /**< vertex_count; 1 = removed or merged by a pass that counted it */
+  uint8_t *used;   /**< vertex_count; scratch of vxm_repair_state_extent */
+  uint8_t *turned; /**< face_count, or NULL as long as no face was turned: see vxm_turned */
+  bool has_edges;
+  vxm_edges edges; /**< of the present faces, if has_edges */
+  size_t patches;  /**< into how many the edges of the present faces join them, if none has more than two
+                      sides; 0 = not known */
+  int64_t counts[VXM_PASS_COUNT];
+  vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
+  bool renumbered;                         /**< faces have other numbers than they came in with */
+  int64_t nonorientable;                   /**< patches, in the last pass of orientation */
+  int64_t shared;                          /**< repeated faces that the last pass of duplicates left */
+  int64_t open_parts;                      /**< that the last pass of closing left open */
+  int64_t unfilled;                        /**< holes that were to be filled and could not be */
+  int64_t fanned;                          /**< holes that a module left to fans */
+  int64_t ununited;      /**< parts that were to be united and still cut through themselves or others */
+  int64_t crossings[2];  /**< self-intersections before and after, or -1 */
+  int64_t together;      /**< vertices that were to be moved apart and could not be */
+  vxm_provenance *track; /**< what becomes of the parts, or NULL */
+  vxm_lost_parts lost;   /**< parts that a first run would have lost; while soup->face_parts tells a face's
+                            part, no  kind of repeated face of theirs goes altogether */
+  bool guards;           /**< this run is to keep those */
+  int64_t lost_parts;    /**< that are lost for all that */
+} vxm_repair_state;
+
+/** Runs a pass, adds to the counts and says whether it changed anything. */
+typedef vxm_status (*vxm_pass_fn)(vxm_repair_state *work, bool *changed, vxm_error *error);
+
+vxm_status vxm_pass_rounding(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_nonfinite(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_exact_weld(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_tolerant_weld(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_repeated_corners(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_zero_area(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_duplicates(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_orientation(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_wrap(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_separation(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_closing(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_small_parts(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_union(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_reunion(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_apart(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_unused(vxm_repair_state *work, bool *changed, vxm_error *error);
+
+/** A block of scratch, zeroed; on failure NULL, with *status and *error set. */
+void *vxm_repair_state_scratch(vxm_repair_state *work, size_t count, size_t size, vxm_status *status,
+                               vxm_error *error);
+/** The edge map of the present faces, built if need be. */
+vxm_status vxm_repair_state_edges(vxm_repair_state *work, vxm_error *error);
+/** Which vertices are used (work->used), and the bounds of these. */
+void vxm_repair_state_extent(vxm_repair_state *work, vxm_extent *extent);
+/** Puts map[v] in the place of each corner v; vertices that lose their place are marked gone. Returns how
+ * many were not gone before. */
+int64_t vxm_repair_state_merge(vxm_repair_state *work, const uint32_t *map);
+/** Moves what is known of a face, beside its corners, to the number `to`, which is not above `from`. */
+void vxm_repair_state_renumber(vxm_repair_state *work, size_t from, size_t to);
+/** Takes out the faces marked in `remove` (face_count elements), keeping the order of the others. Returns how
+ * many. */
+int64_t vxm_repair_state_remove_faces(vxm_repair_state *work, const uint8_t *remove);
+/**
+ * Takes a soup that a module has made in the place of the present one, and frees both it and `origin`.
+ *
+ * @param origin face that each face of `soup` is (a piece of), or VXM_NO_FACE; NULL = none is
+ */
+vxm_status vxm_repair_state_adopt(vxm_repair_state *work, vxm_soup *soup, uint64_t *origin, vxm_error *error);
+/** What a position becomes where positions are to be held by 32-bit floats, else itself. */
+static inline double vxm_repair_state_round(const vxm_repair_state *work, double x) {
+  if (!work->options.single_precision)
+    return x;
+  volatile float rounded =
+      (float)x; /* gcc 12 at -O2 loses a plain conversion there and back when it vectorizes */
+  return (double)rounded;
+}
+/** Whether the level asks for this much. */
+static inline bool vxm_repair_state_reaches(const vxm_repair_state *work, vxm_level level) {
+  return work->options.level >= level;
+}
+/** Whether a face is of a part that a first run would have lost. */
+static inline bool vxm_repair_state_guards(const vxm_repair_state *work, size_t face) {
+  return work->guards && work->soup->face_parts && work->lost.lost[work->soup->face_parts[face]];
+}
+/** Says that a pass changes a vertex or a face, if it is the first one of the pass. */
+void vxm_repair_state_note_vertex(vxm_repair_state *work, vxm_pass pass, size_t vertex);
+void vxm_repair_state_note_face(vxm_repair_state *work, vxm_pass pass, size_t face);
+/** The first vertex with map[v] != v, if there is one. */
+void vxm_repair_state_note_merge(vxm_repair_state *work, vxm_pass pass, const uint32_t *map);
+/** The first face with a mark, if there is one. */
+void vxm_repair_state_note_marked(vxm_repair_state *work, vxm_pass pass, const uint8_t *marks);
+/** Says that faces have changed: what was derived from them is dropped. */
+void vxm_repair_state_touch(vxm_repair_state *work);
+
+/**
+ * Repairs a copy, and tells what there was to do, without a census.
+ *
+ * @return as vxm_repair_run
+ */
+vxm_status vxm_repair_try(vxm_pass_finding findings[VXM_PASS_COUNT], const vxm_soup *in,
+                          const vxm_repair_options *options, vxm_error *error);
+
+#endif

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/state/split.h"
+
+#include "mesh/sort.h"
+#include "mesh/triangulate.h"
+
+/** Arrays of faces, to take the place of a soup's. */
+typedef struct faces {
+  uint64_t *offsets;
+  uint32_t *indices, *tags, *parts;
+  uint8_t *turned;
+  size_t count, corners;
+} faces;
+
+/** Whether a corner of a polygon comes twice. */
+static bool touches_itself(const uint32_t *corner, size_t count, uint64_t *sorted) {
+  for (size_t i = 0; i < count; i++)
+    sorted[i] = corner[i];
+  vxm_sort_keys(sorted, sorted + count, count);
+  for (size_t i = 1; i < count; i++)
+    if (sorted[i] == sorted[i - 1])
+      return true;
+  return false;
+}
+
+static void put(faces *to, const vxm_repair_state *work, size_t face, const uint32_t *corner,
+                size_t corners) {
+  const vxm_soup *soup = work->soup;
+  for (size_t i = 0; i < corners; i++)
+    to->indices[to->corners + i] = corner[i];
+  if (to->tags)
+    to->tags[to->count] = soup->face_tags[face];
+  if (to->parts)
+    to->parts[to->count] = soup->face_parts[face];
+  if (to->turned)
+    to->turned[to->count] = work->turned[face];
+  to->corners += corners;
+  to->offsets[++to->count] = to->corners;
+}
+
+static vxm_status split(faces *to, const vxm_repair_state *work, const uint8_t *wanted, vxm_error *error) {
+  const vxm_soup *soup = work->soup;
+  vxm_triangulator tri;
+  vxm_triangulator_open(&tri, soup->context);
+  vxm_status status = VXM_OK;
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count), *triangles;
+    if (!wanted[f]) {
+      put(to, work, f, corner, count);
+      continue;
+    }
+    status = vxm_triangulate(&tri, soup->positions, corner, count, &triangles, error);
+    for (size_t t = 0; t + 2 < count && status == VXM_OK; t++)
+      if (vxm_face_has_three(triangles + 3 * t, 3, NULL))
+        put(to, work, f, triangles + 3 * t, 3);
+  }
+  vxm_triangulator_close(&tri);
+  return status;
+}
+
+static void drop(vxm_repair_state *work, faces *f) {
+  vxm_free(work->context, f->turned);
+  vxm_free(work->context, f->parts);
+  vxm_free(work->context, f->tags);
+  vxm_free(work->context, f->indices);
+  vxm_free(work->context, f->offsets);
+}
+
+/** Exchanges the faces that a work has and `f`. */
+static void exchange(vxm_repair_state *work, faces *f) {
+  vxm_soup *soup = work->soup;
+  faces old = {soup->offsets, soup->indices, soup->face_tags, soup->face_parts, work->turned, 0, 0};
+  soup->offsets = f->offsets;
+  soup->indices = f->indices;
+  soup->face_tags = f->tags;
+  soup->face_parts = f->parts;
+  work->turned = f->turned;
+  soup->face_count = soup->face_capacity = f->count;
+  soup->corner_count = soup->corner_capacity = f->corners;
+  *f = old;
+}
+
+static vxm_status split_marked(vxm_repair_state *work, const uint8_t *wanted, vxm_error *error) {
+  vxm_soup *soup = work->soup;
+  size_t count = soup->face_count, corners = soup->corner_count;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t n = (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
+    count += wanted[f] ? n - 3 : 0;
+    corners += wanted[f] ? 3 * (n - 2) - n : 0;
+  }
+  if (corners == soup->corner_count)
+    return VXM_OK;
+  faces made = {0};
+  vxm_status status = VXM_OK;
+  made.offsets = vxm_repair_state_scratch(work, count + 1, sizeof *made.offsets, &status, error);
+  if (status == VXM_OK)
+    made.indices = vxm_repair_state_scratch(work, corners, sizeof *made.indices, &status, error);
+  if (status == VXM_OK && soup->face_tags)
+    made.tags = vxm_repair_state_scratch(work, count, sizeof *made.tags, &status, error);
+  if (status == VXM_OK && soup->face_parts)
+    made.parts = vxm_repair_state_scratch(work, count, sizeof *made.parts, &status, error);
+  if (status == VXM_OK && work->turned)
+    made.turned = vxm_repair_state_scratch(work, count, sizeof *made.turned, &status, error);
+  if (status == VXM_OK)
+    status = split(&made, work, wanted, error);
+  if (status == VXM_OK) {
+    exchange(work, &made);
+    work->renumbered = true;
+    vxm_repair_state_touch(work);
+  }
+  drop(work, &made);
+  return status;
+}
+
+vxm_status vxm_split_polygons(vxm_repair_state *work, bool touching, vxm_error *error) {
+  const vxm_soup *soup = work->soup;
+  vxm_status status = VXM_OK;
+  size_t largest = 0;
+  for (size_t f = 0; f < soup->face_count; f++)
+    if (soup->offsets[f + 1] - soup->offsets[f] > largest)
+      largest = (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
+  if (largest <= 3)
+    return VXM_OK;
+  uint8_t *wanted = vxm_repair_state_scratch(work, soup->face_count, sizeof *wanted, &status, error);
+  uint64_t *sorted =
+      wanted ? vxm_repair_state_scratch(work, 2 * largest, sizeof *sorted, &status, error) : NULL;
+  for (size_t f = 0; sorted && f < soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, f, &count);
+    wanted[f] = count > 3 && (!touching || touches_itself(corner, count, sorted));
+  }
+  if (sorted)
+    status = split_marked(work, wanted, error);
+  vxm_free(work->context, sorted);
+  vxm_free(work->context, wanted);
+  return status;
+}

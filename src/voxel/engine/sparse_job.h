@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What is united in an octree, by parity along x. */
+#ifndef VXM_VOXEL_ENGINE_SPARSE_JOB_H
+#define VXM_VOXEL_ENGINE_SPARSE_JOB_H
+
+#include "voxel/parity/snapped_points.h"
+
+#include <stdatomic.h>
+
+typedef struct vxm_sparse_job {
+  const vxm_triangle_set *facets;
+  const vxm_snapped_points *placed;
+  size_t part_end;          /**< parts 0 to part_end - 1 */
+  unsigned roles;           /**< facets of these roles count, or-ed vxm_triangle_role */
+  atomic_uchar *has_voxels; /**< per part: set to 1 if it sets a voxel */
+} vxm_sparse_job;
+
+#endif

@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/fields/distance.h"
+#include "base/task_progress.h"
+#include "base/threads.h"
+#include "voxel/closest/distance_bvh.h"
+#include "voxel/surface/surface.h"
+
+#include <math.h>
+#include <string.h>
+
+/** What a worker has seen of the values, on a line of the cache of its own. */
+typedef struct tally {
+  _Alignas(64) int64_t exact, inside;
+  float least, greatest;
+} tally;
+
+typedef struct measure {
+  vxm_model *model;
+  const vxm_surface *surface;
+  const vxm_space *space;
+  int axes[3];            /**< of the values: the one that varies fastest, the next, the slices */
+  int64_t dims[3];        /**< in that order */
+  double side;            /**< the longest of a voxel, model units: lengths are counted in it */
+  double band;            /**< INFINITY = none */
+  float beyond[VXM_TILE]; /**< values beyond it */
+  bool is_signed;
+  double (*places)[3]; /**< of the vertices, while the tree is made */
+  vxm_distance_bvh *nearest;
+  vxm_distance_bvh_tile_fn *find;
+  vxm_search **searches; /**< of each worker */
+  double *squares;       /**< VXM_TILE_POINTS for each worker */
+  vxm_window solid;      /**< its words NULL without a sign */
+  float *values;         /**< of the slices at hand */
+  int64_t begin, end;    /**< these slices */
+  int64_t across, down;  /**< tiles in a row, and rows of them in a slice */
+  tally *tallies;
+  vxm_task_progress watch;
+} measure;
+
+/** The side of a voxel that a band is counted in. */
+static double longest_side(const vxm_space *space) {
+  const double *size = space->voxel_size;
+  return fmax(fmax(size[0], size[1]), size[2]);
+}
+
+float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space) {
+  return (float)((options->band > 0 ? options->band : INFINITY) * longest_side(space));
+}
+
+static measure measure_of(vxm_model *model, const vxm_surface *surface, const vxm_space *space,
+                          vxm_layout layout, const vxm_distance_options *options) {
+  measure m = {.model = model,
+               .surface = surface,
+               .space = space,
+               .axes = {layout.fast, layout.middle, layout.slow},
+               .side = longest_side(space),
+               .band = options->band > 0 ? options->band : INFINITY,
+               .is_signed = !options->is_unsigned,
+               .find = vxm_distance_bvh_tile_best()};
+  for (int a = 0; a < 3; a++)
+    m.dims[a] = space->dims[m.axes[a]];
+  for (int i = 0; i < VXM_TILE; i++)
+    m.beyond[i] = vxm_distance_limit(options, space);
+  m.across = (m.dims[0] + VXM_TILE - 1) / VXM_TILE;
+  m.down = (m.dims[1] + VXM_TILE - 1) / VXM_TILE;
+  return m;
+}
+
+/* ---- Triangles ---- */
+
+enum { PLACE_TASKS = 64 };
+
+static void place_vertices(size_t task, int worker, void *payload) {
+  (void)worker;
+  const measure *m = payload;
+  const vxm_soup *soup = m->surface->soup;
+  size_t end = vxm_slice_begin(soup->vertex_count, PLACE_TASKS, task + 1);
+  for (size_t v = vxm_slice_begin(soup->vertex_count, PLACE_TASKS, task); v < end; v++)
+    for (int a = 0; a < 3; a++)
+      m->places[v][a] = (vxm_position(soup, v)[a] - m->space->origin[a]) / m->side;
+}
+
+static void corners_of(double out[3][3], size_t triangle, const void *payload) {
+  const measure *m = payload;
+  for (size_t c = 0; c < 3; c++)
+    memcpy(out[c], m->places[m->surface->corners[3 * triangle + c]], sizeof out[c]);
+}
+
+static vxm_status make_nearest(measure *m, vxm_error *error) {
+  vxm_context *context = m->model->context;
+  vxm_error local = VXM_ERROR_INIT;
+  m->places = vxm_alloc(context, m->surface->soup->vertex_count, sizeof *m->places, &local);
+  if (m->places) {
+    vxm_parallel(context, PLACE_TASKS, place_vertices, m);
+    vxm_distance_bvh_create(&m->nearest, context, m->surface->triangle_count, corners_of, m, &local);
+  }
+  vxm_free(context, m->places);
+  m->places = NULL;
+  if (local.code != VXM_OK && error)
+    *error = local;
+  return local.code;
+}
+
+/* ---- Values ---- */
+
+static void see(tally *t, float value) {
+  t->least = value < t->least ? value : t->least;
+  t->greatest = value > t->greatest ? value : t->greatest;
+}
+
+/** Some values in a row from squares that are `stride` apart. */
+static void finish_row(const measure *m, float *values, const double *squares, ptrdiff_t stride,
+                       uint64_t inside, int count, tally *t) {
+  for (int i = 0; i < count; i++) {
+    double distance = sqrt(squares[i * stride]);
+    t->exact += distance < m->band;
+    float value = (float)((distance < m->band ? distance : m->band) * m->side);
+    values[i] = inside >> i & 1 ? -value : value;
+    see(t, values[i]);
+  }
+}
+
+/** Some beyond the band. */
+static void fill_row(const measure *m, float *values, uint64_t inside, int count, tally *t) {
+  const float most = m->beyond[0];
+  memcpy(values, m->beyond, (size_t)count * sizeof *values);
+  for (uint64_t bits = inside; bits; bits &= bits - 1)
+    values[__builtin_ctzll(bits)] = -most;
+  if (inside)
+    see(t, -most);
+  if (inside != vxm_low_bits((unsigned)count))
+    see(t, most);
+}
+
+static vxm_point_block tile_of(const measure *m, size_t task) {
+  vxm_point_block tile = {.most = m->band};
+  int64_t row = (int64_t)task / m->across;
+  const int64_t first[3] = {(int64_t)task % m->across * VXM_TILE, row % m->down * VXM_TILE,
+                            m->begin + row / m->down * VXM_TILE};
+  const int64_t end[3] = {m->dims[0], m->dims[1], m->end};
+  for (int a = 0; a < 3; a++) {
+    tile.first[m->axes[a]] = first[a];
+    tile.count[m->axes[a]] = (int)vxm_min(end[a] - first[a], VXM_TILE);
+    tile.step[a] = m->space->voxel_size[a] / m->side;
+  }
+  return tile;
+}
+
+/** Tiles always lie along x, y and z, whatever the order of the values, which then makes no difference. */
+static void finish_tile(const measure *m, const vxm_point_block *tile, const double *squares, tally *t) {
+  static const ptrdiff_t strides[3] = {1, VXM_TILE, (ptrdiff_t)VXM_TILE * VXM_TILE};
+  const int fast = m->axes[0], middle = m->axes[1], slow = m->axes[2], count = tile->count[fast];
+  const int64_t at = tile->first[fast];
+  for (int64_t k = tile->first[slow]; k < tile->first[slow] + tile->count[slow]; k++)
+    for (int64_t j = tile->first[middle]; j < tile->first[middle] + tile->count[middle]; j++) {
+      float *values = m->values + ((k - m->begin) * m->dims[1] + j) * m->dims[0] + at;
+      uint64_t inside = m->solid.words ? vxm_window_row(&m->solid, j, k)[at / 64] >> (at % 64) : 0;
+      inside &= vxm_low_bits((unsigned)count);
+      t->inside += vxm_popcount(inside);
+      ptrdiff_t row = (k - tile->first[slow]) * strides[slow] + (j - tile->first[middle]) * strides[middle];
+      if (squares)
+        finish_row(m, values, squares + row, strides[fast], inside, count, t);
+      else
+        fill_row(m, values, inside, count, t);
+    }
+}
+
+static void measure_tile(size_t task, int worker, void *payload) {
+  measure *m = payload;
+  if (vxm_task_progress_stopped(&m->watch, worker))
+    return;
+  vxm_point_block tile = tile_of(m, task);
+  double *squares = m->squares + (size_t)worker * VXM_TILE_POINTS;
+  bool is_met = m->find(m->searches[worker], squares, &tile);
+  finish_tile(m, &tile, is_met ? squares : NULL, &m->tallies[worker]);
+  vxm_task_progress_step(&m->watch);
+}
+
+static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  m->begin = begin;
+  m->end = end;
+  if (m->is_signed) {
+    m->solid.begin = begin;
+    m->solid.end = end;
+    status = vxm_model_fill(m->model, &m->solid, error);
+  }
+  if (status != VXM_OK)
+    return status;
+  size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_TILE - 1) / VXM_TILE));
+  vxm_task_progress_start(&m->watch, m->model->context, "measuring distances", tiles, error);
+  vxm_parallel(m->model->context, tiles, measure_tile, m);
+  return vxm_task_progress_end(&m->watch);
+}
+
+/* ---- Windows ---- */
+
+static vxm_status measure_windows(measure *m, const vxm_field_target *target, const vxm_field_plan *plan,
+                                  vxm_error *error) {
+  int64_t length = m->dims[2], slices = plan->slices;
+  if (slices > VXM_TILE) /* whole tiles cost less */
+    slices -= slices % VXM_TILE;
+  size_t slice = (size_t)(m->dims[0] * m->dims[1]);
+  float *block = m->values;
+  vxm_status status = VXM_OK;
+  for (int64_t begin = 0, end; begin < length && status == VXM_OK; begin = end) {
+    end = vxm_min(begin + slices, length);
+    m->values = target->whole ? (float *)target->whole + (size_t)begin * slice : block;
+    status = measure_slices(m, begin, end, error);
+    if (status == VXM_OK && !target->whole)
+      status = target->put(target->payload, m->values, begin, end, error);
+  }
+  return status;
+}
+
+static void sum_up(vxm_distance_report *report, const measure *m, int workers) {
+  int64_t inside = 0;
+  *report = (vxm_distance_report){.least = INFINITY, .greatest = -INFINITY};
+  for (int w = 0; w < workers; w++) {
+    report->exact += m->tallies[w].exact;
+    report->least = fmin(report->least, (double)m->tallies[w].least);
+    report->greatest = fmax(report->greatest, (double)m->tallies[w].greatest);
+    inside += m->tallies[w].inside;
+  }
+  if (m->is_signed)
+    vxm_model_end(m->model, &report->voxelize, inside, 0);
+}
+
+/** What the workers have of their own. */
+static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
+  vxm_context *context = m->model->context;
+  vxm_error local = VXM_ERROR_INIT;
+  m->searches = vxm_calloc(context, (size_t)workers, sizeof *m->searches, &local);
+  m->squares = vxm_alloc(context, (size_t)workers * VXM_TILE_POINTS, sizeof *m->squares, &local);
+  m->tallies = vxm_calloc(context, (size_t)workers, sizeof *m->tallies, &local);
+  for (int w = 0; w < workers && local.code == VXM_OK; w++) {
+    m->tallies[w] = (tally){.least = INFINITY, .greatest = -INFINITY};
+    vxm_search_create(&m->searches[w], m->nearest, &local);
+  }
+  if (local.code != VXM_OK && error)
+    *error = local;
+  return local.code;
+}
+
+static void free_workers(measure *m, int workers) {
+  vxm_context *context = m->model->context;
+  for (int w = 0; w < workers && m->searches; w++)
+    vxm_search_destroy(m->searches[w]);
+  vxm_free(context, m->searches);
+  vxm_free(context, m->squares);
+  vxm_free(context, m->tallies);
+}
+
+/** With all but the surface at hand. */
+static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_distance_report *report,
+                              const vxm_space *space, const vxm_field_plan *plan, vxm_error *error) {
+  vxm_context *context = m->model->context;
+  int workers = vxm_context_threads(context);
+  size_t values = target->whole ? 0 : (size_t)(m->dims[0] * m->dims[1]);
+  vxm_error local = VXM_ERROR_INIT;
+  m->solid = plan->bits;
+  float *block = m->values = vxm_alloc(context, (size_t)plan->slices * values, sizeof *block, &local);
+  if (m->is_signed)
+    m->solid.words =
+        vxm_alloc(context, (size_t)plan->slices * m->solid.slice_words, sizeof *m->solid.words, &local);
+  vxm_status status = local.code == VXM_OK ? make_workers(m, workers, &local) : local.code;
+  if (status == VXM_OK && m->is_signed)
+    status = vxm_model_begin(m->model, space, NULL, NULL, &local);
+  if (status == VXM_OK)
+    status = measure_windows(m, target, plan, &local);
+  if (status == VXM_OK)
+    sum_up(report, m, workers);
+  free_workers(m, workers);
+  vxm_free(context, m->solid.words);
+  vxm_free(context, block);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
+                             vxm_layout layout, bool is_whole, const vxm_distance_options *options,
+                             vxm_error *error) {
+  const vxm_soup *soup = model->shape.soup;
+  size_t triangles;
+  uint64_t held = vxm_surface_held_bytes(soup, &triangles);
+  uint64_t workers = (uint64_t)vxm_context_threads(model->context);
+  uint64_t each = vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double) +
+                  sizeof(tally) + sizeof(void *);
+  uint64_t fixed =
+      held + vxm_distance_bvh_bytes(triangles) + soup->vertex_count * sizeof(double[3]) + workers * each;
+  uint64_t values = (uint64_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(float);
+  return vxm_field_plan_of(out, model, space, layout, options->is_unsigned ? 0 : 1, fixed,
+                           is_whole ? 0 : values, error);
+}
+
+vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report *report, vxm_model *model,
+                            const vxm_space *space, const vxm_distance_options *options, vxm_error *error) {
+  vxm_field_plan plan;
+  vxm_status status =
+      vxm_distance_plan(&plan, model, space, target->layout, target->whole != NULL, options, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_surface *surface;
+  vxm_lattice lattice = vxm_lattice_of(space);
+  status = vxm_surface_create(&surface, model->shape.soup, &lattice, NULL, error);
+  if (status != VXM_OK)
+    return status;
+  measure m = measure_of(model, surface, space, target->layout, options);
+  status = make_nearest(&m, error);
+  if (status == VXM_OK)
+    status = run_planned(&m, target, report, space, &plan, error);
+  vxm_distance_bvh_destroy(m.nearest);
+  vxm_surface_destroy(surface);
+  return status;
+}

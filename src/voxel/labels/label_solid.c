@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/labels/label_solid.h"
+#include "base/hash.h"
+#include "voxel/fields/field.h"
+
+#include <string.h>
+
+/* ---- The faces of a piece as a soup of their own ---- */
+
+static size_t corners_of(const vxm_label_components *pieces, const vxm_label_component *piece) {
+  size_t sum = 0;
+  for (size_t i = piece->first_face; i < piece->face_end; i++) {
+    size_t n;
+    vxm_face(pieces->soup, pieces->faces[i], &n);
+    sum += n;
+  }
+  return sum;
+}
+
+/** The least power of two that leaves half of the slots free. */
+static size_t slots_for(size_t corners) {
+  size_t count = 64;
+  while (count < 2 * corners)
+    count *= 2;
+  return count;
+}
+
+static vxm_status clear_desk(vxm_label_component_desk *desk, vxm_context *context, size_t faces,
+                             size_t corners, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  if (!desk->soup)
+    status = vxm_soup_create(&desk->soup, context, "piece", error);
+  if (status == VXM_OK)
+    status = vxm_soup_reserve(desk->soup, 0, faces, corners, error);
+  if (status == VXM_OK)
+    status =
+        vxm_grow(context, (void **)&desk->vertex, &desk->vertex_room, corners, sizeof *desk->vertex, error);
+  if (status == VXM_OK)
+    status = vxm_grow(context, (void **)&desk->slots, &desk->slot_room, slots_for(corners),
+                      sizeof *desk->slots, error);
+  if (status != VXM_OK)
+    return status;
+  memset(desk->slots, 0, slots_for(corners) * sizeof *desk->slots);
+  desk->soup->vertex_count = desk->soup->face_count = desk->soup->corner_count = 0;
+  return VXM_OK;
+}
+
+/** The place of a vertex in the soup, where it is put if it is not there. */
+static vxm_status take_vertex(vxm_label_component_desk *desk, const vxm_soup *from, uint32_t vertex,
+                              size_t mask, uint32_t *out, vxm_error *error) {
+  size_t slot = (size_t)vxm_mix(vertex) & mask;
+  for (; desk->slots[slot]; slot = (slot + 1) & mask) {
+    *out = desk->slots[slot] - 1;
+    if (desk->vertex[*out] == vertex)
+      return VXM_OK;
+  }
+  const double *p = vxm_position(from, vertex);
+  *out = (uint32_t)desk->soup->vertex_count;
+  desk->vertex[*out] = vertex;
+  desk->slots[slot] = *out + 1;
+  return vxm_soup_add_vertex(desk->soup, p[0], p[1], p[2], error);
+}
+
+static vxm_status gather_faces(vxm_label_component_desk *desk, const vxm_label_components *pieces,
+                               const vxm_label_component *piece, vxm_error *error) {
+  size_t corners = corners_of(pieces, piece), mask = slots_for(corners) - 1;
+  vxm_status status = clear_desk(desk, pieces->context, piece->face_end - piece->first_face, corners, error);
+  vxm_soup *soup = desk->soup;
+  for (size_t i = piece->first_face; i < piece->face_end && status == VXM_OK; i++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(pieces->soup, pieces->faces[i], &n);
+    for (size_t c = 0; c < n && status == VXM_OK; c++)
+      status = take_vertex(desk, pieces->soup, corner[c], mask, &soup->indices[soup->corner_count++], error);
+    soup->offsets[++soup->face_count] = soup->corner_count;
+  }
+  return status;
+}
+
+void vxm_label_component_desk_destroy(vxm_label_component_desk *desk, vxm_context *context) {
+  vxm_soup_destroy(desk->soup);
+  vxm_free(context, desk->vertex);
+  vxm_free(context, desk->slots);
+  *desk = (vxm_label_component_desk){.soup = NULL};
+}
+
+uint64_t vxm_label_component_bytes(const vxm_label_components *pieces, const vxm_label_component *piece) {
+  enum { BYTES = 256 }; /* of all the arrays, for each corner */
+  return corners_of(pieces, piece) * BYTES;
+}
+
+/* ---- Its solid ---- */
+
+vxm_space vxm_label_component_space(const vxm_label_component *piece, const vxm_space *whole) {
+  vxm_space space = *whole;
+  for (int a = 0; a < 3; a++) {
+    space.origin[a] += (double)piece->begin[a] * space.voxel_size[a];
+    space.dims[a] = piece->end[a] - piece->begin[a];
+  }
+  return space;
+}
+
+/**
+ * Whether one component stays open: a sheet, or a patch of a surface whose other patches have other labels.
+ * It bounds nothing, while to find out how it is turned would cost more than all else. Several may be panels
+ * of one body, on which the voters agree.
+ */
+static bool has_lone_sheet(const vxm_model *model) {
+  const vxm_split *split = &model->shape.facets.split;
+  const vxm_voxelize_options *options = &model->options;
+  if (options->method != VXM_METHOD_VOTE || options->vote != VXM_VOTE_AUTO ||
+      options->parts == VXM_PARTS_WHOLE)
+    return false;
+  return split->component_count - split->cavity_count - split->kind_end[VXM_PART_CAPPED] == 1;
+}
+
+/** Fills slices with the parts that are closed, or closed by caps. */
+static vxm_status fill_without_sheets(vxm_model *model, const vxm_window *window, vxm_error *error) {
+  size_t end = model->shape.facets.split.kind_end[VXM_PART_CAPPED];
+  if (end > 0)
+    return vxm_voxel_pass_unite(&model->run, window, window->layout.fast, 0, end,
+                                VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
+  memset(window->words, 0,
+         window->slice_words * (size_t)(window->end - window->begin) * sizeof *window->words);
+  return VXM_OK;
+}
+
+static vxm_status fill(vxm_model *model, const vxm_window *window, const vxm_lattice *lattice, bool at_once,
+                       vxm_error *error) {
+  vxm_field_plan plan = {.slices = window->slow_dim};
+  bool is_without = has_lone_sheet(model);
+  vxm_status status = VXM_OK;
+  if (!at_once)
+    status = vxm_field_plan_of(&plan, model, &lattice->space, window->layout, 1, 0, 0, error);
+  if (status == VXM_OK)
+    status = vxm_model_begin_on(model, lattice, NULL, NULL, error);
+  vxm_window part = *window;
+  for (int64_t begin = 0; begin < window->slow_dim && status == VXM_OK; begin = part.end) {
+    part.begin = begin;
+    part.end = vxm_min(begin + plan.slices, window->slow_dim);
+    part.words = window->words + (size_t)begin * window->slice_words;
+    status = is_without ? fill_without_sheets(model, &part, error) : vxm_model_fill(model, &part, error);
+  }
+  return status;
+}
+
+vxm_status vxm_label_component_fill(vxm_label_component_desk *desk, const vxm_window *window,
+                                    const vxm_label_components *pieces, const vxm_label_component *piece,
+                                    const vxm_voxelize_options *options, const vxm_lattice *lattice,
+                                    bool at_once, vxm_error *error) {
+  vxm_voxelize_options solid = *options;
+  solid.mode = VXM_MODE_SOLID;
+  solid.confidence = false;
+  solid.engine = NULL; /* pieces are too small for what an engine costs to start */
+  vxm_lattice own = *lattice;
+  own.space = vxm_label_component_space(piece, &lattice->space);
+  vxm_model *model = NULL;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = gather_faces(desk, pieces, piece, &local);
+  if (status == VXM_OK)
+    status = vxm_model_make(&model, desk->soup, &solid, &local);
+  if (status == VXM_OK)
+    status = fill(model, window, &own, at_once, &local);
+  vxm_model_destroy(model);
+  if (status == VXM_ERROR_EMPTY) {
+    memset(window->words, 0, window->slice_words * (size_t)window->slow_dim * sizeof *window->words);
+    return VXM_OK;
+  }
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}

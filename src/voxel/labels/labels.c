@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/labels/labels.h"
+#include "base/threads.h"
+#include "grid/sum.h"
+#include "voxel/fields/field.h"
+#include "voxel/labels/label_overlaps.h"
+
+#include <string.h>
+
+typedef struct labels {
+  vxm_context *context;
+  vxm_model *model;
+  vxm_face_labels *labelling;
+  vxm_label_overlaps claims;
+  vxm_row_tile whole;            /**< all rows and slices */
+  atomic_int_fast64_t unclaimed; /**< set voxels that no label claims */
+  atomic_int_fast64_t *counts;   /**< of each label, the voxels that have it */
+  vxm_task_progress watch;
+} labels;
+
+static size_t grid_words(const labels *l) {
+  return l->claims.set.slice_words * (size_t)l->claims.set.slow_dim;
+}
+
+/* ---- The voxels of the model ---- */
+
+static vxm_status fill_set(labels *l, const vxm_field_plan *plan, vxm_sum *sum, vxm_error *error) {
+  const vxm_space *space = &l->claims.lattice.space;
+  const vxm_window *set = &l->claims.set;
+  vxm_status status = vxm_model_begin(l->model, space, NULL, NULL, error);
+  vxm_window part = *set;
+  for (int64_t begin = 0; begin < set->slow_dim && status == VXM_OK; begin = part.end) {
+    part.begin = begin;
+    part.end = vxm_min(begin + plan->slices, set->slow_dim);
+    part.words = set->words + (size_t)begin * set->slice_words;
+    status = vxm_model_fill(l->model, &part, error);
+  }
+  *sum = vxm_sum_start(space);
+  if (status == VXM_OK)
+    vxm_sum_add(sum, l->context, set, NULL);
+  return status;
+}
+
+static void clear_tile(size_t task, int worker, void *payload) {
+  (void)worker;
+  const labels *l = payload;
+  vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
+  size_t count = (size_t)((tile.end[0] - tile.begin[0]) * l->claims.set.fast_dim);
+  for (int64_t slow = tile.begin[1]; slow < tile.end[1]; slow++)
+    memset(vxm_label_overlaps_row(&l->claims, tile.begin[0], slow), 0, count * sizeof *l->claims.values);
+}
+
+/* ---- What no label claims ---- */
+
+/** Leaves of the set voxels of a row those without a label; returns how many. */
+static int64_t leave_row(const vxm_label_overlaps *c, int64_t middle, int64_t slow) {
+  const uint16_t *values = vxm_label_overlaps_row(c, middle, slow);
+  uint64_t *words = vxm_window_row(&c->set, middle, slow);
+  int64_t left = 0;
+  for (size_t w = 0; w < c->set.row_words; w++) {
+    for (uint64_t bits = words[w]; bits; bits &= bits - 1)
+      words[w] ^= values[64 * w + (size_t)__builtin_ctzll(bits)] ? bits & -bits : 0;
+    left += vxm_popcount(words[w]);
+  }
+  return left;
+}
+
+static void leave_tile(size_t task, int worker, void *payload) {
+  (void)worker;
+  labels *l = payload;
+  vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
+  int64_t left = 0;
+  for (int64_t slow = tile.begin[1]; slow < tile.end[1]; slow++)
+    for (int64_t middle = tile.begin[0]; middle < tile.end[0]; middle++)
+      left += leave_row(&l->claims, middle, slow);
+  atomic_fetch_add_explicit(&l->unclaimed, left, memory_order_relaxed);
+}
+
+static void settle_tile(size_t task, int worker, void *payload) {
+  static const int64_t nowhere[3] = {0, 0, 0};
+  labels *l = payload;
+  const vxm_label_overlaps *c = &l->claims;
+  if (vxm_task_progress_stopped(&l->watch, worker))
+    return;
+  vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
+  vxm_nearest_label award = {c->forest, &c->lattice.space, &c->set, nowhere, c->values, 0};
+  const int64_t begin[3] = {0, tile.begin[0], tile.begin[1]},
+                end[3] = {c->set.fast_dim, tile.end[0], tile.end[1]};
+  vxm_nearest_label_voxels(&award, begin, end);
+  vxm_task_progress_step(&l->watch);
+}
+
+static vxm_status settle_unclaimed(labels *l, vxm_error *error) {
+  size_t tiles = vxm_row_tiles_count(&l->whole);
+  vxm_parallel(l->context, tiles, leave_tile, l);
+  if (atomic_load_explicit(&l->unclaimed, memory_order_relaxed) == 0)
+    return VXM_OK;
+  vxm_status status = vxm_label_overlaps_need_forest(&l->claims, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_task_progress_start(&l->watch, l->context, "labelling", tiles, error);
+  vxm_parallel(l->context, tiles, settle_tile, l);
+  return vxm_task_progress_end(&l->watch);
+}
+
+/* ---- Counts ---- */
+
+static void count_tile(size_t task, int worker, void *payload) {
+  (void)worker;
+  labels *l = payload;
+  vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
+  for (int64_t slow = tile.begin[1]; slow < tile.end[1]; slow++) {
+    const uint16_t *at = vxm_label_overlaps_row(&l->claims, tile.begin[0], slow),
+                   *last = vxm_label_overlaps_row(&l->claims, tile.end[0], slow);
+    while (at < last) {
+      const uint16_t *run = at++;
+      while (at < last && *at == *run)
+        at++;
+      if (*run)
+        atomic_fetch_add_explicit(&l->counts[*run - 1], at - run, memory_order_relaxed);
+    }
+  }
+}
+
+static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
+  vxm_label_table *table = &l->labelling->table;
+  vxm_warnings *warnings = &l->model->warnings;
+  size_t empty = 0, first = 0;
+  vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), count_tile, l);
+  for (size_t label = table->count; label > 0; label--) {
+    table->voxels[label - 1] = atomic_load_explicit(&l->counts[label - 1], memory_order_relaxed);
+    empty += table->voxels[label - 1] == 0;
+    first = table->voxels[label - 1] == 0 ? label : first;
+  }
+  *report = (vxm_label_report){.labels = (int64_t)table->count};
+  report->unclaimed = atomic_load_explicit(&l->unclaimed, memory_order_relaxed);
+  for (size_t w = 0; w < grid_words(l); w++)
+    report->contested += vxm_popcount(l->claims.several[w]);
+  vxm_model_end(l->model, &report->voxelize, sum->count, sum->hash);
+  if (l->labelling->is_untagged)
+    vxm_warn(warnings, "the mesh names no groups or materials: all of it has one label, \"unnamed\"");
+  if (empty > 0 && sum->count > 0)
+    vxm_warn(warnings, "%zu of %zu labels have no voxel, the first of them label %zu, \"%.80s\"", empty,
+             table->count, first, vxm_label_table_name(table, first));
+}
+
+/* ---- All of it ---- */
+
+static vxm_status allocate(labels *l, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  l->claims.set.words = vxm_alloc(l->context, grid_words(l), sizeof *l->claims.set.words, &local);
+  l->claims.several = vxm_calloc(l->context, grid_words(l), sizeof *l->claims.several, &local);
+  l->counts = vxm_calloc(l->context, l->labelling->table.count, sizeof *l->counts, &local);
+  if (local.code != VXM_OK && error)
+    *error = local;
+  return local.code;
+}
+
+static vxm_status plan_slices(vxm_field_plan *plan, const labels *l, vxm_error *error) {
+  uint64_t fixed = 2 * (uint64_t)grid_words(l) * sizeof(uint64_t) + vxm_label_overlaps_bytes(&l->claims) +
+                   l->labelling->table.count * sizeof *l->counts;
+  return vxm_field_plan_of(plan, l->model, &l->claims.lattice.space, l->claims.set.layout, 1, fixed, 0,
+                           error);
+}
+
+static vxm_status run(labels *l, vxm_label_report *report, vxm_error *error) {
+  vxm_field_plan plan;
+  vxm_sum sum;
+  vxm_status status = vxm_label_overlaps_begin(&l->claims, error);
+  if (status == VXM_OK)
+    status = plan_slices(&plan, l, error);
+  if (status == VXM_OK)
+    status = allocate(l, error);
+  if (status == VXM_OK)
+    status = fill_set(l, &plan, &sum, error);
+  if (status == VXM_OK) {
+    vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), clear_tile, l);
+    status = vxm_label_overlaps_run(&l->claims, error);
+  }
+  if (status == VXM_OK)
+    status = settle_unclaimed(l, error);
+  if (status == VXM_OK)
+    sum_up(l, report, &sum);
+  return status;
+}
+
+static void destroy(labels *l) {
+  vxm_label_overlaps_end(&l->claims);
+  vxm_free(l->context, l->counts);
+  vxm_free(l->context, l->claims.several);
+  vxm_free(l->context, l->claims.set.words);
+  vxm_free(l->context, l);
+}
+
+vxm_status vxm_labels_run(uint16_t *values, vxm_layout layout, vxm_label_report *report, vxm_model *model,
+                          const vxm_space *space, vxm_face_labels *labelling, vxm_error *error) {
+  vxm_context *context = model->context;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_label_table_destroy(&model->labels);
+  labels *l = vxm_calloc(context, 1, sizeof *l, &local);
+  vxm_status status = local.code;
+  if (l) {
+    l->context = context;
+    l->model = model;
+    l->labelling = labelling;
+    l->whole.end[0] = space->dims[layout.middle];
+    l->whole.end[1] = space->dims[layout.slow];
+    vxm_label_overlaps *c = &l->claims;
+    c->context = c->pieces.context = context;
+    c->options = &model->options;
+    c->lattice = vxm_lattice_of(space);
+    c->labelling = labelling;
+    c->set = vxm_window_of(space, layout, 0, space->dims[layout.slow]);
+    c->values = values;
+    status = run(l, report, &local);
+    destroy(l);
+  }
+  if (status == VXM_OK) {
+    model->labels = labelling->table;
+    labelling->table = (vxm_label_table){.context = context};
+  } else if (error)
+    *error = local;
+  return status;
+}

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/labels/nearest_label.h"
+
+#include <math.h>
+
+enum {
+  BLOCK = 16, /**< voxels along an edge of the blocks to begin with: a part of a word */
+  CROWD = 256 /**< triangles looked at for a block; where there are more it is cut first */
+};
+
+typedef struct job {
+  const vxm_nearest_label *award;
+  double step[3];    /**< from one voxel to the next, in the order of the layout */
+  size_t row, plane; /**< values from one to the next */
+} job;
+
+/** Voxels of the box, in the order of the layout. */
+typedef struct voxels {
+  int64_t at[3], size[3];
+} voxels;
+
+/* ---- Voxels ---- */
+
+/** The asked voxels of a row, as bits. They lie within a word. */
+static uint64_t row_bits(const job *j, const voxels *v, int64_t middle, int64_t slow) {
+  uint64_t word = vxm_window_row(j->award->asked, middle, slow)[v->at[0] / 64];
+  return word >> (v->at[0] % 64) & vxm_low_bits((unsigned)v->size[0]);
+}
+
+static bool is_asked(const job *j, const voxels *v) {
+  for (int64_t slow = v->at[2]; slow < v->at[2] + v->size[2]; slow++)
+    for (int64_t middle = v->at[1]; middle < v->at[1] + v->size[1]; middle++)
+      if (row_bits(j, v, middle, slow))
+        return true;
+  return false;
+}
+
+static uint16_t *value_at(const job *j, int64_t fast, int64_t middle, int64_t slow) {
+  const int64_t *first = j->award->first;
+  return j->award->values + (size_t)(slow + first[2]) * j->plane + (size_t)(middle + first[1]) * j->row +
+         (size_t)(fast + first[0]);
+}
+
+/** Calls for each asked voxel; whether all calls returned true. Inlined with the function. */
+static inline __attribute__((always_inline)) bool
+each_value(const job *j, const voxels *v, bool (*visit)(uint16_t *value, void *payload), void *payload) {
+  for (int64_t slow = v->at[2]; slow < v->at[2] + v->size[2]; slow++)
+    for (int64_t middle = v->at[1]; middle < v->at[1] + v->size[1]; middle++) {
+      uint16_t *values = value_at(j, v->at[0], middle, slow);
+      for (uint64_t bits = row_bits(j, v, middle, slow); bits; bits &= bits - 1)
+        if (!visit(values + __builtin_ctzll(bits), payload))
+          return false;
+    }
+  return true;
+}
+
+static inline bool set_value(uint16_t *value, void *payload) {
+  *value = *(const uint16_t *)payload;
+  return true;
+}
+
+/** Whether the value is that of the first voxel. */
+static inline bool same_value(uint16_t *value, void *payload) {
+  uint16_t *first = payload;
+  *first = *first ? *first : *value;
+  return *first == *value;
+}
+
+static void give(const job *j, const voxels *v, uint32_t label) {
+  uint16_t value = (uint16_t)label;
+  each_value(j, v, set_value, &value);
+}
+
+/** One of the eighths; false if it is empty. */
+static bool eighth(voxels *out, const voxels *v, int number) {
+  for (int a = 0; a < 3; a++) {
+    int64_t half = (v->size[a] + 1) / 2;
+    bool is_upper = number >> a & 1;
+    out->at[a] = v->at[a] + (is_upper ? half : 0);
+    out->size[a] = is_upper ? v->size[a] - half : half;
+    if (out->size[a] == 0)
+      return false;
+  }
+  return true;
+}
+
+/* ---- Labels ---- */
+
+/** The voxels as points of the forest. */
+static vxm_bvh_block block_of(const job *j, const voxels *v) {
+  const vxm_layout *layout = &j->award->asked->layout;
+  const int axis[3] = {layout->fast, layout->middle, layout->slow};
+  vxm_bvh_block block;
+  double reach2 = 0;
+  for (int a = 0; a < 3; a++) {
+    double half = (double)(v->size[a] - 1) / 2 * j->step[a];
+    block.half[axis[a]] = half;
+    block.middle[axis[a]] = ((double)(v->at[a] + j->award->first[a]) + (double)v->size[a] / 2) * j->step[a];
+    reach2 += half * half;
+  }
+  block.reach = sqrt(reach2);
+  return block;
+}
+
+/** Triangles that may be the nearest to some voxels; of several labels. */
+typedef struct crowd {
+  size_t count;
+  vxm_near near[CROWD];
+} crowd;
+
+/** The nearest label of a crowd to a single point. */
+static uint32_t nearest_label(const job *j, const crowd *c, const double p[3]) {
+  float least = INFINITY;
+  uint32_t label = 0;
+  for (size_t i = 0; i < c->count; i++) {
+    float nearness = vxm_label_bvh_nearness(j->award->forest, c->near[i].triangle, p);
+    if (nearness > least || (nearness == least && c->near[i].label >= label))
+      continue;
+    least = nearness;
+    label = c->near[i].label;
+  }
+  return label;
+}
+
+/** Looks at a crowd from another point, and finds the nearest; which of several makes no difference. */
+static vxm_near look_from(const job *j, crowd *out, const crowd *from, const double p[3]) {
+  vxm_near nearest = {.nearness = INFINITY};
+  for (size_t i = 0; i < from->count; i++) {
+    out->near[i] = vxm_label_bvh_view(j->award->forest, from->near[i].label, from->near[i].triangle, p);
+    if (out->near[i].nearness < nearest.nearness)
+      nearest = out->near[i];
+  }
+  out->count = from->count;
+  return nearest;
+}
+
+/** Leaves out what cannot be the nearest in a block; whether more than one label is left. */
+static bool thin_out(crowd *c, const vxm_bvh_block *block, const vxm_near *nearest) {
+  size_t kept = 0;
+  bool is_mixed = false;
+  for (size_t i = 0; i < c->count; i++)
+    if (!vxm_bvh_block_excludes(block, nearest, &c->near[i])) {
+      is_mixed |= c->near[i].label != nearest->label;
+      c->near[kept++] = c->near[i];
+    }
+  c->count = kept;
+  return is_mixed;
+}
+
+/** Settles voxels, or their eighths, by a crowd that has the nearest of each of them. */
+static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
+  if (!is_asked(j, v))
+    return;
+  vxm_bvh_block block = block_of(j, v);
+  if (block.reach == 0) {
+    give(j, v, nearest_label(j, from, block.middle));
+    return;
+  }
+  crowd c;
+  vxm_near nearest = look_from(j, &c, from, block.middle);
+  if (!thin_out(&c, &block, &nearest)) {
+    give(j, v, nearest.label);
+    return;
+  }
+  voxels part;
+  for (int n = 0; n < 8; n++)
+    if (eighth(&part, v, n))
+      settle_by_crowd(j, &part, &c);
+}
+
+/** Settles voxels by the nearest label among some; false if they are to be cut first. */
+static bool settle_among(const job *j, const voxels *v, vxm_among among, vxm_near *nearest) {
+  const vxm_label_bvh *forest = j->award->forest;
+  vxm_bvh_block block = block_of(j, v);
+  *nearest = vxm_label_bvh_nearest(forest, among, block.middle, nearest);
+  if (block.reach == 0 || !vxm_label_bvh_has_other(forest, among, &block, nearest)) {
+    give(j, v, nearest->label);
+    return true;
+  }
+  crowd c;
+  c.count = vxm_label_bvh_list(forest, among, &block, nearest, c.near, CROWD);
+  if (c.count > CROWD)
+    return false;
+  voxels part;
+  for (int n = 0; n < 8; n++)
+    if (eighth(&part, v, n))
+      settle_by_crowd(j, &part, &c);
+  return true;
+}
+
+/** Settles voxels, or their eighths. `nearest` is that of a larger block. */
+static void settle(const job *j, const voxels *v, vxm_near nearest) {
+  static const vxm_near nothing = {.nearness = INFINITY};
+  uint16_t held = 0;
+  uint32_t label = j->award->label;
+  vxm_among among = {{0, 0}};
+  if (!is_asked(j, v))
+    return;
+  /* Where the label is weighed against that of the voxels, these must all have the same. */
+  bool is_one = label == 0 || each_value(j, v, same_value, &held);
+  if (label) {
+    among = (vxm_among){{held, label}};
+    nearest = nothing;
+  }
+  if (is_one && settle_among(j, v, among, &nearest))
+    return;
+  voxels part;
+  for (int n = 0; n < 8; n++)
+    if (eighth(&part, v, n))
+      settle(j, &part, nearest);
+}
+
+void vxm_nearest_label_voxels(const vxm_nearest_label *award, const int64_t begin[3], const int64_t end[3]) {
+  const vxm_layout *layout = &award->asked->layout;
+  const int axis[3] = {layout->fast, layout->middle, layout->slow};
+  const double *size = award->space->voxel_size;
+  double side = fmax(size[0], fmax(size[1], size[2]));
+  job j = {.award = award, .row = (size_t)award->space->dims[layout->fast]};
+  j.plane = j.row * (size_t)award->space->dims[layout->middle];
+  for (int a = 0; a < 3; a++)
+    j.step[a] = size[axis[a]] / side;
+  voxels v;
+  for (v.at[2] = begin[2]; v.at[2] < end[2]; v.at[2] += BLOCK)
+    for (v.at[1] = begin[1]; v.at[1] < end[1]; v.at[1] += BLOCK)
+      for (v.at[0] = begin[0]; v.at[0] < end[0]; v.at[0] += BLOCK) {
+        for (int a = 0; a < 3; a++)
+          v.size[a] = vxm_min(end[a] - v.at[a], BLOCK);
+        settle(&j, &v, (vxm_near){.nearness = INFINITY});
+      }
+}

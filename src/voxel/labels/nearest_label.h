@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Giving voxels to labels by the nearest face. */
+#ifndef VXM_VOXEL_LABELS_NEAREST_LABEL_H
+#define VXM_VOXEL_LABELS_NEAREST_LABEL_H
+
+#include "grid/window.h"
+#include "voxel/labels/label_bvh.h"
+
+/** Which voxels are given. */
+typedef struct vxm_nearest_label {
+  const vxm_label_bvh *forest;
+  const vxm_space *space;
+  const vxm_window *asked; /**< all slices of a box of the space: the voxels in question */
+  const int64_t *first;    /**< voxel of the space at which the box begins, in the order of the layout */
+  uint16_t *values;        /**< of the whole space, in the layout of the window */
+  uint32_t label;          /**< takes a voxel where it is nearer than the label there; 0 = the nearest of all
+                                labels takes it, whatever is there */
+} vxm_nearest_label;
+
+/**
+ * Gives voxels begin..end-1 of the box, in the order of the layout, their labels, as far as they are asked
+ * about. Blocks of voxels are settled at once where the distances of labels at their middle differ by more
+ * than the blocks are wide, so that work follows the boundaries between labels.
+ *
+ * @param begin the first a multiple of 16
+ */
+void vxm_nearest_label_voxels(const vxm_nearest_label *award, const int64_t begin[3], const int64_t end[3]);
+
+#endif

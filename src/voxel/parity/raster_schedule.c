@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/parity/raster_schedule.h"
+#include "base/threads.h"
+
+#include <math.h>
+
+enum {
+  TASKS_PER_THREAD = 8,
+  FACETS_MIN = 256, /**< of a task */
+  FACETS_MAX = 4096,
+  TASK_CROSSINGS = 1 << 21 /**< of a task, estimated, unless one facet has more */
+};
+
+/** Crossings of a round, estimated: 128 MiB where memory is not limited. */
+static const double round_most = 1 << 24, round_least = 1 << 16;
+
+double vxm_raster_schedule_round(const vxm_context *context) {
+  size_t left = vxm_memory_left(context);
+  double share = left == SIZE_MAX ? round_most : (double)left / (8 * sizeof(uint64_t));
+  return share > round_most ? round_most : share < round_least ? round_least : share;
+}
+
+void vxm_raster_schedule_destroy(vxm_raster_schedule *crossings) {
+  vxm_free(crossings->context, crossings->ranges);
+  vxm_free(crossings->context, crossings->round_end);
+  *crossings = (vxm_raster_schedule){.context = crossings->context};
+}
+
+/* ---- Estimates ---- */
+
+/** At least the number of columns of the window that a facet covers. */
+static double estimate(const vxm_raster_schedule *x, const vxm_columns *c, size_t f) {
+  vxm_point p[3];
+  double size[2];
+  const int axes[2] = {c->u, c->v};
+  for (int k = 0; k < 3; k++)
+    p[k] = vxm_snapped_points_at(x->placed, x->facets->corners[f][k]);
+  for (int i = 0; i < 2; i++) {
+    int a = axes[i];
+    int64_t low = vxm_min(vxm_min(p[0].at[a], p[1].at[a]), p[2].at[a]);
+    int64_t high = vxm_max(vxm_max(p[0].at[a], p[1].at[a]), p[2].at[a]);
+    int64_t first = vxm_max(vxm_lattice_first(&x->placed->lattice, low), c->begin[a]);
+    int64_t last = vxm_min(vxm_lattice_last(&x->placed->lattice, high), c->end[a] - 1);
+    if (first > last)
+      return 0;
+    size[i] = (double)(last - first + 1);
+  }
+  double bu = (double)(p[1].at[c->u] - p[0].at[c->u]), bv = (double)(p[1].at[c->v] - p[0].at[c->v]);
+  double cu = (double)(p[2].at[c->u] - p[0].at[c->u]), cv = (double)(p[2].at[c->v] - p[0].at[c->v]);
+  double unit = (double)x->placed->lattice.unit;
+  double area = fabs(bu * cv - bv * cu) / (2 * unit * unit);
+  return fmin(size[0] * size[1], area + 2 * (size[0] + size[1]));
+}
+
+static double estimate_all(const vxm_raster_schedule *x, size_t f) {
+  double sum = 0;
+  for (size_t c = 0; c < x->columns_count; c++)
+    sum += estimate(x, &x->columns[c], f);
+  return sum;
+}
+
+double vxm_raster_schedule_bound(const vxm_triangle_set *facets, const vxm_space *space,
+                                 const double transform[12]) {
+  double voxel = space->voxel_size[0], norm = 0;
+  for (int a = 1; a < 3; a++)
+    voxel = fmin(voxel, space->voxel_size[a]);
+  for (int r = 0; r < 3; r++) /* the Frobenius norm is at least the longest that a unit vector becomes */
+    for (int c = 0; c < 3; c++)
+      norm += transform ? transform[4 * r + c] * transform[4 * r + c] : 0;
+  double scale = (transform ? sqrt(norm) : 1) / voxel;
+  return facets->squared_length * scale * scale + 2 * facets->length * scale + (double)facets->facet_count;
+}
+
+/* ---- Planning ---- */
+
+static vxm_status add_range(vxm_raster_schedule *x, size_t begin, size_t end, vxm_error *error) {
+  vxm_status status = vxm_grow(x->context, (void **)&x->ranges, &x->range_capacity, x->range_count + 1,
+                               sizeof *x->ranges, error);
+  if (status == VXM_OK)
+    x->ranges[x->range_count++] = (vxm_raster_range){begin, end};
+  return status;
+}
+
+static vxm_status end_round(vxm_raster_schedule *x, vxm_error *error) {
+  vxm_status status = vxm_grow(x->context, (void **)&x->round_end, &x->round_capacity, x->round_count + 1,
+                               sizeof *x->round_end, error);
+  if (status == VXM_OK)
+    x->round_end[x->round_count++] = x->range_count;
+  return status;
+}
+
+/** Equal tasks in one round: enough where no facet can have many crossings. */
+static vxm_status plan_evenly(vxm_raster_schedule *x, size_t begin, size_t end, vxm_error *error) {
+  size_t shares = (size_t)vxm_context_threads(x->context) * TASKS_PER_THREAD;
+  size_t step = (end - begin) / shares + 1;
+  step = step < FACETS_MIN ? FACETS_MIN : step > FACETS_MAX ? FACETS_MAX : step;
+  vxm_status status = VXM_OK;
+  for (size_t f = begin; f < end && status == VXM_OK; f += step)
+    status = add_range(x, f, end - f < step ? end : f + step, error);
+  return status == VXM_OK ? end_round(x, error) : status;
+}
+
+/** Tasks of about equal crossings, and a round after each part with which the crossings become too many. */
+static vxm_status plan_by_estimate(vxm_raster_schedule *x, size_t begin, size_t end, vxm_error *error) {
+  double task = 0, round = 0, round_crossings = vxm_raster_schedule_round(x->context);
+  size_t first = begin;
+  vxm_status status = VXM_OK;
+  for (size_t f = begin; f < end && status == VXM_OK; f++) {
+    double crossings = estimate_all(x, f);
+    bool part_ends = f + 1 == end || x->facets->part[f + 1] != x->facets->part[f];
+    task += crossings;
+    round += crossings;
+    bool round_ends = f + 1 == end || (part_ends && round > round_crossings);
+    if (task <= TASK_CROSSINGS && f + 1 - first < FACETS_MAX && !round_ends)
+      continue;
+    status = add_range(x, first, f + 1, error);
+    first = f + 1;
+    task = 0;
+    if (round_ends && status == VXM_OK) {
+      status = end_round(x, error);
+      round = 0;
+    }
+  }
+  return status;
+}
+
+vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *x, const vxm_triangle_set *facets,
+                                    const vxm_snapped_points *placed, const vxm_columns *columns,
+                                    size_t columns_count, vxm_error *error) {
+  x->facets = facets;
+  x->placed = placed;
+  x->columns = columns;
+  x->columns_count = columns_count;
+  x->range_count = x->round_count = 0;
+  size_t begin = SIZE_MAX, end = 0;
+  for (size_t c = 0; c < columns_count; c++) {
+    begin = columns[c].facet_begin < begin ? columns[c].facet_begin : begin;
+    end = columns[c].facet_end > end ? columns[c].facet_end : end;
+  }
+  if (begin >= end)
+    return end_round(x, error);
+  /* One part is never divided between rounds; estimates would only share out the work better, which pays
+     where few triangles have very many crossings. */
+  bool one_part = facets->part[begin] == facets->part[end - 1];
+  bool sharing = vxm_context_threads(x->context) > 1 && end - begin <= FACETS_MAX;
+  double most =
+      vxm_raster_schedule_bound(facets, &placed->lattice.space, placed->transform) * (double)columns_count;
+  if (one_part ? !sharing || most <= round_most : most <= vxm_raster_schedule_round(x->context))
+    return plan_evenly(x, begin, end, error);
+  return plan_by_estimate(x, begin, end, error);
+}
+
+/* ---- Running ---- */
+
+typedef struct raster_job {
+  const vxm_raster_schedule *crossings;
+  const vxm_kernels *kernels;
+  vxm_crossing_bins *bins;
+  uint64_t *words;
+  size_t first; /**< range of the round */
+  vxm_task_progress *watch;
+} raster_job;
+
+static void raster_range(size_t task, int worker, void *payload) {
+  const raster_job *job = payload;
+  const vxm_raster_schedule *x = job->crossings;
+  if (vxm_task_progress_stopped(job->watch, worker))
+    return;
+  const vxm_raster_range *range = &x->ranges[job->first + task];
+  vxm_raster_task raster = {.placed = x->placed,
+                            .facets = x->facets,
+                            .begin = range->begin,
+                            .end = range->end,
+                            .columns = x->columns,
+                            .columns_count = x->columns_count,
+                            .bins = job->bins,
+                            .words = job->words,
+                            .worker = (size_t)worker};
+  job->kernels->raster(&raster);
+  vxm_task_progress_step(job->watch);
+}
+
+void vxm_raster_schedule_run(const vxm_raster_schedule *x, size_t round, vxm_crossing_bins *bins,
+                             vxm_task_progress *watch) {
+  size_t first = round > 0 ? x->round_end[round - 1] : 0;
+  raster_job job = {x, vxm_kernels_get(), bins, NULL, first, watch};
+  vxm_parallel(x->context, x->round_end[round] - first, raster_range, &job);
+}
+
+void vxm_raster_schedule_flip(const vxm_raster_schedule *x, uint64_t *words, vxm_task_progress *watch) {
+  raster_job job = {x, vxm_kernels_get(), NULL, words, 0, watch};
+  for (size_t task = 0; task < x->range_count; task++)
+    raster_range(task, 0, &job);
+}

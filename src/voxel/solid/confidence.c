@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/solid/confidence.h"
+#include "base/threads.h"
+
+#include <string.h>
+
+enum { VOTERS = 4 };
+
+typedef struct confidence_job {
+  uint8_t *confidence;
+  const vxm_window *window;
+  const uint64_t *closed, *settled, *voters[VOTERS];
+} confidence_job;
+
+static bool bit(const uint64_t *row, int64_t i) {
+  return row[i / 64] >> (i % 64) & 1;
+}
+
+static void fill_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  const confidence_job *job = payload;
+  const vxm_window *w = job->window;
+  for (int64_t j = 0; j < w->middle_dim; j++) {
+    uint8_t *out = job->confidence + ((int64_t)slice * w->middle_dim + j) * w->fast_dim;
+    size_t row = slice * w->slice_words + (size_t)j * w->row_words;
+    for (int64_t i = 0; i < w->fast_dim; i++) {
+      int agree = 0;
+      for (int v = 0; v < VOTERS; v++)
+        agree += (bit(job->closed + row, i) || bit(job->voters[v] + row, i)) == bit(w->words + row, i);
+      if (!job->settled || !bit(job->settled + row, i))
+        out[i] = (uint8_t)(255 * agree / VOTERS);
+    }
+  }
+}
+
+vxm_status vxm_confidence_fill(vxm_voxel_pass *run, const vxm_window *window, vxm_error *error) {
+  vxm_mesh_analysis *shape = run->shape;
+  vxm_method method = shape->options->method;
+  size_t end = shape->facets.split.part_count;
+  size_t begin = method == VXM_METHOD_VOTE ? shape->facets.split.kind_end[VXM_PART_CLOSED] : 0;
+  if (method == VXM_METHOD_WINDING)
+    return VXM_OK; /* which decided every voxel */
+  if (begin == end) {
+    memset(run->confidence, 255,
+           (size_t)window->fast_dim * (size_t)window->middle_dim * (size_t)window->slow_dim);
+    return VXM_OK;
+  }
+  confidence_job job = {.confidence = run->confidence, .window = window};
+  job.settled = run->escalated > 0 ? run->buffers[VXM_BUFFER_MASK].words : NULL;
+  atomic_uchar *has_voxels = run->has_voxels;
+  run->has_voxels = NULL; /* what these voters see says nothing about the result */
+  vxm_window made;
+  vxm_status status = vxm_voxel_pass_buffer(run, VXM_BUFFER_CLOSED, window, &made, error);
+  if (status == VXM_OK)
+    status = vxm_voxel_pass_unite(run, &made, 0, 0, begin, VXM_FACET_TRIANGLE, error);
+  job.closed = made.words;
+  for (int v = 0; v < VOTERS && status == VXM_OK; v++) {
+    status = vxm_voxel_pass_buffer(run, VXM_BUFFER_VOTERS + v, window, &made, error);
+    unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
+    if (status == VXM_OK)
+      status = vxm_voxel_pass_unite(run, &made, v == 3 ? 0 : v, begin, end, roles, error);
+    job.voters[v] = made.words;
+  }
+  run->has_voxels = has_voxels;
+  if (status == VXM_OK)
+    status =
+        vxm_parallel_asked(shape->context, (size_t)(window->end - window->begin), fill_slice, &job, error);
+  return status;
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The solid as an octree, straight from the crossings of triangles with columns along x. */
+#ifndef VXM_VOXEL_SPARSE_SPARSE_H
+#define VXM_VOXEL_SPARSE_SPARSE_H
+
+#include "grid/octree_build.h"
+#include "voxel/model/model.h"
+
+/**
+ * Makes the strips of every voxel inside at least one of the job's parts, by parity along x, as
+ * vxm_parity_union does for a window; exact, and the same for any number of threads.
+ *
+ * @param builder in which all strips are empty
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_sparse_union(vxm_octree_builder *builder, vxm_workspace *workspace, const vxm_sparse_job *job,
+                            vxm_error *error);
+
+/** See vxm_model_sparse in voxmend.h; the arguments are not NULL, except report and transform. */
+vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
+                           const vxm_space *space, const double transform[12], vxm_error *error);
+
+#endif

@@ -1,0 +1,481 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/threads.h"
+#include "voxel/sparse/sparse.h"
+
+#include <string.h>
+
+enum {
+  SLAB_SHIFT = 4,      /**< slabs are as thick as strips */
+  CROSSINGS = 1 << 22, /**< of a window, at most */
+  STREAMS = 4 /**< what is sorted is read at so many places in turn, so that a step need not wait for the one
+                 before, which mostly goes to the same word */
+};
+
+/** A flip within a strip: its voxel along x, above the 8 bits of its row, 16 y + z. */
+typedef uint32_t flip;
+
+/** What a thread works with. */
+typedef struct desk {
+  flip *flips; /**< of a slab, strip after strip */
+  uint32_t *parts;
+  size_t capacity;
+  uint32_t (*ends)[STREAMS]; /**< per strip and stream: how many flips, then where the next goes, then behind
+                                them */
+  /* Of a strip, per brick in the order of vxm_strip_add_node, node after node; clear between strips. */
+  uint64_t *flipped, *united;
+  uint8_t *has_flips; /**< per node, in whole words */
+  /* A bit per node: whether something is united in it, whether all of it is full. */
+  uint64_t *is_united, *is_full;
+} desk;
+
+/** Where a row of a strip lies: in which row of bricks in the order of vxm_strip_add_node, and at which bits
+ * of them. */
+typedef struct strip_place {
+  uint8_t row, shift;
+} strip_place;
+
+typedef struct sparse_state {
+  vxm_octree_builder *builder;
+  vxm_crossing_bins *bins;
+  const vxm_sparse_job *job;
+  const vxm_kernels *kernels;
+  vxm_columns columns;
+  int row_shift;    /**< a row of records has 2^row_shift of them */
+  size_t nodes;     /**< of a strip */
+  size_t first;     /**< slab of the window */
+  bool many;        /**< parts are united, or rounds */
+  bool again;       /**< there may be something in the strips already */
+  uint64_t last[4]; /**< per x: the voxels of a brick of the last node that the space has */
+  desk *desks;
+  strip_place places[256];
+  vxm_task_progress watch;
+} sparse_state;
+
+/* ---- Out of the bins ---- */
+
+static bool reserve(sparse_state *state, desk *d, size_t count) {
+  if (count <= d->capacity)
+    return true;
+  vxm_context *context = state->builder->context;
+  vxm_error local = VXM_ERROR_INIT;
+  if (count > UINT32_MAX) { /* places are counted in 32 bits: 16 GiB of flips in one slab */
+    atomic_store_explicit(&state->builder->failed, VXM_ERROR_MEMORY, memory_order_relaxed);
+    return false;
+  }
+  vxm_free(context, d->flips);
+  vxm_free(context, d->parts);
+  d->parts = NULL;
+  d->capacity = 0;
+  size_t wanted = count + count / 4;
+  d->flips = vxm_alloc(context, wanted, sizeof *d->flips, &local);
+  d->parts = state->many ? vxm_alloc(context, wanted, sizeof *d->parts, &local) : NULL;
+  if (local.code == VXM_OK)
+    d->capacity = wanted;
+  else
+    atomic_store_explicit(&state->builder->failed, (int)local.code, memory_order_relaxed);
+  return local.code == VXM_OK;
+}
+
+static void count_records(int shift, uint32_t (*ends)[STREAMS], const uint64_t *records, size_t count) {
+  size_t share = count / STREAMS;
+  const uint64_t *a = records, *b = a + share, *c = b + share, *d = c + share;
+  for (size_t i = 0; i < share; i++) {
+    ends[a[i] >> shift][0]++;
+    ends[b[i] >> shift][1]++;
+    ends[c[i] >> shift][2]++;
+    ends[d[i] >> shift][3]++;
+  }
+  for (size_t i = STREAMS * share; i < count; i++)
+    ends[records[i] >> shift][0]++;
+}
+
+/** Counts the flips of each strip; returns how many there are. */
+static size_t count_flips(const sparse_state *state, desk *d, size_t slab) {
+  int shift = state->row_shift + 8;
+  size_t total = 0;
+  memset(d->ends, 0, state->builder->across * sizeof *d->ends);
+  for (size_t w = 0; w < state->bins->workers; w++) {
+    vxm_crossing_bin_reader reader =
+        vxm_crossing_bin_read(vxm_crossing_bins_at(state->bins, w, 0, slab), !state->many);
+    vxm_crossing_bin_piece piece;
+    while (reader.part != VXM_BIN_NONE)
+      while (vxm_crossing_bin_next(&reader, &piece)) {
+        for (size_t i = 0; i < piece.count && state->many && !piece.is_bitmap; i++)
+          d->ends[piece.data[i] >> shift][0]++;
+        if (!state->many && !piece.is_bitmap)
+          count_records(shift, d->ends, piece.data, piece.count);
+        total += piece.is_bitmap ? 0 : piece.count;
+        for (size_t i = 0; i < piece.count && piece.is_bitmap; i++) {
+          size_t flips = (size_t)vxm_popcount(piece.data[i]);
+          d->ends[64 * i >> shift][0] += (uint32_t)flips;
+          total += flips;
+        }
+      }
+  }
+  return total;
+}
+
+/** How records of a slab become flips. */
+typedef struct decoding {
+  int row_shift;
+  uint64_t in_row;
+} decoding;
+
+static inline flip flip_of(decoding how, uint64_t record) {
+  return (flip)(record & how.in_row) << 8 | (flip)(record >> how.row_shift & 255);
+}
+
+/** Puts flips where the next ones of their strip and stream go, as count_records has counted them. */
+static void put_records(decoding how, flip *flips, uint32_t (*ends)[STREAMS], const uint64_t *records,
+                        size_t count) {
+  int shift = how.row_shift + 8;
+  size_t share = count / STREAMS;
+  const uint64_t *a = records, *b = a + share, *c = b + share, *d = c + share;
+  for (size_t i = 0; i < share; i++) {
+    flips[ends[a[i] >> shift][0]++] = flip_of(how, a[i]);
+    flips[ends[b[i] >> shift][1]++] = flip_of(how, b[i]);
+    flips[ends[c[i] >> shift][2]++] = flip_of(how, c[i]);
+    flips[ends[d[i] >> shift][3]++] = flip_of(how, d[i]);
+  }
+  for (size_t i = STREAMS * share; i < count; i++)
+    flips[ends[records[i] >> shift][0]++] = flip_of(how, records[i]);
+}
+
+/** Puts each flip of a piece where the next one of its strip goes. */
+static void put_piece(const sparse_state *state, desk *d, const vxm_crossing_bin_piece *piece,
+                      uint32_t part) {
+  decoding how = {state->row_shift, vxm_low_bits((unsigned)state->row_shift)};
+  if (!state->many && !piece->is_bitmap) {
+    put_records(how, d->flips, d->ends, piece->data, piece->count);
+    return;
+  }
+  for (size_t i = 0; i < piece->count; i++) {
+    uint64_t left = piece->is_bitmap ? piece->data[i] : 1;
+    for (; left; left &= left - 1) {
+      uint64_t record = piece->is_bitmap ? 64 * i + (unsigned)__builtin_ctzll(left) : piece->data[i];
+      uint32_t to = d->ends[record >> (how.row_shift + 8)][0]++;
+      d->flips[to] = flip_of(how, record);
+      if (state->many)
+        d->parts[to] = part;
+    }
+  }
+}
+
+/** Sorts the flips of a slab by strip, and by part within; false if memory ran out. */
+static bool sort_flips(sparse_state *state, desk *d, size_t slab) {
+  enum { WORKERS_MAX = 256 };
+  vxm_crossing_bin_reader reader[WORKERS_MAX];
+  size_t workers = state->bins->workers;
+  if (!reserve(state, d, count_flips(state, d, slab)))
+    return false;
+  uint32_t sum = 0;
+  for (size_t s = 0; s < state->builder->across; s++)
+    for (size_t k = 0; k < STREAMS; k++) {
+      uint32_t count = d->ends[s][k];
+      d->ends[s][k] = sum;
+      sum += count;
+    }
+  for (size_t w = 0; w < workers; w++)
+    reader[w] = vxm_crossing_bin_read(vxm_crossing_bins_at(state->bins, w, 0, slab), !state->many);
+  for (;;) {
+    uint32_t part = VXM_BIN_NONE;
+    vxm_crossing_bin_piece piece;
+    for (size_t w = 0; w < workers; w++)
+      part = reader[w].part < part ? reader[w].part : part;
+    if (part == VXM_BIN_NONE)
+      return true;
+    for (size_t w = 0; w < workers; w++)
+      while (reader[w].part == part && vxm_crossing_bin_next(&reader[w], &piece))
+        put_piece(state, d, &piece, part);
+  }
+}
+
+/* ---- A part of a strip ---- */
+
+static void add_bits(uint64_t *words, size_t begin, size_t end) {
+  vxm_row_set_span(words, (int64_t)begin, (int64_t)end);
+}
+
+/** A node that a part reaches. */
+static void put_node(sparse_state *state, desk *d, size_t worker, size_t x, uint64_t *bricks) {
+  if (x == state->nodes - 1)
+    for (int b = 0; b < VXM_STRIP_BRICKS; b++)
+      bricks[b] &= state->last[b / 16];
+  if (!state->many) {
+    vxm_strip_add_node(state->builder, worker, x, bricks);
+    return;
+  }
+  uint64_t *united = d->united + x * VXM_STRIP_BRICKS;
+  for (int b = 0; b < VXM_STRIP_BRICKS; b++)
+    united[b] |= bricks[b];
+  add_bits(d->is_united, x, x + 1);
+}
+
+/** Nodes begin..end-1 without flips: `inside` says for each row of bricks what is inside all along. */
+static void put_gap(sparse_state *state, desk *d, size_t worker, size_t begin, size_t end,
+                    const uint64_t inside[16]) {
+  uint64_t any = 0, all = ~UINT64_C(0), bricks[VXM_STRIP_BRICKS];
+  for (int r = 0; r < 16; r++) {
+    any |= inside[r];
+    all &= inside[r];
+  }
+  if (any == 0 || begin >= end)
+    return;
+  if (all == ~UINT64_C(0)) {
+    size_t whole = (size_t)state->builder->space.dims[0] / VXM_STRIP_VOXELS;
+    whole = whole < end ? whole : end;
+    if (whole > begin && state->many)
+      add_bits(d->is_full, begin, whole);
+    else if (whole > begin)
+      vxm_strip_add_full(state->builder, worker, begin, whole);
+    begin = whole > begin ? whole : begin;
+  }
+  for (; begin < end; begin++) {
+    for (int b = 0; b < VXM_STRIP_BRICKS; b++)
+      bricks[b] = inside[b % 16];
+    put_node(state, d, worker, begin, bricks);
+  }
+}
+
+/** Flips voxels of a strip, and warnings the nodes that have flips. */
+static void flip_voxels(const strip_place *restrict places, uint64_t *restrict flipped,
+                        uint8_t *restrict has_flips, const flip *restrict flips, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    flip f = flips[i];
+    strip_place place = places[f & 255];
+    flipped[(f >> 10) * 16 + place.row] ^= (UINT64_C(15) << (f >> 8 & 3) & 15) << place.shift;
+    has_flips[f >> 12] = 1;
+  }
+}
+
+/** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
+static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const flip *flips, size_t count) {
+  uint64_t inside[16] = {0}, any = 0;
+  size_t done = 0;
+  flip_voxels(state->places, d->flipped, d->has_flips, flips, count);
+  for (size_t x = 0; x < state->nodes; x++) {
+    uint64_t eight;
+    memcpy(&eight, d->has_flips + x, sizeof eight);
+    if (x % 8 == 0 && eight == 0) {
+      x += 7;
+      continue;
+    }
+    if (!d->has_flips[x])
+      continue;
+    d->has_flips[x] = 0;
+    put_gap(state, d, worker, done, x, inside);
+    uint64_t bricks[VXM_STRIP_BRICKS], masks[2];
+    any |= state->kernels->fold_node(bricks, d->flipped + x * VXM_STRIP_BRICKS, inside, masks);
+    if (state->many || x == state->nodes - 1)
+      put_node(state, d, worker, x, bricks);
+    else
+      vxm_strip_add_known(state->builder, worker, x, bricks, masks[0], masks[1]);
+    done = x + 1;
+  }
+  put_gap(state, d, worker, done, state->nodes, inside);
+  return any;
+}
+
+/* ---- Strips ---- */
+
+/** Takes what rounds before have left in a strip. */
+static void take_strip(desk *d, const vxm_strip *strip) {
+  for (size_t i = 0; strip->items && i < strip->count; i++) {
+    const vxm_strip_item *item = &strip->items[i];
+    if (item->seed.full == ~UINT64_C(0)) {
+      add_bits(d->is_full, item->begin, item->end);
+      continue;
+    }
+    vxm_strip_expand(item, d->united + (size_t)item->begin * VXM_STRIP_BRICKS);
+    add_bits(d->is_united, item->begin, item->end);
+  }
+}
+
+/** Adds what was united, and clears it. */
+static void put_united(sparse_state *state, desk *d, size_t worker) {
+  for (size_t w = 0; w < (state->nodes + 63) / 64; w++) {
+    for (uint64_t left = d->is_united[w] | d->is_full[w]; left; left &= left - 1) {
+      unsigned b = (unsigned)__builtin_ctzll(left);
+      size_t x = 64 * w + b;
+      uint64_t *united = d->united + x * VXM_STRIP_BRICKS;
+      if (d->is_full[w] >> b & 1)
+        vxm_strip_add_full(state->builder, worker, x, x + 1);
+      else
+        vxm_strip_add_node(state->builder, worker, x, united);
+      if (d->is_united[w] >> b & 1)
+        memset(united, 0, VXM_STRIP_BRICKS * sizeof *united);
+    }
+    d->is_united[w] = d->is_full[w] = 0;
+  }
+}
+
+static void touch(const sparse_state *state, uint32_t part) {
+  atomic_store_explicit(&state->job->has_voxels[part], 1, memory_order_relaxed);
+}
+
+static void do_strip(sparse_state *state, desk *d, size_t worker, size_t y, size_t z, size_t begin,
+                     size_t end) {
+  vxm_strip *strip = &state->builder->strips[z * state->builder->across + y];
+  if (state->again)
+    take_strip(d, strip);
+  if (!state->many) {
+    if (fold_flips(state, d, worker, d->flips + begin, end - begin))
+      touch(state, 0);
+  }
+  for (size_t first = begin; state->many && first < end;) {
+    size_t behind = first + 1;
+    while (behind < end && d->parts[behind] == d->parts[first])
+      behind++;
+    if (fold_flips(state, d, worker, d->flips + first, behind - first))
+      touch(state, d->parts[first]);
+    first = behind;
+  }
+  if (state->many)
+    put_united(state, d, worker);
+  vxm_strip_end(state->builder, worker, y, z);
+}
+
+static void do_slab(size_t task, int worker, void *payload) {
+  sparse_state *state = payload;
+  desk *d = &state->desks[worker];
+  if (vxm_task_progress_stopped(&state->watch, worker) || !sort_flips(state, d, task))
+    return;
+  size_t begin = 0;
+  for (size_t y = 0; y < state->builder->across; y++) {
+    size_t end = d->ends[y][STREAMS - 1];
+    if (end > begin)
+      do_strip(state, d, (size_t)worker, y, state->first + task, begin, end);
+    begin = end;
+  }
+  vxm_task_progress_step(&state->watch);
+}
+
+/* ---- All of it ---- */
+
+static void shape(sparse_state *state) {
+  const vxm_sparse_job *job = state->job;
+  const int64_t *n = state->builder->space.dims;
+  state->nodes = (size_t)((n[0] + VXM_STRIP_VOXELS - 1) / VXM_STRIP_VOXELS);
+  while (INT64_C(1) << state->row_shift < n[0])
+    state->row_shift++;
+  state->row_shift = state->row_shift < 6 ? 6 : state->row_shift;
+  uint64_t row = UINT64_C(1) << state->row_shift;
+  bool closed = job->part_end <= job->facets->split.kind_end[VXM_PART_CLOSED];
+  state->columns = (vxm_columns){.u = 1,
+                                 .v = 2,
+                                 .w = 0,
+                                 .end = {n[0], n[1], n[2]},
+                                 .keep_before = true,
+                                 .step = {1, row << SLAB_SHIFT, row},
+                                 .slab_axis = 2,
+                                 .slab_shift = SLAB_SHIFT,
+                                 .roles = job->roles | (closed ? VXM_FACETS_ALL : 0),
+                                 .facet_begin = job->facets->parts[0].begin};
+  state->columns.facet_end = vxm_roles_end(job->facets, job->part_end - 1, job->roles);
+  int64_t left = n[0] - ((int64_t)state->nodes - 1) * VXM_STRIP_VOXELS;
+  for (int b = 0; b < 4; b++)
+    state->last[b] =
+        UINT64_C(0x1111111111111111) * vxm_low_bits((unsigned)vxm_min(vxm_max(left - 4 * b, 0), 4));
+  for (unsigned i = 0; i < 256; i++) {
+    unsigned y = i >> 4, z = i & 15;
+    state->places[i].row = (uint8_t)((y >> 2 & 1) | (z >> 1 & 2) | (y >> 1 & 4) | (z & 8));
+    state->places[i].shift = (uint8_t)(16 * (z & 3) + 4 * (y & 3));
+  }
+}
+
+static vxm_status make_desks(sparse_state *state, size_t workers, vxm_error *error) {
+  vxm_context *context = state->builder->context;
+  vxm_error local = VXM_ERROR_INIT;
+  size_t words = state->nodes * VXM_STRIP_BRICKS, marks = (state->nodes + 63) / 64;
+  state->desks = vxm_calloc(context, workers, sizeof *state->desks, &local);
+  for (size_t w = 0; w < workers && local.code == VXM_OK; w++) {
+    desk *d = &state->desks[w];
+    d->ends = vxm_alloc(context, state->builder->across, sizeof *d->ends, &local);
+    d->flipped = vxm_calloc(context, words, sizeof *d->flipped, &local);
+    d->united = state->many ? vxm_calloc(context, words, sizeof *d->united, &local) : NULL;
+    d->has_flips = vxm_calloc(context, 64 * marks, sizeof *d->has_flips, &local);
+    d->is_united = vxm_calloc(context, 2 * marks, sizeof *d->is_united, &local);
+    d->is_full = d->is_united ? d->is_united + marks : NULL;
+  }
+  if (local.code != VXM_OK && error)
+    *error = local;
+  return local.code;
+}
+
+static void free_desks(sparse_state *state, size_t workers) {
+  vxm_context *context = state->builder->context;
+  for (size_t w = 0; state->desks && w < workers; w++) {
+    desk *d = &state->desks[w];
+    vxm_free(context, d->flips);
+    vxm_free(context, d->parts);
+    vxm_free(context, d->ends);
+    vxm_free(context, d->flipped);
+    vxm_free(context, d->united);
+    vxm_free(context, d->has_flips);
+    vxm_free(context, d->is_united);
+  }
+  vxm_free(context, state->desks);
+}
+
+/** Slabs of a window: so few that its crossings are not too many, so many that all threads have work. */
+static size_t window_slabs(const sparse_state *state) {
+  vxm_context *context = state->builder->context;
+  double bound =
+      vxm_raster_schedule_bound(state->job->facets, &state->builder->space, state->job->placed->transform);
+  double most = vxm_raster_schedule_round(context), slabs = (double)state->builder->deep;
+  most = most < CROSSINGS ? most : CROSSINGS;
+  double wanted = slabs * most / (bound + 1);
+  size_t least = 4 * (size_t)vxm_context_threads(context);
+  return wanted < (double)least ? least : wanted > slabs ? state->builder->deep : (size_t)wanted;
+}
+
+/** Slabs first to end - 1. */
+static vxm_status do_window(sparse_state *state, vxm_workspace *workspace, size_t first, size_t end,
+                            vxm_error *error) {
+  vxm_octree_builder *builder = state->builder;
+  vxm_raster_schedule *crossings = &workspace->crossings;
+  state->first = first;
+  state->columns.begin[2] = (int64_t)first << SLAB_SHIFT;
+  state->columns.end[2] = vxm_min((int64_t)end << SLAB_SHIFT, builder->space.dims[2]);
+  vxm_status status =
+      vxm_raster_schedule_plan(crossings, state->job->facets, state->job->placed, &state->columns, 1, error);
+  /* Progress goes on where the window before ended, in steps of this one. */
+  size_t steps = crossings->range_count + crossings->round_count * (end - first);
+  state->watch.total = (steps * builder->deep + end - first) / (end - first);
+  atomic_store_explicit(&state->watch.done, steps * first / (end - first), memory_order_relaxed);
+  size_t slab_words = builder->across << (state->row_shift + 8 - 6);
+  for (size_t round = 0; round < crossings->round_count && status == VXM_OK; round++) {
+    status = vxm_crossing_bins_reset(state->bins, builder->workers, 1, end - first, slab_words, error);
+    if (status != VXM_OK)
+      break;
+    vxm_raster_schedule_run(crossings, round, state->bins, &state->watch);
+    status = vxm_crossing_bins_check(state->bins, error);
+    if (status != VXM_OK || state->watch.status != VXM_OK)
+      break;
+    state->again = round > 0;
+    vxm_parallel(builder->context, end - first, do_slab, state);
+    status = vxm_octree_builder_check(builder, error);
+  }
+  return status;
+}
+
+vxm_status vxm_sparse_union(vxm_octree_builder *builder, vxm_workspace *workspace, const vxm_sparse_job *job,
+                            vxm_error *error) {
+  if (job->part_end == 0)
+    return VXM_OK;
+  sparse_state state = {.builder = builder,
+                        .bins = &workspace->bins,
+                        .job = job,
+                        .kernels = vxm_kernels_get(),
+                        .many = job->part_end > 1};
+  shape(&state);
+  vxm_status status = make_desks(&state, builder->workers, error);
+  vxm_task_progress_start(&state.watch, builder->context, "voxelizing", 1, error);
+  size_t step = window_slabs(&state);
+  for (size_t first = 0; first < builder->deep && status == VXM_OK && state.watch.status == VXM_OK;
+       first += step)
+    status = do_window(&state, workspace, first, builder->deep - first < step ? builder->deep : first + step,
+                       error);
+  free_desks(&state, builder->workers);
+  return status == VXM_OK ? vxm_task_progress_end(&state.watch) : status;
+}

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/surface/surface.h"
+#include "base/threads.h"
+#include "mesh/triangulate.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+/* ---- Triangles ---- */
+
+static bool has_triangles_only(const vxm_soup *soup) {
+  for (size_t f = 0; f < soup->face_count; f++)
+    if (soup->offsets[f + 1] - soup->offsets[f] != 3)
+      return false;
+  return true;
+}
+
+/** The triangles that the faces of a soup give. */
+static size_t count_triangles(const vxm_soup *soup) {
+  size_t count = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t n;
+    vxm_face(soup, f, &n);
+    count += n > 2 ? n - 2 : 0;
+  }
+  return count;
+}
+
+static vxm_status cut_polygons(uint32_t *out, const vxm_soup *soup, vxm_error *error) {
+  vxm_triangulator triangulator;
+  vxm_status status = VXM_OK;
+  vxm_triangulator_open(&triangulator, soup->context);
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(soup, f, &n), *cut = corner;
+    if (n < 3)
+      continue;
+    if (n > 3)
+      status = vxm_triangulate(&triangulator, soup->positions, corner, n, &cut, error);
+    if (status == VXM_OK)
+      memcpy(out, cut, 3 * (n - 2) * sizeof *out);
+    out += 3 * (n - 2);
+  }
+  vxm_triangulator_close(&triangulator);
+  return status;
+}
+
+static vxm_status list_triangles(vxm_surface *surface, const vxm_soup *soup, vxm_error *error) {
+  if (has_triangles_only(soup)) {
+    surface->triangle_count = soup->face_count;
+    surface->corners = soup->indices;
+  } else {
+    surface->triangle_count = count_triangles(soup);
+    surface->cut = vxm_alloc(surface->context, surface->triangle_count, 3 * sizeof *surface->cut, error);
+    if (!surface->cut)
+      return VXM_ERROR_MEMORY;
+    surface->corners = surface->cut;
+  }
+  if (surface->triangle_count > UINT32_MAX)
+    return vxm_fail(error, VXM_ERROR_RANGE, "the mesh has more than 2^32 triangles");
+  return surface->cut ? cut_polygons(surface->cut, soup, error) : VXM_OK;
+}
+
+/* ---- Points ---- */
+
+/** Marks a vertex that has no place on the lattice. */
+static const int64_t off_lattice = INT64_MIN;
+
+typedef struct snap_job {
+  const vxm_surface *surface;
+  const vxm_soup *soup;
+  const double *transform;
+  size_t slices;
+  atomic_bool is_off; /**< some vertex is off the lattice, used or not */
+} snap_job;
+
+static void snap_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  snap_job *job = payload;
+  const vxm_surface *surface = job->surface;
+  size_t end = vxm_slice_begin(job->soup->vertex_count, job->slices, slice + 1);
+  for (size_t v = vxm_slice_begin(job->soup->vertex_count, job->slices, slice); v < end; v++) {
+    double moved[3];
+    const double *p = vxm_position(job->soup, v);
+    if (job->transform) {
+      vxm_transform_position(job->transform, p, moved);
+      p = moved;
+    }
+    if (vxm_lattice_place(&surface->lattice, p, &surface->points[v]))
+      continue;
+    surface->points[v].at[0] = off_lattice;
+    atomic_store_explicit(&job->is_off, true, memory_order_relaxed);
+  }
+}
+
+static vxm_status check_used(const vxm_surface *surface, const vxm_soup *soup, vxm_error *error) {
+  for (size_t c = 0; c < 3 * surface->triangle_count; c++) {
+    uint32_t vertex = surface->corners[c];
+    if (surface->points[vertex].at[0] == off_lattice)
+      return vxm_lattice_refuse(vertex, vxm_position(soup, vertex), error);
+  }
+  return VXM_OK;
+}
+
+vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
+                             vxm_error *error) {
+  size_t count = surface->soup->vertex_count;
+  static atomic_uint_fast64_t last_serial;
+  surface->serial = atomic_fetch_add(&last_serial, 1) + 1;
+  snap_job job = {surface, surface->soup, transform, 1 + count / 4096, false};
+  surface->lattice = *lattice;
+  vxm_parallel(surface->context, job.slices, snap_slice, &job);
+  return atomic_load(&job.is_off) ? check_used(surface, surface->soup, error) : VXM_OK;
+}
+
+vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *error) {
+  *out = NULL;
+  static atomic_uint_fast64_t last_corners;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_surface *surface = vxm_calloc(soup->context, 1, sizeof *surface, &local);
+  vxm_status status = surface ? vxm_context_acquire(&surface->context, soup->context, &local) : local.code;
+  if (status == VXM_OK) {
+    surface->soup = soup;
+    surface->corners_serial = atomic_fetch_add(&last_corners, 1) + 1;
+    surface->points = vxm_alloc(surface->context, soup->vertex_count, sizeof *surface->points, &local);
+    status = surface->points ? list_triangles(surface, soup, &local) : local.code;
+  }
+  if (status == VXM_OK) {
+    *out = surface;
+    return VXM_OK;
+  }
+  vxm_surface_destroy(surface);
+  if (error)
+    *error = local;
+  return local.code;
+}
+
+vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
+                              const double transform[12], vxm_error *error) {
+  vxm_status status = vxm_surface_make(out, soup, error);
+  if (status == VXM_OK)
+    status = vxm_surface_place(*out, lattice, transform, error);
+  if (status != VXM_OK) {
+    vxm_surface_destroy(*out);
+    *out = NULL;
+  }
+  return status;
+}
+
+void vxm_surface_destroy(vxm_surface *surface) {
+  if (!surface)
+    return;
+  vxm_context *context = surface->context;
+  vxm_free(context, surface->points);
+  vxm_free(context, surface->cut);
+  vxm_free(context, surface);
+  vxm_context_release(context);
+}
+
+/* ---- Onto a grid ---- */
+
+/** Bytes of a window that is drawn beside the grid. */
+enum { ASIDE_BYTES = 1 << 22 };
+
+/** Joins a window drawn aside to the grid, and marks its voxels. */
+static void join(const vxm_window *whole, const vxm_window *window, uint8_t *confidence) {
+  uint64_t *to = vxm_window_row(whole, 0, window->begin);
+  size_t rows = (size_t)((window->end - window->begin) * window->middle_dim);
+  uint8_t *sure = confidence + (size_t)(window->begin * window->middle_dim * window->fast_dim);
+  for (size_t r = 0; r < rows; r++, sure += window->fast_dim)
+    for (size_t w = 0; w < window->row_words; w++) {
+      uint64_t word = window->words[r * window->row_words + w];
+      to[r * window->row_words + w] |= word;
+      for (; word; word &= word - 1)
+        sure[w * 64 + (size_t)__builtin_ctzll(word)] = 255;
+    }
+}
+
+/* Which voxels the surface sets cannot be told in the grid any more, so they are drawn beside it first. */
+vxm_status vxm_surface_add_sure(const vxm_surface *surface, const vxm_window *whole, vxm_surface_kind kind,
+                                uint8_t *confidence, vxm_error *error) {
+  int64_t slices = vxm_max(1, (int64_t)(ASIDE_BYTES / 8 / whole->slice_words)), dim = whole->slow_dim;
+  vxm_window window = *whole;
+  window.end = vxm_min(slices, dim);
+  vxm_error local = VXM_ERROR_INIT;
+  window.words =
+      vxm_alloc(surface->context, (size_t)window.end * window.slice_words, sizeof *window.words, &local);
+  vxm_status status = local.code;
+  for (int64_t begin = 0; begin < dim && status == VXM_OK; begin += slices) {
+    window.begin = begin;
+    window.end = vxm_min(begin + slices, dim);
+    status = vxm_surface_add(surface, &window, kind, true, &local);
+    if (status == VXM_OK)
+      join(whole, &window, confidence);
+  }
+  vxm_free(surface->context, window.words);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}
+
+uint64_t vxm_surface_held_bytes(const vxm_soup *soup, size_t *triangles) {
+  *triangles = count_triangles(soup);
+  uint64_t corners = has_triangles_only(soup) ? 0 : 3 * sizeof(uint32_t);
+  return soup->vertex_count * sizeof(vxm_point) + *triangles * corners + sizeof(vxm_surface);
+}
+
+uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads) {
+  /* A place and, as tiles are listed in turn, some five entries for each triangle; the tiles
+   * and counters of the threads. */
+  size_t triangles;
+  uint64_t held = vxm_surface_held_bytes(soup, &triangles);
+  return held + triangles * 6 * sizeof(uint32_t) + ((uint64_t)threads + 6) * (UINT64_C(1) << 20);
+}

@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/*
+ * A window is cut into tiles, rows by slices; triangles are sorted into the tiles that they may touch, and
+ * each tile is drawn by one task, in words of its own that stay in cache, and then moved into the window.
+ */
+#include "base/task_progress.h"
+#include "base/threads.h"
+#include "voxel/surface/surface_draw.h"
+
+#include <string.h>
+
+enum {
+  TILE_WORDS = 1 << 15,   /**< 256 KiB: half of a usual second-level cache */
+  LINE_WORDS = 8,         /**< a line of the cache */
+  LARGE_WORDS = 1 << 23,  /**< windows that no cache holds: 64 MiB */
+  TILES_PER_THREAD = 8,   /**< so that threads end at about the same time */
+  CHUNK = 4096,           /**< triangles that one task sorts, at least */
+  COUNTERS_MAX = 1 << 20, /**< for all chunks together, unless one chunk needs more */
+  LISTED_MIN = 1 << 20,   /**< triangles listed at once, at least */
+  BOXED_MAX = 4,          /**< bands and tiles in each up to which a triangle is sorted by its box alone */
+  AHEAD = 8,              /**< triangles fetched before they are drawn */
+  POLL_ROWS = 1 << 16     /**< rows between two looks at the progress callback */
+};
+
+typedef struct tiling {
+  const vxm_surface *surface;
+  vxm_surface_pen pen; /**< its tile is the whole window, its rows those of all workers */
+  bool is_fresh, is_large;
+  size_t tile_words;
+  int row_bits, slice_bits;  /**< a tile has 2^row_bits rows of 2^slice_bits slices */
+  size_t across, tile_count; /**< tiles side by side in a slice, and in all */
+  size_t chunks;
+  size_t *counters;  /**< chunks x tile_count: triangles, and while listing the next place in the list */
+  size_t first, end; /**< the tiles that are listed at present */
+  size_t *begin;     /**< for each of these where its list begins; one more for the end */
+  uint32_t *list;
+  uint32_t *places; /**< for each triangle what the first pass found */
+  vxm_task_progress watch;
+  vxm_error *error;
+} tiling;
+
+/* ---- Shape of the tiles ---- */
+
+/** The largest exponent with 2^bits <= n. */
+static int log2_floor(int64_t n) {
+  int bits = 0;
+  while (n >> (bits + 1))
+    bits++;
+  return bits;
+}
+
+/** The smallest exponent with 2^bits >= n. */
+static int log2_ceil(int64_t n) {
+  return n <= 1 ? 0 : log2_floor(n - 1) + 1;
+}
+
+static int least(int a, int b) {
+  return a < b ? a : b;
+}
+
+/** About square, so that few triangles reach over several tiles, but small enough for every thread. */
+static void choose_tiles(tiling *t) {
+  const vxm_window *window = t->pen.window;
+  int64_t slices = window->end - window->begin, rows = window->middle_dim;
+  int threads = vxm_context_threads(t->surface->context);
+  int64_t fitting = vxm_max(1, TILE_WORDS / (int64_t)window->row_words);
+  int64_t shares = threads > 1 ? (int64_t)threads * TILES_PER_THREAD : 1;
+  int64_t fair = vxm_max(1, rows * slices / shares);
+  int size = log2_floor(vxm_min(fitting, fair));
+  t->slice_bits = least(least(size / 2, log2_ceil(slices)), log2_floor(VXM_SURFACE_SLICES));
+  t->row_bits = least(size - t->slice_bits, log2_ceil(rows));
+  t->across = (size_t)((rows - 1) >> t->row_bits) + 1;
+  t->tile_count = t->across * ((size_t)((slices - 1) >> t->slice_bits) + 1);
+  /* Slices a power of two apart would share few sets of the caches. */
+  t->pen.slice_words = (window->row_words << t->row_bits) + LINE_WORDS;
+  t->tile_words = t->pen.slice_words << t->slice_bits;
+  t->is_large = (size_t)slices * window->slice_words >= LARGE_WORDS;
+  t->chunks = 1 + t->surface->triangle_count / CHUNK;
+  t->chunks = t->chunks < (size_t)threads * 4 ? t->chunks : (size_t)threads * 4;
+  while (t->chunks > 1 && t->chunks * t->tile_count > COUNTERS_MAX)
+    t->chunks--;
+}
+
+static vxm_surface_box tile_box(const tiling *t, size_t tile) {
+  const vxm_window *window = t->pen.window;
+  vxm_surface_box box = t->pen.tile;
+  box.begin[VXM_MIDDLE] = (int64_t)(tile % t->across) << t->row_bits;
+  box.end[VXM_MIDDLE] = vxm_min(box.begin[VXM_MIDDLE] + (INT64_C(1) << t->row_bits), window->middle_dim);
+  box.begin[VXM_SLOW] = window->begin + ((int64_t)(tile / t->across) << t->slice_bits);
+  box.end[VXM_SLOW] = vxm_min(box.begin[VXM_SLOW] + (INT64_C(1) << t->slice_bits), window->end);
+  return box;
+}
+
+/* ---- Sorting triangles into tiles ---- */
+
+static void corners_of(const vxm_surface *surface, size_t triangle, const vxm_point *v[3]) {
+  const uint32_t *corner = surface->corners + 3 * triangle;
+  for (int c = 0; c < 3; c++)
+    v[c] = &surface->points[corner[c]];
+}
+
+/** Counts a triangle in tiles first..end-1 (list NULL), or lists it there. */
+static void sort_into(const tiling *t, size_t first, size_t end, size_t *counter, uint32_t *list,
+                      uint32_t triangle) {
+  first = first > t->first ? first : t->first;
+  end = end < t->end ? end : t->end;
+  for (size_t tile = first; tile < end; tile++) {
+    if (list)
+      list[counter[tile]] = triangle;
+    counter[tile]++;
+  }
+}
+
+/** The same for as many tiles from `first` on in each of some bands of slices. */
+static void sort_boxed(const tiling *t, size_t first, size_t bands, size_t width, size_t *counter,
+                       uint32_t *list, uint32_t triangle) {
+  for (size_t b = 0; b < bands; b++, first += t->across)
+    sort_into(t, first, first + width, counter, list, triangle);
+}
+
+/** A triangle that may be large: in each band of slices only the tiles that it may touch there. */
+static void sort_large(const tiling *t, const vxm_point *const v[3], const vxm_surface_box *box,
+                       size_t *counter, uint32_t *list, uint32_t triangle) {
+  int64_t base = t->pen.window->begin, thickness = INT64_C(1) << t->slice_bits;
+  vxm_surface_shadow shadow;
+  bool is_wide = (box->end[VXM_MIDDLE] - 1) >> t->row_bits > box->begin[VXM_MIDDLE] >> t->row_bits;
+  if (is_wide)
+    vxm_surface_shadow_of(&shadow, &t->pen, v);
+  int64_t last = (box->end[VXM_SLOW] - 1 - base) >> t->slice_bits;
+  for (int64_t band = (box->begin[VXM_SLOW] - base) >> t->slice_bits; band <= last; band++) {
+    int64_t s_begin = base + (band << t->slice_bits), begin = box->begin[VXM_MIDDLE],
+            end = box->end[VXM_MIDDLE];
+    if (is_wide)
+      vxm_surface_shadow_rows(&shadow, vxm_max(s_begin, box->begin[VXM_SLOW]),
+                              vxm_min(s_begin + thickness, box->end[VXM_SLOW]), &begin, &end);
+    if (begin >= end)
+      continue;
+    size_t row = (size_t)band * t->across;
+    sort_into(t, row + (size_t)(begin >> t->row_bits), row + (size_t)((end - 1) >> t->row_bits) + 1, counter,
+              list, triangle);
+  }
+}
+
+/**
+ * What the first pass warnings of a triangle: its first tile, and how many bands and tiles in each less one.
+ * There are far fewer than 2^28 tiles, which would be terabytes.
+ */
+static const uint32_t place_nowhere = UINT32_MAX, place_large = UINT32_MAX - 1;
+
+static uint32_t place_triangle(const tiling *t, const vxm_point *const v[3], vxm_surface_box *box) {
+  const vxm_window *window = t->pen.window;
+  *box = vxm_surface_bounds_of(t->pen.lattice, window->layout, v).box;
+  if (!vxm_surface_meet(box, &t->pen.tile))
+    return place_nowhere;
+  size_t low = (size_t)(box->begin[VXM_SLOW] - window->begin) >> t->slice_bits;
+  size_t high = (size_t)(box->end[VXM_SLOW] - 1 - window->begin) >> t->slice_bits;
+  size_t left = (size_t)box->begin[VXM_MIDDLE] >> t->row_bits;
+  size_t right = (size_t)(box->end[VXM_MIDDLE] - 1) >> t->row_bits;
+  if (high - low >= BOXED_MAX || right - left >= BOXED_MAX)
+    return place_large;
+  return (uint32_t)(((low * t->across + left) * BOXED_MAX + (high - low)) * BOXED_MAX + (right - left));
+}
+
+static void sort_chunk(size_t chunk, int worker, void *payload) {
+  tiling *t = payload;
+  size_t end = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk + 1);
+  size_t *counter = t->counters + chunk * t->tile_count;
+  for (size_t i = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk); i < end; i++) {
+    const vxm_point *v[3];
+    vxm_surface_box box;
+    if (i % VXM_ASK_STEPS == 0 && vxm_task_progress_stopped(&t->watch, worker))
+      return;
+    if (!t->list) {
+      corners_of(t->surface, i, v);
+      t->places[i] = place_triangle(t, v, &box);
+    }
+    uint32_t place = t->places[i];
+    if (place == place_nowhere)
+      continue;
+    if (place == place_large) {
+      corners_of(t->surface, i, v);
+      place_triangle(t, v, &box);
+      sort_large(t, v, &box, counter, t->list, (uint32_t)i);
+    } else
+      sort_boxed(t, place / (BOXED_MAX * BOXED_MAX), place / BOXED_MAX % BOXED_MAX + 1, place % BOXED_MAX + 1,
+                 counter, t->list, (uint32_t)i);
+  }
+}
+
+/**
+ * Takes as many tiles from t->first on as keep the list short, though at least one: a triangle as large as
+ * the window is listed in every tile, and the list must not outgrow the mesh.
+ */
+static vxm_status list_tiles(tiling *t) {
+  vxm_context *context = t->surface->context;
+  size_t most = 4 * t->surface->triangle_count + LISTED_MIN, total = 0;
+  for (t->end = t->first; t->end < t->tile_count; t->end++) {
+    size_t next = total;
+    for (size_t c = 0; c < t->chunks; c++)
+      next += t->counters[c * t->tile_count + t->end];
+    if (t->end > t->first && next > most)
+      break;
+    t->begin[t->end - t->first] = total;
+    for (size_t c = 0; c < t->chunks; c++) { /* counts become places */
+      size_t *counter = &t->counters[c * t->tile_count + t->end], count = *counter;
+      *counter = total;
+      total += count;
+    }
+  }
+  t->begin[t->end - t->first] = total;
+  vxm_free(context, t->list);
+  t->list = vxm_alloc(context, total, sizeof *t->list, t->error);
+  if (!t->list)
+    return t->error->code;
+  if (total > 0)
+    vxm_parallel(context, t->chunks, sort_chunk, t);
+  return t->watch.status;
+}
+
+/* ---- Drawing ---- */
+
+/** Moves what was drawn into the window and leaves the tile's words zero. */
+static void move_tile(const tiling *t, const vxm_surface_pen *pen) {
+  const vxm_surface_box *box = &pen->tile;
+  size_t count = (size_t)(box->end[VXM_MIDDLE] - box->begin[VXM_MIDDLE]) * pen->window->row_words;
+  for (int64_t s = box->begin[VXM_SLOW]; s < box->end[VXM_SLOW]; s++) {
+    uint64_t *to = vxm_window_row(pen->window, box->begin[VXM_MIDDLE], s);
+    uint64_t *from = vxm_surface_row(pen, box->begin[VXM_MIDDLE], s);
+    if (!t->is_fresh)
+      pen->build->join(to, from, count);
+    else if (t->is_large)
+      pen->build->put(to, from, count);
+    else {
+      memcpy(to, from, count * sizeof *to);
+      memset(from, 0, count * sizeof *from);
+    }
+  }
+}
+
+/** Triangles of a tile lie here and there in a large mesh. */
+static void fetch_ahead(const tiling *t, size_t i, size_t end) {
+  if (i + 2 * AHEAD < end)
+    __builtin_prefetch(t->surface->corners + 3 * (size_t)t->list[i + 2 * AHEAD]);
+  if (i + AHEAD < end) {
+    const vxm_point *v[3];
+    corners_of(t->surface, t->list[i + AHEAD], v);
+    for (int c = 0; c < 3; c++)
+      __builtin_prefetch(v[c]);
+  }
+}
+
+static void draw_tile(size_t task, int worker, void *payload) {
+  tiling *t = payload;
+  if (vxm_task_progress_stopped(&t->watch, worker))
+    return;
+  vxm_surface_pen pen = t->pen;
+  pen.tile = tile_box(t, t->first + task);
+  size_t room = (size_t)1 << t->row_bits, padded = room + (size_t)2 * VXM_SURFACE_LANES;
+  pen.rows += (size_t)worker * room;
+  pen.row_begin += (size_t)worker * 2 * padded;
+  pen.row_end = pen.row_begin + padded;
+  pen.words += (size_t)worker * t->tile_words;
+  size_t rows = 0;
+  size_t end = t->begin[task + 1];
+  for (size_t i = t->begin[task]; i < end; i++) {
+    const vxm_point *v[3];
+    fetch_ahead(t, i, end);
+    corners_of(t->surface, t->list[i], v);
+    rows += 1 + vxm_surface_draw(&pen, v);
+    if (rows < POLL_ROWS)
+      continue;
+    rows = 0;
+    if (vxm_task_progress_stopped(&t->watch, worker))
+      return;
+  }
+  if (t->is_fresh || t->begin[task] < t->begin[task + 1])
+    move_tile(t, &pen);
+  vxm_task_progress_step(&t->watch);
+}
+
+static vxm_status draw_tiles(tiling *t) {
+  vxm_context *context = t->surface->context;
+  t->end = t->tile_count;
+  vxm_parallel(context, t->chunks, sort_chunk, t); /* counts only, while there is no list */
+  if (t->watch.status != VXM_OK)
+    return t->watch.status;
+  for (t->first = 0; t->first < t->tile_count; t->first = t->end) {
+    vxm_status status = list_tiles(t);
+    if (status != VXM_OK)
+      return status;
+    vxm_parallel(context, t->end - t->first, draw_tile, t);
+    if (t->watch.status != VXM_OK)
+      return t->watch.status;
+  }
+  return vxm_task_progress_end(&t->watch);
+}
+
+vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window, vxm_surface_kind kind,
+                           bool is_fresh, vxm_error *error) {
+  if (window->begin >= window->end)
+    return VXM_OK;
+  vxm_context *context = surface->context;
+  vxm_error local = VXM_ERROR_INIT;
+  tiling t = {
+      .surface = surface,
+      .pen = {.window = window,
+              .lattice = &surface->lattice,
+              .kind = kind,
+              .build = vxm_surface_best(),
+              .narrow_max = vxm_surface_narrow_max(&surface->lattice),
+              .tile = {{0, 0, window->begin}, {window->fast_dim, window->middle_dim, window->end}}},
+      .is_fresh = is_fresh,
+      .error = &local,
+  };
+  choose_tiles(&t);
+  vxm_task_progress_start(&t.watch, context, "voxelizing the surface", t.tile_count, &local);
+  size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t.row_bits;
+  t.counters = vxm_calloc(context, t.chunks * t.tile_count, sizeof *t.counters, &local);
+  t.places = vxm_alloc(context, surface->triangle_count, sizeof *t.places, &local);
+  t.begin = vxm_alloc(context, t.tile_count + 1, sizeof *t.begin, &local);
+  t.pen.rows = vxm_alloc(context, workers * rows, sizeof *t.pen.rows, &local);
+  t.pen.row_begin = vxm_calloc(context, workers * 2 * (rows + (size_t)2 * VXM_SURFACE_LANES),
+                               sizeof *t.pen.row_begin, &local);
+  t.pen.words = vxm_calloc(context, workers * t.tile_words, sizeof *t.pen.words, &local);
+  vxm_status status = t.counters && t.places && t.begin && t.pen.rows && t.pen.row_begin && t.pen.words
+                          ? draw_tiles(&t)
+                          : local.code;
+  vxm_free(context, t.list);
+  vxm_free(context, t.pen.words);
+  vxm_free(context, t.pen.row_begin);
+  vxm_free(context, t.pen.rows);
+  vxm_free(context, t.begin);
+  vxm_free(context, t.places);
+  vxm_free(context, t.counters);
+  if (status != VXM_OK && error)
+    *error = local;
+  return status;
+}

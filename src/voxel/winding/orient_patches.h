@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Turning triangles outward by looking at a voted grid. */
+#ifndef VXM_VOXEL_WINDING_ORIENT_PATCHES_H
+#define VXM_VOXEL_WINDING_ORIENT_PATCHES_H
+
+#include "voxel/parity/snapped_points.h"
+
+/** Which triangles of parts part_begin..part_end-1 are to be turned, in the order of their facets, cones and
+ * caps left out. */
+typedef struct vxm_flip_mask {
+  vxm_context *context;
+  size_t part_begin, part_end;
+  size_t count;
+  uint8_t *turned; /**< of every triangle; NULL = not known yet */
+  size_t patch_count;
+} vxm_flip_mask;
+
+/**
+ * Finds out which triangles of parts part_begin..part_end-1 face inward.
+ *
+ * Triangles that meet at an edge of exactly two form patches, consistent within; a patch may consist of one
+ * triangle. Which way a patch faces is read from the grid: on which side of it are more voxels set? Voxels on
+ * which the voters disagree count less. Where the grid does not tell (a sheet), the patch keeps the
+ * orientation that most of its area came with. Unlike ray casting this costs a few look-ups per triangle, and
+ * it works across patches that share no edge.
+ *
+ * @param placed the points on the lattice of the voters' grid
+ * @param voters words of three grids, x fastest; the same three times if there was no vote
+ * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+vxm_status vxm_orient_patches_find(vxm_flip_mask *out, const vxm_triangle_set *facets,
+                                   const vxm_snapped_points *placed, size_t part_begin, size_t part_end,
+                                   const uint64_t *const voters[3], vxm_error *error);
+void vxm_flip_mask_destroy(vxm_flip_mask *turns);
+
+#endif
