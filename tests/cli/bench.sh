@@ -71,8 +71,8 @@ mkdir out
 run 'voxmend bench in/cube.off -r 8,16 --threads 1,2 --time 0 -q --plot out/a\&b.SVG && ls out'
 run 'grep -c "<polyline " out/a\&b.SVG; grep -o -E ">(cube.off|milliseconds|resolution|solid_vote|winding|[12] threads?)\b" out/a\&b.SVG'
 run 'grep -E "href|url\(|<script|<image" out/a\&b.SVG'
-if command -v python3 >/dev/null; then
-  python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' 'out/a&b.SVG'
+if [ -n "$TEST_PYTHON" ]; then
+  "$TEST_PYTHON" -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' 'out/a&b.SVG'
 fi
 rm out/*
 run 'voxmend bench in/cube.off -r 8 $quick --plot no/such/x.svg'

@@ -5,10 +5,10 @@ set -eu
 shim=$BUILDDIR/.libs/fail_allocations.so
 program=$BUILDDIR/.libs/voxmend
 library=$BUILDDIR/tests/faults/.libs/library
-command -v python3 >/dev/null || exit 77
+[ -n "$TEST_PYTHON" ] || { echo "no Python"; exit 77; }
 [ -f "$shim" ] && [ -x "$program" ] && [ -x "$library" ] || exit 77
 # Sanitizers bring an allocator of their own.
 if ldd "$program" | grep -qE 'lib[a-z]*san\.so'; then exit 77; fi
 LD_LIBRARY_PATH=$BUILDDIR/.libs${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 export LD_LIBRARY_PATH
-python3 "$SRCDIR/tests/faults/allocations.py" "$program" "$library" "$shim"
+"$TEST_PYTHON" "$SRCDIR/tests/faults/allocations.py" "$program" "$library" "$shim"

@@ -4,7 +4,7 @@
 set -eu
 shim=$BUILDDIR/.libs/fail_writes.so
 program=$BUILDDIR/.libs/voxmend
-command -v python3 >/dev/null || exit 77
+[ -n "$TEST_PYTHON" ] || { echo "no Python"; exit 77; }
 [ -f "$shim" ] && [ -x "$program" ] || exit 77
 # Sanitizers want to be the first library; and the program itself, not the script that stands for it, is to fail.
 if ldd "$program" | grep -qE 'lib[a-z]*san\.so'; then exit 77; fi
@@ -13,4 +13,4 @@ export LD_LIBRARY_PATH
 work=$(mktemp -d "${TMPDIR:-/tmp}/voxmend-writes.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 "$BUILDDIR/samples/generate_samples" "$work"
-python3 "$SRCDIR/tests/faults/writes.py" "$program" "$shim" "$work/rocket.off"
+"$TEST_PYTHON" "$SRCDIR/tests/faults/writes.py" "$program" "$shim" "$work/rocket.off"

@@ -380,11 +380,12 @@ class Copies(unittest.TestCase):
             other.batch([0], model=3)
 
 
+# Each goes on until it is interrupted, on any machine.
 LONG_CALLS = {
-    "distance": "voxmend.distance(mesh, 300, band=0)",
-    "coverage": "voxmend.coverage(mesh, 512)",
-    "voxelize": "voxmend.voxelize(mesh, 1400)",
-    "winding": "voxmend.voxelize(mesh, 300, method='winding')",
+    "distance": "[voxmend.distance(mesh, 300, band=0) for _ in range(99)]",
+    "coverage": "[voxmend.coverage(mesh, 512) for _ in range(99)]",
+    "voxelize": "[voxmend.voxelize(mesh, 1400) for _ in range(99)]",
+    "winding": "[voxmend.voxelize(mesh, 300, method='winding') for _ in range(99)]",
     "batch": "[sampler.batch(4096, dtype='bits') for _ in range(99)]",
     "one variant": "[large.batch(1, dtype='bits') for _ in range(99)]",
     "repair": "[voxmend.repair(big) for _ in range(99)]",
@@ -393,7 +394,7 @@ LONG_CALLS = {
     "save": "[big.save('out.obj') for _ in range(99)]",
     "matrix": "[voxmend.VoxelGrid(filled).matrix for _ in range(99)]",
     "numbers": "[voxmend.VoxelGrid(numbers) for _ in range(99)]",
-    "fill": "hollow.fill()",
+    "fill": "[hollow.fill() for _ in range(99)]",
     "hollow": "[hollow.hollow() for _ in range(99)]",
     "boxes": "[hollow.as_boxes() for _ in range(99)]",
 }

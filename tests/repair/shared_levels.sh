@@ -4,7 +4,7 @@
 # are missing. LEVELS and FOLDERS choose others, MARKDOWN=doc/repair.md writes the table anew.
 set -eu
 meshes=$SRCDIR/../shared/meshes
-[ -d "$meshes" ] || exit 77
-python3 -c 'import numpy' 2>/dev/null || exit 77
-exec python3 "$SRCDIR/tests/repair/levels.py" "$VOXMEND" "$meshes" --levels "${LEVELS:-clean,manifold,closed}" \
+[ -d "$meshes" ] || { echo "no ../shared/meshes"; exit 77; }
+"$TEST_PYTHON" -c 'import numpy' 2>/dev/null || { echo "no Python with numpy"; exit 77; }
+exec "$TEST_PYTHON" "$SRCDIR/tests/repair/levels.py" "$VOXMEND" "$meshes" --levels "${LEVELS:-clean,manifold,closed}" \
   --folders "${FOLDERS:-messy,cad,modelnet}" ${MARKDOWN:+--markdown "$MARKDOWN"}
