@@ -79,8 +79,7 @@ static vxm_status copy_tags(vxm_soup *soup, const vxm_mesh_arrays *arrays, vxm_e
   vxm_error local = VXM_ERROR_INIT;
   soup->face_tags = vxm_alloc(soup->context, soup->face_count, sizeof *soup->face_tags, &local);
   if (!soup->face_tags) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_status status = VXM_OK;

@@ -42,8 +42,7 @@ vxm_status vxm_noise_create(vxm_noise *out, vxm_context *context, uint64_t seed,
   vxm_error local = VXM_ERROR_INIT;
   out->vectors = vxm_alloc(context, size, sizeof *out->vectors, &local);
   if (!out->vectors) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   out->size = size;

@@ -19,8 +19,7 @@ static vxm_status copy_rotations(vxm_sampler *sampler, vxm_error *error) {
   size_t count = 9 * (size_t)options->rotation_count;
   sampler->rotations = vxm_alloc(sampler->context, count, sizeof *sampler->rotations, &local);
   if (!sampler->rotations) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   memcpy(sampler->rotations, options->rotations, count * sizeof *sampler->rotations);
@@ -49,8 +48,7 @@ vxm_status vxm_sampler_make(vxm_sampler **out, vxm_context *context, const vxm_s
   vxm_sampler *sampler = vxm_calloc(own, 1, sizeof *sampler, &local);
   if (!sampler) {
     vxm_context_release(own);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   sampler->context = own;
@@ -69,8 +67,7 @@ vxm_status vxm_sampler_make(vxm_sampler **out, vxm_context *context, const vxm_s
     return VXM_OK;
   }
   vxm_sampler_destroy(sampler);
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return status;
 }
 
@@ -262,8 +259,7 @@ static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
   vxm_parallel(sampler->context, count, make_task, job);
   if (atomic_load(&job->failed_at) == SIZE_MAX)
     return vxm_task_progress_end(&job->watch);
-  if (error)
-    *error = job->error;
+  vxm_error_pass(error, &job->error);
   return job->error.code;
 }
 

@@ -69,8 +69,8 @@ static vxm_status find_entries(vxm_sampler_model *subject, const vxm_soup *soup,
     subject->vertex_entry = entry;
   else
     vxm_free(context, entry);
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

@@ -73,8 +73,8 @@ static vxm_status make_room(vxm_worker *desk, size_t words, vxm_error *error) {
   vxm_free(desk->context, desk->words);
   desk->words = vxm_alloc(desk->context, words, sizeof *desk->words, &local);
   desk->word_room = desk->words ? words : 0;
-  if (!desk->words && error)
-    *error = local;
+  if (!desk->words)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

@@ -391,8 +391,7 @@ vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t
   vxm_error local = VXM_ERROR_INIT;
   void *grown = vxm_realloc(context, *array, wanted, size, &local);
   if (!grown) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   *array = grown;

@@ -29,6 +29,12 @@ vxm_status vxm_fail_at(vxm_error *error, vxm_status code, vxm_place place, const
 /** As vxm_fail_at with VXM_ERROR_IO, followed by what errno says. */
 vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what);
 
+/** Hands an error that was kept aside, by a worker or until it was known that it counts, to the caller. */
+static inline void vxm_error_pass(vxm_error *error, const vxm_error *kept) {
+  if (error)
+    *error = *kept;
+}
+
 #ifdef __cplusplus
 }
 #endif

@@ -78,8 +78,7 @@ vxm_status vxm_output_open(vxm_output **out, vxm_context *context, const char *p
   vxm_error local = VXM_ERROR_INIT;
   vxm_output *output = vxm_alloc(context, 1, sizeof *output, &local);
   if (!output) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   output->context = context;

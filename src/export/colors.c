@@ -151,8 +151,8 @@ vxm_status vxm_colors_write(vxm_voxelize_report *report, vxm_model *model, const
     status = write_file(&(vxm_colored){model->context, space, values}, &about, k, path, &local);
   report->write_ms = vxm_clock_ms() - start - report->fill_ms;
   vxm_free(model->context, values);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -138,8 +138,8 @@ static vxm_status make_values(uint16_t **values, vxm_context *context, const vxm
     *values = vxm_alloc(context, (size_t)count, sizeof **values, &local);
     status = local.code;
   }
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -133,8 +133,8 @@ static vxm_status write_windows(stream *s, const char *path, const char *format,
   s->window.words =
       vxm_alloc(context, s->window.slice_words * (size_t)s->plan->slices, sizeof *s->before, &local);
   vxm_status status = local.code;
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   if (status == VXM_OK)
     status = vxm_grid_writer_open(&s->file, context, s->space, path, format, error);
   double start = vxm_clock_ms();

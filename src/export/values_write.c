@@ -122,8 +122,8 @@ static vxm_status write_nrrd(const field_file *file, vxm_error *error) {
     status = put_slices(file, slice, wide, &local);
   vxm_free(field->context, wide);
   vxm_free(field->context, slice);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -212,8 +212,8 @@ static vxm_status fill_tree(vxm_vdb_field *tree, const field_file *file, vxm_err
   }
   vxm_free(field->context, row);
   vxm_free(field->context, slice);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -233,8 +233,8 @@ static vxm_status write_vdb(const field_file *file, vxm_error *error) {
     status = vxm_vdb_field_write(tree, file->output, &local);
   vxm_vdb_field_destroy(tree);
   vxm_free(field->context, texts);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -286,8 +286,8 @@ static vxm_status write_binvox(const field_file *file, vxm_error *error) {
     vxm_binvox_put_end(file->output, &field->space);
   vxm_free(field->context, row);
   vxm_free(field->context, slice);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -303,7 +303,7 @@ vxm_status vxm_vox_write(vxm_output *output, const vxm_colored *c, vxm_error *er
   vxm_free(c->context, p.count);
   vxm_free(c->context, p.sum);
   vxm_free(c->context, p.number);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

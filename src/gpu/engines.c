@@ -52,8 +52,7 @@ static vxm_status make_first(vxm_engine **out, vxm_context *context, const vxm_g
       drop(*out, context);
       *out = NULL;
     } else if (status != VXM_ERROR_UNAVAILABLE) {
-      if (error)
-        *error = local;
+      vxm_error_pass(error, &local);
       return status;
     }
   }
@@ -70,8 +69,7 @@ static vxm_status make_any(vxm_engine **out, vxm_context *context, bool hardware
     if (status == VXM_OK)
       return VXM_OK;
     if (status != VXM_ERROR_UNAVAILABLE) {
-      if (error)
-        *error = reasons[d];
+      vxm_error_pass(error, &reasons[d]);
       return status;
     }
   }
@@ -167,8 +165,7 @@ static vxm_status make_opencl(vxm_engine **out, vxm_context *context, const char
   vxm_error local = VXM_ERROR_INIT;
   int chosen = vxm_cl_device_find(cl, devices, count, name ? name : options->device, &local);
   if (chosen < 0) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_engine_info info;
@@ -228,8 +225,7 @@ static vxm_status make_cpu(vxm_engine **out, vxm_context *context, const char *n
   vxm_error local = VXM_ERROR_INIT;
   *out = vxm_calloc(context, 1, sizeof **out, &local);
   if (!*out) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   (*out)->context = context;

@@ -30,8 +30,7 @@ vxm_status vxm_bit_transpose_create(vxm_bit_transpose *out, vxm_context *context
   out->words = vxm_calloc(context, out->count * out->plane_words, sizeof *out->words, &local);
   if (out->words)
     return VXM_OK;
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return local.code;
 }
 

@@ -60,8 +60,7 @@ vxm_status vxm_grid_create(vxm_grid **out, vxm_context *context, const vxm_space
   if (!grid || !grid->words) {
     vxm_free(owner, grid);
     vxm_context_release(owner);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   *out = grid;
@@ -83,8 +82,8 @@ vxm_status vxm_grid_add_confidence(vxm_grid *grid, vxm_error *error) {
   const int64_t *dims = grid->space.dims;
   if (!grid->confidence)
     grid->confidence = vxm_calloc(grid->context, (size_t)dims[0] * (size_t)dims[1], (size_t)dims[2], &local);
-  if (!grid->confidence && error)
-    *error = local;
+  if (!grid->confidence)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

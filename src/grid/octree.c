@@ -19,8 +19,7 @@ vxm_status vxm_octree_new(vxm_sparse **out, vxm_context *context, const vxm_spac
   vxm_sparse *sparse = vxm_calloc(owner, 1, sizeof *sparse, &local);
   if (!sparse) {
     vxm_context_release(owner);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   sparse->context = owner;

@@ -60,8 +60,8 @@ vxm_status vxm_octree_builder_create(vxm_octree_builder *out, vxm_context *conte
   atomic_init(&out->failed, VXM_OK);
   out->strips = vxm_calloc(context, out->across * out->deep, sizeof *out->strips, &local);
   out->arenas = out->strips ? vxm_calloc(context, out->workers, sizeof *out->arenas, &local) : NULL;
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 
@@ -298,8 +298,8 @@ static vxm_status merge_levels(vxm_octree_builder *builder, int levels, vxm_seed
     across = job.across;
     deep = (deep + 3) / 4;
   }
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   vxm_status status = local.code == VXM_OK ? vxm_octree_builder_check(builder, error) : local.code;
   *root = (vxm_seed){0, 0, NULL};
   if (status == VXM_OK && below->count > 0)
@@ -363,8 +363,8 @@ static vxm_status spread(vxm_sparse *sparse, int level, vxm_seed **seeds, vxm_er
   }
   if (local.code == VXM_OK)
     vxm_parallel(sparse->context, SHARES, spread_children, &job);
-  else if (error)
-    *error = local;
+  else
+    vxm_error_pass(error, &local);
   vxm_free(sparse->context, *seeds);
   *seeds = NULL;
   if (level > 0) {
@@ -393,8 +393,7 @@ vxm_status vxm_octree_builder_end(vxm_sparse **out, vxm_octree_builder *builder,
   vxm_free(builder->context, seeds);
   if (local.code != VXM_OK) {
     vxm_sparse_destroy(sparse);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   *out = sparse;

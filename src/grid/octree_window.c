@@ -108,8 +108,8 @@ vxm_status vxm_octree_each_window(const vxm_sparse *sparse, vxm_layout layout, i
   vxm_error local = VXM_ERROR_INIT;
   window.words = vxm_alloc(sparse->context, window.slice_words * (size_t)step, sizeof *window.words, &local);
   vxm_status status = local.code;
-  if (!window.words && error)
-    *error = local;
+  if (!window.words)
+    vxm_error_pass(error, &local);
   for (int64_t begin = 0; begin < window.slow_dim && status == VXM_OK; begin += step) {
     window.begin = begin;
     window.end = vxm_min(begin + step, window.slow_dim);

@@ -30,8 +30,7 @@ static vxm_status box_of_soup(box *out, const vxm_soup *soup, vxm_error *error) 
   vxm_error local = VXM_ERROR_INIT;
   uint8_t *used = vxm_alloc(soup->context, soup->vertex_count, sizeof *used, &local);
   if (!used) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_extent extent;

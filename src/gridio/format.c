@@ -80,8 +80,8 @@ static vxm_status read_file(vxm_grid **grid, vxm_field **field, vxm_bits_rule ru
     status = format->read_field(field, &input, &local);
   }
   vxm_input_close(&input);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -341,8 +341,7 @@ vxm_status vxm_boundary_loops_build(vxm_boundary_loops *out, const vxm_soup *sou
   if (done)
     return VXM_OK;
   vxm_boundary_loops_destroy(out);
-  if (error)
-    *error = b.error;
+  vxm_error_pass(error, &b.error);
   return b.error.code;
 }
 

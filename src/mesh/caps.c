@@ -145,8 +145,7 @@ static vxm_status add_chord(vxm_caps *caps, uint32_t p, uint32_t q, vxm_error *e
     vxm_error local = VXM_ERROR_INIT;
     uint64_t *chords = vxm_calloc(caps->soup->context, slots, sizeof *chords, &local);
     if (!chords) {
-      if (error)
-        *error = local;
+      vxm_error_pass(error, &local);
       return local.code;
     }
     for (size_t i = 0; i < caps->chord_slots; i++)

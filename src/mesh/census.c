@@ -107,8 +107,7 @@ static vxm_status measure_faces(taking *t, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   t->sums = vxm_alloc(t->context, slices, sizeof *t->sums, &local);
   if (!t->sums) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_status status = vxm_parallel_asked(t->context, slices, add_slice, t, error);
@@ -215,8 +214,7 @@ vxm_status vxm_soup_census(vxm_census *out, const vxm_soup *soup, vxm_error *err
   vxm_free(t.context, t.map);
   if (status != VXM_OK) {
     *out = (vxm_census){0};
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
   }
   return status;
 }

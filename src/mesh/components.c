@@ -171,7 +171,7 @@ vxm_status vxm_components(vxm_context *context, const vxm_soup *soup, const uint
     status = number_faces(context, soup, vertex_map, labels, numbers, face_labels, count, &local);
   vxm_free(context, numbers);
   vxm_free(context, labels);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

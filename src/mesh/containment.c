@@ -409,8 +409,7 @@ vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, con
   if (done)
     return VXM_OK;
   vxm_containment_destroy(out);
-  if (error)
-    *error = b.error;
+  vxm_error_pass(error, &b.error);
   return b.error.code;
 }
 

@@ -242,8 +242,8 @@ vxm_status vxm_duplicates_find(vxm_duplicates *out, vxm_context *context, const 
   status = s.tallies ? vxm_parallel_asked(context, bucket_count, search_bucket, &s, &local) : local.code;
   if (status == VXM_OK)
     *out = (vxm_duplicates){atomic_load(&s.same), atomic_load(&s.opposite_pairs)};
-  else if (error)
-    *error = local;
+  else
+    vxm_error_pass(error, &local);
   vxm_free(context, s.tallies);
   vxm_free(context, s.tables);
   vxm_radix_partition_free(&s.buckets);

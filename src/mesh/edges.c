@@ -153,8 +153,7 @@ static vxm_status sort_and_write(building *b, vxm_edges *out, vxm_context *conte
   if (written)
     return VXM_OK;
   vxm_free(context, out->edges);
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return local.code;
 }
 

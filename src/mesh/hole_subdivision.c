@@ -111,8 +111,8 @@ static vxm_status fill_by_cuts(uint32_t (*triangles)[3], bool *filled, const vxm
   vxm_free(context, c.along);
   vxm_free(context, c.lengths);
   vxm_free(context, c.loops);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -265,8 +265,8 @@ static vxm_status try_ears(uint32_t (*triangles)[3], bool *filled, const vxm_rim
   vxm_free(context, c.after);
   vxm_free(context, c.before);
   vxm_free(context, c.plane);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

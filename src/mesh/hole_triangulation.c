@@ -185,7 +185,7 @@ vxm_status vxm_hole_subdivide(uint32_t (*triangles)[3], bool *filled, const vxm_
   vxm_free(context, t.normals);
   vxm_free(context, t.weights);
   vxm_free(context, t.points);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

@@ -157,7 +157,7 @@ vxm_status vxm_part_census_all(vxm_part_state *out, size_t part_count, const vxm
   vxm_free(context, m.vertex_part);
   vxm_free(context, m.view.indices);
   vxm_free(context, map);
-  if (status != VXM_OK && error)
-    *error = m.error;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &m.error);
   return status;
 }

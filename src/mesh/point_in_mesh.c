@@ -157,8 +157,7 @@ static vxm_status build(vxm_point_in_mesh *inside, int axis, vxm_error *error) {
     vxm_free(context, bins->triangles);
     vxm_free(context, bins->begin);
     *bins = (vxm_point_in_mesh_bins){0};
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   /* every begin has moved to its end */

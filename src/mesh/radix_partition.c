@@ -74,8 +74,7 @@ vxm_status vxm_radix_partition_fill(vxm_radix_partition *out, vxm_context *conte
   if (done)
     return VXM_OK;
   vxm_radix_partition_free(out);
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return local.code;
 }
 

@@ -25,8 +25,7 @@ vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *for
     }
     vxm_free(owner, soup);
     vxm_context_release(owner);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   *out = soup;
@@ -105,8 +104,7 @@ vxm_status vxm_soup_add_tag(vxm_soup *soup, const char *name, size_t length, uin
   vxm_error local = VXM_ERROR_INIT;
   char *copy = vxm_alloc(soup->context, length + 1, 1, &local);
   if (!copy) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   memcpy(copy, name, length);
@@ -139,8 +137,7 @@ vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error)
     copy->face_tags = vxm_alloc(copy->context, soup->face_count, sizeof *copy->face_tags, &local);
     if (!copy->face_tags) {
       status = local.code;
-      if (error)
-        *error = local;
+      vxm_error_pass(error, &local);
     } else
       memcpy(copy->face_tags, soup->face_tags, soup->face_count * sizeof *copy->face_tags);
   }

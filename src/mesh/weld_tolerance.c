@@ -404,7 +404,7 @@ vxm_status vxm_weld_near(vxm_context *context, const double *positions, size_t c
   vxm_free(context, s.homes);
   vxm_free(context, s.blocked);
   vxm_free(context, s.parent);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

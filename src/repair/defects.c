@@ -212,8 +212,7 @@ vxm_status vxm_defects_find(vxm_defects **out, const vxm_soup *soup, size_t most
     vxm_defects_destroy(f.defects);
   else
     vxm_context_release(context);
-  if (error)
-    *error = f.error;
+  vxm_error_pass(error, &f.error);
   return f.error.code;
 }
 
@@ -259,7 +258,7 @@ vxm_status vxm_defects_paint(const vxm_defects *defects, const vxm_soup *soup, c
   vxm_status status = marks.edges ? vxm_meshio_write_marked(soup, &marks, path, &local) : local.code;
   vxm_free(soup->context, marks.edges);
   vxm_free(soup->context, marks.faces);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

@@ -32,8 +32,8 @@ static vxm_status put_points(vxm_device_cache *resident, vxm_device_cache_id id,
     vxm_oversized_narrow(narrow, points, count);
   vxm_status status = narrow ? put(resident, id, narrow, count * sizeof *narrow, &local) : local.code;
   vxm_free(context, narrow);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -47,8 +47,8 @@ static vxm_status put_apexes(vxm_device_cache *resident, const vxm_triangle_set 
   vxm_status status =
       apex ? put(resident, VXM_RESIDENT_APEXES, apex, count * sizeof *apex, &local) : local.code;
   vxm_free(context, apex);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

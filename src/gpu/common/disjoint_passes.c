@@ -238,8 +238,7 @@ vxm_status vxm_disjoint_passes_create(vxm_disjoint_passes *out, vxm_context *con
   vxm_free(context, d.taken);
   if (status == VXM_OK)
     return VXM_OK;
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return local.code; /* that of the allocation, where it was one */
 }
 

@@ -152,8 +152,7 @@ vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_erro
     vxm_error local = VXM_ERROR_INIT;
     to = back->block = vxm_alloc(engine->base.context, back->tile.words, sizeof *to, &local);
     if (!to) {
-      if (error)
-        *error = local;
+      vxm_error_pass(error, &local);
       return local.code;
     }
   }

@@ -63,8 +63,8 @@ static void *allocate(vxm_context *context, size_t count, size_t size, vxm_statu
   vxm_error local = VXM_ERROR_INIT;
   void *block = vxm_alloc(context, count, size, &local);
   *status = local.code;
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return block;
 }
 

@@ -25,8 +25,8 @@ vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels, con
     if (set[p] == 1)
       atomic_store_explicit(&has_voxels[p], 1, memory_order_relaxed);
   vxm_free(engine->base.context, set);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -85,8 +85,7 @@ static vxm_status make_tile(vxm_opencl *engine, const vxm_slice_job *tile, const
     if (status == VXM_OK)
       return VXM_OK;
     if (status != VXM_ERROR_RANGE || engine->options.cl_method == VXM_CL_TILES) {
-      if (error)
-        *error = local;
+      vxm_error_pass(error, &local);
       return status;
     }
     vxm_disjoint_passes_destroy(

@@ -195,8 +195,8 @@ static vxm_status upload_touched(const making *m, vxm_error *error) {
       has_voxels ? vxm_cl_upload(engine, VXM_CL_TOUCHED, has_voxels, parts * sizeof *has_voxels, &local)
                  : local.code;
   vxm_free(engine->base.context, has_voxels);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -36,8 +36,8 @@ vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_triangle_set *facets
   vxm_free(engine->base.context, parts);
   if (status == VXM_OK)
     engine->parts_serial = facets->serial;
-  else if (error)
-    *error = local;
+  else
+    vxm_error_pass(error, &local);
   return status;
 }
 

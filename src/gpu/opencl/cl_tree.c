@@ -63,8 +63,8 @@ static vxm_status upload_places(vxm_opencl *engine, const vxm_cl_tree *tree, vxm
   vxm_status status =
       places ? vxm_cl_upload(engine, VXM_CL_PLACES, places, count * sizeof *places, &local) : local.code;
   vxm_free(engine->base.context, places);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

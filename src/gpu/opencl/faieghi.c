@@ -149,8 +149,8 @@ static vxm_status place(vxm_published *published, vxm_space *space, const vxm_su
   if (status == VXM_OK)
     status = send_vertices(published, vertices, &local);
   vxm_free(context, vertices);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -207,8 +207,7 @@ vxm_status vxm_cl_published_create(vxm_published **out, vxm_space *space, vxm_op
   }
   vxm_cl_published_destroy(published);
   *space = (vxm_space){0};
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return status;
 }
 
@@ -290,8 +289,8 @@ static vxm_status add_tests(int64_t *sum, const vxm_published *published, vxm_er
     left -= bytes;
   }
   vxm_free(context, block);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

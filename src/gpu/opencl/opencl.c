@@ -62,8 +62,7 @@ vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_c
   vxm_opencl *engine = vxm_calloc(context, 1, sizeof *engine, &local);
   *out = NULL;
   if (!engine) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   engine->base.ops = &opencl_ops;

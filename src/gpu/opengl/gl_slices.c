@@ -95,8 +95,7 @@ static vxm_status list_facets(slicing *s, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   uint32_t *list = vxm_alloc(context, total, sizeof *list, &local);
   if (!list) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   memcpy(next, s->first, sizeof next);
@@ -270,8 +269,8 @@ static vxm_status start_random(slicing *s, vxm_error *error) {
   vxm_status status =
       value ? vxm_gl_upload(engine, VXM_GL_RANDOM, value, RANDOM * sizeof *value, &local) : local.code;
   vxm_free(engine->base.context, value);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

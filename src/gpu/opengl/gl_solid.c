@@ -49,8 +49,8 @@ static vxm_status take_touched(vxm_opengl *engine, atomic_uchar *has_voxels, siz
     if (set[p])
       atomic_store_explicit(&has_voxels[p], 1, memory_order_relaxed);
   vxm_free(engine->base.context, set);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -215,8 +215,7 @@ vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_g
   vxm_opengl *engine = vxm_calloc(context, 1, sizeof *engine, &local);
   *out = NULL;
   if (!engine) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   engine->base.ops = &opengl_ops;

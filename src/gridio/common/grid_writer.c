@@ -62,8 +62,7 @@ static vxm_status create(vxm_grid_writer **out, vxm_context *context, const vxm_
   vxm_grid_writer *slices = vxm_calloc(owner, 1, sizeof *slices, &local);
   if (!slices) {
     vxm_context_release(owner);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   slices->context = owner;
@@ -73,8 +72,7 @@ static vxm_status create(vxm_grid_writer **out, vxm_context *context, const vxm_
   slices->state = vxm_alloc(owner, format->slices->state_bytes(space), 1, &local);
   if (!slices->state) {
     slices_free(slices);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   *out = slices;

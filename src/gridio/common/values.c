@@ -148,8 +148,7 @@ vxm_status vxm_field_make(vxm_field **out, vxm_context *context, const vxm_space
   if (!owner) {
     vxm_free(context, values);
     vxm_free(context, field);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   *field = (vxm_field){.context = owner,

@@ -304,8 +304,7 @@ vxm_status vxm_field_narrow(vxm_field *field, vxm_scalar scalar, vxm_error *erro
   vxm_error local = VXM_ERROR_INIT;
   unsigned char *values = vxm_alloc(field->context, count, vxm_scalar_bytes(scalar), &local);
   if (!values) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   narrow(values, from, count, scalar);

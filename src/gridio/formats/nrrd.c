@@ -133,8 +133,8 @@ static vxm_status read_gzip(const rows_to *to, const vxm_nrrd_header *h, const v
     status = unpack_rows(&u, to, h);
     inflateEnd(&u.z);
   }
-  if (status != VXM_OK && error)
-    *error = u.error;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &u.error);
   return status;
 }
 #else

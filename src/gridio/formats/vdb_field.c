@@ -34,8 +34,7 @@ vxm_status vxm_vdb_field_create(vxm_vdb_field **out, vxm_context *context, const
     field->target.functions->create(&field->target.vdb, context, kind, space, &local);
   if (local.code != VXM_OK) {
     vxm_vdb_field_destroy(field);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   *out = field;

@@ -285,7 +285,7 @@ vxm_status vxm_vdb_tree_visit(const vxm_vdb_visitor *visitor, const vxm_vdb_grid
   if (status == VXM_OK)
     status = vxm_progress(input->context, "reading", 1, &local);
   vxm_free(input->context, w.room);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

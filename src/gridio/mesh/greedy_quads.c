@@ -166,8 +166,7 @@ static vxm_status find_axis(vxm_greedy_quads *all, const vxm_grid *grid, vxm_gre
     vxm_parallel(grid->context, count, run_task, &s);
     for (size_t t = 0; t < count; t++) {
       if (tasks[t].status != VXM_OK) {
-        if (error)
-          *error = tasks[t].error;
+        vxm_error_pass(error, &tasks[t].error);
         return tasks[t].status;
       }
       all->count += tasks[t].list->count;
@@ -190,8 +189,7 @@ vxm_status vxm_greedy_quads_find(vxm_greedy_quads *out, const vxm_grid *grid, vx
   vxm_error local = VXM_ERROR_INIT;
   out->lists = vxm_calloc(grid->context, out->list_count, sizeof *out->lists, &local);
   if (!out->lists) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_greedy_quad_list *lists = out->lists;

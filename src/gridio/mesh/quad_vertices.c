@@ -28,8 +28,7 @@ static void *take(vxm_context *context, size_t count, size_t size, vxm_status *s
   void *block = *status == VXM_OK ? vxm_alloc(context, count, size, &local) : NULL;
   if (*status == VXM_OK && !block) {
     *status = local.code;
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
   }
   return block;
 }

@@ -79,8 +79,7 @@ vxm_status vxm_occupancy_mips_create(vxm_occupancy_mips *out, const vxm_grid *gr
     out->level[l].cells = vxm_alloc(out->context, (size_t)(dims[0] * dims[1] * dims[2]), 1, &local);
     if (!out->level[l].cells) {
       vxm_occupancy_mips_destroy(out);
-      if (error)
-        *error = local;
+      vxm_error_pass(error, &local);
       return local.code;
     }
     out->levels = l + 1;

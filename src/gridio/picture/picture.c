@@ -86,8 +86,7 @@ static vxm_status find_outline(outline *o, const vxm_scene *scene, const box *li
   o->count = 0;
   o->points = vxm_alloc(scene->grid->context, most, sizeof *o->points, &local);
   if (!o->points) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   int64_t side = INT64_C(4) << level;
@@ -251,8 +250,7 @@ static vxm_status draw(vxm_output *output, const camera *cam, const vxm_scene *s
   vxm_error local = VXM_ERROR_INIT;
   unsigned char *pixels = vxm_alloc(context, (size_t)BAND * 3, (size_t)cam->width, &local);
   if (!pixels) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_png *png;

@@ -54,8 +54,7 @@ static void on_flush(png_structp writer) {
 static vxm_status fail(const vxm_png *png, vxm_error *error) {
   if (png->error.code == VXM_OK)
     return vxm_fail(error, VXM_ERROR_MEMORY, "the picture cannot be written: out of memory");
-  if (error)
-    *error = png->error;
+  vxm_error_pass(error, &png->error);
   return png->error.code;
 }
 
@@ -81,8 +80,7 @@ vxm_status vxm_png_create(vxm_png **out, vxm_context *context, vxm_output *outpu
   vxm_error local = VXM_ERROR_INIT;
   vxm_png *png = vxm_calloc(context, 1, sizeof *png, &local);
   if (!png) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   png->context = context;

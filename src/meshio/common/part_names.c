@@ -22,8 +22,7 @@ vxm_status vxm_part_names_number(uint32_t *numbers, vxm_context *context, const 
   vxm_error local = VXM_ERROR_INIT;
   occurrence *all = vxm_alloc(context, count, sizeof *all, &local);
   if (!all) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   for (size_t i = 0; i < count; i++)

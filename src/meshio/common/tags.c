@@ -120,8 +120,7 @@ static vxm_status grow_slots(vxm_tagger *tagger, vxm_error *error) {
   size_t count = tagger->slot_count ? tagger->slot_count * 2 : 64;
   uint32_t *slots = vxm_calloc(soup->context, count, sizeof *slots, &local);
   if (!slots) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   for (size_t t = 0; t < soup->tag_count; t++) {

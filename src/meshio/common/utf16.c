@@ -55,8 +55,7 @@ vxm_status vxm_utf16_to_utf8(unsigned char **out, size_t *out_size, vxm_context 
   /* A unit of two bytes becomes at most three; a pair of four bytes becomes four. */
   unsigned char *text = vxm_alloc(context, size / 2, 3, &local);
   if (!text) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   size_t used = 0;

@@ -120,8 +120,7 @@ static vxm_status receive_failure(vxm_process *sender, vxm_error *error) {
   tame(sent.file, sizeof sent.file);
   if (sent.code <= VXM_OK || sent.code > VXM_ERROR_CANCELLED || !sent.text[0])
     return not_a_soup(error);
-  if (error)
-    *error = sent;
+  vxm_error_pass(error, &sent);
   return sent.code;
 }
 
@@ -179,8 +178,8 @@ static vxm_status receive_tags(vxm_soup *soup, vxm_process *sender, const parcel
   soup->face_tags = vxm_alloc(soup->context, (size_t)counts->faces, sizeof *soup->face_tags, &local);
   char *names = vxm_alloc(soup->context, (size_t)counts->tag_bytes, 1, &local);
   vxm_status status = soup->face_tags && names ? VXM_OK : local.code;
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   if (status == VXM_OK)
     status =
         vxm_process_receive(sender, soup->face_tags, (size_t)counts->faces * sizeof *soup->face_tags, error);

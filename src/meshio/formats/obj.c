@@ -259,8 +259,7 @@ static vxm_status count_unused(const vxm_soup *soup, size_t *unused, size_t *las
   vxm_error local = VXM_ERROR_INIT;
   uint64_t *used = vxm_calloc(soup->context, words, sizeof *used, &local);
   if (!used) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   for (size_t c = 0; c < soup->corner_count; c++)

@@ -204,8 +204,8 @@ static vxm_status add_parts(flattener *f, vxm_error *error) {
     if (status == VXM_OK)
       status = vxm_progress(context, "reading", (double)n / (double)f->node_count, &local);
   }
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   vxm_free(context, numbers);
   vxm_free(context, names);
   return status;

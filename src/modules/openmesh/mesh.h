@@ -28,8 +28,7 @@ template <class Work> vxm_status guarded(vxm_error *error, Work work) {
     work();
     return VXM_OK;
   } catch (const failure &failed) {
-    if (error)
-      *error = failed.error;
+    vxm_error_pass(error, &failed.error);
     return failed.error.code;
   } catch (const std::bad_alloc &) {
     return vxm_fail(error, VXM_ERROR_MEMORY, "OpenMesh: out of memory; free some");

@@ -468,7 +468,7 @@ vxm_status vxm_pass_bodies(vxm_repair_state *work, bool *changed, vxm_error *err
   vxm_free(work->context, p.asked);
   vxm_free(work->context, touches);
   vxm_edge_groups_free(&p.groups, work->context);
-  if (!done && error)
-    *error = p.error;
+  if (!done)
+    vxm_error_pass(error, &p.error);
   return done ? VXM_OK : p.error.code;
 }

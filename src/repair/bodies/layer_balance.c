@@ -302,7 +302,7 @@ vxm_status vxm_layers_balance(vxm_layers *layers, const int32_t *reach, vxm_erro
   vxm_free(context, b.by_patch);
   vxm_free(context, b.by_edge);
   vxm_free(context, kinds);
-  if (!done && error)
-    *error = b.error;
+  if (!done)
+    vxm_error_pass(error, &b.error);
   return done ? VXM_OK : b.error.code;
 }

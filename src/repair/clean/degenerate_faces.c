@@ -129,8 +129,8 @@ static vxm_status choose(removal *r, vxm_error *error) {
   if (r->side_next) {
     list_sides(r);
     choose_faces(r);
-  } else if (error)
-    *error = local;
+  } else
+    vxm_error_pass(error, &local);
   vxm_free(work->context, r->side_next);
   vxm_free(work->context, r->side_face);
   vxm_free(work->context, r->edge_side);

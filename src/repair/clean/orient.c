@@ -352,8 +352,7 @@ vxm_status vxm_pass_orientation(vxm_repair_state *work, bool *changed, vxm_error
   vxm_free(work->context, o.pair);
   vxm_free(work->context, o.sides);
   if (!done) {
-    if (error)
-      *error = o.error;
+    vxm_error_pass(error, &o.error);
     return o.error.code;
   }
   if (*changed)

@@ -54,8 +54,7 @@ static vxm_status take_faces(vxm_soup **out, uint64_t **numbers, const vxm_repai
   vxm_soup_destroy(*out);
   *numbers = NULL;
   *out = NULL;
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return local.code;
 }
 
@@ -83,8 +82,8 @@ static vxm_status add_sheets(vxm_soup *filled, uint64_t **origin, const vxm_repa
     for (size_t i = 0; i < count && status == VXM_OK; i++)
       filled->indices[filled->corner_count - count + i] += (uint32_t)first;
   }
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

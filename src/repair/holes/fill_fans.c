@@ -270,8 +270,8 @@ static closing begin(vxm_repair_state *work, size_t most) {
 
 static vxm_status end(closing *c, bool done, vxm_error *error) {
   release(c);
-  if (!done && error)
-    *error = c->error;
+  if (!done)
+    vxm_error_pass(error, &c->error);
   return done ? VXM_OK : c->error.code;
 }
 

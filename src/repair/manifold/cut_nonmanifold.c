@@ -73,8 +73,8 @@ static vxm_status apply(numbering *n, int64_t *added, vxm_error *error) {
   vxm_free(context, map);
   vxm_free(context, n->state);
   vxm_free(context, n->vertex);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -339,8 +339,7 @@ vxm_status vxm_halfedge_pairing_build(vxm_halfedge_pairing *out, const vxm_soup 
   if (done)
     return VXM_OK;
   vxm_halfedge_pairing_destroy(out);
-  if (error)
-    *error = b.error;
+  vxm_error_pass(error, &b.error);
   return b.error.code;
 }
 

@@ -300,7 +300,7 @@ vxm_status vxm_halfedge_pairing_stitch(vxm_halfedge_pairing *fans, int64_t *stit
   vxm_free(context, s.place);
   vxm_free(context, s.rim);
   *stitched = done ? s.stitched : 0;
-  if (!done && error)
-    *error = s.error;
+  if (!done)
+    vxm_error_pass(error, &s.error);
   return done ? VXM_OK : s.error.code;
 }

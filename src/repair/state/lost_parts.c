@@ -429,8 +429,8 @@ vxm_status vxm_lost_parts_find(vxm_lost_parts *out, const vxm_soup *before, cons
   vxm_free(a.context, a.box);
   vxm_free(a.context, a.part_after);
   vxm_free(a.context, a.open);
-  if (!done && error)
-    *error = a.error;
+  if (!done)
+    vxm_error_pass(error, &a.error);
   return done ? VXM_OK : a.error.code;
 }
 

@@ -13,8 +13,8 @@ vxm_status vxm_position_hash_open(vxm_position_hash *places, const vxm_soup *sou
   vxm_error local = VXM_ERROR_INIT;
   *places = (vxm_position_hash){.soup = soup, .mask = slots - 1};
   places->slots = vxm_calloc(soup->context, slots, sizeof *places->slots, &local);
-  if (!places->slots && error)
-    *error = local;
+  if (!places->slots)
+    vxm_error_pass(error, &local);
   return places->slots ? VXM_OK : local.code;
 }
 

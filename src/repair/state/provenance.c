@@ -67,8 +67,7 @@ vxm_status vxm_provenance_start(vxm_provenance *track, const vxm_soup *soup, vxm
     track->into = vxm_alloc(track->context, count, sizeof *track->into, &local);
   if (!track->into) {
     free_stage(track);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   track->vertex_count = count;
@@ -96,8 +95,8 @@ static vxm_status find_parts(vxm_provenance *track, vxm_error *error) {
   if (status == VXM_OK)
     status = vxm_components(track->context, in, map, track->face_part, &track->part_count, &local);
   vxm_free(track->context, map);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -119,8 +118,7 @@ vxm_status vxm_provenance_create(vxm_provenance **out, vxm_soup *copy, const vxm
   }
   if (local.code != VXM_OK) {
     vxm_provenance_destroy(track);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   *out = track;
@@ -263,8 +261,8 @@ vxm_status vxm_provenance_refer(vxm_provenance *track, const vxm_soup *soup, vxm
   }
   vxm_free(track->context, now);
   vxm_free(track->context, before);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -297,8 +295,8 @@ vxm_status vxm_provenance_finish(vxm_provenance *track, vxm_soup *soup, double m
   soup->part_count = status == VXM_OK ? track->part_count : 0;
   if (status == VXM_OK && max_change > 0)
     status = check(track, soup, max_change, &local);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -319,7 +317,7 @@ vxm_status vxm_provenance_count_crossings(vxm_provenance *track, vxm_soup *soup,
   for (size_t i = 0; status == VXM_OK && parts && i < track->part_count; i++)
     soup->part_changes[i].after.self_intersections = states[i].self_intersections;
   vxm_free(track->context, states);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

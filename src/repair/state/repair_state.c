@@ -12,8 +12,7 @@ void *vxm_repair_state_scratch(vxm_repair_state *work, size_t count, size_t size
   void *block = vxm_calloc(work->context, count, size, &local);
   if (!block) {
     *status = local.code;
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
   }
   return block;
 }

@@ -38,8 +38,7 @@ static vxm_status count_used(size_t *count, const vxm_soup *soup, vxm_error *err
   uint8_t *used = vxm_alloc(soup->context, soup->vertex_count, sizeof *used, &local);
   *count = 0;
   if (!used) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_extent extent;

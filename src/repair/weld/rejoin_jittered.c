@@ -515,7 +515,7 @@ vxm_status vxm_rejoin_jittered(vxm_repair_state *work, uint32_t *map, vxm_error 
     for (size_t v = 0; v < vertices; v++)
       map[v] = root_of(&s, (uint32_t)v);
   release(&s);
-  if (s.error.code != VXM_OK && error)
-    *error = s.error;
+  if (s.error.code != VXM_OK)
+    vxm_error_pass(error, &s.error);
   return s.error.code;
 }

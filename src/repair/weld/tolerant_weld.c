@@ -103,8 +103,8 @@ static vxm_status weld_cracks(vxm_repair_state *work, uint32_t *map, vxm_error *
   vxm_free(work->context, keys);
   vxm_free(work->context, keep);
   vxm_free(work->context, roles);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

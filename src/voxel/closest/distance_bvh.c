@@ -180,8 +180,8 @@ vxm_status vxm_distance_bvh_create(vxm_distance_bvh **out, vxm_context *context,
               make_families(&b, &local) == VXM_OK;
   if (done)
     *out = tree;
-  else if (error)
-    *error = local;
+  else
+    vxm_error_pass(error, &local);
   vxm_free(context, b.boxes);
   vxm_free(context, b.spots);
   if (local.code != VXM_OK)
@@ -218,8 +218,7 @@ vxm_status vxm_search_create(vxm_search **out, const vxm_distance_bvh *nearest, 
   if (local.code != VXM_OK) {
     vxm_search_destroy(search);
     search = NULL;
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
   }
   *out = search;
   return local.code;

@@ -163,8 +163,8 @@ static vxm_status count_elsewhere(reduction *r, vxm_engine *engine, const vxm_wi
     r->counts = counts;
   else if (status == VXM_ERROR_RANGE || vxm_engine_falls_back(engine, &local)) /* the bits are here already */
     return VXM_OK;
-  else if (error)
-    *error = local;
+  else
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -278,7 +278,7 @@ vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report 
   vxm_free(context, r.tallies);
   vxm_free(context, r.sums);
   vxm_free(context, fine.words);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

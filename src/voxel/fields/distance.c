@@ -96,8 +96,8 @@ static vxm_status make_nearest(measure *m, vxm_error *error) {
   }
   vxm_free(context, m->places);
   m->places = NULL;
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 
@@ -237,8 +237,8 @@ static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
     m->tallies[w] = (tally){.least = INFINITY, .greatest = -INFINITY};
     vxm_search_create(&m->searches[w], m->nearest, &local);
   }
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 
@@ -273,8 +273,8 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
   free_workers(m, workers);
   vxm_free(context, m->solid.words);
   vxm_free(context, block);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

@@ -135,8 +135,8 @@ static vxm_status make_colors(uint8_t *values, const vxm_color_job *job, vxm_mod
   vxm_status status = engine->ops->color(engine, values, job, &local);
   if (status != VXM_OK && job->options->by != VXM_COLOR_GLSL && vxm_engine_falls_back(engine, &local))
     return color_by_cpu(values, job, model->context, error);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
@@ -169,7 +169,7 @@ vxm_status vxm_colors_run(uint8_t *values, vxm_voxelize_report *report, vxm_mode
     status = make_colors(values, &job, model, &local);
   vxm_free(model->context, parts);
   vxm_grid_destroy(grid);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

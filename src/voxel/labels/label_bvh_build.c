@@ -254,8 +254,8 @@ static vxm_status allocate(builder *b, size_t triangles, vxm_error *error) {
   b->roots = vxm_alloc(context, labels, sizeof *b->roots, &local);
   b->room = vxm_alloc(context, labels, sizeof *b->room, &local);
   b->boxes = vxm_alloc(context, labels, sizeof *b->boxes, &local);
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 
@@ -313,7 +313,6 @@ vxm_status vxm_label_bvh_create(vxm_label_bvh **out, const vxm_face_labels *labe
     return VXM_OK;
   }
   vxm_label_bvh_destroy(forest);
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return status;
 }

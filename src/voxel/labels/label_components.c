@@ -317,8 +317,8 @@ vxm_status vxm_label_components_create(vxm_label_components *out, const vxm_face
     find_box(out, &out->pieces[p], lattice, fast);
   vxm_free(soup->context, b.bodies);
   vxm_free(soup->context, b.component);
-  if (status != VXM_OK && error)
-    *error = b.error;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &b.error);
   return status;
 }
 

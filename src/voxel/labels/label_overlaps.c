@@ -93,8 +93,7 @@ static vxm_status make_solids(vxm_label_overlaps *c, vxm_error *error) {
   int worker = 0;
   while (c->errors[worker].code == VXM_OK)
     worker++;
-  if (error)
-    *error = c->errors[worker];
+  vxm_error_pass(error, &c->errors[worker]);
   return c->errors[worker].code;
 }
 
@@ -216,8 +215,8 @@ static vxm_status allocate(vxm_label_overlaps *c, vxm_error *error) {
   c->words = vxm_alloc(c->context, words_needed(c), sizeof *c->words, &local);
   c->errors = vxm_calloc(c->context, threads, sizeof *c->errors, &local);
   c->desks = vxm_calloc(c->context, threads, sizeof *c->desks, &local);
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

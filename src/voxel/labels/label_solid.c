@@ -165,7 +165,7 @@ vxm_status vxm_label_component_fill(vxm_label_component_desk *desk, const vxm_wi
     memset(window->words, 0, window->slice_words * (size_t)window->slow_dim * sizeof *window->words);
     return VXM_OK;
   }
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

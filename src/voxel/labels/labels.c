@@ -151,8 +151,8 @@ static vxm_status allocate(labels *l, vxm_error *error) {
   l->claims.set.words = vxm_alloc(l->context, grid_words(l), sizeof *l->claims.set.words, &local);
   l->claims.several = vxm_calloc(l->context, grid_words(l), sizeof *l->claims.several, &local);
   l->counts = vxm_calloc(l->context, l->labelling->table.count, sizeof *l->counts, &local);
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 
@@ -218,7 +218,7 @@ vxm_status vxm_labels_run(uint16_t *values, vxm_layout layout, vxm_label_report 
   if (status == VXM_OK) {
     model->labels = labelling->table;
     labelling->table = (vxm_label_table){.context = context};
-  } else if (error)
-    *error = local;
+  } else
+    vxm_error_pass(error, &local);
   return status;
 }

@@ -31,8 +31,8 @@ static vxm_status make_shape(vxm_model *model, const vxm_soup *soup, vxm_error *
   vxm_error local = VXM_ERROR_INIT;
   model->run.has_voxels =
       vxm_calloc(model->context, shape->facets.split.part_count, sizeof *model->run.has_voxels, &local);
-  if (!model->run.has_voxels && error)
-    *error = local;
+  if (!model->run.has_voxels)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 
@@ -42,8 +42,7 @@ vxm_status vxm_model_make(vxm_model **out, const vxm_soup *soup, const vxm_voxel
   vxm_model *model = vxm_calloc(soup->context, 1, sizeof *model, &local);
   *out = NULL;
   if (!model) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_status status = vxm_context_acquire(&model->context, soup->context, error);

@@ -27,8 +27,8 @@ static vxm_status make_room(vxm_context *context, void **block, size_t *room, si
   vxm_free(context, *block);
   *block = vxm_alloc(context, count, size, &local);
   *room = *block ? count : 0;
-  if (!*block && error)
-    *error = local;
+  if (!*block)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

@@ -271,8 +271,7 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
   state.carries =
       vxm_alloc(context, (state.stripes + 1) * window->slice_words, sizeof *state.carries, &local);
   if (!state.carries) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   size_t edge_tasks = (state.edge_end - state.edge_begin + EDGES_PER_TASK - 1) / EDGES_PER_TASK;

@@ -85,8 +85,8 @@ static vxm_status reserve(vxm_crossing_bins *bins, size_t count, vxm_error *erro
     bins->arenas = vxm_calloc(bins->context, bins->workers, sizeof *bins->arenas, &local);
     bins->arena_capacity = bins->arenas && bins->trash ? bins->workers : 0;
   }
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

@@ -23,8 +23,8 @@ vxm_status vxm_workspace_scratch(vxm_workspace *workspace, size_t words, vxm_err
   vxm_free(workspace->context, workspace->scratch);
   workspace->scratch = vxm_calloc(workspace->context, words, sizeof *workspace->scratch, &local);
   workspace->scratch_words = workspace->scratch ? words : 0;
-  if (!workspace->scratch && error)
-    *error = local;
+  if (!workspace->scratch)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

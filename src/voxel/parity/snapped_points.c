@@ -131,8 +131,7 @@ static vxm_status place_wide(vxm_snapped_points *placed, const vxm_triangle_set 
   if (status != VXM_OK) {
     vxm_free(placed->context, placed->wide);
     placed->wide = NULL;
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
   }
   return status;
 }
@@ -177,8 +176,8 @@ static vxm_status reserve(vxm_snapped_points *placed, size_t count, vxm_error *e
   placed->narrow = vxm_alloc(placed->context, count, sizeof *placed->narrow, &local);
   placed->cells = vxm_alloc(placed->context, count, sizeof *placed->cells, &local);
   placed->capacity = placed->narrow && placed->cells ? count : 0;
-  if (placed->capacity == 0 && error)
-    *error = local;
+  if (placed->capacity == 0)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

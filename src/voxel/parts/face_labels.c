@@ -208,8 +208,8 @@ vxm_status vxm_face_labels_create(vxm_face_labels *out, const vxm_soup *soup, vx
   if (status == VXM_OK)
     status = make_table(&b, by);
   vxm_free(soup->context, b.label);
-  if (status != VXM_OK && error)
-    *error = b.error;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &b.error);
   return status;
 }
 

@@ -222,8 +222,8 @@ vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, vxm_split_rule
   vxm_free(soup->context, b.root);
   vxm_free(soup->context, b.kind);
   vxm_free(soup->context, b.loop_component);
-  if (status != VXM_OK && error)
-    *error = local.code != VXM_OK ? local : b.error;
+  if (status != VXM_OK)
+    vxm_error_pass(error, local.code != VXM_OK ? &local : &b.error);
   return status;
 }
 

@@ -274,8 +274,8 @@ vxm_status vxm_triangle_set_create(vxm_triangle_set *out, const vxm_soup *soup, 
     status = measure(out, &local);
   if (status == VXM_OK)
     vxm_split_trim(&out->split);
-  else if (error)
-    *error = local.code != VXM_OK ? local : b.error;
+  else
+    vxm_error_pass(error, local.code != VXM_OK ? &local : &b.error);
   return status;
 }
 

@@ -63,8 +63,8 @@ vxm_status vxm_orient_all(vxm_mesh_analysis *shape, vxm_error *error) {
     solid.words = vxm_alloc(shape->context, solid.count, sizeof *solid.words, &local);
     l.window.words = solid.words;
     status = local.code;
-    if (status != VXM_OK && error)
-      *error = local;
+    if (status != VXM_OK)
+      vxm_error_pass(error, &local);
   }
   /* The solid by votes: asking the winding number would ask for what is being looked for. */
   const vxm_voxelize_options *asked = shape->options;

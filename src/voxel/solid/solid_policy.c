@@ -56,8 +56,7 @@ vxm_status vxm_voxel_pass_buffer(vxm_voxel_pass *run, int buffer, const vxm_wind
     b->words = vxm_alloc(run->shape->context, count, sizeof *b->words, &local);
     b->count = b->words ? count : 0;
     if (!b->words) {
-      if (error)
-        *error = local;
+      vxm_error_pass(error, &local);
       return local.code;
     }
   }
@@ -83,8 +82,7 @@ static vxm_status move_elsewhere(vxm_voxel_pass *run, const vxm_lattice *lattice
   *done &= status == VXM_OK;
   if (status == VXM_OK || vxm_engine_falls_back(run->engine, &local))
     return VXM_OK;
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return status;
 }
 
@@ -133,8 +131,7 @@ vxm_status vxm_voxel_pass_surface(vxm_voxel_pass *run, const vxm_surface *surfac
     if (status == VXM_OK)
       return VXM_OK;
     if (!vxm_engine_falls_back(run->engine, &local)) {
-      if (error)
-        *error = local;
+      vxm_error_pass(error, &local);
       return status;
     }
   }
@@ -335,7 +332,7 @@ vxm_status vxm_solid_fill(vxm_voxel_pass *run, const vxm_window *window, vxm_err
     run->no_poll = window->begin > 0;
     status = fill(run, window, &local);
   }
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

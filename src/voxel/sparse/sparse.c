@@ -43,8 +43,7 @@ static vxm_status unite_elsewhere(vxm_sparse **out, vxm_model *model, vxm_error 
   vxm_status status = engine->ops->sparse(engine, out, &model->space, &job, &local);
   if (status == VXM_OK || vxm_engine_falls_back(engine, &local))
     return VXM_OK;
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return status;
 }
 
@@ -66,8 +65,7 @@ static vxm_status unite_by_windows(vxm_octree_builder *builder, vxm_model *model
   vxm_error local = VXM_ERROR_INIT;
   window.words = vxm_alloc(model->context, (size_t)slices * window.slice_words, sizeof *window.words, &local);
   if (!window.words) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   vxm_status status = VXM_OK;

@@ -397,8 +397,8 @@ static vxm_status make_desks(sparse_state *state, size_t workers, vxm_error *err
     d->is_united = vxm_calloc(context, 2 * marks, sizeof *d->is_united, &local);
     d->is_full = d->is_united ? d->is_united + marks : NULL;
   }
-  if (local.code != VXM_OK && error)
-    *error = local;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
   return local.code;
 }
 

@@ -18,8 +18,7 @@ static vxm_status make_room(vxm_shell_window *s, const vxm_window *window, int64
   vxm_error local = VXM_ERROR_INIT;
   uint64_t *words = vxm_realloc(context, s->words, needed, sizeof *words, &local);
   if (!words) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   s->words = words;

@@ -130,8 +130,7 @@ vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *
     return VXM_OK;
   }
   vxm_surface_destroy(surface);
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return local.code;
 }
 
@@ -194,8 +193,8 @@ vxm_status vxm_surface_add_sure(const vxm_surface *surface, const vxm_window *wh
       join(whole, &window, confidence);
   }
   vxm_free(surface->context, window.words);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

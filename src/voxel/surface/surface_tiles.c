@@ -332,7 +332,7 @@ vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window,
   vxm_free(context, t.begin);
   vxm_free(context, t.places);
   vxm_free(context, t.counters);
-  if (status != VXM_OK && error)
-    *error = local;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

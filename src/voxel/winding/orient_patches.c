@@ -262,8 +262,7 @@ vxm_status vxm_orient_patches_find(vxm_flip_mask *out, const vxm_triangle_set *f
   if (done)
     return VXM_OK;
   vxm_flip_mask_destroy(out);
-  if (error)
-    *error = b.error;
+  vxm_error_pass(error, &b.error);
   return b.error.code;
 }
 

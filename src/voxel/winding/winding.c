@@ -69,8 +69,7 @@ static vxm_status sort_triangles(vxm_context *context, vxm_winding_triangle *tri
   vxm_winding_triangle *copy = keys ? vxm_alloc(context, count, sizeof *copy, &local) : NULL;
   if (!copy) {
     vxm_free(context, keys);
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   double low[3] = {INFINITY, INFINITY, INFINITY}, side = 0;
@@ -180,8 +179,7 @@ vxm_status vxm_winding_create(vxm_winding **out, vxm_context *context, vxm_windi
   }
   if (w)
     vxm_winding_destroy(w);
-  if (error)
-    *error = local;
+  vxm_error_pass(error, &local);
   return local.code;
 }
 

@@ -8,8 +8,7 @@ vxm_status vxm_winding_mesh_create(vxm_winding_mesh *out, const vxm_triangle_set
   vxm_error local = VXM_ERROR_INIT;
   out->triangles = vxm_alloc(out->context, turns->count, sizeof *out->triangles, &local);
   if (!out->triangles) {
-    if (error)
-      *error = local;
+    vxm_error_pass(error, &local);
     return local.code;
   }
   size_t t = 0;
