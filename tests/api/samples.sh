@@ -10,6 +10,7 @@ mkdir "$work/a" "$work/b"
 "$programs/generate_samples" "$work/b"
 diff -r "$work/a" "$work/b"
 test "$(head -c 7 "$work/a/rocket.off")" = OFF3674
+cmp "$work/a/rocket.off" "$SRCDIR/samples/rocket.off" # what the README shows
 
 fail() {
   echo "FAILED: $*"
