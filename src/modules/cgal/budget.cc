@@ -71,7 +71,7 @@ Meter::~Meter() {
 void Meter::took(size_t bytes) {
   used_ += (long long)bytes;
   /* While another exception is on its way nothing more may be thrown. */
-  if (std::uncaught_exceptions() != unwinding_)
+  if (whole_ > 0 || std::uncaught_exceptions() != unwinding_)
     return;
   if (used_ > booked_) {
     long long more = used_ - booked_ + BOOKED_AT_ONCE;

@@ -65,6 +65,26 @@ public:
     fraction_ = 0;
   }
 
+  /**
+   * While one lives nothing is thrown for memory or for cancelling, as what CGAL is building could not be
+   * destroyed half done: the list of a constraint that is being inserted is not there yet when its owner
+   * frees it. The next step behind it makes up for that, so that what is done within one is to be small.
+   */
+  class Whole {
+  public:
+    explicit Whole(Meter &meter) : meter_(meter) {
+      meter_.whole_++;
+    }
+    ~Whole() {
+      meter_.whole_--;
+    }
+    Whole(const Whole &) = delete;
+    Whole &operator=(const Whole &) = delete;
+
+  private:
+    Meter &meter_;
+  };
+
   /** For the operators: memory was taken (throws Stopped beyond the limit) or given back. */
   void took(size_t bytes);
   void gave(size_t bytes) noexcept {
@@ -79,7 +99,7 @@ private:
   const char *phase_;
   vxm_error *error_;
   double fraction_ = 0, last_;
-  unsigned ticks_ = 0;
+  unsigned ticks_ = 0, whole_ = 0;
   int unwinding_;
   long long used_ = 0, booked_ = 0;
 };

@@ -260,7 +260,9 @@ private:
   Vertex vertex(uint32_t p) {
     auto known = vertices_.emplace(p, Vertex());
     if (known.second) {
-      known.first->second = triangulation_.insert(flat(p));
+      auto at = flat(p);
+      Meter::Whole whole(meter_);
+      known.first->second = triangulation_.insert(at);
       known.first->second->info().value = p;
     }
     return known.first->second;
@@ -273,7 +275,11 @@ private:
     Vertex a = vertex(line.first), b = vertex(line.second);
     if (a == b || constraints_.count(line) != 0)
       return;
-    constraints_[line] = triangulation_.insert_constraint(a, b);
+    auto &constraint = constraints_[line];
+    {
+      Meter::Whole whole(meter_);
+      constraint = triangulation_.insert_constraint(a, b);
+    }
     if (triangulation_.number_of_vertices() > vertices_.size() + CROSSINGS)
       throw std::length_error("a plane with too many lines that cross");
   }
