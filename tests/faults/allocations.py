@@ -127,7 +127,7 @@ class Case:
         self.old = self.look()
         count = os.path.join(self.folder, "count")
         status, said = self.run(ALLOCATION_COUNT=count)
-        if status != 0 and re.search("is not installed|is not there|without|needs|No such file", said):
+        if status != 0 and re.search("is not installed|is not there|without|needs|lacks|No such file", said):
             return False
         if status != 0:
             sys.exit("FAILED: %s: status %d: %s" % (self.name, status, said))
