@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** STEP through OpenCASCADE: assemblies, units, deflection, and damage. */
-#include "foreign_test.h"
+#include "external_test.h"
 
 #include "scenes.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** glTF and other scenes through Assimp: transforms, instances, names, polygons, and damage. */
-#include "foreign_test.h"
+#include "external_test.h"
 
 #include "scenes.h"
 

@@ -4,7 +4,7 @@
 #define VXM_TESTS_HALFEDGES_H
 
 #include "manifold.h"
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "repair/external/openmesh.h"
 

@@ -2,7 +2,7 @@
 /** Holes filled smoothly, and components turned. */
 #include "solids.h"
 
-#include "repairing.h"
+#include "repair_test.h"
 
 static vxm_soup *fill(const vxm_soup *soup, size_t max_edges, int64_t filled, int64_t left) {
   vxm_soup *out;

@@ -2,7 +2,7 @@
 /** Unions of parts. */
 #include "solids.h"
 
-#include "repairing.h"
+#include "repair_test.h"
 
 static vxm_soup *unite(const vxm_soup *soup, uint64_t **origin, vxm_union_report *report) {
   vxm_soup *out;

@@ -2,7 +2,7 @@
 /** Wrapping. */
 /* clang-format off: in this order, no argument hides the context of solids.h */
 #include "../mesh/shared.h"
-#include "repairing.h"
+#include "repair_test.h"
 #include "solids.h"
 /* clang-format on */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Tolerant welding of meshes that were torn apart. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include <math.h>
 

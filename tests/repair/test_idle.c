@@ -2,7 +2,7 @@
 /** What was repaired, written and read back is left as it is by another repair, at every level and in every
  * format; and closed bodies stay closed. */
 #include "manifold.h"
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "meshio/meshio.h"
 #include "repair/verify.h"

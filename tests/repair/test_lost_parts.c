@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The net under the repair: what it finds lost, and what not. */
-#include "repairing.h"
+#include "repair_test.h"
 #include "solids.h"
 
 #include "repair/state/lost_parts.h"

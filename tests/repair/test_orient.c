@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Orientation of faces. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "../mesh/shared.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Every pass alone, on soups small enough to see what must come out. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Every shared mesh goes through repair; what comes out needs none, also when written and read back. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "../mesh/shared.h"
 

@@ -5,7 +5,7 @@
 
 #include "repair/defects.h"
 #include "repair/repair.h"
-#include "repairing.h"
+#include "repair_test.h"
 
 enum { CELLS = 8 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Levels, fans, defects, the account of parts, and files that are verified before they get their names. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "mesh/census.h"
 #include "mesh/components.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Soups of which every triangle was moved by itself, farther than rounding moves it. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "../mesh/shared.h"
 

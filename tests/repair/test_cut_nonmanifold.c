@@ -2,7 +2,7 @@
 /** Soups made manifold. */
 #include "manifold.h"
 #include "outlines.h"
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "../mesh/shared.h"
 #include "mesh/components.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Bodies that touch are moved apart so little that their volumes stay, in doubles and in 32-bit floats, near
  * the origin and far from it. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "mesh/part_census.h"
 #include "repair/verify.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Dropping of small components. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include <math.h>
 

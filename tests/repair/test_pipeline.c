@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What holds for the whole repair, on thousands of random soups. */
-#include "repairing.h"
+#include "repair_test.h"
 
 #include "mesh/census.h"
 #include "mesh/edges.h"

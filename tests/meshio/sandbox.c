@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Reading in a process apart: whatever the library there does, ours lives on and says what happened. */
-#include "foreign_test.h"
+#include "external_test.h"
 
 #include <errno.h>
 #include <fcntl.h>
