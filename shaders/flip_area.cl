@@ -5,15 +5,12 @@
 /* Flips what the triangle flips in rows of columns: those of `area` from row `first` on, every `stride`-th.
  */
 static inline void flip_area(const Triangle *t, const Job *job, int4 area, int first, int stride, Flips *flips) {
-  bool u_first = job->axes[0] < job->axes[1];
   int middle = (1 << job->bits) / 2;
   int pu = (area.x << job->bits) + middle - t->a.x, pv = ((area.y + first) << job->bits) + middle - t->a.y;
-  Side s0 = side_of(0, 0, t->b.x, t->b.y, pu, pv, job->bits, u_first);
-  Side s1 = side_of(t->b.x, t->b.y, t->c.x - t->b.x, t->c.y - t->b.y, pu, pv, job->bits, u_first);
-  Side s2 = side_of(t->c.x, t->c.y, -t->c.x, -t->c.y, pu, pv, job->bits, u_first);
+  vxm_side s0 = side_of(t, job, 0, pu, pv), s1 = side_of(t, job, 1, pu, pv), s2 = side_of(t, job, 2, pu, pv);
   if (area.z - area.x == 1 && area.w - area.y == 1 && (s0.value | s1.value | s2.value) < 0)
     return; /* most triangles of a fine mesh */
-  Plane plane = plane_of(t, job, pu, pv);
+  vxm_plane plane = plane_of(t, job, pu, pv);
   for (int v = area.y + first; v < area.w; v += stride) {
     long i0 = s0.value, i1 = s1.value, i2 = s2.value, across = plane.across;
     for (int u = area.x; u < area.z; u++) {

@@ -44,8 +44,3 @@ bool load_facet(uint facet, out ivec3 corner[3]) {
   ivec3 low = min(min(corner[0], corner[1]), corner[2]), high = max(max(corner[0], corner[1]), corner[2]);
   return all(lessThanEqual(high - low, ivec3(1 << 20)));
 }
-
-/* First voxel whose centre lies at or beyond a coordinate. */
-ivec2 first_voxel(ivec2 at) {
-  return (at + ((1 << job.axes.w) / 2 - 1)) >> job.axes.w;
-}

@@ -9,11 +9,10 @@ typedef struct Job {
   uint facet_first, facet_count, ordered, few_columns;
 } Job;
 
-/* A triangle along u, v, w: a corner, and the differences of the others to it, turned so that they run around to
-   the left. */
+/* A triangle along u, v, w: a corner, and the others by their differences to it. */
 typedef struct Triangle {
-  int3 a, b, c;
-  long nw; /* twice the area of the projection, above 0 */
+  int3 a;
+  vxm_projected d;
 } Triangle;
 
 static inline int part_of(int4 p, int axis) {
@@ -31,77 +30,35 @@ static inline bool load_triangle(Triangle *t, const Job *job, __global const int
   q -= p;
   r -= p;
   t->a = (int3)(part_of(p, job->axes[0]), part_of(p, job->axes[1]), part_of(p, job->axes[2]));
-  t->b = (int3)(part_of(q, job->axes[0]), part_of(q, job->axes[1]), part_of(q, job->axes[2]));
-  t->c = (int3)(part_of(r, job->axes[0]), part_of(r, job->axes[1]), part_of(r, job->axes[2]));
-  t->nw = (long)t->b.x * t->c.y - (long)t->b.y * t->c.x;
-  if (t->nw < 0) {
-    int3 swap = t->b;
-    t->b = t->c;
-    t->c = swap;
-    t->nw = -t->nw;
-  }
-  return t->nw != 0;
+  t->d = vxm_project(part_of(q, job->axes[0]), part_of(q, job->axes[1]), part_of(q, job->axes[2]),
+                     part_of(r, job->axes[0]), part_of(r, job->axes[1]), part_of(r, job->axes[2]));
+  return t->d.nw != 0;
 }
 
-/* One side of the projected triangle: a column lies inside where the value is 0 or more. */
-typedef struct Side {
-  long value, u_step, v_step;
-} Side;
-
-/* The side from (u0, v0) by (du, dv), with its value at column (pu, pv). On the line itself the perturbation decides:
-   the axis that comes first has the larger one. */
-static inline Side side_of(int u0, int v0, int du, int dv, int pu, int pv, int bits, bool u_first) {
-  bool on = u_first ? (dv != 0 ? dv < 0 : du > 0) : (du != 0 ? du > 0 : dv < 0);
-  Side side;
-  side.value = (long)du * (pv - v0) - (long)dv * (pu - u0) - (on ? 0 : 1);
-  side.u_step = -((long)dv << bits);
-  side.v_step = (long)du << bits;
-  return side;
+/* A side with its value, and the plane, at the column whose centre lies at (pu, pv) from corner a. */
+static inline vxm_side side_of(const Triangle *t, const Job *job, int side, int pu, int pv) {
+  return vxm_side_of(t->d, side, pu, pv, 1 << job->bits, job->axes[0] < job->axes[1]);
 }
 
-/* Where columns cross a triangle's plane: the first centre beyond it has number base + 1 + floor (across / step). */
-typedef struct Plane {
-  long across, u_step, v_step, step;
-  int base;
-} Plane;
-
-static inline Plane plane_of(const Triangle *t, const Job *job, int pu, int pv) {
-  long nu = (long)t->b.y * t->c.z - (long)t->b.z * t->c.y, nv = (long)t->b.z * t->c.x - (long)t->b.x * t->c.z;
-  /* A centre on the plane lies beyond it if the perturbation moves it along the normal: its first component in the
-     order x, y, z that is not 0 decides. */
-  int ou = job->axes[0], ov = job->axes[1];
-  long first = ou == 0 ? nu : ov == 0 ? nv : t->nw, second = ou == 1 ? nu : ov == 1 ? nv : t->nw;
-  long third = ou == 2 ? nu : ov == 2 ? nv : t->nw;
-  bool on_is_beyond = (first != 0 ? first : second != 0 ? second : third) > 0;
-  int unit = 1 << job->bits;
-  Plane plane;
-  plane.base = t->a.z >> job->bits;
-  long offset = t->nw * (unit / 2 - (t->a.z - plane.base * unit)) + (on_is_beyond ? 1 : 0);
-  plane.across = -nu * pu - nv * pv - offset;
-  plane.u_step = -(nu << job->bits);
-  plane.v_step = -(nv << job->bits);
-  plane.step = t->nw << job->bits;
-  return plane;
+static inline vxm_plane plane_of(const Triangle *t, const Job *job, int pu, int pv) {
+  return vxm_plane_of(t->d, t->a.z, pu, pv, 1 << job->bits, job->bits, job->axes[0], job->axes[1]);
 }
 
 /* The first voxel of a column beyond the triangle. Within the triangle the quotient is below 2^13, so that an estimate
-   in floats is off by less than one; the rest tells. */
-static inline int crossing(const Plane *plane, long across) {
+   in floats is off by less than one. */
+static inline int crossing(const vxm_plane *plane, long across) {
   int quotient = (int)floor((float)across / (float)plane->step);
-  long rest = across - quotient * plane->step;
-  return plane->base + 1 + quotient - (rest < 0 ? 1 : 0) + (rest >= plane->step ? 1 : 0);
-}
-
-/* First voxel whose centre lies at or beyond a coordinate. */
-static inline int first_voxel(int at, int bits) {
-  return (at + ((1 << bits) / 2 - 1)) >> bits;
+  return plane->base + vxm_round_down(across, plane->step, quotient);
 }
 
 /* The columns of the tile among which are all that the triangle covers: u in x and z, v in y and w; none if z <= x or
    w <= y. */
 static inline int4 columns_of(const Triangle *t, const Job *job) {
-  int u0 = t->a.x + min(min(t->b.x, t->c.x), 0), u1 = t->a.x + max(max(t->b.x, t->c.x), 0);
-  int v0 = t->a.y + min(min(t->b.y, t->c.y), 0), v1 = t->a.y + max(max(t->b.y, t->c.y), 0);
-  return (int4)(max(first_voxel(u0, job->bits), job->first[0]), max(first_voxel(v0, job->bits), job->first[1]),
-                min(first_voxel(u1, job->bits), job->last[0]), min(first_voxel(v1, job->bits), job->last[1]));
+  int u0 = t->a.x + min(min(t->d.bu, t->d.cu), 0), u1 = t->a.x + max(max(t->d.bu, t->d.cu), 0);
+  int v0 = t->a.y + min(min(t->d.bv, t->d.cv), 0), v1 = t->a.y + max(max(t->d.bv, t->d.cv), 0);
+  int unit = 1 << job->bits;
+  return (int4)(max(vxm_first_centre(u0, unit, job->bits), job->first[0]),
+                max(vxm_first_centre(v0, unit, job->bits), job->first[1]),
+                min(vxm_first_centre(u1, unit, job->bits), job->last[0]),
+                min(vxm_first_centre(v1, unit, job->bits), job->last[1]));
 }

@@ -15,14 +15,9 @@ enum {
 
 /* What a facet covers of the columns. */
 typedef struct Cover {
-  Side side[3];
+  vxm_side side[3];
   int4 area, tiles; /* columns; tiles: first along u and v, last along u and v */
 } Cover;
-
-static inline Side moved(Side side, int u, int v) {
-  side.value += side.u_step * u + side.v_step * v;
-  return side;
-}
 
 static inline bool cover_of(Cover *cover, Triangle *t, const Job *job, __global const int4 *points,
                      __global const uint *corners, __global const uint *parts, uint facet, uint roles) {
@@ -34,17 +29,15 @@ static inline bool cover_of(Cover *cover, Triangle *t, const Job *job, __global 
   cover->area = area;
   cover->tiles = (int4)((area.x - job->first[0]) / TILE_U, (area.y - job->first[1]) / TILE_V,
                         (area.z - 1 - job->first[0]) / TILE_U, (area.w - 1 - job->first[1]) / TILE_V);
-  bool u_first = job->axes[0] < job->axes[1];
   int middle = (1 << job->bits) / 2;
   int pu = (area.x << job->bits) + middle - t->a.x, pv = (area.y << job->bits) + middle - t->a.y;
-  cover->side[0] = side_of(0, 0, t->b.x, t->b.y, pu, pv, job->bits, u_first);
-  cover->side[1] = side_of(t->b.x, t->b.y, t->c.x - t->b.x, t->c.y - t->b.y, pu, pv, job->bits, u_first);
-  cover->side[2] = side_of(t->c.x, t->c.y, -t->c.x, -t->c.y, pu, pv, job->bits, u_first);
+  for (int s = 0; s < 3; s++)
+    cover->side[s] = side_of(t, job, s, pu, pv);
   return true;
 }
 
 /* Whether a side leaves any column of a tile: the one that lies farthest inside tells. */
-static inline bool leaves_some(const Side *side, int u0, int v0, int u1, int v1) {
+static inline bool leaves_some(const vxm_side *side, int u0, int v0, int u1, int v1) {
   long u = side->u_step > 0 ? u1 : u0, v = side->v_step > 0 ? v1 : v0;
   return side->value + side->u_step * u + side->v_step * v >= 0;
 }
@@ -114,8 +107,8 @@ __kernel void find_tiles(__global const ulong *keys, __global uint *lists, const
 
 /* A triangle as the columns of a tile ask it; numbers belong to the tile's first column. */
 typedef struct Ready {
-  Side side[3];
-  Plane plane;
+  vxm_side side[3];
+  vxm_plane plane;
   uint part;
 } Ready;
 
@@ -167,12 +160,10 @@ __kernel void fill_tiles(__global const int4 *points, __global const uint *corne
       uint facet = values[from + me];
       Triangle t;
       int middle = (1 << job.bits) / 2;
-      bool u_first = job.axes[0] < job.axes[1];
       load_triangle(&t, &job, points, corners, facet);
       int pu = (tile_u << job.bits) + middle - t.a.x, pv = (tile_v << job.bits) + middle - t.a.y;
-      ready[me].side[0] = side_of(0, 0, t.b.x, t.b.y, pu, pv, job.bits, u_first);
-      ready[me].side[1] = side_of(t.b.x, t.b.y, t.c.x - t.b.x, t.c.y - t.b.y, pu, pv, job.bits, u_first);
-      ready[me].side[2] = side_of(t.c.x, t.c.y, -t.c.x, -t.c.y, pu, pv, job.bits, u_first);
+      for (int s = 0; s < 3; s++)
+        ready[me].side[s] = side_of(&t, &job, s, pu, pv);
       ready[me].plane = plane_of(&t, &job, pu, pv);
       ready[me].part = parts[facet] & ((1u << ROLE_SHIFT) - 1);
     }
@@ -191,7 +182,7 @@ __kernel void fill_tiles(__global const int4 *points, __global const uint *corne
       long s2 = t->side[2].value + t->side[2].u_step * du + t->side[2].v_step * dv;
       if (!is_mine || (s0 | s1 | s2) < 0)
         continue;
-      Plane plane = t->plane;
+      vxm_plane plane = t->plane;
       int w = crossing(&plane, plane.across + plane.u_step * du + plane.v_step * dv);
       if (w >= job.last[2] || (w < job.first[2] && !job.keep_before))
         continue;

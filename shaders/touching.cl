@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * Surfaces, triangle by triangle, in the integers and by the tests of the CPU (surface_draw.h, after Schwarz
- * & Seidel 2010, sections 3.1 and 3.4): the box, the plane, and the edges seen along each axis. A triangle is
- * looked at along the axis w that its normal leans to most, so that it has few voxels in each column.
- * Differences are at most 2^20 steps, as is a voxel, so that all sums stay below 5 x 2^60 and fit 63 bits.
+ * Surfaces, triangle by triangle, by rules.h: the box, the plane, and the edges seen along each axis, in the integers
+ * of the CPU. A triangle is looked at along the axis w that its normal leans to most, so that it has few voxels in each
+ * column. Differences are at most 2^20 steps, as is a voxel, so that all sums stay below 5 x 2^60 and fit 63 bits.
  */
 typedef struct SurfaceJob { /* vxm_tile_surface */
   int first[3], bits;
@@ -43,13 +42,6 @@ static inline int3 turned(int x, int y, int z, int w) {
   return w == 0 ? (int3)(y, z, x) : w == 1 ? (int3)(z, x, y) : (int3)(x, y, z);
 }
 
-static inline long reach_of(bool thin, long a, long b, long c) {
-  a = (long)abs(a);
-  b = (long)abs(b);
-  c = (long)abs(c);
-  return thin ? max(max(a, b), c) : a + b + c;
-}
-
 /* False if it has no voxel of the tile, or is one of those that the CPU does. */
 static inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points,
                        __global const uint *corners, uint facet) {
@@ -61,16 +53,19 @@ static inline bool load_shape(Shape *t, const SurfaceJob *job, __global const in
   int unit = 1 << job->bits;
   if ((a.w | b.w | c.w) != 0 || size.x > 1 << 20 || size.y > 1 << 20 || size.z > 1 << 20)
     return false;
-  int4 begin =
-      max(((low + (unit - 1)) >> job->bits) - 1, (int4)(job->first[0], job->first[1], job->first[2], 0));
-  int4 end = min((high >> job->bits) + 1, (int4)(job->last[0], job->last[1], job->last[2], 0));
+  int3 begin = (int3)(max(vxm_first_touched(low.x, unit, job->bits), job->first[0]),
+                      max(vxm_first_touched(low.y, unit, job->bits), job->first[1]),
+                      max(vxm_first_touched(low.z, unit, job->bits), job->first[2]));
+  int3 end = (int3)(min(vxm_end_touched(high.x, job->bits), job->last[0]),
+                    min(vxm_end_touched(high.y, job->bits), job->last[1]),
+                    min(vxm_end_touched(high.z, job->bits), job->last[2]));
   if (job->shadow != 0)
     end.x = max(end.x, 1);
   if (begin.x >= end.x || begin.y >= end.y || begin.z >= end.z)
     return false;
   int4 p = b - a, q = c - a;
-  long nx = (long)p.y * q.z - (long)p.z * q.y, ny = (long)p.z * q.x - (long)p.x * q.z;
-  long nz = (long)p.x * q.y - (long)p.y * q.x;
+  long nx = vxm_cross(p.y, p.z, q.y, q.z), ny = vxm_cross(p.z, p.x, q.z, q.x);
+  long nz = vxm_cross(p.x, p.y, q.x, q.y);
   long lean_x = (long)abs(nx), lean_y = (long)abs(ny), lean_z = (long)abs(nz);
   if ((lean_x | lean_y | lean_z) == 0) { /* a line: along its longest side */
     lean_x = size.x;
@@ -95,16 +90,12 @@ static inline bool load_shape(Shape *t, const SurfaceJob *job, __global const in
 /* The side from (p0, q0) to (p1, q1), of a triangle with this component of the normal along the axis looked
    along, at voxel (p, q). */
 static inline Line line_of(const SurfaceJob *job, int p0, int q0, int p1, int q1, long normal, int p, int q) {
-  long dp = p1 - p0, dq = q1 - q0, middle = (1 << job->bits) / 2;
-  if (normal < 0) {
-    dp = -dp;
-    dq = -dq;
-  }
+  int middle = (1 << job->bits) / 2;
+  vxm_edge edge = vxm_edge_of(p1 - p0, q1 - q0, middle, normal >= 0, job->thin != 0);
   Line line;
-  line.at = dp * ((q << job->bits) + middle - q0) - dq * ((p << job->bits) + middle - p0) +
-            middle * reach_of(job->thin != 0, dp, dq, 0);
-  line.p_step = -(dq << job->bits);
-  line.q_step = dp << job->bits;
+  line.at = vxm_edge_value(edge, (p << job->bits) + middle - p0, (q << job->bits) + middle - q0);
+  line.p_step = edge.p << job->bits;
+  line.q_step = edge.q << job->bits;
   return line;
 }
 
@@ -125,7 +116,7 @@ static inline void set_columns(const Shape *t, const SurfaceJob *job, int v_firs
     along_v[e] = line_of(job, p.z, p.x, q.z, q.x, t->normal.y, t->begin.z, t->begin.x);
   }
   long3 n = t->normal;
-  long reach = middle * reach_of(job->thin != 0, n.x, n.y, n.z);
+  long reach = middle * vxm_plane_reach(n.x, n.y, n.z, job->thin != 0);
   long to_u = (t->begin.x << bits_below) + middle - t->corner[0].x,
        to_v = (t->begin.y << bits_below) + middle - t->corner[0].y;
   float down = (float)(t->corner[0].z & (unit - 1)) / (float)unit;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * Which voxels belong to the surface of a triangle, in the integers and by the tests of the CPU (surface_draw.h,
- * after Schwarz & Seidel 2010, sections 3.1 and 3.4): the box, the plane, and the edges seen along each axis.
- * A triangle is looked at along the axis w that its normal leans to most, so that it has few voxels in each
- * column. Differences are at most 2^20 and a voxel 2^16 steps, so that all sums fit 63 bits.
+ * Which voxels belong to the surface of a triangle, by rules.h: the box, the plane, and the edges seen along each axis,
+ * in the integers of the CPU. A triangle is looked at along the axis w that its normal leans to most, so that it has
+ * few voxels in each column. Differences are at most 2^20 and a voxel 2^16 steps, so that all sums fit 63 bits.
  */
 layout(std140, binding = 0) uniform Job {
   ivec4 first;  // first voxel of the tile along x, y, z; bits of the lattice below a voxel
@@ -48,7 +47,7 @@ Triangle triangle_of(ivec3 corner[3]) {
   ivec3 a = corner[1] - corner[0], b = corner[2] - corner[0];
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
-    t.normal[i] = int64_t(a[j]) * int64_t(b[k]) - int64_t(a[k]) * int64_t(b[j]);
+    t.normal[i] = vxm_cross(a[j], a[k], b[j], b[k]);
   }
   ivec3 low = min(min(corner[0], corner[1]), corner[2]), high = max(max(corner[0], corner[1]), corner[2]);
   i64vec3 size = abs(t.normal);
@@ -58,29 +57,20 @@ Triangle triangle_of(ivec3 corner[3]) {
   t.u = (t.w + 1) % 3;
   t.v = (t.w + 2) % 3;
   int s = job.first.w, unit = 1 << s;
-  t.begin = max(((low + (unit - 1)) >> s) - 1, job.first.xyz);
-  t.end = min((high >> s) + 1, job.last.xyz);
+  for (int i = 0; i < 3; i++) {
+    t.begin[i] = max(vxm_first_touched(low[i], unit, s), job.first[i]);
+    t.end[i] = min(vxm_end_touched(high[i], s), job.last[i]);
+  }
   return t;
-}
-
-int64_t reach_of(int64_t a, int64_t b, int64_t c) {
-  a = abs(a);
-  b = abs(b);
-  c = abs(c);
-  return job.last.w == 0 ? a + b + c : max(max(a, b), c);
 }
 
 /* The three edges seen along axis w: whether the voxel with centre `at` meets all of them. */
 bool meets_edges(Triangle t, ivec3 at, int w) {
   int u = (w + 1) % 3, v = (w + 2) % 3;
-  int64_t half_unit = int64_t((1 << job.first.w) / 2);
   for (int e = 0; e < 3; e++) {
     ivec3 p = t.corner[e], q = t.corner[(e + 1) % 3];
-    int64_t du = int64_t(q[u] - p[u]), dv = int64_t(q[v] - p[v]);
-    int64_t beside = du * int64_t(at[v] - p[v]) - dv * int64_t(at[u] - p[u]);
-    if (t.normal[w] < 0l)
-      beside = -beside;
-    if (beside + half_unit * reach_of(du, dv, 0l) < 0l)
+    vxm_edge edge = vxm_edge_of(q[u] - p[u], q[v] - p[v], (1 << job.first.w) / 2, t.normal[w] >= 0l, job.last.w != 0);
+    if (vxm_edge_value(edge, int64_t(at[u] - p[u]), int64_t(at[v] - p[v])) < 0l)
       return false;
   }
   return true;
@@ -102,7 +92,7 @@ void set_column(Triangle t, ivec2 column) {
   if (!meets_edges(t, at, t.w))
     return;
   i64vec3 n = t.normal;
-  int64_t reach = int64_t(unit / 2) * reach_of(n.x, n.y, n.z);
+  int64_t reach = int64_t(unit / 2) * vxm_plane_reach(n.x, n.y, n.z, job.last.w != 0);
   int64_t across = n[t.u] * int64_t(at[t.u] - t.corner[0][t.u]) + n[t.v] * int64_t(at[t.v] - t.corner[0][t.v]);
   if (n[t.w] != 0l) { /* the plane passes at most 1.5 voxels from the centres of its voxels */
     float middle = -(float(across) / float(n[t.w])) / float(unit) + float(t.corner[0][t.w] & (unit - 1)) / float(unit);

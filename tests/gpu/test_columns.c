@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Solids by columns have the bits and the report of the CPU: random soups, closed and open, many parts, every
- * method, rule and axis, odd dimensions, tiles and windows, and points far outside the grid. */
+ * method, rule and axis, odd dimensions, tiles and windows, and points far outside the grid; and those of
+ * brute force, as the CPU and the shaders share their rules. */
 #include "gpu_test.h"
 
 #include "voxel/model/model.h"
@@ -113,6 +114,55 @@ static void test_far(void **state) {
     random_octahedron(soup, &rng, (double[3]){0, 0, 0}, (double[3]){16, 16, 16}, 0);
     vxm_space space = engine_space(16, 16, 16);
     check_all(soup, &space);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** So many flips in each column that the CPU keeps them as bits. */
+static void test_far_flips_are_many(void **state) {
+  (void)state;
+  vxm_soup *soup = shape_empty(context);
+  for (int i = 0; i < 8; i++)
+    shape_box(soup, (double[3]){-3000, -3000, 0.2 + 1.9 * i}, (double[3]){3000, 3000, 1.3 + 1.9 * i});
+  vxm_space space = engine_space(16, 16, 16);
+  check_all(soup, &space);
+  vxm_soup_destroy(soup);
+}
+
+/** Brute force, not the CPU: both take their rules from one file. */
+static void check_exactly(const vxm_soup *soup, const vxm_space *space) {
+  size_t count = (size_t)(space->dims[0] * space->dims[1] * space->dims[2]);
+  for (int w = 0; w < 3; w++) {
+    uint8_t *want = calloc(count, 1);
+    assert_non_null(want);
+    exact_unite(want, soup, 0, soup->face_count, space, w);
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.method = (vxm_method)(VXM_METHOD_X + w);
+    options.parts = VXM_PARTS_WHOLE;
+    options.engine = engine;
+    vxm_grid *found = engine_solid(soup, space, &options, NULL);
+    assert_grid_is(found, want);
+    vxm_grid_destroy(found);
+    free(want);
+  }
+}
+
+static void test_rules(void **state) {
+  (void)state;
+  vxm_rng rng = {13};
+  for (int round = 0; round < 24; round++) {
+    vxm_soup *soup = shape_empty(context);
+    vxm_space space = engine_space(11, 13, 12);
+    double reach = round % 6 == 5 ? 3000 : round % 2 ? 8 : 1; /* beyond the numbers of shaders, too */
+    double low[3] = {-reach, -reach, -reach}, high[3] = {11 + reach, 13 + reach, 12 + reach};
+    for (int b = 0; b < 2; b++)
+      random_octahedron(soup, &rng, low, high, 0);
+    check_exactly(soup, &space);
+    vxm_soup_destroy(soup);
+    double part = (round % 9) / 8.0; /* some faces on centres */
+    soup = shape_empty(context);
+    triangle_box(soup, (double[3]){2 + part, 3.5, 4 + part}, (double[3]){9.5, 11 + part, 10.5}, 0, false);
+    check_exactly(soup, &space);
     vxm_soup_destroy(soup);
   }
 }
@@ -269,9 +319,12 @@ static void test_progress(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_progress), cmocka_unit_test(test_random), cmocka_unit_test(test_many_parts),
-      cmocka_unit_test(test_ties),     cmocka_unit_test(test_sizes),  cmocka_unit_test(test_far),
-      cmocka_unit_test(test_windows),  cmocka_unit_test(test_turns),  cmocka_unit_test(test_limits)};
+      cmocka_unit_test(test_progress), cmocka_unit_test(test_rules),
+      cmocka_unit_test(test_random),   cmocka_unit_test(test_many_parts),
+      cmocka_unit_test(test_ties),     cmocka_unit_test(test_sizes),
+      cmocka_unit_test(test_far),      cmocka_unit_test(test_far_flips_are_many),
+      cmocka_unit_test(test_windows),  cmocka_unit_test(test_turns),
+      cmocka_unit_test(test_limits)};
   int status = gpu_test_start(NULL);
   if (status == 0)
     status = cmocka_run_group_tests_name("columns by " ENGINE, tests, setup, teardown);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Surfaces by OpenGL have the bits of the CPU: conservative and thin, small triangles and large ones,
- * slivers, lines and points, ties, other layouts, and triangles that reach far outside the grid. */
+/* Surfaces by an engine have the bits of the CPU: conservative and thin, small triangles and large ones,
+ * slivers, lines and points, ties, other layouts, and triangles that reach far outside the grid; and those of
+ * brute force, as the CPU and the shaders share their rules. */
+#include "../voxel/surface_oracle.h"
 #include "gpu_test.h"
 
 #include "voxel/model/model.h"
@@ -40,6 +42,50 @@ static void random_triangle(vxm_soup *soup, vxm_rng *rng, double low, double hig
   for (int c = 0; c < 3; c++)
     v[c] = shape_vertex(soup, p[c][0], p[c][1], p[c][2]);
   shape_triangle(soup, v[0], v[1], v[2]);
+}
+
+/** Brute force, not the CPU: both take their rules from one file. */
+static void check_exactly(const vxm_soup *soup, const vxm_space *space) {
+  vxm_lattice lattice = vxm_lattice_of(space);
+  for (int kind = VXM_SURFACE_CONSERVATIVE; kind <= VXM_SURFACE_THIN; kind++) {
+    bool (*is_on)(const vxm_point[3], const int64_t[3], int64_t) =
+        kind == VXM_SURFACE_THIN ? oracle_thin : oracle_touches;
+    uint8_t *want = calloc((size_t)(space->dims[0] * space->dims[1] * space->dims[2]), 1), *at = want;
+    assert_non_null(want);
+    int64_t v[3];
+    for (v[2] = 0; v[2] < space->dims[2]; v[2]++)
+      for (v[1] = 0; v[1] < space->dims[1]; v[1]++)
+        for (v[0] = 0; v[0] < space->dims[0]; v[0]++, at++)
+          for (size_t f = 0; f < soup->face_count && !*at; f++) {
+            vxm_point t[3];
+            for (int c = 0; c < 3; c++)
+              assert_true(
+                  vxm_lattice_place(&lattice, vxm_position(soup, soup->indices[3 * f + (size_t)c]), &t[c]));
+            *at = is_on(t, v, lattice.unit);
+          }
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.mode = VXM_MODE_SURFACE;
+    options.surface = (vxm_surface_kind)kind;
+    options.engine = engine;
+    vxm_grid *found = engine_solid(soup, space, &options, NULL);
+    assert_grid_is(found, want);
+    vxm_grid_destroy(found);
+    free(want);
+  }
+}
+
+static void test_rules(void **state) {
+  (void)state;
+  vxm_rng rng = {34};
+  for (int round = 0; round < 24; round++) {
+    vxm_soup *soup = shape_empty(context);
+    vxm_space space = engine_space(9, 11, 10);
+    double reach = round % 6 == 5 ? 100 : round % 2 ? 6 : 1;
+    for (int t = 0; t < 4; t++)
+      random_triangle(soup, &rng, -reach, 10 + reach);
+    check_exactly(soup, &space);
+    vxm_soup_destroy(soup);
+  }
 }
 
 static void test_random(void **state) {
@@ -138,9 +184,9 @@ static void test_windows(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_ties),
-                                     cmocka_unit_test(test_fine), cmocka_unit_test(test_far),
-                                     cmocka_unit_test(test_windows)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rules), cmocka_unit_test(test_random),
+                                     cmocka_unit_test(test_ties),  cmocka_unit_test(test_fine),
+                                     cmocka_unit_test(test_far),   cmocka_unit_test(test_windows)};
   int status = gpu_test_start(NULL);
   if (status == 0)
     status = cmocka_run_group_tests_name("surfaces by " ENGINE, tests, setup, teardown);

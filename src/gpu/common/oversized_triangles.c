@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gpu/common/oversized_triangles.h"
+#include "voxel/parity/kernels.h"
 
 /* ---- Which are far ---- */
 
-/** Differences of triangles that the shaders do: shaders/crossing.glsl, shaders/lattice.cl. */
+/** Differences of triangles that the shaders do: shaders/job.glsl, shaders/lattice.cl. */
 static const int64_t reach = INT64_C(1) << 20;
 
 static bool is_far_point(const vxm_point *p) {
@@ -105,53 +106,33 @@ vxm_status vxm_oversized_surface_add(const vxm_oversized_surface *far, const vxm
   return vxm_surface_add(&some, window, kind, false, error);
 }
 
-/* ---- What they flip, with the rules of shaders/crossing.glsl ---- */
+/* ---- What they flip ---- */
 
-typedef struct triangle {
-  int64_t a[3], b[3], c[3]; /**< along u, v, w; b and c as differences to a, running around to the left */
-  vxm_int128 nw;
-} triangle;
-
-static bool load(triangle *t, const vxm_snapped_points *placed, const uint32_t corners[3],
-                 const int32_t axes[3]) {
-  vxm_point p[3];
-  for (int c = 0; c < 3; c++)
-    p[c] = vxm_snapped_points_at(placed, corners[c]);
+/** The columns of a tile, which is one slab. */
+static vxm_columns columns_of(const vxm_slice_job_columns *tile, unsigned roles) {
+  const int32_t *axes = tile->axes;
+  vxm_columns columns = {.u = axes[0],
+                         .v = axes[1],
+                         .w = axes[2],
+                         .keep_before = tile->keep_before != 0,
+                         .slab_axis = axes[1],
+                         .slab_shift = 62,
+                         .roles = roles};
   for (int i = 0; i < 3; i++) {
-    t->a[i] = p[0].at[axes[i]];
-    t->b[i] = p[1].at[axes[i]] - t->a[i];
-    t->c[i] = p[2].at[axes[i]] - t->a[i];
+    columns.begin[axes[i]] = tile->first[i];
+    columns.end[axes[i]] = tile->last[i];
+    columns.step[axes[i]] = tile->step[i];
   }
-  t->nw = (vxm_int128)t->b[0] * t->c[1] - (vxm_int128)t->b[1] * t->c[0];
-  for (int i = 0; i < 3 && t->nw < 0; i++) {
-    int64_t swap = t->b[i];
-    t->b[i] = t->c[i];
-    t->c[i] = swap;
-  }
-  t->nw = t->nw < 0 ? -t->nw : t->nw;
-  return t->nw != 0;
+  return columns;
 }
 
-static bool is_left(const int64_t from[2], const int64_t to[2], const int64_t p[2], bool u_first) {
-  int64_t du = to[0] - from[0], dv = to[1] - from[1];
-  vxm_int128 value = (vxm_int128)du * (p[1] - from[1]) - (vxm_int128)dv * (p[0] - from[0]);
-  bool on = u_first ? (dv != 0 ? dv < 0 : du > 0) : (du != 0 ? du > 0 : dv < 0);
-  return value > 0 || (value == 0 && on);
-}
-
-static int64_t crossing(const triangle *t, const int64_t p[2], const vxm_slice_job_columns *tile) {
-  vxm_int128 normal[3], nu = (vxm_int128)t->b[1] * t->c[2] - (vxm_int128)t->b[2] * t->c[1],
-                        nv = (vxm_int128)t->b[2] * t->c[0] - (vxm_int128)t->b[0] * t->c[2];
-  normal[tile->axes[0]] = nu;
-  normal[tile->axes[1]] = nv;
-  normal[tile->axes[2]] = t->nw;
-  bool on_is_beyond = (normal[0] != 0 ? normal[0] : normal[1] != 0 ? normal[1] : normal[2]) > 0;
-  int64_t unit = INT64_C(1) << tile->bits, base = t->a[2] >> tile->bits;
-  vxm_int128 step = t->nw * unit;
-  vxm_int128 across = -nu * p[0] - nv * p[1] - t->nw * (unit / 2 - (t->a[2] - base * unit)) - on_is_beyond;
-  vxm_int128 quotient = across / step;
-  quotient -= quotient * step > across;
-  return base + 1 + (int64_t)quotient;
+static size_t words_of(const vxm_slice_job_columns *tile) {
+  uint64_t bits = 0;
+  for (int i = 0; i < 3; i++) {
+    uint64_t along = (uint64_t)(tile->last[i] - tile->first[i]) * tile->step[i];
+    bits = along > bits ? along : bits;
+  }
+  return (size_t)(bits + 63) / 64;
 }
 
 typedef struct flips {
@@ -160,41 +141,35 @@ typedef struct flips {
   size_t count, capacity;
 } flips;
 
-static vxm_status put(flips *out, const triangle *t, const vxm_slice_job_columns *tile, int64_t u, int64_t v,
-                      vxm_error *error) {
-  static const int64_t origin[2] = {0, 0};
-  int64_t unit = INT64_C(1) << tile->bits;
-  const int64_t p[2] = {u * unit + unit / 2 - t->a[0], v * unit + unit / 2 - t->a[1]};
-  bool u_first = tile->axes[0] < tile->axes[1];
-  if (!is_left(origin, t->b, p, u_first) || !is_left(t->b, t->c, p, u_first) ||
-      !is_left(t->c, origin, p, u_first))
-    return VXM_OK;
-  int64_t w = crossing(t, p, tile);
-  if (w >= tile->last[2] || (w < tile->first[2] && !tile->keep_before))
-    return VXM_OK;
-  w = vxm_max(w, tile->first[2]);
+/** Adds bits of a piece. */
+static vxm_status take(flips *out, const vxm_crossing_bin_piece *piece, vxm_error *error) {
+  size_t count = piece->count;
+  if (piece->is_bitmap) {
+    count = 0;
+    for (size_t w = 0; w < piece->count; w++)
+      count += (size_t)vxm_popcount(piece->data[w]);
+  }
   vxm_status status =
-      vxm_grow(out->context, (void **)&out->bit, &out->capacity, out->count + 1, sizeof *out->bit, error);
-  if (status == VXM_OK)
-    out->bit[out->count++] = (uint32_t)(u - tile->first[0]) * tile->step[0] +
-                             (uint32_t)(v - tile->first[1]) * tile->step[1] +
-                             (uint32_t)(w - tile->first[2]) * tile->step[2];
+      vxm_grow(out->context, (void **)&out->bit, &out->capacity, out->count + count, sizeof *out->bit, error);
+  for (size_t w = 0; w < piece->count && status == VXM_OK; w++) {
+    if (!piece->is_bitmap)
+      out->bit[out->count++] = (uint32_t)piece->data[w];
+    else
+      for (uint64_t left = piece->data[w]; left != 0; left &= left - 1)
+        out->bit[out->count++] = (uint32_t)(64 * w + (size_t)__builtin_ctzll(left));
+  }
   return status;
 }
 
-static vxm_status put_facet(flips *out, const triangle *t, const vxm_lattice *lattice,
-                            const vxm_slice_job_columns *tile, vxm_error *error) {
-  int64_t begin[2], end[2];
-  for (int i = 0; i < 2; i++) {
-    int64_t low = t->a[i] + vxm_min(0, vxm_min(t->b[i], t->c[i]));
-    int64_t high = t->a[i] + vxm_max(0, vxm_max(t->b[i], t->c[i]));
-    begin[i] = vxm_max(vxm_lattice_first(lattice, low), tile->first[i]);
-    end[i] = vxm_min(vxm_lattice_first(lattice, high), tile->last[i]);
-  }
-  vxm_status status = VXM_OK;
-  for (int64_t v = begin[1]; v < end[1] && status == VXM_OK; v++)
-    for (int64_t u = begin[0]; u < end[0] && status == VXM_OK; u++)
-      status = put(out, t, tile, u, v, error);
+static vxm_status take_all(flips *out, const vxm_crossing_bins *bins, vxm_error *error) {
+  vxm_status status = vxm_crossing_bins_check(bins, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_crossing_bin_reader reader = vxm_crossing_bin_read(vxm_crossing_bins_at(bins, 0, 0, 0), false);
+  vxm_crossing_bin_piece piece;
+  while (reader.part != VXM_BIN_NONE && status == VXM_OK)
+    while (status == VXM_OK && vxm_crossing_bin_next(&reader, &piece))
+      status = take(out, &piece, error);
   return status;
 }
 
@@ -203,18 +178,24 @@ vxm_status vxm_oversized_flips(uint32_t **out, size_t *count, const vxm_oversize
                                const vxm_disjoint_passes *passes, size_t pass, vxm_error *error) {
   flips found = {.context = far->context};
   const vxm_triangle_set *facets = job->facets;
-  vxm_status status = VXM_OK;
+  vxm_crossing_bins bins = {.context = far->context};
+  vxm_columns columns = columns_of(tile, job->roles);
+  vxm_raster_task task = {
+      .placed = job->placed, .facets = facets, .columns = &columns, .columns_count = 1, .bins = &bins};
+  vxm_status status = vxm_crossing_bins_reset(&bins, 1, 1, 1, words_of(tile), error);
   for (size_t i = 0; i < far->count && status == VXM_OK; i++) {
     size_t f = far->facets[i], part = facets->part[f];
-    triangle t;
-    if (part < job->part_begin || part >= job->part_end ||
-        passes->pass_of[part - passes->part_begin] != pass || !(vxm_role_of(facets, f) & job->roles))
+    if (part < job->part_begin || part >= job->part_end || passes->pass_of[part - passes->part_begin] != pass)
       continue;
-    if (load(&t, job->placed, facets->corners[f], tile->axes))
-      status = put_facet(&found, &t, &job->placed->lattice, tile, error);
-    if (status == VXM_OK) /* each may cover all columns */
-      status = vxm_progress(far->context, job->phase, (double)pass / (double)passes->count, error);
+    task.begin = f;
+    task.end = f + 1;
+    vxm_kernels_get()->raster(&task);
+    /* each may cover all columns */
+    status = vxm_progress(far->context, job->phase, (double)pass / (double)passes->count, error);
   }
+  if (status == VXM_OK)
+    status = take_all(&found, &bins, error);
+  vxm_crossing_bins_destroy(&bins);
   if (status != VXM_OK) {
     vxm_free(found.context, found.bit);
     found = (flips){0};

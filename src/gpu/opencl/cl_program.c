@@ -8,15 +8,16 @@
 
 #include "shaders/kernels.inc"
 
-enum { FILES_MAX = 6, LOG_MAX = 400 };
+enum { FILES_MAX = 7, LOG_MAX = 400 };
 
 static const char *const sources[VXM_CL_PROGRAMS][FILES_MAX] = {
-    [VXM_CL_SOLID] = {"lattice.cl", "flips.cl", "flip_area.cl", "columns.cl", "fold.cl", "vote.cl"},
-    [VXM_CL_SURFACE] = {"touching.cl", "surface.cl"},
+    [VXM_CL_SOLID] = {"rules.h", "lattice.cl", "flips.cl", "flip_area.cl", "columns.cl", "fold.cl",
+                      "vote.cl"},
+    [VXM_CL_SURFACE] = {"rules.h", "touching.cl", "surface.cl"},
     [VXM_CL_SORT] = {"sort.cl"},
-    [VXM_CL_TILES_PROGRAM] = {"lattice.cl", "tiles.cl"},
-    [VXM_CL_TREE] = {"touching.cl", "cells.cl", "nodes.cl", "prune.cl"},
-    [VXM_CL_BRICK_FLIPS] = {"lattice.cl", "brick_flips.cl", "flip_area.cl", "bricks.cl"},
+    [VXM_CL_TILES_PROGRAM] = {"rules.h", "lattice.cl", "tiles.cl"},
+    [VXM_CL_TREE] = {"rules.h", "touching.cl", "cells.cl", "nodes.cl", "prune.cl"},
+    [VXM_CL_BRICK_FLIPS] = {"rules.h", "lattice.cl", "brick_flips.cl", "flip_area.cl", "bricks.cl"},
     [VXM_CL_COVERAGE] = {"coverage.cl"},
     [VXM_CL_MOVE] = {"move.cl"},
     [VXM_CL_PUBLISHED] = {"published.cl"},

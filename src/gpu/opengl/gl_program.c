@@ -100,8 +100,9 @@ vxm_status vxm_gl_use(vxm_opengl *engine, vxm_gl_program_id id, vxm_error *error
     const char *stages[STAGES_MAX];
     bool wide;
   } sources[VXM_GL_PROGRAMS] = {
-      [VXM_GL_FIND_COLUMNS] = {{"job.glsl crossing.glsl columns.comp"}, true},
-      [VXM_GL_DRAW_COLUMNS] = {{"job.glsl cover.glsl columns.vert", "job.glsl crossing.glsl columns.frag"},
+      [VXM_GL_FIND_COLUMNS] = {{"job.glsl rules.h crossing.glsl columns.comp"}, true},
+      [VXM_GL_DRAW_COLUMNS] = {{"job.glsl cover.glsl columns.vert",
+                                "job.glsl rules.h crossing.glsl columns.frag"},
                                true},
       [VXM_GL_FLIP] = {{"flips.comp"}, false},
       [VXM_GL_FOLD_ROWS] = {{"fold_rows.comp"}, false},
@@ -115,9 +116,9 @@ vxm_status vxm_gl_use(vxm_opengl *engine, vxm_gl_program_id id, vxm_error *error
       [VXM_GL_DRAW_TETRA] = {{"nudge.glsl cover.glsl section.glsl corners.glsl tetra.vert",
                               "nudge.glsl inside.glsl present.frag"},
                              false},
-      [VXM_GL_FIND_SURFACE] = {{"touching.glsl surface.comp"}, true},
-      [VXM_GL_DRAW_SURFACE] = {{"surface.vert", "cover.glsl touching.glsl surface.geom",
-                                "touching.glsl surface.frag"},
+      [VXM_GL_FIND_SURFACE] = {{"rules.h touching.glsl surface.comp"}, true},
+      [VXM_GL_DRAW_SURFACE] = {{"surface.vert", "cover.glsl rules.h touching.glsl surface.geom",
+                                "rules.h touching.glsl surface.frag"},
                                true},
       [VXM_GL_MOVE] = {{"move.vert"}, false},
       [VXM_GL_PACK] = {{"pack.comp"}, false},

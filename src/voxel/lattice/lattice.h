@@ -12,6 +12,7 @@
 #define VXM_VOXEL_LATTICE_LATTICE_H
 
 #include "grid/bitgrid.h"
+#include "voxel/lattice/rules.h"
 
 typedef struct vxm_lattice {
   int bits;
@@ -47,8 +48,7 @@ vxm_status vxm_lattice_refuse(uint32_t vertex, const double position[3], vxm_err
 
 /** First voxel whose centre is at or beyond a lattice coordinate. */
 static inline int64_t vxm_lattice_first(const vxm_lattice *lattice, int64_t coordinate) {
-  /* ceil((c - unit/2) / unit); arithmetic shifts round down. */
-  return (coordinate + lattice->unit / 2 - 1) >> lattice->bits;
+  return vxm_first_centre_64(coordinate, lattice->unit, lattice->bits);
 }
 
 /** Last voxel whose centre is at or before a lattice coordinate. */

@@ -20,6 +20,8 @@
  * every edge normal, and q is in the plane, inside of all edges and in the box: that voxel passes all tests.
  * Being closed, they need no rule for ties: a centre on the triangle, and both voxels beside a border on the
  * triangle, belong to it. Since the largest component is at most the sum, thin is part of conservative.
+ *
+ * The tests themselves stand in shaders/rules.h. Here they are solved for the voxels of a row.
  */
 #ifndef VXM_VOXEL_SURFACE_SURFACE_DRAW_H
 #define VXM_VOXEL_SURFACE_SURFACE_DRAW_H
@@ -114,8 +116,8 @@ static inline void vxm_surface_bound_role(vxm_surface_bounds *bounds, const vxm_
                                           int64_t a, int64_t b, int64_t c) {
   int64_t low = vxm_surface_lower(vxm_surface_lower(a, b), c);
   int64_t high = vxm_surface_upper(vxm_surface_upper(a, b), c);
-  bounds->box.begin[role] = ((low + lattice->unit - 1) >> lattice->bits) - 1;
-  bounds->box.end[role] = (high >> lattice->bits) + 1;
+  bounds->box.begin[role] = vxm_first_touched_64(low, lattice->unit, lattice->bits);
+  bounds->box.end[role] = vxm_end_touched_64(high, lattice->bits);
   bounds->longest = vxm_surface_upper(bounds->longest, high - low);
 }
 

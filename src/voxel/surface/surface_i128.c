@@ -23,7 +23,7 @@ static inline void divide_floor(integer t, integer d, integer *quotient, integer
 }
 
 typedef struct {
-  integer at[3][3]; /* corner, role: in lattice steps */
+  int64_t at[3][3]; /* corner, role: in lattice steps */
   integer normal[3];
   integer low, high; /* a voxel meets the plane where low <= normal . voxel <= high */
   int64_t origin[3];
@@ -34,21 +34,12 @@ typedef struct {
   integer a, c, b;
 } test_line;
 
-/** R of surface_draw.h. */
-static inline integer reach_of(vxm_surface_kind kind, integer a, integer b, integer c) {
-  a = a < 0 ? -a : a, b = b < 0 ? -b : b, c = c < 0 ? -c : c;
-  if (kind == VXM_SURFACE_CONSERVATIVE)
-    return a + b + c;
-  integer most = a > b ? a : b;
-  return most > c ? most : c;
-}
-
 /** The corners change places where that makes the normal's component along the bits positive. */
 static inline void shape_of(plane_shape *shape, const vxm_surface_pen *pen, const vxm_point *const v[3]) {
   const vxm_lattice *lattice = pen->lattice;
   const vxm_layout layout = pen->window->layout;
   const int axis[3] = {layout.fast, layout.middle, layout.slow};
-  integer e1[3], e2[3];
+  int64_t e1[3], e2[3];
   for (int r = 0; r < 3; r++) {
     int64_t least = v[0]->at[axis[r]] & -lattice->unit;
     shape->origin[r] = least >> lattice->bits;
@@ -58,17 +49,18 @@ static inline void shape_of(plane_shape *shape, const vxm_surface_pen *pen, cons
     e2[r] = shape->at[2][r] - shape->at[0][r];
   }
   integer *n = shape->normal;
-  n[0] = e1[1] * e2[2] - e1[2] * e2[1];
-  n[1] = e1[2] * e2[0] - e1[0] * e2[2];
-  n[2] = e1[0] * e2[1] - e1[1] * e2[0];
+  n[0] = vxm_cross_128(e1[1], e1[2], e2[1], e2[2]);
+  n[1] = vxm_cross_128(e1[2], e1[0], e2[2], e2[0]);
+  n[2] = vxm_cross_128(e1[0], e1[1], e2[0], e2[1]);
   if (n[0] < 0)
     for (int r = 0; r < 3; r++) {
-      integer kept = shape->at[1][r];
+      int64_t kept = shape->at[1][r];
       shape->at[1][r] = shape->at[2][r];
       shape->at[2][r] = kept;
       n[r] = -n[r];
     }
-  integer half = lattice->unit / 2, centre = 0, reach = half * reach_of(pen->kind, n[0], n[1], n[2]);
+  integer half = lattice->unit / 2, centre = 0;
+  integer reach = half * vxm_plane_reach_128(n[0], n[1], n[2], pen->kind == VXM_SURFACE_THIN);
   for (int r = 0; r < 3; r++)
     centre += n[r] * (half - shape->at[0][r]);
   /* -reach <= unit n . voxel + centre <= reach, rounded to whole multiples of the unit */
@@ -78,13 +70,11 @@ static inline void shape_of(plane_shape *shape, const vxm_surface_pen *pen, cons
 
 /** The test of edge e in the projection to roles x and y; a is 0 where the box already implies it. */
 static inline test_line edge_test(const vxm_surface_pen *pen, const plane_shape *shape, int e, int x, int y) {
-  const integer *p = shape->at[e], *q = shape->at[e == 2 ? 0 : e + 1];
+  const int64_t *p = shape->at[e], *q = shape->at[e == 2 ? 0 : e + 1], half = pen->lattice->unit / 2;
   bool left = (shape->normal[3 - x - y] >= 0) == (y == (x + 1) % 3);
-  integer dx = q[x] - p[x], dy = q[y] - p[y], half = pen->lattice->unit / 2;
-  test_line line = {left ? -dy : dy, left ? dx : -dx, 0};
-  integer at_centre = line.a * (half - p[x]) + line.c * (half - p[y]);
-  line.b = (at_centre + half * reach_of(pen->kind, line.a, line.c, 0)) >> pen->lattice->bits;
-  return line;
+  vxm_edge_128 edge = vxm_edge_of_128(q[x] - p[x], q[y] - p[y], half, left, pen->kind == VXM_SURFACE_THIN);
+  integer at_first = vxm_edge_value_128(edge, half - p[x], half - p[y]);
+  return (test_line){edge.p, edge.q, at_first >> pen->lattice->bits};
 }
 
 /**
