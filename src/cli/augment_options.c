@@ -35,8 +35,10 @@ const cli_option augment_options[] = {
     {'n', "count", "N", "how many variants [16]; 0 with -o -: no end, until the reader has enough"},
     {KEY_FIRST, "first", "I", "the number of the first one [0]"},
     {KEY_SEED, "seed", "S", "of the random numbers, up to 2^63 - 1 [0]"},
-    {KEY_EPOCH, "epoch", "E", "another epoch has other variants [0]"},
-    {KEY_MODEL, "model", "M", "number of the model: two models of one number are varied alike [0]"},
+    {KEY_EPOCH, "epoch", "E", "another epoch gives other variants [0]"},
+    {KEY_MODEL, "model", "M",
+     "number of the model; seed, epoch and model number together determine the\n"
+     "variants [0]"},
     {'r', "resolution", "N", "voxels along each axis, up to 1024 [64]"},
     {KEY_PAD, "pad", "P", "keep P voxels free on each side, before the model is moved [0]"},
     {KEY_ROTATE, "rotate", "none|any|x|y|z|X,Y,Z|FILE",
@@ -56,8 +58,8 @@ const cli_option augment_options[] = {
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
     {CLI_KEY_ENGINE, "engine", "E",
-     "who moves the vertices and makes the voxels, one variant after another: cpu; or as\n"
-     "in 'voxmend voxelize' [cpu]"},
+     "what computes the variants, one after another: cpu; or as in 'voxmend voxelize'\n"
+     "[cpu]"},
     CLI_OPTIONS_ENGINE_METHODS,
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};

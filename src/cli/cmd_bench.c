@@ -27,7 +27,7 @@ static const cli_option known_options[] = {
      "however slow it is; 'solid' is all that begin with solid_ [all, but what takes\n"
      "over two seconds is left out, and what needs OpenCL without --engine opencl]"},
     {KEY_ENGINE, "engine", "LIST",
-     "who makes the grids, such as cpu,opencl,opencl/tiles: as in 'voxmend voxelize',\n"
+     "what computes the grids, such as cpu,opencl,opencl/tiles: as in 'voxmend voxelize',\n"
      "and behind a '/' the method; others are compared with the first [cpu]"},
     {KEY_AUGMENT, "augment", NULL, "measure making variants for training instead: the augment_ phases below"},
     {KEY_DISPLACE, "displace", "F",

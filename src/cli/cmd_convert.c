@@ -138,10 +138,10 @@ const cli_command cli_command_convert = {
     .summary = "write a grid in another format, or as a mesh",
     .notes =
         "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units.\n\n"
-        "Numbers (distances, coverage, labels, confidence, colours) stay the numbers they are, in .npy,\n"
-        ".nrrd and .vdb; labels up to 255 also in .binvox, colours in .npy, .nrrd, .ply and .vox.\n"
-        "They become set and clear voxels only by --threshold or --below, or where nothing is lost: all are\n"
-        "0 or 1, or unsigned bytes 0 and 255.\n\n"
+        "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd and .vdb;\n"
+        "labels up to 255 also in .binvox, colours in .npy, .nrrd, .ply and .vox. They become set and clear\n"
+        "voxels only with --threshold or --below, or where nothing is lost: all are 0 or 1, or unsigned\n"
+        "bytes 0 and 255.\n\n"
         "Examples:\n"
         "  voxmend convert chair.binvox -o chair.npy\n"
         "  voxmend convert chair.npy -o blocks.obj\n"

@@ -43,7 +43,7 @@ static const cli_option known_options[] = {
      "leave faces turned as they are, rather than consistently and outward"},
     {KEY_FILL_HOLES, "fill-holes", "N|all",
      "fill holes with at most N edges [none; all from level closed on].\n"
-     "Sheets, which that would only cover a second time, stay open"},
+     "Open sheets are not filled: that would only duplicate them"},
     {KEY_FILL, "fill", "fan|minimal|smooth",
      "with what: fan = triangles from the middle of the rim; minimal = the\n"
      "triangulation of least area (OpenMesh); smooth = small triangles that\n"

@@ -154,8 +154,7 @@ static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair) 
     fprintf(cli->text, "\n%" PRId64 " patches cannot be turned consistently (like a Moebius strip)\n",
             repair->nonorientable_patches);
   if (repair->open_parts > 0)
-    fprintf(cli->text,
-            "\n%" PRId64 " components stay open: sheets, which closing would only cover a second time\n",
+    fprintf(cli->text, "\n%" PRId64 " components stay open: sheets, which filling would only duplicate\n",
             repair->open_parts);
   if (repair->unfilled_holes > 0)
     fprintf(cli->text, "\n%" PRId64 " holes could not be filled\n", repair->unfilled_holes);

@@ -52,14 +52,14 @@ const cli_option voxelize_options[] = {
     {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1", "cover exactly this box, whatever the model's size"},
     {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
     {KEY_MODE, "mode", "solid|surface|both",
-     "solid: voxels whose centre is inside; surface: those of --surface; both:\n"
+     "solid: voxels whose centre is inside; surface: as --surface says; both:\n"
      "either, which keeps sheets and parts thinner than a voxel [solid]"},
     {KEY_SURFACE, "surface", "conservative|thin|shell26|shell18|shell6",
-     "conservative: every voxel whose box meets a face; thin: 6-separating, no path\n"
-     "over faces of voxels crosses it; shell26, 18, 6: voxels of the solid beside an\n"
+     "conservative: every voxel whose box meets a face; thin: 6-separating, fewer\n"
+     "voxels, through which no path from face to face leaks; shell26, 18, 6: voxels of the solid beside an\n"
      "empty one, over corners, edges or faces [conservative]"},
     {KEY_METHOD, "method", "vote|x|y|z|tetra|winding",
-     "who says what is inside: parity along one axis, the XOR of tetrahedra, a\n"
+     "how inside is told: parity along one axis, the XOR of tetrahedra, a\n"
      "vote of these four (they agree wherever the mesh is closed), or the winding\n"
      "number, which is slow and always has an answer [vote]"},
     {KEY_VOTE, "vote", "auto|majority|any|all",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The census: what is wrong with a soup. */
+/** The census: statistics of a soup, and counts of its defects. */
 #ifndef VXM_MESH_CENSUS_H
 #define VXM_MESH_CENSUS_H
 

@@ -20,7 +20,7 @@ order="base mesh
   voxel/sparse voxel/fields voxel/labels
   gpu/common gpu/opencl gpu/opengl gpu
   gridio/common gridio/formats gridio/mesh gridio/picture gridio
-  export augment batch api
+  export augment api
   modules/assimp modules/occt modules/openmesh modules/cgal modules/openvdb"
 
 # Modules share the rooms that their makefile lists, and not each other.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** The functions of the module; what they do is told in repair/cgal.h. */
+/** The functions of the module; what they do is told in repair/external/cgal.h. */
 #ifndef VXM_MODULES_CGAL_FUNCTIONS_H
 #define VXM_MODULES_CGAL_FUNCTIONS_H
 

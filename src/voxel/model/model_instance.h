@@ -27,10 +27,11 @@ typedef struct vxm_model_instance {
   vxm_model model; /**< its facets have the positions of the other */
 } vxm_model_instance;
 
-/** Finds what all twins of a model share, and a run would find when it first needs it. */
+/** Computes now what all instances of a model share, which the first run would compute otherwise. */
 vxm_status vxm_model_instance_prepare(vxm_model *model, vxm_error *error);
 
-/** Attaches a twin to a model that has been prepared and stays as it is. Memory is kept from one to the next.
+/** Attaches an instance to a model that has been prepared and stays unchanged. Memory is kept from one to the
+ * next.
  */
 vxm_status vxm_model_instance_attach(vxm_model_instance *twin, const vxm_model *of, vxm_error *error);
 
