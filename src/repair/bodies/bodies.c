@@ -2,6 +2,7 @@
 #include "repair/bodies/bodies.h"
 
 #include "mesh/components.h"
+#include "repair/bodies/hanging_sheets.h"
 #include "repair/bodies/layers.h"
 #include "repair/state/halfedges.h"
 
@@ -445,6 +446,17 @@ static vxm_status is_apart(const vxm_repair_state *work, bool *apart, vxm_error 
   return status;
 }
 
+/** Sheets that hang on bodies would make these open. There are none where no edge has more than two sides. */
+static bool cut_sheets(parting *p, bool *changed) {
+  vxm_repair_state *work = p->work;
+  int64_t added = 0;
+  if (work->patches == 0 && vxm_cut_hanging_sheets(work, &added, &p->error) != VXM_OK)
+    return false;
+  work->counts[VXM_PASS_SEPARATION] += added;
+  *changed = added > 0;
+  return true;
+}
+
 vxm_status vxm_pass_bodies(vxm_repair_state *work, bool *changed, vxm_error *error) {
   *changed = false;
   if (work->soup->face_count == 0)
@@ -455,7 +467,8 @@ vxm_status vxm_pass_bodies(vxm_repair_state *work, bool *changed, vxm_error *err
   bool done = is_apart(work, &apart, &p.error) == VXM_OK;
   if (done && apart)
     return VXM_OK;
-  done = done && vxm_repair_state_edges(work, &p.error) == VXM_OK && find_groups(&p, &any, &touches);
+  done = done && cut_sheets(&p, changed) && vxm_repair_state_edges(work, &p.error) == VXM_OK &&
+         find_groups(&p, &any, &touches);
   if (done && any)
     done = divide(&p, touches, changed);
   vxm_free(work->context, p.pieces);

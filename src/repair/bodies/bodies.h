@@ -7,7 +7,8 @@
 #include "repair/state/repair_state.h"
 
 /**
- * Cuts apart what is closed, on vertices of its own at the same positions:
+ * Cuts apart what is closed, on vertices of its own at the same positions, after the sheets that hang on it
+ * (repair/bodies/hanging_sheets.h):
  *  - Groups of faces that edges connect, where they touch others at vertices and have no rim there. So an eye
  *    that touches a head is a body of its own even if both have holes elsewhere; patches that meet with
  *    their rims at a vertex stay together.
