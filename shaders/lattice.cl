@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What one pass over the facets of a tile works on: vxm_tile_columns. Axes are named u and v across the columns,
+/* What one pass over the facets of a tile works on: vxm_slice_job_columns. Axes are named u and v across the columns,
    and w along them; 64-bit integers hold all products, as differences of near facets are at most 2^20. */
 typedef struct Job {
   int axes[3], bits;         /* numbers of u, v, w; bits of the lattice below a voxel */

@@ -4,7 +4,7 @@
  * of the CPU. A triangle is looked at along the axis w that its normal leans to most, so that it has few voxels in each
  * column. Differences are at most 2^20 steps, as is a voxel, so that all sums stay below 5 x 2^60 and fit 63 bits.
  */
-typedef struct SurfaceJob { /* vxm_tile_surface */
+typedef struct SurfaceJob { /* vxm_slice_job_surface */
   int first[3], bits;
   int last[3], thin;
   uint step[4];
