@@ -3,7 +3,7 @@
 #include "base/module.h"
 #include "config.h"
 #include "meshio/external/external_formats.h"
-#include "meshio/external/landlock.h"
+#include "sandbox/landlock.h"
 
 #if defined(HAVE_SECCOMP) && !defined(__SANITIZE_ADDRESS__)
 enum { HAS_FILTER = 1 };

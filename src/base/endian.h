@@ -89,10 +89,6 @@ static inline uint64_t vxm_load_le64(const unsigned char *bytes) {
   return vxm_le64(word);
 }
 
-static inline uint32_t vxm_load_le32(const unsigned char *bytes) {
-  return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-}
-
 static inline void vxm_store_le32(unsigned char *bytes, uint32_t word) {
   for (int b = 0; b < 4; b++)
     bytes[b] = (unsigned char)(word >> 8 * b);

@@ -6,8 +6,8 @@
 #include "gridio/formats/binvox.h"
 #include "gridio/formats/npy_header.h"
 #include "gridio/formats/nrrd_header.h"
+#include "gridio/formats/vdb.h"
 #include "gridio/formats/vdb_field.h"
-#include "gridio/formats/vdb_file.h"
 
 #include <math.h>
 #include <stdio.h>

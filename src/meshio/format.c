@@ -3,9 +3,9 @@
 #include "base/open_beneath.h"
 #include "meshio/common/utf16.h"
 #include "meshio/external/external_formats.h"
-#include "meshio/external/reader.h"
 #include "meshio/formats/stl.h"
 #include "meshio/meshio.h"
+#include "sandbox/reader.h"
 
 #include <string.h>
 #include <unistd.h>

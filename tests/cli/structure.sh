@@ -12,7 +12,7 @@ complain() {
 }
 
 # What each folder may include comes before it. Within a room the folder of the same name, with its front, is the last.
-order="base mesh
+order="base mesh sandbox
   meshio/common meshio/formats meshio/external meshio
   repair/external repair/state repair/clean repair/manifold repair/weld repair/holes repair/exact repair/bodies repair
   grid

@@ -35,7 +35,7 @@ mkdir out
 head -c 3000 t.vdb >cut.vdb
 run 'voxmend convert cut.vdb -o out/x.npy'
 cp t.vdb bad.vdb
-printf '\377\377\377\177' | dd of=bad.vdb bs=1 seek=61 conv=notrunc 2>dd.log
+printf '\377\377\0\0' | dd of=bad.vdb bs=1 seek=61 conv=notrunc 2>dd.log
 run 'voxmend convert bad.vdb -o out/x.npy'
 run 'voxmend voxelize in/cube.off -o out/x.vdb -r 20 --memlimit 400K'
 run 'voxmend voxelize in/cube.off -o out/x.vdb -r 20 --bounds 0,0,0,1e-5,1e-5,1e-5'

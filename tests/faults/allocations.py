@@ -73,8 +73,6 @@ def commands():
     yield "engines", "engines --json", {"ALLOCATION_FROM": OURS}
     yield "bench", "bench two.off --report report.json --time 0 -r 4 --phases solid_vote --threads 1", {}
     yield "library", None, {}
-    for mesh in ("glb", "step", "igs"):
-        yield "reader " + mesh, "info box.%s" % mesh, {"ALLOCATION_IN": "voxmend-reader"}
 
 
 SAMPLE = ["info off", "repair manifold", "voxelize rle", "convert npy", "labels", "threads", "view", "library"]
@@ -219,8 +217,6 @@ def make_inputs(folder):
         subprocess.run([PROGRAM] + command.split() + ["-q"], cwd=folder, stderr=subprocess.DEVNULL)
     seeds = os.path.join(os.environ["SRCDIR"], "tests", "fuzz", "corpus")
     shutil.copy(os.path.join(seeds, "glb", "cube.glb"), os.path.join(folder, "box.glb"))
-    shutil.copy(os.path.join(seeds, "step", "faces.step"), os.path.join(folder, "box.step"))
-    shutil.copy(os.path.join(seeds, "iges", "faces.igs"), os.path.join(folder, "box.igs"))
 
 
 def main():

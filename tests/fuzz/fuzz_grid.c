@@ -14,6 +14,12 @@
 /** What a grid may take: run lengths make much of little, and the limit is what stops them. */
 enum { BESIDES = 1 << 22, RATE = 64 };
 
+/** What is read in a process of its own needs room there. */
+static vxm_context *context_of(const char *name, size_t size) {
+  enum { ROOM = 512 << 20 };
+  return strcmp(name, "vdb") == 0 ? fuzz_context(0, 0, ROOM) : fuzz_context(size, RATE, BESIDES);
+}
+
 static const vxm_grid_format *format_of(const char *name) {
   static const vxm_grid_format *const formats[] = {&vxm_format_binvox, &vxm_format_npy, &vxm_format_nrrd,
                                                    &vxm_format_rle, &vxm_format_vdb};
@@ -55,7 +61,7 @@ static void check_field(const vxm_field *field) {
 
 static void read_numbers(const char *name, const char *path, const uint8_t *data, size_t size) {
   const vxm_grid_format *format = format_of(name);
-  vxm_context *context = fuzz_context(size, RATE, BESIDES);
+  vxm_context *context = context_of(name, size);
   vxm_input input = {.data = data, .size = size, .name = path, .context = context};
   vxm_field *field = NULL;
   vxm_error error = VXM_ERROR_INIT;
@@ -70,7 +76,7 @@ static void read_numbers(const char *name, const char *path, const uint8_t *data
 }
 
 static void read_as(const char *name, const char *path, const uint8_t *data, size_t size) {
-  vxm_context *context = fuzz_context(size, RATE, BESIDES);
+  vxm_context *context = context_of(name, size);
   vxm_input input = {.data = data, .size = size, .name = path, .context = context};
   vxm_grid *grid = NULL;
   vxm_error error = VXM_ERROR_INIT;

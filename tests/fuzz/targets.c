@@ -11,7 +11,7 @@ static const fuzz_target targets[] = {
     {"stl", fuzz_mesh, false, NULL},       {"ply", fuzz_mesh, false, NULL},
     {"any", fuzz_mesh, false, NULL},       {"binvox", fuzz_grid, false, NULL},
     {"npy", fuzz_grid, false, NULL},       {"nrrd", fuzz_grid, false, NULL},
-    {"rle", fuzz_grid, false, NULL},       {"vdb", fuzz_grid, false, NULL},
+    {"rle", fuzz_grid, false, NULL},       {"vdb", fuzz_grid, true, "openvdb"},
     {"raw", fuzz_raw, false, NULL},        {"sidecar", fuzz_sidecar, false, NULL},
     {"parcel", fuzz_parcel, false, NULL},  {"gltf", fuzz_foreign, true, "assimp"},
     {"glb", fuzz_foreign, true, "assimp"}, {"3mf", fuzz_foreign, true, "assimp"},

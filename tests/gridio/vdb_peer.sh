@@ -85,5 +85,7 @@ cmp stream.vdb.values b.vdb.values || fail "standard output"
 
 # ---- Damage ----
 if [ -x "$BUILDDIR/tests/gridio/test_vdb" ]; then
-  "$BUILDDIR/tests/gridio/test_vdb" $(find kinds -name "*.vdb" -size -400k) >log 2>&1 || fail "damaged files: $(tail -n 20 log)"
+  for kind in level_set zip mask half_plain stream; do
+    "$BUILDDIR/tests/gridio/test_vdb" "kinds/$kind.vdb" >log 2>&1 || fail "damaged $kind: $(tail -n 20 log)"
+  done
 fi

@@ -9,7 +9,7 @@
 
 #include "base/module.h"
 #include "mesh/census.h"
-#include "meshio/external/reader.h"
+#include "sandbox/reader.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 enum { SANITIZED = 1, SLOWER = 8 };

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +21,7 @@
 
 #include "base/module.h"
 #include "config.h"
-#include "meshio/external/reader.h"
+#include "sandbox/reader.h"
 
 static vxm_status make_strip(vxm_soup *soup, size_t faces, vxm_error *error) {
   vxm_status status = VXM_OK;
@@ -161,6 +162,24 @@ static long try_system(void) {
   return system("touch /tmp/voxmend-ill-trace");
 }
 
+/** A thread that was there before the filter, as libraries may start them when they are loaded. */
+static sem_t early_begin, early_end;
+static long early_result;
+
+static void *wait_early(void *payload) {
+  (void)payload;
+  sem_wait(&early_begin);
+  early_result = try_open();
+  sem_post(&early_end);
+  return NULL;
+}
+
+static long try_early_thread(void) {
+  sem_post(&early_begin);
+  sem_wait(&early_end);
+  return early_result;
+}
+
 static pid_t parent;
 
 static long try_kill(void) {
@@ -218,14 +237,31 @@ static const struct {
   const char *word;
   long (*run)(void);
 } attempts[] = {
-    {"try open", try_open},     {"try openat", try_openat},    {"try creat", try_creat},
-    {"try fopen", try_fopen},   {"try stat", try_stat},        {"try opendir", try_opendir},
-    {"try unlink", try_unlink}, {"try socket", try_socket},    {"try connect", try_connect},
-    {"try fork", try_fork},     {"try thread", try_thread},    {"try execve", try_execve},
-    {"try system", try_system}, {"try kill parent", try_kill}, {"try kill group", try_kill_group},
-    {"try ptrace", try_ptrace}, {"try peek", try_peek},        {"try execute", try_execute},
-    {"try share", try_share},   {"try protect", try_protect},  {"try descriptors", try_descriptors},
-    {"try memfd", try_memfd},   {"try limits", try_limits},    {"try setuid", try_setuid},
+    {"try open", try_open},
+    {"try openat", try_openat},
+    {"try creat", try_creat},
+    {"try fopen", try_fopen},
+    {"try stat", try_stat},
+    {"try opendir", try_opendir},
+    {"try unlink", try_unlink},
+    {"try socket", try_socket},
+    {"try connect", try_connect},
+    {"try fork", try_fork},
+    {"try thread", try_thread},
+    {"try execve", try_execve},
+    {"try system", try_system},
+    {"try kill parent", try_kill},
+    {"try kill group", try_kill_group},
+    {"try ptrace", try_ptrace},
+    {"try peek", try_peek},
+    {"try execute", try_execute},
+    {"try share", try_share},
+    {"try protect", try_protect},
+    {"try descriptors", try_descriptors},
+    {"try early thread", try_early_thread},
+    {"try memfd", try_memfd},
+    {"try limits", try_limits},
+    {"try setuid", try_setuid},
 };
 
 /** What is not stopped comes back as a failure that says so. */
@@ -325,10 +361,14 @@ static vxm_status obey(vxm_soup *soup, const vxm_reader_request *request, vxm_er
 }
 
 static void prepare(void) {
+  pthread_t early;
   parent = getppid();
+  sem_init(&early_begin, 0, 0);
+  sem_init(&early_end, 0, 0);
+  pthread_create(&early, NULL, wait_early, NULL);
 }
 
-static const vxm_reader reader = {prepare, obey};
+static const vxm_reader reader = {prepare, obey, NULL};
 
 VXM_API extern const vxm_module vxm_module_table;
 const vxm_module vxm_module_table = {PACKAGE_VERSION, "nothing", "BSD-3-Clause", &reader};

@@ -3,21 +3,26 @@
  * The module "openvdb": what the library asks of OpenVDB, as a table of functions.
  *
  * A grid of OpenVDB is a tree whose leaves are blocks of 8 x 8 x 8 voxels; constant blocks, 8, 128 or 4096
- * voxels wide, are tiles of the nodes above. The library makes the blocks and OpenVDB makes the tree and the
- * file. Files are read by the library itself (vdb_tree.h), because OpenVDB's reader trusts them; only packed
- * values are unpacked by OpenVDB.
+ * voxels wide, are tiles of the nodes above. To write one the library makes the blocks, and OpenVDB the tree
+ * and the file, in our process. Files are read in a process of their own (sandbox/sandbox.h), because OpenVDB
+ * trusts them: a damaged one may crash it.
  */
 #ifndef VXM_GRIDIO_FORMATS_VDB_H
 #define VXM_GRIDIO_FORMATS_VDB_H
 
+#include "base/module.h"
 #include "base/output.h"
+#include "sandbox/reader.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /** Voxels along a block, and in it. */
-enum { VXM_VDB_SIDE = 8, VXM_VDB_VOXELS = 512 };
+enum { VXM_VDB_SIDE = VXM_SINK_SIDE, VXM_VDB_VOXELS = VXM_SINK_VOXELS };
+
+/** Under which the name of a grid is carried along with its values. */
+#define VXM_VDB_NAME_KEY "vdb_name"
 
 typedef enum vxm_vdb_content {
   VXM_VDB_BITS,      /**< a BoolGrid: active and true where a voxel is set */
@@ -39,6 +44,7 @@ typedef struct vxm_vdb vxm_vdb;
 
 /** Each block of a grid may be given once, in any order. All `at` are multiples of 8 and not negative. */
 typedef struct vxm_vdb_functions {
+  vxm_reader reader; /**< first: to the reading process the table is this alone */
   /** Whether OpenVDB can hold a grid in this place, with voxels of this size. @return VXM_OK,
    * VXM_ERROR_RANGE, VXM_ERROR_MEMORY */
   vxm_status (*check)(const vxm_space *space, vxm_error *error);
@@ -60,18 +66,12 @@ typedef struct vxm_vdb_functions {
    *         reason; VXM_ERROR_CANCELLED, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
    */
   vxm_status (*write)(vxm_vdb *vdb, vxm_output *output, vxm_error *error);
-  /**
-   * Unpacks `size` bytes from a chunk of a file, its length of 8 bytes included, packed by blosc or else
-   * zlib.
-   *
-   * @return VXM_OK; VXM_ERROR_FORMAT if it cannot be unpacked to just so many; VXM_ERROR_MEMORY
-   */
-  vxm_status (*unpack)(unsigned char *to, size_t size, const unsigned char *chunk, size_t chunk_size,
-                       bool is_blosc, vxm_error *error);
 } vxm_vdb_functions;
 
+extern const vxm_module_need vxm_vdb_need;
+
 /** Opens the module. @return VXM_OK; VXM_ERROR_UNAVAILABLE, which names what to install */
-vxm_status vxm_vdb_open(const vxm_vdb_functions **out, const char *purpose, vxm_error *error);
+vxm_status vxm_vdb_open(const vxm_vdb_functions **out, vxm_error *error);
 /** Opens it to write a grid. @return as vxm_vdb_open; VXM_ERROR_RANGE for voxels that OpenVDB does not take
  */
 vxm_status vxm_vdb_open_writer(const vxm_vdb_functions **out, const vxm_space *space, vxm_error *error);

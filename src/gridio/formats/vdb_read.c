@@ -1,230 +1,247 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/vdb_read.h"
 #include "gridio/common/format.h"
-#include "gridio/formats/vdb_tree.h"
+#include "gridio/formats/vdb.h"
+#include "gridio/formats/vdb_fill.h"
+#include "sandbox/sandbox.h"
 
+#include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
-/* ---- Bits ---- */
+/** The number 0x56444220, in 8 bytes. */
+static const unsigned char magic[8] = {' ', 'B', 'D', 'V', 0, 0, 0, 0};
 
-typedef struct filling {
-  vxm_grid *grid;
-  int64_t low[3]; /**< index of voxel (0,0,0) of the grid */
-} filling;
-
-/** Sets those of 8 voxels from x on that the grid has. */
-static void or_byte(const filling *f, int64_t x, int64_t y, int64_t z, uint64_t byte) {
-  const int64_t *dims = f->grid->space.dims;
-  if (byte == 0 || y < 0 || z < 0 || y >= dims[1] || z >= dims[2] || x <= -8 || x >= dims[0])
-    return;
-  if (x < 0) {
-    byte >>= -x;
-    x = 0;
-  }
-  if (dims[0] - x < 8)
-    byte &= vxm_low_bits((unsigned)(dims[0] - x));
-  uint64_t *row = vxm_grid_row(f->grid, y, z);
-  unsigned shift = (unsigned)(x % 64);
-  row[x / 64] |= byte << shift;
-  if (shift > 56 && byte >> (64 - shift))
-    row[x / 64 + 1] |= byte >> (64 - shift);
+bool vxm_vdb_sniff(const vxm_input *input) {
+  return input->size >= sizeof magic && memcmp(input->data, magic, sizeof magic) == 0;
 }
 
-static void put_block(const int64_t at[3], const uint64_t bits[8], void *payload) {
-  const filling *f = payload;
-  for (unsigned y = 0; y < 8; y++) {
-    uint64_t plane = 0;
-    for (unsigned x = 0; x < 8; x++)
-      plane |= (bits[x] >> 8 * y & 0xff) << 8 * x;
-    plane = vxm_transpose8(plane);
-    for (unsigned z = 0; z < 8; z++)
-      or_byte(f, at[0] - f->low[0], at[1] - f->low[1] + y, at[2] - f->low[2] + z, plane >> 8 * z & 0xff);
-  }
-}
-
-static void put_cube(const int64_t at[3], int64_t side, void *payload) {
-  const filling *f = payload;
-  int64_t begin[3], end[3];
-  for (int a = 0; a < 3; a++) {
-    begin[a] = vxm_max(at[a] - f->low[a], 0);
-    end[a] = vxm_min(at[a] - f->low[a] + side, f->grid->space.dims[a]);
-  }
-  for (int64_t z = begin[2]; z < end[2]; z++)
-    for (int64_t y = begin[1]; y < end[1]; y++)
-      vxm_row_set_span(vxm_grid_row(f->grid, y, z), begin[0], end[0]);
-}
-
-/* ---- Numbers ---- */
-
-typedef struct numbering {
-  vxm_field *field;
-  int64_t low[3];
-} numbering;
-
-/** The part of a cube that the field has, counted from its first voxel; false if there is none. */
-static bool clip(const numbering *n, const int64_t at[3], int64_t side, int64_t begin[3], int64_t end[3]) {
-  for (int a = 0; a < 3; a++) {
-    begin[a] = vxm_max(at[a] - n->low[a], 0);
-    end[a] = vxm_min(at[a] - n->low[a] + side, n->field->space.dims[a]);
-    if (begin[a] >= end[a])
-      return false;
-  }
-  return true;
-}
-
-static float *place_of(const numbering *n, int64_t x, int64_t y, int64_t z) {
-  const int64_t *dims = n->field->space.dims;
-  return (float *)n->field->values + (size_t)((x * dims[1] + y) * dims[2] + z);
-}
-
-static void put_numbers(const int64_t at[3], const float numbers[512], void *payload) {
-  const numbering *n = payload;
-  int64_t begin[3], end[3];
-  if (!clip(n, at, 8, begin, end))
-    return;
-  for (int64_t x = begin[0]; x < end[0]; x++)
-    for (int64_t y = begin[1]; y < end[1]; y++) {
-      int64_t dx = x + n->low[0] - at[0], dy = y + n->low[1] - at[1], dz = begin[2] + n->low[2] - at[2];
-      memcpy(place_of(n, x, y, begin[2]), numbers + (dx * 8 + dy) * 8 + dz,
-             (size_t)(end[2] - begin[2]) * sizeof *numbers);
-    }
-}
-
-static void put_number(const int64_t at[3], int64_t side, float number, void *payload) {
-  const numbering *n = payload;
-  int64_t begin[3], end[3];
-  if (!clip(n, at, side, begin, end))
-    return;
-  for (int64_t x = begin[0]; x < end[0]; x++)
-    for (int64_t y = begin[1]; y < end[1]; y++) {
-      float *row = place_of(n, x, y, begin[2]);
-      for (int64_t z = begin[2]; z < end[2]; z++)
-        *row++ = number;
-    }
-}
-
-/* ---- The grid ---- */
-
-/** The dimensions that voxmend has written, if they hold all that is active. */
-static bool fits(const vxm_space *space, const vxm_vdb_extent *extent) {
-  for (int a = 0; a < 3 && !extent->is_empty; a++)
-    if (extent->low[a] < 0 || extent->high[a] >= space->dims[a])
-      return false;
-  return true;
-}
-
-static vxm_status find_space(vxm_space *space, int64_t low[3], const vxm_vdb_grid *grid,
-                             const vxm_vdb_extent *extent, const vxm_input *input, vxm_error *error) {
-  if (grid->has_space && fits(&grid->space, extent)) {
-    *space = grid->space;
-    low[0] = low[1] = low[2] = 0;
-  } else if (extent->is_empty)
-    return vxm_fail_byte(error, input, grid->tree, "no voxel of the grid \"%s\" is active, so it has no size",
-                         grid->name);
-  else
-    for (int a = 0; a < 3; a++) {
-      low[a] = extent->low[a];
-      space->dims[a] = extent->high[a] - extent->low[a] + 1;
-      space->voxel_size[a] = grid->size[a];
-      space->origin[a] = grid->first[a] + ((double)low[a] - 0.5) * grid->size[a];
-    }
-  return vxm_space_check_file(space, input, grid->tree, error);
-}
-
-/** All that is known before the values are read. */
-typedef struct front {
-  vxm_vdb_grid grid;
-  vxm_vdb_extent extent;
-  vxm_space space;
-  int64_t low[3]; /**< index of the voxel that becomes (0,0,0) */
+/** A file on its way in. */
+typedef struct receipt {
+  vxm_voxel_sink sink;
+  const vxm_input *input;
+  bool wants_numbers;
+  vxm_bits_rule rule; /**< where bits are wanted */
+  vxm_sink_grid grid;
+  vxm_about about;
+  vxm_scalar scalar; /**< of the numbers before they became floats */
   vxm_warnings warnings;
-} front;
+  vxm_vdb_filling filling;
+} receipt;
 
-static vxm_status read_front(front *f, const vxm_input *input, vxm_error *error) {
-  f->warnings.count = 0;
-  vxm_status status = vxm_vdb_file_read(&f->grid, input, &f->warnings, error);
-  if (status == VXM_OK)
-    status = vxm_vdb_tree_measure(&f->extent, &f->grid, input, error);
-  return status == VXM_OK ? find_space(&f->space, f->low, &f->grid, &f->extent, input, error) : status;
+/* ---- What the file says ---- */
+
+static bool equals(const char *text, size_t size, const char *word) {
+  return size == strlen(word) && memcmp(text, word, size) == 0;
 }
 
-static vxm_status read_numbers(vxm_field **out, front *f, const vxm_input *input, vxm_error *error) {
-  numbering n = {.low = {f->low[0], f->low[1], f->low[2]}};
-  vxm_status status =
-      vxm_field_make(&n.field, input->context, &f->space, VXM_FIELD_NUMBERS, VXM_FLOAT32, error);
-  if (status != VXM_OK)
-    return status;
-  float *values = (float *)n.field->values;
-  for (size_t v = 0, count = vxm_field_count(n.field); v < count; v++)
-    values[v] = f->extent.background;
-  const vxm_vdb_visitor visitor = {.numbers = put_numbers, .number = put_number, .payload = &n};
-  status = vxm_vdb_tree_visit(&visitor, &f->grid, &f->extent, input, error);
-  vxm_sidecar_take_labels(&f->grid.about, f->space.dims, input);
-  vxm_field_describe(n.field, &f->grid.about);
-  n.field->warnings = f->warnings;
-  if (status == VXM_OK)
-    status = vxm_field_narrow(n.field, f->grid.scalar, error);
-  return vxm_field_hand_over(out, n.field, status, error);
+/** Texts that OpenVDB itself writes, or that are told in another way. */
+static bool is_own(const char *key, size_t size) {
+  static const char *const own[] = {"class",       "name",          "creator",       "value_type",
+                                    "vector_type", "file_bbox_max", "file_bbox_min", "file_compression"};
+  for (size_t n = 0; n < sizeof own / sizeof own[0]; n++)
+    if (equals(key, size, own[n]))
+      return true;
+  return false;
 }
 
-static vxm_status read_bits(vxm_grid **out, front *f, const vxm_input *input, vxm_bits_rule rule,
-                            vxm_error *error) {
-  filling filled = {.low = {f->low[0], f->low[1], f->low[2]}};
-  vxm_status status = vxm_grid_create(&filled.grid, input->context, &f->space, error);
-  const vxm_vdb_visitor visitor = {.block = put_block, .cube = put_cube, .payload = &filled};
-  if (status == VXM_OK && rule != VXM_BITS_NONE)
-    status = vxm_vdb_tree_visit(&visitor, &f->grid, &f->extent, input, error);
-  if (status != VXM_OK) {
-    vxm_grid_destroy(filled.grid);
-    return status;
-  }
-  filled.grid->warnings = f->warnings;
-  *out = filled.grid;
+static void declare(vxm_about *about, vxm_field_kind kind) {
+  about->is_declared = true;
+  about->kind = kind;
+}
+
+/** What a text says of the values. What voxmend says counts more than the class. */
+static vxm_status take_text(void *payload, const char *key, size_t key_size, const char *value,
+                            size_t value_size, vxm_error *error) {
+  (void)error;
+  receipt *r = payload;
+  char word[64] = "";
+  vxm_field_kind kind;
+  memcpy(word, value, value_size < sizeof word ? value_size : sizeof word - 1);
+  if (equals(key, key_size, "class") && !r->about.is_declared && equals(value, value_size, "level set"))
+    declare(&r->about, VXM_FIELD_DISTANCE);
+  else if (equals(key, key_size, "class") && !r->about.is_declared && equals(value, value_size, "fog volume"))
+    declare(&r->about, VXM_FIELD_COVERAGE);
+  else if (equals(key, key_size, "voxmend_values") && vxm_field_kind_find(&kind, word))
+    declare(&r->about, kind);
+  else if (equals(key, key_size, "voxmend_scalar"))
+    vxm_scalar_find(&r->scalar, word);
+  else if (!is_own(key, key_size))
+    vxm_metadata_add(&r->about.pairs, r->input->context, key, key_size, value, value_size);
   return VXM_OK;
 }
 
+/** The name by which voxmend calls unsigned distances says what they are; other names are carried along. */
+static void take_name(receipt *r) {
+  const char *name = r->grid.name;
+  vxm_field_kind kind = r->about.kind;
+  if (!r->about.is_declared && strcmp(name, vxm_field_kind_name(VXM_FIELD_DISTANCE)) == 0)
+    declare(&r->about, VXM_FIELD_DISTANCE);
+  else if (*name && strcmp(name, vxm_field_kind_name(kind)) != 0)
+    vxm_metadata_add(&r->about.pairs, r->input->context, VXM_VDB_NAME_KEY, strlen(VXM_VDB_NAME_KEY), name,
+                     strlen(name));
+}
+
 /** Floats are bits only if all of them are 0 or 1, and nothing says that they are something else. */
-static vxm_status read_mask(vxm_grid **out, front *f, const vxm_input *input, vxm_bits_rule rule,
-                            vxm_error *error) {
-  vxm_field *field = NULL;
-  if (rule != VXM_BITS_ANY || !vxm_about_may_be_bits(&f->grid.about, rule))
-    return vxm_fail_numbers(error, input->name, vxm_scalar_name(f->grid.scalar));
-  vxm_status status = read_numbers(&field, f, input, error);
+static vxm_status take_grid(void *payload, const vxm_sink_grid *grid, vxm_error *error) {
+  receipt *r = payload;
+  r->grid = *grid;
+  for (int a = 0; a < 3; a++)
+    if (!(grid->voxel_size[a] > 0) || !isfinite(grid->voxel_size[a]) || !isfinite(grid->first[a]))
+      return vxm_fail_byte(error, r->input, grid->at, "the place or size of its voxels is no number");
+  take_name(r);
+  if (grid->grids > 1)
+    vxm_warn(&r->warnings, "of its %" PRIu32 " grids \"%s\" is read", grid->grids, grid->name);
+  bool is_refused = grid->is_numbers && !r->wants_numbers && r->rule != VXM_BITS_NONE &&
+                    (r->rule != VXM_BITS_ANY || !vxm_about_may_be_bits(&r->about, r->rule));
+  return is_refused ? vxm_fail_numbers(error, r->input->name, vxm_scalar_name(r->scalar)) : VXM_OK;
+}
+
+/* ---- The space ---- */
+
+/** The space that voxmend has written, unless later programs have made other voxels, or moved the grid: then
+ * its origin is another. */
+static bool find_written_space(vxm_space *out, const vxm_sink_grid *grid, const vxm_sink_extent *extent) {
+  *out = grid->space;
+  for (int a = 0; a < 3; a++) {
+    if (!grid->has_space || grid->space.voxel_size[a] != grid->voxel_size[a])
+      return false;
+    if (!extent->is_empty && (extent->low[a] < 0 || extent->high[a] >= grid->space.dims[a]))
+      return false;
+    if (out->origin[a] + grid->voxel_size[a] / 2 != grid->first[a])
+      out->origin[a] = grid->first[a] - grid->voxel_size[a] / 2;
+  }
+  return true;
+}
+
+static vxm_status find_space(vxm_space *space, receipt *r, const vxm_sink_extent *extent, vxm_error *error) {
+  const vxm_sink_grid *grid = &r->grid;
+  if (!find_written_space(space, grid, extent)) {
+    if (extent->is_empty)
+      return vxm_fail_byte(error, r->input, grid->at,
+                           "no voxel of the grid \"%s\" is active, so it has no size", grid->name);
+    for (int a = 0; a < 3; a++) {
+      r->filling.low[a] = extent->low[a];
+      space->dims[a] = extent->high[a] - extent->low[a] + 1;
+      space->voxel_size[a] = grid->voxel_size[a];
+      space->origin[a] = grid->first[a] + ((double)extent->low[a] - 0.5) * grid->voxel_size[a];
+    }
+  }
+  return vxm_space_check_file(space, r->input, (size_t)grid->at, error);
+}
+
+static vxm_status make_field(receipt *r, const vxm_space *space, float background, vxm_error *error) {
+  vxm_field **field = &r->filling.field;
+  vxm_status status = vxm_field_make(field, r->input->context, space, VXM_FIELD_NUMBERS, VXM_FLOAT32, error);
+  if (status != VXM_OK)
+    return status;
+  float *values = (float *)(void *)(*field)->values;
+  for (size_t v = 0, count = vxm_field_count(*field); v < count; v++)
+    values[v] = background;
+  return VXM_OK;
+}
+
+static vxm_status take_extent(void *payload, const vxm_sink_extent *extent, vxm_error *error) {
+  receipt *r = payload;
+  vxm_space space;
+  vxm_status status = find_space(&space, r, extent, error);
+  if (status != VXM_OK)
+    return status;
+  r->sink.is_full = !r->wants_numbers && r->rule == VXM_BITS_NONE; /* the space was all */
+  if (r->grid.is_numbers && !r->sink.is_full)
+    return make_field(r, &space, extent->background, error);
+  return vxm_grid_create(&r->filling.grid, r->input->context, &space, error);
+}
+
+/* ---- The voxels ---- */
+
+static void take_bits(void *payload, const int64_t at[3], const uint64_t bits[VXM_SINK_SIDE]) {
+  vxm_vdb_fill_bits(&((receipt *)payload)->filling, at, bits);
+}
+
+static void take_numbers(void *payload, const int64_t at[3], const float numbers[VXM_SINK_VOXELS]) {
+  vxm_vdb_fill_numbers(&((receipt *)payload)->filling, at, numbers);
+}
+
+static void take_cube(void *payload, const int64_t at[3], int64_t side, float number) {
+  vxm_vdb_fill_cube(&((receipt *)payload)->filling, at, side, number);
+}
+
+/** Reads the file into r->filling, which holds nothing after a failure. */
+static vxm_status receive(receipt *r, vxm_error *error) {
+  const vxm_input *input = r->input;
+  const vxm_reader_request request = {
+      .data = input->data, .size = input->size, .name = input->name, .hint = "vdb"};
+  r->scalar = VXM_FLOAT32;
+  r->sink = (vxm_voxel_sink){take_text, take_grid, take_extent, take_bits, take_numbers, take_cube, r, false};
+  if (!vxm_vdb_sniff(input))
+    return vxm_fail_byte(error, input, 0, "not a vdb file: it does not begin with \" BDV\"");
+  vxm_status status =
+      vxm_sandbox_read_grid(&r->sink, &r->warnings, input->context, &vxm_vdb_need, &request, error);
   if (status == VXM_OK)
-    status = vxm_field_to_bits(out, field, input->name, error);
+    status = vxm_progress(input->context, "reading", 1, error);
+  if (status != VXM_OK) {
+    vxm_grid_destroy(r->filling.grid);
+    vxm_field_destroy(r->filling.field);
+    r->filling = (vxm_vdb_filling){.grid = NULL};
+  }
+  return status;
+}
+
+/* ---- Bits and numbers ---- */
+
+/** Makes the field of the receipt what the file says of it. */
+static vxm_status describe(vxm_field **out, receipt *r, vxm_error *error) {
+  vxm_field *field = r->filling.field;
+  vxm_sidecar_take_labels(&r->about, field->space.dims, r->input);
+  vxm_field_describe(field, &r->about);
+  field->warnings = r->warnings;
+  return vxm_field_hand_over(out, field, vxm_field_narrow(field, r->scalar, error), error);
+}
+
+static vxm_status finish_bits(vxm_grid **out, receipt *r, vxm_error *error) {
+  if (r->filling.grid) {
+    *out = r->filling.grid;
+    (*out)->warnings = r->warnings;
+    return VXM_OK;
+  }
+  vxm_field *field;
+  vxm_status status = describe(&field, r, error);
+  if (status == VXM_OK)
+    status = vxm_field_to_bits(out, field, r->input->name, error);
   vxm_field_destroy(field);
   return status;
 }
 
 vxm_status vxm_vdb_read(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error) {
-  front f;
-  vxm_status status = read_front(&f, input, error);
-  bool is_float = f.grid.type == VXM_VDB_TYPE_FLOAT && rule != VXM_BITS_NONE;
+  receipt r = {.input = input, .rule = rule};
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = receive(&r, &local);
   if (status == VXM_OK)
-    status = (is_float ? read_mask : read_bits)(out, &f, input, rule, error);
-  vxm_about_destroy(&f.grid.about);
+    status = finish_bits(out, &r, &local);
+  vxm_about_destroy(&r.about);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
 /** Bits as the numbers 0 and 1. */
-static vxm_status read_bits_as_numbers(vxm_field **out, front *f, const vxm_input *input, vxm_error *error) {
-  vxm_grid *grid;
-  vxm_status status = read_bits(&grid, f, input, VXM_BITS_ANY, error);
-  if (status != VXM_OK)
-    return status;
-  status = vxm_field_make(out, input->context, &f->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
+static vxm_status count_bits(vxm_field **out, const vxm_grid *grid, vxm_error *error) {
+  vxm_status status = vxm_field_make(out, grid->context, &grid->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
   if (status == VXM_OK)
     vxm_field_put_grid(*out, grid);
-  vxm_grid_destroy(grid);
   return status;
 }
 
 vxm_status vxm_vdb_read_field(vxm_field **out, const vxm_input *input, vxm_error *error) {
-  front f;
-  vxm_status status = read_front(&f, input, error);
-  bool is_float = f.grid.type == VXM_VDB_TYPE_FLOAT;
+  receipt r = {.input = input, .wants_numbers = true};
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = receive(&r, &local);
   if (status == VXM_OK)
-    status = (is_float ? read_numbers : read_bits_as_numbers)(out, &f, input, error);
-  vxm_about_destroy(&f.grid.about);
+    status = r.filling.grid ? count_bits(out, r.filling.grid, &local) : describe(out, &r, &local);
+  vxm_grid_destroy(r.filling.grid);
+  vxm_about_destroy(&r.about);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** .vdb: set voxels as a tree of OpenVDB, which is written when it is complete. */
-#include "base/module.h"
 #include "gridio/common/format.h"
 #include "gridio/formats/vdb_blocks.h"
 #include "gridio/formats/vdb_read.h"
 
 #include <string.h>
 
-vxm_status vxm_vdb_open(const vxm_vdb_functions **out, const char *purpose, vxm_error *error) {
-  const vxm_module_need need = {"openvdb", "libopenvdb-dev", purpose};
+const vxm_module_need vxm_vdb_need = {"openvdb", "libopenvdb-dev", "reading and writing .vdb files"};
+
+vxm_status vxm_vdb_open(const vxm_vdb_functions **out, vxm_error *error) {
   const vxm_module *module;
-  vxm_status status = vxm_module_open(&module, &need, error);
+  vxm_status status = vxm_module_open(&module, &vxm_vdb_need, error);
   if (status == VXM_OK)
     *out = module->functions;
   return status;
@@ -19,7 +19,7 @@ vxm_status vxm_vdb_open(const vxm_vdb_functions **out, const char *purpose, vxm_
 static const vxm_vdb_kind solid = {VXM_VDB_BITS, "solid", 0, NULL};
 
 vxm_status vxm_vdb_open_writer(const vxm_vdb_functions **out, const vxm_space *space, vxm_error *error) {
-  vxm_status status = vxm_vdb_open(out, "writing .vdb files", error);
+  vxm_status status = vxm_vdb_open(out, error);
   return status == VXM_OK ? (*out)->check(space, error) : status;
 }
 

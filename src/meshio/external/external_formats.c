@@ -6,7 +6,7 @@
 
 #include "base/endian.h"
 #include "base/file.h"
-#include "meshio/external/sandbox.h"
+#include "sandbox/sandbox.h"
 
 /* ---- Content ---- */
 

@@ -4,8 +4,8 @@
 #define VXM_MESHIO_EXTERNAL_EXTERNAL_FORMATS_H
 
 #include "mesh/soup.h"
-#include "meshio/external/reader.h"
-#include "meshio/external/references.h"
+#include "sandbox/reader.h"
+#include "sandbox/references.h"
 
 enum { VXM_FOREIGN_EXTENSIONS = 4 };
 

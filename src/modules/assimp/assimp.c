@@ -76,7 +76,7 @@ static void prepare(void) {
   aiIsExtensionSupported(".glb");
 }
 
-static const vxm_reader reader = {prepare, read_scene};
+static const vxm_reader reader = {prepare, read_scene, NULL};
 
 __attribute__((visibility("default"))) extern const vxm_module vxm_module_table;
 const vxm_module vxm_module_table = {PACKAGE_VERSION, "Assimp " VXM_ASSIMP_VERSION, "BSD-3-Clause", &reader};

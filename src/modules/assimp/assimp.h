@@ -6,7 +6,7 @@
 #include <assimp/cfileio.h>
 #include <assimp/scene.h>
 
-#include "meshio/external/reader.h"
+#include "sandbox/reader.h"
 
 /** The file in memory and those that it refers to, as Assimp sees them. */
 typedef struct vxm_assimp_files {

@@ -87,7 +87,7 @@ static void prepare() {
   }
 }
 
-static const vxm_reader reader = {prepare, read_cad};
+static const vxm_reader reader = {prepare, read_cad, nullptr};
 
 VXM_API extern const vxm_module vxm_module_table;
 const vxm_module vxm_module_table = {PACKAGE_VERSION, "OpenCASCADE " OCC_VERSION_COMPLETE,

@@ -7,7 +7,7 @@
 #include <TDocStd_Document.hxx>
 #include <string>
 
-#include "meshio/external/reader.h"
+#include "sandbox/reader.h"
 
 /** A failure on its way to the caller: the status is returned, the error filled. */
 struct vxm_occt_failure {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The module "openvdb" (gridio/formats/vdb.h): trees of OpenVDB, made of blocks and written to a file. */
+/** The module "openvdb" (gridio/formats/vdb.h): trees of OpenVDB, made of blocks and written to a file.
+ * openvdb_read.cc reads. */
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
 
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
-#include <istream>
 #include <ostream>
 #include <sstream>
 #include <streambuf>
@@ -17,7 +17,7 @@
 #include "base/hash.h"
 #include "base/module.h"
 #include "config.h"
-#include "gridio/formats/vdb.h"
+#include "modules/openvdb/openvdb.h"
 
 namespace {
 
@@ -25,31 +25,19 @@ using openvdb::BoolTree;
 using openvdb::Coord;
 using openvdb::FloatTree;
 
-/** A failure that is described already. */
-struct failure {
-  vxm_status status;
-};
-
-void check(vxm_status status) {
-  if (status != VXM_OK)
-    throw failure{status};
-}
-
-/** Runs `work`; what it throws becomes a status with a message of one line: `otherwise` what OpenVDB refuses.
- */
-template <typename Work>
-vxm_status guarded(vxm_error *error, Work &&work, vxm_status otherwise = VXM_ERROR_RANGE) {
+/** Runs `work`; what it throws becomes a status with a message of one line. */
+template <typename Work> vxm_status guarded(vxm_error *error, Work &&work) {
   try {
     work();
     return VXM_OK;
-  } catch (const failure &known) {
+  } catch (const vxm_vdb_failure &known) {
     return known.status;
   } catch (const std::bad_alloc &) {
     return vxm_fail(error, VXM_ERROR_MEMORY, "OpenVDB is out of memory");
   } catch (const std::exception &other) {
-    return vxm_fail(error, otherwise, "OpenVDB: %s", other.what());
+    return vxm_fail(error, VXM_ERROR_RANGE, "OpenVDB: %s", other.what());
   } catch (...) {
-    return vxm_fail(error, otherwise, "OpenVDB failed for a reason that it does not tell");
+    return vxm_fail(error, VXM_ERROR_RANGE, "OpenVDB failed for a reason that it does not tell");
   }
 }
 
@@ -82,7 +70,7 @@ namespace {
 constexpr size_t allocation = 32;
 
 void hold(vxm_vdb &vdb, size_t bytes, vxm_error *error) {
-  check(vxm_memory_take(vdb.context, bytes, error));
+  vxm_vdb_check(vxm_memory_take(vdb.context, bytes, error));
   vdb.held += bytes;
 }
 
@@ -207,7 +195,7 @@ void check_space(const vxm_space &space, vxm_error *error) {
     transform_of(space)->copy();
   } catch (const openvdb::ArithmeticError &) {
     const double *size = space.voxel_size, *origin = space.origin;
-    check(vxm_fail(
+    vxm_vdb_check(vxm_fail(
         error, VXM_ERROR_RANGE,
         "OpenVDB cannot hold voxels of %g x %g x %g at (%g, %g, %g); give the model in another unit, or "
         "choose another format",
@@ -417,7 +405,7 @@ template <typename Tree> void write_tree(vxm_vdb &vdb, Tree &tree, vxm_output *o
     stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
     archive().put(stream, vdb.grid, vxm_output_can_patch(output));
   } catch (const std::exception &) {
-    check(to.status);
+    vxm_vdb_check(to.status);
     throw;
   }
 }
@@ -427,25 +415,6 @@ void write(vxm_vdb &vdb, vxm_output *output, vxm_error *error) {
     write_tree(vdb, *vdb.bits, output, error);
   else
     write_tree(vdb, *vdb.numbers, output, error);
-}
-
-/* ---- Unpacking ---- */
-
-struct memory : std::streambuf {
-  memory(const unsigned char *data, size_t size) {
-    char *begin = const_cast<char *>(reinterpret_cast<const char *>(data));
-    setg(begin, begin, begin + size);
-  }
-};
-
-void unpack(unsigned char *to, size_t size, const unsigned char *chunk, size_t chunk_size, bool is_blosc) {
-  memory buffer(chunk, chunk_size);
-  std::istream stream(&buffer);
-  stream.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
-  if (is_blosc)
-    openvdb::io::bloscFromStream(stream, reinterpret_cast<char *>(to), size);
-  else
-    openvdb::io::unzipFromStream(stream, reinterpret_cast<char *>(to), size);
 }
 
 /* ---- The table ---- */
@@ -491,14 +460,8 @@ vxm_status vdb_write(vxm_vdb *vdb, vxm_output *output, vxm_error *error) {
   return guarded(error, [&] { in_threads(vdb->context, [&] { write(*vdb, output, error); }); });
 }
 
-vxm_status vdb_unpack(unsigned char *to, size_t size, const unsigned char *chunk, size_t chunk_size,
-                      bool is_blosc, vxm_error *error) {
-  return guarded(
-      error, [&] { unpack(to, size, chunk, chunk_size, is_blosc); }, VXM_ERROR_FORMAT);
-}
-
-const vxm_vdb_functions functions = {vdb_check,       vdb_create,   vdb_destroy, vdb_put_bits,
-                                     vdb_put_numbers, vdb_put_cube, vdb_write,   vdb_unpack};
+const vxm_vdb_functions functions = {vxm_vdb_reader, vdb_check,       vdb_create,   vdb_destroy,
+                                     vdb_put_bits,   vdb_put_numbers, vdb_put_cube, vdb_write};
 
 } // namespace
 

@@ -2,15 +2,15 @@
 /**
  * Reading through a foreign library, apart from our process. Such libraries crash on many a damaged file
  * (doc/formats.md has figures), keep state of their own, print, and hold memory that our limit does not see;
- * the program voxmend-reader opens the module and sends the soup. It opens no files, and has none but the
- * channel to us (confine.h): what the mesh refers to it asks us for.
+ * the program voxmend-reader opens the module and sends the soup or the grid. It opens no files, and has none
+ * but the channel to us (confine.h): what the mesh refers to it asks us for.
  */
-#ifndef VXM_MESHIO_EXTERNAL_SANDBOX_H
-#define VXM_MESHIO_EXTERNAL_SANDBOX_H
+#ifndef VXM_SANDBOX_SANDBOX_H
+#define VXM_SANDBOX_SANDBOX_H
 
 #include "base/module.h"
-#include "meshio/external/reader.h"
-#include "meshio/external/references.h"
+#include "sandbox/reader.h"
+#include "sandbox/references.h"
 
 /**
  * Fills an empty soup, but for its format. Under a memory limit the reading process may hold half of what is
@@ -26,6 +26,17 @@
  */
 vxm_status vxm_sandbox_read(vxm_soup *soup, const vxm_module_need *need, const vxm_reader_request *request,
                             vxm_references *references, vxm_error *error);
+
+/**
+ * Reads a grid, under the same limits, and hands it to the sink, whose error comes back if it has one.
+ *
+ * @param warnings takes what is odd about the reading
+ * @param request  its data, size, name and hint
+ * @return as vxm_sandbox_read
+ */
+vxm_status vxm_sandbox_read_grid(vxm_voxel_sink *sink, vxm_warnings *warnings, vxm_context *context,
+                                 const vxm_module_need *need, const vxm_reader_request *request,
+                                 vxm_error *error);
 
 /** The arguments of voxmend-reader, in their order. Over the channel it gets the size of the file in 64 bits,
  * and its bytes. */

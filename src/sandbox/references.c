@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/external/references.h"
+#include "sandbox/references.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * voxmend-reader: reads one mesh file through a module, for a process that must outlive it (sandbox.h). The
- * file comes over standard input, which is a socket, and the soup goes back over it. Before it looks at the
- * file it gives up all that reading does not take (confine.h).
+ * voxmend-reader: reads one file through a module, for a process that must outlive it (sandbox.h). The file
+ * comes over standard input, which is a socket, and the soup or the grid goes back over it. Before it looks
+ * at the file it gives up all that reading does not take (confine.h).
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,10 +10,10 @@
 #include <unistd.h>
 
 #include "base/context.h"
-#include "meshio/external/confine.h"
-#include "meshio/external/memory_name.h"
-#include "meshio/external/sandbox.h"
-#include "meshio/external/wire_format.h"
+#include "sandbox/confine.h"
+#include "sandbox/memory_name.h"
+#include "sandbox/sandbox.h"
+#include "sandbox/wire_format.h"
 
 enum { CHANNEL = STDIN_FILENO, WRONG_CALL = 2, GONE = 1 };
 
@@ -57,12 +57,38 @@ static bool fetch(void *payload, vxm_context *context, const char *name, vxm_rea
   return true;
 }
 
-static vxm_status read_mesh(vxm_soup *soup, const vxm_reader *reader, char **arguments, vxm_error *error) {
+static vxm_status send_mesh(vxm_context *context, const vxm_reader *reader, const vxm_reader_request *request,
+                            vxm_error *error) {
+  vxm_soup *soup;
+  vxm_status status = vxm_soup_create(&soup, context, "", error);
+  if (status != VXM_OK)
+    return status;
+  status = reader->read(soup, request, error);
+  const vxm_error *unfetched = request->payload;
+  if (unfetched->code != VXM_OK) {
+    *error = *unfetched;
+    status = error->code;
+  }
+  if (status == VXM_OK && !vxm_wire_send_soup(CHANNEL, soup))
+    status = cut_off(error);
+  vxm_soup_destroy(soup);
+  return status;
+}
+
+static vxm_status send_grid(vxm_context *context, const vxm_reader *reader, const vxm_reader_request *request,
+                            vxm_error *error) {
+  static vxm_wire_sender sender = {.channel = CHANNEL};
+  vxm_voxel_sink sink = vxm_wire_sink(&sender);
+  vxm_status status = reader->read_grid(&sink, context, request, error);
+  return status == VXM_OK && !vxm_wire_send_end(&sender) ? cut_off(error) : status;
+}
+
+static vxm_status read_file(vxm_context *context, const vxm_reader *reader, char **arguments,
+                            vxm_error *error) {
   unsigned char *data;
   uint64_t size;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_status status =
-      vxm_wire_get_size(CHANNEL, &size) ? take(&data, soup->context, size, error) : cut_off(error);
+  vxm_error unfetched = VXM_ERROR_INIT;
+  vxm_status status = vxm_wire_get_size(CHANNEL, &size) ? take(&data, context, size, error) : cut_off(error);
   if (status != VXM_OK)
     return status;
   vxm_memory_name(data, (size_t)size);
@@ -73,13 +99,9 @@ static vxm_status read_mesh(vxm_soup *soup, const vxm_reader *reader, char **arg
                                 .deflection = strtod(arguments[VXM_APART_DEFLECTION], NULL),
                                 .path = VXM_MEMORY_NAME,
                                 .fetch = fetch,
-                                .payload = &local};
-  status = reader->read(soup, &request, error);
-  vxm_free(soup->context, data);
-  if (local.code != VXM_OK) {
-    *error = local;
-    return local.code;
-  }
+                                .payload = &unfetched};
+  status = (reader->read ? send_mesh : send_grid)(context, reader, &request, error);
+  vxm_free(context, data);
   return status;
 }
 
@@ -87,7 +109,7 @@ static uint64_t number(char **arguments, int which) {
   return strtoull(arguments[which], NULL, 10);
 }
 
-static vxm_status serve(vxm_soup *soup, char **arguments, vxm_error *error) {
+static vxm_status serve(vxm_context *context, char **arguments, vxm_error *error) {
   const vxm_module *module;
   vxm_status status = vxm_module_load(&module, arguments[VXM_APART_MODULE], "reading this file", error);
   if (status != VXM_OK)
@@ -99,9 +121,12 @@ static vxm_status serve(vxm_soup *soup, char **arguments, vxm_error *error) {
                                        .seconds = number(arguments, VXM_APART_SECONDS)};
   reader->prepare();
   const char *missing = vxm_confine(&confinement);
-  if (missing)
-    vxm_warn(&soup->warnings, "the reader could not be confined as usual: %s", missing);
-  return read_mesh(soup, reader, arguments, error);
+  if (missing) {
+    vxm_warnings warnings = {.count = 0};
+    vxm_warn(&warnings, "the reader could not be confined as usual: %s", missing);
+    vxm_wire_send_warning(CHANNEL, warnings.text[0]);
+  }
+  return read_file(context, reader, arguments, error);
 }
 
 int main(int argc, char **argv) {
@@ -113,15 +138,11 @@ int main(int argc, char **argv) {
   options.threads = 1;
   options.progress = tell;
   vxm_context *context = NULL;
-  vxm_soup *soup = NULL;
   vxm_error error = VXM_ERROR_INIT;
   vxm_status status = vxm_context_create(&context, &options, &error);
   if (status == VXM_OK)
-    status = vxm_soup_create(&soup, context, "", &error);
-  if (status == VXM_OK)
-    status = serve(soup, argv, &error);
-  bool sent = status == VXM_OK ? vxm_wire_send_soup(CHANNEL, soup) : vxm_wire_send_failure(CHANNEL, &error);
-  vxm_soup_destroy(soup);
+    status = serve(context, argv, &error);
+  bool sent = status == VXM_OK || vxm_wire_send_failure(CHANNEL, &error);
   vxm_context_destroy(context);
   return sent ? 0 : GONE;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* By its system calls: the headers of Debian 12 know only the first of its versions. */
-#include "meshio/external/landlock.h"
+#include "sandbox/landlock.h"
 
 #include <stdint.h>
 #include <sys/syscall.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/external/confine.h"
+#include "sandbox/confine.h"
 
 #include <linux/capability.h>
 #include <signal.h>
@@ -10,8 +10,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "meshio/external/landlock.h"
-#include "meshio/external/syscall_filter.h"
+#include "sandbox/landlock.h"
+#include "sandbox/syscall_filter.h"
 
 /* ---- Early ---- */
 

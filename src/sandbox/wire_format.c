@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/external/wire_format.h"
+#include "sandbox/wire_format.h"
 
 #include <errno.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
 
-/** What comes next. Both sides are of one build, so structures go over as they are. */
-typedef enum parcel_kind { PROGRESS = 1, FAILURE, SOUP, REFERENCE, ATTEMPT } parcel_kind;
+#include "sandbox/parcel.h"
 
 /** Ahead of the arrays of a soup, which follow in the order of these counts. */
 typedef struct parcel_counts {
@@ -18,7 +17,7 @@ typedef struct parcel_counts {
 
 /* ---- Sending ---- */
 
-static bool put(int channel, const void *data, size_t size) {
+bool vxm_parcel_put(int channel, const void *data, size_t size) {
   const char *at = data;
   while (size > 0) {
     ssize_t written = write(channel, at, size);
@@ -32,21 +31,28 @@ static bool put(int channel, const void *data, size_t size) {
   return true;
 }
 
-static bool put_kind(int channel, parcel_kind kind) {
+bool vxm_parcel_put_kind(int channel, vxm_parcel_kind kind) {
   uint64_t word = (uint64_t)kind;
-  return put(channel, &word, sizeof word);
+  return vxm_parcel_put(channel, &word, sizeof word);
 }
 
 bool vxm_wire_send_progress(int channel, double fraction) {
-  return put_kind(channel, PROGRESS) && put(channel, &fraction, sizeof fraction);
+  return vxm_parcel_put_kind(channel, VXM_PARCEL_PROGRESS) &&
+         vxm_parcel_put(channel, &fraction, sizeof fraction);
 }
 
 bool vxm_wire_send_failure(int channel, const vxm_error *error) {
-  return put_kind(channel, FAILURE) && put(channel, error, sizeof *error);
+  return vxm_parcel_put_kind(channel, VXM_PARCEL_FAILURE) && vxm_parcel_put(channel, error, sizeof *error);
+}
+
+bool vxm_wire_send_warning(int channel, const char *text) {
+  char line[VXM_NOTE_LENGTH] = "";
+  strncpy(line, text, sizeof line - 1);
+  return vxm_parcel_put_kind(channel, VXM_PARCEL_WARNING) && vxm_parcel_put(channel, line, sizeof line);
 }
 
 bool vxm_wire_send_attempt(int channel, int64_t call) {
-  return put_kind(channel, ATTEMPT) && put(channel, &call, sizeof call);
+  return vxm_parcel_put_kind(channel, VXM_PARCEL_ATTEMPT) && vxm_parcel_put(channel, &call, sizeof call);
 }
 
 bool vxm_wire_get(int channel, void *data, size_t size) {
@@ -69,7 +75,8 @@ bool vxm_wire_get_size(int channel, uint64_t *size) {
 
 bool vxm_wire_ask(int channel, const char *name) {
   uint64_t length = strlen(name);
-  return put_kind(channel, REFERENCE) && put(channel, &length, sizeof length) && put(channel, name, length);
+  return vxm_parcel_put_kind(channel, VXM_PARCEL_REFERENCE) &&
+         vxm_parcel_put(channel, &length, sizeof length) && vxm_parcel_put(channel, name, length);
 }
 
 bool vxm_wire_send_soup(int channel, const vxm_soup *soup) {
@@ -80,17 +87,18 @@ bool vxm_wire_send_soup(int channel, const vxm_soup *soup) {
                           .warnings = (uint64_t)soup->warnings.count};
   for (size_t t = 0; t < soup->tag_count; t++)
     counts.tag_bytes += strlen(soup->tags[t]) + 1;
-  if (!put_kind(channel, SOUP) || !put(channel, &counts, sizeof counts) ||
-      !put(channel, soup->positions, 3 * soup->vertex_count * sizeof *soup->positions) ||
-      !put(channel, soup->offsets, (soup->face_count + 1) * sizeof *soup->offsets) ||
-      !put(channel, soup->indices, soup->corner_count * sizeof *soup->indices))
+  if (!vxm_parcel_put_kind(channel, VXM_PARCEL_SOUP) || !vxm_parcel_put(channel, &counts, sizeof counts) ||
+      !vxm_parcel_put(channel, soup->positions, 3 * soup->vertex_count * sizeof *soup->positions) ||
+      !vxm_parcel_put(channel, soup->offsets, (soup->face_count + 1) * sizeof *soup->offsets) ||
+      !vxm_parcel_put(channel, soup->indices, soup->corner_count * sizeof *soup->indices))
     return false;
-  if (soup->tag_count > 0 && !put(channel, soup->face_tags, soup->face_count * sizeof *soup->face_tags))
+  if (soup->tag_count > 0 &&
+      !vxm_parcel_put(channel, soup->face_tags, soup->face_count * sizeof *soup->face_tags))
     return false;
   for (size_t t = 0; t < soup->tag_count; t++)
-    if (!put(channel, soup->tags[t], strlen(soup->tags[t]) + 1))
+    if (!vxm_parcel_put(channel, soup->tags[t], strlen(soup->tags[t]) + 1))
       return false;
-  return put(channel, soup->warnings.text, counts.warnings * sizeof *soup->warnings.text);
+  return vxm_parcel_put(channel, soup->warnings.text, counts.warnings * sizeof *soup->warnings.text);
 }
 
 /* ---- Receiving ---- */
@@ -99,12 +107,11 @@ vxm_status vxm_wire_send_size(vxm_process *receiver, uint64_t size, vxm_error *e
   return vxm_process_send(receiver, &size, sizeof size, error);
 }
 
-static vxm_status not_a_soup(vxm_error *error) {
+vxm_status vxm_parcel_damaged(vxm_error *error) {
   return vxm_fail(error, VXM_ERROR_FORMAT, "what the reading process sent is damaged");
 }
 
-/** Ends a text, and keeps it to one line. */
-static void tame(char *text, size_t size) {
+void vxm_parcel_tame(char *text, size_t size) {
   text[size - 1] = '\0';
   for (; *text; text++)
     if ((unsigned char)*text < ' ')
@@ -116,10 +123,10 @@ static vxm_status receive_failure(vxm_process *sender, vxm_error *error) {
   vxm_status status = vxm_process_receive(sender, &sent, sizeof sent, error);
   if (status != VXM_OK)
     return status;
-  tame(sent.text, sizeof sent.text);
-  tame(sent.file, sizeof sent.file);
+  vxm_parcel_tame(sent.text, sizeof sent.text);
+  vxm_parcel_tame(sent.file, sizeof sent.file);
   if (sent.code <= VXM_OK || sent.code > VXM_ERROR_CANCELLED || !sent.text[0])
-    return not_a_soup(error);
+    return vxm_parcel_damaged(error);
   vxm_error_pass(error, &sent);
   return sent.code;
 }
@@ -146,7 +153,7 @@ static vxm_status receive_arrays(vxm_soup *soup, vxm_process *sender, const parc
     good &= soup->indices[c] < counts->vertices;
   if (!good) {
     soup->offsets[0] = 0;
-    return not_a_soup(error);
+    return vxm_parcel_damaged(error);
   }
   soup->vertex_count = (size_t)counts->vertices;
   soup->face_count = (size_t)counts->faces;
@@ -161,13 +168,13 @@ static vxm_status take_names(vxm_soup *soup, const char *names, const parcel_cou
   const char *end = names + counts->tag_bytes;
   for (uint64_t t = 0; t < counts->tags && status == VXM_OK; t++) {
     if (names == end)
-      return not_a_soup(error);
+      return vxm_parcel_damaged(error);
     size_t length = strlen(names);
     uint32_t tag;
     status = vxm_soup_add_tag(soup, names, length, &tag, error);
     names += length + 1;
   }
-  return status == VXM_OK && names != end ? not_a_soup(error) : status;
+  return status == VXM_OK && names != end ? vxm_parcel_damaged(error) : status;
 }
 
 static vxm_status receive_tags(vxm_soup *soup, vxm_process *sender, const parcel_counts *counts,
@@ -189,7 +196,7 @@ static vxm_status receive_tags(vxm_soup *soup, vxm_process *sender, const parcel
   for (uint64_t f = 0; good && f < counts->faces; f++)
     good = soup->face_tags[f] < counts->tags;
   if (status == VXM_OK)
-    status = good ? take_names(soup, names, counts, error) : not_a_soup(error);
+    status = good ? take_names(soup, names, counts, error) : vxm_parcel_damaged(error);
   vxm_free(soup->context, names);
   return status;
 }
@@ -203,7 +210,7 @@ static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *e
   const uint64_t most = UINT64_C(1) << 40;
   if (counts.vertices > VXM_VERTICES_MAX || counts.faces > most || counts.corners > most ||
       counts.tags > UINT32_MAX || counts.tag_bytes > most || counts.warnings > VXM_NOTES_MAX)
-    return not_a_soup(error);
+    return vxm_parcel_damaged(error);
   status = receive_arrays(soup, sender, &counts, error);
   if (status == VXM_OK)
     status = receive_tags(soup, sender, &counts, error);
@@ -212,9 +219,9 @@ static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *e
                                  (size_t)counts.warnings * sizeof *soup->warnings.text, error);
   for (uint64_t n = 0; status == VXM_OK && n < counts.warnings; n++)
     if (soup->warnings.text[n][0])
-      tame(soup->warnings.text[n], sizeof soup->warnings.text[n]);
+      vxm_parcel_tame(soup->warnings.text[n], sizeof soup->warnings.text[n]);
     else
-      status = not_a_soup(error);
+      status = vxm_parcel_damaged(error);
   if (status == VXM_OK)
     soup->warnings.count = (int)counts.warnings;
   return status;
@@ -233,15 +240,27 @@ static vxm_status receive_reference(vxm_process *sender, vxm_wire_listener *list
   uint64_t length;
   vxm_status status = vxm_process_receive(sender, &length, sizeof length, error);
   if (status == VXM_OK && length > VXM_WIRE_NAME_MAX)
-    status = not_a_soup(error);
+    status = vxm_parcel_damaged(error);
   if (status == VXM_OK)
     status = vxm_process_receive(sender, name, (size_t)length, error);
   if (status != VXM_OK)
     return status;
   name[length] = '\0';
   if (strlen(name) != length)
-    return not_a_soup(error);
+    return vxm_parcel_damaged(error);
   return listener->answer(listener->payload, sender, name, error);
+}
+
+static vxm_status receive_warning(vxm_process *sender, vxm_wire_listener *listener, vxm_error *error) {
+  char line[VXM_NOTE_LENGTH];
+  vxm_status status = vxm_process_receive(sender, line, sizeof line, error);
+  if (status != VXM_OK)
+    return status;
+  line[sizeof line - 1] = '\0';
+  if (line[0] == '\0')
+    return vxm_parcel_damaged(error);
+  vxm_warn(&listener->warnings, "%s", line);
+  return VXM_OK;
 }
 
 static vxm_status receive_attempt(vxm_process *sender, vxm_wire_listener *listener, vxm_error *error) {
@@ -252,33 +271,42 @@ static vxm_status receive_attempt(vxm_process *sender, vxm_wire_listener *listen
   return status == VXM_OK ? VXM_ERROR_IO : status;
 }
 
-vxm_status vxm_wire_receive(vxm_soup *soup, vxm_process *sender, vxm_wire_listener *listener,
-                            vxm_error *error) {
+/** A parcel after which others may come. */
+static vxm_status receive_between(uint64_t kind, vxm_process *sender, vxm_wire_listener *listener,
+                                  vxm_wire_arrival *arrival, vxm_error *error) {
+  switch (kind) {
+  case VXM_PARCEL_PROGRESS:
+    return receive_progress(sender, error);
+  case VXM_PARCEL_REFERENCE:
+    return listener->answer ? receive_reference(sender, listener, error) : vxm_parcel_damaged(error);
+  case VXM_PARCEL_WARNING:
+    return receive_warning(sender, listener, error);
+  default:
+    return listener->sink ? vxm_wire_receive_voxels(listener->sink, arrival, kind, sender, error)
+                          : vxm_parcel_damaged(error);
+  }
+}
+
+vxm_status vxm_wire_receive(vxm_process *sender, vxm_wire_listener *listener, vxm_error *error) {
+  vxm_wire_arrival arrival = {.has_grid = false};
   listener->has_failed = false;
   listener->attempt = -1;
+  listener->warnings.count = 0;
   for (;;) {
     uint64_t kind;
     vxm_status status = vxm_process_receive(sender, &kind, sizeof kind, error);
     if (status != VXM_OK)
       return status;
-    switch (kind) {
-    case PROGRESS:
-      status = receive_progress(sender, error);
-      break;
-    case REFERENCE:
-      status = receive_reference(sender, listener, error);
-      break;
-    case ATTEMPT:
+    if (kind == VXM_PARCEL_ATTEMPT)
       return receive_attempt(sender, listener, error);
-    case SOUP:
-      return receive_soup(soup, sender, error);
-    case FAILURE:
+    if (kind == VXM_PARCEL_FAILURE) {
       listener->has_failed = true;
       return receive_failure(sender, error);
-    default:
-      return not_a_soup(error);
     }
-    if (status != VXM_OK)
+    if (kind == VXM_PARCEL_SOUP && listener->soup)
+      return receive_soup(listener->soup, sender, error);
+    status = receive_between(kind, sender, listener, &arrival, error);
+    if (status != VXM_OK || arrival.is_whole || (listener->sink && listener->sink->is_full))
       return status;
   }
 }

@@ -4,8 +4,8 @@
  * nothing itself: it asks for them by the names that stand in the file, and we decide. The name may be a
  * stranger's, and what it leads to anything at all.
  */
-#ifndef VXM_MESHIO_EXTERNAL_REFERENCES_H
-#define VXM_MESHIO_EXTERNAL_REFERENCES_H
+#ifndef VXM_SANDBOX_REFERENCES_H
+#define VXM_SANDBOX_REFERENCES_H
 
 #include "base/context.h"
 #include "base/warnings.h"

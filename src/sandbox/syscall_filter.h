@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The filter of system calls. */
-#ifndef VXM_MESHIO_EXTERNAL_SYSCALL_FILTER_H
-#define VXM_MESHIO_EXTERNAL_SYSCALL_FILTER_H
+#ifndef VXM_SANDBOX_SYSCALL_FILTER_H
+#define VXM_SANDBOX_SYSCALL_FILTER_H
 
 /**
  * Lets only the system calls through that computing takes. Any other is not made: which one is told over the

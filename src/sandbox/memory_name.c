@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/external/memory_name.h"
+#include "sandbox/memory_name.h"
 
 #include <dlfcn.h>
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/external/blocked_syscall.h"
+#include "sandbox/blocked_syscall.h"
 
 #include <inttypes.h>
 #include <stdio.h>

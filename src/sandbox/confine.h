@@ -3,8 +3,8 @@
  * What the process that reads foreign files gives up before it looks at one. A library that a file has taken
  * over may then compute, answer over the channel, and nothing else.
  */
-#ifndef VXM_MESHIO_EXTERNAL_CONFINE_H
-#define VXM_MESHIO_EXTERNAL_CONFINE_H
+#ifndef VXM_SANDBOX_CONFINE_H
+#define VXM_SANDBOX_CONFINE_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** A file in memory for libraries that open their input by its name. */
-#ifndef VXM_MESHIO_EXTERNAL_MEMORY_NAME_H
-#define VXM_MESHIO_EXTERNAL_MEMORY_NAME_H
+#ifndef VXM_SANDBOX_MEMORY_NAME_H
+#define VXM_SANDBOX_MEMORY_NAME_H
 
 #include <stddef.h>
 

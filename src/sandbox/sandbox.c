@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/external/sandbox.h"
+#include "sandbox/sandbox.h"
 
 #include <inttypes.h>
 #include <signal.h>
@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "base/size_text.h"
-#include "meshio/external/blocked_syscall.h"
-#include "meshio/external/wire_format.h"
+#include "sandbox/blocked_syscall.h"
+#include "sandbox/wire_format.h"
 
 /* ---- The program ---- */
 
@@ -46,7 +46,8 @@ enum { CLOCK_PER_COMPUTING = 4 };
 
 /** How much finer than usual the triangles are to be. */
 static double fineness(const vxm_reader_request *request) {
-  return request->deflection < VXM_DEFLECTION_DEFAULT ? VXM_DEFLECTION_DEFAULT / request->deflection : 1.0;
+  bool is_finer = request->deflection > 0 && request->deflection < VXM_DEFLECTION_DEFAULT;
+  return is_finer ? VXM_DEFLECTION_DEFAULT / request->deflection : 1.0;
 }
 
 /** The machine's memory, of which a quarter is left to others. */
@@ -76,10 +77,10 @@ static allowance allow(const vxm_context *context, const vxm_reader_request *req
 /* ---- The conversation ---- */
 
 typedef struct conversation {
-  const vxm_context *context;
+  vxm_context *context;
   const vxm_reader_request *request;
-  vxm_references *references;
-  uint64_t size; /**< of the mesh and all that it got */
+  vxm_references *references; /**< NULL for a grid */
+  uint64_t size;              /**< of the file and all that it got */
   allowance allowed;
 } conversation;
 
@@ -87,8 +88,8 @@ static void set_clock(vxm_process *reader, const allowance *allowed) {
   reader->limit_ms = 1000.0 * CLOCK_PER_COMPUTING * (double)allowed->seconds;
 }
 
-static vxm_status start(vxm_process *reader, vxm_context *context, const char *program, const char *module,
-                        const conversation *c, vxm_error *error) {
+static vxm_status start(vxm_process *reader, const char *program, const char *module, const conversation *c,
+                        vxm_error *error) {
   char parent[24], deflection[40], memory[24], memory_max[24], seconds[24];
   snprintf(parent, sizeof parent, "%ld", (long)getpid());
   snprintf(deflection, sizeof deflection, "%a", c->request->deflection);
@@ -108,7 +109,7 @@ static vxm_status start(vxm_process *reader, vxm_context *context, const char *p
   };
   /* posix_spawn takes writable strings for history's sake, and leaves them alone. */
   vxm_status status =
-      vxm_process_start(reader, context, "reading", program, (char *const *)(uintptr_t)arguments, error);
+      vxm_process_start(reader, c->context, "reading", program, (char *const *)(uintptr_t)arguments, error);
   if (status == VXM_OK)
     set_clock(reader, &c->allowed);
   return status;
@@ -162,11 +163,11 @@ static vxm_status explain_attempt(int64_t call, vxm_place place, vxm_error *erro
   return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "the reader was stopped: it tried to %s", what);
 }
 
-static vxm_status explain_time(uint64_t seconds, const char *of, vxm_place place, vxm_error *error) {
-  return vxm_fail_at(error, VXM_ERROR_RANGE, place,
-                     "reading took more than %" PRIu64
-                     " s%s: the file is damaged, or needs a larger deflection",
-                     seconds, of);
+static vxm_status explain_time(uint64_t seconds, const char *of, const conversation *c, vxm_place place,
+                               vxm_error *error) {
+  return vxm_fail_at(
+      error, VXM_ERROR_RANGE, place, "reading took more than %" PRIu64 " s%s: the file is %s", seconds, of,
+      c->request->deflection > 0 ? "damaged, or needs a larger deflection" : "probably damaged");
 }
 
 /** What became of a program that has gone without an answer. */
@@ -180,9 +181,9 @@ static vxm_status explain_end(int status, const conversation *c, bool is_late, i
     return vxm_fail_at(error, VXM_ERROR_FORMAT, place,
                        "the reader was stopped: it tried to do what a reader may not");
   if (is_late)
-    return explain_time(seconds * CLOCK_PER_COMPUTING, "", place, error);
+    return explain_time(seconds * CLOCK_PER_COMPUTING, "", c, place, error);
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-    return explain_time(seconds, " of computing", place, error);
+    return explain_time(seconds, " of computing", c, place, error);
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
     return vxm_fail_at(error, VXM_ERROR_MEMORY, place,
                        "the system ended the program that reads it, probably for want of memory");
@@ -205,52 +206,67 @@ static vxm_status explain_failure(vxm_status status, const conversation *c, vxm_
         "reading takes more than %.0f MiB: the file is damaged, or the memory limit must allow "
         "more (half of it is for reading)",
         (double)c->allowed.memory / (1 << 20));
-  if (status == VXM_ERROR_FORMAT && c->references->refused > 0)
+  if (status == VXM_ERROR_FORMAT && c->references && c->references->refused > 0)
     return vxm_fail_at(error, status, place, "it cannot be read: %s", c->references->first);
   return status;
 }
 
-/** What was refused comes first: there is room for so many lines only. */
-static void add_refusals(vxm_soup *soup, const vxm_references *references) {
-  vxm_warnings said = soup->warnings;
-  soup->warnings = references->warnings;
-  for (int n = 0; n < said.count; n++)
-    vxm_warn(&soup->warnings, "%s", said.text[n]);
+static void add_warnings(vxm_warnings *to, const vxm_warnings *from) {
+  for (int n = 0; n < from->count; n++)
+    vxm_warn(to, "%s", from->text[n]);
 }
 
-static vxm_status converse(vxm_soup *soup, vxm_process *reader, conversation *c, vxm_error *error) {
-  vxm_wire_listener listener = {.answer = answer, .payload = c};
+static vxm_status converse(vxm_process *reader, conversation *c, vxm_wire_listener *listener,
+                           vxm_error *error) {
   vxm_status status = vxm_wire_send_size(reader, c->size, error);
   if (status == VXM_OK)
     status = vxm_process_send(reader, c->request->data, c->request->size, error);
   /* A reader that is gone may have left the reason. */
   if (status == VXM_OK || (status == VXM_ERROR_IO && !vxm_process_is_late(reader)))
-    status = vxm_wire_receive(soup, reader, &listener, error);
+    status = vxm_wire_receive(reader, listener, error);
   bool is_late = vxm_process_is_late(reader);
   int end = vxm_process_end(reader);
-  if (status != VXM_OK && listener.has_failed)
+  if (status != VXM_OK && listener->has_failed)
     return explain_failure(status, c, error);
-  return status == VXM_ERROR_IO ? explain_end(end, c, is_late, listener.attempt, error) : status;
+  return status == VXM_ERROR_IO ? explain_end(end, c, is_late, listener->attempt, error) : status;
 }
 
-vxm_status vxm_sandbox_read(vxm_soup *soup, const vxm_module_need *need, const vxm_reader_request *request,
-                            vxm_references *references, vxm_error *error) {
+static vxm_status read_apart(conversation *c, vxm_wire_listener *listener, const vxm_module_need *need,
+                             vxm_error *error) {
   char module[VXM_MODULE_PATH_MAX], program[VXM_MODULE_PATH_MAX];
   vxm_process reader;
-  conversation c = {.context = soup->context,
-                    .request = request,
-                    .references = references,
-                    .size = request->size,
-                    .allowed = allow(soup->context, request, request->size)};
+  c->size = c->request->size;
+  c->allowed = allow(c->context, c->request, c->size);
   vxm_status status = vxm_module_find(module, need, error);
   if (status == VXM_OK)
     status = find_program(program, module, error);
   if (status == VXM_OK)
-    status = start(&reader, soup->context, program, module, &c, error);
+    status = start(&reader, program, module, c, error);
+  return status == VXM_OK ? converse(&reader, c, listener, error) : status;
+}
+
+vxm_status vxm_sandbox_read(vxm_soup *soup, const vxm_module_need *need, const vxm_reader_request *request,
+                            vxm_references *references, vxm_error *error) {
+  conversation c = {.context = soup->context, .request = request, .references = references};
+  vxm_wire_listener listener = {.soup = soup, .answer = answer, .payload = &c};
+  vxm_status status = read_apart(&c, &listener, need, error);
   if (status != VXM_OK)
     return status;
-  status = converse(soup, &reader, &c, error);
+  /* What was refused comes first: there is room for so many lines only. */
+  vxm_warnings said = soup->warnings;
+  soup->warnings = references->warnings;
+  add_warnings(&soup->warnings, &listener.warnings);
+  add_warnings(&soup->warnings, &said);
+  return VXM_OK;
+}
+
+vxm_status vxm_sandbox_read_grid(vxm_voxel_sink *sink, vxm_warnings *warnings, vxm_context *context,
+                                 const vxm_module_need *need, const vxm_reader_request *request,
+                                 vxm_error *error) {
+  conversation c = {.context = context, .request = request};
+  vxm_wire_listener listener = {.sink = sink};
+  vxm_status status = read_apart(&c, &listener, need, error);
   if (status == VXM_OK)
-    add_refusals(soup, references);
+    add_warnings(warnings, &listener.warnings);
   return status;
 }

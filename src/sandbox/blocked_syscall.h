@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What a reader that was stopped for a system call was up to. */
-#ifndef VXM_MESHIO_EXTERNAL_BLOCKED_SYSCALL_H
-#define VXM_MESHIO_EXTERNAL_BLOCKED_SYSCALL_H
+#ifndef VXM_SANDBOX_BLOCKED_SYSCALL_H
+#define VXM_SANDBOX_BLOCKED_SYSCALL_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Landlock, by which a process takes files, ports and signals to others away from itself, for good. */
-#ifndef VXM_MESHIO_EXTERNAL_LANDLOCK_H
-#define VXM_MESHIO_EXTERNAL_LANDLOCK_H
+#ifndef VXM_SANDBOX_LANDLOCK_H
+#define VXM_SANDBOX_LANDLOCK_H
 
 #include <stdbool.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "meshio/external/syscall_filter.h"
+#include "sandbox/syscall_filter.h"
 
 #include <stddef.h>
 
@@ -16,10 +16,11 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "meshio/external/wire_format.h"
+#include "sandbox/wire_format.h"
 
 /* What computing takes. Whatever the libraries open, ask or start at their first use they have done before
- * (vxm_reader.prepare), and there is one thread. */
+ * (vxm_reader.prepare). Threads that they have started by then, as log4cplus does below OpenVDB, get the
+ * filter too, perhaps before they have run. */
 static const int allowed[] = {
     /* the channel; libraries print to where nobody listens */
     SCMP_SYS(read), SCMP_SYS(write), SCMP_SYS(readv), SCMP_SYS(writev), SCMP_SYS(close),
@@ -31,7 +32,9 @@ static const int allowed[] = {
     /* itself: signals of its own, such as that of abort(), and its end */
     SCMP_SYS(getpid), SCMP_SYS(gettid), SCMP_SYS(futex), SCMP_SYS(sched_yield), SCMP_SYS(rt_sigaction),
     SCMP_SYS(rt_sigprocmask), SCMP_SYS(rt_sigreturn), SCMP_SYS(sigreturn), SCMP_SYS(sigaltstack),
-    SCMP_SYS(restart_syscall), SCMP_SYS(exit), SCMP_SYS(exit_group)};
+    SCMP_SYS(restart_syscall), SCMP_SYS(exit), SCMP_SYS(exit_group),
+    /* a thread's first calls, which name places in its own memory */
+    SCMP_SYS(rseq), SCMP_SYS(set_robust_list)};
 
 static int channel_of_handler;
 
@@ -83,6 +86,8 @@ const char *vxm_syscall_filter(int channel) {
   if (filter == NULL)
     return "the library makes no filter";
   int failure = seccomp_attr_set(filter, SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS);
+  if (failure == 0)
+    failure = seccomp_attr_set(filter, SCMP_FLTATR_CTL_TSYNC, 1);
   if (failure == 0)
     failure = allow_all(filter);
   if (failure == 0 && sigaction(SIGSYS, &action, NULL) != 0)

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Blocks and cubes from a reader of voxels, put into a grid or a field. */
+#ifndef VXM_GRIDIO_FORMATS_VDB_FILL_H
+#define VXM_GRIDIO_FORMATS_VDB_FILL_H
+
+#include "gridio/common/values.h"
+#include "sandbox/voxel_sink.h"
+
+/** What is filled: one of the two. */
+typedef struct vxm_vdb_filling {
+  vxm_grid *grid;
+  vxm_field *field; /**< of 32-bit floats */
+  int64_t low[3];   /**< index of voxel (0,0,0) of it */
+} vxm_vdb_filling;
+
+/* As the functions of vxm_voxel_sink. What lies beyond the space is left out. */
+
+void vxm_vdb_fill_bits(vxm_vdb_filling *filling, const int64_t at[3], const uint64_t bits[VXM_SINK_SIDE]);
+void vxm_vdb_fill_numbers(vxm_vdb_filling *filling, const int64_t at[3],
+                          const float numbers[VXM_SINK_VOXELS]);
+void vxm_vdb_fill_cube(vxm_vdb_filling *filling, const int64_t at[3], int64_t side, float number);
+
+#endif
