@@ -14,7 +14,7 @@
  *    to be allowed; any other gives 0, false, NULL or "" for it, or does nothing. So does an index, an enum
  *    or a count that is out of range. What cannot be seen is that an array is shorter than it is said to be.
  *  - Distinct objects may be used from distinct threads at the same time, also when they share a context.
- *    One object may be read by many threads at once.
+ *    One object may be read by many threads at once, and one model voxelized by many.
  *  - The same input gives the same bits whatever the number of threads.
  */
 #ifndef VOXMEND_H
@@ -81,7 +81,7 @@ typedef struct vxm_error {
 /* ---- Context: threads, memory limit, progress ---- */
 
 /**
- * Called now and then from the thread that made the call.
+ * Called now and then from the thread that made the call; by several at once, where several make calls.
  *
  * @param phase     what is being done, such as "reading"
  * @param fraction  0 to 1 within the phase
@@ -1161,6 +1161,10 @@ VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, con
 /**
  * A mesh made ready for voxelizing: its parts are found, its holes capped. Making one costs more than a small
  * grid does; all its grids share its memory.
+ *
+ * Several threads may use one model at once, in any calls, each with memory of its own that is kept for the
+ * next grid; the bits are the same. But a model with an engine other than the CPU may be used by one thread
+ * at a time, as the engine may.
  */
 typedef struct vxm_model vxm_model;
 
@@ -1176,8 +1180,7 @@ VXM_API vxm_status vxm_model_create(vxm_model **out, const vxm_mesh *mesh,
 VXM_API void vxm_model_destroy(vxm_model *model);
 
 /**
- * Voxelizes a model into a grid: all bits of the grid are replaced. One model may be used by one thread at a
- * time.
+ * Voxelizes a model into a grid: all bits of the grid are replaced.
  *
  * @param grid      says the space
  * @param report    NULL = not wanted, nor are warnings, which saves counting and hashing
@@ -1402,6 +1405,10 @@ VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report
 VXM_API vxm_status vxm_model_write_colors(vxm_voxelize_report *report, vxm_model *model,
                                           const vxm_space *space, const char *path,
                                           const vxm_color_options *options, vxm_error *error);
+
+/* What a call leaves in the model, labels and warnings, belongs to the thread that made it, until that
+ * thread's next call. A thread that has made nothing of the model is told what another has made last, which
+ * it may read while that one is not at work. */
 
 /** Number of labels of the last labels made of the model; 0 if there are none. */
 VXM_API int64_t vxm_model_label_count(const vxm_model *model);

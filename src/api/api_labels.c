@@ -29,7 +29,7 @@ vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_mode
   if (status != VXM_OK)
     return status;
   vxm_face_labels labelling;
-  status = vxm_face_labels_create(&labelling, model->shape.soup, chosen.by, error);
+  status = vxm_face_labels_create(&labelling, model->analysis.soup, chosen.by, error);
   if (status == VXM_OK)
     status = vxm_labels_run(values, (vxm_layout)VXM_PLANE_Z_FAST, report, model, space, &labelling, error);
   vxm_face_labels_destroy(&labelling);
@@ -52,18 +52,27 @@ vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, co
   return status;
 }
 
-int64_t vxm_model_label_count(const vxm_model *model) {
-  return model ? (int64_t)model->labels.count : 0;
+/** The table of the calling thread, or an empty one. */
+static const vxm_label_table *table_of(const vxm_model *model) {
+  static const vxm_label_table none = {.count = 0};
+  const vxm_model_result *result = model ? vxm_model_results_read(model->results) : NULL;
+  return result ? &result->labels : &none;
 }
 
-static bool is_label(const vxm_model *model, int64_t label) {
-  return model && label >= 1 && label <= (int64_t)model->labels.count;
+int64_t vxm_model_label_count(const vxm_model *model) {
+  return (int64_t)table_of(model)->count;
+}
+
+static bool is_label(const vxm_label_table *table, int64_t label) {
+  return label >= 1 && label <= (int64_t)table->count;
 }
 
 const char *vxm_model_label_name(const vxm_model *model, int64_t label) {
-  return is_label(model, label) ? vxm_label_table_name(&model->labels, (size_t)label) : "";
+  const vxm_label_table *table = table_of(model);
+  return is_label(table, label) ? vxm_label_table_name(table, (size_t)label) : "";
 }
 
 int64_t vxm_model_label_voxels(const vxm_model *model, int64_t label) {
-  return is_label(model, label) ? model->labels.voxels[label - 1] : 0;
+  const vxm_label_table *table = table_of(model);
+  return is_label(table, label) ? table->voxels[label - 1] : 0;
 }

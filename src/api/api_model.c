@@ -69,9 +69,11 @@ vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const 
 }
 
 int64_t vxm_model_warning_count(const vxm_model *model) {
-  return model ? model->warnings.count : 0;
+  const vxm_model_result *result = model ? vxm_model_results_read(model->results) : NULL;
+  return result ? result->warnings.count : 0;
 }
 
 const char *vxm_model_warning(const vxm_model *model, int64_t index) {
-  return model && index >= 0 && index < model->warnings.count ? model->warnings.text[index] : "";
+  const vxm_model_result *result = model ? vxm_model_results_read(model->results) : NULL;
+  return result && index >= 0 && index < result->warnings.count ? result->warnings.text[index] : "";
 }

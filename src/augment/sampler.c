@@ -109,7 +109,7 @@ static bool is_there(const vxm_sampler *sampler, size_t place, uint32_t model) {
 /** Desks must not go on with a model that is gone, or with another at the same address. */
 static void detach(vxm_sampler *sampler) {
   for (int d = 0; d <= vxm_context_threads(sampler->context); d++)
-    sampler->desks[d].twin.of = NULL;
+    sampler->desks[d].instance.of = NULL;
 }
 
 static void take_out(vxm_sampler *sampler, size_t place) {

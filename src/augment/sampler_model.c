@@ -37,7 +37,7 @@ static vxm_status measure(vxm_model_extent *out, const vxm_triangle_set *facets,
 static vxm_status find_entries(vxm_sampler_model *subject, const vxm_soup *soup, uint32_t size,
                                vxm_error *error) {
   vxm_context *context = subject->model->context;
-  const vxm_triangle_set *facets = &subject->model->shape.facets;
+  const vxm_triangle_set *facets = &subject->model->analysis.facets;
   size_t count = soup->vertex_count, points = facets->first_apex;
   vxm_error local = VXM_ERROR_INIT;
   uint32_t *same = vxm_alloc(context, count, sizeof *same, &local);
@@ -65,7 +65,7 @@ static vxm_status find_entries(vxm_sampler_model *subject, const vxm_soup *soup,
     }
   }
   vxm_free(context, same);
-  if (local.code == VXM_OK && vxm_model_wants_faces(subject->model))
+  if (local.code == VXM_OK && vxm_faces_wanted(&subject->model->options))
     subject->vertex_entry = entry;
   else
     vxm_free(context, entry);
@@ -80,7 +80,7 @@ vxm_status vxm_sampler_model_create(vxm_sampler_model *out, uint32_t number, con
   *out = (vxm_sampler_model){.number = number};
   vxm_status status = vxm_model_make(&out->model, soup, options, error);
   if (status == VXM_OK)
-    status = measure(&out->extent, &out->model->shape.facets, error);
+    status = measure(&out->extent, &out->model->analysis.facets, error);
   if (status == VXM_OK)
     status = vxm_model_instance_prepare(out->model, error);
   if (status == VXM_OK && noise->size > 0)

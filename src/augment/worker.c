@@ -17,14 +17,14 @@ vxm_space vxm_worker_space(int64_t resolution) {
 vxm_status vxm_worker_create(vxm_worker *out, vxm_context *context, bool alone, vxm_error *error) {
   *out = (vxm_worker){0};
   vxm_status status = vxm_context_child(&out->context, context, alone, error);
-  out->twin.context = out->context;
+  out->instance.context = out->context;
   return status;
 }
 
 void vxm_worker_destroy(vxm_worker *desk) {
   if (!desk->context)
     return;
-  vxm_model_instance_destroy(&desk->twin);
+  vxm_model_instance_destroy(&desk->instance);
   vxm_free(desk->context, desk->words);
   vxm_grid_destroy(desk->grid);
   vxm_context_release(desk->context);
@@ -36,7 +36,7 @@ void vxm_worker_destroy(vxm_worker *desk) {
 /** How the points of a subject move; those of its facets, or the vertices of its mesh. */
 static vxm_vertex_transform motion_of(const vxm_sampler_model *subject, const vxm_placement *placement,
                                       const vxm_noise *noise, bool vertices) {
-  const vxm_triangle_set *facets = &subject->model->shape.facets;
+  const vxm_triangle_set *facets = &subject->model->analysis.facets;
   return (vxm_vertex_transform){.from = vertices ? (const double(*)[3])facets->soup->positions
                                                  : (const double(*)[3])facets->positions,
                                 .count = vertices ? facets->soup->vertex_count : facets->first_apex,
@@ -45,25 +45,25 @@ static vxm_vertex_transform motion_of(const vxm_sampler_model *subject, const vx
                                 .noise = (const float(*)[4])noise->vectors,
                                 .noise_size = noise->size,
                                 .offset = noise->size > 0 ? placement->offset % noise->size : 0,
+                                .stretch = placement->stretch,
+                                /* Both ends of an edge may be displaced, along three axes. */
+                                .reach = 2 * sqrt(3.0) * noise->reach,
                                 .from_serial = vertices ? 0 : facets->serial,
                                 .noise_serial = noise->serial};
 }
 
 vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
                            const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
-  vxm_model_instance *twin = &desk->twin;
-  vxm_status status = vxm_model_instance_attach(twin, subject->model, error);
+  vxm_model_instance *instance = &desk->instance;
+  vxm_status status = vxm_model_instance_attach(instance, subject->model, error);
   if (status != VXM_OK)
     return status;
   vxm_space space = vxm_worker_space(window->fast_dim);
   vxm_lattice lattice = vxm_lattice_of(&space);
   vxm_variation variation = {.points = motion_of(subject, placement, noise, false),
                              .vertices = motion_of(subject, placement, noise, true),
-                             .stretch = placement->stretch,
-                             /* Both ends of an edge may be displaced, along three axes. */
-                             .reach = 2 * sqrt(3.0) * noise->reach,
                              .mirrored = placement->mirrored};
-  return vxm_model_instance_fill(twin, window, &lattice, &variation, error);
+  return vxm_model_instance_fill(instance, window, &lattice, &variation, error);
 }
 
 static vxm_status make_room(vxm_worker *desk, size_t words, vxm_error *error) {

@@ -178,7 +178,7 @@ vxm_status vxm_labels_write(vxm_label_report *report, vxm_model *model, const vx
     return VXM_ERROR_ARGUMENT;
   uint16_t *values = NULL;
   vxm_face_labels labelling;
-  vxm_status status = vxm_face_labels_create(&labelling, model->shape.soup, options->by, error);
+  vxm_status status = vxm_face_labels_create(&labelling, model->analysis.soup, options->by, error);
   if (status == VXM_OK)
     status = check_kind(file.kind, &labelling, space, path, error);
   if (status == VXM_OK)
@@ -192,7 +192,7 @@ vxm_status vxm_labels_write(vxm_label_report *report, vxm_model *model, const vx
   double made = vxm_clock_ms();
   file.values = values;
   if (status == VXM_OK)
-    status = write_file(&file, &model->labels, error);
+    status = write_file(&file, &vxm_model_results_read(model->results)->labels, error);
   else
     vxm_output_abort(file.output);
   report->voxelize.fill_ms = made - start;

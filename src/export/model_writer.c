@@ -4,6 +4,8 @@
 #include "grid/sum.h"
 #include "gridio/common/grid_writer.h"
 #include "gridio/gridio.h"
+#include "voxel/model/memory_need.h"
+#include "voxel/model/model_report.h"
 #include "voxel/model/voxelize.h"
 
 #include <string.h>
@@ -98,6 +100,7 @@ vxm_status vxm_model_writer_estimate(vxm_estimate *out, const vxm_model *model, 
 
 typedef struct stream {
   vxm_model *model;
+  vxm_model_pass *pass; /**< NULL where the grid is made as a whole */
   const plan *plan;
   const vxm_space *space;
   vxm_grid_writer *file;
@@ -111,7 +114,7 @@ static vxm_status do_window(stream *s, int64_t begin, vxm_error *error) {
   double start = vxm_clock_ms();
   s->window.begin = begin;
   s->window.end = vxm_min(begin + s->plan->slices, s->window.slow_dim);
-  vxm_status status = vxm_model_fill(s->model, &s->window, error);
+  vxm_status status = vxm_model_pass_fill(s->pass, &s->window, error);
   if (status != VXM_OK)
     return status;
   vxm_sum_add(&s->sum, s->model->context, &s->window, s->before);
@@ -139,7 +142,7 @@ static vxm_status write_windows(stream *s, const char *path, const char *format,
     status = vxm_grid_writer_open(&s->file, context, s->space, path, format, error);
   double start = vxm_clock_ms();
   if (status == VXM_OK)
-    status = vxm_model_begin(s->model, s->space, NULL, NULL, error);
+    status = vxm_model_begin(&s->pass, s->model, s->space, NULL, NULL, error);
   s->fill_ms = vxm_clock_ms() - start;
   for (int64_t k = 0; k < s->window.slow_dim && status == VXM_OK; k += s->plan->slices)
     status = do_window(s, k, error);
@@ -181,7 +184,8 @@ vxm_status vxm_model_writer_write(vxm_voxelize_report *report, vxm_model *model,
   else {
     status = write_windows(&s, path, format, error);
     if (status == VXM_OK)
-      vxm_model_end(model, report, s.sum.count, s.sum.hash);
+      vxm_model_report(s.pass, report, s.sum.count, s.sum.hash);
+    vxm_model_close(model, s.pass);
   }
   if (status != VXM_OK)
     return status;

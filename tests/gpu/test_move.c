@@ -30,7 +30,7 @@ static void start(scene *s, const vxm_soup *soup, int64_t resolution, vxm_rng *r
   double size = 1.0 / (double)resolution;
   vxm_space space = {{resolution, resolution, resolution}, {0, 0, 0}, {size, size, size}};
   s->lattice = vxm_lattice_of(&space);
-  s->facets = &s->model->shape.facets;
+  s->facets = &s->model->analysis.facets;
   s->entry = malloc(s->facets->first_apex * sizeof *s->entry);
   assert_non_null(s->entry);
   for (size_t p = 0; p < s->facets->first_apex; p++)
@@ -62,7 +62,7 @@ static bool moves_alike(scene *s, uint32_t offset, uint64_t noise_serial, bool d
   vxm_error error = VXM_ERROR_INIT;
   bool done = false;
   vxm_status status = vxm_snapped_points_move(&by[0], facets, &s->lattice, &motion, apexes, &error);
-  assert_int_equal(vxm_snapped_points_begin(&by[1], facets, &s->lattice, NULL), VXM_OK);
+  assert_int_equal(vxm_snapped_points_begin(&by[1], facets, &s->lattice, &motion, NULL), VXM_OK);
   if (engine->ops->move(engine, &by[1], &job, &done, &error) != VXM_OK)
     fail_msg("%s", error.text);
   if (done) {

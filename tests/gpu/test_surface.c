@@ -158,8 +158,9 @@ static void test_windows(void **state) {
     vxm_model *by_cpu = engine_model(soup, &options);
     options.engine = engine;
     vxm_model *by_gpu = engine_model(soup, &options);
-    assert_int_equal(vxm_model_begin(by_cpu, &space, NULL, NULL, NULL), VXM_OK);
-    assert_int_equal(vxm_model_begin(by_gpu, &space, NULL, NULL, NULL), VXM_OK);
+    vxm_model_pass *cpu_pass, *gpu_pass;
+    assert_int_equal(vxm_model_begin(&cpu_pass, by_cpu, &space, NULL, NULL, NULL), VXM_OK);
+    assert_int_equal(vxm_model_begin(&gpu_pass, by_gpu, &space, NULL, NULL, NULL), VXM_OK);
     int64_t depth = space.dims[layouts[l].slow];
     for (int64_t begin = 0; begin < depth; begin += 7) {
       vxm_window window = vxm_window_of(&space, layouts[l], begin, vxm_min(begin + 7, depth));
@@ -167,13 +168,15 @@ static void test_windows(void **state) {
       uint64_t *a = malloc(words * 8), *b = malloc(words * 8);
       assert_true(a && b);
       window.words = a;
-      assert_int_equal(vxm_model_fill(by_cpu, &window, NULL), VXM_OK);
+      assert_int_equal(vxm_model_pass_fill(cpu_pass, &window, NULL), VXM_OK);
       window.words = b;
-      assert_int_equal(vxm_model_fill(by_gpu, &window, NULL), VXM_OK);
+      assert_int_equal(vxm_model_pass_fill(gpu_pass, &window, NULL), VXM_OK);
       assert_memory_equal(a, b, words * 8);
       free(a);
       free(b);
     }
+    vxm_model_close(by_cpu, cpu_pass);
+    vxm_model_close(by_gpu, gpu_pass);
     vxm_model_destroy(by_cpu);
     vxm_model_destroy(by_gpu);
   }

@@ -336,7 +336,7 @@ static void test_crossings_stay_below_their_bound(void **state) {
     const double *matrix = round % 3 ? transform : NULL;
     assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, matrix, true, NULL), VXM_OK);
     vxm_window window = vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, 0, space.dims[2]);
-    double bound = vxm_raster_schedule_bound(&facets, &space, matrix);
+    double bound = vxm_raster_schedule_bound(facets.lengths, facets.facet_count, &space, matrix);
     for (int axis = 0; axis < 3; axis++) {
       vxm_columns columns = vxm_columns_of(&window, axis);
       columns.roles = VXM_FACET_TRIANGLE | VXM_FACET_CAP;

@@ -3,6 +3,7 @@
 #include "engine.h"
 
 #include "grid/sum.h"
+#include "voxel/model/model_report.h"
 
 static const vxm_layout layouts[6] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
 static const int thread_counts[3] = {1, 2, 7};
@@ -44,7 +45,8 @@ static void check_windows(vxm_model *model, const vxm_grid *whole, const vxm_vox
                           vxm_layout layout, int64_t most, vxm_rng *rng) {
   const vxm_space *space = &whole->space;
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_model_begin(model, space, NULL, NULL, &error) != VXM_OK)
+  vxm_model_pass *pass;
+  if (vxm_model_begin(&pass, model, space, NULL, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   vxm_sum sum = vxm_sum_start(space);
   uint64_t *before = NULL;
@@ -55,7 +57,7 @@ static void check_windows(vxm_model *model, const vxm_grid *whole, const vxm_vox
     window.words = malloc(count * sizeof *window.words);
     assert_non_null(window.words);
     memset(window.words, 0xa5, count * sizeof *window.words); /* to be replaced */
-    if (vxm_model_fill(model, &window, &error) != VXM_OK)
+    if (vxm_model_pass_fill(pass, &window, &error) != VXM_OK)
       fail_msg("%s", error.text);
     assert_window_is(&window, whole);
     vxm_sum_add(&sum, model->context, &window, before);
@@ -67,7 +69,8 @@ static void check_windows(vxm_model *model, const vxm_grid *whole, const vxm_vox
   }
   free(before);
   vxm_voxelize_report report;
-  vxm_model_end(model, &report, sum.count, sum.hash);
+  vxm_model_report(pass, &report, sum.count, sum.hash);
+  vxm_model_close(model, pass);
   assert_equal_reports(&report, want);
 }
 

@@ -229,7 +229,7 @@ static vxm_status make(vxm_sparse **out, making *m, const vxm_space *space, vxm_
     status = make_passes(m, error);
   double since = vxm_clock_ms();
   if (status == VXM_OK)
-    status = vxm_cl_tree_take(out, engine, &m->tree, m->bricks, m->inside, m->job->facets->context, error);
+    status = vxm_cl_tree_take(out, engine, &m->tree, m->bricks, m->inside, m->job->placed->context, error);
   if (status == VXM_OK)
     status = vxm_cl_touched_take(engine, m->job->has_voxels, m->job->facets, error);
   if (status == VXM_OK && engine->stages) {

@@ -175,7 +175,7 @@ static vxm_status fill(vxm_published *published, vxm_space *space, const vxm_sou
   if (status == VXM_OK)
     status = make_queue(published, error);
   if (status == VXM_OK)
-    status = vxm_surface_make(&surface, soup, error);
+    status = vxm_surface_make(&surface, soup->context, soup, error);
   if (status == VXM_OK)
     status = place(published, space, surface, options->voxel_size, error);
   vxm_surface_destroy(surface);

@@ -2,6 +2,7 @@
 #include "voxel/fields/coverage.h"
 #include "base/threads.h"
 #include "voxel/engine/engine.h"
+#include "voxel/model/model_report.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -169,7 +170,7 @@ static vxm_status count_elsewhere(reduction *r, vxm_engine *engine, const vxm_wi
 }
 
 static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, vxm_window fine,
-                                 const vxm_field_plan *plan, vxm_model *model, vxm_error *error) {
+                                 const vxm_field_plan *plan, vxm_model_pass *pass, vxm_error *error) {
   vxm_status status = VXM_OK;
   int64_t length = fine.slow_dim / r->n;
   size_t slice_bytes = (size_t)(r->row_length * r->rows) * vxm_scalar_bytes(r->scalar);
@@ -179,15 +180,15 @@ static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, v
     end = vxm_min(begin + plan->slices, length);
     fine.begin = begin * r->n;
     fine.end = end * r->n;
-    status = vxm_model_fill(model, &fine, error);
+    status = vxm_model_pass_fill(pass, &fine, error);
     if (status != VXM_OK)
       break;
     r->slices = end - begin;
     r->values = target->whole ? (unsigned char *)target->whole + (size_t)begin * slice_bytes : block;
-    status = count_elsewhere(r, model->run.engine, &fine, error);
+    status = count_elsewhere(r, pass->solid.engine, &fine, error);
     if (status != VXM_OK)
       break;
-    vxm_parallel(model->context, (size_t)((r->rows * r->slices + ROWS_PER_TASK - 1) / ROWS_PER_TASK),
+    vxm_parallel(pass->solid.context, (size_t)((r->rows * r->slices + ROWS_PER_TASK - 1) / ROWS_PER_TASK),
                  r->counts ? store_rows : reduce_rows, r);
     if (!target->whole)
       status = target->put(target->payload, r->values, begin, end, error);
@@ -204,7 +205,7 @@ static void fill_tables(reduction *r) {
 }
 
 static void sum_up(vxm_coverage_report *report, const reduction *r, const vxm_space *space, int workers,
-                   vxm_model *model) {
+                   vxm_model_pass *pass) {
   *report = (vxm_coverage_report){.full = 0};
   int64_t subvoxels = 0;
   for (int w = 0; w < workers; w++) {
@@ -214,7 +215,7 @@ static void sum_up(vxm_coverage_report *report, const reduction *r, const vxm_sp
   }
   const double *size = space->voxel_size;
   report->volume = (double)subvoxels / (double)(r->n * r->n * r->n) * size[0] * size[1] * size[2];
-  vxm_model_end(model, &report->voxelize, subvoxels, 0);
+  vxm_model_report(pass, &report->voxelize, subvoxels, 0);
 }
 
 vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
@@ -257,22 +258,25 @@ vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report 
   size_t row_words = plan.bits.row_words;
   size_t value_bytes = target->whole ? 0 : (size_t)(r.row_length * r.rows) * vxm_scalar_bytes(r.scalar);
   vxm_error local = VXM_ERROR_INIT;
+  vxm_model_pass *pass = NULL;
   vxm_window fine = plan.bits;
   fine.words = vxm_alloc(context, (size_t)(plan.slices * n) * fine.slice_words, sizeof *fine.words, &local);
   r.sums = vxm_alloc(context, (size_t)workers * row_words, 2 * sizeof *r.sums, &local);
   r.tallies = vxm_calloc(context, (size_t)workers, sizeof *r.tallies, &local);
   void *block = vxm_alloc(context, (size_t)plan.slices, value_bytes, &local);
   r.values = block;
-  size_t count_bytes = has_counts(model->run.engine) ? (size_t)(r.row_length * r.rows) * sizeof *r.counts : 0;
+  size_t count_bytes =
+      has_counts(model->options.engine) ? (size_t)(r.row_length * r.rows) * sizeof *r.counts : 0;
   uint16_t *counts = vxm_alloc(context, (size_t)plan.slices, count_bytes, &local);
   r.counts = count_bytes > 0 ? counts : NULL;
   status = fine.words && r.sums && r.tallies && block && counts ? VXM_OK : local.code;
   if (status == VXM_OK)
-    status = vxm_model_begin(model, &finer, NULL, NULL, &local);
+    status = vxm_model_begin(&pass, model, &finer, NULL, NULL, &local);
   if (status == VXM_OK)
-    status = reduce_windows(&r, target, fine, &plan, model, &local);
+    status = reduce_windows(&r, target, fine, &plan, pass, &local);
   if (status == VXM_OK)
-    sum_up(report, &r, space, workers, model);
+    sum_up(report, &r, space, workers, pass);
+  vxm_model_close(model, pass);
   vxm_free(context, counts);
   vxm_free(context, block);
   vxm_free(context, r.tallies);

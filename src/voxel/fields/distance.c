@@ -3,6 +3,7 @@
 #include "base/task_progress.h"
 #include "base/threads.h"
 #include "voxel/closest/distance_bvh.h"
+#include "voxel/model/model_report.h"
 #include "voxel/surface/surface.h"
 
 #include <math.h>
@@ -15,7 +16,8 @@ typedef struct tally {
 } tally;
 
 typedef struct measure {
-  vxm_model *model;
+  vxm_context *context;
+  vxm_model_pass *pass; /**< NULL without a sign */
   const vxm_surface *surface;
   const vxm_space *space;
   int axes[3];            /**< of the values: the one that varies fastest, the next, the slices */
@@ -47,9 +49,9 @@ float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *s
   return (float)((options->band > 0 ? options->band : INFINITY) * longest_side(space));
 }
 
-static measure measure_of(vxm_model *model, const vxm_surface *surface, const vxm_space *space,
+static measure measure_of(vxm_context *context, const vxm_surface *surface, const vxm_space *space,
                           vxm_layout layout, const vxm_distance_options *options) {
-  measure m = {.model = model,
+  measure m = {.context = context,
                .surface = surface,
                .space = space,
                .axes = {layout.fast, layout.middle, layout.slow},
@@ -87,7 +89,7 @@ static void corners_of(double out[3][3], size_t triangle, const void *payload) {
 }
 
 static vxm_status make_nearest(measure *m, vxm_error *error) {
-  vxm_context *context = m->model->context;
+  vxm_context *context = m->context;
   vxm_error local = VXM_ERROR_INIT;
   m->places = vxm_alloc(context, m->surface->soup->vertex_count, sizeof *m->places, &local);
   if (m->places) {
@@ -183,13 +185,13 @@ static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_err
   if (m->is_signed) {
     m->solid.begin = begin;
     m->solid.end = end;
-    status = vxm_model_fill(m->model, &m->solid, error);
+    status = vxm_model_pass_fill(m->pass, &m->solid, error);
   }
   if (status != VXM_OK)
     return status;
   size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_TILE - 1) / VXM_TILE));
-  vxm_task_progress_start(&m->watch, m->model->context, "measuring distances", tiles, error);
-  vxm_parallel(m->model->context, tiles, measure_tile, m);
+  vxm_task_progress_start(&m->watch, m->context, "measuring distances", tiles, error);
+  vxm_parallel(m->context, tiles, measure_tile, m);
   return vxm_task_progress_end(&m->watch);
 }
 
@@ -223,12 +225,12 @@ static void sum_up(vxm_distance_report *report, const measure *m, int workers) {
     inside += m->tallies[w].inside;
   }
   if (m->is_signed)
-    vxm_model_end(m->model, &report->voxelize, inside, 0);
+    vxm_model_report(m->pass, &report->voxelize, inside, 0);
 }
 
 /** What the workers have of their own. */
 static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
-  vxm_context *context = m->model->context;
+  vxm_context *context = m->context;
   vxm_error local = VXM_ERROR_INIT;
   m->searches = vxm_calloc(context, (size_t)workers, sizeof *m->searches, &local);
   m->squares = vxm_alloc(context, (size_t)workers * VXM_TILE_POINTS, sizeof *m->squares, &local);
@@ -243,7 +245,7 @@ static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
 }
 
 static void free_workers(measure *m, int workers) {
-  vxm_context *context = m->model->context;
+  vxm_context *context = m->context;
   for (int w = 0; w < workers && m->searches; w++)
     vxm_search_destroy(m->searches[w]);
   vxm_free(context, m->searches);
@@ -253,8 +255,8 @@ static void free_workers(measure *m, int workers) {
 
 /** With all but the surface at hand. */
 static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_distance_report *report,
-                              const vxm_space *space, const vxm_field_plan *plan, vxm_error *error) {
-  vxm_context *context = m->model->context;
+                              vxm_model *model, const vxm_field_plan *plan, vxm_error *error) {
+  vxm_context *context = m->context;
   int workers = vxm_context_threads(context);
   size_t values = target->whole ? 0 : (size_t)(m->dims[0] * m->dims[1]);
   vxm_error local = VXM_ERROR_INIT;
@@ -265,11 +267,12 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
         vxm_alloc(context, (size_t)plan->slices * m->solid.slice_words, sizeof *m->solid.words, &local);
   vxm_status status = local.code == VXM_OK ? make_workers(m, workers, &local) : local.code;
   if (status == VXM_OK && m->is_signed)
-    status = vxm_model_begin(m->model, space, NULL, NULL, &local);
+    status = vxm_model_begin(&m->pass, model, m->space, NULL, NULL, &local);
   if (status == VXM_OK)
     status = measure_windows(m, target, plan, &local);
   if (status == VXM_OK)
     sum_up(report, m, workers);
+  vxm_model_close(model, m->pass);
   free_workers(m, workers);
   vxm_free(context, m->solid.words);
   vxm_free(context, block);
@@ -281,7 +284,7 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
 vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
                              vxm_layout layout, bool is_whole, const vxm_distance_options *options,
                              vxm_error *error) {
-  const vxm_soup *soup = model->shape.soup;
+  const vxm_soup *soup = model->analysis.soup;
   size_t triangles;
   uint64_t held = vxm_surface_held_bytes(soup, &triangles);
   uint64_t workers = (uint64_t)vxm_context_threads(model->context);
@@ -303,13 +306,13 @@ vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report 
     return status;
   vxm_surface *surface;
   vxm_lattice lattice = vxm_lattice_of(space);
-  status = vxm_surface_create(&surface, model->shape.soup, &lattice, NULL, error);
+  status = vxm_surface_create(&surface, model->analysis.soup, &lattice, NULL, error);
   if (status != VXM_OK)
     return status;
-  measure m = measure_of(model, surface, space, target->layout, options);
+  measure m = measure_of(model->context, surface, space, target->layout, options);
   status = make_nearest(&m, error);
   if (status == VXM_OK)
-    status = run_planned(&m, target, report, space, &plan, error);
+    status = run_planned(&m, target, report, model, &plan, error);
   vxm_distance_bvh_destroy(m.nearest);
   vxm_surface_destroy(surface);
   return status;

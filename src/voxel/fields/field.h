@@ -4,7 +4,7 @@
 #define VXM_VOXEL_FIELDS_FIELD_H
 
 #include "base/scalar.h"
-#include "voxel/model/model.h"
+#include "voxel/model/memory_need.h"
 
 typedef struct vxm_field_target {
   vxm_layout layout; /**< of the values: the first varies fastest */

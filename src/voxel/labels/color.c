@@ -128,7 +128,7 @@ static vxm_status color_by_cpu(uint8_t *values, const vxm_color_job *job, vxm_co
 /* ---- All of it ---- */
 
 static vxm_status make_colors(uint8_t *values, const vxm_color_job *job, vxm_model *model, vxm_error *error) {
-  vxm_engine *engine = model->run.engine;
+  vxm_engine *engine = model->options.engine;
   if (!engine || !engine->ops || !engine->ops->color)
     return color_by_cpu(values, job, model->context, error);
   vxm_error local = VXM_ERROR_INIT;
@@ -144,7 +144,7 @@ static vxm_status make_colors(uint8_t *values, const vxm_color_job *job, vxm_mod
 static vxm_status make_parts(uint16_t *parts, vxm_model *model, const vxm_space *space, vxm_error *error) {
   vxm_face_labels labelling;
   vxm_label_report report;
-  vxm_status status = vxm_face_labels_create(&labelling, model->shape.soup, VXM_LABEL_PART, error);
+  vxm_status status = vxm_face_labels_create(&labelling, model->analysis.soup, VXM_LABEL_PART, error);
   if (status == VXM_OK)
     status = vxm_labels_run(parts, (vxm_layout){2, 1, 0}, &report, model, space, &labelling, error);
   vxm_face_labels_destroy(&labelling);

@@ -105,7 +105,7 @@ vxm_space vxm_label_component_space(const vxm_label_component *piece, const vxm_
  * of one body, on which the voters agree.
  */
 static bool has_lone_sheet(const vxm_model *model) {
-  const vxm_split *split = &model->shape.facets.split;
+  const vxm_split *split = &model->analysis.facets.split;
   const vxm_voxelize_options *options = &model->options;
   if (options->method != VXM_METHOD_VOTE || options->vote != VXM_VOTE_AUTO ||
       options->parts == VXM_PARTS_WHOLE)
@@ -114,11 +114,11 @@ static bool has_lone_sheet(const vxm_model *model) {
 }
 
 /** Fills slices with the parts that are closed, or closed by caps. */
-static vxm_status fill_without_sheets(vxm_model *model, const vxm_window *window, vxm_error *error) {
-  size_t end = model->shape.facets.split.kind_end[VXM_PART_CAPPED];
+static vxm_status fill_without_sheets(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
+  size_t end = pass->analysis->facets.split.kind_end[VXM_PART_CAPPED];
   if (end > 0)
-    return vxm_voxel_pass_unite(&model->run, window, window->layout.fast, 0, end,
-                                VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
+    return vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, end, VXM_FACET_TRIANGLE | VXM_FACET_CAP,
+                                error);
   memset(window->words, 0,
          window->slice_words * (size_t)(window->end - window->begin) * sizeof *window->words);
   return VXM_OK;
@@ -127,19 +127,22 @@ static vxm_status fill_without_sheets(vxm_model *model, const vxm_window *window
 static vxm_status fill(vxm_model *model, const vxm_window *window, const vxm_lattice *lattice, bool at_once,
                        vxm_error *error) {
   vxm_field_plan plan = {.slices = window->slow_dim};
+  vxm_model_pass *pass = NULL;
   bool is_without = has_lone_sheet(model);
   vxm_status status = VXM_OK;
   if (!at_once)
     status = vxm_field_plan_of(&plan, model, &lattice->space, window->layout, 1, 0, 0, error);
   if (status == VXM_OK)
-    status = vxm_model_begin_on(model, lattice, NULL, NULL, error);
+    status = vxm_model_begin_on(&pass, model, lattice, NULL, NULL, error);
   vxm_window part = *window;
   for (int64_t begin = 0; begin < window->slow_dim && status == VXM_OK; begin = part.end) {
     part.begin = begin;
     part.end = vxm_min(begin + plan.slices, window->slow_dim);
     part.words = window->words + (size_t)begin * window->slice_words;
-    status = is_without ? fill_without_sheets(model, &part, error) : vxm_model_fill(model, &part, error);
+    status = is_without ? fill_without_sheets(&pass->solid, &part, error)
+                        : vxm_model_pass_fill(pass, &part, error);
   }
+  vxm_model_close(model, pass);
   return status;
 }
 

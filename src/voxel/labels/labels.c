@@ -4,12 +4,14 @@
 #include "grid/sum.h"
 #include "voxel/fields/field.h"
 #include "voxel/labels/label_overlaps.h"
+#include "voxel/model/model_report.h"
 
 #include <string.h>
 
 typedef struct labels {
   vxm_context *context;
   vxm_model *model;
+  vxm_model_pass *pass; /**< NULL before the solid is made */
   vxm_face_labels *labelling;
   vxm_label_overlaps claims;
   vxm_row_tile whole;            /**< all rows and slices */
@@ -27,13 +29,13 @@ static size_t grid_words(const labels *l) {
 static vxm_status fill_set(labels *l, const vxm_field_plan *plan, vxm_sum *sum, vxm_error *error) {
   const vxm_space *space = &l->claims.lattice.space;
   const vxm_window *set = &l->claims.set;
-  vxm_status status = vxm_model_begin(l->model, space, NULL, NULL, error);
+  vxm_status status = vxm_model_begin(&l->pass, l->model, space, NULL, NULL, error);
   vxm_window part = *set;
   for (int64_t begin = 0; begin < set->slow_dim && status == VXM_OK; begin = part.end) {
     part.begin = begin;
     part.end = vxm_min(begin + plan->slices, set->slow_dim);
     part.words = set->words + (size_t)begin * set->slice_words;
-    status = vxm_model_fill(l->model, &part, error);
+    status = vxm_model_pass_fill(l->pass, &part, error);
   }
   *sum = vxm_sum_start(space);
   if (status == VXM_OK)
@@ -124,7 +126,7 @@ static void count_tile(size_t task, int worker, void *payload) {
 
 static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
   vxm_label_table *table = &l->labelling->table;
-  vxm_warnings *warnings = &l->model->warnings;
+  vxm_warnings *warnings = l->pass->warnings;
   size_t empty = 0, first = 0;
   vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), count_tile, l);
   for (size_t label = table->count; label > 0; label--) {
@@ -136,7 +138,7 @@ static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
   report->unclaimed = atomic_load_explicit(&l->unclaimed, memory_order_relaxed);
   for (size_t w = 0; w < grid_words(l); w++)
     report->contested += vxm_popcount(l->claims.several[w]);
-  vxm_model_end(l->model, &report->voxelize, sum->count, sum->hash);
+  vxm_model_report(l->pass, &report->voxelize, sum->count, sum->hash);
   if (l->labelling->is_untagged)
     vxm_warn(warnings, "the mesh names no groups or materials: all of it has one label, \"unnamed\"");
   if (empty > 0 && sum->count > 0)
@@ -185,6 +187,7 @@ static vxm_status run(labels *l, vxm_label_report *report, vxm_error *error) {
 }
 
 static void destroy(labels *l) {
+  vxm_model_close(l->model, l->pass);
   vxm_label_overlaps_end(&l->claims);
   vxm_free(l->context, l->counts);
   vxm_free(l->context, l->claims.several);
@@ -196,9 +199,13 @@ vxm_status vxm_labels_run(uint16_t *values, vxm_layout layout, vxm_label_report 
                           const vxm_space *space, vxm_face_labels *labelling, vxm_error *error) {
   vxm_context *context = model->context;
   vxm_error local = VXM_ERROR_INIT;
-  vxm_label_table_destroy(&model->labels);
+  vxm_model_result *mine;
+  vxm_status status = vxm_model_results_mine(&mine, model->results, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_label_table_destroy(&mine->labels);
   labels *l = vxm_calloc(context, 1, sizeof *l, &local);
-  vxm_status status = local.code;
+  status = local.code;
   if (l) {
     l->context = context;
     l->model = model;
@@ -216,7 +223,7 @@ vxm_status vxm_labels_run(uint16_t *values, vxm_layout layout, vxm_label_report 
     destroy(l);
   }
   if (status == VXM_OK) {
-    model->labels = labelling->table;
+    mine->labels = labelling->table;
     labelling->table = (vxm_label_table){.context = context};
   } else
     vxm_error_pass(error, &local);

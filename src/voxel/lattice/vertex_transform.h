@@ -18,6 +18,8 @@ typedef struct vxm_vertex_transform {
   const float (*noise)[4]; /**< a circular buffer of vectors; the fourth number is 0 */
   uint32_t noise_size;
   uint32_t offset; /**< where it begins; below noise_size */
+  double stretch;  /**< at least how many times as long as before any edge becomes, 0 = not told, ... */
+  double reach;    /**< ... plus at most so much, in units of the space */
   uint64_t
       from_serial; /**< of points and entries: no two that hold others have the same; 0 = not for engines */
   uint64_t noise_serial;

@@ -1,19 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model/voxelize.h"
+#include "voxel/model/memory_need.h"
+#include "voxel/model/model_report.h"
 
 vxm_status vxm_voxelize_into(vxm_grid *grid, vxm_voxelize_report *report, vxm_model *model,
                              const double transform[12], vxm_error *error) {
   vxm_window window = vxm_window_of_grid(grid);
-  vxm_status status = vxm_model_begin(model, &grid->space, transform, grid->confidence, error);
+  vxm_model_pass *pass;
+  vxm_status status = vxm_model_begin(&pass, model, &grid->space, transform, grid->confidence, error);
   if (status == VXM_OK)
-    status = vxm_model_fill(model, &window, error);
-  if (status != VXM_OK || !report)
-    return status;
-  int64_t voxels;
-  uint64_t hash;
-  vxm_grid_sum(grid, &voxels, &hash);
-  vxm_model_end(model, report, voxels, hash);
-  return VXM_OK;
+    status = vxm_model_pass_fill(pass, &window, error);
+  if (status == VXM_OK && report) {
+    int64_t voxels;
+    uint64_t hash;
+    vxm_grid_sum(grid, &voxels, &hash);
+    vxm_model_report(pass, report, voxels, hash);
+  }
+  vxm_model_close(model, pass);
+  return status;
 }
 
 static vxm_status make_grid(vxm_grid **out, vxm_model *model, const vxm_space *space, vxm_error *error) {
@@ -37,7 +41,7 @@ vxm_status vxm_voxelize_grid(vxm_grid **out, vxm_voxelize_report *report, vxm_mo
     vxm_grid_destroy(grid);
     return status;
   }
-  grid->warnings = model->warnings;
+  grid->warnings = vxm_model_results_read(model->results)->warnings;
   *out = grid;
   return VXM_OK;
 }

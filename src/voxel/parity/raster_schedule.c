@@ -59,7 +59,7 @@ static double estimate_all(const vxm_raster_schedule *x, size_t f) {
   return sum;
 }
 
-double vxm_raster_schedule_bound(const vxm_triangle_set *facets, const vxm_space *space,
+double vxm_raster_schedule_bound(vxm_edge_lengths lengths, size_t count, const vxm_space *space,
                                  const double transform[12]) {
   double voxel = space->voxel_size[0], norm = 0;
   for (int a = 1; a < 3; a++)
@@ -68,7 +68,12 @@ double vxm_raster_schedule_bound(const vxm_triangle_set *facets, const vxm_space
     for (int c = 0; c < 3; c++)
       norm += transform ? transform[4 * r + c] * transform[4 * r + c] : 0;
   double scale = (transform ? sqrt(norm) : 1) / voxel;
-  return facets->squared_length * scale * scale + 2 * facets->length * scale + (double)facets->facet_count;
+  return lengths.squared * scale * scale + 2 * lengths.sum * scale + (double)count;
+}
+
+double vxm_raster_schedule_placed_bound(const vxm_triangle_set *facets, const vxm_snapped_points *placed,
+                                        const vxm_space *space) {
+  return vxm_raster_schedule_bound(placed->lengths, facets->facet_count, space, placed->transform);
 }
 
 /* ---- Planning ---- */
@@ -144,7 +149,7 @@ vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *x, const vxm_triangle_s
   bool one_part = facets->part[begin] == facets->part[end - 1];
   bool sharing = vxm_context_threads(x->context) > 1 && end - begin <= FACETS_MAX;
   double most =
-      vxm_raster_schedule_bound(facets, &placed->lattice.space, placed->transform) * (double)columns_count;
+      vxm_raster_schedule_placed_bound(facets, placed, &placed->lattice.space) * (double)columns_count;
   if (one_part ? !sharing || most <= round_most : most <= vxm_raster_schedule_round(x->context))
     return plan_evenly(x, begin, end, error);
   return plan_by_estimate(x, begin, end, error);

@@ -181,11 +181,24 @@ static vxm_status reserve(vxm_snapped_points *placed, size_t count, vxm_error *e
   return local.code;
 }
 
+/** At most, once the points have moved. */
+static vxm_edge_lengths lengths_of(const vxm_triangle_set *facets, const vxm_vertex_transform *motion) {
+  const vxm_edge_lengths *own = &facets->lengths;
+  double count = (double)facets->facet_count, stretch = motion->stretch, reach = motion->reach;
+  if (stretch == 0)
+    return *own;
+  /* (a + b)^2 <= 2 a^2 + 2 b^2 */
+  return (vxm_edge_lengths){own->sum * stretch + count * reach,
+                            2 * (own->squared * stretch * stretch + count * reach * reach)};
+}
+
 vxm_status vxm_snapped_points_begin(vxm_snapped_points *placed, const vxm_triangle_set *facets,
-                                    const vxm_lattice *lattice, vxm_error *error) {
+                                    const vxm_lattice *lattice, const vxm_vertex_transform *motion,
+                                    vxm_error *error) {
   static atomic_uint_fast64_t last_serial;
   placed->serial = atomic_fetch_add(&last_serial, 1) + 1;
   placed->lattice = *lattice;
+  placed->lengths = lengths_of(facets, motion);
   memcpy(placed->transform, identity, sizeof identity);
   vxm_free(placed->context, placed->wide);
   placed->wide = NULL;
@@ -203,7 +216,7 @@ void vxm_snapped_points_apexes(vxm_snapped_points *placed, const vxm_triangle_se
 vxm_status vxm_snapped_points_move(vxm_snapped_points *placed, const vxm_triangle_set *facets,
                                    const vxm_lattice *lattice, const vxm_vertex_transform *motion,
                                    bool apexes, vxm_error *error) {
-  vxm_status status = vxm_snapped_points_begin(placed, facets, lattice, error);
+  vxm_status status = vxm_snapped_points_begin(placed, facets, lattice, motion, error);
   if (status == VXM_OK && !place_narrow(placed, motion))
     status = place_wide(placed, facets, motion, error);
   if (status == VXM_OK)

@@ -23,12 +23,12 @@ typedef struct vxm_snapped_points {
   vxm_context *context;
   uint64_t serial; /**< no two that hold different points have the same */
   vxm_lattice lattice;
-  /** Takes the lengths that the facets tell to those here: that of vxm_snapped_points_set, else nothing. */
-  double transform[12];
-  size_t capacity;      /**< of `narrow` and `cells` */
-  int32_t (*narrow)[4]; /**< points by number; the fourth number is 0 */
-  uint64_t *cells;      /**< of each point: x from bit 0 on, y from VXM_CELL_BITS, z from twice that */
-  vxm_point *wide;      /**< used instead where a point lies beyond VXM_NARROW_MAX, else NULL */
+  vxm_edge_lengths lengths; /**< of the facets as they lie here, or more, before `transform` */
+  double transform[12];     /**< that of vxm_snapped_points_set, else nothing */
+  size_t capacity;          /**< of `narrow` and `cells` */
+  int32_t (*narrow)[4];     /**< points by number; the fourth number is 0 */
+  uint64_t *cells;          /**< of each point: x from bit 0 on, y from VXM_CELL_BITS, z from twice that */
+  vxm_point *wide;          /**< used instead where a point lies beyond VXM_NARROW_MAX, else NULL */
 } vxm_snapped_points;
 
 /**
@@ -52,9 +52,10 @@ vxm_status vxm_snapped_points_move(vxm_snapped_points *placed, const vxm_triangl
 /* The same in steps, where something else than the CPU places the points before first_apex: it writes
  * `narrow`, with a fourth number that is not 0 where a point does not fit. */
 
-/** Begins a placing. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+/** Begins a placing of points that move. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_snapped_points_begin(vxm_snapped_points *placed, const vxm_triangle_set *facets,
-                                    const vxm_lattice *lattice, vxm_error *error);
+                                    const vxm_lattice *lattice, const vxm_vertex_transform *motion,
+                                    vxm_error *error);
 /** What a coordinate is multiplied by, less the origin of the space, to become steps. */
 double vxm_snapped_points_scale(const vxm_snapped_points *placed, int axis);
 /** Finds the cells; false if a point does not fit. */

@@ -245,12 +245,12 @@ static vxm_status measure(vxm_triangle_set *facets, vxm_error *error) {
         high[a] = fmax(high[a], p[a]);
       }
     }
-    facets->length += sqrt(squared);
-    facets->squared_length += squared;
+    facets->lengths.sum += sqrt(squared);
+    facets->lengths.squared += squared;
   }
   if (cones > 0) {
-    facets->length += (double)cones * sqrt(squared_distance(low, high));
-    facets->squared_length += (double)cones * squared_distance(low, high);
+    facets->lengths.sum += (double)cones * sqrt(squared_distance(low, high));
+    facets->lengths.squared += (double)cones * squared_distance(low, high);
   }
   return VXM_OK;
 }

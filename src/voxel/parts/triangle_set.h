@@ -37,6 +37,11 @@ typedef struct vxm_part {
   size_t begin, caps, cones, end;
 } vxm_part;
 
+/** Sums over all facets of the longest edge and of its square. */
+typedef struct vxm_edge_lengths {
+  double sum, squared;
+} vxm_edge_lengths;
+
 typedef struct vxm_triangle_set {
   vxm_context *context;
   uint64_t serial; /**< no two that hold different facets have the same */
@@ -48,10 +53,10 @@ typedef struct vxm_triangle_set {
   /* Points: the vertices that facets have, and the caps' own, in the order in which facets first have them,
      so that neighbours lie close together in memory; then an apex for each part. */
   size_t first_apex, point_count;
-  double (*positions)[3];        /**< of the points before first_apex, model units */
-  uint32_t *vertex;              /**< of the same: the soup's vertex; a greater number is a cap's own point */
-  double length, squared_length; /**< sums over all facets of the longest edge and its square, model units */
-  vxm_split split;               /**< trimmed: counts only */
+  double (*positions)[3];   /**< of the points before first_apex, model units */
+  uint32_t *vertex;         /**< of the same: the soup's vertex; a greater number is a cap's own point */
+  vxm_edge_lengths lengths; /**< model units */
+  vxm_split split;          /**< trimmed: counts only */
 } vxm_triangle_set;
 
 /** Splits a soup into parts and covers its polygons. Destroy with vxm_triangle_set_destroy, also after a

@@ -33,37 +33,37 @@ static void fill_slice(size_t slice, int worker, void *payload) {
   }
 }
 
-vxm_status vxm_confidence_fill(vxm_voxel_pass *run, const vxm_window *window, vxm_error *error) {
-  vxm_mesh_analysis *shape = run->shape;
-  vxm_method method = shape->options->method;
-  size_t end = shape->facets.split.part_count;
-  size_t begin = method == VXM_METHOD_VOTE ? shape->facets.split.kind_end[VXM_PART_CLOSED] : 0;
+vxm_status vxm_confidence_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
+  const vxm_mesh_analysis *analysis = pass->analysis;
+  vxm_method method = pass->options.method;
+  size_t end = analysis->facets.split.part_count;
+  size_t begin = method == VXM_METHOD_VOTE ? analysis->facets.split.kind_end[VXM_PART_CLOSED] : 0;
   if (method == VXM_METHOD_WINDING)
     return VXM_OK; /* which decided every voxel */
   if (begin == end) {
-    memset(run->confidence, 255,
+    memset(pass->confidence, 255,
            (size_t)window->fast_dim * (size_t)window->middle_dim * (size_t)window->slow_dim);
     return VXM_OK;
   }
-  confidence_job job = {.confidence = run->confidence, .window = window};
-  job.settled = run->escalated > 0 ? run->buffers[VXM_BUFFER_MASK].words : NULL;
-  atomic_uchar *has_voxels = run->has_voxels;
-  run->has_voxels = NULL; /* what these voters see says nothing about the result */
+  confidence_job job = {.confidence = pass->confidence, .window = window};
+  job.settled = pass->escalated > 0 ? pass->buffers[VXM_BUFFER_MASK].words : NULL;
+  atomic_uchar *has_voxels = pass->has_voxels;
+  pass->has_voxels = NULL; /* what these voters see says nothing about the result */
   vxm_window made;
-  vxm_status status = vxm_voxel_pass_buffer(run, VXM_BUFFER_CLOSED, window, &made, error);
+  vxm_status status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_CLOSED, window, &made, error);
   if (status == VXM_OK)
-    status = vxm_voxel_pass_unite(run, &made, 0, 0, begin, VXM_FACET_TRIANGLE, error);
+    status = vxm_voxel_pass_unite(pass, &made, 0, 0, begin, VXM_FACET_TRIANGLE, error);
   job.closed = made.words;
   for (int v = 0; v < VOTERS && status == VXM_OK; v++) {
-    status = vxm_voxel_pass_buffer(run, VXM_BUFFER_VOTERS + v, window, &made, error);
+    status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_VOTERS + v, window, &made, error);
     unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
     if (status == VXM_OK)
-      status = vxm_voxel_pass_unite(run, &made, v == 3 ? 0 : v, begin, end, roles, error);
+      status = vxm_voxel_pass_unite(pass, &made, v == 3 ? 0 : v, begin, end, roles, error);
     job.voters[v] = made.words;
   }
-  run->has_voxels = has_voxels;
+  pass->has_voxels = has_voxels;
   if (status == VXM_OK)
     status =
-        vxm_parallel_asked(shape->context, (size_t)(window->end - window->begin), fill_slice, &job, error);
+        vxm_parallel_asked(pass->context, (size_t)(window->end - window->begin), fill_slice, &job, error);
   return status;
 }

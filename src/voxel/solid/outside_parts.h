@@ -3,12 +3,12 @@
 #ifndef VXM_VOXEL_SOLID_OUTSIDE_PARTS_H
 #define VXM_VOXEL_SOLID_OUTSIDE_PARTS_H
 
-#include "voxel/solid/solid_policy.h"
+#include "voxel/solid/voxel_pass.h"
 
 /**
- * Whether a part of a placed run lies outside of the grid, or reaches so little into it that no layer of
+ * Whether a part of a placed pass lies outside of the grid, or reaches so little into it that no layer of
  * voxel centres can meet it, while more than that is outside. A sheet at the side of the grid is not meant.
  */
-bool vxm_part_is_outside(const vxm_voxel_pass *run, size_t part);
+bool vxm_part_is_outside(const vxm_voxel_pass *pass, size_t part);
 
 #endif

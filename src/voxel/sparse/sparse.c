@@ -1,46 +1,49 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/sparse/sparse.h"
+#include "voxel/model/memory_need.h"
+#include "voxel/model/model_report.h"
 
 /** Bytes of a range of slices, unless so few are more. */
 static const uint64_t window_bytes_most = UINT64_C(1) << 26;
 
 /** Whether one axis tells all of the solid: then the triangles become an octree directly. */
 static bool is_direct(const vxm_model *model) {
-  const vxm_mesh_analysis *shape = &model->shape;
-  size_t parts = shape->facets.split.part_count;
-  bool solid = model->options.mode != VXM_MODE_SURFACE && !vxm_model_wants_faces(model);
-  if (!solid || model->options.method == VXM_METHOD_WINDING)
+  const vxm_voxelize_options *options = &model->options;
+  const vxm_split *split = &model->analysis.facets.split;
+  bool solid = options->mode != VXM_MODE_SURFACE && !vxm_faces_wanted(options);
+  if (!solid || options->method == VXM_METHOD_WINDING)
     return false;
-  if (vxm_one_voter(&model->options)) /* of closed parts all axes tell the same */
-    return model->options.method == VXM_METHOD_X || shape->facets.split.kind_end[VXM_PART_CLOSED] == parts;
-  return vxm_voted_begin(shape) == parts;
+  if (vxm_one_voter(options)) /* of closed parts all axes tell the same */
+    return options->method == VXM_METHOD_X || split->kind_end[VXM_PART_CLOSED] == split->part_count;
+  return !vxm_votes_wanted(&model->analysis, options);
 }
 
-static vxm_sparse_job job_of(vxm_model *model) {
-  vxm_mesh_analysis *shape = &model->shape;
-  vxm_sparse_job job = {.facets = &shape->facets,
-                        .placed = &model->run.placed,
-                        .part_end = shape->facets.split.part_count,
+static vxm_sparse_job job_of(const vxm_model_pass *pass) {
+  const vxm_voxel_pass *solid = &pass->solid;
+  vxm_sparse_job job = {.facets = &solid->analysis->facets,
+                        .placed = &solid->placed,
+                        .part_end = solid->analysis->facets.split.part_count,
                         .roles = VXM_FACET_TRIANGLE,
-                        .has_voxels = model->run.has_voxels};
-  if (!vxm_one_voter(&model->options))
+                        .has_voxels = solid->has_voxels};
+  if (!vxm_one_voter(&solid->options))
     job.roles |= VXM_FACET_CAP;
   return job;
 }
 
-static vxm_status unite_directly(vxm_octree_builder *builder, vxm_model *model, vxm_error *error) {
-  vxm_sparse_job job = job_of(model);
-  return vxm_sparse_union(builder, &model->shape.workspace, &job, error);
+static vxm_status unite_directly(vxm_octree_builder *builder, vxm_model_pass *pass, vxm_error *error) {
+  vxm_sparse_job job = job_of(pass);
+  return vxm_sparse_union(builder, &pass->workspace, &job, error);
 }
 
-/** By the run's engine; `*out` stays NULL where that is for the CPU. */
-static vxm_status unite_elsewhere(vxm_sparse **out, vxm_model *model, vxm_error *error) {
-  vxm_engine *engine = model->run.engine;
+/** By the pass's engine; `*out` stays NULL where that is for the CPU. */
+static vxm_status unite_elsewhere(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass,
+                                  vxm_error *error) {
+  vxm_engine *engine = pass->solid.engine;
   vxm_error local = VXM_ERROR_INIT;
   if (!engine || !engine->ops || !engine->ops->sparse || !is_direct(model))
     return VXM_OK;
-  vxm_sparse_job job = job_of(model);
-  vxm_status status = engine->ops->sparse(engine, out, &model->space, &job, &local);
+  vxm_sparse_job job = job_of(pass);
+  vxm_status status = engine->ops->sparse(engine, out, &pass->space, &job, &local);
   if (status == VXM_OK || vxm_engine_falls_back(engine, &local))
     return VXM_OK;
   vxm_error_pass(error, &local);
@@ -48,8 +51,8 @@ static vxm_status unite_elsewhere(vxm_sparse **out, vxm_model *model, vxm_error 
 }
 
 /** Slices of a range: whole strips, as many as memory allows. */
-static int64_t range_slices(const vxm_model *model, const vxm_window *window) {
-  vxm_memory_need demand = vxm_model_memory_need(model, &model->space, window, false);
+static int64_t range_slices(const vxm_model *model, const vxm_space *space, const vxm_window *window) {
+  vxm_memory_need demand = vxm_model_memory_need(model, space, window, false);
   uint64_t slice = window->slice_words * sizeof *window->words, left = vxm_memory_left(model->context);
   uint64_t room = left > demand.fixed ? (left - demand.fixed) / 2 / (uint64_t)demand.windows : 0;
   room = room < window_bytes_most ? room : window_bytes_most;
@@ -58,10 +61,11 @@ static int64_t range_slices(const vxm_model *model, const vxm_window *window) {
 }
 
 /** Range of slices after range, each as a window. */
-static vxm_status unite_by_windows(vxm_octree_builder *builder, vxm_model *model, vxm_error *error) {
+static vxm_status unite_by_windows(vxm_octree_builder *builder, const vxm_model *model, vxm_model_pass *pass,
+                                   vxm_error *error) {
   vxm_layout layout = VXM_LAYOUT_GRID;
-  vxm_window window = vxm_window_of(&model->space, layout, 0, 0);
-  int64_t slices = vxm_min(range_slices(model, &window), window.slow_dim);
+  vxm_window window = vxm_window_of(&pass->space, layout, 0, 0);
+  int64_t slices = vxm_min(range_slices(model, &pass->space, &window), window.slow_dim);
   vxm_error local = VXM_ERROR_INIT;
   window.words = vxm_alloc(model->context, (size_t)slices * window.slice_words, sizeof *window.words, &local);
   if (!window.words) {
@@ -72,7 +76,7 @@ static vxm_status unite_by_windows(vxm_octree_builder *builder, vxm_model *model
   for (int64_t begin = 0; begin < window.slow_dim && status == VXM_OK; begin += slices) {
     window.begin = begin;
     window.end = vxm_min(begin + slices, window.slow_dim);
-    status = vxm_model_fill(model, &window, error);
+    status = vxm_model_pass_fill(pass, &window, error);
     if (status == VXM_OK)
       vxm_octree_builder_add(builder, &window);
     if (status == VXM_OK)
@@ -82,18 +86,18 @@ static vxm_status unite_by_windows(vxm_octree_builder *builder, vxm_model *model
   return status;
 }
 
-/** Whether the run's engine makes windows, but no octrees. */
-static bool makes_windows(const vxm_model *model) {
-  const vxm_engine *engine = model->run.engine;
+/** Whether the pass's engine makes windows, but no octrees. */
+static bool makes_windows(const vxm_model_pass *pass) {
+  const vxm_engine *engine = pass->solid.engine;
   return engine && engine->ops && !engine->ops->sparse;
 }
 
-static vxm_status build(vxm_sparse **out, vxm_model *model, vxm_error *error) {
+static vxm_status build(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass, vxm_error *error) {
   vxm_octree_builder builder;
-  vxm_status status = vxm_octree_builder_create(&builder, model->context, &model->space, error);
+  vxm_status status = vxm_octree_builder_create(&builder, model->context, &pass->space, error);
   if (status == VXM_OK)
-    status = (is_direct(model) && !makes_windows(model) ? unite_directly : unite_by_windows)(&builder, model,
-                                                                                             error);
+    status = is_direct(model) && !makes_windows(pass) ? unite_directly(&builder, pass, error)
+                                                      : unite_by_windows(&builder, model, pass, error);
   if (status == VXM_OK)
     status = vxm_octree_builder_end(out, &builder, error);
   vxm_octree_builder_destroy(&builder);
@@ -105,16 +109,18 @@ vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_mo
   *out = NULL;
   if (model->options.confidence)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: the confidence needs the whole grid");
-  vxm_status status = vxm_model_begin(model, space, transform, NULL, error);
+  vxm_model_pass *pass;
+  vxm_status status = vxm_model_begin(&pass, model, space, transform, NULL, error);
   if (status == VXM_OK)
-    status = unite_elsewhere(out, model, error);
+    status = unite_elsewhere(out, model, pass, error);
   if (status == VXM_OK && !*out)
-    status = build(out, model, error);
-  if (status != VXM_OK || !report)
-    return status;
-  int64_t voxels;
-  uint64_t hash;
-  vxm_octree_sum(*out, &voxels, &hash);
-  vxm_model_end(model, report, voxels, hash);
-  return VXM_OK;
+    status = build(out, model, pass, error);
+  if (status == VXM_OK && report) {
+    int64_t voxels;
+    uint64_t hash;
+    vxm_octree_sum(*out, &voxels, &hash);
+    vxm_model_report(pass, report, voxels, hash);
+  }
+  vxm_model_close(model, pass);
+  return status;
 }

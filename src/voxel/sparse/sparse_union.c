@@ -421,7 +421,7 @@ static void free_desks(sparse_state *state, size_t workers) {
 static size_t window_slabs(const sparse_state *state) {
   vxm_context *context = state->builder->context;
   double bound =
-      vxm_raster_schedule_bound(state->job->facets, &state->builder->space, state->job->placed->transform);
+      vxm_raster_schedule_placed_bound(state->job->facets, state->job->placed, &state->builder->space);
   double most = vxm_raster_schedule_round(context), slabs = (double)state->builder->deep;
   most = most < CROSSINGS ? most : CROSSINGS;
   double wanted = slabs * most / (bound + 1);

@@ -26,10 +26,10 @@ static size_t count_triangles(const vxm_soup *soup) {
   return count;
 }
 
-static vxm_status cut_polygons(uint32_t *out, const vxm_soup *soup, vxm_error *error) {
+static vxm_status cut_polygons(uint32_t *out, vxm_context *context, const vxm_soup *soup, vxm_error *error) {
   vxm_triangulator triangulator;
   vxm_status status = VXM_OK;
-  vxm_triangulator_open(&triangulator, soup->context);
+  vxm_triangulator_open(&triangulator, context);
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
     size_t n;
     const uint32_t *corner = vxm_face(soup, f, &n), *cut = corner;
@@ -58,7 +58,7 @@ static vxm_status list_triangles(vxm_surface *surface, const vxm_soup *soup, vxm
   }
   if (surface->triangle_count > UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "the mesh has more than 2^32 triangles");
-  return surface->cut ? cut_polygons(surface->cut, soup, error) : VXM_OK;
+  return surface->cut ? cut_polygons(surface->cut, surface->context, soup, error) : VXM_OK;
 }
 
 /* ---- Points ---- */
@@ -68,7 +68,7 @@ static const int64_t off_lattice = INT64_MIN;
 
 typedef struct snap_job {
   const vxm_surface *surface;
-  const vxm_soup *soup;
+  const double (*positions)[3];
   const double *transform;
   size_t slices;
   atomic_bool is_off; /**< some vertex is off the lattice, used or not */
@@ -78,10 +78,10 @@ static void snap_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   snap_job *job = payload;
   const vxm_surface *surface = job->surface;
-  size_t end = vxm_slice_begin(job->soup->vertex_count, job->slices, slice + 1);
-  for (size_t v = vxm_slice_begin(job->soup->vertex_count, job->slices, slice); v < end; v++) {
+  size_t count = surface->soup->vertex_count, end = vxm_slice_begin(count, job->slices, slice + 1);
+  for (size_t v = vxm_slice_begin(count, job->slices, slice); v < end; v++) {
     double moved[3];
-    const double *p = vxm_position(job->soup, v);
+    const double *p = job->positions[v];
     if (job->transform) {
       vxm_transform_position(job->transform, p, moved);
       p = moved;
@@ -93,32 +93,42 @@ static void snap_slice(size_t slice, int worker, void *payload) {
   }
 }
 
-static vxm_status check_used(const vxm_surface *surface, const vxm_soup *soup, vxm_error *error) {
+static vxm_status check_used(const vxm_surface *surface, const double (*positions)[3], vxm_error *error) {
   for (size_t c = 0; c < 3 * surface->triangle_count; c++) {
     uint32_t vertex = surface->corners[c];
     if (surface->points[vertex].at[0] == off_lattice)
-      return vxm_lattice_refuse(vertex, vxm_position(soup, vertex), error);
+      return vxm_lattice_refuse(vertex, positions[vertex], error);
   }
   return VXM_OK;
 }
 
-vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
-                             vxm_error *error) {
+static vxm_status place(vxm_surface *surface, const double (*positions)[3], const vxm_lattice *lattice,
+                        const double transform[12], vxm_error *error) {
   size_t count = surface->soup->vertex_count;
   static atomic_uint_fast64_t last_serial;
   surface->serial = atomic_fetch_add(&last_serial, 1) + 1;
-  snap_job job = {surface, surface->soup, transform, 1 + count / 4096, false};
+  snap_job job = {surface, positions, transform, 1 + count / 4096, false};
   surface->lattice = *lattice;
   vxm_parallel(surface->context, job.slices, snap_slice, &job);
-  return atomic_load(&job.is_off) ? check_used(surface, surface->soup, error) : VXM_OK;
+  return atomic_load(&job.is_off) ? check_used(surface, positions, error) : VXM_OK;
 }
 
-vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *error) {
+vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
+                             vxm_error *error) {
+  return place(surface, (const double(*)[3])surface->soup->positions, lattice, transform, error);
+}
+
+vxm_status vxm_surface_place_moved(vxm_surface *surface, const double (*positions)[3],
+                                   const vxm_lattice *lattice, vxm_error *error) {
+  return place(surface, positions, lattice, NULL, error);
+}
+
+vxm_status vxm_surface_make(vxm_surface **out, vxm_context *context, const vxm_soup *soup, vxm_error *error) {
   *out = NULL;
   static atomic_uint_fast64_t last_corners;
   vxm_error local = VXM_ERROR_INIT;
-  vxm_surface *surface = vxm_calloc(soup->context, 1, sizeof *surface, &local);
-  vxm_status status = surface ? vxm_context_acquire(&surface->context, soup->context, &local) : local.code;
+  vxm_surface *surface = vxm_calloc(context, 1, sizeof *surface, &local);
+  vxm_status status = surface ? vxm_context_acquire(&surface->context, context, &local) : local.code;
   if (status == VXM_OK) {
     surface->soup = soup;
     surface->corners_serial = atomic_fetch_add(&last_corners, 1) + 1;
@@ -136,7 +146,7 @@ vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *
 
 vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
                               const double transform[12], vxm_error *error) {
-  vxm_status status = vxm_surface_make(out, soup, error);
+  vxm_status status = vxm_surface_make(out, soup->context, soup, error);
   if (status == VXM_OK)
     status = vxm_surface_place(*out, lattice, transform, error);
   if (status != VXM_OK) {

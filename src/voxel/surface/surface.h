@@ -30,12 +30,16 @@ typedef struct vxm_surface {
  */
 vxm_status vxm_surface_create(vxm_surface **out, const vxm_soup *soup, const vxm_lattice *lattice,
                               const double transform[12], vxm_error *error);
-/** The first half of that: cuts the polygons, as they lie now. Place the surface before it is used. */
-vxm_status vxm_surface_make(vxm_surface **out, const vxm_soup *soup, vxm_error *error);
+/** The first half of that, in a context that may be another than the soup's: cuts the polygons. Place the
+ * surface before it is used. */
+vxm_status vxm_surface_make(vxm_surface **out, vxm_context *context, const vxm_soup *soup, vxm_error *error);
 /** Puts the same soup on another lattice, or elsewhere on it; the surface cannot be used if that fails.
  * Returns as vxm_surface_create. */
 vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
                              vxm_error *error);
+/** The same where the vertices have moved to `positions`; the polygons stay cut as they are. */
+vxm_status vxm_surface_place_moved(vxm_surface *surface, const double (*positions)[3],
+                                   const vxm_lattice *lattice, vxm_error *error);
 /** NULL is allowed. */
 void vxm_surface_destroy(vxm_surface *surface);
 

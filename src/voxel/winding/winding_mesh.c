@@ -4,7 +4,7 @@
 vxm_status vxm_winding_mesh_create(vxm_winding_mesh *out, const vxm_triangle_set *facets,
                                    const vxm_snapped_points *placed, const vxm_flip_mask *turns,
                                    bool mirrored, vxm_error *error) {
-  *out = (vxm_winding_mesh){.context = facets->context};
+  *out = (vxm_winding_mesh){.context = placed->context};
   vxm_error local = VXM_ERROR_INIT;
   out->triangles = vxm_alloc(out->context, turns->count, sizeof *out->triangles, &local);
   if (!out->triangles) {

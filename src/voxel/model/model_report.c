@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/model/model_report.h"
+#include "voxel/solid/outside_parts.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+/** A part that has facets, of which none set a voxel. */
+static bool is_empty(const vxm_voxel_pass *pass, size_t part) {
+  const vxm_part *p = &pass->analysis->facets.parts[part];
+  return p->begin < p->end && !atomic_load_explicit(&pass->has_voxels[part], memory_order_relaxed);
+}
+
+/** The open parts count as empty if together they added nothing, whatever single voters held. */
+static void count_empty_parts(vxm_model_pass *pass, vxm_voxelize_report *report) {
+  vxm_voxel_pass *solid = &pass->solid;
+  const vxm_triangle_set *facets = &solid->analysis->facets;
+  if (!vxm_one_voter(&solid->options) && !solid->added)
+    for (size_t p = vxm_voted_begin(solid->analysis, &solid->options); p < facets->split.part_count; p++)
+      atomic_store_explicit(&solid->has_voxels[p], 0, memory_order_relaxed);
+  bool placed = vxm_solid_wanted(&pass->solid.options) && (solid->placed.narrow || solid->placed.wide);
+  for (size_t p = 0; p < facets->split.part_count && placed; p++)
+    if (is_empty(solid, p)) {
+      bool outside = vxm_part_is_outside(solid, p);
+      report->outside_parts += outside;
+      report->empty_parts += !outside;
+    }
+}
+
+/** The first few parts that set no voxel, inside or outside of the grid, each by one of its vertices. */
+static const char *name_parts(const vxm_model_pass *pass, bool outside, int64_t count, char names[200]) {
+  enum { NAMED = 3 };
+  size_t used = 0;
+  int named = 0;
+  const vxm_triangle_set *facets = &pass->solid.analysis->facets;
+  names[0] = '\0';
+  for (size_t p = 0; p < facets->split.part_count && named < NAMED; p++) {
+    if (!is_empty(&pass->solid, p) || vxm_part_is_outside(&pass->solid, p) != outside)
+      continue;
+    const double *at = facets->positions[facets->corners[facets->parts[p].begin][0]];
+    used += (size_t)snprintf(names + used, 200 - used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "", at[0],
+                             at[1], at[2]);
+    named++;
+  }
+  if (count > named)
+    snprintf(names + used, 200 - used, ", ...");
+  return names;
+}
+
+static void warn_of_empty_parts(vxm_model_pass *pass, const vxm_voxelize_report *report) {
+  char names[200];
+  if (report->empty_parts > 0 && report->voxels > 0 && !vxm_faces_wanted(&pass->solid.options))
+    vxm_warn(pass->warnings,
+             "%" PRId64 " of %" PRId64
+             " parts hold no voxel centre, being thinner than a voxel or open sheets: those at "
+             "%s; --mode both keeps them, and so may a higher resolution (-r)",
+             report->empty_parts, report->parts, name_parts(pass, false, report->empty_parts, names));
+  if (report->outside_parts > 0 && report->voxels > 0)
+    vxm_warn(pass->warnings,
+             "%" PRId64 " of %" PRId64 " parts lie outside of the grid: those at %s; see --bounds and --like",
+             report->outside_parts, report->parts, name_parts(pass, true, report->outside_parts, names));
+}
+
+static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
+  vxm_warnings *warnings = pass->warnings;
+  bool faces = vxm_faces_wanted(&pass->solid.options);
+  if (report->voxels == 0 && faces)
+    vxm_warn(warnings, "no face meets the grid: check --bounds or --like");
+  else if (report->voxels == 0 && report->outside_parts > 0 && report->empty_parts == 0)
+    vxm_warn(warnings, "the model lies outside of the grid: check --bounds or --like");
+  else if (report->voxels == 0)
+    vxm_warn(warnings,
+             "no voxel centre is inside: the model is open, flat or thinner than a voxel; try --mode both "
+             "or a higher resolution (-r)");
+  warn_of_empty_parts(pass, report);
+  const vxm_engine *engine = pass->solid.engine;
+  if (engine && engine->falls_back && !engine->ops)
+    vxm_warn(warnings, "%s", engine->info.note);
+  if (report->contested > 0)
+    vxm_warn(warnings,
+             "the model is open (%zu odd edges) and x, y and z disagree on %" PRId64
+             " voxels, decided by %s; "
+             "compare --method winding, --vote majority and --parts whole",
+             pass->solid.analysis->facets.split.odd_edge_count, report->contested,
+             report->escalated > 0 ? "the winding number" : "the vote");
+}
+
+void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t voxels, uint64_t hash) {
+  const vxm_split *split = &pass->solid.analysis->facets.split;
+  *pass->warnings =
+      (vxm_warnings){0}; /* a pass may be reported twice: for its grid, and for the file of that */
+  *report = (vxm_voxelize_report){
+      .parts = (int64_t)split->part_count,
+      .closed_parts = (int64_t)split->kind_end[VXM_PART_CLOSED],
+      .capped_parts = (int64_t)(split->kind_end[VXM_PART_CAPPED] - split->kind_end[VXM_PART_CLOSED]),
+      .caps = (int64_t)split->capped_loops,
+      .cavities = (int64_t)split->cavity_count,
+      .contested = pass->solid.contested,
+      .escalated = pass->solid.escalated,
+      .voxels = voxels,
+      .hash = hash};
+  count_empty_parts(pass, report);
+  warn(pass, report);
+}

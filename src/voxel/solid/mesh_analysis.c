@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/solid/mesh_analysis.h"
+
+#include <time.h>
+
+static void flip_once_begin(vxm_flip_once *once, vxm_context *context) {
+  pthread_mutex_init(&once->mutex, NULL);
+  once->mask.context = context;
+}
+
+static void flip_once_end(vxm_flip_once *once) {
+  vxm_flip_mask_destroy(&once->mask);
+  pthread_mutex_destroy(&once->mutex);
+}
+
+vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup, vxm_split_rule rule,
+                                    vxm_error *error) {
+  vxm_context *context = soup->context;
+  *out = (vxm_mesh_analysis){.context = context, .soup = soup, .facets = {.context = context}};
+  vxm_error local = VXM_ERROR_INIT;
+  out->orientation = vxm_calloc(context, 1, sizeof *out->orientation, &local);
+  if (!out->orientation) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  flip_once_begin(&out->orientation->open, context);
+  flip_once_begin(&out->orientation->all, context);
+  vxm_status status = vxm_triangle_set_create(&out->facets, soup, rule, error);
+  if (status != VXM_OK)
+    return status;
+  return out->facets.facet_count > 0
+             ? VXM_OK
+             : vxm_fail(error, VXM_ERROR_EMPTY,
+                        "the mesh has no face with three different corners, so there is nothing to voxelize");
+}
+
+void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis) {
+  if (!analysis->orientation)
+    return;
+  flip_once_end(&analysis->orientation->open);
+  flip_once_end(&analysis->orientation->all);
+  vxm_free(analysis->context, analysis->orientation);
+  vxm_triangle_set_destroy(&analysis->facets);
+  *analysis = (vxm_mesh_analysis){.context = analysis->context};
+}
+
+/** Locks, and asks now and then whether to go on waiting: what another thread makes may take long. */
+static vxm_status lock(pthread_mutex_t *mutex, vxm_context *context, vxm_error *error) {
+  enum { WAIT_NS = 20000000 };
+  vxm_status status = VXM_OK;
+  while (status == VXM_OK && pthread_mutex_trylock(mutex) != 0) {
+    struct timespec until;
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += WAIT_NS;
+    until.tv_sec += until.tv_nsec / 1000000000;
+    until.tv_nsec %= 1000000000;
+    if (pthread_mutex_timedlock(mutex, &until) == 0)
+      break;
+    status = vxm_ask(context, error);
+  }
+  return status;
+}
+
+vxm_status vxm_flip_once_get(const vxm_flip_mask **out, vxm_flip_once *once,
+                             const vxm_mesh_analysis *analysis, vxm_flip_maker make, void *payload,
+                             vxm_error *error) {
+  vxm_status status = lock(&once->mutex, analysis->context, error);
+  if (status != VXM_OK)
+    return status;
+  if (!once->mask.turned)
+    status = make(&once->mask, analysis, payload, error);
+  pthread_mutex_unlock(&once->mutex);
+  *out = &once->mask;
+  return status;
+}

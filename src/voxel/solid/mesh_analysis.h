@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * What is known of a mesh whatever the grid: made once, then only read, and shared by all passes over it, in
+ * whatever thread each of them works.
+ */
+#ifndef VXM_VOXEL_SOLID_MESH_ANALYSIS_H
+#define VXM_VOXEL_SOLID_MESH_ANALYSIS_H
+
+#include "voxel/winding/orient_patches.h"
+
+#include <pthread.h>
+
+typedef struct vxm_mesh_analysis vxm_mesh_analysis;
+
+/** A flip mask that costs much, is rarely needed, and so is made by the first thread that asks for it. */
+typedef struct vxm_flip_once {
+  pthread_mutex_t mutex; /**< held while the mask is made, and to look whether it is */
+  vxm_flip_mask mask;    /**< `turned` NULL = not made yet; else it stays as it is */
+} vxm_flip_once;
+
+typedef struct vxm_orientation {
+  vxm_flip_once open, all; /**< of the open parts, and of all */
+} vxm_orientation;
+
+struct vxm_mesh_analysis {
+  vxm_context *context;
+  const vxm_soup *soup;
+  vxm_triangle_set facets;
+  vxm_orientation *orientation; /**< see solid/orient_open.h and solid/orient_all.h */
+};
+
+/** Destroy with vxm_mesh_analysis_destroy, also after a failure. @return as vxm_model_create */
+vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup, vxm_split_rule rule,
+                                    vxm_error *error);
+void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis);
+
+/** Makes a mask, from what `payload` says. */
+typedef vxm_status (*vxm_flip_maker)(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, void *payload,
+                                     vxm_error *error);
+
+/**
+ * The mask, by `make` if there is none yet. Threads that ask for it meanwhile wait, and are asked whether to
+ * go on; after a failure the next that asks tries again.
+ *
+ * @return what `make` does; VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_flip_once_get(const vxm_flip_mask **out, vxm_flip_once *once,
+                             const vxm_mesh_analysis *analysis, vxm_flip_maker make, void *payload,
+                             vxm_error *error);
+
+#endif

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/solid/solid_votes.h"
+#include "voxel/parity/axis_vote.h"
+#include "voxel/solid/orient_open.h"
+#include "voxel/winding/winding_fill.h"
+
+#include <string.h>
+
+enum { VOTERS = 4 };
+
+/** The x, y, z and, if asked for, the tetrahedral voter of parts from `begin` on. */
+static vxm_status fill_voters(vxm_voxel_pass *pass, const vxm_window *window, size_t begin, bool tetra,
+                              const uint64_t *voters[VOTERS], vxm_error *error) {
+  vxm_status status = VXM_OK;
+  size_t end = pass->analysis->facets.split.part_count;
+  for (int v = 0; v < (tetra ? VOTERS : 3) && status == VXM_OK; v++) {
+    vxm_window voter;
+    status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_VOTERS + v, window, &voter, error);
+    /* Triangles and cones together are closed: any axis tells their parity. */
+    unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
+    if (status == VXM_OK)
+      status = vxm_voxel_pass_unite(pass, &voter, v == 3 ? window->layout.fast : v, begin, end, roles, error);
+    voters[v] = voter.words;
+  }
+  return status;
+}
+
+static vxm_status settle_contested(vxm_voxel_pass *pass, const vxm_window *window, const uint64_t *mask,
+                                   vxm_error *error) {
+  const vxm_mesh_analysis *analysis = pass->analysis;
+  vxm_status status = VXM_OK;
+  int64_t added = 0;
+  if (!pass->open_winding.tree) {
+    const vxm_flip_mask *flips;
+    status = vxm_orient_open(&flips, analysis, pass->workspace, error);
+    if (status == VXM_OK)
+      status = vxm_winding_mesh_create(&pass->open_winding, &analysis->facets, &pass->placed, flips,
+                                       pass->mirrored, error);
+  }
+  if (status == VXM_OK)
+    status = vxm_winding_fill(window, mask, pass->open_winding.tree, pass->context, pass->confidence, &added,
+                              error);
+  pass->added |= added > 0;
+  if (added > 0 && pass->has_voxels)
+    for (size_t p = vxm_voted_begin(analysis, &pass->options); p < analysis->facets.split.part_count; p++)
+      atomic_store_explicit(&pass->has_voxels[p], 1, memory_order_relaxed);
+  return status;
+}
+
+/** One part is asked about slab by slab, and the voters are never held as a whole. */
+static vxm_status poll_part(vxm_voxel_pass *pass, const vxm_window *window, size_t part, bool tetra,
+                            vxm_vote rule, uint64_t *mask, vxm_vote_tally *tally, vxm_error *error) {
+  const vxm_mesh_analysis *analysis = pass->analysis;
+  vxm_window slice = *window, carry;
+  slice.begin = 0;
+  slice.end = 1;
+  vxm_status status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_CARRY, &slice, &carry, error);
+  if (status != VXM_OK)
+    return status;
+  if (window->begin == 0)
+    memset(carry.words, 0, carry.slice_words * sizeof *carry.words);
+  vxm_axis_vote_job job = {.facets = &analysis->facets,
+                           .placed = &pass->placed,
+                           .part = part,
+                           .tetra = tetra,
+                           .rule = rule,
+                           .fresh = vxm_voted_begin(analysis, &pass->options) == 0,
+                           .mask = mask,
+                           .carry = carry.words};
+  return vxm_axis_vote(pass->workspace, window, &job, tally, error);
+}
+
+/** By an engine that has votes. */
+static vxm_status elect_elsewhere(vxm_voxel_pass *pass, const vxm_window *window, bool tetra, vxm_vote rule,
+                                  uint64_t *mask, vxm_vote_tally *tally, vxm_error *error) {
+  const vxm_mesh_analysis *analysis = pass->analysis;
+  vxm_vote_job job = {.facets = &analysis->facets,
+                      .placed = &pass->placed,
+                      .part_begin = vxm_voted_begin(analysis, &pass->options),
+                      .part_end = analysis->facets.split.part_count,
+                      .tetra = tetra,
+                      .rule = rule,
+                      .mask = mask,
+                      .has_voxels = pass->has_voxels};
+  return vxm_voxel_pass_ops(pass)->elect(pass->engine, window, &job, tally, error);
+}
+
+static vxm_status decide_open_parts(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
+  const vxm_mesh_analysis *analysis = pass->analysis;
+  size_t begin = vxm_voted_begin(analysis, &pass->options), end = analysis->facets.split.part_count;
+  if (begin == end)
+    return VXM_OK;
+  bool decide = vxm_caps_wanted(&pass->options), tetra = !decide;
+  vxm_vote rule = decide ? VXM_VOTE_AUTO : pass->options.vote;
+  vxm_window mask = {.words = NULL};
+  vxm_vote_tally tally = {0, false};
+  vxm_status status = decide ? vxm_voxel_pass_buffer(pass, VXM_BUFFER_MASK, window, &mask, error) : VXM_OK;
+  if (status == VXM_OK && vxm_voxel_pass_ops(pass) && vxm_voxel_pass_ops(pass)->elect)
+    status = elect_elsewhere(pass, window, tetra, rule, mask.words, &tally, error);
+  else if (status == VXM_OK && end - begin == 1 && !pass->no_poll) {
+    status = poll_part(pass, window, begin, tetra, rule, mask.words, &tally, error);
+    if (tally.added && pass->has_voxels)
+      atomic_store_explicit(&pass->has_voxels[begin], 1, memory_order_relaxed);
+  } else if (status == VXM_OK) {
+    const uint64_t *voters[VOTERS] = {NULL};
+    status = fill_voters(pass, window, begin, tetra, voters, error);
+    if (status == VXM_OK)
+      vxm_vote_count(window->words, voters, mask.words,
+                     window->slice_words * (size_t)(window->end - window->begin), rule, pass->context,
+                     &tally);
+  }
+  if (status != VXM_OK)
+    return status;
+  pass->contested += tally.contested;
+  pass->added |= tally.added;
+  if (!decide || tally.contested == 0 || pass->options.method == VXM_METHOD_WINDING)
+    return VXM_OK; /* the winding number is asked about every voxel anyway */
+  pass->escalated += tally.contested;
+  return settle_contested(pass, window, mask.words, error);
+}
+
+vxm_status vxm_solid_vote(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
+  const vxm_mesh_analysis *analysis = pass->analysis;
+  size_t begin = vxm_voted_begin(analysis, &pass->options);
+  /* Parts that are closed, or closed by caps: one axis settles them. Without any, a poll starts afresh. */
+  vxm_status status = VXM_OK;
+  if (begin > 0 || analysis->facets.split.part_count != 1 || vxm_voxel_pass_ops(pass) || pass->no_poll)
+    status = vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, begin,
+                                  VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
+  return status == VXM_OK ? decide_open_parts(pass, window, error) : status;
+}
