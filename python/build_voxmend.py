@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the binding voxmend._voxmend from voxmend.h itself, so that the two cannot differ.
+"""Makes the binding voxmend._voxmend from voxmend.h and what it includes, so that the two cannot differ.
 
 The library is found by pkg-config. VOXMEND_INCLUDE and VOXMEND_LIB, the folders of voxmend.h and of libvoxmend.so, take
 precedence: for a library that was built and not installed. When the package runs, the system finds the library as any other
@@ -45,29 +45,30 @@ def remembered(folders):
     return [os.path.abspath(folder) for folder in folders]
 
 
-def read_header(folders):
+def read_header(folders, name="voxmend.h", seen=None):
+    """The text of a header with those of the library that it includes in their places, each once."""
+    seen = set() if seen is None else seen
+    seen.add(name)
     for folder in folders:
-        path = os.path.join(folder, "voxmend.h")
+        path = os.path.join(folder, name)
         if os.path.exists(path):
             with open(path, encoding="utf-8") as file:
-                return file.read()
-    sys.exit("voxmend.h is in none of " + ", ".join(folders))
+                return re.sub(r'^#include "(voxmend/\w+\.h)"$', lambda found: "" if found[1] in seen else
+                              read_header(folders, found[1], seen), file.read(), flags=re.M)
+    sys.exit("%s is in none of %s" % (name, ", ".join(folders)))
 
 
 def declarations(header):
     """What cffi reads of a header: no comments, no preprocessor; numbers in place of their names."""
     text = re.sub(r"/\*.*?\*/", " ", header, flags=re.S)
+    text = re.sub(r"^#ifdef __cplusplus$.*?^#endif$", "", text, flags=re.S | re.M)
     text = text.replace("\\\n", " ")
     numbers = dict(re.findall(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+(\d+)[ \t]*$", text, flags=re.M))
     text = re.sub(r"^[ \t]*#.*$", "", text, flags=re.M)
-    text = re.sub(r'extern "C" \{', "", text)
     text = text.replace("VXM_API", "")
     for name, number in numbers.items():
         text = re.sub(r"\b%s\b" % name, number, text)
-    end = text.rstrip()
-    if end.endswith("}"):  # of extern "C"
-        end = end[:-1]
-    return end
+    return text
 
 
 def initializers(header):

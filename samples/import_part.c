@@ -31,7 +31,7 @@ static vxm_status repair(vxm_mesh **out, vxm_level *reached, const vxm_mesh *raw
   static const char *const names[] = {"clean", "manifold", "closed", "solid"};
   for (int level = VXM_LEVEL_CLOSED; level >= VXM_LEVEL_CLEAN; level--) {
     vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-    vxm_verification found;
+    vxm_verification found = VXM_VERIFICATION_INIT;
     options.level = (vxm_level)level;
     options.part_changes = true;
     options.max_change = 0.05; /* a repair that inflates a part by more is none */
@@ -43,7 +43,7 @@ static vxm_status repair(vxm_mesh **out, vxm_level *reached, const vxm_mesh *raw
       return VXM_OK;
     }
     if (status == VXM_OK)
-      printf("not %s: %" PRId64 " %s\n", names[level], found.remains[0].count, found.remains[0].what);
+      printf("not %s: %" PRId64 " %s\n", names[level], found.findings[0].count, found.findings[0].what);
     else if (status != VXM_ERROR_UNAVAILABLE && status != VXM_ERROR_UNREACHED)
       return status; /* nothing that a lower level would mend */
     else
@@ -55,11 +55,11 @@ static vxm_status repair(vxm_mesh **out, vxm_level *reached, const vxm_mesh *raw
 }
 
 static void show_parts(const vxm_mesh *mesh) {
-  const vxm_part_change *parts = vxm_mesh_part_changes(mesh);
   for (int64_t i = 0; i < vxm_mesh_part_change_count(mesh); i++) {
-    const char *name = parts[i].tag == UINT32_MAX ? "unnamed" : vxm_mesh_tag_name(mesh, parts[i].tag);
+    const vxm_part_change *part = vxm_mesh_part_change(mesh, i);
+    const char *name = part->tag == UINT32_MAX ? "unnamed" : vxm_mesh_tag_name(mesh, part->tag);
     printf("part %" PRId64 " (%s): %" PRId64 " faces, %" PRId64 " after; volume %.6g, %.6g after\n", i, name,
-           parts[i].before.faces, parts[i].after.faces, parts[i].before.volume, parts[i].after.volume);
+           part->before->faces, part->after->faces, part->before->volume, part->after->volume);
   }
 }
 
@@ -88,10 +88,10 @@ static int copy_mesh(import *out, const vxm_mesh *mesh) {
 }
 
 static vxm_status copy_voxels(import *out, const vxm_mesh *mesh, int64_t resolution, vxm_error *error) {
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   vxm_grid *grid;
-  options.space.resolution[0] = resolution;
-  vxm_status status = vxm_voxelize(&grid, NULL, mesh, &options, error);
+  vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
+  space.resolution[0] = resolution;
+  vxm_status status = vxm_voxelize(&grid, NULL, mesh, &space, NULL, error);
   if (status != VXM_OK)
     return status;
   size_t count = 1;

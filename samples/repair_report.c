@@ -10,7 +10,7 @@ static void print_row(const char *what, int64_t before, int64_t after) {
 }
 
 static void print_report(const vxm_repair_report *report) {
-  const vxm_census *before = &report->before, *after = &report->after;
+  const vxm_census *before = report->before, *after = report->after;
   printf("%-26s %10s %10s\n", "", "before", "after");
   print_row("vertices", before->vertices, after->vertices);
   print_row("faces", before->faces, after->faces);
@@ -32,7 +32,10 @@ int main(int argc, char **argv) {
     return 2;
   }
   vxm_mesh *mesh = NULL, *repaired = NULL;
-  vxm_repair_report report;
+  vxm_census before = VXM_CENSUS_INIT, after = VXM_CENSUS_INIT;
+  vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+  report.before = &before;
+  report.after = &after;
   vxm_error error = VXM_ERROR_INIT;
   vxm_status status = vxm_mesh_read(&mesh, NULL, argv[1], &error);
   if (status == VXM_OK)

@@ -50,15 +50,16 @@ static vxm_status make_grid(vxm_grid **grid, watch *seen, vxm_error *error) {
   arrays.vertex_count = (int64_t)(sizeof vertices / sizeof vertices[0] / 3);
   arrays.offsets = offsets;
   arrays.indices = indices;
+  arrays.index_count = (int64_t)(sizeof indices / sizeof indices[0]);
   arrays.face_count = (int64_t)(sizeof offsets / sizeof offsets[0]) - 1;
   vxm_mesh *mesh = NULL;
   status = vxm_mesh_create(&mesh, context, &arrays, error);
 
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.voxel_size = 0.25; /* model units */
-  options.space.fit = VXM_FIT_TIGHT;
+  vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
+  space.voxel_size = 0.25; /* model units */
+  space.fit = VXM_FIT_TIGHT;
   if (status == VXM_OK)
-    status = vxm_voxelize(grid, NULL, mesh, &options, error);
+    status = vxm_voxelize(grid, NULL, mesh, &space, NULL, error);
 
   vxm_mesh_destroy(mesh);
   vxm_context_destroy(context); /* the grid keeps what it needs of it */

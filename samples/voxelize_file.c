@@ -13,12 +13,12 @@ int main(int argc, char **argv) {
   vxm_mesh *mesh = NULL, *repaired = NULL;
   vxm_grid *grid = NULL;
   vxm_error error = VXM_ERROR_INIT;
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = argc > 3 ? strtoll(argv[3], NULL, 10) : 64;
+  vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
+  space.resolution[0] = argc > 3 ? strtoll(argv[3], NULL, 10) : 64;
 
   if (vxm_mesh_read(&mesh, NULL, argv[1], &error) == VXM_OK &&
       vxm_mesh_prepare(&repaired, NULL, mesh, NULL, &error) == VXM_OK &&
-      vxm_voxelize(&grid, NULL, repaired, &options, &error) == VXM_OK &&
+      vxm_voxelize(&grid, NULL, repaired, &space, NULL, &error) == VXM_OK &&
       vxm_grid_write(grid, argv[2], NULL, &error) == VXM_OK)
     printf("%lld voxels\n", (long long)vxm_grid_count(grid));
   else

@@ -205,9 +205,9 @@ def choice(name: str, value: str, prefix: str) -> int:
 
 
 def fields(struct: Any) -> dict:
-    """A struct of numbers as a dict; arrays become tuples."""
+    """A struct of numbers as a dict, its own size apart; arrays become tuples."""
     out = {}
-    for name, field in ffi.typeof(struct).fields:
+    for name, field in ffi.typeof(struct).fields[1:]:
         value = getattr(struct, name)
         out[name] = tuple(value) if field.type.kind == "array" else value
     return out

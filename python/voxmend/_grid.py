@@ -242,7 +242,7 @@ class VoxelGrid:
         """Counts of voxels in both and in one only, and `iou`, for grids of equal shape."""
         if not isinstance(other, VoxelGrid):
             raise KindError("compare: %s is not a VoxelGrid" % type(other).__name__)
-        out = ffi.new("vxm_comparison *")
+        out = _core.new("vxm_comparison")
         _core.call(lib.vxm_grid_compare, out, self._pointer, other._pointer)
         for name in ("origin", "pitch"):
             if (getattr(self, name) != getattr(other, name)).any():
@@ -364,15 +364,15 @@ def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None,
     source = _prepare(mesh, repair)
     options = _core.new("vxm_voxelize_options")
     space_options, kept = _space_options(resolution, pitch, fit, pad, bounds, like)
-    options.space = space_options[0]
     options.mode = _core.choice("voxelize: mode", mode, "VXM_MODE_")
     options.surface = _core.choice("voxelize: surface", surface, "VXM_SURFACE_")
     options.method = _core.choice("voxelize: method", method, "VXM_METHOD_")
     options.vote = _core.choice("voxelize: vote", vote, "VXM_VOTE_")
-    options.parts = _core.choice("voxelize: parts", parts, "VXM_PARTS_")
+    options.split_mode = _core.choice("voxelize: parts", parts, "VXM_SPLIT_MODE_")
     options.cavities = _core.choice("voxelize: cavities", cavities, "VXM_CAVITIES_")
-    report = ffi.new("vxm_voxelize_report *")
-    made = _core.create("vxm_grid", lib.vxm_voxelize, report, source._pointer, options, destroy=lib.vxm_grid_destroy)
+    report = _core.new("vxm_voxelize_report")
+    made = _core.create("vxm_grid", lib.vxm_voxelize, report, source._pointer, space_options, options,
+                        destroy=lib.vxm_grid_destroy)
     del kept  # until now the options point to it
     grid = VoxelGrid._of(made, _core.fields(report[0]))
     _core.warn(grid.warnings)

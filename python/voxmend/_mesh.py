@@ -49,11 +49,12 @@ def _corner_array(faces: Any) -> numpy.ndarray:
 
 
 def _new(points: numpy.ndarray, offsets: numpy.ndarray, corners: numpy.ndarray, tags: Any = (), face_tags: Any = None) -> Any:
-    arrays = _core.new("vxm_mesh_arrays", vertex_count=len(points), face_count=len(offsets) - 1, tag_count=len(tags))
+    arrays = _core.new("vxm_mesh_arrays", vertex_count=len(points), face_count=len(offsets) - 1,
+                       index_count=corners.size, tag_count=len(tags))
     arrays.vertex_scalar = lib.VXM_FLOAT32 if points.dtype == numpy.float32 else lib.VXM_FLOAT64
     arrays.vertices = _core.pointer("void *", points)
     arrays.offsets = _core.pointer("int64_t *", offsets)
-    arrays.indices = _core.pointer("int64_t *", corners)
+    arrays.indices = _core.pointer("void *", corners)
     names = [ffi.new("char[]", tag) for tag in tags]
     arrays.tags = table = ffi.new("char *[]", names)
     if len(tags):
@@ -158,7 +159,7 @@ class Mesh:
 
     def info(self) -> dict:
         """What is wrong with it: counts, bounds, area, volume, `watertight` and `closed`."""
-        census = ffi.new("vxm_census *")
+        census = _core.new("vxm_census")
         _core.call(lib.vxm_mesh_census, census, self._pointer)
         return _core.fields(census[0])
 
@@ -251,21 +252,22 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
     """
     source = as_mesh(mesh)
     options = _core.new("vxm_repair_options")
-    for name, value in (("keep_duplicates", keep_duplicates), ("keep_orientation", keep_orientation), ("unite", union)):
-        setattr(options, name, _values.flag("repair: " + name.replace("unite", "union"), value))
+    for name, value in (("keep_duplicates", keep_duplicates), ("keep_orientation", keep_orientation)):
+        setattr(options, name, _values.flag("repair: " + name, value))
+    options.boolean_union = _values.flag("repair: union", union)
     for name, value in (("wrap_alpha", wrap_alpha), ("wrap_offset", wrap_offset), ("max_change", max_change),
                         ("drop_volume", drop_volume)):
         setattr(options, name, _values.real("repair: " + name, value, 0))
     options.drop_faces = _values.whole("repair: drop_faces", drop_faces, 0)
     options.level = _core.choice("repair: level", level, "VXM_LEVEL_")
-    options.fill = _core.choice("repair: fill", fill, "VXM_FILL_")
+    options.hole_fill = _core.choice("repair: fill", fill, "VXM_HOLE_FILL_")
     all_holes = isinstance(fill_holes, str) and fill_holes == "all"
     options.fill_holes = -1 if all_holes else _values.whole("repair: fill_holes", fill_holes)
     if isinstance(weld, str) and weld != "tolerance":
         options.weld = _core.choice("repair: weld", weld, "VXM_WELD_")
     else:
         options.weld, options.weld_tolerance = lib.VXM_WELD_TOLERANCE, _values.real("repair: weld", weld, 0)
-    report = ffi.new("vxm_repair_report *")
+    report = _core.new("vxm_repair_report")
     function = lib.vxm_mesh_prepare if _values.flag("repair: separate", separate) else lib.vxm_mesh_repair
     made = _core.create("vxm_mesh", function, report, source._pointer, options, destroy=lib.vxm_mesh_destroy)
     _core.warn(_remaining(report))
@@ -279,7 +281,7 @@ def _remaining(report: Any) -> list:
     if report.shared_faces > 0:
         out.append("%d faces repeat others, where bodies overlap and share a part of their surfaces; level 'manifold' gives "
                    "each body its own, level 'solid' unites them" % report.shared_faces)
-    if report.ununited_parts > 0:
+    if report.union_failures > 0:
         out.append("%d parts still cut through others or themselves, and what is open has no inside to unite" %
-                   report.ununited_parts)
+                   report.union_failures)
     return out

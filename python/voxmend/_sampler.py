@@ -15,7 +15,7 @@ from ._errors import ArgumentError, BusyError, KindError
 from ._mesh import MeshLike, as_mesh
 
 _UINT32_MAX = 0xFFFFFFFF
-_VOXELS = {"bits": lib.VXM_VOXELS_PACKED, "uint8": lib.VXM_VOXELS_UINT8, "float32": lib.VXM_VOXELS_FLOAT32}
+_VOXELS = {"bits": lib.VXM_VOXEL_FORMAT_PACKED, "uint8": lib.VXM_VOXEL_FORMAT_UINT8, "float32": lib.VXM_VOXEL_FORMAT_FLOAT32}
 
 
 class Turn:
@@ -100,7 +100,8 @@ class Sampler:
     def _make(self) -> Any:
         """The library's sampler of the options, without models."""
         given = self._options
-        options = _core.new("vxm_sampler_options")
+        voxelize = _core.new("vxm_voxelize_options")
+        options = _core.new("vxm_sampler_options", voxelize=voxelize)
         for name, least, most in (("resolution", 1, _values.INT64_MAX), ("pad", 0, _values.INT64_MAX),
                                   ("seed", 0, 0xFFFFFFFFFFFFFFFF), ("noise", 0, _UINT32_MAX)):
             setattr(options, name, _values.whole("sampler: " + name, given[name], least, most))
@@ -113,9 +114,10 @@ class Sampler:
                 raise ArgumentError("sampler: mirror %r names other axes than x, y and z" % given["mirror"])
             options.mirror |= 1 << "xyz".index(axis)
         for name in ("mode", "surface", "method", "vote", "parts", "cavities"):
-            setattr(options.voxelize, name, _core.choice("sampler: " + name, given[name], "VXM_%s_" % name.upper()))
+            field = "split_mode" if name == "parts" else name
+            setattr(voxelize, field, _core.choice("sampler: " + name, given[name], "VXM_%s_" % field.upper()))
         rotations = self._set_rotation(options, given["rotate"])
-        options.voxelize.engine = engine = self._make_engine(given["engine"])
+        voxelize.engine = engine = self._make_engine(given["engine"])
 
         def destroy(sampler: Any, kept: tuple = (engine, self._meshes)) -> None:  # which outlive the sampler
             lib.vxm_sampler_destroy(sampler)
@@ -247,7 +249,7 @@ class Sampler:
             transform (3, 4): takes (x, y, z, 1) of the mesh to voxels; rotation (3, 3); scale (3,) in voxels per model
             unit, negative where mirrored; shift (3,) in voxels
         """
-        out = ffi.new("vxm_pose *")
+        out = _core.new("vxm_pose")
         variant = ffi.new("vxm_variant *", {name: _values.whole("sampler: " + name, value, 0, _UINT32_MAX)
                                             for name, value in (("model", model), ("epoch", epoch), ("index", index))})
         with self._turn:

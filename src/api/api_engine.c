@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of engines: they check arguments and call down. */
+#include "base/sized.h"
 #include "gpu/engines.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -13,11 +13,9 @@ vxm_status vxm_engine_create(vxm_engine **out, vxm_context *context, const char 
   if (!out || !name)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: an argument is NULL");
   vxm_engine_options chosen = VXM_ENGINE_OPTIONS_INIT;
-  if (options)
-    chosen = *options;
-  if (chosen.version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "engine: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "engine", error);
+  if (status != VXM_OK)
+    return status;
   if ((unsigned)chosen.gl_method > VXM_GL_TETRA_VERTEX)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "engine: method %d is unknown", (int)chosen.gl_method);
   if ((unsigned)chosen.cl_method > VXM_CL_TILES)
@@ -43,5 +41,21 @@ vxm_status vxm_engines_find(vxm_engine_info *out, int64_t capacity, int64_t *cou
     *count = 0;
   if (!count || capacity < 0 || (capacity > 0 && !out))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "engines: an argument is NULL or negative");
-  return vxm_engines_list(out, capacity, count, NULL, error);
+  vxm_context *context;
+  vxm_status status = vxm_context_acquire(&context, NULL, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_engine_info *made = NULL;
+  status = vxm_engines_list(NULL, 0, count, context, error);
+  int64_t room = capacity < *count ? capacity : *count;
+  if (status == VXM_OK && room > 0) {
+    made = vxm_calloc(context, (size_t)room, sizeof *made, error);
+    status = made ? vxm_engines_list(made, room, count, context, error) : VXM_ERROR_MEMORY;
+  }
+  for (int64_t i = 0; status == VXM_OK && i < room; i++)
+    VXM_RESULT_WRITE((vxm_engine_info *)((char *)out + (size_t)i * vxm_result_stride(out, sizeof *made)),
+                     &made[i]);
+  vxm_free(context, made);
+  vxm_context_release(context);
+  return status;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that make a number per voxel: they check arguments and call down. */
+#include "base/sized.h"
 #include "export/field.h"
 #include "grid/bit_transpose.h"
 
@@ -15,20 +16,38 @@ static vxm_field_target array_of(void *values) {
   return (vxm_field_target){.layout = VXM_PLANE_Z_FAST, .whole = values};
 }
 
-static vxm_status check_version(const char *what, uint32_t version, vxm_error *error) {
-  return version == 1
-             ? VXM_OK
-             : vxm_fail(error, VXM_ERROR_ARGUMENT,
-                        "%s: options version %" PRIu32 " is unknown; use the initializer", what, version);
+/* ---- Coverage ---- */
+
+/** What is made, and where it goes; pointers of the caller stay. */
+typedef struct coverage_results {
+  vxm_coverage_report *report;
+  vxm_voxelize_report *to;
+  vxm_coverage_report made;
+  vxm_voxelize_report voxelize;
+} coverage_results;
+
+static void begin_coverage(coverage_results *r, vxm_coverage_report *report) {
+  *r = (coverage_results){.report = report,
+                          .to = report && VXM_RESULT_HAS(report, voxelize) ? report->voxelize : NULL};
+  r->made.voxelize = r->to;
+  VXM_RESULT_WRITE(report, &r->made);
+  VXM_RESULT_CLEAR(r->to);
+  r->made.voxelize = &r->voxelize;
 }
 
-/* ---- Coverage ---- */
+static vxm_status end_coverage(coverage_results *r, vxm_status status) {
+  if (status != VXM_OK)
+    return status;
+  r->made.voxelize = r->to;
+  VXM_RESULT_WRITE(r->report, &r->made);
+  VXM_RESULT_WRITE(r->to, &r->voxelize);
+  return status;
+}
 
 static vxm_status check_coverage(vxm_coverage_options *chosen, const vxm_space *space,
                                  const vxm_coverage_options *options, vxm_error *error) {
-  static const vxm_coverage_options defaults = VXM_COVERAGE_OPTIONS_INIT;
-  *chosen = options ? *options : defaults;
-  vxm_status status = check_version("coverage", chosen->version, error);
+  *chosen = (vxm_coverage_options)VXM_COVERAGE_OPTIONS_INIT;
+  vxm_status status = VXM_OPTIONS_READ(chosen, options, "coverage", error);
   if (status != VXM_OK)
     return status;
   int n = chosen->subdivision;
@@ -42,52 +61,79 @@ static vxm_status check_coverage(vxm_coverage_options *chosen, const vxm_space *
 
 vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report, vxm_model *model,
                               const vxm_space *space, const vxm_coverage_options *options, vxm_error *error) {
-  vxm_coverage_report local;
-  report = report ? report : &local;
-  *report = (vxm_coverage_report){.full = 0};
+  coverage_results results;
+  begin_coverage(&results, report);
   if (!values || !model || !space)
     return fail_null("coverage", error);
   vxm_coverage_options chosen;
   vxm_status status = check_coverage(&chosen, space, options, error);
   vxm_field_target target = array_of(values);
-  return status == VXM_OK ? vxm_coverage_run(&target, report, model, space, &chosen, error) : status;
+  if (status == VXM_OK)
+    status = vxm_coverage_run(&target, &results.made, model, space, &chosen, error);
+  return end_coverage(&results, status);
 }
 
 vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *model, const vxm_space *space,
                                     const char *path, const vxm_coverage_options *options, vxm_error *error) {
-  vxm_coverage_report local;
-  report = report ? report : &local;
-  *report = (vxm_coverage_report){.full = 0};
+  coverage_results results;
+  begin_coverage(&results, report);
   if (!model || !space || !path)
     return fail_null("coverage", error);
   vxm_coverage_options chosen;
   vxm_status status = check_coverage(&chosen, space, options, error);
   if (status == VXM_OK)
-    status = vxm_field_write_coverage(report, model, space, path, &chosen, error);
-  if (status != VXM_OK)
-    *report = (vxm_coverage_report){.full = 0};
-  return status;
+    status = vxm_field_write_coverage(&results.made, model, space, path, &chosen, error);
+  return end_coverage(&results, status);
 }
 
 vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
                                        const char *path, const vxm_coverage_options *options,
                                        vxm_error *error) {
-  if (out)
-    *out = (vxm_estimate){0};
+  VXM_RESULT_CLEAR(out);
   if (!out || !model || !space || !path)
     return fail_null("coverage", error);
   vxm_coverage_options chosen;
   vxm_status status = check_coverage(&chosen, space, options, error);
-  return status == VXM_OK ? vxm_field_estimate_coverage(out, model, space, path, &chosen, error) : status;
+  vxm_estimate made = {0};
+  if (status == VXM_OK)
+    status = vxm_field_estimate_coverage(&made, model, space, path, &chosen, error);
+  if (status == VXM_OK)
+    VXM_RESULT_WRITE(out, &made);
+  return status;
 }
 
 /* ---- Distance ---- */
 
+/** What is made, and where it goes; pointers of the caller stay. */
+typedef struct distance_results {
+  vxm_distance_report *report;
+  vxm_voxelize_report *to;
+  vxm_distance_report made;
+  vxm_voxelize_report voxelize;
+} distance_results;
+
+static void begin_distance(distance_results *r, vxm_distance_report *report) {
+  *r = (distance_results){.report = report,
+                          .to = report && VXM_RESULT_HAS(report, voxelize) ? report->voxelize : NULL};
+  r->made.voxelize = r->to;
+  VXM_RESULT_WRITE(report, &r->made);
+  VXM_RESULT_CLEAR(r->to);
+  r->made.voxelize = &r->voxelize;
+}
+
+static vxm_status end_distance(distance_results *r, vxm_status status) {
+  if (status != VXM_OK)
+    return status;
+  r->made.voxelize = r->to;
+  VXM_RESULT_WRITE(r->report, &r->made);
+  VXM_RESULT_WRITE(r->to, &r->voxelize);
+  return status;
+}
+
 static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *model, const vxm_space *space,
                                  const vxm_distance_options *options, vxm_error *error) {
-  static const vxm_distance_options defaults = VXM_DISTANCE_OPTIONS_INIT;
-  *chosen = options ? *options : defaults;
-  vxm_status status = check_version("distance", chosen->version, error);
+  *chosen = (vxm_distance_options)VXM_DISTANCE_OPTIONS_INIT;
+  vxm_status status = VXM_OPTIONS_READ(chosen, options, "distance", error);
   if (status != VXM_OK)
     return status;
   if (!(chosen->band >= 0) || isinf(chosen->band))
@@ -100,41 +146,43 @@ static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *
 
 vxm_status vxm_model_distance(float *values, vxm_distance_report *report, vxm_model *model,
                               const vxm_space *space, const vxm_distance_options *options, vxm_error *error) {
-  vxm_distance_report local;
-  report = report ? report : &local;
-  *report = (vxm_distance_report){.exact = 0};
+  distance_results results;
+  begin_distance(&results, report);
   if (!values || !model || !space)
     return fail_null("distance", error);
   vxm_distance_options chosen;
   vxm_status status = check_distance(&chosen, model, space, options, error);
   vxm_field_target target = array_of(values);
-  return status == VXM_OK ? vxm_distance_run(&target, report, model, space, &chosen, error) : status;
+  if (status == VXM_OK)
+    status = vxm_distance_run(&target, &results.made, model, space, &chosen, error);
+  return end_distance(&results, status);
 }
 
 vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model, const vxm_space *space,
                                     const char *path, const vxm_distance_options *options, vxm_error *error) {
-  vxm_distance_report local;
-  report = report ? report : &local;
-  *report = (vxm_distance_report){.exact = 0};
+  distance_results results;
+  begin_distance(&results, report);
   if (!model || !space || !path)
     return fail_null("distance", error);
   vxm_distance_options chosen;
   vxm_status status = check_distance(&chosen, model, space, options, error);
   if (status == VXM_OK)
-    status = vxm_field_write_distance(report, model, space, path, &chosen, error);
-  if (status != VXM_OK)
-    *report = (vxm_distance_report){.exact = 0};
-  return status;
+    status = vxm_field_write_distance(&results.made, model, space, path, &chosen, error);
+  return end_distance(&results, status);
 }
 
 vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
                                        const char *path, const vxm_distance_options *options,
                                        vxm_error *error) {
-  if (out)
-    *out = (vxm_estimate){0};
+  VXM_RESULT_CLEAR(out);
   if (!out || !model || !space || !path)
     return fail_null("distance", error);
   vxm_distance_options chosen;
   vxm_status status = check_distance(&chosen, model, space, options, error);
-  return status == VXM_OK ? vxm_field_estimate_distance(out, model, space, path, &chosen, error) : status;
+  vxm_estimate made = {0};
+  if (status == VXM_OK)
+    status = vxm_field_estimate_distance(&made, model, space, path, &chosen, error);
+  if (status == VXM_OK)
+    VXM_RESULT_WRITE(out, &made);
+  return status;
 }

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that read, write and draw grids: they check arguments and call down. */
+#include "base/sized.h"
 #include "grid/bitgrid.h"
 #include "gridio/formats/confidence.h"
 #include "gridio/gridio.h"
 #include "gridio/mesh/surface_mesh.h"
 #include "gridio/picture/picture.h"
-
-#include <inttypes.h>
 
 vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
   if (out)
@@ -27,12 +26,8 @@ vxm_status vxm_grid_write(const vxm_grid *grid, const char *path, const vxm_grid
   if (!grid || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
   vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
-  if (options)
-    chosen = *options;
-  if (chosen.version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "grid: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
-  return vxm_gridio_write(grid, path, chosen.format, error);
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "grid", error);
+  return status == VXM_OK ? vxm_gridio_write(grid, path, chosen.format, error) : status;
 }
 
 vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error) {
@@ -48,7 +43,8 @@ vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path, const vxm_pi
   if (!grid || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: an argument is NULL");
   vxm_picture_options chosen = VXM_PICTURE_OPTIONS_INIT;
-  return vxm_gridio_picture(grid, NULL, NULL, path, options ? options : &chosen, error);
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "picture", error);
+  return status == VXM_OK ? vxm_gridio_picture(grid, NULL, NULL, path, &chosen, error) : status;
 }
 
 vxm_status vxm_grid_write_confidence(const vxm_grid *grid, const char *path, vxm_error *error) {

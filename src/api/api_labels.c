@@ -1,17 +1,41 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about labels: they check arguments and call down. */
+#include "base/sized.h"
 #include "export/labels.h"
 #include "grid/bit_transpose.h"
 
-#include <inttypes.h>
+/** What is made, and where it goes; pointers of the caller stay. */
+typedef struct label_results {
+  vxm_label_report *report;
+  vxm_voxelize_report *to;
+  vxm_label_report made;
+  vxm_voxelize_report voxelize;
+} label_results;
+
+static void begin_label(label_results *r, vxm_label_report *report) {
+  *r = (label_results){.report = report,
+                       .to = report && VXM_RESULT_HAS(report, voxelize) ? report->voxelize : NULL};
+  r->made.voxelize = r->to;
+  VXM_RESULT_WRITE(report, &r->made);
+  VXM_RESULT_CLEAR(r->to);
+  r->made.voxelize = &r->voxelize;
+}
+
+static vxm_status end_label(label_results *r, vxm_status status) {
+  if (status != VXM_OK)
+    return status;
+  r->made.voxelize = r->to;
+  VXM_RESULT_WRITE(r->report, &r->made);
+  VXM_RESULT_WRITE(r->to, &r->voxelize);
+  return status;
+}
 
 static vxm_status check(vxm_label_options *chosen, const vxm_space *space, const vxm_label_options *options,
                         vxm_error *error) {
-  static const vxm_label_options defaults = VXM_LABEL_OPTIONS_INIT;
-  *chosen = options ? *options : defaults;
-  if (chosen->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "labels: options version %" PRIu32 " is unknown; use the initializer", chosen->version);
+  *chosen = (vxm_label_options)VXM_LABEL_OPTIONS_INIT;
+  vxm_status status = VXM_OPTIONS_READ(chosen, options, "labels", error);
+  if (status != VXM_OK)
+    return status;
   if ((unsigned)chosen->by > VXM_LABEL_MATERIAL)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: %d is none of the kinds of labels", (int)chosen->by);
   return vxm_space_check(space, error);
@@ -19,9 +43,8 @@ static vxm_status check(vxm_label_options *chosen, const vxm_space *space, const
 
 vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_label_options *options, vxm_error *error) {
-  vxm_label_report local;
-  report = report ? report : &local;
-  *report = (vxm_label_report){.labels = 0};
+  label_results results;
+  begin_label(&results, report);
   if (!values || !model || !space)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: an argument is NULL");
   vxm_label_options chosen;
@@ -31,25 +54,23 @@ vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_mode
   vxm_face_labels labelling;
   status = vxm_face_labels_create(&labelling, model->analysis.soup, chosen.by, error);
   if (status == VXM_OK)
-    status = vxm_labels_run(values, (vxm_layout)VXM_PLANE_Z_FAST, report, model, space, &labelling, error);
+    status =
+        vxm_labels_run(values, (vxm_layout)VXM_PLANE_Z_FAST, &results.made, model, space, &labelling, error);
   vxm_face_labels_destroy(&labelling);
-  return status;
+  return end_label(&results, status);
 }
 
 vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,
                                   const char *path, const vxm_label_options *options, vxm_error *error) {
-  vxm_label_report local;
-  report = report ? report : &local;
-  *report = (vxm_label_report){.labels = 0};
+  label_results results;
+  begin_label(&results, report);
   if (!model || !space || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: an argument is NULL");
   vxm_label_options chosen;
   vxm_status status = check(&chosen, space, options, error);
   if (status == VXM_OK)
-    status = vxm_labels_write(report, model, space, path, &chosen, error);
-  if (status != VXM_OK)
-    *report = (vxm_label_report){.labels = 0};
-  return status;
+    status = vxm_labels_write(&results.made, model, space, path, &chosen, error);
+  return end_label(&results, status);
 }
 
 /** The table of the calling thread, or an empty one. */

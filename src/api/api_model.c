@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that make many grids of one mesh: they check arguments and call down. */
 #include "api/api_options.h"
+#include "base/sized.h"
 #include "export/model_writer.h"
 #include "voxel/model/voxelize.h"
-
-#include <inttypes.h>
-#include <string.h>
 
 vxm_status vxm_model_create(vxm_model **out, const vxm_mesh *mesh, const vxm_voxelize_options *options,
                             vxm_error *error) {
@@ -13,58 +11,60 @@ vxm_status vxm_model_create(vxm_model **out, const vxm_mesh *mesh, const vxm_vox
     *out = NULL;
   if (!out || !mesh)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "model: an argument is NULL");
-  vxm_voxelize_options chosen = VXM_VOXELIZE_OPTIONS_INIT;
-  if (options)
-    chosen = *options;
-  vxm_status status = vxm_check_voxelize_options(&chosen, error);
+  vxm_voxelize_options chosen;
+  vxm_status status = vxm_choose_voxelize_options(&chosen, options, error);
   return status == VXM_OK ? vxm_model_make(out, mesh, &chosen, error) : status;
 }
 
 vxm_status vxm_model_voxelize(vxm_grid *grid, vxm_voxelize_report *report, vxm_model *model,
                               const double transform[12], vxm_error *error) {
-  if (report)
-    memset(report, 0, sizeof *report);
+  VXM_RESULT_CLEAR(report);
   if (!grid || !model)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
+  vxm_voxelize_report made = {0};
   vxm_status status = model->options.confidence ? vxm_grid_add_confidence(grid, error) : VXM_OK;
-  return status == VXM_OK ? vxm_voxelize_into(grid, report, model, transform, error) : status;
+  if (status == VXM_OK)
+    status = vxm_voxelize_into(grid, report ? &made : NULL, model, transform, error);
+  if (status == VXM_OK)
+    VXM_RESULT_WRITE(report, &made);
+  return status;
 }
 
-static vxm_status check_write(const vxm_space *space, const char *path, const vxm_grid_write_options *options,
-                              vxm_error *error) {
+static vxm_status check_write(vxm_grid_write_options *chosen, const vxm_space *space, const char *path,
+                              const vxm_grid_write_options *options, vxm_error *error) {
+  *chosen = (vxm_grid_write_options)VXM_GRID_WRITE_OPTIONS_INIT;
   if (!space || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
-  if (options && options->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "write: options version %" PRIu32 " is unknown; use the initializer", options->version);
-  return VXM_OK;
+  return VXM_OPTIONS_READ(chosen, options, "write", error);
 }
 
 vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
                               const char *path, const vxm_grid_write_options *options, vxm_error *error) {
-  if (out)
-    *out = (vxm_estimate){0};
+  VXM_RESULT_CLEAR(out);
   if (!out || !model)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
-  vxm_status status = check_write(space, path, options, error);
-  return status == VXM_OK
-             ? vxm_model_writer_estimate(out, model, space, path, options ? options->format : NULL, error)
-             : status;
+  vxm_grid_write_options chosen;
+  vxm_estimate made = {0};
+  vxm_status status = check_write(&chosen, space, path, options, error);
+  if (status == VXM_OK)
+    status = vxm_model_writer_estimate(&made, model, space, path, chosen.format, error);
+  if (status == VXM_OK)
+    VXM_RESULT_WRITE(out, &made);
+  return status;
 }
 
 vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
                            const char *path, const vxm_grid_write_options *options, vxm_error *error) {
-  vxm_voxelize_report local;
-  if (!report)
-    report = &local;
-  *report = (vxm_voxelize_report){0};
+  VXM_RESULT_CLEAR(report);
   if (!model)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: an argument is NULL");
-  vxm_status status = check_write(space, path, options, error);
+  vxm_grid_write_options chosen;
+  vxm_voxelize_report made = {0};
+  vxm_status status = check_write(&chosen, space, path, options, error);
   if (status == VXM_OK)
-    status = vxm_model_writer_write(report, model, space, path, options ? options->format : NULL, error);
-  if (status != VXM_OK)
-    *report = (vxm_voxelize_report){0};
+    status = vxm_model_writer_write(&made, model, space, path, chosen.format, error);
+  if (status == VXM_OK)
+    VXM_RESULT_WRITE(report, &made);
   return status;
 }
 

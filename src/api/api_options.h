@@ -5,7 +5,8 @@
 
 #include "base/error.h"
 
-/** Whether the options' version is known and every choice is one of its enum. */
-vxm_status vxm_check_voxelize_options(const vxm_voxelize_options *options, vxm_error *error);
+/** The caller's options or the defaults, if every choice is one of its enum. */
+vxm_status vxm_choose_voxelize_options(vxm_voxelize_options *chosen, const vxm_voxelize_options *options,
+                                       vxm_error *error);
 
 #endif

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of the published OpenCL program: they check arguments and call down. */
+#include "base/sized.h"
 #include "config.h"
 #include "voxel/engine/engine.h"
+#include "voxmend/experimental.h"
 
 #ifdef HAVE_OPENCL
 #include "gpu/opencl/faieghi.h"
@@ -12,10 +14,6 @@
 #include <string.h>
 
 static vxm_status check(const vxm_engine *engine, const vxm_published_options *options, vxm_error *error) {
-  if (options->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "published program: options version %" PRIu32 " is unknown; use the initializer",
-                    options->version);
   if (!(options->voxel_size >= (double)FLT_MIN && options->voxel_size <= 1 / (double)FLT_MIN))
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "published program: voxel size %g is not a positive number that a 32-bit float holds",
@@ -37,10 +35,12 @@ vxm_status vxm_published_create(vxm_published **out, vxm_space *space, vxm_engin
     *space = (vxm_space){0};
   if (!out || !engine || !mesh || !options)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "published program: an argument is NULL");
-  vxm_status status = check(engine, options, error);
+  vxm_published_options chosen = VXM_PUBLISHED_OPTIONS_INIT;
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "published program", error);
+  if (status == VXM_OK)
+    status = check(engine, &chosen, error);
 #ifdef HAVE_OPENCL
   vxm_space local;
-  vxm_published_options chosen = *options;
   chosen.material = chosen.material ? chosen.material : 1;
   if (status == VXM_OK)
     status =
@@ -50,19 +50,21 @@ vxm_status vxm_published_create(vxm_published **out, vxm_space *space, vxm_engin
 }
 
 vxm_status vxm_published_voxelize(vxm_published_report *report, vxm_published *published, vxm_error *error) {
-  vxm_published_report local;
-  report = report ? report : &local;
-  *report = (vxm_published_report){0};
+  VXM_RESULT_CLEAR(report);
   if (!published)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "published program: an argument is NULL");
 #ifdef HAVE_OPENCL
-  return vxm_cl_published_voxelize(report, published, error);
+  vxm_published_report made = {0};
+  vxm_status status = vxm_cl_published_voxelize(&made, published, error);
+  if (status == VXM_OK)
+    VXM_RESULT_WRITE(report, &made);
+  return status;
 #else
   return VXM_OK; /* there are none to voxelize */
 #endif
 }
 
-vxm_status vxm_published_take(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
+vxm_status vxm_published_read(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
                               vxm_error *error) {
   double local;
   ms = ms ? ms : &local;
@@ -75,7 +77,7 @@ vxm_status vxm_published_take(uint8_t *voxels, double *ms, vxm_published *publis
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "published program: voxels are read into memory, not into NULL");
 #ifdef HAVE_OPENCL
-  return vxm_cl_published_take(voxels, ms, published, how, error);
+  return vxm_cl_published_read(voxels, ms, published, how, error);
 #else
   return VXM_OK;
 #endif

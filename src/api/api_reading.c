@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/error.h"
 #include "base/module.h"
+#include "base/sized.h"
 #include "config.h"
 #include "meshio/external/external_formats.h"
 #include "sandbox/landlock.h"
@@ -20,11 +21,12 @@ static bool has_module(const char *name) {
 vxm_status vxm_reading_find(vxm_reading_info *out, vxm_error *error) {
   if (!out)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "reading: an argument is NULL");
-  *out = (vxm_reading_info){.assimp = has_module("assimp"),
+  vxm_reading_info found = {.assimp = has_module("assimp"),
                             .occt = has_module("occt"),
                             .assimp_formats = VXM_ASSIMP_FORMATS,
                             .occt_formats = VXM_OCCT_FORMATS,
                             .filter = HAS_FILTER,
                             .landlock = vxm_landlock_version()};
+  VXM_RESULT_WRITE(out, &found);
   return VXM_OK;
 }

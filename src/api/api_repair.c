@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of repair: they check arguments and call down. */
+#include "base/sized.h"
 #include "repair/defects.h"
 #include "repair/repair.h"
 #include "repair/verify.h"
@@ -7,17 +8,37 @@
 #include <inttypes.h>
 #include <string.h>
 
+/** A census that the caller may want. */
+static void give_census(vxm_census *out, const vxm_census *made) {
+  VXM_RESULT_WRITE(out, made);
+}
+
 static vxm_status run(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
                       const vxm_repair_options *options, bool separates, vxm_error *error) {
+  vxm_census before = {0}, after = {0};
+  vxm_census *to_before = report && VXM_RESULT_HAS(report, before) ? report->before : NULL;
+  vxm_census *to_after = report && VXM_RESULT_HAS(report, after) ? report->after : NULL;
+  vxm_repair_report made = {.before = to_before ? &before : NULL, .after = to_after ? &after : NULL};
+  vxm_repair_options chosen;
   if (out)
     *out = NULL;
-  if (report)
-    memset(report, 0, sizeof *report);
+  vxm_status status = VXM_OK;
   if (!out || !mesh)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: an argument is NULL");
-  vxm_status status = (separates ? vxm_repair_prepare : vxm_repair_run)(out, report, mesh, options, error);
-  if (status != VXM_OK && report)
-    memset(report, 0, sizeof *report);
+    status = vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: an argument is NULL");
+  if (status == VXM_OK)
+    status = vxm_repair_check(&chosen, options, error);
+  if (status == VXM_OK)
+    status =
+        (separates ? vxm_repair_prepare : vxm_repair_run)(out, report ? &made : NULL, mesh, &chosen, error);
+  if (status != VXM_OK) {
+    made = (vxm_repair_report){0};
+    before = after = (vxm_census){0};
+  }
+  made.before = to_before;
+  made.after = to_after;
+  VXM_RESULT_WRITE(report, &made);
+  give_census(to_before, &before);
+  give_census(to_after, &after);
   return status;
 }
 
@@ -35,39 +56,37 @@ int64_t vxm_mesh_part_change_count(const vxm_mesh *repaired) {
   return repaired ? (int64_t)repaired->part_count : 0;
 }
 
-const vxm_part_change *vxm_mesh_part_changes(const vxm_mesh *repaired) {
-  return repaired ? repaired->part_changes : NULL;
+const vxm_part_change *vxm_mesh_part_change(const vxm_mesh *repaired, int64_t index) {
+  return index >= 0 && index < vxm_mesh_part_change_count(repaired) ? &repaired->part_changes[index] : NULL;
 }
 
 static vxm_status check_both(vxm_repair_options *repair, const vxm_repair_options *given,
                              vxm_mesh_write_options *write, const vxm_mesh_write_options *given_write,
                              vxm_error *error) {
   *write = (vxm_mesh_write_options)VXM_MESH_WRITE_OPTIONS_INIT;
-  if (given_write)
-    *write = *given_write;
-  if (write->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "verify: options version %" PRIu32 " is unknown; use the initializer", write->version);
-  return vxm_repair_check(repair, given, error);
+  vxm_status status = VXM_OPTIONS_READ(write, given_write, "verify", error);
+  return status == VXM_OK ? vxm_repair_check(repair, given, error) : status;
 }
 
 vxm_status vxm_mesh_verify(vxm_verification *out, const vxm_mesh *mesh, const vxm_repair_options *options,
                            vxm_error *error) {
-  if (out)
-    memset(out, 0, sizeof *out);
+  VXM_RESULT_CLEAR(out);
   if (!out || !mesh)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "verify: an argument is NULL");
   vxm_repair_options repair;
   vxm_mesh_write_options write;
   vxm_status status = check_both(&repair, options, &write, NULL, error);
-  return status == VXM_OK ? vxm_verify(out, mesh, &repair, error) : status;
+  vxm_verification found = {0};
+  if (status == VXM_OK)
+    status = vxm_verify(&found, mesh, &repair, error);
+  VXM_RESULT_WRITE(out, &found);
+  return status;
 }
 
 vxm_status vxm_mesh_write_verified(vxm_verification *out, const vxm_mesh *mesh, const char *path,
                                    const vxm_mesh_write_options *write, const vxm_repair_options *repair,
                                    bool best_effort, vxm_error *error) {
-  if (out)
-    memset(out, 0, sizeof *out);
+  VXM_RESULT_CLEAR(out);
   if (!out || !mesh || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
   vxm_repair_options chosen;
@@ -75,24 +94,28 @@ vxm_status vxm_mesh_write_verified(vxm_verification *out, const vxm_mesh *mesh, 
   vxm_status status = check_both(&chosen, repair, &chosen_write, write, error);
   if (status != VXM_OK)
     return status;
-  return vxm_write_verified(out, mesh, path, &chosen_write, &chosen, best_effort, error);
+  vxm_verification found = {0};
+  status = vxm_write_verified(&found, mesh, path, &chosen_write, &chosen, best_effort, error);
+  VXM_RESULT_WRITE(out, &found);
+  return status;
 }
 
-vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int64_t most, bool intersections,
+vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int64_t max_count, bool intersections,
                             vxm_error *error) {
   if (out)
     *out = NULL;
-  if (!out || !mesh || most < 0)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "defects: an argument is NULL, or a number of %" PRId64, most);
-  return vxm_defects_find(out, mesh, (size_t)most, intersections, error);
+  if (!out || !mesh || max_count < 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "defects: an argument is NULL, or a number of %" PRId64,
+                    max_count);
+  return vxm_defects_find(out, mesh, (size_t)max_count, intersections, error);
 }
 
 int64_t vxm_defects_count(const vxm_defects *defects) {
   return defects ? (int64_t)defects->count : 0;
 }
 
-const vxm_defect *vxm_defects_items(const vxm_defects *defects) {
-  return defects ? defects->items : NULL;
+const vxm_defect *vxm_defects_item(const vxm_defects *defects, int64_t index) {
+  return index >= 0 && index < vxm_defects_count(defects) ? &defects->items[index] : NULL;
 }
 
 int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind kind) {

@@ -3,6 +3,7 @@
 #include "api/api_options.h"
 #include "augment/sampler.h"
 #include "augment/unpack_bits.h"
+#include "base/sized.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -38,10 +39,6 @@ static bool is_part(double value) {
 }
 
 static vxm_status check(const vxm_sampler_options *options, vxm_error *error) {
-  const vxm_voxelize_options *voxelize = &options->voxelize;
-  if (options->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "sampler: options version %" PRIu32 " is unknown; use the initializer", options->version);
   if (options->resolution < 1 || options->pad < 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: resolution and pad cannot be negative");
   if (options->resolution > RESOLUTION_MOST)
@@ -67,10 +64,7 @@ static vxm_status check(const vxm_sampler_options *options, vxm_error *error) {
   if (options->fill && options->rotation != VXM_ROTATION_NONE)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "sampler: a model whose longest side fills the grid cannot be rotated within it");
-  if (voxelize->confidence)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: variants have no confidence");
-  vxm_status status = vxm_check_voxelize_options(voxelize, error);
-  return status == VXM_OK ? check_rotations(options, error) : status;
+  return check_rotations(options, error);
 }
 
 /** Pad and displacement must leave a model its room. */
@@ -93,13 +87,20 @@ vxm_status vxm_sampler_create(vxm_sampler **out, vxm_context *context, const vxm
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the output argument is NULL");
   *out = NULL;
   vxm_sampler_options chosen = VXM_SAMPLER_OPTIONS_INIT;
-  if (options)
-    chosen = *options;
+  vxm_voxelize_options voxelize;
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "sampler", error);
+  if (status == VXM_OK)
+    status = vxm_choose_voxelize_options(&voxelize, chosen.voxelize, error);
+  if (status != VXM_OK)
+    return status;
+  if (voxelize.confidence)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: variants have no confidence");
+  chosen.voxelize = &voxelize;
   if (chosen.resolution == 0)
     chosen.resolution = RESOLUTION;
   if (chosen.noise == 0)
     chosen.noise = NOISE;
-  vxm_status status = check(&chosen, error);
+  status = check(&chosen, error);
   if (status == VXM_OK)
     status = check_room(&chosen, error);
   return status == VXM_OK ? vxm_sampler_make(out, context, &chosen, error) : status;
@@ -115,8 +116,8 @@ vxm_space vxm_sampler_space(const vxm_sampler *sampler) {
   return sampler ? vxm_worker_space(sampler->rules.options.resolution) : (vxm_space){.dims = {0}};
 }
 
-size_t vxm_sampler_bytes(const vxm_sampler *sampler, vxm_voxels voxels) {
-  if (!sampler || (unsigned)voxels > VXM_VOXELS_FLOAT32)
+size_t vxm_sampler_bytes(const vxm_sampler *sampler, vxm_voxel_format voxels) {
+  if (!sampler || (unsigned)voxels > VXM_VOXEL_FORMAT_FLOAT32)
     return 0;
   size_t dim = (size_t)sampler->rules.options.resolution;
   return vxm_unpack_row_bytes(voxels, sampler->rules.options.resolution) * dim * dim;
@@ -124,23 +125,24 @@ size_t vxm_sampler_bytes(const vxm_sampler *sampler, vxm_voxels voxels) {
 
 vxm_status vxm_sampler_pose(vxm_pose *out, const vxm_sampler *sampler, const vxm_variant *variant,
                             vxm_error *error) {
-  if (out)
-    *out = (vxm_pose){0};
+  VXM_RESULT_CLEAR(out);
   if (!out || !sampler || !variant)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
   const vxm_sampler_model *subject = vxm_sampler_find(sampler, variant->model, error);
   if (!subject)
     return VXM_ERROR_ARGUMENT;
+  vxm_pose made = {.scale = {0}};
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, variant);
   double voxels = (double)sampler->rules.options.resolution;
   for (int i = 0; i < 12; i++)
-    out->transform[i] = placement.matrix[i] * voxels;
+    made.transform[i] = placement.matrix[i] * voxels;
   for (int a = 0; a < 3; a++) {
-    out->scale[a] = placement.scale[a] * voxels;
-    out->shift[a] = placement.shift[a] * voxels;
+    made.scale[a] = placement.scale[a] * voxels;
+    made.shift[a] = placement.shift[a] * voxels;
   }
-  memcpy(out->rotation, placement.rotation, sizeof out->rotation);
+  memcpy(made.rotation, placement.rotation, sizeof made.rotation);
+  VXM_RESULT_WRITE(out, &made);
   return VXM_OK;
 }
 
@@ -165,12 +167,12 @@ static vxm_status check_count(size_t count, size_t bytes, vxm_error *error) {
 }
 
 vxm_status vxm_sampler_batch(void *out, vxm_sampler *sampler, const vxm_variant *variants, size_t count,
-                             vxm_voxels voxels, vxm_error *error) {
+                             vxm_voxel_format voxels, vxm_error *error) {
   if (!out || !sampler || !variants)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
-  if ((unsigned)voxels > VXM_VOXELS_FLOAT32)
+  if ((unsigned)voxels > VXM_VOXEL_FORMAT_FLOAT32)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: voxels %d are unknown", (int)voxels);
-  if (voxels == VXM_VOXELS_FLOAT32 && (uintptr_t)out % sizeof(float) != 0)
+  if (voxels == VXM_VOXEL_FORMAT_FLOAT32 && (uintptr_t)out % sizeof(float) != 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the memory is not aligned as floats are");
   size_t bytes = vxm_sampler_bytes(sampler, voxels);
   vxm_status status = check_count(count, bytes > sizeof *variants ? bytes : sizeof *variants, error);
@@ -185,12 +187,9 @@ vxm_status vxm_sampler_files(const char *const *paths, vxm_sampler *sampler, con
   if (!paths || !sampler || !variants)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
   vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
-  if (options)
-    chosen = *options;
-  if (chosen.version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "grid: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
-  vxm_status status = check_count(count, sizeof *variants, error);
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "grid", error);
+  if (status == VXM_OK)
+    status = check_count(count, sizeof *variants, error);
   if (status != VXM_OK)
     return status;
   for (size_t v = 0; v < count; v++) {

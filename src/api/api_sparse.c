@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of sparse sets of voxels: they check arguments and call down. */
+#include "base/sized.h"
 #include "gridio/formats/coords.h"
 #include "gridio/sparse_write.h"
 #include "voxel/sparse/sparse.h"
@@ -10,12 +11,16 @@ vxm_status vxm_model_sparse(vxm_sparse **out, vxm_voxelize_report *report, vxm_m
                             const vxm_space *space, const double transform[12], vxm_error *error) {
   if (out)
     *out = NULL;
-  if (report)
-    *report = (vxm_voxelize_report){0};
+  VXM_RESULT_CLEAR(report);
   if (!out || !model || !space)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
   vxm_status status = vxm_space_check(space, error);
-  return status == VXM_OK ? vxm_sparse_make(out, report, model, space, transform, error) : status;
+  vxm_voxelize_report made = {0};
+  if (status == VXM_OK)
+    status = vxm_sparse_make(out, report ? &made : NULL, model, space, transform, error);
+  if (status == VXM_OK)
+    VXM_RESULT_WRITE(report, &made);
+  return status;
 }
 
 const vxm_space *vxm_sparse_space(const vxm_sparse *sparse) {
@@ -102,10 +107,9 @@ vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path, const vx
                             vxm_error *error) {
   if (!sparse || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
-  if (options && options->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "sparse: options version %" PRIu32 " is unknown; use the initializer", options->version);
-  return vxm_gridio_write_sparse(sparse, path, options ? options->format : NULL, error);
+  vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "sparse", error);
+  return status == VXM_OK ? vxm_gridio_write_sparse(sparse, path, chosen.format, error) : status;
 }
 
 vxm_status vxm_sparse_write_coords(const vxm_sparse *sparse, const char *path, vxm_error *error) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about fields in files: they check arguments and call down. */
+#include "base/sized.h"
 #include "export/values_write.h"
 #include "gridio/gridio.h"
 #include "gridio/picture/picture.h"
@@ -180,12 +181,8 @@ vxm_status vxm_field_write(const vxm_field *field, const char *path, const vxm_g
   if (!field || !path)
     return fail_null(error);
   vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
-  if (options)
-    chosen = *options;
-  if (chosen.version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "field: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
-  return vxm_gridio_write_field(field, path, chosen.format, error);
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "field", error);
+  return status == VXM_OK ? vxm_gridio_write_field(field, path, chosen.format, error) : status;
 }
 
 vxm_status vxm_field_picture(const vxm_field *field, const char *path, const vxm_picture_options *options,
@@ -193,5 +190,6 @@ vxm_status vxm_field_picture(const vxm_field *field, const char *path, const vxm
   if (!field || !path)
     return fail_null(error);
   vxm_picture_options chosen = VXM_PICTURE_OPTIONS_INIT;
-  return vxm_gridio_field_picture(field, path, options ? options : &chosen, threshold, error);
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "picture", error);
+  return status == VXM_OK ? vxm_gridio_field_picture(field, path, &chosen, threshold, error) : status;
 }

@@ -12,9 +12,10 @@ typedef struct vxm_model_extent {
 
 /** What all variants have in common. */
 typedef struct vxm_pose_rules {
-  vxm_sampler_options options; /**< checked, with the defaults put in */
-  double axis[3];              /**< of length 1 */
-  double reach;                /**< the most that a coordinate is displaced */
+  vxm_sampler_options options; /**< checked, with the defaults put in; but not how to voxelize */
+  vxm_voxelize_options voxelize;
+  double axis[3]; /**< of length 1 */
+  double reach;   /**< the most that a coordinate is displaced */
 } vxm_pose_rules;
 
 typedef struct vxm_placement {

@@ -53,6 +53,8 @@ vxm_status vxm_sampler_make(vxm_sampler **out, vxm_context *context, const vxm_s
   }
   sampler->context = own;
   sampler->rules.options = *options;
+  sampler->rules.options.voxelize = NULL; /* it is the caller's */
+  sampler->rules.voxelize = *options->voxelize;
   sampler->rules.reach = vxm_noise_reach(options->displacement, options->displace);
   set_axis(&sampler->rules);
   sampler->desks = vxm_calloc(own, (size_t)vxm_context_threads(own) + 1, sizeof *sampler->desks, &local);
@@ -130,8 +132,7 @@ vxm_status vxm_sampler_set(vxm_sampler *sampler, uint32_t model, const vxm_soup 
   vxm_status status = vxm_grow(sampler->context, (void **)&sampler->subjects, &sampler->subject_room,
                                sampler->subject_count + 1, sizeof *sampler->subjects, error);
   if (status == VXM_OK)
-    status = vxm_sampler_model_create(&made, model, soup, &sampler->rules.options.voxelize, &sampler->noise,
-                                      error);
+    status = vxm_sampler_model_create(&made, model, soup, &sampler->rules.voxelize, &sampler->noise, error);
   if (status != VXM_OK)
     return status;
   memmove(sampler->subjects + place + 1, sampler->subjects + place,
@@ -190,7 +191,7 @@ typedef struct batch_job {
   /* into memory */
   unsigned char *out;
   size_t step; /**< bytes of a variant */
-  vxm_voxels voxels;
+  vxm_voxel_format voxels;
   /* or into files, if there are paths */
   const char *const *paths;
   const char *format;
@@ -265,7 +266,7 @@ static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
 
 /** Whether variants are made by something that does one thing at a time. */
 static bool has_engine(const vxm_sampler *sampler) {
-  const vxm_engine *engine = sampler->rules.options.voxelize.engine;
+  const vxm_engine *engine = sampler->rules.voxelize.engine;
   return engine && engine->ops;
 }
 
@@ -284,7 +285,7 @@ static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
 }
 
 vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant *variants, size_t count,
-                             vxm_voxels voxels, vxm_error *error) {
+                             vxm_voxel_format voxels, vxm_error *error) {
   size_t n = (size_t)sampler->rules.options.resolution;
   batch_job job = {.sampler = sampler,
                    .variants = variants,

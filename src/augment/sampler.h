@@ -27,7 +27,7 @@ vxm_status vxm_sampler_fill(vxm_sampler *sampler, vxm_grid *grid, const vxm_vari
                             vxm_error *error);
 /** See vxm_sampler_batch. */
 vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant *variants, size_t count,
-                             vxm_voxels voxels, vxm_error *error);
+                             vxm_voxel_format voxels, vxm_error *error);
 /** See vxm_sampler_files; `format` may be NULL. */
 vxm_status vxm_sampler_save(vxm_sampler *sampler, const char *const *paths, const vxm_variant *variants,
                             size_t count, const char *format, bool *written, vxm_error *error);

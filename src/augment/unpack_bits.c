@@ -3,9 +3,11 @@
 
 #include <string.h>
 
-size_t vxm_unpack_row_bytes(vxm_voxels voxels, int64_t dim) {
+size_t vxm_unpack_row_bytes(vxm_voxel_format voxels, int64_t dim) {
   size_t n = (size_t)dim;
-  return voxels == VXM_VOXELS_PACKED ? (n + 7) / 8 : voxels == VXM_VOXELS_UINT8 ? n : n * sizeof(float);
+  return voxels == VXM_VOXEL_FORMAT_PACKED  ? (n + 7) / 8
+         : voxels == VXM_VOXEL_FORMAT_UINT8 ? n
+                                            : n * sizeof(float);
 }
 
 /** Byte b of a row: its bits are voxels 8 b to 8 b + 7, on machines of either byte order. */
@@ -51,20 +53,20 @@ static void spread_whole_floats(unsigned char *out, const uint64_t *words, size_
   spread_whole(out, words, bytes, table, sizeof table[0]);
 }
 
-void vxm_unpack_row(void *out, vxm_voxels voxels, const uint64_t *words, size_t rows, int64_t dim) {
+void vxm_unpack_row(void *out, vxm_voxel_format voxels, const uint64_t *words, size_t rows, int64_t dim) {
   size_t n = (size_t)dim, step = vxm_unpack_row_bytes(voxels, dim), row_words = (n + 63) / 64;
   unsigned char *to = out;
   /* Tables are worth it only for many voxels; rows without padding are one long row. */
-  if (n % 64 == 0 && voxels != VXM_VOXELS_PACKED && rows * n >= 32768) {
+  if (n % 64 == 0 && voxels != VXM_VOXEL_FORMAT_PACKED && rows * n >= 32768) {
     void (*const whole)(unsigned char *, const uint64_t *, size_t) =
-        voxels == VXM_VOXELS_UINT8 ? spread_whole_bytes : spread_whole_floats;
+        voxels == VXM_VOXEL_FORMAT_UINT8 ? spread_whole_bytes : spread_whole_floats;
     whole(to, words, rows * n / 8);
     return;
   }
   for (size_t r = 0; r < rows; r++, to += step, words += row_words)
-    if (voxels == VXM_VOXELS_PACKED)
+    if (voxels == VXM_VOXEL_FORMAT_PACKED)
       spread_packed(to, words, n);
-    else if (voxels == VXM_VOXELS_UINT8)
+    else if (voxels == VXM_VOXEL_FORMAT_UINT8)
       spread_bytes(to, words, n);
     else
       spread_floats((float *)(void *)to, words, n);

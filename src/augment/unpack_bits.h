@@ -6,13 +6,13 @@
 #include "base/context.h"
 
 /** Bytes of a row of `dim` voxels. */
-size_t vxm_unpack_row_bytes(vxm_voxels voxels, int64_t dim);
+size_t vxm_unpack_row_bytes(vxm_voxel_format voxels, int64_t dim);
 
 /**
  * Writes `rows` rows of `dim` voxels one after another.
  *
  * @param words each row in whole words, its unused bits zero
  */
-void vxm_unpack_row(void *out, vxm_voxels voxels, const uint64_t *words, size_t rows, int64_t dim);
+void vxm_unpack_row(void *out, vxm_voxel_format voxels, const uint64_t *words, size_t rows, int64_t dim);
 
 #endif

@@ -79,13 +79,13 @@ static vxm_status make_room(vxm_worker *desk, size_t words, vxm_error *error) {
 }
 
 /** Whether packed voxels have the form of a window's words, so that it can be filled where they belong. */
-static bool is_window(const void *out, vxm_voxels voxels, int64_t resolution) {
+static bool is_window(const void *out, vxm_voxel_format voxels, int64_t resolution) {
   const uint16_t one = 1;
-  return voxels == VXM_VOXELS_PACKED && resolution % 64 == 0 && (uintptr_t)out % sizeof(uint64_t) == 0 &&
-         *(const unsigned char *)&one == 1;
+  return voxels == VXM_VOXEL_FORMAT_PACKED && resolution % 64 == 0 &&
+         (uintptr_t)out % sizeof(uint64_t) == 0 && *(const unsigned char *)&one == 1;
 }
 
-vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxels voxels, int64_t resolution,
+vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
                             const vxm_sampler_model *subject, const vxm_placement *placement,
                             const vxm_noise *noise, vxm_error *error) {
   vxm_space space = vxm_worker_space(resolution);

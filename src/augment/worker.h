@@ -22,7 +22,7 @@ vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm
                            const vxm_placement *placement, const vxm_noise *noise, vxm_error *error);
 
 /** The same into memory, as [x][y][z] in C order. */
-vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxels voxels, int64_t resolution,
+vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
                             const vxm_sampler_model *subject, const vxm_placement *placement,
                             const vxm_noise *noise, vxm_error *error);
 

@@ -2,6 +2,7 @@
 #include "base/context.h"
 #include "base/context_struct.h"
 #include "base/size_text.h"
+#include "base/sized.h"
 #include "base/threads.h"
 
 #include <inttypes.h>
@@ -33,11 +34,9 @@ vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *opti
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "context: the output argument is NULL");
   *out = NULL;
   vxm_context_options chosen = VXM_CONTEXT_OPTIONS_INIT;
-  if (options)
-    chosen = *options;
-  if (chosen.version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "context: options version %" PRIu32 " is unknown; use the initializer", chosen.version);
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "context", error);
+  if (status != VXM_OK)
+    return status;
   if (chosen.threads < 0 || chosen.threads > VXM_THREADS_MAX)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "context: %d threads; choose 0 (all processors) to %d",
                     chosen.threads, VXM_THREADS_MAX);

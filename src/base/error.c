@@ -50,11 +50,13 @@ static void make_printable(char *text) {
       *text = '?';
 }
 
-static void fill(vxm_error *error, vxm_status code, vxm_place place, const char *format, va_list arguments) {
-  if (!error)
+static void fill(vxm_error *out, vxm_status code, vxm_place place, int system, const char *format,
+                 va_list arguments) {
+  if (!out)
     return;
-  *error = (vxm_error){.code = code, .line = place.line, .offset = place.offset, .element = place.element};
-
+  vxm_error whole = {
+      .code = code, .line = place.line, .offset = place.offset, .element = place.element, .system = system};
+  vxm_error *error = &whole;
   size_t used = 0;
   if (place.file && *place.file) {
     size_t length = strlen(place.file);
@@ -73,12 +75,13 @@ static void fill(vxm_error *error, vxm_status code, vxm_place place, const char 
   if (used < sizeof error->text)
     vsnprintf(error->text + used, sizeof error->text - used, format, arguments);
   make_printable(error->text);
+  VXM_RESULT_WRITE(out, error);
 }
 
 vxm_status vxm_fail(vxm_error *error, vxm_status code, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  fill(error, code, (vxm_place){NULL, 0, -1, -1}, format, arguments);
+  fill(error, code, (vxm_place){NULL, 0, -1, -1}, 0, format, arguments);
   va_end(arguments);
   return code;
 }
@@ -86,9 +89,17 @@ vxm_status vxm_fail(vxm_error *error, vxm_status code, const char *format, ...) 
 vxm_status vxm_fail_at(vxm_error *error, vxm_status code, vxm_place place, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  fill(error, code, place, format, arguments);
+  fill(error, code, place, 0, format, arguments);
   va_end(arguments);
   return code;
+}
+
+static void VXM_PRINTF(4, 5)
+    fail_system(vxm_error *error, const char *file, int number, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  fill(error, VXM_ERROR_IO, (vxm_place){file, 0, -1, -1}, number, format, arguments);
+  va_end(arguments);
 }
 
 vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what) {
@@ -96,9 +107,7 @@ vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what) 
   char reason[128];
   /* The GNU strerror_r may return a static text instead of filling the buffer. */
   const char *text = strerror_r(saved, reason, sizeof reason);
-  vxm_fail_at(error, VXM_ERROR_IO, (vxm_place){file, 0, -1, -1}, "%s: %s", what, text);
-  if (error)
-    error->system = saved;
+  fail_system(error, file, saved, "%s: %s", what, text);
   errno = saved;
   return VXM_ERROR_IO;
 }

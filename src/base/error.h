@@ -3,6 +3,7 @@
 #ifndef VXM_BASE_ERROR_H
 #define VXM_BASE_ERROR_H
 
+#include "base/sized.h"
 #include "voxmend.h"
 
 #ifdef __cplusplus
@@ -31,8 +32,7 @@ vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what);
 
 /** Hands an error that was kept aside, by a worker or until it was known that it counts, to the caller. */
 static inline void vxm_error_pass(vxm_error *error, const vxm_error *kept) {
-  if (error)
-    *error = *kept;
+  VXM_RESULT_WRITE(error, kept);
 }
 
 #ifdef __cplusplus

@@ -13,9 +13,10 @@ typedef struct augment_request {
   bool no_repair, repair_options, noise;
   bool surface;
   cli_engine engine;
-  vxm_voxels voxels; /**< of a stream */
+  vxm_voxel_format voxels; /**< of a stream */
   vxm_repair_options repair;
   vxm_sampler_options sampler;
+  vxm_voxelize_options voxelize; /**< of the sampler */
 } augment_request;
 
 extern const cli_option augment_options[];

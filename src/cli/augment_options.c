@@ -191,10 +191,10 @@ static int read_option(cli_run *cli, augment_request *out, int key, const char *
   case CLI_KEY_GL_AXIS:
     return cli_engine_read(cli, &out->engine, key, value);
   case KEY_MODE:
-    return cli_read_mode(cli, &out->sampler.voxelize, value);
+    return cli_read_mode(cli, &out->voxelize, value);
   default:
     out->surface = true;
-    return cli_read_surface(cli, &out->sampler.voxelize, value);
+    return cli_read_surface(cli, &out->voxelize, value);
   }
 }
 
@@ -213,7 +213,7 @@ static int check_format(cli_run *cli, augment_request *given) {
     return cli_usage(cli, "--format '%s' is none of %s, which %s", given->format,
                      cli_list(list, stream ? streams : files), stream ? "a stream has" : "files have");
   given->format = stream ? streams[choice] : files[choice];
-  given->voxels = (vxm_voxels)choice;
+  given->voxels = (vxm_voxel_format)choice;
   if (stream && cli->json)
     return cli_usage(cli, "-o - and --json both want standard output; use --report FILE.json");
   if (stream)
@@ -231,7 +231,7 @@ static int check_conflicts(cli_run *cli, const augment_request *given) {
     return cli_usage(cli, "--fill leaves no room to rotate in; leave out --rotate");
   if (given->noise && sampler->displace == 0)
     return cli_usage(cli, "--noise goes with --displace");
-  if (cli_check_surface(cli, &sampler->voxelize, given->surface) == CLI_STOP)
+  if (cli_check_surface(cli, &given->voxelize, given->surface) == CLI_STOP)
     return CLI_STOP;
   return cli_check_repair(cli, given->no_repair, given->repair_options);
 }

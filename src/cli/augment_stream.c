@@ -61,7 +61,7 @@ static void turn_floats(unsigned char *bytes, size_t count) {
 }
 
 static bool write_records(const stream *s, size_t count) {
-  if (s->given->voxels == VXM_VOXELS_FLOAT32)
+  if (s->given->voxels == VXM_VOXEL_FORMAT_FLOAT32)
     turn_floats(s->voxels, count * s->voxel_bytes);
   for (size_t i = 0; i < count; i++) {
     unsigned char name[NAME_BYTES] = {0};

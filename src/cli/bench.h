@@ -4,6 +4,7 @@
 #define VXM_CLI_BENCH_H
 
 #include "cli/cli.h"
+#include "voxmend/experimental.h"
 
 enum {
   BENCH_LIST_MAX = 32,
@@ -193,7 +194,8 @@ uint64_t bench_peak_rss(void);
 /** What the results are of. */
 typedef struct bench_subject {
   bench_machine machine;
-  cli_input input; /**< its mesh is gone */
+  cli_input input;     /**< its mesh is gone */
+  vxm_census repaired; /**< of that mesh */
   uint64_t peak_bytes;
 } bench_subject;
 

@@ -50,7 +50,9 @@ static vxm_status begin_sampler(bench_stage *stage) {
   options.displace = stage->displace;
   options.mirror = 7;
   options.translate = 1;
-  options.voxelize.engine = stage->engines[stage->engine];
+  vxm_voxelize_options voxelize = VXM_VOXELIZE_OPTIONS_INIT;
+  voxelize.engine = stage->engines[stage->engine];
+  options.voxelize = &voxelize;
   vxm_error *error = &stage->cli->error;
   vxm_status status = vxm_sampler_create(&stage->augment->sampler, stage->cli->context, &options, error);
   return status == VXM_OK ? vxm_sampler_put(stage->augment->sampler, 0, stage->mesh, error) : status;
@@ -201,7 +203,7 @@ vxm_status bench_run_direct(bench_stage *stage) {
   for (uint32_t i = 0; i < (uint32_t)stage->variants; i++)
     variants[i] = (vxm_variant){0, 0, first_of(stage) + i};
   return vxm_sampler_batch(stage->augment->voxels, stage->augment->sampler, variants, (size_t)stage->variants,
-                           VXM_VOXELS_FLOAT32, &stage->cli->error);
+                           VXM_VOXEL_FORMAT_FLOAT32, &stage->cli->error);
 }
 
 /* ---- After ---- */

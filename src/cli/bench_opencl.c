@@ -65,17 +65,17 @@ vxm_status bench_run_published(bench_stage *stage) {
 }
 
 vxm_status bench_run_transfer_map(bench_stage *stage) {
-  return vxm_published_take(NULL, NULL, stage->published, VXM_TRANSFER_MAP, &stage->cli->error);
+  return vxm_published_read(NULL, NULL, stage->published, VXM_TRANSFER_MAP, &stage->cli->error);
 }
 
 vxm_status bench_run_transfer_read(bench_stage *stage) {
-  return vxm_published_take(stage->values, NULL, stage->published, VXM_TRANSFER_READ, &stage->cli->error);
+  return vxm_published_read(stage->values, NULL, stage->published, VXM_TRANSFER_READ, &stage->cli->error);
 }
 
 void bench_tell_published(bench_output *out, const bench_stage *stage) {
   const uint8_t *voxel = stage->values;
   out->bytes = stage->value_count;
-  if (vxm_published_take(stage->values, NULL, stage->published, VXM_TRANSFER_READ, NULL) != VXM_OK)
+  if (vxm_published_read(stage->values, NULL, stage->published, VXM_TRANSFER_READ, NULL) != VXM_OK)
     return;
   for (size_t i = 0; i < stage->value_count; i++)
     out->voxels += voxel[i] != 0;

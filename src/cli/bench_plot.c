@@ -90,7 +90,7 @@ static void put_title(FILE *file, const bench_subject *subject) {
   fprintf(file, "<text x=\"%d\" y=\"30\" font-size=\"17\">", LEFT);
   put_text(file, base_name(subject->input.path));
   fprintf(file, ": %" PRId64 " triangles</text>\n<text x=\"%d\" y=\"50\" fill=\"#555\">",
-          subject->input.repair.after.triangles, LEFT);
+          subject->repaired.triangles, LEFT);
   put_text(file, *machine->processor ? machine->processor : machine->architecture);
   fprintf(file, ", %d core%s; medians; voxmend %s</text>\n", machine->cores, machine->cores == 1 ? "" : "s",
           vxm_version());

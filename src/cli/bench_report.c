@@ -171,7 +171,7 @@ static void print_machine(const cli_run *cli, const bench_machine *machine) {
 void bench_print(const cli_run *cli, const bench_plan *plan, const bench_subject *subject,
                  const bench_results *results) {
   const cli_input *input = &subject->input;
-  const vxm_census *mended = &input->repair.after;
+  const vxm_census *mended = &subject->repaired;
   print_machine(cli, &subject->machine);
   cli_row(cli, "mesh", "%s (%s): %" PRId64 " vertices, %" PRId64 " faces; repaired %" PRId64 " triangles, %s",
           input->path, input->format, input->vertices, input->faces, mended->triangles,
@@ -218,15 +218,16 @@ static json_t *memory_json(const bench_memory *memory) {
   return object;
 }
 
-static json_t *mesh_json(const cli_input *input) {
+static json_t *mesh_json(const bench_subject *subject) {
+  const cli_input *input = &subject->input;
   json_t *object = json_object();
   json_object_set_new(object, "file", cli_json_text(input->path));
   json_object_set_new(object, "format", cli_json_text(input->format));
   json_object_set_new(object, "vertices", json_integer(input->vertices));
   json_object_set_new(object, "faces", json_integer(input->faces));
   json_t *repaired = json_object();
-  cli_census_json(repaired, &input->repair.after);
-  json_object_set_new(object, "triangles", json_integer(input->repair.after.triangles));
+  cli_census_json(repaired, &subject->repaired);
+  json_object_set_new(object, "triangles", json_integer(subject->repaired.triangles));
   json_object_set_new(object, "repaired", repaired);
   return object;
 }
@@ -248,7 +249,7 @@ json_t *bench_json(const cli_run *cli, const bench_plan *plan, const bench_subje
     json_array_append_new(memory, memory_json(&results->memory[i]));
   json_t *report = json_object();
   json_object_set_new(report, "machine", bench_machine_json(&subject->machine));
-  json_object_set_new(report, "mesh", mesh_json(&subject->input));
+  json_object_set_new(report, "mesh", mesh_json(subject));
   json_object_set_new(report, "results", measured);
   json_object_set_new(report, "left_out", left_out);
   json_object_set_new(report, "memory", memory);

@@ -396,7 +396,9 @@ typedef struct cli_field {
 #define CLI_FIELD_INIT                                                                            \
   {                                                                                               \
     .coverage_options = VXM_COVERAGE_OPTIONS_INIT, .distance_options = VXM_DISTANCE_OPTIONS_INIT, \
-    .label_options = VXM_LABEL_OPTIONS_INIT, .color_options = VXM_COLOR_OPTIONS_INIT              \
+    .label_options = VXM_LABEL_OPTIONS_INIT, .color_options = VXM_COLOR_OPTIONS_INIT,             \
+    .coverage_report = VXM_COVERAGE_REPORT_INIT, .distance_report = VXM_DISTANCE_REPORT_INIT,     \
+    .label_report = VXM_LABEL_REPORT_INIT                                                         \
   }
 
 /** The formats of what is wanted. */

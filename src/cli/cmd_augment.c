@@ -63,7 +63,8 @@ static int make_variants(cli_run *cli, augment_request *given, augment_outcome *
   vxm_status status = vxm_mesh_census(&results->census, results->input.mesh, &cli->error);
   if (status == VXM_OK)
     status = cli_engine_open(cli, &given->engine);
-  given->sampler.voxelize.engine = given->engine.engine;
+  given->voxelize.engine = given->engine.engine;
+  given->sampler.voxelize = &given->voxelize;
   if (status == VXM_OK)
     status = vxm_sampler_create(&sampler, cli->context, &given->sampler, &cli->error);
   if (status == VXM_OK)
@@ -135,6 +136,7 @@ static int run(cli_run *cli) {
   augment_request given = {.count = 16,
                            .repair = VXM_REPAIR_OPTIONS_INIT,
                            .sampler = VXM_SAMPLER_OPTIONS_INIT,
+                           .voxelize = VXM_VOXELIZE_OPTIONS_INIT,
                            .engine = {.options = VXM_ENGINE_OPTIONS_INIT}};
   given.sampler.resolution = 64;
   if (augment_read_arguments(cli, &given) == CLI_STOP)
@@ -142,7 +144,7 @@ static int run(cli_run *cli) {
   if (!cli_start(cli))
     return CLI_FAILED;
   double start = cli_clock(), *rotations = NULL;
-  augment_outcome results = {0};
+  augment_outcome results = {.census = VXM_CENSUS_INIT};
   int status = given.rotations ? read_rotations(cli, &given, &rotations) : CLI_DONE;
   if (status == CLI_DONE)
     status = cli_read_repaired(cli, &results.input, given.input, given.no_repair ? NULL : &given.repair);

@@ -335,6 +335,10 @@ static int look_at_mesh(bench_work *work) {
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   cli_input *input = &work->subject.input;
   int status = cli_read_repaired(work->cli, input, work->plan.path, &options);
+  work->subject.repaired = (vxm_census)VXM_CENSUS_INIT;
+  if (status == CLI_DONE &&
+      vxm_mesh_census(&work->subject.repaired, input->mesh, &work->cli->error) != VXM_OK)
+    status = cli_fail(work->cli);
   vxm_mesh_destroy(input->mesh);
   input->mesh = NULL;
   return status;

@@ -34,7 +34,7 @@ static json_t *make_report(const cli_run *cli, const vxm_comparison *found) {
 }
 
 static int compare(cli_run *cli, const vxm_grid *a, const vxm_grid *b) {
-  vxm_comparison found;
+  vxm_comparison found = VXM_COMPARISON_INIT;
   if (vxm_grid_compare(&found, a, b, &cli->error) != VXM_OK)
     return cli_fail(cli);
   warn_of_places(cli, vxm_grid_space(a), vxm_grid_space(b));

@@ -100,7 +100,7 @@ static int run(cli_run *cli) {
   static vxm_engine_info found[ENGINES_MAX];
   const char *value;
   int64_t count;
-  vxm_reading_info reading;
+  vxm_reading_info reading = VXM_READING_INFO_INIT;
   if (cli_next_option(cli, &value) == CLI_STOP)
     return cli->status;
   if (cli->argument_count != 0) {

@@ -38,7 +38,7 @@ static void describe(const cli_run *cli, const char *path, const vxm_mesh *mesh,
 static int examine(cli_run *cli, json_t *reports, const char *path, const cli_defects *wanted) {
   json_array_clear(cli->warnings);
   vxm_mesh *mesh = NULL;
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, path, mesh);

@@ -127,7 +127,7 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_FILL:
     out->fill = true;
     result = cli_choose(cli, &choice, "fill", value, fills);
-    out->repair.fill = (vxm_fill)choice;
+    out->repair.hole_fill = (vxm_hole_fill)choice;
     return result;
   case KEY_BEST_EFFORT:
     out->best_effort = true;
@@ -145,7 +145,7 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_DROP_PARTS:
     return read_drop_parts(cli, out, value);
   case KEY_UNION:
-    out->repair.unite = true;
+    out->repair.boolean_union = true;
     return CLI_END;
   case KEY_WRAP:
     return read_wrap(cli, out, value);
@@ -176,7 +176,7 @@ static int check_conflicts(cli_run *cli, const request *given) {
     return cli_usage(cli, "--level %s turns faces; leave out --keep-orientation",
                      repair_levels[repair->level]);
   if (repair->wrap_alpha > 0 &&
-      (repair->fill_holes != 0 || given->fill || repair->unite || repair->max_change > 0))
+      (repair->fill_holes != 0 || given->fill || repair->boolean_union || repair->max_change > 0))
     return cli_usage(cli, "--wrap makes a new surface, without holes or parts to compare; leave out "
                           "--fill-holes, --fill, --union and --max-change");
   if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
@@ -206,7 +206,7 @@ static int read_arguments(cli_run *cli, request *out) {
   out->repair.part_changes = cli_summary(cli) || cli->json || cli->report;
   out->repair.intersections =
       out->defects.intersections ||
-      (out->repair.part_changes && (out->repair.unite || out->repair.level == VXM_LEVEL_SOLID));
+      (out->repair.part_changes && (out->repair.boolean_union || out->repair.level == VXM_LEVEL_SOLID));
   out->repair.single_precision = strcmp(out->write.format, "stl") == 0;
   return CLI_DONE;
 }
@@ -260,7 +260,7 @@ static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outco
   if (status == CLI_DONE)
     status = try_repair(cli, given, outcome, raw);
   vxm_mesh_destroy(raw);
-  if (status == CLI_DONE && outcome->repair.ununited_parts > 0)
+  if (status == CLI_DONE && outcome->repair.union_failures > 0)
     repair_warn_ununited(cli, given->input, outcome);
   return status;
 }
@@ -302,7 +302,13 @@ static int run(cli_run *cli) {
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
-  repair_outcome outcome = {.level = given.repair.level};
+  repair_outcome outcome = {.repair = VXM_REPAIR_REPORT_INIT,
+                            .before = VXM_CENSUS_INIT,
+                            .after = VXM_CENSUS_INIT,
+                            .level = given.repair.level,
+                            .verification = VXM_VERIFICATION_INIT};
+  outcome.repair.before = &outcome.before;
+  outcome.repair.after = &outcome.after;
   int status = finish(cli, &given, &outcome);
   json_decref(outcome.found.list);
   vxm_mesh_destroy(outcome.mesh);

@@ -100,9 +100,9 @@ static int voxelize(cli_run *cli, vxm_grid **grid, const char *path) {
   vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
   if (cli_read_repaired(cli, &input, path, &repair) != CLI_DONE)
     return CLI_FAILED;
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = RESOLUTION;
-  vxm_status status = vxm_voxelize(grid, NULL, input.mesh, &options, &cli->error);
+  vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
+  space.resolution[0] = RESOLUTION;
+  vxm_status status = vxm_voxelize(grid, NULL, input.mesh, &space, NULL, &cli->error);
   vxm_mesh_destroy(input.mesh);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }

@@ -120,7 +120,7 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   options.format = given->format;
   vxm_model *model = NULL;
   double start = cli_clock();
-  vxm_status status = vxm_space_fit(&results->space, mesh, &given->voxelize.space, &cli->error);
+  vxm_status status = vxm_space_fit(&results->space, mesh, &given->space, &cli->error);
   if (status == VXM_OK && !given->dry_run)
     status = cli_engine_open(cli, &given->engine);
   given->voxelize.engine = given->engine.engine;
@@ -151,6 +151,7 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
 
 static int run(cli_run *cli) {
   voxelize_request given = {.repair = VXM_REPAIR_OPTIONS_INIT,
+                            .space = VXM_SPACE_OPTIONS_INIT,
                             .voxelize = VXM_VOXELIZE_OPTIONS_INIT,
                             .field = CLI_FIELD_INIT,
                             .engine = CLI_ENGINE_INIT};
@@ -163,9 +164,9 @@ static int run(cli_run *cli) {
   if (given.like) {
     if (read_like(cli, &like, given.like) != CLI_DONE)
       return CLI_FAILED;
-    given.voxelize.space.like = &like;
+    given.space.like = &like;
   }
-  voxelize_outcome results = {0};
+  voxelize_outcome results = {.voxelize = VXM_VOXELIZE_REPORT_INIT, .estimate = VXM_ESTIMATE_INIT};
   const vxm_repair_options *repair = given.no_repair ? NULL : &given.repair;
   if (cli_read_repaired(cli, &results.input, given.input, repair) != CLI_DONE)
     return CLI_FAILED;

@@ -33,18 +33,19 @@ static json_t *defect_json(const vxm_defect *defect) {
   json_object_set_new(object, is_edge || is_vertex ? "vertices" : "faces", element);
   json_t *places = json_array();
   for (int i = 0; i < (pair ? 2 : 1); i++)
-    json_array_append_new(places, cli_json_numbers(defect->at + 3 * i, 3));
-  json_object_set_new(object, "at", places);
+    json_array_append_new(places, cli_json_numbers(defect->position + 3 * i, 3));
+  json_object_set_new(object, "position", places);
   return object;
 }
 
 static json_t *list_json(const vxm_defects *found, int64_t most) {
   json_t *list = json_array();
   int64_t of_kind[VXM_DEFECT_KINDS] = {0};
-  const vxm_defect *items = vxm_defects_items(found);
-  for (int64_t i = 0; i < vxm_defects_count(found); i++)
-    if (of_kind[items[i].kind]++ < most)
-      json_array_append_new(list, defect_json(&items[i]));
+  for (int64_t i = 0; i < vxm_defects_count(found); i++) {
+    const vxm_defect *defect = vxm_defects_item(found, i);
+    if (of_kind[defect->kind]++ < most)
+      json_array_append_new(list, defect_json(defect));
+  }
   return list;
 }
 
@@ -95,7 +96,7 @@ void cli_defects_print(const cli_run *cli, const json_t *list) {
     fprintf(cli->text, "  %-18s %s", json_string_value(json_object_get(defect, "kind")), plural);
     json_array_foreach(numbers, e, number)
         fprintf(cli->text, " %" JSON_INTEGER_FORMAT, json_integer_value(number));
-    print_places(cli, json_object_get(defect, "at"));
+    print_places(cli, json_object_get(defect, "position"));
     fputc('\n', cli->text);
   }
 }

@@ -96,21 +96,18 @@ vxm_status cli_field_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
                            const vxm_space *space, const char *path, const char *format) {
   vxm_status status;
   field->coverage_options.format = field->distance_options.format = format;
-  if (field->coverage) {
+  field->coverage_report.voxelize = field->label_report.voxelize = field->distance_report.voxelize = report;
+  if (field->coverage)
     status = vxm_model_write_coverage(&field->coverage_report, model, space, path, &field->coverage_options,
                                       &cli->error);
-    *report = field->coverage_report.voxelize;
-  } else if (field->color)
+  else if (field->color)
     status = cli_color_write(cli, field, report, model, space, path, format);
   else if (field->labels) {
     field->label_options.format = format;
     status = cli_labels_write(cli, field, model, space, path);
-    *report = field->label_report.voxelize;
-  } else {
+  } else
     status = vxm_model_write_distance(&field->distance_report, model, space, path, &field->distance_options,
                                       &cli->error);
-    *report = field->distance_report.voxelize;
-  }
   return status;
 }
 
@@ -145,8 +142,8 @@ static json_t *distance_json(const cli_field *field) {
   json_object_set_new(object, "signed", json_boolean(!field->distance_options.is_unsigned));
   json_object_set_new(object, "band", cli_json_number(field->distance_options.band));
   json_object_set_new(object, "exact", json_integer(report->exact));
-  json_object_set_new(object, "least", cli_json_number(report->least));
-  json_object_set_new(object, "greatest", cli_json_number(report->greatest));
+  json_object_set_new(object, "min", cli_json_number(report->min));
+  json_object_set_new(object, "max", cli_json_number(report->max));
   return object;
 }
 
@@ -173,6 +170,6 @@ void cli_field_summarize(const cli_run *cli, const cli_field *field) {
   else if (field->labels)
     cli_labels_summarize(cli, field);
   else
-    cli_row(cli, "distance", "%.6g to %.6g; %" PRId64 " voxels within the band", distance->least,
-            distance->greatest, distance->exact);
+    cli_row(cli, "distance", "%.6g to %.6g; %" PRId64 " voxels within the band", distance->min, distance->max,
+            distance->exact);
 }

@@ -32,10 +32,10 @@ void cli_labels_json(json_t *report, const cli_field *field) {
   json_t *object = json_object();
   json_object_set_new(object, "by", json_string(kinds[field->label_options.by]));
   json_object_set_new(object, "contested", json_integer(labels->contested));
-  json_object_set_new(object, "unclaimed", json_integer(labels->unclaimed));
+  json_object_set_new(object, "unassigned", json_integer(labels->unassigned));
   json_object_set(object, "table", field->label_table);
-  json_object_set_new(report, "voxels", json_integer(labels->voxelize.voxels));
-  json_object_set_new(report, "hash", cli_json_hash(labels->voxelize.hash));
+  json_object_set_new(report, "voxels", json_integer(labels->voxelize->voxels));
+  json_object_set_new(report, "hash", cli_json_hash(labels->voxelize->hash));
   json_object_set_new(report, "labels", object);
 }
 
@@ -56,12 +56,12 @@ static void summarize_table(const cli_run *cli, const json_t *table) {
 
 void cli_labels_summarize(const cli_run *cli, const cli_field *field) {
   const vxm_label_report *labels = &field->label_report;
-  const vxm_voxelize_report *voxelize = &labels->voxelize;
+  const vxm_voxelize_report *voxelize = labels->voxelize;
   cli_row(cli, "voxels", "%" PRId64, voxelize->voxels);
   cli_row(cli, "hash", "%016" PRIx64, voxelize->hash);
   cli_row(cli, "labels",
           "%" PRId64 " by %s; the nearest face decides %" PRId64 " voxels that several claim, and "
           "%" PRId64 " that none does",
-          labels->labels, kinds[field->label_options.by], labels->contested, labels->unclaimed);
+          labels->labels, kinds[field->label_options.by], labels->contested, labels->unassigned);
   summarize_table(cli, field->label_table);
 }

@@ -8,6 +8,7 @@
 typedef struct repair_outcome {
   vxm_mesh *mesh;
   vxm_repair_report repair;
+  vxm_census before, after;
   vxm_level level;
   vxm_verification verification;
   cli_found found; /**< in the mesh as it was read */

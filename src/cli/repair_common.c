@@ -45,7 +45,7 @@ void cli_warn_lost(cli_run *cli, const char *path, const vxm_repair_report *repo
 }
 
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options) {
-  *input = (cli_input){.path = path};
+  *input = (cli_input){.path = path, .repair = VXM_REPAIR_REPORT_INIT};
   double start = cli_clock();
   vxm_mesh *raw = NULL;
   if (vxm_mesh_read_with(&raw, cli->context, path, &cli->read, &cli->error) != VXM_OK)

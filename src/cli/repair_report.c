@@ -34,41 +34,40 @@ static bool is_cut(int64_t intersections) {
 
 static json_t *parts_json(const vxm_mesh *mesh, const vxm_repair_report *repair) {
   json_t *parts = json_array();
-  const vxm_part_change *changes = vxm_mesh_part_changes(mesh);
   for (int64_t i = 0; i < vxm_mesh_part_change_count(mesh); i++) {
+    const vxm_part_change *change = vxm_mesh_part_change(mesh, i);
     json_t *part = json_object();
-    if (changes[i].tag != UINT32_MAX)
-      json_object_set_new(part, "name", cli_json_text(vxm_mesh_tag_name(mesh, changes[i].tag)));
+    if (change->tag != UINT32_MAX)
+      json_object_set_new(part, "name", cli_json_text(vxm_mesh_tag_name(mesh, change->tag)));
     json_object_set_new(part, "before",
-                        state_json(&changes[i].before, is_cut(repair->self_intersections_before)));
-    json_object_set_new(part, "after",
-                        state_json(&changes[i].after, is_cut(repair->self_intersections_after)));
-    json_object_set_new(part, "flipped", json_integer(changes[i].flipped));
-    json_object_set_new(part, "moved", cli_json_number(changes[i].moved));
-    json_object_set_new(part, "ununited", json_boolean(changes[i].ununited));
+                        state_json(change->before, is_cut(repair->self_intersections_before)));
+    json_object_set_new(part, "after", state_json(change->after, is_cut(repair->self_intersections_after)));
+    json_object_set_new(part, "flipped", json_integer(change->flipped));
+    json_object_set_new(part, "max_displacement", cli_json_number(change->max_displacement));
+    json_object_set_new(part, "union_failed", json_boolean(change->union_failed));
     json_array_append_new(parts, part);
   }
   return parts;
 }
 
 static json_t *verification_json(const repair_outcome *outcome) {
-  json_t *object = json_object(), *remains = json_array();
+  json_t *object = json_object(), *findings = json_array();
   const vxm_verification *found = &outcome->verification;
   for (int i = 0; i < found->count; i++) {
     json_t *one = json_object();
-    json_object_set_new(one, "what", json_string(found->remains[i].what));
-    json_object_set_new(one, "count", json_integer(found->remains[i].count));
-    if (strcmp(found->remains[i].what, "self_intersections") == 0 && is_cut(found->remains[i].count))
+    json_object_set_new(one, "what", json_string(found->findings[i].what));
+    json_object_set_new(one, "count", json_integer(found->findings[i].count));
+    if (strcmp(found->findings[i].what, "self_intersections") == 0 && is_cut(found->findings[i].count))
       json_object_set_new(one, "at_least", json_true());
-    if (found->remains[i].element >= 0)
-      json_object_set_new(one, "first", json_integer(found->remains[i].element));
-    if (found->remains[i].placed)
-      json_object_set_new(one, "at", cli_json_numbers(found->remains[i].at, 3));
-    json_array_append_new(remains, one);
+    if (found->findings[i].element >= 0)
+      json_object_set_new(one, "first", json_integer(found->findings[i].element));
+    if (found->findings[i].placed)
+      json_object_set_new(one, "position", cli_json_numbers(found->findings[i].position, 3));
+    json_array_append_new(findings, one);
   }
   json_object_set_new(object, "level", json_string(repair_levels[outcome->level]));
   json_object_set_new(object, "reached", json_boolean(found->reached));
-  json_object_set_new(object, "remains", remains);
+  json_object_set_new(object, "findings", findings);
   return object;
 }
 
@@ -76,8 +75,8 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
                       const repair_outcome *outcome) {
   const vxm_repair_report *repair = &outcome->repair;
   json_t *before = json_object(), *after = json_object(), *report = json_object();
-  cli_census_json(before, &repair->before);
-  cli_census_json(after, &repair->after);
+  cli_census_json(before, &outcome->before);
+  cli_census_json(after, &outcome->after);
   cli_intersections_json(before, repair->self_intersections_before);
   cli_intersections_json(after, repair->self_intersections_after);
   json_object_set_new(report, "input", cli_json_text(input));
@@ -89,13 +88,13 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));
   json_object_set_new(report, "open_parts", json_integer(repair->open_parts));
   json_object_set_new(report, "unfilled_holes", json_integer(repair->unfilled_holes));
-  json_object_set_new(report, "fanned_holes", json_integer(repair->fanned_holes));
-  json_object_set_new(report, "ununited_parts", json_integer(repair->ununited_parts));
+  json_object_set_new(report, "fan_fallbacks", json_integer(repair->fan_fallbacks));
+  json_object_set_new(report, "union_failures", json_integer(repair->union_failures));
   json_object_set_new(report, "unparted_vertices", json_integer(repair->unparted_vertices));
   json_object_set_new(report, "shared_faces", json_integer(repair->shared_faces));
   json_object_set_new(report, "lost_parts", json_integer(repair->lost_parts));
   json_object_set_new(report, "opened_parts", json_integer(repair->opened_parts));
-  json_object_set_new(report, "moved", cli_json_number(repair->moved));
+  json_object_set_new(report, "max_displacement", cli_json_number(repair->max_displacement));
   json_object_set_new(report, "before", before);
   json_object_set_new(report, "after", after);
   json_object_set_new(report, "parts", parts_json(outcome->mesh, repair));
@@ -110,8 +109,8 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
 enum { PARTS_SHOWN = 12, NAMED = 5 };
 
 static void part_row(const cli_run *cli, const vxm_mesh *mesh, int64_t i) {
-  const vxm_part_change *part = &vxm_mesh_part_changes(mesh)[i];
-  const vxm_part_state *a = &part->before, *b = &part->after;
+  const vxm_part_change *part = vxm_mesh_part_change(mesh, i);
+  const vxm_part_state *a = part->before, *b = part->after;
   char number[24], one[24], other[24];
   snprintf(number, sizeof number, "%" PRId64, i);
   const char *name = part->tag != UINT32_MAX ? vxm_mesh_tag_name(mesh, part->tag) : number;
@@ -120,7 +119,7 @@ static void part_row(const cli_run *cli, const vxm_mesh *mesh, int64_t i) {
           " %11s %11s %9.2g\n",
           name, a->faces, b->faces, a->boundary_edges, b->boundary_edges, a->nonmanifold_edges,
           b->nonmanifold_edges, cli_measure_text(one, 5, a->volume), cli_measure_text(other, 5, b->volume),
-          part->moved);
+          part->max_displacement);
 }
 
 static void summarize_parts(const cli_run *cli, const vxm_mesh *mesh) {
@@ -158,16 +157,16 @@ static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair) 
             repair->open_parts);
   if (repair->unfilled_holes > 0)
     fprintf(cli->text, "\n%" PRId64 " holes could not be filled\n", repair->unfilled_holes);
-  if (repair->fanned_holes > 0)
+  if (repair->fan_fallbacks > 0)
     fprintf(cli->text, "\n%" PRId64 " holes could not be filled as asked for, and were by fans\n",
-            repair->fanned_holes);
-  if (repair->ununited_parts > 0)
-    fprintf(cli->text, "\n%" PRId64 " parts were not united\n", repair->ununited_parts);
+            repair->fan_fallbacks);
+  if (repair->union_failures > 0)
+    fprintf(cli->text, "\n%" PRId64 " parts were not united\n", repair->union_failures);
 }
 
 /** The name of a part, or else its number. */
 static void part_name(char *out, size_t size, const vxm_mesh *mesh, int64_t part) {
-  uint32_t tag = vxm_mesh_part_changes(mesh)[part].tag;
+  uint32_t tag = vxm_mesh_part_change(mesh, part)->tag;
   if (tag != UINT32_MAX)
     snprintf(out, size, "%s", vxm_mesh_tag_name(mesh, tag));
   else
@@ -179,7 +178,7 @@ void repair_warn_ununited(cli_run *cli, const char *input, const repair_outcome 
   size_t length = 0;
   int64_t count = 0;
   for (int64_t i = 0; i < vxm_mesh_part_change_count(outcome->mesh); i++) {
-    if (!vxm_mesh_part_changes(outcome->mesh)[i].ununited || count++ >= NAMED)
+    if (!vxm_mesh_part_change(outcome->mesh, i)->union_failed || count++ >= NAMED)
       continue;
     part_name(name, sizeof name, outcome->mesh, i);
     length += (size_t)snprintf(list + length, sizeof list - length, "%s%s", length ? ", " : "", name);
@@ -202,16 +201,16 @@ void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *
             outcome->repair.unparted_vertices);
   const vxm_verification *found = &outcome->verification;
   for (int i = 0; i < found->count; i++) {
-    fprintf(stream, "  %-26s %12" PRId64, found->remains[i].what, found->remains[i].count);
-    if (found->remains[i].placed)
-      fprintf(stream, "  the first at %.6g %.6g %.6g", found->remains[i].at[0], found->remains[i].at[1],
-              found->remains[i].at[2]);
+    fprintf(stream, "  %-26s %12" PRId64, found->findings[i].what, found->findings[i].count);
+    if (found->findings[i].placed)
+      fprintf(stream, "  the first at %.6g %.6g %.6g", found->findings[i].position[0],
+              found->findings[i].position[1], found->findings[i].position[2]);
     fputc('\n', stream);
   }
 }
 
 void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
-  cli_census_print_both(cli, &outcome->repair.before, &outcome->repair.after);
+  cli_census_print_both(cli, &outcome->before, &outcome->after);
   char before[32], after[32];
   if (outcome->repair.self_intersections_before >= 0)
     fprintf(cli->text, "  %-22s %16s %12s\n", "self intersections",

@@ -39,12 +39,12 @@ const vxm_space *cli_values_space(const cli_values *values) {
 
 /** "distance, float32 from -0.1 to 0.2" */
 static void describe(char text[128], const vxm_field *field) {
-  vxm_field_range range = {0, 0, 0};
+  vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_field_kind kind = vxm_field_kind_of(field);
   vxm_field_measure(&range, field, NULL);
   snprintf(text, 128, "%s%s%s from %.6g to %.6g", kind == VXM_FIELD_NUMBERS ? "" : vxm_field_kind_name(kind),
-           kind == VXM_FIELD_NUMBERS ? "" : ", ", vxm_scalar_name(vxm_field_scalar(field)), range.least,
-           range.greatest);
+           kind == VXM_FIELD_NUMBERS ? "" : ", ", vxm_scalar_name(vxm_field_scalar(field)), range.min,
+           range.max);
 }
 
 static int refuse(cli_run *cli, const vxm_field *field, const char *path, const char *why) {
@@ -94,13 +94,13 @@ void cli_values_json(json_t *report, const cli_values *values, bool has_hash) {
       json_object_set_new(report, "hash", cli_json_hash(vxm_grid_hash(values->grid)));
     return;
   }
-  vxm_field_range range = {0, 0, 0};
+  vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_field_measure(&range, values->field, NULL);
   json_t *object = json_object();
   json_object_set_new(object, "kind", json_string(vxm_field_kind_name(vxm_field_kind_of(values->field))));
   json_object_set_new(object, "type", json_string(vxm_scalar_name(vxm_field_scalar(values->field))));
-  json_object_set_new(object, "least", cli_json_number(range.least));
-  json_object_set_new(object, "greatest", cli_json_number(range.greatest));
+  json_object_set_new(object, "min", cli_json_number(range.min));
+  json_object_set_new(object, "max", cli_json_number(range.max));
   json_object_set_new(object, "not_numbers", json_integer(range.not_numbers));
   json_object_set_new(report, "values", object);
 }

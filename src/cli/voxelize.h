@@ -10,6 +10,7 @@ typedef struct voxelize_request {
   bool resolution, size, fit, pad, bounds, vote, surface, no_repair, repair_options, dry_run, sparse,
       force; /**< which were given */
   vxm_repair_options repair;
+  vxm_space_options space;
   vxm_voxelize_options voxelize;
   cli_field field;
   cli_engine engine;

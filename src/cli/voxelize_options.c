@@ -125,7 +125,7 @@ static bool read_resolution(int64_t out[3], const char *text) {
 /** The options that choose the voxel space. */
 static int read_space_option(cli_run *cli, voxelize_request *out, int key, const char *value) {
   static const char *const fits[] = {"cube", "tight", "sphere", NULL};
-  vxm_space_options *space = &out->voxelize.space;
+  vxm_space_options *space = &out->space;
   int choice = 0, result;
   switch (key) {
   case 'r':
@@ -191,7 +191,7 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     return result;
   case KEY_PARTS:
     result = cli_choose(cli, &choice, "parts", value, parts);
-    out->voxelize.parts = (vxm_parts)choice;
+    out->voxelize.split_mode = (vxm_split_mode)choice;
     return result;
   case KEY_CAVITIES:
     result = cli_choose(cli, &choice, "cavities", value, cavities);

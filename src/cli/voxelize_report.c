@@ -17,14 +17,14 @@ static json_t *estimate_json(const vxm_estimate *estimate, bool octree) {
   if (octree) /* its memory follows the surface, which is not known before */
     return object;
   json_object_set_new(object, "memory_bytes", json_integer((json_int_t)estimate->memory_bytes));
-  json_object_set_new(object, "windows", json_integer(estimate->windows));
+  json_object_set_new(object, "passes", json_integer(estimate->passes));
   return object;
 }
 
 json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const voxelize_outcome *results) {
   json_t *votes = json_object();
   json_object_set_new(votes, "contested", json_integer(results->voxelize.contested));
-  json_object_set_new(votes, "escalated", json_integer(results->voxelize.escalated));
+  json_object_set_new(votes, "winding_decided", json_integer(results->voxelize.winding_decided));
   json_t *times = json_object();
   json_object_set_new(times, "read", json_real(results->input.read_ms));
   json_object_set_new(times, "repair", json_real(results->input.repair_ms));
@@ -123,7 +123,7 @@ static void summarize_estimate(const cli_run *cli, const voxelize_request *given
     cli_row(cli, "estimate", "%s of %s; up to %s of memory, %s", size,
             cli_field_wanted(&given->field) ? "values" : "voxels",
             cli_bytes_text(memory, estimate->memory_bytes),
-            estimate->windows > 1 ? "slices at a time" : "all at once");
+            estimate->passes > 1 ? "slices at a time" : "all at once");
   fflush(cli->text);
 }
 
@@ -149,11 +149,11 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
   else
     cli_row(cli, "voxels", "%" PRId64 " (%.2f %%)", report->voxels, 100.0 * (double)report->voxels / cells);
   cli_row(cli, "contested", "%" PRId64 "%s", report->contested,
-          report->contested == 0  ? ""
-          : report->escalated > 0 ? " (open parts, decided by the winding number)"
-                                  : " (open parts: the voters disagreed there)");
-  if (report->escalated > report->contested)
-    cli_row(cli, "winding", "%" PRId64 " voxels decided by the winding number", report->escalated);
+          report->contested == 0        ? ""
+          : report->winding_decided > 0 ? " (open parts, decided by the winding number)"
+                                        : " (open parts: the voters disagreed there)");
+  if (report->winding_decided > report->contested)
+    cli_row(cli, "winding", "%" PRId64 " voxels decided by the winding number", report->winding_decided);
   if (results->octree)
     cli_row(cli, "octree", "%" PRId64 " bricks, %" PRId64 " nodes, %s", results->sparse.bricks,
             results->sparse.nodes, cli_bytes_text(bytes, results->sparse.bytes));

@@ -146,8 +146,8 @@ vxm_status vxm_field_write_coverage(vxm_coverage_report *report, vxm_model *mode
     return status;
   status = vxm_coverage_run(&target, report, model, space, options, error);
   status = close_file(&file, status, error);
-  report->voxelize.write_ms = file.write_ms;
-  report->voxelize.fill_ms = vxm_clock_ms() - start - file.write_ms;
+  report->voxelize->write_ms = file.write_ms;
+  report->voxelize->fill_ms = vxm_clock_ms() - start - file.write_ms;
   return status;
 }
 
@@ -175,8 +175,8 @@ vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *mode
     return status;
   status = vxm_distance_run(&target, report, model, space, options, error);
   status = close_file(&file, status, error);
-  report->voxelize.write_ms = file.write_ms;
-  report->voxelize.fill_ms = vxm_clock_ms() - start - file.write_ms;
+  report->voxelize->write_ms = file.write_ms;
+  report->voxelize->fill_ms = vxm_clock_ms() - start - file.write_ms;
   return status;
 }
 
@@ -188,8 +188,10 @@ static const uint64_t file_bytes = UINT64_C(1) << 19;
 static vxm_estimate estimate_of(const vxm_field_plan *plan, const vxm_space *space, vxm_layout layout,
                                 vxm_scalar scalar) {
   const int64_t *n = space->dims;
-  return (vxm_estimate){(uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2] * vxm_scalar_bytes(scalar),
-                        plan->memory + file_bytes, (n[layout.slow] + plan->slices - 1) / plan->slices};
+  return (vxm_estimate){.grid_bytes =
+                            (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2] * vxm_scalar_bytes(scalar),
+                        .memory_bytes = plan->memory + file_bytes,
+                        .passes = (n[layout.slow] + plan->slices - 1) / plan->slices};
 }
 
 vxm_status vxm_field_estimate_coverage(vxm_estimate *out, const vxm_model *model, const vxm_space *space,

@@ -195,8 +195,8 @@ vxm_status vxm_labels_write(vxm_label_report *report, vxm_model *model, const vx
     status = write_file(&file, &vxm_model_results_read(model->results)->labels, error);
   else
     vxm_output_abort(file.output);
-  report->voxelize.fill_ms = made - start;
-  report->voxelize.write_ms = vxm_clock_ms() - made;
+  report->voxelize->fill_ms = made - start;
+  report->voxelize->write_ms = vxm_clock_ms() - made;
   vxm_face_labels_destroy(&labelling);
   vxm_free(file.context, values);
   return status;

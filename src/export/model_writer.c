@@ -92,7 +92,9 @@ vxm_status vxm_model_writer_estimate(vxm_estimate *out, const vxm_model *model, 
   vxm_status status = make_plan(&p, model, space, path, format, error);
   if (status != VXM_OK)
     return status;
-  *out = (vxm_estimate){vxm_space_bytes(space), p.memory, (p.shape.slow_dim + p.slices - 1) / p.slices};
+  *out = (vxm_estimate){.grid_bytes = vxm_space_bytes(space),
+                        .memory_bytes = p.memory,
+                        .passes = (p.shape.slow_dim + p.slices - 1) / p.slices};
   return VXM_OK;
 }
 

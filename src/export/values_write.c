@@ -142,17 +142,17 @@ static vxm_status check_vdb(const vxm_field *field, const char *path, vxm_error 
 /** The class and background of a field. Beyond the band of distances lie the greatest, plus or minus. */
 static vxm_vdb_kind kind_of(const vxm_field *field) {
   vxm_vdb_kind tree = {VXM_VDB_NUMBERS, vxm_field_kind_name(field->about.kind), 0, NULL};
-  vxm_field_range range = {0, 0, 0};
+  vxm_field_range range = VXM_FIELD_RANGE_INIT;
   const char *name = vxm_metadata_find(&field->about.pairs, VXM_VDB_NAME_KEY);
   vxm_field_measure(&range, field, NULL);
   if (name)
     tree.name = name;
   if (field->about.kind == VXM_FIELD_COVERAGE && field->scalar != VXM_UINT8)
     tree.content = VXM_VDB_FOG;
-  double farthest = fmax(range.greatest, -range.least);
+  double farthest = fmax(range.max, -range.min);
   if (field->about.kind == VXM_FIELD_DISTANCE && farthest > 0 && isfinite(farthest)) {
     tree.background = (float)farthest;
-    if (range.least < 0)
+    if (range.min < 0)
       tree.content = VXM_VDB_LEVEL_SET;
   }
   return tree;
@@ -241,7 +241,7 @@ static vxm_status write_vdb(const field_file *file, vxm_error *error) {
 /* ---- .binvox: labels ---- */
 
 static vxm_status check_binvox(const vxm_field *field, const char *path, vxm_error *error) {
-  vxm_field_range range;
+  vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_field_kind what = field->about.kind;
   if ((what != VXM_FIELD_LABELS && what != VXM_FIELD_NUMBERS) || vxm_scalar_is_float(field->scalar))
     return refuse(
@@ -250,7 +250,7 @@ static vxm_status check_binvox(const vxm_field *field, const char *path, vxm_err
         "or .nrrd",
         error);
   vxm_status status = vxm_field_measure(&range, field, error);
-  if (status == VXM_OK && (range.least < 0 || range.greatest > 255))
+  if (status == VXM_OK && (range.min < 0 || range.max > 255))
     return refuse(
         field, path, VXM_ERROR_RANGE,
         "has numbers beyond 0 to 255, which .binvox does not hold; choose a threshold, or .npy or .nrrd",

@@ -62,7 +62,7 @@ static vxm_status make_first(vxm_engine **out, vxm_context *context, const vxm_g
 /** A hardware device, else whatever there is unless only hardware will do. */
 static vxm_status make_any(vxm_engine **out, vxm_context *context, bool hardware,
                            const vxm_engine_options *options, vxm_error *error) {
-  vxm_error reasons[DRIVERS];
+  vxm_error reasons[DRIVERS] = {{0}};
   for (int d = 0; d < DRIVERS; d++) {
     bool only_hardware = hardware || drivers[d] == &vxm_gl_egl_device;
     vxm_status status = make_first(out, context, drivers[d], only_hardware, options, &reasons[d]);
@@ -276,7 +276,9 @@ vxm_status vxm_engines_make(vxm_engine **out, vxm_context *context, const char *
   if (status != VXM_OK)
     return status;
   status = make(out, held, name, options, error);
-  if (status != VXM_OK)
+  if (status == VXM_OK)
+    (*out)->info.size = sizeof(*out)->info;
+  else
     vxm_context_release(held);
   return status;
 }

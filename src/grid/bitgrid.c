@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/bitgrid.h"
+#include "base/sized.h"
 #include "base/threads.h"
 #include "grid/sum.h"
 
@@ -152,8 +153,7 @@ const char *vxm_grid_warning(const vxm_grid *grid, int64_t index) {
 }
 
 vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b, vxm_error *error) {
-  if (out)
-    *out = (vxm_comparison){0};
+  VXM_RESULT_CLEAR(out);
   if (!out || !a || !b)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "compare: an argument is NULL");
   const int64_t *p = a->space.dims, *q = b->space.dims;
@@ -162,14 +162,17 @@ vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_gr
                     "compare: the grids have different dimensions, %" PRId64 "x%" PRId64 "x%" PRId64
                     " and %" PRId64 "x%" PRId64 "x%" PRId64 "; make both in one space (--like)",
                     p[0], p[1], p[2], q[0], q[1], q[2]);
+  vxm_comparison found = {.iou = 1};
   for (size_t w = 0; w < a->word_count; w++) {
-    out->both += vxm_popcount(a->words[w] & b->words[w]);
-    out->only_a += vxm_popcount(a->words[w] & ~b->words[w]);
-    out->only_b += vxm_popcount(~a->words[w] & b->words[w]);
+    found.both += vxm_popcount(a->words[w] & b->words[w]);
+    found.only_a += vxm_popcount(a->words[w] & ~b->words[w]);
+    found.only_b += vxm_popcount(~a->words[w] & b->words[w]);
   }
-  out->voxels_a = out->both + out->only_a;
-  out->voxels_b = out->both + out->only_b;
-  int64_t any = out->both + out->only_a + out->only_b;
-  out->iou = any > 0 ? (double)out->both / (double)any : 1;
+  found.voxels_a = found.both + found.only_a;
+  found.voxels_b = found.both + found.only_b;
+  int64_t any = found.both + found.only_a + found.only_b;
+  if (any > 0)
+    found.iou = (double)found.both / (double)any;
+  VXM_RESULT_WRITE(out, &found);
   return VXM_OK;
 }

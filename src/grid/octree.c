@@ -87,14 +87,14 @@ static void walk_node(const walk *w, int level, size_t index, const int64_t at[3
     bool mixed = node->mixed >> child & 1;
     size_t below = next;
     next += mixed;
-    vxm_sparse_piece piece = {.side = side, .bits = ~UINT64_C(0)};
-    vxm_octree_place(child, piece.at);
+    vxm_sparse_piece piece = {.size = sizeof piece, .side = side, .bits = ~UINT64_C(0)};
+    vxm_octree_place(child, piece.position);
     for (int a = 0; a < 3; a++)
-      piece.at[a] = at[a] + piece.at[a] * side;
-    if (piece.at[w->axis] >= w->end || piece.at[w->axis] + side <= w->begin)
+      piece.position[a] = at[a] + piece.position[a] * side;
+    if (piece.position[w->axis] >= w->end || piece.position[w->axis] + side <= w->begin)
       continue;
     if (mixed && level > 0) {
-      walk_node(w, level - 1, below, piece.at);
+      walk_node(w, level - 1, below, piece.position);
       continue;
     }
     if (mixed)

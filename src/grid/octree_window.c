@@ -41,9 +41,9 @@ typedef struct fill_range {
 static void fill_cube(const fill_range *range, const vxm_sparse_piece *piece) {
   const vxm_window *window = range->job->window;
   const vxm_layout *layout = &window->layout;
-  int64_t fast = piece->at[layout->fast], middle = piece->at[layout->middle];
-  int64_t slow = vxm_max(piece->at[layout->slow], range->begin);
-  int64_t end = vxm_min(piece->at[layout->slow] + piece->side, range->end);
+  int64_t fast = piece->position[layout->fast], middle = piece->position[layout->middle];
+  int64_t slow = vxm_max(piece->position[layout->slow], range->begin);
+  int64_t end = vxm_min(piece->position[layout->slow] + piece->side, range->end);
   for (; slow < end; slow++)
     for (int64_t m = middle; m < middle + piece->side; m++)
       vxm_row_set_span(vxm_window_row(window, m, slow), fast, fast + piece->side);
@@ -61,13 +61,13 @@ static void fill_piece(const vxm_sparse_piece *piece, void *payload) {
   for (int p = 0; p < 2; p++)
     if (job->swap[p] != p)
       bits = swap_axes(bits, p, job->swap[p]);
-  size_t word = (size_t)piece->at[layout->fast] / 64;
-  unsigned shift = (unsigned)piece->at[layout->fast] % 64;
+  size_t word = (size_t)piece->position[layout->fast] / 64;
+  unsigned shift = (unsigned)piece->position[layout->fast] % 64;
   for (int i = 0; i < 16; i++) {
     uint64_t nibble = bits >> 4 * i & 15;
-    int64_t slow = piece->at[layout->slow] + i / 4;
+    int64_t slow = piece->position[layout->slow] + i / 4;
     if (nibble && slow >= range->begin && slow < range->end)
-      vxm_window_row(job->window, piece->at[layout->middle] + i % 4, slow)[word] |= nibble << shift;
+      vxm_window_row(job->window, piece->position[layout->middle] + i % 4, slow)[word] |= nibble << shift;
   }
 }
 

@@ -150,10 +150,6 @@ static vxm_status fit_model(vxm_space *out, const box *b, const request *r, cons
 
 vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_space_options *options,
                             vxm_error *error) {
-  if (options->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "voxel space: options version %" PRIu32 " is unknown; use the initializer",
-                    options->version);
   if (options->like) {
     *out = *options->like;
     return vxm_space_check(out, error);

@@ -102,8 +102,10 @@ static vxm_status measure(measuring *m, size_t part_count) {
   vxm_free(m->view.context, used);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
   memset(m->states, 0, part_count * sizeof *m->states);
-  for (size_t p = 0; p < part_count; p++)
+  for (size_t p = 0; p < part_count; p++) {
+    m->states[p].size = sizeof *m->states;
     m->states[p].self_intersections = -1; /* which another room counts */
+  }
   for (size_t v = 0; v < m->view.vertex_count; v++)
     m->vertex_part[v] = NO_PART;
   for (size_t f = 0; f < m->view.face_count; f++) {

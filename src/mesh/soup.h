@@ -35,6 +35,7 @@ struct vxm_mesh {
   uint32_t
       *face_parts; /**< face_count: the part of the mesh that was repaired which each comes from, or NULL */
   vxm_part_change *part_changes; /**< part_count, or NULL */
+  vxm_part_state *part_states;   /**< what they point to: all before, then all after */
   size_t part_count;
 };
 

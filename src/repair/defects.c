@@ -30,7 +30,8 @@ static bool enter(finding *f, const vxm_defect *defect) {
       VXM_OK)
     return false;
   list->items = items;
-  list->items[list->count++] = *defect;
+  list->items[list->count] = *defect;
+  list->items[list->count++].size = sizeof *defect;
   return true;
 }
 
@@ -50,15 +51,15 @@ static void place_face(double at[3], const vxm_soup *soup, size_t face) {
 
 static bool enter_vertex(finding *f, vxm_defect_kind kind, size_t vertex) {
   vxm_defect defect = {.kind = kind, .element = {(int64_t)vertex, -1}};
-  place(defect.at, vxm_position(f->soup, vertex));
-  place(defect.at + 3, vxm_position(f->soup, vertex));
+  place(defect.position, vxm_position(f->soup, vertex));
+  place(defect.position + 3, vxm_position(f->soup, vertex));
   return enter(f, &defect);
 }
 
 static bool enter_face(finding *f, vxm_defect_kind kind, size_t face) {
   vxm_defect defect = {.kind = kind, .element = {(int64_t)face, -1}};
-  place_face(defect.at, f->soup, face);
-  memcpy(defect.at + 3, defect.at, 3 * sizeof *defect.at);
+  place_face(defect.position, f->soup, face);
+  memcpy(defect.position + 3, defect.position, 3 * sizeof *defect.position);
   return enter(f, &defect);
 }
 
@@ -114,8 +115,8 @@ static bool find_edges(finding *f, vxm_defect_kind kind) {
     if (!edge_is(edge, kind))
       continue;
     vxm_defect defect = {.kind = kind, .element = {edge->a, edge->b}};
-    place(defect.at, vxm_position(f->soup, edge->a));
-    place(defect.at + 3, vxm_position(f->soup, edge->b));
+    place(defect.position, vxm_position(f->soup, edge->a));
+    place(defect.position + 3, vxm_position(f->soup, edge->b));
     if (!enter(f, &defect))
       return false;
   }
@@ -146,8 +147,8 @@ static bool find_intersections(finding *f) {
   for (size_t i = 0; done && i < pairs.count; i++) {
     vxm_defect defect = {.kind = VXM_DEFECT_SELF_INTERSECTION,
                          .element = {(int64_t)pairs.pairs[i].first, (int64_t)pairs.pairs[i].second}};
-    place_face(defect.at, f->soup, pairs.pairs[i].first);
-    place_face(defect.at + 3, f->soup, pairs.pairs[i].second);
+    place_face(defect.position, f->soup, pairs.pairs[i].first);
+    place_face(defect.position + 3, f->soup, pairs.pairs[i].second);
     done = enter(f, &defect);
   }
   vxm_free(f->work.context, pairs.pairs);

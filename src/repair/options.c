@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/sized.h"
 #include "repair/repair.h"
 
 #include <inttypes.h>
@@ -6,21 +7,19 @@
 
 vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options *options, vxm_error *error) {
   *chosen = (vxm_repair_options)VXM_REPAIR_OPTIONS_INIT;
-  if (!options)
-    return VXM_OK;
-  *chosen = *options;
-  if (options->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "repair: options version %" PRIu32 " is unknown; use the initializer", options->version);
+  vxm_status status = VXM_OPTIONS_READ(chosen, options, "repair", error);
+  if (status != VXM_OK)
+    return status;
+  options = chosen;
   if (options->weld != VXM_WELD_AUTO && options->weld != VXM_WELD_OFF && options->weld != VXM_WELD_TOLERANCE)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: %d is no way of welding", (int)options->weld);
   if (!isfinite(options->weld_tolerance) || options->weld_tolerance < 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a weld tolerance of %g; it must be 0 or more",
                     options->weld_tolerance);
-  if (options->level < VXM_LEVEL_CLEAN || options->level > VXM_LEVEL_SOLID || options->fill < VXM_FILL_FAN ||
-      options->fill > VXM_FILL_SMOOTH)
+  if (options->level < VXM_LEVEL_CLEAN || options->level > VXM_LEVEL_SOLID ||
+      options->hole_fill < VXM_HOLE_FILL_FAN || options->hole_fill > VXM_HOLE_FILL_SMOOTH)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: level %d or fill %d is unknown", (int)options->level,
-                    (int)options->fill);
+                    (int)options->hole_fill);
   if (options->keep_orientation && options->level > VXM_LEVEL_CLEAN)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "repair: a level above clean turns faces; leave out keep_orientation");
@@ -29,11 +28,11 @@ vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "repair: wrap %g, %g; both are fractions of the diagonal, 0 to 1", options->wrap_alpha,
                     options->wrap_offset);
-  if (options->wrap_alpha > 0 && (options->fill_holes != 0 || options->fill != VXM_FILL_FAN ||
-                                  options->unite || options->max_change > 0))
+  if (options->wrap_alpha > 0 && (options->fill_holes != 0 || options->hole_fill != VXM_HOLE_FILL_FAN ||
+                                  options->boolean_union || options->max_change > 0))
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "repair: a wrap makes a new surface, without holes or parts to compare; leave out "
-                    "fill_holes, fill, unite and max_change");
+                    "fill_holes, hole_fill, boolean_union and max_change");
   if (!(options->max_change >= 0) || !isfinite(options->max_change))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
                     options->max_change);

@@ -283,8 +283,8 @@ static void list_passes(vxm_repair_report *report, const vxm_repair_state *work)
   report->nonorientable_patches = work->nonorientable;
   report->open_parts = work->open_parts;
   report->unfilled_holes = work->unfilled;
-  report->fanned_holes = work->fanned;
-  report->ununited_parts = work->ununited;
+  report->fan_fallbacks = work->fanned;
+  report->union_failures = work->ununited;
   report->self_intersections_before = work->crossings[0];
   report->self_intersections_after = work->crossings[1];
   report->unparted_vertices = work->together;
@@ -292,8 +292,8 @@ static void list_passes(vxm_repair_report *report, const vxm_repair_state *work)
   report->shared_faces = work->options.level == VXM_LEVEL_CLEAN ? work->shared : 0;
   for (size_t i = 0; i < work->soup->part_count; i++) {
     const vxm_part_change *part = &work->soup->part_changes[i];
-    report->moved = fmax(report->moved, part->moved);
-    report->opened_parts += part->before.closed && part->after.faces > 0 && !part->after.closed;
+    report->max_displacement = fmax(report->max_displacement, part->max_displacement);
+    report->opened_parts += part->before->closed && part->after->faces > 0 && !part->after->closed;
   }
   report->pass_count = VXM_PASS_COUNT;
   for (int pass = 0; pass < VXM_PASS_COUNT; pass++) {
@@ -334,19 +334,19 @@ static vxm_status repair(vxm_repair_state *work, const vxm_soup *in, const vxm_r
 static vxm_status run(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                       const vxm_repair_options *options, bool divides, int64_t *shared, vxm_error *error) {
   *out = NULL;
-  vxm_repair_report made = {0};
+  vxm_repair_report made = {.before = report ? report->before : NULL, .after = report ? report->after : NULL};
   vxm_repair_state work = {.divides = divides};
-  vxm_status status = report ? vxm_soup_census(&made.before, in, error) : VXM_OK;
+  vxm_status status = made.before ? vxm_soup_census(made.before, in, error) : VXM_OK;
   if (status == VXM_OK)
     status = repair(&work, in, options, error);
-  if (status == VXM_OK && report)
-    status = vxm_soup_census(&made.after, work.soup, error);
+  if (status == VXM_OK && made.after)
+    status = vxm_soup_census(made.after, work.soup, error);
   if (status == VXM_OK)
     list_passes(&made, &work);
   else
     vxm_soup_destroy(work.soup);
   if (report)
-    *report = status == VXM_OK ? made : (vxm_repair_report){0};
+    *report = status == VXM_OK ? made : (vxm_repair_report){.before = made.before, .after = made.after};
   *out = status == VXM_OK ? work.soup : NULL;
   *shared = made.shared_faces;
   return status;

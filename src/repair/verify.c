@@ -19,15 +19,15 @@ static void add(verifying *v, const char *what, int64_t count, int64_t element, 
   if (count == 0)
     return;
   v->out->reached = false;
-  if (v->out->count == VXM_REMAINS_MAX)
+  if (v->out->count == VXM_FINDINGS_MAX)
     return;
   int i = v->out->count++;
-  v->out->remains[i].what = what;
-  v->out->remains[i].count = count;
-  v->out->remains[i].element = element;
-  v->out->remains[i].placed = at != NULL;
+  v->out->findings[i].what = what;
+  v->out->findings[i].count = count;
+  v->out->findings[i].element = element;
+  v->out->findings[i].placed = at != NULL;
   for (int a = 0; a < 3; a++)
-    v->out->remains[i].at[a] = at ? at[a] : 0;
+    v->out->findings[i].position[a] = at ? at[a] : 0;
 }
 
 /* ---- Nothing left to do ---- */
@@ -45,8 +45,8 @@ static vxm_status verify_rest(verifying *v, const vxm_soup *soup, vxm_error *err
   if (again.level > VXM_LEVEL_MANIFOLD)
     again.level = VXM_LEVEL_MANIFOLD;
   again.fill_holes = again.drop_faces = 0;
-  again.fill = VXM_FILL_FAN;
-  again.unite = again.part_changes = again.intersections = false;
+  again.hole_fill = VXM_HOLE_FILL_FAN;
+  again.boolean_union = again.part_changes = again.intersections = false;
   if (again.wrap_alpha > 0)
     again.weld = VXM_WELD_OFF; /* the mesh was welded before it was wrapped, not after */
   again.wrap_alpha = again.wrap_offset = again.max_change = again.drop_volume = 0;
@@ -235,11 +235,11 @@ static vxm_status check(const vxm_soup *read_back, void *payload, vxm_error *err
   vxm_status status = vxm_verify(c->out, read_back, c->repair, error);
   if (status != VXM_OK || c->out->reached || c->best_effort)
     return status;
-  bool cut = strcmp(c->out->remains[0].what, "self_intersections") == 0 &&
-             c->out->remains[0].count >= VXM_CROSSINGS_MOST;
+  bool cut = strcmp(c->out->findings[0].what, "self_intersections") == 0 &&
+             c->out->findings[0].count >= VXM_CROSSINGS_MOST;
   return vxm_fail(error, VXM_ERROR_UNREACHED, "%s: the level %s is not reached: %s%lld %s remain%s; %s",
                   strcmp(c->path, "-") == 0 ? "<stdout>" : c->path, level_name(c->repair->level),
-                  cut ? "at least " : "", (long long)c->out->remains[0].count, c->out->remains[0].what,
+                  cut ? "at least " : "", (long long)c->out->findings[0].count, c->out->findings[0].what,
                   c->out->count > 1 ? ", and more" : "", advice(c->repair));
 }
 

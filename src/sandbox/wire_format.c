@@ -119,7 +119,7 @@ void vxm_parcel_tame(char *text, size_t size) {
 }
 
 static vxm_status receive_failure(vxm_process *sender, vxm_error *error) {
-  vxm_error sent;
+  vxm_error sent = VXM_ERROR_INIT;
   vxm_status status = vxm_process_receive(sender, &sent, sizeof sent, error);
   if (status != VXM_OK)
     return status;

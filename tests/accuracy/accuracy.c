@@ -89,7 +89,7 @@ static void add_body(bodies *to, shape body, const char *name) {
 static void add_file(bodies *to, vxm_context *context, const char *path) {
   vxm_error error = VXM_ERROR_INIT;
   vxm_mesh *raw, *mesh;
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   require(vxm_mesh_read(&raw, context, path, &error), &error);
   require(vxm_mesh_repair(&mesh, NULL, raw, NULL, &error), &error);
   require(vxm_mesh_census(&census, mesh, &error), &error);

@@ -127,6 +127,7 @@ vxm_mesh *mesh_of_shape(vxm_context *context, const shape *from) {
   arrays.vertex_count = (int64_t)from->vertex_count;
   arrays.offsets = from->offsets;
   arrays.indices = from->indices;
+  arrays.index_count = from->offsets[from->face_count];
   arrays.face_count = (int64_t)from->face_count;
   vxm_mesh *mesh;
   vxm_error error = VXM_ERROR_INIT;

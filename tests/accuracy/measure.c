@@ -18,30 +18,31 @@ static double now(void) {
   return (double)time.tv_sec * 1e3 + (double)time.tv_nsec * 1e-6;
 }
 
-static vxm_voxelize_options options_of(method by, const vxm_grid *truth) {
+static vxm_voxelize_options options_of(method by) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = vxm_grid_space(truth);
   if (by == METHOD_X)
     options.method = VXM_METHOD_X;
   if (by == METHOD_WINDING)
     options.method = VXM_METHOD_WINDING;
   if (by == METHOD_MAJORITY) {
     options.vote = VXM_VOTE_MAJORITY;
-    options.parts = VXM_PARTS_GROUP;
+    options.split_mode = VXM_SPLIT_MODE_GROUP;
   }
   return options;
 }
 
 static vxm_grid *voxelize(const vxm_mesh *mesh, const vxm_grid *truth, method by) {
-  vxm_voxelize_options options = options_of(by, truth);
+  vxm_voxelize_options options = options_of(by);
+  vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
+  space.like = vxm_grid_space(truth);
   vxm_grid *grid;
   vxm_error error = VXM_ERROR_INIT;
-  require(vxm_voxelize(&grid, NULL, mesh, &options, &error), &error);
+  require(vxm_voxelize(&grid, NULL, mesh, &space, &options, &error), &error);
   return grid;
 }
 
 static double iou_of(const vxm_grid *grid, const vxm_grid *truth) {
-  vxm_comparison compared;
+  vxm_comparison compared = VXM_COMPARISON_INIT;
   vxm_error error = VXM_ERROR_INIT;
   require(vxm_grid_compare(&compared, grid, truth, &error), &error);
   return compared.iou;

@@ -77,7 +77,7 @@ static void test_damage_is_done(void **state) {
   int64_t faces = (int64_t)body.face_count;
   for (int kind = 0; kind < DAMAGE_COUNT; kind++) {
     question q;
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     assert_true(question_make(&q, NULL, &body, (damage)kind, RESOLUTION, 7));
     assert_int_equal(vxm_mesh_census(&census, q.mesh, NULL), VXM_OK);
     if (kind == DAMAGE_NONE || kind == DAMAGE_SHAKEN)

@@ -17,12 +17,13 @@ vxm_space truth_space(vxm_context *context, const shape *body, int64_t resolutio
 
 vxm_grid *truth_solid(vxm_context *context, const shape *body, const vxm_space *space) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = space;
   options.method = VXM_METHOD_Z;
   vxm_mesh *mesh = mesh_of_shape(context, body);
   vxm_grid *grid;
   vxm_error error = VXM_ERROR_INIT;
-  require(vxm_voxelize(&grid, NULL, mesh, &options, &error), &error);
+  require(vxm_voxelize(&grid, NULL, mesh, &space_options, &options, &error), &error);
   vxm_mesh_destroy(mesh);
   return grid;
 }

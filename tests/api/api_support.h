@@ -22,6 +22,7 @@ static inline vxm_mesh *mesh_of_shape(vxm_context *context, const shape *s) {
   arrays.vertex_count = (int64_t)s->vertex_count;
   arrays.offsets = s->offsets;
   arrays.indices = s->indices;
+  arrays.index_count = s->offsets[s->face_count];
   arrays.face_count = (int64_t)s->face_count;
   vxm_mesh *mesh = NULL;
   vxm_error error = VXM_ERROR_INIT;

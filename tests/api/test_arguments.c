@@ -44,7 +44,7 @@ static void test_outputs_after_refusal(void **state) {
   NULL_AFTER(vxm_mesh, vxm_grid_surface_mesh(&created, NULL, NULL));
   NULL_AFTER(vxm_grid, vxm_grid_create(&created, NULL, NULL, NULL));
   NULL_AFTER(vxm_grid, vxm_grid_read(&created, NULL, NULL, NULL));
-  NULL_AFTER(vxm_grid, vxm_voxelize(&created, NULL, NULL, NULL, NULL));
+  NULL_AFTER(vxm_grid, vxm_voxelize(&created, NULL, NULL, NULL, NULL, NULL));
 #undef NULL_AFTER
 }
 
@@ -71,7 +71,7 @@ static void test_context(void **state) {
   vxm_context *context = junk;
   vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
   REFUSED(vxm_context_create(NULL, &options, &error), VXM_ERROR_ARGUMENT);
-  options.version = 2;
+  options.size = 2;
   REFUSED(vxm_context_create(&context, &options, &error), VXM_ERROR_ARGUMENT);
   assert_null(context);
   options = (vxm_context_options)VXM_CONTEXT_OPTIONS_INIT;
@@ -96,6 +96,7 @@ static vxm_mesh_arrays tetrahedron(void) {
   arrays.vertices = corners;
   arrays.vertex_count = 4;
   arrays.indices = indices;
+  arrays.index_count = 12;
   arrays.face_count = 4;
   return arrays;
 }
@@ -106,7 +107,7 @@ static void test_mesh_arrays(void **state) {
   vxm_mesh_arrays arrays = tetrahedron();
   REFUSED(vxm_mesh_create(NULL, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_mesh_create(&mesh, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
-  arrays.version = 2;
+  arrays.size = 2;
   REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
   assert_null(mesh);
   arrays = tetrahedron();
@@ -131,6 +132,72 @@ static void test_mesh_arrays(void **state) {
   arrays.face_count = INT64_MAX;
   REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_RANGE);
   assert_null(mesh);
+}
+
+/** No index is read that the caller has not said to be there, and none is left over. */
+static void test_counts_of_arrays(void **state) {
+  (void)state;
+  static const int64_t whole[] = {0, 3, 6, 9, 12}, shorter[] = {0, 3, 6, 9, 11}, beyond[] = {0, 3, 6, 9, 15};
+  static const struct {
+    const int64_t *offsets;
+    int64_t count;
+    vxm_status status;
+  } cases[] = {{NULL, 12, VXM_OK},
+               {NULL, 11, VXM_ERROR_ARGUMENT},
+               {NULL, 13, VXM_ERROR_ARGUMENT},
+               {NULL, 0, VXM_ERROR_ARGUMENT},
+               {NULL, -1, VXM_ERROR_ARGUMENT},
+               {whole, 12, VXM_OK},
+               {whole, 11, VXM_ERROR_ARGUMENT},
+               {whole, 13, VXM_ERROR_ARGUMENT},
+               {shorter, 12, VXM_ERROR_ARGUMENT},
+               {beyond, 12, VXM_ERROR_ARGUMENT}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    vxm_mesh *mesh = junk;
+    vxm_mesh_arrays arrays = tetrahedron();
+    arrays.offsets = cases[i].offsets;
+    arrays.index_count = cases[i].count;
+    assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), cases[i].status);
+    assert_int_equal(mesh == NULL, cases[i].status != VXM_OK);
+    vxm_mesh_destroy(mesh);
+  }
+}
+
+/** Indices of every type make the same mesh; what no vertex can be is told by face in each. */
+static void test_types_of_indices(void **state) {
+  (void)state;
+  const vxm_scalar types[] = {VXM_INT64, VXM_UINT32, VXM_INT32};
+  for (int corner = -1; corner < 12; corner++)
+    for (int type = 0; type < 3; type++) {
+      vxm_mesh_arrays arrays = tetrahedron();
+      int64_t wide[12];
+      uint32_t whole[12];
+      int32_t narrow[12];
+      memcpy(wide, arrays.indices, sizeof wide);
+      for (int c = 0; c < 12; c++) {
+        if (c == corner)
+          wide[c] = type == 1 ? 4 : -1;
+        whole[c] = (uint32_t)wide[c];
+        narrow[c] = (int32_t)wide[c];
+      }
+      const void *const given[] = {wide, whole, narrow};
+      arrays.indices = given[type];
+      arrays.index_scalar = types[type];
+      vxm_mesh *mesh = junk;
+      if (corner >= 0) {
+        REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
+        assert_int_equal(error.element, corner / 3);
+        continue;
+      }
+      assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_OK);
+      for (int c = 0; c < 12; c++)
+        assert_int_equal(vxm_mesh_indices(mesh)[c], wide[c]);
+      vxm_mesh_destroy(mesh);
+    }
+  vxm_mesh *mesh = junk;
+  vxm_mesh_arrays arrays = tetrahedron();
+  arrays.index_scalar = VXM_UINT8;
+  REFUSED(vxm_mesh_create(&mesh, NULL, &arrays, &error), VXM_ERROR_ARGUMENT);
 }
 
 /** The face at fault is named by its number. */
@@ -182,7 +249,7 @@ static void test_kinds_of_arrays(void **state) {
     for (int f = 0; f <= 4; f++)
       assert_int_equal(vxm_mesh_offsets(meshes[i])[f], 3 * f);
     for (int c = 0; c < 12; c++)
-      assert_int_equal(vxm_mesh_indices(meshes[i])[c], arrays.indices[c]);
+      assert_int_equal(vxm_mesh_indices(meshes[i])[c], ((const int64_t *)arrays.indices)[c]);
     assert_string_equal(vxm_mesh_format(meshes[i]), "arrays");
     assert_int_equal(vxm_mesh_tag_count(meshes[i]), 0);
     assert_null(vxm_mesh_face_tags(meshes[i]));
@@ -202,6 +269,7 @@ static void test_mesh_tags(void **state) {
   arrays.vertices = points;
   arrays.vertex_count = 4;
   arrays.indices = numbers;
+  arrays.index_count = 6;
   arrays.face_count = 2;
   arrays.tags = names;
   arrays.face_tags = tags;
@@ -240,18 +308,18 @@ static void test_mesh_files(void **state) {
   assert_null(mesh);
 
   static const char text[] = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-  vxm_mesh_read_options reading = {.version = 9};
+  vxm_mesh_read_options reading = {.size = 2};
   REFUSED(vxm_mesh_read_with(&mesh, NULL, "x.off", &reading, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_mesh_read_memory_with(&mesh, NULL, text, strlen(text), "x", &reading, &error),
           VXM_ERROR_ARGUMENT);
   static const double wrong[] = {-0.5, 1.5, NAN, INFINITY};
   for (size_t w = 0; w < sizeof wrong / sizeof *wrong; w++) {
-    reading = (vxm_mesh_read_options){.version = 1, .deflection = wrong[w]};
+    reading = (vxm_mesh_read_options){.size = sizeof(vxm_mesh_read_options), .deflection = wrong[w]};
     REFUSED(vxm_mesh_read_with(&mesh, NULL, "x.off", &reading, &error), VXM_ERROR_ARGUMENT);
     REFUSED(vxm_mesh_read_memory_with(&mesh, NULL, text, strlen(text), "x", &reading, &error),
             VXM_ERROR_ARGUMENT);
   }
-  reading = (vxm_mesh_read_options){.version = 1, .format = "word"};
+  reading = (vxm_mesh_read_options){.size = sizeof(vxm_mesh_read_options), .format = "word"};
   REFUSED(vxm_mesh_read_memory_with(&mesh, NULL, text, strlen(text), "x", &reading, &error),
           VXM_ERROR_ARGUMENT);
   assert_null(mesh);
@@ -272,7 +340,7 @@ static void test_mesh_files(void **state) {
   REFUSED(vxm_mesh_write(mesh, "no/such/folder/x.off", NULL, &error), VXM_ERROR_IO);
   options.format = "dwg";
   REFUSED(vxm_mesh_write(mesh, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
-  options = (vxm_mesh_write_options){.version = 9, .format = "off"};
+  options = (vxm_mesh_write_options){.size = 2, .format = "off"};
   REFUSED(vxm_mesh_write(mesh, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
   vxm_mesh_destroy(mesh);
 }
@@ -282,13 +350,13 @@ static void test_census_and_repair(void **state) {
   vxm_mesh *mesh = NULL, *repaired = junk;
   vxm_mesh_arrays arrays = tetrahedron();
   assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   REFUSED(vxm_mesh_census(NULL, mesh, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_mesh_census(&census, NULL, &error), VXM_ERROR_ARGUMENT);
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   REFUSED(vxm_mesh_repair(NULL, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_mesh_repair(&repaired, NULL, NULL, &options, &error), VXM_ERROR_ARGUMENT);
-  options.version = 0;
+  options.size = 0;
   REFUSED(vxm_mesh_repair(&repaired, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
   assert_null(repaired);
   options = (vxm_repair_options)VXM_REPAIR_OPTIONS_INIT;
@@ -363,7 +431,7 @@ static void test_grid_files(void **state) {
   REFUSED(vxm_grid_write(grid, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_grid_write(grid, "x.dwg", NULL, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_grid_write(grid, "no/such/folder/x.npy", NULL, &error), VXM_ERROR_IO);
-  options.version = 2;
+  options.size = 2;
   REFUSED(vxm_grid_write(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_grid_surface_mesh(NULL, grid, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_grid_surface_mesh(&mesh, NULL, &error), VXM_ERROR_ARGUMENT);
@@ -371,7 +439,7 @@ static void test_grid_files(void **state) {
 
   vxm_space flat = {{4, 4, 4}, {0, 0, 0}, {1, 1, 2}};
   assert_int_equal(vxm_grid_create(&grid, NULL, &flat, NULL), VXM_OK);
-  options = (vxm_grid_write_options){.version = 1, .format = "binvox"};
+  options = (vxm_grid_write_options){.size = sizeof(vxm_grid_write_options), .format = "binvox"};
   REFUSED(vxm_grid_write(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
   vxm_grid_destroy(grid);
 }
@@ -387,7 +455,7 @@ static void test_pictures(void **state) {
   REFUSED(vxm_grid_picture(grid, NULL, NULL, &error), VXM_ERROR_ARGUMENT);
   if (able == VXM_OK) {
     REFUSED(vxm_grid_picture(grid, "no/such/folder/x.png", NULL, &error), VXM_ERROR_IO);
-    options.version = 2;
+    options.size = 2;
     REFUSED(vxm_grid_picture(grid, "/dev/null", &options, &error), VXM_ERROR_ARGUMENT);
     options = (vxm_picture_options)VXM_PICTURE_OPTIONS_INIT;
     options.width = -1;
@@ -405,7 +473,7 @@ static void test_pictures(void **state) {
 static void test_comparing(void **state) {
   (void)state;
   vxm_grid *a = small_grid(3, 4, 5), *b = small_grid(3, 4, 5), *c = small_grid(3, 5, 4);
-  vxm_comparison found;
+  vxm_comparison found = VXM_COMPARISON_INIT;
   REFUSED(vxm_grid_compare(NULL, a, b, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_grid_compare(&found, NULL, b, &error), VXM_ERROR_ARGUMENT);
   REFUSED(vxm_grid_compare(&found, a, NULL, &error), VXM_ERROR_ARGUMENT);
@@ -439,7 +507,7 @@ static void test_spaces(void **state) {
   REFUSED(vxm_space_fit(&space, NULL, &options, &error), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_space_fit(&space, mesh, NULL, NULL), VXM_OK);
   assert_int_equal(space.dims[2], 128);
-  options.version = 2;
+  options.size = 2;
   REFUSED(vxm_space_fit(&space, mesh, &options, &error), VXM_ERROR_ARGUMENT);
 #define REFUSED_SPACE(setting, expected)                              \
   do {                                                                \
@@ -466,25 +534,26 @@ static void test_voxelizing(void **state) {
   (void)state;
   vxm_mesh *mesh = mesh_of_model(NULL, "cube");
   vxm_grid *grid = junk;
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = 8;
-  REFUSED(vxm_voxelize(NULL, &report, mesh, &options, &error), VXM_ERROR_ARGUMENT);
-  REFUSED(vxm_voxelize(&grid, &report, NULL, &options, &error), VXM_ERROR_ARGUMENT);
-  options.version = 2;
-  REFUSED(vxm_voxelize(&grid, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = 8;
+  REFUSED(vxm_voxelize(NULL, &report, mesh, &space_options, &options, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_voxelize(&grid, &report, NULL, &space_options, &options, &error), VXM_ERROR_ARGUMENT);
+  options.size = 2;
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, &space_options, &options, &error), VXM_ERROR_ARGUMENT);
   assert_null(grid);
-  options.version = 1;
+  options.size = sizeof options;
   options.method = (vxm_method)9;
-  REFUSED(vxm_voxelize(&grid, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, &space_options, &options, &error), VXM_ERROR_ARGUMENT);
   options.method = VXM_METHOD_VOTE;
   options.vote = (vxm_vote)9;
-  REFUSED(vxm_voxelize(&grid, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, &space_options, &options, &error), VXM_ERROR_ARGUMENT);
   options.vote = VXM_VOTE_MAJORITY;
-  options.parts = (vxm_parts)9;
-  REFUSED(vxm_voxelize(&grid, NULL, mesh, &options, &error), VXM_ERROR_ARGUMENT);
-  options.parts = VXM_PARTS_AUTO;
-  assert_int_equal(vxm_voxelize(&grid, &report, mesh, &options, NULL), VXM_OK);
+  options.split_mode = (vxm_split_mode)9;
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, &space_options, &options, &error), VXM_ERROR_ARGUMENT);
+  options.split_mode = VXM_SPLIT_MODE_AUTO;
+  assert_int_equal(vxm_voxelize(&grid, &report, mesh, &space_options, &options, NULL), VXM_OK);
   assert_int_equal(report.voxels, 512); /* a unit cube at 8 is 8 x 8 x 8 */
   assert_int_equal(report.voxels, vxm_grid_count(grid));
   assert_true(report.hash == vxm_grid_hash(grid));
@@ -502,15 +571,16 @@ static void test_voxelizing_nothing(void **state) {
   vxm_grid *grid = junk;
   vxm_mesh_arrays arrays = VXM_MESH_ARRAYS_INIT;
   assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);
-  REFUSED(vxm_voxelize(&grid, NULL, mesh, NULL, &error), VXM_ERROR_EMPTY);
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, NULL, NULL, &error), VXM_ERROR_EMPTY);
   assert_null(grid);
   vxm_mesh_destroy(mesh);
   static const int64_t same[] = {1, 1, 1};
   arrays = tetrahedron();
   arrays.indices = same;
+  arrays.index_count = 3;
   arrays.face_count = 1;
   assert_int_equal(vxm_mesh_create(&mesh, NULL, &arrays, NULL), VXM_OK);
-  REFUSED(vxm_voxelize(&grid, NULL, mesh, NULL, &error), VXM_ERROR_EMPTY);
+  REFUSED(vxm_voxelize(&grid, NULL, mesh, NULL, NULL, &error), VXM_ERROR_EMPTY);
   vxm_mesh_destroy(mesh);
 }
 
@@ -521,6 +591,8 @@ int main(void) {
       cmocka_unit_test(test_destroying_nothing),
       cmocka_unit_test(test_context),
       cmocka_unit_test(test_mesh_arrays),
+      cmocka_unit_test(test_counts_of_arrays),
+      cmocka_unit_test(test_types_of_indices),
       cmocka_unit_test(test_faces_at_fault),
       cmocka_unit_test(test_kinds_of_arrays),
       cmocka_unit_test(test_mesh_tags),

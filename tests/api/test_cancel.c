@@ -80,7 +80,7 @@ static uint64_t sum_of(const vxm_mesh *mesh) {
 }
 
 static vxm_status census(void *payload, uint64_t *result, vxm_error *error) {
-  vxm_census found;
+  vxm_census found = VXM_CENSUS_INIT;
   vxm_status status = vxm_mesh_census(&found, ((mesh_calls *)payload)->mesh, error);
   *result = (uint64_t)found.boundary_edges * 1000 + (uint64_t)found.components;
   return status;
@@ -98,7 +98,7 @@ static vxm_status defects(void *payload, uint64_t *result, vxm_error *error) {
 static vxm_status repair(void *payload, uint64_t *result, vxm_error *error) {
   const mesh_calls *calls = payload;
   vxm_mesh *made = NULL;
-  vxm_repair_report report;
+  vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
   vxm_status status = vxm_mesh_prepare(&made, &report, calls->mesh, &calls->options, error);
   assert_true((status == VXM_OK) == (made != NULL));
   *result = made ? sum_of(made) : 0;
@@ -108,7 +108,7 @@ static vxm_status repair(void *payload, uint64_t *result, vxm_error *error) {
 
 static vxm_status verify(void *payload, uint64_t *result, vxm_error *error) {
   const mesh_calls *calls = payload;
-  vxm_verification found;
+  vxm_verification found = VXM_VERIFICATION_INIT;
   vxm_status status = vxm_mesh_verify(&found, calls->mesh, &calls->options, error);
   *result = (uint64_t)found.reached * 100 + (uint64_t)found.count;
   return status;
@@ -230,8 +230,9 @@ static void test_models(void **state) {
         vxm_mesh *mesh = mesh_of_model(context, names[i]);
         vxm_voxelize_options options = initial;
         vxm_space space;
-        options.space.resolution[0] = 24;
-        assert_int_equal(vxm_space_fit(&space, mesh, &options.space, NULL), VXM_OK);
+        vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+        space_options.resolution[0] = 24;
+        assert_int_equal(vxm_space_fit(&space, mesh, &space_options, NULL), VXM_OK);
         options.method = way == 1 ? VXM_METHOD_TETRA : way == 2 ? VXM_METHOD_WINDING : VXM_METHOD_VOTE;
         options.mode = way == 3 ? VXM_MODE_BOTH : VXM_MODE_SOLID;
         options.confidence = way == 4;
@@ -249,9 +250,9 @@ static vxm_status batch(void *payload, uint64_t *result, vxm_error *error) {
   vxm_variant variants[6];
   for (uint32_t i = 0; i < 6; i++)
     variants[i] = (vxm_variant){0, 0, i};
-  size_t size = 6 * vxm_sampler_bytes(sampler, VXM_VOXELS_PACKED);
+  size_t size = 6 * vxm_sampler_bytes(sampler, VXM_VOXEL_FORMAT_PACKED);
   uint8_t *made = malloc(size);
-  vxm_status status = vxm_sampler_batch(made, sampler, variants, 6, VXM_VOXELS_PACKED, error);
+  vxm_status status = vxm_sampler_batch(made, sampler, variants, 6, VXM_VOXEL_FORMAT_PACKED, error);
   *result = 0;
   for (size_t i = 0; status == VXM_OK && i < size; i++)
     *result = *result * 31 + made[i];

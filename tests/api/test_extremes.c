@@ -100,9 +100,11 @@ static vxm_status fit(const void *options) {
   return vxm_space_fit(&space, mesh, options, &error);
 }
 
+static const vxm_space_options four = {.size = sizeof(vxm_space_options), .resolution = {4, 0, 0}};
+
 static vxm_status voxelize(const void *options) {
   vxm_grid *made;
-  vxm_status status = vxm_voxelize(&made, NULL, mesh, options, &error);
+  vxm_status status = vxm_voxelize(&made, NULL, mesh, &four, options, &error);
   vxm_grid_destroy(made);
   return status;
 }
@@ -155,7 +157,7 @@ static vxm_status sample(const void *options) {
   vxm_sampler *made;
   vxm_status status = vxm_sampler_create(&made, context, options, &error);
   if (status == VXM_OK && vxm_sampler_put(made, UINT32_MAX, mesh, NULL) == VXM_OK) {
-    vxm_pose pose;
+    vxm_pose pose = VXM_POSE_INIT;
     assert_int_equal(vxm_sampler_pose(&pose, made, &(vxm_variant){UINT32_MAX, UINT32_MAX, UINT32_MAX}, NULL),
                      VXM_OK);
     for (int i = 0; i < 12; i++)
@@ -167,32 +169,40 @@ static vxm_status sample(const void *options) {
 
 static const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const int64_t indices[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
-static const vxm_mesh_arrays arrays = {1, VXM_FLOAT64, corners, 4, NULL, indices, 4, NULL, NULL, 0};
+static const vxm_mesh_arrays arrays = {.size = sizeof(vxm_mesh_arrays),
+                                       .index_scalar = VXM_INT64,
+                                       .vertices = corners,
+                                       .vertex_count = 4,
+                                       .indices = indices,
+                                       .index_count = 12,
+                                       .face_count = 4};
 static const vxm_context_options context_options = VXM_CONTEXT_OPTIONS_INIT;
-static const vxm_mesh_read_options read_options = {.version = 1, .deflection = 0.5};
-static const vxm_mesh_write_options mesh_write = {.version = 1, .format = "off"};
-static const vxm_repair_options repair = {
-    .version = 1, .weld = VXM_WELD_TOLERANCE, .weld_tolerance = 1e-9, .level = VXM_LEVEL_MANIFOLD};
-static const vxm_grid_write_options grid_write = {.version = 1, .format = "npy"};
-static const vxm_picture_options picture = {1, 8, 8, 30, 25, 3};
+static const vxm_mesh_read_options read_options = {.size = sizeof(vxm_mesh_read_options), .deflection = 0.5};
+static const vxm_mesh_write_options mesh_write = {.size = sizeof(vxm_mesh_write_options), .format = "off"};
+static const vxm_repair_options repair = {.size = sizeof(vxm_repair_options),
+                                          .weld = VXM_WELD_TOLERANCE,
+                                          .weld_tolerance = 1e-9,
+                                          .level = VXM_LEVEL_MANIFOLD};
+static const vxm_grid_write_options grid_write = {.size = sizeof(vxm_grid_write_options), .format = "npy"};
+static const vxm_picture_options picture = {sizeof(vxm_picture_options), 8, 8, 30, 25, 3};
 static const vxm_engine_options engine_options = VXM_ENGINE_OPTIONS_INIT;
-static const vxm_space_options size_options = {.version = 1, .voxel_size = 0.25};
-static const vxm_space_options bounds_options = {
-    .version = 1, .resolution = {4, 4, 4}, .use_bounds = true, .bounds = {0, 0, 0, 1, 1, 1}};
-static const vxm_voxelize_options voxelize_options = {.version = 1,
-                                                      .space = {.version = 1, .resolution = {4, 0, 0}}};
-static const vxm_coverage_options coverage_options = {1, 2, VXM_UINT8, NULL};
+static const vxm_space_options size_options = {.size = sizeof(vxm_space_options), .voxel_size = 0.25};
+static const vxm_space_options bounds_options = {.size = sizeof(vxm_space_options),
+                                                 .resolution = {4, 4, 4},
+                                                 .use_bounds = true,
+                                                 .bounds = {0, 0, 0, 1, 1, 1}};
+static const vxm_voxelize_options voxelize_options = {.size = sizeof(vxm_voxelize_options)};
+static const vxm_coverage_options coverage_options = {sizeof(vxm_coverage_options), 2, VXM_UINT8, NULL};
 static const vxm_distance_options distance_options = VXM_DISTANCE_OPTIONS_INIT;
 static const vxm_label_options label_options = VXM_LABEL_OPTIONS_INIT;
 static const vxm_color_options color_options = VXM_COLOR_OPTIONS_INIT;
-static const vxm_sampler_options sampler_options = {
-    .version = 1,
-    .resolution = 8,
-    .rotation = VXM_ROTATION_AXIS,
-    .axis = {0, 0, 1},
-    .noise = 64,
-    .displace = 0.01,
-    .voxelize = {.version = 1, .space = {.version = 1, .resolution = {4, 0, 0}}}};
+static const vxm_sampler_options sampler_options = {.size = sizeof(vxm_sampler_options),
+                                                    .resolution = 8,
+                                                    .rotation = VXM_ROTATION_AXIS,
+                                                    .axis = {0, 0, 1},
+                                                    .noise = 64,
+                                                    .displace = 0.01,
+                                                    .voxelize = &voxelize_options};
 
 #define F(type, member, kind) \
   { #member, offsetof(type, member), kind }
@@ -201,14 +211,15 @@ static const vxm_sampler_options sampler_options = {
 static const options_case cases[] = {
     {S(context_options, make_context), {F(vxm_context_options, threads, CHOICE)}},
     {S(arrays, make_mesh),
-     {F(vxm_mesh_arrays, vertex_scalar, CHOICE), F(vxm_mesh_arrays, vertex_count, COUNT),
+     {F(vxm_mesh_arrays, vertex_scalar, CHOICE), F(vxm_mesh_arrays, index_scalar, CHOICE),
+      F(vxm_mesh_arrays, vertex_count, COUNT), F(vxm_mesh_arrays, index_count, COUNT),
       F(vxm_mesh_arrays, face_count, COUNT)}},
     {S(read_options, read_mesh), {F(vxm_mesh_read_options, deflection, NUMBER)}},
     {S(mesh_write, write_mesh), {{NULL, 0, CHOICE}}},
     {S(repair, repair_mesh),
      {F(vxm_repair_options, weld, CHOICE), F(vxm_repair_options, weld_tolerance, NUMBER),
       F(vxm_repair_options, level, CHOICE), F(vxm_repair_options, fill_holes, COUNT),
-      F(vxm_repair_options, fill, CHOICE), F(vxm_repair_options, wrap_alpha, NUMBER),
+      F(vxm_repair_options, hole_fill, CHOICE), F(vxm_repair_options, wrap_alpha, NUMBER),
       F(vxm_repair_options, wrap_offset, NUMBER), F(vxm_repair_options, max_change, NUMBER),
       F(vxm_repair_options, drop_faces, COUNT), F(vxm_repair_options, drop_volume, NUMBER)}},
     {S(grid_write, write_grid), {{NULL, 0, CHOICE}}},
@@ -228,11 +239,8 @@ static const options_case cases[] = {
       F(vxm_space_options, resolution[0], COUNT), F(vxm_space_options, resolution[1], COUNT)}},
     {S(voxelize_options, voxelize),
      {F(vxm_voxelize_options, method, CHOICE), F(vxm_voxelize_options, vote, CHOICE),
-      F(vxm_voxelize_options, parts, CHOICE), F(vxm_voxelize_options, cavities, CHOICE),
-      F(vxm_voxelize_options, mode, CHOICE), F(vxm_voxelize_options, surface, CHOICE),
-      F(vxm_voxelize_options, space.version, CHOICE), F(vxm_voxelize_options, space.fit, CHOICE),
-      F(vxm_voxelize_options, space.resolution[0], COUNT), F(vxm_voxelize_options, space.pad, COUNT),
-      F(vxm_voxelize_options, space.voxel_size, NUMBER)}},
+      F(vxm_voxelize_options, split_mode, CHOICE), F(vxm_voxelize_options, cavities, CHOICE),
+      F(vxm_voxelize_options, mode, CHOICE), F(vxm_voxelize_options, surface, CHOICE)}},
     {S(coverage_options, cover),
      {F(vxm_coverage_options, subdivision, CHOICE), F(vxm_coverage_options, scalar, CHOICE)}},
     {S(distance_options, measure), {F(vxm_distance_options, band, NUMBER)}},
@@ -243,8 +251,7 @@ static const options_case cases[] = {
       F(vxm_sampler_options, rotation, CHOICE), F(vxm_sampler_options, axis[0], NUMBER),
       F(vxm_sampler_options, scale, NUMBER), F(vxm_sampler_options, displacement, CHOICE),
       F(vxm_sampler_options, displace, NUMBER), F(vxm_sampler_options, translate, NUMBER),
-      F(vxm_sampler_options, noise, CHOICE), F(vxm_sampler_options, mirror, CHOICE),
-      F(vxm_sampler_options, voxelize.method, CHOICE), F(vxm_sampler_options, voxelize.version, CHOICE)}},
+      F(vxm_sampler_options, noise, CHOICE), F(vxm_sampler_options, mirror, CHOICE)}},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
@@ -313,10 +320,10 @@ static void test_counts(void **state) {
   vxm_variant variant = {0, 0, 0};
   const char *path = "/dev/null";
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
-    REFUSED(vxm_sampler_batch(values, sampler, &variant, counts[i], VXM_VOXELS_UINT8, &error));
+    REFUSED(vxm_sampler_batch(values, sampler, &variant, counts[i], VXM_VOXEL_FORMAT_UINT8, &error));
     REFUSED(vxm_sampler_files(&path, sampler, &variant, counts[i], NULL, NULL, &error));
   }
-  assert_int_equal(vxm_sampler_batch(values, sampler, &variant, 0, VXM_VOXELS_UINT8, &error), VXM_OK);
+  assert_int_equal(vxm_sampler_batch(values, sampler, &variant, 0, VXM_VOXEL_FORMAT_UINT8, &error), VXM_OK);
   vxm_sampler_destroy(sampler);
   vxm_mesh *made;
   REFUSED(vxm_mesh_read_memory(&made, context, "OFF", SIZE_MAX, "x", &error));
@@ -343,6 +350,7 @@ static void test_offsets(void **state) {
     int64_t offsets[] = {0, ends[i]};
     vxm_mesh_arrays long_face = arrays;
     long_face.offsets = offsets;
+    long_face.index_count = ends[i];
     long_face.face_count = 1;
     vxm_mesh *made = mesh;
     error = (vxm_error)VXM_ERROR_INIT;
@@ -391,7 +399,14 @@ static vxm_mesh *box(const double low[3], const double high[3]) {
     positions[3 * v + 1] = y ? high[1] : low[1];
     positions[3 * v + 2] = z ? high[2] : low[2];
   }
-  vxm_mesh_arrays a = {1, VXM_FLOAT64, positions, 8, offsets, faces, 6, NULL, NULL, 0};
+  vxm_mesh_arrays a = {.size = sizeof a,
+                       .index_scalar = VXM_INT64,
+                       .vertices = positions,
+                       .vertex_count = 8,
+                       .offsets = offsets,
+                       .indices = faces,
+                       .index_count = sizeof faces / sizeof *faces,
+                       .face_count = 6};
   vxm_mesh *made;
   assert_int_equal(vxm_mesh_create(&made, context, &a, NULL), VXM_OK);
   return made;
@@ -425,7 +440,7 @@ static void test_census(void **state) {
   for (size_t i = 0; i < sizeof boxes / sizeof *boxes; i++) {
     const double *b = boxes[i];
     vxm_mesh *made = box(b, b + 3);
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     assert_int_equal(vxm_mesh_census(&census, made, NULL), VXM_OK);
     long double x = (long double)b[3] - b[0], y = (long double)b[4] - b[1], z = (long double)b[5] - b[2];
     check_measure(census.area, 2 * (x * y + y * z + z * x));
@@ -454,7 +469,8 @@ static void test_pipeline(void **state) {
       grid_options.method = level == VXM_LEVEL_CLOSED ? VXM_METHOD_WINDING : VXM_METHOD_VOTE;
       grid_options.mode = level == VXM_LEVEL_MANIFOLD ? VXM_MODE_BOTH : VXM_MODE_SOLID;
       vxm_grid *voxels;
-      vxm_status status = vxm_voxelize(&voxels, NULL, repaired ? repaired : made, &grid_options, &error);
+      vxm_status status =
+          vxm_voxelize(&voxels, NULL, repaired ? repaired : made, &four, &grid_options, &error);
       if (status == VXM_OK) {
         const vxm_space *space = vxm_grid_space(voxels);
         for (int a = 0; a < 3; a++)
@@ -497,8 +513,8 @@ static void test_empty(void **state) {
   (void)state;
   vxm_mesh_arrays none = VXM_MESH_ARRAYS_INIT;
   vxm_mesh *empty, *repaired;
-  vxm_census census;
-  vxm_verification verification;
+  vxm_census census = VXM_CENSUS_INIT;
+  vxm_verification verification = VXM_VERIFICATION_INIT;
   vxm_defects *defects;
   vxm_model *model;
   assert_int_equal(vxm_mesh_create(&empty, context, &none, NULL), VXM_OK);
@@ -533,7 +549,7 @@ static int set_up(void **state) {
   if (vxm_context_create(&context, &options, NULL) != VXM_OK)
     return 1;
   return vxm_mesh_create(&mesh, context, &arrays, NULL) == VXM_OK &&
-                 vxm_voxelize(&grid, NULL, mesh, &voxelize_options, NULL) == VXM_OK
+                 vxm_voxelize(&grid, NULL, mesh, &four, NULL, NULL) == VXM_OK
              ? 0
              : 1;
 }

@@ -49,11 +49,12 @@ static vxm_status run_everything(vxm_context *context, const char *text, size_t 
                                  vxm_error *error) {
   vxm_mesh *mesh = NULL, *repaired = NULL;
   vxm_grid *grid = NULL;
-  vxm_repair_report report;
+  vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
   vxm_mesh_write_options mesh_options = VXM_MESH_WRITE_OPTIONS_INIT;
   mesh_options.format = "ply";
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = 48;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = 48;
   vxm_status status = vxm_mesh_read_memory(&mesh, context, text, size, "memory.off", error);
   assert_true((status == VXM_OK) == (mesh != NULL));
   if (status == VXM_OK)
@@ -62,7 +63,7 @@ static vxm_status run_everything(vxm_context *context, const char *text, size_t 
   if (status == VXM_OK)
     status = vxm_mesh_write(repaired, "/dev/null", &mesh_options, error);
   if (status == VXM_OK)
-    status = vxm_voxelize(&grid, NULL, repaired, &options, error);
+    status = vxm_voxelize(&grid, NULL, repaired, &space_options, &options, error);
   if (status == VXM_OK) {
     *hash = vxm_grid_hash(grid);
     status = write_all(grid, error);
@@ -115,10 +116,11 @@ static void test_huge_grid(void **state) {
   vxm_mesh *mesh = mesh_of_model(context, "cube");
   uint64_t before = vxm_context_peak_bytes(context);
   vxm_voxelize_options huge = VXM_VOXELIZE_OPTIONS_INIT;
-  huge.space.resolution[0] = 4096;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = 4096;
   vxm_grid *grid = NULL;
   vxm_error error = VXM_ERROR_INIT;
-  assert_int_equal(vxm_voxelize(&grid, NULL, mesh, &huge, &error), VXM_ERROR_MEMORY_LIMIT);
+  assert_int_equal(vxm_voxelize(&grid, NULL, mesh, &space_options, &huge, &error), VXM_ERROR_MEMORY_LIMIT);
   assert_null(grid);
   assert_true(vxm_context_peak_bytes(context) < before + (1 << 16));
   vxm_mesh_destroy(mesh);
@@ -186,12 +188,13 @@ static void test_lifetimes(void **state) {
   vxm_mesh_destroy(mesh);
   vxm_grid *grid = NULL;
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = 16;
-  assert_int_equal(vxm_voxelize(&grid, NULL, repaired, &options, NULL), VXM_OK);
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = 16;
+  assert_int_equal(vxm_voxelize(&grid, NULL, repaired, &space_options, &options, NULL), VXM_OK);
   vxm_mesh_destroy(repaired);
   assert_int_equal(vxm_grid_surface_mesh(&surface, grid, NULL), VXM_OK);
   vxm_grid_destroy(grid);
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_mesh_census(&census, surface, NULL), VXM_OK);
   assert_true(census.closed);
   vxm_mesh_destroy(surface);
@@ -207,9 +210,10 @@ static void *voxelize_job(void *argument) {
   job *work = argument;
   vxm_mesh *mesh = mesh_of_model(work->context, work->model);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = 48;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = 48;
   vxm_grid *grid = NULL;
-  if (vxm_voxelize(&grid, NULL, mesh, &options, NULL) == VXM_OK)
+  if (vxm_voxelize(&grid, NULL, mesh, &space_options, &options, NULL) == VXM_OK)
     work->hash = vxm_grid_hash(grid);
   vxm_grid_destroy(grid);
   vxm_mesh_destroy(mesh);

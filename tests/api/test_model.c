@@ -23,14 +23,14 @@ static void test_space_fit(void **state) {
   assert_refused(vxm_space_fit(&space, NULL, NULL, &error), &error);
   assert_int_equal(space.dims[0], 0);
   vxm_space_options options = VXM_SPACE_OPTIONS_INIT;
-  for (uint32_t version = 0; version < 4; version++) {
-    options.version = version;
+  for (size_t size = 0; size < sizeof(size_t); size++) {
+    options.size = size;
     space = unit;
     vxm_status status = vxm_space_fit(&space, mesh, &options, &error);
-    assert_int_equal(status, version == 1 ? VXM_OK : VXM_ERROR_ARGUMENT);
-    assert_int_equal(space.dims[0], version == 1 ? 128 : 0);
+    assert_int_equal(status, VXM_ERROR_ARGUMENT);
+    assert_int_equal(space.dims[0], 0);
   }
-  options.version = 1;
+  options.size = sizeof options;
   options.fit = (vxm_fit)9;
   assert_refused(vxm_space_fit(&space, mesh, &options, &error), &error);
   options.fit = VXM_FIT_CUBE;
@@ -62,20 +62,17 @@ static void test_model_create(void **state) {
   vxm_voxelize_options good = VXM_VOXELIZE_OPTIONS_INIT, bad[6];
   for (int i = 0; i < 6; i++)
     bad[i] = good;
-  bad[0].version = 2;
+  bad[0].size = 2;
   bad[1].method = (vxm_method)6;
   bad[2].vote = (vxm_vote)-1;
   bad[3].mode = (vxm_mode)3;
   bad[4].cavities = (vxm_cavities)3;
-  bad[5].parts = (vxm_parts)3;
+  bad[5].split_mode = (vxm_split_mode)3;
   for (int i = 0; i < 6; i++) {
     made = (vxm_model *)mesh;
     assert_refused(vxm_model_create(&made, mesh, &bad[i], &error), &error);
     assert_null(made);
   }
-  /* Space options are not used. */
-  good.space.version = 77;
-  good.space.resolution[0] = -4;
   assert_int_equal(vxm_model_create(&made, mesh, &good, NULL), VXM_OK);
   vxm_model_destroy(made);
   assert_int_equal(vxm_model_create(&made, mesh, NULL, NULL), VXM_OK);
@@ -128,10 +125,10 @@ static void test_model_write_and_estimate(void **state) {
   assert_int_equal(vxm_model_create(&made, mesh, NULL, NULL), VXM_OK);
   vxm_grid_write_options unknown = VXM_GRID_WRITE_OPTIONS_INIT, npy = VXM_GRID_WRITE_OPTIONS_INIT,
                          odd = VXM_GRID_WRITE_OPTIONS_INIT;
-  unknown.version = 3;
+  unknown.size = 3;
   npy.format = "npy";
   odd.format = "zip";
-  vxm_estimate estimate = {1, 2, 3};
+  vxm_estimate estimate = {.grid_bytes = 1, .memory_bytes = 2, .passes = 3};
   vxm_voxelize_report report = {.voxels = 5};
   const struct {
     const vxm_model *made;
@@ -141,12 +138,12 @@ static void test_model_write_and_estimate(void **state) {
   } bad[] = {{NULL, &unit, path, NULL},     {made, NULL, path, NULL},  {made, &unit, NULL, NULL},
              {made, &unit, path, &unknown}, {made, &unit, path, &odd}, {made, &unit, "no_extension", NULL}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-    estimate.windows = 3;
+    estimate.passes = 3;
     report.voxels = 5;
     assert_refused(
         vxm_model_estimate(&estimate, bad[i].made, bad[i].space, bad[i].path, bad[i].options, &error),
         &error);
-    assert_true(estimate.grid_bytes == 0 && estimate.memory_bytes == 0 && estimate.windows == 0);
+    assert_true(estimate.grid_bytes == 0 && estimate.memory_bytes == 0 && estimate.passes == 0);
     assert_refused(
         vxm_model_write(&report, i == 0 ? NULL : made, bad[i].space, bad[i].path, bad[i].options, &error),
         &error);
@@ -166,7 +163,7 @@ static void test_model_write_and_estimate(void **state) {
   }
   /* The format goes before the extension; nothing is opened by an estimate. */
   assert_int_equal(vxm_model_estimate(&estimate, made, &unit, path, &npy, NULL), VXM_OK);
-  assert_int_equal(estimate.windows, 1);
+  assert_int_equal(estimate.passes, 1);
   assert_int_not_equal(access(path, F_OK), 0);
   assert_int_equal(vxm_model_write(&report, made, &unit, path, &npy, NULL), VXM_OK);
   char begin[6] = "";

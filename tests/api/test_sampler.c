@@ -41,7 +41,7 @@ static vxm_sampler *sampler_of(vxm_context *context, const vxm_sampler_options *
 }
 
 /** Variants first to first + count - 1 of model 0; to be freed. */
-static uint8_t *make(vxm_sampler *sampler, uint32_t first, size_t count, vxm_voxels voxels) {
+static uint8_t *make(vxm_sampler *sampler, uint32_t first, size_t count, vxm_voxel_format voxels) {
   vxm_variant *variants = calloc(count, sizeof *variants);
   uint8_t *out = malloc(count * vxm_sampler_bytes(sampler, voxels));
   assert_true(variants && out);
@@ -77,10 +77,10 @@ static void same_bits_for_any_threads_and_order(void **state) {
     vxm_context *context = context_of(threads);
     vxm_mesh *mesh = mesh_of_model(context, "l_prism");
     vxm_sampler *sampler = sampler_of(context, &options, mesh);
-    size_t bytes = vxm_sampler_bytes(sampler, VXM_VOXELS_PACKED);
+    size_t bytes = vxm_sampler_bytes(sampler, VXM_VOXEL_FORMAT_PACKED);
     assert_int_equal(bytes, 32 * 32 * 4);
     for (int twice = 0; twice < 2; twice++) {
-      uint8_t *made = make(sampler, 0, MANY, VXM_VOXELS_PACKED);
+      uint8_t *made = make(sampler, 0, MANY, VXM_VOXEL_FORMAT_PACKED);
       if (!first) {
         first = made;
         continue;
@@ -89,7 +89,7 @@ static void same_bits_for_any_threads_and_order(void **state) {
       free(made);
     }
     for (uint32_t i = MANY; i-- > 0;) { /* one by one, from the last on: made by all threads together */
-      uint8_t *made = make(sampler, i, 1, VXM_VOXELS_PACKED);
+      uint8_t *made = make(sampler, i, 1, VXM_VOXEL_FORMAT_PACKED);
       assert_memory_equal(made, first + i * bytes, bytes);
       free(made);
     }
@@ -112,16 +112,16 @@ static void each_part_of_the_name_matters(void **state) {
   vxm_sampler *sampler = sampler_of(NULL, &options, mesh);
   assert_int_equal(vxm_sampler_put(sampler, 9, mesh, NULL), VXM_OK);
   const vxm_variant variants[] = {{0, 0, 0}, {9, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
-  size_t bytes = vxm_sampler_bytes(sampler, VXM_VOXELS_UINT8);
+  size_t bytes = vxm_sampler_bytes(sampler, VXM_VOXEL_FORMAT_UINT8);
   uint8_t *out = malloc(5 * bytes), *other = malloc(bytes);
-  assert_int_equal(vxm_sampler_batch(out, sampler, variants, 5, VXM_VOXELS_UINT8, NULL), VXM_OK);
+  assert_int_equal(vxm_sampler_batch(out, sampler, variants, 5, VXM_VOXEL_FORMAT_UINT8, NULL), VXM_OK);
   for (size_t i = 0; i < 5; i++)
     for (size_t k = 0; k < i; k++)
       assert_int_equal(memcmp(out + i * bytes, out + k * bytes, bytes) == 0, i == 4 && k == 0);
   vxm_sampler_destroy(sampler);
   options.seed++;
   sampler = sampler_of(NULL, &options, mesh);
-  assert_int_equal(vxm_sampler_batch(other, sampler, variants, 1, VXM_VOXELS_UINT8, NULL), VXM_OK);
+  assert_int_equal(vxm_sampler_batch(other, sampler, variants, 1, VXM_VOXEL_FORMAT_UINT8, NULL), VXM_OK);
   assert_int_not_equal(memcmp(out, other, bytes), 0);
   vxm_sampler_destroy(sampler);
   free(out);
@@ -152,8 +152,9 @@ static void forms_agree(void **state) {
     vxm_sampler_options options = all_options();
     options.resolution = n;
     vxm_sampler *sampler = sampler_of(context, &options, mesh);
-    uint8_t *bytes = make(sampler, 5, 2, VXM_VOXELS_UINT8), *bits = make(sampler, 5, 2, VXM_VOXELS_PACKED);
-    float *floats = (float *)(void *)make(sampler, 5, 2, VXM_VOXELS_FLOAT32);
+    uint8_t *bytes = make(sampler, 5, 2, VXM_VOXEL_FORMAT_UINT8),
+            *bits = make(sampler, 5, 2, VXM_VOXEL_FORMAT_PACKED);
+    float *floats = (float *)(void *)make(sampler, 5, 2, VXM_VOXEL_FORMAT_FLOAT32);
     vxm_grid *grid;
     vxm_space space = vxm_sampler_space(sampler);
     assert_int_equal(vxm_grid_create(&grid, context, &space, NULL), VXM_OK);
@@ -195,8 +196,8 @@ static void poses_tell_where_variants_lie(void **state) {
   assert_int_equal(vxm_grid_create(&grid, context, &space, NULL), VXM_OK);
   assert_int_equal(vxm_grid_create(&direct, context, &voxels, NULL), VXM_OK);
   for (uint32_t i = 0; i < 20; i++) {
-    vxm_pose pose;
-    vxm_comparison compared;
+    vxm_pose pose = VXM_POSE_INIT;
+    vxm_comparison compared = VXM_COMPARISON_INIT;
     vxm_variant variant = {0, 0, i};
     assert_int_equal(vxm_sampler_pose(&pose, sampler, &variant, NULL), VXM_OK);
     assert_int_equal(vxm_sampler_grid(grid, sampler, &variant, NULL), VXM_OK);
@@ -263,11 +264,13 @@ static void closed_stays_closed(void **state) {
       size_t bytes = 0;
       for (int axis = 0; axis < 3; axis++) {
         vxm_sampler_options options = options_of_case(which);
-        options.voxelize.method = (vxm_method)(VXM_METHOD_X + axis);
-        options.voxelize.parts = VXM_PARTS_WHOLE;
+        vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
+        options.voxelize = &how;
+        how.method = (vxm_method)(VXM_METHOD_X + axis);
+        how.split_mode = VXM_SPLIT_MODE_WHOLE;
         vxm_sampler *sampler = sampler_of(context, &options, mesh);
-        bytes = 12 * vxm_sampler_bytes(sampler, VXM_VOXELS_UINT8);
-        made[axis] = make(sampler, 0, 12, VXM_VOXELS_UINT8);
+        bytes = 12 * vxm_sampler_bytes(sampler, VXM_VOXEL_FORMAT_UINT8);
+        made[axis] = make(sampler, 0, 12, VXM_VOXEL_FORMAT_UINT8);
         vxm_sampler_destroy(sampler);
       }
       if (memcmp(made[0], made[1], bytes) != 0 || memcmp(made[0], made[2], bytes) != 0)
@@ -287,7 +290,7 @@ static void closed_stays_closed(void **state) {
 static void variants_fit_their_grid(void **state) {
   (void)state;
   vxm_mesh *mesh = mesh_of_model(NULL, "l_prism");
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_mesh_census(&census, mesh, NULL), VXM_OK);
   for (int moved = 0; moved < 2; moved++) {
     vxm_sampler_options options = all_options();
@@ -296,7 +299,7 @@ static void variants_fit_their_grid(void **state) {
     vxm_sampler *sampler = sampler_of(NULL, &options, mesh);
     double low = moved ? 0 : 3, reach = options.displace * 32, least = 32;
     for (uint32_t i = 0; i < 500; i++) {
-      vxm_pose pose;
+      vxm_pose pose = VXM_POSE_INIT;
       assert_int_equal(vxm_sampler_pose(&pose, sampler, &(vxm_variant){0, 0, i}, NULL), VXM_OK);
       for (int corner = 0; corner < 8; corner++)
         for (int row = 0; row < 3; row++) {
@@ -309,7 +312,7 @@ static void variants_fit_their_grid(void **state) {
         }
     }
     assert_true(least < low + 1); /* the room is used */
-    uint8_t *made = make(sampler, 0, 40, VXM_VOXELS_UINT8);
+    uint8_t *made = make(sampler, 0, 40, VXM_VOXEL_FORMAT_UINT8);
     for (size_t v = 0; v < 40 && !moved; v++)
       for (int x = 0; x < 32; x++)
         for (int y = 0; y < 32; y++)
@@ -323,7 +326,7 @@ static void variants_fit_their_grid(void **state) {
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
   options.fill = true;
   vxm_sampler *sampler = sampler_of(NULL, &options, mesh);
-  vxm_pose pose;
+  vxm_pose pose = VXM_POSE_INIT;
   double longest = 0;
   assert_int_equal(vxm_sampler_pose(&pose, sampler, &(vxm_variant){0, 0, 0}, NULL), VXM_OK);
   for (int a = 0; a < 3; a++)
@@ -343,7 +346,7 @@ static void mirrors_are_fair(void **state) {
   vxm_sampler *sampler = sampler_of(NULL, &options, mesh);
   int mirrored[3] = {0}, wide = 0;
   for (uint32_t i = 0; i < 1000; i++) {
-    vxm_pose pose;
+    vxm_pose pose = VXM_POSE_INIT;
     assert_int_equal(vxm_sampler_pose(&pose, sampler, &(vxm_variant){0, 0, i}, NULL), VXM_OK);
     for (int a = 0; a < 3; a++)
       mirrored[a] += pose.scale[a] < 0;
@@ -366,10 +369,10 @@ static void models_come_and_go(void **state) {
   vxm_mesh *torus = mesh_of_model(context, "torus"), *cube = mesh_of_model(context, "cube");
   vxm_sampler_options options = all_options();
   vxm_sampler *sampler = sampler_of(context, &options, torus);
-  uint8_t *of_torus = make(sampler, 0, 4, VXM_VOXELS_UINT8);
-  size_t bytes = vxm_sampler_bytes(sampler, VXM_VOXELS_UINT8);
+  uint8_t *of_torus = make(sampler, 0, 4, VXM_VOXEL_FORMAT_UINT8);
+  size_t bytes = vxm_sampler_bytes(sampler, VXM_VOXEL_FORMAT_UINT8);
   assert_int_equal(vxm_sampler_put(sampler, 0, cube, NULL), VXM_OK);
-  uint8_t *of_cube = make(sampler, 0, 4, VXM_VOXELS_UINT8);
+  uint8_t *of_cube = make(sampler, 0, 4, VXM_VOXEL_FORMAT_UINT8);
   assert_int_not_equal(memcmp(of_torus, of_cube, 4 * bytes), 0);
   /* Beside others, in whatever order, a model of the same number gives the same. */
   for (uint32_t number = 12; number > 0; number -= 3)
@@ -377,12 +380,13 @@ static void models_come_and_go(void **state) {
   assert_int_equal(vxm_sampler_put(sampler, 0, torus, NULL), VXM_OK);
   const vxm_variant mixed[] = {{3, 2, 0}, {0, 2, 1}, {12, 2, 0}, {0, 2, 3}};
   uint8_t *out = malloc(4 * bytes);
-  assert_int_equal(vxm_sampler_batch(out, sampler, mixed, 4, VXM_VOXELS_UINT8, NULL), VXM_OK);
+  assert_int_equal(vxm_sampler_batch(out, sampler, mixed, 4, VXM_VOXEL_FORMAT_UINT8, NULL), VXM_OK);
   assert_memory_equal(out + bytes, of_torus + bytes, bytes);
   assert_memory_equal(out + 3 * bytes, of_torus + 3 * bytes, bytes);
   vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(vxm_sampler_put(sampler, 12, NULL, NULL), VXM_OK);
-  assert_int_equal(vxm_sampler_batch(out, sampler, mixed, 4, VXM_VOXELS_UINT8, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_sampler_batch(out, sampler, mixed, 4, VXM_VOXEL_FORMAT_UINT8, &error),
+                   VXM_ERROR_ARGUMENT);
   assert_non_null(strstr(error.text, "no model 12"));
   free(of_torus), free(of_cube), free(out);
   vxm_sampler_destroy(sampler);
@@ -409,7 +413,7 @@ static void refuse(const vxm_sampler_options *options, vxm_status status) {
 static void wrong_arguments_are_refused(void **state) {
   (void)state;
   static const double shear[9] = {1, 0.1, 0, 0, 1, 0, 0, 0, 1};
-  REFUSE(version, 2, VXM_ERROR_ARGUMENT);
+  REFUSE(size, 2, VXM_ERROR_ARGUMENT);
   REFUSE(resolution, -1, VXM_ERROR_ARGUMENT);
   REFUSE(resolution, 1025, VXM_ERROR_RANGE);
   REFUSE(pad, -1, VXM_ERROR_ARGUMENT);
@@ -426,8 +430,11 @@ static void wrong_arguments_are_refused(void **state) {
   REFUSE(noise, (1 << 24) + 1, VXM_ERROR_ARGUMENT);
   REFUSE(mirror, 8, VXM_ERROR_ARGUMENT);
   REFUSE(translate, 1.5, VXM_ERROR_ARGUMENT);
-  REFUSE(voxelize.method, (vxm_method)99, VXM_ERROR_ARGUMENT);
-  REFUSE(voxelize.confidence, true, VXM_ERROR_ARGUMENT);
+  vxm_voxelize_options unknown = VXM_VOXELIZE_OPTIONS_INIT, sure = VXM_VOXELIZE_OPTIONS_INIT;
+  unknown.method = (vxm_method)99;
+  sure.confidence = true;
+  REFUSE(voxelize, &unknown, VXM_ERROR_ARGUMENT);
+  REFUSE(voxelize, &sure, VXM_ERROR_ARGUMENT);
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
   options.fill = true;
   options.rotation = VXM_ROTATION_ANY;
@@ -443,15 +450,19 @@ static void wrong_arguments_are_refused(void **state) {
   vxm_sampler *sampler = sampler_of(NULL, NULL, mesh);
   vxm_variant variant = {0, 0, 0}, absent = {1, 0, 0};
   uint8_t out[8];
-  vxm_pose pose;
-  assert_int_equal(vxm_sampler_bytes(sampler, (vxm_voxels)3), 0);
-  assert_int_equal(vxm_sampler_batch(NULL, sampler, &variant, 1, VXM_VOXELS_PACKED, NULL),
+  vxm_pose pose = VXM_POSE_INIT;
+  assert_int_equal(vxm_sampler_bytes(sampler, (vxm_voxel_format)3), 0);
+  assert_int_equal(vxm_sampler_batch(NULL, sampler, &variant, 1, VXM_VOXEL_FORMAT_PACKED, NULL),
                    VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_sampler_batch(out, NULL, &variant, 1, VXM_VOXELS_PACKED, NULL), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_sampler_batch(out, sampler, NULL, 1, VXM_VOXELS_PACKED, NULL), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_sampler_batch(out, sampler, &variant, 1, (vxm_voxels)7, NULL), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_sampler_batch(out, sampler, &absent, 1, VXM_VOXELS_PACKED, NULL), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_sampler_batch(out, sampler, &variant, 0, VXM_VOXELS_PACKED, NULL), VXM_OK);
+  assert_int_equal(vxm_sampler_batch(out, NULL, &variant, 1, VXM_VOXEL_FORMAT_PACKED, NULL),
+                   VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_sampler_batch(out, sampler, NULL, 1, VXM_VOXEL_FORMAT_PACKED, NULL),
+                   VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_sampler_batch(out, sampler, &variant, 1, (vxm_voxel_format)7, NULL),
+                   VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_sampler_batch(out, sampler, &absent, 1, VXM_VOXEL_FORMAT_PACKED, NULL),
+                   VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_sampler_batch(out, sampler, &variant, 0, VXM_VOXEL_FORMAT_PACKED, NULL), VXM_OK);
   assert_int_equal(vxm_sampler_pose(&pose, sampler, &absent, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_sampler_pose(NULL, sampler, &variant, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_sampler_put(NULL, 0, mesh, NULL), VXM_ERROR_ARGUMENT);
@@ -485,15 +496,15 @@ static void all_ways_to_voxelize_work(void **state) {
         vxm_context *context = context_of(threads);
         vxm_mesh *mesh = mesh_of_model(context, names[m]);
         vxm_sampler_options options = all_options();
+        vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
+        options.voxelize = &how;
         options.resolution = 24;
-        options.voxelize.mode = way < 3 ? (vxm_mode)way : VXM_MODE_SOLID;
-        options.voxelize.method = way == 3   ? VXM_METHOD_WINDING
-                                  : way == 4 ? VXM_METHOD_TETRA
-                                             : VXM_METHOD_VOTE;
-        options.voxelize.vote = way == 5 ? VXM_VOTE_MAJORITY : VXM_VOTE_AUTO;
+        how.mode = way < 3 ? (vxm_mode)way : VXM_MODE_SOLID;
+        how.method = way == 3 ? VXM_METHOD_WINDING : way == 4 ? VXM_METHOD_TETRA : VXM_METHOD_VOTE;
+        how.vote = way == 5 ? VXM_VOTE_MAJORITY : VXM_VOTE_AUTO;
         vxm_sampler *sampler = sampler_of(context, &options, mesh);
-        bytes = 6 * vxm_sampler_bytes(sampler, VXM_VOXELS_UINT8);
-        made[threads - 1] = make(sampler, 0, 6, VXM_VOXELS_UINT8);
+        bytes = 6 * vxm_sampler_bytes(sampler, VXM_VOXEL_FORMAT_UINT8);
+        made[threads - 1] = make(sampler, 0, 6, VXM_VOXEL_FORMAT_UINT8);
         vxm_sampler_destroy(sampler);
         vxm_mesh_destroy(mesh);
         vxm_context_destroy(context);
@@ -518,10 +529,10 @@ static void batches_can_be_cancelled(void **state) {
   vxm_context *context;
   assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
   vxm_sampler *sampler = sampler_of(context, NULL, mesh);
-  uint8_t *out = malloc(4 * vxm_sampler_bytes(sampler, VXM_VOXELS_PACKED));
+  uint8_t *out = malloc(4 * vxm_sampler_bytes(sampler, VXM_VOXEL_FORMAT_PACKED));
   vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(
-      vxm_sampler_batch(out, sampler, (const vxm_variant[4]){{0, 0, 0}}, 4, VXM_VOXELS_PACKED, &error),
+      vxm_sampler_batch(out, sampler, (const vxm_variant[4]){{0, 0, 0}}, 4, VXM_VOXEL_FORMAT_PACKED, &error),
       VXM_ERROR_CANCELLED);
   free(out);
   vxm_sampler_destroy(sampler);
@@ -534,6 +545,8 @@ static void files_hold_the_same(void **state) {
   (void)state;
   enum { FILES = 9 };
   vxm_sampler_options options = all_options();
+  vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
+  options.voxelize = &how;
   vxm_engine *cpu;
   assert_int_equal(vxm_engine_create(&cpu, NULL, "cpu", NULL, NULL), VXM_OK);
   char folder[] = "/tmp/vxm-sampler.XXXXXX", names[FILES][64];
@@ -549,9 +562,9 @@ static void files_hold_the_same(void **state) {
   for (int threads = 1; threads <= 2; threads++) {
     vxm_context *context = context_of(threads);
     vxm_mesh *mesh = mesh_of_model(context, "l_prism");
-    options.voxelize.engine = threads == 1 ? cpu : NULL;
+    how.engine = threads == 1 ? cpu : NULL;
     vxm_sampler *sampler = sampler_of(context, &options, mesh);
-    uint8_t *expected = make(sampler, 0, FILES, VXM_VOXELS_UINT8);
+    uint8_t *expected = make(sampler, 0, FILES, VXM_VOXEL_FORMAT_UINT8);
     assert_int_equal(vxm_sampler_files(paths, sampler, variants, FILES, NULL, written, NULL), VXM_OK);
     for (int i = 0; i < FILES; i++) {
       vxm_grid *grid;
@@ -572,7 +585,7 @@ static void files_hold_the_same(void **state) {
     for (int i = 0; i < FILES; i++)
       assert_int_equal(unlink(paths[i]) == 0, written[i]);
     vxm_grid_write_options wrong = VXM_GRID_WRITE_OPTIONS_INIT;
-    wrong.version = 2;
+    wrong.size = 2;
     assert_int_equal(vxm_sampler_files(paths, sampler, variants, 1, &wrong, NULL, NULL), VXM_ERROR_ARGUMENT);
     assert_int_equal(vxm_sampler_files(NULL, sampler, variants, 1, NULL, NULL, NULL), VXM_ERROR_ARGUMENT);
     assert_int_equal(vxm_sampler_files((const char *[]){NULL}, sampler, variants, 1, NULL, NULL, NULL),

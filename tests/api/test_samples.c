@@ -21,7 +21,7 @@ static void test_census(void **state) {
   for (size_t i = 0; i < model_count; i++) {
     const model *entry = &models[i];
     vxm_mesh *mesh = mesh_of_model(NULL, entry->name);
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     assert_int_equal(vxm_mesh_census(&census, mesh, NULL), VXM_OK);
     EXPECT_COUNT(vertices);
     EXPECT_COUNT(faces);
@@ -50,7 +50,7 @@ static void test_volume_of_clean_models(void **state) {
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     const model *entry = find_model(names[i]);
     vxm_mesh *mesh = mesh_of_model(NULL, names[i]);
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     assert_int_equal(vxm_mesh_census(&census, mesh, NULL), VXM_OK);
     if (!(fabs(census.volume - entry->volume) < 1e-8 * entry->volume))
       fail_msg("%s: volume %.12g, expected %.12g", names[i], census.volume, entry->volume);
@@ -74,9 +74,11 @@ static void test_repair(void **state) {
   (void)state;
   for (size_t i = 0; i < model_count; i++) {
     vxm_mesh *mesh = repaired_model(&models[i]), *again = NULL;
-    vxm_repair_report report;
+    vxm_census before = VXM_CENSUS_INIT;
+    const vxm_census *census = &before;
+    vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+    report.before = &before;
     assert_int_equal(vxm_mesh_repair(&again, &report, mesh, NULL, NULL), VXM_OK);
-    const vxm_census *census = &report.before;
     if (models[i].parts && !census->closed)
       fail_msg("%s: not closed after repair", models[i].name);
     if (census->duplicate_faces || census->opposite_duplicate_faces || census->degenerate_faces ||
@@ -94,13 +96,15 @@ static void test_repair(void **state) {
 
 static vxm_grid *grid_of(const vxm_mesh *mesh, const model *entry, vxm_method method, const vxm_space *like) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = RESOLUTION;
-  options.space.like = like;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = RESOLUTION;
+  space_options.like = like;
   options.method = method;
-  options.parts = entry->parts && strcmp(entry->parts, "whole") == 0 ? VXM_PARTS_WHOLE : VXM_PARTS_AUTO;
+  options.split_mode =
+      entry->parts && strcmp(entry->parts, "whole") == 0 ? VXM_SPLIT_MODE_WHOLE : VXM_SPLIT_MODE_AUTO;
   vxm_grid *grid = NULL;
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_voxelize(&grid, NULL, mesh, &options, &error) != VXM_OK)
+  if (vxm_voxelize(&grid, NULL, mesh, &space_options, &options, &error) != VXM_OK)
     fail_msg("%s: %s", entry->name, error.text);
   return grid;
 }
@@ -113,7 +117,7 @@ static void test_volume_of_voxels(void **state) {
     if (!entry->parts)
       continue;
     vxm_mesh *mesh = repaired_model(entry);
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     assert_int_equal(vxm_mesh_census(&census, mesh, NULL), VXM_OK);
     vxm_grid *grid = grid_of(mesh, entry, VXM_METHOD_VOTE, NULL);
     double h = vxm_grid_space(grid)->voxel_size[0];

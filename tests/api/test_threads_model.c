@@ -19,7 +19,7 @@ enum { JOBS = TASKS * RESOLUTIONS };
 typedef struct outcome {
   vxm_status status;
   uint64_t content;
-  int64_t voxels, contested, escalated, empty_parts, warnings;
+  int64_t voxels, contested, winding_decided, empty_parts, warnings;
 } outcome;
 
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count) {
@@ -32,7 +32,7 @@ static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count) {
 static void take_report(outcome *out, const vxm_voxelize_report *report) {
   out->voxels = report->voxels;
   out->contested = report->contested;
-  out->escalated = report->escalated;
+  out->winding_decided = report->winding_decided;
   out->empty_parts = report->empty_parts;
   out->content = hash_bytes(out->content, &report->hash, sizeof report->hash);
 }
@@ -63,7 +63,7 @@ static vxm_space space_of(int64_t resolution) {
 
 static void do_grid(outcome *out, vxm_model *of, const vxm_space *space, const double transform[12]) {
   vxm_grid *grid = NULL;
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   out->status = vxm_grid_create(&grid, NULL, space, NULL);
   if (out->status == VXM_OK)
     out->status = vxm_model_voxelize(grid, &report, of, transform, NULL);
@@ -76,7 +76,7 @@ static void do_grid(outcome *out, vxm_model *of, const vxm_space *space, const d
 
 static void do_octree(outcome *out, vxm_model *of, const vxm_space *space) {
   vxm_sparse *sparse = NULL;
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   out->status = vxm_model_sparse(&sparse, &report, of, space, NULL, NULL);
   if (out->status == VXM_OK) {
     take_report(out, &report);
@@ -91,27 +91,21 @@ static void do_values(outcome *out, task what, vxm_model *of, const vxm_space *s
   void *values = calloc(voxels, 4);
   vxm_coverage_options halves = VXM_COVERAGE_OPTIONS_INIT;
   halves.subdivision = 2;
-  vxm_coverage_report coverage = {.full = 0};
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+  vxm_coverage_report coverage = {.voxelize = &report};
   vxm_distance_options distances = VXM_DISTANCE_OPTIONS_INIT;
-  vxm_distance_report distance = {.exact = 0};
-  vxm_label_report labels = {.labels = 0};
-  vxm_voxelize_report colors = {.parts = 0};
-  const vxm_voxelize_report *report = NULL;
-  if (what == COVERAGE) {
+  vxm_distance_report distance = {.voxelize = &report};
+  vxm_label_report labels = {.voxelize = &report};
+  if (what == COVERAGE)
     out->status = vxm_model_coverage(values, &coverage, of, space, &halves, NULL);
-    report = &coverage.voxelize;
-  } else if (what == DISTANCE) {
+  else if (what == DISTANCE)
     out->status = vxm_model_distance(values, &distance, of, space, &distances, NULL);
-    report = &distance.voxelize;
-  } else if (what == LABELS) {
+  else if (what == LABELS)
     out->status = vxm_model_labels(values, &labels, of, space, NULL, NULL);
-    report = &labels.voxelize;
-  } else {
-    out->status = vxm_model_colors(values, &colors, of, space, NULL, NULL);
-    report = &colors;
-  }
+  else
+    out->status = vxm_model_colors(values, &report, of, space, NULL, NULL);
   if (out->status == VXM_OK) {
-    take_report(out, report);
+    take_report(out, &report);
     out->content = hash_bytes(out->content, values, 4 * voxels);
   }
   if (out->status == VXM_OK && what == LABELS)
@@ -124,7 +118,7 @@ static outcome do_job(int job, vxm_model *of) {
   outcome out = {.content = UINT64_C(14695981039346656037)};
   vxm_space space = space_of(resolutions[job % RESOLUTIONS]);
   task what = (task)(job / RESOLUTIONS);
-  vxm_estimate estimate;
+  vxm_estimate estimate = VXM_ESTIMATE_INIT;
   switch (what) {
   case GRID:
   case TURNED_GRID:
@@ -135,7 +129,7 @@ static outcome do_job(int job, vxm_model *of) {
     break;
   case ESTIMATE:
     out.status = vxm_model_estimate(&estimate, of, &space, "x.rle", NULL, NULL);
-    out.voxels = out.status == VXM_OK ? estimate.windows : 0;
+    out.voxels = out.status == VXM_OK ? estimate.passes : 0;
     return out;
   default:
     do_values(&out, what, of, &space);
@@ -168,8 +162,8 @@ static void *work(void *payload) {
 
 static void assert_same(const outcome *a, const outcome *b, int job, int thread) {
   if (a->status != b->status || a->content != b->content || a->voxels != b->voxels ||
-      a->contested != b->contested || a->escalated != b->escalated || a->empty_parts != b->empty_parts ||
-      a->warnings != b->warnings)
+      a->contested != b->contested || a->winding_decided != b->winding_decided ||
+      a->empty_parts != b->empty_parts || a->warnings != b->warnings)
     fail_msg(
         "job %d of thread %d: status %d, %d; voxels %lld, %lld; contested %lld, %lld; warnings %lld, %lld",
         job, thread, a->status, b->status, (long long)a->voxels, (long long)b->voxels,
@@ -260,7 +254,7 @@ static void run_methods(vxm_context *context) {
       assert_int_equal(expected[job].status, VXM_OK);
     if (method == VXM_METHOD_VOTE) { /* else the orientation, which is found once, would not be asked for */
       assert_true(expected[GRID * RESOLUTIONS + 2].contested > 0);
-      assert_true(expected[GRID * RESOLUTIONS + 2].escalated > 0);
+      assert_true(expected[GRID * RESOLUTIONS + 2].winding_decided > 0);
     }
   }
   vxm_mesh_destroy(mesh);

@@ -62,6 +62,7 @@ static vxm_mesh *make_torus(vxm_context *context, int missing, int sieve) {
   arrays.vertex_count = VERTICES;
   arrays.offsets = offsets;
   arrays.indices = corners;
+  arrays.index_count = offsets[faces];
   arrays.face_count = faces;
   vxm_mesh *mesh;
   assert_int_equal(vxm_mesh_create(&mesh, context, &arrays, NULL), VXM_OK);
@@ -70,7 +71,7 @@ static vxm_mesh *make_torus(vxm_context *context, int missing, int sieve) {
 
 enum { BATCH = 8, RESOLUTION = 16 };
 
-static void run(vxm_sampler *sampler, void *out, uint32_t first, vxm_voxels voxels) {
+static void run(vxm_sampler *sampler, void *out, uint32_t first, vxm_voxel_format voxels) {
   vxm_variant variants[BATCH];
   for (uint32_t i = 0; i < BATCH; i++)
     variants[i] = (vxm_variant){i % 2, 3, first + i};
@@ -96,11 +97,12 @@ typedef struct load {
 /** Whether the voters of a mesh disagree. */
 static bool is_contested(const vxm_mesh *mesh) {
   vxm_grid *grid;
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
   for (int a = 0; a < 3; a++)
-    options.space.resolution[a] = RESOLUTION;
-  assert_int_equal(vxm_voxelize(&grid, &report, mesh, &options, NULL), VXM_OK);
+    space_options.resolution[a] = RESOLUTION;
+  assert_int_equal(vxm_voxelize(&grid, &report, mesh, &space_options, &options, NULL), VXM_OK);
   vxm_grid_destroy(grid);
   return report.contested > 0;
 }
@@ -109,8 +111,8 @@ static bool takes_none_now(vxm_context *context, vxm_sampler *sampler, vxm_grid 
   size_t before = atomic_load(&taken);
   uint64_t peak = vxm_context_peak_bytes(context);
   for (uint32_t epoch = 100; epoch < 104; epoch++)
-    for (int voxels = VXM_VOXELS_PACKED; voxels <= VXM_VOXELS_FLOAT32; voxels++)
-      run(sampler, out, epoch * BATCH, (vxm_voxels)voxels);
+    for (int voxels = VXM_VOXEL_FORMAT_PACKED; voxels <= VXM_VOXEL_FORMAT_FLOAT32; voxels++)
+      run(sampler, out, epoch * BATCH, (vxm_voxel_format)voxels);
   for (uint32_t epoch = 100; epoch < 104; epoch++)
     run_together(sampler, grid, epoch);
   return atomic_load(&taken) == before && vxm_context_peak_bytes(context) == peak;
@@ -124,6 +126,8 @@ static void takes_none(const load *given) {
   vxm_mesh *closed = make_torus(context, 0, 0), *holed = make_torus(context, given->missing, given->sieve);
   assert_int_equal(is_contested(holed), given->sieve > 0);
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
+  vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
+  options.voxelize = &how;
   options.resolution = RESOLUTION;
   options.rotation = VXM_ROTATION_ANY;
   options.scale = 0.5;
@@ -131,20 +135,20 @@ static void takes_none(const load *given) {
   options.translate = 1;
   options.displace = 0.02;
   options.displacement = VXM_DISPLACEMENT_NORMAL;
-  options.voxelize.mode = given->mode;
-  options.voxelize.surface = given->surface;
-  options.voxelize.method = given->method;
+  how.mode = given->mode;
+  how.surface = given->surface;
+  how.method = given->method;
   vxm_sampler *sampler;
   assert_int_equal(vxm_sampler_create(&sampler, context, &options, NULL), VXM_OK);
   assert_int_equal(vxm_sampler_put(sampler, 0, closed, NULL), VXM_OK);
   assert_int_equal(vxm_sampler_put(sampler, 1, holed, NULL), VXM_OK);
-  void *out = malloc(BATCH * vxm_sampler_bytes(sampler, VXM_VOXELS_FLOAT32));
+  void *out = malloc(BATCH * vxm_sampler_bytes(sampler, VXM_VOXEL_FORMAT_FLOAT32));
   assert_non_null(out);
   vxm_grid *grid;
   vxm_space space = vxm_sampler_space(sampler);
   assert_int_equal(vxm_grid_create(&grid, context, &space, NULL), VXM_OK);
   for (uint32_t epoch = 0; epoch < (uint32_t)given->warm; epoch++) {
-    run(sampler, out, epoch * BATCH, VXM_VOXELS_FLOAT32);
+    run(sampler, out, epoch * BATCH, VXM_VOXEL_FORMAT_FLOAT32);
     run_together(sampler, grid, epoch);
   }
   bool none = false;

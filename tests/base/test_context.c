@@ -222,10 +222,10 @@ static void bad_options(void **state) {
   vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
   vxm_context *context;
   vxm_error error = VXM_ERROR_INIT;
-  options.version = 9;
+  options.size = 2;
   assert_int_equal(vxm_context_create(&context, &options, &error), VXM_ERROR_ARGUMENT);
   assert_null(context);
-  options.version = 1;
+  options.size = sizeof options;
   options.threads = -1;
   assert_int_equal(vxm_context_create(&context, &options, &error), VXM_ERROR_ARGUMENT);
   options.threads = 100000;

@@ -231,7 +231,7 @@ static void assert_one_printable_line(const char *text, size_t room) {
 
 static void messages(void **state) {
   (void)state;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   char noise[2000];
   for (size_t i = 0; i + 1 < sizeof noise; i++)
     noise[i] = (char)(i % 255 + 1);

@@ -41,7 +41,7 @@ say "# --union"
 run 'voxmend repair two.obj -o a.ply --union | facts'
 run 'voxmend repair plate.obj -o a.obj --union | facts'
 run 'voxmend info -v a.obj --intersections | facts'
-run 'voxmend repair plate.obj -o a.ply --union --json -q | grep -E "\"(name|ununited|self_intersections|ununited_parts)\""'
+run 'voxmend repair plate.obj -o a.ply --union --json -q | grep -E "\"(name|union_failed|self_intersections|union_failures)\""'
 run 'voxmend repair two.obj -o a.ply --union --max-change 0.01'
 box inner 0.5 0.5 0.5 1 9 | cat left.obj - >nested.obj
 run 'voxmend repair nested.obj -o a.ply --union | facts'
@@ -101,5 +101,5 @@ run 'voxmend repair two.obj -o a.ply --fill smooth'
 say "# an octahedron: two holes touch at a vertex, where their rim passes twice"
 printf 'OFF\n6 6 0\n1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0 0 1\n0 0 -1\n3 1 2 4\n3 3 0 4\n3 1 0 5\n3 2 1 5\n3 3 2 5\n3 0 3 5\n' >twice.off
 run 'voxmend repair twice.off -o a.ply --level closed --fill smooth | facts; voxmend repair a.ply -o b.ply --level closed --fill smooth -q && cmp a.ply b.ply'
-run 'voxmend repair twice.off -o a.ply --level closed --fill smooth --json -q | grep -E "(unfilled|fanned)_holes"'
+run 'voxmend repair twice.off -o a.ply --level closed --fill smooth --json -q | grep -E "(unfilled_holes|fan_fallbacks)"'
 finish

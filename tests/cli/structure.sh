@@ -12,7 +12,7 @@ complain() {
 }
 
 # What each folder may include comes before it. Within a room the folder of the same name, with its front, is the last.
-order="base mesh sandbox
+order="voxmend base mesh sandbox
   meshio/common meshio/formats meshio/external meshio
   repair/external repair/state repair/clean repair/manifold repair/weld repair/holes repair/exact repair/bodies repair
   grid
@@ -42,10 +42,10 @@ for folder in $order; do
   esac
   pattern=$(echo $allowed | sed 's/ /|/g')
   found=$(grep -nE '#[[:space:]]*include[[:space:]]+"' $(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cc' -o -maxdepth 1 -name '*.inc') |
-    grep -vE "\"(($pattern)/[^/\"]*|voxmend\.h|config\.h|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
+    grep -vE "\"(($pattern)/[^/\"]*|voxmend/[a-z]*\.h|voxmend\.h|config\.h|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
   [ -z "$found" ] || complain "$folder includes what does not come before it" "$found"
 done
-found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' cli | grep -vE '"(cli/[^"]*|voxmend\.h|config\.h)"' || true)
+found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' cli | grep -vE '"(cli/[^"]*|voxmend/experimental\.h|voxmend\.h|config\.h)"' || true)
 [ -z "$found" ] || complain "cli includes more than voxmend.h and its own headers" "$found"
 
 for folder in $order; do

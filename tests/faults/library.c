@@ -60,8 +60,15 @@ static vxm_status use_meshes(made *m) {
                                     3, 7, 6, 3, 0, 4, 7, 8, 9, 10, 8, 11, 9, 0, 1, 11};
   static const char text[] =
       "g a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\ng b\nf 2 3 4\nf 3 1 4\nf 9 9 9\n";
-  vxm_mesh_arrays arrays = {1, VXM_FLOAT64, corners, 12, offsets, indices, 9, NULL, NULL, 0};
-  vxm_census census;
+  vxm_mesh_arrays arrays = {.size = sizeof arrays,
+                            .index_scalar = VXM_INT64,
+                            .vertices = corners,
+                            .vertex_count = 12,
+                            .offsets = offsets,
+                            .indices = indices,
+                            .index_count = sizeof indices / sizeof *indices,
+                            .face_count = 9};
+  vxm_census census = VXM_CENSUS_INIT;
   vxm_status status = vxm_mesh_create(&m->mesh, m->context, &arrays, &m->error);
   if (status == VXM_OK)
     status = vxm_mesh_read_memory(&m->read, m->context, text, strlen(text), "a.obj", &m->error);
@@ -77,8 +84,8 @@ static vxm_status use_repair(made *m) {
   vxm_status status = VXM_OK;
   for (int level = VXM_LEVEL_CLEAN; status == VXM_OK && level <= VXM_LEVEL_CLOSED; level++) {
     vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-    vxm_repair_report report;
-    vxm_verification verification;
+    vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+    vxm_verification verification = VXM_VERIFICATION_INIT;
     options.level = (vxm_level)level;
     options.part_changes = true;
     vxm_mesh_destroy(m->repaired);
@@ -88,7 +95,7 @@ static vxm_status use_repair(made *m) {
       status = vxm_mesh_verify(&verification, m->repaired, &options, &m->error);
   }
   for (int f = 0; status == VXM_OK && f < 4; f++) {
-    vxm_mesh_write_options options = {1, formats[f], f % 2 == 0};
+    vxm_mesh_write_options options = {sizeof(vxm_mesh_write_options), formats[f], f % 2 == 0};
     status = vxm_mesh_write(m->repaired, "/dev/null", &options, &m->error);
   }
   return status;
@@ -99,17 +106,18 @@ static vxm_status use_grids(made *m) {
   vxm_status status = VXM_OK;
   for (int method = VXM_METHOD_VOTE; status == VXM_OK && method <= VXM_METHOD_WINDING; method++) {
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-    options.space.resolution[0] = SIDE;
+    vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+    space_options.resolution[0] = SIDE;
     options.method = (vxm_method)method;
     options.mode = (vxm_mode)(method % 3);
     options.surface = (vxm_surface_kind)(method % 5);
     options.confidence = options.mode == VXM_MODE_SOLID;
     vxm_grid_destroy(m->grid);
-    status = vxm_voxelize(&m->grid, NULL, m->repaired, &options, &m->error);
+    status = vxm_voxelize(&m->grid, NULL, m->repaired, &space_options, &options, &m->error);
     require((status == VXM_OK) == (m->grid != NULL), "a grid comes with success alone");
   }
   for (size_t f = 0; status == VXM_OK && f < sizeof formats / sizeof *formats; f++) {
-    vxm_grid_write_options options = {1, formats[f]};
+    vxm_grid_write_options options = {sizeof(vxm_grid_write_options), formats[f]};
     status = vxm_grid_write(m->grid, "/dev/null", &options, &m->error);
   }
   if (status == VXM_OK)
@@ -125,7 +133,7 @@ static vxm_status use_grids(made *m) {
 
 static vxm_status use_model(made *m) {
   static float values[VOXELS];
-  vxm_color_options by_part = {1, VXM_COLOR_PART, NULL, NULL};
+  vxm_color_options by_part = {sizeof(vxm_color_options), VXM_COLOR_PART, NULL, NULL};
   vxm_status status = vxm_model_create(&m->model, m->mesh, NULL, &m->error);
   if (status == VXM_OK)
     status = vxm_model_voxelize(m->grid, NULL, m->model, NULL, &m->error);
@@ -156,7 +164,7 @@ static vxm_status use_sampler(made *m) {
   if (status == VXM_OK)
     status = vxm_sampler_put(m->sampler, 0, m->repaired, &m->error);
   if (status == VXM_OK)
-    status = vxm_sampler_batch(voxels, m->sampler, variants, 2, VXM_VOXELS_UINT8, &m->error);
+    status = vxm_sampler_batch(voxels, m->sampler, variants, 2, VXM_VOXEL_FORMAT_UINT8, &m->error);
   return status;
 }
 

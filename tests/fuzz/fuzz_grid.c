@@ -45,13 +45,13 @@ static void check_grid(const vxm_grid *grid) {
 
 /** Numbers, where there are some: they can be looked at and made into bits. */
 static void check_field(const vxm_field *field) {
-  vxm_field_range range;
+  vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_threshold_options half = VXM_THRESHOLD_OPTIONS_INIT;
   vxm_grid *grid;
   half.use_at_least = true;
   half.at_least = 0.5;
   fuzz_require(vxm_space_check(&field->space, NULL) == VXM_OK, "the space is one");
-  fuzz_require(vxm_field_measure(&range, field, NULL) == VXM_OK && range.least <= range.greatest,
+  fuzz_require(vxm_field_measure(&range, field, NULL) == VXM_OK && range.min <= range.max,
                "the range is one");
   if (vxm_field_threshold(&grid, field, &half, NULL) != VXM_OK)
     return;

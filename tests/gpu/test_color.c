@@ -109,8 +109,9 @@ static void test_gives_way(void **state) {
   vxm_grid *expected = engine_solid(soup, &space, &options, NULL), *found;
   vxm_engine broken = {.ops = &ops, .context = context, .info = {.name = "opengl:broken"}};
   options.engine = &broken;
-  options.space.like = &space;
-  assert_int_equal(vxm_voxelize(&found, NULL, soup, &options, &error), VXM_ERROR_UNAVAILABLE);
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = &space;
+  assert_int_equal(vxm_voxelize(&found, NULL, soup, &space_options, &options, &error), VXM_ERROR_UNAVAILABLE);
   assert_string_equal(error.text, "the context was lost");
   broken.falls_back = true;
   found = engine_solid(soup, &space, &options, NULL);

@@ -8,7 +8,7 @@
 
 /** By both engines, bit for bit. */
 static void check(const vxm_soup *soup, const vxm_space *space, vxm_voxelize_options options) {
-  vxm_voxelize_report by_cpu, by_gpu;
+  vxm_voxelize_report by_cpu = VXM_VOXELIZE_REPORT_INIT, by_gpu = VXM_VOXELIZE_REPORT_INIT;
   options.engine = NULL;
   vxm_grid *expected = engine_solid(soup, space, &options, &by_cpu);
   options.engine = engine;
@@ -21,8 +21,8 @@ static void check(const vxm_soup *soup, const vxm_space *space, vxm_voxelize_opt
 
 static void check_all(const vxm_soup *soup, const vxm_space *space) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  for (int parts = VXM_PARTS_AUTO; parts <= VXM_PARTS_WHOLE; parts++) {
-    options.parts = (vxm_parts)parts;
+  for (int parts = VXM_SPLIT_MODE_AUTO; parts <= VXM_SPLIT_MODE_WHOLE; parts++) {
+    options.split_mode = (vxm_split_mode)parts;
     options.vote = VXM_VOTE_AUTO;
     for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_TETRA; method++) {
       options.method = (vxm_method)method;
@@ -138,7 +138,7 @@ static void check_exactly(const vxm_soup *soup, const vxm_space *space) {
     exact_unite(want, soup, 0, soup->face_count, space, w);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.method = (vxm_method)(VXM_METHOD_X + w);
-    options.parts = VXM_PARTS_WHOLE;
+    options.split_mode = VXM_SPLIT_MODE_WHOLE;
     options.engine = engine;
     vxm_grid *found = engine_solid(soup, space, &options, NULL);
     assert_grid_is(found, want);
@@ -256,11 +256,12 @@ static void test_limits(void **state) {
   check_all(soup, &space);
   info->block_bytes = 16 * 70 / 2;
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = &space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = &space;
   options.engine = engine;
   vxm_error error = VXM_ERROR_INIT;
   vxm_grid *grid;
-  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &options, &error), VXM_ERROR_RANGE);
+  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &space_options, &options, &error), VXM_ERROR_RANGE);
   assert_non_null(strstr(error.text, "--engine cpu"));
   *info = kept;
   check_all(soup, &space);

@@ -60,7 +60,7 @@ static void check_file(const char *path, const char *name, void *payload) {
   tally *sum = payload;
   const char *resolutions = getenv("VOXMEND_TEST_RESOLUTIONS"), *chosen = getenv("VOXMEND_TEST_METHODS");
   vxm_mesh *raw, *mesh;
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_mesh_read(&raw, context, path, NULL), VXM_OK);
   assert_int_equal(vxm_mesh_repair(&mesh, NULL, raw, NULL, NULL), VXM_OK);
   vxm_mesh_destroy(raw);

@@ -13,7 +13,7 @@ static long long meshes, grids;
 
 static void check_grid(const vxm_mesh *mesh, const char *name, const char *what, vxm_voxelize_options options,
                        vxm_engine *by, const vxm_space *space) {
-  vxm_voxelize_report by_cpu, by_gpu;
+  vxm_voxelize_report by_cpu = VXM_VOXELIZE_REPORT_INIT, by_gpu = VXM_VOXELIZE_REPORT_INIT;
   options.engine = NULL;
   vxm_grid *expected = engine_solid(mesh, space, &options, &by_cpu);
   options.engine = by;

@@ -4,6 +4,7 @@
  * these are the voxels that exact integers find; read and mapped voxels are the same; what cannot be done is
  * refused. */
 #include "gpu_test.h"
+#include "voxmend/experimental.h"
 
 #include "../voxel/surface_oracle.h"
 
@@ -142,7 +143,7 @@ static made run(const vxm_soup *soup, double voxel_size, bool by_voxel, vxm_tran
     if (vxm_published_voxelize(&out.report, published, &error) != VXM_OK)
       fail_msg("%s", error.text);
     memset(out.voxels, 99, out.count);
-    if (vxm_published_take(out.voxels, &ms, published, how, &error) != VXM_OK)
+    if (vxm_published_read(out.voxels, &ms, published, how, &error) != VXM_OK)
       fail_msg("%s", error.text);
     assert_true(ms >= 0 && out.report.kernel_ms > 0 && out.report.work_group > 0);
     assert_int_equal(out.report.triangles, soup->face_count);
@@ -264,18 +265,18 @@ static void test_material(void **state) {
   options.material = 200;
   made plain = run(soup, options.voxel_size, false, VXM_TRANSFER_MAP);
   vxm_published *published;
-  vxm_published_report report;
+  vxm_published_report report = VXM_PUBLISHED_REPORT_INIT;
   assert_int_equal(vxm_published_create(&published, NULL, engine, soup, &options, NULL), VXM_OK);
   uint8_t *voxels = malloc(plain.count), zero = 0;
   assert_non_null(voxels);
-  assert_int_equal(vxm_published_take(voxels, NULL, published, VXM_TRANSFER_READ, NULL), VXM_OK);
+  assert_int_equal(vxm_published_read(voxels, NULL, published, VXM_TRANSFER_READ, NULL), VXM_OK);
   for (size_t i = 0; i < plain.count; i++)
     zero |= voxels[i];
   assert_int_equal(zero, 0); /* none is set before it is voxelized */
   assert_int_equal(vxm_published_voxelize(&report, published, NULL), VXM_OK);
   assert_int_equal(report.tests, 0);
-  assert_int_equal(vxm_published_take(NULL, NULL, published, VXM_TRANSFER_MAP, NULL), VXM_OK);
-  assert_int_equal(vxm_published_take(voxels, NULL, published, VXM_TRANSFER_MAP, NULL), VXM_OK);
+  assert_int_equal(vxm_published_read(NULL, NULL, published, VXM_TRANSFER_MAP, NULL), VXM_OK);
+  assert_int_equal(vxm_published_read(voxels, NULL, published, VXM_TRANSFER_MAP, NULL), VXM_OK);
   for (size_t i = 0; i < plain.count; i++)
     assert_int_equal(voxels[i], plain.voxels[i] ? 200 : 0);
   vxm_published_destroy(published);
@@ -303,7 +304,7 @@ static void test_polygons(void **state) {
   assert_true(space.dims[0] == 10 && space.dims[1] == 10 && space.dims[2] == 1);
   assert_true(space.origin[0] == 0 && space.origin[2] == 0.5 && space.voxel_size[1] == (double)0.6F);
   assert_int_equal(vxm_published_voxelize(NULL, published, NULL), VXM_OK);
-  assert_int_equal(vxm_published_take(voxels, NULL, published, VXM_TRANSFER_MAP, NULL), VXM_OK);
+  assert_int_equal(vxm_published_read(voxels, NULL, published, VXM_TRANSFER_MAP, NULL), VXM_OK);
   for (int i = 0; i < 100; i++)
     assert_int_equal(voxels[i], i % 10 < 4 || i / 10 < 4);
   vxm_published_destroy(published);
@@ -348,9 +349,9 @@ static void test_refused(void **state) {
   refuse(VXM_ERROR_RANGE, soup, engine, &options);
   options.voxel_size = 2e-5; /* and in all: more than 2^49 */
   refuse(VXM_ERROR_RANGE, soup, engine, &options);
-  options.version = 2;
+  options.size = 2;
   refuse(VXM_ERROR_ARGUMENT, soup, engine, &options);
-  options.version = 1;
+  options.size = sizeof options;
   options.voxel_size = 1;
   vxm_engine *cpu;
   assert_int_equal(vxm_engine_create(&cpu, context, "cpu", NULL, NULL), VXM_OK);
@@ -358,9 +359,9 @@ static void test_refused(void **state) {
   vxm_engine_destroy(cpu);
   vxm_published *published;
   assert_int_equal(vxm_published_create(&published, NULL, engine, soup, &options, NULL), VXM_OK);
-  assert_int_equal(vxm_published_take(NULL, NULL, published, VXM_TRANSFER_READ, NULL), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_published_take(NULL, NULL, published, (vxm_transfer)2, NULL), VXM_ERROR_ARGUMENT);
-  assert_int_equal(vxm_published_take(NULL, NULL, NULL, VXM_TRANSFER_MAP, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_published_read(NULL, NULL, published, VXM_TRANSFER_READ, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_published_read(NULL, NULL, published, (vxm_transfer)2, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_published_read(NULL, NULL, NULL, VXM_TRANSFER_MAP, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_published_voxelize(NULL, NULL, NULL), VXM_ERROR_ARGUMENT);
   vxm_published_destroy(published);
   vxm_published_destroy(NULL);

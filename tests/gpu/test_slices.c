@@ -19,10 +19,10 @@ static vxm_engine *engine_with(const vxm_engine_options *options) {
 }
 
 /** How many voxels differ; each lies close to the surface. */
-static int64_t check(const vxm_soup *soup, const vxm_space *space, vxm_engine *by, vxm_parts parts) {
+static int64_t check(const vxm_soup *soup, const vxm_space *space, vxm_engine *by, vxm_split_mode parts) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  vxm_voxelize_report by_cpu, by_gpu;
-  options.parts = parts;
+  vxm_voxelize_report by_cpu = VXM_VOXELIZE_REPORT_INIT, by_gpu = VXM_VOXELIZE_REPORT_INIT;
+  options.split_mode = parts;
   vxm_grid *expected = engine_solid(soup, space, &options, &by_cpu);
   options.engine = by;
   vxm_grid *found = engine_solid(soup, space, &options, &by_gpu);
@@ -50,8 +50,8 @@ static void test_agree(void **state) {
         double high[3] = {44, 40, 75};
         for (int b = 0; b <= 2 * round; b++)
           random_octahedron(soup, &rng, (double[3]){-4, -3, -5}, high, round == 2 && b == 1);
-        for (int parts = VXM_PARTS_AUTO; parts <= VXM_PARTS_WHOLE; parts++, checked++)
-          differing += check(soup, &space, by, (vxm_parts)parts);
+        for (int parts = VXM_SPLIT_MODE_AUTO; parts <= VXM_SPLIT_MODE_WHOLE; parts++, checked++)
+          differing += check(soup, &space, by, (vxm_split_mode)parts);
         vxm_soup_destroy(soup);
       }
       vxm_engine_destroy(by);
@@ -70,7 +70,7 @@ static void test_ties(void **state) {
       vxm_engine *by = engine_with(&options);
       for (int quarters = 0; quarters <= 4; quarters++) {
         vxm_soup *soup = box_with_ties(quarters / 4.0, 0.5);
-        assert_int_equal(check(soup, &space, by, VXM_PARTS_AUTO), 0);
+        assert_int_equal(check(soup, &space, by, VXM_SPLIT_MODE_AUTO), 0);
         vxm_soup_destroy(soup);
       }
       vxm_engine_destroy(by);
@@ -88,9 +88,9 @@ static void test_limits(void **state) {
   vxm_soup *soup = shape_empty(context);
   random_octahedron(soup, &rng, (double[3]){-4, -3, -5}, (double[3]){50, 40, 40}, 0);
   vxm_space space = engine_space(45, 37, 33);
-  assert_int_equal(check(soup, &space, by, VXM_PARTS_AUTO), 0);
+  assert_int_equal(check(soup, &space, by, VXM_SPLIT_MODE_AUTO), 0);
   by->info.block_bytes = 8192; /* tiles of several slices */
-  assert_int_equal(check(soup, &space, by, VXM_PARTS_AUTO), 0);
+  assert_int_equal(check(soup, &space, by, VXM_SPLIT_MODE_AUTO), 0);
   vxm_soup_destroy(soup);
   vxm_engine_destroy(by);
 }
@@ -112,7 +112,7 @@ static void test_displacement(void **state) {
     vxm_engine_destroy(options.engine);
   }
   assert_equal_bits(moved[0], moved[2]);
-  vxm_comparison seeds, away;
+  vxm_comparison seeds = VXM_COMPARISON_INIT, away = VXM_COMPARISON_INIT;
   assert_int_equal(vxm_grid_compare(&seeds, moved[0], moved[1], NULL), VXM_OK);
   assert_int_equal(vxm_grid_compare(&away, still, moved[0], NULL), VXM_OK);
   assert_true(seeds.only_a > 100 && seeds.only_b > 100);

@@ -53,7 +53,7 @@ static void assert_equal_octrees(const vxm_sparse *a, const vxm_sparse *b, const
 /** One mesh by both; the models have the same options. */
 static void check_models(vxm_model *by_cpu, vxm_model *by_gpu, const vxm_space *space,
                          const double *transform, const char *name) {
-  vxm_voxelize_report cpu_report, gpu_report;
+  vxm_voxelize_report cpu_report = VXM_VOXELIZE_REPORT_INIT, gpu_report = VXM_VOXELIZE_REPORT_INIT;
   vxm_sparse *expected = make(by_cpu, space, transform, &cpu_report);
   stages = (vxm_cl_stages){0};
   vxm_sparse *found = make(by_gpu, space, transform, &gpu_report);
@@ -68,7 +68,7 @@ static void check(const vxm_soup *soup, const vxm_space *space, vxm_voxelize_opt
   static const double turned[12] = {0.8, -0.6, 0, 1.5, 0.6, 0.8, 0, -2.25, 0, 0, -1, 9.5};
   char name[96];
   snprintf(name, sizeof name, "%lld x %lld x %lld, method %d, parts %d", (long long)space->dims[0],
-           (long long)space->dims[1], (long long)space->dims[2], options.method, options.parts);
+           (long long)space->dims[1], (long long)space->dims[2], options.method, options.split_mode);
   options.engine = NULL;
   vxm_model *by_cpu = engine_model(soup, &options);
   options.engine = engine;
@@ -81,8 +81,8 @@ static void check(const vxm_soup *soup, const vxm_space *space, vxm_voxelize_opt
 
 static void check_parts(const vxm_soup *soup, const vxm_space *space) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  for (int parts = VXM_PARTS_AUTO; parts <= VXM_PARTS_WHOLE; parts++) {
-    options.parts = (vxm_parts)parts;
+  for (int parts = VXM_SPLIT_MODE_AUTO; parts <= VXM_SPLIT_MODE_WHOLE; parts++) {
+    options.split_mode = (vxm_split_mode)parts;
     options.method = VXM_METHOD_VOTE;
     check(soup, space, options);
     options.method = VXM_METHOD_X;
@@ -239,7 +239,7 @@ static void test_deep(void **state) {
   (void)state;
   vxm_space space = engine_space(1100, 300, 290);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.parts = VXM_PARTS_WHOLE;
+  options.split_mode = VXM_SPLIT_MODE_WHOLE;
   vxm_soup *soup = shape_empty(context);
   shape_torus(soup, 5, 4, 120, 100, (double[3]){500, 200, 150});
   triangle_box(soup, (double[3]){3, 3, 3}, (double[3]){1090, 290, 280}, 0, false);

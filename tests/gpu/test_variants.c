@@ -39,6 +39,8 @@ static void watch(void) {
 /** Everything at once. */
 static vxm_sampler *make_sampler(vxm_mode mode, vxm_method method, vxm_vote vote, vxm_engine *by) {
   vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
+  vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
+  options.voxelize = &how;
   options.resolution = RESOLUTION;
   options.seed = 77;
   options.rotation = VXM_ROTATION_ANY;
@@ -46,10 +48,10 @@ static vxm_sampler *make_sampler(vxm_mode mode, vxm_method method, vxm_vote vote
   options.displace = 0.03;
   options.mirror = 7;
   options.translate = 1;
-  options.voxelize.mode = mode;
-  options.voxelize.method = method;
-  options.voxelize.vote = vote;
-  options.voxelize.engine = by;
+  how.mode = mode;
+  how.method = method;
+  how.vote = vote;
+  how.engine = by;
   vxm_sampler *sampler;
   vxm_error error = VXM_ERROR_INIT;
   if (vxm_sampler_create(&sampler, context, &options, &error) != VXM_OK)
@@ -61,7 +63,7 @@ static void check(const vxm_soup *const soups[], uint32_t soup_count, vxm_mode m
                   vxm_vote vote) {
   vxm_sampler *sampler[2] = {make_sampler(mode, method, vote, NULL),
                              make_sampler(mode, method, vote, engine)};
-  size_t bytes = vxm_sampler_bytes(sampler[0], VXM_VOXELS_PACKED), set = 0;
+  size_t bytes = vxm_sampler_bytes(sampler[0], VXM_VOXEL_FORMAT_PACKED), set = 0;
   uint8_t *out[2] = {malloc(COUNT * bytes), malloc(COUNT * bytes)};
   vxm_variant variants[COUNT];
   vxm_space space = vxm_sampler_space(sampler[0]);
@@ -73,7 +75,7 @@ static void check(const vxm_soup *const soups[], uint32_t soup_count, vxm_mode m
     assert_non_null(out[s]);
     for (uint32_t m = 0; m < soup_count; m++)
       assert_int_equal(vxm_sampler_put(sampler[s], m, soups[m], NULL), VXM_OK);
-    if (vxm_sampler_batch(out[s], sampler[s], variants, COUNT, VXM_VOXELS_PACKED, &error) != VXM_OK)
+    if (vxm_sampler_batch(out[s], sampler[s], variants, COUNT, VXM_VOXEL_FORMAT_PACKED, &error) != VXM_OK)
       fail_msg("%s", error.text);
     assert_int_equal(vxm_grid_create(&grid, context, &space, NULL), VXM_OK);
     assert_int_equal(vxm_sampler_grid(grid, sampler[s], &variants[1], NULL), VXM_OK);
@@ -132,7 +134,7 @@ static void test_variants(void **state) {
 static void save(uint8_t *out, vxm_sampler *sampler, uint32_t model, uint32_t index) {
   vxm_variant variant = {model, 1, index};
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_sampler_batch(out, sampler, &variant, 1, VXM_VOXELS_PACKED, &error) != VXM_OK)
+  if (vxm_sampler_batch(out, sampler, &variant, 1, VXM_VOXEL_FORMAT_PACKED, &error) != VXM_OK)
     fail_msg("%s", error.text);
 }
 
@@ -149,15 +151,17 @@ static void test_shared_engine(void **state) {
   for (int s = 0; s < SAMPLERS; s++)
     for (int by = 0; by < 2; by++) {
       vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
+      vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
+      options.voxelize = &how;
       options.resolution = RESOLUTION;
       options.seed = (uint64_t)s;
       options.rotation = VXM_ROTATION_ANY;
       options.displace = 0.02 * s;
       options.noise = s == 1 ? 70 : 500;
-      options.voxelize.engine = by ? engine : NULL;
+      how.engine = by ? engine : NULL;
       assert_int_equal(vxm_sampler_create(&samplers[s][by], context, &options, NULL), VXM_OK);
     }
-  size_t bytes = vxm_sampler_bytes(samplers[0][0], VXM_VOXELS_PACKED);
+  size_t bytes = vxm_sampler_bytes(samplers[0][0], VXM_VOXEL_FORMAT_PACKED);
   uint8_t *out[2] = {malloc(bytes), malloc(bytes)};
   vxm_rng rng = {8};
   for (uint32_t round = 0; round < ROUNDS; round++) {

@@ -199,7 +199,7 @@ static void test_compare(void **state) {
           only_a += in_a && !in_b;
           only_b += !in_a && in_b;
         }
-    vxm_comparison c;
+    vxm_comparison c = VXM_COMPARISON_INIT;
     assert_int_equal(vxm_grid_compare(&c, a, b, NULL), VXM_OK);
     assert_int_equal(c.both, both);
     assert_int_equal(c.only_a, only_a);
@@ -212,7 +212,7 @@ static void test_compare(void **state) {
     vxm_grid_destroy(b);
   }
   vxm_grid *a = new_grid(context, unit_space(64, 2, 3)), *b = new_grid(context, unit_space(64, 3, 2));
-  vxm_comparison c;
+  vxm_comparison c = VXM_COMPARISON_INIT;
   vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(vxm_grid_compare(&c, a, b, &error), VXM_ERROR_ARGUMENT);
   assert_non_null(strstr(error.text, "64x2x3"));

@@ -249,14 +249,14 @@ static uint64_t morton(const int64_t at[3]) {
 
 static void add_piece(const vxm_sparse_piece *piece, void *payload) {
   tally *t = payload;
-  assert_true(morton(piece->at) + 1 > t->last);
-  t->last = morton(piece->at) + 1;
+  assert_true(morton(piece->position) + 1 > t->last);
+  t->last = morton(piece->position) + 1;
   assert_true(piece->side == 4 || piece->bits == ~UINT64_C(0));
   for (int64_t z = 0; z < piece->side; z++)
     for (int64_t y = 0; y < piece->side; y++)
       for (int64_t x = 0; x < piece->side; x++)
         if (piece->side > 4 || (piece->bits >> (16 * z + 4 * y + x) & 1)) {
-          int64_t i = piece->at[0] + x, j = piece->at[1] + y, k = piece->at[2] + z;
+          int64_t i = piece->position[0] + x, j = piece->position[1] + y, k = piece->position[2] + z;
           assert_false(vxm_grid_get(t->grid, i, j, k));
           vxm_grid_set(t->grid, i, j, k, true);
         }

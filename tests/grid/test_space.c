@@ -20,6 +20,7 @@ static int setup(void **state) {
   arrays.vertices = vertices;
   arrays.vertex_count = 4; /* the last one is used by no face and must not count */
   arrays.indices = indices;
+  arrays.index_count = 3;
   arrays.face_count = 1;
   return vxm_mesh_create(&mesh, NULL, &arrays, NULL) != VXM_OK;
 }
@@ -138,7 +139,7 @@ static void assert_refused(vxm_space_options o, vxm_status status) {
 static void test_refusals(void **state) {
   (void)state;
   vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
-  o.version = 2;
+  o.size = 2;
   assert_refused(o, VXM_ERROR_ARGUMENT);
   o = (vxm_space_options)VXM_SPACE_OPTIONS_INIT;
   o.resolution[0] = 4;
@@ -176,6 +177,7 @@ static void test_nothing_to_fit(void **state) {
   arrays.vertices = (double[]){7, 7, 7};
   arrays.vertex_count = 1;
   arrays.indices = (int64_t[]){0, 0, 0};
+  arrays.index_count = 3;
   arrays.face_count = 1;
   assert_int_equal(vxm_mesh_create(&point, NULL, &arrays, NULL), VXM_OK);
   assert_int_equal(vxm_space_fit(&space, point, NULL, NULL), VXM_ERROR_EMPTY);

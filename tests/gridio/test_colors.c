@@ -91,7 +91,7 @@ static void test_ply(void **state) {
   assert_int_equal(stated, faces);
   assert_int_equal(size, (size_t)(end - (char *)bytes) + faces * (4 * 15 + 17));
   vxm_mesh *mesh; /* its faces turn outward, and enclose as much as there are voxels */
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_mesh_read_memory(&mesh, context, bytes, size, "x.ply", NULL), VXM_OK);
   assert_int_equal(vxm_mesh_census(&census, mesh, NULL), VXM_OK);
   int64_t voxels = 0;

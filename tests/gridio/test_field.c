@@ -62,7 +62,7 @@ static void check_estimate(const vxm_estimate *told, int kind, vxm_context *cont
                            uint64_t limit) {
   assert_int_equal(told->grid_bytes,
                    (uint64_t)(space.dims[0] * space.dims[1] * space.dims[2]) * size_of(kind));
-  assert_int_equal(told->windows > 1, limit > 0);
+  assert_int_equal(told->passes > 1, limit > 0);
   uint64_t taken = vxm_context_peak_bytes(context) - held;
   if (taken > told->memory_bytes || (limit > 0 && told->memory_bytes > limit))
     fail_msg("kind %d took %llu bytes, and %llu were told", kind, (unsigned long long)taken,
@@ -107,7 +107,7 @@ static void test_files_equal_arrays(void **state) {
       const char *path = path_in(folder, is_nrrd ? "x.nrrd" : "x.npy");
       if (round == 0)
         assert_int_equal(make(kind, model, values, NULL, &error), VXM_OK);
-      vxm_estimate told;
+      vxm_estimate told = VXM_ESTIMATE_INIT;
       assert_int_equal(tell(&told, kind, model, path), VXM_OK);
       assert_int_equal(count_files(folder), 0);
       uint64_t held = atomic_load(&context->used);

@@ -36,7 +36,7 @@ typedef struct wanted {
 static int64_t write_within(vxm_context *own, vxm_model *model, const char *path, size_t left,
                             const wanted *want) {
   const vxm_space *space = &want->grid->space;
-  vxm_estimate estimate;
+  vxm_estimate estimate = VXM_ESTIMATE_INIT;
   vxm_error error = VXM_ERROR_INIT;
   leave_memory(own, left);
   size_t held = memory_used(own);
@@ -44,7 +44,7 @@ static int64_t write_within(vxm_context *own, vxm_model *model, const char *path
   int files = count_files(want->folder);
   vxm_status told = vxm_model_estimate(&estimate, model, space, path, NULL, &error);
   assert_int_equal(count_files(want->folder), files);
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_status status = vxm_model_write(&report, model, space, path, NULL, &error);
   assert_true(status == told || (!want->told && told == VXM_OK));
   leave_memory(own, SIZE_MAX);
@@ -60,7 +60,7 @@ static int64_t write_within(vxm_context *own, vxm_model *model, const char *path
   }
   assert_true(estimate.memory_bytes <= left);
   assert_int_equal(estimate.grid_bytes, vxm_space_bytes(space));
-  assert_in_range(estimate.windows, 1, 1 << 20);
+  assert_in_range(estimate.passes, 1, 1 << 20);
   if (want->told && peak > held + estimate.memory_bytes)
     fail_msg("%s took %llu bytes, and %llu were told", path, (unsigned long long)(peak - held),
              (unsigned long long)estimate.memory_bytes);
@@ -68,7 +68,7 @@ static int64_t write_within(vxm_context *own, vxm_model *model, const char *path
   assert_equal_reports(&report, want->report);
   assert_same_warnings(model, want->grid);
   remove(path);
-  return estimate.windows;
+  return estimate.passes;
 }
 
 /** With less and less memory, down to too little. Returns the most windows. */
@@ -77,7 +77,7 @@ static int64_t write_in_less_and_less(const vxm_soup *soup, const vxm_voxelize_o
   vxm_context *own = soup->context;
   /* Fresh models: what one has kept need not be taken again. */
   vxm_model *model = engine_model(soup, options);
-  vxm_estimate estimate;
+  vxm_estimate estimate = VXM_ESTIMATE_INIT;
   assert_int_equal(vxm_model_estimate(&estimate, model, &want->grid->space, path, NULL, NULL), VXM_OK);
   int64_t windows = write_within(own, model, path, SIZE_MAX, want), most = windows;
   assert_int_equal(windows, 1);
@@ -98,7 +98,7 @@ static void check_formats(const vxm_voxelize_options *options, int kind, const v
   char folder[64], whole[100], path[100];
   make_folder(folder);
   vxm_soup *soup = random_soup(context, 7, kind, space);
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_grid *grid = engine_solid(soup, space, options, &report);
   for (int f = 0; f < FORMATS; f++) {
     snprintf(whole, sizeof whole, "%s/whole.%s", folder, formats[f]);
@@ -176,13 +176,13 @@ static void test_what_needs_the_whole_grid(void **state) {
       options.mode = what == 1 ? VXM_MODE_BOTH : VXM_MODE_SOLID;
       options.confidence = what == 2;
       vxm_soup *soup = random_soup(context, 8, 5 + n % 3, &space);
-      vxm_voxelize_report want, report;
+      vxm_voxelize_report want = VXM_VOXELIZE_REPORT_INIT, report = VXM_VOXELIZE_REPORT_INIT;
       vxm_grid *grid = engine_solid(soup, &space, &options, &want);
       assert_int_equal(vxm_gridio_write(grid, whole, NULL, NULL), VXM_OK);
       vxm_model *model = engine_model(soup, &options);
-      vxm_estimate estimate;
+      vxm_estimate estimate = VXM_ESTIMATE_INIT;
       assert_int_equal(vxm_model_estimate(&estimate, model, &space, path, NULL, NULL), VXM_OK);
-      assert_int_equal(estimate.windows, 1);
+      assert_int_equal(estimate.passes, 1);
       assert_int_equal(vxm_model_write(&report, model, &space, path, NULL, NULL), VXM_OK);
       assert_same_file(whole, path);
       assert_equal_reports(&want, &report);

@@ -58,7 +58,7 @@ static result write_file(const char *path, const vxm_voxelize_options *options, 
   vxm_estimate estimate = {0};
   if (vxm_model_estimate(&estimate, model, &space, path, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
-  result r = {.windows = estimate.windows};
+  result r = {.windows = estimate.passes};
   if (vxm_model_write(&r.report, model, &space, path, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   assert_true(limit == 0 || vxm_context_peak_bytes(context) <= limit);
@@ -82,9 +82,10 @@ static vxm_grid *make_whole(vxm_context *context, const vxm_voxelize_options *op
                             vxm_voxelize_report *report) {
   vxm_soup *soup = make_soup(context);
   vxm_voxelize_options given = *options;
-  given.space.like = &space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = &space;
   vxm_grid *grid;
-  assert_int_equal(vxm_voxelize(&grid, report, soup, &given, NULL), VXM_OK);
+  assert_int_equal(vxm_voxelize(&grid, report, soup, &space_options, &given, NULL), VXM_OK);
   vxm_soup_destroy(soup);
   return grid;
 }
@@ -108,7 +109,7 @@ static uint64_t limit_for(const char *path, const vxm_voxelize_options *options,
 
 static void check_mode(const vxm_voxelize_options *options, const char *folder) {
   vxm_context *context = context_with(2, 0, NULL, NULL);
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_grid *grid = make_whole(context, options, &report);
   assert_true(report.voxels > 1000);
   for (int f = 0; f < FORMATS; f++) {
@@ -123,7 +124,7 @@ static void check_mode(const vxm_voxelize_options *options, const char *folder) 
       assert_true(r.report.hash == report.hash);
       assert_int_equal(r.report.voxels, report.voxels);
       assert_int_equal(r.report.contested, report.contested);
-      assert_int_equal(r.report.escalated, report.escalated);
+      assert_int_equal(r.report.winding_decided, report.winding_decided);
       assert_int_equal(r.report.empty_parts, report.empty_parts);
     }
   }
@@ -156,7 +157,7 @@ static vxm_grid *make_mode(vxm_context *context, vxm_mode mode, vxm_surface_kind
   options.mode = mode;
   options.surface = kind;
   options.confidence = confidence;
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   return make_whole(context, &options, &report);
 }
 

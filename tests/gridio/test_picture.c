@@ -302,7 +302,7 @@ static void test_options(void **state) {
   vxm_picture_options bad[9];
   for (int b = 0; b < 9; b++)
     bad[b] = options;
-  bad[0].version = 2;
+  bad[0].size = 2;
   bad[1].width = -1;
   bad[2].height = 16385;
   bad[3].azimuth = NAN;

@@ -6,7 +6,7 @@
 #include <math.h>
 
 static vxm_census census_of(const vxm_soup *soup) {
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
   return census;
 }
@@ -253,7 +253,7 @@ static void not_finite_and_empty(void **state) {
 static void same_for_any_threads(void **state) {
   (void)state;
   static const int threads[3] = {1, 2, 7};
-  vxm_census first;
+  vxm_census first = VXM_CENSUS_INIT;
   for (int t = 0; t < 3; t++) {
     vxm_context *context = context_of_threads(threads[t]);
     vxm_soup *sheet = grid_sheet(context, 200);

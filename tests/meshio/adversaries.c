@@ -19,7 +19,7 @@ static bytes repeated(const char *head, const char *piece) {
 
 static void read_any(bytes *b, const char *name) {
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   if (read_bytes(&soup, b->data, b->size, name, &error) == VXM_OK)
     vxm_soup_destroy(soup);
   bytes_free(b);

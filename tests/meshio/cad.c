@@ -67,7 +67,7 @@ static void test_stool(void **state) {
     assert_string_equal(soup->format, "step");
     expect_no_notes(soup);
     expect_tags(soup, tags);
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
     assert_true(census.watertight);
     assert_int_equal(census.components, 5);
@@ -93,7 +93,7 @@ static void test_deflection(void **state) {
   size_t faces_before = 0;
   for (size_t d = 0; d < sizeof deflections / sizeof *deflections; d++) {
     vxm_soup *soup = read_with(&b, "a.step", deflections[d]);
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
     assert_true(census.watertight);
     double missing = seat_volume + legs_volume - census.volume;
@@ -119,7 +119,7 @@ static void test_units(void **state) {
   bytes b = scene_bytes(scene_write_step),
         metres = replaced(&b, "SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT($,.METRE.)");
   vxm_soup *soup = read_with(&metres, "a.step", 0);
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
   assert_true(fabs(census.bounds[5] - 1000.0 * (STOOL_LEG + STOOL_SEAT)) < 1e-3);
   vxm_soup_destroy(soup);

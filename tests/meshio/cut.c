@@ -180,7 +180,7 @@ static bool is_face(const vxm_soup *soup, size_t face, const file *f, const shap
 static void check_cut(const file *f, const shape *s, const char *name, size_t size) {
   size_t whole = 0;
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   while (whole < QUADS && f->face_end[whole] < size) /* with at least a line end behind it, in a text */
     whole++;
   vxm_status status = read_bytes(&soup, f->b.data, size, name, &error);

@@ -55,7 +55,7 @@ static inline vxm_soup *read_in_process(const char *name, const char *hint, cons
 /** Bounds, volume and closedness of what was read. */
 static inline void expect_body(const vxm_soup *soup, const double bounds[6], double volume,
                                double tolerance) {
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
   assert_true(census.watertight);
   assert_int_equal(census.inconsistent_edges, 0);
@@ -91,7 +91,7 @@ static inline bytes scene_bytes(bool (*write)(FILE *)) {
 static inline bool survives(const bytes *b, const char *name) {
   enum { SECONDS = 20 };
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   alarm(SECONDS); /* a hang ends the program, and so fails */
   vxm_status status = read_bytes(&soup, b->data, b->size, name, &error);
   alarm(0);

@@ -154,7 +154,7 @@ static void add_head(bytes *b, const head *h, uint32_t announced) {
 
 static void expect_stl(const bytes *b, const char *name, size_t facets, const head *h) {
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   if (read_bytes(&soup, b->data, b->size, name, &error) != VXM_OK)
     fail_msg("%s with the header \"%.20s\" is refused: %s", name, h->text, error.text);
   if (strcmp(soup->format, "stl binary") != 0 || soup->face_count != facets)

@@ -91,7 +91,7 @@ static inline vxm_status read_bytes(vxm_soup **soup, const void *data, size_t si
 
 static inline vxm_soup *read_data(const void *data, size_t size, const char *name) {
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   if (read_bytes(&soup, data, size, name, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return soup;
@@ -105,7 +105,7 @@ static inline vxm_soup *read_text(const char *text, const char *name) {
 static inline void read_fails(const void *data, size_t size, const char *name, vxm_status expected,
                               const char *part) {
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   vxm_status status = read_bytes(&soup, data, size, name, &error);
   if (status != expected || !strstr(error.text, part))
     fail_msg("status %d, message \"%s\", expected \"%s\"", status, error.text, part);

@@ -254,7 +254,7 @@ static void test_random_files(void **state) {
     vxm_soup_destroy(back);
     /* Any beginning of it is read as far as it goes, or refused in one line. */
     for (int k = 0; k < 10; k++) {
-      vxm_error error;
+      vxm_error error = VXM_ERROR_INIT;
       size_t size = (size_t)vxm_rng_below(&rng, text.size);
       if (read_bytes(&back, text.data, size, "x.off", &error) == VXM_OK) {
         assert_true(back->face_count <= soup->face_count);

@@ -304,7 +304,7 @@ static void test_random_binary(void **state) {
     assert_string_equal(back->format, big ? "ply binary_big_endian" : "ply binary_little_endian");
     vxm_soup_destroy(back);
     for (int k = 0; k < 10; k++) {
-      vxm_error error;
+      vxm_error error = VXM_ERROR_INIT;
       if (read_bytes(&back, b.data, (size_t)vxm_rng_below(&rng, b.size), "x.ply", &error) == VXM_OK)
         vxm_soup_destroy(back);
     }

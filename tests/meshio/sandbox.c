@@ -48,7 +48,7 @@ static vxm_status ask(vxm_soup **soup, vxm_context *context, const char *data, s
 
 static void fails(const char *word, vxm_status expected, const char *part) {
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   vxm_status status = ask(&soup, NULL, word, strlen(word), &error);
   if (status != expected || !strstr(error.text, part))
     fail_msg("%s: status %d, \"%s\"; expected \"%s\"", word, status, error.text, part);
@@ -60,7 +60,7 @@ static void test_soup(void **state) {
   for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
     char *data = calloc(sizes[i], 1);
     vxm_soup *soup;
-    vxm_error error;
+    vxm_error error = VXM_ERROR_INIT;
     if (ask(&soup, NULL, data, sizes[i], &error) != VXM_OK)
       fail_msg("%s", error.text);
     expect_counts(soup, sizes[i] + 2, sizes[i]);
@@ -88,7 +88,7 @@ static void test_failures(void **state) {
   fails("huge", VXM_ERROR_FORMAT, "what the reading process sent is damaged");
   fails("lies", VXM_ERROR_FORMAT, "what the reading process sent is damaged");
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(ask(&soup, NULL, "print", 5, &error), VXM_OK);
   expect_counts(soup, 7, 5);
   vxm_soup_destroy(soup);
@@ -116,7 +116,7 @@ static void test_memory(void **state) {
   options.memory_limit = 64 << 20;
   vxm_context *context;
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
   assert_int_equal(ask(&soup, context, "take", 4, &error), VXM_ERROR_MEMORY_LIMIT);
   assert_non_null(strstr(error.text, "more than 32 MiB"));
@@ -161,7 +161,7 @@ static void test_cancel(void **state) {
       options.payload = &told;
       vxm_context *context;
       vxm_soup *soup;
-      vxm_error error;
+      vxm_error error = VXM_ERROR_INIT;
       assert_int_equal(vxm_context_create(&context, &options, NULL), VXM_OK);
       double start = vxm_clock_ms();
       assert_int_equal(ask(&soup, context, words[w], 4, &error), VXM_ERROR_CANCELLED);
@@ -270,7 +270,7 @@ static void test_attempts(void **state) {
 static void test_surroundings(void **state) {
   (void)state;
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   int open_here = open("/dev/null", O_RDONLY); /* to be inherited */
   assert_true(open_here > STDERR_FILENO);
   setenv("VOXMEND_SECRET", "secret", 1);
@@ -383,7 +383,7 @@ static void test_ignored_children(void **state) {
   (void)state;
   void (*before)(int) = signal(SIGCHLD, SIG_IGN);
   vxm_soup *soup;
-  vxm_error error;
+  vxm_error error = VXM_ERROR_INIT;
   assert_int_equal(ask(&soup, NULL, "any", 3, &error), VXM_OK);
   vxm_soup_destroy(soup);
   fails("fail", VXM_ERROR_FORMAT, "as the file wants");

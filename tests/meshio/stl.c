@@ -228,7 +228,7 @@ static void test_random_files(void **state) {
     expect_no_notes(back);
     vxm_soup_destroy(back);
     for (int k = 0; k < 10; k++) {
-      vxm_error error;
+      vxm_error error = VXM_ERROR_INIT;
       if (read_bytes(&back, b.data, (size_t)vxm_rng_below(&rng, b.size), "x.stl", &error) == VXM_OK)
         vxm_soup_destroy(back);
     }

@@ -55,9 +55,16 @@ static inline void assert_same_soup(const vxm_soup *a, const vxm_soup *b) {
     assert_memory_equal(a->face_tags, b->face_tags, a->face_count * sizeof *a->face_tags);
 }
 
+/** A report, and room for the censuses of both meshes. */
+#define REPAIR_REPORT(name)                                                   \
+  vxm_census name##_before = VXM_CENSUS_INIT, name##_after = VXM_CENSUS_INIT; \
+  vxm_repair_report name = VXM_REPAIR_REPORT_INIT;                            \
+  name.before = &name##_before;                                               \
+  name.after = &name##_after
+
 /** Repairing the result again must find nothing and give the same arrays. */
 static inline void assert_repair_is_done(const vxm_soup *soup, const vxm_repair_options *options) {
-  vxm_repair_report report;
+  vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
   vxm_soup *again = repaired(soup, options, &report);
   for (int i = 0; i < report.pass_count; i++)
     if (report.passes[i].count != 0)

@@ -162,7 +162,7 @@ static inline void assert_closed_manifold(const vxm_soup *soup) {
 /** And also when it is read back and welded every edge has an even number of faces. */
 static inline void assert_solid(const vxm_soup *soup) {
   assert_closed_manifold(soup);
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
   assert_true(census.closed);
   assert_int_equal(count_meetings(soup), 0);

@@ -69,7 +69,7 @@ static bool in_boxes(const cell_box *boxes, int count, const int cell[3]) {
 }
 
 static double area_of(const vxm_soup *soup) {
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
   return census.area;
 }
@@ -353,15 +353,16 @@ static void a_lone_cavity(void **state) {
 static void check_voxels(const vxm_soup *soup, const vxm_soup *out, double voxels_off) {
   vxm_grid *grids[2];
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = 64;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = 64;
   vxm_space space;
-  assert_int_equal(vxm_space_fit(&space, soup, &options.space, NULL), VXM_OK);
-  options.space.like = &space;
-  assert_int_equal(vxm_voxelize(&grids[0], NULL, soup, &options, NULL), VXM_OK);
-  options.parts = VXM_PARTS_WHOLE;
+  assert_int_equal(vxm_space_fit(&space, soup, &space_options, NULL), VXM_OK);
+  space_options.like = &space;
+  assert_int_equal(vxm_voxelize(&grids[0], NULL, soup, &space_options, &options, NULL), VXM_OK);
+  options.split_mode = VXM_SPLIT_MODE_WHOLE;
   options.method = VXM_METHOD_Y;
-  assert_int_equal(vxm_voxelize(&grids[1], NULL, out, &options, NULL), VXM_OK);
-  vxm_comparison comparison;
+  assert_int_equal(vxm_voxelize(&grids[1], NULL, out, &space_options, &options, NULL), VXM_OK);
+  vxm_comparison comparison = VXM_COMPARISON_INIT;
   assert_int_equal(vxm_grid_compare(&comparison, grids[0], grids[1], NULL), VXM_OK);
   double off = (double)(comparison.only_a + comparison.only_b);
   if (off > voxels_off * (double)comparison.both)

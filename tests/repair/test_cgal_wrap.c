@@ -146,7 +146,7 @@ static void far_apart(void **state) {
   vxm_soup *out = wrap(soup, 0.5, 0.05);
   assert_solid(out);
   assert_contains(out, soup);
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   assert_int_equal(vxm_soup_census(&census, out, NULL), VXM_OK);
   assert_int_equal(census.components, 2);
   assert_true(volume_of(out) > 2 && volume_of(out) < 3);
@@ -232,7 +232,7 @@ static void shared_meshes(void **state) {
       continue;
     fclose(file);
     vxm_soup *soup = read_soup(context, path);
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
     double alpha = distance_between(census.bounds, census.bounds + 3) / 15;
     vxm_soup *out = wrap(soup, alpha, alpha / 20);
@@ -248,7 +248,7 @@ static void any_size(void **state) {
   (void)state;
   static const int powers[] = {500, -500, 1000, -900};
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-  vxm_repair_report report;
+  vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
   options.wrap_alpha = 0.1;
   vxm_soup *ball = new_soup(context);
   add_ball(ball, (double[]){3, 0, 0}, 1, 8, &upright, false);

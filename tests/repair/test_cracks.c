@@ -80,11 +80,11 @@ static void torn_sphere_closes(void **state) {
       vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
       options.weld = given ? VXM_WELD_TOLERANCE : VXM_WELD_AUTO;
       options.weld_tolerance = 2 * jitters[i];
-      vxm_repair_report report;
+      REPAIR_REPORT(report);
       vxm_soup *out = repaired(soup, &options, &report);
-      assert_int_equal(report.before.boundary_edges, 3 * whole->face_count);
-      assert_true(report.after.watertight && report.after.closed);
-      assert_int_equal(report.after.components, 1);
+      assert_int_equal(report.before->boundary_edges, 3 * whole->face_count);
+      assert_true(report.after->watertight && report.after->closed);
+      assert_int_equal(report.after->components, 1);
       assert_int_equal(out->vertex_count, whole->vertex_count);
       assert_int_equal(out->face_count, whole->face_count);
       assert_int_equal(count_of(&report, "tolerant_weld"), soup->vertex_count - whole->vertex_count);
@@ -93,7 +93,7 @@ static void torn_sphere_closes(void **state) {
       vxm_soup_destroy(out);
       options.weld = VXM_WELD_OFF;
       out = repaired(soup, &options, &report);
-      assert_int_equal(report.after.boundary_edges, 3 * whole->face_count);
+      assert_int_equal(report.after->boundary_edges, 3 * whole->face_count);
       vxm_soup_destroy(out);
       vxm_soup_destroy(soup);
     }
@@ -109,9 +109,9 @@ static void any_size_of_model(void **state) {
       vxm_soup *soup = torn(whole, wide ? 5e-3 : 1e-7);
       for (size_t c = 0; c < 3 * soup->vertex_count; c++)
         soup->positions[c] *= sizes[i];
-      vxm_repair_report report;
+      REPAIR_REPORT(report);
       vxm_soup *out = repaired(soup, NULL, &report);
-      assert_int_equal(report.after.watertight, !wide);
+      assert_int_equal(report.after->watertight, !wide);
       assert_repair_is_done(out, NULL);
       vxm_soup_destroy(out);
       vxm_soup_destroy(soup);
@@ -127,12 +127,12 @@ static void wide_cracks_are_left(void **state) {
     vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
     options.weld = VXM_WELD_TOLERANCE;
     options.weld_tolerance = 0.0015 * step;
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     vxm_soup *out = repaired(soup, &options, &report);
     check_distances(soup, out, options.weld_tolerance);
     assert_repair_is_done(out, &options);
-    assert_true(step > 1 || !report.after.watertight);
-    assert_true(step < 12 || report.after.watertight);
+    assert_true(step > 1 || !report.after->watertight);
+    assert_true(step < 12 || report.after->watertight);
     vxm_soup_destroy(out);
     /* far wider than what can come from rounding: nothing is done without being asked */
     out = repaired(soup, NULL, &report);
@@ -153,7 +153,7 @@ static vxm_soup *two_panels(vxm_context *context, double gap) {
 }
 
 static int64_t auto_merges(vxm_soup *soup) {
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *out = repaired(soup, NULL, &report);
   assert_repair_is_done(out, NULL);
   vxm_soup_destroy(out);

@@ -28,7 +28,7 @@ static vxm_soup *read_file(const files *f, const char *path) {
 }
 
 static void check_idle(const vxm_soup *soup, const vxm_repair_options *options, const char *path, int trial) {
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *again = repaired(soup, options, &report);
   for (int i = 0; i < report.pass_count; i++) {
     const char *pass = report.passes[i].pass;
@@ -45,7 +45,7 @@ static void check_idle(const vxm_soup *soup, const vxm_repair_options *options, 
 static void check(files *f, const vxm_soup *soup, vxm_repair_options options, int trial) {
   for (int i = 0; i < FORMATS; i++) {
     vxm_mesh_write_options write = VXM_MESH_WRITE_OPTIONS_INIT;
-    vxm_verification found;
+    vxm_verification found = VXM_VERIFICATION_INIT;
     vxm_error error = VXM_ERROR_INIT;
     options.single_precision = i == 0;
     vxm_soup *out = repaired(soup, &options, NULL);
@@ -110,7 +110,7 @@ static void bodies_stay_closed(void **state) {
   vxm_rng rng = {78};
   for (int trial = 0; trial < 200; trial++) {
     vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     options.level = (vxm_level)(trial % 3);
     options.single_precision = trial % 2;
     options.part_changes = true;
@@ -120,12 +120,12 @@ static void bodies_stay_closed(void **state) {
       soup->positions[i] = soup->positions[i] * scale + shift;
     vxm_soup *out = repaired(soup, &options, &report);
     assert_int_equal(report.opened_parts, 0);
-    assert_true(report.after.closed || out->face_count == 0);
+    assert_true(report.after->closed || out->face_count == 0);
     double slack =
-        1e-6 + (options.single_precision ? 3 * report.before.area * 0x1p-23 * (shift + 3 * scale) : 0);
-    assert_true(fabs(report.after.volume - report.before.volume) <= slack);
+        1e-6 + (options.single_precision ? 3 * report.before->area * 0x1p-23 * (shift + 3 * scale) : 0);
+    assert_true(fabs(report.after->volume - report.before->volume) <= slack);
     if (options.level > VXM_LEVEL_CLEAN && out->face_count > 0)
-      assert_true(report.after.watertight);
+      assert_true(report.after->watertight);
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
   }

@@ -96,10 +96,10 @@ static void boxes_turn_outward(void **state) {
     for (int f = 0; f < 6; f++)
       if (mask >> f & 1)
         reverse_face(soup, (size_t)f);
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     vxm_soup *out = oriented(soup, &report);
-    assert_int_equal(report.after.inconsistent_edges, 0);
-    assert_true(fabs(report.after.volume - 1) < 1e-12);
+    assert_int_equal(report.after->inconsistent_edges, 0);
+    assert_true(fabs(report.after->volume - 1) < 1e-12);
     assert_int_equal(count_of(&report, "orientation"), __builtin_popcount((unsigned)mask));
     assert_int_equal(report.nonorientable_patches, 0);
     vxm_soup_destroy(out);
@@ -123,9 +123,9 @@ static void cavities_stay(void **state) {
       if (flips) /* one face of six in each box */
         for (int i = 0; i < LEVELS; i++)
           reverse_face(soup, (size_t)(6 * i + (mask + i) % 6));
-      vxm_repair_report report;
+      REPAIR_REPORT(report);
       vxm_soup *out = oriented(soup, &report);
-      assert_int_equal(report.after.inconsistent_edges, 0);
+      assert_int_equal(report.after->inconsistent_edges, 0);
       bool wanted = false; /* inward */
       for (int i = 0; i < LEVELS; i++) {
         bool against = i > 0 && ((mask >> i ^ mask >> (i - 1)) & 1);
@@ -144,10 +144,10 @@ static void boxes_that_share_an_edge(void **state) {
     vxm_soup *soup = new_soup(*state);
     add_box(soup, 0, 0, 0, 1, mask & 1);
     add_box(soup, 2, 2, 0, 1, mask >> 1);
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     vxm_soup *out = repaired(soup, NULL, &report);
-    assert_int_equal(report.after.nonmanifold_edges, 1);
-    assert_true(fabs(report.after.volume - 16) < 1e-9);
+    assert_int_equal(report.after->nonmanifold_edges, 1);
+    assert_true(fabs(report.after->volume - 16) < 1e-9);
     assert_repair_is_done(out, NULL);
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
@@ -159,9 +159,9 @@ static void sheets_keep_their_side(void **state) {
     for (int round = 0; round < 5; round++) {
       vxm_soup *soup = grid_sheet(*state, 12);
       flip_some(soup, side ? 0.7 : 0.3, (uint64_t)round);
-      vxm_repair_report report;
+      REPAIR_REPORT(report);
       vxm_soup *out = oriented(soup, &report);
-      assert_int_equal(report.after.inconsistent_edges, 0);
+      assert_int_equal(report.after->inconsistent_edges, 0);
       /* counter-clockwise from above before the flips */
       const double *a = vxm_position(out, out->indices[0]), *b = vxm_position(out, out->indices[1]);
       const double *c = vxm_position(out, out->indices[2]);
@@ -188,10 +188,10 @@ static void moebius_bands_are_reported(void **state) {
   }
   add_cube(soup, 5);
   for (int round = 0; round < 3; round++) {
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     vxm_soup *out = oriented(soup, &report);
     assert_int_equal(report.nonorientable_patches, 1);
-    assert_int_equal(report.after.inconsistent_edges, 1);
+    assert_int_equal(report.after->inconsistent_edges, 1);
     if (round == 0) /* it has the fewest possible already */
       assert_int_equal(count_of(&report, "orientation"), 0);
     vxm_soup_destroy(out);
@@ -219,7 +219,7 @@ static void small_random_soups(void **state) {
       while (c == a || c == b);
       add_triangle(soup, a, b, c);
     }
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     vxm_soup *out = repaired(soup, NULL, &report);
     assert_repair_is_done(out, NULL);
     size_t fewest = SIZE_MAX;
@@ -239,7 +239,7 @@ static void small_random_soups(void **state) {
       fewest = wrong < fewest ? wrong : fewest;
     }
     if (out->face_count > 0) {
-      assert_int_equal(fewest == 0, report.after.inconsistent_edges == 0);
+      assert_int_equal(fewest == 0, report.after->inconsistent_edges == 0);
       assert_int_equal(fewest == 0, report.nonorientable_patches == 0);
       orientable += fewest == 0;
       others += fewest != 0;
@@ -256,19 +256,20 @@ static void flip_real_mesh(const shared_mesh *mesh, void *payload) {
   vxm_context *context = context_of_threads(2);
   vxm_soup *soup = read_soup(context, mesh->path);
   if (soup->face_count < 60000) {
-    vxm_repair_report report, again;
+    REPAIR_REPORT(report);
+    REPAIR_REPORT(again);
     vxm_soup *clean = repaired(soup, NULL, &report);
-    if (report.after.closed && report.after.nonmanifold_edges == 0 && report.nonorientable_patches == 0) {
+    if (report.after->closed && report.after->nonmanifold_edges == 0 && report.nonorientable_patches == 0) {
       vxm_soup *flipped;
       assert_int_equal(vxm_soup_copy(&flipped, clean, NULL), VXM_OK);
       size_t flips = flip_some(flipped, 0.3, 1);
       vxm_soup *out = oriented(flipped, &again);
-      assert_int_equal(again.after.inconsistent_edges, 0);
+      assert_int_equal(again.after->inconsistent_edges, 0);
       if (memcmp(out->indices, clean->indices, clean->corner_count * sizeof *clean->indices) == 0)
         assert_int_equal(count_of(&again, "orientation"), flips);
       else
-        print_message("%s: not as it was; volume %g, was %g\n", mesh->values[0], again.after.volume,
-                      report.after.volume);
+        print_message("%s: not as it was; volume %g, was %g\n", mesh->values[0], again.after->volume,
+                      report.after->volume);
       count[0]++;
       count[1] += memcmp(out->indices, clean->indices, clean->corner_count * sizeof *clean->indices) == 0;
       vxm_soup_destroy(out);

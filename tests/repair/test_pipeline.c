@@ -125,7 +125,7 @@ static void check_faces(const vxm_soup *in, const vxm_soup *out, const vxm_repai
                         int64_t shared) {
   size_t next = 0;
   int64_t repeated = 0;
-  vxm_census before;
+  vxm_census before = VXM_CENSUS_INIT;
   assert_int_equal(vxm_soup_census(&before, in, NULL), VXM_OK);
   vxm_unit_scale frame = vxm_unit_scale_of(before.bounds);
   for (size_t f = 0; f < in->face_count; f++) {
@@ -178,14 +178,14 @@ static void check_counts(const vxm_soup *in, const vxm_soup *out, const vxm_repa
 }
 
 static void check_repair(const vxm_soup *in, const vxm_repair_options *options, bool triangles) {
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *out = repaired(in, options, &report);
   assert_repair_is_done(out, options);
   check_counts(in, out, &report, triangles);
   check_faces(in, out, options, report.shared_faces);
-  check_flat_faces(out, &report.after);
-  assert_int_equal(report.after.unused_vertices, 0);
-  assert_int_equal(report.after.components, report.after.components_raw);
+  check_flat_faces(out, report.after);
+  assert_int_equal(report.after->unused_vertices, 0);
+  assert_int_equal(report.after->components, report.after->components_raw);
   for (uint32_t v = 0; v < out->vertex_count; v++)
     assert_int_equal(first_of_position(out, v), v);
   if (options->keep_duplicates) {
@@ -193,7 +193,7 @@ static void check_repair(const vxm_soup *in, const vxm_repair_options *options, 
     assert_int_equal(vxm_weld_exact(in->context, in->positions, in->vertex_count, map, NULL, NULL), VXM_OK);
     assert_true(odd_edges(out, NULL) <= odd_edges(in, map));
   } else
-    assert_int_equal(report.after.duplicate_faces + report.after.opposite_duplicate_faces,
+    assert_int_equal(report.after->duplicate_faces + report.after->opposite_duplicate_faces,
                      report.shared_faces);
   vxm_soup_destroy(out);
 }
@@ -244,10 +244,10 @@ static void random_tolerances(void **state) {
     options.weld = VXM_WELD_TOLERANCE;
     options.weld_tolerance = 0.1 * (double)vxm_rng_below(&rng, 4);
     options.keep_duplicates = round % 2;
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     vxm_soup *out = repaired(soup, &options, &report);
     assert_repair_is_done(out, &options);
-    assert_int_equal(report.after.nonfinite_vertices, 0);
+    assert_int_equal(report.after->nonfinite_vertices, 0);
     merged += count_of(&report, "tolerant_weld");
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
@@ -303,7 +303,7 @@ static void stops_at_limit_and_when_asked(void **state) {
     vxm_rng rng = {9};
     vxm_soup *soup = random_soup(context, &rng, 2000, 4000, 10, 4), *out;
     vxm_error error = VXM_ERROR_INIT;
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     vxm_status status = vxm_repair_run(&out, step % 2 ? &report : NULL, soup, NULL, &error);
     assert_int_equal(status, error.code);
     assert_int_equal(status == VXM_OK, out != NULL);

@@ -79,13 +79,13 @@ static void torn_torus_closes(void **state) {
   static const double parts[] = {1e-5, 3e-5, 1e-4, 1.4e-4};
   for (int i = 0; i < 4; i++) {
     vxm_soup *soup = torn(whole, parts[i] * sqrt(76), 0, 0, 5);
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     vxm_soup *out = repaired(soup, NULL, &report);
-    assert_int_equal(report.before.boundary_edges, 3 * whole->face_count);
-    assert_true(report.after.watertight);
-    assert_int_equal(report.after.inconsistent_edges, 0);
+    assert_int_equal(report.before->boundary_edges, 3 * whole->face_count);
+    assert_true(report.after->watertight);
+    assert_int_equal(report.after->inconsistent_edges, 0);
     assert_int_equal(out->vertex_count, whole->vertex_count);
-    check_groups(soup, out, 5e-4 * diagonal_of(&report.before));
+    check_groups(soup, out, 5e-4 * diagonal_of(report.before));
     assert_repair_is_done(out, NULL);
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
@@ -97,12 +97,12 @@ static void torn_torus_closes(void **state) {
 static void doubled_and_removed(void **state) {
   vxm_soup *whole = torus(*state, 60, 30);
   vxm_soup *soup = torn(whole, 1e-4 * sqrt(76), 0.01, 0.2, 3);
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *out = repaired(soup, NULL, &report);
   int64_t holes = (int64_t)whole->face_count - (int64_t)out->face_count;
   assert_true(holes > 0 && holes < 60);
-  assert_true(report.after.boundary_edges <= 3 * holes);
-  assert_int_equal(report.after.nonmanifold_edges, 0);
+  assert_true(report.after->boundary_edges <= 3 * holes);
+  assert_int_equal(report.after->nonmanifold_edges, 0);
   assert_repair_is_done(out, NULL);
   vxm_soup_destroy(out);
   vxm_soup_destroy(soup);
@@ -110,7 +110,7 @@ static void doubled_and_removed(void **state) {
 }
 
 static void expect_untouched(vxm_soup *soup) {
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *out = repaired(soup, NULL, &report);
   assert_int_equal(count_of(&report, "tolerant_weld"), 0);
   assert_int_equal(out->face_count, soup->face_count);
@@ -212,16 +212,16 @@ static void tear_real_mesh(const shared_mesh *mesh, void *payload) {
   if (!listed)
     return;
   vxm_soup *soup = read_soup(payload, mesh->path);
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *clean = repaired(soup, NULL, &report);
-  assert_true(report.after.watertight);
+  assert_true(report.after->watertight);
   for (size_t f = 0; f < clean->face_count; f++)
     assert_int_equal(clean->offsets[f], 3 * f);
-  vxm_soup *apart = torn(clean, 1e-4 * diagonal_of(&report.after), 0, 0, 1);
+  vxm_soup *apart = torn(clean, 1e-4 * diagonal_of(report.after), 0, 0, 1);
   vxm_soup *out = repaired(apart, NULL, &report);
   print_message("%s: %lld of %lld boundary edges are left\n", mesh->values[0],
-                (long long)report.after.boundary_edges, (long long)report.before.boundary_edges);
-  assert_true(1000 * report.after.boundary_edges <= report.before.boundary_edges);
+                (long long)report.after->boundary_edges, (long long)report.before->boundary_edges);
+  assert_true(1000 * report.after->boundary_edges <= report.before->boundary_edges);
   assert_int_equal(out->face_count, clean->face_count);
   assert_repair_is_done(out, NULL);
   vxm_soup_destroy(out);

@@ -30,9 +30,9 @@ static void check_written_and_read(const travel *t, const vxm_soup *soup, const 
 static void repair_mesh(const shared_mesh *mesh, void *payload) {
   const travel *t = payload;
   vxm_soup *soup = read_soup(t->context, mesh->path);
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *out = repaired(soup, NULL, &report);
-  const vxm_census *before = &report.before, *after = &report.after;
+  const vxm_census *before = report.before, *after = report.after;
   bool fine = after->duplicate_faces == report.shared_faces && after->opposite_duplicate_faces == 0 &&
               after->unused_vertices == 0 && after->nonfinite_vertices == 0 &&
               after->components == after->components_raw &&
@@ -76,9 +76,9 @@ static void check_closing(const shared_mesh *mesh, void *payload) {
   if (strcmp(mesh->values[0], c->file) != 0)
     return;
   vxm_soup *soup = read_soup(c->context, mesh->path);
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *out = repaired(soup, NULL, &report);
-  c->boundary = report.before.boundary_edges > 0 ? report.after.boundary_edges : -2;
+  c->boundary = report.before->boundary_edges > 0 ? report.after->boundary_edges : -2;
   vxm_soup_destroy(out);
   vxm_soup_destroy(soup);
 }

@@ -57,7 +57,7 @@ static void check_scene(vxm_context *context, const body *bodies, size_t count, 
                !(faces < options.drop_faces || (closed && b->size * b->size * b->size < options.drop_volume));
     dropped += stays[i] ? 0 : faces;
   }
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_repair_options keep = options;
   keep.drop_faces = 0;
   keep.drop_volume = 0;
@@ -132,7 +132,7 @@ static void parts_are_welded_first(void **state) {
   }
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   options.drop_faces = 54;
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *out = repaired(soup, &options, &report);
   assert_int_equal(out->face_count, 108);
   vxm_soup_destroy(out);
@@ -160,13 +160,13 @@ static void cavity_without_its_shell(void **state) {
   }
   add_box(soup, 10, 5, 4, false);
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   vxm_soup *out = repaired(soup, &options, &report);
-  assert_true(fabs(report.after.volume - (27 - 1 + 125)) < 1e-9);
+  assert_true(fabs(report.after->volume - (27 - 1 + 125)) < 1e-9);
   vxm_soup_destroy(out);
   options.drop_faces = 50;
   out = repaired(soup, &options, &report);
-  assert_true(fabs(report.after.volume - (1 + 125)) < 1e-9);
+  assert_true(fabs(report.after->volume - (1 + 125)) < 1e-9);
   assert_repair_is_done(out, &options);
   vxm_soup_destroy(out);
   vxm_soup_destroy(soup);

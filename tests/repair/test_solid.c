@@ -49,12 +49,12 @@ static void solids_of_boxes(void **state) {
   for (int round = 0; round < 30; round++) {
     double volume;
     vxm_soup *soup = random_boxes(&rng, 1 + round / 3, &volume);
-    vxm_repair_report report;
+    vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
     options.single_precision = round % 2 == 0;
     vxm_soup *out = repair(soup, &options, &report);
     assert_true(report.self_intersections_before == (int64_t)count_meetings(soup));
     assert_int_equal(report.self_intersections_after, 0);
-    assert_int_equal(report.ununited_parts, 0);
+    assert_int_equal(report.union_failures, 0);
     assert_solid(out);
     assert_true(fabs(volume_of(out) - volume) < 1e-4 * volume);
     vxm_soup_destroy(out);
@@ -67,7 +67,7 @@ static void open_parts_among_them(void **state) {
   (void)state;
   vxm_rng rng = {4};
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-  options.unite = options.part_changes = options.intersections = true;
+  options.boolean_union = options.part_changes = options.intersections = true;
   for (int round = 0; round < 20; round++) {
     double volume;
     vxm_soup *soup = random_boxes(&rng, 5, &volume);
@@ -81,22 +81,22 @@ static void open_parts_among_them(void **state) {
       add_triangle(soup, first, first + 1, first + 2);
       first += 3;
     }
-    vxm_repair_report report;
+    vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
     vxm_soup *out = repair(soup, &options, &report);
     const vxm_part_change *parts = out->part_changes;
     int64_t left = 0, sheets = 0;
     for (size_t p = 0; p < out->part_count; p++) {
-      bool crossed = parts[p].after.self_intersections > 0;
-      assert_true(!crossed || parts[p].ununited);
-      left += parts[p].ununited;
-      if (parts[p].before.closed)
+      bool crossed = parts[p].after->self_intersections > 0;
+      assert_true(!crossed || parts[p].union_failed);
+      left += parts[p].union_failed;
+      if (parts[p].before->closed)
         continue;
       sheets++;
-      assert_int_equal(parts[p].after.faces, 1);
-      assert_true(parts[p].ununited == (parts[p].before.self_intersections > 0));
+      assert_int_equal(parts[p].after->faces, 1);
+      assert_true(parts[p].union_failed == (parts[p].before->self_intersections > 0));
     }
     assert_int_equal(sheets, 2);
-    assert_int_equal(report.ununited_parts, left);
+    assert_int_equal(report.union_failures, left);
     /* without the sheets it is the union */
     vxm_soup *closed = new_soup(context);
     for (size_t v = 0; v < out->vertex_count; v++)
@@ -123,8 +123,8 @@ static void what_is_not_to_be_combined(void **state) {
     vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
     options.wrap_alpha = 0.1;
     options.fill_holes = i == 0 ? -1 : 0;
-    options.fill = i == 1 ? VXM_FILL_SMOOTH : VXM_FILL_FAN;
-    options.unite = i == 2;
+    options.hole_fill = i == 1 ? VXM_HOLE_FILL_SMOOTH : VXM_HOLE_FILL_FAN;
+    options.boolean_union = i == 2;
     options.max_change = i == 3 ? 0.1 : 0;
     assert_int_equal(vxm_repair_run(&out, NULL, soup, &options, NULL), VXM_ERROR_ARGUMENT);
   }

@@ -37,14 +37,14 @@ static vxm_soup *cubes(vxm_context *context, int count, const double (*at)[3], i
 
 static int64_t remains_of(const vxm_verification *found, const char *what) {
   for (int i = 0; i < found->count; i++)
-    if (strcmp(found->remains[i].what, what) == 0)
-      return found->remains[i].count;
+    if (strcmp(found->findings[i].what, what) == 0)
+      return found->findings[i].count;
   return 0;
 }
 
 static vxm_verification verified(const vxm_soup *soup, vxm_level level) {
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-  vxm_verification found;
+  vxm_verification found = VXM_VERIFICATION_INIT;
   options.level = level;
   assert_int_equal(vxm_verify(&found, soup, &options, NULL), VXM_OK);
   assert_int_equal(found.reached, found.count == 0);
@@ -72,14 +72,16 @@ static void levels(void **state) {
   assert_true(verified(soup, VXM_LEVEL_CLEAN).reached);
   found = verified(soup, VXM_LEVEL_MANIFOLD);
   assert_int_equal(remains_of(&found, "nonmanifold_edges"), 1);
-  assert_true(found.remains[0].at[0] == 1 && found.remains[0].at[1] == 1 && found.remains[0].at[2] == 0.5);
+  assert_true(found.findings[0].position[0] == 1 && found.findings[0].position[1] == 1 &&
+              found.findings[0].position[2] == 0.5);
   vxm_soup_destroy(soup);
 
   soup = cubes(*state, 2, corner, 0);
   found = verified(soup, VXM_LEVEL_MANIFOLD);
   assert_int_equal(found.count, 1);
   assert_int_equal(remains_of(&found, "nonmanifold_vertices"), 1);
-  assert_true(found.remains[0].at[0] == 1 && found.remains[0].at[1] == 1 && found.remains[0].at[2] == 1);
+  assert_true(found.findings[0].position[0] == 1 && found.findings[0].position[1] == 1 &&
+              found.findings[0].position[2] == 1);
   vxm_soup_destroy(soup);
 
   soup = cubes(*state, 1, one, 0);
@@ -183,7 +185,7 @@ static void defects_as_counted(void **state) {
   vxm_rng rng = {8};
   for (int trial = 0; trial < 500; trial++) {
     vxm_soup *soup = random_soup(*state, &rng, 3 + vxm_rng_below(&rng, 10), vxm_rng_below(&rng, 16), 3, 6);
-    vxm_census census;
+    vxm_census census = VXM_CENSUS_INIT;
     vxm_defects *found;
     assert_int_equal(vxm_soup_census(&census, soup, NULL), VXM_OK);
     assert_int_equal(vxm_defects_find(&found, soup, 0, false, NULL), VXM_OK);
@@ -221,36 +223,36 @@ static void parts_add_up(void **state) {
   for (int trial = 0; trial < 500; trial++) {
     vxm_soup *soup = random_soup(*state, &rng, 3 + vxm_rng_below(&rng, 14), vxm_rng_below(&rng, 16), 4, 6);
     vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-    vxm_repair_report report;
+    REPAIR_REPORT(report);
     options.part_changes = true;
     options.fill_holes = trial % 2 ? -1 : 0;
     tag_faces(soup);
     vxm_soup *out = repaired(soup, &options, &report);
-    assert_int_equal(out->part_count, report.before.components);
+    assert_int_equal(out->part_count, report.before->components);
     assert_parts_of_origin(soup, out);
     vxm_part_state before = {0}, after = {0};
     int64_t flipped = 0;
     for (size_t i = 0; i < out->part_count; i++) {
       const vxm_part_change *part = &out->part_changes[i];
-      before.faces += part->before.faces;
-      before.boundary_edges += part->before.boundary_edges;
-      before.nonmanifold_edges += part->before.nonmanifold_edges;
-      before.inconsistent_edges += part->before.inconsistent_edges;
-      after.faces += part->after.faces;
-      after.boundary_edges += part->after.boundary_edges;
-      after.nonmanifold_edges += part->after.nonmanifold_edges;
-      after.area += part->after.area;
+      before.faces += part->before->faces;
+      before.boundary_edges += part->before->boundary_edges;
+      before.nonmanifold_edges += part->before->nonmanifold_edges;
+      before.inconsistent_edges += part->before->inconsistent_edges;
+      after.faces += part->after->faces;
+      after.boundary_edges += part->after->boundary_edges;
+      after.nonmanifold_edges += part->after->nonmanifold_edges;
+      after.area += part->after->area;
       flipped += part->flipped;
-      assert_true(part->moved == 0 || options.weld != VXM_WELD_OFF);
+      assert_true(part->max_displacement == 0 || options.weld != VXM_WELD_OFF);
     }
-    assert_int_equal(before.faces, report.before.faces);
-    assert_int_equal(before.boundary_edges, report.before.boundary_edges);
-    assert_int_equal(before.nonmanifold_edges, report.before.nonmanifold_edges);
-    assert_int_equal(before.inconsistent_edges, report.before.inconsistent_edges);
-    assert_int_equal(after.faces, report.after.faces);
-    assert_int_equal(after.boundary_edges, report.after.boundary_edges);
-    assert_int_equal(after.nonmanifold_edges, report.after.nonmanifold_edges);
-    assert_true(fabs(after.area - report.after.area) <= 1e-9 * (1 + report.after.area));
+    assert_int_equal(before.faces, report.before->faces);
+    assert_int_equal(before.boundary_edges, report.before->boundary_edges);
+    assert_int_equal(before.nonmanifold_edges, report.before->nonmanifold_edges);
+    assert_int_equal(before.inconsistent_edges, report.before->inconsistent_edges);
+    assert_int_equal(after.faces, report.after->faces);
+    assert_int_equal(after.boundary_edges, report.after->boundary_edges);
+    assert_int_equal(after.nonmanifold_edges, report.after->nonmanifold_edges);
+    assert_true(fabs(after.area - report.after->area) <= 1e-9 * (1 + report.after->area));
     assert_int_equal(flipped, count_of(&report, "orientation"));
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
@@ -263,12 +265,12 @@ static void moved_and_bounded(void **state) {
   add_vertex(soup, 1.0, 1.0, 1.25); /* a spike that the tolerance takes away again */
   add_triangle(soup, 7, 8, 6);
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   options.weld = VXM_WELD_TOLERANCE;
   options.weld_tolerance = 0.3;
   options.part_changes = true;
   vxm_soup *out = repaired(soup, &options, &report);
-  assert_true(report.moved == 0.25);
+  assert_true(report.max_displacement == 0.25);
   vxm_soup_destroy(out);
   options.max_change = 0.01;
   vxm_error error = VXM_ERROR_INIT;
@@ -321,7 +323,7 @@ static void unreached_leaves_nothing(void **state) {
   vxm_soup *open = cubes(*state, 1, one, 1), *closed = cubes(*state, 1, one, 0);
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   vxm_mesh_write_options write = VXM_MESH_WRITE_OPTIONS_INIT;
-  vxm_verification found;
+  vxm_verification found = VXM_VERIFICATION_INIT;
   vxm_error error = VXM_ERROR_INIT;
   char path[] = "verify-XXXXXX.ply";
   int descriptor = mkstemps(path, 4);
@@ -368,7 +370,7 @@ static void after_separation(void **state) {
     }
     for (int single = 0; single < 2; single++) {
       vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-      vxm_repair_report report;
+      REPAIR_REPORT(report);
       options.level = VXM_LEVEL_CLOSED;
       options.part_changes = true;
       options.single_precision = single;
@@ -376,8 +378,8 @@ static void after_separation(void **state) {
       int64_t faces = turned == 0 ? 0 : turned == 1 ? 1 : 6;
       assert_int_equal(count_of(&report, "orientation"), faces * (single ? 2 : 1));
       assert_int_equal(out->part_changes[0].flipped, faces * (single ? 2 : 1));
-      assert_true(fabs(report.after.volume - 2) < 1e-5);
-      vxm_verification found;
+      assert_true(fabs(report.after->volume - 2) < 1e-5);
+      vxm_verification found = VXM_VERIFICATION_INIT;
       assert_int_equal(vxm_verify(&found, out, &options, NULL), VXM_OK);
       assert_true(found.reached);
       assert_repair_is_done(out, &options);
@@ -398,9 +400,9 @@ static void elements_of_the_file(void **state) {
   assert_int_equal(remains_of(&found, "repeated_corners"), 1);
   assert_int_equal(remains_of(&found, "duplicate_faces"), 1);
   for (int i = 0; i < found.count; i++) {
-    assert_true(found.remains[i].placed);
-    if (strcmp(found.remains[i].what, "repeated_corners") == 0)
-      assert_int_equal(found.remains[i].element, 6);
+    assert_true(found.findings[i].placed);
+    if (strcmp(found.findings[i].what, "repeated_corners") == 0)
+      assert_int_equal(found.findings[i].element, 6);
   }
   vxm_soup_destroy(soup);
   /* an open edge behind a face that would go */
@@ -410,7 +412,7 @@ static void elements_of_the_file(void **state) {
   add_box(soup, 4, 0, 0, 1, 1);
   found = verified(soup, VXM_LEVEL_CLOSED);
   assert_int_equal(remains_of(&found, "boundary_edges"), 4);
-  assert_int_equal(found.remains[0].element, 8); /* the second box begins with face 7, which has none */
+  assert_int_equal(found.findings[0].element, 8); /* the second box begins with face 7, which has none */
   vxm_soup_destroy(soup);
   soup = cubes(*state, 1, one, 0);
   uint32_t kept = soup->indices[9];
@@ -418,8 +420,8 @@ static void elements_of_the_file(void **state) {
   soup->indices[11] = kept;
   found = verified(soup, VXM_LEVEL_CLEAN);
   assert_int_equal(found.count, 1);
-  assert_string_equal(found.remains[0].what, "orientation");
-  assert_int_equal(found.remains[0].element, 2);
+  assert_string_equal(found.findings[0].what, "orientation");
+  assert_int_equal(found.findings[0].element, 2);
   vxm_soup_destroy(soup);
 }
 
@@ -428,11 +430,11 @@ static void options_are_checked(void **state) {
   static const double one[1][3] = {{0, 0, 0}};
   vxm_soup *soup = cubes(*state, 1, one, 0);
   vxm_repair_options keep = VXM_REPAIR_OPTIONS_INIT, wrap = keep, version = keep;
-  vxm_verification found;
+  vxm_verification found = VXM_VERIFICATION_INIT;
   keep.keep_orientation = true;
   keep.level = VXM_LEVEL_CLOSED;
   wrap.wrap_alpha = NAN;
-  version.version = 2;
+  version.size = 2;
   assert_int_equal(vxm_mesh_verify(&found, soup, &keep, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_mesh_verify(&found, soup, &wrap, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_mesh_verify(&found, soup, &version, NULL), VXM_ERROR_ARGUMENT);
@@ -455,17 +457,17 @@ static void joined_parts(void **state) {
   }
   add_triangle(soup, first, first + 1, first + 2);
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
-  vxm_repair_report report;
+  REPAIR_REPORT(report);
   options.part_changes = true;
   vxm_soup *out = repaired(soup, &options, &report);
   assert_int_equal(out->part_count, 2);
   const vxm_part_change *box = &out->part_changes[0], *half = &out->part_changes[1];
-  assert_int_equal(box->before.boundary_edges, 4);
-  assert_int_equal(half->before.boundary_edges, 3);
+  assert_int_equal(box->before->boundary_edges, 4);
+  assert_int_equal(half->before->boundary_edges, 3);
   /* of the box's rim two edges are left open, of the triangle's the long one */
-  assert_int_equal(box->after.boundary_edges, 2);
-  assert_int_equal(half->after.boundary_edges, 1);
-  assert_int_equal(report.after.boundary_edges, 3);
+  assert_int_equal(box->after->boundary_edges, 2);
+  assert_int_equal(half->after->boundary_edges, 1);
+  assert_int_equal(report.after->boundary_edges, 3);
   vxm_soup_destroy(out);
   vxm_soup_destroy(soup);
 }

@@ -108,18 +108,18 @@ static inline int cell_of_point(const manner *how, const double p[3]) {
 /** Voxelizes, and counts voxels of the bodies that are clear and others that are set. */
 static inline int count_wrong(const vxm_soup *soup, const manner *how, const bool wanted[CELLS]) {
   enum { FINE = 28 };
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  vxm_space_options place = VXM_SPACE_OPTIONS_INIT;
   vxm_space space = {.dims = {SIDE, SIDE, SIDE}, .voxel_size = {1, 1, 1}};
   for (int a = 0; a < 3 && how != &squares && !how->triangles; a++) {
     space.dims[a] = FINE;
     space.voxel_size[a] = 0.75;
     space.origin[a] = -FINE / 2 * 0.75 + 0.01;
   }
-  options.space.like = &space;
+  place.like = &space;
   vxm_grid *grid;
   vxm_error error = VXM_ERROR_INIT;
   int wrong = 0;
-  if (vxm_voxelize(&grid, NULL, soup, &options, &error) != VXM_OK)
+  if (vxm_voxelize(&grid, NULL, soup, &place, NULL, &error) != VXM_OK)
     fail_msg("%s", error.text);
   for (int64_t z = 0; z < space.dims[2]; z++)
     for (int64_t y = 0; y < space.dims[1]; y++)

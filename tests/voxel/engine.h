@@ -147,17 +147,18 @@ static inline vxm_grid *engine_solid(const vxm_soup *soup, const vxm_space *spac
   vxm_error error = VXM_ERROR_INIT;
   vxm_grid *grid;
   vxm_voxelize_options chosen = *options;
-  chosen.space.like = space;
-  if (vxm_voxelize(&grid, report, soup, &chosen, &error) != VXM_OK)
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = space;
+  if (vxm_voxelize(&grid, report, soup, &space_options, &chosen, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return grid;
 }
 
 static inline vxm_grid *engine_method(const vxm_soup *soup, const vxm_space *space, vxm_method method,
-                                      vxm_parts parts, vxm_voxelize_report *report) {
+                                      vxm_split_mode parts, vxm_voxelize_report *report) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.method = method;
-  options.parts = parts;
+  options.split_mode = parts;
   return engine_solid(soup, space, &options, report);
 }
 
@@ -175,7 +176,7 @@ static inline void assert_equal_reports(const vxm_voxelize_report *a, const vxm_
   assert_int_equal(a->cavities, b->cavities);
   assert_int_equal(a->caps, b->caps);
   assert_int_equal(a->contested, b->contested);
-  assert_int_equal(a->escalated, b->escalated);
+  assert_int_equal(a->winding_decided, b->winding_decided);
   assert_int_equal(a->voxels, b->voxels);
   assert_true(a->hash == b->hash);
   assert_int_equal(a->empty_parts, b->empty_parts);

@@ -142,11 +142,12 @@ static inline vxm_grid *claims_of(const vxm_face_labels *l, size_t label, const 
   uint8_t *taken = calloc(l->soup->face_count + 1, 1);
   for (size_t i = l->begin[label - 1]; i < l->begin[label]; i++)
     taken[l->faces[i]] = 1;
-  if (solid.method == VXM_METHOD_VOTE && solid.vote == VXM_VOTE_AUTO && solid.parts != VXM_PARTS_WHOLE)
+  if (solid.method == VXM_METHOD_VOTE && solid.vote == VXM_VOTE_AUTO &&
+      solid.split_mode != VXM_SPLIT_MODE_WHOLE)
     drop_lone_sheet(l->soup, taken, &solid);
   vxm_soup *soup = take_faces(l->soup, taken);
   vxm_grid *grid = NULL;
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_status status = vxm_voxelize_run(&grid, &report, soup, space, &solid, NULL);
   assert_true(status == VXM_OK || status == VXM_ERROR_EMPTY);
   vxm_soup_destroy(soup);

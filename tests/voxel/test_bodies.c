@@ -68,7 +68,7 @@ static void assert_union(vxm_context *context, uint64_t seed, const manner *how,
   vxm_soup *soup = random_bodies(context, &rng, how, bodies, &count, wanted), *prepared;
   if (by_file) {
     vxm_soup *clean;
-    vxm_repair_report report;
+    vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
     assert_int_equal(vxm_repair_run(&clean, &report, soup, NULL, NULL), VXM_OK);
     assert_int_equal(report.lost_parts, 0);
 
@@ -185,11 +185,12 @@ static void bodies_with_holes_touch(void **state) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   vxm_space space = {
       .dims = {FINE, FINE, FINE}, .voxel_size = {0.27, 0.27, 0.27}, .origin = {-0.123, -0.127, -0.131}};
-  options.space.like = &space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = &space;
   vxm_soup *prepared;
   assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
   vxm_grid *grid;
-  assert_int_equal(vxm_voxelize(&grid, NULL, prepared, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_voxelize(&grid, NULL, prepared, &space_options, &options, NULL), VXM_OK);
   for (int64_t z = 0; z < FINE; z++)
     for (int64_t y = 0; y < FINE; y++)
       for (int64_t x = 0; x < FINE; x++) {

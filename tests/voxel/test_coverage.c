@@ -32,7 +32,9 @@ static vxm_coverage_report cover(void *values, vxm_model *model, const vxm_space
   vxm_coverage_options options = VXM_COVERAGE_OPTIONS_INIT;
   options.subdivision = n;
   options.scalar = scalar;
-  vxm_coverage_report report;
+  static vxm_voxelize_report voxelize; /* of the last one */
+  vxm_coverage_report report = VXM_COVERAGE_REPORT_INIT;
+  report.voxelize = &voxelize;
   vxm_error error = VXM_ERROR_INIT;
   if (vxm_model_coverage(values, &report, model, space, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
@@ -82,7 +84,7 @@ static void check_counts(const vxm_soup *soup, const vxm_space *space, int n, vx
       }
   assert_int_equal(report.full, full);
   assert_int_equal(report.partial, partial);
-  assert_int_equal(report.voxelize.voxels, set);
+  assert_int_equal(report.voxelize->voxels, set);
   free(bytes);
   free(fractions);
   vxm_grid_destroy(fine);

@@ -176,7 +176,7 @@ static void check_parts(uint64_t seed, const vxm_space *space, int parts, int mo
           exact_unite(want[w], soup, 0, soup->face_count, space, w);
       }
       vxm_grid *grid = engine_method(soup, space, (vxm_method)(VXM_METHOD_X + w),
-                                     whole ? VXM_PARTS_WHOLE : VXM_PARTS_GROUP, NULL);
+                                     whole ? VXM_SPLIT_MODE_WHOLE : VXM_SPLIT_MODE_GROUP, NULL);
       assert_grid_is(grid, want[w]);
       vxm_grid_destroy(grid);
     }
@@ -251,7 +251,7 @@ static void test_parts_of_few_flips(void **state) {
       triangle_box(soup, low, high, 0, false);
       vxm_space long_space = engine_space(40, 40, 40);
       for (int method = VXM_METHOD_X; method <= VXM_METHOD_Z; method++) {
-        vxm_grid *grid = engine_method(soup, &long_space, (vxm_method)method, VXM_PARTS_GROUP, NULL);
+        vxm_grid *grid = engine_method(soup, &long_space, (vxm_method)method, VXM_SPLIT_MODE_GROUP, NULL);
         assert_int_equal(vxm_grid_count(grid), n);
         vxm_grid_destroy(grid);
       }
@@ -264,7 +264,7 @@ static void test_parts_of_few_flips(void **state) {
 /** How many rounds a union takes under a limit. */
 static size_t rounds_of(const vxm_soup *soup, const vxm_space *space) {
   vxm_triangle_set facets;
-  vxm_split_rule rule = {VXM_PARTS_GROUP, VXM_CAVITIES_AUTO, false};
+  vxm_split_rule rule = {VXM_SPLIT_MODE_GROUP, VXM_CAVITIES_AUTO, false};
   assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
   vxm_lattice lattice = vxm_lattice_of(space);
   vxm_snapped_points placed = {.context = soup->context};
@@ -306,8 +306,9 @@ static void test_rounds_give_the_same(void **state) {
       huge_part(soup, &rng, &space, 2);
     rounds[pass / 2] = rounds_of(soup, &space);
     for (int w = 0; w < 3; w++) {
-      vxm_voxelize_report report;
-      vxm_grid *grid = engine_method(soup, &space, (vxm_method)(VXM_METHOD_X + w), VXM_PARTS_GROUP, &report);
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+      vxm_grid *grid =
+          engine_method(soup, &space, (vxm_method)(VXM_METHOD_X + w), VXM_SPLIT_MODE_GROUP, &report);
       assert_true(pass == 0 || hash[w] == report.hash);
       assert_int_equal(report.parts, 24);
       hash[w] = report.hash;
@@ -328,7 +329,7 @@ static void test_crossings_stay_below_their_bound(void **state) {
     space.voxel_size[round % 3] = 0.6;
     vxm_soup *soup = random_soup(context, (uint64_t)round, round % SOUP_KINDS, &space);
     vxm_triangle_set facets;
-    vxm_split_rule rule = {VXM_PARTS_GROUP, VXM_CAVITIES_AUTO, round % 2 != 0};
+    vxm_split_rule rule = {VXM_SPLIT_MODE_GROUP, VXM_CAVITIES_AUTO, round % 2 != 0};
     assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
     double transform[12] = {0.7, -0.8, 0, 1, 0.9, 0.6, 0.1, 0, 0, -0.2, 1.3, 2};
     vxm_lattice lattice = vxm_lattice_of(&space);
@@ -412,8 +413,9 @@ static void test_words_get_what_bins_get(void **state) {
     if (round % 8 == 7) /* coordinates of 64 bits */
       shape_random_octahedron(soup, &rng, -40000000, 40000000);
     vxm_triangle_set facets;
-    assert_int_equal(vxm_triangle_set_create(&facets, soup, (vxm_split_rule){.parts = VXM_PARTS_WHOLE}, NULL),
-                     VXM_OK);
+    assert_int_equal(
+        vxm_triangle_set_create(&facets, soup, (vxm_split_rule){.split_mode = VXM_SPLIT_MODE_WHOLE}, NULL),
+        VXM_OK);
     vxm_lattice lattice = vxm_lattice_of(&space);
     vxm_snapped_points placed = {.context = context};
     assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);

@@ -92,7 +92,7 @@ static vxm_distance_report measure(float *values, vxm_model *model, const vxm_sp
   vxm_distance_options options = VXM_DISTANCE_OPTIONS_INIT;
   options.band = band;
   options.is_unsigned = is_unsigned;
-  vxm_distance_report report;
+  vxm_distance_report report = VXM_DISTANCE_REPORT_INIT;
   vxm_error error = VXM_ERROR_INIT;
   if (vxm_model_distance(values, &report, model, space, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
@@ -292,7 +292,9 @@ static bool measure_in(float *values, vxm_layout layout, int threads, uint64_t l
   vxm_field_target target = {layout, NULL, take, &t};
   vxm_distance_options chosen = VXM_DISTANCE_OPTIONS_INIT;
   chosen.band = band;
-  vxm_distance_report report;
+  vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+  vxm_distance_report report = VXM_DISTANCE_REPORT_INIT;
+  report.voxelize = &voxelize;
   vxm_status status = vxm_distance_run(&target, &report, model, &space, &chosen, NULL);
   assert_true(status == VXM_OK || (limit > 0 && status == VXM_ERROR_MEMORY_LIMIT));
   assert_true(limit == 0 || vxm_context_peak_bytes(own) <= limit);
@@ -380,7 +382,7 @@ static void test_what_is_refused(void **state) {
   options.band = NAN;
   assert_int_equal(vxm_model_distance(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
   options.band = 3;
-  options.version = 2;
+  options.size = 2;
   assert_int_equal(vxm_model_distance(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
   vxm_model_destroy(model);
   vxm_soup_destroy(soup);

@@ -18,7 +18,7 @@ static void assert_exact(const vxm_soup *soup, const vxm_space *space) {
   for (int w = 0; w < 3; w++) {
     memset(want, 0, count);
     exact_unite(want, soup, 0, soup->face_count, space, w);
-    vxm_grid *grid = engine_method(soup, space, (vxm_method)(VXM_METHOD_X + w), VXM_PARTS_WHOLE, NULL);
+    vxm_grid *grid = engine_method(soup, space, (vxm_method)(VXM_METHOD_X + w), VXM_SPLIT_MODE_WHOLE, NULL);
     assert_grid_is(grid, want);
     vxm_grid_destroy(grid);
   }
@@ -27,9 +27,9 @@ static void assert_exact(const vxm_soup *soup, const vxm_space *space) {
 
 /** All methods of parity, and the votes, on a closed soup. */
 static void assert_agree(const vxm_soup *soup, const vxm_space *space) {
-  vxm_grid *x = engine_method(soup, space, VXM_METHOD_X, VXM_PARTS_WHOLE, NULL);
+  vxm_grid *x = engine_method(soup, space, VXM_METHOD_X, VXM_SPLIT_MODE_WHOLE, NULL);
   for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_TETRA; method++) {
-    vxm_grid *grid = engine_method(soup, space, (vxm_method)method, VXM_PARTS_WHOLE, NULL);
+    vxm_grid *grid = engine_method(soup, space, (vxm_method)method, VXM_SPLIT_MODE_WHOLE, NULL);
     assert_equal_bits(x, grid);
     vxm_grid_destroy(grid);
   }
@@ -99,8 +99,8 @@ static void test_unused_vertices_do_not_matter(void **state) {
     random_octahedron(soup, &again, (double[]){1, 1, 1}, (double[]){9, 9, 9}, method % 2 ? 2 : 0);
     shape_vertex(soup, NAN, NAN, NAN);
     shape_vertex(soup, 1e300, 0, 0);
-    vxm_grid *a = engine_method(plain, &space, (vxm_method)method, VXM_PARTS_AUTO, NULL);
-    vxm_grid *b = engine_method(soup, &space, (vxm_method)method, VXM_PARTS_AUTO, NULL);
+    vxm_grid *a = engine_method(plain, &space, (vxm_method)method, VXM_SPLIT_MODE_AUTO, NULL);
+    vxm_grid *b = engine_method(soup, &space, (vxm_method)method, VXM_SPLIT_MODE_AUTO, NULL);
     assert_equal_bits(a, b);
     vxm_grid_destroy(a);
     vxm_grid_destroy(b);
@@ -122,10 +122,11 @@ static void test_used_vertices_must_be_finite_and_near(void **state) {
         soup->positions[3 * 5 + (size_t)axis] = odd[i];
         vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
         options.method = (vxm_method)method;
-        options.space.like = &space;
+        vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+        space_options.like = &space;
         vxm_error error = VXM_ERROR_INIT;
         vxm_grid *grid;
-        assert_int_equal(vxm_voxelize(&grid, NULL, soup, &options, &error), VXM_ERROR_RANGE);
+        assert_int_equal(vxm_voxelize(&grid, NULL, soup, &space_options, &options, &error), VXM_ERROR_RANGE);
         assert_null(grid);
         assert_int_equal(error.code, VXM_ERROR_RANGE);
         assert_int_equal(error.element, 5);
@@ -144,10 +145,11 @@ static void test_all_vertices_in_one_point(void **state) {
     shape_triangle(soup, 0, 1, 2);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.method = (vxm_method)method;
-    options.space.like = &space;
+    vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+    space_options.like = &space;
     vxm_grid *grid;
-    vxm_voxelize_report report;
-    vxm_status status = vxm_voxelize(&grid, &report, soup, &options, NULL);
+    vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+    vxm_status status = vxm_voxelize(&grid, &report, soup, &space_options, &options, NULL);
     assert_true(status == VXM_OK ? report.voxels == 0 : status == VXM_ERROR_EMPTY);
     vxm_grid_destroy(grid);
     vxm_soup_destroy(soup);
@@ -175,8 +177,8 @@ static void test_huge_triangles_fill_the_grid(void **state) {
       vxm_soup *soup = shape_empty(context);
       triangle_box(soup, low, high, 0, false);
       for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_TETRA; method++) {
-        vxm_voxelize_report report;
-        vxm_grid_destroy(engine_method(soup, &space, (vxm_method)method, VXM_PARTS_AUTO, &report));
+        vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+        vxm_grid_destroy(engine_method(soup, &space, (vxm_method)method, VXM_SPLIT_MODE_AUTO, &report));
         assert_int_equal(report.voxels, expected);
       }
       vxm_soup_destroy(soup);
@@ -261,10 +263,10 @@ static void test_all_triangles_in_one_column(void **state) {
       expected += odd[w];
     double start = now();
     for (int method = VXM_METHOD_X; method <= VXM_METHOD_Z; method++) {
-      vxm_voxelize_report report;
-      vxm_grid_destroy(engine_method(soup, &space, (vxm_method)method, VXM_PARTS_WHOLE, &report));
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+      vxm_grid_destroy(engine_method(soup, &space, (vxm_method)method, VXM_SPLIT_MODE_WHOLE, &report));
       assert_int_equal(report.voxels, expected);
-      vxm_grid_destroy(engine_method(soup, &space, (vxm_method)method, VXM_PARTS_GROUP, &report));
+      vxm_grid_destroy(engine_method(soup, &space, (vxm_method)method, VXM_SPLIT_MODE_GROUP, &report));
       assert_int_equal(report.voxels, top);
       assert_int_equal(report.parts, BOXES);
       assert_int_equal(report.empty_parts, 0);
@@ -289,8 +291,8 @@ static void test_meshes_outside_the_grid(void **state) {
           vxm_soup *soup = shape_empty(context);
           triangle_box(soup, low, high, open ? 2 : 0, false);
           for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_TETRA; method++) {
-            vxm_voxelize_report report;
-            vxm_grid *grid = engine_method(soup, &space, (vxm_method)method, VXM_PARTS_AUTO, &report);
+            vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+            vxm_grid *grid = engine_method(soup, &space, (vxm_method)method, VXM_SPLIT_MODE_AUTO, &report);
             if (!open || method == VXM_METHOD_VOTE) /* capped */
               assert_int_equal(report.voxels, 0);
             if (!open || method == VXM_METHOD_VOTE)
@@ -320,10 +322,11 @@ static void test_nested_boxes_of_any_proportion(void **state) {
         triangle_box(soup, low, high, 0, i % 2 != 0);
       }
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-      options.space.resolution[0] = 30;
+      vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+      space_options.resolution[0] = 30;
       vxm_grid *grid;
-      vxm_voxelize_report report;
-      assert_int_equal(vxm_voxelize(&grid, &report, soup, &options, NULL), VXM_OK);
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+      assert_int_equal(vxm_voxelize(&grid, &report, soup, &space_options, &options, NULL), VXM_OK);
       assert_int_equal(report.parts, 1); /* a cavity, an island in it, and so on */
       assert_int_equal(report.cavities, 4);
       vxm_grid_destroy(grid);

@@ -115,13 +115,13 @@ static void find_covered(const vxm_soup *soup, bool covered[CELLS]) {
   memset(covered, 0, CELLS * sizeof *covered);
   if (soup->face_count == 0)
     return;
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  vxm_space_options place = VXM_SPACE_OPTIONS_INIT;
   vxm_space space = {.dims = {SIDE, SIDE, SIDE}, .voxel_size = {1, 1, 1}};
-  options.space.like = &space;
+  place.like = &space;
   vxm_soup *prepared;
   vxm_grid *grid;
   assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
-  assert_int_equal(vxm_voxelize(&grid, NULL, prepared, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_voxelize(&grid, NULL, prepared, &place, NULL, NULL), VXM_OK);
   for (int64_t c = 0; c < CELLS; c++)
     covered[c] = vxm_grid_get(grid, c % SIDE, c / SIDE % SIDE, c / SIDE / SIDE);
   vxm_grid_destroy(grid);

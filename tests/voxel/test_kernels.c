@@ -356,7 +356,7 @@ static vxm_space random_space(vxm_rng *rng, int round) {
 
 static void compare_builds(const vxm_soup *soup, const vxm_space *space,
                            const vxm_voxelize_options *options) {
-  vxm_voxelize_report first_report, report;
+  vxm_voxelize_report first_report = VXM_VOXELIZE_REPORT_INIT, report = VXM_VOXELIZE_REPORT_INIT;
   vxm_grid *first = forced(builds[0], soup, space, options, &first_report);
   for (size_t b = 1; b < build_count; b++) {
     vxm_grid *other = forced(builds[b], soup, space, options, &report);
@@ -374,7 +374,7 @@ static void test_solids_are_the_same_in_every_build(void **state) {
     vxm_space space = random_space(&rng, round);
     vxm_soup *soup = random_soup(context, 100 + (uint64_t)round, round % SOUP_KINDS, &space);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-    options.parts = (vxm_parts)(round / 2 % 3);
+    options.split_mode = (vxm_split_mode)(round / 2 % 3);
     for (int method = VXM_METHOD_X; method <= (round % 6 ? VXM_METHOD_Z : VXM_METHOD_TETRA); method++) {
       options.method = (vxm_method)method;
       compare_builds(soup, &space, &options);
@@ -409,7 +409,7 @@ static void test_every_build_matches_the_oracle(void **state) {
       for (size_t b = 0; b < build_count; b++) {
         vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
         options.method = (vxm_method)(VXM_METHOD_X + w);
-        options.parts = VXM_PARTS_WHOLE;
+        options.split_mode = VXM_SPLIT_MODE_WHOLE;
         vxm_grid *grid = forced(builds[b], soup, &space, &options, NULL);
         assert_grid_is(grid, want);
         vxm_grid_destroy(grid);

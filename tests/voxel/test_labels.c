@@ -86,12 +86,14 @@ static void check(const vxm_soup *soup, const vxm_space *space, const vxm_voxeli
     claims[c] = claims_of(&l, c + 1, space, options);
   vxm_label_options label_options = VXM_LABEL_OPTIONS_INIT;
   label_options.by = by;
-  vxm_label_report report;
+  vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+  vxm_label_report report = VXM_LABEL_REPORT_INIT;
+  report.voxelize = &voxelize;
   uint16_t *values = malloc(voxels * sizeof *values);
   if (vxm_model_labels(values, &report, model, space, &label_options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   assert_int_equal(report.labels, count);
-  assert_true(report.voxelize.hash == vxm_grid_hash(set));
+  assert_true(report.voxelize->hash == vxm_grid_hash(set));
   int64_t several = 0, none = 0, *counted = calloc(count, sizeof *counted);
   double side = fmax(space->voxel_size[0], fmax(space->voxel_size[1], space->voxel_size[2]));
   size_t at = 0;
@@ -119,7 +121,7 @@ static void check(const vxm_soup *soup, const vxm_space *space, const vxm_voxeli
           fail_msg("(%d, %d, %d): label %u, claimed by %zu", (int)i, (int)j, (int)k, values[at], claiming);
       }
   assert_int_equal(report.contested, several);
-  assert_int_equal(report.unclaimed, none);
+  assert_int_equal(report.unassigned, none);
   for (size_t c = 0; c < count; c++) {
     assert_int_equal(vxm_model_label_voxels(model, (int64_t)c + 1), counted[c]);
     vxm_grid_destroy(claims[c]);
@@ -182,7 +184,9 @@ static void test_equals_brute_force(void **state) {
       space.dims[round / 3 % 3] = 70;
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.mode = round % 5 == 3 ? VXM_MODE_SURFACE : round % 5 == 4 ? VXM_MODE_BOTH : VXM_MODE_SOLID;
-    options.parts = (vxm_parts)(round % 7 == 5 ? VXM_PARTS_GROUP : round % 7 == 6 ? VXM_PARTS_WHOLE : 0);
+    options.split_mode = (vxm_split_mode)(round % 7 == 5   ? VXM_SPLIT_MODE_GROUP
+                                          : round % 7 == 6 ? VXM_SPLIT_MODE_WHOLE
+                                                           : 0);
     options.cavities = (vxm_cavities)(round % 11 == 9    ? VXM_CAVITIES_KEEP
                                       : round % 11 == 10 ? VXM_CAVITIES_FILL
                                                          : VXM_CAVITIES_AUTO);
@@ -237,7 +241,9 @@ static uint16_t at(const uint16_t *values, const vxm_space *space, int64_t i, in
 /** Overlapping boxes share what both claim by the nearest face; nested ones too. */
 static void test_overlap_and_nesting(void **state) {
   (void)state;
-  vxm_label_report report;
+  vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+  vxm_label_report report = VXM_LABEL_REPORT_INIT;
+  report.voxelize = &voxelize;
   vxm_space space = {{16, 8, 8}, {0, 0, 0}, {1, 1, 1}};
   vxm_soup *soup = shape_empty(context);
   shape_box(soup, (double[]){0, 0, 0}, (double[]){10, 8, 8});
@@ -245,7 +251,7 @@ static void test_overlap_and_nesting(void **state) {
   uint16_t *values = labels_of(soup, &space, VXM_LABEL_PART, &report);
   assert_int_equal(report.labels, 2);
   assert_int_equal(report.contested, 4 * 8 * 8);
-  assert_int_equal(report.unclaimed, 0);
+  assert_int_equal(report.unassigned, 0);
   /* In the middle of the overlap box 2 begins on the left, and box 1 ends on the right. */
   static const uint16_t row[16] = {1, 1, 1, 1, 1, 1, 2, 2, 1, 1, 2, 2, 2, 2, 2, 2};
   for (int64_t i = 0; i < 16; i++)
@@ -273,7 +279,9 @@ static void test_overlap_and_nesting(void **state) {
  */
 static void test_bystanders_take_nothing(void **state) {
   (void)state;
-  vxm_label_report report;
+  vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+  vxm_label_report report = VXM_LABEL_REPORT_INIT;
+  report.voxelize = &voxelize;
   vxm_space space = {{24, 24, 24}, {0, 0, 0}, {1, 1, 1}};
   vxm_soup *soup = shape_empty(context);
   shape_box(soup, (double[]){11, 11, 11}, (double[]){13, 13, 13});
@@ -291,13 +299,15 @@ static void test_bystanders_take_nothing(void **state) {
 /** The same faces twice, and the same body under two labels: the lower one. */
 static void test_ties(void **state) {
   (void)state;
-  vxm_label_report report;
+  vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+  vxm_label_report report = VXM_LABEL_REPORT_INIT;
+  report.voxelize = &voxelize;
   vxm_space space = {{12, 12, 12}, {-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}};
   vxm_soup *soup = shape_empty(context);
   tagged_box(soup, (double[]){0.03, 0.03, 0.03}, (double[]){0.7, 0.7, 0.7}, "low");
   tagged_box(soup, (double[]){0.03, 0.03, 0.03}, (double[]){0.7, 0.7, 0.7}, "high");
   uint16_t *values = labels_of(soup, &space, VXM_LABEL_GROUP, &report);
-  assert_int_equal(report.contested, report.voxelize.voxels);
+  assert_int_equal(report.contested, report.voxelize->voxels);
   for (size_t v = 0; v < voxels_of(&space); v++)
     assert_true(values[v] <= 1);
   free(values);
@@ -341,7 +351,9 @@ static void test_threads_and_limits(void **state) {
     vxm_context *own;
     assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
     vxm_soup *soup = crowd(own, 3000);
-    vxm_label_report report;
+    vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+    vxm_label_report report = VXM_LABEL_REPORT_INIT;
+    report.voxelize = &voxelize;
     uint16_t *values = labels_of(soup, &space, round % 2 ? VXM_LABEL_MATERIAL : VXM_LABEL_PART, &report);
     assert_int_equal(report.labels, round % 2 ? 7 : 3001);
     assert_true(report.contested > 100);
@@ -368,7 +380,9 @@ static void test_layouts(void **state) {
   uint16_t *values[3];
   for (int i = 0; i < 3; i++) {
     vxm_face_labels labelling;
-    vxm_label_report report;
+    vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+    vxm_label_report report = VXM_LABEL_REPORT_INIT;
+    report.voxelize = &voxelize;
     values[i] = malloc(voxels_of(&space) * sizeof *values[i]);
     assert_int_equal(vxm_face_labels_create(&labelling, soup, VXM_LABEL_MATERIAL, NULL), VXM_OK);
     assert_int_equal(vxm_labels_run(values[i], layouts[i], &report, model, &space, &labelling, NULL), VXM_OK);
@@ -407,7 +421,7 @@ static void test_cancelling(void **state) {
   int cancelled = 0;
   for (int last = 1; status != VXM_OK; last += 1 + last / 8) {
     stopper s = {pthread_self(), 0, last, false};
-    vxm_context_options options = {1, 3, 0, count_calls, &s};
+    vxm_context_options options = {sizeof(vxm_context_options), 3, 0, count_calls, &s};
     vxm_context *own;
     vxm_model *model = NULL;
     assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
@@ -451,6 +465,7 @@ static void test_any_limit(void **state) {
     arrays.vertex_count = (int64_t)soup->vertex_count;
     arrays.offsets = offsets;
     arrays.indices = indices;
+    arrays.index_count = (int64_t)soup->corner_count;
     arrays.face_count = (int64_t)soup->face_count;
     vxm_model *model = NULL;
     vxm_error error = VXM_ERROR_INIT;
@@ -537,10 +552,12 @@ static void test_parts_of_unwelded_soups(void **state) {
     }
   }
   vxm_space space = {{8, 8, 8}, {0, 0, 0}, {1, 1, 1}};
-  vxm_label_report report;
+  vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+  vxm_label_report report = VXM_LABEL_REPORT_INIT;
+  report.voxelize = &voxelize;
   uint16_t *values = labels_of(soup, &space, VXM_LABEL_PART, &report);
   assert_int_equal(report.labels, 2);
-  assert_int_equal(report.voxelize.voxels, 64 + 27);
+  assert_int_equal(report.voxelize->voxels, 64 + 27);
   assert_int_equal(at(values, &space, 1, 2, 3), 1);
   assert_int_equal(at(values, &space, 6, 6, 6), 2);
   free(values);
@@ -598,9 +615,9 @@ static void test_what_is_refused(void **state) {
   options.by = (vxm_label_by)3;
   assert_int_equal(vxm_model_labels(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
   options.by = VXM_LABEL_GROUP;
-  options.version = 2;
+  options.size = 2;
   assert_int_equal(vxm_model_labels(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
-  options.version = 1;
+  options.size = sizeof options;
   assert_int_equal(vxm_model_write_labels(NULL, model, &space, "x.rle", &options, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_model_write_labels(NULL, model, &space, NULL, &options, NULL), VXM_ERROR_ARGUMENT);
   space.dims[1] = 0;

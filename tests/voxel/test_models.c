@@ -43,7 +43,7 @@ static void check_transform(const vxm_soup *soup, const vxm_voxelize_options *op
     assert_int_equal(vxm_space_fit(&space, moved, &wanted, NULL), VXM_OK);
     for (int a = 0; a < 3; a++) /* part of it outside */
       space.origin[a] += (double)(i % 5) * space.voxel_size[a];
-    vxm_voxelize_report want_report, report;
+    vxm_voxelize_report want_report = VXM_VOXELIZE_REPORT_INIT, report = VXM_VOXELIZE_REPORT_INIT;
     vxm_grid *want = engine_solid(moved, &space, options, &want_report), *grid = engine_grid(context, &space);
     vxm_error error = VXM_ERROR_INIT;
     if (vxm_model_voxelize(grid, &report, model, m, &error) != VXM_OK)
@@ -68,7 +68,7 @@ static void test_a_transform_is_a_transformed_mesh(void **state) {
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.method = (vxm_method)(round / 8 % 5);
     options.vote = (vxm_vote)(VXM_VOTE_MAJORITY + round / 40 % 3);
-    options.parts = (vxm_parts)(round / 3 % 3);
+    options.split_mode = (vxm_split_mode)(round / 3 % 3);
     check_transform(soup, &options, 10 + round, &rng, 6);
     vxm_soup_destroy(soup);
   }
@@ -89,7 +89,7 @@ static void test_transforms_of_the_default_and_winding(void **state) {
       triangle_box(soup, low, high, round % 2 ? i : 0, round % 4 > 1);
     }
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-    options.parts = round % 3 ? VXM_PARTS_AUTO : VXM_PARTS_GROUP;
+    options.split_mode = round % 3 ? VXM_SPLIT_MODE_AUTO : VXM_SPLIT_MODE_GROUP;
     check_transform(soup, &options, 24, &rng, 3);
     options.method = VXM_METHOD_WINDING;
     check_transform(soup, &options, 24, &rng, 3);
@@ -109,7 +109,7 @@ static void test_identity_and_no_report(void **state) {
     for (int64_t k = 0; k < 24; k++) /* all bits are replaced */
       for (int64_t j = 0; j < 22; j++)
         vxm_row_set_span(vxm_grid_row(a, j, k), 0, 20);
-    vxm_voxelize_report report;
+    vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
     assert_int_equal(vxm_model_voxelize(a, &report, model, NULL, NULL), VXM_OK);
     assert_int_equal(vxm_model_voxelize(b, NULL, model, identity, NULL), VXM_OK);
     assert_equal_bits(a, b);
@@ -161,7 +161,9 @@ static vxm_voxelize_options options_of(int way) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.method = way < 6 ? (vxm_method)way : VXM_METHOD_VOTE;
   options.vote = way == 6 ? VXM_VOTE_MAJORITY : way == 7 ? VXM_VOTE_ANY : VXM_VOTE_AUTO;
-  options.parts = way == 7 ? VXM_PARTS_GROUP : way == 8 ? VXM_PARTS_WHOLE : VXM_PARTS_AUTO;
+  options.split_mode = way == 7   ? VXM_SPLIT_MODE_GROUP
+                       : way == 8 ? VXM_SPLIT_MODE_WHOLE
+                                  : VXM_SPLIT_MODE_AUTO;
   options.mode = way == 9 ? VXM_MODE_BOTH : way == 10 ? VXM_MODE_SURFACE : VXM_MODE_SOLID;
   options.confidence = way >= 8;
   return options;
@@ -196,7 +198,7 @@ static void test_grids_of_one_model_are_those_of_fresh_models(void **state) {
     vxm_model *model = engine_model(soup, &options);
     for (int i = 0; i < (options.method == VXM_METHOD_WINDING ? 3 : 6); i++) {
       vxm_space space = random_space(&rng);
-      vxm_voxelize_report want_report, report;
+      vxm_voxelize_report want_report = VXM_VOXELIZE_REPORT_INIT, report = VXM_VOXELIZE_REPORT_INIT;
       vxm_grid *want = engine_solid(soup, &space, &options, &want_report),
                *grid = engine_grid(context, &space);
       assert_int_equal(vxm_model_voxelize(grid, &report, model, NULL, NULL), VXM_OK);

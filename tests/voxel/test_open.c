@@ -11,22 +11,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const vxm_space cube64 = {{64, 64, 64}, {-1.6, -1.6, -1.6}, {0.05, 0.05, 0.05}};
+
 static vxm_grid *voxelize(const vxm_soup *soup, vxm_voxelize_options options, vxm_voxelize_report *report) {
   vxm_error error = VXM_ERROR_INIT;
+  vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
+  space.like = &cube64;
   vxm_grid *grid;
-  if (vxm_voxelize(&grid, report, soup, &options, &error) != VXM_OK)
+  if (vxm_voxelize(&grid, report, soup, &space, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return grid;
 }
 
-static vxm_voxelize_options in_space(const vxm_space *space) {
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = space;
-  return options;
-}
-
 static double iou(const vxm_grid *a, const vxm_grid *b) {
-  vxm_comparison comparison;
+  vxm_comparison comparison = VXM_COMPARISON_INIT;
   assert_int_equal(vxm_grid_compare(&comparison, a, b, NULL), VXM_OK);
   return comparison.iou;
 }
@@ -47,8 +45,6 @@ static void damage(vxm_soup *soup, vxm_rng *rng, double removed, double turned) 
       }
   }
 }
-
-static const vxm_space cube64 = {{64, 64, 64}, {-1.6, -1.6, -1.6}, {0.05, 0.05, 0.05}};
 
 static vxm_soup *torus(void) {
   vxm_soup *soup = shape_empty(context);
@@ -78,7 +74,7 @@ static void test_triangles_and_caps_are_closed(void **state) {
     vxm_space space = {{7, 7, 7}, {0, 0, 0}, {1, 1, 1}};
     vxm_lattice lattice = vxm_lattice_of(&space);
     vxm_triangle_set facets;
-    vxm_split_rule rule = {VXM_PARTS_GROUP, VXM_CAVITIES_FILL, true};
+    vxm_split_rule rule = {VXM_SPLIT_MODE_GROUP, VXM_CAVITIES_FILL, true};
     vxm_snapped_points placed = {.context = context};
     vxm_workspace workspace = vxm_workspace_of(context);
     assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
@@ -113,13 +109,13 @@ static void test_holes_are_capped(void **state) {
   (void)state;
   static const double part[] = {0.01, 0.05, 0.2}, least[] = {0.9999, 0.999, 0.98};
   vxm_soup *clean = torus();
-  vxm_grid *truth = voxelize(clean, in_space(&cube64), NULL);
+  vxm_grid *truth = voxelize(clean, (vxm_voxelize_options)VXM_VOXELIZE_OPTIONS_INIT, NULL);
   for (int p = 0; p < 3; p++) {
     vxm_rng rng = {(uint64_t)p};
     vxm_soup *soup = torus();
     damage(soup, &rng, part[p], 0.3);
-    vxm_voxelize_report report;
-    vxm_grid *grid = voxelize(soup, in_space(&cube64), &report);
+    vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+    vxm_grid *grid = voxelize(soup, (vxm_voxelize_options)VXM_VOXELIZE_OPTIONS_INIT, &report);
     assert_true(iou(grid, truth) >= least[p]);
     assert_int_equal(report.capped_parts, 1);
     assert_true(report.caps > 0);
@@ -153,7 +149,7 @@ static void test_panels_make_a_body(void **state) {
   vxm_soup *soup = shape_empty(context);
   for (uint32_t side = 0; side < 6; side++)
     add_panel(soup, (int)side / 2, side % 2 ? 1.01 : -1.01, 1.01, 2 + side);
-  vxm_grid *grid = voxelize(soup, in_space(&cube64), NULL);
+  vxm_grid *grid = voxelize(soup, (vxm_voxelize_options)VXM_VOXELIZE_OPTIONS_INIT, NULL);
   assert_int_equal(vxm_grid_count(grid), 40 * 40 * 40);
   vxm_grid_destroy(grid);
   vxm_soup_destroy(soup);
@@ -166,7 +162,7 @@ static void test_a_sheet_vanishes(void **state) {
     add_panel(soup, 2, 0.03, 0.5, 3);
     if (inside)
       shape_box(soup, (double[]){-1.01, -1.01, -1.01}, (double[]){1.01, 1.01, 1.01});
-    vxm_grid *grid = voxelize(soup, in_space(&cube64), NULL);
+    vxm_grid *grid = voxelize(soup, (vxm_voxelize_options)VXM_VOXELIZE_OPTIONS_INIT, NULL);
     assert_int_equal(vxm_grid_count(grid), inside ? 40 * 40 * 40 : 0);
     vxm_grid_destroy(grid);
     vxm_soup_destroy(soup);
@@ -192,11 +188,11 @@ static void test_cavities(void **state) {
     shape_box(soup, (double[]){-0.51, -0.51, -0.51}, (double[]){0.51, 0.51, 0.51});
     if (inward)
       turn_faces(soup, 6);
-    vxm_voxelize_options options = in_space(&cube64);
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     for (int rule = VXM_CAVITIES_AUTO; rule <= VXM_CAVITIES_FILL; rule++) {
       bool hollow = rule == VXM_CAVITIES_KEEP || (rule == VXM_CAVITIES_AUTO && inward);
       options.cavities = (vxm_cavities)rule;
-      vxm_voxelize_report report;
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
       vxm_grid *grid = voxelize(soup, options, &report);
       assert_int_equal(report.cavities, hollow);
       assert_int_equal(vxm_grid_count(grid), hollow ? solid - inner : solid);
@@ -280,7 +276,7 @@ static void test_winding_method_equals_parity_on_closed_meshes(void **state) {
   vxm_soup *clean = torus(), *turned = torus();
   vxm_rng rng = {4};
   damage(turned, &rng, 0, 0.5);
-  vxm_voxelize_options options = in_space(&cube64);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   vxm_grid *truth = voxelize(clean, options, NULL);
   options.method = VXM_METHOD_WINDING;
   vxm_grid *grid = voxelize(turned, options, NULL);
@@ -307,11 +303,11 @@ static void test_patches_are_turned_outward(void **state) {
     shape_face(soup, own, n);
   }
   damage(soup, &rng, 0, 0.5);
-  vxm_voxelize_options options = in_space(&cube64);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   vxm_grid *truth = voxelize(clean, options, NULL);
   vxm_lattice lattice = vxm_lattice_of(&cube64);
   vxm_triangle_set facets;
-  vxm_split_rule rule = {VXM_PARTS_AUTO, VXM_CAVITIES_AUTO, true};
+  vxm_split_rule rule = {VXM_SPLIT_MODE_AUTO, VXM_CAVITIES_AUTO, true};
   assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
   vxm_snapped_points placed = {.context = context};
   assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
@@ -356,8 +352,8 @@ static void test_same_bits_for_any_number_of_threads(void **state) {
     vxm_rng rng = {6};
     damage(soup, &rng, 0.1, 0.3);
     add_panel(soup, 1, 0.8, 0.9, 5);
-    vxm_voxelize_options options = in_space(&cube64);
-    options.parts = VXM_PARTS_WHOLE;
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.split_mode = VXM_SPLIT_MODE_WHOLE;
     for (int m = 0; m < 2; m++) {
       options.method = m ? VXM_METHOD_WINDING : VXM_METHOD_VOTE;
       vxm_grid *grid = voxelize(soup, options, NULL);
@@ -377,7 +373,7 @@ static void test_same_bits_for_any_number_of_threads(void **state) {
 
 static void test_confidence(void **state) {
   (void)state;
-  vxm_voxelize_options options = in_space(&cube64);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   vxm_soup *soup = torus();
   vxm_grid *grid = voxelize(soup, options, NULL);
   assert_null(vxm_grid_confidence(grid));

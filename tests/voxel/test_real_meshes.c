@@ -22,10 +22,11 @@
 static vxm_rng rng = {11};
 static int closed;
 
-static uint64_t hash_of(const vxm_mesh *mesh, const vxm_voxelize_options *options, const char *path) {
+static uint64_t hash_of(const vxm_mesh *mesh, const vxm_space_options *space,
+                        const vxm_voxelize_options *options, const char *path) {
   vxm_error error = VXM_ERROR_INIT;
   vxm_grid *grid;
-  if (vxm_voxelize(&grid, NULL, mesh, options, &error) != VXM_OK)
+  if (vxm_voxelize(&grid, NULL, mesh, space, options, &error) != VXM_OK)
     fail_msg("%s: %s", path, error.text);
   uint64_t hash = vxm_grid_hash(grid);
   vxm_grid_destroy(grid);
@@ -40,14 +41,15 @@ static void check_mesh(const vxm_mesh *mesh, const char *path, int64_t resolutio
   for (int a = 0; a < 3; a++)
     space.origin[a] += vxm_rng_unit(&rng) * space.voxel_size[a];
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = &space;
-  for (int parts = VXM_PARTS_GROUP; parts <= VXM_PARTS_WHOLE; parts++) {
-    options.parts = (vxm_parts)parts;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = &space;
+  for (int parts = VXM_SPLIT_MODE_GROUP; parts <= VXM_SPLIT_MODE_WHOLE; parts++) {
+    options.split_mode = (vxm_split_mode)parts;
     options.method = VXM_METHOD_VOTE;
-    uint64_t expected = hash_of(mesh, &options, path);
+    uint64_t expected = hash_of(mesh, &space_options, &options, path);
     for (int method = VXM_METHOD_X; method <= (tetra ? VXM_METHOD_TETRA : VXM_METHOD_Z); method++) {
       options.method = (vxm_method)method;
-      if (hash_of(mesh, &options, path) != expected)
+      if (hash_of(mesh, &space_options, &options, path) != expected)
         fail_msg("%s at %d: method %d differs", path, (int)resolution, method);
     }
   }
@@ -60,7 +62,7 @@ static void check_file(const char *path, const char *name, void *payload) {
   (void)name, (void)payload;
   vxm_error error = VXM_ERROR_INIT;
   vxm_mesh *raw, *mesh;
-  vxm_census census;
+  vxm_census census = VXM_CENSUS_INIT;
   if (vxm_mesh_read(&raw, NULL, path, &error) != VXM_OK)
     fail_msg("%s", error.text);
   assert_int_equal(vxm_mesh_repair(&mesh, NULL, raw, NULL, &error), VXM_OK);

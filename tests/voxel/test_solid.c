@@ -11,15 +11,16 @@
 
 enum { TINY = 6, TRIANGLES_MAX = 96 };
 
-static vxm_grid *voxelize(const vxm_soup *soup, const vxm_space *space, vxm_method method, vxm_parts parts,
-                          vxm_voxelize_report *report) {
+static vxm_grid *voxelize(const vxm_soup *soup, const vxm_space *space, vxm_method method,
+                          vxm_split_mode parts, vxm_voxelize_report *report) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = space;
   options.method = method;
-  options.parts = parts;
+  options.split_mode = parts;
   vxm_error error = VXM_ERROR_INIT;
   vxm_grid *grid;
-  if (vxm_voxelize(&grid, report, soup, &options, &error) != VXM_OK)
+  if (vxm_voxelize(&grid, report, soup, &space_options, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return grid;
 }
@@ -36,7 +37,7 @@ static void assert_clean_rows(const vxm_grid *grid) {
 }
 
 /** All methods agree on a mesh that is closed mod 2. Returns the hash. */
-static uint64_t assert_methods_agree(const vxm_soup *soup, const vxm_space *space, vxm_parts parts) {
+static uint64_t assert_methods_agree(const vxm_soup *soup, const vxm_space *space, vxm_split_mode parts) {
   vxm_grid *x = voxelize(soup, space, VXM_METHOD_X, parts, NULL);
   assert_clean_rows(x);
   for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_TETRA; method++) {
@@ -71,7 +72,7 @@ static void assert_matches_oracle(const vxm_soup *soup, const vxm_space *space) 
   oracle_triangle triangles[TRIANGLES_MAX];
   int count = oracle_triangles(triangles, soup);
   for (int axis = 0; axis < 3; axis++) {
-    vxm_grid *grid = voxelize(soup, space, (vxm_method)(VXM_METHOD_X + axis), VXM_PARTS_WHOLE, NULL);
+    vxm_grid *grid = voxelize(soup, space, (vxm_method)(VXM_METHOD_X + axis), VXM_SPLIT_MODE_WHOLE, NULL);
     for (int64_t k = 0; k < space->dims[2]; k++)
       for (int64_t j = 0; j < space->dims[1]; j++)
         for (int64_t i = 0; i < space->dims[0]; i++)
@@ -152,8 +153,8 @@ static void test_random_closed_meshes_agree_on_all_axes(void **state) {
       for (size_t i = 0; i < 3 * soup->vertex_count; i++)
         soup->positions[i] = floor(soup->positions[i]) + 0.5;
     vxm_space space = unit_space(TINY, TINY + 1, TINY - 1);
-    assert_methods_agree(soup, &space, VXM_PARTS_WHOLE);
-    assert_methods_agree(soup, &space, VXM_PARTS_GROUP);
+    assert_methods_agree(soup, &space, VXM_SPLIT_MODE_WHOLE);
+    assert_methods_agree(soup, &space, VXM_SPLIT_MODE_GROUP);
     if (round % 8 == 0)
       assert_matches_oracle(soup, &space);
     vxm_soup_destroy(soup);
@@ -181,13 +182,14 @@ static void test_tetrahedra_equal_parity_with_cones(void **state) {
     }
     vxm_space space = unit_space(TINY, TINY, TINY);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-    options.space.like = &space;
-    options.parts = round % 2 ? VXM_PARTS_WHOLE : VXM_PARTS_GROUP;
+    vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+    space_options.like = &space;
+    options.split_mode = round % 2 ? VXM_SPLIT_MODE_WHOLE : VXM_SPLIT_MODE_GROUP;
     vxm_grid *grids[5];
     vxm_status status = VXM_OK;
     for (int method = VXM_METHOD_X; method <= VXM_METHOD_TETRA && status == VXM_OK; method++) {
       options.method = (vxm_method)method;
-      status = vxm_voxelize(&grids[method], NULL, soup, &options, NULL);
+      status = vxm_voxelize(&grids[method], NULL, soup, &space_options, &options, NULL);
     }
     if (status == VXM_ERROR_EMPTY) { /* every face repeats a corner */
       vxm_soup_destroy(soup);
@@ -198,9 +200,9 @@ static void test_tetrahedra_equal_parity_with_cones(void **state) {
     options.method = VXM_METHOD_VOTE;
     for (int rule = VXM_VOTE_MAJORITY; rule <= VXM_VOTE_ALL; rule++) {
       vxm_grid *voted;
-      vxm_voxelize_report report;
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
       options.vote = (vxm_vote)rule;
-      assert_int_equal(vxm_voxelize(&voted, &report, soup, &options, NULL), VXM_OK);
+      assert_int_equal(vxm_voxelize(&voted, &report, soup, &space_options, &options, NULL), VXM_OK);
       int64_t contested = 0;
       for (size_t w = 0; w < voted->word_count; w++) {
         uint64_t x = grids[1]->words[w], y = grids[2]->words[w], z = grids[3]->words[w],
@@ -226,9 +228,10 @@ static void test_unit_cube_fills_the_grid(void **state) {
   vxm_soup *soup = shape_empty(context);
   shape_box(soup, (double[]){0, 0, 0}, (double[]){1, 1, 1});
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = 8;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = 8;
   vxm_grid *grid;
-  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &space_options, &options, NULL), VXM_OK);
   assert_int_equal(vxm_grid_count(grid), 512);
   vxm_grid_destroy(grid);
   vxm_soup_destroy(soup);
@@ -244,7 +247,7 @@ static void test_boxes_at_every_offset(void **state) {
         double low[3] = {1 + dx / 8.0, 1 + dy / 8.0, 1 + dz / 8.0};
         shape_box(soup, low, (double[]){low[0] + 3, low[1] + 2, low[2] + 4});
         vxm_space space = unit_space(7, 7, 7);
-        vxm_grid *grid = voxelize(soup, &space, VXM_METHOD_VOTE, VXM_PARTS_AUTO, NULL);
+        vxm_grid *grid = voxelize(soup, &space, VXM_METHOD_VOTE, VXM_SPLIT_MODE_AUTO, NULL);
         assert_int_equal(vxm_grid_count(grid), 3 * 2 * 4);
         vxm_grid_destroy(grid);
         vxm_soup_destroy(soup);
@@ -264,11 +267,12 @@ static void test_counts_of_the_report(void **state) {
   shape_face(soup, (uint32_t[]){v, v + 1, v + 2, v + 3}, 4); /* a sheet across x: only x sees it */
   vxm_space space = unit_space(7, 7, 7);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = &space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = &space;
   options.vote = VXM_VOTE_MAJORITY;
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_grid *grid;
-  assert_int_equal(vxm_voxelize(&grid, &report, soup, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_voxelize(&grid, &report, soup, &space_options, &options, NULL), VXM_OK);
   assert_int_equal(report.parts, 3);
   assert_int_equal(report.closed_parts, 2);
   assert_int_equal(report.empty_parts, 2);
@@ -277,9 +281,9 @@ static void test_counts_of_the_report(void **state) {
   assert_int_equal(report.contested, 6 * 7 * 7 - 3 * 4 * 4);
   vxm_grid_destroy(grid);
   /* Asking for the confidence changes nothing of that. */
-  vxm_voxelize_report with_confidence;
+  vxm_voxelize_report with_confidence = VXM_VOXELIZE_REPORT_INIT;
   options.confidence = true;
-  assert_int_equal(vxm_voxelize(&grid, &with_confidence, soup, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_voxelize(&grid, &with_confidence, soup, &space_options, &options, NULL), VXM_OK);
   assert_memory_equal(&with_confidence, &report, sizeof report);
   vxm_grid_destroy(grid);
   vxm_soup_destroy(soup);
@@ -291,13 +295,13 @@ static void test_parts_are_united_and_whole_is_exclusive(void **state) {
   shape_box(soup, (double[]){0, 0, 0}, (double[]){4, 4, 4});
   shape_box(soup, (double[]){2, 2, 2}, (double[]){6, 6, 6});
   vxm_space space = unit_space(7, 7, 7);
-  vxm_voxelize_report report;
-  vxm_grid *grouped = voxelize(soup, &space, VXM_METHOD_VOTE, VXM_PARTS_GROUP, &report);
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+  vxm_grid *grouped = voxelize(soup, &space, VXM_METHOD_VOTE, VXM_SPLIT_MODE_GROUP, &report);
   assert_int_equal(report.parts, 2);
   assert_int_equal(report.closed_parts, 2);
   assert_int_equal(report.contested, 0);
   assert_int_equal(report.voxels, 64 + 64 - 8);
-  vxm_grid *whole = voxelize(soup, &space, VXM_METHOD_VOTE, VXM_PARTS_WHOLE, &report);
+  vxm_grid *whole = voxelize(soup, &space, VXM_METHOD_VOTE, VXM_SPLIT_MODE_WHOLE, &report);
   assert_int_equal(report.parts, 1);
   assert_int_equal(report.voxels, 64 + 64 - 16);
   vxm_grid_destroy(whole);
@@ -323,8 +327,8 @@ static void test_non_convex_polygons(void **state) {
     for (uint32_t i = 0; i < N; i++)
       shape_face(soup, (uint32_t[]){i, (i + 1) % N, N + (i + 1) % N, N + i}, 4);
     vxm_space space = unit_space(10, 6, 6);
-    assert_methods_agree(soup, &space, VXM_PARTS_WHOLE);
-    vxm_grid *grid = voxelize(soup, &space, VXM_METHOD_VOTE, VXM_PARTS_AUTO, NULL);
+    assert_methods_agree(soup, &space, VXM_SPLIT_MODE_WHOLE);
+    vxm_grid *grid = voxelize(soup, &space, VXM_METHOD_VOTE, VXM_SPLIT_MODE_AUTO, NULL);
     assert_int_equal(vxm_grid_count(grid), 3 * (9 * 1 + 1 * 4 + 2 * 4 + 2 * 4));
     vxm_grid_destroy(grid);
     vxm_soup_destroy(soup);
@@ -347,7 +351,7 @@ static void test_huge_triangles(void **state) {
     for (int f = 0; f < 4; f++)
       shape_triangle(soup, v[f], v[(f + 1) % 4], v[(f + 2) % 4]);
     vxm_space space = {{70, 9, 8}, {-3, -4, -5}, {1, 1, 1}};
-    assert_methods_agree(soup, &space, VXM_PARTS_WHOLE);
+    assert_methods_agree(soup, &space, VXM_SPLIT_MODE_WHOLE);
     vxm_soup_destroy(soup);
   }
 }
@@ -361,14 +365,15 @@ static void test_vertices_too_far_away_are_refused(void **state) {
   shape_triangle(soup, 0, 1, 2);
   vxm_space space = unit_space(4, 4, 4);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = &space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = &space;
   vxm_error error = VXM_ERROR_INIT;
   vxm_grid *grid;
-  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &options, &error), VXM_ERROR_RANGE);
+  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &space_options, &options, &error), VXM_ERROR_RANGE);
   assert_int_equal(error.element, 2);
   assert_null(grid);
   soup->positions[7] = NAN;
-  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &options, &error), VXM_ERROR_RANGE);
+  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &space_options, &options, &error), VXM_ERROR_RANGE);
   vxm_soup_destroy(soup);
 }
 
@@ -395,7 +400,7 @@ static void test_same_bits_for_any_number_of_threads(void **state) {
           soup->indices[c] = soup->indices[soup->offsets[f]];
     vxm_space space = {{67, 70, 75}, {-0.7, -0.7, -0.7}, {0.05, 0.05, 0.05}};
     for (int m = VXM_METHOD_VOTE; m <= VXM_METHOD_TETRA; m++) {
-      vxm_grid *grid = voxelize(soup, &space, (vxm_method)m, VXM_PARTS_GROUP, NULL);
+      vxm_grid *grid = voxelize(soup, &space, (vxm_method)m, VXM_SPLIT_MODE_GROUP, NULL);
       assert_true(vxm_grid_count(grid) > 1000);
       hash[t][m] = vxm_grid_hash(grid);
       vxm_grid_destroy(grid);
@@ -442,9 +447,10 @@ static void test_torus_volume(void **state) {
   vxm_soup *soup = shape_empty(context);
   shape_torus(soup, 96, 48, 1, 0.4, (double[]){0, 0, 0});
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.resolution[0] = 100;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.resolution[0] = 100;
   vxm_grid *grid;
-  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_voxelize(&grid, NULL, soup, &space_options, &options, NULL), VXM_OK);
   double volume = (double)vxm_grid_count(grid) * pow(grid->space.voxel_size[0], 3),
          truth = 2 * M_PI * M_PI * 0.4 * 0.4;
   assert_true(fabs(volume / truth - 1) < 0.01);

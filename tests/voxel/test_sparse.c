@@ -16,7 +16,7 @@
 
 static void check_model(vxm_model *model, const vxm_space *space, const double *transform, const char *name) {
   vxm_error error = VXM_ERROR_INIT;
-  vxm_voxelize_report dense, sparse;
+  vxm_voxelize_report dense = VXM_VOXELIZE_REPORT_INIT, sparse = VXM_VOXELIZE_REPORT_INIT;
   vxm_grid *grid, *back;
   vxm_sparse *octree = NULL, *expected = NULL;
   assert_int_equal(vxm_grid_create(&grid, context, space, NULL), VXM_OK);
@@ -28,7 +28,7 @@ static void check_model(vxm_model *model, const vxm_space *space, const double *
     fail_msg("%s differs", name);
   assert_true(dense.hash == sparse.hash && dense.voxels == sparse.voxels);
   assert_true(dense.contested == sparse.contested && dense.empty_parts == sparse.empty_parts);
-  assert_true(dense.parts == sparse.parts && dense.escalated == sparse.escalated);
+  assert_true(dense.parts == sparse.parts && dense.winding_decided == sparse.winding_decided);
   assert_int_equal(vxm_sparse_from_grid(&expected, grid, NULL), VXM_OK);
   assert_int_equal(octree->brick_count, expected->brick_count);
   if (octree->brick_count > 0)
@@ -50,7 +50,8 @@ static void check(const vxm_soup *soup, const vxm_space *space, const vxm_voxeli
     fail_msg("%s", error.text);
   static const double turned[12] = {0.8, -0.6, 0, 1.5, 0.6, 0.8, 0, -2.25, 0, 0, -1, 9.5};
   char name[64];
-  snprintf(name, sizeof name, "method %d, mode %d, parts %d", options->method, options->mode, options->parts);
+  snprintf(name, sizeof name, "method %d, mode %d, parts %d", options->method, options->mode,
+           options->split_mode);
   check_model(model, space, NULL, name);
   check_model(model, space, turned, name);
   vxm_model_destroy(model);
@@ -110,7 +111,7 @@ static void test_random_soups(void **state) {
       vxm_space space = random_space(&rng);
       vxm_soup *soup = random_soup(context, &rng, &space, round);
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-      options.parts = (vxm_parts)vxm_rng_below(&rng, 3);
+      options.split_mode = (vxm_split_mode)vxm_rng_below(&rng, 3);
       check(soup, &space, &options);
       options.method = (vxm_method)(VXM_METHOD_X + (int)vxm_rng_below(&rng, 4));
       check(soup, &space, &options);

@@ -8,11 +8,12 @@
 
 static vxm_grid *voxelize(const vxm_soup *soup, const vxm_space *space, vxm_mode mode) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = space;
   options.mode = mode;
   vxm_error error = VXM_ERROR_INIT;
   vxm_grid *grid;
-  if (vxm_voxelize(&grid, NULL, soup, &options, &error) != VXM_OK)
+  if (vxm_voxelize(&grid, NULL, soup, &space_options, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return grid;
 }

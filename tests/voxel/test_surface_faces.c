@@ -12,11 +12,12 @@
 /** Two 6-neighbours outside the thin surface are both inside the mesh or both outside. */
 static void assert_separates(const vxm_soup *soup, const vxm_space *space) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  options.space.like = space;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = space;
   options.method = VXM_METHOD_X;
-  options.parts = VXM_PARTS_WHOLE;
+  options.split_mode = VXM_SPLIT_MODE_WHOLE;
   vxm_grid *solid;
-  assert_int_equal(vxm_voxelize(&solid, NULL, soup, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_voxelize(&solid, NULL, soup, &space_options, &options, NULL), VXM_OK);
   vxm_lattice lattice = vxm_lattice_of(space);
   vxm_surface *surface = surface_of(soup, &lattice, NULL);
   vxm_window thin = window_make(space, layouts[0], 0, space->dims[2]);

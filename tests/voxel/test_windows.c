@@ -68,7 +68,7 @@ static void check_windows(vxm_model *model, const vxm_grid *whole, const vxm_vox
     free(window.words);
   }
   free(before);
-  vxm_voxelize_report report;
+  vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_model_report(pass, &report, sum.count, sum.hash);
   vxm_model_close(model, pass);
   assert_equal_reports(&report, want);
@@ -87,7 +87,7 @@ static vxm_space random_space(vxm_rng *rng) {
 static void check_soup(uint64_t seed, int kind, const vxm_space *space, const vxm_voxelize_options *options,
                        int layout_step, vxm_rng *rng) {
   vxm_grid *whole = NULL;
-  vxm_voxelize_report want;
+  vxm_voxelize_report want = VXM_VOXELIZE_REPORT_INIT;
   for (int t = 0; t < 3; t++) {
     vxm_soup *soup = random_soup(contexts[t], seed, kind, space);
     if (t == 0)
@@ -113,7 +113,7 @@ static void test_windows_of_one_voter(void **state) {
     options.method = (vxm_method)(VXM_METHOD_X + round % 3);
     if (round % 8 == 7)
       options.method = VXM_METHOD_TETRA;
-    options.parts = (vxm_parts)(round / 3 % 3);
+    options.split_mode = (vxm_split_mode)(round / 3 % 3);
     options.cavities = (vxm_cavities)(round / 9 % 3);
     check_soup(1000 + (uint64_t)round, round / 3 % SOUP_KINDS, &space, &options, 2, &rng);
   }
@@ -128,7 +128,7 @@ static void test_windows_of_votes(void **state) {
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.vote = (vxm_vote)(VXM_VOTE_MAJORITY + round % 3);
     options.vote_always = round / 3 % 2;
-    options.parts = round % 5 ? VXM_PARTS_WHOLE : (vxm_parts)(round / 5 % 2);
+    options.split_mode = round % 5 ? VXM_SPLIT_MODE_WHOLE : (vxm_split_mode)(round / 5 % 2);
     check_soup(2000 + (uint64_t)round, round / 6 % SOUP_KINDS, &space, &options, 2, &rng);
   }
 }
@@ -140,7 +140,7 @@ static void test_windows_of_the_default(void **state) {
   for (int round = 0; round < 24; round++) {
     vxm_space space = random_space(&rng);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-    options.parts = round % 4 == 3 ? VXM_PARTS_WHOLE : (vxm_parts)(round % 2);
+    options.split_mode = round % 4 == 3 ? VXM_SPLIT_MODE_WHOLE : (vxm_split_mode)(round % 2);
     check_soup(3000 + (uint64_t)round, round % SOUP_KINDS, &space, &options, 3, &rng);
   }
 }
@@ -175,7 +175,7 @@ static void test_sheets_are_carried_to_the_end(void **state) {
       shape_triangle(soup, v[0], v[1], v[2]);
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
       options.vote = VXM_VOTE_ANY;
-      vxm_voxelize_report report;
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
       vxm_grid *grid = engine_solid(soup, &space, &options, &report);
       int64_t behind = vxm_min(vxm_max(space.dims[axis] - at, 0), space.dims[axis]);
       /* The tetrahedra of one triangle are flat, and the other axes see it edge on. */
@@ -205,8 +205,8 @@ static void test_empty_parts_are_counted_alike(void **state) {
       }
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
       options.method = (vxm_method)method;
-      options.parts = VXM_PARTS_GROUP;
-      vxm_voxelize_report report;
+      options.split_mode = VXM_SPLIT_MODE_GROUP;
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
       vxm_grid *grid = engine_solid(soup, &space, &options, &report);
       assert_int_equal(report.voxels, 0);
       assert_int_equal(report.parts, boxes);
@@ -248,8 +248,8 @@ static void test_parts_outside(void **state) {
         triangle_box(soup, (double[3]){2, 2, 2}, (double[3]){8, 8, 8}, 0, false);
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
       options.method = (vxm_method)method;
-      options.parts = VXM_PARTS_GROUP;
-      vxm_voxelize_report report;
+      options.split_mode = VXM_SPLIT_MODE_GROUP;
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
       vxm_grid *grid = engine_solid(soup, &space, &options, &report);
       assert_int_equal(report.parts, PARTS + with);
       assert_int_equal(report.outside_parts, outside);

@@ -371,7 +371,7 @@ static vxm_status map_voxels(uint8_t *voxels, double *ms, const vxm_published *p
   return status == VXM_OK ? vxm_cl_check(code, "unmapping voxels", error) : status;
 }
 
-vxm_status vxm_cl_published_take(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
+vxm_status vxm_cl_published_read(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
                                  vxm_error *error) {
   vxm_status status = check_engine(published, error);
   /* What was queued before is not the transfer's. */

@@ -5,6 +5,7 @@
 #define VXM_GPU_OPENCL_FAIEGHI_H
 
 #include "gpu/opencl/opencl.h"
+#include "voxmend/experimental.h"
 
 /** @param options checked, with a material */
 vxm_status vxm_cl_published_create(vxm_published **out, vxm_space *space, vxm_opencl *engine,
@@ -12,7 +13,7 @@ vxm_status vxm_cl_published_create(vxm_published **out, vxm_space *space, vxm_op
                                    vxm_error *error);
 vxm_status vxm_cl_published_voxelize(vxm_published_report *report, vxm_published *published,
                                      vxm_error *error);
-vxm_status vxm_cl_published_take(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
+vxm_status vxm_cl_published_read(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
                                  vxm_error *error);
 void vxm_cl_published_destroy(vxm_published *published);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Fields made into bits, and what has to be known of their numbers for that. */
 #include "base/endian.h"
+#include "base/sized.h"
 #include "base/threads.h"
 #include "grid/bit_transpose.h"
 #include "gridio/common/values.h"
@@ -25,8 +26,7 @@ static size_t load_piece(double out[PIECE], const vxm_field *field, size_t piece
 /* ---- The range ---- */
 
 vxm_status vxm_field_measure(vxm_field_range *out, const vxm_field *field, vxm_error *error) {
-  if (out)
-    *out = (vxm_field_range){0, 0, 0};
+  VXM_RESULT_CLEAR(out);
   if (!out || !field)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "field: an argument is NULL");
   double values[PIECE], least = INFINITY, greatest = -INFINITY;
@@ -39,9 +39,12 @@ vxm_status vxm_field_measure(vxm_field_range *out, const vxm_field *field, vxm_e
       not_numbers += values[n] != values[n];
     }
   }
-  *out = (vxm_field_range){least, greatest, not_numbers};
-  if (!(least <= greatest))
-    out->least = out->greatest = 0;
+  vxm_field_range found = {.not_numbers = not_numbers};
+  if (least <= greatest) {
+    found.min = least;
+    found.max = greatest;
+  }
+  VXM_RESULT_WRITE(out, &found);
   return VXM_OK;
 }
 
@@ -154,10 +157,12 @@ static vxm_status cut(vxm_grid *grid, cutting *c, vxm_error *error) {
   return status;
 }
 
-static vxm_status check_threshold(const vxm_threshold_options *o, vxm_error *error) {
-  if (o->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                    "threshold: options version %u is unknown; use the initializer", (unsigned)o->version);
+static vxm_status choose_threshold(vxm_threshold_options *o, const vxm_threshold_options *options,
+                                   vxm_error *error) {
+  *o = (vxm_threshold_options)VXM_THRESHOLD_OPTIONS_INIT;
+  vxm_status status = VXM_OPTIONS_READ(o, options, "threshold", error);
+  if (status != VXM_OK)
+    return status;
   if (!o->use_at_least && !o->use_below)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "threshold: neither at_least nor below is chosen; use one of them, or both");
@@ -167,7 +172,7 @@ static vxm_status check_threshold(const vxm_threshold_options *o, vxm_error *err
 }
 
 static void note_numbers(vxm_grid *grid, const vxm_field *field) {
-  vxm_field_range range;
+  vxm_field_range range = VXM_FIELD_RANGE_INIT;
   if (!vxm_scalar_is_float(field->scalar) || vxm_field_measure(&range, field, NULL) != VXM_OK)
     return;
   if (range.not_numbers > 0)
@@ -182,10 +187,11 @@ vxm_status vxm_field_threshold(vxm_grid **out, const vxm_field *field, const vxm
   if (!out || !field || !options)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "threshold: an argument is NULL");
   vxm_grid *grid = NULL;
-  vxm_status status = check_threshold(options, error);
+  vxm_threshold_options chosen;
+  vxm_status status = choose_threshold(&chosen, options, error);
   if (status == VXM_OK)
     status = vxm_grid_create(&grid, field->context, &field->space, error);
-  cutting c = {.field = field, .options = options};
+  cutting c = {.field = field, .options = &chosen};
   if (status == VXM_OK)
     status = cut(grid, &c, error);
   if (status != VXM_OK) {

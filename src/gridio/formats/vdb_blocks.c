@@ -89,15 +89,15 @@ static void flush(gathering *g) {
 
 static bool is_in_block(const gathering *g, const vxm_sparse_piece *piece) {
   for (int a = 0; a < 3; a++)
-    if (piece->at[a] / SIDE * SIDE != g->at[a])
+    if (piece->position[a] / SIDE * SIDE != g->at[a])
       return false;
   return g->is_open;
 }
 
 /** Voxel (x,y,z) of a brick is bit 16 z + 4 y + x of its word; in a block z comes first. */
 static void add_brick(gathering *g, const vxm_sparse_piece *piece) {
-  unsigned x0 = (unsigned)piece->at[0] % SIDE, y0 = (unsigned)piece->at[1] % SIDE,
-           z0 = (unsigned)piece->at[2] % SIDE;
+  unsigned x0 = (unsigned)piece->position[0] % SIDE, y0 = (unsigned)piece->position[1] % SIDE,
+           z0 = (unsigned)piece->position[2] % SIDE;
   for (unsigned x = 0; x < 4; x++)
     for (unsigned y = 0; y < 4; y++) {
       uint64_t column = piece->bits >> (4 * y + x) & UINT64_C(0x0001000100010001);
@@ -123,11 +123,11 @@ static void put_piece(const vxm_sparse_piece *piece, void *payload) {
     flush(g);
   if (piece->side >= SIDE) {
     if (g->status == VXM_OK)
-      g->status = g->target->functions->put_cube(g->target->vdb, piece->at, piece->side, 1, g->error);
+      g->status = g->target->functions->put_cube(g->target->vdb, piece->position, piece->side, 1, g->error);
   } else {
     if (!g->is_open) {
       for (int a = 0; a < 3; a++)
-        g->at[a] = piece->at[a] / SIDE * SIDE;
+        g->at[a] = piece->position[a] / SIDE * SIDE;
       memset(g->bits, 0, sizeof g->bits);
       g->is_open = true;
     }

@@ -271,9 +271,6 @@ static vxm_status draw(vxm_output *output, const camera *cam, const vxm_scene *s
 }
 
 static vxm_status check_options(const vxm_picture_options *o, vxm_error *error) {
-  if (o->version != 1)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: options version %u is unknown; use the initializer",
-                    (unsigned)o->version);
   if (o->width < 0 || o->height < 0 || o->width > SIZE_MAX_PIXELS || o->height > SIZE_MAX_PIXELS)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: %d x %d pixels; choose 1 to %d each", o->width,
                     o->height, SIZE_MAX_PIXELS);

@@ -12,24 +12,24 @@ static vxm_field_kind guess(const vxm_field *field, const vxm_field_range *range
   if (kind != VXM_FIELD_NUMBERS)
     return kind;
   if (!vxm_scalar_is_float(field->scalar))
-    return range->least >= 0 ? VXM_FIELD_LABELS : kind;
-  if (range->least < 0 && range->greatest > 0)
+    return range->min >= 0 ? VXM_FIELD_LABELS : kind;
+  if (range->min < 0 && range->max > 0)
     return VXM_FIELD_DISTANCE;
-  return range->least >= 0 && range->greatest <= 1 ? VXM_FIELD_COVERAGE : kind;
+  return range->min >= 0 && range->max <= 1 ? VXM_FIELD_COVERAGE : kind;
 }
 
 static vxm_threshold_options from(double at_least) {
-  return (vxm_threshold_options){1, true, at_least, false, 0};
+  return (vxm_threshold_options){sizeof(vxm_threshold_options), true, at_least, false, 0};
 }
 
 static vxm_threshold_options below(double bound) {
-  return (vxm_threshold_options){1, false, 0, true, bound};
+  return (vxm_threshold_options){sizeof(vxm_threshold_options), false, 0, true, bound};
 }
 
 /** The level of a distance: 0, or, without a sign, as far as a surface in a voxel can be from its centre. */
 static double distance_level(const vxm_field *field, const vxm_field_range *range) {
   const double *size = field->space.voxel_size;
-  if (range->least < 0)
+  if (range->min < 0)
     return 0;
   return 0.5 * sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
 }
@@ -60,7 +60,7 @@ static vxm_status choose(vxm_threshold_options *out, vxm_field_kind kind, const 
   return vxm_fail(error, VXM_ERROR_NUMBERS,
                   "picture: what the numbers (%s from %g to %g) are is not known: choose which are drawn, by "
                   "--threshold or --below",
-                  vxm_scalar_name(field->scalar), range->least, range->greatest);
+                  vxm_scalar_name(field->scalar), range->min, range->max);
 }
 
 /* ---- Colours ---- */
@@ -106,7 +106,7 @@ static vxm_ray_vec3 paint_label(const void *payload, const int64_t voxel[3]) {
 vxm_status vxm_gridio_field_picture(const vxm_field *field, const char *path,
                                     const vxm_picture_options *options,
                                     const vxm_threshold_options *threshold, vxm_error *error) {
-  vxm_field_range range = {0, 0, 0};
+  vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_threshold_options own;
   vxm_status status = vxm_field_measure(&range, field, error);
   vxm_field_kind kind = guess(field, &range);

@@ -323,7 +323,7 @@ vxm_status vxm_cut_hanging_sheets(vxm_repair_state *work, int64_t *added, vxm_er
   *added = (int64_t)(work->soup->vertex_count - before);
   if (*added > 0)
     vxm_repair_state_touch(work);
-  if (!done && error)
-    *error = c.error;
+  if (!done)
+    vxm_error_pass(error, &c.error);
   return done ? VXM_OK : c.error.code;
 }

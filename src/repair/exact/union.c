@@ -92,7 +92,7 @@ static vxm_status note_swallowed(vxm_repair_state *work, const vxm_soup *soup, c
 }
 
 static bool is_asked_for(const vxm_repair_state *work) {
-  return (work->options.unite || vxm_repair_state_reaches(work, VXM_LEVEL_SOLID)) &&
+  return (work->options.boolean_union || vxm_repair_state_reaches(work, VXM_LEVEL_SOLID)) &&
          !(work->options.wrap_alpha > 0);
 }
 

@@ -92,7 +92,7 @@ static vxm_status call_module(vxm_soup **out, uint64_t **origin, vxm_repair_stat
   int64_t filled, left;
   size_t edges = most == SIZE_MAX ? 0 : most;
   vxm_status status;
-  if (work->options.fill == VXM_FILL_SMOOTH) {
+  if (work->options.hole_fill == VXM_HOLE_FILL_SMOOTH) {
     const vxm_cgal *cgal;
     status = vxm_cgal_open(&cgal, "filling holes smoothly", error);
     if (status == VXM_OK)
@@ -174,7 +174,7 @@ vxm_status vxm_pass_closing(vxm_repair_state *work, bool *changed, vxm_error *er
   vxm_status status = vxm_repair_state_edges(work, error);
   if (status != VXM_OK || vxm_edges_count_odd(&work->edges) == 0)
     return status;
-  if (work->options.fill == VXM_FILL_FAN) {
+  if (work->options.hole_fill == VXM_HOLE_FILL_FAN) {
     int64_t closed;
     status = vxm_fill_fans(work, most, &closed, error);
     *changed = status == VXM_OK && closed > 0;

@@ -195,7 +195,7 @@ static bool was_nothing(const vxm_part_state *before) {
 
 /** By how much a part has changed, as a fraction: the larger of volume and bounds. */
 static double change_of(const vxm_provenance *track, const vxm_soup *soup, size_t i) {
-  const vxm_part_state *before = &soup->part_changes[i].before, *after = &soup->part_changes[i].after;
+  const vxm_part_state *before = soup->part_changes[i].before, *after = soup->part_changes[i].after;
   double diagonal = diagonal_of(before->bounds), most = 0;
   if (after->faces == 0)
     return before->faces == 0 || track->dropped[i] || was_nothing(before) ? 0 : 1;
@@ -217,22 +217,22 @@ static vxm_status check(const vxm_provenance *track, const vxm_soup *soup, doubl
     double change = change_of(track, soup, i);
     if (!(change > max_change))
       continue;
-    if (part->after.faces == 0)
+    if (part->after->faces == 0)
       return vxm_fail(error, VXM_ERROR_UNREACHED,
                       "the repair leaves nothing of part %zu (%" PRId64
                       " faces); leave out --max-change, or ask for less",
-                      i, part->before.faces);
+                      i, part->before->faces);
     if (!isfinite(change))
       return vxm_fail(error, VXM_ERROR_RANGE,
                       "the volume or bounds of part %zu (%" PRId64
                       " faces) are beyond the range of numbers, so that --max-change cannot hold them; scale "
                       "the mesh down",
-                      i, part->before.faces);
+                      i, part->before->faces);
     return vxm_fail(
         error, VXM_ERROR_UNREACHED,
         "the repair changes the volume or bounds of part %zu (%" PRId64
         " faces) by %.3g %%, more than the %.3g %% allowed; allow more (--max-change), or ask for less",
-        i, part->before.faces, 100 * change, 100 * max_change);
+        i, part->before->faces, 100 * change, 100 * max_change);
   }
   return VXM_OK;
 }
@@ -266,32 +266,32 @@ vxm_status vxm_provenance_refer(vxm_provenance *track, const vxm_soup *soup, vxm
   return status;
 }
 
-static vxm_status measure(vxm_provenance *track, vxm_soup *soup, vxm_part_state *states, vxm_error *error) {
-  vxm_status status = vxm_part_census_all(states, track->part_count, track->in, track->face_part, error);
-  for (size_t i = 0; status == VXM_OK && i < track->part_count; i++)
-    soup->part_changes[i] = (vxm_part_change){.before = states[i],
+static vxm_status measure(vxm_provenance *track, vxm_soup *soup, vxm_error *error) {
+  vxm_part_state *before = soup->part_states, *after = before + track->part_count;
+  vxm_status status = vxm_part_census_all(before, track->part_count, track->in, track->face_part, error);
+  for (size_t i = 0; status == VXM_OK && i < track->part_count; i++) {
+    after[i] = (vxm_part_state){.size = sizeof *after, .self_intersections = -1};
+    soup->part_changes[i] = (vxm_part_change){.size = sizeof *soup->part_changes,
+                                              .before = &before[i],
                                               .flipped = track->flipped[i],
-                                              .moved = track->moved[i],
+                                              .max_displacement = track->moved[i],
                                               .tag = UINT32_MAX,
-                                              .after = {.self_intersections = -1},
-                                              .ununited = track->left[i]};
+                                              .after = &after[i],
+                                              .union_failed = track->left[i]};
+  }
   for (size_t f = track->in->face_count; status == VXM_OK && track->in->face_tags && f-- > 0;)
     soup->part_changes[track->face_part[f]].tag = track->in->face_tags[f];
   if (status != VXM_OK || !soup->face_parts) /* a wrap has no parts */
     return status;
-  status = vxm_part_census_all(states, track->part_count, soup, soup->face_parts, error);
-  for (size_t i = 0; status == VXM_OK && i < track->part_count; i++)
-    soup->part_changes[i].after = states[i];
-  return status;
+  return vxm_part_census_all(after, track->part_count, soup, soup->face_parts, error);
 }
 
 vxm_status vxm_provenance_finish(vxm_provenance *track, vxm_soup *soup, double max_change, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  vxm_part_state *states = vxm_alloc(track->context, track->part_count, sizeof *states, &local);
-  if (states)
+  soup->part_states = vxm_alloc(track->context, 2 * track->part_count, sizeof *soup->part_states, &local);
+  if (soup->part_states)
     soup->part_changes = vxm_alloc(track->context, track->part_count, sizeof *soup->part_changes, &local);
-  vxm_status status = soup->part_changes ? measure(track, soup, states, &local) : local.code;
-  vxm_free(track->context, states);
+  vxm_status status = soup->part_changes ? measure(track, soup, &local) : local.code;
   soup->part_count = status == VXM_OK ? track->part_count : 0;
   if (status == VXM_OK && max_change > 0)
     status = check(track, soup, max_change, &local);
@@ -309,13 +309,13 @@ vxm_status vxm_provenance_count_crossings(vxm_provenance *track, vxm_soup *soup,
     status = vxm_self_intersections_count(&totals[0], states, track->part_count, track->face_part, track->in,
                                           &local);
   for (size_t i = 0; status == VXM_OK && i < track->part_count; i++)
-    soup->part_changes[i].before.self_intersections = states[i].self_intersections;
+    soup->part_states[i].self_intersections = states[i].self_intersections;
   bool parts = soup->face_parts != NULL;
   if (status == VXM_OK)
     status = vxm_self_intersections_count(&totals[1], parts ? states : NULL, track->part_count,
                                           soup->face_parts, soup, &local);
   for (size_t i = 0; status == VXM_OK && parts && i < track->part_count; i++)
-    soup->part_changes[i].after.self_intersections = states[i].self_intersections;
+    soup->part_states[track->part_count + i].self_intersections = states[i].self_intersections;
   vxm_free(track->context, states);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);

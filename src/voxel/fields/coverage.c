@@ -206,7 +206,7 @@ static void fill_tables(reduction *r) {
 
 static void sum_up(vxm_coverage_report *report, const reduction *r, const vxm_space *space, int workers,
                    vxm_model_pass *pass) {
-  *report = (vxm_coverage_report){.full = 0};
+  *report = (vxm_coverage_report){.voxelize = report->voxelize};
   int64_t subvoxels = 0;
   for (int w = 0; w < workers; w++) {
     subvoxels += r->tallies[w].subvoxels;
@@ -215,7 +215,7 @@ static void sum_up(vxm_coverage_report *report, const reduction *r, const vxm_sp
   }
   const double *size = space->voxel_size;
   report->volume = (double)subvoxels / (double)(r->n * r->n * r->n) * size[0] * size[1] * size[2];
-  vxm_model_report(pass, &report->voxelize, subvoxels, 0);
+  vxm_model_report(pass, report->voxelize, subvoxels, 0);
 }
 
 vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,

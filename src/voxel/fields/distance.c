@@ -217,15 +217,15 @@ static vxm_status measure_windows(measure *m, const vxm_field_target *target, co
 
 static void sum_up(vxm_distance_report *report, const measure *m, int workers) {
   int64_t inside = 0;
-  *report = (vxm_distance_report){.least = INFINITY, .greatest = -INFINITY};
+  *report = (vxm_distance_report){.voxelize = report->voxelize, .min = INFINITY, .max = -INFINITY};
   for (int w = 0; w < workers; w++) {
     report->exact += m->tallies[w].exact;
-    report->least = fmin(report->least, (double)m->tallies[w].least);
-    report->greatest = fmax(report->greatest, (double)m->tallies[w].greatest);
+    report->min = fmin(report->min, (double)m->tallies[w].least);
+    report->max = fmax(report->max, (double)m->tallies[w].greatest);
     inside += m->tallies[w].inside;
   }
   if (m->is_signed)
-    vxm_model_report(m->pass, &report->voxelize, inside, 0);
+    vxm_model_report(m->pass, report->voxelize, inside, 0);
 }
 
 /** What the workers have of their own. */

@@ -143,7 +143,8 @@ static vxm_status make_colors(uint8_t *values, const vxm_color_job *job, vxm_mod
 /** Which part each voxel belongs to. */
 static vxm_status make_parts(uint16_t *parts, vxm_model *model, const vxm_space *space, vxm_error *error) {
   vxm_face_labels labelling;
-  vxm_label_report report;
+  vxm_voxelize_report voxelize;
+  vxm_label_report report = {.voxelize = &voxelize};
   vxm_status status = vxm_face_labels_create(&labelling, model->analysis.soup, VXM_LABEL_PART, error);
   if (status == VXM_OK)
     status = vxm_labels_run(parts, (vxm_layout){2, 1, 0}, &report, model, space, &labelling, error);

@@ -289,7 +289,7 @@ static void find_box(const vxm_label_components *pieces, vxm_label_component *pi
 
 /** Whether the solid of a label is that of its closed components apart and of the rest. */
 static bool can_cut(const vxm_voxelize_options *options) {
-  return options->parts != VXM_PARTS_WHOLE && options->method != VXM_METHOD_WINDING &&
+  return options->split_mode != VXM_SPLIT_MODE_WHOLE && options->method != VXM_METHOD_WINDING &&
          options->cavities != VXM_CAVITIES_KEEP;
 }
 
@@ -297,7 +297,8 @@ static vxm_status cut_labels(builder *b, const vxm_voxelize_options *options) {
   vxm_status status = find_bodies(b);
   if (status == VXM_OK)
     status = find_open(b);
-  if (status == VXM_OK && options->cavities == VXM_CAVITIES_AUTO && options->parts == VXM_PARTS_AUTO) {
+  if (status == VXM_OK && options->cavities == VXM_CAVITIES_AUTO &&
+      options->split_mode == VXM_SPLIT_MODE_AUTO) {
     status = measure_bodies(b);
     if (status == VXM_OK)
       status = pool_all_cavities(b);

@@ -108,7 +108,7 @@ static bool has_lone_sheet(const vxm_model *model) {
   const vxm_split *split = &model->analysis.facets.split;
   const vxm_voxelize_options *options = &model->options;
   if (options->method != VXM_METHOD_VOTE || options->vote != VXM_VOTE_AUTO ||
-      options->parts == VXM_PARTS_WHOLE)
+      options->split_mode == VXM_SPLIT_MODE_WHOLE)
     return false;
   return split->component_count - split->cavity_count - split->kind_end[VXM_PART_CAPPED] == 1;
 }

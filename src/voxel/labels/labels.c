@@ -14,9 +14,9 @@ typedef struct labels {
   vxm_model_pass *pass; /**< NULL before the solid is made */
   vxm_face_labels *labelling;
   vxm_label_overlaps claims;
-  vxm_row_tile whole;            /**< all rows and slices */
-  atomic_int_fast64_t unclaimed; /**< set voxels that no label claims */
-  atomic_int_fast64_t *counts;   /**< of each label, the voxels that have it */
+  vxm_row_tile whole;             /**< all rows and slices */
+  atomic_int_fast64_t unassigned; /**< set voxels that no label claims */
+  atomic_int_fast64_t *counts;    /**< of each label, the voxels that have it */
   vxm_task_progress watch;
 } labels;
 
@@ -75,7 +75,7 @@ static void leave_tile(size_t task, int worker, void *payload) {
   for (int64_t slow = tile.begin[1]; slow < tile.end[1]; slow++)
     for (int64_t middle = tile.begin[0]; middle < tile.end[0]; middle++)
       left += leave_row(&l->claims, middle, slow);
-  atomic_fetch_add_explicit(&l->unclaimed, left, memory_order_relaxed);
+  atomic_fetch_add_explicit(&l->unassigned, left, memory_order_relaxed);
 }
 
 static void settle_tile(size_t task, int worker, void *payload) {
@@ -92,10 +92,10 @@ static void settle_tile(size_t task, int worker, void *payload) {
   vxm_task_progress_step(&l->watch);
 }
 
-static vxm_status settle_unclaimed(labels *l, vxm_error *error) {
+static vxm_status settle_unassigned(labels *l, vxm_error *error) {
   size_t tiles = vxm_row_tiles_count(&l->whole);
   vxm_parallel(l->context, tiles, leave_tile, l);
-  if (atomic_load_explicit(&l->unclaimed, memory_order_relaxed) == 0)
+  if (atomic_load_explicit(&l->unassigned, memory_order_relaxed) == 0)
     return VXM_OK;
   vxm_status status = vxm_label_overlaps_need_forest(&l->claims, error);
   if (status != VXM_OK)
@@ -134,11 +134,11 @@ static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
     empty += table->voxels[label - 1] == 0;
     first = table->voxels[label - 1] == 0 ? label : first;
   }
-  *report = (vxm_label_report){.labels = (int64_t)table->count};
-  report->unclaimed = atomic_load_explicit(&l->unclaimed, memory_order_relaxed);
+  *report = (vxm_label_report){.voxelize = report->voxelize, .labels = (int64_t)table->count};
+  report->unassigned = atomic_load_explicit(&l->unassigned, memory_order_relaxed);
   for (size_t w = 0; w < grid_words(l); w++)
     report->contested += vxm_popcount(l->claims.several[w]);
-  vxm_model_report(l->pass, &report->voxelize, sum->count, sum->hash);
+  vxm_model_report(l->pass, report->voxelize, sum->count, sum->hash);
   if (l->labelling->is_untagged)
     vxm_warn(warnings, "the mesh names no groups or materials: all of it has one label, \"unnamed\"");
   if (empty > 0 && sum->count > 0)
@@ -180,7 +180,7 @@ static vxm_status run(labels *l, vxm_label_report *report, vxm_error *error) {
     status = vxm_label_overlaps_run(&l->claims, error);
   }
   if (status == VXM_OK)
-    status = settle_unclaimed(l, error);
+    status = settle_unassigned(l, error);
   if (status == VXM_OK)
     sum_up(l, report, &sum);
   return status;

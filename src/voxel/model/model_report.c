@@ -82,7 +82,7 @@ static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
              " voxels, decided by %s; "
              "compare --method winding, --vote majority and --parts whole",
              pass->solid.analysis->facets.split.odd_edge_count, report->contested,
-             report->escalated > 0 ? "the winding number" : "the vote");
+             report->winding_decided > 0 ? "the winding number" : "the vote");
 }
 
 void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t voxels, uint64_t hash) {
@@ -96,7 +96,7 @@ void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t
       .caps = (int64_t)split->capped_loops,
       .cavities = (int64_t)split->cavity_count,
       .contested = pass->solid.contested,
-      .escalated = pass->solid.escalated,
+      .winding_decided = pass->solid.winding_decided,
       .voxels = voxels,
       .hash = hash};
   count_empty_parts(pass, report);

@@ -32,7 +32,7 @@ static vxm_status find_components(builder *b, vxm_error *error) {
   if (!s->component)
     return b->error.code;
   s->component_count = 1;
-  if (b->rule.parts == VXM_PARTS_WHOLE)
+  if (b->rule.split_mode == VXM_SPLIT_MODE_WHOLE)
     return VXM_OK;
   return vxm_components(s->context, b->soup, NULL, s->component, &s->component_count, error);
 }
@@ -148,7 +148,7 @@ static vxm_status find_cavities(builder *b, vxm_error *error) {
     solid_count += solid[c];
   }
   vxm_status status = VXM_OK;
-  if (b->rule.parts == VXM_PARTS_AUTO && b->rule.cavities != VXM_CAVITIES_FILL && solid_count > 1) {
+  if (b->rule.split_mode == VXM_SPLIT_MODE_AUTO && b->rule.cavities != VXM_CAVITIES_FILL && solid_count > 1) {
     vxm_containment nesting;
     status = vxm_containment_build(&nesting, b->soup, s->component, s->component_count, solid, error);
     for (size_t c = 0; status == VXM_OK && c < s->component_count; c++) {
@@ -181,7 +181,7 @@ static vxm_status number_parts(builder *b) {
     return b->error.code;
   size_t next = 0;
   for (int kind = VXM_PART_CLOSED; kind <= VXM_PART_OPEN; kind++) {
-    bool pool = kind == VXM_PART_OPEN && b->rule.parts == VXM_PARTS_AUTO;
+    bool pool = kind == VXM_PART_OPEN && b->rule.split_mode == VXM_SPLIT_MODE_AUTO;
     size_t first = next;
     for (size_t c = 0; c < s->component_count; c++)
       if (b->root[c] == c && b->kind[c] == kind) {

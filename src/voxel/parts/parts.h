@@ -14,7 +14,7 @@ typedef enum vxm_part_kind {
 
 /** How to split. */
 typedef struct vxm_split_rule {
-  vxm_parts parts;
+  vxm_split_mode split_mode;
   vxm_cavities cavities;
   bool cap; /**< parts with holes are to be capped; else they are open */
 } vxm_split_rule;
@@ -42,9 +42,9 @@ typedef struct vxm_split {
  * rim to its edges) have less than three quarters of its area: a body with holes. A panel would vanish under
  * its own cap.
  *
- * With VXM_PARTS_AUTO every closed or capped component is a part, a cavity shares the part of the component
- * around it (parity then leaves it hollow), and all open components are one part, so that panels which touch
- * without sharing vertices are seen together.
+ * With VXM_SPLIT_MODE_AUTO every closed or capped component is a part, a cavity shares the part of the
+ * component around it (parity then leaves it hollow), and all open components are one part, so that panels
+ * which touch without sharing vertices are seen together.
  *
  * @param[out] out freed with vxm_split_destroy, also after a failure
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED

@@ -46,7 +46,7 @@ vxm_status vxm_confidence_fill(vxm_voxel_pass *pass, const vxm_window *window, v
     return VXM_OK;
   }
   confidence_job job = {.confidence = pass->confidence, .window = window};
-  job.settled = pass->escalated > 0 ? pass->buffers[VXM_BUFFER_MASK].words : NULL;
+  job.settled = pass->winding_decided > 0 ? pass->buffers[VXM_BUFFER_MASK].words : NULL;
   atomic_uchar *has_voxels = pass->has_voxels;
   pass->has_voxels = NULL; /* what these voters see says nothing about the result */
   vxm_window made;

@@ -24,7 +24,7 @@ static vxm_status fill_by_winding(vxm_voxel_pass *pass, const vxm_window *window
   size_t depth = (size_t)(window->end - window->begin);
   memset(window->words, 0, depth * window->slice_words * sizeof *window->words);
   int64_t added = 0;
-  pass->escalated += window->fast_dim * window->middle_dim * (int64_t)depth;
+  pass->winding_decided += window->fast_dim * window->middle_dim * (int64_t)depth;
   status =
       vxm_winding_fill(window, NULL, pass->all_winding.tree, pass->context, pass->confidence, &added, error);
   pass->added |= added > 0;
@@ -60,7 +60,7 @@ static vxm_status fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error
 }
 
 vxm_status vxm_solid_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
-  int64_t contested = pass->contested, escalated = pass->escalated;
+  int64_t contested = pass->contested, winding_decided = pass->winding_decided;
   bool added = pass->added;
   vxm_error local = VXM_ERROR_INIT;
   bool elsewhere = vxm_voxel_pass_ops(pass) != NULL;
@@ -68,7 +68,7 @@ vxm_status vxm_solid_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_er
   vxm_status status = fill(pass, window, &local);
   if (status != VXM_OK && elsewhere && vxm_engine_falls_back(pass->engine, &local)) {
     pass->contested = contested;
-    pass->escalated = escalated;
+    pass->winding_decided = winding_decided;
     pass->added = added;
     pass->no_poll = window->begin > 0;
     status = fill(pass, window, &local);

@@ -115,7 +115,7 @@ static vxm_status decide_open_parts(vxm_voxel_pass *pass, const vxm_window *wind
   pass->added |= tally.added;
   if (!decide || tally.contested == 0 || pass->options.method == VXM_METHOD_WINDING)
     return VXM_OK; /* the winding number is asked about every voxel anyway */
-  pass->escalated += tally.contested;
+  pass->winding_decided += tally.contested;
   return settle_contested(pass, window, mask.words, error);
 }
 

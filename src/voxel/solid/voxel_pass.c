@@ -26,7 +26,7 @@ void vxm_voxel_pass_begin(vxm_voxel_pass *pass) {
   size_t parts = pass->has_voxels ? pass->analysis->facets.split.part_count : 0;
   for (size_t p = 0; p < parts; p++)
     atomic_store_explicit(&pass->has_voxels[p], 0, memory_order_relaxed);
-  pass->contested = pass->escalated = 0;
+  pass->contested = pass->winding_decided = 0;
   pass->added = false;
   vxm_winding_mesh_destroy(&pass->open_winding);
   vxm_winding_mesh_destroy(&pass->all_winding);

@@ -39,7 +39,7 @@ typedef struct vxm_voxel_pass {
   vxm_winding_mesh open_winding, all_winding; /**< made when first needed */
   atomic_uchar *has_voxels;                   /**< per part: whether it sets a voxel; NULL = not asked */
   uint8_t *confidence;                        /**< of the whole grid, x fastest; NULL = not asked */
-  int64_t contested, escalated;
+  int64_t contested, winding_decided;
   bool added;   /**< whether the open parts set a voxel */
   bool no_poll; /**< an engine gave way behind the first window, so that a poll has no state to go on from */
 } vxm_voxel_pass;

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * @file voxmend/experimental.h
+ * What may change from one version to the next, and is in no other header: a published program, for
+ * comparison.
+ */
+#ifndef VOXMEND_EXPERIMENTAL_H
+#define VOXMEND_EXPERIMENTAL_H
+
+#include "voxmend/engine.h"
+#include "voxmend/grid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- A published OpenCL program, for comparison ---- */
+
+/** The voxels of a mesh in the memory of an OpenCL device, made by the program of Faieghi, Tutunea-Fatan and
+ * Eagleson, "Fast and cross-vendor OpenCL-based implementation for voxelization of triangular mesh models".
+ */
+typedef struct vxm_published vxm_published;
+
+typedef struct vxm_published_options {
+  size_t size;       /**< as the initializer sets it */
+  double voxel_size; /**< model units; has no default */
+  bool by_voxel; /**< a work-item for each voxel, over all facets until one meets it (their approach 1); else
+                    one for each facet, over the voxels of its box (approach 2, their figure 5) */
+  bool count_tests; /**< count the intersection tests as well, which costs memory on the device: 4 bytes per
+                       voxel or 8 per facet */
+  uint8_t material; /**< what a voxel gets that the surface touches; 0 = 1. Others are 0 */
+} vxm_published_options;
+
+#define VXM_PUBLISHED_OPTIONS_INIT \
+  { sizeof(vxm_published_options), 0.0, false, false, 0 }
+
+typedef struct vxm_published_report {
+  size_t size;        /**< as the initializer sets it, or 0 */
+  double kernel_ms;   /**< of the kernel alone, by the device's own clock where `profiled` */
+  bool profiled;      /**< the device has profiling events; else times are the host's */
+  int64_t triangles;  /**< polygons are cut into triangles */
+  int64_t work_group; /**< work-items of a group: as many as the device lets the kernel have (section 3.4) */
+  int64_t tests;      /**< tests of a facet against a voxel, as in their table 1; 0 = not counted */
+} vxm_published_report;
+
+#define VXM_PUBLISHED_REPORT_INIT \
+  { sizeof(vxm_published_report), 0.0, false, 0, 0, 0 }
+
+/** How voxels come from the device to the host; their figure 7 compares the two. */
+typedef enum vxm_transfer {
+  VXM_TRANSFER_MAP = 0, /**< clEnqueueMapBuffer */
+  VXM_TRANSFER_READ     /**< clEnqueueReadBuffer */
+} vxm_transfer;
+
+/**
+ * Brings the triangles of a mesh to a device, nine 32-bit floats for each (section 3.1), and makes room for a
+ * byte for each voxel of the mesh's bounding box. All is in floats, as published: far from the origin, or
+ * where voxels are small against coordinates, voxels at the edge of triangles may differ from
+ * vxm_model_voxelize's conservative surface, which is exact.
+ *
+ * @param[out] out   owned by the caller (vxm_published_destroy); the engine must outlive it, the mesh need
+ * not
+ * @param[out] space what the grid covers; may be NULL. Its origin is the minimum of the vertices
+ * @param engine     an engine of OpenCL
+ * @param mesh       polygons in model units; need not be closed
+ * @param options    not NULL: the voxel size has to be told
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for a voxel size that is not a positive number; VXM_ERROR_UNAVAILABLE
+ * for an engine that is not of OpenCL; VXM_ERROR_EMPTY without triangles; VXM_ERROR_RANGE for a vertex that
+ * is no finite float, for more than 2^24 voxels along an axis, or for more bytes than the device gives to a
+ *         buffer; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT (what is on the device counts, too)
+ */
+VXM_API vxm_status vxm_published_create(vxm_published **out, vxm_space *space, vxm_engine *engine,
+                                        const vxm_mesh *mesh, const vxm_published_options *options,
+                                        vxm_error *error);
+/**
+ * Sets the voxels on the device. Both approaches set the same ones.
+ *
+ * @param[out] report may be NULL
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_UNAVAILABLE, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_published_voxelize(vxm_published_report *report, vxm_published *published,
+                                          vxm_error *error);
+/**
+ * Brings the voxels to the host.
+ *
+ * @param[out] voxels a byte per voxel, x fastest, then y, then z (their equation 3.2); NULL = only map them
+ * @param[out] ms     time of the transfer alone, as kernel_ms; may be NULL. What is mapped is copied off the
+ * clock
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for no voxels with VXM_TRANSFER_READ; VXM_ERROR_MEMORY,
+ *         VXM_ERROR_UNAVAILABLE
+ */
+VXM_API vxm_status vxm_published_read(uint8_t *voxels, double *ms, vxm_published *published, vxm_transfer how,
+                                      vxm_error *error);
+/** NULL is allowed. */
+VXM_API void vxm_published_destroy(vxm_published *published);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

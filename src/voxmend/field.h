@@ -1,0 +1,382 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * @file voxmend/field.h
+ * Fields: a number, label or colour for each voxel, of a model or in a file.
+ */
+#ifndef VOXMEND_FIELD_H
+#define VOXMEND_FIELD_H
+
+#include "voxmend/voxelize.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Fields in files: numbers, labels and colours ---- */
+
+/** What the numbers of a field are, as far as its file says. */
+typedef enum vxm_field_kind {
+  VXM_FIELD_NUMBERS = 0, /**< it does not say */
+  VXM_FIELD_DISTANCE,    /**< model units, negative inside where it has a sign */
+  VXM_FIELD_COVERAGE,    /**< the share of a voxel that is filled: 0 to 1, or 0 to 255 of unsigned bytes */
+  VXM_FIELD_LABELS,      /**< 0 = none */
+  VXM_FIELD_CONFIDENCE,  /**< 0 = a guess, to 255 = proven */
+  VXM_FIELD_COLORS       /**< red, green, blue and opacity, 0 = no voxel: VXM_UINT8, four channels */
+} vxm_field_kind;
+
+/** One number (or colour) for each voxel of a space. It does not change once it is made. */
+typedef struct vxm_field vxm_field;
+
+/**
+ * Makes a field of a copy of values.
+ *
+ * @param values [x][y][z] in C order (z fastest); of VXM_FIELD_COLORS [x][y][z][4]
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_field_create(vxm_field **out, vxm_context *context, const vxm_space *space,
+                                    vxm_field_kind kind, vxm_scalar scalar, const void *values,
+                                    vxm_error *error);
+
+/**
+ * Reads the numbers of a file as they are: .npy, .nrrd, .vdb, or .binvox. Files that hold bits give 0 and 1,
+ * as VXM_UINT8. Floats of 16 bits in .vdb become VXM_FLOAT32.
+ *
+ * @return as vxm_grid_read, without VXM_ERROR_NUMBERS
+ */
+VXM_API vxm_status vxm_field_read(vxm_field **out, vxm_context *context, const char *path, vxm_error *error);
+
+/**
+ * Reads what a file holds: a grid where it stores bits (booleans, or unsigned bytes of which all are 0 or 1),
+ * else a field. Of *grid and *field one is NULL. @return as vxm_field_read
+ */
+VXM_API vxm_status vxm_grid_or_field_read(vxm_grid **grid, vxm_field **field, vxm_context *context,
+                                          const char *path, vxm_error *error);
+VXM_API void vxm_field_destroy(vxm_field *field);
+
+VXM_API const vxm_space *vxm_field_space(const vxm_field *field);
+VXM_API vxm_field_kind vxm_field_kind_of(const vxm_field *field);
+VXM_API vxm_scalar vxm_field_scalar(const vxm_field *field);
+/** 4 of colours, else 1. */
+VXM_API int vxm_field_channels(const vxm_field *field);
+/** [x][y][z] in C order (z fastest), of colours [x][y][z][4]. */
+VXM_API const void *vxm_field_values(const vxm_field *field);
+/** Short fixed name of a kind, such as "distance", or "" for none. */
+VXM_API const char *vxm_field_kind_name(vxm_field_kind kind);
+
+typedef struct vxm_field_range {
+  size_t size;         /**< as the initializer sets it, or 0 */
+  double min, max;     /**< of those that are numbers; of colours the opacity; 0 and 0 if none are */
+  int64_t not_numbers; /**< NaN */
+} vxm_field_range;
+
+#define VXM_FIELD_RANGE_INIT \
+  { sizeof(vxm_field_range), 0.0, 0.0, 0 }
+
+/** The range of the values. @return VXM_OK, VXM_ERROR_ARGUMENT */
+VXM_API vxm_status vxm_field_measure(vxm_field_range *out, const vxm_field *field, vxm_error *error);
+
+/** Number of labels that have an entry in the table beside the file, numbered from 1; 0 if there is none. */
+VXM_API int64_t vxm_field_label_count(const vxm_field *field);
+/** Name of label 1 to vxm_field_label_count; "" for others. */
+VXM_API const char *vxm_field_label_name(const vxm_field *field, int64_t label);
+
+/** What else a file says of its values, such as units, as pairs of texts; it goes along into .npy (its
+ * .json), .nrrd and .vdb. */
+VXM_API int64_t vxm_field_metadata_count(const vxm_field *field);
+VXM_API const char *vxm_field_metadata_key(const vxm_field *field, int64_t index);
+VXM_API const char *vxm_field_metadata_value(const vxm_field *field, int64_t index);
+
+/**
+ * Adds the next label to the table of a field that has just been made, or a pair to its metadata.
+ *
+ * @param voxels that have the label
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_RANGE beyond what a file may say, which is 1 MiB;
+ * VXM_ERROR_MEMORY
+ */
+VXM_API vxm_status vxm_field_add_label(vxm_field *field, const char *name, int64_t voxels, vxm_error *error);
+VXM_API vxm_status vxm_field_add_metadata(vxm_field *field, const char *key, const char *value,
+                                          vxm_error *error);
+
+/** Warnings from reading, one line each. */
+VXM_API int64_t vxm_field_warning_count(const vxm_field *field);
+VXM_API const char *vxm_field_warning(const vxm_field *field, int64_t index);
+
+/** Whether the numbers are bits in another type, of which nothing is lost: see vxm_grid_read. */
+VXM_API bool vxm_field_is_mask(const vxm_field *field);
+
+typedef struct vxm_threshold_options {
+  size_t size;       /**< as the initializer sets it */
+  bool use_at_least; /**< at least one of the two */
+  double at_least;   /**< voxels are set where the value is this or greater */
+  bool use_below;
+  double below; /**< and less than this */
+} vxm_threshold_options;
+
+#define VXM_THRESHOLD_OPTIONS_INIT \
+  { sizeof(vxm_threshold_options), false, 0.0, false, 0.0 }
+
+/**
+ * Makes a grid of a field: voxel (i,j,k) is set where its value is at least one number, below another, or
+ * both. -0 counts as below 0: a distance has it inside, on the surface. What is not a number is never set. Of
+ * colours the opacity counts.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT without a bound, or if one is not a number; VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_field_threshold(vxm_grid **out, const vxm_field *field,
+                                       const vxm_threshold_options *options, vxm_error *error);
+
+/**
+ * Writes a field, under a temporary name first; "-" writes standard output.
+ *
+ * .npy (with its .json beside it) and .nrrd hold every type (VXM_FLOAT16 becomes VXM_FLOAT32 in .nrrd), .vdb
+ * 32-bit floats, if each value is one exactly; it remembers the type. .binvox (version 2) holds whole numbers
+ * from 0 to 255. Colours go into .npy, .nrrd, .ply or .vox. Labels have their table in a .json beside the
+ * file.
+ *
+ * @param options NULL = defaults
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for a format that holds only bits or is unknown; VXM_ERROR_RANGE if it
+ *         cannot hold the values; as vxm_grid_write
+ */
+VXM_API vxm_status vxm_field_write(const vxm_field *field, const char *path,
+                                   const vxm_grid_write_options *options, vxm_error *error);
+
+/**
+ * Draws a field into a PNG file as vxm_grid_picture does: of distances what is below 0, or nearer than half a
+ * voxel's diagonal if none is; coverage from one half on; labels in colours that depend on the label alone;
+ * confidence below 255; colours as they are. Numbers of which the file does not say what they are count as
+ * labels if they are whole and not negative, as distances if some are below 0 and some above, as coverage if
+ * all are from 0 to 1.
+ *
+ * @param options   NULL = defaults
+ * @param threshold the voxels to be drawn; NULL = as above
+ * @return as vxm_grid_picture; VXM_ERROR_NUMBERS for other numbers without a threshold
+ */
+VXM_API vxm_status vxm_field_picture(const vxm_field *field, const char *path,
+                                     const vxm_picture_options *options,
+                                     const vxm_threshold_options *threshold, vxm_error *error);
+
+/* ---- Fields: a number per voxel ---- */
+
+typedef struct vxm_coverage_options {
+  size_t size;        /**< as the initializer sets it */
+  int subdivision;    /**< 2, 4 or 8: a voxel is cut into so many sub-voxels along each axis */
+  vxm_scalar scalar;  /**< VXM_FLOAT32: the fraction, 0 to 1; VXM_UINT8: 255 times that, rounded, halves up */
+  const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
+} vxm_coverage_options;
+
+#define VXM_COVERAGE_OPTIONS_INIT \
+  { sizeof(vxm_coverage_options), 4, VXM_FLOAT32, NULL }
+
+typedef struct vxm_coverage_report {
+  size_t size; /**< as the initializer sets it, or 0 */
+  vxm_voxelize_report
+      *voxelize; /**< set by the caller: NULL, or where that of the sub-voxels goes, without their hash */
+  int64_t full, partial; /**< voxels of which all sub-voxels are set, or some */
+  double volume;         /**< sum of the fractions times the volume of a voxel */
+} vxm_coverage_report;
+
+#define VXM_COVERAGE_REPORT_INIT \
+  { sizeof(vxm_coverage_report), NULL, 0, 0, 0.0 }
+
+/**
+ * Computes how much of each voxel of a space the model fills: the fraction of its sub-voxels that are set, as
+ * the options of the model say. They are made a few slices at a time, never all at once.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2] float or uint8_t, as [x][y][z] in C order (z fastest)
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_RANGE beyond 2^20 sub-voxels along an axis. After a failure the
+ * values are unspecified
+ */
+VXM_API vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report, vxm_model *model,
+                                      const vxm_space *space, const vxm_coverage_options *options,
+                                      vxm_error *error);
+
+/** As vxm_model_coverage, into a file: .npy (with its .json beside it), .nrrd or .vdb; as much at a time as
+ * the memory limit allows. @return as vxm_model_coverage and vxm_grid_write */
+VXM_API vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *model,
+                                            const vxm_space *space, const char *path,
+                                            const vxm_coverage_options *options, vxm_error *error);
+
+/** Estimates vxm_model_write_coverage, as vxm_model_estimate does; what a .vdb holds until it is written
+ * follows the surface, and is not counted. */
+VXM_API vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model,
+                                               const vxm_space *space, const char *path,
+                                               const vxm_coverage_options *options, vxm_error *error);
+
+typedef struct vxm_distance_options {
+  size_t size;        /**< as the initializer sets it */
+  bool is_unsigned;   /**< false = negative where the centre is inside the solid */
+  double band;        /**< voxels, of the longest side; 0 = everywhere */
+  const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
+} vxm_distance_options;
+
+#define VXM_DISTANCE_OPTIONS_INIT \
+  { sizeof(vxm_distance_options), false, 3.0, NULL }
+
+typedef struct vxm_distance_report {
+  size_t size;                   /**< as the initializer sets it, or 0 */
+  vxm_voxelize_report *voxelize; /**< set by the caller: NULL, or where that of the solid that gives the sign
+                                    goes, without its hash; zeros if unsigned */
+  int64_t exact;                 /**< voxels that are not clamped */
+  double min, max;               /**< of all values */
+} vxm_distance_report;
+
+#define VXM_DISTANCE_REPORT_INIT \
+  { sizeof(vxm_distance_report), NULL, 0, 0.0, 0.0 }
+
+/**
+ * Computes the distance from the centre of each voxel to the faces of the mesh, in model units. Within the
+ * band it is exact: off by some 1e-14 of the distance and the longest edges, and then rounded to the nearest
+ * 32-bit float (which holds 1e-5 voxel up to 168 voxels). Beyond, it is plus or minus the width of the band,
+ * which is `band` times the longest side of a voxel. The sign is that of the solid (vxm_voxelize). With a
+ * band, time follows surface times band, beside that of the solid.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
+ * @param report  may be NULL
+ * @param model   of VXM_MODE_SOLID
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT for another mode. After a failure the values are
+ * unspecified
+ */
+VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report, vxm_model *model,
+                                      const vxm_space *space, const vxm_distance_options *options,
+                                      vxm_error *error);
+
+/** As vxm_model_distance, into a file: .npy (with its .json beside it), .nrrd or .vdb; as much at a time as
+ * the memory limit allows. @return as vxm_model_distance and vxm_grid_write */
+VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
+                                            const vxm_space *space, const char *path,
+                                            const vxm_distance_options *options, vxm_error *error);
+
+/** Estimates vxm_model_write_distance, as vxm_model_estimate does; what a .vdb holds until it is written
+ * follows the surface, and is not counted. */
+VXM_API vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_model *model,
+                                               const vxm_space *space, const char *path,
+                                               const vxm_distance_options *options, vxm_error *error);
+
+/* ---- Labels: which part, group or material a voxel belongs to ---- */
+
+/** What faces are labelled by. */
+typedef enum vxm_label_by {
+  VXM_LABEL_PART = 0, /**< connected components */
+  VXM_LABEL_GROUP,    /**< groups, or parts named in the file: of a face tag what lies before the first '/' */
+  VXM_LABEL_MATERIAL  /**< materials: what lies behind it */
+} vxm_label_by;
+
+typedef struct vxm_label_options {
+  size_t size; /**< as the initializer sets it */
+  vxm_label_by by;
+  const char *format; /**< of a file: "npy", "nrrd" or "binvox"; NULL = by extension */
+} vxm_label_options;
+
+#define VXM_LABEL_OPTIONS_INIT \
+  { sizeof(vxm_label_options), VXM_LABEL_PART, NULL }
+
+typedef struct vxm_label_report {
+  size_t size;                   /**< as the initializer sets it, or 0 */
+  vxm_voxelize_report *voxelize; /**< set by the caller: NULL, or where that of the set voxels goes */
+  int64_t labels;                /**< numbered from 1 in the order of their first faces */
+  int64_t contested;  /**< voxels that several labels claim: the one with the nearest face has them */
+  int64_t unassigned; /**< voxels that none claims: they have the label of the nearest face of all */
+} vxm_label_report;
+
+#define VXM_LABEL_REPORT_INIT \
+  { sizeof(vxm_label_report), NULL, 0, 0, 0 }
+
+/**
+ * Labels the voxels of a model: 0 where none is set, else the part, group or material that it belongs to. Set
+ * are the voxels that vxm_model_voxelize sets. A label claims the voxels whose centres are inside its own
+ * faces, voxelized alone as the options of the model say with VXM_MODE_SOLID, within their bounds. Of several
+ * labels that claim a voxel, or of all where none does, it has the one with the face nearest to its centre;
+ * among equally near ones, to seven digits, the lowest. The number of threads makes no difference.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2] values, as [x][y][z] in C order (z fastest)
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_RANGE beyond 65535 labels. After a failure the values are
+ * unspecified
+ */
+VXM_API vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_model *model,
+                                    const vxm_space *space, const vxm_label_options *options,
+                                    vxm_error *error);
+
+/**
+ * As vxm_model_labels, into a file: .npy, .nrrd, or .binvox (version 2), which holds 255 labels at most. The
+ * table of labels goes into a .json beside it. All values are in memory meanwhile. @return as
+ * vxm_model_labels and vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,
+                                          const char *path, const vxm_label_options *options,
+                                          vxm_error *error);
+
+/* ---- Colours ---- */
+
+/** What gives a voxel its colour (Rueda et al., section 5). */
+typedef enum vxm_color_by {
+  VXM_COLOR_NOISE = 0, /**< Perlin's noise in three dimensions, four octaves */
+  VXM_COLOR_POSITION,  /**< red, green and blue along x, y and z */
+  VXM_COLOR_PART,      /**< a hue for each connected component */
+  VXM_COLOR_GLSL       /**< a function in GLSL: needs an engine of OpenGL */
+} vxm_color_by;
+
+typedef struct vxm_color_options {
+  size_t size; /**< as the initializer sets it */
+  vxm_color_by by;
+  const char
+      *source; /**< with VXM_COLOR_GLSL: defines vec3 color(vec3 position, vec3 unit, uint part), of the
+                  centre in model units, the same from the grid's corner on with its longest side as 1,
+                  and the number of the component, from 1 on; may call float noise(vec3), -1 to 1 */
+  const char *format; /**< of a file: "npy", "ply" or "vox"; NULL = by extension */
+} vxm_color_options;
+
+#define VXM_COLOR_OPTIONS_INIT \
+  { sizeof(vxm_color_options), VXM_COLOR_NOISE, NULL, NULL }
+
+/**
+ * Gives each set voxel of a model a colour.
+ *
+ * @param values  room for dims[0]*dims[1]*dims[2]*4 bytes, as [x][y][z][4] in C order: red, green, blue and
+ *                255; zeros where no voxel is set
+ * @param report  may be NULL
+ * @param options NULL = defaults
+ * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT too, with what the driver says, for a function that does
+ *         not compile; VXM_ERROR_UNAVAILABLE for GLSL without an engine of OpenGL. The engine and the CPU may
+ *         differ by 1 in the built-in functions. After a failure the values are unspecified
+ */
+VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report, vxm_model *model,
+                                    const vxm_space *space, const vxm_color_options *options,
+                                    vxm_error *error);
+
+/**
+ * As vxm_model_colors, into a file: .npy, uint8 [x][y][z][4] (with its .json beside it); .ply, the faces
+ * between set and empty voxels with coloured corners; .vox of MagicaVoxel, where colours are
+ * told apart by 5 bits each and reduced to at most 255, and every 256 voxels along an axis begin another
+ * model. @return as vxm_model_colors and vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write_colors(vxm_voxelize_report *report, vxm_model *model,
+                                          const vxm_space *space, const char *path,
+                                          const vxm_color_options *options, vxm_error *error);
+
+/* What a call leaves in the model, labels and warnings, belongs to the thread that made it, until that
+ * thread's next call. A thread that has made nothing of the model is told what another has made last, which
+ * it may read while that one is not at work. */
+
+/** Number of labels of the last labels made of the model; 0 if there are none. */
+VXM_API int64_t vxm_model_label_count(const vxm_model *model);
+/** Name of label 1 to vxm_model_label_count: that of the group or material, or "unnamed"; of a part that of
+ * its tag, or of its group, if its faces share one, else "part " and its number. Names may repeat. "" for
+ * others. */
+VXM_API const char *vxm_model_label_name(const vxm_model *model, int64_t label);
+/** Voxels that have a label. */
+VXM_API int64_t vxm_model_label_voxels(const vxm_model *model, int64_t label);
+
+/** Warnings from the last grid or file made of the model, one line each. */
+VXM_API int64_t vxm_model_warning_count(const vxm_model *model);
+VXM_API const char *vxm_model_warning(const vxm_model *model, int64_t index);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

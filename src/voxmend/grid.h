@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * @file voxmend/grid.h
+ * Voxel spaces and grids of bits: made, read, written, drawn and compared.
+ */
+#ifndef VOXMEND_GRID_H
+#define VOXMEND_GRID_H
+
+#include "voxmend/mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Grids ---- */
+
+/** A box of dims[0] x dims[1] x dims[2] cells: the centre of (i,j,k) is origin + ((i,j,k) + 1/2) *
+ * voxel_size. */
+typedef struct vxm_space {
+  int64_t dims[3];
+  double origin[3];     /**< minimum corner, model units */
+  double voxel_size[3]; /**< model units per axis */
+} vxm_space;
+
+/** One bit per voxel, x fastest, rows padded to whole 64-bit words with zero bits. */
+typedef struct vxm_grid vxm_grid;
+
+/** Makes an empty grid. @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT */
+VXM_API vxm_status vxm_grid_create(vxm_grid **out, vxm_context *context, const vxm_space *space,
+                                   vxm_error *error);
+VXM_API void vxm_grid_destroy(vxm_grid *grid);
+
+VXM_API const vxm_space *vxm_grid_space(const vxm_grid *grid);
+/** Whether voxel (i,j,k) is set; false outside the grid. */
+VXM_API bool vxm_grid_get(const vxm_grid *grid, int64_t i, int64_t j, int64_t k);
+/** Sets or clears voxel (i,j,k); outside the grid it does nothing. */
+VXM_API void vxm_grid_set(vxm_grid *grid, int64_t i, int64_t j, int64_t k, bool value);
+/** Words of a row: (dims[0] + 63) / 64. */
+VXM_API int64_t vxm_grid_row_words(const vxm_grid *grid);
+/** Row (j,k) starts at word (k * dims[1] + j) * row_words; voxel i is bit i % 64 of its word i / 64. */
+VXM_API const uint64_t *vxm_grid_words(const vxm_grid *grid);
+/** Number of set voxels. */
+VXM_API int64_t vxm_grid_count(const vxm_grid *grid);
+/** A 64-bit hash of dimensions and bits, the same on every machine. */
+VXM_API uint64_t vxm_grid_hash(const vxm_grid *grid);
+/** One byte, 0 or 1, per voxel into dims[0]*dims[1]*dims[2] bytes, as [x][y][z] in C order (z fastest). */
+VXM_API void vxm_grid_unpack(const vxm_grid *grid, uint8_t *bytes);
+/** Sets all voxels from such bytes: those that are not 0. */
+VXM_API void vxm_grid_pack(vxm_grid *grid, const uint8_t *bytes);
+/**
+ * As vxm_grid_unpack, of the voxels (i,j,k) with i from begin to end - 1, into (end - begin)*dims[1]*dims[2]
+ * bytes; with progress, and to be cancelled.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT if an argument is NULL or the range does not lie within the grid;
+ *         VXM_ERROR_CANCELLED, then the bytes are unspecified
+ */
+VXM_API vxm_status vxm_grid_unpack_range(const vxm_grid *grid, int64_t begin, int64_t end, uint8_t *bytes,
+                                         vxm_error *error);
+/** The same the other way; voxels outside of the range stay. @return as vxm_grid_unpack_range; after
+ * VXM_ERROR_CANCELLED some are set */
+VXM_API vxm_status vxm_grid_pack_range(vxm_grid *grid, int64_t begin, int64_t end, const uint8_t *bytes,
+                                       vxm_error *error);
+/**
+ * Sets all voxels from words as vxm_grid_words gives them; bits beyond the end of a row are left out.
+ *
+ * @param count row_words * dims[1] * dims[2]
+ * @return VXM_OK; VXM_ERROR_ARGUMENT if an argument is NULL or `count` is another number
+ */
+VXM_API vxm_status vxm_grid_set_words(vxm_grid *grid, const uint64_t *words, size_t count, vxm_error *error);
+/**
+ * How sure each voxel is, 0 (a guess) to 255 (proven), dims[0]*dims[1]*dims[2] bytes with x fastest; NULL
+ * unless the grid was made with vxm_voxelize_options.confidence. A voxel decided by closed parts alone has
+ * 255, one decided by the winding number w has 255 times the smaller of 1 and |2 w - 1|, any other the share
+ * of the voters x, y, z and tetra that agree with it; what the surface sets has 255.
+ */
+VXM_API const uint8_t *vxm_grid_confidence(const vxm_grid *grid);
+/**
+ * Writes the confidence as .npy: uint8, indexed [x][y][z], stored with x fastest.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT if the grid has none or the extension is another; VXM_ERROR_IO,
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_grid_write_confidence(const vxm_grid *grid, const char *path, vxm_error *error);
+/** Warnings from voxelizing or reading, one line each. */
+VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
+VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
+
+/**
+ * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd or .vdb, told by content first
+ * and by name second. Of .vdb, the first grid of bool, mask or float: of bool and mask, what is active (and
+ * true) is set. "-" reads standard input (not .raw).
+ *
+ * Numbers are taken as voxels only if nothing is lost: where all of them are 0 or 1, whatever their type, or
+ * unsigned bytes of which some are 0 and the others 255. Distances and confidences, and colours, never are.
+ *
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with offset; VXM_ERROR_NUMBERS for other numbers, which
+ *         vxm_field_read reads; VXM_ERROR_UNAVAILABLE for packed values without the library that unpacks them
+ *         (zlib for .nrrd, OpenVDB for .vdb); VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ *         VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
+
+typedef struct vxm_grid_write_options {
+  size_t size;        /**< as the initializer sets it */
+  const char *format; /**< "binvox", "npy", "raw", "rle", "nrrd", "vdb", or "obj", "ply", "stl", "off"; NULL =
+                         by extension */
+} vxm_grid_write_options;
+
+#define VXM_GRID_WRITE_OPTIONS_INIT \
+  { sizeof(vxm_grid_write_options), NULL }
+
+/**
+ * Writes a grid, under a temporary name first. "-" writes standard output (not .raw). The mesh formats hold
+ * the grid's surface as vxm_grid_surface_mesh makes it. .binvox pads a grid that is not cubic at its far
+ * side.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format, or .binvox with voxels that are not cubes;
+ * VXM_ERROR_UNAVAILABLE for .vdb without OpenVDB; VXM_ERROR_IO; VXM_ERROR_RANGE, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_grid_write(const vxm_grid *grid, const char *path,
+                                  const vxm_grid_write_options *options, vxm_error *error);
+
+/**
+ * Makes a mesh of the exposed voxel faces in model units, facing outward, merged into rectangles that share
+ * vertices. The mesh is closed mod 2: rectangles have a corner wherever a neighbour has one.
+ */
+VXM_API vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error);
+
+typedef struct vxm_picture_options {
+  size_t size;       /**< as the initializer sets it */
+  int width, height; /**< pixels; 0 = 800 x 600 */
+  double azimuth;    /**< degrees about the up axis */
+  double elevation;  /**< degrees above the horizon */
+  int up;            /**< axis that points up: 0 = default (z), 1 = x, 2 = y, 3 = z */
+} vxm_picture_options;
+
+#define VXM_PICTURE_OPTIONS_INIT \
+  { sizeof(vxm_picture_options), 0, 0, 30.0, 25.0, 0 }
+
+/**
+ * Draws the grid as shaded voxels into a PNG file.
+ *
+ * @return VXM_OK; VXM_ERROR_UNAVAILABLE without libpng; VXM_ERROR_ARGUMENT, VXM_ERROR_IO, VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path,
+                                    const vxm_picture_options *options, vxm_error *error);
+
+/**
+ * Reads only where the voxels of a grid or field lie: a grid in which none is set.
+ *
+ * @return as vxm_grid_read, without VXM_ERROR_NUMBERS
+ */
+VXM_API vxm_status vxm_grid_read_space(vxm_grid **out, vxm_context *context, const char *path,
+                                       vxm_error *error);
+
+typedef struct vxm_comparison {
+  size_t size; /**< as the initializer sets it, or 0 */
+  int64_t voxels_a, voxels_b, both, only_a, only_b;
+  double iou; /**< both / (both + only_a + only_b); 1 if both grids are empty */
+} vxm_comparison;
+
+#define VXM_COMPARISON_INIT \
+  { sizeof(vxm_comparison), 0, 0, 0, 0, 0, 0.0 }
+
+/** Compares two grids of equal dimensions. @return VXM_OK; VXM_ERROR_ARGUMENT if the dimensions differ */
+VXM_API vxm_status vxm_grid_compare(vxm_comparison *out, const vxm_grid *a, const vxm_grid *b,
+                                    vxm_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

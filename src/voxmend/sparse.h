@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * @file voxmend/sparse.h
+ * Sparse sets of voxels, whose memory follows the surface.
+ */
+#ifndef VOXMEND_SPARSE_H
+#define VOXMEND_SPARSE_H
+
+#include "voxmend/voxelize.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Sparse sets of voxels: memory follows the surface ---- */
+
+/**
+ * A set of voxels as a sparse octree over bricks of 4 x 4 x 4 voxels (Schwarz & Seidel 2010, section 5): only
+ * bricks that are neither empty nor full are held. Equal sets in equal spaces have the same content.
+ */
+typedef struct vxm_sparse vxm_sparse;
+
+/**
+ * Voxelizes a model into an octree, straight from the triangles where its parts are closed, or closed by
+ * caps (then an OpenCL engine makes it on its device); else, and for surfaces, by way of ranges of slices.
+ * The voxels are those of vxm_model_voxelize.
+ *
+ * @param report    NULL = not wanted, which saves counting and hashing
+ * @param space     the octree's
+ * @param transform as for vxm_model_voxelize
+ * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT too if the model's options ask for the confidence
+ */
+VXM_API vxm_status vxm_model_sparse(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
+                                    const vxm_space *space, const double transform[12], vxm_error *error);
+VXM_API void vxm_sparse_destroy(vxm_sparse *sparse);
+
+VXM_API const vxm_space *vxm_sparse_space(const vxm_sparse *sparse);
+/** Whether voxel (i,j,k) is set; false outside. */
+VXM_API bool vxm_sparse_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
+/** Number of set voxels. */
+VXM_API int64_t vxm_sparse_count(const vxm_sparse *sparse);
+/** vxm_grid_hash of the same voxels. */
+VXM_API uint64_t vxm_sparse_hash(const vxm_sparse *sparse);
+/** Bricks held, nodes of all levels, and the bytes they take. */
+VXM_API int64_t vxm_sparse_bricks(const vxm_sparse *sparse);
+VXM_API int64_t vxm_sparse_nodes(const vxm_sparse *sparse);
+VXM_API uint64_t vxm_sparse_bytes(const vxm_sparse *sparse);
+
+/** @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+VXM_API vxm_status vxm_sparse_from_grid(vxm_sparse **out, const vxm_grid *grid, vxm_error *error);
+/** A new grid. @return as vxm_grid_create */
+VXM_API vxm_status vxm_sparse_to_grid(vxm_grid **out, const vxm_sparse *sparse, vxm_error *error);
+
+typedef enum vxm_set_operation {
+  VXM_SET_UNION = 0,
+  VXM_SET_INTERSECTION,
+  VXM_SET_DIFFERENCE, /**< what `a` has and `b` has not */
+  VXM_SET_SYMMETRIC_DIFFERENCE,
+  VXM_SET_COMPLEMENT /**< what `a` has not, within its box; `b` is NULL */
+} vxm_set_operation;
+
+/**
+ * Makes a new set of two of equal dimensions; it takes the space of `a`.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, also if the dimensions differ; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_sparse_combine(vxm_sparse **out, const vxm_sparse *a, const vxm_sparse *b,
+                                      vxm_set_operation operation, vxm_error *error);
+
+/** A cube of voxels that is full, or a brick of 4 x 4 x 4 that is not. */
+typedef struct vxm_sparse_piece {
+  size_t size;         /**< bytes that there are of it */
+  int64_t position[3]; /**< its first voxel */
+  int64_t side;        /**< voxels along it: 4 to the power of 1, 2, ... */
+  uint64_t bits;       /**< of a brick: voxel (x,y,z) of it is bit 16 z + 4 y + x; all set for a cube */
+} vxm_sparse_piece;
+
+/** Called for a piece; `piece` is gone when it returns, which it has to (see "Callbacks" in voxmend/base.h).
+ */
+typedef void (*vxm_sparse_fn)(const vxm_sparse_piece *piece, void *payload);
+
+/** Calls for each piece, in Morton order. */
+VXM_API void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload);
+
+/** As vxm_grid_write, slice by slice, but for .vdb, whose tree is made of the octree's pieces; not as a mesh.
+ */
+VXM_API vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path,
+                                    const vxm_grid_write_options *options, vxm_error *error);
+
+/**
+ * Writes the coordinates of all set voxels as .npy: int32, n rows of (i, j, k), sorted by i, then j, then k,
+ * as numpy.argwhere gives them for the .npy of the grid.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT if the extension is another; VXM_ERROR_IO, VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_sparse_write_coords(const vxm_sparse *sparse, const char *path, vxm_error *error);
+VXM_API vxm_status vxm_grid_write_coords(const vxm_grid *grid, const char *path, vxm_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * @file voxmend/voxelize.h
+ * Grids made of meshes, one or many of each.
+ */
+#ifndef VOXMEND_VOXELIZE_H
+#define VOXMEND_VOXELIZE_H
+
+#include "voxmend/engine.h"
+#include "voxmend/grid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Voxelization ---- */
+
+typedef enum vxm_fit {
+  VXM_FIT_CUBE = 0, /**< equal dimensions; the longest side of the model fills them, the model is centred */
+  VXM_FIT_TIGHT,    /**< the box of the model */
+  VXM_FIT_SPHERE    /**< equal dimensions; the diagonal of the box fills them: safe under rotation */
+} vxm_fit;
+
+/** Which voxels of a mesh are set. */
+typedef enum vxm_mode {
+  VXM_MODE_SOLID = 0, /**< centre inside */
+  VXM_MODE_SURFACE,   /**< on the surface, as vxm_surface_kind says */
+  VXM_MODE_BOTH       /**< either: thin parts and sheets are kept */
+} vxm_mode;
+
+/** Which voxels are the surface. A shell is a part of the solid, so that it adds nothing in VXM_MODE_BOTH. */
+typedef enum vxm_surface_kind {
+  VXM_SURFACE_CONSERVATIVE = 0, /**< every voxel whose closed box meets a face, no more and no less */
+  VXM_SURFACE_THIN,             /**< 6-separating: no path over 6-neighbours crosses a face outside of it */
+  VXM_SURFACE_SHELL26, /**< voxels of the solid with an empty one among the 26 around; outside the grid all
+                          are empty */
+  VXM_SURFACE_SHELL18, /**< among the 18 that share a face or an edge */
+  VXM_SURFACE_SHELL6   /**< among the 6 that share a face */
+} vxm_surface_kind;
+
+typedef enum vxm_method {
+  VXM_METHOD_VOTE = 0, /**< parity along x, y, z and the tetrahedra, combined by vxm_vote */
+  VXM_METHOD_X,        /**< parity of crossings along x */
+  VXM_METHOD_Y,
+  VXM_METHOD_Z,
+  VXM_METHOD_TETRA,  /**< XOR of the tetrahedra from the centroid to every triangle (Rueda et al.) */
+  VXM_METHOD_WINDING /**< winding number above 1/2 at every voxel, after turning all patches outward */
+} vxm_method;
+
+typedef enum vxm_vote {
+  VXM_VOTE_AUTO = 0, /**< holes closed by caps over their rims; what stays open by agreement of x, y and z,
+                        and by the winding number where they disagree */
+  VXM_VOTE_MAJORITY, /**< at least two of x, y and z (Chen & Tu); the tetrahedra cannot overturn that */
+  VXM_VOTE_ANY,      /**< at least one voter */
+  VXM_VOTE_ALL       /**< every voter */
+} vxm_vote;
+
+typedef enum vxm_split_mode {
+  VXM_SPLIT_MODE_AUTO = 0, /**< every closed component alone, all others together; united */
+  VXM_SPLIT_MODE_GROUP,    /**< every component alone (Chen & Tu); united */
+  VXM_SPLIT_MODE_WHOLE     /**< no splitting */
+} vxm_split_mode;
+
+/** What a closed component inside another one is, with VXM_SPLIT_MODE_AUTO. */
+typedef enum vxm_cavities {
+  VXM_CAVITIES_AUTO = 0, /**< a cavity if it is wound against the one around it, else solid */
+  VXM_CAVITIES_KEEP,     /**< a cavity */
+  VXM_CAVITIES_FILL      /**< solid */
+} vxm_cavities;
+
+/** Which voxel space to use. Give resolution or voxel_size, or `like`. */
+typedef struct vxm_space_options {
+  size_t size;           /**< as the initializer sets it */
+  int64_t resolution[3]; /**< voxels per axis; {N,0,0} = N along the longest side; all 0 and no voxel_size =
+                            128 */
+  double voxel_size;     /**< model units */
+  vxm_fit fit;
+  int64_t pad; /**< empty voxels kept free on each side; within `resolution`, in addition with voxel_size */
+  bool use_bounds;       /**< cover `bounds` instead of fitting to the model: from their minimum corner
+                              on, rounded up to whole voxels; exactly if three numbers are given */
+  double bounds[6];      /**< x0 y0 z0 x1 y1 z1 */
+  const vxm_space *like; /**< take exactly this space; overrides the rest */
+} vxm_space_options;
+
+#define VXM_SPACE_OPTIONS_INIT \
+  { sizeof(vxm_space_options), {0, 0, 0}, 0.0, VXM_FIT_CUBE, 0, false, {0, 0, 0, 0, 0, 0}, NULL }
+
+/**
+ * Chooses a voxel space for a mesh.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if the mesh has no extent; VXM_ERROR_RANGE beyond 2^20
+ * voxels along an axis
+ */
+VXM_API vxm_status vxm_space_fit(vxm_space *out, const vxm_mesh *mesh, const vxm_space_options *options,
+                                 vxm_error *error);
+
+typedef struct vxm_voxelize_options {
+  size_t size; /**< as the initializer sets it */
+  vxm_method method;
+  vxm_vote vote;
+  vxm_split_mode split_mode;
+  vxm_cavities cavities;
+  vxm_mode mode;
+  bool confidence;  /**< keep for every voxel how sure it is: vxm_grid_confidence */
+  bool vote_always; /**< with `vote` majority, any or all: on closed parts too, where the voters agree anyway
+                     */
+  vxm_surface_kind surface; /**< with `mode` surface and both */
+  vxm_engine *engine;       /**< NULL = the CPU. Must outlive the models made with these options */
+} vxm_voxelize_options;
+
+#define VXM_VOXELIZE_OPTIONS_INIT                                                                         \
+  {                                                                                                       \
+    sizeof(vxm_voxelize_options), VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_SPLIT_MODE_AUTO, VXM_CAVITIES_AUTO, \
+        VXM_MODE_SOLID, false, false, VXM_SURFACE_CONSERVATIVE, NULL                                      \
+  }
+
+typedef struct vxm_voxelize_report {
+  size_t size;          /**< as the initializer sets it, or 0 */
+  int64_t parts;        /**< parts that were voxelized apart and united */
+  int64_t closed_parts; /**< those in which every edge has an even number of faces: all voters agree there */
+  int64_t capped_parts; /**< those that were closed by caps over the rims of their holes */
+  int64_t cavities;     /**< components that were taken for cavities of the one around them */
+  int64_t caps;         /**< rims that were capped */
+  int64_t contested;    /**< voxels on which the voters of the parts that stayed open disagreed */
+  int64_t winding_decided; /**< voxels that the winding number decided: all with VXM_METHOD_WINDING */
+  int64_t voxels;          /**< set voxels */
+  uint64_t hash;           /**< vxm_grid_hash */
+  int64_t empty_parts;     /**< parts that set no voxel; of open parts, all if together they set none */
+  int64_t
+      outside_parts; /**< parts that set none because they lie outside of the grid: not among empty_parts */
+  double fill_ms, write_ms; /**< of vxm_model_write: time for making and for writing the voxels; else 0 */
+} vxm_voxelize_report;
+
+#define VXM_VOXELIZE_REPORT_INIT \
+  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0 }
+
+/**
+ * Voxelizes the inside of a mesh: voxel (i,j,k) is set where its centre is inside.
+ *
+ * @param[out] out    new grid
+ * @param[out] report may be NULL
+ * @param mesh        polygons in model units; need not be closed, oriented or manifold; parts are found by
+ * vertex index, so repair (or at least weld) it first
+ * @param space       where the voxels lie; NULL = defaults
+ * @param options     how; NULL = defaults
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners;
+ *         VXM_ERROR_RANGE if a vertex lies too far outside the grid; VXM_ERROR_MEMORY,
+ *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ *
+ * Parity is computed exactly on an integer lattice (at least 1/256 voxel). For parts closed mod 2 all methods
+ * give the same bits, except the winding number where a part cuts through itself or a centre lies on a face.
+ * With VXM_METHOD_WINDING the parts of the report are those of the solid that is made first, to turn the
+ * faces.
+ */
+VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, const vxm_mesh *mesh,
+                                const vxm_space_options *space, const vxm_voxelize_options *options,
+                                vxm_error *error);
+
+/* ---- Models: many grids of one mesh ---- */
+
+/**
+ * A mesh made ready for voxelizing: its parts are found, its holes capped. Making one costs more than a small
+ * grid does; all its grids share its memory.
+ *
+ * Several threads may use one model at once, in any calls, each with memory of its own that is kept for the
+ * next grid; the bits are the same. But a model with an engine other than the CPU may be used by one thread
+ * at a time, as the engine may.
+ */
+typedef struct vxm_model vxm_model;
+
+/**
+ * Makes a model. Each grid brings its own space.
+ *
+ * @param mesh as for vxm_voxelize; must outlive the model and stay as it is
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners;
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_model_create(vxm_model **out, const vxm_mesh *mesh,
+                                    const vxm_voxelize_options *options, vxm_error *error);
+VXM_API void vxm_model_destroy(vxm_model *model);
+
+/**
+ * Voxelizes a model into a grid: all bits of the grid are replaced.
+ *
+ * @param grid      says the space
+ * @param report    NULL = not wanted, nor are warnings, which saves counting and hashing
+ * @param transform NULL, or the 3 x 4 matrix, row after row, that takes (x, y, z, 1) of the mesh to where it
+ * is voxelized, in model units
+ * @return as vxm_voxelize; VXM_ERROR_ARGUMENT too for a matrix that is not finite or has determinant 0. After
+ *         a failure the content of the grid is unspecified
+ */
+VXM_API vxm_status vxm_model_voxelize(vxm_grid *grid, vxm_voxelize_report *report, vxm_model *model,
+                                      const double transform[12], vxm_error *error);
+
+/** What voxelizing a model into a file takes. */
+typedef struct vxm_estimate {
+  size_t size;           /**< as the initializer sets it, or 0 */
+  uint64_t grid_bytes;   /**< one bit per voxel; of a field, its values */
+  uint64_t memory_bytes; /**< held at most, beyond what the context holds already */
+  int64_t passes;        /**< ranges of slices that are made and written one after another; 1 = all at once */
+} vxm_estimate;
+
+#define VXM_ESTIMATE_INIT \
+  { sizeof(vxm_estimate), 0, 0, 0 }
+
+/** Estimates vxm_model_write under the memory limit of the mesh's context. @return as vxm_model_write, before
+ * the work. Nothing is opened */
+VXM_API vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
+                                      const char *path, const vxm_grid_write_options *options,
+                                      vxm_error *error);
+
+/**
+ * Voxelizes a model straight into a grid file. What does not fit the memory limit at once is made and written
+ * range after range of slices, in the order of the file; the file is the same.
+ *
+ * @param report may be NULL
+ * @param path, options as for vxm_grid_write. The mesh formats and the confidence need the whole grid in
+ * memory
+ * @return as vxm_voxelize and vxm_grid_write
+ */
+VXM_API vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
+                                   const char *path, const vxm_grid_write_options *options, vxm_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
