@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The fields of a context; for context.c, file_transaction.c and threads.c only. */
+/** The fields of a context; for context.c, memory.c, progress.c, file_transaction.c and threads.c only. */
 #ifndef VXM_BASE_CONTEXT_STRUCT_H
 #define VXM_BASE_CONTEXT_STRUCT_H
 
@@ -55,5 +55,8 @@ struct vxm_context {
   vxm_pool pool;
   vxm_file_transaction held; /**< of the account */
 };
+
+/** Gives all blocks of a context's store back to the system. */
+void vxm_store_empty(vxm_context *context);
 
 #endif

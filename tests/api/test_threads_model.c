@@ -243,44 +243,38 @@ static void with_context(int threads, void (*test)(vxm_context *context)) {
 
 /* ---- Tests ---- */
 
-static void run_methods(vxm_context *context) {
+static void check_method(vxm_context *context, vxm_method method, bool asks_winding) {
   vxm_mesh *mesh = messy(context);
   outcome expected[JOBS];
-  for (int method = VXM_METHOD_VOTE; method <= VXM_METHOD_WINDING; method++) {
-    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-    options.method = (vxm_method)method;
-    check(mesh, &options, expected);
-    for (int job = 0; job < JOBS; job++)
-      assert_int_equal(expected[job].status, VXM_OK);
-    if (method == VXM_METHOD_VOTE) { /* else the orientation, which is found once, would not be asked for */
-      assert_true(expected[GRID * RESOLUTIONS + 2].contested > 0);
-      assert_true(expected[GRID * RESOLUTIONS + 2].winding_decided > 0);
-    }
-  }
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.method = method;
+  check(mesh, &options, expected);
+  for (int job = 0; job < JOBS; job++)
+    assert_int_equal(expected[job].status, VXM_OK);
+  /* Else the orientation, which is found once, would not be asked for. */
+  assert_int_equal(expected[GRID * RESOLUTIONS + 2].winding_decided > 0, asks_winding);
   vxm_mesh_destroy(mesh);
+}
+
+static void run_vote(vxm_context *context) {
+  check_method(context, VXM_METHOD_VOTE, true);
+}
+
+static void run_winding_and_tetra(vxm_context *context) {
+  check_method(context, VXM_METHOD_WINDING, true);
+  check_method(context, VXM_METHOD_TETRA, false);
 }
 
 static void test_methods(void **state) {
   (void)state;
-  with_context(2, run_methods);
-}
-
-static void run_votes(vxm_context *context) {
-  vxm_mesh *mesh = messy(context);
-  outcome expected[JOBS];
-  check(mesh, NULL, expected);
-  vxm_mesh_destroy(mesh);
-}
-
-static void test_context_of_one_thread(void **state) {
-  (void)state;
-  with_context(1, run_votes);
+  with_context(2, run_vote);
+  with_context(1, run_winding_and_tetra);
 }
 
 static void run_modes(vxm_context *context) {
   vxm_mesh *mesh = messy(context);
   outcome expected[JOBS];
-  for (int kind = VXM_SURFACE_CONSERVATIVE; kind <= VXM_SURFACE_SHELL6; kind++) {
+  for (int kind = VXM_SURFACE_CONSERVATIVE; kind <= VXM_SURFACE_SHELL26; kind++) {
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.mode = kind == VXM_SURFACE_THIN ? VXM_MODE_BOTH : VXM_MODE_SURFACE;
     options.surface = (vxm_surface_kind)kind;
@@ -290,6 +284,7 @@ static void run_modes(vxm_context *context) {
   }
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.confidence = true;
+  options.vote = VXM_VOTE_ALL;
   check(mesh, &options, expected);
   vxm_mesh_destroy(mesh);
 }
@@ -300,8 +295,6 @@ static void test_modes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_methods),
-                                     cmocka_unit_test(test_context_of_one_thread),
-                                     cmocka_unit_test(test_modes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_methods), cmocka_unit_test(test_modes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
