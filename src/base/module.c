@@ -87,10 +87,10 @@ vxm_status vxm_module_load(const vxm_module **out, const char *path, const char 
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "%s needs a module that cannot be loaded: %s", purpose,
                     dlerror());
   const vxm_module *module = dlsym(handle, VXM_MODULE_SYMBOL);
-  if (module == NULL || strcmp(module->version, PACKAGE_VERSION) != 0)
+  if (module == NULL || strcmp(module->build, VXM_BUILD) != 0)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
-                    "%s needs a module of voxmend %s; %s is of %s: install them together", purpose,
-                    PACKAGE_VERSION, path, module == NULL ? "something else" : module->version);
+                    "%s needs a module of voxmend %s; %s is of %s: install them together", purpose, VXM_BUILD,
+                    path, module == NULL ? "something else" : module->build);
   *out = module;
   return VXM_OK;
 }

@@ -7,15 +7,19 @@
 #ifndef VXM_BASE_MODULE_H
 #define VXM_BASE_MODULE_H
 
+#include "build_hash.h"
 #include "voxmend.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/** Of which build code is: the version, and a hash of all headers; config.h comes first. */
+#define VXM_BUILD PACKAGE_VERSION "+" VXM_BUILD_HASH
+
 /** What a module exports under the name of VXM_MODULE_SYMBOL. */
 typedef struct vxm_module {
-  const char *version;   /**< of voxmend: has to be that of the library, as both share structures */
+  const char *build;     /**< VXM_BUILD: has to be that of the library, as both share structures */
   const char *library;   /**< what it is made with, such as "OpenVDB 10.0.1" */
   const char *licence;   /**< of the module, an SPDX expression */
   const void *functions; /**< a structure of function pointers, declared by the room that uses the module */
@@ -37,7 +41,7 @@ enum { VXM_MODULE_PATH_MAX = 4096 };
  * that is set, else beside the library and where it was installed; in a program that runs with rights of its
  * own (setuid, capabilities) only there.
  *
- * @return VXM_OK; VXM_ERROR_UNAVAILABLE if it is missing, cannot be loaded, or belongs to another version
+ * @return VXM_OK; VXM_ERROR_UNAVAILABLE if it is missing, cannot be loaded, or belongs to another build
  */
 vxm_status vxm_module_open(const vxm_module **out, const vxm_module_need *need, vxm_error *error);
 

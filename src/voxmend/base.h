@@ -42,14 +42,16 @@ extern "C" {
 #endif
 
 #if defined(__GNUC__)
+/** Marks what the library exports. */
 #define VXM_API __attribute__((visibility("default")))
 #else
+/** Marks what the library exports. */
 #define VXM_API
 #endif
 
-#define VXM_VERSION_MAJOR 0
-#define VXM_VERSION_MINOR 1
-#define VXM_VERSION_PATCH 0
+#define VXM_VERSION_MAJOR 0 /**< of these headers */
+#define VXM_VERSION_MINOR 1 /**< of these headers */
+#define VXM_VERSION_PATCH 0 /**< of these headers */
 
 /** Version of the library that runs, "MAJOR.MINOR.PATCH". */
 VXM_API const char *vxm_version(void);
@@ -79,8 +81,8 @@ VXM_API const char *vxm_status_name(vxm_status status);
 
 /** The one line that describes a failure; owned by the caller, written only by a call that fails. */
 typedef struct vxm_error {
-  size_t size; /**< as the initializer sets it, or 0 */
-  vxm_status code;
+  size_t size;     /**< as the initializer sets it, or 0 */
+  vxm_status code; /**< what the call returned */
   int64_t line;    /**< 1-based line in a text file, 0 if none applies */
   int64_t offset;  /**< byte offset in a binary file, -1 if none applies */
   int64_t element; /**< 0-based vertex, face or record, -1 if none applies */
@@ -89,6 +91,7 @@ typedef struct vxm_error {
   int system;      /**< errno of what the system refused, with VXM_ERROR_IO; 0 if none applies */
 } vxm_error;
 
+/** Initial value of vxm_error. */
 #define VXM_ERROR_INIT \
   { sizeof(vxm_error), VXM_OK, 0, -1, -1, "", "", 0 }
 
@@ -124,6 +127,7 @@ VXM_API const char *vxm_scalar_name(vxm_scalar scalar);
  */
 typedef int (*vxm_progress_fn)(const char *phase, double fraction, void *payload);
 
+/** How a context works. */
 typedef struct vxm_context_options {
   size_t size;              /**< as the initializer sets it */
   int threads;              /**< 0 = one per processor available */
@@ -132,6 +136,7 @@ typedef struct vxm_context_options {
   void *payload;            /**< handed to progress */
 } vxm_context_options;
 
+/** Initial value of vxm_context_options. */
 #define VXM_CONTEXT_OPTIONS_INIT \
   { sizeof(vxm_context_options), 0, 0, NULL, NULL }
 
@@ -146,6 +151,7 @@ typedef struct vxm_context vxm_context;
  */
 VXM_API vxm_status vxm_context_create(vxm_context **out, const vxm_context_options *options,
                                       vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_context_destroy(vxm_context *context);
 /** Number of threads that calls in this context use. */
 VXM_API int vxm_context_threads(const vxm_context *context);

@@ -19,21 +19,21 @@ typedef struct vxm_engine vxm_engine;
 
 /** What is known of an engine. */
 typedef struct vxm_engine_info {
-  size_t size;         /**< as the initializer sets it, or 0 */
-  char name[48];       /**< such as "cpu", "opengl:osmesa" or "opencl:0" */
-  bool available;      /**< it can be made and works */
-  bool hardware;       /**< not a renderer in software */
-  char renderer[128];  /**< as the driver says; "" if there is none */
-  char version[128];   /**< of OpenGL or OpenCL, and of the driver */
-  int64_t block_bytes; /**< largest buffer that a shader may use; larger grids are made in tiles */
-  int64_t viewport;    /**< columns that one pass draws along an axis; more are drawn in several */
-  int64_t layers;      /**< of an array texture: slices drawn at a time */
-  int subpixel_bits;   /**< of the rasterizer */
-  bool int64;          /**< shaders have 64-bit integers, which VXM_GL_COLUMNS and the surface need */
-  char attachment[16]; /**< format in which the XOR self-test passed: "r8ui", "r8" or "image"; "" = none */
-  char platform[128];  /**< of OpenCL; "" for others, as all below is 0 */
-  char driver[128];    /**< version of the OpenCL driver */
-  int compute_units;
+  size_t size;          /**< as the initializer sets it, or 0 */
+  char name[48];        /**< such as "cpu", "opengl:osmesa" or "opencl:0" */
+  bool available;       /**< it can be made and works */
+  bool hardware;        /**< not a renderer in software */
+  char renderer[128];   /**< as the driver says; "" if there is none */
+  char version[128];    /**< of OpenGL or OpenCL, and of the driver */
+  int64_t block_bytes;  /**< largest buffer that a shader may use; larger grids are made in tiles */
+  int64_t viewport;     /**< columns that one pass draws along an axis; more are drawn in several */
+  int64_t layers;       /**< of an array texture: slices drawn at a time */
+  int subpixel_bits;    /**< of the rasterizer */
+  bool int64;           /**< shaders have 64-bit integers, which VXM_GL_COLUMNS and the surface need */
+  char attachment[16];  /**< format in which the XOR self-test passed: "r8ui", "r8" or "image"; "" = none */
+  char platform[128];   /**< of OpenCL; "" for others, as all below is 0 */
+  char driver[128];     /**< version of the OpenCL driver */
+  int compute_units;    /**< of the device */
   int64_t global_bytes; /**< memory of the device */
   int64_t local_bytes;  /**< memory that a work-group shares */
   int64_t work_group;   /**< most work-items of a group */
@@ -42,6 +42,7 @@ typedef struct vxm_engine_info {
   char note[256]; /**< why it is not available, or why another one was taken */
 } vxm_engine_info;
 
+/** Initial value of vxm_engine_info. */
 #define VXM_ENGINE_INFO_INIT                                                                             \
   {                                                                                                      \
     sizeof(vxm_engine_info), "", false, false, "", "", 0, 0, 0, 0, false, "", "", "", 0, 0, 0, 0, false, \
@@ -62,18 +63,20 @@ typedef enum vxm_cl_method {
   VXM_CL_TILES      /**< triangles sorted by tiles of columns, a work-group for each tile, no atomics */
 } vxm_cl_method;
 
+/** Which device, and how it works. */
 typedef struct vxm_engine_options {
-  size_t size; /**< as the initializer sets it */
-  vxm_gl_method gl_method;
-  int slice_axis;      /**< across which axis the slicing methods cut: 0 = x, 1 = y, 2 = z */
+  size_t size;             /**< as the initializer sets it */
+  vxm_gl_method gl_method; /**< how OpenGL makes solids */
+  int slice_axis;          /**< across which axis the slicing methods cut: 0 = x, 1 = y, 2 = z */
   double displacement; /**< slicing methods: each vertex is moved at random by up to so many voxels along each
                           axis (Ogayar et al., section III-B1) */
   uint64_t seed;       /**< of these moves */
-  vxm_cl_method cl_method;
+  vxm_cl_method cl_method; /**< how OpenCL makes solids */
   const char *device; /**< OpenCL: the number of a device, or a part of its name or its platform's; NULL = a
                          GPU or accelerator, else the first */
 } vxm_engine_options;
 
+/** Initial value of vxm_engine_options. */
 #define VXM_ENGINE_OPTIONS_INIT \
   { sizeof(vxm_engine_options), VXM_GL_COLUMNS, 1, 0.0, 0, VXM_CL_AUTO, NULL }
 
@@ -90,6 +93,7 @@ typedef struct vxm_engine_options {
  */
 VXM_API vxm_status vxm_engine_create(vxm_engine **out, vxm_context *context, const char *name,
                                      const vxm_engine_options *options, vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_engine_destroy(vxm_engine *engine);
 /** What the engine is, and under `note` what was taken in its place and why. */
 VXM_API const vxm_engine_info *vxm_engine_describe(const vxm_engine *engine);

@@ -21,6 +21,7 @@ extern "C" {
  */
 typedef struct vxm_published vxm_published;
 
+/** How the published program works. */
 typedef struct vxm_published_options {
   size_t size;       /**< as the initializer sets it */
   double voxel_size; /**< model units; has no default */
@@ -31,9 +32,11 @@ typedef struct vxm_published_options {
   uint8_t material; /**< what a voxel gets that the surface touches; 0 = 1. Others are 0 */
 } vxm_published_options;
 
+/** Initial value of vxm_published_options. */
 #define VXM_PUBLISHED_OPTIONS_INIT \
   { sizeof(vxm_published_options), 0.0, false, false, 0 }
 
+/** What a run of the published program came to. */
 typedef struct vxm_published_report {
   size_t size;        /**< as the initializer sets it, or 0 */
   double kernel_ms;   /**< of the kernel alone, by the device's own clock where `profiled` */
@@ -43,6 +46,7 @@ typedef struct vxm_published_report {
   int64_t tests;      /**< tests of a facet against a voxel, as in their table 1; 0 = not counted */
 } vxm_published_report;
 
+/** Initial value of vxm_published_report. */
 #define VXM_PUBLISHED_REPORT_INIT \
   { sizeof(vxm_published_report), 0.0, false, 0, 0, 0 }
 

@@ -51,10 +51,14 @@ VXM_API vxm_status vxm_field_read(vxm_field **out, vxm_context *context, const c
  */
 VXM_API vxm_status vxm_grid_or_field_read(vxm_grid **grid, vxm_field **field, vxm_context *context,
                                           const char *path, vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_field_destroy(vxm_field *field);
 
+/** Where its voxels lie. */
 VXM_API const vxm_space *vxm_field_space(const vxm_field *field);
+/** What its numbers are. */
 VXM_API vxm_field_kind vxm_field_kind_of(const vxm_field *field);
+/** Of which type they are. */
 VXM_API vxm_scalar vxm_field_scalar(const vxm_field *field);
 /** 4 of colours, else 1. */
 VXM_API int vxm_field_channels(const vxm_field *field);
@@ -63,12 +67,15 @@ VXM_API const void *vxm_field_values(const vxm_field *field);
 /** Short fixed name of a kind, such as "distance", or "" for none. */
 VXM_API const char *vxm_field_kind_name(vxm_field_kind kind);
 
+/** The range of the values of a field. */
 typedef struct vxm_field_range {
   size_t size;         /**< as the initializer sets it, or 0 */
-  double min, max;     /**< of those that are numbers; of colours the opacity; 0 and 0 if none are */
+  double min;          /**< of those that are numbers; of colours the opacity; 0 and 0 if none are */
+  double max;          /**< in the same way */
   int64_t not_numbers; /**< NaN */
 } vxm_field_range;
 
+/** Initial value of vxm_field_range. */
 #define VXM_FIELD_RANGE_INIT \
   { sizeof(vxm_field_range), 0.0, 0.0, 0 }
 
@@ -83,7 +90,9 @@ VXM_API const char *vxm_field_label_name(const vxm_field *field, int64_t label);
 /** What else a file says of its values, such as units, as pairs of texts; it goes along into .npy (its
  * .json), .nrrd and .vdb. */
 VXM_API int64_t vxm_field_metadata_count(const vxm_field *field);
+/** The first text of pair 0 to vxm_field_metadata_count - 1; "" for others. */
 VXM_API const char *vxm_field_metadata_key(const vxm_field *field, int64_t index);
+/** The second text of such a pair. */
 VXM_API const char *vxm_field_metadata_value(const vxm_field *field, int64_t index);
 
 /**
@@ -94,24 +103,28 @@ VXM_API const char *vxm_field_metadata_value(const vxm_field *field, int64_t ind
  * VXM_ERROR_MEMORY
  */
 VXM_API vxm_status vxm_field_add_label(vxm_field *field, const char *name, int64_t voxels, vxm_error *error);
+/** Adds a pair to the metadata. @return as vxm_field_add_label */
 VXM_API vxm_status vxm_field_add_metadata(vxm_field *field, const char *key, const char *value,
                                           vxm_error *error);
 
 /** Warnings from reading, one line each. */
 VXM_API int64_t vxm_field_warning_count(const vxm_field *field);
+/** One of them; "" if there is none of this number. */
 VXM_API const char *vxm_field_warning(const vxm_field *field, int64_t index);
 
 /** Whether the numbers are bits in another type, of which nothing is lost: see vxm_grid_read. */
 VXM_API bool vxm_field_is_mask(const vxm_field *field);
 
+/** Which numbers become set voxels. */
 typedef struct vxm_threshold_options {
   size_t size;       /**< as the initializer sets it */
   bool use_at_least; /**< at least one of the two */
   double at_least;   /**< voxels are set where the value is this or greater */
-  bool use_below;
-  double below; /**< and less than this */
+  bool use_below;    /**< the other of them */
+  double below;      /**< and less than this */
 } vxm_threshold_options;
 
+/** Initial value of vxm_threshold_options. */
 #define VXM_THRESHOLD_OPTIONS_INIT \
   { sizeof(vxm_threshold_options), false, 0.0, false, 0.0 }
 
@@ -158,6 +171,7 @@ VXM_API vxm_status vxm_field_picture(const vxm_field *field, const char *path,
 
 /* ---- Fields: a number per voxel ---- */
 
+/** How finely coverage is counted, and as what. */
 typedef struct vxm_coverage_options {
   size_t size;        /**< as the initializer sets it */
   int subdivision;    /**< 2, 4 or 8: a voxel is cut into so many sub-voxels along each axis */
@@ -165,17 +179,21 @@ typedef struct vxm_coverage_options {
   const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
 } vxm_coverage_options;
 
+/** Initial value of vxm_coverage_options. */
 #define VXM_COVERAGE_OPTIONS_INIT \
   { sizeof(vxm_coverage_options), 4, VXM_FLOAT32, NULL }
 
+/** What came of coverage. */
 typedef struct vxm_coverage_report {
   size_t size; /**< as the initializer sets it, or 0 */
   vxm_voxelize_report
-      *voxelize; /**< set by the caller: NULL, or where that of the sub-voxels goes, without their hash */
-  int64_t full, partial; /**< voxels of which all sub-voxels are set, or some */
-  double volume;         /**< sum of the fractions times the volume of a voxel */
+      *voxelize;   /**< set by the caller: NULL, or where that of the sub-voxels goes, without their hash */
+  int64_t full;    /**< voxels of which all sub-voxels are set */
+  int64_t partial; /**< voxels of which some are, but not all */
+  double volume;   /**< sum of the fractions times the volume of a voxel */
 } vxm_coverage_report;
 
+/** Initial value of vxm_coverage_report. */
 #define VXM_COVERAGE_REPORT_INIT \
   { sizeof(vxm_coverage_report), NULL, 0, 0, 0.0 }
 
@@ -205,6 +223,7 @@ VXM_API vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_mode
                                                const vxm_space *space, const char *path,
                                                const vxm_coverage_options *options, vxm_error *error);
 
+/** Which distances, and how far. */
 typedef struct vxm_distance_options {
   size_t size;        /**< as the initializer sets it */
   bool is_unsigned;   /**< false = negative where the centre is inside the solid */
@@ -212,17 +231,21 @@ typedef struct vxm_distance_options {
   const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
 } vxm_distance_options;
 
+/** Initial value of vxm_distance_options. */
 #define VXM_DISTANCE_OPTIONS_INIT \
   { sizeof(vxm_distance_options), false, 3.0, NULL }
 
+/** What came of distances. */
 typedef struct vxm_distance_report {
   size_t size;                   /**< as the initializer sets it, or 0 */
   vxm_voxelize_report *voxelize; /**< set by the caller: NULL, or where that of the solid that gives the sign
                                     goes, without its hash; zeros if unsigned */
   int64_t exact;                 /**< voxels that are not clamped */
-  double min, max;               /**< of all values */
+  double min;                    /**< of all values */
+  double max;                    /**< of all values */
 } vxm_distance_report;
 
+/** Initial value of vxm_distance_report. */
 #define VXM_DISTANCE_REPORT_INIT \
   { sizeof(vxm_distance_report), NULL, 0, 0.0, 0.0 }
 
@@ -265,15 +288,18 @@ typedef enum vxm_label_by {
   VXM_LABEL_MATERIAL  /**< materials: what lies behind it */
 } vxm_label_by;
 
+/** What labels are of, and the format of their file. */
 typedef struct vxm_label_options {
-  size_t size; /**< as the initializer sets it */
-  vxm_label_by by;
+  size_t size;        /**< as the initializer sets it */
+  vxm_label_by by;    /**< what faces are labelled by */
   const char *format; /**< of a file: "npy", "nrrd" or "binvox"; NULL = by extension */
 } vxm_label_options;
 
+/** Initial value of vxm_label_options. */
 #define VXM_LABEL_OPTIONS_INIT \
   { sizeof(vxm_label_options), VXM_LABEL_PART, NULL }
 
+/** What came of labels. */
 typedef struct vxm_label_report {
   size_t size;                   /**< as the initializer sets it, or 0 */
   vxm_voxelize_report *voxelize; /**< set by the caller: NULL, or where that of the set voxels goes */
@@ -282,6 +308,7 @@ typedef struct vxm_label_report {
   int64_t unassigned; /**< voxels that none claims: they have the label of the nearest face of all */
 } vxm_label_report;
 
+/** Initial value of vxm_label_report. */
 #define VXM_LABEL_REPORT_INIT \
   { sizeof(vxm_label_report), NULL, 0, 0, 0 }
 
@@ -321,9 +348,10 @@ typedef enum vxm_color_by {
   VXM_COLOR_GLSL       /**< a function in GLSL: needs an engine of OpenGL */
 } vxm_color_by;
 
+/** Which colours, and the format of their file. */
 typedef struct vxm_color_options {
-  size_t size; /**< as the initializer sets it */
-  vxm_color_by by;
+  size_t size;     /**< as the initializer sets it */
+  vxm_color_by by; /**< what gives the colours */
   const char
       *source; /**< with VXM_COLOR_GLSL: defines vec3 color(vec3 position, vec3 unit, uint part), of the
                   centre in model units, the same from the grid's corner on with its longest side as 1,
@@ -331,6 +359,7 @@ typedef struct vxm_color_options {
   const char *format; /**< of a file: "npy", "ply" or "vox"; NULL = by extension */
 } vxm_color_options;
 
+/** Initial value of vxm_color_options. */
 #define VXM_COLOR_OPTIONS_INIT \
   { sizeof(vxm_color_options), VXM_COLOR_NOISE, NULL, NULL }
 
@@ -374,6 +403,7 @@ VXM_API int64_t vxm_model_label_voxels(const vxm_model *model, int64_t label);
 
 /** Warnings from the last grid or file made of the model, one line each. */
 VXM_API int64_t vxm_model_warning_count(const vxm_model *model);
+/** One of them; "" if there is none of this number. */
 VXM_API const char *vxm_model_warning(const vxm_model *model, int64_t index);
 
 #ifdef __cplusplus

@@ -17,7 +17,7 @@ extern "C" {
 /** A box of dims[0] x dims[1] x dims[2] cells: the centre of (i,j,k) is origin + ((i,j,k) + 1/2) *
  * voxel_size. */
 typedef struct vxm_space {
-  int64_t dims[3];
+  int64_t dims[3];      /**< cells along x, y and z */
   double origin[3];     /**< minimum corner, model units */
   double voxel_size[3]; /**< model units per axis */
 } vxm_space;
@@ -29,8 +29,10 @@ typedef struct vxm_grid vxm_grid;
  * VXM_ERROR_MEMORY_LIMIT */
 VXM_API vxm_status vxm_grid_create(vxm_grid **out, vxm_context *context, const vxm_space *space,
                                    vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_grid_destroy(vxm_grid *grid);
 
+/** Where its voxels lie. */
 VXM_API const vxm_space *vxm_grid_space(const vxm_grid *grid);
 /** Whether voxel (i,j,k) is set; false outside the grid. */
 VXM_API bool vxm_grid_get(const vxm_grid *grid, int64_t i, int64_t j, int64_t k);
@@ -84,6 +86,7 @@ VXM_API const uint8_t *vxm_grid_confidence(const vxm_grid *grid);
 VXM_API vxm_status vxm_grid_write_confidence(const vxm_grid *grid, const char *path, vxm_error *error);
 /** Warnings from voxelizing or reading, one line each. */
 VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
+/** One of them; "" if there is none of this number. */
 VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
 
 /**
@@ -101,12 +104,14 @@ VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
  */
 VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
 
+/** The format of a grid file. */
 typedef struct vxm_grid_write_options {
   size_t size;        /**< as the initializer sets it */
   const char *format; /**< "binvox", "npy", "raw", "rle", "nrrd", "vdb", or "obj", "ply", "stl", "off"; NULL =
                          by extension */
 } vxm_grid_write_options;
 
+/** Initial value of vxm_grid_write_options. */
 #define VXM_GRID_WRITE_OPTIONS_INIT \
   { sizeof(vxm_grid_write_options), NULL }
 
@@ -128,14 +133,17 @@ VXM_API vxm_status vxm_grid_write(const vxm_grid *grid, const char *path,
  */
 VXM_API vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error);
 
+/** From where a picture is taken, and its size. */
 typedef struct vxm_picture_options {
-  size_t size;       /**< as the initializer sets it */
-  int width, height; /**< pixels; 0 = 800 x 600 */
-  double azimuth;    /**< degrees about the up axis */
-  double elevation;  /**< degrees above the horizon */
-  int up;            /**< axis that points up: 0 = default (z), 1 = x, 2 = y, 3 = z */
+  size_t size;      /**< as the initializer sets it */
+  int width;        /**< pixels; 0 = 800 */
+  int height;       /**< pixels; 0 = 600 */
+  double azimuth;   /**< degrees about the up axis */
+  double elevation; /**< degrees above the horizon */
+  int up;           /**< axis that points up: 0 = default (z), 1 = x, 2 = y, 3 = z */
 } vxm_picture_options;
 
+/** Initial value of vxm_picture_options. */
 #define VXM_PICTURE_OPTIONS_INIT \
   { sizeof(vxm_picture_options), 0, 0, 30.0, 25.0, 0 }
 
@@ -156,12 +164,18 @@ VXM_API vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path,
 VXM_API vxm_status vxm_grid_read_space(vxm_grid **out, vxm_context *context, const char *path,
                                        vxm_error *error);
 
+/** How two grids differ. */
 typedef struct vxm_comparison {
-  size_t size; /**< as the initializer sets it, or 0 */
-  int64_t voxels_a, voxels_b, both, only_a, only_b;
-  double iou; /**< both / (both + only_a + only_b); 1 if both grids are empty */
+  size_t size;      /**< as the initializer sets it, or 0 */
+  int64_t voxels_a; /**< set in the first */
+  int64_t voxels_b; /**< set in the second */
+  int64_t both;     /**< set in both */
+  int64_t only_a;   /**< set in the first alone */
+  int64_t only_b;   /**< set in the second alone */
+  double iou;       /**< both / (both + only_a + only_b); 1 if both grids are empty */
 } vxm_comparison;
 
+/** Initial value of vxm_comparison. */
 #define VXM_COMPARISON_INIT \
   { sizeof(vxm_comparison), 0, 0, 0, 0, 0, 0.0 }
 

@@ -19,21 +19,22 @@ typedef struct vxm_mesh vxm_mesh;
 
 /** Caller-owned arrays that describe a mesh; they are copied. */
 typedef struct vxm_mesh_arrays {
-  size_t size;              /**< as the initializer sets it */
-  vxm_scalar vertex_scalar; /**< type of the coordinates: VXM_FLOAT64 or VXM_FLOAT32 */
-  vxm_scalar index_scalar;  /**< type of the indices: VXM_INT64, VXM_UINT32 or VXM_INT32 */
-  const void *vertices;     /**< vertex_count x 3 coordinates, x y z together, model units */
-  int64_t vertex_count;
-  const int64_t *offsets; /**< face_count + 1 of them: face f has the corners indices[offsets[f]] to
-                             indices[offsets[f+1]-1], the last is index_count; NULL = triangles */
-  const void *indices;    /**< index_count 0-based vertices of the corners */
-  int64_t index_count;    /**< of triangles 3 * face_count */
-  int64_t face_count;
+  size_t size;               /**< as the initializer sets it */
+  vxm_scalar vertex_scalar;  /**< type of the coordinates: VXM_FLOAT64 or VXM_FLOAT32 */
+  vxm_scalar index_scalar;   /**< type of the indices: VXM_INT64, VXM_UINT32 or VXM_INT32 */
+  const void *vertices;      /**< vertex_count x 3 coordinates, x y z together, model units */
+  int64_t vertex_count;      /**< 0 = none */
+  const int64_t *offsets;    /**< face_count + 1 of them: face f has the corners indices[offsets[f]] to
+                                indices[offsets[f+1]-1], the last is index_count; NULL = triangles */
+  const void *indices;       /**< index_count 0-based vertices of the corners */
+  int64_t index_count;       /**< of triangles 3 * face_count */
+  int64_t face_count;        /**< 0 = none */
   const char *const *tags;   /**< tag_count names, as vxm_mesh_tag_name gives them */
   const uint32_t *face_tags; /**< face_count tag numbers; not looked at without tags */
   int64_t tag_count;         /**< 0 = faces have no tags */
 } vxm_mesh_arrays;
 
+/** Initial value of vxm_mesh_arrays. */
 #define VXM_MESH_ARRAYS_INIT \
   { sizeof(vxm_mesh_arrays), VXM_FLOAT64, VXM_INT64, NULL, 0, NULL, NULL, 0, 0, NULL, NULL, 0 }
 
@@ -75,6 +76,7 @@ typedef enum vxm_external {
   VXM_EXTERNAL_NONE = 2    /**< none */
 } vxm_external;
 
+/** How a mesh file is read. */
 typedef struct vxm_mesh_read_options {
   size_t size;        /**< as the initializer sets it */
   const char *format; /**< as vxm_mesh_format says, such as "off" or "step"; NULL = by content, then name */
@@ -83,37 +85,44 @@ typedef struct vxm_mesh_read_options {
   vxm_external external; /**< files that the mesh refers to */
 } vxm_mesh_read_options;
 
+/** Initial value of vxm_mesh_read_options. */
 #define VXM_MESH_READ_OPTIONS_INIT \
   { sizeof(vxm_mesh_read_options), NULL, 0.0, VXM_EXTERNAL_FOLDER }
 
-/* As the two above, with options. @return also VXM_ERROR_ARGUMENT for options out of range */
+/** As vxm_mesh_read, with options. @return also VXM_ERROR_ARGUMENT for options out of range */
 VXM_API vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, const char *path,
                                       const vxm_mesh_read_options *options, vxm_error *error);
+/** As vxm_mesh_read_memory, with options. @return also VXM_ERROR_ARGUMENT for options out of range */
 VXM_API vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *context, const void *data,
                                              size_t size, const char *name,
                                              const vxm_mesh_read_options *options, vxm_error *error);
 
 /** How meshes are read that are left to foreign libraries, each file in a process of its own. */
 typedef struct vxm_reading_info {
-  size_t size;                               /**< as the initializer sets it, or 0 */
-  bool assimp, occt;                         /**< whether these libraries' modules are installed */
-  const char *assimp_formats, *occt_formats; /**< the extensions of what they are given, such as "gltf glb" */
+  size_t size;                /**< as the initializer sets it, or 0 */
+  bool assimp;                /**< whether the module for Assimp is installed */
+  bool occt;                  /**< whether the module for OpenCASCADE is */
+  const char *assimp_formats; /**< the extensions of what they are given, such as "gltf glb" */
+  const char *occt_formats;   /**< of the other */
   bool filter;  /**< the process may make no system calls but those that computing takes (libseccomp) */
   int landlock; /**< version of Landlock in this kernel, by which the process has no files; 0 = none */
 } vxm_reading_info;
 
+/** Initial value of vxm_reading_info. */
 #define VXM_READING_INFO_INIT \
   { sizeof(vxm_reading_info), false, false, NULL, NULL, false, 0 }
 
 /** @return VXM_OK, VXM_ERROR_ARGUMENT */
 VXM_API vxm_status vxm_reading_find(vxm_reading_info *out, vxm_error *error);
 
+/** How a mesh file is written. */
 typedef struct vxm_mesh_write_options {
   size_t size;        /**< as the initializer sets it */
   const char *format; /**< "off", "obj", "stl" or "ply"; NULL = by the extension of the path */
   bool ascii;         /**< stl and ply as text rather than binary */
 } vxm_mesh_write_options;
 
+/** Initial value of vxm_mesh_write_options. */
 #define VXM_MESH_WRITE_OPTIONS_INIT \
   { sizeof(vxm_mesh_write_options), NULL, false }
 
@@ -127,9 +136,12 @@ typedef struct vxm_mesh_write_options {
  */
 VXM_API vxm_status vxm_mesh_write(const vxm_mesh *mesh, const char *path,
                                   const vxm_mesh_write_options *options, vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_mesh_destroy(vxm_mesh *mesh);
 
+/** Number of vertices. */
 VXM_API int64_t vxm_mesh_vertex_count(const vxm_mesh *mesh);
+/** Number of faces. */
 VXM_API int64_t vxm_mesh_face_count(const vxm_mesh *mesh);
 /** vertex_count x 3 coordinates in model units. */
 VXM_API const double *vxm_mesh_vertices(const vxm_mesh *mesh);
@@ -149,14 +161,16 @@ VXM_API const uint32_t *vxm_mesh_face_tags(const vxm_mesh *mesh);
 VXM_API const char *vxm_mesh_format(const vxm_mesh *mesh);
 /** Warnings from reading, one line each. */
 VXM_API int64_t vxm_mesh_warning_count(const vxm_mesh *mesh);
+/** One of them; "" if there is none of this number. */
 VXM_API const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index);
 
 /* ---- Census: what is wrong with a mesh ---- */
 
 /** Counts over a mesh. Edges, components and duplicates are taken after welding bit-identical positions. */
 typedef struct vxm_census {
-  size_t size; /**< as the initializer sets it, or 0 */
-  int64_t vertices, faces;
+  size_t size;             /**< as the initializer sets it, or 0 */
+  int64_t vertices;        /**< as in the file */
+  int64_t faces;           /**< as in the file */
   int64_t triangles;       /**< after splitting polygons: the sum of corners - 2 */
   int64_t components;      /**< connected by welded vertices; faces only */
   int64_t components_raw;  /**< connected by vertex index as in the file */
@@ -167,16 +181,18 @@ typedef struct vxm_census {
   int64_t boundary_edges;       /**< one incident face */
   int64_t nonmanifold_edges;    /**< more than two incident faces */
   int64_t inconsistent_edges;   /**< two incident faces that run along it in the same direction */
-  int64_t nonfinite_vertices, unused_vertices;
-  int64_t largest_face; /**< corners of the largest face */
-  bool watertight;      /**< at least one face, no boundary and no non-manifold edge */
-  bool closed;          /**< at least one face, and every edge has an even number of incident faces */
+  int64_t nonfinite_vertices;   /**< with a coordinate that is not a finite number */
+  int64_t unused_vertices;      /**< of no face */
+  int64_t largest_face;         /**< corners of the largest face */
+  bool watertight;              /**< at least one face, no boundary and no non-manifold edge */
+  bool closed;                  /**< at least one face, and every edge has an even number of incident faces */
   double bounds[6]; /**< x0 y0 z0 x1 y1 z1 of the finite vertices used by faces; zeros if there are none */
   double area;      /**< model units squared; polygons by their vector area */
   double volume;    /**< signed; positive if faces point outward. Meaningful if closed. This and the area are
                        infinite where they are beyond the range of numbers */
 } vxm_census;
 
+/** Initial value of vxm_census. */
 #define VXM_CENSUS_INIT \
   { sizeof(vxm_census), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, false, false, {0, 0, 0, 0, 0, 0}, 0.0, 0.0 }
 

@@ -14,6 +14,7 @@ extern "C" {
 
 /* ---- Repair ---- */
 
+/** Which vertices are welded. */
 typedef enum vxm_weld {
   VXM_WELD_AUTO = 0, /**< bit-identical positions, then near ones where that closes cracks */
   VXM_WELD_OFF,      /**< bit-identical positions only */
@@ -41,17 +42,18 @@ typedef enum vxm_hole_fill {
                      module for   CGAL */
 } vxm_hole_fill;
 
+/** What a repair does. */
 typedef struct vxm_repair_options {
-  size_t size; /**< as the initializer sets it */
-  vxm_weld weld;
+  size_t size;           /**< as the initializer sets it */
+  vxm_weld weld;         /**< which vertices are welded */
   double weld_tolerance; /**< model units, with VXM_WELD_TOLERANCE */
   bool keep_duplicates;  /**< leave repeated faces in */
   bool keep_orientation; /**< leave faces turned as they are; not with a level above VXM_LEVEL_CLEAN */
-  vxm_level level;
+  vxm_level level;       /**< how far it goes */
   int64_t fill_holes; /**< fill holes with at most so many edges; 0 = none, and from VXM_LEVEL_CLOSED on all;
                          negative = all */
-  vxm_hole_fill hole_fill;
-  bool boolean_union; /**< unite closed parts that cut through each other, as VXM_LEVEL_SOLID does */
+  vxm_hole_fill hole_fill; /**< with what */
+  bool boolean_union;      /**< unite closed parts that cut through each other, as VXM_LEVEL_SOLID does */
   double wrap_alpha;  /**< put a closed surface around everything instead: the size of the smallest hole that
                          it goes  into, as a fraction of the diagonal of the bounds; 0 = do not */
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
@@ -66,33 +68,37 @@ typedef struct vxm_repair_options {
                          parts; needs the module for CGAL */
 } vxm_repair_options;
 
+/** Initial value of vxm_repair_options. */
 #define VXM_REPAIR_OPTIONS_INIT                                                                          \
   {                                                                                                      \
     sizeof(vxm_repair_options), VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_HOLE_FILL_FAN, \
         false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false                                                \
   }
 
+/** Room for passes in a report. */
 #define VXM_REPAIR_PASSES_MAX 24
 
 /** Self-intersections are counted up to this number, which then means that there are at least so many. */
 #define VXM_SELF_INTERSECTIONS_MAX 4194304
 
+/** What a repair has done. */
 typedef struct vxm_repair_report {
-  size_t size; /**< as the initializer sets it, or 0 */
-  int pass_count;
+  size_t size;    /**< as the initializer sets it, or 0 */
+  int pass_count; /**< passes that are listed */
   struct {
-    const char *pass; /**< fixed name such as "exact_weld" */
-    int64_t count;    /**< vertices or faces that the pass removed, changed or added */
-  } passes[VXM_REPAIR_PASSES_MAX];
-  int64_t nonorientable_patches; /**< faces joined by edges that cannot all be turned consistently */
+    const char *pass;              /**< fixed name such as "exact_weld" */
+    int64_t count;                 /**< vertices or faces that the pass removed, changed or added */
+  } passes[VXM_REPAIR_PASSES_MAX]; /**< in the order of the work */
+  int64_t nonorientable_patches;   /**< faces joined by edges that cannot all be turned consistently */
   int64_t open_parts;     /**< components whose holes were left open: sheets that their closing would cover */
   int64_t unfilled_holes; /**< that were to be filled and could not be */
   int64_t fan_fallbacks;  /**< that VXM_HOLE_FILL_MINIMAL or VXM_HOLE_FILL_SMOOTH left to fans */
   int64_t union_failures; /**< that were to be united and still cut through themselves or others: open ones,
                              which have no inside, and those where the union failed */
-  int64_t self_intersections_before, self_intersections_after; /**< pairs of faces, counted up to
+  int64_t self_intersections_before; /**< pairs of faces, counted up to
                                                                   VXM_SELF_INTERSECTIONS_MAX; -1 = not looked
                                                                   for */
+  int64_t self_intersections_after;  /**< in the same way */
   int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
                                 positions are too coarse for the faces about them */
   int64_t shared_faces; /**< at level clean: that repeat others and stay, as bodies overlap there and both
@@ -101,12 +107,13 @@ typedef struct vxm_repair_report {
                            is enclosed no more and could not be kept; what levels and options beyond
                            VXM_LEVEL_CLEAN take away is not looked at */
   int64_t opened_parts; /**< closed before, open after; with options.part_changes, else 0 */
-  double max_displacement;    /**< no vertex was moved farther, model units; not by a wrap or union. With
-                              options.part_changes, else 0 */
-  vxm_census *before, *after; /**< set by the caller: NULL, or where the census of the mesh that is given
-                                 goes, and that of the result. Each takes some time */
+  double max_displacement; /**< no vertex was moved farther, model units; not by a wrap or union. With
+                           options.part_changes, else 0 */
+  vxm_census *before;      /**< set by the caller: NULL, or where the census of the mesh that is given goes */
+  vxm_census *after; /**< set by the caller: NULL, or where that of the result goes; each takes some time */
 } vxm_repair_report;
 
+/** Initial value of vxm_repair_report. */
 #define VXM_REPAIR_REPORT_INIT \
   { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
 
@@ -142,25 +149,29 @@ VXM_API vxm_status vxm_mesh_prepare(vxm_mesh **out, vxm_repair_report *report, c
 
 /** A part of a mesh, at one time. Edges and holes are taken after welding. */
 typedef struct vxm_part_state {
-  size_t size; /**< bytes that there are of it */
-  int64_t faces, boundary_edges, nonmanifold_edges, inconsistent_edges;
+  size_t size;                /**< bytes that there are of it */
+  int64_t faces;              /**< of the part */
+  int64_t boundary_edges;     /**< as in vxm_census */
+  int64_t nonmanifold_edges;  /**< as in vxm_census */
+  int64_t inconsistent_edges; /**< as in vxm_census */
   int64_t holes;              /**< closed walks along edges with an odd number of faces */
   int64_t self_intersections; /**< pairs of its faces, or of one of them and another part's, that cut through
                                  each other; -1 = not looked for (vxm_repair_options.intersections) */
   bool closed;                /**< it has faces, and every edge has an even number of them */
-  double area, volume;        /**< as in vxm_census */
-  double bounds[6];
+  double area;                /**< as in vxm_census */
+  double volume;              /**< as in vxm_census */
+  double bounds[6];           /**< as in vxm_census */
 } vxm_part_state;
 
 /** What a repair did to a connected component of the mesh that it was given. */
 typedef struct vxm_part_change {
-  size_t size; /**< bytes that there are of it */
-  const vxm_part_state *before,
-      *after;              /**< after: of all faces that come from this part; none after a wrap */
-  int64_t flipped;         /**< faces that were turned */
-  double max_displacement; /**< none of its vertices was moved farther, model units */
-  uint32_t tag;            /**< of its first face; UINT32_MAX if there are no tags */
-  bool union_failed;       /**< it counts among vxm_repair_report.union_failures */
+  size_t size;                  /**< bytes that there are of it */
+  const vxm_part_state *before; /**< of the mesh that was given */
+  const vxm_part_state *after;  /**< of all faces that come from this part; none after a wrap */
+  int64_t flipped;              /**< faces that were turned */
+  double max_displacement;      /**< none of its vertices was moved farther, model units */
+  uint32_t tag;                 /**< of its first face; UINT32_MAX if there are no tags */
+  bool union_failed;            /**< it counts among vxm_repair_report.union_failures */
 } vxm_part_change;
 
 /** Number of connected components (after welding) of the mesh that was repaired; 0 without
@@ -171,23 +182,25 @@ VXM_API const vxm_part_change *vxm_mesh_part_change(const vxm_mesh *repaired, in
 
 /* ---- What a mesh guarantees, and what is wrong where ---- */
 
+/** Room for findings in a verification. */
 #define VXM_FINDINGS_MAX 24
 
 /** Whether a mesh is at a level, and what is in the way. */
 typedef struct vxm_verification {
-  size_t size; /**< as the initializer sets it, or 0 */
-  bool reached;
-  int count;
+  size_t size;  /**< as the initializer sets it, or 0 */
+  bool reached; /**< nothing is in the way */
+  int count;    /**< findings that are listed */
   struct {
     const char *what; /**< fixed name such as "boundary_edges" or a pass that would still change something */
     int64_t count;
     int64_t element; /**< the first one: a vertex, or for faces and edges a face, with its number in the mesh
                         that is verified, which is that of the file; -1 = none to tell */
     bool placed;     /**< whether `position` is known */
-    double position[3]; /**< where that is, model units */
-  } findings[VXM_FINDINGS_MAX];
+    double position[3];         /**< where that is, model units */
+  } findings[VXM_FINDINGS_MAX]; /**< what is in the way */
 } vxm_verification;
 
+/** Initial value of vxm_verification. */
 #define VXM_VERIFICATION_INIT             \
   {                                       \
     sizeof(vxm_verification), false, 0, { \
@@ -221,6 +234,7 @@ VXM_API vxm_status vxm_mesh_write_verified(vxm_verification *out, const vxm_mesh
                                            const vxm_repair_options *repair, bool best_effort,
                                            vxm_error *error);
 
+/** What is wrong with a vertex, edge or face. */
 typedef enum vxm_defect_kind {
   VXM_DEFECT_NONFINITE_VERTEX = 0,
   VXM_DEFECT_DEGENERATE_FACE,
@@ -236,8 +250,8 @@ typedef enum vxm_defect_kind {
 
 /** Something that is wrong with a mesh, and where. */
 typedef struct vxm_defect {
-  size_t size; /**< bytes that there are of it */
-  vxm_defect_kind kind;
+  size_t size;          /**< bytes that there are of it */
+  vxm_defect_kind kind; /**< what it is */
   int64_t element[2]; /**< a vertex or face, and -1; of an edge its vertices; of an intersection the faces */
   double position[6]; /**< the vertex, or the middle of the face, twice; the ends of the edge; the middles of
                    both faces */
@@ -256,6 +270,7 @@ typedef struct vxm_defects vxm_defects;
  */
 VXM_API vxm_status vxm_mesh_defects(vxm_defects **out, const vxm_mesh *mesh, int64_t max_count,
                                     bool intersections, vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_defects_destroy(vxm_defects *defects);
 /** How many are listed. */
 VXM_API int64_t vxm_defects_count(const vxm_defects *defects);

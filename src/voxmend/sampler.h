@@ -42,18 +42,18 @@ typedef enum vxm_voxel_format {
  * vertices are displaced, and it is moved.
  */
 typedef struct vxm_sampler_options {
-  size_t size;        /**< as the initializer sets it */
-  int64_t resolution; /**< voxels along each axis; 0 = 64 */
-  int64_t pad;        /**< voxels kept free on each side of the model before it is moved */
-  uint64_t seed;
-  vxm_rotation rotation;
-  double axis[3]; /**< with VXM_ROTATION_AXIS; all 0 = z */
+  size_t size;           /**< as the initializer sets it */
+  int64_t resolution;    /**< voxels along each axis; 0 = 64 */
+  int64_t pad;           /**< voxels kept free on each side of the model before it is moved */
+  uint64_t seed;         /**< of all that is drawn */
+  vxm_rotation rotation; /**< how variants are rotated */
+  double axis[3];        /**< with VXM_ROTATION_AXIS; all 0 = z */
   const double
       *rotations; /**< with VXM_ROTATION_LIST: rotation_count x 3 x 3, row after row; they are copied */
-  int64_t rotation_count;
+  int64_t rotation_count; /**< of the list */
   double scale; /**< each axis is scaled by a factor of its own, uniform in 1 - scale to 1 + scale; below 1 */
-  vxm_displacement displacement;
-  double displace;  /**< as a fraction of the width of the grid; 0 = vertices stay */
+  vxm_displacement displacement; /**< how vertices are displaced */
+  double displace;               /**< as a fraction of the width of the grid; 0 = vertices stay */
   uint32_t noise;   /**< displacements in the circular buffer that all variants read, each from another place;
                        0 = 65536 */
   unsigned mirror;  /**< axes of the model, or-ed 1 (x), 2 (y) and 4 (z), along each of which half of the
@@ -65,6 +65,7 @@ typedef struct vxm_sampler_options {
                                     and moves the vertices if it says so (vxm_engine_info.moves) */
 } vxm_sampler_options;
 
+/** Initial value of vxm_sampler_options. */
 #define VXM_SAMPLER_OPTIONS_INIT                                                      \
   {                                                                                   \
     sizeof(vxm_sampler_options), 0, 0, 0, VXM_ROTATION_NONE, {0, 0, 0}, NULL, 0, 0.0, \
@@ -73,7 +74,9 @@ typedef struct vxm_sampler_options {
 
 /** Names a variant. Its voxels follow from this, the options and the mesh: on any machine, in any order. */
 typedef struct vxm_variant {
-  uint32_t model, epoch, index;
+  uint32_t model; /**< its number */
+  uint32_t epoch; /**< of the training */
+  uint32_t index; /**< of the variant in the epoch */
 } vxm_variant;
 
 /** How a variant lies in its grid, before its vertices are displaced. */
@@ -85,6 +88,7 @@ typedef struct vxm_pose {
   double shift[3];      /**< of the middle of its box from the middle of the grid, voxels */
 } vxm_pose;
 
+/** Initial value of vxm_pose. */
 #define VXM_POSE_INIT                        \
   {                                          \
     sizeof(vxm_pose), {0}, {0}, {0, 0, 0}, { \
@@ -107,6 +111,7 @@ typedef struct vxm_sampler vxm_sampler;
  */
 VXM_API vxm_status vxm_sampler_create(vxm_sampler **out, vxm_context *context,
                                       const vxm_sampler_options *options, vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_sampler_destroy(vxm_sampler *sampler);
 
 /**

@@ -32,8 +32,10 @@ typedef struct vxm_sparse vxm_sparse;
  */
 VXM_API vxm_status vxm_model_sparse(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
                                     const vxm_space *space, const double transform[12], vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_sparse_destroy(vxm_sparse *sparse);
 
+/** Where its voxels lie. */
 VXM_API const vxm_space *vxm_sparse_space(const vxm_sparse *sparse);
 /** Whether voxel (i,j,k) is set; false outside. */
 VXM_API bool vxm_sparse_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
@@ -41,9 +43,11 @@ VXM_API bool vxm_sparse_get(const vxm_sparse *sparse, int64_t i, int64_t j, int6
 VXM_API int64_t vxm_sparse_count(const vxm_sparse *sparse);
 /** vxm_grid_hash of the same voxels. */
 VXM_API uint64_t vxm_sparse_hash(const vxm_sparse *sparse);
-/** Bricks held, nodes of all levels, and the bytes they take. */
+/** Bricks that are held. */
 VXM_API int64_t vxm_sparse_bricks(const vxm_sparse *sparse);
+/** Nodes of all levels. */
 VXM_API int64_t vxm_sparse_nodes(const vxm_sparse *sparse);
+/** Bytes that bricks and nodes take. */
 VXM_API uint64_t vxm_sparse_bytes(const vxm_sparse *sparse);
 
 /** @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
@@ -51,6 +55,7 @@ VXM_API vxm_status vxm_sparse_from_grid(vxm_sparse **out, const vxm_grid *grid, 
 /** A new grid. @return as vxm_grid_create */
 VXM_API vxm_status vxm_sparse_to_grid(vxm_grid **out, const vxm_sparse *sparse, vxm_error *error);
 
+/** What two sets of voxels are combined to. */
 typedef enum vxm_set_operation {
   VXM_SET_UNION = 0,
   VXM_SET_INTERSECTION,
@@ -95,6 +100,7 @@ VXM_API vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path,
  *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_sparse_write_coords(const vxm_sparse *sparse, const char *path, vxm_error *error);
+/** The same of a grid. @return as vxm_sparse_write_coords */
 VXM_API vxm_status vxm_grid_write_coords(const vxm_grid *grid, const char *path, vxm_error *error);
 
 #ifdef __cplusplus

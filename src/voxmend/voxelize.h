@@ -15,6 +15,7 @@ extern "C" {
 
 /* ---- Voxelization ---- */
 
+/** How a grid fits around a model. */
 typedef enum vxm_fit {
   VXM_FIT_CUBE = 0, /**< equal dimensions; the longest side of the model fills them, the model is centred */
   VXM_FIT_TIGHT,    /**< the box of the model */
@@ -38,6 +39,7 @@ typedef enum vxm_surface_kind {
   VXM_SURFACE_SHELL6   /**< among the 6 that share a face */
 } vxm_surface_kind;
 
+/** How a voxel is decided. */
 typedef enum vxm_method {
   VXM_METHOD_VOTE = 0, /**< parity along x, y, z and the tetrahedra, combined by vxm_vote */
   VXM_METHOD_X,        /**< parity of crossings along x */
@@ -47,6 +49,7 @@ typedef enum vxm_method {
   VXM_METHOD_WINDING /**< winding number above 1/2 at every voxel, after turning all patches outward */
 } vxm_method;
 
+/** How voters are combined. */
 typedef enum vxm_vote {
   VXM_VOTE_AUTO = 0, /**< holes closed by caps over their rims; what stays open by agreement of x, y and z,
                         and by the winding number where they disagree */
@@ -55,6 +58,7 @@ typedef enum vxm_vote {
   VXM_VOTE_ALL       /**< every voter */
 } vxm_vote;
 
+/** Which components are voxelized apart. */
 typedef enum vxm_split_mode {
   VXM_SPLIT_MODE_AUTO = 0, /**< every closed component alone, all others together; united */
   VXM_SPLIT_MODE_GROUP,    /**< every component alone (Chen & Tu); united */
@@ -74,7 +78,7 @@ typedef struct vxm_space_options {
   int64_t resolution[3]; /**< voxels per axis; {N,0,0} = N along the longest side; all 0 and no voxel_size =
                             128 */
   double voxel_size;     /**< model units */
-  vxm_fit fit;
+  vxm_fit fit;           /**< how the grid fits around the model */
   int64_t pad; /**< empty voxels kept free on each side; within `resolution`, in addition with voxel_size */
   bool use_bounds;       /**< cover `bounds` instead of fitting to the model: from their minimum corner
                               on, rounded up to whole voxels; exactly if three numbers are given */
@@ -82,6 +86,7 @@ typedef struct vxm_space_options {
   const vxm_space *like; /**< take exactly this space; overrides the rest */
 } vxm_space_options;
 
+/** Initial value of vxm_space_options. */
 #define VXM_SPACE_OPTIONS_INIT \
   { sizeof(vxm_space_options), {0, 0, 0}, 0.0, VXM_FIT_CUBE, 0, false, {0, 0, 0, 0, 0, 0}, NULL }
 
@@ -94,26 +99,29 @@ typedef struct vxm_space_options {
 VXM_API vxm_status vxm_space_fit(vxm_space *out, const vxm_mesh *mesh, const vxm_space_options *options,
                                  vxm_error *error);
 
+/** How a mesh is voxelized. */
 typedef struct vxm_voxelize_options {
-  size_t size; /**< as the initializer sets it */
-  vxm_method method;
-  vxm_vote vote;
-  vxm_split_mode split_mode;
-  vxm_cavities cavities;
-  vxm_mode mode;
-  bool confidence;  /**< keep for every voxel how sure it is: vxm_grid_confidence */
+  size_t size;               /**< as the initializer sets it */
+  vxm_method method;         /**< how a voxel is decided */
+  vxm_vote vote;             /**< how voters are combined */
+  vxm_split_mode split_mode; /**< which components are voxelized apart */
+  vxm_cavities cavities;     /**< what closed components inside others are */
+  vxm_mode mode;             /**< which voxels are set */
+  bool confidence;           /**< keep for every voxel how sure it is: vxm_grid_confidence */
   bool vote_always; /**< with `vote` majority, any or all: on closed parts too, where the voters agree anyway
                      */
   vxm_surface_kind surface; /**< with `mode` surface and both */
   vxm_engine *engine;       /**< NULL = the CPU. Must outlive the models made with these options */
 } vxm_voxelize_options;
 
+/** Initial value of vxm_voxelize_options. */
 #define VXM_VOXELIZE_OPTIONS_INIT                                                                         \
   {                                                                                                       \
     sizeof(vxm_voxelize_options), VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_SPLIT_MODE_AUTO, VXM_CAVITIES_AUTO, \
         VXM_MODE_SOLID, false, false, VXM_SURFACE_CONSERVATIVE, NULL                                      \
   }
 
+/** What came of voxelizing. */
 typedef struct vxm_voxelize_report {
   size_t size;          /**< as the initializer sets it, or 0 */
   int64_t parts;        /**< parts that were voxelized apart and united */
@@ -128,9 +136,11 @@ typedef struct vxm_voxelize_report {
   int64_t empty_parts;     /**< parts that set no voxel; of open parts, all if together they set none */
   int64_t
       outside_parts; /**< parts that set none because they lie outside of the grid: not among empty_parts */
-  double fill_ms, write_ms; /**< of vxm_model_write: time for making and for writing the voxels; else 0 */
+  double fill_ms;    /**< of what is written to a file: time for making the voxels; else 0 */
+  double write_ms;   /**< and for writing them */
 } vxm_voxelize_report;
 
+/** Initial value of vxm_voxelize_report. */
 #define VXM_VOXELIZE_REPORT_INIT \
   { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0 }
 
@@ -177,6 +187,7 @@ typedef struct vxm_model vxm_model;
  */
 VXM_API vxm_status vxm_model_create(vxm_model **out, const vxm_mesh *mesh,
                                     const vxm_voxelize_options *options, vxm_error *error);
+/** Drops it; NULL is allowed. */
 VXM_API void vxm_model_destroy(vxm_model *model);
 
 /**
@@ -200,6 +211,7 @@ typedef struct vxm_estimate {
   int64_t passes;        /**< ranges of slices that are made and written one after another; 1 = all at once */
 } vxm_estimate;
 
+/** Initial value of vxm_estimate. */
 #define VXM_ESTIMATE_INIT \
   { sizeof(vxm_estimate), 0, 0, 0 }
 

@@ -42,7 +42,7 @@ for folder in $order; do
   esac
   pattern=$(echo $allowed | sed 's/ /|/g')
   found=$(grep -nE '#[[:space:]]*include[[:space:]]+"' $(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cc' -o -maxdepth 1 -name '*.inc') |
-    grep -vE "\"(($pattern)/[^/\"]*|voxmend/[a-z]*\.h|voxmend\.h|config\.h|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
+    grep -vE "\"(($pattern)/[^/\"]*|voxmend/[a-z]*\.h|voxmend\.h|config\.h|build_hash\.h|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
   [ -z "$found" ] || complain "$folder includes what does not come before it" "$found"
 done
 found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' cli | grep -vE '"(cli/[^"]*|voxmend/experimental\.h|voxmend\.h|config\.h)"' || true)

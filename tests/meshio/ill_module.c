@@ -371,4 +371,4 @@ static void prepare(void) {
 static const vxm_reader reader = {prepare, obey, NULL};
 
 VXM_API extern const vxm_module vxm_module_table;
-const vxm_module vxm_module_table = {PACKAGE_VERSION, "nothing", "BSD-3-Clause", &reader};
+const vxm_module vxm_module_table = {VXM_BUILD, "nothing", "BSD-3-Clause", &reader};

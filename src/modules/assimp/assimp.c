@@ -79,4 +79,4 @@ static void prepare(void) {
 static const vxm_reader reader = {prepare, read_scene, NULL};
 
 __attribute__((visibility("default"))) extern const vxm_module vxm_module_table;
-const vxm_module vxm_module_table = {PACKAGE_VERSION, "Assimp " VXM_ASSIMP_VERSION, "BSD-3-Clause", &reader};
+const vxm_module vxm_module_table = {VXM_BUILD, "Assimp " VXM_ASSIMP_VERSION, "BSD-3-Clause", &reader};

@@ -90,6 +90,6 @@ static void prepare() {
 static const vxm_reader reader = {prepare, read_cad, nullptr};
 
 VXM_API extern const vxm_module vxm_module_table;
-const vxm_module vxm_module_table = {PACKAGE_VERSION, "OpenCASCADE " OCC_VERSION_COMPLETE,
+const vxm_module vxm_module_table = {VXM_BUILD, "OpenCASCADE " OCC_VERSION_COMPLETE,
                                      "BSD-3-Clause AND LGPL-2.1-only WITH OCCT-exception-1.0", &reader};
 }

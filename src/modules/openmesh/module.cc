@@ -66,6 +66,6 @@ const vxm_openmesh functions = {inspect, fill_holes};
 
 extern "C" {
 extern VXM_API const vxm_module vxm_module_table;
-const vxm_module vxm_module_table = {PACKAGE_VERSION, "OpenMesh " VXM_OPENMESH_VERSION, "BSD-3-Clause",
+const vxm_module vxm_module_table = {VXM_BUILD, "OpenMesh " VXM_OPENMESH_VERSION, "BSD-3-Clause",
                                      &voxmend::functions};
 }

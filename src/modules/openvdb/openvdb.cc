@@ -467,6 +467,6 @@ const vxm_vdb_functions functions = {vxm_vdb_reader, vdb_check,       vdb_create
 
 extern "C" {
 extern VXM_API const vxm_module vxm_module_table;
-const vxm_module vxm_module_table = {PACKAGE_VERSION, "OpenVDB " OPENVDB_LIBRARY_VERSION_STRING,
+const vxm_module vxm_module_table = {VXM_BUILD, "OpenVDB " OPENVDB_LIBRARY_VERSION_STRING,
                                      "BSD-3-Clause AND MPL-2.0", &functions};
 }
