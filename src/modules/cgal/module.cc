@@ -13,5 +13,4 @@ const vxm_cgal functions = {vxm::self_intersections, vxm::fill, vxm::unite, vxm:
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) const vxm_module vxm_module_table;
-const vxm_module vxm_module_table = {VXM_BUILD, "CGAL " CGAL_VERSION_STR, "GPL-3.0-or-later",
-                                     &functions};
+const vxm_module vxm_module_table = {VXM_BUILD, "CGAL " CGAL_VERSION_STR, "GPL-3.0-or-later", &functions};
