@@ -299,19 +299,18 @@ static void test_options(void **state) {
   assert_int_equal(find_voxels(&i).count, 0);
   free(i.rgb);
   empty_folder(folder);
-  vxm_picture_options bad[9];
-  for (int b = 0; b < 9; b++)
+  vxm_picture_options bad[8];
+  for (int b = 0; b < 8; b++)
     bad[b] = options;
-  bad[0].size = 2;
-  bad[1].width = -1;
-  bad[2].height = 16385;
-  bad[3].azimuth = NAN;
-  bad[4].elevation = 90.5;
-  bad[5].elevation = NAN;
-  bad[6].up = 4;
-  bad[7].up = -1;
-  bad[8].azimuth = INFINITY;
-  for (int b = 0; b < 9; b++) {
+  bad[0].width = -1;
+  bad[1].height = 16385;
+  bad[2].azimuth = NAN;
+  bad[3].elevation = 90.5;
+  bad[4].elevation = NAN;
+  bad[5].up = 4;
+  bad[6].up = -1;
+  bad[7].azimuth = INFINITY;
+  for (int b = 0; b < 8; b++) {
     vxm_error error = VXM_ERROR_INIT;
     assert_int_equal(vxm_gridio_picture(grid, NULL, NULL, path_in(folder, "p.png"), &bad[b], &error),
                      VXM_ERROR_ARGUMENT);

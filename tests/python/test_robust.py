@@ -400,6 +400,7 @@ LONG_CALLS = {
 }
 CHILD = """
 import os, signal, sys, time, numpy, voxmend
+signal.signal(signal.SIGINT, signal.default_int_handler)  # shells start what is in the background without it
 mesh = voxmend.load(sys.argv[1] + "/rocket.off")
 call = sys.argv[2]
 if "sampler" in call or "large" in call:
