@@ -221,7 +221,7 @@ vxm_status vxm_process_receive(vxm_process *process, void *data, size_t size, vx
   return VXM_OK;
 }
 
-static void raise_limit(pid_t id, int resource, uint64_t more) {
+static void raise_limit(pid_t id, unsigned resource, uint64_t more) {
   struct rlimit limits;
   if (prlimit(id, resource, NULL, &limits) != 0 || limits.rlim_cur == RLIM_INFINITY)
     return;
