@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions that make a number per voxel: they check arguments and call down. */
-#include "base/sized.h"
+#include "api/api_results.h"
 #include "export/field.h"
 #include "grid/bit_transpose.h"
 
@@ -17,32 +17,6 @@ static vxm_field_target array_of(void *values) {
 }
 
 /* ---- Coverage ---- */
-
-/** What is made, and where it goes; pointers of the caller stay. */
-typedef struct coverage_results {
-  vxm_coverage_report *report;
-  vxm_voxelize_report *to;
-  vxm_coverage_report made;
-  vxm_voxelize_report voxelize;
-} coverage_results;
-
-static void begin_coverage(coverage_results *r, vxm_coverage_report *report) {
-  *r = (coverage_results){.report = report,
-                          .to = report && VXM_RESULT_HAS(report, voxelize) ? report->voxelize : NULL};
-  r->made.voxelize = r->to;
-  VXM_RESULT_WRITE(report, &r->made);
-  VXM_RESULT_CLEAR(r->to);
-  r->made.voxelize = &r->voxelize;
-}
-
-static vxm_status end_coverage(coverage_results *r, vxm_status status) {
-  if (status != VXM_OK)
-    return status;
-  r->made.voxelize = r->to;
-  VXM_RESULT_WRITE(r->report, &r->made);
-  VXM_RESULT_WRITE(r->to, &r->voxelize);
-  return status;
-}
 
 static vxm_status check_coverage(vxm_coverage_options *chosen, const vxm_space *space,
                                  const vxm_coverage_options *options, vxm_error *error) {
@@ -61,8 +35,8 @@ static vxm_status check_coverage(vxm_coverage_options *chosen, const vxm_space *
 
 vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report, vxm_model *model,
                               const vxm_space *space, const vxm_coverage_options *options, vxm_error *error) {
-  coverage_results results;
-  begin_coverage(&results, report);
+  VXM_RESULTS(vxm_coverage_report) results;
+  VXM_RESULTS_BEGIN(&results, report);
   if (!values || !model || !space)
     return fail_null("coverage", error);
   vxm_coverage_options chosen;
@@ -70,20 +44,22 @@ vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report, vxm_mod
   vxm_field_target target = array_of(values);
   if (status == VXM_OK)
     status = vxm_coverage_run(&target, &results.made, model, space, &chosen, error);
-  return end_coverage(&results, status);
+  VXM_RESULTS_END(&results, status);
+  return status;
 }
 
 vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *model, const vxm_space *space,
                                     const char *path, const vxm_coverage_options *options, vxm_error *error) {
-  coverage_results results;
-  begin_coverage(&results, report);
+  VXM_RESULTS(vxm_coverage_report) results;
+  VXM_RESULTS_BEGIN(&results, report);
   if (!model || !space || !path)
     return fail_null("coverage", error);
   vxm_coverage_options chosen;
   vxm_status status = check_coverage(&chosen, space, options, error);
   if (status == VXM_OK)
     status = vxm_field_write_coverage(&results.made, model, space, path, &chosen, error);
-  return end_coverage(&results, status);
+  VXM_RESULTS_END(&results, status);
+  return status;
 }
 
 vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model, const vxm_space *space,
@@ -104,32 +80,6 @@ vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_model *model
 
 /* ---- Distance ---- */
 
-/** What is made, and where it goes; pointers of the caller stay. */
-typedef struct distance_results {
-  vxm_distance_report *report;
-  vxm_voxelize_report *to;
-  vxm_distance_report made;
-  vxm_voxelize_report voxelize;
-} distance_results;
-
-static void begin_distance(distance_results *r, vxm_distance_report *report) {
-  *r = (distance_results){.report = report,
-                          .to = report && VXM_RESULT_HAS(report, voxelize) ? report->voxelize : NULL};
-  r->made.voxelize = r->to;
-  VXM_RESULT_WRITE(report, &r->made);
-  VXM_RESULT_CLEAR(r->to);
-  r->made.voxelize = &r->voxelize;
-}
-
-static vxm_status end_distance(distance_results *r, vxm_status status) {
-  if (status != VXM_OK)
-    return status;
-  r->made.voxelize = r->to;
-  VXM_RESULT_WRITE(r->report, &r->made);
-  VXM_RESULT_WRITE(r->to, &r->voxelize);
-  return status;
-}
-
 static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *model, const vxm_space *space,
                                  const vxm_distance_options *options, vxm_error *error) {
   *chosen = (vxm_distance_options)VXM_DISTANCE_OPTIONS_INIT;
@@ -146,8 +96,8 @@ static vxm_status check_distance(vxm_distance_options *chosen, const vxm_model *
 
 vxm_status vxm_model_distance(float *values, vxm_distance_report *report, vxm_model *model,
                               const vxm_space *space, const vxm_distance_options *options, vxm_error *error) {
-  distance_results results;
-  begin_distance(&results, report);
+  VXM_RESULTS(vxm_distance_report) results;
+  VXM_RESULTS_BEGIN(&results, report);
   if (!values || !model || !space)
     return fail_null("distance", error);
   vxm_distance_options chosen;
@@ -155,20 +105,22 @@ vxm_status vxm_model_distance(float *values, vxm_distance_report *report, vxm_mo
   vxm_field_target target = array_of(values);
   if (status == VXM_OK)
     status = vxm_distance_run(&target, &results.made, model, space, &chosen, error);
-  return end_distance(&results, status);
+  VXM_RESULTS_END(&results, status);
+  return status;
 }
 
 vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model, const vxm_space *space,
                                     const char *path, const vxm_distance_options *options, vxm_error *error) {
-  distance_results results;
-  begin_distance(&results, report);
+  VXM_RESULTS(vxm_distance_report) results;
+  VXM_RESULTS_BEGIN(&results, report);
   if (!model || !space || !path)
     return fail_null("distance", error);
   vxm_distance_options chosen;
   vxm_status status = check_distance(&chosen, model, space, options, error);
   if (status == VXM_OK)
     status = vxm_field_write_distance(&results.made, model, space, path, &chosen, error);
-  return end_distance(&results, status);
+  VXM_RESULTS_END(&results, status);
+  return status;
 }
 
 vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_model *model, const vxm_space *space,

@@ -7,7 +7,10 @@
 #include "gridio/mesh/surface_mesh.h"
 #include "gridio/picture/picture.h"
 
-vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
+typedef vxm_status (*read_fn)(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
+
+static vxm_status read_by(read_fn read, vxm_grid **out, vxm_context *context, const char *path,
+                          vxm_error *error) {
   if (out)
     *out = NULL;
   if (!out || !path)
@@ -16,9 +19,17 @@ vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path,
   vxm_status status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_gridio_read(out, owner, path, error);
+  status = read(out, owner, path, error);
   vxm_context_release(owner);
   return status;
+}
+
+vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
+  return read_by(vxm_gridio_read, out, context, path, error);
+}
+
+vxm_status vxm_grid_read_space(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
+  return read_by(vxm_gridio_read_space, out, context, path, error);
 }
 
 vxm_status vxm_grid_write(const vxm_grid *grid, const char *path, const vxm_grid_write_options *options,

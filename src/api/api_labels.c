@@ -1,34 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about labels: they check arguments and call down. */
-#include "base/sized.h"
+#include "api/api_results.h"
 #include "export/labels.h"
 #include "grid/bit_transpose.h"
-
-/** What is made, and where it goes; pointers of the caller stay. */
-typedef struct label_results {
-  vxm_label_report *report;
-  vxm_voxelize_report *to;
-  vxm_label_report made;
-  vxm_voxelize_report voxelize;
-} label_results;
-
-static void begin_label(label_results *r, vxm_label_report *report) {
-  *r = (label_results){.report = report,
-                       .to = report && VXM_RESULT_HAS(report, voxelize) ? report->voxelize : NULL};
-  r->made.voxelize = r->to;
-  VXM_RESULT_WRITE(report, &r->made);
-  VXM_RESULT_CLEAR(r->to);
-  r->made.voxelize = &r->voxelize;
-}
-
-static vxm_status end_label(label_results *r, vxm_status status) {
-  if (status != VXM_OK)
-    return status;
-  r->made.voxelize = r->to;
-  VXM_RESULT_WRITE(r->report, &r->made);
-  VXM_RESULT_WRITE(r->to, &r->voxelize);
-  return status;
-}
 
 static vxm_status check(vxm_label_options *chosen, const vxm_space *space, const vxm_label_options *options,
                         vxm_error *error) {
@@ -43,8 +17,8 @@ static vxm_status check(vxm_label_options *chosen, const vxm_space *space, const
 
 vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_label_options *options, vxm_error *error) {
-  label_results results;
-  begin_label(&results, report);
+  VXM_RESULTS(vxm_label_report) results;
+  VXM_RESULTS_BEGIN(&results, report);
   if (!values || !model || !space)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: an argument is NULL");
   vxm_label_options chosen;
@@ -57,20 +31,22 @@ vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, vxm_mode
     status =
         vxm_labels_run(values, (vxm_layout)VXM_PLANE_Z_FAST, &results.made, model, space, &labelling, error);
   vxm_face_labels_destroy(&labelling);
-  return end_label(&results, status);
+  VXM_RESULTS_END(&results, status);
+  return status;
 }
 
 vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,
                                   const char *path, const vxm_label_options *options, vxm_error *error) {
-  label_results results;
-  begin_label(&results, report);
+  VXM_RESULTS(vxm_label_report) results;
+  VXM_RESULTS_BEGIN(&results, report);
   if (!model || !space || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "labels: an argument is NULL");
   vxm_label_options chosen;
   vxm_status status = check(&chosen, space, options, error);
   if (status == VXM_OK)
     status = vxm_labels_write(&results.made, model, space, path, &chosen, error);
-  return end_label(&results, status);
+  VXM_RESULTS_END(&results, status);
+  return status;
 }
 
 /** The table of the calling thread, or an empty one. */

@@ -85,20 +85,6 @@ vxm_status vxm_field_read(vxm_field **out, vxm_context *context, const char *pat
   return status;
 }
 
-vxm_status vxm_grid_read_space(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error) {
-  if (out)
-    *out = NULL;
-  if (!out || !path)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
-  vxm_context *owner;
-  vxm_status status = vxm_context_acquire(&owner, context, error);
-  if (status != VXM_OK)
-    return status;
-  status = vxm_gridio_read_space(out, owner, path, error);
-  vxm_context_release(owner);
-  return status;
-}
-
 /* ---- What it holds ---- */
 
 const vxm_space *vxm_field_space(const vxm_field *field) {
