@@ -2,14 +2,14 @@
 /* The voxels of an octree (Schwarz & Seidel 2010, sections 5.3 and 5.4): 64 bricks for each of its lowest
    nodes, in Morton order, voxel (x, y, z) of a brick bit 16 z + 4 y + x. */
 
-enum { PART_MASK = 0x1fffffff /* of a facet's number of part, above which is its role */ };
+enum { PART_MASK = 0x1fffffff /* of a triangle's number of part, above which is its role */ };
 
-/* Whether a facet has to be looked at: not to ask whether its part has a flip where it is known. */
-static inline bool is_asked(__global const uint *parts, __global const uint *touched, uint facet, uint asks) {
-  return asks == 0 || touched[parts[facet] & PART_MASK] == 0;
+/* Whether a triangle has to be looked at: not to ask whether its part has a flip where it is known. */
+static inline bool is_asked(__global const uint *parts, __global const uint *touched, uint triangle, uint asks) {
+  return asks == 0 || touched[parts[triangle] & PART_MASK] == 0;
 }
 
-/* A facet for each work-item; those of many columns are listed. Where it `asks`, nothing is flipped, and
+/* A triangle for each work-item; those of many columns are listed. Where it `asks`, nothing is flipped, and
    parts with a flip are noted; the parts of a pass flip other voxels each. */
 __kernel void flip_bricks(__global const int4 *points, __global const uint *corners,
                           __global const uint *order, __global uint *bricks, __global const uint *cells,
@@ -19,24 +19,24 @@ __kernel void flip_bricks(__global const int4 *points, __global const uint *corn
   uint i = (uint)get_global_id(0);
   Triangle t;
   Flips flips = {bricks, cells, before, places, asks != 0, false};
-  if (i >= job.facet_count)
+  if (i >= job.triangle_count)
     return;
-  uint facet = job.ordered ? order[job.facet_first + i] : job.facet_first + i;
-  if (!is_asked(parts, touched, facet, asks) || !load_triangle(&t, &job, points, corners, facet))
+  uint triangle = job.ordered ? order[job.triangle_first + i] : job.triangle_first + i;
+  if (!is_asked(parts, touched, triangle, asks) || !load_triangle(&t, &job, points, corners, triangle))
     return;
   int4 area = columns_of(&t, &job);
   if (area.z <= area.x || area.w <= area.y)
     return;
   if ((long)(area.z - area.x) * (area.w - area.y) > job.few_columns) {
-    large[1 + atomic_inc(&large[0])] = facet;
+    large[1 + atomic_inc(&large[0])] = triangle;
     return;
   }
   flip_area(&t, &job, area, 0, 1, &flips);
   if (flips.found)
-    touched[parts[facet] & PART_MASK] = 1;
+    touched[parts[triangle] & PART_MASK] = 1;
 }
 
-/* Work-groups take turns with the listed facets. */
+/* Work-groups take turns with the listed triangles. */
 __kernel void flip_bricks_large(__global const int4 *points, __global const uint *corners,
                                 __global uint *bricks, __global const uint *cells,
                                 __global const uint *before, __global const ulong *places,
@@ -45,14 +45,14 @@ __kernel void flip_bricks_large(__global const int4 *points, __global const uint
   uint count = large[0];
   for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
     Triangle t;
-    uint facet = large[1 + i];
+    uint triangle = large[1 + i];
     Flips flips = {bricks, cells, before, places, asks != 0, false};
-    if (!is_asked(parts, touched, facet, asks))
+    if (!is_asked(parts, touched, triangle, asks))
       continue;
-    load_triangle(&t, &job, points, corners, facet);
+    load_triangle(&t, &job, points, corners, triangle);
     flip_share(&t, &job, &flips);
     if (flips.found)
-      touched[parts[facet] & PART_MASK] = 1;
+      touched[parts[triangle] & PART_MASK] = 1;
   }
 }
 

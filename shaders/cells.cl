@@ -54,7 +54,7 @@ static inline void mark_triangle(const Shape *t, const SurfaceJob *job, bool is_
     mark_shadow(t, job, corner, is_shared ? (int)get_local_id(0) : 0, is_shared ? GROUP : 1, cells);
 }
 
-/* A triangle for each work-item; those of many columns are listed. `list`: first of the facets, whether they
+/* A triangle for each work-item; those of many columns are listed. `list`: first of the triangles, whether they
    are looked up. */
 __kernel void mark_cells(__global const int4 *points, __global const uint *corners,
                          __global const uint *order, __global uint *bits, __global const ulong *places,
@@ -62,13 +62,13 @@ __kernel void mark_cells(__global const int4 *points, __global const uint *corne
   uint i = (uint)get_global_id(0);
   Shape t;
   const Voxels cells = {bits, places};
-  if (i >= job.facet_count)
+  if (i >= job.triangle_count)
     return;
-  uint facet = list.y ? order[list.x + i] : list.x + i;
-  if (!load_shape(&t, &job, points, corners, facet))
+  uint triangle = list.y ? order[list.x + i] : list.x + i;
+  if (!load_shape(&t, &job, points, corners, triangle))
     return;
   if ((long)(t.end.x - t.begin.x) * (t.end.y - t.begin.y) > job.few_columns)
-    large[1 + atomic_inc(&large[0])] = facet;
+    large[1 + atomic_inc(&large[0])] = triangle;
   else
     mark_triangle(&t, &job, false, &cells);
 }

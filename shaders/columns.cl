@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Solids, triangle by triangle (Schwarz & Seidel 2010, section 4.1): a work-item for each facet flips a bit
-   in each column that it covers; facets of many columns are listed, and each gets a work-group of its own. */
+/* Solids, triangle by triangle (Schwarz & Seidel 2010, section 4.1): a work-item for each triangle flips a bit
+   in each column that it covers; triangles of many columns are listed, and each gets a work-group of its own. */
 
 __kernel void flip_columns(__global const int4 *points, __global const uint *corners,
                            __global const uint *order, __global uint *flips, __global uint *large,
                            const Job job) {
   uint i = (uint)get_global_id(0);
   Triangle t;
-  if (i >= job.facet_count)
+  if (i >= job.triangle_count)
     return;
-  uint facet = job.ordered ? order[job.facet_first + i] : job.facet_first + i;
-  if (!load_triangle(&t, &job, points, corners, facet))
+  uint triangle = job.ordered ? order[job.triangle_first + i] : job.triangle_first + i;
+  if (!load_triangle(&t, &job, points, corners, triangle))
     return;
   int4 area = columns_of(&t, &job);
   if (area.z <= area.x || area.w <= area.y)
     return;
   if ((long)(area.z - area.x) * (area.w - area.y) > job.few_columns) {
-    large[1 + atomic_inc(&large[0])] = facet;
+    large[1 + atomic_inc(&large[0])] = triangle;
     return;
   }
   flip_area(&t, &job, area, 0, 1, flips);
 }
 
-/* Work-groups take turns with the listed facets; work-items with the rows of each. */
+/* Work-groups take turns with the listed triangles; work-items with the rows of each. */
 __kernel void flip_large(__global const int4 *points, __global const uint *corners, __global uint *flips,
                          __global const uint *large, const Job job) {
   uint count = large[0];
@@ -33,7 +33,7 @@ __kernel void flip_large(__global const int4 *points, __global const uint *corne
   }
 }
 
-/* Bits that the CPU found for facets that reach far. */
+/* Bits that the CPU found for triangles that reach far. */
 __kernel void flip_bits(__global uint *flips, __global const uint *bits, const uint count) {
   uint i = (uint)get_global_id(0);
   if (i < count)

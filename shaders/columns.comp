@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One facet for each invocation: a few columns are done at once, facets with more are listed to be drawn. */
+/* One triangle for each invocation: a few columns are done at once, triangles with more are listed to be drawn. */
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 4) buffer Large {
   uint vertices, instances, first_vertex, first_instance; // of the indirect draw
-  uint facet[];
+  uint triangle[];
 } large;
 
 void main() {
@@ -12,14 +12,14 @@ void main() {
   ivec3 corner[3];
   Triangle t;
   ivec2 begin, end;
-  if (i >= job.facets.y)
+  if (i >= job.triangles.y)
     return;
-  uint facet = facet_number(i);
-  if (!load_facet(facet, corner) || !make_triangle(corner, t) || !columns_of(t, begin, end))
+  uint triangle = triangle_number(i);
+  if (!load_triangle(triangle, corner) || !make_triangle(corner, t) || !columns_of(t, begin, end))
     return;
   ivec2 size = end - begin;
-  if (float(size.x) * float(size.y) > float(job.facets.w)) {
-    large.facet[atomicAdd(large.vertices, 3u) / 3u] = facet;
+  if (float(size.x) * float(size.y) > float(job.triangles.w)) {
+    large.triangle[atomicAdd(large.vertices, 3u) / 3u] = triangle;
     return;
   }
   for (int v = begin.y; v < end.y; v++)

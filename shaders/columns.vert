@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Pulls the facets that columns.comp listed, and draws each a little larger than it is. */
+/* Pulls the triangles that columns.comp listed, and draws each a little larger than it is. */
 layout(std430, binding = 4) readonly buffer Large {
   uint vertices, instances, first_vertex, first_instance;
-  uint facet[];
+  uint triangle[];
 } large;
 
 flat out ivec3 corner_a, corner_b, corner_c;
 
 void main() {
   ivec3 corner[3];
-  load_facet(large.facet[gl_VertexID / 3], corner);
+  load_triangle(large.triangle[gl_VertexID / 3], corner);
   corner_a = corner[0];
   corner_b = corner[1];
   corner_c = corner[2];

@@ -10,10 +10,10 @@ layout(std430, binding = 2) readonly buffer Random {
   float value[]; // -1 to 1
 } random;
 layout(std430, binding = 3) readonly buffer Apexes {
-  uint apex[]; // of each facet
+  uint apex[]; // of each triangle
 } apexes;
 layout(std430, binding = 4) readonly buffer List {
-  uint facet[]; // of each slice
+  uint triangle[]; // of each slice
 } list;
 layout(location = 0) uniform uint list_begin;
 
@@ -31,8 +31,8 @@ vec3 place(uint number) {
   return at;
 }
 
-/* The apex of a facet's part. Any point will do; this one is a little off the middle, as in symmetric bodies the
+/* The apex of a triangle's part. Any point will do; this one is a little off the middle, as in symmetric bodies the
    middle may be the centre of a voxel, where all tetrahedra meet. */
-vec3 place_apex(uint facet) {
-  return place(apexes.apex[facet]) + vec3(0.0137, 0.0271, 0.0314);
+vec3 place_apex(uint triangle) {
+  return place(apexes.apex[triangle]) + vec3(0.0137, 0.0271, 0.0314);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The columns that a facet covers, and what it flips in each; another file says what Flips are and what
+/* The columns that a triangle covers, and what it flips in each; another file says what Flips are and what
    flip_bit does. */
 
 /* Flips what the triangle flips in rows of columns: those of `area` from row `first` on, every `stride`-th.

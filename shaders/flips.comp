@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Flips the bits that the CPU found, for facets beyond the numbers of the shaders. */
+/* Flips the bits that the CPU found, for triangles beyond the numbers of the shaders. */
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) buffer Bits {
   uint word[];

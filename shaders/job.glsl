@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What one pass over the facets works on. Axes are named u and v across the columns, and w along them. */
+/* What one pass over the triangles works on. Axes are named u and v across the columns, and w along them. */
 layout(std140, binding = 0) uniform Job {
   ivec4 axes;    // u, v, w as numbers of axes; bits of the lattice below a voxel
   ivec4 first;   // first voxel of the tile along u, v, w; whether flips before it along w count for it
   ivec4 last;    // voxel behind the last one along u, v, w
   uvec4 step;    // bits from a voxel to the next one along u, v, w
-  uvec4 facets;  // first number; how many; whether numbers are looked up in `order`; most columns that the first
+  uvec4 triangles;  // first number; how many; whether numbers are looked up in `order`; most columns that the first
                  // pass takes
   ivec4 view;    // first column of the viewport along u and v; its width and height
 } job;
@@ -17,26 +17,26 @@ layout(std430, binding = 1) readonly buffer Corners {
   uint corner[];
 } corners;
 layout(std430, binding = 2) readonly buffer Order {
-  uint facet[];
+  uint triangle[];
 } order;
 layout(std430, binding = 3) buffer Bits {
   uint word[];
 } bits;
 
-uint facet_number(uint i) {
-  return job.facets.z != 0u ? order.facet[job.facets.x + i] : job.facets.x + i;
+uint triangle_number(uint i) {
+  return job.triangles.z != 0u ? order.triangle[job.triangles.x + i] : job.triangles.x + i;
 }
 
 ivec3 turned(ivec4 p) {
   return ivec3(p[job.axes.x], p[job.axes.y], p[job.axes.z]);
 }
 
-/* The corners of a facet along u, v, w; false if it is one of those that the CPU does, because products of its
+/* The corners of a triangle along u, v, w; false if it is one of those that the CPU does, because products of its
    differences do not fit 64 bits. */
-bool load_facet(uint facet, out ivec3 corner[3]) {
+bool load_triangle(uint triangle, out ivec3 corner[3]) {
   ivec4 p[3];
   for (int c = 0; c < 3; c++) {
-    p[c] = points.at[corners.corner[3u * facet + uint(c)]];
+    p[c] = points.at[corners.corner[3u * triangle + uint(c)]];
     corner[c] = turned(p[c]);
   }
   if ((p[0].w | p[1].w | p[2].w) != 0)

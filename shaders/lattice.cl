@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What one pass over the facets of a tile works on: vxm_slice_job_columns. Axes are named u and v across the columns,
-   and w along them; 64-bit integers hold all products, as differences of near facets are at most 2^20. */
+/* What one pass over the triangles of a tile works on: vxm_slice_job_columns. Axes are named u and v across the columns,
+   and w along them; 64-bit integers hold all products, as differences of near triangles are at most 2^20. */
 typedef struct Job {
   int axes[3], bits;         /* numbers of u, v, w; bits of the lattice below a voxel */
   int first[3], keep_before; /* first voxel along u, v, w; whether flips before it along w count for it */
   int last[3], unused;       /* voxel behind the last one */
   uint step[4];              /* bits from a voxel to the next one along u, v, w */
-  uint facet_first, facet_count, ordered, few_columns;
+  uint triangle_first, triangle_count, ordered, few_columns;
 } Job;
 
 /* A triangle along u, v, w: a corner, and the others by their differences to it. */
@@ -19,11 +19,11 @@ static inline int part_of(int4 p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
 
-/* False if the facet covers no column by its area, or is one of those that the CPU does: their points are marked or
+/* False if the triangle covers no column by its area, or is one of those that the CPU does: their points are marked or
    lie too far apart. */
 static inline bool load_triangle(Triangle *t, const Job *job, __global const int4 *points, __global const uint *corners,
-                          uint facet) {
-  int4 p = points[corners[3 * facet]], q = points[corners[3 * facet + 1]], r = points[corners[3 * facet + 2]];
+                          uint triangle) {
+  int4 p = points[corners[3 * triangle]], q = points[corners[3 * triangle + 1]], r = points[corners[3 * triangle + 2]];
   int4 low = min(min(p, q), r), size = max(max(p, q), r) - low;
   if ((p.w | q.w | r.w) != 0 || size.x > 1 << 20 || size.y > 1 << 20 || size.z > 1 << 20)
     return false;

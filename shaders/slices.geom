@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Builds the tetrahedron of a facet and the apex, and emits its cross-section with the plane of the slice. */
+/* Builds the tetrahedron of a triangle and the apex, and emits its cross-section with the plane of the slice. */
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 6) out;
 in vec3 corner[];

@@ -12,7 +12,7 @@ __kernel void set_surface(__global const int4 *points, __global const uint *corn
   uint i = (uint)get_global_id(0);
   Shape t;
   Voxels voxels = {bits, 0};
-  if (i >= job.facet_count || !load_shape(&t, &job, points, corners, i))
+  if (i >= job.triangle_count || !load_shape(&t, &job, points, corners, i))
     return;
   int3 size = t.end - t.begin;
   if ((long)size.x * size.y > job.few_columns) {

@@ -3,12 +3,12 @@
    more: every pixel that it touches has its centre inside. */
 layout(points) in;
 layout(triangle_strip, max_vertices = 3) out;
-flat in uint facet[];
+flat in uint triangle[];
 flat out ivec3 corner_a, corner_b, corner_c;
 
 void main() {
   ivec3 corner[3];
-  load_facet(facet[0], corner);
+  load_triangle(triangle[0], corner);
   Triangle t = triangle_of(corner);
   float unit = float(1 << job.first.w);
   vec2 p[3];

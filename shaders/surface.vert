@@ -2,10 +2,10 @@
 /* Numbers of the triangles that surface.comp listed. */
 layout(std430, binding = 4) readonly buffer Large {
   uint vertices, instances, first_vertex, first_instance;
-  uint facet[];
+  uint triangle[];
 } large;
-flat out uint facet;
+flat out uint triangle;
 
 void main() {
-  facet = large.facet[gl_VertexID];
+  triangle = large.triangle[gl_VertexID];
 }

@@ -4,12 +4,12 @@
 flat out uvec4 point_a, point_b, point_c;
 
 void main() {
-  uint facet = list.facet[list_begin + uint(gl_VertexID) / 6u];
+  uint triangle = list.triangle[list_begin + uint(gl_VertexID) / 6u];
   int vertex = gl_VertexID % 6;
   vec3 t[4];
   for (uint i = 0u; i < 3u; i++)
-    t[i] = place(corners.corner[3u * facet + i]);
-  t[3] = place_apex(facet);
+    t[i] = place(corners.corner[3u * triangle + i]);
+  t[3] = place_apex(triangle);
   dvec2 p[4];
   int count = section(t, p);
   bool is_main = vertex < 3;

@@ -3,25 +3,25 @@
  * Solids tile by tile (Schwarz & Seidel 2010, section 4.2): triangles are listed for each tile of columns whose centres
  * they may cover, the lists are sorted by tile, and a work-group does each tile: its work-items first make ready some
  * triangles, then each of them goes through these with a column of its own. No two write the same word, so that nothing
- * is atomic. As a list keeps the order of facets, parts follow each other in it, and each is folded and united as it
+ * is atomic. As a list keeps the order of triangles, parts follow each other in it, and each is folded and united as it
  * ends: parts may meet. Columns run along the bits.
  */
 enum {
   TILE_U = GROUP >= 32 ? 8 : 4,
   TILE_V = GROUP / TILE_U,
   BATCH = GROUP < 32 ? GROUP : 32,
-  ROLE_SHIFT = 29 /* of the number of a facet's part; its role is above */
+  ROLE_SHIFT = 29 /* of the number of a triangle's part; its role is above */
 };
 
-/* What a facet covers of the columns. */
+/* What a triangle covers of the columns. */
 typedef struct Cover {
   vxm_side side[3];
   int4 area, tiles; /* columns; tiles: first along u and v, last along u and v */
 } Cover;
 
 static inline bool cover_of(Cover *cover, Triangle *t, const Job *job, __global const int4 *points,
-                     __global const uint *corners, __global const uint *parts, uint facet, uint roles) {
-  if (((roles >> (parts[facet] >> ROLE_SHIFT)) & 1) == 0 || !load_triangle(t, job, points, corners, facet))
+                     __global const uint *corners, __global const uint *parts, uint triangle, uint roles) {
+  if (((roles >> (parts[triangle] >> ROLE_SHIFT)) & 1) == 0 || !load_triangle(t, job, points, corners, triangle))
     return false;
   int4 area = columns_of(t, job);
   if (area.z <= area.x || area.w <= area.y)
@@ -59,10 +59,10 @@ __kernel void count_tiles(__global const int4 *points, __global const uint *corn
   if (get_local_id(0) == 0)
     all = 0;
   barrier(CLK_LOCAL_MEM_FENCE);
-  if (i < job.facet_count) {
+  if (i < job.triangle_count) {
     Cover cover;
     Triangle t;
-    if (cover_of(&cover, &t, &job, points, corners, parts, job.facet_first + i, roles))
+    if (cover_of(&cover, &t, &job, points, corners, parts, job.triangle_first + i, roles))
       for (int v = cover.tiles.y; v <= cover.tiles.w; v++)
         for (int u = cover.tiles.x; u <= cover.tiles.z; u++)
           count += meets_tile(&cover, &job, u, v) ? 1 : 0;
@@ -81,15 +81,15 @@ __kernel void list_tiles(__global const int4 *points, __global const uint *corne
   uint i = (uint)get_global_id(0);
   Cover cover;
   Triangle t;
-  if (i >= job.facet_count || starts[i] == starts[i + 1])
+  if (i >= job.triangle_count || starts[i] == starts[i + 1])
     return;
   uint at = starts[i];
-  cover_of(&cover, &t, &job, points, corners, parts, job.facet_first + i, roles);
+  cover_of(&cover, &t, &job, points, corners, parts, job.triangle_first + i, roles);
   for (int v = cover.tiles.y; v <= cover.tiles.w; v++)
     for (int u = cover.tiles.x; u <= cover.tiles.z; u++)
       if (meets_tile(&cover, &job, u, v)) {
         keys[at] = (ulong)v * tiles_u + u;
-        values[at++] = job.facet_first + i;
+        values[at++] = job.triangle_first + i;
       }
 }
 
@@ -157,15 +157,15 @@ __kernel void fill_tiles(__global const int4 *points, __global const uint *corne
     uint count = min(list.y - from, (uint)BATCH);
     barrier(CLK_LOCAL_MEM_FENCE);
     if (me < count) {
-      uint facet = values[from + me];
+      uint triangle = values[from + me];
       Triangle t;
       int middle = (1 << job.bits) / 2;
-      load_triangle(&t, &job, points, corners, facet);
+      load_triangle(&t, &job, points, corners, triangle);
       int pu = (tile_u << job.bits) + middle - t.a.x, pv = (tile_v << job.bits) + middle - t.a.y;
       for (int s = 0; s < 3; s++)
         ready[me].side[s] = side_of(&t, &job, s, pu, pv);
       ready[me].plane = plane_of(&t, &job, pu, pv);
-      ready[me].part = parts[facet] & ((1u << ROLE_SHIFT) - 1);
+      ready[me].part = parts[triangle] & ((1u << ROLE_SHIFT) - 1);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (uint r = 0; r < count; r++) {

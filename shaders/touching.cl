@@ -8,7 +8,7 @@ typedef struct SurfaceJob { /* vxm_slice_job_surface */
   int first[3], bits;
   int last[3], thin;
   uint step[4];
-  uint facet_count, few_columns;
+  uint triangle_count, few_columns;
   int shift, shadow; /* along x: by how much points are moved; whether what lies before the first voxel counts
                         for it */
 } SurfaceJob;
@@ -44,8 +44,8 @@ static inline int3 turned(int x, int y, int z, int w) {
 
 /* False if it has no voxel of the tile, or is one of those that the CPU does. */
 static inline bool load_shape(Shape *t, const SurfaceJob *job, __global const int4 *points,
-                       __global const uint *corners, uint facet) {
-  int4 a = points[corners[3 * facet]], b = points[corners[3 * facet + 1]], c = points[corners[3 * facet + 2]];
+                       __global const uint *corners, uint triangle) {
+  int4 a = points[corners[3 * triangle]], b = points[corners[3 * triangle + 1]], c = points[corners[3 * triangle + 2]];
   a.x += job->shift;
   b.x += job->shift;
   c.x += job->shift;

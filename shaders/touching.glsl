@@ -8,7 +8,7 @@ layout(std140, binding = 0) uniform Job {
   ivec4 first;  // first voxel of the tile along x, y, z; bits of the lattice below a voxel
   ivec4 last;   // voxel behind the last one; whether the surface is thin
   uvec4 step;   // bits from a voxel to the next one along x, y, z
-  uvec4 facets; // how many; most columns that the first pass takes
+  uvec4 triangles; // how many; most columns that the first pass takes
   ivec4 view;   // first column of the viewport; its width and height
 } job;
 
@@ -29,10 +29,10 @@ struct Triangle {
   ivec3 begin, end;     // voxels whose closed boxes meet that of the triangle, within the tile
 };
 
-bool load_facet(uint facet, out ivec3 corner[3]) {
+bool load_triangle(uint triangle, out ivec3 corner[3]) {
   ivec4 p[3];
   for (int c = 0; c < 3; c++) {
-    p[c] = points.at[corners.corner[3u * facet + uint(c)]];
+    p[c] = points.at[corners.corner[3u * triangle + uint(c)]];
     corner[c] = p[c].xyz;
   }
   if ((p[0].w | p[1].w | p[2].w) != 0)

@@ -4,13 +4,13 @@
 
 #include <math.h>
 
-/** The box of the points that facets have. */
-static vxm_status measure(vxm_model_extent *out, const vxm_triangle_set *facets, vxm_error *error) {
+/** The box of the points that triangles have. */
+static vxm_status measure(vxm_model_extent *out, const vxm_triangle_set *triangles, vxm_error *error) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t p = 0; p < facets->first_apex; p++) {
-    const double *at = facets->positions[p];
+  for (size_t p = 0; p < triangles->first_apex; p++) {
+    const double *at = triangles->positions[p];
     if (!isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
-      return vxm_lattice_refuse(facets->vertex[p], at, error);
+      return vxm_lattice_refuse(triangles->vertex[p], at, error);
     for (int a = 0; a < 3; a++) {
       low[a] = fmin(low[a], at[a]);
       high[a] = fmax(high[a], at[a]);
@@ -37,8 +37,8 @@ static vxm_status measure(vxm_model_extent *out, const vxm_triangle_set *facets,
 static vxm_status find_entries(vxm_sampler_model *subject, const vxm_soup *soup, uint32_t size,
                                vxm_error *error) {
   vxm_context *context = subject->model->context;
-  const vxm_triangle_set *facets = &subject->model->analysis.facets;
-  size_t count = soup->vertex_count, points = facets->first_apex;
+  const vxm_triangle_set *triangles = &subject->model->analysis.triangles;
+  size_t count = soup->vertex_count, points = triangles->first_apex;
   vxm_error local = VXM_ERROR_INIT;
   uint32_t *same = vxm_alloc(context, count, sizeof *same, &local);
   uint32_t *entry = same ? vxm_alloc(context, count, sizeof *entry, &local) : NULL;
@@ -50,7 +50,7 @@ static vxm_status find_entries(vxm_sampler_model *subject, const vxm_soup *soup,
     for (size_t v = 0; v < count; v++)
       entry[v] = UINT32_MAX;
     for (size_t p = 0; p < points; p++) {
-      uint32_t vertex = facets->vertex[p];
+      uint32_t vertex = triangles->vertex[p];
       uint32_t *at = vertex < count ? &entry[same[vertex]] : &subject->entry[p];
       if (vertex >= count || *at == UINT32_MAX) {
         *at = next;
@@ -58,7 +58,7 @@ static vxm_status find_entries(vxm_sampler_model *subject, const vxm_soup *soup,
       }
       subject->entry[p] = *at;
     }
-    for (size_t v = 0; v < count; v++) { /* what no facet has is not displaced in any way that matters */
+    for (size_t v = 0; v < count; v++) { /* what no triangle has is not displaced in any way that matters */
       entry[v] = entry[same[v]];
       if (entry[v] == UINT32_MAX)
         entry[v] = 0;
@@ -80,7 +80,7 @@ vxm_status vxm_sampler_model_create(vxm_sampler_model *out, uint32_t number, con
   *out = (vxm_sampler_model){.number = number};
   vxm_status status = vxm_model_make(&out->model, soup, options, error);
   if (status == VXM_OK)
-    status = measure(&out->extent, &out->model->analysis.facets, error);
+    status = measure(&out->extent, &out->model->analysis.triangles, error);
   if (status == VXM_OK)
     status = vxm_model_instance_prepare(out->model, error);
   if (status == VXM_OK && noise->size > 0)

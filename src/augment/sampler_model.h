@@ -12,7 +12,7 @@ typedef struct vxm_sampler_model {
   uint32_t number;
   vxm_model *model; /**< prepared; NULL = nothing here */
   vxm_model_extent extent;
-  uint32_t *entry;        /**< of the facets' points, below the size of the noise; NULL without noise */
+  uint32_t *entry;        /**< of the triangles' points, below the size of the noise; NULL without noise */
   uint32_t *vertex_entry; /**< of the soup's vertices, where faces set voxels; else NULL */
 } vxm_sampler_model;
 

@@ -33,13 +33,13 @@ void vxm_worker_destroy(vxm_worker *desk) {
 
 /* ---- Variants ---- */
 
-/** How the points of a subject move; those of its facets, or the vertices of its mesh. */
+/** How the points of a subject move; those of its triangles, or the vertices of its mesh. */
 static vxm_vertex_transform motion_of(const vxm_sampler_model *subject, const vxm_placement *placement,
                                       const vxm_noise *noise, bool vertices) {
-  const vxm_triangle_set *facets = &subject->model->analysis.facets;
-  return (vxm_vertex_transform){.from = vertices ? (const double(*)[3])facets->soup->positions
-                                                 : (const double(*)[3])facets->positions,
-                                .count = vertices ? facets->soup->vertex_count : facets->first_apex,
+  const vxm_triangle_set *triangles = &subject->model->analysis.triangles;
+  return (vxm_vertex_transform){.from = vertices ? (const double(*)[3])triangles->soup->positions
+                                                 : (const double(*)[3])triangles->positions,
+                                .count = vertices ? triangles->soup->vertex_count : triangles->first_apex,
                                 .matrix = placement->matrix,
                                 .entry = vertices ? subject->vertex_entry : subject->entry,
                                 .noise = (const float(*)[4])noise->vectors,
@@ -48,7 +48,7 @@ static vxm_vertex_transform motion_of(const vxm_sampler_model *subject, const vx
                                 .stretch = placement->stretch,
                                 /* Both ends of an edge may be displaced, along three axes. */
                                 .reach = 2 * sqrt(3.0) * noise->reach,
-                                .from_serial = vertices ? 0 : facets->serial,
+                                .from_serial = vertices ? 0 : triangles->serial,
                                 .noise_serial = noise->serial};
 }
 

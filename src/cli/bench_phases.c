@@ -276,7 +276,7 @@ const bench_phase bench_phases[] = {
      bench_run_direct, bench_tell_augment},
     {"published_facets", "surface by a published OpenCL program, a work-item for each facet", true, true,
      BENCH_OPENCL, 0, bench_begin_published_facets, bench_run_published, bench_tell_published},
-    {"published_voxels", "the same, a work-item for each voxel over all facets", true, true, BENCH_OPENCL,
+    {"published_voxels", "the same, a work-item for each voxel over all triangles", true, true, BENCH_OPENCL,
      SLOW_MS, bench_begin_published_voxels, bench_run_published, bench_tell_published},
     {"transfer_read", "a byte for each voxel from the OpenCL device, by clEnqueueReadBuffer", true, true,
      BENCH_OPENCL, 0, bench_begin_transfer, bench_run_transfer_read, bench_tell_published},

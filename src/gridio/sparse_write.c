@@ -18,18 +18,18 @@ vxm_status vxm_gridio_write_sparse(const vxm_sparse *sparse, const char *path, c
     return VXM_ERROR_ARGUMENT;
   if (found->write_sparse)
     return found->write_sparse(sparse, path, error);
-  vxm_grid_writer *slices;
-  vxm_status status = vxm_grid_writer_open(&slices, sparse->context, &sparse->space, path, format, error);
+  vxm_grid_writer *writer;
+  vxm_status status = vxm_grid_writer_open(&writer, sparse->context, &sparse->space, path, format, error);
   if (status != VXM_OK)
     return status;
-  vxm_grid_writer_report(slices);
-  vxm_layout layout = vxm_grid_writer_layout(slices);
+  vxm_grid_writer_report(writer);
+  vxm_layout layout = vxm_grid_writer_layout(writer);
   uint64_t slice = vxm_window_of(&sparse->space, layout, 0, 0).slice_words * sizeof(uint64_t);
   int64_t step = (int64_t)(window_bytes / slice) / SLICES_LEAST * SLICES_LEAST;
   step = vxm_max(step, SLICES_LEAST);
-  status = vxm_octree_each_window(sparse, layout, step, put_window, slices, error);
+  status = vxm_octree_each_window(sparse, layout, step, put_window, writer, error);
   if (status == VXM_OK)
-    return vxm_grid_writer_commit(slices, error);
-  vxm_grid_writer_abort(slices);
+    return vxm_grid_writer_commit(writer, error);
+  vxm_grid_writer_abort(writer);
   return status;
 }

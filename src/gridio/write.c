@@ -6,35 +6,35 @@
 #include "meshio/meshio.h"
 
 /** Word columns of the grid, each of which is up to 64 slices of a file that varies x slowest. */
-static vxm_status put_planes(vxm_grid_writer *slices, const vxm_grid *grid, vxm_error *error) {
+static vxm_status put_planes(vxm_grid_writer *writer, const vxm_grid *grid, vxm_error *error) {
   vxm_bit_transpose planes;
   vxm_status status =
-      vxm_bit_transpose_create(&planes, grid->context, &grid->space, vxm_grid_writer_layout(slices), error);
+      vxm_bit_transpose_create(&planes, grid->context, &grid->space, vxm_grid_writer_layout(writer), error);
   if (status != VXM_OK)
     return status;
   for (size_t w = 0; status == VXM_OK && w < grid->row_words; w++) {
     vxm_bit_transpose_gather(&planes, grid, w, NULL);
     vxm_window window = vxm_bit_transpose_window(&planes, grid, w);
-    status = vxm_grid_writer_put(slices, &window, error);
+    status = vxm_grid_writer_put(writer, &window, error);
   }
   vxm_bit_transpose_destroy(&planes);
   return status;
 }
 
 static vxm_status write_slices(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {
-  vxm_grid_writer *slices;
-  vxm_status status = vxm_grid_writer_open(&slices, grid->context, &grid->space, path, format, error);
+  vxm_grid_writer *writer;
+  vxm_status status = vxm_grid_writer_open(&writer, grid->context, &grid->space, path, format, error);
   if (status != VXM_OK)
     return status;
-  vxm_grid_writer_report(slices);
-  if (vxm_layout_is_grid(vxm_grid_writer_layout(slices))) {
+  vxm_grid_writer_report(writer);
+  if (vxm_layout_is_grid(vxm_grid_writer_layout(writer))) {
     vxm_window window = vxm_window_of_grid(grid);
-    status = vxm_grid_writer_put(slices, &window, error);
+    status = vxm_grid_writer_put(writer, &window, error);
   } else
-    status = put_planes(slices, grid, error);
+    status = put_planes(writer, grid, error);
   if (status == VXM_OK)
-    return vxm_grid_writer_commit(slices, error);
-  vxm_grid_writer_abort(slices);
+    return vxm_grid_writer_commit(writer, error);
+  vxm_grid_writer_abort(writer);
   return status;
 }
 
@@ -53,5 +53,5 @@ vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *
   const vxm_grid_format *found = vxm_grid_format_for(path, format, error);
   if (!found)
     return VXM_ERROR_ARGUMENT;
-  return (found->slices ? write_slices : write_surface)(grid, path, found->name, error);
+  return (found->writer ? write_slices : write_surface)(grid, path, found->name, error);
 }

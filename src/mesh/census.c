@@ -3,7 +3,7 @@
 
 #include "base/threads.h"
 #include "mesh/components.h"
-#include "mesh/duplicates.h"
+#include "mesh/duplicate_faces.h"
 #include "mesh/edges.h"
 #include "mesh/geometry.h"
 #include "mesh/weld.h"

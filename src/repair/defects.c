@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/defects.h"
 
-#include "mesh/duplicates.h"
+#include "mesh/duplicate_faces.h"
 #include "mesh/weld.h"
 #include "meshio/formats/write_marked.h"
 #include "repair/state/self_intersections.h"
@@ -13,8 +13,8 @@ typedef struct finding {
   vxm_defects *defects;
   const vxm_soup *soup;
   size_t most;
-  size_t of_kind;        /**< found of the present kind */
-  vxm_repair_state work; /**< on a copy with welded corners */
+  size_t of_kind;         /**< found of the present kind */
+  vxm_repair_state state; /**< on a copy with welded corners */
   uint32_t *map;
   vxm_error error;
 } finding;
@@ -74,12 +74,12 @@ static bool find_nonfinite(finding *f) {
 
 static bool find_degenerate(finding *f) {
   vxm_extent extent;
-  vxm_repair_state_extent(&f->work, &extent);
+  vxm_repair_state_extent(&f->state, &extent);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
   for (size_t i = 0; i < f->soup->face_count; i++) {
     size_t count;
-    const uint32_t *corner = vxm_face(f->work.soup, i, &count);
-    if (vxm_ask_at(i, f->work.context, &f->error) != VXM_OK)
+    const uint32_t *corner = vxm_face(f->state.soup, i, &count);
+    if (vxm_ask_at(i, f->state.context, &f->error) != VXM_OK)
       return false;
     bool bad = vxm_unit_scale_no_area(&frame, f->soup, i) || !vxm_face_has_three(corner, count, NULL);
     if (bad && !enter_face(f, VXM_DEFECT_DEGENERATE_FACE, i))
@@ -90,13 +90,13 @@ static bool find_degenerate(finding *f) {
 
 static bool find_duplicates(finding *f) {
   vxm_duplicates found;
-  uint8_t *marks = vxm_calloc(f->work.context, f->soup->face_count, 1, &f->error);
-  bool done = marks && vxm_duplicates_find(&found, f->work.context, f->work.soup, NULL, marks, NULL,
+  uint8_t *marks = vxm_calloc(f->state.context, f->soup->face_count, 1, &f->error);
+  bool done = marks && vxm_duplicates_find(&found, f->state.context, f->state.soup, NULL, marks, NULL,
                                            &f->error) == VXM_OK;
   for (size_t i = 0; done && i < f->soup->face_count; i++)
     if (marks[i])
       done = enter_face(f, VXM_DEFECT_DUPLICATE_FACE, i);
-  vxm_free(f->work.context, marks);
+  vxm_free(f->state.context, marks);
   return done;
 }
 
@@ -109,7 +109,7 @@ static bool edge_is(const vxm_edge *edge, vxm_defect_kind kind) {
 }
 
 static bool find_edges(finding *f, vxm_defect_kind kind) {
-  const vxm_edges *edges = &f->work.edges;
+  const vxm_edges *edges = &f->state.edges;
   for (size_t e = 0; e < edges->count; e++) {
     const vxm_edge *edge = &edges->edges[e];
     if (!edge_is(edge, kind))
@@ -126,9 +126,9 @@ static bool find_edges(finding *f, vxm_defect_kind kind) {
 /** Vertices of more than one fan, but for those of edges with too many faces, which tell it themselves. */
 static bool find_vertices(finding *f) {
   uint8_t *fans;
-  if (vxm_vertex_fans_count(&fans, &f->work, &f->error) != VXM_OK)
+  if (vxm_vertex_fans_count(&fans, &f->state, &f->error) != VXM_OK)
     return false;
-  const vxm_edges *edges = &f->work.edges;
+  const vxm_edges *edges = &f->state.edges;
   for (size_t e = 0; e < edges->count; e++)
     if (edges->edges[e].count > 2)
       fans[edges->edges[e].a] = fans[edges->edges[e].b] = 0;
@@ -136,14 +136,14 @@ static bool find_vertices(finding *f) {
   for (size_t v = 0; done && v < f->soup->vertex_count; v++)
     if (fans[v] > 1)
       done = enter_vertex(f, VXM_DEFECT_NONMANIFOLD_VERTEX, v);
-  vxm_free(f->work.context, fans);
+  vxm_free(f->state.context, fans);
   return done;
 }
 
 static bool find_intersections(finding *f) {
   vxm_face_pairs pairs;
   /* all are counted, whatever is listed */
-  bool done = vxm_self_intersections_find(&pairs, f->work.soup, VXM_CROSSINGS_MOST, &f->error) == VXM_OK;
+  bool done = vxm_self_intersections_find(&pairs, f->state.soup, VXM_CROSSINGS_MOST, &f->error) == VXM_OK;
   for (size_t i = 0; done && i < pairs.count; i++) {
     vxm_defect defect = {.kind = VXM_DEFECT_SELF_INTERSECTION,
                          .element = {(int64_t)pairs.pairs[i].first, (int64_t)pairs.pairs[i].second}};
@@ -151,7 +151,7 @@ static bool find_intersections(finding *f) {
     place_face(defect.position + 3, f->soup, pairs.pairs[i].second);
     done = enter(f, &defect);
   }
-  vxm_free(f->work.context, pairs.pairs);
+  vxm_free(f->state.context, pairs.pairs);
   return done;
 }
 
@@ -159,7 +159,7 @@ static bool find(finding *f, bool intersections) {
   bool done = true;
   for (vxm_defect_kind kind = 0; done && kind < VXM_DEFECT_KINDS; kind++) {
     f->of_kind = 0;
-    if (vxm_progress(f->work.context, "inspecting", (double)kind / VXM_DEFECT_KINDS, &f->error) != VXM_OK)
+    if (vxm_progress(f->state.context, "inspecting", (double)kind / VXM_DEFECT_KINDS, &f->error) != VXM_OK)
       return false;
     done = kind == VXM_DEFECT_NONFINITE_VERTEX     ? find_nonfinite(f)
            : kind == VXM_DEFECT_DEGENERATE_FACE    ? find_degenerate(f)
@@ -176,16 +176,16 @@ static bool find(finding *f, bool intersections) {
 /** Makes the copy with welded corners and its edge map. */
 static bool prepare(finding *f) {
   vxm_context *context = f->soup->context;
-  f->work.context = context;
+  f->state.context = context;
   f->map = vxm_alloc(context, f->soup->vertex_count, sizeof *f->map, &f->error);
-  f->work.used = f->map ? vxm_alloc(context, f->soup->vertex_count, 1, &f->error) : NULL;
-  if (!f->work.used || vxm_soup_copy(&f->work.soup, f->soup, &f->error) != VXM_OK)
+  f->state.used = f->map ? vxm_alloc(context, f->soup->vertex_count, 1, &f->error) : NULL;
+  if (!f->state.used || vxm_soup_copy(&f->state.soup, f->soup, &f->error) != VXM_OK)
     return false;
   if (vxm_weld_exact(context, f->soup->positions, f->soup->vertex_count, f->map, NULL, &f->error) != VXM_OK)
     return false;
   for (size_t c = 0; c < f->soup->corner_count; c++)
-    f->work.soup->indices[c] = f->map[f->soup->indices[c]];
-  return vxm_repair_state_edges(&f->work, &f->error) == VXM_OK;
+    f->state.soup->indices[c] = f->map[f->soup->indices[c]];
+  return vxm_repair_state_edges(&f->state, &f->error) == VXM_OK;
 }
 
 vxm_status vxm_defects_find(vxm_defects **out, const vxm_soup *soup, size_t most, bool intersections,
@@ -201,9 +201,9 @@ vxm_status vxm_defects_find(vxm_defects **out, const vxm_soup *soup, size_t most
     *f.defects =
         (vxm_defects){.context = context, .vertex_count = soup->vertex_count, .face_count = soup->face_count};
   bool done = f.defects && prepare(&f) && find(&f, intersections);
-  vxm_repair_state_touch(&f.work);
-  vxm_soup_destroy(f.work.soup);
-  vxm_free(context, f.work.used);
+  vxm_repair_state_touch(&f.state);
+  vxm_soup_destroy(f.state.soup);
+  vxm_free(context, f.state.used);
   vxm_free(context, f.map);
   if (done) {
     *out = f.defects;

@@ -26,10 +26,10 @@ static const char *const names[VXM_PASS_COUNT] = {
     [VXM_PASS_UNUSED] = "unused_vertices",
 };
 
-static vxm_status run_pass(vxm_repair_state *work, vxm_pass_fn pass, double fraction, bool *changed,
+static vxm_status run_pass(vxm_repair_state *state, vxm_pass_fn pass, double fraction, bool *changed,
                            vxm_error *error) {
-  vxm_status status = vxm_progress(work->context, "repairing", fraction, error);
-  return status == VXM_OK ? pass(work, changed, error) : status;
+  vxm_status status = vxm_progress(state->context, "repairing", fraction, error);
+  return status == VXM_OK ? pass(state, changed, error) : status;
 }
 
 enum { ROUNDS_MAX = 8 };
@@ -39,10 +39,10 @@ static const vxm_pass_fn round_passes[] = {vxm_pass_repeated_corners, vxm_pass_z
 enum { PASSES = sizeof round_passes / sizeof *round_passes };
 
 /** How much these have done so far. */
-static int64_t count_round(const vxm_repair_state *work) {
-  return work->counts[VXM_PASS_REPEATED_CORNERS] + work->counts[VXM_PASS_ZERO_AREA] +
-         work->counts[VXM_PASS_DUPLICATES] + work->counts[VXM_PASS_OPPOSITE_DUPLICATES] +
-         work->counts[VXM_PASS_TOLERANT_WELD];
+static int64_t count_round(const vxm_repair_state *state) {
+  return state->counts[VXM_PASS_REPEATED_CORNERS] + state->counts[VXM_PASS_ZERO_AREA] +
+         state->counts[VXM_PASS_DUPLICATES] + state->counts[VXM_PASS_OPPOSITE_DUPLICATES] +
+         state->counts[VXM_PASS_TOLERANT_WELD];
 }
 
 /**
@@ -50,13 +50,13 @@ static int64_t count_round(const vxm_repair_state *work) {
  * the last change; as each change takes away vertices or corners, this ends. Cracks are looked for last:
  * doubled faces hide them, and faces without area may bridge them.
  */
-static vxm_status run_until_quiet(vxm_repair_state *work, vxm_error *error) {
+static vxm_status run_until_quiet(vxm_repair_state *state, vxm_error *error) {
   /* a given tolerance applies to the mesh as it is */
-  int next = work->options.weld == VXM_WELD_TOLERANCE ? PASSES - 1 : 0, quiet = 0;
+  int next = state->options.weld == VXM_WELD_TOLERANCE ? PASSES - 1 : 0, quiet = 0;
   double fraction = 0.3;
   while (quiet < PASSES) {
     bool changed;
-    vxm_status status = run_pass(work, round_passes[next], fraction, &changed, error);
+    vxm_status status = run_pass(state, round_passes[next], fraction, &changed, error);
     if (status != VXM_OK)
       return status;
     /* welding may leave work to itself: a vertex that is no longer in the way lets others merge */
@@ -69,60 +69,60 @@ static vxm_status run_until_quiet(vxm_repair_state *work, vxm_error *error) {
 }
 
 /** The passes that make work for each other, once more; `changed`: they had some. */
-static vxm_status settle_again(vxm_repair_state *work, bool *changed, vxm_error *error) {
-  int64_t before = count_round(work);
+static vxm_status settle_again(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  int64_t before = count_round(state);
   bool turned;
-  vxm_status status = work->track ? vxm_provenance_start(work->track, work->soup, error) : VXM_OK;
+  vxm_status status = state->track ? vxm_provenance_start(state->track, state->soup, error) : VXM_OK;
   if (status == VXM_OK)
-    status = run_until_quiet(work, error);
-  *changed = status == VXM_OK && count_round(work) > before;
+    status = run_until_quiet(state, error);
+  *changed = status == VXM_OK && count_round(state) > before;
   if (!*changed)
     return status;
-  if (work->track)
-    status = vxm_provenance_settle(work->track, work->soup, error);
-  return status == VXM_OK ? vxm_pass_orientation(work, &turned, error) : status;
+  if (state->track)
+    status = vxm_provenance_settle(state->track, state->soup, error);
+  return status == VXM_OK ? vxm_pass_orientation(state, &turned, error) : status;
 }
 
 /** Separation, and what else it makes room for: where faces were cut apart others may come together. */
-static vxm_status separate_until_quiet(vxm_repair_state *work, bool *changed, vxm_error *error) {
+static vxm_status separate_until_quiet(vxm_repair_state *state, bool *changed, vxm_error *error) {
   bool more = true;
   vxm_status status = VXM_OK;
   *changed = false;
   for (int round = 0; round < ROUNDS_MAX && more && status == VXM_OK; round++) {
     bool turned;
-    status = vxm_pass_separation(work, &more, error);
+    status = vxm_pass_separation(state, &more, error);
     if (status != VXM_OK || !more)
       break;
     *changed = true;
-    status = vxm_pass_orientation(work, &turned, error);
+    status = vxm_pass_orientation(state, &turned, error);
     if (status == VXM_OK)
-      status = settle_again(work, &more, error);
+      status = settle_again(state, &more, error);
   }
   return status;
 }
 
-static vxm_status move_apart(vxm_repair_state *work, bool *changed, vxm_error *error) {
-  vxm_status status = work->track ? vxm_provenance_start(work->track, work->soup, error) : VXM_OK;
+static vxm_status move_apart(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  vxm_status status = state->track ? vxm_provenance_start(state->track, state->soup, error) : VXM_OK;
   if (status == VXM_OK)
-    status = vxm_pass_apart(work, changed, error);
-  if (status == VXM_OK && work->track)
-    status = vxm_provenance_settle(work->track, work->soup, error);
+    status = vxm_pass_apart(state, changed, error);
+  if (status == VXM_OK && state->track)
+    status = vxm_provenance_settle(state->track, state->soup, error);
   return status;
 }
 
 /** The union. Where it touches itself it has vertices of their own for each sheet, which vertices at one
  * position are only from VXM_LEVEL_MANIFOLD on. */
-static vxm_status unite(vxm_repair_state *work, bool *changed, vxm_error *error) {
+static vxm_status unite(vxm_repair_state *state, bool *changed, vxm_error *error) {
   bool welded = false, more;
-  vxm_status status = vxm_pass_union(work, changed, error);
-  if (status == VXM_OK && *changed && !vxm_repair_state_reaches(work, VXM_LEVEL_MANIFOLD))
-    status = vxm_pass_exact_weld(work, &welded, error);
-  return status == VXM_OK && welded ? settle_again(work, &more, error) : status;
+  vxm_status status = vxm_pass_union(state, changed, error);
+  if (status == VXM_OK && *changed && !vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD))
+    status = vxm_pass_exact_weld(state, &welded, error);
+  return status == VXM_OK && welded ? settle_again(state, &more, error) : status;
 }
 
 /** The passes that a level or an option asks for; each does nothing where none does. `moved`: vertices were
  * moved apart. */
-static vxm_status run_level(vxm_repair_state *work, bool *moved, vxm_error *error) {
+static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *error) {
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
@@ -140,98 +140,98 @@ static vxm_status run_level(vxm_repair_state *work, bool *moved, vxm_error *erro
   *moved = false;
   for (int i = 0; i < FURTHER && status == VXM_OK; i++) {
     bool changed = false, turned;
-    status = run_pass(work, further[i].pass, 0.9 + 0.1 * i / FURTHER, &changed, error);
+    status = run_pass(state, further[i].pass, 0.9 + 0.1 * i / FURTHER, &changed, error);
     *moved = *moved || (changed && further[i].pass == move_apart);
     if (status == VXM_OK && changed && further[i].turns)
-      status = run_pass(work, vxm_pass_orientation, 0.9 + 0.1 * i / FURTHER, &turned, error);
+      status = run_pass(state, vxm_pass_orientation, 0.9 + 0.1 * i / FURTHER, &turned, error);
   }
   return status;
 }
 
 /** What was moved apart may let vertices merge that were not to before, which opens nothing but takes
  * vertices away. */
-static vxm_status run_further(vxm_repair_state *work, vxm_error *error) {
+static vxm_status run_further(vxm_repair_state *state, vxm_error *error) {
   bool changed, again = true;
-  vxm_status status = vxm_pass_unused(work, &changed, error);
+  vxm_status status = vxm_pass_unused(state, &changed, error);
   if (status == VXM_OK)
-    status = run_pass(work, vxm_pass_wrap, 0.9, &changed, error);
+    status = run_pass(state, vxm_pass_wrap, 0.9, &changed, error);
   for (int round = 0; round < ROUNDS_MAX && again && status == VXM_OK; round++) {
-    status = run_level(work, &again, error);
+    status = run_level(state, &again, error);
     if (status == VXM_OK && again)
-      status = settle_again(work, &again, error);
+      status = settle_again(state, &again, error);
   }
-  return status == VXM_OK ? vxm_pass_unused(work, &changed, error) : status;
+  return status == VXM_OK ? vxm_pass_unused(state, &changed, error) : status;
 }
 
 /** What comes once: for .stl, polygons are cleaned before they become triangles and are rounded. */
-static vxm_status run_first(vxm_repair_state *work, vxm_error *error) {
+static vxm_status run_first(vxm_repair_state *state, vxm_error *error) {
   static const vxm_pass_fn first[] = {vxm_pass_nonfinite,  vxm_pass_exact_weld, vxm_pass_repeated_corners,
                                       vxm_pass_duplicates, vxm_pass_rounding,   vxm_pass_exact_weld};
   enum { FIRST = sizeof first / sizeof *first, PLAIN = 2 };
   vxm_status status = VXM_OK;
-  int passes = work->options.single_precision ? FIRST : PLAIN;
+  int passes = state->options.single_precision ? FIRST : PLAIN;
   for (int i = 0; i < passes && status == VXM_OK; i++) {
     bool changed;
-    status = run_pass(work, first[i], 0.25 * i / passes, &changed, error);
+    status = run_pass(state, first[i], 0.25 * i / passes, &changed, error);
   }
   return status;
 }
 
 /** Faces that run the other way in the end than when they came in. */
-static void count_turned(vxm_repair_state *work) {
-  for (size_t f = 0; f < work->soup->face_count && work->turned; f++) {
-    if (work->turned[f] != VXM_TURNED)
+static void count_turned(vxm_repair_state *state) {
+  for (size_t f = 0; f < state->soup->face_count && state->turned; f++) {
+    if (state->turned[f] != VXM_TURNED)
       continue;
-    vxm_repair_state_note_face(work, VXM_PASS_ORIENTATION, f);
-    work->counts[VXM_PASS_ORIENTATION]++;
-    if (work->track && work->soup->face_parts)
-      vxm_provenance_turn(work->track, work->soup->face_parts[f]);
+    vxm_repair_state_note_face(state, VXM_PASS_ORIENTATION, f);
+    state->counts[VXM_PASS_ORIENTATION]++;
+    if (state->track && state->soup->face_parts)
+      vxm_provenance_turn(state->track, state->soup->face_parts[f]);
   }
 }
 
 /** Whether passes that came so far have taken away faces, or may have made some meet. */
-static bool has_removed(const vxm_repair_state *work) {
-  return count_round(work) > 0 || work->counts[VXM_PASS_NONFINITE] > 0;
+static bool has_removed(const vxm_repair_state *state) {
+  return count_round(state) > 0 || state->counts[VXM_PASS_NONFINITE] > 0;
 }
 
 /** Looks whether a part is lost; *again: then the repair is to begin anew, with more care. */
-static vxm_status look_for_lost(vxm_repair_state *work, const vxm_soup *in, bool *again, vxm_error *error) {
+static vxm_status look_for_lost(vxm_repair_state *state, const vxm_soup *in, bool *again, vxm_error *error) {
   *again = false;
-  if (!has_removed(work))
+  if (!has_removed(state))
     return VXM_OK;
   vxm_lost_parts lost;
-  vxm_status status = vxm_lost_parts_find(&lost, in, work->soup, error);
-  if (status == VXM_OK && lost.count > 0 && !work->guards) {
-    work->lost = lost;
+  vxm_status status = vxm_lost_parts_find(&lost, in, state->soup, error);
+  if (status == VXM_OK && lost.count > 0 && !state->guards) {
+    state->lost = lost;
     *again = true;
     return VXM_OK;
   }
-  work->lost_parts = status == VXM_OK ? (int64_t)lost.count : 0;
-  vxm_lost_parts_free(&lost, work->context);
+  state->lost_parts = status == VXM_OK ? (int64_t)lost.count : 0;
+  vxm_lost_parts_free(&lost, state->context);
   return status;
 }
 
-static vxm_status run_passes(vxm_repair_state *work, const vxm_soup *in, bool *again, vxm_error *error) {
+static vxm_status run_passes(vxm_repair_state *state, const vxm_soup *in, bool *again, vxm_error *error) {
   bool changed;
-  vxm_status status = run_first(work, error);
+  vxm_status status = run_first(state, error);
   if (status == VXM_OK)
-    status = run_until_quiet(work, error);
+    status = run_until_quiet(state, error);
   if (status == VXM_OK)
-    status = run_pass(work, vxm_pass_orientation, 0.85, &changed, error);
+    status = run_pass(state, vxm_pass_orientation, 0.85, &changed, error);
   if (status == VXM_OK)
-    status = look_for_lost(work, in, again, error);
+    status = look_for_lost(state, in, again, error);
   if (status != VXM_OK || *again)
     return status;
-  if (work->track && work->options.max_change > 0)
-    status = vxm_provenance_refer(work->track, work->soup, error);
-  if (status == VXM_OK && work->track)
-    status = vxm_provenance_settle(work->track, work->soup, error);
+  if (state->track && state->options.max_change > 0)
+    status = vxm_provenance_refer(state->track, state->soup, error);
+  if (status == VXM_OK && state->track)
+    status = vxm_provenance_settle(state->track, state->soup, error);
   if (status == VXM_OK)
-    status = run_further(work, error);
-  if (status == VXM_OK && work->divides)
-    status = vxm_pass_bodies(work, &changed, error);
+    status = run_further(state, error);
+  if (status == VXM_OK && state->divides)
+    status = vxm_pass_bodies(state, &changed, error);
   if (status == VXM_OK)
-    count_turned(work);
+    count_turned(state);
   return status;
 }
 
@@ -240,93 +240,93 @@ static bool keeps_account(const vxm_repair_options *options) {
 }
 
 /** Gives the faces of the copy their parts where nothing else does. */
-static vxm_status name_guarded(vxm_repair_state *work, const vxm_soup *in, vxm_error *error) {
+static vxm_status name_guarded(vxm_repair_state *state, const vxm_soup *in, vxm_error *error) {
   vxm_status status = VXM_OK;
-  if (!work->guards || work->track)
+  if (!state->guards || state->track)
     return status;
-  work->soup->face_parts =
-      vxm_repair_state_scratch(work, in->face_count, sizeof *work->soup->face_parts, &status, error);
+  state->soup->face_parts =
+      vxm_repair_state_scratch(state, in->face_count, sizeof *state->soup->face_parts, &status, error);
   for (size_t f = 0; status == VXM_OK && f < in->face_count; f++)
-    work->soup->face_parts[f] = work->lost.face_part[f];
+    state->soup->face_parts[f] = state->lost.face_part[f];
   return status;
 }
 
-static vxm_status repair_copy(vxm_repair_state *work, const vxm_soup *in, bool *again, vxm_error *error) {
+static vxm_status repair_copy(vxm_repair_state *state, const vxm_soup *in, bool *again, vxm_error *error) {
   vxm_status status = VXM_OK;
-  size_t vertices = work->soup->vertex_count;
-  work->gone = vxm_repair_state_scratch(work, vertices, sizeof *work->gone, &status, error);
-  if (work->gone)
-    work->used = vxm_repair_state_scratch(work, vertices, sizeof *work->used, &status, error);
-  if (work->used && keeps_account(&work->options))
-    status = vxm_provenance_create(&work->track, work->soup, in, error);
-  if (work->used && status == VXM_OK)
-    status = name_guarded(work, in, error);
-  if (work->used && status == VXM_OK)
-    status = run_passes(work, in, again, error);
-  if (status == VXM_OK && !*again && work->track)
-    status = vxm_provenance_finish(work->track, work->soup, work->options.max_change, error);
-  if (status == VXM_OK && !*again && work->options.intersections)
-    status = vxm_provenance_count_crossings(work->track, work->soup, work->crossings, error);
-  if (!work->track && work->soup->face_parts) { /* they were for the guard alone */
-    vxm_free(work->context, work->soup->face_parts);
-    work->soup->face_parts = NULL;
+  size_t vertices = state->soup->vertex_count;
+  state->gone = vxm_repair_state_scratch(state, vertices, sizeof *state->gone, &status, error);
+  if (state->gone)
+    state->used = vxm_repair_state_scratch(state, vertices, sizeof *state->used, &status, error);
+  if (state->used && keeps_account(&state->options))
+    status = vxm_provenance_create(&state->track, state->soup, in, error);
+  if (state->used && status == VXM_OK)
+    status = name_guarded(state, in, error);
+  if (state->used && status == VXM_OK)
+    status = run_passes(state, in, again, error);
+  if (status == VXM_OK && !*again && state->track)
+    status = vxm_provenance_finish(state->track, state->soup, state->options.max_change, error);
+  if (status == VXM_OK && !*again && state->options.intersections)
+    status = vxm_provenance_count_crossings(state->track, state->soup, state->crossings, error);
+  if (!state->track && state->soup->face_parts) { /* they were for the guard alone */
+    vxm_free(state->context, state->soup->face_parts);
+    state->soup->face_parts = NULL;
   }
-  vxm_repair_state_touch(work);
-  vxm_provenance_destroy(work->track);
-  vxm_free(work->context, work->turned);
-  vxm_free(work->context, work->used);
-  vxm_free(work->context, work->gone);
+  vxm_repair_state_touch(state);
+  vxm_provenance_destroy(state->track);
+  vxm_free(state->context, state->turned);
+  vxm_free(state->context, state->used);
+  vxm_free(state->context, state->gone);
   return status;
 }
 
-static void list_passes(vxm_repair_report *report, const vxm_repair_state *work) {
-  report->nonorientable_patches = work->nonorientable;
-  report->open_parts = work->open_parts;
-  report->unfilled_holes = work->unfilled;
-  report->fan_fallbacks = work->fanned;
-  report->union_failures = work->ununited;
-  report->self_intersections_before = work->crossings[0];
-  report->self_intersections_after = work->crossings[1];
-  report->unparted_vertices = work->together;
-  report->lost_parts = work->lost_parts;
-  report->shared_faces = work->options.level == VXM_LEVEL_CLEAN ? work->shared : 0;
-  for (size_t i = 0; i < work->soup->part_count; i++) {
-    const vxm_part_change *part = &work->soup->part_changes[i];
+static void list_passes(vxm_repair_report *report, const vxm_repair_state *state) {
+  report->nonorientable_patches = state->nonorientable;
+  report->open_parts = state->open_parts;
+  report->unfilled_holes = state->unfilled;
+  report->fan_fallbacks = state->fanned;
+  report->union_failures = state->ununited;
+  report->self_intersections_before = state->crossings[0];
+  report->self_intersections_after = state->crossings[1];
+  report->unparted_vertices = state->together;
+  report->lost_parts = state->lost_parts;
+  report->shared_faces = state->options.level == VXM_LEVEL_CLEAN ? state->shared : 0;
+  for (size_t i = 0; i < state->soup->part_count; i++) {
+    const vxm_part_change *part = &state->soup->part_changes[i];
     report->max_displacement = fmax(report->max_displacement, part->max_displacement);
     report->opened_parts += part->before->closed && part->after->faces > 0 && !part->after->closed;
   }
   report->pass_count = VXM_PASS_COUNT;
   for (int pass = 0; pass < VXM_PASS_COUNT; pass++) {
     report->passes[pass].pass = names[pass];
-    report->passes[pass].count = work->counts[pass];
+    report->passes[pass].count = state->counts[pass];
   }
 }
 
 /** Repairs a copy; after a failure there is none. Where that would lose a part it is done once more, with
  * that one guarded. */
-static vxm_status repair(vxm_repair_state *work, const vxm_soup *in, const vxm_repair_options *options,
+static vxm_status repair(vxm_repair_state *state, const vxm_soup *in, const vxm_repair_options *options,
                          vxm_error *error) {
-  const bool divides = work->divides;
+  const bool divides = state->divides;
   bool again = false;
   vxm_lost_parts lost = {0};
   vxm_status status;
   do {
-    *work = (vxm_repair_state){
+    *state = (vxm_repair_state){
         .context = in->context, .divides = divides, .guards = again, .lost = lost, .crossings = {-1, -1}};
     again = false;
-    status = vxm_repair_check(&work->options, options, error);
+    status = vxm_repair_check(&state->options, options, error);
     if (status == VXM_OK)
-      status = vxm_soup_copy(&work->soup, in, error);
+      status = vxm_soup_copy(&state->soup, in, error);
     if (status == VXM_OK)
-      status = repair_copy(work, in, &again, error);
-    lost = work->lost;
+      status = repair_copy(state, in, &again, error);
+    lost = state->lost;
     if (status != VXM_OK || again)
-      vxm_soup_destroy(work->soup);
+      vxm_soup_destroy(state->soup);
   } while (status == VXM_OK && again);
   vxm_lost_parts_free(&lost, in->context);
-  work->lost = lost;
+  state->lost = lost;
   if (status != VXM_OK)
-    work->soup = NULL;
+    state->soup = NULL;
   return status;
 }
 
@@ -335,19 +335,19 @@ static vxm_status run(vxm_soup **out, vxm_repair_report *report, const vxm_soup 
                       const vxm_repair_options *options, bool divides, int64_t *shared, vxm_error *error) {
   *out = NULL;
   vxm_repair_report made = {.before = report ? report->before : NULL, .after = report ? report->after : NULL};
-  vxm_repair_state work = {.divides = divides};
+  vxm_repair_state state = {.divides = divides};
   vxm_status status = made.before ? vxm_soup_census(made.before, in, error) : VXM_OK;
   if (status == VXM_OK)
-    status = repair(&work, in, options, error);
+    status = repair(&state, in, options, error);
   if (status == VXM_OK && made.after)
-    status = vxm_soup_census(made.after, work.soup, error);
+    status = vxm_soup_census(made.after, state.soup, error);
   if (status == VXM_OK)
-    list_passes(&made, &work);
+    list_passes(&made, &state);
   else
-    vxm_soup_destroy(work.soup);
+    vxm_soup_destroy(state.soup);
   if (report)
     *report = status == VXM_OK ? made : (vxm_repair_report){.before = made.before, .after = made.after};
-  *out = status == VXM_OK ? work.soup : NULL;
+  *out = status == VXM_OK ? state.soup : NULL;
   *shared = made.shared_faces;
   return status;
 }
@@ -374,13 +374,13 @@ vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const v
 
 vxm_status vxm_repair_try(vxm_pass_finding findings[VXM_PASS_COUNT], const vxm_soup *in,
                           const vxm_repair_options *options, vxm_error *error) {
-  vxm_repair_state work = {0};
-  vxm_status status = repair(&work, in, options, error);
+  vxm_repair_state state = {0};
+  vxm_status status = repair(&state, in, options, error);
   for (int pass = 0; pass < VXM_PASS_COUNT && status == VXM_OK; pass++) {
-    findings[pass] = work.firsts[pass];
+    findings[pass] = state.firsts[pass];
     findings[pass].pass = names[pass];
-    findings[pass].count = work.counts[pass];
+    findings[pass].count = state.counts[pass];
   }
-  vxm_soup_destroy(work.soup);
+  vxm_soup_destroy(state.soup);
   return status;
 }

@@ -12,7 +12,7 @@
 typedef struct verifying {
   vxm_verification *out;
   const vxm_repair_options *options;
-  vxm_repair_state work; /**< the mesh after welding, its faces and vertices numbered as they were */
+  vxm_repair_state state; /**< the mesh after welding, its faces and vertices numbered as they were */
 } verifying;
 
 static void add(verifying *v, const char *what, int64_t count, int64_t element, const double *at) {
@@ -73,8 +73,8 @@ static int64_t face_at(const size_t *sides, const vxm_soup *soup, size_t edge) {
 static void add_edges(verifying *v, const char *what, int64_t count, size_t first, const size_t *sides) {
   if (count == 0)
     return;
-  const vxm_soup *soup = v->work.soup;
-  const vxm_edge *edge = &v->work.edges.edges[first];
+  const vxm_soup *soup = v->state.soup;
+  const vxm_edge *edge = &v->state.edges.edges[first];
   const double *a = vxm_position(soup, edge->a), *b = vxm_position(soup, edge->b);
   double middle[3] = {a[0] / 2 + b[0] / 2, a[1] / 2 + b[1] / 2, a[2] / 2 + b[2] / 2};
   add(v, what, count, face_at(sides, soup, first), middle);
@@ -85,8 +85,8 @@ static void verify_edges(verifying *v, const size_t *sides) {
   static const char *const names[KINDS] = {"boundary_edges", "nonmanifold_edges", "inconsistent_edges"};
   int64_t counts[KINDS] = {0};
   size_t first[KINDS] = {0};
-  for (size_t e = v->work.edges.count; e-- > 0;) {
-    const vxm_edge *edge = &v->work.edges.edges[e];
+  for (size_t e = v->state.edges.count; e-- > 0;) {
+    const vxm_edge *edge = &v->state.edges.edges[e];
     int kind = edge->count == 1                         ? BOUNDARY
                : edge->count > 2                        ? NONMANIFOLD
                : edge->count == 2 && edge->forward != 1 ? INCONSISTENT
@@ -103,27 +103,27 @@ static void verify_edges(verifying *v, const size_t *sides) {
 
 static vxm_status verify_vertices(verifying *v, vxm_error *error) {
   uint8_t *fans;
-  vxm_status status = vxm_vertex_fans_count(&fans, &v->work, error);
+  vxm_status status = vxm_vertex_fans_count(&fans, &v->state, error);
   if (status != VXM_OK)
     return status;
   int64_t count = 0, first = -1;
-  for (size_t i = v->work.soup->vertex_count; i-- > 0;)
+  for (size_t i = v->state.soup->vertex_count; i-- > 0;)
     if (fans[i] > 1) {
       count++;
       first = (int64_t)i;
     }
-  add(v, "nonmanifold_vertices", count, first, first < 0 ? NULL : vxm_position(v->work.soup, (size_t)first));
-  vxm_free(v->work.context, fans);
+  add(v, "nonmanifold_vertices", count, first, first < 0 ? NULL : vxm_position(v->state.soup, (size_t)first));
+  vxm_free(v->state.context, fans);
   return VXM_OK;
 }
 
 static vxm_status verify_manifold(verifying *v, vxm_error *error) {
   size_t *sides;
-  vxm_status status = vxm_halfedges_find(&sides, &v->work, error);
+  vxm_status status = vxm_halfedges_find(&sides, &v->state, error);
   if (status != VXM_OK)
     return status;
   verify_edges(v, sides);
-  vxm_free(v->work.context, sides);
+  vxm_free(v->state.context, sides);
   return verify_vertices(v, error);
 }
 
@@ -131,14 +131,14 @@ static vxm_status verify_manifold(verifying *v, vxm_error *error) {
 
 static void add_face(verifying *v, const char *what, int64_t count, size_t first) {
   size_t corners;
-  const uint32_t *corner = vxm_face(v->work.soup, first, &corners);
-  add(v, what, count, (int64_t)first, vxm_position(v->work.soup, corner[0]));
+  const uint32_t *corner = vxm_face(v->state.soup, first, &corners);
+  add(v, what, count, (int64_t)first, vxm_position(v->state.soup, corner[0]));
 }
 
 /** Faces that look into the solid: what is outward and what bounds a cavity follows from where the parts lie.
  */
 static vxm_status verify_outward(verifying *v, vxm_error *error) {
-  const vxm_soup *soup = v->work.soup;
+  const vxm_soup *soup = v->state.soup;
   const vxm_cgal *cgal;
   vxm_soup *turned = NULL;
   int64_t count = 0;
@@ -157,23 +157,23 @@ static vxm_status verify_outward(verifying *v, vxm_error *error) {
 
 static vxm_status verify_solid(verifying *v, vxm_error *error) {
   vxm_face_pairs pairs;
-  vxm_status status = vxm_self_intersections_find(&pairs, v->work.soup, VXM_CROSSINGS_MOST, error);
+  vxm_status status = vxm_self_intersections_find(&pairs, v->state.soup, VXM_CROSSINGS_MOST, error);
   if (status == VXM_OK && pairs.count > 0)
     add_face(v, "self_intersections", (int64_t)pairs.count, pairs.pairs[0].first);
-  vxm_free(v->work.context, pairs.pairs);
+  vxm_free(v->state.context, pairs.pairs);
   return status == VXM_OK && v->out->reached ? verify_outward(v, error) : status;
 }
 
 /** A copy that a program makes which welds: positions that are the same are one vertex, the first one. */
 static vxm_status weld(verifying *v, const vxm_soup *soup, vxm_error *error) {
-  vxm_status status = vxm_soup_copy(&v->work.soup, soup, error);
+  vxm_status status = vxm_soup_copy(&v->state.soup, soup, error);
   if (status != VXM_OK)
     return status;
-  uint32_t *map = vxm_repair_state_scratch(&v->work, soup->vertex_count, sizeof *map, &status, error);
+  uint32_t *map = vxm_repair_state_scratch(&v->state, soup->vertex_count, sizeof *map, &status, error);
   if (status == VXM_OK)
     status = vxm_weld_exact(soup->context, soup->positions, soup->vertex_count, map, NULL, error);
   for (size_t c = 0; c < soup->corner_count && status == VXM_OK; c++)
-    v->work.soup->indices[c] = map[soup->indices[c]];
+    v->state.soup->indices[c] = map[soup->indices[c]];
   vxm_free(soup->context, map);
   return status;
 }
@@ -191,7 +191,7 @@ static vxm_status verify_level(verifying *v, const vxm_soup *soup, vxm_error *er
 vxm_status vxm_verify(vxm_verification *out, const vxm_soup *soup, const vxm_repair_options *options,
                       vxm_error *error) {
   *out = (vxm_verification){.reached = true};
-  verifying v = {.out = out, .options = options, .work = {.context = soup->context, .options = *options}};
+  verifying v = {.out = out, .options = options, .state = {.context = soup->context, .options = *options}};
   vxm_status status = VXM_OK;
   if (soup->face_count == 0)
     add(&v, "no_faces", 1, -1, NULL);
@@ -199,8 +199,8 @@ vxm_status vxm_verify(vxm_verification *out, const vxm_soup *soup, const vxm_rep
     status = verify_level(&v, soup, error);
   if (status == VXM_OK)
     status = verify_rest(&v, soup, error);
-  vxm_repair_state_touch(&v.work);
-  vxm_soup_destroy(v.work.soup);
+  vxm_repair_state_touch(&v.state);
+  vxm_soup_destroy(v.state.soup);
   if (status != VXM_OK)
     *out = (vxm_verification){0};
   return status;

@@ -12,7 +12,7 @@
 #include "base/context.h"
 #include "sandbox/confine.h"
 #include "sandbox/memory_name.h"
-#include "sandbox/sandbox.h"
+#include "sandbox/reader_process.h"
 #include "sandbox/wire_format.h"
 
 enum { CHANNEL = STDIN_FILENO, WRONG_CALL = 2, GONE = 1 };

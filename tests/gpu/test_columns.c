@@ -89,7 +89,7 @@ static void test_ties(void **state) {
   }
 }
 
-/** A fine surface, whose facets are done by the compute shader, and large ones, which are drawn. */
+/** A fine surface, whose triangles are done by the compute shader, and large ones, which are drawn. */
 static void test_sizes(void **state) {
   (void)state;
   for (int64_t n = 32; n <= 128; n *= 2) {
@@ -102,7 +102,7 @@ static void test_sizes(void **state) {
   }
 }
 
-/** Points beyond the numbers of the shaders: the CPU tells what their facets flip. */
+/** Points beyond the numbers of the shaders: the CPU tells what their triangles flip. */
 static void test_far(void **state) {
   (void)state;
   vxm_rng rng = {9};

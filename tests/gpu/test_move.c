@@ -10,7 +10,7 @@ enum { RESOLUTION = 48, SHIFT = 6, NOISE = 300 };
 
 typedef struct scene {
   vxm_model *model;
-  const vxm_triangle_set *facets;
+  const vxm_triangle_set *triangles;
   vxm_lattice lattice;
   uint32_t *entry;
   float noise[NOISE][4];
@@ -30,10 +30,10 @@ static void start(scene *s, const vxm_soup *soup, int64_t resolution, vxm_rng *r
   double size = 1.0 / (double)resolution;
   vxm_space space = {{resolution, resolution, resolution}, {0, 0, 0}, {size, size, size}};
   s->lattice = vxm_lattice_of(&space);
-  s->facets = &s->model->analysis.facets;
-  s->entry = malloc(s->facets->first_apex * sizeof *s->entry);
+  s->triangles = &s->model->analysis.triangles;
+  s->entry = malloc(s->triangles->first_apex * sizeof *s->entry);
   assert_non_null(s->entry);
-  for (size_t p = 0; p < s->facets->first_apex; p++)
+  for (size_t p = 0; p < s->triangles->first_apex; p++)
     s->entry[p] = (uint32_t)vxm_rng_below(rng, NOISE);
   for (size_t v = 0; v < NOISE; v++)
     for (int a = 0; a < 3; a++)
@@ -48,28 +48,28 @@ static void stop(scene *s) {
 /** Whether the engine moves them; then all it made must be what the CPU makes. */
 static bool moves_alike(scene *s, uint32_t offset, uint64_t noise_serial, bool displaced, bool apexes) {
   vxm_snapped_points by[2] = {{.context = context}, {.context = context}};
-  const vxm_triangle_set *facets = s->facets;
-  vxm_vertex_transform motion = {.from = (const double(*)[3])facets->positions,
-                                 .count = facets->first_apex,
+  const vxm_triangle_set *triangles = s->triangles;
+  vxm_vertex_transform motion = {.from = (const double(*)[3])triangles->positions,
+                                 .count = triangles->first_apex,
                                  .matrix = s->matrix,
                                  .entry = displaced ? s->entry : NULL,
                                  .noise = (const float(*)[4])s->noise,
                                  .noise_size = NOISE,
                                  .offset = offset,
-                                 .from_serial = facets->serial * 2 + displaced,
+                                 .from_serial = triangles->serial * 2 + displaced,
                                  .noise_serial = noise_serial};
-  vxm_move_job job = {facets, &motion, apexes};
+  vxm_move_job job = {triangles, &motion, apexes};
   vxm_error error = VXM_ERROR_INIT;
   bool done = false;
-  vxm_status status = vxm_snapped_points_move(&by[0], facets, &s->lattice, &motion, apexes, &error);
-  assert_int_equal(vxm_snapped_points_begin(&by[1], facets, &s->lattice, &motion, NULL), VXM_OK);
+  vxm_status status = vxm_snapped_points_move(&by[0], triangles, &s->lattice, &motion, apexes, &error);
+  assert_int_equal(vxm_snapped_points_begin(&by[1], triangles, &s->lattice, &motion, NULL), VXM_OK);
   if (engine->ops->move(engine, &by[1], &job, &done, &error) != VXM_OK)
     fail_msg("%s", error.text);
   if (done) {
     assert_int_equal(status, VXM_OK);
     assert_null(by[0].wide);
-    assert_memory_equal(by[0].narrow, by[1].narrow, facets->point_count * sizeof *by[0].narrow);
-    assert_memory_equal(by[0].cells, by[1].cells, facets->point_count * sizeof *by[0].cells);
+    assert_memory_equal(by[0].narrow, by[1].narrow, triangles->point_count * sizeof *by[0].narrow);
+    assert_memory_equal(by[0].cells, by[1].cells, triangles->point_count * sizeof *by[0].cells);
   } else
     assert_true(status != VXM_OK || by[0].wide);
   vxm_snapped_points_destroy(&by[0]);

@@ -39,11 +39,12 @@ static void check_sort(vxm_rng *rng, size_t count, int bits, uint64_t kinds) {
     places[i] = (uint32_t)i;
   }
   assert_int_equal(vxm_cl_upload(device(), VXM_CL_TILE_KEYS, keys, count * sizeof *keys, NULL), VXM_OK);
-  assert_int_equal(vxm_cl_upload(device(), VXM_CL_TILE_FACETS, places, count * sizeof *places, NULL), VXM_OK);
-  assert_int_equal(vxm_cl_sort(device(), VXM_CL_TILE_KEYS, VXM_CL_TILE_FACETS, count, bits, NULL), VXM_OK);
+  assert_int_equal(vxm_cl_upload(device(), VXM_CL_TILE_TRIANGLES, places, count * sizeof *places, NULL),
+                   VXM_OK);
+  assert_int_equal(vxm_cl_sort(device(), VXM_CL_TILE_KEYS, VXM_CL_TILE_TRIANGLES, count, bits, NULL), VXM_OK);
   assert_int_equal(vxm_cl_download(device(), VXM_CL_TILE_KEYS, 0, found, count * sizeof *found, NULL),
                    VXM_OK);
-  assert_int_equal(vxm_cl_download(device(), VXM_CL_TILE_FACETS, 0, places, count * sizeof *places, NULL),
+  assert_int_equal(vxm_cl_download(device(), VXM_CL_TILE_TRIANGLES, 0, places, count * sizeof *places, NULL),
                    VXM_OK);
   for (size_t i = 0; i < count; i++) {
     assert_true(found[i] == keys[places[i]]); /* a permutation: values are different, and none is lost */

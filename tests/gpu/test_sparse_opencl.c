@@ -169,7 +169,7 @@ static void test_ties(void **state) {
   }
 }
 
-/** Long and thin, with few cells across, of few large facets and of many small ones. */
+/** Long and thin, with few cells across, of few large triangles and of many small ones. */
 static void test_shapes(void **state) {
   (void)state;
   for (int axis = 0; axis < 3; axis++)

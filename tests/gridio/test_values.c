@@ -205,7 +205,7 @@ static void test_vdb(void **state) {
   vxm_rng rng = {93};
   vxm_context *context = context_with(2, 0, NULL, NULL);
   vxm_error error = VXM_ERROR_INIT;
-  if (vdb->slices->check(&space, "a.vdb", &error) == VXM_ERROR_UNAVAILABLE) {
+  if (vdb->writer->check(&space, "a.vdb", &error) == VXM_ERROR_UNAVAILABLE) {
     vxm_context_destroy(context);
     remove_folder(folder);
     skip();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "soups.h"
 
-#include "mesh/duplicates.h"
+#include "mesh/duplicate_faces.h"
 
 static uint32_t corner(const uint32_t *face, const uint32_t *map, size_t i) {
   return map ? map[face[i]] : face[i];

@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "base/open_beneath.h"
 #include "config.h"
-#include "sandbox/sandbox.h"
+#include "sandbox/reader_process.h"
 #include "sandbox/wire_format.h"
 
 static const vxm_module_need need = {"ill", "none", "reading .ill files"};
@@ -30,7 +30,7 @@ static vxm_status ask(vxm_soup **soup, vxm_context *context, const char *data, s
                                 .deflection = 0.125};
   *error = (vxm_error)VXM_ERROR_INIT;
   assert_int_equal(vxm_soup_create(soup, context, "ill", NULL), VXM_OK);
-  vxm_status status = vxm_sandbox_read(*soup, &need, &request, &references, error);
+  vxm_status status = vxm_reader_process_mesh(*soup, &need, &request, &references, error);
   assert_int_equal(status, status == VXM_OK ? VXM_OK : error->code);
   if (status == VXM_OK)
     check_invariants(*soup);
@@ -101,7 +101,8 @@ static void test_missing(void **state) {
   vxm_module_need other = {"nosuch", "libnosuch-dev", "reading .nosuch files"};
   vxm_reader_request request = {.name = "a", .hint = "nosuch"};
   assert_int_equal(vxm_soup_create(&soup, NULL, "", NULL), VXM_OK);
-  assert_int_equal(vxm_sandbox_read(soup, &other, &request, &references, &error), VXM_ERROR_UNAVAILABLE);
+  assert_int_equal(vxm_reader_process_mesh(soup, &other, &request, &references, &error),
+                   VXM_ERROR_UNAVAILABLE);
   assert_non_null(strstr(error.text, "reading .nosuch files needs voxmend's module \"nosuch\""));
   assert_non_null(strstr(error.text, "libnosuch-dev"));
   vxm_soup_destroy(soup);

@@ -154,7 +154,7 @@ static void test_lists(void **state) {
       assert_non_null(format);
       assert_int_equal(format->is_cad, l == 1);
       assert_null(vxm_external_format_refusal(word));
-      for (int e = 0; e < VXM_FOREIGN_EXTENSIONS && format->extensions[e]; e++)
+      for (int e = 0; e < VXM_EXTERNAL_EXTENSIONS && format->extensions[e]; e++)
         assert_non_null(strstr(lists[l], format->extensions[e]));
     }
   }

@@ -103,7 +103,7 @@ static inline bool stays_open(const vxm_soup *from, const uint8_t *taken,
   vxm_model *model;
   bool is_open = false;
   if (vxm_model_make(&model, soup, options, NULL) == VXM_OK) {
-    is_open = model->analysis.facets.split.kind_end[VXM_PART_CAPPED] == 0;
+    is_open = model->analysis.triangles.split.kind_end[VXM_PART_CAPPED] == 0;
     vxm_model_destroy(model);
   }
   vxm_soup_destroy(soup);

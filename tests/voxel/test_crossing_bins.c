@@ -263,32 +263,32 @@ static void test_parts_of_few_flips(void **state) {
 
 /** How many rounds a union takes under a limit. */
 static size_t rounds_of(const vxm_soup *soup, const vxm_space *space) {
-  vxm_triangle_set facets;
+  vxm_triangle_set triangles;
   vxm_split_rule rule = {VXM_SPLIT_MODE_GROUP, VXM_CAVITIES_AUTO, false};
-  assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
+  assert_int_equal(vxm_triangle_set_create(&triangles, soup, rule, NULL), VXM_OK);
   vxm_lattice lattice = vxm_lattice_of(space);
   vxm_snapped_points placed = {.context = soup->context};
-  assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
+  assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, NULL, false, NULL), VXM_OK);
   vxm_window window = vxm_window_of(space, (vxm_layout)VXM_LAYOUT_GRID, 0, space->dims[2]);
   vxm_columns columns = vxm_columns_of(&window, 0);
-  columns.facet_end = facets.facet_count;
+  columns.triangle_end = triangles.triangle_count;
   vxm_raster_schedule crossings = {.context = soup->context};
-  assert_int_equal(vxm_raster_schedule_plan(&crossings, &facets, &placed, &columns, 1, NULL), VXM_OK);
+  assert_int_equal(vxm_raster_schedule_plan(&crossings, &triangles, &placed, &columns, 1, NULL), VXM_OK);
   size_t rounds = crossings.round_count, at = 0;
-  /* The ranges are all facets in order, and rounds end between parts. */
+  /* The ranges are all triangles in order, and rounds end between parts. */
   for (size_t r = 0; r < crossings.range_count; r++) {
     assert_int_equal(crossings.ranges[r].begin, at);
     at = crossings.ranges[r].end;
   }
-  assert_int_equal(at, facets.facet_count);
+  assert_int_equal(at, triangles.triangle_count);
   for (size_t r = 0; r + 1 < rounds; r++) {
     size_t next = crossings.ranges[crossings.round_end[r]].begin;
-    assert_true(facets.part[next] != facets.part[next - 1]);
+    assert_true(triangles.part[next] != triangles.part[next - 1]);
   }
   assert_int_equal(crossings.round_end[rounds - 1], crossings.range_count);
   vxm_raster_schedule_destroy(&crossings);
   vxm_snapped_points_destroy(&placed);
-  vxm_triangle_set_destroy(&facets);
+  vxm_triangle_set_destroy(&triangles);
   return rounds;
 }
 
@@ -328,27 +328,27 @@ static void test_crossings_stay_below_their_bound(void **state) {
     vxm_space space = engine_space(20 + round, 33, 5 + round / 2);
     space.voxel_size[round % 3] = 0.6;
     vxm_soup *soup = random_soup(context, (uint64_t)round, round % SOUP_KINDS, &space);
-    vxm_triangle_set facets;
+    vxm_triangle_set triangles;
     vxm_split_rule rule = {VXM_SPLIT_MODE_GROUP, VXM_CAVITIES_AUTO, round % 2 != 0};
-    assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
+    assert_int_equal(vxm_triangle_set_create(&triangles, soup, rule, NULL), VXM_OK);
     double transform[12] = {0.7, -0.8, 0, 1, 0.9, 0.6, 0.1, 0, 0, -0.2, 1.3, 2};
     vxm_lattice lattice = vxm_lattice_of(&space);
     vxm_snapped_points placed = {.context = context};
     const double *matrix = round % 3 ? transform : NULL;
-    assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, matrix, true, NULL), VXM_OK);
+    assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, matrix, true, NULL), VXM_OK);
     vxm_window window = vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, 0, space.dims[2]);
-    double bound = vxm_raster_schedule_bound(facets.lengths, facets.facet_count, &space, matrix);
+    double bound = vxm_raster_schedule_bound(triangles.lengths, triangles.triangle_count, &space, matrix);
     for (int axis = 0; axis < 3; axis++) {
       vxm_columns columns = vxm_columns_of(&window, axis);
-      columns.roles = VXM_FACET_TRIANGLE | VXM_FACET_CAP;
-      columns.facet_end = facets.facet_count;
+      columns.roles = VXM_ROLE_FACE | VXM_ROLE_CAP;
+      columns.triangle_end = triangles.triangle_count;
       columns.slab_shift = 20;
       vxm_crossing_bins bins = {.context = context};
       size_t words = window.slice_words * (size_t)space.dims[2] + (64 << 20);
       assert_int_equal(vxm_crossing_bins_reset(&bins, 1, 1, 1, words, NULL), VXM_OK);
       vxm_raster_task task = {.placed = &placed,
-                              .facets = &facets,
-                              .end = facets.facet_count,
+                              .triangles = &triangles,
+                              .end = triangles.triangle_count,
                               .columns = &columns,
                               .columns_count = 1,
                               .bins = &bins};
@@ -363,21 +363,21 @@ static void test_crossings_stay_below_their_bound(void **state) {
       vxm_crossing_bins_destroy(&bins);
     }
     vxm_snapped_points_destroy(&placed);
-    vxm_triangle_set_destroy(&facets);
+    vxm_triangle_set_destroy(&triangles);
     vxm_soup_destroy(soup);
   }
 }
 
-/** Puts what facets flip into words, straight or by way of bins. */
-static uint64_t *flipped(const vxm_snapped_points *placed, const vxm_triangle_set *facets,
+/** Puts what triangles flip into words, straight or by way of bins. */
+static uint64_t *flipped(const vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                          const vxm_columns *columns, size_t words, bool straight) {
   uint64_t *out = calloc(words, sizeof *out);
   assert_non_null(out);
   vxm_crossing_bins bins = {.context = context};
   assert_int_equal(vxm_crossing_bins_reset(&bins, 1, 1, 1, words, NULL), VXM_OK);
   vxm_raster_task task = {.placed = placed,
-                          .facets = facets,
-                          .end = facets->facet_count,
+                          .triangles = triangles,
+                          .end = triangles->triangle_count,
                           .columns = columns,
                           .columns_count = 1,
                           .bins = straight ? NULL : &bins,
@@ -412,26 +412,26 @@ static void test_words_get_what_bins_get(void **state) {
     }
     if (round % 8 == 7) /* coordinates of 64 bits */
       shape_random_octahedron(soup, &rng, -40000000, 40000000);
-    vxm_triangle_set facets;
+    vxm_triangle_set triangles;
     assert_int_equal(
-        vxm_triangle_set_create(&facets, soup, (vxm_split_rule){.split_mode = VXM_SPLIT_MODE_WHOLE}, NULL),
+        vxm_triangle_set_create(&triangles, soup, (vxm_split_rule){.split_mode = VXM_SPLIT_MODE_WHOLE}, NULL),
         VXM_OK);
     vxm_lattice lattice = vxm_lattice_of(&space);
     vxm_snapped_points placed = {.context = context};
-    assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
+    assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, NULL, false, NULL), VXM_OK);
     vxm_window window =
         vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, round % 3, space.dims[2] - round % 5);
     size_t words = window.slice_words * (size_t)(window.end - window.begin);
     for (int axis = 0; axis < 2; axis++) { /* those with slabs along v */
       vxm_columns columns = vxm_columns_of(&window, axis);
-      columns.roles = VXM_FACET_TRIANGLE | VXM_FACETS_ALL;
-      columns.facet_end = facets.facet_count;
+      columns.roles = VXM_ROLE_FACE | VXM_ROLES_ALL;
+      columns.triangle_end = triangles.triangle_count;
       columns.slab_shift = 62;
       columns.keep_before = round % 2 == 0;
       for (size_t b = 0; b < count; b++) {
         vxm_kernels_force(builds[b]);
-        uint64_t *expected = flipped(&placed, &facets, &columns, words, false);
-        uint64_t *found = flipped(&placed, &facets, &columns, words, true);
+        uint64_t *expected = flipped(&placed, &triangles, &columns, words, false);
+        uint64_t *found = flipped(&placed, &triangles, &columns, words, true);
         assert_memory_equal(expected, found, words * sizeof *found);
         free(expected);
         free(found);
@@ -439,7 +439,7 @@ static void test_words_get_what_bins_get(void **state) {
       vxm_kernels_force(NULL);
     }
     vxm_snapped_points_destroy(&placed);
-    vxm_triangle_set_destroy(&facets);
+    vxm_triangle_set_destroy(&triangles);
     vxm_soup_destroy(soup);
   }
 }

@@ -73,21 +73,21 @@ static void test_triangles_and_caps_are_closed(void **state) {
     }
     vxm_space space = {{7, 7, 7}, {0, 0, 0}, {1, 1, 1}};
     vxm_lattice lattice = vxm_lattice_of(&space);
-    vxm_triangle_set facets;
+    vxm_triangle_set triangles;
     vxm_split_rule rule = {VXM_SPLIT_MODE_GROUP, VXM_CAVITIES_FILL, true};
     vxm_snapped_points placed = {.context = context};
     vxm_workspace workspace = vxm_workspace_of(context);
-    assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
-    assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, true, NULL), VXM_OK);
-    for (int closing = VXM_FACET_CAP; closing <= VXM_FACET_CONE; closing *= 2) {
+    assert_int_equal(vxm_triangle_set_create(&triangles, soup, rule, NULL), VXM_OK);
+    assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, NULL, true, NULL), VXM_OK);
+    for (int closing = VXM_ROLE_CAP; closing <= VXM_ROLE_CONE; closing *= 2) {
       vxm_grid *grids[3];
       for (int axis = 0; axis < 3; axis++) {
         assert_int_equal(vxm_grid_create(&grids[axis], context, &space, NULL), VXM_OK);
-        vxm_parity_union_job job = {.facets = &facets,
+        vxm_parity_union_job job = {.triangles = &triangles,
                                     .placed = &placed,
                                     .axis = axis,
-                                    .part_end = facets.split.part_count,
-                                    .roles = VXM_FACET_TRIANGLE | (unsigned)closing,
+                                    .part_end = triangles.split.part_count,
+                                    .roles = VXM_ROLE_FACE | (unsigned)closing,
                                     .phase = "testing"};
         vxm_window window = vxm_window_of_grid(grids[axis]);
         assert_int_equal(vxm_parity_union(&workspace, &window, &job, NULL), VXM_OK);
@@ -100,7 +100,7 @@ static void test_triangles_and_caps_are_closed(void **state) {
     }
     vxm_workspace_destroy(&workspace);
     vxm_snapped_points_destroy(&placed);
-    vxm_triangle_set_destroy(&facets);
+    vxm_triangle_set_destroy(&triangles);
     vxm_soup_destroy(soup);
   }
 }
@@ -306,18 +306,19 @@ static void test_patches_are_turned_outward(void **state) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   vxm_grid *truth = voxelize(clean, options, NULL);
   vxm_lattice lattice = vxm_lattice_of(&cube64);
-  vxm_triangle_set facets;
+  vxm_triangle_set triangles;
   vxm_split_rule rule = {VXM_SPLIT_MODE_AUTO, VXM_CAVITIES_AUTO, true};
-  assert_int_equal(vxm_triangle_set_create(&facets, soup, rule, NULL), VXM_OK);
+  assert_int_equal(vxm_triangle_set_create(&triangles, soup, rule, NULL), VXM_OK);
   vxm_snapped_points placed = {.context = context};
-  assert_int_equal(vxm_snapped_points_set(&placed, &facets, &lattice, NULL, false, NULL), VXM_OK);
+  assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, NULL, false, NULL), VXM_OK);
   vxm_flip_mask turns;
   vxm_winding_mesh wound;
   const uint64_t *const voters[3] = {truth->words, truth->words, truth->words};
   assert_int_equal(
-      vxm_orient_patches_find(&turns, &facets, &placed, 0, facets.split.part_count, voters, NULL), VXM_OK);
+      vxm_orient_patches_find(&turns, &triangles, &placed, 0, triangles.split.part_count, voters, NULL),
+      VXM_OK);
   assert_int_equal(turns.patch_count, soup->face_count);
-  assert_int_equal(vxm_winding_mesh_create(&wound, &facets, &placed, &turns, false, NULL), VXM_OK);
+  assert_int_equal(vxm_winding_mesh_create(&wound, &triangles, &placed, &turns, false, NULL), VXM_OK);
   double volume = 0;
   for (size_t t = 0; t < turns.count; t++) {
     double(*c)[3] = wound.triangles[t].corner;
@@ -330,7 +331,7 @@ static void test_patches_are_turned_outward(void **state) {
   vxm_winding_mesh_destroy(&wound);
   vxm_flip_mask_destroy(&turns);
   vxm_snapped_points_destroy(&placed);
-  vxm_triangle_set_destroy(&facets);
+  vxm_triangle_set_destroy(&triangles);
   vxm_grid *grid = voxelize(soup, options, NULL);
   assert_true(iou(grid, truth) > 0.999);
   vxm_grid_destroy(grid);

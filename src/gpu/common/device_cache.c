@@ -20,7 +20,7 @@ static vxm_status put(vxm_device_cache *resident, vxm_device_cache_id id, const 
   return resident->upload(resident->engine, id, 0, data, bytes, error);
 }
 
-/* ---- Facets ---- */
+/* ---- Triangles ---- */
 
 /** Brings points in 32 bits; those that do not fit are marked. */
 static vxm_status put_points(vxm_device_cache *resident, vxm_device_cache_id id, const vxm_point *points,
@@ -37,46 +37,48 @@ static vxm_status put_points(vxm_device_cache *resident, vxm_device_cache_id id,
   return status;
 }
 
-static vxm_status put_apexes(vxm_device_cache *resident, const vxm_triangle_set *facets, vxm_error *error) {
+static vxm_status put_apexes(vxm_device_cache *resident, const vxm_triangle_set *triangles,
+                             vxm_error *error) {
   vxm_context *context = resident->engine->context;
   vxm_error local = VXM_ERROR_INIT;
-  size_t count = facets->facet_count;
+  size_t count = triangles->triangle_count;
   uint32_t *apex = vxm_alloc(context, count, sizeof *apex, &local);
   for (size_t f = 0; apex && f < count; f++)
-    apex[f] = vxm_apex_of(facets, facets->part[f]);
+    apex[f] = vxm_apex_of(triangles, triangles->part[f]);
   vxm_status status =
-      apex ? put(resident, VXM_RESIDENT_APEXES, apex, count * sizeof *apex, &local) : local.code;
+      apex ? put(resident, VXM_CACHED_APEXES, apex, count * sizeof *apex, &local) : local.code;
   vxm_free(context, apex);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
   return status;
 }
 
-static vxm_status put_corners(vxm_device_cache *resident, const vxm_triangle_set *facets, vxm_error *error) {
-  if (resident->facets_serial == facets->serial)
+static vxm_status put_corners(vxm_device_cache *resident, const vxm_triangle_set *triangles,
+                              vxm_error *error) {
+  if (resident->triangles_serial == triangles->serial)
     return VXM_OK;
-  resident->facets_serial = 0;
-  vxm_status status = put(resident, VXM_RESIDENT_CORNERS, facets->corners,
-                          facets->facet_count * sizeof *facets->corners, error);
+  resident->triangles_serial = 0;
+  vxm_status status = put(resident, VXM_CACHED_CORNERS, triangles->corners,
+                          triangles->triangle_count * sizeof *triangles->corners, error);
   if (status == VXM_OK && resident->engine->wants_apexes)
-    status = put_apexes(resident, facets, error);
+    status = put_apexes(resident, triangles, error);
   if (status == VXM_OK)
-    resident->facets_serial = facets->serial;
+    resident->triangles_serial = triangles->serial;
   return status;
 }
 
-vxm_status vxm_device_cache_facets(vxm_device_cache *resident, const vxm_triangle_set *facets,
-                                   const vxm_snapped_points *placed, vxm_error *error) {
-  vxm_status status = put_corners(resident, facets, error);
+vxm_status vxm_device_cache_triangles(vxm_device_cache *resident, const vxm_triangle_set *triangles,
+                                      const vxm_snapped_points *placed, vxm_error *error) {
+  vxm_status status = put_corners(resident, triangles, error);
   if (status != VXM_OK || resident->placed_serial == placed->serial)
     return status;
   resident->placed_serial = 0;
-  size_t count = facets->point_count;
+  size_t count = triangles->point_count;
   status = placed->wide
-               ? put_points(resident, VXM_RESIDENT_POINTS, placed->wide, count, error)
-               : put(resident, VXM_RESIDENT_POINTS, placed->narrow, count * sizeof *placed->narrow, error);
+               ? put_points(resident, VXM_CACHED_POINTS, placed->wide, count, error)
+               : put(resident, VXM_CACHED_POINTS, placed->narrow, count * sizeof *placed->narrow, error);
   if (status == VXM_OK)
-    status = vxm_oversized_find(&resident->far, facets, placed, error);
+    status = vxm_oversized_find(&resident->far, triangles, placed, error);
   if (status == VXM_OK)
     resident->placed_serial = placed->serial;
   return status;
@@ -88,10 +90,10 @@ vxm_status vxm_device_cache_surface(vxm_device_cache *resident, const vxm_surfac
     return VXM_OK;
   resident->surface_serial = 0;
   vxm_status status =
-      put_points(resident, VXM_RESIDENT_SURFACE_POINTS, surface->points, surface->soup->vertex_count, error);
+      put_points(resident, VXM_CACHED_SURFACE_POINTS, surface->points, surface->soup->vertex_count, error);
   if (status == VXM_OK && resident->surface_corners_serial != surface->corners_serial) {
     resident->surface_corners_serial = 0;
-    status = put(resident, VXM_RESIDENT_SURFACE_CORNERS, surface->corners,
+    status = put(resident, VXM_CACHED_SURFACE_CORNERS, surface->corners,
                  surface->triangle_count * 3 * sizeof *surface->corners, error);
     if (status == VXM_OK)
       resident->surface_corners_serial = surface->corners_serial;
@@ -109,9 +111,9 @@ vxm_status vxm_device_cache_passes(vxm_disjoint_passes *out, vxm_device_cache *r
   vxm_status status =
       vxm_disjoint_passes_create(out, resident->engine->context, window, job, margin, most, error);
   if (status == VXM_OK && out->order)
-    status = put(resident, VXM_RESIDENT_ORDER, out->order, out->order_count * sizeof *out->order, error);
+    status = put(resident, VXM_CACHED_ORDER, out->order, out->order_count * sizeof *out->order, error);
   if (status == VXM_OK && out->boxes)
-    status = put(resident, VXM_RESIDENT_BOXES, out->boxes, out->box_count * sizeof *out->boxes, error);
+    status = put(resident, VXM_CACHED_BOXES, out->boxes, out->box_count * sizeof *out->boxes, error);
   return status;
 }
 
@@ -123,10 +125,10 @@ static vxm_status put_originals(vxm_device_cache *resident, const vxm_vertex_tra
     return VXM_OK;
   resident->originals_serial = 0;
   vxm_status status =
-      put(resident, VXM_RESIDENT_ORIGINALS, motion->from, motion->count * sizeof *motion->from, error);
+      put(resident, VXM_CACHED_ORIGINALS, motion->from, motion->count * sizeof *motion->from, error);
   /* A shader has to have a buffer also where it does not read it. */
   if (status == VXM_OK)
-    status = put(resident, VXM_RESIDENT_ENTRIES, motion->entry,
+    status = put(resident, VXM_CACHED_ENTRIES, motion->entry,
                  motion->entry ? motion->count * sizeof *motion->entry : sizeof *motion->entry, error);
   if (status == VXM_OK)
     resident->originals_serial = motion->from_serial;
@@ -136,12 +138,12 @@ static vxm_status put_originals(vxm_device_cache *resident, const vxm_vertex_tra
 static vxm_status put_noise(vxm_device_cache *resident, const vxm_vertex_transform *motion,
                             vxm_error *error) {
   if (!motion->entry)
-    return put(resident, VXM_RESIDENT_NOISE, NULL, sizeof *motion->noise, error);
+    return put(resident, VXM_CACHED_NOISE, NULL, sizeof *motion->noise, error);
   if (resident->noise_serial == motion->noise_serial)
     return VXM_OK;
   resident->noise_serial = 0;
   vxm_status status =
-      put(resident, VXM_RESIDENT_NOISE, motion->noise, motion->noise_size * sizeof *motion->noise, error);
+      put(resident, VXM_CACHED_NOISE, motion->noise, motion->noise_size * sizeof *motion->noise, error);
   if (status == VXM_OK)
     resident->noise_serial = motion->noise_serial;
   return status;
@@ -159,11 +161,11 @@ static bool has_room(const vxm_device_cache *resident, const vxm_vertex_transfor
 }
 
 bool vxm_device_cache_motion(vxm_device_cache *resident, const vxm_vertex_transform *motion, size_t points) {
-  static const vxm_device_cache_id own[] = {VXM_RESIDENT_ORIGINALS, VXM_RESIDENT_ENTRIES, VXM_RESIDENT_NOISE};
+  static const vxm_device_cache_id own[] = {VXM_CACHED_ORIGINALS, VXM_CACHED_ENTRIES, VXM_CACHED_NOISE};
   resident->placed_serial = 0;
   if (motion->from_serial != 0 && motion->count <= UINT32_MAX / 3 && has_room(resident, motion) &&
       put_originals(resident, motion, NULL) == VXM_OK && put_noise(resident, motion, NULL) == VXM_OK &&
-      put(resident, VXM_RESIDENT_POINTS, NULL, points * sizeof(int32_t[4]), NULL) == VXM_OK)
+      put(resident, VXM_CACHED_POINTS, NULL, points * sizeof(int32_t[4]), NULL) == VXM_OK)
     return true;
   for (size_t i = 0; i < sizeof own / sizeof *own; i++)
     resident->release(resident->engine, own[i]);
@@ -173,11 +175,11 @@ bool vxm_device_cache_motion(vxm_device_cache *resident, const vxm_vertex_transf
 
 vxm_status vxm_device_cache_moved(vxm_device_cache *resident, vxm_snapped_points *placed,
                                   const vxm_move_job *job, bool *done, vxm_error *error) {
-  const vxm_triangle_set *facets = job->facets;
-  size_t first = facets->first_apex, size = sizeof *placed->narrow;
+  const vxm_triangle_set *triangles = job->triangles;
+  size_t first = triangles->first_apex, size = sizeof *placed->narrow;
   vxm_engine_info *info = &resident->engine->info;
   size_t *tried = &resident->tried[job->motion->entry != NULL];
-  if (!vxm_snapped_points_take(placed, facets))
+  if (!vxm_snapped_points_take(placed, triangles))
     return VXM_OK;
   if (*tried < VXM_MOVED_TRIED) {
     *tried += job->motion->count;
@@ -185,11 +187,12 @@ vxm_status vxm_device_cache_moved(vxm_device_cache *resident, vxm_snapped_points
     if (!info->moves)
       return VXM_OK;
   }
-  vxm_snapped_points_apexes(placed, facets, job->apexes);
-  vxm_status status = resident->upload(resident->engine, VXM_RESIDENT_POINTS, first * size,
-                                       placed->narrow + first, (facets->point_count - first) * size, error);
+  vxm_snapped_points_apexes(placed, triangles, job->apexes);
+  vxm_status status =
+      resident->upload(resident->engine, VXM_CACHED_POINTS, first * size, placed->narrow + first,
+                       (triangles->point_count - first) * size, error);
   if (status == VXM_OK)
-    status = vxm_oversized_find(&resident->far, facets, placed, error);
+    status = vxm_oversized_find(&resident->far, triangles, placed, error);
   if (status == VXM_OK)
     resident->placed_serial = placed->serial;
   *done = status == VXM_OK;

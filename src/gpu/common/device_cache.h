@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What stays on a device from one use to the next, the same for OpenGL and OpenCL: facets and their points,
- * lists of passes, surfaces, and what variants are made of. */
+/** What stays on a device from one use to the next, the same for OpenGL and OpenCL: triangles and their
+ * points, lists of passes, surfaces, and what variants are made of. */
 #ifndef VXM_GPU_COMMON_DEVICE_CACHE_H
 #define VXM_GPU_COMMON_DEVICE_CACHE_H
 
@@ -9,16 +9,16 @@
 
 /** Buffers; those of each engine begin with them. */
 typedef enum vxm_device_cache_id {
-  VXM_RESIDENT_POINTS = 0,
-  VXM_RESIDENT_CORNERS,
-  VXM_RESIDENT_APEXES, /**< points that are the apexes of facets; only where they are wanted */
-  VXM_RESIDENT_ORDER,  /**< numbers of facets, pass after pass */
-  VXM_RESIDENT_BOXES,
-  VXM_RESIDENT_SURFACE_POINTS,
-  VXM_RESIDENT_SURFACE_CORNERS,
-  VXM_RESIDENT_ORIGINALS, /**< points before they are moved */
-  VXM_RESIDENT_ENTRIES,   /**< of each of them in the noise */
-  VXM_RESIDENT_NOISE,
+  VXM_CACHED_POINTS = 0,
+  VXM_CACHED_CORNERS,
+  VXM_CACHED_APEXES, /**< points that are the apexes of triangles; only where they are wanted */
+  VXM_CACHED_ORDER,  /**< numbers of triangles, pass after pass */
+  VXM_CACHED_BOXES,
+  VXM_CACHED_SURFACE_POINTS,
+  VXM_CACHED_SURFACE_CORNERS,
+  VXM_CACHED_ORIGINALS, /**< points before they are moved */
+  VXM_CACHED_ENTRIES,   /**< of each of them in the noise */
+  VXM_CACHED_NOISE,
   VXM_RESIDENTS
 } vxm_device_cache_id;
 
@@ -33,11 +33,11 @@ typedef struct vxm_device_cache {
   vxm_engine *engine;
   vxm_device_cache_upload upload;
   vxm_device_cache_release release;
-  vxm_oversized far; /**< facets and triangles beyond the numbers of the shaders */
+  vxm_oversized far; /**< triangles beyond the numbers of the shaders */
   vxm_oversized_surface far_surface;
   size_t tried[2]; /**< points that the CPU has moved, too: without displacements and with them */
   /** What the buffers hold; 0 = nothing. */
-  uint64_t facets_serial, placed_serial, surface_serial, surface_corners_serial, originals_serial,
+  uint64_t triangles_serial, placed_serial, surface_serial, surface_corners_serial, originals_serial,
       noise_serial;
 } vxm_device_cache;
 
@@ -48,12 +48,12 @@ void vxm_device_cache_destroy(vxm_device_cache *resident);
 /** Brings points and corners, unless they are there. @return VXM_OK, VXM_ERROR_MEMORY,
  * VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_RANGE (more than fits a buffer), VXM_ERROR_UNAVAILABLE; as all of these
  */
-vxm_status vxm_device_cache_facets(vxm_device_cache *resident, const vxm_triangle_set *facets,
-                                   const vxm_snapped_points *placed, vxm_error *error);
+vxm_status vxm_device_cache_triangles(vxm_device_cache *resident, const vxm_triangle_set *triangles,
+                                      const vxm_snapped_points *placed, vxm_error *error);
 /** The same for a surface. */
 vxm_status vxm_device_cache_surface(vxm_device_cache *resident, const vxm_surface *surface, vxm_error *error);
-/** Divides the facets of a job's parts as vxm_disjoint_passes_create does, and brings the lists. Destroy with
- * vxm_disjoint_passes_destroy, also after a failure. */
+/** Divides the triangles of a job's parts as vxm_disjoint_passes_create does, and brings the lists. Destroy
+ * with vxm_disjoint_passes_destroy, also after a failure. */
 vxm_status vxm_device_cache_passes(vxm_disjoint_passes *out, vxm_device_cache *resident,
                                    const vxm_window *window, const vxm_parity_union_job *job, int64_t margin,
                                    size_t most, vxm_error *error);

@@ -22,10 +22,10 @@ typedef struct division {
   vxm_disjoint_passes *passes;
 } division;
 
-/** Where the facets of a part that count lie; of one part they are two ranges at most. */
+/** Where the triangles of a part that count lie; of one part they are two ranges at most. */
 static void ranges_of(const vxm_parity_union_job *job, size_t part, size_t begin[2], size_t end[2]) {
-  const vxm_part *p = &job->facets->parts[part];
-  bool caps = (job->roles & VXM_FACET_CAP) != 0, cones = (job->roles & VXM_FACET_CONE) != 0;
+  const vxm_part *p = &job->triangles->parts[part];
+  bool caps = (job->roles & VXM_ROLE_CAP) != 0, cones = (job->roles & VXM_ROLE_CONE) != 0;
   begin[0] = p->begin;
   end[0] = caps ? p->cones : p->caps;
   begin[1] = p->cones;
@@ -33,9 +33,9 @@ static void ranges_of(const vxm_parity_union_job *job, size_t part, size_t begin
 }
 
 static bool is_closed(const vxm_parity_union_job *job, size_t part) {
-  const vxm_split *split = &job->facets->split;
-  return part < split->kind_end[VXM_PART_CLOSED] || (job->roles & VXM_FACET_CONE) ||
-         (part < split->kind_end[VXM_PART_CAPPED] && (job->roles & VXM_FACET_CAP));
+  const vxm_split *split = &job->triangles->split;
+  return part < split->kind_end[VXM_PART_CLOSED] || (job->roles & VXM_ROLE_CONE) ||
+         (part < split->kind_end[VXM_PART_CAPPED] && (job->roles & VXM_ROLE_CAP));
 }
 
 static vxm_pass_box box_of(const division *d, size_t part) {
@@ -48,7 +48,7 @@ static vxm_pass_box box_of(const division *d, size_t part) {
   for (int r = 0; r < 2; r++)
     for (size_t f = begin[r]; f < end[r]; f++)
       for (int c = 0; c < 3; c++) {
-        vxm_point p = vxm_snapped_points_at(job->placed, job->facets->corners[f][c]);
+        vxm_point p = vxm_snapped_points_at(job->placed, job->triangles->corners[f][c]);
         for (int a = 0; a < 3; a++) {
           low[a] = vxm_min(low[a], p.at[a]);
           high[a] = vxm_max(high[a], p.at[a]);
@@ -130,8 +130,8 @@ static vxm_status find_pass(division *d, size_t index, vxm_error *error) {
   return VXM_OK;
 }
 
-/** Lists the facets of each pass, or finds that they lie one behind the other. */
-static vxm_status list_facets(division *d, vxm_error *error) {
+/** Lists the triangles of each pass, or finds that they lie one behind the other. */
+static vxm_status list_triangles(division *d, vxm_error *error) {
   vxm_disjoint_passes *passes = d->passes;
   const vxm_parity_union_job *job = d->job;
   size_t begin[2], end[2], parts = job->part_end - job->part_begin, total = 0, at = 0;
@@ -139,7 +139,7 @@ static vxm_status list_facets(division *d, vxm_error *error) {
     ranges_of(job, job->part_begin, begin, end);
     if (begin[1] == end[1] || end[0] == begin[1]) {
       passes->first = begin[0];
-      passes->facet_end[0] = begin[1] == end[1] ? end[0] - begin[0] : end[1] - begin[0];
+      passes->triangle_end[0] = begin[1] == end[1] ? end[0] - begin[0] : end[1] - begin[0];
       return VXM_OK;
     }
   }
@@ -151,19 +151,19 @@ static vxm_status list_facets(division *d, vxm_error *error) {
   uint32_t *order = vxm_alloc(d->context, total, sizeof *order, error);
   if (!order)
     return VXM_ERROR_MEMORY;
-  /* The place of each part's facets: those of the passes before it, then of the parts before it. */
-  memset(passes->facet_end, 0, passes->count * sizeof *passes->facet_end);
+  /* The place of each part's triangles: those of the passes before it, then of the parts before it. */
+  memset(passes->triangle_end, 0, passes->count * sizeof *passes->triangle_end);
   for (size_t i = 0; i < parts; i++) {
     ranges_of(job, job->part_begin + i, begin, end);
-    passes->facet_end[passes->pass_of[i]] += end[0] - begin[0] + (end[1] - begin[1]);
+    passes->triangle_end[passes->pass_of[i]] += end[0] - begin[0] + (end[1] - begin[1]);
   }
   for (size_t p = 0; p < passes->count; p++) {
-    size_t size = passes->facet_end[p];
-    passes->facet_end[p] = at;
+    size_t size = passes->triangle_end[p];
+    passes->triangle_end[p] = at;
     at += size;
   }
   for (size_t i = 0; i < parts; i++) {
-    size_t *to = &passes->facet_end[passes->pass_of[i]];
+    size_t *to = &passes->triangle_end[passes->pass_of[i]];
     ranges_of(job, job->part_begin + i, begin, end);
     for (int r = 0; r < 2; r++)
       for (size_t f = begin[r]; f < end[r]; f++)
@@ -217,12 +217,12 @@ static vxm_status divide(division *d, vxm_error *error) {
     return status;
   }
   passes->count = passes->count > 0 ? passes->count : 1;
-  passes->facet_end = vxm_alloc(context, passes->count, sizeof *passes->facet_end, error);
+  passes->triangle_end = vxm_alloc(context, passes->count, sizeof *passes->triangle_end, error);
   passes->box_end =
-      passes->facet_end ? vxm_alloc(context, passes->count, sizeof *passes->box_end, error) : NULL;
+      passes->triangle_end ? vxm_alloc(context, passes->count, sizeof *passes->box_end, error) : NULL;
   if (!passes->box_end)
     return VXM_ERROR_MEMORY;
-  status = list_facets(d, error);
+  status = list_triangles(d, error);
   return status == VXM_OK && d->job->has_voxels ? list_boxes(d, error) : status;
 }
 
@@ -245,7 +245,7 @@ vxm_status vxm_disjoint_passes_create(vxm_disjoint_passes *out, vxm_context *con
 void vxm_disjoint_passes_destroy(vxm_disjoint_passes *passes) {
   vxm_free(passes->context, passes->pass_of);
   vxm_free(passes->context, passes->order);
-  vxm_free(passes->context, passes->facet_end);
+  vxm_free(passes->context, passes->triangle_end);
   vxm_free(passes->context, passes->box_end);
   vxm_free(passes->context, passes->boxes);
 }

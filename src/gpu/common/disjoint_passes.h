@@ -12,15 +12,15 @@ typedef struct vxm_pass_box {
   uint32_t first[3], last[3];
 } vxm_pass_box;
 
-/** Facets of parts in passes: no two parts of a pass have boxes that meet. */
+/** Triangles of parts in passes: no two parts of a pass have boxes that meet. */
 typedef struct vxm_disjoint_passes {
   vxm_context *context;
   size_t count;
   uint32_t *pass_of; /**< of each part from part_begin on */
   size_t part_begin;
-  size_t *facet_end; /**< of each pass: the place behind its last facet */
-  bool ordered;      /**< facets are looked up in `order`; else they are those from `first` on */
-  uint32_t *order;   /**< numbers of facets, pass after pass */
+  size_t *triangle_end; /**< of each pass: the place behind its last triangle */
+  bool ordered;         /**< triangles are looked up in `order`; else they are those from `first` on */
+  uint32_t *order;      /**< numbers of triangles, pass after pass */
   size_t order_count;
   size_t first;
   vxm_pass_box *boxes; /**< of parts that may flip something, pass after pass */
@@ -29,7 +29,7 @@ typedef struct vxm_disjoint_passes {
 } vxm_disjoint_passes;
 
 /**
- * Divides the facets of a job's parts. Destroy with vxm_disjoint_passes_destroy, also after a failure.
+ * Divides the triangles of a job's parts. Destroy with vxm_disjoint_passes_destroy, also after a failure.
  *
  * @param margin voxels by which an engine moves points at most
  * @param most   where more passes than that were needed `count` is 0, and there are no lists

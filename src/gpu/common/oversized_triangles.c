@@ -26,7 +26,7 @@ static bool is_far(const vxm_point *a, const vxm_point *b, const vxm_point *c) {
   return false;
 }
 
-/** Whether all points lie so close together that no facet can be far. */
+/** Whether all points lie so close together that no triangle can be far. */
 static bool are_all_near(const vxm_snapped_points *placed, size_t count) {
   int32_t low[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, high[3] = {INT32_MIN, INT32_MIN, INT32_MIN};
   if (placed->wide)
@@ -43,22 +43,22 @@ static bool are_all_near(const vxm_snapped_points *placed, size_t count) {
   return true;
 }
 
-vxm_status vxm_oversized_find(vxm_oversized *far, const vxm_triangle_set *facets,
+vxm_status vxm_oversized_find(vxm_oversized *far, const vxm_triangle_set *triangles,
                               const vxm_snapped_points *placed, vxm_error *error) {
   far->count = 0;
-  if (are_all_near(placed, facets->point_count))
+  if (are_all_near(placed, triangles->point_count))
     return VXM_OK;
   vxm_status status = VXM_OK;
-  for (size_t f = 0; f < facets->facet_count && status == VXM_OK; f++) {
+  for (size_t f = 0; f < triangles->triangle_count && status == VXM_OK; f++) {
     vxm_point p[3];
     for (int c = 0; c < 3; c++)
-      p[c] = vxm_snapped_points_at(placed, facets->corners[f][c]);
+      p[c] = vxm_snapped_points_at(placed, triangles->corners[f][c]);
     if (!is_far(&p[0], &p[1], &p[2]))
       continue;
-    status = vxm_grow(far->context, (void **)&far->facets, &far->capacity, far->count + 1,
-                      sizeof *far->facets, error);
+    status = vxm_grow(far->context, (void **)&far->triangles, &far->capacity, far->count + 1,
+                      sizeof *far->triangles, error);
     if (status == VXM_OK)
-      far->facets[far->count++] = (uint32_t)f;
+      far->triangles[far->count++] = (uint32_t)f;
   }
   return status;
 }
@@ -81,7 +81,7 @@ vxm_status vxm_oversized_surface_find(vxm_oversized_surface *far, const vxm_surf
 }
 
 void vxm_oversized_destroy(vxm_oversized *far) {
-  vxm_free(far->context, far->facets);
+  vxm_free(far->context, far->triangles);
 }
 
 void vxm_oversized_surface_destroy(vxm_oversized_surface *far) {
@@ -177,14 +177,14 @@ vxm_status vxm_oversized_flips(uint32_t **out, size_t *count, const vxm_oversize
                                const vxm_slice_job_columns *tile, const vxm_parity_union_job *job,
                                const vxm_disjoint_passes *passes, size_t pass, vxm_error *error) {
   flips found = {.context = far->context};
-  const vxm_triangle_set *facets = job->facets;
+  const vxm_triangle_set *triangles = job->triangles;
   vxm_crossing_bins bins = {.context = far->context};
   vxm_columns columns = columns_of(tile, job->roles);
   vxm_raster_task task = {
-      .placed = job->placed, .facets = facets, .columns = &columns, .columns_count = 1, .bins = &bins};
+      .placed = job->placed, .triangles = triangles, .columns = &columns, .columns_count = 1, .bins = &bins};
   vxm_status status = vxm_crossing_bins_reset(&bins, 1, 1, 1, words_of(tile), error);
   for (size_t i = 0; i < far->count && status == VXM_OK; i++) {
-    size_t f = far->facets[i], part = facets->part[f];
+    size_t f = far->triangles[i], part = triangles->part[f];
     if (part < job->part_begin || part >= job->part_end || passes->pass_of[part - passes->part_begin] != pass)
       continue;
     task.begin = f;

@@ -7,10 +7,10 @@
 #include "gpu/common/disjoint_passes.h"
 #include "gpu/common/slice_job.h"
 
-/** Facets that are far. Start from {.context = ...}. */
+/** Triangles that are far. Start from {.context = ...}. */
 typedef struct vxm_oversized {
   vxm_context *context;
-  uint32_t *facets;
+  uint32_t *triangles;
   size_t count, capacity;
 } vxm_oversized;
 
@@ -22,7 +22,7 @@ typedef struct vxm_oversized_surface {
 } vxm_oversized_surface;
 
 /** Finds them. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
-vxm_status vxm_oversized_find(vxm_oversized *far, const vxm_triangle_set *facets,
+vxm_status vxm_oversized_find(vxm_oversized *far, const vxm_triangle_set *triangles,
                               const vxm_snapped_points *placed, vxm_error *error);
 vxm_status vxm_oversized_surface_find(vxm_oversized_surface *far, const vxm_surface *surface,
                                       vxm_error *error);
@@ -32,7 +32,7 @@ void vxm_oversized_surface_destroy(vxm_oversized_surface *far);
 /** Points for shaders: 32 bits and, where a point does not fit them, a mark as the fourth number. */
 void vxm_oversized_narrow(int32_t (*out)[4], const vxm_point *points, size_t count);
 
-/** What the far facets of a pass flip: bits of a tile, in a new block. `count` is 0 and the block NULL if
+/** What the far triangles of a pass flip: bits of a tile, in a new block. `count` is 0 and the block NULL if
  * there are none. */
 vxm_status vxm_oversized_flips(uint32_t **out, size_t *count, const vxm_oversized *far,
                                const vxm_slice_job_columns *tile, const vxm_parity_union_job *job,

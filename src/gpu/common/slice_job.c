@@ -62,7 +62,7 @@ vxm_slice_job_surface vxm_slice_job_surface_of(const vxm_slice_job *tile, const 
   uint32_t row_bits = (uint32_t)(64 * tile->row_words);
   vxm_slice_job_surface out = {.bits = surface->lattice.bits,
                                .thin = kind == VXM_SURFACE_THIN,
-                               .facet_count = (uint32_t)surface->triangle_count};
+                               .triangle_count = (uint32_t)surface->triangle_count};
   out.last[layout->fast] = (int32_t)tile->window->fast_dim;
   out.last[layout->middle] = (int32_t)tile->window->middle_dim;
   out.first[layout->slow] = (int32_t)tile->begin;

@@ -24,17 +24,17 @@ vxm_progress_part vxm_slice_job_progress(const vxm_slice_job *tile);
 /** Moves a tile's words into the window's, or (`is_or`) adds them. */
 void vxm_slice_job_take(const vxm_slice_job *tile, uint64_t *words, const uint64_t *from, bool is_or);
 
-/** The columns of a tile and the facets that flip them; axes in the order u, v, w, w along the columns. The
- * layout is that of shaders/job.glsl and shaders/lattice.cl. */
+/** The columns of a tile and the triangles that flip them; axes in the order u, v, w, w along the columns.
+ * The layout is that of shaders/job.glsl and shaders/lattice.cl. */
 typedef struct vxm_slice_job_columns {
   int32_t axes[3], bits;         /**< bits of the lattice below a voxel */
   int32_t first[3], keep_before; /**< first voxel; whether a flip before it along w counts for it */
   int32_t last[3], unused;       /**< voxel behind the last */
   uint32_t step[4];              /**< bits from a voxel to the next one */
-  uint32_t facet_first, facet_count, ordered, few_columns;
+  uint32_t triangle_first, triangle_count, ordered, few_columns;
 } vxm_slice_job_columns;
 
-/** What the passes over a tile have in common; the facets are still to be told. */
+/** What the passes over a tile have in common; the triangles are still to be told. */
 vxm_slice_job_columns vxm_slice_job_columns_of(const vxm_slice_job *tile, const vxm_parity_union_job *job);
 
 /** The voxels of a tile along x, y, z and the triangles of a surface. The layout is that of
@@ -43,7 +43,7 @@ typedef struct vxm_slice_job_surface {
   int32_t first[3], bits;
   int32_t last[3], thin;
   uint32_t step[4];
-  uint32_t facet_count, few_columns;
+  uint32_t triangle_count, few_columns;
   int32_t shift, shadow; /**< 0; see shaders/touching.cl */
 } vxm_slice_job_surface;
 

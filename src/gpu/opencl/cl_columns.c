@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Solids triangle by triangle (Schwarz & Seidel 2010, section 4.1): shaders/columns.cl flips a bit in each
- * column that a facet covers, shaders/fold.cl makes voxels of flips. */
+ * column that a triangle covers, shaders/fold.cl makes voxels of flips. */
 #include "gpu/opencl/cl_solid.h"
 
-enum { FEW_COLUMNS = 256 /**< of a facet that one work-item does */ };
+enum { FEW_COLUMNS = 256 /**< of a triangle that one work-item does */ };
 
-vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t facets, vxm_error *error) {
-  vxm_status status = vxm_cl_reserve(engine, VXM_CL_LARGE, (1 + facets) * sizeof(uint32_t), error);
+vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t triangles, vxm_error *error) {
+  vxm_status status = vxm_cl_reserve(engine, VXM_CL_LARGE, (1 + triangles) * sizeof(uint32_t), error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, VXM_CL_LARGE, sizeof(uint32_t), error);
-  /* An argument has to be a buffer, also where facets are not looked up. */
+  /* An argument has to be a buffer, also where triangles are not looked up. */
   return status == VXM_OK ? vxm_cl_reserve(engine, VXM_CL_ORDER, sizeof(uint32_t), error) : status;
 }
 
 static vxm_status flip(vxm_opencl *engine, const vxm_slice_job_columns *columns, vxm_error *error) {
-  vxm_status status = vxm_cl_clear_large(engine, columns->facet_count, error);
+  vxm_status status = vxm_cl_clear_large(engine, columns->triangle_count, error);
   if (status == VXM_OK)
-    status = vxm_cl_run(engine, VXM_CL_FLIP_COLUMNS, columns->facet_count,
+    status = vxm_cl_run(engine, VXM_CL_FLIP_COLUMNS, columns->triangle_count,
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
                                     VXM_CL_MEM(engine, VXM_CL_ORDER), VXM_CL_MEM(engine, VXM_CL_FLIPS),
                                     VXM_CL_MEM(engine, VXM_CL_LARGE), VXM_CL_VALUE(*columns)),
@@ -98,10 +98,10 @@ vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slice_job *tile, const v
   if (status == VXM_OK)
     status = vxm_cl_reserve(engine, into, bytes, error);
   for (size_t p = 0; p < passes->count && status == VXM_OK; p++) {
-    columns.facet_first = (uint32_t)(passes->ordered ? begin : passes->first);
-    columns.facet_count = (uint32_t)(passes->facet_end[p] - begin);
-    begin = passes->facet_end[p];
-    if (columns.facet_count > 0)
+    columns.triangle_first = (uint32_t)(passes->ordered ? begin : passes->first);
+    columns.triangle_count = (uint32_t)(passes->triangle_end[p] - begin);
+    begin = passes->triangle_end[p];
+    if (columns.triangle_count > 0)
       status = flip(engine, &columns, error);
     if (status == VXM_OK)
       status = flip_far(engine, &columns, job, passes, p, error);

@@ -10,14 +10,14 @@ enum {
   LONG_COLUMN = 1024 /**< columns of fewer voxels */
 };
 
-static vxm_status clear_touched(vxm_opencl *engine, const vxm_triangle_set *facets, vxm_error *error) {
-  return vxm_cl_clear(engine, VXM_CL_TOUCHED, facets->split.part_count * sizeof(uint32_t), error);
+static vxm_status clear_touched(vxm_opencl *engine, const vxm_triangle_set *triangles, vxm_error *error) {
+  return vxm_cl_clear(engine, VXM_CL_TOUCHED, triangles->split.part_count * sizeof(uint32_t), error);
 }
 
-vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels, const vxm_triangle_set *facets,
-                               vxm_error *error) {
+vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels,
+                               const vxm_triangle_set *triangles, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  size_t parts = facets->split.part_count;
+  size_t parts = triangles->split.part_count;
   uint32_t *set = vxm_alloc(engine->base.context, parts, sizeof *set, &local);
   vxm_status status =
       set ? vxm_cl_download(engine, VXM_CL_TOUCHED, 0, set, parts * sizeof *set, &local) : local.code;
@@ -121,15 +121,15 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
       clear(window);
     return VXM_OK;
   }
-  vxm_status status = vxm_device_cache_facets(&engine->resident, job->facets, job->placed, error);
+  vxm_status status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
   if (status == VXM_OK)
     status = choose(engine, window, job, &passes, error);
   if (status == VXM_OK && job->has_voxels)
-    status = clear_touched(engine, job->facets, error);
+    status = clear_touched(engine, job->triangles, error);
   if (status == VXM_OK)
     status = vxm_cl_each_tile(engine, window, !job->fresh, unite_tile, &(union_job){job, &passes}, error);
   if (status == VXM_OK && job->has_voxels)
-    status = vxm_cl_touched_take(engine, job->has_voxels, job->facets, error);
+    status = vxm_cl_touched_take(engine, job->has_voxels, job->triangles, error);
   vxm_disjoint_passes_destroy(&passes);
   return status;
 }
@@ -137,15 +137,15 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
 /* ---- Votes ---- */
 
 /** The voters of an election: how many are united, and where the words of each are. */
-typedef struct ballot {
+typedef struct voter_set {
   const vxm_vote_job *job;
   vxm_cl_buffer_id words[VXM_VOTERS];
   int count;
-} ballot;
+} voter_set;
 
 /** The tetrahedra, if not asked, vote as x does. */
-static ballot ballot_of(const vxm_vote_job *job) {
-  ballot b = {.job = job, .count = job->tetra ? VXM_VOTERS : VXM_VOTERS - 1};
+static voter_set voters_of(const vxm_vote_job *job) {
+  voter_set b = {.job = job, .count = job->tetra ? VXM_VOTERS : VXM_VOTERS - 1};
   for (int v = 0; v < VXM_VOTERS; v++)
     b.words[v] = (vxm_cl_buffer_id)(v < b.count ? VXM_CL_VOTER_X + v : VXM_CL_VOTER_X);
   return b;
@@ -153,7 +153,7 @@ static ballot ballot_of(const vxm_vote_job *job) {
 
 /** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
  */
-static vxm_status make_voter(vxm_opencl *engine, const vxm_slice_job *tile, const ballot *b, int v,
+static vxm_status make_voter(vxm_opencl *engine, const vxm_slice_job *tile, const voter_set *b, int v,
                              vxm_error *error) {
   vxm_parity_union_job job = vxm_voter(b->job, tile->window, v);
   vxm_disjoint_passes passes = {.context = engine->base.context};
@@ -166,8 +166,8 @@ static vxm_status make_voter(vxm_opencl *engine, const vxm_slice_job *tile, cons
   return status;
 }
 
-static vxm_status count_votes(vxm_opencl *engine, const vxm_slice_job *tile, const ballot *b, vxm_vote rule,
-                              vxm_cl_buffer_id result, vxm_error *error) {
+static vxm_status count_votes(vxm_opencl *engine, const vxm_slice_job *tile, const voter_set *b,
+                              vxm_vote rule, vxm_cl_buffer_id result, vxm_error *error) {
   const cl_uint count = (cl_uint)(2 * tile->words);
   const cl_uint number = rule == VXM_VOTE_MAJORITY ? 1 : rule == VXM_VOTE_ANY ? 2 : 0;
   return vxm_cl_run(engine, VXM_CL_VOTE, count,
@@ -179,7 +179,7 @@ static vxm_status count_votes(vxm_opencl *engine, const vxm_slice_job *tile, con
 }
 
 static vxm_status elect_tile(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_vote_job *job,
-                             const ballot *b, vxm_cl_buffer_id result, vxm_vote_tally *tally,
+                             const voter_set *b, vxm_cl_buffer_id result, vxm_vote_tally *tally,
                              vxm_error *error) {
   uint32_t counted[2] = {0, 0};
   vxm_status status = vxm_cl_tile_upload(engine, result, tile, error);
@@ -202,7 +202,7 @@ static vxm_status elect_tiles(vxm_opencl *engine, const vxm_window *window, cons
                               vxm_vote_tally *tally, vxm_error *error) {
   vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_MASK}};
   int64_t slices = 1;
-  ballot b = ballot_of(job);
+  voter_set b = voters_of(job);
   vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices) {
     vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
@@ -221,17 +221,17 @@ static vxm_status elect_tiles(vxm_opencl *engine, const vxm_window *window, cons
   return vxm_cl_finish(engine, back, status, error);
 }
 
-vxm_status vxm_cl_elect(vxm_engine *base, const vxm_window *window, const vxm_vote_job *job,
-                        vxm_vote_tally *tally, vxm_error *error) {
+vxm_status vxm_cl_vote(vxm_engine *base, const vxm_window *window, const vxm_vote_job *job,
+                       vxm_vote_tally *tally, vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
   if (job->part_begin >= job->part_end)
     return VXM_OK;
-  vxm_status status = vxm_device_cache_facets(&engine->resident, job->facets, job->placed, error);
+  vxm_status status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
   if (status == VXM_OK && job->has_voxels)
-    status = clear_touched(engine, job->facets, error);
+    status = clear_touched(engine, job->triangles, error);
   if (status == VXM_OK)
     status = elect_tiles(engine, window, job, tally, error);
   if (status == VXM_OK && job->has_voxels)
-    status = vxm_cl_touched_take(engine, job->has_voxels, job->facets, error);
+    status = vxm_cl_touched_take(engine, job->has_voxels, job->triangles, error);
   return status;
 }

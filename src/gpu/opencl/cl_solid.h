@@ -9,13 +9,13 @@ vxm_status vxm_cl_move(vxm_engine *engine, vxm_snapped_points *placed, const vxm
                        vxm_error *error);
 vxm_status vxm_cl_unite(vxm_engine *engine, const vxm_window *window, const vxm_parity_union_job *job,
                         vxm_error *error);
-vxm_status vxm_cl_elect(vxm_engine *engine, const vxm_window *window, const vxm_vote_job *job,
-                        vxm_vote_tally *tally, vxm_error *error);
+vxm_status vxm_cl_vote(vxm_engine *engine, const vxm_window *window, const vxm_vote_job *job,
+                       vxm_vote_tally *tally, vxm_error *error);
 /** As vxm_surface_add (cl_surface.c). */
 vxm_status vxm_cl_surface(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error);
 
-/** See vxm_engine_ops (cl_sparse.c). Open parts and facets that reach far are left to the CPU. */
+/** See vxm_engine_ops (cl_sparse.c). Open parts and triangles that reach far are left to the CPU. */
 vxm_status vxm_cl_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_space *space,
                          const vxm_sparse_job *job, vxm_error *error);
 
@@ -30,8 +30,8 @@ vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status s
 /** In VXM_CL_TOUCHED: a part that sets no voxel, and is not looked at. */
 #define VXM_CL_NOT_ASKED UINT32_MAX
 /** Reads which parts set a voxel: those that have 1. */
-vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels, const vxm_triangle_set *facets,
-                               vxm_error *error);
+vxm_status vxm_cl_touched_take(vxm_opencl *engine, atomic_uchar *has_voxels,
+                               const vxm_triangle_set *triangles, vxm_error *error);
 
 /** Makes the words of a tile in a buffer. */
 typedef vxm_status (*vxm_cl_tile_fn)(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id into,
@@ -45,7 +45,7 @@ vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool i
 vxm_status vxm_cl_columns(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
                           const vxm_disjoint_passes *passes, vxm_cl_buffer_id into, vxm_error *error);
 
-/** Whether the job can be done tile by tile: its columns run along the bits, and no facet is far. */
+/** Whether the job can be done tile by tile: its columns run along the bits, and no triangle is far. */
 bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_parity_union_job *job);
 /** The same for such a job, tile of columns by tile of columns (cl_tiles.c). */
 vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,

@@ -7,7 +7,7 @@
 #include "gpu/opencl/cl_tree.h"
 
 enum {
-  FEW_COLUMNS = 2048, /**< of a facet that one work-item does */
+  FEW_COLUMNS = 2048, /**< of a triangle that one work-item does */
   BRICKS = 64         /**< of a node */
 };
 
@@ -25,14 +25,14 @@ typedef struct making {
 /** Whether parity along x tells what is inside of all parts, so that it is the same for all columns of what
  * has no node. */
 static bool are_closed(const vxm_sparse_job *job) {
-  const vxm_split *split = &job->facets->split;
-  return job->part_end <= split->kind_end[job->roles & VXM_FACET_CAP ? VXM_PART_CAPPED : VXM_PART_CLOSED];
+  const vxm_split *split = &job->triangles->split;
+  return job->part_end <= split->kind_end[job->roles & VXM_ROLE_CAP ? VXM_PART_CAPPED : VXM_PART_CLOSED];
 }
 
 static bool has_far(const vxm_oversized *far, const vxm_sparse_job *job) {
   for (size_t i = 0; i < far->count; i++)
-    if (job->facets->part[far->facets[i]] < job->part_end &&
-        (vxm_role_of(job->facets, far->facets[i]) & job->roles))
+    if (job->triangles->part[far->triangles[i]] < job->part_end &&
+        (vxm_role_of(job->triangles, far->triangles[i]) & job->roles))
       return true;
   return false;
 }
@@ -51,13 +51,13 @@ static vxm_slice_job_columns columns_of(const vxm_cl_tree *tree, const vxm_latti
   return columns;
 }
 
-/** Flips what the facets of a pass flip or, with `asks`, finds out which of their parts flip something. */
+/** Flips what the triangles of a pass flip or, with `asks`, finds out which of their parts flip something. */
 static vxm_status flip(making *m, cl_uint asks, vxm_error *error) {
   vxm_opencl *engine = m->engine;
   const vxm_slice_job_columns columns = m->columns;
   vxm_status status = vxm_cl_clear(engine, VXM_CL_LARGE, sizeof(uint32_t), error);
   if (status == VXM_OK)
-    status = vxm_cl_run(engine, VXM_CL_FLIP_BRICKS, columns.facet_count,
+    status = vxm_cl_run(engine, VXM_CL_FLIP_BRICKS, columns.triangle_count,
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
                                     VXM_CL_MEM(engine, VXM_CL_ORDER), VXM_CL_MEM(engine, VXM_CL_BRICKS),
                                     VXM_CL_MEM(engine, VXM_CL_CELLS), VXM_CL_MEM(engine, VXM_CL_BEFORE),
@@ -159,9 +159,9 @@ static vxm_status make_passes(making *m, vxm_error *error) {
   m->columns.ordered = passes->ordered;
   vxm_status status = reserve(m, error);
   for (size_t p = 0; p < passes->count && status == VXM_OK; p++) {
-    m->columns.facet_first = (uint32_t)(passes->ordered ? begin : passes->first);
-    m->columns.facet_count = (uint32_t)(passes->facet_end[p] - begin);
-    begin = passes->facet_end[p];
+    m->columns.triangle_first = (uint32_t)(passes->ordered ? begin : passes->first);
+    m->columns.triangle_count = (uint32_t)(passes->triangle_end[p] - begin);
+    begin = passes->triangle_end[p];
     status = flip(m, 0, error);
     if (status == VXM_OK)
       status = flip(m, 1, error);
@@ -185,7 +185,7 @@ static vxm_status make_passes(making *m, vxm_error *error) {
 static vxm_status upload_touched(const making *m, vxm_error *error) {
   vxm_opencl *engine = m->engine;
   vxm_error local = VXM_ERROR_INIT;
-  size_t parts = m->job->facets->split.part_count;
+  size_t parts = m->job->triangles->split.part_count;
   uint32_t *has_voxels = vxm_alloc(engine->base.context, parts, sizeof *has_voxels, &local);
   for (size_t p = 0; has_voxels && p < parts; p++)
     has_voxels[p] = VXM_CL_NOT_ASKED;
@@ -203,7 +203,7 @@ static vxm_status upload_touched(const making *m, vxm_error *error) {
 static vxm_status prepare(making *m, const vxm_space *space, vxm_error *error) {
   vxm_opencl *engine = m->engine;
   const vxm_window window = vxm_window_of(space, (vxm_layout)VXM_LAYOUT_GRID, 0, space->dims[2]);
-  const vxm_parity_union_job job = {.facets = m->job->facets,
+  const vxm_parity_union_job job = {.triangles = m->job->triangles,
                                     .placed = m->job->placed,
                                     .part_end = m->job->part_end,
                                     .roles = m->job->roles,
@@ -212,7 +212,7 @@ static vxm_status prepare(making *m, const vxm_space *space, vxm_error *error) {
   vxm_status status =
       vxm_device_cache_passes(&m->passes, &engine->resident, &window, &job, 0, SIZE_MAX, error);
   if (status == VXM_OK)
-    status = vxm_cl_place_parts(engine, job.facets, error);
+    status = vxm_cl_place_parts(engine, job.triangles, error);
   if (status == VXM_OK)
     status = upload_touched(m, error);
   if (status == VXM_OK)
@@ -231,7 +231,7 @@ static vxm_status make(vxm_sparse **out, making *m, const vxm_space *space, vxm_
   if (status == VXM_OK)
     status = vxm_cl_tree_take(out, engine, &m->tree, m->bricks, m->inside, m->job->placed->context, error);
   if (status == VXM_OK)
-    status = vxm_cl_touched_take(engine, m->job->has_voxels, m->job->facets, error);
+    status = vxm_cl_touched_take(engine, m->job->has_voxels, m->job->triangles, error);
   if (status == VXM_OK && engine->stages) {
     engine->stages->cells_active = m->tree.level[0].count;
     engine->stages->nodes = m->tree.node_count;
@@ -245,7 +245,7 @@ vxm_status vxm_cl_sparse(vxm_engine *base, vxm_sparse **out, const vxm_space *sp
   *out = NULL;
   if (job->part_end == 0 || !are_closed(job))
     return VXM_OK;
-  vxm_status status = vxm_device_cache_facets(&engine->resident, job->facets, job->placed, error);
+  vxm_status status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
   if (status != VXM_OK || has_far(&engine->resident.far, job))
     return status;
   making m = {.engine = engine, .job = job, .passes = {.context = base->context}};

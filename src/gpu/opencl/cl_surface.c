@@ -16,13 +16,13 @@ static vxm_status set_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl
   job.few_columns = FEW_COLUMNS;
   vxm_status status = vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
   if (status == VXM_OK)
-    status = vxm_cl_clear_large(engine, job.facet_count, error);
+    status = vxm_cl_clear_large(engine, job.triangle_count, error);
   const vxm_cl_arg args[] = {VXM_CL_MEM(engine, VXM_CL_SURFACE_POINTS),
                              VXM_CL_MEM(engine, VXM_CL_SURFACE_CORNERS), VXM_CL_MEM(engine, into),
                              VXM_CL_MEM(engine, VXM_CL_LARGE), VXM_CL_VALUE(job)};
   const size_t count = sizeof args / sizeof args[0];
   if (status == VXM_OK)
-    status = vxm_cl_run(engine, VXM_CL_SET_SURFACE, job.facet_count, args, count, error);
+    status = vxm_cl_run(engine, VXM_CL_SET_SURFACE, job.triangle_count, args, count, error);
   if (status == VXM_OK)
     status = vxm_cl_run_groups(engine, VXM_CL_SET_LARGE, vxm_cl_busy_groups(engine), args, count, error);
   return status == VXM_OK ? vxm_progress(engine->base.context, "voxelizing the surface",

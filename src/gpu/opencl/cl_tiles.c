@@ -14,28 +14,28 @@ typedef struct tiling {
   vxm_opencl *engine;
   const vxm_slice_job *tile;
   vxm_slice_job_columns columns;
-  cl_uint roles; /**< bit r: facets of role 1 << r count */
+  cl_uint roles; /**< bit r: triangles of role 1 << r count */
   cl_uint across, count;
 } tiling;
 
-/** Parts of facets, and their roles, on the device. */
-vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_triangle_set *facets, vxm_error *error) {
+/** Parts of triangles, and their roles, on the device. */
+vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_triangle_set *triangles, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  if (engine->parts_serial == facets->serial)
+  if (engine->parts_serial == triangles->serial)
     return VXM_OK;
   engine->parts_serial = 0;
-  uint32_t *parts = vxm_alloc(engine->base.context, facets->facet_count, sizeof *parts, &local);
-  for (size_t f = 0; parts && f < facets->facet_count; f++) {
-    vxm_triangle_role role = vxm_role_of(facets, f);
-    uint32_t number = role == VXM_FACET_TRIANGLE ? 0 : role == VXM_FACET_CAP ? 1 : 2;
-    parts[f] = facets->part[f] | number << ROLE_SHIFT;
+  uint32_t *parts = vxm_alloc(engine->base.context, triangles->triangle_count, sizeof *parts, &local);
+  for (size_t f = 0; parts && f < triangles->triangle_count; f++) {
+    vxm_triangle_role role = vxm_role_of(triangles, f);
+    uint32_t number = role == VXM_ROLE_FACE ? 0 : role == VXM_ROLE_CAP ? 1 : 2;
+    parts[f] = triangles->part[f] | number << ROLE_SHIFT;
   }
   vxm_status status =
-      parts ? vxm_cl_upload(engine, VXM_CL_PARTS, parts, facets->facet_count * sizeof *parts, &local)
+      parts ? vxm_cl_upload(engine, VXM_CL_PARTS, parts, triangles->triangle_count * sizeof *parts, &local)
             : local.code;
   vxm_free(engine->base.context, parts);
   if (status == VXM_OK)
-    engine->parts_serial = facets->serial;
+    engine->parts_serial = triangles->serial;
   else
     vxm_error_pass(error, &local);
   return status;
@@ -46,31 +46,31 @@ static tiling tiling_of(vxm_opencl *engine, const vxm_slice_job *tile, const vxm
               .tile = tile,
               .columns = vxm_slice_job_columns_of(tile, job),
               .roles = job->roles & 7};
-  const vxm_triangle_set *facets = job->facets;
-  size_t first = facets->parts[job->part_begin].begin, end = facets->parts[job->part_end - 1].end;
+  const vxm_triangle_set *triangles = job->triangles;
+  size_t first = triangles->parts[job->part_begin].begin, end = triangles->parts[job->part_end - 1].end;
   cl_uint tile_u = engine->group >= 32 ? 8 : 4, tile_v = (cl_uint)engine->group / tile_u;
   cl_uint width = (cl_uint)(t.columns.last[0] - t.columns.first[0]);
   cl_uint height = (cl_uint)(t.columns.last[1] - t.columns.first[1]);
-  t.columns.facet_first = (uint32_t)first;
-  t.columns.facet_count = (uint32_t)(end - first);
+  t.columns.triangle_first = (uint32_t)first;
+  t.columns.triangle_count = (uint32_t)(end - first);
   t.across = (width + tile_u - 1) / tile_u;
   t.count = t.across * ((height + tile_v - 1) / tile_v);
   return t;
 }
 
-/** Lists the facets of each tile of columns. `pairs`: how many there are in all lists. */
-static vxm_status list_facets(tiling *t, cl_uint *pairs, vxm_error *error) {
+/** Lists the triangles of each tile of columns. `pairs`: how many there are in all lists. */
+static vxm_status list_triangles(tiling *t, cl_uint *pairs, vxm_error *error) {
   vxm_opencl *engine = t->engine;
-  size_t facets = t->columns.facet_count;
+  size_t triangles = t->columns.triangle_count;
   int bits = 0;
   while (bits < 32 && t->count > UINT64_C(1) << bits)
     bits++;
   cl_uint total[2] = {0, 0};
-  vxm_status status = vxm_cl_reserve(engine, VXM_CL_COUNTS, (facets + 1) * sizeof(cl_uint), error);
+  vxm_status status = vxm_cl_reserve(engine, VXM_CL_COUNTS, (triangles + 1) * sizeof(cl_uint), error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof total, error);
   if (status == VXM_OK)
-    status = vxm_cl_run(engine, VXM_CL_COUNT_TILES, facets,
+    status = vxm_cl_run(engine, VXM_CL_COUNT_TILES, triangles,
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
                                     VXM_CL_MEM(engine, VXM_CL_PARTS), VXM_CL_MEM(engine, VXM_CL_COUNTS),
                                     VXM_CL_MEM(engine, VXM_CL_TALLY), VXM_CL_VALUE(t->columns),
@@ -83,21 +83,21 @@ static vxm_status list_facets(tiling *t, cl_uint *pairs, vxm_error *error) {
                     "opencl: the triangles meet more than 2^32 tiles of columns; use --cl-method triangles");
   *pairs = total[0];
   if (status == VXM_OK)
-    status = vxm_cl_scan(engine, VXM_CL_COUNTS, facets, error);
+    status = vxm_cl_scan(engine, VXM_CL_COUNTS, triangles, error);
   if (status == VXM_OK)
     status = vxm_cl_reserve(engine, VXM_CL_TILE_KEYS, (size_t)*pairs * sizeof(uint64_t), error);
   if (status == VXM_OK)
-    status = vxm_cl_reserve(engine, VXM_CL_TILE_FACETS, (size_t)*pairs * sizeof(cl_uint), error);
+    status = vxm_cl_reserve(engine, VXM_CL_TILE_TRIANGLES, (size_t)*pairs * sizeof(cl_uint), error);
   if (status == VXM_OK)
-    status =
-        vxm_cl_run(engine, VXM_CL_LIST_TILES, facets,
-                   VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
-                               VXM_CL_MEM(engine, VXM_CL_PARTS), VXM_CL_MEM(engine, VXM_CL_COUNTS),
-                               VXM_CL_MEM(engine, VXM_CL_TILE_KEYS), VXM_CL_MEM(engine, VXM_CL_TILE_FACETS),
-                               VXM_CL_VALUE(t->columns), VXM_CL_VALUE(t->roles), VXM_CL_VALUE(t->across)),
-                   error);
+    status = vxm_cl_run(engine, VXM_CL_LIST_TILES, triangles,
+                        VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
+                                    VXM_CL_MEM(engine, VXM_CL_PARTS), VXM_CL_MEM(engine, VXM_CL_COUNTS),
+                                    VXM_CL_MEM(engine, VXM_CL_TILE_KEYS),
+                                    VXM_CL_MEM(engine, VXM_CL_TILE_TRIANGLES), VXM_CL_VALUE(t->columns),
+                                    VXM_CL_VALUE(t->roles), VXM_CL_VALUE(t->across)),
+                        error);
   if (status == VXM_OK)
-    status = vxm_cl_sort(engine, VXM_CL_TILE_KEYS, VXM_CL_TILE_FACETS, *pairs, bits, error);
+    status = vxm_cl_sort(engine, VXM_CL_TILE_KEYS, VXM_CL_TILE_TRIANGLES, *pairs, bits, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, VXM_CL_LISTS, t->count * sizeof(cl_uint2), error);
   if (status == VXM_OK)
@@ -122,7 +122,7 @@ static vxm_status fill_words(tiling *t, cl_uint first, cl_uint words, vxm_cl_buf
   const vxm_cl_arg args[] = {VXM_CL_MEM(engine, VXM_CL_POINTS),
                              VXM_CL_MEM(engine, VXM_CL_CORNERS),
                              VXM_CL_MEM(engine, VXM_CL_PARTS),
-                             VXM_CL_MEM(engine, VXM_CL_TILE_FACETS),
+                             VXM_CL_MEM(engine, VXM_CL_TILE_TRIANGLES),
                              VXM_CL_MEM(engine, VXM_CL_LISTS),
                              VXM_CL_MEM(engine, into),
                              VXM_CL_MEM(engine, VXM_CL_TOUCHED),
@@ -143,15 +143,16 @@ vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm
   if (status == VXM_OK)
     status = vxm_cl_ready(engine, VXM_CL_TILES_PROGRAM, error); /* the group may have shrunk */
   if (status == VXM_OK)
-    status = vxm_cl_place_parts(engine, job->facets, error);
+    status = vxm_cl_place_parts(engine, job->triangles, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
   if (status == VXM_OK && !job->has_voxels) /* written all the same */
-    status = vxm_cl_reserve(engine, VXM_CL_TOUCHED, job->facets->split.part_count * sizeof(uint32_t), error);
+    status =
+        vxm_cl_reserve(engine, VXM_CL_TOUCHED, job->triangles->split.part_count * sizeof(uint32_t), error);
   if (status != VXM_OK)
     return status;
   tiling t = tiling_of(engine, tile, job);
-  status = list_facets(&t, &pairs, error);
+  status = list_triangles(&t, &pairs, error);
   cl_uint words = (cl_uint)(tile->window->fast_dim + 31) / 32;
   cl_uint most = (cl_uint)(TILE_LOCAL_BYTES / sizeof(cl_uint) / engine->group);
   for (cl_uint w = 0; w < words && pairs > 0 && status == VXM_OK; w += most)
@@ -161,5 +162,5 @@ vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm
 
 bool vxm_cl_can_tile(const vxm_opencl *engine, const vxm_window *window, const vxm_parity_union_job *job) {
   return job->axis == window->layout.fast && engine->resident.far.count == 0 &&
-         job->facets->split.part_count < (size_t)1 << ROLE_SHIFT;
+         job->triangles->split.part_count < (size_t)1 << ROLE_SHIFT;
 }

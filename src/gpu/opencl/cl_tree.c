@@ -7,7 +7,7 @@
 
 enum {
   CELL_BITS = 4,        /**< a cell is 2^4 voxels wide */
-  FEW_COLUMNS = 64,     /**< of cells, of a facet that one work-item does */
+  FEW_COLUMNS = 64,     /**< of cells, of a triangle that one work-item does */
   CELLS_MOST = 1 << 25, /**< so that their bricks are counted in 32 bits, and nodes of all levels in 31 */
 };
 
@@ -83,9 +83,9 @@ static vxm_slice_job_surface surface_of(const vxm_cl_tree *tree, const vxm_latti
 static vxm_status mark_triangles(vxm_opencl *engine, const vxm_slice_job_surface *job,
                                  const vxm_disjoint_passes *passes, vxm_error *error) {
   const cl_uint2 list = {{passes->ordered ? 0 : (cl_uint)passes->first, passes->ordered}};
-  vxm_status status = vxm_cl_clear_large(engine, job->facet_count, error);
+  vxm_status status = vxm_cl_clear_large(engine, job->triangle_count, error);
   if (status == VXM_OK)
-    status = vxm_cl_run(engine, VXM_CL_MARK_CELLS, job->facet_count,
+    status = vxm_cl_run(engine, VXM_CL_MARK_CELLS, job->triangle_count,
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
                                     VXM_CL_MEM(engine, VXM_CL_ORDER), VXM_CL_MEM(engine, VXM_CL_CELLS),
                                     VXM_CL_MEM(engine, VXM_CL_PLACES), VXM_CL_MEM(engine, VXM_CL_LARGE),
@@ -108,7 +108,7 @@ static vxm_status mark_border(vxm_opencl *engine, const vxm_cl_tree *tree, const
   const vxm_lattice *lattice = &job->placed->lattice;
   int64_t low[3] = {INT64_MAX, INT64_MAX, INT64_MAX}, high[3] = {INT64_MIN, INT64_MIN, INT64_MIN};
   vxm_status status = VXM_OK;
-  for (uint32_t i = 0; i < job->facets->first_apex; i++) {
+  for (uint32_t i = 0; i < job->triangles->first_apex; i++) {
     vxm_point p = vxm_snapped_points_at(job->placed, i);
     for (int a = 0; a < 3; a++) {
       low[a] = vxm_min(low[a], p.at[a]);
@@ -141,7 +141,7 @@ static vxm_status mark_border(vxm_opencl *engine, const vxm_cl_tree *tree, const
 static vxm_status mark(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_sparse_job *job,
                        const vxm_disjoint_passes *passes, vxm_error *error) {
   vxm_slice_job_surface surface = surface_of(tree, &job->placed->lattice);
-  surface.facet_count = (uint32_t)passes->facet_end[passes->count - 1];
+  surface.triangle_count = (uint32_t)passes->triangle_end[passes->count - 1];
   vxm_status status = upload_places(engine, tree, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, VXM_CL_CELLS, tree->words * sizeof(cl_uint), error);

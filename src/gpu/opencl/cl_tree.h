@@ -23,7 +23,7 @@ typedef struct vxm_cl_tree {
 } vxm_cl_tree;
 
 /**
- * Finds the nodes that the facets of the passes need, and links them: cells, codes, parents, children and
+ * Finds the nodes that the triangles of the passes need, and links them: cells, codes, parents, children and
  * neighbours are in their buffers then. The passes, points and corners are on the device.
  *
  * @return VXM_OK; level[0].count is 0 if there are none

@@ -25,7 +25,7 @@ static void destroy(vxm_engine *base) {
 
 static const vxm_engine_ops opencl_ops = {.move = vxm_cl_move,
                                           .unite = vxm_cl_unite,
-                                          .elect = vxm_cl_elect,
+                                          .vote = vxm_cl_vote,
                                           .surface = vxm_cl_surface,
                                           .sparse = vxm_cl_sparse,
                                           .count = vxm_cl_count,

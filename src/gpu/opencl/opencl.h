@@ -71,17 +71,17 @@ typedef enum vxm_cl_kernel_id {
 } vxm_cl_kernel_id;
 
 typedef enum vxm_cl_buffer_id {
-  VXM_CL_POINTS = VXM_RESIDENT_POINTS,
-  VXM_CL_CORNERS = VXM_RESIDENT_CORNERS,
-  VXM_CL_ORDER = VXM_RESIDENT_ORDER,
-  VXM_CL_BOXES = VXM_RESIDENT_BOXES,
-  VXM_CL_SURFACE_POINTS = VXM_RESIDENT_SURFACE_POINTS,
-  VXM_CL_SURFACE_CORNERS = VXM_RESIDENT_SURFACE_CORNERS,
-  VXM_CL_ORIGINALS = VXM_RESIDENT_ORIGINALS,
-  VXM_CL_ENTRIES = VXM_RESIDENT_ENTRIES,
-  VXM_CL_NOISE = VXM_RESIDENT_NOISE,
+  VXM_CL_POINTS = VXM_CACHED_POINTS,
+  VXM_CL_CORNERS = VXM_CACHED_CORNERS,
+  VXM_CL_ORDER = VXM_CACHED_ORDER,
+  VXM_CL_BOXES = VXM_CACHED_BOXES,
+  VXM_CL_SURFACE_POINTS = VXM_CACHED_SURFACE_POINTS,
+  VXM_CL_SURFACE_CORNERS = VXM_CACHED_SURFACE_CORNERS,
+  VXM_CL_ORIGINALS = VXM_CACHED_ORIGINALS,
+  VXM_CL_ENTRIES = VXM_CACHED_ENTRIES,
+  VXM_CL_NOISE = VXM_CACHED_NOISE,
   VXM_CL_FLIPS = VXM_RESIDENTS, /**< a bit per voxel of a tile; zero between uses */
-  VXM_CL_LARGE,                 /**< how many facets of many columns, and which */
+  VXM_CL_LARGE,                 /**< how many triangles of many columns, and which */
   VXM_CL_RESULT,                /**< two: one is read while the other is made */
   VXM_CL_RESULT2,
   VXM_CL_MASK,    /**< contested voxels of a tile */
@@ -93,10 +93,10 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_DIGITS, /**< how often each occurs in each block of what is sorted */
   VXM_CL_SORT_KEYS,
   VXM_CL_SORT_VALUES,
-  VXM_CL_PARTS,  /**< of each facet the part, and above it the role */
-  VXM_CL_COUNTS, /**< tiles of each facet, then where its pairs begin */
+  VXM_CL_PARTS,  /**< of each triangle the part, and above it the role */
+  VXM_CL_COUNTS, /**< tiles of each triangle, then where its pairs begin */
   VXM_CL_TILE_KEYS,
-  VXM_CL_TILE_FACETS,
+  VXM_CL_TILE_TRIANGLES,
   VXM_CL_GROUPS, /**< how many voxels of each are set */
   VXM_CL_LISTS,  /**< where the pairs of each tile begin and end */
   /* Octrees, freed when one is made. Arrays "of all nodes" hold level after level, the lowest first. */
@@ -148,7 +148,7 @@ typedef struct vxm_opencl {
   size_t group; /**< work-items of a group: a power of two that all kernels made so far can have */
   vxm_cl_buffer buffers[VXM_CL_BUFFERS];
   vxm_device_cache resident;
-  uint64_t parts_serial; /**< of the facets whose parts are there, too */
+  uint64_t parts_serial; /**< of the triangles whose parts are there, too */
   vxm_cl_stages *stages; /**< NULL; else the device is waited for after each, and its time is added */
 } vxm_opencl;
 
@@ -235,11 +235,11 @@ vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_erro
 /** Waits for it; also after a failure. Returns `status`, or the first failure. */
 vxm_status vxm_cl_return_end(vxm_opencl *engine, vxm_cl_return *back, vxm_status status, vxm_error *error);
 
-/* ---- Facets ---- */
+/* ---- Triangles ---- */
 
-/** Brings to the device which part each facet belongs to, and above ROLE_SHIFT its role (cl_tiles.c). */
-vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_triangle_set *facets, vxm_error *error);
-/** Empties the list of facets that work-groups do, with room for all of so many. */
-vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t facets, vxm_error *error);
+/** Brings to the device which part each triangle belongs to, and above ROLE_SHIFT its role (cl_tiles.c). */
+vxm_status vxm_cl_place_parts(vxm_opencl *engine, const vxm_triangle_set *triangles, vxm_error *error);
+/** Empties the list of triangles that work-groups do, with room for all of so many. */
+vxm_status vxm_cl_clear_large(vxm_opencl *engine, size_t triangles, vxm_error *error);
 
 #endif

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * The fast path: all facets of a pass at once, along one axis. A compute shader flips what facets of few
- * columns cross and lists the others, which are drawn; fragments flip what these cross. Then a prefix XOR
- * along the axis. Whether a facet covers a column, and where it crosses it, is computed in the CPU's integers
- * (raster_body.inc).
+ * The fast path: all triangles of a pass at once, along one axis. A compute shader flips what triangles of
+ * few columns cross and lists the others, which are drawn; fragments flip what these cross. Then a prefix XOR
+ * along the axis. Whether a triangle covers a column, and where it crosses it, is computed in the CPU's
+ * integers (raster_body.inc).
  */
 #include "gpu/opengl/opengl.h"
 
 enum {
-  FEW_COLUMNS = 24, /**< a facet with no more is not worth drawing */
+  FEW_COLUMNS = 24, /**< a triangle with no more is not worth drawing */
   LARGE_HEADER = 4  /**< words of an indirect draw */
 };
 
@@ -22,7 +22,7 @@ static vxm_gl_job job_of(const vxm_opengl *engine, const vxm_slice_job *tile,
 static vxm_status find(vxm_opengl *engine, const vxm_gl_job *gl_job, vxm_error *error) {
   static const uint32_t header[LARGE_HEADER] = {0, 1, 0, 0};
   const vxm_gl *gl = &engine->context.gl;
-  size_t large = (LARGE_HEADER + (size_t)gl_job->columns.facet_count) * sizeof(uint32_t);
+  size_t large = (LARGE_HEADER + (size_t)gl_job->columns.triangle_count) * sizeof(uint32_t);
   vxm_status status = vxm_gl_reserve(engine, VXM_GL_LARGE, large, error);
   if (status == VXM_OK)
     status = vxm_gl_upload(engine, VXM_GL_LARGE, header, sizeof header, error);
@@ -38,12 +38,12 @@ static vxm_status find(vxm_opengl *engine, const vxm_gl_job *gl_job, vxm_error *
   vxm_gl_bind(engine, 2, VXM_GL_ORDER);
   vxm_gl_bind(engine, 3, VXM_GL_FLIPS);
   vxm_gl_bind(engine, 4, VXM_GL_LARGE);
-  vxm_gl_dispatch(gl, gl_job->columns.facet_count, false);
+  vxm_gl_dispatch(gl, gl_job->columns.triangle_count, false);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   return VXM_OK;
 }
 
-/** Draws the listed facets, in viewports as large as the driver has them. */
+/** Draws the listed triangles, in viewports as large as the driver has them. */
 static vxm_status draw(vxm_opengl *engine, vxm_gl_job *gl_job, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   int64_t most = engine->base.info.viewport;
@@ -143,12 +143,12 @@ vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_slice_job *tile, const v
     status = vxm_gl_reserve(engine, into, bytes, error);
   for (size_t p = 0; p < passes->count && status == VXM_OK; p++) {
     gl_job.columns.ordered = passes->ordered;
-    gl_job.columns.facet_first = (uint32_t)(passes->ordered ? begin : passes->first);
-    gl_job.columns.facet_count = (uint32_t)(passes->facet_end[p] - begin);
-    begin = passes->facet_end[p];
-    if (gl_job.columns.facet_count > 0)
+    gl_job.columns.triangle_first = (uint32_t)(passes->ordered ? begin : passes->first);
+    gl_job.columns.triangle_count = (uint32_t)(passes->triangle_end[p] - begin);
+    begin = passes->triangle_end[p];
+    if (gl_job.columns.triangle_count > 0)
       status = find(engine, &gl_job, error);
-    if (status == VXM_OK && gl_job.columns.facet_count > 0 && engine->can_pull)
+    if (status == VXM_OK && gl_job.columns.triangle_count > 0 && engine->can_pull)
       status = draw(engine, &gl_job, error);
     if (status == VXM_OK)
       status = flip_far(engine, &gl_job, job, passes, p, error);

@@ -28,14 +28,14 @@ static vxm_status draw(vxm_opengl *engine, const vxm_device_transform_job *job, 
 
 static vxm_status move(vxm_opengl *engine, vxm_snapped_points *placed, const vxm_move_job *job, bool *done,
                        vxm_error *error) {
-  const vxm_triangle_set *facets = job->facets;
+  const vxm_triangle_set *triangles = job->triangles;
   vxm_device_transform_job gl_job = vxm_device_transform_job_of(placed, job->motion);
-  if (!vxm_device_cache_motion(&engine->resident, job->motion, facets->point_count))
+  if (!vxm_device_cache_motion(&engine->resident, job->motion, triangles->point_count))
     return VXM_OK;
   vxm_status status = draw(engine, &gl_job, error);
   if (status == VXM_OK)
     status = vxm_gl_download(engine, VXM_GL_POINTS, placed->narrow,
-                             facets->first_apex * sizeof *placed->narrow, error);
+                             triangles->first_apex * sizeof *placed->narrow, error);
   return status == VXM_OK ? vxm_device_cache_moved(&engine->resident, placed, job, done, error) : status;
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Slicing as published: every facet makes a tetrahedron with the apex of its part, and slice after slice the
- * cross-sections of those that meet it are drawn with XOR into a layer of the presence buffer (Rueda et al.,
- * section 5; Ogayar et al., section III-B). The CPU lists the facets of each slice.
+ * Slicing as published: every triangle makes a tetrahedron with the apex of its part, and slice after slice
+ * the cross-sections of those that meet it are drawn with XOR into a layer of the presence buffer (Rueda et
+ * al., section 5; Ogayar et al., section III-B). The CPU lists the triangles of each slice.
  */
 #include "base/rng.h"
 #include "gpu/opengl/opengl.h"
@@ -12,7 +12,7 @@
 enum {
   LAYERS = 64,        /**< slices drawn before they are packed */
   RANDOM = 3 * 16384, /**< numbers in the circular buffer */
-  LIST_MOST = 1 << 24 /**< facets listed at a time */
+  LIST_MOST = 1 << 24 /**< triangles listed at a time */
 };
 
 /** Presence buffers are no larger than this. */
@@ -31,28 +31,29 @@ typedef struct slicing {
   const vxm_slice_job *tile;
   const vxm_parity_union_job *job;
   const vxm_disjoint_passes *passes;
-  size_t facet_begin, facet_end; /**< places in the lists of the passes */
-  vxm_slice_job_columns columns; /**< axes and voxels of the tile */
+  size_t triangle_begin, triangle_end; /**< places in the lists of the passes */
+  vxm_slice_job_columns columns;       /**< axes and voxels of the tile */
   slice_job gl_job;
   int64_t begin, end;       /**< slices that are drawn together */
-  size_t first[LAYERS + 1]; /**< of each slice: where its facets begin in the list */
+  size_t first[LAYERS + 1]; /**< of each slice: where its triangles begin in the list */
 } slicing;
 
-static uint32_t facet_at(const slicing *s, size_t place) {
+static uint32_t triangle_at(const slicing *s, size_t place) {
   return s->passes->ordered ? s->passes->order[place] : (uint32_t)(s->passes->first + place);
 }
 
-/* ---- Lists of facets ---- */
+/* ---- Lists of triangles ---- */
 
-/** Slices, of those drawn together, that the tetrahedron of a facet may meet. */
-static bool slices_of(const slicing *s, uint32_t facet, int64_t *begin, int64_t *end) {
-  const vxm_triangle_set *facets = s->job->facets;
+/** Slices, of those drawn together, that the tetrahedron of a triangle may meet. */
+static bool slices_of(const slicing *s, uint32_t triangle, int64_t *begin, int64_t *end) {
+  const vxm_triangle_set *triangles = s->job->triangles;
   const vxm_lattice *lattice = &s->job->placed->lattice;
   int w = s->columns.axes[2];
-  int64_t apex = vxm_snapped_points_at(s->job->placed, vxm_apex_of(facets, facets->part[facet])).at[w];
+  int64_t apex =
+      vxm_snapped_points_at(s->job->placed, vxm_apex_of(triangles, triangles->part[triangle])).at[w];
   int64_t low = apex, high = apex + lattice->unit / 16; /* it is moved a little: shaders/section.glsl */
   for (int c = 0; c < 3; c++) {
-    int64_t at = vxm_snapped_points_at(s->job->placed, facets->corners[facet][c]).at[w];
+    int64_t at = vxm_snapped_points_at(s->job->placed, triangles->corners[triangle][c]).at[w];
     low = vxm_min(low, at);
     high = vxm_max(high, at);
   }
@@ -63,11 +64,11 @@ static bool slices_of(const slicing *s, uint32_t facet, int64_t *begin, int64_t 
   return *begin < *end;
 }
 
-static void count_facets(slicing *s) {
+static void count_triangles(slicing *s) {
   size_t count[LAYERS + 1] = {0}, sum = 0;
-  for (size_t i = s->facet_begin; i < s->facet_end; i++) {
+  for (size_t i = s->triangle_begin; i < s->triangle_end; i++) {
     int64_t begin, end;
-    if (!slices_of(s, facet_at(s, i), &begin, &end))
+    if (!slices_of(s, triangle_at(s, i), &begin, &end))
       continue;
     for (int64_t k = begin; k < end; k++)
       count[k - s->begin]++;
@@ -78,18 +79,18 @@ static void count_facets(slicing *s) {
   }
 }
 
-/** Lists facets by slice; fewer slices are drawn together where the list would be long. */
-static vxm_status list_facets(slicing *s, vxm_error *error) {
+/** Lists triangles by slice; fewer slices are drawn together where the list would be long. */
+static vxm_status list_triangles(slicing *s, vxm_error *error) {
   vxm_context *context = s->engine->base.context;
-  count_facets(s);
+  count_triangles(s);
   while (s->first[s->end - s->begin] > LIST_MOST && s->end - s->begin > 1) {
     s->end = s->begin + (s->end - s->begin) / 2;
-    count_facets(s);
+    count_triangles(s);
   }
   size_t total = s->first[s->end - s->begin], next[LAYERS];
   if (total > INT32_MAX / 6)
     return vxm_fail(error, VXM_ERROR_RANGE,
-                    "one slice meets %zu facets, more than one draw may have; use "
+                    "one slice meets %zu triangles, more than one draw may have; use "
                     "--gl-method columns",
                     total);
   vxm_error local = VXM_ERROR_INIT;
@@ -99,13 +100,13 @@ static vxm_status list_facets(slicing *s, vxm_error *error) {
     return local.code;
   }
   memcpy(next, s->first, sizeof next);
-  for (size_t i = s->facet_begin; i < s->facet_end && total > 0; i++) {
+  for (size_t i = s->triangle_begin; i < s->triangle_end && total > 0; i++) {
     int64_t begin, end;
-    uint32_t facet = facet_at(s, i);
-    if (!slices_of(s, facet, &begin, &end))
+    uint32_t triangle = triangle_at(s, i);
+    if (!slices_of(s, triangle, &begin, &end))
       continue;
     for (int64_t k = begin; k < end; k++)
-      list[next[k - s->begin]++] = facet;
+      list[next[k - s->begin]++] = triangle;
   }
   vxm_status status = vxm_gl_upload(s->engine, VXM_GL_LARGE, list, total * sizeof *list, error);
   vxm_free(context, list);
@@ -168,7 +169,7 @@ static void draw_layers(slicing *s) {
     gl->LogicOp(GL_XOR);
   }
   for (int64_t k = 0; k < s->end - s->begin; k++) {
-    GLsizei facets = (GLsizei)(s->first[k + 1] - s->first[k]);
+    GLsizei triangles = (GLsizei)(s->first[k + 1] - s->first[k]);
     gl->FramebufferTextureLayer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, presence->texture, 0, (GLint)k);
     gl->DrawBuffers(1, &colour);
     clear_layer(gl, format);
@@ -178,8 +179,8 @@ static void draw_layers(slicing *s) {
     }
     gl->Uniform1ui(0, (GLuint)s->first[k]);
     gl->Uniform1i(1, (GLint)(s->begin + k));
-    if (facets > 0)
-      gl->DrawArrays(GL_TRIANGLES, 0, (by_vertex ? 6 : 3) * facets);
+    if (triangles > 0)
+      gl->DrawArrays(GL_TRIANGLES, 0, (by_vertex ? 6 : 3) * triangles);
   }
   gl->Disable(GL_COLOR_LOGIC_OP);
   gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
@@ -241,7 +242,7 @@ static vxm_status draw_slab(slicing *s, vxm_error *error) {
   int64_t area = vxm_min(most, last[0] - first[0]) * vxm_min(most, last[1] - first[1]);
   int64_t layers = vxm_min(vxm_min(LAYERS, s->engine->base.info.layers), last[2] - s->begin);
   s->end = s->begin + vxm_max(1, vxm_min(layers, presence_most / area));
-  vxm_status status = list_facets(s, error);
+  vxm_status status = list_triangles(s, error);
   for (int64_t v = first[1]; v < last[1] && status == VXM_OK; v += most)
     for (int64_t u = first[0]; u < last[0] && status == VXM_OK; u += most) {
       s->gl_job.view[0] = (int32_t)u;
@@ -307,9 +308,9 @@ static vxm_status draw_pass(slicing *s, size_t pass, vxm_gl_buffer_id into, vxm_
 }
 
 bool vxm_gl_can_slice(const vxm_parity_union_job *job) {
-  const vxm_split *split = &job->facets->split;
-  return (job->roles & VXM_FACET_CONE) || job->part_end <= split->kind_end[VXM_PART_CLOSED] ||
-         ((job->roles & VXM_FACET_CAP) && job->part_end <= split->kind_end[VXM_PART_CAPPED]);
+  const vxm_split *split = &job->triangles->split;
+  return (job->roles & VXM_ROLE_CONE) || job->part_end <= split->kind_end[VXM_PART_CLOSED] ||
+         ((job->roles & VXM_ROLE_CAP) && job->part_end <= split->kind_end[VXM_PART_CAPPED]);
 }
 
 vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
@@ -334,9 +335,9 @@ vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slice_job *tile, const vx
   if (status == VXM_OK)
     status = start_random(&s, error);
   for (size_t p = 0; p < passes->count && status == VXM_OK; p++) {
-    s.facet_end = passes->facet_end[p];
+    s.triangle_end = passes->triangle_end[p];
     status = draw_pass(&s, p, into, error);
-    s.facet_begin = s.facet_end;
+    s.triangle_begin = s.triangle_end;
   }
   return status;
 }

@@ -85,7 +85,7 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
                         vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
   vxm_disjoint_passes passes = {0};
-  size_t parts = job->facets->split.part_count;
+  size_t parts = job->triangles->split.part_count;
   if (job->part_begin >= job->part_end) {
     if (job->fresh)
       clear(window);
@@ -94,7 +94,7 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_device_cache_facets(&engine->resident, job->facets, job->placed, error);
+  status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
   if (status == VXM_OK)
     status = create_passes(&passes, engine, window, job, error);
   if (status == VXM_OK && job->has_voxels)
@@ -111,15 +111,15 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
 /* ---- Votes ---- */
 
 /** The voters of an election: how many are united, and where the words of each are. */
-typedef struct ballot {
+typedef struct voter_set {
   const vxm_vote_job *job;
   vxm_gl_buffer_id words[VXM_VOTERS];
   int count;
-} ballot;
+} voter_set;
 
 /** The tetrahedra, if not asked, vote as x does. */
-static ballot ballot_of(const vxm_vote_job *job) {
-  ballot b = {.job = job, .count = job->tetra ? VXM_VOTERS : VXM_VOTERS - 1};
+static voter_set voters_of(const vxm_vote_job *job) {
+  voter_set b = {.job = job, .count = job->tetra ? VXM_VOTERS : VXM_VOTERS - 1};
   for (int v = 0; v < VXM_VOTERS; v++)
     b.words[v] = (vxm_gl_buffer_id)(v < b.count ? VXM_GL_VOTER_X + v : VXM_GL_VOTER_X);
   return b;
@@ -127,7 +127,7 @@ static ballot ballot_of(const vxm_vote_job *job) {
 
 /** Makes the words of one voter. The lists of all voters share their buffers, so that each is divided anew.
  */
-static vxm_status make_voter(vxm_opengl *engine, const vxm_slice_job *tile, const ballot *b, int v,
+static vxm_status make_voter(vxm_opengl *engine, const vxm_slice_job *tile, const voter_set *b, int v,
                              vxm_error *error) {
   vxm_parity_union_job job = vxm_voter(b->job, tile->window, v);
   vxm_disjoint_passes passes = {0};
@@ -140,8 +140,8 @@ static vxm_status make_voter(vxm_opengl *engine, const vxm_slice_job *tile, cons
   return status;
 }
 
-static vxm_status count_votes(vxm_opengl *engine, const vxm_slice_job *tile, const ballot *b, vxm_vote rule,
-                              vxm_error *error) {
+static vxm_status count_votes(vxm_opengl *engine, const vxm_slice_job *tile, const voter_set *b,
+                              vxm_vote rule, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   vxm_status status = vxm_gl_use(engine, VXM_GL_VOTE, error);
   if (status != VXM_OK)
@@ -161,7 +161,7 @@ static vxm_status count_votes(vxm_opengl *engine, const vxm_slice_job *tile, con
 }
 
 static vxm_status elect_tile(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_vote_job *job,
-                             const ballot *b, vxm_vote_tally *tally, vxm_error *error) {
+                             const voter_set *b, vxm_vote_tally *tally, vxm_error *error) {
   uint32_t counted[2] = {0, 0};
   vxm_status status = vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
   if (status == VXM_OK)
@@ -182,7 +182,7 @@ static vxm_status elect_tile(vxm_opengl *engine, const vxm_slice_job *tile, cons
 static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, const vxm_vote_job *job,
                               vxm_vote_tally *tally, vxm_error *error) {
   vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
-  ballot b = ballot_of(job);
+  voter_set b = voters_of(job);
   int64_t slices = 1;
   int which = 0;
   vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
@@ -201,16 +201,16 @@ static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, cons
   return vxm_gl_finish(engine, back, status, error);
 }
 
-vxm_status vxm_gl_elect(vxm_engine *base, const vxm_window *window, const vxm_vote_job *job,
-                        vxm_vote_tally *tally, vxm_error *error) {
+vxm_status vxm_gl_vote(vxm_engine *base, const vxm_window *window, const vxm_vote_job *job,
+                       vxm_vote_tally *tally, vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
-  size_t parts = job->facets->split.part_count;
+  size_t parts = job->triangles->split.part_count;
   if (job->part_begin >= job->part_end)
     return VXM_OK;
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_device_cache_facets(&engine->resident, job->facets, job->placed, error);
+  status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
   if (status == VXM_OK && job->has_voxels)
     status = clear_touched(engine, parts, error);
   if (status == VXM_OK)

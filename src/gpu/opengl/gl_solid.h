@@ -9,8 +9,8 @@ vxm_status vxm_gl_move(vxm_engine *engine, vxm_snapped_points *placed, const vxm
                        vxm_error *error);
 vxm_status vxm_gl_unite(vxm_engine *engine, const vxm_window *window, const vxm_parity_union_job *job,
                         vxm_error *error);
-vxm_status vxm_gl_elect(vxm_engine *engine, const vxm_window *window, const vxm_vote_job *job,
-                        vxm_vote_tally *tally, vxm_error *error);
+vxm_status vxm_gl_vote(vxm_engine *engine, const vxm_window *window, const vxm_vote_job *job,
+                       vxm_vote_tally *tally, vxm_error *error);
 
 /** As vxm_surface_add (gl_surface.c). */
 vxm_status vxm_gl_surface(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,

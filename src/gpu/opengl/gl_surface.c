@@ -30,7 +30,7 @@ static vxm_status find(vxm_opengl *engine, const surface_job *job, vxm_error *er
   static const uint32_t header[LARGE_HEADER] = {0, 1, 0, 0};
   const vxm_gl *gl = &engine->context.gl;
   vxm_status status = vxm_gl_reserve(
-      engine, VXM_GL_LARGE, (LARGE_HEADER + (size_t)job->tile.facet_count) * sizeof(uint32_t), error);
+      engine, VXM_GL_LARGE, (LARGE_HEADER + (size_t)job->tile.triangle_count) * sizeof(uint32_t), error);
   if (status == VXM_OK)
     status = vxm_gl_upload(engine, VXM_GL_LARGE, header, sizeof header, error);
   if (status == VXM_OK)
@@ -40,7 +40,7 @@ static vxm_status find(vxm_opengl *engine, const surface_job *job, vxm_error *er
   if (status != VXM_OK)
     return status;
   bind(engine);
-  vxm_gl_dispatch(gl, job->tile.facet_count, false);
+  vxm_gl_dispatch(gl, job->tile.triangle_count, false);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   return VXM_OK;
 }

@@ -186,7 +186,7 @@ static void destroy(vxm_engine *base) {
 
 static const vxm_engine_ops opengl_ops = {.move = vxm_gl_move,
                                           .unite = vxm_gl_unite,
-                                          .elect = vxm_gl_elect,
+                                          .vote = vxm_gl_vote,
                                           .surface = vxm_gl_surface,
                                           .color = vxm_gl_color,
                                           .destroy = destroy};

@@ -26,18 +26,18 @@ typedef enum vxm_gl_program_id {
 } vxm_gl_program_id;
 
 typedef enum vxm_gl_buffer_id {
-  VXM_GL_POINTS = VXM_RESIDENT_POINTS,
-  VXM_GL_CORNERS = VXM_RESIDENT_CORNERS,
-  VXM_GL_APEXES = VXM_RESIDENT_APEXES,
-  VXM_GL_ORDER = VXM_RESIDENT_ORDER,
-  VXM_GL_BOXES = VXM_RESIDENT_BOXES,
-  VXM_GL_SURFACE_POINTS = VXM_RESIDENT_SURFACE_POINTS,
-  VXM_GL_SURFACE_CORNERS = VXM_RESIDENT_SURFACE_CORNERS,
-  VXM_GL_ORIGINALS = VXM_RESIDENT_ORIGINALS,
-  VXM_GL_ENTRIES = VXM_RESIDENT_ENTRIES,
-  VXM_GL_NOISE = VXM_RESIDENT_NOISE,
+  VXM_GL_POINTS = VXM_CACHED_POINTS,
+  VXM_GL_CORNERS = VXM_CACHED_CORNERS,
+  VXM_GL_APEXES = VXM_CACHED_APEXES,
+  VXM_GL_ORDER = VXM_CACHED_ORDER,
+  VXM_GL_BOXES = VXM_CACHED_BOXES,
+  VXM_GL_SURFACE_POINTS = VXM_CACHED_SURFACE_POINTS,
+  VXM_GL_SURFACE_CORNERS = VXM_CACHED_SURFACE_CORNERS,
+  VXM_GL_ORIGINALS = VXM_CACHED_ORIGINALS,
+  VXM_GL_ENTRIES = VXM_CACHED_ENTRIES,
+  VXM_GL_NOISE = VXM_CACHED_NOISE,
   VXM_GL_FLIPS = VXM_RESIDENTS, /**< a bit per voxel of a tile; zero between uses */
-  VXM_GL_LARGE,                 /**< the indirect draw, and its facets */
+  VXM_GL_LARGE,                 /**< the indirect draw, and its triangles */
   VXM_GL_JOB,                   /**< vxm_gl_job */
   VXM_GL_RESULT,                /**< what is inside, a bit per voxel of a tile */
   VXM_GL_MASK,                  /**< contested voxels of a tile */
@@ -87,7 +87,7 @@ typedef struct vxm_opengl {
   const vxm_gl_format *format; /**< that passed the self-test */
   vxm_gl_presence presence;
   vxm_device_cache resident;
-  /** Vertex and geometry shaders may read buffers; else compute shaders do all facets, and slices are
+  /** Vertex and geometry shaders may read buffers; else compute shaders do all triangles, and slices are
    * refused. */
   bool can_pull, can_pull_late;
 } vxm_opengl;
@@ -181,7 +181,7 @@ vxm_status vxm_gl_touch(vxm_opengl *engine, const vxm_slice_job *tile, const vxm
 vxm_status vxm_gl_columns(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
                           const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error);
 
-/** Whether the job's facets close all of its parts, as tetrahedra need. */
+/** Whether the job's triangles close all of its parts, as tetrahedra need. */
 bool vxm_gl_can_slice(const vxm_parity_union_job *job);
 /** The XOR of tetrahedra for such a job (gl_slices.c). The apexes have been placed. */
 vxm_status vxm_gl_slices(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,

@@ -42,14 +42,14 @@ static void store_rows(size_t task, int worker, void *payload) {
   }
 }
 
-vxm_status vxm_byte_rows_put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error) {
+vxm_status vxm_byte_rows_put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error) {
   size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim,
-         most = chunk_rows(&slices->space, window->layout);
+         most = chunk_rows(&writer->space, window->layout);
   for (size_t row = 0; row < rows; row += most) {
-    storing s = {window, slices->state, row, rows - row < most ? rows - row : most};
-    vxm_parallel(slices->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
-    vxm_output_write(slices->output, s.bytes, s.rows * (size_t)window->fast_dim);
-    vxm_status status = vxm_grid_writer_step_rows(slices, window, row + s.rows, error);
+    storing s = {window, writer->state, row, rows - row < most ? rows - row : most};
+    vxm_parallel(writer->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
+    vxm_output_write(writer->output, s.bytes, s.rows * (size_t)window->fast_dim);
+    vxm_status status = vxm_grid_writer_step_rows(writer, window, row + s.rows, error);
     if (status != VXM_OK)
       return status;
   }

@@ -8,6 +8,6 @@
 /** What the state of such a format takes (vxm_grid_writer_kind.state_bytes). */
 size_t vxm_byte_rows_bytes(const vxm_space *space, vxm_layout layout);
 /** Writes the slices of a window (vxm_grid_writer_kind.put), on the threads of the context. */
-vxm_status vxm_byte_rows_put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error);
+vxm_status vxm_byte_rows_put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error);
 
 #endif

@@ -36,12 +36,12 @@ typedef struct vxm_grid_writer_kind {
   vxm_status (*check)(const vxm_space *space, const char *path, vxm_error *error);
   size_t (*state_bytes)(const vxm_space *space);
   /** Sets up `state` and writes the header. */
-  vxm_status (*begin)(vxm_grid_writer *slices, vxm_error *error);
-  vxm_status (*put)(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error);
+  vxm_status (*begin)(vxm_grid_writer *writer, vxm_error *error);
+  vxm_status (*put)(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error);
   /** Writes what is left after the last slice. */
-  vxm_status (*end)(vxm_grid_writer *slices, vxm_error *error);
+  vxm_status (*end)(vxm_grid_writer *writer, vxm_error *error);
   /** Frees what `state` holds, whether or not the file was written; NULL = it holds nothing. */
-  void (*drop)(vxm_grid_writer *slices);
+  void (*drop)(vxm_grid_writer *writer);
   /** About what `state` holds beside itself; NULL = nothing. */
   uint64_t (*held_bytes)(const vxm_space *space);
   /** What the file will have at least, without its header; NULL = that is not known. */
@@ -49,11 +49,11 @@ typedef struct vxm_grid_writer_kind {
 } vxm_grid_writer_kind;
 
 /** For `put` and `end`, now and then: notices a failed write, and reports progress if that is wanted. */
-vxm_status vxm_grid_writer_step(vxm_grid_writer *slices, double slices_done, vxm_error *error);
+vxm_status vxm_grid_writer_step(vxm_grid_writer *writer, double slices_done, vxm_error *error);
 /** The same after some rows, counted through the slices of a window. */
-static inline vxm_status vxm_grid_writer_step_rows(vxm_grid_writer *slices, const vxm_window *window,
+static inline vxm_status vxm_grid_writer_step_rows(vxm_grid_writer *writer, const vxm_window *window,
                                                    size_t rows, vxm_error *error) {
-  return vxm_grid_writer_step(slices, (double)window->begin + (double)rows / (double)window->middle_dim,
+  return vxm_grid_writer_step(writer, (double)window->begin + (double)rows / (double)window->middle_dim,
                               error);
 }
 
@@ -67,7 +67,7 @@ typedef struct vxm_grid_format {
   /** Reads numbers, where `read` does not take them for bits; NULL = it holds only bits. */
   vxm_status (*read_field)(vxm_field **out, const vxm_input *input, vxm_error *error);
   /** NULL = the surface is written as a mesh of this name. */
-  const vxm_grid_writer_kind *slices;
+  const vxm_grid_writer_kind *writer;
   /** Writes an octree as it is; NULL = slice by slice. */
   vxm_status (*write_sparse)(const vxm_sparse *sparse, const char *path, vxm_error *error);
 } vxm_grid_format;

@@ -11,9 +11,9 @@ static vxm_status check(const vxm_grid_format *format, const vxm_space *space, c
                         vxm_error *error) {
   if (!format)
     return VXM_ERROR_ARGUMENT;
-  if (!format->slices || !format->slices->check)
+  if (!format->writer || !format->writer->check)
     return VXM_OK;
-  return format->slices->check(space, path, error);
+  return format->writer->check(space, path, error);
 }
 
 vxm_status vxm_grid_writer_plan_of(vxm_grid_writer_plan *out, const vxm_space *space, const char *path,
@@ -21,9 +21,9 @@ vxm_status vxm_grid_writer_plan_of(vxm_grid_writer_plan *out, const vxm_space *s
   *out = (vxm_grid_writer_plan){0};
   const vxm_grid_format *found = vxm_grid_format_for(path, format, error);
   vxm_status status = check(found, space, path, error);
-  if (status != VXM_OK || !found->slices)
+  if (status != VXM_OK || !found->writer)
     return status;
-  const vxm_grid_writer_kind *kind = found->slices;
+  const vxm_grid_writer_kind *kind = found->writer;
   out->streams = true;
   out->layout = kind->layout;
   out->bytes = sizeof(vxm_grid_writer) + kind->state_bytes(space) +
@@ -34,21 +34,21 @@ vxm_status vxm_grid_writer_plan_of(vxm_grid_writer_plan *out, const vxm_space *s
   return VXM_OK;
 }
 
-static void slices_free(vxm_grid_writer *slices) {
-  vxm_context *context = slices->context;
-  if (slices->is_begun && slices->format->slices->drop)
-    slices->format->slices->drop(slices);
-  vxm_free(context, slices->state);
-  vxm_free(context, slices);
+static void slices_free(vxm_grid_writer *writer) {
+  vxm_context *context = writer->context;
+  if (writer->is_begun && writer->format->writer->drop)
+    writer->format->writer->drop(writer);
+  vxm_free(context, writer->state);
+  vxm_free(context, writer);
   vxm_context_release(context);
 }
 
-void vxm_grid_writer_abort(vxm_grid_writer *slices) {
-  if (!slices)
+void vxm_grid_writer_abort(vxm_grid_writer *writer) {
+  if (!writer)
     return;
-  vxm_output_abort(slices->sidecar);
-  vxm_output_abort(slices->output);
-  slices_free(slices);
+  vxm_output_abort(writer->sidecar);
+  vxm_output_abort(writer->output);
+  slices_free(writer);
 }
 
 /** Allocates all that the writer holds, but for the outputs. */
@@ -59,23 +59,23 @@ static vxm_status create(vxm_grid_writer **out, vxm_context *context, const vxm_
   if (status != VXM_OK)
     return status;
   vxm_error local = VXM_ERROR_INIT;
-  vxm_grid_writer *slices = vxm_calloc(owner, 1, sizeof *slices, &local);
-  if (!slices) {
+  vxm_grid_writer *writer = vxm_calloc(owner, 1, sizeof *writer, &local);
+  if (!writer) {
     vxm_context_release(owner);
     vxm_error_pass(error, &local);
     return local.code;
   }
-  slices->context = owner;
-  slices->format = format;
-  slices->space = *space;
-  slices->length = space->dims[format->slices->layout.slow];
-  slices->state = vxm_alloc(owner, format->slices->state_bytes(space), 1, &local);
-  if (!slices->state) {
-    slices_free(slices);
+  writer->context = owner;
+  writer->format = format;
+  writer->space = *space;
+  writer->length = space->dims[format->writer->layout.slow];
+  writer->state = vxm_alloc(owner, format->writer->state_bytes(space), 1, &local);
+  if (!writer->state) {
+    slices_free(writer);
     vxm_error_pass(error, &local);
     return local.code;
   }
-  *out = slices;
+  *out = writer;
   return VXM_OK;
 }
 
@@ -84,71 +84,71 @@ vxm_status vxm_grid_writer_open(vxm_grid_writer **out, vxm_context *context, con
   *out = NULL;
   const vxm_grid_format *found = vxm_grid_format_for(path, format, error);
   vxm_status status = check(found, space, path, error);
-  if (status == VXM_OK && !found->slices)
+  if (status == VXM_OK && !found->writer)
     status = vxm_fail(error, VXM_ERROR_ARGUMENT, "the surface as .%s needs the whole grid", found->name);
-  vxm_grid_writer *slices = NULL;
+  vxm_grid_writer *writer = NULL;
   if (status == VXM_OK)
-    status = create(&slices, context, found, space, error);
+    status = create(&writer, context, found, space, error);
   if (status == VXM_OK)
-    status = vxm_output_open(&slices->output, context, path, error);
-  if (status == VXM_OK && found->slices->file_bytes)
-    status = vxm_output_expect(slices->output, found->slices->file_bytes(space), error);
-  if (status == VXM_OK && found->slices->sidecar)
-    status = vxm_sidecar_open(&slices->sidecar, context, space, path, found->slices->sidecar, NULL, error);
+    status = vxm_output_open(&writer->output, context, path, error);
+  if (status == VXM_OK && found->writer->file_bytes)
+    status = vxm_output_expect(writer->output, found->writer->file_bytes(space), error);
+  if (status == VXM_OK && found->writer->sidecar)
+    status = vxm_sidecar_open(&writer->sidecar, context, space, path, found->writer->sidecar, NULL, error);
   if (status == VXM_OK) {
-    slices->is_begun = true;
-    status = found->slices->begin(slices, error);
+    writer->is_begun = true;
+    status = found->writer->begin(writer, error);
   }
   if (status != VXM_OK) {
-    vxm_grid_writer_abort(slices);
+    vxm_grid_writer_abort(writer);
     return status;
   }
-  *out = slices;
+  *out = writer;
   return VXM_OK;
 }
 
-vxm_layout vxm_grid_writer_layout(const vxm_grid_writer *slices) {
-  return slices->format->slices->layout;
+vxm_layout vxm_grid_writer_layout(const vxm_grid_writer *writer) {
+  return writer->format->writer->layout;
 }
 
-void vxm_grid_writer_report(vxm_grid_writer *slices) {
-  slices->report = true;
+void vxm_grid_writer_report(vxm_grid_writer *writer) {
+  writer->report = true;
 }
 
-vxm_status vxm_grid_writer_step(vxm_grid_writer *slices, double slices_done, vxm_error *error) {
-  if (vxm_output_failed(slices->output)) {
-    vxm_output *output = slices->output;
-    slices->output = NULL;
+vxm_status vxm_grid_writer_step(vxm_grid_writer *writer, double slices_done, vxm_error *error) {
+  if (vxm_output_failed(writer->output)) {
+    vxm_output *output = writer->output;
+    writer->output = NULL;
     return vxm_output_commit(output, error); /* which tells the reason */
   }
-  return slices->report
-             ? vxm_progress(slices->context, "writing", slices_done / (double)slices->length, error)
+  return writer->report
+             ? vxm_progress(writer->context, "writing", slices_done / (double)writer->length, error)
              : VXM_OK;
 }
 
-vxm_status vxm_grid_writer_put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error) {
-  if (!vxm_layouts_equal(window->layout, vxm_grid_writer_layout(slices)) || window->begin != slices->next ||
+vxm_status vxm_grid_writer_put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error) {
+  if (!vxm_layouts_equal(window->layout, vxm_grid_writer_layout(writer)) || window->begin != writer->next ||
       window->end > window->slow_dim)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "slices: %" PRId64 " is the next, not %" PRId64, slices->next,
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "slices: %" PRId64 " is the next, not %" PRId64, writer->next,
                     window->begin);
-  vxm_status status = slices->format->slices->put(slices, window, error);
-  slices->next = window->end;
+  vxm_status status = writer->format->writer->put(writer, window, error);
+  writer->next = window->end;
   return status;
 }
 
-vxm_status vxm_grid_writer_commit(vxm_grid_writer *slices, vxm_error *error) {
-  int64_t all = slices->space.dims[vxm_grid_writer_layout(slices).slow];
+vxm_status vxm_grid_writer_commit(vxm_grid_writer *writer, vxm_error *error) {
+  int64_t all = writer->space.dims[vxm_grid_writer_layout(writer).slow];
   vxm_status status = VXM_OK;
-  if (slices->next != all)
+  if (writer->next != all)
     status = vxm_fail(error, VXM_ERROR_ARGUMENT, "slices: only %" PRId64 " of %" PRId64 " are there",
-                      slices->next, all);
-  slices->report = true;
+                      writer->next, all);
+  writer->report = true;
   if (status == VXM_OK)
-    status = slices->format->slices->end(slices, error);
+    status = writer->format->writer->end(writer, error);
   if (status == VXM_OK) {
-    status = vxm_output_commit_both(slices->output, slices->sidecar, error);
-    slices->output = slices->sidecar = NULL;
+    status = vxm_output_commit_both(writer->output, writer->sidecar, error);
+    writer->output = writer->sidecar = NULL;
   }
-  vxm_grid_writer_abort(slices);
+  vxm_grid_writer_abort(writer);
   return status;
 }

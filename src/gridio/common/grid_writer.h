@@ -40,10 +40,10 @@ vxm_status vxm_grid_writer_plan_of(vxm_grid_writer_plan *out, const vxm_space *s
 vxm_status vxm_grid_writer_open(vxm_grid_writer **out, vxm_context *context, const vxm_space *space,
                                 const char *path, const char *format, vxm_error *error);
 
-vxm_layout vxm_grid_writer_layout(const vxm_grid_writer *slices);
+vxm_layout vxm_grid_writer_layout(const vxm_grid_writer *writer);
 
 /** From now on puts report the progress of the file, as "writing". Otherwise their caller reports. */
-void vxm_grid_writer_report(vxm_grid_writer *slices);
+void vxm_grid_writer_report(vxm_grid_writer *writer);
 
 /**
  * Writes the next slices; the first window begins at slice 0. It uses the context's threads.
@@ -52,7 +52,7 @@ void vxm_grid_writer_report(vxm_grid_writer *slices);
  * @return VXM_OK; VXM_ERROR_ARGUMENT if the window is not next; VXM_ERROR_IO as soon as a write failed;
  *         VXM_ERROR_CANCELLED. After a failure only vxm_grid_writer_abort is allowed.
  */
-vxm_status vxm_grid_writer_put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error);
+vxm_status vxm_grid_writer_put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error);
 
 /**
  * Completes the file after the last slice, and frees the slices either way; after a failure no file is left.
@@ -61,9 +61,9 @@ vxm_status vxm_grid_writer_put(vxm_grid_writer *slices, const vxm_window *window
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT if slices are missing; VXM_ERROR_IO, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_grid_writer_commit(vxm_grid_writer *slices, vxm_error *error);
+vxm_status vxm_grid_writer_commit(vxm_grid_writer *writer, vxm_error *error);
 
 /** Drops the file: none is left. NULL is allowed. */
-void vxm_grid_writer_abort(vxm_grid_writer *slices);
+void vxm_grid_writer_abort(vxm_grid_writer *writer);
 
 #endif

@@ -399,12 +399,12 @@ vxm_status vxm_binvox_header_write(vxm_output *output, const vxm_space *space, i
   return VXM_OK;
 }
 
-static vxm_status begin(vxm_grid_writer *slices, vxm_error *error) {
-  const vxm_space *space = &slices->space;
+static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
+  const vxm_space *space = &writer->space;
   vxm_rle_shape shape = shape_of(space);
-  slices->length = (int64_t)vxm_binvox_side(space);
-  vxm_rle_encoder_begin(slices->state, &shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
-  return vxm_binvox_header_write(slices->output, space, 1, error);
+  writer->length = (int64_t)vxm_binvox_side(space);
+  vxm_rle_encoder_begin(writer->state, &shape, (uint64_t)space->dims[0] * (uint64_t)space->dims[2]);
+  return vxm_binvox_header_write(writer->output, space, 1, error);
 }
 
 /** Writes a run, however long. */
@@ -449,15 +449,15 @@ void vxm_binvox_put_end(vxm_output *output, const vxm_space *space) {
 }
 
 /** The padding beyond the grid along x. */
-static vxm_status end(vxm_grid_writer *slices, vxm_error *error) {
-  uint64_t side = vxm_binvox_side(&slices->space);
-  for (uint64_t x = (uint64_t)slices->space.dims[0]; x < side; x++) {
-    vxm_rle_encoder_skip(slices, side * side);
-    vxm_status status = vxm_grid_writer_step(slices, (double)(x + 1), error);
+static vxm_status end(vxm_grid_writer *writer, vxm_error *error) {
+  uint64_t side = vxm_binvox_side(&writer->space);
+  for (uint64_t x = (uint64_t)writer->space.dims[0]; x < side; x++) {
+    vxm_rle_encoder_skip(writer, side * side);
+    vxm_status status = vxm_grid_writer_step(writer, (double)(x + 1), error);
     if (status != VXM_OK)
       return status;
   }
-  vxm_rle_encoder_end(slices);
+  vxm_rle_encoder_end(writer);
   return VXM_OK;
 }
 
@@ -466,7 +466,7 @@ uint64_t vxm_binvox_bytes(const vxm_space *space) {
   return side * side * side / 255 * 2;
 }
 
-static const vxm_grid_writer_kind slices_kind = {
+static const vxm_grid_writer_kind writer_kind = {
     .layout = VXM_PLANE_Y_FAST,
     .check = vxm_binvox_check,
     .state_bytes = state_bytes,
@@ -476,4 +476,4 @@ static const vxm_grid_writer_kind slices_kind = {
     .file_bytes = vxm_binvox_bytes,
 };
 
-const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, read_field, &slices_kind, NULL};
+const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, read_field, &writer_kind, NULL};

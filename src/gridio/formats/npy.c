@@ -167,19 +167,19 @@ static size_t state_bytes(const vxm_space *space) {
   return vxm_byte_rows_bytes(space, (vxm_layout)VXM_PLANE_Z_FAST);
 }
 
-static vxm_status begin(vxm_grid_writer *slices, vxm_error *error) {
+static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
   (void)error;
-  vxm_npy_header_write(slices->output, "|b1", false, slices->space.dims);
+  vxm_npy_header_write(writer->output, "|b1", false, writer->space.dims);
   return VXM_OK;
 }
 
-static vxm_status end(vxm_grid_writer *slices, vxm_error *error) {
-  (void)slices;
+static vxm_status end(vxm_grid_writer *writer, vxm_error *error) {
+  (void)writer;
   (void)error;
   return VXM_OK;
 }
 
-static const vxm_grid_writer_kind slices_kind = {
+static const vxm_grid_writer_kind writer_kind = {
     .layout = VXM_PLANE_Z_FAST,
     .sidecar = &description,
     .state_bytes = state_bytes,
@@ -189,4 +189,4 @@ static const vxm_grid_writer_kind slices_kind = {
     .file_bytes = vxm_space_voxels,
 };
 
-const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, read_field, &slices_kind, NULL};
+const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, read_field, &writer_kind, NULL};

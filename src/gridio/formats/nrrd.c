@@ -232,18 +232,18 @@ static size_t state_bytes(const vxm_space *space) {
   return vxm_byte_rows_bytes(space, (vxm_layout)VXM_LAYOUT_GRID);
 }
 
-static vxm_status begin(vxm_grid_writer *slices, vxm_error *error) {
+static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
   const vxm_nrrd_values values = {"1 where a voxel is set", VXM_UINT8, 1, NULL};
-  return vxm_nrrd_header_write(slices->output, &values, &slices->space, error);
+  return vxm_nrrd_header_write(writer->output, &values, &writer->space, error);
 }
 
-static vxm_status end(vxm_grid_writer *slices, vxm_error *error) {
-  (void)slices;
+static vxm_status end(vxm_grid_writer *writer, vxm_error *error) {
+  (void)writer;
   (void)error;
   return VXM_OK;
 }
 
-static const vxm_grid_writer_kind slices_kind = {
+static const vxm_grid_writer_kind writer_kind = {
     .layout = VXM_LAYOUT_GRID,
     .state_bytes = state_bytes,
     .begin = begin,
@@ -252,4 +252,4 @@ static const vxm_grid_writer_kind slices_kind = {
     .file_bytes = vxm_space_voxels,
 };
 
-const vxm_grid_format vxm_format_nrrd = {"nrrd", vxm_nrrd_sniff, read_nrrd, read_field, &slices_kind, NULL};
+const vxm_grid_format vxm_format_nrrd = {"nrrd", vxm_nrrd_sniff, read_nrrd, read_field, &writer_kind, NULL};

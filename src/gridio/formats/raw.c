@@ -152,7 +152,7 @@ static bool is_plain(const vxm_window *window) {
   return window->fast_dim % 64 == 0 && vxm_le64(1) == 1;
 }
 
-static vxm_status put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error) {
+static vxm_status put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error) {
   enum { WORDS_PER_STEP = 1 << 19 };
   int64_t rows = window->middle_dim, some = WORDS_PER_STEP / (int64_t)window->row_words;
   size_t words = 0; /* since the last step */
@@ -161,16 +161,16 @@ static vxm_status put(vxm_grid_writer *slices, const vxm_window *window, vxm_err
     for (int64_t begin = 0, end; status == VXM_OK && begin < rows; begin = end) {
       end = vxm_min(begin + some, rows);
       if (is_plain(window))
-        vxm_output_write(slices->output, vxm_window_row(window, begin, slow),
+        vxm_output_write(writer->output, vxm_window_row(window, begin, slow),
                          (size_t)(end - begin) * window->row_words * 8);
       else
-        put_rows(slices->state, slices->output, window, slow, begin, end);
+        put_rows(writer->state, writer->output, window, slow, begin, end);
       words += (size_t)(end - begin) * window->row_words;
       bool last = slow + 1 == window->end && end == rows;
       if (words < WORDS_PER_STEP && !last)
         continue;
       words = 0;
-      status = vxm_grid_writer_step(slices, (double)slow + (double)end / (double)rows, error);
+      status = vxm_grid_writer_step(writer, (double)slow + (double)end / (double)rows, error);
     }
   return status;
 }
@@ -188,18 +188,18 @@ static size_t state_bytes(const vxm_space *space) {
   return sizeof(packer);
 }
 
-static vxm_status begin(vxm_grid_writer *slices, vxm_error *error) {
+static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
   (void)error;
-  *(packer *)slices->state = (packer){0, 0};
+  *(packer *)writer->state = (packer){0, 0};
   return VXM_OK;
 }
 
-static vxm_status end(vxm_grid_writer *slices, vxm_error *error) {
+static vxm_status end(vxm_grid_writer *writer, vxm_error *error) {
   (void)error;
-  const packer *p = slices->state;
+  const packer *p = writer->state;
   unsigned char last[8];
   vxm_store_le64(last, p->pending);
-  vxm_output_write(slices->output, last, (p->bits + 7) / 8);
+  vxm_output_write(writer->output, last, (p->bits + 7) / 8);
   return VXM_OK;
 }
 
@@ -207,7 +207,7 @@ static uint64_t file_bytes(const vxm_space *space) {
   return (vxm_space_voxels(space) + 7) / 8;
 }
 
-static const vxm_grid_writer_kind slices_kind = {
+static const vxm_grid_writer_kind writer_kind = {
     .layout = VXM_LAYOUT_GRID,
     .sidecar = &description,
     .check = check_path,
@@ -218,4 +218,4 @@ static const vxm_grid_writer_kind slices_kind = {
     .file_bytes = file_bytes,
 };
 
-const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, NULL, &slices_kind, NULL};
+const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, NULL, &writer_kind, NULL};

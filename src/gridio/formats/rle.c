@@ -117,11 +117,11 @@ static size_t state_bytes(const vxm_space *space) {
   return vxm_rle_encoder_bytes(&shape, row_count(space));
 }
 
-static vxm_status begin(vxm_grid_writer *slices, vxm_error *error) {
+static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
   (void)error;
-  const vxm_space *space = &slices->space;
+  const vxm_space *space = &writer->space;
   vxm_rle_shape shape = {VXM_RUN_BYTES, (size_t)space->dims[0], 0, 0};
-  vxm_rle_encoder_begin(slices->state, &shape, row_count(space));
+  vxm_rle_encoder_begin(writer->state, &shape, row_count(space));
   unsigned char header[HEADER];
   memcpy(header, magic, sizeof magic);
   for (int a = 0; a < 3; a++) {
@@ -129,17 +129,17 @@ static vxm_status begin(vxm_grid_writer *slices, vxm_error *error) {
     vxm_store_double(header + 32 + 8 * a, space->origin[a]);
     vxm_store_double(header + 56 + 8 * a, space->voxel_size[a]);
   }
-  vxm_output_write(slices->output, header, sizeof header);
+  vxm_output_write(writer->output, header, sizeof header);
   return VXM_OK;
 }
 
-static vxm_status end(vxm_grid_writer *slices, vxm_error *error) {
+static vxm_status end(vxm_grid_writer *writer, vxm_error *error) {
   (void)error;
-  vxm_rle_encoder_end(slices);
+  vxm_rle_encoder_end(writer);
   return VXM_OK;
 }
 
-static const vxm_grid_writer_kind slices_kind = {
+static const vxm_grid_writer_kind writer_kind = {
     .layout = VXM_LAYOUT_GRID,
     .state_bytes = state_bytes,
     .begin = begin,
@@ -147,4 +147,4 @@ static const vxm_grid_writer_kind slices_kind = {
     .end = end,
 };
 
-const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, NULL, &slices_kind, NULL};
+const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, NULL, &writer_kind, NULL};

@@ -19,14 +19,14 @@ typedef struct piece {
   size_t used; /**< bytes between them */
 } piece;
 
-typedef struct writer {
+typedef struct rle_encoder {
   vxm_rle_shape shape;
   vxm_bit_run run; /**< not written yet */
   size_t pieces, piece_rows, buffer_bytes;
   const vxm_window *window; /**< in vxm_rle_encoder_put */
   piece piece[PIECES];
   _Alignas(64) unsigned char buffers[];
-} writer;
+} rle_encoder;
 
 /** Bytes that a row takes at most: no more codes than voxels, as a code covers at least one. */
 static size_t row_room(const vxm_rle_shape *shape) {
@@ -34,7 +34,7 @@ static size_t row_room(const vxm_rle_shape *shape) {
 }
 
 /** How many buffers of which size. */
-static void plan(const vxm_rle_shape *shape, uint64_t rows, writer *out) {
+static void plan(const vxm_rle_shape *shape, uint64_t rows, rle_encoder *out) {
   size_t row_words = (shape->length + 63) / 64, room = row_room(shape);
   out->shape = *shape;
   out->piece_rows = row_words < PIECE_WORDS ? PIECE_WORDS / row_words : 1;
@@ -46,13 +46,13 @@ static void plan(const vxm_rle_shape *shape, uint64_t rows, writer *out) {
 }
 
 size_t vxm_rle_encoder_bytes(const vxm_rle_shape *shape, uint64_t rows) {
-  writer w;
+  rle_encoder w;
   plan(shape, rows, &w);
   return sizeof w + w.pieces * w.buffer_bytes;
 }
 
 void vxm_rle_encoder_begin(void *state, const vxm_rle_shape *shape, uint64_t rows) {
-  writer *w = state;
+  rle_encoder *w = state;
   plan(shape, rows, w);
   w->run = (vxm_bit_run){false, 0};
 }
@@ -101,8 +101,8 @@ static inline void put_bytes(bool value, uint64_t length, void *payload) {
  * Codes rows while the buffer has room: for a row, and for the run before it, which takes at most 2 bytes for
  * 255 voxels. The first row always fits, since its first run takes none.
  */
-static inline __attribute__((always_inline)) void code_rows(const writer *w, piece *p, unsigned char *buffer,
-                                                            vxm_run_fn put) {
+static inline __attribute__((always_inline)) void code_rows(const rle_encoder *w, piece *p,
+                                                            unsigned char *buffer, vxm_run_fn put) {
   const vxm_window *window = w->window;
   const vxm_rle_shape shape = w->shape;
   const size_t room = row_room(&shape);
@@ -129,7 +129,7 @@ static inline __attribute__((always_inline)) void code_rows(const writer *w, pie
 
 static void code_piece(size_t task, int worker, void *payload) {
   (void)worker;
-  writer *w = payload;
+  rle_encoder *w = payload;
   unsigned char *buffer = w->buffers + task * w->buffer_bytes;
   if (w->shape.code == VXM_RUN_PAIRS)
     code_rows(w, &w->piece[task], buffer, put_pairs);
@@ -140,7 +140,7 @@ static void code_piece(size_t task, int worker, void *payload) {
 /* ---- Joining them ---- */
 
 /** Writes all codes of 255 voxels that the run has by now. */
-static void put_full(writer *w, vxm_output *output) {
+static void put_full(rle_encoder *w, vxm_output *output) {
   enum { ROOM = 4096 };
   bool pairs = w->shape.code == VXM_RUN_PAIRS;
   uint64_t codes = w->run.length / 255;
@@ -160,20 +160,20 @@ static void put_full(writer *w, vxm_output *output) {
 }
 
 /** Writes what put_full leaves, if anything. */
-static void put_rest(writer *w, vxm_output *output) {
+static void put_rest(rle_encoder *w, vxm_output *output) {
   const unsigned char code[2] = {w->run.value, (unsigned char)w->run.length};
   bool pairs = w->shape.code == VXM_RUN_PAIRS;
   vxm_output_write(output, pairs ? code : code + 1, pairs ? 2 : 1);
 }
 
-static void end_run(writer *w, vxm_output *output) {
+static void end_run(rle_encoder *w, vxm_output *output) {
   put_full(w, output);
   if (w->run.length > 0 || w->shape.code == VXM_RUN_BYTES)
     put_rest(w, output);
 }
 
 /** Goes on with a run that is not empty. */
-static void join(writer *w, vxm_output *output, vxm_bit_run run) {
+static void join(rle_encoder *w, vxm_output *output, vxm_bit_run run) {
   if (run.value == w->run.value) {
     w->run.length += run.length;
     return;
@@ -182,7 +182,7 @@ static void join(writer *w, vxm_output *output, vxm_bit_run run) {
   w->run = run;
 }
 
-static void join_piece(writer *w, vxm_output *output, const piece *p, const unsigned char *buffer) {
+static void join_piece(rle_encoder *w, vxm_output *output, const piece *p, const unsigned char *buffer) {
   if (p->has_first) {
     join(w, output, p->first);
     end_run(w, output);
@@ -193,7 +193,7 @@ static void join_piece(writer *w, vxm_output *output, const piece *p, const unsi
 }
 
 /** Joins the pieces in order, and codes here what did not fit their buffers. */
-static void join_pieces(writer *w, vxm_output *output, size_t count) {
+static void join_pieces(rle_encoder *w, vxm_output *output, size_t count) {
   for (size_t n = 0; n < count; n++) {
     join_piece(w, output, &w->piece[n], w->buffers + n * w->buffer_bytes);
     while (w->piece[n].row < w->piece[n].end) {
@@ -204,8 +204,8 @@ static void join_pieces(writer *w, vxm_output *output, size_t count) {
   put_full(w, output);
 }
 
-vxm_status vxm_rle_encoder_put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error) {
-  writer *w = slices->state;
+vxm_status vxm_rle_encoder_put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error) {
+  rle_encoder *w = writer->state;
   size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim;
   w->window = window;
   for (size_t row = 0; row < rows;) {
@@ -215,25 +215,25 @@ vxm_status vxm_rle_encoder_put(vxm_grid_writer *slices, const vxm_window *window
       w->piece[count] = (piece){.row = row, .end = end};
       row = end;
     }
-    vxm_parallel(slices->context, count, code_piece, w);
-    join_pieces(w, slices->output, count);
-    vxm_status status = vxm_grid_writer_step_rows(slices, window, row, error);
+    vxm_parallel(writer->context, count, code_piece, w);
+    join_pieces(w, writer->output, count);
+    vxm_status status = vxm_grid_writer_step_rows(writer, window, row, error);
     if (status != VXM_OK)
       return status;
   }
   return VXM_OK;
 }
 
-void vxm_rle_encoder_skip(vxm_grid_writer *slices, uint64_t count) {
-  writer *w = slices->state;
+void vxm_rle_encoder_skip(vxm_grid_writer *writer, uint64_t count) {
+  rle_encoder *w = writer->state;
   if (count > 0)
-    join(w, slices->output, (vxm_bit_run){false, count});
-  put_full(w, slices->output);
+    join(w, writer->output, (vxm_bit_run){false, count});
+  put_full(w, writer->output);
 }
 
-void vxm_rle_encoder_end(vxm_grid_writer *slices) {
-  writer *w = slices->state;
-  put_full(w, slices->output);
+void vxm_rle_encoder_end(vxm_grid_writer *writer) {
+  rle_encoder *w = writer->state;
+  put_full(w, writer->output);
   if (w->run.length > 0)
-    put_rest(w, slices->output);
+    put_rest(w, writer->output);
 }

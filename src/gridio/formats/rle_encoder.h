@@ -22,10 +22,10 @@ typedef struct vxm_rle_shape {
 size_t vxm_rle_encoder_bytes(const vxm_rle_shape *shape, uint64_t rows);
 void vxm_rle_encoder_begin(void *state, const vxm_rle_shape *shape, uint64_t rows);
 /** Codes the rows of a window. */
-vxm_status vxm_rle_encoder_put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error);
+vxm_status vxm_rle_encoder_put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error);
 /** Appends clear voxels. */
-void vxm_rle_encoder_skip(vxm_grid_writer *slices, uint64_t count);
+void vxm_rle_encoder_skip(vxm_grid_writer *writer, uint64_t count);
 /** Writes the last run. */
-void vxm_rle_encoder_end(vxm_grid_writer *slices);
+void vxm_rle_encoder_end(vxm_grid_writer *writer);
 
 #endif

@@ -4,8 +4,8 @@
  *
  * A grid of OpenVDB is a tree whose leaves are blocks of 8 x 8 x 8 voxels; constant blocks, 8, 128 or 4096
  * voxels wide, are tiles of the nodes above. To write one the library makes the blocks, and OpenVDB the tree
- * and the file, in our process. Files are read in a process of their own (sandbox/sandbox.h), because OpenVDB
- * trusts them: a damaged one may crash it.
+ * and the file, in our process. Files are read in a process of their own (sandbox/reader_process.h), because
+ * OpenVDB trusts them: a damaged one may crash it.
  */
 #ifndef VXM_GRIDIO_FORMATS_VDB_H
 #define VXM_GRIDIO_FORMATS_VDB_H

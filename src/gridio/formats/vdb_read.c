@@ -3,7 +3,7 @@
 #include "gridio/common/format.h"
 #include "gridio/formats/vdb.h"
 #include "gridio/formats/vdb_fill.h"
-#include "sandbox/sandbox.h"
+#include "sandbox/reader_process.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -177,7 +177,7 @@ static vxm_status receive(receipt *r, vxm_error *error) {
   if (!vxm_vdb_sniff(input))
     return vxm_fail_byte(error, input, 0, "not a vdb file: it does not begin with \" BDV\"");
   vxm_status status =
-      vxm_sandbox_read_grid(&r->sink, &r->warnings, input->context, &vxm_vdb_need, &request, error);
+      vxm_reader_process_grid(&r->sink, &r->warnings, input->context, &vxm_vdb_need, &request, error);
   if (status == VXM_OK)
     status = vxm_progress(input->context, "reading", 1, error);
   if (status != VXM_OK) {

@@ -64,13 +64,13 @@ static vxm_status check(const vxm_space *space, const char *path, vxm_error *err
   return vxm_vdb_open_writer(&functions, space, error);
 }
 
-static vxm_status begin(vxm_grid_writer *slices, vxm_error *error) {
-  state *s = slices->state;
-  *s = (state){.kept = vxm_window_of(&slices->space, (vxm_layout)VXM_LAYOUT_GRID, 0, 0)};
+static vxm_status begin(vxm_grid_writer *writer, vxm_error *error) {
+  state *s = writer->state;
+  *s = (state){.kept = vxm_window_of(&writer->space, (vxm_layout)VXM_LAYOUT_GRID, 0, 0)};
   s->kept.words = (uint64_t *)(void *)(s + 1);
-  vxm_status status = vxm_vdb_open_writer(&s->target.functions, &slices->space, error);
+  vxm_status status = vxm_vdb_open_writer(&s->target.functions, &writer->space, error);
   return status == VXM_OK
-             ? s->target.functions->create(&s->target.vdb, slices->context, &solid, &slices->space, error)
+             ? s->target.functions->create(&s->target.vdb, writer->context, &solid, &writer->space, error)
              : status;
 }
 
@@ -87,8 +87,8 @@ static vxm_status keep(state *s, const vxm_window *window, int64_t slice, vxm_er
 }
 
 /** Whole blocks come from the window, others by way of the slices that are kept. */
-static vxm_status put(vxm_grid_writer *slices, const vxm_window *window, vxm_error *error) {
-  state *s = slices->state;
+static vxm_status put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error) {
+  state *s = writer->state;
   vxm_status status = VXM_OK;
   for (int64_t slice = window->begin; slice < window->end && status == VXM_OK;) {
     if (slice % VXM_VDB_SIDE == 0 &&
@@ -101,25 +101,25 @@ static vxm_status put(vxm_grid_writer *slices, const vxm_window *window, vxm_err
       slice++;
     }
     if (status == VXM_OK)
-      status = vxm_grid_writer_step(slices, (double)slice, error);
+      status = vxm_grid_writer_step(writer, (double)slice, error);
   }
   return status;
 }
 
-static vxm_status end(vxm_grid_writer *slices, vxm_error *error) {
-  state *s = slices->state;
-  vxm_status status = s->target.functions->write(s->target.vdb, slices->output, error);
+static vxm_status end(vxm_grid_writer *writer, vxm_error *error) {
+  state *s = writer->state;
+  vxm_status status = s->target.functions->write(s->target.vdb, writer->output, error);
   /* A failed write is told by the output. */
-  return status == VXM_ERROR_IO ? vxm_grid_writer_step(slices, (double)slices->length, error) : status;
+  return status == VXM_ERROR_IO ? vxm_grid_writer_step(writer, (double)writer->length, error) : status;
 }
 
-static void drop(vxm_grid_writer *slices) {
-  state *s = slices->state;
+static void drop(vxm_grid_writer *writer) {
+  state *s = writer->state;
   if (s->target.vdb)
     s->target.functions->destroy(s->target.vdb);
 }
 
-static const vxm_grid_writer_kind slices_kind = {
+static const vxm_grid_writer_kind writer_kind = {
     .layout = VXM_LAYOUT_GRID,
     .check = check,
     .state_bytes = state_bytes,
@@ -160,4 +160,4 @@ static vxm_status write_sparse(const vxm_sparse *sparse, const char *path, vxm_e
 }
 
 const vxm_grid_format vxm_format_vdb = {"vdb",        vxm_vdb_sniff, vxm_vdb_read, vxm_vdb_read_field,
-                                        &slices_kind, write_sparse};
+                                        &writer_kind, write_sparse};

@@ -69,7 +69,7 @@ static void fill_next(size_t task, int worker, void *payload) {
 vxm_status vxm_occupancy_mips_create(vxm_occupancy_mips *out, const vxm_grid *grid, vxm_error *error) {
   *out = (vxm_occupancy_mips){.context = grid->context};
   int64_t side = 4;
-  for (int l = 0; l < VXM_PYRAMID_LEVELS; l++, side *= 2) {
+  for (int l = 0; l < VXM_OCCUPANCY_LEVELS; l++, side *= 2) {
     int64_t *dims = out->level[l].dims, largest = 0;
     for (int a = 0; a < 3; a++) {
       dims[a] = (grid->space.dims[a] + side - 1) / side;

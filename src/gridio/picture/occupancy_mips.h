@@ -7,7 +7,7 @@
 #include "grid/bitgrid.h"
 
 /** 4 << 18 covers VXM_DIM_MAX. */
-enum { VXM_PYRAMID_LEVELS = 19 };
+enum { VXM_OCCUPANCY_LEVELS = 19 };
 
 /** A cell of level l covers (4 << l)^3 voxels: 0 if all are clear, up to 255 if all are set. */
 typedef struct vxm_occupancy_mips {
@@ -16,7 +16,7 @@ typedef struct vxm_occupancy_mips {
   struct {
     int64_t dims[3];
     uint8_t *cells; /**< x fastest */
-  } level[VXM_PYRAMID_LEVELS];
+  } level[VXM_OCCUPANCY_LEVELS];
 } vxm_occupancy_mips;
 
 /** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */

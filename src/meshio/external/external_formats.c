@@ -6,7 +6,7 @@
 
 #include "base/endian.h"
 #include "base/file.h"
-#include "sandbox/sandbox.h"
+#include "sandbox/reader_process.h"
 
 /* ---- Content ---- */
 
@@ -139,7 +139,7 @@ const vxm_external_format *vxm_external_format_by_content(const unsigned char *d
 
 const vxm_external_format *vxm_external_format_by_extension(const char *extension) {
   for (size_t f = 0; f < FORMATS; f++)
-    for (size_t e = 0; e < VXM_FOREIGN_EXTENSIONS && formats[f].extensions[e]; e++)
+    for (size_t e = 0; e < VXM_EXTERNAL_EXTENSIONS && formats[f].extensions[e]; e++)
       if (vxm_text_equal_nocase(extension, formats[f].extensions[e]))
         return &formats[f];
   return NULL;
@@ -201,7 +201,7 @@ vxm_status vxm_external_format_read(vxm_soup *soup, const vxm_external_format *f
     need.name = "occt";
     need.package = "libocct-data-exchange-dev libocct-modeling-algorithms-dev libocct-ocaf-dev";
   }
-  vxm_status status = vxm_sandbox_read(soup, &need, &request, references, error);
+  vxm_status status = vxm_reader_process_mesh(soup, &need, &request, references, error);
   soup->format = format->name;
   return status;
 }

@@ -7,7 +7,7 @@
 #include "sandbox/reader.h"
 #include "sandbox/references.h"
 
-enum { VXM_FOREIGN_EXTENSIONS = 4 };
+enum { VXM_EXTERNAL_EXTENSIONS = 4 };
 
 /* The extensions of the table, for those who ask what is read (a test compares them). */
 #define VXM_ASSIMP_FORMATS "gltf glb 3mf dae zae fbx 3ds x3d amf blend lwo lxo x ac ac3d acc ifc"
@@ -15,7 +15,7 @@ enum { VXM_FOREIGN_EXTENSIONS = 4 };
 
 typedef struct vxm_external_format {
   const char *name; /**< as vxm_mesh_format says */
-  const char *extensions[VXM_FOREIGN_EXTENSIONS];
+  const char *extensions[VXM_EXTERNAL_EXTENSIONS];
   const char *hint; /**< extension that makes the library take content of this kind for what it is */
   bool (*sniff)(const unsigned char *data, size_t size); /**< NULL if the content does not tell */
   bool is_cad;                                           /**< read through OpenCASCADE, else through Assimp */
@@ -36,7 +36,7 @@ const char *vxm_external_format_refusal(const char *extension);
  * @param extension  of the file, or what stands for it
  * @param file       its data, size and name, and the deflection
  * @param references where files may lie that it refers to
- * @return as vxm_sandbox_read
+ * @return as vxm_reader_process_mesh
  */
 vxm_status vxm_external_format_read(vxm_soup *soup, const vxm_external_format *format, const char *extension,
                                     const vxm_reader_request *file, vxm_references *references,

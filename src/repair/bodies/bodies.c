@@ -22,7 +22,7 @@ typedef struct rim_vertex {
 } rim_vertex;
 
 typedef struct parting {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   const vxm_soup *soup;
   vxm_copies *copies;
   vxm_edge_groups groups;
@@ -43,12 +43,12 @@ static bool fail(parting *p, vxm_status status) {
 
 static void *scratch(parting *p, size_t count, size_t size) {
   vxm_status status = VXM_OK;
-  return vxm_repair_state_scratch(p->work, count, size, &status, &p->error);
+  return vxm_repair_state_scratch(p->state, count, size, &status, &p->error);
 }
 
 /** Asks now and then whether to go on. */
 static bool goes_on(parting *p, size_t step) {
-  return vxm_ask_at(step, p->work->context, &p->error) == VXM_OK;
+  return vxm_ask_at(step, p->state->context, &p->error) == VXM_OK;
 }
 
 /* ---- Which groups ---- */
@@ -62,7 +62,7 @@ static int by_vertex_then_group(const void *a, const void *b) {
 
 static bool find_rims(parting *p) {
   const vxm_soup *soup = p->soup;
-  const vxm_edge *edges = p->work->edges.edges;
+  const vxm_edge *edges = p->state->edges.edges;
   size_t count = 0;
   for (size_t c = 0; c < soup->corner_count; c++)
     count += p->groups.sides[c] != VXM_NO_EDGE && vxm_edge_is_odd(&edges[p->groups.sides[c]]);
@@ -106,7 +106,7 @@ static bool mark_touching(parting *p, uint8_t *touches) {
       }
     }
   }
-  vxm_free(p->work->context, group_at);
+  vxm_free(p->state->context, group_at);
   return done;
 }
 
@@ -116,7 +116,7 @@ static bool put(parting *p, uint64_t key, size_t face, bool reversed) {
   if (p->piece_count == p->piece_room) {
     void *block = p->pieces;
     vxm_status status =
-        vxm_grow(p->work->context, &block, &p->piece_room, p->piece_count + 1, sizeof *p->pieces, &p->error);
+        vxm_grow(p->state->context, &block, &p->piece_room, p->piece_count + 1, sizeof *p->pieces, &p->error);
     if (status != VXM_OK)
       return fail(p, status);
     p->pieces = block;
@@ -186,8 +186,8 @@ static bool check_layers(parting *p) {
     for (uint64_t c = soup->offsets[q->face];
          c < soup->offsets[q->face + 1] && q->key != 0 && p->asked[group] && !p->failed[group]; c++) {
       size_t edge = p->groups.sides[c];
-      bool forward = edge != VXM_NO_EDGE && soup->indices[c] == p->work->edges.edges[edge].a;
-      if (edge != VXM_NO_EDGE && p->work->edges.edges[edge].count > 2)
+      bool forward = edge != VXM_NO_EDGE && soup->indices[c] == p->state->edges.edges[edge].a;
+      if (edge != VXM_NO_EDGE && p->state->edges.edges[edge].count > 2)
         sides[count++] = (side){group, edge, q->key, forward != q->reversed ? 1 : -1};
     }
   }
@@ -198,7 +198,7 @@ static bool check_layers(parting *p) {
       sum += sides[j].turn;
     p->failed[sides[i].group] |= sum != 0;
   }
-  vxm_free(p->work->context, sides);
+  vxm_free(p->state->context, sides);
   return true;
 }
 
@@ -331,32 +331,32 @@ static vxm_status make_soup(parting *p, vxm_soup *out, uint64_t *keeper) {
   }
   if (status == VXM_OK)
     status = add_pieces(p, out, keeper, claims, count, corners);
-  vxm_free(p->work->context, corners);
-  vxm_free(p->work->context, claims);
+  vxm_free(p->state->context, corners);
+  vxm_free(p->state->context, claims);
   return status;
 }
 
 /** Puts the pieces in the place of the faces; *added: vertices that there are more. */
 static vxm_status build(parting *p, int64_t *added) {
-  vxm_repair_state *work = p->work;
+  vxm_repair_state *state = p->state;
   vxm_soup *out = NULL;
-  vxm_status status = vxm_soup_create(&out, work->context, "", &p->error);
+  vxm_status status = vxm_soup_create(&out, state->context, "", &p->error);
   uint64_t *keeper = status == VXM_OK ? scratch(p, p->soup->vertex_count, sizeof *keeper) : NULL;
   uint64_t *origin = keeper ? scratch(p, p->piece_count, sizeof *origin) : NULL;
   status = origin ? make_soup(p, out, keeper) : p->error.code;
-  vxm_free(work->context, keeper);
+  vxm_free(state->context, keeper);
   if (status != VXM_OK) {
-    vxm_free(work->context, origin);
+    vxm_free(state->context, origin);
     vxm_soup_destroy(out);
     return status;
   }
   for (size_t i = 0; i < p->piece_count; i++) {
     origin[i] = p->pieces[i].face;
-    if (p->pieces[i].reversed && work->turned)
-      work->turned[origin[i]] ^= VXM_TURNED;
+    if (p->pieces[i].reversed && state->turned)
+      state->turned[origin[i]] ^= VXM_TURNED;
   }
   *added = (int64_t)(out->vertex_count - p->soup->vertex_count);
-  return vxm_repair_state_adopt(work, out, origin, &p->error);
+  return vxm_repair_state_adopt(state, out, origin, &p->error);
 }
 
 /* ---- The pass ---- */
@@ -380,16 +380,16 @@ static bool find_layers(parting *p) {
   l->front = l->patch ? scratch(p, faces, sizeof *l->front) : NULL;
   l->known = l->front ? scratch(p, faces, sizeof *l->known) : NULL;
   p->failed = l->known ? scratch(p, p->groups.count, sizeof *p->failed) : NULL;
-  bool done = p->failed && vxm_duplicates_find(&found, p->work->context, p->soup, NULL, kinds, p->copies,
+  bool done = p->failed && vxm_duplicates_find(&found, p->state->context, p->soup, NULL, kinds, p->copies,
                                                &p->error) == VXM_OK;
-  l->work = p->work;
+  l->state = p->state;
   l->copies = p->copies;
   l->groups = &p->groups;
   l->asked = p->asked;
   done = done && vxm_layers_find(l, &p->error) == VXM_OK;
   if (done)
     fail_unknown(p);
-  vxm_free(p->work->context, kinds);
+  vxm_free(p->state->context, kinds);
   return done;
 }
 
@@ -404,24 +404,24 @@ static int64_t count_shared(const parting *p) {
 }
 
 static bool divide(parting *p, const uint8_t *touches, bool *changed) {
-  vxm_repair_state *work = p->work;
+  vxm_repair_state *state = p->state;
   if (!find_layers(p) || !put_pieces(p, touches) || !check_layers(p))
     return false;
   p->piece_count = 0;
   if (!put_pieces(p, touches)) /* once more, without what is none */
     return false;
-  work->shared = count_shared(p);
+  state->shared = count_shared(p);
   int64_t added = 0;
   vxm_status status = build(p, &added);
   if (status != VXM_OK)
     return fail(p, status);
-  work->counts[VXM_PASS_SEPARATION] += added;
+  state->counts[VXM_PASS_SEPARATION] += added;
   *changed = true;
   return true;
 }
 
 static bool find_groups(parting *p, bool *any, uint8_t **touches) {
-  if (vxm_edge_groups_find(&p->groups, p->work, &p->error) != VXM_OK)
+  if (vxm_edge_groups_find(&p->groups, p->state, &p->error) != VXM_OK)
     return false;
   *touches = scratch(p, p->groups.count, sizeof **touches);
   p->asked = *touches ? scratch(p, p->groups.count, sizeof *p->asked) : NULL;
@@ -437,50 +437,50 @@ static bool find_groups(parting *p, bool *any, uint8_t **touches) {
 
 /** Whether it is plain that there is nothing to divide, as in most meshes: there are no more patches than
  * what vertices connect, so none touches another. That costs a tenth of looking at the groups. */
-static vxm_status is_apart(const vxm_repair_state *work, bool *apart, vxm_error *error) {
+static vxm_status is_apart(const vxm_repair_state *state, bool *apart, vxm_error *error) {
   size_t components = 1;
   vxm_status status = VXM_OK;
-  if (work->patches > 1)
-    status = vxm_components(work->context, work->soup, NULL, NULL, &components, error);
-  *apart = status == VXM_OK && work->patches == components;
+  if (state->patches > 1)
+    status = vxm_components(state->context, state->soup, NULL, NULL, &components, error);
+  *apart = status == VXM_OK && state->patches == components;
   return status;
 }
 
 /** Sheets that hang on bodies would make these open. There are none where no edge has more than two sides. */
 static bool cut_sheets(parting *p, bool *changed) {
-  vxm_repair_state *work = p->work;
+  vxm_repair_state *state = p->state;
   int64_t added = 0;
-  if (work->patches == 0 && vxm_cut_hanging_sheets(work, &added, &p->error) != VXM_OK)
+  if (state->patches == 0 && vxm_cut_hanging_sheets(state, &added, &p->error) != VXM_OK)
     return false;
-  work->counts[VXM_PASS_SEPARATION] += added;
+  state->counts[VXM_PASS_SEPARATION] += added;
   *changed = added > 0;
   return true;
 }
 
-vxm_status vxm_pass_bodies(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_bodies(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (work->soup->face_count == 0)
+  if (state->soup->face_count == 0)
     return VXM_OK;
-  parting p = {.work = work, .soup = work->soup, .error = VXM_ERROR_INIT};
+  parting p = {.state = state, .soup = state->soup, .error = VXM_ERROR_INIT};
   uint8_t *touches = NULL;
   bool any = false, apart;
-  bool done = is_apart(work, &apart, &p.error) == VXM_OK;
+  bool done = is_apart(state, &apart, &p.error) == VXM_OK;
   if (done && apart)
     return VXM_OK;
-  done = done && cut_sheets(&p, changed) && vxm_repair_state_edges(work, &p.error) == VXM_OK &&
+  done = done && cut_sheets(&p, changed) && vxm_repair_state_edges(state, &p.error) == VXM_OK &&
          find_groups(&p, &any, &touches);
   if (done && any)
     done = divide(&p, touches, changed);
-  vxm_free(work->context, p.pieces);
-  vxm_free(work->context, p.rims);
-  vxm_free(work->context, p.failed);
-  vxm_free(work->context, p.layers.known);
-  vxm_free(work->context, p.layers.front);
-  vxm_free(work->context, p.layers.patch);
-  vxm_free(work->context, p.copies);
-  vxm_free(work->context, p.asked);
-  vxm_free(work->context, touches);
-  vxm_edge_groups_free(&p.groups, work->context);
+  vxm_free(state->context, p.pieces);
+  vxm_free(state->context, p.rims);
+  vxm_free(state->context, p.failed);
+  vxm_free(state->context, p.layers.known);
+  vxm_free(state->context, p.layers.front);
+  vxm_free(state->context, p.layers.patch);
+  vxm_free(state->context, p.copies);
+  vxm_free(state->context, p.asked);
+  vxm_free(state->context, touches);
+  vxm_edge_groups_free(&p.groups, state->context);
   if (!done)
     vxm_error_pass(error, &p.error);
   return done ? VXM_OK : p.error.code;

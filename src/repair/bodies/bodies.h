@@ -23,6 +23,6 @@
  * stays as it is. Counted as separation: vertices that there are more. work->shared becomes the number of
  * repeated faces that are left.
  */
-vxm_status vxm_pass_bodies(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_bodies(vxm_repair_state *state, bool *changed, vxm_error *error);
 
 #endif

@@ -16,7 +16,7 @@ enum mark {
 };
 
 typedef struct cutting {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   vxm_soup *soup;
   vxm_edge_groups groups;
   size_t *patch;     /**< per face: another one of its patch, or itself; see vxm_set_of */
@@ -29,18 +29,18 @@ typedef struct cutting {
 } cutting;
 
 static void *scratch(cutting *c, size_t count, size_t size) {
-  return vxm_calloc(c->work->context, count, size, &c->error);
+  return vxm_calloc(c->state->context, count, size, &c->error);
 }
 
 /** Asks now and then whether to go on. */
 static bool goes_on(cutting *c, size_t step) {
-  return vxm_ask_at(step, c->work->context, &c->error) == VXM_OK;
+  return vxm_ask_at(step, c->state->context, &c->error) == VXM_OK;
 }
 
 /** Sides along the edge that begins at a corner; 0 if there is none. */
 static uint32_t sides_at(const cutting *c, uint64_t corner) {
   size_t edge = c->groups.sides[corner];
-  return edge == VXM_NO_EDGE ? 0 : c->work->edges.edges[edge].count;
+  return edge == VXM_NO_EDGE ? 0 : c->state->edges.edges[edge].count;
 }
 
 /** Whether there is a rim, and an edge that a sheet could hang on. */
@@ -58,7 +58,7 @@ static bool may_hang(const vxm_edges *edges) {
 /** Joins faces that meet at an edge with two sides, or, once they are known, sheets that meet at one with
  * more. */
 static bool join_faces(cutting *c, bool sheets) {
-  memset(c->at, 0, c->work->edges.count * sizeof *c->at);
+  memset(c->at, 0, c->state->edges.count * sizeof *c->at);
   for (size_t f = 0; f < c->soup->face_count && goes_on(c, f); f++)
     for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1]; s++) {
       uint32_t count = sides_at(c, s);
@@ -95,11 +95,11 @@ static bool find_patches(cutting *c, bool *any) {
 /** The patches that may be sheets, as a soup. */
 typedef struct apart {
   vxm_soup *soup;
-  uint8_t *sheet;        /**< per face of it */
-  size_t *first, *next;  /**< per face: 1 + the first face of its patch, 1 + the one that follows it */
-  size_t *number;        /**< per vertex: 1 + the last one that stands for it there */
-  uint32_t *corners;     /**< scratch per corner of a face */
-  vxm_repair_state work; /**< of it */
+  uint8_t *sheet;         /**< per face of it */
+  size_t *first, *next;   /**< per face: 1 + the first face of its patch, 1 + the one that follows it */
+  size_t *number;         /**< per vertex: 1 + the last one that stands for it there */
+  uint32_t *corners;      /**< scratch per corner of a face */
+  vxm_repair_state state; /**< of it */
 } apart;
 
 static bool add_face(cutting *c, apart *a, size_t face, size_t begin) {
@@ -135,10 +135,10 @@ static bool make_apart(cutting *c, apart *a) {
 
 /** Asks which components of it are sheets. */
 static bool ask_apart(cutting *c, apart *a) {
-  a->work = (vxm_repair_state){.context = c->work->context, .soup = a->soup};
-  a->work.used = scratch(c, a->soup->vertex_count, sizeof *a->work.used);
-  a->sheet = a->work.used ? scratch(c, a->soup->face_count, sizeof *a->sheet) : NULL;
-  if (!a->sheet || vxm_find_sheets(a->sheet, &a->work, &c->error) != VXM_OK)
+  a->state = (vxm_repair_state){.context = c->state->context, .soup = a->soup};
+  a->state.used = scratch(c, a->soup->vertex_count, sizeof *a->state.used);
+  a->sheet = a->state.used ? scratch(c, a->soup->face_count, sizeof *a->sheet) : NULL;
+  if (!a->sheet || vxm_find_sheets(a->sheet, &a->state, &c->error) != VXM_OK)
     return false;
   size_t next = 0;
   for (size_t f = 0; f < c->soup->face_count; f++)
@@ -163,17 +163,17 @@ static bool find_sheets(cutting *c) {
   a.next = a.first ? scratch(c, faces, sizeof *a.next) : NULL;
   a.number = a.next ? scratch(c, c->soup->vertex_count, sizeof *a.number) : NULL;
   a.corners = a.number ? scratch(c, largest_face(c->soup), sizeof *a.corners) : NULL;
-  bool done = a.corners && vxm_soup_create(&a.soup, c->work->context, "", &c->error) == VXM_OK;
+  bool done = a.corners && vxm_soup_create(&a.soup, c->state->context, "", &c->error) == VXM_OK;
   done = done && make_apart(c, &a) && ask_apart(c, &a);
-  if (a.work.soup)
-    vxm_repair_state_touch(&a.work);
-  vxm_free(c->work->context, a.work.used);
-  vxm_free(c->work->context, a.sheet);
+  if (a.state.soup)
+    vxm_repair_state_touch(&a.state);
+  vxm_free(c->state->context, a.state.used);
+  vxm_free(c->state->context, a.sheet);
   vxm_soup_destroy(a.soup);
-  vxm_free(c->work->context, a.corners);
-  vxm_free(c->work->context, a.number);
-  vxm_free(c->work->context, a.next);
-  vxm_free(c->work->context, a.first);
+  vxm_free(c->state->context, a.corners);
+  vxm_free(c->state->context, a.number);
+  vxm_free(c->state->context, a.next);
+  vxm_free(c->state->context, a.first);
   return done;
 }
 
@@ -186,7 +186,7 @@ static bool hangs(cutting *c, size_t face) {
 
 /** Counts the sides of sheets at each edge; with `hanging` those of sheets that hang. */
 static void count_sheets(cutting *c, bool hanging) {
-  memset(c->at, 0, c->work->edges.count * sizeof *c->at);
+  memset(c->at, 0, c->state->edges.count * sizeof *c->at);
   for (size_t f = 0; f < c->soup->face_count; f++)
     for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1] && c->sheet[f]; s++)
       if (c->groups.sides[s] != VXM_NO_EDGE && (!hanging || hangs(c, f)))
@@ -196,7 +196,7 @@ static void count_sheets(cutting *c, bool hanging) {
 /** Sides along the edge that begins at a corner, without those that were counted. */
 static size_t others_at(const cutting *c, uint64_t corner) {
   size_t edge = c->groups.sides[corner];
-  return edge == VXM_NO_EDGE ? 0 : c->work->edges.edges[edge].count - c->at[edge];
+  return edge == VXM_NO_EDGE ? 0 : c->state->edges.edges[edge].count - c->at[edge];
 }
 
 /** Looks at what else is at the edges of sheets that are joined by now. All sheets at an edge are joined, so
@@ -231,10 +231,10 @@ static bool choose(cutting *c, bool *any) {
   bool asks = false;
   for (size_t f = 0; f < c->soup->face_count && !asks; f++)
     asks = c->unclosed[c->groups.of_face[f]] && hangs(c, f);
-  int64_t parts = c->work->open_parts; /* those that the pass of closing counted */
-  if (asks && vxm_find_sheets(c->open, c->work, &c->error) != VXM_OK)
+  int64_t parts = c->state->open_parts; /* those that the pass of closing counted */
+  if (asks && vxm_find_sheets(c->open, c->state, &c->error) != VXM_OK)
     return false;
-  c->work->open_parts = parts;
+  c->state->open_parts = parts;
   for (size_t f = 0; f < c->soup->face_count && !*any; f++)
     *any = is_cut(c, f);
   return c->error.code == VXM_OK;
@@ -243,9 +243,9 @@ static bool choose(cutting *c, bool *any) {
 /* ---- Cutting ---- */
 
 static bool grow_marks(cutting *c, size_t from) {
-  uint8_t **marks[2] = {&c->work->gone, &c->work->used};
+  uint8_t **marks[2] = {&c->state->gone, &c->state->used};
   for (int i = 0; i < 2; i++) {
-    uint8_t *grown = vxm_realloc(c->work->context, *marks[i], c->soup->vertex_count, 1, &c->error);
+    uint8_t *grown = vxm_realloc(c->state->context, *marks[i], c->soup->vertex_count, 1, &c->error);
     if (!grown)
       return false;
     memset(grown + from, 0, c->soup->vertex_count - from);
@@ -282,14 +282,14 @@ static bool cut(cutting *c, size_t *number) {
 static bool cut_sheets(cutting *c) {
   size_t faces = c->soup->face_count;
   bool any = false;
-  if (vxm_edge_groups_find(&c->groups, c->work, &c->error) != VXM_OK)
+  if (vxm_edge_groups_find(&c->groups, c->state, &c->error) != VXM_OK)
     return false;
   c->patch = scratch(c, faces, sizeof *c->patch);
   c->marks = c->patch ? scratch(c, faces, sizeof *c->marks) : NULL;
   c->sheet = c->marks ? scratch(c, faces, sizeof *c->sheet) : NULL;
   c->open = c->sheet ? scratch(c, faces, sizeof *c->open) : NULL;
   c->unclosed = c->open ? scratch(c, c->groups.count, sizeof *c->unclosed) : NULL;
-  c->at = c->unclosed ? scratch(c, c->work->edges.count, sizeof *c->at) : NULL;
+  c->at = c->unclosed ? scratch(c, c->state->edges.count, sizeof *c->at) : NULL;
   if (!c->at || !find_patches(c, &any))
     return false;
   if (!any)
@@ -301,28 +301,28 @@ static bool cut_sheets(cutting *c) {
     return false;
   size_t *number = any ? scratch(c, c->soup->vertex_count, sizeof *number) : NULL;
   bool done = !any || (number && cut(c, number));
-  vxm_free(c->work->context, number);
+  vxm_free(c->state->context, number);
   return done;
 }
 
-vxm_status vxm_cut_hanging_sheets(vxm_repair_state *work, int64_t *added, vxm_error *error) {
+vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_error *error) {
   *added = 0;
-  vxm_status status = vxm_repair_state_edges(work, error);
-  if (status != VXM_OK || !may_hang(&work->edges))
+  vxm_status status = vxm_repair_state_edges(state, error);
+  if (status != VXM_OK || !may_hang(&state->edges))
     return status;
-  cutting c = {.work = work, .soup = work->soup, .error = VXM_ERROR_INIT};
-  size_t before = work->soup->vertex_count;
+  cutting c = {.state = state, .soup = state->soup, .error = VXM_ERROR_INIT};
+  size_t before = state->soup->vertex_count;
   bool done = cut_sheets(&c);
-  vxm_free(work->context, c.at);
-  vxm_free(work->context, c.unclosed);
-  vxm_free(work->context, c.open);
-  vxm_free(work->context, c.sheet);
-  vxm_free(work->context, c.marks);
-  vxm_free(work->context, c.patch);
-  vxm_edge_groups_free(&c.groups, work->context);
-  *added = (int64_t)(work->soup->vertex_count - before);
+  vxm_free(state->context, c.at);
+  vxm_free(state->context, c.unclosed);
+  vxm_free(state->context, c.open);
+  vxm_free(state->context, c.sheet);
+  vxm_free(state->context, c.marks);
+  vxm_free(state->context, c.patch);
+  vxm_edge_groups_free(&c.groups, state->context);
+  *added = (int64_t)(state->soup->vertex_count - before);
   if (*added > 0)
-    vxm_repair_state_touch(work);
+    vxm_repair_state_touch(state);
   if (!done)
     vxm_error_pass(error, &c.error);
   return done ? VXM_OK : c.error.code;

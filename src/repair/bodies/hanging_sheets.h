@@ -20,6 +20,6 @@
  *
  * Linear time; where no edge has one side or none has more than two, it takes a look at each edge alone.
  */
-vxm_status vxm_cut_hanging_sheets(vxm_repair_state *work, int64_t *added, vxm_error *error);
+vxm_status vxm_cut_hanging_sheets(vxm_repair_state *state, int64_t *added, vxm_error *error);
 
 #endif

@@ -58,7 +58,7 @@ static int by_edge_then_patch(const void *a, const void *b) {
 /** Lists the sides where patches of groups that are asked for end; without a list only counts them. */
 static size_t list_borders(balancing *b, const uint8_t *kinds) {
   const vxm_layers *l = b->layers;
-  const vxm_soup *soup = l->work->soup;
+  const vxm_soup *soup = l->state->soup;
   size_t count = 0;
   for (size_t f = 0; f < soup->face_count; f++) {
     if (!l->asked[l->groups->of_face[f]] || !vxm_layers_stands(l, f))
@@ -69,7 +69,7 @@ static size_t list_borders(balancing *b, const uint8_t *kinds) {
         continue;
       if (b->by_patch)
         b->by_patch[count] =
-            (border){vxm_set_of(l->patch, f), e, soup->indices[c] == l->work->edges.edges[e].a ? 1 : -1};
+            (border){vxm_set_of(l->patch, f), e, soup->indices[c] == l->state->edges.edges[e].a ? 1 : -1};
       count++;
     }
   }
@@ -77,7 +77,7 @@ static size_t list_borders(balancing *b, const uint8_t *kinds) {
 }
 
 static void count_kinds(const vxm_layers *l, uint8_t *kinds) {
-  const vxm_soup *soup = l->work->soup;
+  const vxm_soup *soup = l->state->soup;
   for (size_t f = 0; f < soup->face_count; f++)
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1] && vxm_layers_stands(l, f); c++)
       if (l->groups->sides[c] != VXM_NO_EDGE && kinds[l->groups->sides[c]] < 3)
@@ -168,7 +168,7 @@ static bool comes_first(entry a, entry b) {
 static bool push(balancing *b, entry e) {
   if (b->waiting == b->room) {
     void *block = b->heap;
-    if (vxm_grow(b->layers->work->context, &block, &b->room, b->waiting + 1, sizeof *b->heap, &b->error) !=
+    if (vxm_grow(b->layers->state->context, &block, &b->room, b->waiting + 1, sizeof *b->heap, &b->error) !=
         VXM_OK)
       return false;
     b->heap = block;
@@ -262,11 +262,11 @@ static bool find_levels(balancing *b) {
 
 static void *scratch(balancing *b, size_t count, size_t size) {
   vxm_status status = VXM_OK;
-  return vxm_repair_state_scratch(b->layers->work, count, size, &status, &b->error);
+  return vxm_repair_state_scratch(b->layers->state, count, size, &status, &b->error);
 }
 
 static bool balance(balancing *b, uint8_t *kinds) {
-  size_t faces = b->layers->work->soup->face_count, edges = b->layers->work->edges.count;
+  size_t faces = b->layers->state->soup->face_count, edges = b->layers->state->edges.count;
   count_kinds(b->layers, kinds);
   b->count = list_borders(b, kinds);
   b->by_edge = scratch(b, b->count, sizeof *b->by_edge);
@@ -290,8 +290,8 @@ static bool balance(balancing *b, uint8_t *kinds) {
 
 vxm_status vxm_layers_balance(vxm_layers *layers, const int32_t *reach, vxm_error *error) {
   balancing b = {.layers = layers, .reach = reach, .error = VXM_ERROR_INIT};
-  vxm_context *context = layers->work->context;
-  uint8_t *kinds = scratch(&b, layers->work->edges.count, sizeof *kinds);
+  vxm_context *context = layers->state->context;
+  uint8_t *kinds = scratch(&b, layers->state->edges.count, sizeof *kinds);
   bool done = kinds && balance(&b, kinds);
   vxm_free(context, b.heap);
   vxm_free(context, b.level);

@@ -85,7 +85,7 @@ static void place(vxm_layers *l, member *stack, size_t count, const int32_t *rea
 vxm_status vxm_layers_stack(vxm_layers *layers, const vxm_patch_border *borders, size_t count,
                             const int32_t *reach, vxm_error *error) {
   vxm_status status = VXM_OK;
-  member *members = vxm_repair_state_scratch(layers->work, count, sizeof *members, &status, error);
+  member *members = vxm_repair_state_scratch(layers->state, count, sizeof *members, &status, error);
   size_t found = members ? list_members(members, borders, count) : 0;
   for (size_t i = 0, j; i < found; i = j) {
     for (j = i; j < found && by_border(&members[i], &members[j]) == 0;)
@@ -93,6 +93,6 @@ vxm_status vxm_layers_stack(vxm_layers *layers, const vxm_patch_border *borders,
     if (j - i > 1)
       place(layers, members + i, j - i, reach);
   }
-  vxm_free(layers->work->context, members);
+  vxm_free(layers->state->context, members);
   return status;
 }

@@ -14,14 +14,14 @@ static bool is_asked(const vxm_layers *l, size_t face) {
 
 /** Joins the faces that stand for their kinds over edges where two of them meet and no others do. */
 static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
-  const vxm_soup *soup = l->work->soup;
+  const vxm_soup *soup = l->state->soup;
   vxm_status status = VXM_OK;
-  size_t edges = l->work->edges.count;
-  size_t *pair = vxm_repair_state_scratch(l->work, edges, 2 * sizeof *pair, &status, error);
-  uint8_t *count = pair ? vxm_repair_state_scratch(l->work, edges, sizeof *count, &status, error) : NULL;
+  size_t edges = l->state->edges.count;
+  size_t *pair = vxm_repair_state_scratch(l->state, edges, 2 * sizeof *pair, &status, error);
+  uint8_t *count = pair ? vxm_repair_state_scratch(l->state, edges, sizeof *count, &status, error) : NULL;
   for (size_t f = 0; status == VXM_OK && f < soup->face_count; f++) {
     l->patch[f] = f;
-    status = vxm_ask_at(f, l->work->context, error);
+    status = vxm_ask_at(f, l->state->context, error);
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1] && is_asked(l, f); c++) {
       size_t e = l->groups->sides[c];
       if (e == VXM_NO_EDGE || count[e] > 2)
@@ -34,14 +34,14 @@ static vxm_status find_patches(vxm_layers *l, vxm_error *error) {
   for (size_t e = 0; status == VXM_OK && e < edges; e++)
     if (count[e] == 2)
       l->patch[vxm_set_of(l->patch, pair[2 * e])] = vxm_set_of(l->patch, pair[2 * e + 1]);
-  vxm_free(l->work->context, count);
-  vxm_free(l->work->context, pair);
+  vxm_free(l->state->context, count);
+  vxm_free(l->state->context, pair);
   return status;
 }
 
 /** Lists some faces of each patch, spread over it, and all that count. @param size scratch per face, twice */
 static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, size_t *size) {
-  size_t faces = l->work->soup->face_count, count = 0, *seen = size + faces;
+  size_t faces = l->state->soup->face_count, count = 0, *seen = size + faces;
   for (size_t f = 0; f < faces; f++) {
     int64_t surplus = vxm_layers_surplus(l, f);
     bound[f] = l->asked[l->groups->of_face[f]] && surplus > 0 && l->copies[f].rank < (uint64_t)surplus;
@@ -88,9 +88,9 @@ static int by_set_then_face(const void *a, const void *b) {
 static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, size_t *size, int32_t *reach,
                               vxm_error *error) {
   size_t count = list_samples(l, bound, sets, size);
-  vxm_status status = vxm_ask(l->work->context, error);
+  vxm_status status = vxm_ask(l->state->context, error);
   if (status == VXM_OK)
-    status = vxm_set_sides_find(sets, count, l->work, l->groups, bound, error);
+    status = vxm_set_sides_find(sets, count, l->state, l->groups, bound, error);
   if (status != VXM_OK)
     return status;
   qsort(sets, count, sizeof *sets, by_set_then_face);
@@ -105,25 +105,25 @@ static vxm_status ask_patches(vxm_layers *l, uint8_t *bound, vxm_set_side *sets,
 }
 
 vxm_status vxm_layers_find(vxm_layers *layers, vxm_error *error) {
-  vxm_repair_state *work = layers->work;
-  size_t faces = work->soup->face_count;
+  vxm_repair_state *state = layers->state;
+  size_t faces = state->soup->face_count;
   vxm_set_side *sets = NULL;
   size_t *size = NULL;
   int32_t *reach = NULL;
   vxm_status status = find_patches(layers, error);
   uint8_t *bound =
-      status == VXM_OK ? vxm_repair_state_scratch(work, faces, sizeof *bound, &status, error) : NULL;
+      status == VXM_OK ? vxm_repair_state_scratch(state, faces, sizeof *bound, &status, error) : NULL;
   if (bound)
-    sets = vxm_repair_state_scratch(work, faces, sizeof *sets, &status, error);
+    sets = vxm_repair_state_scratch(state, faces, sizeof *sets, &status, error);
   if (sets)
-    size = vxm_repair_state_scratch(work, 2 * faces, sizeof *size, &status, error);
+    size = vxm_repair_state_scratch(state, 2 * faces, sizeof *size, &status, error);
   if (size)
-    reach = vxm_repair_state_scratch(work, 2 * faces, sizeof *reach, &status, error);
+    reach = vxm_repair_state_scratch(state, 2 * faces, sizeof *reach, &status, error);
   if (reach)
     status = ask_patches(layers, bound, sets, size, reach, error);
-  vxm_free(work->context, reach);
-  vxm_free(work->context, size);
-  vxm_free(work->context, sets);
-  vxm_free(work->context, bound);
+  vxm_free(state->context, reach);
+  vxm_free(state->context, size);
+  vxm_free(state->context, sets);
+  vxm_free(state->context, bound);
   return status;
 }

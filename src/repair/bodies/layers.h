@@ -3,12 +3,12 @@
 #ifndef VXM_REPAIR_BODIES_LAYERS_H
 #define VXM_REPAIR_BODIES_LAYERS_H
 
-#include "mesh/duplicates.h"
+#include "mesh/duplicate_faces.h"
 #include "repair/state/edge_groups.h"
 
 /** What is known of the faces, and what is found. */
 typedef struct vxm_layers {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   const vxm_copies *copies;
   const vxm_edge_groups *groups;
   const uint8_t *asked; /**< per group: it is balanced, and to be looked at */

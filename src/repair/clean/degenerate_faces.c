@@ -14,7 +14,7 @@
 enum { FACES_PER_SLICE = 1 << 14 };
 
 typedef struct removal {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   vxm_unit_scale frame;
   uint8_t *flat;       /**< per face: 1 = without area, 2 = to be removed */
   atomic_size_t sides; /**< of all faces without area */
@@ -30,7 +30,7 @@ typedef struct removal {
 static void flag_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   removal *r = payload;
-  const vxm_soup *soup = r->work->soup;
+  const vxm_soup *soup = r->state->soup;
   size_t begin = slice * FACES_PER_SLICE, end = begin + FACES_PER_SLICE, sides = 0;
   for (size_t f = begin; f < end && f < soup->face_count; f++)
     if (vxm_unit_scale_no_area(&r->frame, soup, f)) {
@@ -41,14 +41,14 @@ static void flag_slice(size_t slice, int worker, void *payload) {
 }
 
 static size_t edge_of_side(const removal *r, const uint32_t *corners, size_t count, size_t i) {
-  return vxm_edges_find(&r->work->edges, corners[i], corners[i + 1 < count ? i + 1 : 0]);
+  return vxm_edges_find(&r->state->edges, corners[i], corners[i + 1 < count ? i + 1 : 0]);
 }
 
 /** Lists the sides of the faces without area by edge, the first face's last so that lists start with it. */
 static void list_sides(removal *r) {
-  const vxm_soup *soup = r->work->soup;
-  for (size_t e = 0; e < r->work->edges.count; e++)
-    r->odd[e] = vxm_edge_is_odd(&r->work->edges.edges[e]);
+  const vxm_soup *soup = r->state->soup;
+  for (size_t e = 0; e < r->state->edges.count; e++)
+    r->odd[e] = vxm_edge_is_odd(&r->state->edges.edges[e]);
   size_t side = 0;
   for (size_t f = soup->face_count; f-- > 0;) {
     size_t count;
@@ -66,7 +66,7 @@ static void put_forward(removal *r, size_t edge) {
   if (r->queued[edge])
     return;
   r->queued[edge] = 1;
-  r->queue[(r->queue_begin + r->queue_count++) % r->work->edges.count] = edge;
+  r->queue[(r->queue_begin + r->queue_count++) % r->state->edges.count] = edge;
 }
 
 /** Turns the sides of a face between odd and even; returns by how many more edges are odd now. */
@@ -84,7 +84,7 @@ static void try_face(removal *r, size_t face) {
   if (r->flat[face] != 1)
     return;
   size_t count;
-  const uint32_t *corners = vxm_face(r->work->soup, face, &count);
+  const uint32_t *corners = vxm_face(r->state->soup, face, &count);
   if (toggle(r, corners, count) > 0) {
     toggle(r, corners, count);
     return;
@@ -98,11 +98,11 @@ static void try_face(removal *r, size_t face) {
 }
 
 static void choose_faces(removal *r) {
-  for (size_t f = 0; f < r->work->soup->face_count; f++)
+  for (size_t f = 0; f < r->state->soup->face_count; f++)
     try_face(r, f);
   while (r->queue_count > 0) {
     size_t edge = r->queue[r->queue_begin];
-    r->queue_begin = (r->queue_begin + 1) % r->work->edges.count;
+    r->queue_begin = (r->queue_begin + 1) % r->state->edges.count;
     r->queue_count--;
     r->queued[edge] = 0;
     for (size_t side = r->edge_side[edge]; side != 0; side = r->side_next[side - 1])
@@ -111,57 +111,57 @@ static void choose_faces(removal *r) {
 }
 
 static vxm_status choose(removal *r, vxm_error *error) {
-  vxm_status status = vxm_repair_state_edges(r->work, error);
+  vxm_status status = vxm_repair_state_edges(r->state, error);
   if (status != VXM_OK)
     return status;
-  size_t edges = r->work->edges.count, sides = atomic_load(&r->sides);
+  size_t edges = r->state->edges.count, sides = atomic_load(&r->sides);
   vxm_error local = VXM_ERROR_INIT;
-  vxm_repair_state *work = r->work;
-  r->odd = vxm_repair_state_scratch(work, edges, sizeof *r->odd, &status, &local);
-  r->queued = r->odd ? vxm_repair_state_scratch(work, edges, sizeof *r->queued, &status, &local) : NULL;
-  r->queue = r->queued ? vxm_repair_state_scratch(work, edges, sizeof *r->queue, &status, &local) : NULL;
+  vxm_repair_state *state = r->state;
+  r->odd = vxm_repair_state_scratch(state, edges, sizeof *r->odd, &status, &local);
+  r->queued = r->odd ? vxm_repair_state_scratch(state, edges, sizeof *r->queued, &status, &local) : NULL;
+  r->queue = r->queued ? vxm_repair_state_scratch(state, edges, sizeof *r->queue, &status, &local) : NULL;
   r->edge_side =
-      r->queue ? vxm_repair_state_scratch(work, edges, sizeof *r->edge_side, &status, &local) : NULL;
+      r->queue ? vxm_repair_state_scratch(state, edges, sizeof *r->edge_side, &status, &local) : NULL;
   r->side_face =
-      r->edge_side ? vxm_repair_state_scratch(work, sides, sizeof *r->side_face, &status, &local) : NULL;
+      r->edge_side ? vxm_repair_state_scratch(state, sides, sizeof *r->side_face, &status, &local) : NULL;
   r->side_next =
-      r->side_face ? vxm_repair_state_scratch(work, sides, sizeof *r->side_next, &status, &local) : NULL;
+      r->side_face ? vxm_repair_state_scratch(state, sides, sizeof *r->side_next, &status, &local) : NULL;
   if (r->side_next) {
     list_sides(r);
     choose_faces(r);
   } else
     vxm_error_pass(error, &local);
-  vxm_free(work->context, r->side_next);
-  vxm_free(work->context, r->side_face);
-  vxm_free(work->context, r->edge_side);
-  vxm_free(work->context, r->queue);
-  vxm_free(work->context, r->queued);
-  vxm_free(work->context, r->odd);
+  vxm_free(state->context, r->side_next);
+  vxm_free(state->context, r->side_face);
+  vxm_free(state->context, r->edge_side);
+  vxm_free(state->context, r->queue);
+  vxm_free(state->context, r->queued);
+  vxm_free(state->context, r->odd);
   return status;
 }
 
 /** Faces have been reduced before: they have at least three corners, and no side from a vertex to itself. */
-vxm_status vxm_pass_zero_area(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error *error) {
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
-  removal r = {.work = work, .frame = vxm_unit_scale_of(extent.bounds)};
+  vxm_repair_state_extent(state, &extent);
+  removal r = {.state = state, .frame = vxm_unit_scale_of(extent.bounds)};
   vxm_status status = VXM_OK;
   *changed = false;
-  r.flat = vxm_repair_state_scratch(work, work->soup->face_count, sizeof *r.flat, &status, error);
+  r.flat = vxm_repair_state_scratch(state, state->soup->face_count, sizeof *r.flat, &status, error);
   if (!r.flat)
     return status;
-  status =
-      vxm_parallel_asked(work->context, work->soup->face_count / FACES_PER_SLICE + 1, flag_slice, &r, error);
+  status = vxm_parallel_asked(state->context, state->soup->face_count / FACES_PER_SLICE + 1, flag_slice, &r,
+                              error);
   if (status == VXM_OK && atomic_load(&r.sides) > 0) {
     status = choose(&r, error);
-    for (size_t f = 0; f < work->soup->face_count; f++)
+    for (size_t f = 0; f < state->soup->face_count; f++)
       r.flat[f] = r.flat[f] == 2;
     if (status == VXM_OK)
-      vxm_repair_state_note_marked(work, VXM_PASS_ZERO_AREA, r.flat);
-    int64_t count = status == VXM_OK ? vxm_repair_state_remove_faces(work, r.flat) : 0;
-    work->counts[VXM_PASS_ZERO_AREA] += count;
+      vxm_repair_state_note_marked(state, VXM_PASS_ZERO_AREA, r.flat);
+    int64_t count = status == VXM_OK ? vxm_repair_state_remove_faces(state, r.flat) : 0;
+    state->counts[VXM_PASS_ZERO_AREA] += count;
     *changed = count > 0;
   }
-  vxm_free(work->context, r.flat);
+  vxm_free(state->context, r.flat);
   return status;
 }

@@ -20,7 +20,7 @@ typedef struct patch {
 } patch;
 
 typedef struct orienting {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   vxm_soup *soup;
   vxm_error error;
   vxm_unit_scale frame;
@@ -35,18 +35,18 @@ typedef struct orienting {
 } orienting;
 
 static void *allocate(orienting *o, size_t count, size_t size) {
-  return vxm_calloc(o->work->context, count, size, &o->error);
+  return vxm_calloc(o->state->context, count, size, &o->error);
 }
 
 /* ---- Patches ---- */
 
 /** To be asked at every so many steps: false if the work has been cancelled. */
 static bool goes_on(orienting *o, size_t step) {
-  return vxm_ask_at(step, o->work->context, &o->error) == VXM_OK;
+  return vxm_ask_at(step, o->state->context, &o->error) == VXM_OK;
 }
 
 static bool pair_faces(orienting *o) {
-  const vxm_edges *edges = &o->work->edges;
+  const vxm_edges *edges = &o->state->edges;
   for (size_t e = 0; e < edges->count; e++) {
     if (!goes_on(o, e))
       return false;
@@ -82,10 +82,10 @@ static size_t visit(orienting *o, size_t face, size_t queued) {
   bool backward = walks_backward(corner, count);
   for (size_t i = 0; i < count; i++) {
     size_t e = o->sides[o->soup->offsets[face] + (backward ? count - 1 - i : i)];
-    if (e == VXM_NO_EDGE || o->work->edges.edges[e].count != 2)
+    if (e == VXM_NO_EDGE || o->state->edges.edges[e].count != 2)
       continue;
     size_t other = o->pair[e][o->pair[e][0] == face];
-    uint8_t against = o->work->edges.edges[e].forward != 1, turn = o->turn[face] ^ against;
+    uint8_t against = o->state->edges.edges[e].forward != 1, turn = o->turn[face] ^ against;
     p->inconsistent += against;
     if (other == face)
       p->conflicts += against;
@@ -107,7 +107,7 @@ static bool find_patches(orienting *o) {
     if (o->label[f] != VXM_NO_COMPONENT)
       continue;
     void *patches = o->patches;
-    if (vxm_grow(o->work->context, &patches, &o->patch_capacity, o->patch_count + 1, sizeof *o->patches,
+    if (vxm_grow(o->state->context, &patches, &o->patch_capacity, o->patch_count + 1, sizeof *o->patches,
                  &o->error) != VXM_OK)
       return false;
     o->patches = patches;
@@ -194,7 +194,8 @@ static bool list_crossings(orienting *o, crossing *crossings, size_t *out) {
     const uint32_t *corner = vxm_face(o->soup, f, &count);
     for (size_t i = 0; i < count; i++) {
       size_t e = o->sides[o->soup->offsets[f] + (o->turn[f] ? count - 1 - i : i)];
-      if (e == VXM_NO_EDGE || o->work->edges.edges[e].count < 4 || vxm_edge_is_odd(&o->work->edges.edges[e]))
+      if (e == VXM_NO_EDGE || o->state->edges.edges[e].count < 4 ||
+          vxm_edge_is_odd(&o->state->edges.edges[e]))
         continue;
       int along = corner[i] < corner[i + 1 < count ? i + 1 : 0] ? 1 : -1;
       if (crossings)
@@ -233,7 +234,7 @@ static bool find_held(orienting *o, uint8_t *held) {
     qsort(crossings, count, sizeof *crossings, by_edge_then_patch);
     mark_held(crossings, count, held);
   }
-  vxm_free(o->work->context, crossings);
+  vxm_free(o->state->context, crossings);
   return done;
 }
 
@@ -291,19 +292,19 @@ static bool turn_outward(orienting *o) {
       }
   }
   vxm_containment_destroy(&nesting);
-  vxm_free(o->work->context, chain);
-  vxm_free(o->work->context, held);
-  vxm_free(o->work->context, known);
-  vxm_free(o->work->context, over);
-  vxm_free(o->work->context, solid);
+  vxm_free(o->state->context, chain);
+  vxm_free(o->state->context, held);
+  vxm_free(o->state->context, known);
+  vxm_free(o->state->context, over);
+  vxm_free(o->state->context, solid);
   return done;
 }
 
 static bool orient(orienting *o) {
   size_t faces = o->soup->face_count;
-  if (vxm_halfedges_find(&o->sides, o->work, &o->error) != VXM_OK)
+  if (vxm_halfedges_find(&o->sides, o->state, &o->error) != VXM_OK)
     return false;
-  o->pair = allocate(o, o->work->edges.count, sizeof *o->pair);
+  o->pair = allocate(o, o->state->edges.count, sizeof *o->pair);
   o->label = allocate(o, faces, sizeof *o->label);
   o->turn = allocate(o, faces, sizeof *o->turn);
   o->queue = allocate(o, faces, sizeof *o->queue);
@@ -314,14 +315,14 @@ static bool orient(orienting *o) {
 
 /** Notes which faces run the other way than when they came in, by this pass and those before. */
 static bool note_turned(orienting *o, bool *changed) {
-  vxm_repair_state *work = o->work;
+  vxm_repair_state *state = o->state;
   for (size_t f = 0; f < o->soup->face_count && !*changed; f++)
     *changed = o->turn[f];
-  if (*changed && !work->turned)
-    work->turned = allocate(o, o->soup->face_count, sizeof *work->turned);
-  for (size_t f = 0; f < o->soup->face_count && *changed && work->turned; f++)
-    work->turned[f] ^= o->turn[f];
-  return !*changed || work->turned;
+  if (*changed && !state->turned)
+    state->turned = allocate(o, o->soup->face_count, sizeof *state->turned);
+  for (size_t f = 0; f < o->soup->face_count && *changed && state->turned; f++)
+    state->turned[f] ^= o->turn[f];
+  return !*changed || state->turned;
 }
 
 /**
@@ -331,32 +332,34 @@ static bool note_turned(orienting *o, bool *changed) {
  * area has. A patch that no turning makes consistent gets as few inconsistent edges as a walk over its faces
  * leaves.
  */
-vxm_status vxm_pass_orientation(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (work->options.keep_orientation || work->soup->face_count == 0)
+  if (state->options.keep_orientation || state->soup->face_count == 0)
     return VXM_OK;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
-  orienting o = {
-      .work = work, .soup = work->soup, .error = VXM_ERROR_INIT, .frame = vxm_unit_scale_of(extent.bounds)};
+  vxm_repair_state_extent(state, &extent);
+  orienting o = {.state = state,
+                 .soup = state->soup,
+                 .error = VXM_ERROR_INIT,
+                 .frame = vxm_unit_scale_of(extent.bounds)};
   bool done = orient(&o);
-  work->nonorientable = 0;
+  state->nonorientable = 0;
   if (done)
     done = note_turned(&o, changed);
   for (size_t i = 0; done && i < o.patch_count; i++)
-    work->nonorientable += o.patches[i].conflicts > 0;
-  vxm_free(work->context, o.patches);
-  vxm_free(work->context, o.queue);
-  vxm_free(work->context, o.turn);
-  vxm_free(work->context, o.label);
-  vxm_free(work->context, o.pair);
-  vxm_free(work->context, o.sides);
+    state->nonorientable += o.patches[i].conflicts > 0;
+  vxm_free(state->context, o.patches);
+  vxm_free(state->context, o.queue);
+  vxm_free(state->context, o.turn);
+  vxm_free(state->context, o.label);
+  vxm_free(state->context, o.pair);
+  vxm_free(state->context, o.sides);
   if (!done) {
     vxm_error_pass(error, &o.error);
     return o.error.code;
   }
   if (*changed)
-    vxm_repair_state_touch(work);
-  work->patches = o.many_sides ? 0 : o.patch_count; /* turning changes none */
+    vxm_repair_state_touch(state);
+  state->patches = o.many_sides ? 0 : o.patch_count; /* turning changes none */
   return VXM_OK;
 }

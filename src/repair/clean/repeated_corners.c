@@ -48,9 +48,9 @@ static bool needs_reducing(const uint32_t *corners, size_t count) {
 }
 
 /** Polygons that touch themselves in a corner, or run along an edge there and later back, are kept. */
-vxm_status vxm_pass_repeated_corners(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_repeated_corners(vxm_repair_state *state, bool *changed, vxm_error *error) {
   (void)error;
-  vxm_soup *soup = work->soup;
+  vxm_soup *soup = state->soup;
   int64_t count = 0;
   size_t kept = 0, end = 0;
   for (size_t f = 0; f < soup->face_count; f++) {
@@ -58,7 +58,7 @@ vxm_status vxm_pass_repeated_corners(vxm_repair_state *work, bool *changed, vxm_
     uint32_t *face = soup->indices + soup->offsets[f];
     if (needs_reducing(face, corners)) {
       if (count++ == 0)
-        vxm_repair_state_note_face(work, VXM_PASS_REPEATED_CORNERS, f);
+        vxm_repair_state_note_face(state, VXM_PASS_REPEATED_CORNERS, f);
       corners = reduce(face, corners, &begin);
       if (corners == 0)
         continue;
@@ -67,18 +67,18 @@ vxm_status vxm_pass_repeated_corners(vxm_repair_state *work, bool *changed, vxm_
       for (size_t i = 0; i < corners; i++)
         soup->indices[end + i] = face[begin + i];
       soup->offsets[kept] = end;
-      vxm_repair_state_renumber(work, f, kept);
+      vxm_repair_state_renumber(state, f, kept);
     }
     kept++;
     end += corners;
   }
   soup->offsets[kept] = end;
-  work->renumbered |= kept < soup->face_count;
+  state->renumbered |= kept < soup->face_count;
   soup->face_count = kept;
   soup->corner_count = end;
-  work->counts[VXM_PASS_REPEATED_CORNERS] += count;
+  state->counts[VXM_PASS_REPEATED_CORNERS] += count;
   *changed = count > 0;
   if (count > 0)
-    vxm_repair_state_touch(work);
+    vxm_repair_state_touch(state);
   return VXM_OK;
 }

@@ -36,7 +36,7 @@ typedef struct fin {
 } fin;
 
 typedef struct deciding {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   const vxm_soup *soup;
   const vxm_copies *copies;
   vxm_edge_groups groups;
@@ -104,7 +104,7 @@ static void look_at_kind(deciding *d, size_t face) {
     if (edge == VXM_NO_EDGE)
       continue;
     size_t place = 2 * edge + (d->kinds[face] == SAME_WAY);
-    bool odd = d->single[place] % 2 == 1, others = d->work->edges.edges[edge].count > d->sides[place];
+    bool odd = d->single[place] % 2 == 1, others = d->state->edges.edges[edge].count > d->sides[place];
     f->touches |= others;
     f->hangs |= odd && others;
     f->rimmed |= odd && !others;
@@ -114,10 +114,10 @@ static void look_at_kind(deciding *d, size_t face) {
 
 /** Joins kinds to fins, and sees what the edges tell of these. */
 static void find_fins(deciding *d) {
-  memset(d->at_edge, 0, 2 * d->work->edges.count * sizeof *d->at_edge);
-  memset(d->single, 0, 2 * d->work->edges.count * sizeof *d->single);
-  memset(d->sides, 0, 2 * d->work->edges.count * sizeof *d->sides);
-  memset(d->balance, 0, 2 * d->work->edges.count * sizeof *d->balance);
+  memset(d->at_edge, 0, 2 * d->state->edges.count * sizeof *d->at_edge);
+  memset(d->single, 0, 2 * d->state->edges.count * sizeof *d->single);
+  memset(d->sides, 0, 2 * d->state->edges.count * sizeof *d->sides);
+  memset(d->balance, 0, 2 * d->state->edges.count * sizeof *d->balance);
   for (size_t face = 0; face < d->soup->face_count; face++) {
     d->parent[face] = face;
     d->fins[face] = (fin){0};
@@ -131,7 +131,7 @@ static void find_fins(deciding *d) {
         continue;
       d->single[place]++;
       d->sides[place] += copies->same + copies->opposite;
-      d->balance[place] += (d->soup->indices[c] == d->work->edges.edges[edge].a) != turned ? 1 : -1;
+      d->balance[place] += (d->soup->indices[c] == d->state->edges.edges[edge].a) != turned ? 1 : -1;
       if (d->at_edge[place] == 0)
         d->at_edge[place] = face + 1;
       else
@@ -202,14 +202,14 @@ static void look_at_sides(deciding *d, int8_t *tally) {
   for (size_t face = 0; face < d->soup->face_count; face++)
     for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
       size_t e = d->groups.sides[c];
-      if (e == VXM_NO_EDGE || d->at_edge[2 * e + 1] == 0 || d->work->edges.edges[e].count != 4 ||
+      if (e == VXM_NO_EDGE || d->at_edge[2 * e + 1] == 0 || d->state->edges.edges[e].count != 4 ||
           d->kinds[d->copies[face].first] != PLAIN)
         continue;
       int side = side_of(d, d->at_edge[2 * e + 1] - 1, face);
       tally[2 * e] = (int8_t)(tally[2 * e] + side);
       tally[2 * e + 1] = (int8_t)(tally[2 * e + 1] + (side != 0));
     }
-  for (size_t e = 0; e < d->work->edges.count; e++)
+  for (size_t e = 0; e < d->state->edges.count; e++)
     if (tally[2 * e + 1] == 2)
       d->fins[vxm_set_of(d->parent, d->at_edge[2 * e + 1] - 1)].overlaps += tally[2 * e] != 0 ? 1 : -1;
 }
@@ -239,7 +239,7 @@ static void settle(deciding *d, const uint8_t *within) {
     const vxm_copies *c = &d->copies[face];
     bool balanced = d->groups.groups[group].balanced, sheet = d->kinds[face] == SHEET;
     uint32_t *keep = &d->keep[2 * face];
-    if (vxm_repair_state_guards(d->work, face))
+    if (vxm_repair_state_guards(d->state, face))
       continue;
     bool drifts = f->touches && f->unbalanced && balanced; /* one side of it would turn what is balanced */
     if (within[root] ||
@@ -258,7 +258,7 @@ static void settle(deciding *d, const uint8_t *within) {
  */
 static void keep_tangled(deciding *d, uint8_t *within) {
   uint32_t *going = d->single;
-  memset(going, 0, d->work->edges.count * sizeof *going);
+  memset(going, 0, d->state->edges.count * sizeof *going);
   for (size_t face = 0; face < d->soup->face_count; face++)
     for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++)
       if (d->kinds[face] != PLAIN && d->groups.sides[c] != VXM_NO_EDGE && within[vxm_set_of(d->parent, face)])
@@ -266,7 +266,7 @@ static void keep_tangled(deciding *d, uint8_t *within) {
   for (size_t face = 0; face < d->soup->face_count; face++)
     for (uint64_t c = d->soup->offsets[face]; c < d->soup->offsets[face + 1]; c++) {
       size_t e = d->groups.sides[c];
-      if (e != VXM_NO_EDGE && d->work->edges.edges[e].count > going[e] + 2)
+      if (e != VXM_NO_EDGE && d->state->edges.edges[e].count > going[e] + 2)
         d->tangled[d->groups.of_face[face]] = 1;
     }
   for (size_t face = 0; face < d->soup->face_count; face++)
@@ -292,7 +292,7 @@ static bool is_asked(const deciding *d, size_t face) {
 /** Asks one face of a fin, or all of them, whether they lie within the solid. */
 static vxm_status ask(deciding *d, vxm_set_side *sets, size_t asked, const uint8_t *bound, uint8_t *within,
                       vxm_error *error) {
-  vxm_status status = vxm_set_sides_find(sets, asked, d->work, &d->groups, bound, error);
+  vxm_status status = vxm_set_sides_find(sets, asked, d->state, &d->groups, bound, error);
   for (size_t i = 0; status == VXM_OK && i < asked; i++)
     within[sets[i].set] = 1;
   for (size_t i = 0; status == VXM_OK && i < asked; i++) {
@@ -309,14 +309,14 @@ static vxm_status ask(deciding *d, vxm_set_side *sets, size_t asked, const uint8
 static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t faces = d->soup->face_count, asked = 0;
-  uint8_t *bound = vxm_repair_state_scratch(d->work, faces, sizeof *bound, &status, error);
+  uint8_t *bound = vxm_repair_state_scratch(d->state, faces, sizeof *bound, &status, error);
   vxm_set_side *sets = NULL;
   for (size_t face = 0; bound && face < faces; face++) {
     bound[face] = bounds(d, face);
     asked += is_asked(d, face);
   }
   if (bound)
-    sets = vxm_repair_state_scratch(d->work, asked, sizeof *sets, &status, error);
+    sets = vxm_repair_state_scratch(d->state, asked, sizeof *sets, &status, error);
   asked = 0;
   for (size_t face = 0; sets && face < faces; face++)
     if (is_asked(d, face)) {
@@ -327,8 +327,8 @@ static vxm_status find_within(deciding *d, uint8_t *within, vxm_error *error) {
     }
   if (sets)
     status = ask(d, sets, asked, bound, within, error);
-  vxm_free(d->work->context, sets);
-  vxm_free(d->work->context, bound);
+  vxm_free(d->state->context, sets);
+  vxm_free(d->state->context, bound);
   return status;
 }
 
@@ -353,62 +353,62 @@ static vxm_status decide(deciding *d, int8_t *tally, uint8_t *within, uint8_t *r
 }
 
 static vxm_status prepare(deciding *d, int8_t **tally, uint8_t **within, vxm_error *error) {
-  vxm_repair_state *work = d->work;
+  vxm_repair_state *state = d->state;
   size_t faces = d->soup->face_count;
-  vxm_status status = vxm_edge_groups_find(&d->groups, work, error);
+  vxm_status status = vxm_edge_groups_find(&d->groups, state, error);
   if (status == VXM_OK)
-    d->kinds = vxm_repair_state_scratch(work, faces, sizeof *d->kinds, &status, error);
+    d->kinds = vxm_repair_state_scratch(state, faces, sizeof *d->kinds, &status, error);
   if (status == VXM_OK)
-    d->keep = vxm_repair_state_scratch(work, 2 * faces, sizeof *d->keep, &status, error);
+    d->keep = vxm_repair_state_scratch(state, 2 * faces, sizeof *d->keep, &status, error);
   if (status == VXM_OK)
-    d->parent = vxm_repair_state_scratch(work, faces, sizeof *d->parent, &status, error);
+    d->parent = vxm_repair_state_scratch(state, faces, sizeof *d->parent, &status, error);
   if (status == VXM_OK)
-    d->fins = vxm_repair_state_scratch(work, faces, sizeof *d->fins, &status, error);
+    d->fins = vxm_repair_state_scratch(state, faces, sizeof *d->fins, &status, error);
   if (status == VXM_OK)
-    d->at_edge = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof *d->at_edge, &status, error);
+    d->at_edge = vxm_repair_state_scratch(state, 2 * state->edges.count, sizeof *d->at_edge, &status, error);
   if (status == VXM_OK)
-    d->single = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof *d->single, &status, error);
+    d->single = vxm_repair_state_scratch(state, 2 * state->edges.count, sizeof *d->single, &status, error);
   if (status == VXM_OK)
-    d->sides = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof *d->sides, &status, error);
+    d->sides = vxm_repair_state_scratch(state, 2 * state->edges.count, sizeof *d->sides, &status, error);
   if (status == VXM_OK)
-    d->balance = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof *d->balance, &status, error);
+    d->balance = vxm_repair_state_scratch(state, 2 * state->edges.count, sizeof *d->balance, &status, error);
   if (status == VXM_OK)
-    d->fin_area = vxm_repair_state_scratch(work, d->groups.count, sizeof *d->fin_area, &status, error);
+    d->fin_area = vxm_repair_state_scratch(state, d->groups.count, sizeof *d->fin_area, &status, error);
   if (status == VXM_OK)
-    d->rest_area = vxm_repair_state_scratch(work, d->groups.count, sizeof *d->rest_area, &status, error);
+    d->rest_area = vxm_repair_state_scratch(state, d->groups.count, sizeof *d->rest_area, &status, error);
   if (status == VXM_OK)
-    d->tangled = vxm_repair_state_scratch(work, d->groups.count, sizeof *d->tangled, &status, error);
+    d->tangled = vxm_repair_state_scratch(state, d->groups.count, sizeof *d->tangled, &status, error);
   if (status == VXM_OK)
-    *tally = vxm_repair_state_scratch(work, 2 * work->edges.count, sizeof **tally, &status, error);
+    *tally = vxm_repair_state_scratch(state, 2 * state->edges.count, sizeof **tally, &status, error);
   if (status == VXM_OK)
-    *within = vxm_repair_state_scratch(work, faces, sizeof **within, &status, error);
+    *within = vxm_repair_state_scratch(state, faces, sizeof **within, &status, error);
   return status;
 }
 
-vxm_status vxm_repeated_faces_mark(vxm_repair_state *work, const vxm_copies *copies, uint8_t *remove,
+vxm_status vxm_repeated_faces_mark(vxm_repair_state *state, const vxm_copies *copies, uint8_t *remove,
                                    vxm_error *error) {
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
+  vxm_repair_state_extent(state, &extent);
   deciding d = {
-      .work = work, .soup = work->soup, .copies = copies, .scale = vxm_unit_scale_of(extent.bounds).scale};
+      .state = state, .soup = state->soup, .copies = copies, .scale = vxm_unit_scale_of(extent.bounds).scale};
   int8_t *tally = NULL;
   uint8_t *within = NULL;
   vxm_status status = prepare(&d, &tally, &within, error);
   if (status == VXM_OK)
     status = decide(&d, tally, within, remove, error);
-  vxm_free(work->context, within);
-  vxm_free(work->context, tally);
-  vxm_free(work->context, d.tangled);
-  vxm_free(work->context, d.rest_area);
-  vxm_free(work->context, d.fin_area);
-  vxm_free(work->context, d.balance);
-  vxm_free(work->context, d.sides);
-  vxm_free(work->context, d.single);
-  vxm_free(work->context, d.at_edge);
-  vxm_free(work->context, d.fins);
-  vxm_free(work->context, d.parent);
-  vxm_free(work->context, d.keep);
-  vxm_free(work->context, d.kinds);
-  vxm_edge_groups_free(&d.groups, work->context);
+  vxm_free(state->context, within);
+  vxm_free(state->context, tally);
+  vxm_free(state->context, d.tangled);
+  vxm_free(state->context, d.rest_area);
+  vxm_free(state->context, d.fin_area);
+  vxm_free(state->context, d.balance);
+  vxm_free(state->context, d.sides);
+  vxm_free(state->context, d.single);
+  vxm_free(state->context, d.at_edge);
+  vxm_free(state->context, d.fins);
+  vxm_free(state->context, d.parent);
+  vxm_free(state->context, d.keep);
+  vxm_free(state->context, d.kinds);
+  vxm_edge_groups_free(&d.groups, state->context);
   return status;
 }

@@ -3,7 +3,7 @@
 #ifndef VXM_REPAIR_CLEAN_REPEATED_FACES_H
 #define VXM_REPAIR_CLEAN_REPEATED_FACES_H
 
-#include "mesh/duplicates.h"
+#include "mesh/duplicate_faces.h"
 #include "repair/state/repair_state.h"
 
 /**
@@ -27,7 +27,7 @@
  * @param[out] remove per face: 1 = it goes
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_repeated_faces_mark(vxm_repair_state *work, const vxm_copies *copies, uint8_t *remove,
+vxm_status vxm_repeated_faces_mark(vxm_repair_state *state, const vxm_copies *copies, uint8_t *remove,
                                    vxm_error *error);
 
 #endif

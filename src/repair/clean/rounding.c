@@ -10,39 +10,39 @@
 #include <math.h>
 
 /** Moves the vertices of faces to the nearest positions that 32-bit floats hold. */
-static vxm_status round_positions(vxm_repair_state *work, vxm_error *error) {
-  vxm_soup *soup = work->soup;
+static vxm_status round_positions(vxm_repair_state *state, vxm_error *error) {
+  vxm_soup *soup = state->soup;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
+  vxm_repair_state_extent(state, &extent);
   for (size_t v = 0; v < soup->vertex_count; v++) {
     double *p = soup->positions + 3 * v;
     bool same = true;
-    for (int a = 0; a < 3 && work->used[v]; a++) {
+    for (int a = 0; a < 3 && state->used[v]; a++) {
       if (isfinite(p[a]) && fabs(p[a]) > (double)FLT_MAX)
         return vxm_fail_at(
             error, VXM_ERROR_RANGE, (vxm_place){NULL, 0, -1, (int64_t)v},
             "vertex %zu lies at %g, beyond what 32-bit floats hold; write another format than stl", v, p[a]);
-      double rounded = vxm_repair_state_round(work, p[a]);
+      double rounded = vxm_repair_state_round(state, p[a]);
       same = same && (rounded == p[a] || isnan(p[a]));
       p[a] = rounded;
     }
     if (!same)
-      vxm_repair_state_note_vertex(work, VXM_PASS_ROUNDING, v);
-    work->counts[VXM_PASS_ROUNDING] += !same;
+      vxm_repair_state_note_vertex(state, VXM_PASS_ROUNDING, v);
+    state->counts[VXM_PASS_ROUNDING] += !same;
   }
   return VXM_OK;
 }
 
 /** Before it, faces have been reduced, and of those that repeat others one is left: triangles would hide
  * that. */
-vxm_status vxm_pass_rounding(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_rounding(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!work->options.single_precision)
+  if (!state->options.single_precision)
     return VXM_OK;
-  int64_t before = work->counts[VXM_PASS_ROUNDING];
-  vxm_status status = vxm_split_polygons(work, false, error);
+  int64_t before = state->counts[VXM_PASS_ROUNDING];
+  vxm_status status = vxm_split_polygons(state, false, error);
   if (status == VXM_OK)
-    status = round_positions(work, error);
-  *changed = work->counts[VXM_PASS_ROUNDING] > before;
+    status = round_positions(state, error);
+  *changed = state->counts[VXM_PASS_ROUNDING] > before;
   return status;
 }

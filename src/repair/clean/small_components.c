@@ -11,7 +11,7 @@ typedef struct part {
 } part;
 
 typedef struct dropping {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   double scale;
   uint32_t *label; /**< per face */
   size_t part_count;
@@ -20,7 +20,7 @@ typedef struct dropping {
 } dropping;
 
 static void measure(dropping *d) {
-  const vxm_soup *soup = d->work->soup;
+  const vxm_soup *soup = d->state->soup;
   for (size_t f = 0; f < soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count);
@@ -36,9 +36,9 @@ static void measure(dropping *d) {
     for (size_t i = 0; i < count; i++)
       d->at[corner[i]] = d->label[f];
   }
-  for (size_t e = 0; e < d->work->edges.count; e++)
-    if (vxm_edge_is_odd(&d->work->edges.edges[e]))
-      d->parts[d->at[d->work->edges.edges[e].a]].open = true;
+  for (size_t e = 0; e < d->state->edges.count; e++)
+    if (vxm_edge_is_odd(&d->state->edges.edges[e]))
+      d->parts[d->at[d->state->edges.edges[e].a]].open = true;
 }
 
 /** The one with the largest area, of equal ones the first. */
@@ -51,27 +51,27 @@ static size_t largest_part(const dropping *d) {
 }
 
 static bool is_small(const dropping *d, const part *p) {
-  const vxm_repair_options *options = &d->work->options;
+  const vxm_repair_options *options = &d->state->options;
   double cube = d->scale * d->scale * d->scale; /* a power of two */
   return p->faces < options->drop_faces || (!p->open && fabs(p->volume) < options->drop_volume * cube);
 }
 
 static vxm_status drop(dropping *d, bool *changed, vxm_error *error) {
-  vxm_repair_state *work = d->work;
-  size_t faces = work->soup->face_count, largest = largest_part(d);
+  vxm_repair_state *state = d->state;
+  size_t faces = state->soup->face_count, largest = largest_part(d);
   vxm_status status = VXM_OK;
-  uint8_t *remove = vxm_repair_state_scratch(work, faces, sizeof *remove, &status, error);
+  uint8_t *remove = vxm_repair_state_scratch(state, faces, sizeof *remove, &status, error);
   if (!remove)
     return status;
   for (size_t f = 0; f < faces; f++)
     remove[f] = d->label[f] != largest && is_small(d, &d->parts[d->label[f]]);
-  for (size_t f = 0; f < faces && work->track && work->soup->face_parts; f++)
+  for (size_t f = 0; f < faces && state->track && state->soup->face_parts; f++)
     if (remove[f])
-      vxm_provenance_drop(work->track, work->soup->face_parts[f]);
-  int64_t count = vxm_repair_state_remove_faces(work, remove);
-  work->counts[VXM_PASS_SMALL_PARTS] += count;
+      vxm_provenance_drop(state->track, state->soup->face_parts[f]);
+  int64_t count = vxm_repair_state_remove_faces(state, remove);
+  state->counts[VXM_PASS_SMALL_PARTS] += count;
   *changed = count > 0;
-  vxm_free(work->context, remove);
+  vxm_free(state->context, remove);
   return VXM_OK;
 }
 
@@ -79,28 +79,28 @@ static vxm_status drop(dropping *d, bool *changed, vxm_error *error) {
  * Removes the components that are smaller than the options say: by faces, or, if they are closed, by volume.
  * The one with the largest area always stays.
  */
-vxm_status vxm_pass_small_parts(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_small_parts(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (work->options.drop_faces <= 0 && !(work->options.drop_volume > 0))
+  if (state->options.drop_faces <= 0 && !(state->options.drop_volume > 0))
     return VXM_OK;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
-  dropping d = {.work = work, .scale = vxm_unit_scale_of(extent.bounds).scale};
-  vxm_status status = vxm_repair_state_edges(work, error);
+  vxm_repair_state_extent(state, &extent);
+  dropping d = {.state = state, .scale = vxm_unit_scale_of(extent.bounds).scale};
+  vxm_status status = vxm_repair_state_edges(state, error);
   if (status == VXM_OK)
-    d.label = vxm_repair_state_scratch(work, work->soup->face_count, sizeof *d.label, &status, error);
+    d.label = vxm_repair_state_scratch(state, state->soup->face_count, sizeof *d.label, &status, error);
   if (status == VXM_OK)
-    status = vxm_components(work->context, work->soup, NULL, d.label, &d.part_count, error);
+    status = vxm_components(state->context, state->soup, NULL, d.label, &d.part_count, error);
   if (status == VXM_OK)
-    d.parts = vxm_repair_state_scratch(work, d.part_count, sizeof *d.parts, &status, error);
+    d.parts = vxm_repair_state_scratch(state, d.part_count, sizeof *d.parts, &status, error);
   if (status == VXM_OK)
-    d.at = vxm_repair_state_scratch(work, work->soup->vertex_count, sizeof *d.at, &status, error);
+    d.at = vxm_repair_state_scratch(state, state->soup->vertex_count, sizeof *d.at, &status, error);
   if (status == VXM_OK && d.part_count > 1) {
     measure(&d);
     status = drop(&d, changed, error);
   }
-  vxm_free(work->context, d.at);
-  vxm_free(work->context, d.parts);
-  vxm_free(work->context, d.label);
+  vxm_free(state->context, d.at);
+  vxm_free(state->context, d.parts);
+  vxm_free(state->context, d.label);
   return status;
 }

@@ -2,21 +2,21 @@
 #include "repair/state/repair_state.h"
 
 /** Removes the vertices of no face, keeping the order of the others, and renumbers the corners. */
-vxm_status vxm_pass_unused(vxm_repair_state *work, bool *changed, vxm_error *error) {
-  vxm_soup *soup = work->soup;
+vxm_status vxm_pass_unused(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  vxm_soup *soup = state->soup;
   vxm_status status = VXM_OK;
   *changed = false;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
+  vxm_repair_state_extent(state, &extent);
   if (extent.unused == 0)
     return VXM_OK;
-  uint32_t *number = vxm_repair_state_scratch(work, soup->vertex_count, sizeof *number, &status, error);
+  uint32_t *number = vxm_repair_state_scratch(state, soup->vertex_count, sizeof *number, &status, error);
   if (!number)
     return status;
   size_t kept = 0;
   for (size_t v = 0; v < soup->vertex_count; v++) {
-    if (!work->used[v]) {
-      work->counts[VXM_PASS_UNUSED] += !work->gone[v];
+    if (!state->used[v]) {
+      state->counts[VXM_PASS_UNUSED] += !state->gone[v];
       continue;
     }
     const double *from = vxm_position(soup, v);
@@ -28,12 +28,12 @@ vxm_status vxm_pass_unused(vxm_repair_state *work, bool *changed, vxm_error *err
   for (size_t c = 0; c < soup->corner_count; c++)
     soup->indices[c] = number[soup->indices[c]];
   soup->vertex_count = kept;
-  for (size_t e = 0; work->has_edges && e < work->edges.count; e++) { /* which stay in order */
-    vxm_edge *edge = &work->edges.edges[e];
+  for (size_t e = 0; state->has_edges && e < state->edges.count; e++) { /* which stay in order */
+    vxm_edge *edge = &state->edges.edges[e];
     edge->a = number[edge->a];
     edge->b = number[edge->b];
   }
-  vxm_free(work->context, number);
+  vxm_free(state->context, number);
   *changed = true;
   return VXM_OK;
 }

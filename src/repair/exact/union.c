@@ -5,7 +5,7 @@
 
 /** What the union leaves as it was although it cuts through something. */
 typedef struct leaving {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   const uint64_t *origin; /**< per face of the united soup */
   uint32_t *component;    /**< the same */
   uint8_t *left;          /**< per component */
@@ -16,13 +16,13 @@ typedef struct leaving {
 static vxm_status mark_failed(leaving *l, const vxm_soup *soup, const vxm_union_report *report,
                               vxm_error *error) {
   vxm_status status = VXM_OK;
-  uint8_t *failed = vxm_repair_state_scratch(l->work, l->work->soup->face_count, 1, &status, error);
+  uint8_t *failed = vxm_repair_state_scratch(l->state, l->state->soup->face_count, 1, &status, error);
   for (int64_t i = 0; failed && i < report->failed; i++)
     failed[report->failed_faces[i]] = 1;
   for (size_t f = 0; failed && f < soup->face_count; f++)
     if (l->origin[f] != VXM_NO_FACE && failed[l->origin[f]])
       l->left[l->component[f]] = 1;
-  vxm_free(l->work->context, failed);
+  vxm_free(l->state->context, failed);
   return status;
 }
 
@@ -37,69 +37,69 @@ static vxm_status mark_crossing(leaving *l, const vxm_soup *soup, vxm_error *err
 }
 
 static void tell(leaving *l, const vxm_soup *soup) {
-  vxm_repair_state *work = l->work;
-  const uint32_t *parts = work->track ? work->soup->face_parts : NULL;
+  vxm_repair_state *state = l->state;
+  const uint32_t *parts = state->track ? state->soup->face_parts : NULL;
   if (!parts)
-    work->ununited = 0; /* of an earlier round; parts that are followed count once */
+    state->ununited = 0; /* of an earlier round; parts that are followed count once */
   for (size_t c = 0; !parts && c < l->count; c++)
-    work->ununited += l->left[c];
+    state->ununited += l->left[c];
   for (size_t f = 0; parts && f < soup->face_count; f++)
     if (l->left[l->component[f]] && l->origin[f] != VXM_NO_FACE)
-      work->ununited += vxm_provenance_leave(work->track, parts[l->origin[f]]);
+      state->ununited += vxm_provenance_leave(state->track, parts[l->origin[f]]);
 }
 
 /** Counts and names the parts that were left: those of the mesh as it was read, if they are followed. What is
  * open or bounds no volume is among them if it cuts through something. */
-static vxm_status find_left(vxm_repair_state *work, const vxm_soup *soup, const uint64_t *origin,
+static vxm_status find_left(vxm_repair_state *state, const vxm_soup *soup, const uint64_t *origin,
                             const vxm_union_report *report, vxm_error *error) {
-  leaving l = {.work = work, .origin = origin};
+  leaving l = {.state = state, .origin = origin};
   vxm_status status = VXM_OK;
-  l.component = vxm_repair_state_scratch(work, soup->face_count, sizeof *l.component, &status, error);
+  l.component = vxm_repair_state_scratch(state, soup->face_count, sizeof *l.component, &status, error);
   if (status == VXM_OK)
-    status = vxm_components(work->context, soup, NULL, l.component, &l.count, error);
+    status = vxm_components(state->context, soup, NULL, l.component, &l.count, error);
   if (status == VXM_OK)
-    l.left = vxm_repair_state_scratch(work, l.count, sizeof *l.left, &status, error);
+    l.left = vxm_repair_state_scratch(state, l.count, sizeof *l.left, &status, error);
   if (status == VXM_OK)
     status = mark_failed(&l, soup, report, error);
   if (status == VXM_OK)
     status = mark_crossing(&l, soup, error);
   if (status == VXM_OK)
     tell(&l, soup);
-  vxm_free(work->context, l.left);
-  vxm_free(work->context, l.component);
+  vxm_free(state->context, l.left);
+  vxm_free(state->context, l.component);
   return status;
 }
 
 /** Parts that lie inside of others go: they were to. */
-static vxm_status note_swallowed(vxm_repair_state *work, const vxm_soup *soup, const uint64_t *origin,
+static vxm_status note_swallowed(vxm_repair_state *state, const vxm_soup *soup, const uint64_t *origin,
                                  vxm_error *error) {
-  const uint32_t *parts = work->soup->face_parts;
-  if (!work->track || !parts)
+  const uint32_t *parts = state->soup->face_parts;
+  if (!state->track || !parts)
     return VXM_OK;
   vxm_status status = VXM_OK;
-  size_t count = vxm_provenance_part_count(work->track);
-  uint8_t *here = vxm_repair_state_scratch(work, count, sizeof *here, &status, error);
-  for (size_t f = 0; here && f < work->soup->face_count; f++)
+  size_t count = vxm_provenance_part_count(state->track);
+  uint8_t *here = vxm_repair_state_scratch(state, count, sizeof *here, &status, error);
+  for (size_t f = 0; here && f < state->soup->face_count; f++)
     here[parts[f]] |= 1;
   for (size_t f = 0; here && f < soup->face_count; f++)
     if (origin[f] != VXM_NO_FACE)
       here[parts[origin[f]]] |= 2;
   for (size_t p = 0; here && p < count; p++)
     if (here[p] == 1)
-      vxm_provenance_drop(work->track, (uint32_t)p);
-  vxm_free(work->context, here);
+      vxm_provenance_drop(state->track, (uint32_t)p);
+  vxm_free(state->context, here);
   return status;
 }
 
-static bool is_asked_for(const vxm_repair_state *work) {
-  return (work->options.boolean_union || vxm_repair_state_reaches(work, VXM_LEVEL_SOLID)) &&
-         !(work->options.wrap_alpha > 0);
+static bool is_asked_for(const vxm_repair_state *state) {
+  return (state->options.boolean_union || vxm_repair_state_reaches(state, VXM_LEVEL_SOLID)) &&
+         !(state->options.wrap_alpha > 0);
 }
 
 /** Unites the closed parts that cut through each other. Open ones have no inside: they stay as they are. */
-vxm_status vxm_pass_union(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!is_asked_for(work))
+  if (!is_asked_for(state))
     return VXM_OK;
   const vxm_cgal *cgal;
   vxm_soup *soup;
@@ -107,30 +107,30 @@ vxm_status vxm_pass_union(vxm_repair_state *work, bool *changed, vxm_error *erro
   vxm_union_report report;
   vxm_status status = vxm_cgal_open(&cgal, "uniting parts", error);
   if (status == VXM_OK)
-    status = cgal->unite(&soup, &origin, &report, work->soup, error);
+    status = cgal->unite(&soup, &origin, &report, state->soup, error);
   if (status != VXM_OK)
     return status;
-  status = find_left(work, soup, origin, &report, error);
-  vxm_free(work->context, report.failed_faces);
+  status = find_left(state, soup, origin, &report, error);
+  vxm_free(state->context, report.failed_faces);
   if (status == VXM_OK)
-    status = note_swallowed(work, soup, origin, error);
+    status = note_swallowed(state, soup, origin, error);
   *changed = report.united > 0 || report.cut > 0;
   if (status == VXM_OK && *changed) {
-    work->counts[VXM_PASS_UNION] += report.united + report.cut;
-    return vxm_repair_state_adopt(work, soup, origin, error);
+    state->counts[VXM_PASS_UNION] += report.united + report.cut;
+    return vxm_repair_state_adopt(state, soup, origin, error);
   }
   vxm_soup_destroy(soup);
-  vxm_free(work->context, origin);
+  vxm_free(state->context, origin);
   return status;
 }
 
 /** Once more where vertices were moved apart after that: into what lies nearer still, as beside slivers. */
-vxm_status vxm_pass_reunion(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_reunion(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!is_asked_for(work) || work->counts[VXM_PASS_APART] == 0 || work->ununited > 0)
+  if (!is_asked_for(state) || state->counts[VXM_PASS_APART] == 0 || state->ununited > 0)
     return VXM_OK;
   vxm_face_pairs pairs;
-  vxm_status status = vxm_self_intersections_find(&pairs, work->soup, 1, error);
-  vxm_free(work->context, pairs.pairs);
-  return status == VXM_OK && pairs.count > 0 ? vxm_pass_union(work, changed, error) : status;
+  vxm_status status = vxm_self_intersections_find(&pairs, state->soup, 1, error);
+  vxm_free(state->context, pairs.pairs);
+  return status == VXM_OK && pairs.count > 0 ? vxm_pass_union(state, changed, error) : status;
 }

@@ -17,30 +17,30 @@ static void regrow(vxm_soup *soup, double scale) {
 }
 
 /** The last resort, which always gives a closed surface: one that is laid around everything. */
-vxm_status vxm_pass_wrap(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_wrap(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!(work->options.wrap_alpha > 0) || work->soup->face_count == 0)
+  if (!(state->options.wrap_alpha > 0) || state->soup->face_count == 0)
     return VXM_OK;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
+  vxm_repair_state_extent(state, &extent);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
-  double alpha = work->options.wrap_alpha * frame.diagonal;
-  double offset = work->options.wrap_offset > 0 ? work->options.wrap_offset * frame.diagonal : alpha / 30;
+  double alpha = state->options.wrap_alpha * frame.diagonal;
+  double offset = state->options.wrap_offset > 0 ? state->options.wrap_offset * frame.diagonal : alpha / 30;
   const vxm_cgal *cgal;
   vxm_soup *soup;
   uint64_t *nearest;
   vxm_status status = vxm_cgal_open(&cgal, "wrapping a mesh", error);
   if (status != VXM_OK)
     return status;
-  shrink(work->soup, frame.scale);
-  status = cgal->wrap(&soup, &nearest, work->soup, alpha, offset, error);
+  shrink(state->soup, frame.scale);
+  status = cgal->wrap(&soup, &nearest, state->soup, alpha, offset, error);
   if (status != VXM_OK)
     return status;
   regrow(soup, frame.scale);
-  work->counts[VXM_PASS_WRAP] += (int64_t)soup->face_count;
+  state->counts[VXM_PASS_WRAP] += (int64_t)soup->face_count;
   *changed = true;
   /* The tags are those of what lies beneath; parts are no longer told apart. */
-  vxm_free(work->context, work->soup->face_parts);
-  work->soup->face_parts = NULL;
-  return vxm_repair_state_adopt(work, soup, nearest, error);
+  vxm_free(state->context, state->soup->face_parts);
+  state->soup->face_parts = NULL;
+  return vxm_repair_state_adopt(state, soup, nearest, error);
 }

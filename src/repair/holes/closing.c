@@ -28,9 +28,9 @@ static bool take_tags(vxm_soup *taken, const uint64_t *numbers, const vxm_soup *
 }
 
 /** The faces of a soup that are marked so, with all its vertices. */
-static vxm_status take_faces(vxm_soup **out, uint64_t **numbers, const vxm_repair_state *work,
+static vxm_status take_faces(vxm_soup **out, uint64_t **numbers, const vxm_repair_state *state,
                              const uint8_t *marks, uint8_t mark, vxm_error *error) {
-  const vxm_soup *soup = work->soup;
+  const vxm_soup *soup = state->soup;
   vxm_error local = VXM_ERROR_INIT;
   *numbers = vxm_alloc(soup->context, soup->face_count, sizeof **numbers, &local);
   *out = NULL;
@@ -59,9 +59,9 @@ static vxm_status take_faces(vxm_soup **out, uint64_t **numbers, const vxm_repai
 }
 
 /** Adds the faces marked as sheets, which the module has not seen, on vertices of their own. */
-static vxm_status add_sheets(vxm_soup *filled, uint64_t **origin, const vxm_repair_state *work,
+static vxm_status add_sheets(vxm_soup *filled, uint64_t **origin, const vxm_repair_state *state,
                              const uint8_t *sheets, vxm_error *error) {
-  const vxm_soup *soup = work->soup;
+  const vxm_soup *soup = state->soup;
   vxm_error local = VXM_ERROR_INIT;
   size_t first = filled->vertex_count, total = filled->face_count + soup->face_count;
   uint64_t *grown = vxm_realloc(soup->context, *origin, total, sizeof *grown, &local);
@@ -87,12 +87,12 @@ static vxm_status add_sheets(vxm_soup *filled, uint64_t **origin, const vxm_repa
   return status;
 }
 
-static vxm_status call_module(vxm_soup **out, uint64_t **origin, vxm_repair_state *work, const vxm_soup *soup,
-                              size_t most, vxm_error *error) {
+static vxm_status call_module(vxm_soup **out, uint64_t **origin, vxm_repair_state *state,
+                              const vxm_soup *soup, size_t most, vxm_error *error) {
   int64_t filled, left;
   size_t edges = most == SIZE_MAX ? 0 : most;
   vxm_status status;
-  if (work->options.hole_fill == VXM_HOLE_FILL_SMOOTH) {
+  if (state->options.hole_fill == VXM_HOLE_FILL_SMOOTH) {
     const vxm_cgal *cgal;
     status = vxm_cgal_open(&cgal, "filling holes smoothly", error);
     if (status == VXM_OK)
@@ -104,14 +104,14 @@ static vxm_status call_module(vxm_soup **out, uint64_t **origin, vxm_repair_stat
       status = openmesh->fill(out, origin, &filled, &left, soup, edges, error);
   }
   if (status == VXM_OK)
-    work->unfilled = left;
+    state->unfilled = left;
   return status;
 }
 
 /** What the modules fill has to be a manifold, which it is from that level on. */
-static vxm_status check_manifold(vxm_repair_state *work, vxm_error *error) {
+static vxm_status check_manifold(vxm_repair_state *state, vxm_error *error) {
   bool manifold;
-  vxm_status status = vxm_is_manifold(&manifold, work, error);
+  vxm_status status = vxm_is_manifold(&manifold, state, error);
   if (status != VXM_OK || manifold)
     return status;
   return vxm_fail(
@@ -121,72 +121,72 @@ static vxm_status check_manifold(vxm_repair_state *work, vxm_error *error) {
 }
 
 /** Fills all but sheets, which stay as they are. */
-static vxm_status fill_by_module(vxm_repair_state *work, const uint8_t *sheets, size_t most, bool *changed,
+static vxm_status fill_by_module(vxm_repair_state *state, const uint8_t *sheets, size_t most, bool *changed,
                                  vxm_error *error) {
   vxm_soup *rest, *filled = NULL;
   uint64_t *numbers, *origin = NULL;
-  vxm_status status = check_manifold(work, error);
+  vxm_status status = check_manifold(state, error);
   if (status == VXM_OK)
-    status = take_faces(&rest, &numbers, work, sheets, 0, error);
+    status = take_faces(&rest, &numbers, state, sheets, 0, error);
   if (status != VXM_OK)
     return status;
-  status = call_module(&filled, &origin, work, rest, most, error);
+  status = call_module(&filled, &origin, state, rest, most, error);
   if (status == VXM_OK) {
     int64_t added = (int64_t)filled->face_count - (int64_t)rest->face_count;
     for (size_t f = 0; f < filled->face_count; f++)
       origin[f] = origin[f] == VXM_NO_FACE ? VXM_NO_FACE : numbers[origin[f]];
     *changed = added > 0;
-    work->counts[VXM_PASS_CLOSING] += added;
-    if (work->open_parts > 0)
-      status = add_sheets(filled, &origin, work, sheets, error);
+    state->counts[VXM_PASS_CLOSING] += added;
+    if (state->open_parts > 0)
+      status = add_sheets(filled, &origin, state, sheets, error);
     if (status == VXM_OK && *changed) {
-      status = vxm_repair_state_adopt(work, filled, origin, error);
+      status = vxm_repair_state_adopt(state, filled, origin, error);
       filled = NULL;
       origin = NULL;
     }
   }
   vxm_soup_destroy(filled);
-  vxm_free(work->context, origin);
-  vxm_free(work->context, numbers);
+  vxm_free(state->context, origin);
+  vxm_free(state->context, numbers);
   vxm_soup_destroy(rest);
   return status;
 }
 
 /** What a module leaves, such as rims that touch themselves, goes to fans. */
-static vxm_status fan_the_rest(vxm_repair_state *work, size_t most, bool *changed, vxm_error *error) {
+static vxm_status fan_the_rest(vxm_repair_state *state, size_t most, bool *changed, vxm_error *error) {
   int64_t closed = 0;
-  vxm_status status = vxm_repair_state_edges(work, error);
+  vxm_status status = vxm_repair_state_edges(state, error);
   if (status == VXM_OK)
-    status = vxm_fill_fans(work, most, &closed, error);
-  work->fanned += closed;
-  work->unfilled = closed < work->unfilled ? work->unfilled - closed : 0;
+    status = vxm_fill_fans(state, most, &closed, error);
+  state->fanned += closed;
+  state->unfilled = closed < state->unfilled ? state->unfilled - closed : 0;
   *changed |= closed > 0;
   return status;
 }
 
 /** Fills holes as the options say. Components that this would only cover a second time, sheets, stay open. */
-vxm_status vxm_pass_closing(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  work->open_parts = 0;
-  size_t most = largest_hole(&work->options);
+  state->open_parts = 0;
+  size_t most = largest_hole(&state->options);
   if (most == 0)
     return VXM_OK;
-  vxm_status status = vxm_repair_state_edges(work, error);
-  if (status != VXM_OK || vxm_edges_count_odd(&work->edges) == 0)
+  vxm_status status = vxm_repair_state_edges(state, error);
+  if (status != VXM_OK || vxm_edges_count_odd(&state->edges) == 0)
     return status;
-  if (work->options.hole_fill == VXM_HOLE_FILL_FAN) {
+  if (state->options.hole_fill == VXM_HOLE_FILL_FAN) {
     int64_t closed;
-    status = vxm_fill_fans(work, most, &closed, error);
+    status = vxm_fill_fans(state, most, &closed, error);
     *changed = status == VXM_OK && closed > 0;
     return status;
   }
-  uint8_t *sheets = vxm_repair_state_scratch(work, work->soup->face_count, sizeof *sheets, &status, error);
+  uint8_t *sheets = vxm_repair_state_scratch(state, state->soup->face_count, sizeof *sheets, &status, error);
   if (sheets)
-    status = vxm_find_sheets(sheets, work, error);
+    status = vxm_find_sheets(sheets, state, error);
   if (status == VXM_OK)
-    status = fill_by_module(work, sheets, most, changed, error);
-  if (status == VXM_OK && work->unfilled > 0)
-    status = fan_the_rest(work, most, changed, error);
-  vxm_free(work->context, sheets);
+    status = fill_by_module(state, sheets, most, changed, error);
+  if (status == VXM_OK && state->unfilled > 0)
+    status = fan_the_rest(state, most, changed, error);
+  vxm_free(state->context, sheets);
   return status;
 }

@@ -14,7 +14,7 @@
 static const double SHEET = 0.75;
 
 typedef struct closing {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   vxm_soup *soup;
   vxm_error error;
   double scale;
@@ -29,21 +29,21 @@ typedef struct closing {
 } closing;
 
 static void *allocate(closing *c, size_t count, size_t size) {
-  return vxm_calloc(c->work->context, count, size, &c->error);
+  return vxm_calloc(c->state->context, count, size, &c->error);
 }
 
 /* ---- Planning the caps ---- */
 
 static bool find_edge_faces(closing *c) {
   size_t *sides;
-  if (vxm_halfedges_find(&sides, c->work, &c->error) != VXM_OK)
+  if (vxm_halfedges_find(&sides, c->state, &c->error) != VXM_OK)
     return false;
-  c->edge_face = allocate(c, c->work->edges.count, sizeof *c->edge_face);
+  c->edge_face = allocate(c, c->state->edges.count, sizeof *c->edge_face);
   for (size_t f = c->soup->face_count; c->edge_face && f-- > 0;)
     for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1]; s++)
       if (sides[s] != VXM_NO_EDGE)
         c->edge_face[sides[s]] = f;
-  vxm_free(c->work->context, sides);
+  vxm_free(c->state->context, sides);
   return c->edge_face != NULL;
 }
 
@@ -61,7 +61,7 @@ static bool is_plain(const closing *c, size_t loop) {
   size_t begin = c->loops.begin[loop];
   if (c->loops.begin[loop + 1] - begin != 3)
     return true;
-  const vxm_edge *edge = &c->work->edges.edges[c->loops.edge[begin]];
+  const vxm_edge *edge = &c->state->edges.edges[c->loops.edge[begin]];
   size_t face = c->edge_face[c->loops.edge[begin]];
   size_t corners = (size_t)(c->soup->offsets[face + 1] - c->soup->offsets[face]);
   return edge->count == 1 && (corners != 3 || !face_has(c->soup, face, c->loops.vertex[begin + 2]));
@@ -92,7 +92,7 @@ static bool plan_caps(closing *c) {
     const uint32_t *corner = vxm_face(c->soup, f, &count);
     c->area[c->label[f]] += vxm_vec3_length(vxm_polygon_area(c->soup->positions, corner, count, c->scale));
   }
-  c->caps = (vxm_caps){.soup = c->soup, .edges = &c->work->edges, .scale = c->scale};
+  c->caps = (vxm_caps){.soup = c->soup, .edges = &c->state->edges, .scale = c->scale};
   for (size_t l = 0; l < loops; l++) {
     if (vxm_caps_add(&c->caps, &c->loops, l, is_plain(c, l), &c->error) != VXM_OK)
       return false;
@@ -116,20 +116,20 @@ static bool is_wanted(const closing *c, size_t loop) {
 /* ---- New vertices: none may have the position of another one, or welding would merge them ---- */
 
 /** Moves a taken position a little and a little more toward a vertex, until it is free. */
-static void find_free(const vxm_repair_state *work, const vxm_position_hash *places, double p[3],
+static void find_free(const vxm_repair_state *state, const vxm_position_hash *places, double p[3],
                       const double *toward) {
   double from[3] = {p[0], p[1], p[2]}, part = 0x1p-12;
   for (int tries = 0; tries < 64 && vxm_position_hash_taken(places, p); tries++, part *= 1.25)
     for (int a = 0; a < 3; a++)
-      p[a] = vxm_repair_state_round(work, from[a] + part * (toward[a] - from[a]));
+      p[a] = vxm_repair_state_round(state, from[a] + part * (toward[a] - from[a]));
 }
 
 /* ---- Adding the caps ---- */
 
 static bool grow_marks(closing *c, size_t vertices) {
-  uint8_t **marks[2] = {&c->work->gone, &c->work->used};
+  uint8_t **marks[2] = {&c->state->gone, &c->state->used};
   for (int i = 0; i < 2; i++) {
-    uint8_t *grown = vxm_realloc(c->work->context, *marks[i], vertices, 1, &c->error);
+    uint8_t *grown = vxm_realloc(c->state->context, *marks[i], vertices, 1, &c->error);
     if (!grown)
       return false;
     memset(grown + c->soup->vertex_count, 0, vertices - c->soup->vertex_count);
@@ -156,12 +156,12 @@ static bool make_room(closing *c, size_t faces, size_t points) {
       return false;
     soup->face_parts = parts;
   }
-  if (c->work->turned) {
-    uint8_t *turned = vxm_realloc(soup->context, c->work->turned, total, sizeof *turned, &c->error);
+  if (c->state->turned) {
+    uint8_t *turned = vxm_realloc(soup->context, c->state->turned, total, sizeof *turned, &c->error);
     if (!turned)
       return false;
     memset(turned + soup->face_count, VXM_ADDED, faces);
-    c->work->turned = turned;
+    c->state->turned = turned;
   }
   return grow_marks(c, soup->vertex_count + points);
 }
@@ -174,11 +174,11 @@ static void add_cap(closing *c, vxm_position_hash *places, size_t loop, size_t f
   for (size_t k = c->points[loop]; k < c->points[loop + 1]; k++) {
     double *p = c->caps.points[k];
     for (int a = 0; a < 3; a++)
-      p[a] = vxm_repair_state_round(c->work, p[a]);
+      p[a] = vxm_repair_state_round(c->state, p[a]);
     const double *toward = vxm_position(soup, c->loops.vertex[begin]);
     if (memcmp(toward, p, 3 * sizeof *p) == 0) /* any other place on the rim does as well */
       toward = vxm_position(soup, c->loops.vertex[begin + 1]);
-    find_free(c->work, places, p, toward);
+    find_free(c->state, places, p, toward);
     memcpy(soup->positions + 3 * soup->vertex_count, p, 3 * sizeof *p);
     vxm_position_hash_add(places, (uint32_t)soup->vertex_count++);
   }
@@ -214,7 +214,7 @@ static bool add_caps(closing *c) {
     for (size_t l = 0; l < c->loops.count; l++)
       if (is_wanted(c, l))
         add_cap(c, &places, l, first);
-    c->work->counts[VXM_PASS_CLOSING] += (int64_t)faces;
+    c->state->counts[VXM_PASS_CLOSING] += (int64_t)faces;
   }
   vxm_position_hash_close(&places);
   return ready;
@@ -237,15 +237,15 @@ static bool plan(closing *c) {
   c->label = allocate(c, c->soup->face_count, sizeof *c->label);
   if (!c->label || !find_edge_faces(c))
     return false;
-  if (vxm_boundary_loops_build(&c->loops, c->soup, &c->work->edges, &c->error) != VXM_OK)
+  if (vxm_boundary_loops_build(&c->loops, c->soup, &c->state->edges, &c->error) != VXM_OK)
     return false;
-  if (vxm_components(c->work->context, c->soup, NULL, c->label, &c->component_count, &c->error) != VXM_OK)
+  if (vxm_components(c->state->context, c->soup, NULL, c->label, &c->component_count, &c->error) != VXM_OK)
     return false;
   return plan_caps(c);
 }
 
 static void release(closing *c) {
-  vxm_context *context = c->work->context;
+  vxm_context *context = c->state->context;
   if (c->caps.soup)
     vxm_caps_free(&c->caps);
   if (c->loops.context)
@@ -258,11 +258,11 @@ static void release(closing *c) {
   vxm_free(context, c->label);
 }
 
-static closing begin(vxm_repair_state *work, size_t most) {
+static closing begin(vxm_repair_state *state, size_t most) {
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
-  return (closing){.work = work,
-                   .soup = work->soup,
+  vxm_repair_state_extent(state, &extent);
+  return (closing){.state = state,
+                   .soup = state->soup,
                    .error = VXM_ERROR_INIT,
                    .scale = vxm_unit_scale_of(extent.bounds).scale,
                    .most = most};
@@ -275,26 +275,26 @@ static vxm_status end(closing *c, bool done, vxm_error *error) {
   return done ? VXM_OK : c->error.code;
 }
 
-vxm_status vxm_fill_fans(vxm_repair_state *work, size_t most, int64_t *closed, vxm_error *error) {
-  closing c = begin(work, most);
+vxm_status vxm_fill_fans(vxm_repair_state *state, size_t most, int64_t *closed, vxm_error *error) {
+  closing c = begin(state, most);
   bool done = plan(&c) && add_caps(&c);
   *closed = 0;
   if (done) {
     for (size_t l = 0; l < c.loops.count; l++)
       *closed += is_wanted(&c, l);
-    work->open_parts = count_sheets(&c);
+    state->open_parts = count_sheets(&c);
     if (*closed > 0)
-      vxm_repair_state_touch(work);
+      vxm_repair_state_touch(state);
   }
   return end(&c, done, error);
 }
 
-vxm_status vxm_find_sheets(uint8_t *faces, vxm_repair_state *work, vxm_error *error) {
-  closing c = begin(work, SIZE_MAX);
+vxm_status vxm_find_sheets(uint8_t *faces, vxm_repair_state *state, vxm_error *error) {
+  closing c = begin(state, SIZE_MAX);
   bool done = plan(&c);
   for (size_t f = 0; done && f < c.soup->face_count; f++)
     faces[f] = is_sheet(&c, c.label[f]);
   if (done)
-    work->open_parts = count_sheets(&c);
+    state->open_parts = count_sheets(&c);
   return end(&c, done, error);
 }

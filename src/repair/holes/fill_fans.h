@@ -11,9 +11,9 @@
  *
  * @param[out] closed how many loops
  */
-vxm_status vxm_fill_fans(vxm_repair_state *work, size_t most, int64_t *closed, vxm_error *error);
+vxm_status vxm_fill_fans(vxm_repair_state *state, size_t most, int64_t *closed, vxm_error *error);
 
 /** Marks the faces of sheets (face_count elements), and counts the sheets in work->open_parts. */
-vxm_status vxm_find_sheets(uint8_t *faces, vxm_repair_state *work, vxm_error *error);
+vxm_status vxm_find_sheets(uint8_t *faces, vxm_repair_state *state, vxm_error *error);
 
 #endif

@@ -4,16 +4,16 @@
 #include "repair/state/vertex_fans.h"
 
 /** The separated soup has the faces of the present one, in their order. */
-static vxm_status adopt(vxm_repair_state *work, vxm_soup *soup, vxm_error *error) {
+static vxm_status adopt(vxm_repair_state *state, vxm_soup *soup, vxm_error *error) {
   vxm_status status = VXM_OK;
-  uint64_t *origin = vxm_repair_state_scratch(work, soup->face_count, sizeof *origin, &status, error);
+  uint64_t *origin = vxm_repair_state_scratch(state, soup->face_count, sizeof *origin, &status, error);
   if (!origin) {
     vxm_soup_destroy(soup);
     return status;
   }
   for (size_t f = 0; f < soup->face_count; f++)
     origin[f] = f;
-  return vxm_repair_state_adopt(work, soup, origin, error);
+  return vxm_repair_state_adopt(state, soup, origin, error);
 }
 
 /**
@@ -21,22 +21,22 @@ static vxm_status adopt(vxm_repair_state *work, vxm_soup *soup, vxm_error *error
  * or vertex has too many. No face is lost; a
  * polygon that touches itself becomes triangles. What is manifold already stays as it is.
  */
-vxm_status vxm_pass_separation(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_separation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!vxm_repair_state_reaches(work, VXM_LEVEL_MANIFOLD) || work->options.wrap_alpha > 0)
+  if (!vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD) || state->options.wrap_alpha > 0)
     return VXM_OK;
   bool manifold;
-  vxm_status status = vxm_is_manifold(&manifold, work, error);
+  vxm_status status = vxm_is_manifold(&manifold, state, error);
   if (status != VXM_OK || manifold)
     return status;
   vxm_soup *soup;
   int64_t split, stitched;
-  status = vxm_split_polygons(work, true, error);
+  status = vxm_split_polygons(state, true, error);
   if (status == VXM_OK)
-    status = vxm_cut_nonmanifold(&soup, &split, &stitched, work->soup, error);
+    status = vxm_cut_nonmanifold(&soup, &split, &stitched, state->soup, error);
   if (status != VXM_OK)
     return status;
-  work->counts[VXM_PASS_SEPARATION] += split;
+  state->counts[VXM_PASS_SEPARATION] += split;
   *changed = true;
-  return adopt(work, soup, error);
+  return adopt(state, soup, error);
 }

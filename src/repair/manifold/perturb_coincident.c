@@ -30,7 +30,7 @@ typedef struct surroundings {
 } surroundings;
 
 typedef struct moving {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   vxm_soup *soup;
   uint32_t *map;        /**< vertex: the first one at its position */
   uint32_t *number;     /**< vertex: its place among those that share theirs, or VXM_NO_VERTEX */
@@ -91,9 +91,9 @@ typedef struct moves {
 } moves;
 
 /** The distance to the next number beyond x. */
-static double unit_of(const vxm_repair_state *work, double x) {
+static double unit_of(const vxm_repair_state *state, double x) {
   x = fabs(x);
-  if (work->options.single_precision)
+  if (state->options.single_precision)
     return (double)nextafterf((float)x, INFINITY) - x;
   return 4 * (nextafter(x, INFINITY) - x);
 }
@@ -102,13 +102,13 @@ static moves moves_of(const moving *m, uint32_t v, const surroundings *s) {
   const double *p = vxm_position(m->soup, v);
   double length = vxm_vec3_length(s->toward);
   moves by = {.step = fmin(STEP * m->diagonal, STEP_EDGE * s->shortest),
-              .fine = (vxm_repair_state_reaches(m->work, VXM_LEVEL_SOLID) ? COARSE : FINE) * s->longest,
+              .fine = (vxm_repair_state_reaches(m->state, VXM_LEVEL_SOLID) ? COARSE : FINE) * s->longest,
               .coarse = COARSE * s->longest};
   const double toward[3] = {s->toward.x, s->toward.y, s->toward.z};
   for (int a = 0; a < 3; a++) {
     by.from[a] = p[a];
     by.toward[a] = length > 0 ? toward[a] / length : sqrt(1.0 / 3); /* any direction where there is none */
-    by.unit[a] = unit_of(m->work, p[a]);
+    by.unit[a] = unit_of(m->state, p[a]);
   }
   return by;
 }
@@ -128,7 +128,7 @@ static bool find_along(const moving *m, const moves *by, double p[3]) {
       double step = by->step * quarter / 4 * fabs(by->toward[a]);
       if (fabs(by->toward[a]) > AXIS)
         step = fmax(step, by->unit[a] * (quarter / 4));
-      p[a] = vxm_repair_state_round(m->work, by->from[a] + copysign(step, by->toward[a]));
+      p[a] = vxm_repair_state_round(m->state, by->from[a] + copysign(step, by->toward[a]));
     }
     if (fits(m, by, p, by->fine))
       return true;
@@ -157,7 +157,7 @@ static bool find_nearest(const moving *m, const moves *by, double p[3]) {
     double along = 0, squared = 0;
     for (int a = 0; a < 3; a++) {
       double step = copysign(steps[a] * fmax(by->step, by->unit[a]), by->toward[a]);
-      place->p[a] = vxm_repair_state_round(m->work, by->from[a] + step);
+      place->p[a] = vxm_repair_state_round(m->state, by->from[a] + step);
       along += step * by->toward[a];
       squared += step * step;
     }
@@ -192,13 +192,13 @@ static bool move(moving *m, uint32_t v) {
 static vxm_status list_shared(moving *m, vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t vertices = m->soup->vertex_count;
-  uint8_t *seen = vxm_repair_state_scratch(m->work, vertices, sizeof *seen, &status, error);
+  uint8_t *seen = vxm_repair_state_scratch(m->state, vertices, sizeof *seen, &status, error);
   for (size_t v = 0; seen && v < vertices; v++)
-    if (m->work->used[v] && seen[m->map[v]] < 2)
+    if (m->state->used[v] && seen[m->map[v]] < 2)
       seen[m->map[v]]++;
   for (size_t v = 0; seen && v < vertices; v++)
-    m->number[v] = m->work->used[v] && seen[m->map[v]] == 2 ? (uint32_t)m->shared++ : VXM_NO_VERTEX;
-  vxm_free(m->work->context, seen);
+    m->number[v] = m->state->used[v] && seen[m->map[v]] == 2 ? (uint32_t)m->shared++ : VXM_NO_VERTEX;
+  vxm_free(m->state->context, seen);
   return status;
 }
 
@@ -206,7 +206,7 @@ static int64_t move_all(moving *m) {
   int64_t moved = 0;
   size_t vertices = m->soup->vertex_count;
   for (size_t v = 0; v < vertices; v++)
-    if (m->work->used[v])
+    if (m->state->used[v])
       vxm_position_hash_add(&m->places, (uint32_t)v);
   look_around(m);
   for (size_t v = 0; v < vertices; v++)
@@ -216,45 +216,45 @@ static int64_t move_all(moving *m) {
 }
 
 static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
-  vxm_repair_state *work = m->work;
+  vxm_repair_state *state = m->state;
   size_t vertices = m->soup->vertex_count;
   vxm_status status = VXM_OK;
-  m->number = vxm_repair_state_scratch(work, vertices, sizeof *m->number, &status, error);
+  m->number = vxm_repair_state_scratch(state, vertices, sizeof *m->number, &status, error);
   if (status == VXM_OK)
     status = list_shared(m, error);
   if (status == VXM_OK)
-    m->around = vxm_repair_state_scratch(work, m->shared, sizeof *m->around, &status, error);
+    m->around = vxm_repair_state_scratch(state, m->shared, sizeof *m->around, &status, error);
   if (status == VXM_OK && m->shared > 0)
     status = vxm_position_hash_open(&m->places, m->soup, vertices + m->shared, error);
   if (status == VXM_OK && m->shared > 0)
     *moved = move_all(m);
   vxm_position_hash_close(&m->places);
-  vxm_free(work->context, m->around);
-  vxm_free(work->context, m->number);
+  vxm_free(state->context, m->around);
+  vxm_free(state->context, m->number);
   return status;
 }
 
 /** What finds no place stays, for the verification to find. */
-vxm_status vxm_pass_apart(vxm_repair_state *work, bool *changed, vxm_error *error) {
+vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!vxm_repair_state_reaches(work, VXM_LEVEL_MANIFOLD))
+  if (!vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD))
     return VXM_OK;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
+  vxm_repair_state_extent(state, &extent);
   const double *b = extent.bounds;
   moving m = {
-      .work = work, .soup = work->soup, .diagonal = hypot(hypot(b[3] - b[0], b[4] - b[1]), b[5] - b[2])};
+      .state = state, .soup = state->soup, .diagonal = hypot(hypot(b[3] - b[0], b[4] - b[1]), b[5] - b[2])};
   vxm_status status = VXM_OK;
   int64_t moved = 0;
-  size_t distinct, vertices = work->soup->vertex_count;
-  m.map = vxm_repair_state_scratch(work, vertices, sizeof *m.map, &status, error);
+  size_t distinct, vertices = state->soup->vertex_count;
+  m.map = vxm_repair_state_scratch(state, vertices, sizeof *m.map, &status, error);
   if (status == VXM_OK)
-    status = vxm_weld_exact(work->context, work->soup->positions, vertices, m.map, &distinct, error);
+    status = vxm_weld_exact(state->context, state->soup->positions, vertices, m.map, &distinct, error);
   if (status == VXM_OK && distinct < vertices)
     status = move_shared(&m, &moved, error);
-  vxm_free(work->context, m.map);
-  work->counts[VXM_PASS_APART] += moved;
-  work->together = (int64_t)m.shared - moved;
+  vxm_free(state->context, m.map);
+  state->counts[VXM_PASS_APART] += moved;
+  state->together = (int64_t)m.shared - moved;
   *changed = moved > 0;
   return status;
 }

@@ -40,8 +40,8 @@ static void number_groups(vxm_edge_groups *g, size_t faces, size_t *number) {
     g->of_face[f] = number[g->of_face[f]];
 }
 
-static vxm_status look_at_edges(const vxm_edge_groups *g, const vxm_repair_state *work, vxm_error *error) {
-  const vxm_soup *soup = work->soup;
+static vxm_status look_at_edges(const vxm_edge_groups *g, const vxm_repair_state *state, vxm_error *error) {
+  const vxm_soup *soup = state->soup;
   for (size_t i = 0; i < g->count; i++)
     g->groups[i] = (vxm_edge_group){true, true, true};
   for (size_t f = 0; f < soup->face_count; f++) {
@@ -51,7 +51,7 @@ static vxm_status look_at_edges(const vxm_edge_groups *g, const vxm_repair_state
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++) {
       if (g->sides[c] == VXM_NO_EDGE)
         continue;
-      const vxm_edge *edge = &work->edges.edges[g->sides[c]];
+      const vxm_edge *edge = &state->edges.edges[g->sides[c]];
       vxm_edge_group *group = &g->groups[g->of_face[f]];
       group->closed = group->closed && edge->count % 2 == 0;
       group->balanced = group->balanced && 2 * (uint64_t)edge->forward == edge->count;
@@ -61,25 +61,25 @@ static vxm_status look_at_edges(const vxm_edge_groups *g, const vxm_repair_state
   return VXM_OK;
 }
 
-vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *work, vxm_error *error) {
+vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *state, vxm_error *error) {
   *out = (vxm_edge_groups){0};
-  size_t faces = work->soup->face_count;
+  size_t faces = state->soup->face_count;
   size_t *scratch = NULL;
-  vxm_status status = vxm_halfedges_find(&out->sides, work, error);
+  vxm_status status = vxm_halfedges_find(&out->sides, state, error);
   if (status == VXM_OK)
-    out->of_face = vxm_repair_state_scratch(work, faces, sizeof *out->of_face, &status, error);
+    out->of_face = vxm_repair_state_scratch(state, faces, sizeof *out->of_face, &status, error);
   if (status == VXM_OK)
-    scratch = vxm_repair_state_scratch(work, work->edges.count > faces ? work->edges.count : faces,
+    scratch = vxm_repair_state_scratch(state, state->edges.count > faces ? state->edges.count : faces,
                                        sizeof *scratch, &status, error);
   if (status == VXM_OK)
-    status = join_faces(out, work->soup, scratch, error);
+    status = join_faces(out, state->soup, scratch, error);
   if (status == VXM_OK) {
     number_groups(out, faces, scratch);
-    out->groups = vxm_repair_state_scratch(work, out->count, sizeof *out->groups, &status, error);
+    out->groups = vxm_repair_state_scratch(state, out->count, sizeof *out->groups, &status, error);
   }
-  vxm_free(work->context, scratch);
+  vxm_free(state->context, scratch);
   if (status == VXM_OK)
-    status = look_at_edges(out, work, error);
+    status = look_at_edges(out, state, error);
   return status;
 }
 

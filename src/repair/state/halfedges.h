@@ -13,6 +13,6 @@
  *
  * @param[out] sides corner_count elements, freed by the caller with vxm_free; NULL after a failure
  */
-vxm_status vxm_halfedges_find(size_t **sides, vxm_repair_state *work, vxm_error *error);
+vxm_status vxm_halfedges_find(size_t **sides, vxm_repair_state *state, vxm_error *error);
 
 #endif

@@ -6,10 +6,10 @@
 
 #include <string.h>
 
-void *vxm_repair_state_scratch(vxm_repair_state *work, size_t count, size_t size, vxm_status *status,
+void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t size, vxm_status *status,
                                vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  void *block = vxm_calloc(work->context, count, size, &local);
+  void *block = vxm_calloc(state->context, count, size, &local);
   if (!block) {
     *status = local.code;
     vxm_error_pass(error, &local);
@@ -17,23 +17,23 @@ void *vxm_repair_state_scratch(vxm_repair_state *work, size_t count, size_t size
   return block;
 }
 
-vxm_status vxm_repair_state_edges(vxm_repair_state *work, vxm_error *error) {
-  if (work->has_edges)
+vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error) {
+  if (state->has_edges)
     return VXM_OK;
-  vxm_status status = vxm_edges_build(&work->edges, work->context, work->soup, NULL, error);
-  work->has_edges = status == VXM_OK;
+  vxm_status status = vxm_edges_build(&state->edges, state->context, state->soup, NULL, error);
+  state->has_edges = status == VXM_OK;
   return status;
 }
 
-void vxm_repair_state_touch(vxm_repair_state *work) {
-  if (work->has_edges)
-    vxm_edges_destroy(&work->edges);
-  work->has_edges = false;
-  work->patches = 0;
+void vxm_repair_state_touch(vxm_repair_state *state) {
+  if (state->has_edges)
+    vxm_edges_destroy(&state->edges);
+  state->has_edges = false;
+  state->patches = 0;
 }
 
-void vxm_repair_state_extent(vxm_repair_state *work, vxm_extent *extent) {
-  vxm_extent_of(extent, work->context, work->soup, work->used);
+void vxm_repair_state_extent(vxm_repair_state *state, vxm_extent *extent) {
+  vxm_extent_of(extent, state->context, state->soup, state->used);
 }
 
 /* ---- The first of what a pass changes ---- */
@@ -45,28 +45,28 @@ static void note(vxm_pass_finding *first, int64_t element, const double *p) {
     first->at[a] = p[a];
 }
 
-void vxm_repair_state_note_vertex(vxm_repair_state *work, vxm_pass pass, size_t vertex) {
-  if (!work->firsts[pass].placed)
-    note(&work->firsts[pass], (int64_t)vertex, vxm_position(work->soup, vertex));
+void vxm_repair_state_note_vertex(vxm_repair_state *state, vxm_pass pass, size_t vertex) {
+  if (!state->firsts[pass].placed)
+    note(&state->firsts[pass], (int64_t)vertex, vxm_position(state->soup, vertex));
 }
 
-void vxm_repair_state_note_face(vxm_repair_state *work, vxm_pass pass, size_t face) {
+void vxm_repair_state_note_face(vxm_repair_state *state, vxm_pass pass, size_t face) {
   size_t count;
-  const uint32_t *corner = vxm_face(work->soup, face, &count);
-  if (!work->firsts[pass].placed && count > 0)
-    note(&work->firsts[pass], work->renumbered ? -1 : (int64_t)face, vxm_position(work->soup, corner[0]));
+  const uint32_t *corner = vxm_face(state->soup, face, &count);
+  if (!state->firsts[pass].placed && count > 0)
+    note(&state->firsts[pass], state->renumbered ? -1 : (int64_t)face, vxm_position(state->soup, corner[0]));
 }
 
-void vxm_repair_state_note_merge(vxm_repair_state *work, vxm_pass pass, const uint32_t *map) {
-  for (size_t v = 0; v < work->soup->vertex_count && !work->firsts[pass].placed; v++)
-    if (map[v] != v && !work->gone[v])
-      vxm_repair_state_note_vertex(work, pass, v);
+void vxm_repair_state_note_merge(vxm_repair_state *state, vxm_pass pass, const uint32_t *map) {
+  for (size_t v = 0; v < state->soup->vertex_count && !state->firsts[pass].placed; v++)
+    if (map[v] != v && !state->gone[v])
+      vxm_repair_state_note_vertex(state, pass, v);
 }
 
-void vxm_repair_state_note_marked(vxm_repair_state *work, vxm_pass pass, const uint8_t *marks) {
-  for (size_t f = 0; f < work->soup->face_count && !work->firsts[pass].placed; f++)
+void vxm_repair_state_note_marked(vxm_repair_state *state, vxm_pass pass, const uint8_t *marks) {
+  for (size_t f = 0; f < state->soup->face_count && !state->firsts[pass].placed; f++)
     if (marks[f])
-      vxm_repair_state_note_face(work, pass, f);
+      vxm_repair_state_note_face(state, pass, f);
 }
 
 /* ---- Merging vertices ---- */
@@ -88,37 +88,37 @@ static void merge_slice(size_t slice, int worker, void *payload) {
     m->soup->indices[c] = m->map[m->soup->indices[c]];
 }
 
-int64_t vxm_repair_state_merge(vxm_repair_state *work, const uint32_t *map) {
+int64_t vxm_repair_state_merge(vxm_repair_state *state, const uint32_t *map) {
   int64_t count = 0;
-  for (size_t v = 0; v < work->soup->vertex_count; v++)
+  for (size_t v = 0; v < state->soup->vertex_count; v++)
     if (map[v] != v) {
-      count += !work->gone[v];
-      work->gone[v] = 1;
+      count += !state->gone[v];
+      state->gone[v] = 1;
     }
-  if (work->track)
-    vxm_provenance_merge(work->track, map);
+  if (state->track)
+    vxm_provenance_merge(state->track, map);
   if (count > 0) {
-    merging m = {work->soup, map};
-    vxm_parallel(work->context, work->soup->corner_count / CORNERS_PER_SLICE + 1, merge_slice, &m);
-    vxm_repair_state_touch(work);
+    merging m = {state->soup, map};
+    vxm_parallel(state->context, state->soup->corner_count / CORNERS_PER_SLICE + 1, merge_slice, &m);
+    vxm_repair_state_touch(state);
   }
   return count;
 }
 
 /* ---- Removing faces ---- */
 
-void vxm_repair_state_renumber(vxm_repair_state *work, size_t from, size_t to) {
-  vxm_soup *soup = work->soup;
+void vxm_repair_state_renumber(vxm_repair_state *state, size_t from, size_t to) {
+  vxm_soup *soup = state->soup;
   if (soup->face_tags)
     soup->face_tags[to] = soup->face_tags[from];
   if (soup->face_parts)
     soup->face_parts[to] = soup->face_parts[from];
-  if (work->turned)
-    work->turned[to] = work->turned[from];
+  if (state->turned)
+    state->turned[to] = state->turned[from];
 }
 
-int64_t vxm_repair_state_remove_faces(vxm_repair_state *work, const uint8_t *remove) {
-  vxm_soup *soup = work->soup;
+int64_t vxm_repair_state_remove_faces(vxm_repair_state *state, const uint8_t *remove) {
+  vxm_soup *soup = state->soup;
   size_t kept = 0, corners = 0;
   for (size_t f = 0; f < soup->face_count; f++) {
     uint64_t begin = soup->offsets[f];
@@ -128,7 +128,7 @@ int64_t vxm_repair_state_remove_faces(vxm_repair_state *work, const uint8_t *rem
     if (kept < f) {
       memmove(soup->indices + corners, soup->indices + begin, count * sizeof *soup->indices);
       soup->offsets[kept] = corners;
-      vxm_repair_state_renumber(work, f, kept);
+      vxm_repair_state_renumber(state, f, kept);
     }
     kept++;
     corners += count;
@@ -138,8 +138,8 @@ int64_t vxm_repair_state_remove_faces(vxm_repair_state *work, const uint8_t *rem
   soup->face_count = kept;
   soup->corner_count = corners;
   if (removed > 0) {
-    work->renumbered = true;
-    vxm_repair_state_touch(work);
+    state->renumbered = true;
+    vxm_repair_state_touch(state);
   }
   return removed;
 }
@@ -148,9 +148,9 @@ int64_t vxm_repair_state_remove_faces(vxm_repair_state *work, const uint8_t *rem
 
 /** Gives each face the number that its origin has in `from`, or that of the face before it where it has none.
  */
-static uint32_t *inherit(vxm_repair_state *work, const uint32_t *from, const vxm_soup *soup,
+static uint32_t *inherit(vxm_repair_state *state, const uint32_t *from, const vxm_soup *soup,
                          const uint64_t *origin, vxm_status *status, vxm_error *error) {
-  uint32_t *numbers = vxm_repair_state_scratch(work, soup->face_count, sizeof *numbers, status, error);
+  uint32_t *numbers = vxm_repair_state_scratch(state, soup->face_count, sizeof *numbers, status, error);
   uint32_t last = 0;
   for (size_t f = 0; numbers && f < soup->face_count; f++) {
     if (origin[f] != VXM_NO_FACE)
@@ -160,16 +160,16 @@ static uint32_t *inherit(vxm_repair_state *work, const uint32_t *from, const vxm
   return numbers;
 }
 
-static vxm_status take_tags(vxm_repair_state *work, vxm_soup *soup, const uint64_t *origin,
+static vxm_status take_tags(vxm_repair_state *state, vxm_soup *soup, const uint64_t *origin,
                             vxm_error *error) {
-  const vxm_soup *old = work->soup;
+  const vxm_soup *old = state->soup;
   vxm_status status = VXM_OK;
-  vxm_free(work->context, soup->face_tags);
+  vxm_free(state->context, soup->face_tags);
   soup->face_tags = NULL;
   if (old->face_tags)
-    soup->face_tags = inherit(work, old->face_tags, soup, origin, &status, error);
+    soup->face_tags = inherit(state, old->face_tags, soup, origin, &status, error);
   if (status == VXM_OK && old->face_parts)
-    soup->face_parts = inherit(work, old->face_parts, soup, origin, &status, error);
+    soup->face_parts = inherit(state, old->face_parts, soup, origin, &status, error);
   for (size_t t = soup->tag_count; soup->face_tags && t < old->tag_count && status == VXM_OK; t++) {
     uint32_t tag;
     status = vxm_soup_add_tag(soup, old->tags[t], strlen(old->tags[t]), &tag, error);
@@ -178,54 +178,54 @@ static vxm_status take_tags(vxm_repair_state *work, vxm_soup *soup, const uint64
 }
 
 /** Which faces were turned goes on with them. */
-static vxm_status take_turned(vxm_repair_state *work, const vxm_soup *soup, const uint64_t *origin,
+static vxm_status take_turned(vxm_repair_state *state, const vxm_soup *soup, const uint64_t *origin,
                               vxm_error *error) {
-  if (!work->turned)
+  if (!state->turned)
     return VXM_OK;
   vxm_status status = VXM_OK;
-  uint8_t *turned = vxm_repair_state_scratch(work, soup->face_count, sizeof *turned, &status, error);
+  uint8_t *turned = vxm_repair_state_scratch(state, soup->face_count, sizeof *turned, &status, error);
   for (size_t f = 0; turned && f < soup->face_count; f++)
-    turned[f] = origin && origin[f] != VXM_NO_FACE ? work->turned[origin[f]] : VXM_ADDED;
-  vxm_free(work->context, work->turned);
-  work->turned = turned;
+    turned[f] = origin && origin[f] != VXM_NO_FACE ? state->turned[origin[f]] : VXM_ADDED;
+  vxm_free(state->context, state->turned);
+  state->turned = turned;
   return status;
 }
 
-static vxm_status renew_marks(vxm_repair_state *work, size_t vertices, vxm_error *error) {
+static vxm_status renew_marks(vxm_repair_state *state, size_t vertices, vxm_error *error) {
   vxm_status status = VXM_OK;
-  vxm_free(work->context, work->gone);
-  vxm_free(work->context, work->used);
-  work->used = NULL;
-  work->gone = vxm_repair_state_scratch(work, vertices, sizeof *work->gone, &status, error);
-  if (work->gone)
-    work->used = vxm_repair_state_scratch(work, vertices, sizeof *work->used, &status, error);
+  vxm_free(state->context, state->gone);
+  vxm_free(state->context, state->used);
+  state->used = NULL;
+  state->gone = vxm_repair_state_scratch(state, vertices, sizeof *state->gone, &status, error);
+  if (state->gone)
+    state->used = vxm_repair_state_scratch(state, vertices, sizeof *state->used, &status, error);
   return status;
 }
 
-vxm_status vxm_repair_state_adopt(vxm_repair_state *work, vxm_soup *soup, uint64_t *origin,
+vxm_status vxm_repair_state_adopt(vxm_repair_state *state, vxm_soup *soup, uint64_t *origin,
                                   vxm_error *error) {
-  vxm_status status = origin ? take_tags(work, soup, origin, error) : VXM_OK;
+  vxm_status status = origin ? take_tags(state, soup, origin, error) : VXM_OK;
   if (status == VXM_OK)
-    status = take_turned(work, soup, origin, error);
-  vxm_free(work->context, origin);
+    status = take_turned(state, soup, origin, error);
+  vxm_free(state->context, origin);
   if (status != VXM_OK) {
     vxm_soup_destroy(soup);
     return status;
   }
   for (size_t i = 0; i < 3 * soup->vertex_count; i++)
-    soup->positions[i] = vxm_repair_state_round(work, soup->positions[i]);
-  work->renumbered = true;
-  soup->format = work->soup->format;
-  soup->warnings = work->soup->warnings;
-  vxm_repair_state_touch(work);
-  vxm_soup_destroy(work->soup);
-  work->soup = soup;
-  status = renew_marks(work, soup->vertex_count, error);
+    soup->positions[i] = vxm_repair_state_round(state, soup->positions[i]);
+  state->renumbered = true;
+  soup->format = state->soup->format;
+  soup->warnings = state->soup->warnings;
+  vxm_repair_state_touch(state);
+  vxm_soup_destroy(state->soup);
+  state->soup = soup;
+  status = renew_marks(state, soup->vertex_count, error);
   if (status != VXM_OK)
     return status;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
+  vxm_repair_state_extent(state, &extent);
   for (size_t v = 0; v < soup->vertex_count; v++)
-    work->gone[v] = !work->used[v]; /* what the module left over was not unused in the mesh */
+    state->gone[v] = !state->used[v]; /* what the module left over was not unused in the mesh */
   return VXM_OK;
 }

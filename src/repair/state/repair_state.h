@@ -75,71 +75,72 @@ typedef struct vxm_repair_state {
 } vxm_repair_state;
 
 /** Runs a pass, adds to the counts and says whether it changed anything. */
-typedef vxm_status (*vxm_pass_fn)(vxm_repair_state *work, bool *changed, vxm_error *error);
+typedef vxm_status (*vxm_pass_fn)(vxm_repair_state *state, bool *changed, vxm_error *error);
 
-vxm_status vxm_pass_rounding(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_nonfinite(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_exact_weld(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_tolerant_weld(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_repeated_corners(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_zero_area(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_duplicates(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_orientation(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_wrap(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_separation(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_closing(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_small_parts(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_union(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_reunion(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_apart(vxm_repair_state *work, bool *changed, vxm_error *error);
-vxm_status vxm_pass_unused(vxm_repair_state *work, bool *changed, vxm_error *error);
+vxm_status vxm_pass_rounding(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_nonfinite(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_exact_weld(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_tolerant_weld(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_repeated_corners(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_duplicates(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_wrap(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_separation(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_small_parts(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_reunion(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_unused(vxm_repair_state *state, bool *changed, vxm_error *error);
 
 /** A block of scratch, zeroed; on failure NULL, with *status and *error set. */
-void *vxm_repair_state_scratch(vxm_repair_state *work, size_t count, size_t size, vxm_status *status,
+void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t size, vxm_status *status,
                                vxm_error *error);
 /** The edge map of the present faces, built if need be. */
-vxm_status vxm_repair_state_edges(vxm_repair_state *work, vxm_error *error);
+vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error);
 /** Which vertices are used (work->used), and the bounds of these. */
-void vxm_repair_state_extent(vxm_repair_state *work, vxm_extent *extent);
+void vxm_repair_state_extent(vxm_repair_state *state, vxm_extent *extent);
 /** Puts map[v] in the place of each corner v; vertices that lose their place are marked gone. Returns how
  * many were not gone before. */
-int64_t vxm_repair_state_merge(vxm_repair_state *work, const uint32_t *map);
+int64_t vxm_repair_state_merge(vxm_repair_state *state, const uint32_t *map);
 /** Moves what is known of a face, beside its corners, to the number `to`, which is not above `from`. */
-void vxm_repair_state_renumber(vxm_repair_state *work, size_t from, size_t to);
+void vxm_repair_state_renumber(vxm_repair_state *state, size_t from, size_t to);
 /** Takes out the faces marked in `remove` (face_count elements), keeping the order of the others. Returns how
  * many. */
-int64_t vxm_repair_state_remove_faces(vxm_repair_state *work, const uint8_t *remove);
+int64_t vxm_repair_state_remove_faces(vxm_repair_state *state, const uint8_t *remove);
 /**
  * Takes a soup that a module has made in the place of the present one, and frees both it and `origin`.
  *
  * @param origin face that each face of `soup` is (a piece of), or VXM_NO_FACE; NULL = none is
  */
-vxm_status vxm_repair_state_adopt(vxm_repair_state *work, vxm_soup *soup, uint64_t *origin, vxm_error *error);
+vxm_status vxm_repair_state_adopt(vxm_repair_state *state, vxm_soup *soup, uint64_t *origin,
+                                  vxm_error *error);
 /** What a position becomes where positions are to be held by 32-bit floats, else itself. */
-static inline double vxm_repair_state_round(const vxm_repair_state *work, double x) {
-  if (!work->options.single_precision)
+static inline double vxm_repair_state_round(const vxm_repair_state *state, double x) {
+  if (!state->options.single_precision)
     return x;
   volatile float rounded =
       (float)x; /* gcc 12 at -O2 loses a plain conversion there and back when it vectorizes */
   return (double)rounded;
 }
 /** Whether the level asks for this much. */
-static inline bool vxm_repair_state_reaches(const vxm_repair_state *work, vxm_level level) {
-  return work->options.level >= level;
+static inline bool vxm_repair_state_reaches(const vxm_repair_state *state, vxm_level level) {
+  return state->options.level >= level;
 }
 /** Whether a face is of a part that a first run would have lost. */
-static inline bool vxm_repair_state_guards(const vxm_repair_state *work, size_t face) {
-  return work->guards && work->soup->face_parts && work->lost.lost[work->soup->face_parts[face]];
+static inline bool vxm_repair_state_guards(const vxm_repair_state *state, size_t face) {
+  return state->guards && state->soup->face_parts && state->lost.lost[state->soup->face_parts[face]];
 }
 /** Says that a pass changes a vertex or a face, if it is the first one of the pass. */
-void vxm_repair_state_note_vertex(vxm_repair_state *work, vxm_pass pass, size_t vertex);
-void vxm_repair_state_note_face(vxm_repair_state *work, vxm_pass pass, size_t face);
+void vxm_repair_state_note_vertex(vxm_repair_state *state, vxm_pass pass, size_t vertex);
+void vxm_repair_state_note_face(vxm_repair_state *state, vxm_pass pass, size_t face);
 /** The first vertex with map[v] != v, if there is one. */
-void vxm_repair_state_note_merge(vxm_repair_state *work, vxm_pass pass, const uint32_t *map);
+void vxm_repair_state_note_merge(vxm_repair_state *state, vxm_pass pass, const uint32_t *map);
 /** The first face with a mark, if there is one. */
-void vxm_repair_state_note_marked(vxm_repair_state *work, vxm_pass pass, const uint8_t *marks);
+void vxm_repair_state_note_marked(vxm_repair_state *state, vxm_pass pass, const uint8_t *marks);
 /** Says that faces have changed: what was derived from them is dropped. */
-void vxm_repair_state_touch(vxm_repair_state *work);
+void vxm_repair_state_touch(vxm_repair_state *state);
 
 /**
  * Repairs a copy, and tells what there was to do, without a census.

@@ -12,7 +12,7 @@
 static const double AT_FACE = 1e-9;
 
 typedef struct asking {
-  const vxm_repair_state *work;
+  const vxm_repair_state *state;
   const vxm_edge_groups *groups;
   double scale;
   size_t *begin; /**< per group: where its faces begin in `faces`; one more */
@@ -32,7 +32,7 @@ static int by_group_then_face(const void *a, const void *b) {
 }
 
 static void list_faces(asking *a, const uint8_t *bound) {
-  size_t faces = a->work->soup->face_count;
+  size_t faces = a->state->soup->face_count;
   for (size_t f = 0; f < faces; f++)
     a->begin[a->groups->of_face[f] + 1] += bound[f];
   for (size_t g = 0; g < a->groups->count; g++)
@@ -66,28 +66,28 @@ static void find_box(vxm_point_in_mesh *inside) {
  */
 static void find_middle(const asking *a, size_t face, double middle[3]) {
   size_t count, best = 2;
-  const uint32_t *corner = vxm_face(a->work->soup, face, &count);
+  const uint32_t *corner = vxm_face(a->state->soup, face, &count);
   double most = -1;
   for (size_t c = 2; c < count; c++) {
     const uint32_t triangle[3] = {corner[0], corner[c - 1], corner[c]};
-    double area = vxm_vec3_length(vxm_polygon_area(a->work->soup->positions, triangle, 3, a->scale));
+    double area = vxm_vec3_length(vxm_polygon_area(a->state->soup->positions, triangle, 3, a->scale));
     if (area > most) {
       most = area;
       best = c;
     }
   }
   for (int x = 0; x < 3; x++)
-    middle[x] = (vxm_position(a->work->soup, corner[0])[x] * a->scale +
-                 vxm_position(a->work->soup, corner[best - 1])[x] * a->scale +
-                 vxm_position(a->work->soup, corner[best])[x] * a->scale) /
+    middle[x] = (vxm_position(a->state->soup, corner[0])[x] * a->scale +
+                 vxm_position(a->state->soup, corner[best - 1])[x] * a->scale +
+                 vxm_position(a->state->soup, corner[best])[x] * a->scale) /
                 3;
 }
 
 static vxm_status ask(vxm_set_side *set, const asking *a, vxm_point_in_mesh *inside, bool balanced,
                       double gap, vxm_error *error) {
   size_t count;
-  const uint32_t *corner = vxm_face(a->work->soup, set->face, &count);
-  vxm_vec3 normal = vxm_polygon_area(a->work->soup->positions, corner, count, a->scale);
+  const uint32_t *corner = vxm_face(a->state->soup, set->face, &count);
+  vxm_vec3 normal = vxm_polygon_area(a->state->soup->positions, corner, count, a->scale);
   const double along[3] = {normal.x, normal.y, normal.z};
   double middle[3];
   int in = 0, dominant = 0;
@@ -115,7 +115,7 @@ static vxm_status ask(vxm_set_side *set, const asking *a, vxm_point_in_mesh *ins
 
 static vxm_status ask_group(keyed_set *sets, size_t count, const asking *a, vxm_error *error) {
   size_t group = sets[0].group;
-  vxm_point_in_mesh inside = {.soup = a->work->soup,
+  vxm_point_in_mesh inside = {.soup = a->state->soup,
                               .faces = a->faces + a->begin[group],
                               .face_count = a->begin[group + 1] - a->begin[group],
                               .scale = a->scale};
@@ -145,19 +145,19 @@ static vxm_status ask_all(keyed_set *sets, size_t count, const asking *a, vxm_er
   return status;
 }
 
-vxm_status vxm_set_sides_find(vxm_set_side *sets, size_t count, vxm_repair_state *work,
+vxm_status vxm_set_sides_find(vxm_set_side *sets, size_t count, vxm_repair_state *state,
                               const vxm_edge_groups *groups, const uint8_t *bound, vxm_error *error) {
   if (count == 0)
     return VXM_OK;
   vxm_status status = VXM_OK;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
-  asking a = {.work = work, .groups = groups, .scale = vxm_unit_scale_of(extent.bounds).scale};
-  keyed_set *keyed = vxm_repair_state_scratch(work, count, sizeof *keyed, &status, error);
+  vxm_repair_state_extent(state, &extent);
+  asking a = {.state = state, .groups = groups, .scale = vxm_unit_scale_of(extent.bounds).scale};
+  keyed_set *keyed = vxm_repair_state_scratch(state, count, sizeof *keyed, &status, error);
   if (keyed)
-    a.begin = vxm_repair_state_scratch(work, groups->count + 1, sizeof *a.begin, &status, error);
+    a.begin = vxm_repair_state_scratch(state, groups->count + 1, sizeof *a.begin, &status, error);
   if (a.begin)
-    a.faces = vxm_repair_state_scratch(work, work->soup->face_count, sizeof *a.faces, &status, error);
+    a.faces = vxm_repair_state_scratch(state, state->soup->face_count, sizeof *a.faces, &status, error);
   if (a.faces) {
     list_faces(&a, bound);
     for (size_t i = 0; i < count; i++)
@@ -167,8 +167,8 @@ vxm_status vxm_set_sides_find(vxm_set_side *sets, size_t count, vxm_repair_state
     for (size_t i = 0; i < count; i++)
       sets[i] = keyed[i].set;
   }
-  vxm_free(work->context, a.faces);
-  vxm_free(work->context, a.begin);
-  vxm_free(work->context, keyed);
+  vxm_free(state->context, a.faces);
+  vxm_free(state->context, a.begin);
+  vxm_free(state->context, keyed);
   return status;
 }

@@ -24,7 +24,7 @@ typedef struct vxm_set_side {
  *
  * A ray takes as long as there are faces along it: of n walls upon each other, each asked, n * n are met.
  */
-vxm_status vxm_set_sides_find(vxm_set_side *sets, size_t count, vxm_repair_state *work,
+vxm_status vxm_set_sides_find(vxm_set_side *sets, size_t count, vxm_repair_state *state,
                               const vxm_edge_groups *groups, const uint8_t *bound, vxm_error *error);
 
 #endif

@@ -23,9 +23,9 @@ static bool touches_itself(const uint32_t *corner, size_t count, uint64_t *sorte
   return false;
 }
 
-static void put(faces *to, const vxm_repair_state *work, size_t face, const uint32_t *corner,
+static void put(faces *to, const vxm_repair_state *state, size_t face, const uint32_t *corner,
                 size_t corners) {
-  const vxm_soup *soup = work->soup;
+  const vxm_soup *soup = state->soup;
   for (size_t i = 0; i < corners; i++)
     to->indices[to->corners + i] = corner[i];
   if (to->tags)
@@ -33,13 +33,13 @@ static void put(faces *to, const vxm_repair_state *work, size_t face, const uint
   if (to->parts)
     to->parts[to->count] = soup->face_parts[face];
   if (to->turned)
-    to->turned[to->count] = work->turned[face];
+    to->turned[to->count] = state->turned[face];
   to->corners += corners;
   to->offsets[++to->count] = to->corners;
 }
 
-static vxm_status split(faces *to, const vxm_repair_state *work, const uint8_t *wanted, vxm_error *error) {
-  const vxm_soup *soup = work->soup;
+static vxm_status split(faces *to, const vxm_repair_state *state, const uint8_t *wanted, vxm_error *error) {
+  const vxm_soup *soup = state->soup;
   vxm_triangulator tri;
   vxm_triangulator_open(&tri, soup->context);
   vxm_status status = VXM_OK;
@@ -47,42 +47,42 @@ static vxm_status split(faces *to, const vxm_repair_state *work, const uint8_t *
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count), *triangles;
     if (!wanted[f]) {
-      put(to, work, f, corner, count);
+      put(to, state, f, corner, count);
       continue;
     }
     status = vxm_triangulate(&tri, soup->positions, corner, count, &triangles, error);
     for (size_t t = 0; t + 2 < count && status == VXM_OK; t++)
       if (vxm_face_has_three(triangles + 3 * t, 3, NULL))
-        put(to, work, f, triangles + 3 * t, 3);
+        put(to, state, f, triangles + 3 * t, 3);
   }
   vxm_triangulator_close(&tri);
   return status;
 }
 
-static void drop(vxm_repair_state *work, faces *f) {
-  vxm_free(work->context, f->turned);
-  vxm_free(work->context, f->parts);
-  vxm_free(work->context, f->tags);
-  vxm_free(work->context, f->indices);
-  vxm_free(work->context, f->offsets);
+static void drop(vxm_repair_state *state, faces *f) {
+  vxm_free(state->context, f->turned);
+  vxm_free(state->context, f->parts);
+  vxm_free(state->context, f->tags);
+  vxm_free(state->context, f->indices);
+  vxm_free(state->context, f->offsets);
 }
 
 /** Exchanges the faces that a work has and `f`. */
-static void exchange(vxm_repair_state *work, faces *f) {
-  vxm_soup *soup = work->soup;
-  faces old = {soup->offsets, soup->indices, soup->face_tags, soup->face_parts, work->turned, 0, 0};
+static void exchange(vxm_repair_state *state, faces *f) {
+  vxm_soup *soup = state->soup;
+  faces old = {soup->offsets, soup->indices, soup->face_tags, soup->face_parts, state->turned, 0, 0};
   soup->offsets = f->offsets;
   soup->indices = f->indices;
   soup->face_tags = f->tags;
   soup->face_parts = f->parts;
-  work->turned = f->turned;
+  state->turned = f->turned;
   soup->face_count = soup->face_capacity = f->count;
   soup->corner_count = soup->corner_capacity = f->corners;
   *f = old;
 }
 
-static vxm_status split_marked(vxm_repair_state *work, const uint8_t *wanted, vxm_error *error) {
-  vxm_soup *soup = work->soup;
+static vxm_status split_marked(vxm_repair_state *state, const uint8_t *wanted, vxm_error *error) {
+  vxm_soup *soup = state->soup;
   size_t count = soup->face_count, corners = soup->corner_count;
   for (size_t f = 0; f < soup->face_count; f++) {
     size_t n = (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
@@ -93,28 +93,28 @@ static vxm_status split_marked(vxm_repair_state *work, const uint8_t *wanted, vx
     return VXM_OK;
   faces made = {0};
   vxm_status status = VXM_OK;
-  made.offsets = vxm_repair_state_scratch(work, count + 1, sizeof *made.offsets, &status, error);
+  made.offsets = vxm_repair_state_scratch(state, count + 1, sizeof *made.offsets, &status, error);
   if (status == VXM_OK)
-    made.indices = vxm_repair_state_scratch(work, corners, sizeof *made.indices, &status, error);
+    made.indices = vxm_repair_state_scratch(state, corners, sizeof *made.indices, &status, error);
   if (status == VXM_OK && soup->face_tags)
-    made.tags = vxm_repair_state_scratch(work, count, sizeof *made.tags, &status, error);
+    made.tags = vxm_repair_state_scratch(state, count, sizeof *made.tags, &status, error);
   if (status == VXM_OK && soup->face_parts)
-    made.parts = vxm_repair_state_scratch(work, count, sizeof *made.parts, &status, error);
-  if (status == VXM_OK && work->turned)
-    made.turned = vxm_repair_state_scratch(work, count, sizeof *made.turned, &status, error);
+    made.parts = vxm_repair_state_scratch(state, count, sizeof *made.parts, &status, error);
+  if (status == VXM_OK && state->turned)
+    made.turned = vxm_repair_state_scratch(state, count, sizeof *made.turned, &status, error);
   if (status == VXM_OK)
-    status = split(&made, work, wanted, error);
+    status = split(&made, state, wanted, error);
   if (status == VXM_OK) {
-    exchange(work, &made);
-    work->renumbered = true;
-    vxm_repair_state_touch(work);
+    exchange(state, &made);
+    state->renumbered = true;
+    vxm_repair_state_touch(state);
   }
-  drop(work, &made);
+  drop(state, &made);
   return status;
 }
 
-vxm_status vxm_split_polygons(vxm_repair_state *work, bool touching, vxm_error *error) {
-  const vxm_soup *soup = work->soup;
+vxm_status vxm_split_polygons(vxm_repair_state *state, bool touching, vxm_error *error) {
+  const vxm_soup *soup = state->soup;
   vxm_status status = VXM_OK;
   size_t largest = 0;
   for (size_t f = 0; f < soup->face_count; f++)
@@ -122,17 +122,17 @@ vxm_status vxm_split_polygons(vxm_repair_state *work, bool touching, vxm_error *
       largest = (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
   if (largest <= 3)
     return VXM_OK;
-  uint8_t *wanted = vxm_repair_state_scratch(work, soup->face_count, sizeof *wanted, &status, error);
+  uint8_t *wanted = vxm_repair_state_scratch(state, soup->face_count, sizeof *wanted, &status, error);
   uint64_t *sorted =
-      wanted ? vxm_repair_state_scratch(work, 2 * largest, sizeof *sorted, &status, error) : NULL;
+      wanted ? vxm_repair_state_scratch(state, 2 * largest, sizeof *sorted, &status, error) : NULL;
   for (size_t f = 0; sorted && f < soup->face_count; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(soup, f, &count);
     wanted[f] = count > 3 && (!touching || touches_itself(corner, count, sorted));
   }
   if (sorted)
-    status = split_marked(work, wanted, error);
-  vxm_free(work->context, sorted);
-  vxm_free(work->context, wanted);
+    status = split_marked(state, wanted, error);
+  vxm_free(state->context, sorted);
+  vxm_free(state->context, wanted);
   return status;
 }

@@ -6,6 +6,6 @@
 #include "repair/state/repair_state.h"
 
 /** Splits polygons of more than three corners; with `touching` only those with a corner that comes twice. */
-vxm_status vxm_split_polygons(vxm_repair_state *work, bool touching, vxm_error *error);
+vxm_status vxm_split_polygons(vxm_repair_state *state, bool touching, vxm_error *error);
 
 #endif

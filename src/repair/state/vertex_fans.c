@@ -47,21 +47,21 @@ static vxm_status join_corners(const vxm_soup *soup, const size_t *sides, size_t
   return VXM_OK;
 }
 
-vxm_status vxm_vertex_fans_count(uint8_t **fans, vxm_repair_state *work, vxm_error *error) {
-  const vxm_soup *soup = work->soup;
+vxm_status vxm_vertex_fans_count(uint8_t **fans, vxm_repair_state *state, vxm_error *error) {
+  const vxm_soup *soup = state->soup;
   size_t *sides, *parent = NULL, (*first)[2] = NULL;
   *fans = NULL;
-  vxm_status status = vxm_halfedges_find(&sides, work, error);
+  vxm_status status = vxm_halfedges_find(&sides, state, error);
   if (status == VXM_OK)
-    parent = vxm_repair_state_scratch(work, soup->corner_count, sizeof *parent, &status, error);
+    parent = vxm_repair_state_scratch(state, soup->corner_count, sizeof *parent, &status, error);
   if (status == VXM_OK)
-    first = vxm_repair_state_scratch(work, work->edges.count, sizeof *first, &status, error);
+    first = vxm_repair_state_scratch(state, state->edges.count, sizeof *first, &status, error);
   if (status == VXM_OK)
-    *fans = vxm_repair_state_scratch(work, soup->vertex_count, 1, &status, error);
+    *fans = vxm_repair_state_scratch(state, soup->vertex_count, 1, &status, error);
   if (status == VXM_OK) {
     for (size_t c = 0; c < soup->corner_count && status == VXM_OK; c++) {
       parent[c] = c;
-      status = vxm_ask_at(c, work->context, error);
+      status = vxm_ask_at(c, state->context, error);
     }
     if (status == VXM_OK)
       status = join_corners(soup, sides, first, parent, error);
@@ -69,31 +69,31 @@ vxm_status vxm_vertex_fans_count(uint8_t **fans, vxm_repair_state *work, vxm_err
       if (parent[c] == c && (*fans)[soup->indices[c]] < UINT8_MAX)
         (*fans)[soup->indices[c]]++;
   }
-  vxm_free(work->context, first);
-  vxm_free(work->context, parent);
-  vxm_free(work->context, sides);
+  vxm_free(state->context, first);
+  vxm_free(state->context, parent);
+  vxm_free(state->context, sides);
   if (status != VXM_OK) {
-    vxm_free(work->context, *fans);
+    vxm_free(state->context, *fans);
     *fans = NULL;
   }
   return status;
 }
 
-vxm_status vxm_is_manifold(bool *out, vxm_repair_state *work, vxm_error *error) {
+vxm_status vxm_is_manifold(bool *out, vxm_repair_state *state, vxm_error *error) {
   *out = false;
-  vxm_status status = vxm_repair_state_edges(work, error);
+  vxm_status status = vxm_repair_state_edges(state, error);
   if (status != VXM_OK)
     return status;
-  for (size_t e = 0; e < work->edges.count; e++) {
-    const vxm_edge *edge = &work->edges.edges[e];
+  for (size_t e = 0; e < state->edges.count; e++) {
+    const vxm_edge *edge = &state->edges.edges[e];
     if (edge->count > 2 || (edge->count == 2 && edge->forward != 1))
       return VXM_OK;
   }
   uint8_t *fans;
-  status = vxm_vertex_fans_count(&fans, work, error);
+  status = vxm_vertex_fans_count(&fans, state, error);
   *out = status == VXM_OK;
-  for (size_t v = 0; *out && v < work->soup->vertex_count; v++)
+  for (size_t v = 0; *out && v < state->soup->vertex_count; v++)
     *out = fans[v] <= 1;
-  vxm_free(work->context, fans);
+  vxm_free(state->context, fans);
   return status;
 }

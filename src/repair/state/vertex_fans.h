@@ -11,10 +11,10 @@
  *
  * @param[out] fans vertex_count elements, freed by the caller with vxm_free; at most 255 are counted
  */
-vxm_status vxm_vertex_fans_count(uint8_t **fans, vxm_repair_state *work, vxm_error *error);
+vxm_status vxm_vertex_fans_count(uint8_t **fans, vxm_repair_state *state, vxm_error *error);
 
 /** Whether the faces are a manifold: no edge has more than two, which run along it in opposite directions,
  * and no vertex more than one fan. */
-vxm_status vxm_is_manifold(bool *out, vxm_repair_state *work, vxm_error *error);
+vxm_status vxm_is_manifold(bool *out, vxm_repair_state *state, vxm_error *error);
 
 #endif

@@ -9,20 +9,20 @@
  */
 enum { USEFUL = 8 };
 
-static size_t count_merged(const vxm_repair_state *work, const uint32_t *map) {
+static size_t count_merged(const vxm_repair_state *state, const uint32_t *map) {
   size_t count = 0;
-  for (size_t v = 0; v < work->soup->vertex_count; v++)
-    count += map[v] != v && !work->gone[v];
+  for (size_t v = 0; v < state->soup->vertex_count; v++)
+    count += map[v] != v && !state->gone[v];
   return count;
 }
 
 /** A copy of the soup with the vertices merged. */
-static vxm_status make_trial(vxm_repair_state *trial, const vxm_repair_state *work, const uint32_t *map,
+static vxm_status make_trial(vxm_repair_state *trial, const vxm_repair_state *state, const uint32_t *map,
                              vxm_error *error) {
   vxm_status status = VXM_OK;
-  size_t vertices = work->soup->vertex_count;
-  *trial = (vxm_repair_state){.context = work->context, .options = work->options};
-  status = vxm_soup_copy(&trial->soup, work->soup, error);
+  size_t vertices = state->soup->vertex_count;
+  *trial = (vxm_repair_state){.context = state->context, .options = state->options};
+  status = vxm_soup_copy(&trial->soup, state->soup, error);
   if (status != VXM_OK)
     return status;
   for (size_t c = 0; c < trial->soup->corner_count; c++)
@@ -61,7 +61,7 @@ static vxm_status count_after(size_t *after, const vxm_soup *trial, vxm_error *e
 }
 
 /** @param merged vertices that lose their numbers */
-static vxm_status compare(bool *helps, vxm_repair_state *trial, const vxm_repair_state *work, size_t merged,
+static vxm_status compare(bool *helps, vxm_repair_state *trial, const vxm_repair_state *state, size_t merged,
                           vxm_error *error) {
   bool reduced = false, fewer = false;
   size_t before, after = 0;
@@ -71,7 +71,7 @@ static vxm_status compare(bool *helps, vxm_repair_state *trial, const vxm_repair
   *helps = reduced || fewer;
   if (status != VXM_OK || *helps)
     return status;
-  status = count_used(&before, work->soup, error);
+  status = count_used(&before, state->soup, error);
   if (status == VXM_OK)
     status = vxm_split_polygons(trial, true, error);
   if (status == VXM_OK)
@@ -80,17 +80,17 @@ static vxm_status compare(bool *helps, vxm_repair_state *trial, const vxm_repair
   return status;
 }
 
-vxm_status vxm_merge_helps(bool *helps, vxm_repair_state *work, const uint32_t *map, vxm_error *error) {
+vxm_status vxm_merge_helps(bool *helps, vxm_repair_state *state, const uint32_t *map, vxm_error *error) {
   bool manifold = false;
   *helps = true;
   vxm_status status =
-      vxm_repair_state_reaches(work, VXM_LEVEL_MANIFOLD) ? vxm_is_manifold(&manifold, work, error) : VXM_OK;
+      vxm_repair_state_reaches(state, VXM_LEVEL_MANIFOLD) ? vxm_is_manifold(&manifold, state, error) : VXM_OK;
   if (status != VXM_OK || !manifold)
     return status;
   vxm_repair_state trial;
-  status = make_trial(&trial, work, map, error);
+  status = make_trial(&trial, state, map, error);
   if (status == VXM_OK)
-    status = compare(helps, &trial, work, count_merged(work, map), error);
+    status = compare(helps, &trial, state, count_merged(state, map), error);
   vxm_repair_state_touch(&trial);
   vxm_free(trial.context, trial.used);
   vxm_free(trial.context, trial.gone);

@@ -11,6 +11,6 @@
  * if fewer vertices are left in the end, or faces that were in the way are gone. So what separation has cut
  * apart, and lies near, is not merged again and again.
  */
-vxm_status vxm_merge_helps(bool *helps, vxm_repair_state *work, const uint32_t *map, vxm_error *error);
+vxm_status vxm_merge_helps(bool *helps, vxm_repair_state *state, const uint32_t *map, vxm_error *error);
 
 #endif

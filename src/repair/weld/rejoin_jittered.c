@@ -43,7 +43,7 @@ typedef struct box {
 } box;
 
 typedef struct search {
-  vxm_repair_state *work;
+  vxm_repair_state *state;
   const vxm_soup *soup;
   vxm_error error;
   double scale, reach, width; /**< scaled */
@@ -83,7 +83,7 @@ static inline int64_t whole_below(double x) {
 }
 
 static void *allocate(search *s, size_t count, size_t size) {
-  return vxm_calloc(s->work->context, count, size, &s->error);
+  return vxm_calloc(s->state->context, count, size, &s->error);
 }
 
 static vxm_vec3 between(const search *s, uint32_t p, uint32_t q) {
@@ -117,14 +117,14 @@ static void list_rims(search *s, const size_t *places) {
       continue;
     for (size_t c = 0; c < count; c++) {
       uint32_t a = corner[c], b = corner[c + 1 < count ? c + 1 : 0];
-      if (a != b && is_rim(&s->work->edges, places, a, b))
+      if (a != b && is_rim(&s->state->edges, places, a, b))
         s->rims[s->rim_count++] = (rim){a, b, f};
     }
   }
 }
 
 static bool find_rims(search *s, size_t count) {
-  const vxm_edges *edges = &s->work->edges;
+  const vxm_edges *edges = &s->state->edges;
   size_t *places = allocate(s, s->soup->vertex_count + 1, sizeof *places);
   s->rims = allocate(s, count, sizeof *s->rims);
   if (places && s->rims) {
@@ -135,7 +135,7 @@ static bool find_rims(search *s, size_t count) {
     list_rims(s, places);
   }
   bool found = places && s->rims;
-  vxm_free(s->work->context, places);
+  vxm_free(s->state->context, places);
   return found;
 }
 
@@ -178,8 +178,8 @@ static bool consider(search *s, uint32_t i, uint32_t j) {
   if (s->pair_count == PAIRS_PER_EDGE * s->rim_count)
     return false;
   void *pairs = s->pairs;
-  if (vxm_grow(s->work->context, &pairs, &s->pair_capacity, s->pair_count + 1, sizeof *s->pairs, &s->error) !=
-      VXM_OK)
+  if (vxm_grow(s->state->context, &pairs, &s->pair_capacity, s->pair_count + 1, sizeof *s->pairs,
+               &s->error) != VXM_OK)
     return false;
   s->pairs = pairs;
   double length = least(distance(s, p->a, p->b), distance(s, q->a, q->b));
@@ -481,7 +481,7 @@ static bool match(search *s, size_t rims, const vxm_unit_scale *frame) {
 }
 
 static void release(search *s) {
-  vxm_context *context = s->work->context;
+  vxm_context *context = s->state->context;
   vxm_free(context, s->faces);
   vxm_free(context, s->first_face);
   vxm_free(context, s->boxes);
@@ -496,21 +496,21 @@ static void release(search *s) {
   vxm_free(context, s->rims);
 }
 
-vxm_status vxm_rejoin_jittered(vxm_repair_state *work, uint32_t *map, vxm_error *error) {
-  vxm_status status = vxm_repair_state_edges(work, error);
+vxm_status vxm_rejoin_jittered(vxm_repair_state *state, uint32_t *map, vxm_error *error) {
+  vxm_status status = vxm_repair_state_edges(state, error);
   if (status != VXM_OK)
     return status;
-  size_t rims = 0, vertices = work->soup->vertex_count;
-  for (size_t e = 0; e < work->edges.count; e++)
-    rims += work->edges.edges[e].count == 1;
+  size_t rims = 0, vertices = state->soup->vertex_count;
+  for (size_t e = 0; e < state->edges.count; e++)
+    rims += state->edges.edges[e].count == 1;
   for (size_t v = 0; v < vertices; v++)
     map[v] = (uint32_t)v;
-  if (rims == 0 || 2 * rims < work->edges.count || rims > UINT32_MAX / PAIRS_PER_EDGE)
+  if (rims == 0 || 2 * rims < state->edges.count || rims > UINT32_MAX / PAIRS_PER_EDGE)
     return VXM_OK;
   vxm_extent extent;
-  vxm_repair_state_extent(work, &extent);
+  vxm_repair_state_extent(state, &extent);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
-  search s = {.work = work, .soup = work->soup, .error = VXM_ERROR_INIT};
+  search s = {.state = state, .soup = state->soup, .error = VXM_ERROR_INIT};
   if (match(&s, rims, &frame))
     for (size_t v = 0; v < vertices; v++)
       map[v] = root_of(&s, (uint32_t)v);

@@ -18,6 +18,6 @@
  * @param map vertex_count elements, owned by the caller
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_rejoin_jittered(vxm_repair_state *work, uint32_t *map, vxm_error *error);
+vxm_status vxm_rejoin_jittered(vxm_repair_state *state, uint32_t *map, vxm_error *error);
 
 #endif

@@ -141,7 +141,7 @@ static size_t families_of(size_t children) {
 }
 
 uint64_t vxm_distance_bvh_bytes(size_t count) {
-  uint64_t packs = families_of(count), families = packs / 7 + VXM_NEAREST_LEVELS;
+  uint64_t packs = families_of(count), families = packs / 7 + VXM_DISTANCE_BVH_LEVELS;
   return count * (sizeof(vxm_distance_triangle) + sizeof(vxm_spatial_point)) +
          packs * (sizeof(vxm_pack) + 6 * sizeof(double)) + families * sizeof(vxm_family) +
          sizeof(vxm_distance_bvh) + 4096;

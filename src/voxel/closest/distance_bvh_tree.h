@@ -6,7 +6,7 @@
 #include "voxel/closest/distance_bvh.h"
 #include "voxel/closest/triangle_distance.h"
 
-enum { VXM_PACK = 8, VXM_NEAREST_LEVELS = 11 /**< 8^11 triangles are more than 2^32 */ };
+enum { VXM_PACK = 8, VXM_DISTANCE_BVH_LEVELS = 11 /**< 8^11 triangles are more than 2^32 */ };
 
 /** Eight triangles as floats, as seen from a point among them: for telling which cannot be the nearest. */
 typedef struct vxm_pack {
@@ -36,8 +36,8 @@ struct vxm_distance_bvh {
   vxm_distance_triangle *triangles;
   vxm_pack *packs;
   int levels;
-  vxm_family *families[VXM_NEAREST_LEVELS];
-  size_t family_count[VXM_NEAREST_LEVELS];
+  vxm_family *families[VXM_DISTANCE_BVH_LEVELS];
+  size_t family_count[VXM_DISTANCE_BVH_LEVELS];
 };
 
 /** Some children of a family. */

@@ -7,12 +7,12 @@ vxm_parity_union_job vxm_voter(const vxm_vote_job *job, const vxm_window *window
   static const char *const phase[VXM_VOTERS] = {"voxelizing along x", "voxelizing along y",
                                                 "voxelizing along z", "voxelizing tetrahedra"};
   bool tetra = voter == 3;
-  return (vxm_parity_union_job){.facets = job->facets,
+  return (vxm_parity_union_job){.triangles = job->triangles,
                                 .placed = job->placed,
                                 .axis = tetra ? window->layout.fast : voter,
                                 .part_begin = job->part_begin,
                                 .part_end = job->part_end,
-                                .roles = tetra ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE,
+                                .roles = tetra ? VXM_ROLE_FACE | VXM_ROLE_CONE : VXM_ROLE_FACE,
                                 .has_voxels = job->has_voxels,
                                 .phase = phase[voter]};
 }

@@ -12,7 +12,7 @@
 
 /** Parts that voters decide; some of them have odd edges, else all voters would agree. */
 typedef struct vxm_vote_job {
-  const vxm_triangle_set *facets;
+  const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
   size_t part_begin, part_end; /**< each voter is the union of these */
   bool tetra;                  /**< ask the tetrahedra, too, as parity with cones */
@@ -37,9 +37,9 @@ typedef struct vxm_color_job {
 /** The longest side of a space, model units. */
 double vxm_color_longest(const vxm_space *space);
 
-/** Points of facets to be moved and placed. */
+/** Points of triangles to be moved and placed. */
 typedef struct vxm_move_job {
-  const vxm_triangle_set *facets;
+  const vxm_triangle_set *triangles;
   const vxm_vertex_transform *motion; /**< of the points before first_apex */
   bool apexes;                        /**< as for vxm_snapped_points_set */
 } vxm_move_job;
@@ -48,15 +48,15 @@ typedef struct vxm_move_job {
  * engine's own documentation says how far it is off. */
 typedef struct vxm_engine_ops {
   /** Moves and places points as vxm_snapped_points_move does: `placed`, which was begun,
-   * becomes what that makes of it, and the points are where `unite` and `elect` look for them. `*done` stays
+   * becomes what that makes of it, and the points are where `unite` and `vote` look for them. `*done` stays
    * false, and that is no failure, where the CPU has to do it. */
   vxm_status (*move)(vxm_engine *engine, vxm_snapped_points *placed, const vxm_move_job *job, bool *done,
                      vxm_error *error);
   vxm_status (*unite)(vxm_engine *engine, const vxm_window *window, const vxm_parity_union_job *job,
                       vxm_error *error);
-  /** Adds to the window's words what the voters elect, as vxm_vote_count does. */
-  vxm_status (*elect)(vxm_engine *engine, const vxm_window *window, const vxm_vote_job *job,
-                      vxm_vote_tally *tally, vxm_error *error);
+  /** Adds to the window's words what the voters decide, as vxm_vote_count does. */
+  vxm_status (*vote)(vxm_engine *engine, const vxm_window *window, const vxm_vote_job *job,
+                     vxm_vote_tally *tally, vxm_error *error);
   /** As vxm_surface_add. */
   vxm_status (*surface)(vxm_engine *engine, const vxm_surface *surface, const vxm_window *window,
                         vxm_surface_kind kind, bool is_fresh, vxm_error *error);

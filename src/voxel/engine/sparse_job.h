@@ -8,10 +8,10 @@
 #include <stdatomic.h>
 
 typedef struct vxm_sparse_job {
-  const vxm_triangle_set *facets;
+  const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
   size_t part_end;          /**< parts 0 to part_end - 1 */
-  unsigned roles;           /**< facets of these roles count, or-ed vxm_triangle_role */
+  unsigned roles;           /**< triangles of these roles count, or-ed vxm_triangle_role */
   atomic_uchar *has_voxels; /**< per part: set to 1 if it sets a voxel */
 } vxm_sparse_job;
 

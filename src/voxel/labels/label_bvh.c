@@ -15,13 +15,13 @@ static const double box_slack = 1 - 1e-12;
 /** More than what rounds in distances and gradients, in voxels and of the distance. */
 static const double slack = 1e-3, relative_slack = 1e-6;
 
-void vxm_label_bvh_destroy(vxm_label_bvh *forest) {
-  if (!forest)
+void vxm_label_bvh_destroy(vxm_label_bvh *bvh) {
+  if (!bvh)
     return;
-  vxm_free(forest->context, forest->root);
-  vxm_free(forest->context, forest->nodes);
-  vxm_free(forest->context, forest->triangles);
-  vxm_free(forest->context, forest);
+  vxm_free(bvh->context, bvh->root);
+  vxm_free(bvh->context, bvh->nodes);
+  vxm_free(bvh->context, bvh->triangles);
+  vxm_free(bvh->context, bvh);
 }
 
 static float nearness_of(double square) {
@@ -39,14 +39,13 @@ static vxm_near seen(const double p[3], const double foot[3], double square) {
   return near;
 }
 
-float vxm_label_bvh_nearness(const vxm_label_bvh *forest, uint32_t triangle, const double p[3]) {
+float vxm_label_bvh_nearness(const vxm_label_bvh *bvh, uint32_t triangle, const double p[3]) {
   double foot[3];
-  return nearness_of(vxm_closest_point(&forest->triangles[triangle], p, foot));
+  return nearness_of(vxm_closest_point(&bvh->triangles[triangle], p, foot));
 }
 
-vxm_near vxm_label_bvh_view(const vxm_label_bvh *forest, uint32_t label, uint32_t triangle,
-                            const double p[3]) {
-  double foot[3], square = vxm_closest_point(&forest->triangles[triangle], p, foot);
+vxm_near vxm_label_bvh_view(const vxm_label_bvh *bvh, uint32_t label, uint32_t triangle, const double p[3]) {
+  double foot[3], square = vxm_closest_point(&bvh->triangles[triangle], p, foot);
   vxm_near near = seen(p, foot, square);
   near.label = label;
   near.triangle = triangle;
@@ -94,7 +93,7 @@ bool vxm_bvh_block_excludes(const vxm_bvh_block *block, const vxm_near *nearest,
 
 /** What is asked of a tree. */
 typedef struct query {
-  const vxm_label_bvh *forest;
+  const vxm_label_bvh *bvh;
   const double *p;
   float nearness; /**< what is to be bettered */
   uint32_t label, triangle;
@@ -107,7 +106,7 @@ static bool betters(const query *q, float nearness, uint32_t label) {
 
 static void search_leaf(query *q, const node *leaf) {
   for (uint32_t i = leaf->begin; i < leaf->end; i++) {
-    float nearness = vxm_label_bvh_nearness(q->forest, i, q->p);
+    float nearness = vxm_label_bvh_nearness(q->bvh, i, q->p);
     if (betters(q, nearness, leaf->label)) {
       q->nearness = nearness;
       q->label = leaf->label;
@@ -125,7 +124,7 @@ static void search(query *q, const node *at) {
   float nearness = to_box(at, q->p);
   for (;;) {
     if (betters(q, nearness, at->label) && at->left) { /* the nearer child first */
-      const node *child = &q->forest->nodes[at->left], *other = child + 1;
+      const node *child = &q->bvh->nodes[at->left], *other = child + 1;
       float to_child = to_box(child, q->p), to_other = to_box(other, q->p);
       bool is_child = to_child <= to_other;
       stack[depth].node = is_child ? other : child;
@@ -144,39 +143,39 @@ static void search(query *q, const node *at) {
 }
 
 /** The roots of what is asked about; returns how many. */
-static int roots_of(const node *out[2], const vxm_label_bvh *forest, vxm_among among) {
+static int roots_of(const node *out[2], const vxm_label_bvh *bvh, vxm_among among) {
   int count = 0;
   if (among.label[0] == 0) {
-    out[0] = forest->nodes;
+    out[0] = bvh->nodes;
     return 1;
   }
   for (int i = 0; i < 2; i++) {
-    uint32_t root = forest->root[among.label[i] - 1];
+    uint32_t root = bvh->root[among.label[i] - 1];
     if (root != VXM_NO_ROOT)
-      out[count++] = &forest->nodes[root];
+      out[count++] = &bvh->nodes[root];
   }
   return count;
 }
 
-vxm_near vxm_label_bvh_nearest(const vxm_label_bvh *forest, vxm_among among, const double p[3],
+vxm_near vxm_label_bvh_nearest(const vxm_label_bvh *bvh, vxm_among among, const double p[3],
                                const vxm_near *from) {
-  query q = {.forest = forest, .p = p, .nearness = INFINITY};
+  query q = {.bvh = bvh, .p = p, .nearness = INFINITY};
   if (from && from->label) {
-    q.nearness = vxm_label_bvh_nearness(forest, from->triangle, p);
+    q.nearness = vxm_label_bvh_nearness(bvh, from->triangle, p);
     q.label = from->label;
     q.triangle = from->triangle;
   }
   const node *roots[2];
-  int count = roots_of(roots, forest, among);
+  int count = roots_of(roots, bvh, among);
   for (int i = 0; i < count; i++)
     search(&q, roots[i]);
-  return q.label ? vxm_label_bvh_view(forest, q.label, q.triangle, p) : (vxm_near){.nearness = INFINITY};
+  return q.label ? vxm_label_bvh_view(bvh, q.label, q.triangle, p) : (vxm_near){.nearness = INFINITY};
 }
 
 /* ---- What may be the nearest somewhere in a block ---- */
 
 /** Lists as vxm_label_bvh_list does, below a root and without the nodes of a label (0 = with all). */
-static size_t list_below(const node *at, const vxm_label_bvh *forest, uint32_t without,
+static size_t list_below(const node *at, const vxm_label_bvh *bvh, uint32_t without,
                          const vxm_bvh_block *block, const vxm_near *nearest, vxm_near *out, size_t room) {
   const node *stack[STACK];
   size_t count = 0;
@@ -185,12 +184,12 @@ static size_t list_below(const node *at, const vxm_label_bvh *forest, uint32_t w
     vxm_near box = view_box(at, block->middle);
     bool is_met = (without == 0 || at->label != without) && !vxm_bvh_block_excludes(block, nearest, &box);
     if (is_met && at->left) {
-      at = &forest->nodes[at->left];
+      at = &bvh->nodes[at->left];
       stack[depth++] = at + 1;
       continue;
     }
     for (uint32_t i = at->begin; i < at->end && is_met; i++) {
-      vxm_near near = vxm_label_bvh_view(forest, at->label, i, block->middle);
+      vxm_near near = vxm_label_bvh_view(bvh, at->label, i, block->middle);
       if (vxm_bvh_block_excludes(block, nearest, &near))
         continue;
       if (count == room)
@@ -203,22 +202,22 @@ static size_t list_below(const node *at, const vxm_label_bvh *forest, uint32_t w
   }
 }
 
-size_t vxm_label_bvh_list(const vxm_label_bvh *forest, vxm_among among, const vxm_bvh_block *block,
+size_t vxm_label_bvh_list(const vxm_label_bvh *bvh, vxm_among among, const vxm_bvh_block *block,
                           const vxm_near *nearest, vxm_near *out, size_t room) {
   const node *roots[2];
-  int root_count = roots_of(roots, forest, among);
+  int root_count = roots_of(roots, bvh, among);
   size_t count = 0;
   for (int i = 0; i < root_count && count <= room; i++)
-    count += list_below(roots[i], forest, 0, block, nearest, out + count, room - count);
+    count += list_below(roots[i], bvh, 0, block, nearest, out + count, room - count);
   return count;
 }
 
-bool vxm_label_bvh_has_other(const vxm_label_bvh *forest, vxm_among among, const vxm_bvh_block *block,
+bool vxm_label_bvh_has_other(const vxm_label_bvh *bvh, vxm_among among, const vxm_bvh_block *block,
                              const vxm_near *nearest) {
   const node *roots[2];
-  int root_count = roots_of(roots, forest, among);
+  int root_count = roots_of(roots, bvh, among);
   bool has_other = false;
   for (int i = 0; i < root_count && !has_other; i++)
-    has_other = list_below(roots[i], forest, nearest->label, block, nearest, NULL, 0) > 0;
+    has_other = list_below(roots[i], bvh, nearest->label, block, nearest, NULL, 0) > 0;
   return has_other;
 }

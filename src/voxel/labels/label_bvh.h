@@ -24,7 +24,7 @@ typedef struct vxm_label_bvh vxm_label_bvh;
 vxm_status vxm_label_bvh_create(vxm_label_bvh **out, const vxm_face_labels *labelling, const vxm_space *space,
                                 vxm_error *error);
 /** NULL is allowed. */
-void vxm_label_bvh_destroy(vxm_label_bvh *forest);
+void vxm_label_bvh_destroy(vxm_label_bvh *bvh);
 /** Bytes that the trees of a labelling take at most, also while they are made. */
 uint64_t vxm_label_bvh_bytes(const vxm_face_labels *labelling);
 
@@ -54,14 +54,13 @@ typedef struct vxm_bvh_block {
  *
  * @param from what was found nearby, one of those asked about, to begin with; or NULL
  */
-vxm_near vxm_label_bvh_nearest(const vxm_label_bvh *forest, vxm_among among, const double p[3],
+vxm_near vxm_label_bvh_nearest(const vxm_label_bvh *bvh, vxm_among among, const double p[3],
                                const vxm_near *from);
 
 /** The nearness of a triangle. */
-float vxm_label_bvh_nearness(const vxm_label_bvh *forest, uint32_t triangle, const double p[3]);
+float vxm_label_bvh_nearness(const vxm_label_bvh *bvh, uint32_t triangle, const double p[3]);
 /** A triangle as seen from a point. */
-vxm_near vxm_label_bvh_view(const vxm_label_bvh *forest, uint32_t label, uint32_t triangle,
-                            const double p[3]);
+vxm_near vxm_label_bvh_view(const vxm_label_bvh *bvh, uint32_t label, uint32_t triangle, const double p[3]);
 
 /**
  * Whether a triangle, or anything else that is convex, is farther from all points of a block than another
@@ -71,7 +70,7 @@ vxm_near vxm_label_bvh_view(const vxm_label_bvh *forest, uint32_t label, uint32_
 bool vxm_bvh_block_excludes(const vxm_bvh_block *block, const vxm_near *nearest, const vxm_near *other);
 
 /** Whether triangles of other labels than that of the nearest one may be nearer somewhere in a block. */
-bool vxm_label_bvh_has_other(const vxm_label_bvh *forest, vxm_among among, const vxm_bvh_block *block,
+bool vxm_label_bvh_has_other(const vxm_label_bvh *bvh, vxm_among among, const vxm_bvh_block *block,
                              const vxm_near *nearest);
 
 /**
@@ -80,7 +79,7 @@ bool vxm_label_bvh_has_other(const vxm_label_bvh *forest, vxm_among among, const
  * @param nearest to the middle
  * @return how many there are; more than `room` if that does not suffice
  */
-size_t vxm_label_bvh_list(const vxm_label_bvh *forest, vxm_among among, const vxm_bvh_block *block,
+size_t vxm_label_bvh_list(const vxm_label_bvh *bvh, vxm_among among, const vxm_bvh_block *block,
                           const vxm_near *nearest, vxm_near *out, size_t room);
 
 #endif

@@ -15,9 +15,9 @@ typedef struct item {
   float middle[3]; /**< times a number that is the same for all */
 } item;
 
-/** A forest in the making. */
+/** A BVH in the making. */
 typedef struct builder {
-  vxm_label_bvh *forest;
+  vxm_label_bvh *bvh;
   item *items;
   uint32_t *first; /**< of each label, its first triangle; one more for the end */
   /* Of the labels that have triangles: */
@@ -29,18 +29,18 @@ typedef struct builder {
 
 /* ---- Triangles ---- */
 
-static void place(const vxm_label_bvh *forest, double out[3], uint32_t vertex) {
-  const double *p = vxm_position(forest->labelling->soup, vertex);
+static void place(const vxm_label_bvh *bvh, double out[3], uint32_t vertex) {
+  const double *p = vxm_position(bvh->labelling->soup, vertex);
   for (int a = 0; a < 3; a++)
-    out[a] = (p[a] - forest->origin[a]) / forest->side;
+    out[a] = (p[a] - bvh->origin[a]) / bvh->side;
 }
 
 /** Whether all corners are finite. */
-static bool make_item(const vxm_label_bvh *forest, item *out, const uint32_t corner[3]) {
+static bool make_item(const vxm_label_bvh *bvh, item *out, const uint32_t corner[3]) {
   double middle[3] = {0, 0, 0};
   for (int c = 0; c < 3; c++) {
     double p[3];
-    place(forest, p, corner[c]);
+    place(bvh, p, corner[c]);
     for (int a = 0; a < 3; a++)
       middle[a] += p[a];
     out->corner[c] = corner[c];
@@ -62,11 +62,11 @@ static size_t count_triangles(const vxm_face_labels *l) {
 
 /** Cuts the faces of all labels, in order. */
 static vxm_status make_items(builder *b, vxm_error *error) {
-  const vxm_face_labels *l = b->forest->labelling;
+  const vxm_face_labels *l = b->bvh->labelling;
   vxm_triangulator triangulator;
   vxm_status status = VXM_OK;
   uint32_t count = 0;
-  vxm_triangulator_open(&triangulator, b->forest->context);
+  vxm_triangulator_open(&triangulator, b->bvh->context);
   for (size_t label = 1; label <= l->table.count; label++) {
     b->first[label - 1] = count;
     for (size_t i = l->begin[label - 1]; i < l->begin[label] && status == VXM_OK; i++) {
@@ -75,7 +75,7 @@ static vxm_status make_items(builder *b, vxm_error *error) {
       if (n > 3)
         status = vxm_triangulate(&triangulator, l->soup->positions, corner, n, &cut, error);
       for (size_t t = 0; t + 2 < n && status == VXM_OK; t++)
-        count += make_item(b->forest, &b->items[count], cut + 3 * t);
+        count += make_item(b->bvh, &b->items[count], cut + 3 * t);
     }
   }
   b->first[l->table.count] = count;
@@ -104,7 +104,7 @@ static void bound_triangles(const builder *b, node *n) {
   for (uint32_t i = n->begin; i < n->end; i++)
     for (int c = 0; c < 3; c++) {
       double p[3];
-      place(b->forest, p, b->items[i].corner[c]);
+      place(b->bvh, p, b->items[i].corner[c]);
       bound(n, p, p);
     }
 }
@@ -149,8 +149,8 @@ static void split(const builder *b, node *at, item *items, uint32_t *next) {
   uint32_t half = at->begin + (at->end - at->begin) / 2;
   halve(items, at->begin, at->end, half, longest_axis(at));
   at->left = *next;
-  b->forest->nodes[(*next)++] = (node){.begin = at->begin, .end = half, .label = at->label};
-  b->forest->nodes[(*next)++] = (node){.begin = half, .end = at->end, .label = at->label};
+  b->bvh->nodes[(*next)++] = (node){.begin = at->begin, .end = half, .label = at->label};
+  b->bvh->nodes[(*next)++] = (node){.begin = half, .end = at->end, .label = at->label};
 }
 
 /* ---- The tree of a label ---- */
@@ -164,23 +164,23 @@ static void grow_node(const builder *b, node *at, uint32_t *next) {
   if (at->end - at->begin <= LEAF)
     return;
   split(b, at, b->items, next);
-  bound_triangles(b, &b->forest->nodes[at->left]);
-  bound_triangles(b, &b->forest->nodes[at->left + 1]);
+  bound_triangles(b, &b->bvh->nodes[at->left]);
+  bound_triangles(b, &b->bvh->nodes[at->left + 1]);
 }
 
 static void grow_tree(size_t task, int worker, void *payload) {
   (void)worker;
   const builder *b = payload;
-  const vxm_label_bvh *forest = b->forest;
+  const vxm_label_bvh *bvh = b->bvh;
   uint32_t label = b->roots[task].label, next = b->room[task];
-  grow_node(b, &forest->nodes[forest->root[label - 1]], &next);
+  grow_node(b, &bvh->nodes[bvh->root[label - 1]], &next);
   for (uint32_t n = b->room[task]; n < next; n++)
-    grow_node(b, &forest->nodes[n], &next);
+    grow_node(b, &bvh->nodes[n], &next);
   for (uint32_t t = b->first[label - 1]; t < b->first[label]; t++) {
     double corner[3][3];
     for (int c = 0; c < 3; c++)
-      place(forest, corner[c], b->items[t].corner[c]);
-    vxm_closest_triangle_make(&forest->triangles[t], (const double(*)[3])corner);
+      place(bvh, corner[c], b->items[t].corner[c]);
+    vxm_closest_triangle_make(&bvh->triangles[t], (const double(*)[3])corner);
   }
 }
 
@@ -188,12 +188,12 @@ static void grow_tree(size_t task, int worker, void *payload) {
 
 /** Makes the roots, and lists them. */
 static void make_roots(builder *b) {
-  size_t labels = b->forest->labelling->table.count;
+  size_t labels = b->bvh->labelling->table.count;
   for (uint32_t label = 1; label <= labels; label++) {
     node *root = &b->roots[b->count];
     item *box = &b->boxes[b->count];
     *root = (node){.begin = b->first[label - 1], .end = b->first[label], .label = label};
-    b->forest->root[label - 1] = VXM_NO_ROOT;
+    b->bvh->root[label - 1] = VXM_NO_ROOT;
     if (root->begin == root->end)
       continue;
     bound_triangles(b, root);
@@ -205,14 +205,14 @@ static void make_roots(builder *b) {
 
 /** Makes the nodes down to the roots; those below them get their rooms behind. */
 static void grow_upper_tree(builder *b) {
-  vxm_label_bvh *forest = b->forest;
+  vxm_label_bvh *bvh = b->bvh;
   uint32_t next = 1;
-  forest->nodes[0] = (node){.end = b->count};
+  bvh->nodes[0] = (node){.end = b->count};
   for (uint32_t n = 0; n < next; n++) {
-    node *at = &forest->nodes[n];
+    node *at = &bvh->nodes[n];
     if (at->end - at->begin == 1) {
       *at = b->roots[b->boxes[at->begin].corner[0]];
-      forest->root[at->label - 1] = n;
+      bvh->root[at->label - 1] = n;
       continue;
     }
     bound_nothing(at);
@@ -242,13 +242,13 @@ uint64_t vxm_label_bvh_bytes(const vxm_face_labels *labelling) {
 }
 
 static vxm_status allocate(builder *b, size_t triangles, vxm_error *error) {
-  vxm_label_bvh *forest = b->forest;
-  vxm_context *context = forest->context;
-  size_t labels = forest->labelling->table.count;
+  vxm_label_bvh *bvh = b->bvh;
+  vxm_context *context = bvh->context;
+  size_t labels = bvh->labelling->table.count;
   vxm_error local = VXM_ERROR_INIT;
-  forest->triangles = vxm_alloc(context, triangles, sizeof *forest->triangles, &local);
-  forest->nodes = vxm_alloc(context, nodes_max(triangles, labels), sizeof *forest->nodes, &local);
-  forest->root = vxm_alloc(context, labels, sizeof *forest->root, &local);
+  bvh->triangles = vxm_alloc(context, triangles, sizeof *bvh->triangles, &local);
+  bvh->nodes = vxm_alloc(context, nodes_max(triangles, labels), sizeof *bvh->nodes, &local);
+  bvh->root = vxm_alloc(context, labels, sizeof *bvh->root, &local);
   b->items = vxm_alloc(context, triangles, sizeof *b->items, &local);
   b->first = vxm_alloc(context, labels + 1, sizeof *b->first, &local);
   b->roots = vxm_alloc(context, labels, sizeof *b->roots, &local);
@@ -260,7 +260,7 @@ static vxm_status allocate(builder *b, size_t triangles, vxm_error *error) {
 }
 
 static void free_builder(const builder *b) {
-  vxm_context *context = b->forest->context;
+  vxm_context *context = b->bvh->context;
   vxm_free(context, b->boxes);
   vxm_free(context, b->room);
   vxm_free(context, b->roots);
@@ -268,18 +268,18 @@ static void free_builder(const builder *b) {
   vxm_free(context, b->items);
 }
 
-static vxm_status build(vxm_label_bvh *forest, size_t triangles, vxm_error *error) {
-  builder b = {.forest = forest};
+static vxm_status build(vxm_label_bvh *bvh, size_t triangles, vxm_error *error) {
+  builder b = {.bvh = bvh};
   vxm_status status = allocate(&b, triangles, error);
   if (status == VXM_OK)
-    status = vxm_progress(forest->context, "sorting faces", 0, error);
+    status = vxm_progress(bvh->context, "sorting faces", 0, error);
   if (status == VXM_OK)
     status = make_items(&b, error);
   if (status == VXM_OK) {
     make_roots(&b);
     if (b.count > 0) {
       grow_upper_tree(&b);
-      vxm_parallel(forest->context, b.count, grow_tree, &b);
+      vxm_parallel(bvh->context, b.count, grow_tree, &b);
     } else
       status = vxm_fail(error, VXM_ERROR_EMPTY, "no face has three corners that are finite");
   }
@@ -296,23 +296,23 @@ vxm_status vxm_label_bvh_create(vxm_label_bvh **out, const vxm_face_labels *labe
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many to number; split the mesh",
                     triangles);
   vxm_error local = VXM_ERROR_INIT;
-  vxm_label_bvh *forest = vxm_calloc(context, 1, sizeof *forest, &local);
+  vxm_label_bvh *bvh = vxm_calloc(context, 1, sizeof *bvh, &local);
   vxm_status status = local.code;
-  if (forest) {
-    forest->context = context;
-    forest->labelling = labelling;
-    forest->side = space->voxel_size[0];
+  if (bvh) {
+    bvh->context = context;
+    bvh->labelling = labelling;
+    bvh->side = space->voxel_size[0];
     for (int a = 0; a < 3; a++) {
-      forest->origin[a] = space->origin[a];
-      forest->side = space->voxel_size[a] > forest->side ? space->voxel_size[a] : forest->side;
+      bvh->origin[a] = space->origin[a];
+      bvh->side = space->voxel_size[a] > bvh->side ? space->voxel_size[a] : bvh->side;
     }
-    status = build(forest, triangles, &local);
+    status = build(bvh, triangles, &local);
   }
   if (status == VXM_OK) {
-    *out = forest;
+    *out = bvh;
     return VXM_OK;
   }
-  vxm_label_bvh_destroy(forest);
+  vxm_label_bvh_destroy(bvh);
   vxm_error_pass(error, &local);
   return status;
 }

@@ -162,11 +162,11 @@ static void settle_tile(size_t task, int worker, void *payload) {
     const vxm_label_overlap *claim = &c->claim[i];
     if (!atomic_load_explicit(&claim->is_contested, memory_order_relaxed) || !part_of(&part, &tile, claim))
       continue;
-    vxm_nearest_label award = {c->forest,    &c->lattice.space, &claim->window,
-                               claim->first, c->values,         claim->piece->label};
+    vxm_nearest_label nearest = {c->bvh,       &c->lattice.space, &claim->window,
+                                 claim->first, c->values,         claim->piece->label};
     const int64_t begin[3] = {0, part.begin[0], part.begin[1]},
                   end[3] = {claim->window.fast_dim, part.end[0], part.end[1]};
-    vxm_nearest_label_voxels(&award, begin, end);
+    vxm_nearest_label_voxels(&nearest, begin, end);
   }
   vxm_task_progress_step(&c->watch);
 }
@@ -179,7 +179,7 @@ static vxm_status claim_batch(vxm_label_overlaps *c, vxm_error *error) {
     is_contested |= atomic_load_explicit(&c->claim[i].is_contested, memory_order_relaxed);
   if (!is_contested)
     return VXM_OK;
-  vxm_status status = vxm_label_overlaps_need_forest(c, error);
+  vxm_status status = vxm_label_overlaps_need_bvh(c, error);
   if (status != VXM_OK)
     return status;
   vxm_task_progress_start(&c->watch, c->context, "labelling", tiles, error);
@@ -189,10 +189,9 @@ static vxm_status claim_batch(vxm_label_overlaps *c, vxm_error *error) {
 
 /* ---- All of it ---- */
 
-vxm_status vxm_label_overlaps_need_forest(vxm_label_overlaps *claims, vxm_error *error) {
-  return claims->forest
-             ? VXM_OK
-             : vxm_label_bvh_create(&claims->forest, claims->labelling, &claims->lattice.space, error);
+vxm_status vxm_label_overlaps_need_bvh(vxm_label_overlaps *claims, vxm_error *error) {
+  return claims->bvh ? VXM_OK
+                     : vxm_label_bvh_create(&claims->bvh, claims->labelling, &claims->lattice.space, error);
 }
 
 vxm_status vxm_label_overlaps_begin(vxm_label_overlaps *claims, vxm_error *error) {
@@ -241,6 +240,6 @@ void vxm_label_overlaps_end(vxm_label_overlaps *claims) {
   vxm_free(claims->context, claims->desks);
   vxm_free(claims->context, claims->errors);
   vxm_free(claims->context, claims->words);
-  vxm_label_bvh_destroy(claims->forest);
+  vxm_label_bvh_destroy(claims->bvh);
   vxm_label_components_destroy(&claims->pieces);
 }

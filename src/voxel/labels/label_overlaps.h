@@ -24,10 +24,10 @@ typedef struct vxm_label_overlaps {
   const vxm_voxelize_options *options; /**< of the model */
   vxm_lattice lattice;                 /**< of the space */
   const vxm_face_labels *labelling;
-  vxm_window set;        /**< the voxels of the model */
-  uint64_t *several;     /**< bits like those: voxels that more than one label claims */
-  uint16_t *values;      /**< in the layout of the window; 0 = no label so far */
-  vxm_label_bvh *forest; /**< made when first needed */
+  vxm_window set;     /**< the voxels of the model */
+  uint64_t *several;  /**< bits like those: voxels that more than one label claims */
+  uint16_t *values;   /**< in the layout of the window; 0 = no label so far */
+  vxm_label_bvh *bvh; /**< made when first needed */
   vxm_label_components pieces;
   vxm_label_component_desk *desks; /**< of each thread */
   vxm_error *errors;               /**< of each thread */
@@ -41,13 +41,13 @@ typedef struct vxm_label_overlaps {
 
 /** Cuts the labels into pieces; @return as vxm_label_components_create. */
 vxm_status vxm_label_overlaps_begin(vxm_label_overlaps *claims, vxm_error *error);
-/** Bytes that are held at most while claims are made, those of the forest included. */
+/** Bytes that are held at most while claims are made, those of the BVH included. */
 uint64_t vxm_label_overlaps_bytes(const vxm_label_overlaps *claims);
 /** Makes all claims. @return as vxm_model_voxelize */
 vxm_status vxm_label_overlaps_run(vxm_label_overlaps *claims, vxm_error *error);
-/** Makes the forest unless it is there. */
-vxm_status vxm_label_overlaps_need_forest(vxm_label_overlaps *claims, vxm_error *error);
-/** Frees what the claims made, the forest included. */
+/** Makes the BVH unless it is there. */
+vxm_status vxm_label_overlaps_need_bvh(vxm_label_overlaps *claims, vxm_error *error);
+/** Frees what the claims made, the BVH included. */
 void vxm_label_overlaps_end(vxm_label_overlaps *claims);
 
 /** Values of a row. */

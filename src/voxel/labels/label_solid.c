@@ -105,7 +105,7 @@ vxm_space vxm_label_component_space(const vxm_label_component *piece, const vxm_
  * of one body, on which the voters agree.
  */
 static bool has_lone_sheet(const vxm_model *model) {
-  const vxm_split *split = &model->analysis.facets.split;
+  const vxm_split *split = &model->analysis.triangles.split;
   const vxm_voxelize_options *options = &model->options;
   if (options->method != VXM_METHOD_VOTE || options->vote != VXM_VOTE_AUTO ||
       options->split_mode == VXM_SPLIT_MODE_WHOLE)
@@ -115,9 +115,9 @@ static bool has_lone_sheet(const vxm_model *model) {
 
 /** Fills slices with the parts that are closed, or closed by caps. */
 static vxm_status fill_without_sheets(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
-  size_t end = pass->analysis->facets.split.kind_end[VXM_PART_CAPPED];
+  size_t end = pass->analysis->triangles.split.kind_end[VXM_PART_CAPPED];
   if (end > 0)
-    return vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, end, VXM_FACET_TRIANGLE | VXM_FACET_CAP,
+    return vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, end, VXM_ROLE_FACE | VXM_ROLE_CAP,
                                 error);
   memset(window->words, 0,
          window->slice_words * (size_t)(window->end - window->begin) * sizeof *window->words);

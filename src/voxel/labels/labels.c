@@ -85,10 +85,10 @@ static void settle_tile(size_t task, int worker, void *payload) {
   if (vxm_task_progress_stopped(&l->watch, worker))
     return;
   vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
-  vxm_nearest_label award = {c->forest, &c->lattice.space, &c->set, nowhere, c->values, 0};
+  vxm_nearest_label nearest = {c->bvh, &c->lattice.space, &c->set, nowhere, c->values, 0};
   const int64_t begin[3] = {0, tile.begin[0], tile.begin[1]},
                 end[3] = {c->set.fast_dim, tile.end[0], tile.end[1]};
-  vxm_nearest_label_voxels(&award, begin, end);
+  vxm_nearest_label_voxels(&nearest, begin, end);
   vxm_task_progress_step(&l->watch);
 }
 
@@ -97,7 +97,7 @@ static vxm_status settle_unassigned(labels *l, vxm_error *error) {
   vxm_parallel(l->context, tiles, leave_tile, l);
   if (atomic_load_explicit(&l->unassigned, memory_order_relaxed) == 0)
     return VXM_OK;
-  vxm_status status = vxm_label_overlaps_need_forest(&l->claims, error);
+  vxm_status status = vxm_label_overlaps_need_bvh(&l->claims, error);
   if (status != VXM_OK)
     return status;
   vxm_task_progress_start(&l->watch, l->context, "labelling", tiles, error);

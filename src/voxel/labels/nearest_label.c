@@ -9,7 +9,7 @@ enum {
 };
 
 typedef struct job {
-  const vxm_nearest_label *award;
+  const vxm_nearest_label *nearest;
   double step[3];    /**< from one voxel to the next, in the order of the layout */
   size_t row, plane; /**< values from one to the next */
 } job;
@@ -23,7 +23,7 @@ typedef struct voxels {
 
 /** The asked voxels of a row, as bits. They lie within a word. */
 static uint64_t row_bits(const job *j, const voxels *v, int64_t middle, int64_t slow) {
-  uint64_t word = vxm_window_row(j->award->asked, middle, slow)[v->at[0] / 64];
+  uint64_t word = vxm_window_row(j->nearest->asked, middle, slow)[v->at[0] / 64];
   return word >> (v->at[0] % 64) & vxm_low_bits((unsigned)v->size[0]);
 }
 
@@ -36,8 +36,8 @@ static bool is_asked(const job *j, const voxels *v) {
 }
 
 static uint16_t *value_at(const job *j, int64_t fast, int64_t middle, int64_t slow) {
-  const int64_t *first = j->award->first;
-  return j->award->values + (size_t)(slow + first[2]) * j->plane + (size_t)(middle + first[1]) * j->row +
+  const int64_t *first = j->nearest->first;
+  return j->nearest->values + (size_t)(slow + first[2]) * j->plane + (size_t)(middle + first[1]) * j->row +
          (size_t)(fast + first[0]);
 }
 
@@ -86,16 +86,16 @@ static bool eighth(voxels *out, const voxels *v, int number) {
 
 /* ---- Labels ---- */
 
-/** The voxels as points of the forest. */
+/** The voxels as points of the BVH. */
 static vxm_bvh_block block_of(const job *j, const voxels *v) {
-  const vxm_layout *layout = &j->award->asked->layout;
+  const vxm_layout *layout = &j->nearest->asked->layout;
   const int axis[3] = {layout->fast, layout->middle, layout->slow};
   vxm_bvh_block block;
   double reach2 = 0;
   for (int a = 0; a < 3; a++) {
     double half = (double)(v->size[a] - 1) / 2 * j->step[a];
     block.half[axis[a]] = half;
-    block.middle[axis[a]] = ((double)(v->at[a] + j->award->first[a]) + (double)v->size[a] / 2) * j->step[a];
+    block.middle[axis[a]] = ((double)(v->at[a] + j->nearest->first[a]) + (double)v->size[a] / 2) * j->step[a];
     reach2 += half * half;
   }
   block.reach = sqrt(reach2);
@@ -113,7 +113,7 @@ static uint32_t nearest_label(const job *j, const crowd *c, const double p[3]) {
   float least = INFINITY;
   uint32_t label = 0;
   for (size_t i = 0; i < c->count; i++) {
-    float nearness = vxm_label_bvh_nearness(j->award->forest, c->near[i].triangle, p);
+    float nearness = vxm_label_bvh_nearness(j->nearest->bvh, c->near[i].triangle, p);
     if (nearness > least || (nearness == least && c->near[i].label >= label))
       continue;
     least = nearness;
@@ -126,7 +126,7 @@ static uint32_t nearest_label(const job *j, const crowd *c, const double p[3]) {
 static vxm_near look_from(const job *j, crowd *out, const crowd *from, const double p[3]) {
   vxm_near nearest = {.nearness = INFINITY};
   for (size_t i = 0; i < from->count; i++) {
-    out->near[i] = vxm_label_bvh_view(j->award->forest, from->near[i].label, from->near[i].triangle, p);
+    out->near[i] = vxm_label_bvh_view(j->nearest->bvh, from->near[i].label, from->near[i].triangle, p);
     if (out->near[i].nearness < nearest.nearness)
       nearest = out->near[i];
   }
@@ -170,15 +170,15 @@ static void settle_by_crowd(const job *j, const voxels *v, const crowd *from) {
 
 /** Settles voxels by the nearest label among some; false if they are to be cut first. */
 static bool settle_among(const job *j, const voxels *v, vxm_among among, vxm_near *nearest) {
-  const vxm_label_bvh *forest = j->award->forest;
+  const vxm_label_bvh *bvh = j->nearest->bvh;
   vxm_bvh_block block = block_of(j, v);
-  *nearest = vxm_label_bvh_nearest(forest, among, block.middle, nearest);
-  if (block.reach == 0 || !vxm_label_bvh_has_other(forest, among, &block, nearest)) {
+  *nearest = vxm_label_bvh_nearest(bvh, among, block.middle, nearest);
+  if (block.reach == 0 || !vxm_label_bvh_has_other(bvh, among, &block, nearest)) {
     give(j, v, nearest->label);
     return true;
   }
   crowd c;
-  c.count = vxm_label_bvh_list(forest, among, &block, nearest, c.near, CROWD);
+  c.count = vxm_label_bvh_list(bvh, among, &block, nearest, c.near, CROWD);
   if (c.count > CROWD)
     return false;
   voxels part;
@@ -192,7 +192,7 @@ static bool settle_among(const job *j, const voxels *v, vxm_among among, vxm_nea
 static void settle(const job *j, const voxels *v, vxm_near nearest) {
   static const vxm_near nothing = {.nearness = INFINITY};
   uint16_t held = 0;
-  uint32_t label = j->award->label;
+  uint32_t label = j->nearest->label;
   vxm_among among = {{0, 0}};
   if (!is_asked(j, v))
     return;
@@ -210,13 +210,14 @@ static void settle(const job *j, const voxels *v, vxm_near nearest) {
       settle(j, &part, nearest);
 }
 
-void vxm_nearest_label_voxels(const vxm_nearest_label *award, const int64_t begin[3], const int64_t end[3]) {
-  const vxm_layout *layout = &award->asked->layout;
+void vxm_nearest_label_voxels(const vxm_nearest_label *nearest, const int64_t begin[3],
+                              const int64_t end[3]) {
+  const vxm_layout *layout = &nearest->asked->layout;
   const int axis[3] = {layout->fast, layout->middle, layout->slow};
-  const double *size = award->space->voxel_size;
+  const double *size = nearest->space->voxel_size;
   double side = fmax(size[0], fmax(size[1], size[2]));
-  job j = {.award = award, .row = (size_t)award->space->dims[layout->fast]};
-  j.plane = j.row * (size_t)award->space->dims[layout->middle];
+  job j = {.nearest = nearest, .row = (size_t)nearest->space->dims[layout->fast]};
+  j.plane = j.row * (size_t)nearest->space->dims[layout->middle];
   for (int a = 0; a < 3; a++)
     j.step[a] = size[axis[a]] / side;
   voxels v;

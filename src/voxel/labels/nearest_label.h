@@ -8,7 +8,7 @@
 
 /** Which voxels are given. */
 typedef struct vxm_nearest_label {
-  const vxm_label_bvh *forest;
+  const vxm_label_bvh *bvh;
   const vxm_space *space;
   const vxm_window *asked; /**< all slices of a box of the space: the voxels in question */
   const int64_t *first;    /**< voxel of the space at which the box begins, in the order of the layout */
@@ -24,6 +24,6 @@ typedef struct vxm_nearest_label {
  *
  * @param begin the first a multiple of 16
  */
-void vxm_nearest_label_voxels(const vxm_nearest_label *award, const int64_t begin[3], const int64_t end[3]);
+void vxm_nearest_label_voxels(const vxm_nearest_label *nearest, const int64_t begin[3], const int64_t end[3]);
 
 #endif

@@ -15,10 +15,10 @@ int vxm_model_windows_held(const vxm_model *model) {
 /** What deciding open parts takes beside windows: patches and trees, the grids by which they are turned, and
  * slabs along slices. */
 static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) {
-  const vxm_triangle_set *facets = &model->analysis.facets;
+  const vxm_triangle_set *triangles = &model->analysis.triangles;
   bool winding = model->options.method == VXM_METHOD_WINDING;
   size_t begin = winding ? 0 : vxm_voted_begin(&model->analysis, &model->options),
-         end = facets->split.part_count;
+         end = triangles->split.part_count;
   uint64_t threads = (uint64_t)vxm_context_threads(model->context);
   uint64_t bins = 5 * threads * (uint64_t)(shape->slow_dim + shape->middle_dim) * sizeof(vxm_crossing_bin);
   bool one = vxm_one_voter(&model->options);
@@ -27,35 +27,36 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
   uint64_t slabs = threads * shape->row_words * (uint64_t)shape->slow_dim * sizeof(uint64_t);
   if (one || !vxm_caps_wanted(&model->options))
     return bins + slabs;
-  uint64_t triangles = begin < end ? facets->parts[end - 1].end - facets->parts[begin].begin : 0;
-  return bins + slabs + triangles * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
+  uint64_t held = begin < end ? triangles->parts[end - 1].end - triangles->parts[begin].begin : 0;
+  return bins + slabs + held * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
 }
 
 vxm_memory_need vxm_model_memory_need(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
                                       bool worst) {
-  const vxm_triangle_set *facets = &model->analysis.facets;
+  const vxm_triangle_set *triangles = &model->analysis.triangles;
   uint64_t threads = (uint64_t)vxm_context_threads(model->context);
   uint64_t surface =
       vxm_faces_wanted(&model->options) ? vxm_surface_bytes(model->analysis.soup, (int)threads) : 0;
   if (!vxm_solid_wanted(&model->options))
     return (vxm_memory_need){surface, vxm_model_windows_held(model)};
   const vxm_engine *engine = model->options.engine;
-  bool polled = vxm_voted_begin(&model->analysis, &model->options) < facets->split.part_count;
+  bool polled = vxm_voted_begin(&model->analysis, &model->options) < triangles->split.part_count;
   int voters = polled ? 4 : 1;
   const vxm_snapped_points *placed; /* its arrays have an element for each point */
-  uint64_t points = facets->point_count * (sizeof *placed->narrow + sizeof *placed->cells);
+  uint64_t points = triangles->point_count * (sizeof *placed->narrow + sizeof *placed->cells);
   uint64_t slab = (uint64_t)vxm_max(VXM_SLAB_WORDS, (int64_t)shape->slice_words) * sizeof(uint64_t);
   /* A slab for each voter and thread, some slices for what is carried on, and the bins themselves. */
   vxm_memory_need need = {points + surface + (5 * threads + 4) * slab + (UINT64_C(1) << 20),
                           vxm_model_windows_held(model)};
-  if (engine && engine->ops) { /* its buffers, and points and facets in them */
-    enum { BUFFERS = 4, BUFFERS_OF_VOTES = 11, BYTES_PER_FACET = 32 };
+  if (engine && engine->ops) { /* its buffers, and points and triangles in them */
+    enum { BUFFERS = 4, BUFFERS_OF_VOTES = 11, BYTES_PER_TRIANGLE = 32 };
     need.windows += polled ? BUFFERS_OF_VOTES : BUFFERS;
-    need.fixed += facets->facet_count * BYTES_PER_FACET + points;
+    need.fixed += triangles->triangle_count * BYTES_PER_TRIANGLE + points;
   }
   /* Chunks of records are half full at worst. */
   double bound = 2 * sizeof(uint64_t) *
-                 vxm_raster_schedule_bound(facets->lengths, facets->facet_count, space, NULL) * voters;
+                 vxm_raster_schedule_bound(triangles->lengths, triangles->triangle_count, space, NULL) *
+                 voters;
   double round = 2 * sizeof(uint64_t) * vxm_raster_schedule_round(model->context);
   if (worst) /* a bin keeps a slab of records of a part before it becomes a bitmap */
     need.windows += 2 * voters * (int)threads;

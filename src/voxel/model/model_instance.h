@@ -10,7 +10,7 @@
 
 /** How an instance differs from the model that it is attached to. */
 typedef struct vxm_variation {
-  vxm_vertex_transform points;   /**< of the facets, before first_apex */
+  vxm_vertex_transform points;   /**< of the triangles, before first_apex */
   vxm_vertex_transform vertices; /**< of the soup; looked at only where faces set voxels */
   bool mirrored;                 /**< whether the points lie as in a mirror */
 } vxm_variation;

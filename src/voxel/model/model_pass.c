@@ -20,7 +20,7 @@ vxm_status vxm_model_pass_attach(vxm_model_pass *pass, const vxm_mesh_analysis *
   solid->analysis = analysis;
   solid->options = *options;
   solid->engine = options->engine;
-  size_t parts = analysis->facets.split.part_count;
+  size_t parts = analysis->triangles.split.part_count;
   if (parts <= pass->part_room)
     return VXM_OK;
   vxm_error local = VXM_ERROR_INIT;

@@ -5,21 +5,21 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-/** A part that has facets, of which none set a voxel. */
+/** A part that has triangles, of which none set a voxel. */
 static bool is_empty(const vxm_voxel_pass *pass, size_t part) {
-  const vxm_part *p = &pass->analysis->facets.parts[part];
+  const vxm_part *p = &pass->analysis->triangles.parts[part];
   return p->begin < p->end && !atomic_load_explicit(&pass->has_voxels[part], memory_order_relaxed);
 }
 
 /** The open parts count as empty if together they added nothing, whatever single voters held. */
 static void count_empty_parts(vxm_model_pass *pass, vxm_voxelize_report *report) {
   vxm_voxel_pass *solid = &pass->solid;
-  const vxm_triangle_set *facets = &solid->analysis->facets;
+  const vxm_triangle_set *triangles = &solid->analysis->triangles;
   if (!vxm_one_voter(&solid->options) && !solid->added)
-    for (size_t p = vxm_voted_begin(solid->analysis, &solid->options); p < facets->split.part_count; p++)
+    for (size_t p = vxm_voted_begin(solid->analysis, &solid->options); p < triangles->split.part_count; p++)
       atomic_store_explicit(&solid->has_voxels[p], 0, memory_order_relaxed);
   bool placed = vxm_solid_wanted(&pass->solid.options) && (solid->placed.narrow || solid->placed.wide);
-  for (size_t p = 0; p < facets->split.part_count && placed; p++)
+  for (size_t p = 0; p < triangles->split.part_count && placed; p++)
     if (is_empty(solid, p)) {
       bool outside = vxm_part_is_outside(solid, p);
       report->outside_parts += outside;
@@ -32,12 +32,12 @@ static const char *name_parts(const vxm_model_pass *pass, bool outside, int64_t 
   enum { NAMED = 3 };
   size_t used = 0;
   int named = 0;
-  const vxm_triangle_set *facets = &pass->solid.analysis->facets;
+  const vxm_triangle_set *triangles = &pass->solid.analysis->triangles;
   names[0] = '\0';
-  for (size_t p = 0; p < facets->split.part_count && named < NAMED; p++) {
+  for (size_t p = 0; p < triangles->split.part_count && named < NAMED; p++) {
     if (!is_empty(&pass->solid, p) || vxm_part_is_outside(&pass->solid, p) != outside)
       continue;
-    const double *at = facets->positions[facets->corners[facets->parts[p].begin][0]];
+    const double *at = triangles->positions[triangles->corners[triangles->parts[p].begin][0]];
     used += (size_t)snprintf(names + used, 200 - used, "%s(%.4g, %.4g, %.4g)", named ? ", " : "", at[0],
                              at[1], at[2]);
     named++;
@@ -81,12 +81,12 @@ static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
              "the model is open (%zu odd edges) and x, y and z disagree on %" PRId64
              " voxels, decided by %s; "
              "compare --method winding, --vote majority and --parts whole",
-             pass->solid.analysis->facets.split.odd_edge_count, report->contested,
+             pass->solid.analysis->triangles.split.odd_edge_count, report->contested,
              report->winding_decided > 0 ? "the winding number" : "the vote");
 }
 
 void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t voxels, uint64_t hash) {
-  const vxm_split *split = &pass->solid.analysis->facets.split;
+  const vxm_split *split = &pass->solid.analysis->triangles.split;
   *pass->warnings =
       (vxm_warnings){0}; /* a pass may be reported twice: for its grid, and for the file of that */
   *report = (vxm_voxelize_report){

@@ -11,7 +11,7 @@ enum { BASE, CONES, MIDDLE, SLOW, SETS };
 
 enum { EDGES_PER_TASK = 1024 };
 
-typedef struct poll_state {
+typedef struct vote_state {
   vxm_workspace *workspace;
   const vxm_window *window;
   const vxm_axis_vote_job *job;
@@ -26,9 +26,9 @@ typedef struct poll_state {
   atomic_int_fast64_t contested;
   atomic_bool added;
   vxm_task_progress watch;
-} poll_state;
+} vote_state;
 
-static size_t stripe_begin(const poll_state *state, size_t stripe) {
+static size_t stripe_begin(const vote_state *state, size_t stripe) {
   return vxm_slice_begin(state->slabs.count, state->stripes, stripe);
 }
 
@@ -42,7 +42,7 @@ static void flip_piece(uint64_t *words, const vxm_crossing_bin_piece *piece) {
 }
 
 /** Flips what all threads put into the bins of a slab; false if that was nothing. */
-static bool flip_slab(const poll_state *state, size_t set, size_t slab, uint64_t *words) {
+static bool flip_slab(const vote_state *state, size_t set, size_t slab, uint64_t *words) {
   vxm_crossing_bins *bins = &state->workspace->bins;
   vxm_crossing_bin_piece piece;
   bool any = false;
@@ -59,7 +59,7 @@ static bool flip_slab(const poll_state *state, size_t set, size_t slab, uint64_t
 /** What is open along slices at the begin of a stripe but for the flips before the window: all flips of the
  * slabs of the stripe before it, put into one slice. */
 static void sum_stripe(size_t stripe, int worker, void *payload) {
-  poll_state *state = payload;
+  vote_state *state = payload;
   const vxm_window *window = state->window;
   uint64_t *carry = state->carries + (stripe + 1) * window->slice_words;
   uint64_t *words = state->workspace->scratch + (size_t)worker * state->words_each;
@@ -84,7 +84,7 @@ typedef struct slab {
   size_t index, slices, count; /**< number, slices and words */
 } slab;
 
-static void fold_fast(const poll_state *state, const slab *s, int set) {
+static void fold_fast(const vote_state *state, const slab *s, int set) {
   state->kernels->fold_rows(s->words[set], state->window->row_words,
                             s->slices * (size_t)state->window->middle_dim,
                             vxm_window_tail_mask(state->window));
@@ -92,7 +92,7 @@ static void fold_fast(const poll_state *state, const slab *s, int set) {
 
 /** The voter that differs from the fast axis by what a set flips; the fast axis itself where that is nothing.
  */
-static const uint64_t *voter_of(const poll_state *state, const slab *s, int set) {
+static const uint64_t *voter_of(const vote_state *state, const slab *s, int set) {
   if (!s->used[set])
     return s->words[BASE];
   fold_fast(state, s, set);
@@ -102,7 +102,7 @@ static const uint64_t *voter_of(const poll_state *state, const slab *s, int set)
 }
 
 /** The flips along the middle axis, folded along it. */
-static void fold_middle(const poll_state *state, slab *s) {
+static void fold_middle(const vote_state *state, slab *s) {
   const vxm_window *window = state->window;
   uint64_t *words = s->words[MIDDLE];
   s->used[MIDDLE] = flip_slab(state, MIDDLE, s->index, words);
@@ -119,7 +119,7 @@ static bool is_zero(const uint64_t *words, size_t count) {
 
 /** The flips along the slow axis, folded along it. `carry` is what is open along slices at the begin of the
  * slab, then at its end. */
-static void fold_slow(const poll_state *state, slab *s, uint64_t *carry) {
+static void fold_slow(const vote_state *state, slab *s, uint64_t *carry) {
   size_t slice = state->window->slice_words;
   uint64_t *words = s->words[SLOW];
   s->used[SLOW] = flip_slab(state, SLOW, s->index, words) || !is_zero(carry, slice);
@@ -132,7 +132,7 @@ static void fold_slow(const poll_state *state, slab *s, uint64_t *carry) {
 
 /** The voters in a slab: three axes, the fast one first, and the tetrahedra, whose parity is that of
  * triangles and cones along any axis. Where the tetrahedra are not asked they vote as the fast axis does. */
-static void fold_voters(const poll_state *state, slab *s, uint64_t *carry, const uint64_t *voters[4]) {
+static void fold_voters(const vote_state *state, slab *s, uint64_t *carry, const uint64_t *voters[4]) {
   s->used[BASE] = flip_slab(state, BASE, s->index, s->words[BASE]);
   s->used[CONES] = flip_slab(state, CONES, s->index, s->words[CONES]);
   fold_middle(state, s);
@@ -155,7 +155,7 @@ static void clear(slab *s, size_t slice) {
 }
 
 static void do_stripe(size_t stripe, int worker, void *payload) {
-  poll_state *state = payload;
+  vote_state *state = payload;
   const vxm_window *window = state->window;
   size_t slice = window->slice_words;
   uint64_t *carry = state->carries + stripe * slice, added = 0;
@@ -186,7 +186,7 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
 
 /** Columns across slices of the `w` axis, along which the middle or the slow axis is compared with the fast
  * one. */
-static vxm_columns compared(const poll_state *state, int v, int w) {
+static vxm_columns compared(const vote_state *state, int v, int w) {
   vxm_columns columns = vxm_columns_of(state->window, state->window->layout.fast);
   columns.u = state->window->layout.fast;
   columns.v = v;
@@ -198,10 +198,10 @@ static vxm_columns compared(const poll_state *state, int v, int w) {
   return columns;
 }
 
-static void shape(poll_state *state) {
+static void shape(vote_state *state) {
   const vxm_window *window = state->window;
   const vxm_axis_vote_job *job = state->job;
-  const vxm_part *part = &job->facets->parts[job->part];
+  const vxm_part *part = &job->triangles->parts[job->part];
   int threads = vxm_context_threads(state->workspace->context);
   state->edge_begin = part->cones;
   state->edge_end = part->end;
@@ -212,9 +212,9 @@ static void shape(poll_state *state) {
   for (size_t set = BASE; set <= CONES; set++) {
     vxm_columns *columns = &state->columns[set];
     *columns = vxm_columns_of(window, window->layout.fast);
-    columns->roles = set == BASE ? VXM_FACET_TRIANGLE : VXM_FACET_CONE;
-    columns->facet_begin = set == BASE ? part->begin : part->cones;
-    columns->facet_end = vxm_roles_end(job->facets, job->part, columns->roles);
+    columns->roles = set == BASE ? VXM_ROLE_FACE : VXM_ROLE_CONE;
+    columns->triangle_begin = set == BASE ? part->begin : part->cones;
+    columns->triangle_end = vxm_roles_end(job->triangles, job->part, columns->roles);
     columns->slab_shift = state->slabs.shift;
   }
   state->columns[MIDDLE] = compared(state, window->layout.middle, window->layout.slow);
@@ -222,18 +222,18 @@ static void shape(poll_state *state) {
 }
 
 static void put_edges(size_t task, int worker, void *payload) {
-  poll_state *state = payload;
+  vote_state *state = payload;
   if (vxm_task_progress_stopped(&state->watch, worker))
     return;
   size_t begin = state->edge_begin + task * EDGES_PER_TASK;
   size_t end = state->edge_end - begin < EDGES_PER_TASK ? state->edge_end : begin + EDGES_PER_TASK;
   for (size_t set = MIDDLE; set <= SLOW; set++)
-    vxm_parity_difference_put(state->job->placed, state->job->facets, begin, end, &state->columns[set],
+    vxm_parity_difference_put(state->job->placed, state->job->triangles, begin, end, &state->columns[set],
                               &state->workspace->bins, (size_t)worker, set);
   vxm_task_progress_step(&state->watch);
 }
 
-static void run_stripes(poll_state *state) {
+static void run_stripes(vote_state *state) {
   const vxm_window *window = state->window;
   vxm_context *context = state->workspace->context;
   size_t slice = window->slice_words;
@@ -252,13 +252,13 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
   vxm_context *context = workspace->context;
   if (window->begin >= window->end)
     return VXM_OK;
-  poll_state state = {.workspace = workspace, .window = window, .job = job, .kernels = vxm_kernels_get()};
+  vote_state state = {.workspace = workspace, .window = window, .job = job, .kernels = vxm_kernels_get()};
   shape(&state);
   atomic_init(&state.contested, 0);
   atomic_init(&state.added, false);
   size_t workers = (size_t)vxm_context_threads(context);
   vxm_raster_schedule *crossings = &workspace->crossings;
-  vxm_status status = vxm_raster_schedule_plan(crossings, job->facets, job->placed, state.columns,
+  vxm_status status = vxm_raster_schedule_plan(crossings, job->triangles, job->placed, state.columns,
                                                job->tetra ? CONES + 1 : BASE + 1, error);
   if (status == VXM_OK)
     status = vxm_workspace_scratch(workspace, workers * state.words_each, error);

@@ -15,7 +15,7 @@
 #include "voxel/parity/vote.h"
 
 typedef struct vxm_axis_vote_job {
-  const vxm_triangle_set *facets;
+  const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
   size_t part;
   bool tetra;      /**< ask the tetrahedra, too, as parity with cones */
@@ -27,7 +27,7 @@ typedef struct vxm_axis_vote_job {
 } vxm_axis_vote_job;
 
 /**
- * Sets in the window the voxels that the voters elect, and adds up the tally. The same bits for any number of
+ * Sets in the window the voxels that win the vote, and adds up the tally. The same bits for any number of
  * threads.
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED

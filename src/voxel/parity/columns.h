@@ -22,14 +22,14 @@ typedef struct vxm_columns {
   uint64_t step[3];         /**< bits from a voxel to the next one along each axis in a slab */
   int slab_axis;            /**< v or w: slabs are cut along it */
   int slab_shift;           /**< a slab is 2^slab_shift voxels thick */
-  unsigned roles;           /**< facets of these roles count, or-ed vxm_triangle_role */
-  size_t facet_begin, facet_end;
+  unsigned roles;           /**< triangles of these roles count, or-ed vxm_triangle_role */
+  size_t triangle_begin, triangle_end;
 } vxm_columns;
 
-/** The end of the last part's facets that can have one of the roles. */
-static inline size_t vxm_roles_end(const vxm_triangle_set *facets, size_t part, unsigned roles) {
-  const vxm_part *p = &facets->parts[part];
-  return roles & VXM_FACET_CONE ? p->end : roles & VXM_FACET_CAP ? p->cones : p->caps;
+/** The end of the last part's triangles that can have one of the roles. */
+static inline size_t vxm_roles_end(const vxm_triangle_set *triangles, size_t part, unsigned roles) {
+  const vxm_part *p = &triangles->parts[part];
+  return roles & VXM_ROLE_CONE ? p->end : roles & VXM_ROLE_CAP ? p->cones : p->caps;
 }
 
 #endif

@@ -24,8 +24,8 @@ typedef struct vxm_affine {
 /** The triangles that one task rasters. */
 typedef struct vxm_raster_task {
   const vxm_snapped_points *placed;
-  const vxm_triangle_set *facets;
-  size_t begin, end; /**< facets */
+  const vxm_triangle_set *triangles;
+  size_t begin, end; /**< triangles */
   const vxm_columns *columns;
   size_t columns_count;
   vxm_crossing_bins *bins; /**< voters as in `columns` */

@@ -77,13 +77,13 @@ static void put(const vxm_columns *c, uint64_t u, uint64_t v, uint64_t w, vxm_cr
   vxm_crossing_bin_put(bins, worker, bin, u * c->step[c->u] + v * c->step[c->v] + w * c->step[c->w]);
 }
 
-void vxm_parity_difference_put(const vxm_snapped_points *placed, const vxm_triangle_set *facets, size_t begin,
-                               size_t end, const vxm_columns *c, vxm_crossing_bins *bins, size_t worker,
-                               size_t voter) {
+void vxm_parity_difference_put(const vxm_snapped_points *placed, const vxm_triangle_set *triangles,
+                               size_t begin, size_t end, const vxm_columns *c, vxm_crossing_bins *bins,
+                               size_t worker, size_t voter) {
   const vxm_lattice *lattice = &placed->lattice;
   uint64_t cell = vxm_cell_mask(c->w);
   for (size_t f = begin; f < end; f++) {
-    const uint32_t *corner = facets->corners[f];
+    const uint32_t *corner = triangles->corners[f];
     if (!placed->wide && ((placed->cells[corner[0]] ^ placed->cells[corner[1]]) & cell) == 0)
       continue; /* no slice lies between the ends: most edges of a fine mesh */
     edge e = {.from = vxm_snapped_points_at(placed, corner[0])};
@@ -107,7 +107,7 @@ void vxm_parity_difference_put(const vxm_snapped_points *placed, const vxm_trian
         continue;
       put(c, (uint64_t)(vxm_max(u.voxel, c->begin[c->u]) - c->begin[c->u]),
           (uint64_t)(vxm_max(v.voxel, c->begin[c->v]) - c->begin[c->v]), (uint64_t)(slice - c->begin[c->w]),
-          bins, worker, voter, facets->part[f]);
+          bins, worker, voter, triangles->part[f]);
     }
   }
 }

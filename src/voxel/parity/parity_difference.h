@@ -23,12 +23,12 @@
 /**
  * Puts into the bins of a voter what odd edges flip.
  *
- * @param begin,end facets that are cones of one part: the first two corners of each are an odd edge
+ * @param begin,end triangles that are cones of one part: the first two corners of each are an odd edge
  * @param columns   u and v are the axes that are compared, w the one across. A passage before the window
  * counts for its first voxel along u and, if keep_before, along v. The slabs are cut along v or w
  */
-void vxm_parity_difference_put(const vxm_snapped_points *placed, const vxm_triangle_set *facets, size_t begin,
-                               size_t end, const vxm_columns *columns, vxm_crossing_bins *bins, size_t worker,
-                               size_t voter);
+void vxm_parity_difference_put(const vxm_snapped_points *placed, const vxm_triangle_set *triangles,
+                               size_t begin, size_t end, const vxm_columns *columns, vxm_crossing_bins *bins,
+                               size_t worker, size_t voter);
 
 #endif

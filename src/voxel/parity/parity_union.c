@@ -345,10 +345,10 @@ static void shape(unite_state *state) {
   *columns = vxm_columns_of(window, job->axis);
   columns->slab_shift = state->slabs.shift;
   /* Closed parts have neither caps nor cones. */
-  bool closed = job->part_end <= job->facets->split.kind_end[VXM_PART_CLOSED];
-  columns->roles = job->roles | (closed ? VXM_FACETS_ALL : 0);
-  columns->facet_begin = job->facets->parts[job->part_begin].begin;
-  columns->facet_end = vxm_roles_end(job->facets, job->part_end - 1, job->roles);
+  bool closed = job->part_end <= job->triangles->split.kind_end[VXM_PART_CLOSED];
+  columns->roles = job->roles | (closed ? VXM_ROLES_ALL : 0);
+  columns->triangle_begin = job->triangles->parts[job->part_begin].begin;
+  columns->triangle_end = vxm_roles_end(job->triangles, job->part_end - 1, job->roles);
   if (slices)
     columns->step[layout->slow] = state->row_bits << state->slabs.shift;
   state->in_place = !slices && job->fresh && job->part_end - job->part_begin == 1;
@@ -394,7 +394,8 @@ vxm_status vxm_parity_union(vxm_workspace *workspace, const vxm_window *window,
     return VXM_OK;
   size_t workers = (size_t)vxm_context_threads(context);
   vxm_raster_schedule *crossings = &workspace->crossings;
-  vxm_status status = vxm_raster_schedule_plan(crossings, job->facets, job->placed, &state.columns, 1, error);
+  vxm_status status =
+      vxm_raster_schedule_plan(crossings, job->triangles, job->placed, &state.columns, 1, error);
   if (status == VXM_OK && (!state.in_place || state.past))
     status = vxm_workspace_scratch(workspace, workers * state.slabs.words, error);
   vxm_task_progress_start(&state.watch, context, job->phase,

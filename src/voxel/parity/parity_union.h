@@ -11,13 +11,13 @@
 
 #include "voxel/parity/slabs.h"
 
-/** Which facets are united, and along which axis. */
+/** Which triangles are united, and along which axis. */
 typedef struct vxm_parity_union_job {
-  const vxm_triangle_set *facets;
+  const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
   int axis;                    /**< of the columns; 0 = x */
   size_t part_begin, part_end; /**< these parts only */
-  unsigned roles;              /**< facets of these roles count, or-ed vxm_triangle_role */
+  unsigned roles;              /**< triangles of these roles count, or-ed vxm_triangle_role */
   bool fresh;                  /**< the window's words are replaced; else voxels are added to them */
   atomic_uchar *has_voxels;    /**< per part: set to 1 if it sets a voxel; may be NULL */
   const char *phase;           /**< for progress */
@@ -25,7 +25,7 @@ typedef struct vxm_parity_union_job {
 
 /**
  * Sets in the window every voxel inside at least one of the job's parts: those with an odd number of the
- * part's facets before them along the axis. Exact, and the same bits for any number of threads.
+ * part's triangles before them along the axis. Exact, and the same bits for any number of threads.
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */

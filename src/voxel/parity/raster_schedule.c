@@ -6,9 +6,9 @@
 
 enum {
   TASKS_PER_THREAD = 8,
-  FACETS_MIN = 256, /**< of a task */
-  FACETS_MAX = 4096,
-  TASK_CROSSINGS = 1 << 21 /**< of a task, estimated, unless one facet has more */
+  TRIANGLES_MIN = 256, /**< of a task */
+  TRIANGLES_MAX = 4096,
+  TASK_CROSSINGS = 1 << 21 /**< of a task, estimated, unless one triangle has more */
 };
 
 /** Crossings of a round, estimated: 128 MiB where memory is not limited. */
@@ -28,13 +28,13 @@ void vxm_raster_schedule_destroy(vxm_raster_schedule *crossings) {
 
 /* ---- Estimates ---- */
 
-/** At least the number of columns of the window that a facet covers. */
+/** At least the number of columns of the window that a triangle covers. */
 static double estimate(const vxm_raster_schedule *x, const vxm_columns *c, size_t f) {
   vxm_point p[3];
   double size[2];
   const int axes[2] = {c->u, c->v};
   for (int k = 0; k < 3; k++)
-    p[k] = vxm_snapped_points_at(x->placed, x->facets->corners[f][k]);
+    p[k] = vxm_snapped_points_at(x->placed, x->triangles->corners[f][k]);
   for (int i = 0; i < 2; i++) {
     int a = axes[i];
     int64_t low = vxm_min(vxm_min(p[0].at[a], p[1].at[a]), p[2].at[a]);
@@ -71,9 +71,9 @@ double vxm_raster_schedule_bound(vxm_edge_lengths lengths, size_t count, const v
   return lengths.squared * scale * scale + 2 * lengths.sum * scale + (double)count;
 }
 
-double vxm_raster_schedule_placed_bound(const vxm_triangle_set *facets, const vxm_snapped_points *placed,
+double vxm_raster_schedule_placed_bound(const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
                                         const vxm_space *space) {
-  return vxm_raster_schedule_bound(placed->lengths, facets->facet_count, space, placed->transform);
+  return vxm_raster_schedule_bound(placed->lengths, triangles->triangle_count, space, placed->transform);
 }
 
 /* ---- Planning ---- */
@@ -94,11 +94,11 @@ static vxm_status end_round(vxm_raster_schedule *x, vxm_error *error) {
   return status;
 }
 
-/** Equal tasks in one round: enough where no facet can have many crossings. */
+/** Equal tasks in one round: enough where no triangle can have many crossings. */
 static vxm_status plan_evenly(vxm_raster_schedule *x, size_t begin, size_t end, vxm_error *error) {
   size_t shares = (size_t)vxm_context_threads(x->context) * TASKS_PER_THREAD;
   size_t step = (end - begin) / shares + 1;
-  step = step < FACETS_MIN ? FACETS_MIN : step > FACETS_MAX ? FACETS_MAX : step;
+  step = step < TRIANGLES_MIN ? TRIANGLES_MIN : step > TRIANGLES_MAX ? TRIANGLES_MAX : step;
   vxm_status status = VXM_OK;
   for (size_t f = begin; f < end && status == VXM_OK; f += step)
     status = add_range(x, f, end - f < step ? end : f + step, error);
@@ -112,11 +112,11 @@ static vxm_status plan_by_estimate(vxm_raster_schedule *x, size_t begin, size_t 
   vxm_status status = VXM_OK;
   for (size_t f = begin; f < end && status == VXM_OK; f++) {
     double crossings = estimate_all(x, f);
-    bool part_ends = f + 1 == end || x->facets->part[f + 1] != x->facets->part[f];
+    bool part_ends = f + 1 == end || x->triangles->part[f + 1] != x->triangles->part[f];
     task += crossings;
     round += crossings;
     bool round_ends = f + 1 == end || (part_ends && round > round_crossings);
-    if (task <= TASK_CROSSINGS && f + 1 - first < FACETS_MAX && !round_ends)
+    if (task <= TASK_CROSSINGS && f + 1 - first < TRIANGLES_MAX && !round_ends)
       continue;
     status = add_range(x, first, f + 1, error);
     first = f + 1;
@@ -129,27 +129,27 @@ static vxm_status plan_by_estimate(vxm_raster_schedule *x, size_t begin, size_t 
   return status;
 }
 
-vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *x, const vxm_triangle_set *facets,
+vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *x, const vxm_triangle_set *triangles,
                                     const vxm_snapped_points *placed, const vxm_columns *columns,
                                     size_t columns_count, vxm_error *error) {
-  x->facets = facets;
+  x->triangles = triangles;
   x->placed = placed;
   x->columns = columns;
   x->columns_count = columns_count;
   x->range_count = x->round_count = 0;
   size_t begin = SIZE_MAX, end = 0;
   for (size_t c = 0; c < columns_count; c++) {
-    begin = columns[c].facet_begin < begin ? columns[c].facet_begin : begin;
-    end = columns[c].facet_end > end ? columns[c].facet_end : end;
+    begin = columns[c].triangle_begin < begin ? columns[c].triangle_begin : begin;
+    end = columns[c].triangle_end > end ? columns[c].triangle_end : end;
   }
   if (begin >= end)
     return end_round(x, error);
   /* One part is never divided between rounds; estimates would only share out the work better, which pays
      where few triangles have very many crossings. */
-  bool one_part = facets->part[begin] == facets->part[end - 1];
-  bool sharing = vxm_context_threads(x->context) > 1 && end - begin <= FACETS_MAX;
+  bool one_part = triangles->part[begin] == triangles->part[end - 1];
+  bool sharing = vxm_context_threads(x->context) > 1 && end - begin <= TRIANGLES_MAX;
   double most =
-      vxm_raster_schedule_placed_bound(facets, placed, &placed->lattice.space) * (double)columns_count;
+      vxm_raster_schedule_placed_bound(triangles, placed, &placed->lattice.space) * (double)columns_count;
   if (one_part ? !sharing || most <= round_most : most <= vxm_raster_schedule_round(x->context))
     return plan_evenly(x, begin, end, error);
   return plan_by_estimate(x, begin, end, error);
@@ -173,7 +173,7 @@ static void raster_range(size_t task, int worker, void *payload) {
     return;
   const vxm_raster_range *range = &x->ranges[job->first + task];
   vxm_raster_task raster = {.placed = x->placed,
-                            .facets = x->facets,
+                            .triangles = x->triangles,
                             .begin = range->begin,
                             .end = range->end,
                             .columns = x->columns,

@@ -9,16 +9,16 @@
 #include "base/task_progress.h"
 #include "voxel/parity/kernels.h"
 
-/** Facets begin..end-1, for one task. */
+/** Triangles begin..end-1, for one task. */
 typedef struct vxm_raster_range {
   size_t begin, end;
 } vxm_raster_range;
 
 typedef struct vxm_raster_schedule {
   vxm_context *context;
-  const vxm_triangle_set *facets;
+  const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
-  const vxm_columns *columns; /**< of the voters, over the same facets */
+  const vxm_columns *columns; /**< of the voters, over the same triangles */
   size_t columns_count;
   vxm_raster_range *ranges;
   size_t range_count, range_capacity;
@@ -31,19 +31,19 @@ typedef struct vxm_raster_schedule {
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *crossings, const vxm_triangle_set *facets,
+vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *crossings, const vxm_triangle_set *triangles,
                                     const vxm_snapped_points *placed, const vxm_columns *columns,
                                     size_t columns_count, vxm_error *error);
 /** Crossings after which a round ends with the present part: a share of the memory that is left. */
 double vxm_raster_schedule_round(const vxm_context *context);
 /**
- * At least the number of columns along any one axis that `count` facets cover: squares about their longest
+ * At least the number of columns along any one axis that `count` triangles cover: squares about their longest
  * edges, which a transform, or NULL, makes longer.
  */
 double vxm_raster_schedule_bound(vxm_edge_lengths lengths, size_t count, const vxm_space *space,
                                  const double transform[12]);
-/** The same of all facets as they lie in a space. */
-double vxm_raster_schedule_placed_bound(const vxm_triangle_set *facets, const vxm_snapped_points *placed,
+/** The same of all triangles as they lie in a space. */
+double vxm_raster_schedule_placed_bound(const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
                                         const vxm_space *space);
 void vxm_raster_schedule_destroy(vxm_raster_schedule *crossings);
 

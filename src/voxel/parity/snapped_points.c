@@ -98,9 +98,9 @@ static void take_slice(size_t slice, int worker, void *payload) {
     atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
 }
 
-bool vxm_snapped_points_take(vxm_snapped_points *placed, const vxm_triangle_set *facets) {
+bool vxm_snapped_points_take(vxm_snapped_points *placed, const vxm_triangle_set *triangles) {
   take_job job = {
-      .placed = placed, .count = facets->first_apex, .slices = 1 + facets->first_apex / SLICE_POINTS};
+      .placed = placed, .count = triangles->first_apex, .slices = 1 + triangles->first_apex / SLICE_POINTS};
   atomic_init(&job.beyond, false);
   vxm_parallel(placed->context, job.slices, take_slice, &job);
   return !atomic_load(&job.beyond);
@@ -108,25 +108,25 @@ bool vxm_snapped_points_take(vxm_snapped_points *placed, const vxm_triangle_set 
 
 /* ---- Wide points ---- */
 
-static vxm_status refuse(const vxm_triangle_set *facets, size_t point, const double from[3],
+static vxm_status refuse(const vxm_triangle_set *triangles, size_t point, const double from[3],
                          vxm_error *error) {
-  uint32_t vertex = facets->vertex[point];
-  if (vertex < facets->soup->vertex_count)
+  uint32_t vertex = triangles->vertex[point];
+  if (vertex < triangles->soup->vertex_count)
     return vxm_lattice_refuse(vertex, from, error);
   return vxm_fail(error, VXM_ERROR_RANGE, "a hole lies too many voxels outside the grid");
 }
 
 /** Places all points in 64 bits. */
-static vxm_status place_wide(vxm_snapped_points *placed, const vxm_triangle_set *facets,
+static vxm_status place_wide(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                              const vxm_vertex_transform *motion, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  placed->wide = vxm_calloc(placed->context, facets->point_count, sizeof *placed->wide, &local);
+  placed->wide = vxm_calloc(placed->context, triangles->point_count, sizeof *placed->wide, &local);
   vxm_status status = local.code;
-  for (size_t p = 0; status == VXM_OK && p < facets->first_apex; p++) {
+  for (size_t p = 0; status == VXM_OK && p < triangles->first_apex; p++) {
     double at[1][3];
     vxm_vertex_transform_range(at, motion, p, p + 1);
     if (!vxm_lattice_place(&placed->lattice, at[0], &placed->wide[p]))
-      status = refuse(facets, p, motion->from[p], &local);
+      status = refuse(triangles, p, motion->from[p], &local);
   }
   if (status != VXM_OK) {
     vxm_free(placed->context, placed->wide);
@@ -145,17 +145,17 @@ static void set_apex(vxm_snapped_points *placed, uint32_t apex, const int64_t at
   placed->cells[apex] = cell_of(placed, placed->narrow[apex]);
 }
 
-static void place_apex(vxm_snapped_points *placed, const vxm_triangle_set *facets, size_t part) {
-  const vxm_part *p = &facets->parts[part];
+static void place_apex(vxm_snapped_points *placed, const vxm_triangle_set *triangles, size_t part) {
+  const vxm_part *p = &triangles->parts[part];
   vxm_int128 sum[3] = {0, 0, 0};
   vxm_int128 corners = 3 * (vxm_int128)(p->caps - p->begin);
   for (size_t f = p->begin; f < p->caps; f++)
     for (int c = 0; c < 3; c++) {
-      vxm_point q = vxm_snapped_points_at(placed, facets->corners[f][c]);
+      vxm_point q = vxm_snapped_points_at(placed, triangles->corners[f][c]);
       for (int a = 0; a < 3; a++)
         sum[a] += q.at[a];
     }
-  uint32_t apex = vxm_apex_of(facets, part);
+  uint32_t apex = vxm_apex_of(triangles, part);
   vxm_point mean = {{0, 0, 0}};
   for (int a = 0; a < 3 && corners > 0; a++)
     mean.at[a] = (int64_t)(sum[a] / corners);
@@ -182,9 +182,9 @@ static vxm_status reserve(vxm_snapped_points *placed, size_t count, vxm_error *e
 }
 
 /** At most, once the points have moved. */
-static vxm_edge_lengths lengths_of(const vxm_triangle_set *facets, const vxm_vertex_transform *motion) {
-  const vxm_edge_lengths *own = &facets->lengths;
-  double count = (double)facets->facet_count, stretch = motion->stretch, reach = motion->reach;
+static vxm_edge_lengths lengths_of(const vxm_triangle_set *triangles, const vxm_vertex_transform *motion) {
+  const vxm_edge_lengths *own = &triangles->lengths;
+  double count = (double)triangles->triangle_count, stretch = motion->stretch, reach = motion->reach;
   if (stretch == 0)
     return *own;
   /* (a + b)^2 <= 2 a^2 + 2 b^2 */
@@ -192,45 +192,45 @@ static vxm_edge_lengths lengths_of(const vxm_triangle_set *facets, const vxm_ver
                             2 * (own->squared * stretch * stretch + count * reach * reach)};
 }
 
-vxm_status vxm_snapped_points_begin(vxm_snapped_points *placed, const vxm_triangle_set *facets,
+vxm_status vxm_snapped_points_begin(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                                     const vxm_lattice *lattice, const vxm_vertex_transform *motion,
                                     vxm_error *error) {
   static atomic_uint_fast64_t last_serial;
   placed->serial = atomic_fetch_add(&last_serial, 1) + 1;
   placed->lattice = *lattice;
-  placed->lengths = lengths_of(facets, motion);
+  placed->lengths = lengths_of(triangles, motion);
   memcpy(placed->transform, identity, sizeof identity);
   vxm_free(placed->context, placed->wide);
   placed->wide = NULL;
-  return reserve(placed, facets->point_count, error);
+  return reserve(placed, triangles->point_count, error);
 }
 
-void vxm_snapped_points_apexes(vxm_snapped_points *placed, const vxm_triangle_set *facets, bool apexes) {
-  for (size_t p = 0; p < facets->split.part_count; p++)
+void vxm_snapped_points_apexes(vxm_snapped_points *placed, const vxm_triangle_set *triangles, bool apexes) {
+  for (size_t p = 0; p < triangles->split.part_count; p++)
     if (apexes)
-      place_apex(placed, facets, p);
+      place_apex(placed, triangles, p);
     else if (!placed->wide) /* cones are looked at, if only to be left out */
-      set_apex(placed, vxm_apex_of(facets, p), (const int64_t[3]){0, 0, 0});
+      set_apex(placed, vxm_apex_of(triangles, p), (const int64_t[3]){0, 0, 0});
 }
 
-vxm_status vxm_snapped_points_move(vxm_snapped_points *placed, const vxm_triangle_set *facets,
+vxm_status vxm_snapped_points_move(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                                    const vxm_lattice *lattice, const vxm_vertex_transform *motion,
                                    bool apexes, vxm_error *error) {
-  vxm_status status = vxm_snapped_points_begin(placed, facets, lattice, motion, error);
+  vxm_status status = vxm_snapped_points_begin(placed, triangles, lattice, motion, error);
   if (status == VXM_OK && !place_narrow(placed, motion))
-    status = place_wide(placed, facets, motion, error);
+    status = place_wide(placed, triangles, motion, error);
   if (status == VXM_OK)
-    vxm_snapped_points_apexes(placed, facets, apexes);
+    vxm_snapped_points_apexes(placed, triangles, apexes);
   return status;
 }
 
-vxm_status vxm_snapped_points_set(vxm_snapped_points *placed, const vxm_triangle_set *facets,
+vxm_status vxm_snapped_points_set(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                                   const vxm_lattice *lattice, const double transform[12], bool apexes,
                                   vxm_error *error) {
-  vxm_vertex_transform motion = {.from = (const double(*)[3])facets->positions,
-                                 .count = facets->first_apex,
+  vxm_vertex_transform motion = {.from = (const double(*)[3])triangles->positions,
+                                 .count = triangles->first_apex,
                                  .matrix = transform ? transform : identity};
-  vxm_status status = vxm_snapped_points_move(placed, facets, lattice, &motion, apexes, error);
+  vxm_status status = vxm_snapped_points_move(placed, triangles, lattice, &motion, apexes, error);
   memcpy(placed->transform, motion.matrix, sizeof identity);
   return status;
 }

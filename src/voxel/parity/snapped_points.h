@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The points of facets, put on a lattice. */
+/** The points of triangles, put on a lattice. */
 #ifndef VXM_VOXEL_PARITY_SNAPPED_POINTS_H
 #define VXM_VOXEL_PARITY_SNAPPED_POINTS_H
 
@@ -23,7 +23,7 @@ typedef struct vxm_snapped_points {
   vxm_context *context;
   uint64_t serial; /**< no two that hold different points have the same */
   vxm_lattice lattice;
-  vxm_edge_lengths lengths; /**< of the facets as they lie here, or more, before `transform` */
+  vxm_edge_lengths lengths; /**< of the triangles as they lie here, or more, before `transform` */
   double transform[12];     /**< that of vxm_snapped_points_set, else nothing */
   size_t capacity;          /**< of `narrow` and `cells` */
   int32_t (*narrow)[4];     /**< points by number; the fourth number is 0 */
@@ -32,8 +32,8 @@ typedef struct vxm_snapped_points {
 } vxm_snapped_points;
 
 /**
- * Places the points of facets, keeping the memory of the placing before. Start from {.context = ...}; destroy
- * with vxm_snapped_points_destroy.
+ * Places the points of triangles, keeping the memory of the placing before. Start from {.context = ...};
+ * destroy with vxm_snapped_points_destroy.
  *
  * @param transform NULL, or a 3 x 4 matrix applied to positions first
  * @param apexes    whether cones or tetrahedra will be used: the apex of a part is the mean of the corners of
@@ -41,11 +41,11 @@ typedef struct vxm_snapped_points {
  * @return VXM_OK; VXM_ERROR_RANGE if a vertex that a face uses is not finite or lies too far outside the
  * grid; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_snapped_points_set(vxm_snapped_points *placed, const vxm_triangle_set *facets,
+vxm_status vxm_snapped_points_set(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                                   const vxm_lattice *lattice, const double transform[12], bool apexes,
                                   vxm_error *error);
 /** The same for points that move first; `from` has those before first_apex. */
-vxm_status vxm_snapped_points_move(vxm_snapped_points *placed, const vxm_triangle_set *facets,
+vxm_status vxm_snapped_points_move(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                                    const vxm_lattice *lattice, const vxm_vertex_transform *motion,
                                    bool apexes, vxm_error *error);
 
@@ -53,15 +53,15 @@ vxm_status vxm_snapped_points_move(vxm_snapped_points *placed, const vxm_triangl
  * `narrow`, with a fourth number that is not 0 where a point does not fit. */
 
 /** Begins a placing of points that move. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
-vxm_status vxm_snapped_points_begin(vxm_snapped_points *placed, const vxm_triangle_set *facets,
+vxm_status vxm_snapped_points_begin(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
                                     const vxm_lattice *lattice, const vxm_vertex_transform *motion,
                                     vxm_error *error);
 /** What a coordinate is multiplied by, less the origin of the space, to become steps. */
 double vxm_snapped_points_scale(const vxm_snapped_points *placed, int axis);
 /** Finds the cells; false if a point does not fit. */
-bool vxm_snapped_points_take(vxm_snapped_points *placed, const vxm_triangle_set *facets);
+bool vxm_snapped_points_take(vxm_snapped_points *placed, const vxm_triangle_set *triangles);
 /** Places the apexes, behind all other points. */
-void vxm_snapped_points_apexes(vxm_snapped_points *placed, const vxm_triangle_set *facets, bool apexes);
+void vxm_snapped_points_apexes(vxm_snapped_points *placed, const vxm_triangle_set *triangles, bool apexes);
 
 void vxm_snapped_points_destroy(vxm_snapped_points *placed);
 

@@ -106,16 +106,16 @@ static void range_of(const tetra_state *state, const vxm_point corner[4], int ax
 }
 
 /** Flips in slices begin..end-1, whose words start at `words`. Whether the tetrahedron reaches them. */
-static bool draw_tetrahedron(const tetra_state *state, size_t facet, int64_t begin, int64_t end,
+static bool draw_tetrahedron(const tetra_state *state, size_t triangle, int64_t begin, int64_t end,
                              uint64_t *words) {
-  const vxm_triangle_set *facets = state->job->facets;
+  const vxm_triangle_set *triangles = state->job->triangles;
   const vxm_snapped_points *placed = state->job->placed;
   const vxm_window *window = state->window;
   const vxm_layout *axes = &window->layout;
   vxm_point corner[4];
   for (int k = 0; k < 3; k++)
-    corner[k] = vxm_snapped_points_at(placed, facets->corners[facet][k]);
-  corner[3] = vxm_snapped_points_at(placed, vxm_apex_of(facets, facets->part[facet]));
+    corner[k] = vxm_snapped_points_at(placed, triangles->corners[triangle][k]);
+  corner[3] = vxm_snapped_points_at(placed, vxm_apex_of(triangles, triangles->part[triangle]));
   int64_t s_begin = begin, s_end = end, m_begin = 0, m_end = window->middle_dim;
   range_of(state, corner, axes->slow, &s_begin, &s_end);
   range_of(state, corner, axes->middle, &m_begin, &m_end);
@@ -146,12 +146,12 @@ static bool draw_tetrahedron(const tetra_state *state, size_t facet, int64_t beg
   return true;
 }
 
-enum { ASK_FACETS = 1024 /**< between two questions whether to go on, where none reaches the slab */ };
+enum { ASK_TRIANGLES = 1024 /**< between two questions whether to go on, where none reaches the slab */ };
 
 static void do_slab(size_t task, int worker, void *payload) {
   tetra_state *state = payload;
   const vxm_window *window = state->window;
-  const vxm_triangle_set *facets = state->job->facets;
+  const vxm_triangle_set *triangles = state->job->triangles;
   if (vxm_task_progress_stopped(&state->watch, worker))
     return;
   int64_t first = (int64_t)task << state->slabs.shift;
@@ -164,10 +164,10 @@ static void do_slab(size_t task, int worker, void *payload) {
     memset(out, 0, count * sizeof *out);
   for (size_t p = state->job->part_begin; p < state->job->part_end; p++) {
     bool drawn = false;
-    for (size_t f = facets->parts[p].begin; f < facets->parts[p].caps; f++) {
+    for (size_t f = triangles->parts[p].begin; f < triangles->parts[p].caps; f++) {
       bool reaches = draw_tetrahedron(state, f, begin, end, work);
       drawn |= reaches;
-      if ((reaches || f % ASK_FACETS == 0) && vxm_task_progress_stopped(&state->watch, worker)) {
+      if ((reaches || f % ASK_TRIANGLES == 0) && vxm_task_progress_stopped(&state->watch, worker)) {
         memset(work, 0, count * sizeof *work); /* as whoever comes next expects it */
         return;
       }

@@ -12,7 +12,7 @@ typedef struct vxm_vote_tally {
 } vxm_vote_tally;
 
 /**
- * Adds to `out` the voxels that the voters elect. What `out` holds before is not in question.
+ * Adds to `out` the voxels that win the vote. What `out` holds before is not in question.
  *
  * VXM_VOTE_MAJORITY elects what at least two of x, y and z hold (Chen & Tu, section 2.3). The tetrahedral
  * voter cannot change that: with it on the side of the axes' minority the four are at most two against two,

@@ -50,7 +50,7 @@ typedef struct vxm_split {
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, vxm_split_rule rule, vxm_error *error);
-/** Frees what is needed no more once facets are made: all but the counts and the ends of the kinds. */
+/** Frees what is needed no more once triangles are made: all but the counts and the ends of the kinds. */
 void vxm_split_trim(vxm_split *split);
 void vxm_split_destroy(vxm_split *split);
 

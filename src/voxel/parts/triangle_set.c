@@ -5,16 +5,16 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/** What is needed while facets are made. */
+/** What is needed while triangles are made. */
 typedef struct builder {
-  vxm_triangle_set *facets;
+  vxm_triangle_set *triangles;
   const vxm_soup *soup;
-  size_t *next;    /**< per part: where the next facet goes, or how many there are */
+  size_t *next;    /**< per part: where the next triangle goes, or how many there are */
   vxm_error error; /**< of the last allocation that failed */
 } builder;
 
 static void *allocate(builder *b, size_t count, size_t size) {
-  return vxm_calloc(b->facets->context, count, size, &b->error);
+  return vxm_calloc(b->triangles->context, count, size, &b->error);
 }
 
 /* ---- Covering polygons by triangles ---- */
@@ -41,20 +41,20 @@ static bool has_three_corners(uint32_t p, uint32_t q, uint32_t r) {
   return p != q && q != r && r != p;
 }
 
-/** Counts a facet of its part (no facets yet) or puts it in place. */
+/** Counts a triangle of its part (no triangles yet) or puts it in place. */
 static void add(builder *b, uint32_t part, uint32_t p, uint32_t q, uint32_t r) {
   size_t at = b->next[part]++;
-  if (!b->facets->corners)
+  if (!b->triangles->corners)
     return;
-  uint32_t *corner = b->facets->corners[at];
+  uint32_t *corner = b->triangles->corners[at];
   corner[0] = p;
   corner[1] = q;
   corner[2] = r;
-  b->facets->part[at] = part;
+  b->triangles->part[at] = part;
 }
 
 static void cover_face(builder *b, size_t face) {
-  const vxm_split *split = &b->facets->split;
+  const vxm_split *split = &b->triangles->split;
   size_t n;
   const uint32_t *corner = vxm_face(b->soup, face, &n);
   uint32_t part = split->part[split->component[face]];
@@ -68,7 +68,7 @@ static void cover_face(builder *b, size_t face) {
 
 static bool add_triangles(builder *b) {
   for (size_t f = 0; f < b->soup->face_count; f++) {
-    if (vxm_ask_at(f, b->facets->context, &b->error) != VXM_OK)
+    if (vxm_ask_at(f, b->triangles->context, &b->error) != VXM_OK)
       return false;
     cover_face(b, f);
   }
@@ -77,7 +77,7 @@ static bool add_triangles(builder *b) {
 
 /** The caps of all loops; their own points are numbered behind the soup's vertices in both numberings. */
 static bool add_caps(builder *b) {
-  const vxm_split *split = &b->facets->split;
+  const vxm_split *split = &b->triangles->split;
   for (size_t l = 0; split->cap_begin && l < split->loops.count; l++)
     for (size_t t = split->cap_begin[l]; t < split->cap_begin[l + 1]; t++) {
       const uint32_t *v = split->caps.triangles[t];
@@ -88,38 +88,38 @@ static bool add_caps(builder *b) {
 
 /** The triangles from the apex of a part to its odd edges. */
 static bool add_cones(builder *b) {
-  const vxm_split *split = &b->facets->split;
+  const vxm_split *split = &b->triangles->split;
   const vxm_boundary_loops *loops = &split->loops;
   for (size_t l = 0; l < loops->count; l++) {
     uint32_t part = split->loop_part[l];
     for (size_t s = loops->begin[l]; s < loops->begin[l + 1]; s++) {
       const vxm_edge *edge = &split->edges.edges[loops->edge[s]];
-      add(b, part, edge->a, edge->b, vxm_apex_of(b->facets, part));
+      add(b, part, edge->a, edge->b, vxm_apex_of(b->triangles, part));
     }
   }
   return true;
 }
 
-/** The same three walks twice: the first time they count, the second time they put facets in place. */
-static vxm_status make_facets(builder *b) {
+/** The same three walks twice: the first time they count, the second time they put triangles in place. */
+static vxm_status make_triangles(builder *b) {
   static bool (*const walk[3])(builder *) = {add_triangles, add_caps, add_cones};
-  vxm_triangle_set *facets = b->facets;
-  size_t part_count = facets->split.part_count;
+  vxm_triangle_set *triangles = b->triangles;
+  size_t part_count = triangles->split.part_count;
   b->next = allocate(b, part_count, sizeof *b->next);
-  facets->parts = allocate(b, part_count, sizeof *facets->parts);
-  if (!facets->parts || !b->next)
+  triangles->parts = allocate(b, part_count, sizeof *triangles->parts);
+  if (!triangles->parts || !b->next)
     return b->error.code;
   for (int w = 0; w < 3; w++) {
     if (!walk[w](b))
       return b->error.code;
     for (size_t p = 0; p < part_count; p++)
-      *(w == 0   ? &facets->parts[p].caps
-        : w == 1 ? &facets->parts[p].cones
-                 : &facets->parts[p].end) = b->next[p];
+      *(w == 0   ? &triangles->parts[p].caps
+        : w == 1 ? &triangles->parts[p].cones
+                 : &triangles->parts[p].end) = b->next[p];
   }
   size_t total = 0;
   for (size_t p = 0; p < part_count; p++) {
-    vxm_part *part = &facets->parts[p];
+    vxm_part *part = &triangles->parts[p];
     part->begin = total;
     part->caps += total;
     part->cones += total;
@@ -130,10 +130,10 @@ static vxm_status make_facets(builder *b) {
   if (total > UINT32_MAX)
     return vxm_fail(&b->error, VXM_ERROR_RANGE, "%zu triangles are too many to number; split the mesh",
                     total);
-  facets->facet_count = total;
-  facets->part = allocate(b, total, sizeof *facets->part);
-  facets->corners = allocate(b, total, sizeof *facets->corners);
-  if (!facets->corners || !facets->part)
+  triangles->triangle_count = total;
+  triangles->part = allocate(b, total, sizeof *triangles->part);
+  triangles->corners = allocate(b, total, sizeof *triangles->corners);
+  if (!triangles->corners || !triangles->part)
     return b->error.code;
   for (int w = 0; w < 3; w++)
     if (!walk[w](b))
@@ -146,31 +146,31 @@ static vxm_status make_facets(builder *b) {
 /** The numbers before points are counted: the soup's vertices, the caps' own points, an apex for each part.
  */
 static vxm_status number_points(builder *b, vxm_error *error) {
-  vxm_triangle_set *facets = b->facets;
-  facets->first_apex = b->soup->vertex_count + facets->split.caps.point_count;
-  facets->point_count = facets->first_apex + facets->split.part_count;
-  if (facets->point_count > VXM_VERTICES_MAX)
+  vxm_triangle_set *triangles = b->triangles;
+  triangles->first_apex = b->soup->vertex_count + triangles->split.caps.point_count;
+  triangles->point_count = triangles->first_apex + triangles->split.part_count;
+  if (triangles->point_count > VXM_VERTICES_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "too many vertices, parts and holes to number; split the mesh");
   return VXM_OK;
 }
 
 static const double *position_of(const builder *b, uint32_t vertex) {
   size_t count = b->soup->vertex_count;
-  return vertex < count ? vxm_position(b->soup, vertex) : b->facets->split.caps.points[vertex - count];
+  return vertex < count ? vxm_position(b->soup, vertex) : b->triangles->split.caps.points[vertex - count];
 }
 
-/** Numbers points anew, as facets have them one after another; false if it was cancelled. */
+/** Numbers points anew, as triangles have them one after another; false if it was cancelled. */
 static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *points) {
-  vxm_triangle_set *facets = b->facets;
+  vxm_triangle_set *triangles = b->triangles;
   const uint32_t none = UINT32_MAX;
-  size_t count = 0, first_apex = facets->first_apex;
+  size_t count = 0, first_apex = triangles->first_apex;
   for (size_t v = 0; v < first_apex; v++)
     number[v] = none;
-  for (size_t f = 0; f < facets->facet_count; f++) {
-    if (vxm_ask_at(f, facets->context, &b->error) != VXM_OK)
+  for (size_t f = 0; f < triangles->triangle_count; f++) {
+    if (vxm_ask_at(f, triangles->context, &b->error) != VXM_OK)
       return false;
     for (int k = 0; k < 3; k++) {
-      uint32_t *corner = &facets->corners[f][k];
+      uint32_t *corner = &triangles->corners[f][k];
       if (*corner >= first_apex)
         continue;
       if (number[*corner] == none) {
@@ -185,31 +185,31 @@ static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *poi
 }
 
 /** The apexes, once it is known how many points lie before them. */
-static void renumber_apexes(vxm_triangle_set *facets, size_t count) {
-  for (size_t p = 0; p < facets->split.part_count; p++)
-    for (size_t f = facets->parts[p].cones; f < facets->parts[p].end; f++)
-      facets->corners[f][2] = (uint32_t)(count + p);
-  facets->first_apex = count;
-  facets->point_count = count + facets->split.part_count;
+static void renumber_apexes(vxm_triangle_set *triangles, size_t count) {
+  for (size_t p = 0; p < triangles->split.part_count; p++)
+    for (size_t f = triangles->parts[p].cones; f < triangles->parts[p].end; f++)
+      triangles->corners[f][2] = (uint32_t)(count + p);
+  triangles->first_apex = count;
+  triangles->point_count = count + triangles->split.part_count;
 }
 
 static vxm_status gather_points(builder *b) {
-  vxm_triangle_set *facets = b->facets;
+  vxm_triangle_set *triangles = b->triangles;
   size_t count = 0;
-  uint32_t *number = allocate(b, facets->first_apex, sizeof *number);
-  facets->vertex = allocate(b, facets->first_apex, sizeof *facets->vertex);
-  bool done = number && facets->vertex && renumber(b, number, facets->vertex, &count);
-  vxm_free(facets->context, number);
+  uint32_t *number = allocate(b, triangles->first_apex, sizeof *number);
+  triangles->vertex = allocate(b, triangles->first_apex, sizeof *triangles->vertex);
+  bool done = number && triangles->vertex && renumber(b, number, triangles->vertex, &count);
+  vxm_free(triangles->context, number);
   if (!done)
     return b->error.code;
-  renumber_apexes(facets, count);
-  facets->positions = allocate(b, facets->first_apex, sizeof *facets->positions);
-  if (!facets->positions)
+  renumber_apexes(triangles, count);
+  triangles->positions = allocate(b, triangles->first_apex, sizeof *triangles->positions);
+  if (!triangles->positions)
     return b->error.code;
-  for (size_t p = 0; p < facets->first_apex; p++) {
-    if (vxm_ask_at(p, facets->context, &b->error) != VXM_OK)
+  for (size_t p = 0; p < triangles->first_apex; p++) {
+    if (vxm_ask_at(p, triangles->context, &b->error) != VXM_OK)
       return b->error.code;
-    memcpy(facets->positions[p], position_of(b, facets->vertex[p]), sizeof facets->positions[p]);
+    memcpy(triangles->positions[p], position_of(b, triangles->vertex[p]), sizeof triangles->positions[p]);
   }
   return VXM_OK;
 }
@@ -223,34 +223,34 @@ static double squared_distance(const double *p, const double *q) {
   return sum;
 }
 
-/** Sums up how long facets are. A cone reaches from its edge to somewhere among the triangles. */
-static vxm_status measure(vxm_triangle_set *facets, vxm_error *error) {
+/** Sums up how long triangles are. A cone reaches from its edge to somewhere among the triangles. */
+static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   size_t cones = 0;
-  for (size_t f = 0; f < facets->facet_count; f++) {
-    const uint32_t *corner = facets->corners[f];
-    vxm_status status = vxm_ask_at(f, facets->context, error);
+  for (size_t f = 0; f < triangles->triangle_count; f++) {
+    const uint32_t *corner = triangles->corners[f];
+    vxm_status status = vxm_ask_at(f, triangles->context, error);
     if (status != VXM_OK)
       return status;
-    if (corner[2] >= facets->first_apex) {
+    if (corner[2] >= triangles->first_apex) {
       cones++;
       continue;
     }
     double squared = 0;
     for (int k = 0; k < 3; k++) {
-      const double *p = facets->positions[corner[k]];
-      squared = fmax(squared, squared_distance(p, facets->positions[corner[(k + 1) % 3]]));
+      const double *p = triangles->positions[corner[k]];
+      squared = fmax(squared, squared_distance(p, triangles->positions[corner[(k + 1) % 3]]));
       for (int a = 0; a < 3; a++) {
         low[a] = fmin(low[a], p[a]);
         high[a] = fmax(high[a], p[a]);
       }
     }
-    facets->lengths.sum += sqrt(squared);
-    facets->lengths.squared += squared;
+    triangles->lengths.sum += sqrt(squared);
+    triangles->lengths.squared += squared;
   }
   if (cones > 0) {
-    facets->lengths.sum += (double)cones * sqrt(squared_distance(low, high));
-    facets->lengths.squared += (double)cones * squared_distance(low, high);
+    triangles->lengths.sum += (double)cones * sqrt(squared_distance(low, high));
+    triangles->lengths.squared += (double)cones * squared_distance(low, high);
   }
   return VXM_OK;
 }
@@ -260,13 +260,13 @@ vxm_status vxm_triangle_set_create(vxm_triangle_set *out, const vxm_soup *soup, 
   static atomic_uint_fast64_t last_serial;
   *out = (vxm_triangle_set){.context = soup->context, .soup = soup, .split = {.context = soup->context}};
   out->serial = atomic_fetch_add(&last_serial, 1) + 1;
-  builder b = {.facets = out, .soup = soup, .error = VXM_ERROR_INIT};
+  builder b = {.triangles = out, .soup = soup, .error = VXM_ERROR_INIT};
   vxm_error local = VXM_ERROR_INIT;
   vxm_status status = vxm_split_create(&out->split, soup, rule, &local);
   if (status == VXM_OK)
     status = number_points(&b, &local);
   if (status == VXM_OK)
-    status = make_facets(&b);
+    status = make_triangles(&b);
   if (status == VXM_OK)
     status = gather_points(&b);
   vxm_free(out->context, b.next);
@@ -279,12 +279,12 @@ vxm_status vxm_triangle_set_create(vxm_triangle_set *out, const vxm_soup *soup, 
   return status;
 }
 
-void vxm_triangle_set_destroy(vxm_triangle_set *facets) {
-  vxm_split_destroy(&facets->split);
-  vxm_free(facets->context, facets->positions);
-  vxm_free(facets->context, facets->vertex);
-  vxm_free(facets->context, facets->parts);
-  vxm_free(facets->context, facets->part);
-  vxm_free(facets->context, facets->corners);
-  *facets = (vxm_triangle_set){.context = facets->context, .split = {.context = facets->context}};
+void vxm_triangle_set_destroy(vxm_triangle_set *triangles) {
+  vxm_split_destroy(&triangles->split);
+  vxm_free(triangles->context, triangles->positions);
+  vxm_free(triangles->context, triangles->vertex);
+  vxm_free(triangles->context, triangles->parts);
+  vxm_free(triangles->context, triangles->part);
+  vxm_free(triangles->context, triangles->corners);
+  *triangles = (vxm_triangle_set){.context = triangles->context, .split = {.context = triangles->context}};
 }

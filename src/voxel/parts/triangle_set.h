@@ -22,36 +22,32 @@
 
 #include "voxel/parts/parts.h"
 
-typedef enum vxm_triangle_role {
-  VXM_FACET_TRIANGLE = 1,
-  VXM_FACET_CAP = 2,
-  VXM_FACET_CONE = 4
-} vxm_triangle_role;
+typedef enum vxm_triangle_role { VXM_ROLE_FACE = 1, VXM_ROLE_CAP = 2, VXM_ROLE_CONE = 4 } vxm_triangle_role;
 
 /** With this a set of roles holds all of them, and roles need not be looked up. */
-#define VXM_FACETS_ALL 8U
+#define VXM_ROLES_ALL 8U
 
-/** Facets begin..end-1 belong to a part: first triangles, then from `caps` on its caps, from `cones` on its
- * cones. */
+/** Triangles begin..end-1 belong to a part: first those of its faces, then from `caps` on its caps, from
+ * `cones` on its cones. */
 typedef struct vxm_part {
   size_t begin, caps, cones, end;
 } vxm_part;
 
-/** Sums over all facets of the longest edge and of its square. */
+/** Sums over all triangles of the longest edge and of its square. */
 typedef struct vxm_edge_lengths {
   double sum, squared;
 } vxm_edge_lengths;
 
 typedef struct vxm_triangle_set {
   vxm_context *context;
-  uint64_t serial; /**< no two that hold different facets have the same */
+  uint64_t serial; /**< no two that hold different triangles have the same */
   const vxm_soup *soup;
-  uint32_t (*corners)[3]; /**< points of each facet */
-  uint32_t *part;         /**< of each facet */
-  size_t facet_count;
+  uint32_t (*corners)[3]; /**< points of each triangle */
+  uint32_t *part;         /**< of each triangle */
+  size_t triangle_count;
   vxm_part *parts;
-  /* Points: the vertices that facets have, and the caps' own, in the order in which facets first have them,
-     so that neighbours lie close together in memory; then an apex for each part. */
+  /* Points: the vertices that triangles have, and the caps' own, in the order in which triangles first have
+     them, so that neighbours lie close together in memory; then an apex for each part. */
   size_t first_apex, point_count;
   double (*positions)[3];   /**< of the points before first_apex, model units */
   uint32_t *vertex;         /**< of the same: the soup's vertex; a greater number is a cap's own point */
@@ -64,16 +60,16 @@ typedef struct vxm_triangle_set {
  */
 vxm_status vxm_triangle_set_create(vxm_triangle_set *out, const vxm_soup *soup, vxm_split_rule rule,
                                    vxm_error *error);
-void vxm_triangle_set_destroy(vxm_triangle_set *facets);
+void vxm_triangle_set_destroy(vxm_triangle_set *triangles);
 
 /** The point that is the apex of a part. */
-static inline uint32_t vxm_apex_of(const vxm_triangle_set *facets, size_t part) {
-  return (uint32_t)(facets->first_apex + part);
+static inline uint32_t vxm_apex_of(const vxm_triangle_set *triangles, size_t part) {
+  return (uint32_t)(triangles->first_apex + part);
 }
 
-static inline vxm_triangle_role vxm_role_of(const vxm_triangle_set *facets, size_t facet) {
-  const vxm_part *part = &facets->parts[facets->part[facet]];
-  return facet < part->caps ? VXM_FACET_TRIANGLE : facet < part->cones ? VXM_FACET_CAP : VXM_FACET_CONE;
+static inline vxm_triangle_role vxm_role_of(const vxm_triangle_set *triangles, size_t triangle) {
+  const vxm_part *part = &triangles->parts[triangles->part[triangle]];
+  return triangle < part->caps ? VXM_ROLE_FACE : triangle < part->cones ? VXM_ROLE_CAP : VXM_ROLE_CONE;
 }
 
 #endif

@@ -36,8 +36,8 @@ static void fill_slice(size_t slice, int worker, void *payload) {
 vxm_status vxm_confidence_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
   vxm_method method = pass->options.method;
-  size_t end = analysis->facets.split.part_count;
-  size_t begin = method == VXM_METHOD_VOTE ? analysis->facets.split.kind_end[VXM_PART_CLOSED] : 0;
+  size_t end = analysis->triangles.split.part_count;
+  size_t begin = method == VXM_METHOD_VOTE ? analysis->triangles.split.kind_end[VXM_PART_CLOSED] : 0;
   if (method == VXM_METHOD_WINDING)
     return VXM_OK; /* which decided every voxel */
   if (begin == end) {
@@ -52,11 +52,11 @@ vxm_status vxm_confidence_fill(vxm_voxel_pass *pass, const vxm_window *window, v
   vxm_window made;
   vxm_status status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_CLOSED, window, &made, error);
   if (status == VXM_OK)
-    status = vxm_voxel_pass_unite(pass, &made, 0, 0, begin, VXM_FACET_TRIANGLE, error);
+    status = vxm_voxel_pass_unite(pass, &made, 0, 0, begin, VXM_ROLE_FACE, error);
   job.closed = made.words;
   for (int v = 0; v < VOTERS && status == VXM_OK; v++) {
     status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_VOTERS + v, window, &made, error);
-    unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
+    unsigned roles = v == 3 ? VXM_ROLE_FACE | VXM_ROLE_CONE : VXM_ROLE_FACE;
     if (status == VXM_OK)
       status = vxm_voxel_pass_unite(pass, &made, v == 3 ? 0 : v, begin, end, roles, error);
     job.voters[v] = made.words;

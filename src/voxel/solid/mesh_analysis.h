@@ -25,7 +25,7 @@ typedef struct vxm_orientation {
 struct vxm_mesh_analysis {
   vxm_context *context;
   const vxm_soup *soup;
-  vxm_triangle_set facets;
+  vxm_triangle_set triangles;
   vxm_orientation *orientation; /**< see solid/orient_open.h and solid/orient_all.h */
 };
 

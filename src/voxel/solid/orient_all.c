@@ -21,8 +21,8 @@ static vxm_status find(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, vo
     status = vxm_solid_vote(&look.pass, &look.window, error);
   const uint64_t *const voters[3] = {solid, solid, solid};
   if (status == VXM_OK)
-    status = vxm_orient_patches_find(out, &analysis->facets, &look.pass.placed, 0,
-                                     analysis->facets.split.part_count, voters, error);
+    status = vxm_orient_patches_find(out, &analysis->triangles, &look.pass.placed, 0,
+                                     analysis->triangles.split.part_count, voters, error);
   vxm_free(workspace->context, solid);
   vxm_voxel_pass_destroy(&look.pass);
   return status;

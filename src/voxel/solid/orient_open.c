@@ -26,17 +26,17 @@ static vxm_status find(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, vo
                        vxm_error *error) {
   vxm_orient_pass look = {.window = {.words = NULL}};
   vxm_status status = vxm_orient_pass_begin(&look, analysis, payload, error);
-  size_t begin = vxm_voted_begin(analysis, &look.pass.options), end = analysis->facets.split.part_count;
+  size_t begin = vxm_voted_begin(analysis, &look.pass.options), end = analysis->triangles.split.part_count;
   const uint64_t *voters[3] = {NULL};
   for (int axis = 0; axis < 3 && status == VXM_OK; axis++) {
     vxm_window voter;
     status = vxm_voxel_pass_buffer(&look.pass, axis, &look.window, &voter, error);
     if (status == VXM_OK)
-      status = vxm_voxel_pass_unite(&look.pass, &voter, axis, begin, end, VXM_FACET_TRIANGLE, error);
+      status = vxm_voxel_pass_unite(&look.pass, &voter, axis, begin, end, VXM_ROLE_FACE, error);
     voters[axis] = voter.words;
   }
   if (status == VXM_OK)
-    status = vxm_orient_patches_find(out, &analysis->facets, &look.pass.placed, begin, end, voters, error);
+    status = vxm_orient_patches_find(out, &analysis->triangles, &look.pass.placed, begin, end, voters, error);
   vxm_voxel_pass_destroy(&look.pass);
   return status;
 }

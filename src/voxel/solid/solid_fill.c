@@ -16,7 +16,7 @@ static vxm_status fill_by_winding(vxm_voxel_pass *pass, const vxm_window *window
     const vxm_flip_mask *flips;
     status = vxm_orient_all(&flips, analysis, pass->workspace, error);
     if (status == VXM_OK)
-      status = vxm_winding_mesh_create(&pass->all_winding, &analysis->facets, &pass->placed, flips,
+      status = vxm_winding_mesh_create(&pass->all_winding, &analysis->triangles, &pass->placed, flips,
                                        pass->mirrored, error);
   }
   if (status != VXM_OK)
@@ -33,11 +33,11 @@ static vxm_status fill_by_winding(vxm_voxel_pass *pass, const vxm_window *window
 
 static vxm_status fill_by_one(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
-  size_t end = analysis->facets.split.part_count;
+  size_t end = analysis->triangles.split.part_count;
   vxm_method method = pass->options.method;
   if (method != VXM_METHOD_TETRA)
-    return vxm_voxel_pass_unite(pass, window, (int)method - VXM_METHOD_X, 0, end, VXM_FACET_TRIANGLE, error);
-  vxm_parity_union_job job = {.facets = &analysis->facets,
+    return vxm_voxel_pass_unite(pass, window, (int)method - VXM_METHOD_X, 0, end, VXM_ROLE_FACE, error);
+  vxm_parity_union_job job = {.triangles = &analysis->triangles,
                               .placed = &pass->placed,
                               .part_end = end,
                               .fresh = true,
@@ -45,7 +45,7 @@ static vxm_status fill_by_one(vxm_voxel_pass *pass, const vxm_window *window, vx
                               .phase = "voxelizing tetrahedra"};
   if (vxm_voxel_pass_ops(pass) && vxm_voxel_pass_ops(pass)->unite) { /* parity with cones has the same bits */
     job.axis = window->layout.fast;
-    job.roles = VXM_FACET_TRIANGLE | VXM_FACET_CONE;
+    job.roles = VXM_ROLE_FACE | VXM_ROLE_CONE;
     return vxm_voxel_pass_unite_job(pass, window, &job, error);
   }
   return vxm_tetra_unite(pass->workspace, window, &job, error);
@@ -64,13 +64,13 @@ vxm_status vxm_solid_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_er
   bool added = pass->added;
   vxm_error local = VXM_ERROR_INIT;
   bool elsewhere = vxm_voxel_pass_ops(pass) != NULL;
-  pass->no_poll &= window->begin > 0;
+  pass->no_vote_resume &= window->begin > 0;
   vxm_status status = fill(pass, window, &local);
   if (status != VXM_OK && elsewhere && vxm_engine_falls_back(pass->engine, &local)) {
     pass->contested = contested;
     pass->winding_decided = winding_decided;
     pass->added = added;
-    pass->no_poll = window->begin > 0;
+    pass->no_vote_resume = window->begin > 0;
     status = fill(pass, window, &local);
   }
   if (status != VXM_OK)

@@ -27,7 +27,7 @@ bool vxm_one_voter(const vxm_voxelize_options *options) {
 }
 
 size_t vxm_voted_begin(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
-  const vxm_split *split = &analysis->facets.split;
+  const vxm_split *split = &analysis->triangles.split;
   /* Where no edge is odd the axes agree (voxel/parity/parity_difference.h), and there is nothing to vote on.
    */
   bool differ = split->odd_edge_count > 0;
@@ -36,13 +36,13 @@ size_t vxm_voted_begin(const vxm_mesh_analysis *analysis, const vxm_voxelize_opt
 }
 
 bool vxm_votes_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
-  return !vxm_one_voter(options) && vxm_voted_begin(analysis, options) < analysis->facets.split.part_count;
+  return !vxm_one_voter(options) && vxm_voted_begin(analysis, options) < analysis->triangles.split.part_count;
 }
 
 int vxm_buffers_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
   if (!vxm_votes_wanted(analysis, options))
     return 0;
-  if (vxm_voted_begin(analysis, options) + 1 == analysis->facets.split.part_count)
+  if (vxm_voted_begin(analysis, options) + 1 == analysis->triangles.split.part_count)
     return vxm_caps_wanted(options) ? 1 : 0; /* one part: only what is contested */
   return 4;                                  /* three axes, and what is contested or the tetrahedra */
 }

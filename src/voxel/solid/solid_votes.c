@@ -12,12 +12,12 @@ enum { VOTERS = 4 };
 static vxm_status fill_voters(vxm_voxel_pass *pass, const vxm_window *window, size_t begin, bool tetra,
                               const uint64_t *voters[VOTERS], vxm_error *error) {
   vxm_status status = VXM_OK;
-  size_t end = pass->analysis->facets.split.part_count;
+  size_t end = pass->analysis->triangles.split.part_count;
   for (int v = 0; v < (tetra ? VOTERS : 3) && status == VXM_OK; v++) {
     vxm_window voter;
     status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_VOTERS + v, window, &voter, error);
     /* Triangles and cones together are closed: any axis tells their parity. */
-    unsigned roles = v == 3 ? VXM_FACET_TRIANGLE | VXM_FACET_CONE : VXM_FACET_TRIANGLE;
+    unsigned roles = v == 3 ? VXM_ROLE_FACE | VXM_ROLE_CONE : VXM_ROLE_FACE;
     if (status == VXM_OK)
       status = vxm_voxel_pass_unite(pass, &voter, v == 3 ? window->layout.fast : v, begin, end, roles, error);
     voters[v] = voter.words;
@@ -34,7 +34,7 @@ static vxm_status settle_contested(vxm_voxel_pass *pass, const vxm_window *windo
     const vxm_flip_mask *flips;
     status = vxm_orient_open(&flips, analysis, pass->workspace, error);
     if (status == VXM_OK)
-      status = vxm_winding_mesh_create(&pass->open_winding, &analysis->facets, &pass->placed, flips,
+      status = vxm_winding_mesh_create(&pass->open_winding, &analysis->triangles, &pass->placed, flips,
                                        pass->mirrored, error);
   }
   if (status == VXM_OK)
@@ -42,7 +42,7 @@ static vxm_status settle_contested(vxm_voxel_pass *pass, const vxm_window *windo
                               error);
   pass->added |= added > 0;
   if (added > 0 && pass->has_voxels)
-    for (size_t p = vxm_voted_begin(analysis, &pass->options); p < analysis->facets.split.part_count; p++)
+    for (size_t p = vxm_voted_begin(analysis, &pass->options); p < analysis->triangles.split.part_count; p++)
       atomic_store_explicit(&pass->has_voxels[p], 1, memory_order_relaxed);
   return status;
 }
@@ -59,7 +59,7 @@ static vxm_status poll_part(vxm_voxel_pass *pass, const vxm_window *window, size
     return status;
   if (window->begin == 0)
     memset(carry.words, 0, carry.slice_words * sizeof *carry.words);
-  vxm_axis_vote_job job = {.facets = &analysis->facets,
+  vxm_axis_vote_job job = {.triangles = &analysis->triangles,
                            .placed = &pass->placed,
                            .part = part,
                            .tetra = tetra,
@@ -74,20 +74,20 @@ static vxm_status poll_part(vxm_voxel_pass *pass, const vxm_window *window, size
 static vxm_status elect_elsewhere(vxm_voxel_pass *pass, const vxm_window *window, bool tetra, vxm_vote rule,
                                   uint64_t *mask, vxm_vote_tally *tally, vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
-  vxm_vote_job job = {.facets = &analysis->facets,
+  vxm_vote_job job = {.triangles = &analysis->triangles,
                       .placed = &pass->placed,
                       .part_begin = vxm_voted_begin(analysis, &pass->options),
-                      .part_end = analysis->facets.split.part_count,
+                      .part_end = analysis->triangles.split.part_count,
                       .tetra = tetra,
                       .rule = rule,
                       .mask = mask,
                       .has_voxels = pass->has_voxels};
-  return vxm_voxel_pass_ops(pass)->elect(pass->engine, window, &job, tally, error);
+  return vxm_voxel_pass_ops(pass)->vote(pass->engine, window, &job, tally, error);
 }
 
 static vxm_status decide_open_parts(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
-  size_t begin = vxm_voted_begin(analysis, &pass->options), end = analysis->facets.split.part_count;
+  size_t begin = vxm_voted_begin(analysis, &pass->options), end = analysis->triangles.split.part_count;
   if (begin == end)
     return VXM_OK;
   bool decide = vxm_caps_wanted(&pass->options), tetra = !decide;
@@ -95,9 +95,9 @@ static vxm_status decide_open_parts(vxm_voxel_pass *pass, const vxm_window *wind
   vxm_window mask = {.words = NULL};
   vxm_vote_tally tally = {0, false};
   vxm_status status = decide ? vxm_voxel_pass_buffer(pass, VXM_BUFFER_MASK, window, &mask, error) : VXM_OK;
-  if (status == VXM_OK && vxm_voxel_pass_ops(pass) && vxm_voxel_pass_ops(pass)->elect)
+  if (status == VXM_OK && vxm_voxel_pass_ops(pass) && vxm_voxel_pass_ops(pass)->vote)
     status = elect_elsewhere(pass, window, tetra, rule, mask.words, &tally, error);
-  else if (status == VXM_OK && end - begin == 1 && !pass->no_poll) {
+  else if (status == VXM_OK && end - begin == 1 && !pass->no_vote_resume) {
     status = poll_part(pass, window, begin, tetra, rule, mask.words, &tally, error);
     if (tally.added && pass->has_voxels)
       atomic_store_explicit(&pass->has_voxels[begin], 1, memory_order_relaxed);
@@ -124,8 +124,9 @@ vxm_status vxm_solid_vote(vxm_voxel_pass *pass, const vxm_window *window, vxm_er
   size_t begin = vxm_voted_begin(analysis, &pass->options);
   /* Parts that are closed, or closed by caps: one axis settles them. Without any, a poll starts afresh. */
   vxm_status status = VXM_OK;
-  if (begin > 0 || analysis->facets.split.part_count != 1 || vxm_voxel_pass_ops(pass) || pass->no_poll)
-    status = vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, begin,
-                                  VXM_FACET_TRIANGLE | VXM_FACET_CAP, error);
+  if (begin > 0 || analysis->triangles.split.part_count != 1 || vxm_voxel_pass_ops(pass) ||
+      pass->no_vote_resume)
+    status = vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, begin, VXM_ROLE_FACE | VXM_ROLE_CAP,
+                                  error);
   return status == VXM_OK ? decide_open_parts(pass, window, error) : status;
 }

@@ -23,7 +23,7 @@ void vxm_voxel_pass_destroy(vxm_voxel_pass *pass) {
 }
 
 void vxm_voxel_pass_begin(vxm_voxel_pass *pass) {
-  size_t parts = pass->has_voxels ? pass->analysis->facets.split.part_count : 0;
+  size_t parts = pass->has_voxels ? pass->analysis->triangles.split.part_count : 0;
   for (size_t p = 0; p < parts; p++)
     atomic_store_explicit(&pass->has_voxels[p], 0, memory_order_relaxed);
   pass->contested = pass->winding_decided = 0;
@@ -56,8 +56,8 @@ vxm_status vxm_voxel_pass_buffer(vxm_voxel_pass *pass, int buffer, const vxm_win
 static vxm_status move_elsewhere(vxm_voxel_pass *pass, const vxm_lattice *lattice, bool apexes, bool *done,
                                  vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  vxm_move_job job = {&pass->analysis->facets, pass->motion, apexes};
-  vxm_status status = vxm_snapped_points_begin(&pass->placed, job.facets, lattice, pass->motion, error);
+  vxm_move_job job = {&pass->analysis->triangles, pass->motion, apexes};
+  vxm_status status = vxm_snapped_points_begin(&pass->placed, job.triangles, lattice, pass->motion, error);
   if (status != VXM_OK)
     return status;
   status = vxm_voxel_pass_ops(pass)->move(pass->engine, &pass->placed, &job, done, &local);
@@ -70,16 +70,16 @@ static vxm_status move_elsewhere(vxm_voxel_pass *pass, const vxm_lattice *lattic
 
 vxm_status vxm_voxel_pass_place(vxm_voxel_pass *pass, const vxm_lattice *lattice, const double transform[12],
                                 vxm_error *error) {
-  const vxm_triangle_set *facets = &pass->analysis->facets;
+  const vxm_triangle_set *triangles = &pass->analysis->triangles;
   const vxm_engine_ops *ops = vxm_voxel_pass_ops(pass);
   bool apexes = pass->confidence || vxm_apexes_wanted(pass->analysis, &pass->options) ||
                 (pass->engine && pass->engine->wants_apexes);
   bool done = false;
   if (!pass->motion)
-    return vxm_snapped_points_set(&pass->placed, facets, lattice, transform, apexes, error);
+    return vxm_snapped_points_set(&pass->placed, triangles, lattice, transform, apexes, error);
   vxm_status status = ops && ops->move ? move_elsewhere(pass, lattice, apexes, &done, error) : VXM_OK;
   return status == VXM_OK && !done
-             ? vxm_snapped_points_move(&pass->placed, facets, lattice, pass->motion, apexes, error)
+             ? vxm_snapped_points_move(&pass->placed, triangles, lattice, pass->motion, apexes, error)
              : status;
 }
 
@@ -94,7 +94,7 @@ vxm_status vxm_voxel_pass_unite_job(vxm_voxel_pass *pass, const vxm_window *wind
 vxm_status vxm_voxel_pass_unite(vxm_voxel_pass *pass, const vxm_window *window, int axis, size_t part_begin,
                                 size_t part_end, unsigned roles, vxm_error *error) {
   static const char *const phase[3] = {"voxelizing along x", "voxelizing along y", "voxelizing along z"};
-  vxm_parity_union_job job = {.facets = &pass->analysis->facets,
+  vxm_parity_union_job job = {.triangles = &pass->analysis->triangles,
                               .placed = &pass->placed,
                               .axis = axis,
                               .part_begin = part_begin,

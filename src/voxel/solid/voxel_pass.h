@@ -40,8 +40,9 @@ typedef struct vxm_voxel_pass {
   atomic_uchar *has_voxels;                   /**< per part: whether it sets a voxel; NULL = not asked */
   uint8_t *confidence;                        /**< of the whole grid, x fastest; NULL = not asked */
   int64_t contested, winding_decided;
-  bool added;   /**< whether the open parts set a voxel */
-  bool no_poll; /**< an engine gave way behind the first window, so that a poll has no state to go on from */
+  bool added;          /**< whether the open parts set a voxel */
+  bool no_vote_resume; /**< an engine fell back behind the first window, so that a vote has no state to go on
+                          from */
 } vxm_voxel_pass;
 
 /** A pass that holds nothing yet, in the context of its workspace. */

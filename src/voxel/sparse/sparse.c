@@ -9,7 +9,7 @@ static const uint64_t window_bytes_most = UINT64_C(1) << 26;
 /** Whether one axis tells all of the solid: then the triangles become an octree directly. */
 static bool is_direct(const vxm_model *model) {
   const vxm_voxelize_options *options = &model->options;
-  const vxm_split *split = &model->analysis.facets.split;
+  const vxm_split *split = &model->analysis.triangles.split;
   bool solid = options->mode != VXM_MODE_SURFACE && !vxm_faces_wanted(options);
   if (!solid || options->method == VXM_METHOD_WINDING)
     return false;
@@ -20,13 +20,13 @@ static bool is_direct(const vxm_model *model) {
 
 static vxm_sparse_job job_of(const vxm_model_pass *pass) {
   const vxm_voxel_pass *solid = &pass->solid;
-  vxm_sparse_job job = {.facets = &solid->analysis->facets,
+  vxm_sparse_job job = {.triangles = &solid->analysis->triangles,
                         .placed = &solid->placed,
-                        .part_end = solid->analysis->facets.split.part_count,
-                        .roles = VXM_FACET_TRIANGLE,
+                        .part_end = solid->analysis->triangles.split.part_count,
+                        .roles = VXM_ROLE_FACE,
                         .has_voxels = solid->has_voxels};
   if (!vxm_one_voter(&solid->options))
-    job.roles |= VXM_FACET_CAP;
+    job.roles |= VXM_ROLE_CAP;
   return job;
 }
 

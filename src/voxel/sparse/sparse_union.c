@@ -360,7 +360,7 @@ static void shape(sparse_state *state) {
     state->row_shift++;
   state->row_shift = state->row_shift < 6 ? 6 : state->row_shift;
   uint64_t row = UINT64_C(1) << state->row_shift;
-  bool closed = job->part_end <= job->facets->split.kind_end[VXM_PART_CLOSED];
+  bool closed = job->part_end <= job->triangles->split.kind_end[VXM_PART_CLOSED];
   state->columns = (vxm_columns){.u = 1,
                                  .v = 2,
                                  .w = 0,
@@ -369,9 +369,9 @@ static void shape(sparse_state *state) {
                                  .step = {1, row << SLAB_SHIFT, row},
                                  .slab_axis = 2,
                                  .slab_shift = SLAB_SHIFT,
-                                 .roles = job->roles | (closed ? VXM_FACETS_ALL : 0),
-                                 .facet_begin = job->facets->parts[0].begin};
-  state->columns.facet_end = vxm_roles_end(job->facets, job->part_end - 1, job->roles);
+                                 .roles = job->roles | (closed ? VXM_ROLES_ALL : 0),
+                                 .triangle_begin = job->triangles->parts[0].begin};
+  state->columns.triangle_end = vxm_roles_end(job->triangles, job->part_end - 1, job->roles);
   int64_t left = n[0] - ((int64_t)state->nodes - 1) * VXM_STRIP_VOXELS;
   for (int b = 0; b < 4; b++)
     state->last[b] =
@@ -421,7 +421,7 @@ static void free_desks(sparse_state *state, size_t workers) {
 static size_t window_slabs(const sparse_state *state) {
   vxm_context *context = state->builder->context;
   double bound =
-      vxm_raster_schedule_placed_bound(state->job->facets, state->job->placed, &state->builder->space);
+      vxm_raster_schedule_placed_bound(state->job->triangles, state->job->placed, &state->builder->space);
   double most = vxm_raster_schedule_round(context), slabs = (double)state->builder->deep;
   most = most < CROSSINGS ? most : CROSSINGS;
   double wanted = slabs * most / (bound + 1);
@@ -437,8 +437,8 @@ static vxm_status do_window(sparse_state *state, vxm_workspace *workspace, size_
   state->first = first;
   state->columns.begin[2] = (int64_t)first << SLAB_SHIFT;
   state->columns.end[2] = vxm_min((int64_t)end << SLAB_SHIFT, builder->space.dims[2]);
-  vxm_status status =
-      vxm_raster_schedule_plan(crossings, state->job->facets, state->job->placed, &state->columns, 1, error);
+  vxm_status status = vxm_raster_schedule_plan(crossings, state->job->triangles, state->job->placed,
+                                               &state->columns, 1, error);
   /* Progress goes on where the window before ended, in steps of this one. */
   size_t steps = crossings->range_count + crossings->round_count * (end - first);
   state->watch.total = (steps * builder->deep + end - first) / (end - first);

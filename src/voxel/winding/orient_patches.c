@@ -23,9 +23,9 @@ typedef struct side {
 
 typedef struct builder {
   vxm_flip_mask *out;
-  const vxm_triangle_set *facets;
+  const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
-  uint32_t *facet; /**< of every triangle */
+  uint32_t *triangle; /**< of every triangle */
   uint32_t (*neighbour)[3];
   uint8_t *against; /**< bit k: neighbour k runs along the common edge in the same direction */
   uint8_t *neighbour_count;
@@ -71,22 +71,22 @@ enum {
 
 static bool find_neighbours(builder *b) {
   size_t n = b->out->count;
-  uint32_t *first = allocate(b, b->facets->first_apex, sizeof *first);
-  uint32_t *valence = allocate(b, b->facets->first_apex, sizeof *valence);
+  uint32_t *first = allocate(b, b->triangles->first_apex, sizeof *first);
+  uint32_t *valence = allocate(b, b->triangles->first_apex, sizeof *valence);
   side *sides = allocate(b, n, 3 * sizeof *sides);
   bool done = first && valence && sides;
   if (done) {
-    for (size_t v = 0; v < b->facets->first_apex; v++)
+    for (size_t v = 0; v < b->triangles->first_apex; v++)
       first[v] = none;
     for (size_t t = 0; t < n; t++)
       for (size_t k = 0; k < 3; k++) {
-        const uint32_t *corner = b->facets->corners[b->facet[t]];
+        const uint32_t *corner = b->triangles->corners[b->triangle[t]];
         uint32_t p = corner[k], q = corner[(k + 1) % 3], low = p < q ? p : q;
         sides[3 * t + k] = (side){p < q ? q : p, (uint32_t)t, first[low], p < q};
         first[low] = (uint32_t)(3 * t + k);
         valence[low]++;
       }
-    for (size_t v = 0; v < b->facets->first_apex; v++)
+    for (size_t v = 0; v < b->triangles->first_apex; v++)
       if (valence[v] <= VALENCE_MAX)
         link_at_vertex(b, sides, first[v]);
   }
@@ -181,7 +181,7 @@ static double evidence_of(const builder *b, const vxm_winding_triangle *t, const
 /** The triangle in voxels, turned as its patch is consistent. */
 static vxm_winding_triangle triangle_of(const builder *b, size_t t) {
   vxm_winding_triangle out;
-  const uint32_t *corner = b->facets->corners[b->facet[t]];
+  const uint32_t *corner = b->triangles->corners[b->triangle[t]];
   for (int k = 0; k < 3; k++) {
     vxm_point p = vxm_snapped_points_at(b->placed, corner[b->turn[t] ? (3 - k) % 3 : k]);
     for (int a = 0; a < 3; a++)
@@ -223,42 +223,42 @@ static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
 
 static bool collect_triangles(builder *b) {
   vxm_flip_mask *out = b->out;
-  const vxm_triangle_set *facets = b->facets;
+  const vxm_triangle_set *triangles = b->triangles;
   for (size_t p = out->part_begin; p < out->part_end; p++)
-    out->count += facets->parts[p].caps - facets->parts[p].begin;
+    out->count += triangles->parts[p].caps - triangles->parts[p].begin;
   out->turned = allocate(b, out->count, sizeof *out->turned);
-  b->facet = allocate(b, out->count, sizeof *b->facet);
+  b->triangle = allocate(b, out->count, sizeof *b->triangle);
   b->neighbour = allocate(b, out->count, sizeof *b->neighbour);
   b->against = allocate(b, out->count, sizeof *b->against);
   b->neighbour_count = allocate(b, out->count, sizeof *b->neighbour_count);
   b->turn = allocate(b, out->count, sizeof *b->turn);
   b->patch = allocate(b, out->count, sizeof *b->patch);
-  if (!out->turned || !b->facet || !b->neighbour || !b->against || !b->neighbour_count || !b->turn ||
+  if (!out->turned || !b->triangle || !b->neighbour || !b->against || !b->neighbour_count || !b->turn ||
       !b->patch)
     return false;
   size_t next = 0;
   for (size_t p = out->part_begin; p < out->part_end; p++)
-    for (size_t f = facets->parts[p].begin; f < facets->parts[p].caps; f++)
-      b->facet[next++] = (uint32_t)f;
+    for (size_t f = triangles->parts[p].begin; f < triangles->parts[p].caps; f++)
+      b->triangle[next++] = (uint32_t)f;
   return true;
 }
 
-vxm_status vxm_orient_patches_find(vxm_flip_mask *out, const vxm_triangle_set *facets,
+vxm_status vxm_orient_patches_find(vxm_flip_mask *out, const vxm_triangle_set *triangles,
                                    const vxm_snapped_points *placed, size_t part_begin, size_t part_end,
                                    const uint64_t *const voters[3], vxm_error *error) {
-  vxm_context *context = facets->context;
+  vxm_context *context = triangles->context;
   *out = (vxm_flip_mask){.context = context, .part_begin = part_begin, .part_end = part_end};
-  builder b = {.out = out, .facets = facets, .placed = placed, .error = VXM_ERROR_INIT};
-  if (facets->facet_count > UINT32_MAX / 3)
+  builder b = {.out = out, .triangles = triangles, .placed = placed, .error = VXM_ERROR_INIT};
+  if (triangles->triangle_count > UINT32_MAX / 3)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many to turn outward; split the mesh",
-                    facets->facet_count);
+                    triangles->triangle_count);
   bool done = collect_triangles(&b) && find_neighbours(&b) && find_patches(&b) && turn_patches(&b, voters);
   vxm_free(context, b.patch);
   vxm_free(context, b.turn);
   vxm_free(context, b.neighbour_count);
   vxm_free(context, b.against);
   vxm_free(context, b.neighbour);
-  vxm_free(context, b.facet);
+  vxm_free(context, b.triangle);
   if (done)
     return VXM_OK;
   vxm_flip_mask_destroy(out);

@@ -5,8 +5,8 @@
 
 #include "voxel/parity/snapped_points.h"
 
-/** Which triangles of parts part_begin..part_end-1 are to be turned, in the order of their facets, cones and
- * caps left out. */
+/** Which triangles of parts part_begin..part_end-1 are to be turned, in the order of their triangles, cones
+ * and caps left out. */
 typedef struct vxm_flip_mask {
   vxm_context *context;
   size_t part_begin, part_end;
@@ -28,7 +28,7 @@ typedef struct vxm_flip_mask {
  * @param voters words of three grids, x fastest; the same three times if there was no vote
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
-vxm_status vxm_orient_patches_find(vxm_flip_mask *out, const vxm_triangle_set *facets,
+vxm_status vxm_orient_patches_find(vxm_flip_mask *out, const vxm_triangle_set *triangles,
                                    const vxm_snapped_points *placed, size_t part_begin, size_t part_end,
                                    const uint64_t *const voters[3], vxm_error *error);
 void vxm_flip_mask_destroy(vxm_flip_mask *turns);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/winding_mesh.h"
 
-vxm_status vxm_winding_mesh_create(vxm_winding_mesh *out, const vxm_triangle_set *facets,
+vxm_status vxm_winding_mesh_create(vxm_winding_mesh *out, const vxm_triangle_set *triangles,
                                    const vxm_snapped_points *placed, const vxm_flip_mask *turns,
                                    bool mirrored, vxm_error *error) {
   *out = (vxm_winding_mesh){.context = placed->context};
@@ -13,10 +13,10 @@ vxm_status vxm_winding_mesh_create(vxm_winding_mesh *out, const vxm_triangle_set
   }
   size_t t = 0;
   for (size_t p = turns->part_begin; p < turns->part_end; p++)
-    for (size_t f = facets->parts[p].begin; f < facets->parts[p].caps; f++, t++)
+    for (size_t f = triangles->parts[p].begin; f < triangles->parts[p].caps; f++, t++)
       for (int k = 0; k < 3; k++) {
         bool turn = (turns->turned[t] != 0) != mirrored;
-        vxm_point at = vxm_snapped_points_at(placed, facets->corners[f][turn ? (3 - k) % 3 : k]);
+        vxm_point at = vxm_snapped_points_at(placed, triangles->corners[f][turn ? (3 - k) % 3 : k]);
         for (int a = 0; a < 3; a++)
           out->triangles[t].corner[k][a] = (double)at.at[a] / (double)placed->lattice.unit;
       }

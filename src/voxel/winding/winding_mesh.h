@@ -13,7 +13,7 @@ typedef struct vxm_winding_mesh {
 } vxm_winding_mesh;
 
 /** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
-vxm_status vxm_winding_mesh_create(vxm_winding_mesh *out, const vxm_triangle_set *facets,
+vxm_status vxm_winding_mesh_create(vxm_winding_mesh *out, const vxm_triangle_set *triangles,
                                    const vxm_snapped_points *placed, const vxm_flip_mask *turns,
                                    bool mirrored, vxm_error *error);
 void vxm_winding_mesh_destroy(vxm_winding_mesh *wound);

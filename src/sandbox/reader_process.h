@@ -5,8 +5,8 @@
  * the program voxmend-reader opens the module and sends the soup or the grid. It opens no files, and has none
  * but the channel to us (confine.h): what the mesh refers to it asks us for.
  */
-#ifndef VXM_SANDBOX_SANDBOX_H
-#define VXM_SANDBOX_SANDBOX_H
+#ifndef VXM_SANDBOX_READER_PROCESS_H
+#define VXM_SANDBOX_READER_PROCESS_H
 
 #include "base/module.h"
 #include "sandbox/reader.h"
@@ -24,19 +24,20 @@
  * VXM_ERROR_RANGE, also if it takes too long; VXM_ERROR_IO if the program cannot be started;
  * VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_sandbox_read(vxm_soup *soup, const vxm_module_need *need, const vxm_reader_request *request,
-                            vxm_references *references, vxm_error *error);
+vxm_status vxm_reader_process_mesh(vxm_soup *soup, const vxm_module_need *need,
+                                   const vxm_reader_request *request, vxm_references *references,
+                                   vxm_error *error);
 
 /**
  * Reads a grid, under the same limits, and hands it to the sink, whose error comes back if it has one.
  *
  * @param warnings takes what is odd about the reading
  * @param request  its data, size, name and hint
- * @return as vxm_sandbox_read
+ * @return as vxm_reader_process_mesh
  */
-vxm_status vxm_sandbox_read_grid(vxm_voxel_sink *sink, vxm_warnings *warnings, vxm_context *context,
-                                 const vxm_module_need *need, const vxm_reader_request *request,
-                                 vxm_error *error);
+vxm_status vxm_reader_process_grid(vxm_voxel_sink *sink, vxm_warnings *warnings, vxm_context *context,
+                                   const vxm_module_need *need, const vxm_reader_request *request,
+                                   vxm_error *error);
 
 /** The arguments of voxmend-reader, in their order. Over the channel it gets the size of the file in 64 bits,
  * and its bytes. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "sandbox/sandbox.h"
+#include "sandbox/reader_process.h"
 
 #include <inttypes.h>
 #include <signal.h>
@@ -245,8 +245,9 @@ static vxm_status read_apart(conversation *c, vxm_wire_listener *listener, const
   return status == VXM_OK ? converse(&reader, c, listener, error) : status;
 }
 
-vxm_status vxm_sandbox_read(vxm_soup *soup, const vxm_module_need *need, const vxm_reader_request *request,
-                            vxm_references *references, vxm_error *error) {
+vxm_status vxm_reader_process_mesh(vxm_soup *soup, const vxm_module_need *need,
+                                   const vxm_reader_request *request, vxm_references *references,
+                                   vxm_error *error) {
   conversation c = {.context = soup->context, .request = request, .references = references};
   vxm_wire_listener listener = {.soup = soup, .answer = answer, .payload = &c};
   vxm_status status = read_apart(&c, &listener, need, error);
@@ -260,9 +261,9 @@ vxm_status vxm_sandbox_read(vxm_soup *soup, const vxm_module_need *need, const v
   return VXM_OK;
 }
 
-vxm_status vxm_sandbox_read_grid(vxm_voxel_sink *sink, vxm_warnings *warnings, vxm_context *context,
-                                 const vxm_module_need *need, const vxm_reader_request *request,
-                                 vxm_error *error) {
+vxm_status vxm_reader_process_grid(vxm_voxel_sink *sink, vxm_warnings *warnings, vxm_context *context,
+                                   const vxm_module_need *need, const vxm_reader_request *request,
+                                   vxm_error *error) {
   conversation c = {.context = context, .request = request};
   vxm_wire_listener listener = {.sink = sink};
   vxm_status status = read_apart(&c, &listener, need, error);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Faces that repeat others, with the same or with the opposite orientation. */
-#ifndef VXM_MESH_DUPLICATES_H
-#define VXM_MESH_DUPLICATES_H
+#ifndef VXM_MESH_DUPLICATE_FACES_H
+#define VXM_MESH_DUPLICATE_FACES_H
 
 #include "mesh/soup.h"
 

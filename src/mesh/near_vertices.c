@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "mesh/weld_tolerance.h"
+#include "mesh/near_vertices.h"
 
 #include "base/hash.h"
 #include "base/threads.h"
@@ -384,8 +384,8 @@ static vxm_status link_all(search *s, vxm_context *context, vxm_error *error) {
   return vxm_parallel_asked(context, s->buckets.count, link_bucket, s, error);
 }
 
-vxm_status vxm_weld_near(vxm_context *context, const double *positions, size_t count, const uint8_t *roles,
-                         double tolerance, uint32_t *map, vxm_error *error) {
+vxm_status vxm_near_vertices_group(vxm_context *context, const double *positions, size_t count,
+                                   const uint8_t *roles, double tolerance, uint32_t *map, vxm_error *error) {
   if (!(tolerance > 0)) {
     for (size_t v = 0; v < count; v++)
       map[v] = (uint32_t)v;

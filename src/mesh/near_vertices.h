@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Tolerant welding: groups of vertices that are near each other and far from all others. */
-#ifndef VXM_MESH_WELD_TOLERANCE_H
-#define VXM_MESH_WELD_TOLERANCE_H
+#ifndef VXM_MESH_NEAR_VERTICES_H
+#define VXM_MESH_NEAR_VERTICES_H
 
 #include "base/context.h"
 
 /** What part a vertex takes. */
-typedef enum vxm_weld_role {
+typedef enum vxm_near_role {
   VXM_NEAR_ABSENT = 0, /**< none */
   VXM_NEAR_MEMBER,     /**< may be merged */
   VXM_NEAR_OBSTACLE    /**< is not merged, and keeps the members near it from being merged */
-} vxm_weld_role;
+} vxm_near_role;
 
 /**
  * Maps every vertex to the lowest one of its group, or to itself.
@@ -28,11 +28,11 @@ typedef enum vxm_weld_role {
  * near the box around them: linear time for any input.
  *
  * @param positions count x 3, finite for members and obstacles
- * @param roles     a vxm_weld_role per vertex
+ * @param roles     a vxm_near_role per vertex
  * @param tolerance finite, at least 0; with 0 nothing is merged
  * @param map       count elements, owned by the caller
  */
-vxm_status vxm_weld_near(vxm_context *context, const double *positions, size_t count, const uint8_t *roles,
-                         double tolerance, uint32_t *map, vxm_error *error);
+vxm_status vxm_near_vertices_group(vxm_context *context, const double *positions, size_t count,
+                                   const uint8_t *roles, double tolerance, uint32_t *map, vxm_error *error);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "soups.h"
 
-#include "mesh/weld_tolerance.h"
+#include "mesh/near_vertices.h"
 
 #include <math.h>
 
@@ -30,7 +30,8 @@ static bool is_member(const cloud *c, size_t v) {
 }
 
 static void weld(vxm_context *context, cloud *c, double tolerance) {
-  assert_int_equal(vxm_weld_near(context, c->positions, c->count, c->roles, tolerance, c->map, NULL), VXM_OK);
+  assert_int_equal(
+      vxm_near_vertices_group(context, c->positions, c->count, c->roles, tolerance, c->map, NULL), VXM_OK);
 }
 
 /** The groups of the definition, by comparing all pairs over and over. */
@@ -225,12 +226,12 @@ static void many_vertices(void **state) {
   memset(roles, VXM_NEAR_MEMBER, N);
   for (size_t i = 0; i < 3 * N; i++)
     positions[i] = vxm_rng_unit(&rng) / 2;
-  assert_int_equal(vxm_weld_near(context, positions, N, roles, 1.0, map, NULL), VXM_OK);
+  assert_int_equal(vxm_near_vertices_group(context, positions, N, roles, 1.0, map, NULL), VXM_OK);
   for (size_t v = 0; v < N; v++)
     if (map[v] != 0)
       fail_msg("vertex %zu is not merged", v);
   /* dense, and far too wide */
-  assert_int_equal(vxm_weld_near(context, positions, N, roles, 0.1, map, NULL), VXM_OK);
+  assert_int_equal(vxm_near_vertices_group(context, positions, N, roles, 0.1, map, NULL), VXM_OK);
   for (size_t v = 0; v < N; v++)
     if (map[v] != v)
       fail_msg("vertex %zu is merged", v);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "mesh/duplicates.h"
+#include "mesh/duplicate_faces.h"
 
 #include "base/hash.h"
 #include "base/threads.h"

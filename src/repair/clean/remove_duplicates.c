@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/duplicate_faces.h"
+#include "repair/clean/repeated_faces.h"
+
+/** What is counted: faces that go, and how many stay beside another one with the same corners. */
+static void count_faces(vxm_repair_state *state, const vxm_copies *copies, const uint8_t *kinds,
+                        const uint8_t *remove, uint8_t *seen) {
+  int64_t same = 0, opposite = 0;
+  for (size_t f = 0; f < state->soup->face_count; f++) {
+    same += remove[f] && kinds[f] == VXM_REPEAT_SAME;
+    opposite += remove[f] && kinds[f] != VXM_REPEAT_SAME;
+    state->shared += !remove[f] && seen[copies[f].first];
+    seen[copies[f].first] |= !remove[f];
+  }
+  if (same + opposite > 0)
+    vxm_repair_state_note_marked(state, same > 0 ? VXM_PASS_DUPLICATES : VXM_PASS_OPPOSITE_DUPLICATES,
+                                 remove);
+  state->counts[VXM_PASS_DUPLICATES] += same;
+  state->counts[VXM_PASS_OPPOSITE_DUPLICATES] += opposite;
+}
+
+/** Decides about them, and takes out those that are not needed; fills `kinds` and `copies`, which are scratch
+ * per face. */
+static vxm_status remove_repeated(vxm_repair_state *state, uint8_t *kinds, vxm_copies *copies, bool *changed,
+                                  vxm_error *error) {
+  size_t faces = state->soup->face_count;
+  vxm_duplicates found;
+  uint8_t *seen = NULL;
+  vxm_status status = vxm_duplicates_find(&found, state->context, state->soup, NULL, kinds, copies, error);
+  uint8_t *remove =
+      status == VXM_OK ? vxm_repair_state_scratch(state, faces, sizeof *remove, &status, error) : NULL;
+  if (remove)
+    seen = vxm_repair_state_scratch(state, faces, sizeof *seen, &status, error);
+  if (seen)
+    status = vxm_repeated_faces_mark(state, copies, remove, error);
+  if (status == VXM_OK) {
+    count_faces(state, copies, kinds, remove, seen);
+    *changed = vxm_repair_state_remove_faces(state, remove) > 0;
+  }
+  vxm_free(state->context, seen);
+  vxm_free(state->context, remove);
+  return status;
+}
+
+/** Of the faces that repeat each other leaves as many as are needed. */
+vxm_status vxm_pass_duplicates(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  *changed = false;
+  state->shared = 0;
+  if (state->options.keep_duplicates)
+    return VXM_OK;
+  vxm_duplicates found; /* without a list of them, as most meshes have none */
+  vxm_status status = vxm_duplicates_find(&found, state->context, state->soup, NULL, NULL, NULL, error);
+  if (status != VXM_OK || found.same + found.opposite_pairs == 0)
+    return status;
+  size_t faces = state->soup->face_count;
+  uint8_t *kinds = vxm_repair_state_scratch(state, faces, sizeof *kinds, &status, error);
+  vxm_copies *copies = kinds ? vxm_repair_state_scratch(state, faces, sizeof *copies, &status, error) : NULL;
+  if (copies)
+    status = remove_repeated(state, kinds, copies, changed, error);
+  vxm_free(state->context, copies);
+  vxm_free(state->context, kinds);
+  return status;
+}
