@@ -41,6 +41,8 @@ vxm_status vxm_choose_voxelize_options(vxm_voxelize_options *chosen, const vxm_v
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: cavities %d is unknown", (int)options->cavities);
   if ((unsigned)options->split_mode > VXM_SPLIT_MODE_WHOLE)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: parts %d is unknown", (int)options->split_mode);
+  if ((unsigned)options->thin > VXM_THIN_KEEP26)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxelize: thin %d is unknown", (int)options->thin);
   return VXM_OK;
 }
 

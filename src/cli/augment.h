@@ -11,7 +11,7 @@ typedef struct augment_request {
   int64_t count, first;  /**< count 0 = a stream without end */
   vxm_variant variant;   /**< model and epoch */
   bool no_repair, repair_options, noise;
-  bool surface;
+  bool surface, thin;
   cli_engine engine;
   vxm_voxel_format voxels; /**< of a stream */
   vxm_repair_options repair;

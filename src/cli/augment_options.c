@@ -20,6 +20,7 @@ enum {
   KEY_FILL,
   KEY_MODE,
   KEY_SURFACE,
+  KEY_THIN,
   KEY_NO_REPAIR,
   KEY_WELD,
   KEY_KEEP
@@ -54,6 +55,7 @@ const cli_option augment_options[] = {
     {KEY_FILL, "fill", NULL, "the longest side fills the grid, not the diagonal; without --rotate only"},
     {KEY_MODE, "mode", "solid|surface|both", "as in 'voxmend voxelize' [solid]"},
     {KEY_SURFACE, "surface", "KIND", "as in 'voxmend voxelize' [conservative]"},
+    {KEY_THIN, "thin", "keep|drop|26", "parts thinner than a voxel: as in 'voxmend voxelize' [keep]"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
     {KEY_KEEP, "keep-duplicates", NULL, "leave faces that repeat another, or lie back to back with it"},
@@ -192,6 +194,9 @@ static int read_option(cli_run *cli, augment_request *out, int key, const char *
     return cli_engine_read(cli, &out->engine, key, value);
   case KEY_MODE:
     return cli_read_mode(cli, &out->voxelize, value);
+  case KEY_THIN:
+    out->thin = true;
+    return cli_read_thin(cli, &out->voxelize, value);
   default:
     out->surface = true;
     return cli_read_surface(cli, &out->voxelize, value);
@@ -232,6 +237,8 @@ static int check_conflicts(cli_run *cli, const augment_request *given) {
   if (given->noise && sampler->displace == 0)
     return cli_usage(cli, "--noise goes with --displace");
   if (cli_check_surface(cli, &given->voxelize, given->surface) == CLI_STOP)
+    return CLI_STOP;
+  if (cli_check_thin(cli, &given->voxelize, given->thin) == CLI_STOP)
     return CLI_STOP;
   return cli_check_repair(cli, given->no_repair, given->repair_options);
 }

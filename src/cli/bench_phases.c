@@ -127,6 +127,12 @@ static vxm_status begin_default(bench_stage *stage) {
   return begin_model(stage, &options);
 }
 
+static vxm_status begin_centres(bench_stage *stage) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP;
+  return begin_model(stage, &options);
+}
+
 static vxm_status begin_majority(bench_stage *stage) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.vote = VXM_VOTE_MAJORITY;
@@ -253,6 +259,8 @@ const bench_phase bench_phases[] = {
     {"solid_x", "solid by parity along x", true, true, BENCH_USUAL, 0, begin_x, run_solid, tell_grid},
     {"solid_vote", "the solid as 'voxmend voxelize' makes it", true, true, BENCH_USUAL, 0, begin_default,
      run_solid, tell_grid},
+    {"solid_centres", "the solid by voxel centres alone (--thin drop)", true, true, BENCH_USUAL, 0,
+     begin_centres, run_solid, tell_grid},
     {"solid_majority", "solid by a majority of x, y and z", true, true, BENCH_USUAL, 0, begin_majority,
      run_solid, tell_grid},
     {"transform", "solid_vote of the model turned by a small angle", true, true, BENCH_USUAL, 0,

@@ -186,8 +186,12 @@ bool cli_is_extension(const char *path, const char *extension);
 /** The arguments of --mode and --surface: CLI_END or CLI_STOP. */
 int cli_read_mode(cli_run *cli, vxm_voxelize_options *options, const char *value);
 int cli_read_surface(cli_run *cli, vxm_voxelize_options *options, const char *value);
+/** The argument of --thin: CLI_END or CLI_STOP. */
+int cli_read_thin(cli_run *cli, vxm_voxelize_options *options, const char *value);
 /** CLI_STOP if --surface, where it was given, does not go with the mode. */
 int cli_check_surface(cli_run *cli, const vxm_voxelize_options *options, bool is_given);
+/** CLI_STOP if --thin, where it was given, does not go with the mode. */
+int cli_check_thin(cli_run *cli, const vxm_voxelize_options *options, bool is_given);
 
 /* ---- engine.c: who makes the voxels ---- */
 

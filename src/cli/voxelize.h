@@ -7,7 +7,7 @@
 
 typedef struct voxelize_request {
   const char *input, *output, *format, *like, *confidence, *coords;
-  bool resolution, size, fit, pad, bounds, vote, surface, no_repair, repair_options, dry_run, sparse,
+  bool resolution, size, fit, pad, bounds, vote, surface, thin, no_repair, repair_options, dry_run, sparse,
       force; /**< which were given */
   vxm_repair_options repair;
   vxm_space_options space;

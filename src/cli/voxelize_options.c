@@ -15,6 +15,7 @@ enum {
   KEY_METHOD,
   KEY_VOTE,
   KEY_PARTS,
+  KEY_THIN,
   KEY_CAVITIES,
   KEY_COVERAGE,
   KEY_SCALAR,
@@ -52,8 +53,13 @@ const cli_option voxelize_options[] = {
     {KEY_BOUNDS, "bounds", "X0,Y0,Z0,X1,Y1,Z1", "cover exactly this box, whatever the model's size"},
     {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
     {KEY_MODE, "mode", "solid|surface|both",
-     "solid: voxels whose centre is inside; surface: as --surface says; both:\n"
-     "either, which keeps sheets and parts thinner than a voxel [solid]"},
+     "solid: the inside, by voxel centres and --thin; surface: as --surface says;\n"
+     "both: either [solid]"},
+    {KEY_THIN, "thin", "keep|drop|26",
+     "parts thinner than a voxel: keep = add the few voxels that hold them together\n"
+     "and through which no path from face to face leaks; 26 = nor one over edges and\n"
+     "corners; drop = only voxels whose centre is inside [keep; drop where --method or\n"
+     "--vote chooses another rule]"},
     {KEY_SURFACE, "surface", "conservative|thin|shell26|shell18|shell6",
      "conservative: every voxel whose box meets a face; thin: 6-separating, fewer\n"
      "voxels, through which no path from face to face leaks; shell26, 18, 6: voxels of the solid beside an\n"
@@ -193,6 +199,9 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     result = cli_choose(cli, &choice, "parts", value, parts);
     out->voxelize.split_mode = (vxm_split_mode)choice;
     return result;
+  case KEY_THIN:
+    out->thin = true;
+    return cli_read_thin(cli, &out->voxelize, value);
   case KEY_CAVITIES:
     result = cli_choose(cli, &choice, "cavities", value, cavities);
     out->voxelize.cavities = (vxm_cavities)choice;
@@ -266,6 +275,10 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
     return cli_usage(cli, "--vote goes with --method vote only");
   if (cli_check_surface(cli, &given->voxelize, given->surface) == CLI_STOP)
     return CLI_STOP;
+  if (cli_check_thin(cli, &given->voxelize, given->thin) == CLI_STOP)
+    return CLI_STOP;
+  if (given->thin && (given->field.coverage || given->field.distance))
+    return cli_usage(cli, "--thin is about set voxels; leave it out with --coverage and --distance");
   if (given->confidence && !is_npy(given->confidence))
     return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
   if (given->confidence && given->sparse)

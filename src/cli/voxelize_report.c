@@ -11,6 +11,13 @@ static json_t *sparse_json(const voxelize_outcome *results) {
   return object;
 }
 
+static json_t *thin_json(const vxm_voxelize_report *report) {
+  json_t *object = json_object();
+  json_object_set_new(object, "voxels", json_integer(report->thin_voxels));
+  json_object_set_new(object, "share", cli_json_number(report->thin_share));
+  return object;
+}
+
 static json_t *estimate_json(const vxm_estimate *estimate, bool octree) {
   json_t *object = json_object();
   json_object_set_new(object, "grid_bytes", json_integer((json_int_t)estimate->grid_bytes));
@@ -54,6 +61,8 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "empty_parts", json_integer(results->voxelize.empty_parts));
   json_object_set_new(report, "outside_parts", json_integer(results->voxelize.outside_parts));
   json_object_set_new(report, "votes", votes);
+  if (!given->field.coverage && !given->field.distance)
+    json_object_set_new(report, "thin", thin_json(&results->voxelize));
   if (cli_field_wanted(&given->field))
     cli_field_json(report, &given->field);
   else {
@@ -148,6 +157,13 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
     cli_field_summarize(cli, &given->field);
   else
     cli_row(cli, "voxels", "%" PRId64 " (%.2f %%)", report->voxels, 100.0 * (double)report->voxels / cells);
+  if (report->thin_voxels > 0 && report->thin_share == 0)
+    cli_row(cli, "thin", "%" PRId64 " voxels added at rims and tips that are thinner than a voxel",
+            report->thin_voxels);
+  else if (report->thin_voxels > 0)
+    cli_row(cli, "thin",
+            "%" PRId64 " voxels added for the %.3g %% of the surface that is thinner than a voxel",
+            report->thin_voxels, 100 * report->thin_share);
   cli_row(cli, "contested", "%" PRId64 "%s", report->contested,
           report->contested == 0        ? ""
           : report->winding_decided > 0 ? " (open parts, decided by the winding number)"

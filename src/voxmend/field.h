@@ -200,6 +200,7 @@ typedef struct vxm_coverage_report {
 /**
  * Computes how much of each voxel of a space the model fills: the fraction of its sub-voxels that are set, as
  * the options of the model say. They are made a few slices at a time, never all at once.
+ * Voxels that vxm_thin_parts adds are not counted: they have no share.
  *
  * @param values  room for dims[0]*dims[1]*dims[2] float or uint8_t, as [x][y][z] in C order (z fastest)
  * @param report  may be NULL
@@ -305,7 +306,8 @@ typedef struct vxm_label_report {
   vxm_voxelize_report *voxelize; /**< set by the caller: NULL, or where that of the set voxels goes */
   int64_t labels;                /**< numbered from 1 in the order of their first faces */
   int64_t contested;  /**< voxels that several labels claim: the one with the nearest face has them */
-  int64_t unassigned; /**< voxels that none claims: they have the label of the nearest face of all */
+  int64_t unassigned; /**< voxels that none claims: they have the label of the nearest face of all.
+                         Those that vxm_thin_parts adds are among them */
 } vxm_label_report;
 
 /** Initial value of vxm_label_report. */

@@ -24,9 +24,9 @@ typedef enum vxm_fit {
 
 /** Which voxels of a mesh are set. */
 typedef enum vxm_mode {
-  VXM_MODE_SOLID = 0, /**< centre inside */
+  VXM_MODE_SOLID = 0, /**< inside, by their centres and vxm_thin_parts */
   VXM_MODE_SURFACE,   /**< on the surface, as vxm_surface_kind says */
-  VXM_MODE_BOTH       /**< either: thin parts and sheets are kept */
+  VXM_MODE_BOTH       /**< either */
 } vxm_mode;
 
 /** Which voxels are the surface. A shell is a part of the solid, so that it adds nothing in VXM_MODE_BOTH. */
@@ -72,6 +72,15 @@ typedef enum vxm_cavities {
   VXM_CAVITIES_FILL      /**< solid */
 } vxm_cavities;
 
+/** What becomes of parts thinner than a voxel, which hold few voxel centres or none. */
+typedef enum vxm_thin_parts {
+  VXM_THIN_AUTO = 0, /**< VXM_THIN_KEEP with VXM_METHOD_VOTE and VXM_VOTE_AUTO, else VXM_THIN_DROP */
+  VXM_THIN_KEEP,     /**< they hold together: voxels are added so that no path over empty 6-neighbours leads
+                        across a face, and what is connected in the mesh is 26-connected in the grid */
+  VXM_THIN_DROP,     /**< voxels whose centre is inside, and no others */
+  VXM_THIN_KEEP26    /**< as VXM_THIN_KEEP, and no path over 26-neighbours leads across a face either */
+} vxm_thin_parts;
+
 /** Which voxel space to use. Give resolution or voxel_size, or `like`. */
 typedef struct vxm_space_options {
   size_t size;           /**< as the initializer sets it */
@@ -112,13 +121,15 @@ typedef struct vxm_voxelize_options {
                      */
   vxm_surface_kind surface; /**< with `mode` surface and both */
   vxm_engine *engine;       /**< NULL = the CPU. Must outlive the models made with these options */
+  vxm_thin_parts
+      thin; /**< what becomes of parts thinner than a voxel; not in VXM_MODE_SURFACE, but for shells */
 } vxm_voxelize_options;
 
 /** Initial value of vxm_voxelize_options. */
 #define VXM_VOXELIZE_OPTIONS_INIT                                                                         \
   {                                                                                                       \
     sizeof(vxm_voxelize_options), VXM_METHOD_VOTE, VXM_VOTE_AUTO, VXM_SPLIT_MODE_AUTO, VXM_CAVITIES_AUTO, \
-        VXM_MODE_SOLID, false, false, VXM_SURFACE_CONSERVATIVE, NULL                                      \
+        VXM_MODE_SOLID, false, false, VXM_SURFACE_CONSERVATIVE, NULL, VXM_THIN_AUTO                       \
   }
 
 /** What came of voxelizing. */
@@ -135,17 +146,20 @@ typedef struct vxm_voxelize_report {
   uint64_t hash;           /**< vxm_grid_hash */
   int64_t empty_parts;     /**< parts that set no voxel; of open parts, all if together they set none */
   int64_t
-      outside_parts; /**< parts that set none because they lie outside of the grid: not among empty_parts */
-  double fill_ms;    /**< of what is written to a file: time for making the voxels; else 0 */
-  double write_ms;   /**< and for writing them */
+      outside_parts;   /**< parts that set none because they lie outside of the grid: not among empty_parts */
+  double fill_ms;      /**< of what is written to a file: time for making the voxels; else 0 */
+  double write_ms;     /**< and for writing them */
+  int64_t thin_voxels; /**< voxels that were added because parts are thinner than one */
+  double thin_share;   /**< the share of the surface that needed them: 0 to 1 */
 } vxm_voxelize_report;
 
 /** Initial value of vxm_voxelize_report. */
 #define VXM_VOXELIZE_REPORT_INIT \
-  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0 }
+  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0, 0.0 }
 
 /**
- * Voxelizes the inside of a mesh: voxel (i,j,k) is set where its centre is inside.
+ * Voxelizes the inside of a mesh: voxel (i,j,k) is set where its centre is inside, and where parts thinner
+ * than a voxel would fall apart otherwise (vxm_thin_parts).
  *
  * @param[out] out    new grid
  * @param[out] report may be NULL

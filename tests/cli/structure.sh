@@ -16,7 +16,7 @@ order="voxmend base mesh sandbox
   meshio/common meshio/formats meshio/external meshio
   repair/external repair/state repair/clean repair/manifold repair/weld repair/holes repair/exact repair/bodies repair
   grid
-  voxel/lattice voxel/parts voxel/parity voxel/winding voxel/surface voxel/closest voxel/engine voxel/solid voxel/model
+  voxel/lattice voxel/parts voxel/parity voxel/winding voxel/surface voxel/closest voxel/engine voxel/thin voxel/solid voxel/model
   voxel/sparse voxel/fields voxel/labels
   gpu/common gpu/opencl gpu/opengl gpu
   gridio/common gridio/formats gridio/mesh gridio/picture gridio

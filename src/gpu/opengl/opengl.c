@@ -220,6 +220,7 @@ vxm_status vxm_opengl_create(vxm_engine **out, vxm_context *context, const vxm_g
   }
   engine->base.ops = &opengl_ops;
   engine->base.wants_apexes = options->gl_method != VXM_GL_COLUMNS;
+  engine->base.displaces = options->displacement > 0;
   engine->base.context = context;
   engine->resident = vxm_device_cache_of(&engine->base, vxm_gl_resident_upload, vxm_gl_resident_release);
   engine->options = *options;

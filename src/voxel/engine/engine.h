@@ -76,6 +76,7 @@ struct vxm_engine {
   const vxm_engine_ops *ops; /**< NULL: the CPU */
   vxm_context *context;      /**< one reference held */
   bool wants_apexes;         /**< apexes have to be placed */
+  bool displaces;            /**< its voxels are those of a mesh whose vertices it has moved */
   bool falls_back;           /**< where it fails, the CPU does the work, and `info.note` says so */
   vxm_engine_info info;
 };

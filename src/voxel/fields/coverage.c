@@ -272,6 +272,8 @@ vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report 
   status = fine.words && r.sums && r.tallies && block && counts ? VXM_OK : local.code;
   if (status == VXM_OK)
     status = vxm_model_begin(&pass, model, &finer, NULL, NULL, &local);
+  if (status == VXM_OK && pass)
+    vxm_model_pass_make_field(pass);
   if (status == VXM_OK)
     status = reduce_windows(&r, target, fine, &plan, pass, &local);
   if (status == VXM_OK)

@@ -268,6 +268,8 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
   vxm_status status = local.code == VXM_OK ? make_workers(m, workers, &local) : local.code;
   if (status == VXM_OK && m->is_signed)
     status = vxm_model_begin(&m->pass, model, m->space, NULL, NULL, &local);
+  if (status == VXM_OK && m->pass)
+    vxm_model_pass_make_field(m->pass);
   if (status == VXM_OK)
     status = measure_windows(m, target, plan, &local);
   if (status == VXM_OK)

@@ -153,7 +153,8 @@ vxm_status vxm_label_component_fill(vxm_label_component_desk *desk, const vxm_wi
   vxm_voxelize_options solid = *options;
   solid.mode = VXM_MODE_SOLID;
   solid.confidence = false;
-  solid.engine = NULL; /* pieces are too small for what an engine costs to start */
+  solid.thin = VXM_THIN_DROP; /* what holds thin parts together has the label of the nearest face */
+  solid.engine = NULL;        /* pieces are too small for what an engine costs to start */
   vxm_lattice own = *lattice;
   own.space = vxm_label_component_space(piece, &lattice->space);
   vxm_model *model = NULL;

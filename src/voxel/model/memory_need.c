@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model/memory_need.h"
 #include "voxel/solid/orient_open.h"
+#include "voxel/thin/thin.h"
 
 #include <math.h>
 
@@ -29,6 +30,17 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
     return bins + slabs;
   uint64_t held = begin < end ? triangles->parts[end - 1].end - triangles->parts[begin].begin : 0;
   return bins + slabs + held * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
+}
+
+/** What is held of the surface while thin parts are looked for: where all of it is thin, all that it meets.
+ */
+static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space) {
+  const vxm_triangle_set *triangles = &model->analysis.triangles;
+  enum { AXES = 3, COPIES = 4 };
+  double all = vxm_raster_schedule_bound(triangles->lengths, triangles->triangle_count, space, NULL) * AXES *
+               COPIES * sizeof(vxm_meeting);
+  uint64_t budget = vxm_thin_budget(model->context);
+  return all < (double)budget ? (uint64_t)all : budget;
 }
 
 vxm_memory_need vxm_model_memory_need(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
@@ -63,6 +75,14 @@ vxm_memory_need vxm_model_memory_need(const vxm_model *model, const vxm_space *s
   need.fixed += decision_bytes(model, shape);
   double crossings = worst ? fmin(round, bound) : bound;
   need.fixed += crossings < 0x1p62 ? (uint64_t)crossings : UINT64_C(1) << 62;
+  if (vxm_thin_separating(&model->options)) {
+    /* The solid with and without what is added, with slices around; the first range is made with those behind
+     * it. */
+    uint64_t around = (uint64_t)vxm_thin_margin(vxm_thin_separating(&model->options)) *
+                      ((uint64_t)need.windows + 2 * 2 + 1);
+    need.fixed += around * shape->slice_words * sizeof(uint64_t) + thin_bytes(model, space);
+    need.windows += 2;
+  }
   if (vxm_shell_wanted(&model->options)) /* two slices more of the solid */
     need.fixed += 2 * (uint64_t)need.windows * shape->slice_words * sizeof(uint64_t);
   return need;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model/model_pass.h"
+#include "grid/shell.h"
 #include "voxel/solid/confidence.h"
 #include "voxel/solid/solid_fill.h"
 
@@ -8,7 +9,7 @@
 
 void vxm_model_pass_start(vxm_model_pass *pass, vxm_context *context) {
   static const vxm_voxelize_options none = VXM_VOXELIZE_OPTIONS_INIT;
-  *pass = (vxm_model_pass){.workspace = vxm_workspace_of(context)};
+  *pass = (vxm_model_pass){.workspace = vxm_workspace_of(context), .thin.thin.context = context};
   pass->solid = vxm_voxel_pass_of(NULL, &none, &pass->workspace);
 }
 
@@ -37,7 +38,8 @@ void vxm_model_pass_end(vxm_model_pass *pass) {
   vxm_surface_destroy(pass->surface);
   vxm_free(context, pass->solid.has_voxels);
   vxm_voxel_pass_destroy(&pass->solid);
-  vxm_shell_window_destroy(&pass->shell, context);
+  vxm_slice_buffer_destroy(&pass->shell_solid, context);
+  vxm_thin_window_destroy(&pass->thin);
   vxm_workspace_destroy(&pass->workspace);
 }
 
@@ -72,13 +74,17 @@ vxm_status vxm_model_pass_place(vxm_model_pass *pass, const vxm_lattice *lattice
                                 uint8_t *confidence, vxm_error *error) {
   vxm_voxel_pass *solid = &pass->solid;
   pass->space = lattice->space;
+  bool displaces = solid->engine && solid->engine->displaces; /* where to is not known here */
+  pass->separating = displaces ? 0 : vxm_thin_separating(&pass->solid.options);
+  pass->is_field = false;
   solid->mirrored = false;
   vxm_status status = transform ? check_transform(transform, &solid->mirrored, error) : VXM_OK;
   if (status != VXM_OK)
     return status;
   vxm_voxel_pass_begin(solid);
   solid->confidence = confidence;
-  vxm_shell_window_begin(&pass->shell);
+  vxm_slice_buffer_begin(&pass->shell_solid);
+  vxm_thin_window_begin(&pass->thin);
   if (vxm_solid_wanted(&solid->options))
     status = vxm_voxel_pass_place(solid, lattice, transform, error);
   return status == VXM_OK && vxm_faces_wanted(&solid->options)
@@ -86,18 +92,36 @@ vxm_status vxm_model_pass_place(vxm_model_pass *pass, const vxm_lattice *lattice
              : status;
 }
 
-static vxm_status fill_solid(const vxm_window *window, void *payload, vxm_error *error) {
+/** The voxels whose centre is inside. */
+static vxm_status fill_centres(const vxm_window *window, void *payload, vxm_error *error) {
   vxm_voxel_pass *solid = payload;
   vxm_status status = vxm_solid_fill(solid, window, error);
   return status == VXM_OK && solid->confidence ? vxm_confidence_fill(solid, window, error) : status;
+}
+
+static vxm_status fill_solid(const vxm_window *window, void *payload, vxm_error *error) {
+  vxm_model_pass *pass = payload;
+  vxm_voxel_pass *solid = &pass->solid;
+  vxm_thin_grid grid = {.triangles = &solid->analysis->triangles,
+                        .placed = &solid->placed,
+                        .separating = pass->separating,
+                        .confidence = solid->confidence,
+                        .fill = fill_centres,
+                        .payload = solid};
+  return grid.separating ? vxm_thin_window_fill(&pass->thin, window, &grid, error)
+                         : fill_centres(window, solid, error);
 }
 
 static vxm_status fill_shell(vxm_model_pass *pass, const vxm_window *window, vxm_error *error) {
   static const vxm_adjacency adjacency[] = {[VXM_SURFACE_SHELL26] = VXM_ADJACENT_26,
                                             [VXM_SURFACE_SHELL18] = VXM_ADJACENT_18,
                                             [VXM_SURFACE_SHELL6] = VXM_ADJACENT_6};
-  return vxm_shell_window_fill(&pass->shell, window, adjacency[pass->solid.options.surface], fill_solid,
-                               &pass->solid, pass->solid.context, error);
+  vxm_window solid;
+  vxm_status status = vxm_slice_buffer_fill(&pass->shell_solid, &solid, window, 1, fill_solid, pass,
+                                            pass->solid.context, error);
+  if (status == VXM_OK)
+    vxm_shell_fill(window, &solid, adjacency[pass->solid.options.surface], pass->solid.context);
+  return status;
 }
 
 vxm_status vxm_model_pass_fill(vxm_model_pass *pass, const vxm_window *window, vxm_error *error) {
@@ -106,7 +130,7 @@ vxm_status vxm_model_pass_fill(vxm_model_pass *pass, const vxm_window *window, v
   if (vxm_shell_wanted(options))
     return fill_shell(pass, window, error);
   bool solid = vxm_solid_wanted(options);
-  vxm_status status = solid ? fill_solid(window, &pass->solid, error) : VXM_OK;
+  vxm_status status = solid ? fill_solid(window, pass, error) : VXM_OK;
   if (status != VXM_OK || !vxm_faces_wanted(options))
     return status;
   if (solid && confidence)

@@ -5,21 +5,30 @@
 
 #include "base/warnings.h"
 #include "voxel/solid/voxel_pass.h"
-#include "voxel/surface/shell_window.h"
 #include "voxel/surface/surface.h"
+#include "voxel/thin/thin_window.h"
 
 /** Stays where it is in memory. Start with vxm_model_pass_start. */
 typedef struct vxm_model_pass {
   vxm_voxel_pass solid; /**< has the options, too, and points to the mesh's analysis */
   vxm_workspace workspace;
-  size_t part_room;            /**< of solid.has_voxels */
-  vxm_surface *surface;        /**< NULL before the first grid that wants it */
-  const double (*vertices)[3]; /**< where the soup's have moved to; NULL = nowhere */
-  vxm_shell_window shell;
+  size_t part_room;             /**< of solid.has_voxels */
+  vxm_surface *surface;         /**< NULL before the first grid that wants it */
+  const double (*vertices)[3];  /**< where the soup's have moved to; NULL = nowhere */
+  vxm_slice_buffer shell_solid; /**< the solid around a window of its shell */
+  vxm_thin_window thin;
+  int separating; /**< what vxm_thin_separating says of the options; 0 where only centres are asked for */
+  bool is_field;  /**< numbers are made of the voxels, in which thin parts play no part */
   vxm_space space;
   vxm_warnings *warnings;      /**< NULL = not asked for */
   struct vxm_model_pass *next; /**< of those that wait for a use */
 } vxm_model_pass;
+
+/** After vxm_model_pass_place: shares and signs are those of the solid itself. */
+static inline void vxm_model_pass_make_field(vxm_model_pass *pass) {
+  pass->is_field = true;
+  pass->separating = 0;
+}
 
 void vxm_model_pass_start(vxm_model_pass *pass, vxm_context *context);
 /** Points the pass to an analysis, which must outlive its use, and keeps its memory for that. */

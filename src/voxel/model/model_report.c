@@ -3,6 +3,7 @@
 #include "voxel/solid/outside_parts.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 /** A part that has triangles, of which none set a voxel. */
@@ -23,8 +24,36 @@ static void count_empty_parts(vxm_model_pass *pass, vxm_voxelize_report *report)
     if (is_empty(solid, p)) {
       bool outside = vxm_part_is_outside(solid, p);
       report->outside_parts += outside;
-      report->empty_parts += !outside;
+      report->empty_parts += !outside && !pass->separating;
     }
+}
+
+/** A part that lies in the grid, and sets no voxel. */
+static bool is_lost(const vxm_voxel_pass *solid, size_t part) {
+  return is_empty(solid, part) && !vxm_part_is_outside(solid, part);
+}
+
+/** The area of all faces, or of those of parts without a voxel, in squares of voxels. */
+static double surface_area(const vxm_voxel_pass *solid, bool lost) {
+  const vxm_triangle_set *triangles = &solid->analysis->triangles;
+  double unit = (double)solid->placed.lattice.unit, area = 0;
+  for (size_t t = 0; t < triangles->triangle_count; t++) {
+    double p[3][3], sum = 0;
+    if (vxm_role_of(triangles, t) != VXM_ROLE_FACE || (lost && !is_lost(solid, triangles->part[t])))
+      continue;
+    for (int k = 0; k < 3; k++) {
+      vxm_point at = vxm_snapped_points_at(&solid->placed, triangles->corners[t][k]);
+      for (int a = 0; a < 3; a++)
+        p[k][a] = (double)at.at[a] / unit;
+    }
+    for (int u = 0; u < 3; u++) {
+      int v = (u + 1) % 3;
+      double n = (p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) - (p[1][v] - p[0][v]) * (p[2][u] - p[0][u]);
+      sum += n * n;
+    }
+    area += sqrt(sum) / 2;
+  }
+  return area;
 }
 
 /** The first few parts that set no voxel, inside or outside of the grid, each by one of its vertices. */
@@ -47,14 +76,21 @@ static const char *name_parts(const vxm_model_pass *pass, bool outside, int64_t 
   return names;
 }
 
+/** What helps where there are no voxels. */
+static const char *remedy(const vxm_model_pass *pass) {
+  return pass->is_field ? "a higher resolution (-r) may keep them"
+                        : "--thin keep keeps them, and so may a higher resolution (-r)";
+}
+
 static void warn_of_empty_parts(vxm_model_pass *pass, const vxm_voxelize_report *report) {
   char names[200];
   if (report->empty_parts > 0 && report->voxels > 0 && !vxm_faces_wanted(&pass->solid.options))
     vxm_warn(pass->warnings,
-             "%" PRId64 " of %" PRId64
-             " parts hold no voxel centre, being thinner than a voxel or open sheets: those at "
-             "%s; --mode both keeps them, and so may a higher resolution (-r)",
-             report->empty_parts, report->parts, name_parts(pass, false, report->empty_parts, names));
+             "%" PRId64 " of %" PRId64 " parts, %.2g %% of the surface, hold no voxel centre, being thinner "
+             "than a voxel or open sheets: those at %s; %s",
+             report->empty_parts, report->parts,
+             100 * surface_area(&pass->solid, true) / surface_area(&pass->solid, false),
+             name_parts(pass, false, report->empty_parts, names), remedy(pass));
   if (report->outside_parts > 0 && report->voxels > 0)
     vxm_warn(pass->warnings,
              "%" PRId64 " of %" PRId64 " parts lie outside of the grid: those at %s; see --bounds and --like",
@@ -70,8 +106,9 @@ static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
     vxm_warn(warnings, "the model lies outside of the grid: check --bounds or --like");
   else if (report->voxels == 0)
     vxm_warn(warnings,
-             "no voxel centre is inside: the model is open, flat or thinner than a voxel; try --mode both "
-             "or a higher resolution (-r)");
+             "no voxel centre is inside: the model is open, flat or thinner than a voxel; try %sa higher "
+             "resolution (-r)",
+             pass->is_field ? "" : "--thin keep or ");
   warn_of_empty_parts(pass, report);
   const vxm_engine *engine = pass->solid.engine;
   if (engine && engine->falls_back && !engine->ops)
@@ -98,7 +135,11 @@ void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t
       .contested = pass->solid.contested,
       .winding_decided = pass->solid.winding_decided,
       .voxels = voxels,
-      .hash = hash};
+      .hash = hash,
+      .thin_voxels = pass->thin.thin.added};
+  if (pass->thin.thin.area > 0)
+    report->thin_share =
+        fmin((double)pass->thin.thin.area / VXM_OFFSET_UNIT / surface_area(&pass->solid, false), 1);
   count_empty_parts(pass, report);
   warn(pass, report);
 }

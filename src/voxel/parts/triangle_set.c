@@ -10,6 +10,7 @@ typedef struct builder {
   vxm_triangle_set *triangles;
   const vxm_soup *soup;
   size_t *next;    /**< per part: where the next triangle goes, or how many there are */
+  bool polygons;   /**< a face has more than three corners */
   vxm_error error; /**< of the last allocation that failed */
 } builder;
 
@@ -42,10 +43,13 @@ static bool has_three_corners(uint32_t p, uint32_t q, uint32_t r) {
 }
 
 /** Counts a triangle of its part (no triangles yet) or puts it in place. */
-static void add(builder *b, uint32_t part, uint32_t p, uint32_t q, uint32_t r) {
+static void add(builder *b, uint32_t part, uint32_t polygon, uint32_t p, uint32_t q, uint32_t r) {
   size_t at = b->next[part]++;
+  b->polygons |= polygon != 0;
   if (!b->triangles->corners)
     return;
+  if (b->triangles->polygon)
+    b->triangles->polygon[at] = polygon;
   uint32_t *corner = b->triangles->corners[at];
   corner[0] = p;
   corner[1] = q;
@@ -62,7 +66,7 @@ static void cover_face(builder *b, size_t face) {
   for (size_t i = 1; i + 1 < n; i++) {
     uint32_t p = corner[apex], q = corner[(apex + i) % n], r = corner[(apex + i + 1) % n];
     if (has_three_corners(p, q, r))
-      add(b, part, p, q, r);
+      add(b, part, n > 3 ? (uint32_t)face + 1 : 0, p, q, r);
   }
 }
 
@@ -81,7 +85,7 @@ static bool add_caps(builder *b) {
   for (size_t l = 0; split->cap_begin && l < split->loops.count; l++)
     for (size_t t = split->cap_begin[l]; t < split->cap_begin[l + 1]; t++) {
       const uint32_t *v = split->caps.triangles[t];
-      add(b, split->loop_part[l], v[0], v[1], v[2]);
+      add(b, split->loop_part[l], 0, v[0], v[1], v[2]);
     }
   return true;
 }
@@ -94,7 +98,7 @@ static bool add_cones(builder *b) {
     uint32_t part = split->loop_part[l];
     for (size_t s = loops->begin[l]; s < loops->begin[l + 1]; s++) {
       const vxm_edge *edge = &split->edges.edges[loops->edge[s]];
-      add(b, part, edge->a, edge->b, vxm_apex_of(b->triangles, part));
+      add(b, part, 0, edge->a, edge->b, vxm_apex_of(b->triangles, part));
     }
   }
   return true;
@@ -132,6 +136,9 @@ static vxm_status make_triangles(builder *b) {
                     total);
   triangles->triangle_count = total;
   triangles->part = allocate(b, total, sizeof *triangles->part);
+  triangles->polygon = b->polygons ? allocate(b, total, sizeof *triangles->polygon) : NULL;
+  if (b->polygons && !triangles->polygon)
+    return b->error.code;
   triangles->corners = allocate(b, total, sizeof *triangles->corners);
   if (!triangles->corners || !triangles->part)
     return b->error.code;
@@ -285,6 +292,7 @@ void vxm_triangle_set_destroy(vxm_triangle_set *triangles) {
   vxm_free(triangles->context, triangles->vertex);
   vxm_free(triangles->context, triangles->parts);
   vxm_free(triangles->context, triangles->part);
+  vxm_free(triangles->context, triangles->polygon);
   vxm_free(triangles->context, triangles->corners);
   *triangles = (vxm_triangle_set){.context = triangles->context, .split = {.context = triangles->context}};
 }

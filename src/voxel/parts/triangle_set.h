@@ -44,6 +44,8 @@ typedef struct vxm_triangle_set {
   const vxm_soup *soup;
   uint32_t (*corners)[3]; /**< points of each triangle */
   uint32_t *part;         /**< of each triangle */
+  uint32_t *polygon; /**< of each triangle: 0, or one more than the number of its face if that has more than
+                        three corners; its triangles follow one another. NULL = all 0 */
   size_t triangle_count;
   vxm_part *parts;
   /* Points: the vertices that triangles have, and the caps' own, in the order in which triangles first have

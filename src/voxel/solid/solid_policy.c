@@ -26,6 +26,16 @@ bool vxm_one_voter(const vxm_voxelize_options *options) {
   return options->method != VXM_METHOD_VOTE && options->method != VXM_METHOD_WINDING;
 }
 
+int vxm_thin_separating(const vxm_voxelize_options *options) {
+  bool automatic = options->method == VXM_METHOD_VOTE && options->vote == VXM_VOTE_AUTO;
+  if (vxm_faces_wanted(options) && options->surface == VXM_SURFACE_CONSERVATIVE)
+    return 0; /* which has all that would be added */
+  if (!vxm_solid_wanted(options) || options->thin == VXM_THIN_DROP ||
+      (options->thin == VXM_THIN_AUTO && !automatic))
+    return 0;
+  return options->thin == VXM_THIN_KEEP26 ? 26 : 6;
+}
+
 size_t vxm_voted_begin(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
   const vxm_split *split = &analysis->triangles.split;
   /* Where no edge is odd the axes agree (voxel/parity/parity_difference.h), and there is nothing to vote on.

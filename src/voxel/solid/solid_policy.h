@@ -14,6 +14,8 @@ bool vxm_solid_wanted(const vxm_voxelize_options *options);
 bool vxm_shell_wanted(const vxm_voxelize_options *options);
 /** Whether holes are capped: only where no rule of the papers was asked for. */
 bool vxm_caps_wanted(const vxm_voxelize_options *options);
+/** Whether thin parts are kept: 0, or 6 or 26 as for vxm_thin_add. */
+int vxm_thin_separating(const vxm_voxelize_options *options);
 /** Whether the method is one voter for all parts. */
 bool vxm_one_voter(const vxm_voxelize_options *options);
 /** The first part of those that voters decide. If there are any, they have odd edges. */

@@ -2,6 +2,7 @@
 #include "voxel/sparse/sparse.h"
 #include "voxel/model/memory_need.h"
 #include "voxel/model/model_report.h"
+#include "voxel/thin/thin_sparse.h"
 
 /** Bytes of a range of slices, unless so few are more. */
 static const uint64_t window_bytes_most = UINT64_C(1) << 26;
@@ -115,6 +116,13 @@ vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_mo
     status = unite_elsewhere(out, model, pass, error);
   if (status == VXM_OK && !*out)
     status = build(out, model, pass, error);
+  if (status == VXM_OK && pass->separating && is_direct(model)) /* windows have it already */
+    status = vxm_thin_add_sparse(&pass->thin.thin, out, &pass->solid.analysis->triangles, &pass->solid.placed,
+                                 pass->separating, error);
+  if (status != VXM_OK) {
+    vxm_sparse_destroy(*out);
+    *out = NULL;
+  }
   if (status == VXM_OK && report) {
     int64_t voxels;
     uint64_t hash;

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/thin/centre_cells.h"
+#include "voxel/thin/voxel_set.h"
+
+const int8_t vxm_link_step[VXM_LINK_DIRECTIONS][3] = {
+    {1, 0, 0}, {0, 1, 0},  {0, 0, 1},                                     /* over faces */
+    {1, 1, 0}, {-1, 1, 0}, {1, 0, 1},  {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}, /* over edges */
+    {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}                        /* over corners */
+};
+
+bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit) {
+  const int64_t mask = (INT64_C(1) << VXM_VIEW_AXIS_BITS) - 1;
+  return vxm_octree_get(view->octree, bit & mask, bit >> VXM_VIEW_AXIS_BITS & mask,
+                        bit >> 2 * VXM_VIEW_AXIS_BITS) ||
+         (view->added && vxm_voxel_set_has(view->added, (uint64_t)bit));
+}
+
+/** The voxel of a number. */
+static void lowest_of(const vxm_view *view, uint64_t number, int64_t lowest[3]) {
+  for (int a = 0; a < 3; a++) {
+    uint64_t size = (uint64_t)(view->end[a] - view->begin[a] + 2);
+    lowest[a] = (int64_t)(number % size) + view->begin[a] - 1;
+    number /= size;
+  }
+}
+
+/** The axes that a kind spans, lowest first; a link is an axis of its own. */
+static int span_of(int kind, int axes[3]) {
+  int count = 0;
+  if (kind < VXM_LINK_DIRECTIONS)
+    return 1;
+  for (int a = 0; a < 3; a++)
+    if (kind == VXM_CELL_CUBE || a != kind - VXM_CELL_SQUARE)
+      axes[count++] = a;
+  return count;
+}
+
+int vxm_cell_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]) {
+  int axes[3] = {0, 0, 0}, span = span_of(kind, axes);
+  for (int e = 0; e < 1 << span; e++)
+    for (int a = 0; a < 3; a++) {
+      ends[e][a] = lowest[a];
+      if (kind < VXM_LINK_DIRECTIONS)
+        ends[e][a] += e * vxm_link_step[kind][a];
+      for (int s = 0; s < span && kind >= VXM_LINK_DIRECTIONS; s++)
+        ends[e][a] += axes[s] == a && (e >> s & 1);
+    }
+  return 1 << span;
+}
+
+bool vxm_view_any_set(const vxm_view *view, const int64_t (*voxels)[3], int count, bool *held) {
+  bool any = false;
+  *held = false;
+  for (int v = 0; v < count; v++) {
+    bool holds = vxm_view_holds(view, voxels[v]);
+    *held |= holds;
+    any |= holds && vxm_view_bit_set(view, vxm_view_bit(view, voxels[v]));
+  }
+  return any;
+}
+
+bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]) {
+  int kind = meetings[0].kind, axes[3], span = span_of(kind, axes);
+  int64_t sum[3] = {0, 0, 0}, lowest[3], ends[8][3];
+  unsigned met = 0; /* ends whose boxes the surface meets */
+  lowest_of(view, meetings[0].number, lowest);
+  int ends_count = vxm_cell_ends(ends, kind, lowest), best = -1;
+  for (int e = 0; e < ends_count; e++)
+    if (vxm_view_set(view, ends[e]))
+      return false;
+  for (size_t m = 0, next; m < count; m = next) {
+    for (next = m + 1; next < count && meetings[next].polygon == meetings[m].polygon; next++)
+      ;
+    if (meetings[m].polygon && (next - m) % 2 == 0)
+      continue;
+    for (size_t i = m; i < next; i++) {
+      unsigned here = (1U << (1 << span)) - 1;
+      for (int s = 0; s < span; s++) {
+        static const unsigned upper[3] = {0xaa, 0xcc, 0xf0};
+        int32_t offset = meetings[i].offset[s];
+        sum[s] += offset;
+        here &= offset < 0 ? ~upper[s] : offset > 0 ? upper[s] : ~0U;
+      }
+      met |= here;
+    }
+  }
+  int64_t nearest = 0;
+  for (int e = 0; e < ends_count; e++) {
+    if (!(met >> e & 1) || !vxm_view_holds(view, ends[e]))
+      continue;
+    int64_t nearness = 0;
+    for (int s = 0; s < span; s++)
+      nearness += e >> s & 1 ? sum[s] : -sum[s];
+    if (best < 0 || nearness > nearest) {
+      best = e;
+      nearest = nearness;
+    }
+  }
+  for (int a = 0; a < 3 && best >= 0; a++)
+    voxel[a] = ends[best][a];
+  return best >= 0;
+}

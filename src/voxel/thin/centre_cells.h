@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * What lies between voxel centres: the link between two of them, the square between four and the cube between
+ * eight, as the surface meets them.
+ *
+ * Where a face crosses a link, an edge crosses a square, or a vertex lies in a cube, and no voxel at its ends
+ * is set, one of them is to be: the one about which the surface there has its middle. Each meeting is a
+ * record; the records of a link, square or cube are added up in any order.
+ */
+#ifndef VXM_VOXEL_THIN_CENTRE_CELLS_H
+#define VXM_VOXEL_THIN_CENTRE_CELLS_H
+
+#include "grid/octree.h"
+
+/** Directions of links: along x, y, z, then over the edges and over the corners of voxels. */
+enum { VXM_LINK_AXES = 3, VXM_LINK_EDGES = 9, VXM_LINK_DIRECTIONS = 13 };
+
+/** The step from the lower to the upper end of a link; the last axis that it changes, it changes by 1. */
+extern const int8_t vxm_link_step[VXM_LINK_DIRECTIONS][3];
+
+/** A link by its direction, a square by the axis across it, or a cube. */
+enum { VXM_CELL_SQUARE = VXM_LINK_DIRECTIONS, VXM_CELL_CUBE = VXM_CELL_SQUARE + 3 };
+
+/** The order in which voxels are chosen: what an earlier stage sets a later one need not. Links along the
+ * axis along which a face's normal is longest come first, as they give a plate one voxel per column. */
+typedef enum vxm_thin_stage {
+  VXM_THIN_DOMINANT_LINKS,
+  VXM_THIN_LINKS,        /**< along the other axes */
+  VXM_THIN_EDGE_LINKS,   /**< over edges of voxels */
+  VXM_THIN_CORNER_LINKS, /**< over corners of voxels */
+  VXM_THIN_SQUARES,
+  VXM_THIN_CUBES
+} vxm_thin_stage;
+
+/** Parts of a voxel in an offset, beyond which it is rounded. */
+enum { VXM_OFFSET_UNIT = 1 << 20 };
+
+/** The surface in a link, square or cube. */
+typedef struct vxm_meeting {
+  uint64_t number;   /**< of its lowest voxel, vxm_view_number */
+  int32_t offset[3]; /**< from the middle, along the axes that it spans, lowest first; parts of a voxel */
+  uint32_t polygon;  /**< 0, or one beyond the number of a face of more than three corners: it covers only
+                        where an odd number of its triangles do */
+  uint8_t stage, kind;
+} vxm_meeting;
+
+/** Bits of a coordinate in the number of a bit of an octree. */
+enum { VXM_VIEW_AXIS_BITS = 21 };
+
+/** The bits of a window, or an octree, as voxels of the space. Outside of it nothing is set. */
+typedef struct vxm_view {
+  uint64_t *words; /**< NULL: those of the octree */
+  const vxm_sparse *octree;
+  const struct vxm_voxel_set *added; /**< beside the octree's; NULL = none */
+  int64_t begin[3], end[3];          /**< of the window along x, y, z */
+  int64_t step[3];                   /**< bits from a voxel to the next one */
+  int64_t origin;                    /**< bits from voxel (0, 0, 0) to the first one, negated */
+} vxm_view;
+
+static inline vxm_view vxm_view_of(const vxm_window *window) {
+  vxm_view view = {.words = window->words};
+  const int axis[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
+  const int64_t step[3] = {1, (int64_t)window->row_words * 64, (int64_t)window->slice_words * 64};
+  const int64_t end[3] = {window->fast_dim, window->middle_dim, window->end};
+  for (int i = 0; i < 3; i++) {
+    view.step[axis[i]] = step[i];
+    view.end[axis[i]] = end[i];
+  }
+  view.begin[axis[2]] = window->begin;
+  view.origin = -window->begin * step[2];
+  return view;
+}
+
+/** A view of an octree: a bit's number is its voxel's coordinates side by side. */
+static inline vxm_view vxm_view_of_octree(const vxm_sparse *octree) {
+  vxm_view view = {.octree = octree};
+  for (int a = 0; a < 3; a++) {
+    view.end[a] = octree->space.dims[a];
+    view.step[a] = INT64_C(1) << (VXM_VIEW_AXIS_BITS * a);
+  }
+  return view;
+}
+
+static inline bool vxm_view_holds(const vxm_view *view, const int64_t voxel[3]) {
+  return voxel[0] >= view->begin[0] && voxel[0] < view->end[0] && voxel[1] >= view->begin[1] &&
+         voxel[1] < view->end[1] && voxel[2] >= view->begin[2] && voxel[2] < view->end[2];
+}
+
+/** The bit of a voxel of the view. */
+static inline int64_t vxm_view_bit(const vxm_view *view, const int64_t voxel[3]) {
+  return view->origin + voxel[0] * view->step[0] + voxel[1] * view->step[1] + voxel[2] * view->step[2];
+}
+
+/** See vxm_view_bit_set, of an octree. */
+bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit);
+
+static inline bool vxm_view_bit_set(const vxm_view *view, int64_t bit) {
+  if (!view->words)
+    return vxm_view_octree_bit_set(view, bit);
+  return view->words[bit / 64] >> (bit % 64) & 1;
+}
+
+static inline bool vxm_view_set(const vxm_view *view, const int64_t voxel[3]) {
+  return vxm_view_holds(view, voxel) && vxm_view_bit_set(view, vxm_view_bit(view, voxel));
+}
+
+/** The number of the lowest voxel of a link, square or cube, which may lie one before the view; below 2^61.
+ */
+static inline uint64_t vxm_view_number(const vxm_view *view, const int64_t lowest[3]) {
+  uint64_t number = 0;
+  for (int a = 2; a >= 0; a--)
+    number =
+        number * (uint64_t)(view->end[a] - view->begin[a] + 2) + (uint64_t)(lowest[a] - view->begin[a] + 1);
+  return number;
+}
+
+/** The voxels at the ends of a kind: 2 of a link, 4 of a square, 8 of a cube. */
+int vxm_cell_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]);
+
+/** Whether one of some voxels is set; `*held`: whether the view holds one of them. */
+bool vxm_view_any_set(const vxm_view *view, const int64_t (*voxels)[3], int count, bool *held);
+
+/**
+ * Adds up meetings and chooses the voxel: among those whose box the surface meets there and
+ * which the view holds, the one nearest to the mean. A polygon that meets it an even number of times does not
+ * count.
+ *
+ * @param count meetings of one link, square or cube, polygons in order
+ * @return false if there is no such voxel, or one at the ends is set by now
+ */
+bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]);
+
+#endif

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/thin/meetings.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef vxm_link_frame frame;
+
+static frame frame_of(const vxm_thin_job *job, vxm_meetings *meetings, int direction) {
+  const int8_t *step = vxm_link_step[direction];
+  const vxm_view *view = &job->view;
+  int w = step[2] ? 2 : step[1] ? 1 : 0;
+  frame f = {
+      .job = job, .meetings = meetings, .direction = direction, .w = w, .plain = direction < VXM_LINK_AXES};
+  f.u = view->step[(w + 1) % 3] < view->step[(w + 2) % 3] ? (w + 1) % 3
+                                                          : (w + 2) % 3; /* rows along near bits */
+  f.v = 3 - f.u - w;
+  for (int a = 0; a < 3; a++) {
+    int64_t shear = a == w ? 0 : step[a], far = view->end[w];
+    f.shear[a] = shear;
+    f.begin[a] = view->begin[a] - (shear > 0 ? far : 0);
+    f.end[a] = view->end[a] + (a == w ? 1 : shear < 0 ? far : 0);
+  }
+  return f;
+}
+
+/** Whether the normal of the triangle is longest along w, the lowest axis of equals. */
+static bool is_dominant(const frame *f) {
+  const double *size = f->surface->size;
+  for (int a = 0; a < 3; a++)
+    if (a < f->w ? size[a] >= size[f->w] : size[a] > size[f->w])
+      return false;
+  return f->plain;
+}
+
+/** The normal of a triangle: its products are exact where it matters, to tell equals, of small numbers. */
+vxm_link_surface vxm_link_surface_of(const vxm_point p[3]) {
+  vxm_link_surface out;
+  double d[2][3], sum = 0;
+  for (int k = 0; k < 2; k++)
+    for (int a = 0; a < 3; a++)
+      d[k][a] = (double)(p[k + 1].at[a] - p[0].at[a]);
+  for (int w = 0; w < 3; w++) {
+    int u = (w + 1) % 3, v = (w + 2) % 3;
+    out.size[w] = fabs(d[0][u] * d[1][v] - d[0][v] * d[1][u]);
+    sum += out.size[w] * out.size[w];
+  }
+  out.length = sqrt(sum);
+  return out;
+}
+
+/** A triangle crosses the link to voxel `to` of a column, `offset` voxels beyond its middle: looks at the
+ * ends. */
+void vxm_meet_link(const vxm_link_frame *f, int64_t column_u, int64_t column_v, int64_t to, double offset) {
+  const vxm_view *view = &f->job->view;
+  const int8_t *step = vxm_link_step[f->direction];
+  if (to < f->begin[f->w] || to >= f->end[f->w])
+    return;
+  int64_t ends[2][3], *lower = ends[0], *upper = ends[1];
+  upper[f->u] = column_u + f->shear[f->u] * to;
+  upper[f->v] = column_v + f->shear[f->v] * to;
+  upper[f->w] = to;
+  for (int a = 0; a < 3; a++)
+    lower[a] = upper[a] - step[a];
+  bool held;
+  if (vxm_view_any_set(view, (const int64_t(*)[3])ends, 2, &held) || !held)
+    return;
+  const double offsets[3] = {offset, 0, 0};
+  bool dominant = is_dominant(f);
+  int64_t slice =
+      lower[f->job->slow] < f->job->view.begin[f->job->slow] ? upper[f->job->slow] : lower[f->job->slow];
+  if (dominant && slice >= f->job->counted[0] && slice < f->job->counted[1])
+    f->meetings->thin_area += llrint(f->surface->length / f->surface->size[f->w] * VXM_OFFSET_UNIT);
+  vxm_thin_stage stage = f->plain
+                             ? (dominant ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS)
+                             : (f->direction < VXM_LINK_EDGES ? VXM_THIN_EDGE_LINKS : VXM_THIN_CORNER_LINKS);
+  const vxm_triangle_set *triangles = f->job->triangles;
+  vxm_meetings_put(f->meetings, view, stage, lower, f->direction, offsets,
+                   triangles->polygon ? triangles->polygon[f->triangle] : 0);
+}
+
+#define INTEGER int64_t
+#define NAME(name) name##_narrow
+#define RULE(name) name##_64
+#include "voxel/thin/links_body.inc"
+#undef INTEGER
+#undef NAME
+#undef RULE
+
+#define INTEGER vxm_int128
+#define NAME(name) name##_wide
+#define RULE(name) name##_128
+#include "voxel/thin/links_body.inc"
+#undef INTEGER
+#undef NAME
+#undef RULE
+
+/** The voxels whose centres a triangle's box reaches over along each axis, and the longest side of the box.
+ */
+static int64_t box_of(int64_t range[3][2], const vxm_lattice *lattice, const vxm_point corner[3]) {
+  int64_t longest = 0;
+  for (int a = 0; a < 3; a++) {
+    int64_t low = vxm_min(vxm_min(corner[0].at[a], corner[1].at[a]), corner[2].at[a]);
+    int64_t high = vxm_max(vxm_max(corner[0].at[a], corner[1].at[a]), corner[2].at[a]);
+    longest = vxm_max(longest, high - low);
+    range[a][0] = vxm_lattice_first(lattice, low);
+    range[a][1] = vxm_lattice_first(lattice, high);
+  }
+  return longest;
+}
+
+/** A triangle in the frame of a direction, with its box there. */
+static void cross_box(const frame *f, const vxm_point corner[3], int64_t range[3][2], int64_t longest) {
+  /* Differences up to this keep products within 63 bits (voxel/parity/raster_body.inc). */
+  const int64_t narrow = INT64_C(1) << 20;
+  const int64_t u[2] = {vxm_max(range[f->u][0], f->begin[f->u]), vxm_min(range[f->u][1], f->end[f->u])};
+  const int64_t v[2] = {vxm_max(range[f->v][0], f->begin[f->v]), vxm_min(range[f->v][1], f->end[f->v])};
+  if (u[0] >= u[1] || v[0] >= v[1] || range[f->w][0] >= f->end[f->w] || range[f->w][1] < f->begin[f->w])
+    return;
+  if (longest <= narrow)
+    cross_narrow(f, corner, u, v);
+  else
+    cross_wide(f, corner, u, v);
+}
+
+/** A triangle that has to be sheared. */
+static void cross_sheared(const frame *f, const vxm_point points[3]) {
+  const vxm_lattice *lattice = &f->job->placed->lattice;
+  vxm_point corner[3];
+  int64_t range[3][2];
+  for (int k = 0; k < 3; k++)
+    for (int a = 0; a < 3; a++)
+      corner[k].at[a] = points[k].at[a] - f->shear[a] * (points[k].at[f->w] - lattice->unit / 2);
+  int64_t longest = box_of(range, lattice, corner);
+  cross_box(f, corner, range, longest);
+}
+
+int64_t vxm_link_voxel(const vxm_link_frame *f, const vxm_point points[3], int64_t column_u, int64_t column_v,
+                       double *rest) {
+  vxm_point corner[3];
+  memcpy(corner, points, sizeof corner);
+  int64_t range[3][2], longest = box_of(range, &f->job->placed->lattice, corner);
+  return longest <= INT64_C(1) << 20 ? voxel_narrow(f, corner, column_u, column_v, rest)
+                                     : voxel_wide(f, corner, column_u, column_v, rest);
+}
+
+void vxm_link_frames(vxm_link_frame frames[VXM_LINK_DIRECTIONS], const vxm_thin_job *job,
+                     vxm_meetings *meetings) {
+  for (int d = 0; d < job->directions; d++)
+    frames[d] = frame_of(job, meetings, d);
+}
+
+void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ) {
+  const vxm_thin_job *job = frames[0].job;
+  vxm_point points[3];
+  for (int k = 0; k < 3; k++)
+    points[k] = vxm_snapped_points_at(job->placed, job->triangles->corners[triangle][k]);
+  vxm_link_surface surface = vxm_link_surface_of(points);
+  int64_t range[3][2], longest = box_of(range, &job->placed->lattice, points);
+  for (int d = 0; d < job->directions; d++) {
+    if (d < VXM_LINK_AXES &&
+        (!(differ & vxm_cell_mask((d + 1) % 3)) || !(differ & vxm_cell_mask((d + 2) % 3))))
+      continue;
+    frames[d].triangle = triangle;
+    frames[d].surface = &surface;
+    if (d < VXM_LINK_AXES)
+      cross_box(&frames[d], points, range, longest);
+    else
+      cross_sheared(&frames[d], points);
+  }
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Where the surface meets what lies between voxel centres (voxel/thin/centre_cells.h): faces cross links,
+ * edges cross squares, faces lie in cubes. Only meetings at which no voxel is set are kept.
+ */
+#ifndef VXM_VOXEL_THIN_MEETINGS_H
+#define VXM_VOXEL_THIN_MEETINGS_H
+
+#include "base/context.h"
+#include "voxel/thin/thin_job.h"
+
+/** Meetings that one thread has found. Start from {.context = ...}. */
+typedef struct vxm_meetings {
+  vxm_context *context;
+  vxm_meeting *list;
+  size_t count, capacity;
+  size_t most;       /**< of `count` */
+  bool is_full;      /**< there were more */
+  int64_t thin_area; /**< of faces at links along the axes along which their normals are longest; in parts of
+                        a square of voxels, of which a square has VXM_OFFSET_UNIT */
+  vxm_error error;   /**< the first failure; nothing is put after it */
+} vxm_meetings;
+
+/** Puts a meeting into the list. `offset` is in parts of a voxel from the middle. */
+void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
+                      const int64_t lowest[3], int kind, const double offset[3], uint32_t polygon);
+
+/** The normal of a triangle, as twice its area. */
+typedef struct vxm_link_surface {
+  double size[3]; /**< of its components */
+  double length;
+} vxm_link_surface;
+
+/**
+ * Links of one direction: columns along its axis w in a frame that is sheared along the others. A voxel at
+ * (u, v, w) has column (u - s_u w, v - s_v w), s being the steps of the direction. The shear takes voxel
+ * centres to voxel centres, and lattice points to lattice points.
+ */
+typedef struct vxm_link_frame {
+  const vxm_thin_job *job;
+  vxm_meetings *meetings;
+  size_t triangle;                 /**< that is looked at */
+  const vxm_link_surface *surface; /**< its own */
+  int direction, u, v, w;
+  bool plain; /**< along an axis: no shear */
+  int64_t shear[3];
+  int64_t begin[3], end[3]; /**< columns, and voxels along w that are the upper end of a link of the view */
+} vxm_link_frame;
+
+/** The frames of a job's directions, for one thread. */
+void vxm_link_frames(vxm_link_frame frames[VXM_LINK_DIRECTIONS], const vxm_thin_job *job,
+                     vxm_meetings *meetings);
+/** The normal of a triangle: its products are exact where it matters, to tell equals, of small numbers. */
+vxm_link_surface vxm_link_surface_of(const vxm_point corner[3]);
+/** A triangle, which is told in the frame, crosses the link to voxel `to` of a column, `offset` voxels beyond
+ * its middle: looks at its ends. */
+void vxm_meet_link(const vxm_link_frame *frame, int64_t column_u, int64_t column_v, int64_t to,
+                   double offset);
+/** The voxel beyond the plane of a triangle in a column, and how far the plane lies behind the centre before
+ * that, in parts of a voxel: exactly. */
+int64_t vxm_link_voxel(const vxm_link_frame *frame, const vxm_point corner[3], int64_t column_u,
+                       int64_t column_v, double *rest);
+/** The links that a triangle crosses. @param differ the axes along which its corners have different cells, or
+ * all (vxm_cell_mask) */
+void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ);
+/** The squares in which its sections lie, and all links that it crosses. */
+void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ);
+/** The cube in which it lies; nothing if it reaches into several, as it crosses squares then. */
+void vxm_meet_cube(vxm_meetings *meetings, const vxm_thin_job *job, size_t triangle);
+
+/** Fills the maps of vxm_thin_job of a window, without padding between slices; middles[7] are its own words.
+ */
+void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window);
+
+/** What triangles begin..end-1 meet: links along the axes, squares and cubes. The points' cells must be
+ * known. */
+void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end);
+
+#endif

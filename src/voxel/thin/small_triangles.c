@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Triangles of a fine mesh: nearly all lie in two cells along each axis at most, and have a voxel set in
+ * their middle. */
+#include "voxel/thin/meetings.h"
+
+/* Numbers of cells side by side in a word, as vxm_snapped_points has them, are compared all three at once:
+   the highest bit of each is free. */
+
+static const uint64_t ones = UINT64_C(1) | UINT64_C(1) << VXM_CELL_BITS | UINT64_C(1) << 2 * VXM_CELL_BITS;
+
+/** The highest bit of each number of `a` that is not below that of `b`. */
+static inline uint64_t not_below(uint64_t a, uint64_t b) {
+  const uint64_t guards = ones << (VXM_CELL_BITS - 1);
+  return ((a | guards) - b) & guards;
+}
+
+/** All lower bits of the numbers whose highest bit is set. */
+static inline uint64_t spread(uint64_t guards) {
+  return guards - (guards >> (VXM_CELL_BITS - 1));
+}
+
+static inline uint64_t least(uint64_t a, uint64_t b) {
+  uint64_t mask = spread(not_below(a, b));
+  return (b & mask) | (a & ~mask);
+}
+
+static inline uint64_t most(uint64_t a, uint64_t b) {
+  uint64_t mask = spread(not_below(a, b));
+  return (a & mask) | (b & ~mask);
+}
+
+/** Numbers of cells of which all voxels around are in the view. */
+typedef struct bounds {
+  uint64_t first, last;
+} bounds;
+
+static bounds bounds_of(const vxm_view *view) {
+  bounds b = {0, 0};
+  for (int a = 0; a < 3; a++) {
+    b.first |= (uint64_t)(view->begin[a] + 1) << (VXM_CELL_BITS * a);
+    b.last |= (uint64_t)(view->end[a] - 1) << (VXM_CELL_BITS * a);
+  }
+  return b;
+}
+
+/** The bit of the voxel that lies behind a cell along all axes. */
+static inline int64_t bit_behind(const vxm_view *view, uint64_t cell) {
+  const uint64_t mask = vxm_cell_mask(0);
+  return view->origin + (int64_t)(cell & mask) * view->step[0] +
+         (int64_t)(cell >> VXM_CELL_BITS & mask) * view->step[1] +
+         (int64_t)(cell >> 2 * VXM_CELL_BITS) * view->step[2];
+}
+
+/** The box of cells in which a triangle's corners lie. */
+typedef struct cell_box {
+  uint64_t low;
+  unsigned two; /**< the axes along which it has two cells: 1 for x, 2 for y, 4 for z */
+  bool is_near; /**< it has no more along any, and the voxels around them are in the view */
+} cell_box;
+
+static inline cell_box box_of(const bounds *b, uint64_t p, uint64_t q, uint64_t r) {
+  const uint64_t guards = ones << (VXM_CELL_BITS - 1);
+  uint64_t low = least(least(p, q), r), length = most(most(p, q), r) - low;
+  bool is_near = !(length & ~ones) & ((not_below(low, b->first) & not_below(b->last, low)) == guards);
+  return (cell_box){
+      low, (unsigned)(length | length >> (VXM_CELL_BITS - 1) | length >> 2 * (VXM_CELL_BITS - 1)) & 7,
+      is_near};
+}
+
+/* In the middle of a box are the voxels between its two cells along each axis, and along an axis with one
+   cell those on both sides of it. They are ends of every link, square and cube inside the box, so that where
+   one is set whatever a triangle meets in its box has a voxel. */
+
+/** Whether a voxel in the middle of a box that is near is set. */
+static inline bool has_middle(const vxm_view *view, cell_box box) {
+  int64_t bit = bit_behind(view, box.low);
+  for (unsigned v = 0; v < 8; v++)
+    if (!(v & box.two) &&
+        vxm_view_bit_set(view, bit - (v & 1 ? view->step[0] : 0) - (v & 2 ? view->step[1] : 0) -
+                                   (v & 4 ? view->step[2] : 0)))
+      return true;
+  return false;
+}
+
+void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window) {
+  const int axis[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
+  size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim,
+         row_words = window->row_words;
+  for (int two = 6; two >= 0; two--) {
+    int a = 0; /* along which the voxel before is added, to what is there for both axes with two cells */
+    while (two >> axis[a] & 1)
+      a++;
+    const uint64_t *from = middles[two | 1 << axis[a]];
+    uint64_t *to = middles[two];
+    if (a == 0)
+      for (size_t row = 0; row < rows; row++)
+        for (size_t w = 0; w < row_words; w++)
+          to[row * row_words + w] = from[row * row_words + w] | from[row * row_words + w] << 1 |
+                                    (w > 0 ? from[row * row_words + w - 1] >> 63 : 0);
+    else {
+      size_t step = a == 1 ? row_words : window->slice_words, words = rows * row_words;
+      for (size_t w = 0; w < words; w++)
+        to[w] = from[w] | (w >= step ? from[w - step] : 0);
+    }
+  }
+}
+
+/** Triangles that are looked at together, so that those with nothing to do cost little. */
+enum { BATCH = 256 };
+
+/** The triangles from `begin` on that may meet something without a voxel. */
+static size_t keep_unsure(uint32_t kept[BATCH], const vxm_thin_job *job, const bounds *b, size_t begin,
+                          size_t end) {
+  const uint64_t *cells = job->placed->cells;
+  const vxm_view *view = &job->view;
+  size_t count = 0;
+  for (size_t t = begin; t < end; t++) {
+    const uint32_t *corner = job->triangles->corners[t];
+    cell_box box = box_of(b, cells[corner[0]], cells[corner[1]], cells[corner[2]]);
+    kept[count] = (uint32_t)t;
+    if (job->middles[0]) { /* without branches, which would often be guessed wrong */
+      int64_t bit = bit_behind(view, box.low) & -(int64_t)box.is_near;
+      count += !(job->middles[box.two][bit / 64] >> (bit % 64) & box.is_near);
+    } else
+      count += !(box.is_near && has_middle(view, box));
+  }
+  return count;
+}
+
+/** The box of cells of a triangle that is two long at most. */
+typedef struct small {
+  int64_t corner[3][3]; /**< steps from the centre that lies between its two cells along each axis */
+  int64_t low[3];       /**< the number of the first cell, and of that voxel */
+  unsigned beyond[3];   /**< per axis: the corners in the second cell, a bit for each */
+} small;
+
+/** Which side of the centre line along the third axis a section's end lies on: of the plane between the cells
+ * along `axis`, on the side from one corner to another. Exact: the numbers are below 2^22 and 2^30. On the
+ * line, the perturbation decides as in squares.c. */
+static inline bool is_beyond(const small *s, int from, int to, int axis, int other) {
+  const int64_t *p = s->corner[from], *q = s->corner[to];
+  int64_t rise = q[axis] - p[axis];
+  int64_t at = p[other] * rise - p[axis] * (q[other] - p[other]);
+  if (at == 0)
+    at = other > axis ? q[other] - p[other] : 0;
+  return rise > 0 ? at > 0 : at < 0;
+}
+
+static void put_section(const vxm_link_frame *frames, const small *s, const int64_t lowest[3], int axis,
+                        int lone) {
+  const vxm_thin_job *job = frames[0].job;
+  double unit = (double)job->placed->lattice.unit;
+  for (int i = 1; i <= 2; i++) {
+    const int64_t *p = s->corner[lone], *q = s->corner[(lone + i) % 3];
+    double offset[3] = {0, 0, 0}, part = (double)-p[axis] / (double)(q[axis] - p[axis]);
+    int span = 0;
+    for (int a = 0; a < 3; a++)
+      if (a != axis)
+        offset[span++] =
+            ((double)p[a] + (double)(q[a] - p[a]) * part) / unit + (double)(s->low[a] - lowest[a]) - 0.5;
+    vxm_meetings_put(frames[0].meetings, &job->view, VXM_THIN_SQUARES, lowest, VXM_CELL_SQUARE + axis, offset,
+                     0);
+  }
+}
+
+/** Looks at the square in which the section across an axis lies. If it lies in several it crosses the line of
+ * centres in the middle: returns the axis of that, else -1. */
+static inline int meet_section(const vxm_link_frame *frames, const small *s, int axis) {
+  /* the corner that is alone on its side of the plane, by the bits of those beyond */
+  static const uint8_t alone[8] = {0, 0, 1, 2, 2, 1, 0, 0};
+  const vxm_view *view = &frames[0].job->view;
+  int lone = alone[s->beyond[axis]], p = lone == 2 ? 0 : lone + 1, q = lone == 0 ? 2 : lone - 1;
+  int64_t lowest[3], bit = view->origin + s->low[axis] * view->step[axis];
+  lowest[axis] = s->low[axis];
+  for (int i = 1; i <= 2; i++) {
+    int a = axis + i < 3 ? axis + i : axis + i - 3;
+    bool beyond = s->beyond[a] == 7;
+    if (s->beyond[a] != 0 && !beyond) {
+      beyond = is_beyond(s, lone, p, axis, a);
+      if (beyond != is_beyond(s, lone, q, axis, a))
+        return 3 - axis - a;
+    }
+    lowest[a] = s->low[a] - !beyond;
+    bit += lowest[a] * view->step[a];
+  }
+  int64_t u = view->step[axis == 2 ? 0 : axis + 1], v = view->step[axis == 0 ? 2 : axis - 1];
+  bool filled = vxm_view_bit_set(view, bit) | vxm_view_bit_set(view, bit + u) |
+                vxm_view_bit_set(view, bit + v) | vxm_view_bit_set(view, bit + u + v);
+  if (!filled)
+    put_section(frames, s, lowest, axis, lone);
+  return -1;
+}
+
+/**
+ * Whether the link that a triangle crosses on the line of centres in the middle of its box has a voxel set,
+ * where the box has two cells along the line: one end is the voxel in the middle, which is not set. False
+ * where it is not known.
+ */
+static inline bool is_link_filled(const vxm_view *view, const small *s, int axis) {
+  const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+  const int64_t *a = s->corner[0], *b = s->corner[1], *c = s->corner[2];
+  if (s->beyond[axis] == 0 || s->beyond[axis] == 7)
+    return false;
+  /* The plane is at height volume / normal over the middle, twice and six times those: below 2^37 and 2^55.
+   */
+  int64_t normal = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
+  int64_t volume = a[axis] * normal +
+                   a[u] * ((b[v] - a[v]) * (c[axis] - a[axis]) - (b[axis] - a[axis]) * (c[v] - a[v])) +
+                   a[v] * ((b[axis] - a[axis]) * (c[u] - a[u]) - (b[u] - a[u]) * (c[axis] - a[axis]));
+  if (volume == 0 || normal == 0)
+    return false;
+  int64_t voxel[3] = {s->low[0], s->low[1], s->low[2]};
+  voxel[axis] += (volume > 0) == (normal > 0) ? 1 : -1;
+  return vxm_view_bit_set(view, vxm_view_bit(view, voxel));
+}
+
+/** What a triangle without a voxel in its middle meets; false if its box of cells is too long, or at the
+ * border. */
+static bool meet_small(vxm_link_frame *frames, size_t triangle, uint64_t differ) {
+  const vxm_thin_job *job = frames[0].job;
+  const vxm_view *view = &job->view;
+  const uint32_t *corner = job->triangles->corners[triangle];
+  small s;
+  for (int a = 0; a < 3; a++) {
+    int64_t cell[3], low, high;
+    for (int k = 0; k < 3; k++)
+      cell[k] = (int64_t)(job->placed->cells[corner[k]] >> (VXM_CELL_BITS * a) & vxm_cell_mask(0));
+    low = vxm_min(vxm_min(cell[0], cell[1]), cell[2]);
+    high = vxm_max(vxm_max(cell[0], cell[1]), cell[2]);
+    if (high - low > 1 || low <= view->begin[a] || high >= view->end[a] || low + 1 >= view->end[a])
+      return false;
+    s.low[a] = low;
+    s.beyond[a] = 0;
+    for (int k = 0; k < 3; k++) {
+      s.corner[k][a] = job->placed->narrow[corner[k]][a] - vxm_lattice_centre(&job->placed->lattice, low);
+      s.beyond[a] |= (unsigned)(cell[k] > low) << k;
+    }
+  }
+  unsigned lines = 0; /* in the middle that the triangle crosses */
+  for (int axis = 0; axis < 3; axis++)
+    if (differ & vxm_cell_mask(axis)) {
+      int line = meet_section(frames, &s, axis);
+      lines |= line >= 0 ? 1U << line : 0;
+    }
+  bool filled = true;
+  for (int axis = 0; axis < 3; axis++)
+    filled &= !(lines >> axis & 1) || is_link_filled(view, &s, axis);
+  if (!filled)
+    vxm_meet_links(frames, triangle, differ);
+  return true;
+}
+
+static void meet_one(vxm_link_frame *frames, size_t triangle) {
+  const vxm_thin_job *job = frames[0].job;
+  const vxm_triangle_set *triangles = job->triangles;
+  const uint32_t *corner = triangles->corners[triangle];
+  const uint64_t *cells = job->placed->cells;
+  if (vxm_role_of(triangles, triangle) != VXM_ROLE_FACE)
+    return;
+  uint64_t differ = (cells[corner[0]] ^ cells[corner[1]]) | (cells[corner[0]] ^ cells[corner[2]]);
+  bool is_polygon = triangles->polygon && triangles->polygon[triangle];
+  if (differ == 0) {
+    vxm_meet_cube(frames[0].meetings, job, triangle);
+    return;
+  }
+  if (!is_polygon && meet_small(frames, triangle, differ))
+    return;
+  vxm_meet_sections(frames, triangle, differ);
+}
+
+void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end) {
+  bounds b = bounds_of(&frames[0].job->view);
+  for (; begin < end; begin += BATCH) {
+    uint32_t kept[BATCH];
+    size_t count = keep_unsure(kept, frames[0].job, &b, begin, end - begin < BATCH ? end : begin + BATCH);
+    for (size_t k = 0; k < count; k++)
+      meet_one(frames, kept[k]);
+  }
+}

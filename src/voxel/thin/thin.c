@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/thin/thin.h"
+#include "base/threads.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TASK_TRIANGLES = 2048 };
+
+typedef struct search {
+  vxm_thin_adder *thin;
+  const vxm_thin_job *job;
+} search;
+
+static size_t least(size_t a, size_t b) {
+  return a < b ? a : b;
+}
+
+/** A triangle whose cells say nothing. */
+static void look_at(vxm_link_frame *frames, size_t triangle) {
+  const vxm_thin_job *job = frames[0].job;
+  if (vxm_role_of(job->triangles, triangle) != VXM_ROLE_FACE)
+    return;
+  vxm_meet_cube(frames[0].meetings, job, triangle);
+  vxm_meet_sections(frames, triangle, ~UINT64_C(0));
+}
+
+/** Whether numbers of cells leave a bit free (small_triangles.c). */
+static bool cells_are_short(const vxm_thin_job *job) {
+  const int64_t *dims = job->placed->lattice.space.dims, longest = (INT64_C(1) << (VXM_CELL_BITS - 1)) - 1;
+  return !job->placed->wide && dims[0] < longest && dims[1] < longest && dims[2] < longest;
+}
+
+static void look_at_some(size_t task, int worker, void *payload) {
+  const search *s = payload;
+  const vxm_thin_job *job = s->job;
+  vxm_link_frame frames[VXM_LINK_DIRECTIONS];
+  vxm_link_frames(frames, job, &s->thin->found[worker]);
+  size_t end = least(job->triangles->triangle_count, (task + 1) * TASK_TRIANGLES);
+  if (s->thin->found[worker].is_full)
+    return;
+  if (!cells_are_short(job) || job->directions > VXM_LINK_AXES)
+    for (size_t t = task * TASK_TRIANGLES; t < end; t++)
+      look_at(frames, t);
+  else
+    vxm_meet_by_cells(frames, task * TASK_TRIANGLES, end);
+}
+
+/* ---- Sorting ---- */
+
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
+
+/** What a pass of the sort looks at: the kind, then parts of the number, lowest first, then the stage. */
+static inline size_t digit_of(const vxm_meeting *m, int pass) {
+  const int stage = 1 + (64 + DIGIT_BITS - 1) / DIGIT_BITS;
+  return pass == 0 ? m->kind : pass == stage ? m->stage : m->number >> (pass - 1) * DIGIT_BITS & (DIGITS - 1);
+}
+
+/** A pass of a stable sort. */
+static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, int pass) {
+  size_t next[DIGITS] = {0}, total = 0;
+  for (size_t m = 0; m < count; m++)
+    next[digit_of(&from[m], pass)]++;
+  for (int d = 0; d < DIGITS; d++) {
+    size_t here = next[d];
+    next[d] = total;
+    total += here;
+  }
+  for (size_t m = 0; m < count; m++)
+    to[next[digit_of(&from[m], pass)]++] = from[m];
+}
+
+static bool are_of_one(const vxm_meeting *p, const vxm_meeting *q) {
+  return p->stage == q->stage && p->number == q->number && p->kind == q->kind;
+}
+
+static int compare(const void *a, const void *b) {
+  const vxm_meeting *p = a, *q = b;
+  if (p->stage != q->stage)
+    return p->stage < q->stage ? -1 : 1;
+  if (p->number != q->number)
+    return p->number < q->number ? -1 : 1;
+  if (p->kind != q->kind)
+    return p->kind < q->kind ? -1 : 1;
+  return (p->polygon > q->polygon) - (p->polygon < q->polygon);
+}
+
+/** Sorts meetings by stage, then those of one link, square or cube together, by polygon. `from` is
+ * overwritten; returns which of the two has them. */
+static vxm_meeting *sort_meetings(vxm_meeting *from, vxm_meeting *to, size_t count) {
+  const size_t few = 512;
+  const int passes = 2 + (64 + DIGIT_BITS - 1) / DIGIT_BITS;
+  if (count <= few) {
+    qsort(from, count, sizeof *from, compare);
+    return from;
+  }
+  uint64_t bits = 0;
+  for (size_t m = 0; m < count; m++)
+    bits |= from[m].number;
+  for (int pass = 0; pass < passes; pass++) {
+    if (pass > 0 && pass < passes - 1 && !(bits >> (pass - 1) * DIGIT_BITS))
+      continue;
+    sort_by_digit(to, from, count, pass);
+    vxm_meeting *sorted = to;
+    to = from;
+    from = sorted;
+  }
+  for (size_t m = 0, next; m < count; m = next) {
+    bool polygons = false;
+    for (next = m; next < count && are_of_one(&from[next], &from[m]); next++)
+      polygons |= from[next].polygon != 0;
+    if (polygons)
+      qsort(from + m, next - m, sizeof *from, compare);
+  }
+  return from;
+}
+
+/* ---- Choosing ---- */
+
+/** Where voxels go: into the words of a view, or into a set beside its octree. */
+typedef struct target {
+  vxm_voxel_set *added; /**< NULL = the words */
+  uint8_t *confidence;  /**< NULL = not asked for */
+} target;
+
+static vxm_status set_voxel(vxm_thin_adder *thin, const vxm_thin_job *job, const target *to,
+                            const int64_t voxel[3], vxm_error *error) {
+  const vxm_view *view = &job->view;
+  const int64_t *dims = job->placed->lattice.space.dims;
+  int64_t bit = vxm_view_bit(view, voxel);
+  thin->added += voxel[job->slow] >= job->counted[0] && voxel[job->slow] < job->counted[1];
+  if (to->confidence)
+    to->confidence[(voxel[2] * dims[1] + voxel[1]) * dims[0] + voxel[0]] = 255;
+  if (to->added)
+    return vxm_voxel_set_add(to->added, (uint64_t)bit, error);
+  view->words[bit / 64] |= UINT64_C(1) << (bit % 64);
+  return VXM_OK;
+}
+
+/** Chooses for each link, square or cube of one stage, by what is set before it, and sets the voxels then: so
+ * the order within a stage does not matter, and what is added depends on what is near only. */
+static vxm_status apply_stage(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm_meeting *meetings,
+                              size_t count, const target *to, vxm_error *error) {
+  size_t chosen = 0, cell = 0;
+  vxm_status status = VXM_OK;
+  for (size_t m = 0, next; m < count && status == VXM_OK; m = next, cell++) {
+    for (next = m + 1; next < count && are_of_one(&meetings[next], &meetings[m]); next++)
+      ;
+    if (thin->chosen_room == chosen)
+      status = vxm_grow(thin->context, (void **)&thin->chosen, &thin->chosen_room, chosen + 1,
+                        sizeof *thin->chosen, error);
+    if (status == VXM_OK)
+      chosen += vxm_cell_choose(&job->view, meetings + m, next - m, thin->chosen[chosen]);
+    if (status == VXM_OK)
+      status = vxm_ask_at(cell, thin->context, error);
+  }
+  for (size_t c = 0; c < chosen && status == VXM_OK; c++)
+    if (!vxm_view_set(&job->view, thin->chosen[c]))
+      status = set_voxel(thin, job, to, thin->chosen[c], error);
+  return status;
+}
+
+/** Sets the voxels that the meetings ask for, stage by stage. */
+static vxm_status apply(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm_meeting *meetings,
+                        size_t count, const target *to, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  for (size_t m = 0, next; m < count && status == VXM_OK; m = next) {
+    for (next = m + 1; next < count && meetings[next].stage == meetings[m].stage; next++)
+      ;
+    status = apply_stage(thin, job, meetings + m, next - m, to, error);
+  }
+  return status;
+}
+
+/** Whether the lists did not have room for all. */
+static bool are_too_many(const vxm_thin_adder *thin) {
+  bool full = false;
+  for (int w = 0; w < thin->threads; w++)
+    full |= thin->found[w].is_full;
+  return full;
+}
+
+/** All meetings in one list, with room for as many behind. */
+static vxm_status gather(vxm_thin_adder *thin, size_t *count, vxm_error *error) {
+  size_t total = 0;
+  for (int w = 0; w < thin->threads; w++) {
+    if (thin->found[w].error.code != VXM_OK) {
+      vxm_error_pass(error, &thin->found[w].error);
+      return thin->found[w].error.code;
+    }
+    total += thin->found[w].count;
+    thin->area += thin->found[w].thin_area;
+  }
+  *count = total;
+  if (total == 0)
+    return VXM_OK;
+  vxm_status status = VXM_OK;
+  if (2 * total > thin->capacity) {
+    vxm_error local = VXM_ERROR_INIT;
+    vxm_free(thin->context, thin->scratch);
+    thin->scratch = vxm_alloc(thin->context, 2 * total, sizeof *thin->scratch, &local);
+    thin->capacity = thin->scratch ? 2 * total : 0;
+    status = local.code;
+    if (status != VXM_OK)
+      vxm_error_pass(error, &local);
+  }
+  size_t at = 0;
+  for (int w = 0; w < thin->threads && status == VXM_OK; w++) {
+    vxm_meetings *found = &thin->found[w];
+    if (found->count > 0)
+      memcpy(thin->scratch + at, found->list, found->count * sizeof *found->list);
+    at += found->count;
+  }
+  return status;
+}
+
+uint64_t vxm_thin_budget(const vxm_context *context) {
+  const uint64_t most = UINT64_C(1) << 27, least_bytes = UINT64_C(1) << 18, share = 4;
+  uint64_t left = vxm_memory_left(context) / share;
+  return left > most ? most : left < least_bytes ? least_bytes : left;
+}
+
+/** Empty lists for all threads. @param limited whether they may become full */
+static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error) {
+  enum { COPIES = 2 + 2 }; /* a list that has doubled, and two sides of a sort */
+  int threads = vxm_context_threads(thin->context);
+  size_t most = (size_t)(vxm_thin_budget(thin->context) / COPIES / sizeof(vxm_meeting)) / (size_t)threads;
+  for (int w = 0; w < thin->threads; w++) {
+    thin->found[w].count = 0;
+    thin->found[w].thin_area = 0;
+    thin->found[w].is_full = false;
+    thin->found[w].most = limited ? most : SIZE_MAX;
+    thin->found[w].error = (vxm_error)VXM_ERROR_INIT;
+  }
+  if (threads <= thin->threads)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_meetings *found = vxm_realloc(thin->context, thin->found, (size_t)threads, sizeof *found, &local);
+  if (!found) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  thin->found = found;
+  for (; thin->threads < threads; thin->threads++)
+    found[thin->threads] = (vxm_meetings){.context = thin->context, .most = limited ? most : SIZE_MAX};
+  return VXM_OK;
+}
+
+static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to, bool *too_many,
+                      vxm_error *error) {
+  search s = {thin, job};
+  size_t tasks = (job->triangles->triangle_count + TASK_TRIANGLES - 1) / TASK_TRIANGLES, count = 0;
+  vxm_status status = make_room(thin, too_many != NULL, error);
+  if (status == VXM_OK)
+    status = vxm_parallel_asked(thin->context, tasks, look_at_some, &s, error);
+  if (status == VXM_OK && too_many && are_too_many(thin)) {
+    *too_many = true;
+    return VXM_OK;
+  }
+  if (status == VXM_OK)
+    status = gather(thin, &count, error);
+  if (status != VXM_OK || count == 0)
+    return status;
+  job->view.added = to->added;
+  return apply(thin, job, sort_meetings(thin->scratch, thin->scratch + count, count), count, to, error);
+}
+
+/** Makes the maps where they cost less than they save. */
+static vxm_status make_middles(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window,
+                               vxm_error *error) {
+  size_t words = (size_t)(window->end - window->begin) * window->slice_words;
+  bool padded = window->slice_words != window->row_words * (size_t)window->middle_dim;
+  if (padded || job->placed->wide || words > job->triangles->triangle_count)
+    return VXM_OK;
+  uint64_t *middles[8] = {NULL};
+  vxm_status status =
+      vxm_grow(thin->context, (void **)&thin->maps, &thin->map_words, 7 * words, sizeof *thin->maps, error);
+  for (size_t m = 0; m < 8 && status == VXM_OK; m++)
+    job->middles[m] = middles[m] = m == 7 ? window->words : thin->maps + m * words;
+  if (status == VXM_OK)
+    vxm_middles_fill(middles, window);
+  return status;
+}
+
+vxm_status vxm_thin_add(vxm_thin_adder *thin, const vxm_window *window, int64_t begin, int64_t end,
+                        const vxm_triangle_set *triangles, const vxm_snapped_points *placed, int separating,
+                        uint8_t *confidence, bool *too_many, vxm_error *error) {
+  vxm_thin_job job = {.triangles = triangles,
+                      .placed = placed,
+                      .view = vxm_view_of(window),
+                      .counted = {begin, end},
+                      .slow = window->layout.slow,
+                      .directions = separating == 26 ? VXM_LINK_DIRECTIONS : VXM_LINK_AXES};
+  target to = {NULL, confidence};
+  vxm_status status = make_middles(thin, &job, window, error);
+  return status == VXM_OK ? add(thin, &job, &to, too_many, error) : status;
+}
+
+vxm_status vxm_thin_find(vxm_thin_adder *thin, vxm_voxel_set *added, const vxm_sparse *solid, int64_t begin,
+                         int64_t end, const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
+                         int separating, bool *too_many, vxm_error *error) {
+  vxm_thin_job job = {.triangles = triangles,
+                      .placed = placed,
+                      .view = vxm_view_of_octree(solid),
+                      .counted = {begin, end},
+                      .slow = 2,
+                      .directions = separating == 26 ? VXM_LINK_DIRECTIONS : VXM_LINK_AXES};
+  target to = {added, NULL};
+  job.view.begin[2] = vxm_max(begin - vxm_thin_margin(separating), 0);
+  job.view.end[2] = vxm_min(end + vxm_thin_margin(separating), solid->space.dims[2]);
+  return add(thin, &job, &to, too_many, error);
+}
+
+void vxm_thin_destroy(vxm_thin_adder *thin) {
+  for (int w = 0; w < thin->threads; w++)
+    vxm_free(thin->context, thin->found[w].list);
+  vxm_free(thin->context, thin->found);
+  vxm_free(thin->context, thin->scratch);
+  vxm_free(thin->context, thin->maps);
+  vxm_free(thin->context, thin->chosen);
+  *thin = (vxm_thin_adder){.context = thin->context};
+}

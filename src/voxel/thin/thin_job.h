@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The solid and the surface that is to be held together. */
+#ifndef VXM_VOXEL_THIN_THIN_JOB_H
+#define VXM_VOXEL_THIN_THIN_JOB_H
+
+#include "voxel/parity/snapped_points.h"
+#include "voxel/thin/centre_cells.h"
+
+/** What all threads look at. */
+typedef struct vxm_thin_job {
+  const vxm_triangle_set *triangles;
+  const vxm_snapped_points *placed;
+  vxm_view view;              /**< the solid; nothing is set while threads look */
+  int64_t counted[2];         /**< slices that samples are counted in */
+  int slow;                   /**< the axis of slices */
+  const uint64_t *middles[8]; /**< NULL, or bit maps like the view's words: by the axes along which a box of
+                                 cells has two (1: x, 2: y, 4: z), whether a voxel in the middle of the box is
+                                 set; a bit is that of the voxel behind the first cell */
+  int directions; /**< VXM_LINK_AXES, or VXM_LINK_DIRECTIONS for links over edges and corners of voxels, too
+                   */
+} vxm_thin_job;
+
+#endif
