@@ -195,11 +195,17 @@ def pointer(kind: str, array: numpy.ndarray) -> Any:
     return ffi.cast(kind, array.ctypes.data)
 
 
+_LONG_NAMES = {"VXM_THIN_26": "VXM_THIN_KEEP26"}  # the command has the short ones
+_SHORT_NAMES = {long: short for short, long in _LONG_NAMES.items()}
+
+
 def choice(name: str, value: str, prefix: str) -> int:
     """The number of an enum's value by its name, such as "cube" of VXM_FIT_."""
-    number = getattr(lib, prefix + _values.word(name, value).upper(), None)
+    wanted = prefix + _values.word(name, value).upper()
+    number = getattr(lib, _LONG_NAMES.get(wanted, wanted), None)
     if not isinstance(number, int):
-        names = [n[len(prefix):].lower() for n in dir(lib) if n.startswith(prefix) and not n.endswith("_KINDS")]
+        names = [_SHORT_NAMES.get(n, n)[len(prefix):].lower() for n in dir(lib)
+                 if n.startswith(prefix) and not n.endswith("_KINDS")]
         raise ArgumentError("%s %r is none of %s" % (name, value, ", ".join(sorted(names))))
     return number
 

@@ -341,8 +341,8 @@ def _prepare(mesh: MeshLike, repair: bool) -> Mesh:
 def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None, *, pitch: Optional[float] = None,
              fit: str = "cube", pad: int = 0, bounds: Any = None, like: Optional[VoxelGrid] = None, mode: str = "solid",
              surface: str = "conservative", method: str = "vote", vote: str = "auto", parts: str = "auto",
-             cavities: str = "auto", repair: bool = True) -> VoxelGrid:
-    """Voxelizes a mesh: a voxel is set where its centre is inside.
+             cavities: str = "auto", thin: str = "auto", repair: bool = True) -> VoxelGrid:
+    """Voxelizes a mesh: a voxel is set where its centre is inside, and where parts thinner than a voxel need it.
 
     Args:
         mesh: Mesh, path, (vertices, faces), or an object with these, such as trimesh's.
@@ -356,10 +356,13 @@ def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None,
         mode: "solid", "surface" or "both".
         surface: "conservative", "thin", "shell26", "shell18" or "shell6".
         method, vote, parts, cavities: as in `voxmend voxelize --help`.
+        thin: parts thinner than a voxel: "keep": voxels are added that hold them together, and through which no path from
+            face to face leaks; "26": nor one over edges and corners; "drop": only voxels whose centre is inside; "auto":
+            "keep", but "drop" where `method` or `vote` chooses another rule.
         repair: repair the mesh first, as `voxmend.repair` does.
 
     Returns:
-        the grid; its `report` has counts of parts, contested voxels and so on.
+        the grid; its `report` has counts of parts, contested voxels, voxels added for thin parts and so on.
     """
     source = _prepare(mesh, repair)
     options = _core.new("vxm_voxelize_options")
@@ -370,6 +373,7 @@ def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None,
     options.vote = _core.choice("voxelize: vote", vote, "VXM_VOTE_")
     options.split_mode = _core.choice("voxelize: parts", parts, "VXM_SPLIT_MODE_")
     options.cavities = _core.choice("voxelize: cavities", cavities, "VXM_CAVITIES_")
+    options.thin = _core.choice("voxelize: thin", thin, "VXM_THIN_")
     report = _core.new("vxm_voxelize_report")
     made = _core.create("vxm_grid", lib.vxm_voxelize, report, source._pointer, space_options, options,
                         destroy=lib.vxm_grid_destroy)

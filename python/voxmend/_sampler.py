@@ -70,7 +70,7 @@ class Sampler:
         mirror: axes such as "x" or "xyz", along each of which half of the variants are mirrored.
         translate: part of the room on each side, 0 to 1, by which variants are moved.
         fill: the longest side fills the grid rather than the diagonal; without rotation.
-        mode, surface, method, vote, parts, cavities: as for `voxmend.voxelize`.
+        mode, surface, method, vote, parts, cavities, thin: as for `voxmend.voxelize`.
         engine: who makes the voxels: "cpu"; "opengl", "opencl" or one that the command 'voxmend engines' lists, one variant
             after another; "auto": a GPU, or else the CPU. Variants have the same bits.
 
@@ -83,13 +83,13 @@ class Sampler:
                  displace: float = 0.0, displacement: str = "uniform", noise: int = 65536, mirror: str = "",
                  translate: float = 0.0, fill: bool = False, mode: str = "solid", surface: str = "conservative",
                  method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto",
-                 engine: Optional[str] = None):
+                 thin: str = "auto", engine: Optional[str] = None):
         if isinstance(rotate, (list, tuple, numpy.ndarray)):
             rotate = numpy.array(rotate)  # a copy
         self._options = dict(resolution=resolution, pad=pad, seed=seed, rotate=rotate, scale=scale, displace=displace,
                              displacement=displacement, noise=noise, mirror=mirror, translate=translate, fill=fill,
                              mode=mode, surface=surface, method=method, vote=vote, parts=parts, cavities=cavities,
-                             engine=engine)
+                             thin=thin, engine=engine)
         self._meshes: dict = {}
         self._turn = Turn()
         self._torn = False  # by a fork in the middle of a call
@@ -113,7 +113,7 @@ class Sampler:
             if axis not in "xyz":
                 raise ArgumentError("sampler: mirror %r names other axes than x, y and z" % given["mirror"])
             options.mirror |= 1 << "xyz".index(axis)
-        for name in ("mode", "surface", "method", "vote", "parts", "cavities"):
+        for name in ("mode", "surface", "method", "vote", "parts", "cavities", "thin"):
             field = "split_mode" if name == "parts" else name
             setattr(voxelize, field, _core.choice("sampler: " + name, given[name], "VXM_%s_" % field.upper()))
         rotations = self._set_rotation(options, given["rotate"])

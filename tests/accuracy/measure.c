@@ -20,6 +20,7 @@ static double now(void) {
 
 static vxm_voxelize_options options_of(method by) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP; /* the truth is one of voxel centres */
   if (by == METHOD_X)
     options.method = VXM_METHOD_X;
   if (by == METHOD_WINDING)

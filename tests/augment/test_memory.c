@@ -165,7 +165,7 @@ static void takes_none(const load *given) {
 
 static void solids_take_no_memory(void **state) {
   (void)state;
-  takes_none(&(load){.threads = 1, .missing = 1, .warm = 2});
+  takes_none(&(load){.threads = 1, .missing = 1, .warm = 24});
   /* which thread has what is a matter of chance, more so where other work goes on: each must have seen
      enough, sooner or later */
   takes_none(&(load){.threads = 2, .missing = 1, .warm = 24});
@@ -180,8 +180,8 @@ static void contested_solids_take_no_memory(void **state) {
 static void surfaces_take_no_memory(void **state) {
   (void)state;
   takes_none(&(load){
-      .threads = 1, .mode = VXM_MODE_SURFACE, .surface = VXM_SURFACE_SHELL6, .missing = 1, .warm = 2});
-  /* how many rows triangles meet is a matter of how they lie */
+      .threads = 1, .mode = VXM_MODE_SURFACE, .surface = VXM_SURFACE_SHELL6, .missing = 1, .warm = 24});
+  /* how many rows triangles meet, and where they are thin, is a matter of how they lie */
   takes_none(&(load){.threads = 1, .mode = VXM_MODE_BOTH, .missing = 1, .warm = 24});
 }
 

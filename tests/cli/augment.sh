@@ -18,7 +18,7 @@ record() {
 say "# a stream"
 run 'voxmend augment in/l_prism.off -o - -n 24 $all -q >a.bin; head -c 64 a.bin | od -A d -t u4 | head -n 5'
 run 'tail -c +65 a.bin | head -c 16 | od -A n -t u4; tail -c +$((65 + 23 * 4112)) a.bin | head -c 16 | od -A n -t u4; wc -c <a.bin'
-run 'cksum <a.bin'
+run 'cksum <a.bin; voxmend augment in/l_prism.off -o - -n 24 $all -q --thin drop | cksum'
 run 'for t in 1 2 3; do voxmend augment in/l_prism.off -o - -n 24 $all -q --threads $t | cmp - a.bin && echo equal; done'
 run 'voxmend augment in/l_prism.off -o - -n 3 --first 20 $all -q | tail -c +65 >b.bin; tail -c +$((65 + 20 * 4112)) a.bin | head -c $((3 * 4112)) | cmp - b.bin && echo equal'
 run 'voxmend augment - -o - -n 24 $all -q <in/l_prism.off | cmp - a.bin && echo equal'
@@ -37,7 +37,7 @@ say "# each augmentation"
 printf '0 -1 0 1 0 0 0 0 1\n1,0,0, 0,0,-1, 0,1,0\n' >turns.txt
 for option in '--rotate none' '--rotate x' '--rotate z' '--rotate 1,2,-2' '--rotate turns.txt' '--scale 0.3' '--displace 0.02' \
   '--displace 0.02,normal' '--displace 0.02 --noise 50' '--mirror y' '--translate 0.5 --pad 4' '--fill' '--pad 3' '--mode both' \
-  '--mode surface' '--mode surface --surface shell6' '--no-repair' '--weld off' '--model 7' '--keep-duplicates'; do
+  '--mode surface' '--mode surface --surface shell6' '--thin drop --rotate x' '--thin 26 --rotate x' '--no-repair' '--weld off' '--model 7' '--keep-duplicates'; do
   run "voxmend augment in/l_prism.off -o - -n 4 -r 16 $option -q | tail -c +65 | cksum"
 done
 
@@ -55,7 +55,7 @@ say "# what is refused"
 for options in '' '-o' '-o x -n -1' '-o x -n 0' '-o x -n 5000000000' '-o x --first 4294967295 -n 2' '-o x -r 0' '-o x -r 2000' '-o x --seed -3' \
   '-o x --rotate 0,0,0' '-o x --rotate no/such' '-o x --scale 1' '-o x --scale -0.1' '-o x --displace 2' '-o x --displace 0.1,uniform' \
   '-o x --displace 0.5' '-o x --mirror w' '-o x --translate 2' '-o x --fill --rotate any' '-o x --noise 5' '-o x --surface thin' \
-  '-o x --mode both --surface shell6' '-o x --mode solid --surface thin' '-o x --format vdb' '-o - --format rle' '-o x --pad 32' \
+  '-o x --mode both --surface shell6' '-o x --mode solid --surface thin' '-o x --mode surface --thin keep' '-o x --thin most' '-o x --format vdb' '-o - --format rle' '-o x --pad 32' \
   '-o - --json' '-o x --no-repair --weld off' '-o no/such/x' '-o in/cube.off'; do
   run "voxmend augment in/l_prism.off $options"
 done

@@ -40,6 +40,7 @@ run 'voxmend voxelize in/rocket.off -o b.npy -r 64 -q --engine opengl --gl-metho
 run 'voxmend voxelize in/rocket.off -o c.npy -r 64 -q --engine opengl --gl-method slices --gl-displace 2,8'
 run 'cmp a.npy b.npy'
 run 'cmp -s a.npy c.npy'
+run 'voxmend voxelize in/rocket.off -o b.npy -r 64 -q --engine opengl --gl-method slices --gl-displace 2,7 --thin drop 2>/dev/null; cmp a.npy b.npy'
 say "# variants: a vertex shader moves and displaces the points, tetrahedra are cut slice by slice"
 all='--rotate any --scale 0.5 --displace 0.02 --mirror xyz --translate 1'
 run "voxmend augment in/rocket.off -o - -n 6 -r 48 $all -q >cpu.bin"

@@ -51,12 +51,12 @@ run 'voxmend voxelize in/cube.off -o x.dwg'
 for option in '-r 0' '-r 8.5' '-r 8x8' '-r 8x8x8x8' '-r 8x8x' '-r 0x8' '-r -8' '-r 1048577' '-r 99999999999999999999' \
   '--voxel-size 0' '--voxel-size -1' '--voxel-size 1,5' '--voxel-size inf' '--voxel-size 0x1' '--voxel-size ""' \
   '--fit round' '--pad -1' '--pad 1.5' '--bounds 0,0,0,1,1' '--bounds 0,0,0,1,1,1,1' '--bounds 0,0,0,1,0,1' \
-  '--bounds 0,0,0,1,1,nan' '--mode hollow' '--method w' '--vote most' '--parts some' '--cavities some' '--labels some' '--weld near' \
+  '--bounds 0,0,0,1,1,nan' '--mode hollow' '--method w' '--vote most' '--parts some' '--thin 18' '--cavities some' '--labels some' '--weld near' \
   '--coverage 3' '--surface shell9' '--engine steam' '--hollow' '--scalar int' '--distance near' '--band -1' '--band x'; do
   run "voxmend voxelize in/cube.off -o x.npy $option"
 done
 for options in '-r 8 --voxel-size 1' '--like y.npy -r 8' '--like y.npy --pad 1' '--bounds 0,0,0,1,1,1 --pad 1' \
-  '--bounds 0,0,0,1,1,1 --fit tight' '--method x --vote any' '--surface thin' '--mode solid --surface thin' '--mode both --surface shell6' '--no-repair --weld off' '--no-repair --keep-duplicates' \
+  '--bounds 0,0,0,1,1,1 --fit tight' '--method x --vote any' '--surface thin' '--mode solid --surface thin' '--mode both --surface shell6' '--mode surface --thin keep' '--mode surface --surface thin --thin drop' '--coverage 4 --thin keep' '--distance signed --thin 26' '--no-repair --weld off' '--no-repair --keep-duplicates' \
   '--coverage 4 --distance signed' '--scalar uint8' '--band 3' '--coverage 4 --confidence c.npy' '--labels part --dry-run' \
   '--confidence ./x.npy' '--coords in/../x.npy' \
   '--distance unsigned --mode surface' '--coverage 2 --format rle'; do

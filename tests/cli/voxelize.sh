@@ -5,7 +5,7 @@
 run 'voxmend voxelize in/cube.off -o cube.npy -r 8'
 run 'voxmend voxelize in/degenerate.off -o cube.binvox -r 8 --json'
 run 'voxmend voxelize in/open_box.off -o open.rle -r 16 -v'
-run 'voxmend voxelize in/doubled.off -o doubled.npy -r 16 --no-repair --strict'
+run 'voxmend voxelize in/doubled.off -o doubled.npy -r 16 --no-repair --strict --thin drop'
 
 say "# spaces"
 run 'voxmend voxelize in/l_prism.off -o a.npy --fit tight -r 16'
@@ -16,6 +16,7 @@ run 'voxmend voxelize in/l_prism.off -o a.npy --voxel-size 0.25 --fit tight --pa
 run 'voxmend voxelize in/l_prism.off -o a.npy --bounds 0,0,0,2,2,1 -r 16'
 run 'voxmend voxelize in/l_prism.off -o b.npy --bounds -1,-1,-1,3,3,3 --voxel-size 0.5'
 run 'voxmend voxelize in/rocket.off -o r.npy --bounds=-1,-1,2,1,1,4 -r 16'
+run 'voxmend voxelize in/rocket.off -o r.npy --bounds=-1,-1,2,1,1,4 -r 16 --thin drop --json | grep -E "hold no|_parts.:"'
 run 'voxmend voxelize in/rocket.off -o r.npy --bounds 9,9,9,10,10,10 -r 16'
 run 'voxmend voxelize in/cube.off -o c.npy --like b.npy'
 run 'voxmend voxelize in/cube.off -o c.npy --like in/cube.off'
@@ -35,6 +36,22 @@ for options in '--mode surface' '--mode both' '--mode surface --surface shell18'
   run "voxmend voxelize in/rocket.off -o pieces.npy -r 300 $options --memlimit 26M --threads 1 | grep -E '^(estimate|voxels|hash)'"
   run 'cmp whole.npy pieces.npy'
 done
+
+say "# thin parts"
+# a sheet, askew; a rod thinner than a voxel; and a body
+printf 'OFF\n16 8 0\n0 0 4\n5 1 5\n4 6 6\n-1 5 5\n0 0 0\n4 0.5 1\n4 0.6 1\n0 0.1 0.1\n' >thin.off
+for z in 7 9; do printf '1 1 %s\n3 1 %s\n3 3 %s\n1 3 %s\n' $z $z $z $z; done >>thin.off
+printf '4 0 1 2 3\n4 4 5 6 7\n4 11 10 9 8\n4 12 13 14 15\n4 8 9 13 12\n4 9 10 14 13\n4 10 11 15 14\n4 11 8 12 15\n' >>thin.off
+run 'voxmend voxelize thin.off -o keep.npy -r 24'
+run 'voxmend voxelize thin.off -o drop.npy -r 24 --thin drop'
+run 'voxmend voxelize thin.off -o octree.npy -r 24 --sparse -q && cmp octree.npy keep.npy'
+for options in '' '--thin keep' '--thin drop' '--thin 26' '--method winding' '--method winding --thin keep' '--vote any' '--mode both' '--mode surface --surface shell6'; do
+  run "voxmend voxelize thin.off -o t.npy -r 24 $options 2>/dev/null | grep -E '^(voxels|thin|hash)'"
+done
+run 'voxmend voxelize thin.off -o t.npy -r 24 --json | grep -A 3 thin\"'
+run 'voxmend voxelize thin.off -o t.npy -r 24 --thin drop --json 2>&1 | grep -A 3 thin\"'
+run 'voxmend voxelize in/cube.off -o t.npy -r 24 | grep ^thin'
+run 'voxmend voxelize in/rocket.off -o t.npy -r 16 --coverage 2 2>&1 | grep -E "^coverage|surface"'
 
 say "# a number per voxel"
 run 'voxmend voxelize in/cube.off -o c.nrrd -r 8 --pad 1 --coverage 4'
@@ -62,10 +79,10 @@ run 'voxmend voxelize in/cube.off -o cube.raw -r 8 -q && wc -c <cube.raw && cat 
 
 say "# bounded memory, and what it will take"
 run 'voxmend voxelize in/rocket.off -o whole.npy -r 600 | grep -E "^(voxels|hash)"'
-run 'voxmend voxelize in/rocket.off -o pieces.npy -r 600 --memlimit 14M --threads 1 | grep -E "^(estimate|voxels|hash)"'
+run 'voxmend voxelize in/rocket.off -o pieces.npy -r 600 --memlimit 24M --threads 1 | grep -E "^(estimate|voxels|hash)"'
 run 'cmp whole.npy pieces.npy'
-run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --memlimit 40M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
-run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --json --memlimit 40M --threads 2'
+run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --memlimit 100M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
+run 'voxmend voxelize in/rocket.off -o not.npy -r 2000 --dry-run --json --memlimit 100M --threads 2'
 run 'voxmend voxelize in/rocket.off -o not.npy -r 1000 --coverage 4 --dry-run --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
 run 'voxmend voxelize in/rocket.off -o not.npy -r 1000 --coverage 2 --scalar uint8 --dry-run --json --threads 2 | grep -A 4 estimate | sed "s/memory_bytes.: .*,/memory_bytes\": N,/"'
 run 'voxmend voxelize in/rocket.off -o not.nrrd -r 1000 --distance signed --dry-run --memlimit 60M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
@@ -93,7 +110,7 @@ say "# failures leave nothing"
 mkdir out
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
 run 'voxmend voxelize flat.off -o out/x.npy'
-run 'voxmend voxelize flat.off -o out/x.npy --no-repair'
+run 'voxmend voxelize flat.off -o out/x.npy --no-repair --thin drop'
 run 'voxmend voxelize missing.off -o out/x.npy'
 run 'voxmend voxelize in/cube.off -o no/such/x.npy -r 8'
 run 'voxmend voxelize in/cube.off -o out/x.npy -r 4096 --memlimit 10M'

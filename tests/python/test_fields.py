@@ -70,7 +70,7 @@ class Fields(unittest.TestCase):
         values, origin, pitch = voxmend.distance(self.path("torus.off"), 24, pad=2)
         field = voxmend.Field(values, pitch, origin, kind="distance")
         field.save(self.path("d.npy"))
-        solid = voxmend.voxelize(self.path("torus.off"), like=field)
+        solid = voxmend.voxelize(self.path("torus.off"), like=field, thin="drop")
         for grid in (field.threshold(below=0), voxmend.read(self.path("d.npy"), below=0)):
             self.assertEqual(grid.compare(solid)["iou"], 1.0)
         back = voxmend.read_field(self.path("d.npy"))

@@ -15,9 +15,10 @@ import voxmend
 SAMPLES = os.environ["SAMPLES"]
 VOXMEND = os.environ.get("VOXMEND")
 
-# What tests/api/test_sampler.c makes too, and its hash.
+# What tests/api/test_sampler.c makes too, and its hashes, with thin parts and of voxel centres alone.
 ALL = dict(resolution=32, pad=1, seed=0x123456789ABCDEF0, rotate="any", scale=0.5, displace=0.03, mirror="xyz", translate=1)
-KNOWN_HASH = 0x935F9FE6B0A47CDE
+KNOWN_HASH = 0x0339E904B2C4B42A
+KNOWN_CENTRES = 0x935F9FE6B0A47CDE
 ALL_AS_OPTIONS = ("-r 32 --pad 1 --seed %d --epoch 2 --rotate any --scale 0.5 --displace 0.03 --mirror xyz --translate 1" %
                   ALL["seed"]).split()
 
@@ -152,9 +153,24 @@ class Grids(unittest.TestCase):
         other = voxmend.voxelize(cube(), like=like)
         self.assertTrue((other.origin == like.origin).all() and other.shape == like.shape)
         for wrong in (dict(resolution=8, pitch=1), dict(pitch=-1), dict(resolution=0), dict(resolution=(1, 2)),
-                      dict(fit="round"), dict(bounds=[1, 2, 3]), dict(like=like, pad=1), dict(mode="thin"), dict(method="w")):
+                      dict(fit="round"), dict(bounds=[1, 2, 3]), dict(like=like, pad=1), dict(mode="thin"), dict(method="w"),
+                      dict(thin="keep26x"), dict(thin="")):
             with self.assertRaises(ValueError, msg=str(wrong)):
                 mesh.voxelize(**wrong)
+
+    def test_thin_parts(self):
+        sheet = ([[0, 0, 0.03], [1, 0, 0.03], [1, 1, 0.03], [0, 1, 0.03]], [[0, 1, 2, 3]])
+        box = dict(bounds=[[0, 0, -0.5], [1, 1, 0.5]], resolution=(10, 10, 10), repair=False)
+        for thin, voxels in (("auto", 100), ("keep", 100), ("26", 100)):
+            grid = voxmend.voxelize(sheet, thin=thin, **box)
+            self.assertEqual((grid.filled_count, grid.report["thin_voxels"]), (voxels, voxels))
+            self.assertAlmostEqual(grid.report["thin_share"], 1.0, delta=0.01)
+        for choice in (dict(thin="drop"), dict(vote="majority"), dict(method="x")):
+            with self.assertWarns(voxmend.VoxmendWarning):
+                grid = voxmend.voxelize(sheet, **choice, **box)
+            self.assertEqual((grid.filled_count, grid.report["thin_voxels"], grid.report["thin_share"]), (0, 0, 0))
+        with self.assertRaisesRegex(ValueError, "none of 26, auto, drop, keep"):
+            voxmend.voxelize(sheet, thin="most")
 
     def test_packed_and_matrix_agree(self):
         grid = voxmend.voxelize(sample("star_prism"), 70)
@@ -241,6 +257,9 @@ class Variants(unittest.TestCase):
             finally:
                 voxmend.configure()
 
+    def test_bits_of_voxel_centres(self):
+        self.assertEqual(fnv(self.make(thin="drop").batch(24, epoch=2, dtype="bits").tobytes()), KNOWN_CENTRES)
+
     def test_bits_of_engines(self):
         self.assertEqual(fnv(self.make(engine="cpu").batch(24, epoch=2, dtype="bits").tobytes()), KNOWN_HASH)
         for engine in ("opengl:osmesa", "opengl:egl-surfaceless", "opencl"):
@@ -296,12 +315,14 @@ class Variants(unittest.TestCase):
 
     def test_poses(self):
         mesh = voxmend.load(sample("star_prism"))
-        sampler = voxmend.Sampler(**dict(ALL, displace=0))
+        # The triangles are fans, which cover more than a star: as sheets, which would be kept.
+        sampler = voxmend.Sampler(**dict(ALL, displace=0, thin="drop"))
         sampler.put(mesh)
         for index in range(5):
             pose = sampler.pose(index)
             moved = mesh.vertices @ pose["transform"][:, :3].T + pose["transform"][:, 3]
-            grid = voxmend.voxelize((moved, mesh.triangles()), (32, 32, 32), bounds=[[0, 0, 0], [32, 32, 32]], repair=False)
+            grid = voxmend.voxelize((moved, mesh.triangles()), (32, 32, 32), bounds=[[0, 0, 0], [32, 32, 32]], repair=False,
+                                    thin="drop")
             differ = (grid.matrix != (sampler.batch([index])[0, 0] > 0)).sum()
             self.assertLessEqual(differ, 2)  # both are rounded
             self.assertTrue(numpy.allclose(pose["rotation"] @ pose["rotation"].T, numpy.eye(3)))

@@ -353,6 +353,7 @@ static void a_lone_cavity(void **state) {
 static void check_voxels(const vxm_soup *soup, const vxm_soup *out, double voxels_off) {
   vxm_grid *grids[2];
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP;
   vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
   space_options.resolution[0] = 64;
   vxm_space space;
