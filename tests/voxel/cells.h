@@ -119,7 +119,9 @@ static inline int count_wrong(const vxm_soup *soup, const manner *how, const boo
   vxm_grid *grid;
   vxm_error error = VXM_ERROR_INIT;
   int wrong = 0;
-  if (vxm_voxelize(&grid, NULL, soup, &place, NULL, &error) != VXM_OK)
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP;
+  if (vxm_voxelize(&grid, NULL, soup, &place, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   for (int64_t z = 0; z < space.dims[2]; z++)
     for (int64_t y = 0; y < space.dims[1]; y++)

@@ -154,11 +154,13 @@ static inline vxm_grid *engine_solid(const vxm_soup *soup, const vxm_space *spac
   return grid;
 }
 
+/** Voxel centres by one method. */
 static inline vxm_grid *engine_method(const vxm_soup *soup, const vxm_space *space, vxm_method method,
                                       vxm_split_mode parts, vxm_voxelize_report *report) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.method = method;
   options.split_mode = parts;
+  options.thin = VXM_THIN_DROP;
   return engine_solid(soup, space, &options, report);
 }
 

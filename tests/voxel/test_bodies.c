@@ -183,6 +183,7 @@ static void bodies_with_holes_touch(void **state) {
   add_open_cube(soup);
   add_open_octahedron(soup);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP;
   vxm_space space = {
       .dims = {FINE, FINE, FINE}, .voxel_size = {0.27, 0.27, 0.27}, .origin = {-0.123, -0.127, -0.131}};
   vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;

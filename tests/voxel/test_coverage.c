@@ -20,6 +20,7 @@ static vxm_context *context_of(int threads, uint64_t limit) {
 static vxm_model *model_of(const vxm_soup *soup, vxm_mode mode) {
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
   options.mode = mode;
+  options.thin = VXM_THIN_DROP; /* of which shares know nothing */
   vxm_model *model;
   vxm_error error = VXM_ERROR_INIT;
   if (vxm_model_create(&model, soup, &options, &error) != VXM_OK)

@@ -80,9 +80,11 @@ static size_t voxels_of(const vxm_space *space) {
 }
 
 static vxm_model *model_of(const vxm_soup *soup) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP; /* of which signs know nothing */
   vxm_model *model;
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_model_create(&model, soup, NULL, &error) != VXM_OK)
+  if (vxm_model_create(&model, soup, &options, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return model;
 }

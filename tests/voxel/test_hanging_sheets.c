@@ -121,7 +121,9 @@ static void find_covered(const vxm_soup *soup, bool covered[CELLS]) {
   vxm_soup *prepared;
   vxm_grid *grid;
   assert_int_equal(vxm_repair_prepare(&prepared, NULL, soup, NULL, NULL), VXM_OK);
-  assert_int_equal(vxm_voxelize(&grid, NULL, prepared, &place, NULL, NULL), VXM_OK);
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP;
+  assert_int_equal(vxm_voxelize(&grid, NULL, prepared, &place, &options, NULL), VXM_OK);
   for (int64_t c = 0; c < CELLS; c++)
     covered[c] = vxm_grid_get(grid, c % SIDE, c / SIDE % SIDE, c / SIDE / SIDE);
   vxm_grid_destroy(grid);

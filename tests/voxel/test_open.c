@@ -155,15 +155,19 @@ static void test_panels_make_a_body(void **state) {
   vxm_soup_destroy(soup);
 }
 
-static void test_a_sheet_vanishes(void **state) {
+/** A sheet has no inside: it is one voxel thick where thin parts are kept, and leaves a body as it is. */
+static void test_a_sheet(void **state) {
   (void)state;
-  for (int inside = 0; inside < 2; inside++) {
+  for (int i = 0; i < 4; i++) {
+    bool inside = i % 2, kept = i / 2;
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.thin = kept ? VXM_THIN_KEEP : VXM_THIN_DROP;
     vxm_soup *soup = shape_empty(context);
     add_panel(soup, 2, 0.03, 0.5, 3);
     if (inside)
       shape_box(soup, (double[]){-1.01, -1.01, -1.01}, (double[]){1.01, 1.01, 1.01});
-    vxm_grid *grid = voxelize(soup, (vxm_voxelize_options)VXM_VOXELIZE_OPTIONS_INIT, NULL);
-    assert_int_equal(vxm_grid_count(grid), inside ? 40 * 40 * 40 : 0);
+    vxm_grid *grid = voxelize(soup, options, NULL);
+    assert_int_equal(vxm_grid_count(grid), inside ? 40 * 40 * 40 : kept ? 20 * 20 : 0);
     vxm_grid_destroy(grid);
     vxm_soup_destroy(soup);
   }
@@ -277,6 +281,7 @@ static void test_winding_method_equals_parity_on_closed_meshes(void **state) {
   vxm_rng rng = {4};
   damage(turned, &rng, 0, 0.5);
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP;
   vxm_grid *truth = voxelize(clean, options, NULL);
   options.method = VXM_METHOD_WINDING;
   vxm_grid *grid = voxelize(turned, options, NULL);
@@ -407,7 +412,7 @@ int main(void) {
       cmocka_unit_test(test_triangles_and_caps_are_closed),
       cmocka_unit_test(test_holes_are_capped),
       cmocka_unit_test(test_panels_make_a_body),
-      cmocka_unit_test(test_a_sheet_vanishes),
+      cmocka_unit_test(test_a_sheet),
       cmocka_unit_test(test_cavities),
       cmocka_unit_test(test_winding_numbers_match_the_sum),
       cmocka_unit_test(test_no_triangles_wind_around_nothing),

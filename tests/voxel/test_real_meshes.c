@@ -41,6 +41,7 @@ static void check_mesh(const vxm_mesh *mesh, const char *path, int64_t resolutio
   for (int a = 0; a < 3; a++)
     space.origin[a] += vxm_rng_unit(&rng) * space.voxel_size[a];
   vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.thin = VXM_THIN_DROP;
   vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
   space_options.like = &space;
   for (int parts = VXM_SPLIT_MODE_GROUP; parts <= VXM_SPLIT_MODE_WHOLE; parts++) {

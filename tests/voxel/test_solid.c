@@ -18,6 +18,7 @@ static vxm_grid *voxelize(const vxm_soup *soup, const vxm_space *space, vxm_meth
   space_options.like = space;
   options.method = method;
   options.split_mode = parts;
+  options.thin = VXM_THIN_DROP;
   vxm_error error = VXM_ERROR_INIT;
   vxm_grid *grid;
   if (vxm_voxelize(&grid, report, soup, &space_options, &options, &error) != VXM_OK)

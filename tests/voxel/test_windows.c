@@ -206,6 +206,7 @@ static void test_empty_parts_are_counted_alike(void **state) {
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
       options.method = (vxm_method)method;
       options.split_mode = VXM_SPLIT_MODE_GROUP;
+      options.thin = VXM_THIN_DROP;
       vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
       vxm_grid *grid = engine_solid(soup, &space, &options, &report);
       assert_int_equal(report.voxels, 0);
@@ -249,12 +250,15 @@ static void test_parts_outside(void **state) {
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
       options.method = (vxm_method)method;
       options.split_mode = VXM_SPLIT_MODE_GROUP;
-      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
-      vxm_grid *grid = engine_solid(soup, &space, &options, &report);
-      assert_int_equal(report.parts, PARTS + with);
-      assert_int_equal(report.outside_parts, outside);
-      assert_int_equal(report.empty_parts, PARTS - outside);
-      vxm_grid_destroy(grid);
+      for (int thin = VXM_THIN_KEEP; thin <= VXM_THIN_DROP; thin++) {
+        options.thin = (vxm_thin_parts)thin;
+        vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+        vxm_grid *grid = engine_solid(soup, &space, &options, &report);
+        assert_int_equal(report.parts, PARTS + with);
+        assert_int_equal(report.outside_parts, outside);
+        assert_int_equal(report.empty_parts, thin == VXM_THIN_DROP ? PARTS - outside : 0);
+        vxm_grid_destroy(grid);
+      }
       vxm_soup_destroy(soup);
     }
 }
