@@ -33,7 +33,7 @@ static uint64_t saturating_sum(uint64_t a, uint64_t b) {
 /** Slices that fit `left` bytes, and what they take. */
 static int64_t slices_in(const plan *p, const vxm_model *model, const vxm_space *space, uint64_t left,
                          bool worst, uint64_t *memory) {
-  vxm_memory_need demand = vxm_model_memory_need(model, space, &p->shape, worst);
+  vxm_memory_need demand = vxm_model_memory_need(model, space, &p->shape, worst, false);
   uint64_t slice = p->shape.slice_words * sizeof(uint64_t), each = slice * (uint64_t)demand.windows;
   uint64_t fixed = saturating_sum(demand.fixed, p->file.bytes);
   uint64_t room = left > fixed ? (left - fixed) / each : 0, most = window_bytes_max / slice;
@@ -61,7 +61,7 @@ static vxm_status plan_windows(plan *p, const vxm_model *model, const vxm_space 
 static void plan_whole(plan *p, const vxm_model *model, const vxm_space *space) {
   uint64_t least = UINT64_MAX;
   for (int worst = 0; worst < 2; worst++) {
-    vxm_memory_need demand = vxm_model_memory_need(model, space, &p->shape, worst);
+    vxm_memory_need demand = vxm_model_memory_need(model, space, &p->shape, worst, false);
     uint64_t memory = saturating_sum(demand.fixed + p->file.gather_bytes,
                                      (uint64_t)demand.windows * vxm_space_bytes(space));
     least = memory < least ? memory : least;

@@ -141,15 +141,15 @@ class Trial:
     def iou(self, repaired):
         """Of the solids of the original and the repaired mesh; both are repaired again before, by the defaults."""
         first, second = (os.path.join(self.work, name) for name in ("a.rle", "b.rle"))
-        self.run("voxelize", self.mesh, "-o", first, "-r", "64", "-q").check_returncode()
-        self.run("voxelize", repaired, "-o", second, "--like", first, "-q").check_returncode()
+        self.run("voxelize", self.mesh, "-o", first, "-r", "64", "--thin", "drop", "-q").check_returncode()
+        self.run("voxelize", repaired, "-o", second, "--like", first, "--thin", "drop", "-q").check_returncode()
         return json.loads(self.run("compare", first, second, "--json").stdout)["iou"]
 
     def iou_of_winding(self, repaired):
         """Of where the repaired mesh and the mesh at level closed wind around a place."""
         closed, grid = (os.path.join(self.work, name) for name in ("closed.ply", "grid.npy"))
         self.run("repair", self.mesh, "-o", closed, "--level", "closed", "-q").check_returncode()
-        self.run("voxelize", repaired, "-o", grid, "-r", "64", "-q").check_returncode()
+        self.run("voxelize", repaired, "-o", grid, "-r", "64", "--thin", "drop", "-q").check_returncode()
         with open(grid + ".json") as file:
             space = json.load(file)
         first, second = (winding(*read_ply(path), space["origin"], space["voxel_size"], space["dims"]) > 0

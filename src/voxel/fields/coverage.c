@@ -233,7 +233,7 @@ vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const 
   size_t counts = has_counts(model->options.engine)
                       ? (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(uint16_t)
                       : 0;
-  return vxm_field_plan_of(out, model, &finer, layout, options->subdivision, scratch,
+  return vxm_field_plan_of(out, model, &finer, layout, options->subdivision, true, scratch,
                            (is_whole ? 0 : values) + counts, error);
 }
 

@@ -295,7 +295,7 @@ vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const 
   uint64_t fixed =
       held + vxm_distance_bvh_bytes(triangles) + soup->vertex_count * sizeof(double[3]) + workers * each;
   uint64_t values = (uint64_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(float);
-  return vxm_field_plan_of(out, model, space, layout, options->is_unsigned ? 0 : 1, fixed,
+  return vxm_field_plan_of(out, model, space, layout, options->is_unsigned ? 0 : 1, true, fixed,
                            is_whole ? 0 : values, error);
 }
 

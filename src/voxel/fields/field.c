@@ -9,8 +9,8 @@ static uint64_t saturating_sum(uint64_t a, uint64_t b) {
 }
 
 vxm_status vxm_field_plan_of(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
-                             vxm_layout layout, int subdivision, uint64_t fixed, uint64_t value_bytes,
-                             vxm_error *error) {
+                             vxm_layout layout, int subdivision, bool centres, uint64_t fixed,
+                             uint64_t value_bytes, vxm_error *error) {
   uint64_t left = vxm_memory_left(model->context);
   left = left == SIZE_MAX ? UINT64_MAX : left - left / 16;
   *out = (vxm_field_plan){.bits = vxm_window_of(space, layout, 0, 0)};
@@ -20,7 +20,7 @@ vxm_status vxm_field_plan_of(vxm_field_plan *out, const vxm_model *model, const 
   for (int worst = 0; worst < 2; worst++) {
     vxm_memory_need demand = {0, 0};
     if (subdivision > 0)
-      demand = vxm_model_memory_need(model, space, &out->bits, worst);
+      demand = vxm_model_memory_need(model, space, &out->bits, worst, centres);
     uint64_t beside = saturating_sum(demand.fixed, fixed);
     uint64_t each = slice * (uint64_t)demand.windows + value_bytes + 1;
     uint64_t room = left > beside ? (left - beside) / each : 0;

@@ -26,13 +26,14 @@ typedef struct vxm_field_plan {
  *
  * @param space       of the bits, which may be finer than the field
  * @param subdivision slices of bits in a slice of the field; 0 = there are no bits
+ * @param centres     the bits are of voxel centres alone, without what holds thin parts together
  * @param fixed       bytes beside those of the bits and values
  * @param value_bytes of a slice of the field, as far as the slices at hand take them; 0 where the caller has
  * them
  * @return VXM_OK, VXM_ERROR_MEMORY_LIMIT if not even one fits
  */
 vxm_status vxm_field_plan_of(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
-                             vxm_layout layout, int subdivision, uint64_t fixed, uint64_t value_bytes,
-                             vxm_error *error);
+                             vxm_layout layout, int subdivision, bool centres, uint64_t fixed,
+                             uint64_t value_bytes, vxm_error *error);
 
 #endif

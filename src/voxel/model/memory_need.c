@@ -44,7 +44,7 @@ static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space) {
 }
 
 vxm_memory_need vxm_model_memory_need(const vxm_model *model, const vxm_space *space, const vxm_window *shape,
-                                      bool worst) {
+                                      bool worst, bool centres) {
   const vxm_triangle_set *triangles = &model->analysis.triangles;
   uint64_t threads = (uint64_t)vxm_context_threads(model->context);
   uint64_t surface =
@@ -75,7 +75,7 @@ vxm_memory_need vxm_model_memory_need(const vxm_model *model, const vxm_space *s
   need.fixed += decision_bytes(model, shape);
   double crossings = worst ? fmin(round, bound) : bound;
   need.fixed += crossings < 0x1p62 ? (uint64_t)crossings : UINT64_C(1) << 62;
-  if (vxm_thin_separating(&model->options)) {
+  if (vxm_thin_separating(&model->options) && !centres) {
     /* The solid with and without what is added, with slices around; the first range is made with those behind
      * it. */
     uint64_t around = (uint64_t)vxm_thin_margin(vxm_thin_separating(&model->options)) *

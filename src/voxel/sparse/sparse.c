@@ -53,7 +53,7 @@ static vxm_status unite_elsewhere(vxm_sparse **out, const vxm_model *model, vxm_
 
 /** Slices of a range: whole strips, as many as memory allows. */
 static int64_t range_slices(const vxm_model *model, const vxm_space *space, const vxm_window *window) {
-  vxm_memory_need demand = vxm_model_memory_need(model, space, window, false);
+  vxm_memory_need demand = vxm_model_memory_need(model, space, window, false, is_direct(model));
   uint64_t slice = window->slice_words * sizeof *window->words, left = vxm_memory_left(model->context);
   uint64_t room = left > demand.fixed ? (left - demand.fixed) / 2 / (uint64_t)demand.windows : 0;
   room = room < window_bytes_most ? room : window_bytes_most;

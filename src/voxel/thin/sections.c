@@ -43,8 +43,9 @@ static inline int64_t pass_plane(const segment *s, int64_t plane, int64_t unit, 
   int64_t voxel = (int64_t)at;
   voxel -= (double)voxel > at; /* the conversion rounds toward zero */
   *rest = at - (double)voxel;
-  const double doubt = 1e-6; /* of a voxel; the error is below 2^-10 steps of 2^-16, or less far out */
-  if (*rest > doubt && *rest < 1 - doubt && fabs(at) < 0x1p24)
+  const double doubt = 1e-6; /* of a voxel; the error is less, but far out */
+  const int64_t near = (VXM_DIM_MAX << 2) * unit;
+  if (*rest > doubt && *rest < 1 - doubt && llabs(s->from[a]) < near && llabs(s->rise[a]) < near)
     return voxel;
   voxel = voxel_before((vxm_int128)s->from[a] * s->rise[s->axis] + (vxm_int128)s->rise[a] * along,
                        s->rise[s->axis], unit, a > s->axis && s->rise[a] > 0);
@@ -168,6 +169,7 @@ typedef struct looked {
   vxm_meetings *meetings;
   vxm_link_frame *frames; /**< NULL: links are looked at elsewhere */
   const vxm_point *points;
+  bool is_far; /**< a corner lies so far out that doubles are not enough */
 } looked;
 
 /**
@@ -223,7 +225,7 @@ static void cross_tip(const looked *l, const corners *at, const tip *t, int axis
   for (int64_t plane = t->begin; plane != t->end; plane += t->step) {
     double along = (double)plane - level;
     two end[2] = {from + p * along, from + q * along};
-    if (!l->frames && any(size_of(end[0] - end[1]) > one + doubt))
+    if (!l->frames && !l->is_far && any(size_of(end[0] - end[1]) > one + doubt))
       return; /* from here on longer than a square */
     if (plane < view->begin[axis] || plane >= view->end[axis])
       continue;
@@ -232,7 +234,8 @@ static void cross_tip(const looked *l, const corners *at, const tip *t, int axis
     section s = {
         {{(int64_t)before[0][0], (int64_t)before[0][1]}, {(int64_t)before[1][0], (int64_t)before[1][1]}},
         {{rest[0][0], rest[0][1]}, {rest[1][0], rest[1][1]}}};
-    if (any((rest[0] < doubt) | (rest[1] < doubt) | (rest[0] > one - doubt) | (rest[1] > one - doubt)))
+    if (l->is_far ||
+        any((rest[0] < doubt) | (rest[1] < doubt) | (rest[0] > one - doubt) | (rest[1] > one - doubt)))
       s = exact_section(&l->job->placed->lattice, l->points, t, plane, axis);
     if (s.before[0][0] == s.before[1][0] && s.before[0][1] == s.before[1][1]) {
       int64_t lowest[3];
@@ -293,6 +296,16 @@ static void meet_polygon(vxm_meetings *meetings, const vxm_thin_job *job, size_t
       cross_planes(meetings, job, &points[side], &points[(side + 1) % 3], axis);
 }
 
+/** Whether a corner lies more voxels out than there are along the longest axis, or nearly so. */
+static bool is_far(const vxm_lattice *lattice, const vxm_point p[3]) {
+  const int64_t most = (VXM_DIM_MAX << 1) * lattice->unit;
+  bool far = false;
+  for (int k = 0; k < 3; k++)
+    for (int a = 0; a < 3; a++)
+      far |= p[k].at[a] > most || p[k].at[a] < -most;
+  return far;
+}
+
 /** Whether a triangle is longer than some voxels. */
 static bool is_large(const vxm_lattice *lattice, const vxm_point p[3]) {
   enum { LARGE = 8 };
@@ -324,7 +337,7 @@ void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ)
     frames[d].triangle = triangle;
     frames[d].surface = &surface;
   }
-  looked l = {job, frames[0].meetings, alone ? NULL : frames, points};
+  looked l = {job, frames[0].meetings, alone ? NULL : frames, points, is_far(&job->placed->lattice, points)};
   for (int axis = 0; axis < 3; axis++)
     if (differ & vxm_cell_mask(axis))
       cross_sections(&l, axis);

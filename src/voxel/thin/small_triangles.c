@@ -184,8 +184,8 @@ static inline int meet_section(const vxm_link_frame *frames, const small *s, int
     bit += lowest[a] * view->step[a];
   }
   int64_t u = view->step[axis == 2 ? 0 : axis + 1], v = view->step[axis == 0 ? 2 : axis - 1];
-  bool filled = vxm_view_bit_set(view, bit) | vxm_view_bit_set(view, bit + u) |
-                vxm_view_bit_set(view, bit + v) | vxm_view_bit_set(view, bit + u + v);
+  int filled = (int)vxm_view_bit_set(view, bit) | (int)vxm_view_bit_set(view, bit + u) |
+               (int)vxm_view_bit_set(view, bit + v) | (int)vxm_view_bit_set(view, bit + u + v);
   if (!filled)
     put_section(frames, s, lowest, axis, lone);
   return -1;

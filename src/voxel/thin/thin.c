@@ -128,8 +128,9 @@ static vxm_status set_voxel(vxm_thin_adder *thin, const vxm_thin_job *job, const
   const vxm_view *view = &job->view;
   const int64_t *dims = job->placed->lattice.space.dims;
   int64_t bit = vxm_view_bit(view, voxel);
-  thin->added += voxel[job->slow] >= job->counted[0] && voxel[job->slow] < job->counted[1];
-  if (to->confidence)
+  bool counted = voxel[job->slow] >= job->counted[0] && voxel[job->slow] < job->counted[1];
+  thin->added += counted;
+  if (to->confidence && counted) /* slices around are not right */
     to->confidence[(voxel[2] * dims[1] + voxel[1]) * dims[0] + voxel[0]] = 255;
   if (to->added)
     return vxm_voxel_set_add(to->added, (uint64_t)bit, error);
@@ -197,9 +198,10 @@ static vxm_status gather(vxm_thin_adder *thin, size_t *count, vxm_error *error) 
   vxm_status status = VXM_OK;
   if (2 * total > thin->capacity) {
     vxm_error local = VXM_ERROR_INIT;
+    size_t room = 2 * total + total / 2; /* not to grow for each that is a little more */
     vxm_free(thin->context, thin->scratch);
-    thin->scratch = vxm_alloc(thin->context, 2 * total, sizeof *thin->scratch, &local);
-    thin->capacity = thin->scratch ? 2 * total : 0;
+    thin->scratch = vxm_alloc(thin->context, room, sizeof *thin->scratch, &local);
+    thin->capacity = thin->scratch ? room : 0;
     status = local.code;
     if (status != VXM_OK)
       vxm_error_pass(error, &local);
@@ -222,7 +224,7 @@ uint64_t vxm_thin_budget(const vxm_context *context) {
 
 /** Empty lists for all threads. @param limited whether they may become full */
 static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error) {
-  enum { COPIES = 2 + 2 }; /* a list that has doubled, and two sides of a sort */
+  enum { COPIES = 2 + 3 }; /* a list that has doubled, and two sides of a sort */
   int threads = vxm_context_threads(thin->context);
   size_t most = (size_t)(vxm_thin_budget(thin->context) / COPIES / sizeof(vxm_meeting)) / (size_t)threads;
   for (int w = 0; w < thin->threads; w++) {
