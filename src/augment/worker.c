@@ -67,15 +67,7 @@ vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm
 }
 
 static vxm_status make_room(vxm_worker *desk, size_t words, vxm_error *error) {
-  if (words <= desk->word_room)
-    return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_free(desk->context, desk->words);
-  desk->words = vxm_alloc(desk->context, words, sizeof *desk->words, &local);
-  desk->word_room = desk->words ? words : 0;
-  if (!desk->words)
-    vxm_error_pass(error, &local);
-  return local.code;
+  return vxm_renew(desk->context, (void **)&desk->words, &desk->word_room, words, sizeof *desk->words, error);
 }
 
 /** Whether packed voxels have the form of a window's words, so that it can be filled where they belong. */

@@ -59,6 +59,10 @@ void vxm_memory_give(vxm_context *context, size_t bytes);
 vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
                     vxm_error *error);
 
+/** The same where the content is needed no more: exactly so many elements, where there were fewer. */
+vxm_status vxm_renew(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
+                     vxm_error *error);
+
 /** Reports progress; VXM_ERROR_CANCELLED if the callback asks to stop. It is called from the thread that made
  * the call: in a loop of vxm_parallel the other threads report nothing. */
 vxm_status vxm_progress(vxm_context *context, const char *phase, double fraction, vxm_error *error);

@@ -295,3 +295,16 @@ vxm_status vxm_grow(vxm_context *context, void **array, size_t *capacity, size_t
   *capacity = wanted;
   return VXM_OK;
 }
+
+vxm_status vxm_renew(vxm_context *context, void **array, size_t *capacity, size_t needed, size_t size,
+                     vxm_error *error) {
+  if (needed <= *capacity)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(context, *array);
+  *array = vxm_alloc(context, needed, size, &local);
+  *capacity = *array ? needed : 0;
+  if (!*array)
+    vxm_error_pass(error, &local);
+  return local.code;
+}

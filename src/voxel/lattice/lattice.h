@@ -28,6 +28,10 @@ typedef struct vxm_point {
 /** Coordinates stay below this, so that products of three differences fit 128 bits. */
 #define VXM_LATTICE_MAX (INT64_C(1) << 40)
 
+/** Differences of coordinates up to this keep products of three within 63 bits
+ * (voxel/parity/raster_body.inc). */
+#define VXM_LATTICE_NARROW (INT64_C(1) << 20)
+
 /** Chooses the steps per voxel: as fine as 64-bit products of three differences inside the grid allow, 8 to
  * 16 bits. */
 vxm_lattice vxm_lattice_of(const vxm_space *space);

@@ -36,9 +36,9 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
  */
 static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space) {
   const vxm_triangle_set *triangles = &model->analysis.triangles;
-  enum { AXES = 3, COPIES = 4 };
+  enum { AXES = 3 };
   double all = vxm_raster_schedule_bound(triangles->lengths, triangles->triangle_count, space, NULL) * AXES *
-               COPIES * sizeof(vxm_meeting);
+               VXM_THIN_COPIES * sizeof(vxm_meeting);
   uint64_t budget = vxm_thin_budget(model->context);
   return all < (double)budget ? (uint64_t)all : budget;
 }

@@ -22,15 +22,8 @@ vxm_status vxm_model_pass_attach(vxm_model_pass *pass, const vxm_mesh_analysis *
   solid->options = *options;
   solid->engine = options->engine;
   size_t parts = analysis->triangles.split.part_count;
-  if (parts <= pass->part_room)
-    return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_free(solid->context, solid->has_voxels);
-  solid->has_voxels = vxm_alloc(solid->context, parts, sizeof *solid->has_voxels, &local);
-  pass->part_room = solid->has_voxels ? parts : 0;
-  if (!solid->has_voxels)
-    vxm_error_pass(error, &local);
-  return local.code;
+  return vxm_renew(solid->context, (void **)&solid->has_voxels, &pass->part_room, parts,
+                   sizeof *solid->has_voxels, error);
 }
 
 void vxm_model_pass_end(vxm_model_pass *pass) {

@@ -36,24 +36,16 @@ static bool is_lost(const vxm_voxel_pass *solid, size_t part) {
 /** The area of all faces, or of those of parts without a voxel, in squares of voxels. */
 static double surface_area(const vxm_voxel_pass *solid, bool lost) {
   const vxm_triangle_set *triangles = &solid->analysis->triangles;
-  double unit = (double)solid->placed.lattice.unit, area = 0;
+  double unit = (double)solid->placed.lattice.unit, twice = 0;
   for (size_t t = 0; t < triangles->triangle_count; t++) {
-    double p[3][3], sum = 0;
+    vxm_point corner[3];
     if (vxm_role_of(triangles, t) != VXM_ROLE_FACE || (lost && !is_lost(solid, triangles->part[t])))
       continue;
-    for (int k = 0; k < 3; k++) {
-      vxm_point at = vxm_snapped_points_at(&solid->placed, triangles->corners[t][k]);
-      for (int a = 0; a < 3; a++)
-        p[k][a] = (double)at.at[a] / unit;
-    }
-    for (int u = 0; u < 3; u++) {
-      int v = (u + 1) % 3;
-      double n = (p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) - (p[1][v] - p[0][v]) * (p[2][u] - p[0][u]);
-      sum += n * n;
-    }
-    area += sqrt(sum) / 2;
+    for (int k = 0; k < 3; k++)
+      corner[k] = vxm_snapped_points_at(&solid->placed, triangles->corners[t][k]);
+    twice += vxm_link_surface_of(corner).length;
   }
-  return area;
+  return twice / (2 * unit * unit);
 }
 
 /** The first few parts that set no voxel, inside or outside of the grid, each by one of its vertices. */

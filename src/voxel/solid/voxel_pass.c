@@ -36,19 +36,10 @@ vxm_status vxm_voxel_pass_buffer(vxm_voxel_pass *pass, int buffer, const vxm_win
                                  vxm_error *error) {
   vxm_buffer *b = &pass->buffers[buffer];
   size_t count = like->slice_words * (size_t)(like->end - like->begin);
-  if (count > b->count) {
-    vxm_error local = VXM_ERROR_INIT;
-    vxm_free(pass->context, b->words);
-    b->words = vxm_alloc(pass->context, count, sizeof *b->words, &local);
-    b->count = b->words ? count : 0;
-    if (!b->words) {
-      vxm_error_pass(error, &local);
-      return local.code;
-    }
-  }
+  vxm_status status = vxm_renew(pass->context, (void **)&b->words, &b->count, count, sizeof *b->words, error);
   *out = *like;
   out->words = b->words;
-  return VXM_OK;
+  return status;
 }
 
 /* ---- What another engine may do ---- */

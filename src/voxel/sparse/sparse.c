@@ -53,7 +53,7 @@ static vxm_status unite_elsewhere(vxm_sparse **out, const vxm_model *model, vxm_
 
 /** Slices of a range: whole strips, as many as memory allows. */
 static int64_t range_slices(const vxm_model *model, const vxm_space *space, const vxm_window *window) {
-  vxm_memory_need demand = vxm_model_memory_need(model, space, window, false, is_direct(model));
+  vxm_memory_need demand = vxm_model_memory_need(model, space, window, false, false);
   uint64_t slice = window->slice_words * sizeof *window->words, left = vxm_memory_left(model->context);
   uint64_t room = left > demand.fixed ? (left - demand.fixed) / 2 / (uint64_t)demand.windows : 0;
   room = room < window_bytes_most ? room : window_bytes_most;
@@ -93,12 +93,17 @@ static bool makes_windows(const vxm_model_pass *pass) {
   return engine && engine->ops && !engine->ops->sparse;
 }
 
+/** Whether triangles become an octree without any window between, by the CPU or by an engine that can. */
+static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pass) {
+  return is_direct(model) && !makes_windows(pass);
+}
+
 static vxm_status build(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass, vxm_error *error) {
   vxm_octree_builder builder;
   vxm_status status = vxm_octree_builder_create(&builder, model->context, &pass->space, error);
   if (status == VXM_OK)
-    status = is_direct(model) && !makes_windows(pass) ? unite_directly(&builder, pass, error)
-                                                      : unite_by_windows(&builder, model, pass, error);
+    status = is_without_windows(model, pass) ? unite_directly(&builder, pass, error)
+                                             : unite_by_windows(&builder, model, pass, error);
   if (status == VXM_OK)
     status = vxm_octree_builder_end(out, &builder, error);
   vxm_octree_builder_destroy(&builder);
@@ -116,7 +121,7 @@ vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_mo
     status = unite_elsewhere(out, model, pass, error);
   if (status == VXM_OK && !*out)
     status = build(out, model, pass, error);
-  if (status == VXM_OK && pass->separating && is_direct(model)) /* windows have it already */
+  if (status == VXM_OK && pass->separating && is_without_windows(model, pass)) /* windows have it already */
     status = vxm_thin_add_sparse(&pass->thin.thin, out, &pass->solid.analysis->triangles, &pass->solid.placed,
                                  pass->separating, error);
   if (status != VXM_OK) {

@@ -2,7 +2,6 @@
 #include "voxel/thin/meetings.h"
 
 #include <math.h>
-#include <string.h>
 
 typedef vxm_link_frame frame;
 
@@ -111,13 +110,11 @@ static int64_t box_of(int64_t range[3][2], const vxm_lattice *lattice, const vxm
 
 /** A triangle in the frame of a direction, with its box there. */
 static void cross_box(const frame *f, const vxm_point corner[3], int64_t range[3][2], int64_t longest) {
-  /* Differences up to this keep products within 63 bits (voxel/parity/raster_body.inc). */
-  const int64_t narrow = INT64_C(1) << 20;
   const int64_t u[2] = {vxm_max(range[f->u][0], f->begin[f->u]), vxm_min(range[f->u][1], f->end[f->u])};
   const int64_t v[2] = {vxm_max(range[f->v][0], f->begin[f->v]), vxm_min(range[f->v][1], f->end[f->v])};
   if (u[0] >= u[1] || v[0] >= v[1] || range[f->w][0] >= f->end[f->w] || range[f->w][1] < f->begin[f->w])
     return;
-  if (longest <= narrow)
+  if (longest <= VXM_LATTICE_NARROW)
     cross_narrow(f, corner, u, v);
   else
     cross_wide(f, corner, u, v);
@@ -137,11 +134,9 @@ static void cross_sheared(const frame *f, const vxm_point points[3]) {
 
 int64_t vxm_link_voxel(const vxm_link_frame *f, const vxm_point points[3], int64_t column_u, int64_t column_v,
                        double *rest) {
-  vxm_point corner[3];
-  memcpy(corner, points, sizeof corner);
-  int64_t range[3][2], longest = box_of(range, &f->job->placed->lattice, corner);
-  return longest <= INT64_C(1) << 20 ? voxel_narrow(f, corner, column_u, column_v, rest)
-                                     : voxel_wide(f, corner, column_u, column_v, rest);
+  int64_t range[3][2], longest = box_of(range, &f->job->placed->lattice, points);
+  return longest <= VXM_LATTICE_NARROW ? voxel_narrow(f, points, column_u, column_v, rest)
+                                       : voxel_wide(f, points, column_u, column_v, rest);
 }
 
 void vxm_link_frames(vxm_link_frame frames[VXM_LINK_DIRECTIONS], const vxm_thin_job *job,

@@ -136,7 +136,7 @@ typedef struct small {
 
 /** Which side of the centre line along the third axis a section's end lies on: of the plane between the cells
  * along `axis`, on the side from one corner to another. Exact: the numbers are below 2^22 and 2^30. On the
- * line, the perturbation decides as in squares.c. */
+ * line, the perturbation decides as in sections.c. */
 static inline bool is_beyond(const small *s, int from, int to, int axis, int other) {
   const int64_t *p = s->corner[from], *q = s->corner[to];
   int64_t rise = q[axis] - p[axis];

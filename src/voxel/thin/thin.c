@@ -196,16 +196,9 @@ static vxm_status gather(vxm_thin_adder *thin, size_t *count, vxm_error *error) 
   if (total == 0)
     return VXM_OK;
   vxm_status status = VXM_OK;
-  if (2 * total > thin->capacity) {
-    vxm_error local = VXM_ERROR_INIT;
-    size_t room = 2 * total + total / 2; /* not to grow for each that is a little more */
-    vxm_free(thin->context, thin->scratch);
-    thin->scratch = vxm_alloc(thin->context, room, sizeof *thin->scratch, &local);
-    thin->capacity = thin->scratch ? room : 0;
-    status = local.code;
-    if (status != VXM_OK)
-      vxm_error_pass(error, &local);
-  }
+  if (2 * total > thin->capacity) /* a quarter more, not to grow for each that is a little larger */
+    status = vxm_renew(thin->context, (void **)&thin->scratch, &thin->capacity, 2 * total + total / 2,
+                       sizeof *thin->scratch, error);
   size_t at = 0;
   for (int w = 0; w < thin->threads && status == VXM_OK; w++) {
     vxm_meetings *found = &thin->found[w];
@@ -224,9 +217,9 @@ uint64_t vxm_thin_budget(const vxm_context *context) {
 
 /** Empty lists for all threads. @param limited whether they may become full */
 static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error) {
-  enum { COPIES = 2 + 3 }; /* a list that has doubled, and two sides of a sort */
   int threads = vxm_context_threads(thin->context);
-  size_t most = (size_t)(vxm_thin_budget(thin->context) / COPIES / sizeof(vxm_meeting)) / (size_t)threads;
+  size_t most =
+      (size_t)(vxm_thin_budget(thin->context) / VXM_THIN_COPIES / sizeof(vxm_meeting)) / (size_t)threads;
   for (int w = 0; w < thin->threads; w++) {
     thin->found[w].count = 0;
     thin->found[w].thin_area = 0;

@@ -66,6 +66,9 @@ vxm_status vxm_thin_find(vxm_thin_adder *thin, vxm_voxel_set *added, const vxm_s
                          int64_t end, const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
                          int separating, bool *too_many, vxm_error *error);
 
+/** How often a meeting is held at most: in a list that has doubled, and on two sides of a sort. */
+enum { VXM_THIN_COPIES = 2 + 3 };
+
 /** Bytes that are held at most while voxels are added to some slices, unless to one alone. */
 uint64_t vxm_thin_budget(const vxm_context *context);
 

@@ -3,19 +3,6 @@
 
 #include <string.h>
 
-static vxm_status make_room(vxm_context *context, uint64_t **words, size_t *capacity, size_t needed,
-                            vxm_error *error) {
-  if (needed <= *capacity)
-    return VXM_OK;
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_free(context, *words);
-  *words = vxm_alloc(context, needed, sizeof **words, &local);
-  *capacity = *words ? needed : 0;
-  if (!*words)
-    vxm_error_pass(error, &local);
-  return local.code;
-}
-
 static vxm_status add(vxm_thin_window *thin, const vxm_window *to, int64_t begin, int64_t end,
                       const vxm_thin_grid *grid, bool *too_many, vxm_error *error) {
   return vxm_thin_add(&thin->thin, to, begin, end, grid->triangles, grid->placed, grid->separating,
@@ -39,8 +26,9 @@ static vxm_status take_slices(vxm_thin_window *thin, vxm_window *out, const sour
   *out = from->solid;
   out->begin = vxm_max(begin - margin, from->solid.begin);
   out->end = vxm_min(end + margin, from->solid.end);
-  vxm_status status = make_room(thin->thin.context, &thin->words, &thin->capacity,
-                                (size_t)(out->end - out->begin) * out->slice_words, error);
+  vxm_status status =
+      vxm_renew(thin->thin.context, (void **)&thin->words, &thin->capacity,
+                (size_t)(out->end - out->begin) * out->slice_words, sizeof *thin->words, error);
   out->words = thin->words;
   if (status != VXM_OK)
     return status;
@@ -54,8 +42,8 @@ static vxm_status add_by_slices(vxm_thin_window *thin, const vxm_window *window,
                                 int64_t slices, const vxm_thin_grid *grid, vxm_error *error) {
   const int64_t margin = vxm_thin_margin(grid->separating);
   source from = {*solid, *solid};
-  vxm_status status = make_room(thin->thin.context, &thin->before, &thin->before_capacity,
-                                (size_t)margin * solid->slice_words, error);
+  vxm_status status = vxm_renew(thin->thin.context, (void **)&thin->before, &thin->before_capacity,
+                                (size_t)margin * solid->slice_words, sizeof *thin->before, error);
   from.before.begin = from.before.end = solid->begin; /* none yet: all is in the solid */
   from.before.words = thin->before;
   for (int64_t begin = window->begin; begin < window->end && status == VXM_OK;) {
