@@ -237,7 +237,7 @@ def info(mesh: MeshLike) -> dict:
 def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "auto", keep_duplicates: bool = False,
            keep_orientation: bool = False, fill_holes: Union[int, str] = 0, fill: str = "fan", union: bool = False,
            wrap_alpha: float = 0.0, wrap_offset: float = 0.0, max_change: float = 0.0, drop_faces: int = 0,
-           drop_volume: float = 0.0, separate: bool = False) -> Mesh:
+           drop_volume: float = 0.0, separate: bool = False, sheets: str = "thicken", thickness: float = 0.0) -> Mesh:
     """A repaired copy; its `report` tells how many vertices or faces each pass has changed.
 
     Args:
@@ -247,6 +247,8 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
         fill_holes: those of at most so many edges; a negative number or "all" is all.
         fill: with what: "fan", "minimal" or "smooth".
         drop_faces, drop_volume: components with fewer faces, or less volume (model units cubed), are dropped.
+        sheets: what becomes of open sheets at "closed" and "solid": "thicken", "keep" or "drop".
+        thickness: of the plates they become, model units; 0 is 0.002 of the diagonal.
         separate: where bodies share faces each gets its own (level "manifold"), so that no body is lost between others
             when they are voxelized. `voxelize` and the datasets do that.
     """
@@ -256,11 +258,12 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
         setattr(options, name, _values.flag("repair: " + name, value))
     options.boolean_union = _values.flag("repair: union", union)
     for name, value in (("wrap_alpha", wrap_alpha), ("wrap_offset", wrap_offset), ("max_change", max_change),
-                        ("drop_volume", drop_volume)):
+                        ("drop_volume", drop_volume), ("thickness", thickness)):
         setattr(options, name, _values.real("repair: " + name, value, 0))
     options.drop_faces = _values.whole("repair: drop_faces", drop_faces, 0)
     options.level = _core.choice("repair: level", level, "VXM_LEVEL_")
     options.hole_fill = _core.choice("repair: fill", fill, "VXM_HOLE_FILL_")
+    options.sheets = _core.choice("repair: sheets", sheets, "VXM_SHEETS_")
     all_holes = isinstance(fill_holes, str) and fill_holes == "all"
     options.fill_holes = -1 if all_holes else _values.whole("repair: fill_holes", fill_holes)
     if isinstance(weld, str) and weld != "tolerance":

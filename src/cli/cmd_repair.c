@@ -12,6 +12,8 @@ enum {
   KEY_TURNED,
   KEY_FILL_HOLES,
   KEY_FILL,
+  KEY_SHEETS,
+  KEY_THICKNESS,
   KEY_DROP_PARTS,
   KEY_UNION,
   KEY_WRAP,
@@ -30,7 +32,7 @@ static const cli_option known_options[] = {
      "file as it is read back and welded [clean]:\n"
      "clean     nothing is left to weld, remove or turn\n"
      "manifold  no edge has more than two faces, no vertex more than one fan\n"
-     "closed    every edge has two faces: holes are filled\n"
+     "closed    every edge has two faces: holes are filled, sheets thickened\n"
      "solid     no face cuts through another: parts are united"},
     {KEY_BEST_EFFORT, "best-effort", NULL,
      "write the mesh, with a warning, although the level is not reached"},
@@ -43,11 +45,16 @@ static const cli_option known_options[] = {
      "leave faces turned as they are, rather than consistently and outward"},
     {KEY_FILL_HOLES, "fill-holes", "N|all",
      "fill holes with at most N edges [none; all from level closed on].\n"
-     "Open sheets are not filled: that would only duplicate them"},
+     "Open sheets are not: that would only duplicate them; see --sheets"},
     {KEY_FILL, "fill", "fan|minimal|smooth",
      "with what: fan = triangles from the middle of the rim; minimal = the\n"
      "triangulation of least area (OpenMesh); smooth = small triangles that\n"
      "continue the surface (CGAL) [fan]"},
+    {KEY_SHEETS, "sheets", "thicken|keep|drop",
+     "what becomes of open sheets at the levels closed and solid: plates, with\n"
+     "their faces moved to both sides; keep leaves them open, and the level is\n"
+     "not reached [thicken]"},
+    {KEY_THICKNESS, "thickness", "T", "how thick, in model units [0.002 of the diagonal]"},
     {KEY_DROP_PARTS, "drop-parts", "faces:N|volume:V",
      "drop components with fewer than N faces, or closed ones with less volume\n"
      "than V, in model units cubed; may be given twice, once for each. The\n"
@@ -73,7 +80,7 @@ static const cli_option known_options[] = {
 
 typedef struct request {
   const char *input, *output, *format;
-  bool fill, best_effort;
+  bool fill, sheets, best_effort;
   vxm_repair_options repair;
   vxm_mesh_write_options write;
   cli_defects defects;
@@ -115,6 +122,7 @@ static int read_wrap(cli_run *cli, request *out, const char *value) {
 
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
+  static const char *const sheets[] = {"thicken", "keep", "drop", NULL};
   int choice = 0, result;
   switch (key) {
   case 'o':
@@ -142,6 +150,15 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     return CLI_END;
   case KEY_FILL_HOLES:
     return read_fill_holes(cli, out, value);
+  case KEY_SHEETS:
+    out->sheets = true;
+    result = cli_choose(cli, &choice, "sheets", value, sheets);
+    out->repair.sheets = (vxm_sheets)choice;
+    return result;
+  case KEY_THICKNESS:
+    if (!cli_read_number(&out->repair.thickness, value) || !(out->repair.thickness > 0))
+      return cli_usage(cli, "--thickness '%s' is not a length above 0, such as 0.5", value);
+    return CLI_END;
   case KEY_DROP_PARTS:
     return read_drop_parts(cli, out, value);
   case KEY_UNION:
@@ -181,6 +198,12 @@ static int check_conflicts(cli_run *cli, const request *given) {
                           "--fill-holes, --fill, --union and --max-change");
   if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
+  bool plates = repair->thickness > 0;
+  if ((given->sheets || plates) && (repair->level < VXM_LEVEL_CLOSED || repair->wrap_alpha > 0))
+    return cli_usage(cli, "%s goes with --level closed or solid, without --wrap",
+                     plates ? "--thickness" : "--sheets");
+  if (plates && repair->sheets != VXM_SHEETS_THICKEN)
+    return cli_usage(cli, "--thickness goes with --sheets thicken");
   return cli_defects_check(cli, &given->defects);
 }
 
@@ -306,6 +329,7 @@ static int run(cli_run *cli) {
                             .before = VXM_CENSUS_INIT,
                             .after = VXM_CENSUS_INIT,
                             .level = given.repair.level,
+                            .sheets = given.repair.sheets,
                             .verification = VXM_VERIFICATION_INIT};
   outcome.repair.before = &outcome.before;
   outcome.repair.after = &outcome.after;
@@ -330,6 +354,7 @@ const cli_command cli_command_repair = {
         "  voxmend repair scan.obj -o scan.ply\n"
         "  voxmend repair part.stl -o part.off --weld 0.001\n"
         "  voxmend repair scan.ply -o closed.stl --level closed\n"
+        "  voxmend repair chair.off -o chair.stl --level closed --thickness 0.5\n"
         "  voxmend repair scan.ply -o main.ply --drop-parts faces:100\n"
         "  voxmend repair bracket.obj -o bracket.stl --level solid --max-change 0.001\n"
         "  voxmend repair wreck.obj -o wrapped.ply --wrap 0.02 --level solid\n"

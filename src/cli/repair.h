@@ -10,6 +10,7 @@ typedef struct repair_outcome {
   vxm_repair_report repair;
   vxm_census before, after;
   vxm_level level;
+  vxm_sheets sheets;
   vxm_verification verification;
   cli_found found; /**< in the mesh as it was read */
 } repair_outcome;

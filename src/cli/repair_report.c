@@ -87,6 +87,7 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "passes", cli_passes_json(repair));
   json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));
   json_object_set_new(report, "open_parts", json_integer(repair->open_parts));
+  json_object_set_new(report, "sheets", json_integer(repair->sheets));
   json_object_set_new(report, "unfilled_holes", json_integer(repair->unfilled_holes));
   json_object_set_new(report, "fan_fallbacks", json_integer(repair->fan_fallbacks));
   json_object_set_new(report, "union_failures", json_integer(repair->union_failures));
@@ -148,13 +149,16 @@ static void summarize_passes(const cli_run *cli, const vxm_repair_report *repair
     fprintf(cli->text, "\nThere was nothing to repair\n");
 }
 
-static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair) {
+static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair, vxm_sheets sheets) {
   if (repair->nonorientable_patches > 0)
     fprintf(cli->text, "\n%" PRId64 " patches cannot be turned consistently (like a Moebius strip)\n",
             repair->nonorientable_patches);
   if (repair->open_parts > 0)
     fprintf(cli->text, "\n%" PRId64 " components stay open: sheets, which filling would only duplicate\n",
             repair->open_parts);
+  if (repair->sheets > 0)
+    fprintf(cli->text, "\n%" PRId64 " open sheets %s\n", repair->sheets,
+            sheets == VXM_SHEETS_DROP ? "were dropped" : "became plates (--sheets, --thickness)");
   if (repair->unfilled_holes > 0)
     fprintf(cli->text, "\n%" PRId64 " holes could not be filled\n", repair->unfilled_holes);
   if (repair->fan_fallbacks > 0)
@@ -218,7 +222,7 @@ void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
             cli_intersections_text(after, outcome->repair.self_intersections_after));
   summarize_passes(cli, &outcome->repair);
   summarize_parts(cli, outcome->mesh);
-  summarize_rest(cli, &outcome->repair);
+  summarize_rest(cli, &outcome->repair, outcome->sheets);
   cli_defects_print(cli, outcome->found.list);
   fprintf(cli->text, "\nLevel %s: %s\n", repair_levels[outcome->level],
           outcome->verification.reached ? "verified in the file as it was read back" : "not reached");

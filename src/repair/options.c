@@ -36,6 +36,11 @@ vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options
   if (!(options->max_change >= 0) || !isfinite(options->max_change))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
                     options->max_change);
+  if (options->sheets < VXM_SHEETS_THICKEN || options->sheets > VXM_SHEETS_DROP)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: sheets %d is unknown", (int)options->sheets);
+  if (!(options->thickness >= 0) || !isfinite(options->thickness))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: plates %g thick; it must be 0 or more",
+                    options->thickness);
   if (options->drop_faces < 0 || !(options->drop_volume >= 0) || isinf(options->drop_volume))
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "repair: parts below %" PRId64 " faces or a volume of %g; both must be 0 or more",

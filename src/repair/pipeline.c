@@ -21,6 +21,7 @@ static const char *const names[VXM_PASS_COUNT] = {
     [VXM_PASS_SEPARATION] = "separation",
     [VXM_PASS_CLOSING] = "closing",
     [VXM_PASS_SMALL_PARTS] = "small_parts",
+    [VXM_PASS_SHEETS] = "sheets",
     [VXM_PASS_UNION] = "union",
     [VXM_PASS_APART] = "apart",
     [VXM_PASS_UNUSED] = "unused_vertices",
@@ -129,6 +130,7 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
   } further[] = {{separate_until_quiet, true},
                  {vxm_pass_closing, true},
                  {vxm_pass_small_parts, true},
+                 {vxm_pass_sheets, false},
                  {unite, false},
                  {vxm_pass_separation, false},
                  {move_apart, true},
@@ -282,6 +284,7 @@ static vxm_status repair_copy(vxm_repair_state *state, const vxm_soup *in, bool 
 static void list_passes(vxm_repair_report *report, const vxm_repair_state *state) {
   report->nonorientable_patches = state->nonorientable;
   report->open_parts = state->open_parts;
+  report->sheets = state->sheets;
   report->unfilled_holes = state->unfilled;
   report->fan_fallbacks = state->fanned;
   report->union_failures = state->ununited;

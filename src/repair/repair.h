@@ -23,6 +23,7 @@
  *  - separation: faces that were detached where a vertex or edge had too many
  * (repair/manifold/cut_nonmanifold_pass.c)
  *  - closing: faces that were added to close holes (repair/holes/closing.c)
+ *  - sheets: faces of the plates that open sheets became (repair/sheets/sheets_pass.c)
  *  - union: parts that were united with others, or cut along where they met (repair/exact/union.c)
  *  - apart: vertices that were moved apart from others at the same position
  * (repair/manifold/perturb_coincident.c)

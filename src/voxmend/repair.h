@@ -42,6 +42,14 @@ typedef enum vxm_hole_fill {
                      module for   CGAL */
 } vxm_hole_fill;
 
+/** What becomes of open sheets: components of which closing would fill holes that cover three quarters of
+ * their area or more, and others that could not be closed. */
+typedef enum vxm_sheets {
+  VXM_SHEETS_THICKEN = 0, /**< plates, from VXM_LEVEL_CLOSED on; below that they stay as they are */
+  VXM_SHEETS_KEEP,        /**< they stay open, and VXM_LEVEL_CLOSED is not reached */
+  VXM_SHEETS_DROP         /**< they go, from VXM_LEVEL_CLOSED on */
+} vxm_sheets;
+
 /** What a repair does. */
 typedef struct vxm_repair_options {
   size_t size;           /**< as the initializer sets it */
@@ -66,13 +74,16 @@ typedef struct vxm_repair_options {
                          The component with the largest area always stays */
   bool intersections; /**< count self-intersections, before and after, in the report and in the account of
                          parts; needs the module for CGAL */
+  vxm_sheets sheets;  /**< what becomes of open sheets, from VXM_LEVEL_CLOSED on */
+  double thickness; /**< of the plates that sheets become, model units, half of it to each side; 0 = 0.002 of
+                       the diagonal of the bounds */
 } vxm_repair_options;
 
 /** Initial value of vxm_repair_options. */
 #define VXM_REPAIR_OPTIONS_INIT                                                                          \
   {                                                                                                      \
     sizeof(vxm_repair_options), VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_HOLE_FILL_FAN, \
-        false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false                                                \
+        false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false, VXM_SHEETS_THICKEN, 0.0                       \
   }
 
 /** Room for passes in a report. */
@@ -106,6 +117,7 @@ typedef struct vxm_repair_report {
   int64_t lost_parts;   /**< closed components of which something that they enclosed, by winding or by parity,
                            is enclosed no more and could not be kept; what levels and options beyond
                            VXM_LEVEL_CLEAN take away is not looked at */
+  int64_t sheets;       /**< open components that became plates, or were dropped (vxm_sheets) */
   int64_t opened_parts; /**< closed before, open after; with options.part_changes, else 0 */
   double max_displacement; /**< no vertex was moved farther, model units; not by a wrap or union. With
                            options.part_changes, else 0 */
@@ -115,7 +127,7 @@ typedef struct vxm_repair_report {
 
 /** Initial value of vxm_repair_report. */
 #define VXM_REPAIR_REPORT_INIT \
-  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
+  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
 
 /**
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated

@@ -59,9 +59,10 @@ run 'voxmend repair a.off -o b.off --union -q && cmp a.off b.off'
 say "# --level solid"
 run 'voxmend repair two.obj -o a.ply --level solid | facts'
 run 'voxmend repair two.obj -o a.stl --level solid | facts'
-run 'voxmend repair plate.obj -o no.ply --level solid'
+run 'voxmend repair plate.obj -o no.ply --level solid --sheets keep'
 run 'test -e no.ply'
-run 'voxmend repair plate.obj -o a.ply --level solid --best-effort | facts'
+run 'voxmend repair plate.obj -o a.ply --level solid --sheets keep --best-effort | facts'
+run 'voxmend repair plate.obj -o a.ply --level solid --thickness 0.25 | facts'
 run 'voxmend repair plate.obj -o a.ply --level solid --drop-parts faces:2 | facts'
 run 'voxmend repair nested.obj -o a.ply --level solid | facts'
 say "# a cube upon a cube, one beside along an edge, and one at a corner"

@@ -6,11 +6,11 @@
 say "# an open box"
 sed -e '2s/.*/8 5 0/' -e '$d' in/cube.off >open.off
 run 'voxmend repair open.off -o closed.off --level closed -q && voxmend info closed.off | grep -E "boundary|watertight"'
-run 'voxmend repair open.off -o x.off --level closed --fill-holes 3'
-run 'voxmend repair open.off -o x.off --level closed --fill-holes 3 --json -q | grep -A 20 verified'
+run 'voxmend repair open.off -o x.off --level closed --fill-holes 3 --sheets keep'
+run 'voxmend repair open.off -o x.off --level closed --fill-holes 3 --sheets keep --json -q | grep -A 20 verified'
 run 'grep -c . x.off'
-run 'voxmend repair open.off -o x.off --level closed --fill-holes 3 -q --report r.json; grep -A 4 verified r.json'
-run 'voxmend repair open.off -o best.off --level closed --fill-holes 3 --best-effort -q && voxmend info best.off | grep boundary'
+run 'voxmend repair open.off -o x.off --level closed --fill-holes 3 --sheets keep -q --report r.json; grep -A 4 verified r.json'
+run 'voxmend repair open.off -o best.off --level closed --fill-holes 3 --sheets keep --best-effort -q && voxmend info best.off | grep boundary'
 rm -f x.off r.json
 
 say "# what was wrong, and where"
@@ -18,7 +18,7 @@ run 'voxmend repair open.off -o x.off --list 2'
 run 'voxmend info open.off --list 9'
 run 'voxmend info in/cube.off --list 9 | tail -2'
 run 'voxmend repair open.off -o x.off --locate wrong.ply -q && ls *.ply && rm wrong.ply'
-run 'voxmend repair open.off -o x.off --locate wrong.ply --level closed --fill-holes 3 -q; ls *.ply; rm wrong.ply'
+run 'voxmend repair open.off -o x.off --locate wrong.ply --level closed --fill-holes 3 --sheets keep -q; ls *.ply; rm wrong.ply'
 run 'voxmend repair in/cube.off -o no/such.off --locate wrong.ply; ls *.ply'
 
 say "# the picture takes no other file's place"
@@ -57,7 +57,7 @@ run 'refused voxmend repair small.off --weld 0.3 --max-change 0.5'
 run 'voxmend repair small.off -o x.off --weld 0.3 --max-change 0.5 --locate found.ply --json -q | grep refused; ls found.ply'
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
 run 'refused voxmend repair flat.off'
-run 'refused voxmend repair open.off --level closed --fill-holes 3'
+run 'refused voxmend repair open.off --level closed --fill-holes 3 --sheets keep'
 run 'voxmend repair small.off -o x.off --drop-parts volume:0.5 --max-change 0.5 -q && voxmend info x.off | grep components'
 
 say "# .stl: triangles and 32-bit floats"

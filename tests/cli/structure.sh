@@ -14,7 +14,7 @@ complain() {
 # What each folder may include comes before it. Within a room the folder of the same name, with its front, is the last.
 order="voxmend base mesh sandbox
   meshio/common meshio/formats meshio/external meshio
-  repair/external repair/state repair/clean repair/manifold repair/weld repair/holes repair/exact repair/bodies repair
+  repair/external repair/state repair/clean repair/manifold repair/weld repair/holes repair/sheets repair/exact repair/bodies repair
   grid
   voxel/lattice voxel/parts voxel/parity voxel/winding voxel/surface voxel/closest voxel/engine voxel/thin voxel/solid voxel/model
   voxel/sparse voxel/fields voxel/labels

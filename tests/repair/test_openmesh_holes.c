@@ -293,6 +293,7 @@ static void sheets_beside_a_hole(void **state) {
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   options.level = VXM_LEVEL_CLOSED;
   options.hole_fill = VXM_HOLE_FILL_MINIMAL;
+  options.sheets = VXM_SHEETS_KEEP;
   vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
   vxm_soup *out = repaired(soup, &options, &report);
   assert_int_equal(count_of(&report, "closing"), 4);

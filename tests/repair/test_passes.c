@@ -33,6 +33,7 @@ static void clean_mesh_stays(void **state) {
                                       "separation",
                                       "closing",
                                       "small_parts",
+                                      "sheets",
                                       "union",
                                       "apart",
                                       "unused_vertices"};

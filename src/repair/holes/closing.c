@@ -2,6 +2,7 @@
 #include "repair/external/cgal.h"
 #include "repair/external/openmesh.h"
 #include "repair/holes/fill_fans.h"
+#include "repair/state/faces_taken.h"
 #include "repair/state/vertex_fans.h"
 
 #include <string.h>
@@ -16,47 +17,6 @@ static size_t largest_hole(const vxm_repair_options *options) {
 }
 
 /* ---- By a module ---- */
-
-/** Gives the faces taken the tags that they have, which decide between those of a rim. */
-static bool take_tags(vxm_soup *taken, const uint64_t *numbers, const vxm_soup *soup, vxm_error *error) {
-  if (!soup->face_tags)
-    return true;
-  taken->face_tags = vxm_alloc(soup->context, taken->face_count, sizeof *taken->face_tags, error);
-  for (size_t f = 0; taken->face_tags && f < taken->face_count; f++)
-    taken->face_tags[f] = soup->face_tags[numbers[f]];
-  return taken->face_tags != NULL;
-}
-
-/** The faces of a soup that are marked so, with all its vertices. */
-static vxm_status take_faces(vxm_soup **out, uint64_t **numbers, const vxm_repair_state *state,
-                             const uint8_t *marks, uint8_t mark, vxm_error *error) {
-  const vxm_soup *soup = state->soup;
-  vxm_error local = VXM_ERROR_INIT;
-  *numbers = vxm_alloc(soup->context, soup->face_count, sizeof **numbers, &local);
-  *out = NULL;
-  if (*numbers && vxm_soup_create(out, soup->context, soup->format, &local) == VXM_OK &&
-      vxm_soup_reserve(*out, soup->vertex_count, soup->face_count, soup->corner_count, &local) == VXM_OK) {
-    if (soup->vertex_count > 0)
-      memcpy((*out)->positions, soup->positions, 3 * soup->vertex_count * sizeof *soup->positions);
-    (*out)->vertex_count = soup->vertex_count;
-    for (size_t f = 0; f < soup->face_count; f++) {
-      size_t count;
-      const uint32_t *corner = vxm_face(soup, f, &count);
-      if (marks[f] != mark)
-        continue;
-      (*numbers)[(*out)->face_count] = f;
-      vxm_soup_add_face(*out, corner, count, NULL); /* there is room */
-    }
-    if (take_tags(*out, *numbers, soup, &local))
-      return VXM_OK;
-  }
-  vxm_free(soup->context, *numbers);
-  vxm_soup_destroy(*out);
-  *numbers = NULL;
-  *out = NULL;
-  vxm_error_pass(error, &local);
-  return local.code;
-}
 
 /** Adds the faces marked as sheets, which the module has not seen, on vertices of their own. */
 static vxm_status add_sheets(vxm_soup *filled, uint64_t **origin, const vxm_repair_state *state,
@@ -127,7 +87,7 @@ static vxm_status fill_by_module(vxm_repair_state *state, const uint8_t *sheets,
   uint64_t *numbers, *origin = NULL;
   vxm_status status = check_manifold(state, error);
   if (status == VXM_OK)
-    status = take_faces(&rest, &numbers, state, sheets, 0, error);
+    status = vxm_faces_taken(&rest, &numbers, state->soup, sheets, 0, error);
   if (status != VXM_OK)
     return status;
   status = call_module(&filled, &origin, state, rest, most, error);

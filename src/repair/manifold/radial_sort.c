@@ -120,14 +120,22 @@ static void match_groups(vxm_radial_side *sides, size_t count) {
   }
 }
 
+void vxm_radial_sort_order(vxm_radial_side *sides, size_t count, const vxm_soup *soup, const double *from,
+                           const double *to, double scale) {
+  if (count < 2)
+    return;
+  measure(sides, count, soup, from, to, scale);
+  rank_sides(sides, count);
+  qsort(sides, count, sizeof *sides, by_rank);
+}
+
 void vxm_radial_sort_match(vxm_radial_side *sides, size_t count, const vxm_soup *soup, const double *from,
                            const double *to, double scale) {
   for (size_t i = 0; i < count; i++)
     sides[i].partner = VXM_NO_SIDE;
   if (count < 2)
     return;
-  measure(sides, count, soup, from, to, scale);
-  rank_sides(sides, count);
+  vxm_radial_sort_order(sides, count, soup, from, to, scale);
   match_groups(sides, count);
   qsort(sides, count, sizeof *sides, by_rank);
   match_brackets(sides, count);

@@ -19,6 +19,15 @@ typedef struct vxm_radial_side {
 } vxm_radial_side;
 
 /**
+ * Sorts the sides of an edge by the angles of their faces, counterclockwise as seen from its second end; of
+ * faces that lie upon each other those with forward sides come first.
+ *
+ * @param from, to, scale as below
+ */
+void vxm_radial_sort_order(vxm_radial_side *sides, size_t count, const vxm_soup *soup, const double *from,
+                           const double *to, double scale);
+
+/**
  * Pairs the sides of an edge, each with one that runs the other way. Faces turn their backs to the solid, so
  * going around the edge a wedge of it begins with a backward and ends with a forward side; the pairs nest as
  * brackets do. A group with as many sides in each direction keeps to itself: it is closed along this edge.

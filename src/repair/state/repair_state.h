@@ -22,6 +22,7 @@ typedef enum vxm_pass {
   VXM_PASS_SEPARATION,
   VXM_PASS_CLOSING,
   VXM_PASS_SMALL_PARTS,
+  VXM_PASS_SHEETS,
   VXM_PASS_UNION,
   VXM_PASS_APART,
   VXM_PASS_UNUSED,
@@ -62,6 +63,7 @@ typedef struct vxm_repair_state {
   int64_t nonorientable;                   /**< patches, in the last pass of orientation */
   int64_t shared;                          /**< repeated faces that the last pass of duplicates left */
   int64_t open_parts;                      /**< that the last pass of closing left open */
+  int64_t sheets;                          /**< open components that became plates, or went */
   int64_t unfilled;                        /**< holes that were to be filled and could not be */
   int64_t fanned;                          /**< holes that a module left to fans */
   int64_t ununited;      /**< parts that were to be united and still cut through themselves or others */
@@ -89,6 +91,7 @@ vxm_status vxm_pass_wrap(vxm_repair_state *state, bool *changed, vxm_error *erro
 vxm_status vxm_pass_separation(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_small_parts(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_sheets(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_reunion(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *error);
