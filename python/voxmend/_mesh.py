@@ -237,7 +237,8 @@ def info(mesh: MeshLike) -> dict:
 def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "auto", keep_duplicates: bool = False,
            keep_orientation: bool = False, fill_holes: Union[int, str] = 0, fill: str = "fan", union: bool = False,
            wrap_alpha: float = 0.0, wrap_offset: float = 0.0, max_change: float = 0.0, drop_faces: int = 0,
-           drop_volume: float = 0.0, separate: bool = False, sheets: str = "thicken", thickness: float = 0.0) -> Mesh:
+           drop_volume: float = 0.0, separate: bool = False, sheets: str = "thicken", thickness: float = 0.0,
+           fallback_alpha: float = 0.0) -> Mesh:
     """A repaired copy; its `report` tells how many vertices or faces each pass has changed.
 
     Args:
@@ -249,6 +250,7 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
         drop_faces, drop_volume: components with fewer faces, or less volume (model units cubed), are dropped.
         sheets: what becomes of open sheets at "closed" and "solid": "thicken", "keep" or "drop".
         thickness: of the plates they become, model units; 0 is 0.002 of the diagonal.
+        fallback_alpha: wrap the parts that cannot be united, alone, with this fraction of their diagonal; 0 leaves them.
         separate: where bodies share faces each gets its own (level "manifold"), so that no body is lost between others
             when they are voxelized. `voxelize` and the datasets do that.
     """
@@ -258,7 +260,7 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
         setattr(options, name, _values.flag("repair: " + name, value))
     options.boolean_union = _values.flag("repair: union", union)
     for name, value in (("wrap_alpha", wrap_alpha), ("wrap_offset", wrap_offset), ("max_change", max_change),
-                        ("drop_volume", drop_volume), ("thickness", thickness)):
+                        ("drop_volume", drop_volume), ("thickness", thickness), ("fallback_alpha", fallback_alpha)):
         setattr(options, name, _values.real("repair: " + name, value, 0))
     options.drop_faces = _values.whole("repair: drop_faces", drop_faces, 0)
     options.level = _core.choice("repair: level", level, "VXM_LEVEL_")

@@ -16,6 +16,7 @@ enum {
   KEY_THICKNESS,
   KEY_DROP_PARTS,
   KEY_UNION,
+  KEY_FALLBACK,
   KEY_WRAP,
   KEY_MAX_CHANGE,
   KEY_LOCATE,
@@ -60,6 +61,9 @@ static const cli_option known_options[] = {
      "than V, in model units cubed; may be given twice, once for each. The\n"
      "component with the largest area always stays"},
     {KEY_UNION, "union", NULL, "unite closed parts that cut through each other (CGAL)"},
+    {KEY_FALLBACK, "fallback", "wrap[:ALPHA]",
+     "wrap those parts alone that cannot be united, with --union or --level\n"
+     "solid; ALPHA as below, of their own diagonal [0.01] (CGAL)"},
     {KEY_WRAP, "wrap", "ALPHA[,OFFSET]",
      "lay a closed surface around everything: ALPHA is the smallest hole that\n"
      "it goes into, OFFSET its distance, as fractions of the diagonal, such as\n"
@@ -120,6 +124,17 @@ static int read_wrap(cli_run *cli, request *out, const char *value) {
   return CLI_END;
 }
 
+static int read_fallback(cli_run *cli, request *out, const char *value) {
+  double alpha = 0.01;
+  bool known = strncmp(value, "wrap", 4) == 0 && (value[4] == 0 || value[4] == ':');
+  if (known && value[4] == ':')
+    known = cli_read_number(&alpha, value + 5) && alpha > 0 && alpha <= 1;
+  if (!known)
+    return cli_usage(cli, "--fallback '%s' is neither wrap nor wrap:ALPHA, such as wrap:0.005", value);
+  out->repair.fallback_alpha = alpha;
+  return CLI_END;
+}
+
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
   static const char *const sheets[] = {"thicken", "keep", "drop", NULL};
@@ -164,6 +179,8 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_UNION:
     out->repair.boolean_union = true;
     return CLI_END;
+  case KEY_FALLBACK:
+    return read_fallback(cli, out, value);
   case KEY_WRAP:
     return read_wrap(cli, out, value);
   case KEY_MAX_CHANGE:
@@ -198,6 +215,9 @@ static int check_conflicts(cli_run *cli, const request *given) {
                           "--fill-holes, --fill, --union and --max-change");
   if (given->fill && repair->fill_holes == 0 && repair->level < VXM_LEVEL_CLOSED)
     return cli_usage(cli, "--fill goes with --fill-holes, or with --level closed or solid");
+  if (repair->fallback_alpha > 0 &&
+      (repair->wrap_alpha > 0 || !(repair->boolean_union || repair->level == VXM_LEVEL_SOLID)))
+    return cli_usage(cli, "--fallback goes with --union or --level solid, without --wrap");
   bool plates = repair->thickness > 0;
   if ((given->sheets || plates) && (repair->level < VXM_LEVEL_CLOSED || repair->wrap_alpha > 0))
     return cli_usage(cli, "%s goes with --level closed or solid, without --wrap",

@@ -36,6 +36,13 @@ vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options
   if (!(options->max_change >= 0) || !isfinite(options->max_change))
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: a change of %g at most; it must be 0 or more",
                     options->max_change);
+  if (!(options->fallback_alpha >= 0 && options->fallback_alpha <= 1) ||
+      (options->fallback_alpha > 0 &&
+       (options->wrap_alpha > 0 || !(options->boolean_union || options->level == VXM_LEVEL_SOLID))))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "repair: a fallback of %g; it is a fraction of the diagonal, 0 to 1, for what cannot be "
+                    "united: with boolean_union or the level solid, without wrap_alpha",
+                    options->fallback_alpha);
   if (options->sheets < VXM_SHEETS_THICKEN || options->sheets > VXM_SHEETS_DROP)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "repair: sheets %d is unknown", (int)options->sheets);
   if (!(options->thickness >= 0) || !isfinite(options->thickness))

@@ -121,22 +121,23 @@ static vxm_status unite(vxm_repair_state *state, bool *changed, vxm_error *error
   return status == VXM_OK && welded ? settle_again(state, &more, error) : status;
 }
 
+/** What could not be united is wrapped, if that was asked for, and then united after all. */
+static vxm_status wrap_the_rest(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  bool more;
+  vxm_status status = vxm_pass_fallback(state, changed, error);
+  return status == VXM_OK && *changed ? unite(state, &more, error) : status;
+}
+
 /** The passes that a level or an option asks for; each does nothing where none does. `moved`: vertices were
  * moved apart. */
 static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *error) {
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{separate_until_quiet, true},
-                 {vxm_pass_closing, true},
-                 {vxm_pass_small_parts, true},
-                 {vxm_pass_sheets, false},
-                 {unite, false},
-                 {vxm_pass_separation, false},
-                 {move_apart, true},
-                 {vxm_pass_reunion, false},
-                 {vxm_pass_separation, false},
-                 {move_apart, true}};
+  } further[] = {{separate_until_quiet, true}, {vxm_pass_closing, true}, {vxm_pass_small_parts, true},
+                 {vxm_pass_sheets, false},     {unite, false},           {wrap_the_rest, false},
+                 {vxm_pass_separation, false}, {move_apart, true},       {vxm_pass_reunion, false},
+                 {vxm_pass_separation, false}, {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
   *moved = false;
@@ -288,6 +289,7 @@ static void list_passes(vxm_repair_report *report, const vxm_repair_state *state
   report->unfilled_holes = state->unfilled;
   report->fan_fallbacks = state->fanned;
   report->union_failures = state->ununited;
+  report->wrapped_parts = state->wrapped;
   report->self_intersections_before = state->crossings[0];
   report->self_intersections_after = state->crossings[1];
   report->unparted_vertices = state->together;

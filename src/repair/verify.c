@@ -49,7 +49,7 @@ static vxm_status verify_rest(verifying *v, const vxm_soup *soup, vxm_error *err
   again.boolean_union = again.part_changes = again.intersections = false;
   if (again.wrap_alpha > 0)
     again.weld = VXM_WELD_OFF; /* the mesh was welded before it was wrapped, not after */
-  again.wrap_alpha = again.wrap_offset = again.max_change = again.drop_volume = 0;
+  again.wrap_alpha = again.wrap_offset = again.fallback_alpha = again.max_change = again.drop_volume = 0;
   vxm_pass_finding found[VXM_PASS_COUNT];
   vxm_status status = vxm_repair_try(found, soup, &again, error);
   for (int pass = 0; pass < VXM_PASS_COUNT && status == VXM_OK; pass++)
@@ -227,7 +227,7 @@ static const char *advice(const vxm_repair_options *repair) {
   if (repair->level == VXM_LEVEL_MANIFOLD)
     return "choose --level clean, or take what there is (--best-effort)";
   return "choose a lower --level, fill or drop what is in the way (--fill-holes, --drop-parts), go around it "
-         "(--wrap), or take what there is (--best-effort)";
+         "(--wrap, --fallback), or take what there is (--best-effort)";
 }
 
 static vxm_status check(const vxm_soup *read_back, void *payload, vxm_error *error) {

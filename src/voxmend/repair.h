@@ -74,7 +74,9 @@ typedef struct vxm_repair_options {
                          The component with the largest area always stays */
   bool intersections; /**< count self-intersections, before and after, in the report and in the account of
                          parts; needs the module for CGAL */
-  vxm_sheets sheets;  /**< what becomes of open sheets, from VXM_LEVEL_CLOSED on */
+  double fallback_alpha; /**< wrap those parts alone that cannot be united: as wrap_alpha, of their own
+                            bounds; 0 = leave them */
+  vxm_sheets sheets;     /**< what becomes of open sheets, from VXM_LEVEL_CLOSED on */
   double thickness; /**< of the plates that sheets become, model units, half of it to each side; 0 = 0.002 of
                        the diagonal of the bounds */
 } vxm_repair_options;
@@ -83,7 +85,7 @@ typedef struct vxm_repair_options {
 #define VXM_REPAIR_OPTIONS_INIT                                                                          \
   {                                                                                                      \
     sizeof(vxm_repair_options), VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_HOLE_FILL_FAN, \
-        false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false, VXM_SHEETS_THICKEN, 0.0                       \
+        false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false, 0.0, VXM_SHEETS_THICKEN, 0.0                  \
   }
 
 /** Room for passes in a report. */
@@ -106,6 +108,7 @@ typedef struct vxm_repair_report {
   int64_t fan_fallbacks;  /**< that VXM_HOLE_FILL_MINIMAL or VXM_HOLE_FILL_SMOOTH left to fans */
   int64_t union_failures; /**< that were to be united and still cut through themselves or others: open ones,
                              which have no inside, and those where the union failed */
+  int64_t wrapped_parts;  /**< that could not be united, and were wrapped (fallback_alpha) */
   int64_t self_intersections_before; /**< pairs of faces, counted up to
                                                                   VXM_SELF_INTERSECTIONS_MAX; -1 = not looked
                                                                   for */
@@ -127,7 +130,7 @@ typedef struct vxm_repair_report {
 
 /** Initial value of vxm_repair_report. */
 #define VXM_REPAIR_REPORT_INIT \
-  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
+  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
 
 /**
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated

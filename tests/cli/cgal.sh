@@ -64,6 +64,15 @@ run 'test -e no.ply'
 run 'voxmend repair plate.obj -o a.ply --level solid --sheets keep --best-effort | facts'
 run 'voxmend repair plate.obj -o a.ply --level solid --thickness 0.25 | facts'
 run 'voxmend repair plate.obj -o a.ply --level solid --drop-parts faces:2 | facts'
+say "# a closed part without a volume, through a cube"
+{
+  cat left.obj
+  printf 'o flat\nv -1 -1 1.5\nv 5 -1 1.5\nv 5 5 1.5\nv -1 5 1.5\nf 9 10 11\nf 9 11 12\nf 9 12 10\nf 10 12 11\n'
+} >flat.obj
+run 'voxmend repair flat.obj -o no.ply --level solid'
+run 'voxmend repair flat.obj -o a.ply --level solid --fallback wrap:0.1 --json -q | grep -E "union_failures|wrapped_parts|\"reached\""'
+run 'voxmend repair flat.obj -o a.ply --level solid --fallback wrapped'
+run 'voxmend repair flat.obj -o a.ply --level closed --fallback wrap'
 run 'voxmend repair nested.obj -o a.ply --level solid | facts'
 say "# a cube upon a cube, one beside along an edge, and one at a corner"
 box b 0 0 2 2 9 | cat left.obj - >upon.obj

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/exact/wrap.h"
+
 #include "mesh/unit_scale.h"
 #include "repair/external/cgal.h"
 #include "repair/state/repair_state.h"
@@ -16,27 +18,42 @@ static void regrow(vxm_soup *soup, double scale) {
     soup->positions[i] /= scale;
 }
 
+vxm_status vxm_wrap_soup(vxm_soup **out, uint64_t **nearest, vxm_soup *soup, double alpha, double offset,
+                         vxm_error *error) {
+  const vxm_cgal *cgal;
+  vxm_extent extent;
+  vxm_error local = VXM_ERROR_INIT;
+  *out = NULL;
+  *nearest = NULL;
+  uint8_t *used = vxm_alloc(soup->context, soup->vertex_count, 1, &local);
+  if (used)
+    vxm_extent_of(&extent, soup->context, soup, used);
+  vxm_free(soup->context, used);
+  if (used && vxm_cgal_open(&cgal, "wrapping a mesh", &local) == VXM_OK) {
+    vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
+    double size = alpha * frame.diagonal, distance = offset > 0 ? offset * frame.diagonal : size / 30;
+    shrink(soup, frame.scale);
+    if (cgal->wrap(out, nearest, soup, size, distance, &local) == VXM_OK)
+      regrow(*out, frame.scale);
+    regrow(soup, frame.scale);
+  }
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
+  return local.code;
+}
+
 /** The last resort, which always gives a closed surface: one that is laid around everything. */
 vxm_status vxm_pass_wrap(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!(state->options.wrap_alpha > 0) || state->soup->face_count == 0)
+  const vxm_repair_options *options = &state->options;
+  if (!(options->wrap_alpha > 0) || state->soup->face_count == 0)
     return VXM_OK;
-  vxm_extent extent;
-  vxm_repair_state_extent(state, &extent);
-  vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
-  double alpha = state->options.wrap_alpha * frame.diagonal;
-  double offset = state->options.wrap_offset > 0 ? state->options.wrap_offset * frame.diagonal : alpha / 30;
-  const vxm_cgal *cgal;
   vxm_soup *soup;
   uint64_t *nearest;
-  vxm_status status = vxm_cgal_open(&cgal, "wrapping a mesh", error);
+  vxm_status status =
+      vxm_wrap_soup(&soup, &nearest, state->soup, options->wrap_alpha, options->wrap_offset, error);
   if (status != VXM_OK)
     return status;
-  shrink(state->soup, frame.scale);
-  status = cgal->wrap(&soup, &nearest, state->soup, alpha, offset, error);
-  if (status != VXM_OK)
-    return status;
-  regrow(soup, frame.scale);
   state->counts[VXM_PASS_WRAP] += (int64_t)soup->face_count;
   *changed = true;
   /* The tags are those of what lies beneath; parts are no longer told apart. */
