@@ -62,6 +62,10 @@ const char *cli_measure_text(char text[24], int digits, double value) {
   return text;
 }
 
+const char *cli_volume_text(char text[24], int digits, bool closed, double value) {
+  return closed ? cli_measure_text(text, digits, value) : "-";
+}
+
 void cli_census_print(const cli_run *cli, const vxm_census *census) {
   char label[LABEL];
   for (int i = 0; i < COUNTS; i++) {
@@ -80,8 +84,8 @@ void cli_census_print(const cli_run *cli, const vxm_census *census) {
   fprintf(cli->text, "  %-26s %12.6g %.6g %.6g\n", "greatest corner", b[3], b[4], b[5]);
   char number[24];
   fprintf(cli->text, "  %-26s %12s\n", "area", cli_measure_text(number, 6, census->area));
-  fprintf(cli->text, "  %-26s %12s%s\n", "volume", cli_measure_text(number, 6, census->volume),
-          census->closed ? "" : "  not meaningful: the mesh is not closed");
+  fprintf(cli->text, "  %-26s %12s%s\n", "volume", cli_volume_text(number, 6, census->closed, census->volume),
+          census->closed ? "" : "  none: the mesh is not closed");
 }
 
 const char *cli_intersections_text(char text[32], int64_t count) {
@@ -114,8 +118,8 @@ void cli_census_print_both(const cli_run *cli, const vxm_census *before, const v
   char one[24], other[24];
   fprintf(cli->text, "  %-26s %12s %12s\n", "area", cli_measure_text(one, 6, before->area),
           cli_measure_text(other, 6, after->area));
-  fprintf(cli->text, "  %-26s %12s %12s\n", "volume", cli_measure_text(one, 6, before->volume),
-          cli_measure_text(other, 6, after->volume));
+  fprintf(cli->text, "  %-26s %12s %12s\n", "volume", cli_volume_text(one, 6, before->closed, before->volume),
+          cli_volume_text(other, 6, after->closed, after->volume));
 }
 
 void cli_census_json(json_t *object, const vxm_census *census) {

@@ -324,6 +324,24 @@ int cli_signal(void);
 /** A row for each count, with what it means where it is not zero. */
 /** An area or volume, or that it is beyond the range of numbers. */
 const char *cli_measure_text(char text[24], int digits, double value);
+/** The same of a volume; "-" where nothing is enclosed that could have one. */
+const char *cli_volume_text(char text[24], int digits, bool closed, double value);
+
+enum { CLI_SENTENCE = 200 };
+
+/** What has to be closed, as repair --level closed sees it. */
+typedef struct cli_openings {
+  bool known;
+  int64_t sheets, holes;
+} cli_openings;
+
+/**
+ * What is wrong with a mesh in a sentence, and which command mends it.
+ *
+ * @param intersections pairs of faces that cut through each other; -1 = not looked for
+ */
+const char *cli_verdict(char text[CLI_SENTENCE], const vxm_census *census, const cli_openings *openings,
+                        int64_t intersections);
 void cli_census_print(const cli_run *cli, const vxm_census *census);
 /** A number of self-intersections, which is "at least" one where they were not counted to the end. */
 const char *cli_intersections_text(char text[32], int64_t count);

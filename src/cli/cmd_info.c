@@ -12,52 +12,85 @@ static const cli_option known_options[] = {
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
-static json_t *describe_json(const cli_run *cli, const char *path, const vxm_mesh *mesh,
-                             const vxm_census *census, const cli_found *found) {
+/** What is known of a mesh. */
+typedef struct description {
+  const char *path, *verdict;
+  const vxm_mesh *mesh;
+  vxm_census census;
+  cli_found found;
+} description;
+
+static json_t *describe_json(const cli_run *cli, const description *d) {
   json_t *object = json_object();
-  json_object_set_new(object, "file", cli_json_text(path));
-  json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(mesh)));
-  cli_census_json(object, census);
-  cli_intersections_json(object, found->intersections);
-  if (found->list)
-    json_object_set(object, "defects", found->list);
+  json_object_set_new(object, "file", cli_json_text(d->path));
+  json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(d->mesh)));
+  json_object_set_new(object, "verdict", cli_json_text(d->verdict));
+  cli_census_json(object, &d->census);
+  cli_intersections_json(object, d->found.intersections);
+  if (d->found.list)
+    json_object_set(object, "defects", d->found.list);
   json_object_set(object, "warnings", cli->warnings);
   return object;
 }
 
-static void describe(const cli_run *cli, const char *path, const vxm_mesh *mesh, const vxm_census *census,
-                     const cli_found *found) {
-  fprintf(cli->text, "%s\n  %-26s %12s\n", cli_shown(path, "<stdin>"), "format", vxm_mesh_format(mesh));
-  if (cli->verbose && vxm_mesh_tag_count(mesh) > 0)
-    fprintf(cli->text, "  %-26s %12lld\n", "tags", (long long)vxm_mesh_tag_count(mesh));
-  cli_census_print(cli, census);
-  cli_census_print_intersections(cli, found->intersections);
+static void describe(const cli_run *cli, const description *d) {
+  fprintf(cli->text, "%s\n%s\n", cli_shown(d->path, "<stdin>"), d->verdict);
+  fprintf(cli->text, "  %-26s %12s\n", "format", vxm_mesh_format(d->mesh));
+  if (cli->verbose && vxm_mesh_tag_count(d->mesh) > 0)
+    fprintf(cli->text, "  %-26s %12lld\n", "tags", (long long)vxm_mesh_tag_count(d->mesh));
+  cli_census_print(cli, &d->census);
+  cli_census_print_intersections(cli, d->found.intersections);
+}
+
+/** Counts what repair would have to close. Only where something is, or may be: it takes as long as
+ * the repair. */
+static int count_openings(cli_run *cli, cli_openings *out, const description *d) {
+  *out = (cli_openings){.known = true};
+  if ((d->census.closed && d->census.nonmanifold_edges == 0) || d->census.faces == 0)
+    return CLI_DONE;
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+  options.level = VXM_LEVEL_CLOSED;
+  options.sheets = VXM_SHEETS_KEEP;
+  vxm_mesh *closed = NULL;
+  vxm_status status = vxm_mesh_repair(&closed, &report, d->mesh, &options, &cli->error);
+  vxm_mesh_destroy(closed);
+  out->sheets = report.open_parts;
+  out->holes = report.filled_holes;
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+}
+
+static int look_at(cli_run *cli, json_t *reports, description *d) {
+  if (vxm_mesh_census(&d->census, d->mesh, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  char sentence[CLI_SENTENCE];
+  cli_openings openings;
+  if (count_openings(cli, &openings, d) != CLI_DONE)
+    return CLI_FAILED;
+  d->verdict = cli_verdict(sentence, &d->census, &openings, d->found.intersections);
+  cli_progress_clear(cli);
+  if (cli_summary(cli)) {
+    if (json_array_size(reports) > 0)
+      fputc('\n', cli->text);
+    describe(cli, d);
+    cli_defects_print(cli, d->found.list);
+  }
+  json_array_append_new(reports, describe_json(cli, d));
+  return CLI_DONE;
 }
 
 /** Adds the file's object to `reports` if it can be read. */
 static int examine(cli_run *cli, json_t *reports, const char *path, const cli_defects *wanted) {
   json_array_clear(cli->warnings);
   vxm_mesh *mesh = NULL;
-  vxm_census census = VXM_CENSUS_INIT;
   if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
   cli_warn_mesh(cli, path, mesh);
-  cli_found found;
-  int status = cli_defects_show(cli, &found, wanted, mesh);
-  if (status == CLI_DONE && vxm_mesh_census(&census, mesh, &cli->error) != VXM_OK)
-    status = cli_fail(cli);
-  if (status == CLI_DONE) {
-    cli_progress_clear(cli);
-    if (cli_summary(cli)) {
-      if (json_array_size(reports) > 0)
-        fputc('\n', cli->text);
-      describe(cli, path, mesh, &census, &found);
-    }
-    if (cli_summary(cli))
-      cli_defects_print(cli, found.list);
-    json_array_append_new(reports, describe_json(cli, path, mesh, &census, &found));
-  }
-  json_decref(found.list);
+  description d = {.path = path, .mesh = mesh, .census = VXM_CENSUS_INIT};
+  int status = cli_defects_show(cli, &d.found, wanted, mesh);
+  if (status == CLI_DONE)
+    status = look_at(cli, reports, &d);
+  json_decref(d.found.list);
   vxm_mesh_destroy(mesh);
   return status;
 }

@@ -71,6 +71,16 @@ static json_t *verification_json(const repair_outcome *outcome) {
   return object;
 }
 
+/** What was wrong, in a sentence. */
+static json_t *repair_verdict(const repair_outcome *outcome) {
+  char sentence[CLI_SENTENCE];
+  cli_openings openings = {.known = outcome->level >= VXM_LEVEL_CLOSED,
+                           .sheets = outcome->repair.sheets + outcome->repair.open_parts,
+                           .holes = outcome->repair.filled_holes + outcome->repair.unfilled_holes};
+  return cli_json_text(
+      cli_verdict(sentence, &outcome->before, &openings, outcome->repair.self_intersections_before));
+}
+
 json_t *repair_report(const cli_run *cli, const char *input, const char *output,
                       const repair_outcome *outcome) {
   const vxm_repair_report *repair = &outcome->repair;
@@ -83,11 +93,13 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "output", output ? cli_json_text(output) : json_null());
   if (!output)
     json_object_set_new(report, "refused", cli_json_text(cli->error.text));
+  json_object_set_new(report, "verdict", repair_verdict(outcome));
   json_object_set_new(report, "verified", verification_json(outcome));
   json_object_set_new(report, "passes", cli_passes_json(repair));
   json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));
   json_object_set_new(report, "open_parts", json_integer(repair->open_parts));
   json_object_set_new(report, "sheets", json_integer(repair->sheets));
+  json_object_set_new(report, "filled_holes", json_integer(repair->filled_holes));
   json_object_set_new(report, "unfilled_holes", json_integer(repair->unfilled_holes));
   json_object_set_new(report, "fan_fallbacks", json_integer(repair->fan_fallbacks));
   json_object_set_new(report, "union_failures", json_integer(repair->union_failures));
@@ -120,8 +132,8 @@ static void part_row(const cli_run *cli, const vxm_mesh *mesh, int64_t i) {
           "  %-14.14s %8" PRId64 " %8" PRId64 " %7" PRId64 " %7" PRId64 " %7" PRId64 " %7" PRId64
           " %11s %11s %9.2g\n",
           name, a->faces, b->faces, a->boundary_edges, b->boundary_edges, a->nonmanifold_edges,
-          b->nonmanifold_edges, cli_measure_text(one, 5, a->volume), cli_measure_text(other, 5, b->volume),
-          part->max_displacement);
+          b->nonmanifold_edges, cli_volume_text(one, 5, a->closed, a->volume),
+          cli_volume_text(other, 5, b->closed, b->volume), part->max_displacement);
 }
 
 static void summarize_parts(const cli_run *cli, const vxm_mesh *mesh) {
@@ -130,6 +142,8 @@ static void summarize_parts(const cli_run *cli, const vxm_mesh *mesh) {
     return;
   fprintf(cli->text, "\n%-16s %17s %15s %15s %23s %9s\n", "Part", "faces", "open edges", "non-manifold",
           "volume", "moved");
+  fprintf(cli->text, "  %-14s %8s %8s %7s %7s %7s %7s %11s %11s\n", "", "before", "after", "before", "after",
+          "before", "after", "before", "after");
   for (int64_t i = 0; i < count && i < PARTS_SHOWN; i++)
     part_row(cli, mesh, i);
   if (count > PARTS_SHOWN)
@@ -217,6 +231,9 @@ void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *
 }
 
 void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
+  json_t *verdict = repair_verdict(outcome);
+  fprintf(cli->text, "%s\n\n", json_string_value(verdict));
+  json_decref(verdict);
   cli_census_print_both(cli, &outcome->before, &outcome->after);
   char before[32], after[32];
   if (outcome->repair.self_intersections_before >= 0)

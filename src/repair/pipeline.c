@@ -286,6 +286,7 @@ static void list_passes(vxm_repair_report *report, const vxm_repair_state *state
   report->nonorientable_patches = state->nonorientable;
   report->open_parts = state->open_parts;
   report->sheets = state->sheets;
+  report->filled_holes = state->filled;
   report->unfilled_holes = state->unfilled;
   report->fan_fallbacks = state->fanned;
   report->union_failures = state->ununited;

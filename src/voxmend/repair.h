@@ -104,6 +104,7 @@ typedef struct vxm_repair_report {
   } passes[VXM_REPAIR_PASSES_MAX]; /**< in the order of the work */
   int64_t nonorientable_patches;   /**< faces joined by edges that cannot all be turned consistently */
   int64_t open_parts;     /**< components whose holes were left open: sheets that their closing would cover */
+  int64_t filled_holes;   /**< holes that were filled */
   int64_t unfilled_holes; /**< that were to be filled and could not be */
   int64_t fan_fallbacks;  /**< that VXM_HOLE_FILL_MINIMAL or VXM_HOLE_FILL_SMOOTH left to fans */
   int64_t union_failures; /**< that were to be united and still cut through themselves or others: open ones,
@@ -130,7 +131,7 @@ typedef struct vxm_repair_report {
 
 /** Initial value of vxm_repair_report. */
 #define VXM_REPAIR_REPORT_INIT \
-  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
+  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
 
 /**
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated

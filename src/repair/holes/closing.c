@@ -65,6 +65,8 @@ static vxm_status call_module(vxm_soup **out, uint64_t **origin, vxm_repair_stat
   }
   if (status == VXM_OK)
     state->unfilled = left;
+  if (status == VXM_OK)
+    state->filled += filled;
   return status;
 }
 
@@ -119,6 +121,7 @@ static vxm_status fan_the_rest(vxm_repair_state *state, size_t most, bool *chang
   if (status == VXM_OK)
     status = vxm_fill_fans(state, most, &closed, error);
   state->fanned += closed;
+  state->filled += closed;
   state->unfilled = closed < state->unfilled ? state->unfilled - closed : 0;
   *changed |= closed > 0;
   return status;
@@ -138,6 +141,7 @@ vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *e
     int64_t closed;
     status = vxm_fill_fans(state, most, &closed, error);
     *changed = status == VXM_OK && closed > 0;
+    state->filled += closed;
     return status;
   }
   uint8_t *sheets = vxm_repair_state_scratch(state, state->soup->face_count, sizeof *sheets, &status, error);

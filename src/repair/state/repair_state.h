@@ -64,6 +64,7 @@ typedef struct vxm_repair_state {
   int64_t shared;                          /**< repeated faces that the last pass of duplicates left */
   int64_t open_parts;                      /**< that the last pass of closing left open */
   int64_t sheets;                          /**< open components that became plates, or went */
+  int64_t filled;                          /**< holes that were filled */
   int64_t unfilled;                        /**< holes that were to be filled and could not be */
   int64_t fanned;                          /**< holes that a module left to fans */
   int64_t ununited;      /**< parts that were to be united and still cut through themselves or others */
