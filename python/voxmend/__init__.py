@@ -14,7 +14,7 @@ from ._errors import (ArgumentError, BusyError, CancelledError, EmptyError, File
                       NumbersError, OutOfMemoryError, RangeError, UnavailableError, UnreachedError,
                       VoxmendError, VoxmendWarning)
 from ._field import Field, read_field
-from ._grid import VoxelGrid, coverage, distance, read, voxelize, write
+from ._grid import VoxelGrid, coverage, distance, read, remesh, voxelize, write
 from ._mesh import Mesh, info, load, repair
 from ._sampler import Sampler
 
@@ -23,6 +23,6 @@ __version__ = _text(_lib.vxm_version())
 __all__ = [
     "ArgumentError", "BusyError", "CancelledError", "EmptyError", "Field", "FileError", "FormatError", "KindError", "Mesh",
     "NumbersError", "OutOfMemoryError", "RangeError", "Sampler", "UnavailableError", "UnreachedError", "VoxelGrid",
-    "VoxmendError", "VoxmendWarning", "configure", "coverage", "distance", "info", "load", "read", "read_field", "repair",
+    "VoxmendError", "VoxmendWarning", "configure", "coverage", "distance", "info", "load", "read", "read_field", "remesh", "repair",
     "voxelize", "write"
 ]

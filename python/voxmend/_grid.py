@@ -383,6 +383,27 @@ def voxelize(mesh: MeshLike, resolution: Union[int, Iterable[int], None] = None,
     return grid
 
 
+def remesh(mesh: MeshLike, resolution: Optional[int] = None, *, pitch: Optional[float] = None, thin: str = "auto",
+           repair: bool = True) -> Mesh:
+    """A closed surface of a mesh's solid, made anew at the resolution of a grid; smooth where the mesh is.
+
+    Args:
+        mesh: as for `voxelize`.
+        resolution: voxels along the longest side; 128 if neither this nor `pitch` is given.
+        pitch: side of a voxel in model units.
+        thin: as for `voxelize`; thin parts come out two thirds of a voxel thick or more.
+        repair: repair the mesh first.
+    """
+    source = _prepare(mesh, repair)
+    options = _core.new("vxm_voxelize_options")
+    space_options, kept = _space_options(resolution, pitch, "tight", 0, None, None)
+    options.thin = _core.choice("remesh: thin", thin, "VXM_THIN_")
+    made = _core.create("vxm_mesh", lib.vxm_mesh_remesh, ffi.NULL, source._pointer, space_options, options,
+                        destroy=lib.vxm_mesh_destroy)
+    del kept
+    return Mesh._of(made)
+
+
 def _field(mesh: MeshLike, space_of: tuple, repair: bool, kind: str, options: Any, dtype: Any) -> tuple:
     source = _prepare(mesh, repair)
     space_options, kept = _space_options(*space_of)

@@ -101,7 +101,8 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
-    cli_command_compare, cli_command_augment, cli_command_view, cli_command_bench, cli_command_engines;
+    cli_command_compare, cli_command_augment, cli_command_remesh, cli_command_view, cli_command_bench,
+    cli_command_engines;
 
 enum { CLI_OPTIONS_MAX = 48, CLI_LIST_MAX = 512, CLI_NAMES_MAX = 8 };
 

@@ -7,9 +7,9 @@
 #include <string.h>
 
 static const cli_command *const commands[] = {
-    &cli_command_info,    &cli_command_repair,  &cli_command_voxelize,
-    &cli_command_convert, &cli_command_compare, &cli_command_augment,
-    &cli_command_view,    &cli_command_bench,   &cli_command_engines};
+    &cli_command_info,    &cli_command_repair,  &cli_command_remesh,  &cli_command_voxelize,
+    &cli_command_convert, &cli_command_compare, &cli_command_augment, &cli_command_view,
+    &cli_command_bench,   &cli_command_engines};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static void help(void) {
@@ -24,6 +24,7 @@ static void help(void) {
          "Examples:\n"
          "  voxmend info chair.off                              what is wrong with it\n"
          "  voxmend repair chair.off -o fixed.ply               mend what can be mended\n"
+         "  voxmend remesh chair.off -o smooth.ply -r 128       a closed surface around all of it\n"
          "  voxmend voxelize chair.off -o chair.binvox -r 64    64 x 64 x 64 voxels\n"
          "  voxmend view chair.binvox -o chair.png              look at them\n");
 }

@@ -180,6 +180,22 @@ VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, con
                                 const vxm_space_options *space, const vxm_voxelize_options *options,
                                 vxm_error *error);
 
+/**
+ * Makes a closed surface of the solid of a mesh, at the resolution of a grid: between voxel centres that are
+ * inside and those that are not, where the distances from the surface say that it lies. Smooth surfaces come
+ * out smooth, edges and corners cut by half a voxel at most, and thin parts at least as thick as two thirds
+ * of a voxel. All edges have two faces, and faces look outward.
+ *
+ * @param[out] report of the solid; may be NULL
+ * @param mesh        repaired by vxm_mesh_prepare, as for vxm_voxelize
+ * @param space       NULL = defaults; the grid is two voxels larger on each side
+ * @param options     NULL = defaults; of VXM_MODE_SOLID
+ * @return as vxm_voxelize and vxm_model_distance; the mesh has no face where no voxel is inside
+ */
+VXM_API vxm_status vxm_mesh_remesh(vxm_mesh **out, vxm_voxelize_report *report, const vxm_mesh *mesh,
+                                   const vxm_space_options *space, const vxm_voxelize_options *options,
+                                   vxm_error *error);
+
 /* ---- Models: many grids of one mesh ---- */
 
 /**

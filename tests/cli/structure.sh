@@ -20,7 +20,7 @@ order="voxmend base mesh sandbox
   voxel/sparse voxel/fields voxel/labels
   gpu/common gpu/opencl gpu/opengl gpu
   gridio/common gridio/formats gridio/mesh gridio/picture gridio
-  export augment api
+  export remesh augment api
   modules/assimp modules/occt modules/openmesh modules/cgal modules/openvdb"
 
 # Modules share the rooms that their makefile lists, and not each other.

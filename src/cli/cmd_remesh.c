@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend remesh: a closed surface of a mesh's solid, at the resolution of a grid. */
+#include "cli/repair.h"
+
+#include <inttypes.h>
+
+enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_THIN, KEY_ASCII, KEY_FORMAT };
+
+static const cli_option known_options[] = {
+    {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)"},
+    {'r', "resolution", "N", "voxels along the longest side of the model [128]"},
+    {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
+    {KEY_THIN, "thin", "keep|drop|26",
+     "parts thinner than a voxel: as in 'voxmend voxelize'; those that are kept\n"
+     "come out two thirds of a voxel thick or more [keep]"},
+    {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
+    {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
+    CLI_OPTIONS_READ,
+    {0, NULL, NULL, NULL}};
+
+typedef struct request {
+  const char *input, *output;
+  vxm_space_options space;
+  vxm_voxelize_options voxelize;
+  vxm_mesh_write_options write;
+} request;
+
+typedef struct outcome {
+  cli_input input;
+  vxm_mesh *mesh;
+  vxm_voxelize_report solid;
+  vxm_verification verification;
+  double remesh_ms, write_ms;
+} outcome;
+
+static int read_option(cli_run *cli, request *out, int key, const char *value) {
+  switch (key) {
+  case 'o':
+    out->output = value;
+    return CLI_END;
+  case 'r':
+    if (!cli_read_integer(&out->space.resolution[0], value, 1, 1 << 20))
+      return cli_usage(cli, "-r '%s' is not a number of voxels from 1 to 1048576", value);
+    return CLI_END;
+  case KEY_SIZE:
+    if (!cli_read_number(&out->space.voxel_size, value) || !(out->space.voxel_size > 0))
+      return cli_usage(cli, "--voxel-size '%s' is not a positive number", value);
+    return CLI_END;
+  case KEY_THIN:
+    return cli_read_thin(cli, &out->voxelize, value);
+  case KEY_ASCII:
+    out->write.ascii = true;
+    return CLI_END;
+  default:
+    out->write.format = value;
+    return CLI_END;
+  }
+}
+
+static int read_arguments(cli_run *cli, request *out) {
+  const char *value;
+  int key;
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
+      return CLI_STOP;
+  if (cli->argument_count != 1)
+    return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
+  out->input = cli->arguments[0];
+  if (out->space.resolution[0] > 0 && out->space.voxel_size > 0)
+    return cli_usage(cli, "-r and --voxel-size exclude each other");
+  out->space.fit = VXM_FIT_TIGHT;
+  out->write.format = cli_output_format(cli, out->output, out->write.format, cli_mesh_formats);
+  if (!out->write.format)
+    return CLI_STOP;
+  cli_writes(cli, "-o", out->output, false);
+  return cli_check_names(cli);
+}
+
+static json_t *make_report(const cli_run *cli, const request *given, const outcome *made) {
+  json_t *report = json_object(), *times = json_object();
+  json_object_set_new(report, "input", cli_json_text(given->input));
+  json_object_set_new(report, "output", cli_json_text(given->output));
+  json_object_set_new(report, "passes", cli_passes_json(&made->input.repair));
+  json_object_set_new(report, "voxels", json_integer(made->solid.voxels));
+  json_object_set_new(report, "vertices", json_integer(vxm_mesh_vertex_count(made->mesh)));
+  json_object_set_new(report, "faces", json_integer(vxm_mesh_face_count(made->mesh)));
+  json_object_set_new(times, "read", json_real(made->input.read_ms));
+  json_object_set_new(times, "repair", json_real(made->input.repair_ms));
+  json_object_set_new(times, "remesh", json_real(made->remesh_ms));
+  json_object_set_new(times, "write", json_real(made->write_ms));
+  json_object_set_new(report, "time_ms", times);
+  json_object_set(report, "warnings", cli->warnings);
+  return report;
+}
+
+static int remesh(cli_run *cli, const request *given, outcome *made) {
+  double start = cli_clock();
+  vxm_status status = vxm_mesh_remesh(&made->mesh, &made->solid, made->input.mesh, &given->space,
+                                      &given->voxelize, &cli->error);
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  if (vxm_mesh_face_count(made->mesh) == 0)
+    return cli_fail_text(cli, "%s: no voxel is inside; choose a higher -r, or --thin keep",
+                         cli_shown(given->input, "<stdin>"));
+  double remeshed = cli_clock();
+  vxm_repair_options closed = VXM_REPAIR_OPTIONS_INIT;
+  closed.level = VXM_LEVEL_CLOSED;
+  closed.weld = VXM_WELD_OFF;
+  status = vxm_mesh_write_verified(&made->verification, made->mesh, given->output, &given->write, &closed,
+                                   false, &cli->error);
+  made->remesh_ms = remeshed - start;
+  made->write_ms = cli_clock() - remeshed;
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+}
+
+static int work(cli_run *cli, const request *given, outcome *made) {
+  vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
+  if (cli_read_repaired(cli, &made->input, given->input, &repair) != CLI_DONE ||
+      remesh(cli, given, made) != CLI_DONE)
+    return CLI_FAILED;
+  cli_progress_clear(cli);
+  if (cli_summary(cli)) {
+    cli_row(cli, "input", "%s (%s): %" PRId64 " vertices, %" PRId64 " faces",
+            cli_shown(given->input, "<stdin>"), made->input.format, made->input.vertices, made->input.faces);
+    cli_row(cli, "voxels", "%" PRId64, made->solid.voxels);
+    cli_row(cli, "surface", "%" PRId64 " vertices, %" PRId64 " faces, closed: verified in the file",
+            vxm_mesh_vertex_count(made->mesh), vxm_mesh_face_count(made->mesh));
+    cli_row(cli, "time", "%.1f ms: read %.1f, repair %.1f, remesh %.1f, write %.1f",
+            made->input.read_ms + made->input.repair_ms + made->remesh_ms + made->write_ms,
+            made->input.read_ms, made->input.repair_ms, made->remesh_ms, made->write_ms);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->write.format);
+  }
+  return cli_finish(cli, cli->json || cli->report ? make_report(cli, given, made) : NULL);
+}
+
+static int run(cli_run *cli) {
+  request given = {.space = VXM_SPACE_OPTIONS_INIT,
+                   .voxelize = VXM_VOXELIZE_OPTIONS_INIT,
+                   .write = VXM_MESH_WRITE_OPTIONS_INIT};
+  if (read_arguments(cli, &given) == CLI_STOP)
+    return cli->status;
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  outcome made = {.solid = VXM_VOXELIZE_REPORT_INIT, .verification = VXM_VERIFICATION_INIT};
+  int status = work(cli, &given, &made);
+  vxm_mesh_destroy(made.mesh);
+  vxm_mesh_destroy(made.input.mesh);
+  return status;
+}
+
+const cli_command cli_command_remesh = {
+    .name = "remesh",
+    .arguments = "MESH -o MESH [OPTION]...",
+    .summary = "a closed surface around all of a mesh, at a resolution",
+    .notes =
+        "The mesh is repaired and voxelized as by 'voxmend voxelize', and the surface of the solid is made\n"
+        "anew, where the distances to the mesh say that it lies: closed, manifold and turned outward, "
+        "smooth\n"
+        "where the mesh is, with edges and corners cut by half a voxel at most. Groups and materials do not "
+        "go\n"
+        "along. 'voxmend repair --level closed' keeps the faces of the mesh instead.\n\n"
+        "Examples:\n"
+        "  voxmend remesh chair.off -o chair.ply\n"
+        "  voxmend remesh scan.obj -o scan.stl -r 400\n"
+        "  voxmend remesh part.stl -o part.ply --voxel-size 0.5",
+    .options = known_options,
+    .run = run,
+};

@@ -1,0 +1,33 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# voxmend remesh: closed surfaces, whatever the mesh; its volume, formats and refusals.
+. "$SRCDIR/tests/cli/lib.sh"
+
+# Times differ between runs.
+summary() {
+  sed -E 's/[0-9.]+ ms/T ms/; s/(read|repair|remesh|write) [0-9.]+/\1 T/g'
+}
+facts() {
+  voxmend info "$1" | grep -E "^closed|^open|components  |watertight|volume"
+}
+
+run 'voxmend remesh in/torus.off -o t.ply -r 48 | summary'
+run 'facts in/torus.off; facts t.ply'
+say "# the same in each format, with any threads, and from standard input"
+run 'for f in off obj stl; do voxmend remesh in/torus.off -o t.$f -r 48 -q --threads 7 && facts t.$f | grep volume; done'
+run 'voxmend remesh - -o - --format ply -r 48 -q <in/torus.off | cmp - t.ply'
+say "# a sheet comes out as a plate"
+printf 'OFF\n4 1 0\n0 0 0\n8 0 0\n8 8 0\n0 8 0\n4 0 1 2 3\n' >sheet.off
+run 'voxmend remesh sheet.off -o s.ply --voxel-size 0.5 -q && facts s.ply'
+run 'voxmend remesh sheet.off -o s2.ply --voxel-size 0.5 --thin drop -q && facts s2.ply'
+say "# two cubes that touch along an edge stay two"
+printf 'o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n' >a.obj
+sed -e '/^f/d' a.obj | awk '/^v/ { print "v", $2 + 1, $3 + 1, $4 }' >b.obj
+sed -n '/^f/p' a.obj | awk '{ print "f", $2 + 8, $3 + 8, $4 + 8, $5 + 8 }' >>b.obj
+run 'cat a.obj b.obj >two.obj; voxmend remesh two.obj -o two.ply -r 16 -q && facts two.ply'
+say "# refusals"
+run 'voxmend remesh in/torus.off -o t.ply -r 0'
+run 'voxmend remesh in/torus.off -o t.ply -r 32 --voxel-size 1'
+run 'voxmend remesh in/torus.off -o t.npy'
+run 'voxmend remesh in/torus.off -o big.ply -r 4000 --memlimit 100M; test -e big.ply'
+finish
