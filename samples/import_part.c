@@ -34,7 +34,8 @@ static vxm_status repair(vxm_mesh **out, vxm_level *reached, const vxm_mesh *raw
     vxm_verification found = VXM_VERIFICATION_INIT;
     options.level = (vxm_level)level;
     options.part_changes = true;
-    options.max_change = 0.05; /* a repair that inflates a part by more is none */
+    options.sheets = VXM_SHEETS_KEEP; /* the part as it was drawn: what is open is not to become a plate */
+    options.max_change = 0.05;        /* a repair that inflates a part by more is none */
     vxm_status status = vxm_mesh_repair(out, NULL, raw, &options, error);
     if (status == VXM_OK)
       status = vxm_mesh_verify(&found, *out, &options, error);

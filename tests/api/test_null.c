@@ -265,6 +265,9 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   X(vxm_voxelize, 6, 5,                                                                                    \
     vxm_voxelize(P(0, &out.grid), P(1, &out.voxelize), P(2, mesh), P(3, &space_options),                   \
                  P(4, &voxelize_options), P(5, &error)))                                                   \
+  X(vxm_mesh_remesh, 6, 5,                                                                                 \
+    vxm_mesh_remesh(P(0, &out.mesh), P(1, &out.voxelize), P(2, mesh), P(3, &space_options),                \
+                    P(4, &voxelize_options), P(5, &error)))                                                \
   X(vxm_model_create, 4, 3,                                                                                \
     vxm_model_create(P(0, &out.model), P(1, mesh), P(2, &voxelize_options), P(3, &error)))                 \
   X(vxm_model_destroy, 1, 0, (vxm_model_destroy(NULL), VXM_OK))                                            \
