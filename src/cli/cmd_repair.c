@@ -20,6 +20,7 @@ enum {
   KEY_LIST,
   KEY_INTERSECTIONS,
   KEY_ASCII,
+  KEY_POLYGONS,
   KEY_FORMAT
 };
 
@@ -67,6 +68,9 @@ static const cli_option known_options[] = {
      "--locate and --list (CGAL). With --union and --level solid they are\n"
      "counted in any case"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
+    {KEY_POLYGONS, "polygons", "split|keep",
+     "split = write triangles, as many programs read nothing else; keep = leave\n"
+     "polygons as they are in .off, .obj and .ply [split]"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
@@ -115,6 +119,7 @@ static int read_wrap(cli_run *cli, request *out, const char *value) {
 
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
+  static const char *const polygons[] = {"split", "keep", NULL};
   int choice = 0, result;
   switch (key) {
   case 'o':
@@ -164,6 +169,10 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_ASCII:
     out->write.ascii = true;
     return CLI_END;
+  case KEY_POLYGONS:
+    result = cli_choose(cli, &choice, "polygons", value, polygons);
+    out->write.keep_polygons = choice == 1;
+    return result;
   default:
     out->format = value;
     return CLI_END;
@@ -208,6 +217,7 @@ static int read_arguments(cli_run *cli, request *out) {
       out->defects.intersections ||
       (out->repair.part_changes && (out->repair.boolean_union || out->repair.level == VXM_LEVEL_SOLID));
   out->repair.single_precision = strcmp(out->write.format, "stl") == 0;
+  out->repair.triangles = !out->write.keep_polygons;
   return CLI_DONE;
 }
 

@@ -44,7 +44,7 @@ static vxm_status write_surface(const vxm_grid *grid, const char *path, const ch
   vxm_status status = vxm_gridio_surface_mesh(&surface, grid, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_meshio_write(surface, path, format, false, error);
+  status = vxm_meshio_write(surface, path, format, VXM_WRITE_POLYGONS, error);
   vxm_soup_destroy(surface);
   return status;
 }

@@ -59,20 +59,23 @@ typedef struct vxm_repair_options {
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
   bool single_precision; /**< keep to positions that 32-bit floats hold, as .stl files do */
   bool part_changes;     /**< keep account of every part: vxm_mesh_part_change */
-  double max_change;  /**< fail where the volume of a closed part, or the bounds of one, change by more than
-                         this fraction (of its volume, of its diagonal); 0 = do not look */
-  int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
+  double max_change; /**< fail where the volume of a closed part, or the bounds of one, change by more than
+                        this fraction (of its volume, of its diagonal); 0 = do not look */
+  int64_t
+      drop_faces; /**< drop components with fewer faces than this, triangles if they are split; 0 = none */
   double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
                          The component with the largest area always stays */
   bool intersections; /**< count self-intersections, before and after, in the report and in the account of
                          parts; needs the module for CGAL */
+  bool triangles;     /**< split polygons before anything else happens to them, so that the levels hold of the
+                         triangles that vxm_mesh_write makes of them; single_precision does that too */
 } vxm_repair_options;
 
 /** Initial value of vxm_repair_options. */
 #define VXM_REPAIR_OPTIONS_INIT                                                                          \
   {                                                                                                      \
     sizeof(vxm_repair_options), VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_HOLE_FILL_FAN, \
-        false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false                                                \
+        false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false, false                                         \
   }
 
 /** Room for passes in a report. */
@@ -224,7 +227,8 @@ VXM_API vxm_status vxm_mesh_verify(vxm_verification *out, const vxm_mesh *mesh,
 
 /**
  * Writes a mesh as vxm_mesh_write, reads back what was written and verifies it. Where the level is not
- * reached nothing is left behind, unless `best_effort` is set.
+ * reached nothing is left behind, unless `best_effort` is set. Polygons are written as triangles, unless
+ * write->keep_polygons is set: repair with vxm_repair_options.triangles, so that the level holds of those.
  *
  * @param[out] out  filled if the file could be written and read
  * @return as vxm_mesh_write and vxm_mesh_verify; VXM_ERROR_UNREACHED
@@ -282,8 +286,9 @@ VXM_API int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind ki
 /** Fixed name of a kind, such as "boundary_edge". */
 VXM_API const char *vxm_defect_name(vxm_defect_kind kind);
 /**
- * Writes the mesh as .ply with its defects in colour: faces and edges at fault, the edges as elements of
- * their own; the rest is grey. @return as vxm_mesh_write
+ * Writes the mesh as .ply, in text and triangles, with its defects in colour: faces at fault, and edges and
+ * vertices as rods a thousandth of the diagonal thick, of eight triangles each after those of the faces; the
+ * rest is grey. @return as vxm_mesh_write
  */
 VXM_API vxm_status vxm_defects_write(const vxm_defects *defects, const vxm_mesh *mesh, const char *path,
                                      vxm_error *error);
