@@ -102,10 +102,11 @@ typedef struct vxm_repair_report {
                                                                   VXM_SELF_INTERSECTIONS_MAX; -1 = not looked
                                                                   for */
   int64_t self_intersections_after;  /**< in the same way */
-  int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
-                                positions are too coarse for the faces about them */
-  int64_t shared_faces; /**< at level clean: that repeat others and stay, as bodies overlap there and both
-                           need theirs; from manifold on each body has its own */
+  int64_t
+      unparted_vertices; /**< that share a position, or would after rounding to 1e-8, and could not be moved
+                            apart: the numbers that hold positions are too coarse for the faces there */
+  int64_t shared_faces;  /**< at level clean: that repeat others and stay, as bodies overlap there and both
+                            need theirs; from manifold on each body has its own */
   int64_t lost_parts;   /**< closed components of which something that they enclosed, by winding or by parity,
                            is enclosed no more and could not be kept; what levels and options beyond
                            VXM_LEVEL_CLEAN take away is not looked at */
@@ -126,8 +127,9 @@ typedef struct vxm_repair_report {
  * turns faces consistently, outward where they enclose something; then goes as far as the level and the other
  * options say. Applying it to its own result changes nothing. Vertices keep their order and the position of
  * the first one welded; only where a soup was torn apart everywhere do they move, to the middle of the copies
- * joined, and where a vertex had to become several, which are moved apart by some 1e-9 of the diagonal so
- * that welding leaves them be.
+ * joined, and where a vertex had to become several, or lies within 1e-8 of another: these are moved apart, by
+ * some 1e-7 of the diagonal but at least 5e-8 model units, so that programs that merge vertices leave them
+ * be.
  *
  * @param[out] report may be NULL
  * @return VXM_OK (the result may have no faces); VXM_ERROR_ARGUMENT; VXM_ERROR_UNREACHED beyond max_change;
@@ -216,7 +218,8 @@ typedef struct vxm_verification {
   }
 
 /**
- * Checks what a level guarantees, after welding identical positions.
+ * Checks what a level guarantees, after welding identical positions; and from VXM_LEVEL_MANIFOLD on that no
+ * vertices are one to programs that round positions to 1e-8 (in a mesh with a diagonal of 1e-3 at least).
  *
  * @param options those of the repair: `level`, and what is to be kept; NULL = defaults
  * @return VXM_OK whether or not it is reached; VXM_ERROR_ARGUMENT; VXM_ERROR_UNAVAILABLE if VXM_LEVEL_SOLID
