@@ -119,7 +119,6 @@ static int read_wrap(cli_run *cli, request *out, const char *value) {
 
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const fills[] = {"fan", "minimal", "smooth", NULL};
-  static const char *const polygons[] = {"split", "keep", NULL};
   int choice = 0, result;
   switch (key) {
   case 'o':
@@ -170,9 +169,7 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     out->write.ascii = true;
     return CLI_END;
   case KEY_POLYGONS:
-    result = cli_choose(cli, &choice, "polygons", value, polygons);
-    out->write.keep_polygons = choice == 1;
-    return result;
+    return cli_read_polygons(cli, &out->write.keep_polygons, value);
   default:
     out->format = value;
     return CLI_END;
