@@ -235,7 +235,8 @@ class VoxelGrid:
         return self._like(out)
 
     def as_boxes(self) -> Mesh:
-        """The faces between set and empty voxels, merged into rectangles, in model units."""
+        """The faces between set and empty voxels, in model units: triangles of which every edge has two. Where voxels
+        touch in an edge or a corner alone, either side has vertices of its own, 1/256 of a voxel within its voxels."""
         return Mesh._of(_core.create("vxm_mesh", lib.vxm_grid_surface_mesh, self._pointer, destroy=lib.vxm_mesh_destroy))
 
     def compare(self, other: "VoxelGrid") -> dict:

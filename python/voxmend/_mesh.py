@@ -172,9 +172,11 @@ class Mesh:
         from ._grid import voxelize
         return voxelize(self, *arguments, **options)
 
-    def save(self, path: Any, format: Optional[str] = None, ascii: bool = False) -> None:
-        """Writes .off, .obj, .stl or .ply, told by the name or by `format`; "-" is standard output."""
+    def save(self, path: Any, format: Optional[str] = None, ascii: bool = False, keep_polygons: bool = False) -> None:
+        """Writes .off, .obj, .stl or .ply, told by the name or by `format`; "-" is standard output. Polygons become
+        triangles, as many programs read nothing else, unless `keep_polygons` (.stl has triangles in any case)."""
         options = _core.new("vxm_mesh_write_options", ascii=_values.flag("save: ascii", ascii))
+        options.keep_polygons = _values.flag("save: keep_polygons", keep_polygons)
         name = format_name("save", format)
         options.format = name
         _core.call(lib.vxm_mesh_write, self._pointer, _values.path(path), options, path=path)
@@ -237,8 +239,8 @@ def info(mesh: MeshLike) -> dict:
 def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "auto", keep_duplicates: bool = False,
            keep_orientation: bool = False, fill_holes: Union[int, str] = 0, fill: str = "fan", union: bool = False,
            wrap_alpha: float = 0.0, wrap_offset: float = 0.0, max_change: float = 0.0, drop_faces: int = 0,
-           drop_volume: float = 0.0, separate: bool = False, sheets: str = "thicken", thickness: float = 0.0,
-           fallback_alpha: float = 0.0) -> Mesh:
+           drop_volume: float = 0.0, triangles: bool = False, separate: bool = False, sheets: str = "thicken",
+           thickness: float = 0.0, fallback_alpha: float = 0.0) -> Mesh:
     """A repaired copy; its `report` tells how many vertices or faces each pass has changed.
 
     Args:
@@ -251,12 +253,13 @@ def repair(mesh: MeshLike, level: str = "clean", *, weld: Union[str, float] = "a
         sheets: what becomes of open sheets at "closed" and "solid": "thicken", "keep" or "drop".
         thickness: of the plates they become, model units; 0 is 0.002 of the diagonal.
         fallback_alpha: wrap the parts that cannot be united, alone, with this fraction of their diagonal; 0 leaves them.
+        triangles: split polygons first, so that the level holds of the triangles that `Mesh.save` writes.
         separate: where bodies share faces each gets its own (level "manifold"), so that no body is lost between others
             when they are voxelized. `voxelize` and the datasets do that.
     """
     source = as_mesh(mesh)
     options = _core.new("vxm_repair_options")
-    for name, value in (("keep_duplicates", keep_duplicates), ("keep_orientation", keep_orientation)):
+    for name, value in (("keep_duplicates", keep_duplicates), ("keep_orientation", keep_orientation), ("triangles", triangles)):
         setattr(options, name, _values.flag("repair: " + name, value))
     options.boolean_union = _values.flag("repair: union", union)
     for name, value in (("wrap_alpha", wrap_alpha), ("wrap_offset", wrap_offset), ("max_change", max_change),

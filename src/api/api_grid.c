@@ -38,7 +38,7 @@ vxm_status vxm_grid_write(const vxm_grid *grid, const char *path, const vxm_grid
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
   vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "grid", error);
-  return status == VXM_OK ? vxm_gridio_write(grid, path, chosen.format, error) : status;
+  return status == VXM_OK ? vxm_gridio_write_with(grid, path, &chosen, error) : status;
 }
 
 vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error) {
@@ -46,7 +46,7 @@ vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error
     *out = NULL;
   if (!out || !grid)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "grid: an argument is NULL");
-  return vxm_gridio_surface_mesh(out, grid, error);
+  return vxm_gridio_surface_mesh(out, grid, VXM_SURFACE_MANIFOLD | VXM_SURFACE_TRIANGLES, error);
 }
 
 vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path, const vxm_picture_options *options,

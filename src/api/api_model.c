@@ -62,7 +62,7 @@ vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const 
   vxm_voxelize_report made = {0};
   vxm_status status = check_write(&chosen, space, path, options, error);
   if (status == VXM_OK)
-    status = vxm_model_writer_write(&made, model, space, path, chosen.format, error);
+    status = vxm_model_writer_write(&made, model, space, path, &chosen, error);
   if (status == VXM_OK)
     VXM_RESULT_WRITE(report, &made);
   return status;

@@ -278,6 +278,19 @@ void cli_writes(cli_run *cli, const char *option, const char *path, bool has_jso
 int cli_check_names(cli_run *cli);
 /** For what is made of a grid: CLI_STOP if it is a surface and would replace a file. */
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced);
+/** Those of grids that are written as meshes. */
+#define CLI_OPTIONS_SURFACE(polygons, contacts)                                        \
+  {polygons, "polygons", "split|keep",                                                 \
+   "of a mesh: split = write triangles; keep = rectangles with further corners,\n"     \
+   "in .obj, .ply and .off [split]"},                                                  \
+  {                                                                                    \
+    contacts, "no-manifold", NULL,                                                     \
+        "of a mesh: leave voxels joined that touch in an edge or a corner alone, so\n" \
+        "that edges may have four faces; else either side has vertices of its own,\n"  \
+        "1/256 of a voxel within"                                                      \
+  }
+/** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
+int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
 #define CLI_OPTION_FORCE(key) \
   { key, "force", NULL, "replace a file that is there by a surface: .obj, .ply, .stl or .off" }
 

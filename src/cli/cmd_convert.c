@@ -4,7 +4,7 @@
 
 #include <inttypes.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE };
+enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
@@ -15,12 +15,13 @@ static const cli_option known_options[] = {
      "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl, off or vox [by the name of the\n"
      "output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
+    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_THRESHOLD,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output, *format;
-  bool force;
+  bool force, keep_polygons, keep_contacts;
   vxm_threshold_options threshold;
 } request;
 
@@ -45,7 +46,12 @@ static int read_arguments(cli_run *cli, request *out) {
       out->format = value;
     else if (key == KEY_FORCE)
       out->force = true;
-    else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
+    else if (key == KEY_CONTACTS)
+      out->keep_contacts = true;
+    else if (key == KEY_POLYGONS) {
+      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
+        return CLI_STOP;
+    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
       return CLI_STOP;
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
@@ -102,6 +108,8 @@ static int settle(cli_run *cli, const request *given, cli_values *values) {
 static int convert(cli_run *cli, const request *given, const cli_values *values) {
   vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
   write.format = given->format;
+  write.keep_polygons = given->keep_polygons;
+  write.keep_contacts = given->keep_contacts;
   vxm_status status = values->grid ? vxm_grid_write(values->grid, given->output, &write, &cli->error)
                                    : vxm_field_write(values->field, given->output, &write, &cli->error);
   if (status != VXM_OK)
@@ -137,7 +145,8 @@ const cli_command cli_command_convert = {
     .arguments = "GRID -o FILE [OPTION]...",
     .summary = "write a grid in another format, or as a mesh",
     .notes =
-        "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units.\n\n"
+        "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units, and\n"
+        "split into triangles. Every edge has two faces, and programs that merge vertices leave it so.\n\n"
         "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd and .vdb;\n"
         "labels up to 255 also in .binvox, colours in .npy, .nrrd, .ply and .vox. They become set and clear\n"
         "voxels only with --threshold or --below, or where nothing is lost: all are 0 or 1, or unsigned\n"

@@ -23,6 +23,7 @@ enum {
   KEY_LIST,
   KEY_INTERSECTIONS,
   KEY_ASCII,
+  KEY_POLYGONS,
   KEY_FORMAT
 };
 
@@ -78,6 +79,9 @@ static const cli_option known_options[] = {
      "--locate and --list (CGAL). With --union and --level solid they are\n"
      "counted in any case"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
+    {KEY_POLYGONS, "polygons", "split|keep",
+     "split = write triangles, as many programs read nothing else; keep = leave\n"
+     "polygons as they are in .off, .obj and .ply [split]"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
@@ -198,6 +202,8 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_ASCII:
     out->write.ascii = true;
     return CLI_END;
+  case KEY_POLYGONS:
+    return cli_read_polygons(cli, &out->write.keep_polygons, value);
   default:
     out->format = value;
     return CLI_END;
@@ -251,6 +257,7 @@ static int read_arguments(cli_run *cli, request *out) {
       out->defects.intersections ||
       (out->repair.part_changes && (out->repair.boolean_union || out->repair.level == VXM_LEVEL_SOLID));
   out->repair.single_precision = strcmp(out->write.format, "stl") == 0;
+  out->repair.triangles = !out->write.keep_polygons;
   return CLI_DONE;
 }
 

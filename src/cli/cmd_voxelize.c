@@ -18,6 +18,14 @@ static int read_like(cli_run *cli, vxm_space *out, const char *path) {
   return CLI_DONE;
 }
 
+static vxm_grid_write_options write_options(const voxelize_request *given) {
+  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+  options.format = given->format;
+  options.keep_polygons = given->keep_polygons;
+  options.keep_contacts = given->keep_contacts;
+  return options;
+}
+
 static void warn_of_model(cli_run *cli, const voxelize_request *given, const vxm_model *model) {
   for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
     cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
@@ -32,8 +40,7 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
   if (status == VXM_OK)
     status = vxm_model_voxelize(grid, &results->voxelize, model, NULL, &cli->error);
   double made = cli_clock();
-  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
-  options.format = given->format;
+  vxm_grid_write_options options = write_options(given);
   if (status == VXM_OK)
     status = vxm_grid_write(grid, given->output, &options, &cli->error);
   results->voxelize_ms += made - start;
@@ -53,8 +60,7 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
 
 static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_outcome *results,
                         vxm_model *model) {
-  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
-  options.format = given->format;
+  vxm_grid_write_options options = write_options(given);
   vxm_sparse *sparse;
   double start = cli_clock();
   if (vxm_model_sparse(&sparse, &results->voxelize, model, &results->space, NULL, &cli->error) != VXM_OK)
@@ -78,8 +84,7 @@ static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_ou
 }
 
 static int write_model(cli_run *cli, voxelize_request *given, voxelize_outcome *results, vxm_model *model) {
-  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
-  options.format = given->format;
+  vxm_grid_write_options options = write_options(given);
   double start = cli_clock();
   vxm_status status =
       cli_field_wanted(&given->field)
@@ -116,8 +121,7 @@ static uint64_t bytes_of_bits(const vxm_space *space) {
 /** Makes the model, tells what it will take, and unless that is all that is wanted writes the grid. */
 static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
   const vxm_mesh *mesh = results->input.mesh;
-  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
-  options.format = given->format;
+  vxm_grid_write_options options = write_options(given);
   vxm_model *model = NULL;
   double start = cli_clock();
   vxm_status status = vxm_space_fit(&results->space, mesh, &given->space, &cli->error);

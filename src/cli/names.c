@@ -224,6 +224,13 @@ int cli_check_names(cli_run *cli) {
   return CLI_END;
 }
 
+int cli_read_polygons(cli_run *cli, bool *keep, const char *value) {
+  static const char *const polygons[] = {"split", "keep", NULL};
+  int choice = 0, result = cli_choose(cli, &choice, "polygons", value, polygons);
+  *keep = choice == 1;
+  return result;
+}
+
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced) {
   struct stat info;
   if (is_forced || cli_read_choice(format, cli_mesh_formats) < 0 || strcmp(path, "-") == 0 ||

@@ -31,6 +31,8 @@ enum {
   KEY_KEEP,
   KEY_FORMAT,
   KEY_FORCE,
+  KEY_POLYGONS,
+  KEY_CONTACTS,
   KEY_DRY_RUN
 };
 
@@ -43,6 +45,7 @@ const cli_option voxelize_options[] = {
      "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
      "output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
+    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
     {KEY_FIT, "fit", "cube|tight|sphere",
@@ -231,6 +234,11 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
   case KEY_FORCE:
     out->force = true;
     return CLI_END;
+  case KEY_CONTACTS:
+    out->keep_contacts = true;
+    return CLI_END;
+  case KEY_POLYGONS:
+    return cli_read_polygons(cli, &out->keep_polygons, value);
   case KEY_DRY_RUN:
     out->dry_run = true;
     return CLI_END;

@@ -159,8 +159,8 @@ static vxm_status write_windows(stream *s, const char *path, const char *format,
   return status;
 }
 
-static vxm_status write_whole(stream *s, vxm_voxelize_report *report, const char *path, const char *format,
-                              vxm_error *error) {
+static vxm_status write_whole(stream *s, vxm_voxelize_report *report, const char *path,
+                              const vxm_grid_write_options *options, vxm_error *error) {
   vxm_grid *grid;
   double start = vxm_clock_ms();
   vxm_status status = vxm_voxelize_grid(&grid, report, s->model, s->space, error);
@@ -168,23 +168,23 @@ static vxm_status write_whole(stream *s, vxm_voxelize_report *report, const char
   s->fill_ms = made - start;
   if (status != VXM_OK)
     return status;
-  status = vxm_gridio_write(grid, path, format, error);
+  status = vxm_gridio_write_with(grid, path, options, error);
   s->write_ms = vxm_clock_ms() - made;
   vxm_grid_destroy(grid);
   return status;
 }
 
 vxm_status vxm_model_writer_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
-                                  const char *path, const char *format, vxm_error *error) {
+                                  const char *path, const vxm_grid_write_options *options, vxm_error *error) {
   plan p;
-  vxm_status status = make_plan(&p, model, space, path, format, error);
+  vxm_status status = make_plan(&p, model, space, path, options->format, error);
   if (status != VXM_OK)
     return status;
   stream s = {.model = model, .plan = &p, .space = space};
   if (needs_whole(model, &p))
-    status = write_whole(&s, report, path, format, error);
+    status = write_whole(&s, report, path, options, error);
   else {
-    status = write_windows(&s, path, format, error);
+    status = write_windows(&s, path, options->format, error);
     if (status == VXM_OK)
       vxm_model_report(s.pass, report, s.sum.count, s.sum.hash);
     vxm_model_close(model, s.pass);

@@ -11,6 +11,6 @@ vxm_status vxm_model_writer_estimate(vxm_estimate *out, const vxm_model *model, 
 
 /** See vxm_model_write in voxmend.h; `report` is not NULL. */
 vxm_status vxm_model_writer_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
-                                  const char *path, const char *format, vxm_error *error);
+                                  const char *path, const vxm_grid_write_options *options, vxm_error *error);
 
 #endif

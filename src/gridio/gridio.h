@@ -33,5 +33,8 @@ vxm_status vxm_gridio_read_space(vxm_grid **out, vxm_context *context, const cha
  *         VXM_ERROR_IO, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error);
+/** As vxm_gridio_write, with options. */
+vxm_status vxm_gridio_write_with(const vxm_grid *grid, const char *path,
+                                 const vxm_grid_write_options *options, vxm_error *error);
 
 #endif

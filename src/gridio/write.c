@@ -38,20 +38,30 @@ static vxm_status write_slices(const vxm_grid *grid, const char *path, const cha
   return status;
 }
 
-static vxm_status write_surface(const vxm_grid *grid, const char *path, const char *format,
+static vxm_status write_surface(const vxm_grid *grid, const char *path, const char *format, unsigned how,
                                 vxm_error *error) {
   vxm_soup *surface;
-  vxm_status status = vxm_gridio_surface_mesh(&surface, grid, error);
+  vxm_status status = vxm_gridio_surface_mesh(&surface, grid, how, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_meshio_write(surface, path, format, false, error);
+  status = vxm_meshio_write(surface, path, format, VXM_WRITE_POLYGONS, error);
   vxm_soup_destroy(surface);
   return status;
 }
 
-vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {
-  const vxm_grid_format *found = vxm_grid_format_for(path, format, error);
+vxm_status vxm_gridio_write_with(const vxm_grid *grid, const char *path,
+                                 const vxm_grid_write_options *options, vxm_error *error) {
+  const vxm_grid_format *found = vxm_grid_format_for(path, options->format, error);
   if (!found)
     return VXM_ERROR_ARGUMENT;
-  return (found->writer ? write_slices : write_surface)(grid, path, found->name, error);
+  unsigned how = (options->keep_polygons ? 0 : VXM_SURFACE_TRIANGLES) |
+                 (options->keep_contacts ? 0 : VXM_SURFACE_MANIFOLD);
+  return found->writer ? write_slices(grid, path, found->name, error)
+                       : write_surface(grid, path, found->name, how, error);
+}
+
+vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {
+  vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+  options.format = format;
+  return vxm_gridio_write_with(grid, path, &options, error);
 }

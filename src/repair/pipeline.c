@@ -166,13 +166,13 @@ static vxm_status run_further(vxm_repair_state *state, vxm_error *error) {
   return status == VXM_OK ? vxm_pass_unused(state, &changed, error) : status;
 }
 
-/** What comes once: for .stl, polygons are cleaned before they become triangles and are rounded. */
+/** What comes once: polygons are cleaned before they become triangles and, for .stl, are rounded. */
 static vxm_status run_first(vxm_repair_state *state, vxm_error *error) {
   static const vxm_pass_fn first[] = {vxm_pass_nonfinite,  vxm_pass_exact_weld, vxm_pass_repeated_corners,
                                       vxm_pass_duplicates, vxm_pass_rounding,   vxm_pass_exact_weld};
   enum { FIRST = sizeof first / sizeof *first, PLAIN = 2 };
   vxm_status status = VXM_OK;
-  int passes = state->options.single_precision ? FIRST : PLAIN;
+  int passes = state->options.single_precision || state->options.triangles ? FIRST : PLAIN;
   for (int i = 0; i < passes && status == VXM_OK; i++) {
     bool changed;
     status = run_pass(state, first[i], 0.25 * i / passes, &changed, error);

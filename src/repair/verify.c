@@ -4,6 +4,7 @@
 #include "mesh/weld.h"
 #include "meshio/meshio.h"
 #include "repair/state/halfedges.h"
+#include "repair/state/merge_places.h"
 #include "repair/state/self_intersections.h"
 #include "repair/state/vertex_fans.h"
 
@@ -164,6 +165,40 @@ static vxm_status verify_solid(verifying *v, vxm_error *error) {
   return status == VXM_OK && v->out->reached ? verify_outward(v, error) : status;
 }
 
+/* ---- Other programs ---- */
+
+/** Vertices that lie apart and are one to a program that merges near ones: what it reads would be another
+ * mesh. */
+static vxm_status verify_apart(verifying *v, const vxm_soup *soup, vxm_error *error) {
+  vxm_extent extent;
+  vxm_status status = VXM_OK;
+  v->state.used = vxm_repair_state_scratch(&v->state, soup->vertex_count, 1, &status, error);
+  uint32_t *map = vxm_repair_state_scratch(&v->state, soup->vertex_count, sizeof *map, &status, error);
+  if (status != VXM_OK) {
+    vxm_free(soup->context, map);
+    return status;
+  }
+  vxm_repair_state_extent(&v->state, &extent); /* of the welded mesh: one vertex for each position is used */
+  vxm_merge_rule rule = vxm_merge_rule_of(vxm_extent_diagonal(extent.bounds));
+  if (rule != VXM_MERGE_EXACT)
+    status = vxm_merge_map(soup->context, soup->positions, soup->vertex_count, rule, map, error);
+  int64_t count = 0, first = -1;
+  uint8_t *seen = rule != VXM_MERGE_EXACT
+                      ? vxm_repair_state_scratch(&v->state, soup->vertex_count, 1, &status, error)
+                      : NULL;
+  for (size_t i = 0; seen && i < soup->vertex_count; i++) {
+    if (!v->state.used[i])
+      continue;
+    if (seen[map[i]] && count++ == 0)
+      first = (int64_t)i;
+    seen[map[i]] = 1;
+  }
+  add(v, "near_vertices", count, first, first < 0 ? NULL : vxm_position(soup, (size_t)first));
+  vxm_free(soup->context, seen);
+  vxm_free(soup->context, map);
+  return status;
+}
+
 /** A copy that a program makes which welds: positions that are the same are one vertex, the first one. */
 static vxm_status weld(verifying *v, const vxm_soup *soup, vxm_error *error) {
   vxm_status status = vxm_soup_copy(&v->state.soup, soup, error);
@@ -183,6 +218,8 @@ static vxm_status verify_level(verifying *v, const vxm_soup *soup, vxm_error *er
   vxm_status status = level >= VXM_LEVEL_MANIFOLD ? weld(v, soup, error) : VXM_OK;
   if (status == VXM_OK && level >= VXM_LEVEL_MANIFOLD)
     status = verify_manifold(v, error);
+  if (status == VXM_OK && level >= VXM_LEVEL_MANIFOLD)
+    status = verify_apart(v, soup, error);
   if (status == VXM_OK && level >= VXM_LEVEL_SOLID)
     status = verify_solid(v, error);
   return status;
@@ -200,6 +237,7 @@ vxm_status vxm_verify(vxm_verification *out, const vxm_soup *soup, const vxm_rep
   if (status == VXM_OK)
     status = verify_rest(&v, soup, error);
   vxm_repair_state_touch(&v.state);
+  vxm_free(soup->context, v.state.used);
   vxm_soup_destroy(v.state.soup);
   if (status != VXM_OK)
     *out = (vxm_verification){0};
@@ -248,5 +286,5 @@ vxm_status vxm_write_verified(vxm_verification *out, const vxm_soup *soup, const
                               bool best_effort, vxm_error *error) {
   *out = (vxm_verification){0};
   checking payload = {out, repair, path, best_effort};
-  return vxm_meshio_write_checked(soup, path, write->format, write->ascii, check, &payload, error);
+  return vxm_meshio_write_checked(soup, path, write->format, vxm_meshio_how(write), check, &payload, error);
 }

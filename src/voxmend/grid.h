@@ -109,11 +109,14 @@ typedef struct vxm_grid_write_options {
   size_t size;        /**< as the initializer sets it */
   const char *format; /**< "binvox", "npy", "raw", "rle", "nrrd", "vdb", or "obj", "ply", "stl", "off"; NULL =
                          by extension */
+  bool keep_polygons; /**< obj, ply, off: polygons, rather than triangles: rectangles with further corners */
+  bool keep_contacts; /**< meshes: where voxels touch in an edge or a corner alone they share its vertices, so
+                         that edges may have four faces, rather than having vertices of their own */
 } vxm_grid_write_options;
 
 /** Initial value of vxm_grid_write_options. */
 #define VXM_GRID_WRITE_OPTIONS_INIT \
-  { sizeof(vxm_grid_write_options), NULL }
+  { sizeof(vxm_grid_write_options), NULL, false, false }
 
 /**
  * Writes a grid, under a temporary name first. "-" writes standard output (not .raw). The mesh formats hold
@@ -129,7 +132,9 @@ VXM_API vxm_status vxm_grid_write(const vxm_grid *grid, const char *path,
 
 /**
  * Makes a mesh of the exposed voxel faces in model units, facing outward, merged into rectangles that share
- * vertices. The mesh is closed mod 2: rectangles have a corner wherever a neighbour has one.
+ * vertices, and split into triangles. Every edge has two faces: where voxels touch in an edge or a corner
+ * alone each side has vertices of its own, 1/256 of a voxel within its own voxels along the axes concerned,
+ * so that programs that merge vertices leave them be.
  */
 VXM_API vxm_status vxm_grid_surface_mesh(vxm_mesh **out, const vxm_grid *grid, vxm_error *error);
 

@@ -120,16 +120,18 @@ typedef struct vxm_mesh_write_options {
   size_t size;        /**< as the initializer sets it */
   const char *format; /**< "off", "obj", "stl" or "ply"; NULL = by the extension of the path */
   bool ascii;         /**< stl and ply as text rather than binary */
+  bool keep_polygons; /**< off, obj and ply with polygons as they are, rather than as triangles */
 } vxm_mesh_write_options;
 
 /** Initial value of vxm_mesh_write_options. */
 #define VXM_MESH_WRITE_OPTIONS_INIT \
-  { sizeof(vxm_mesh_write_options), NULL, false }
+  { sizeof(vxm_mesh_write_options), NULL, false, false }
 
 /**
  * Writes a mesh, under a temporary name first, so that no half-written file is left. "-" writes standard
- * output. Coordinates come back bit for bit from OFF, OBJ and PLY; STL holds 32-bit floats and triangles
- * only.
+ * output. Coordinates come back bit for bit from OFF, OBJ and PLY; STL holds 32-bit floats. Polygons become
+ * the triangles that voxelizing takes them for, as many programs read nothing else; faces of fewer than three
+ * corners are left out.
  *
  * @return VXM_OK; VXM_ERROR_ARGUMENT for an unknown format; VXM_ERROR_IO; VXM_ERROR_RANGE if the format
  * cannot hold the mesh; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED

@@ -67,25 +67,28 @@ typedef struct vxm_repair_options {
   double wrap_offset; /**< its distance from the mesh, in the same way; 0 = a thirtieth of wrap_alpha */
   bool single_precision; /**< keep to positions that 32-bit floats hold, as .stl files do */
   bool part_changes;     /**< keep account of every part: vxm_mesh_part_change */
-  double max_change;  /**< fail where the volume of a closed part, or the bounds of one, change by more than
-                         this fraction (of its volume, of its diagonal); 0 = do not look */
-  int64_t drop_faces; /**< drop components with fewer faces than this; 0 = none */
-  double drop_volume; /**< drop closed components with less volume than this, model units cubed; 0 = none.
-                         The component with the largest area always stays */
-  bool intersections; /**< count self-intersections, before and after, in the report and in the account of
-                         parts; needs the module for CGAL */
+  double max_change; /**< fail where the volume of a closed part, or the bounds of one, change by more than
+                        this fraction (of its volume, of its diagonal); 0 = do not look */
+  int64_t
+      drop_faces; /**< drop components with fewer faces than this, triangles if they are split; 0 = none */
+  double drop_volume;    /**< drop closed components with less volume than this, model units cubed; 0 = none.
+                            The component with the largest area always stays */
+  bool intersections;    /**< count self-intersections, before and after, in the report and in the account of
+                            parts; needs the module for CGAL */
   double fallback_alpha; /**< wrap those parts alone that cannot be united: as wrap_alpha, of their own
                             bounds; 0 = leave them */
   vxm_sheets sheets;     /**< what becomes of open sheets, from VXM_LEVEL_CLOSED on */
   double thickness; /**< of the plates that sheets become, model units, half of it to each side; 0 = 0.002 of
                        the diagonal of the bounds */
+  bool triangles;   /**< split polygons before anything else happens to them, so that the levels hold of the
+                       triangles that vxm_mesh_write makes of them; single_precision does that too */
 } vxm_repair_options;
 
 /** Initial value of vxm_repair_options. */
 #define VXM_REPAIR_OPTIONS_INIT                                                                          \
   {                                                                                                      \
     sizeof(vxm_repair_options), VXM_WELD_AUTO, 0.0, false, false, VXM_LEVEL_CLEAN, 0, VXM_HOLE_FILL_FAN, \
-        false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false, 0.0, VXM_SHEETS_THICKEN, 0.0                  \
+        false, 0.0, 0.0, false, false, 0.0, 0, 0.0, false, 0.0, VXM_SHEETS_THICKEN, 0.0, false           \
   }
 
 /** Room for passes in a report. */
@@ -114,10 +117,11 @@ typedef struct vxm_repair_report {
                                                                   VXM_SELF_INTERSECTIONS_MAX; -1 = not looked
                                                                   for */
   int64_t self_intersections_after;  /**< in the same way */
-  int64_t unparted_vertices; /**< that share a position and could not be moved apart: the numbers that hold
-                                positions are too coarse for the faces about them */
-  int64_t shared_faces; /**< at level clean: that repeat others and stay, as bodies overlap there and both
-                           need theirs; from manifold on each body has its own */
+  int64_t
+      unparted_vertices; /**< that share a position, or would after rounding to 1e-8, and could not be moved
+                            apart: the numbers that hold positions are too coarse for the faces there */
+  int64_t shared_faces;  /**< at level clean: that repeat others and stay, as bodies overlap there and both
+                            need theirs; from manifold on each body has its own */
   int64_t lost_parts;   /**< closed components of which something that they enclosed, by winding or by parity,
                            is enclosed no more and could not be kept; what levels and options beyond
                            VXM_LEVEL_CLEAN take away is not looked at */
@@ -139,8 +143,9 @@ typedef struct vxm_repair_report {
  * turns faces consistently, outward where they enclose something; then goes as far as the level and the other
  * options say. Applying it to its own result changes nothing. Vertices keep their order and the position of
  * the first one welded; only where a soup was torn apart everywhere do they move, to the middle of the copies
- * joined, and where a vertex had to become several, which are moved apart by some 1e-9 of the diagonal so
- * that welding leaves them be.
+ * joined, and where a vertex had to become several, or lies within 1e-8 of another: these are moved apart, by
+ * some 1e-7 of the diagonal but at least 5e-8 model units, so that programs that merge vertices leave them
+ * be.
  *
  * @param[out] report may be NULL
  * @return VXM_OK (the result may have no faces); VXM_ERROR_ARGUMENT; VXM_ERROR_UNREACHED beyond max_change;
@@ -229,7 +234,8 @@ typedef struct vxm_verification {
   }
 
 /**
- * Checks what a level guarantees, after welding identical positions.
+ * Checks what a level guarantees, after welding identical positions; and from VXM_LEVEL_MANIFOLD on that no
+ * vertices are one to programs that round positions to 1e-8 (in a mesh with a diagonal of 1e-3 at least).
  *
  * @param options those of the repair: `level`, and what is to be kept; NULL = defaults
  * @return VXM_OK whether or not it is reached; VXM_ERROR_ARGUMENT; VXM_ERROR_UNAVAILABLE if VXM_LEVEL_SOLID
@@ -240,7 +246,8 @@ VXM_API vxm_status vxm_mesh_verify(vxm_verification *out, const vxm_mesh *mesh,
 
 /**
  * Writes a mesh as vxm_mesh_write, reads back what was written and verifies it. Where the level is not
- * reached nothing is left behind, unless `best_effort` is set.
+ * reached nothing is left behind, unless `best_effort` is set. Polygons are written as triangles, unless
+ * write->keep_polygons is set: repair with vxm_repair_options.triangles, so that the level holds of those.
  *
  * @param[out] out  filled if the file could be written and read
  * @return as vxm_mesh_write and vxm_mesh_verify; VXM_ERROR_UNREACHED
@@ -298,8 +305,9 @@ VXM_API int64_t vxm_defects_total(const vxm_defects *defects, vxm_defect_kind ki
 /** Fixed name of a kind, such as "boundary_edge". */
 VXM_API const char *vxm_defect_name(vxm_defect_kind kind);
 /**
- * Writes the mesh as .ply with its defects in colour: faces and edges at fault, the edges as elements of
- * their own; the rest is grey. @return as vxm_mesh_write
+ * Writes the mesh as .ply, in text and triangles, with its defects in colour: faces at fault, and edges and
+ * vertices as rods a thousandth of the diagonal thick, of eight triangles each after those of the faces; the
+ * rest is grey. @return as vxm_mesh_write
  */
 VXM_API vxm_status vxm_defects_write(const vxm_defects *defects, const vxm_mesh *mesh, const char *path,
                                      vxm_error *error);

@@ -34,7 +34,7 @@ run 'voxmend info two.obj --intersections --list 1 --json | grep -A 40 self_inte
 run 'voxmend info two.obj plate.obj left.obj --intersections --json | grep -E "file|self"'
 printf 'OFF\n4 2 0\n0 0 0\n1 0 0\n0 nan 0\n0 0 1\n3 0 1 3\n3 0 1 2\n' >nan.off
 run 'voxmend info nan.off --intersections | facts'
-run 'voxmend info two.obj --intersections --locate where.ply -q && grep -a -c "element edge" where.ply'
+run 'voxmend info two.obj --intersections --locate where.ply -q && grep -c "^3 .* 220 20 60" where.ply'
 run 'voxmend repair two.obj -o a.ply --intersections --max-change 0.001 --json -q | grep self'
 
 say "# --union"

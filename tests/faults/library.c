@@ -95,7 +95,7 @@ static vxm_status use_repair(made *m) {
       status = vxm_mesh_verify(&verification, m->repaired, &options, &m->error);
   }
   for (int f = 0; status == VXM_OK && f < 4; f++) {
-    vxm_mesh_write_options options = {sizeof(vxm_mesh_write_options), formats[f], f % 2 == 0};
+    vxm_mesh_write_options options = {sizeof(vxm_mesh_write_options), formats[f], f % 2 == 0, f % 4 == 1};
     status = vxm_mesh_write(m->repaired, "/dev/null", &options, &m->error);
   }
   return status;

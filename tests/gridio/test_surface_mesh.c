@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "gridio/gridio.h"
+#include "gridio/mesh/split_vertices.h"
 #include "gridio/mesh/surface_mesh.h"
 #include "meshio/meshio.h"
 
@@ -13,7 +14,7 @@
 static vxm_soup *surface_of(const vxm_grid *grid) {
   vxm_error error = VXM_ERROR_INIT;
   vxm_soup *soup = NULL;
-  if (vxm_gridio_surface_mesh(&soup, grid, &error) != VXM_OK)
+  if (vxm_gridio_surface_mesh(&soup, grid, 0, &error) != VXM_OK)
     fail_msg("%s", error.text);
   return soup;
 }
@@ -221,6 +222,113 @@ static void test_all_of_eight(void **state) {
   vxm_context_destroy(context);
 }
 
+/* ---- Voxels that touch in an edge or a corner alone ---- */
+
+/** Every edge has two faces that run along it in opposite directions, also for who merges positions that are
+ * the same after rounding to 1e-8; returns the volume in voxels. */
+static double check_manifold(vxm_soup *soup, const vxm_space *space) {
+  for (size_t v = 0; v < soup->vertex_count; v++)
+    for (size_t w = 0; w < v; w++) {
+      bool same = true;
+      for (int a = 0; a < 3; a++)
+        same = same && rint(vxm_position(soup, v)[a] * 1e8) == rint(vxm_position(soup, w)[a] * 1e8);
+      assert_false(same);
+    }
+  edge *edges = malloc((soup->corner_count + 1) * sizeof *edges);
+  assert_non_null(edges);
+  size_t count = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(soup, f, &n);
+    for (size_t c = 0; c < n; c++) {
+      uint32_t a = corner[c], b = corner[(c + 1) % n];
+      assert_true(a != b);
+      edges[count++] = a < b ? (edge){a, b, 1} : (edge){b, a, -1};
+    }
+  }
+  qsort(edges, count, sizeof *edges, compare_edges);
+  for (size_t e = 0; e < count; e += 2) {
+    assert_true(e + 1 < count && compare_edges(&edges[e], &edges[e + 1]) == 0);
+    assert_int_equal(edges[e].turn + edges[e + 1].turn, 0);
+    assert_true(e + 2 == count || compare_edges(&edges[e], &edges[e + 2]) != 0);
+  }
+  free(edges);
+  double volume = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t n;
+    const uint32_t *corner = vxm_face(soup, f, &n);
+    for (size_t c = 1; c + 1 < n; c++) {
+      double p[3][3];
+      for (int i = 0; i < 3; i++)
+        for (int a = 0; a < 3; a++)
+          p[i][a] = (vxm_position(soup, corner[i == 0 ? 0 : c + (size_t)i - 1])[a] - space->origin[a]) /
+                    space->voxel_size[a];
+      for (int a = 0; a < 3; a++) {
+        int u = (a + 1) % 3, v = (a + 2) % 3;
+        volume += p[0][a] * (p[1][u] * p[2][v] - p[1][v] * p[2][u]) / 6;
+      }
+    }
+  }
+  return volume;
+}
+
+static vxm_soup *split_surface_of(const vxm_grid *grid, unsigned how) {
+  vxm_soup *soup = NULL;
+  assert_int_equal(vxm_gridio_surface_mesh(&soup, grid, VXM_SURFACE_MANIFOLD | how, NULL), VXM_OK);
+  return soup;
+}
+
+static void check_split(const vxm_grid *grid) {
+  vxm_soup *plain = surface_of(grid);
+  for (unsigned how = 0; how <= VXM_SURFACE_TRIANGLES; how += VXM_SURFACE_TRIANGLES) {
+    vxm_soup *soup = split_surface_of(grid, how);
+    double voxels = (double)vxm_grid_count(grid), volume = check_manifold(soup, &grid->space);
+    /* a vertex that is moved takes a part of the faces about it along */
+    double most = VXM_SPLIT_SHARE * (double)count_exposed(grid);
+    assert_true(fabs(volume - voxels) <= most);
+    assert_true(soup->vertex_count > plain->vertex_count || fabs(volume - voxels) < 1e-9 * voxels);
+    for (size_t f = 0; f < soup->face_count && how; f++)
+      assert_true(soup->offsets[f + 1] - soup->offsets[f] == 3);
+    vxm_soup_destroy(soup);
+  }
+  vxm_soup_destroy(plain);
+}
+
+/** All ways in which the eight voxels about a point may be set, and the twelve about an edge: among
+ * them a hole of an edge's length through two voxels that touch in it. */
+static void test_split_all(void **state) {
+  (void)state;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  for (unsigned set = 1; set < 1u << 12; set++) {
+    vxm_grid *grid = new_grid(context, unit_space(2, 2, set < 256 ? 2 : 3));
+    for (unsigned o = 0; o < (set < 256 ? 8u : 12u); o++)
+      if (set >> o & 1)
+        vxm_grid_set(grid, o & 1, o >> 1 & 1, o >> 2, true);
+    check_split(grid);
+    vxm_grid_destroy(grid);
+  }
+  vxm_context_destroy(context);
+}
+
+static void test_split_random(void **state) {
+  (void)state;
+  vxm_context *context = context_with(2, 0, NULL, NULL);
+  vxm_rng rng = {41};
+  for (int trial = 0; trial < 60; trial++) {
+    vxm_space space = unit_space(1 + (int64_t)vxm_rng_below(&rng, 9), 1 + (int64_t)vxm_rng_below(&rng, 9),
+                                 1 + (int64_t)vxm_rng_below(&rng, 9));
+    for (int a = 0; a < 3; a++) {
+      space.origin[a] = 10 * (vxm_rng_unit(&rng) - 0.5);
+      space.voxel_size[a] = 0.01 + vxm_rng_unit(&rng);
+    }
+    vxm_grid *grid = new_grid(context, space);
+    fill_random(grid, &rng, 1 + trial % 3);
+    check_split(grid);
+    vxm_grid_destroy(grid);
+  }
+  vxm_context_destroy(context);
+}
+
 static void assert_sizes(const vxm_grid *grid, size_t vertices, size_t faces) {
   vxm_soup *soup = surface_of(grid);
   assert_int_equal(soup->vertex_count, vertices);
@@ -292,7 +400,7 @@ static void test_cancel_and_limit(void **state) {
   vxm_soup *soup = NULL;
   for (;; stop++) {
     calls = stop;
-    vxm_status status = vxm_gridio_surface_mesh(&soup, grid, &error);
+    vxm_status status = vxm_gridio_surface_mesh(&soup, grid, 0, &error);
     if (status == VXM_OK)
       break;
     assert_int_equal(status, VXM_ERROR_CANCELLED);
@@ -308,7 +416,7 @@ static void test_cancel_and_limit(void **state) {
     context = context_with(2, limit, NULL, NULL);
     grid = new_grid(context, unit_space(70, 50, 40));
     fill_random(grid, &rng, 1);
-    vxm_status status = vxm_gridio_surface_mesh(&soup, grid, &error);
+    vxm_status status = vxm_gridio_surface_mesh(&soup, grid, 0, &error);
     done = status == VXM_OK;
     assert_true(done || status == VXM_ERROR_MEMORY_LIMIT);
     assert_true(vxm_context_peak_bytes(context) <= limit);
@@ -347,7 +455,9 @@ static void test_mesh_files(void **state) {
   for (int f = 0; f < 4; f++) {
     char path[80];
     snprintf(path, sizeof path, "%s/s.%s", folder, formats[f]);
-    assert_int_equal(vxm_gridio_write(grid, path, NULL, NULL), VXM_OK);
+    vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+    options.keep_polygons = options.keep_contacts = true;
+    assert_int_equal(vxm_gridio_write_with(grid, path, &options, NULL), VXM_OK);
     vxm_soup *back = load_mesh(context, path);
     if (f < 3) {
       assert_int_equal(back->vertex_count, surface->vertex_count);
@@ -381,7 +491,8 @@ static void test_mesh_files(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_random_grids),     cmocka_unit_test(test_all_of_eight),
-      cmocka_unit_test(test_known_sizes),      cmocka_unit_test(test_same_for_all_threads),
+      cmocka_unit_test(test_known_sizes),      cmocka_unit_test(test_split_all),
+      cmocka_unit_test(test_split_random),     cmocka_unit_test(test_same_for_all_threads),
       cmocka_unit_test(test_cancel_and_limit), cmocka_unit_test(test_mesh_files),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

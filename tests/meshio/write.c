@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What is written comes back: bit for bit from OFF, OBJ and PLY, as triangles of floats from STL. */
+/** What is written comes back: bit for bit from OFF, OBJ and PLY, as triangles of floats from STL; polygons
+ * as they are where that is asked for, else as triangles. */
 #include "meshio_test.h"
 
 #include "mesh/triangulate.h"
@@ -19,7 +20,8 @@ static const char *path_of(const char *name) {
 
 static void write_ok(const vxm_soup *soup, const char *name, const char *format, bool ascii) {
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_meshio_write(soup, path_of(name), format, ascii, &error) != VXM_OK)
+  unsigned how = (unsigned)VXM_WRITE_POLYGONS | (ascii ? VXM_WRITE_ASCII : 0u);
+  if (vxm_meshio_write(soup, path_of(name), format, how, &error) != VXM_OK)
     fail_msg("%s", error.text);
 }
 
@@ -71,6 +73,56 @@ static void test_round_trips(void **state) {
     }
     vxm_soup_destroy(soup);
   }
+}
+
+/** Without VXM_WRITE_POLYGONS the faces are the triangles that vxm_triangulate makes of them, in their order,
+ * and have their tags; a face of two corners is none. */
+static void test_triangles(void **state) {
+  (void)state;
+  static const char *const files[] = {"p.off", "p.obj", "p.ply"};
+  vxm_rng rng = {31};
+  vxm_soup *soup = random_soup(&rng, 60, 80, 9), *expected;
+  for (size_t i = 0; i < 3 * soup->vertex_count; i++)
+    soup->positions[i] = (double)vxm_rng_below(&rng, 1000) / 7;
+  uint32_t tag, pair[2] = {0, 1};
+  assert_int_equal(vxm_soup_add_face(soup, pair, 2, NULL), VXM_OK);
+  assert_int_equal(vxm_soup_add_tag(soup, "part", 4, &tag, NULL), VXM_OK);
+  assert_int_equal(vxm_soup_add_tag(soup, "other", 5, &tag, NULL), VXM_OK);
+  soup->face_tags = vxm_alloc(soup->context, soup->face_count, sizeof *soup->face_tags, NULL);
+  for (size_t f = 0; f < soup->face_count; f++)
+    soup->face_tags[f] = (uint32_t)(f >= soup->face_count / 2);
+  assert_int_equal(vxm_soup_create(&expected, soup->context, "", NULL), VXM_OK);
+  for (size_t v = 0; v < soup->vertex_count; v++)
+    assert_int_equal(vxm_soup_add_vertex(expected, vxm_position(soup, v)[0], vxm_position(soup, v)[1],
+                                         vxm_position(soup, v)[2], NULL),
+                     VXM_OK);
+  vxm_triangulator tri;
+  vxm_triangulator_open(&tri, soup->context);
+  for (size_t f = 0, n; f < soup->face_count; f++) {
+    const uint32_t *corner = vxm_face(soup, f, &n), *triangles;
+    if (n < 3)
+      continue;
+    assert_int_equal(vxm_triangulate(&tri, soup->positions, corner, n, &triangles, NULL), VXM_OK);
+    for (size_t t = 0; t + 2 < n; t++)
+      assert_int_equal(vxm_soup_add_face(expected, triangles + 3 * t, 3, NULL), VXM_OK);
+  }
+  vxm_triangulator_close(&tri);
+  for (int i = 0; i < 4; i++) {
+    assert_int_equal(vxm_meshio_write(soup, path_of(files[i % 3]), NULL, i == 3 ? VXM_WRITE_ASCII : 0, NULL),
+                     VXM_OK);
+    vxm_soup *back = read_file(files[i % 3]);
+    expect_counts(back, expected->vertex_count, expected->face_count);
+    assert_memory_equal(back->indices, expected->indices, expected->corner_count * sizeof *back->indices);
+    assert_memory_equal(back->positions, expected->positions, 24 * expected->vertex_count);
+    if (i == 1) {
+      assert_string_equal(back->tags[back->face_tags[0]], "part");
+      assert_string_equal(back->tags[back->face_tags[back->face_count - 1]], "other");
+    }
+    vxm_soup_destroy(back);
+    unlink(path_of(files[i % 3]));
+  }
+  vxm_soup_destroy(expected);
+  vxm_soup_destroy(soup);
 }
 
 static void test_special_values(void **state) {
@@ -190,7 +242,7 @@ static void test_standard_output(void **state) {
   fflush(stdout);
   int kept = dup(STDOUT_FILENO), file = open(path_of("out"), O_CREAT | O_WRONLY, 0666);
   assert_true(kept >= 0 && file >= 0 && dup2(file, STDOUT_FILENO) >= 0);
-  vxm_status status = vxm_meshio_write(soup, "-", "ply", false, &error);
+  vxm_status status = vxm_meshio_write(soup, "-", "ply", VXM_WRITE_POLYGONS, &error);
   assert_true(dup2(kept, STDOUT_FILENO) >= 0);
   close(kept);
   close(file);
@@ -399,6 +451,7 @@ static int remove_folder(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trips),
+                                     cmocka_unit_test(test_triangles),
                                      cmocka_unit_test(test_special_values),
                                      cmocka_unit_test(test_empty),
                                      cmocka_unit_test(test_tags),

@@ -349,6 +349,12 @@ static void unreached_leaves_nothing(void **state) {
   assert_true(exists(path));
   vxm_mesh *back;
   assert_int_equal(vxm_mesh_read(&back, *state, path, &error), VXM_OK);
+  assert_int_equal(vxm_mesh_face_count(back), 12);
+  vxm_mesh_destroy(back);
+  write.keep_polygons = true;
+  assert_int_equal(vxm_write_verified(&found, closed, path, &write, &options, false, &error), VXM_OK);
+  assert_true(found.reached);
+  assert_int_equal(vxm_mesh_read(&back, *state, path, &error), VXM_OK);
   assert_int_equal(vxm_mesh_face_count(back), 6);
   vxm_mesh_destroy(back);
   unlink(path);

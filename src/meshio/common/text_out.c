@@ -42,9 +42,7 @@ void vxm_text_uint(vxm_text_out *text, uint64_t value) {
   vxm_output_advance(text->output, vxm_number_write_uint(room, value));
 }
 
-void vxm_text_corners(vxm_text_out *text, size_t face, uint64_t first) {
-  size_t count;
-  const uint32_t *corner = vxm_face(text->soup, face, &count);
+void vxm_text_corners(vxm_text_out *text, const uint32_t *corner, size_t count, uint64_t first) {
   for (size_t c = 0; c < count; c++) {
     char *room = vxm_output_reserve(text->output, VXM_NUMBER_ROOM);
     room[0] = ' ';

@@ -22,8 +22,8 @@ void vxm_text_vertex(vxm_text_out *text, const char *lead, const double position
 void vxm_text_vertex_float(vxm_text_out *text, const char *lead, const float position[3]);
 /** A whole number without a line end. */
 void vxm_text_uint(vxm_text_out *text, uint64_t value);
-/** The corners of a face, each after a blank and with `first` added, then a line end. */
-void vxm_text_corners(vxm_text_out *text, size_t face, uint64_t first);
+/** Corners of a face, each after a blank and with `first` added, then a line end. */
+void vxm_text_corners(vxm_text_out *text, const uint32_t *corner, size_t count, uint64_t first);
 
 /**
  * To be called for each element with its number: now and then tells the progress, from `begin` to `end`

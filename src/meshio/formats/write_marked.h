@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** PLY with faces and edges in colour, to show what is wrong where. */
+/** PLY with faces, and rods for edges and vertices, in colour, to show what is wrong where. */
 #ifndef VXM_MESHIO_FORMATS_WRITE_MARKED_H
 #define VXM_MESHIO_FORMATS_WRITE_MARKED_H
 
@@ -22,7 +22,9 @@ typedef struct vxm_marks {
   size_t edge_count;
 } vxm_marks;
 
-/** Writes a .ply with coloured faces and edges. @return VXM_OK, VXM_ERROR_ARGUMENT for another extension,
+/** Writes a .ply of triangles in colour: those of the faces, then eight and six vertices for each edge, in
+ * their order, but for those at places that are not finite. @return VXM_OK, VXM_ERROR_ARGUMENT for another
+ * extension, VXM_ERROR_RANGE where numbers of vertices do not suffice, VXM_ERROR_MEMORY,
  * VXM_ERROR_IO */
 vxm_status vxm_meshio_write_marked(const vxm_soup *soup, const vxm_marks *marks, const char *path,
                                    vxm_error *error);

@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** PLY out: doubles, little-endian or as text. */
 #include "base/endian.h"
+#include "meshio/common/faces_out.h"
 #include "meshio/common/format.h"
 #include "meshio/common/text_out.h"
+#include "meshio/common/write_how.h"
+
+#include <inttypes.h>
 
 static size_t largest_face(const vxm_soup *soup) {
   size_t largest = 0;
@@ -14,18 +18,19 @@ static size_t largest_face(const vxm_soup *soup) {
   return largest;
 }
 
-static void write_header(const vxm_soup *soup, vxm_output *output, bool ascii, bool long_lists) {
+static void write_header(const vxm_soup *soup, vxm_output *output, unsigned how, bool long_lists) {
   vxm_output_printf(output, "ply\nformat %s 1.0\ncomment voxmend\nelement vertex %zu\n",
-                    ascii ? "ascii" : "binary_little_endian", soup->vertex_count);
+                    how & VXM_WRITE_ASCII ? "ascii" : "binary_little_endian", soup->vertex_count);
   for (int c = 'x'; c <= 'z'; c++)
     vxm_output_printf(output, "property double %c\n", c);
   /* Readers know int for indices best; uint is for those beyond it. */
-  vxm_output_printf(output, "element face %zu\nproperty list %s %s vertex_indices\nend_header\n",
-                    soup->face_count, long_lists ? "uint" : "uchar",
+  vxm_output_printf(output, "element face %" PRIu64 "\nproperty list %s %s vertex_indices\nend_header\n",
+                    vxm_faces_out_count(soup, how & VXM_WRITE_POLYGONS), long_lists ? "uint" : "uchar",
                     soup->vertex_count > INT32_MAX ? "uint" : "int");
 }
 
-static vxm_status write_text(const vxm_soup *soup, vxm_output *output, vxm_error *error) {
+static vxm_status write_text(vxm_faces_out *faces, vxm_output *output, vxm_error *error) {
+  const vxm_soup *soup = faces->soup;
   vxm_text_out text;
   vxm_status status = vxm_text_open(&text, soup, output, error);
   if (status != VXM_OK)
@@ -35,9 +40,13 @@ static vxm_status write_text(const vxm_soup *soup, vxm_output *output, vxm_error
     status = vxm_write_progress(soup, output, v, soup->vertex_count, 0.0, 0.6, error);
   }
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
-    vxm_text_uint(&text, soup->offsets[f + 1] - soup->offsets[f]);
-    vxm_text_corners(&text, f, 0);
-    status = vxm_write_progress(soup, output, f, soup->face_count, 0.6, 1.0, error);
+    status = vxm_faces_out_take(faces, f, error);
+    for (size_t p = 0; p < faces->pieces && status == VXM_OK; p++) {
+      vxm_text_uint(&text, faces->each);
+      vxm_text_corners(&text, faces->corners + 3 * p, faces->each, 0);
+    }
+    if (status == VXM_OK)
+      status = vxm_write_progress(soup, output, f, soup->face_count, 0.6, 1.0, error);
   }
   vxm_text_close(&text);
   return status;
@@ -56,7 +65,8 @@ static void write_face(vxm_output *output, const uint32_t *corner, size_t count,
   }
 }
 
-static vxm_status write_binary(const vxm_soup *soup, vxm_output *output, bool long_lists, vxm_error *error) {
+static vxm_status write_binary(vxm_faces_out *faces, vxm_output *output, bool long_lists, vxm_error *error) {
+  const vxm_soup *soup = faces->soup;
   const bool swap = vxm_must_swap(false);
   vxm_status status = VXM_OK;
   for (size_t v = 0; v < soup->vertex_count && status == VXM_OK; v++) {
@@ -68,19 +78,25 @@ static vxm_status write_binary(const vxm_soup *soup, vxm_output *output, bool lo
     status = vxm_write_progress(soup, output, v, soup->vertex_count, 0.0, 0.6, error);
   }
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(soup, f, &count);
-    write_face(output, corner, count, long_lists, swap);
-    status = vxm_write_progress(soup, output, f, soup->face_count, 0.6, 1.0, error);
+    status = vxm_faces_out_take(faces, f, error);
+    for (size_t p = 0; p < faces->pieces && status == VXM_OK; p++)
+      write_face(output, faces->corners + 3 * p, faces->each, long_lists, swap);
+    if (status == VXM_OK)
+      status = vxm_write_progress(soup, output, f, soup->face_count, 0.6, 1.0, error);
   }
   return status;
 }
 
-vxm_status vxm_ply_write(const vxm_soup *soup, vxm_output *output, bool ascii, vxm_error *error) {
-  size_t largest = largest_face(soup);
+vxm_status vxm_ply_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error) {
+  size_t largest = how & VXM_WRITE_POLYGONS ? largest_face(soup) : 3;
   if (largest > UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "a face has %zu corners, more than PLY can hold", largest);
   bool long_lists = largest > UINT8_MAX;
-  write_header(soup, output, ascii, long_lists);
-  return ascii ? write_text(soup, output, error) : write_binary(soup, output, long_lists, error);
+  vxm_faces_out faces;
+  vxm_faces_out_open(&faces, soup, how & VXM_WRITE_POLYGONS);
+  write_header(soup, output, how, long_lists);
+  vxm_status status = how & VXM_WRITE_ASCII ? write_text(&faces, output, error)
+                                            : write_binary(&faces, output, long_lists, error);
+  vxm_faces_out_close(&faces);
+  return status;
 }

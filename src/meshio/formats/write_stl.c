@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** STL out: 32-bit floats and triangles; larger polygons are split. */
 #include "base/endian.h"
-#include "mesh/triangulate.h"
+#include "meshio/common/faces_out.h"
 #include "meshio/common/format.h"
 #include "meshio/common/text_out.h"
+#include "meshio/common/write_how.h"
 #include "meshio/formats/stl.h"
 
 #include <float.h>
@@ -19,11 +20,7 @@ typedef struct stl_writer {
 } stl_writer;
 
 static vxm_status count_facets(const vxm_soup *soup, uint32_t *facets, vxm_error *error) {
-  uint64_t count = 0;
-  for (size_t f = 0; f < soup->face_count; f++) {
-    uint64_t corners = soup->offsets[f + 1] - soup->offsets[f];
-    count += corners >= 3 ? corners - 2 : 0;
-  }
+  uint64_t count = vxm_faces_out_count(soup, false);
   if (count > UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "%" PRIu64 " triangles are more than STL can hold; write ply",
                     count);
@@ -93,24 +90,22 @@ static void write_facet(stl_writer *writer, const uint32_t triangle[3]) {
 
 static vxm_status write_facets(stl_writer *writer, vxm_error *error) {
   const vxm_soup *soup = writer->soup;
-  vxm_triangulator tri;
-  vxm_triangulator_open(&tri, soup->context);
+  vxm_faces_out faces;
+  vxm_faces_out_open(&faces, soup, false);
   vxm_status status = VXM_OK;
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
-    size_t n;
-    const uint32_t *corner = vxm_face(soup, f, &n), *triangles = corner;
-    if (n > 3)
-      status = vxm_triangulate(&tri, soup->positions, corner, n, &triangles, error);
-    for (size_t t = 0; status == VXM_OK && t + 2 < n; t++)
-      write_facet(writer, triangles + 3 * t);
+    status = vxm_faces_out_take(&faces, f, error);
+    for (size_t t = 0; status == VXM_OK && t < faces.pieces; t++)
+      write_facet(writer, faces.corners + 3 * t);
     if (status == VXM_OK)
       status = vxm_write_progress(soup, writer->output, f, soup->face_count, 0.0, 1.0, error);
   }
-  vxm_triangulator_close(&tri);
+  vxm_faces_out_close(&faces);
   return status;
 }
 
-vxm_status vxm_stl_write(const vxm_soup *soup, vxm_output *output, bool ascii, vxm_error *error) {
+vxm_status vxm_stl_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error) {
+  const bool ascii = how & VXM_WRITE_ASCII;
   stl_writer writer = {.soup = soup, .output = output, .ascii = ascii};
   uint32_t facets = 0;
   vxm_status status = check_range(soup, error);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** OFF and OBJ out. */
+#include "meshio/common/faces_out.h"
 #include "meshio/common/format.h"
 #include "meshio/common/text_out.h"
+#include "meshio/common/write_how.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -16,14 +18,19 @@ static vxm_status write_vertices(vxm_text_out *text, const char *lead, vxm_error
   return status;
 }
 
-static vxm_status write_off(vxm_text_out *text, vxm_error *error) {
+static vxm_status write_off(vxm_text_out *text, vxm_faces_out *faces, vxm_error *error) {
   const vxm_soup *soup = text->soup;
-  vxm_output_printf(text->output, "OFF\n%zu %zu 0\n", soup->vertex_count, soup->face_count);
+  vxm_output_printf(text->output, "OFF\n%zu %" PRIu64 " 0\n", soup->vertex_count,
+                    vxm_faces_out_count(soup, faces->polygons));
   vxm_status status = write_vertices(text, "", error);
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
-    vxm_text_uint(text, soup->offsets[f + 1] - soup->offsets[f]);
-    vxm_text_corners(text, f, 0);
-    status = vxm_write_progress(soup, text->output, f, soup->face_count, 0.6, 1.0, error);
+    status = vxm_faces_out_take(faces, f, error);
+    for (size_t p = 0; p < faces->pieces && status == VXM_OK; p++) {
+      vxm_text_uint(text, faces->each);
+      vxm_text_corners(text, faces->corners + 3 * p, faces->each, 0);
+    }
+    if (status == VXM_OK)
+      status = vxm_write_progress(soup, text->output, f, soup->face_count, 0.6, 1.0, error);
   }
   return status;
 }
@@ -45,7 +52,7 @@ static void write_tag(vxm_text_out *text, const char *tag, const char *before) {
   vxm_output_write(text->output, "\n", 1);
 }
 
-static vxm_status write_obj(vxm_text_out *text, vxm_error *error) {
+static vxm_status write_obj(vxm_text_out *text, vxm_faces_out *faces, vxm_error *error) {
   const vxm_soup *soup = text->soup;
   vxm_status status = write_vertices(text, "v ", error);
   const char *tag = NULL;
@@ -57,31 +64,37 @@ static vxm_status write_obj(vxm_text_out *text, vxm_error *error) {
       write_tag(text, soup->tags[soup->face_tags[f]], tag);
       tag = soup->tags[soup->face_tags[f]];
     }
-    vxm_output_write(text->output, "f", 1);
-    vxm_text_corners(text, f, 1);
-    status = vxm_write_progress(soup, text->output, f, soup->face_count, 0.6, 1.0, error);
+    status = vxm_faces_out_take(faces, f, error);
+    for (size_t p = 0; p < faces->pieces && status == VXM_OK; p++) {
+      vxm_output_write(text->output, "f", 1);
+      vxm_text_corners(text, faces->corners + 3 * p, faces->each, 1);
+    }
+    if (status == VXM_OK)
+      status = vxm_write_progress(soup, text->output, f, soup->face_count, 0.6, 1.0, error);
   }
   return status;
 }
 
-vxm_status vxm_off_write(const vxm_soup *soup, vxm_output *output, bool ascii, vxm_error *error) {
-  (void)ascii; /* always text */
+typedef vxm_status (*write_all)(vxm_text_out *text, vxm_faces_out *faces, vxm_error *error);
+
+static vxm_status write_as(write_all write, const vxm_soup *soup, vxm_output *output, unsigned how,
+                           vxm_error *error) {
   vxm_text_out text;
+  vxm_faces_out faces;
   vxm_status status = vxm_text_open(&text, soup, output, error);
   if (status != VXM_OK)
     return status;
-  status = write_off(&text, error);
+  vxm_faces_out_open(&faces, soup, how & VXM_WRITE_POLYGONS);
+  status = write(&text, &faces, error);
+  vxm_faces_out_close(&faces);
   vxm_text_close(&text);
   return status;
 }
 
-vxm_status vxm_obj_write(const vxm_soup *soup, vxm_output *output, bool ascii, vxm_error *error) {
-  (void)ascii; /* always text */
-  vxm_text_out text;
-  vxm_status status = vxm_text_open(&text, soup, output, error);
-  if (status != VXM_OK)
-    return status;
-  status = write_obj(&text, error);
-  vxm_text_close(&text);
-  return status;
+vxm_status vxm_off_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error) {
+  return write_as(write_off, soup, output, how, error);
+}
+
+vxm_status vxm_obj_write(const vxm_soup *soup, vxm_output *output, unsigned how, vxm_error *error) {
+  return write_as(write_obj, soup, output, how, error);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Takes a soup to what .stl files hold: triangles between positions of 32-bit floats, so that everything else
- * sees what will be written.
+ * Takes a soup to what will be written, so that everything else sees that: triangles, and for .stl between
+ * positions of 32-bit floats.
  */
 #include "repair/state/split.h"
 
@@ -37,11 +37,11 @@ static vxm_status round_positions(vxm_repair_state *state, vxm_error *error) {
  * that. */
 vxm_status vxm_pass_rounding(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!state->options.single_precision)
+  if (!state->options.single_precision && !state->options.triangles)
     return VXM_OK;
   int64_t before = state->counts[VXM_PASS_ROUNDING];
   vxm_status status = vxm_split_polygons(state, false, error);
-  if (status == VXM_OK)
+  if (status == VXM_OK && state->options.single_precision)
     status = round_positions(state, error);
   *changed = state->counts[VXM_PASS_ROUNDING] > before;
   return status;

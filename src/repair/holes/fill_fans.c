@@ -206,8 +206,9 @@ static bool add_caps(closing *c) {
   if (faces == 0)
     return true;
   vxm_position_hash places;
-  bool ready = vxm_position_hash_open(&places, c->soup, first + points, &c->error) == VXM_OK &&
-               make_room(c, faces, points);
+  bool ready =
+      vxm_position_hash_open(&places, c->soup, first + points, VXM_MERGE_EXACT, &c->error) == VXM_OK &&
+      make_room(c, faces, points);
   if (ready) {
     for (size_t v = 0; v < first && points > 0; v++)
       vxm_position_hash_add(&places, (uint32_t)v);

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * Vertices at the same position that belong to different patches would be one again for every program that
- * welds, and the edges between them have too many faces again. So each is moved a very little toward the
- * faces of its own.
+ * welds, and so would those that lie nearer than it tells apart; the edges between them have too many faces
+ * again. So each is moved a little: toward the faces of its own, or along an edge that is too short.
  */
 #include "mesh/geometry.h"
-#include "mesh/weld.h"
 #include "repair/state/position_hash.h"
 #include "repair/state/repair_state.h"
 
@@ -13,31 +12,47 @@
 #include <math.h>
 #include <stdlib.h>
 
-/** Of the diagonal: far below any tolerance, and far above the rounding of doubles. */
-static const double STEP = 1e-9;
-/** Of the shortest edge about a vertex at most, as far as the numbers allow it, for parts that are small. */
-static const double STEP_EDGE = 1e-8;
-/** Of the longest edge about a vertex: along all axes only if the step is no larger than this. */
+/** Of the diagonal: four units in the last place of a 32-bit float. */
+static const double STEP = 2.5e-7;
+/** Of the least height of the faces about a vertex, so that volumes stay; units may be more. */
+static const double STEP_HEIGHT = 1e-6;
+/** Of that height: what a unit may be that is a precaution, so that no face is turned over. */
+static const double ROOM = 1.0 / 8;
+/** In units of VXM_MERGE_GRID: enough for a difference after rounding and after a small turn of the model. */
+static const double STEP_GRID = 5;
+/** In units in the last place: of doubles, and of floats where these are not what the file holds. */
+static const double STEP_UNITS = 4;
+/** Of the diagonal, where a step is to be seen in 32-bit floats though the file holds doubles. */
+static const double STEP_FLOAT = 1e-5;
+/** Of the longest edge about a vertex: along all axes only if the step is no larger than this, or by STEP. */
 static const double FINE = 1e-6;
 /** Of the longest edge about a vertex: a larger step would deform the faces, and the vertex stays. */
 static const double COARSE = 1.0 / 64;
 /** Of the direction's length: along an axis that has less of it nothing has to change. */
 static const double AXIS = 0.2;
+/** Of the number of faces: where the directions to their middles nearly cancel, the vertex goes inward. */
+static const double FLAT = 0.2;
 
 typedef struct surroundings {
-  vxm_vec3 toward;          /**< sum of the directions to the middles of the faces */
-  double shortest, longest; /**< edges about the vertex */
+  vxm_vec3 toward; /**< sum of the directions to the middles of the faces */
+  vxm_vec3 inward; /**< sum of the directions that the faces turn their backs to */
+  vxm_vec3 away;   /**< sum of the directions from vertices of its own faces that it is too near to */
+  double shortest, longest; /**< edges about the vertex, but for those that are too short */
+  double lowest;            /**< of the heights of its triangles; 0 = has none */
+  size_t faces;
 } surroundings;
 
 typedef struct moving {
   vxm_repair_state *state;
   vxm_soup *soup;
-  uint32_t *map;        /**< vertex: the first one at its position */
-  uint32_t *number;     /**< vertex: its place among those that share theirs, or VXM_NO_VERTEX */
+  vxm_merge_rule rule;
+  uint32_t *map;        /**< vertex: the first one that it would merge with */
+  uint32_t *number;     /**< vertex: its place among those that would merge, or VXM_NO_VERTEX */
   surroundings *around; /**< of those */
   size_t shared;        /**< how many those are */
   double diagonal;
   vxm_position_hash places; /**< what is taken */
+  vxm_position_hash floats; /**< what is taken once positions are 32-bit floats */
 } moving;
 
 /* ---- What lies around a vertex ---- */
@@ -52,11 +67,34 @@ static vxm_vec3 middle_of(const vxm_soup *soup, const uint32_t *corner, size_t c
   return sum;
 }
 
-static void note_edge(surroundings *s, const double *p, const double *q) {
-  double length = vxm_vec3_length(vxm_vec3_between(p, q, 1));
-  if (length > 0)
+static void add_unit(vxm_vec3 *sum, vxm_vec3 d, double sign) {
+  double length = sign * vxm_vec3_length(d);
+  if (length != 0)
+    *sum = (vxm_vec3){sum->x + d.x / length, sum->y + d.y / length, sum->z + d.z / length};
+}
+
+static void note_edge(const moving *m, surroundings *s, uint32_t v, uint32_t other) {
+  vxm_vec3 along = vxm_vec3_between(vxm_position(m->soup, v), vxm_position(m->soup, other), 1);
+  double length = vxm_vec3_length(along);
+  if (m->map[v] == m->map[other])
+    add_unit(&s->away, along, 1);
+  else
     s->shortest = s->shortest > 0 ? fmin(s->shortest, length) : length;
   s->longest = fmax(s->longest, length);
+}
+
+/** The least height of a triangle, unless corners of it are to be moved from each other. */
+static void note_height(const moving *m, surroundings *s, const uint32_t corner[3], vxm_vec3 normal) {
+  double longest = 0;
+  for (int i = 0; i < 3; i++) {
+    uint32_t a = corner[i], b = corner[(i + 1) % 3];
+    if (m->map[a] == m->map[b])
+      return;
+    longest = fmax(longest,
+                   vxm_vec3_length(vxm_vec3_between(vxm_position(m->soup, a), vxm_position(m->soup, b), 1)));
+  }
+  double height = longest > 0 ? 2 * vxm_vec3_length(normal) / longest : 0;
+  s->lowest = s->lowest > 0 ? fmin(s->lowest, height) : fmax(height, DBL_MIN);
 }
 
 static void look_around(moving *m) {
@@ -69,13 +107,14 @@ static void look_around(moving *m) {
         continue;
       surroundings *s = &m->around[m->number[corner[i]]];
       const double *p = vxm_position(m->soup, corner[i]);
-      vxm_vec3 d = {middle.x - p[0], middle.y - p[1], middle.z - p[2]};
-      double length = vxm_vec3_length(d);
-      if (length > 0)
-        s->toward =
-            (vxm_vec3){s->toward.x + d.x / length, s->toward.y + d.y / length, s->toward.z + d.z / length};
-      note_edge(s, p, vxm_position(m->soup, corner[i + 1 < count ? i + 1 : 0]));
-      note_edge(s, p, vxm_position(m->soup, corner[i > 0 ? i - 1 : count - 1]));
+      vxm_vec3 normal = vxm_polygon_area(m->soup->positions, corner, count, 1);
+      add_unit(&s->toward, (vxm_vec3){middle.x - p[0], middle.y - p[1], middle.z - p[2]}, 1);
+      add_unit(&s->inward, normal, -1);
+      note_edge(m, s, corner[i], corner[i + 1 < count ? i + 1 : 0]);
+      note_edge(m, s, corner[i], corner[i > 0 ? i - 1 : count - 1]);
+      if (count == 3)
+        note_height(m, s, corner, normal);
+      s->faces++;
     }
   }
 }
@@ -88,27 +127,52 @@ typedef struct moves {
   double unit[3];            /**< along each axis: what the numbers that hold the position tell apart */
   double step;               /**< how far to go, where they allow it */
   double fine, coarse;
+  bool floats; /**< 32-bit floats are to tell it from others, too */
 } moves;
 
-/** The distance to the next number beyond x. */
-static double unit_of(const vxm_repair_state *state, double x) {
-  x = fabs(x);
-  if (state->options.single_precision)
-    return (double)nextafterf((float)x, INFINITY) - x;
-  return 4 * (nextafter(x, INFINITY) - x);
+/** The distance to the next 32-bit float beyond x. */
+static double float_unit(double x) {
+  float single = (float)fabs(x);
+  return (double)nextafterf(single, INFINITY) - (double)single;
 }
 
-static moves moves_of(const moving *m, uint32_t v, const surroundings *s) {
+/** The least difference between two numbers near x that tells them apart for who reads the file; with
+ * `floats` also for who holds them as 32-bit floats. */
+static double unit_of(const moving *m, double x, bool floats) {
+  double unit = m->state->options.single_precision ? float_unit(x)
+                : floats                           ? STEP_UNITS * float_unit(x)
+                                                   : STEP_UNITS * (nextafter(fabs(x), INFINITY) - fabs(x));
+  return m->rule == VXM_MERGE_ROUNDED ? fmax(unit, STEP_GRID * VXM_MERGE_GRID) : unit;
+}
+
+/** From those that it is too near to in its own faces, or to the middles of these, or where they lie flat to
+ * the side that they turn their backs to. */
+static vxm_vec3 direction_of(const surroundings *s) {
+  if (vxm_vec3_length(s->away) > 0)
+    return s->away;
+  if (vxm_vec3_length(s->toward) > FLAT * (double)s->faces)
+    return s->toward;
+  return (vxm_vec3){s->toward.x + s->inward.x, s->toward.y + s->inward.y, s->toward.z + s->inward.z};
+}
+
+static moves moves_of(const moving *m, uint32_t v, const surroundings *s, bool floats) {
   const double *p = vxm_position(m->soup, v);
-  double length = vxm_vec3_length(s->toward);
-  moves by = {.step = fmin(STEP * m->diagonal, STEP_EDGE * s->shortest),
-              .fine = (vxm_repair_state_reaches(m->state, VXM_LEVEL_SOLID) ? COARSE : FINE) * s->longest,
+  vxm_vec3 direction = direction_of(s);
+  double length = vxm_vec3_length(direction);
+  double height = s->lowest > 0 ? fmin(s->lowest, s->shortest) : s->shortest;
+  moves by = {.floats = floats,
+              .step = fmin(STEP * m->diagonal, STEP_HEIGHT * height),
               .coarse = COARSE * s->longest};
-  const double toward[3] = {s->toward.x, s->toward.y, s->toward.z};
+  if (floats)
+    by.coarse = fmin(fmin(by.coarse, ROOM * height), STEP_FLOAT * m->diagonal);
+  by.fine = fmin(by.coarse, vxm_repair_state_reaches(m->state, VXM_LEVEL_SOLID)
+                                ? by.coarse
+                                : fmax(FINE * s->longest, 3 * by.step));
+  const double toward[3] = {direction.x, direction.y, direction.z};
   for (int a = 0; a < 3; a++) {
     by.from[a] = p[a];
     by.toward[a] = length > 0 ? toward[a] / length : sqrt(1.0 / 3); /* any direction where there is none */
-    by.unit[a] = unit_of(m->state, p[a]);
+    by.unit[a] = unit_of(m, p[a], floats);
   }
   return by;
 }
@@ -118,7 +182,7 @@ static bool fits(const moving *m, const moves *by, const double p[3], double mos
   for (int a = 0; a < 3; a++)
     if (!(fabs(p[a] - by->from[a]) <= most))
       return false;
-  return !vxm_position_hash_taken(&m->places, p);
+  return !vxm_position_hash_taken(&m->places, p) && !(by->floats && vxm_position_hash_taken(&m->floats, p));
 }
 
 /** In the direction of the faces, so that what touched along an edge touches nowhere. */
@@ -177,18 +241,22 @@ static bool find_nearest(const moving *m, const moves *by, double p[3]) {
 /** Whether there is a place. */
 static bool move(moving *m, uint32_t v) {
   const surroundings *s = &m->around[m->number[v]];
-  moves by = moves_of(m, v, s);
   double to[3], *p = m->soup->positions + 3 * (size_t)v;
-  bool found = find_along(m, &by, to) || find_nearest(m, &by, to);
+  bool found = false;
+  for (int floats = !m->state->options.single_precision; floats >= 0 && !found; floats--) {
+    moves by = moves_of(m, v, s, floats);
+    found = find_along(m, &by, to) || find_nearest(m, &by, to);
+  }
   for (int a = 0; a < 3 && found; a++)
     p[a] = to[a];
   vxm_position_hash_add(&m->places, v);
+  vxm_position_hash_add(&m->floats, v);
   return found;
 }
 
 /* ---- All of them ---- */
 
-/** Numbers the vertices that share their position with another one that faces have. */
+/** Numbers the vertices that would merge with another one that faces have. */
 static vxm_status list_shared(moving *m, vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t vertices = m->soup->vertex_count;
@@ -206,8 +274,10 @@ static int64_t move_all(moving *m) {
   int64_t moved = 0;
   size_t vertices = m->soup->vertex_count;
   for (size_t v = 0; v < vertices; v++)
-    if (m->state->used[v])
+    if (m->state->used[v]) {
       vxm_position_hash_add(&m->places, (uint32_t)v);
+      vxm_position_hash_add(&m->floats, (uint32_t)v);
+    }
   look_around(m);
   for (size_t v = 0; v < vertices; v++)
     if (m->number[v] != VXM_NO_VERTEX)
@@ -225,9 +295,12 @@ static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
   if (status == VXM_OK)
     m->around = vxm_repair_state_scratch(state, m->shared, sizeof *m->around, &status, error);
   if (status == VXM_OK && m->shared > 0)
-    status = vxm_position_hash_open(&m->places, m->soup, vertices + m->shared, error);
+    status = vxm_position_hash_open(&m->places, m->soup, vertices + m->shared, m->rule, error);
+  if (status == VXM_OK && m->shared > 0)
+    status = vxm_position_hash_open(&m->floats, m->soup, vertices + m->shared, VXM_MERGE_FLOAT, error);
   if (status == VXM_OK && m->shared > 0)
     *moved = move_all(m);
+  vxm_position_hash_close(&m->floats);
   vxm_position_hash_close(&m->places);
   vxm_free(state->context, m->around);
   vxm_free(state->context, m->number);
@@ -241,16 +314,15 @@ vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *err
     return VXM_OK;
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
-  const double *b = extent.bounds;
-  moving m = {
-      .state = state, .soup = state->soup, .diagonal = hypot(hypot(b[3] - b[0], b[4] - b[1]), b[5] - b[2])};
+  moving m = {.state = state, .soup = state->soup, .diagonal = vxm_extent_diagonal(extent.bounds)};
+  m.rule = vxm_merge_rule_of(m.diagonal);
   vxm_status status = VXM_OK;
   int64_t moved = 0;
-  size_t distinct, vertices = state->soup->vertex_count;
+  size_t vertices = state->soup->vertex_count;
   m.map = vxm_repair_state_scratch(state, vertices, sizeof *m.map, &status, error);
   if (status == VXM_OK)
-    status = vxm_weld_exact(state->context, state->soup->positions, vertices, m.map, &distinct, error);
-  if (status == VXM_OK && distinct < vertices)
+    status = vxm_merge_map(state->context, state->soup->positions, vertices, m.rule, m.map, error);
+  if (status == VXM_OK)
     status = move_shared(&m, &moved, error);
   vxm_free(state->context, m.map);
   state->counts[VXM_PASS_APART] += moved;

@@ -6,12 +6,12 @@
 #include <string.h>
 
 vxm_status vxm_position_hash_open(vxm_position_hash *places, const vxm_soup *soup, size_t most,
-                                  vxm_error *error) {
+                                  vxm_merge_rule rule, vxm_error *error) {
   size_t slots = 64;
   while (slots < 2 * most)
     slots *= 2;
   vxm_error local = VXM_ERROR_INIT;
-  *places = (vxm_position_hash){.soup = soup, .mask = slots - 1};
+  *places = (vxm_position_hash){.soup = soup, .rule = rule, .mask = slots - 1};
   places->slots = vxm_calloc(soup->context, slots, sizeof *places->slots, &local);
   if (!places->slots)
     vxm_error_pass(error, &local);
@@ -24,10 +24,10 @@ void vxm_position_hash_close(vxm_position_hash *places) {
   *places = (vxm_position_hash){0};
 }
 
-static uint64_t hash_position(const double p[3]) {
+static uint64_t hash_position(const double p[3], vxm_merge_rule rule) {
   uint64_t hash = 0;
   for (int a = 0; a < 3; a++) {
-    double value = p[a] + 0.0; /* of both zeros the positive one */
+    double value = vxm_merge_place(p[a], rule);
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     hash = vxm_hash_word(hash, bits);
@@ -37,10 +37,14 @@ static uint64_t hash_position(const double p[3]) {
 
 /** The slot of a position: that of the vertex that has it, or a free one. */
 static size_t find_slot(const vxm_position_hash *places, const double p[3]) {
-  size_t slot = (size_t)hash_position(p) & places->mask;
+  const vxm_merge_rule rule = places->rule;
+  size_t slot = (size_t)hash_position(p, rule) & places->mask;
   for (; places->slots[slot] != 0; slot = (slot + 1) & places->mask) {
     const double *q = vxm_position(places->soup, places->slots[slot] - 1);
-    if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
+    int same = 0;
+    for (int a = 0; a < 3; a++)
+      same += vxm_merge_place(p[a], rule) == vxm_merge_place(q[a], rule);
+    if (same == 3)
       break;
   }
   return slot;

@@ -3,20 +3,21 @@
 #ifndef VXM_REPAIR_STATE_POSITION_HASH_H
 #define VXM_REPAIR_STATE_POSITION_HASH_H
 
-#include "mesh/soup.h"
+#include "repair/state/merge_places.h"
 
 /** A hash of vertices by position. One that is moved after it was added is no longer found, at either place.
  */
 typedef struct vxm_position_hash {
   const vxm_soup *soup;
-  uint32_t *slots; /**< vertex + 1, or 0 */
+  vxm_merge_rule rule; /**< by which positions are the same */
+  uint32_t *slots;     /**< vertex + 1, or 0 */
   size_t mask;
 } vxm_position_hash;
 
 /** @param most calls of vxm_position_hash_add to come @return VXM_OK, VXM_ERROR_MEMORY,
  * VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_position_hash_open(vxm_position_hash *places, const vxm_soup *soup, size_t most,
-                                  vxm_error *error);
+                                  vxm_merge_rule rule, vxm_error *error);
 void vxm_position_hash_close(vxm_position_hash *places);
 /** Whether a vertex that was added has this position; of zeros either. */
 bool vxm_position_hash_taken(const vxm_position_hash *places, const double p[3]);
