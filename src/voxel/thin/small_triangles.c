@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Triangles of a fine mesh: nearly all lie in two cells along each axis at most, and have a voxel set in
  * their middle. */
+#include "voxel/parity/kernels.h"
 #include "voxel/thin/meetings.h"
+#include "voxel/thin/sieve.h"
 
 /* Numbers of cells side by side in a word, as vxm_snapped_points has them, are compared all three at once:
    the highest bit of each is free. */
@@ -270,9 +272,13 @@ static void meet_one(vxm_link_frame *frames, size_t triangle) {
 
 void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end) {
   bounds b = bounds_of(&frames[0].job->view);
+  vxm_sieve sieve;
+  bool sifted = vxm_sieve_of(&sieve, frames[0].job);
   for (; begin < end; begin += BATCH) {
     uint32_t kept[BATCH];
     size_t count = keep_unsure(kept, frames[0].job, &b, begin, end - begin < BATCH ? end : begin + BATCH);
+    if (sifted)
+      count = vxm_kernels_get()->sift(&sieve, kept, count);
     for (size_t k = 0; k < count; k++)
       meet_one(frames, kept[k]);
   }
