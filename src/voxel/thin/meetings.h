@@ -68,10 +68,6 @@ void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ)
 /** The cube in which it lies; nothing if it reaches into several, as it crosses squares then. */
 void vxm_meet_cube(vxm_meetings *meetings, const vxm_thin_job *job, size_t triangle);
 
-/** Fills the maps of vxm_thin_job of a window, without padding between slices; middles[7] are its own words.
- */
-void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window);
-
 /** What triangles begin..end-1 meet: links along the axes, squares and cubes. The points' cells must be
  * known. */
 void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end);

@@ -21,14 +21,25 @@ typedef struct vxm_sieve {
   int bits;     /**< of the lattice */
   int axis[3];
   int32_t begin[3], end[3];
-  int32_t step[3]; /**< bits from a voxel to the next one */
+  int32_t step[3];                /**< bits from a voxel to the next one */
+  const uint64_t *middles[8];     /**< as in vxm_thin_job */
+  const uint64_t *cells;          /**< of the points; and along x, y, z: */
+  uint64_t first_cell, last_cell; /**< around which all voxels are in the window */
+  uint64_t cell_step[3], origin;  /**< from the number of a cell to the bit of the voxel behind it */
 } vxm_sieve;
 
 /** Boxes of more cells along an axis are kept: a row of their voxels is to fit 32 bits, from any bit of a
  * byte on. */
 enum { VXM_SIEVE_CELLS = 23 };
 
+/** The lowest bit of each of the numbers of a cell. */
+#define VXM_SIEVE_ONES (UINT64_C(1) | UINT64_C(1) << VXM_CELL_BITS | UINT64_C(1) << 2 * VXM_CELL_BITS)
+
 /** The sieve of a job; false if it has none, as points or the solid are not in its form. */
 bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job);
+
+/** Fills the maps of vxm_thin_job of a window, without padding between slices; middles[7] are its own words.
+ * The first voxels along an axis have no others before them, and no bits that mean something. */
+void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window);
 
 #endif

@@ -84,29 +84,6 @@ static inline bool has_middle(const vxm_view *view, cell_box box) {
   return false;
 }
 
-void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window) {
-  const int axis[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
-  size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim,
-         row_words = window->row_words;
-  for (int two = 6; two >= 0; two--) {
-    int a = 0; /* along which the voxel before is added, to what is there for both axes with two cells */
-    while (two >> axis[a] & 1)
-      a++;
-    const uint64_t *from = middles[two | 1 << axis[a]];
-    uint64_t *to = middles[two];
-    if (a == 0)
-      for (size_t row = 0; row < rows; row++)
-        for (size_t w = 0; w < row_words; w++)
-          to[row * row_words + w] = from[row * row_words + w] | from[row * row_words + w] << 1 |
-                                    (w > 0 ? from[row * row_words + w - 1] >> 63 : 0);
-    else {
-      size_t step = a == 1 ? row_words : window->slice_words, words = rows * row_words;
-      for (size_t w = 0; w < words; w++)
-        to[w] = from[w] | (w >= step ? from[w - step] : 0);
-    }
-  }
-}
-
 /** Triangles that are looked at together, so that those with nothing to do cost little. */
 enum { BATCH = 256 };
 
@@ -120,11 +97,7 @@ static size_t keep_unsure(uint32_t kept[BATCH], const vxm_thin_job *job, const b
     const uint32_t *corner = job->triangles->corners[t];
     cell_box box = box_of(b, cells[corner[0]], cells[corner[1]], cells[corner[2]]);
     kept[count] = (uint32_t)t;
-    if (job->middles[0]) { /* without branches, which would often be guessed wrong */
-      int64_t bit = bit_behind(view, box.low) & -(int64_t)box.is_near;
-      count += !(job->middles[box.two][bit / 64] >> (bit % 64) & box.is_near);
-    } else
-      count += !(box.is_near && has_middle(view, box));
+    count += !(box.is_near && has_middle(view, box));
   }
   return count;
 }
@@ -275,10 +248,10 @@ void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end) {
   vxm_sieve sieve;
   bool sifted = vxm_sieve_of(&sieve, frames[0].job);
   for (; begin < end; begin += BATCH) {
-    uint32_t kept[BATCH];
-    size_t count = keep_unsure(kept, frames[0].job, &b, begin, end - begin < BATCH ? end : begin + BATCH);
-    if (sifted)
-      count = vxm_kernels_get()->sift(&sieve, kept, count);
+    uint32_t kept[BATCH + 8];
+    size_t last = end - begin < BATCH ? end : begin + BATCH;
+    size_t count = sifted ? vxm_kernels_get()->sift(&sieve, kept, begin, last)
+                          : keep_unsure(kept, frames[0].job, &b, begin, last);
     for (size_t k = 0; k < count; k++)
       meet_one(frames, kept[k]);
   }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/thin/thin.h"
 #include "base/threads.h"
+#include "voxel/thin/sieve.h"
 
 #include <stdlib.h>
 #include <string.h>
