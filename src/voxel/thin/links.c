@@ -64,7 +64,6 @@ void vxm_meet_link(const vxm_link_frame *f, int64_t column_u, int64_t column_v, 
   bool held;
   if (vxm_view_any_set(view, (const int64_t(*)[3])ends, 2, &held) || !held)
     return;
-  const double offsets[3] = {offset, 0, 0};
   bool dominant = is_dominant(f);
   int64_t slice =
       lower[f->job->slow] < f->job->view.begin[f->job->slow] ? upper[f->job->slow] : lower[f->job->slow];
@@ -74,8 +73,8 @@ void vxm_meet_link(const vxm_link_frame *f, int64_t column_u, int64_t column_v, 
                              ? (dominant ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS)
                              : (f->direction < VXM_LINK_EDGES ? VXM_THIN_EDGE_LINKS : VXM_THIN_CORNER_LINKS);
   const vxm_triangle_set *triangles = f->job->triangles;
-  vxm_meetings_put(f->meetings, view, stage, lower, f->direction, offsets,
-                   triangles->polygon ? triangles->polygon[f->triangle] : 0);
+  vxm_meetings_put_link(f->meetings, view, stage, lower, f->direction, offset,
+                        triangles->polygon ? triangles->polygon[f->triangle] : 0);
 }
 
 #define INTEGER int64_t

@@ -21,9 +21,12 @@ typedef struct vxm_meetings {
   vxm_error error;   /**< the first failure; nothing is put after it */
 } vxm_meetings;
 
-/** Puts a meeting into the list. `offset` is in parts of a voxel from the middle. */
-void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
-                      const int64_t lowest[3], int kind, const double offset[3], uint32_t polygon);
+/** Puts a face that crosses a link into the list, `offset` voxels beyond its middle. */
+void vxm_meetings_put_link(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
+                           const int64_t lowest[3], int direction, double offset, uint32_t polygon);
+/** Puts what lies in a square or a cube: its `count` points are so many voxels off the middle. */
+void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, const int64_t lowest[3],
+                      const double (*offsets)[3], int count);
 
 /** The normal of a triangle, as twice its area. */
 typedef struct vxm_link_surface {

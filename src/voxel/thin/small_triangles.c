@@ -125,17 +125,18 @@ static void put_section(const vxm_link_frame *frames, const small *s, const int6
                         int lone) {
   const vxm_thin_job *job = frames[0].job;
   double unit = (double)job->placed->lattice.unit;
-  for (int i = 1; i <= 2; i++) {
-    const int64_t *p = s->corner[lone], *q = s->corner[(lone + i) % 3];
-    double offset[3] = {0, 0, 0}, part = (double)-p[axis] / (double)(q[axis] - p[axis]);
+  double offsets[2][3] = {{0}, {0}};
+  for (int i = 0; i < 2; i++) {
+    const int64_t *p = s->corner[lone], *q = s->corner[(lone + 1 + i) % 3];
+    double part = (double)-p[axis] / (double)(q[axis] - p[axis]);
     int span = 0;
     for (int a = 0; a < 3; a++)
       if (a != axis)
-        offset[span++] =
+        offsets[i][span++] =
             ((double)p[a] + (double)(q[a] - p[a]) * part) / unit + (double)(s->low[a] - lowest[a]) - 0.5;
-    vxm_meetings_put(frames[0].meetings, &job->view, VXM_THIN_SQUARES, lowest, VXM_CELL_SQUARE + axis, offset,
-                     0);
   }
+  vxm_meetings_put(frames[0].meetings, &job->view, VXM_CELL_SQUARE + axis, lowest,
+                   (const double(*)[3])offsets, 2);
 }
 
 /** Looks at the square in which the section across an axis lies. If it lies in several it crosses the line of

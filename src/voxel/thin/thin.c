@@ -51,65 +51,50 @@ static void look_at_some(size_t task, int worker, void *payload) {
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
 
-/** What a pass of the sort looks at: the kind, then parts of the number, lowest first, then the stage. */
-static inline size_t digit_of(const vxm_meeting *m, int pass) {
-  const int stage = 1 + (64 + DIGIT_BITS - 1) / DIGIT_BITS;
-  return pass == 0 ? m->kind : pass == stage ? m->stage : m->number >> (pass - 1) * DIGIT_BITS & (DIGITS - 1);
-}
-
-/** A pass of a stable sort. */
-static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, int pass) {
+/** A pass of a stable sort, by the digits of cells from bit `shift` on. */
+static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, int shift) {
   size_t next[DIGITS] = {0}, total = 0;
   for (size_t m = 0; m < count; m++)
-    next[digit_of(&from[m], pass)]++;
+    next[from[m].cell >> shift & (DIGITS - 1)]++;
   for (int d = 0; d < DIGITS; d++) {
     size_t here = next[d];
     next[d] = total;
     total += here;
   }
   for (size_t m = 0; m < count; m++)
-    to[next[digit_of(&from[m], pass)]++] = from[m];
-}
-
-static bool are_of_one(const vxm_meeting *p, const vxm_meeting *q) {
-  return p->stage == q->stage && p->number == q->number && p->kind == q->kind;
+    to[next[from[m].cell >> shift & (DIGITS - 1)]++] = from[m];
 }
 
 static int compare(const void *a, const void *b) {
   const vxm_meeting *p = a, *q = b;
-  if (p->stage != q->stage)
-    return p->stage < q->stage ? -1 : 1;
-  if (p->number != q->number)
-    return p->number < q->number ? -1 : 1;
-  if (p->kind != q->kind)
-    return p->kind < q->kind ? -1 : 1;
-  return (p->polygon > q->polygon) - (p->polygon < q->polygon);
+  if (p->cell != q->cell)
+    return p->cell < q->cell ? -1 : 1;
+  return (p->detail > q->detail) - (p->detail < q->detail);
 }
 
-/** Sorts meetings by stage, then those of one link, square or cube together, by polygon. `from` is
- * overwritten; returns which of the two has them. */
+/** Sorts meetings by cells, those with links by polygon, too. `from` is overwritten; returns which of the two
+ * has them. */
 static vxm_meeting *sort_meetings(vxm_meeting *from, vxm_meeting *to, size_t count) {
   const size_t few = 512;
-  const int passes = 2 + (64 + DIGIT_BITS - 1) / DIGIT_BITS;
   if (count <= few) {
     qsort(from, count, sizeof *from, compare);
     return from;
   }
-  uint64_t bits = 0;
+  uint64_t any = 0;
   for (size_t m = 0; m < count; m++)
-    bits |= from[m].number;
-  for (int pass = 0; pass < passes; pass++) {
-    if (pass > 0 && pass < passes - 1 && !(bits >> (pass - 1) * DIGIT_BITS))
+    any |= from[m].cell;
+  for (int shift = 0; shift < 64; shift += DIGIT_BITS) {
+    if (!(any >> shift & (DIGITS - 1)))
       continue;
-    sort_by_digit(to, from, count, pass);
+    sort_by_digit(to, from, count, shift);
     vxm_meeting *sorted = to;
     to = from;
     from = sorted;
   }
-  for (size_t m = 0, next; m < count; m = next) {
+  for (size_t m = 0, next; m < count && vxm_cell_kind(from[m].cell) < VXM_LINK_DIRECTIONS; m = next) {
     bool polygons = false;
-    for (next = m; next < count && are_of_one(&from[next], &from[m]); next++)
-      polygons |= from[next].polygon != 0;
+    for (next = m; next < count && from[next].cell == from[m].cell; next++)
+      polygons |= from[next].detail != 0;
     if (polygons)
       qsort(from + m, next - m, sizeof *from, compare);
   }
@@ -146,7 +131,7 @@ static vxm_status apply_stage(vxm_thin_adder *thin, const vxm_thin_job *job, con
   size_t chosen = 0, cell = 0;
   vxm_status status = VXM_OK;
   for (size_t m = 0, next; m < count && status == VXM_OK; m = next, cell++) {
-    for (next = m + 1; next < count && are_of_one(&meetings[next], &meetings[m]); next++)
+    for (next = m + 1; next < count && meetings[next].cell == meetings[m].cell; next++)
       ;
     if (thin->chosen_room == chosen)
       status = vxm_grow(thin->context, (void **)&thin->chosen, &thin->chosen_room, chosen + 1,
@@ -167,7 +152,8 @@ static vxm_status apply(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm
                         size_t count, const target *to, vxm_error *error) {
   vxm_status status = VXM_OK;
   for (size_t m = 0, next; m < count && status == VXM_OK; m = next) {
-    for (next = m + 1; next < count && meetings[next].stage == meetings[m].stage; next++)
+    vxm_thin_stage stage = vxm_cell_stage(meetings[m].cell);
+    for (next = m + 1; next < count && vxm_cell_stage(meetings[next].cell) == stage; next++)
       ;
     status = apply_stage(thin, job, meetings + m, next - m, to, error);
   }
