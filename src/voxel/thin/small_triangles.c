@@ -110,15 +110,13 @@ typedef struct small {
 } small;
 
 /** Which side of the centre line along the third axis a section's end lies on: of the plane between the cells
- * along `axis`, on the side from one corner to another. Exact: the numbers are below 2^22 and 2^30. On the
+ * along `axis`, on the side from one corner to another. Exact: the numbers are below 2^22 and 2^36. On the
  * line, the perturbation decides as in sections.c. */
 static inline bool is_beyond(const small *s, int from, int to, int axis, int other) {
   const int64_t *p = s->corner[from], *q = s->corner[to];
-  int64_t rise = q[axis] - p[axis];
-  int64_t at = p[other] * rise - p[axis] * (q[other] - p[other]);
-  if (at == 0)
-    at = other > axis ? q[other] - p[other] : 0;
-  return rise > 0 ? at > 0 : at < 0;
+  int64_t rise = q[axis] - p[axis], across = q[other] - p[other], sign = rise >> 63;
+  int64_t at = (p[other] * rise - p[axis] * across) * (INT64_C(1) << 24) + (other > axis ? across : 0);
+  return (at ^ sign) - sign > 0;
 }
 
 static void put_section(const vxm_link_frame *frames, const small *s, const int64_t lowest[3], int axis,
@@ -150,12 +148,10 @@ static inline int meet_section(const vxm_link_frame *frames, const small *s, int
   lowest[axis] = s->low[axis];
   for (int i = 1; i <= 2; i++) {
     int a = axis + i < 3 ? axis + i : axis + i - 3;
-    bool beyond = s->beyond[a] == 7;
-    if (s->beyond[a] != 0 && !beyond) {
-      beyond = is_beyond(s, lone, p, axis, a);
-      if (beyond != is_beyond(s, lone, q, axis, a))
-        return 3 - axis - a;
-    }
+    bool all = s->beyond[a] == 7, some = (s->beyond[a] != 0) & !all;
+    bool beyond = all | (some & is_beyond(s, lone, p, axis, a));
+    if (beyond != (all | (some & is_beyond(s, lone, q, axis, a))))
+      return 3 - axis - a;
     lowest[a] = s->low[a] - !beyond;
     bit += lowest[a] * view->step[a];
   }
