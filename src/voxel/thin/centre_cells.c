@@ -2,6 +2,8 @@
 #include "voxel/thin/centre_cells.h"
 #include "voxel/thin/voxel_set.h"
 
+#include <string.h>
+
 const int8_t vxm_link_step[VXM_LINK_DIRECTIONS][3] = {
     {1, 0, 0}, {0, 1, 0},  {0, 0, 1},                                     /* over faces */
     {1, 1, 0}, {-1, 1, 0}, {1, 0, 1},  {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}, /* over edges */
@@ -37,14 +39,19 @@ static int span_of(int kind, int axes[3]) {
 }
 
 int vxm_cell_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]) {
-  int axes[3] = {0, 0, 0}, span = span_of(kind, axes);
-  for (int e = 0; e < 1 << span; e++)
+  if (kind < VXM_LINK_DIRECTIONS) {
     for (int a = 0; a < 3; a++) {
-      ends[e][a] = lowest[a];
-      if (kind < VXM_LINK_DIRECTIONS)
-        ends[e][a] += e * vxm_link_step[kind][a];
-      for (int s = 0; s < span && kind >= VXM_LINK_DIRECTIONS; s++)
-        ends[e][a] += axes[s] == a && (e >> s & 1);
+      ends[0][a] = lowest[a];
+      ends[1][a] = lowest[a] + vxm_link_step[kind][a];
+    }
+    return 2;
+  }
+  int axes[3], span = span_of(kind, axes);
+  memcpy(ends[0], lowest, sizeof ends[0]);
+  for (int s = 0; s < span; s++) /* those before, one further along the axis */
+    for (int e = 0; e < 1 << s; e++) {
+      memcpy(ends[e + (1 << s)], ends[e], sizeof ends[0]);
+      ends[e + (1 << s)][axes[s]]++;
     }
   return 1 << span;
 }
@@ -93,18 +100,30 @@ static unsigned add_up(const vxm_meeting *meetings, size_t count, int kind, int6
   return met;
 }
 
+/** Where the ends of a cell are, from the lowest one: a bit for each that is set, and for each that the view
+ * holds. */
+static unsigned ends_set(const vxm_view *view, int64_t (*ends)[3], int count, unsigned *held) {
+  unsigned set = 0;
+  *held = 0;
+  for (int e = 0; e < count; e++)
+    if (vxm_view_holds(view, ends[e])) {
+      *held |= 1U << e;
+      set |= (unsigned)vxm_view_bit_set(view, vxm_view_bit(view, ends[e])) << e;
+    }
+  return set;
+}
+
 bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]) {
-  int kind = vxm_cell_kind(meetings[0].cell), axes[3], span = span_of(kind, axes);
-  int64_t sum[3] = {0, 0, 0}, lowest[3], ends[8][3];
+  int kind = vxm_cell_kind(meetings[0].cell), axes[3], span = span_of(kind, axes), best = -1;
+  int64_t sum[3] = {0, 0, 0}, lowest[3], ends[8][3], nearest = 0;
+  unsigned held;
   lowest_of(view, meetings[0].cell, lowest);
-  int ends_count = vxm_cell_ends(ends, kind, lowest), best = -1;
-  for (int e = 0; e < ends_count; e++)
-    if (vxm_view_set(view, ends[e]))
-      return false;
-  unsigned met = add_up(meetings, count, kind, sum);
-  int64_t nearest = 0;
+  int ends_count = vxm_cell_ends(ends, kind, lowest);
+  if (ends_set(view, ends, ends_count, &held))
+    return false;
+  held &= add_up(meetings, count, kind, sum);
   for (int e = 0; e < ends_count; e++) {
-    if (!(met >> e & 1) || !vxm_view_holds(view, ends[e]))
+    if (!(held >> e & 1))
       continue;
     int64_t nearness = 0;
     for (int s = 0; s < span; s++)

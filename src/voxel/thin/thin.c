@@ -124,11 +124,22 @@ static vxm_status set_voxel(vxm_thin_adder *thin, const vxm_thin_job *job, const
   return VXM_OK;
 }
 
+/** The coordinates of a voxel side by side. */
+static uint64_t pack(const int64_t voxel[3]) {
+  return (uint64_t)(voxel[0] | voxel[1] << VXM_VIEW_AXIS_BITS | voxel[2] << 2 * VXM_VIEW_AXIS_BITS);
+}
+
+static void unpack(int64_t voxel[3], uint64_t packed) {
+  for (int a = 0; a < 3; a++)
+    voxel[a] = (int64_t)(packed >> VXM_VIEW_AXIS_BITS * a & ((UINT64_C(1) << VXM_VIEW_AXIS_BITS) - 1));
+}
+
 /** Chooses for each link, square or cube of one stage, by what is set before it, and sets the voxels then: so
  * the order within a stage does not matter, and what is added depends on what is near only. */
 static vxm_status apply_stage(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm_meeting *meetings,
                               size_t count, const target *to, vxm_error *error) {
   size_t chosen = 0, cell = 0;
+  int64_t voxel[3];
   vxm_status status = VXM_OK;
   for (size_t m = 0, next; m < count && status == VXM_OK; m = next, cell++) {
     for (next = m + 1; next < count && meetings[next].cell == meetings[m].cell; next++)
@@ -136,14 +147,16 @@ static vxm_status apply_stage(vxm_thin_adder *thin, const vxm_thin_job *job, con
     if (thin->chosen_room == chosen)
       status = vxm_grow(thin->context, (void **)&thin->chosen, &thin->chosen_room, chosen + 1,
                         sizeof *thin->chosen, error);
-    if (status == VXM_OK)
-      chosen += vxm_cell_choose(&job->view, meetings + m, next - m, thin->chosen[chosen]);
+    if (status == VXM_OK && vxm_cell_choose(&job->view, meetings + m, next - m, voxel))
+      thin->chosen[chosen++] = pack(voxel);
     if (status == VXM_OK)
       status = vxm_ask_at(cell, thin->context, error);
   }
-  for (size_t c = 0; c < chosen && status == VXM_OK; c++)
-    if (!vxm_view_set(&job->view, thin->chosen[c]))
-      status = set_voxel(thin, job, to, thin->chosen[c], error);
+  for (size_t c = 0; c < chosen && status == VXM_OK; c++) {
+    unpack(voxel, thin->chosen[c]);
+    if (!vxm_view_set(&job->view, voxel))
+      status = set_voxel(thin, job, to, voxel, error);
+  }
   return status;
 }
 
@@ -168,9 +181,10 @@ static bool are_too_many(const vxm_thin_adder *thin) {
   return full;
 }
 
-/** All meetings in one list, with room for as many behind. */
-static vxm_status gather(vxm_thin_adder *thin, size_t *count, vxm_error *error) {
+/** All meetings in one list, and as much room besides. That of a thread that found all stays where it is. */
+static vxm_status gather(vxm_thin_adder *thin, vxm_meeting *lists[2], size_t *count, vxm_error *error) {
   size_t total = 0;
+  vxm_meetings *all = NULL;
   for (int w = 0; w < thin->threads; w++) {
     if (thin->found[w].error.code != VXM_OK) {
       vxm_error_pass(error, &thin->found[w].error);
@@ -182,12 +196,17 @@ static vxm_status gather(vxm_thin_adder *thin, size_t *count, vxm_error *error) 
   *count = total;
   if (total == 0)
     return VXM_OK;
+  for (int w = 0; w < thin->threads; w++)
+    all = thin->found[w].count == total ? &thin->found[w] : all;
   vxm_status status = VXM_OK;
-  if (2 * total > thin->capacity) /* a quarter more, not to grow for each that is a little larger */
-    status = vxm_renew(thin->context, (void **)&thin->scratch, &thin->capacity, 2 * total + total / 2,
+  size_t room = all ? total : 2 * total;
+  if (room > thin->capacity) /* a quarter more, not to grow for each that is a little larger */
+    status = vxm_renew(thin->context, (void **)&thin->scratch, &thin->capacity, room + room / 4,
                        sizeof *thin->scratch, error);
+  lists[0] = all ? all->list : thin->scratch;
+  lists[1] = all ? thin->scratch : thin->scratch + total;
   size_t at = 0;
-  for (int w = 0; w < thin->threads && status == VXM_OK; w++) {
+  for (int w = 0; w < thin->threads && status == VXM_OK && !all; w++) {
     vxm_meetings *found = &thin->found[w];
     if (found->count > 0)
       memcpy(thin->scratch + at, found->list, found->count * sizeof *found->list);
@@ -232,6 +251,7 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
                       vxm_error *error) {
   search s = {thin, job};
   size_t tasks = (job->triangles->triangle_count + TASK_TRIANGLES - 1) / TASK_TRIANGLES, count = 0;
+  vxm_meeting *lists[2];
   vxm_status status = make_room(thin, too_many != NULL, error);
   if (status == VXM_OK)
     status = vxm_parallel_asked(thin->context, tasks, look_at_some, &s, error);
@@ -240,11 +260,11 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
     return VXM_OK;
   }
   if (status == VXM_OK)
-    status = gather(thin, &count, error);
+    status = gather(thin, lists, &count, error);
   if (status != VXM_OK || count == 0)
     return status;
   job->view.added = to->added;
-  return apply(thin, job, sort_meetings(thin->scratch, thin->scratch + count, count), count, to, error);
+  return apply(thin, job, sort_meetings(lists[0], lists[1], count), count, to, error);
 }
 
 /** Makes the maps where they cost less than they save. */
