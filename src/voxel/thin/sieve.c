@@ -12,14 +12,15 @@ bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
     return false;
   int slow = job->slow, fast = view->step[(slow + 1) % 3] == 1 ? (slow + 1) % 3 : (slow + 2) % 3;
   const int axis[3] = {fast, 3 - fast - slow, slow};
-  int64_t bits = (view->end[slow] - view->begin[slow]) * view->step[slow];
-  if (bits > INT32_MAX || bits == 0)
+  const int64_t most = INT64_C(1) << 30;
+  int64_t bytes = (view->end[slow] - view->begin[slow]) * view->step[slow] / 8;
+  if (bytes > most || bytes == 0)
     return false;
   for (int i = 0; i < 3; i++) {
     sieve->axis[i] = axis[i];
     sieve->begin[i] = (int32_t)view->begin[axis[i]];
     sieve->end[i] = (int32_t)view->end[axis[i]];
-    sieve->step[i] = (int32_t)view->step[axis[i]];
+    sieve->step[i] = (int32_t)(view->step[axis[i]] / 8);
   }
   for (int m = 0; m < 8; m++)
     sieve->middles[m] = job->middles[m];
@@ -30,7 +31,7 @@ bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
     sieve->first_cell |= (uint64_t)(view->begin[a] + 1) << (VXM_CELL_BITS * a);
     sieve->last_cell |= (uint64_t)(view->end[a] - 1) << (VXM_CELL_BITS * a);
   }
-  sieve->last = (int32_t)(bits / 8 - 4);
+  sieve->last = (int32_t)(bytes - 4);
   return true;
 }
 

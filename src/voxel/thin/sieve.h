@@ -21,7 +21,7 @@ typedef struct vxm_sieve {
   int bits;     /**< of the lattice */
   int axis[3];
   int32_t begin[3], end[3];
-  int32_t step[3];                /**< bits from a voxel to the next one */
+  int32_t step[3];                /**< bytes from a row to the next one, along the middle and the slow axis */
   const uint64_t *middles[8];     /**< as in vxm_thin_job */
   const uint64_t *cells;          /**< of the points; and along x, y, z: */
   uint64_t first_cell, last_cell; /**< around which all voxels are in the window */
