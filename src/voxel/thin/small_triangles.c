@@ -8,7 +8,7 @@
 /* Numbers of cells side by side in a word, as vxm_snapped_points has them, are compared all three at once:
    the highest bit of each is free. */
 
-static const uint64_t ones = UINT64_C(1) | UINT64_C(1) << VXM_CELL_BITS | UINT64_C(1) << 2 * VXM_CELL_BITS;
+static const uint64_t ones = VXM_SIEVE_ONES;
 
 /** The highest bit of each number of `a` that is not below that of `b`. */
 static inline uint64_t not_below(uint64_t a, uint64_t b) {
