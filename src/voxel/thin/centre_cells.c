@@ -2,6 +2,8 @@
 #include "voxel/thin/centre_cells.h"
 #include "voxel/thin/voxel_set.h"
 
+#include <string.h>
+
 const int8_t vxm_link_step[VXM_LINK_DIRECTIONS][3] = {
     {1, 0, 0}, {0, 1, 0},  {0, 0, 1},                                     /* over faces */
     {1, 1, 0}, {-1, 1, 0}, {1, 0, 1},  {-1, 0, 1}, {0, 1, 1}, {0, -1, 1}, /* over edges */
@@ -15,8 +17,9 @@ bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit) {
          (view->added && vxm_voxel_set_has(view->added, (uint64_t)bit));
 }
 
-/** The voxel of a number. */
+/** The lowest voxel of a cell. */
 static void lowest_of(const vxm_view *view, uint64_t number, int64_t lowest[3]) {
+  number &= (UINT64_C(1) << VXM_CELL_VOXEL_BITS) - 1;
   for (int a = 0; a < 3; a++) {
     uint64_t size = (uint64_t)(view->end[a] - view->begin[a] + 2);
     lowest[a] = (int64_t)(number % size) + view->begin[a] - 1;
@@ -36,14 +39,19 @@ static int span_of(int kind, int axes[3]) {
 }
 
 int vxm_cell_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]) {
-  int axes[3] = {0, 0, 0}, span = span_of(kind, axes);
-  for (int e = 0; e < 1 << span; e++)
+  if (kind < VXM_LINK_DIRECTIONS) {
     for (int a = 0; a < 3; a++) {
-      ends[e][a] = lowest[a];
-      if (kind < VXM_LINK_DIRECTIONS)
-        ends[e][a] += e * vxm_link_step[kind][a];
-      for (int s = 0; s < span && kind >= VXM_LINK_DIRECTIONS; s++)
-        ends[e][a] += axes[s] == a && (e >> s & 1);
+      ends[0][a] = lowest[a];
+      ends[1][a] = lowest[a] + vxm_link_step[kind][a];
+    }
+    return 2;
+  }
+  int axes[3], span = span_of(kind, axes);
+  memcpy(ends[0], lowest, sizeof ends[0]);
+  for (int s = 0; s < span; s++) /* those before, one further along the axis */
+    for (int e = 0; e < 1 << s; e++) {
+      memcpy(ends[e + (1 << s)], ends[e], sizeof ends[0]);
+      ends[e + (1 << s)][axes[s]]++;
     }
   return 1 << span;
 }
@@ -59,34 +67,63 @@ bool vxm_view_any_set(const vxm_view *view, const int64_t (*voxels)[3], int coun
   return any;
 }
 
-bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]) {
-  int kind = meetings[0].kind, axes[3], span = span_of(kind, axes);
-  int64_t sum[3] = {0, 0, 0}, lowest[3], ends[8][3];
-  unsigned met = 0; /* ends whose boxes the surface meets */
-  lowest_of(view, meetings[0].number, lowest);
-  int ends_count = vxm_cell_ends(ends, kind, lowest), best = -1;
-  for (int e = 0; e < ends_count; e++)
-    if (vxm_view_set(view, ends[e]))
-      return false;
+/** The ends in whose boxes a point lies that is `offset` from the middle. */
+unsigned vxm_cell_boxes(const int32_t offset[3], int span) {
+  static const unsigned upper[3] = {0xaa, 0xcc, 0xf0};
+  unsigned boxes = (1U << (1 << span)) - 1;
+  for (int s = 0; s < span; s++)
+    boxes &= offset[s] < 0 ? ~upper[s] : offset[s] > 0 ? upper[s] : ~0U;
+  return boxes;
+}
+
+/** Adds up meetings; returns the ends whose boxes the surface meets. */
+static unsigned add_up(const vxm_meeting *meetings, size_t count, int kind, int64_t sum[3]) {
+  unsigned met = 0;
+  if (kind >= VXM_LINK_DIRECTIONS) {
+    for (size_t m = 0; m < count; m++) {
+      for (int s = 0; s < 3; s++)
+        sum[s] += meetings[m].offset[s];
+      met |= meetings[m].detail;
+    }
+    return met;
+  }
   for (size_t m = 0, next; m < count; m = next) {
-    for (next = m + 1; next < count && meetings[next].polygon == meetings[m].polygon; next++)
+    for (next = m + 1; next < count && meetings[next].detail == meetings[m].detail; next++)
       ;
-    if (meetings[m].polygon && (next - m) % 2 == 0)
+    if (meetings[m].detail && (next - m) % 2 == 0)
       continue;
     for (size_t i = m; i < next; i++) {
-      unsigned here = (1U << (1 << span)) - 1;
-      for (int s = 0; s < span; s++) {
-        static const unsigned upper[3] = {0xaa, 0xcc, 0xf0};
-        int32_t offset = meetings[i].offset[s];
-        sum[s] += offset;
-        here &= offset < 0 ? ~upper[s] : offset > 0 ? upper[s] : ~0U;
-      }
-      met |= here;
+      sum[0] += meetings[i].offset[0];
+      met |= vxm_cell_boxes(meetings[i].offset, 1);
     }
   }
-  int64_t nearest = 0;
+  return met;
+}
+
+/** Where the ends of a cell are, from the lowest one: a bit for each that is set, and for each that the view
+ * holds. */
+static unsigned ends_set(const vxm_view *view, int64_t (*ends)[3], int count, unsigned *held) {
+  unsigned set = 0;
+  *held = 0;
+  for (int e = 0; e < count; e++)
+    if (vxm_view_holds(view, ends[e])) {
+      *held |= 1U << e;
+      set |= (unsigned)vxm_view_bit_set(view, vxm_view_bit(view, ends[e])) << e;
+    }
+  return set;
+}
+
+bool vxm_cell_choose(const vxm_view *view, const vxm_meeting *meetings, size_t count, int64_t voxel[3]) {
+  int kind = vxm_cell_kind(meetings[0].cell), axes[3], span = span_of(kind, axes), best = -1;
+  int64_t sum[3] = {0, 0, 0}, lowest[3], ends[8][3], nearest = 0;
+  unsigned held;
+  lowest_of(view, meetings[0].cell, lowest);
+  int ends_count = vxm_cell_ends(ends, kind, lowest);
+  if (ends_set(view, ends, ends_count, &held))
+    return false;
+  held &= add_up(meetings, count, kind, sum);
   for (int e = 0; e < ends_count; e++) {
-    if (!(met >> e & 1) || !vxm_view_holds(view, ends[e]))
+    if (!(held >> e & 1))
       continue;
     int64_t nearness = 0;
     for (int s = 0; s < span; s++)

@@ -35,13 +35,15 @@ typedef enum vxm_thin_stage {
 /** Parts of a voxel in an offset, beyond which it is rounded. */
 enum { VXM_OFFSET_UNIT = 1 << 20 };
 
-/** The surface in a link, square or cube. */
+/** The surface in a link, square or cube: a face that crosses the link or lies in the cube, a section or an
+ * edge in the square. */
 typedef struct vxm_meeting {
-  uint64_t number;   /**< of its lowest voxel, vxm_view_number */
-  int32_t offset[3]; /**< from the middle, along the axes that it spans, lowest first; parts of a voxel */
-  uint32_t polygon;  /**< 0, or one beyond the number of a face of more than three corners: it covers only
-                        where an odd number of its triangles do */
-  uint8_t stage, kind;
+  uint64_t cell;     /**< vxm_cell_number */
+  int32_t offset[3]; /**< from the middle, along the axes that it spans, lowest first; parts of a voxel,
+                        summed over the ends of a section or the corners of a face */
+  uint32_t detail; /**< in a link, 0, or one beyond the number of a face of more than three corners: it covers
+                      only where an odd number of its triangles do; else the voxels at the ends whose boxes
+                      the surface meets there, a bit for each */
 } vxm_meeting;
 
 /** Bits of a coordinate in the number of a bit of an octree. */
@@ -104,18 +106,41 @@ static inline bool vxm_view_set(const vxm_view *view, const int64_t voxel[3]) {
   return vxm_view_holds(view, voxel) && vxm_view_bit_set(view, vxm_view_bit(view, voxel));
 }
 
-/** The number of the lowest voxel of a link, square or cube, which may lie one before the view; below 2^61.
- */
-static inline uint64_t vxm_view_number(const vxm_view *view, const int64_t lowest[3]) {
-  uint64_t number = 0;
+/** The number of a cell: in which stage it comes and of which kind it is, above these bits, and its lowest
+ * voxel. Cells of an earlier stage have lower numbers. */
+enum { VXM_CELL_VOXEL_BITS = 59 };
+
+static inline uint64_t vxm_cell_number(const vxm_view *view, vxm_thin_stage stage, int kind,
+                                       const int64_t lowest[3]) {
+  uint64_t voxel = 0; /* it may lie one before the view */
   for (int a = 2; a >= 0; a--)
-    number =
-        number * (uint64_t)(view->end[a] - view->begin[a] + 2) + (uint64_t)(lowest[a] - view->begin[a] + 1);
-  return number;
+    voxel =
+        voxel * (uint64_t)(view->end[a] - view->begin[a] + 2) + (uint64_t)(lowest[a] - view->begin[a] + 1);
+  return (uint64_t)(stage == VXM_THIN_DOMINANT_LINKS ? kind : kind + VXM_LINK_AXES) << VXM_CELL_VOXEL_BITS |
+         voxel;
+}
+
+static inline int vxm_cell_kind(uint64_t number) {
+  int rank = (int)(number >> VXM_CELL_VOXEL_BITS);
+  return rank < VXM_LINK_AXES ? rank : rank - VXM_LINK_AXES;
+}
+
+static inline vxm_thin_stage vxm_cell_stage(uint64_t number) {
+  int kind = vxm_cell_kind(number);
+  if (kind < VXM_LINK_AXES)
+    return number >> VXM_CELL_VOXEL_BITS < VXM_LINK_AXES ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS;
+  return kind < VXM_LINK_EDGES        ? VXM_THIN_EDGE_LINKS
+         : kind < VXM_LINK_DIRECTIONS ? VXM_THIN_CORNER_LINKS
+         : kind < VXM_CELL_CUBE       ? VXM_THIN_SQUARES
+                                      : VXM_THIN_CUBES;
 }
 
 /** The voxels at the ends of a kind: 2 of a link, 4 of a square, 8 of a cube. */
 int vxm_cell_ends(int64_t ends[8][3], int kind, const int64_t lowest[3]);
+
+/** The ends of a square or a cube, by the axes it spans, in whose boxes a point lies that is `offset` from
+ * the middle. */
+unsigned vxm_cell_boxes(const int32_t offset[3], int span);
 
 /** Whether one of some voxels is set; `*held`: whether the view holds one of them. */
 bool vxm_view_any_set(const vxm_view *view, const int64_t (*voxels)[3], int count, bool *held);

@@ -19,10 +19,9 @@ void vxm_meet_cube(vxm_meetings *meetings, const vxm_thin_job *job, size_t trian
   int count = vxm_cell_ends(ends, VXM_CELL_CUBE, lowest);
   if (vxm_view_any_set(&job->view, (const int64_t(*)[3])ends, count, &held) || !held)
     return;
-  for (int k = 0; k < 3; k++) {
-    double offset[3];
+  double offsets[3][3];
+  for (int k = 0; k < 3; k++)
     for (int a = 0; a < 3; a++)
-      offset[a] = (double)(points[k].at[a] - (lowest[a] + 1) * lattice->unit) / (double)lattice->unit;
-    vxm_meetings_put(meetings, &job->view, VXM_THIN_CUBES, lowest, VXM_CELL_CUBE, offset, 0);
-  }
+      offsets[k][a] = (double)(points[k].at[a] - (lowest[a] + 1) * lattice->unit) / (double)lattice->unit;
+  vxm_meetings_put(meetings, &job->view, VXM_CELL_CUBE, lowest, (const double(*)[3])offsets, 3);
 }

@@ -48,34 +48,44 @@ vxm_link_surface vxm_link_surface_of(const vxm_point p[3]) {
   return out;
 }
 
-/** A triangle crosses the link to voxel `to` of a column, `offset` voxels beyond its middle: looks at the
- * ends. */
-void vxm_meet_link(const vxm_link_frame *f, int64_t column_u, int64_t column_v, int64_t to, double offset) {
-  const vxm_view *view = &f->job->view;
+/** The ends of the link to voxel `to` of a column. */
+static inline void ends_of(const frame *f, int64_t ends[2][3], int64_t column_u, int64_t column_v,
+                           int64_t to) {
   const int8_t *step = vxm_link_step[f->direction];
-  if (to < f->begin[f->w] || to >= f->end[f->w])
-    return;
-  int64_t ends[2][3], *lower = ends[0], *upper = ends[1];
+  int64_t *lower = ends[0], *upper = ends[1];
   upper[f->u] = column_u + f->shear[f->u] * to;
   upper[f->v] = column_v + f->shear[f->v] * to;
   upper[f->w] = to;
   for (int a = 0; a < 3; a++)
     lower[a] = upper[a] - step[a];
-  bool held;
-  if (vxm_view_any_set(view, (const int64_t(*)[3])ends, 2, &held) || !held)
-    return;
-  const double offsets[3] = {offset, 0, 0};
+}
+
+/** A triangle crosses a link without a voxel at its ends. */
+static void put_link(const frame *f, int64_t ends[2][3], double offset) {
+  const vxm_view *view = &f->job->view;
+  const int64_t *lower = ends[0], *upper = ends[1];
   bool dominant = is_dominant(f);
-  int64_t slice =
-      lower[f->job->slow] < f->job->view.begin[f->job->slow] ? upper[f->job->slow] : lower[f->job->slow];
+  int64_t slice = lower[f->job->slow] < view->begin[f->job->slow] ? upper[f->job->slow] : lower[f->job->slow];
   if (dominant && slice >= f->job->counted[0] && slice < f->job->counted[1])
     f->meetings->thin_area += llrint(f->surface->length / f->surface->size[f->w] * VXM_OFFSET_UNIT);
   vxm_thin_stage stage = f->plain
                              ? (dominant ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS)
                              : (f->direction < VXM_LINK_EDGES ? VXM_THIN_EDGE_LINKS : VXM_THIN_CORNER_LINKS);
   const vxm_triangle_set *triangles = f->job->triangles;
-  vxm_meetings_put(f->meetings, view, stage, lower, f->direction, offsets,
-                   triangles->polygon ? triangles->polygon[f->triangle] : 0);
+  vxm_meetings_put_link(f->meetings, view, stage, lower, f->direction, offset,
+                        triangles->polygon ? triangles->polygon[f->triangle] : 0);
+}
+
+/** A triangle crosses the link to voxel `to` of a column, `offset` voxels beyond its middle: looks at the
+ * ends. */
+void vxm_meet_link(const vxm_link_frame *f, int64_t column_u, int64_t column_v, int64_t to, double offset) {
+  int64_t ends[2][3];
+  bool held;
+  if (to < f->begin[f->w] || to >= f->end[f->w])
+    return;
+  ends_of(f, ends, column_u, column_v, to);
+  if (!vxm_view_any_set(&f->job->view, (const int64_t(*)[3])ends, 2, &held) && held)
+    put_link(f, ends, offset);
 }
 
 #define INTEGER int64_t

@@ -3,22 +3,43 @@
 
 #include <math.h>
 
-void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
-                      const int64_t lowest[3], int kind, const double offset[3], uint32_t polygon) {
+/** Room for another one, or NULL. */
+static vxm_meeting *next_of(vxm_meetings *meetings) {
   if (meetings->error.code != VXM_OK)
-    return;
+    return NULL;
   meetings->is_full |= meetings->count >= meetings->most;
   if (meetings->is_full)
-    return;
+    return NULL;
   if (meetings->count == meetings->capacity &&
       vxm_grow(meetings->context, (void **)&meetings->list, &meetings->capacity, meetings->count + 1,
                sizeof *meetings->list, &meetings->error) != VXM_OK)
+    return NULL;
+  return &meetings->list[meetings->count++];
+}
+
+static int32_t parts_of(double offset) {
+  return (int32_t)lrint(offset * VXM_OFFSET_UNIT);
+}
+
+void vxm_meetings_put_link(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
+                           const int64_t lowest[3], int direction, double offset, uint32_t polygon) {
+  vxm_meeting *m = next_of(meetings);
+  if (m)
+    *m = (vxm_meeting){vxm_cell_number(view, stage, direction, lowest), {parts_of(offset)}, polygon};
+}
+
+void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, const int64_t lowest[3],
+                      const double (*offsets)[3], int count) {
+  bool is_cube = kind == VXM_CELL_CUBE;
+  vxm_meeting *m = next_of(meetings);
+  if (!m)
     return;
-  vxm_meeting *m = &meetings->list[meetings->count++];
-  m->number = vxm_view_number(view, lowest);
-  m->stage = (uint8_t)stage;
-  m->kind = (uint8_t)kind;
-  for (int s = 0; s < 3; s++)
-    m->offset[s] = (int32_t)lrint(offset[s] * VXM_OFFSET_UNIT);
-  m->polygon = polygon;
+  *m =
+      (vxm_meeting){.cell = vxm_cell_number(view, is_cube ? VXM_THIN_CUBES : VXM_THIN_SQUARES, kind, lowest)};
+  for (int i = 0; i < count; i++) {
+    int32_t at[3] = {0, 0, 0};
+    for (int s = 0; s < (is_cube ? 3 : 2); s++)
+      m->offset[s] += at[s] = parts_of(offsets[i][s]);
+    m->detail |= vxm_cell_boxes(at, is_cube ? 3 : 2);
+  }
 }

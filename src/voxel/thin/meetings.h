@@ -21,9 +21,12 @@ typedef struct vxm_meetings {
   vxm_error error;   /**< the first failure; nothing is put after it */
 } vxm_meetings;
 
-/** Puts a meeting into the list. `offset` is in parts of a voxel from the middle. */
-void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
-                      const int64_t lowest[3], int kind, const double offset[3], uint32_t polygon);
+/** Puts a face that crosses a link into the list, `offset` voxels beyond its middle. */
+void vxm_meetings_put_link(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
+                           const int64_t lowest[3], int direction, double offset, uint32_t polygon);
+/** Puts what lies in a square or a cube: its `count` points are so many voxels off the middle. */
+void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, const int64_t lowest[3],
+                      const double (*offsets)[3], int count);
 
 /** The normal of a triangle, as twice its area. */
 typedef struct vxm_link_surface {
@@ -67,10 +70,6 @@ void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ);
 void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ);
 /** The cube in which it lies; nothing if it reaches into several, as it crosses squares then. */
 void vxm_meet_cube(vxm_meetings *meetings, const vxm_thin_job *job, size_t triangle);
-
-/** Fills the maps of vxm_thin_job of a window, without padding between slices; middles[7] are its own words.
- */
-void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window);
 
 /** What triangles begin..end-1 meet: links along the axes, squares and cubes. The points' cells must be
  * known. */

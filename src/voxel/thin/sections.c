@@ -74,8 +74,7 @@ static void look_at_square(vxm_meetings *meetings, const vxm_thin_job *job, cons
   bool held;
   if (is_filled(&job->view, lowest, axis, &held) || !held)
     return;
-  for (int i = 0; i < count; i++)
-    vxm_meetings_put(meetings, &job->view, VXM_THIN_SQUARES, lowest, VXM_CELL_SQUARE + axis, offsets[i], 0);
+  vxm_meetings_put(meetings, &job->view, VXM_CELL_SQUARE + axis, lowest, offsets, count);
 }
 
 /** The squares across an axis that an edge passes through. */

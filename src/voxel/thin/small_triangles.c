@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Triangles of a fine mesh: nearly all lie in two cells along each axis at most, and have a voxel set in
  * their middle. */
+#include "voxel/parity/kernels.h"
 #include "voxel/thin/meetings.h"
+#include "voxel/thin/sieve.h"
 
 /* Numbers of cells side by side in a word, as vxm_snapped_points has them, are compared all three at once:
    the highest bit of each is free. */
 
-static const uint64_t ones = UINT64_C(1) | UINT64_C(1) << VXM_CELL_BITS | UINT64_C(1) << 2 * VXM_CELL_BITS;
+static const uint64_t ones = VXM_SIEVE_ONES;
 
 /** The highest bit of each number of `a` that is not below that of `b`. */
 static inline uint64_t not_below(uint64_t a, uint64_t b) {
@@ -82,29 +84,6 @@ static inline bool has_middle(const vxm_view *view, cell_box box) {
   return false;
 }
 
-void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window) {
-  const int axis[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
-  size_t rows = (size_t)(window->end - window->begin) * (size_t)window->middle_dim,
-         row_words = window->row_words;
-  for (int two = 6; two >= 0; two--) {
-    int a = 0; /* along which the voxel before is added, to what is there for both axes with two cells */
-    while (two >> axis[a] & 1)
-      a++;
-    const uint64_t *from = middles[two | 1 << axis[a]];
-    uint64_t *to = middles[two];
-    if (a == 0)
-      for (size_t row = 0; row < rows; row++)
-        for (size_t w = 0; w < row_words; w++)
-          to[row * row_words + w] = from[row * row_words + w] | from[row * row_words + w] << 1 |
-                                    (w > 0 ? from[row * row_words + w - 1] >> 63 : 0);
-    else {
-      size_t step = a == 1 ? row_words : window->slice_words, words = rows * row_words;
-      for (size_t w = 0; w < words; w++)
-        to[w] = from[w] | (w >= step ? from[w - step] : 0);
-    }
-  }
-}
-
 /** Triangles that are looked at together, so that those with nothing to do cost little. */
 enum { BATCH = 256 };
 
@@ -118,11 +97,7 @@ static size_t keep_unsure(uint32_t kept[BATCH], const vxm_thin_job *job, const b
     const uint32_t *corner = job->triangles->corners[t];
     cell_box box = box_of(b, cells[corner[0]], cells[corner[1]], cells[corner[2]]);
     kept[count] = (uint32_t)t;
-    if (job->middles[0]) { /* without branches, which would often be guessed wrong */
-      int64_t bit = bit_behind(view, box.low) & -(int64_t)box.is_near;
-      count += !(job->middles[box.two][bit / 64] >> (bit % 64) & box.is_near);
-    } else
-      count += !(box.is_near && has_middle(view, box));
+    count += !(box.is_near && has_middle(view, box));
   }
   return count;
 }
@@ -135,32 +110,31 @@ typedef struct small {
 } small;
 
 /** Which side of the centre line along the third axis a section's end lies on: of the plane between the cells
- * along `axis`, on the side from one corner to another. Exact: the numbers are below 2^22 and 2^30. On the
+ * along `axis`, on the side from one corner to another. Exact: the numbers are below 2^22 and 2^36. On the
  * line, the perturbation decides as in sections.c. */
 static inline bool is_beyond(const small *s, int from, int to, int axis, int other) {
   const int64_t *p = s->corner[from], *q = s->corner[to];
-  int64_t rise = q[axis] - p[axis];
-  int64_t at = p[other] * rise - p[axis] * (q[other] - p[other]);
-  if (at == 0)
-    at = other > axis ? q[other] - p[other] : 0;
-  return rise > 0 ? at > 0 : at < 0;
+  int64_t rise = q[axis] - p[axis], across = q[other] - p[other], sign = rise >> 63;
+  int64_t at = (p[other] * rise - p[axis] * across) * (INT64_C(1) << 24) + (other > axis ? across : 0);
+  return (at ^ sign) - sign > 0;
 }
 
 static void put_section(const vxm_link_frame *frames, const small *s, const int64_t lowest[3], int axis,
                         int lone) {
   const vxm_thin_job *job = frames[0].job;
   double unit = (double)job->placed->lattice.unit;
-  for (int i = 1; i <= 2; i++) {
-    const int64_t *p = s->corner[lone], *q = s->corner[(lone + i) % 3];
-    double offset[3] = {0, 0, 0}, part = (double)-p[axis] / (double)(q[axis] - p[axis]);
+  double offsets[2][3] = {{0}, {0}};
+  for (int i = 0; i < 2; i++) {
+    const int64_t *p = s->corner[lone], *q = s->corner[(lone + 1 + i) % 3];
+    double part = (double)-p[axis] / (double)(q[axis] - p[axis]);
     int span = 0;
     for (int a = 0; a < 3; a++)
       if (a != axis)
-        offset[span++] =
+        offsets[i][span++] =
             ((double)p[a] + (double)(q[a] - p[a]) * part) / unit + (double)(s->low[a] - lowest[a]) - 0.5;
-    vxm_meetings_put(frames[0].meetings, &job->view, VXM_THIN_SQUARES, lowest, VXM_CELL_SQUARE + axis, offset,
-                     0);
   }
+  vxm_meetings_put(frames[0].meetings, &job->view, VXM_CELL_SQUARE + axis, lowest,
+                   (const double(*)[3])offsets, 2);
 }
 
 /** Looks at the square in which the section across an axis lies. If it lies in several it crosses the line of
@@ -174,12 +148,10 @@ static inline int meet_section(const vxm_link_frame *frames, const small *s, int
   lowest[axis] = s->low[axis];
   for (int i = 1; i <= 2; i++) {
     int a = axis + i < 3 ? axis + i : axis + i - 3;
-    bool beyond = s->beyond[a] == 7;
-    if (s->beyond[a] != 0 && !beyond) {
-      beyond = is_beyond(s, lone, p, axis, a);
-      if (beyond != is_beyond(s, lone, q, axis, a))
-        return 3 - axis - a;
-    }
+    bool all = s->beyond[a] == 7, some = (s->beyond[a] != 0) & !all;
+    bool beyond = all | (some & is_beyond(s, lone, p, axis, a));
+    if (beyond != (all | (some & is_beyond(s, lone, q, axis, a))))
+      return 3 - axis - a;
     lowest[a] = s->low[a] - !beyond;
     bit += lowest[a] * view->step[a];
   }
@@ -270,9 +242,13 @@ static void meet_one(vxm_link_frame *frames, size_t triangle) {
 
 void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end) {
   bounds b = bounds_of(&frames[0].job->view);
+  vxm_sieve sieve;
+  bool sifted = vxm_sieve_of(&sieve, frames[0].job);
   for (; begin < end; begin += BATCH) {
-    uint32_t kept[BATCH];
-    size_t count = keep_unsure(kept, frames[0].job, &b, begin, end - begin < BATCH ? end : begin + BATCH);
+    uint32_t kept[BATCH + 8];
+    size_t last = end - begin < BATCH ? end : begin + BATCH;
+    size_t count = sifted ? vxm_kernels_get()->sift(&sieve, kept, begin, last)
+                          : keep_unsure(kept, frames[0].job, &b, begin, last);
     for (size_t k = 0; k < count; k++)
       meet_one(frames, kept[k]);
   }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/thin/thin.h"
 #include "base/threads.h"
+#include "voxel/thin/sieve.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -50,65 +51,50 @@ static void look_at_some(size_t task, int worker, void *payload) {
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
 
-/** What a pass of the sort looks at: the kind, then parts of the number, lowest first, then the stage. */
-static inline size_t digit_of(const vxm_meeting *m, int pass) {
-  const int stage = 1 + (64 + DIGIT_BITS - 1) / DIGIT_BITS;
-  return pass == 0 ? m->kind : pass == stage ? m->stage : m->number >> (pass - 1) * DIGIT_BITS & (DIGITS - 1);
-}
-
-/** A pass of a stable sort. */
-static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, int pass) {
+/** A pass of a stable sort, by the digits of cells from bit `shift` on. */
+static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, int shift) {
   size_t next[DIGITS] = {0}, total = 0;
   for (size_t m = 0; m < count; m++)
-    next[digit_of(&from[m], pass)]++;
+    next[from[m].cell >> shift & (DIGITS - 1)]++;
   for (int d = 0; d < DIGITS; d++) {
     size_t here = next[d];
     next[d] = total;
     total += here;
   }
   for (size_t m = 0; m < count; m++)
-    to[next[digit_of(&from[m], pass)]++] = from[m];
-}
-
-static bool are_of_one(const vxm_meeting *p, const vxm_meeting *q) {
-  return p->stage == q->stage && p->number == q->number && p->kind == q->kind;
+    to[next[from[m].cell >> shift & (DIGITS - 1)]++] = from[m];
 }
 
 static int compare(const void *a, const void *b) {
   const vxm_meeting *p = a, *q = b;
-  if (p->stage != q->stage)
-    return p->stage < q->stage ? -1 : 1;
-  if (p->number != q->number)
-    return p->number < q->number ? -1 : 1;
-  if (p->kind != q->kind)
-    return p->kind < q->kind ? -1 : 1;
-  return (p->polygon > q->polygon) - (p->polygon < q->polygon);
+  if (p->cell != q->cell)
+    return p->cell < q->cell ? -1 : 1;
+  return (p->detail > q->detail) - (p->detail < q->detail);
 }
 
-/** Sorts meetings by stage, then those of one link, square or cube together, by polygon. `from` is
- * overwritten; returns which of the two has them. */
+/** Sorts meetings by cells, those with links by polygon, too. `from` is overwritten; returns which of the two
+ * has them. */
 static vxm_meeting *sort_meetings(vxm_meeting *from, vxm_meeting *to, size_t count) {
   const size_t few = 512;
-  const int passes = 2 + (64 + DIGIT_BITS - 1) / DIGIT_BITS;
   if (count <= few) {
     qsort(from, count, sizeof *from, compare);
     return from;
   }
-  uint64_t bits = 0;
+  uint64_t any = 0;
   for (size_t m = 0; m < count; m++)
-    bits |= from[m].number;
-  for (int pass = 0; pass < passes; pass++) {
-    if (pass > 0 && pass < passes - 1 && !(bits >> (pass - 1) * DIGIT_BITS))
+    any |= from[m].cell;
+  for (int shift = 0; shift < 64; shift += DIGIT_BITS) {
+    if (!(any >> shift & (DIGITS - 1)))
       continue;
-    sort_by_digit(to, from, count, pass);
+    sort_by_digit(to, from, count, shift);
     vxm_meeting *sorted = to;
     to = from;
     from = sorted;
   }
-  for (size_t m = 0, next; m < count; m = next) {
+  for (size_t m = 0, next; m < count && vxm_cell_kind(from[m].cell) < VXM_LINK_DIRECTIONS; m = next) {
     bool polygons = false;
-    for (next = m; next < count && are_of_one(&from[next], &from[m]); next++)
-      polygons |= from[next].polygon != 0;
+    for (next = m; next < count && from[next].cell == from[m].cell; next++)
+      polygons |= from[next].detail != 0;
     if (polygons)
       qsort(from + m, next - m, sizeof *from, compare);
   }
@@ -138,26 +124,39 @@ static vxm_status set_voxel(vxm_thin_adder *thin, const vxm_thin_job *job, const
   return VXM_OK;
 }
 
+/** The coordinates of a voxel side by side. */
+static uint64_t pack(const int64_t voxel[3]) {
+  return (uint64_t)(voxel[0] | voxel[1] << VXM_VIEW_AXIS_BITS | voxel[2] << 2 * VXM_VIEW_AXIS_BITS);
+}
+
+static void unpack(int64_t voxel[3], uint64_t packed) {
+  for (int a = 0; a < 3; a++)
+    voxel[a] = (int64_t)(packed >> VXM_VIEW_AXIS_BITS * a & ((UINT64_C(1) << VXM_VIEW_AXIS_BITS) - 1));
+}
+
 /** Chooses for each link, square or cube of one stage, by what is set before it, and sets the voxels then: so
  * the order within a stage does not matter, and what is added depends on what is near only. */
 static vxm_status apply_stage(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm_meeting *meetings,
                               size_t count, const target *to, vxm_error *error) {
   size_t chosen = 0, cell = 0;
+  int64_t voxel[3];
   vxm_status status = VXM_OK;
   for (size_t m = 0, next; m < count && status == VXM_OK; m = next, cell++) {
-    for (next = m + 1; next < count && are_of_one(&meetings[next], &meetings[m]); next++)
+    for (next = m + 1; next < count && meetings[next].cell == meetings[m].cell; next++)
       ;
     if (thin->chosen_room == chosen)
       status = vxm_grow(thin->context, (void **)&thin->chosen, &thin->chosen_room, chosen + 1,
                         sizeof *thin->chosen, error);
-    if (status == VXM_OK)
-      chosen += vxm_cell_choose(&job->view, meetings + m, next - m, thin->chosen[chosen]);
+    if (status == VXM_OK && vxm_cell_choose(&job->view, meetings + m, next - m, voxel))
+      thin->chosen[chosen++] = pack(voxel);
     if (status == VXM_OK)
       status = vxm_ask_at(cell, thin->context, error);
   }
-  for (size_t c = 0; c < chosen && status == VXM_OK; c++)
-    if (!vxm_view_set(&job->view, thin->chosen[c]))
-      status = set_voxel(thin, job, to, thin->chosen[c], error);
+  for (size_t c = 0; c < chosen && status == VXM_OK; c++) {
+    unpack(voxel, thin->chosen[c]);
+    if (!vxm_view_set(&job->view, voxel))
+      status = set_voxel(thin, job, to, voxel, error);
+  }
   return status;
 }
 
@@ -166,7 +165,8 @@ static vxm_status apply(vxm_thin_adder *thin, const vxm_thin_job *job, const vxm
                         size_t count, const target *to, vxm_error *error) {
   vxm_status status = VXM_OK;
   for (size_t m = 0, next; m < count && status == VXM_OK; m = next) {
-    for (next = m + 1; next < count && meetings[next].stage == meetings[m].stage; next++)
+    vxm_thin_stage stage = vxm_cell_stage(meetings[m].cell);
+    for (next = m + 1; next < count && vxm_cell_stage(meetings[next].cell) == stage; next++)
       ;
     status = apply_stage(thin, job, meetings + m, next - m, to, error);
   }
@@ -181,9 +181,10 @@ static bool are_too_many(const vxm_thin_adder *thin) {
   return full;
 }
 
-/** All meetings in one list, with room for as many behind. */
-static vxm_status gather(vxm_thin_adder *thin, size_t *count, vxm_error *error) {
+/** All meetings in one list, and as much room besides. That of a thread that found all stays where it is. */
+static vxm_status gather(vxm_thin_adder *thin, vxm_meeting *lists[2], size_t *count, vxm_error *error) {
   size_t total = 0;
+  vxm_meetings *all = NULL;
   for (int w = 0; w < thin->threads; w++) {
     if (thin->found[w].error.code != VXM_OK) {
       vxm_error_pass(error, &thin->found[w].error);
@@ -195,12 +196,17 @@ static vxm_status gather(vxm_thin_adder *thin, size_t *count, vxm_error *error) 
   *count = total;
   if (total == 0)
     return VXM_OK;
+  for (int w = 0; w < thin->threads; w++)
+    all = thin->found[w].count == total ? &thin->found[w] : all;
   vxm_status status = VXM_OK;
-  if (2 * total > thin->capacity) /* a quarter more, not to grow for each that is a little larger */
-    status = vxm_renew(thin->context, (void **)&thin->scratch, &thin->capacity, 2 * total + total / 2,
+  size_t room = all ? total : 2 * total;
+  if (room > thin->capacity) /* a quarter more, not to grow for each that is a little larger */
+    status = vxm_renew(thin->context, (void **)&thin->scratch, &thin->capacity, room + room / 4,
                        sizeof *thin->scratch, error);
+  lists[0] = all ? all->list : thin->scratch;
+  lists[1] = all ? thin->scratch : thin->scratch + total;
   size_t at = 0;
-  for (int w = 0; w < thin->threads && status == VXM_OK; w++) {
+  for (int w = 0; w < thin->threads && status == VXM_OK && !all; w++) {
     vxm_meetings *found = &thin->found[w];
     if (found->count > 0)
       memcpy(thin->scratch + at, found->list, found->count * sizeof *found->list);
@@ -245,6 +251,7 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
                       vxm_error *error) {
   search s = {thin, job};
   size_t tasks = (job->triangles->triangle_count + TASK_TRIANGLES - 1) / TASK_TRIANGLES, count = 0;
+  vxm_meeting *lists[2];
   vxm_status status = make_room(thin, too_many != NULL, error);
   if (status == VXM_OK)
     status = vxm_parallel_asked(thin->context, tasks, look_at_some, &s, error);
@@ -253,11 +260,11 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
     return VXM_OK;
   }
   if (status == VXM_OK)
-    status = gather(thin, &count, error);
+    status = gather(thin, lists, &count, error);
   if (status != VXM_OK || count == 0)
     return status;
   job->view.added = to->added;
-  return apply(thin, job, sort_meetings(thin->scratch, thin->scratch + count, count), count, to, error);
+  return apply(thin, job, sort_meetings(lists[0], lists[1], count), count, to, error);
 }
 
 /** Makes the maps where they cost less than they save. */

@@ -32,7 +32,7 @@ typedef struct vxm_thin_adder {
   size_t capacity; /**< of `scratch` */
   uint64_t *maps;  /**< see vxm_thin_job */
   size_t map_words;
-  int64_t (*chosen)[3]; /**< voxels of one stage */
+  uint64_t *chosen; /**< voxels of one stage */
   size_t chosen_room;
   int64_t added;
   int64_t area; /**< of the surface that had no voxel beside it, as vxm_meetings has it */

@@ -115,7 +115,8 @@ static vxm_status put_slices(vxm_voxel_set *set, const vxm_voxel_set *found, int
 static vxm_status find_by_slices(vxm_thin_adder *thin, vxm_voxel_set *set, const vxm_sparse *octree,
                                  const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
                                  int separating, vxm_error *error) {
-  int64_t all = octree->space.dims[2], slices = all;
+  const int64_t most = INT64_C(1) << 18; /* so that numbers of cells fit */
+  int64_t all = octree->space.dims[2], slices = vxm_min(all, most);
   vxm_status status = VXM_OK;
   for (int64_t begin = 0; begin < all && status == VXM_OK;) {
     int64_t end = vxm_min(begin + slices, all);

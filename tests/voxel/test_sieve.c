@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The sieve of thin parts: what it puts aside meets nothing without a voxel, in every build. */
+#include "thin_meshes.h"
+#include "thin_rule.h"
+
+#include "voxel/parity/kernels.h"
+#include "voxel/thin/sieve.h"
+
+/** The border of a solid. */
+typedef struct border {
+  double at[3], normal[3];
+} border;
+
+static border random_border(vxm_rng *rng, const vxm_space *space) {
+  border b;
+  double squared = 0;
+  for (int a = 0; a < 3; a++) {
+    b.at[a] = (double)space->dims[a] * (0.3 + 0.4 * vxm_rng_unit(rng));
+    b.normal[a] = 0.01 + vxm_rng_unit(rng) - 0.5;
+    squared += b.normal[a] * b.normal[a];
+  }
+  for (int a = 0; a < 3; a++)
+    b.normal[a] /= sqrt(squared);
+  return b;
+}
+
+static double beyond(const border *b, const double p[3]) {
+  return b->normal[0] * (p[0] - b->at[0]) + b->normal[1] * (p[1] - b->at[1]) +
+         b->normal[2] * (p[2] - b->at[2]);
+}
+
+/** Triangles of up to 7 voxels, some longer along x, most of them at the border. Corners of some lie on
+ * centres. */
+static vxm_soup *random_triangles(vxm_rng *rng, const vxm_space *space, const border *b, int count) {
+  static const double sizes[6] = {0.2, 1, 2, 3, 5, 7};
+  vxm_soup *soup = shape_empty(context);
+  for (int i = 0; i < count; i++) {
+    uint32_t corner[3];
+    double centre[3], size = sizes[vxm_rng_below(rng, 6)];
+    for (int a = 0; a < 3; a++)
+      centre[a] = (double)space->dims[a] * (0.2 + 0.6 * vxm_rng_unit(rng));
+    for (int k = 0; k < 3; k++) {
+      double at[3], off;
+      for (int a = 0; a < 3; a++)
+        at[a] = centre[a] + (i % 9 == 0 && a == 0 ? 25 : size) * (vxm_rng_unit(rng) - 0.5);
+      off = i % 5 ? 0.2 * vxm_rng_unit(rng) - beyond(b, at) : 0;
+      for (int a = 0; a < 3; a++) {
+        at[a] += off * b->normal[a];
+        if (i % 7 == 0)
+          at[a] = floor(4 * at[a]) / 4;
+        if (i % 14 == 0 && a == i / 14 % 3)
+          at[a] = floor(centre[a]) + 0.5;
+      }
+      corner[k] = shape_vertex(soup, at[0], at[1], at[2]);
+    }
+    shape_triangle(soup, corner[0], corner[1], corner[2]);
+  }
+  return soup;
+}
+
+/** Voxels beyond the border, or a sheet of them; a few are turned. */
+static void random_solid(vxm_rng *rng, vxm_window *window, const border *b) {
+  double thickness = vxm_rng_below(rng, 4) ? 100 : 2;
+  uint64_t turned = vxm_rng_below(rng, 2) ? 1000 : 30;
+  const int axis[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
+  for (int64_t s = window->begin; s < window->end; s++)
+    for (int64_t m = 0; m < window->middle_dim; m++)
+      for (int64_t f = 0; f < window->fast_dim; f++) {
+        double p[3];
+        p[axis[0]] = (double)f + 0.5;
+        p[axis[1]] = (double)m + 0.5;
+        p[axis[2]] = (double)s + 0.5;
+        double depth = beyond(b, p);
+        bool set = (depth > 0 && depth < thickness) != (vxm_rng_below(rng, turned) == 0);
+        vxm_window_row(window, m, s)[f / 64] |= (uint64_t)set << (f % 64);
+      }
+}
+
+/** Whether an exact record of a triangle is one of a cell without a voxel. */
+static bool meets_something(const thin_mesh *mesh, const vxm_view *view, const thin_triangle *t) {
+  thin_records records = {.space = &mesh->lattice.space};
+  bool meets = false;
+  thin_note_links(&records, mesh, t, 3);
+  thin_note_squares(&records, mesh, t);
+  thin_note_cube(&records, mesh, t);
+  for (size_t r = 0; r < records.count && !meets; r++) {
+    int64_t ends[8][3];
+    bool held;
+    int count = vxm_cell_ends(ends, records.list[r].kind, records.list[r].lowest);
+    meets = !vxm_view_any_set(view, (const int64_t(*)[3])ends, count, &held) && held;
+  }
+  free(records.list);
+  return meets;
+}
+
+typedef struct counts {
+  size_t all, meeting, kept;
+} counts;
+
+static void check_builds(const vxm_thin_job *job, const bool *meets, counts *sum) {
+  const vxm_kernels *builds[4];
+  size_t count = vxm_kernels_all(builds), all = job->triangles->triangle_count;
+  vxm_sieve sieve;
+  assert_true(vxm_sieve_of(&sieve, job));
+  uint32_t *kept = malloc((all + 8) * sizeof *kept);
+  bool *is_kept = malloc(all);
+  assert_true(kept && is_kept);
+  for (size_t b = 0; b < count; b++) {
+    memset(is_kept, 0, all);
+    for (size_t begin = 0, end; begin < all; begin = end) {
+      end = begin + 50 < all ? begin + 50 : all;
+      size_t found = builds[b]->sift(&sieve, kept, begin, end);
+      for (size_t k = 0; k < found; k++) {
+        assert_in_range(kept[k], begin, end - 1);
+        assert_false(is_kept[kept[k]]);
+        is_kept[kept[k]] = true;
+      }
+    }
+    for (size_t t = 0; t < all; t++) {
+      if (meets[t] && !is_kept[t])
+        fail_msg("%s puts triangle %zu aside", builds[b]->name, t);
+      bool is_face = vxm_role_of(job->triangles, t) == VXM_ROLE_FACE;
+      sum->all += is_face;
+      sum->meeting += meets[t];
+      sum->kept += is_face && is_kept[t];
+    }
+  }
+  free(kept);
+  free(is_kept);
+}
+
+static void check_window(vxm_rng *rng, const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
+                         vxm_window *window, const border *b, counts *sum) {
+  thin_mesh mesh = {.lattice = placed->lattice};
+  size_t words = window->slice_words * (size_t)(window->end - window->begin), all = triangles->triangle_count;
+  window->words = calloc(words, sizeof *window->words);
+  uint64_t *maps = calloc(7 * words, sizeof *maps), *middles[8];
+  bool *meets = calloc(all, sizeof *meets);
+  assert_true(window->words && maps && meets);
+  random_solid(rng, window, b);
+  vxm_thin_job job = {.triangles = triangles,
+                      .placed = placed,
+                      .view = vxm_view_of(window),
+                      .slow = window->layout.slow,
+                      .directions = 3};
+  for (size_t t = 0; t < all; t++) {
+    thin_triangle one = {.is_edge = {true, true, true}};
+    if (vxm_role_of(triangles, t) != VXM_ROLE_FACE) /* cones over what is open do not count */
+      continue;
+    for (int k = 0; k < 3; k++)
+      one.at[k] = vxm_snapped_points_at(placed, triangles->corners[t][k]);
+    meets[t] = meets_something(&mesh, &job.view, &one);
+  }
+  check_builds(&job, meets, sum);
+  for (size_t m = 0; m < 8; m++)
+    job.middles[m] = middles[m] = m == 7 ? window->words : maps + m * words;
+  vxm_middles_fill(middles, window);
+  check_builds(&job, meets, sum);
+  free(meets);
+  free(maps);
+  free(window->words);
+}
+
+static void test_what_is_put_aside_meets_nothing(void **state) {
+  (void)state;
+  static const vxm_layout layouts[6] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  vxm_rng rng = {511};
+  counts sum = {0};
+  for (int round = 0; round < ROUNDS(96); round++) {
+    vxm_layout layout = layouts[round % 6];
+    vxm_space space = engine_space(1, 1, 1);
+    for (int a = 0; a < 3; a++)
+      space.dims[a] = 14 + (int64_t)vxm_rng_below(&rng, a == layout.fast ? 60 : 8);
+    border b = random_border(&rng, &space);
+    vxm_soup *soup = random_triangles(&rng, &space, &b, 37);
+    vxm_triangle_set triangles;
+    vxm_split_rule rule = {.split_mode = VXM_SPLIT_MODE_WHOLE};
+    assert_int_equal(vxm_triangle_set_create(&triangles, soup, rule, NULL), VXM_OK);
+    vxm_lattice lattice = vxm_lattice_of(&space);
+    vxm_snapped_points placed = {.context = context};
+    assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, NULL, false, NULL), VXM_OK);
+    int64_t begin = (int64_t)vxm_rng_below(&rng, 2),
+            end = space.dims[layout.slow] - (int64_t)vxm_rng_below(&rng, 3);
+    vxm_window window = vxm_window_of(&space, layout, begin, end);
+    check_window(&rng, &triangles, &placed, &window, &b, &sum);
+    vxm_snapped_points_destroy(&placed);
+    vxm_triangle_set_destroy(&triangles);
+    vxm_soup_destroy(soup);
+  }
+  print_message("%zu of %zu meet something, %zu are kept\n", sum.meeting, sum.all, sum.kept);
+  assert_true(sum.kept < sum.all - sum.all / 4);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_put_aside_meets_nothing)};
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
