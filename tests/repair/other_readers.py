@@ -42,6 +42,12 @@ def by_trimesh(path, level):
     return None if level != "solid" or mesh.is_volume else "no volume"
 
 
+def by_volume(path, voxels):
+    """Of a surface of so many unit voxels."""
+    difference = abs(trimesh.load(path, force="mesh").volume - voxels)
+    return "the volume differs by %g voxels" % difference if difference > 0.02 * voxels else None
+
+
 def by_pymeshlab(path, level):
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.load_new_mesh(path)
@@ -78,11 +84,11 @@ class Tally:
     def __init__(self):
         self.judged, self.failures, self.refused = 0, 0, 0
 
-    def judge(self, what, path, level):
-        for name, judge in JUDGES:
+    def judge(self, what, path, level, judges=JUDGES):
+        for name, judge in judges:
             try:
                 complaint = judge(path, level)
-            except Exception as error:  # whatever a reader raises is what is to be known
+            except (Exception, SystemExit) as error:  # whatever a reader raises is what is to be known
                 complaint = "%s: %s" % (type(error).__name__, str(error)[:100])
             self.judged += 1
             if complaint:
@@ -136,11 +142,9 @@ def grids(tally, given, work):
         for form in given.formats.split(","):
             path = os.path.join(work, "surface." + form)
             run(given.program, "convert", grid, "-o", path, "--force", "-q").check_returncode()
-            tally.judge("grid %d, .%s" % (trial, form), path, "grid")
-            volume = abs(trimesh.load(path, force="mesh").volume - full.sum())
-            if volume > 0.02 * full.sum():
-                tally.failures += 1
-                print("FAILED: grid %d, .%s: the volume differs by %g voxels" % (trial, form, volume))
+            what = "grid %d, .%s" % (trial, form)
+            tally.judge(what, path, "grid")
+            tally.judge(what, path, full.sum(), [("volume", by_volume)])
 
 
 def located(tally, given, work):
@@ -156,7 +160,7 @@ def located(tally, given, work):
             tally.judged += 1
             try:
                 read()
-            except Exception as error:
+            except (Exception, SystemExit) as error:
                 tally.failures += 1
                 print("FAILED: --locate of %s: %s: %s" % (mesh, name, error))
 
