@@ -3,6 +3,7 @@
 
 #include "mesh/census.h"
 #include "repair/bodies/bodies.h"
+#include "repair/exact/on_lattice.h"
 #include "repair/state/repair_state.h"
 
 #include <math.h>
@@ -153,16 +154,63 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
 
 /** What was moved apart may let vertices merge that were not to before, which opens nothing but takes
  * vertices away. */
-static vxm_status run_further(vxm_repair_state *state, vxm_error *error) {
-  bool changed, again = true;
-  vxm_status status = vxm_pass_unused(state, &changed, error);
-  if (status == VXM_OK)
-    status = run_pass(state, vxm_pass_wrap, 0.9, &changed, error);
+static vxm_status run_rounds(vxm_repair_state *state, vxm_error *error) {
+  bool again = true;
+  vxm_status status = VXM_OK;
   for (int round = 0; round < ROUNDS_MAX && again && status == VXM_OK; round++) {
     status = run_level(state, &again, error);
     if (status == VXM_OK && again)
       status = settle_again(state, &again, error);
   }
+  return status;
+}
+
+/** Goes back before the union, and lets vertices merge that a lattice has in one place. */
+static vxm_status begin_on_lattice(vxm_repair_state *state, const vxm_before_union *before, int bits,
+                                   vxm_error *error) {
+  bool more;
+  vxm_status status = vxm_before_union_again(state, before, error);
+  if (status == VXM_OK && state->track)
+    status = vxm_provenance_start(state->track, state->soup, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_snap_to_lattice(state, bits);
+  if (state->track)
+    status = vxm_provenance_settle(state->track, state->soup, error);
+  if (status == VXM_OK)
+    status = vxm_pass_exact_weld(state, &more, error);
+  return status == VXM_OK ? settle_again(state, &more, error) : status;
+}
+
+/** Runs a level that unites parts; where slivers are in the way, once more on coarser and coarser lattices.
+ */
+static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
+  static const int bits[] = {24, 21, 18};
+  enum { TRIES = sizeof bits / sizeof *bits };
+  vxm_before_union before = {.soup = NULL};
+  bool short_of = true;
+  vxm_status status = vxm_before_union_keep(&before, state, error);
+  for (int i = 0; i <= TRIES && short_of && status == VXM_OK; i++) {
+    if (i > 0)
+      status = begin_on_lattice(state, &before, bits[i - 1], error);
+    if (status == VXM_OK)
+      status = run_rounds(state, error);
+    if (status == VXM_OK)
+      status = vxm_union_fell_short(&short_of, state, error);
+  }
+  vxm_before_union_free(&before, state->context);
+  return status;
+}
+
+static vxm_status run_further(vxm_repair_state *state, vxm_error *error) {
+  bool changed;
+  vxm_status status = vxm_pass_unused(state, &changed, error);
+  if (status == VXM_OK)
+    status = run_pass(state, vxm_pass_wrap, 0.9, &changed, error);
+  if (status == VXM_OK)
+    status = vxm_repair_state_reaches(state, VXM_LEVEL_SOLID) && !(state->options.wrap_alpha > 0)
+                 ? run_union(state, error)
+                 : run_rounds(state, error);
   return status == VXM_OK ? vxm_pass_unused(state, &changed, error) : status;
 }
 

@@ -117,7 +117,8 @@ static vxm_status use_grids(made *m) {
     require((status == VXM_OK) == (m->grid != NULL), "a grid comes with success alone");
   }
   for (size_t f = 0; status == VXM_OK && f < sizeof formats / sizeof *formats; f++) {
-    vxm_grid_write_options options = {sizeof(vxm_grid_write_options), formats[f]};
+    vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
+    options.format = formats[f];
     status = vxm_grid_write(m->grid, "/dev/null", &options, &m->error);
   }
   if (status == VXM_OK)

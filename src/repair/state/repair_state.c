@@ -191,7 +191,8 @@ static vxm_status take_turned(vxm_repair_state *state, const vxm_soup *soup, con
   return status;
 }
 
-static vxm_status renew_marks(vxm_repair_state *state, size_t vertices, vxm_error *error) {
+vxm_status vxm_repair_state_renew(vxm_repair_state *state, vxm_error *error) {
+  size_t vertices = state->soup->vertex_count;
   vxm_status status = VXM_OK;
   vxm_free(state->context, state->gone);
   vxm_free(state->context, state->used);
@@ -199,7 +200,13 @@ static vxm_status renew_marks(vxm_repair_state *state, size_t vertices, vxm_erro
   state->gone = vxm_repair_state_scratch(state, vertices, sizeof *state->gone, &status, error);
   if (state->gone)
     state->used = vxm_repair_state_scratch(state, vertices, sizeof *state->used, &status, error);
-  return status;
+  if (status != VXM_OK)
+    return status;
+  vxm_extent extent;
+  vxm_repair_state_extent(state, &extent);
+  for (size_t v = 0; v < vertices; v++)
+    state->gone[v] = !state->used[v]; /* what is left over was not unused in the mesh */
+  return VXM_OK;
 }
 
 vxm_status vxm_repair_state_adopt(vxm_repair_state *state, vxm_soup *soup, uint64_t *origin,
@@ -220,12 +227,5 @@ vxm_status vxm_repair_state_adopt(vxm_repair_state *state, vxm_soup *soup, uint6
   vxm_repair_state_touch(state);
   vxm_soup_destroy(state->soup);
   state->soup = soup;
-  status = renew_marks(state, soup->vertex_count, error);
-  if (status != VXM_OK)
-    return status;
-  vxm_extent extent;
-  vxm_repair_state_extent(state, &extent);
-  for (size_t v = 0; v < soup->vertex_count; v++)
-    state->gone[v] = !state->used[v]; /* what the module left over was not unused in the mesh */
-  return VXM_OK;
+  return vxm_repair_state_renew(state, error);
 }

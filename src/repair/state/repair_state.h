@@ -122,6 +122,8 @@ int64_t vxm_repair_state_remove_faces(vxm_repair_state *state, const uint8_t *re
  */
 vxm_status vxm_repair_state_adopt(vxm_repair_state *state, vxm_soup *soup, uint64_t *origin,
                                   vxm_error *error);
+/** Makes the marks of vertices anew, after the soup was exchanged. */
+vxm_status vxm_repair_state_renew(vxm_repair_state *state, vxm_error *error);
 /** What a position becomes where positions are to be held by 32-bit floats, else itself. */
 static inline double vxm_repair_state_round(const vxm_repair_state *state, double x) {
   if (!state->options.single_precision)

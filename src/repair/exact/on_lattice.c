@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "repair/exact/on_lattice.h"
+
+#include "repair/state/merge_places.h"
+#include "repair/state/self_intersections.h"
+
+#include <math.h>
+#include <string.h>
+
+/** A copy with what vxm_soup_copy leaves to repairs. */
+static vxm_status copy(vxm_soup **out, uint8_t **turned, const vxm_soup *soup, const uint8_t *marks,
+                       vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  *turned = NULL;
+  if (vxm_soup_copy(out, soup, &local) == VXM_OK && soup->face_parts) {
+    (*out)->face_parts = vxm_alloc(soup->context, soup->face_count, sizeof *soup->face_parts, &local);
+    if ((*out)->face_parts)
+      memcpy((*out)->face_parts, soup->face_parts, soup->face_count * sizeof *soup->face_parts);
+  }
+  if (local.code == VXM_OK && marks)
+    *turned = vxm_alloc(soup->context, soup->face_count, 1, &local);
+  if (*turned)
+    memcpy(*turned, marks, soup->face_count);
+  if (local.code != VXM_OK) {
+    vxm_soup_destroy(*out);
+    *out = NULL;
+    vxm_error_pass(error, &local);
+  }
+  return local.code;
+}
+
+vxm_status vxm_before_union_keep(vxm_before_union *out, const vxm_repair_state *state, vxm_error *error) {
+  out->state = *state;
+  return copy(&out->soup, &out->turned, state->soup, state->turned, error);
+}
+
+void vxm_before_union_free(vxm_before_union *kept, vxm_context *context) {
+  vxm_free(context, kept->turned);
+  vxm_soup_destroy(kept->soup);
+  *kept = (vxm_before_union){.soup = NULL};
+}
+
+void vxm_snap_to_lattice(vxm_repair_state *state, int bits) {
+  vxm_extent extent;
+  vxm_repair_state_extent(state, &extent);
+  double diagonal = vxm_extent_diagonal(extent.bounds);
+  double lattice = ldexp(1, ilogb(diagonal > 0 ? diagonal : 1) - bits);
+  for (size_t i = 0; i < 3 * state->soup->vertex_count; i++)
+    state->soup->positions[i] =
+        vxm_repair_state_round(state, lattice * rint(state->soup->positions[i] / lattice));
+}
+
+vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_union *kept, vxm_error *error) {
+  vxm_soup *soup;
+  uint8_t *turned;
+  vxm_status status = copy(&soup, &turned, kept->soup, kept->turned, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_repair_state_touch(state);
+  vxm_soup_destroy(state->soup);
+  vxm_free(state->context, state->turned);
+  uint8_t *gone = state->gone, *used = state->used;
+  *state = kept->state;
+  state->soup = soup;
+  state->turned = turned;
+  state->gone = gone;
+  state->used = used;
+  state->has_edges = false;
+  return vxm_repair_state_renew(state, error);
+}
+
+vxm_status vxm_union_fell_short(bool *out, const vxm_repair_state *state, vxm_error *error) {
+  *out = false;
+  if (state->ununited > 0)
+    return VXM_OK;
+  *out = state->together > 0;
+  if (*out)
+    return VXM_OK;
+  vxm_face_pairs pairs;
+  vxm_status status = vxm_self_intersections_find(&pairs, state->soup, 1, error);
+  vxm_free(state->context, pairs.pairs);
+  *out = status == VXM_OK && pairs.count > 0;
+  return status;
+}
