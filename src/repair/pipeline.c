@@ -134,6 +134,9 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
                  {move_apart, true},
                  {vxm_pass_reunion, false},
                  {vxm_pass_separation, false},
+                 {move_apart, true},
+                 {vxm_pass_reunion, false},
+                 {vxm_pass_separation, false},
                  {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
