@@ -126,18 +126,12 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{separate_until_quiet, true},
-                 {vxm_pass_closing, true},
-                 {vxm_pass_small_parts, true},
-                 {unite, false},
-                 {vxm_pass_separation, false},
-                 {move_apart, true},
-                 {vxm_pass_reunion, false},
-                 {vxm_pass_separation, false},
-                 {move_apart, true},
-                 {vxm_pass_reunion, false},
-                 {vxm_pass_separation, false},
-                 {move_apart, true}};
+  } further[] = {{separate_until_quiet, true}, {vxm_pass_closing, true},
+                 {vxm_pass_small_parts, true}, {unite, false},
+                 {vxm_pass_separation, false}, {move_apart, true},
+                 {vxm_pass_reunion, false},    {vxm_pass_separation, false},
+                 {move_apart, true},           {vxm_pass_reunion, false},
+                 {vxm_pass_separation, false}, {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
   *moved = false;
