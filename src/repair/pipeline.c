@@ -138,6 +138,7 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
   } further[] = {{separate_until_quiet, true}, {vxm_pass_closing, true}, {vxm_pass_small_parts, true},
                  {vxm_pass_sheets, false},     {unite, false},           {wrap_the_rest, false},
                  {vxm_pass_separation, false}, {move_apart, true},       {vxm_pass_reunion, false},
+                 {vxm_pass_separation, false}, {move_apart, true},       {vxm_pass_reunion, false},
                  {vxm_pass_separation, false}, {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;

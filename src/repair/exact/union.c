@@ -124,7 +124,7 @@ vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *err
   return status;
 }
 
-/** Once more where vertices were moved apart after that: into what lies nearer still, as beside slivers. */
+/** Again where vertices were moved apart after that: into what lies nearer still, as beside slivers. */
 vxm_status vxm_pass_reunion(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
   if (!is_asked_for(state) || state->counts[VXM_PASS_APART] == 0 || state->ununited > 0)
