@@ -123,7 +123,7 @@ class VoxelDataset(Dataset):
         mesh = repair(load(path), self.level, separate=True)
         if cached is not None:
             os.makedirs(self.cache, exist_ok=True)
-            mesh.save(cached)  # under another name until it is complete
+            mesh.save(cached, keep_polygons=True)  # under another name until it is complete
         return mesh
 
     def _need(self, models: Sequence[int]) -> Sampler:

@@ -41,7 +41,7 @@ vxm_status vxm_meshio_read_file(vxm_soup **out, vxm_context *context, const char
  *
  * @param path   "-" is standard output
  * @param format "off", "obj", "stl" or "ply" in any case; NULL = by the extension of `path`
- * @param ascii  stl and ply as text; off and obj are always text
+ * @param how    VXM_WRITE_ASCII and others (meshio/common/write_how.h); off and obj are always text
  * @return VXM_OK; VXM_ERROR_ARGUMENT for a format that is not known; VXM_ERROR_IO; VXM_ERROR_RANGE where STL
  *         cannot hold the mesh; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */

@@ -135,11 +135,23 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
   static const struct {
     vxm_pass_fn pass;
     bool turns; /**< what it changes may be turned otherwise */
-  } further[] = {{separate_until_quiet, true}, {vxm_pass_closing, true}, {vxm_pass_small_parts, true},
-                 {vxm_pass_sheets, false},     {unite, false},           {wrap_the_rest, false},
-                 {vxm_pass_separation, false}, {move_apart, true},       {vxm_pass_reunion, false},
-                 {vxm_pass_separation, false}, {move_apart, true},       {vxm_pass_reunion, false},
-                 {vxm_pass_separation, false}, {move_apart, true}};
+  } further[] = {{separate_until_quiet, true},
+                 {vxm_pass_closing, true},
+                 {vxm_pass_small_parts, true},
+                 {vxm_pass_sheets, false},
+                 {unite, false},
+                 {wrap_the_rest, false},
+                 {vxm_pass_short_edges, false},
+                 {vxm_pass_separation, false},
+                 {move_apart, true},
+                 {vxm_pass_reunion, false},
+                 {vxm_pass_short_edges, false},
+                 {vxm_pass_separation, false},
+                 {move_apart, true},
+                 {vxm_pass_reunion, false},
+                 {vxm_pass_short_edges, false},
+                 {vxm_pass_separation, false},
+                 {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };
   vxm_status status = VXM_OK;
   *moved = false;
@@ -166,11 +178,13 @@ static vxm_status run_rounds(vxm_repair_state *state, vxm_error *error) {
   return status;
 }
 
-/** Goes back before the union, and lets vertices merge that a lattice has in one place. */
-static vxm_status begin_on_lattice(vxm_repair_state *state, const vxm_before_union *before, int bits,
-                                   vxm_error *error) {
+/** Goes back before the union, and lets vertices merge that a lattice of so many bits has in one place. */
+static vxm_status begin_again(vxm_repair_state *state, const vxm_before_union *before, int bits,
+                              vxm_error *error) {
   bool more;
   vxm_status status = vxm_before_union_again(state, before, error);
+  if (bits == 0)
+    return status;
   if (status == VXM_OK && state->track)
     status = vxm_provenance_start(state->track, state->soup, error);
   if (status != VXM_OK)
@@ -183,17 +197,21 @@ static vxm_status begin_on_lattice(vxm_repair_state *state, const vxm_before_uni
   return status == VXM_OK ? settle_again(state, &more, error) : status;
 }
 
-/** Runs a level that unites parts; where slivers are in the way, once more on coarser and coarser lattices.
- */
+/** Runs a level that unites parts; where slivers are in the way, once more without the shortest edges, and on
+ * coarser and coarser lattices. */
 static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
-  static const int bits[] = {24, 21, 18};
-  enum { TRIES = sizeof bits / sizeof *bits };
+  static const struct {
+    int bits; /**< of the lattice; 0 = none */
+    bool collapses;
+  } tries[] = {{0, false}, {0, true}, {24, false}, {24, true}, {21, true}, {18, true}};
+  enum { TRIES = sizeof tries / sizeof *tries };
   vxm_before_union before = {.soup = NULL};
   bool short_of = true;
   vxm_status status = vxm_before_union_keep(&before, state, error);
-  for (int i = 0; i <= TRIES && short_of && status == VXM_OK; i++) {
+  for (int i = 0; i < TRIES && short_of && status == VXM_OK; i++) {
     if (i > 0)
-      status = begin_on_lattice(state, &before, bits[i - 1], error);
+      status = begin_again(state, &before, tries[i].bits, error);
+    state->collapses = tries[i].collapses;
     if (status == VXM_OK)
       status = run_rounds(state, error);
     if (status == VXM_OK)

@@ -16,7 +16,8 @@ static void check_written_and_read(const travel *t, const vxm_soup *soup, const 
   char path[128];
   snprintf(path, sizeof path, "%s/mesh.%s", t->folder, format);
   vxm_error error = VXM_ERROR_INIT;
-  if (vxm_meshio_write(soup, path, format, ascii, &error) != VXM_OK)
+  if (vxm_meshio_write(soup, path, format, VXM_WRITE_POLYGONS | (ascii ? VXM_WRITE_ASCII : 0), &error) !=
+      VXM_OK)
     fail_msg("%s", error.text);
   vxm_soup *back = read_soup(t->context, path);
   assert_int_equal(back->vertex_count, soup->vertex_count);

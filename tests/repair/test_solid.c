@@ -5,6 +5,7 @@
 
 #include "repair/defects.h"
 #include "repair/repair.h"
+#include "repair/verify.h"
 #include "repair_test.h"
 
 enum { CELLS = 8 };
@@ -60,6 +61,33 @@ static void solids_of_boxes(void **state) {
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
   }
+}
+
+/** Boxes whose walls lie in one plane but for some digits: between them unions have slivers of that size. */
+static void solids_of_noisy_boxes(void **state) {
+  (void)state;
+  enum { ROUNDS = 40 };
+  vxm_rng rng = {5};
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.level = VXM_LEVEL_SOLID;
+  int reached = 0;
+  for (int round = 0; round < ROUNDS; round++) {
+    double volume, noise = pow(10, -6 - round % 5);
+    vxm_soup *soup = random_boxes(&rng, 2 + round / 4, &volume);
+    for (size_t i = 0; i < 3 * soup->vertex_count; i++)
+      soup->positions[i] += noise * (vxm_rng_unit(&rng) - 0.5);
+    vxm_soup *out = repair(soup, &options, NULL);
+    vxm_verification found = VXM_VERIFICATION_INIT;
+    assert_int_equal(vxm_verify(&found, out, &options, NULL), VXM_OK);
+    reached += found.reached;
+    if (found.reached)
+      assert_solid(out);
+    assert_true(fabs(volume_of(out) - volume) < 1e-4 * volume);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+  printf("%d of %d noisy unions are solids\n", reached, ROUNDS);
+  assert_true(reached >= ROUNDS * 9 / 10);
 }
 
 /** Open parts stay, each as it was, and the others are united. */
@@ -239,11 +267,9 @@ int main(void) {
   if (!open_cgal())
     return 77;
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(solids_of_boxes),
-      cmocka_unit_test(open_parts_among_them),
-      cmocka_unit_test(what_is_not_to_be_combined),
-      cmocka_unit_test(wraps_keep_tags),
-      cmocka_unit_test(counted_beyond_the_list),
+      cmocka_unit_test(solids_of_boxes),       cmocka_unit_test(solids_of_noisy_boxes),
+      cmocka_unit_test(open_parts_among_them), cmocka_unit_test(what_is_not_to_be_combined),
+      cmocka_unit_test(wraps_keep_tags),       cmocka_unit_test(counted_beyond_the_list),
       cmocka_unit_test(stopped_anywhere),
   };
   return cmocka_run_group_tests(tests, hold_context, release_context);

@@ -4,7 +4,7 @@
 #include "thin_rule.h"
 
 #include "voxel/parity/kernels.h"
-#include "voxel/thin/sieve.h"
+#include "voxel/thin/sieve_kernels.h"
 
 /** The border of a solid. */
 typedef struct border {
@@ -109,7 +109,7 @@ static void check_builds(const vxm_thin_job *job, const bool *meets, counts *sum
     memset(is_kept, 0, all);
     for (size_t begin = 0, end; begin < all; begin = end) {
       end = begin + 50 < all ? begin + 50 : all;
-      size_t found = builds[b]->sift(&sieve, kept, begin, end);
+      size_t found = vxm_sieve_kernels_of(builds[b])->sift(&sieve, kept, begin, end);
       for (size_t k = 0; k < found; k++) {
         assert_in_range(kept[k], begin, end - 1);
         assert_false(is_kept[kept[k]]);

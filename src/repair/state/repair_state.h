@@ -69,6 +69,7 @@ typedef struct vxm_repair_state {
   int64_t fanned;                          /**< holes that a module left to fans */
   int64_t ununited;      /**< parts that were to be united and still cut through themselves or others */
   int64_t wrapped;       /**< parts that were wrapped as the union had left them */
+  bool collapses;        /**< the shortest edges of unions are collapsed */
   int64_t crossings[2];  /**< self-intersections before and after, or -1 */
   int64_t together;      /**< vertices that were to be moved apart and could not be */
   vxm_provenance *track; /**< what becomes of the parts, or NULL */
@@ -96,6 +97,7 @@ vxm_status vxm_pass_small_parts(vxm_repair_state *state, bool *changed, vxm_erro
 vxm_status vxm_pass_sheets(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_union(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_fallback(vxm_repair_state *state, bool *changed, vxm_error *error);
+vxm_status vxm_pass_short_edges(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_reunion(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *error);
 vxm_status vxm_pass_unused(vxm_repair_state *state, bool *changed, vxm_error *error);

@@ -34,8 +34,6 @@ typedef struct vxm_raster_task {
   size_t worker;
 } vxm_raster_task;
 
-struct vxm_sieve;
-
 typedef struct vxm_kernels {
   const char *name;
   /** Places `count` positions, with their cells, each displaced by its entry of the noise (NULL = none);
@@ -64,12 +62,6 @@ typedef struct vxm_kernels {
    * each row of bricks what is inside as the node begins, then as it ends. masks[0] are the bricks that are
    * not empty, masks[1] the full ones. Returns the OR of all bricks. */
   uint64_t (*fold_node)(uint64_t bricks[64], uint64_t flipped[64], uint64_t inside[16], uint64_t masks[2]);
-  /** The triangles begin..end-1 that may meet something without a voxel (voxel/thin/sieve.h); there is room
-   * for eight more. Returns how many. */
-  size_t (*sift)(const struct vxm_sieve *sieve, uint32_t *kept, size_t begin, size_t end);
-  /** to[i] = from[i] | from[i - step] for all `count` words that are there; or, if step is 0, | the bit
-   * before each. */
-  void (*join)(uint64_t *to, const uint64_t *from, size_t step, size_t count);
 } vxm_kernels;
 
 /** The best build for this processor, or the one forced. */

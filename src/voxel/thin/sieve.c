@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/thin/sieve.h"
-#include "voxel/parity/kernels.h"
+#include "voxel/thin/sieve_kernels.h"
 
 bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
   const vxm_view *view = &job->view;
@@ -43,6 +43,6 @@ void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window) {
     int a = 0; /* along which the voxel before is added, to what is there for both axes with two cells */
     while (two >> axis[a] & 1)
       a++;
-    vxm_kernels_get()->join(middles[two], middles[two | 1 << axis[a]], step[a], words);
+    vxm_sieve_kernels_of(NULL)->join(middles[two], middles[two | 1 << axis[a]], step[a], words);
   }
 }

@@ -3,7 +3,7 @@
  * their middle. */
 #include "voxel/parity/kernels.h"
 #include "voxel/thin/meetings.h"
-#include "voxel/thin/sieve.h"
+#include "voxel/thin/sieve_kernels.h"
 
 /* Numbers of cells side by side in a word, as vxm_snapped_points has them, are compared all three at once:
    the highest bit of each is free. */
@@ -247,7 +247,7 @@ void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end) {
   for (; begin < end; begin += BATCH) {
     uint32_t kept[BATCH + 8];
     size_t last = end - begin < BATCH ? end : begin + BATCH;
-    size_t count = sifted ? vxm_kernels_get()->sift(&sieve, kept, begin, last)
+    size_t count = sifted ? vxm_sieve_kernels_of(NULL)->sift(&sieve, kept, begin, last)
                           : keep_unsure(kept, frames[0].job, &b, begin, last);
     for (size_t k = 0; k < count; k++)
       meet_one(frames, kept[k]);
