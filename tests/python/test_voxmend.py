@@ -72,6 +72,22 @@ class Meshes(unittest.TestCase):
         self.assertEqual(triangles.shape, (12, 3))
         self.assertAlmostEqual(voxmend.Mesh(vertices, triangles).info()["volume"], 1.0)
 
+    def test_sheets(self):
+        sheet = voxmend.Mesh([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], [[0, 1, 2, 3]])
+        plate = sheet.repair("closed", thickness=0.5).info()
+        self.assertTrue(plate["watertight"])
+        self.assertAlmostEqual(plate["volume"], 8)
+        self.assertFalse(sheet.repair("closed", sheets="keep").info()["watertight"])
+        self.assertEqual(len(sheet.repair("closed", sheets="drop").faces), 0)
+        with self.assertRaises(voxmend.ArgumentError):
+            sheet.repair("closed", sheets="fold")
+
+    def test_remesh(self):
+        cube = voxmend.remesh(sample("cube"), 20)
+        self.assertTrue(cube.info()["watertight"])
+        self.assertAlmostEqual(cube.info()["volume"], voxmend.info(sample("cube"))["volume"], delta=0.02)
+        self.assertGreater(len(voxmend.remesh(sample("cube"), pitch=0.025).faces), len(cube.faces))
+
     def test_repair(self):
         mended = voxmend.repair(sample("doubled"))
         self.assertTrue(mended.info()["watertight"])

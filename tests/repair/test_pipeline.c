@@ -295,7 +295,7 @@ static void stops_at_limit_and_when_asked(void **state) {
   for (int step = 0; step < 120; step++) {
     int left = step < 40 ? step : -1;
     vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
-    options.memory_limit = step < 40 ? 0 : least + UINT64_C(10000) * (uint64_t)(step - 40);
+    options.memory_limit = step < 40 ? 0 : least + UINT64_C(20000) * (uint64_t)(step - 40);
     options.progress = stop_at_zero;
     options.payload = &left;
     vxm_context *context;

@@ -14,16 +14,14 @@ static const double DEFAULT_THICKNESS = 0.002;
 enum { UNITS = 16 };
 
 static double thickness_of(vxm_repair_state *state) {
-  if (state->options.thickness > 0)
-    return state->options.thickness;
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
-  double largest = 0;
+  double largest = 0, given = state->options.thickness;
   for (int i = 0; i < 6; i++)
     largest = fmax(largest, fabs(extent.bounds[i]));
   double unit = largest * (state->options.single_precision ? 0x1p-23 : 0x1p-52);
-  return fmax(DEFAULT_THICKNESS * frame.diagonal / frame.scale, UNITS * unit);
+  return fmax(given > 0 ? given : DEFAULT_THICKNESS * frame.diagonal / frame.scale, UNITS * unit);
 }
 
 static bool is_asked_for(const vxm_repair_state *state) {

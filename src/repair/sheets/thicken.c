@@ -190,6 +190,8 @@ static bool put_all(thickening *t) {
 static bool thicken(thickening *t, const uint8_t *faces, double thickness) {
   if (!take_triangles(t, faces))
     return false;
+  if (t->triangles->face_count == 0) /* spikes */
+    return true;
   vxm_extent extent;
   uint8_t *used = vxm_alloc(t->from->context, t->triangles->vertex_count, 1, &t->error);
   if (!used)
