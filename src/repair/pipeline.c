@@ -78,11 +78,9 @@ static vxm_status settle_again(vxm_repair_state *state, bool *changed, vxm_error
   if (status == VXM_OK)
     status = run_until_quiet(state, error);
   *changed = status == VXM_OK && count_round(state) > before;
-  if (!*changed)
-    return status;
-  if (state->track)
+  if (status == VXM_OK && state->track)
     status = vxm_provenance_settle(state->track, state->soup, error);
-  return status == VXM_OK ? vxm_pass_orientation(state, &turned, error) : status;
+  return status == VXM_OK && *changed ? vxm_pass_orientation(state, &turned, error) : status;
 }
 
 /** Separation, and what else it makes room for: where faces were cut apart others may come together. */
@@ -107,6 +105,15 @@ static vxm_status move_apart(vxm_repair_state *state, bool *changed, vxm_error *
   vxm_status status = state->track ? vxm_provenance_start(state->track, state->soup, error) : VXM_OK;
   if (status == VXM_OK)
     status = vxm_pass_apart(state, changed, error);
+  if (status == VXM_OK && state->track)
+    status = vxm_provenance_settle(state->track, state->soup, error);
+  return status;
+}
+
+static vxm_status collapse_short_edges(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  vxm_status status = state->track ? vxm_provenance_start(state->track, state->soup, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = vxm_pass_short_edges(state, changed, error);
   if (status == VXM_OK && state->track)
     status = vxm_provenance_settle(state->track, state->soup, error);
   return status;
@@ -141,15 +148,15 @@ static vxm_status run_level(vxm_repair_state *state, bool *moved, vxm_error *err
                  {vxm_pass_sheets, false},
                  {unite, false},
                  {wrap_the_rest, false},
-                 {vxm_pass_short_edges, false},
+                 {collapse_short_edges, false},
                  {vxm_pass_separation, false},
                  {move_apart, true},
                  {vxm_pass_reunion, false},
-                 {vxm_pass_short_edges, false},
+                 {collapse_short_edges, false},
                  {vxm_pass_separation, false},
                  {move_apart, true},
                  {vxm_pass_reunion, false},
-                 {vxm_pass_short_edges, false},
+                 {collapse_short_edges, false},
                  {vxm_pass_separation, false},
                  {move_apart, true}};
   enum { FURTHER = sizeof further / sizeof *further };

@@ -161,8 +161,6 @@ static vxm_status apply(collapsing *c, vxm_error *error) {
   uint8_t *remove = vxm_repair_state_scratch(c->state, c->soup->face_count, 1, &status, error);
   if (!remove)
     return status;
-  if (c->state->track)
-    vxm_provenance_merge(c->state->track, c->map);
   vxm_repair_state_merge(c->state, c->map);
   for (size_t f = 0; f < c->soup->face_count; f++)
     remove[f] = !vxm_face_has_three(corners_of(c, (uint32_t)f), 3, NULL);
