@@ -223,6 +223,13 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
       status = run_rounds(state, error);
     if (status == VXM_OK)
       status = vxm_union_fell_short(&short_of, state, error);
+    short_of = short_of || (i > 0 && state->ununited > 0);
+  }
+  if (status == VXM_OK && short_of) { /* then rather what moves nothing */
+    status = begin_again(state, &before, tries[0].bits, error);
+    state->collapses = tries[0].collapses;
+    if (status == VXM_OK)
+      status = run_rounds(state, error);
   }
   vxm_before_union_free(&before, state->context);
   return status;

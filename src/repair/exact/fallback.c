@@ -128,9 +128,12 @@ static vxm_status wrap_marked(vxm_repair_state *state, const uint8_t *faces, vxm
     status = append(rest, &origin, wrap, nearest, numbers, error);
   if (status == VXM_OK) {
     state->counts[VXM_PASS_WRAP] += (int64_t)wrap->face_count;
+    size_t first = rest->face_count - wrap->face_count;
     status = vxm_repair_state_adopt(state, rest, origin, error);
     rest = NULL;
     origin = NULL;
+    if (status == VXM_OK)
+      vxm_repair_state_mark_added(state, first);
   }
   vxm_free(state->context, nearest);
   vxm_soup_destroy(wrap);
@@ -157,6 +160,8 @@ vxm_status vxm_pass_fallback(vxm_repair_state *state, bool *changed, vxm_error *
     *changed = true;
     state->wrapped += count;
     state->ununited = 0;
+    if (state->track)
+      vxm_provenance_forget_left(state->track);
   }
   vxm_free(state->context, faces);
   return status;

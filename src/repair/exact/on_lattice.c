@@ -31,7 +31,8 @@ static vxm_status copy(vxm_soup **out, uint8_t **turned, const vxm_soup *soup, c
 
 vxm_status vxm_before_union_keep(vxm_before_union *out, const vxm_repair_state *state, vxm_error *error) {
   out->state = *state;
-  return copy(&out->soup, &out->turned, state->soup, state->turned, error);
+  vxm_status status = state->track ? vxm_provenance_remember(state->track, error) : VXM_OK;
+  return status != VXM_OK ? status : copy(&out->soup, &out->turned, state->soup, state->turned, error);
 }
 
 void vxm_before_union_free(vxm_before_union *kept, vxm_context *context) {
@@ -45,6 +46,8 @@ void vxm_snap_to_lattice(vxm_repair_state *state, int bits) {
   vxm_repair_state_extent(state, &extent);
   double diagonal = vxm_extent_diagonal(extent.bounds);
   double lattice = ldexp(1, ilogb(diagonal > 0 ? diagonal : 1) - bits);
+  if (!isfinite(diagonal) || !(lattice > 0))
+    return; /* at the ends of the numbers */
   for (size_t i = 0; i < 3 * state->soup->vertex_count; i++)
     state->soup->positions[i] =
         vxm_repair_state_round(state, lattice * rint(state->soup->positions[i] / lattice));
@@ -66,15 +69,14 @@ vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_unio
   state->gone = gone;
   state->used = used;
   state->has_edges = false;
+  if (state->track)
+    vxm_provenance_recall(state->track);
   return vxm_repair_state_renew(state, error);
 }
 
 vxm_status vxm_union_fell_short(bool *out, const vxm_repair_state *state, vxm_error *error) {
-  *out = false;
-  if (state->ununited > 0)
-    return VXM_OK;
-  *out = state->together > 0;
-  if (*out)
+  *out = state->together > 0 && state->ununited == 0;
+  if (*out || state->ununited > 0)
     return VXM_OK;
   vxm_face_pairs pairs;
   vxm_status status = vxm_self_intersections_find(&pairs, state->soup, 1, error);

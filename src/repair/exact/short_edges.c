@@ -26,6 +26,7 @@ typedef struct collapsing {
   uint32_t *map;   /**< per vertex: the one that takes its place */
   short_edge *edges;
   size_t count;
+  double scale; /**< of the frame in which areas are computed */
 } collapsing;
 
 static const uint32_t *corners_of(const collapsing *c, uint32_t face) {
@@ -128,9 +129,9 @@ static bool keeps_sides(const collapsing *c, uint32_t from, uint32_t to) {
     uint32_t moved[3];
     for (int k = 0; k < 3; k++)
       moved[k] = corner[k] == from ? to : corner[k];
-    vxm_vec3 before = vxm_polygon_area(c->soup->positions, corner, 3, 1);
-    vxm_vec3 after = vxm_polygon_area(c->soup->positions, moved, 3, 1);
-    if (vxm_vec3_dot(before, after) <= 0)
+    vxm_vec3 before = vxm_polygon_area(c->soup->positions, corner, 3, c->scale);
+    vxm_vec3 after = vxm_polygon_area(c->soup->positions, moved, 3, c->scale);
+    if (!(vxm_vec3_dot(before, after) > 0))
       return false;
   }
   return true;
@@ -174,7 +175,9 @@ static vxm_status collapse(collapsing *c, double most, int64_t *total, vxm_error
   vxm_status status = VXM_OK;
   *total = 0;
   for (int round = 0; round < ROUNDS && status == VXM_OK; round++) {
-    status = vxm_repair_state_edges(c->state, error);
+    status = vxm_ask(c->state->context, error);
+    if (status == VXM_OK)
+      status = vxm_repair_state_edges(c->state, error);
     if (status != VXM_OK || !list_faces(c))
       return status;
     list_short(c, most);
@@ -199,7 +202,7 @@ vxm_status vxm_pass_short_edges(vxm_repair_state *state, bool *changed, vxm_erro
   if (status != VXM_OK)
     return status;
   const vxm_soup *soup = state->soup;
-  collapsing c = {.state = state, .soup = state->soup};
+  collapsing c = {.state = state, .soup = state->soup, .scale = vxm_unit_scale_of(extent.bounds).scale};
   int64_t collapsed = 0;
   c.begin = vxm_repair_state_scratch(state, soup->vertex_count + 1, sizeof *c.begin, &status, error);
   if (c.begin)

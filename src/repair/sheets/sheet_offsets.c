@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/sheets/sheet_offsets.h"
 
+#include "mesh/unit_scale.h"
 #include "repair/sheets/offset_vector.h"
 
 #include <string.h>
@@ -170,8 +171,10 @@ static void place_vertices(offsetting *o, double distance) {
     const double *from = vxm_position(o->sides->soup, o->place[v]);
     double part = ldexp(distance, -o->halved[v]), *p = o->out->positions + 3 * (size_t)v;
     const double by[3] = {o->vector[v].x, o->vector[v].y, o->vector[v].z};
-    for (int a = 0; a < 3; a++)
-      p[a] = lattice * rint((from[a] + part * by[a]) / lattice);
+    for (int a = 0; a < 3; a++) {
+      p[a] = from[a] + part * by[a];
+      p[a] = lattice > 0 ? lattice * rint(p[a] / lattice) : p[a];
+    }
   }
 }
 
@@ -199,6 +202,14 @@ static bool draw_nearer(offsetting *o) {
   return any;
 }
 
+static vxm_status check_places(const offsetting *o, vxm_error *error) {
+  for (uint32_t v = 0; v < o->out->count; v++)
+    if (!vxm_is_finite(o->out->positions + 3 * (size_t)v))
+      return vxm_fail(error, VXM_ERROR_RANGE,
+                      "a plate reaches beyond the numbers; choose a smaller thickness, or keep sheets");
+  return VXM_OK;
+}
+
 vxm_status vxm_sheet_offsets_find(vxm_sheet_offsets *out, vxm_sheet_sides *sides, double distance,
                                   double scale, vxm_error *error) {
   vxm_context *context = sides->soup->context;
@@ -217,6 +228,7 @@ vxm_status vxm_sheet_offsets_find(vxm_sheet_offsets *out, vxm_sheet_sides *sides
       place_vertices(&o, distance);
       for (int i = 0; i < HALVINGS && draw_nearer(&o); i++)
         place_vertices(&o, distance);
+      check_places(&o, &local);
     }
   }
   vxm_free(context, o.place);

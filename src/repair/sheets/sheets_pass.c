@@ -55,6 +55,14 @@ static vxm_status find_open(uint8_t *faces, int64_t *count, vxm_repair_state *st
   return status;
 }
 
+/** Parts of which nothing else is left are to go. */
+static void note_dropped(vxm_repair_state *state, const uint8_t *sheets) {
+  const vxm_soup *soup = state->soup;
+  for (size_t f = 0; state->track && soup->face_parts && f < soup->face_count; f++)
+    if (sheets[f])
+      vxm_provenance_drop(state->track, soup->face_parts[f]);
+}
+
 /** Puts what the sheets become in their place. */
 static vxm_status replace(vxm_repair_state *state, const uint8_t *sheets, vxm_error *error) {
   vxm_soup *rest;
@@ -63,11 +71,16 @@ static vxm_status replace(vxm_repair_state *state, const uint8_t *sheets, vxm_er
   if (status != VXM_OK)
     return status;
   size_t kept = rest->face_count;
-  if (state->options.sheets == VXM_SHEETS_THICKEN)
+  if (state->options.sheets == VXM_SHEETS_DROP)
+    note_dropped(state, sheets);
+  else
     status = vxm_thicken(rest, &origin, state->soup, sheets, thickness_of(state), error);
   if (status == VXM_OK) {
     state->counts[VXM_PASS_SHEETS] += (int64_t)(rest->face_count - kept);
-    return vxm_repair_state_adopt(state, rest, origin, error);
+    status = vxm_repair_state_adopt(state, rest, origin, error);
+    if (status == VXM_OK)
+      vxm_repair_state_mark_added(state, kept);
+    return status;
   }
   vxm_soup_destroy(rest);
   vxm_free(state->context, origin);

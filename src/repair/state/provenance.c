@@ -14,6 +14,12 @@ static const uint32_t NO_PART = UINT32_MAX;
 /** Of the squared diagonal of a part: with no more area it is nothing that could be lost. */
 static const double NO_AREA = 1e-12;
 
+/** What becomes of a part, at one time. */
+typedef struct known_part {
+  double moved;
+  bool left, dropped;
+} known_part;
+
 struct vxm_provenance {
   vxm_context *context;
   const vxm_soup *in;
@@ -25,6 +31,7 @@ struct vxm_provenance {
   int64_t *flipped;    /**< per part */
   bool *dropped;       /**< per part: it was to be */
   bool *left;          /**< per part: it was to be united and was not */
+  known_part *known;   /**< per part, or NULL: what to go back to */
   /* The present stage: as long as it lasts, vertices keep their numbers. */
   size_t vertex_count;
   double *from;          /**< per vertex: where it began */
@@ -129,6 +136,7 @@ void vxm_provenance_destroy(vxm_provenance *track) {
   if (!track)
     return;
   free_stage(track);
+  vxm_free(track->context, track->known);
   vxm_free(track->context, track->left);
   vxm_free(track->context, track->dropped);
   vxm_free(track->context, track->flipped);
@@ -156,6 +164,31 @@ bool vxm_provenance_leave(vxm_provenance *track, uint32_t part) {
   bool known = track->left[part];
   track->left[part] = true;
   return !known;
+}
+
+void vxm_provenance_forget_left(vxm_provenance *track) {
+  for (size_t i = 0; i < track->part_count; i++)
+    track->left[i] = false;
+}
+
+vxm_status vxm_provenance_remember(vxm_provenance *track, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(track->context, track->known);
+  track->known = vxm_alloc(track->context, track->part_count, sizeof *track->known, &local);
+  for (size_t i = 0; track->known && i < track->part_count; i++)
+    track->known[i] = (known_part){track->moved[i], track->left[i], track->dropped[i]};
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
+  return local.code;
+}
+
+void vxm_provenance_recall(vxm_provenance *track) {
+  for (size_t i = 0; i < track->part_count; i++) {
+    track->moved[i] = track->known[i].moved;
+    track->left[i] = track->known[i].left;
+    track->dropped[i] = track->known[i].dropped;
+  }
+  free_stage(track);
 }
 
 void vxm_provenance_drop(vxm_provenance *track, uint32_t part) {

@@ -28,6 +28,12 @@ void vxm_provenance_turn(vxm_provenance *track, uint32_t part);
 size_t vxm_provenance_part_count(const vxm_provenance *track);
 /** A part was to be united and could not be; false if that was known. */
 bool vxm_provenance_leave(vxm_provenance *track, uint32_t part);
+/** What was left so far is not any more: something else was done with it. */
+void vxm_provenance_forget_left(vxm_provenance *track);
+/** Notes what is known of the parts by now, between stages, and goes back to it. @return VXM_OK,
+ * VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+vxm_status vxm_provenance_remember(vxm_provenance *track, vxm_error *error);
+void vxm_provenance_recall(vxm_provenance *track);
 /** A part is to have no faces. */
 void vxm_provenance_drop(vxm_provenance *track, uint32_t part);
 /**

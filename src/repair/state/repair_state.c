@@ -191,6 +191,11 @@ static vxm_status take_turned(vxm_repair_state *state, const vxm_soup *soup, con
   return status;
 }
 
+void vxm_repair_state_mark_added(vxm_repair_state *state, size_t first) {
+  for (size_t f = first; state->turned && f < state->soup->face_count; f++)
+    state->turned[f] = VXM_ADDED;
+}
+
 vxm_status vxm_repair_state_renew(vxm_repair_state *state, vxm_error *error) {
   size_t vertices = state->soup->vertex_count;
   vxm_status status = VXM_OK;

@@ -124,6 +124,8 @@ int64_t vxm_repair_state_remove_faces(vxm_repair_state *state, const uint8_t *re
  */
 vxm_status vxm_repair_state_adopt(vxm_repair_state *state, vxm_soup *soup, uint64_t *origin,
                                   vxm_error *error);
+/** Faces from `first` on did not come in, though they come from some that did. */
+void vxm_repair_state_mark_added(vxm_repair_state *state, size_t first);
 /** Makes the marks of vertices anew, after the soup was exchanged. */
 vxm_status vxm_repair_state_renew(vxm_repair_state *state, vxm_error *error);
 /** What a position becomes where positions are to be held by 32-bit floats, else itself. */
