@@ -204,6 +204,18 @@ static vxm_status begin_again(vxm_repair_state *state, const vxm_before_union *b
   return status == VXM_OK ? settle_again(state, &more, error) : status;
 }
 
+/** Wraps what still cuts through something, if that was asked for. */
+static vxm_status wrap_crossing(vxm_repair_state *state, vxm_error *error) {
+  bool changed = false;
+  if (!(state->options.fallback_alpha > 0))
+    return VXM_OK;
+  int64_t ununited = state->ununited;
+  state->ununited = 1; /* as good as that */
+  vxm_status status = vxm_pass_fallback(state, &changed, error);
+  state->ununited = changed ? 0 : ununited;
+  return status == VXM_OK && changed ? run_rounds(state, error) : status;
+}
+
 /** Runs a level that unites parts; where slivers are in the way, once more without the shortest edges, and on
  * coarser and coarser lattices. */
 static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
@@ -230,6 +242,8 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
     state->collapses = tries[0].collapses;
     if (status == VXM_OK)
       status = run_rounds(state, error);
+    if (status == VXM_OK)
+      status = wrap_crossing(state, error);
   }
   vxm_before_union_free(&before, state->context);
   return status;
