@@ -103,6 +103,7 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "unfilled_holes", json_integer(repair->unfilled_holes));
   json_object_set_new(report, "fan_fallbacks", json_integer(repair->fan_fallbacks));
   json_object_set_new(report, "union_failures", json_integer(repair->union_failures));
+  json_object_set_new(report, "union_tries", json_integer(repair->union_tries));
   json_object_set_new(report, "wrapped_parts", json_integer(repair->wrapped_parts));
   json_object_set_new(report, "unparted_vertices", json_integer(repair->unparted_vertices));
   json_object_set_new(report, "shared_faces", json_integer(repair->shared_faces));
@@ -179,6 +180,9 @@ static void summarize_rest(const cli_run *cli, const vxm_repair_report *repair, 
   if (repair->fan_fallbacks > 0)
     fprintf(cli->text, "\n%" PRId64 " holes could not be filled as asked for, and were by fans\n",
             repair->fan_fallbacks);
+  if (repair->union_tries > 1)
+    fprintf(cli->text, "\nThe union was tried %" PRId64 " times: slivers were in the way, which takes long\n",
+            repair->union_tries);
   if (repair->wrapped_parts > 0)
     fprintf(cli->text, "\n%" PRId64 " parts could not be united, and were wrapped\n", repair->wrapped_parts);
   if (repair->union_failures > 0)

@@ -231,6 +231,7 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
     if (i > 0)
       status = begin_again(state, &before, tries[i].bits, error);
     state->collapses = tries[i].collapses;
+    state->tries = i + 1;
     if (status == VXM_OK)
       status = run_rounds(state, error);
     if (status == VXM_OK)
@@ -240,6 +241,7 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
   if (status == VXM_OK && short_of) { /* then rather what moves nothing */
     status = begin_again(state, &before, tries[0].bits, error);
     state->collapses = tries[0].collapses;
+    state->tries = TRIES + 1;
     if (status == VXM_OK)
       status = run_rounds(state, error);
     if (status == VXM_OK)
@@ -385,6 +387,7 @@ static void list_passes(vxm_repair_report *report, const vxm_repair_state *state
   report->unfilled_holes = state->unfilled;
   report->fan_fallbacks = state->fanned;
   report->union_failures = state->ununited;
+  report->union_tries = state->tries;
   report->wrapped_parts = state->wrapped;
   report->self_intersections_before = state->crossings[0];
   report->self_intersections_after = state->crossings[1];

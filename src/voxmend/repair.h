@@ -112,7 +112,8 @@ typedef struct vxm_repair_report {
   int64_t fan_fallbacks;  /**< that VXM_HOLE_FILL_MINIMAL or VXM_HOLE_FILL_SMOOTH left to fans */
   int64_t union_failures; /**< that were to be united and still cut through themselves or others: open ones,
                              which have no inside, and those where the union failed */
-  int64_t wrapped_parts;  /**< that could not be united, and were wrapped (fallback_alpha) */
+  int64_t union_tries; /**< how often parts were united at VXM_LEVEL_SOLID; above 1 slivers were in the way */
+  int64_t wrapped_parts;             /**< that could not be united, and were wrapped (fallback_alpha) */
   int64_t self_intersections_before; /**< pairs of faces, counted up to
                                                                   VXM_SELF_INTERSECTIONS_MAX; -1 = not looked
                                                                   for */
@@ -135,7 +136,7 @@ typedef struct vxm_repair_report {
 
 /** Initial value of vxm_repair_report. */
 #define VXM_REPAIR_REPORT_INIT \
-  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
+  { sizeof(vxm_repair_report), 0, {{NULL, 0}}, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, NULL, NULL }
 
 /**
  * Repairs a mesh into a new one: removes non-finite vertices with their faces, welds, removes repeated
