@@ -72,13 +72,11 @@ static json_t *verification_json(const repair_outcome *outcome) {
 }
 
 /** What was wrong, in a sentence. */
-static json_t *repair_verdict(const repair_outcome *outcome) {
-  char sentence[CLI_SENTENCE];
-  cli_openings openings = {.known = outcome->level >= VXM_LEVEL_CLOSED,
-                           .sheets = outcome->repair.sheets + outcome->repair.open_parts,
-                           .holes = outcome->repair.filled_holes + outcome->repair.unfilled_holes};
-  return cli_json_text(
-      cli_verdict(sentence, &outcome->before, &openings, outcome->repair.self_intersections_before));
+static const char *repair_verdict(char sentence[CLI_SENTENCE], const repair_outcome *outcome) {
+  const cli_openings openings = {.known = outcome->level >= VXM_LEVEL_CLOSED,
+                                 .sheets = outcome->repair.sheets + outcome->repair.open_parts,
+                                 .holes = outcome->repair.filled_holes + outcome->repair.unfilled_holes};
+  return cli_verdict(sentence, &outcome->before, &openings, outcome->repair.self_intersections_before);
 }
 
 json_t *repair_report(const cli_run *cli, const char *input, const char *output,
@@ -93,7 +91,8 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
   json_object_set_new(report, "output", output ? cli_json_text(output) : json_null());
   if (!output)
     json_object_set_new(report, "refused", cli_json_text(cli->error.text));
-  json_object_set_new(report, "verdict", repair_verdict(outcome));
+  char sentence[CLI_SENTENCE];
+  json_object_set_new(report, "verdict", cli_json_text(repair_verdict(sentence, outcome)));
   json_object_set_new(report, "verified", verification_json(outcome));
   json_object_set_new(report, "passes", cli_passes_json(repair));
   json_object_set_new(report, "nonorientable_patches", json_integer(repair->nonorientable_patches));
@@ -235,9 +234,8 @@ void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *
 }
 
 void repair_summarize(const cli_run *cli, const repair_outcome *outcome) {
-  json_t *verdict = repair_verdict(outcome);
-  fprintf(cli->text, "%s\n\n", json_string_value(verdict));
-  json_decref(verdict);
+  char sentence[CLI_SENTENCE];
+  fprintf(cli->text, "%s\n\n", repair_verdict(sentence, outcome));
   cli_census_print_both(cli, &outcome->before, &outcome->after);
   char before[32], after[32];
   if (outcome->repair.self_intersections_before >= 0)

@@ -21,7 +21,6 @@ static vxm_status put_slices(void *payload, const void *values, int64_t begin, i
   const int64_t *dims = r->solid->space.dims;
   vxm_status status = VXM_OK;
   for (int64_t k = begin; k < end && status == VXM_OK; k++) {
-
     status = vxm_ask(r->solid->context, error);
     if (status == VXM_OK)
       status = vxm_dual_surface_put(r->surface, vxm_grid_row(r->solid, 0, k),

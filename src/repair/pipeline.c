@@ -101,22 +101,22 @@ static vxm_status separate_until_quiet(vxm_repair_state *state, bool *changed, v
   return status;
 }
 
-static vxm_status move_apart(vxm_repair_state *state, bool *changed, vxm_error *error) {
+/** Runs a pass that moves or merges vertices, so that the account of parts sees how far. */
+static vxm_status run_followed(vxm_repair_state *state, vxm_pass_fn pass, bool *changed, vxm_error *error) {
   vxm_status status = state->track ? vxm_provenance_start(state->track, state->soup, error) : VXM_OK;
   if (status == VXM_OK)
-    status = vxm_pass_apart(state, changed, error);
+    status = pass(state, changed, error);
   if (status == VXM_OK && state->track)
     status = vxm_provenance_settle(state->track, state->soup, error);
   return status;
 }
 
+static vxm_status move_apart(vxm_repair_state *state, bool *changed, vxm_error *error) {
+  return run_followed(state, vxm_pass_apart, changed, error);
+}
+
 static vxm_status collapse_short_edges(vxm_repair_state *state, bool *changed, vxm_error *error) {
-  vxm_status status = state->track ? vxm_provenance_start(state->track, state->soup, error) : VXM_OK;
-  if (status == VXM_OK)
-    status = vxm_pass_short_edges(state, changed, error);
-  if (status == VXM_OK && state->track)
-    status = vxm_provenance_settle(state->track, state->soup, error);
-  return status;
+  return run_followed(state, vxm_pass_short_edges, changed, error);
 }
 
 /** The union. Where it touches itself it has vertices of their own for each sheet, which vertices at one

@@ -2,7 +2,6 @@
 /** Surfaces between voxel centres: closed and manifold, with each set centre inside, whatever the bits. */
 #include "../repair/solids.h"
 
-#include "mesh/geometry.h"
 #include "remesh/cell_cycles.h"
 #include "remesh/dual_surface.h"
 #include "repair/repair.h"
@@ -33,23 +32,6 @@ static void test_cycles(void **state) {
   assert_int_equal(cycles[1 | 1 << 3].count, 2);           /* over an edge: apart */
   assert_int_equal(cycles[0xff & ~(1 | 1 << 7)].count, 2); /* two empty corners */
   assert_int_equal(cycles[1 | 1 << 3 | 1 << 5 | 1 << 6].count, 4);
-}
-
-/** How often a surface winds around a point, by solid angles (Van Oosterom and Strackee 1983). */
-static double winding_at(const vxm_soup *soup, const double p[3]) {
-  double sum = 0;
-  for (size_t f = 0; f < soup->face_count; f++) {
-    vxm_vec3 v[3];
-    double length[3];
-    for (int i = 0; i < 3; i++) {
-      v[i] = vxm_vec3_between(vxm_position(soup, soup->indices[3 * f + (size_t)i]), p, 1);
-      length[i] = vxm_vec3_length(v[i]);
-    }
-    sum += atan2(vxm_vec3_dot(v[0], vxm_vec3_cross(v[1], v[2])),
-                 length[0] * length[1] * length[2] + vxm_vec3_dot(v[0], v[1]) * length[2] +
-                     vxm_vec3_dot(v[1], v[2]) * length[0] + vxm_vec3_dot(v[2], v[0]) * length[1]);
-  }
-  return sum / (2 * M_PI);
 }
 
 typedef struct sample {

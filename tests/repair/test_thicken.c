@@ -131,23 +131,6 @@ static void test_twisted(void **state) {
 
 /* ---- Whatever it is ---- */
 
-/** How often a surface winds around a point, by solid angles (Van Oosterom and Strackee 1983). */
-static double winding_at(const vxm_soup *soup, const double p[3]) {
-  double sum = 0;
-  for (size_t f = 0; f < soup->face_count; f++) {
-    vxm_vec3 v[3];
-    double length[3];
-    for (int i = 0; i < 3; i++) {
-      v[i] = vxm_vec3_between(vxm_position(soup, soup->indices[3 * f + (size_t)i]), p, 1);
-      length[i] = vxm_vec3_length(v[i]);
-    }
-    double volume = vxm_vec3_dot(v[0], vxm_vec3_cross(v[1], v[2]));
-    sum += atan2(volume, length[0] * length[1] * length[2] + vxm_vec3_dot(v[0], v[1]) * length[2] +
-                             vxm_vec3_dot(v[1], v[2]) * length[0] + vxm_vec3_dot(v[2], v[0]) * length[1]);
-  }
-  return sum / (2 * M_PI);
-}
-
 static bool is_balanced(const vxm_soup *soup) {
   brute_report report = look_brute(soup);
   return report.boundary_edges == 0 && report.unpaired == 0;
