@@ -4,8 +4,7 @@
 
 #include "grid/bitgrid.h"
 #include "voxel/parity/parity_union.h"
-#include "voxel/winding/winding.h"
-#include "voxel/winding/winding_mesh.h"
+#include "voxel/winding/orient_patches.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -208,73 +207,6 @@ static void test_cavities(void **state) {
 
 /* ---- Winding numbers ---- */
 
-/** The sum of solid angles in doubles, term by term. */
-static double winding_of(const vxm_winding_triangle *triangles, size_t count, const double q[3]) {
-  double sum = 0;
-  for (size_t t = 0; t < count; t++) {
-    double v[3][3], length[3], dot[3];
-    for (int k = 0; k < 3; k++)
-      for (int a = 0; a < 3; a++)
-        v[k][a] = triangles[t].corner[k][a] - q[a];
-    for (int k = 0; k < 3; k++) {
-      length[k] = sqrt(v[k][0] * v[k][0] + v[k][1] * v[k][1] + v[k][2] * v[k][2]);
-      const double *next = v[(k + 1) % 3];
-      dot[k] = v[k][0] * next[0] + v[k][1] * next[1] + v[k][2] * next[2];
-    }
-    double volume = 0;
-    for (int a = 0; a < 3; a++)
-      volume += v[0][a] * (v[1][(a + 1) % 3] * v[2][(a + 2) % 3] - v[1][(a + 2) % 3] * v[2][(a + 1) % 3]);
-    sum += 2 * atan2(volume, length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] +
-                                 dot[2] * length[1]);
-  }
-  return sum / (4 * M_PI);
-}
-
-static void test_winding_numbers_match_the_sum(void **state) {
-  (void)state;
-  enum { COUNT = 400 };
-  vxm_rng rng = {3};
-  for (int round = 0; round < 12; round++) {
-    vxm_winding_triangle triangles[COUNT], sorted[COUNT];
-    double size = pow(0.5, round % 6), worst = 0;
-    for (int t = 0; t < COUNT; t++) {
-      double centre[3];
-      for (int a = 0; a < 3; a++)
-        centre[a] = 16 * vxm_rng_unit(&rng);
-      for (int k = 0; k < 3; k++)
-        for (int a = 0; a < 3; a++)
-          triangles[t].corner[k][a] = centre[a] + size * 4 * (vxm_rng_unit(&rng) - 0.5);
-    }
-    memcpy(sorted, triangles, sizeof sorted);
-    vxm_winding *winding;
-    assert_int_equal(vxm_winding_create(&winding, context, sorted, COUNT, NULL), VXM_OK);
-    for (int b = 0; b < 64; b++) {
-      float value[VXM_BRICK];
-      int64_t at[3] = {4 * (b & 3), 4 * (b >> 2 & 3), 4 * (b >> 4)};
-      vxm_winding_brick(winding, at[0], at[1], at[2], value);
-      for (int v = 0; v < VXM_BRICK; v++) {
-        double q[3] = {(double)at[0] + (v & 3) + 0.5, (double)at[1] + (v >> 2 & 3) + 0.5,
-                       (double)at[2] + (v >> 4) + 0.5};
-        worst = fmax(worst, fabs((double)value[v] - winding_of(triangles, COUNT, q)));
-      }
-    }
-    assert_true(worst < 0.01);
-    vxm_winding_destroy(winding);
-  }
-}
-
-static void test_no_triangles_wind_around_nothing(void **state) {
-  (void)state;
-  vxm_winding_triangle none;
-  vxm_winding *winding;
-  float value[VXM_BRICK];
-  assert_int_equal(vxm_winding_create(&winding, context, &none, 0, NULL), VXM_OK);
-  vxm_winding_brick(winding, 0, 0, 0, value);
-  for (int v = 0; v < VXM_BRICK; v++)
-    assert_true(value[v] == 0.0F);
-  vxm_winding_destroy(winding);
-}
-
 static void test_winding_method_equals_parity_on_closed_meshes(void **state) {
   (void)state;
   vxm_soup *clean = torus(), *turned = torus();
@@ -317,23 +249,25 @@ static void test_patches_are_turned_outward(void **state) {
   vxm_snapped_points placed = {.context = context};
   assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, NULL, false, NULL), VXM_OK);
   vxm_flip_mask turns;
-  vxm_winding_mesh wound;
   const uint64_t *const voters[3] = {truth->words, truth->words, truth->words};
   assert_int_equal(
       vxm_orient_patches_find(&turns, &triangles, &placed, 0, triangles.split.part_count, voters, NULL),
       VXM_OK);
   assert_int_equal(turns.patch_count, soup->face_count);
-  assert_int_equal(vxm_winding_mesh_create(&wound, &triangles, &placed, &turns, false, NULL), VXM_OK);
   double volume = 0;
   for (size_t t = 0; t < turns.count; t++) {
-    double(*c)[3] = wound.triangles[t].corner;
+    double c[3][3];
+    for (int k = 0; k < 3; k++) {
+      vxm_point p = vxm_snapped_points_at(&placed, triangles.corners[t][turns.turned[t] ? (3 - k) % 3 : k]);
+      for (int a = 0; a < 3; a++)
+        c[k][a] = (double)p.at[a] / (double)lattice.unit;
+    }
     for (int a = 0; a < 3; a++)
       volume += (c[0][a] - 32) * ((c[1][(a + 1) % 3] - 32) * (c[2][(a + 2) % 3] - 32) -
                                   (c[1][(a + 2) % 3] - 32) * (c[2][(a + 1) % 3] - 32));
   }
   double true_volume = 2 * M_PI * M_PI * 0.45 * 0.45 / pow(0.05, 3);
   assert_true(fabs(volume / 6 / true_volume - 1) < 0.02);
-  vxm_winding_mesh_destroy(&wound);
   vxm_flip_mask_destroy(&turns);
   vxm_snapped_points_destroy(&placed);
   vxm_triangle_set_destroy(&triangles);
@@ -414,8 +348,6 @@ int main(void) {
       cmocka_unit_test(test_panels_make_a_body),
       cmocka_unit_test(test_a_sheet),
       cmocka_unit_test(test_cavities),
-      cmocka_unit_test(test_winding_numbers_match_the_sum),
-      cmocka_unit_test(test_no_triangles_wind_around_nothing),
       cmocka_unit_test(test_winding_method_equals_parity_on_closed_meshes),
       cmocka_unit_test(test_patches_are_turned_outward),
       cmocka_unit_test(test_same_bits_for_any_number_of_threads),

@@ -3,13 +3,13 @@
 
 #include <time.h>
 
-static void flip_once_begin(vxm_flip_once *once, vxm_context *context) {
+static void chain_once_begin(vxm_chain_once *once, vxm_context *context) {
   pthread_mutex_init(&once->mutex, NULL);
-  once->mask.context = context;
+  once->chain.context = context;
 }
 
-static void flip_once_end(vxm_flip_once *once) {
-  vxm_flip_mask_destroy(&once->mask);
+static void chain_once_end(vxm_chain_once *once) {
+  vxm_winding_chain_destroy(&once->chain);
   pthread_mutex_destroy(&once->mutex);
 }
 
@@ -23,8 +23,8 @@ vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup
     vxm_error_pass(error, &local);
     return local.code;
   }
-  flip_once_begin(&out->orientation->open, context);
-  flip_once_begin(&out->orientation->all, context);
+  chain_once_begin(&out->orientation->open, context);
+  chain_once_begin(&out->orientation->all, context);
   vxm_status status = vxm_triangle_set_create(&out->triangles, soup, rule, error);
   if (status != VXM_OK)
     return status;
@@ -37,8 +37,8 @@ vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup
 void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis) {
   if (!analysis->orientation)
     return;
-  flip_once_end(&analysis->orientation->open);
-  flip_once_end(&analysis->orientation->all);
+  chain_once_end(&analysis->orientation->open);
+  chain_once_end(&analysis->orientation->all);
   vxm_free(analysis->context, analysis->orientation);
   vxm_triangle_set_destroy(&analysis->triangles);
   *analysis = (vxm_mesh_analysis){.context = analysis->context};
@@ -61,15 +61,25 @@ static vxm_status lock(pthread_mutex_t *mutex, vxm_context *context, vxm_error *
   return status;
 }
 
-vxm_status vxm_flip_once_get(const vxm_flip_mask **out, vxm_flip_once *once,
-                             const vxm_mesh_analysis *analysis, vxm_flip_maker make, void *payload,
-                             vxm_error *error) {
+static vxm_status make_chain(vxm_winding_chain *out, const vxm_mesh_analysis *analysis, vxm_flip_finder find,
+                             void *payload, vxm_error *error) {
+  vxm_flip_mask turns = {.context = analysis->context};
+  vxm_status status = find(&turns, analysis, payload, error);
+  if (status == VXM_OK)
+    status = vxm_oriented_chain_create(out, &analysis->triangles, &turns, error);
+  vxm_flip_mask_destroy(&turns);
+  return status;
+}
+
+vxm_status vxm_chain_once_get(const vxm_winding_chain **out, vxm_chain_once *once,
+                              const vxm_mesh_analysis *analysis, vxm_flip_finder find, void *payload,
+                              vxm_error *error) {
   vxm_status status = lock(&once->mutex, analysis->context, error);
   if (status != VXM_OK)
     return status;
-  if (!once->mask.turned)
-    status = make(&once->mask, analysis, payload, error);
+  if (!once->chain.closed)
+    status = make_chain(&once->chain, analysis, find, payload, error);
   pthread_mutex_unlock(&once->mutex);
-  *out = &once->mask;
+  *out = &once->chain;
   return status;
 }

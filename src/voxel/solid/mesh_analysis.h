@@ -6,20 +6,20 @@
 #ifndef VXM_VOXEL_SOLID_MESH_ANALYSIS_H
 #define VXM_VOXEL_SOLID_MESH_ANALYSIS_H
 
-#include "voxel/winding/orient_patches.h"
+#include "voxel/winding/oriented_chain.h"
 
 #include <pthread.h>
 
 typedef struct vxm_mesh_analysis vxm_mesh_analysis;
 
-/** A flip mask that costs much, is rarely needed, and so is made by the first thread that asks for it. */
-typedef struct vxm_flip_once {
-  pthread_mutex_t mutex; /**< held while the mask is made, and to look whether it is */
-  vxm_flip_mask mask;    /**< `turned` NULL = not made yet; else it stays as it is */
-} vxm_flip_once;
+/** A chain that costs much, is rarely needed, and so is made by the first thread that asks for it. */
+typedef struct vxm_chain_once {
+  pthread_mutex_t mutex;   /**< held while the chain is made, and to look whether it is */
+  vxm_winding_chain chain; /**< `closed` NULL = not made yet; else it stays as it is */
+} vxm_chain_once;
 
 typedef struct vxm_orientation {
-  vxm_flip_once open, all; /**< of the open parts, and of all */
+  vxm_chain_once open, all; /**< of the open parts, and of all */
 } vxm_orientation;
 
 struct vxm_mesh_analysis {
@@ -34,18 +34,18 @@ vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup
                                     vxm_error *error);
 void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis);
 
-/** Makes a mask, from what `payload` says. */
-typedef vxm_status (*vxm_flip_maker)(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, void *payload,
-                                     vxm_error *error);
+/** Finds out which triangles face inward, from what `payload` says. */
+typedef vxm_status (*vxm_flip_finder)(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, void *payload,
+                                      vxm_error *error);
 
 /**
- * The mask, by `make` if there is none yet. Threads that ask for it meanwhile wait, and are asked whether to
- * go on; after a failure the next that asks tries again.
+ * The chain of the triangles that `find` finds, made if there is none yet. Threads that ask for it meanwhile
+ * wait, and are asked whether to go on; after a failure the next that asks tries again.
  *
- * @return what `make` does; VXM_ERROR_CANCELLED
+ * @return what `find` does; VXM_ERROR_CANCELLED
  */
-vxm_status vxm_flip_once_get(const vxm_flip_mask **out, vxm_flip_once *once,
-                             const vxm_mesh_analysis *analysis, vxm_flip_maker make, void *payload,
-                             vxm_error *error);
+vxm_status vxm_chain_once_get(const vxm_winding_chain **out, vxm_chain_once *once,
+                              const vxm_mesh_analysis *analysis, vxm_flip_finder find, void *payload,
+                              vxm_error *error);
 
 #endif

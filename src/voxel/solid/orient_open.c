@@ -41,7 +41,7 @@ static vxm_status find(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, vo
   return status;
 }
 
-vxm_status vxm_orient_open(const vxm_flip_mask **out, const vxm_mesh_analysis *analysis,
+vxm_status vxm_orient_open(const vxm_winding_chain **out, const vxm_mesh_analysis *analysis,
                            vxm_workspace *workspace, vxm_error *error) {
-  return vxm_flip_once_get(out, &analysis->orientation->open, analysis, find, workspace, error);
+  return vxm_chain_once_get(out, &analysis->orientation->open, analysis, find, workspace, error);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Which triangles of the parts that stay open face inward. It is found once, from a grid of fixed resolution
+ * The parts that stay open, turned outward. It is found out once, from a grid of fixed resolution
  * along the longest side of the mesh, so that it is the same whatever grid is made of the mesh.
  */
 #ifndef VXM_VOXEL_SOLID_ORIENT_OPEN_H
@@ -8,8 +8,9 @@
 
 #include "voxel/solid/voxel_pass.h"
 
-/** Bytes that finding out and then using the flips of a triangle takes at most: neighbours, sides, tree. */
-#define VXM_TURNED_BYTES UINT64_C(320)
+/** Bytes that turning a triangle, making its chain and then using that takes at most: neighbours, sides,
+ * tree. */
+#define VXM_TURNED_BYTES UINT64_C(400)
 /** Bytes of the grids that are looked at: five of 260 voxels along an axis, and scratch. */
 #define VXM_ORIENT_BYTES (UINT64_C(20) << 20)
 
@@ -29,12 +30,12 @@ vxm_status vxm_orient_pass_begin(vxm_orient_pass *out, const vxm_mesh_analysis *
                                  vxm_workspace *workspace, vxm_error *error);
 
 /**
- * The flips of the parts that stay open.
+ * The chain of the parts that stay open.
  *
  * @param workspace lent for as long as the call takes
  * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_orient_open(const vxm_flip_mask **out, const vxm_mesh_analysis *analysis,
+vxm_status vxm_orient_open(const vxm_winding_chain **out, const vxm_mesh_analysis *analysis,
                            vxm_workspace *workspace, vxm_error *error);
 
 #endif

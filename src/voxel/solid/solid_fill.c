@@ -12,12 +12,12 @@
 static vxm_status fill_by_winding(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
   vxm_status status = VXM_OK;
-  if (!pass->all_winding.tree) {
-    const vxm_flip_mask *flips;
-    status = vxm_orient_all(&flips, analysis, pass->workspace, error);
+  if (!pass->all_winding.chain) {
+    const vxm_winding_chain *chain;
+    status = vxm_orient_all(&chain, analysis, pass->workspace, error);
     if (status == VXM_OK)
-      status = vxm_winding_mesh_create(&pass->all_winding, &analysis->triangles, &pass->placed, flips,
-                                       pass->mirrored, error);
+      status = vxm_winding_mesh_place(&pass->all_winding, chain, &pass->placed, window->layout.fast,
+                                      pass->mirrored, error);
   }
   if (status != VXM_OK)
     return status;
@@ -26,7 +26,7 @@ static vxm_status fill_by_winding(vxm_voxel_pass *pass, const vxm_window *window
   int64_t added = 0;
   pass->winding_decided += window->fast_dim * window->middle_dim * (int64_t)depth;
   status =
-      vxm_winding_fill(window, NULL, pass->all_winding.tree, pass->context, pass->confidence, &added, error);
+      vxm_winding_fill(&pass->all_winding, window, NULL, pass->confidence, pass->workspace, &added, error);
   pass->added |= added > 0;
   return status;
 }
@@ -81,12 +81,12 @@ vxm_status vxm_solid_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_er
 vxm_status vxm_solid_prepare(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options,
                              vxm_error *error) {
   vxm_workspace workspace = vxm_workspace_of(analysis->context);
-  const vxm_flip_mask *flips;
+  const vxm_winding_chain *chain;
   vxm_status status = VXM_OK;
   if (options->method == VXM_METHOD_WINDING)
-    status = vxm_orient_all(&flips, analysis, &workspace, error);
+    status = vxm_orient_all(&chain, analysis, &workspace, error);
   if (status == VXM_OK && vxm_caps_wanted(options) && vxm_votes_wanted(analysis, options))
-    status = vxm_orient_open(&flips, analysis, &workspace, error);
+    status = vxm_orient_open(&chain, analysis, &workspace, error);
   vxm_workspace_destroy(&workspace);
   return status;
 }

@@ -30,16 +30,16 @@ static vxm_status settle_contested(vxm_voxel_pass *pass, const vxm_window *windo
   const vxm_mesh_analysis *analysis = pass->analysis;
   vxm_status status = VXM_OK;
   int64_t added = 0;
-  if (!pass->open_winding.tree) {
-    const vxm_flip_mask *flips;
-    status = vxm_orient_open(&flips, analysis, pass->workspace, error);
+  if (!pass->open_winding.chain) {
+    const vxm_winding_chain *chain;
+    status = vxm_orient_open(&chain, analysis, pass->workspace, error);
     if (status == VXM_OK)
-      status = vxm_winding_mesh_create(&pass->open_winding, &analysis->triangles, &pass->placed, flips,
-                                       pass->mirrored, error);
+      status = vxm_winding_mesh_place(&pass->open_winding, chain, &pass->placed, window->layout.fast,
+                                      pass->mirrored, error);
   }
   if (status == VXM_OK)
-    status = vxm_winding_fill(window, mask, pass->open_winding.tree, pass->context, pass->confidence, &added,
-                              error);
+    status =
+        vxm_winding_fill(&pass->open_winding, window, mask, pass->confidence, pass->workspace, &added, error);
   pass->added |= added > 0;
   if (added > 0 && pass->has_voxels)
     for (size_t p = vxm_voted_begin(analysis, &pass->options); p < analysis->triangles.split.part_count; p++)

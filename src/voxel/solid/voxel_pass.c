@@ -10,8 +10,8 @@ vxm_voxel_pass vxm_voxel_pass_of(const vxm_mesh_analysis *analysis, const vxm_vo
                           .workspace = workspace,
                           .engine = options->engine,
                           .placed = {.context = context},
-                          .open_winding = {.context = context},
-                          .all_winding = {.context = context}};
+                          .open_winding = vxm_winding_mesh_of(context),
+                          .all_winding = vxm_winding_mesh_of(context)};
 }
 
 void vxm_voxel_pass_destroy(vxm_voxel_pass *pass) {
@@ -28,8 +28,7 @@ void vxm_voxel_pass_begin(vxm_voxel_pass *pass) {
     atomic_store_explicit(&pass->has_voxels[p], 0, memory_order_relaxed);
   pass->contested = pass->winding_decided = 0;
   pass->added = false;
-  vxm_winding_mesh_destroy(&pass->open_winding);
-  vxm_winding_mesh_destroy(&pass->all_winding);
+  pass->open_winding.chain = pass->all_winding.chain = NULL;
 }
 
 vxm_status vxm_voxel_pass_buffer(vxm_voxel_pass *pass, int buffer, const vxm_window *like, vxm_window *out,

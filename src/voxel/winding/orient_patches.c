@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/orient_patches.h"
-#include "voxel/winding/winding.h"
 
 #include <math.h>
 
@@ -14,6 +13,11 @@ static const double probe_weights[4][3] = {
 static const double doubtful = 0.3;
 /** Evidence below this part of the patch's area says nothing. */
 static const double evidence_min = 0.05;
+
+/** A triangle in voxel units. */
+typedef struct voxel_triangle {
+  double corner[3][3];
+} voxel_triangle;
 
 /** One side of a triangle, linked to the next one at the same lower vertex. */
 typedef struct side {
@@ -129,7 +133,7 @@ static bool find_patches(builder *b) {
 /* ---- Evidence ---- */
 
 /** Twice the vector area of a triangle; returns its length. */
-static double normal_of(const vxm_winding_triangle *t, double n[3]) {
+static double normal_of(const voxel_triangle *t, double n[3]) {
   double u[3], v[3], sum = 0;
   for (int a = 0; a < 3; a++) {
     u[a] = t->corner[1][a] - t->corner[0][a];
@@ -158,7 +162,7 @@ static int ask(const builder *b, const uint64_t *const voters[3], const double p
 }
 
 /** Between -1 and 1: how much more is set behind the triangle than before it. */
-static double evidence_of(const builder *b, const vxm_winding_triangle *t, const double n[3], double length,
+static double evidence_of(const builder *b, const voxel_triangle *t, const double n[3], double length,
                           const uint64_t *const voters[3]) {
   double sum = 0;
   for (int w = 0; w < 4; w++)
@@ -179,8 +183,8 @@ static double evidence_of(const builder *b, const vxm_winding_triangle *t, const
 }
 
 /** The triangle in voxels, turned as its patch is consistent. */
-static vxm_winding_triangle triangle_of(const builder *b, size_t t) {
-  vxm_winding_triangle out;
+static voxel_triangle triangle_of(const builder *b, size_t t) {
+  voxel_triangle out;
   const uint32_t *corner = b->triangles->corners[b->triangle[t]];
   for (int k = 0; k < 3; k++) {
     vxm_point p = vxm_snapped_points_at(b->placed, corner[b->turn[t] ? (3 - k) % 3 : k]);
@@ -201,7 +205,7 @@ static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
   if (!opinions)
     return false;
   for (size_t t = 0; t < out->count; t++) {
-    vxm_winding_triangle triangle = triangle_of(b, t);
+    voxel_triangle triangle = triangle_of(b, t);
     double n[3], length = normal_of(&triangle, n);
     if (!(length > 0))
       continue;

@@ -2,98 +2,364 @@
 #include "voxel/winding/winding_fill.h"
 #include "base/task_progress.h"
 #include "base/threads.h"
+#include "voxel/winding/winding_exact.h"
+#include "voxel/winding/winding_walk.h"
 
 #include <math.h>
+#include <string.h>
 
-typedef struct settle_job {
+/** Bricks this close to a half are looked at again, voxels this close to it after that by doubles. */
+static const float doubt = 0.008F, strict_doubt = 5e-4F;
+/** Winding numbers this close to a half are taken for it. */
+static const double tie = 1e-6;
+
+/** A cell that is a task of its own. */
+typedef struct cell_task {
+  int64_t origin[3];
+  float samples[VXM_BRICK];
+  size_t list, count; /**< in the list of nodes of all tasks */
+} cell_task;
+
+typedef struct fill_job {
+  vxm_winding_walk walk; /**< the first, so that what is called back finds the rest */
+  vxm_winding_mesh *mesh;
   const vxm_window *window;
   const uint64_t *asked;
-  const vxm_winding *winding;
   uint8_t *confidence;
-  size_t row_count;    /**< bricks along the middle axis */
-  int64_t first_layer; /**< brick along the slow axis in which the window begins */
-  size_t place[3];     /**< of a voxel in a brick: what a step along each axis of the window adds */
-  atomic_int_fast64_t added;
+  int64_t dims[3], begin[3], end[3]; /**< of the grid, and the voxels of the window, along x, y, z */
+  bool is_asked;                     /**< mesh->asked says which cells are */
+  const vxm_winding_kernels *kernels;
+  cell_task *tasks;
+  size_t task_count, task_capacity;
+  vxm_winding_scratch lists;    /**< of all tasks */
+  vxm_winding_scratch *scratch; /**< of each worker */
   vxm_task_progress watch;
-} settle_job;
+} fill_job;
 
-/** The voxels of a brick that are asked about, as bits 16 slow + 4 middle + fast. f is a multiple of 4. */
-static uint64_t asked_in_brick(const settle_job *job, int64_t f, int64_t m, int64_t s) {
-  const vxm_window *window = job->window;
-  uint64_t bits = 0;
-  for (int row = 0; row < 16; row++) {
-    int64_t middle = m + row % 4, slow = s + row / 4;
-    if (middle >= window->middle_dim || slow < window->begin || slow >= window->end)
-      continue;
-    uint64_t four = 15;
-    if (job->asked)
-      four = job->asked[(size_t)(slow - window->begin) * window->slice_words +
-                        (size_t)middle * window->row_words + (size_t)f / 64] >>
-                 (f % 64) &
-             15;
-    else if (window->fast_dim - f < 4)
-      four = vxm_low_bits((unsigned)(window->fast_dim - f));
-    bits |= four << (4 * row);
+static const fill_job *job_of(const vxm_winding_walk *walk) {
+  return (const fill_job *)(const void *)walk;
+}
+
+/* ---- Settling ---- */
+
+/** The window of what is decided, which begins as the winding number of the closed chain. */
+static const vxm_window *decided(const fill_job *job) {
+  return &job->mesh->closed.window;
+}
+
+static bool wants(const vxm_winding_walk *walk, const int64_t origin[3], int level) {
+  const fill_job *job = job_of(walk);
+  int64_t side = INT64_C(4) << level;
+  for (int a = 0; a < 3; a++)
+    if (origin[a] >= job->end[a] || origin[a] + side <= job->begin[a])
+      return false;
+  const uint8_t *doubted = walk->strict ? vxm_brick_mask_at(&job->mesh->doubted, origin, level) : NULL;
+  if (walk->strict && !(doubted && *doubted))
+    return false;
+  const uint8_t *asked = job->is_asked ? vxm_brick_mask_at(&job->mesh->asked, origin, level) : NULL;
+  return !job->is_asked || (asked && *asked);
+}
+
+/** Bits first..first+count-1 of a row become `bits`; other threads may change other bits of these words. */
+static void store_bits(uint64_t *row, int64_t first, int64_t count, uint64_t bits) {
+  for (int64_t done = 0; done < count;) {
+    int64_t at = first + done, n = vxm_min(count - done, 64 - at % 64);
+    uint64_t mask = vxm_low_bits((unsigned)n) << (at % 64), *word = row + at / 64;
+    uint64_t now = __atomic_load_n(word, __ATOMIC_RELAXED);
+    uint64_t change = (now ^ (bits >> done << (at % 64))) & mask;
+    if (change)
+      __atomic_fetch_xor(word, change, __ATOMIC_RELAXED);
+    done += n;
   }
+}
+
+/** The number of the closed chain at up to 64 voxels of a row, plus `number`: whether it is at least 1. */
+static uint64_t at_least_one(const fill_job *job, size_t row, int64_t first, int64_t count, int number) {
+  const vxm_chain_winding *closed = &job->mesh->closed;
+  uint64_t bits = 0;
+  if (!closed->counted[row])
+    return number > 0 ? ~UINT64_C(0) : 0; /* it is 0 or 1, and number is not 0 */
+  for (int64_t i = 0; i < count; i++)
+    bits |= (uint64_t)(vxm_chain_winding_at(closed, row, first + i) + number >= 1) << i;
   return bits;
 }
 
-/** f, m and s are the first voxel of a brick; returns the number of voxels newly set. */
-static int64_t decide_brick(const settle_job *job, int64_t f, int64_t m, int64_t s, uint64_t bits) {
-  const vxm_window *window = job->window;
-  int64_t at[3], added = 0;
-  at[window->layout.fast] = f, at[window->layout.middle] = m, at[window->layout.slow] = s;
-  float value[VXM_BRICK];
-  vxm_winding_brick(job->winding, at[0], at[1], at[2], value);
-  for (; bits; bits &= bits - 1) {
-    int v = __builtin_ctzll(bits);
-    int64_t fast = f + v % 4, middle = m + v / 4 % 4, slow = s + v / 16;
-    float w = value[(size_t)(v % 4) * job->place[0] + (size_t)(v / 4 % 4) * job->place[1] +
-                    (size_t)(v / 16) * job->place[2]];
-    uint64_t *word = vxm_window_row(window, middle, slow) + fast / 64, bit = UINT64_C(1) << (fast % 64);
-    if (w > 0.5F && !(*word & bit)) {
-      *word |= bit;
-      added++;
-    }
-    if (job->confidence) {
-      float sure = fabsf(2.0F * w - 1.0F);
-      job->confidence[(slow * window->middle_dim + middle) * window->fast_dim + fast] =
-          (uint8_t)(sure < 1.0F ? 255.0F * sure : 255.0F);
-    }
+/** Where the voxels of a cell lie in the window: its first ones along the fast, middle and slow axis, and how
+ * many. */
+static void clip(const fill_job *job, const int64_t origin[3], int64_t side, int64_t first[3],
+                 int64_t count[3]) {
+  const int axis[3] = {job->window->layout.fast, job->window->layout.middle, job->window->layout.slow};
+  for (int i = 0; i < 3; i++) {
+    int a = axis[i];
+    first[i] = vxm_max(origin[a], job->begin[a]);
+    count[i] = vxm_min(origin[a] + side, job->end[a]) - first[i];
   }
-  return added;
 }
 
-/** A row of bricks along the fast axis: its words belong to this task alone. */
-static void decide_row(size_t task, int worker, void *payload) {
-  settle_job *job = payload;
-  if (vxm_task_progress_stopped(&job->watch, worker))
+static size_t row_of(const fill_job *job, int64_t middle, int64_t slow) {
+  return (size_t)(slow - job->window->begin) * (size_t)job->window->middle_dim + (size_t)middle;
+}
+
+static void settle_cell(const vxm_winding_walk *walk, const int64_t origin[3], int level, int number) {
+  const fill_job *job = job_of(walk);
+  const vxm_window *out = decided(job);
+  int64_t first[3], count[3];
+  if (number == 0)
+    return; /* as the closed chain says */
+  clip(job, origin, INT64_C(4) << level, first, count);
+  for (int64_t s = first[2]; s < first[2] + count[2]; s++)
+    for (int64_t m = first[1]; m < first[1] + count[1]; m++) {
+      size_t row = row_of(job, m, s);
+      for (int64_t f = 0; f < count[0]; f += 64) {
+        int64_t n = vxm_min(64, count[0] - f);
+        store_bits(out->words + row * out->row_words, first[0] + f, n,
+                   at_least_one(job, row, first[0] + f, n, number));
+      }
+    }
+}
+
+/** How far a winding number is from the next half. */
+static float from_half(float value) {
+  float h = value - 0.5F;
+  return fabsf(h - rintf(h));
+}
+
+/** The whole of a row's winding number: that of the closed chain at a voxel and `value`. */
+static double whole_number(const fill_job *job, size_t row, int64_t fast, double value) {
+  const vxm_chain_winding *closed = &job->mesh->closed;
+  if (closed->counted[row])
+    return (double)vxm_chain_winding_at(closed, row, fast) + value;
+  const uint64_t *word = closed->window.words + row * closed->window.row_words + fast / 64;
+  return (double)(__atomic_load_n(word, __ATOMIC_RELAXED) >> (fast % 64) & 1) + value;
+}
+
+static bool is_doubtful(const float value[VXM_BRICK], uint64_t touching) {
+  if (touching)
+    return true;
+  for (int v = 0; v < VXM_BRICK; v++)
+    if (from_half(value[v]) < doubt)
+      return true;
+  return false;
+}
+
+static void settle_brick(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
+                         const float value[VXM_BRICK], uint64_t touching) {
+  const fill_job *job = job_of(walk);
+  const vxm_window *out = decided(job);
+  (void)scratch;
+  if (!walk->strict && is_doubtful(value, touching)) {
+    *vxm_brick_mask_at(&job->mesh->doubted, origin, 0) = 1; /* the bits stay those of the closed chain */
     return;
-  int64_t s = 4 * (job->first_layer + (int64_t)(task / job->row_count)),
-          m = 4 * (int64_t)(task % job->row_count);
-  int64_t added = 0;
-  for (int64_t f = 0; f < job->window->fast_dim; f += 4) {
-    uint64_t bits = asked_in_brick(job, f, m, s);
-    if (bits)
-      added += decide_brick(job, f, m, s, bits);
   }
-  atomic_fetch_add_explicit(&job->added, added, memory_order_relaxed);
+  int64_t first[3], count[3], at[3];
+  const vxm_layout *layout = &out->layout;
+  clip(job, origin, VXM_BRICK_SIDE, first, count);
+  for (int64_t s = first[2]; s < first[2] + count[2]; s++)
+    for (int64_t m = first[1]; m < first[1] + count[1]; m++) {
+      size_t row = row_of(job, m, s);
+      uint64_t bits = 0;
+      at[layout->slow] = s;
+      at[layout->middle] = m;
+      for (int64_t i = 0; i < count[0]; i++) {
+        at[layout->fast] = first[0] + i;
+        int64_t v = 16 * (at[2] - origin[2]) + 4 * (at[1] - origin[1]) + at[0] - origin[0];
+        double rest = (double)value[v];
+        if (walk->strict && (from_half(value[v]) < strict_doubt || touching >> v & 1))
+          rest = vxm_winding_exact(&job->mesh->tree, at);
+        double w = whole_number(job, row, first[0] + i, rest);
+        bits |= (uint64_t)(w > 0.5 + tie) << i;
+        if (job->confidence) {
+          double sure = fabs(2 * w - 1);
+          job->confidence[(s * out->middle_dim + m) * out->fast_dim + first[0] + i] =
+              (uint8_t)(sure < 1 ? 255 * sure : 255);
+        }
+      }
+      store_bits(out->words + row * out->row_words, first[0], count[0], bits);
+    }
+}
+
+/* ---- The walk ---- */
+
+static void hand_on(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
+                    const float samples[VXM_BRICK], size_t list, size_t count) {
+  fill_job *job = (fill_job *)job_of(walk); /* the walk is its own, and but one thread walks so far */
+  if (scratch->status == VXM_OK)
+    scratch->status = vxm_grow(scratch->context, (void **)&job->tasks, &job->task_capacity,
+                               job->task_count + 1, sizeof *job->tasks, &scratch->error);
+  if (scratch->status != VXM_OK)
+    return;
+  cell_task *task = &job->tasks[job->task_count++];
+  *task = (cell_task){.list = job->lists.count, .count = count};
+  memcpy(task->origin, origin, sizeof task->origin);
+  memcpy(task->samples, samples, sizeof task->samples);
+  for (size_t i = 0; i < count; i++)
+    vxm_winding_scratch_add(&job->lists, scratch->nodes[list + i]);
+  if (job->lists.status != VXM_OK) {
+    scratch->status = job->lists.status;
+    scratch->error = job->lists.error;
+  }
+}
+
+static void walk_task(size_t index, int worker, void *payload) {
+  fill_job *job = payload;
+  vxm_winding_scratch *scratch = &job->scratch[worker];
+  const cell_task *task = &job->tasks[index];
+  if (scratch->status != VXM_OK || vxm_task_progress_stopped(&job->watch, worker))
+    return;
+  scratch->count = 0;
+  for (size_t i = 0; i < task->count; i++)
+    vxm_winding_scratch_add(scratch, job->lists.nodes[task->list + i]);
+  if (scratch->status == VXM_OK)
+    job->kernels->descend(&job->walk, scratch, task->origin, job->walk.task_level, task->samples, 0,
+                          task->count);
   vxm_task_progress_step(&job->watch);
 }
 
-vxm_status vxm_winding_fill(const vxm_window *window, const uint64_t *asked, const vxm_winding *winding,
-                            vxm_context *context, uint8_t *confidence, int64_t *added, vxm_error *error) {
-  static const size_t step[3] = {1, 4, 16};
-  settle_job job = {.window = window, .asked = asked, .winding = winding, .confidence = confidence};
-  job.place[0] = step[window->layout.fast];
-  job.place[1] = step[window->layout.middle];
-  job.place[2] = step[window->layout.slow];
-  job.first_layer = window->begin / 4;
-  job.row_count = (size_t)(window->middle_dim + 3) / 4;
-  size_t layers = (size_t)((window->end + 3) / 4 - job.first_layer);
-  atomic_init(&job.added, 0);
-  vxm_task_progress_start(&job.watch, context, "computing winding numbers", layers * job.row_count, error);
-  vxm_parallel(context, layers * job.row_count, decide_row, &job);
-  *added += atomic_load(&job.added);
-  return vxm_task_progress_end(&job.watch);
+/** Walks down to the cells that are tasks, then through these in all threads. */
+static vxm_status walk(fill_job *job, int top, vxm_error *error) {
+  static const int64_t origin[3] = {0, 0, 0};
+  static const float nothing[VXM_BRICK] = {0};
+  enum { LEVELS_BEFORE = 3 }; /* up to 512 tasks */
+  vxm_context *context = job->mesh->context;
+  size_t workers = (size_t)vxm_context_threads(context);
+  vxm_winding_scratch *first = &job->scratch[0];
+  job->task_count = 0;
+  job->lists.count = 0;
+  job->walk.task_level = top > LEVELS_BEFORE ? top - LEVELS_BEFORE : 0;
+  job->walk.hand_on = hand_on;
+  first->count = 0;
+  for (size_t r = 0; r < job->mesh->tree.root_count; r++)
+    vxm_winding_scratch_add(first, job->mesh->tree.roots[r]);
+  if (first->status == VXM_OK && wants(&job->walk, origin, top))
+    job->kernels->descend(&job->walk, first, origin, top, nothing, 0, job->mesh->tree.root_count);
+  job->walk.hand_on = NULL;
+  if (first->status != VXM_OK) {
+    vxm_error_pass(error, &first->error);
+    return first->status;
+  }
+  vxm_task_progress_start(&job->watch, context, "computing winding numbers", job->task_count, error);
+  vxm_parallel(context, job->task_count, walk_task, job);
+  for (size_t w = 0; w < workers; w++)
+    if (job->scratch[w].status != VXM_OK) {
+      vxm_error_pass(error, &job->scratch[w].error);
+      return job->scratch[w].status;
+    }
+  return vxm_task_progress_end(&job->watch);
+}
+
+/* ---- What is asked, and what comes of it ---- */
+
+static void mark_asked_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  const fill_job *job = payload;
+  const vxm_window *window = job->window;
+  int64_t at[3], base = window->begin / 4 * 4 + 4 * (int64_t)slice;
+  for (int64_t s = vxm_max(base, window->begin); s < vxm_min(base + 4, window->end); s++)
+    for (int64_t m = 0; m < window->middle_dim; m++) {
+      const uint64_t *row =
+          job->asked + (size_t)(s - window->begin) * window->slice_words + (size_t)m * window->row_words;
+      at[window->layout.slow] = s;
+      at[window->layout.middle] = m;
+      for (size_t w = 0; w < window->row_words; w++)
+        for (uint64_t left = row[w]; left;) {
+          int first = __builtin_ctzll(left) & ~3;
+          at[window->layout.fast] = 64 * (int64_t)w + first;
+          *vxm_brick_mask_at(&job->mesh->asked, at, 0) = 1;
+          left &= ~(UINT64_C(15) << first);
+        }
+    }
+}
+
+typedef struct merge_state {
+  const fill_job *job;
+  atomic_int_fast64_t added;
+} merge_state;
+
+static void merge_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  merge_state *state = payload;
+  const fill_job *job = state->job;
+  const vxm_window *window = job->window, *from = decided(job);
+  uint64_t *to = window->words + slice * window->slice_words;
+  const uint64_t *bits = from->words + slice * from->slice_words,
+                 *asked = job->asked ? job->asked + slice * window->slice_words : NULL;
+  int64_t added = 0;
+  for (size_t w = 0; w < from->slice_words; w++) {
+    uint64_t fresh = bits[w] & ~to[w] & (asked ? asked[w] : ~UINT64_C(0));
+    added += __builtin_popcountll(fresh);
+    to[w] |= fresh;
+  }
+  atomic_fetch_add_explicit(&state->added, added, memory_order_relaxed);
+}
+
+/** The voxels about which the trees are asked, if there are any. */
+static vxm_status decide_by_tree(fill_job *job, vxm_error *error) {
+  vxm_winding_mesh *mesh = job->mesh;
+  vxm_context *context = mesh->context;
+  size_t depth = (size_t)(job->window->end - job->window->begin);
+  vxm_status status = vxm_brick_mask_begin(&mesh->doubted, job->begin, job->end, error);
+  if (status == VXM_OK && job->asked) {
+    status = vxm_brick_mask_begin(&mesh->asked, job->begin, job->end, error);
+    if (status == VXM_OK)
+      status = vxm_parallel_asked(context, (depth + 6) / 4, mark_asked_slice, job, error);
+    job->is_asked = true;
+    if (status != VXM_OK || !vxm_brick_mask_raise(&mesh->asked))
+      return status;
+  }
+  int top = mesh->doubted.levels - 1;
+  if (status == VXM_OK)
+    status = walk(job, top, error);
+  if (status != VXM_OK || !vxm_brick_mask_raise(&mesh->doubted))
+    return status;
+  job->walk.strict = true;
+  return walk(job, top, error);
+}
+
+vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, const uint64_t *asked,
+                            uint8_t *confidence, vxm_workspace *workspace, int64_t *added, vxm_error *error) {
+  if (window->begin >= window->end)
+    return VXM_OK;
+  vxm_status status = vxm_chain_winding_fill(&mesh->closed, workspace, mesh->placed, window, error);
+  if (status != VXM_OK)
+    return status;
+  fill_job job = {.walk = {.tree = &mesh->tree,
+                           .levels = vxm_winding_levels(),
+                           .whole = confidence != NULL,
+                           .wants = wants,
+                           .settle_cell = settle_cell,
+                           .settle_brick = settle_brick},
+                  .mesh = mesh,
+                  .window = window,
+                  .asked = asked,
+                  .confidence = confidence,
+                  .kernels = vxm_winding_kernels_get()};
+  job.end[window->layout.fast] = window->fast_dim;
+  job.end[window->layout.middle] = window->middle_dim;
+  job.begin[window->layout.slow] = window->begin;
+  job.end[window->layout.slow] = window->end;
+  vxm_context *context = mesh->context;
+  size_t workers = (size_t)vxm_context_threads(context);
+  job.lists = (vxm_winding_scratch){.context = context, .error = VXM_ERROR_INIT};
+  vxm_error local = VXM_ERROR_INIT;
+  job.scratch = vxm_calloc(context, workers, sizeof *job.scratch, &local);
+  if (!job.scratch) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  for (size_t w = 0; w < workers; w++)
+    job.scratch[w] = (vxm_winding_scratch){.context = context, .error = VXM_ERROR_INIT};
+  if (mesh->tree.count > 0 || confidence)
+    status = decide_by_tree(&job, error);
+  for (size_t w = 0; w < workers; w++)
+    vxm_free(context, job.scratch[w].nodes);
+  vxm_free(context, job.scratch);
+  vxm_free(context, job.lists.nodes);
+  vxm_free(context, job.tasks);
+  if (status != VXM_OK)
+    return status;
+  merge_state state = {.job = &job};
+  atomic_init(&state.added, 0);
+  vxm_parallel(context, (size_t)(window->end - window->begin), merge_slice, &state);
+  *added += atomic_load(&state.added);
+  return VXM_OK;
 }

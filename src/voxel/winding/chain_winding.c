@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/winding/chain_winding.h"
+#include "base/threads.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Which side of a triangle a row comes to ---- */
+
+/** The sign of the normal along an axis: by products of two differences, in 128 bits where points are wide.
+ */
+static int facing(const vxm_snapped_points *placed, const uint32_t corners[3], int axis) {
+  vxm_point p[3];
+  for (int k = 0; k < 3; k++)
+    p[k] = vxm_snapped_points_at(placed, corners[k]);
+  int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  int64_t bu = p[1].at[u] - p[0].at[u], bv = p[1].at[v] - p[0].at[v];
+  int64_t cu = p[2].at[u] - p[0].at[u], cv = p[2].at[v] - p[0].at[v];
+  if (placed->wide) {
+    vxm_int128 left = (vxm_int128)bu * cv, right = (vxm_int128)bv * cu;
+    return (left > right) - (left < right);
+  }
+  int64_t left = bu * cv, right = bv * cu;
+  return (left > right) - (left < right);
+}
+
+vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_chain *chain,
+                                   const vxm_snapped_points *placed, int axis, bool mirrored,
+                                   vxm_error *error) {
+  vxm_context *context = out->context;
+  size_t capacity = out->corner_capacity;
+  vxm_status status =
+      vxm_renew(context, (void **)&out->corners, &capacity, chain->closed_count, sizeof *out->corners, error);
+  if (status == VXM_OK && (capacity > out->corner_capacity || !out->part)) {
+    vxm_error local = VXM_ERROR_INIT;
+    vxm_free(context, out->part);
+    out->part = vxm_calloc(context, capacity, sizeof *out->part, &local); /* all one part: 0 */
+    status = local.code;
+    if (status != VXM_OK)
+      vxm_error_pass(error, &local);
+  }
+  out->corner_capacity = out->part ? capacity : 0;
+  if (status != VXM_OK)
+    return status;
+  size_t entered = 0, left = chain->closed_count;
+  for (size_t t = 0; t < chain->closed_count; t++) {
+    int side = facing(placed, chain->closed[t], axis);
+    if (side == 0)
+      continue;
+    size_t to = (side < 0) != mirrored ? entered++ : --left;
+    memcpy(out->corners[to], chain->closed[t], sizeof *out->corners);
+  }
+  memmove(out->corners + entered, out->corners + left, (chain->closed_count - left) * sizeof *out->corners);
+  out->entered = entered;
+  out->corner_count = entered + chain->closed_count - left;
+  return VXM_OK;
+}
+
+/* ---- Crossings of a slab ---- */
+
+typedef struct fold_state {
+  vxm_chain_winding *out;
+  const vxm_kernels *kernels;
+  vxm_slabs slabs;
+  pthread_mutex_t mutex; /**< of `more` and `status` */
+  vxm_status status;
+  vxm_error error;
+  vxm_task_progress watch;
+} fold_state;
+
+static void add_more(fold_state *state, size_t word, unsigned bit, int sign) {
+  vxm_chain_winding *out = state->out;
+  pthread_mutex_lock(&state->mutex);
+  if (state->status == VXM_OK)
+    state->status = vxm_grow(out->context, (void **)&out->more, &out->more_capacity, out->more_count + 1,
+                             sizeof *out->more, &state->error);
+  if (state->status == VXM_OK) {
+    size_t row = word / out->window.row_words;
+    out->more[out->more_count++] =
+        (vxm_more_crossings){row, (int64_t)(64 * (word - row * out->window.row_words) + bit), sign};
+    out->counted[row] = 1;
+  }
+  pthread_mutex_unlock(&state->mutex);
+}
+
+/** Sets the bits of the crossings of one kind. @param first the slab's first word */
+static void take_crossings(fold_state *state, size_t slab, int kind, uint64_t *bits, size_t first) {
+  vxm_crossing_bins *bins = &state->out->bins[kind];
+  for (size_t w = 0; w < bins->workers; w++) {
+    vxm_crossing_bin_reader reader = vxm_crossing_bin_read(vxm_crossing_bins_at(bins, w, 0, slab), true);
+    vxm_crossing_bin_piece piece;
+    while (reader.part == 0 && vxm_crossing_bin_next(&reader, &piece))
+      for (size_t i = 0; i < piece.count; i++) {
+        size_t word = first + piece.data[i] / 64;
+        uint64_t bit = UINT64_C(1) << (piece.data[i] % 64);
+        if (bits[word] & bit)
+          add_more(state, word, (unsigned)(piece.data[i] % 64), kind ? -1 : 1);
+        bits[word] |= bit;
+      }
+  }
+}
+
+int64_t vxm_chain_winding_at(const vxm_chain_winding *counted, size_t row, int64_t voxel) {
+  const uint64_t *enter = counted->enter + row * counted->window.row_words,
+                 *leave = counted->leave + row * counted->window.row_words;
+  int64_t number = 0, w = 0;
+  for (; w < voxel / 64; w++)
+    number += __builtin_popcountll(enter[w]) - __builtin_popcountll(leave[w]);
+  uint64_t mask = vxm_low_bits((unsigned)(voxel % 64) + 1);
+  number += __builtin_popcountll(enter[w] & mask) - __builtin_popcountll(leave[w] & mask);
+  size_t low = 0, high = counted->more_count;
+  while (low < high) {
+    size_t middle = (low + high) / 2;
+    if (counted->more[middle].row < row)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  for (; low < counted->more_count && counted->more[low].row == row && counted->more[low].voxel <= voxel;
+       low++)
+    number += counted->more[low].sign;
+  return number;
+}
+
+/** Whether parity tells the number in all of a row: entered where it becomes odd, left where it becomes even.
+ */
+static bool parity_tells(const uint64_t *bits, const uint64_t *enter, const uint64_t *leave, size_t words) {
+  uint64_t wrong = 0;
+  for (size_t w = 0; w < words; w++)
+    wrong |= (enter[w] & ~leave[w] & ~bits[w]) | (leave[w] & ~enter[w] & bits[w]);
+  return wrong == 0;
+}
+
+static void fold_slab(size_t task, int worker, void *payload) {
+  fold_state *state = payload;
+  vxm_chain_winding *out = state->out;
+  const vxm_window *window = &out->window;
+  if (vxm_task_progress_stopped(&state->watch, worker))
+    return;
+  int64_t begin = (int64_t)task << state->slabs.shift,
+          end = vxm_min(begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
+  size_t first = (size_t)begin * window->slice_words, count = (size_t)(end - begin) * window->slice_words;
+  size_t row = first / window->row_words, rows = (size_t)(end - begin) * (size_t)window->middle_dim;
+  memset(out->enter + first, 0, count * sizeof *out->enter);
+  memset(out->leave + first, 0, count * sizeof *out->leave);
+  memset(out->counted + row, 0, rows);
+  take_crossings(state, task, 0, out->enter, first);
+  take_crossings(state, task, 1, out->leave, first);
+  for (size_t w = first; w < first + count; w++)
+    window->words[w] = out->enter[w] ^ out->leave[w];
+  state->kernels->fold_rows(window->words + first, window->row_words, rows, vxm_window_tail_mask(window));
+  for (size_t r = row; r < row + rows; r++) {
+    size_t at = r * window->row_words;
+    if (!parity_tells(window->words + at, out->enter + at, out->leave + at, window->row_words))
+      out->counted[r] = 1;
+  }
+  vxm_task_progress_step(&state->watch);
+}
+
+/** The bits of a row by counting. */
+static void count_row(size_t task, int worker, void *payload) {
+  (void)worker;
+  vxm_chain_winding *out = payload;
+  const vxm_window *window = &out->window;
+  size_t rows = (size_t)window->middle_dim;
+  for (size_t row = task * rows; row < (task + 1) * rows; row++) {
+    if (!out->counted[row])
+      continue;
+    uint64_t *bits = window->words + row * window->row_words;
+    const uint64_t *enter = out->enter + row * window->row_words,
+                   *leave = out->leave + row * window->row_words;
+    int64_t number = 0;
+    memset(bits, 0, window->row_words * sizeof *bits);
+    for (int64_t i = 0; i < window->fast_dim; i++) {
+      if ((enter[i / 64] | leave[i / 64]) >> (i % 64) & 1)
+        number = vxm_chain_winding_at(out, row, i);
+      bits[i / 64] |= (uint64_t)(number >= 1) << (i % 64);
+    }
+  }
+}
+
+static int compare_more(const void *a, const void *b) {
+  const vxm_more_crossings *p = a, *q = b;
+  if (p->row != q->row)
+    return p->row < q->row ? -1 : 1;
+  if (p->voxel != q->voxel)
+    return p->voxel < q->voxel ? -1 : 1;
+  return (p->sign > q->sign) - (p->sign < q->sign);
+}
+
+/* ---- All of it ---- */
+
+/** Room for a window: three times its words. */
+static vxm_status reserve(vxm_chain_winding *out, vxm_error *error) {
+  vxm_window *window = &out->window;
+  size_t depth = (size_t)(window->end - window->begin), words = depth * window->slice_words;
+  size_t rows = depth * (size_t)window->middle_dim, row_capacity = out->row_capacity;
+  vxm_status status = VXM_OK;
+  uint64_t **to[3] = {&window->words, &out->enter, &out->leave};
+  for (int i = 0; i < 3 && status == VXM_OK; i++) {
+    size_t capacity = out->word_capacity;
+    status = vxm_renew(out->context, (void **)to[i], &capacity, words, sizeof **to[i], error);
+    if (i == 2 || status != VXM_OK) /* after a failure all three are made anew */
+      out->word_capacity = status == VXM_OK ? capacity : 0;
+  }
+  if (status == VXM_OK)
+    status = vxm_renew(out->context, (void **)&out->counted, &row_capacity, rows, 1, error);
+  out->row_capacity = row_capacity;
+  return status;
+}
+
+/** Puts the crossings of the triangles begin..end-1 into bins. */
+static vxm_status raster(fold_state *state, vxm_workspace *workspace, const vxm_snapped_points *placed,
+                         int kind, vxm_error *error) {
+  vxm_chain_winding *out = state->out;
+  vxm_triangle_set triangles = {
+      .corners = out->corners, .part = out->part, .triangle_count = out->corner_count};
+  vxm_columns columns = vxm_columns_of(&out->window, out->window.layout.fast);
+  columns.slab_shift = state->slabs.shift;
+  columns.roles = VXM_ROLES_ALL;
+  columns.triangle_begin = kind ? out->entered : 0;
+  columns.triangle_end = kind ? out->corner_count : out->entered;
+  /* A bin that becomes a bitmap forgets how often: never. */
+  const size_t never = SIZE_MAX / 2;
+  vxm_status status = vxm_crossing_bins_reset(&out->bins[kind], (size_t)vxm_context_threads(out->context), 1,
+                                              state->slabs.count, never, error);
+  if (status == VXM_OK)
+    status = vxm_raster_schedule_plan(&workspace->crossings, &triangles, placed, &columns, 1, error);
+  if (status == VXM_OK && columns.triangle_begin < columns.triangle_end)
+    vxm_raster_schedule_run(&workspace->crossings, 0, &out->bins[kind], &state->watch);
+  return status == VXM_OK ? vxm_crossing_bins_check(&out->bins[kind], error) : status;
+}
+
+vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspace,
+                                  const vxm_snapped_points *placed, const vxm_window *window,
+                                  vxm_error *error) {
+  uint64_t *words = out->window.words;
+  out->window = *window;
+  out->window.words = words;
+  out->window.slice_words = window->row_words * (size_t)window->middle_dim;
+  out->bins[0].context = out->bins[1].context = out->context;
+  out->more_count = 0;
+  vxm_status status = reserve(out, error);
+  if (status != VXM_OK)
+    return status;
+  size_t depth = (size_t)(window->end - window->begin);
+  fold_state state = {.out = out, .kernels = vxm_kernels_get(), .error = VXM_ERROR_INIT};
+  state.slabs = vxm_slabs_of((int64_t)depth, out->window.slice_words, vxm_context_threads(out->context));
+  vxm_task_progress_start(&state.watch, out->context, "counting crossings", state.slabs.count, error);
+  for (int kind = 0; kind < 2 && status == VXM_OK; kind++)
+    status = raster(&state, workspace, placed, kind, error);
+  if (status != VXM_OK)
+    return status;
+  pthread_mutex_init(&state.mutex, NULL);
+  vxm_parallel(out->context, state.slabs.count, fold_slab, &state);
+  pthread_mutex_destroy(&state.mutex);
+  if (state.status != VXM_OK) {
+    vxm_error_pass(error, &state.error);
+    return state.status;
+  }
+  status = vxm_task_progress_end(&state.watch);
+  if (status != VXM_OK)
+    return status;
+  if (out->more_count > 0)
+    qsort(out->more, out->more_count, sizeof *out->more, compare_more);
+  return vxm_parallel_asked(out->context, depth, count_row, out, error);
+}
+
+void vxm_chain_winding_destroy(vxm_chain_winding *counted) {
+  vxm_context *context = counted->context;
+  for (int kind = 0; kind < 2; kind++)
+    vxm_crossing_bins_destroy(&counted->bins[kind]);
+  vxm_free(context, counted->part);
+  vxm_free(context, counted->corners);
+  vxm_free(context, counted->more);
+  vxm_free(context, counted->counted);
+  vxm_free(context, counted->leave);
+  vxm_free(context, counted->enter);
+  vxm_free(context, counted->window.words);
+  *counted = (vxm_chain_winding){.context = context};
+}

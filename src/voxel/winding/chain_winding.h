@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * The winding number of a closed chain of triangles at all voxels of a window: a whole number, counted
+ * exactly.
+ *
+ * In each row a triangle that faces against it adds one to the voxels behind it, one that faces along it
+ * takes one away. The crossings are those of parity (voxel/parity/columns.h), with the same perturbation. In
+ * nearly all rows the number is 0 or 1 and follows from the parity of crossings; the few other rows are
+ * marked, and there crossings are counted.
+ */
+#ifndef VXM_VOXEL_WINDING_CHAIN_WINDING_H
+#define VXM_VOXEL_WINDING_CHAIN_WINDING_H
+
+#include "voxel/parity/slabs.h"
+#include "voxel/winding/chain.h"
+
+/** A crossing beyond the first of its kind in its voxel. */
+typedef struct vxm_more_crossings {
+  uint64_t row; /**< of the window */
+  int64_t voxel;
+  int sign;
+} vxm_more_crossings;
+
+/** Start from {.context = ...}; keeps its memory from one window to the next. */
+typedef struct vxm_chain_winding {
+  vxm_context *context;
+  vxm_window window; /**< its words are bits: whether the number is at least 1 */
+  uint64_t *enter;   /**< as these words: a triangle is entered in this voxel */
+  uint64_t *leave;
+  uint8_t *counted; /**< of each row: it has numbers other than 0 and 1 */
+  size_t word_capacity, row_capacity;
+  vxm_more_crossings *more; /**< sorted by row and voxel */
+  size_t more_count, more_capacity;
+  uint32_t (*corners)[3]; /**< of the chain: those that are entered first, then those that are left */
+  uint32_t *part;
+  size_t corner_capacity, entered, corner_count;
+  vxm_crossing_bins bins[2]; /**< enter, leave */
+} vxm_chain_winding;
+
+/**
+ * Sorts the triangles of a chain by the side that they show to the rows of a window. To be called whenever
+ * points have been placed anew, or rows run along another axis.
+ *
+ * @param mirrored the points have been placed by a transform that turns triangles inside out
+ */
+vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_chain *chain,
+                                   const vxm_snapped_points *placed, int axis, bool mirrored,
+                                   vxm_error *error);
+
+/**
+ * Counts in a window, whose own words are not touched. Its rows run along the axis of the call before.
+ *
+ * @param workspace lent
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. The same for any number of
+ * threads
+ */
+vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspace,
+                                  const vxm_snapped_points *placed, const vxm_window *window,
+                                  vxm_error *error);
+void vxm_chain_winding_destroy(vxm_chain_winding *counted);
+
+/** The number at a voxel of a row that is marked in `counted`; `row` is a row of the window. */
+int64_t vxm_chain_winding_at(const vxm_chain_winding *counted, size_t row, int64_t voxel);
+
+#endif

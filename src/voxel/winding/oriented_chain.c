@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/winding/oriented_chain.h"
+
+vxm_status vxm_oriented_chain_create(vxm_winding_chain *out, const vxm_triangle_set *triangles,
+                                     const vxm_flip_mask *turns, vxm_error *error) {
+  vxm_context *context = triangles->context;
+  vxm_error local = VXM_ERROR_INIT;
+  *out = (vxm_winding_chain){.context = context};
+  uint32_t(*corners)[3] = vxm_alloc(context, turns->count, sizeof *corners, &local);
+  if (!corners) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  size_t t = 0;
+  for (size_t p = turns->part_begin; p < turns->part_end; p++)
+    for (size_t f = triangles->parts[p].begin; f < triangles->parts[p].caps; f++, t++)
+      for (int k = 0; k < 3; k++)
+        corners[t][k] = triangles->corners[f][turns->turned[t] ? (3 - k) % 3 : k];
+  vxm_status status =
+      vxm_winding_chain_create(out, context, (const uint32_t(*)[3])corners, t, triangles->first_apex, error);
+  vxm_free(context, corners);
+  return status;
+}

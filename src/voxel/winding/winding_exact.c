@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/winding/winding_exact.h"
+
+#include <math.h>
+
+enum { STACK = 80 };
+
+static const double half_turn = 3.1415926535897931;
+
+/** The expansion in voxel/winding/winding_tree.h. */
+static double add_node(const vxm_winding_moments *m, const double d[3], double square) {
+  const float *f = m->first, *s = m->second;
+  double x = d[0], y = d[1], z = d[2], inverse = 1 / (square * sqrt(square));
+  double along = m->area[0] * x + m->area[1] * y + m->area[2] * z;
+  double bent = f[0] * x * x + f[1] * y * y + f[2] * z * z + f[3] * x * y + f[4] * x * z + f[5] * y * z;
+  double cubic = x * x * (s[0] * x + s[1] * y + s[4] * z) + y * y * (s[2] * x + s[3] * y + s[6] * z) +
+                 z * z * (s[7] * x + s[8] * y + s[9] * z) + s[5] * x * y * z;
+  return inverse * (along + (bent + cubic / square) / square);
+}
+
+static int sign_of(vxm_int128 value) {
+  return (value > 0) - (value < 0);
+}
+
+/** Whether the centre lies in a triangle that has it in its plane, seen along the axis of which its normal is
+ * longest. Of triangles that share an edge on which the centre lies one has it. */
+static bool lies_in(const vxm_point p[3], const int64_t q[3], int axis, int side) {
+  int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  if (u > v) { /* moved by more along the lower axis */
+    int swap = u;
+    u = v;
+    v = swap;
+    side = -side;
+  }
+  for (int k = 0; k < 3; k++) {
+    const int64_t *a = p[k].at, *b = p[(k + 1) % 3].at;
+    int64_t du = b[u] - a[u], dv = b[v] - a[v];
+    int at = sign_of((vxm_int128)du * (q[v] - a[v]) - (vxm_int128)dv * (q[u] - a[u]));
+    if (at == 0)
+      at = dv != 0 ? (dv < 0 ? 1 : -1) : (du > 0 ? 1 : -1);
+    if (at != side)
+      return false;
+  }
+  return true;
+}
+
+/** The exact sign of the volume of a triangle and a centre; where they lie in one plane, that after the
+ * centre is moved, and whether it lies in the triangle. */
+static int side_of(const vxm_point p[3], const int64_t q[3], bool *inside) {
+  vxm_int128 n[3], volume = 0;
+  int axis = 0;
+  for (int a = 0; a < 3; a++) {
+    int u = (a + 1) % 3, v = (a + 2) % 3;
+    n[a] = (vxm_int128)(p[1].at[u] - p[0].at[u]) * (p[2].at[v] - p[0].at[v]) -
+           (vxm_int128)(p[1].at[v] - p[0].at[v]) * (p[2].at[u] - p[0].at[u]);
+    volume += n[a] * (p[0].at[a] - q[a]);
+    vxm_int128 size = n[a] < 0 ? -n[a] : n[a], most = n[axis] < 0 ? -n[axis] : n[axis];
+    axis = size > most ? a : axis;
+  }
+  *inside = false;
+  if (volume != 0)
+    return sign_of(volume);
+  *inside = lies_in(p, q, axis, sign_of(n[axis]));
+  return n[0] ? -sign_of(n[0]) : n[1] ? -sign_of(n[1]) : -sign_of(n[2]);
+}
+
+/** Half the solid angle of a triangle. */
+static double half_angle(const vxm_winding_tree *tree, uint32_t triangle, const int64_t q[3]) {
+  vxm_point p[3];
+  double d[3][3], length[3], dot[3], volume = 0, step = 1.0 / (double)tree->placed->lattice.unit;
+  vxm_winding_triangle_at(tree, triangle, p);
+  for (int k = 0; k < 3; k++) {
+    for (int a = 0; a < 3; a++)
+      d[k][a] = (double)(p[k].at[a] - q[a]) * step;
+    length[k] = sqrt(d[k][0] * d[k][0] + d[k][1] * d[k][1] + d[k][2] * d[k][2]);
+  }
+  for (int k = 0; k < 3; k++) {
+    const double *a = d[k], *b = d[(k + 1) % 3];
+    dot[k] = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  for (int a = 0; a < 3; a++) {
+    int u = (a + 1) % 3, v = (a + 2) % 3;
+    volume += d[0][a] * (d[1][u] * d[2][v] - d[1][v] * d[2][u]);
+  }
+  double sides =
+      length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
+  if (fabs(volume) <= 1e-9 * (1 + length[0] * length[1] * length[2])) {
+    bool inside;
+    int side = side_of(p, q, &inside);
+    if (side == 0)
+      return 0; /* a triangle without area */
+    if (inside)
+      return side * half_turn;
+    if (!(volume * side > 0)) /* in its plane, or as good as */
+      return sides < 0 && volume != 0 ? side * half_turn : 0;
+  }
+  return atan2(volume, sides);
+}
+
+double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3]) {
+  const double far = 16;
+  int64_t q[3];
+  double at[3], far_sum = 0, near_sum = 0;
+  for (int a = 0; a < 3; a++) {
+    q[a] = vxm_lattice_centre(&tree->placed->lattice, voxel[a]);
+    at[a] = (double)voxel[a] + 0.5;
+  }
+  for (size_t r = 0; r < tree->root_count; r++) {
+    uint32_t stack[STACK];
+    size_t top = 0;
+    stack[top++] = tree->roots[r];
+    while (top > 0) {
+      uint32_t i = stack[--top];
+      const vxm_winding_node *n = &tree->nodes[i];
+      double d[3], square = 0, reach = far * (double)n->radius;
+      for (int a = 0; a < 3; a++) {
+        d[a] = n->centre[a] - at[a];
+        square += d[a] * d[a];
+      }
+      if (square > reach * reach)
+        far_sum += add_node(&tree->moments[i], d, square);
+      else if (n->is_leaf)
+        near_sum += half_angle(tree, n->next, q);
+      else {
+        stack[top++] = n->next + 1;
+        stack[top++] = n->next;
+      }
+    }
+  }
+  return near_sum / (2 * half_turn) + far_sum;
+}

@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/winding/winding_tree.h"
+#include "mesh/sort.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MORTON_BITS = 10 /**< per axis; with the triangle's number below, a sort key fits 64 bits */ };
+
+static const double by_sphere = 0.079577471545947673; /* 1 / 4 pi */
+
+/** Sums about `centre`: of vector areas, and of their products with one and with two offsets. */
+typedef struct sums {
+  double centre[3], area[3], first[3][3], second[3][3][3];
+  double size, radius, low[3], high[3];
+} sums;
+
+typedef struct builder {
+  vxm_winding_tree *out;
+  uint64_t *keys; /**< Morton number << 32 | triangle, of one class after the other */
+  double step;    /**< voxels of a lattice step */
+} builder;
+
+/* ---- Moments ---- */
+
+static double length_of(const double v[3]) {
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/** Moves sums to another centre and adds them to `to`. */
+static void add_moved(sums *to, const sums *from) {
+  double s[3];
+  for (int a = 0; a < 3; a++)
+    s[a] = from->centre[a] - to->centre[a];
+  for (int i = 0; i < 3; i++) {
+    to->area[i] += from->area[i];
+    for (int j = 0; j < 3; j++) {
+      to->first[i][j] += from->first[i][j] + from->area[i] * s[j];
+      for (int k = 0; k < 3; k++)
+        to->second[i][j][k] += from->second[i][j][k] + from->first[i][j] * s[k] + from->first[i][k] * s[j] +
+                               from->area[i] * s[j] * s[k];
+    }
+  }
+}
+
+static sums sums_of_triangle(const builder *b, uint32_t triangle) {
+  sums out = {.radius = 0};
+  vxm_point at[3];
+  double p[3][3];
+  vxm_winding_triangle_at(b->out, triangle, at);
+  for (int a = 0; a < 3; a++) {
+    for (int k = 0; k < 3; k++)
+      p[k][a] = (double)at[k].at[a] * b->step;
+    out.centre[a] = (p[0][a] + p[1][a] + p[2][a]) / 3;
+    out.low[a] = fmin(fmin(p[0][a], p[1][a]), p[2][a]);
+    out.high[a] = fmax(fmax(p[0][a], p[1][a]), p[2][a]);
+  }
+  for (int a = 0; a < 3; a++) {
+    int u = (a + 1) % 3, v = (a + 2) % 3;
+    out.area[a] = ((p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) - (p[1][v] - p[0][v]) * (p[2][u] - p[0][u])) / 2;
+  }
+  out.size = length_of(out.area);
+  for (int c = 0; c < 3; c++) {
+    double from[3] = {p[c][0] - out.centre[0], p[c][1] - out.centre[1], p[c][2] - out.centre[2]};
+    out.radius = fmax(out.radius, length_of(from));
+    for (int j = 0; j < 3; j++) /* the mean of x_j x_k over a triangle is a twelfth of its corners' sum */
+      for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++)
+          out.second[i][j][k] += out.area[i] * from[j] * from[k] / 12;
+  }
+  return out;
+}
+
+static sums join(const sums *left, const sums *right) {
+  sums out = {.size = left->size + right->size};
+  double weight = out.size > 0 ? left->size / out.size : 0.5, corner[3], to_left[3], to_right[3];
+  for (int a = 0; a < 3; a++) {
+    out.centre[a] = left->centre[a] * weight + right->centre[a] * (1 - weight);
+    out.low[a] = fmin(left->low[a], right->low[a]);
+    out.high[a] = fmax(left->high[a], right->high[a]);
+    corner[a] = fmax(out.high[a] - out.centre[a], out.centre[a] - out.low[a]);
+    to_left[a] = left->centre[a] - out.centre[a];
+    to_right[a] = right->centre[a] - out.centre[a];
+  }
+  out.radius =
+      fmin(length_of(corner), fmax(length_of(to_left) + left->radius, length_of(to_right) + right->radius));
+  add_moved(&out, left);
+  add_moved(&out, right);
+  return out;
+}
+
+static void store(vxm_winding_tree *out, size_t node, const sums *of) {
+  vxm_winding_node *n = &out->nodes[node];
+  vxm_winding_moments *m = &out->moments[node];
+  for (int a = 0; a < 3; a++) {
+    n->centre[a] = of->centre[a];
+    m->area[a] = (float)(by_sphere * of->area[a]);
+  }
+  n->radius = (float)of->radius;
+  n->area = (float)(by_sphere * of->size);
+  double third = (of->first[0][0] + of->first[1][1] + of->first[2][2]) / 3;
+  static const int pair[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  for (int i = 0; i < 3; i++) {
+    int p = pair[i][0], q = pair[i][1];
+    m->first[i] = (float)(-3 * by_sphere * (of->first[i][i] - third));
+    m->first[3 + i] = (float)(-3 * by_sphere * (of->first[p][q] + of->first[q][p]));
+  }
+  double s[3][3][3], trace[3] = {0, 0, 0};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++) {
+        s[i][j][k] = (of->second[i][j][k] + of->second[j][i][k] + of->second[k][i][j]) / 3;
+        trace[k] += i == j ? s[i][j][k] : 0;
+      }
+  static const struct {
+    int i, j, k, times;
+  } term[10] = {{0, 0, 0, 1}, {0, 0, 1, 3}, {0, 1, 1, 3}, {1, 1, 1, 1}, {0, 0, 2, 3},
+                {0, 1, 2, 6}, {1, 1, 2, 3}, {0, 2, 2, 3}, {1, 2, 2, 3}, {2, 2, 2, 1}};
+  for (int t = 0; t < 10; t++) {
+    int i = term[t].i, j = term[t].j, k = term[t].k;
+    double traces = ((i == j) * trace[k] + (i == k) * trace[j] + (j == k) * trace[i]) / 5;
+    m->second[t] = (float)(7.5 * by_sphere * term[t].times * (s[i][j][k] - traces));
+  }
+}
+
+/* ---- Trees ---- */
+
+/** Where the keys begin..end-1 part: by the highest bit of their Morton numbers that differs, or in halves.
+ */
+static size_t split(const uint64_t *keys, size_t begin, size_t end) {
+  uint64_t differ = (keys[begin] ^ keys[end - 1]) >> 32;
+  if (differ == 0)
+    return begin + (end - begin) / 2;
+  int bit = 63 - __builtin_clzll(differ) + 32;
+  size_t low = begin, high = end - 1; /* the first with that bit */
+  while (low < high) {
+    size_t middle = (low + high) / 2;
+    if (keys[middle] >> bit & 1)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
+
+/** Builds the node of the keys begin..end-1; at most 30 + 32 nodes deep. */
+static sums build(builder *b, size_t begin, size_t end, size_t node) {
+  vxm_winding_tree *out = b->out;
+  sums of;
+  if (end - begin == 1) {
+    uint32_t triangle = (uint32_t)(b->keys[begin] & UINT32_MAX);
+    of = sums_of_triangle(b, triangle);
+    out->nodes[node].next = triangle;
+    out->nodes[node].is_leaf = true;
+  } else {
+    size_t middle = split(b->keys, begin, end), children = out->node_count;
+    out->node_count += 2;
+    out->nodes[node].next = (uint32_t)children;
+    out->nodes[node].is_leaf = false;
+    sums left = build(b, begin, middle, children), right = build(b, middle, end, children + 1);
+    of = join(&left, &right);
+  }
+  store(out, node, &of);
+  return of;
+}
+
+/** Spreads the low ten bits to every third place. */
+static uint64_t spread(uint64_t x) {
+  x = (x | x << 16) & 0x030000ff;
+  x = (x | x << 8) & 0x0300f00f;
+  x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
+
+/** By the longest side of its box: below 2 voxels, 4, 8, ... */
+static int class_of(const vxm_point p[3], int64_t unit) {
+  int64_t longest = 0;
+  for (int a = 0; a < 3; a++) {
+    int64_t low = vxm_min(vxm_min(p[0].at[a], p[1].at[a]), p[2].at[a]);
+    int64_t high = vxm_max(vxm_max(p[0].at[a], p[1].at[a]), p[2].at[a]);
+    longest = vxm_max(longest, high - low);
+  }
+  int class = 0;
+  for (int64_t limit = 2 * unit; longest >= limit && class < VXM_WINDING_CLASSES - 1; limit *= 2)
+    class ++;
+  return class;
+}
+
+/** Three times the middle of a triangle, and its class. */
+static int look_at(const vxm_winding_tree *tree, size_t triangle, int64_t middle[3]) {
+  vxm_point p[3];
+  vxm_winding_triangle_at(tree, (uint32_t)triangle, p);
+  for (int a = 0; a < 3; a++)
+    middle[a] = p[0].at[a] + p[1].at[a] + p[2].at[a];
+  return class_of(p, tree->placed->lattice.unit);
+}
+
+/** Sorts the triangles of each class along a Morton curve. */
+static void sort_triangles(builder *b, uint64_t *scratch, size_t begin[VXM_WINDING_CLASSES + 1]) {
+  const vxm_winding_tree *tree = b->out;
+  int64_t low[3] = {INT64_MAX, INT64_MAX, INT64_MAX}, high[3] = {INT64_MIN, INT64_MIN, INT64_MIN}, side = 1;
+  size_t at[VXM_WINDING_CLASSES + 1] = {0};
+  int64_t middle[3];
+  for (size_t t = 0; t < tree->count; t++) {
+    at[look_at(tree, t, middle) + 1]++;
+    for (int a = 0; a < 3; a++) {
+      low[a] = vxm_min(low[a], middle[a]);
+      high[a] = vxm_max(high[a], middle[a]);
+    }
+  }
+  for (int a = 0; a < 3; a++)
+    side = vxm_max(side, high[a] - low[a]);
+  for (int c = 0; c < VXM_WINDING_CLASSES; c++)
+    at[c + 1] += at[c];
+  memcpy(begin, at, sizeof at);
+  double scale = ((1 << MORTON_BITS) - 1) / (double)side;
+  for (size_t t = 0; t < tree->count; t++) {
+    int class = look_at(tree, t, middle);
+    uint64_t key = 0;
+    for (int a = 0; a < 3; a++)
+      key |= spread((uint64_t)((double)(middle[a] - low[a]) * scale)) << a;
+    b->keys[at[class]++] = key << 32 | t;
+  }
+  for (int c = 0; c < VXM_WINDING_CLASSES; c++)
+    vxm_sort_keys(b->keys + begin[c], scratch, begin[c + 1] - begin[c]);
+}
+
+vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, const uint32_t (*corners)[3],
+                                   size_t count, const vxm_snapped_points *placed, bool mirrored,
+                                   vxm_error *error) {
+  *out = (vxm_winding_tree){
+      .context = context, .corners = corners, .placed = placed, .mirrored = mirrored, .count = count};
+  if (count > UINT32_MAX / 2)
+    return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many for winding numbers; split the mesh",
+                    count);
+  vxm_error local = VXM_ERROR_INIT;
+  size_t begin[VXM_WINDING_CLASSES + 1];
+  uint64_t *keys = vxm_alloc(context, count, 2 * sizeof *keys, &local);
+  out->nodes = keys ? vxm_alloc(context, 2 * count, sizeof *out->nodes, &local) : NULL;
+  out->moments = out->nodes ? vxm_alloc(context, 2 * count, sizeof *out->moments, &local) : NULL;
+  if (out->moments) {
+    builder b = {out, keys, 1.0 / (double)placed->lattice.unit};
+    sort_triangles(&b, keys + count, begin);
+    for (int c = 0; c < VXM_WINDING_CLASSES; c++)
+      if (begin[c] < begin[c + 1]) {
+        uint32_t root = out->roots[out->root_count++] = (uint32_t)out->node_count++;
+        build(&b, begin[c], begin[c + 1], root);
+      }
+  }
+  vxm_free(context, keys);
+  if (out->moments)
+    return VXM_OK;
+  vxm_winding_tree_destroy(out);
+  vxm_error_pass(error, &local);
+  return local.code;
+}
+
+void vxm_winding_tree_destroy(vxm_winding_tree *tree) {
+  vxm_free(tree->context, tree->moments);
+  vxm_free(tree->context, tree->nodes);
+  *tree = (vxm_winding_tree){.context = tree->context};
+}

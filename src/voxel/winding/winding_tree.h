@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Triangles in binary trees, with what is needed to see them from afar: the expansion of their winding number
+ * about the centre of their area (after Barill et al. 2018),
+ *
+ *   w(q) ~ 1/(4 pi) (N.d / r^3 - 3 M(d, d) / r^5 + 7.5 S(d, d, d) / r^7),  d from q to the centre, r = |d|,
+ *
+ * N the sum of vector areas, M and S the first and second moments of them, made symmetric and free of traces,
+ * which do not count as 1/r is harmonic. There is a tree for each class of sizes, so that a large triangle
+ * does not make the nodes of small ones large. Lengths are in voxels.
+ */
+#ifndef VXM_VOXEL_WINDING_WINDING_TREE_H
+#define VXM_VOXEL_WINDING_WINDING_TREE_H
+
+#include "voxel/parity/snapped_points.h"
+
+enum { VXM_WINDING_CLASSES = 8 };
+
+/** Where a node is; all of its triangles lie in the ball. */
+typedef struct vxm_winding_node {
+  double centre[3];
+  float radius;
+  float area;    /**< of its triangles, by 4 pi */
+  uint32_t next; /**< the first of its two children, which follow each other; of a leaf, its triangle */
+  bool is_leaf;
+} vxm_winding_node;
+
+/** N, -3 M: xx yy zz 2xy 2xz 2yz, and 7.5 S: xxx 3xxy 3xyy yyy 3xxz 6xyz 3yyz 3xzz 3yzz zzz; all by 4 pi. */
+typedef struct vxm_winding_moments {
+  float area[3], first[6], second[10];
+} vxm_winding_moments;
+
+typedef struct vxm_winding_tree {
+  vxm_context *context;
+  const uint32_t (*corners)[3]; /**< of the triangles, by number */
+  const vxm_snapped_points *placed;
+  bool mirrored; /**< corners b and c of each triangle change places */
+  size_t count;  /**< of triangles */
+  vxm_winding_node *nodes;
+  vxm_winding_moments *moments; /**< of each node */
+  size_t node_count;
+  uint32_t roots[VXM_WINDING_CLASSES];
+  size_t root_count;
+} vxm_winding_tree;
+
+/**
+ * Builds the trees of triangles as points are placed; both are lent.
+ *
+ * @param mirrored the points have been placed by a transform that turns triangles inside out
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, const uint32_t (*corners)[3],
+                                   size_t count, const vxm_snapped_points *placed, bool mirrored,
+                                   vxm_error *error);
+void vxm_winding_tree_destroy(vxm_winding_tree *tree);
+
+/** The corners of a triangle on the lattice. */
+static inline void vxm_winding_triangle_at(const vxm_winding_tree *tree, uint32_t triangle,
+                                           vxm_point out[3]) {
+  const uint32_t *corner = tree->corners[triangle];
+  out[0] = vxm_snapped_points_at(tree->placed, corner[0]);
+  out[1 + tree->mirrored] = vxm_snapped_points_at(tree->placed, corner[1]);
+  out[2 - tree->mirrored] = vxm_snapped_points_at(tree->placed, corner[2]);
+}
+
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/winding/winding_walk.h"
+#include "base/cpu.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+extern const vxm_winding_kernels vxm_winding_kernels_plain, vxm_winding_kernels_avx2,
+    vxm_winding_kernels_avx512;
+
+const vxm_winding_kernels *vxm_winding_kernels_get(void) {
+  const char *name = vxm_kernels_get()->name;
+#if VXM_KERNELS_X86
+  if (strcmp(name, "avx512") == 0)
+    return &vxm_winding_kernels_avx512;
+  if (strcmp(name, "avx2") == 0)
+    return &vxm_winding_kernels_avx2;
+#endif
+  (void)name;
+  return &vxm_winding_kernels_plain;
+}
+
+/* ---- Tables ---- */
+
+static vxm_winding_level levels[VXM_WINDING_LEVELS];
+
+/** The places of samples: voxel centres in a brick, else the roots of Chebyshev's fourth polynomial. */
+static double place_of(int level, int sample) {
+  static const double chebyshev[4] = {-0.92387953251128674, -0.38268343236508977, 0.38268343236508977,
+                                      0.92387953251128674};
+  double reach = ((double)(INT64_C(4) << level) - 1) / 2;
+  return level == 0 ? sample - 1.5 : chebyshev[sample] * reach;
+}
+
+/** What sample i of a level counts at a place. */
+static double lagrange(int level, int i, double place) {
+  double product = 1;
+  for (int j = 0; j < 4; j++)
+    if (j != i)
+      product *= (place - place_of(level, j)) / (place_of(level, i) - place_of(level, j));
+  return product;
+}
+
+/** Between the outermost voxel centres of a cell, by the values at its ends and thirds. */
+static void make_bound(int level) {
+  static const double by_value[4][4] = {
+      {1, 0, 0, 0}, {-5.0 / 6, 3, -1.5, 1.0 / 3}, {1.0 / 3, -1.5, 3, -5.0 / 6}, {0, 0, 0, 1}};
+  double reach = ((double)(INT64_C(4) << level) - 1) / 2;
+  for (int i = 0; i < 4; i++)
+    for (int c = 0; c < 4; c++) {
+      double sum = 0;
+      for (int v = 0; v < 4; v++)
+        sum += by_value[c][v] * lagrange(level, i, reach * (2 * v / 3.0 - 1));
+      levels[level].bound[c][i] = (float)sum;
+    }
+}
+
+static void make_levels(void) {
+  for (int l = 0; l < VXM_WINDING_LEVELS; l++) {
+    levels[l].reach = (float)(((double)(INT64_C(4) << l) - 1) / 2);
+    make_bound(l);
+    for (int i = 0; i < 4; i++)
+      levels[l].place[i] = (float)place_of(l, i);
+    double quarter = (double)(INT64_C(1) << l);
+    for (int half = 0; half < 2 && l > 0; half++)
+      for (int to = 0; to < 4; to++)
+        for (int i = 0; i < 4; i++)
+          levels[l].to_child[half][to][i] =
+              (float)lagrange(l, i, place_of(l - 1, to) + (half ? quarter : -quarter));
+  }
+}
+
+const vxm_winding_level *vxm_winding_levels(void) {
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, make_levels);
+  return levels;
+}
+
+/* ---- Lists ---- */
+
+bool vxm_winding_scratch_grow(vxm_winding_scratch *scratch) {
+  if (scratch->status == VXM_OK)
+    scratch->status = vxm_grow(scratch->context, (void **)&scratch->nodes, &scratch->capacity,
+                               scratch->count + 1, sizeof *scratch->nodes, &scratch->error);
+  return scratch->status == VXM_OK;
+}
+
+/* ---- Distances ---- */
+
+static float dot(const float a[3], const float b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/** As in Ericson, Real-Time Collision Detection, section 5.1.5: the nearest feature by its Voronoi region. */
+float vxm_winding_distance(const float corner[3][3]) {
+  float ab[3], ac[3], from[3], u = 0, v = 0;
+  for (int k = 0; k < 3; k++) {
+    ab[k] = corner[1][k] - corner[0][k];
+    ac[k] = corner[2][k] - corner[0][k];
+    from[k] = -corner[0][k];
+  }
+  float d1 = dot(ab, from), d2 = dot(ac, from), d3 = d1 - dot(ab, ab), d4 = d2 - dot(ab, ac),
+        d5 = d1 - dot(ab, ac), d6 = d2 - dot(ac, ac);
+  float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+  if (d1 <= 0 && d2 <= 0) {
+    /* corner a */
+  } else if (d3 >= 0 && d4 <= d3)
+    u = 1;
+  else if (d6 >= 0 && d5 <= d6)
+    v = 1;
+  else if (vc <= 0 && d1 >= 0 && d3 <= 0)
+    u = d1 / (d1 - d3);
+  else if (vb <= 0 && d2 >= 0 && d6 <= 0)
+    v = d2 / (d2 - d6);
+  else if (va <= 0 && d4 >= d3 && d5 >= d6) {
+    v = (d4 - d3) / (d4 - d3 + d5 - d6);
+    u = 1 - v;
+  } else {
+    u = vb / (va + vb + vc);
+    v = vc / (va + vb + vc);
+  }
+  float at[3];
+  for (int k = 0; k < 3; k++)
+    at[k] = corner[0][k] + u * ab[k] + v * ac[k];
+  return sqrtf(dot(at, at));
+}

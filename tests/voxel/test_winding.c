@@ -1,0 +1,361 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/*
+ * Winding numbers against the sum of all solid angles in doubles: chains and rests, numbers of closed chains,
+ * the walk through cells, in windows, along any axis, by every build, for what is asked about.
+ * VOXMEND_TEST_WINDING=1 looks at all meshes of the shared collection, at all voxels where they are small.
+ */
+#include "shapes.h"
+
+#include "meshes.h"
+#include "voxel/winding/oriented_chain.h"
+#include "voxel/winding/winding_exact.h"
+#include "voxel/winding/winding_fill.h"
+
+#include <math.h>
+#include <string.h>
+
+/** A soup on a lattice, as it is oriented. */
+typedef struct subject {
+  vxm_triangle_set triangles;
+  vxm_snapped_points placed;
+  vxm_winding_chain chain;
+  vxm_winding_mesh mesh;
+  vxm_workspace workspace;
+} subject;
+
+static void begin(subject *s, const vxm_soup *soup, const vxm_space *space) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_split_rule rule = {VXM_SPLIT_MODE_WHOLE, VXM_CAVITIES_FILL, false};
+  *s = (subject){.placed = {.context = context}, .workspace = vxm_workspace_of(context)};
+  vxm_lattice lattice = vxm_lattice_of(space);
+  if (vxm_triangle_set_create(&s->triangles, soup, rule, &error) != VXM_OK ||
+      vxm_snapped_points_set(&s->placed, &s->triangles, &lattice, NULL, false, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+  vxm_flip_mask turns = {.context = context, .part_end = s->triangles.split.part_count};
+  for (size_t p = 0; p < turns.part_end; p++)
+    turns.count += s->triangles.parts[p].caps - s->triangles.parts[p].begin;
+  turns.turned = calloc(turns.count + 1, 1);
+  assert_int_equal(vxm_oriented_chain_create(&s->chain, &s->triangles, &turns, NULL), VXM_OK);
+  free(turns.turned);
+  s->mesh = vxm_winding_mesh_of(context);
+}
+
+static void end(subject *s) {
+  vxm_winding_mesh_destroy(&s->mesh);
+  vxm_winding_chain_destroy(&s->chain);
+  vxm_workspace_destroy(&s->workspace);
+  vxm_snapped_points_destroy(&s->placed);
+  vxm_triangle_set_destroy(&s->triangles);
+}
+
+/** All voxels of a grid, in windows of so many slices in a layout. The caller frees. */
+static uint64_t *fill(subject *s, vxm_layout layout, int64_t slices, const uint64_t *asked,
+                      uint8_t *confidence) {
+  const vxm_space *space = &s->placed.lattice.space;
+  vxm_window all = vxm_window_of(space, layout, 0, space->dims[layout.slow]);
+  uint64_t *words = calloc(all.slice_words * (size_t)all.slow_dim, sizeof *words);
+  assert_int_equal(vxm_winding_mesh_place(&s->mesh, &s->chain, &s->placed, layout.fast, false, NULL), VXM_OK);
+  for (int64_t at = 0; at < all.slow_dim; at += slices) {
+    int64_t added = 0;
+    vxm_error error = VXM_ERROR_INIT;
+    vxm_window window = vxm_window_of(space, layout, at, vxm_min(at + slices, all.slow_dim));
+    size_t offset = (size_t)at * all.slice_words;
+    window.words = words + offset;
+    if (vxm_winding_fill(&s->mesh, &window, asked ? asked + offset : NULL, confidence, &s->workspace, &added,
+                         &error) != VXM_OK)
+      fail_msg("%s", error.text);
+  }
+  return words;
+}
+
+static bool bit_at(const uint64_t *words, const vxm_space *space, vxm_layout layout, const int64_t at[3]) {
+  vxm_window all = vxm_window_of(space, layout, 0, 1);
+  size_t row = (size_t)at[layout.slow] * all.slice_words + (size_t)at[layout.middle] * all.row_words;
+  return words[row + (size_t)at[layout.fast] / 64] >> (at[layout.fast] % 64) & 1;
+}
+
+/** The sum of all solid angles, term by term; *nearest becomes the least distance of a plane from the voxel.
+ */
+static double oracle(const subject *s, const int64_t voxel[3], bool *touches) {
+  double sum = 0;
+  *touches = false;
+  for (size_t t = 0; t < s->triangles.triangle_count; t++) {
+    if (vxm_role_of(&s->triangles, t) != VXM_ROLE_FACE)
+      continue;
+    double v[3][3], length[3], dot[3], volume = 0;
+    for (int k = 0; k < 3; k++) {
+      vxm_point p = vxm_snapped_points_at(&s->placed, s->triangles.corners[t][k]);
+      for (int a = 0; a < 3; a++)
+        v[k][a] = (double)(p.at[a] - vxm_lattice_centre(&s->placed.lattice, voxel[a])) /
+                  (double)s->placed.lattice.unit;
+    }
+    for (int k = 0; k < 3; k++) {
+      length[k] = sqrt(v[k][0] * v[k][0] + v[k][1] * v[k][1] + v[k][2] * v[k][2]);
+      const double *next = v[(k + 1) % 3];
+      dot[k] = v[k][0] * next[0] + v[k][1] * next[1] + v[k][2] * next[2];
+    }
+    for (int a = 0; a < 3; a++)
+      volume += v[0][a] * (v[1][(a + 1) % 3] * v[2][(a + 2) % 3] - v[1][(a + 2) % 3] * v[2][(a + 1) % 3]);
+    double sides =
+        length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
+    *touches |= fabs(volume) < 1e-12 && sides <= 1e-12;
+    sum += 2 * atan2(volume, sides);
+  }
+  return sum / (4 * M_PI);
+}
+
+static vxm_rng rng = {21};
+
+/** Triangles of all sizes between few vertices, some of them closed bodies with pieces missing. */
+static vxm_soup *random_soup(int round, double side) {
+  vxm_soup *soup = shape_empty(context);
+  int vertices = 5 + (int)vxm_rng_below(&rng, 20), faces = 1 + (int)vxm_rng_below(&rng, 60);
+  double size = side * pow(0.5, (double)(round % 5)), from[3];
+  for (int a = 0; a < 3; a++)
+    from[a] = (side - size) * vxm_rng_unit(&rng);
+  for (int v = 0; v < vertices; v++) {
+    double p[3];
+    for (int a = 0; a < 3; a++) {
+      p[a] = from[a] + size * (1.4 * vxm_rng_unit(&rng) - 0.2);
+      p[a] = round % 3 == 0 ? rint(4 * p[a]) / 4 : p[a];
+    }
+    shape_vertex(soup, p[0], p[1], p[2]);
+  }
+  for (int f = 0; f < faces; f++) {
+    uint32_t c[3];
+    for (int k = 0; k < 3; k++)
+      c[k] = (uint32_t)vxm_rng_below(&rng, (uint64_t)vertices);
+    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
+      shape_triangle(soup, c[0], c[1], c[2]);
+  }
+  if (soup->face_count == 0)
+    shape_triangle(soup, 0, 1, 2);
+  for (int b = 0; b < round % 4; b++) { /* boxes, the first ones in whole voxels */
+    double low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+      low[a] = side * 0.6 * vxm_rng_unit(&rng);
+      high[a] = low[a] + 1 + side * 0.3 * vxm_rng_unit(&rng);
+      if (b == 0) {
+        low[a] = floor(low[a]) + 0.5;
+        high[a] = ceil(high[a]) + 0.5;
+      }
+    }
+    shape_box(soup, low, high);
+  }
+  return soup;
+}
+
+enum { SIDE = 20 };
+static const vxm_space cube = {{SIDE, SIDE, SIDE}, {0, 0, 0}, {1, 1, 1}};
+
+/** The sign at every voxel is that of the sum; where that is one half to rounding, or jumps, it may be
+ * either. */
+static void test_signs_are_those_of_the_sum(void **state) {
+  (void)state;
+  size_t ties = 0, set = 0;
+  for (int round = 0; round < 120; round++) {
+    vxm_soup *soup = random_soup(round, SIDE);
+    subject s;
+    begin(&s, soup, &cube);
+    uint64_t *words = fill(&s, (vxm_layout)VXM_LAYOUT_GRID, SIDE, NULL, NULL);
+    int64_t at[3];
+    for (at[2] = 0; at[2] < SIDE; at[2]++)
+      for (at[1] = 0; at[1] < SIDE; at[1]++)
+        for (at[0] = 0; at[0] < SIDE; at[0]++) {
+          bool touches, bit = bit_at(words, &cube, (vxm_layout)VXM_LAYOUT_GRID, at);
+          double w = oracle(&s, at, &touches);
+          set += bit;
+          if (touches || fabs(w - 0.5) < 2e-6)
+            ties++;
+          else if (bit != (w > 0.5))
+            fail_msg("round %d, voxel %d %d %d: w %.7f, but %d", round, (int)at[0], (int)at[1], (int)at[2], w,
+                     bit);
+        }
+    free(words);
+    end(&s);
+    vxm_soup_destroy(soup);
+  }
+  assert_true(set > 10000 && ties < 120 * SIDE * SIDE);
+}
+
+static void compare(const uint64_t *a, const uint64_t *b, const vxm_space *space, vxm_layout layout,
+                    const char *what) {
+  int64_t at[3];
+  for (at[2] = 0; at[2] < space->dims[2]; at[2]++)
+    for (at[1] = 0; at[1] < space->dims[1]; at[1]++)
+      for (at[0] = 0; at[0] < space->dims[0]; at[0]++)
+        if (bit_at(a, space, (vxm_layout)VXM_LAYOUT_GRID, at) != bit_at(b, space, layout, at))
+          fail_msg("%s: voxel %d %d %d differs", what, (int)at[0], (int)at[1], (int)at[2]);
+}
+
+/** Windows, layouts, builds and threads change no bit, and what is asked about is what is set. */
+static void test_bits_are_the_same_in_all_ways(void **state) {
+  (void)state;
+  static const vxm_layout layouts[] = {{0, 1, 2}, {1, 2, 0}, {2, 1, 0}, {0, 2, 1}};
+  const vxm_kernels *builds[4];
+  size_t build_count = vxm_kernels_all(builds);
+  const vxm_space space = {{70, 21, 37}, {0, 0, 0}, {0.5, 0.5, 0.5}};
+  vxm_context *usual = context;
+  for (int round = 0; round < 40; round++) {
+    vxm_soup *soup = random_soup(round, 12);
+    subject s;
+    begin(&s, soup, &space);
+    uint64_t *words = fill(&s, layouts[0], 37, NULL, NULL);
+    for (int l = 0; l < 4; l++) {
+      uint64_t *other = fill(&s, layouts[l], 1 + (int64_t)vxm_rng_below(&rng, 9), NULL, NULL);
+      compare(words, other, &space, layouts[l], "window");
+      free(other);
+    }
+    for (size_t b = 0; b < build_count; b++) {
+      vxm_kernels_force(builds[b]);
+      uint64_t *other = fill(&s, layouts[0], 37, NULL, NULL);
+      compare(words, other, &space, layouts[0], builds[b]->name);
+      free(other);
+    }
+    vxm_kernels_force(NULL);
+    vxm_window all = vxm_window_of(&space, layouts[0], 0, 37);
+    size_t count = all.slice_words * 37;
+    uint64_t *asked = calloc(count, sizeof *asked), *some = NULL;
+    for (size_t w = 0; w < count; w++)
+      asked[w] = (vxm_rng_next(&rng) & vxm_rng_next(&rng) & vxm_rng_next(&rng)) &
+                 (w % all.row_words == all.row_words - 1 ? vxm_window_tail_mask(&all) : ~UINT64_C(0));
+    some = fill(&s, layouts[0], 10, asked, NULL);
+    for (size_t w = 0; w < count; w++)
+      assert_true(some[w] == (words[w] & asked[w]));
+    uint8_t *confidence = calloc(70 * 21 * 37, 1);
+    uint64_t *sure = fill(&s, layouts[0], 37, NULL, confidence);
+    compare(words, sure, &space, layouts[0], "confidence");
+    end(&s);
+    vxm_context_options with = VXM_CONTEXT_OPTIONS_INIT;
+    with.threads = 5;
+    assert_int_equal(vxm_context_create(&context, &with, NULL), VXM_OK);
+    begin(&s, soup, &space);
+    s.mesh = vxm_winding_mesh_of(context);
+    uint64_t *threads = fill(&s, layouts[0], 37, NULL, NULL);
+    compare(words, threads, &space, layouts[0], "threads");
+    end(&s);
+    vxm_context_destroy(context);
+    context = usual;
+    free(threads);
+    free(sure);
+    free(confidence);
+    free(some);
+    free(asked);
+    free(words);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** The chain is closed, and with the rest it is the soup: as sums of oriented edges. */
+static void test_the_chain_is_closed(void **state) {
+  (void)state;
+  for (int round = 0; round < 200; round++) {
+    vxm_soup *soup = random_soup(round, SIDE);
+    subject s;
+    begin(&s, soup, &cube);
+    size_t n = s.triangles.first_apex;
+    int *net[2] = {calloc(n * n, sizeof(int)), calloc(n * n, sizeof(int))};
+    for (int kind = 0; kind < 2; kind++) {
+      const uint32_t(*corners)[3] = (const uint32_t(*)[3])(kind ? s.chain.rest : s.chain.closed);
+      for (size_t t = 0; t < (kind ? s.chain.rest_count : s.chain.closed_count); t++)
+        for (int k = 0; k < 3; k++) {
+          uint32_t p = corners[t][k], q = corners[t][(k + 1) % 3];
+          net[kind][p * n + q]++;
+          net[kind][q * n + p]--;
+        }
+    }
+    for (size_t t = 0; t < s.triangles.triangle_count; t++)
+      if (vxm_role_of(&s.triangles, t) == VXM_ROLE_FACE)
+        for (int k = 0; k < 3; k++) {
+          uint32_t p = s.triangles.corners[t][k], q = s.triangles.corners[t][(k + 1) % 3];
+          net[1][p * n + q]--;
+          net[1][q * n + p]++;
+        }
+    for (size_t i = 0; i < n * n; i++) {
+      assert_int_equal(net[0][i], 0);
+      assert_int_equal(net[1][i], 0);
+    }
+    free(net[0]);
+    free(net[1]);
+    end(&s);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/* ---- Real meshes ---- */
+
+static size_t wrong, tested, near_ties;
+
+static void check_voxel(const subject *s, const uint64_t *words, const int64_t at[3], const char *name) {
+  bool touches, bit = bit_at(words, &s->placed.lattice.space, (vxm_layout)VXM_LAYOUT_GRID, at);
+  double w = oracle(s, at, &touches);
+  tested++;
+  if (touches || fabs(w - 0.5) < 2e-6)
+    near_ties++;
+  else if (bit != (w > 0.5)) {
+    wrong++;
+    print_message("%s: voxel %d %d %d, w %.7f, bit %d\n", name, (int)at[0], (int)at[1], (int)at[2], w, bit);
+  }
+}
+
+static void check_file(const char *path, const char *name, void *payload) {
+  const bool *all = payload;
+  vxm_soup *soup;
+  if (vxm_mesh_read(&soup, context, path, NULL) != VXM_OK)
+    return;
+  vxm_space_options fit = VXM_SPACE_OPTIONS_INIT;
+  vxm_space space;
+  for (int64_t resolution = 64; resolution <= (*all ? 256 : 64); resolution *= 4) {
+    fit.resolution[0] = resolution;
+    if (soup->face_count == 0 || (!*all && soup->face_count > 5000) ||
+        vxm_space_fit(&space, soup, &fit, NULL) != VXM_OK)
+      break;
+    subject s;
+    begin(&s, soup, &space);
+    uint64_t *words = fill(&s, (vxm_layout)VXM_LAYOUT_GRID, 100, NULL, NULL);
+    int64_t at[3], work = 0, most = *all ? INT64_C(100000000) : 2000000;
+    bool every = *all && resolution == 64 && s.triangles.triangle_count < 2000;
+    for (at[2] = 0; every && at[2] < space.dims[2]; at[2]++)
+      for (at[1] = 0; at[1] < space.dims[1]; at[1]++)
+        for (at[0] = 0; at[0] < space.dims[0]; at[0]++)
+          check_voxel(&s, words, at, name);
+    for (int try = 0; !every && try < 400000 && work < most; try++) {
+      bool edge = false, bit;
+      for (int a = 0; a < 3; a++)
+        at[a] = (int64_t)vxm_rng_below(&rng, (uint64_t)space.dims[a]);
+      bit = bit_at(words, &space, (vxm_layout)VXM_LAYOUT_GRID, at);
+      for (int a = 0; a < 3; a++) {
+        int64_t next[3] = {at[0], at[1], at[2]};
+        next[a] = vxm_min(next[a] + 1, space.dims[a] - 1);
+        edge |= bit != bit_at(words, &space, (vxm_layout)VXM_LAYOUT_GRID, next);
+      }
+      if (!edge && try % 256 != 0) /* mostly where it changes */
+        continue;
+      check_voxel(&s, words, at, name);
+      work += (int64_t)s.triangles.triangle_count;
+    }
+    free(words);
+    end(&s);
+  }
+  vxm_soup_destroy(soup);
+}
+
+static void test_real_meshes(void **state) {
+  (void)state;
+  bool all = getenv("VOXMEND_TEST_WINDING") != NULL;
+  if (each_mesh_file(5, check_file, &all) == 0)
+    skip();
+  print_message("%zu voxels, %zu on a triangle or at one half, %zu wrong\n", tested, near_ties, wrong);
+  assert_true(tested > 1000);
+  assert_int_equal(wrong, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_chain_is_closed),
+      cmocka_unit_test(test_signs_are_those_of_the_sum),
+      cmocka_unit_test(test_bits_are_the_same_in_all_ways),
+      cmocka_unit_test(test_real_meshes),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
