@@ -65,13 +65,13 @@ static int side_of(const vxm_point p[3], const int64_t q[3], bool *inside) {
 }
 
 /** Half the solid angle of a triangle. */
-static double half_angle(const vxm_winding_tree *tree, uint32_t triangle, const int64_t q[3]) {
-  vxm_point p[3];
-  double d[3][3], length[3], dot[3], volume = 0, step = 1.0 / (double)tree->placed->lattice.unit;
-  vxm_winding_triangle_at(tree, triangle, p);
+static double half_angle(const vxm_winding_tree *tree, uint32_t triangle, const int64_t q[3],
+                         const double at[3]) {
+  const double(*corner)[3] = (const double(*)[3])tree->triangles[triangle];
+  double d[3][3], length[3], dot[3], volume = 0;
   for (int k = 0; k < 3; k++) {
     for (int a = 0; a < 3; a++)
-      d[k][a] = (double)(p[k].at[a] - q[a]) * step;
+      d[k][a] = corner[k][a] - at[a];
     length[k] = sqrt(d[k][0] * d[k][0] + d[k][1] * d[k][1] + d[k][2] * d[k][2]);
   }
   for (int k = 0; k < 3; k++) {
@@ -86,6 +86,10 @@ static double half_angle(const vxm_winding_tree *tree, uint32_t triangle, const 
       length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
   if (fabs(volume) <= 1e-9 * (1 + length[0] * length[1] * length[2])) {
     bool inside;
+    vxm_point p[3];
+    for (int k = 0; k < 3; k++)
+      for (int a = 0; a < 3; a++)
+        p[k].at[a] = (int64_t)(corner[k][a] * (double)tree->placed->lattice.unit);
     int side = side_of(p, q, &inside);
     if (side == 0)
       return 0; /* a triangle without area */
@@ -97,8 +101,8 @@ static double half_angle(const vxm_winding_tree *tree, uint32_t triangle, const 
   return atan2(volume, sides);
 }
 
-double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3]) {
-  const double far = 16;
+/** Nodes at least `far` of their radii away count by their expansion. */
+static double sum_up(const vxm_winding_tree *tree, const int64_t voxel[3], double far) {
   int64_t q[3];
   double at[3], far_sum = 0, near_sum = 0;
   for (int a = 0; a < 3; a++) {
@@ -120,7 +124,7 @@ double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3]) {
       if (square > reach * reach)
         far_sum += add_node(&tree->moments[i], d, square);
       else if (n->is_leaf)
-        near_sum += half_angle(tree, n->next, q);
+        near_sum += half_angle(tree, n->next, q, at);
       else {
         stack[top++] = n->next + 1;
         stack[top++] = n->next;
@@ -128,4 +132,11 @@ double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3]) {
     }
   }
   return near_sum / (2 * half_turn) + far_sum;
+}
+
+double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3]) {
+  /* Errors measured on real meshes are at most 4e-5 and 2e-7. */
+  const double soon = 6, late = 16, sure = 2e-4;
+  double w = sum_up(tree, voxel, soon), h = w - 0.5;
+  return fabs(h - rint(h)) > sure ? w : sum_up(tree, voxel, late);
 }

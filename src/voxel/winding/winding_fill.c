@@ -118,12 +118,6 @@ static void settle_cell(const vxm_winding_walk *walk, const int64_t origin[3], i
     }
 }
 
-/** How far a winding number is from the next half. */
-static float from_half(float value) {
-  float h = value - 0.5F;
-  return fabsf(h - rintf(h));
-}
-
 /** The whole of a row's winding number: that of the closed chain at a voxel and `value`. */
 static double whole_number(const fill_job *job, size_t row, int64_t fast, double value) {
   const vxm_chain_winding *closed = &job->mesh->closed;
@@ -133,48 +127,79 @@ static double whole_number(const fill_job *job, size_t row, int64_t fast, double
   return (double)(__atomic_load_n(word, __ATOMIC_RELAXED) >> (fast % 64) & 1) + value;
 }
 
-static bool is_doubtful(const float value[VXM_BRICK], uint64_t touching) {
-  if (touching)
-    return true;
-  for (int v = 0; v < VXM_BRICK; v++)
-    if (from_half(value[v]) < doubt)
-      return true;
-  return false;
+/** The bits of a row of a brick, the first of them at voxel `from` of it, `step` apart. */
+static uint64_t row_bits(uint64_t mask, int64_t from, int64_t step, int64_t count) {
+  if (step == 1)
+    return mask >> from & vxm_low_bits((unsigned)count);
+  uint64_t bits = 0;
+  for (int64_t i = 0; i < count; i++)
+    bits |= (mask >> (from + i * step) & 1) << i;
+  return bits;
 }
 
-static void settle_brick(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
-                         const float value[VXM_BRICK], uint64_t touching) {
+/** A row in which the number of the closed chain must be counted, or of which confidence is asked. */
+static uint64_t settle_row(const fill_job *job, const vxm_winding_brick *brick, size_t row, int64_t first,
+                           int64_t from, int64_t step, int64_t count) {
+  const vxm_window *out = decided(job);
+  uint64_t bits = 0;
+  for (int64_t i = 0; i < count; i++) {
+    double w = whole_number(job, row, first + i, (double)brick->value[from + i * step]);
+    bits |= (uint64_t)(w > 0.5 + tie) << i;
+    if (job->confidence) {
+      double sure = fabs(2 * w - 1);
+      job->confidence[(size_t)out->fast_dim * (row + (size_t)(out->begin * out->middle_dim)) +
+                      (size_t)(first + i)] = (uint8_t)(sure < 1 ? 255 * sure : 255);
+    }
+  }
+  return bits;
+}
+
+/** What is still in doubt gets its number by doubles. */
+static void resolve(const fill_job *job, const int64_t origin[3], vxm_winding_brick *brick) {
+  for (uint64_t left = brick->doubtful; left; left &= left - 1) {
+    int v = __builtin_ctzll(left);
+    const int64_t at[3] = {origin[0] + v % 4, origin[1] + v / 4 % 4, origin[2] + v / 16};
+    double w = vxm_winding_exact(&job->mesh->tree, at);
+    uint64_t bit = UINT64_C(1) << v;
+    brick->value[v] = (float)w;
+    brick->above[0] = (brick->above[0] & ~bit) | (w > tie - 0.5 ? bit : 0);
+    brick->above[1] = (brick->above[1] & ~bit) | (w > tie + 0.5 ? bit : 0);
+  }
+}
+
+static void settle_brick(const vxm_winding_walk *walk, const int64_t origin[3],
+                         const vxm_winding_brick *brick) {
+  static const int64_t place[3] = {1, 4, 16};
   const fill_job *job = job_of(walk);
   const vxm_window *out = decided(job);
-  (void)scratch;
-  if (!walk->strict && is_doubtful(value, touching)) {
+  const vxm_layout *layout = &out->layout;
+  vxm_winding_brick resolved;
+  if (brick->doubtful && !walk->strict) {
     *vxm_brick_mask_at(&job->mesh->doubted, origin, 0) = 1; /* the bits stay those of the closed chain */
     return;
   }
-  int64_t first[3], count[3], at[3];
-  const vxm_layout *layout = &out->layout;
+  if (brick->doubtful) {
+    resolved = *brick;
+    resolve(job, origin, &resolved);
+    brick = &resolved;
+  }
+  int64_t first[3], count[3];
   clip(job, origin, VXM_BRICK_SIDE, first, count);
   for (int64_t s = first[2]; s < first[2] + count[2]; s++)
     for (int64_t m = first[1]; m < first[1] + count[1]; m++) {
       size_t row = row_of(job, m, s);
-      uint64_t bits = 0;
-      at[layout->slow] = s;
-      at[layout->middle] = m;
-      for (int64_t i = 0; i < count[0]; i++) {
-        at[layout->fast] = first[0] + i;
-        int64_t v = 16 * (at[2] - origin[2]) + 4 * (at[1] - origin[1]) + at[0] - origin[0];
-        double rest = (double)value[v];
-        if (walk->strict && (from_half(value[v]) < strict_doubt || touching >> v & 1))
-          rest = vxm_winding_exact(&job->mesh->tree, at);
-        double w = whole_number(job, row, first[0] + i, rest);
-        bits |= (uint64_t)(w > 0.5 + tie) << i;
-        if (job->confidence) {
-          double sure = fabs(2 * w - 1);
-          job->confidence[(s * out->middle_dim + m) * out->fast_dim + first[0] + i] =
-              (uint8_t)(sure < 1 ? 255 * sure : 255);
-        }
+      int64_t from = (s - origin[layout->slow]) * place[layout->slow] +
+                     (m - origin[layout->middle]) * place[layout->middle] +
+                     (first[0] - origin[layout->fast]) * place[layout->fast];
+      uint64_t *words = out->words + row * out->row_words, bits;
+      if (job->confidence || job->mesh->closed.counted[row])
+        bits = settle_row(job, brick, row, first[0], from, place[layout->fast], count[0]);
+      else {
+        uint64_t chain = __atomic_load_n(words + first[0] / 64, __ATOMIC_RELAXED) >> (first[0] % 64);
+        bits = (chain & row_bits(brick->above[0], from, place[layout->fast], count[0])) |
+               (~chain & row_bits(brick->above[1], from, place[layout->fast], count[0]));
       }
-      store_bits(out->words + row * out->row_words, first[0], count[0], bits);
+      store_bits(words, first[0], count[0], bits);
     }
 }
 
@@ -312,6 +337,7 @@ static vxm_status decide_by_tree(fill_job *job, vxm_error *error) {
   if (status != VXM_OK || !vxm_brick_mask_raise(&mesh->doubted))
     return status;
   job->walk.strict = true;
+  job->walk.doubt = strict_doubt;
   return walk(job, top, error);
 }
 
@@ -324,6 +350,7 @@ vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, co
     return status;
   fill_job job = {.walk = {.tree = &mesh->tree,
                            .levels = vxm_winding_levels(),
+                           .doubt = doubt,
                            .whole = confidence != NULL,
                            .wants = wants,
                            .settle_cell = settle_cell,

@@ -17,9 +17,19 @@ typedef struct sums {
 
 typedef struct builder {
   vxm_winding_tree *out;
+  const uint32_t (*corners)[3];
+  bool mirrored; /**< corners b and c of each triangle change places */
   uint64_t *keys; /**< Morton number << 32 | triangle, of one class after the other */
   double step;    /**< voxels of a lattice step */
 } builder;
+
+/** The corners of a triangle on the lattice. */
+static void corners_of(const builder *b, size_t triangle, vxm_point out[3]) {
+  const uint32_t *corner = b->corners[triangle];
+  out[0] = vxm_snapped_points_at(b->out->placed, corner[0]);
+  out[1 + b->mirrored] = vxm_snapped_points_at(b->out->placed, corner[1]);
+  out[2 - b->mirrored] = vxm_snapped_points_at(b->out->placed, corner[2]);
+}
 
 /* ---- Moments ---- */
 
@@ -43,14 +53,9 @@ static void add_moved(sums *to, const sums *from) {
   }
 }
 
-static sums sums_of_triangle(const builder *b, uint32_t triangle) {
+static sums sums_of_triangle(const double p[3][3]) {
   sums out = {.radius = 0};
-  vxm_point at[3];
-  double p[3][3];
-  vxm_winding_triangle_at(b->out, triangle, at);
   for (int a = 0; a < 3; a++) {
-    for (int k = 0; k < 3; k++)
-      p[k][a] = (double)at[k].at[a] * b->step;
     out.centre[a] = (p[0][a] + p[1][a] + p[2][a]) / 3;
     out.low[a] = fmin(fmin(p[0][a], p[1][a]), p[2][a]);
     out.high[a] = fmax(fmax(p[0][a], p[1][a]), p[2][a]);
@@ -148,9 +153,14 @@ static sums build(builder *b, size_t begin, size_t end, size_t node) {
   vxm_winding_tree *out = b->out;
   sums of;
   if (end - begin == 1) {
-    uint32_t triangle = (uint32_t)(b->keys[begin] & UINT32_MAX);
-    of = sums_of_triangle(b, triangle);
-    out->nodes[node].next = triangle;
+    vxm_point at[3];
+    double(*p)[3] = out->triangles[begin];
+    corners_of(b, b->keys[begin] & UINT32_MAX, at);
+    for (int k = 0; k < 3; k++)
+      for (int a = 0; a < 3; a++)
+        p[k][a] = (double)at[k].at[a] * b->step;
+    of = sums_of_triangle((const double(*)[3])p);
+    out->nodes[node].next = (uint32_t)begin;
     out->nodes[node].is_leaf = true;
   } else {
     size_t middle = split(b->keys, begin, end), children = out->node_count;
@@ -187,12 +197,12 @@ static int class_of(const vxm_point p[3], int64_t unit) {
 }
 
 /** Three times the middle of a triangle, and its class. */
-static int look_at(const vxm_winding_tree *tree, size_t triangle, int64_t middle[3]) {
+static int look_at(const builder *b, size_t triangle, int64_t middle[3]) {
   vxm_point p[3];
-  vxm_winding_triangle_at(tree, (uint32_t)triangle, p);
+  corners_of(b, triangle, p);
   for (int a = 0; a < 3; a++)
     middle[a] = p[0].at[a] + p[1].at[a] + p[2].at[a];
-  return class_of(p, tree->placed->lattice.unit);
+  return class_of(p, b->out->placed->lattice.unit);
 }
 
 /** Sorts the triangles of each class along a Morton curve. */
@@ -202,7 +212,7 @@ static void sort_triangles(builder *b, uint64_t *scratch, size_t begin[VXM_WINDI
   size_t at[VXM_WINDING_CLASSES + 1] = {0};
   int64_t middle[3];
   for (size_t t = 0; t < tree->count; t++) {
-    at[look_at(tree, t, middle) + 1]++;
+    at[look_at(b, t, middle) + 1]++;
     for (int a = 0; a < 3; a++) {
       low[a] = vxm_min(low[a], middle[a]);
       high[a] = vxm_max(high[a], middle[a]);
@@ -215,7 +225,7 @@ static void sort_triangles(builder *b, uint64_t *scratch, size_t begin[VXM_WINDI
   memcpy(begin, at, sizeof at);
   double scale = ((1 << MORTON_BITS) - 1) / (double)side;
   for (size_t t = 0; t < tree->count; t++) {
-    int class = look_at(tree, t, middle);
+    int class = look_at(b, t, middle);
     uint64_t key = 0;
     for (int a = 0; a < 3; a++)
       key |= spread((uint64_t)((double)(middle[a] - low[a]) * scale)) << a;
@@ -228,8 +238,7 @@ static void sort_triangles(builder *b, uint64_t *scratch, size_t begin[VXM_WINDI
 vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, const uint32_t (*corners)[3],
                                    size_t count, const vxm_snapped_points *placed, bool mirrored,
                                    vxm_error *error) {
-  *out = (vxm_winding_tree){
-      .context = context, .corners = corners, .placed = placed, .mirrored = mirrored, .count = count};
+  *out = (vxm_winding_tree){.context = context, .placed = placed, .count = count};
   if (count > UINT32_MAX / 2)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many for winding numbers; split the mesh",
                     count);
@@ -238,8 +247,9 @@ vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, 
   uint64_t *keys = vxm_alloc(context, count, 2 * sizeof *keys, &local);
   out->nodes = keys ? vxm_alloc(context, 2 * count, sizeof *out->nodes, &local) : NULL;
   out->moments = out->nodes ? vxm_alloc(context, 2 * count, sizeof *out->moments, &local) : NULL;
-  if (out->moments) {
-    builder b = {out, keys, 1.0 / (double)placed->lattice.unit};
+  out->triangles = out->moments ? vxm_alloc(context, count, sizeof *out->triangles, &local) : NULL;
+  if (out->triangles) {
+    builder b = {out, corners, mirrored, keys, 1.0 / (double)placed->lattice.unit};
     sort_triangles(&b, keys + count, begin);
     for (int c = 0; c < VXM_WINDING_CLASSES; c++)
       if (begin[c] < begin[c + 1]) {
@@ -248,7 +258,7 @@ vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, 
       }
   }
   vxm_free(context, keys);
-  if (out->moments)
+  if (out->triangles)
     return VXM_OK;
   vxm_winding_tree_destroy(out);
   vxm_error_pass(error, &local);
@@ -256,6 +266,7 @@ vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, 
 }
 
 void vxm_winding_tree_destroy(vxm_winding_tree *tree) {
+  vxm_free(tree->context, tree->triangles);
   vxm_free(tree->context, tree->moments);
   vxm_free(tree->context, tree->nodes);
   *tree = (vxm_winding_tree){.context = tree->context};

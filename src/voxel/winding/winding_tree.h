@@ -32,10 +32,9 @@ typedef struct vxm_winding_moments {
 
 typedef struct vxm_winding_tree {
   vxm_context *context;
-  const uint32_t (*corners)[3]; /**< of the triangles, by number */
   const vxm_snapped_points *placed;
-  bool mirrored; /**< corners b and c of each triangle change places */
-  size_t count;  /**< of triangles */
+  size_t count;              /**< of triangles */
+  double (*triangles)[3][3]; /**< their corners, in the order of leaves; whole lattice steps */
   vxm_winding_node *nodes;
   vxm_winding_moments *moments; /**< of each node */
   size_t node_count;
@@ -44,7 +43,7 @@ typedef struct vxm_winding_tree {
 } vxm_winding_tree;
 
 /**
- * Builds the trees of triangles as points are placed; both are lent.
+ * Builds the trees of triangles as points are placed; the points are lent.
  *
  * @param mirrored the points have been placed by a transform that turns triangles inside out
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
@@ -53,14 +52,5 @@ vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, 
                                    size_t count, const vxm_snapped_points *placed, bool mirrored,
                                    vxm_error *error);
 void vxm_winding_tree_destroy(vxm_winding_tree *tree);
-
-/** The corners of a triangle on the lattice. */
-static inline void vxm_winding_triangle_at(const vxm_winding_tree *tree, uint32_t triangle,
-                                           vxm_point out[3]) {
-  const uint32_t *corner = tree->corners[triangle];
-  out[0] = vxm_snapped_points_at(tree->placed, corner[0]);
-  out[1 + tree->mirrored] = vxm_snapped_points_at(tree->placed, corner[1]);
-  out[2 - tree->mirrored] = vxm_snapped_points_at(tree->placed, corner[2]);
-}
 
 #endif

@@ -60,8 +60,10 @@ static void make_levels(void) {
   for (int l = 0; l < VXM_WINDING_LEVELS; l++) {
     levels[l].reach = (float)(((double)(INT64_C(4) << l) - 1) / 2);
     make_bound(l);
-    for (int i = 0; i < 4; i++)
-      levels[l].place[i] = (float)place_of(l, i);
+    for (int i = 0; i < 16; i++) {
+      levels[l].x[i] = (float)place_of(l, i % 4);
+      levels[l].y[i] = levels[l].z[i / 4] = (float)place_of(l, i / 4);
+    }
     double quarter = (double)(INT64_C(1) << l);
     for (int half = 0; half < 2 && l > 0; half++)
       for (int to = 0; to < 4; to++)

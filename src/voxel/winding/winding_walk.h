@@ -27,13 +27,20 @@ enum {
 /** Where the samples of a cell lie, from its middle, along each axis alike, and what they tell its children.
  */
 typedef struct vxm_winding_level {
-  float place[4];
+  float x[16], y[16], z[4]; /**< of samples 4 y + x with one z, and of all with another z */
   float to_child[2][4][4]; /**< [half][sample of the child][sample] */
   float bound[4][4]; /**< [coefficient of Bernstein's polynomials][sample]: these bound what is between */
   float reach;       /**< of the voxel centres of a cell, from its middle, along an axis */
 } vxm_winding_level;
 
 typedef struct vxm_winding_walk vxm_winding_walk;
+
+/** Bit v of a mask is that of voxel 16 z + 4 y + x. */
+typedef struct vxm_winding_brick {
+  float value[VXM_BRICK];
+  uint64_t above[2]; /**< -1/2, 1/2 */
+  uint64_t doubtful; /**< they are nearer to a number and a half than walk->doubt, or may lie on a triangle */
+} vxm_winding_brick;
 
 /** What one thread works with. */
 typedef struct vxm_winding_scratch {
@@ -42,21 +49,21 @@ typedef struct vxm_winding_scratch {
   size_t count, capacity;
   vxm_status status; /**< what `nodes` could not grow for; then results mean nothing */
   vxm_error error;
-  int64_t decided; /**< for those who settle */
 } vxm_winding_scratch;
 
 struct vxm_winding_walk {
   const vxm_winding_tree *tree;
   const vxm_winding_level *levels;
+  float doubt;
   bool strict; /**< nodes are opened sooner, and all cells come down to bricks */
   bool whole;  /**< all cells come down to bricks, as their numbers themselves are wanted */
   /** Whether anything is asked about in a cell. */
   bool (*wants)(const vxm_winding_walk *walk, const int64_t origin[3], int level);
   /** The winding number rounds to `number` in all of a cell of the level. */
   void (*settle_cell)(const vxm_winding_walk *walk, const int64_t origin[3], int level, int number);
-  /** The winding numbers of a brick; bit v: voxel v may lie on a triangle. */
-  void (*settle_brick)(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
-                       const float value[VXM_BRICK], uint64_t touching);
+  /** The winding numbers of a brick. */
+  void (*settle_brick)(const vxm_winding_walk *walk, const int64_t origin[3],
+                       const vxm_winding_brick *brick);
   /** Takes over a cell of task_level, as arguments for vxm_winding_kernels.descend; NULL = nobody does. */
   void (*hand_on)(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
                   const float samples[VXM_BRICK], size_t list, size_t count);
