@@ -56,7 +56,7 @@ static uint64_t *fill(subject *s, vxm_layout layout, int64_t slices, const uint6
   uint64_t *words = calloc(all.slice_words * (size_t)all.slow_dim, sizeof *words);
   assert_int_equal(vxm_winding_mesh_place(&s->mesh, &s->chain, &s->placed, layout.fast, false, NULL), VXM_OK);
   for (int64_t at = 0; at < all.slow_dim; at += slices) {
-    int64_t added = 0;
+    bool added = false;
     vxm_error error = VXM_ERROR_INIT;
     vxm_window window = vxm_window_of(space, layout, at, vxm_min(at + slices, all.slow_dim));
     size_t offset = (size_t)at * all.slice_words;

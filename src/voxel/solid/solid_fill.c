@@ -22,12 +22,10 @@ static vxm_status fill_by_winding(vxm_voxel_pass *pass, const vxm_window *window
   if (status != VXM_OK)
     return status;
   size_t depth = (size_t)(window->end - window->begin);
-  memset(window->words, 0, depth * window->slice_words * sizeof *window->words);
-  int64_t added = 0;
   pass->winding_decided += window->fast_dim * window->middle_dim * (int64_t)depth;
   status =
-      vxm_winding_fill(&pass->all_winding, window, NULL, pass->confidence, pass->workspace, &added, error);
-  pass->added |= added > 0;
+      vxm_winding_fill(&pass->all_winding, window, NULL, pass->confidence, pass->workspace, &pass->added,
+                            error);
   return status;
 }
 
@@ -52,11 +50,19 @@ static vxm_status fill_by_one(vxm_voxel_pass *pass, const vxm_window *window, vx
 }
 
 static vxm_status fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
+  const vxm_mesh_analysis *analysis = pass->analysis;
+  bool winding = pass->options.method == VXM_METHOD_WINDING;
   if (vxm_one_voter(&pass->options))
     return fill_by_one(pass, window, error);
-  vxm_status status = vxm_solid_vote(pass, window, error);
-  return status == VXM_OK && pass->options.method == VXM_METHOD_WINDING ? fill_by_winding(pass, window, error)
-                                                                        : status;
+  /* With the winding number votes tell what is contested, and which parts have voxels of their own. */
+  bool one_closed = winding && analysis->triangles.split.part_count == 1 &&
+                    !vxm_votes_wanted(analysis, &pass->options);
+  vxm_status status = one_closed ? VXM_OK : vxm_solid_vote(pass, window, error);
+  if (status == VXM_OK && winding)
+    status = fill_by_winding(pass, window, error);
+  if (status == VXM_OK && one_closed && pass->added && pass->has_voxels)
+    atomic_store_explicit(&pass->has_voxels[0], 1, memory_order_relaxed);
+  return status;
 }
 
 vxm_status vxm_solid_fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {

@@ -29,7 +29,7 @@ static vxm_status settle_contested(vxm_voxel_pass *pass, const vxm_window *windo
                                    vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
   vxm_status status = VXM_OK;
-  int64_t added = 0;
+  bool added = false;
   if (!pass->open_winding.chain) {
     const vxm_winding_chain *chain;
     status = vxm_orient_open(&chain, analysis, pass->workspace, error);
@@ -40,8 +40,8 @@ static vxm_status settle_contested(vxm_voxel_pass *pass, const vxm_window *windo
   if (status == VXM_OK)
     status =
         vxm_winding_fill(&pass->open_winding, window, mask, pass->confidence, pass->workspace, &added, error);
-  pass->added |= added > 0;
-  if (added > 0 && pass->has_voxels)
+  pass->added |= added;
+  if (added && pass->has_voxels)
     for (size_t p = vxm_voted_begin(analysis, &pass->options); p < analysis->triangles.split.part_count; p++)
       atomic_store_explicit(&pass->has_voxels[p], 1, memory_order_relaxed);
   return status;

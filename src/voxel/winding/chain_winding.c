@@ -25,6 +25,15 @@ static int facing(const vxm_snapped_points *placed, const uint32_t corners[3], i
   return (left > right) - (left < right);
 }
 
+/** Whether a triangle's box covers no row: its corners lie in one cell along an axis across the rows. */
+static bool covers_none(const vxm_snapped_points *placed, const uint32_t corners[3], int axis) {
+  if (placed->wide)
+    return false;
+  uint64_t first = placed->cells[corners[0]];
+  uint64_t differ = (first ^ placed->cells[corners[1]]) | (first ^ placed->cells[corners[2]]);
+  return !(differ & vxm_cell_mask((axis + 1) % 3)) || !(differ & vxm_cell_mask((axis + 2) % 3));
+}
+
 vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_chain *chain,
                                    const vxm_snapped_points *placed, int axis, bool mirrored,
                                    vxm_error *error) {
@@ -45,6 +54,8 @@ vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_cha
     return status;
   size_t entered = 0, left = chain->closed_count;
   for (size_t t = 0; t < chain->closed_count; t++) {
+    if (covers_none(placed, chain->closed[t], axis))
+      continue;
     int side = facing(placed, chain->closed[t], axis);
     if (side == 0)
       continue;
@@ -63,11 +74,14 @@ typedef struct fold_state {
   vxm_chain_winding *out;
   const vxm_kernels *kernels;
   vxm_slabs slabs;
-  pthread_mutex_t mutex; /**< of `more` and `status` */
+  pthread_mutex_t mutex; /**< of `more`, `crossings` and `status` */
   vxm_status status;
   vxm_error error;
   vxm_task_progress watch;
 } fold_state;
+
+/** The place of a row's crossings is not known yet. */
+static const uint32_t to_count = UINT32_MAX;
 
 static void add_more(fold_state *state, size_t word, unsigned bit, int sign) {
   vxm_chain_winding *out = state->out;
@@ -79,7 +93,25 @@ static void add_more(fold_state *state, size_t word, unsigned bit, int sign) {
     size_t row = word / out->window.row_words;
     out->more[out->more_count++] =
         (vxm_more_crossings){row, (int64_t)(64 * (word - row * out->window.row_words) + bit), sign};
-    out->counted[row] = 1;
+    out->counted[row] = to_count;
+  }
+  pthread_mutex_unlock(&state->mutex);
+}
+
+/** Keeps the crossings of a row, which parity does not tell. */
+static void keep_row(fold_state *state, size_t row, const uint64_t *enter, const uint64_t *leave) {
+  vxm_chain_winding *out = state->out;
+  size_t words = out->window.row_words;
+  pthread_mutex_lock(&state->mutex);
+  size_t number = out->crossing_count + 1;
+  if (state->status == VXM_OK)
+    state->status = vxm_grow(out->context, (void **)&out->crossings, &out->crossing_capacity,
+                             2 * words * (number + 1), sizeof *out->crossings, &state->error);
+  if (state->status == VXM_OK) {
+    memcpy(out->crossings + 2 * words * number, enter, words * sizeof *enter);
+    memcpy(out->crossings + 2 * words * number + words, leave, words * sizeof *leave);
+    out->counted[row] = (uint32_t)number;
+    out->crossing_count = number;
   }
   pthread_mutex_unlock(&state->mutex);
 }
@@ -92,23 +124,23 @@ static void take_crossings(fold_state *state, size_t slab, int kind, uint64_t *b
     vxm_crossing_bin_piece piece;
     while (reader.part == 0 && vxm_crossing_bin_next(&reader, &piece))
       for (size_t i = 0; i < piece.count; i++) {
-        size_t word = first + piece.data[i] / 64;
+        size_t word = piece.data[i] / 64;
         uint64_t bit = UINT64_C(1) << (piece.data[i] % 64);
         if (bits[word] & bit)
-          add_more(state, word, (unsigned)(piece.data[i] % 64), kind ? -1 : 1);
+          add_more(state, first + word, (unsigned)(piece.data[i] % 64), kind ? -1 : 1);
         bits[word] |= bit;
       }
   }
 }
 
 int64_t vxm_chain_winding_at(const vxm_chain_winding *counted, size_t row, int64_t voxel) {
-  const uint64_t *enter = counted->enter + row * counted->window.row_words,
-                 *leave = counted->leave + row * counted->window.row_words;
+  size_t words = counted->window.row_words;
+  const uint64_t *enter = counted->crossings + 2 * words * counted->counted[row], *leave = enter + words;
   int64_t number = 0, w = 0;
   for (; w < voxel / 64; w++)
-    number += __builtin_popcountll(enter[w]) - __builtin_popcountll(leave[w]);
+    number += vxm_popcount(enter[w]) - vxm_popcount(leave[w]);
   uint64_t mask = vxm_low_bits((unsigned)(voxel % 64) + 1);
-  number += __builtin_popcountll(enter[w] & mask) - __builtin_popcountll(leave[w] & mask);
+  number += vxm_popcount(enter[w] & mask) - vxm_popcount(leave[w] & mask);
   size_t low = 0, high = counted->more_count;
   while (low < high) {
     size_t middle = (low + high) / 2;
@@ -142,36 +174,37 @@ static void fold_slab(size_t task, int worker, void *payload) {
           end = vxm_min(begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
   size_t first = (size_t)begin * window->slice_words, count = (size_t)(end - begin) * window->slice_words;
   size_t row = first / window->row_words, rows = (size_t)(end - begin) * (size_t)window->middle_dim;
-  memset(out->enter + first, 0, count * sizeof *out->enter);
-  memset(out->leave + first, 0, count * sizeof *out->leave);
-  memset(out->counted + row, 0, rows);
-  take_crossings(state, task, 0, out->enter, first);
-  take_crossings(state, task, 1, out->leave, first);
-  for (size_t w = first; w < first + count; w++)
-    window->words[w] = out->enter[w] ^ out->leave[w];
-  state->kernels->fold_rows(window->words + first, window->row_words, rows, vxm_window_tail_mask(window));
-  for (size_t r = row; r < row + rows; r++) {
+  uint64_t *enter = out->slabs + 2 * (size_t)worker * state->slabs.words, *leave = enter + state->slabs.words;
+  uint64_t *bits = window->words + first;
+  memset(out->counted + row, 0, rows * sizeof *out->counted);
+  take_crossings(state, task, 0, enter, first);
+  take_crossings(state, task, 1, leave, first);
+  for (size_t w = 0; w < count; w++)
+    bits[w] = enter[w] ^ leave[w];
+  state->kernels->fold_rows(bits, window->row_words, rows, vxm_window_tail_mask(window));
+  for (size_t r = 0; r < rows; r++) {
     size_t at = r * window->row_words;
-    if (!parity_tells(window->words + at, out->enter + at, out->leave + at, window->row_words))
-      out->counted[r] = 1;
+    if (out->counted[row + r] || !parity_tells(bits + at, enter + at, leave + at, window->row_words))
+      keep_row(state, row + r, enter + at, leave + at);
   }
+  memset(enter, 0, count * sizeof *enter);
+  memset(leave, 0, count * sizeof *leave);
   vxm_task_progress_step(&state->watch);
 }
 
-/** The bits of a row by counting. */
-static void count_row(size_t task, int worker, void *payload) {
+/** The bits of rows by counting. */
+static void count_rows(size_t slice, int worker, void *payload) {
   (void)worker;
   vxm_chain_winding *out = payload;
   const vxm_window *window = &out->window;
-  size_t rows = (size_t)window->middle_dim;
-  for (size_t row = task * rows; row < (task + 1) * rows; row++) {
+  size_t rows = (size_t)window->middle_dim, words = window->row_words;
+  for (size_t row = slice * rows; row < (slice + 1) * rows; row++) {
     if (!out->counted[row])
       continue;
-    uint64_t *bits = window->words + row * window->row_words;
-    const uint64_t *enter = out->enter + row * window->row_words,
-                   *leave = out->leave + row * window->row_words;
+    uint64_t *bits = window->words + row * words;
+    const uint64_t *enter = out->crossings + 2 * words * out->counted[row], *leave = enter + words;
     int64_t number = 0;
-    memset(bits, 0, window->row_words * sizeof *bits);
+    memset(bits, 0, words * sizeof *bits);
     for (int64_t i = 0; i < window->fast_dim; i++) {
       if ((enter[i / 64] | leave[i / 64]) >> (i % 64) & 1)
         number = vxm_chain_winding_at(out, row, i);
@@ -191,23 +224,29 @@ static int compare_more(const void *a, const void *b) {
 
 /* ---- All of it ---- */
 
-/** Room for a window: three times its words. */
-static vxm_status reserve(vxm_chain_winding *out, vxm_error *error) {
+/** Room for a window's words, its rows and two slabs for each worker. */
+static vxm_status reserve(vxm_chain_winding *out, bool in_place, size_t slab_words, vxm_error *error) {
   vxm_window *window = &out->window;
-  size_t depth = (size_t)(window->end - window->begin), words = depth * window->slice_words;
-  size_t rows = depth * (size_t)window->middle_dim, row_capacity = out->row_capacity;
+  size_t depth = (size_t)(window->end - window->begin), rows = depth * (size_t)window->middle_dim;
+  size_t slabs = 2 * (size_t)vxm_context_threads(out->context) * slab_words;
   vxm_status status = VXM_OK;
-  uint64_t **to[3] = {&window->words, &out->enter, &out->leave};
-  for (int i = 0; i < 3 && status == VXM_OK; i++) {
-    size_t capacity = out->word_capacity;
-    status = vxm_renew(out->context, (void **)to[i], &capacity, words, sizeof **to[i], error);
-    if (i == 2 || status != VXM_OK) /* after a failure all three are made anew */
-      out->word_capacity = status == VXM_OK ? capacity : 0;
+  if (!in_place) {
+    status = vxm_renew(out->context, (void **)&out->words, &out->word_capacity, depth * window->slice_words,
+                       sizeof *out->words, error);
+    window->words = out->words;
   }
   if (status == VXM_OK)
-    status = vxm_renew(out->context, (void **)&out->counted, &row_capacity, rows, 1, error);
-  out->row_capacity = row_capacity;
-  return status;
+    status = vxm_renew(out->context, (void **)&out->counted, &out->row_capacity, rows, sizeof *out->counted,
+                       error);
+  if (status != VXM_OK || slabs <= out->slab_capacity)
+    return status;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_free(out->context, out->slabs);
+  out->slabs = vxm_calloc(out->context, slabs, sizeof *out->slabs, &local);
+  out->slab_capacity = out->slabs ? slabs : 0;
+  if (!out->slabs)
+    vxm_error_pass(error, &local);
+  return local.code;
 }
 
 /** Puts the crossings of the triangles begin..end-1 into bins. */
@@ -233,20 +272,19 @@ static vxm_status raster(fold_state *state, vxm_workspace *workspace, const vxm_
 }
 
 vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspace,
-                                  const vxm_snapped_points *placed, const vxm_window *window,
+                                  const vxm_snapped_points *placed, const vxm_window *window, bool in_place,
                                   vxm_error *error) {
-  uint64_t *words = out->window.words;
   out->window = *window;
-  out->window.words = words;
+  in_place &= window->slice_words == window->row_words * (size_t)window->middle_dim;
   out->window.slice_words = window->row_words * (size_t)window->middle_dim;
   out->bins[0].context = out->bins[1].context = out->context;
-  out->more_count = 0;
-  vxm_status status = reserve(out, error);
-  if (status != VXM_OK)
-    return status;
+  out->more_count = out->crossing_count = 0;
   size_t depth = (size_t)(window->end - window->begin);
   fold_state state = {.out = out, .kernels = vxm_kernels_get(), .error = VXM_ERROR_INIT};
   state.slabs = vxm_slabs_of((int64_t)depth, out->window.slice_words, vxm_context_threads(out->context));
+  vxm_status status = reserve(out, in_place, state.slabs.words, error);
+  if (status != VXM_OK)
+    return status;
   vxm_task_progress_start(&state.watch, out->context, "counting crossings", state.slabs.count, error);
   for (int kind = 0; kind < 2 && status == VXM_OK; kind++)
     status = raster(&state, workspace, placed, kind, error);
@@ -260,11 +298,11 @@ vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspa
     return state.status;
   }
   status = vxm_task_progress_end(&state.watch);
-  if (status != VXM_OK)
+  if (status != VXM_OK || out->crossing_count == 0)
     return status;
   if (out->more_count > 0)
     qsort(out->more, out->more_count, sizeof *out->more, compare_more);
-  return vxm_parallel_asked(out->context, depth, count_row, out, error);
+  return vxm_parallel_asked(out->context, depth, count_rows, out, error);
 }
 
 void vxm_chain_winding_destroy(vxm_chain_winding *counted) {
@@ -274,9 +312,9 @@ void vxm_chain_winding_destroy(vxm_chain_winding *counted) {
   vxm_free(context, counted->part);
   vxm_free(context, counted->corners);
   vxm_free(context, counted->more);
+  vxm_free(context, counted->crossings);
   vxm_free(context, counted->counted);
-  vxm_free(context, counted->leave);
-  vxm_free(context, counted->enter);
-  vxm_free(context, counted->window.words);
+  vxm_free(context, counted->slabs);
+  vxm_free(context, counted->words);
   *counted = (vxm_chain_winding){.context = context};
 }

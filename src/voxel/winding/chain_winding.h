@@ -24,13 +24,16 @@ typedef struct vxm_more_crossings {
 /** Start from {.context = ...}; keeps its memory from one window to the next. */
 typedef struct vxm_chain_winding {
   vxm_context *context;
-  vxm_window window; /**< its words are bits: whether the number is at least 1 */
-  uint64_t *enter;   /**< as these words: a triangle is entered in this voxel */
-  uint64_t *leave;
-  uint8_t *counted; /**< of each row: it has numbers other than 0 and 1 */
-  size_t word_capacity, row_capacity;
+  vxm_window window;  /**< its words are bits: whether the number is at least 1; its own, or lent */
+  uint64_t *words;    /**< its own */
+  uint32_t *counted;  /**< of each row: 0; or, where it has other numbers than 0 and 1, the number of its crossings */
+  uint64_t *crossings; /**< of these rows, from 1 on: words of where triangles are entered, then of where they are
+                          left */
+  size_t word_capacity, row_capacity, crossing_count, crossing_capacity;
   vxm_more_crossings *more; /**< sorted by row and voxel */
   size_t more_count, more_capacity;
+  uint64_t *slabs; /**< scratch of each worker, zero */
+  size_t slab_capacity;
   uint32_t (*corners)[3]; /**< of the chain: those that are entered first, then those that are left */
   uint32_t *part;
   size_t corner_capacity, entered, corner_count;
@@ -48,14 +51,15 @@ vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_cha
                                    vxm_error *error);
 
 /**
- * Counts in a window, whose own words are not touched. Its rows run along the axis of the call before.
+ * Counts in a window. Its rows run along the axis of the call before.
  *
+ * @param in_place  the bits replace the window's own words; else these are not touched
  * @param workspace lent
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. The same for any number of
  * threads
  */
 vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspace,
-                                  const vxm_snapped_points *placed, const vxm_window *window,
+                                  const vxm_snapped_points *placed, const vxm_window *window, bool in_place,
                                   vxm_error *error);
 void vxm_chain_winding_destroy(vxm_chain_winding *counted);
 

@@ -274,47 +274,50 @@ static vxm_status walk(fill_job *job, int top, vxm_error *error) {
 
 /* ---- What is asked, and what comes of it ---- */
 
-static void mark_asked_slice(size_t slice, int worker, void *payload) {
+/** Marks the bricks of four slices by the rows of each together. */
+static void mark_asked_slice(size_t layer, int worker, void *payload) {
   (void)worker;
   const fill_job *job = payload;
   const vxm_window *window = job->window;
-  int64_t at[3], base = window->begin / 4 * 4 + 4 * (int64_t)slice;
-  for (int64_t s = vxm_max(base, window->begin); s < vxm_min(base + 4, window->end); s++)
-    for (int64_t m = 0; m < window->middle_dim; m++) {
-      const uint64_t *row =
-          job->asked + (size_t)(s - window->begin) * window->slice_words + (size_t)m * window->row_words;
-      at[window->layout.slow] = s;
-      at[window->layout.middle] = m;
-      for (size_t w = 0; w < window->row_words; w++)
-        for (uint64_t left = row[w]; left;) {
-          int first = __builtin_ctzll(left) & ~3;
-          at[window->layout.fast] = 64 * (int64_t)w + first;
-          *vxm_brick_mask_at(&job->mesh->asked, at, 0) = 1;
-          left &= ~(UINT64_C(15) << first);
-        }
+  int64_t base = window->begin / VXM_BRICK_SIDE * VXM_BRICK_SIDE + VXM_BRICK_SIDE * (int64_t)layer, at[3];
+  int64_t s_begin = vxm_max(base, window->begin), s_end = vxm_min(base + VXM_BRICK_SIDE, window->end);
+  at[window->layout.slow] = s_begin;
+  for (int64_t m = 0; m < window->middle_dim && s_begin < s_end; m += VXM_BRICK_SIDE) {
+    at[window->layout.middle] = m;
+    for (size_t w = 0; w < window->row_words; w++) {
+      uint64_t any = 0;
+      for (int64_t s = s_begin; s < s_end; s++)
+        for (int64_t r = m; r < vxm_min(m + VXM_BRICK_SIDE, window->middle_dim); r++)
+          any |= job->asked[(size_t)(s - window->begin) * window->slice_words + (size_t)r * window->row_words + w];
+      for (; any; any &= ~(UINT64_C(15) << (__builtin_ctzll(any) & ~3))) {
+        at[window->layout.fast] = 64 * (int64_t)w + __builtin_ctzll(any);
+        *vxm_brick_mask_at(&job->mesh->asked, at, 0) = 1;
+      }
     }
+  }
 }
 
 typedef struct merge_state {
   const fill_job *job;
-  atomic_int_fast64_t added;
+  atomic_bool added;
 } merge_state;
 
+/** Adds what was asked about and is inside to the window. */
 static void merge_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   merge_state *state = payload;
   const fill_job *job = state->job;
   const vxm_window *window = job->window, *from = decided(job);
-  uint64_t *to = window->words + slice * window->slice_words;
+  uint64_t *to = window->words + slice * window->slice_words, added = 0;
   const uint64_t *bits = from->words + slice * from->slice_words,
                  *asked = job->asked ? job->asked + slice * window->slice_words : NULL;
-  int64_t added = 0;
   for (size_t w = 0; w < from->slice_words; w++) {
-    uint64_t fresh = bits[w] & ~to[w] & (asked ? asked[w] : ~UINT64_C(0));
-    added += __builtin_popcountll(fresh);
-    to[w] |= fresh;
+    uint64_t inside = asked ? bits[w] & asked[w] : bits[w];
+    added |= inside & ~(asked ? to[w] : 0);
+    to[w] = asked ? to[w] | inside : inside;
   }
-  atomic_fetch_add_explicit(&state->added, added, memory_order_relaxed);
+  if (added)
+    atomic_store_explicit(&state->added, true, memory_order_relaxed);
 }
 
 /** The voxels about which the trees are asked, if there are any. */
@@ -342,10 +345,10 @@ static vxm_status decide_by_tree(fill_job *job, vxm_error *error) {
 }
 
 vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, const uint64_t *asked,
-                            uint8_t *confidence, vxm_workspace *workspace, int64_t *added, vxm_error *error) {
+                            uint8_t *confidence, vxm_workspace *workspace, bool *added, vxm_error *error) {
   if (window->begin >= window->end)
     return VXM_OK;
-  vxm_status status = vxm_chain_winding_fill(&mesh->closed, workspace, mesh->placed, window, error);
+  vxm_status status = vxm_chain_winding_fill(&mesh->closed, workspace, mesh->placed, window, !asked, error);
   if (status != VXM_OK)
     return status;
   fill_job job = {.walk = {.tree = &mesh->tree,
@@ -384,9 +387,15 @@ vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, co
   vxm_free(context, job.tasks);
   if (status != VXM_OK)
     return status;
+  if (decided(&job)->words == window->words) {
+    size_t words = window->slice_words * (size_t)(window->end - window->begin);
+    for (size_t w = 0; w < words && !*added; w++)
+      *added = window->words[w] != 0;
+    return VXM_OK;
+  }
   merge_state state = {.job = &job};
-  atomic_init(&state.added, 0);
+  atomic_init(&state.added, false);
   vxm_parallel(context, (size_t)(window->end - window->begin), merge_slice, &state);
-  *added += atomic_load(&state.added);
+  *added |= atomic_load(&state.added);
   return VXM_OK;
 }
