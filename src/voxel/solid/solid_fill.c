@@ -23,8 +23,7 @@ static vxm_status fill_by_winding(vxm_voxel_pass *pass, const vxm_window *window
     return status;
   size_t depth = (size_t)(window->end - window->begin);
   pass->winding_decided += window->fast_dim * window->middle_dim * (int64_t)depth;
-  status =
-      vxm_winding_fill(&pass->all_winding, window, NULL, pass->confidence, pass->workspace, &pass->added,
+  status = vxm_winding_fill(&pass->all_winding, window, NULL, pass->confidence, pass->workspace, &pass->added,
                             error);
   return status;
 }
@@ -55,8 +54,8 @@ static vxm_status fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error
   if (vxm_one_voter(&pass->options))
     return fill_by_one(pass, window, error);
   /* With the winding number votes tell what is contested, and which parts have voxels of their own. */
-  bool one_closed = winding && analysis->triangles.split.part_count == 1 &&
-                    !vxm_votes_wanted(analysis, &pass->options);
+  bool one_closed =
+      winding && analysis->triangles.split.part_count == 1 && !vxm_votes_wanted(analysis, &pass->options);
   vxm_status status = one_closed ? VXM_OK : vxm_solid_vote(pass, window, error);
   if (status == VXM_OK && winding)
     status = fill_by_winding(pass, window, error);

@@ -50,11 +50,14 @@ bool vxm_votes_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_opti
 }
 
 int vxm_buffers_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
+  /* What is decided by winding numbers, and the masks of bricks, for what is contested and for all. */
+  int winding = options->method == VXM_METHOD_WINDING ? 2 : 0;
   if (!vxm_votes_wanted(analysis, options))
-    return 0;
+    return winding;
+  winding += vxm_caps_wanted(options) ? 2 : 0;
   if (vxm_voted_begin(analysis, options) + 1 == analysis->triangles.split.part_count)
-    return vxm_caps_wanted(options) ? 1 : 0; /* one part: only what is contested */
-  return 4;                                  /* three axes, and what is contested or the tetrahedra */
+    return winding + vxm_caps_wanted(options); /* one part: only what is contested */
+  return winding + 4;                          /* three axes, and what is contested or the tetrahedra */
 }
 
 bool vxm_apexes_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {

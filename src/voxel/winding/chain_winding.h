@@ -24,11 +24,12 @@ typedef struct vxm_more_crossings {
 /** Start from {.context = ...}; keeps its memory from one window to the next. */
 typedef struct vxm_chain_winding {
   vxm_context *context;
-  vxm_window window;  /**< its words are bits: whether the number is at least 1; its own, or lent */
-  uint64_t *words;    /**< its own */
-  uint32_t *counted;  /**< of each row: 0; or, where it has other numbers than 0 and 1, the number of its crossings */
-  uint64_t *crossings; /**< of these rows, from 1 on: words of where triangles are entered, then of where they are
-                          left */
+  vxm_window window;   /**< its words are bits: whether the number is at least 1; its own, or lent */
+  uint64_t *words;     /**< its own */
+  uint32_t *counted;   /**< of each row: 0; or, where it has other numbers than 0 and 1, the number of its
+                          crossings */
+  uint64_t *crossings; /**< of these rows, from 1 on: words of where triangles are entered, then of where they
+                          are left */
   size_t word_capacity, row_capacity, crossing_count, crossing_capacity;
   vxm_more_crossings *more; /**< sorted by row and voxel */
   size_t more_count, more_capacity;

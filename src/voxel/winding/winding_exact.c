@@ -64,8 +64,26 @@ static int side_of(const vxm_point p[3], const int64_t q[3], bool *inside) {
   return n[0] ? -sign_of(n[0]) : n[1] ? -sign_of(n[1]) : -sign_of(n[2]);
 }
 
-/** Half the solid angle of a triangle. */
-static double half_angle(const vxm_winding_tree *tree, uint32_t triangle, const int64_t q[3],
+/** A sum of half solid angles: the argument of a complex number, and how often the sum went round. */
+typedef struct angle_sum {
+  double real, imaginary, turns;
+} angle_sum;
+
+/** Adds the argument of (den, num), which are not both 0. */
+static void turn(angle_sum *sum, double den, double num) {
+  double by = 1 / sqrt(den * den + num * num), real, imaginary;
+  den *= by;
+  num *= by;
+  real = sum->real * den - sum->imaginary * num;
+  imaginary = sum->real * num + sum->imaginary * den;
+  bool was = sum->imaginary < 0, adds = num < 0, is = imaginary < 0;
+  sum->turns += (!was && !adds && is) - (was && adds && !is);
+  sum->real = real;
+  sum->imaginary = imaginary;
+}
+
+/** Adds half the solid angle of a triangle. */
+static void add_triangle(angle_sum *sum, const vxm_winding_tree *tree, uint32_t triangle, const int64_t q[3],
                          const double at[3]) {
   const double(*corner)[3] = (const double(*)[3])tree->triangles[triangle];
   double d[3][3], length[3], dot[3], volume = 0;
@@ -82,29 +100,29 @@ static double half_angle(const vxm_winding_tree *tree, uint32_t triangle, const 
     int u = (a + 1) % 3, v = (a + 2) % 3;
     volume += d[0][a] * (d[1][u] * d[2][v] - d[1][v] * d[2][u]);
   }
-  double sides =
-      length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
-  if (fabs(volume) <= 1e-9 * (1 + length[0] * length[1] * length[2])) {
-    bool inside;
-    vxm_point p[3];
-    for (int k = 0; k < 3; k++)
-      for (int a = 0; a < 3; a++)
-        p[k].at[a] = (int64_t)(corner[k][a] * (double)tree->placed->lattice.unit);
-    int side = side_of(p, q, &inside);
-    if (side == 0)
-      return 0; /* a triangle without area */
-    if (inside)
-      return side * half_turn;
-    if (!(volume * side > 0)) /* in its plane, or as good as */
-      return sides < 0 && volume != 0 ? side * half_turn : 0;
+  double product = length[0] * length[1] * length[2];
+  double sides = product + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
+  if (fabs(volume) > 1e-9 * (1 + product)) {
+    turn(sum, sides, volume);
+    return;
   }
-  return atan2(volume, sides);
+  bool inside;
+  vxm_point p[3];
+  for (int k = 0; k < 3; k++)
+    for (int a = 0; a < 3; a++)
+      p[k].at[a] = (int64_t)(corner[k][a] * (double)tree->placed->lattice.unit);
+  int side = side_of(p, q, &inside);
+  if (inside || (sides < 0 && volume != 0 && side != 0 && !(volume * side > 0)))
+    sum->turns += 0.5 * side; /* in its plane, or as good as */
+  else if (volume * side > 0)
+    turn(sum, sides, volume);
 }
 
 /** Nodes at least `far` of their radii away count by their expansion. */
 static double sum_up(const vxm_winding_tree *tree, const int64_t voxel[3], double far) {
   int64_t q[3];
-  double at[3], far_sum = 0, near_sum = 0;
+  double at[3], far_sum = 0;
+  angle_sum near = {1, 0, 0};
   for (int a = 0; a < 3; a++) {
     q[a] = vxm_lattice_centre(&tree->placed->lattice, voxel[a]);
     at[a] = (double)voxel[a] + 0.5;
@@ -124,14 +142,14 @@ static double sum_up(const vxm_winding_tree *tree, const int64_t voxel[3], doubl
       if (square > reach * reach)
         far_sum += add_node(&tree->moments[i], d, square);
       else if (n->is_leaf)
-        near_sum += half_angle(tree, n->next, q, at);
+        add_triangle(&near, tree, n->next, q, at);
       else {
         stack[top++] = n->next + 1;
         stack[top++] = n->next;
       }
     }
   }
-  return near_sum / (2 * half_turn) + far_sum;
+  return atan2(near.imaginary, near.real) / (2 * half_turn) + near.turns + far_sum;
 }
 
 double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3]) {

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /** Bricks this close to a half are looked at again, voxels this close to it after that by doubles. */
-static const float doubt = 0.008F, strict_doubt = 5e-4F;
+static const float doubt = 0.008F, strict_doubt = 3e-4F;
 /** Winding numbers this close to a half are taken for it. */
 static const double tie = 1e-6;
 
@@ -288,7 +288,8 @@ static void mark_asked_slice(size_t layer, int worker, void *payload) {
       uint64_t any = 0;
       for (int64_t s = s_begin; s < s_end; s++)
         for (int64_t r = m; r < vxm_min(m + VXM_BRICK_SIDE, window->middle_dim); r++)
-          any |= job->asked[(size_t)(s - window->begin) * window->slice_words + (size_t)r * window->row_words + w];
+          any |= job->asked[(size_t)(s - window->begin) * window->slice_words +
+                            (size_t)r * window->row_words + w];
       for (; any; any &= ~(UINT64_C(15) << (__builtin_ctzll(any) & ~3))) {
         at[window->layout.fast] = 64 * (int64_t)w + __builtin_ctzll(any);
         *vxm_brick_mask_at(&job->mesh->asked, at, 0) = 1;

@@ -10,10 +10,10 @@
  * stay as they are.
  *
  * First by floats; bricks that come within 0.008 of a number and a half are looked at again more strictly,
- * and voxels that are then within 0.0005 of it by doubles. Within 10^-6 of one half a voxel is outside.
+ * and voxels that are then within 0.0003 of it by doubles. Within 10^-6 of one half a voxel is outside.
  *
- * @param asked      words of the voxels to ask about, laid out as the window's; NULL = all, and the window's words
- * are replaced
+ * @param asked      words of the voxels to ask about, laid out as the window's; NULL = all, and the window's
+ * words are replaced
  * @param confidence NULL, or a byte per voxel of the whole grid, x fastest: of those asked about it becomes
  * 255 min(1, |2 w - 1|). The window is then a whole grid
  * @param workspace  lent

@@ -18,7 +18,7 @@ typedef struct sums {
 typedef struct builder {
   vxm_winding_tree *out;
   const uint32_t (*corners)[3];
-  bool mirrored; /**< corners b and c of each triangle change places */
+  bool mirrored;  /**< corners b and c of each triangle change places */
   uint64_t *keys; /**< Morton number << 32 | triangle, of one class after the other */
   double step;    /**< voxels of a lattice step */
 } builder;

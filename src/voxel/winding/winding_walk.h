@@ -28,7 +28,7 @@ enum {
  */
 typedef struct vxm_winding_level {
   float x[16], y[16], z[4]; /**< of samples 4 y + x with one z, and of all with another z */
-  float to_child[2][4][4]; /**< [half][sample of the child][sample] */
+  float to_child[2][4][4];  /**< [half][sample of the child][sample] */
   float bound[4][4]; /**< [coefficient of Bernstein's polynomials][sample]: these bound what is between */
   float reach;       /**< of the voxel centres of a cell, from its middle, along an axis */
 } vxm_winding_level;
@@ -62,8 +62,7 @@ struct vxm_winding_walk {
   /** The winding number rounds to `number` in all of a cell of the level. */
   void (*settle_cell)(const vxm_winding_walk *walk, const int64_t origin[3], int level, int number);
   /** The winding numbers of a brick. */
-  void (*settle_brick)(const vxm_winding_walk *walk, const int64_t origin[3],
-                       const vxm_winding_brick *brick);
+  void (*settle_brick)(const vxm_winding_walk *walk, const int64_t origin[3], const vxm_winding_brick *brick);
   /** Takes over a cell of task_level, as arguments for vxm_winding_kernels.descend; NULL = nobody does. */
   void (*hand_on)(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
                   const float samples[VXM_BRICK], size_t list, size_t count);
