@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/winding_tree.h"
+#include "base/threads.h"
 #include "mesh/sort.h"
 
 #include <math.h>
@@ -15,12 +16,27 @@ typedef struct sums {
   double size, radius, low[3], high[3];
 } sums;
 
+/** The node of the keys begin..end-1; those below it follow each other from `below` on: its children, all
+ * below the first, all below the second. */
+typedef struct branch {
+  size_t begin, end, node, below;
+} branch;
+
+/** A branch that one thread builds. */
+typedef struct branch_task {
+  branch at;
+  sums made;
+} branch_task;
+
 typedef struct builder {
   vxm_winding_tree *out;
   const uint32_t (*corners)[3];
   bool mirrored;  /**< corners b and c of each triangle change places */
   uint64_t *keys; /**< Morton number << 32 | triangle, of one class after the other */
   double step;    /**< voxels of a lattice step */
+  branch_task *tasks;
+  size_t task_count, task_capacity, task_next;
+  vxm_error error;
 } builder;
 
 /** The corners of a triangle on the lattice. */
@@ -148,30 +164,98 @@ static size_t split(const uint64_t *keys, size_t begin, size_t end) {
   return low;
 }
 
-/** Builds the node of the keys begin..end-1; at most 30 + 32 nodes deep. */
-static sums build(builder *b, size_t begin, size_t end, size_t node) {
+static branch child_of(const branch *of, size_t middle, bool second) {
+  size_t first_below = 2 * (middle - of->begin) - 2;
+  return second ? (branch){middle, of->end, of->below + 1, of->below + 2 + first_below}
+                : (branch){of->begin, middle, of->below, of->below + 2};
+}
+
+/** A branch of at most this many triangles is a task of its own. */
+enum { TASK_TRIANGLES = 2048 };
+
+/** Lists the branches that are tasks. */
+static vxm_status list_tasks(builder *b, branch at) {
+  if (at.end - at.begin <= TASK_TRIANGLES) {
+    vxm_status status = vxm_grow(b->out->context, (void **)&b->tasks, &b->task_capacity, b->task_count + 1,
+                                 sizeof *b->tasks, &b->error);
+    if (status == VXM_OK)
+      b->tasks[b->task_count++].at = at;
+    return status;
+  }
+  size_t middle = split(b->keys, at.begin, at.end);
+  vxm_status status = list_tasks(b, child_of(&at, middle, false));
+  return status == VXM_OK ? list_tasks(b, child_of(&at, middle, true)) : status;
+}
+
+static sums build_leaf(builder *b, branch at) {
+  vxm_winding_tree *out = b->out;
+  vxm_point corner[3];
+  double(*p)[3] = out->triangles[at.begin];
+  corners_of(b, b->keys[at.begin] & UINT32_MAX, corner);
+  for (int k = 0; k < 3; k++)
+    for (int a = 0; a < 3; a++)
+      p[k][a] = (double)corner[k].at[a] * b->step;
+  out->nodes[at.node].next = (uint32_t)at.begin;
+  out->nodes[at.node].is_leaf = true;
+  return sums_of_triangle((const double(*)[3])p);
+}
+
+/** At most 30 + 32 nodes deep. */
+static sums build(builder *b, branch at) {
   vxm_winding_tree *out = b->out;
   sums of;
-  if (end - begin == 1) {
-    vxm_point at[3];
-    double(*p)[3] = out->triangles[begin];
-    corners_of(b, b->keys[begin] & UINT32_MAX, at);
-    for (int k = 0; k < 3; k++)
-      for (int a = 0; a < 3; a++)
-        p[k][a] = (double)at[k].at[a] * b->step;
-    of = sums_of_triangle((const double(*)[3])p);
-    out->nodes[node].next = (uint32_t)begin;
-    out->nodes[node].is_leaf = true;
-  } else {
-    size_t middle = split(b->keys, begin, end), children = out->node_count;
-    out->node_count += 2;
-    out->nodes[node].next = (uint32_t)children;
-    out->nodes[node].is_leaf = false;
-    sums left = build(b, begin, middle, children), right = build(b, middle, end, children + 1);
+  if (at.end - at.begin == 1)
+    of = build_leaf(b, at);
+  else {
+    size_t middle = split(b->keys, at.begin, at.end);
+    sums left = build(b, child_of(&at, middle, false)), right = build(b, child_of(&at, middle, true));
+    out->nodes[at.node].next = (uint32_t)at.below;
+    out->nodes[at.node].is_leaf = false;
     of = join(&left, &right);
   }
-  store(out, node, &of);
+  store(out, at.node, &of);
   return of;
+}
+
+static void build_task(size_t task, int worker, void *payload) {
+  (void)worker;
+  builder *b = payload;
+  b->tasks[task].made = build(b, b->tasks[task].at);
+}
+
+/** The nodes above those of tasks, which come in the order in which they were listed. */
+static sums join_tasks(builder *b, branch at) {
+  if (at.end - at.begin <= TASK_TRIANGLES)
+    return b->tasks[b->task_next++].made;
+  vxm_winding_node *node = &b->out->nodes[at.node];
+  size_t middle = split(b->keys, at.begin, at.end);
+  sums left = join_tasks(b, child_of(&at, middle, false)), right = join_tasks(b, child_of(&at, middle, true));
+  sums of = join(&left, &right);
+  node->next = (uint32_t)at.below;
+  node->is_leaf = false;
+  store(b->out, at.node, &of);
+  return of;
+}
+
+/** A tree for each class. */
+static vxm_status build_trees(builder *b, const size_t begin[VXM_WINDING_CLASSES + 1]) {
+  vxm_winding_tree *out = b->out;
+  branch roots[VXM_WINDING_CLASSES];
+  vxm_status status = VXM_OK;
+  for (int c = 0; c < VXM_WINDING_CLASSES && status == VXM_OK; c++) {
+    size_t count = begin[c + 1] - begin[c];
+    if (count == 0)
+      continue;
+    roots[out->root_count] = (branch){begin[c], begin[c + 1], out->node_count, out->node_count + 1};
+    out->roots[out->root_count] = (uint32_t)out->node_count;
+    out->node_count += 2 * count - 1;
+    status = list_tasks(b, roots[out->root_count++]);
+  }
+  if (status == VXM_OK)
+    status = vxm_parallel_asked(out->context, b->task_count, build_task, b, &b->error);
+  for (size_t r = 0; r < out->root_count && status == VXM_OK; r++)
+    join_tasks(b, roots[r]);
+  return status;
 }
 
 /** Spreads the low ten bits to every third place. */
@@ -242,27 +326,28 @@ vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, 
   if (count > UINT32_MAX / 2)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many for winding numbers; split the mesh",
                     count);
-  vxm_error local = VXM_ERROR_INIT;
+  builder b = {.out = out,
+               .corners = corners,
+               .mirrored = mirrored,
+               .step = 1.0 / (double)placed->lattice.unit,
+               .error = VXM_ERROR_INIT};
   size_t begin[VXM_WINDING_CLASSES + 1];
-  uint64_t *keys = vxm_alloc(context, count, 2 * sizeof *keys, &local);
-  out->nodes = keys ? vxm_alloc(context, 2 * count, sizeof *out->nodes, &local) : NULL;
-  out->moments = out->nodes ? vxm_alloc(context, 2 * count, sizeof *out->moments, &local) : NULL;
-  out->triangles = out->moments ? vxm_alloc(context, count, sizeof *out->triangles, &local) : NULL;
-  if (out->triangles) {
-    builder b = {out, corners, mirrored, keys, 1.0 / (double)placed->lattice.unit};
-    sort_triangles(&b, keys + count, begin);
-    for (int c = 0; c < VXM_WINDING_CLASSES; c++)
-      if (begin[c] < begin[c + 1]) {
-        uint32_t root = out->roots[out->root_count++] = (uint32_t)out->node_count++;
-        build(&b, begin[c], begin[c + 1], root);
-      }
+  b.keys = vxm_alloc(context, count, 2 * sizeof *b.keys, &b.error);
+  out->nodes = b.keys ? vxm_alloc(context, 2 * count, sizeof *out->nodes, &b.error) : NULL;
+  out->moments = out->nodes ? vxm_alloc(context, 2 * count, sizeof *out->moments, &b.error) : NULL;
+  out->triangles = out->moments ? vxm_alloc(context, count, sizeof *out->triangles, &b.error) : NULL;
+  vxm_status status = b.error.code;
+  if (status == VXM_OK) {
+    sort_triangles(&b, b.keys + count, begin);
+    status = build_trees(&b, begin);
   }
-  vxm_free(context, keys);
-  if (out->triangles)
+  vxm_free(context, b.tasks);
+  vxm_free(context, b.keys);
+  if (status == VXM_OK)
     return VXM_OK;
   vxm_winding_tree_destroy(out);
-  vxm_error_pass(error, &local);
-  return local.code;
+  vxm_error_pass(error, &b.error);
+  return status;
 }
 
 void vxm_winding_tree_destroy(vxm_winding_tree *tree) {
