@@ -5,6 +5,8 @@
 
 /** So few keys are sorted faster by insertion. */
 enum { FEW = 24 };
+/** From so many on fewer passes pay for longer digits. */
+enum { MANY = 2048, DIGIT_BITS_OF_FEW = 8 };
 
 static void insertion_sort(uint64_t *keys, size_t count) {
   for (size_t i = 1; i < count; i++) {
@@ -16,26 +18,30 @@ static void insertion_sort(uint64_t *keys, size_t count) {
   }
 }
 
-/** Sorts by bytes from the lowest up, leaving out bytes in which all keys agree. */
-static void radix_sort(uint64_t *keys, uint64_t *scratch, size_t count) {
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
+
+/** Sorts by digits from the lowest up, of those bits in which not all keys agree. */
+static void radix_sort(uint64_t *keys, uint64_t *scratch, size_t count, unsigned bits) {
+  const uint64_t mask = ((uint64_t)1 << bits) - 1;
   uint64_t varying = 0;
   for (size_t i = 1; i < count; i++)
     varying |= keys[i] ^ keys[0];
   uint64_t *from = keys, *to = scratch;
-  for (unsigned shift = 0; shift < 64; shift += 8) {
-    if ((varying >> shift & 0xff) == 0)
+  for (unsigned shift = 0; shift < 64 && varying >> shift; shift += bits) {
+    if ((varying >> shift & mask) == 0)
       continue;
-    size_t place[256] = {0};
+    size_t place[DIGITS];
+    memset(place, 0, sizeof *place << bits);
     for (size_t i = 0; i < count; i++)
-      place[from[i] >> shift & 0xff]++;
+      place[from[i] >> shift & mask]++;
     size_t total = 0;
-    for (size_t d = 0; d < 256; d++) {
+    for (size_t d = 0; d <= mask; d++) {
       size_t n = place[d];
       place[d] = total;
       total += n;
     }
     for (size_t i = 0; i < count; i++)
-      to[place[from[i] >> shift & 0xff]++] = from[i];
+      to[place[from[i] >> shift & mask]++] = from[i];
     uint64_t *swap = from;
     from = to;
     to = swap;
@@ -48,5 +54,5 @@ void vxm_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count) {
   if (count <= FEW)
     insertion_sort(keys, count);
   else
-    radix_sort(keys, scratch, count);
+    radix_sort(keys, scratch, count, count < MANY ? DIGIT_BITS_OF_FEW : DIGIT_BITS);
 }

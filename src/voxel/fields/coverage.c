@@ -2,31 +2,23 @@
 #include "voxel/fields/coverage.h"
 #include "base/threads.h"
 #include "voxel/engine/engine.h"
+#include "voxel/fields/coverage_spans.h"
 #include "voxel/model/model_report.h"
 
 #include <inttypes.h>
 #include <string.h>
 
-enum { ROWS_PER_TASK = 8, CHOICES = 8 * 8 * 8 + 1 };
-
-/** What a worker has counted, on a line of the cache of its own. */
-typedef struct tally {
-  _Alignas(64) int64_t subvoxels;
-  int64_t full, partial;
-} tally;
+enum { ROWS_PER_TASK = 8 };
 
 typedef struct reduction {
   int n;
-  vxm_scalar scalar;
-  float fractions[CHOICES]; /**< by the number of sub-voxels that are set */
-  uint8_t bytes[CHOICES];
+  vxm_coverage_values values;
   const vxm_window *fine;
   int64_t row_length, rows; /**< of a slice of the coverage */
   int64_t slices;           /**< at hand */
-  unsigned char *values;
-  uint16_t *counts; /**< of the groups at hand, where an engine counts them; else NULL */
-  uint64_t *sums;   /**< for each worker two words for each of a row: groups 0, 2, 4, ... and 1, 3, 5, ... */
-  tally *tallies;
+  uint16_t *counts;         /**< of the groups at hand, where an engine counts them; else NULL */
+  uint64_t *sums; /**< for each worker two words for each of a row: groups 0, 2, 4, ... and 1, 3, 5, ... */
+  vxm_coverage_tally *tallies;
 } reduction;
 
 /* ---- Counting bits in groups ---- */
@@ -68,46 +60,27 @@ static inline void sum_rows(const reduction *r, uint64_t *sums, int64_t middle, 
 
 /* ---- Values ---- */
 
-static void store(const reduction *r, size_t at, unsigned count) {
-  if (r->scalar == VXM_UINT8)
-    r->values[at] = r->bytes[count];
-  else
-    ((float *)(void *)r->values)[at] = r->fractions[count];
-}
-
-static void store_same(const reduction *r, size_t at, size_t some, unsigned count) {
-  for (size_t i = 0; i < some; i++)
-    store(r, at + i, count);
-}
-
-static void store_count(const reduction *r, size_t at, unsigned count, unsigned most, tally *t) {
-  store(r, at, count);
-  t->subvoxels += count;
-  t->full += count == most;
-  t->partial += count > 0 && count < most;
-}
-
 /** Values of the groups of one word, `some` of them. */
-static void store_word(const reduction *r, const uint64_t pair[2], size_t at, size_t some, tally *t) {
-  unsigned n = (unsigned)r->n, most = n * n * n;
+static void store_word(const reduction *r, const uint64_t pair[2], size_t at, size_t some,
+                       vxm_coverage_tally *t) {
+  unsigned n = (unsigned)r->n;
   uint64_t field = vxm_low_bits(2 * n);
   if ((pair[0] | pair[1]) == 0) {
-    store_same(r, at, some, 0);
+    vxm_coverage_store_run(&r->values, at, some, 0, t);
     return;
   }
   for (size_t g = 0; g < some; g++) {
     unsigned count = (unsigned)(pair[g % 2] >> (g / 2 * 2 * n) & field);
-    store_count(r, at + g, count, most, t);
+    vxm_coverage_store(&r->values, at + g, count, t);
   }
 }
 
 /** Values of rows whose groups an engine has counted. */
 static void store_rows(size_t task, int worker, void *payload) {
   const reduction *r = payload;
-  unsigned n = (unsigned)r->n, most = n * n * n;
   int64_t end = vxm_min(((int64_t)task + 1) * ROWS_PER_TASK, r->rows * r->slices);
   for (size_t at = task * ROWS_PER_TASK * (size_t)r->row_length; at < (size_t)(end * r->row_length); at++)
-    store_count(r, at, r->counts[at], most, &r->tallies[worker]);
+    vxm_coverage_store(&r->values, at, r->counts[at], &r->tallies[worker]);
 }
 
 static void reduce_rows(size_t task, int worker, void *payload) {
@@ -169,39 +142,60 @@ static vxm_status count_elsewhere(reduction *r, vxm_engine *engine, const vxm_wi
   return status;
 }
 
-static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, vxm_window fine,
-                                 const vxm_field_plan *plan, vxm_model_pass *pass, vxm_error *error) {
-  vxm_status status = VXM_OK;
-  int64_t length = fine.slow_dim / r->n;
-  size_t slice_bytes = (size_t)(r->row_length * r->rows) * vxm_scalar_bytes(r->scalar);
-  unsigned char *block = r->values;
-  r->fine = &fine;
-  for (int64_t begin = 0, end; begin < length && status == VXM_OK; begin = end) {
-    end = vxm_min(begin + plan->slices, length);
-    fine.begin = begin * r->n;
-    fine.end = end * r->n;
-    status = vxm_model_pass_fill(pass, &fine, error);
-    if (status != VXM_OK)
-      break;
-    r->slices = end - begin;
-    r->values = target->whole ? (unsigned char *)target->whole + (size_t)begin * slice_bytes : block;
-    status = count_elsewhere(r, pass->solid.engine, &fine, error);
-    if (status != VXM_OK)
-      break;
-    vxm_parallel(pass->solid.context, (size_t)((r->rows * r->slices + ROWS_PER_TASK - 1) / ROWS_PER_TASK),
-                 r->counts ? store_rows : reduce_rows, r);
-    if (!target->whole)
-      status = target->put(target->payload, r->values, begin, end, error);
+/** Crossings that are held at once, at most, rather than those of a few slices after the other. */
+static const double most_crossings = 1 << 25;
+
+/** A window by its sub-voxels. */
+static vxm_status reduce_window(reduction *r, vxm_window *fine, const vxm_field_plan *plan,
+                                vxm_model_pass *pass, vxm_error *error) {
+  vxm_context *context = pass->solid.context;
+  vxm_error local = VXM_ERROR_INIT;
+  if (!fine->words)
+    fine->words =
+        vxm_alloc(context, (size_t)(plan->slices * r->n) * fine->slice_words, sizeof *fine->words, &local);
+  if (!fine->words) {
+    vxm_error_pass(error, &local);
+    return local.code;
   }
+  vxm_status status = vxm_model_pass_fill(pass, fine, error);
+  if (status == VXM_OK)
+    status = count_elsewhere(r, pass->solid.engine, fine, error);
+  if (status == VXM_OK)
+    vxm_parallel(context, (size_t)((r->rows * r->slices + ROWS_PER_TASK - 1) / ROWS_PER_TASK),
+                 r->counts ? store_rows : reduce_rows, r);
   return status;
 }
 
-static void fill_tables(reduction *r) {
-  int most = r->n * r->n * r->n;
-  for (int count = 0; count <= most; count++) {
-    r->fractions[count] = (float)count / (float)most;
-    r->bytes[count] = (uint8_t)((2 * 255 * count + most) / (2 * most));
+static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, vxm_window *fine,
+                                 const vxm_field_plan *plan, vxm_model_pass *pass, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  int64_t length = fine->slow_dim / r->n, slices = plan->slices;
+  size_t slice_bytes = (size_t)(r->row_length * r->rows) * vxm_scalar_bytes(r->values.scalar);
+  unsigned char *block = r->values.out;
+  bool spans = vxm_coverage_has_spans(pass);
+  if (spans && target->whole &&
+      vxm_raster_schedule_placed_bound(&pass->solid.analysis->triangles, &pass->solid.placed, &pass->space) <
+          most_crossings)
+    slices = length;
+  r->fine = fine;
+  for (int64_t begin = 0, end; begin < length && status == VXM_OK; begin = end) {
+    end = vxm_min(begin + (spans ? slices : plan->slices), length);
+    fine->begin = begin * r->n;
+    fine->end = end * r->n;
+    r->slices = end - begin;
+    r->values.out = target->whole ? (unsigned char *)target->whole + (size_t)begin * slice_bytes : block;
+    if (spans) {
+      status = vxm_coverage_spans(&r->values, pass, fine, r->tallies, &spans, error);
+      if (status == VXM_OK && !spans) { /* too many at once: the same slices, and all others, by sub-voxels */
+        end = begin;
+        continue;
+      }
+    } else
+      status = reduce_window(r, fine, plan, pass, error);
+    if (status == VXM_OK && !target->whole)
+      status = target->put(target->payload, r->values.out, begin, end, error);
   }
+  return status;
 }
 
 static void sum_up(vxm_coverage_report *report, const reduction *r, const vxm_space *space, int workers,
@@ -229,7 +223,8 @@ vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const 
   size_t row_words = vxm_window_of(&finer, layout, 0, 0).row_words;
   size_t values =
       (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * vxm_scalar_bytes(options->scalar);
-  size_t scratch = workers * (2 * row_words * sizeof(uint64_t) + sizeof(tally));
+  size_t scratch = workers * (2 * row_words * sizeof(uint64_t) + sizeof(vxm_coverage_tally) +
+                              vxm_coverage_spans_bytes(space->dims[layout.fast], space->dims[layout.middle]));
   size_t counts = has_counts(model->options.engine)
                       ? (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(uint16_t)
                       : 0;
@@ -243,10 +238,9 @@ vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report 
   int workers = vxm_context_threads(context), n = options->subdivision;
   vxm_layout layout = target->layout;
   reduction r = {.n = n,
-                 .scalar = options->scalar,
+                 .values = vxm_coverage_values_of(n, options->scalar),
                  .row_length = space->dims[layout.fast],
                  .rows = space->dims[layout.middle]};
-  fill_tables(&r);
   vxm_space finer;
   vxm_status status = finer_space(&finer, space, n, error);
   if (status != VXM_OK)
@@ -256,26 +250,26 @@ vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report 
   if (status != VXM_OK)
     return status;
   size_t row_words = plan.bits.row_words;
-  size_t value_bytes = target->whole ? 0 : (size_t)(r.row_length * r.rows) * vxm_scalar_bytes(r.scalar);
+  size_t value_bytes =
+      target->whole ? 0 : (size_t)(r.row_length * r.rows) * vxm_scalar_bytes(options->scalar);
   vxm_error local = VXM_ERROR_INIT;
   vxm_model_pass *pass = NULL;
   vxm_window fine = plan.bits;
-  fine.words = vxm_alloc(context, (size_t)(plan.slices * n) * fine.slice_words, sizeof *fine.words, &local);
   r.sums = vxm_alloc(context, (size_t)workers * row_words, 2 * sizeof *r.sums, &local);
   r.tallies = vxm_calloc(context, (size_t)workers, sizeof *r.tallies, &local);
   void *block = vxm_alloc(context, (size_t)plan.slices, value_bytes, &local);
-  r.values = block;
+  r.values.out = block;
   size_t count_bytes =
       has_counts(model->options.engine) ? (size_t)(r.row_length * r.rows) * sizeof *r.counts : 0;
   uint16_t *counts = vxm_alloc(context, (size_t)plan.slices, count_bytes, &local);
   r.counts = count_bytes > 0 ? counts : NULL;
-  status = fine.words && r.sums && r.tallies && block && counts ? VXM_OK : local.code;
+  status = r.sums && r.tallies && block && counts ? VXM_OK : local.code;
   if (status == VXM_OK)
     status = vxm_model_begin(&pass, model, &finer, NULL, NULL, &local);
   if (status == VXM_OK && pass)
     vxm_model_pass_make_field(pass);
   if (status == VXM_OK)
-    status = reduce_windows(&r, target, fine, &plan, pass, &local);
+    status = reduce_windows(&r, target, &fine, &plan, pass, &local);
   if (status == VXM_OK)
     sum_up(report, &r, space, workers, pass);
   vxm_model_close(model, pass);
