@@ -62,7 +62,8 @@ vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_cha
     size_t to = (side < 0) != mirrored ? entered++ : --left;
     memcpy(out->corners[to], chain->closed[t], sizeof *out->corners);
   }
-  memmove(out->corners + entered, out->corners + left, (chain->closed_count - left) * sizeof *out->corners);
+  if (left < chain->closed_count)
+    memmove(out->corners + entered, out->corners + left, (chain->closed_count - left) * sizeof *out->corners);
   out->entered = entered;
   out->corner_count = entered + chain->closed_count - left;
   return VXM_OK;

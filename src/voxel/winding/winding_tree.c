@@ -337,7 +337,7 @@ vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, 
   out->moments = out->nodes ? vxm_alloc(context, 2 * count, sizeof *out->moments, &b.error) : NULL;
   out->triangles = out->moments ? vxm_alloc(context, count, sizeof *out->triangles, &b.error) : NULL;
   vxm_status status = b.error.code;
-  if (status == VXM_OK) {
+  if (status == VXM_OK && count > 0) {
     sort_triangles(&b, b.keys + count, begin);
     status = build_trees(&b, begin);
   }
