@@ -225,7 +225,7 @@ static bool report_most(FILE *to, const survey *all, const char *text, derive fr
   return print_verdict(to, most <= limit);
 }
 
-/** The worst of the meshes' quotients of two times; `largest` says which end is the worst. */
+/** The greatest of the meshes' quotients of two times. */
 static bool report_quotient(FILE *to, const survey *all, const char *text, int over, int under, double most) {
   double worst = -INFINITY;
   const char *name = "";
