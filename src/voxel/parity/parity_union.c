@@ -24,6 +24,8 @@ typedef struct unite_state {
   bool straight; /**< in place, and triangles flip the window's words themselves: no bins */
   bool clear;    /**< the slabs are still to be cleared */
   size_t row_bits;
+  uint64_t by_row_words; /**< 2^40 / words of a row, rounded up; 0 where that is not good enough to divide */
+  size_t flipped_words;  /**< of slab.flipped */
   vxm_task_progress watch;
 } unite_state;
 
@@ -33,6 +35,7 @@ typedef struct slab {
   int64_t begin, end; /**< layers of the window: slices, or rows if columns run across slices */
   uint64_t *out;      /**< its words in the window, if layers are slices */
   uint64_t *work;     /**< slabs.words, zero between parts */
+  uint64_t *flipped;  /**< a bit for each row of these, if columns run along rows; zero between parts */
 } slab;
 
 /* ---- A few records: sorted, they pair up to the ends of spans ---- */
@@ -123,29 +126,33 @@ static size_t slab_rows(const unite_state *state) {
 }
 
 /** Notes a flipped word; along rows its place in the slab is enough. */
-static inline void note_word(const unite_state *state, extent *flipped, size_t w) {
+static inline void note_word(const slab *s, extent *flipped, size_t w) {
+  const unite_state *state = s->state;
   widen(&flipped->first, &flipped->last, w);
-  if (state->along == ALONG_ROWS || state->in_place)
+  if (state->in_place)
     return;
+  if (state->along == ALONG_ROWS) {
+    size_t row = state->by_row_words ? w * state->by_row_words >> 40 : w / state->window->row_words;
+    s->flipped[row / 64] |= UINT64_C(1) << (row % 64);
+    return;
+  }
   size_t row = w / state->window->row_words, slice = row / slab_rows(state);
   widen(&flipped->word_first, &flipped->word_last, w - row * state->window->row_words);
   widen(&flipped->row_first, &flipped->row_last, row - slice * slab_rows(state));
   widen(&flipped->slice_first, &flipped->slice_last, slice);
 }
 
-static void flip(const unite_state *state, uint64_t *words, const uint64_t *records, size_t count,
-                 extent *flipped) {
+static void flip(const slab *s, uint64_t *words, const uint64_t *records, size_t count, extent *flipped) {
   for (size_t i = 0; i < count; i++) {
     size_t w = records[i] / 64;
     words[w] ^= UINT64_C(1) << (records[i] % 64);
-    note_word(state, flipped, w);
+    note_word(s, flipped, w);
   }
 }
 
-static void flip_piece(const unite_state *state, uint64_t *words, const vxm_crossing_bin_piece *piece,
-                       extent *flipped) {
+static void flip_piece(const slab *s, uint64_t *words, const vxm_crossing_bin_piece *piece, extent *flipped) {
   if (!piece->is_bitmap) {
-    flip(state, words, piece->data, piece->count, flipped);
+    flip(s, words, piece->data, piece->count, flipped);
     return;
   }
   /* A bitmap is as large as a full slab: behind the layers of the last one it is zero, and no word is there.
@@ -153,7 +160,7 @@ static void flip_piece(const unite_state *state, uint64_t *words, const vxm_cros
   for (size_t w = 0; w < piece->count; w++)
     if (piece->data[w]) {
       words[w] ^= piece->data[w];
-      note_word(state, flipped, w);
+      note_word(s, flipped, w);
     }
 }
 
@@ -202,17 +209,38 @@ static bool fold_line(uint64_t *work, size_t step, uint64_t *to, size_t to_step,
   return any != 0;
 }
 
+/** Folds runs of rows in which something was flipped. */
+static bool fold_flipped_rows(const slab *s, extent flipped) {
+  const unite_state *state = s->state;
+  size_t row_words = state->window->row_words, row = flipped.first / row_words,
+         last = flipped.last / row_words;
+  uint64_t any = 0;
+  for (size_t end; row <= last; row = end) {
+    uint64_t here = s->flipped[row / 64] >> (row % 64);
+    if (!here) {
+      end = (row / 64 + 1) * 64;
+      continue;
+    }
+    row += (size_t)__builtin_ctzll(here);
+    for (end = row + 1; end <= last && (s->flipped[end / 64] >> (end % 64) & 1); end++)
+      ;
+    size_t at = row * row_words, count = (end - row) * row_words;
+    state->kernels->fold_rows(s->work + at, row_words, end - row, vxm_window_tail_mask(state->window));
+    any |= state->kernels->move_or(s->out + at, s->work + at, count);
+  }
+  memset(s->flipped + flipped.first / row_words / 64, 0,
+         (last / 64 + 1 - flipped.first / row_words / 64) * sizeof *s->flipped);
+  return any != 0;
+}
+
 /** Folds what was flipped in the work words into the window and clears them. */
 static bool fold_work(const slab *s, extent flipped) {
   const unite_state *state = s->state;
   const vxm_window *window = state->window;
   size_t row_words = window->row_words, width = flipped.word_last - flipped.word_first + 1;
   bool any = false;
-  if (state->along == ALONG_ROWS) {
-    size_t begin = flipped.first / row_words * row_words, end = (flipped.last / row_words + 1) * row_words;
-    fold_rows(s, s->work, flipped);
-    return state->kernels->move_or(s->out + begin, s->work + begin, end - begin) != 0;
-  }
+  if (state->along == ALONG_ROWS)
+    return fold_flipped_rows(s, flipped);
   if (state->along == ACROSS_ROWS)
     for (size_t k = flipped.slice_first; k <= flipped.slice_last; k++) {
       size_t at = k * window->slice_words + flipped.word_first;
@@ -244,7 +272,7 @@ static void do_in_place(const slab *s, vxm_crossing_bin_reader *reader, uint32_t
   uint64_t *words = state->past ? s->work : s->out;
   for (size_t w = 0; w < state->workspace->bins.workers; w++)
     while (reader[w].part == part && vxm_crossing_bin_next(&reader[w], &piece))
-      flip_piece(state, words, &piece, &flipped);
+      flip_piece(s, words, &piece, &flipped);
   if (state->past) {
     size_t rows = (size_t)(s->end - s->begin) * (size_t)state->window->middle_dim;
     if (state->kernels->fold_rows_past(s->out, s->work, state->window->row_words, rows))
@@ -276,11 +304,11 @@ static void do_part(const slab *s, vxm_crossing_bin_reader *reader, uint32_t par
         continue;
       }
       many = true;
-      flip_piece(s->state, s->work, &piece, &flipped);
+      flip_piece(s, s->work, &piece, &flipped);
     }
   bool any = false;
   if (many) {
-    flip(s->state, s->work, few, count, &flipped);
+    flip(s, s->work, few, count, &flipped);
     any = fold_work(s, flipped);
   } else if (count > 0)
     any = s->state->along == ALONG_ROWS ? spans_along_rows(s, few, count) : spans_across(s, few, count);
@@ -299,7 +327,8 @@ static void do_slab(size_t task, int worker, void *payload) {
   slab s = {.state = state, .begin = (int64_t)task << state->slabs.shift};
   s.end = vxm_min(s.begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
   if (!state->in_place || state->past)
-    s.work = state->workspace->scratch + (size_t)worker * state->slabs.words;
+    s.work = state->workspace->scratch + (size_t)worker * (state->slabs.words + state->flipped_words);
+  s.flipped = s.work ? s.work + state->slabs.words : NULL;
   if (state->along != ACROSS_SLICES) {
     s.out = window->words + (size_t)s.begin * window->slice_words;
     if (state->clear && !state->past)
@@ -338,9 +367,13 @@ static void shape(unite_state *state) {
   bool slices = state->along == ACROSS_SLICES;
   int64_t depth = window->end - window->begin;
   state->row_bits = 64 * window->row_words;
+  /* A slab has at most 2^20 rows, so words below row_words << 20: the error is below their square >> 20. */
+  if (window->row_words <= 1 << 10)
+    state->by_row_words = ((UINT64_C(1) << 40) + window->row_words - 1) / window->row_words;
   state->slabs = vxm_slabs_of(slices ? window->middle_dim : depth,
                               slices ? window->row_words * (size_t)depth : window->slice_words,
                               vxm_context_threads(state->workspace->context));
+  state->flipped_words = state->along == ALONG_ROWS ? state->slabs.words / window->row_words / 64 + 1 : 0;
   vxm_columns *columns = &state->columns;
   *columns = vxm_columns_of(window, job->axis);
   columns->slab_shift = state->slabs.shift;
@@ -397,7 +430,7 @@ vxm_status vxm_parity_union(vxm_workspace *workspace, const vxm_window *window,
   vxm_status status =
       vxm_raster_schedule_plan(crossings, job->triangles, job->placed, &state.columns, 1, error);
   if (status == VXM_OK && (!state.in_place || state.past))
-    status = vxm_workspace_scratch(workspace, workers * state.slabs.words, error);
+    status = vxm_workspace_scratch(workspace, workers * (state.slabs.words + state.flipped_words), error);
   vxm_task_progress_start(&state.watch, context, job->phase,
                           crossings->range_count + crossings->round_count * state.slabs.count, error);
   if (status == VXM_OK && state.straight) {
