@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/octree.h"
 
+#include <stdatomic.h>
+
 int vxm_octree_levels(const vxm_space *space) {
   int64_t most = vxm_max(space->dims[0], vxm_max(space->dims[1], space->dims[2]));
   int levels = 1;
@@ -25,6 +27,8 @@ vxm_status vxm_octree_new(vxm_sparse **out, vxm_context *context, const vxm_spac
   sparse->context = owner;
   sparse->space = *space;
   sparse->levels = vxm_octree_levels(space);
+  static atomic_uint_fast64_t last_serial;
+  sparse->serial = atomic_fetch_add(&last_serial, 1) + 1;
   *out = sparse;
   return VXM_OK;
 }
@@ -40,20 +44,24 @@ void vxm_sparse_destroy(vxm_sparse *sparse) {
   vxm_context_release(context);
 }
 
-bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
-  const int64_t *n = sparse->space.dims;
-  if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2])
-    return false;
+uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
   size_t index = 0;
   for (int l = sparse->levels - 1; l >= 0; l--) {
     const vxm_octree_node *node = &sparse->nodes[l][index];
     int shift = 2 * l + 2;
     unsigned child = vxm_octree_child((unsigned)(i >> shift), (unsigned)(j >> shift), (unsigned)(k >> shift));
     if (!(node->mixed >> child & 1))
-      return node->full >> child & 1;
+      return node->full >> child & 1 ? ~UINT64_C(0) : 0;
     index = vxm_octree_index(node, child);
   }
-  return sparse->bricks[index] >> ((k & 3) * 16 + (j & 3) * 4 + (i & 3)) & 1;
+  return sparse->bricks[index];
+}
+
+bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
+  const int64_t *n = sparse->space.dims;
+  if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2])
+    return false;
+  return vxm_octree_brick(sparse, i, j, k) >> vxm_octree_bit(i, j, k) & 1;
 }
 
 size_t vxm_octree_nodes(const vxm_sparse *sparse) {

@@ -33,6 +33,7 @@ struct vxm_sparse {
   size_t node_count[VXM_OCTREE_LEVELS];
   uint64_t *bricks;
   size_t brick_count;
+  uint64_t serial; /**< no two have the same */
 };
 
 /** Levels of nodes that a space needs. */
@@ -51,6 +52,11 @@ static inline unsigned vxm_octree_child(unsigned x, unsigned y, unsigned z) {
   return (unsigned)(spread[x & 3] | spread[y & 3] << 1 | spread[z & 3] << 2);
 }
 
+/** The bit of a voxel in its brick. */
+static inline unsigned vxm_octree_bit(int64_t i, int64_t j, int64_t k) {
+  return (unsigned)((k & 3) * 16 + (j & 3) * 4 + (i & 3));
+}
+
 /** Where a child lies: x, y and z. */
 static inline void vxm_octree_place(unsigned child, int64_t place[3]) {
   for (int a = 0; a < 3; a++)
@@ -66,6 +72,8 @@ static inline size_t vxm_octree_index(const vxm_octree_node *node, unsigned chil
 void vxm_octree_walk(const vxm_sparse *sparse, int axis, int64_t begin, int64_t end, vxm_sparse_fn function,
                      void *payload);
 
+/** The brick with voxel (i,j,k), which lies within the dimensions. */
+uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
 /** Whether voxel (i,j,k) is set; false outside. */
 bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
 /** vxm_grid_count and vxm_grid_hash of the same voxels. */

@@ -10,11 +10,39 @@ const int8_t vxm_link_step[VXM_LINK_DIRECTIONS][3] = {
     {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}                        /* over corners */
 };
 
+/** Bricks of an octree that this thread has looked at, each where its number says. What a triangle asks for
+ * lies side by side, and going down an octree takes a while. */
+enum { KEPT_BITS = 3, BRICKS_KEPT = 1 << 3 * KEPT_BITS };
+
+typedef struct kept_bricks {
+  uint64_t serial; /**< of the octree */
+  uint64_t number[BRICKS_KEPT], bits[BRICKS_KEPT];
+} kept_bricks;
+
+static uint64_t brick_of(const vxm_sparse *octree, int64_t i, int64_t j, int64_t k) {
+  static _Thread_local kept_bricks kept;
+  enum { BRICK_BITS = VXM_VIEW_AXIS_BITS - 2, LOW = (1 << KEPT_BITS) - 1 };
+  if (kept.serial != octree->serial) {
+    memset(&kept, 0, sizeof kept);
+    kept.serial = octree->serial;
+  }
+  uint64_t x = (uint64_t)i >> 2, y = (uint64_t)j >> 2, z = (uint64_t)k >> 2;
+  uint64_t number = (z << 2 * BRICK_BITS | y << BRICK_BITS | x) + 1;
+  size_t at = (z & LOW) << 2 * KEPT_BITS | (y & LOW) << KEPT_BITS | (x & LOW);
+  if (kept.number[at] != number) {
+    kept.number[at] = number;
+    kept.bits[at] = vxm_octree_brick(octree, i, j, k);
+  }
+  return kept.bits[at];
+}
+
 bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit) {
-  const int64_t mask = (INT64_C(1) << VXM_VIEW_AXIS_BITS) - 1;
-  return vxm_octree_get(view->octree, bit & mask, bit >> VXM_VIEW_AXIS_BITS & mask,
-                        bit >> 2 * VXM_VIEW_AXIS_BITS) ||
-         (view->added && vxm_voxel_set_has(view->added, (uint64_t)bit));
+  const int64_t mask = (INT64_C(1) << VXM_VIEW_AXIS_BITS) - 1, *dims = view->octree->space.dims;
+  int64_t i = bit & mask, j = bit >> VXM_VIEW_AXIS_BITS & mask, k = bit >> 2 * VXM_VIEW_AXIS_BITS;
+  if (i < dims[0] && j < dims[1] && k >= 0 && k < dims[2] &&
+      (brick_of(view->octree, i, j, k) >> vxm_octree_bit(i, j, k) & 1))
+    return true;
+  return view->added && vxm_voxel_set_has(view->added, (uint64_t)bit);
 }
 
 /** The lowest voxel of a cell. */
