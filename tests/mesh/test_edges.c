@@ -49,7 +49,7 @@ static void check_against_counting(const vxm_soup *soup, const uint32_t *map) {
       odd += wanted.count % 2;
     }
   assert_int_equal(edges.count, next);
-  assert_int_equal(vxm_edges_count_odd(&edges), odd);
+  assert_int_equal(edges.odd, odd);
   vxm_edges_destroy(&edges);
 }
 
@@ -77,7 +77,7 @@ static void sheet_and_cube(void **state) {
   vxm_soup *sheet = grid_sheet(context, N);
   vxm_edges edges = build(sheet, NULL);
   assert_int_equal(edges.count, 3 * N * N + 2 * N);
-  assert_int_equal(vxm_edges_count_odd(&edges), 4 * N);
+  assert_int_equal(edges.odd, 4 * N);
   for (size_t e = 0; e < edges.count; e++) {
     assert_true(edges.edges[e].a < edges.edges[e].b);
     assert_true(edges.edges[e].count != 2 || edges.edges[e].forward == 1);
@@ -89,7 +89,7 @@ static void sheet_and_cube(void **state) {
   add_cube(cube, 0);
   edges = build(cube, NULL);
   assert_int_equal(edges.count, 12);
-  assert_int_equal(vxm_edges_count_odd(&edges), 0);
+  assert_int_equal(edges.odd, 0);
   vxm_edges_destroy(&edges);
   vxm_soup_destroy(cube);
 
@@ -139,7 +139,7 @@ static void few_faces_on_many_vertices(void **state) {
     add_triangle(soup, corners[0], corners[i + 2], corners[i + 1]);
   vxm_edges edges = build(soup, NULL);
   assert_int_equal(edges.count, 200 + 197);
-  assert_int_equal(vxm_edges_count_odd(&edges), 0);
+  assert_int_equal(edges.odd, 0);
   for (size_t e = 0; e < edges.count; e++) {
     assert_int_equal(edges.edges[e].count, 2);
     assert_int_equal(edges.edges[e].forward, 1);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
 #include "mesh/geometry.h"
-#include "repair/state/halfedges.h"
+#include "repair/state/repair_state.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,14 +24,13 @@ typedef struct orienting {
   vxm_soup *soup;
   vxm_error error;
   vxm_unit_scale frame;
-  size_t *sides;     /**< per corner: its edge */
-  size_t (*pair)[2]; /**< per edge with two sides: their faces */
-  uint32_t *label;   /**< per face: its patch */
-  uint8_t *turn;     /**< per face: 1 = against the first face of its patch, later: against the input */
+  const uint32_t *sides; /**< per corner: its edge */
+  size_t (*pair)[2];     /**< per edge with two sides: their faces */
+  uint32_t *label;       /**< per face: its patch */
+  uint8_t *turn;         /**< per face: 1 = against the first face of its patch, later: against the input */
   size_t *queue;
   patch *patches;
   size_t patch_count, patch_capacity;
-  bool many_sides; /**< an edge has more than two */
 } orienting;
 
 static void *allocate(orienting *o, size_t count, size_t size) {
@@ -51,7 +50,6 @@ static bool pair_faces(orienting *o) {
     if (!goes_on(o, e))
       return false;
     o->pair[e][0] = o->pair[e][1] = SIZE_MAX;
-    o->many_sides |= edges->edges[e].count > 2;
   }
   for (size_t f = 0; f < o->soup->face_count; f++) {
     if (!goes_on(o, f))
@@ -125,6 +123,16 @@ static bool find_patches(orienting *o) {
   return true;
 }
 
+/** Where all faces go together as they are, what edges connect is known. */
+static bool take_patches(orienting *o) {
+  if (vxm_repair_state_patches(o->state, &o->error) != VXM_OK)
+    return false;
+  o->label = o->state->patches.of_face;
+  o->patch_count = o->state->patches.count;
+  o->patches = allocate(o, o->patch_count, sizeof *o->patches);
+  return o->patches != NULL;
+}
+
 /* ---- Turning ---- */
 
 /** Reverses a face about its first corner. */
@@ -145,6 +153,22 @@ static vxm_vec3 area_of(const orienting *o, size_t face) {
   return vxm_polygon_area(o->soup->positions, corner, count, o->frame.scale);
 }
 
+static void add_area(patch *p, vxm_vec3 area) {
+  p->vector_area =
+      (vxm_vec3){p->vector_area.x + area.x, p->vector_area.y + area.y, p->vector_area.z + area.z};
+}
+
+/** The areas of patches that are consistent. */
+static bool measure_patches(orienting *o) {
+  for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
+    patch *p = &o->patches[o->label[f]];
+    vxm_vec3 area = area_of(o, f);
+    p->area += vxm_vec3_length(area);
+    add_area(p, area);
+  }
+  return o->error.code == VXM_OK;
+}
+
 /** Makes patches consistent, with most of their area as it was; without a gain they stay as they are. */
 static bool make_consistent(orienting *o) {
   for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
@@ -161,9 +185,7 @@ static bool make_consistent(orienting *o) {
       o->turn[f] ^= 2 * p->turned_area > p->area;
     if (o->turn[f])
       reverse(o->soup, f);
-    vxm_vec3 area = area_of(o, f);
-    p->vector_area =
-        (vxm_vec3){p->vector_area.x + area.x, p->vector_area.y + area.y, p->vector_area.z + area.z};
+    add_area(p, area_of(o, f));
   }
   return o->error.code == VXM_OK;
 }
@@ -226,6 +248,8 @@ static void mark_held(const crossing *crossings, size_t count, uint8_t *held) {
  * stay, they stay in balance. */
 static bool find_held(orienting *o, uint8_t *held) {
   size_t count;
+  if (o->state->edges.crowded == 0)
+    return true;
   if (!list_crossings(o, NULL, &count))
     return false;
   crossing *crossings = allocate(o, count, sizeof *crossings);
@@ -300,10 +324,20 @@ static bool turn_outward(orienting *o) {
   return done;
 }
 
+/** Whether no face has to be turned for the sake of others. */
+static bool is_consistent(const orienting *o) {
+  return o->state->edges.crowded == 0 && o->state->edges.against == 0;
+}
+
 static bool orient(orienting *o) {
   size_t faces = o->soup->face_count;
-  if (vxm_halfedges_find(&o->sides, o->state, &o->error) != VXM_OK)
+  if (vxm_repair_state_edges(o->state, &o->error) != VXM_OK)
     return false;
+  if (is_consistent(o)) {
+    o->turn = allocate(o, faces, sizeof *o->turn);
+    return o->turn && take_patches(o) && measure_patches(o) && turn_outward(o);
+  }
+  o->sides = o->state->edges.sides;
   o->pair = allocate(o, o->state->edges.count, sizeof *o->pair);
   o->label = allocate(o, faces, sizeof *o->label);
   o->turn = allocate(o, faces, sizeof *o->turn);
@@ -351,15 +385,14 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
   vxm_free(state->context, o.patches);
   vxm_free(state->context, o.queue);
   vxm_free(state->context, o.turn);
-  vxm_free(state->context, o.label);
+  if (o.label != state->patches.of_face)
+    vxm_free(state->context, o.label);
   vxm_free(state->context, o.pair);
-  vxm_free(state->context, o.sides);
   if (!done) {
     vxm_error_pass(error, &o.error);
     return o.error.code;
   }
   if (*changed)
-    vxm_repair_state_touch(state);
-  state->patches = o.many_sides ? 0 : o.patch_count; /* turning changes none */
+    vxm_repair_state_turn(state);
   return VXM_OK;
 }

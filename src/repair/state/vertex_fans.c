@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/state/vertex_fans.h"
 
-#include "repair/state/halfedges.h"
-
 /** The corner that stands for the fan of this one. Paths are halved on the way. */
 static size_t root_of(size_t *parent, size_t corner) {
   while (parent[corner] != corner) {
@@ -22,8 +20,8 @@ static void join(size_t *parent, size_t a, size_t b) {
 }
 
 /** Joins at both ends of every edge the corners of the faces along it. */
-static vxm_status join_corners(const vxm_soup *soup, const size_t *sides, size_t (*first)[2], size_t *parent,
-                               vxm_error *error) {
+static vxm_status join_corners(const vxm_soup *soup, const uint32_t *sides, size_t (*first)[2],
+                               size_t *parent, vxm_error *error) {
   for (size_t f = 0; f < soup->face_count; f++) {
     vxm_status status = vxm_ask_at(f, soup->context, error);
     if (status != VXM_OK)
@@ -49,9 +47,9 @@ static vxm_status join_corners(const vxm_soup *soup, const size_t *sides, size_t
 
 vxm_status vxm_vertex_fans_count(uint8_t **fans, vxm_repair_state *state, vxm_error *error) {
   const vxm_soup *soup = state->soup;
-  size_t *sides, *parent = NULL, (*first)[2] = NULL;
+  size_t *parent = NULL, (*first)[2] = NULL;
   *fans = NULL;
-  vxm_status status = vxm_halfedges_find(&sides, state, error);
+  vxm_status status = vxm_repair_state_edges(state, error);
   if (status == VXM_OK)
     parent = vxm_repair_state_scratch(state, soup->corner_count, sizeof *parent, &status, error);
   if (status == VXM_OK)
@@ -64,14 +62,13 @@ vxm_status vxm_vertex_fans_count(uint8_t **fans, vxm_repair_state *state, vxm_er
       status = vxm_ask_at(c, state->context, error);
     }
     if (status == VXM_OK)
-      status = join_corners(soup, sides, first, parent, error);
+      status = join_corners(soup, state->edges.sides, first, parent, error);
     for (size_t c = 0; c < soup->corner_count && status == VXM_OK; c++)
       if (parent[c] == c && (*fans)[soup->indices[c]] < UINT8_MAX)
         (*fans)[soup->indices[c]]++;
   }
   vxm_free(state->context, first);
   vxm_free(state->context, parent);
-  vxm_free(state->context, sides);
   if (status != VXM_OK) {
     vxm_free(state->context, *fans);
     *fans = NULL;
