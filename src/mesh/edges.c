@@ -79,16 +79,32 @@ static void emit_sides(size_t begin, size_t end, vxm_sink *sink, void *payload) 
 
 /* ---- Sorting within a bucket ---- */
 
+/** A key is b and the place of the record in its bucket. All are looked up in one go, as they lie here and
+ * there. */
+static inline uint64_t key_of(const building *b, const uint64_t *records, size_t i) {
+  return (uint64_t)vertex_at(b, corner_of(records[i])) << 32 | i;
+}
+
 /** Counting sort by a: less work than sorting all bits. */
-static void group_by_vertex(const uint64_t *records, uint64_t *grouped, uint32_t *counts, size_t vertices,
-                            size_t count) {
+static void group_by_counting(const building *b, const uint64_t *records, size_t count, uint64_t *keys,
+                              uint32_t *counts) {
+  size_t vertices = (size_t)1 << b->low_bits;
   memset(counts, 0, (vertices + 1) * sizeof *counts);
   for (size_t i = 0; i < count; i++)
     counts[(records[i] >> A_SHIFT) + 1]++;
   for (size_t a = 0; a < vertices; a++)
     counts[a + 1] += counts[a];
   for (size_t i = 0; i < count; i++)
-    grouped[counts[records[i] >> A_SHIFT]++] = records[i];
+    keys[counts[records[i] >> A_SHIFT]++] = key_of(b, records, i);
+}
+
+static void group_by_sorting(const building *b, const uint64_t *records, size_t count, uint64_t *keys,
+                             uint64_t *scratch) {
+  for (size_t i = 0; i < count; i++)
+    keys[i] = records[i] >> A_SHIFT << 32 | i;
+  vxm_sort_keys(keys, scratch, count);
+  for (size_t i = 0; i < count; i++)
+    keys[i] = key_of(b, records, (uint32_t)keys[i]);
 }
 
 /** Counting pays if the vertices of a bucket are not many more than its records. */
@@ -96,16 +112,15 @@ static bool counting_pays(size_t vertices, size_t records) {
   return vertices <= 4 * records;
 }
 
-/** Sorts the few sides of one a by b, and marks the first of each edge. Returns how many edges there are. */
-static size_t sort_sides(const building *b, const uint64_t *grouped, size_t count, uint64_t *keys,
-                         uint64_t *scratch, uint64_t *sorted) {
-  for (size_t i = 0; i < count; i++)
-    keys[i] = (uint64_t)vertex_at(b, corner_of(grouped[i])) << 32 | i;
+/** Puts the few sides of one a in the order of b, and marks the first of each edge. Returns how many edges
+ * there are. */
+static size_t sort_sides(const uint64_t *records, uint64_t *keys, size_t count, uint64_t *scratch,
+                         uint64_t *sorted) {
   vxm_sort_keys(keys, scratch, count);
   size_t edges = 0;
   for (size_t i = 0; i < count; i++) {
     bool first = i == 0 || keys[i] >> 32 != keys[i - 1] >> 32;
-    sorted[i] = grouped[(uint32_t)keys[i]] | (first ? FIRST : 0);
+    sorted[i] = records[(uint32_t)keys[i]] | (first ? FIRST : 0);
     edges += first;
   }
   return edges;
@@ -114,20 +129,22 @@ static size_t sort_sides(const building *b, const uint64_t *grouped, size_t coun
 static void sort_bucket(size_t bucket, int worker, void *payload) {
   building *b = payload;
   size_t begin = b->buckets.begin[bucket], count = b->buckets.begin[bucket + 1] - begin;
-  size_t largest = b->buckets.largest, vertices = (size_t)1 << b->low_bits, edges = 0;
+  size_t largest = b->buckets.largest, edges = 0;
   uint64_t *records = b->buckets.records + begin;
-  uint64_t *grouped = b->scratch + (size_t)worker * 3 * largest, *keys = grouped + largest;
-  if (counting_pays(vertices, count))
-    group_by_vertex(records, grouped, b->counts + (size_t)worker * b->counts_size, vertices, count);
-  else {
-    memcpy(grouped, records, count * sizeof *grouped);
-    vxm_sort_keys(grouped, keys, count);
-  }
+  uint64_t *keys = b->scratch + (size_t)worker * 3 * largest, *scratch = keys + largest,
+           *sorted = scratch + largest;
+  if (counting_pays((size_t)1 << b->low_bits, count))
+    group_by_counting(b, records, count, keys, b->counts + (size_t)worker * b->counts_size);
+  else
+    group_by_sorting(b, records, count, keys, scratch);
   for (size_t i = 0, end; i < count; i = end) {
-    for (end = i + 1; end < count && grouped[end] >> A_SHIFT == grouped[i] >> A_SHIFT;)
+    uint64_t a = records[(uint32_t)keys[i]] >> A_SHIFT;
+    for (end = i + 1; end < count && records[(uint32_t)keys[end]] >> A_SHIFT == a;)
       end++;
-    edges += sort_sides(b, grouped + i, end - i, keys, keys + largest, records + i);
+    edges += sort_sides(records, keys + i, end - i, scratch, sorted + i);
   }
+  if (count > 0)
+    memcpy(records, sorted, count * sizeof *records);
   b->first_edge[bucket] = edges;
 }
 
@@ -141,6 +158,18 @@ static inline size_t side_of(const building *b, uint64_t record) {
   return b->before ? b->before[corner] : corner % 3 == 0 ? corner + 2 : corner - 1;
 }
 
+/** Fetches what will be needed soon, which lies here and there. */
+static inline void look_ahead(const building *b, const uint64_t *record, const uint64_t *end) {
+  enum { AHEAD = 16 };
+  if (end - record <= AHEAD)
+    return;
+  __builtin_prefetch(b->soup->indices + corner_of(record[AHEAD]));
+  if (b->sides) {
+    __builtin_prefetch(b->sides + corner_of(record[AHEAD - 1]), 1);
+    __builtin_prefetch(b->sides + corner_of(record[AHEAD]), 1);
+  }
+}
+
 static void write_bucket(size_t bucket, int worker, void *payload) {
   (void)worker;
   building *b = payload;
@@ -148,6 +177,7 @@ static void write_bucket(size_t bucket, int worker, void *payload) {
   const uint64_t *end = b->buckets.records + b->buckets.begin[bucket + 1];
   size_t odd = 0, open = 0, crowded = 0, against = 0;
   for (size_t e = b->first_edge[bucket]; record < end; e++) {
+    look_ahead(b, record, end);
     vxm_edge edge = {.a = (uint32_t)((uint64_t)bucket << b->low_bits | *record >> A_SHIFT),
                      .b = vertex_at(b, corner_of(*record))};
     do {

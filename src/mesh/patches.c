@@ -45,6 +45,17 @@ static size_t number_sets(uint32_t *parent, size_t faces) {
   return count;
 }
 
+/** Fetches what will be needed soon, which lies here and there. */
+static inline void look_ahead(const uint32_t *first, const vxm_soup *soup, const uint32_t *sides,
+                              size_t face) {
+  enum { AHEAD = 12 };
+  if (soup->face_count - face <= AHEAD)
+    return;
+  for (uint64_t c = soup->offsets[face + AHEAD]; c < soup->offsets[face + AHEAD + 1]; c++)
+    if (sides[c] != VXM_NO_EDGE)
+      __builtin_prefetch(first + sides[c], 1);
+}
+
 static vxm_status build(vxm_patches *out, const vxm_soup *soup, const vxm_edges *edges, vxm_error *error) {
   if (soup->face_count >= UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu faces are too many to number; split the mesh",
@@ -56,6 +67,7 @@ static vxm_status build(vxm_patches *out, const vxm_soup *soup, const vxm_edges 
   memset(first, 0xff, edges->count * sizeof *first); /* NONE */
   vxm_status status = VXM_OK;
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    look_ahead(first, soup, edges->sides, f);
     out->may_repeat |= join(out->of_face, first, soup, edges->sides, (uint32_t)f);
     status = vxm_ask_at(f, out->context, error);
   }

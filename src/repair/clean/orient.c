@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
-#include "mesh/geometry.h"
+#include "mesh/surface_sums.h"
 #include "repair/state/repair_state.h"
 
 #include <math.h>
@@ -31,10 +31,17 @@ typedef struct orienting {
   size_t *queue;
   patch *patches;
   size_t patch_count, patch_capacity;
+  const double *bounds;
+  double volume; /**< where all is one patch that is consistent, and so measured in one go */
 } orienting;
 
 static void *allocate(orienting *o, size_t count, size_t size) {
   return vxm_calloc(o->state->context, count, size, &o->error);
+}
+
+/** Whether no face has to be turned for the sake of others. */
+static bool is_consistent(const orienting *o) {
+  return o->state->edges.crowded == 0 && o->state->edges.against == 0;
 }
 
 /* ---- Patches ---- */
@@ -160,6 +167,13 @@ static void add_area(patch *p, vxm_vec3 area) {
 
 /** The areas of patches that are consistent. */
 static bool measure_patches(orienting *o) {
+  if (o->patch_count == 1) {
+    vxm_surface_sums sums;
+    vxm_status status = vxm_surface_sums_of(&sums, o->soup, o->bounds, &o->frame, &o->error);
+    o->patches[0] = (patch){.area = sums.area, .vector_area = sums.vector_area};
+    o->volume = sums.volume;
+    return status == VXM_OK;
+  }
   for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
     patch *p = &o->patches[o->label[f]];
     vxm_vec3 area = area_of(o, f);
@@ -292,6 +306,20 @@ static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, c
   }
 }
 
+/** What lies inside what, and the volumes; freed with vxm_containment_destroy. */
+static bool find_nesting(orienting *o, const uint8_t *solid, vxm_containment *nesting) {
+  if (o->patch_count > 1 || !is_consistent(o))
+    return vxm_containment_build(nesting, o->soup, o->label, o->patch_count, solid, &o->error) == VXM_OK;
+  *nesting = (vxm_containment){.context = o->state->context, .count = 1};
+  nesting->parent = allocate(o, 1, sizeof *nesting->parent);
+  nesting->volume = allocate(o, 1, sizeof *nesting->volume);
+  if (!nesting->parent || !nesting->volume)
+    return false;
+  nesting->parent[0] = VXM_NO_COMPONENT;
+  nesting->volume[0] = o->volume;
+  return true;
+}
+
 static bool turn_outward(orienting *o) {
   size_t count = o->patch_count;
   uint8_t *solid = allocate(o, count, sizeof *solid), *over = allocate(o, count, sizeof *over);
@@ -301,9 +329,7 @@ static bool turn_outward(orienting *o) {
   bool done = solid && over && known && held && chain && find_held(o, held);
   for (size_t i = 0; done && i < count; i++)
     solid[i] = is_closed_or_nearly(&o->patches[i]);
-  if (done)
-    done = vxm_containment_build(&nesting, o->soup, o->label, count, solid, &o->error) == VXM_OK;
-  if (done) {
+  if (done && find_nesting(o, solid, &nesting)) {
     double unit = o->frame.scale * o->frame.scale * o->frame.scale;
     for (size_t i = 0; i < count; i++)
       if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
@@ -315,6 +341,7 @@ static bool turn_outward(orienting *o) {
         reverse(o->soup, f);
       }
   }
+  done = o->error.code == VXM_OK;
   vxm_containment_destroy(&nesting);
   vxm_free(o->state->context, chain);
   vxm_free(o->state->context, held);
@@ -322,11 +349,6 @@ static bool turn_outward(orienting *o) {
   vxm_free(o->state->context, over);
   vxm_free(o->state->context, solid);
   return done;
-}
-
-/** Whether no face has to be turned for the sake of others. */
-static bool is_consistent(const orienting *o) {
-  return o->state->edges.crowded == 0 && o->state->edges.against == 0;
 }
 
 static bool orient(orienting *o) {
@@ -375,6 +397,7 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
   orienting o = {.state = state,
                  .soup = state->soup,
                  .error = VXM_ERROR_INIT,
+                 .bounds = extent.bounds,
                  .frame = vxm_unit_scale_of(extent.bounds)};
   bool done = orient(&o);
   state->nonorientable = 0;
