@@ -23,10 +23,9 @@ static bool join(uint32_t *parent, uint32_t *first, const vxm_soup *soup, const 
   for (uint64_t c = soup->offsets[face]; c < soup->offsets[face + 1]; c++) {
     if (sides[c] == VXM_NO_EDGE)
       continue;
-    uint32_t before = first[sides[c]];
-    if (before == NONE)
-      first[sides[c]] = before = face;
-    same = same && before != face && (other == NONE || before == other);
+    uint32_t *at = &first[sides[c]], before = *at < face ? *at : face;
+    *at = before; /* without a branch, as nobody can tell which is which */
+    same &= (before != face) & ((other == NONE) | (before == other));
     other = before;
     if (parent[before] == root)
       continue;
