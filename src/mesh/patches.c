@@ -45,14 +45,16 @@ static size_t number_sets(uint32_t *parent, size_t faces) {
 }
 
 /** Fetches what will be needed soon, which lies here and there. */
-static inline void look_ahead(const uint32_t *first, const vxm_soup *soup, const uint32_t *sides,
-                              size_t face) {
-  enum { AHEAD = 12 };
-  if (soup->face_count - face <= AHEAD)
-    return;
-  for (uint64_t c = soup->offsets[face + AHEAD]; c < soup->offsets[face + AHEAD + 1]; c++)
+static inline void look_ahead(const uint32_t *parent, const uint32_t *first, const vxm_soup *soup,
+                              const uint32_t *sides, size_t face) {
+  enum { AHEAD = 48, NEAR = 24 /**< corners */ };
+  uint64_t begin = soup->offsets[face], end = soup->offsets[face + 1];
+  for (uint64_t c = begin + AHEAD; c < end + AHEAD && c < soup->corner_count; c++)
     if (sides[c] != VXM_NO_EDGE)
       __builtin_prefetch(first + sides[c], 1);
+  for (uint64_t c = begin + NEAR; c < end + NEAR && c < soup->corner_count; c++)
+    if (sides[c] != VXM_NO_EDGE && first[sides[c]] != NONE)
+      __builtin_prefetch(parent + first[sides[c]], 1);
 }
 
 static vxm_status build(vxm_patches *out, const vxm_soup *soup, const vxm_edges *edges, vxm_error *error) {
@@ -66,7 +68,7 @@ static vxm_status build(vxm_patches *out, const vxm_soup *soup, const vxm_edges 
   memset(first, 0xff, edges->count * sizeof *first); /* NONE */
   vxm_status status = VXM_OK;
   for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
-    look_ahead(first, soup, edges->sides, f);
+    look_ahead(out->of_face, first, soup, edges->sides, f);
     out->may_repeat |= join(out->of_face, first, soup, edges->sides, (uint32_t)f);
     status = vxm_ask_at(f, out->context, error);
   }

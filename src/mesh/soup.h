@@ -70,6 +70,14 @@ static inline const double *vxm_position(const vxm_soup *soup, size_t vertex) {
   return soup->positions + 3 * vertex;
 }
 
+/** In a walk over all faces: fetches positions that will be asked for soon, as they may lie anywhere. */
+static inline void vxm_soup_look_ahead(const vxm_soup *soup, size_t face) {
+  enum { AHEAD = 48 /**< corners */ };
+  uint64_t from = soup->offsets[face] + AHEAD, to = soup->offsets[face + 1] + AHEAD;
+  for (uint64_t c = from; c < to && c < soup->corner_count; c++)
+    __builtin_prefetch(vxm_position(soup, soup->indices[c]));
+}
+
 #ifdef __cplusplus
 }
 #endif

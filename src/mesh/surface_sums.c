@@ -34,6 +34,7 @@ static void measure_slice(size_t slice, int worker, void *payload) {
   size_t begin = s->begin + slice * SLICE, end = s->end - begin < SLICE ? s->end : begin + SLICE;
   for (size_t f = begin; f < end; f++) {
     size_t count;
+    vxm_soup_look_ahead(s->soup, f);
     const uint32_t *corner = vxm_face(s->soup, f, &count);
     share *face = &s->shares[f - s->begin];
     face->vector_area = vxm_polygon_area(s->soup->positions, corner, count, s->scale);

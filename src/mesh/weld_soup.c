@@ -51,8 +51,11 @@ static void rename_slice(size_t slice, int worker, void *payload) {
 /** Moves up what stays, and turns the map into new numbers: whatever a vertex is merged into has its own
  * already. */
 static size_t move_up(vxm_soup *soup, uint32_t *map) {
+  enum { AHEAD = 32 };
   size_t kept = 0;
   for (size_t v = 0; v < soup->vertex_count; v++) {
+    if (v + AHEAD < soup->vertex_count)
+      __builtin_prefetch(&map[map[v + AHEAD]]);
     if (map[v] != v) {
       map[v] = map[map[v]];
       continue;

@@ -174,6 +174,7 @@ static const double *position_of(const builder *b, uint32_t vertex) {
 /** Numbers points anew, as triangles have them one after another; false if it was cancelled. */
 static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *points) {
   vxm_triangle_set *triangles = b->triangles;
+  enum { AHEAD = 16 }; /* triangles, whose vertices lie here and there */
   const uint32_t none = UINT32_MAX;
   size_t count = 0, first_apex = triangles->first_apex;
   for (size_t v = 0; v < first_apex; v++)
@@ -181,6 +182,9 @@ static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *poi
   for (size_t f = 0; f < triangles->triangle_count; f++) {
     if (vxm_ask_at(f, triangles->context, &b->error) != VXM_OK)
       return false;
+    for (int k = 0; k < 3 && f + AHEAD < triangles->triangle_count; k++)
+      if (triangles->corners[f + AHEAD][k] < first_apex)
+        __builtin_prefetch(&number[triangles->corners[f + AHEAD][k]], 1);
     for (int k = 0; k < 3; k++) {
       uint32_t *corner = &triangles->corners[f][k];
       if (*corner >= first_apex)
