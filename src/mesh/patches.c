@@ -7,17 +7,24 @@
 
 static const uint32_t NONE = UINT32_MAX;
 
-/** The first face of a set, as far as it is known: of a face this is never a later one. */
-static uint32_t first_of(uint32_t *parent, uint32_t face) {
-  while (parent[face] != face)
-    face = parent[face] = parent[parent[face]];
-  return face;
+/** Joins the sets of two faces (Rem's algorithm with splicing: Dijkstra, "A Discipline of Programming",
+ * 1976); what a face points to never comes later. */
+static inline void join_sets(uint32_t *parent, uint32_t u, uint32_t v) {
+  while (parent[u] != parent[v]) {
+    bool swaps = parent[u] < parent[v];
+    uint32_t later = swaps ? v : u, earlier = swaps ? u : v, above = parent[later];
+    parent[later] = parent[earlier];
+    if (above == later)
+      return;
+    u = above;
+    v = earlier;
+  }
 }
 
 /** Joins a face with those before it; says whether one of them has all its sides. */
 static bool join(uint32_t *parent, uint32_t *first, const vxm_soup *soup, const uint32_t *sides,
                  uint32_t face) {
-  uint32_t other = NONE, root = face;
+  uint32_t other = NONE;
   bool same = true;
   parent[face] = face;
   for (uint64_t c = soup->offsets[face]; c < soup->offsets[face + 1]; c++) {
@@ -27,11 +34,7 @@ static bool join(uint32_t *parent, uint32_t *first, const vxm_soup *soup, const 
     *at = before; /* without a branch, as nobody can tell which is which */
     same &= (before != face) & ((other == NONE) | (before == other));
     other = before;
-    if (parent[before] == root)
-      continue;
-    uint32_t set = first_of(parent, before);
-    parent[set > root ? set : root] = set < root ? set : root;
-    root = set < root ? set : root;
+    join_sets(parent, face, before);
   }
   return same && other != NONE;
 }
