@@ -2,24 +2,11 @@
 #include "mesh/patches.h"
 
 #include "base/threads.h"
+#include "mesh/disjoint_sets.h"
 
 #include <string.h>
 
 static const uint32_t NONE = UINT32_MAX;
-
-/** Joins the sets of two faces (Rem's algorithm with splicing: Dijkstra, "A Discipline of Programming",
- * 1976); what a face points to never comes later. */
-static inline void join_sets(uint32_t *parent, uint32_t u, uint32_t v) {
-  while (parent[u] != parent[v]) {
-    bool swaps = parent[u] < parent[v];
-    uint32_t later = swaps ? v : u, earlier = swaps ? u : v, above = parent[later];
-    parent[later] = parent[earlier];
-    if (above == later)
-      return;
-    u = above;
-    v = earlier;
-  }
-}
 
 /** Joins a face with those before it; says whether one of them has all its sides. */
 static bool join(uint32_t *parent, uint32_t *first, const vxm_soup *soup, const uint32_t *sides,
@@ -34,7 +21,7 @@ static bool join(uint32_t *parent, uint32_t *first, const vxm_soup *soup, const 
     *at = before; /* without a branch, as nobody can tell which is which */
     same &= (before != face) & ((other == NONE) | (before == other));
     other = before;
-    join_sets(parent, face, before);
+    vxm_sets_join(parent, face, before);
   }
   return same && other != NONE;
 }

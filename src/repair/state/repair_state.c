@@ -48,7 +48,7 @@ void vxm_repair_state_move(vxm_repair_state *state) {
 void vxm_repair_state_turn(vxm_repair_state *state) {
   if (state->has_edges)
     vxm_edges_destroy(&state->edges);
-  state->has_edges = false;
+  state->has_edges = state->is_manifold = false;
 }
 
 void vxm_repair_state_touch(vxm_repair_state *state) {

@@ -54,6 +54,7 @@ typedef struct vxm_repair_state {
   uint8_t *used;   /**< vertex_count; as the last vxm_repair_state_extent has found */
   uint8_t *turned; /**< face_count, or NULL as long as no face was turned: see vxm_turned */
   bool has_edges, has_patches, has_extent;
+  bool is_manifold;    /**< the present faces are known to be (vxm_is_manifold) */
   vxm_edges edges;     /**< of the present faces, if has_edges */
   vxm_patches patches; /**< of the present faces, if has_patches */
   vxm_extent extent;   /**< of the present soup, if has_extent */
