@@ -157,9 +157,12 @@ static vxm_status weld(taking *t, vxm_error *error) {
     t->map[v] = t->map[v] == v ? (uint32_t)next++ : t->map[t->map[v]];
   t->welded = (vxm_soup){.context = t->context,
                          .offsets = t->soup->offsets,
+                         .indices = t->soup->indices,
                          .vertex_count = next,
                          .face_count = t->soup->face_count,
                          .corner_count = t->soup->corner_count};
+  if (next == t->soup->vertex_count) /* each has its own position */
+    return VXM_OK;
   t->welded.indices = vxm_alloc(t->context, t->soup->corner_count, sizeof *t->welded.indices, error);
   if (!t->welded.indices)
     return error->code;
@@ -261,7 +264,8 @@ vxm_status vxm_soup_census(vxm_census *out, const vxm_soup *soup, vxm_error *err
   status = t.map ? take(&t, &local) : local.code;
   vxm_patches_destroy(&t.patches);
   vxm_edges_destroy(&t.edges);
-  vxm_free(t.context, t.welded.indices);
+  if (t.welded.indices != soup->indices)
+    vxm_free(t.context, t.welded.indices);
   vxm_free(t.context, t.map);
   if (status != VXM_OK) {
     *out = (vxm_census){0};
