@@ -13,8 +13,22 @@ static void give_census(vxm_census *out, const vxm_census *made) {
   VXM_RESULT_WRITE(out, made);
 }
 
+typedef enum repair_purpose { FOR_ITSELF, TO_VOXELIZE, TO_VOXELIZE_IN_PLACE } repair_purpose;
+
+static vxm_status run_for(repair_purpose purpose, vxm_mesh **out, vxm_repair_report *report,
+                          const vxm_mesh *mesh, const vxm_repair_options *options, vxm_error *error) {
+  switch (purpose) {
+  case TO_VOXELIZE:
+    return vxm_repair_prepare(out, report, mesh, options, error);
+  case TO_VOXELIZE_IN_PLACE:
+    return vxm_repair_prepare_owned(out, report, (vxm_mesh *)mesh, options, error);
+  default:
+    return vxm_repair_run(out, report, mesh, options, error);
+  }
+}
+
 static vxm_status run(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
-                      const vxm_repair_options *options, bool separates, vxm_error *error) {
+                      const vxm_repair_options *options, repair_purpose purpose, vxm_error *error) {
   vxm_census before = {0}, after = {0};
   vxm_census *to_before = report && VXM_RESULT_HAS(report, before) ? report->before : NULL;
   vxm_census *to_after = report && VXM_RESULT_HAS(report, after) ? report->after : NULL;
@@ -28,8 +42,9 @@ static vxm_status run(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh 
   if (status == VXM_OK)
     status = vxm_repair_check(&chosen, options, error);
   if (status == VXM_OK)
-    status =
-        (separates ? vxm_repair_prepare : vxm_repair_run)(out, report ? &made : NULL, mesh, &chosen, error);
+    status = run_for(purpose, out, report ? &made : NULL, mesh, &chosen, error);
+  else if (purpose == TO_VOXELIZE_IN_PLACE)
+    vxm_soup_destroy((vxm_mesh *)mesh);
   if (status != VXM_OK) {
     made = (vxm_repair_report){0};
     before = after = (vxm_census){0};
@@ -44,12 +59,18 @@ static vxm_status run(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh 
 
 vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
                            const vxm_repair_options *options, vxm_error *error) {
-  return run(out, report, mesh, options, false, error);
+  return run(out, report, mesh, options, FOR_ITSELF, error);
 }
 
 vxm_status vxm_mesh_prepare(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
                             const vxm_repair_options *options, vxm_error *error) {
-  return run(out, report, mesh, options, true, error);
+  return run(out, report, mesh, options, TO_VOXELIZE, error);
+}
+
+vxm_status vxm_mesh_prepare_in_place(vxm_mesh **mesh, vxm_repair_report *report,
+                                     const vxm_repair_options *options, vxm_error *error) {
+  vxm_mesh *given = mesh ? *mesh : NULL;
+  return run(mesh, report, given, options, TO_VOXELIZE_IN_PLACE, error);
 }
 
 int64_t vxm_mesh_part_change_count(const vxm_mesh *repaired) {

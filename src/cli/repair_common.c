@@ -47,22 +47,18 @@ void cli_warn_lost(cli_run *cli, const char *path, const vxm_repair_report *repo
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options) {
   *input = (cli_input){.path = path, .repair = VXM_REPAIR_REPORT_INIT};
   double start = cli_clock();
-  vxm_mesh *raw = NULL;
-  if (vxm_mesh_read_with(&raw, cli->context, path, &cli->read, &cli->error) != VXM_OK)
+  if (vxm_mesh_read_with(&input->mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli_warn_mesh(cli, path, raw);
-  snprintf(input->format, sizeof input->format, "%s", vxm_mesh_format(raw));
-  input->vertices = vxm_mesh_vertex_count(raw);
-  input->faces = vxm_mesh_face_count(raw);
+  cli_warn_mesh(cli, path, input->mesh);
+  snprintf(input->format, sizeof input->format, "%s", vxm_mesh_format(input->mesh));
+  input->vertices = vxm_mesh_vertex_count(input->mesh);
+  input->faces = vxm_mesh_face_count(input->mesh);
   double read = cli_clock();
   input->read_ms = read - start;
-  if (!options) {
-    input->mesh = raw;
+  if (!options)
     return CLI_DONE;
-  }
-  vxm_status status = vxm_mesh_prepare(&input->mesh, &input->repair, raw, options, &cli->error);
+  vxm_status status = vxm_mesh_prepare_in_place(&input->mesh, &input->repair, options, &cli->error);
   input->repair_ms = cli_clock() - read;
-  vxm_mesh_destroy(raw);
   if (status != VXM_OK)
     return cli_fail(cli);
   cli_warn_lost(cli, path, &input->repair);

@@ -330,7 +330,7 @@ vxm_status vxm_boundary_loops_build(vxm_boundary_loops *out, const vxm_soup *sou
                .edges = edges,
                .context = soup->context,
                .error = VXM_ERROR_INIT,
-               .odd_count = vxm_edges_count_odd(edges)};
+               .odd_count = edges->odd};
   bool done = collect_ends(&b) && join_ends(&b) && walk(&b, out);
   vxm_free(b.context, b.fan);
   vxm_free(b.context, b.sides);

@@ -4,15 +4,15 @@
 #include "base/threads.h"
 #include "mesh/components.h"
 #include "mesh/duplicate_faces.h"
-#include "mesh/edges.h"
 #include "mesh/geometry.h"
+#include "mesh/patches.h"
 #include "mesh/weld.h"
 
 #include <float.h>
 #include <string.h>
 
 /* Sums are taken over slices of a fixed length, so that they do not depend on the number of threads. */
-enum { FACES_PER_SLICE = 4096 };
+enum { FACES_PER_SLICE = 4096, CORNERS_PER_SLICE = 1 << 16 };
 enum { WIDE_AREA, WIDE_VOLUME, WIDE_VALUES };
 
 typedef struct face_sums {
@@ -25,7 +25,10 @@ typedef struct taking {
   vxm_census *census;
   const vxm_soup *soup;
   vxm_context *context;
-  uint32_t *map; /**< vertex_count: first vertex of the same position */
+  uint32_t *map;       /**< vertex_count: number of its position */
+  vxm_soup welded;     /**< with these in the place of vertices; without positions */
+  vxm_edges edges;     /**< of the welded soup */
+  vxm_patches patches; /**< likewise, where no edge has more than two sides */
   vxm_unit_scale frame;
   bool is_extreme; /**< the frame loses what lies beyond the range of its numbers */
   face_sums *sums; /**< per slice of faces */
@@ -73,7 +76,8 @@ static void add_face(const taking *t, size_t face, face_sums *sums) {
   sums->triangles += count > 2 ? count - 2 : 0;
   vxm_vec3 normal = vxm_polygon_area(t->soup->positions, corners, count, t->frame.scale);
   double area = vxm_vec3_length(normal);
-  if (vxm_unit_scale_no_area(&t->frame, t->soup, face) || !vxm_face_has_three(corners, count, t->map))
+  if (vxm_unit_scale_no_area(&t->frame, t->soup, face) ||
+      !vxm_face_has_three(t->welded.indices + (corners - t->soup->indices), count, NULL))
     sums->degenerate++;
   if (count == 0)
     return;
@@ -132,45 +136,93 @@ static vxm_status measure_faces(taking *t, vxm_error *error) {
   return status;
 }
 
+/* ---- The soup with one vertex for each position ---- */
+
+static void rename_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  taking *t = payload;
+  size_t begin = slice * CORNERS_PER_SLICE, rest = t->soup->corner_count - begin;
+  for (size_t c = begin; c < begin + (rest < CORNERS_PER_SLICE ? rest : CORNERS_PER_SLICE); c++)
+    t->welded.indices[c] = t->map[t->soup->indices[c]];
+}
+
+/** Numbers positions in the order of their first vertices, and gives corners these numbers. */
+static vxm_status weld(taking *t, vxm_error *error) {
+  size_t next = 0;
+  vxm_status status =
+      vxm_weld_exact(t->context, t->soup->positions, t->soup->vertex_count, t->map, NULL, error);
+  if (status != VXM_OK)
+    return status;
+  for (size_t v = 0; v < t->soup->vertex_count; v++)
+    t->map[v] = t->map[v] == v ? (uint32_t)next++ : t->map[t->map[v]];
+  t->welded = (vxm_soup){.context = t->context,
+                         .offsets = t->soup->offsets,
+                         .indices = t->soup->indices,
+                         .vertex_count = next,
+                         .face_count = t->soup->face_count,
+                         .corner_count = t->soup->corner_count};
+  if (next == t->soup->vertex_count) /* each has its own position */
+    return VXM_OK;
+  t->welded.indices = vxm_alloc(t->context, t->soup->corner_count, sizeof *t->welded.indices, error);
+  if (!t->welded.indices)
+    return error->code;
+  status =
+      vxm_parallel_asked(t->context, t->soup->corner_count / CORNERS_PER_SLICE + 1, rename_slice, t, error);
+  vxm_free(t->context, t->map);
+  t->map = NULL;
+  return status;
+}
+
 /* ---- Edges, duplicates, components ---- */
 
 static vxm_status count_edges(taking *t, vxm_error *error) {
-  vxm_edges edges;
-  vxm_status status = vxm_edges_build(&edges, t->context, t->soup, t->map, error);
+  vxm_status status = vxm_edges_build_sides(&t->edges, t->context, &t->welded, NULL, error);
+  if (status == VXM_OK && t->edges.crowded == 0)
+    status = vxm_patches_build(&t->patches, &t->welded, &t->edges, error);
   if (status != VXM_OK)
     return status;
   vxm_census *census = t->census;
-  size_t odd = 0;
-  for (size_t e = 0; e < edges.count; e++) {
-    const vxm_edge *edge = &edges.edges[e];
-    census->boundary_edges += edge->count == 1;
-    census->nonmanifold_edges += edge->count > 2;
-    census->inconsistent_edges += edge->count == 2 && edge->forward != 1;
-    odd += vxm_edge_is_odd(edge);
-  }
+  census->boundary_edges = (int64_t)t->edges.open;
+  census->nonmanifold_edges = (int64_t)t->edges.crowded;
+  census->inconsistent_edges = (int64_t)t->edges.against;
   bool faces = t->soup->face_count > 0;
   census->watertight = faces && census->boundary_edges == 0 && census->nonmanifold_edges == 0;
-  census->closed = faces && odd == 0;
-  vxm_edges_destroy(&edges);
+  census->closed = faces && t->edges.odd == 0;
+  vxm_edges_destroy(&t->edges);
   return VXM_OK;
 }
 
+static bool has_patches(const taking *t) {
+  return t->patches.context != NULL;
+}
+
 static vxm_status count_duplicates(taking *t, vxm_error *error) {
-  vxm_duplicates found;
-  vxm_status status = vxm_duplicates_find(&found, t->context, t->soup, t->map, NULL, NULL, error);
+  vxm_duplicates found = {0};
+  vxm_status status = VXM_OK;
+  if (!has_patches(t) || t->patches.may_repeat)
+    status = vxm_duplicates_find(&found, t->context, &t->welded, NULL, NULL, NULL, error);
   t->census->duplicate_faces = (int64_t)found.same;
   t->census->opposite_duplicate_faces = (int64_t)found.opposite_pairs;
   return status;
 }
 
+/** Patches are the components if no vertex joins two of them. */
+static vxm_status count_welded(taking *t, size_t *count, vxm_error *error) {
+  bool apart = false;
+  vxm_status status = has_patches(t) ? vxm_patches_are_apart(&apart, &t->patches, &t->welded, error) : VXM_OK;
+  *count = t->patches.count;
+  return status == VXM_OK && !apart ? vxm_components(t->context, &t->welded, NULL, NULL, count, error)
+                                    : status;
+}
+
 static vxm_status count_components(taking *t, vxm_error *error) {
   size_t raw, welded;
-  vxm_status status = vxm_components(t->context, t->soup, NULL, NULL, &raw, error);
-  if (status != VXM_OK)
-    return status;
-  status = vxm_components(t->context, t->soup, t->map, NULL, &welded, error);
-  t->census->components_raw = (int64_t)raw;
-  t->census->components = (int64_t)welded;
+  vxm_status status = count_welded(t, &welded, error);
+  raw = welded;
+  if (status == VXM_OK && t->welded.vertex_count < t->soup->vertex_count)
+    status = vxm_components(t->context, t->soup, NULL, NULL, &raw, error);
+  t->census->components_raw = status == VXM_OK ? (int64_t)raw : 0;
+  t->census->components = status == VXM_OK ? (int64_t)welded : 0;
   return status;
 }
 
@@ -189,8 +241,7 @@ static vxm_status take(taking *t, vxm_error *error) {
   typedef vxm_status (*step)(taking * t, vxm_error * error);
   static const step steps[] = {measure_faces, count_edges, count_duplicates, count_components};
   enum { STEPS = sizeof steps / sizeof *steps };
-  vxm_status status =
-      vxm_weld_exact(t->context, t->soup->positions, t->soup->vertex_count, t->map, NULL, error);
+  vxm_status status = weld(t, error);
   for (int i = 0; i < STEPS && status == VXM_OK; i++) {
     status = vxm_progress(t->context, "inspecting", (1.0 + i) / (1.0 + STEPS), error);
     if (status == VXM_OK)
@@ -211,6 +262,10 @@ vxm_status vxm_soup_census(vxm_census *out, const vxm_soup *soup, vxm_error *err
     t.map = vxm_alloc(t.context, soup->vertex_count, sizeof *t.map, &local);
   }
   status = t.map ? take(&t, &local) : local.code;
+  vxm_patches_destroy(&t.patches);
+  vxm_edges_destroy(&t.edges);
+  if (t.welded.indices != soup->indices)
+    vxm_free(t.context, t.welded.indices);
   vxm_free(t.context, t.map);
   if (status != VXM_OK) {
     *out = (vxm_census){0};

@@ -158,9 +158,23 @@ static vxm_status number_faces(vxm_context *context, const vxm_soup *soup, const
   return VXM_OK;
 }
 
+/** Whether every corner has a vertex of its own, as what is read from an .stl. */
+static bool shares_no_vertex(const vxm_soup *soup) {
+  size_t c = 0;
+  while (c < soup->corner_count && soup->indices[c] == c)
+    c++;
+  return c == soup->corner_count;
+}
+
 vxm_status vxm_components(vxm_context *context, const vxm_soup *soup, const uint32_t *vertex_map,
                           uint32_t *face_labels, size_t *count, vxm_error *error) {
   *count = 0;
+  if (!vertex_map && shares_no_vertex(soup) && soup->face_count < UINT32_MAX) {
+    for (size_t f = 0; face_labels && f < soup->face_count; f++)
+      face_labels[f] = (uint32_t)f;
+    *count = soup->face_count;
+    return VXM_OK;
+  }
   vxm_error local = VXM_ERROR_INIT;
   uint32_t *labels = vxm_alloc(context, soup->vertex_count, sizeof *labels, &local);
   uint32_t *numbers = labels ? vxm_alloc(context, soup->vertex_count, sizeof *numbers, &local) : NULL;

@@ -59,10 +59,11 @@ static bool face_is_finite(const vxm_soup *soup, const uint32_t *corner, size_t 
   return true;
 }
 
-static void include_box(double box[6], const double other[6]) {
+/** None of them NaN. */
+static inline void include(double box[6], const double low[3], const double high[3]) {
   for (int a = 0; a < 3; a++) {
-    box[a] = fmin(box[a], other[a]);
-    box[a + 3] = fmax(box[a + 3], other[a + 3]);
+    box[a] = low[a] < box[a] ? low[a] : box[a];
+    box[a + 3] = high[a] > box[a + 3] ? high[a] : box[a + 3];
   }
 }
 
@@ -73,29 +74,39 @@ static void empty_box(double box[6]) {
   }
 }
 
+/** Faces of one component mostly follow one another: the end of those that begin with `face`, or of as many
+ * of them as are worked on without asking whether to go on. */
+static size_t end_of_run(const builder *b, size_t face) {
+  size_t end = face + 1, most = (face / VXM_ASK_STEPS + 1) * VXM_ASK_STEPS;
+  while (end < b->soup->face_count && end < most && b->labels[end] == b->labels[face])
+    end++;
+  return end;
+}
+
 /** Boxes in model units, and how many faces each component has. */
 static bool measure_bodies(builder *b) {
   for (size_t i = 0; i < b->count; i++) {
     empty_box(b->bodies[i].box);
     b->bodies[i].component = (uint32_t)i;
   }
-  for (size_t f = 0; f < b->soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(b->soup, f, &count);
+  for (size_t f = 0, end; f < b->soup->face_count; f = end) {
+    end = end_of_run(b, f);
     if (vxm_ask_at(f, b->context, &b->error) != VXM_OK)
       return false;
-    b->bodies[b->labels[f] + 1].first++;
-    for (size_t c = 0; c < count; c++) {
-      const double *p = vxm_position(b->soup, corner[c]);
-      double at[6] = {p[0], p[1], p[2], p[0], p[1], p[2]};
+    double box[6];
+    memcpy(box, b->bodies[b->labels[f]].box, sizeof box);
+    for (uint64_t c = b->soup->offsets[f]; c < b->soup->offsets[end]; c++) {
+      const double *p = vxm_position(b->soup, b->soup->indices[c]);
       if (vxm_is_finite(p))
-        include_box(b->bodies[b->labels[f]].box, at);
+        include(box, p, p);
     }
+    memcpy(b->bodies[b->labels[f]].box, box, sizeof box);
+    b->bodies[b->labels[f] + 1].first += end - f;
   }
   empty_box(b->bounds);
   for (size_t i = 0; i < b->count; i++) {
     b->bodies[i + 1].first += b->bodies[i].first;
-    include_box(b->bounds, b->bodies[i].box);
+    include(b->bounds, b->bodies[i].box, b->bodies[i].box + 3);
   }
   return true;
 }
@@ -114,27 +125,41 @@ static void scale_boxes(builder *b) {
   }
 }
 
-static void list_faces(builder *b, size_t *next) {
-  for (size_t i = 0; i < b->count; i++)
+static bool list_faces(builder *b) {
+  size_t *next = allocate(b, b->count, sizeof *next);
+  b->faces = allocate(b, b->soup->face_count, sizeof *b->faces);
+  bool done = next && b->faces;
+  for (size_t i = 0; done && i < b->count; i++)
     next[i] = b->bodies[i].first;
-  for (size_t f = 0; f < b->soup->face_count; f++)
+  for (size_t f = 0; done && f < b->soup->face_count; f++)
     b->faces[next[b->labels[f]]++] = f;
+  vxm_free(b->context, next);
+  return done;
+}
+
+/** Adds the cones from the middle of a box to the faces from `face` to `end`. */
+static double add_cones(const builder *b, size_t face, size_t end, double volume) {
+  const double *box = b->bodies[b->labels[face]].box, scale = b->frame.scale;
+  const double middle[3] = {(box[0] + box[3]) / 2, (box[1] + box[4]) / 2, (box[2] + box[5]) / 2};
+  for (size_t f = face; f < end; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(b->soup, f, &count);
+    if (count < 3 || !face_is_finite(b->soup, corner, count))
+      continue;
+    const double *p = vxm_position(b->soup, corner[0]);
+    vxm_vec3 first = {p[0] * scale - middle[0], p[1] * scale - middle[1], p[2] * scale - middle[2]};
+    volume += vxm_polygon_cone(first, vxm_polygon_area(b->soup->positions, corner, count, scale));
+  }
+  return volume;
 }
 
 static bool sum_volumes(builder *b, double *volume) {
   double scale = b->frame.scale;
-  for (size_t f = 0; f < b->soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(b->soup, f, &count);
+  for (size_t f = 0, end; f < b->soup->face_count; f = end) {
+    end = end_of_run(b, f);
     if (vxm_ask_at(f, b->context, &b->error) != VXM_OK)
       return false;
-    if (count < 3 || !face_is_finite(b->soup, corner, count))
-      continue;
-    const double *box = b->bodies[b->labels[f]].box, *p = vxm_position(b->soup, corner[0]);
-    vxm_vec3 first = {p[0] * scale - (box[0] + box[3]) / 2, p[1] * scale - (box[1] + box[4]) / 2,
-                      p[2] * scale - (box[2] + box[5]) / 2};
-    volume[b->labels[f]] +=
-        vxm_polygon_cone(first, vxm_polygon_area(b->soup->positions, corner, count, scale));
+    volume[b->labels[f]] = add_cones(b, f, end, volume[b->labels[f]]);
   }
   for (size_t i = 0; i < b->count; i++)
     volume[i] = volume[i] / scale / scale / scale;
@@ -229,8 +254,6 @@ static bool order_bodies(builder *b) {
 }
 
 static bool list_candidates(builder *b) {
-  if (!order_bodies(b))
-    return false;
   size_t registered = choose_cells(b), cells = b->cells[0] * b->cells[1] * b->cells[2];
   b->begin = allocate(b, cells + 2, sizeof *b->begin);
   b->listed = allocate(b, registered, sizeof *b->listed);
@@ -370,19 +393,14 @@ static bool run(builder *b, vxm_containment *out) {
   out->parent = allocate(b, b->count, sizeof *out->parent);
   out->volume = allocate(b, b->count, sizeof *out->volume);
   b->bodies = allocate(b, b->count + 1, sizeof *b->bodies);
-  b->faces = allocate(b, b->soup->face_count, sizeof *b->faces);
-  size_t *next = allocate(b, b->count, sizeof *next);
-  bool ready = out->parent && out->volume && b->bodies && b->faces && next;
-  ready = ready && measure_bodies(b);
-  if (ready) {
-    scale_boxes(b);
-    list_faces(b, next);
-    ready = sum_volumes(b, out->volume);
-    for (size_t i = 0; i < b->count; i++)
-      out->parent[i] = VXM_NO_COMPONENT;
-  }
-  vxm_free(b->context, next);
-  return ready && list_candidates(b) && find_parents(b, out->parent);
+  if (!out->parent || !out->volume || !b->bodies || !measure_bodies(b))
+    return false;
+  scale_boxes(b);
+  for (size_t i = 0; i < b->count; i++)
+    out->parent[i] = VXM_NO_COMPONENT;
+  if (!sum_volumes(b, out->volume) || !order_bodies(b))
+    return false;
+  return b->order_count < 2 || (list_faces(b) && list_candidates(b) && find_parents(b, out->parent));
 }
 
 vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, const uint32_t *face_labels,

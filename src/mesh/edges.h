@@ -19,11 +19,20 @@ typedef struct vxm_edge {
   uint32_t forward; /**< those that run from a to b */
 } vxm_edge;
 
+/** No edge: see vxm_edges. */
+#define VXM_NO_EDGE UINT32_MAX
+
 /** Edges in increasing order of a, then of b. */
 typedef struct vxm_edges {
   vxm_context *context;
   vxm_edge *edges;
   size_t count;
+  uint32_t *sides; /**< per corner the place of the edge from it to the next corner of its face, or
+                      VXM_NO_EDGE where there is none; NULL if it was not asked for */
+  size_t odd;      /**< edges with an odd number of sides; 0 means closed mod 2 */
+  size_t open;     /**< with one side */
+  size_t crowded;  /**< with more than two */
+  size_t against;  /**< with two that run the same way */
 } vxm_edges;
 
 /**
@@ -33,13 +42,16 @@ typedef struct vxm_edges {
  * @param vertex_map vertex to take in place of each vertex (as from vxm_weld_exact), or NULL
  *
  * Faces with fewer than three distinct corners (after mapping) take no part, and a side from a vertex to
- * itself is none; neither changes whether a number of sides is odd. Time and scratch memory (16 bytes per
+ * itself is none; neither changes whether a number of sides is odd. Time and scratch memory (8 bytes per
  * corner) are linear in the corners, not in the vertices.
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
 vxm_status vxm_edges_build(vxm_edges *out, vxm_context *context, const vxm_soup *soup,
                            const uint32_t *vertex_map, vxm_error *error);
+/** As vxm_edges_build, with `sides`. @return also VXM_ERROR_RANGE beyond 2^32 - 2 edges */
+vxm_status vxm_edges_build_sides(vxm_edges *out, vxm_context *context, const vxm_soup *soup,
+                                 const uint32_t *vertex_map, vxm_error *error);
 void vxm_edges_destroy(vxm_edges *edges);
 
 /** Place of the edge between two vertices, in either order, or edges->count; logarithmic time. */
@@ -49,9 +61,6 @@ size_t vxm_edges_find(const vxm_edges *edges, uint32_t a, uint32_t b);
 static inline bool vxm_edge_is_odd(const vxm_edge *edge) {
   return edge->count & 1;
 }
-
-/** Number of odd edges; 0 means closed mod 2. */
-size_t vxm_edges_count_odd(const vxm_edges *edges);
 
 /** Whether a face has at least three distinct corners after mapping. */
 static inline bool vxm_face_has_three(const uint32_t *corners, size_t count, const uint32_t *vertex_map) {

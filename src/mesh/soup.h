@@ -37,13 +37,17 @@ struct vxm_mesh {
   vxm_part_change *part_changes; /**< part_count, or NULL */
   vxm_part_state *part_states;   /**< what they point to: all before, then all after */
   size_t part_count;
+  /* What a repair has found out on its way, so that nobody has to look for it again. */
+  size_t component_count; /**< as vxm_components counts them; 0 = not known */
+  uint32_t *components;   /**< face_count, as vxm_components numbers them; NULL unless there are several */
+  bool is_closed;         /**< known to have no edge with an odd number of sides */
 };
 
 /** An empty soup in a context (NULL = a new one). */
 vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *format, vxm_error *error);
 /** Same as vxm_mesh_destroy; NULL is allowed. */
 void vxm_soup_destroy(vxm_soup *soup);
-/** Copies everything, warnings included. */
+/** Copies all but what a repair has found out, warnings included. */
 vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
 
 /** Makes room for at least so many elements in all (amortized doubling beyond what is there). */
@@ -64,6 +68,14 @@ static inline const uint32_t *vxm_face(const vxm_soup *soup, size_t face, size_t
 
 static inline const double *vxm_position(const vxm_soup *soup, size_t vertex) {
   return soup->positions + 3 * vertex;
+}
+
+/** In a walk over all faces: fetches positions that will be asked for soon, as they may lie anywhere. */
+static inline void vxm_soup_look_ahead(const vxm_soup *soup, size_t face) {
+  enum { AHEAD = 48 /**< corners */ };
+  uint64_t from = soup->offsets[face] + AHEAD, to = soup->offsets[face + 1] + AHEAD;
+  for (uint64_t c = from; c < to && c < soup->corner_count; c++)
+    __builtin_prefetch(vxm_position(soup, soup->indices[c]));
 }
 
 #ifdef __cplusplus

@@ -2,6 +2,7 @@
 #include "repair/repair.h"
 
 #include "mesh/census.h"
+#include "mesh/weld_soup.h"
 #include "repair/bodies/bodies.h"
 #include "repair/exact/on_lattice.h"
 #include "repair/state/repair_state.h"
@@ -474,6 +475,27 @@ vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const v
   vxm_soup_destroy(*out);
   apart.level = VXM_LEVEL_MANIFOLD;
   return run(out, report, in, &apart, true, &shared, error);
+}
+
+/** Whether to weld before anything else: a soup with a vertex for every corner, where that changes no report,
+ * as nobody asks for a vertex or a part of it as it is. */
+static bool is_welded_first(const vxm_soup *in, const vxm_repair_report *report,
+                            const vxm_repair_options *options) {
+  return in->vertex_count == in->corner_count && !(report && report->before) &&
+         !(options && keeps_account(options));
+}
+
+vxm_status vxm_repair_prepare_owned(vxm_soup **out, vxm_repair_report *report, vxm_soup *in,
+                                    const vxm_repair_options *options, vxm_error *error) {
+  *out = NULL;
+  size_t merged = 0;
+  vxm_status status = is_welded_first(in, report, options) ? vxm_weld_soup(in, &merged, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = vxm_repair_prepare(out, report, in, options, error);
+  if (status == VXM_OK && report)
+    report->passes[VXM_PASS_EXACT_WELD].count += (int64_t)merged;
+  vxm_soup_destroy(in);
+  return status;
 }
 
 vxm_status vxm_repair_try(vxm_pass_finding findings[VXM_PASS_COUNT], const vxm_soup *in,

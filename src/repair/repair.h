@@ -43,6 +43,15 @@ vxm_status vxm_repair_run(vxm_soup **out, vxm_repair_report *report, const vxm_s
 vxm_status vxm_repair_prepare(vxm_soup **out, vxm_repair_report *report, const vxm_soup *in,
                               const vxm_repair_options *options, vxm_error *error);
 
+/**
+ * As vxm_repair_prepare, of a soup that need not be kept: it is changed, or destroyed, as soon as that saves
+ * memory.
+ *
+ * @param in destroyed, also after a failure
+ */
+vxm_status vxm_repair_prepare_owned(vxm_soup **out, vxm_repair_report *report, vxm_soup *in,
+                                    const vxm_repair_options *options, vxm_error *error);
+
 /** Checks options; NULL stands for the defaults. @return VXM_OK, VXM_ERROR_ARGUMENT */
 vxm_status vxm_repair_check(vxm_repair_options *chosen, const vxm_repair_options *options, vxm_error *error);
 

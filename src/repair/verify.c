@@ -3,7 +3,6 @@
 
 #include "mesh/weld.h"
 #include "meshio/meshio.h"
-#include "repair/state/halfedges.h"
 #include "repair/state/merge_places.h"
 #include "repair/state/self_intersections.h"
 #include "repair/state/vertex_fans.h"
@@ -63,7 +62,7 @@ static vxm_status verify_rest(verifying *v, const vxm_soup *soup, vxm_error *err
 /* ---- Edges and vertices ---- */
 
 /** The first face that has a side along the edge. */
-static int64_t face_at(const size_t *sides, const vxm_soup *soup, size_t edge) {
+static int64_t face_at(const uint32_t *sides, const vxm_soup *soup, size_t edge) {
   for (size_t f = 0; f < soup->face_count; f++)
     for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
       if (sides[c] == edge)
@@ -71,7 +70,7 @@ static int64_t face_at(const size_t *sides, const vxm_soup *soup, size_t edge) {
   return -1;
 }
 
-static void add_edges(verifying *v, const char *what, int64_t count, size_t first, const size_t *sides) {
+static void add_edges(verifying *v, const char *what, int64_t count, size_t first, const uint32_t *sides) {
   if (count == 0)
     return;
   const vxm_soup *soup = v->state.soup;
@@ -81,7 +80,7 @@ static void add_edges(verifying *v, const char *what, int64_t count, size_t firs
   add(v, what, count, face_at(sides, soup, first), middle);
 }
 
-static void verify_edges(verifying *v, const size_t *sides) {
+static void verify_edges(verifying *v, const uint32_t *sides) {
   enum { BOUNDARY, NONMANIFOLD, INCONSISTENT, KINDS };
   static const char *const names[KINDS] = {"boundary_edges", "nonmanifold_edges", "inconsistent_edges"};
   int64_t counts[KINDS] = {0};
@@ -119,12 +118,10 @@ static vxm_status verify_vertices(verifying *v, vxm_error *error) {
 }
 
 static vxm_status verify_manifold(verifying *v, vxm_error *error) {
-  size_t *sides;
-  vxm_status status = vxm_halfedges_find(&sides, &v->state, error);
+  vxm_status status = vxm_repair_state_edges(&v->state, error);
   if (status != VXM_OK)
     return status;
-  verify_edges(v, sides);
-  vxm_free(v->state.context, sides);
+  verify_edges(v, v->state.edges.sides);
   return verify_vertices(v, error);
 }
 

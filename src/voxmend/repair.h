@@ -169,6 +169,16 @@ VXM_API vxm_status vxm_mesh_repair(vxm_mesh **out, vxm_repair_report *report, co
 VXM_API vxm_status vxm_mesh_prepare(vxm_mesh **out, vxm_repair_report *report, const vxm_mesh *mesh,
                                     const vxm_repair_options *options, vxm_error *error);
 
+/**
+ * As vxm_mesh_prepare, with the result in the place of the mesh: a large one does not lie in memory beside
+ * what becomes of it.
+ *
+ * @param[in,out] mesh what it points to is destroyed, also after a failure; then it points to NULL
+ * @return as vxm_mesh_repair
+ */
+VXM_API vxm_status vxm_mesh_prepare_in_place(vxm_mesh **mesh, vxm_repair_report *report,
+                                             const vxm_repair_options *options, vxm_error *error);
+
 /** A part of a mesh, at one time. Edges and holes are taken after welding. */
 typedef struct vxm_part_state {
   size_t size;                /**< bytes that there are of it */

@@ -109,6 +109,14 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
   (void)payload;
 }
 
+/** Of a mesh of its own. */
+static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
+                                   const vxm_repair_options *options, vxm_error *failure) {
+  if (at)
+    vxm_mesh_read_memory(at, context, off_text, strlen(off_text), "x", NULL);
+  return vxm_mesh_prepare_in_place(at, report, options, failure);
+}
+
 /* ---- The calls ---- */
 
 /** The i-th pointer of a call, or NULL in its place. */
@@ -164,6 +172,8 @@ static void visit(const vxm_sparse_piece *piece, void *payload) {
     vxm_mesh_repair(P(0, &out.mesh), P(1, &out.repair), P(2, mesh), P(3, &repair), P(4, &error)))          \
   X(vxm_mesh_prepare, 5, 5,                                                                                \
     vxm_mesh_prepare(P(0, &out.mesh), P(1, &out.repair), P(2, mesh), P(3, &repair), P(4, &error)))         \
+  X(vxm_mesh_prepare_in_place, 4, 1,                                                                       \
+    prepare_in_place(P(0, &out.mesh), P(1, &out.repair), P(2, &repair), P(3, &error)))                     \
   X(vxm_mesh_part_change_count, 1, 1, ANYTHING(vxm_mesh_part_change_count(P(0, mesh))))                    \
   X(vxm_mesh_part_change, 1, 1, ANYTHING(vxm_mesh_part_change(P(0, mesh), 0)))                             \
   X(vxm_mesh_verify, 4, 3,                                                                                 \

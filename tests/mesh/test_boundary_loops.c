@@ -34,7 +34,7 @@ static found find_loops(const vxm_soup *soup) {
       assert_int_equal(seen[f.loops.edge[s]]++, 0);
     }
   }
-  assert_int_equal(steps, vxm_edges_count_odd(&f.edges));
+  assert_int_equal(steps, f.edges.odd);
   free(seen);
   return f;
 }

@@ -6,8 +6,31 @@
 
 static vxm_edges build(const vxm_soup *soup, const uint32_t *map) {
   vxm_edges edges;
-  assert_int_equal(vxm_edges_build(&edges, soup->context, soup, map, NULL), VXM_OK);
+  assert_int_equal(vxm_edges_build_sides(&edges, soup->context, soup, map, NULL), VXM_OK);
   return edges;
+}
+
+/** The same without them, and sides that name the edge between their ends. */
+static void check_sides(const vxm_edges *edges, const vxm_soup *soup, const uint32_t *map) {
+  vxm_edges plain;
+  assert_int_equal(vxm_edges_build(&plain, soup->context, soup, map, NULL), VXM_OK);
+  assert_null(plain.sides);
+  assert_int_equal(plain.count, edges->count);
+  assert_memory_equal(plain.edges, edges->edges, plain.count * sizeof *plain.edges);
+  vxm_edges_destroy(&plain);
+  for (size_t f = 0; f < soup->face_count; f++) {
+    size_t count;
+    const uint32_t *face = vxm_face(soup, f, &count);
+    for (size_t i = 0; i < count; i++) {
+      uint32_t u = face[i], v = face[i + 1 < count ? i + 1 : 0], side = edges->sides[soup->offsets[f] + i];
+      if (map)
+        u = map[u], v = map[v];
+      if (u == v || !vxm_face_has_three(face, count, map))
+        assert_int_equal(side, VXM_NO_EDGE);
+      else
+        assert_int_equal(side, vxm_edges_find(edges, u, v));
+    }
+  }
 }
 
 /** Sides of the edge a-b over all faces, by trying every pair of corners. */
@@ -35,7 +58,8 @@ static vxm_edge count_sides(const vxm_soup *soup, const uint32_t *map, uint32_t 
 
 static void check_against_counting(const vxm_soup *soup, const uint32_t *map) {
   vxm_edges edges = build(soup, map);
-  size_t next = 0, odd = 0;
+  size_t next = 0, odd = 0, open = 0, crowded = 0, against = 0;
+  check_sides(&edges, soup, map);
   for (uint32_t a = 0; a < soup->vertex_count; a++)
     for (uint32_t b = a + 1; b < soup->vertex_count; b++) {
       vxm_edge wanted = count_sides(soup, map, a, b);
@@ -47,9 +71,15 @@ static void check_against_counting(const vxm_soup *soup, const uint32_t *map) {
       assert_int_equal(place, next);
       assert_memory_equal(&edges.edges[next++], &wanted, sizeof wanted);
       odd += wanted.count % 2;
+      open += wanted.count == 1;
+      crowded += wanted.count > 2;
+      against += wanted.count == 2 && wanted.forward != 1;
     }
   assert_int_equal(edges.count, next);
-  assert_int_equal(vxm_edges_count_odd(&edges), odd);
+  assert_int_equal(edges.odd, odd);
+  assert_int_equal(edges.open, open);
+  assert_int_equal(edges.crowded, crowded);
+  assert_int_equal(edges.against, against);
   vxm_edges_destroy(&edges);
 }
 
@@ -77,7 +107,7 @@ static void sheet_and_cube(void **state) {
   vxm_soup *sheet = grid_sheet(context, N);
   vxm_edges edges = build(sheet, NULL);
   assert_int_equal(edges.count, 3 * N * N + 2 * N);
-  assert_int_equal(vxm_edges_count_odd(&edges), 4 * N);
+  assert_int_equal(edges.odd, 4 * N);
   for (size_t e = 0; e < edges.count; e++) {
     assert_true(edges.edges[e].a < edges.edges[e].b);
     assert_true(edges.edges[e].count != 2 || edges.edges[e].forward == 1);
@@ -89,7 +119,7 @@ static void sheet_and_cube(void **state) {
   add_cube(cube, 0);
   edges = build(cube, NULL);
   assert_int_equal(edges.count, 12);
-  assert_int_equal(vxm_edges_count_odd(&edges), 0);
+  assert_int_equal(edges.odd, 0);
   vxm_edges_destroy(&edges);
   vxm_soup_destroy(cube);
 
@@ -114,6 +144,7 @@ static void crowded_vertex_and_edge(void **state) {
   for (uint32_t f = 2; f < N; f++)
     add_triangle(soup, 0, N + 1, f);
   vxm_edges edges = build(soup, NULL);
+  check_sides(&edges, soup, NULL);
   assert_int_equal(edges.count, 2 * N - 1 + N - 1);
   size_t place = vxm_edges_find(&edges, 0, N + 1);
   assert_int_equal(edges.edges[place].count, N - 2);
@@ -138,8 +169,9 @@ static void few_faces_on_many_vertices(void **state) {
   for (uint32_t i = 0; i + 2 < 200; i++)
     add_triangle(soup, corners[0], corners[i + 2], corners[i + 1]);
   vxm_edges edges = build(soup, NULL);
+  check_sides(&edges, soup, NULL);
   assert_int_equal(edges.count, 200 + 197);
-  assert_int_equal(vxm_edges_count_odd(&edges), 0);
+  assert_int_equal(edges.odd, 0);
   for (size_t e = 0; e < edges.count; e++) {
     assert_int_equal(edges.edges[e].count, 2);
     assert_int_equal(edges.edges[e].forward, 1);

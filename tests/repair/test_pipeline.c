@@ -77,7 +77,7 @@ static bool same_word(const word *a, const word *b, bool either_direction) {
 static size_t odd_edges(const vxm_soup *soup, const uint32_t *map) {
   vxm_edges edges;
   assert_int_equal(vxm_edges_build(&edges, soup->context, soup, map, NULL), VXM_OK);
-  size_t odd = vxm_edges_count_odd(&edges);
+  size_t odd = edges.odd;
   vxm_edges_destroy(&edges);
   return odd;
 }

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/bodies.h"
 
-#include "mesh/components.h"
 #include "repair/bodies/hanging_sheets.h"
 #include "repair/bodies/layers.h"
-#include "repair/state/halfedges.h"
 
 #include <stdlib.h>
 
@@ -435,22 +433,34 @@ static bool find_groups(parting *p, bool *any, uint8_t **touches) {
   return true;
 }
 
-/** Whether it is plain that there is nothing to divide, as in most meshes: there are no more patches than
- * what vertices connect, so none touches another. That costs a tenth of looking at the groups. */
-static vxm_status is_apart(const vxm_repair_state *state, bool *apart, vxm_error *error) {
-  size_t components = 1;
-  vxm_status status = VXM_OK;
-  if (state->patches > 1)
-    status = vxm_components(state->context, state->soup, NULL, NULL, &components, error);
-  *apart = status == VXM_OK && state->patches == components;
-  return status;
+/** Whether it is plain that there is nothing to divide, as in most meshes: no patch touches another. That
+ * costs a tenth of looking at the groups. */
+static vxm_status is_apart(vxm_repair_state *state, bool *apart, vxm_error *error) {
+  *apart = false;
+  vxm_status status = vxm_repair_state_patches(state, error);
+  return status == VXM_OK && state->has_patches
+             ? vxm_patches_are_apart(apart, &state->patches, state->soup, error)
+             : status;
+}
+
+/** Tells what is known to those who take the soup next; patches that are apart are its components. */
+static void hand_on(vxm_repair_state *state) {
+  vxm_patches *patches = &state->patches;
+  state->soup->component_count = patches->count;
+  state->soup->is_closed = patches->is_closed;
+  if (patches->count > 1) {
+    state->soup->components = patches->of_face;
+    patches->of_face = NULL;
+  }
+  vxm_patches_destroy(patches);
+  state->has_patches = false;
 }
 
 /** Sheets that hang on bodies would make these open. There are none where no edge has more than two sides. */
 static bool cut_sheets(parting *p, bool *changed) {
   vxm_repair_state *state = p->state;
   int64_t added = 0;
-  if (state->patches == 0 && vxm_cut_hanging_sheets(state, &added, &p->error) != VXM_OK)
+  if (!state->has_patches && vxm_cut_hanging_sheets(state, &added, &p->error) != VXM_OK)
     return false;
   state->counts[VXM_PASS_SEPARATION] += added;
   *changed = added > 0;
@@ -465,8 +475,10 @@ vxm_status vxm_pass_bodies(vxm_repair_state *state, bool *changed, vxm_error *er
   uint8_t *touches = NULL;
   bool any = false, apart;
   bool done = is_apart(state, &apart, &p.error) == VXM_OK;
-  if (done && apart)
+  if (done && apart) {
+    hand_on(state);
     return VXM_OK;
+  }
   done = done && cut_sheets(&p, changed) && vxm_repair_state_edges(state, &p.error) == VXM_OK &&
          find_groups(&p, &any, &touches);
   if (done && any)

@@ -3,7 +3,6 @@
 
 #include "repair/holes/fill_fans.h"
 #include "repair/state/edge_groups.h"
-#include "repair/state/halfedges.h"
 
 #include <string.h>
 

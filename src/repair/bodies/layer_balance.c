@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/layer_stacks.h"
-#include "repair/state/halfedges.h"
 
 #include <stdlib.h>
 

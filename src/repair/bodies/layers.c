@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/bodies/layers.h"
 
-#include "repair/state/halfedges.h"
 #include "repair/state/set_sides.h"
 
 #include <stdlib.h>

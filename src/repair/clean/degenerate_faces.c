@@ -32,11 +32,13 @@ static void flag_slice(size_t slice, int worker, void *payload) {
   removal *r = payload;
   const vxm_soup *soup = r->state->soup;
   size_t begin = slice * FACES_PER_SLICE, end = begin + FACES_PER_SLICE, sides = 0;
-  for (size_t f = begin; f < end && f < soup->face_count; f++)
+  for (size_t f = begin; f < end && f < soup->face_count; f++) {
+    vxm_soup_look_ahead(soup, f);
     if (vxm_unit_scale_no_area(&r->frame, soup, f)) {
       r->flat[f] = 1;
       sides += (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
     }
+  }
   atomic_fetch_add_explicit(&r->sides, sides, memory_order_relaxed);
 }
 

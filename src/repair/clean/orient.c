@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
-#include "mesh/geometry.h"
-#include "repair/state/halfedges.h"
+#include "mesh/surface_sums.h"
+#include "repair/state/repair_state.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,18 +24,24 @@ typedef struct orienting {
   vxm_soup *soup;
   vxm_error error;
   vxm_unit_scale frame;
-  size_t *sides;     /**< per corner: its edge */
-  size_t (*pair)[2]; /**< per edge with two sides: their faces */
-  uint32_t *label;   /**< per face: its patch */
-  uint8_t *turn;     /**< per face: 1 = against the first face of its patch, later: against the input */
+  const uint32_t *sides; /**< per corner: its edge */
+  size_t (*pair)[2];     /**< per edge with two sides: their faces */
+  uint32_t *label;       /**< per face: its patch */
+  uint8_t *turn;         /**< per face: 1 = against the first face of its patch, later: against the input */
   size_t *queue;
   patch *patches;
   size_t patch_count, patch_capacity;
-  bool many_sides; /**< an edge has more than two */
+  const double *bounds;
+  double volume; /**< where all is one patch that is consistent, and so measured in one go */
 } orienting;
 
 static void *allocate(orienting *o, size_t count, size_t size) {
   return vxm_calloc(o->state->context, count, size, &o->error);
+}
+
+/** Whether no face has to be turned for the sake of others. */
+static bool is_consistent(const orienting *o) {
+  return o->state->edges.crowded == 0 && o->state->edges.against == 0;
 }
 
 /* ---- Patches ---- */
@@ -51,7 +57,6 @@ static bool pair_faces(orienting *o) {
     if (!goes_on(o, e))
       return false;
     o->pair[e][0] = o->pair[e][1] = SIZE_MAX;
-    o->many_sides |= edges->edges[e].count > 2;
   }
   for (size_t f = 0; f < o->soup->face_count; f++) {
     if (!goes_on(o, f))
@@ -125,6 +130,16 @@ static bool find_patches(orienting *o) {
   return true;
 }
 
+/** Where all faces go together as they are, what edges connect is known. */
+static bool take_patches(orienting *o) {
+  if (vxm_repair_state_patches(o->state, &o->error) != VXM_OK)
+    return false;
+  o->label = o->state->patches.of_face;
+  o->patch_count = o->state->patches.count;
+  o->patches = allocate(o, o->patch_count, sizeof *o->patches);
+  return o->patches != NULL;
+}
+
 /* ---- Turning ---- */
 
 /** Reverses a face about its first corner. */
@@ -145,6 +160,29 @@ static vxm_vec3 area_of(const orienting *o, size_t face) {
   return vxm_polygon_area(o->soup->positions, corner, count, o->frame.scale);
 }
 
+static void add_area(patch *p, vxm_vec3 area) {
+  p->vector_area =
+      (vxm_vec3){p->vector_area.x + area.x, p->vector_area.y + area.y, p->vector_area.z + area.z};
+}
+
+/** The areas of patches that are consistent. */
+static bool measure_patches(orienting *o) {
+  if (o->patch_count == 1) {
+    vxm_surface_sums sums;
+    vxm_status status = vxm_surface_sums_of(&sums, o->soup, o->bounds, &o->frame, &o->error);
+    o->patches[0] = (patch){.area = sums.area, .vector_area = sums.vector_area};
+    o->volume = sums.volume;
+    return status == VXM_OK;
+  }
+  for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
+    patch *p = &o->patches[o->label[f]];
+    vxm_vec3 area = area_of(o, f);
+    p->area += vxm_vec3_length(area);
+    add_area(p, area);
+  }
+  return o->error.code == VXM_OK;
+}
+
 /** Makes patches consistent, with most of their area as it was; without a gain they stay as they are. */
 static bool make_consistent(orienting *o) {
   for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
@@ -161,9 +199,7 @@ static bool make_consistent(orienting *o) {
       o->turn[f] ^= 2 * p->turned_area > p->area;
     if (o->turn[f])
       reverse(o->soup, f);
-    vxm_vec3 area = area_of(o, f);
-    p->vector_area =
-        (vxm_vec3){p->vector_area.x + area.x, p->vector_area.y + area.y, p->vector_area.z + area.z};
+    add_area(p, area_of(o, f));
   }
   return o->error.code == VXM_OK;
 }
@@ -226,6 +262,8 @@ static void mark_held(const crossing *crossings, size_t count, uint8_t *held) {
  * stay, they stay in balance. */
 static bool find_held(orienting *o, uint8_t *held) {
   size_t count;
+  if (o->state->edges.crowded == 0)
+    return true;
   if (!list_crossings(o, NULL, &count))
     return false;
   crossing *crossings = allocate(o, count, sizeof *crossings);
@@ -268,6 +306,20 @@ static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, c
   }
 }
 
+/** What lies inside what, and the volumes; freed with vxm_containment_destroy. */
+static bool find_nesting(orienting *o, const uint8_t *solid, vxm_containment *nesting) {
+  if (o->patch_count > 1 || !is_consistent(o))
+    return vxm_containment_build(nesting, o->soup, o->label, o->patch_count, solid, &o->error) == VXM_OK;
+  *nesting = (vxm_containment){.context = o->state->context, .count = 1};
+  nesting->parent = allocate(o, 1, sizeof *nesting->parent);
+  nesting->volume = allocate(o, 1, sizeof *nesting->volume);
+  if (!nesting->parent || !nesting->volume)
+    return false;
+  nesting->parent[0] = VXM_NO_COMPONENT;
+  nesting->volume[0] = o->volume;
+  return true;
+}
+
 static bool turn_outward(orienting *o) {
   size_t count = o->patch_count;
   uint8_t *solid = allocate(o, count, sizeof *solid), *over = allocate(o, count, sizeof *over);
@@ -277,9 +329,7 @@ static bool turn_outward(orienting *o) {
   bool done = solid && over && known && held && chain && find_held(o, held);
   for (size_t i = 0; done && i < count; i++)
     solid[i] = is_closed_or_nearly(&o->patches[i]);
-  if (done)
-    done = vxm_containment_build(&nesting, o->soup, o->label, count, solid, &o->error) == VXM_OK;
-  if (done) {
+  if (done && find_nesting(o, solid, &nesting)) {
     double unit = o->frame.scale * o->frame.scale * o->frame.scale;
     for (size_t i = 0; i < count; i++)
       if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
@@ -291,6 +341,7 @@ static bool turn_outward(orienting *o) {
         reverse(o->soup, f);
       }
   }
+  done = o->error.code == VXM_OK;
   vxm_containment_destroy(&nesting);
   vxm_free(o->state->context, chain);
   vxm_free(o->state->context, held);
@@ -302,8 +353,13 @@ static bool turn_outward(orienting *o) {
 
 static bool orient(orienting *o) {
   size_t faces = o->soup->face_count;
-  if (vxm_halfedges_find(&o->sides, o->state, &o->error) != VXM_OK)
+  if (vxm_repair_state_edges(o->state, &o->error) != VXM_OK)
     return false;
+  if (is_consistent(o)) {
+    o->turn = allocate(o, faces, sizeof *o->turn);
+    return o->turn && take_patches(o) && measure_patches(o) && turn_outward(o);
+  }
+  o->sides = o->state->edges.sides;
   o->pair = allocate(o, o->state->edges.count, sizeof *o->pair);
   o->label = allocate(o, faces, sizeof *o->label);
   o->turn = allocate(o, faces, sizeof *o->turn);
@@ -341,6 +397,7 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
   orienting o = {.state = state,
                  .soup = state->soup,
                  .error = VXM_ERROR_INIT,
+                 .bounds = extent.bounds,
                  .frame = vxm_unit_scale_of(extent.bounds)};
   bool done = orient(&o);
   state->nonorientable = 0;
@@ -351,15 +408,14 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
   vxm_free(state->context, o.patches);
   vxm_free(state->context, o.queue);
   vxm_free(state->context, o.turn);
-  vxm_free(state->context, o.label);
+  if (o.label != state->patches.of_face)
+    vxm_free(state->context, o.label);
   vxm_free(state->context, o.pair);
-  vxm_free(state->context, o.sides);
   if (!done) {
     vxm_error_pass(error, &o.error);
     return o.error.code;
   }
   if (*changed)
-    vxm_repair_state_touch(state);
-  state->patches = o.many_sides ? 0 : o.patch_count; /* turning changes none */
+    vxm_repair_state_turn(state);
   return VXM_OK;
 }

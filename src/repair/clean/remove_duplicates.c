@@ -42,15 +42,25 @@ static vxm_status remove_repeated(vxm_repair_state *state, uint8_t *kinds, vxm_c
   return status;
 }
 
+/** Whether there are any, as in few meshes: where no edge has more than two sides the patches tell mostly. */
+static vxm_status look_for_repeated(vxm_repair_state *state, bool *any, vxm_error *error) {
+  vxm_duplicates found = {0};
+  vxm_status status = vxm_repair_state_patches(state, error);
+  if (status == VXM_OK && (!state->has_patches || state->patches.may_repeat))
+    status = vxm_duplicates_find(&found, state->context, state->soup, NULL, NULL, NULL, error);
+  *any = found.same + found.opposite_pairs > 0;
+  return status;
+}
+
 /** Of the faces that repeat each other leaves as many as are needed. */
 vxm_status vxm_pass_duplicates(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
   state->shared = 0;
   if (state->options.keep_duplicates)
     return VXM_OK;
-  vxm_duplicates found; /* without a list of them, as most meshes have none */
-  vxm_status status = vxm_duplicates_find(&found, state->context, state->soup, NULL, NULL, NULL, error);
-  if (status != VXM_OK || found.same + found.opposite_pairs == 0)
+  bool found = true;
+  vxm_status status = look_for_repeated(state, &found, error);
+  if (status != VXM_OK || !found)
     return status;
   size_t faces = state->soup->face_count;
   uint8_t *kinds = vxm_repair_state_scratch(state, faces, sizeof *kinds, &status, error);

@@ -3,7 +3,6 @@
 
 #include "mesh/geometry.h"
 #include "repair/state/edge_groups.h"
-#include "repair/state/halfedges.h"
 #include "repair/state/set_sides.h"
 
 #include <string.h>

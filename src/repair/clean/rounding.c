@@ -44,5 +44,7 @@ vxm_status vxm_pass_rounding(vxm_repair_state *state, bool *changed, vxm_error *
   if (status == VXM_OK && state->options.single_precision)
     status = round_positions(state, error);
   *changed = state->counts[VXM_PASS_ROUNDING] > before;
+  if (*changed)
+    vxm_repair_state_move(state);
   return status;
 }

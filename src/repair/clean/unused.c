@@ -34,6 +34,7 @@ vxm_status vxm_pass_unused(vxm_repair_state *state, bool *changed, vxm_error *er
     edge->b = number[edge->b];
   }
   vxm_free(state->context, number);
+  vxm_repair_state_move(state);
   *changed = true;
   return VXM_OK;
 }

@@ -135,7 +135,7 @@ vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *e
   if (most == 0)
     return VXM_OK;
   vxm_status status = vxm_repair_state_edges(state, error);
-  if (status != VXM_OK || vxm_edges_count_odd(&state->edges) == 0)
+  if (status != VXM_OK || state->edges.odd == 0)
     return status;
   if (state->options.hole_fill == VXM_HOLE_FILL_FAN) {
     int64_t closed;

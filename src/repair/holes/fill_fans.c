@@ -4,7 +4,6 @@
 #include "mesh/caps.h"
 #include "mesh/components.h"
 #include "mesh/geometry.h"
-#include "repair/state/halfedges.h"
 #include "repair/state/position_hash.h"
 
 #include <string.h>
@@ -35,15 +34,14 @@ static void *allocate(closing *c, size_t count, size_t size) {
 /* ---- Planning the caps ---- */
 
 static bool find_edge_faces(closing *c) {
-  size_t *sides;
-  if (vxm_halfedges_find(&sides, c->state, &c->error) != VXM_OK)
+  if (vxm_repair_state_edges(c->state, &c->error) != VXM_OK)
     return false;
+  const uint32_t *sides = c->state->edges.sides;
   c->edge_face = allocate(c, c->state->edges.count, sizeof *c->edge_face);
   for (size_t f = c->soup->face_count; c->edge_face && f-- > 0;)
     for (uint64_t s = c->soup->offsets[f]; s < c->soup->offsets[f + 1]; s++)
       if (sides[s] != VXM_NO_EDGE)
         c->edge_face[sides[s]] = f;
-  vxm_free(c->state->context, sides);
   return c->edge_face != NULL;
 }
 

@@ -328,5 +328,7 @@ vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *err
   state->counts[VXM_PASS_APART] += moved;
   state->together = (int64_t)m.shared - moved;
   *changed = moved > 0;
+  if (*changed)
+    vxm_repair_state_move(state);
   return status;
 }

@@ -93,7 +93,7 @@ vxm_status vxm_pass_sheets(vxm_repair_state *state, bool *changed, vxm_error *er
   if (!is_asked_for(state))
     return VXM_OK;
   vxm_status status = vxm_repair_state_edges(state, error);
-  if (status != VXM_OK || vxm_edges_count_odd(&state->edges) == 0)
+  if (status != VXM_OK || state->edges.odd == 0)
     return status;
   int64_t count = 0;
   uint8_t *sheets = vxm_repair_state_scratch(state, state->soup->face_count, 1, &status, error);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/state/edge_groups.h"
 
-#include "repair/state/halfedges.h"
-
 /** Joins the faces along every edge; `first` is scratch per edge: 1 + a face there. */
 static vxm_status join_faces(const vxm_edge_groups *g, const vxm_soup *soup, size_t *first,
                              vxm_error *error) {
@@ -65,7 +63,8 @@ vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *state, v
   *out = (vxm_edge_groups){0};
   size_t faces = state->soup->face_count;
   size_t *scratch = NULL;
-  vxm_status status = vxm_halfedges_find(&out->sides, state, error);
+  vxm_status status = vxm_repair_state_edges(state, error);
+  out->sides = state->edges.sides;
   if (status == VXM_OK)
     out->of_face = vxm_repair_state_scratch(state, faces, sizeof *out->of_face, &status, error);
   if (status == VXM_OK)
@@ -86,6 +85,5 @@ vxm_status vxm_edge_groups_find(vxm_edge_groups *out, vxm_repair_state *state, v
 void vxm_edge_groups_free(vxm_edge_groups *groups, vxm_context *context) {
   vxm_free(context, groups->groups);
   vxm_free(context, groups->of_face);
-  vxm_free(context, groups->sides);
   *groups = (vxm_edge_groups){0};
 }

@@ -16,8 +16,8 @@ typedef struct vxm_edge_group {
 /** The faces of a soup by group: those that share edges, however many faces an edge has. Faces without an
  * edge are groups of their own, and closed. */
 typedef struct vxm_edge_groups {
-  size_t *sides;   /**< per corner: its edge (vxm_halfedges_find) */
-  size_t *of_face; /**< per face: its group */
+  const uint32_t *sides; /**< per corner: its edge, of the state's edge map */
+  size_t *of_face;       /**< per face: its group */
   vxm_edge_group *groups;
   size_t count;
 } vxm_edge_groups;

@@ -20,20 +20,43 @@ void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t siz
 vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error) {
   if (state->has_edges)
     return VXM_OK;
-  vxm_status status = vxm_edges_build(&state->edges, state->context, state->soup, NULL, error);
+  vxm_status status = vxm_edges_build_sides(&state->edges, state->context, state->soup, NULL, error);
   state->has_edges = status == VXM_OK;
   return status;
 }
 
-void vxm_repair_state_touch(vxm_repair_state *state) {
-  if (state->has_edges)
-    vxm_edges_destroy(&state->edges);
-  state->has_edges = false;
-  state->patches = 0;
+vxm_status vxm_repair_state_patches(vxm_repair_state *state, vxm_error *error) {
+  vxm_status status = state->has_patches ? VXM_OK : vxm_repair_state_edges(state, error);
+  if (status == VXM_OK && !state->has_patches && state->edges.crowded == 0) {
+    status = vxm_patches_build(&state->patches, state->soup, &state->edges, error);
+    state->has_patches = status == VXM_OK;
+  }
+  return status;
 }
 
 void vxm_repair_state_extent(vxm_repair_state *state, vxm_extent *extent) {
-  vxm_extent_of(extent, state->context, state->soup, state->used);
+  if (!state->has_extent)
+    vxm_extent_of(&state->extent, state->context, state->soup, state->used);
+  state->has_extent = true;
+  *extent = state->extent;
+}
+
+void vxm_repair_state_move(vxm_repair_state *state) {
+  state->has_extent = false;
+}
+
+void vxm_repair_state_turn(vxm_repair_state *state) {
+  if (state->has_edges)
+    vxm_edges_destroy(&state->edges);
+  state->has_edges = state->is_manifold = false;
+}
+
+void vxm_repair_state_touch(vxm_repair_state *state) {
+  vxm_repair_state_turn(state);
+  vxm_repair_state_move(state);
+  if (state->has_patches)
+    vxm_patches_destroy(&state->patches);
+  state->has_patches = false;
 }
 
 /* ---- The first of what a pass changes ---- */

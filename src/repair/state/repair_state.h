@@ -3,7 +3,7 @@
 #ifndef VXM_REPAIR_STATE_REPAIR_STATE_H
 #define VXM_REPAIR_STATE_REPAIR_STATE_H
 
-#include "mesh/edges.h"
+#include "mesh/patches.h"
 #include "mesh/unit_scale.h"
 #include "repair/state/lost_parts.h"
 #include "repair/state/provenance.h"
@@ -51,12 +51,13 @@ typedef struct vxm_repair_state {
   vxm_repair_options options;
   bool divides;    /**< bodies that share faces, edges or vertices each get their own in the end */
   uint8_t *gone;   /**< vertex_count; 1 = removed or merged by a pass that counted it */
-  uint8_t *used;   /**< vertex_count; scratch of vxm_repair_state_extent */
+  uint8_t *used;   /**< vertex_count; as the last vxm_repair_state_extent has found */
   uint8_t *turned; /**< face_count, or NULL as long as no face was turned: see vxm_turned */
-  bool has_edges;
-  vxm_edges edges; /**< of the present faces, if has_edges */
-  size_t patches;  /**< into how many the edges of the present faces join them, if none has more than two
-                      sides; 0 = not known */
+  bool has_edges, has_patches, has_extent;
+  bool is_manifold;    /**< the present faces are known to be (vxm_is_manifold) */
+  vxm_edges edges;     /**< of the present faces, if has_edges */
+  vxm_patches patches; /**< of the present faces, if has_patches */
+  vxm_extent extent;   /**< of the present soup, if has_extent */
   int64_t counts[VXM_PASS_COUNT];
   vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
   bool renumbered;                         /**< faces have other numbers than they came in with */
@@ -106,9 +107,12 @@ vxm_status vxm_pass_unused(vxm_repair_state *state, bool *changed, vxm_error *er
 /** A block of scratch, zeroed; on failure NULL, with *status and *error set. */
 void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t size, vxm_status *status,
                                vxm_error *error);
-/** The edge map of the present faces, built if need be. */
+/** The edge map of the present faces, with their sides, built if need be. */
 vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error);
-/** Which vertices are used (work->used), and the bounds of these. */
+/** The patches of the present faces, and their edges, built if need be; there are none (count = 0) where an
+ * edge has more than two sides. */
+vxm_status vxm_repair_state_patches(vxm_repair_state *state, vxm_error *error);
+/** Which vertices are used (state->used), and the bounds of these, looked at if need be. */
 void vxm_repair_state_extent(vxm_repair_state *state, vxm_extent *extent);
 /** Puts map[v] in the place of each corner v; vertices that lose their place are marked gone. Returns how
  * many were not gone before. */
@@ -154,6 +158,10 @@ void vxm_repair_state_note_merge(vxm_repair_state *state, vxm_pass pass, const u
 void vxm_repair_state_note_marked(vxm_repair_state *state, vxm_pass pass, const uint8_t *marks);
 /** Says that faces have changed: what was derived from them is dropped. */
 void vxm_repair_state_touch(vxm_repair_state *state);
+/** Says that faces were turned, and nothing else. */
+void vxm_repair_state_turn(vxm_repair_state *state);
+/** Says that vertices have moved, and no face has changed. */
+void vxm_repair_state_move(vxm_repair_state *state);
 
 /**
  * Repairs a copy, and tells what there was to do, without a census.

@@ -74,13 +74,6 @@ static void keep_closing(const vxm_repair_state *state, uint32_t *map, uint64_t 
       map[v] = (uint32_t)v;
 }
 
-static size_t count_boundary(const vxm_edges *edges) {
-  size_t count = 0;
-  for (size_t e = 0; e < edges->count; e++)
-    count += edges->edges[e].count == 1;
-  return count;
-}
-
 static vxm_status weld_cracks(vxm_repair_state *state, uint32_t *map, vxm_error *error) {
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
@@ -93,7 +86,7 @@ static vxm_status weld_cracks(vxm_repair_state *state, uint32_t *map, vxm_error 
   uint8_t *keep = roles ? vxm_repair_state_scratch(state, vertices, sizeof *keep, &status, &local) : NULL;
   uint64_t *keys = NULL;
   if (keep)
-    keys = vxm_repair_state_scratch(state, count_boundary(&state->edges), 2 * sizeof *keys, &status, &local);
+    keys = vxm_repair_state_scratch(state, state->edges.open, 2 * sizeof *keys, &status, &local);
   if (keys) {
     give_roles(state, tolerance, roles);
     status = vxm_near_vertices_group(state->context, state->soup->positions, vertices, roles, tolerance, map,
@@ -115,7 +108,7 @@ static vxm_status is_wanted(vxm_repair_state *state, bool *wanted, vxm_error *er
   if (state->options.weld != VXM_WELD_AUTO)
     return VXM_OK;
   vxm_status status = vxm_repair_state_edges(state, error);
-  *wanted = status == VXM_OK && count_boundary(&state->edges) > 1;
+  *wanted = status == VXM_OK && state->edges.open > 1;
   return status;
 }
 
@@ -139,6 +132,7 @@ static vxm_status move_to_middle(vxm_repair_state *state, const uint32_t *map, v
       mean[a] = vxm_repair_state_round(state, mean[a] + (positions[3 * v + a] - mean[a]) * share);
   }
   vxm_free(state->context, copies);
+  vxm_repair_state_move(state);
   return VXM_OK;
 }
 

@@ -5,6 +5,8 @@
 #include "mesh/geometry.h"
 #include "mesh/unit_scale.h"
 
+#include <string.h>
+
 /** Area of the caps against that of the component, above which it is a sheet rather than a body with holes.
  */
 static const double capped_part_max = 0.75;
@@ -24,6 +26,17 @@ static void *allocate(builder *b, size_t count, size_t size) {
   return vxm_calloc(b->split->context, count, size, &b->error);
 }
 
+/* ---- Loops ---- */
+
+static vxm_status find_loops(builder *b, vxm_error *error) {
+  vxm_split *s = b->split;
+  vxm_status status = vxm_edges_build(&s->edges, s->context, b->soup, NULL, error);
+  if (status != VXM_OK)
+    return status;
+  s->odd_edge_count = s->edges.odd;
+  return s->odd_edge_count > 0 ? vxm_boundary_loops_build(&s->loops, b->soup, &s->edges, error) : VXM_OK;
+}
+
 /* ---- Components ---- */
 
 static vxm_status find_components(builder *b, vxm_error *error) {
@@ -32,14 +45,21 @@ static vxm_status find_components(builder *b, vxm_error *error) {
   if (!s->component)
     return b->error.code;
   s->component_count = 1;
-  if (b->rule.split_mode == VXM_SPLIT_MODE_WHOLE)
+  if (b->rule.split_mode == VXM_SPLIT_MODE_WHOLE || b->soup->component_count == 1)
     return VXM_OK;
+  if (b->soup->component_count > 1) {
+    s->component_count = b->soup->component_count;
+    memcpy(s->component, b->soup->components, b->soup->face_count * sizeof *s->component);
+    return VXM_OK;
+  }
   return vxm_components(s->context, b->soup, NULL, s->component, &s->component_count, error);
 }
 
 /** The loops of a component, found through the component of their first vertex. */
 static vxm_status assign_loops(builder *b) {
   vxm_split *s = b->split;
+  if (s->loops.count == 0)
+    return VXM_OK;
   uint32_t *of_vertex = allocate(b, b->soup->vertex_count, sizeof *of_vertex);
   b->loop_component = allocate(b, s->loops.count, sizeof *b->loop_component);
   if (!of_vertex || !b->loop_component) {
@@ -204,11 +224,7 @@ vxm_status vxm_split_create(vxm_split *out, const vxm_soup *soup, vxm_split_rule
   *out = (vxm_split){.context = soup->context};
   builder b = {.split = out, .soup = soup, .rule = rule, .error = VXM_ERROR_INIT};
   vxm_error local = VXM_ERROR_INIT;
-  vxm_status status = vxm_edges_build(&out->edges, soup->context, soup, NULL, &local);
-  if (status == VXM_OK) {
-    out->odd_edge_count = vxm_edges_count_odd(&out->edges);
-    status = vxm_boundary_loops_build(&out->loops, soup, &out->edges, &local);
-  }
+  vxm_status status = soup->is_closed ? VXM_OK : find_loops(&b, &local);
   if (status == VXM_OK)
     status = find_components(&b, &local);
   if (status == VXM_OK)

@@ -62,6 +62,11 @@ static void cover_face(builder *b, size_t face) {
   size_t n;
   const uint32_t *corner = vxm_face(b->soup, face, &n);
   uint32_t part = split->part[split->component[face]];
+  if (n == 3) {
+    if (has_three_corners(corner[0], corner[1], corner[2]))
+      add(b, part, 0, corner[0], corner[1], corner[2]);
+    return;
+  }
   size_t apex = n > 3 ? covering_corner(b->soup, corner, n) : 0;
   for (size_t i = 1; i + 1 < n; i++) {
     uint32_t p = corner[apex], q = corner[(apex + i) % n], r = corner[(apex + i + 1) % n];
@@ -169,6 +174,7 @@ static const double *position_of(const builder *b, uint32_t vertex) {
 /** Numbers points anew, as triangles have them one after another; false if it was cancelled. */
 static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *points) {
   vxm_triangle_set *triangles = b->triangles;
+  enum { AHEAD = 16 }; /* triangles, whose vertices lie here and there */
   const uint32_t none = UINT32_MAX;
   size_t count = 0, first_apex = triangles->first_apex;
   for (size_t v = 0; v < first_apex; v++)
@@ -176,6 +182,9 @@ static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *poi
   for (size_t f = 0; f < triangles->triangle_count; f++) {
     if (vxm_ask_at(f, triangles->context, &b->error) != VXM_OK)
       return false;
+    for (int k = 0; k < 3 && f + AHEAD < triangles->triangle_count; k++)
+      if (triangles->corners[f + AHEAD][k] < first_apex)
+        __builtin_prefetch(&number[triangles->corners[f + AHEAD][k]], 1);
     for (int k = 0; k < 3; k++) {
       uint32_t *corner = &triangles->corners[f][k];
       if (*corner >= first_apex)
@@ -230,9 +239,19 @@ static double squared_distance(const double *p, const double *q) {
   return sum;
 }
 
+/** Of the box of all points but the apexes. */
+static double squared_diagonal(const vxm_triangle_set *triangles) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t p = 0; p < triangles->first_apex; p++)
+    for (int a = 0; a < 3; a++) {
+      low[a] = fmin(low[a], triangles->positions[p][a]);
+      high[a] = fmax(high[a], triangles->positions[p][a]);
+    }
+  return squared_distance(low, high);
+}
+
 /** Sums up how long triangles are. A cone reaches from its edge to somewhere among the triangles. */
 static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   size_t cones = 0;
   for (size_t f = 0; f < triangles->triangle_count; f++) {
     const uint32_t *corner = triangles->corners[f];
@@ -245,19 +264,17 @@ static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
     }
     double squared = 0;
     for (int k = 0; k < 3; k++) {
-      const double *p = triangles->positions[corner[k]];
-      squared = fmax(squared, squared_distance(p, triangles->positions[corner[(k + 1) % 3]]));
-      for (int a = 0; a < 3; a++) {
-        low[a] = fmin(low[a], p[a]);
-        high[a] = fmax(high[a], p[a]);
-      }
+      double side =
+          squared_distance(triangles->positions[corner[k]], triangles->positions[corner[(k + 1) % 3]]);
+      squared = side > squared ? side : squared;
     }
     triangles->lengths.sum += sqrt(squared);
     triangles->lengths.squared += squared;
   }
   if (cones > 0) {
-    triangles->lengths.sum += (double)cones * sqrt(squared_distance(low, high));
-    triangles->lengths.squared += (double)cones * squared_distance(low, high);
+    double diagonal = squared_diagonal(triangles);
+    triangles->lengths.sum += (double)cones * sqrt(diagonal);
+    triangles->lengths.squared += (double)cones * diagonal;
   }
   return VXM_OK;
 }
