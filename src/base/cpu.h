@@ -14,7 +14,7 @@
 /** Whether the builds for AVX2 may run. */
 static inline bool vxm_cpu_has_avx2(void) {
 #if VXM_KERNELS_X86
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
 #else
   return false;
 #endif

@@ -3,7 +3,7 @@
 #include "surface_oracle.h"
 #include "surfaces.h"
 
-#include "voxel/surface/surface_draw.h"
+#include "voxel/surface/surface_tiles.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -32,19 +32,32 @@ static int teardown_all(void **state) {
   return teardown(state);
 }
 
+enum { MOST = 48 };
+
 /** Triangles whose corners are given in lattice steps, on a lattice of any fineness. */
 typedef struct scene {
   vxm_surface surface;
-  vxm_point points[64];
-  uint32_t corners[64];
+  vxm_point points[3 * MOST];
+  int32_t narrow[3 * MOST][4];
+  uint32_t corners[3 * MOST];
 } scene;
 
 static void scene_start(scene *s, const vxm_space *space, int bits) {
   *s = (scene){.surface = {.lattice = {bits, INT64_C(1) << bits, *space}}};
-  s->surface.points = s->points;
   s->surface.corners = s->corners;
-  for (uint32_t c = 0; c < 64; c++)
+  for (uint32_t c = 0; c < 3 * MOST; c++)
     s->corners[c] = c;
+}
+
+/** As vxm_surface_place: in 32 bits where all points fit. */
+static void scene_end(scene *s) {
+  s->surface.narrow = s->narrow;
+  for (size_t p = 0; p < 3 * s->surface.triangle_count; p++)
+    for (int a = 0; a < 3; a++) {
+      s->narrow[p][a] = (int32_t)s->points[p].at[a];
+      if (s->points[p].at[a] >= VXM_NARROW_MAX || s->points[p].at[a] <= -VXM_NARROW_MAX)
+        s->surface.wide = s->points;
+    }
 }
 
 static void window_fill(vxm_window *window, uint64_t value) {
@@ -69,7 +82,7 @@ static int64_t random_coordinate(vxm_rng *rng, int64_t unit, int64_t dim) {
   }
 }
 
-enum { FLAT = 1, SLIVER = 4, SEGMENT, POINT, FAR, HUGE_ONE, SMALL, STRAIGHT, WIDE, KINDS };
+enum { FLAT = 1, SLIVER = 4, SEGMENT, POINT, FAR, HUGE_ONE, SMALL, STRAIGHT, WIDE, TOUCHING, KINDS };
 
 static void random_triangle(vxm_rng *rng, const vxm_lattice *lattice, int kind, vxm_point corner[3]) {
   const int64_t *dims = lattice->space.dims, unit = lattice->unit, most = VXM_LATTICE_MAX - 1;
@@ -111,6 +124,17 @@ static void random_triangle(vxm_rng *rng, const vxm_lattice *lattice, int kind, 
       corner[2].at[a] = (third - (a == kept ? 0 : 2 * far)) * (unit / 2);
     }
   }
+  if (kind == TOUCHING) { /* around a corner of a voxel, which lies in its plane */
+    int64_t reach = INT64_C(1) << (13 + vxm_rng_below(rng, 5));
+    for (int a = 0; a < 3; a++) {
+      int64_t p = (int64_t)vxm_rng_below(rng, (uint64_t)dims[a]) * unit;
+      int64_t d = (int64_t)vxm_rng_below(rng, (uint64_t)(2 * reach)) - reach;
+      int64_t e = (int64_t)vxm_rng_below(rng, (uint64_t)(2 * reach)) - reach;
+      corner[0].at[a] = p + d;
+      corner[1].at[a] = p + e;
+      corner[2].at[a] = p - d - e;
+    }
+  }
   if (kind == STRAIGHT) { /* two of its sides along axes */
     int a = (int)vxm_rng_below(rng, 3), b = (a + 1) % 3;
     int64_t q = corner[1].at[a], r = corner[2].at[b];
@@ -149,23 +173,37 @@ static void check_voxels(const scene *s, const vxm_window *cover, const vxm_wind
       }
 }
 
-static void check_random(vxm_rng *rng, const vxm_space *space, int rounds) {
+/** In tiles, or as the size of the window says. */
+static void draw_some_way(vxm_rng *rng, const vxm_surface *surface, const vxm_window *window,
+                          vxm_surface_kind kind, bool is_fresh) {
+  vxm_surface_pen pen = vxm_surface_pen_of(surface, window, kind);
+  vxm_error error = VXM_ERROR_INIT;
+  if (vxm_rng_below(rng, 2) || window->begin == window->end)
+    draw(surface, window, kind, is_fresh);
+  else if (vxm_surface_add_tiled(&pen, is_fresh, &error) != VXM_OK)
+    fail_msg("%s", error.text);
+}
+
+/** @param only -1 = all in turn */
+static void check_random(vxm_rng *rng, const vxm_space *space, int rounds, int only) {
   for (int round = 0; round < rounds; round++) {
     scene s;
-    int kind = round % KINDS;
+    int kind = only < 0 ? round % KINDS : only;
     vxm_surface_force(builds[vxm_rng_below(rng, build_count)]);
     scene_start(&s, space, 8 + (int)vxm_rng_below(rng, 9));
     s.surface.context = contexts[vxm_rng_below(rng, 3)];
-    s.surface.triangle_count = 1 + (size_t)vxm_rng_below(rng, 2);
+    /* Few, or so many that lanes are filled, and some are left over. */
+    s.surface.triangle_count = 1 + (size_t)vxm_rng_below(rng, vxm_rng_below(rng, 4) == 0 ? MOST : 2);
     for (size_t t = 0; t < s.surface.triangle_count; t++)
-      random_triangle(rng, &s.surface.lattice, kind, s.points + 3 * t);
+      random_triangle(rng, &s.surface.lattice, t < 2 || t % 2 ? kind : SMALL, s.points + 3 * t);
+    scene_end(&s);
     vxm_layout layout = layouts[vxm_rng_below(rng, 6)];
     vxm_window cover = window_make(space, layout, 0, space->dims[layout.slow]);
     vxm_window thin = window_make(space, layout, 0, space->dims[layout.slow]);
     window_fill(&cover, ~UINT64_C(0)); /* fresh: whatever was there does not count */
     window_fill(&thin, 0);
-    draw(&s.surface, &cover, VXM_SURFACE_CONSERVATIVE, true);
-    draw(&s.surface, &thin, VXM_SURFACE_THIN, false);
+    draw_some_way(rng, &s.surface, &cover, VXM_SURFACE_CONSERVATIVE, true);
+    draw_some_way(rng, &s.surface, &thin, VXM_SURFACE_THIN, false);
     check_voxels(&s, &cover, &thin, kind);
     free(cover.words);
     free(thin.words);
@@ -176,9 +214,10 @@ static void test_triangles_match_brute_force(void **state) {
   (void)state;
   vxm_rng rng = {1};
   vxm_space cube = unit_space(7, 6, 5), beam = unit_space(130, 3, 4), sheet = unit_space(20, 19, 2);
-  check_random(&rng, &cube, 6000);
-  check_random(&rng, &beam, 600);
-  check_random(&rng, &sheet, 1200);
+  check_random(&rng, &cube, 6000, -1);
+  check_random(&rng, &cube, 3000, TOUCHING);
+  check_random(&rng, &beam, 600, -1);
+  check_random(&rng, &sheet, 1200, -1);
 }
 
 /* ---- Meshes in windows ---- */
@@ -235,7 +274,7 @@ static void test_windows_make_no_difference(void **state) {
           part.words[i] = before[i] = vxm_rng_next(&rng) & vxm_rng_next(&rng);
         surface->context = contexts[round % 3];
         vxm_surface_force(builds[(size_t)round % build_count]);
-        draw(surface, &part, (vxm_surface_kind)kind, is_fresh);
+        draw_some_way(&rng, surface, &part, (vxm_surface_kind)kind, is_fresh);
         assert_same_window(&whole, &part, is_fresh ? NULL : before);
         free(before);
         free(part.words);
@@ -245,6 +284,52 @@ static void test_windows_make_no_difference(void **state) {
     }
     free(first.words);
   }
+  vxm_surface_destroy(surface);
+  vxm_soup_destroy(soup);
+}
+
+/** So many that all threads have some; the same bits from every build, in windows of threads and in tiles. */
+static void test_many_small_triangles(void **state) {
+  (void)state;
+  enum { COUNT = 30000 };
+  vxm_rng rng = {3};
+  vxm_space space = unit_space(70, 40, 33);
+  vxm_lattice lattice = vxm_lattice_of(&space);
+  vxm_soup *soup = shape_empty(context);
+  for (uint32_t i = 0; i < COUNT; i++) {
+    double at[3] = {shape_quarter(&rng, -4, 284), shape_quarter(&rng, -4, 164), shape_quarter(&rng, -4, 136)};
+    int size = i % 100 == 0 ? 40 : 1 + (int)(i % 9);
+    for (int c = 0; c < 3; c++)
+      shape_vertex(soup, at[0] + 0.37 * shape_quarter(&rng, -size, size),
+                   at[1] + 0.37 * shape_quarter(&rng, -size, size),
+                   at[2] + 0.37 * shape_quarter(&rng, -size, size));
+    if (i % 7 == 0) /* few enough for parts of the grid to stay empty */
+      shape_triangle(soup, 3 * i, 3 * i + 1, 3 * i + 2);
+    else
+      shape_triangle(soup, 3 * i, 3 * i, 3 * i + 2);
+  }
+  vxm_surface *surface = surface_of(soup, &lattice, NULL);
+  vxm_context *own = surface->context;
+  vxm_window first = window_make(&space, layouts[0], 0, 33), again = window_make(&space, layouts[0], 0, 33);
+  size_t bytes = 33 * first.slice_words * sizeof *first.words;
+  for (int kind = 0; kind < 2; kind++)
+    for (size_t b = 0; b < build_count; b++)
+      for (int i = 0; i < 6; i++) {
+        vxm_error error = VXM_ERROR_INIT;
+        surface->context = contexts[i % 3];
+        vxm_surface_force(builds[b]);
+        vxm_surface_pen pen = vxm_surface_pen_of(surface, &again, (vxm_surface_kind)kind);
+        if (i < 3)
+          draw(surface, &again, (vxm_surface_kind)kind, true);
+        else
+          assert_int_equal(vxm_surface_add_tiled(&pen, true, &error), VXM_OK);
+        if (b == 0 && i == 0)
+          memcpy(first.words, again.words, bytes);
+        assert_memory_equal(first.words, again.words, bytes);
+      }
+  surface->context = own;
+  free(first.words);
+  free(again.words);
   vxm_surface_destroy(surface);
   vxm_soup_destroy(soup);
 }
@@ -295,10 +380,10 @@ static void test_transform_moves_the_mesh(void **state) {
   for (size_t f = 0; f < soup->face_count; f++)
     shape_face(moved, soup->indices + 3 * f, 3);
   vxm_surface *a = surface_of(soup, &lattice, transform), *b = surface_of(moved, &lattice, NULL);
-  assert_memory_equal(a->points, b->points, soup->vertex_count * sizeof *a->points);
+  assert_memory_equal(a->narrow, b->narrow, soup->vertex_count * sizeof *a->narrow);
   vxm_surface *again = surface_of(moved, &(vxm_lattice){8, 256, space}, NULL);
   assert_int_equal(vxm_surface_place(again, &lattice, NULL, NULL), VXM_OK);
-  assert_memory_equal(again->points, b->points, soup->vertex_count * sizeof *again->points);
+  assert_memory_equal(again->narrow, b->narrow, soup->vertex_count * sizeof *again->narrow);
   vxm_surface_destroy(again);
   vxm_surface_destroy(a);
   vxm_surface_destroy(b);
@@ -369,8 +454,9 @@ static void test_cancelling_and_running_out(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_triangles_match_brute_force), cmocka_unit_test(test_windows_make_no_difference),
-      cmocka_unit_test(test_many_large_triangles),        cmocka_unit_test(test_transform_moves_the_mesh),
-      cmocka_unit_test(test_positions_without_a_place),   cmocka_unit_test(test_cancelling_and_running_out),
+      cmocka_unit_test(test_many_small_triangles),        cmocka_unit_test(test_many_large_triangles),
+      cmocka_unit_test(test_transform_moves_the_mesh),    cmocka_unit_test(test_positions_without_a_place),
+      cmocka_unit_test(test_cancelling_and_running_out),
   };
   return cmocka_run_group_tests(tests, setup_all, teardown_all);
 }

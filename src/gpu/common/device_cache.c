@@ -89,8 +89,11 @@ vxm_status vxm_device_cache_surface(vxm_device_cache *resident, const vxm_surfac
   if (resident->surface_serial == surface->serial)
     return VXM_OK;
   resident->surface_serial = 0;
+  size_t count = surface->soup->vertex_count;
   vxm_status status =
-      put_points(resident, VXM_CACHED_SURFACE_POINTS, surface->points, surface->soup->vertex_count, error);
+      surface->wide
+          ? put_points(resident, VXM_CACHED_SURFACE_POINTS, surface->wide, count, error)
+          : put(resident, VXM_CACHED_SURFACE_POINTS, surface->narrow, count * sizeof *surface->narrow, error);
   if (status == VXM_OK && resident->surface_corners_serial != surface->corners_serial) {
     resident->surface_corners_serial = 0;
     status = put(resident, VXM_CACHED_SURFACE_CORNERS, surface->corners,

@@ -69,7 +69,10 @@ vxm_status vxm_oversized_surface_find(vxm_oversized_surface *far, const vxm_surf
   far->count = 0;
   for (size_t t = 0; t < surface->triangle_count && status == VXM_OK; t++) {
     const uint32_t *corner = surface->corners + 3 * t;
-    if (!is_far(&surface->points[corner[0]], &surface->points[corner[1]], &surface->points[corner[2]]))
+    vxm_point p[3];
+    for (int c = 0; c < 3; c++)
+      p[c] = vxm_surface_at(surface, corner[c]);
+    if (!is_far(&p[0], &p[1], &p[2]))
       continue;
     status = vxm_grow(far->context, (void **)&far->corners, &far->capacity, far->count + 1,
                       sizeof *far->corners, error);

@@ -43,7 +43,8 @@ static double surface_area(const vxm_voxel_pass *solid, bool lost) {
       continue;
     for (int k = 0; k < 3; k++)
       corner[k] = vxm_snapped_points_at(&solid->placed, triangles->corners[t][k]);
-    twice += vxm_link_surface_of(corner).length;
+    vxm_link_surface surface = vxm_link_surface_of(corner);
+    twice += vxm_link_surface_length(&surface);
   }
   return twice / (2 * unit * unit);
 }

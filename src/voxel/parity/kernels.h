@@ -36,8 +36,8 @@ typedef struct vxm_raster_task {
 
 typedef struct vxm_kernels {
   const char *name;
-  /** Places `count` positions, with their cells, each displaced by its entry of the noise (NULL = none);
-   * false if one is not finite or beyond VXM_NARROW_MAX (it is stored as 0). */
+  /** Places `count` positions, with their cells (NULL = not asked for), each displaced by its entry of the
+   * noise (NULL = none); false if one is not finite or beyond VXM_NARROW_MAX (it is stored as 0). */
   bool (*place)(int32_t (*out)[4], uint64_t *cells, const double *positions, const uint32_t *entries,
                 size_t count, const vxm_affine *affine);
   /** Puts into the bins what the triangles flip (voxel/parity/columns.h). */

@@ -2,6 +2,7 @@
 #include "voxel/surface/surface.h"
 #include "base/threads.h"
 #include "mesh/triangulate.h"
+#include "voxel/parity/kernels.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -63,54 +64,100 @@ static vxm_status list_triangles(vxm_surface *surface, const vxm_soup *soup, vxm
 
 /* ---- Points ---- */
 
-/** Marks a vertex that has no place on the lattice. */
-static const int64_t off_lattice = INT64_MIN;
+enum { SLICE_POINTS = 8192 };
 
 typedef struct snap_job {
   const vxm_surface *surface;
   const double (*positions)[3];
-  const double *transform;
+  const vxm_kernels *kernels;
+  vxm_affine affine;
   size_t slices;
-  atomic_bool is_off; /**< some vertex is off the lattice, used or not */
+  atomic_bool beyond; /**< a point does not fit, used or not */
 } snap_job;
 
 static void snap_slice(size_t slice, int worker, void *payload) {
   (void)worker;
   snap_job *job = payload;
-  const vxm_surface *surface = job->surface;
-  size_t count = surface->soup->vertex_count, end = vxm_slice_begin(count, job->slices, slice + 1);
-  for (size_t v = vxm_slice_begin(count, job->slices, slice); v < end; v++) {
-    double moved[3];
-    const double *p = job->positions[v];
-    if (job->transform) {
-      vxm_transform_position(job->transform, p, moved);
-      p = moved;
-    }
-    if (vxm_lattice_place(&surface->lattice, p, &surface->points[v]))
-      continue;
-    surface->points[v].at[0] = off_lattice;
-    atomic_store_explicit(&job->is_off, true, memory_order_relaxed);
-  }
+  size_t count = job->surface->soup->vertex_count, begin = vxm_slice_begin(count, job->slices, slice);
+  size_t end = vxm_slice_begin(count, job->slices, slice + 1);
+  if (!job->kernels->place(job->surface->narrow + begin, NULL, job->positions[begin], NULL, end - begin,
+                           &job->affine))
+    atomic_store_explicit(&job->beyond, true, memory_order_relaxed);
 }
+
+/** Whether all points fit. */
+static bool snap_narrow(const vxm_surface *surface, const double (*positions)[3],
+                        const double transform[12]) {
+  static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  const double *matrix = transform ? transform : identity;
+  snap_job job = {.surface = surface,
+                  .positions = positions,
+                  .kernels = vxm_kernels_get(),
+                  .affine = {.bits = surface->lattice.bits},
+                  .slices = 1 + surface->soup->vertex_count / SLICE_POINTS};
+  for (int a = 0; a < 3; a++) {
+    for (int c = 0; c < 4; c++)
+      job.affine.column[c][a] = matrix[4 * a + c];
+    job.affine.origin[a] = surface->lattice.space.origin[a];
+    job.affine.scale[a] = (double)surface->lattice.unit / surface->lattice.space.voxel_size[a];
+  }
+  vxm_parallel(surface->context, job.slices, snap_slice, &job);
+  return !atomic_load(&job.beyond);
+}
+
+/** Marks a vertex that has no place on the lattice. */
+static const int64_t off_lattice = INT64_MIN;
 
 static vxm_status check_used(const vxm_surface *surface, const double (*positions)[3], vxm_error *error) {
   for (size_t c = 0; c < 3 * surface->triangle_count; c++) {
     uint32_t vertex = surface->corners[c];
-    if (surface->points[vertex].at[0] == off_lattice)
+    if (surface->wide[vertex].at[0] == off_lattice)
       return vxm_lattice_refuse(vertex, positions[vertex], error);
   }
   return VXM_OK;
 }
 
+static vxm_status snap_wide(vxm_surface *surface, const double (*positions)[3], const double transform[12],
+                            vxm_error *error) {
+  size_t count = surface->soup->vertex_count;
+  vxm_free(surface->context, surface->narrow);
+  surface->narrow = NULL;
+  surface->wide = vxm_alloc(surface->context, count, sizeof *surface->wide, error);
+  if (!surface->wide)
+    return VXM_ERROR_MEMORY;
+  bool is_off = false;
+  for (size_t v = 0; v < count; v++) {
+    double moved[3];
+    const double *p = positions[v];
+    if (transform) {
+      vxm_transform_position(transform, p, moved);
+      p = moved;
+    }
+    if (vxm_lattice_place(&surface->lattice, p, &surface->wide[v]))
+      continue;
+    surface->wide[v] = (vxm_point){{off_lattice, 0, 0}};
+    is_off = true;
+  }
+  return is_off ? check_used(surface, positions, error) : VXM_OK;
+}
+
 static vxm_status place(vxm_surface *surface, const double (*positions)[3], const vxm_lattice *lattice,
                         const double transform[12], vxm_error *error) {
-  size_t count = surface->soup->vertex_count;
   static atomic_uint_fast64_t last_serial;
+  vxm_error local = VXM_ERROR_INIT;
   surface->serial = atomic_fetch_add(&last_serial, 1) + 1;
-  snap_job job = {surface, positions, transform, 1 + count / 4096, false};
   surface->lattice = *lattice;
-  vxm_parallel(surface->context, job.slices, snap_slice, &job);
-  return atomic_load(&job.is_off) ? check_used(surface, positions, error) : VXM_OK;
+  vxm_free(surface->context, surface->wide);
+  surface->wide = NULL;
+  if (!surface->narrow)
+    surface->narrow =
+        vxm_alloc(surface->context, surface->soup->vertex_count, sizeof *surface->narrow, &local);
+  if (!surface->narrow || (!snap_narrow(surface, positions, transform) &&
+                           snap_wide(surface, positions, transform, &local) != VXM_OK)) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  return VXM_OK;
 }
 
 vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, const double transform[12],
@@ -132,8 +179,7 @@ vxm_status vxm_surface_make(vxm_surface **out, vxm_context *context, const vxm_s
   if (status == VXM_OK) {
     surface->soup = soup;
     surface->corners_serial = atomic_fetch_add(&last_corners, 1) + 1;
-    surface->points = vxm_alloc(surface->context, soup->vertex_count, sizeof *surface->points, &local);
-    status = surface->points ? list_triangles(surface, soup, &local) : local.code;
+    status = list_triangles(surface, soup, &local);
   }
   if (status == VXM_OK) {
     *out = surface;
@@ -160,7 +206,8 @@ void vxm_surface_destroy(vxm_surface *surface) {
   if (!surface)
     return;
   vxm_context *context = surface->context;
-  vxm_free(context, surface->points);
+  vxm_free(context, surface->narrow);
+  vxm_free(context, surface->wide);
   vxm_free(context, surface->cut);
   vxm_free(context, surface);
   vxm_context_release(context);
@@ -216,7 +263,7 @@ uint64_t vxm_surface_held_bytes(const vxm_soup *soup, size_t *triangles) {
 
 uint64_t vxm_surface_bytes(const vxm_soup *soup, int threads) {
   /* A place and, as tiles are listed in turn, some five entries for each triangle; the tiles
-   * and counters of the threads. */
+   * and counters of the threads. Or instead of both windows of threads, 4 MiB in all. */
   size_t triangles;
   uint64_t held = vxm_surface_held_bytes(soup, &triangles);
   return held + triangles * 6 * sizeof(uint32_t) + ((uint64_t)threads + 6) * (UINT64_C(1) << 20);

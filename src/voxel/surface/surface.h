@@ -5,7 +5,7 @@
 
 #include "grid/window.h"
 #include "mesh/soup.h"
-#include "voxel/lattice/lattice.h"
+#include "voxel/parity/snapped_points.h"
 
 /** The triangles of a soup on a lattice. */
 typedef struct vxm_surface {
@@ -14,7 +14,8 @@ typedef struct vxm_surface {
   uint64_t corners_serial; /**< no two that hold different corners have the same */
   const vxm_soup *soup;
   vxm_lattice lattice;
-  vxm_point *points;       /**< one for each vertex of the soup */
+  int32_t (*narrow)[4];    /**< a point for each vertex of the soup; the fourth number is 0 */
+  vxm_point *wide;         /**< instead, where a point lies beyond VXM_NARROW_MAX */
   const uint32_t *corners; /**< triangle_count x 3: the soup's own, or `cut` */
   uint32_t *cut;           /**< NULL where all faces are triangles */
   size_t triangle_count;
@@ -40,6 +41,13 @@ vxm_status vxm_surface_place(vxm_surface *surface, const vxm_lattice *lattice, c
 /** The same where the vertices have moved to `positions`; the polygons stay cut as they are. */
 vxm_status vxm_surface_place_moved(vxm_surface *surface, const double (*positions)[3],
                                    const vxm_lattice *lattice, vxm_error *error);
+static inline vxm_point vxm_surface_at(const vxm_surface *surface, uint32_t vertex) {
+  if (surface->wide)
+    return surface->wide[vertex];
+  const int32_t *p = surface->narrow[vertex];
+  return (vxm_point){{p[0], p[1], p[2]}};
+}
+
 /** NULL is allowed. */
 void vxm_surface_destroy(vxm_surface *surface);
 

@@ -4,7 +4,7 @@
 
 #include <stdatomic.h>
 
-int64_t vxm_surface_narrow_max(const vxm_lattice *lattice) {
+static int64_t narrow_max(const vxm_lattice *lattice) {
   int k = 30;
   for (; k > 0; k--) {
     vxm_int128 square = (vxm_int128)1 << 2 * k;
@@ -13,6 +13,30 @@ int64_t vxm_surface_narrow_max(const vxm_lattice *lattice) {
       break;
   }
   return INT64_C(1) << k;
+}
+
+static int64_t lane_max(const vxm_lattice *lattice) {
+  int64_t low = 0, high = INT64_C(1) << 18; /* the largest one with 3 D^2 (D + 3/2 unit) <= 2^53 */
+  while (high - low > 1) {
+    int64_t middle = (low + high) / 2;
+    bool fits = 3 * middle * middle * (2 * middle + 3 * lattice->unit) <= INT64_C(1) << 54;
+    low = fits ? middle : low;
+    high = fits ? high : middle;
+  }
+  return low;
+}
+
+vxm_surface_pen vxm_surface_pen_of(const vxm_surface *surface, const vxm_window *window,
+                                   vxm_surface_kind kind) {
+  return (vxm_surface_pen){
+      .surface = surface,
+      .window = window,
+      .lattice = &surface->lattice,
+      .kind = kind,
+      .build = vxm_surface_best(),
+      .narrow_max = narrow_max(&surface->lattice),
+      .lane_max = lane_max(&surface->lattice),
+      .tile = {{0, 0, window->begin}, {window->fast_dim, window->middle_dim, window->end}}};
 }
 
 static size_t fill_box(const vxm_surface_pen *pen, const vxm_surface_box *box) {
@@ -25,22 +49,60 @@ static size_t fill_box(const vxm_surface_pen *pen, const vxm_surface_box *box) {
   return (size_t)(box->end[VXM_SLOW] - box->begin[VXM_SLOW]) * rows;
 }
 
-size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]) {
-  vxm_surface_bounds bounds = vxm_surface_bounds_of(pen->lattice, pen->window->layout, v);
-  vxm_surface_box whole = bounds.box, box = whole;
-  if (!vxm_surface_meet(&box, &pen->tile))
-    return 1;
-  bool one[3] = {whole.end[0] - whole.begin[0] == 1, whole.end[1] - whole.begin[1] == 1,
-                 whole.end[2] - whole.begin[2] == 1};
+/** The part of a triangle in a box of the tile of at most VXM_SURFACE_SLICES slices. */
+static size_t draw_box(const vxm_surface_pen *pen, const vxm_point *const v[3],
+                       const vxm_surface_bounds *bounds, const vxm_surface_box *box) {
+  const vxm_surface_box *whole = &bounds->box;
+  bool one[3] = {whole->end[0] - whole->begin[0] == 1, whole->end[1] - whole->begin[1] == 1,
+                 whole->end[2] - whole->begin[2] == 1};
   int flat = one[0] + one[1] + one[2], thin = one[0] ? 0 : one[1] ? 1 : one[2] ? 2 : -1;
   if (pen->kind != VXM_SURFACE_CONSERVATIVE)
     thin = -1; /* the box being one voxel thick does not make the plane pass there */
   else if (flat >= 2)
-    return fill_box(pen, &box);
-  bool is_cut = whole.begin[VXM_FAST] < box.begin[VXM_FAST] || whole.end[VXM_FAST] > box.end[VXM_FAST];
-  if (bounds.longest <= pen->narrow_max && (!is_cut || thin >= 0))
-    return pen->build->draw(pen, v, &box, thin);
-  return vxm_surface_draw_wide(pen, v, box);
+    return fill_box(pen, box);
+  bool is_cut = whole->begin[VXM_FAST] < box->begin[VXM_FAST] || whole->end[VXM_FAST] > box->end[VXM_FAST];
+  if (bounds->longest <= pen->narrow_max && (!is_cut || thin >= 0))
+    return pen->build->draw(pen, v, box, thin);
+  return vxm_surface_draw_wide(pen, v, *box);
+}
+
+size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]) {
+  vxm_surface_bounds bounds = vxm_surface_bounds_of(pen->lattice, pen->window->layout, v);
+  vxm_surface_box box = bounds.box;
+  size_t rows = 1;
+  if (!vxm_surface_meet(&box, &pen->tile))
+    return rows;
+  for (int64_t end = box.end[VXM_SLOW]; box.begin[VXM_SLOW] < end; box.begin[VXM_SLOW] = box.end[VXM_SLOW]) {
+    box.end[VXM_SLOW] = vxm_min(box.begin[VXM_SLOW] + VXM_SURFACE_SLICES, end);
+    rows += draw_box(pen, v, &bounds, &box);
+  }
+  return rows;
+}
+
+/** Rows between two looks at the progress callback. */
+enum { POLL_ROWS = 1 << 16 };
+
+bool vxm_surface_draw_some(const vxm_surface_pen *pen, const uint32_t *list, size_t begin, size_t end,
+                           vxm_task_progress *watch, int worker) {
+  size_t rows = 0;
+  for (size_t from = begin, to; from < end; from = to) {
+    to = end - from < VXM_SURFACE_AT_ONCE ? end : from + VXM_SURFACE_AT_ONCE;
+    if (!pen->surface->wide)
+      rows += pen->build->draw_narrow(pen, list, from, to);
+    else
+      for (size_t i = from; i < to; i++) {
+        const vxm_point *v[3];
+        vxm_point room[3];
+        vxm_surface_corners(pen->surface, list ? list[i] : i, v, room);
+        rows += 1 + vxm_surface_draw(pen, v);
+      }
+    if (rows < POLL_ROWS)
+      continue;
+    rows = 0;
+    if (vxm_task_progress_stopped(watch, worker))
+      return false;
+  }
+  return true;
 }
 
 /* ---- Builds ---- */

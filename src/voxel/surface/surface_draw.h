@@ -26,6 +26,7 @@
 #ifndef VXM_VOXEL_SURFACE_SURFACE_DRAW_H
 #define VXM_VOXEL_SURFACE_SURFACE_DRAW_H
 
+#include "base/task_progress.h"
 #include "grid/window.h"
 #include "voxel/lattice/lattice.h"
 #include "voxel/surface/surface.h"
@@ -50,19 +51,22 @@ typedef struct vxm_surface_span {
 } vxm_surface_span;
 
 enum {
-  VXM_SURFACE_SLICES = 64, /**< most slices of a tile */
-  VXM_SURFACE_LANES = 8    /**< most rows worked on together */
+  VXM_SURFACE_SLICES = 64,  /**< most slices of a tile, and worked on together */
+  VXM_SURFACE_LANES = 8,    /**< most rows worked on together */
+  VXM_SURFACE_AT_ONCE = 512 /**< triangles that are best drawn in one call */
 };
 
 typedef struct vxm_surface_build vxm_surface_build;
 
 /** What one task draws with. */
 typedef struct vxm_surface_pen {
+  const vxm_surface *surface;
   const vxm_window *window;
   const vxm_lattice *lattice;
   vxm_surface_kind kind;
-  int64_t narrow_max;   /**< differences of corners up to this are exact there */
-  vxm_surface_box tile; /**< of the window; at most VXM_SURFACE_SLICES slices */
+  int64_t narrow_max;   /**< differences of corners up to this are exact in surface_i64.inc, */
+  int64_t lane_max;     /**< and up to this in surface_lanes.inc */
+  vxm_surface_box tile; /**< of the window */
   uint64_t *words;      /**< the tile's rows, window->row_words each; slices lie slice_words apart */
   size_t slice_words;
   vxm_surface_span *rows;      /**< room for one for each row of the tile */
@@ -78,11 +82,18 @@ struct vxm_surface_build {
    * one voxel only, by which alone the box decides nothing else, or -1. Returns the rows looked at. */
   size_t (*draw)(const vxm_surface_pen *pen, const vxm_point *const v[3], const vxm_surface_box *box,
                  int thin);
+  /** Draws triangles begin..end-1 of a list, or of the surface (NULL), whose points are narrow. Returns about
+   * how many rows it looked at. The tile has fewer than 2^31 words. */
+  size_t (*draw_narrow)(const vxm_surface_pen *pen, const uint32_t *list, size_t begin, size_t end);
   /** to = from, past the caches, and from = 0. */
   void (*put)(uint64_t *to, uint64_t *from, size_t count);
   /** to |= from, and from = 0. */
   void (*join)(uint64_t *to, uint64_t *from, size_t count);
 };
+
+/** A pen for a whole window, but for its words and the room for rows. */
+vxm_surface_pen vxm_surface_pen_of(const vxm_surface *surface, const vxm_window *window,
+                                   vxm_surface_kind kind);
 
 /** Row `middle` of slice `slow` of the tile, by their numbers in the grid. */
 static inline uint64_t *vxm_surface_row(const vxm_surface_pen *pen, int64_t middle, int64_t slow) {
@@ -99,9 +110,6 @@ void vxm_surface_force(const vxm_surface_build *build);
 
 /** As a build's draw, for any triangle. */
 size_t vxm_surface_draw_wide(const vxm_surface_pen *pen, const vxm_point *const v[3], vxm_surface_box box);
-
-/** The largest differences of corners with which surface_i64.inc is exact. */
-int64_t vxm_surface_narrow_max(const vxm_lattice *lattice);
 
 /* Triangles come in no order that a processor could learn, so these do without branches. */
 static inline int64_t vxm_surface_lower(int64_t a, int64_t b) {
@@ -148,6 +156,20 @@ static inline bool vxm_surface_meet(vxm_surface_box *box, const vxm_surface_box 
 
 /** Sets the triangle's voxels within the tile; returns about how many rows it looked at. */
 size_t vxm_surface_draw(const vxm_surface_pen *pen, const vxm_point *const v[3]);
+
+/** The corners of a triangle, which are put to `room` where they are narrow. */
+static inline void vxm_surface_corners(const vxm_surface *surface, size_t triangle, const vxm_point *v[3],
+                                       vxm_point room[3]) {
+  const uint32_t *corner = surface->corners + 3 * triangle;
+  for (int c = 0; c < 3; c++) {
+    room[c] = vxm_surface_at(surface, corner[c]);
+    v[c] = &room[c];
+  }
+}
+
+/** Draws triangles begin..end-1 of a list, or of the surface (NULL); false if the work is to stop. */
+bool vxm_surface_draw_some(const vxm_surface_pen *pen, const uint32_t *list, size_t begin, size_t end,
+                           vxm_task_progress *watch, int worker);
 
 /** What bounds the rows of a triangle in a range of slices: a middle + c slow + b >= 0. */
 typedef struct vxm_surface_shadow {

@@ -3,9 +3,8 @@
  * A window is cut into tiles, rows by slices; triangles are sorted into the tiles that they may touch, and
  * each tile is drawn by one task, in words of its own that stay in cache, and then moved into the window.
  */
-#include "base/task_progress.h"
+#include "voxel/surface/surface_tiles.h"
 #include "base/threads.h"
-#include "voxel/surface/surface_draw.h"
 
 #include <string.h>
 
@@ -17,9 +16,7 @@ enum {
   CHUNK = 4096,           /**< triangles that one task sorts, at least */
   COUNTERS_MAX = 1 << 20, /**< for all chunks together, unless one chunk needs more */
   LISTED_MIN = 1 << 20,   /**< triangles listed at once, at least */
-  BOXED_MAX = 4,          /**< bands and tiles in each up to which a triangle is sorted by its box alone */
-  AHEAD = 8,              /**< triangles fetched before they are drawn */
-  POLL_ROWS = 1 << 16     /**< rows between two looks at the progress callback */
+  BOXED_MAX = 4           /**< bands and tiles in each up to which a triangle is sorted by its box alone */
 };
 
 typedef struct tiling {
@@ -93,12 +90,6 @@ static vxm_surface_box tile_box(const tiling *t, size_t tile) {
 
 /* ---- Sorting triangles into tiles ---- */
 
-static void corners_of(const vxm_surface *surface, size_t triangle, const vxm_point *v[3]) {
-  const uint32_t *corner = surface->corners + 3 * triangle;
-  for (int c = 0; c < 3; c++)
-    v[c] = &surface->points[corner[c]];
-}
-
 /** Counts a triangle in tiles first..end-1 (list NULL), or lists it there. */
 static void sort_into(const tiling *t, size_t first, size_t end, size_t *counter, uint32_t *list,
                       uint32_t triangle) {
@@ -167,18 +158,19 @@ static void sort_chunk(size_t chunk, int worker, void *payload) {
   size_t *counter = t->counters + chunk * t->tile_count;
   for (size_t i = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk); i < end; i++) {
     const vxm_point *v[3];
+    vxm_point room[3];
     vxm_surface_box box;
     if (i % VXM_ASK_STEPS == 0 && vxm_task_progress_stopped(&t->watch, worker))
       return;
     if (!t->list) {
-      corners_of(t->surface, i, v);
+      vxm_surface_corners(t->surface, i, v, room);
       t->places[i] = place_triangle(t, v, &box);
     }
     uint32_t place = t->places[i];
     if (place == place_nowhere)
       continue;
     if (place == place_large) {
-      corners_of(t->surface, i, v);
+      vxm_surface_corners(t->surface, i, v, room);
       place_triangle(t, v, &box);
       sort_large(t, v, &box, counter, t->list, (uint32_t)i);
     } else
@@ -237,18 +229,6 @@ static void move_tile(const tiling *t, const vxm_surface_pen *pen) {
   }
 }
 
-/** Triangles of a tile lie here and there in a large mesh. */
-static void fetch_ahead(const tiling *t, size_t i, size_t end) {
-  if (i + 2 * AHEAD < end)
-    __builtin_prefetch(t->surface->corners + 3 * (size_t)t->list[i + 2 * AHEAD]);
-  if (i + AHEAD < end) {
-    const vxm_point *v[3];
-    corners_of(t->surface, t->list[i + AHEAD], v);
-    for (int c = 0; c < 3; c++)
-      __builtin_prefetch(v[c]);
-  }
-}
-
 static void draw_tile(size_t task, int worker, void *payload) {
   tiling *t = payload;
   if (vxm_task_progress_stopped(&t->watch, worker))
@@ -260,19 +240,8 @@ static void draw_tile(size_t task, int worker, void *payload) {
   pen.row_begin += (size_t)worker * 2 * padded;
   pen.row_end = pen.row_begin + padded;
   pen.words += (size_t)worker * t->tile_words;
-  size_t rows = 0;
-  size_t end = t->begin[task + 1];
-  for (size_t i = t->begin[task]; i < end; i++) {
-    const vxm_point *v[3];
-    fetch_ahead(t, i, end);
-    corners_of(t->surface, t->list[i], v);
-    rows += 1 + vxm_surface_draw(&pen, v);
-    if (rows < POLL_ROWS)
-      continue;
-    rows = 0;
-    if (vxm_task_progress_stopped(&t->watch, worker))
-      return;
-  }
+  if (!vxm_surface_draw_some(&pen, t->list, t->begin[task], t->begin[task + 1], &t->watch, worker))
+    return;
   if (t->is_fresh || t->begin[task] < t->begin[task + 1])
     move_tile(t, &pen);
   vxm_task_progress_step(&t->watch);
@@ -295,23 +264,11 @@ static vxm_status draw_tiles(tiling *t) {
   return vxm_task_progress_end(&t->watch);
 }
 
-vxm_status vxm_surface_add(const vxm_surface *surface, const vxm_window *window, vxm_surface_kind kind,
-                           bool is_fresh, vxm_error *error) {
-  if (window->begin >= window->end)
-    return VXM_OK;
+vxm_status vxm_surface_add_tiled(const vxm_surface_pen *pen, bool is_fresh, vxm_error *error) {
+  const vxm_surface *surface = pen->surface;
   vxm_context *context = surface->context;
   vxm_error local = VXM_ERROR_INIT;
-  tiling t = {
-      .surface = surface,
-      .pen = {.window = window,
-              .lattice = &surface->lattice,
-              .kind = kind,
-              .build = vxm_surface_best(),
-              .narrow_max = vxm_surface_narrow_max(&surface->lattice),
-              .tile = {{0, 0, window->begin}, {window->fast_dim, window->middle_dim, window->end}}},
-      .is_fresh = is_fresh,
-      .error = &local,
-  };
+  tiling t = {.surface = surface, .pen = *pen, .is_fresh = is_fresh, .error = &local};
   choose_tiles(&t);
   vxm_task_progress_start(&t.watch, context, "voxelizing the surface", t.tile_count, &local);
   size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t.row_bits;

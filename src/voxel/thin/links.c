@@ -35,17 +35,20 @@ static bool is_dominant(const frame *f) {
 /** The normal of a triangle: its products are exact where it matters, to tell equals, of small numbers. */
 vxm_link_surface vxm_link_surface_of(const vxm_point p[3]) {
   vxm_link_surface out;
-  double d[2][3], sum = 0;
+  double d[2][3];
   for (int k = 0; k < 2; k++)
     for (int a = 0; a < 3; a++)
       d[k][a] = (double)(p[k + 1].at[a] - p[0].at[a]);
   for (int w = 0; w < 3; w++) {
     int u = (w + 1) % 3, v = (w + 2) % 3;
     out.size[w] = fabs(d[0][u] * d[1][v] - d[0][v] * d[1][u]);
-    sum += out.size[w] * out.size[w];
   }
-  out.length = sqrt(sum);
   return out;
+}
+
+double vxm_link_surface_length(const vxm_link_surface *surface) {
+  const double *n = surface->size;
+  return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
 /** The ends of the link to voxel `to` of a column. */
@@ -67,7 +70,7 @@ static void put_link(const frame *f, int64_t ends[2][3], double offset) {
   bool dominant = is_dominant(f);
   int64_t slice = lower[f->job->slow] < view->begin[f->job->slow] ? upper[f->job->slow] : lower[f->job->slow];
   if (dominant && slice >= f->job->counted[0] && slice < f->job->counted[1])
-    f->meetings->thin_area += llrint(f->surface->length / f->surface->size[f->w] * VXM_OFFSET_UNIT);
+    f->meetings->thin_area += llrint(vxm_link_surface_length(f->surface) / f->surface->size[f->w] * VXM_OFFSET_UNIT);
   vxm_thin_stage stage = f->plain
                              ? (dominant ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS)
                              : (f->direction < VXM_LINK_EDGES ? VXM_THIN_EDGE_LINKS : VXM_THIN_CORNER_LINKS);
@@ -86,6 +89,12 @@ void vxm_meet_link(const vxm_link_frame *f, int64_t column_u, int64_t column_v, 
   ends_of(f, ends, column_u, column_v, to);
   if (!vxm_view_any_set(&f->job->view, (const int64_t(*)[3])ends, 2, &held) && held)
     put_link(f, ends, offset);
+}
+
+void vxm_keep_link(const vxm_link_frame *f, const int64_t lower[3], double offset) {
+  int64_t ends[2][3] = {{lower[0], lower[1], lower[2]}, {lower[0], lower[1], lower[2]}};
+  ends[1][f->w]++;
+  put_link(f, ends, offset);
 }
 
 #define INTEGER int64_t

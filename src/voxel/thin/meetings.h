@@ -31,7 +31,6 @@ void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, co
 /** The normal of a triangle, as twice its area. */
 typedef struct vxm_link_surface {
   double size[3]; /**< of its components */
-  double length;
 } vxm_link_surface;
 
 /**
@@ -55,10 +54,13 @@ void vxm_link_frames(vxm_link_frame frames[VXM_LINK_DIRECTIONS], const vxm_thin_
                      vxm_meetings *meetings);
 /** The normal of a triangle: its products are exact where it matters, to tell equals, of small numbers. */
 vxm_link_surface vxm_link_surface_of(const vxm_point corner[3]);
+double vxm_link_surface_length(const vxm_link_surface *surface);
 /** A triangle, which is told in the frame, crosses the link to voxel `to` of a column, `offset` voxels beyond
  * its middle: looks at its ends. */
 void vxm_meet_link(const vxm_link_frame *frame, int64_t column_u, int64_t column_v, int64_t to,
                    double offset);
+/** Keeps a link along an axis, both ends of which are in the view and not set, that the triangle crosses. */
+void vxm_keep_link(const vxm_link_frame *frame, const int64_t lower[3], double offset);
 /** The voxel beyond the plane of a triangle in a column, and how far the plane lies behind the centre before
  * that, in parts of a voxel: exactly. */
 int64_t vxm_link_voxel(const vxm_link_frame *frame, const vxm_point corner[3], int64_t column_u,

@@ -163,27 +163,75 @@ static inline int meet_section(const vxm_link_frame *frames, const small *s, int
   return -1;
 }
 
-/**
- * Whether the link that a triangle crosses on the line of centres in the middle of its box has a voxel set,
- * where the box has two cells along the line: one end is the voxel in the middle, which is not set. False
- * where it is not known.
- */
-static inline bool is_link_filled(const vxm_view *view, const small *s, int axis) {
-  const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+/** The normal of a small triangle, and how high its plane lies over the middle: `volume` / normal along each
+ * axis. Both are twice and six times those, below 2^37 and 2^55. */
+typedef struct small_plane {
+  int64_t normal[3], volume;
+} small_plane;
+
+static inline small_plane plane_of(const small *s) {
   const int64_t *a = s->corner[0], *b = s->corner[1], *c = s->corner[2];
-  if (s->beyond[axis] == 0 || s->beyond[axis] == 7)
-    return false;
-  /* The plane is at height volume / normal over the middle, twice and six times those: below 2^37 and 2^55.
-   */
-  int64_t normal = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
-  int64_t volume = a[axis] * normal +
-                   a[u] * ((b[v] - a[v]) * (c[axis] - a[axis]) - (b[axis] - a[axis]) * (c[v] - a[v])) +
-                   a[v] * ((b[axis] - a[axis]) * (c[u] - a[u]) - (b[u] - a[u]) * (c[axis] - a[axis]));
-  if (volume == 0 || normal == 0)
-    return false;
-  int64_t voxel[3] = {s->low[0], s->low[1], s->low[2]};
-  voxel[axis] += (volume > 0) == (normal > 0) ? 1 : -1;
-  return vxm_view_bit_set(view, vxm_view_bit(view, voxel));
+  small_plane plane = {.volume = 0};
+  for (int w = 0; w < 3; w++) {
+    int u = w == 2 ? 0 : w + 1, v = w == 0 ? 2 : w - 1;
+    plane.normal[w] = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
+    plane.volume += a[w] * plane.normal[w];
+  }
+  return plane;
+}
+
+/**
+ * How far behind the middle of a link a triangle crosses it, as vxm_meet_links has it to the last bit.
+ *
+ * @param to the upper end of the link
+ */
+static inline double offset_of(const vxm_lattice *lattice, const small *s, const small_plane *plane, int axis,
+                               int64_t to) {
+  const int64_t *n = plane->normal, unit = lattice->unit, sign = n[axis] < 0 ? -1 : 1;
+  bool beyond = (n[0] != 0 ? n[0] : n[1] != 0 ? n[1] : n[2]) * sign > 0;
+  int64_t at = s->corner[0][axis] + vxm_lattice_centre(lattice, s->low[axis]), size = sign * n[axis];
+  int64_t up = unit / 2 - (at & (unit - 1)), base = (at >> lattice->bits) + 1;
+  int64_t across = sign * plane->volume - size * (s->corner[0][axis] + up) - beyond;
+  double voxels = (double)across * (1.0 / (double)(size * unit));
+  return voxels - (double)(to - base) - 0.5;
+}
+
+/**
+ * Keeps the links without a voxel that a triangle crosses on the lines of centres in the middle of its box, a
+ * bit for each: one end is the voxel in the middle, which is not set. False, and nothing is kept, where it is
+ * not known which links these are.
+ */
+static bool keep_links(vxm_link_frame *frames, size_t triangle, const small *s, unsigned lines) {
+  const vxm_thin_job *job = frames[0].job;
+  const small_plane plane = plane_of(s);
+  int64_t lower[3][3];
+  unsigned empty = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    if (!(lines >> axis & 1))
+      continue;
+    if (s->beyond[axis] == 0 || s->beyond[axis] == 7 || plane.volume == 0 || plane.normal[axis] == 0)
+      return false;
+    bool above = (plane.volume > 0) == (plane.normal[axis] > 0);
+    int64_t other[3] = {s->low[0], s->low[1], s->low[2]};
+    for (int a = 0; a < 3; a++)
+      lower[axis][a] = s->low[a] - (a == axis && !above);
+    other[axis] += above ? 1 : -1;
+    empty |= (unsigned)!vxm_view_bit_set(&job->view, vxm_view_bit(&job->view, other)) << axis;
+  }
+  if (empty == 0)
+    return true;
+  vxm_link_surface surface;
+  for (int a = 0; a < 3; a++)
+    surface.size[a] = (double)(plane.normal[a] < 0 ? -plane.normal[a] : plane.normal[a]);
+  for (int axis = 0; axis < 3; axis++) {
+    if (!(empty >> axis & 1))
+      continue;
+    frames[axis].triangle = triangle;
+    frames[axis].surface = &surface;
+    vxm_keep_link(&frames[axis], lower[axis],
+                  offset_of(&job->placed->lattice, s, &plane, axis, lower[axis][axis] + 1));
+  }
+  return true;
 }
 
 /** What a triangle without a voxel in its middle meets; false if its box of cells is too long, or at the
@@ -214,10 +262,8 @@ static bool meet_small(vxm_link_frame *frames, size_t triangle, uint64_t differ)
       int line = meet_section(frames, &s, axis);
       lines |= line >= 0 ? 1U << line : 0;
     }
-  bool filled = true;
-  for (int axis = 0; axis < 3; axis++)
-    filled &= !(lines >> axis & 1) || is_link_filled(view, &s, axis);
-  if (!filled)
+  /* Of two lines that a section crosses the one told is such that the other sections tell all others. */
+  if (lines != 0 && !keep_links(frames, triangle, &s, lines))
     vxm_meet_links(frames, triangle, differ);
   return true;
 }
