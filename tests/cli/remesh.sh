@@ -16,7 +16,7 @@ run 'facts in/torus.off; facts t.ply'
 say "# the same in each format, with any threads, and from standard input"
 run 'for f in off obj stl; do voxmend remesh in/torus.off -o t.$f -r 48 -q --threads 7 && facts t.$f | grep volume; done'
 run 'voxmend remesh - -o - --format ply -r 48 -q <in/torus.off | cmp - t.ply'
-say "# a sheet comes out as a plate"
+say "# a sheet comes out as a plate, or not at all without what holds thin parts together"
 printf 'OFF\n4 1 0\n0 0 0\n8 0 0\n8 8 0\n0 8 0\n4 0 1 2 3\n' >sheet.off
 run 'voxmend remesh sheet.off -o s.ply --voxel-size 0.5 -q && facts s.ply'
 run 'voxmend remesh sheet.off -o s2.ply --voxel-size 0.5 --thin drop -q && facts s2.ply'
