@@ -68,6 +68,48 @@ static void test_several_meshes(void **state) {
   }
 }
 
+/** A sheet of small triangles across an axis, at a height that changes a little. */
+static void add_fine_sheet(vxm_soup *soup, vxm_rng *rng, const vxm_space *space, int axis, double height) {
+  enum { CUTS = 12 };
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  uint32_t first = (uint32_t)soup->vertex_count;
+  double slope = 0.1 * vxm_rng_unit(rng);
+  for (uint32_t i = 0; i < (CUTS + 1) * (CUTS + 1); i++) {
+    double p[3];
+    p[u] = (0.1 + 0.8 * (i % (CUTS + 1)) / CUTS) * (double)space->dims[u];
+    p[v] = (0.1 + 0.8 * (i / (CUTS + 1)) / CUTS) * (double)space->dims[v];
+    p[axis] = height + slope * p[u] + 0.2 * vxm_rng_unit(rng);
+    shape_vertex(soup, p[0], p[1], p[2]);
+  }
+  for (uint32_t j = 0; j < CUTS; j++)
+    for (uint32_t i = 0; i < CUTS; i++) {
+      uint32_t p = first + j * (CUTS + 1) + i, q = p + CUTS + 1;
+      shape_triangle(soup, p, p + 1, q + 1);
+      shape_triangle(soup, p, q + 1, q);
+    }
+}
+
+/** Sheets a little above or below a body: a voxel of it lies beside links that the sheet crosses. */
+static void test_fine_sheets_beside_bodies(void **state) {
+  (void)state;
+  vxm_rng rng = {507};
+  for (int round = 0; round < ROUNDS(60); round++) {
+    vxm_space space = small_space(&rng);
+    vxm_soup *soup = shape_empty(context);
+    int axis = round % 3;
+    double centre[3], half[3], straight[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int a = 0; a < 3; a++) {
+      centre[a] = 0.5 * (double)space.dims[a];
+      half[a] = (a == axis ? 0.15 : 0.4) * (double)space.dims[a];
+    }
+    thin_turned_box(soup, centre, straight, half);
+    double away = half[axis] + 1.5 * vxm_rng_unit(&rng);
+    add_fine_sheet(soup, &rng, &space, axis, centre[axis] + (round % 2 ? away : -away - 1));
+    check_soup(soup, &space, VXM_THIN_KEEP, 2);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** Non-convex polygons: the triangles that cover them cover what they do not, too. */
 static void test_polygons(void **state) {
   (void)state;
@@ -212,13 +254,10 @@ static void test_rods_are_one_voxel_thick(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_connected_meshes),
-      cmocka_unit_test(test_several_meshes),
-      cmocka_unit_test(test_polygons),
-      cmocka_unit_test(test_meshes_that_reach_out),
-      cmocka_unit_test(test_thick_bodies_stay),
-      cmocka_unit_test(test_plates_are_one_voxel_thick),
-      cmocka_unit_test(test_rods_are_one_voxel_thick),
+      cmocka_unit_test(test_connected_meshes),           cmocka_unit_test(test_several_meshes),
+      cmocka_unit_test(test_fine_sheets_beside_bodies),  cmocka_unit_test(test_polygons),
+      cmocka_unit_test(test_meshes_that_reach_out),      cmocka_unit_test(test_thick_bodies_stay),
+      cmocka_unit_test(test_plates_are_one_voxel_thick), cmocka_unit_test(test_rods_are_one_voxel_thick),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

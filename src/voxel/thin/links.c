@@ -70,7 +70,8 @@ static void put_link(const frame *f, int64_t ends[2][3], double offset) {
   bool dominant = is_dominant(f);
   int64_t slice = lower[f->job->slow] < view->begin[f->job->slow] ? upper[f->job->slow] : lower[f->job->slow];
   if (dominant && slice >= f->job->counted[0] && slice < f->job->counted[1])
-    f->meetings->thin_area += llrint(vxm_link_surface_length(f->surface) / f->surface->size[f->w] * VXM_OFFSET_UNIT);
+    f->meetings->thin_area +=
+        llrint(vxm_link_surface_length(f->surface) / f->surface->size[f->w] * VXM_OFFSET_UNIT);
   vxm_thin_stage stage = f->plain
                              ? (dominant ? VXM_THIN_DOMINANT_LINKS : VXM_THIN_LINKS)
                              : (f->direction < VXM_LINK_EDGES ? VXM_THIN_EDGE_LINKS : VXM_THIN_CORNER_LINKS);
