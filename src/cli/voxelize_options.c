@@ -70,7 +70,7 @@ const cli_option voxelize_options[] = {
     {KEY_METHOD, "method", "vote|x|y|z|tetra|winding",
      "how inside is told: parity along one axis, the XOR of tetrahedra, a\n"
      "vote of these four (they agree wherever the mesh is closed), or the winding\n"
-     "number, which is slow and always has an answer [vote]"},
+     "number, which always has an answer [vote]"},
     {KEY_VOTE, "vote", "auto|majority|any|all",
      "what is inside where the mesh is open: auto = close holes by caps over their\n"
      "rims, and ask the winding number where that cannot be; majority = what two\n"

@@ -27,7 +27,7 @@ const bound bounds[DAMAGE_COUNT] = {
 const double winding_slack = 0.001;
 
 /* Times: at most this much for repair and solid of a mesh of no more triangles, this often the clean mesh's
- * with 1 % removed, and so much less than the winding number at every voxel. */
+ * with 1 % removed. */
 static const double time_bound = 200, mild_factor = 3;
 static const size_t time_triangles = 70000;
 

@@ -74,8 +74,7 @@ static bool bit_at(const uint64_t *words, const vxm_space *space, vxm_layout lay
   return words[row + (size_t)at[layout.fast] / 64] >> (at[layout.fast] % 64) & 1;
 }
 
-/** The sum of all solid angles, term by term; *nearest becomes the least distance of a plane from the voxel.
- */
+/** The sum of all solid angles, term by term; *touches: the centre of the voxel lies on a triangle. */
 static double oracle(const subject *s, const int64_t voxel[3], bool *touches) {
   double sum = 0;
   *touches = false;
@@ -188,6 +187,57 @@ static void compare(const uint64_t *a, const uint64_t *b, const vxm_space *space
           fail_msg("%s: voxel %d %d %d differs", what, (int)at[0], (int)at[1], (int)at[2]);
 }
 
+/** The bytes of confidence at some voxels: 255 min(1, |2 w - 1|), but for the errors of floats. */
+static void check_confidence(const subject *s, const uint8_t *confidence) {
+  const int64_t *dims = s->placed.lattice.space.dims;
+  for (int n = 0; n < 50; n++) {
+    int64_t at[3];
+    bool touches;
+    for (int a = 0; a < 3; a++)
+      at[a] = (int64_t)vxm_rng_below(&rng, (uint64_t)dims[a]);
+    double right = 255 * fmin(fabs(2 * oracle(s, at, &touches) - 1), 1);
+    int made = confidence[(at[2] * dims[1] + at[1]) * dims[0] + at[0]];
+    if (!touches && fabs(made + 0.5 - right) > 3)
+      fail_msg("voxel %d %d %d: confidence %d, not %.2f", (int)at[0], (int)at[1], (int)at[2], made, right);
+  }
+}
+
+/** A few voxels in the middle of a large box that has no top: the numbers of nodes far larger than the grid.
+ */
+static void test_a_small_window_in_a_large_mesh(void **state) {
+  (void)state;
+  for (double half = 1e3; half < 1e9; half *= 1e2) {
+    vxm_soup *soup = shape_empty(context);
+    enum { CUTS = 6 };
+    for (int side = 0; side < 5; side++)
+      for (int i = 0; i < CUTS; i++)
+        for (int j = 0; j < CUTS; j++) {
+          uint32_t corner[4];
+          for (int c = 0; c < 4; c++) {
+            int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+            double p[3];
+            p[axis] = side % 2 ? half : -half;
+            p[u] = half * (2.0 * (i + (c == 1 || c == 2)) / CUTS - 1);
+            p[v] = half * (2.0 * (j + (c >= 2)) / CUTS - 1);
+            corner[side % 2 ? c : 3 - c] = shape_vertex(soup, p[0] + 4, p[1] + 4, p[2] + 4);
+          }
+          shape_face(soup, corner, 4);
+        }
+    static const vxm_space space = {{8, 8, 8}, {0, 0, 0}, {1, 1, 1}};
+    subject s;
+    begin(&s, soup, &space);
+    uint8_t confidence[8 * 8 * 8];
+    uint64_t *words = fill(&s, (vxm_layout)VXM_LAYOUT_GRID, 8, NULL, confidence);
+    for (int v = 0; v < 8 * 8 * 8; v++) { /* five sixths of all directions end on a side */
+      assert_true(words[v / 8] >> (v % 8) & 1);
+      assert_in_range(confidence[v], 166, 174);
+    }
+    free(words);
+    end(&s);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** Windows, layouts, builds and threads change no bit, and what is asked about is what is set. */
 static void test_bits_are_the_same_in_all_ways(void **state) {
   (void)state;
@@ -225,12 +275,12 @@ static void test_bits_are_the_same_in_all_ways(void **state) {
     uint8_t *confidence = calloc(70 * 21 * 37, 1);
     uint64_t *sure = fill(&s, layouts[0], 37, NULL, confidence);
     compare(words, sure, &space, layouts[0], "confidence");
+    check_confidence(&s, confidence);
     end(&s);
     vxm_context_options with = VXM_CONTEXT_OPTIONS_INIT;
     with.threads = 5;
     assert_int_equal(vxm_context_create(&context, &with, NULL), VXM_OK);
     begin(&s, soup, &space);
-    s.mesh = vxm_winding_mesh_of(context);
     uint64_t *threads = fill(&s, layouts[0], 37, NULL, NULL);
     compare(words, threads, &space, layouts[0], "threads");
     end(&s);
@@ -354,6 +404,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_the_chain_is_closed),
       cmocka_unit_test(test_signs_are_those_of_the_sum),
+      cmocka_unit_test(test_a_small_window_in_a_large_mesh),
       cmocka_unit_test(test_bits_are_the_same_in_all_ways),
       cmocka_unit_test(test_real_meshes),
   };

@@ -6,6 +6,7 @@
 #include "voxel/model/model_report.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 enum { ROWS_PER_TASK = 8 };
@@ -144,6 +145,8 @@ static vxm_status count_elsewhere(reduction *r, vxm_engine *engine, const vxm_wi
 
 /** Crossings that are held at once, at most, rather than those of a few slices after the other. */
 static const double most_crossings = 1 << 25;
+/** In bins, sorted, and as spans; half of what is left of the memory. */
+static const double bytes_of_a_crossing = 64;
 
 /** A window by its sub-voxels. */
 static vxm_status reduce_window(reduction *r, vxm_window *fine, const vxm_field_plan *plan,
@@ -173,9 +176,10 @@ static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, v
   size_t slice_bytes = (size_t)(r->row_length * r->rows) * vxm_scalar_bytes(r->values.scalar);
   unsigned char *block = r->values.out;
   bool spans = vxm_coverage_has_spans(pass);
+  double crossings =
+      vxm_raster_schedule_placed_bound(&pass->solid.analysis->triangles, &pass->solid.placed, &pass->space);
   if (spans && target->whole &&
-      vxm_raster_schedule_placed_bound(&pass->solid.analysis->triangles, &pass->solid.placed, &pass->space) <
-          most_crossings)
+      crossings < fmin(most_crossings, (double)vxm_memory_left(pass->solid.context) / bytes_of_a_crossing))
     slices = length;
   r->fine = fine;
   for (int64_t begin = 0, end; begin < length && status == VXM_OK; begin = end) {

@@ -9,7 +9,7 @@ int vxm_model_windows_held(const vxm_model *model) {
   int buffers = vxm_solid_wanted(&model->options) ? vxm_buffers_wanted(&model->analysis, &model->options) : 0;
   if (model->options.confidence) /* a byte per voxel, four voters, what is contested and what closed parts
                                     fill; winding numbers */
-    buffers = 8 + 6 + 4;
+    buffers = 8 + 6 + 2 * 6;
   return 1 + vxm_shell_wanted(&model->options) + buffers;
 }
 

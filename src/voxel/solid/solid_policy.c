@@ -50,11 +50,13 @@ bool vxm_votes_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_opti
 }
 
 int vxm_buffers_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
-  /* What is decided by winding numbers, and the masks of bricks, for what is contested and for all. */
-  int winding = options->method == VXM_METHOD_WINDING ? 2 : 0;
+  /* What is decided by winding numbers, two masks of bricks, and the crossings of rows that are counted: for
+   * all, and for what is contested. */
+  enum { WINDING = 6 };
+  int winding = options->method == VXM_METHOD_WINDING ? WINDING : 0;
   if (!vxm_votes_wanted(analysis, options))
     return winding;
-  winding += vxm_caps_wanted(options) ? 2 : 0;
+  winding += vxm_caps_wanted(options) ? WINDING : 0;
   if (vxm_voted_begin(analysis, options) + 1 == analysis->triangles.split.part_count)
     return winding + vxm_caps_wanted(options); /* one part: only what is contested */
   return winding + 4;                          /* three axes, and what is contested or the tetrahedra */

@@ -7,25 +7,14 @@ static size_t cells_of(const int64_t count[3]) {
   return (size_t)(count[0] * count[1] * count[2]);
 }
 
-uint64_t vxm_brick_mask_bytes(const int64_t dims[3]) {
-  uint64_t bricks = 1;
-  for (int a = 0; a < 3; a++)
-    bricks *= (uint64_t)(dims[a] / 4 + 2);
-  return bricks + bricks / 2;
-}
-
 vxm_status vxm_brick_mask_begin(vxm_brick_mask *mask, const int64_t begin[3], const int64_t end[3],
-                                vxm_error *error) {
+                                int levels, vxm_error *error) {
   size_t total = 0;
-  bool one = false;
-  mask->levels = 0;
-  while (!one && mask->levels < VXM_BRICK_LEVELS) {
-    int l = mask->levels++;
-    one = true;
+  mask->levels = levels;
+  for (int l = 0; l < levels; l++) {
     for (int a = 0; a < 3; a++) {
       mask->first[l][a] = begin[a] >> (l + 2);
       mask->count[l][a] = ((end[a] - 1) >> (l + 2)) - mask->first[l][a] + 1;
-      one &= mask->count[l][a] == 1 && mask->first[l][a] == 0;
     }
     total += cells_of(mask->count[l]);
   }
@@ -52,7 +41,7 @@ bool vxm_brick_mask_raise(vxm_brick_mask *mask) {
             *vxm_brick_mask_at(mask, at, l + 1) = 1;
           }
   }
-  return mask->cells[mask->levels - 1][0] != 0;
+  return mask->cells[mask->levels - 1][0] != 0; /* which is one cell */
 }
 
 void vxm_brick_mask_destroy(vxm_brick_mask *mask) {

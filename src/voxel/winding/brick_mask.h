@@ -11,18 +11,16 @@ enum { VXM_BRICK_LEVELS = 20 };
 /** Cells of a level are 4 * 2^level voxels wide and numbered from `first` on. */
 typedef struct vxm_brick_mask {
   vxm_context *context;
-  int levels; /**< of the last level one cell holds all */
+  int levels;
   int64_t first[VXM_BRICK_LEVELS][3], count[VXM_BRICK_LEVELS][3];
   uint8_t *cells[VXM_BRICK_LEVELS]; /**< a byte each, x fastest; in one block, the bricks first */
   size_t capacity;
 } vxm_brick_mask;
 
-/** An empty mask for the voxels begin..end-1 along x, y and z, with the memory of the one before. Start from
- * {.context = ...}. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+/** An empty mask of so many levels for the voxels begin..end-1 along x, y and z, with the memory of the one
+ * before. Start from {.context = ...}. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_brick_mask_begin(vxm_brick_mask *mask, const int64_t begin[3], const int64_t end[3],
-                                vxm_error *error);
-/** Bytes that it takes for so many voxels along x, y and z. */
-uint64_t vxm_brick_mask_bytes(const int64_t dims[3]);
+                                int levels, vxm_error *error);
 /** After bricks have been set: sets the cells that hold one. Returns whether there is any. */
 bool vxm_brick_mask_raise(vxm_brick_mask *mask);
 void vxm_brick_mask_destroy(vxm_brick_mask *mask);

@@ -6,8 +6,8 @@
  * that of T - R, an integer that crossings along any line tell, plus that of R, for which solid angles must
  * be summed up. Here T are the triangles of one component after the other (joined over edges). The boundary
  * of a component is cut into loops, wherever it comes to a vertex again, and each loop is filled by triangles
- * that cut off every second corner, again and again: small ones along the loop, few large ones. Where that
- * takes more triangles than the component has, R is the component itself.
+ * that cut off every second corner, again and again: small ones along the loop, few large ones. Where a
+ * component has no more triangles than its boundary has edges, R is the component itself.
  */
 #ifndef VXM_VOXEL_WINDING_CHAIN_H
 #define VXM_VOXEL_WINDING_CHAIN_H

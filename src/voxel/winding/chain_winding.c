@@ -2,11 +2,30 @@
 #include "voxel/winding/chain_winding.h"
 #include "base/threads.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* ---- Which side of a triangle a row comes to ---- */
+
+/** Rows that a triangle's box covers. */
+static double rows_of(const vxm_snapped_points *placed, const uint32_t corners[3], int axis) {
+  double rows = 1;
+  for (int i = 1; i < 3; i++) {
+    int a = (axis + i) % 3;
+    int64_t low = INT64_MAX, high = INT64_MIN, most = placed->lattice.space.dims[a] * placed->lattice.unit;
+    for (int k = 0; k < 3; k++) {
+      int64_t at = vxm_snapped_points_at(placed, corners[k]).at[a];
+      low = vxm_min(low, at);
+      high = vxm_max(high, at);
+    }
+    low = vxm_max(low, 0);
+    high = vxm_min(high, most);
+    rows *= low <= high ? (double)(high - low) / (double)placed->lattice.unit + 1 : 0;
+  }
+  return rows;
+}
 
 /** The sign of the normal along an axis: by products of two differences, in 128 bits where points are wide.
  */
@@ -53,12 +72,14 @@ vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_cha
   if (status != VXM_OK)
     return status;
   size_t entered = 0, left = chain->closed_count;
+  out->estimate = 0;
   for (size_t t = 0; t < chain->closed_count; t++) {
     if (covers_none(placed, chain->closed[t], axis))
       continue;
     int side = facing(placed, chain->closed[t], axis);
     if (side == 0)
       continue;
+    out->estimate += rows_of(placed, chain->closed[t], axis);
     size_t to = (side < 0) != mirrored ? entered++ : --left;
     memcpy(out->corners[to], chain->closed[t], sizeof *out->corners);
   }
@@ -73,6 +94,9 @@ vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_cha
 
 typedef struct fold_state {
   vxm_chain_winding *out;
+  vxm_triangle_set triangles; /**< of the chain */
+  vxm_window part;            /**< slices of the window that are rastered at once */
+  int64_t first;              /**< of these, counted from the window's first one */
   const vxm_kernels *kernels;
   vxm_slabs slabs;
   pthread_mutex_t mutex; /**< of `more`, `crossings` and `status` */
@@ -171,8 +195,8 @@ static void fold_slab(size_t task, int worker, void *payload) {
   const vxm_window *window = &out->window;
   if (vxm_task_progress_stopped(&state->watch, worker))
     return;
-  int64_t begin = (int64_t)task << state->slabs.shift,
-          end = vxm_min(begin + (INT64_C(1) << state->slabs.shift), state->slabs.layers);
+  int64_t begin = state->first + ((int64_t)task << state->slabs.shift);
+  int64_t end = vxm_min(begin + (INT64_C(1) << state->slabs.shift), state->first + state->slabs.layers);
   size_t first = (size_t)begin * window->slice_words, count = (size_t)(end - begin) * window->slice_words;
   size_t row = first / window->row_words, rows = (size_t)(end - begin) * (size_t)window->middle_dim;
   uint64_t *enter = out->slabs + 2 * (size_t)worker * state->slabs.words, *leave = enter + state->slabs.words;
@@ -250,26 +274,63 @@ static vxm_status reserve(vxm_chain_winding *out, bool in_place, size_t slab_wor
   return local.code;
 }
 
-/** Puts the crossings of the triangles begin..end-1 into bins. */
+/** Plans how the crossings of one kind are put into bins. */
+static vxm_status plan(const fold_state *state, vxm_columns *columns, vxm_workspace *workspace,
+                       const vxm_snapped_points *placed, int kind, vxm_error *error) {
+  const vxm_chain_winding *out = state->out;
+  *columns = vxm_columns_of(&state->part, state->part.layout.fast);
+  columns->slab_shift = state->slabs.shift;
+  columns->roles = VXM_ROLES_ALL;
+  columns->triangle_begin = kind ? out->entered : 0;
+  columns->triangle_end = kind ? out->corner_count : out->entered;
+  return vxm_raster_schedule_plan(&workspace->crossings, &state->triangles, placed, columns, 1, error);
+}
+
+/** Puts the crossings of one kind into bins. */
 static vxm_status raster(fold_state *state, vxm_workspace *workspace, const vxm_snapped_points *placed,
                          int kind, vxm_error *error) {
   vxm_chain_winding *out = state->out;
-  vxm_triangle_set triangles = {
-      .corners = out->corners, .part = out->part, .triangle_count = out->corner_count};
-  vxm_columns columns = vxm_columns_of(&out->window, out->window.layout.fast);
-  columns.slab_shift = state->slabs.shift;
-  columns.roles = VXM_ROLES_ALL;
-  columns.triangle_begin = kind ? out->entered : 0;
-  columns.triangle_end = kind ? out->corner_count : out->entered;
+  vxm_columns columns;
   /* A bin that becomes a bitmap forgets how often: never. */
   const size_t never = SIZE_MAX / 2;
   vxm_status status = vxm_crossing_bins_reset(&out->bins[kind], (size_t)vxm_context_threads(out->context), 1,
                                               state->slabs.count, never, error);
   if (status == VXM_OK)
-    status = vxm_raster_schedule_plan(&workspace->crossings, &triangles, placed, &columns, 1, error);
+    status = plan(state, &columns, workspace, placed, kind, error);
   if (status == VXM_OK && columns.triangle_begin < columns.triangle_end)
     vxm_raster_schedule_run(&workspace->crossings, 0, &out->bins[kind], &state->watch);
   return status == VXM_OK ? vxm_crossing_bins_check(&out->bins[kind], error) : status;
+}
+
+/** Counts in some slices. */
+static vxm_status fill_part(fold_state *state, vxm_workspace *workspace, const vxm_snapped_points *placed,
+                            vxm_error *error) {
+  vxm_context *context = state->out->context;
+  size_t steps = state->slabs.count;
+  vxm_columns columns;
+  vxm_status status = VXM_OK;
+  for (int kind = 0; kind < 2 && status == VXM_OK; kind++) {
+    status = plan(state, &columns, workspace, placed, kind, error);
+    steps += workspace->crossings.range_count;
+  }
+  vxm_task_progress_start(&state->watch, context, "counting crossings", steps, error);
+  for (int kind = 0; kind < 2 && status == VXM_OK && state->watch.status == VXM_OK; kind++)
+    status = raster(state, workspace, placed, kind, error);
+  if (status != VXM_OK)
+    return status;
+  if (state->watch.status == VXM_OK)
+    vxm_parallel(context, state->slabs.count, fold_slab, state);
+  if (state->status != VXM_OK) {
+    vxm_error_pass(error, &state->error);
+    return state->status;
+  }
+  return vxm_task_progress_end(&state->watch);
+}
+
+/** Slices whose crossings are held at once: all, unless there are very many. */
+static int64_t slices_at_once(const vxm_chain_winding *out, int64_t depth) {
+  double most = vxm_raster_schedule_round(out->context);
+  return out->estimate <= most ? depth : vxm_max((int64_t)((double)depth * most / out->estimate), 1);
 }
 
 vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspace,
@@ -280,30 +341,34 @@ vxm_status vxm_chain_winding_fill(vxm_chain_winding *out, vxm_workspace *workspa
   out->window.slice_words = window->row_words * (size_t)window->middle_dim;
   out->bins[0].context = out->bins[1].context = out->context;
   out->more_count = out->crossing_count = 0;
-  size_t depth = (size_t)(window->end - window->begin);
+  int64_t depth = window->end - window->begin, slices = slices_at_once(out, depth);
   fold_state state = {.out = out, .kernels = vxm_kernels_get(), .error = VXM_ERROR_INIT};
-  state.slabs = vxm_slabs_of((int64_t)depth, out->window.slice_words, vxm_context_threads(out->context));
+  state.triangles =
+      (vxm_triangle_set){.corners = out->corners, .part = out->part, .triangle_count = out->corner_count};
+  state.slabs = vxm_slabs_of(slices, out->window.slice_words, vxm_context_threads(out->context));
   vxm_status status = reserve(out, in_place, state.slabs.words, error);
   if (status != VXM_OK)
     return status;
-  vxm_task_progress_start(&state.watch, out->context, "counting crossings", state.slabs.count, error);
-  for (int kind = 0; kind < 2 && status == VXM_OK; kind++)
-    status = raster(&state, workspace, placed, kind, error);
-  if (status != VXM_OK)
-    return status;
   pthread_mutex_init(&state.mutex, NULL);
-  vxm_parallel(out->context, state.slabs.count, fold_slab, &state);
-  pthread_mutex_destroy(&state.mutex);
-  if (state.status != VXM_OK) {
-    vxm_error_pass(error, &state.error);
-    return state.status;
+  for (int64_t begin = 0; begin < depth && status == VXM_OK; begin += slices) {
+    vxm_progress_part whole =
+        vxm_progress_enter((double)begin / (double)depth, fmin((double)(begin + slices) / (double)depth, 1));
+    state.first = begin;
+    state.part = out->window;
+    state.part.begin += begin;
+    state.part.end = vxm_min(state.part.begin + slices, window->end);
+    state.slabs.layers = state.part.end - state.part.begin;
+    state.slabs.count =
+        (size_t)((state.slabs.layers + (INT64_C(1) << state.slabs.shift) - 1) >> state.slabs.shift);
+    status = fill_part(&state, workspace, placed, error);
+    vxm_progress_leave(whole);
   }
-  status = vxm_task_progress_end(&state.watch);
+  pthread_mutex_destroy(&state.mutex);
   if (status != VXM_OK || out->crossing_count == 0)
     return status;
   if (out->more_count > 0)
     qsort(out->more, out->more_count, sizeof *out->more, compare_more);
-  return vxm_parallel_asked(out->context, depth, count_rows, out, error);
+  return vxm_parallel_asked(out->context, (size_t)depth, count_rows, out, error);
 }
 
 void vxm_chain_winding_destroy(vxm_chain_winding *counted) {

@@ -38,6 +38,7 @@ typedef struct vxm_chain_winding {
   uint32_t (*corners)[3]; /**< of the chain: those that are entered first, then those that are left */
   uint32_t *part;
   size_t corner_capacity, entered, corner_count;
+  double estimate;           /**< of all triangles with rows of the grid, at most */
   vxm_crossing_bins bins[2]; /**< enter, leave */
 } vxm_chain_winding;
 

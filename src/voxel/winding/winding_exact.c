@@ -8,9 +8,10 @@ enum { STACK = 80 };
 static const double half_turn = 3.1415926535897931;
 
 /** The expansion in voxel/winding/winding_tree.h. */
-static double add_node(const vxm_winding_moments *m, const double d[3], double square) {
+static double add_node(const vxm_winding_moments *m, const double d[3]) {
   const float *f = m->first, *s = m->second;
-  double x = d[0], y = d[1], z = d[2], inverse = 1 / (square * sqrt(square));
+  double x = d[0] * m->scale, y = d[1] * m->scale, z = d[2] * m->scale, square = x * x + y * y + z * z,
+         inverse = 1 / (square * sqrt(square));
   double along = m->area[0] * x + m->area[1] * y + m->area[2] * z;
   double bent = f[0] * x * x + f[1] * y * y + f[2] * z * z + f[3] * x * y + f[4] * x * z + f[5] * y * z;
   double cubic = x * x * (s[0] * x + s[1] * y + s[4] * z) + y * y * (s[2] * x + s[3] * y + s[6] * z) +
@@ -140,7 +141,7 @@ static double sum_up(const vxm_winding_tree *tree, const int64_t voxel[3], doubl
         square += d[a] * d[a];
       }
       if (square > reach * reach)
-        far_sum += add_node(&tree->moments[i], d, square);
+        far_sum += add_node(&tree->moments[i], d);
       else if (n->is_leaf)
         add_triangle(&near, tree, n->next, q, at);
       else {

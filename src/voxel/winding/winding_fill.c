@@ -26,8 +26,9 @@ typedef struct fill_job {
   const vxm_window *window;
   const uint64_t *asked;
   uint8_t *confidence;
-  int64_t dims[3], begin[3], end[3]; /**< of the grid, and the voxels of the window, along x, y, z */
-  bool is_asked;                     /**< mesh->asked says which cells are */
+  int64_t begin[3], end[3]; /**< the voxels of the window along x, y, z */
+  int top;                  /**< the level of which one cell holds all of the grid */
+  bool is_asked;            /**< mesh->asked says which cells are */
   const vxm_winding_kernels *kernels;
   cell_task *tasks;
   size_t task_count, task_capacity;
@@ -137,6 +138,15 @@ static uint64_t row_bits(uint64_t mask, int64_t from, int64_t step, int64_t coun
   return bits;
 }
 
+static bool is_asked_about(const fill_job *job, size_t row, int64_t fast) {
+  const vxm_window *w = job->window;
+  size_t rows = (size_t)w->middle_dim;
+  return !job->asked ||
+         (job->asked[row / rows * w->slice_words + row % rows * w->row_words + (size_t)fast / 64] >>
+              (fast % 64) &
+          1);
+}
+
 /** A row in which the number of the closed chain must be counted, or of which confidence is asked. */
 static uint64_t settle_row(const fill_job *job, const vxm_winding_brick *brick, size_t row, int64_t first,
                            int64_t from, int64_t step, int64_t count) {
@@ -145,7 +155,7 @@ static uint64_t settle_row(const fill_job *job, const vxm_winding_brick *brick, 
   for (int64_t i = 0; i < count; i++) {
     double w = whole_number(job, row, first + i, (double)brick->value[from + i * step]);
     bits |= (uint64_t)(w > 0.5 + tie) << i;
-    if (job->confidence) {
+    if (job->confidence && is_asked_about(job, row, first + i)) {
       double sure = fabs(2 * w - 1);
       job->confidence[(size_t)out->fast_dim * (row + (size_t)(out->begin * out->middle_dim)) +
                       (size_t)(first + i)] = (uint8_t)(sure < 1 ? 255 * sure : 255);
@@ -326,23 +336,22 @@ static vxm_status decide_by_tree(fill_job *job, vxm_error *error) {
   vxm_winding_mesh *mesh = job->mesh;
   vxm_context *context = mesh->context;
   size_t depth = (size_t)(job->window->end - job->window->begin);
-  vxm_status status = vxm_brick_mask_begin(&mesh->doubted, job->begin, job->end, error);
+  vxm_status status = vxm_brick_mask_begin(&mesh->doubted, job->begin, job->end, job->top + 1, error);
   if (status == VXM_OK && job->asked) {
-    status = vxm_brick_mask_begin(&mesh->asked, job->begin, job->end, error);
+    status = vxm_brick_mask_begin(&mesh->asked, job->begin, job->end, job->top + 1, error);
     if (status == VXM_OK)
       status = vxm_parallel_asked(context, (depth + 6) / 4, mark_asked_slice, job, error);
     job->is_asked = true;
     if (status != VXM_OK || !vxm_brick_mask_raise(&mesh->asked))
       return status;
   }
-  int top = mesh->doubted.levels - 1;
   if (status == VXM_OK)
-    status = walk(job, top, error);
+    status = walk(job, job->top, error);
   if (status != VXM_OK || !vxm_brick_mask_raise(&mesh->doubted))
     return status;
   job->walk.strict = true;
   job->walk.doubt = strict_doubt;
-  return walk(job, top, error);
+  return walk(job, job->top, error);
 }
 
 vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, const uint64_t *asked,
@@ -368,6 +377,9 @@ vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, co
   job.end[window->layout.middle] = window->middle_dim;
   job.begin[window->layout.slow] = window->begin;
   job.end[window->layout.slow] = window->end;
+  int64_t longest = vxm_max(vxm_max(window->fast_dim, window->middle_dim), window->slow_dim);
+  while (INT64_C(4) << job.top < longest)
+    job.top++;
   vxm_context *context = mesh->context;
   size_t workers = (size_t)vxm_context_threads(context);
   job.lists = (vxm_winding_scratch){.context = context, .error = VXM_ERROR_INIT};

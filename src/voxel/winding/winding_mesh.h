@@ -24,7 +24,7 @@ vxm_winding_mesh vxm_winding_mesh_of(vxm_context *context);
  *
  * @param axis     along which the rows of windows will run
  * @param mirrored the points have been placed by a transform that turns triangles inside out
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ * @return as vxm_winding_tree_create
  */
 vxm_status vxm_winding_mesh_place(vxm_winding_mesh *mesh, const vxm_winding_chain *chain,
                                   const vxm_snapped_points *placed, int axis, bool mirrored,

@@ -113,18 +113,22 @@ static sums join(const sums *left, const sums *right) {
 static void store(vxm_winding_tree *out, size_t node, const sums *of) {
   vxm_winding_node *n = &out->nodes[node];
   vxm_winding_moments *m = &out->moments[node];
-  for (int a = 0; a < 3; a++) {
-    n->centre[a] = of->centre[a];
-    m->area[a] = (float)(by_sphere * of->area[a]);
-  }
+  int exponent;
+  frexp(fmax(of->radius, 1), &exponent);
+  double scale = ldexp(1, -exponent), square = by_sphere * scale * scale, cube = square * scale;
+  m->scale = (float)scale;
   n->radius = (float)of->radius;
   n->area = (float)(by_sphere * of->size);
+  for (int a = 0; a < 3; a++) {
+    n->centre[a] = of->centre[a];
+    m->area[a] = (float)(square * of->area[a]);
+  }
   double third = (of->first[0][0] + of->first[1][1] + of->first[2][2]) / 3;
   static const int pair[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int i = 0; i < 3; i++) {
     int p = pair[i][0], q = pair[i][1];
-    m->first[i] = (float)(-3 * by_sphere * (of->first[i][i] - third));
-    m->first[3 + i] = (float)(-3 * by_sphere * (of->first[p][q] + of->first[q][p]));
+    m->first[i] = (float)(-3 * cube * (of->first[i][i] - third));
+    m->first[3 + i] = (float)(-3 * cube * (of->first[p][q] + of->first[q][p]));
   }
   double s[3][3][3], trace[3] = {0, 0, 0};
   for (int i = 0; i < 3; i++)
@@ -140,7 +144,7 @@ static void store(vxm_winding_tree *out, size_t node, const sums *of) {
   for (int t = 0; t < 10; t++) {
     int i = term[t].i, j = term[t].j, k = term[t].k;
     double traces = ((i == j) * trace[k] + (i == k) * trace[j] + (j == k) * trace[i]) / 5;
-    m->second[t] = (float)(7.5 * by_sphere * term[t].times * (s[i][j][k] - traces));
+    m->second[t] = (float)(7.5 * cube * scale * term[t].times * (s[i][j][k] - traces));
   }
 }
 

@@ -25,8 +25,10 @@ typedef struct vxm_winding_node {
   bool is_leaf;
 } vxm_winding_node;
 
-/** N, -3 M: xx yy zz 2xy 2xz 2yz, and 7.5 S: xxx 3xxy 3xyy yyy 3xxz 6xyz 3yyz 3xzz 3yzz zzz; all by 4 pi. */
+/** N, -3 M: xx yy zz 2xy 2xz 2yz, and 7.5 S: xxx 3xxy 3xyy yyy 3xxz 6xyz 3yyz 3xzz 3yzz zzz; all by 4 pi, and
+ * in a unit of length of its own, so that no product overflows. */
 typedef struct vxm_winding_moments {
+  float scale; /**< 1 / that unit, a power of two: of the radius or a voxel, what is longer */
   float area[3], first[6], second[10];
 } vxm_winding_moments;
 
@@ -46,7 +48,7 @@ typedef struct vxm_winding_tree {
  * Builds the trees of triangles as points are placed; the points are lent.
  *
  * @param mirrored the points have been placed by a transform that turns triangles inside out
- * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ * @return VXM_OK, VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 vxm_status vxm_winding_tree_create(vxm_winding_tree *out, vxm_context *context, const uint32_t (*corners)[3],
                                    size_t count, const vxm_snapped_points *placed, bool mirrored,
