@@ -438,6 +438,7 @@ static vxm_soup *small_triangles(vxm_rng *rng, const vxm_space *space) {
     double extent = extents[vxm_rng_below(rng, 10)], low[3];
     uint32_t corner[3];
     int longest = (int)vxm_rng_below(rng, 3), flat = vxm_rng_below(rng, 4) ? 3 : (int)vxm_rng_below(rng, 3);
+    bool centred = vxm_rng_below(rng, 3) == 0; /* so that the plane passes through centres */
     for (int a = 0; a < 3; a++)
       low[a] = random_place(rng, space->dims[a]);
     for (int k = 0; k < 3; k++) {
@@ -445,6 +446,7 @@ static vxm_soup *small_triangles(vxm_rng *rng, const vxm_space *space) {
       for (int a = 0; a < 3; a++) {
         double part = k < 2 && a == longest ? k : vxm_rng_below(rng, 3) ? vxm_rng_unit(rng) : 0.5;
         at[a] = low[a] + (a == flat ? 0 : part * extent);
+        at[a] = centred ? floor(at[a]) + 0.5 : at[a];
       }
       corner[k] = shape_vertex(soup, at[0], at[1], at[2]);
     }
