@@ -175,6 +175,7 @@ vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench
 typedef struct bench_machine {
   char processor[128], architecture[32], system[128], compiler[96], huge_pages[16];
   int cores;
+  vxm_cpu_level vectors; /**< that are used */
   uint64_t memory_bytes;
   struct {
     int level;
@@ -183,6 +184,9 @@ typedef struct bench_machine {
   } caches[8]; /**< those of the first processor */
   int cache_count;
 } bench_machine;
+
+/** Names of vxm_cpu_level, and NULL. */
+extern const char *const bench_cpu_names[];
 
 void bench_machine_read(bench_machine *out);
 json_t *bench_machine_json(const bench_machine *machine);

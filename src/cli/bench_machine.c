@@ -71,6 +71,8 @@ static void read_huge_pages(bench_machine *out) {
     snprintf(out->huge_pages, sizeof out->huge_pages, "%.*s", (int)(end - begin - 1), begin + 1);
 }
 
+const char *const bench_cpu_names[] = {"plain", "avx2", "avx512", NULL};
+
 void bench_machine_read(bench_machine *out) {
   *out = (bench_machine){0};
   struct utsname name;
@@ -81,6 +83,7 @@ void bench_machine_read(bench_machine *out) {
   read_processor(out);
   read_caches(out);
   read_huge_pages(out);
+  out->vectors = vxm_cpu_used();
   out->cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
   out->memory_bytes = (uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE);
 #if defined(__clang__)
@@ -102,6 +105,7 @@ json_t *bench_machine_json(const bench_machine *machine) {
   json_t *object = json_object();
   json_object_set_new(object, "processor", cli_json_text(machine->processor));
   json_object_set_new(object, "architecture", cli_json_text(machine->architecture));
+  json_object_set_new(object, "vectors", json_string(bench_cpu_names[machine->vectors]));
   json_object_set_new(object, "cores", json_integer(machine->cores));
   json_object_set_new(object, "caches", caches);
   json_object_set_new(object, "memory_bytes", json_integer((json_int_t)machine->memory_bytes));

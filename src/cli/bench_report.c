@@ -158,9 +158,9 @@ static void print_memory(const cli_run *cli, const bench_plan *plan, const bench
 }
 
 static void print_machine(const cli_run *cli, const bench_machine *machine) {
-  fprintf(cli->text, "%-10s %s, %d core%s", "machine",
-          *machine->processor ? machine->processor : machine->architecture, machine->cores,
-          machine->cores == 1 ? "" : "s");
+  fprintf(cli->text, "%-10s %s, vectors %s, %d core%s", "machine",
+          *machine->processor ? machine->processor : machine->architecture, bench_cpu_names[machine->vectors],
+          machine->cores, machine->cores == 1 ? "" : "s");
   for (int i = 0; i < machine->cache_count; i++)
     if (strcmp(machine->caches[i].type, "Instruction") != 0)
       fprintf(cli->text, ", L%d %" PRIu64 " KiB", machine->caches[i].level, machine->caches[i].bytes >> 10);

@@ -12,6 +12,7 @@ enum {
   KEY_ENGINE,
   KEY_AUGMENT,
   KEY_DISPLACE,
+  KEY_CPU,
   KEY_TIME,
   KEY_PLOT
 };
@@ -32,6 +33,9 @@ static const cli_option known_options[] = {
     {KEY_AUGMENT, "augment", NULL, "measure making variants for training instead: the augment_ phases below"},
     {KEY_DISPLACE, "displace", "F",
      "by how much the vertices of variants are displaced, as in augment [0.01]"},
+    {KEY_CPU, "cpu", "LEVEL",
+     "use the vectors of such processors and no higher: plain (SSE2), avx2 or avx512; what\n"
+     "is made is the same [the highest that this processor has]"},
     {KEY_TIME, "time", "MS", "repeat each for at least so many milliseconds, and at least 5 times [200]"},
     {KEY_PLOT, "plot", "FILE.svg", "draw the times over the resolution"},
     CLI_OPTIONS_READ,
@@ -132,6 +136,15 @@ static int read_engines(cli_run *cli, bench_plan *plan, const char *text) {
   return result;
 }
 
+static int read_cpu(cli_run *cli, const char *text) {
+  int level;
+  if (cli_choose(cli, &level, "cpu", text, bench_cpu_names) == CLI_STOP)
+    return CLI_STOP;
+  if (vxm_cpu_limit((vxm_cpu_level)level, &cli->error) != VXM_OK)
+    return cli_usage(cli, "--cpu '%s': %s", text, cli->error.file);
+  return CLI_END;
+}
+
 static int read_option(cli_run *cli, bench_plan *plan, int key, const char *value) {
   int64_t time;
   switch (key) {
@@ -154,6 +167,8 @@ static int read_option(cli_run *cli, bench_plan *plan, int key, const char *valu
     if (!cli_read_number(&plan->displace, value) || plan->displace < 0 || plan->displace > 0.4)
       return cli_usage(cli, "--displace '%s' is not a number from 0 to 0.4", value);
     return CLI_END;
+  case KEY_CPU:
+    return read_cpu(cli, value);
   case KEY_TIME:
     if (!cli_read_integer(&time, value, 0, 3600000))
       return cli_usage(cli, "--time '%s' is not a number of milliseconds from 0 to 3600000", value);
@@ -416,6 +431,7 @@ const cli_command cli_command_bench = {
              "Examples:\n"
              "  voxmend bench bunny.ply\n"
              "  voxmend bench chair.off -r 32,64,256 --threads 1 --phases memset,solid_vote\n"
+             "  voxmend bench bunny.ply --cpu avx2 --phases solid\n"
              "  voxmend bench bunny.ply --augment -r 32,64\n"
              "  voxmend bench bunny.ply --json --plot bunny.svg >bunny.json",
     .options = known_options,

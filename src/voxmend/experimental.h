@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * @file voxmend/experimental.h
- * What may change from one version to the next, and is in no other header: a published program, for
- * comparison.
+ * What may change from one version to the next, and is in no other header: which instructions are used, and a
+ * published program, for comparison.
  */
 #ifndef VOXMEND_EXPERIMENTAL_H
 #define VOXMEND_EXPERIMENTAL_H
@@ -13,6 +13,27 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* ---- Which instructions are used ---- */
+
+/** Vectors of a processor: the inner loops are built for each, with the same results bit for bit. */
+typedef enum vxm_cpu_level {
+  VXM_CPU_PLAIN = 0, /**< those that every processor of its kind has: of x86-64, SSE2 */
+  VXM_CPU_AVX2,      /**< x86-64 with AVX2 and BMI2 */
+  VXM_CPU_AVX512     /**< with AVX-512 F, CD, DQ, BW and VL besides */
+} vxm_cpu_level;
+
+/** The highest level that this processor, and this build of the library, have. */
+VXM_API vxm_cpu_level vxm_cpu_highest(void);
+/** The highest level that is used: vxm_cpu_highest, unless it was limited. */
+VXM_API vxm_cpu_level vxm_cpu_used(void);
+/**
+ * Limits what is used, in the whole process, to see what other processors would give. While nothing runs.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for what is no level; VXM_ERROR_UNAVAILABLE for one above
+ * vxm_cpu_highest
+ */
+VXM_API vxm_status vxm_cpu_limit(vxm_cpu_level level, vxm_error *error);
 
 /* ---- A published OpenCL program, for comparison ---- */
 

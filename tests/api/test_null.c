@@ -259,6 +259,9 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_engine_describe, 1, 1, GIVES(vxm_engine_describe(P(0, engine))))                                   \
   X(vxm_engines_find, 3, 3,                                                                                \
     nulls & 3 ? vxm_engines_find(P(0, &out.info), 1, P(1, &out.count), P(2, &error)) : VXM_OK)             \
+  X(vxm_cpu_highest, 0, 0, (vxm_cpu_highest(), VXM_OK))                                                    \
+  X(vxm_cpu_used, 0, 0, (vxm_cpu_used(), VXM_OK))                                                          \
+  X(vxm_cpu_limit, 1, 0, vxm_cpu_limit(vxm_cpu_highest(), P(0, &error)))                                   \
   X(vxm_published_create, 6, 29,                                                                           \
     vxm_published_create(P(0, &out.published), P(1, &out.space), P(2, engine), P(3, mesh),                 \
                          P(4, &published_options), P(5, &error)))                                          \

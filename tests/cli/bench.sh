@@ -43,6 +43,9 @@ run 'voxmend bench in/cube.off --phases repair,load $quick | table'
 run 'voxmend bench in/cube.off --phases prepare -q $quick --report r.json && report <r.json'
 run 'voxmend bench in/cube.off -r 8 $quick --json | grep -c -E "\"(processor|architecture|cores|caches|memory_bytes|huge_pages|system|compiler|voxmend)\": "'
 
+run 'voxmend bench in/cube.off -r 8 --phases solid_x --cpu plain $quick --json | grep -o "\"vectors\": \".*\""'
+run 'voxmend bench in/cube.off -r 8 --cpu sse9 $quick'
+
 say "# the voxels of voxelize"
 run 'same solid_vote'
 run 'same solid_x --method x'

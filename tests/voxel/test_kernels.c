@@ -2,6 +2,7 @@
 /* Every build of the kernels does the same as plain loops, and gives the same solids. */
 #include "engine.h"
 
+#include "base/cpu.h"
 #include "voxel/parity/kernels.h"
 
 enum { WORDS_MAX = 40, ROW_WORDS_MAX = 20 };
@@ -420,6 +421,89 @@ static void test_every_build_matches_the_oracle(void **state) {
   }
 }
 
+/** A coordinate in or beside the window: often exactly on a centre or on the side of a voxel. */
+static double random_place(vxm_rng *rng, int64_t dim) {
+  double at = (double)(dim + 4) * vxm_rng_unit(rng) - 2;
+  return vxm_rng_below(rng, 3) ? at : floor(2 * at) / 2;
+}
+
+/** Up to 21 triangles, the longest of which are about as long as what vectors of doubles take, or their boxes
+ * as wide; now and then one that is far larger, or degenerate. */
+static vxm_soup *small_triangles(vxm_rng *rng, const vxm_space *space) {
+  vxm_soup *soup = shape_empty(context);
+  double unit = (double)vxm_lattice_of(space).unit, near = 65536 / unit;
+  const double extents[] = {0.4, 1, 3, 7.5, 8, 8.5, near - 1 / unit, near, near + 1 / unit, 30};
+  size_t count = 1 + vxm_rng_below(rng, 21);
+  for (size_t f = 0; f < count; f++) {
+    double extent = extents[vxm_rng_below(rng, 10)], low[3];
+    uint32_t corner[3];
+    int longest = (int)vxm_rng_below(rng, 3), flat = vxm_rng_below(rng, 4) ? 3 : (int)vxm_rng_below(rng, 3);
+    bool centred = vxm_rng_below(rng, 3) == 0; /* so that the plane passes through centres */
+    for (int a = 0; a < 3; a++)
+      low[a] = random_place(rng, space->dims[a]);
+    for (int k = 0; k < 3; k++) {
+      double at[3];
+      for (int a = 0; a < 3; a++) {
+        double part = k < 2 && a == longest ? k : vxm_rng_below(rng, 3) ? vxm_rng_unit(rng) : 0.5;
+        at[a] = low[a] + (a == flat ? 0 : part * extent);
+        at[a] = centred ? floor(at[a]) + 0.5 : at[a];
+      }
+      corner[k] = shape_vertex(soup, at[0], at[1], at[2]);
+    }
+    shape_triangle(soup, corner[0], corner[1], corner[2]);
+  }
+  return soup;
+}
+
+/** Groups of triangles in lanes, full and not, and what is left to one at a time. */
+static void test_small_triangles_match_the_oracle(void **state) {
+  (void)state;
+  vxm_rng rng = {18};
+  for (int round = 0; round < 240; round++) {
+    vxm_space space = engine_space(11, 13, 12);
+    if (round % 2) /* fewer steps to a voxel, so that boxes of many columns are not too long */
+      space.dims[round / 2 % 3] = 130;
+    vxm_soup *soup = small_triangles(&rng, &space);
+    size_t count = (size_t)(space.dims[0] * space.dims[1] * space.dims[2]);
+    for (int w = 0; w < 3; w++) {
+      uint8_t *want = calloc(count, 1);
+      assert_non_null(want);
+      exact_unite(want, soup, 0, soup->face_count, &space, w);
+      for (size_t b = 0; b < build_count; b++) {
+        vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+        options.method = (vxm_method)(VXM_METHOD_X + w);
+        options.split_mode = VXM_SPLIT_MODE_WHOLE;
+        vxm_grid *grid = forced(builds[b], soup, &space, &options, NULL);
+        assert_grid_is(grid, want);
+        vxm_grid_destroy(grid);
+      }
+      free(want);
+    }
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    compare_builds(soup, &space, &options); /* each triangle a part, several in a group */
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void test_the_level_limits_the_builds(void **state) {
+  (void)state;
+  const vxm_kernels *all[4];
+  vxm_error error = {0};
+  vxm_cpu_level highest = vxm_cpu_highest();
+  assert_int_equal(vxm_cpu_used(), highest);
+  for (int level = VXM_CPU_PLAIN; level <= VXM_CPU_AVX512; level++) {
+    vxm_status status = vxm_cpu_limit((vxm_cpu_level)level, &error);
+    assert_int_equal(status, level <= (int)highest ? VXM_OK : VXM_ERROR_UNAVAILABLE);
+    if (status != VXM_OK)
+      continue;
+    assert_int_equal(vxm_cpu_used(), level);
+    assert_int_equal(vxm_kernels_all(all), level + 1);
+    assert_ptr_equal(vxm_kernels_get(), builds[level]);
+  }
+  assert_int_equal(vxm_cpu_limit((vxm_cpu_level)3, &error), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_cpu_limit(highest, &error), VXM_OK);
+}
+
 static void test_builds_are_chosen(void **state) {
   (void)state;
   assert_in_range(build_count, 1, 4);
@@ -437,6 +521,7 @@ int main(void) {
   build_count = vxm_kernels_all(builds);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_builds_are_chosen),
+      cmocka_unit_test(test_the_level_limits_the_builds),
       cmocka_unit_test(test_rows_are_folded),
       cmocka_unit_test(test_single_bits_fill_their_row),
       cmocka_unit_test(test_rows_are_folded_past_the_cache),
@@ -447,6 +532,7 @@ int main(void) {
       cmocka_unit_test(test_points_are_placed),
       cmocka_unit_test(test_solids_are_the_same_in_every_build),
       cmocka_unit_test(test_every_build_matches_the_oracle),
+      cmocka_unit_test(test_small_triangles_match_the_oracle),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

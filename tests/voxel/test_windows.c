@@ -2,6 +2,8 @@
 /** Windows made one after another, in any layout, are the grid made as a whole; whatever the threads. */
 #include "engine.h"
 
+#include "base/cpu.h"
+
 #include "grid/sum.h"
 #include "voxel/model/model_report.h"
 
@@ -273,5 +275,9 @@ int main(void) {
       cmocka_unit_test(test_empty_parts_are_counted_alike),
       cmocka_unit_test(test_parts_outside),
   };
-  return cmocka_run_group_tests(tests, setup_contexts, teardown_contexts);
+  int failed = 0;
+  for (int level = VXM_CPU_PLAIN; level <= (int)vxm_cpu_highest(); level++)
+    if (vxm_cpu_limit((vxm_cpu_level)level, NULL) == VXM_OK)
+      failed |= cmocka_run_group_tests(tests, setup_contexts, teardown_contexts);
+  return failed;
 }

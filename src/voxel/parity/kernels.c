@@ -4,7 +4,7 @@
 
 extern const vxm_kernels vxm_kernels_plain, vxm_kernels_avx2, vxm_kernels_avx512;
 
-static _Atomic(const vxm_kernels *) chosen;
+static _Atomic(const vxm_kernels *) forced;
 
 size_t vxm_kernels_all(const vxm_kernels *out[4]) {
   size_t count = 0;
@@ -19,15 +19,10 @@ size_t vxm_kernels_all(const vxm_kernels *out[4]) {
 }
 
 void vxm_kernels_force(const vxm_kernels *kernels) {
-  atomic_store_explicit(&chosen, kernels, memory_order_relaxed);
+  atomic_store_explicit(&forced, kernels, memory_order_relaxed);
 }
 
 const vxm_kernels *vxm_kernels_get(void) {
-  const vxm_kernels *kernels = atomic_load_explicit(&chosen, memory_order_relaxed);
-  if (kernels)
-    return kernels;
-  const vxm_kernels *all[4];
-  kernels = all[vxm_kernels_all(all) - 1];
-  atomic_store_explicit(&chosen, kernels, memory_order_relaxed); /* every thread chooses the same */
-  return kernels;
+  const vxm_kernels *kernels = atomic_load_explicit(&forced, memory_order_relaxed), *all[4];
+  return kernels ? kernels : all[vxm_kernels_all(all) - 1];
 }

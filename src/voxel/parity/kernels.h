@@ -64,9 +64,9 @@ typedef struct vxm_kernels {
   uint64_t (*fold_node)(uint64_t bricks[64], uint64_t flipped[64], uint64_t inside[16], uint64_t masks[2]);
 } vxm_kernels;
 
-/** The best build for this processor, or the one forced. */
+/** The best build that may run (base/cpu.h), or the one forced. */
 const vxm_kernels *vxm_kernels_get(void);
-/** All builds that run on this processor, best last; for tests. */
+/** All builds that may run, best last. */
 size_t vxm_kernels_all(const vxm_kernels *out[4]);
 /** Makes vxm_kernels_get return this one; NULL = the best again. For tests, while nothing runs. */
 void vxm_kernels_force(const vxm_kernels *kernels);
