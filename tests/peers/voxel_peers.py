@@ -18,6 +18,9 @@ import argparse, json, os, re, subprocess, sys, tempfile, time
 
 import numpy
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "repair"))
+from levels import read_ply
+
 NO_TIME = float("nan")
 
 
@@ -200,21 +203,6 @@ PHASES = [
 ]
 
 
-def read_ply(path):
-    """Vertices and triangles of a binary .ply as voxmend writes it."""
-    with open(path, "rb") as file:
-        header = b""
-        while not header.endswith(b"end_header\n"):
-            header += file.readline()
-        data = file.read()
-    text = header.decode()
-    vertices = int(re.search(r"element vertex (\d+)", text).group(1))
-    faces = int(re.search(r"element face (\d+)", text).group(1))
-    points = numpy.frombuffer(data, "<f8", 3 * vertices).reshape(-1, 3)
-    record = numpy.dtype([("count", "u1"), ("corner", "<u4", 3)])
-    return points.copy(), numpy.frombuffer(data, record, faces, 24 * vertices)["corner"].astype(numpy.int64)
-
-
 def bench(voxmend, mesh, resolution):
     """Milliseconds of each phase."""
     phases = ",".join(phase for _, _, phase in PHASES)
@@ -252,6 +240,7 @@ def main():
         mesh = os.path.join(folder, "mesh.ply")
         subprocess.run([options.voxmend, "repair", options.mesh, "-o", mesh, "--level", "closed", "-q"], check=True)
         vertices, faces = read_ply(mesh)
+        vertices, faces = vertices.copy(), numpy.array(faces, numpy.int64)
         times, agreement, left_out = {}, {}, []
         grids = {r: truth(options.voxmend, mesh, r, folder) for r in resolutions}
         for r in resolutions:

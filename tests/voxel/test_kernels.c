@@ -393,6 +393,25 @@ static void test_solids_are_the_same_in_every_build(void **state) {
   }
 }
 
+/** The solid along each axis by every build, as one part, against the oracle. */
+static void compare_with_oracle(const vxm_soup *soup, const vxm_space *space) {
+  size_t count = (size_t)(space->dims[0] * space->dims[1] * space->dims[2]);
+  for (int w = 0; w < 3; w++) {
+    uint8_t *want = calloc(count, 1);
+    assert_non_null(want);
+    exact_unite(want, soup, 0, soup->face_count, space, w);
+    for (size_t b = 0; b < build_count; b++) {
+      vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+      options.method = (vxm_method)(VXM_METHOD_X + w);
+      options.split_mode = VXM_SPLIT_MODE_WHOLE;
+      vxm_grid *grid = forced(builds[b], soup, space, &options, NULL);
+      assert_grid_is(grid, want);
+      vxm_grid_destroy(grid);
+    }
+    free(want);
+  }
+}
+
 /** Each build against the oracle: long rows, ties, and triangles of every shape. */
 static void test_every_build_matches_the_oracle(void **state) {
   (void)state;
@@ -403,20 +422,7 @@ static void test_every_build_matches_the_oracle(void **state) {
     if (count > 20000)
       continue;
     vxm_soup *soup = random_soup(context, 900 + (uint64_t)round, round % 4 == 3 ? 3 : round % 2, &space);
-    for (int w = 0; w < 3; w++) {
-      uint8_t *want = calloc(count, 1);
-      assert_non_null(want);
-      exact_unite(want, soup, 0, soup->face_count, &space, w);
-      for (size_t b = 0; b < build_count; b++) {
-        vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-        options.method = (vxm_method)(VXM_METHOD_X + w);
-        options.split_mode = VXM_SPLIT_MODE_WHOLE;
-        vxm_grid *grid = forced(builds[b], soup, &space, &options, NULL);
-        assert_grid_is(grid, want);
-        vxm_grid_destroy(grid);
-      }
-      free(want);
-    }
+    compare_with_oracle(soup, &space);
     vxm_soup_destroy(soup);
   }
 }
@@ -464,21 +470,7 @@ static void test_small_triangles_match_the_oracle(void **state) {
     if (round % 2) /* fewer steps to a voxel, so that boxes of many columns are not too long */
       space.dims[round / 2 % 3] = 130;
     vxm_soup *soup = small_triangles(&rng, &space);
-    size_t count = (size_t)(space.dims[0] * space.dims[1] * space.dims[2]);
-    for (int w = 0; w < 3; w++) {
-      uint8_t *want = calloc(count, 1);
-      assert_non_null(want);
-      exact_unite(want, soup, 0, soup->face_count, &space, w);
-      for (size_t b = 0; b < build_count; b++) {
-        vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-        options.method = (vxm_method)(VXM_METHOD_X + w);
-        options.split_mode = VXM_SPLIT_MODE_WHOLE;
-        vxm_grid *grid = forced(builds[b], soup, &space, &options, NULL);
-        assert_grid_is(grid, want);
-        vxm_grid_destroy(grid);
-      }
-      free(want);
-    }
+    compare_with_oracle(soup, &space);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     compare_builds(soup, &space, &options); /* each triangle a part, several in a group */
     vxm_soup_destroy(soup);
