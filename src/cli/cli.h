@@ -96,21 +96,34 @@ typedef struct cli_command {
   const char *summary;   /**< one line */
   const char *notes;     /**< shown below the options: defaults and examples */
   const cli_option *options;
+  const cli_option
+      *others;           /**< those of another command that are taken too, but of names above; NULL = none */
+  const char *others_of; /**< that command */
   void (*print_choices)(void); /**< prints lists for the help, shown before the notes; NULL = none */
   int (*run)(cli_run *cli);    /**< returns an exit status */
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
-    cli_command_compare, cli_command_augment, cli_command_remesh, cli_command_view, cli_command_bench,
-    cli_command_engines;
+    cli_command_batch, cli_command_compare, cli_command_augment, cli_command_remesh, cli_command_view,
+    cli_command_bench, cli_command_engines;
 
-enum { CLI_OPTIONS_MAX = 48, CLI_LIST_MAX = 512, CLI_NAMES_MAX = 8 };
+enum { CLI_OPTIONS_MAX = 96, CLI_LIST_MAX = 512, CLI_NAMES_MAX = 8 };
 
 /** A file that a run writes. */
 typedef struct cli_written {
   const char *option, *path;
   bool has_json; /**< and "PATH.json" beside it */
 } cli_written;
+
+/** What a command has come to, for who runs it from within. */
+typedef struct cli_capture {
+  const char *format; /**< of meshes from standard input; NULL = by their content */
+  json_t *report;     /**< in place of --json, to be released; NULL after a failure */
+  vxm_error error;    /**< code VXM_OK where its line was on standard error alone */
+} cli_capture;
+
+/** Runs a command by its name; the first of the words is that name. Its exit status. */
+int cli_run_command(const char *name, int count, char **words, cli_capture *capture);
 
 /** One run of the program. */
 struct cli_run {
@@ -121,6 +134,7 @@ struct cli_run {
   int argument_count;
   int status; /**< exit status once something has returned CLI_STOP */
 
+  bool is_reading; /**< options, that is */
   bool json, quiet, verbose, strict;
   const char *report;
   const char *progress;
@@ -135,6 +149,7 @@ struct cli_run {
   const char *reads[CLI_NAMES_MAX];  /**< beside the arguments, which are all read */
   cli_written writes[CLI_NAMES_MAX]; /**< the output first; --report is added in the end */
   int read_count, write_count;
+  cli_capture *capture; /**< who takes the report; NULL = nobody */
   char phase[48];
   double drawn; /**< time at which progress was last drawn; 0 = none on the screen */
 };

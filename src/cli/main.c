@@ -8,8 +8,8 @@
 
 static const cli_command *const commands[] = {
     &cli_command_info,    &cli_command_repair,  &cli_command_remesh,  &cli_command_voxelize,
-    &cli_command_convert, &cli_command_compare, &cli_command_augment, &cli_command_view,
-    &cli_command_bench,   &cli_command_engines};
+    &cli_command_convert, &cli_command_compare, &cli_command_augment, &cli_command_batch,
+    &cli_command_view,    &cli_command_bench,   &cli_command_engines};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static void help(void) {
@@ -46,7 +46,7 @@ static int flush_output(cli_run *cli, int status) {
              : status;
 }
 
-static int run(const cli_command *command, int argc, char **argv) {
+static int run(const cli_command *command, int argc, char **argv, cli_capture *capture) {
   cli_run cli = {.command = command,
                  .argc = argc,
                  .argv = argv,
@@ -55,12 +55,22 @@ static int run(const cli_command *command, int argc, char **argv) {
                  .read = VXM_MESH_READ_OPTIONS_INIT,
                  .error = VXM_ERROR_INIT,
                  .warnings = json_array(),
+                 .capture = capture,
                  .text = stdout};
+  if (capture)
+    cli.read.format = capture->format;
   int status = flush_output(&cli, command->run(&cli));
   vxm_context_drop_files(cli.context); /* a failed run leaves no output file */
   vxm_context_destroy(cli.context);
   json_decref(cli.warnings);
+  if (capture)
+    capture->error = cli.error;
   return status;
+}
+
+int cli_run_command(const char *name, int count, char **words, cli_capture *capture) {
+  const cli_command *command = find_command(name);
+  return command ? run(command, count, words, capture) : CLI_WRONG_USAGE;
 }
 
 int main(int argc, char **argv) {
@@ -85,7 +95,7 @@ int main(int argc, char **argv) {
   }
   cli_json_start();
   signal(SIGXFSZ, SIG_IGN); /* a write beyond ulimit -f fails, and says so */
-  int status = run(command, argc - 1, argv + 1);
+  int status = run(command, argc - 1, argv + 1, NULL);
   if (status == CLI_FAILED && cli_signal()) {
     signal(cli_signal(), SIG_DFL); /* ends as the sender of the signal expects */
     raise(cli_signal());

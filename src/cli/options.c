@@ -69,6 +69,9 @@ void cli_help(const cli_command *command) {
   for (const cli_option *option = common_options; option->name; option++)
     if (!is_replaced(command, option))
       print_option(option);
+  if (command->others)
+    printf("  ... and the options of 'voxmend %s', but those that name a file of one mesh\n",
+           command->others_of);
   if (command->print_choices)
     command->print_choices();
   printf("\n%s\n\nExit status: 0 done; 1 failed, and no output file is left; 2 wrong usage;\n"
@@ -93,15 +96,21 @@ static void add_option(const cli_option *option, size_t *count, size_t *used) {
     letters[(*used)++] = ':';
 }
 
-static void build_tables(const cli_run *cli) {
+static void build_tables(cli_run *cli) {
   size_t count = 0, used = 0;
   letters[used++] = ':'; /* tells a missing argument from an unknown option */
   for (const cli_option *option = cli->command->options; option->name; option++)
     add_option(option, &count, &used);
+  for (const cli_option *option = cli->command->others; option && option->name; option++)
+    if (!is_replaced(cli->command, option))
+      add_option(option, &count, &used);
   for (const cli_option *option = common_options; option->name; option++)
     if (!is_replaced(cli->command, option))
       add_option(option, &count, &used);
+  long_options[count] = (struct option){NULL, 0, NULL, 0};
+  letters[used] = '\0';
   opterr = 0;
+  optind = 0; /* begins anew: another command may have been read before */
 }
 
 int cli_usage(cli_run *cli, const char *format, ...) {
@@ -193,10 +202,11 @@ static int common_option(cli_run *cli, int key, const char *value) {
 }
 
 int cli_next_option(cli_run *cli, const char **value) {
-  if (!long_options[0].name)
+  if (!cli->is_reading)
     build_tables(cli);
+  cli->is_reading = true;
   for (;;) {
-    int index = optind;
+    int index = optind > 0 ? optind : 1;
     int result = getopt_long(cli->argc, cli->argv, letters, long_options, NULL);
     if (result == -1)
       break;

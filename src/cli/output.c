@@ -210,6 +210,8 @@ static int flush_output(cli_run *cli) {
 
 int cli_finish(cli_run *cli, json_t *report) {
   cli_progress_clear(cli);
+  if (cli->capture)
+    cli->capture->report = json_incref(report);
   bool is_wanted = cli->json || cli->report;
   char *text = is_wanted ? report_text(cli, report) : NULL;
   json_decref(report);

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "batch/archive.h"
+#include "batch/unpack.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static bool ends_with(const char *name, const char *end) {
+  size_t a = strlen(name), b = strlen(end);
+  return a > b && strcasecmp(name + a - b, end) == 0;
+}
+
+bool batch_is_archive(const char *name) {
+  static const char *const ends[] = {".tar",  ".tar.gz",  ".tgz",  ".tar.xz", ".txz", ".tar.bz2",
+                                     ".tbz2", ".tar.zst", ".tzst", ".zip",    ".7z"};
+  for (size_t e = 0; e < sizeof ends / sizeof *ends; e++)
+    if (ends_with(name, ends[e]))
+      return true;
+  return false;
+}
+
+/* ---- The process ---- */
+
+bool batch_unpacker_start(batch_unpacker *out, const char *path, uint64_t most, batch_error *error) {
+  int ends[2];
+  *out = (batch_unpacker){.channel = -1};
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+    return batch_fail_errno(error, "%s: cannot open a channel to a process", path);
+  pid_t parent = getpid(), id = fork();
+  if (id == 0) {
+    close(ends[0]);
+    setpgid(0, 0); /* the terminal's signals are not for it */
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() == parent)
+      batch_unpack(path, most, ends[1]);
+    _exit(0);
+  }
+  close(ends[1]);
+  if (id < 0) {
+    close(ends[0]);
+    return batch_fail_errno(error, "%s: cannot start a process", path);
+  }
+  *out = (batch_unpacker){id, ends[0]};
+  return true;
+}
+
+int batch_unpacker_next(batch_unpacker *unpacker, batch_member *out, batch_error *error) {
+  batch_unpacked head;
+  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+  struct iovec part = {&head, sizeof head};
+  struct msghdr message = {
+      .msg_iov = &part, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof control};
+  ssize_t got;
+  do
+    got = recvmsg(unpacker->channel, &message, MSG_CMSG_CLOEXEC);
+  while (got < 0 && errno == EINTR);
+  if (got != (ssize_t)sizeof head) { /* neither a member nor word of its end */
+    batch_fail(error, "the archive made the process that reads it end");
+    return -1;
+  }
+  head.name[sizeof head.name - 1] = head.problem[sizeof head.problem - 1] = '\0';
+  if (head.is_end && head.problem[0])
+    batch_fail(error, "%s", head.problem);
+  if (head.is_end)
+    return head.problem[0] ? -1 : 0;
+  *out = (batch_member){.bytes = head.bytes, .descriptor = -1};
+  memcpy(out->name, head.name, sizeof out->name);
+  memcpy(out->problem, head.problem, sizeof out->problem);
+  struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
+  if (rights && rights->cmsg_type == SCM_RIGHTS)
+    memcpy(&out->descriptor, CMSG_DATA(rights), sizeof out->descriptor);
+  return 1;
+}
+
+void batch_unpacker_end(batch_unpacker *unpacker) {
+  if (unpacker->channel >= 0)
+    close(unpacker->channel);
+  if (unpacker->id > 0)
+    kill(unpacker->id, SIGKILL);
+  while (unpacker->id > 0 && waitpid(unpacker->id, NULL, 0) < 0 && errno == EINTR) {
+  }
+  *unpacker = (batch_unpacker){.channel = -1};
+}
+
+/* ---- What is in it ---- */
+
+static bool add_member(batch_manifest *out, const batch_inputs *inputs, const batch_item *archive,
+                       const batch_member *member, batch_error *error) {
+  if (!batch_is_mesh(inputs, member->name)) {
+    batch_pass_over(out, member->name);
+    return true;
+  }
+  char *id = NULL;
+  if (asprintf(&id, "%s/%s", archive->id, member->name) < 0)
+    return batch_fail(error, "out of memory for the list of meshes: free some");
+  batch_item item = *archive;
+  item.id = id;
+  item.member = (char *)(uintptr_t)member->name;
+  item.bytes = member->bytes;
+  bool good = batch_manifest_add(out, &item, error);
+  free(id);
+  return good;
+}
+
+bool batch_archive_list(batch_manifest *out, const batch_inputs *inputs, const batch_item *archive,
+                        batch_error *error) {
+  batch_unpacker unpacker;
+  batch_member member;
+  batch_error problem;
+  if (!batch_unpacker_start(&unpacker, archive->path, 0, error))
+    return false;
+  int got;
+  bool good = true;
+  while (good && (got = batch_unpacker_next(&unpacker, &member, &problem)) > 0)
+    good = add_member(out, inputs, archive, &member, error);
+  batch_unpacker_end(&unpacker);
+  return good && (got == 0 || batch_fail(error, "%s: %s", archive->path, problem.text));
+}

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Files with the same bytes are worked at once: the others get links to what was made. */
+#include "batch/run.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+/** What refers to other files may mean something else in another folder. */
+static bool is_self_contained(const batch_item *item) {
+  static const char *const known[] = {"off", "ply", "stl", "obj", "glb", "3mf", "step", "stp", "iges", "igs"};
+  const char *extension = batch_extension(item->path);
+  for (size_t k = 0; !item->member && k < sizeof known / sizeof *known; k++)
+    if (strcasecmp(extension, known[k]) == 0)
+      return true;
+  return false;
+}
+
+static int compare_texts(const char *a, const char *b) {
+  return strcmp(a ? a : "", b ? b : "");
+}
+
+/* ---- Who might be the same ---- */
+
+static int by_size(const void *a, const void *b) {
+  const batch_item *x = *(batch_item *const *)a, *y = *(batch_item *const *)b;
+  return x->bytes != y->bytes ? (x->bytes < y->bytes ? -1 : 1) : (x > y) - (x < y);
+}
+
+static int by_content(const void *a, const void *b) {
+  const batch_item *x = *(batch_item *const *)a, *y = *(batch_item *const *)b;
+  return (x > y) - (x < y);
+}
+
+/** The items that are as long as another, in the order of the manifest. */
+static batch_item **with_equal_size(const run *r, int64_t *count) {
+  batch_item **list = malloc((size_t)(r->manifest->count + 1) * sizeof(batch_item *));
+  int64_t all = 0;
+  *count = 0;
+  for (int64_t i = 0; list && i < r->manifest->count; i++)
+    if (is_self_contained(&r->manifest->items[i]))
+      list[all++] = &r->manifest->items[i];
+  if (list)
+    qsort(list, (size_t)all, sizeof *list, by_size);
+  for (int64_t i = 0; i < all; i++) {
+    bool same_before = i > 0 && list[i - 1]->bytes == list[i]->bytes;
+    bool same_behind = i + 1 < all && list[i + 1]->bytes == list[i]->bytes;
+    batch_item *item = list[i];
+    if (same_before || same_behind)
+      list[(*count)++] =
+          item; /* never ahead of what is still read: list[i - 1] may only be list[i - 1] itself */
+  }
+  if (list)
+    qsort(list, (size_t)*count, sizeof *list, by_content);
+  return list;
+}
+
+/* ---- Digests ---- */
+
+typedef struct hashing {
+  batch_item **items;
+  int64_t count, next;
+} hashing;
+
+static batch_turn next_hashes(run *r, void *payload) {
+  hashing *h = payload;
+  int64_t chunk[BATCH_HASHES];
+  uint64_t bytes = 0;
+  int count = 0;
+  for (; h->next < h->count && count < BATCH_HASHES && bytes < UINT64_C(64) << 20; h->next++) {
+    int64_t index = h->items[h->next] - r->manifest->items;
+    if (r->contents[index].half[0] | r->contents[index].half[1])
+      continue;
+    chunk[count++] = index;
+    bytes += h->items[h->next]->bytes;
+  }
+  if (count == 0)
+    return BATCH_NOTHING_LEFT;
+  batch_give_hashes(r, chunk, count);
+  return BATCH_GIVEN_OUT;
+}
+
+/* ---- Who is the same ---- */
+
+typedef struct keyed {
+  batch_content content;
+  int64_t index;
+} keyed;
+
+static int by_key(const void *a, const void *b) {
+  const keyed *x = a, *y = b;
+  for (int h = 0; h < 2; h++)
+    if (x->content.half[h] != y->content.half[h])
+      return x->content.half[h] < y->content.half[h] ? -1 : 1;
+  return (x->index > y->index) - (x->index < y->index);
+}
+
+static bool same_wish(const batch_item *a, const batch_item *b) {
+  return strcasecmp(batch_extension(a->path), batch_extension(b->path)) == 0 &&
+         compare_texts(a->options, b->options) == 0;
+}
+
+static void mark(run *r, keyed *keys, int64_t count) {
+  qsort(keys, (size_t)count, sizeof *keys, by_key);
+  for (int64_t k = 1, first = 0; k < count; k++) {
+    if (memcmp(&keys[k].content, &keys[first].content, sizeof keys[k].content) != 0) {
+      first = k;
+      continue;
+    }
+    batch_item *item = &r->manifest->items[keys[k].index];
+    if (same_wish(item, &r->manifest->items[keys[first].index]))
+      item->original = keys[first].index;
+  }
+}
+
+void batch_find_duplicates(run *r) {
+  hashing h = {NULL};
+  h.items = with_equal_size(r, &h.count);
+  keyed *keys = malloc((size_t)(h.count + 1) * sizeof *keys);
+  if (h.items && keys) {
+    batch_run_source(r, next_hashes, &h, r->settings->jobs, NULL);
+    int64_t known = 0;
+    for (int64_t i = 0; i < h.count; i++) {
+      int64_t index = h.items[i] - r->manifest->items;
+      if (r->contents[index].half[0] | r->contents[index].half[1])
+        keys[known++] = (keyed){r->contents[index], index};
+    }
+    mark(r, keys, known);
+  }
+  free(keys);
+  free(h.items);
+}
+
+/* ---- Links ---- */
+
+/** Takes the place of what is there, of a run before. */
+static bool link_file(const run *r, const char *from, const char *to) {
+  char *old = NULL, *new = NULL;
+  bool good = asprintf(&old, "%s/%s", r->settings->output, from) >= 0;
+  good = good && asprintf(&new, "%s/%s", r->settings->output, to) >= 0;
+  if (good && unlink(new) != 0 && errno != ENOENT)
+    good = false;
+  good = good && link(old, new) == 0;
+  free(old);
+  free(new);
+  return good;
+}
+
+typedef struct copying {
+  run *r;
+  json_t **records; /**< of originals, by their index; NULL = not wanted */
+} copying;
+
+/** "chair.npy.json" of the output "chair" for the output "seat": "seat.npy.json". */
+static char *renamed(const char *path, const char *from, const char *to) {
+  char *name = NULL;
+  size_t length = strlen(from);
+  if (strncmp(path, from, length) != 0 || asprintf(&name, "%s%s", to, path + length) < 0)
+    return NULL;
+  return name;
+}
+
+/** Whether all files of the original have got another name, that of the duplicate. */
+static bool link_outputs(run *r, const batch_item *original, const batch_item *item, json_t *record) {
+  json_t *files = json_object_get(record, "outputs"), *file;
+  size_t f;
+  bool good = json_is_array(files);
+  json_array_foreach(files, f, file) {
+    const char *path = batch_json_text(file, "path");
+    char *name = path ? renamed(path, original->output, item->output) : NULL;
+    good = good && name && link_file(r, path, name);
+    if (name)
+      json_object_set_new(file, "path", batch_json_string(name));
+    free(name);
+  }
+  return good;
+}
+
+static bool take_record(json_t *record, void *payload) {
+  const copying *c = payload;
+  const char *event = batch_json_text(record, "event");
+  int64_t index = batch_manifest_find(c->r->manifest, batch_json_text(record, "item"));
+  if (index < 0 || !event || strcmp(event, "end") != 0 || !c->records[index])
+    return true;
+  json_decref(c->records[index]);
+  c->records[index] = json_incref(record);
+  return true;
+}
+
+/** Copies of the original's record, and of its files. */
+static bool finish_duplicate(run *r, int64_t index, const json_t *of_original) {
+  batch_item *item = &r->manifest->items[index];
+  const batch_item *original = &r->manifest->items[item->original];
+  json_t *record = json_deep_copy(of_original);
+  static const char *const own[] = {"sum", "wall_ms", "cpu_ms", "peak_bytes"};
+  for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+    json_object_del(record, own[k]);
+  json_object_set_new(record, "duplicate_of", batch_json_string(original->id));
+  bool is_done = batch_is_done(original->status);
+  if (is_done && !link_outputs(r, original, item, record)) {
+    json_decref(record); /* a file system without links: it is made like any other */
+    item->original = -1;
+    return true;
+  }
+  return batch_end_item(r, index, is_done ? BATCH_DUPLICATE : original->status, record);
+}
+
+void batch_link_duplicates(run *r) {
+  int64_t count = r->manifest->count;
+  copying c = {r, calloc((size_t)count + 1, sizeof(json_t *))};
+  bool is_needed = false, good = c.records != NULL;
+  for (int64_t i = 0; good && i < count; i++) {
+    const batch_item *item = &r->manifest->items[i];
+    if (item->original >= 0 && item->status == BATCH_PENDING && !c.records[item->original]) {
+      c.records[item->original] = json_null();
+      is_needed = true;
+    }
+  }
+  good = good && (!is_needed || batch_journal_read(r->journal.path, take_record, &c, NULL, r->error));
+  for (int64_t i = 0; good && i < count && !batch_run_stops(r); i++) {
+    const batch_item *item = &r->manifest->items[i];
+    bool is_waiting = item->original >= 0 && item->status == BATCH_PENDING;
+    if (is_waiting && r->manifest->items[item->original].status != BATCH_PENDING &&
+        json_is_object(c.records[item->original]))
+      good = finish_duplicate(r, i, c.records[item->original]);
+    batch_progress(r->tally, r->settings, 0, false);
+  }
+  for (int64_t i = 0; c.records && i < count; i++)
+    json_decref(c.records[i]);
+  free(c.records);
+  if (!good)
+    batch_break(r);
+}

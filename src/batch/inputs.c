@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "batch/inputs.h"
+#include "batch/archive.h"
+
+#include <errno.h>
+#include <fts.h>
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+const char *batch_extension(const char *name) {
+  const char *slash = strrchr(name, '/'), *dot = strrchr(slash ? slash + 1 : name, '.');
+  return dot ? dot + 1 : "";
+}
+
+static bool is_among(const char *word, const char *const *list) {
+  for (; *list; list++)
+    if (strcasecmp(word, *list) == 0)
+      return true;
+  return false;
+}
+
+bool batch_is_mesh(const batch_inputs *inputs, const char *name) {
+  return is_among(batch_extension(name), inputs->extensions);
+}
+
+void batch_pass_over(batch_manifest *manifest, const char *name) {
+  const char *extension = batch_extension(name);
+  char word[32];
+  size_t used = strlen(manifest->note);
+  manifest->passed_over++;
+  int length = snprintf(word, sizeof word, *extension ? " .%s" : " (no extension)", extension);
+  bool fits = length > 0 && (size_t)length < sizeof word && used + (size_t)length + 1 < sizeof manifest->note;
+  const char *found = fits ? strstr(manifest->note, word) : manifest->note;
+  if (!found || (fits && found[length] != ' ' && found[length] != '\0'))
+    memcpy(manifest->note + used, word, (size_t)length + 1);
+}
+
+/** "./a//b" as "a/b" would be found: an id is a name, not a way. */
+static const char *without_dots(const char *path) {
+  while (path[0] == '.' && path[1] == '/') {
+    path += 2;
+    while (*path == '/')
+      path++;
+  }
+  return path;
+}
+
+static int64_t modified_of(const struct stat *info) {
+  return (int64_t)info->st_mtim.tv_sec * 1000000000 + info->st_mtim.tv_nsec;
+}
+
+static bool add_file(batch_manifest *out, const char *id, const char *path, const struct stat *info,
+                     batch_error *error) {
+  batch_item item = {.id = (char *)(uintptr_t)without_dots(id),
+                     .path = (char *)(uintptr_t)path,
+                     .bytes = (uint64_t)info->st_size,
+                     .modified = modified_of(info)};
+  return batch_manifest_add(out, &item, error);
+}
+
+static bool add_archive(batch_manifest *out, const batch_inputs *inputs, const char *id, const char *path,
+                        const struct stat *info, batch_error *error) {
+  batch_item archive = {.id = (char *)(uintptr_t)without_dots(id),
+                        .path = (char *)(uintptr_t)path,
+                        .bytes = (uint64_t)info->st_size,
+                        .modified = modified_of(info)};
+  return batch_archive_list(out, inputs, &archive, error);
+}
+
+/* ---- Folders ---- */
+
+/** A file below a folder: a mesh, an archive, or something else. Sockets, pipes and devices are not looked
+ * at. */
+static bool add_entry(batch_manifest *out, const batch_inputs *inputs, const FTSENT *entry, const char *id,
+                      batch_error *error) {
+  const struct stat *info = entry->fts_statp;
+  if (!S_ISREG(info->st_mode) ||
+      (!batch_is_mesh(inputs, entry->fts_name) && !batch_is_archive(entry->fts_name))) {
+    batch_pass_over(out, entry->fts_name);
+    return true;
+  }
+  return batch_is_archive(entry->fts_name) ? add_archive(out, inputs, id, entry->fts_path, info, error)
+                                           : add_file(out, id, entry->fts_path, info, error);
+}
+
+/** Links are followed; those that lead back to where they are, or to nothing, are passed over. */
+static bool walk(batch_manifest *out, const batch_inputs *inputs, FTS *tree, size_t prefix,
+                 batch_error *error) {
+  struct stat except;
+  bool has_except = inputs->except && stat(inputs->except, &except) == 0;
+  FTSENT *entry;
+  while ((entry = fts_read(tree))) {
+    bool is_hidden = entry->fts_level > 0 && entry->fts_name[0] == '.';
+    switch (entry->fts_info) {
+    case FTS_D:
+      if (is_hidden || (has_except && entry->fts_statp->st_dev == except.st_dev &&
+                        entry->fts_statp->st_ino == except.st_ino))
+        fts_set(tree, entry, FTS_SKIP);
+      break;
+    case FTS_F:
+      if (!is_hidden && !add_entry(out, inputs, entry, entry->fts_path + prefix, error))
+        return false;
+      break;
+    case FTS_DNR:
+      errno = entry->fts_errno;
+      return batch_fail_errno(error, "%s: cannot read the folder", entry->fts_path);
+    case FTS_ERR:
+      errno = entry->fts_errno;
+      return batch_fail_errno(error, "%s: cannot go through it", entry->fts_path);
+    case FTS_DC:
+    case FTS_NS:
+    case FTS_SLNONE:
+    case FTS_DEFAULT:
+      batch_pass_over(out, entry->fts_name);
+      break;
+    default:
+      break;
+    }
+  }
+  return errno == 0 || batch_fail_errno(error, "cannot go through the folders");
+}
+
+static bool add_folder(batch_manifest *out, const batch_inputs *inputs, const char *name,
+                       batch_error *error) {
+  size_t length = strlen(name);
+  while (length > 1 && name[length - 1] == '/')
+    length--;
+  char *path = strndup(name, length);
+  char *const roots[] = {path, NULL};
+  FTS *tree = path ? fts_open(roots, FTS_LOGICAL | FTS_NOCHDIR, NULL) : NULL;
+  errno = tree ? 0 : errno;
+  /* below one folder alone names need not tell which */
+  bool good =
+      tree ? walk(out, inputs, tree, inputs->count == 1 ? length + (name[length - 1] != '/') : 0, error)
+           : batch_fail_errno(error, "%s: cannot read the folder", name);
+  if (tree)
+    fts_close(tree);
+  free(path);
+  return good;
+}
+
+/* ---- What is named ---- */
+
+static bool is_list(const char *name) {
+  static const char *const lists[] = {"txt", "lst", "list", "csv", "tsv", NULL};
+  return strcmp(name, "-") == 0 || is_among(batch_extension(name), lists);
+}
+
+/** A file is a mesh because it is named, whatever its extension. */
+static bool add_named(batch_manifest *out, const batch_inputs *inputs, const char *name, batch_error *error) {
+  struct stat info;
+  if (strcmp(name, "-") == 0)
+    return batch_table_read(out, name, error);
+  if (stat(name, &info) != 0)
+    return batch_fail_errno(error, "%s: cannot read it", name);
+  if (S_ISDIR(info.st_mode))
+    return add_folder(out, inputs, name, error);
+  if (is_list(name))
+    return batch_table_read(out, name, error);
+  if (batch_is_archive(name))
+    return add_archive(out, inputs, name, name, &info, error);
+  return add_file(out, name, name, &info, error);
+}
+
+/** A pattern that the shell has left alone, since it stood in quotes: too many names for a command line. */
+static bool add_pattern(batch_manifest *out, const batch_inputs *inputs, const char *pattern,
+                        batch_error *error) {
+  glob_t found;
+  if (glob(pattern, GLOB_BRACE, NULL, &found) != 0)
+    return batch_fail(error, "%s: there is no such file, and none fits it as a pattern", pattern);
+  bool good = true;
+  for (size_t i = 0; good && i < found.gl_pathc; i++)
+    good = add_named(out, inputs, found.gl_pathv[i], error);
+  globfree(&found);
+  return good;
+}
+
+bool batch_inputs_read(batch_manifest *out, const batch_inputs *inputs, batch_error *error) {
+  struct stat info;
+  *out = (batch_manifest){0};
+  bool good = true;
+  for (int i = 0; good && i < inputs->count; i++) {
+    const char *name = inputs->names[i];
+    bool is_pattern = strpbrk(name, "*?[{") && stat(name, &info) != 0;
+    good = is_pattern ? add_pattern(out, inputs, name, error) : add_named(out, inputs, name, error);
+  }
+  if (good && out->count == 0)
+    good = batch_fail(error, "%s: there is no mesh in it%s%s", inputs->names[0],
+                      out->passed_over ? ", only" : "", out->note);
+  good = good && batch_manifest_finish(out, error);
+  if (!good)
+    batch_manifest_free(out);
+  return good;
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** From what the user names (files, folders, patterns, lists, tables, archives) to a manifest. */
+#ifndef VXM_BATCH_INPUTS_H
+#define VXM_BATCH_INPUTS_H
+
+#include "batch/manifest.h"
+
+typedef struct batch_inputs {
+  char *const *names;
+  int count;
+  const char *const *extensions; /**< of meshes, without the dot; NULL ends the list */
+  const char *except;            /**< a folder that is left out: that of the outputs; NULL = none */
+} batch_inputs;
+
+bool batch_inputs_read(batch_manifest *out, const batch_inputs *inputs, batch_error *error);
+
+/** Whether the name is that of a mesh. */
+bool batch_is_mesh(const batch_inputs *inputs, const char *name);
+/** The extension behind the last dot, or "". */
+const char *batch_extension(const char *name);
+/** Notes a file that was passed over. */
+void batch_pass_over(batch_manifest *manifest, const char *name);
+
+/**
+ * Adds the rows of a list (.txt: a path a line) or table (.csv, .tsv: a line of column names first: path, and
+ * any of id, class, split, options; others are left alone). Paths are relative to the folder of the list.
+ */
+bool batch_table_read(batch_manifest *out, const char *path, batch_error *error);
+
+#endif

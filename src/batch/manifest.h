@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The meshes of a batch: each with a name of its own, in an order that depends on the names alone. */
+#ifndef VXM_BATCH_MANIFEST_H
+#define VXM_BATCH_MANIFEST_H
+
+#include "batch/batch.h"
+
+#include <stddef.h>
+
+typedef struct batch_item {
+  char *id;      /**< unique: what journals, tables and pages call it */
+  char *path;    /**< of the file, or of the archive that it is in */
+  char *member;  /**< its name in the archive; NULL = a file */
+  char *output;  /**< name of what is made of it, without an extension, below the folder of outputs */
+  char *kind;    /**< its class; NULL = none told */
+  char *split;   /**< "train" and the like; NULL = none told */
+  char *options; /**< words of its own, behind those of the batch; NULL = none */
+  uint64_t bytes;
+  int64_t modified; /**< of the file or archive, in nanoseconds since 1970 */
+
+  /* What has come of it. */
+  batch_status status;
+  uint8_t attempts; /**< starts with an end */
+  uint8_t aborted;  /**< starts without, since the last end */
+  bool is_in_flight;
+  int64_t original; /**< the item whose bytes it has; -1 = none */
+} batch_item;
+
+typedef struct batch_manifest {
+  batch_item *items;
+  int64_t count, room;
+  int64_t passed_over; /**< files in folders that are no meshes, by their names */
+  char note[256];      /**< names the extensions that were passed over */
+} batch_manifest;
+
+/** Adds a copy; texts may be NULL where that has a meaning. */
+bool batch_manifest_add(batch_manifest *manifest, const batch_item *item, batch_error *error);
+/** Sorts, refuses names that stand twice, and gives outputs their names. */
+bool batch_manifest_finish(batch_manifest *manifest, batch_error *error);
+/** -1 if there is none. */
+int64_t batch_manifest_find(const batch_manifest *manifest, const char *id);
+/** Leaves every n-th, from one on that is counted from 0. */
+void batch_manifest_keep_shard(batch_manifest *manifest, int shard, int shards);
+void batch_manifest_free(batch_manifest *manifest);
+
+#endif

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * What a batch is to do, frozen when it begins: its meshes, its settings and its number of shards. A run that
+ * goes on with it has to want the same, so that no output is of another kind than its neighbours.
+ *
+ * OUT/.batch/run.json      settings, shards, version, inputs, SHA-256 of the list
+ * OUT/.batch/plan.jsonl    a line for each mesh
+ * OUT/.batch/journal-I-of-N.jsonl
+ */
+#ifndef VXM_BATCH_PLAN_H
+#define VXM_BATCH_PLAN_H
+
+#include "batch/manifest.h"
+
+#define BATCH_FOLDER ".batch"
+
+/**
+ * Freezes the plan, or compares with the one that is there.
+ *
+ * @param output   the folder of outputs, which is there
+ * @param settings what decides about the bytes of outputs: an object of texts
+ * @return false with what has changed, where something has
+ */
+bool batch_plan_freeze(const char *output, const batch_manifest *manifest, const json_t *settings, int shards,
+                       batch_error *error);
+
+/** What was frozen: run.json, to be released; NULL after a failure. */
+json_t *batch_plan_read(const char *output, batch_error *error);
+/** Calls `each` with every line of the plan. */
+bool batch_plan_each(const char *output, bool (*each)(const json_t *item, void *payload), void *payload,
+                     batch_error *error);
+
+/** "OUT/.batch/NAME", to be freed; NULL without memory. */
+char *batch_plan_path(const char *output, const char *name);
+/** "OUT/.batch/journal-I-of-N.jsonl", to be freed. */
+char *batch_journal_path(const char *output, int shard, int shards);
+
+/** Writes a whole file under a temporary name and renames it. */
+bool batch_write_file(const char *path, const char *text, size_t size, batch_error *error);
+
+#endif

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Giving out work and waiting for it. */
+#include "batch/run.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+bool batch_break(run *r) {
+  r->is_broken = true;
+  return false;
+}
+
+bool batch_run_stops(const run *r) {
+  return r->is_broken || batch_signal();
+}
+
+/* ---- Giving out ---- */
+
+static batch_slot *free_slot(run *r) {
+  for (int s = 0; s < BATCH_JOBS_MAX; s++)
+    if (!r->slots[s].is_used)
+      return &r->slots[s];
+  return NULL;
+}
+
+/** The folders that an output's name goes through. */
+static bool make_folders(const run *r, const char *name) {
+  static char last[4096];
+  char path[4096];
+  int length = snprintf(path, sizeof path, "%s/%s", r->settings->output, name);
+  if (length < 0 || (size_t)length >= sizeof path)
+    return batch_fail(r->error, "%s: the name is too long", name);
+  size_t root = strlen(r->settings->output);
+  *strrchr(path, '/') = '\0';
+  if (strcmp(path, last) == 0 || strlen(path) <= root)
+    return true;
+  for (char *slash = path + root + 1; slash; slash = strchr(slash + 1, '/')) {
+    if (slash == path + root + 1)
+      slash = strchr(slash, '/');
+    if (slash)
+      *slash = '\0';
+    if (mkdir(path, 0777) != 0 && errno != EEXIST)
+      return batch_fail_errno(r->error, "%s: cannot make the folder", path);
+    if (!slash)
+      break;
+    *slash = '/';
+  }
+  strcpy(last, path);
+  return true;
+}
+
+static bool note_start(run *r, const batch_item *item, bool is_alone) {
+  json_t *record = json_pack("{s:s, s:o, s:i}", "event", "start", "item", batch_json_string(item->id),
+                             "attempt", item->attempts + 1);
+  if (is_alone && record)
+    json_object_set_new(record, "alone", json_true());
+  return batch_journal_add(&r->journal, record, r->error);
+}
+
+static bool send_request(run *r, const batch_slot *slot, json_t *job, int input, const batch_limits *limits) {
+  char *text = job ? json_dumps(job, JSON_COMPACT) : NULL;
+  json_decref(job);
+  bool good = text ? batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits, r->error)
+                   : false;
+  free(text);
+  return good;
+}
+
+static void occupy(run *r, batch_slot *slot) {
+  slot->is_used = true;
+  r->in_flight++;
+}
+
+bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
+  batch_item *item = &r->manifest->items[index];
+  batch_slot *slot = free_slot(r);
+  batch_limits limits = r->settings->limits;
+  json_t *job = r->settings->job(item, r->settings->payload, r->error);
+  if (!slot || !job) { /* its own options are at fault: that ends it, and not the batch */
+    json_decref(job);
+    return batch_end_item(
+        r, index, BATCH_FAILED,
+        json_pack("{s:s, s:o}", "stage", "options", "message", batch_json_string(r->error->text)));
+  }
+  if (!make_folders(r, item->output) || !note_start(r, item, is_alone)) {
+    json_decref(job);
+    return batch_break(r);
+  }
+  if (is_alone && r->settings->alone_memory)
+    limits.memory = r->settings->alone_memory;
+  *slot = (batch_slot){.is_alone = is_alone, .items = {index}, .count = 1};
+  if (!send_request(r, slot, job, input, &limits)) /* also where the zygote has gone: it is found out soon */
+    return batch_end_item(
+        r, index, BATCH_FAILED,
+        json_pack("{s:s, s:o}", "stage", "start", "message", batch_json_string(r->error->text)));
+  item->is_in_flight = true;
+  occupy(r, slot);
+  return true;
+}
+
+bool batch_give_hashes(run *r, const int64_t *items, int count) {
+  batch_slot *slot = free_slot(r);
+  json_t *job = json_object(), *paths = json_array();
+  for (int i = 0; i < count; i++)
+    json_array_append_new(paths, batch_json_string(r->manifest->items[items[i]].path));
+  json_object_set_new(job, "hash", paths);
+  *slot = (batch_slot){.is_hashing = true, .count = count};
+  memcpy(slot->items, items, (size_t)count * sizeof *items);
+  if (!send_request(r, slot, job, -1, &r->settings->limits))
+    return batch_break(r);
+  occupy(r, slot);
+  return true;
+}
+
+/* ---- Waiting ---- */
+
+static void release(run *r, batch_slot *slot) {
+  if (!slot->is_hashing)
+    r->manifest->items[slot->items[0]].is_in_flight = false;
+  slot->is_used = false;
+  r->in_flight--;
+}
+
+/** Someone has ended the zygote, and its children with it. What they were at is begun anew, later and alone.
+ */
+static void replace_zygote(run *r) {
+  enum { LOSSES_MAX = 100 };
+  batch_zygote_end(&r->zygote);
+  for (int s = 0; s < BATCH_JOBS_MAX; s++) {
+    batch_slot *slot = &r->slots[s];
+    if (!slot->is_used)
+      continue;
+    if (!slot->is_hashing) {
+      batch_item *item = &r->manifest->items[slot->items[0]];
+      item->aborted = (uint8_t)(slot->is_alone ? item->aborted + 1 : item->aborted > 0 ? item->aborted : 1);
+    }
+    release(r, slot);
+  }
+  if (++r->losses > LOSSES_MAX)
+    batch_break((batch_fail(r->error,
+                            "the process that starts others was ended again and again: the machine may have "
+                            "too little memory for so many (-j)"),
+                 r));
+  else if (!batch_zygote_start(&r->zygote, r->settings->work, r->settings->payload, r->error))
+    batch_break(r);
+}
+
+static void take_endings(run *r) {
+  batch_ending ending;
+  int got = 0;
+  while (r->in_flight > 0 && (got = batch_zygote_receive(&r->zygote, &ending, r->ending)) > 0) {
+    batch_slot *slot = ending.ticket < BATCH_JOBS_MAX ? &r->slots[ending.ticket] : NULL;
+    if (!slot || !slot->is_used)
+      continue;
+    release(r, slot);
+    if (ending.reason != BATCH_REASON_NO_FORK) {
+      r->losses = 0;
+      batch_take_ending(r, slot, &ending);
+      continue;
+    }
+    struct timespec pause = {.tv_nsec =
+                                 100000000}; /* until others have ended, and there is room for a process */
+    nanosleep(&pause, NULL);
+    r->losses++;
+  }
+  if (got < 0)
+    replace_zygote(r);
+}
+
+static void wait_a_while(run *r, int waits_for, bool is_late) {
+  struct pollfd polled[2] = {{.fd = r->zygote.channel, .events = POLLIN},
+                             {.fd = waits_for, .events = POLLIN}};
+  if (poll(polled, 2, is_late ? 100 : 200) < 0)
+    return;
+  if (polled[0].revents)
+    take_endings(r);
+}
+
+/** Memory that is left for one more; the kernel's own estimate. */
+static bool has_room(const run *r) {
+  const unsigned long long least_kb = 256 << 10;
+  unsigned long long total = 0, available = 0;
+  char line[128];
+  FILE *file = r->in_flight > 0 ? fopen("/proc/meminfo", "re") : NULL;
+  while (file && fgets(line, sizeof line, file) && !available) {
+    if (sscanf(line, "MemTotal: %llu", &total) != 1)
+      (void)sscanf(line, "MemAvailable: %llu", &available);
+  }
+  if (file)
+    fclose(file);
+  return !available || available > (total / 20 < least_kb ? total / 20 : least_kb);
+}
+
+/** A second signal does not wait for those at work. */
+static void stop_at_once(run *r) {
+  r->tally->left_in_flight = r->in_flight;
+  batch_zygote_end(&r->zygote);
+  r->in_flight = 0;
+}
+
+void batch_run_source(run *r, batch_source *source, void *payload, int jobs, const int *waits_for) {
+  batch_turn turn = BATCH_GIVEN_OUT;
+  while (turn != BATCH_NOTHING_LEFT || r->in_flight > 0) {
+    bool stops = batch_run_stops(r);
+    while (!stops && turn != BATCH_NOTHING_LEFT && r->in_flight < jobs) {
+      turn = has_room(r) ? source(r, payload) : BATCH_LATER;
+      stops = batch_run_stops(r);
+      if (turn == BATCH_LATER)
+        break;
+    }
+    if (batch_signal() < 0) {
+      stop_at_once(r);
+      return;
+    }
+    if (stops && r->in_flight == 0)
+      return;
+    bool waits = turn == BATCH_LATER && waits_for;
+    if (r->in_flight > 0 || waits)
+      wait_a_while(r, waits ? *waits_for : -1, turn == BATCH_LATER);
+    batch_progress(r->tally, r->settings, r->in_flight, false);
+  }
+}

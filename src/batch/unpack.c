@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "batch/unpack.h"
+#include "config.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+static bool send_over(int channel, const batch_unpacked *head, int descriptor) {
+  struct iovec part = {(void *)(uintptr_t)head, sizeof *head};
+  struct msghdr message = {.msg_iov = &part, .msg_iovlen = 1};
+  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {0};
+  if (descriptor >= 0) {
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
+    rights->cmsg_level = SOL_SOCKET;
+    rights->cmsg_type = SCM_RIGHTS;
+    rights->cmsg_len = CMSG_LEN(sizeof(int));
+    memcpy(CMSG_DATA(rights), &descriptor, sizeof descriptor);
+  }
+  ssize_t sent;
+  do
+    sent = sendmsg(channel, &message, MSG_NOSIGNAL);
+  while (sent < 0 && errno == EINTR);
+  return sent >= 0;
+}
+
+#ifdef HAVE_ARCHIVE
+#include <archive.h>
+#include <archive_entry.h>
+
+/** Copies the bytes of a member into a file in memory; -1 and a problem where they cannot be had. */
+static int take_bytes(struct archive *archive, batch_unpacked *head, uint64_t most) {
+  int file = memfd_create("voxmend-member", MFD_CLOEXEC);
+  const void *block;
+  size_t size;
+  la_int64_t offset;
+  int got = ARCHIVE_OK;
+  head->bytes = 0;
+  while (file >= 0 && (got = archive_read_data_block(archive, &block, &size, &offset)) == ARCHIVE_OK) {
+    uint64_t end = offset < 0 ? UINT64_MAX : (uint64_t)offset + size;
+    if (end > most) {
+      snprintf(head->problem, sizeof head->problem,
+               "it unpacks to more than the %" PRIu64 " bytes that it may take: see --memlimit", most);
+      break;
+    }
+    if (pwrite(file, block, size, offset) != (ssize_t)size) {
+      snprintf(head->problem, sizeof head->problem, "cannot unpack it: %s", strerror(errno));
+      break;
+    }
+    head->bytes = end > head->bytes ? end : head->bytes;
+  }
+  if (file >= 0 && got < ARCHIVE_WARN)
+    snprintf(head->problem, sizeof head->problem, "cannot unpack it: %s", archive_error_string(archive));
+  if (file < 0)
+    snprintf(head->problem, sizeof head->problem, "cannot unpack it: %s", strerror(errno));
+  if (file >= 0 && head->problem[0]) {
+    close(file);
+    return -1;
+  }
+  return file;
+}
+
+static bool hand_over(struct archive *archive, struct archive_entry *entry, uint64_t most, int channel) {
+  const char *name = archive_entry_pathname(entry);
+  batch_unpacked head = {.is_end = false};
+  if (!name || archive_entry_filetype(entry) != AE_IFREG || strlen(name) >= sizeof head.name)
+    return true;
+  strcpy(head.name, name);
+  head.bytes = archive_entry_size_is_set(entry) && archive_entry_size(entry) > 0
+                   ? (uint64_t)archive_entry_size(entry)
+                   : 0;
+  int bytes = most > 0 ? take_bytes(archive, &head, most) : -1;
+  bool good = send_over(channel, &head, bytes);
+  if (bytes >= 0)
+    close(bytes);
+  return good;
+}
+
+void batch_unpack(const char *path, uint64_t most, int channel) {
+  enum { BLOCK = 1 << 16 };
+  batch_unpacked end = {.is_end = true};
+  struct archive *archive = archive_read_new();
+  struct archive_entry *entry;
+  int got = ARCHIVE_FATAL;
+  if (archive) {
+    archive_read_support_filter_all(archive);
+    archive_read_support_format_tar(archive);
+    archive_read_support_format_zip(archive);
+    archive_read_support_format_7zip(archive);
+    got = archive_read_open_filename(archive, path, BLOCK);
+  }
+  if (got == ARCHIVE_OK)
+    while ((got = archive_read_next_header(archive, &entry)) >= ARCHIVE_WARN && got != ARCHIVE_EOF)
+      if (!hand_over(archive, entry, most, channel))
+        return;
+  if (got != ARCHIVE_EOF)
+    snprintf(end.problem, sizeof end.problem, "the archive is damaged: %s",
+             archive && archive_error_string(archive) ? archive_error_string(archive) : "out of memory");
+  send_over(channel, &end, -1);
+  archive_read_free(archive);
+}
+#else
+void batch_unpack(const char *path, uint64_t most, int channel) {
+  batch_unpacked end = {.is_end = true};
+  (void)path, (void)most;
+  snprintf(end.problem, sizeof end.problem, "this build reads no archives (libarchive); unpack it first");
+  send_over(channel, &end, -1);
+}
+#endif

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What the files of `voxmend batch` share. */
+#ifndef VXM_CLI_BATCH_H
+#define VXM_CLI_BATCH_H
+
+#include "batch/inputs.h"
+#include "batch/supervisor.h"
+#include "cli/cli.h"
+
+/** What can be made of a mesh, in the order in which it is made. */
+typedef enum batch_product {
+  BATCH_REPAIRED,
+  BATCH_GRID,
+  BATCH_REMESHED,
+  BATCH_VARIANTS,
+  BATCH_PICTURE,
+  BATCH_PRODUCTS
+} batch_product;
+
+/** Words of a command line. */
+typedef struct batch_words {
+  char **words;
+  int count, room;
+} batch_words;
+
+/** Adds a copy; false without memory. */
+bool batch_words_add(batch_words *words, const char *format, ...) CLI_PRINTF(2, 3);
+/** Adds those of a text, as a shell would take it apart: blanks, quotes and backslashes. False with a message
+ * where a quote is not closed. */
+bool batch_words_split(batch_words *words, const char *text, batch_error *error);
+/** As a shell would have to read them, to be freed. */
+char *batch_words_text(char *const *words, int count);
+void batch_words_free(batch_words *words);
+
+typedef struct batch_wish {
+  const char *output, *to, *products[BATCH_PRODUCTS]; /**< products: the options of each, NULL = not wanted */
+  batch_words grid_options;                           /**< those given to the batch itself */
+  const char *format;                                 /**< of grids */
+  bool no_grid, reports, dry_run;
+  int64_t jobs, shard, shards, threads, sample, pictures;
+  double time_limit;
+  uint64_t file_limit;
+  bool retry[BATCH_STATUSES];
+} batch_wish;
+
+extern const cli_option batch_options[];
+
+/** Reads the command line; CLI_STOP if it is at fault, or all has been said. */
+int batch_read_arguments(cli_run *cli, batch_wish *out);
+
+/* ---- batch_job.c: what is made of a mesh, and making it, in a child ---- */
+
+/** What makes jobs, and does them. */
+typedef struct batch_maker {
+  const batch_wish *wish;
+  uint64_t memory;    /**< bytes for the library */
+  const char *output; /**< the folder that is written to */
+} batch_maker;
+
+json_t *batch_make_job(const batch_item *item, void *maker, batch_error *error);
+int batch_do_job(const char *request, int result, void *maker);
+/** What decides about the bytes of outputs, for the plan. */
+json_t *batch_make_settings(const batch_wish *wish);
+/** "voxmend voxelize a.off -o a.binvox ...": repeats a mesh alone, writing to the present folder; to be
+ * freed. */
+char *batch_command_line(const batch_item *item, const batch_maker *maker);
+/**
+ * (batch_telling.c) Tries whether the options can be understood, without a mesh; in a child, as they are
+ * those of other commands. CLI_STOP after a line.
+ */
+int batch_try_options(cli_run *cli, const batch_maker *maker);
+
+/* ---- batch_telling.c ---- */
+
+/**
+ * Writes summary.json, failures.tsv and index.html.
+ *
+ * @param[out] summary   to be released
+ * @param waits_for_all nothing is written until all shards have come to their end
+ */
+bool batch_tell(json_t **summary, const batch_maker *maker, bool waits_for_all, batch_error *error);
+
+/* ---- batch_checks.c: subcommands; exit statuses ---- */
+
+int batch_status_command(cli_run *cli, const char *folder);
+int batch_verify_command(cli_run *cli, const char *folder);
+int batch_export_command(cli_run *cli, const char *folder, const char *to, const char *path);
+
+#endif

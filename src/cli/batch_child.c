@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** In a child: goes through the commands of a job and says what came of it. */
+#include "batch/digest.h"
+#include "cli/batch.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- Results ---- */
+
+/** Messages call what comes from standard input by this name; here it is a member of an archive. */
+static char *with_name(const char *text, const char *name) {
+  const char *found = strstr(text, "<stdin>");
+  char *out = NULL;
+  if (!found || asprintf(&out, "%.*s%s%s", (int)(found - text), text, name, found + strlen("<stdin>")) < 0)
+    return strdup(text);
+  return out;
+}
+
+/** What does not depend on the hour and the machine: reports of the same mesh are the same. */
+static json_t *lasting(const json_t *report) {
+  static const char *const passing[] = {"input", "output", "time_ms", "peak_bytes", "estimate", "warnings"};
+  json_t *kept = json_copy((json_t *)(uintptr_t)report);
+  for (size_t k = 0; kept && k < sizeof passing / sizeof *passing; k++)
+    json_object_del(kept, passing[k]);
+  return kept;
+}
+
+/** Of passes of a repair only those that changed something are told in a journal. */
+static json_t *short_report(const json_t *report) {
+  json_t *kept = lasting(report), *passes = json_object_get(kept, "repair"), *pass, *counts = json_object();
+  size_t p;
+  json_array_foreach(passes, p, pass) if (json_integer_value(json_object_get(pass, "count")) > 0)
+      json_object_set(counts, batch_json_text(pass, "pass") ? batch_json_text(pass, "pass") : "?",
+                      json_object_get(pass, "count"));
+  if (json_is_array(passes))
+    json_object_set(kept, "repair", counts);
+  json_decref(counts);
+  static const char *const long_ones[] = {"parts", "defects", "passes", "label_table"};
+  for (size_t k = 0; k < sizeof long_ones / sizeof *long_ones; k++)
+    if (json_is_array(json_object_get(kept, long_ones[k])))
+      json_object_del(kept, long_ones[k]);
+  return kept;
+}
+
+static batch_status status_of(const cli_capture *capture, const char *input) {
+  switch (capture->error.code) {
+  case VXM_ERROR_FORMAT:
+  case VXM_ERROR_EMPTY:
+    return BATCH_UNREADABLE;
+  case VXM_ERROR_IO:
+    return strcmp(capture->error.file, input) == 0 ? BATCH_UNREADABLE : BATCH_FAILED;
+  case VXM_ERROR_MEMORY:
+  case VXM_ERROR_MEMORY_LIMIT:
+    return BATCH_OOM;
+  default:
+    return BATCH_FAILED;
+  }
+}
+
+static void tell_failure(json_t *result, const cli_capture *capture, const char *command, const char *input,
+                         const char *name) {
+  bool is_known = capture->error.code != VXM_OK;
+  json_object_set_new(result, "status", json_string(batch_status_names[status_of(capture, input)]));
+  json_object_set_new(result, "stage", json_string(command));
+  if (!is_known)
+    return; /* its line is on standard error */
+  char *text = with_name(capture->error.text, name);
+  json_object_set_new(result, "message", cli_json_text(text ? text : capture->error.text));
+  json_object_set_new(result, "code", json_string(vxm_status_name(capture->error.code)));
+  if (capture->error.system == ENOSPC || capture->error.system == EDQUOT)
+    json_object_set_new(result, "disk_full", json_true());
+  free(text);
+}
+
+/* ---- Commands ---- */
+
+/** The words of a command; they belong to the job. */
+static char **words_of(const json_t *command, int *count) {
+  size_t length = json_array_size(command);
+  char **words = calloc(length + 1, sizeof *words);
+  for (size_t w = 0; words && w < length; w++)
+    words[w] = (char *)(uintptr_t)json_string_value(json_array_get(command, w));
+  *count = (int)length;
+  return words;
+}
+
+static void add_warnings(json_t *result, const json_t *report, const char *name) {
+  enum { MOST = 20 };
+  json_t *all = json_object_get(result, "warnings"), *warnings = json_object_get(report, "warnings"),
+         *warning;
+  size_t w;
+  json_array_foreach(warnings, w, warning) {
+    char *text = json_array_size(all) < MOST ? with_name(json_string_value(warning), name) : NULL;
+    if (text)
+      json_array_append_new(all, cli_json_text(text));
+    free(text);
+  }
+}
+
+/** Runs a command; false after a failure, which is told in the result. */
+static bool do_command(json_t *result, json_t *reports, const json_t *job, const json_t *command) {
+  const char *member = batch_json_text(job, "member"), *name = batch_json_text(job, "item");
+  cli_capture capture = {.format = member ? batch_extension(member) : NULL, .error = VXM_ERROR_INIT};
+  int count;
+  char **words = words_of(command, &count);
+  if (!words || count == 0)
+    return false;
+  lseek(STDIN_FILENO, 0, SEEK_SET);
+  int status = cli_run_command(words[0], count, words, &capture);
+  if (status == CLI_DONE && capture.report) {
+    json_object_set_new(result, words[0], short_report(capture.report));
+    json_object_set_new(reports, words[0], lasting(capture.report));
+    add_warnings(result, capture.report, name);
+  } else
+    tell_failure(result, &capture, words[0], member ? "<stdin>" : batch_json_text(job, "input"), name);
+  json_decref(capture.report);
+  free(words);
+  return status == CLI_DONE;
+}
+
+/* ---- Files ---- */
+
+static bool add_file(json_t *files, const char *root, const char *name) {
+  char digest[BATCH_DIGEST], *path = NULL;
+  uint64_t bytes;
+  bool good = asprintf(&path, "%s/%s", root, name) >= 0 && batch_digest_file(digest, &bytes, path);
+  free(path);
+  if (good)
+    json_array_append_new(files, json_pack("{s:o, s:I, s:s}", "path", cli_json_text(name), "bytes",
+                                           (json_int_t)bytes, "sha256", digest));
+  return good;
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b) {
+  return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+static void add_folder(json_t *files, const char *root, const char *name) {
+  char *path = NULL;
+  struct dirent **entries = NULL;
+  int count = asprintf(&path, "%s/%s", root, name) < 0 ? 0 : scandir(path, &entries, NULL, by_name);
+  for (int e = 0; e < count; e++) {
+    char *inner = NULL;
+    if (entries[e]->d_name[0] != '.' && asprintf(&inner, "%s/%s", name, entries[e]->d_name) >= 0)
+      add_file(files, root, inner);
+    free(inner);
+    free(entries[e]);
+  }
+  free(entries);
+  free(path);
+}
+
+/** All that the outputs consist of, with what lies beside them. */
+static json_t *list_files(const json_t *job, const char *root) {
+  json_t *files = json_array(), *name;
+  size_t n;
+  json_array_foreach(json_object_get(job, "outputs"), n, name) {
+    const char *text = json_string_value(name);
+    char *path = NULL, *beside = NULL;
+    struct stat info;
+    bool is_folder =
+        asprintf(&path, "%s/%s", root, text) >= 0 && stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+    if (is_folder)
+      add_folder(files, root, text);
+    else if (add_file(files, root, text) && asprintf(&beside, "%s.json", text) >= 0)
+      add_file(files, root, beside);
+    free(beside);
+    free(path);
+  }
+  return files;
+}
+
+static bool write_report(json_t *result, const json_t *job, json_t *reports, const char *root) {
+  const char *name = batch_json_text(job, "report");
+  char *path = NULL, *text = NULL;
+  vxm_error error = VXM_ERROR_INIT;
+  if (!name)
+    return true;
+  json_object_set(reports, "item", json_object_get(job, "item"));
+  json_object_set(reports, "warnings", json_object_get(result, "warnings"));
+  text = json_dumps(reports, JSON_INDENT(2) | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
+  bool good = text && asprintf(&path, "%s/%s", root, name) >= 0 &&
+              vxm_file_write(NULL, path, text, strlen(text), &error) == VXM_OK;
+  if (!good) {
+    cli_capture capture = {.error = error};
+    tell_failure(result, &capture, "report", "", name);
+  }
+  free(path);
+  free(text);
+  return good;
+}
+
+/* ---- A job ---- */
+
+static bool do_commands(json_t *result, const json_t *job, const char *root) {
+  json_t *reports = json_object(), *command;
+  size_t c;
+  bool good = true;
+  json_array_foreach(json_object_get(job, "commands"), c, command) good =
+      good && do_command(result, reports, job, command);
+  good = good && write_report(result, job, reports, root);
+  json_decref(reports);
+  return good;
+}
+
+static bool digest_input(json_t *result, const json_t *job) {
+  char digest[BATCH_DIGEST];
+  uint64_t bytes;
+  bool is_member = json_object_get(job, "member") != NULL;
+  bool good = is_member ? batch_digest_open(digest, &bytes, STDIN_FILENO)
+                        : batch_digest_file(digest, &bytes, batch_json_text(job, "input"));
+  if (good) {
+    json_object_set_new(result, "sha256", json_string(digest));
+    json_object_set_new(result, "bytes", json_integer((json_int_t)bytes));
+  }
+  return good;
+}
+
+static json_t *make_outputs(const json_t *job, const char *root) {
+  json_t *result = json_pack("{s:[]}", "warnings");
+  if (do_commands(result, job, root)) {
+    size_t warnings = json_array_size(json_object_get(result, "warnings"));
+    json_object_set_new(result, "status",
+                        json_string(batch_status_names[warnings ? BATCH_DEGRADED : BATCH_OK]));
+    json_object_set_new(result, "outputs", list_files(job, root));
+  }
+  digest_input(result, job); /* behind the work: what cannot be read has been told in other words */
+  return result;
+}
+
+static json_t *digest_files(const json_t *paths) {
+  json_t *result = json_object(), *digests = json_array(), *path;
+  size_t p;
+  json_array_foreach(paths, p, path) {
+    char digest[BATCH_DIGEST] = "";
+    uint64_t bytes;
+    if (!batch_digest_file(digest, &bytes, json_string_value(path)))
+      digest[0] = '\0';
+    json_array_append_new(digests, json_string(digest));
+  }
+  json_object_set_new(result, "hash", digests);
+  return result;
+}
+
+static bool say(int descriptor, const char *text) {
+  size_t left = strlen(text);
+  while (left > 0) {
+    ssize_t done = write(descriptor, text, left);
+    if (done < 0 && errno != EINTR)
+      return false;
+    if (done > 0) {
+      text += done;
+      left -= (size_t)done;
+    }
+  }
+  return true;
+}
+
+int batch_do_job(const char *request, int descriptor, void *payload) {
+  const batch_maker *maker = payload;
+  json_t *job = json_loads(request, 0, NULL), *result;
+  if (!job)
+    return 1;
+  const json_t *paths = json_object_get(job, "hash");
+  result = paths ? digest_files(paths) : make_outputs(job, maker->output);
+  char *text = json_dumps(result, JSON_COMPACT | JSON_REAL_PRECISION(17));
+  fflush(NULL);
+  return text && say(descriptor, text) ? 0 : 1;
+}

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** A mesh of a batch: which commands it goes through, and, in a child, going through them. */
+#include "batch/digest.h"
+#include "cli/batch.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- Commands ---- */
+
+static const char *const product_commands[BATCH_PRODUCTS] = {"repair", "voxelize", "remesh", "augment",
+                                                             "view"};
+
+/** The value of --format in options, or what is taken without. */
+static const char *format_in(const char *options, const char *usual, char text[16]) {
+  const char *found = options ? strstr(options, "--format") : NULL;
+  if (!found)
+    return usual;
+  found += strlen("--format");
+  found += strspn(found, "= \t");
+  size_t length = strcspn(found, " \t");
+  snprintf(text, 16, "%.*s", (int)(length < 15 ? length : 15), found);
+  return text;
+}
+
+/** Name of a product below the folder of outputs, to be freed. A mesh that stands alone needs no telling
+ * word. */
+static char *product_name(const batch_wish *wish, batch_product product, const batch_item *item) {
+  char format[16], *name = NULL;
+  const char *options = wish->products[product];
+  bool is_alone = wish->no_grid && !(wish->products[BATCH_REPAIRED] && wish->products[BATCH_REMESHED]);
+  int got = -1;
+  switch (product) {
+  case BATCH_GRID:
+    got = asprintf(&name, "%s.%s", item->output, wish->format);
+    break;
+  case BATCH_REPAIRED:
+  case BATCH_REMESHED:
+    got = asprintf(&name, "%s%s.%s", item->output,
+                   is_alone                    ? ""
+                   : product == BATCH_REPAIRED ? ".repaired"
+                                               : ".remeshed",
+                   format_in(options, "ply", format));
+    break;
+  case BATCH_VARIANTS:
+    got = asprintf(&name, "%s.variants", item->output);
+    break;
+  default:
+    got = asprintf(&name, "%s.png", item->output);
+  }
+  return got < 0 ? NULL : name;
+}
+
+static bool is_wanted(const batch_wish *wish, batch_product product) {
+  return product == BATCH_GRID ? !wish->no_grid : wish->products[product] != NULL;
+}
+
+/** Whether a grid of this format can be looked at; else the mesh is. */
+static bool can_be_viewed(const char *format) {
+  static const char *const known[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb", NULL};
+  return cli_read_choice(format, known) >= 0;
+}
+
+/** The options of a product, and those of the item behind them. */
+static bool add_options(batch_words *words, const batch_wish *wish, batch_product product,
+                        const batch_item *item, batch_error *error) {
+  if (product != BATCH_GRID)
+    return batch_words_split(words, wish->products[product], error);
+  for (int w = 0; w < wish->grid_options.count; w++)
+    if (!batch_words_add(words, "%s", wish->grid_options.words[w]))
+      return batch_fail(error, "out of memory: free some");
+  return !item->options || batch_words_split(words, item->options, error);
+}
+
+/** "voxelize OPTIONS -o NAME [--] INPUT" */
+static bool add_command(batch_words *words, const batch_wish *wish, batch_product product,
+                        const batch_item *item, const char *input, const char *output, batch_error *error) {
+  if (!batch_words_add(words, "%s", product_commands[product]))
+    return batch_fail(error, "out of memory: free some");
+  if (!add_options(words, wish, product, item, error))
+    return false;
+  bool good = batch_words_add(words, "-o") && batch_words_add(words, "%s", output);
+  if (product == BATCH_GRID)
+    good = good && batch_words_add(words, "--format=%s", wish->format);
+  if (input[0] == '-' && input[1])
+    good = good && batch_words_add(words, "--");
+  good = good && batch_words_add(words, "%s", input);
+  return good || batch_fail(error, "out of memory: free some");
+}
+
+/** Options of a child, which is one of many. */
+static bool add_limits(batch_words *words, const batch_maker *maker, batch_product product) {
+  bool good = batch_words_add(words, "--quiet") && batch_words_add(words, "--progress=never") &&
+              batch_words_add(words, "--threads=%" PRId64, maker->wish->threads);
+  if (maker->memory > 0)
+    good = good && batch_words_add(words, "--memlimit=%" PRIu64, maker->memory);
+  if (product == BATCH_GRID)
+    good = good && batch_words_add(words, "--force");
+  return good;
+}
+
+static json_t *words_json(const batch_words *words) {
+  json_t *array = json_array();
+  for (int w = 0; w < words->count; w++)
+    json_array_append_new(array, cli_json_text(words->words[w]));
+  return array;
+}
+
+/** Adds a command and its output to a job. */
+static bool add_product(json_t *job, const batch_maker *maker, batch_product product, const batch_item *item,
+                        batch_error *error) {
+  const batch_wish *wish = maker->wish;
+  batch_words words = {0};
+  char *name = product_name(wish, product, item), *path = NULL, *grid = NULL, *grid_path = NULL;
+  bool good = name && asprintf(&path, "%s/%s", maker->output, name) >= 0;
+  const char *input = item->member ? "-" : item->path;
+  if (good && product == BATCH_PICTURE && !wish->no_grid && can_be_viewed(wish->format)) {
+    grid = product_name(wish, BATCH_GRID, item);
+    good = grid && asprintf(&grid_path, "%s/%s", maker->output, grid) >= 0;
+    input = grid_path;
+  }
+  good = good ? add_command(&words, wish, product, item, input, path, error)
+              : batch_fail(error, "out of memory: free some");
+  /* limits first: what the user says comes behind, and is heard */
+  batch_words all = {0};
+  good = good && batch_words_add(&all, "%s", words.words[0]) && add_limits(&all, maker, product);
+  for (int w = 1; good && w < words.count; w++)
+    good = batch_words_add(&all, "%s", words.words[w]);
+  if (good) {
+    json_array_append_new(json_object_get(job, "commands"), words_json(&all));
+    json_array_append_new(json_object_get(job, "outputs"), cli_json_text(name));
+  }
+  batch_words_free(&all);
+  batch_words_free(&words);
+  free(grid_path);
+  free(grid);
+  free(path);
+  free(name);
+  return good;
+}
+
+json_t *batch_make_job(const batch_item *item, void *payload, batch_error *error) {
+  const batch_maker *maker = payload;
+  json_t *job = json_pack("{s:o, s:o, s:o, s:o}", "item", cli_json_text(item->id), "input",
+                          cli_json_text(item->path), "commands", json_array(), "outputs", json_array());
+  if (item->member)
+    json_object_set_new(job, "member", cli_json_text(item->member));
+  bool good = job != NULL;
+  for (int p = 0; good && p < BATCH_PRODUCTS; p++)
+    if (is_wanted(maker->wish, (batch_product)p))
+      good = add_product(job, maker, (batch_product)p, item, error);
+  if (good && maker->wish->reports) {
+    char *name = NULL;
+    good = asprintf(&name, "%s.report.json", item->output) >= 0;
+    if (good) {
+      json_array_append_new(json_object_get(job, "outputs"), cli_json_text(name));
+      json_object_set_new(job, "report", cli_json_text(name));
+    }
+    free(name);
+  }
+  if (good)
+    return job;
+  json_decref(job);
+  return NULL;
+}
+
+json_t *batch_make_settings(const batch_wish *wish) {
+  json_t *settings = json_object();
+  for (int p = 0; p < BATCH_PRODUCTS; p++) {
+    char *text =
+        p == BATCH_GRID ? batch_words_text(wish->grid_options.words, wish->grid_options.count) : NULL;
+    if (is_wanted(wish, (batch_product)p))
+      json_object_set_new(settings, product_commands[p],
+                          cli_json_text(p == BATCH_GRID ? (text ? text : "") : wish->products[p]));
+    free(text);
+  }
+  if (!wish->no_grid)
+    json_object_set_new(settings, "format", cli_json_text(wish->format));
+  json_object_set_new(settings, "reports", json_string(wish->reports ? "yes" : "no"));
+  return settings;
+}
+
+/** The name that tools which unpack one member on standard output take, or NULL. */
+static const char *unpacker_of(const char *archive) {
+  const char *dot = strrchr(archive, '.');
+  return dot && strcasecmp(dot, ".zip") == 0 ? "unzip -p" : "bsdtar -xOf";
+}
+
+char *batch_command_line(const batch_item *item, const batch_maker *maker) {
+  const batch_wish *wish = maker->wish;
+  batch_product product = is_wanted(wish, BATCH_GRID) ? BATCH_GRID : BATCH_REPAIRED;
+  while (!is_wanted(wish, product) && product + 1 < BATCH_PRODUCTS)
+    product++;
+  batch_words words = {0}, source = {0};
+  batch_error error;
+  char *name = product_name(wish, product, item), *line = NULL, *first = NULL, *text = NULL;
+  const char *slash = name ? strrchr(name, '/') : NULL;
+  if (name && batch_words_add(&words, "voxmend") &&
+      add_command(&words, wish, product, item, item->member ? "-" : item->path, slash ? slash + 1 : name,
+                  &error))
+    text = batch_words_text(words.words, words.count);
+  if (text && item->member && batch_words_add(&source, "%s", item->path) &&
+      batch_words_add(&source, "%s", item->member))
+    first = batch_words_text(source.words, source.count);
+  if (text && first && asprintf(&line, "%s %s | %s", unpacker_of(item->path), first, text) < 0)
+    line = NULL;
+  if (text && !item->member) {
+    line = text;
+    text = NULL;
+  }
+  batch_words_free(&words);
+  batch_words_free(&source);
+  free(text);
+  free(first);
+  free(name);
+  return line;
+}

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend batch: whole datasets. */
+#include "batch/plan.h"
+#include "batch/tally.h"
+#include "cli/batch.h"
+#include "cli/voxelize.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/sysinfo.h>
+#include <unistd.h>
+
+static int fail(cli_run *cli, const batch_error *error) {
+  return cli_fail_text(cli, "%s", error->text);
+}
+
+/* ---- Limits ---- */
+
+/** Memory of the machine, or of the container that this is in. */
+static uint64_t memory_bytes(void) {
+  struct sysinfo info;
+  uint64_t bytes = sysinfo(&info) == 0 ? (uint64_t)info.totalram * info.mem_unit : UINT64_C(4) << 30;
+  unsigned long long limit = 0;
+  FILE *file = fopen("/sys/fs/cgroup/memory.max", "re");
+  if (file && fscanf(file, "%llu", &limit) == 1 && limit > 0 && limit < bytes)
+    bytes = limit;
+  if (file)
+    fclose(file);
+  return bytes;
+}
+
+static batch_limits limits_of(const cli_run *cli, const batch_wish *wish) {
+  uint64_t share = memory_bytes() / 5 * 4 / (uint64_t)wish->jobs;
+  return (batch_limits){.seconds = wish->time_limit,
+                        .memory = cli->limits.memory_limit ? cli->limits.memory_limit : share,
+                        .file_bytes = wish->file_limit};
+}
+
+/* ---- Inputs ---- */
+
+/** All extensions of meshes that this build reads, ended by NULL; to be freed, the list's first word too. */
+static const char **mesh_extensions(void) {
+  enum { MOST = 64 };
+  vxm_reading_info readers = VXM_READING_INFO_INIT;
+  const char **list = calloc(MOST + 1, sizeof *list);
+  char *text = NULL;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_reading_find(&readers, &error);
+  if (!list || asprintf(&text, "off obj stl ply %s %s", readers.assimp ? readers.assimp_formats : "",
+                        readers.occt ? readers.occt_formats : "") < 0) {
+    free(list);
+    return NULL;
+  }
+  int count = 0;
+  char *rest = text;
+  for (char *word; count < MOST && (word = strsep(&rest, " "));)
+    if (*word)
+      list[count++] = word;
+  return list;
+}
+
+static bool make_folder(const char *path, batch_error *error) {
+  if (mkdir(path, 0777) == 0 || errno == EEXIST)
+    return true;
+  return batch_fail_errno(error, "%s: cannot make the folder", path);
+}
+
+/* ---- A run ---- */
+
+static void summarize(const cli_run *cli, const batch_wish *wish, const batch_manifest *manifest,
+                      const batch_tally *tally, batch_outcome outcome) {
+  char counts[320], time[40];
+  double seconds = (batch_clock_ms() - tally->started_ms) / 1000;
+  if (!cli_summary(cli))
+    return;
+  cli_row(cli, "meshes", "%" PRId64 "%s", tally->total, wish->shards > 1 ? " of this shard" : "");
+  if (manifest->passed_over > 0)
+    cli_row(cli, "passed over", "%" PRId64 " files that are no meshes:%s", manifest->passed_over,
+            manifest->note);
+  cli_row(cli, "result", "%s", batch_counts_text(counts, tally->counts));
+  if (tally->done_before > 0)
+    cli_row(cli, "before", "%" PRId64 " of them in a run before", tally->done_before);
+  if (tally->fresh > 0)
+    cli_row(cli, "time", "%s, %.3g meshes a second, %" PRId64 " at a time",
+            batch_duration_text(time, seconds), (double)tally->fresh / (seconds > 0.001 ? seconds : 0.001),
+            wish->jobs);
+  int64_t bad = tally->total - tally->counts[BATCH_OK] - tally->counts[BATCH_DEGRADED] -
+                tally->counts[BATCH_DUPLICATE] - tally->counts[BATCH_PENDING];
+  if (outcome == BATCH_COMPLETE && bad > 0)
+    cli_row(cli, "failures", "%s/failures.tsv, with a command for each that repeats it", wish->output);
+  if (outcome == BATCH_COMPLETE)
+    cli_row(cli, "page", "%s/index.html", wish->output);
+}
+
+static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *manifest,
+                  const batch_tally *tally, batch_outcome outcome, batch_error *error) {
+  const batch_wish *wish = maker->wish;
+  if (outcome == BATCH_BROKEN)
+    return fail(cli, error);
+  json_t *summary = NULL;
+  if (outcome == BATCH_COMPLETE && !batch_tell(&summary, maker, true, error)) {
+    json_decref(summary);
+    return fail(cli, error);
+  }
+  summarize(cli, wish, manifest, tally, outcome);
+  if (outcome == BATCH_INTERRUPTED) {
+    json_decref(summary);
+    fprintf(stderr, "voxmend: interrupted: %" PRId64 " of %" PRId64 " are left; the same command goes on\n",
+            tally->counts[BATCH_PENDING], tally->total);
+    return CLI_FAILED;
+  }
+  int64_t bad = 0;
+  for (int s = BATCH_UNREADABLE; s < BATCH_STATUSES; s++)
+    bad += tally->counts[s];
+  if (bad > 0)
+    cli->warning_count++; /* for --strict */
+  return cli_finish(cli, summary ? summary : json_object());
+}
+
+static int run_batch(cli_run *cli, const batch_wish *wish, batch_maker *maker, const batch_zygote *zygote,
+                     batch_manifest *manifest) {
+  batch_error error;
+  batch_tally tally;
+  json_t *plan = batch_make_settings(wish);
+  bool good = batch_plan_freeze(wish->output, manifest, plan, (int)wish->shards, &error);
+  json_decref(plan);
+  if (!good)
+    return fail(cli, &error);
+  batch_settings settings = {.output = wish->output,
+                             .shard = (int)wish->shard,
+                             .shards = (int)wish->shards,
+                             .jobs = (int)wish->jobs,
+                             .limits = limits_of(cli, wish),
+                             .alone_memory = cli->limits.memory_limit ? 0 : memory_bytes() / 5 * 4,
+                             .job = batch_make_job,
+                             .work = batch_do_job,
+                             .zygote = zygote,
+                             .payload = maker,
+                             .shows_progress = strcmp(cli->progress, "always") == 0 ||
+                                               (strcmp(cli->progress, "auto") == 0 && isatty(STDERR_FILENO)),
+                             .is_quiet = cli->quiet || strcmp(cli->progress, "never") == 0};
+  memcpy(settings.retry, wish->retry, sizeof settings.retry);
+  batch_outcome outcome = batch_run(&tally, manifest, &settings, &error);
+  return finish(cli, maker, manifest, &tally, outcome, &error);
+}
+
+static int run_inputs(cli_run *cli, const batch_wish *wish, batch_maker *maker) {
+  batch_error error;
+  batch_manifest manifest;
+  batch_zygote zygote;
+  const char **extensions = mesh_extensions();
+  batch_inputs inputs = {cli->arguments, cli->argument_count, extensions, wish->output};
+  int status = CLI_FAILED;
+  if (!extensions || !batch_zygote_start(&zygote, batch_do_job, maker, &error))
+    return fail(cli, &error);
+  if (!batch_inputs_read(&manifest, &inputs, &error) || !make_folder(wish->output, &error)) {
+    batch_zygote_end(&zygote);
+    status = fail(cli, &error);
+  } else
+    status = run_batch(cli, wish, maker, &zygote, &manifest);
+  batch_manifest_free(&manifest);
+  free((char *)(uintptr_t)extensions[0]);
+  free(extensions);
+  return status;
+}
+
+/* ---- What has become of it ---- */
+
+static bool is_check(const char *word) {
+  static const char *const checks[] = {"status", "verify", "export", NULL};
+  return cli_read_choice(word, checks) >= 0;
+}
+
+static int check(cli_run *cli, const batch_wish *wish) {
+  const char *word = cli->arguments[0], *folder = cli->arguments[1];
+  return *word == 's'   ? batch_status_command(cli, folder)
+         : *word == 'v' ? batch_verify_command(cli, folder)
+                        : batch_export_command(cli, folder, wish->to, wish->output);
+}
+
+static int run(cli_run *cli) {
+  batch_wish wish = {.format = "binvox",
+                     .threads = 1,
+                     .shards = 1,
+                     .time_limit = 300,
+                     .file_limit = UINT64_C(64) << 30,
+                     .pictures = 48};
+  if (batch_read_arguments(cli, &wish) == CLI_STOP)
+    return cli->status;
+  if (cli->argument_count == 2 && is_check(cli->arguments[0]))
+    return cli_start(cli) ? check(cli, &wish) : CLI_FAILED;
+  if (wish.to)
+    return cli_usage(cli, "--to goes with 'voxmend batch export DIR'"), cli->status;
+  if (cli->argument_count == 0)
+    return cli_usage(cli, "no input is named: folders, meshes, lists or archives"), cli->status;
+  if (!wish.output)
+    return cli_usage(cli, "-o DIR is missing"), cli->status;
+  batch_maker maker = {.wish = &wish, .output = wish.output};
+  if (batch_try_options(cli, &maker) == CLI_STOP)
+    return cli->status;
+  maker.memory = limits_of(cli, &wish).memory;
+  int status = cli_start(cli) ? run_inputs(cli, &wish, &maker) : CLI_FAILED;
+  batch_words_free(&wish.grid_options);
+  return status;
+}
+
+const cli_command cli_command_batch = {
+    .name = "batch",
+    .arguments = "INPUT... -o DIR [OPTION]...",
+    .summary = "voxelize a whole dataset, each mesh in a process of its own",
+    .notes =
+        "INPUT is a folder, a mesh, a pattern in quotes, a list of paths (.txt), a table (.csv, .tsv: path,\n"
+        "and any of id, class, split, options) or an archive (.tar, .tar.gz, .zip, .7z). What crashes, "
+        "hangs\n"
+        "or takes all memory costs that mesh alone. When a run is ended, by whatever, the same command goes\n"
+        "on with it. At the end DIR has index.html, failures.tsv and summary.json.\n\n"
+        "  voxmend batch status DIR    what has become of its meshes, also while it runs\n"
+        "  voxmend batch verify DIR    whether all outputs are there, with the bytes that were written\n"
+        "  voxmend batch export DIR --to sqlite|parquet|webdataset|zarr -o PATH\n\n"
+        "Examples:\n"
+        "  voxmend batch ModelNet40/ -o grids/ -r 64\n"
+        "  voxmend batch ModelNet40.zip -o grids/ -r 64 --format npy -j 8 --time-limit 60\n"
+        "  voxmend batch scans/ -o fixed/ --no-grid --repair \"--level closed --format ply\"\n"
+        "  voxmend batch meshes.csv -o grids/ -r 64 --shard slurm/100",
+    .options = batch_options,
+    .others = voxelize_options,
+    .others_of = "voxelize",
+    .run = run,
+};
