@@ -99,7 +99,7 @@ static bool add_member(batch_manifest *out, const batch_inputs *inputs, const ba
     return true;
   }
   char *id = NULL;
-  if (asprintf(&id, "%s/%s", archive->id, member->name) < 0)
+  if (asprintf(&id, "%s%s%s", archive->id, *archive->id ? "/" : "", member->name) < 0)
     return batch_fail(error, "out of memory for the list of meshes: free some");
   batch_item item = *archive;
   item.id = id;

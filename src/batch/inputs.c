@@ -150,8 +150,13 @@ static bool is_list(const char *name) {
   return strcmp(name, "-") == 0 || is_among(batch_extension(name), lists);
 }
 
-/** A file is a mesh because it is named, whatever its extension. */
-static bool add_named(batch_manifest *out, const batch_inputs *inputs, const char *name, batch_error *error) {
+/**
+ * A file is a mesh because it is named, whatever its extension.
+ *
+ * @param prefix letters of the name that its id does without
+ */
+static bool add_named(batch_manifest *out, const batch_inputs *inputs, const char *name, size_t prefix,
+                      batch_error *error) {
   struct stat info;
   if (strcmp(name, "-") == 0)
     return batch_table_read(out, name, error);
@@ -162,8 +167,8 @@ static bool add_named(batch_manifest *out, const batch_inputs *inputs, const cha
   if (is_list(name))
     return batch_table_read(out, name, error);
   if (batch_is_archive(name))
-    return add_archive(out, inputs, name, name, &info, error);
-  return add_file(out, name, name, &info, error);
+    return add_archive(out, inputs, inputs->count == 1 && prefix == 0 ? "" : name + prefix, name, &info, error);
+  return add_file(out, name + prefix, name, &info, error);
 }
 
 /** A pattern that the shell has left alone, since it stood in quotes: too many names for a command line. */
@@ -173,8 +178,11 @@ static bool add_pattern(batch_manifest *out, const batch_inputs *inputs, const c
   if (glob(pattern, GLOB_BRACE, NULL, &found) != 0)
     return batch_fail(error, "%s: there is no such file, and none fits it as a pattern", pattern);
   bool good = true;
+  size_t prefix = inputs->count == 1 ? strcspn(pattern, "*?[{") : 0; /* the folder before the first of these */
+  while (prefix > 0 && pattern[prefix - 1] != '/')
+    prefix--;
   for (size_t i = 0; good && i < found.gl_pathc; i++)
-    good = add_named(out, inputs, found.gl_pathv[i], error);
+    good = add_named(out, inputs, found.gl_pathv[i], prefix, error);
   globfree(&found);
   return good;
 }
@@ -186,7 +194,7 @@ bool batch_inputs_read(batch_manifest *out, const batch_inputs *inputs, batch_er
   for (int i = 0; good && i < inputs->count; i++) {
     const char *name = inputs->names[i];
     bool is_pattern = strpbrk(name, "*?[{") && stat(name, &info) != 0;
-    good = is_pattern ? add_pattern(out, inputs, name, error) : add_named(out, inputs, name, error);
+    good = is_pattern ? add_pattern(out, inputs, name, error) : add_named(out, inputs, name, 0, error);
   }
   if (good && out->count == 0)
     good = batch_fail(error, "%s: there is no mesh in it%s%s", inputs->names[0],

@@ -32,23 +32,20 @@ static batch_slot *free_slot(run *r) {
 static bool make_folders(const run *r, const char *name) {
   static char last[4096];
   char path[4096];
-  int length = snprintf(path, sizeof path, "%s/%s", r->settings->output, name);
+  const char *root = r->settings->output, *end = strrchr(name, '/');
+  int length = end ? snprintf(path, sizeof path, "%s/%.*s", root, (int)(end - name), name) : 0;
   if (length < 0 || (size_t)length >= sizeof path)
     return batch_fail(r->error, "%s: the name is too long", name);
-  size_t root = strlen(r->settings->output);
-  *strrchr(path, '/') = '\0';
-  if (strcmp(path, last) == 0 || strlen(path) <= root)
+  if (!end || strcmp(path, last) == 0)
     return true;
-  for (char *slash = path + root + 1; slash; slash = strchr(slash + 1, '/')) {
-    if (slash == path + root + 1)
-      slash = strchr(slash, '/');
+  for (char *slash = path + strlen(root); slash;) {
+    slash = strchr(slash + 1, '/');
     if (slash)
       *slash = '\0';
     if (mkdir(path, 0777) != 0 && errno != EEXIST)
       return batch_fail_errno(r->error, "%s: cannot make the folder", path);
-    if (!slash)
-      break;
-    *slash = '/';
+    if (slash)
+      *slash = '/';
   }
   strcpy(last, path);
   return true;

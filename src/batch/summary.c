@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/summary.h"
 #include "batch/plan.h"
+#include "batch/tally.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,9 +12,6 @@ json_t *batch_summary_json(const batch_state *state) {
   double wall = 0, cpu = 0;
   uint64_t in = 0, out = 0, peak = 0;
   batch_state_count(state, counts);
-  json_t *by_status = json_object();
-  for (int s = 0; s < BATCH_STATUSES; s++)
-    json_object_set_new(by_status, batch_status_names[s], json_integer(counts[s]));
   for (int64_t i = 0; i < state->manifest.count; i++) {
     const batch_end *end = &state->ends[i];
     wall += (double)end->wall_ms / 1000;
@@ -26,7 +24,7 @@ json_t *batch_summary_json(const batch_state *state) {
                    json_object_get(state->run, "voxmend"), "began", json_object_get(state->run, "began"),
                    "settings", json_object_get(state->run, "settings"), "meshes",
                    (json_int_t)state->manifest.count, "shards", state->shards, "complete_shards",
-                   state->complete, "counts", by_status, "wall_s", wall, "cpu_s", cpu, "input_bytes",
+                   state->complete, "counts", batch_counts_json(counts), "wall_s", wall, "cpu_s", cpu, "input_bytes",
                    (json_int_t)in, "output_bytes", (json_int_t)out, "largest_peak_bytes", (json_int_t)peak,
                    "damaged_journal_lines", (json_int_t)state->damaged);
 }

@@ -300,6 +300,7 @@ batch_outcome batch_run(batch_tally *tally, batch_manifest *manifest, const batc
   else
     batch_break((batch_fail_errno(error, "%s: cannot open the folder", settings->output), &r));
   batch_zygote_end(&r.zygote);
+  *settings->zygote = r.zygote;
   batch_journal_close(&r.journal);
   if (folder >= 0)
     close(folder);

@@ -15,6 +15,13 @@ const char *batch_counts_text(char text[320], const int64_t counts[BATCH_STATUSE
   return used ? text : strcpy(text, "none done");
 }
 
+json_t *batch_counts_json(const int64_t counts[BATCH_STATUSES]) {
+  json_t *object = json_object();
+  for (int s = 0; s < BATCH_STATUSES; s++)
+    json_object_set_new(object, batch_status_names[s], json_integer(counts[s]));
+  return object;
+}
+
 const char *batch_duration_text(char text[40], double seconds) {
   int64_t s = (int64_t)(seconds + 0.5);
   if (s < 120)

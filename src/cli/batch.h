@@ -73,12 +73,17 @@ int batch_try_options(cli_run *cli, const batch_maker *maker);
 /* ---- batch_telling.c ---- */
 
 /**
- * Writes summary.json, failures.tsv and index.html.
+ * Writes summary.json, failures.tsv and index.html, once all shards have come to their end.
  *
  * @param[out] summary   to be released
- * @param waits_for_all nothing is written until all shards have come to their end
+ * @param writes         false = the summary is only returned
  */
-bool batch_tell(json_t **summary, const batch_maker *maker, bool waits_for_all, batch_error *error);
+bool batch_tell(json_t **summary, const batch_maker *maker, bool writes, batch_error *error);
+
+/* ---- batch_dry_run.c ---- */
+
+/** Makes a sample in a folder that is dropped, and tells what all will take. An exit status. */
+int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *settings, batch_maker *maker);
 
 /* ---- batch_checks.c: subcommands; exit statuses ---- */
 

@@ -49,13 +49,19 @@ static json_t *short_report(const json_t *report) {
   return kept;
 }
 
+/** Whether an error's file is this one; of long names it has the end alone. */
+static bool names(const char *file, const char *path) {
+  size_t length = strlen(file), whole = strlen(path);
+  return length > 0 && length <= whole && strcmp(path + whole - length, file) == 0;
+}
+
 static batch_status status_of(const cli_capture *capture, const char *input) {
   switch (capture->error.code) {
   case VXM_ERROR_FORMAT:
   case VXM_ERROR_EMPTY:
     return BATCH_UNREADABLE;
   case VXM_ERROR_IO:
-    return strcmp(capture->error.file, input) == 0 ? BATCH_UNREADABLE : BATCH_FAILED;
+    return names(capture->error.file, input) ? BATCH_UNREADABLE : BATCH_FAILED;
   case VXM_ERROR_MEMORY:
   case VXM_ERROR_MEMORY_LIMIT:
     return BATCH_OOM;
@@ -67,8 +73,9 @@ static batch_status status_of(const cli_capture *capture, const char *input) {
 static void tell_failure(json_t *result, const cli_capture *capture, const char *command, const char *input,
                          const char *name) {
   bool is_known = capture->error.code != VXM_OK;
-  json_object_set_new(result, "status", json_string(batch_status_names[status_of(capture, input)]));
-  json_object_set_new(result, "stage", json_string(command));
+  batch_status status = status_of(capture, input);
+  json_object_set_new(result, "status", json_string(batch_status_names[status]));
+  json_object_set_new(result, "stage", json_string(status == BATCH_UNREADABLE ? "read" : command));
   if (!is_known)
     return; /* its line is on standard error */
   char *text = with_name(capture->error.text, name);
@@ -264,12 +271,12 @@ static bool say(int descriptor, const char *text) {
 }
 
 int batch_do_job(const char *request, int descriptor, void *payload) {
-  const batch_maker *maker = payload;
+  (void)payload;
   json_t *job = json_loads(request, 0, NULL), *result;
   if (!job)
     return 1;
   const json_t *paths = json_object_get(job, "hash");
-  result = paths ? digest_files(paths) : make_outputs(job, maker->output);
+  result = paths ? digest_files(paths) : make_outputs(job, batch_json_text(job, "root"));
   char *text = json_dumps(result, JSON_COMPACT | JSON_REAL_PRECISION(17));
   fflush(NULL);
   return text && say(descriptor, text) ? 0 : 1;

@@ -118,13 +118,13 @@ static bool draw(const char *path, const char *picture, void *payload) {
   return run_apart(words, -1, 20) == CLI_DONE;
 }
 
-bool batch_tell(json_t **summary, const batch_maker *maker, bool waits_for_all, batch_error *error) {
+bool batch_tell(json_t **summary, const batch_maker *maker, bool writes, batch_error *error) {
   batch_state state;
   batch_telling telling = {(int)maker->wish->pictures, command_line, viewed, draw, (void *)(uintptr_t)maker};
   if (!batch_state_read(&state, maker->output, error))
     return false;
   *summary = batch_summary_json(&state);
-  bool good = (waits_for_all && state.complete < state.shards) ||
+  bool good = !writes || state.complete < state.shards ||
               batch_summary_write(&state, maker->output, &telling, error);
   batch_state_free(&state);
   return good;

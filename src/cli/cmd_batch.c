@@ -71,7 +71,7 @@ static bool make_folder(const char *path, batch_error *error) {
 /* ---- A run ---- */
 
 static void summarize(const cli_run *cli, const batch_wish *wish, const batch_manifest *manifest,
-                      const batch_tally *tally, batch_outcome outcome) {
+                      const batch_tally *tally, bool has_all) {
   char counts[320], time[40];
   double seconds = (batch_clock_ms() - tally->started_ms) / 1000;
   if (!cli_summary(cli))
@@ -89,10 +89,17 @@ static void summarize(const cli_run *cli, const batch_wish *wish, const batch_ma
             wish->jobs);
   int64_t bad = tally->total - tally->counts[BATCH_OK] - tally->counts[BATCH_DEGRADED] -
                 tally->counts[BATCH_DUPLICATE] - tally->counts[BATCH_PENDING];
-  if (outcome == BATCH_COMPLETE && bad > 0)
+  if (has_all && bad > 0)
     cli_row(cli, "failures", "%s/failures.tsv, with a command for each that repeats it", wish->output);
-  if (outcome == BATCH_COMPLETE)
+  if (has_all)
     cli_row(cli, "page", "%s/index.html", wish->output);
+}
+
+static bool has_page(const char *output) {
+  char *path = NULL;
+  bool has = asprintf(&path, "%s/index.html", output) >= 0 && access(path, F_OK) == 0;
+  free(path);
+  return has;
 }
 
 static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *manifest,
@@ -101,11 +108,13 @@ static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *
   if (outcome == BATCH_BROKEN)
     return fail(cli, error);
   json_t *summary = NULL;
-  if (outcome == BATCH_COMPLETE && !batch_tell(&summary, maker, true, error)) {
+  bool is_news = tally->fresh > 0 || !has_page(wish->output);
+  if (outcome == BATCH_COMPLETE && !batch_tell(&summary, maker, is_news, error)) {
     json_decref(summary);
     return fail(cli, error);
   }
-  summarize(cli, wish, manifest, tally, outcome);
+  summarize(cli, wish, manifest, tally,
+            json_equal(json_object_get(summary, "shards"), json_object_get(summary, "complete_shards")));
   if (outcome == BATCH_INTERRUPTED) {
     json_decref(summary);
     fprintf(stderr, "voxmend: interrupted: %" PRId64 " of %" PRId64 " are left; the same command goes on\n",
@@ -120,15 +129,9 @@ static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *
   return cli_finish(cli, summary ? summary : json_object());
 }
 
-static int run_batch(cli_run *cli, const batch_wish *wish, batch_maker *maker, const batch_zygote *zygote,
-                     batch_manifest *manifest) {
-  batch_error error;
-  batch_tally tally;
-  json_t *plan = batch_make_settings(wish);
-  bool good = batch_plan_freeze(wish->output, manifest, plan, (int)wish->shards, &error);
-  json_decref(plan);
-  if (!good)
-    return fail(cli, &error);
+static batch_settings settings_of(const cli_run *cli, batch_maker *maker, batch_zygote *zygote) {
+  const batch_wish *wish = maker->wish;
+  bool is_auto = strcmp(cli->progress, "auto") == 0;
   batch_settings settings = {.output = wish->output,
                              .shard = (int)wish->shard,
                              .shards = (int)wish->shards,
@@ -139,10 +142,25 @@ static int run_batch(cli_run *cli, const batch_wish *wish, batch_maker *maker, c
                              .work = batch_do_job,
                              .zygote = zygote,
                              .payload = maker,
-                             .shows_progress = strcmp(cli->progress, "always") == 0 ||
-                                               (strcmp(cli->progress, "auto") == 0 && isatty(STDERR_FILENO)),
-                             .is_quiet = cli->quiet || strcmp(cli->progress, "never") == 0};
+                             .shows_progress = isatty(STDERR_FILENO),
+                             .is_quiet = cli->quiet || strcmp(cli->progress, "never") == 0 || (is_auto && cli->json)};
   memcpy(settings.retry, wish->retry, sizeof settings.retry);
+  return settings;
+}
+
+static int run_batch(cli_run *cli, batch_maker *maker, batch_zygote *zygote, batch_manifest *manifest) {
+  const batch_wish *wish = maker->wish;
+  batch_settings settings = settings_of(cli, maker, zygote);
+  batch_error error;
+  batch_tally tally;
+  if (wish->dry_run)
+    return batch_dry_run(cli, manifest, &settings, maker);
+  json_t *plan = batch_make_settings(wish);
+  bool good = make_folder(wish->output, &error) &&
+              batch_plan_freeze(wish->output, manifest, plan, (int)wish->shards, &error);
+  json_decref(plan);
+  if (!good)
+    return fail(cli, &error);
   batch_outcome outcome = batch_run(&tally, manifest, &settings, &error);
   return finish(cli, maker, manifest, &tally, outcome, &error);
 }
@@ -156,11 +174,11 @@ static int run_inputs(cli_run *cli, const batch_wish *wish, batch_maker *maker) 
   int status = CLI_FAILED;
   if (!extensions || !batch_zygote_start(&zygote, batch_do_job, maker, &error))
     return fail(cli, &error);
-  if (!batch_inputs_read(&manifest, &inputs, &error) || !make_folder(wish->output, &error)) {
-    batch_zygote_end(&zygote);
+  if (batch_inputs_read(&manifest, &inputs, &error))
+    status = run_batch(cli, maker, &zygote, &manifest);
+  else
     status = fail(cli, &error);
-  } else
-    status = run_batch(cli, wish, maker, &zygote, &manifest);
+  batch_zygote_end(&zygote);
   batch_manifest_free(&manifest);
   free((char *)(uintptr_t)extensions[0]);
   free(extensions);
@@ -196,6 +214,8 @@ static int run(cli_run *cli) {
     return cli_usage(cli, "--to goes with 'voxmend batch export DIR'"), cli->status;
   if (cli->argument_count == 0)
     return cli_usage(cli, "no input is named: folders, meshes, lists or archives"), cli->status;
+  if (!wish.output && wish.dry_run)
+    wish.output = "/nonexistent"; /* nothing is written there */
   if (!wish.output)
     return cli_usage(cli, "-o DIR is missing"), cli->status;
   batch_maker maker = {.wish = &wish, .output = wish.output};
