@@ -100,6 +100,18 @@ static void take_hashes(run *r, const batch_slot *slot, const json_t *result) {
   }
 }
 
+/**
+ * Who ran out of what all had to share may not when it is alone. Who was killed from outside may have been chosen by
+ * chance, even twice.
+ */
+static bool may_try_again(const run *r, const batch_slot *slot, bool was_killed) {
+  enum { KILLS_MAX = 3 };
+  batch_item *item = &r->manifest->items[slot->items[0]];
+  if (was_killed)
+    return ++item->kills < KILLS_MAX;
+  return !slot->is_alone && r->settings->alone_memory;
+}
+
 static void take_work(run *r, const batch_slot *slot, const batch_ending *ending, json_t *result) {
   int64_t item = slot->items[0];
   bool was_orderly = ending->reason == BATCH_REASON_ENDED && WIFEXITED(ending->wait_status);
@@ -121,7 +133,7 @@ static void take_work(run *r, const batch_slot *slot, const batch_ending *ending
     json_object_set_new(record, key, batch_json_string(last_line(said)));
   free(said);
   add_costs(record, ending);
-  if (status == BATCH_OOM && !slot->is_alone && r->settings->alone_memory) {
+  if (status == BATCH_OOM && may_try_again(r, slot, !was_orderly)) {
     r->needs_more[item] = true; /* once more when nobody else is at work */
     json_decref(record);
     return;
