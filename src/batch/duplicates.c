@@ -117,15 +117,19 @@ static void mark(run *r, keyed *keys, int64_t count) {
 }
 
 void batch_find_duplicates(run *r) {
+  enum { ROUNDS = 3 };
   hashing h = {NULL};
   h.items = with_equal_size(r, &h.count);
   keyed *keys = malloc((size_t)(h.count + 1) * sizeof *keys);
   if (h.items && keys) {
-    batch_run_source(r, next_hashes, &h, r->settings->jobs, NULL);
+    for (int round = 0; round < ROUNDS && !batch_run_stops(r); round++) { /* a child may have been killed */
+      h.next = 0;
+      batch_run_source(r, next_hashes, &h, r->settings->jobs, NULL);
+    }
     int64_t known = 0;
     for (int64_t i = 0; i < h.count; i++) {
       int64_t index = h.items[i] - r->manifest->items;
-      if (r->contents[index].half[0] | r->contents[index].half[1])
+      if (r->contents[index].half[0])
         keys[known++] = (keyed){r->contents[index], index};
     }
     mark(r, keys, known);

@@ -90,7 +90,8 @@ static void take_hashes(run *r, const batch_slot *slot, const json_t *result) {
     const char *digest = json_string_value(json_array_get(digests, (size_t)i));
     int64_t item = slot->items[i];
     if (!batch_content_read(&r->contents[item], digest)) {
-      r->contents[item].half[0] = r->contents[item].half[1] = 0; /* then it is no duplicate of anything */
+      if (digest) /* it cannot be read; else the child did not come so far */
+        r->contents[item] = batch_no_content;
       continue;
     }
     json_t *record = json_pack("{s:s, s:o, s:s}", "event", "hash", "item",
@@ -101,8 +102,8 @@ static void take_hashes(run *r, const batch_slot *slot, const json_t *result) {
 }
 
 /**
- * Who ran out of what all had to share may not when it is alone. Who was killed from outside may have been chosen by
- * chance, even twice.
+ * Who ran out of what all had to share may not when it is alone. Who was killed from outside may have been
+ * chosen by chance, even twice.
  */
 static bool may_try_again(const run *r, const batch_slot *slot, bool was_killed) {
   enum { KILLS_MAX = 3 };

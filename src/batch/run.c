@@ -123,6 +123,13 @@ static void release(run *r, batch_slot *slot) {
   r->in_flight--;
 }
 
+/** It is no sign against a mesh, but it had better be alone from now on. */
+static bool note_loss(run *r, batch_item *item) {
+  item->aborted = item->aborted > 0 ? item->aborted : 1;
+  return batch_journal_add(
+      &r->journal, json_pack("{s:s, s:o}", "event", "lost", "item", batch_json_string(item->id)), r->error);
+}
+
 /** Someone has ended the zygote, and its children with it. What they were at is begun anew, later and alone.
  */
 static void replace_zygote(run *r) {
@@ -132,10 +139,8 @@ static void replace_zygote(run *r) {
     batch_slot *slot = &r->slots[s];
     if (!slot->is_used)
       continue;
-    if (!slot->is_hashing) {
-      batch_item *item = &r->manifest->items[slot->items[0]];
-      item->aborted = (uint8_t)(slot->is_alone ? item->aborted + 1 : item->aborted > 0 ? item->aborted : 1);
-    }
+    if (!slot->is_hashing && !note_loss(r, &r->manifest->items[slot->items[0]]))
+      batch_break(r);
     release(r, slot);
   }
   if (++r->losses > LOSSES_MAX)

@@ -127,7 +127,7 @@ def disturb(run, chance):
         kill(run.pid)
     elif kind == "zygote" and generations:
         kill(chance.choice(generations[0]))
-    elif kind == "child" and len(generations) > 1:
+    elif kind == "child" and len(generations) > 1 and len(generations[1]) > 1:  # one that is alone has been chosen before
         kill(chance.choice(generations[1]))
     elif kind == "child":
         return None
@@ -253,7 +253,10 @@ def main():
             fail("verify: " + verified.stdout.decode())
         say("%d meshes, %d outputs: %s" % (len(records), len(after), dict(collections.Counter(r["status"] for r in records.values()))))
     finally:
-        shutil.rmtree(work, ignore_errors=True)
+        if os.environ.get("KEEP"):
+            say("kept: " + work)
+        else:
+            shutil.rmtree(work, ignore_errors=True)
 
 
 main()

@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * voxmend-unpack ARCHIVE MOST: hands over the meshes of an archive (batch/archive.h). It is a program of its
+ * own, as libarchive brings so many libraries with it that the others would start later for it.
+ */
 #include "batch/unpack.h"
-#include "config.h"
 
+#include <archive.h>
+#include <archive_entry.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -29,10 +34,6 @@ static bool send_over(int channel, const batch_unpacked *head, int descriptor) {
   while (sent < 0 && errno == EINTR);
   return sent >= 0;
 }
-
-#ifdef HAVE_ARCHIVE
-#include <archive.h>
-#include <archive_entry.h>
 
 /** Copies the bytes of a member into a file in memory; -1 and a problem where they cannot be had. */
 static int take_bytes(struct archive *archive, batch_unpacked *head, uint64_t most) {
@@ -82,7 +83,7 @@ static bool hand_over(struct archive *archive, struct archive_entry *entry, uint
   return good;
 }
 
-void batch_unpack(const char *path, uint64_t most, int channel) {
+static void unpack(const char *path, uint64_t most, int channel) {
   enum { BLOCK = 1 << 16 };
   batch_unpacked end = {.is_end = true};
   struct archive *archive = archive_read_new();
@@ -105,11 +106,11 @@ void batch_unpack(const char *path, uint64_t most, int channel) {
   send_over(channel, &end, -1);
   archive_read_free(archive);
 }
-#else
-void batch_unpack(const char *path, uint64_t most, int channel) {
-  batch_unpacked end = {.is_end = true};
-  (void)path, (void)most;
-  snprintf(end.problem, sizeof end.problem, "this build reads no archives (libarchive); unpack it first");
-  send_over(channel, &end, -1);
+
+int main(int argc, char **argv) {
+  uint64_t most = 0;
+  if (argc != 3 || sscanf(argv[2], "%" SCNu64, &most) != 1)
+    return 2;
+  unpack(argv[1], most, BATCH_UNPACK_CHANNEL);
+  return 0;
 }
-#endif
