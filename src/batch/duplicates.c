@@ -70,17 +70,20 @@ static batch_turn next_hashes(run *r, void *payload) {
   int64_t chunk[BATCH_HASHES];
   uint64_t bytes = 0;
   int count = 0;
-  for (; h->next < h->count && count < BATCH_HASHES && bytes < UINT64_C(64) << 20; h->next++) {
+  size_t names = 0;
+  for (; h->next < h->count && count < BATCH_HASHES && bytes < UINT64_C(64) << 20 &&
+         names < BATCH_REQUEST_MAX / 4;
+       h->next++) {
     int64_t index = h->items[h->next] - r->manifest->items;
     if (r->contents[index].half[0] | r->contents[index].half[1])
       continue;
     chunk[count++] = index;
     bytes += h->items[h->next]->bytes;
+    names += strlen(h->items[h->next]->path);
   }
   if (count == 0)
     return BATCH_NOTHING_LEFT;
-  batch_give_hashes(r, chunk, count);
-  return BATCH_GIVEN_OUT;
+  return batch_give_hashes(r, chunk, count) ? BATCH_GIVEN_OUT : BATCH_LATER;
 }
 
 /* ---- Who is the same ---- */

@@ -59,18 +59,22 @@ static bool note_start(run *r, const batch_item *item, bool is_alone) {
   return batch_journal_add(&r->journal, record, r->error);
 }
 
-static bool send_request(run *r, const batch_slot *slot, json_t *job, int input, const batch_limits *limits) {
+/**
+ * Occupies the slot and sends what its child is to do. Where the zygote has gone this cannot be told from one
+ * that goes a moment later: it is found out when its endings are waited for. False if it is too long to be
+ * sent.
+ */
+static bool send_request(run *r, batch_slot *slot, json_t *job, int input, const batch_limits *limits) {
   char *text = job ? json_dumps(job, JSON_COMPACT) : NULL;
+  bool fits = text && strlen(text) < BATCH_REQUEST_MAX;
   json_decref(job);
-  bool good = text ? batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits, r->error)
-                   : false;
+  if (fits) {
+    slot->is_used = true;
+    r->in_flight++;
+    batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits);
+  }
   free(text);
-  return good;
-}
-
-static void occupy(run *r, batch_slot *slot) {
-  slot->is_used = true;
-  r->in_flight++;
+  return fits;
 }
 
 bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
@@ -91,15 +95,14 @@ bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
   if (is_alone && r->settings->alone_memory)
     limits.memory = r->settings->alone_memory;
   *slot = (batch_slot){.is_alone = is_alone, .items = {index}, .count = 1};
-  if (!send_request(r, slot, job, input, &limits)) /* also where the zygote has gone: it is found out soon */
+  if (!send_request(r, slot, job, input, &limits))
     return batch_end_item(
         r, index, BATCH_FAILED,
-        json_pack("{s:s, s:o}", "stage", "start", "message", batch_json_string(r->error->text)));
-  item->is_in_flight = true;
-  occupy(r, slot);
-  return true;
+        json_pack("{s:s, s:s}", "stage", "start", "message", "its names and options are too long together"));
+  return item->is_in_flight = true;
 }
 
+/** Where it is too long to be sent they are not told to be duplicates. */
 bool batch_give_hashes(run *r, const int64_t *items, int count) {
   batch_slot *slot = free_slot(r);
   json_t *job = json_object(), *paths = json_array();
@@ -108,10 +111,7 @@ bool batch_give_hashes(run *r, const int64_t *items, int count) {
   json_object_set_new(job, "hash", paths);
   *slot = (batch_slot){.is_hashing = true, .count = count};
   memcpy(slot->items, items, (size_t)count * sizeof *items);
-  if (!send_request(r, slot, job, -1, &r->settings->limits))
-    return batch_break(r);
-  occupy(r, slot);
-  return true;
+  return send_request(r, slot, job, -1, &r->settings->limits);
 }
 
 /* ---- Waiting ---- */

@@ -36,11 +36,9 @@ bool batch_zygote_start(batch_zygote *out, batch_work *work, void *payload, batc
   return true;
 }
 
-bool batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
-                       const batch_limits *limits, batch_error *error) {
+void batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
+                       const batch_limits *limits) {
   size_t length = strlen(request);
-  if (length >= BATCH_REQUEST_MAX)
-    return batch_fail(error, "its names and options are too long together");
   batch_request head = {ticket, *limits, length};
   struct iovec parts[2] = {{&head, sizeof head}, {(void *)(uintptr_t)request, length}};
   struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
@@ -54,11 +52,8 @@ bool batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *reques
     rights->cmsg_len = CMSG_LEN(sizeof(int));
     memcpy(CMSG_DATA(rights), &input, sizeof input);
   }
-  ssize_t sent;
-  do
-    sent = sendmsg(zygote->channel, &message, MSG_NOSIGNAL);
-  while (sent < 0 && errno == EINTR);
-  return sent >= 0 || batch_fail_errno(error, "cannot reach the process that starts others");
+  while (sendmsg(zygote->channel, &message, MSG_NOSIGNAL) < 0 && errno == EINTR) {
+  }
 }
 
 int batch_zygote_receive(batch_zygote *zygote, batch_ending *out, char buffer[BATCH_ENDING_BYTES]) {

@@ -13,6 +13,13 @@ voxmend() {
   mask_batch <raw-err.txt >&2
   return "$status"
 }
+# Pictures are among what is made.
+voxmend voxelize in/torus.off -o t.npy -r 8 -q
+if voxmend view t.npy -o probe.png 2>err.log >/dev/null; then
+  rm probe.png
+elif grep -q libpng raw-err.txt; then
+  exit 77
+fi
 mkdir -p data/a data/b
 cp in/cube.off in/sphere.off in/open_box.off data/a/
 cp in/cube.off data/b/again.off
