@@ -183,19 +183,30 @@ static void wait_a_while(run *r, int waits_for, bool is_late) {
     take_endings(r);
 }
 
-/** Memory that is left for one more; the kernel's own estimate. */
-static bool has_room(const run *r) {
-  const unsigned long long least_kb = 256 << 10;
+/** Memory that is left, as a share of all; the kernel's own estimate. 1 where it is not known. */
+static double memory_left(void) {
   unsigned long long total = 0, available = 0;
   char line[128];
-  FILE *file = r->in_flight > 0 ? fopen("/proc/meminfo", "re") : NULL;
-  while (file && fgets(line, sizeof line, file) && !available) {
+  FILE *file = fopen("/proc/meminfo", "re");
+  while (file && fgets(line, sizeof line, file) && !available)
     if (sscanf(line, "MemTotal: %llu", &total) != 1)
       (void)sscanf(line, "MemAvailable: %llu", &available);
-  }
   if (file)
     fclose(file);
-  return !available || available > (total / 20 < least_kb ? total / 20 : least_kb);
+  return total && available ? (double)available / (double)total : 1;
+}
+
+/** Whether there is memory for one more; others at work will give theirs back. */
+static bool has_room(run *r) {
+  const double least = 0.05, look_again_ms = 50;
+  double now = batch_clock_ms();
+  if (r->in_flight == 0)
+    return true;
+  if (now - r->memory_seen_ms > look_again_ms) {
+    r->memory_left = memory_left();
+    r->memory_seen_ms = now;
+  }
+  return r->memory_left > least;
 }
 
 /** A second signal does not wait for those at work. */
