@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/archive.h"
+#include "batch/descriptor.h"
 #include "batch/unpack.h"
 
 #include <errno.h>
@@ -101,10 +102,10 @@ bool batch_unpacker_start(batch_unpacker *out, const char *path, uint64_t most, 
 
 int batch_unpacker_next(batch_unpacker *unpacker, batch_member *out, batch_error *error) {
   batch_unpacked head;
-  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+  batch_descriptor_room room;
   struct iovec part = {&head, sizeof head};
   struct msghdr message = {
-      .msg_iov = &part, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof control};
+      .msg_iov = &part, .msg_iovlen = 1, .msg_control = &room, .msg_controllen = sizeof room.bytes};
   ssize_t got;
   do
     got = recvmsg(unpacker->channel, &message, MSG_CMSG_CLOEXEC);
@@ -118,12 +119,9 @@ int batch_unpacker_next(batch_unpacker *unpacker, batch_member *out, batch_error
     batch_fail(error, "%s", head.problem);
   if (head.is_end)
     return head.problem[0] ? -1 : 0;
-  *out = (batch_member){.bytes = head.bytes, .descriptor = -1};
+  *out = (batch_member){.bytes = head.bytes, .descriptor = batch_descriptor_take(&message)};
   memcpy(out->name, head.name, sizeof out->name);
   memcpy(out->problem, head.problem, sizeof out->problem);
-  struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
-  if (rights && rights->cmsg_type == SCM_RIGHTS)
-    memcpy(&out->descriptor, CMSG_DATA(rights), sizeof out->descriptor);
   return 1;
 }
 

@@ -29,7 +29,7 @@ typedef struct run {
   int in_flight, losses; /**< losses: of zygotes, one after another */
   bool is_broken;
   double memory_left, memory_seen_ms; /**< as a share, and when that was */
-  char *ending; /**< BATCH_ENDING_BYTES */
+  char *ending;                       /**< BATCH_ENDING_BYTES */
 } run;
 
 /** Whether nothing new is to be begun. */

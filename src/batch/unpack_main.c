@@ -3,6 +3,7 @@
  * voxmend-unpack ARCHIVE MOST: hands over the meshes of an archive (batch/archive.h). It is a program of its
  * own, as libarchive brings so many libraries with it that the others would start later for it.
  */
+#include "batch/descriptor.h"
 #include "batch/unpack.h"
 
 #include <archive.h>
@@ -18,16 +19,8 @@
 static bool send_over(int channel, const batch_unpacked *head, int descriptor) {
   struct iovec part = {(void *)(uintptr_t)head, sizeof *head};
   struct msghdr message = {.msg_iov = &part, .msg_iovlen = 1};
-  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {0};
-  if (descriptor >= 0) {
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
-    rights->cmsg_level = SOL_SOCKET;
-    rights->cmsg_type = SCM_RIGHTS;
-    rights->cmsg_len = CMSG_LEN(sizeof(int));
-    memcpy(CMSG_DATA(rights), &descriptor, sizeof descriptor);
-  }
+  batch_descriptor_room room;
+  batch_descriptor_attach(&message, &room, descriptor);
   ssize_t sent;
   do
     sent = sendmsg(channel, &message, MSG_NOSIGNAL);

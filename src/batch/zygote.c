@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The program's side: starting the zygote, and the messages that go over. */
+#include "batch/descriptor.h"
 #include "batch/zygote_loop.h"
 
 #include <errno.h>
@@ -42,16 +43,8 @@ void batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *reques
   batch_request head = {ticket, *limits, length};
   struct iovec parts[2] = {{&head, sizeof head}, {(void *)(uintptr_t)request, length}};
   struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
-  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {0};
-  if (input >= 0) {
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
-    rights->cmsg_level = SOL_SOCKET;
-    rights->cmsg_type = SCM_RIGHTS;
-    rights->cmsg_len = CMSG_LEN(sizeof(int));
-    memcpy(CMSG_DATA(rights), &input, sizeof input);
-  }
+  batch_descriptor_room room;
+  batch_descriptor_attach(&message, &room, input);
   while (sendmsg(zygote->channel, &message, MSG_NOSIGNAL) < 0 && errno == EINTR) {
   }
 }

@@ -2,6 +2,7 @@
 /** The zygote: forks, waits, keeps the time, and tells how each child ended. */
 #include "batch/zygote_loop.h"
 #include "batch/cage.h"
+#include "batch/descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -226,19 +227,16 @@ static void start_child(zygote *z, const batch_request *head, const char *text, 
 /** False when the other end is closed. */
 static bool take_request(zygote *z) {
   batch_request head;
-  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+  batch_descriptor_room room;
   struct iovec part = {z->request, sizeof z->request - 1};
   struct msghdr message = {
-      .msg_iov = &part, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof control};
+      .msg_iov = &part, .msg_iovlen = 1, .msg_control = &room, .msg_controllen = sizeof room.bytes};
   ssize_t got = recvmsg(z->channel, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
   if (got < 0 && (errno == EAGAIN || errno == EINTR))
     return true;
   if (got < (ssize_t)sizeof head)
     return false;
-  int input = -1;
-  struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
-  if (rights && rights->cmsg_type == SCM_RIGHTS)
-    memcpy(&input, CMSG_DATA(rights), sizeof input);
+  int input = batch_descriptor_take(&message);
   memcpy(&head, z->request, sizeof head);
   z->request[got] = '\0';
   start_child(z, &head, z->request + sizeof head, input);
