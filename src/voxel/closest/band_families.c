@@ -14,7 +14,7 @@ enum {
 };
 
 /** How wide a family gets, in voxels; a wider triangle is one by itself. */
-static const double widest = 2;
+static const double widest = 4;
 /** A length in floats is off by less than this part of the lengths that it is made from: ninety-six
  * roundings, where some sixty are made. */
 static const double rounding = 96 * 0x1p-24;
@@ -228,8 +228,8 @@ static void find_voxels(vxm_band_family *f, const vxm_band_grid *grid, const box
     int axis = grid->axes[a];
     double low = (around->low[axis] - grid->band) / grid->step[axis] - 0.5,
            high = (around->high[axis] + grid->band) / grid->step[axis] - 0.5, most = (double)grid->dims[a];
-    f->box[a][0] = (int32_t)least_of(most_of(floor(low - 1e-6), 0), most);
-    f->box[a][1] = (int32_t)least_of(most_of(ceil(high + 1e-6) + 1, 0), most);
+    f->box[a][0] = (int32_t)least_of(most_of(ceil(low - 1e-6), 0), most);
+    f->box[a][1] = (int32_t)least_of(most_of(floor(high + 1e-6) + 1, 0), most);
   }
   for (int a = 0; a < 3; a++)
     if (f->box[a][0] >= f->box[a][1])
@@ -260,11 +260,16 @@ static void make_family(const builder *b, size_t at, size_t first, size_t end, c
   for (size_t i = first; i < end; i++)
     narrow_triangle(&made->rough[i], &made->exact[i], f->origin, grid->axes);
   choose_frame(axis, &made->exact[first], end - first);
+  for (int a = 0; a < 3; a++) {
+    int c = grid->axes[a];
+    f->half[a] = (float)(around.high[c] - f->origin[c]);
+  }
   double off = (measure_family(f, grid->axes, corners, (const double(*)[3])axis) + sqrt(reach2)) * rounding;
   f->room = (float)(off * (2 * (grid->band + 1) + 3 * off));
   for (int a = 0; a < 3; a++) {
     f->low[a] -= (float)off;
     f->high[a] += (float)off;
+    f->half[a] += (float)off;
   }
   find_voxels(f, grid, &around);
 }

@@ -30,6 +30,7 @@ typedef struct vxm_band_family {
   double origin[3]; /**< amid them; x, y, z */
   float axis[3][3]; /**< of a box about them */
   float low[3], high[3];
+  float half[3];  /**< of the box along the grid's axes, whose middle is the origin */
   float point[3]; /**< of the surface, about in the middle */
   float room;     /**< what squared lengths that matter may be wrong by */
   uint32_t first, count;
