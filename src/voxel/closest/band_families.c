@@ -167,11 +167,14 @@ static void choose_frame(double axis[3][3], const vxm_distance_triangle *t, size
   cross(axis[1], axis[2], axis[0]);
 }
 
-static void narrow_triangle(vxm_band_triangle *out, const vxm_distance_triangle *t, const double origin[3],
-                            const int axes[3]) {
+static void narrow_triangle(vxm_band_triangle *out, const vxm_distance_triangle *t, const double corner[3][3],
+                            const double origin[3], const int axes[3]) {
   double base[3];
-  for (int a = 0; a < 3; a++)
+  for (int a = 0; a < 3; a++) {
+    int c = axes[a];
     base[a] = t->base[a] - origin[a];
+    out->middle[a] = (float)((corner[0][c] + corner[1][c] + corner[2][c]) / 3 - origin[c]);
+  }
   for (int a = 0; a < 3; a++) {
     for (int c = 0; c < 3; c++)
       out->axis[a][c] = (float)t->axis[a][axes[c]];
@@ -185,10 +188,10 @@ static void narrow_triangle(vxm_band_triangle *out, const vxm_distance_triangle 
   }
 }
 
-/** The box of a family in its frame, and a corner near the middle. Returns how far it reaches. */
+/** The box of a family in its frame. Returns how far it reaches. */
 static double measure_family(vxm_band_family *f, const int axes[3], const double (*corners)[3][3],
                              const double axis[3][3]) {
-  double reach2 = 0, nearest = INFINITY, low[3], high[3];
+  double reach2 = 0, low[3], high[3];
   for (int a = 0; a < 3; a++) {
     low[a] = INFINITY;
     high[a] = -INFINITY;
@@ -196,14 +199,8 @@ static double measure_family(vxm_band_family *f, const int axes[3], const double
       f->axis[a][c] = (float)axis[a][axes[c]];
   }
   for (uint32_t i = 0; i < f->count; i++) {
-    double corner[3][3], middle[3];
+    double corner[3][3];
     memcpy(corner, corners[i], sizeof corner);
-    for (int a = 0; a < 3; a++)
-      middle[a] = (corner[0][a] + corner[1][a] + corner[2][a]) / 3 - f->origin[a];
-    double off = dot(middle, middle);
-    for (int a = 0; a < 3 && off < nearest; a++)
-      f->point[a] = (float)middle[axes[a]];
-    nearest = least_of(nearest, off);
     for (int c = 0; c < 3; c++) {
       for (int a = 0; a < 3; a++)
         corner[c][a] -= f->origin[a];
@@ -258,7 +255,7 @@ static void make_family(const builder *b, size_t at, size_t first, size_t end, c
     reach2 += far * far;
   }
   for (size_t i = first; i < end; i++)
-    narrow_triangle(&made->rough[i], &made->exact[i], f->origin, grid->axes);
+    narrow_triangle(&made->rough[i], &made->exact[i], corners[i - first], f->origin, grid->axes);
   choose_frame(axis, &made->exact[first], end - first);
   for (int a = 0; a < 3; a++) {
     int c = grid->axes[a];

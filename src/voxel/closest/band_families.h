@@ -23,6 +23,7 @@ enum { VXM_BAND_FAMILY = 8 /**< triangles in a family at most */ };
 typedef struct vxm_band_triangle {
   float axis[3][3], offset[3]; /**< a point q lies at axis q - offset in the triangle's frame */
   float length, leg[2][2], leg_length[2];
+  float middle[3];
 } vxm_band_triangle;
 
 /** Triangles side by side. All threes that are not doubles are in the order fast, middle, slow. */
@@ -31,7 +32,6 @@ typedef struct vxm_band_family {
   float axis[3][3]; /**< of a box about them */
   float low[3], high[3];
   float half[3];  /**< of the box along the grid's axes, whose middle is the origin */
-  float point[3]; /**< of the surface, about in the middle */
   float room;     /**< what squared lengths that matter may be wrong by */
   uint32_t first, count;
   int32_t box[3][2]; /**< the voxels that may be nearer than the band; empty if box[0][0] >= box[0][1] */
