@@ -40,10 +40,6 @@ INLINE wide_mask wide_less(wide a, wide b) {
   return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ);
 }
 
-INLINE wide_mask wide_equal(wide a, wide b) {
-  return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_EQ_OQ);
-}
-
 INLINE wide_mask wide_not_above(wide a, wide b) {
   return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_NGT_UQ);
 }

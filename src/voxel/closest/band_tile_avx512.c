@@ -42,10 +42,6 @@ INLINE wide_mask wide_less(wide a, wide b) {
   return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
 }
 
-INLINE wide_mask wide_equal(wide a, wide b) {
-  return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_EQ_OQ);
-}
-
 INLINE wide_mask wide_not_above(wide a, wide b) {
   return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_NGT_UQ);
 }

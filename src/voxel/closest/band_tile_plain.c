@@ -35,10 +35,6 @@ INLINE wide_mask wide_less(wide a, wide b) {
   return a < b;
 }
 
-INLINE wide_mask wide_equal(wide a, wide b) {
-  return a == b;
-}
-
 INLINE wide_mask wide_not_above(wide a, wide b) {
   return ~(a > b);
 }
