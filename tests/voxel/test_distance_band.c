@@ -198,8 +198,9 @@ static void test_values(void **state) {
       tile.squares[i] = fmin(6.25, 9 * vxm_rng_unit(&rng));
     for (size_t w = 0; w < sizeof words / sizeof *words; w++)
       words[w] = w % 3 ? vxm_rng_next(&rng) : w % 2 ? ~UINT64_C(0) : 0;
-    vxm_band_values out = {values, 200, (size_t)200 * VXM_BAND_TILE, round % 5 ? words : NULL, 5, 5 * VXM_BAND_TILE,
-                           shift, 2.5, 0.3};
+    vxm_band_values out = {
+        values, 200, (size_t)200 * VXM_BAND_TILE, round % 5 ? words : NULL, 5, 5 * VXM_BAND_TILE, shift,
+        2.5,    0.3};
     for (size_t b = 0; b < build_count; b++) {
       vxm_band_tally tally = {.least = INFINITY, .greatest = -INFINITY}, right = tally;
       if (is_fill)
@@ -235,8 +236,9 @@ static void test_memory(void **state) {
   vxm_band_grid grid = {{0, 1, 2}, {50, 70, 90}, {1, 1, 1}, 3};
   for (int part = 0; part <= 10; part++) {
     vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
-    options.memory_limit =
-        (vxm_band_families_bytes(COUNT) + vxm_distance_band_bytes(COUNT, 2, grid.dims)) * (uint64_t)part / 10 + 1;
+    options.memory_limit = (vxm_band_families_bytes(COUNT) + vxm_distance_band_bytes(COUNT, 2, grid.dims)) *
+                               (uint64_t)part / 10 +
+                           1;
     vxm_context *own;
     assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
     vxm_band_families *all;

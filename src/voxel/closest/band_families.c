@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/closest/band_families.h"
-#include "voxel/closest/band_tile.h"
 #include "base/bits.h"
 #include "base/threads.h"
 #include "mesh/sort.h"
+#include "voxel/closest/band_tile.h"
 
 #include <math.h>
 #include <string.h>
@@ -234,7 +234,8 @@ static void find_voxels(vxm_band_family *f, const vxm_band_grid *grid, const box
 }
 
 /** With the frames of its triangles made. */
-static void make_family(const builder *b, size_t at, size_t first, size_t end, const double (*corners)[3][3]) {
+static void make_family(const builder *b, size_t at, size_t first, size_t end,
+                        const double (*corners)[3][3]) {
   vxm_band_families *made = b->made;
   const vxm_band_grid *grid = &made->grid;
   vxm_band_family *f = &made->families[at];
@@ -296,8 +297,8 @@ static void make_families(size_t slice, int worker, void *payload) {
 /* ---- All of them ---- */
 
 uint64_t vxm_band_families_bytes(size_t count) {
-  uint64_t triangle = sizeof(vxm_distance_triangle) + sizeof(vxm_band_triangle) + 2 * sizeof(uint32_t) +
-                      2 * sizeof(uint64_t);
+  uint64_t triangle =
+      sizeof(vxm_distance_triangle) + sizeof(vxm_band_triangle) + 2 * sizeof(uint32_t) + 2 * sizeof(uint64_t);
   return count * (triangle + sizeof(vxm_band_family)) + sizeof(vxm_band_families) + 4096;
 }
 

@@ -31,8 +31,8 @@ typedef struct vxm_band_family {
   double origin[3]; /**< amid them; x, y, z */
   float axis[3][3]; /**< of a box about them */
   float low[3], high[3];
-  float half[3];  /**< of the box along the grid's axes, whose middle is the origin */
-  float room;     /**< what squared lengths that matter may be wrong by */
+  float half[3]; /**< of the box along the grid's axes, whose middle is the origin */
+  float room;    /**< what squared lengths that matter may be wrong by */
   uint32_t first, count;
   int32_t box[3][2]; /**< the voxels that may be nearer than the band; empty if box[0][0] >= box[0][1] */
 } vxm_band_family;

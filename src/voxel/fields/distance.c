@@ -319,12 +319,12 @@ vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const 
   uint64_t held = vxm_surface_held_bytes(soup, &triangles);
   int workers = vxm_context_threads(model->context);
   const int64_t dims[3] = {space->dims[layout.fast], space->dims[layout.middle], space->dims[layout.slow]};
-  uint64_t each = vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double) + sizeof(void *);
-  uint64_t engine = is_narrow(options->band)
-                        ? vxm_band_families_bytes(triangles) + vxm_distance_band_bytes(triangles, workers, dims)
-                        : vxm_distance_bvh_bytes(triangles) + (uint64_t)workers * each;
-  uint64_t fixed =
-      held + engine + soup->vertex_count * sizeof(double[3]) + (uint64_t)workers * sizeof(tally);
+  uint64_t each =
+      vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double) + sizeof(void *);
+  uint64_t engine = is_narrow(options->band) ? vxm_band_families_bytes(triangles) +
+                                                   vxm_distance_band_bytes(triangles, workers, dims)
+                                             : vxm_distance_bvh_bytes(triangles) + (uint64_t)workers * each;
+  uint64_t fixed = held + engine + soup->vertex_count * sizeof(double[3]) + (uint64_t)workers * sizeof(tally);
   uint64_t values = (uint64_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(float);
   return vxm_field_plan_of(out, model, space, layout, options->is_unsigned ? 0 : 1, true, fixed,
                            is_whole ? 0 : values, error);

@@ -13,16 +13,16 @@ struct vxm_distance_band {
   const vxm_band_families *families;
   const vxm_band_kernels *kernels;
   int workers;
-  vxm_band_tile *tiles;  /**< of each worker */
-  uint32_t *near;        /**< families near a tile, of each worker */
-  size_t *starts;        /**< of the bins at hand, and the end of the last */
-  uint32_t *entries;     /**< the families of some bins */
-  size_t room;           /**< entries that there is room for: the families of any one bin at least */
-  int64_t across, down;  /**< bins beside each other: tiles in a row, rows of tiles in a slice */
-  int64_t begin, end;    /**< slices at hand */
+  vxm_band_tile *tiles;   /**< of each worker */
+  uint32_t *near;         /**< families near a tile, of each worker */
+  size_t *starts;         /**< of the bins at hand, and the end of the last */
+  uint32_t *entries;      /**< the families of some bins */
+  size_t room;            /**< entries that there is room for: the families of any one bin at least */
+  int64_t across, down;   /**< bins beside each other: tiles in a row, rows of tiles in a slice */
+  int64_t begin, end;     /**< slices at hand */
   size_t first_bin, base; /**< whose entries are at hand, and where they would begin */
-  int64_t piece, pieces; /**< tiles of a bin that are one task, and tasks in a bin */
-  vxm_band_values out;   /**< of the first slice */
+  int64_t piece, pieces;  /**< tiles of a bin that are one task, and tasks in a bin */
+  vxm_band_values out;    /**< of the first slice */
   vxm_band_tally *tallies;
   vxm_task_progress watch;
 };
@@ -220,8 +220,9 @@ vxm_status vxm_distance_band_measure(vxm_distance_band *band, float *values, con
 
 uint64_t vxm_distance_band_bytes(size_t triangles, int workers, const int64_t dims[3]) {
   uint64_t bins = (uint64_t)tiles_of(dims[1]) * (uint64_t)tiles_of(dims[2]) + 1;
-  return sizeof(vxm_distance_band) + (uint64_t)workers * (sizeof(vxm_band_tile) + triangles * sizeof(uint32_t)) +
-         bins * sizeof(size_t) + room_of(triangles) * sizeof(uint32_t) + 4096;
+  return sizeof(vxm_distance_band) +
+         (uint64_t)workers * (sizeof(vxm_band_tile) + triangles * sizeof(uint32_t)) + bins * sizeof(size_t) +
+         room_of(triangles) * sizeof(uint32_t) + 4096;
 }
 
 vxm_status vxm_distance_band_create(vxm_distance_band **out, const vxm_band_families *families, int workers,

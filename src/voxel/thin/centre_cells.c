@@ -24,8 +24,10 @@ static const vxm_octree_node *kept_node(vxm_kept_bricks *kept, const vxm_sparse 
   enum { LOW = (1 << VXM_KEPT_BITS) - 1 };
   const int64_t mask = (INT64_C(1) << VXM_VIEW_AXIS_BITS) - 1;
   int64_t i = bit & mask, j = bit >> VXM_VIEW_AXIS_BITS & mask, k = bit >> 2 * VXM_VIEW_AXIS_BITS & mask;
-  size_t at = (size_t)((k >> 4 & LOW) << 2 * VXM_KEPT_BITS | (j >> 4 & LOW) << VXM_KEPT_BITS | (i >> 4 & LOW));
-  uint64_t number = vxm_brick_number((i >> 2) << 2 * VXM_VIEW_AXIS_BITS | (j >> 2) << VXM_VIEW_AXIS_BITS | k >> 2);
+  size_t at =
+      (size_t)((k >> 4 & LOW) << 2 * VXM_KEPT_BITS | (j >> 4 & LOW) << VXM_KEPT_BITS | (i >> 4 & LOW));
+  uint64_t number =
+      vxm_brick_number((i >> 2) << 2 * VXM_VIEW_AXIS_BITS | (j >> 2) << VXM_VIEW_AXIS_BITS | k >> 2);
   if (kept->node_number[at] != number) {
     kept->node_number[at] = number;
     kept->nodes[at] = vxm_octree_low_node(octree, i, j, k);

@@ -96,8 +96,8 @@ static inline int64_t vxm_view_bit(const vxm_view *view, const int64_t voxel[3])
 /** See vxm_view_bit_set, of an octree. */
 bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit);
 
-/** Bricks and nodes of an octree that a thread has looked at, each where its number says. What a triangle asks
- * for lies side by side, and going down an octree takes a while. */
+/** Bricks and nodes of an octree that a thread has looked at, each where its number says. What a triangle
+ * asks for lies side by side, and going down an octree takes a while. */
 enum { VXM_KEPT_BITS = 3, VXM_KEPT_BRICKS = 1 << 3 * VXM_KEPT_BITS };
 
 typedef struct vxm_kept_bricks {
@@ -111,7 +111,8 @@ typedef struct vxm_kept_bricks {
 vxm_kept_bricks *vxm_view_kept_bricks(const vxm_view *view);
 /** The number of the brick of a voxel of an octree, by the voxel's bit; 0 is none. */
 static inline uint64_t vxm_brick_number(int64_t bit) {
-  const uint64_t low = UINT64_C(3) | UINT64_C(3) << VXM_VIEW_AXIS_BITS | UINT64_C(3) << 2 * VXM_VIEW_AXIS_BITS;
+  const uint64_t low =
+      UINT64_C(3) | UINT64_C(3) << VXM_VIEW_AXIS_BITS | UINT64_C(3) << 2 * VXM_VIEW_AXIS_BITS;
   return ((uint64_t)bit & ~low) | 1;
 }
 
