@@ -11,7 +11,7 @@
 #include <string.h>
 
 /** Bands up to that are measured from the triangles; wider ones, and all of space, by the tree. */
-static const double widest_band = 8;
+static const double widest_band = 6;
 
 typedef vxm_band_tally tally;
 
