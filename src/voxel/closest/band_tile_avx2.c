@@ -6,9 +6,9 @@
 #include <immintrin.h>
 #include <stdint.h>
 #if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2,bmi,bmi2,popcnt,lzcnt"))), apply_to = function)
+#pragma clang attribute push(__attribute__((target("avx2,fma,bmi,bmi2,popcnt,lzcnt"))), apply_to = function)
 #else
-#pragma GCC target("avx2,bmi,bmi2,popcnt,lzcnt")
+#pragma GCC target("avx2,fma,bmi,bmi2,popcnt,lzcnt")
 #endif
 
 #define LANES 4
@@ -33,7 +33,7 @@ INLINE wide wide_min(wide a, wide b) {
 }
 
 INLINE wide wide_fma(wide a, wide b, wide c) {
-  return a * b + c;
+  return (wide)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
 }
 
 INLINE wide_mask wide_less(wide a, wide b) {

@@ -225,8 +225,9 @@ static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_err
 static vxm_status measure_windows(measure *m, const vxm_field_target *target, const vxm_field_plan *plan,
                                   vxm_error *error) {
   int64_t length = m->dims[2], slices = plan->slices;
-  if (slices > VXM_TILE) /* whole tiles cost less */
-    slices -= slices % VXM_TILE;
+  const int64_t tile = m->near ? VXM_BAND_TILE : VXM_TILE;
+  if (slices > tile) /* whole tiles cost less */
+    slices -= slices % tile;
   size_t slice = (size_t)(m->dims[0] * m->dims[1]);
   float *block = m->values;
   vxm_status status = VXM_OK;
