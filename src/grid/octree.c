@@ -57,6 +57,20 @@ uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_
   return sparse->bricks[index];
 }
 
+const vxm_octree_node *vxm_octree_low_node(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
+  static const vxm_octree_node full = {.full = ~UINT64_C(0)}, empty = {.full = 0};
+  size_t index = 0;
+  for (int l = sparse->levels - 1; l > 0; l--) {
+    const vxm_octree_node *node = &sparse->nodes[l][index];
+    int shift = 2 * l + 2;
+    unsigned child = vxm_octree_child((unsigned)(i >> shift), (unsigned)(j >> shift), (unsigned)(k >> shift));
+    if (!(node->mixed >> child & 1))
+      return node->full >> child & 1 ? &full : &empty;
+    index = vxm_octree_index(node, child);
+  }
+  return &sparse->nodes[0][index];
+}
+
 bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
   const int64_t *n = sparse->space.dims;
   if (i < 0 || j < 0 || k < 0 || i >= n[0] || j >= n[1] || k >= n[2])

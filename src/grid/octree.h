@@ -74,6 +74,9 @@ void vxm_octree_walk(const vxm_sparse *sparse, int axis, int64_t begin, int64_t 
 
 /** The brick with voxel (i,j,k), which lies within the dimensions. */
 uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
+/** The node of level 0 with voxel (i,j,k), which lies within the dimensions; or one that is as empty or as
+ * full, where a higher one is. */
+const vxm_octree_node *vxm_octree_low_node(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
 /** Whether voxel (i,j,k) is set; false outside. */
 bool vxm_octree_get(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);
 /** vxm_grid_count and vxm_grid_hash of the same voxels. */

@@ -142,6 +142,42 @@ static void test_many_slabs(void **state) {
   vxm_soup_destroy(soup);
 }
 
+/** A thin plate from corner to corner, one of whose sides passes through voxel centres in every so many
+ * columns; `turn` says along which axes it lies. */
+static void add_plate(vxm_soup *soup, vxm_rng *rng, int turn) {
+  static const uint32_t quad[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                      {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  uint32_t first = (uint32_t)soup->vertex_count;
+  double wide = 3 * (40 + (double)vxm_rng_below(rng, 50)), deep = 7 * (5 + (double)vxm_rng_below(rng, 8)),
+         rise = (double)vxm_rng_below(rng, 60), back = (double)vxm_rng_below(rng, 40),
+         thick = vxm_rng_below(rng, 2) ? 0.25 : -0.25;
+  for (int v = 0; v < 8; v++) {
+    double along[3] = {v & 1 ? wide : 0, v & 2 ? deep : 0, (v & 1 ? rise : 0) + (v & 2 ? back : 0)}, at[3];
+    along[2] += v & 4 ? thick : 0;
+    for (int a = 0; a < 3; a++)
+      at[(a + turn) % 3] = 4.5 + along[a];
+    shape_vertex(soup, at[0], at[1], at[2]);
+  }
+  for (int f = 0; f < 6; f++) {
+    const uint32_t *q = quad[f];
+    shape_triangle(soup, first + q[0], first + q[1], first + q[2]);
+    shape_triangle(soup, first + q[0], first + q[2], first + q[3]);
+  }
+}
+
+static void test_plates_through_centres(void **state) {
+  (void)state;
+  vxm_rng rng = {73};
+  vxm_space space = {{280, 280, 280}, {0, 0, 0}, {1, 1, 1}};
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  for (int round = 0; round < 12; round++) {
+    vxm_soup *soup = shape_empty(context);
+    add_plate(soup, &rng, round);
+    check(soup, &space, &options);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** Rounds: under a small limit the parts do not fit the bins together. */
 static void test_rounds_and_limits(void **state) {
   (void)state;
@@ -290,7 +326,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_random_soups),      cmocka_unit_test(test_many_slabs),
       cmocka_unit_test(test_rounds_and_limits), cmocka_unit_test(test_cancelling),
-      cmocka_unit_test(test_refusals),          cmocka_unit_test(test_real_meshes),
+      cmocka_unit_test(test_refusals),          cmocka_unit_test(test_plates_through_centres),
+      cmocka_unit_test(test_real_meshes),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -41,8 +41,8 @@ static double make_leg(double out[2], double along, double across) {
   return length;
 }
 
+/* The same operations in the same order as in triangle_frames.inc. */
 void vxm_distance_triangle_make(vxm_distance_triangle *out, const double corner[3][3]) {
-  static const double flat = 1e-15; /* a height of this part of the longest edge is rounding */
   double edge[3][3], length2[3];
   int longest = 0;
   for (int e = 0; e < 3; e++) {
@@ -67,7 +67,7 @@ void vxm_distance_triangle_make(vxm_distance_triangle *out, const double corner[
       across[a] -= part * along[a];
   }
   out->apex[1] = normalize(across);
-  if (!(out->apex[1] > flat * out->length)) {
+  if (!(out->apex[1] > VXM_DISTANCE_FLAT * out->length)) {
     out->apex[1] = 0;
     any_across(across, along);
   }
@@ -80,7 +80,7 @@ static double clamp(double x, double most) {
   return x < 0 ? 0 : x > most ? most : x;
 }
 
-/* The same operations in the same order as in distance_bvh_body.inc. */
+/* The same operations in the same order as in triangle_lanes.inc. */
 double vxm_triangle_distance2(const vxm_distance_triangle *t, const double p[3]) {
   double at[3], off[3], least, square;
   for (int a = 0; a < 3; a++)

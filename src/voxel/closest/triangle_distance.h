@@ -18,6 +18,9 @@ typedef struct vxm_distance_triangle {
   double leg_length[2];
 } vxm_distance_triangle;
 
+/** A height of this part of the longest edge is rounding. */
+#define VXM_DISTANCE_FLAT 1e-15
+
 void vxm_distance_triangle_make(vxm_distance_triangle *out, const double corner[3][3]);
 
 /** The squared distance of a point. */

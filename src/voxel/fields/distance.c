@@ -3,17 +3,17 @@
 #include "base/task_progress.h"
 #include "base/threads.h"
 #include "voxel/closest/distance_bvh.h"
+#include "voxel/fields/distance_band.h"
 #include "voxel/model/model_report.h"
 #include "voxel/surface/surface.h"
 
 #include <math.h>
 #include <string.h>
 
-/** What a worker has seen of the values, on a line of the cache of its own. */
-typedef struct tally {
-  _Alignas(64) int64_t exact, inside;
-  float least, greatest;
-} tally;
+/** Bands up to that are measured from the triangles; wider ones, and all of space, by the tree. */
+static const double widest_band = 6;
+
+typedef vxm_band_tally tally;
 
 typedef struct measure {
   vxm_context *context;
@@ -26,7 +26,9 @@ typedef struct measure {
   double band;            /**< INFINITY = none */
   float beyond[VXM_TILE]; /**< values beyond it */
   bool is_signed;
-  double (*places)[3]; /**< of the vertices, while the tree is made */
+  double (*places)[3]; /**< of the vertices, while triangles are taken */
+  vxm_band_families *families;
+  vxm_distance_band *near; /**< instead of all up to `squares`, where there is a narrow band */
   vxm_distance_bvh *nearest;
   vxm_distance_bvh_tile_fn *find;
   vxm_search **searches; /**< of each worker */
@@ -88,13 +90,34 @@ static void corners_of(double out[3][3], size_t triangle, const void *payload) {
     memcpy(out[c], m->places[m->surface->corners[3 * triangle + c]], sizeof out[c]);
 }
 
+static bool is_narrow(double band) {
+  return band > 0 && band <= widest_band;
+}
+
+/** For distances within a narrow band. */
+static void make_near(measure *m, vxm_error *error) {
+  vxm_context *context = m->context;
+  vxm_band_grid grid = {.band = m->band};
+  for (int a = 0; a < 3; a++) {
+    grid.axes[a] = m->axes[a];
+    grid.dims[a] = m->dims[a];
+    grid.step[a] = m->space->voxel_size[a] / m->side;
+  }
+  if (vxm_band_families_create(&m->families, context, m->surface->triangle_count, corners_of, m, &grid,
+                               error) == VXM_OK)
+    vxm_distance_band_create(&m->near, m->families, vxm_context_threads(context), error);
+}
+
 static vxm_status make_nearest(measure *m, vxm_error *error) {
   vxm_context *context = m->context;
   vxm_error local = VXM_ERROR_INIT;
   m->places = vxm_alloc(context, m->surface->soup->vertex_count, sizeof *m->places, &local);
   if (m->places) {
     vxm_parallel(context, PLACE_TASKS, place_vertices, m);
-    vxm_distance_bvh_create(&m->nearest, context, m->surface->triangle_count, corners_of, m, &local);
+    if (is_narrow(m->band))
+      make_near(m, &local);
+    else
+      vxm_distance_bvh_create(&m->nearest, context, m->surface->triangle_count, corners_of, m, &local);
   }
   vxm_free(context, m->places);
   m->places = NULL;
@@ -189,6 +212,8 @@ static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_err
   }
   if (status != VXM_OK)
     return status;
+  if (m->near)
+    return vxm_distance_band_measure(m->near, m->values, &m->solid, begin, end, m->side, m->tallies, error);
   size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_TILE - 1) / VXM_TILE));
   vxm_task_progress_start(&m->watch, m->context, "measuring distances", tiles, error);
   vxm_parallel(m->context, tiles, measure_tile, m);
@@ -200,8 +225,9 @@ static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_err
 static vxm_status measure_windows(measure *m, const vxm_field_target *target, const vxm_field_plan *plan,
                                   vxm_error *error) {
   int64_t length = m->dims[2], slices = plan->slices;
-  if (slices > VXM_TILE) /* whole tiles cost less */
-    slices -= slices % VXM_TILE;
+  const int64_t tile = m->near ? VXM_BAND_TILE : VXM_TILE;
+  if (slices > tile) /* whole tiles cost less */
+    slices -= slices % tile;
   size_t slice = (size_t)(m->dims[0] * m->dims[1]);
   float *block = m->values;
   vxm_status status = VXM_OK;
@@ -232,12 +258,15 @@ static void sum_up(vxm_distance_report *report, const measure *m, int workers) {
 static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
   vxm_context *context = m->context;
   vxm_error local = VXM_ERROR_INIT;
-  m->searches = vxm_calloc(context, (size_t)workers, sizeof *m->searches, &local);
-  m->squares = vxm_alloc(context, (size_t)workers * VXM_TILE_POINTS, sizeof *m->squares, &local);
+  if (m->nearest) {
+    m->searches = vxm_calloc(context, (size_t)workers, sizeof *m->searches, &local);
+    m->squares = vxm_alloc(context, (size_t)workers * VXM_TILE_POINTS, sizeof *m->squares, &local);
+  }
   m->tallies = vxm_calloc(context, (size_t)workers, sizeof *m->tallies, &local);
   for (int w = 0; w < workers && local.code == VXM_OK; w++) {
     m->tallies[w] = (tally){.least = INFINITY, .greatest = -INFINITY};
-    vxm_search_create(&m->searches[w], m->nearest, &local);
+    if (m->nearest)
+      vxm_search_create(&m->searches[w], m->nearest, &local);
   }
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
@@ -289,11 +318,14 @@ vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const 
   const vxm_soup *soup = model->analysis.soup;
   size_t triangles;
   uint64_t held = vxm_surface_held_bytes(soup, &triangles);
-  uint64_t workers = (uint64_t)vxm_context_threads(model->context);
-  uint64_t each = vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double) +
-                  sizeof(tally) + sizeof(void *);
-  uint64_t fixed =
-      held + vxm_distance_bvh_bytes(triangles) + soup->vertex_count * sizeof(double[3]) + workers * each;
+  int workers = vxm_context_threads(model->context);
+  const int64_t dims[3] = {space->dims[layout.fast], space->dims[layout.middle], space->dims[layout.slow]};
+  uint64_t each =
+      vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double) + sizeof(void *);
+  uint64_t engine = is_narrow(options->band) ? vxm_band_families_bytes(triangles) +
+                                                   vxm_distance_band_bytes(triangles, workers, dims)
+                                             : vxm_distance_bvh_bytes(triangles) + (uint64_t)workers * each;
+  uint64_t fixed = held + engine + soup->vertex_count * sizeof(double[3]) + (uint64_t)workers * sizeof(tally);
   uint64_t values = (uint64_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(float);
   return vxm_field_plan_of(out, model, space, layout, options->is_unsigned ? 0 : 1, true, fixed,
                            is_whole ? 0 : values, error);
@@ -315,6 +347,8 @@ vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report 
   status = make_nearest(&m, error);
   if (status == VXM_OK)
     status = run_planned(&m, target, report, model, &plan, error);
+  vxm_distance_band_destroy(m.near);
+  vxm_band_families_destroy(m.families);
   vxm_distance_bvh_destroy(m.nearest);
   vxm_surface_destroy(surface);
   return status;

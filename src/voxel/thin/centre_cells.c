@@ -10,37 +10,48 @@ const int8_t vxm_link_step[VXM_LINK_DIRECTIONS][3] = {
     {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}                        /* over corners */
 };
 
-/** Bricks of an octree that this thread has looked at, each where its number says. What a triangle asks for
- * lies side by side, and going down an octree takes a while. */
-enum { KEPT_BITS = 3, BRICKS_KEPT = 1 << 3 * KEPT_BITS };
-
-typedef struct kept_bricks {
-  uint64_t serial; /**< of the octree */
-  uint64_t number[BRICKS_KEPT], bits[BRICKS_KEPT];
-} kept_bricks;
-
-static uint64_t brick_of(const vxm_sparse *octree, int64_t i, int64_t j, int64_t k) {
-  static _Thread_local kept_bricks kept;
-  enum { BRICK_BITS = VXM_VIEW_AXIS_BITS - 2, LOW = (1 << KEPT_BITS) - 1 };
-  if (kept.serial != octree->serial) {
+vxm_kept_bricks *vxm_view_kept_bricks(const vxm_view *view) {
+  static _Thread_local vxm_kept_bricks kept;
+  if (kept.serial != view->octree->serial) {
     memset(&kept, 0, sizeof kept);
-    kept.serial = octree->serial;
+    kept.serial = view->octree->serial;
   }
-  uint64_t x = (uint64_t)i >> 2, y = (uint64_t)j >> 2, z = (uint64_t)k >> 2;
-  uint64_t number = (z << 2 * BRICK_BITS | y << BRICK_BITS | x) + 1;
-  size_t at = (z & LOW) << 2 * KEPT_BITS | (y & LOW) << KEPT_BITS | (x & LOW);
-  if (kept.number[at] != number) {
-    kept.number[at] = number;
-    kept.bits[at] = vxm_octree_brick(octree, i, j, k);
+  return &kept;
+}
+
+/** The node of level 0 with a voxel. */
+static const vxm_octree_node *kept_node(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit) {
+  enum { LOW = (1 << VXM_KEPT_BITS) - 1 };
+  const int64_t mask = (INT64_C(1) << VXM_VIEW_AXIS_BITS) - 1;
+  int64_t i = bit & mask, j = bit >> VXM_VIEW_AXIS_BITS & mask, k = bit >> 2 * VXM_VIEW_AXIS_BITS & mask;
+  size_t at =
+      (size_t)((k >> 4 & LOW) << 2 * VXM_KEPT_BITS | (j >> 4 & LOW) << VXM_KEPT_BITS | (i >> 4 & LOW));
+  uint64_t number =
+      vxm_brick_number((i >> 2) << 2 * VXM_VIEW_AXIS_BITS | (j >> 2) << VXM_VIEW_AXIS_BITS | k >> 2);
+  if (kept->node_number[at] != number) {
+    kept->node_number[at] = number;
+    kept->nodes[at] = vxm_octree_low_node(octree, i, j, k);
   }
-  return kept.bits[at];
+  return kept->nodes[at];
+}
+
+uint64_t vxm_kept_brick_fetch(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit, size_t at) {
+  const vxm_octree_node *node = kept_node(kept, octree, bit);
+  unsigned child = vxm_octree_child((unsigned)(bit >> 2), (unsigned)(bit >> (VXM_VIEW_AXIS_BITS + 2)),
+                                    (unsigned)(bit >> (2 * VXM_VIEW_AXIS_BITS + 2)));
+  kept->number[at] = vxm_brick_number(bit);
+  if (node->mixed >> child & 1)
+    kept->bits[at] = octree->bricks[vxm_octree_index(node, child)];
+  else
+    kept->bits[at] = node->full >> child & 1 ? ~UINT64_C(0) : 0;
+  return kept->bits[at];
 }
 
 bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit) {
   const int64_t mask = (INT64_C(1) << VXM_VIEW_AXIS_BITS) - 1, *dims = view->octree->space.dims;
   int64_t i = bit & mask, j = bit >> VXM_VIEW_AXIS_BITS & mask, k = bit >> 2 * VXM_VIEW_AXIS_BITS;
   if (i < dims[0] && j < dims[1] && k >= 0 && k < dims[2] &&
-      (brick_of(view->octree, i, j, k) >> vxm_octree_bit(i, j, k) & 1))
+      (vxm_kept_brick(vxm_view_kept_bricks(view), view->octree, bit) >> vxm_place_in_brick(bit) & 1))
     return true;
   return view->added && vxm_voxel_set_has(view->added, (uint64_t)bit);
 }

@@ -96,6 +96,43 @@ static inline int64_t vxm_view_bit(const vxm_view *view, const int64_t voxel[3])
 /** See vxm_view_bit_set, of an octree. */
 bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit);
 
+/** Bricks and nodes of an octree that a thread has looked at, each where its number says. What a triangle
+ * asks for lies side by side, and going down an octree takes a while. */
+enum { VXM_KEPT_BITS = 3, VXM_KEPT_BRICKS = 1 << 3 * VXM_KEPT_BITS };
+
+typedef struct vxm_kept_bricks {
+  uint64_t serial; /**< of the octree */
+  uint64_t number[VXM_KEPT_BRICKS], bits[VXM_KEPT_BRICKS];
+  uint64_t node_number[VXM_KEPT_BRICKS];
+  const vxm_octree_node *nodes[VXM_KEPT_BRICKS]; /**< of level 0 */
+} vxm_kept_bricks;
+
+/** Those of this thread. */
+vxm_kept_bricks *vxm_view_kept_bricks(const vxm_view *view);
+/** The number of the brick of a voxel of an octree, by the voxel's bit; 0 is none. */
+static inline uint64_t vxm_brick_number(int64_t bit) {
+  const uint64_t low =
+      UINT64_C(3) | UINT64_C(3) << VXM_VIEW_AXIS_BITS | UINT64_C(3) << 2 * VXM_VIEW_AXIS_BITS;
+  return ((uint64_t)bit & ~low) | 1;
+}
+
+/** Where in its brick a voxel has its bit. */
+static inline unsigned vxm_place_in_brick(int64_t bit) {
+  return (unsigned)((bit & 3) | (bit >> (VXM_VIEW_AXIS_BITS - 2) & 12) |
+                    (bit >> (2 * VXM_VIEW_AXIS_BITS - 4) & 48));
+}
+
+/** The brick of a voxel within the octree's dimensions. */
+uint64_t vxm_kept_brick_fetch(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit, size_t at);
+
+static inline uint64_t vxm_kept_brick(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit) {
+  enum { LOW = (1 << VXM_KEPT_BITS) - 1 };
+  uint64_t x = (uint64_t)bit >> 2, y = x >> VXM_VIEW_AXIS_BITS, z = y >> VXM_VIEW_AXIS_BITS;
+  size_t at = (z & LOW) << 2 * VXM_KEPT_BITS | (y & LOW) << VXM_KEPT_BITS | (x & LOW);
+  return kept->number[at] == vxm_brick_number(bit) ? kept->bits[at]
+                                                   : vxm_kept_brick_fetch(kept, octree, bit, at);
+}
+
 static inline bool vxm_view_bit_set(const vxm_view *view, int64_t bit) {
   if (!view->words)
     return vxm_view_octree_bit_set(view, bit);

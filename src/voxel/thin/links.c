@@ -9,8 +9,12 @@ static frame frame_of(const vxm_thin_job *job, vxm_meetings *meetings, int direc
   const int8_t *step = vxm_link_step[direction];
   const vxm_view *view = &job->view;
   int w = step[2] ? 2 : step[1] ? 1 : 0;
-  frame f = {
-      .job = job, .meetings = meetings, .direction = direction, .w = w, .plain = direction < VXM_LINK_AXES};
+  frame f = {.kept = view->words ? NULL : vxm_view_kept_bricks(view),
+             .job = job,
+             .meetings = meetings,
+             .direction = direction,
+             .w = w,
+             .plain = direction < VXM_LINK_AXES};
   f.u = view->step[(w + 1) % 3] < view->step[(w + 2) % 3] ? (w + 1) % 3
                                                           : (w + 2) % 3; /* rows along near bits */
   f.v = 3 - f.u - w;

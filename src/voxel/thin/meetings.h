@@ -41,6 +41,7 @@ typedef struct vxm_link_surface {
 typedef struct vxm_link_frame {
   const vxm_thin_job *job;
   vxm_meetings *meetings;
+  vxm_kept_bricks *kept;           /**< of the thread, if the view is of an octree */
   size_t triangle;                 /**< that is looked at */
   const vxm_link_surface *surface; /**< its own */
   int direction, u, v, w;

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Triangles in families of neighbours, for voxels that are near them. */
+#ifndef VXM_VOXEL_CLOSEST_BAND_FAMILIES_H
+#define VXM_VOXEL_CLOSEST_BAND_FAMILIES_H
+
+#include "base/context.h"
+#include "voxel/closest/triangle_distance.h"
+
+/** Takes the corners of a triangle from its owner: lengths in voxels, as vxm_band_grid has them. */
+typedef void (*vxm_band_corners_fn)(double out[3][3], size_t triangle, const void *payload);
+
+/** The voxels whose centres are asked: that of (i,j,k) is ((i + 1/2) * step[0], ...). */
+typedef struct vxm_band_grid {
+  int axes[3];     /**< x, y or z = 0, 1 or 2: the one that rows run along, the next, the slices */
+  int64_t dims[3]; /**< in that order */
+  double step[3];  /**< of x, y and z; the longest is 1 */
+  double band;     /**< what is as far as that, or farther, does not matter */
+} vxm_band_grid;
+
+enum { VXM_BAND_FAMILY = 8 /**< triangles in a family at most */ };
+
+/** vxm_distance_triangle in floats, as seen from its family's origin; the columns are fast, middle, slow. */
+typedef struct vxm_band_triangle {
+  float axis[3][3], offset[3]; /**< a point q lies at axis q - offset in the triangle's frame */
+  float length, leg[2][2], leg_length[2];
+  float middle[3];
+} vxm_band_triangle;
+
+/** Triangles side by side. All threes that are not doubles are in the order fast, middle, slow. */
+typedef struct vxm_band_family {
+  double origin[3]; /**< amid them; x, y, z */
+  float axis[3][3]; /**< of a box about them */
+  float low[3], high[3];
+  float half[3]; /**< of the box along the grid's axes, whose middle is the origin */
+  float room;    /**< what squared lengths that matter may be wrong by */
+  uint32_t first, count;
+  int32_t box[3][2]; /**< the voxels that may be nearer than the band; empty if box[0][0] >= box[0][1] */
+} vxm_band_family;
+
+typedef struct vxm_band_families {
+  vxm_context *context;
+  vxm_band_grid grid;
+  size_t count, triangle_count;
+  vxm_band_family *families;
+  vxm_distance_triangle *exact; /**< of the triangles, in the order of the families */
+  vxm_band_triangle *rough;
+  uint32_t *family_of; /**< of each triangle */
+} vxm_band_families;
+
+/**
+ * Makes the families of one triangle or more.
+ *
+ * @param corners called from several threads
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+vxm_status vxm_band_families_create(vxm_band_families **out, vxm_context *context, size_t count,
+                                    vxm_band_corners_fn corners, const void *payload,
+                                    const vxm_band_grid *grid, vxm_error *error);
+/** NULL is allowed. */
+void vxm_band_families_destroy(vxm_band_families *families);
+/** Bytes that families of so many triangles take at most. */
+uint64_t vxm_band_families_bytes(size_t count);
+
+#endif

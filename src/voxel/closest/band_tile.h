@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** The distances of a tile of voxels to families of triangles that are near. */
+#ifndef VXM_VOXEL_CLOSEST_BAND_TILE_H
+#define VXM_VOXEL_CLOSEST_BAND_TILE_H
+
+#include "voxel/closest/band_families.h"
+
+/** Voxels along an edge of a tile; its rows have room for more, and each slice has one more row. */
+enum {
+  VXM_BAND_TILE = 32,
+  VXM_BAND_ROW = VXM_BAND_TILE + 8,
+  VXM_BAND_SLICE = VXM_BAND_ROW * (VXM_BAND_TILE + 1),
+  VXM_BAND_VOXELS = VXM_BAND_SLICE * VXM_BAND_TILE,
+  VXM_BAND_NOTES = 1 << 14
+};
+
+/** A vector of voxels that has to be looked at in doubles, for a triangle. */
+typedef struct vxm_band_note {
+  uint32_t triangle;
+  uint8_t at[4]; /**< in the tile: fast, middle, slow */
+} vxm_band_note;
+
+/** What a worker makes a tile in. */
+typedef struct vxm_band_tile {
+  _Alignas(64) double squares[VXM_BAND_VOXELS]; /**< the result, band^2 where nothing is nearer */
+  float upper[VXM_BAND_VOXELS];                 /**< no less than what is to come, squared */
+  double places[3][VXM_BAND_ROW];               /**< of the voxels, along fast, middle and slow */
+  vxm_band_note notes[VXM_BAND_NOTES];
+  size_t note_count;
+  int64_t first[3];
+  int count[3]; /**< 1 to VXM_BAND_TILE */
+} vxm_band_tile;
+
+/** Where its values go, and the signs they get. Of threes as of strides the order is fast, middle, slow. */
+typedef struct vxm_band_values {
+  float *values; /**< of the first voxel */
+  size_t row, slice;
+  const uint64_t *words; /**< of the solid: that of the first voxel; NULL = no signs */
+  size_t row_words, slice_words;
+  int shift; /**< the first voxel's bit */
+  double band, side;
+} vxm_band_values;
+
+/** What has been seen of values. */
+typedef struct vxm_band_tally {
+  _Alignas(64) int64_t exact, inside;
+  float least, greatest;
+} vxm_band_tally;
+
+typedef struct vxm_band_kernels {
+  /** vxm_distance_triangle_make for many, to the bit. */
+  void (*make_frames)(vxm_distance_triangle *out, const double (*corners)[3][3], size_t count);
+  /**
+   * The squared distances of a tile that has `first` and `count` to the nearest triangle of the families
+   * listed: the least that vxm_triangle_distance2 gives, to the bit, where that is below band^2, or band^2.
+   */
+  void (*measure)(vxm_band_tile *tile, const vxm_band_families *families, const uint32_t *list, size_t count);
+  /** Roots, scales and rounds, and gives the signs. */
+  void (*finish)(const vxm_band_values *out, const vxm_band_tile *tile, vxm_band_tally *tally);
+  /** Values of a block beyond the band. */
+  void (*fill)(const vxm_band_values *out, const int64_t count[3], vxm_band_tally *tally);
+} vxm_band_kernels;
+
+/** The build for this processor. */
+const vxm_band_kernels *vxm_band_kernels_best(void);
+/** All builds that run on it; returns how many. */
+size_t vxm_band_kernels_all(const vxm_band_kernels *out[3]);
+
+#endif

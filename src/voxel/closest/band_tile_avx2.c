@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Tiles of distances for x86 processors with AVX2. */
+#include "base/cpu.h"
+
+#if VXM_KERNELS_X86
+#include <immintrin.h>
+#include <stdint.h>
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2,fma,bmi,bmi2,popcnt,lzcnt"))), apply_to = function)
+#else
+#pragma GCC target("avx2,fma,bmi,bmi2,popcnt,lzcnt")
+#endif
+
+#define LANES 4
+#define WIDTH 8
+#define DOWN 1
+#define BUILD(name) name##_avx2
+
+typedef float wide __attribute__((vector_size(4 * WIDTH)));
+typedef double lanes __attribute__((vector_size(8 * LANES)));
+typedef int64_t lanes_int __attribute__((vector_size(8 * LANES)));
+typedef double lanes_loaded __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+typedef __m256 wide_mask;
+
+#define INLINE static inline __attribute__((always_inline))
+
+INLINE wide wide_max(wide a, wide b) {
+  return (wide)_mm256_max_ps((__m256)a, (__m256)b);
+}
+
+INLINE wide wide_min(wide a, wide b) {
+  return (wide)_mm256_min_ps((__m256)a, (__m256)b);
+}
+
+INLINE wide wide_fma(wide a, wide b, wide c) {
+  return (wide)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+}
+
+INLINE wide_mask wide_less(wide a, wide b) {
+  return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ);
+}
+
+INLINE wide_mask wide_not_above(wide a, wide b) {
+  return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_NGT_UQ);
+}
+
+INLINE wide_mask wide_both(wide_mask a, wide_mask b) {
+  return _mm256_and_ps(a, b);
+}
+
+INLINE wide wide_unless(wide_mask mask, wide x) {
+  return (wide)_mm256_andnot_ps(mask, (__m256)x);
+}
+
+INLINE unsigned wide_bits(wide_mask mask) {
+  return (unsigned)_mm256_movemask_ps(mask);
+}
+
+INLINE wide rows_load(const float *from) {
+  return (wide)_mm256_loadu_ps(from);
+}
+
+INLINE void rows_store(float *to, wide x) {
+  _mm256_storeu_ps(to, (__m256)x);
+}
+
+INLINE lanes lanes_max(lanes a, lanes b) {
+  return (lanes)_mm256_max_pd((__m256d)a, (__m256d)b);
+}
+
+INLINE lanes lanes_min(lanes a, lanes b) {
+  return (lanes)_mm256_min_pd((__m256d)a, (__m256d)b);
+}
+
+INLINE unsigned lanes_bits(lanes_int mask) {
+  return (unsigned)_mm256_movemask_pd((__m256d)mask);
+}
+
+INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b) {
+  return (lanes)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)mask);
+}
+
+INLINE lanes lanes_root(lanes x) {
+  return (lanes)_mm256_sqrt_pd((__m256d)x);
+}
+
+#include "voxel/closest/band_tile_body.inc"
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#endif
+#endif
