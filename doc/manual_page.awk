@@ -29,7 +29,7 @@ $1 == ".SS" {
 }
 $1 == ".SH" {
   in_command = 0
-  in_common = $0 == ".SH COMMON OPTIONS" || $0 == ".SH FILES" || $0 == ".SH EXIT STATUS"
+  in_common = ($0 == ".SH COMMON OPTIONS" && name != "binvox") || $0 == ".SH FILES" || $0 == ".SH EXIT STATUS"
 }
 in_command {
   flush()

@@ -97,6 +97,7 @@ typedef struct cli_command {
   const char *notes;     /**< shown below the options: defaults and examples */
   const cli_option *options;
   bool many;                   /**< takes any number of files */
+  void (*print_help)(void);    /**< for options of another kind; NULL = the help is made of the table */
   bool folders;                /**< takes folders too; else cli_check_names refuses them */
   void (*print_choices)(void); /**< prints lists for the help, shown before the notes; NULL = none */
   int (*run)(cli_run *cli);    /**< returns an exit status */
@@ -104,7 +105,7 @@ typedef struct cli_command {
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
     cli_command_compare, cli_command_augment, cli_command_remesh, cli_command_view, cli_command_bench,
-    cli_command_engines, cli_command_combine, cli_command_help;
+    cli_command_engines, cli_command_combine, cli_command_help, cli_command_binvox;
 
 enum { CLI_COMMANDS_MAX = 24 };
 
@@ -230,6 +231,14 @@ vxm_status cli_engine_open(cli_run *cli, cli_engine *engine);
 /** The row, and the object of the report; only where one was named. */
 void cli_engine_summarize(const cli_run *cli, const cli_engine *engine);
 json_t *cli_engine_json(const cli_engine *engine);
+
+/* ---- entry.c ---- */
+
+/** The status; CLI_FAILED after a line where what was printed is lost when it is flushed, on a full disk for
+ * one. */
+int cli_flush_output(cli_run *cli, int status);
+/** Runs a command as the whole program; returns its exit status, or ends by the signal that stopped it. */
+int cli_run_command(const cli_command *command, int argc, char **argv);
 
 /* ---- cmd_help.c: the commands ---- */
 

@@ -2,41 +2,13 @@
 /** voxmend: finds the subcommand, runs it and ends with its exit status. */
 #include "cli/cli.h"
 
-#include <errno.h>
-#include <signal.h>
 #include <string.h>
 
 const cli_command *const cli_commands[CLI_COMMANDS_MAX + 1] = {
     &cli_command_info,    &cli_command_repair,  &cli_command_remesh,  &cli_command_voxelize,
     &cli_command_convert, &cli_command_combine, &cli_command_compare, &cli_command_augment,
-    &cli_command_view,    &cli_command_bench,   &cli_command_engines, &cli_command_help};
-
-/** What was printed may still be lost when it is flushed, on a full disk for one. */
-static int flush_output(cli_run *cli, int status) {
-  if (fflush(stdout) == 0 && !ferror(stdout))
-    return status;
-  int reason = errno;
-  return status == CLI_DONE || status == CLI_WARNED
-             ? cli_fail_text(cli, "<stdout>: cannot write: %s", strerror(reason))
-             : status;
-}
-
-static int run(const cli_command *command, int argc, char **argv) {
-  cli_run cli = {.command = command,
-                 .argc = argc,
-                 .argv = argv,
-                 .progress = "auto",
-                 .limits = VXM_CONTEXT_OPTIONS_INIT,
-                 .read = VXM_MESH_READ_OPTIONS_INIT,
-                 .error = VXM_ERROR_INIT,
-                 .warnings = json_array(),
-                 .text = stdout};
-  int status = flush_output(&cli, command->run(&cli));
-  vxm_context_drop_files(cli.context); /* a failed run leaves no output file */
-  vxm_context_destroy(cli.context);
-  json_decref(cli.warnings);
-  return status;
-}
+    &cli_command_view,    &cli_command_bench,   &cli_command_engines, &cli_command_binvox,
+    &cli_command_help};
 
 static int refuse(const char *name) {
   static const char *const options[] = {"help", "version", NULL};
@@ -60,21 +32,14 @@ int main(int argc, char **argv) {
   const char *name = argv[1];
   if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
     cli_help_overview();
-    return flush_output(&none, CLI_DONE);
+    return cli_flush_output(&none, CLI_DONE);
   }
   if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
     printf("voxmend %s\n", vxm_version());
-    return flush_output(&none, CLI_DONE);
+    return cli_flush_output(&none, CLI_DONE);
   }
   const cli_command *command = cli_find_command(name);
   if (!command)
     return refuse(name);
-  cli_json_start();
-  signal(SIGXFSZ, SIG_IGN); /* a write beyond ulimit -f fails, and says so */
-  int status = run(command, argc - 1, argv + 1);
-  if (status == CLI_FAILED && cli_signal()) {
-    signal(cli_signal(), SIG_DFL); /* ends as the sender of the signal expects */
-    raise(cli_signal());
-  }
-  return status;
+  return cli_run_command(command, argc - 1, argv + 1);
 }

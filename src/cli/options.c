@@ -60,6 +60,10 @@ static bool is_replaced(const cli_command *command, const cli_option *common) {
 }
 
 void cli_help(const cli_command *command) {
+  if (command->print_help) {
+    command->print_help();
+    return;
+  }
   printf("Usage: voxmend %s %s\n%s\n", command->name, command->arguments, command->summary);
   if (command->options[0].name)
     printf("\nOptions:\n");
@@ -86,6 +90,8 @@ static void print_row(const cli_option *option) {
 }
 
 void cli_help_table(const cli_command *command) {
+  if (command->print_help)
+    return;
   for (const cli_option *option = command->options; option->name; option++)
     print_row(option);
   for (const cli_option *option = common_options; option->name; option++)

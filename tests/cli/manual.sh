@@ -23,8 +23,12 @@ while IFS='	' read -r command summary; do
   grep -qxF "voxmend-$command - $summary" "$work/page" || fail "the summary of voxmend-$command(1) is not '$summary'"
   "$VOXMEND" help --table "$command" >"$work/options"
   cut -f 1 "$work/options" >"$work/names"
+  if [ ! -s "$work/options" ]; then # options of another kind, behind one dash
+    "$VOXMEND" "$command" --help | sed -n 's/^  \(-[a-z]*\) .*/\1\t/p' >"$work/options"
+    [ "$(wc -l <"$work/options")" -ge 8 ] || fail "$command --help lists no options"
+  fi
   cut -f 1,3 "$work/options" | while IFS='	' read -r option argument; do
-    grep -qE -- "$option([^a-z0-9-]|$)" "$work/page" || echo "voxmend-$command(1) lacks $option"
+    grep -qE -- "(^|[^a-z0-9-])$option([^a-z0-9-]|$)" "$work/page" || echo "voxmend-$command(1) lacks $option"
     for word in $(printf '%s' "$argument" | tr '|' '\n' | grep -xE '[a-z0-9][a-z0-9-]*'); do
       grep -qE -- "(^|[^a-z0-9-])$word([^a-z0-9-]|$)" "$work/page" || echo "voxmend-$command(1) lacks the $word of $option"
     done
