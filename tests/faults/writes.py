@@ -50,6 +50,10 @@ def commands():
         yield "colours " + f, "voxelize in.off -o out.%s -r 20 --color position --force" % f
     yield "view", "view in.rle -o out.png --size 320x240 --report report.json"
     yield "info", "info in.off --force --locate wrong.ply --report report.json"
+    for f in ("npy", "binvox"):
+        yield "combine " + f, "combine in.rle xor in.rle -o out.%s --report report.json" % f
+    for f in ("binvox", "raw", "vtk", "msh"):
+        yield "binvox " + f, "binvox -d 20 -t %s -o out.%s in.off" % (f, f)
     yield "compare", "compare in.rle in.rle --report report.json"
     yield "bench", "bench in.off --plot out.svg --report report.json --time 0 -r 8 --phases solid_vote --threads 1"
     for f in ("rle", "raw", "binvox", "npy", "nrrd"):
@@ -63,7 +67,9 @@ SAMPLE = ["repair ply", "voxelize raw", "labels nrrd", "convert to off", "augmen
 class Case:
     def __init__(self, name, arguments, folder):
         self.name, self.folder = name, folder
-        self.arguments = [PROGRAM] + arguments.split() + ["-q"]
+        self.arguments = [PROGRAM] + arguments.split()
+        if not arguments.startswith("binvox"):  # which takes binvox's options alone
+            self.arguments += ["-q"]
         self.before = os.path.join(folder, "before")
         self.work = os.path.join(folder, "work")
         self.in_steps = name.startswith("augment") and "stdout" not in name
