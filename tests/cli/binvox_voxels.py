@@ -137,6 +137,18 @@ def test_methods(mesh, n):
     return (voxels != carved(voxels)).any()
 
 
+def test_fit(mesh, n, shift):
+    """A box around the model, so that the voxels begin and end within words of 64."""
+    b = bounds_of(mesh)
+    side = (b[3:] - b[:3]).max()
+    corner = b[:3] - shift * side
+    words = ("-d", n, "-bb", *map(float, corner), *map(float, corner + 1.7 * side), mesh)
+    voxels, size, corner = voxels_of(*words)
+    part, low = fitted(voxels)
+    check(low.min() > 0 and (low[0] + part.shape[0]) // 64 > low[0] // 64, mesh, "does not cross words", low)
+    same(voxels_of("-fit", *words), (part, size, corner + size * low), mesh, n, "-fit -bb")
+
+
 def test_turns(mesh, n):
     """Turned about its centre, the mesh fills voxels that are turned alike."""
     turns = {"-rotx": lambda v: numpy.rot90(v, 1, (1, 2)), "-roty": lambda v: numpy.rot90(v, 1, (2, 0)),
@@ -271,6 +283,8 @@ def test_files(mesh, n, *words):
 MESHES = (("torus.off", 33), ("rocket.off", 70), ("open_box.off", 24), ("cavity.off", 130), ("cube.off", 2), ("missing.off", 64))
 hidden = [test_methods(mesh, n) for mesh, n in MESHES]
 check(any(hidden), "nothing is hidden in any mesh, which tests nothing")
+test_fit("rocket.off", 150, 0.3)
+test_fit("torus.off", 201, 0.41)
 test_turns("rocket.off", 37)
 test_turns("star_prism.off", 20)
 test_box()

@@ -21,6 +21,8 @@ while IFS='	' read -r command summary; do
   [ -s "$page" ] || { fail "there is no manual page doc/voxmend-$command.1: add it to doc/doc.am"; continue; }
   plain "$page" >"$work/page"
   grep -qxF "voxmend-$command - $summary" "$work/page" || fail "the summary of voxmend-$command(1) is not '$summary'"
+  # Where options are explained: what stands before the text, at .TP, and the description where there is little to say.
+  awk '/^\.SH/ { inside = $2 == "DESCRIPTION" } /^\.TP/ { getline; print; next } inside' "$work/page" >"$work/tags"
   "$VOXMEND" help --table "$command" >"$work/options"
   cut -f 1 "$work/options" >"$work/names"
   if [ ! -s "$work/options" ]; then # options of another kind, behind one dash
@@ -28,7 +30,7 @@ while IFS='	' read -r command summary; do
     [ "$(wc -l <"$work/options")" -ge 8 ] || fail "$command --help lists no options"
   fi
   cut -f 1,3 "$work/options" | while IFS='	' read -r option argument; do
-    grep -qE -- "(^|[^a-z0-9-])$option([^a-z0-9-]|$)" "$work/page" || echo "voxmend-$command(1) lacks $option"
+    grep -qE -- "(^|[^a-z0-9-])$option([^a-z0-9-]|$)" "$work/tags" || echo "voxmend-$command(1) lacks $option"
     for word in $(printf '%s' "$argument" | tr '|' '\n' | grep -xE '[a-z0-9][a-z0-9-]*'); do
       grep -qE -- "(^|[^a-z0-9-])$word([^a-z0-9-]|$)" "$work/page" || echo "voxmend-$command(1) lacks the $word of $option"
     done
