@@ -62,7 +62,23 @@ bool binvox_box(int64_t low[3], int64_t high[3], const binvox_bits *bits);
 bool binvox_crop(binvox_bits *bits);
 int64_t binvox_count(const binvox_bits *bits);
 
+/** The block of each voxel before it is halved and cropped, x fastest; 0 = none of its own, and of several
+ * that meet in a voxel the highest. */
+typedef struct binvox_blocks {
+  vxm_space space;
+  unsigned char *ids; /**< NULL = all blocks are alike */
+} binvox_blocks;
+
+/** CLI_FAILED after a line; then there are none. */
+int binvox_blocks_make(cli_run *cli, const binvox_request *given, binvox_blocks *out, const vxm_mesh *mesh,
+                       const vxm_space *space);
+void binvox_blocks_free(binvox_blocks *blocks);
+/** The first block among those that a voxel of another space of the same place is made of; 0 if they have
+ * none. */
+unsigned char binvox_block_at(const binvox_blocks *blocks, const vxm_space *space, const int64_t at[3]);
+
 /** Writes a file of any type; a failure is in cli->error. */
-vxm_status binvox_write(cli_run *cli, const binvox_request *given, const binvox_bits *bits, const char *path);
+vxm_status binvox_write(cli_run *cli, const binvox_request *given, const binvox_bits *bits,
+                        const binvox_blocks *blocks, const char *path);
 
 #endif

@@ -59,8 +59,15 @@ static vxm_status write_buffer(cli_run *cli, buffer *out, const char *path) {
 
 /* ---- Bytes ---- */
 
+static unsigned char value_at(const binvox_bits *bits, unsigned char value, const binvox_blocks *blocks,
+                              const int64_t at[3]) {
+  unsigned char own = blocks && blocks->ids ? binvox_block_at(blocks, &bits->space, at) : 0;
+  return own ? own : value;
+}
+
 /** All voxels as a byte each, with the axes in this order, the slowest first. */
-static void put_voxels(buffer *out, const binvox_bits *bits, const int order[3], unsigned char value) {
+static void put_voxels(buffer *out, const binvox_bits *bits, const int order[3], unsigned char value,
+                       const binvox_blocks *blocks) {
   const int64_t *dims = bits->space.dims;
   unsigned char *row = malloc((size_t)dims[order[2]]);
   out->lacks |= !row;
@@ -68,7 +75,8 @@ static void put_voxels(buffer *out, const binvox_bits *bits, const int order[3],
   for (at[order[0]] = 0; at[order[0]] < dims[order[0]] && !out->lacks; at[order[0]]++)
     for (at[order[1]] = 0; at[order[1]] < dims[order[1]] && !out->lacks; at[order[1]]++) {
       for (at[order[2]] = 0; at[order[2]] < dims[order[2]]; at[order[2]]++)
-        row[at[order[2]]] = binvox_bits_get(bits, at[0], at[1], at[2]) ? value : 0;
+        row[at[order[2]]] =
+            binvox_bits_get(bits, at[0], at[1], at[2]) ? value_at(bits, value, blocks, at) : 0;
       put(out, row, (size_t)dims[order[2]]);
     }
   free(row);
@@ -76,7 +84,7 @@ static void put_voxels(buffer *out, const binvox_bits *bits, const int order[3],
 
 static vxm_status write_raw(cli_run *cli, const binvox_bits *bits, const char *path) {
   buffer out = {.lacks = false};
-  put_voxels(&out, bits, (const int[3]){0, 2, 1}, 1);
+  put_voxels(&out, bits, (const int[3]){0, 2, 1}, 1, NULL);
   return write_buffer(cli, &out, path);
 }
 
@@ -90,7 +98,7 @@ static vxm_status write_vtk(cli_run *cli, const binvox_bits *bits, const char *p
   print(&out, "SPACING %.17g %.17g %.17g\n", s->voxel_size[0], s->voxel_size[1], s->voxel_size[2]);
   print(&out, "POINT_DATA %" PRId64 "\nSCALARS voxels unsigned_char 1\nLOOKUP_TABLE default\n",
         s->dims[0] * s->dims[1] * s->dims[2]);
-  put_voxels(&out, bits, (const int[3]){2, 1, 0}, 1);
+  put_voxels(&out, bits, (const int[3]){2, 1, 0}, 1, NULL);
   print(&out, "\n");
   return write_buffer(cli, &out, path);
 }
@@ -126,7 +134,8 @@ static void put_short(buffer *out, const char *name, int64_t value) {
 }
 
 /** As MCEdit's: y is up; blocks with x fastest, then z, then y. */
-static void put_schematic(buffer *out, const binvox_bits *bits, unsigned char block) {
+static void put_schematic(buffer *out, const binvox_bits *bits, unsigned char block,
+                          const binvox_blocks *blocks) {
   static const char materials[] = "Alpha";
   const int64_t *dims = bits->space.dims;
   uint32_t count = (uint32_t)(dims[0] * dims[1] * dims[2]);
@@ -139,10 +148,10 @@ static void put_schematic(buffer *out, const binvox_bits *bits, unsigned char bl
   put(out, materials, sizeof materials - 1);
   put_name(out, TAG_BYTES, "Blocks");
   put_number(out, count, 4);
-  put_voxels(out, bits, (const int[3]){1, 2, 0}, block);
+  put_voxels(out, bits, (const int[3]){1, 2, 0}, block, blocks);
   put_name(out, TAG_BYTES, "Data");
   put_number(out, count, 4);
-  put_voxels(out, bits, (const int[3]){1, 2, 0}, 0);
+  put_voxels(out, bits, (const int[3]){1, 2, 0}, 0, NULL);
   for (int list = 0; list < 2; list++) {
     put_name(out, TAG_LIST, list == 0 ? "Entities" : "TileEntities");
     put_number(out, TAG_COMPOUND, 1);
@@ -175,7 +184,8 @@ static void compress_into(buffer *out, const buffer *in) {
   deflateEnd(&stream);
 }
 
-static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const char *path, int64_t block) {
+static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const char *path, int64_t block,
+                                  const binvox_blocks *blocks) {
   const int64_t *dims = bits->space.dims;
   buffer plain = {.lacks = false}, packed = {.lacks = false};
   if (dims[0] > SCHEMATIC_MOST || dims[1] > SCHEMATIC_MOST || dims[2] > SCHEMATIC_MOST ||
@@ -185,15 +195,17 @@ static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const c
              "%.300s: a schematic holds up to 2^31 - 1 blocks; lower -d, or give -fit", path);
     return VXM_ERROR_RANGE;
   }
-  put_schematic(&plain, bits, (unsigned char)block);
+  put_schematic(&plain, bits, (unsigned char)block, blocks);
   compress_into(&packed, &plain);
   free(plain.bytes);
   return write_buffer(cli, &packed, path);
 }
 #else
-static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const char *path, int64_t block) {
+static vxm_status write_schematic(cli_run *cli, const binvox_bits *bits, const char *path, int64_t block,
+                                  const binvox_blocks *blocks) {
   (void)bits;
   (void)block;
+  (void)blocks;
   cli->error.code = VXM_ERROR_UNAVAILABLE;
   snprintf(cli->error.text, sizeof cli->error.text,
            "%.300s: a schematic needs zlib, without which voxmend was built (Debian: zlib1g-dev)", path);
@@ -285,14 +297,14 @@ static vxm_status write_grid(cli_run *cli, const binvox_bits *bits, const char *
 }
 
 vxm_status binvox_write(cli_run *cli, const binvox_request *given, const binvox_bits *bits,
-                        const char *path) {
+                        const binvox_blocks *blocks, const char *path) {
   switch (given->type) {
   case BINVOX_RAW:
     return write_raw(cli, bits, path);
   case BINVOX_VTK:
     return write_vtk(cli, bits, path);
   case BINVOX_SCHEMATIC:
-    return write_schematic(cli, bits, path, given->block);
+    return write_schematic(cli, bits, path, given->block, blocks);
   case BINVOX_MSH:
     return write_msh(cli, bits, path);
   default:

@@ -52,7 +52,7 @@ static const struct {
     [HALVE] = {"-down", "", "make one voxel of 2 x 2 x 2; may be given several times", 0},
     [LEAST] = {"-dmin", "N", "how many of these eight have to be set [4]", 1},
     [BLOCK] = {"-bi", "ID", "the block of a schematic, 1 to 255 [1]", 1},
-    [MATERIALS] = {"-mb", "", "is about blocks by material, which are not made", 0},
+    [MATERIALS] = {"-mb", "", "with -e and -t schematic: blocks by material, such as usemtl blockid_35", 0},
     [PBUFFER] = {"-pb", "", "nothing: no window is needed", 0},
 };
 
@@ -220,8 +220,8 @@ static int take_word(cli_run *cli, binvox_request *out, int *index) {
 }
 
 static int check(cli_run *cli, const binvox_request *given) {
-  if (given->materials && given->type == BINVOX_SCHEMATIC)
-    return cli_usage(cli, "-mb: blocks by material are not made; -bi gives one to all");
+  if (given->materials && given->type == BINVOX_SCHEMATIC && !given->exact)
+    return cli_usage(cli, "-mb: the blocks of a schematic are those of faces, which goes with -e");
   if (given->exact && given->dilated)
     cli_warn(cli, "-e makes a surface: -dc is not applied");
   return CLI_END;

@@ -32,6 +32,15 @@ static void turn(double p[3], char axis) {
   }
 }
 
+/** The names of groups and materials, for vxm_mesh_create; to be freed, NULL where memory is lacking. */
+static const char **names_of_tags(const vxm_mesh *mesh) {
+  int64_t count = vxm_mesh_tag_count(mesh);
+  const char **names = malloc((size_t)(count + 1) * sizeof *names);
+  for (int64_t tag = 0; names && tag < count; tag++)
+    names[tag] = vxm_mesh_tag_name(mesh, tag);
+  return names;
+}
+
 /** Replaces the mesh by one whose vertices are turned. */
 static int turn_mesh(cli_run *cli, vxm_mesh **mesh, const char *turns) {
   int64_t count = vxm_mesh_vertex_count(*mesh), faces = vxm_mesh_face_count(*mesh);
@@ -50,8 +59,17 @@ static int turn_mesh(cli_run *cli, vxm_mesh **mesh, const char *turns) {
   arrays.indices = vxm_mesh_indices(*mesh);
   arrays.index_count = faces > 0 ? arrays.offsets[faces] : 0;
   arrays.face_count = faces;
+  const char **tags = NULL;
+  if (vxm_mesh_face_tags(*mesh) && !(tags = names_of_tags(*mesh))) {
+    free(vertices);
+    return cli_fail_text(cli, "out of memory for the turned model: free some");
+  }
+  arrays.tags = tags;
+  arrays.tag_count = tags ? vxm_mesh_tag_count(*mesh) : 0;
+  arrays.face_tags = vxm_mesh_face_tags(*mesh);
   vxm_mesh *turned = NULL;
   vxm_status status = vxm_mesh_create(&turned, cli->context, &arrays, &cli->error);
+  free(tags);
   free(vertices);
   if (status != VXM_OK)
     return cli_fail(cli);
@@ -112,8 +130,8 @@ static vxm_voxelize_options voxelize_options_of(const binvox_request *given) {
   return options;
 }
 
-static int voxelize(cli_run *cli, const binvox_request *given, binvox_bits *out, const vxm_mesh *mesh,
-                    const vxm_space *space) {
+static int voxelize(cli_run *cli, const binvox_request *given, binvox_bits *out, binvox_blocks *blocks,
+                    const vxm_mesh *mesh, const vxm_space *space) {
   vxm_voxelize_options options = voxelize_options_of(given);
   vxm_model *model = NULL;
   vxm_grid *grid = NULL;
@@ -128,6 +146,8 @@ static int voxelize(cli_run *cli, const binvox_request *given, binvox_bits *out,
   int result = status == VXM_OK ? CLI_DONE : cli_fail(cli);
   if (result == CLI_DONE && !binvox_bits_read(out, grid))
     result = cli_fail_text(cli, "out of memory for the voxels: free some, or lower -d");
+  if (result == CLI_DONE && given->materials && given->type == BINVOX_SCHEMATIC)
+    result = binvox_blocks_make(cli, given, blocks, mesh, space);
   vxm_grid_destroy(grid);
   vxm_model_destroy(model);
   return result;
@@ -188,13 +208,14 @@ static bool name_output(char path[PATH_SIZE], const binvox_request *given) {
   return length < PATH_SIZE;
 }
 
-static int write_file(cli_run *cli, const binvox_request *given, const binvox_bits *bits) {
+static int write_file(cli_run *cli, const binvox_request *given, const binvox_bits *bits,
+                      const binvox_blocks *blocks) {
   char path[PATH_SIZE];
   if (given->output)
     snprintf(path, sizeof path, "%s", given->output);
   else if (!name_output(path, given))
     return cli_fail_text(cli, "%.200s...: the name of the model is too long", given->model);
-  if (binvox_write(cli, given, bits, path) != VXM_OK)
+  if (binvox_write(cli, given, bits, blocks, path) != VXM_OK)
     return cli_fail(cli);
   cli_progress_clear(cli);
   printf("writing voxel file: %s\ndone\n", path);
@@ -221,13 +242,15 @@ static int make(cli_run *cli, const binvox_request *given, vxm_mesh **mesh) {
   if (vxm_mesh_prepare_in_place(mesh, NULL, &repair, &cli->error) != VXM_OK)
     return cli_fail(cli);
   binvox_bits bits = {.words = NULL};
-  int status = voxelize(cli, given, &bits, *mesh, &space);
+  binvox_blocks blocks = {.ids = NULL};
+  int status = voxelize(cli, given, &bits, &blocks, *mesh, &space);
   if (status == CLI_DONE)
     status = change(cli, given, &bits);
   if (status == CLI_DONE) {
     say_voxels(&bits);
-    status = write_file(cli, given, &bits);
+    status = write_file(cli, given, &bits, &blocks);
   }
+  binvox_blocks_free(&blocks);
   binvox_bits_free(&bits);
   return status;
 }

@@ -252,13 +252,18 @@ def read_nbt(data):
     return root
 
 
-def read_schematic(path, block):
+def read_blocks(path):
     root = read_nbt(gzip.open(path).read())
     width, height, length = root["Width"], root["Height"], root["Length"]
-    check(root["Materials"] == "Alpha" and root["Entities"] == [] and root["TileEntities"] == [], root.keys())
+    check(root["Materials"] == "Alpha" and not any(root["Data"]) and root["Entities"] == [] and root["TileEntities"] == [], root.keys())
     blocks = numpy.frombuffer(root["Blocks"], numpy.uint8).reshape(height, length, width)
-    check(set(numpy.unique(blocks)) <= {0, block} and not any(root["Data"]), "blocks", numpy.unique(blocks))
-    return blocks.transpose(2, 0, 1) == block
+    return blocks.transpose(2, 0, 1)
+
+
+def read_schematic(path, block):
+    blocks = read_blocks(path)
+    check(set(numpy.unique(blocks)) <= {0, block}, "blocks", numpy.unique(blocks))
+    return blocks == block
 
 
 def test_files(mesh, n, *words):
@@ -280,6 +285,27 @@ def test_files(mesh, n, *words):
         check((read_schematic("out.schematic", 45) == read_vtk("out.vtk")[0]).all(), mesh, words, "schematic")
 
 
+def test_blocks():
+    """Each material alone, in the same box, touches the voxels that have its block, or a higher one."""
+    corners = ["v %d %d %d" % (n & 1, n >> 1 & 1, n >> 2) for n in range(8)]
+    sides = {"blockid_35": ["f 1 3 4 2", "f 1 5 7 3"], "blockid_255": ["f 5 6 8 7"], "stone": ["f 1 2 6 5", "f 2 4 8 6"], "blockid_256": ["f 3 7 8 4"]}
+    with open("blocks.obj", "w") as file:
+        file.write("\n".join(corners + ["\n".join(["usemtl " + name] + faces) for name, faces in sides.items()]) + "\n")
+    for words in ((), ("-down", "-dmin", 1), ("-fit", "-bb", -0.3, -0.3, -0.3, 1.5, 1.2, 1.2)):
+        box = words if "-bb" in words else (*words, "-bb", 0, 0, 0, 1, 1, 1)
+        run("-d", 9, "-e", "-mb", "-bi", 7, "-t", "schematic", "-o", "out.schematic", *box, "blocks.obj")
+        got, truth = read_blocks("out.schematic"), None
+        for name, block in (("all", 7), ("blockid_35", 35), ("blockid_255", 255)):
+            with open("one.obj", "w") as file:
+                file.write("\n".join(corners + (sum(sides.values(), []) if name == "all" else sides[name])) + "\n")
+            voxels = voxels_of("-d", 9, "-e", *[w for w in box if w != "-fit"], "one.obj")[0]
+            truth = numpy.where(voxels, block, truth) if truth is not None else voxels * block
+        if "-fit" in words:
+            where = numpy.argwhere(truth)
+            truth = truth[tuple(slice(a, b + 1) for a, b in zip(where.min(0), where.max(0)))]
+        check(got.shape == truth.shape and (got == truth).all() and set(numpy.unique(got)) == {0, 7, 35, 255}, "-mb", words)
+
+
 MESHES = (("torus.off", 33), ("rocket.off", 70), ("open_box.off", 24), ("cavity.off", 130), ("cube.off", 2), ("missing.off", 64))
 hidden = [test_methods(mesh, n) for mesh, n in MESHES]
 check(any(hidden), "nothing is hidden in any mesh, which tests nothing")
@@ -290,4 +316,6 @@ test_turns("star_prism.off", 20)
 test_box()
 test_files("rocket.off", 21)
 test_files("l_prism.off", 13, "-fit", "-rotx")
+if ZLIB == "yes":
+    test_blocks()
 print(checks, "checks")

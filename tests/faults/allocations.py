@@ -71,6 +71,7 @@ def commands():
         yield "combine " + operation, "combine in.rle %s in.npy -o out.npy --report report.json" % operation, {}
     for kind in ("binvox", "nrrd", "raw", "vtk", "msh", "schematic"):
         yield "binvox " + kind, "binvox -d 6 -t %s -dc -down -ri -fit -rotx two.off" % kind, {}
+    yield "binvox blocks", "binvox -d 6 -e -mb -t schematic -rotz blocks.obj", {}
     yield "compare", "compare in.rle in.npy --report report.json", {}
     yield "augment", "augment two.off -o many -n 2 -r 8 --format npy --rotate any", {}
     yield "augment stdout", "augment two.off -o - -n 2 -r 8", {}
@@ -212,6 +213,7 @@ def make_inputs(folder):
     for i, f in enumerate(faces):
         lines += ["g side%d" % (i % 2)] + ["f " + " ".join(str(c + 1) for c in f)]
     write("box.obj", "\n".join(lines) + "\n")
+    write("blocks.obj", "\n".join(lines).replace("g side", "usemtl blockid_4") + "\n")
     for mesh in ("stl", "ply"):
         subprocess.run([PROGRAM, "repair", "box.off", "-o", "box." + mesh, "-q"], cwd=folder, check=True)
     for grid in ("binvox", "npy", "raw", "rle", "nrrd", "vdb"):
