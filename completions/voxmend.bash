@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Completion of voxmend for bash. What there is to choose from comes from the program itself: 'voxmend help --table'.
+# Completion of voxmend and binvox for bash. What there is to choose from comes from the program itself: 'voxmend help --table'.
 
 # Sets `row` to the line on an option: "--name", letter, argument and purpose, with tabs between.
 _voxmend_find() {
@@ -29,6 +29,21 @@ _voxmend_values() {
   mapfile -t COMPREPLY < <(compgen -W "$choices" -- "$word")
 }
 
+# The options of binvox are behind one dash; the arguments are the program's words before them.
+_voxmend_binvox() {
+  if [[ $before == -t ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "binvox nrrd raw vtk schematic msh" -- "$word")
+  elif [[ $word == -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$("$@" -h 2>/dev/null | sed -n 's/^  \(-[a-z]*\) .*/\1/p')" -- "$word")
+  fi
+}
+
+_binvox() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]}
+  COMPREPLY=()
+  _voxmend_binvox "$1"
+}
+
 _voxmend() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} table row i command=''
   COMPREPLY=()
@@ -45,6 +60,10 @@ _voxmend() {
   if [[ $command == help && $word != -* ]]; then
     table=$("$1" help --table 2>/dev/null)
     mapfile -t COMPREPLY < <(compgen -W "$(cut -f 1 <<<"$table")" -- "$word")
+    return
+  fi
+  if [[ $command == binvox ]]; then
+    _voxmend_binvox "$1" binvox
     return
   fi
   table=$("$1" help --table "$command" 2>/dev/null) || return
@@ -69,3 +88,4 @@ _voxmend() {
 }
 
 complete -o bashdefault -o default -F _voxmend voxmend
+complete -o bashdefault -o default -F _binvox binvox

@@ -8,7 +8,8 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/voxmend-completion.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" "$work/files"
 printf '#!/bin/sh\nexec "%s" "$@"\n' "$VOXMEND" >"$work/bin/voxmend"
-chmod +x "$work/bin/voxmend"
+printf '#!/bin/sh\nexec "%s" "$@"\n' "$BUILDDIR/binvox" >"$work/bin/binvox"
+chmod +x "$work/bin/voxmend" "$work/bin/binvox"
 PATH=$work/bin:$PATH
 export PATH
 cd "$work/files"
@@ -39,7 +40,7 @@ complete_bash() {
     [[ $COMP_LINE == *" " ]] && COMP_WORDS+=("")
     COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
     compopt() { :; } # works within a real completion alone
-    _voxmend voxmend "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"
+    "_${COMP_WORDS[0]}" "${COMP_WORDS[0]}" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"
     printf "%s " "${COMPREPLY[@]}"' bash "$SRCDIR/completions/voxmend.bash" "$1"
 }
 expect_bash() {
@@ -59,6 +60,10 @@ expect_bash 'voxmend repair chair.off --level c' 'clean closed'
 expect_bash 'voxmend voxelize -o ' ''
 expect_bash 'voxmend voxelize --json c' ''
 expect_bash 'voxmend nonsense --x' ''
+expect_bash 'binvox -rot' '-rotx -roty -rotz'
+expect_bash 'binvox -d 64 -t sch' 'schematic'
+expect_bash 'voxmend binvox -dm' '-dmin'
+expect_bash 'binvox chair' ''
 
 # The same with keys on a real terminal, where there is one to be had.
 if command -v python3 >/dev/null; then
@@ -98,6 +103,7 @@ bad = 0
 for typed, wanted in [("voxmend voxe\t", "voxmend voxelize"),
                       ("voxmend voxelize --resol\t64 ch\t", "voxmend voxelize --resolution 64 chair.off"),
                       ("voxmend voxelize my\t--mode su\t", "voxmend voxelize my table.off --mode surface"),
+                      ("binvox -dm\t4 ch\t", "binvox -dmin 4 chair.off"),
                       ("voxmend repair -o mod\t", "voxmend repair -o models/"),
                       ("voxmend voxelize --mode=b\t", "voxmend voxelize --mode=both")]:
     got = session(typed)
