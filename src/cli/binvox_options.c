@@ -191,7 +191,7 @@ static bool asks_for_help(const char *word) {
 /** Takes the word at cli->argv[*index] with its values. */
 static int take_word(cli_run *cli, binvox_request *out, int *index) {
   const char *word = cli->argv[*index];
-  if (word[0] != '-') {
+  if (word[0] != '-' || !word[1]) {
     if (out->model)
       cli_warn(cli, "'%s' is not read: the last name is the model", out->model);
     out->model = word;
@@ -222,6 +222,10 @@ static int take_word(cli_run *cli, binvox_request *out, int *index) {
 static int check(cli_run *cli, const binvox_request *given) {
   if (given->materials && given->type == BINVOX_SCHEMATIC && !given->exact)
     return cli_usage(cli, "-mb: the blocks of a schematic are those of faces, which goes with -e");
+  if (given->output && strcmp(given->output, "-") == 0)
+    return cli_usage(cli, "-o names a file; what is printed goes to standard output");
+  if (strcmp(given->model, "-") == 0 && !given->output)
+    return cli_usage(cli, "a model from standard input needs -o FILE");
   if (given->exact && given->dilated)
     cli_warn(cli, "-e makes a surface: -dc is not applied");
   return CLI_END;

@@ -184,9 +184,10 @@ static void say_voxels(const binvox_bits *bits) {
   printf("dimensions: %" PRId64 " x %" PRId64 " x %" PRId64 "\n", dims[0], dims[1], dims[2]);
   printf("counted %" PRId64 " set voxels out of %" PRId64 "\n", binvox_count(bits),
          dims[0] * dims[1] * dims[2]);
-  if (binvox_box(low, high, bits))
-    printf("area filled: %" PRId64 " x %" PRId64 " x %" PRId64 "\n", high[0] - low[0] + 1,
-           high[1] - low[1] + 1, high[2] - low[2] + 1);
+  bool is_any = binvox_box(low, high, bits);
+  for (int axis = 0; axis < 3; axis++)
+    printf("%s%" PRId64 "%s", axis == 0 ? "area filled: " : " x ", is_any ? high[axis] - low[axis] + 1 : 0,
+           axis == 2 ? "\n" : "");
 }
 
 /* ---- Files ---- */

@@ -52,5 +52,14 @@ for words in '' '-d 0 in/cube.off' '-d 8.5 in/cube.off' '-d' '-d 8 -bb 0 0 0 1 1
   '-d 8 -o no/such/x in/cube.off'; do
   run "binvox $words"
 done
+run 'binvox -d 8 -o - in/cube.off'
+run 'binvox -d 8 - <in/cube.off'
+run 'binvox -d 8 -o from_input.binvox - <in/cube.off | short'
+printf 'OFF 4 2 0\n-1e308 0 0\n1e308 0 0\n0 1e308 0\n0 -1e308 1e308\n3 0 1 2\n3 0 1 3\n' >huge.off
+printf 'OFF 3 1 0\n1 2 3\n1 2 3\n1 2 3\n3 0 1 2\n' >point.off
+printf 'OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >sheet.off
+run 'binvox -d 8 huge.off | short'
+run 'binvox -d 8 point.off | short'
+run 'binvox -d 8 sheet.off | short; binvox -d 8 -e sheet.off | short; binvox -d 8 -v sheet.off | short; binvox -d 8 -v -fit -ri -down sheet.off | short'
 run 'binvox -d 8 in/cube.off >/dev/full; ls in/cube*'
 finish
