@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "config.h"
-#if HAVE_ZLIB
+#ifdef HAVE_ZLIB
 #include <zlib.h>
 #endif
 
@@ -105,7 +105,7 @@ static vxm_status write_vtk(cli_run *cli, const binvox_bits *bits, const char *p
 
 /* ---- Minecraft ---- */
 
-#if HAVE_ZLIB
+#ifdef HAVE_ZLIB
 enum {
   TAG_SHORT = 2,
   TAG_BYTES = 7,

@@ -318,4 +318,8 @@ test_files("rocket.off", 21)
 test_files("l_prism.off", 13, "-fit", "-rotx")
 if ZLIB == "yes":
     test_blocks()
+    # The command line of a public script (doc/binvox.md), and the voxels that it means.
+    words = ("-d", 64, "-down", "-down", "-rotx", "-rotz", "-rotz", "-rotz", "star_prism.off")
+    run("-t", "schematic", "-o", "out.schematic", *words)
+    check((read_schematic("out.schematic", 1) == voxels_of(*words)[0]).all() and voxels_of(*words)[0].sum() == 495, words)
 print(checks, "checks")
