@@ -120,7 +120,7 @@ static bool do_command(json_t *result, json_t *reports, const json_t *job, const
   if (!words || count == 0)
     return false;
   lseek(STDIN_FILENO, 0, SEEK_SET);
-  int status = cli_run_command(words[0], count, words, &capture);
+  int status = cli_capture_command(words[0], count, words, &capture);
   if (status == CLI_DONE && capture.report) {
     json_object_set_new(result, words[0], short_report(capture.report));
     json_object_set_new(reports, words[0], lasting(capture.report));

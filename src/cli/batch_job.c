@@ -100,7 +100,7 @@ static bool add_limits(batch_words *words, const batch_maker *maker, batch_produ
               batch_words_add(words, "--threads=%" PRId64, maker->wish->threads);
   if (maker->memory > 0)
     good = good && batch_words_add(words, "--memlimit=%" PRIu64, maker->memory);
-  if (product == BATCH_GRID)
+  if (product == BATCH_GRID || product == BATCH_REPAIRED || product == BATCH_REMESHED)
     good = good && batch_words_add(words, "--force");
   return good;
 }

@@ -26,7 +26,7 @@ static int run_apart(char **words, int message, unsigned seconds) {
     dup2(null, STDOUT_FILENO);
     dup2(message >= 0 ? message : null, STDERR_FILENO);
     alarm(seconds);
-    int result = cli_run_command(words[0], count, words, &capture);
+    int result = cli_capture_command(words[0], count, words, &capture);
     fflush(NULL);
     _exit(result);
   }

@@ -99,13 +99,21 @@ typedef struct cli_command {
   const cli_option
       *others;           /**< those of another command that are taken too, but of names above; NULL = none */
   const char *others_of; /**< that command */
+  bool many;             /**< takes any number of files */
+  void (*print_help)(void);    /**< for options of another kind; NULL = the help is made of the table */
+  bool folders;                /**< takes folders too; else cli_check_names refuses them */
   void (*print_choices)(void); /**< prints lists for the help, shown before the notes; NULL = none */
   int (*run)(cli_run *cli);    /**< returns an exit status */
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
     cli_command_batch, cli_command_compare, cli_command_augment, cli_command_remesh, cli_command_view,
-    cli_command_bench, cli_command_engines;
+    cli_command_bench, cli_command_engines, cli_command_combine, cli_command_help, cli_command_binvox;
+
+enum { CLI_COMMANDS_MAX = 24 };
+
+/** All of them, in the order in which they are shown (main.c); NULL ends them. */
+extern const cli_command *const cli_commands[CLI_COMMANDS_MAX + 1];
 
 enum { CLI_OPTIONS_MAX = 96, CLI_LIST_MAX = 512, CLI_NAMES_MAX = 8 };
 
@@ -123,7 +131,7 @@ typedef struct cli_capture {
 } cli_capture;
 
 /** Runs a command by its name; the first of the words is that name. Its exit status. */
-int cli_run_command(const char *name, int count, char **words, cli_capture *capture);
+int cli_capture_command(const char *name, int count, char **words, cli_capture *capture);
 
 /** One run of the program. */
 struct cli_run {
@@ -164,6 +172,10 @@ int cli_next_option(cli_run *cli, const char **value);
 /** Prints one line about wrong usage, sets cli->status and returns CLI_STOP. */
 int cli_usage(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 void cli_help(const cli_command *command);
+/** The options of a command for programs, a line each: "--name", letter, argument and purpose, with tabs
+ * between.
+ */
+void cli_help_table(const cli_command *command);
 /**
  * Makes the context, which holds the files that are written until cli_finish, and tries the report, so that a
  * wrong name fails before the work; false after a failure that has been printed.
@@ -235,6 +247,33 @@ vxm_status cli_engine_open(cli_run *cli, cli_engine *engine);
 void cli_engine_summarize(const cli_run *cli, const cli_engine *engine);
 json_t *cli_engine_json(const cli_engine *engine);
 
+/* ---- entry.c ---- */
+
+/** The status; CLI_FAILED after a line where what was printed is lost when it is flushed, on a full disk for
+ * one. */
+int cli_flush_output(cli_run *cli, int status);
+/** Runs a command as the whole program; returns its exit status, or ends by the signal that stopped it. */
+int cli_run_command(const cli_command *command, int argc, char **argv);
+
+/* ---- cmd_help.c: the commands ---- */
+
+void cli_help_overview(void);
+/** NULL if there is none of that name. */
+const cli_command *cli_find_command(const char *name);
+/** As cli_suggestion, for a command. */
+const char *cli_suggest_command(char text[CLI_LIST_MAX], const char *typed);
+
+/* ---- suggest.c ---- */
+
+/**
+ * "; did you mean --a or --b?", or "" where none of the names is like what was typed.
+ *
+ * @param before put before each name
+ * @param names  NULL ends them
+ */
+const char *cli_suggestion(char text[CLI_LIST_MAX], const char *typed, const char *before,
+                           const char *const *names);
+
 /* ---- output.c: messages, tables and reports ---- */
 
 /** Prints cli->error as one line and returns CLI_FAILED. */
@@ -291,7 +330,11 @@ void cli_writes(cli_run *cli, const char *option, const char *path, bool has_jso
  * two that are written are the same.
  */
 int cli_check_names(cli_run *cli);
-/** For what is made of a grid: CLI_STOP if it is a surface and would replace a file. */
+/** CLI_STOP if an argument is a folder where the command takes files (folder.c); among many it is left alone.
+ */
+int cli_check_folders(cli_run *cli);
+/** The one rule for what is there already: CLI_STOP if a mesh would be written in place of a file, which may
+ * be the mesh that all else is made of. Grids, pictures and reports replace what was there. */
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced);
 /** Those of grids that are written as meshes. */
 #define CLI_OPTIONS_SURFACE(polygons, contacts)                                        \
@@ -307,7 +350,7 @@ int cli_check_surface_file(cli_run *cli, const char *path, const char *format, b
 /** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
 #define CLI_OPTION_FORCE(key) \
-  { key, "force", NULL, "replace a file that is there by a surface: .obj, .ply, .stl or .off" }
+  { key, "force", NULL, "replace a mesh that is there: .obj, .ply, .stl or .off" }
 
 /* ---- values.c: bits and numbers in files ---- */
 
@@ -424,6 +467,8 @@ typedef struct cli_found {
 int cli_defects_read_list(cli_run *cli, cli_defects *defects, const char *value);
 /** CLI_STOP if --locate has a wrong name. */
 int cli_defects_check(cli_run *cli, const cli_defects *defects);
+/** CLI_STOP if --locate would replace a file. */
+int cli_defects_check_file(cli_run *cli, const cli_defects *defects, bool is_forced);
 /** Prints the list that cli_defects_show has made; NULL = none. */
 void cli_defects_print(const cli_run *cli, const json_t *list);
 /** Finds, lists, counts and draws the defects of a mesh; CLI_DONE or CLI_FAILED. */

@@ -253,5 +253,7 @@ const cli_command cli_command_batch = {
     .options = batch_options,
     .others = voxelize_options,
     .others_of = "voxelize",
+    .many = true,
+    .folders = true,
     .run = run,
 };

@@ -2,13 +2,17 @@
 /** voxmend info: what is wrong with a mesh. */
 #include "cli/cli.h"
 
-enum { KEY_LOCATE = CLI_KEY_COMMAND, KEY_LIST, KEY_INTERSECTIONS };
+#include <inttypes.h>
+#include <string.h>
+
+enum { KEY_LOCATE = CLI_KEY_COMMAND, KEY_LIST, KEY_INTERSECTIONS, KEY_FORCE };
 
 static const cli_option known_options[] = {
     {KEY_LOCATE, "locate", "FILE.ply", "show what is wrong, in colour on the mesh; for one mesh"},
     {KEY_LIST, "list", "N", "list what is wrong, up to N of each kind, with indices and coordinates"},
     {KEY_INTERSECTIONS, "intersections", NULL,
      "count faces that cut through others, and show them with --locate and\n--list (CGAL)"},
+    {KEY_FORCE, "force", NULL, "replace a mesh that is there with --locate"},
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
@@ -42,6 +46,36 @@ static void describe(const cli_run *cli, const description *d) {
   cli_census_print_intersections(cli, d->found.intersections);
 }
 
+/** Several files are a row each, unless more is wanted of them. */
+static bool is_table(const cli_run *cli, const cli_defects *wanted) {
+  return cli->argument_count > 1 && !cli->verbose && !wanted->list;
+}
+
+static int name_width(const cli_run *cli) {
+  size_t width = strlen("file"), most = 40;
+  for (int i = 0; i < cli->argument_count; i++) {
+    size_t length = strlen(cli_shown(cli->arguments[i], "<stdin>"));
+    width = length > width ? length : width;
+  }
+  return (int)(width < most ? width : most);
+}
+
+static void print_heading(const cli_run *cli) {
+  fprintf(cli->text, "%-*s %9s %9s %7s %7s %8s %7s %8s %7s  %s\n", name_width(cli), "file", "vertices",
+          "faces", "parts", "open", "forked", "turned", "repeated", "no area", "verdict");
+}
+
+static void print_row(const cli_run *cli, const description *d) {
+  const vxm_census *c = &d->census;
+  fprintf(cli->text,
+          "%-*s %9" PRId64 " %9" PRId64 " %7" PRId64 " %7" PRId64 " %8" PRId64 " %7" PRId64 " %8" PRId64
+          " %7" PRId64 "  %.*s\n",
+          name_width(cli), cli_shown(d->path, "<stdin>"), c->vertices, c->faces, c->components,
+          c->boundary_edges, c->nonmanifold_edges, c->inconsistent_edges,
+          c->duplicate_faces + c->opposite_duplicate_faces, c->degenerate_faces,
+          (int)strcspn(d->verdict, ";"), d->verdict);
+}
+
 /** Counts what repair would have to close. Only where something is, or may be: it takes as long as
  * the repair. */
 static int count_openings(cli_run *cli, cli_openings *out, const description *d) {
@@ -60,7 +94,20 @@ static int count_openings(cli_run *cli, cli_openings *out, const description *d)
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
-static int look_at(cli_run *cli, json_t *reports, description *d) {
+static void show(const cli_run *cli, const description *d, const cli_defects *wanted, bool first) {
+  if (is_table(cli, wanted)) {
+    if (first)
+      print_heading(cli);
+    print_row(cli, d);
+    return;
+  }
+  if (!first)
+    fputc('\n', cli->text);
+  describe(cli, d);
+  cli_defects_print(cli, d->found.list);
+}
+
+static int look_at(cli_run *cli, json_t *reports, description *d, const cli_defects *wanted) {
   if (vxm_mesh_census(&d->census, d->mesh, &cli->error) != VXM_OK)
     return cli_fail(cli);
   char sentence[CLI_SENTENCE];
@@ -69,12 +116,8 @@ static int look_at(cli_run *cli, json_t *reports, description *d) {
     return CLI_FAILED;
   d->verdict = cli_verdict(sentence, &d->census, &openings, d->found.intersections);
   cli_progress_clear(cli);
-  if (cli_summary(cli)) {
-    if (json_array_size(reports) > 0)
-      fputc('\n', cli->text);
-    describe(cli, d);
-    cli_defects_print(cli, d->found.list);
-  }
+  if (cli_summary(cli))
+    show(cli, d, wanted, json_array_size(reports) == 0);
   json_array_append_new(reports, describe_json(cli, d));
   return CLI_DONE;
 }
@@ -89,7 +132,7 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
   description d = {.path = path, .mesh = mesh, .census = VXM_CENSUS_INIT};
   int status = cli_defects_show(cli, &d.found, wanted, mesh);
   if (status == CLI_DONE)
-    status = look_at(cli, reports, &d);
+    status = look_at(cli, reports, &d, wanted);
   json_decref(d.found.list);
   vxm_mesh_destroy(mesh);
   return status;
@@ -97,11 +140,14 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
 
 static int read_arguments(cli_run *cli, cli_defects *wanted) {
   const char *value;
+  bool force = false;
   int key;
   while ((key = cli_next_option(cli, &value)) != CLI_END) {
     if (key == CLI_STOP)
       return CLI_STOP;
-    if (key == KEY_LOCATE)
+    if (key == KEY_FORCE)
+      force = true;
+    else if (key == KEY_LOCATE)
       wanted->locate = value;
     else if (key == KEY_INTERSECTIONS)
       wanted->intersections = true;
@@ -115,7 +161,7 @@ static int read_arguments(cli_run *cli, cli_defects *wanted) {
   if (cli_defects_check(cli, wanted) == CLI_STOP)
     return CLI_STOP;
   cli_writes(cli, "--locate", wanted->locate, false);
-  return cli_check_names(cli);
+  return cli_check_names(cli) == CLI_STOP ? CLI_STOP : cli_defects_check_file(cli, wanted, force);
 }
 
 static int run(cli_run *cli) {
@@ -147,12 +193,16 @@ const cli_command cli_command_info = {
     .summary = "tell what is wrong with meshes",
     .notes =
         "Edges, components and repeated faces are counted after welding vertices at identical positions.\n"
-        "--json prints one object for one mesh and an array for several. Files that cannot be read are\n"
+        "Of several meshes each is a row of a table: open, forked and turned are edges of one face, of more\n"
+        "than two, and of two that are wound against each other; with --verbose or --list, each is told in\n"
+        "full. --json prints one object for one mesh and an array for several. Files that cannot be read "
+        "are\n"
         "named, the others are reported, and the exit status is 1.\n\n"
         "Examples:\n"
         "  voxmend info chair.off\n"
         "  voxmend info --json *.obj > census.json\n"
         "  voxmend info part.stl --locate wrong.ply",
     .options = known_options,
+    .many = true,
     .run = run,
 };

@@ -4,7 +4,7 @@
 
 #include <inttypes.h>
 
-enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_THIN, KEY_ASCII, KEY_FORMAT };
+enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_THIN, KEY_ASCII, KEY_FORMAT, KEY_FORCE };
 
 static const cli_option known_options[] = {
     {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)"},
@@ -15,11 +15,13 @@ static const cli_option known_options[] = {
      "come out two thirds of a voxel thick or more [keep]"},
     {KEY_ASCII, "ascii", NULL, "write .stl and .ply as text rather than binary"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
+    CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output;
+  bool force;
   vxm_space_options space;
   vxm_voxelize_options voxelize;
   vxm_mesh_write_options write;
@@ -45,6 +47,9 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_SIZE:
     if (!cli_read_number(&out->space.voxel_size, value) || !(out->space.voxel_size > 0))
       return cli_usage(cli, "--voxel-size '%s' is not a positive number", value);
+    return CLI_END;
+  case KEY_FORCE:
+    out->force = true;
     return CLI_END;
   case KEY_THIN:
     return cli_read_thin(cli, &out->voxelize, value);
@@ -73,7 +78,9 @@ static int read_arguments(cli_run *cli, request *out) {
   if (!out->write.format)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, false);
-  return cli_check_names(cli);
+  return cli_check_names(cli) == CLI_STOP
+             ? CLI_STOP
+             : cli_check_surface_file(cli, out->output, out->write.format, out->force);
 }
 
 static json_t *make_report(const cli_run *cli, const request *given, const outcome *made) {

@@ -24,7 +24,8 @@ enum {
   KEY_INTERSECTIONS,
   KEY_ASCII,
   KEY_POLYGONS,
-  KEY_FORMAT
+  KEY_FORMAT,
+  KEY_FORCE
 };
 
 static const cli_option known_options[] = {
@@ -83,12 +84,13 @@ static const cli_option known_options[] = {
      "split = write triangles, as many programs read nothing else; keep = leave\n"
      "polygons as they are in .off, .obj and .ply [split]"},
     {KEY_FORMAT, "format", "F", "off, obj, stl or ply [by the name of the output]"},
+    CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output, *format;
-  bool fill, sheets, best_effort;
+  bool fill, sheets, best_effort, force;
   vxm_repair_options repair;
   vxm_mesh_write_options write;
   cli_defects defects;
@@ -156,6 +158,9 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     result = cli_choose(cli, &choice, "fill", value, fills);
     out->repair.hole_fill = (vxm_hole_fill)choice;
     return result;
+  case KEY_FORCE:
+    out->force = true;
+    return CLI_END;
   case KEY_BEST_EFFORT:
     out->best_effort = true;
     return CLI_END;
@@ -250,7 +255,9 @@ static int read_arguments(cli_run *cli, request *out) {
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, false);
   cli_writes(cli, "--locate", out->defects.locate, false);
-  if (cli_check_names(cli) == CLI_STOP)
+  if (cli_check_names(cli) == CLI_STOP ||
+      cli_check_surface_file(cli, out->output, out->write.format, out->force) == CLI_STOP ||
+      cli_defects_check_file(cli, &out->defects, out->force) == CLI_STOP)
     return CLI_STOP;
   out->repair.part_changes = cli_summary(cli) || cli->json || cli->report;
   out->repair.intersections =

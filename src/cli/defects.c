@@ -100,3 +100,7 @@ void cli_defects_print(const cli_run *cli, const json_t *list) {
     fputc('\n', cli->text);
   }
 }
+
+int cli_defects_check_file(cli_run *cli, const cli_defects *defects, bool is_forced) {
+  return defects->locate ? cli_check_surface_file(cli, defects->locate, "ply", is_forced) : CLI_END;
+}

@@ -209,6 +209,8 @@ static bool meet(const cli_written *a, const cli_written *b) {
 
 int cli_check_names(cli_run *cli) {
   char name[PATH_SIZE];
+  if (cli_check_folders(cli) == CLI_STOP)
+    return CLI_STOP;
   cli_writes(cli, "--report", cli->report, false);
   for (int i = 0; i < cli->write_count; i++) {
     const cli_written *output = &cli->writes[i];

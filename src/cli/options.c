@@ -60,6 +60,10 @@ static bool is_replaced(const cli_command *command, const cli_option *common) {
 }
 
 void cli_help(const cli_command *command) {
+  if (command->print_help) {
+    command->print_help();
+    return;
+  }
   printf("Usage: voxmend %s %s\n%s\n", command->name, command->arguments, command->summary);
   if (command->options[0].name)
     printf("\nOptions:\n");
@@ -77,6 +81,25 @@ void cli_help(const cli_command *command) {
   printf("\n%s\n\nExit status: 0 done; 1 failed, and no output file is left; 2 wrong usage;\n"
          "3 done with warnings, and only with --strict.\n",
          command->notes);
+}
+
+/** The first line of the help, which is enough for a list. */
+static void print_row(const cli_option *option) {
+  char letter[3] = "";
+  if (option->key < CLI_KEY_COMMON)
+    snprintf(letter, sizeof letter, "-%c", option->key);
+  printf("--%s\t%s\t%s\t%.*s\n", option->name, letter, option->argument ? option->argument : "",
+         (int)strcspn(option->help, "\n"), option->help);
+}
+
+void cli_help_table(const cli_command *command) {
+  if (command->print_help)
+    return;
+  for (const cli_option *option = command->options; option->name; option++)
+    print_row(option);
+  for (const cli_option *option = common_options; option->name; option++)
+    if (!is_replaced(command, option))
+      print_row(option);
 }
 
 /* ---- Options ---- */
@@ -135,15 +158,28 @@ static const char *option_name(int key) {
   return "?";
 }
 
+/** What may have been meant by a long option that is none; "" for one that is far from all. */
+static const char *suggest_option(char text[CLI_LIST_MAX], const char *word) {
+  const char *names[CLI_OPTIONS_MAX + 1];
+  char typed[64];
+  int count = 0;
+  for (; long_options[count].name; count++)
+    names[count] = long_options[count].name;
+  names[count] = NULL;
+  snprintf(typed, sizeof typed, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+  return cli_suggestion(text, typed, "--", names);
+}
+
 /** What getopt refused; `word` is the argument that it was looking at. */
 static int refuse(cli_run *cli, int result, const char *word) {
+  char hint[CLI_LIST_MAX];
   if (result == ':')
     return cli_usage(cli, "option --%s needs a value", option_name(optopt));
   if (optopt >= CLI_KEY_COMMON || (optopt && word[0] == '-' && word[1] == '-'))
     return cli_usage(cli, "option --%s takes no value", option_name(optopt));
   if (optopt)
     return cli_usage(cli, "unknown option -%c", optopt);
-  return cli_usage(cli, "unknown option %s", word);
+  return cli_usage(cli, "unknown option %s%s", word, suggest_option(hint, word));
 }
 
 /** Handles an option that all or several commands have; CLI_END if it is one, else its key. */
@@ -360,6 +396,9 @@ const char *cli_output_format(cli_run *cli, const char *path, const char *format
     cli_usage(cli, "--format '%s' is none of %s", format, list);
   else if (!found && strcmp(path, "-") == 0)
     cli_usage(cli, "-o - needs --format: %s", list);
+  else if (!found && cli_is_extension(path, "vox") && strcmp(cli->command->name, "voxelize") == 0)
+    cli_usage(cli, "'%s': .vox holds colours and needs --color; convert turns a grid of colours into one too",
+              path);
   else if (!found)
     cli_usage(cli, "the name '%s' does not tell the format; give --format: %s", path, list);
   if (!found || strcmp(path, "-") != 0)

@@ -53,11 +53,27 @@ static int64_t voxels_for(double length, double size) {
 
 /** What the options ask for, taken apart. */
 typedef struct request {
-  bool by_size;       /**< voxel_size is given rather than a resolution */
+  bool by_size;       /**< voxel sizes are given rather than a resolution */
+  double sizes[3];    /**< the voxel sizes */
   bool one_number;    /**< the resolution is one number, for the longest side */
   int64_t voxels[3];  /**< the resolution */
   int64_t content[3]; /**< the resolution without the pad */
 } request;
+
+/** One size for all axes, or three. */
+static vxm_status read_sizes(request *out, const vxm_space_options *o, vxm_error *error) {
+  const double *s = o->voxel_sizes;
+  bool three = s[0] != 0 || s[1] != 0 || s[2] != 0;
+  if (three && o->voxel_size != 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "both one voxel size and three are given; choose");
+  out->by_size = three || o->voxel_size != 0;
+  for (int a = 0; a < 3; a++) {
+    out->sizes[a] = three ? s[a] : o->voxel_size;
+    if (out->by_size && !(isfinite(out->sizes[a]) && out->sizes[a] > 0))
+      return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxel size %g; it must be positive", out->sizes[a]);
+  }
+  return VXM_OK;
+}
 
 static vxm_status read_request(request *out, const vxm_space_options *o, vxm_error *error) {
   const int64_t *r = o->resolution;
@@ -69,13 +85,13 @@ static vxm_status read_request(request *out, const vxm_space_options *o, vxm_err
                     "resolution %" PRId64 "x%" PRId64 "x%" PRId64
                     "; give one number or three, each at least 1",
                     r[0], r[1], r[2]);
-  if (o->voxel_size != 0 && !(isfinite(o->voxel_size) && o->voxel_size > 0))
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "voxel size %g; it must be positive", o->voxel_size);
-  if (o->voxel_size != 0 && !none)
+  vxm_status status = read_sizes(out, o, error);
+  if (status != VXM_OK)
+    return status;
+  if (out->by_size && !none)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "both a resolution and a voxel size are given; choose one");
   if (o->pad < 0 || o->pad > VXM_DIM_MAX)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "pad %" PRId64 "; it must be 0 or more voxels", o->pad);
-  out->by_size = o->voxel_size != 0;
   out->one_number = !three;
   for (int a = 0; a < 3; a++) {
     out->voxels[a] = none ? 128 : one ? r[0] : r[a];
@@ -92,20 +108,20 @@ static vxm_status read_request(request *out, const vxm_space_options *o, vxm_err
   return VXM_OK;
 }
 
-static void set_cubic(vxm_space *space, double size) {
+/** The sizes that are asked for, or else cubes. */
+static void set_sizes(vxm_space *space, const request *r, double size) {
   for (int a = 0; a < 3; a++)
-    space->voxel_size[a] = size;
+    space->voxel_size[a] = r->by_size ? r->sizes[a] : size;
 }
 
 /** Cells that cover a box from its minimum corner on; three numbers divide each side exactly. */
-static vxm_status cover_bounds(vxm_space *out, const box *b, const request *r, double voxel_size,
-                               vxm_error *error) {
+static vxm_status cover_bounds(vxm_space *out, const box *b, const request *r, vxm_error *error) {
   for (int a = 0; a < 3; a++)
     if (!isfinite(b->low[a]) || !isfinite(b->high[a]) || !(extent(b, a) > 0) || !isfinite(extent(b, a)))
       return vxm_fail(error, VXM_ERROR_ARGUMENT,
                       "bounds %g to %g along %c; the second corner must lie beyond the first", b->low[a],
                       b->high[a], "xyz"[a]);
-  set_cubic(out, r->by_size ? voxel_size : longest(b) / (double)r->voxels[0]);
+  set_sizes(out, r, longest(b) / (double)r->voxels[0]);
   for (int a = 0; a < 3; a++) {
     if (!r->by_size && !r->one_number)
       out->voxel_size[a] = extent(b, a) / (double)r->voxels[a];
@@ -128,12 +144,12 @@ static double fitted_size(const box *b, const request *r, vxm_fit fit) {
 
 static vxm_status fit_model(vxm_space *out, const box *b, const request *r, const vxm_space_options *o,
                             vxm_error *error) {
-  set_cubic(out, r->by_size ? o->voxel_size : fitted_size(b, r, o->fit));
-  double size = out->voxel_size[0];
-  if (!(size > 0) || !isfinite(size))
-    return vxm_fail(error, VXM_ERROR_RANGE,
-                    "voxels of size %g are beyond what can be computed; scale the model", size);
+  set_sizes(out, r, fitted_size(b, r, o->fit));
   for (int a = 0; a < 3; a++) {
+    double size = out->voxel_size[a];
+    if (!(size > 0) || !isfinite(size))
+      return vxm_fail(error, VXM_ERROR_RANGE,
+                      "voxels of size %g are beyond what can be computed; scale the model", size);
     double side = o->fit == VXM_FIT_TIGHT    ? extent(b, a)
                   : o->fit == VXM_FIT_SPHERE ? diagonal(b)
                                              : longest(b);
@@ -169,7 +185,7 @@ vxm_status vxm_space_choose(vxm_space *out, const vxm_soup *soup, const vxm_spac
       b.low[a] = options->bounds[a];
       b.high[a] = options->bounds[a + 3];
     }
-    return cover_bounds(out, &b, &wanted, options->voxel_size, error);
+    return cover_bounds(out, &b, &wanted, error);
   }
   status = box_of_soup(&b, soup, error);
   if (status != VXM_OK)

@@ -93,11 +93,16 @@ typedef struct vxm_space_options {
                               on, rounded up to whole voxels; exactly if three numbers are given */
   double bounds[6];      /**< x0 y0 z0 x1 y1 z1 */
   const vxm_space *like; /**< take exactly this space; overrides the rest */
+  double voxel_sizes[3]; /**< model units along each axis, instead of voxel_size; all 0 = not used */
 } vxm_space_options;
 
 /** Initial value of vxm_space_options. */
-#define VXM_SPACE_OPTIONS_INIT \
-  { sizeof(vxm_space_options), {0, 0, 0}, 0.0, VXM_FIT_CUBE, 0, false, {0, 0, 0, 0, 0, 0}, NULL }
+#define VXM_SPACE_OPTIONS_INIT                                                                     \
+  {                                                                                                \
+    sizeof(vxm_space_options), {0, 0, 0}, 0.0, VXM_FIT_CUBE, 0, false, {0, 0, 0, 0, 0, 0}, NULL, { \
+      0, 0, 0                                                                                      \
+    }                                                                                              \
+  }
 
 /**
  * Chooses a voxel space for a mesh.

@@ -35,17 +35,17 @@ run 'voxmend info two.obj plate.obj left.obj --intersections --json | grep -E "f
 printf 'OFF\n4 2 0\n0 0 0\n1 0 0\n0 nan 0\n0 0 1\n3 0 1 3\n3 0 1 2\n' >nan.off
 run 'voxmend info nan.off --intersections | facts'
 run 'voxmend info two.obj --intersections --locate where.ply -q && grep -c "^3 .* 220 20 60" where.ply'
-run 'voxmend repair two.obj -o a.ply --intersections --max-change 0.001 --json -q | grep self'
+run 'voxmend repair two.obj -o a.ply --force --intersections --max-change 0.001 --json -q | grep self'
 
 say "# --union"
-run 'voxmend repair two.obj -o a.ply --union | facts'
-run 'voxmend repair plate.obj -o a.obj --union | facts'
+run 'voxmend repair two.obj -o a.ply --force --union | facts'
+run 'voxmend repair plate.obj -o a.obj --force --union | facts'
 run 'voxmend info -v a.obj --intersections | facts'
-run 'voxmend repair plate.obj -o a.ply --union --json -q | grep -E "\"(name|union_failed|self_intersections|union_failures)\""'
-run 'voxmend repair two.obj -o a.ply --union --max-change 0.01'
+run 'voxmend repair plate.obj -o a.ply --force --union --json -q | grep -E "\"(name|union_failed|self_intersections|union_failures)\""'
+run 'voxmend repair two.obj -o a.ply --force --union --max-change 0.01'
 box inner 0.5 0.5 0.5 1 9 | cat left.obj - >nested.obj
-run 'voxmend repair nested.obj -o a.ply --union | facts'
-run 'voxmend repair nested.obj -o a.ply --union --keep-orientation | facts'
+run 'voxmend repair nested.obj -o a.ply --force --union | facts'
+run 'voxmend repair nested.obj -o a.ply --force --union --keep-orientation | facts'
 
 say "# united again, nothing changes: two cubes meet along an edge, which a third covers half of"
 {
@@ -57,29 +57,29 @@ run 'voxmend repair edge.obj -o a.off --union | facts'
 run 'voxmend repair a.off -o b.off --union -q && cmp a.off b.off'
 
 say "# --level solid"
-run 'voxmend repair two.obj -o a.ply --level solid | facts'
+run 'voxmend repair two.obj -o a.ply --force --level solid | facts'
 run 'voxmend repair two.obj -o a.stl --level solid | facts'
-run 'voxmend repair plate.obj -o no.ply --level solid --sheets keep'
+run 'voxmend repair plate.obj -o no.ply --force --level solid --sheets keep'
 run 'test -e no.ply'
-run 'voxmend repair plate.obj -o a.ply --level solid --sheets keep --best-effort | facts'
-run 'voxmend repair plate.obj -o a.ply --level solid --thickness 0.25 | facts'
-run 'voxmend repair plate.obj -o a.ply --level solid --drop-parts faces:2 | facts'
+run 'voxmend repair plate.obj -o a.ply --force --level solid --sheets keep --best-effort | facts'
+run 'voxmend repair plate.obj -o a.ply --force --level solid --thickness 0.25 | facts'
+run 'voxmend repair plate.obj -o a.ply --force --level solid --drop-parts faces:2 | facts'
 say "# a closed part without a volume, through a cube"
 {
   cat left.obj
   printf 'o flat\nv -1 -1 1.5\nv 5 -1 1.5\nv 5 5 1.5\nv -1 5 1.5\nf 9 10 11\nf 9 11 12\nf 9 12 10\nf 10 12 11\n'
 } >flat.obj
-run 'voxmend repair flat.obj -o no.ply --level solid'
-run 'voxmend repair flat.obj -o a.ply --level solid --fallback wrap:0.1 --json -q | grep -E "union_failures|wrapped_parts|\"reached\""'
-run 'voxmend repair flat.obj -o a.ply --level solid --fallback wrapped'
-run 'voxmend repair flat.obj -o a.ply --level closed --fallback wrap'
-run 'voxmend repair nested.obj -o a.ply --level solid | facts'
+run 'voxmend repair flat.obj -o no.ply --force --level solid'
+run 'voxmend repair flat.obj -o a.ply --force --level solid --fallback wrap:0.1 --json -q | grep -E "union_failures|wrapped_parts|\"reached\""'
+run 'voxmend repair flat.obj -o a.ply --force --level solid --fallback wrapped'
+run 'voxmend repair flat.obj -o a.ply --force --level closed --fallback wrap'
+run 'voxmend repair nested.obj -o a.ply --force --level solid | facts'
 say "# a cube upon a cube, one beside along an edge, and one at a corner"
 box b 0 0 2 2 9 | cat left.obj - >upon.obj
 box b 2 2 0 2 9 | cat left.obj - >beside.obj
 box b 2 2 2 2 9 | cat left.obj - >corner.obj
 for mesh in upon beside corner; do
-  run "voxmend repair $mesh.obj -o a.ply --level solid | facts && voxmend info a.ply --intersections | facts"
+  run "voxmend repair $mesh.obj -o a.ply --force --level solid | facts && voxmend info a.ply --intersections | facts"
 done
 
 say "# more than are counted"
@@ -89,27 +89,27 @@ awk 'BEGIN { n = 2060
   for (i = 0; i < n; i++) { y = (i + 0.5) / n; print -1, y, 0.1; print 2, y, 0.1; print 0.5, y, -1 }
   for (i = 0; i < 2 * n; i++) print 3, 3 * i, 3 * i + 1, 3 * i + 2 }' >comb.off
 run 'voxmend info comb.off --intersections --report comb.json | grep self; grep self comb.json'
-run 'voxmend repair comb.off -o a.ply --intersections --keep-orientation --report comb.json | grep "^  self"; grep -c at_least comb.json'
+run 'voxmend repair comb.off -o a.ply --force --intersections --keep-orientation --report comb.json | grep "^  self"; grep -c at_least comb.json'
 
 say "# --wrap"
-run 'voxmend repair plate.obj -o a.obj --wrap 0.05,0.002 --level solid | facts'
+run 'voxmend repair plate.obj -o a.obj --force --wrap 0.05,0.002 --level solid | facts'
 run 'voxmend info -v a.obj | grep -E "tags|closed" && grep -c -E "^[og] (left|right|plate)" a.obj'
-run 'voxmend repair plate.obj -o a.ply --wrap 0.05 --level solid --json -q | grep "\"name\""'
-run 'voxmend repair plate.obj -o a.ply --wrap 0.0001 --memlimit 256M'
+run 'voxmend repair plate.obj -o a.ply --force --wrap 0.05 --level solid --json -q | grep "\"name\""'
+run 'voxmend repair plate.obj -o a.ply --force --wrap 0.0001 --memlimit 256M'
 for option in '--fill smooth' '--fill-holes all' '--union' '--max-change 0.1'; do
-  run "voxmend repair plate.obj -o a.ply --level closed --wrap 0.05 $option"
+  run "voxmend repair plate.obj -o a.ply --force --level closed --wrap 0.05 $option"
 done
-run 'voxmend repair two.obj -o a.ply --wrap 0'
-run 'voxmend repair two.obj -o a.ply --wrap 0.05,2'
+run 'voxmend repair two.obj -o a.ply --force --wrap 0'
+run 'voxmend repair two.obj -o a.ply --force --wrap 0.05,2'
 
 say "# --fill smooth"
 awk 'NR == 2 { print $1, $2 - 6, $3; next } { print }' in/sphere.off | head -n -6 >open.off
 run 'voxmend info open.off | facts'
-run 'voxmend repair open.off -o a.ply --level closed --fill smooth | facts'
-run 'voxmend repair open.off -o a.ply --level solid --fill smooth | facts'
-run 'voxmend repair two.obj -o a.ply --fill smooth'
+run 'voxmend repair open.off -o a.ply --force --level closed --fill smooth | facts'
+run 'voxmend repair open.off -o a.ply --force --level solid --fill smooth | facts'
+run 'voxmend repair two.obj -o a.ply --force --fill smooth'
 say "# an octahedron: two holes touch at a vertex, where their rim passes twice"
 printf 'OFF\n6 6 0\n1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n0 0 1\n0 0 -1\n3 1 2 4\n3 3 0 4\n3 1 0 5\n3 2 1 5\n3 3 2 5\n3 0 3 5\n' >twice.off
-run 'voxmend repair twice.off -o a.ply --level closed --fill smooth | facts; voxmend repair a.ply -o b.ply --level closed --fill smooth -q && cmp a.ply b.ply'
-run 'voxmend repair twice.off -o a.ply --level closed --fill smooth --json -q | grep -E "(unfilled_holes|fan_fallbacks)"'
+run 'voxmend repair twice.off -o a.ply --force --level closed --fill smooth | facts; voxmend repair a.ply -o b.ply --level closed --fill smooth -q && cmp a.ply b.ply'
+run 'voxmend repair twice.off -o a.ply --force --level closed --fill smooth --json -q | grep -E "(unfilled_holes|fan_fallbacks)"'
 finish

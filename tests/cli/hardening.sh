@@ -33,7 +33,7 @@ check() {
 work=$(mktemp "${TMPDIR:-/tmp}/voxmend-hardening.XXXXXX")
 trap 'rm -f "$work"' EXIT
 checked=0
-for name in voxmend voxmend-reader libvoxmend.so voxmend-assimp.so voxmend-cgal.so voxmend-occt.so voxmend-openmesh.so \
+for name in voxmend binvox voxmend-reader libvoxmend.so voxmend-assimp.so voxmend-cgal.so voxmend-occt.so voxmend-openmesh.so \
   voxmend-openvdb.so; do
   file=$BUILDDIR/.libs/$name
   [ -e "$file" ] || file=$BUILDDIR/$name

@@ -4,6 +4,8 @@
 . "$SRCDIR/tests/cli/lib.sh"
 run 'voxmend info in/cube.off'
 run 'voxmend info in/rocket.off in/degenerate.off'
+run 'voxmend info -v in/rocket.off in/degenerate.off'
+run 'voxmend info --list 1 in/cube.off in/degenerate.off'
 run 'voxmend info --json in/nonfinite.off'
 run 'voxmend info --json in/cube.off in/open_box.off'
 run 'voxmend info - <in/l_prism.off'
@@ -24,6 +26,7 @@ run 'voxmend info stump.off'
 run 'voxmend info junk.stl'
 run 'voxmend info empty.off'
 run 'voxmend info missing.off'
+run 'voxmend info missing.off in/cube.off empty.off'
 run 'voxmend info --json missing.off in/cube.off empty.off'
 run 'voxmend info --memlimit 1K in/torus.off'
 

@@ -40,7 +40,7 @@ OFF
 4 8 9 16 15
 4 16 11 12 13
 end
-run 'voxmend repair box.off -o closed.ply --level closed --fill minimal'
-run 'voxmend repair box.off -o closed.ply --ascii --fill-holes 4 --fill minimal --level manifold -q && cat closed.ply'
-run 'voxmend repair box.off -o closed.ply --fill-holes 4 --fill minimal'
+run 'voxmend repair box.off -o closed.ply --force --level closed --fill minimal'
+run 'voxmend repair box.off -o closed.ply --force --ascii --fill-holes 4 --fill minimal --level manifold -q && cat closed.ply'
+run 'voxmend repair box.off -o closed.ply --force --fill-holes 4 --fill minimal'
 finish

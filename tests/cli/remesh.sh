@@ -11,7 +11,7 @@ facts() {
   voxmend info "$1" | grep -E "^closed|^open|components  |watertight|volume"
 }
 
-run 'voxmend remesh in/torus.off -o t.ply -r 48 | summary'
+run 'voxmend remesh in/torus.off -o t.ply --force -r 48 | summary'
 run 'facts in/torus.off; facts t.ply'
 say "# the same in each format, with any threads, and from standard input"
 run 'for f in off obj stl; do voxmend remesh in/torus.off -o t.$f -r 48 -q --threads 7 && facts t.$f | grep volume; done'
@@ -26,8 +26,8 @@ sed -e '/^f/d' a.obj | awk '/^v/ { print "v", $2 + 1, $3 + 1, $4 }' >b.obj
 sed -n '/^f/p' a.obj | awk '{ print "f", $2 + 8, $3 + 8, $4 + 8, $5 + 8 }' >>b.obj
 run 'cat a.obj b.obj >two.obj; voxmend remesh two.obj -o two.ply -r 16 -q && facts two.ply'
 say "# refusals"
-run 'voxmend remesh in/torus.off -o t.ply -r 0'
-run 'voxmend remesh in/torus.off -o t.ply -r 32 --voxel-size 1'
+run 'voxmend remesh in/torus.off -o t.ply --force -r 0'
+run 'voxmend remesh in/torus.off -o t.ply --force -r 32 --voxel-size 1'
 run 'voxmend remesh in/torus.off -o t.npy'
 run 'voxmend remesh in/torus.off -o big.ply -r 4000 --memlimit 100M; test -e big.ply'
 finish

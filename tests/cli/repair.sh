@@ -23,9 +23,9 @@ run 'voxmend repair in/overlapping.off -o all.off -q --polygons keep && voxmend 
 run 'voxmend repair in/rocket.off -o large.off -q --drop-parts faces:50 && voxmend info large.off'
 run 'voxmend repair in/cavity.off -o filled.off -q --drop-parts volume:2 && voxmend info filled.off'
 run 'voxmend repair in/cavity.off -o both.off -q --drop-parts volume:0.5 --drop-parts faces:6 --polygons keep && cmp both.off in/cavity.off'
-run 'voxmend repair in/cube.off -o x.off --drop-parts 50'
-run 'voxmend repair in/cube.off -o x.off --drop-parts faces:0'
-run 'voxmend repair in/cube.off -o x.off --drop-parts volume:much'
+run 'voxmend repair in/cube.off -o x.off --force --drop-parts 50'
+run 'voxmend repair in/cube.off -o x.off --force --drop-parts faces:0'
+run 'voxmend repair in/cube.off -o x.off --force --drop-parts volume:much'
 
 say "# streams"
 run 'voxmend repair - -o - --format off <in/unused.off'
@@ -47,9 +47,9 @@ say "# what asks for a module says which one is missing"
 without() {
   VOXMEND_MODULES=$work/none "$VOXMEND" "$@"
 }
-run 'without repair in/cube.off -o a.ply --level closed -q'
+run 'without repair in/cube.off -o a.ply --force --level closed -q'
 for option in '--level solid' --union '--wrap 0.1' --intersections; do
-  run "without repair in/cube.off -o a.ply $option"
+  run "without repair in/cube.off -o a.ply --force $option"
 done
 run 'without info in/cube.off --intersections'
 finish

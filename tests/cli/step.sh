@@ -33,9 +33,9 @@ compare 0.001 -eq "$usual"
 compare 0.1 -le "$usual"
 compare 0.00001 -gt $((2 * usual))
 run 'voxmend voxelize in/stool.step -o x.npy --voxel-size 10 -q --deflection 0.01 && voxmend view in/stool.step -q -o stool.png --deflection 0.01'
-run 'voxmend repair -q in/stool.step -o x.stl --deflection 1'
+run 'voxmend repair -q in/stool.step -o x.stl --force --deflection 1'
 run 'voxmend info in/stool.step --deflection 0'
-run 'voxmend repair in/stool.step -o x.stl --deflection 1.5'
+run 'voxmend repair in/stool.step -o x.stl --force --deflection 1.5'
 run 'voxmend view in/stool.step -o x.png --deflection fine'
 
 say "# IGES: lists of faces, which are sewn, and solids"

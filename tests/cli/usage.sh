@@ -5,9 +5,18 @@
 run 'voxmend'
 run 'voxmend --help'
 run 'voxmend --version'
+run 'voxmend -V'
+run 'voxmend help'
+run 'voxmend help engines'
+run 'voxmend help --table'
+run 'voxmend help --table compare'
+run 'voxmend help hlep'
+run 'voxmend help info repair'
+run 'voxmend voxelise'
+run 'voxmend --versoin'
 run 'voxmend --nonsense'
 run 'voxmend nonsense'
-for command in info repair voxelize convert compare augment view bench; do
+for command in info repair voxelize convert combine compare augment view bench; do
   run "voxmend $command --help"
 done
 
@@ -27,6 +36,22 @@ run 'voxmend info --memlimit 0 in/cube.off'
 run 'voxmend info --memlimit 99999999999999T in/cube.off'
 run 'voxmend info --progress sometimes in/cube.off'
 run 'voxmend info --report - in/cube.off'
+
+for option in --resoluton --resolutoin=64 --size --co --thim --overwrite --x --; do
+  run "voxmend voxelize in/cube.off $option"
+done
+
+say "# folders"
+mkdir -p empty mixed/inner
+cp in/cube.off mixed/b.off
+cp in/cube.off mixed/a.OFF
+: >mixed/notes.txt
+run 'voxmend info mixed'
+run 'voxmend info mixed in/cube.off'
+run 'voxmend voxelize mixed/ -o x.npy'
+run 'voxmend voxelize empty -o x.npy'
+run 'voxmend compare mixed/inner x.npy'
+run 'voxmend view . -o x.png'
 
 say "# repair"
 run 'voxmend repair in/cube.off'
@@ -48,8 +73,9 @@ say "# voxelize"
 run 'voxmend voxelize in/cube.off'
 run 'voxmend voxelize -o x.npy'
 run 'voxmend voxelize in/cube.off -o x.dwg'
+run 'voxmend voxelize in/cube.off -o x.vox'
 for option in '-r 0' '-r 8.5' '-r 8x8' '-r 8x8x8x8' '-r 8x8x' '-r 0x8' '-r -8' '-r 1048577' '-r 99999999999999999999' \
-  '--voxel-size 0' '--voxel-size -1' '--voxel-size 1,5' '--voxel-size inf' '--voxel-size 0x1' '--voxel-size ""' \
+  '--voxel-size 0' '--voxel-size -1' '--voxel-size 1,5' '--voxel-size 1,5,0' '--voxel-size 1,1,1,1' '--voxel-size inf' '--voxel-size 0x1' '--voxel-size ""' \
   '--fit round' '--pad -1' '--pad 1.5' '--bounds 0,0,0,1,1' '--bounds 0,0,0,1,1,1,1' '--bounds 0,0,0,1,0,1' \
   '--bounds 0,0,0,1,1,nan' '--mode hollow' '--method w' '--vote most' '--parts some' '--thin 18' '--cavities some' '--labels some' '--weld near' \
   '--coverage 3' '--surface shell9' '--engine steam' '--hollow' '--scalar int' '--distance near' '--band -1' '--band x'; do

@@ -67,6 +67,11 @@ def commands():
     yield "threads", "voxelize torn.off -o out.rle -r 6 --threads 3", {}
     yield "limit", "voxelize torn.off -o out.rle -r 6 --memlimit 64M", {}
     yield "view", "view in.rle -o out.png --size 16x12", {}
+    for operation in ("or", "minus"):
+        yield "combine " + operation, "combine in.rle %s in.npy -o out.npy --report report.json" % operation, {}
+    for kind in ("binvox", "nrrd", "raw", "vtk", "msh", "schematic"):
+        yield "binvox " + kind, "binvox -d 6 -t %s -dc -down -ri -fit -rotx two.off" % kind, {}
+    yield "binvox blocks", "binvox -d 6 -e -mb -t schematic -rotz blocks.obj", {}
     yield "compare", "compare in.rle in.npy --report report.json", {}
     yield "augment", "augment two.off -o many -n 2 -r 8 --format npy --rotate any", {}
     yield "augment stdout", "augment two.off -o - -n 2 -r 8", {}
@@ -88,8 +93,10 @@ def shape(value):
 class Case:
     def __init__(self, name, arguments, settings, folder, inputs):
         self.name, self.settings, self.folder, self.inputs = name, settings, folder, inputs
-        self.arguments = [LIBRARY, "once"] if arguments is None else [PROGRAM] + arguments.split() + ["-q"]
-        if arguments and "threads" not in arguments and arguments.split()[0] not in ("engines",):
+        self.arguments = [LIBRARY, "once"] if arguments is None else [PROGRAM] + arguments.split()
+        if arguments and not arguments.startswith("binvox"):  # which takes binvox's options alone
+            self.arguments += ["-q"]
+        if arguments and "threads" not in arguments and arguments.split()[0] not in ("engines", "binvox"):
             self.arguments += ["--threads", "1"]
         self.work, self.temporary = os.path.join(folder, "work"), os.path.join(folder, "tmp")
         self.runs = self.failed = self.ended = 0
@@ -206,6 +213,7 @@ def make_inputs(folder):
     for i, f in enumerate(faces):
         lines += ["g side%d" % (i % 2)] + ["f " + " ".join(str(c + 1) for c in f)]
     write("box.obj", "\n".join(lines) + "\n")
+    write("blocks.obj", "\n".join(lines).replace("g side", "usemtl blockid_4") + "\n")
     for mesh in ("stl", "ply"):
         subprocess.run([PROGRAM, "repair", "box.off", "-o", "box." + mesh, "-q"], cwd=folder, check=True)
     for grid in ("binvox", "npy", "raw", "rle", "nrrd", "vdb"):

@@ -29,12 +29,12 @@ GRIDS = ["binvox", "npy", "raw", "rle", "nrrd", "vdb"]
 def commands():
     """The writing commands: a name, and what follows the program; in.off is another mesh than that of the old files."""
     for f in MESHES:
-        yield "repair " + f, "repair in.off -o out.%s --locate wrong.ply --report report.json" % f
+        yield "repair " + f, "repair in.off -o out.%s --force --locate wrong.ply --report report.json" % f
         yield "repair stdout " + f, "repair in.off -o - --format %s" % f
         yield "convert to " + f, "convert in.rle -o out.%s --force" % f
         yield "voxelize to " + f, "voxelize in.off -o out.%s --force -r 20" % f
     for f in ("ply", "stl"):
-        yield "repair ascii " + f, "repair in.off -o out.%s --ascii --best-effort" % f
+        yield "repair ascii " + f, "repair in.off -o out.%s --force --ascii --best-effort" % f
     for f in GRIDS:
         yield "voxelize " + f, "voxelize in.off -o out.%s -r 32 --report report.json" % f
         yield "sparse " + f, "voxelize in.off -o out.%s -r 32 --sparse --coords coords.npy" % f
@@ -49,7 +49,11 @@ def commands():
     for f in ("npy", "ply", "vox"):
         yield "colours " + f, "voxelize in.off -o out.%s -r 20 --color position --force" % f
     yield "view", "view in.rle -o out.png --size 320x240 --report report.json"
-    yield "info", "info in.off --locate wrong.ply --report report.json"
+    yield "info", "info in.off --force --locate wrong.ply --report report.json"
+    for f in ("npy", "binvox"):
+        yield "combine " + f, "combine in.rle xor in.rle -o out.%s --report report.json" % f
+    for f in ("binvox", "raw", "vtk", "msh"):
+        yield "binvox " + f, "binvox -d 20 -t %s -o out.%s in.off" % (f, f)
     yield "compare", "compare in.rle in.rle --report report.json"
     yield "bench", "bench in.off --plot out.svg --report report.json --time 0 -r 8 --phases solid_vote --threads 1"
     for f in ("rle", "raw", "binvox", "npy", "nrrd"):
@@ -63,7 +67,9 @@ SAMPLE = ["repair ply", "voxelize raw", "labels nrrd", "convert to off", "augmen
 class Case:
     def __init__(self, name, arguments, folder):
         self.name, self.folder = name, folder
-        self.arguments = [PROGRAM] + arguments.split() + ["-q"]
+        self.arguments = [PROGRAM] + arguments.split()
+        if not arguments.startswith("binvox"):  # which takes binvox's options alone
+            self.arguments += ["-q"]
         self.before = os.path.join(folder, "before")
         self.work = os.path.join(folder, "work")
         self.in_steps = name.startswith("augment") and "stdout" not in name

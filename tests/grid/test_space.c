@@ -67,6 +67,26 @@ static void test_cube(void **state) {
   assert_space(chosen(&o), 10, 10, 10, 0.5, 0.5, 0.5, 0.75);
 }
 
+static void test_three_sizes(void **state) {
+  (void)state;
+  vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
+  memcpy(o.voxel_sizes, (double[]){0.5, 1, 0.25}, sizeof o.voxel_sizes);
+  const vxm_space cube = {{8, 4, 16}, {1, 1, 1.25}, {0.5, 1, 0.25}};
+  const vxm_space tight = {{10, 4, 4}, {0.5, 1, 2.75}, {0.5, 1, 0.25}};
+  const vxm_space bounds = {{20, 5, 10}, {0, 0, 0}, {0.5, 1, 0.25}};
+  vxm_space s = chosen(&o);
+  assert_memory_equal(&s, &cube, sizeof s);
+  o.fit = VXM_FIT_TIGHT;
+  o.pad = 1;
+  s = chosen(&o);
+  assert_memory_equal(&s, &tight, sizeof s);
+  o.pad = 0;
+  o.use_bounds = true;
+  memcpy(o.bounds, (double[]){0, 0, 0, 10, 5, 2.5}, sizeof o.bounds);
+  s = chosen(&o);
+  assert_memory_equal(&s, &bounds, sizeof s);
+}
+
 static void test_three_numbers(void **state) {
   (void)state;
   vxm_space_options o = VXM_SPACE_OPTIONS_INIT;
@@ -159,7 +179,14 @@ static void test_refusals(void **state) {
   assert_refused(o, VXM_ERROR_RANGE);
   o.voxel_size = NAN;
   assert_refused(o, VXM_ERROR_ARGUMENT);
+  o.voxel_size = 1;
+  o.voxel_sizes[1] = 1;
+  assert_refused(o, VXM_ERROR_ARGUMENT);
   o.voxel_size = 0;
+  assert_refused(o, VXM_ERROR_ARGUMENT); /* two of three sizes are 0 */
+  o.voxel_sizes[0] = o.voxel_sizes[2] = INFINITY;
+  assert_refused(o, VXM_ERROR_ARGUMENT);
+  memset(o.voxel_sizes, 0, sizeof o.voxel_sizes);
   o.use_bounds = true;
   assert_refused(o, VXM_ERROR_ARGUMENT);
   memcpy(o.bounds, (double[]){0, 0, 0, 1, 1, INFINITY}, sizeof o.bounds);
@@ -186,9 +213,9 @@ static void test_nothing_to_fit(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cube),     cmocka_unit_test(test_three_numbers),  cmocka_unit_test(test_tight),
-      cmocka_unit_test(test_sphere),   cmocka_unit_test(test_bounds),         cmocka_unit_test(test_like),
-      cmocka_unit_test(test_refusals), cmocka_unit_test(test_nothing_to_fit),
+      cmocka_unit_test(test_cube),  cmocka_unit_test(test_three_sizes), cmocka_unit_test(test_three_numbers),
+      cmocka_unit_test(test_tight), cmocka_unit_test(test_sphere),      cmocka_unit_test(test_bounds),
+      cmocka_unit_test(test_like),  cmocka_unit_test(test_refusals),    cmocka_unit_test(test_nothing_to_fit),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -187,7 +187,7 @@ def table(options):
             for tool in tools:
                 output = os.path.join(folder, "out.ply")
                 if tool in VOXMEND:
-                    command = [options.voxmend, *VOXMEND[tool], mesh, "-o", output, "--threads", "1", "-q"]
+                    command = [options.voxmend, *VOXMEND[tool], mesh, "-o", output, "--force", "--threads", "1", "-q"]
                 else:
                     command = [sys.executable, __file__, "--work", tool, mesh, output]
                 process, call, letter = measure(command, options)

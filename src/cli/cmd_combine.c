@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend combine: the union, intersection or difference of grids. */
+#include "cli/cli.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS };
+
+static const cli_option known_options[] = {
+    {'o', "output", "FILE",
+     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
+     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
+     "standard output"},
+    {KEY_FORMAT, "format", "F",
+     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
+     "output]"},
+    CLI_OPTION_FORCE(KEY_FORCE),
+    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
+    CLI_OPTIONS_THRESHOLD,
+    {0, NULL, NULL, NULL}};
+
+static const char *const operations[] = {"or", "and", "minus", "xor", NULL};
+enum { OR, AND, MINUS, XOR };
+
+typedef struct request {
+  const char *output, *format;
+  bool force, keep_polygons, keep_contacts;
+  vxm_threshold_options threshold;
+} request;
+
+static int read_options(cli_run *cli, request *out) {
+  const char *value;
+  int key;
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == 'o')
+      out->output = value;
+    else if (key == KEY_FORMAT)
+      out->format = value;
+    else if (key == KEY_FORCE)
+      out->force = true;
+    else if (key == KEY_CONTACTS)
+      out->keep_contacts = true;
+    else if (key == KEY_POLYGONS) {
+      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
+        return CLI_STOP;
+    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
+      return CLI_STOP;
+  return CLI_END;
+}
+
+/** Grids and words between them take turns: only the grids are left as arguments, the words go to `words`. */
+static int read_formula(cli_run *cli, int *words) {
+  char list[CLI_LIST_MAX];
+  int count = cli->argument_count;
+  if (count < 3 || count % 2 == 0)
+    return cli_usage(cli, "grids with %s between them are expected, such as a.npy or b.npy",
+                     cli_list(list, operations));
+  for (int i = 1; i < count; i += 2) {
+    words[i / 2] = cli_read_choice(cli->arguments[i], operations);
+    if (words[i / 2] < 0)
+      return cli_usage(cli, "'%s' is none of %s", cli->arguments[i], cli_list(list, operations));
+  }
+  for (int i = 2; i < count; i += 2)
+    cli->arguments[i / 2] = cli->arguments[i];
+  cli->argument_count = count / 2 + 1;
+  return CLI_END;
+}
+
+static int check_names(cli_run *cli, request *out) {
+  out->format = cli_output_format(cli, out->output, out->format, cli_grid_formats);
+  if (!out->format)
+    return CLI_STOP;
+  cli_writes(cli, "-o", out->output, cli_has_json(out->format));
+  if (cli_check_names(cli) == CLI_STOP)
+    return CLI_STOP;
+  return cli_check_surface_file(cli, out->output, out->format, out->force);
+}
+
+static int read_bits(cli_run *cli, vxm_grid **out, const request *given, const char *path) {
+  cli_values values = {NULL, NULL};
+  if (cli_values_read(cli, &values, path) != VXM_OK)
+    return cli_fail(cli);
+  if (cli_values_to_bits(cli, &values, &given->threshold, path,
+                         "only set and clear voxels can be combined") != CLI_DONE) {
+    cli_values_free(&values);
+    return CLI_FAILED;
+  }
+  *out = values.grid;
+  return CLI_DONE;
+}
+
+/** Voxels are combined by index, so that both grids have to be one space; files hold it to about nine digits.
+ */
+static int check_spaces(cli_run *cli, const vxm_space *a, const vxm_space *b, const char *const paths[2]) {
+  const int64_t *m = a->dims, *n = b->dims;
+  const double *o = a->origin, *p = b->origin, *s = a->voxel_size, *t = b->voxel_size;
+  bool moved = false, scaled = false;
+  if (m[0] != n[0] || m[1] != n[1] || m[2] != n[2])
+    return cli_fail_text(cli,
+                         "%s has %" PRId64 " x %" PRId64 " x %" PRId64 " voxels and %s %" PRId64 " x %" PRId64
+                         " x %" PRId64 "; 'voxmend voxelize --like' makes equal grids",
+                         paths[0], m[0], m[1], m[2], paths[1], n[0], n[1], n[2]);
+  for (int axis = 0; axis < 3; axis++) {
+    moved |= !(fabs(o[axis] - p[axis]) <= 1e-3 * s[axis]);
+    scaled |= !(fabs(s[axis] - t[axis]) * (double)m[axis] <= 1e-3 * s[axis]);
+  }
+  if (scaled)
+    return cli_fail_text(
+        cli,
+        "%s has voxels of %.9g x %.9g x %.9g and %s of %.9g x %.9g x %.9g; 'voxmend voxelize "
+        "--like' makes equal grids",
+        paths[0], s[0], s[1], s[2], paths[1], t[0], t[1], t[2]);
+  if (moved)
+    return cli_fail_text(cli,
+                         "%s begins at (%.9g, %.9g, %.9g) and %s at (%.9g, %.9g, %.9g); 'voxmend voxelize "
+                         "--like' makes equal grids",
+                         paths[0], o[0], o[1], o[2], paths[1], p[0], p[1], p[2]);
+  return CLI_DONE;
+}
+
+static uint64_t combine_word(uint64_t a, uint64_t b, int operation) {
+  return operation == OR ? a | b : operation == AND ? a & b : operation == MINUS ? a & ~b : a ^ b;
+}
+
+static int combine(cli_run *cli, vxm_grid *grid, const vxm_grid *other, int operation) {
+  const int64_t *dims = vxm_grid_space(grid)->dims;
+  size_t count = (size_t)(vxm_grid_row_words(grid) * dims[1] * dims[2]);
+  const uint64_t *a = vxm_grid_words(grid), *b = vxm_grid_words(other);
+  uint64_t *words = malloc(count * sizeof *words);
+  if (!words)
+    return cli_fail_text(cli, "out of memory for the combined grid: free some");
+  for (size_t i = 0; i < count; i++)
+    words[i] = combine_word(a[i], b[i], operation);
+  vxm_status status = vxm_grid_set_words(grid, words, count, &cli->error);
+  free(words);
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+}
+
+/** From left to right. */
+static int combine_all(cli_run *cli, vxm_grid **out, const request *given, const int *words) {
+  const char *first = cli_shown(cli->arguments[0], "<stdin>");
+  int status = read_bits(cli, out, given, cli->arguments[0]);
+  for (int i = 1; i < cli->argument_count && status == CLI_DONE; i++) {
+    vxm_grid *other = NULL;
+    status = read_bits(cli, &other, given, cli->arguments[i]);
+    const char *paths[2] = {first, cli_shown(cli->arguments[i], "<stdin>")};
+    if (status == CLI_DONE)
+      status = check_spaces(cli, vxm_grid_space(*out), vxm_grid_space(other), paths);
+    if (status == CLI_DONE)
+      status = combine(cli, *out, other, words[i - 1]);
+    vxm_grid_destroy(other);
+  }
+  return status;
+}
+
+static json_t *make_report(const cli_run *cli, const request *given, const vxm_grid *grid, const int *words) {
+  json_t *report = json_object(), *inputs = json_array(), *names = json_array();
+  for (int i = 0; i < cli->argument_count; i++)
+    json_array_append_new(inputs, cli_json_text(cli->arguments[i]));
+  for (int i = 1; i < cli->argument_count; i++)
+    json_array_append_new(names, json_string(operations[words[i - 1]]));
+  json_object_set_new(report, "inputs", inputs);
+  json_object_set_new(report, "operations", names);
+  json_object_set_new(report, "output", cli_json_text(given->output));
+  json_object_set_new(report, "grid", cli_json_space(vxm_grid_space(grid)));
+  json_object_set_new(report, "voxels", json_integer(vxm_grid_count(grid)));
+  json_object_set_new(report, "hash", cli_json_hash(vxm_grid_hash(grid)));
+  json_object_set(report, "warnings", cli->warnings);
+  return report;
+}
+
+static int write_grid(cli_run *cli, const request *given, const vxm_grid *grid, const int *words) {
+  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
+  write.format = given->format;
+  write.keep_polygons = given->keep_polygons;
+  write.keep_contacts = given->keep_contacts;
+  if (vxm_grid_write(grid, given->output, &write, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  cli_progress_clear(cli);
+  if (cli_summary(cli)) {
+    cli_rows_space(cli, vxm_grid_space(grid));
+    cli_row(cli, "voxels", "%" PRId64, vxm_grid_count(grid));
+    cli_row(cli, "hash", "%016" PRIx64, vxm_grid_hash(grid));
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+  }
+  return cli_finish(cli, make_report(cli, given, grid, words));
+}
+
+static int run(cli_run *cli) {
+  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
+  if (read_options(cli, &given) == CLI_STOP)
+    return cli->status;
+  int *words = calloc((size_t)cli->argument_count / 2 + 1, sizeof *words);
+  if (!words)
+    return cli_fail_text(cli, "out of memory for the command line");
+  int status = CLI_FAILED;
+  vxm_grid *grid = NULL;
+  if (read_formula(cli, words) == CLI_STOP || check_names(cli, &given) == CLI_STOP)
+    status = cli->status;
+  else if (cli_start(cli))
+    status = combine_all(cli, &grid, &given, words);
+  if (grid && status == CLI_DONE)
+    status = write_grid(cli, &given, grid, words);
+  vxm_grid_destroy(grid);
+  free(words);
+  return status;
+}
+
+const cli_command cli_command_combine = {
+    .name = "combine",
+    .arguments = "GRID or|and|minus|xor GRID... -o FILE [OPTION]...",
+    .summary = "unite, intersect or subtract grids",
+    .notes =
+        "or: what either has; and: what both have; minus: what the first has and the second has not; xor:\n"
+        "what one alone has. More than two go from left to right. The grids must have equal dimensions,\n"
+        "origins and voxel sizes, as 'voxmend voxelize --like' makes them; a file without a place, such as "
+        "a\n"
+        ".npy without its .json, lies at the origin with voxels of 1. Numbers in a file become set and "
+        "clear\n"
+        "voxels by --threshold or --below; a file of set and clear voxels is taken as it is.\n\n"
+        "Examples:\n"
+        "  voxmend combine body.npy or lid.npy -o box.npy\n"
+        "  voxmend combine block.binvox minus drill.binvox minus slot.binvox -o part.stl",
+    .options = known_options,
+    .run = run,
+};

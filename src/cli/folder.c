@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** A folder given in place of a file: what is in it, and what to give instead. */
+#include "cli/cli.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+static const char *const known[] = {"off",    "obj", "stl", "ply",  "gltf", "glb",  "3mf",
+                                    "dae",    "fbx", "3ds", "step", "stp",  "iges", "igs",
+                                    "binvox", "npy", "raw", "rle",  "nrrd", "vdb"};
+enum { KNOWN = sizeof known / sizeof known[0], NAME_SIZE = 256 };
+
+typedef struct content {
+  int64_t files[KNOWN], others, folders;
+  char example[NAME_SIZE]; /**< the first file, by name, of the kind that most are of */
+} content;
+
+static bool is_folder(const char *path) {
+  struct stat info;
+  return strcmp(path, "-") != 0 && stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+static int kind_of(const char *name) {
+  const char *dot = strrchr(name, '.');
+  for (int k = 0; dot && dot > name && k < KNOWN; k++)
+    if (strcasecmp(dot + 1, known[k]) == 0)
+      return k;
+  return -1;
+}
+
+static int commonest(const content *found) {
+  int best = 0;
+  for (int k = 1; k < KNOWN; k++)
+    if (found->files[k] > found->files[best])
+      best = k;
+  return found->files[best] > 0 ? best : -1;
+}
+
+static void count(content *out, const char *folder, const struct dirent *entry) {
+  char path[4096];
+  if (entry->d_name[0] == '.')
+    return;
+  int length = snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+  int kind = kind_of(entry->d_name);
+  if (length > 0 && length < (int)sizeof path && is_folder(path))
+    out->folders++;
+  else if (kind >= 0)
+    out->files[kind]++;
+  else
+    out->others++;
+}
+
+static void find_example(content *out, struct dirent **entries, int number) {
+  int kind = commonest(out);
+  for (int i = 0; i < number && kind >= 0 && !out->example[0]; i++)
+    if (entries[i]->d_name[0] != '.' && kind_of(entries[i]->d_name) == kind)
+      snprintf(out->example, sizeof out->example, "%s", entries[i]->d_name);
+}
+
+/** False if it cannot be looked into. */
+static bool look_into(content *out, const char *folder) {
+  struct dirent **entries;
+  int number = scandir(folder, &entries, NULL, alphasort);
+  *out = (content){.others = 0};
+  for (int i = 0; i < number; i++)
+    count(out, folder, entries[i]);
+  find_example(out, entries, number < 0 ? 0 : number);
+  for (int i = 0; i < number; i++)
+    free(entries[i]);
+  if (number >= 0)
+    free(entries);
+  return number >= 0;
+}
+
+static void add(char text[CLI_LIST_MAX], int64_t number, const char *one, const char *many) {
+  size_t used = strlen(text);
+  if (number > 0)
+    snprintf(text + used, CLI_LIST_MAX - used, "%s%lld %s", used > 0 ? ", " : "", (long long)number,
+             number == 1 ? one : many);
+}
+
+/** "3 .off, 1 .stl, 2 other files, 1 folder" */
+static void describe(char text[CLI_LIST_MAX], const content *found) {
+  char name[16];
+  text[0] = '\0';
+  for (int k = 0; k < KNOWN; k++) {
+    snprintf(name, sizeof name, ".%s", known[k]);
+    add(text, found->files[k], name, name);
+  }
+  bool any = text[0] != '\0';
+  add(text, found->others, any ? "other file" : "file of no known name",
+      any ? "other files" : "files of no known name");
+  add(text, found->folders, "folder", "folders");
+}
+
+static int refuse(cli_run *cli, const char *path) {
+  content found;
+  char text[CLI_LIST_MAX];
+  size_t length = strlen(path);
+  const char *slash = length > 0 && path[length - 1] == '/' ? "" : "/";
+  if (!look_into(&found, path))
+    return cli_usage(cli, "%s is a folder", path);
+  int kind = commonest(&found);
+  describe(text, &found);
+  if (kind < 0)
+    return cli_usage(cli, "%s is a folder with %s; a file is expected", path,
+                     text[0] ? text : "nothing in it");
+  if (cli->command->many)
+    return cli_usage(cli, "%s is a folder with %s; 'voxmend %s %s%s*%s' takes all of a kind", path, text,
+                     cli->command->name, path, slash, strrchr(found.example, '.'));
+  if (cli_find_command("batch"))
+    return cli_usage(cli,
+                     "%s is a folder with %s; give one file, such as %s%s%s, or see 'voxmend help batch'",
+                     path, text, path, slash, found.example);
+  return cli_usage(cli, "%s is a folder with %s; give one file, such as %s%s%s", path, text, path, slash,
+                   found.example);
+}
+
+int cli_check_folders(cli_run *cli) {
+  if (cli->command->folders || (cli->command->many && cli->argument_count > 1))
+    return CLI_END;
+  for (int i = 0; i < cli->argument_count; i++)
+    if (is_folder(cli->arguments[i]))
+      return refuse(cli, cli->arguments[i]);
+  return CLI_END;
+}
