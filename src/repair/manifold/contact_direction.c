@@ -76,12 +76,12 @@ static vxm_vec3 normal_at(const sector *sectors, size_t count, uint32_t end) {
   return sum;
 }
 
-/** Those at the vertex, by the angles of the faces (Baerentzen & Aanaes 2005). */
+/** Those at the vertex, by the angles of the faces (Baerentzen & Aanaes 2005), or rather by the chords of
+ * these, as the square root is the same on all processors. */
 static vxm_vec3 normal_of(const sector *sectors, size_t count) {
   vxm_vec3 sum = {0, 0, 0};
   for (size_t i = 0; i < count; i++)
-    sum = plus(sum, sectors[i].normal,
-               acos(fmax(-1, fmin(1, vxm_vec3_dot(sectors[i].edges[0], sectors[i].edges[1])))));
+    sum = plus(sum, sectors[i].normal, vxm_vec3_length(plus(sectors[i].edges[0], sectors[i].edges[1], -1)));
   return sum;
 }
 
