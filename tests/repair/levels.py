@@ -242,7 +242,7 @@ def main():
     parser.add_argument("--formats", default="ply,stl,obj")
     parser.add_argument("--folders", default="messy,cad,modelnet")
     parser.add_argument("--markdown")
-    parser.add_argument("--timeout", type=float, default=60)
+    parser.add_argument("--timeout", type=float, default=300)
     given = parser.parse_args()
     levels, rows, failures, tried = given.levels.split(","), [], 0, 0
     reached = collections.Counter()

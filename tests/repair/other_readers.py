@@ -90,8 +90,8 @@ def by_open3d(path, level):
 
 
 JUDGES = [(name, judge) for name, module, judge in (
-    ("trimesh", trimesh, by_trimesh), ("32-bit floats", trimesh, by_floats), ("PyMeshLab", pymeshlab, by_pymeshlab), ("meshio", meshio, by_meshio),
-    ("Open3D", open3d, by_open3d)) if module]
+    ("trimesh", trimesh, by_trimesh), ("32-bit floats", trimesh, by_floats), ("PyMeshLab", pymeshlab, by_pymeshlab),
+    ("meshio", meshio, by_meshio), ("Open3D", open3d, by_open3d)) if module]
 
 
 class Tally:
@@ -169,8 +169,8 @@ def located(tally, given, work):
             if name == "PyMeshLab":
                 read = lambda: pymeshlab.MeshSet(verbose=False).load_new_mesh(path)
             else:
-                read = {"trimesh": lambda: trimesh.load(path), "32-bit floats": lambda: trimesh.load(path), "meshio": lambda: meshio.read(path),
-                        "Open3D": lambda: open3d.io.read_triangle_mesh(path)}[name]
+                read = {"trimesh": lambda: trimesh.load(path), "32-bit floats": lambda: trimesh.load(path),
+                        "meshio": lambda: meshio.read(path), "Open3D": lambda: open3d.io.read_triangle_mesh(path)}[name]
             tally.judged += 1
             try:
                 read()

@@ -53,7 +53,7 @@ typedef struct moving {
   uint32_t *map;        /**< vertex: the first one that it would merge with */
   uint32_t *number;     /**< vertex: its place among those that would merge, or VXM_NO_VERTEX */
   surroundings *around; /**< of those */
-  vxm_vec3 *shrinking;  /**< of a solid: the direction of each in which it gets smaller; NULL = is none */
+  vxm_vec3 *contact;    /**< of a solid: the direction in which each leaves what it touches; NULL = is none */
   uint8_t *stays;       /**< of a solid: the first vertex of those that would merge: one of them stays */
   size_t shared;        /**< how many those are */
   double diagonal;
@@ -140,8 +140,8 @@ typedef struct moves {
   double unit[3];            /**< along each axis: what the numbers that hold the position tell apart */
   double step;               /**< how far to go, where they allow it */
   double fine, coarse;
-  bool shrinks; /**< the direction is to be kept */
-  bool floats;  /**< 32-bit floats are to tell it from others, too */
+  bool straight; /**< the direction is to be kept */
+  bool floats;   /**< 32-bit floats are to tell it from others, too */
 } moves;
 
 /** The distance to the next 32-bit float beyond x. */
@@ -171,13 +171,13 @@ static vxm_vec3 direction_of(const surroundings *s) {
 static moves moves_of(const moving *m, uint32_t v, const surroundings *s, precision to) {
   const double *p = vxm_position(m->soup, v);
   vxm_vec3 direction = direction_of(s), none = {0, 0, 0};
-  vxm_vec3 shrinking = m->shrinking && vxm_vec3_length(s->away) == 0 ? m->shrinking[m->number[v]] : none;
-  if (vxm_vec3_length(shrinking) > 0)
-    direction = shrinking;
+  vxm_vec3 leaving = m->contact && vxm_vec3_length(s->away) == 0 ? m->contact[m->number[v]] : none;
+  if (vxm_vec3_length(leaving) > 0)
+    direction = leaving;
   double length = vxm_vec3_length(direction);
   double height = s->lowest > 0 ? fmin(s->lowest, s->shortest) : s->shortest;
   moves by = {.floats = to != DOUBLES,
-              .shrinks = vxm_vec3_length(shrinking) > 0,
+              .straight = vxm_vec3_length(leaving) > 0,
               .step = fmin(STEP * m->diagonal, STEP_HEIGHT * height),
               .coarse = COARSE * s->longest};
   if (to != DOUBLES)
@@ -203,7 +203,7 @@ static bool fits(const moving *m, const moves *by, const double p[3], double mos
 }
 
 /** Exactly in that direction, by what one axis takes: anything else might meet what is on the other side. */
-static bool find_shrunk(const moving *m, const moves *by, double p[3]) {
+static bool find_straight(const moving *m, const moves *by, double p[3]) {
   double step = INFINITY;
   for (int a = 0; a < 3; a++)
     if (fabs(by->toward[a]) > AXIS)
@@ -279,7 +279,7 @@ static bool move(moving *m, uint32_t v) {
   bool found = false;
   for (int i = m->state->options.single_precision || m->state->doubles_only; i < 2 && !found; i++) {
     moves by = moves_of(m, v, s, m->floats_only ? then[i] : first[i]);
-    found = (by.shrinks && find_shrunk(m, &by, to)) || find_along(m, &by, to) || find_nearest(m, &by, to);
+    found = (by.straight && find_straight(m, &by, to)) || find_along(m, &by, to) || find_nearest(m, &by, to);
   }
   for (int a = 0; a < 3 && found; a++)
     p[a] = to[a];
@@ -309,7 +309,7 @@ static vxm_status list_shared(moving *m, vxm_error *error) {
 static void let_stay(moving *m) {
   for (size_t v = 0; v < m->soup->vertex_count; v++) {
     if (m->number[v] == VXM_NO_VERTEX || m->stays[m->map[v]] ||
-        vxm_vec3_length(m->shrinking[m->number[v]]) > 0 || vxm_vec3_length(m->around[m->number[v]].away) > 0)
+        vxm_vec3_length(m->contact[m->number[v]]) > 0 || vxm_vec3_length(m->around[m->number[v]].away) > 0)
       continue;
     m->stays[m->map[v]] = 1;
     m->number[v] = VXM_NO_VERTEX;
@@ -326,7 +326,7 @@ static int64_t move_all(moving *m) {
       vxm_position_hash_add(&m->floats, (uint32_t)v);
     }
   look_around(m);
-  if (m->shrinking)
+  if (m->contact)
     let_stay(m);
   for (size_t v = 0; v < vertices; v++)
     if (m->number[v] != VXM_NO_VERTEX)
@@ -335,14 +335,14 @@ static int64_t move_all(moving *m) {
 }
 
 /** Where the faces bound a solid, and look outward. */
-static vxm_status look_for_inside(moving *m, vxm_error *error) {
+static vxm_status look_for_contacts(moving *m, vxm_error *error) {
   vxm_status status = VXM_OK;
   if (!vxm_repair_state_reaches(m->state, VXM_LEVEL_SOLID) || m->state->counts[VXM_PASS_UNION] == 0)
     return status;
-  m->shrinking = vxm_repair_state_scratch(m->state, m->shared, sizeof *m->shrinking, &status, error);
+  m->contact = vxm_repair_state_scratch(m->state, m->shared, sizeof *m->contact, &status, error);
   if (status == VXM_OK)
     m->stays = vxm_repair_state_scratch(m->state, m->soup->vertex_count, 1, &status, error);
-  return status == VXM_OK ? vxm_contact_directions(m->shrinking, m->soup, m->map, m->number, m->shared, error)
+  return status == VXM_OK ? vxm_contact_directions(m->contact, m->soup, m->map, m->number, m->shared, error)
                           : status;
 }
 
@@ -360,12 +360,12 @@ static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
   if (status == VXM_OK && m->shared > 0)
     status = vxm_position_hash_open(&m->floats, m->soup, vertices + m->shared, VXM_MERGE_FLOAT, error);
   if (status == VXM_OK && m->shared > 0)
-    status = look_for_inside(m, error);
+    status = look_for_contacts(m, error);
   if (status == VXM_OK && m->shared > 0)
     *moved = move_all(m);
-  vxm_free(state->context, m->shrinking);
+  vxm_free(state->context, m->contact);
   vxm_free(state->context, m->stays);
-  m->shrinking = NULL;
+  m->contact = NULL;
   m->stays = NULL;
   vxm_position_hash_close(&m->floats);
   vxm_position_hash_close(&m->places);
