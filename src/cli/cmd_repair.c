@@ -288,7 +288,9 @@ static int refuse(cli_run *cli, const request *given, repair_outcome *outcome) {
 }
 
 static int try_repair(cli_run *cli, const request *given, repair_outcome *outcome, const vxm_mesh *raw) {
+  double start = cli_clock();
   vxm_status status = vxm_mesh_repair(&outcome->mesh, &outcome->repair, raw, &given->repair, &cli->error);
+  outcome->seconds = (cli_clock() - start) / 1e3;
   if (status == VXM_OK && vxm_mesh_face_count(outcome->mesh) > 0)
     return CLI_DONE;
   if (status == VXM_OK) {

@@ -11,6 +11,7 @@ typedef struct repair_outcome {
   vxm_census before, after;
   vxm_level level;
   vxm_sheets sheets;
+  double seconds; /**< that the repair took */
   vxm_verification verification;
   cli_found found; /**< in the mesh as it was read */
 } repair_outcome;

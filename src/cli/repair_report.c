@@ -120,7 +120,7 @@ json_t *repair_report(const cli_run *cli, const char *input, const char *output,
 
 /* ---- Text ---- */
 
-enum { PARTS_SHOWN = 12, NAMED = 5 };
+enum { PARTS_SHOWN = 12, NAMED = 5, LONG_SECONDS = 30 };
 
 static void part_row(const cli_run *cli, const vxm_mesh *mesh, int64_t i) {
   const vxm_part_change *part = vxm_mesh_part_change(mesh, i);
@@ -215,8 +215,23 @@ void repair_warn_ununited(cli_run *cli, const char *input, const repair_outcome 
            cli_shown(input, "<stdin>"), count, list);
 }
 
+/** Says why it took long, where a union did. */
+static void say_long(FILE *stream, const repair_outcome *outcome) {
+  const vxm_repair_report *repair = &outcome->repair;
+  int64_t united = 0;
+  for (int i = 0; i < repair->pass_count; i++)
+    if (strcmp(repair->passes[i].pass, "union") == 0)
+      united = repair->passes[i].count;
+  if (outcome->seconds > LONG_SECONDS && united > 0)
+    fprintf(stream,
+            "\n  The repair took %.0f s, most of it to cut faces exactly where %" PRId64
+            " parts meet: --level closed does not\n",
+            outcome->seconds, united);
+}
+
 void repair_say_remains(const cli_run *cli, FILE *stream, const repair_outcome *outcome) {
   (void)cli;
+  say_long(stream, outcome);
   if (outcome->repair.unparted_vertices > 0)
     fprintf(stream,
             "  %" PRId64

@@ -222,8 +222,9 @@ static vxm_status wrap_crossing(vxm_repair_state *state, vxm_error *error) {
 static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
   static const struct {
     int bits; /**< of the lattice; 0 = none */
-    bool collapses;
-  } tries[] = {{0, false}, {0, true}, {24, false}, {24, true}, {21, true}, {18, true}};
+    bool collapses, doubles_only;
+  } tries[] = {{0, false, false}, {0, true, false},  {24, false, false}, {24, true, false},
+               {21, true, false}, {18, true, false}, {0, true, true},    {24, true, true}};
   enum { TRIES = sizeof tries / sizeof *tries };
   vxm_before_union before = {.soup = NULL};
   bool short_of = true;
@@ -232,6 +233,7 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
     if (i > 0)
       status = begin_again(state, &before, tries[i].bits, error);
     state->collapses = tries[i].collapses;
+    state->doubles_only = tries[i].doubles_only;
     state->tries = i + 1;
     if (status == VXM_OK)
       status = run_rounds(state, error);
@@ -242,6 +244,7 @@ static vxm_status run_union(vxm_repair_state *state, vxm_error *error) {
   if (status == VXM_OK && short_of) { /* then rather what moves nothing */
     status = begin_again(state, &before, tries[0].bits, error);
     state->collapses = tries[0].collapses;
+    state->doubles_only = tries[0].doubles_only;
     state->tries = TRIES + 1;
     if (status == VXM_OK)
       status = run_rounds(state, error);

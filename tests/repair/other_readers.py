@@ -7,7 +7,8 @@ other_readers.py VOXMEND SAMPLES MESHES [--levels LIST] [--formats LIST] [--seco
  - Repaired meshes (samples, and the messy ones of MESHES if there are such): whenever the exit status is 0 at level closed
    or solid, trimesh, which merges near vertices when it loads a file, calls the mesh watertight and consistently wound, and
    at solid a volume; PyMeshLab finds it two-manifold without a boundary edge; meshio reads triangles alone; Open3D finds two
-   faces at every edge, once it has merged vertices, and that they can be turned consistently.
+   faces at every edge, once it has merged vertices, and that they can be turned consistently. Whether Open3D is there or
+   not: once positions are 32-bit floats, each edge has two faces, of opposite direction.
  - Surfaces of grids (random voxels, and a hole through two that touch in an edge): the same, and no face cuts through
    another.
  - The file that --locate writes is read by all of them.
@@ -28,7 +29,7 @@ except ImportError:
     meshio = None
 try:
     import open3d
-except ImportError:
+except (ImportError, OSError):  # it may lack libraries of the system
     open3d = None
 
 
@@ -67,6 +68,19 @@ def by_meshio(path, level):
     return None if kinds == {"triangle"} else "not triangles: %s" % sorted(kinds)
 
 
+def by_floats(path, level):
+    """What a program finds that holds 32-bit floats and merges vertices."""
+    mesh = trimesh.load(path, process=False, force="mesh")
+    places = numpy.unique(mesh.vertices.astype("<f4") + numpy.float32(0), axis=0, return_inverse=True)[1].reshape(-1)
+    corners = places[mesh.faces]
+    sides = numpy.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    once, counts = numpy.unique(sides, axis=0, return_counts=True)
+    if (counts > 1).any() or (once[:, 0] == once[:, 1]).any():
+        return "vertices merge"
+    other = numpy.unique(once[:, ::-1], axis=0)
+    return None if numpy.array_equal(once, other) else "edges with one face"
+
+
 def by_open3d(path, level):
     mesh = open3d.io.read_triangle_mesh(path)
     mesh.remove_duplicated_vertices()
@@ -76,8 +90,8 @@ def by_open3d(path, level):
 
 
 JUDGES = [(name, judge) for name, module, judge in (
-    ("trimesh", trimesh, by_trimesh), ("PyMeshLab", pymeshlab, by_pymeshlab), ("meshio", meshio, by_meshio),
-    ("Open3D", open3d, by_open3d)) if module]
+    ("trimesh", trimesh, by_trimesh), ("32-bit floats", trimesh, by_floats), ("PyMeshLab", pymeshlab, by_pymeshlab),
+    ("meshio", meshio, by_meshio), ("Open3D", open3d, by_open3d)) if module]
 
 
 class Tally:
@@ -155,8 +169,8 @@ def located(tally, given, work):
             if name == "PyMeshLab":
                 read = lambda: pymeshlab.MeshSet(verbose=False).load_new_mesh(path)
             else:
-                read = {"trimesh": lambda: trimesh.load(path), "meshio": lambda: meshio.read(path),
-                        "Open3D": lambda: open3d.io.read_triangle_mesh(path)}[name]
+                read = {"trimesh": lambda: trimesh.load(path), "32-bit floats": lambda: trimesh.load(path),
+                        "meshio": lambda: meshio.read(path), "Open3D": lambda: open3d.io.read_triangle_mesh(path)}[name]
             tally.judged += 1
             try:
                 read()

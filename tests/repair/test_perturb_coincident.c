@@ -222,6 +222,36 @@ static void near_vertices(void **state) {
   }
 }
 
+/** Boxes with a gap that doubles hold and 32-bit floats do not: they come apart by a unit of these or some.
+ * Far from the origin, where that would deform them, they stay, and the level is reached all the same. */
+static void gaps_below_floats(void **state) {
+  vxm_rng rng = {23};
+  for (int trial = 0; trial < 100; trial++) {
+    const bool far = trial % 4 == 3;
+    const double at = (far ? 1e6 : 10 + 90 * vxm_rng_unit(&rng)), size = far ? 0.01 : 1;
+    vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+    REPAIR_REPORT(report);
+    options.level = trial % 2 ? VXM_LEVEL_MANIFOLD : VXM_LEVEL_CLOSED;
+    options.weld = VXM_WELD_OFF;
+    options.part_changes = true;
+    double start = (double)(float)at, gap = 1e-7;
+    vxm_soup *soup = new_soup(*state);
+    add_box(soup, (const double[3]){start - size, at, at}, (const double[3]){start, at + size, at + size});
+    add_box(soup, (const double[3]){start + gap, at, at},
+            (const double[3]){start + size, at + size, at + size});
+    assert_true(count_merging(soup, true) >= 4);
+    vxm_soup *out = repaired(soup, &options, &report);
+    assert_true(verified(out, &options).reached);
+    assert_int_equal(report.unparted_vertices, 0);
+    assert_int_equal(count_merging(out, true) > 0, far);
+    assert_true(report.max_displacement <= 3 * sqrt(3.0) * 4 * (at + size) * (double)FLT_EPSILON);
+    assert_int_equal(report.max_displacement > 0, !far);
+    assert_repair_is_done(out, &options);
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
 static int set_up(void **state) {
   *state = context_of_threads(2);
   return 0;
@@ -236,7 +266,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(boxes_keep_volume),      cmocka_unit_test(far_from_the_origin),
       cmocka_unit_test(small_beside_the_model), cmocka_unit_test(others_tell_them_apart),
-      cmocka_unit_test(near_vertices),
+      cmocka_unit_test(near_vertices),          cmocka_unit_test(gaps_below_floats),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -409,7 +409,7 @@ private:
 /* ---- All planes ---- */
 
 /** Points that are made where triangles meet, at most, beside four for each vertex. */
-constexpr size_t FRESH = 50000;
+constexpr size_t FRESH = 1000000;
 
 void check_count(const ExactPoints &points, size_t most) {
   if (points.size() > most)
@@ -440,8 +440,8 @@ private:
 Pieces arrange(const Surface &surface, const Meetings &meetings, Meter &meter) {
   const Sheet &sheet = surface.sheet;
   Pieces out(surface);
-  /* Each takes some 50 us and memory for exact numbers: a heap of faces would take hours, and has no inside.
-   */
+  /* Each takes some 70 us and a kilobyte for exact numbers: the largest heap of faces is given up after a
+   * minute or two. */
   size_t most = FRESH + 4 * surface.points.size();
   Crossings crossings(surface, &out.points);
   Planes planes(sheet.size());

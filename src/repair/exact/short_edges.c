@@ -6,8 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Of the diagonal: edges of unions that are shorter are collapsed. */
+/** Of the diagonal: edges of unions that are shorter are collapsed, where it was tried in vain without. */
 static const double SHORT = 0x1p-22;
+/** The same where ends are one as 32-bit floats: far from the origin these are too coarse to go by. */
+static const double SHORT_FLOAT = 0x1p-20;
 
 /** Collapses leave short edges beside them, which the next round takes. */
 enum { ROUNDS = 6 };
@@ -65,13 +67,24 @@ static int by_length(const void *a, const void *b) {
   return (p->to > q->to) - (p->to < q->to);
 }
 
-static void list_short(collapsing *c, double most) {
+/** Whether the ends are one vertex to programs that hold 32-bit floats. */
+static bool is_float_point(const collapsing *c, const vxm_edge *edge) {
+  const double *a = vxm_position(c->soup, edge->a), *b = vxm_position(c->soup, edge->b);
+  if (c->state->doubles_only)
+    return false;
+  for (int i = 0; i < 3; i++)
+    if (vxm_merge_place(a[i], VXM_MERGE_FLOAT) != vxm_merge_place(b[i], VXM_MERGE_FLOAT))
+      return false;
+  return true;
+}
+
+static void list_short(collapsing *c, double most, double most_float) {
   c->count = 0;
   for (size_t e = 0; e < c->state->edges.count; e++) {
     const vxm_edge *edge = &c->state->edges.edges[e];
     double length =
         vxm_vec3_length(vxm_vec3_between(vxm_position(c->soup, edge->a), vxm_position(c->soup, edge->b), 1));
-    if (length < most && edge->count == 2)
+    if (edge->count == 2 && (length < most || (length < most_float && is_float_point(c, edge))))
       c->edges[c->count++] = (short_edge){edge->b, edge->a, length};
   }
   qsort(c->edges, c->count, sizeof *c->edges, by_length);
@@ -171,7 +184,8 @@ static vxm_status apply(collapsing *c, vxm_error *error) {
   return VXM_OK;
 }
 
-static vxm_status collapse(collapsing *c, double most, int64_t *total, vxm_error *error) {
+static vxm_status collapse(collapsing *c, double diagonal, int64_t *total, vxm_error *error) {
+  const double most = c->state->collapses ? SHORT * diagonal : 0, most_float = SHORT_FLOAT * diagonal;
   vxm_status status = VXM_OK;
   *total = 0;
   for (int round = 0; round < ROUNDS && status == VXM_OK; round++) {
@@ -180,7 +194,7 @@ static vxm_status collapse(collapsing *c, double most, int64_t *total, vxm_error
       status = vxm_repair_state_edges(c->state, error);
     if (status != VXM_OK || !list_faces(c))
       return status;
-    list_short(c, most);
+    list_short(c, most, most_float);
     int64_t collapsed = c->count > 0 ? collapse_round(c) : 0;
     if (collapsed == 0)
       return VXM_OK;
@@ -194,7 +208,7 @@ static vxm_status collapse(collapsing *c, double most, int64_t *total, vxm_error
  * would be one vertex in other programs, and slivers are in the way of parting what touches. */
 vxm_status vxm_pass_short_edges(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
-  if (!state->collapses || state->counts[VXM_PASS_UNION] == 0)
+  if (state->counts[VXM_PASS_UNION] == 0)
     return VXM_OK;
   vxm_extent extent;
   vxm_repair_state_extent(state, &extent);
@@ -214,7 +228,7 @@ vxm_status vxm_pass_short_edges(vxm_repair_state *state, bool *changed, vxm_erro
   if (c.map)
     c.edges = vxm_repair_state_scratch(state, state->edges.count, sizeof *c.edges, &status, error);
   if (c.edges)
-    status = collapse(&c, SHORT * vxm_extent_diagonal(extent.bounds), &collapsed, error);
+    status = collapse(&c, vxm_extent_diagonal(extent.bounds), &collapsed, error);
   vxm_free(state->context, c.edges);
   vxm_free(state->context, c.map);
   vxm_free(state->context, c.locked);

@@ -2,9 +2,12 @@
 /**
  * Vertices at the same position that belong to different patches would be one again for every program that
  * welds, and so would those that lie nearer than it tells apart; the edges between them have too many faces
- * again. So each is moved a little: toward the faces of its own, or along an edge that is too short.
+ * again. So each is moved a little: toward the faces of its own, or along an edge that is too short. Then the
+ * same for those that differ, but are one once they are 32-bit floats, as many programs hold them, where the
+ * faces leave room for that.
  */
 #include "mesh/geometry.h"
+#include "repair/manifold/contact_direction.h"
 #include "repair/state/position_hash.h"
 #include "repair/state/repair_state.h"
 
@@ -46,9 +49,12 @@ typedef struct moving {
   vxm_repair_state *state;
   vxm_soup *soup;
   vxm_merge_rule rule;
+  bool floats_only;     /**< they differ by the rule, and are to differ as 32-bit floats, too */
   uint32_t *map;        /**< vertex: the first one that it would merge with */
   uint32_t *number;     /**< vertex: its place among those that would merge, or VXM_NO_VERTEX */
   surroundings *around; /**< of those */
+  vxm_vec3 *contact;    /**< of a solid: the direction in which each leaves what it touches; NULL = is none */
+  uint8_t *stays;       /**< of a solid: the first vertex of those that would merge: one of them stays */
   size_t shared;        /**< how many those are */
   double diagonal;
   vxm_position_hash places; /**< what is taken */
@@ -121,13 +127,21 @@ static void look_around(moving *m) {
 
 /* ---- A place for a vertex ---- */
 
+/** What tells positions apart. */
+typedef enum precision {
+  DOUBLES = 0,
+  FLOATS,    /**< 32-bit floats, with some units between them, where the faces are large beside that */
+  NEXT_FLOAT /**< by a single unit: what such floats do to the faces in any case */
+} precision;
+
 /** What a vertex is to be moved by. */
 typedef struct moves {
   double from[3], toward[3]; /**< toward: of length 1 */
   double unit[3];            /**< along each axis: what the numbers that hold the position tell apart */
   double step;               /**< how far to go, where they allow it */
   double fine, coarse;
-  bool floats; /**< 32-bit floats are to tell it from others, too */
+  bool straight; /**< the direction is to be kept */
+  bool floats;   /**< 32-bit floats are to tell it from others, too */
 } moves;
 
 /** The distance to the next 32-bit float beyond x. */
@@ -136,12 +150,11 @@ static double float_unit(double x) {
   return (double)nextafterf(single, INFINITY) - (double)single;
 }
 
-/** The least difference between two numbers near x that tells them apart for who reads the file; with
- * `floats` also for who holds them as 32-bit floats. */
-static double unit_of(const moving *m, double x, bool floats) {
-  double unit = m->state->options.single_precision ? float_unit(x)
-                : floats                           ? STEP_UNITS * float_unit(x)
-                                                   : STEP_UNITS * (nextafter(fabs(x), INFINITY) - fabs(x));
+/** The least difference between two numbers near x that tells them apart for who reads the file. */
+static double unit_of(const moving *m, double x, precision to) {
+  double unit = m->state->options.single_precision || to == NEXT_FLOAT ? float_unit(x)
+                : to == FLOATS                                         ? STEP_UNITS * float_unit(x)
+                               : STEP_UNITS * (nextafter(fabs(x), INFINITY) - fabs(x));
   return m->rule == VXM_MERGE_ROUNDED ? fmax(unit, STEP_GRID * VXM_MERGE_GRID) : unit;
 }
 
@@ -155,16 +168,20 @@ static vxm_vec3 direction_of(const surroundings *s) {
   return (vxm_vec3){s->toward.x + s->inward.x, s->toward.y + s->inward.y, s->toward.z + s->inward.z};
 }
 
-static moves moves_of(const moving *m, uint32_t v, const surroundings *s, bool floats) {
+static moves moves_of(const moving *m, uint32_t v, const surroundings *s, precision to) {
   const double *p = vxm_position(m->soup, v);
-  vxm_vec3 direction = direction_of(s);
+  vxm_vec3 direction = direction_of(s), none = {0, 0, 0};
+  vxm_vec3 leaving = m->contact && vxm_vec3_length(s->away) == 0 ? m->contact[m->number[v]] : none;
+  if (vxm_vec3_length(leaving) > 0)
+    direction = leaving;
   double length = vxm_vec3_length(direction);
   double height = s->lowest > 0 ? fmin(s->lowest, s->shortest) : s->shortest;
-  moves by = {.floats = floats,
+  moves by = {.floats = to != DOUBLES,
+              .straight = vxm_vec3_length(leaving) > 0,
               .step = fmin(STEP * m->diagonal, STEP_HEIGHT * height),
               .coarse = COARSE * s->longest};
-  if (floats)
-    by.coarse = fmin(fmin(by.coarse, ROOM * height), STEP_FLOAT * m->diagonal);
+  if (to != DOUBLES)
+    by.coarse = fmin(to == FLOATS ? fmin(by.coarse, ROOM * height) : by.coarse, STEP_FLOAT * m->diagonal);
   by.fine = fmin(by.coarse, vxm_repair_state_reaches(m->state, VXM_LEVEL_SOLID)
                                 ? by.coarse
                                 : fmax(FINE * s->longest, 3 * by.step));
@@ -172,7 +189,7 @@ static moves moves_of(const moving *m, uint32_t v, const surroundings *s, bool f
   for (int a = 0; a < 3; a++) {
     by.from[a] = p[a];
     by.toward[a] = length > 0 ? toward[a] / length : sqrt(1.0 / 3); /* any direction where there is none */
-    by.unit[a] = unit_of(m, p[a], floats);
+    by.unit[a] = unit_of(m, p[a], to);
   }
   return by;
 }
@@ -183,6 +200,22 @@ static bool fits(const moving *m, const moves *by, const double p[3], double mos
     if (!(fabs(p[a] - by->from[a]) <= most))
       return false;
   return !vxm_position_hash_taken(&m->places, p) && !(by->floats && vxm_position_hash_taken(&m->floats, p));
+}
+
+/** Exactly in that direction, by what one axis takes: anything else might meet what is on the other side. */
+static bool find_straight(const moving *m, const moves *by, double p[3]) {
+  double step = INFINITY;
+  for (int a = 0; a < 3; a++)
+    if (fabs(by->toward[a]) > AXIS)
+      step = fmin(step, by->unit[a] / fabs(by->toward[a]));
+  step = fmax(step, by->step);
+  for (int quarter = 4; quarter <= 12; quarter++) {
+    for (int a = 0; a < 3; a++)
+      p[a] = vxm_repair_state_round(m->state, by->from[a] + step * quarter / 4 * by->toward[a]);
+    if (fits(m, by, p, by->fine))
+      return true;
+  }
+  return false;
 }
 
 /** In the direction of the faces, so that what touched along an edge touches nowhere. */
@@ -242,10 +275,11 @@ static bool find_nearest(const moving *m, const moves *by, double p[3]) {
 static bool move(moving *m, uint32_t v) {
   const surroundings *s = &m->around[m->number[v]];
   double to[3], *p = m->soup->positions + 3 * (size_t)v;
+  static const precision first[] = {FLOATS, DOUBLES}, then[] = {FLOATS, NEXT_FLOAT};
   bool found = false;
-  for (int floats = !m->state->options.single_precision; floats >= 0 && !found; floats--) {
-    moves by = moves_of(m, v, s, floats);
-    found = find_along(m, &by, to) || find_nearest(m, &by, to);
+  for (int i = m->state->options.single_precision || m->state->doubles_only; i < 2 && !found; i++) {
+    moves by = moves_of(m, v, s, m->floats_only ? then[i] : first[i]);
+    found = (by.straight && find_straight(m, &by, to)) || find_along(m, &by, to) || find_nearest(m, &by, to);
   }
   for (int a = 0; a < 3 && found; a++)
     p[a] = to[a];
@@ -270,6 +304,19 @@ static vxm_status list_shared(moving *m, vxm_error *error) {
   return status;
 }
 
+/** Lets one vertex of each place stay that cannot be moved into the solid, as the others are: there is
+ * nowhere that it would be better off. */
+static void let_stay(moving *m) {
+  for (size_t v = 0; v < m->soup->vertex_count; v++) {
+    if (m->number[v] == VXM_NO_VERTEX || m->stays[m->map[v]] ||
+        vxm_vec3_length(m->contact[m->number[v]]) > 0 || vxm_vec3_length(m->around[m->number[v]].away) > 0)
+      continue;
+    m->stays[m->map[v]] = 1;
+    m->number[v] = VXM_NO_VERTEX;
+    m->shared--;
+  }
+}
+
 static int64_t move_all(moving *m) {
   int64_t moved = 0;
   size_t vertices = m->soup->vertex_count;
@@ -279,10 +326,24 @@ static int64_t move_all(moving *m) {
       vxm_position_hash_add(&m->floats, (uint32_t)v);
     }
   look_around(m);
+  if (m->contact)
+    let_stay(m);
   for (size_t v = 0; v < vertices; v++)
     if (m->number[v] != VXM_NO_VERTEX)
       moved += move(m, (uint32_t)v);
   return moved;
+}
+
+/** Where the faces bound a solid, and look outward. */
+static vxm_status look_for_contacts(moving *m, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  if (!vxm_repair_state_reaches(m->state, VXM_LEVEL_SOLID) || m->state->counts[VXM_PASS_UNION] == 0)
+    return status;
+  m->contact = vxm_repair_state_scratch(m->state, m->shared, sizeof *m->contact, &status, error);
+  if (status == VXM_OK)
+    m->stays = vxm_repair_state_scratch(m->state, m->soup->vertex_count, 1, &status, error);
+  return status == VXM_OK ? vxm_contact_directions(m->contact, m->soup, m->map, m->number, m->shared, error)
+                          : status;
 }
 
 static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
@@ -299,12 +360,43 @@ static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
   if (status == VXM_OK && m->shared > 0)
     status = vxm_position_hash_open(&m->floats, m->soup, vertices + m->shared, VXM_MERGE_FLOAT, error);
   if (status == VXM_OK && m->shared > 0)
+    status = look_for_contacts(m, error);
+  if (status == VXM_OK && m->shared > 0)
     *moved = move_all(m);
+  vxm_free(state->context, m->contact);
+  vxm_free(state->context, m->stays);
+  m->contact = NULL;
+  m->stays = NULL;
   vxm_position_hash_close(&m->floats);
   vxm_position_hash_close(&m->places);
   vxm_free(state->context, m->around);
   vxm_free(state->context, m->number);
   return status;
+}
+
+/** Moves the vertices apart that merge by `rule`. */
+static vxm_status move_by(moving *m, vxm_merge_rule rule, int64_t *moved, vxm_error *error) {
+  vxm_repair_state *state = m->state;
+  size_t vertices = state->soup->vertex_count;
+  vxm_status status = VXM_OK;
+  *moved = 0;
+  m->shared = 0;
+  m->map = vxm_repair_state_scratch(state, vertices, sizeof *m->map, &status, error);
+  if (status == VXM_OK)
+    status = vxm_merge_map(state->context, state->soup->positions, vertices, rule, m->map, error);
+  if (status == VXM_OK)
+    status = move_shared(m, moved, error);
+  vxm_free(state->context, m->map);
+  state->counts[VXM_PASS_APART] += *moved;
+  return status;
+}
+
+/** Whether the extent's numbers are 32-bit floats at all. */
+static bool are_floats(const vxm_extent *extent) {
+  for (int i = 0; i < 6; i++)
+    if (!(fabs(extent->bounds[i]) < (double)FLT_MAX))
+      return false;
+  return true;
 }
 
 /** What finds no place stays, for the verification to find. */
@@ -316,18 +408,13 @@ vxm_status vxm_pass_apart(vxm_repair_state *state, bool *changed, vxm_error *err
   vxm_repair_state_extent(state, &extent);
   moving m = {.state = state, .soup = state->soup, .diagonal = vxm_extent_diagonal(extent.bounds)};
   m.rule = vxm_merge_rule_of(m.diagonal);
-  vxm_status status = VXM_OK;
-  int64_t moved = 0;
-  size_t vertices = state->soup->vertex_count;
-  m.map = vxm_repair_state_scratch(state, vertices, sizeof *m.map, &status, error);
-  if (status == VXM_OK)
-    status = vxm_merge_map(state->context, state->soup->positions, vertices, m.rule, m.map, error);
-  if (status == VXM_OK)
-    status = move_shared(&m, &moved, error);
-  vxm_free(state->context, m.map);
-  state->counts[VXM_PASS_APART] += moved;
+  int64_t moved, as_floats = 0;
+  vxm_status status = move_by(&m, m.rule, &moved, error);
   state->together = (int64_t)m.shared - moved;
-  *changed = moved > 0;
+  m.floats_only = true;
+  if (status == VXM_OK && !state->options.single_precision && !state->doubles_only && are_floats(&extent))
+    status = move_by(&m, VXM_MERGE_FLOAT, &as_floats, error);
+  *changed = moved > 0 || as_floats > 0;
   if (*changed)
     vxm_repair_state_move(state);
   return status;
