@@ -144,11 +144,15 @@ vxm_status vxm_output_open_readable(vxm_output **out, vxm_context *context, cons
 
 /* ---- Room ---- */
 
-static vxm_status fail_room(const vxm_output *output, uint64_t bytes, uint64_t room, const char *where,
-                            vxm_error *error) {
-  return vxm_fail_at(error, VXM_ERROR_IO, (vxm_place){shown(output), 0, -1, -1},
-                     "cannot write: at least %s are needed, and %s %s", vxm_size_text_of(bytes).text,
-                     vxm_size_text_of(room).text, where);
+/** @param reason errno that writing would end with */
+static vxm_status fail_room(const vxm_output *output, uint64_t bytes, uint64_t room, int reason,
+                            const char *where, vxm_error *error) {
+  vxm_status status = vxm_fail_at(error, VXM_ERROR_IO, (vxm_place){shown(output), 0, -1, -1},
+                                  "cannot write: at least %s are needed, and %s %s",
+                                  vxm_size_text_of(bytes).text, vxm_size_text_of(room).text, where);
+  if (error)
+    error->system = reason;
+  return status;
 }
 
 /** Takes the room, which also asks whether the user may have so much; where that is not free of cost, as in
@@ -170,7 +174,7 @@ vxm_status vxm_output_expect(vxm_output *output, uint64_t bytes, vxm_error *erro
   if (fstat(output->descriptor, &info) != 0 || !S_ISREG(info.st_mode))
     return VXM_OK;
   if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && bytes > limit.rlim_cur)
-    return fail_room(output, bytes, limit.rlim_cur, "are what a file may have (ulimit -f)", error);
+    return fail_room(output, bytes, limit.rlim_cur, EFBIG, "are what a file may have (ulimit -f)", error);
   /* Some file systems do not know. */
   if (fstatvfs(output->descriptor, &disk) != 0 || disk.f_blocks == 0)
     return VXM_OK;
@@ -178,7 +182,7 @@ vxm_status vxm_output_expect(vxm_output *output, uint64_t bytes, vxm_error *erro
   uint64_t blocks = geteuid() == 0 ? disk.f_bfree : disk.f_bavail;
   uint64_t room = blocks > UINT64_MAX / block ? UINT64_MAX : blocks * block;
   if (bytes > room)
-    return fail_room(output, bytes, room, where, error);
+    return fail_room(output, bytes, room, ENOSPC, where, error);
   if (bytes > INT64_MAX || take_room(output->descriptor, bytes))
     return VXM_OK;
   return vxm_fail_errno(error, shown(output), "cannot write: there is no room for it");

@@ -109,16 +109,18 @@ int batch_unpacker_next(batch_unpacker *unpacker, batch_member *out, batch_error
   ssize_t got;
   do
     got = recvmsg(unpacker->channel, &message, MSG_CMSG_CLOEXEC);
-  while (got < 0 && errno == EINTR);
-  if (got != (ssize_t)sizeof head) { /* neither a member nor word of its end */
-    batch_fail(error, "the archive made the process that reads it end");
-    return -1;
+  while (got < 0 &&
+         (errno == EINTR || errno == ECONNRESET)); /* reset: it ended before it heard us; its words stay */
+  if (got != (ssize_t)sizeof head) {               /* neither a member nor word of its end */
+    batch_fail(error, "the process that reads the archive was ended");
+    return -2;
   }
   head.name[sizeof head.name - 1] = head.problem[sizeof head.problem - 1] = '\0';
   if (head.is_end && head.problem[0])
     batch_fail(error, "%s", head.problem);
   if (head.is_end)
     return head.problem[0] ? -1 : 0;
+  send(unpacker->channel, "", 1, MSG_NOSIGNAL); /* the next may be unpacked */
   *out = (batch_member){.bytes = head.bytes, .descriptor = batch_descriptor_take(&message)};
   memcpy(out->name, head.name, sizeof out->name);
   memcpy(out->problem, head.problem, sizeof out->problem);

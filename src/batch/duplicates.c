@@ -178,7 +178,7 @@ static bool link_outputs(run *r, const batch_item *original, const batch_item *i
   json_array_foreach(files, f, file) {
     const char *path = batch_json_text(file, "path");
     char *name = path ? renamed(path, original->output, item->output) : NULL;
-    good = good && name && link_file(r, path, name);
+    good = good && name && batch_make_folders(r, name) && link_file(r, path, name);
     if (name)
       json_object_set_new(file, "path", batch_json_string(name));
     free(name);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** From how a child ended to a record in the journal. */
+#include "batch/outputs.h"
 #include "batch/run.h"
 
 #include <signal.h>
@@ -18,10 +19,10 @@ bool batch_end_item(run *r, int64_t index, batch_status status, json_t *record) 
   json_object_set_new(record, "attempt", json_integer(item->attempts + 1));
   if (!batch_is_done(status)) { /* what it had made before it failed */
     json_object_del(record, "outputs");
-    json_t *job = r->settings->job(item, r->settings->payload, &(batch_error){""});
+    json_t *job = r->settings->job(item, 0, r->settings->payload, &(batch_error){""});
     json_t *outputs = json_object_get(job, "outputs"), *name;
     size_t o;
-    json_array_foreach(outputs, o, name) batch_remove_output(r->settings->output, json_string_value(name));
+    json_array_foreach(outputs, o, name) batch_output_remove(r->settings->output, json_string_value(name));
     json_decref(job);
   }
   if (!batch_journal_add(&r->journal, record, r->error))

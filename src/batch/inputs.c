@@ -83,8 +83,10 @@ static bool add_entry(batch_manifest *out, const batch_inputs *inputs, const FTS
     batch_pass_over(out, entry->fts_name);
     return true;
   }
-  return batch_is_archive(entry->fts_name) ? add_archive(out, inputs, id, entry->fts_path, info, error)
-                                           : add_file(out, id, entry->fts_path, info, error);
+  batch_error damaged; /* one archive of many: it is told of as a mesh that cannot be read would be */
+  return batch_is_archive(entry->fts_name) && add_archive(out, inputs, id, entry->fts_path, info, &damaged)
+             ? true
+             : add_file(out, id, entry->fts_path, info, error);
 }
 
 /** Links are followed; those that lead back to where they are, or to nothing, are passed over. */
@@ -181,10 +183,12 @@ static bool add_pattern(batch_manifest *out, const batch_inputs *inputs, const c
   bool good = true;
   size_t prefix =
       inputs->count == 1 ? strcspn(pattern, "*?[{") : 0; /* the folder before the first of these */
+  batch_inputs several = *inputs;
+  several.count += found.gl_pathc > 1; /* then an archive is not the only input */
   while (prefix > 0 && pattern[prefix - 1] != '/')
     prefix--;
   for (size_t i = 0; good && i < found.gl_pathc; i++)
-    good = add_named(out, inputs, found.gl_pathv[i], prefix, error);
+    good = add_named(out, &several, found.gl_pathv[i], prefix, error);
   globfree(&found);
   return good;
 }

@@ -142,9 +142,14 @@ bool batch_journal_add(batch_journal *journal, json_t *record, batch_error *erro
   json_decref(record);
   if (!line)
     return batch_fail(error, "out of memory for the journal: free some");
+  off_t before = lseek(journal->descriptor, 0, SEEK_END);
   bool good = write_all(journal->descriptor, line, length);
-  if (!good)
+  if (!good) {
     batch_fail_errno(error, "%s: cannot write", journal->path);
+    if (before < 0 ||
+        ftruncate(journal->descriptor, before) != 0) { /* then the next that opens it cuts the line off */
+    }
+  }
   free(line);
   journal->is_dirty = true;
   return good && (batch_clock_ms() - journal->synced_ms < SYNC_MS || batch_journal_sync(journal, error));

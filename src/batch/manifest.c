@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/manifest.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static bool copy(char **out, const char *text) {
   *out = text ? strdup(text) : NULL;
@@ -19,6 +21,24 @@ static void free_item(batch_item *item) {
   free(item->options);
 }
 
+/** A name in UTF-8, with what is none of it as %XX; to be freed. */
+static char *readable(const char *name, bool *is_misnamed) {
+  json_t *text = json_string(name);
+  json_decref(text);
+  if (text)
+    return strdup(name);
+  char *out = malloc(3 * strlen(name) + 1), *end = out;
+  *is_misnamed = true;
+  for (; out && *name; name++)
+    if ((unsigned char)*name >= 0x80)
+      end += sprintf(end, "%%%02X", (unsigned char)*name);
+    else
+      *end++ = *name;
+  if (out)
+    *end = '\0';
+  return out;
+}
+
 bool batch_manifest_add(batch_manifest *manifest, const batch_item *item, batch_error *error) {
   if (manifest->count == manifest->room) {
     int64_t room = manifest->room ? 2 * manifest->room : 256;
@@ -30,7 +50,12 @@ bool batch_manifest_add(batch_manifest *manifest, const batch_item *item, batch_
   }
   batch_item *added = &manifest->items[manifest->count];
   *added = (batch_item){.bytes = item->bytes, .modified = item->modified, .original = -1};
-  if (copy(&added->id, item->id) && copy(&added->path, item->path) && copy(&added->member, item->member) &&
+  added->id = readable(item->id, &added->is_misnamed);
+  json_t *path = json_string(item->path), *member = json_string(item->member ? item->member : "");
+  added->is_misnamed = added->is_misnamed || !path || !member;
+  json_decref(path);
+  json_decref(member);
+  if (added->id && copy(&added->path, item->path) && copy(&added->member, item->member) &&
       copy(&added->kind, item->kind) && copy(&added->split, item->split) &&
       copy(&added->options, item->options)) {
     manifest->count++;
@@ -77,6 +102,12 @@ static char *extension_of(char *name) {
   return dot && dot > base ? dot : name + strlen(name);
 }
 
+/** An id that a table gives may have dots that are none of an extension: "v1.5". */
+static bool has_its_extension(const batch_item *item) {
+  char *file = item->member ? item->member : item->path;
+  return strcasecmp(extension_of(item->output), extension_of(file)) == 0;
+}
+
 static int by_output(const void *a, const void *b) {
   const batch_item *x = *(batch_item *const *)a, *y = *(batch_item *const *)b;
   int order = strcmp(x->output, y->output);
@@ -108,7 +139,7 @@ static bool name_outputs(batch_manifest *manifest, batch_error *error) {
     order[i] = &manifest->items[i];
     order[i]->output = safe_name(order[i]->id);
     good = order[i]->output != NULL;
-    if (good)
+    if (good && has_its_extension(order[i]))
       *extension_of(order[i]->output) = '\0';
   }
   if (good) {

@@ -80,13 +80,6 @@ static void set_text(json_t *row, const char *key, const char *text) {
     json_object_set_new(row, key, batch_json_string(text));
 }
 
-static const char *message_of(const json_t *record) {
-  const char *message = batch_json_text(record, "message");
-  if (!message)
-    message = batch_json_text(record, "last_words");
-  return message ? message : json_string_value(json_array_get(json_object_get(record, "warnings"), 0));
-}
-
 static json_t *row_of(const batch_state *state, int64_t i, const batch_telling *telling) {
   const batch_item *item = &state->manifest.items[i];
   const batch_end *end = &state->ends[i];
@@ -97,7 +90,7 @@ static json_t *row_of(const batch_state *state, int64_t i, const batch_telling *
   set_text(row, "item", item->id);
   set_text(row, "class", item->kind);
   set_text(row, "split", item->split);
-  set_text(row, "message", message_of(end->record));
+  set_text(row, "message", end->message);
   if (!batch_is_done(item->status) && item->status != BATCH_PENDING) {
     char *command = telling->command_line(item, telling->payload);
     set_text(row, "command", command);

@@ -224,6 +224,14 @@ static bool create_once(const char *output, const char *name, const char *text, 
   return good;
 }
 
+/** One that is there without a run.json is of a run that was ended before it began. */
+static bool replace(const char *output, const char *name, const char *text, size_t size, batch_error *error) {
+  char *path = batch_plan_path(output, name);
+  bool good = path ? batch_write_file(path, text, size, error) : batch_fail(error, out_of_memory);
+  free(path);
+  return good;
+}
+
 static bool begin(const char *output, const batch_manifest *manifest, const char *digest,
                   const json_t *settings, int shards, batch_error *error) {
   size_t size = 0;
@@ -235,7 +243,7 @@ static bool begin(const char *output, const batch_manifest *manifest, const char
   bool good = list && text && folder ? true : batch_fail(error, out_of_memory);
   if (good && mkdir(folder, 0777) != 0 && errno != EEXIST)
     good = batch_fail_errno(error, "%s: cannot make the folder", folder);
-  good = good && create_once(output, "plan.jsonl", list, size, error);
+  good = good && replace(output, "plan.jsonl", list, size, error);
   good = good && create_once(output, "run.json", text, strlen(text), error);
   free(folder);
   free(text);

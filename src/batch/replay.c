@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/replay.h"
+#include "batch/outputs.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -20,34 +21,10 @@ bool batch_content_read(batch_content *out, const char *digest) {
   return digest && sscanf(digest, "%16" SCNx64 "%16" SCNx64, &out->half[0], &out->half[1]) == 2;
 }
 
-void batch_remove_output(const char *output, const char *name) {
-  static const char *const ends[] = {"", ".json"};
-  for (int e = 0; e < 2; e++) {
-    char *path = NULL;
-    if (asprintf(&path, "%s/%s%s", output, name, ends[e]) < 0)
-      return;
-    unlink(path);
-    free(path);
-  }
-}
-
-/** Whether a file that the journal tells of is there, as long as it was. */
-static bool is_there(const char *output, const json_t *file) {
-  const char *name = batch_json_text(file, "path");
-  char *path = NULL;
-  struct stat info;
-  if (!name || asprintf(&path, "%s/%s", output, name) < 0)
-    return false;
-  bool good = stat(path, &info) == 0 && S_ISREG(info.st_mode) &&
-              info.st_size == json_integer_value(json_object_get(file, "bytes"));
-  free(path);
-  return good;
-}
-
 static bool has_outputs(const char *output, const json_t *record) {
   const json_t *files = json_object_get(record, "outputs");
   for (size_t f = 0; f < json_array_size(files); f++)
-    if (!is_there(output, json_array_get(files, f)))
+    if (!batch_output_is_there(output, json_array_get(files, f)))
       return false;
   return true;
 }

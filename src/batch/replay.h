@@ -24,7 +24,4 @@ bool batch_replay(batch_manifest *manifest, batch_content *contents, const batch
 /** Takes over a digest of hexadecimal digits; false if it is none. */
 bool batch_content_read(batch_content *out, const char *digest);
 
-/** Removes "OUT/NAME" and "OUT/NAME.json". */
-void batch_remove_output(const char *output, const char *name);
-
 #endif

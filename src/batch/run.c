@@ -19,101 +19,6 @@ bool batch_run_stops(const run *r) {
   return r->is_broken || batch_signal();
 }
 
-/* ---- Giving out ---- */
-
-static batch_slot *free_slot(run *r) {
-  for (int s = 0; s < BATCH_JOBS_MAX; s++)
-    if (!r->slots[s].is_used)
-      return &r->slots[s];
-  return NULL;
-}
-
-/** The folders that an output's name goes through. */
-static bool make_folders(const run *r, const char *name) {
-  static char last[4096];
-  char path[4096];
-  const char *root = r->settings->output, *end = strrchr(name, '/');
-  int length = end ? snprintf(path, sizeof path, "%s/%.*s", root, (int)(end - name), name) : 0;
-  if (length < 0 || (size_t)length >= sizeof path)
-    return batch_fail(r->error, "%s: the name is too long", name);
-  if (!end || strcmp(path, last) == 0)
-    return true;
-  for (char *slash = path + strlen(root); slash;) {
-    slash = strchr(slash + 1, '/');
-    if (slash)
-      *slash = '\0';
-    if (mkdir(path, 0777) != 0 && errno != EEXIST)
-      return batch_fail_errno(r->error, "%s: cannot make the folder", path);
-    if (slash)
-      *slash = '/';
-  }
-  strcpy(last, path);
-  return true;
-}
-
-static bool note_start(run *r, const batch_item *item, bool is_alone) {
-  json_t *record = json_pack("{s:s, s:o, s:i}", "event", "start", "item", batch_json_string(item->id),
-                             "attempt", item->attempts + 1);
-  if (is_alone && record)
-    json_object_set_new(record, "alone", json_true());
-  return batch_journal_add(&r->journal, record, r->error);
-}
-
-/**
- * Occupies the slot and sends what its child is to do. Where the zygote has gone this cannot be told from one
- * that goes a moment later: it is found out when its endings are waited for. False if it is too long to be
- * sent.
- */
-static bool send_request(run *r, batch_slot *slot, json_t *job, int input, const batch_limits *limits) {
-  char *text = job ? json_dumps(job, JSON_COMPACT) : NULL;
-  bool fits = text && strlen(text) < BATCH_REQUEST_MAX;
-  json_decref(job);
-  if (fits) {
-    slot->is_used = true;
-    r->in_flight++;
-    batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits);
-  }
-  free(text);
-  return fits;
-}
-
-bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
-  batch_item *item = &r->manifest->items[index];
-  batch_slot *slot = free_slot(r);
-  batch_limits limits = r->settings->limits;
-  json_t *job = r->settings->job(item, r->settings->payload, r->error);
-  if (!slot || !job) { /* its own options are at fault: that ends it, and not the batch */
-    json_decref(job);
-    return batch_end_item(
-        r, index, BATCH_FAILED,
-        json_pack("{s:s, s:o}", "stage", "options", "message", batch_json_string(r->error->text)));
-  }
-  if (!make_folders(r, item->output) || !note_start(r, item, is_alone)) {
-    json_decref(job);
-    return batch_break(r);
-  }
-  if (is_alone && r->settings->alone_memory)
-    limits.memory = r->settings->alone_memory;
-  *slot = (batch_slot){.is_alone = is_alone, .items = {index}, .count = 1};
-  if (!send_request(r, slot, job, input, &limits))
-    return batch_end_item(
-        r, index, BATCH_FAILED,
-        json_pack("{s:s, s:s}", "stage", "start", "message", "its names and options are too long together"));
-  return item->is_in_flight = true;
-}
-
-/** Where it is too long to be sent they are not told to be duplicates. */
-bool batch_give_hashes(run *r, const int64_t *items, int count) {
-  batch_slot *slot = free_slot(r);
-  json_t *job = json_object(), *paths = json_array();
-  for (int i = 0; i < count; i++)
-    json_array_append_new(paths, batch_json_string(r->manifest->items[items[i]].path));
-  json_object_set_new(job, "hash", paths);
-  *slot = (batch_slot){.is_hashing = true, .count = count};
-  memcpy(slot->items, items, (size_t)count * sizeof *items);
-  return send_request(r, slot, job, -1, &r->settings->limits);
-}
-
 /* ---- Waiting ---- */
 
 static void release(run *r, batch_slot *slot) {
@@ -152,6 +57,20 @@ static void replace_zygote(run *r) {
     batch_break(r);
 }
 
+/** There is no room for a process: others have to end first. */
+static void take_refusal(run *r, const batch_slot *slot) {
+  enum { REFUSALS_MAX = 300 };
+  struct timespec pause = {.tv_nsec = 100000000};
+  nanosleep(&pause, NULL);
+  if (!slot->is_hashing && !note_loss(r, &r->manifest->items[slot->items[0]]))
+    batch_break(r);
+  else if (++r->refusals > REFUSALS_MAX) {
+    batch_fail(r->error,
+               "the system starts no processes: see its limits on processes and open files (ulimit -u, -n)");
+    batch_break(r);
+  }
+}
+
 static void take_endings(run *r) {
   batch_ending ending;
   int got = 0;
@@ -161,14 +80,11 @@ static void take_endings(run *r) {
       continue;
     release(r, slot);
     if (ending.reason != BATCH_REASON_NO_FORK) {
-      r->losses = 0;
+      r->losses = r->refusals = 0;
       batch_take_ending(r, slot, &ending);
       continue;
     }
-    struct timespec pause = {.tv_nsec =
-                                 100000000}; /* until others have ended, and there is room for a process */
-    nanosleep(&pause, NULL);
-    r->losses++;
+    take_refusal(r, slot);
   }
   if (got < 0)
     replace_zygote(r);
@@ -182,6 +98,132 @@ static void wait_a_while(run *r, int waits_for, bool is_late) {
   if (polled[0].revents)
     take_endings(r);
 }
+
+/* ---- Giving out ---- */
+
+static batch_slot *free_slot(run *r) {
+  for (int s = 0; s < BATCH_JOBS_MAX; s++)
+    if (!r->slots[s].is_used)
+      return &r->slots[s];
+  return NULL;
+}
+
+static bool is_folder(const char *path) {
+  struct stat info;
+  if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+    return true;
+  errno = ENOTDIR;
+  return false;
+}
+
+/** Whether a failure is of one name, and the next may go well. */
+static bool is_of_its_name(int reason) {
+  return reason == ENAMETOOLONG || reason == ENOTDIR || reason == ELOOP || reason == EILSEQ ||
+         reason == EINVAL;
+}
+
+bool batch_make_folders(run *r, const char *name) {
+  static char last[4096];
+  char path[4096];
+  const char *root = r->settings->output, *end = strrchr(name, '/');
+  int length = end ? snprintf(path, sizeof path, "%s/%.*s", root, (int)(end - name), name) : 0;
+  if (length < 0 || (size_t)length >= sizeof path) {
+    errno = ENAMETOOLONG;
+    return batch_fail_errno(r->error, "%s: cannot make its folder", name);
+  }
+  if (!end || strcmp(path, last) == 0)
+    return true;
+  for (char *slash = path + strlen(root); slash;) {
+    slash = strchr(slash + 1, '/');
+    if (slash)
+      *slash = '\0';
+    if (mkdir(path, 0777) != 0 && (errno != EEXIST || !is_folder(path)))
+      return batch_fail_errno(r->error, "%s: cannot make the folder", path);
+    if (slash)
+      *slash = '/';
+  }
+  strcpy(last, path);
+  return true;
+}
+
+static bool note_start(run *r, const batch_item *item, bool is_alone) {
+  json_t *record = json_pack("{s:s, s:o, s:i}", "event", "start", "item", batch_json_string(item->id),
+                             "attempt", item->attempts + 1);
+  if (is_alone && record)
+    json_object_set_new(record, "alone", json_true());
+  return batch_journal_add(&r->journal, record, r->error);
+}
+
+/**
+ * Occupies the slot and sends what its child is to do. Where the zygote has gone this cannot be told from one
+ * that goes a moment later: it is found out when its endings are waited for. False if it is too long to be
+ * sent.
+ */
+static bool send_request(run *r, batch_slot *slot, json_t *job, int input, const batch_limits *limits) {
+  char *text = job ? json_dumps(job, JSON_COMPACT) : NULL;
+  bool fits = text && strlen(text) < BATCH_REQUEST_MAX;
+  json_decref(job);
+  if (fits) {
+    slot->is_used = true;
+    r->in_flight++;
+    while (!batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits))
+      wait_a_while(r, -1, false);
+  }
+  free(text);
+  return fits;
+}
+
+bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
+  batch_item *item = &r->manifest->items[index];
+  batch_slot *slot = free_slot(r);
+  batch_limits limits = r->settings->limits;
+  if (is_alone && r->settings->alone_memory)
+    limits.memory = r->settings->alone_memory;
+  json_t *job = r->settings->job(item, limits.memory, r->settings->payload, r->error);
+  if (item->is_misnamed) {
+    json_decref(job);
+    return batch_end_item(
+        r, index, BATCH_UNREADABLE,
+        json_pack("{s:s, s:s}", "stage", "read", "message", "its name is not in UTF-8: give it another"));
+  }
+  if (!slot || !job) { /* its own options are at fault: that ends it, and not the batch */
+    json_decref(job);
+    return batch_end_item(
+        r, index, BATCH_FAILED,
+        json_pack("{s:s, s:o}", "stage", "options", "message", batch_json_string(r->error->text)));
+  }
+  if (!batch_make_folders(r, item->output)) {
+    json_decref(job);
+    return is_of_its_name(errno) ? batch_end_item(r, index, BATCH_FAILED,
+                                                  json_pack("{s:s, s:o}", "stage", "write", "message",
+                                                            batch_json_string(r->error->text)))
+                                 : batch_break(r);
+  }
+  if (!note_start(r, item, is_alone)) {
+    json_decref(job);
+    return batch_break(r);
+  }
+  *slot = (batch_slot){.is_alone = is_alone, .items = {index}, .count = 1};
+  if (!send_request(r, slot, job, input, &limits))
+    return batch_end_item(
+        r, index, BATCH_FAILED,
+        json_pack("{s:s, s:s}", "stage", "start", "message", "its names and options are too long together"));
+  return item->is_in_flight = true;
+}
+
+/** Where it is too long to be sent they are not told to be duplicates. */
+bool batch_give_hashes(run *r, const int64_t *items, int count) {
+  batch_slot *slot = free_slot(r);
+  json_t *job = json_object(), *paths = json_array();
+  for (int i = 0; i < count; i++)
+    json_array_append_new(paths, batch_json_string(r->manifest->items[items[i]].path));
+  json_object_set_new(job, "hash", paths);
+  *slot = (batch_slot){.is_hashing = true, .count = count};
+  memcpy(slot->items, items, (size_t)count * sizeof *items);
+  return send_request(r, slot, job, -1, &r->settings->limits);
+}
+
+/* ---- A source ---- */
 
 /** Memory that is left, as a share of all; the kernel's own estimate. 1 where it is not known. */
 static double memory_left(void) {

@@ -25,8 +25,8 @@ typedef struct run {
   batch_error *error;
   batch_journal journal;
   batch_zygote zygote;
-  batch_slot *slots;     /**< as many as children may be at work */
-  int in_flight, losses; /**< losses: of zygotes, one after another */
+  batch_slot *slots;               /**< as many as children may be at work */
+  int in_flight, losses, refusals; /**< losses: of zygotes, one after another; refusals: of processes */
   bool is_broken;
   double memory_left, memory_seen_ms; /**< as a share, and when that was */
   char *ending;                       /**< BATCH_ENDING_BYTES */
@@ -46,6 +46,8 @@ typedef batch_turn batch_source(run *r, void *payload);
  */
 void batch_run_source(run *r, batch_source *source, void *payload, int jobs, const int *waits_for);
 
+/** Makes the folders that an output's name goes through. False with errno. */
+bool batch_make_folders(run *r, const char *name);
 /* Each gives a piece to a child; false where the run is broken. */
 bool batch_give_out(run *r, int64_t item, int input, bool is_alone);
 bool batch_give_hashes(run *r, const int64_t *items, int count);

@@ -67,6 +67,22 @@ static void take_numbers(batch_end *end, const json_t *record) {
   end->thin = (float)number(json_object_get(grid, "thin"), "share");
 }
 
+static void free_end(batch_end *end) {
+  free(end->stage);
+  free(end->message);
+  *end = (batch_end){0};
+}
+
+static void take_texts(batch_end *end, const json_t *record) {
+  const char *stage = batch_json_text(record, "stage"), *message = batch_json_text(record, "message");
+  if (!message)
+    message = batch_json_text(record, "last_words");
+  if (!message)
+    message = json_string_value(json_array_get(json_object_get(record, "warnings"), 0));
+  end->stage = stage ? strdup(stage) : NULL;
+  end->message = message ? strdup(message) : NULL;
+}
+
 typedef struct reading {
   batch_state *state;
   bool is_complete;
@@ -86,9 +102,10 @@ static bool take(json_t *record, void *payload) {
   if (at < 0 || status == BATCH_STATUSES)
     return true;
   batch_end *end = &r->state->ends[at];
-  json_decref(end->record);
-  *end = (batch_end){.record = status == BATCH_OK || status == BATCH_DUPLICATE ? NULL : json_incref(record)};
+  free_end(end);
+  r->state->records++;
   take_numbers(end, record);
+  take_texts(end, record);
   r->state->manifest.items[at].status = status;
   return true;
 }
@@ -137,7 +154,7 @@ void batch_state_count(const batch_state *state, int64_t counts[BATCH_STATUSES])
 
 void batch_state_free(batch_state *state) {
   for (int64_t i = 0; state->ends && i < state->manifest.count; i++)
-    json_decref(state->ends[i].record);
+    free_end(&state->ends[i]);
   free(state->ends);
   batch_manifest_free(&state->manifest);
   json_decref(state->run);

@@ -11,7 +11,7 @@ typedef struct batch_end {
   uint64_t peak_bytes, output_bytes;
   float contested, thin; /**< shares: of the voxels, of the surface */
   uint32_t warnings;
-  json_t *record; /**< whole, where it is not just done; else NULL */
+  char *stage, *message; /**< of what failed, or the first warning; NULL = none */
 } batch_end;
 
 typedef struct batch_state {
@@ -19,6 +19,7 @@ typedef struct batch_state {
   batch_end *ends;         /**< of each item */
   json_t *run;             /**< run.json */
   int shards, complete;    /**< shards that have come to their end */
+  int64_t records;         /**< ends that were told, also those that later ones replace */
   int64_t damaged;         /**< lines of journals that were not whole */
 } batch_state;
 

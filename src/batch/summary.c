@@ -20,13 +20,14 @@ json_t *batch_summary_json(const batch_state *state) {
     out += end->output_bytes;
     peak = end->peak_bytes > peak ? end->peak_bytes : peak;
   }
-  return json_pack("{s:O*, s:O*, s:O*, s:I, s:i, s:i, s:o, s:f, s:f, s:I, s:I, s:I, s:I}", "voxmend",
+  return json_pack("{s:O*, s:O*, s:O*, s:I, s:i, s:i, s:o, s:f, s:f, s:I, s:I, s:I, s:I, s:I}", "voxmend",
                    json_object_get(state->run, "voxmend"), "began", json_object_get(state->run, "began"),
                    "settings", json_object_get(state->run, "settings"), "meshes",
                    (json_int_t)state->manifest.count, "shards", state->shards, "complete_shards",
                    state->complete, "counts", batch_counts_json(counts), "wall_s", wall, "cpu_s", cpu,
                    "input_bytes", (json_int_t)in, "output_bytes", (json_int_t)out, "largest_peak_bytes",
-                   (json_int_t)peak, "damaged_journal_lines", (json_int_t)state->damaged);
+                   (json_int_t)peak, "records", (json_int_t)state->records, "damaged_journal_lines",
+                   (json_int_t)state->damaged);
 }
 
 /* ---- failures.tsv ---- */
@@ -40,13 +41,12 @@ static void put_cell(FILE *file, const char *text, char end) {
 
 static void put_failure(FILE *file, const batch_state *state, int64_t i, const batch_telling *telling) {
   const batch_item *item = &state->manifest.items[i];
-  const json_t *record = state->ends[i].record;
-  const char *message = batch_json_text(record, "message");
+  const batch_end *end = &state->ends[i];
   char *command = telling->command_line(item, telling->payload);
   put_cell(file, item->id, '\t');
   put_cell(file, batch_status_names[item->status], '\t');
-  put_cell(file, batch_json_text(record, "stage"), '\t');
-  put_cell(file, message ? message : batch_json_text(record, "last_words"), '\t');
+  put_cell(file, end->stage, '\t');
+  put_cell(file, end->message, '\t');
   put_cell(file, command, '\n');
   free(command);
 }
@@ -87,8 +87,8 @@ bool batch_summary_write(const batch_state *state, const char *output, const bat
                          batch_error *error) {
   json_t *summary = batch_summary_json(state);
   bool good = summary ? true : batch_fail(error, "out of memory: free some");
-  good = good && write_json(summary, output, error) && write_failures(state, output, telling, error) &&
-         batch_page_write(state, summary, output, telling, error);
+  good = good && batch_page_write(state, summary, output, telling, error) &&
+         write_failures(state, output, telling, error) && write_json(summary, output, error);
   json_decref(summary);
   return good;
 }

@@ -59,6 +59,7 @@ typedef struct unpacking {
   batch_unpacker unpacker;
   int64_t *members; /**< of that archive which are wanted, in the order of ids */
   int64_t count, left;
+  int losses; /**< how often its process was ended by others */
   bool is_alone;
 } unpacking;
 
@@ -97,7 +98,22 @@ static void take_member(run *r, unpacking *u, const batch_member *member) {
     close(member->descriptor);
 }
 
+/** The bytes that an unpacked mesh may take in memory. */
+static uint64_t most_bytes(const batch_settings *settings) {
+  return settings->limits.memory ? settings->limits.memory : UINT64_C(1) << 36;
+}
+
+/** Someone has ended the process that reads the archive: another begins at its front. */
+static bool restart(run *r, unpacking *u) {
+  batch_unpacker_end(&u->unpacker);
+  u->left = 0;
+  for (int64_t m = 0; m < u->count; m++)
+    u->left += is_waiting(r, u->members[m]);
+  return batch_unpacker_start(&u->unpacker, u->path, most_bytes(r->settings), r->error);
+}
+
 static batch_turn next_member(run *r, void *payload) {
+  enum { LOSSES_MAX = 5 };
   unpacking *u = payload;
   batch_member member;
   batch_error problem = {"it is no longer in the archive"};
@@ -106,24 +122,23 @@ static batch_turn next_member(run *r, void *payload) {
     return BATCH_NOTHING_LEFT;
   if (poll(&polled, 1, 0) == 0)
     return BATCH_LATER;
-  if (batch_unpacker_next(&u->unpacker, &member, &problem) > 0) {
+  int got = batch_unpacker_next(&u->unpacker, &member, &problem);
+  if (got > 0) {
     take_member(r, u, &member);
     return BATCH_GIVEN_OUT;
   }
+  if (got == -2 && ++u->losses < LOSSES_MAX && restart(r, u))
+    return BATCH_GIVEN_OUT;
   for (int64_t m = 0; m < u->count && !r->is_broken; m++) /* it ended, well or not, before all were found */
     if (is_waiting(r, u->members[m]))
       end_badly(r, u->members[m], problem.text);
   return BATCH_NOTHING_LEFT;
 }
 
-/** The bytes that an unpacked mesh may take in memory. */
-static uint64_t most_bytes(const batch_settings *settings) {
-  return settings->limits.memory ? settings->limits.memory : UINT64_C(1) << 36;
-}
-
 /** Works at the listed items, all of one archive. */
 static void run_archive(run *r, unpacking *u, int jobs) {
   u->left = u->count;
+  u->losses = 0;
   if (u->count == 0 || batch_run_stops(r))
     return;
   if (!batch_unpacker_start(&u->unpacker, u->path, most_bytes(r->settings), r->error)) {
@@ -191,6 +206,10 @@ static bool quarantine(run *r, int64_t i) {
   return true;
 }
 
+static int level_of(const batch_item *item) {
+  return item->aborted < ABORTS_MAX ? item->aborted : ABORTS_MAX;
+}
+
 /** Those first that were begun least often. */
 typedef struct lonely {
   int64_t next;
@@ -201,7 +220,7 @@ static batch_turn next_alone(run *r, void *payload) {
   lonely *l = payload;
   int64_t *next = &l->next;
   for (; *next < r->manifest->count; (*next)++) {
-    if (!is_wanted_alone(r, *next) || r->manifest->items[*next].aborted != l->aborted ||
+    if (!is_wanted_alone(r, *next) || level_of(&r->manifest->items[*next]) != l->aborted ||
         r->manifest->items[*next].member || quarantine(r, *next))
       continue;
     if (r->is_broken)

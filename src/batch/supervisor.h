@@ -23,8 +23,10 @@ typedef struct batch_settings {
   /**
    * What is to be made of a mesh: {"commands": [[word...]...], "outputs": [name below the folder...]}, and
    * what else the work wants to know. NULL after a failure.
+   *
+   * @param memory bytes that it may take; 0 = no limit
    */
-  json_t *(*job)(const batch_item *item, void *payload, batch_error *error);
+  json_t *(*job)(const batch_item *item, uint64_t memory, void *payload, batch_error *error);
   batch_work *work;     /**< does it, in the child: its result is an object with "status" */
   batch_zygote *zygote; /**< started early, while the program is small; taken over, and replaced by one that
                            has ended */

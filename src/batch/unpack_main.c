@@ -10,6 +10,7 @@
 #include <archive_entry.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <locale.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -60,16 +61,38 @@ static int take_bytes(struct archive *archive, batch_unpacked *head, uint64_t mo
   return file;
 }
 
+/** So few members are in memory at a time: waits until one more has been taken. */
+static bool wait_for_taker(int channel) {
+  enum { AHEAD = 2 };
+  static int ahead;
+  char word;
+  ssize_t got = 1;
+  if (++ahead <= AHEAD)
+    return true;
+  ahead--;
+  do
+    got = recv(channel, &word, 1, 0);
+  while (got < 0 && errno == EINTR);
+  return got == 1;
+}
+
 static bool hand_over(struct archive *archive, struct archive_entry *entry, uint64_t most, int channel) {
   const char *name = archive_entry_pathname(entry);
+  bool is_link = archive_entry_hardlink(entry) != NULL;
   batch_unpacked head = {.is_end = false};
-  if (!name || archive_entry_filetype(entry) != AE_IFREG || strlen(name) >= sizeof head.name)
+  if (!is_link && archive_entry_filetype(entry) != AE_IFREG)
     return true;
+  if (!name || strlen(name) >= sizeof head.name)
+    name = "a name that cannot be read";
   strcpy(head.name, name);
+  if (is_link)
+    snprintf(head.problem, sizeof head.problem, "it is a link to another member of the archive");
   head.bytes = archive_entry_size_is_set(entry) && archive_entry_size(entry) > 0
                    ? (uint64_t)archive_entry_size(entry)
                    : 0;
-  int bytes = most > 0 ? take_bytes(archive, &head, most) : -1;
+  if (!wait_for_taker(channel))
+    return false;
+  int bytes = most > 0 && !is_link ? take_bytes(archive, &head, most) : -1;
   bool good = send_over(channel, &head, bytes);
   if (bytes >= 0)
     close(bytes);
@@ -102,6 +125,7 @@ static void unpack(const char *path, uint64_t most, int channel) {
 
 int main(int argc, char **argv) {
   uint64_t most = 0;
+  setlocale(LC_CTYPE, "C.UTF-8"); /* of names of members */
   if (argc != 3 || sscanf(argv[2], "%" SCNu64, &most) != 1)
     return 2;
   unpack(argv[1], most, BATCH_UNPACK_CHANNEL);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/verify.h"
-#include "batch/digest.h"
 #include "batch/journal.h"
+#include "batch/outputs.h"
 #include "batch/plan.h"
 #include "batch/state.h"
 
@@ -33,16 +33,16 @@ static void report(const verifying *v, int64_t *count, const char *name, const c
 
 static void verify_file(const verifying *v, const json_t *file) {
   const char *name = batch_json_text(file, "path"), *digest = batch_json_text(file, "sha256");
-  char now[BATCH_DIGEST], *path = NULL;
-  uint64_t bytes;
-  if (!name || !digest || asprintf(&path, "%s/%s", v->output, name) < 0)
+  if (!name || !digest)
     return;
+  json_t *now = batch_output_describe(v->output, name);
+  const char *found = batch_json_text(now, "sha256");
   v->found->files++;
-  if (!batch_digest_file(now, &bytes, path))
+  if (!found)
     report(v, &v->found->missing, name, errno == ENOENT ? "is missing" : strerror(errno));
-  else if (strcmp(now, digest) != 0)
+  else if (strcmp(found, digest) != 0)
     report(v, &v->found->changed, name, "is not what was written");
-  free(path);
+  json_decref(now);
 }
 
 static int64_t item_of(const verifying *v, const json_t *record) {

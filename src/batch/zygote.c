@@ -37,7 +37,7 @@ bool batch_zygote_start(batch_zygote *out, batch_work *work, void *payload, batc
   return true;
 }
 
-void batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
+bool batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
                        const batch_limits *limits) {
   size_t length = strlen(request);
   batch_request head = {ticket, *limits, length};
@@ -45,8 +45,11 @@ void batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *reques
   struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
   batch_descriptor_room room;
   batch_descriptor_attach(&message, &room, input);
-  while (sendmsg(zygote->channel, &message, MSG_NOSIGNAL) < 0 && errno == EINTR) {
-  }
+  ssize_t sent;
+  do
+    sent = sendmsg(zygote->channel, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+  while (sent < 0 && errno == EINTR);
+  return sent >= 0 || errno != EAGAIN;
 }
 
 int batch_zygote_receive(batch_zygote *zygote, batch_ending *out, char buffer[BATCH_ENDING_BYTES]) {

@@ -198,7 +198,11 @@ _Noreturn static void be_child(zygote *z, const batch_request *head, const char 
 }
 
 static void start_child(zygote *z, const batch_request *head, const char *text, int input) {
-  child c = {.ticket = head->ticket, .started_ms = batch_clock_ms(), .status = -1};
+  child c = {.ticket = head->ticket,
+             .started_ms = batch_clock_ms(),
+             .status = -1,
+             .message = {.descriptor = -1},
+             .result = {.descriptor = -1}};
   int message = -1, result = -1;
   bool good = z->count < CHILDREN_MAX && open_stream(&c.message, BATCH_MESSAGE_MAX, &message) &&
               open_stream(&c.result, BATCH_RESULT_MAX, &result);

@@ -53,11 +53,10 @@ int batch_read_arguments(cli_run *cli, batch_wish *out);
 /** What makes jobs, and does them. */
 typedef struct batch_maker {
   const batch_wish *wish;
-  uint64_t memory;    /**< bytes for the library */
   const char *output; /**< the folder that is written to */
 } batch_maker;
 
-json_t *batch_make_job(const batch_item *item, void *maker, batch_error *error);
+json_t *batch_make_job(const batch_item *item, uint64_t memory, void *maker, batch_error *error);
 int batch_do_job(const char *request, int result, void *maker);
 /** What decides about the bytes of outputs, for the plan. */
 json_t *batch_make_settings(const batch_wish *wish);
@@ -75,10 +74,9 @@ int batch_try_options(cli_run *cli, const batch_maker *maker);
 /**
  * Writes summary.json, failures.tsv and index.html, once all shards have come to their end.
  *
- * @param[out] summary   to be released
- * @param writes         false = the summary is only returned
+ * @param[out] summary to be released
  */
-bool batch_tell(json_t **summary, const batch_maker *maker, bool writes, batch_error *error);
+bool batch_tell(json_t **summary, const batch_maker *maker, batch_error *error);
 
 /* ---- batch_dry_run.c ---- */
 

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** In a child: goes through the commands of a job and says what came of it. */
 #include "batch/digest.h"
+#include "batch/outputs.h"
 #include "cli/batch.h"
 
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- Results ---- */
@@ -134,54 +131,27 @@ static bool do_command(json_t *result, json_t *reports, const json_t *job, const
 
 /* ---- Files ---- */
 
-static bool add_file(json_t *files, const char *root, const char *name) {
-  char digest[BATCH_DIGEST], *path = NULL;
-  uint64_t bytes;
-  bool good = asprintf(&path, "%s/%s", root, name) >= 0 && batch_digest_file(digest, &bytes, path);
-  free(path);
-  if (good)
-    json_array_append_new(files, json_pack("{s:o, s:I, s:s}", "path", cli_json_text(name), "bytes",
-                                           (json_int_t)bytes, "sha256", digest));
-  return good;
-}
-
-static int by_name(const struct dirent **a, const struct dirent **b) {
-  return strcmp((*a)->d_name, (*b)->d_name);
-}
-
-static void add_folder(json_t *files, const char *root, const char *name) {
-  char *path = NULL;
-  struct dirent **entries = NULL;
-  int count = asprintf(&path, "%s/%s", root, name) < 0 ? 0 : scandir(path, &entries, NULL, by_name);
-  for (int e = 0; e < count; e++) {
-    char *inner = NULL;
-    if (entries[e]->d_name[0] != '.' && asprintf(&inner, "%s/%s", name, entries[e]->d_name) >= 0)
-      add_file(files, root, inner);
-    free(inner);
-    free(entries[e]);
-  }
-  free(entries);
-  free(path);
-}
-
-/** All that the outputs consist of, with what lies beside them. */
+/** All that the outputs consist of, with what lies beside them; NULL where one is not there. */
 static json_t *list_files(const json_t *job, const char *root) {
   json_t *files = json_array(), *name;
   size_t n;
+  bool good = true;
   json_array_foreach(json_object_get(job, "outputs"), n, name) {
     const char *text = json_string_value(name);
-    char *path = NULL, *beside = NULL;
-    struct stat info;
-    bool is_folder =
-        asprintf(&path, "%s/%s", root, text) >= 0 && stat(path, &info) == 0 && S_ISDIR(info.st_mode);
-    if (is_folder)
-      add_folder(files, root, text);
-    else if (add_file(files, root, text) && asprintf(&beside, "%s.json", text) >= 0)
-      add_file(files, root, beside);
+    char *beside = NULL;
+    json_t *file = batch_output_describe(root, text);
+    good = good && file;
+    if (file)
+      json_array_append_new(files, file);
+    file = asprintf(&beside, "%s.json", text) >= 0 ? batch_output_describe(root, beside) : NULL;
+    if (file)
+      json_array_append_new(files, file);
     free(beside);
-    free(path);
   }
-  return files;
+  if (good)
+    return files;
+  json_decref(files);
+  return NULL;
 }
 
 static bool write_report(json_t *result, const json_t *job, json_t *reports, const char *root) {
@@ -190,7 +160,6 @@ static bool write_report(json_t *result, const json_t *job, json_t *reports, con
   vxm_error error = VXM_ERROR_INIT;
   if (!name)
     return true;
-  json_object_set(reports, "item", json_object_get(job, "item"));
   json_object_set(reports, "warnings", json_object_get(result, "warnings"));
   text = json_dumps(reports, JSON_INDENT(2) | JSON_SORT_KEYS | JSON_REAL_PRECISION(17));
   bool good = text && asprintf(&path, "%s/%s", root, name) >= 0 &&

@@ -1,30 +1,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend batch --dry-run: what a batch will take, by some of its meshes. */
+#include "batch/outputs.h"
 #include "batch/plan.h"
 #include "batch/summary.h"
 #include "batch/tally.h"
 #include "cli/batch.h"
 
 #include <errno.h>
-#include <fts.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
-
-/** Takes away a folder with all that is in it. */
-static void remove_folder(const char *path) {
-  char *const roots[] = {(char *)(uintptr_t)path, NULL};
-  FTS *tree = fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
-  for (FTSENT *entry; tree && (entry = fts_read(tree));)
-    if (entry->fts_info == FTS_DP)
-      rmdir(entry->fts_path);
-    else if (entry->fts_info != FTS_D)
-      unlink(entry->fts_path);
-  if (tree)
-    fts_close(tree);
-}
 
 /** Leaves so many, evenly from the first to the last. */
 static void keep_sample(batch_manifest *manifest, int64_t sample) {
@@ -87,6 +73,8 @@ int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *
   keep_sample(manifest, maker->wish->sample);
   batch_settings sampled = *settings;
   sampled.output = maker->output = folder;
+  sampled.shard = 0;
+  sampled.shards = 1;
   json_t *plan = batch_make_settings(maker->wish), *report = NULL;
   bool good = batch_plan_freeze(folder, manifest, plan, 1, &error);
   json_decref(plan);
@@ -95,7 +83,7 @@ int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *
     report = estimate(cli, &state, &tally, all, maker->wish->jobs);
     batch_state_free(&state);
   }
-  remove_folder(folder);
+  batch_folder_remove(folder);
   free(folder);
   if (outcome == BATCH_INTERRUPTED)
     return cli_fail_text(cli, "interrupted");

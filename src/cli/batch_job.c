@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** A mesh of a batch: which commands it goes through, and, in a child, going through them. */
-#include "batch/digest.h"
+/** A mesh of a batch: which commands it goes through. */
 #include "cli/batch.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* ---- Commands ---- */
 
@@ -67,6 +62,23 @@ static bool can_be_viewed(const char *format) {
   return cli_read_choice(format, known) >= 0;
 }
 
+/** Options of one mesh may say how its grid is made, and not what is written where. Names may be shortened.
+ */
+static bool check_own(const batch_words *words, int first, batch_error *error) {
+  static const char *const refused[] = {"report",  "confidence", "coords", "output",
+                                        "dry-run", "help",       "json",   "format"};
+  for (int w = first; w < words->count; w++) {
+    const char *word = words->words[w];
+    size_t length = strncmp(word, "--", 2) == 0 ? strcspn(word + 2, "=") : 0;
+    bool is_refused = strncmp(word, "-o", 2) == 0 || strcmp(word, "-h") == 0 || strcmp(word, "--") == 0;
+    for (size_t r = 0; length >= 3 && r < sizeof refused / sizeof *refused; r++)
+      is_refused = is_refused || strncmp(word + 2, refused[r], length) == 0;
+    if (is_refused)
+      return batch_fail(error, "its options have %s, which is for all meshes alike", word);
+  }
+  return true;
+}
+
 /** The options of a product, and those of the item behind them. */
 static bool add_options(batch_words *words, const batch_wish *wish, batch_product product,
                         const batch_item *item, batch_error *error) {
@@ -75,7 +87,8 @@ static bool add_options(batch_words *words, const batch_wish *wish, batch_produc
   for (int w = 0; w < wish->grid_options.count; w++)
     if (!batch_words_add(words, "%s", wish->grid_options.words[w]))
       return batch_fail(error, "out of memory: free some");
-  return !item->options || batch_words_split(words, item->options, error);
+  int first = words->count;
+  return !item->options || (batch_words_split(words, item->options, error) && check_own(words, first, error));
 }
 
 /** "voxelize OPTIONS -o NAME [--] INPUT" */
@@ -95,11 +108,11 @@ static bool add_command(batch_words *words, const batch_wish *wish, batch_produc
 }
 
 /** Options of a child, which is one of many. */
-static bool add_limits(batch_words *words, const batch_maker *maker, batch_product product) {
+static bool add_limits(batch_words *words, const batch_wish *wish, uint64_t memory, batch_product product) {
   bool good = batch_words_add(words, "--quiet") && batch_words_add(words, "--progress=never") &&
-              batch_words_add(words, "--threads=%" PRId64, maker->wish->threads);
-  if (maker->memory > 0)
-    good = good && batch_words_add(words, "--memlimit=%" PRIu64, maker->memory);
+              batch_words_add(words, "--threads=%" PRId64, wish->threads);
+  if (memory > 0)
+    good = good && batch_words_add(words, "--memlimit=%" PRIu64, memory);
   if (product == BATCH_GRID || product == BATCH_REPAIRED || product == BATCH_REMESHED)
     good = good && batch_words_add(words, "--force");
   return good;
@@ -114,7 +127,7 @@ static json_t *words_json(const batch_words *words) {
 
 /** Adds a command and its output to a job. */
 static bool add_product(json_t *job, const batch_maker *maker, batch_product product, const batch_item *item,
-                        batch_error *error) {
+                        uint64_t memory, batch_error *error) {
   const batch_wish *wish = maker->wish;
   batch_words words = {0};
   char *name = product_name(wish, product, item), *path = NULL, *grid = NULL, *grid_path = NULL;
@@ -129,7 +142,7 @@ static bool add_product(json_t *job, const batch_maker *maker, batch_product pro
               : batch_fail(error, "out of memory: free some");
   /* limits first: what the user says comes behind, and is heard */
   batch_words all = {0};
-  good = good && batch_words_add(&all, "%s", words.words[0]) && add_limits(&all, maker, product);
+  good = good && batch_words_add(&all, "%s", words.words[0]) && add_limits(&all, wish, memory, product);
   for (int w = 1; good && w < words.count; w++)
     good = batch_words_add(&all, "%s", words.words[w]);
   if (good) {
@@ -145,7 +158,7 @@ static bool add_product(json_t *job, const batch_maker *maker, batch_product pro
   return good;
 }
 
-json_t *batch_make_job(const batch_item *item, void *payload, batch_error *error) {
+json_t *batch_make_job(const batch_item *item, uint64_t memory, void *payload, batch_error *error) {
   const batch_maker *maker = payload;
   json_t *job = json_pack("{s:o, s:o, s:o, s:o, s:o}", "item", cli_json_text(item->id), "input",
                           cli_json_text(item->path), "root", cli_json_text(maker->output), "commands",
@@ -155,7 +168,7 @@ json_t *batch_make_job(const batch_item *item, void *payload, batch_error *error
   bool good = job != NULL;
   for (int p = 0; good && p < BATCH_PRODUCTS; p++)
     if (is_wanted(maker->wish, (batch_product)p))
-      good = add_product(job, maker, (batch_product)p, item, error);
+      good = add_product(job, maker, (batch_product)p, item, memory, error);
   if (good && maker->wish->reports) {
     char *name = NULL;
     good = asprintf(&name, "%s.report.json", item->output) >= 0;

@@ -220,5 +220,5 @@ int batch_read_arguments(cli_run *cli, batch_wish *out) {
   bool makes_any = !out->no_grid;
   for (int p = 0; p < BATCH_PRODUCTS; p++)
     makes_any = makes_any || out->products[p];
-  return makes_any || out->reports ? CLI_END : cli_usage(cli, "--no-grid leaves nothing to be made");
+  return makes_any ? CLI_END : cli_usage(cli, "--no-grid leaves nothing to be made");
 }

@@ -71,7 +71,7 @@ int batch_try_options(cli_run *cli, const batch_maker *maker) {
   batch_item item = {.id = name, .path = path, .output = name};
   batch_maker nowhere = {.wish = maker->wish, .output = "/nonexistent"};
   batch_error error;
-  json_t *job = batch_make_job(&item, &nowhere, &error), *command;
+  json_t *job = batch_make_job(&item, 0, &nowhere, &error), *command;
   size_t c;
   int result = job ? CLI_END : cli_usage(cli, "%s", error.text);
   json_array_foreach(json_object_get(job, "commands"), c, command) if (result == CLI_END) result =
@@ -90,7 +90,7 @@ static char *command_line(const batch_item *item, void *payload) {
 static char *viewed(const batch_item *item, void *payload) {
   const batch_maker *maker = payload;
   batch_error error;
-  json_t *job = batch_make_job(item, payload, &error);
+  json_t *job = batch_make_job(item, 0, payload, &error);
   const json_t *outputs = json_object_get(job, "outputs");
   char *name = NULL;
   for (size_t o = 0; !name && o < json_array_size(outputs); o++) {
@@ -106,6 +106,8 @@ static char *viewed(const batch_item *item, void *payload) {
 
 static bool draw(const char *path, const char *picture, void *payload) {
   (void)payload;
+  if (batch_signal())
+    return false;
   char *words[] = {"view",
                    (char *)(uintptr_t)path,
                    "-o",
@@ -118,14 +120,26 @@ static bool draw(const char *path, const char *picture, void *payload) {
   return run_apart(words, -1, 20) == CLI_DONE;
 }
 
-bool batch_tell(json_t **summary, const batch_maker *maker, bool writes, batch_error *error) {
+/** Whether what is there, written last of all, tells the same already. */
+static bool is_told(const char *output, const json_t *summary) {
+  char *path = NULL;
+  json_t *there = asprintf(&path, "%s/summary.json", output) >= 0 ? json_load_file(path, 0, NULL) : NULL;
+  bool same = there && json_equal(json_object_get(there, "counts"), json_object_get(summary, "counts")) &&
+              json_equal(json_object_get(there, "output_bytes"), json_object_get(summary, "output_bytes")) &&
+              json_equal(json_object_get(there, "records"), json_object_get(summary, "records"));
+  json_decref(there);
+  free(path);
+  return same;
+}
+
+bool batch_tell(json_t **summary, const batch_maker *maker, batch_error *error) {
   batch_state state;
   batch_telling telling = {(int)maker->wish->pictures, command_line, viewed, draw, (void *)(uintptr_t)maker};
   if (!batch_state_read(&state, maker->output, error))
     return false;
   *summary = batch_summary_json(&state);
-  bool good =
-      !writes || state.complete < state.shards || batch_summary_write(&state, maker->output, &telling, error);
+  bool good = state.complete < state.shards || is_told(maker->output, *summary) ||
+              batch_summary_write(&state, maker->output, &telling, error);
   batch_state_free(&state);
   return good;
 }

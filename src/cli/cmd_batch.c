@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend batch: whole datasets. */
+#include "batch/outputs.h"
 #include "batch/plan.h"
 #include "batch/tally.h"
 #include "cli/batch.h"
@@ -9,6 +10,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/sysinfo.h>
 #include <unistd.h>
@@ -95,21 +97,13 @@ static void summarize(const cli_run *cli, const batch_wish *wish, const batch_ma
     cli_row(cli, "page", "%s/index.html", wish->output);
 }
 
-static bool has_page(const char *output) {
-  char *path = NULL;
-  bool has = asprintf(&path, "%s/index.html", output) >= 0 && access(path, F_OK) == 0;
-  free(path);
-  return has;
-}
-
 static int finish(cli_run *cli, const batch_maker *maker, const batch_manifest *manifest,
                   const batch_tally *tally, batch_outcome outcome, batch_error *error) {
   const batch_wish *wish = maker->wish;
   if (outcome == BATCH_BROKEN)
     return fail(cli, error);
   json_t *summary = NULL;
-  bool is_news = tally->fresh > 0 || !has_page(wish->output);
-  if (outcome == BATCH_COMPLETE && !batch_tell(&summary, maker, is_news, error)) {
+  if (outcome == BATCH_COMPLETE && !batch_tell(&summary, maker, error)) {
     json_decref(summary);
     return fail(cli, error);
   }
@@ -157,13 +151,22 @@ static int run_batch(cli_run *cli, batch_maker *maker, batch_zygote *zygote, bat
   if (wish->dry_run)
     return batch_dry_run(cli, manifest, &settings, maker);
   json_t *plan = batch_make_settings(wish);
-  bool good = make_folder(wish->output, &error) &&
+  bool good = batch_outputs_check(manifest, &settings, &error) && make_folder(wish->output, &error) &&
               batch_plan_freeze(wish->output, manifest, plan, (int)wish->shards, &error);
   json_decref(plan);
   if (!good)
     return fail(cli, &error);
   batch_outcome outcome = batch_run(&tally, manifest, &settings, &error);
   return finish(cli, maker, manifest, &tally, outcome, &error);
+}
+
+/** Two pipes and a socket a child, and what else there is. */
+static void allow_descriptors(void) {
+  struct rlimit limit;
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
+    return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 static int run_inputs(cli_run *cli, const batch_wish *wish, batch_maker *maker) {
@@ -173,6 +176,7 @@ static int run_inputs(cli_run *cli, const batch_wish *wish, batch_maker *maker) 
   const char **extensions = mesh_extensions();
   batch_inputs inputs = {cli->arguments, cli->argument_count, extensions, wish->output};
   int status = CLI_FAILED;
+  allow_descriptors();
   if (!extensions || !batch_zygote_start(&zygote, batch_do_job, maker, &error))
     return fail(cli, &error);
   if (batch_inputs_read(&manifest, &inputs, &error))
@@ -222,7 +226,6 @@ static int run(cli_run *cli) {
   batch_maker maker = {.wish = &wish, .output = wish.output};
   if (batch_try_options(cli, &maker) == CLI_STOP)
     return cli->status;
-  maker.memory = limits_of(cli, &wish).memory;
   uint64_t each = cli->limits.memory_limit;
   cli->limits.memory_limit = 0; /* of a mesh, not of this program */
   bool started = cli_start(cli);
