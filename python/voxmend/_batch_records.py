@@ -78,6 +78,7 @@ class Records:
         self.complete = 0  # shards at their end
         self.damaged = 0  # lines of journals that are not as they were written
         self._files: Dict[int, Any] = {}  # -1: the plan; else a shard's journal
+        self._process = os.getpid()  # whose files these are: after a fork both would move one position
         self._plan, self._shard, self._end = array("q"), array("i"), array("q")  # where the lines begin
         numbers = self._scan_plan()
         for shard in range(self.shards):
@@ -126,6 +127,9 @@ class Records:
                                 (self.folder, self.complete, self.shards))
 
     def _line(self, file: int, at: int) -> Dict[str, Any]:
+        if self._process != os.getpid():
+            self.close()
+            self._process = os.getpid()
         if file not in self._files:
             self._files[file] = open(self._at("plan.jsonl") if file < 0 else self.journal(file), "rb")
         self._files[file].seek(at)
@@ -142,6 +146,16 @@ class Records:
     def __iter__(self) -> Iterator[Item]:
         for number in range(len(self)):
             yield self[number]
+
+    def close(self) -> None:
+        """Files are opened again when they are needed."""
+        for file in self._files.values():
+            file.close()
+        self._files = {}
+
+    def __del__(self) -> None:
+        for file in getattr(self, "_files", {}).values():
+            file.close()
 
     def __getstate__(self) -> Dict[str, Any]:
         return dict(self.__dict__, _files={})  # of this process

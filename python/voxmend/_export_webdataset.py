@@ -62,8 +62,10 @@ class _Tars:
         self.tar = None
 
     def _need(self, size: int) -> tarfile.TarFile:
-        if self.tar is not None and self.tar.offset > 0 and self.tar.offset + size + 1024 > self.max_bytes:
-            self.close()
+        if self.tar is not None and self.tar.offset > 0:
+            end = self.tar.offset + size + 1024  # two empty blocks, and padding
+            if -(-end // tarfile.RECORDSIZE) * tarfile.RECORDSIZE > self.max_bytes:
+                self.close()
         if self.tar is None:
             path = os.path.join(self.folder, "%s-%06d.tar" % (self.name, self.count))
             self.tar = tarfile.open(path, "w", format=tarfile.PAX_FORMAT)
