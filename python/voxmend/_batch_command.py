@@ -21,7 +21,7 @@ def _run_parser() -> argparse.ArgumentParser:
     parser.add_argument("inputs", nargs="+", metavar="INPUT", help="folder, file, pattern, list, table or archive")
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="folder of what is made")
     parser.add_argument("--dask", metavar="ADDRESS|local[:WORKERS]", default=None,
-                        help="scheduler, or workers on this machine; without it all is done here, without Dask")
+                        help="scheduler, by its address or its file (.json), or workers on this machine; without it all is done here, without Dask")
     parser.add_argument("--shards", type=int, metavar="N", default=None,
                         help="into how many the meshes are divided [as it began, or 16]")
     parser.add_argument("-j", "--jobs", type=int, metavar="N", default=None,

@@ -65,7 +65,7 @@ def shard_task(shard: int, slots: Dict[str, int], arguments: Dict[str, Any]) -> 
 
 @contextlib.contextmanager
 def _client(where: Any) -> Iterator[Any]:
-    """A client of "local", "local:WORKERS", a scheduler's address, or the caller's own client."""
+    """A client of "local", "local:WORKERS", a scheduler's address or file, or the caller's own client."""
     distributed = _distributed()
     if isinstance(where, distributed.Client):
         yield where
@@ -79,7 +79,8 @@ def _client(where: Any) -> Iterator[Any]:
             yield client
         return
     try:
-        client = distributed.Client(where, timeout=LOST_S)
+        is_file = isinstance(where, str) and where.endswith(".json")
+        client = distributed.Client(**{"scheduler_file" if is_file else "address": where}, timeout=LOST_S)
     except (OSError, ValueError, TypeError) as problem:
         raise ArgumentError("batch: no Dask scheduler answers at %s: %s" %
                             (where, " ".join(str(problem).split()) or type(problem).__name__)) from None

@@ -70,8 +70,8 @@ def run(inputs: Any, output: Any, *, shards: Optional[int] = None, dask: Any = N
         output: folder of what is made.
         shards: into how many the meshes are divided; None = as the batch began, else 16 (1 without `dask`). Some for each
             worker let them end together.
-        dask: "local" or "local:WORKERS", a scheduler's address such as "tcp://node1:8786", a `distributed.Client`; None =
-            here, one shard after another.
+        dask: "local" or "local:WORKERS", a scheduler's address such as "tcp://node1:8786" or file (.json), a
+            `distributed.Client`; None = here, one shard after another.
         jobs: meshes at a time for each shard; None = the worker's share of its machine's processors. Give workers one
             thread each (`dask worker --nthreads 1`): the program uses the processors.
         options: those of `voxmend batch`, as words or as one text: ["-r", "64"] or "-r 64".

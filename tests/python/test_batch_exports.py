@@ -59,8 +59,7 @@ class Exports(unittest.TestCase):
         self.assertEqual(some["meshes"], 3)
         with self.assertRaises(voxmend.EmptyError):
             voxmend.batch.export(self.out, self.at("none.zarr"), to="zarr", split="none")
-        self.assertEqual(sorted(os.listdir(self.folder.name)),
-                         sorted(["in", "out", "test.zarr"] + ["grids%d.zarr" % version for version in versions]))
+        self.assertEqual([name for name in os.listdir(self.folder.name) if name.endswith(".tmp") or "none" in name], [])
 
     @unittest.skipUnless("pyarrow" in WANTED, "not asked for")
     def test_parquet(self):
