@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/archive.h"
+#include "batch/descriptor.h"
 #include "batch/unpack.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,18 +32,63 @@ bool batch_is_archive(const char *name) {
 
 /* ---- The process ---- */
 
+enum { PATH_BYTES = 4096 };
+
+/** "FOLDER/voxmend-unpack", if there is such a program. */
+static bool found_in(char path[PATH_BYTES], const char *folder, size_t length) {
+  int written = snprintf(path, PATH_BYTES, "%.*s/voxmend-unpack", (int)length, folder);
+  return length > 0 && written > 0 && written < PATH_BYTES && access(path, X_OK) == 0;
+}
+
+/** Where modules are told to be, else beside this program, else where they are installed. */
+static bool find_program(char path[PATH_BYTES]) {
+  const char *chosen = secure_getenv("VOXMEND_MODULES");
+  char self[PATH_BYTES];
+  ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+  if (chosen && found_in(path, chosen, strlen(chosen)))
+    return true;
+  for (int above = 0; above < 2 && length > 0;
+       above++) { /* libtool's programs lie a folder below the built ones */
+    self[length] = '\0';
+    char *slash = strrchr(self, '/');
+    length = slash ? slash - self : 0;
+    if (length > 0 && found_in(path, self, (size_t)length))
+      return true;
+  }
+  return found_in(path, VXM_MODULE_DIR, strlen(VXM_MODULE_DIR));
+}
+
+_Noreturn static void be_unpacker(const char *program, const char *path, uint64_t most, int channel) {
+  char number[32];
+  snprintf(number, sizeof number, "%" PRIu64, most);
+  setpgid(0, 0); /* the terminal's signals are not for it */
+  if (dup2(channel, BATCH_UNPACK_CHANNEL) >= 0) {
+    if (channel == BATCH_UNPACK_CHANNEL)
+      fcntl(channel, F_SETFD, 0);
+    else
+      close(channel);
+    execl(program, "voxmend-unpack", path, number, (char *)NULL);
+  }
+  _exit(127);
+}
+
 bool batch_unpacker_start(batch_unpacker *out, const char *path, uint64_t most, batch_error *error) {
   int ends[2];
+  char program[PATH_BYTES];
   *out = (batch_unpacker){.channel = -1};
+  if (!find_program(program))
+    return batch_fail(error,
+                      "%s: archives need the program voxmend-unpack, which is not installed (configure "
+                      "--with-archive; Debian: libarchive-dev); or unpack it first",
+                      path);
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     return batch_fail_errno(error, "%s: cannot open a channel to a process", path);
   pid_t parent = getpid(), id = fork();
   if (id == 0) {
     close(ends[0]);
-    setpgid(0, 0); /* the terminal's signals are not for it */
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() == parent)
-      batch_unpack(path, most, ends[1]);
+      be_unpacker(program, path, most, ends[1]);
     _exit(0);
   }
   close(ends[1]);
@@ -54,10 +102,10 @@ bool batch_unpacker_start(batch_unpacker *out, const char *path, uint64_t most, 
 
 int batch_unpacker_next(batch_unpacker *unpacker, batch_member *out, batch_error *error) {
   batch_unpacked head;
-  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+  batch_descriptor_room room;
   struct iovec part = {&head, sizeof head};
   struct msghdr message = {
-      .msg_iov = &part, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof control};
+      .msg_iov = &part, .msg_iovlen = 1, .msg_control = &room, .msg_controllen = sizeof room.bytes};
   ssize_t got;
   do
     got = recvmsg(unpacker->channel, &message, MSG_CMSG_CLOEXEC);
@@ -71,12 +119,9 @@ int batch_unpacker_next(batch_unpacker *unpacker, batch_member *out, batch_error
     batch_fail(error, "%s", head.problem);
   if (head.is_end)
     return head.problem[0] ? -1 : 0;
-  *out = (batch_member){.bytes = head.bytes, .descriptor = -1};
+  *out = (batch_member){.bytes = head.bytes, .descriptor = batch_descriptor_take(&message)};
   memcpy(out->name, head.name, sizeof out->name);
   memcpy(out->problem, head.problem, sizeof out->problem);
-  struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
-  if (rights && rights->cmsg_type == SCM_RIGHTS)
-    memcpy(&out->descriptor, CMSG_DATA(rights), sizeof out->descriptor);
   return 1;
 }
 

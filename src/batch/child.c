@@ -67,11 +67,13 @@ static bool redirect(int input, int message) {
          dup2(message, STDERR_FILENO) >= 0;
 }
 
-bool batch_child_prepare(pid_t parent, int input, int message, const batch_limits *limits) {
+bool batch_child_bind(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent)
-    return false;
   setpgid(0, 0);
+  return getppid() == parent;
+}
+
+bool batch_child_prepare(int input, int message, const batch_limits *limits) {
   reset_signals();
   be_first_to_go();
   limit(RLIMIT_CORE, 0);

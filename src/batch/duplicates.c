@@ -70,17 +70,20 @@ static batch_turn next_hashes(run *r, void *payload) {
   int64_t chunk[BATCH_HASHES];
   uint64_t bytes = 0;
   int count = 0;
-  for (; h->next < h->count && count < BATCH_HASHES && bytes < UINT64_C(64) << 20; h->next++) {
+  size_t names = 0;
+  for (; h->next < h->count && count < BATCH_HASHES && bytes < UINT64_C(64) << 20 &&
+         names < BATCH_REQUEST_MAX / 4;
+       h->next++) {
     int64_t index = h->items[h->next] - r->manifest->items;
     if (r->contents[index].half[0] | r->contents[index].half[1])
       continue;
     chunk[count++] = index;
     bytes += h->items[h->next]->bytes;
+    names += strlen(h->items[h->next]->path);
   }
   if (count == 0)
     return BATCH_NOTHING_LEFT;
-  batch_give_hashes(r, chunk, count);
-  return BATCH_GIVEN_OUT;
+  return batch_give_hashes(r, chunk, count) ? BATCH_GIVEN_OUT : BATCH_LATER;
 }
 
 /* ---- Who is the same ---- */
@@ -117,15 +120,19 @@ static void mark(run *r, keyed *keys, int64_t count) {
 }
 
 void batch_find_duplicates(run *r) {
+  enum { ROUNDS = 3 };
   hashing h = {NULL};
   h.items = with_equal_size(r, &h.count);
   keyed *keys = malloc((size_t)(h.count + 1) * sizeof *keys);
   if (h.items && keys) {
-    batch_run_source(r, next_hashes, &h, r->settings->jobs, NULL);
+    for (int round = 0; round < ROUNDS && !batch_run_stops(r); round++) { /* a child may have been killed */
+      h.next = 0;
+      batch_run_source(r, next_hashes, &h, r->settings->jobs, NULL);
+    }
     int64_t known = 0;
     for (int64_t i = 0; i < h.count; i++) {
       int64_t index = h.items[i] - r->manifest->items;
-      if (r->contents[index].half[0] | r->contents[index].half[1])
+      if (r->contents[index].half[0])
         keys[known++] = (keyed){r->contents[index], index};
     }
     mark(r, keys, known);

@@ -90,7 +90,8 @@ static void take_hashes(run *r, const batch_slot *slot, const json_t *result) {
     const char *digest = json_string_value(json_array_get(digests, (size_t)i));
     int64_t item = slot->items[i];
     if (!batch_content_read(&r->contents[item], digest)) {
-      r->contents[item].half[0] = r->contents[item].half[1] = 0; /* then it is no duplicate of anything */
+      if (digest) /* it cannot be read; else the child did not come so far */
+        r->contents[item] = batch_no_content;
       continue;
     }
     json_t *record = json_pack("{s:s, s:o, s:s}", "event", "hash", "item",
@@ -98,6 +99,18 @@ static void take_hashes(run *r, const batch_slot *slot, const json_t *result) {
     if (!batch_journal_add(&r->journal, record, r->error))
       batch_break(r);
   }
+}
+
+/**
+ * Who ran out of what all had to share may not when it is alone. Who was killed from outside may have been
+ * chosen by chance, even twice.
+ */
+static bool may_try_again(const run *r, const batch_slot *slot, bool was_killed) {
+  enum { KILLS_MAX = 3 };
+  batch_item *item = &r->manifest->items[slot->items[0]];
+  if (was_killed)
+    return ++item->kills < KILLS_MAX;
+  return !slot->is_alone && r->settings->alone_memory;
 }
 
 static void take_work(run *r, const batch_slot *slot, const batch_ending *ending, json_t *result) {
@@ -121,7 +134,7 @@ static void take_work(run *r, const batch_slot *slot, const batch_ending *ending
     json_object_set_new(record, key, batch_json_string(last_line(said)));
   free(said);
   add_costs(record, ending);
-  if (status == BATCH_OOM && !slot->is_alone && r->settings->alone_memory) {
+  if (status == BATCH_OOM && may_try_again(r, slot, !was_orderly)) {
     r->needs_more[item] = true; /* once more when nobody else is at work */
     json_decref(record);
     return;

@@ -167,7 +167,8 @@ static bool add_named(batch_manifest *out, const batch_inputs *inputs, const cha
   if (is_list(name))
     return batch_table_read(out, name, error);
   if (batch_is_archive(name))
-    return add_archive(out, inputs, inputs->count == 1 && prefix == 0 ? "" : name + prefix, name, &info, error);
+    return add_archive(out, inputs, inputs->count == 1 && prefix == 0 ? "" : name + prefix, name, &info,
+                       error);
   return add_file(out, name + prefix, name, &info, error);
 }
 
@@ -178,7 +179,8 @@ static bool add_pattern(batch_manifest *out, const batch_inputs *inputs, const c
   if (glob(pattern, GLOB_BRACE, NULL, &found) != 0)
     return batch_fail(error, "%s: there is no such file, and none fits it as a pattern", pattern);
   bool good = true;
-  size_t prefix = inputs->count == 1 ? strcspn(pattern, "*?[{") : 0; /* the folder before the first of these */
+  size_t prefix =
+      inputs->count == 1 ? strcspn(pattern, "*?[{") : 0; /* the folder before the first of these */
   while (prefix > 0 && pattern[prefix - 1] != '/')
     prefix--;
   for (size_t i = 0; good && i < found.gl_pathc; i++)

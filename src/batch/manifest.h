@@ -22,6 +22,7 @@ typedef struct batch_item {
   batch_status status;
   uint8_t attempts; /**< starts with an end */
   uint8_t aborted;  /**< starts without, since the last end */
+  uint8_t kills;    /**< in this run: children that were killed by others */
   bool is_in_flight;
   int64_t original; /**< the item whose bytes it has; -1 = none */
 } batch_item;

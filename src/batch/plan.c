@@ -187,9 +187,9 @@ static bool same_run(const char *output, const json_t *run, const batch_manifest
   if (!same_settings(output, json_object_get(run, "settings"), settings, error))
     return false;
   if (before != shards)
-    return batch_fail(error,
-                      "%s: the batch began with %lld shards, now they are %d; give another -o, or the same",
-                      output, (long long)before, shards);
+    return batch_fail(
+        error, "%s: the batch began with --shard of %lld, now it is of %d; give another -o, or the same",
+        output, (long long)before, shards);
   return (list && strcmp(list, digest) == 0) || tell_changed_inputs(output, manifest, error);
 }
 

@@ -14,6 +14,8 @@ typedef struct replay {
   const batch_settings *settings;
 } replay;
 
+const batch_content batch_no_content = {{0, 1}};
+
 bool batch_content_read(batch_content *out, const char *digest) {
   return digest && sscanf(digest, "%16" SCNx64 "%16" SCNx64, &out->half[0], &out->half[1]) == 2;
 }
@@ -72,6 +74,9 @@ static bool take(json_t *record, void *payload) {
       item->aborted = (uint8_t)(item->aborted < 255 ? item->aborted + 1 : 255);
     else if (item->aborted == 0)
       item->aborted = 1;
+  } else if (strcmp(event, "lost") == 0) {
+    if (item->aborted > 1)
+      item->aborted--;
   } else if (strcmp(event, "end") == 0)
     take_end(r, item, record);
   if (strcmp(event, "end") == 0 || strcmp(event, "hash") == 0)

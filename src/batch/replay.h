@@ -10,6 +10,9 @@ typedef struct batch_content {
   uint64_t half[2]; /**< 0, 0 = not known */
 } batch_content;
 
+/** Of a file that cannot be read: it is no duplicate of anything. */
+extern const batch_content batch_no_content;
+
 /**
  * Sets status, attempts and aborted of the items, and their contents.
  *

@@ -59,18 +59,22 @@ static bool note_start(run *r, const batch_item *item, bool is_alone) {
   return batch_journal_add(&r->journal, record, r->error);
 }
 
-static bool send_request(run *r, const batch_slot *slot, json_t *job, int input, const batch_limits *limits) {
+/**
+ * Occupies the slot and sends what its child is to do. Where the zygote has gone this cannot be told from one
+ * that goes a moment later: it is found out when its endings are waited for. False if it is too long to be
+ * sent.
+ */
+static bool send_request(run *r, batch_slot *slot, json_t *job, int input, const batch_limits *limits) {
   char *text = job ? json_dumps(job, JSON_COMPACT) : NULL;
+  bool fits = text && strlen(text) < BATCH_REQUEST_MAX;
   json_decref(job);
-  bool good = text ? batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits, r->error)
-                   : false;
+  if (fits) {
+    slot->is_used = true;
+    r->in_flight++;
+    batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits);
+  }
   free(text);
-  return good;
-}
-
-static void occupy(run *r, batch_slot *slot) {
-  slot->is_used = true;
-  r->in_flight++;
+  return fits;
 }
 
 bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
@@ -91,15 +95,14 @@ bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
   if (is_alone && r->settings->alone_memory)
     limits.memory = r->settings->alone_memory;
   *slot = (batch_slot){.is_alone = is_alone, .items = {index}, .count = 1};
-  if (!send_request(r, slot, job, input, &limits)) /* also where the zygote has gone: it is found out soon */
+  if (!send_request(r, slot, job, input, &limits))
     return batch_end_item(
         r, index, BATCH_FAILED,
-        json_pack("{s:s, s:o}", "stage", "start", "message", batch_json_string(r->error->text)));
-  item->is_in_flight = true;
-  occupy(r, slot);
-  return true;
+        json_pack("{s:s, s:s}", "stage", "start", "message", "its names and options are too long together"));
+  return item->is_in_flight = true;
 }
 
+/** Where it is too long to be sent they are not told to be duplicates. */
 bool batch_give_hashes(run *r, const int64_t *items, int count) {
   batch_slot *slot = free_slot(r);
   json_t *job = json_object(), *paths = json_array();
@@ -108,10 +111,7 @@ bool batch_give_hashes(run *r, const int64_t *items, int count) {
   json_object_set_new(job, "hash", paths);
   *slot = (batch_slot){.is_hashing = true, .count = count};
   memcpy(slot->items, items, (size_t)count * sizeof *items);
-  if (!send_request(r, slot, job, -1, &r->settings->limits))
-    return batch_break(r);
-  occupy(r, slot);
-  return true;
+  return send_request(r, slot, job, -1, &r->settings->limits);
 }
 
 /* ---- Waiting ---- */
@@ -123,6 +123,13 @@ static void release(run *r, batch_slot *slot) {
   r->in_flight--;
 }
 
+/** It is no sign against a mesh, but it had better be alone from now on. */
+static bool note_loss(run *r, batch_item *item) {
+  item->aborted = item->aborted > 0 ? item->aborted : 1;
+  return batch_journal_add(
+      &r->journal, json_pack("{s:s, s:o}", "event", "lost", "item", batch_json_string(item->id)), r->error);
+}
+
 /** Someone has ended the zygote, and its children with it. What they were at is begun anew, later and alone.
  */
 static void replace_zygote(run *r) {
@@ -132,10 +139,8 @@ static void replace_zygote(run *r) {
     batch_slot *slot = &r->slots[s];
     if (!slot->is_used)
       continue;
-    if (!slot->is_hashing) {
-      batch_item *item = &r->manifest->items[slot->items[0]];
-      item->aborted = (uint8_t)(slot->is_alone ? item->aborted + 1 : item->aborted > 0 ? item->aborted : 1);
-    }
+    if (!slot->is_hashing && !note_loss(r, &r->manifest->items[slot->items[0]]))
+      batch_break(r);
     release(r, slot);
   }
   if (++r->losses > LOSSES_MAX)
@@ -178,19 +183,30 @@ static void wait_a_while(run *r, int waits_for, bool is_late) {
     take_endings(r);
 }
 
-/** Memory that is left for one more; the kernel's own estimate. */
-static bool has_room(const run *r) {
-  const unsigned long long least_kb = 256 << 10;
+/** Memory that is left, as a share of all; the kernel's own estimate. 1 where it is not known. */
+static double memory_left(void) {
   unsigned long long total = 0, available = 0;
   char line[128];
-  FILE *file = r->in_flight > 0 ? fopen("/proc/meminfo", "re") : NULL;
-  while (file && fgets(line, sizeof line, file) && !available) {
+  FILE *file = fopen("/proc/meminfo", "re");
+  while (file && fgets(line, sizeof line, file) && !available)
     if (sscanf(line, "MemTotal: %llu", &total) != 1)
       (void)sscanf(line, "MemAvailable: %llu", &available);
-  }
   if (file)
     fclose(file);
-  return !available || available > (total / 20 < least_kb ? total / 20 : least_kb);
+  return total && available ? (double)available / (double)total : 1;
+}
+
+/** Whether there is memory for one more; others at work will give theirs back. */
+static bool has_room(run *r) {
+  const double least = 0.05, look_again_ms = 50;
+  double now = batch_clock_ms();
+  if (r->in_flight == 0)
+    return true;
+  if (now - r->memory_seen_ms > look_again_ms) {
+    r->memory_left = memory_left();
+    r->memory_seen_ms = now;
+  }
+  return r->memory_left > least;
 }
 
 /** A second signal does not wait for those at work. */

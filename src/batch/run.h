@@ -28,7 +28,8 @@ typedef struct run {
   batch_slot *slots;     /**< as many as children may be at work */
   int in_flight, losses; /**< losses: of zygotes, one after another */
   bool is_broken;
-  char *ending; /**< BATCH_ENDING_BYTES */
+  double memory_left, memory_seen_ms; /**< as a share, and when that was */
+  char *ending;                       /**< BATCH_ENDING_BYTES */
 } run;
 
 /** Whether nothing new is to be begun. */

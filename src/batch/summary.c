@@ -24,9 +24,9 @@ json_t *batch_summary_json(const batch_state *state) {
                    json_object_get(state->run, "voxmend"), "began", json_object_get(state->run, "began"),
                    "settings", json_object_get(state->run, "settings"), "meshes",
                    (json_int_t)state->manifest.count, "shards", state->shards, "complete_shards",
-                   state->complete, "counts", batch_counts_json(counts), "wall_s", wall, "cpu_s", cpu, "input_bytes",
-                   (json_int_t)in, "output_bytes", (json_int_t)out, "largest_peak_bytes", (json_int_t)peak,
-                   "damaged_journal_lines", (json_int_t)state->damaged);
+                   state->complete, "counts", batch_counts_json(counts), "wall_s", wall, "cpu_s", cpu,
+                   "input_bytes", (json_int_t)in, "output_bytes", (json_int_t)out, "largest_peak_bytes",
+                   (json_int_t)peak, "damaged_journal_lines", (json_int_t)state->damaged);
 }
 
 /* ---- failures.tsv ---- */

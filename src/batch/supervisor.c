@@ -156,7 +156,8 @@ static bool is_wanted_member(const run *r, int64_t i) {
 }
 
 static bool is_wanted_alone(const run *r, int64_t i) {
-  return r->manifest->items[i].status == BATCH_PENDING && !r->manifest->items[i].is_in_flight;
+  const batch_item *item = &r->manifest->items[i];
+  return item->status == BATCH_PENDING && !item->is_in_flight && item->original < 0;
 }
 
 static void run_archives(run *r, bool (*wanted)(const run *r, int64_t i), int jobs, bool is_alone) {
@@ -178,7 +179,7 @@ static void run_archives(run *r, bool (*wanted)(const run *r, int64_t i), int jo
 /* ---- Alone ---- */
 
 /** How often something may be begun and not end, alone, until it is not begun any more. */
-enum { ABORTS_MAX = 4 };
+enum { ABORTS_MAX = 8 };
 
 static bool quarantine(run *r, int64_t i) {
   if (r->manifest->items[i].aborted < ABORTS_MAX)
@@ -190,10 +191,18 @@ static bool quarantine(run *r, int64_t i) {
   return true;
 }
 
+/** Those first that were begun least often. */
+typedef struct lonely {
+  int64_t next;
+  int aborted; /**< only those with so many */
+} lonely;
+
 static batch_turn next_alone(run *r, void *payload) {
-  int64_t *next = payload;
+  lonely *l = payload;
+  int64_t *next = &l->next;
   for (; *next < r->manifest->count; (*next)++) {
-    if (!is_wanted_alone(r, *next) || r->manifest->items[*next].member || quarantine(r, *next))
+    if (!is_wanted_alone(r, *next) || r->manifest->items[*next].aborted != l->aborted ||
+        r->manifest->items[*next].member || quarantine(r, *next))
       continue;
     if (r->is_broken)
       return BATCH_NOTHING_LEFT;
@@ -204,12 +213,14 @@ static batch_turn next_alone(run *r, void *payload) {
   return BATCH_NOTHING_LEFT;
 }
 
-/** Twice, as one that is alone may lose its zygote too. */
+/** More than once, as one that is alone may lose its zygote, too. */
 static void run_alone(run *r) {
-  for (int round = 0; round < ABORTS_MAX + 1 && r->tally->counts[BATCH_PENDING] > 0 && !batch_run_stops(r);
+  for (int round = 0; round < ABORTS_MAX && r->tally->counts[BATCH_PENDING] > 0 && !batch_run_stops(r);
        round++) {
-    int64_t next = 0;
-    batch_run_source(r, next_alone, &next, 1, NULL);
+    for (int aborted = 0; aborted <= ABORTS_MAX; aborted++) {
+      lonely l = {0, aborted};
+      batch_run_source(r, next_alone, &l, 1, NULL);
+    }
     for (int64_t i = 0; i < r->manifest->count && !r->is_broken; i++)
       if (r->manifest->items[i].member && is_wanted_alone(r, i))
         quarantine(r, i);
@@ -237,6 +248,7 @@ static void run_stages(run *r) {
   run_alone(r);
   if (!batch_run_stops(r)) /* of those that ran alone */
     batch_link_duplicates(r);
+  run_alone(r); /* where the file system has no links */
 }
 
 static bool prepare(run *r, const char *journal) {

@@ -25,8 +25,9 @@ typedef struct batch_settings {
    * what else the work wants to know. NULL after a failure.
    */
   json_t *(*job)(const batch_item *item, void *payload, batch_error *error);
-  batch_work *work;           /**< does it, in the child: its result is an object with "status" */
-  batch_zygote *zygote; /**< started early, while the program is small; taken over, and replaced by one that has ended */
+  batch_work *work;     /**< does it, in the child: its result is an object with "status" */
+  batch_zygote *zygote; /**< started early, while the program is small; taken over, and replaced by one that
+                           has ended */
   void *payload;
   bool shows_progress; /**< a line that is drawn anew on standard error, which is a terminal; else one now and
                           then */

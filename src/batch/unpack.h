@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The side of batch/archive.h that reads archives, in a process of its own. */
+/** What goes over between batch/archive.h and the program that reads archives for it. */
 #ifndef VXM_BATCH_UNPACK_H
 #define VXM_BATCH_UNPACK_H
 
@@ -13,6 +13,6 @@ typedef struct batch_unpacked {
   char problem[256]; /**< with is_end: why it ends before its end; else why there are no bytes */
 } batch_unpacked;
 
-void batch_unpack(const char *path, uint64_t most, int channel);
+enum { BATCH_UNPACK_CHANNEL = 3 }; /**< descriptor of the channel in that program */
 
 #endif

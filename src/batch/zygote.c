@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The program's side: starting the zygote, and the messages that go over. */
+#include "batch/descriptor.h"
 #include "batch/zygote_loop.h"
 
 #include <errno.h>
@@ -36,29 +37,16 @@ bool batch_zygote_start(batch_zygote *out, batch_work *work, void *payload, batc
   return true;
 }
 
-bool batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
-                       const batch_limits *limits, batch_error *error) {
+void batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
+                       const batch_limits *limits) {
   size_t length = strlen(request);
-  if (length >= BATCH_REQUEST_MAX)
-    return batch_fail(error, "its names and options are too long together");
   batch_request head = {ticket, *limits, length};
   struct iovec parts[2] = {{&head, sizeof head}, {(void *)(uintptr_t)request, length}};
   struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
-  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {0};
-  if (input >= 0) {
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
-    rights->cmsg_level = SOL_SOCKET;
-    rights->cmsg_type = SCM_RIGHTS;
-    rights->cmsg_len = CMSG_LEN(sizeof(int));
-    memcpy(CMSG_DATA(rights), &input, sizeof input);
+  batch_descriptor_room room;
+  batch_descriptor_attach(&message, &room, input);
+  while (sendmsg(zygote->channel, &message, MSG_NOSIGNAL) < 0 && errno == EINTR) {
   }
-  ssize_t sent;
-  do
-    sent = sendmsg(zygote->channel, &message, MSG_NOSIGNAL);
-  while (sent < 0 && errno == EINTR);
-  return sent >= 0 || batch_fail_errno(error, "cannot reach the process that starts others");
 }
 
 int batch_zygote_receive(batch_zygote *zygote, batch_ending *out, char buffer[BATCH_ENDING_BYTES]) {

@@ -63,13 +63,13 @@ typedef struct batch_ending {
 
 bool batch_zygote_start(batch_zygote *out, batch_work *work, void *payload, batch_error *error);
 /**
- * Asks for a child.
+ * Asks for a child. Where the zygote has gone nothing happens: the next batch_zygote_receive says so.
  *
- * @param input descriptor that becomes the child's standard input; -1 = none. It stays the caller's
- * @return false if the zygote is gone, or the request is too long
+ * @param request shorter than BATCH_REQUEST_MAX
+ * @param input   descriptor that becomes the child's standard input; -1 = none. It stays the caller's
  */
-bool batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
-                       const batch_limits *limits, batch_error *error);
+void batch_zygote_send(batch_zygote *zygote, uint64_t ticket, const char *request, int input,
+                       const batch_limits *limits);
 enum { BATCH_ENDING_BYTES = BATCH_RESULT_MAX + BATCH_MESSAGE_MAX + 256 };
 /** Takes an ending, where poll has said that there is one; 1, 0 if there is none after all, -1 if the zygote
  * is gone. */

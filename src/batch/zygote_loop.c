@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The zygote: forks, waits, keeps the time, and tells how each child ended. */
 #include "batch/zygote_loop.h"
+#include "batch/cage.h"
+#include "batch/descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -32,6 +34,7 @@ typedef struct child {
   uint64_t ticket;
   double started_ms, deadline_ms; /**< deadline 0 = none */
   batch_reason reason;
+  int status; /**< of batch_cage_fork */
   stream message, result;
 } child;
 
@@ -39,6 +42,7 @@ typedef struct zygote {
   int channel, signals;
   batch_work *work;
   void *payload;
+  batch_cage cage;
   child children[CHILDREN_MAX];
   int count;
   bool has_strays; /**< processes that children left behind are being ended */
@@ -117,6 +121,7 @@ static double milliseconds(struct timeval t) {
 static void collect(zygote *z, int index, int status, const struct rusage *usage) {
   child *c = &z->children[index];
   kill(-c->id, SIGKILL);
+  batch_cage_status(c->status, &status);
   read_stream(&c->message);
   read_stream(&c->result);
   if (c->result.dropped > 0 && c->reason == BATCH_REASON_ENDED)
@@ -130,6 +135,8 @@ static void collect(zygote *z, int index, int status, const struct rusage *usage
   send_reply(z, &ending, &c->message, &c->result);
   close_stream(&c->message);
   close_stream(&c->result);
+  if (c->status >= 0)
+    close(c->status);
   z->children[index] = z->children[--z->count];
 }
 
@@ -147,8 +154,8 @@ static void reap(zygote *z) {
   while ((id = wait4(-1, &status, WNOHANG, &usage)) > 0) {
     int index = find_child(z, id);
     if (index >= 0) {
+      z->has_strays |= z->cage.space < 0; /* it may have left some: they are ours now */
       collect(z, index, status, &usage);
-      z->has_strays = true; /* it may have left some: they are ours now */
     }
   }
 }
@@ -175,28 +182,32 @@ static void refuse(const zygote *z, uint64_t ticket) {
   send_reply(z, &ending, &(stream){.descriptor = -1}, &(stream){.descriptor = -1});
 }
 
-_Noreturn static void be_child(zygote *z, pid_t parent, const batch_request *head, const char *text,
-                               int input, int message, int result) {
+_Noreturn static void be_child(zygote *z, const batch_request *head, const char *text, int input, int message,
+                               int result) {
   close(z->channel);
   close(z->signals);
   for (int c = 0; c < z->count; c++) {
     close(z->children[c].message.descriptor);
     close(z->children[c].result.descriptor);
+    if (z->children[c].status >= 0)
+      close(z->children[c].status);
   }
-  if (!batch_child_prepare(parent, input, message, &head->limits))
+  if (!batch_child_prepare(input, message, &head->limits))
     _exit(1);
   _exit(z->work(text, result, z->payload));
 }
 
 static void start_child(zygote *z, const batch_request *head, const char *text, int input) {
-  child c = {.ticket = head->ticket, .started_ms = batch_clock_ms()};
+  child c = {.ticket = head->ticket, .started_ms = batch_clock_ms(), .status = -1};
   int message = -1, result = -1;
   bool good = z->count < CHILDREN_MAX && open_stream(&c.message, BATCH_MESSAGE_MAX, &message) &&
               open_stream(&c.result, BATCH_RESULT_MAX, &result);
   pid_t own = getpid();
-  c.id = good ? fork() : -1;
+  c.id = good ? batch_cage_fork(&z->cage, &c.status) : -1;
+  if (c.id == 0 && z->cage.space < 0 && !batch_child_bind(own))
+    _exit(1);
   if (c.id == 0)
-    be_child(z, own, head, text, input, message, result);
+    be_child(z, head, text, input, message, result);
   if (message >= 0)
     close(message);
   if (result >= 0)
@@ -216,19 +227,16 @@ static void start_child(zygote *z, const batch_request *head, const char *text, 
 /** False when the other end is closed. */
 static bool take_request(zygote *z) {
   batch_request head;
-  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+  batch_descriptor_room room;
   struct iovec part = {z->request, sizeof z->request - 1};
   struct msghdr message = {
-      .msg_iov = &part, .msg_iovlen = 1, .msg_control = control, .msg_controllen = sizeof control};
+      .msg_iov = &part, .msg_iovlen = 1, .msg_control = &room, .msg_controllen = sizeof room.bytes};
   ssize_t got = recvmsg(z->channel, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
   if (got < 0 && (errno == EAGAIN || errno == EINTR))
     return true;
   if (got < (ssize_t)sizeof head)
     return false;
-  int input = -1;
-  struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
-  if (rights && rights->cmsg_type == SCM_RIGHTS)
-    memcpy(&input, CMSG_DATA(rights), sizeof input);
+  int input = batch_descriptor_take(&message);
   memcpy(&head, z->request, sizeof head);
   z->request[got] = '\0';
   start_child(z, &head, z->request + sizeof head, input);
@@ -315,7 +323,7 @@ void batch_zygote_loop(int channel, batch_work *work, void *payload) {
   sigaddset(&child_ended, SIGCHLD);
   setpgid(0, 0);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
-  z = (zygote){.channel = channel, .work = work, .payload = payload};
+  z = (zygote){.channel = channel, .work = work, .payload = payload, .cage = batch_cage_open()};
   z.signals = signalfd(-1, &child_ended, SFD_NONBLOCK | SFD_CLOEXEC);
   if (z.signals < 0)
     return;

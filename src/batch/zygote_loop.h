@@ -21,10 +21,10 @@ typedef struct batch_reply {
 /** Forks children until the other end of the channel is closed; then ends them all. */
 void batch_zygote_loop(int channel, batch_work *work, void *payload);
 
-/**
- * In the child, before its work: it dies with its parent, has a group of its own, its limits, a standard
- * input or none, and standard error into the pipe. False if the parent is gone already.
- */
-bool batch_child_prepare(pid_t parent, int input, int message, const batch_limits *limits);
+/** In the child: it dies with its parent. False if that has gone already. */
+bool batch_child_bind(pid_t parent);
+/** In the child, before its work: it has its limits, a standard input or none, and standard error into the
+ * pipe. */
+bool batch_child_prepare(int input, int message, const batch_limits *limits);
 
 #endif

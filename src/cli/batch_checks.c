@@ -62,9 +62,10 @@ int batch_verify_command(cli_run *cli, const char *folder) {
                              (json_int_t)found.strangers, "pending", (json_int_t)found.unfinished);
   int status = cli_finish(cli, report);
   if (status == CLI_DONE && bad > 0)
-    return cli_fail_text(
-        cli, "%s: not all is as it was written; the command of the batch makes what is missing again",
-        folder);
+    return cli_fail_text(cli,
+                         "%s: not all is as it was written; remove what has changed, and the command of the "
+                         "batch makes what is missing again",
+                         folder);
   return status;
 }
 

@@ -65,11 +65,12 @@ static json_t *estimate(const cli_run *cli, const batch_state *state, const batc
     cli_row(cli, "memory", "up to %s for a mesh of the sample", cli_bytes_text(memory, peak));
   }
   return json_pack("{s:I, s:I, s:f, s:f, s:I, s:o}", "meshes", (json_int_t)all, "sample",
-                   (json_int_t)state->manifest.count, "seconds", seconds * share, "disk_bytes", bytes * share, "peak_bytes",
-                   (json_int_t)peak, "counts", batch_counts_json(tally->counts));
+                   (json_int_t)state->manifest.count, "seconds", seconds * share, "disk_bytes", bytes * share,
+                   "peak_bytes", (json_int_t)peak, "counts", batch_counts_json(tally->counts));
 }
 
-int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *settings, batch_maker *maker) {
+int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *settings,
+                  batch_maker *maker) {
   batch_error error;
   batch_tally tally;
   batch_state state;

@@ -148,8 +148,8 @@ static bool add_product(json_t *job, const batch_maker *maker, batch_product pro
 json_t *batch_make_job(const batch_item *item, void *payload, batch_error *error) {
   const batch_maker *maker = payload;
   json_t *job = json_pack("{s:o, s:o, s:o, s:o, s:o}", "item", cli_json_text(item->id), "input",
-                          cli_json_text(item->path), "root", cli_json_text(maker->output), "commands", json_array(),
-                          "outputs", json_array());
+                          cli_json_text(item->path), "root", cli_json_text(maker->output), "commands",
+                          json_array(), "outputs", json_array());
   if (item->member)
     json_object_set_new(job, "member", cli_json_text(item->member));
   bool good = job != NULL;

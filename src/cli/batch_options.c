@@ -22,7 +22,8 @@ enum {
   KEY_DRY_RUN,
   KEY_PICTURES,
   KEY_FORMAT,
-  KEY_TO
+  KEY_TO,
+  KEY_MEMLIMIT
 };
 
 const cli_option batch_options[] = {
@@ -41,6 +42,9 @@ const cli_option batch_options[] = {
     {'j', "jobs", "N", "meshes at a time [one per processor]"},
     {KEY_THREADS, "threads", "N", "threads for each mesh, 1 to 256 [1]"},
     {KEY_TIME_LIMIT, "time-limit", "SECONDS", "end a mesh that takes longer; 0 = never [300]"},
+    {KEY_MEMLIMIT, "memlimit", "SIZE",
+     "end a mesh that takes more memory, such as 512M or 4G [four fifths of the\n"
+     "memory over -j; what needs more runs once more, alone, with all of it]"},
     {KEY_FILE_LIMIT, "file-limit", "SIZE", "largest file that may be written [64G]"},
     {KEY_RETRY, "retry", "LIST",
      "do again what ended so in a run before: timeout, oom, crash, failed, unreadable,\n"
@@ -172,6 +176,10 @@ static int read_option(cli_run *cli, batch_wish *out, int key, const char *value
     return cli_read_number(&out->time_limit, value) && out->time_limit >= 0 && out->time_limit < 1e9
                ? CLI_END
                : cli_usage(cli, "--time-limit '%s' is not a number of seconds", value);
+  case KEY_MEMLIMIT:
+    return cli_read_size(&cli->limits.memory_limit, value)
+               ? CLI_END
+               : cli_usage(cli, "--memlimit '%s' is not a size such as 512M or 4G", value);
   case KEY_FILE_LIMIT:
     return cli_read_size(&out->file_limit, value)
                ? CLI_END

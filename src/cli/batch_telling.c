@@ -124,8 +124,8 @@ bool batch_tell(json_t **summary, const batch_maker *maker, bool writes, batch_e
   if (!batch_state_read(&state, maker->output, error))
     return false;
   *summary = batch_summary_json(&state);
-  bool good = !writes || state.complete < state.shards ||
-              batch_summary_write(&state, maker->output, &telling, error);
+  bool good =
+      !writes || state.complete < state.shards || batch_summary_write(&state, maker->output, &telling, error);
   batch_state_free(&state);
   return good;
 }

@@ -143,7 +143,8 @@ static batch_settings settings_of(const cli_run *cli, batch_maker *maker, batch_
                              .zygote = zygote,
                              .payload = maker,
                              .shows_progress = isatty(STDERR_FILENO),
-                             .is_quiet = cli->quiet || strcmp(cli->progress, "never") == 0 || (is_auto && cli->json)};
+                             .is_quiet =
+                                 cli->quiet || strcmp(cli->progress, "never") == 0 || (is_auto && cli->json)};
   memcpy(settings.retry, wish->retry, sizeof settings.retry);
   return settings;
 }
@@ -222,7 +223,11 @@ static int run(cli_run *cli) {
   if (batch_try_options(cli, &maker) == CLI_STOP)
     return cli->status;
   maker.memory = limits_of(cli, &wish).memory;
-  int status = cli_start(cli) ? run_inputs(cli, &wish, &maker) : CLI_FAILED;
+  uint64_t each = cli->limits.memory_limit;
+  cli->limits.memory_limit = 0; /* of a mesh, not of this program */
+  bool started = cli_start(cli);
+  cli->limits.memory_limit = each;
+  int status = started ? run_inputs(cli, &wish, &maker) : CLI_FAILED;
   batch_words_free(&wish.grid_options);
   return status;
 }

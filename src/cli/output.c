@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Messages on standard error, tables, and the report as JSON. */
+#include "batch/batch.h"
 #include "cli/cli.h"
 
 #include <errno.h>
@@ -107,18 +108,7 @@ double cli_clock(void) {
 /* ---- JSON ---- */
 
 json_t *cli_json_text(const char *text) {
-  json_t *value = json_string(text);
-  if (value)
-    return value;
-  char *copy = strdup(text);
-  if (!copy)
-    return NULL;
-  for (char *c = copy; *c; c++)
-    if ((unsigned char)*c >= 0x80)
-      *c = '?';
-  value = json_string(copy);
-  free(copy);
-  return value;
+  return batch_json_string(text);
 }
 
 json_t *cli_json_number(double value) {

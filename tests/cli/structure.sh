@@ -24,7 +24,7 @@ order="voxmend base mesh sandbox
   modules/assimp modules/occt modules/openmesh modules/cgal modules/openvdb"
 
 # Modules share the rooms that their makefile lists, and not each other.
-listed=" $(echo $order) cli "
+listed=" $(echo $order) batch cli "
 for folder in $(find . -name '*.[ch]' -o -name '*.cc' -o -name '*.inc' | sed 's|^\./||; s|/*[^/]*$||' | sort -u); do
   case $listed in
   *" $folder "*) ;;
@@ -45,7 +45,9 @@ for folder in $order; do
     grep -vE "\"(($pattern)/[^/\"]*|voxmend/[a-z]*\.h|voxmend\.h|config\.h|build_hash\.h|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
   [ -z "$found" ] || complain "$folder includes what does not come before it" "$found"
 done
-found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' cli | grep -vE '"(cli/[^"]*|voxmend/experimental\.h|voxmend\.h|config\.h)"' || true)
+found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' batch | grep -vE '"(batch/[^"]*|voxmend\.h|config\.h|batch_page\.inc)"' || true)
+[ -z "$found" ] || complain "batch includes more than voxmend.h and its own headers" "$found"
+found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' cli | grep -vE '"(cli/[^"]*|batch/[^"]*|voxmend/experimental\.h|voxmend\.h|config\.h)"' || true)
 [ -z "$found" ] || complain "cli includes more than voxmend.h and its own headers" "$found"
 
 for folder in $order; do

@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * voxmend-unpack ARCHIVE MOST: hands over the meshes of an archive (batch/archive.h). It is a program of its
+ * own, as libarchive brings so many libraries with it that the others would start later for it.
+ */
+#include "batch/descriptor.h"
 #include "batch/unpack.h"
-#include "config.h"
 
+#include <archive.h>
+#include <archive_entry.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -13,26 +19,14 @@
 static bool send_over(int channel, const batch_unpacked *head, int descriptor) {
   struct iovec part = {(void *)(uintptr_t)head, sizeof *head};
   struct msghdr message = {.msg_iov = &part, .msg_iovlen = 1};
-  _Alignas(struct cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {0};
-  if (descriptor >= 0) {
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    struct cmsghdr *rights = CMSG_FIRSTHDR(&message);
-    rights->cmsg_level = SOL_SOCKET;
-    rights->cmsg_type = SCM_RIGHTS;
-    rights->cmsg_len = CMSG_LEN(sizeof(int));
-    memcpy(CMSG_DATA(rights), &descriptor, sizeof descriptor);
-  }
+  batch_descriptor_room room;
+  batch_descriptor_attach(&message, &room, descriptor);
   ssize_t sent;
   do
     sent = sendmsg(channel, &message, MSG_NOSIGNAL);
   while (sent < 0 && errno == EINTR);
   return sent >= 0;
 }
-
-#ifdef HAVE_ARCHIVE
-#include <archive.h>
-#include <archive_entry.h>
 
 /** Copies the bytes of a member into a file in memory; -1 and a problem where they cannot be had. */
 static int take_bytes(struct archive *archive, batch_unpacked *head, uint64_t most) {
@@ -82,7 +76,7 @@ static bool hand_over(struct archive *archive, struct archive_entry *entry, uint
   return good;
 }
 
-void batch_unpack(const char *path, uint64_t most, int channel) {
+static void unpack(const char *path, uint64_t most, int channel) {
   enum { BLOCK = 1 << 16 };
   batch_unpacked end = {.is_end = true};
   struct archive *archive = archive_read_new();
@@ -105,11 +99,11 @@ void batch_unpack(const char *path, uint64_t most, int channel) {
   send_over(channel, &end, -1);
   archive_read_free(archive);
 }
-#else
-void batch_unpack(const char *path, uint64_t most, int channel) {
-  batch_unpacked end = {.is_end = true};
-  (void)path, (void)most;
-  snprintf(end.problem, sizeof end.problem, "this build reads no archives (libarchive); unpack it first");
-  send_over(channel, &end, -1);
+
+int main(int argc, char **argv) {
+  uint64_t most = 0;
+  if (argc != 3 || sscanf(argv[2], "%" SCNu64, &most) != 1)
+    return 2;
+  unpack(argv[1], most, BATCH_UNPACK_CHANNEL);
+  return 0;
 }
-#endif

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "batch/cage.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* ---- Whether there are spaces ---- */
+
+static bool write_file(const char *path, const char *text) {
+  int file = open(path, O_WRONLY | O_CLOEXEC);
+  bool good = file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text);
+  if (file >= 0)
+    close(file);
+  return good;
+}
+
+/** A space of users in which we are who we were, with the right to make spaces of processes. */
+static bool take_space_of_users(void) {
+  char users[64], groups[64];
+  snprintf(users, sizeof users, "%ld %ld 1", (long)geteuid(), (long)geteuid());
+  snprintf(groups, sizeof groups, "%ld %ld 1", (long)getegid(), (long)getegid());
+  return unshare(CLONE_NEWUSER) == 0 && write_file("/proc/self/setgroups", "deny") &&
+         write_file("/proc/self/uid_map", users) && write_file("/proc/self/gid_map", groups);
+}
+
+/** From the next fork on, children are in a new space. */
+static bool enter(int space) {
+  return setns(space, CLONE_NEWPID) == 0 && unshare(CLONE_NEWPID) == 0;
+}
+
+/** In a child, as what cannot be finished would be left half done. */
+static bool can_take_space_of_users(void) {
+  int status;
+  pid_t id = fork();
+  if (id == 0)
+    _exit(take_space_of_users() && unshare(CLONE_NEWPID) == 0 ? 0 : 1);
+  while (id > 0 && waitpid(id, &status, 0) < 0)
+    if (errno != EINTR)
+      return false;
+  return id > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+batch_cage batch_cage_open(void) {
+  batch_cage cage = {open("/proc/self/ns/pid", O_RDONLY | O_CLOEXEC)};
+  if (cage.space < 0)
+    return cage;
+  bool good = enter(cage.space) || (can_take_space_of_users() && take_space_of_users() && enter(cage.space));
+  if (good)
+    good = setns(cage.space, CLONE_NEWPID) == 0;
+  if (!good) {
+    close(cage.space);
+    cage.space = -1;
+  }
+  return cage;
+}
+
+/* ---- The first process of a space ---- */
+
+static void say(int end, const void *data, size_t size) {
+  while (send(end, data, size, MSG_NOSIGNAL) < 0 && errno == EINTR) {
+  }
+}
+
+static bool hear(int end, void *data, size_t size) {
+  ssize_t got;
+  do
+    got = recv(end, data, size, 0);
+  while (got < 0 && errno == EINTR);
+  return got == (ssize_t)size;
+}
+
+/** Waits for the one that works; all that is left to it in between is collected. */
+static void wait_for(pid_t worker, int end) {
+  for (;;) {
+    int status;
+    pid_t id = waitpid(-1, &status, 0);
+    if (id == worker) {
+      say(end, &status, sizeof status);
+      return;
+    }
+    if (id < 0 && errno != EINTR)
+      return;
+  }
+}
+
+/**
+ * Returns in the process that is to work. The parent is in another space, where its number is not seen from
+ * here: it has to say a word, which it can no longer if it has gone.
+ */
+static void be_first(int end) {
+  char word;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setpgid(0, 0);
+  if (!hear(end, &word, 1))
+    _exit(1);
+  pid_t worker = fork();
+  if (worker == 0) {
+    close(end);
+    return;
+  }
+  for (int stream = 0; stream < 3; stream++) /* who waits for the end of these is not to wait for us */
+    close(stream);
+  close_range(3, (unsigned)end - 1, 0);
+  close_range((unsigned)end + 1, ~0U, 0);
+  if (worker > 0)
+    wait_for(worker, end);
+  _exit(1);
+}
+
+pid_t batch_cage_fork(const batch_cage *cage, int *status) {
+  int ends[2];
+  *status = -1;
+  if (cage->space < 0)
+    return fork();
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+    return -1;
+  bool good = enter(cage->space);
+  pid_t id = good ? fork() : -1;
+  if (id == 0) {
+    close(ends[0]);
+    be_first(ends[1]);
+    return 0;
+  }
+  setns(cage->space, CLONE_NEWPID);
+  close(ends[1]);
+  if (id < 0) {
+    close(ends[0]);
+    return -1;
+  }
+  say(ends[0], "", 1);
+  *status = ends[0];
+  return id;
+}
+
+bool batch_cage_status(int status, int *wait_status) {
+  int found;
+  if (status < 0 || recv(status, &found, sizeof found, MSG_DONTWAIT) != (ssize_t)sizeof found)
+    return false;
+  *wait_status = found;
+  return true;
+}

@@ -1,0 +1,67 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Archives give what their folders give; damaged ones and such as unpack without end are told of.
+set -eu
+[ -x "$BUILDDIR/voxmend-unpack" ] || { echo "built without libarchive"; exit 77; }
+[ -n "$TEST_PYTHON" ] || { echo "no Python"; exit 77; }
+work=$(mktemp -d "${TMPDIR:-/tmp}/voxmend-archives.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/data"
+"$BUILDDIR/samples/generate_samples" "$work/data"
+rm -f "$work/data"/stool.*
+fail() {
+  echo "FAILED: $1"
+  exit 1
+}
+cd "$work"
+"$TEST_PYTHON" - <<'END'
+import os, tarfile, zipfile
+names = sorted(n for n in os.listdir("data") if n.endswith(".off"))
+for kind, name in (("w", "a.tar"), ("w:gz", "a.tar.gz"), ("w:xz", "a.tar.xz")):
+    with tarfile.open(name, kind) as archive:
+        for n in names:
+            archive.add("data/" + n, n)
+with zipfile.ZipFile("a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+    for n in names:
+        archive.write("data/" + n, n)
+    archive.writestr("../../above.off", open("data/cube.off").read())
+    archive.writestr("readme.txt", "notes")
+with zipfile.ZipFile("endless.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+    archive.write("data/cube.off", "cube.off")
+    with archive.open("endless.off", "w", force_zip64=True) as member:
+        for _ in range(200):
+            member.write(b"\n" * (1 << 20))
+    archive.write("data/torus.off", "torus.off")
+data = open("a.tar.gz", "rb").read()
+open("short.tar.gz", "wb").write(data[:len(data) // 2])
+open("noise.tar.gz", "wb").write(b"no archive at all" * 100)
+END
+batch() {
+  "$VOXMEND" batch "$@" -r 16 --pictures 0 --progress never
+}
+batch data -o folder >/dev/null
+for archive in a.tar a.tar.gz a.tar.xz a.zip; do
+  batch "$archive" -o "from-$archive" >said
+  (cd folder && find . -name '*.binvox') | while read -r file; do
+    cmp "folder/$file" "from-$archive/$file" || fail "$archive: $file"
+  done
+done
+[ ! -e above.binvox ] && [ ! -e ../above.binvox ] && [ -e from-a.zip/_/_/above.binvox ] || fail "a member leads out of the folder"
+# Shards take their share of an archive each.
+batch a.tar.gz -o shards --shard 0/3 >/dev/null
+batch a.tar.gz -o shards --shard 2/3 >/dev/null
+batch a.tar.gz -o shards --shard 1/3 >/dev/null
+(cd folder && find . -name '*.binvox') | while read -r file; do
+  cmp "folder/$file" "shards/$file" || fail "shards: $file"
+done
+# A member that unpacks to more than a mesh may take; its neighbours are made.
+batch endless.zip -o endless --memlimit 64M >said
+cut -f 1-4 endless/failures.tsv
+grep -q '^endless.off	unreadable	unpack	it unpacks to more' endless/failures.tsv || fail "endless.off"
+[ -e endless/cube.binvox ] && [ -e endless/torus.binvox ] || fail "the neighbours of endless.off"
+for archive in short noise; do
+  status=0
+  batch "$archive.tar.gz" -o "$archive" >said 2>&1 || status=$?
+  cat said
+  [ "$status" -eq 1 ] && [ ! -e "$archive" ] && grep -q 'the archive is damaged' said || fail "$archive.tar.gz"
+done

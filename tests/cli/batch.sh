@@ -1,0 +1,78 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# voxmend batch on a small folder: what it makes, says and refuses, and how it goes on.
+. "$SRCDIR/tests/cli/lib.sh"
+# Times, and what a machine does in them.
+mask_batch() {
+  sed -E -e 's/^(time +)[0-9].*/\1T/' -e 's/("began": )"[^"]*"/\1"T"/' -e 's/("(wall_s|cpu_s|largest_peak_bytes|seconds|disk_bytes|peak_bytes)": )[0-9.e+-]+/\1N/' \
+    -e 's/^((disk|memory|time) +)(about|up to) .*/\1\3 N/'
+}
+voxmend() {
+  "$VOXMEND" "$@" >raw.txt 2>raw-err.txt && status=0 || status=$?
+  mask_batch <raw.txt
+  mask_batch <raw-err.txt >&2
+  return "$status"
+}
+# Pictures are among what is made.
+voxmend voxelize in/torus.off -o t.npy -r 8 -q
+if voxmend view t.npy -o probe.png 2>err.log >/dev/null; then
+  rm probe.png
+elif grep -q libpng raw-err.txt; then
+  exit 77
+fi
+mkdir -p data/a data/b
+cp in/cube.off in/sphere.off in/open_box.off data/a/
+cp in/cube.off data/b/again.off
+cp in/torus.off data/b/
+printf 'OFF\n3 1 0\n0 0 0\n' >data/b/broken.off
+printf 'notes\n' >data/readme.txt
+ln -s .. data/a/loop
+
+run 'voxmend batch data -o grids -r 16 --reports --pictures 0 -j 2'
+run 'cd grids && find . -type f | sort && cd ..'
+run 'cat grids/failures.tsv'
+run 'voxmend compare grids/a/cube.binvox grids/b/again.binvox'
+run 'grep -c "page" grids/index.html'
+# The same as alone.
+run 'voxmend voxelize data/a/sphere.off -o sphere.binvox -r 16 -q && cmp sphere.binvox grids/a/sphere.binvox'
+# It goes on where it was, and not with other options, inputs or shards.
+run 'voxmend batch data -o grids -r 16 --reports --pictures 0'
+run 'voxmend batch data -o grids -r 32 --reports'
+run 'voxmend batch data/a -o grids -r 16 --reports'
+run 'voxmend batch data -o grids -r 16 --reports --shard 0/2'
+run 'rm grids/a/cube.binvox && voxmend batch verify grids'
+run 'voxmend batch data -o grids -r 16 --reports --pictures 0'
+run 'voxmend batch verify grids'
+run 'printf x >>grids/b/torus.binvox && voxmend batch verify grids'
+run 'voxmend batch status grids --json'
+run 'cp in/torus.off data/b/broken.off && voxmend batch data -o grids -r 16 --reports'
+# A table, with options of its own; a list; members of a shard.
+printf 'path,id,class,split,options\n../in/cube.off,"box, one",box,train,-r 4 --fit tight\n../in/sphere.off,ball,ball,test,\n../in/gone.off,gone,,,\n../in/cube.off,bad,,,-r none\n' >data/table.csv
+run 'voxmend batch data/table.csv -o table -r 8 --format npy --pictures 0'
+run 'cd table && find . -type f -name "*.npy*" | sort && cd ..'
+run 'cut -f 1-4 table/failures.tsv'
+run 'ls data/a/*.off | sed 1d >list.txt; voxmend batch list.txt -o listed -r 8 --shard 1/2 && find listed -name "*.binvox"'
+run 'voxmend batch list.txt -o listed -r 8 --shard 0/2 --pictures 0 && find listed -name "*.binvox" | sort'
+# Other products.
+run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --format obj" --remesh "-r 8" --augment "-n 2 -r 8 --format npy" --view "--size 40x30" --pictures 0'
+run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'
+run 'voxmend batch data/a -o fixed --no-grid --repair "--format off" --pictures 0 && find fixed -name "*.off" | sort'
+run 'voxmend batch data/a --dry-run 2 -r 8'
+# What is refused before anything is made.
+run 'voxmend batch data'
+run 'voxmend batch -o grids'
+run 'voxmend batch data -o none -r many'
+run 'voxmend batch data -o none --repair "--level best"'
+run 'voxmend batch data -o none --view "--size"'
+run 'voxmend batch data -o none --coords x.npy'
+run 'voxmend batch data -o none --format docx'
+run 'voxmend batch data -o none --shard 2/2'
+run 'SLURM_ARRAY_TASK_ID=x voxmend batch data -o none --shard slurm/4'
+run 'voxmend batch data -o none --retry all,lost'
+run 'voxmend batch nothing -o none'
+run 'voxmend batch "none*.off" -o none'
+run 'mkdir empty && voxmend batch empty -o none'
+run 'voxmend batch status data'
+run 'voxmend batch export grids --to sqlite'
+run 'test ! -e none'
+finish
