@@ -74,8 +74,8 @@ def _client(where: Any) -> Iterator[Any]:
         number = where.partition(":")[2] or str(_processors())
         if not number.isdigit() or not 0 < int(number) <= 4096:
             raise ArgumentError("batch: dask '%s' is not local:WORKERS, such as local:2" % where)
-        with distributed.LocalCluster(n_workers=int(number), threads_per_worker=1, processes=True, dashboard_address=None,
-                                      memory_limit=0) as cluster, distributed.Client(cluster) as client:
+        with distributed.LocalCluster(n_workers=int(number), threads_per_worker=1, processes=True, memory_limit=0,
+                                      dashboard_address="127.0.0.1:0") as cluster, distributed.Client(cluster) as client:
             yield client
         return
     try:

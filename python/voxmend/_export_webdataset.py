@@ -55,6 +55,7 @@ class _Tars:
         self.folder, self.name, self.max_bytes = folder, name, max_bytes
         self.count = 0
         self.tar: Optional[tarfile.TarFile] = None
+        self.tar_name = ""
 
     def close(self) -> None:
         if self.tar is not None:
@@ -67,8 +68,8 @@ class _Tars:
             if -(-end // tarfile.RECORDSIZE) * tarfile.RECORDSIZE > self.max_bytes:
                 self.close()
         if self.tar is None:
-            path = os.path.join(self.folder, "%s-%06d.tar" % (self.name, self.count))
-            self.tar = tarfile.open(path, "w", format=tarfile.PAX_FORMAT)
+            self.tar_name = "%s-%06d.tar" % (self.name, self.count)
+            self.tar = tarfile.open(os.path.join(self.folder, self.tar_name), "w", format=tarfile.PAX_FORMAT)
             self.count += 1
         return self.tar
 
@@ -81,7 +82,7 @@ class _Tars:
             info.size, info.mode = len(data), 0o644
             offsets.append(tar.offset + len(info.tobuf(tar.format, tar.encoding, tar.errors)))
             tar.addfile(info, io.BytesIO(data))
-        return os.path.basename(os.fsdecode(tar.name)), offsets
+        return self.tar_name, offsets
 
 
 def _write_all(records: Records, numbers: List[int], folder: str, make: Any, max_bytes: int) -> Iterator[Dict[str, Any]]:
