@@ -64,7 +64,7 @@ class _Tars:
 
     def _need(self, size: int) -> tarfile.TarFile:
         if self.tar is not None and self.tar.offset > 0:
-            end = self.tar.offset + size + 1024  # two empty blocks, and padding
+            end = self.tar.offset + size + 2 * tarfile.BLOCKSIZE  # what ends a tar
             if -(-end // tarfile.RECORDSIZE) * tarfile.RECORDSIZE > self.max_bytes:
                 self.close()
         if self.tar is None:
@@ -75,12 +75,17 @@ class _Tars:
 
     def add(self, key: str, members: List[Member]) -> Tuple[str, List[int]]:
         """Adds all members of a mesh, next to each other; the tar's name, and where their bytes begin."""
-        tar = self._need(sum(1024 + len(data) for _, data in members))
-        offsets = []
+        infos, heads = [], []
         for suffix, data in members:
             info = tarfile.TarInfo("%s.%s" % (key, suffix))  # of no user and no time
             info.size, info.mode = len(data), 0o644
-            offsets.append(tar.offset + len(info.tobuf(tar.format, tar.encoding, tar.errors)))
+            infos.append(info)
+            heads.append(len(info.tobuf(tarfile.PAX_FORMAT)))
+        block = tarfile.BLOCKSIZE
+        tar = self._need(sum(head - (-info.size // block) * block for head, info in zip(heads, infos)))
+        offsets = []
+        for head, info, (_, data) in zip(heads, infos, members):
+            offsets.append(tar.offset + head)
             tar.addfile(info, io.BytesIO(data))
         return self.tar_name, offsets
 

@@ -143,6 +143,23 @@ class Batches(unittest.TestCase):
                 tar.seek(line["members"][0]["offset"])
                 self.assertEqual(tar.read(line["members"][0]["bytes"]), found[line["tar"], line["key"] + ".bits.npy"])
 
+    def test_long_names(self):
+        place = "in2/" + "x" * 120 + "/tr\u00e4in \U0001f9ca"
+        os.makedirs(self.at(place))
+        os.link(self.at("in/prism/test/rocket 0.v1.off"), self.at(place + "/a%.b.off"))
+        os.link(self.at("in/ring/test/torus 0.v1.off"), self.at(place + "/a%2E.off"))
+        voxmend.batch.run(self.at("in2"), self.at("out2"), options="-r 20")
+        voxmend.batch.export(self.at("out2"), self.at("long"), to="webdataset", max_bytes=10240)
+        found = self.members(self.at("long"))
+        self.assertEqual(sorted(name.rsplit("/")[-1] for _, name in found),
+                         ["a%25%2Eb.bits.npy", "a%25%2Eb.json", "a%252E.bits.npy", "a%252E.json"])
+        with open(self.at("long/index.jsonl"), encoding="utf-8") as file:
+            for line in map(json.loads, file):
+                with open(os.path.join(self.at("long"), line["tar"]), "rb") as tar:
+                    tar.seek(line["members"][0]["offset"])
+                    self.assertEqual(tar.read(6), b"\x93NUMPY")
+                self.assertLessEqual(os.path.getsize(os.path.join(self.at("long"), line["tar"])), 10240)
+
     def test_tars_of_files(self):
         options = dict(to="webdataset", content="files", max_bytes=40000, shuffle=5)
         first = voxmend.batch.export(self.out, self.at("files1"), **options)
