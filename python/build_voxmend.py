@@ -123,7 +123,36 @@ static int voxmend_on_progress(const char *phase, double fraction, void *payload
   return voxmend_ask();
 }
 """
+
+# Rows of bits, each of which begins with a byte of its own, the first in its lowest bit, become bytes or floats of 0 and 1.
+# What a numpy array gives may lie anywhere, hence memcpy.
+UNPACKING = r"""
+#include <stddef.h>
+#include <string.h>
+
+static void voxmend_unpack_rows(void *out, const unsigned char *bits, int64_t rows, int64_t length, int as_floats) {
+  unsigned char bytes[256][8];
+  float floats[256][8];
+  size_t n = (size_t)length, entry = as_floats ? sizeof floats[0] : sizeof bytes[0], each = entry / 8;
+  const unsigned char *table = as_floats ? (const unsigned char *)floats : bytes[0];
+  unsigned char *to = out;
+  for (int value = 0; value < 256; value++)
+    for (int bit = 0; bit < 8; bit++) {
+      bytes[value][bit] = (unsigned char)(value >> bit & 1);
+      floats[value][bit] = (float)(value >> bit & 1);
+    }
+  for (int64_t row = 0; row < rows; row++) {
+    for (size_t b = 0; b < n / 8; b++, to += entry)
+      memcpy(to, table + *bits++ * entry, entry);
+    if (n % 8 > 0) {
+      memcpy(to, table + *bits++ * entry, n % 8 * each);
+      to += n % 8 * each;
+    }
+  }
+}
+"""
 DECLARED = """
+void voxmend_unpack_rows(void *out, const unsigned char *bits, int64_t rows, int64_t length, int as_floats);
 extern "Python" int voxmend_ask(void);
 int voxmend_enter(int ask);
 void voxmend_leave(int before);
@@ -141,7 +170,7 @@ ffi.set_source(
     "voxmend._voxmend",
     '#include "voxmend.h"\n' + "".join(
         "static void voxmend_init_%s(%s *out) { %s value = %s_INIT; *out = value; }\n" % (n, n, n, n.upper())
-        for n in NAMES) + PROGRESS,
+        for n in NAMES) + PROGRESS + UNPACKING,
     include_dirs=include_dirs, library_dirs=library_dirs, runtime_library_dirs=remembered(library_dirs), libraries=["voxmend"])
 
 if __name__ == "__main__":

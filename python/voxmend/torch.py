@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Datasets for PyTorch: variants of the meshes of a folder, made when they are asked for.
+"""Datasets for PyTorch: variants of the meshes of a folder, made when they are asked for, and grids that a batch has made.
 
-    from voxmend.torch import IterableVoxelDataset, VoxelDataset
+    from voxmend.torch import GridDataset, IterableVoxelDataset, VoxelDataset
     data = VoxelDataset("ModelNet10", "train", 32, rotate="z", scale=0.3, displace=0.01)
     for voxels, labels in IterableVoxelDataset(data, batch_size=32, epochs=10):
         ...                                      # (32, 1, 32, 32, 32) float32 and (32,) int64
+    data = GridDataset("grids", "train")         # of voxmend batch, or its tars or Zarr
 """
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ import os
 import queue
 import threading
 import time
-from typing import Any, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy
 import torch
@@ -22,9 +23,12 @@ from torch.utils.data import Dataset, IterableDataset, get_worker_info
 
 from . import __version__, _core, _values
 from ._core import ffi
-from ._errors import EmptyError
+from ._errors import ArgumentError, EmptyError
+from ._grid_dataset import GridDataset, order_by_groups
 from ._mesh import Mesh, load, repair
 from ._sampler import Sampler, Turn, watch_forks
+
+__all__ = ["EXTENSIONS", "GridDataset", "IterableVoxelDataset", "VoxelDataset", "unpack"]
 
 EXTENSIONS = (".off", ".obj", ".stl", ".ply", ".glb", ".gltf", ".3mf", ".dae", ".fbx", ".step", ".stp", ".iges", ".igs")
 
@@ -173,14 +177,15 @@ class VoxelDataset(Dataset):
 
 
 def unpack(packed: torch.Tensor, resolution: int) -> torch.Tensor:
-    """(n, D, D, ceil(D / 8)) uint8 to (n, 1, D, D, D) float32, on whatever device it is."""
+    """(n, D, D, ceil(D / 8)) uint8 to (n, 1, D, D, D) float32, on whatever device it is. The last axis alone counts, so that
+    grids of three lengths are unpacked by the last of them."""
     bits = torch.arange(8, dtype=torch.uint8, device=packed.device)
     voxels = (packed.unsqueeze(-1) >> bits) & 1
     return voxels.flatten(-2)[..., :resolution].unsqueeze(1).float()
 
 
 class IterableVoxelDataset(IterableDataset):
-    """Whole batches of a VoxelDataset, epoch after epoch, made ahead by a thread while the network learns.
+    """Whole batches of a VoxelDataset or GridDataset, epoch after epoch, made ahead by a thread while the network learns.
 
     Iterate over it as it is, or through DataLoader(..., batch_size=None, num_workers=n): each worker then makes its share.
 
@@ -188,38 +193,58 @@ class IterableVoxelDataset(IterableDataset):
         dataset: where items come from.
         batch_size: items of a batch; the last one of an epoch is smaller, unless `drop_last`.
         epochs: how many; None = without end.
-        shuffle: another order in each epoch, which follows from `seed`.
+        shuffle: another order in each epoch, which follows from `seed`; "groups" mixes the items of eight tars, or chunks of
+            Zarr, at a time, which are then read one after another: for disks and networks that mind.
         prefetch: batches made ahead; 0 = when they are asked for.
+        rank: number of this process among those that train together, from 0 on.
+        ranks: how many they are. Each gets as many batches in an epoch, all of full size: what is left over, fewer than
+            ranks * batch_size items, is left out.
 
     Attributes:
         waited: seconds for which the last iteration had to wait for batches.
     """
 
-    def __init__(self, dataset: VoxelDataset, batch_size: int, *, epochs: Optional[int] = 1, first_epoch: int = 0,
-                 shuffle: bool = True, seed: int = 0, drop_last: bool = False, prefetch: int = 2):
+    TOGETHER = 8  # groups that are mixed
+
+    def __init__(self, dataset: Union[VoxelDataset, GridDataset], batch_size: int, *, epochs: Optional[int] = 1,
+                 first_epoch: int = 0, shuffle: Union[bool, str] = True, seed: int = 0, drop_last: bool = False,
+                 prefetch: int = 2, rank: int = 0, ranks: int = 1):
         _values.whole("batches: batch_size", batch_size, 1)
         for name, value in (("epochs", epochs or 0), ("first_epoch", first_epoch), ("seed", seed), ("prefetch", prefetch)):
             _values.whole("batches: " + name, value, 0)
+        _values.whole("batches: rank", rank, 0, _values.whole("batches: ranks", ranks, 1) - 1)
+        if isinstance(shuffle, str) and (shuffle != "groups" or not isinstance(dataset, GridDataset)):
+            raise ArgumentError("batches: shuffle %r is neither true nor false, nor \"groups\" of a GridDataset" % shuffle)
         self.dataset, self.batch_size, self.epochs, self.first_epoch = dataset, batch_size, epochs, first_epoch
         self.shuffle, self.seed, self.drop_last, self.prefetch = shuffle, seed, drop_last, prefetch
+        self.rank, self.ranks = rank, ranks
         self.waited = 0.0
 
     def order(self, epoch: int) -> numpy.ndarray:
         """The items of an epoch, in order: the same in every process."""
         if not self.shuffle:
             return numpy.arange(len(self.dataset))
-        return numpy.random.Generator(numpy.random.Philox(key=[self.seed, epoch])).permutation(len(self.dataset))
+        draw = numpy.random.Generator(numpy.random.Philox(key=[self.seed, epoch]))
+        if self.shuffle == "groups" and isinstance(self.dataset, GridDataset):
+            return order_by_groups(self.dataset.groups, self.TOGETHER, draw)
+        return draw.permutation(len(self.dataset))
+
+    def _batches_of(self, epoch: int) -> List[numpy.ndarray]:
+        """Those of this rank."""
+        items = self.order(epoch)
+        if self.ranks > 1:
+            items = items[:len(items) // (self.ranks * self.batch_size) * self.ranks * self.batch_size]
+        elif self.drop_last:
+            items = items[:len(items) // self.batch_size * self.batch_size]
+        return [items[begin:begin + self.batch_size]
+                for begin in range(self.rank * self.batch_size, len(items), self.ranks * self.batch_size)]
 
     def _batches(self) -> Iterator[Tuple[int, numpy.ndarray]]:
         worker = get_worker_info()
         share, shares = (worker.id, worker.num_workers) if worker else (0, 1)
         number, epoch = 0, self.first_epoch
         while self.epochs is None or epoch < self.first_epoch + self.epochs:
-            items = self.order(epoch)
-            for begin in range(0, len(items), self.batch_size):
-                chosen = items[begin:begin + self.batch_size]
-                if len(chosen) < self.batch_size and self.drop_last:
-                    break
+            for chosen in self._batches_of(epoch):
                 if number % shares == share:
                     yield epoch, chosen
                 number += 1

@@ -7,6 +7,7 @@ if ! "$PYTHON" -c "import torch" 2>/dev/null; then
   exit 77
 fi
 "$PYTHON" "$SRCDIR/tests/python/test_torch.py"
+"$PYTHON" "$SRCDIR/tests/python/test_torch_grids.py"
 # The sample that trains a network, as short as it can be.
 "$PYTHON" "$SRCDIR/samples/train_voxnet.py" --epochs 2 --models 3 --variants 2 --resolution 16 >out
 cat out

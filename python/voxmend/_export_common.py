@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What exports share: the grids of a batch, what is told beside each, and names that appear when all is there."""
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import shutil
+from typing import Any, Dict, Iterator, List, Tuple
+
+import numpy
+
+from ._batch_records import Item, Records
+from ._errors import EmptyError, FormatError
+from ._grid import read
+from ._packed import pack
+
+
+@contextlib.contextmanager
+def published(path: str, is_folder: bool) -> Iterator[str]:
+    """A name to write to, which becomes `path` at the end; nothing is left of it after a failure."""
+    aside = "%s.%d.tmp" % (path.rstrip("/"), os.getpid())
+    try:
+        if is_folder:
+            os.mkdir(aside)
+        yield aside
+        os.rename(aside, path)
+    except BaseException:
+        if os.path.isdir(aside):
+            shutil.rmtree(aside, ignore_errors=True)
+        else:
+            with contextlib.suppress(OSError):
+                os.unlink(aside)
+        raise
+
+
+def content(records: Records, output: Dict[str, Any]) -> bytes:
+    """The bytes of an output, if they are those that the journal tells of."""
+    with open(records.path(output), "rb") as file:
+        data = file.read()
+    if hashlib.sha256(data).hexdigest() != output["sha256"]:
+        raise FormatError("%s: not as it was written; see 'voxmend batch verify %s'" % (records.path(output), records.folder))
+    return data
+
+
+def with_grids(records: Records) -> List[int]:
+    """Numbers of those of which there is a grid, in the order of the plan."""
+    out = [number for number, item in enumerate(records) if item.grid() is not None]
+    if not out:
+        raise EmptyError("%s: no mesh of this batch has a grid that can be read (.binvox .npy .raw .rle .nrrd .vdb)" %
+                         records.folder)
+    return out
+
+
+def describe(item: Item) -> Dict[str, Any]:
+    """What is told beside a grid: the same for the same mesh and options, whenever they were run."""
+    made = item.end.get("voxelize", {})
+    grid = made.get("grid", {})
+    return {"item": item.item, "class": item.kind, "split": item.split, "status": item.status,
+            "shape": grid.get("dims"), "origin": grid.get("origin"), "voxel_size": grid.get("voxel_size"),
+            "voxels": made.get("voxels"), "hash": made.get("hash"), "mesh_sha256": item.end.get("sha256")}
+
+
+def packed_grid(records: Records, item: Item, verify: bool = True) -> Tuple[numpy.ndarray, Dict[str, Any]]:
+    """A grid's bits, (nx, ny, ceil(nz / 8)) uint8, and what is told of it."""
+    output = item.grid()
+    assert output is not None
+    if verify:
+        content(records, output)
+    told = describe(item)
+    matrix = read(records.path(output)).matrix
+    if told["shape"] is None or list(matrix.shape) != list(told["shape"]):  # .binvox pads to a cube
+        shape = told["shape"]
+        if shape is None or any(a < b for a, b in zip(matrix.shape, shape)):
+            raise FormatError("%s: a grid of %s, not of %s as its batch tells" % (records.path(output), matrix.shape, shape))
+        matrix = matrix[tuple(slice(0, n) for n in shape)]
+    return pack(matrix), told
+
+
+def json_line(value: Dict[str, Any]) -> bytes:
+    return json.dumps(value, sort_keys=True, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The dataset of grids that a batch has made; part of `voxmend.torch`."""
+from __future__ import annotations
+
+import os
+from typing import Any, List, Optional, Sequence, Tuple
+
+import numpy
+import torch
+from torch.utils.data import Dataset
+
+from . import _values
+from ._errors import EmptyError
+from ._grid_sources import open_source
+from ._packed import unpack as unpack_rows
+from ._sampler import Turn, watch_forks
+
+
+class GridDataset(Dataset):
+    """The grids that `voxmend batch` has made: its folder, or an export to webdataset or Zarr (`voxmend batch export`).
+
+    Args:
+        root: the folder.
+        split: only those of this split, as the plan tells or the folders (chair/train/...); None = all.
+        packed: items are (nx, ny, ceil(nz / 8)) uint8, see `unpack`, rather than (1, nx, ny, nz) float32.
+
+    Attributes:
+        classes: sorted names, of all splits, so that labels are the same in each.
+        names: of the meshes, as in the plan.
+        labels: (n,) int64, numbers of the classes.
+        shape: (nx, ny, nz)
+        groups: (n,) numbers of the tars, or of the chunks, in which the grids are: what is best read together.
+    """
+
+    def __init__(self, root: Any, split: Optional[str] = None, *, packed: bool = False):
+        self.root = os.fsdecode(_values.path(root))
+        self._source = open_source(self.root)
+        self.classes: List[str] = sorted(set(self._source.kinds))
+        self.packed = _values.flag("dataset: packed", packed)
+        self.shape = self._source.shape
+        if split is not None and split not in self._source.splits:
+            raise EmptyError("%s: no grid is of the split %r; there are %s" %
+                             (self.root, split, sorted(set(self._source.splits))))
+        chosen = [i for i, name in enumerate(self._source.splits) if split is None or name == split]
+        self._numbers = numpy.array(chosen, numpy.int64)
+        numbers = {name: label for label, name in enumerate(self.classes)}
+        self.labels = numpy.array([numbers[self._source.kinds[i]] for i in chosen], numpy.int64)
+        self.groups = self._source.groups[self._numbers]
+        self._forget()
+
+    def _forget(self) -> None:
+        self._turn = Turn()
+        watch_forks(self)
+
+    def _after_fork(self) -> None:
+        if self._turn.is_taken():  # by a thread that is not in this process
+            self._forget()
+
+    def __getstate__(self) -> dict:
+        state = dict(self.__dict__)
+        del state["_turn"]
+        return state
+
+    def __setstate__(self, state: dict) -> None:
+        self.__dict__.update(state)
+        self._forget()
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    @property
+    def names(self) -> List[str]:
+        return [self._source.names[i] for i in self._numbers]
+
+    def batch(self, items: Sequence[int], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
+        """Many at once: voxels (n, 1, nx, ny, nz), or packed, and labels (n,) int64. The epoch makes no difference."""
+        at = _values.array("dataset: items", items, "iu", "whole numbers").reshape(-1).astype(numpy.int64)
+        if at.size and (at.min() < -len(self) or at.max() >= len(self)):
+            raise IndexError("items are from 0 to %d" % (len(self) - 1))
+        at = numpy.where(at < 0, at + len(self), at)
+        nx, ny, nz = self.shape
+        bits = numpy.empty((len(at), nx, ny, (nz + 7) // 8), numpy.uint8)
+        with self._turn:
+            for i, number in enumerate(self._numbers[at].tolist()):
+                bits[i] = self._source.packed(number)
+        voxels = bits if self.packed else unpack_rows(bits, nz)[:, None]
+        return torch.from_numpy(voxels), torch.from_numpy(self.labels[at])
+
+    def __getitem__(self, item: int) -> Tuple[torch.Tensor, int]:
+        voxels, labels = self.batch([item])
+        return voxels[0], int(labels[0])
+
+    def __getitems__(self, items: Sequence[int]) -> List[Tuple[torch.Tensor, int]]:
+        """What torch.utils.data.DataLoader asks for, if it knows of it, rather than for items one by one."""
+        voxels, labels = self.batch(items)
+        return list(zip(voxels, labels.tolist()))
+
+
+def order_by_groups(groups: numpy.ndarray, together: int, draw: numpy.random.Generator) -> numpy.ndarray:
+    """Groups in an order that is drawn, so many at a time with their members mixed: near enough to a shuffle of all, and
+    each tar or chunk is read in one go."""
+    order = numpy.argsort(groups, kind="stable")
+    begins = numpy.flatnonzero(numpy.diff(groups[order], prepend=groups[order][:1] - 1))
+    members = numpy.split(order, begins[1:])
+    drawn = draw.permutation(len(members))
+    parts = []
+    for begin in range(0, len(drawn), together):
+        mixed = numpy.concatenate([members[g] for g in drawn[begin:begin + together]])
+        parts.append(mixed[draw.permutation(len(mixed))])
+    return numpy.concatenate(parts) if parts else order

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the grids of a batch stand: its folder, or what was exported of it. Each gives bits, as `_packed` has them.
+
+A source has `shape`, of each grid; `names`, `kinds` and `splits`, of each; `groups`, numbers of what is read together; and
+`packed(i)`. It may be pickled, and used after a fork.
+"""
+from __future__ import annotations
+
+import collections
+import io
+import json
+import os
+from typing import Any, Dict, Iterator, List, Optional, Tuple
+
+import numpy
+
+from ._batch_records import Records
+from ._errors import ArgumentError, EmptyError, FormatError, UnavailableError
+from ._export_common import packed_grid, with_grids
+from ._packed import pack
+
+
+class _Told:
+    """What is told of grids, one after another, in little memory."""
+
+    def __init__(self) -> None:
+        self.names: List[str] = []
+        self.kinds: List[str] = []
+        self.splits: List[str] = []
+        self.shape: Optional[Tuple[int, ...]] = None
+        self._known: Dict[str, str] = {}  # one string of each class and split
+
+    def add(self, told: Dict[str, Any], where: str) -> None:
+        shape = tuple(told["shape"] or ())
+        if self.shape is None:
+            self.shape = shape
+        if shape != self.shape or len(shape) != 3:
+            raise ArgumentError("%s: the grid of %s is of %s, not of %s; make a dataset of grids of equal shape (--fit cube)" %
+                                (where, told["item"], shape, self.shape))
+        self.names.append(told["item"])
+        self.kinds.append(self._known.setdefault(told["class"], told["class"]))
+        self.splits.append(self._known.setdefault(told["split"], told["split"]))
+
+
+class Source:
+    """What all of them share."""
+
+    def __init__(self, told: _Told, groups: numpy.ndarray, where: str):
+        if told.shape is None:
+            raise EmptyError("%s: there is no grid in it" % where)
+        self.where, self.shape, self.groups = where, told.shape, groups
+        self.names, self.kinds, self.splits = told.names, told.kinds, told.splits
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def packed(self, number: int) -> numpy.ndarray:
+        raise NotImplementedError
+
+    def check(self, number: int, bits: numpy.ndarray) -> numpy.ndarray:
+        nx, ny, nz = self.shape
+        if bits.shape != (nx, ny, (nz + 7) // 8) or bits.dtype != numpy.uint8:
+            raise FormatError("%s: the grid of %s is %s of %s, not bits of %s" %
+                              (self.where, self.names[number], bits.dtype, bits.shape, self.shape))
+        return bits
+
+
+class FolderSource(Source):
+    """The outputs of a batch as they are."""
+
+    def __init__(self, path: str):
+        self.records = Records(path)
+        self.records.need_complete()
+        self.numbers = numpy.array(with_grids(self.records), numpy.int64)
+        told = _Told()
+        for number in self.numbers:
+            item = self.records[number]
+            told.add({"item": item.item, "class": item.kind, "split": item.split,
+                      "shape": item.end.get("voxelize", {}).get("grid", {}).get("dims")}, path)
+        super().__init__(told, numpy.arange(len(told.names)), path)
+
+    def packed(self, number: int) -> numpy.ndarray:
+        return self.check(number, packed_grid(self.records, self.records[int(self.numbers[number])], False)[0])
+
+
+def _lines(path: str) -> Iterator[Dict[str, Any]]:
+    with open(path, "rb") as file:
+        for line in file:
+            try:
+                yield json.loads(line)
+            except ValueError:
+                raise FormatError("%s: a line is no JSON" % path) from None
+
+
+class TarSource(Source):
+    """Tars with their index.jsonl, read where each grid stands."""
+
+    def __init__(self, path: str):
+        told, tars = _Told(), []  # type: Tuple[_Told, List[Tuple[int, int, int, bool]]]
+        self.tars: List[str] = []
+        numbers: Dict[str, int] = {}
+        for line in _lines(os.path.join(path, "index.jsonl")):
+            member = next((m for m in line["members"] if m["name"] in ("bits.npy", "npy")), None)
+            if member is None:
+                raise ArgumentError("%s: %s is there neither as bits.npy nor as npy; export the batch with --content bits" %
+                                    (path, line["item"]))
+            told.add(line, path)
+            tar = numbers.setdefault(line["tar"], len(numbers))
+            tars.append((tar, member["offset"], member["bytes"], member["name"] == "npy"))
+        self.tars = [os.path.join(path, name) for name in numbers]
+        self.places = numpy.array(tars, numpy.int64).reshape(-1, 4)
+        self._open: "collections.OrderedDict[int, Any]" = collections.OrderedDict()
+        super().__init__(told, self.places[:, 0].copy(), path)
+
+    def __getstate__(self) -> Dict[str, Any]:
+        return dict(self.__dict__, _open=collections.OrderedDict())
+
+    def __del__(self) -> None:
+        for file in getattr(self, "_open", {}).values():
+            file.close()
+
+    def _descriptor(self, tar: int) -> int:
+        """Files are read at places told, which processes that share them do not mind."""
+        if tar not in self._open:
+            self._open[tar] = open(self.tars[tar], "rb", buffering=0)
+            if len(self._open) > 64:
+                self._open.popitem(last=False)[1].close()
+        self._open.move_to_end(tar)
+        return self._open[tar].fileno()
+
+    def packed(self, number: int) -> numpy.ndarray:
+        tar, offset, size, is_plain = self.places[number].tolist()
+        data = os.pread(self._descriptor(tar), size, offset)
+        try:
+            array = numpy.lib.format.read_array(io.BytesIO(data), allow_pickle=False)
+        except ValueError:
+            raise FormatError("%s: no .npy where the index has that of %s" % (self.tars[tar], self.names[number])) from None
+        return self.check(number, pack(array) if is_plain else array)
+
+
+class ZarrSource(Source):
+    """A Zarr group; the last chunks stay in memory."""
+
+    HELD = 8
+
+    def __init__(self, path: str):
+        told = _Told()
+        self.path = path
+        self._held: "collections.OrderedDict[int, numpy.ndarray]" = collections.OrderedDict()
+        self._grids: Any = None
+        attributes = dict(self._group().attrs)
+        if attributes.get("format") != "voxmend grids":
+            raise FormatError("%s: no Zarr group of voxmend's grids" % path)
+        for line in _lines(os.path.join(path, "items.jsonl")):
+            told.add(line, path)
+        self.each = int(self._array().chunks[0])
+        super().__init__(told, numpy.arange(len(told.names)) // self.each, path)
+
+    def _group(self) -> Any:
+        try:
+            import zarr
+        except ImportError:
+            raise UnavailableError("grids: the package zarr is not installed (Debian: python3-zarr; PyPI: zarr)") from None
+        return zarr.open_group(self.path, mode="r")
+
+    def _array(self) -> Any:
+        if self._grids is None:
+            self._grids = self._group()["grids"]
+        return self._grids
+
+    def __getstate__(self) -> Dict[str, Any]:
+        return dict(self.__dict__, _grids=None, _held=collections.OrderedDict())
+
+    def packed(self, number: int) -> numpy.ndarray:
+        chunk = number // self.each
+        if chunk not in self._held:
+            self._held[chunk] = self._array()[chunk * self.each:(chunk + 1) * self.each]
+            if len(self._held) > self.HELD:
+                self._held.popitem(last=False)
+        self._held.move_to_end(chunk)
+        return self.check(number, self._held[chunk][number % self.each])
+
+
+def open_source(path: str) -> Source:
+    """By what stands in the folder."""
+    if os.path.isdir(os.path.join(path, ".batch")):
+        return FolderSource(path)
+    if os.path.isfile(os.path.join(path, "index.jsonl")):
+        return TarSource(path)
+    if os.path.isfile(os.path.join(path, "items.jsonl")):
+        return ZarrSource(path)
+    raise ArgumentError("%s: neither the folder of a batch, nor one of its exports to webdataset or Zarr" % path)

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""GridDataset: the same grids from the folder of a batch, its tars and its Zarr; orders, ranks and workers."""
+import collections
+import os
+import pickle
+import tempfile
+import unittest
+
+import numpy
+import torch
+from torch.utils.data import DataLoader
+
+import voxmend
+import voxmend.batch
+from voxmend.torch import GridDataset, IterableVoxelDataset, VoxelDataset, unpack
+
+from batch_lib import make_batch
+
+try:
+    import zarr
+except ImportError:
+    zarr = None
+
+
+class Grids(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        make_batch(cls.folder.name, "-r", "20")
+        cls.out = os.path.join(cls.folder.name, "out")
+        cls.tars, cls.files, cls.zarr = (os.path.join(cls.folder.name, name) for name in ("tars", "files", "grids.zarr"))
+        voxmend.batch.export(cls.out, cls.tars, to="webdataset", max_bytes=20000, shuffle=3)
+        cls.made = [cls.out, cls.tars]
+        if zarr is not None:
+            voxmend.batch.export(cls.out, cls.zarr, to="zarr", chunk_bytes=3000)
+            cls.made.append(cls.zarr)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_the_same_everywhere(self):
+        for root in self.made:
+            data = GridDataset(root, "train")
+            self.assertEqual((data.classes, len(data), data.shape), (["ball", "prism", "ring"], 8, (20, 20, 20)))
+            self.assertEqual(len(GridDataset(root)), 11)
+            for i, name in enumerate(data.names):
+                grid = voxmend.read(os.path.join(self.out, name[:-len(".off")] + ".binvox"))
+                voxels, label = data[i]
+                self.assertEqual((voxels.dtype, tuple(voxels.shape)), (torch.float32, (1, 20, 20, 20)))
+                self.assertTrue((voxels[0].numpy() == grid.matrix).all())
+                self.assertEqual(data.classes[label], name.split("/")[0])
+            packed, labels = GridDataset(root, "train", packed=True).batch([3, -1])
+            self.assertEqual((packed.dtype, tuple(packed.shape)), (torch.uint8, (2, 20, 20, 3)))
+            self.assertTrue((unpack(packed, 20) == data.batch([3, len(data) - 1])[0]).all())
+            copy = pickle.loads(pickle.dumps(data))
+            self.assertTrue((copy[2][0] == data[2][0]).all())
+            with self.assertRaises(IndexError):
+                data[8]
+            with self.assertRaises(voxmend.EmptyError):
+                GridDataset(root, "none")
+
+    def test_padded_and_not_cubic(self):
+        out = os.path.join(self.folder.name, "flat")
+        voxmend.batch.run(os.path.join(self.folder.name, "in", "prism"), out, options="-r 21x10x13 --format binvox")
+        data = GridDataset(out)
+        self.assertEqual((data.shape, tuple(data[0][0].shape)), ((21, 10, 13), (1, 21, 10, 13)))
+        with open(os.path.join(out, ".batch", "journal-0-of-1.jsonl")) as file:
+            self.assertEqual(len(data), sum('"status":"ok"' in line for line in file))
+
+    def test_refusals(self):
+        voxmend.batch.export(self.out, self.files, to="webdataset", content="files")
+        with self.assertRaisesRegex(voxmend.ArgumentError, "--content bits"):
+            GridDataset(self.files)
+        with self.assertRaisesRegex(voxmend.ArgumentError, "neither the folder of a batch"):
+            GridDataset(self.folder.name)
+        tight = os.path.join(self.folder.name, "tight")
+        voxmend.batch.run(os.path.join(self.folder.name, "in"), tight, options="-r 20 --fit tight")
+        with self.assertRaisesRegex(voxmend.ArgumentError, "equal shape"):
+            GridDataset(tight)
+        if zarr is not None:
+            with self.assertRaisesRegex(voxmend.ArgumentError, "--fit cube"):
+                voxmend.batch.export(tight, os.path.join(self.folder.name, "x"), to="zarr")
+        data = GridDataset(self.out)
+        for wrong in (dict(shuffle="all"), dict(rank=2, ranks=2), dict(ranks=0)):
+            with self.assertRaises(voxmend.ArgumentError):
+                IterableVoxelDataset(data, 4, **wrong)
+        meshes = VoxelDataset(os.path.join(self.folder.name, "in"), "test")
+        with self.assertRaises(voxmend.ArgumentError):
+            IterableVoxelDataset(meshes, 4, shuffle="groups")
+
+    # ---- Orders ----
+
+    def sums(self, data):
+        """One number for each item, to tell them apart."""
+        return [int(voxels.sum() * 7 + (voxels[0, 5] * torch.arange(400).reshape(20, 20)).sum()) for voxels, _ in
+                (data[i] for i in range(len(data)))]
+
+    def test_epochs(self):
+        for root in self.made:
+            data = GridDataset(root)
+            for shuffle in (True, "groups"):
+                batches = IterableVoxelDataset(data, 3, epochs=2, seed=9, shuffle=shuffle)
+                self.assertEqual(sorted(batches.order(0)), list(range(11)))
+                self.assertFalse((batches.order(0) == batches.order(1)).all())
+                self.assertTrue((batches.order(1) == IterableVoxelDataset(data, 3, seed=9, shuffle=shuffle).order(1)).all())
+                made = torch.cat([voxels for voxels, _ in batches])
+                wanted = data.batch(numpy.concatenate([batches.order(0), batches.order(1)]))[0]
+                self.assertTrue((made == wanted).all())
+
+    def test_groups_stay_together(self):
+        data = GridDataset(self.tars)
+        self.assertGreater(len(set(data.groups.tolist())), 3)
+        batches = IterableVoxelDataset(data, 2, shuffle="groups")
+        batches.TOGETHER = 2
+        order = data.groups[batches.order(4)].tolist()
+        windows = []  # pairs of groups, one after another
+        for group in order:
+            if not windows or (group not in windows[-1] and len(windows[-1]) == 2):
+                windows.append(set())
+            windows[-1].add(group)
+        self.assertEqual(sum(len(window) for window in windows), len(set(order)))
+
+    def test_ranks_and_workers(self):
+        data = GridDataset(self.tars)
+        names = self.sums(data)
+        for workers in (0, 2):
+            seen = []
+            for rank in range(3):
+                batches = IterableVoxelDataset(data, 1, seed=2, rank=rank, ranks=3)
+                loader = DataLoader(batches, batch_size=None, num_workers=workers)
+                mine = [int(voxels[0].sum() * 7 + (voxels[0, 0, 5] * torch.arange(400).reshape(20, 20)).sum())
+                        for voxels, _ in loader]
+                self.assertEqual(len(mine), 3)  # 11 items: two are left out, so that all ranks have as many
+                seen += mine
+            order = IterableVoxelDataset(data, 1, seed=2).order(0)
+            self.assertEqual(collections.Counter(seen), collections.Counter(names[i] for i in order[:9]))
+
+    def test_forked_workers_read_the_folder(self):
+        data = GridDataset(self.out)
+        data[0]  # files are open
+        loader = DataLoader(data, batch_size=1, num_workers=2)
+        for i, (voxels, label) in enumerate(loader):
+            self.assertTrue((voxels[0] == data[i][0]).all())
+
+
+if __name__ == "__main__":
+    print("torch %s, zarr %s" % (torch.__version__, zarr.__version__ if zarr else "not there"))
+    unittest.main(verbosity=1)
