@@ -155,7 +155,7 @@ class Trial:
     def iou_of_winding(self, repaired):
         """Of where the repaired mesh and the mesh at level closed wind around a place."""
         closed, grid = (os.path.join(self.work, name) for name in ("closed.ply", "grid.npy"))
-        self.run("repair", self.mesh, "-o", closed, "--level", "closed", "-q").check_returncode()
+        self.run("repair", self.mesh, "--force", "-o", closed, "--level", "closed", "-q").check_returncode()
         self.run("voxelize", repaired, "-o", grid, "-r", "64", "--thin", "drop", "-q").check_returncode()
         with open(grid + ".json") as file:
             space = json.load(file)
@@ -166,7 +166,7 @@ class Trial:
 
     def again(self, level, path):
         """What another repair of the file does; None = nothing."""
-        done = self.run("repair", path, "-o", os.path.join(self.work, "again." + path[-3:]), "--level", level, "--json")
+        done = self.run("repair", path, "--force", "-o", os.path.join(self.work, "again." + path[-3:]), "--level", level, "--json")
         if done.returncode != 0:
             return "repaired again: " + done.stderr.strip()
         for entry in json.loads(done.stdout)["passes"]:
@@ -180,7 +180,7 @@ class Trial:
         if os.path.exists(path):
             os.remove(path)
         try:
-            done = self.run("repair", self.mesh, "-o", path, "--level", level, "--json")
+            done = self.run("repair", self.mesh, "--force", "-o", path, "--level", level, "--json")
         except subprocess.TimeoutExpired:
             return "no end", "took over %d s" % self.timeout
         if done.returncode == 1 and not os.path.exists(path) and done.stderr.startswith("voxmend: "):

@@ -131,7 +131,7 @@ def repaired(tally, given, work, end):
         for level in given.levels.split(","):
             for form in given.formats.split(",") if level == "closed" else ["ply"]:
                 path = os.path.join(work, "out." + form)
-                done = run(given.program, "repair", mesh, "-o", path, "--level", level, "-q")
+                done = run(given.program, "repair", mesh, "--force", "-o", path, "--level", level, "-q")
                 if done.returncode == 0:
                     tally.judge("%s, %s, .%s" % (os.path.basename(mesh), level, form), path, level)
                 elif "module" in done.stderr or "not reached" in done.stderr or "no face" in done.stderr:
