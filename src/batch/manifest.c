@@ -159,6 +159,33 @@ static bool name_outputs(batch_manifest *manifest, batch_error *error) {
   return good || batch_fail(error, "out of memory for the list of meshes: free some");
 }
 
+/* ---- Classes and splits ---- */
+
+static bool is_split(const char *word, size_t length) {
+  static const char *const known[] = {"train", "test", "val", "valid", "validation"};
+  for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+    if (strlen(known[k]) == length && strncasecmp(word, known[k], length) == 0)
+      return true;
+  return false;
+}
+
+/** Where a table tells neither, folders do as in ModelNet: chair/train/chair_0001.off; train/chair/1.off as
+ * well. */
+static bool place(batch_item *item) {
+  const char *folder = item->id, *slash;
+  bool good = true;
+  for (int depth = 0; good && (slash = strchr(folder, '/')); depth++) {
+    size_t length = (size_t)(slash - folder);
+    char **out = is_split(folder, length) ? (depth < 2 ? &item->split : NULL) : &item->kind;
+    if (out && !*out) {
+      *out = strndup(folder, length);
+      good = *out != NULL;
+    }
+    folder = slash + 1;
+  }
+  return good;
+}
+
 bool batch_manifest_finish(batch_manifest *manifest, batch_error *error) {
   if (manifest->count > 0)
     qsort(manifest->items, (size_t)manifest->count, sizeof *manifest->items, by_id);
@@ -166,6 +193,9 @@ bool batch_manifest_finish(batch_manifest *manifest, batch_error *error) {
     if (strcmp(manifest->items[i].id, manifest->items[i + 1].id) == 0)
       return batch_fail(error, "%s stands twice among the inputs; give each an id of its own",
                         manifest->items[i].id);
+  for (int64_t i = 0; i < manifest->count; i++)
+    if (!place(&manifest->items[i]))
+      return batch_fail(error, "out of memory for the list of meshes: free some");
   return name_outputs(manifest, error);
 }
 

@@ -14,7 +14,7 @@ fail() {
   exit 1
 }
 cd "$work"
-"$TEST_PYTHON" - <<'END'
+PYTHONUTF8=1 "$TEST_PYTHON" - <<'END'
 import os, tarfile, zipfile
 names = sorted(n for n in os.listdir("data") if n.endswith(".off"))
 for kind, name in (("w", "a.tar"), ("w:gz", "a.tar.gz"), ("w:xz", "a.tar.xz")):
@@ -26,6 +26,7 @@ with zipfile.ZipFile("a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.write("data/" + n, n)
     archive.writestr("../../above.off", open("data/cube.off").read())
     archive.writestr("readme.txt", "notes")
+    archive.writestr("stühle/stuhl.off", open("data/torus.off").read())
 with zipfile.ZipFile("endless.zip", "w", zipfile.ZIP_DEFLATED) as archive:
     archive.write("data/cube.off", "cube.off")
     with archive.open("endless.off", "w", force_zip64=True) as member:
@@ -47,6 +48,7 @@ for archive in a.tar a.tar.gz a.tar.xz a.zip; do
   done
 done
 [ ! -e above.binvox ] && [ ! -e ../above.binvox ] && [ -e from-a.zip/_/_/above.binvox ] || fail "a member leads out of the folder"
+cmp folder/torus.binvox "from-a.zip/stühle/stuhl.binvox" || fail "a name beyond ASCII"
 # Shards take their share of an archive each.
 batch a.tar.gz -o shards --shard 0/3 >/dev/null
 batch a.tar.gz -o shards --shard 2/3 >/dev/null

@@ -58,6 +58,24 @@ run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --forma
 run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'
 run 'voxmend batch data/a -o fixed --no-grid --repair "--format off" --pictures 0 && find fixed -name "*.off" | sort'
 run 'voxmend batch data/a --dry-run 2 -r 8'
+# Folders as in ModelNet tell class and split.
+mkdir -p net/chair/train net/chair/test
+cp in/cube.off net/chair/train/chair_1.off
+cp in/torus.off net/chair/test/chair_2.off
+run 'voxmend batch net -o netted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" netted/.batch/plan.jsonl'
+# Inputs are never outputs, and no two outputs are the same.
+mkdir clash
+cp in/cube.off clash/a.off
+cp in/cube.off clash/a.repaired.off
+run 'cd clash && voxmend batch "*.off" -o . --no-grid --repair "--format off"; ls; cd ..'
+run 'voxmend batch clash -o clashed --format ply --repair "--format ply"'
+# Options of one mesh are about its grid; names that are no UTF-8, and too long ones, cost themselves alone.
+printf 'path,id,options\n../in/cube.off,report,--rep=x.json\n../in/cube.off,help,--help\n../in/cube.off,v1.5,-r 4\n../in/cube.off,%s/long,\n' "$(printf '%0300d' 0)" >data/own.csv
+run 'voxmend batch data/own.csv -o own -r 8 --pictures 0; cut -f 1-4 own/failures.tsv | sed "s/00*/0/"; find own -name "*.binvox"'
+mkdir latin
+cp in/cube.off "latin/$(printf 'st\374hl.off')"
+run 'voxmend batch latin -o latin-out -r 8 --pictures 0; cut -f 1-4 latin-out/failures.tsv'
+run 'voxmend batch clash/a.off -o many -r 4 --augment "-n 1200 -r 4" --pictures 0 && voxmend batch verify many && ls many/clash/a.variants | wc -l'
 # What is refused before anything is made.
 run 'voxmend batch data'
 run 'voxmend batch -o grids'

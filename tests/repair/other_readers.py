@@ -164,7 +164,7 @@ def grids(tally, given, work):
 def located(tally, given, work):
     path = os.path.join(work, "wrong.ply")
     for mesh in list(meshes_of([given.samples]))[:8]:
-        run(given.program, "info", mesh, "--locate", path, "-q").check_returncode()
+        run(given.program, "info", mesh, "--force", "--locate", path, "-q").check_returncode()
         for name, judge in JUDGES:
             if name == "PyMeshLab":
                 read = lambda: pymeshlab.MeshSet(verbose=False).load_new_mesh(path)
