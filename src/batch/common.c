@@ -35,6 +35,7 @@ bool batch_fail_errno(batch_error *error, const char *format, ...) {
   va_end(arguments);
   if (used >= 0 && (size_t)used < sizeof error->text)
     snprintf(error->text + used, sizeof error->text - (size_t)used, ": %s", strerror(reason));
+  errno = reason; /* still what it was */
   return false;
 }
 

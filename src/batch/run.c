@@ -21,6 +21,13 @@ bool batch_run_stops(const run *r) {
 
 /* ---- Waiting ---- */
 
+static void occupy(run *r, batch_slot *slot) {
+  if (!slot->is_hashing)
+    r->manifest->items[slot->items[0]].is_in_flight = true;
+  slot->is_used = true;
+  r->in_flight++;
+}
+
 static void release(run *r, batch_slot *slot) {
   if (!slot->is_hashing)
     r->manifest->items[slot->items[0]].is_in_flight = false;
@@ -163,12 +170,11 @@ static bool send_request(run *r, batch_slot *slot, json_t *job, int input, const
   char *text = job ? json_dumps(job, JSON_COMPACT) : NULL;
   bool fits = text && strlen(text) < BATCH_REQUEST_MAX;
   json_decref(job);
-  if (fits) {
-    slot->is_used = true;
-    r->in_flight++;
-    while (!batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits))
-      wait_a_while(r, -1, false);
-  }
+  if (fits)
+    occupy(r, slot);
+  while (fits && slot->is_used && /* until it is sent, or its zygote is lost while we wait for room */
+         !batch_zygote_send(&r->zygote, (uint64_t)(slot - r->slots), text, input, limits))
+    wait_a_while(r, -1, false);
   free(text);
   return fits;
 }
@@ -193,11 +199,12 @@ bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
         json_pack("{s:s, s:o}", "stage", "options", "message", batch_json_string(r->error->text)));
   }
   if (!batch_make_folders(r, item->output)) {
+    int reason = errno;
     json_decref(job);
-    return is_of_its_name(errno) ? batch_end_item(r, index, BATCH_FAILED,
-                                                  json_pack("{s:s, s:o}", "stage", "write", "message",
-                                                            batch_json_string(r->error->text)))
-                                 : batch_break(r);
+    return is_of_its_name(reason) ? batch_end_item(r, index, BATCH_FAILED,
+                                                   json_pack("{s:s, s:o}", "stage", "write", "message",
+                                                             batch_json_string(r->error->text)))
+                                  : batch_break(r);
   }
   if (!note_start(r, item, is_alone)) {
     json_decref(job);
@@ -208,7 +215,7 @@ bool batch_give_out(run *r, int64_t index, int input, bool is_alone) {
     return batch_end_item(
         r, index, BATCH_FAILED,
         json_pack("{s:s, s:s}", "stage", "start", "message", "its names and options are too long together"));
-  return item->is_in_flight = true;
+  return true;
 }
 
 /** Where it is too long to be sent they are not told to be duplicates. */
@@ -253,7 +260,6 @@ static bool has_room(run *r) {
 
 /** A second signal does not wait for those at work. */
 static void stop_at_once(run *r) {
-  r->tally->left_in_flight = r->in_flight;
   batch_zygote_end(&r->zygote);
   r->in_flight = 0;
 }

@@ -42,7 +42,6 @@ typedef struct batch_tally {
   int64_t total, done_before;     /**< done_before: in a run before */
   int64_t fresh;                  /**< ended in this run */
   double started_ms;
-  int64_t left_in_flight; /**< stopped at once by a second signal */
 } batch_tally;
 
 /** How a run ended. */
