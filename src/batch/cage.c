@@ -3,12 +3,14 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/sched.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -31,35 +33,38 @@ static bool take_space_of_users(void) {
          write_file("/proc/self/uid_map", users) && write_file("/proc/self/gid_map", groups);
 }
 
-/** From the next fork on, children are in a new space. */
-static bool enter(int space) {
-  return setns(space, CLONE_NEWPID) == 0 && unshare(CLONE_NEWPID) == 0;
+/** As fork, but the child is the first process of a new space; -1 where that cannot be. */
+static pid_t fork_space(void) {
+  struct clone_args how = {.flags = CLONE_NEWPID, .exit_signal = SIGCHLD};
+  return (pid_t)syscall(SYS_clone3, &how, sizeof how);
 }
 
-/** In a child, as what cannot be finished would be left half done. */
-static bool can_take_space_of_users(void) {
+static bool has_ended_well(pid_t id) {
   int status;
-  pid_t id = fork();
-  if (id == 0)
-    _exit(take_space_of_users() && unshare(CLONE_NEWPID) == 0 ? 0 : 1);
   while (id > 0 && waitpid(id, &status, 0) < 0)
     if (errno != EINTR)
       return false;
   return id > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+static bool can_fork_space(void) {
+  pid_t id = fork_space();
+  if (id == 0)
+    _exit(0);
+  return has_ended_well(id);
+}
+
+/** In a child, as what cannot be finished would be left half done. */
+static bool can_take_space_of_users(void) {
+  pid_t id = fork();
+  if (id == 0)
+    _exit(take_space_of_users() && can_fork_space() ? 0 : 1);
+  return has_ended_well(id);
+}
+
 batch_cage batch_cage_open(void) {
-  batch_cage cage = {open("/proc/self/ns/pid", O_RDONLY | O_CLOEXEC)};
-  if (cage.space < 0)
-    return cage;
-  bool good = enter(cage.space) || (can_take_space_of_users() && take_space_of_users() && enter(cage.space));
-  if (good)
-    good = setns(cage.space, CLONE_NEWPID) == 0;
-  if (!good) {
-    close(cage.space);
-    cage.space = -1;
-  }
-  return cage;
+  bool good = can_fork_space() || (can_take_space_of_users() && take_space_of_users() && can_fork_space());
+  return (batch_cage){good};
 }
 
 /* ---- The first process of a space ---- */
@@ -118,18 +123,16 @@ static void be_first(int end) {
 pid_t batch_cage_fork(const batch_cage *cage, int *status) {
   int ends[2];
   *status = -1;
-  if (cage->space < 0)
+  if (!cage->has_spaces)
     return fork();
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     return -1;
-  bool good = enter(cage->space);
-  pid_t id = good ? fork() : -1;
+  pid_t id = fork_space();
   if (id == 0) {
     close(ends[0]);
     be_first(ends[1]);
     return 0;
   }
-  setns(cage->space, CLONE_NEWPID);
   close(ends[1]);
   if (id < 0) {
     close(ends[0]);

@@ -12,7 +12,7 @@
 #include <sys/types.h>
 
 typedef struct batch_cage {
-  int space; /**< our own space of processes; -1 = there are no others */
+  bool has_spaces; /**< whether the system gives us any */
 } batch_cage;
 
 /** Finds out whether spaces can be made, if need be by taking a space of users first. */

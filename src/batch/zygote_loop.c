@@ -154,7 +154,7 @@ static void reap(zygote *z) {
   while ((id = wait4(-1, &status, WNOHANG, &usage)) > 0) {
     int index = find_child(z, id);
     if (index >= 0) {
-      z->has_strays |= z->cage.space < 0; /* it may have left some: they are ours now */
+      z->has_strays |= !z->cage.has_spaces; /* it may have left some: they are ours now */
       collect(z, index, status, &usage);
     }
   }
@@ -208,7 +208,7 @@ static void start_child(zygote *z, const batch_request *head, const char *text, 
               open_stream(&c.result, BATCH_RESULT_MAX, &result);
   pid_t own = getpid();
   c.id = good ? batch_cage_fork(&z->cage, &c.status) : -1;
-  if (c.id == 0 && z->cage.space < 0 && !batch_child_bind(own))
+  if (c.id == 0 && !z->cage.has_spaces && !batch_child_bind(own))
     _exit(1);
   if (c.id == 0)
     be_child(z, head, text, input, message, result);
