@@ -26,10 +26,12 @@ int batch_signal(void) {
 }
 
 static void watch_signals(void) {
-  struct sigaction action = {.sa_handler = on_signal}; /* no SA_RESTART: waiting ends */
+  struct sigaction action = {.sa_handler = on_signal}, before; /* no SA_RESTART: waiting ends */
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
-  sigaction(SIGHUP, &action, NULL);
+  if (sigaction(SIGHUP, NULL, &before) == 0 &&
+      before.sa_handler != SIG_IGN) /* else nohup has asked to go on */
+    sigaction(SIGHUP, &action, NULL);
   signal(SIGPIPE, SIG_IGN);
 }
 

@@ -79,8 +79,10 @@ void cli_progress_init(cli_run *cli) {
     cli->progress = "never";
   cli->limits.progress = on_progress;
   cli->limits.payload = cli;
-  struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART}, before;
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
-  sigaction(SIGHUP, &action, NULL);
+  if (sigaction(SIGHUP, NULL, &before) == 0 &&
+      before.sa_handler != SIG_IGN) /* else nohup has asked to go on */
+    sigaction(SIGHUP, &action, NULL);
 }

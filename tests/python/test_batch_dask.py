@@ -69,7 +69,9 @@ class Dask(unittest.TestCase):
             node.wait()
 
     def start(self, *words, **options):
-        node = subprocess.Popen([sys.executable, *words], env=self.environment, cwd=self.folder.name, **options)
+        # Ctrl-C ends them, also where the tests are in the background and it is ignored.
+        node = subprocess.Popen([sys.executable, *words], env=self.environment, cwd=self.folder.name,
+                                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL), **options)
         self.nodes.append(node)
         return node
 
