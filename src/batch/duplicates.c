@@ -121,7 +121,7 @@ static void mark(run *r, keyed *keys, int64_t count) {
 
 void batch_find_duplicates(run *r) {
   enum { ROUNDS = 3 };
-  hashing h = {NULL};
+  hashing h = {0};
   h.items = with_equal_size(r, &h.count);
   keyed *keys = malloc((size_t)(h.count + 1) * sizeof *keys);
   if (h.items && keys) {

@@ -157,7 +157,7 @@ static void finalize(database *d) {
 }
 
 bool batch_export_sqlite(const char *output, const char *path, int64_t *rows, batch_error *error) {
-  database d = {NULL};
+  database d = {0};
   char *temporary = NULL;
   if (asprintf(&temporary, "%s.%ld.tmp", path, (long)getpid()) < 0)
     return batch_fail(error, "out of memory: free some");
