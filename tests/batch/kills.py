@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A batch that is ended again and again.
 
-kills.py VOXMEND HOSTILE SAMPLES [MESHES] [--meshes N] [--kills N] [--seed N]
+kills.py VOXMEND HOSTILE SAMPLES [MESHES] [--meshes N] [--kills N] [--seed N] [--time-limit SECONDS]
 
 Meshes, one in fifty of them hostile (tests/batch/hostile.c, damaged files, files that announce more than there is), go
 through a batch once undisturbed. Then the same batch is run, and at random moments its supervisor, its zygote or one of
@@ -83,7 +83,7 @@ class Batch:
     def __init__(self, arguments, folder, output):
         self.output = output
         self.command = [arguments.voxmend, "batch", folder, "-o", output, "-r", "24", "--reports", "-j", "3",
-                        "--time-limit", "1", "--memlimit", "64M", "--pictures", "0", "--progress", "never"]
+                        "--time-limit", arguments.time_limit, "--memlimit", "64M", "--pictures", "0", "--progress", "never"]
         self.environment = dict(os.environ, LD_PRELOAD=arguments.hostile)
 
     def start(self):
@@ -184,6 +184,7 @@ def main():
     parser.add_argument("--meshes", type=int, default=400)
     parser.add_argument("--kills", type=int, default=12)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--time-limit", default="4", help="of a mesh, in seconds: no good one may take so long")
     arguments = parser.parse_args()
     chance = random.Random(arguments.seed)
     work = tempfile.mkdtemp(prefix="voxmend-kills-")

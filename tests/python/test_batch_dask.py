@@ -46,7 +46,7 @@ class Dask(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        cls.count = make_dataset(cls.at("in"), copies=6)
+        cls.count = make_dataset(cls.at("in"), copies=4)
         cls.wanted = cls.at("wanted")
         cls.summary = voxmend.batch.run(cls.at("in"), cls.wanted, options=OPTIONS)
         cls.environment = dict(os.environ, DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT="3s",
