@@ -204,6 +204,28 @@ static int check(cli_run *cli, const batch_wish *wish) {
                         : batch_export_command(cli, folder, wish->to, wish->output);
 }
 
+/** What was wanted, once the command line is read. */
+static int do_wish(cli_run *cli, batch_wish *wish) {
+  if (cli->argument_count == 2 && is_check(cli->arguments[0]))
+    return cli_start(cli) ? check(cli, wish) : CLI_FAILED;
+  if (wish->to)
+    return cli_usage(cli, "--to goes with 'voxmend batch export DIR'"), cli->status;
+  if (cli->argument_count == 0)
+    return cli_usage(cli, "no input is named: folders, meshes, lists or archives"), cli->status;
+  if (!wish->output && wish->dry_run)
+    wish->output = "/nonexistent"; /* nothing is written there */
+  if (!wish->output)
+    return cli_usage(cli, "-o DIR is missing"), cli->status;
+  batch_maker maker = {.wish = wish, .output = wish->output};
+  if (batch_try_options(cli, &maker) == CLI_STOP)
+    return cli->status;
+  uint64_t each = cli->limits.memory_limit;
+  cli->limits.memory_limit = 0; /* of a mesh, not of this program */
+  bool started = cli_start(cli);
+  cli->limits.memory_limit = each;
+  return started ? run_inputs(cli, wish, &maker) : CLI_FAILED;
+}
+
 static int run(cli_run *cli) {
   batch_wish wish = {.format = "binvox",
                      .threads = 1,
@@ -211,26 +233,7 @@ static int run(cli_run *cli) {
                      .time_limit = 300,
                      .file_limit = UINT64_C(64) << 30,
                      .pictures = 48};
-  if (batch_read_arguments(cli, &wish) == CLI_STOP)
-    return cli->status;
-  if (cli->argument_count == 2 && is_check(cli->arguments[0]))
-    return cli_start(cli) ? check(cli, &wish) : CLI_FAILED;
-  if (wish.to)
-    return cli_usage(cli, "--to goes with 'voxmend batch export DIR'"), cli->status;
-  if (cli->argument_count == 0)
-    return cli_usage(cli, "no input is named: folders, meshes, lists or archives"), cli->status;
-  if (!wish.output && wish.dry_run)
-    wish.output = "/nonexistent"; /* nothing is written there */
-  if (!wish.output)
-    return cli_usage(cli, "-o DIR is missing"), cli->status;
-  batch_maker maker = {.wish = &wish, .output = wish.output};
-  if (batch_try_options(cli, &maker) == CLI_STOP)
-    return cli->status;
-  uint64_t each = cli->limits.memory_limit;
-  cli->limits.memory_limit = 0; /* of a mesh, not of this program */
-  bool started = cli_start(cli);
-  cli->limits.memory_limit = each;
-  int status = started ? run_inputs(cli, &wish, &maker) : CLI_FAILED;
+  int status = batch_read_arguments(cli, &wish) == CLI_STOP ? cli->status : do_wish(cli, &wish);
   batch_words_free(&wish.grid_options);
   return status;
 }
