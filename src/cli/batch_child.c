@@ -203,9 +203,14 @@ static json_t *make_outputs(const json_t *job, const char *root) {
   json_t *result = json_pack("{s:[]}", "warnings");
   if (do_commands(result, job, root)) {
     size_t warnings = json_array_size(json_object_get(result, "warnings"));
-    json_object_set_new(result, "status",
-                        json_string(batch_status_names[warnings ? BATCH_DEGRADED : BATCH_OK]));
-    json_object_set_new(result, "outputs", list_files(job, root));
+    json_t *files = list_files(job, root);
+    batch_status status = !files ? BATCH_FAILED : warnings ? BATCH_DEGRADED : BATCH_OK;
+    json_object_set_new(result, "status", json_string(batch_status_names[status]));
+    if (files)
+      json_object_set_new(result, "outputs", files);
+    else
+      json_object_set_new(result, "message",
+                          json_string("its options keep it from writing what was asked for"));
   }
   digest_input(result, job); /* behind the work: what cannot be read has been told in other words */
   return result;

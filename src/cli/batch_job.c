@@ -71,7 +71,7 @@ static bool check_own(const batch_words *words, int first, batch_error *error) {
     const char *word = words->words[w];
     size_t length = strncmp(word, "--", 2) == 0 ? strcspn(word + 2, "=") : 0;
     bool is_refused = strncmp(word, "-o", 2) == 0 || strcmp(word, "-h") == 0 || strcmp(word, "--") == 0;
-    for (size_t r = 0; length >= 3 && r < sizeof refused / sizeof *refused; r++)
+    for (size_t r = 0; length > 0 && r < sizeof refused / sizeof *refused; r++)
       is_refused = is_refused || strncmp(word + 2, refused[r], length) == 0;
     if (is_refused)
       return batch_fail(error, "its options have %s, which is for all meshes alike", word);

@@ -70,8 +70,10 @@ cp in/cube.off clash/a.repaired.off
 run 'cd clash && voxmend batch "*.off" -o . --no-grid --repair "--format off"; ls; cd ..'
 run 'voxmend batch clash -o clashed --format ply --repair "--format ply"'
 # Options of one mesh are about its grid; names that are no UTF-8, and too long ones, cost themselves alone.
-printf 'path,id,options\n../in/cube.off,report,--rep=x.json\n../in/cube.off,help,--help\n../in/cube.off,v1.5,-r 4\n../in/cube.off,%s/long,\n' "$(printf '%0300d' 0)" >data/own.csv
+printf 'path,id,options\n../in/cube.off,report,--rep=x.json\n../in/cube.off,help,--help\n../in/cube.off,dry,--dr\n../in/cube.off,v1.5,-r 4\n../in/cube.off,%s/long,\n' "$(printf '%0300d' 0)" >data/own.csv
 run 'voxmend batch data/own.csv -o own -r 8 --pictures 0; cut -f 1-4 own/failures.tsv | sed "s/00*/0/"; find own -name "*.binvox"'
+# Options that keep a command from writing are no success.
+run 'voxmend batch clash/a.off -o helped -r 4 --view --help --pictures 0; cut -f 1-4 helped/failures.tsv'
 mkdir latin
 cp in/cube.off "latin/$(printf 'st\374hl.off')"
 run 'voxmend batch latin -o latin-out -r 8 --pictures 0; cut -f 1-4 latin-out/failures.tsv'
