@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Every mesh of the shared collection goes through info, repair and voxelize; files of the malformed/ folder may be
 # refused, with one line and exit status 1. Skipped where the collection is not there.
-# RESOLUTION=N chooses another resolution than 64; REFUSED=FILE keeps the list of the refused files and the reasons.
+# RESOLUTION=N chooses another resolution than 64; MESH_BYTES=N leaves out what is larger; REFUSED=FILE keeps the list of the refused files and the reasons.
 set -eu
 meshes=$SRCDIR/../shared/meshes
 [ -d "$meshes" ] || exit 77
 work=$(mktemp -d "${TMPDIR:-/tmp}/voxmend-meshes.XXXXXX")
 trap 'rm -rf "$work"' EXIT
-find "$meshes" -type f ! -name '*.tsv' ! -name '*.mtl' ! -name '*.md' | LC_ALL=C sort >"$work/list"
+find "$meshes" -type f ! -name '*.tsv' ! -name '*.mtl' ! -name '*.md' ${MESH_BYTES:+-size -"$MESH_BYTES"c} | LC_ALL=C sort >"$work/list"
 bad=0
 count=0
 : >"$work/refused"
