@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of sparse sets of voxels: they check arguments and call down. */
 #include "base/sized.h"
+#include "grid/octree_cut.h"
 #include "gridio/formats/coords.h"
+#include "gridio/formats/octree_file.h"
+#include "gridio/sparse_read.h"
 #include "gridio/sparse_write.h"
 #include "voxel/sparse/sparse.h"
 
@@ -122,4 +125,68 @@ vxm_status vxm_grid_write_coords(const vxm_grid *grid, const char *path, vxm_err
   if (!grid || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "coordinates: an argument is NULL");
   return vxm_gridio_coords_grid(grid, path, error);
+}
+
+int64_t vxm_sparse_warning_count(const vxm_sparse *sparse) {
+  return sparse ? sparse->warnings.count : 0;
+}
+
+const char *vxm_sparse_warning(const vxm_sparse *sparse, int64_t index) {
+  return sparse && index >= 0 && index < sparse->warnings.count ? sparse->warnings.text[index] : "";
+}
+
+vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
+                             const int64_t end[3], vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !sparse || !begin || !end)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = vxm_octree_check_box(&sparse->space, begin, end, error);
+  return status == VXM_OK ? vxm_octree_cut(out, sparse, begin, end, error) : status;
+}
+
+/* ---- Files ---- */
+
+vxm_status vxm_sparse_read(vxm_sparse **out, vxm_context *context, const char *path, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  return vxm_gridio_read_sparse(out, context, path, error);
+}
+
+vxm_status vxm_sparse_file_open(vxm_sparse_file **out, vxm_context *context, const char *path,
+                                vxm_error *error) {
+  vxm_input input;
+  if (out)
+    *out = NULL;
+  if (!out || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = vxm_input_open(&input, context, path, error);
+  return status == VXM_OK ? vxm_octree_file_open(out, &input, error) : status;
+}
+
+const vxm_space *vxm_sparse_file_space(const vxm_sparse_file *file) {
+  return file ? &file->space : NULL;
+}
+
+int64_t vxm_sparse_file_count(const vxm_sparse_file *file) {
+  return file ? (int64_t)file->voxels : 0;
+}
+
+vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                  const int64_t end[3], vxm_error *error) {
+  vxm_sparse *part;
+  if (out)
+    *out = NULL;
+  if (!out || !file || !begin || !end)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = vxm_octree_check_box(&file->space, begin, end, error);
+  if (status == VXM_OK)
+    status = vxm_octree_file_load(&part, file, begin, end, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_octree_cut(out, part, begin, end, error);
+  vxm_sparse_destroy(part);
+  return status;
 }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS };
+enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_SPARSE };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
@@ -17,6 +17,9 @@ static const cli_option known_options[] = {
     {KEY_FORMAT, "format", "F",
      "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
      "output]"},
+    {KEY_SPARSE, "sparse", NULL,
+     "combine octrees, whose memory follows the surface where files are .octree or\n"
+     ".vdb [where the output is .octree]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_THRESHOLD,
@@ -27,7 +30,7 @@ enum { OR, AND, MINUS, XOR };
 
 typedef struct request {
   const char *output, *format;
-  bool force, keep_polygons, keep_contacts;
+  bool force, sparse, keep_polygons, keep_contacts;
   vxm_threshold_options threshold;
 } request;
 
@@ -41,6 +44,8 @@ static int read_options(cli_run *cli, request *out) {
       out->format = value;
     else if (key == KEY_FORCE)
       out->force = true;
+    else if (key == KEY_SPARSE)
+      out->sparse = true;
     else if (key == KEY_CONTACTS)
       out->keep_contacts = true;
     else if (key == KEY_POLYGONS) {
@@ -76,7 +81,24 @@ static int check_names(cli_run *cli, request *out) {
   cli_writes(cli, "-o", out->output, cli_has_json(out->format));
   if (cli_check_names(cli) == CLI_STOP)
     return CLI_STOP;
+  out->sparse |= strcmp(out->format, "octree") == 0;
   return cli_check_surface_file(cli, out->output, out->format, out->force);
+}
+
+/** A set of voxels, as one of the two. */
+typedef struct operand {
+  vxm_grid *grid;
+  vxm_sparse *sparse;
+} operand;
+
+static void free_operand(operand *set) {
+  vxm_grid_destroy(set->grid);
+  vxm_sparse_destroy(set->sparse);
+  *set = (operand){NULL, NULL};
+}
+
+static const vxm_space *space_of(const operand *set) {
+  return set->sparse ? vxm_sparse_space(set->sparse) : vxm_grid_space(set->grid);
 }
 
 static int read_bits(cli_run *cli, vxm_grid **out, const request *given, const char *path) {
@@ -90,6 +112,28 @@ static int read_bits(cli_run *cli, vxm_grid **out, const request *given, const c
   }
   *out = values.grid;
   return CLI_DONE;
+}
+
+/** As an octree. Numbers become bits in a grid, and standard input can be read but once. */
+static int read_octree(cli_run *cli, vxm_sparse **out, const request *given, const char *path) {
+  vxm_status status = VXM_ERROR_NUMBERS;
+  if (strcmp(path, "-") != 0 && !cli_threshold_given(&given->threshold))
+    status = vxm_sparse_read(out, cli->context, path, &cli->error);
+  for (int64_t i = 0; i < vxm_sparse_warning_count(*out); i++)
+    cli_warn(cli, "%s: %s", path, vxm_sparse_warning(*out, i));
+  if (status != VXM_ERROR_NUMBERS)
+    return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+  cli->error = (vxm_error)VXM_ERROR_INIT;
+  vxm_grid *grid = NULL;
+  int result = read_bits(cli, &grid, given, path);
+  if (result == CLI_DONE && vxm_sparse_from_grid(out, grid, &cli->error) != VXM_OK)
+    result = cli_fail(cli);
+  vxm_grid_destroy(grid);
+  return result;
+}
+
+static int read_operand(cli_run *cli, operand *out, const request *given, const char *path) {
+  return given->sparse ? read_octree(cli, &out->sparse, given, path) : read_bits(cli, &out->grid, given, path);
 }
 
 /** Voxels are combined by index, so that both grids have to be one space; files hold it to about nine digits.
@@ -125,7 +169,7 @@ static uint64_t combine_word(uint64_t a, uint64_t b, int operation) {
   return operation == OR ? a | b : operation == AND ? a & b : operation == MINUS ? a & ~b : a ^ b;
 }
 
-static int combine(cli_run *cli, vxm_grid *grid, const vxm_grid *other, int operation) {
+static int combine_grids(cli_run *cli, vxm_grid *grid, const vxm_grid *other, int operation) {
   const int64_t *dims = vxm_grid_space(grid)->dims;
   size_t count = (size_t)(vxm_grid_row_words(grid) * dims[1] * dims[2]);
   const uint64_t *a = vxm_grid_words(grid), *b = vxm_grid_words(other);
@@ -139,24 +183,49 @@ static int combine(cli_run *cli, vxm_grid *grid, const vxm_grid *other, int oper
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
+static int combine_octrees(cli_run *cli, vxm_sparse **set, const vxm_sparse *other, int operation) {
+  static const vxm_set_operation meant[] = {VXM_SET_UNION, VXM_SET_INTERSECTION, VXM_SET_DIFFERENCE,
+                                            VXM_SET_SYMMETRIC_DIFFERENCE};
+  vxm_sparse *combined;
+  if (vxm_sparse_combine(&combined, *set, other, meant[operation], &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  vxm_sparse_destroy(*set);
+  *set = combined;
+  return CLI_DONE;
+}
+
 /** From left to right. */
-static int combine_all(cli_run *cli, vxm_grid **out, const request *given, const int *words) {
+static int combine_all(cli_run *cli, operand *out, const request *given, const int *words) {
   const char *first = cli_shown(cli->arguments[0], "<stdin>");
-  int status = read_bits(cli, out, given, cli->arguments[0]);
+  int status = read_operand(cli, out, given, cli->arguments[0]);
   for (int i = 1; i < cli->argument_count && status == CLI_DONE; i++) {
-    vxm_grid *other = NULL;
-    status = read_bits(cli, &other, given, cli->arguments[i]);
+    operand other = {NULL, NULL};
+    status = read_operand(cli, &other, given, cli->arguments[i]);
     const char *paths[2] = {first, cli_shown(cli->arguments[i], "<stdin>")};
     if (status == CLI_DONE)
-      status = check_spaces(cli, vxm_grid_space(*out), vxm_grid_space(other), paths);
+      status = check_spaces(cli, space_of(out), space_of(&other), paths);
     if (status == CLI_DONE)
-      status = combine(cli, *out, other, words[i - 1]);
-    vxm_grid_destroy(other);
+      status = given->sparse ? combine_octrees(cli, &out->sparse, other.sparse, words[i - 1])
+                             : combine_grids(cli, out->grid, other.grid, words[i - 1]);
+    free_operand(&other);
   }
   return status;
 }
 
-static json_t *make_report(const cli_run *cli, const request *given, const vxm_grid *grid, const int *words) {
+/** What was made: counted and hashed once. */
+typedef struct outcome {
+  const vxm_space *space;
+  int64_t voxels;
+  uint64_t hash;
+} outcome;
+
+static outcome outcome_of(const operand *set) {
+  if (set->sparse)
+    return (outcome){vxm_sparse_space(set->sparse), vxm_sparse_count(set->sparse), vxm_sparse_hash(set->sparse)};
+  return (outcome){vxm_grid_space(set->grid), vxm_grid_count(set->grid), vxm_grid_hash(set->grid)};
+}
+
+static json_t *make_report(const cli_run *cli, const request *given, const outcome *made, const int *words) {
   json_t *report = json_object(), *inputs = json_array(), *names = json_array();
   for (int i = 0; i < cli->argument_count; i++)
     json_array_append_new(inputs, cli_json_text(cli->arguments[i]));
@@ -165,28 +234,31 @@ static json_t *make_report(const cli_run *cli, const request *given, const vxm_g
   json_object_set_new(report, "inputs", inputs);
   json_object_set_new(report, "operations", names);
   json_object_set_new(report, "output", cli_json_text(given->output));
-  json_object_set_new(report, "grid", cli_json_space(vxm_grid_space(grid)));
-  json_object_set_new(report, "voxels", json_integer(vxm_grid_count(grid)));
-  json_object_set_new(report, "hash", cli_json_hash(vxm_grid_hash(grid)));
+  json_object_set_new(report, "grid", cli_json_space(made->space));
+  json_object_set_new(report, "voxels", json_integer(made->voxels));
+  json_object_set_new(report, "hash", cli_json_hash(made->hash));
   json_object_set(report, "warnings", cli->warnings);
   return report;
 }
 
-static int write_grid(cli_run *cli, const request *given, const vxm_grid *grid, const int *words) {
+static int write_set(cli_run *cli, const request *given, const operand *set, const int *words) {
   vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
   write.format = given->format;
   write.keep_polygons = given->keep_polygons;
   write.keep_contacts = given->keep_contacts;
-  if (vxm_grid_write(grid, given->output, &write, &cli->error) != VXM_OK)
+  vxm_status status = set->sparse ? vxm_sparse_write(set->sparse, given->output, &write, &cli->error)
+                                  : vxm_grid_write(set->grid, given->output, &write, &cli->error);
+  if (status != VXM_OK)
     return cli_fail(cli);
+  const outcome made = outcome_of(set);
   cli_progress_clear(cli);
   if (cli_summary(cli)) {
-    cli_rows_space(cli, vxm_grid_space(grid));
-    cli_row(cli, "voxels", "%" PRId64, vxm_grid_count(grid));
-    cli_row(cli, "hash", "%016" PRIx64, vxm_grid_hash(grid));
+    cli_rows_space(cli, made.space);
+    cli_row(cli, "voxels", "%" PRId64, made.voxels);
+    cli_row(cli, "hash", "%016" PRIx64, made.hash);
     cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
   }
-  return cli_finish(cli, make_report(cli, given, grid, words));
+  return cli_finish(cli, make_report(cli, given, &made, words));
 }
 
 static int run(cli_run *cli) {
@@ -197,14 +269,14 @@ static int run(cli_run *cli) {
   if (!words)
     return cli_fail_text(cli, "out of memory for the command line");
   int status = CLI_FAILED;
-  vxm_grid *grid = NULL;
+  operand set = {NULL, NULL};
   if (read_formula(cli, words) == CLI_STOP || check_names(cli, &given) == CLI_STOP)
     status = cli->status;
   else if (cli_start(cli))
-    status = combine_all(cli, &grid, &given, words);
-  if (grid && status == CLI_DONE)
-    status = write_grid(cli, &given, grid, words);
-  vxm_grid_destroy(grid);
+    status = combine_all(cli, &set, &given, words);
+  if (status == CLI_DONE)
+    status = write_set(cli, &given, &set, words);
+  free_operand(&set);
   free(words);
   return status;
 }
@@ -223,7 +295,8 @@ const cli_command cli_command_combine = {
         "voxels by --threshold or --below; a file of set and clear voxels is taken as it is.\n\n"
         "Examples:\n"
         "  voxmend combine body.npy or lid.npy -o box.npy\n"
-        "  voxmend combine block.binvox minus drill.binvox minus slot.binvox -o part.stl",
+        "  voxmend combine block.binvox minus drill.binvox minus slot.binvox -o part.stl\n"
+        "  voxmend combine city.octree minus road.octree -o rest.octree",
     .options = known_options,
     .run = run,
 };

@@ -44,6 +44,14 @@ void vxm_sparse_destroy(vxm_sparse *sparse) {
   vxm_context_release(context);
 }
 
+uint64_t vxm_octree_box(const int64_t dims[3], const int64_t at[3]) {
+  uint64_t bits = 0;
+  for (int b = 0; b < 64; b++)
+    bits |= (uint64_t)(at[0] + b % 4 < dims[0] && at[1] + b / 4 % 4 < dims[1] && at[2] + b / 16 < dims[2])
+            << b;
+  return bits;
+}
+
 uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k) {
   size_t index = 0;
   for (int l = sparse->levels - 1; l >= 0; l--) {

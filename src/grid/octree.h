@@ -34,6 +34,7 @@ struct vxm_sparse {
   uint64_t *bricks;
   size_t brick_count;
   uint64_t serial; /**< no two have the same */
+  vxm_warnings warnings;
 };
 
 /** Levels of nodes that a space needs. */
@@ -56,6 +57,9 @@ static inline unsigned vxm_octree_child(unsigned x, unsigned y, unsigned z) {
 static inline unsigned vxm_octree_bit(int64_t i, int64_t j, int64_t k) {
   return (unsigned)((k & 3) * 16 + (j & 3) * 4 + (i & 3));
 }
+
+/** The voxels of a brick from `at` on that are within the dimensions. */
+uint64_t vxm_octree_box(const int64_t dims[3], const int64_t at[3]);
 
 /** Where a child lies: x, y and z. */
 static inline void vxm_octree_place(unsigned child, int64_t place[3]) {

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Set operations: both octrees are walked together, and what is made comes out in Morton order. */
-#include "grid/octree.h"
-
-#include <string.h>
+#include "grid/octree_growth.h"
 
 /** A node of an operand or a brick, or what stands for it. */
 typedef struct cell {
@@ -17,11 +15,8 @@ typedef struct bounds {
 
 typedef struct combination {
   const vxm_sparse *operand[2]; /**< NULL for a box */
-  vxm_sparse *result;
-  size_t node_capacity[VXM_OCTREE_LEVELS], brick_capacity;
+  vxm_octree_growth result;
   vxm_set_operation op;
-  vxm_status status;
-  vxm_error *error;
 } combination;
 
 static bounds apply(vxm_set_operation op, bounds a, bounds b) {
@@ -50,7 +45,7 @@ static bounds box_in(const combination *c, int level, const int64_t at[3]) {
   int64_t side = vxm_octree_side(level);
   bounds box = {UINT64_MAX, UINT64_MAX};
   for (int a = 0; a < 3; a++) {
-    int64_t left = vxm_max(c->result->space.dims[a] - at[a], 0);
+    int64_t left = vxm_max(c->result.sparse->space.dims[a] - at[a], 0);
     box.low &= before[vxm_min(left / side, 4)][a];
     box.high &= before[vxm_min((left + side - 1) / side, 4)][a];
   }
@@ -78,87 +73,48 @@ static cell child_of(const combination *c, int which, int level, cell parent, bo
   return (cell){MIXED, vxm_octree_index(&c->operand[which]->nodes[level][parent.index], child)};
 }
 
-/** Voxels of a brick: z is the slowest, unlike in nodes. */
-static uint64_t box_bits(const combination *c, const int64_t at[3]) {
-  const int64_t *n = c->result->space.dims;
-  uint64_t bits = 0;
-  for (int b = 0; b < 64; b++)
-    bits |= (uint64_t)(at[0] + b % 4 < n[0] && at[1] + b / 4 % 4 < n[1] && at[2] + b / 16 < n[2]) << b;
-  return bits;
-}
-
 static bounds bits_of(const combination *c, int which, cell brick, const int64_t at[3]) {
   uint64_t bits = brick.kind == FULL ? UINT64_MAX : 0;
   if (brick.kind == MIXED)
     bits = c->operand[which]->bricks[brick.index];
   if (brick.kind == BOX)
-    bits = box_bits(c, at);
+    bits = vxm_octree_box(c->result.sparse->space.dims, at);
   return (bounds){bits, bits};
 }
 
-static cell add_brick(combination *c, uint64_t bits) {
-  vxm_sparse *result = c->result;
-  if (bits == 0 || bits == ~UINT64_C(0) || c->status != VXM_OK)
-    return (cell){bits ? FULL : EMPTY, 0};
-  c->status = vxm_grow(result->context, (void **)&result->bricks, &c->brick_capacity, result->brick_count + 1,
-                       sizeof *result->bricks, c->error);
-  if (c->status == VXM_OK)
-    result->bricks[result->brick_count++] = bits;
-  return (cell){MIXED, 0};
-}
-
-static cell add_node(combination *c, int level, vxm_octree_node node, bool always) {
-  vxm_sparse *result = c->result;
-  if (c->status != VXM_OK)
-    return (cell){EMPTY, 0};
-  if (!always && node.mixed == 0 && (node.full == 0 || node.full == ~UINT64_C(0)))
-    return (cell){node.full ? FULL : EMPTY, 0};
-  c->status = vxm_grow(result->context, (void **)&result->nodes[level], &c->node_capacity[level],
-                       result->node_count[level] + 1, sizeof *result->nodes[level], c->error);
-  if (c->status == VXM_OK)
-    result->nodes[level][result->node_count[level]++] = node;
-  return (cell){MIXED, 0};
-}
-
 /** Two nodes of a level at the same place. */
-static cell combine_nodes(combination *c, int level, cell a, cell b, const int64_t at[3]) {
+static vxm_octree_cell combine_nodes(combination *c, int level, cell a, cell b, const int64_t at[3]) {
   int64_t side = vxm_octree_side(level);
-  size_t first = level > 0 ? c->result->node_count[level - 1] : c->result->brick_count;
+  size_t first = vxm_octree_growth_next(&c->result, level);
   bounds p = children_of(c, 0, level, a, at), q = children_of(c, 1, level, b, at), all = apply(c->op, p, q);
-  vxm_octree_node node = {.full = all.low};
-  for (uint64_t open = all.high & ~all.low; open && c->status == VXM_OK; open &= open - 1) {
+  uint64_t mixed = 0, full = all.low;
+  for (uint64_t open = all.high & ~all.low; open && c->result.status == VXM_OK; open &= open - 1) {
     unsigned child = (unsigned)__builtin_ctzll(open);
     int64_t below[3];
     vxm_octree_place(child, below);
     for (int i = 0; i < 3; i++)
       below[i] = at[i] + below[i] * side;
     cell x = child_of(c, 0, level, a, p, child), y = child_of(c, 1, level, b, q, child);
-    cell made = level > 0 ? combine_nodes(c, level - 1, x, y, below)
-                          : add_brick(c, apply(c->op, bits_of(c, 0, x, below), bits_of(c, 1, y, below)).low);
-    node.mixed |= (uint64_t)(made.kind == MIXED) << child;
-    node.full |= (uint64_t)(made.kind == FULL) << child;
+    vxm_octree_cell made =
+        level > 0 ? combine_nodes(c, level - 1, x, y, below)
+                  : vxm_octree_growth_brick(
+                        &c->result, apply(c->op, bits_of(c, 0, x, below), bits_of(c, 1, y, below)).low);
+    mixed |= (uint64_t)(made == VXM_CELL_MIXED) << child;
+    full |= (uint64_t)(made == VXM_CELL_FULL) << child;
   }
-  node.first = node.mixed ? first : 0;
-  return add_node(c, level, node, level == c->result->levels - 1);
+  return vxm_octree_growth_node(&c->result, level, mixed, full, first);
 }
 
 vxm_status vxm_octree_combine(vxm_sparse **out, const vxm_sparse *a, const vxm_sparse *b,
                               vxm_set_operation op, vxm_error *error) {
-  combination c = {.operand = {a, b}, .op = op, .error = error};
-  vxm_status status = vxm_octree_new(&c.result, a->context, &a->space, error);
-  *out = NULL;
-  if (status != VXM_OK)
-    return status;
+  combination c = {.operand = {a, b}, .op = op};
   cell root = {MIXED, 0}, first = root;
   if (op == VXM_SET_COMPLEMENT) {
     c.operand[1] = a;
     first.kind = BOX;
   }
-  combine_nodes(&c, c.result->levels - 1, first, root, (int64_t[3]){0, 0, 0});
-  if (c.status != VXM_OK) {
-    vxm_sparse_destroy(c.result);
-    return c.status;
-  }
-  *out = c.result;
-  return VXM_OK;
+  vxm_octree_growth_begin(&c.result, a->context, &a->space, error);
+  if (c.result.status == VXM_OK)
+    combine_nodes(&c, c.result.sparse->levels - 1, first, root, (int64_t[3]){0, 0, 0});
+  return vxm_octree_growth_end(out, &c.result);
 }

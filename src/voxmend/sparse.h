@@ -50,10 +50,24 @@ VXM_API int64_t vxm_sparse_nodes(const vxm_sparse *sparse);
 /** Bytes that bricks and nodes take. */
 VXM_API uint64_t vxm_sparse_bytes(const vxm_sparse *sparse);
 
+/** Warnings from reading, one line each. */
+VXM_API int64_t vxm_sparse_warning_count(const vxm_sparse *sparse);
+/** One of them; "" if there is none of this number. */
+VXM_API const char *vxm_sparse_warning(const vxm_sparse *sparse, int64_t index);
+
 /** @return VXM_OK, VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 VXM_API vxm_status vxm_sparse_from_grid(vxm_sparse **out, const vxm_grid *grid, vxm_error *error);
 /** A new grid. @return as vxm_grid_create */
 VXM_API vxm_status vxm_sparse_to_grid(vxm_grid **out, const vxm_sparse *sparse, vxm_error *error);
+
+/**
+ * The voxels begin..end-1 along each axis as a new grid, which lies where they lie.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for a window that is empty or not within the dimensions;
+ * VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
+                                     const int64_t end[3], vxm_error *error);
 
 /** What two sets of voxels are combined to. */
 typedef enum vxm_set_operation {
@@ -91,6 +105,39 @@ VXM_API void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, 
  */
 VXM_API vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path,
                                     const vxm_grid_write_options *options, vxm_error *error);
+
+/**
+ * Reads a file of set voxels as an octree. Memory follows the surface for .octree, and for .vdb of bits; other
+ * formats go by way of a grid.
+ *
+ * @return as vxm_grid_read
+ */
+VXM_API vxm_status vxm_sparse_read(vxm_sparse **out, vxm_context *context, const char *path, vxm_error *error);
+
+/** An open .octree file, of which parts can be read. It does not change: several threads may read it. */
+typedef struct vxm_sparse_file vxm_sparse_file;
+
+/**
+ * Opens an .octree file: it is mapped, and its header and index are read.
+ *
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_FORMAT with the byte offset; VXM_ERROR_RANGE, VXM_ERROR_ARGUMENT,
+ * VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_sparse_file_open(vxm_sparse_file **out, vxm_context *context, const char *path,
+                                        vxm_error *error);
+/** Closes it; NULL is allowed. */
+VXM_API void vxm_sparse_file_close(vxm_sparse_file *file);
+/** Where its voxels lie. */
+VXM_API const vxm_space *vxm_sparse_file_space(const vxm_sparse_file *file);
+/** Number of set voxels, as the file tells it. */
+VXM_API int64_t vxm_sparse_file_count(const vxm_sparse_file *file);
+/**
+ * Reads the voxels begin..end-1 along each axis as a grid; only what they need of the file is looked at.
+ *
+ * @return as vxm_sparse_window; VXM_ERROR_FORMAT with the byte offset where the file is damaged
+ */
+VXM_API vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                          const int64_t end[3], vxm_error *error);
 
 /**
  * Writes the coordinates of all set voxels as .npy: int32, n rows of (i, j, k), sorted by i, then j, then k,

@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const int64_t *dims_of(const vxm_vdb_filling *f) {
-  return f->grid ? f->grid->space.dims : f->field->space.dims;
+  return f->grid ? f->grid->space.dims : f->pieces ? f->pieces->space.dims : f->field->space.dims;
 }
 
 /** The part of a cube that the space has, counted from its first voxel; false if there is none. */
@@ -40,7 +40,33 @@ static void or_byte(const vxm_vdb_filling *f, int64_t x, int64_t y, int64_t z, u
     row[x / 64 + 1] |= byte >> (64 - shift);
 }
 
+/** Bricks of a block, which need not begin where bricks do. */
+static void add_bricks(const vxm_vdb_filling *f, const int64_t at[3], const uint64_t bits[VXM_SINK_SIDE]) {
+  enum { ACROSS = 3 }; /* bricks that a block may meet */
+  uint64_t bricks[ACROSS][ACROSS][ACROSS] = {{{0}}};
+  int64_t first[3], off[3];
+  for (int a = 0; a < 3; a++) {
+    int64_t from = at[a] - f->low[a];
+    off[a] = from & 3; /* of a negative one too */
+    first[a] = from - off[a];
+  }
+  for (int x = 0; x < VXM_SINK_SIDE; x++)
+    for (uint64_t left = bits[x]; left; left &= left - 1) {
+      int bit = __builtin_ctzll(left);
+      int64_t i = off[0] + x, j = off[1] + bit / 8, k = off[2] + bit % 8;
+      bricks[i / 4][j / 4][k / 4] |= UINT64_C(1) << vxm_octree_bit(i, j, k);
+    }
+  for (int i = 0; i < ACROSS; i++)
+    for (int j = 0; j < ACROSS; j++)
+      for (int k = 0; k < ACROSS; k++)
+        if (bricks[i][j][k])
+          vxm_octree_pieces_brick(f->pieces, (int64_t[3]){first[0] + 4 * i, first[1] + 4 * j, first[2] + 4 * k},
+                                  bricks[i][j][k]);
+}
+
 void vxm_vdb_fill_bits(vxm_vdb_filling *f, const int64_t at[3], const uint64_t bits[VXM_SINK_SIDE]) {
+  if (f->pieces)
+    add_bricks(f, at, bits);
   if (!f->grid)
     return;
   for (unsigned y = 0; y < 8; y++) {
@@ -86,6 +112,10 @@ void vxm_vdb_fill_cube(vxm_vdb_filling *f, const int64_t at[3], int64_t side, fl
     return;
   if (f->grid) {
     set_cube(f, begin, end);
+    return;
+  }
+  if (f->pieces) {
+    vxm_octree_pieces_box(f->pieces, begin, end);
     return;
   }
   for (int64_t x = begin[0]; x < end[0]; x++)

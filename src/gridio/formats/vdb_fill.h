@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Blocks and cubes from a reader of voxels, put into a grid or a field. */
+/** Blocks and cubes from a reader of voxels, put into a grid, a field or an octree. */
 #ifndef VXM_GRIDIO_FORMATS_VDB_FILL_H
 #define VXM_GRIDIO_FORMATS_VDB_FILL_H
 
+#include "grid/octree_pieces.h"
 #include "gridio/common/values.h"
 #include "sandbox/voxel_sink.h"
 
-/** What is filled: one of the two. */
+/** What is filled: one of the three. */
 typedef struct vxm_vdb_filling {
   vxm_grid *grid;
   vxm_field *field; /**< of 32-bit floats */
-  int64_t low[3];   /**< index of voxel (0,0,0) of it */
+  vxm_octree_pieces *pieces;
+  int64_t low[3]; /**< index of voxel (0,0,0) of it */
 } vxm_vdb_filling;
 
 /* As the functions of vxm_voxel_sink. What lies beyond the space is left out. */

@@ -20,13 +20,15 @@ bool vxm_vdb_sniff(const vxm_input *input) {
 typedef struct receipt {
   vxm_voxel_sink sink;
   const vxm_input *input;
-  bool wants_numbers;
+  bool wants_numbers, wants_octree;
   vxm_bits_rule rule; /**< where bits are wanted */
   vxm_sink_grid grid;
   vxm_about about;
   vxm_scalar scalar; /**< of the numbers before they became floats */
   vxm_warnings warnings;
   vxm_vdb_filling filling;
+  vxm_octree_pieces pieces; /**< of an octree */
+  vxm_error fault;          /**< of these */
 } receipt;
 
 /* ---- What the file says ---- */
@@ -92,6 +94,8 @@ static vxm_status take_grid(void *payload, const vxm_sink_grid *grid, vxm_error 
   take_name(r);
   if (grid->grids > 1)
     vxm_warn(&r->warnings, "of its %" PRIu32 " grids \"%s\" is read", grid->grids, grid->name);
+  if (grid->is_numbers && r->wants_octree)
+    return VXM_ERROR_NUMBERS; /* read in another way */
   bool is_refused = grid->is_numbers && !r->wants_numbers && r->rule != VXM_BITS_NONE &&
                     (r->rule != VXM_BITS_ANY || !vxm_about_may_be_bits(&r->about, r->rule));
   return is_refused ? vxm_fail_numbers(error, r->input->name, vxm_scalar_name(r->scalar)) : VXM_OK;
@@ -150,6 +154,11 @@ static vxm_status take_extent(void *payload, const vxm_sink_extent *extent, vxm_
   r->sink.is_full = !r->wants_numbers && r->rule == VXM_BITS_NONE; /* the space was all */
   if (r->grid.is_numbers && !r->sink.is_full)
     return make_field(r, &space, extent->background, error);
+  if (r->wants_octree) {
+    r->pieces = (vxm_octree_pieces){.context = r->input->context, .space = space, .error = &r->fault};
+    r->filling.pieces = &r->pieces;
+    return VXM_OK;
+  }
   return vxm_grid_create(&r->filling.grid, r->input->context, &space, error);
 }
 
@@ -183,6 +192,7 @@ static vxm_status receive(receipt *r, vxm_error *error) {
   if (status != VXM_OK) {
     vxm_grid_destroy(r->filling.grid);
     vxm_field_destroy(r->filling.field);
+    vxm_free(input->context, r->pieces.list);
     r->filling = (vxm_vdb_filling){.grid = NULL};
   }
   return status;
@@ -240,6 +250,23 @@ vxm_status vxm_vdb_read_field(vxm_field **out, const vxm_input *input, vxm_error
   if (status == VXM_OK)
     status = r.filling.grid ? count_bits(out, r.filling.grid, &local) : describe(out, &r, &local);
   vxm_grid_destroy(r.filling.grid);
+  vxm_about_destroy(&r.about);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
+  return status;
+}
+
+vxm_status vxm_vdb_read_sparse(vxm_sparse **out, const vxm_input *input, vxm_error *error) {
+  receipt r = {.input = input, .wants_octree = true, .fault = VXM_ERROR_INIT};
+  vxm_error local = VXM_ERROR_INIT;
+  *out = NULL;
+  vxm_status status = receive(&r, &local);
+  if (status == VXM_OK) {
+    status = vxm_octree_pieces_end(out, &r.pieces);
+    local = r.fault;
+  }
+  if (status == VXM_OK)
+    (*out)->warnings = r.warnings;
   vxm_about_destroy(&r.about);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);

@@ -12,5 +12,7 @@ bool vxm_vdb_sniff(const vxm_input *input);
 vxm_status vxm_vdb_read(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error);
 /** And of numbers (vxm_grid_format.read_field), for grids of floats. */
 vxm_status vxm_vdb_read_field(vxm_field **out, const vxm_input *input, vxm_error *error);
+/** And of octrees (vxm_grid_format.read_sparse), for bool and mask grids; VXM_ERROR_NUMBERS for floats. */
+vxm_status vxm_vdb_read_sparse(vxm_sparse **out, const vxm_input *input, vxm_error *error);
 
 #endif

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "grid/octree_cut.h"
+
+#include <inttypes.h>
+
+typedef struct cut {
+  const vxm_sparse *sparse;
+  const int64_t *begin, *end;
+  vxm_grid *grid;
+} cut;
+
+/** Sets the voxels of a cube that the box has. */
+static void put_cube(const cut *c, const int64_t at[3], int64_t side) {
+  int64_t low[3], high[3];
+  for (int a = 0; a < 3; a++) {
+    low[a] = vxm_max(at[a], c->begin[a]) - c->begin[a];
+    high[a] = vxm_min(at[a] + side, c->end[a]) - c->begin[a];
+  }
+  for (int64_t k = low[2]; k < high[2]; k++)
+    for (int64_t j = low[1]; j < high[1]; j++)
+      vxm_row_set_span(vxm_grid_row(c->grid, j, k), low[0], high[0]);
+}
+
+/** Sets those of 4 voxels from x on that the row has; x counts from the box. */
+static void put_four(uint64_t *row, int64_t x, int64_t length, uint64_t bits) {
+  if (x < 0)
+    bits >>= -x;
+  x = vxm_max(x, 0);
+  if (length - x < 4)
+    bits &= vxm_low_bits((unsigned)(length - x));
+  unsigned shift = (unsigned)(x % 64);
+  row[x / 64] |= bits << shift;
+  if (shift > 60 && bits >> (64 - shift))
+    row[x / 64 + 1] |= bits >> (64 - shift);
+}
+
+static void put_brick(const cut *c, const int64_t at[3], uint64_t bits) {
+  for (int64_t k = vxm_max(at[2], c->begin[2]); k < vxm_min(at[2] + 4, c->end[2]); k++)
+    for (int64_t j = vxm_max(at[1], c->begin[1]); j < vxm_min(at[1] + 4, c->end[1]); j++) {
+      uint64_t four = bits >> (16 * (k - at[2]) + 4 * (j - at[1])) & 15;
+      if (four)
+        put_four(vxm_grid_row(c->grid, j - c->begin[1], k - c->begin[2]), at[0] - c->begin[0],
+                 c->end[0] - c->begin[0], four);
+    }
+}
+
+static bool meets(const cut *c, const int64_t at[3], int64_t side) {
+  bool yes = true;
+  for (int a = 0; a < 3; a++)
+    yes &= at[a] < c->end[a] && at[a] + side > c->begin[a];
+  return yes;
+}
+
+static void cut_node(const cut *c, int level, size_t index, const int64_t at[3]) {
+  const vxm_octree_node *node = &c->sparse->nodes[level][index];
+  int64_t side = vxm_octree_side(level);
+  for (uint64_t left = node->mixed | node->full; left; left &= left - 1) {
+    unsigned child = (unsigned)__builtin_ctzll(left);
+    int64_t place[3];
+    vxm_octree_place(child, place);
+    for (int a = 0; a < 3; a++)
+      place[a] = at[a] + place[a] * side;
+    if (!meets(c, place, side))
+      continue;
+    if (node->full >> child & 1)
+      put_cube(c, place, side);
+    else if (level == 0)
+      put_brick(c, place, c->sparse->bricks[vxm_octree_index(node, child)]);
+    else
+      cut_node(c, level - 1, vxm_octree_index(node, child), place);
+  }
+}
+
+vxm_status vxm_octree_check_box(const vxm_space *space, const int64_t begin[3], const int64_t end[3],
+                                vxm_error *error) {
+  for (int a = 0; a < 3; a++)
+    if (begin[a] < 0 || begin[a] >= end[a] || end[a] > space->dims[a])
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "the window %" PRId64 ":%" PRId64 " along %c is empty, or not within the %" PRId64
+                      " voxels of the grid",
+                      begin[a], end[a], "xyz"[a], space -> dims[a]);
+  return VXM_OK;
+}
+
+vxm_status vxm_octree_cut(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
+                          const int64_t end[3], vxm_error *error) {
+  vxm_space space = sparse->space;
+  for (int a = 0; a < 3; a++) {
+    space.dims[a] = end[a] - begin[a];
+    space.origin[a] += (double)begin[a] * space.voxel_size[a];
+  }
+  vxm_status status = vxm_grid_create(out, sparse->context, &space, error);
+  if (status != VXM_OK)
+    return status;
+  const cut c = {sparse, begin, end, *out};
+  cut_node(&c, sparse->levels - 1, 0, (int64_t[3]){0, 0, 0});
+  return VXM_OK;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "grid/octree_growth.h"
+
+void vxm_octree_growth_begin(vxm_octree_growth *out, vxm_context *context, const vxm_space *space,
+                             vxm_error *error) {
+  *out = (vxm_octree_growth){.error = error};
+  out->status = vxm_octree_new(&out->sparse, context, space, error);
+}
+
+vxm_octree_cell vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bits) {
+  if (bits == 0 || bits == ~UINT64_C(0) || growth->status != VXM_OK)
+    return bits ? VXM_CELL_FULL : VXM_CELL_EMPTY;
+  vxm_sparse *sparse = growth->sparse;
+  growth->status = vxm_grow(sparse->context, (void **)&sparse->bricks, &growth->brick_capacity,
+                            sparse->brick_count + 1, sizeof *sparse->bricks, growth->error);
+  if (growth->status == VXM_OK)
+    sparse->bricks[sparse->brick_count++] = bits;
+  return VXM_CELL_MIXED;
+}
+
+vxm_octree_cell vxm_octree_growth_node(vxm_octree_growth *growth, int level, uint64_t mixed, uint64_t full,
+                                       size_t first) {
+  if (growth->status != VXM_OK)
+    return VXM_CELL_EMPTY;
+  vxm_sparse *sparse = growth->sparse;
+  if (level < sparse->levels - 1 && mixed == 0 && (full == 0 || full == ~UINT64_C(0)))
+    return full ? VXM_CELL_FULL : VXM_CELL_EMPTY;
+  size_t *count = &sparse->node_count[level];
+  growth->status = vxm_grow(sparse->context, (void **)&sparse->nodes[level], &growth->node_capacity[level],
+                            *count + 1, sizeof *sparse->nodes[level], growth->error);
+  if (growth->status == VXM_OK)
+    sparse->nodes[level][(*count)++] = (vxm_octree_node){mixed, full, mixed ? first : 0};
+  return VXM_CELL_MIXED;
+}
+
+vxm_status vxm_octree_growth_end(vxm_sparse **out, vxm_octree_growth *growth) {
+  *out = NULL;
+  if (growth->status == VXM_OK)
+    *out = growth->sparse;
+  else
+    vxm_sparse_destroy(growth->sparse);
+  growth->sparse = NULL;
+  return growth->status;
+}

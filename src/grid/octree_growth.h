@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** An octree in the making whose nodes and bricks come in Morton order, each after all that is below it. */
+#ifndef VXM_GRID_OCTREE_GROWTH_H
+#define VXM_GRID_OCTREE_GROWTH_H
+
+#include "grid/octree.h"
+
+/** What a brick or node turned out to be. */
+typedef enum vxm_octree_cell { VXM_CELL_EMPTY, VXM_CELL_FULL, VXM_CELL_MIXED } vxm_octree_cell;
+
+typedef struct vxm_octree_growth {
+  vxm_sparse *sparse; /**< NULL once it was taken */
+  size_t node_capacity[VXM_OCTREE_LEVELS], brick_capacity;
+  vxm_status status; /**< after the first failure nothing is added any more */
+  vxm_error *error;
+} vxm_octree_growth;
+
+/** Begins an octree. End with vxm_octree_growth_end, also after a failure. @param error stays in use */
+void vxm_octree_growth_begin(vxm_octree_growth *out, vxm_context *context, const vxm_space *space,
+                             vxm_error *error);
+
+/** Where the next child of a node of a level will be: its `first`. */
+static inline size_t vxm_octree_growth_next(const vxm_octree_growth *growth, int level) {
+  return level > 0 ? growth->sparse->node_count[level - 1] : growth->sparse->brick_count;
+}
+
+/** Adds a brick, unless it is empty or full. */
+vxm_octree_cell vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bits);
+/** Adds a node whose children are there from `first` on, unless it is empty or full; the root always. */
+vxm_octree_cell vxm_octree_growth_node(vxm_octree_growth *growth, int level, uint64_t mixed, uint64_t full,
+                                       size_t first);
+
+/** Hands the octree over, or drops it after a failure. @return growth->status */
+vxm_status vxm_octree_growth_end(vxm_sparse **out, vxm_octree_growth *growth);
+
+#endif

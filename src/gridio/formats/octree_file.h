@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * .octree: an octree (grid/octree.h) as a file, of which a part can be read without the rest. doc/formats.md
+ * has every byte.
+ *
+ * Nodes of up to level VXM_OCTREE_TILE_LEVEL stand together with all below them, as a tile. The nodes above,
+ * and where each tile begins, are the index at the end of the file. Of a node only the words `mixed` and
+ * `full` are in the file: `first` comes from counting. All words are little-endian.
+ */
+#ifndef VXM_GRIDIO_FORMATS_OCTREE_FILE_H
+#define VXM_GRIDIO_FORMATS_OCTREE_FILE_H
+
+#include "base/file.h"
+#include "grid/octree.h"
+
+enum {
+  VXM_OCTREE_TILE_LEVEL = 2, /**< a tile is 256 x 256 x 256 voxels; the whole where that is less */
+  VXM_OCTREE_HEADER = 112,   /**< bytes */
+  VXM_OCTREE_NODE = 16,      /**< bytes of a node in the file */
+  VXM_OCTREE_ENTRY = 16      /**< bytes of a tile in the index: where it begins, and how many voxels it has */
+};
+
+/** An open file. Reading parts of it does not change it. */
+struct vxm_sparse_file {
+  vxm_context *context; /**< one reference held */
+  char *name;
+  vxm_input input;
+  vxm_space space;
+  uint64_t voxels;
+  int levels, tile_level;
+  uint64_t index;                            /**< byte at which the index begins, and the last tile ends */
+  vxm_octree_node *nodes[VXM_OCTREE_LEVELS]; /**< above tiles */
+  size_t node_count[VXM_OCTREE_LEVELS];
+  const unsigned char *entries;
+  size_t tile_count;
+};
+
+bool vxm_octree_sniff(const vxm_input *input);
+
+/** The level of a tile's root. */
+static inline int vxm_octree_tile_level(int levels) {
+  return levels - 1 < VXM_OCTREE_TILE_LEVEL ? levels - 1 : VXM_OCTREE_TILE_LEVEL;
+}
+
+/** See vxm_sparse_file_open in voxmend.h: reads header and index. @param input taken over, also after a
+ * failure
+ */
+vxm_status vxm_octree_file_open(vxm_sparse_file **out, vxm_input *input, vxm_error *error);
+
+/** An octree of the whole space with the tiles that meet a box, and nothing else; the box has been checked.
+ */
+vxm_status vxm_octree_file_load(vxm_sparse **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                const int64_t end[3], vxm_error *error);
+
+/** Writes an octree. @return VXM_OK, VXM_ERROR_IO, VXM_ERROR_CANCELLED, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT */
+vxm_status vxm_octree_file_write(const vxm_sparse *sparse, const char *path, vxm_error *error);
+
+#endif
