@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about fields in files: they check arguments and call down. */
 #include "base/sized.h"
-#include "export/values_write.h"
 #include "gridio/gridio.h"
 #include "gridio/picture/picture.h"
 

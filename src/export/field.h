@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Files of a number per voxel: .npy, .nrrd and .vdb. */
+/** Files of a number per voxel. */
 #ifndef VXM_EXPORT_FIELD_H
 #define VXM_EXPORT_FIELD_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Files of a label per voxel: .npy, .nrrd and .binvox, each with its table of labels beside it. */
+/** Files of a label per voxel, each with its table of labels in it or beside it. */
 #ifndef VXM_EXPORT_LABELS_H
 #define VXM_EXPORT_LABELS_H
 

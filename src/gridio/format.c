@@ -2,26 +2,28 @@
 #include "gridio/common/format.h"
 #include "gridio/gridio.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* ---- The table ---- */
 
+/** The surface of what is set, by the writers of meshes. */
 static const vxm_grid_format mesh_formats[] = {
-    {"obj", NULL, NULL, NULL, NULL, NULL},
-    {"ply", NULL, NULL, NULL, NULL, NULL},
-    {"stl", NULL, NULL, NULL, NULL, NULL},
-    {"off", NULL, NULL, NULL, NULL, NULL},
+    {.name = "obj", .holds = VXM_HOLDS_BITS, .is_surface = true},
+    {.name = "stl", .holds = VXM_HOLDS_BITS, .is_surface = true},
+    {.name = "off", .holds = VXM_HOLDS_BITS, .is_surface = true},
 };
 
-/** In the order in which the content is asked. */
+/** In the order in which they are named, and their content is asked. */
 static const vxm_grid_format *const formats[] = {
-    &vxm_format_raw, &vxm_format_binvox, &vxm_format_npy,  &vxm_format_rle,  &vxm_format_nrrd,
-    &vxm_format_vdb, &mesh_formats[0],   &mesh_formats[1], &mesh_formats[2], &mesh_formats[3],
+    &vxm_format_binvox, &vxm_format_npy,  &vxm_format_raw,  &vxm_format_rle,
+    &vxm_format_nrrd,   &vxm_format_vdb,  &mesh_formats[0], &vxm_format_ply,
+    &mesh_formats[1],   &mesh_formats[2], &vxm_format_vox,
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
-static const vxm_grid_format *find_name(const char *name) {
+const vxm_grid_format *vxm_grid_format_named(const char *name) {
   for (size_t f = 0; f < FORMATS; f++)
     if (vxm_text_equal_nocase(formats[f]->name, name))
       return formats[f];
@@ -29,11 +31,51 @@ static const vxm_grid_format *find_name(const char *name) {
 }
 
 static const vxm_grid_format *find_content(const vxm_input *input) {
-  for (size_t f = 0; f < FORMATS; f++)
-    if (formats[f]->sniff && formats[f]->sniff(input))
-      return formats[f];
+  for (int by_name = 1; by_name >= 0; by_name--)
+    for (size_t f = 0; f < FORMATS; f++)
+      if (formats[f]->sniff && formats[f]->is_told_by_name == by_name && formats[f]->sniff(input))
+        return formats[f];
   return NULL;
 }
+
+/* ---- Lists ---- */
+
+typedef bool (*choose_fn)(const vxm_grid_format *format, unsigned holds);
+
+static vxm_format_list list_formats(choose_fn choose, unsigned holds, const char *before) {
+  vxm_format_list list = {""};
+  size_t count = 0, named = 0, used = 0;
+  for (size_t f = 0; f < FORMATS; f++)
+    count += choose(formats[f], holds);
+  for (size_t f = 0; f < FORMATS; f++)
+    if (choose(formats[f], holds)) {
+      const char *joint = named == 0 ? "" : named + 1 == count ? " or " : ", ";
+      int length =
+          snprintf(list.text + used, sizeof list.text - used, "%s%s%s", joint, before, formats[f]->name);
+      used += (size_t)length < sizeof list.text - used ? (size_t)length : sizeof list.text - 1 - used;
+      named++;
+    }
+  return list;
+}
+
+static bool holds_one(const vxm_grid_format *format, unsigned holds) {
+  return (format->holds & holds) != 0;
+}
+
+static bool is_read(const vxm_grid_format *format, unsigned holds) {
+  (void)holds;
+  return format->read != NULL;
+}
+
+vxm_format_list vxm_grid_formats_holding(unsigned holds, const char *before) {
+  return list_formats(holds_one, holds, before);
+}
+
+vxm_format_list vxm_grid_formats_read(const char *before) {
+  return list_formats(is_read, 0, before);
+}
+
+/* ---- Reading ---- */
 
 vxm_status vxm_space_check_file(const vxm_space *space, const vxm_input *input, size_t offset,
                                 vxm_error *error) {
@@ -50,12 +92,16 @@ static vxm_status find_format(const vxm_grid_format **out, const vxm_input *inpu
                               vxm_error *error) {
   const vxm_grid_format *format = find_content(input);
   if (!format)
-    format = find_name(vxm_path_extension(path));
+    format = vxm_grid_format_named(vxm_path_extension(path));
   *out = format;
   if (!format)
-    return vxm_fail_at(
-        error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
-        "not a grid: neither content nor name are those of .binvox, .npy, .raw, .rle, .nrrd or .vdb");
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
+                       "not a grid: neither content nor name are those of %s",
+                       vxm_grid_formats_read(".").text);
+  if (!format->read && !format->is_surface)
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
+                       ".%s is written but not read; choose %s", format->name,
+                       vxm_grid_formats_read(".").text);
   if (!format->read)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
                        "not a grid but a mesh, by its name; voxelize it first");
@@ -102,19 +148,34 @@ vxm_status vxm_gridio_read_space(vxm_grid **out, vxm_context *context, const cha
   return status;
 }
 
+/* ---- Writing ---- */
+
 const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format, vxm_error *error) {
+  const vxm_place place = {path, 0, -1, -1};
   const char *name = format ? format : vxm_path_extension(path);
-  const vxm_grid_format *found = find_name(name);
-  if (found)
+  const vxm_grid_format *found = vxm_grid_format_named(name);
+  if (found && (found->holds & VXM_HOLDS_BITS))
     return found;
-  if (!format && !*name)
-    vxm_fail_at(
-        error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
-        "no format is given and the name has no extension; choose binvox, npy, raw, rle, nrrd, vdb, obj, "
-        "ply, stl or off");
+  vxm_format_list list = vxm_grid_formats_holding(VXM_HOLDS_BITS, "");
+  if (found)
+    vxm_fail_at(error, VXM_ERROR_ARGUMENT, place,
+                ".%s holds %s, not set and clear voxels; make them first, or choose %s", found->name,
+                (found->holds & VXM_HOLDS_COLORS) ? "colours" : "numbers", list.text);
+  else if (!format && !*name)
+    vxm_fail_at(error, VXM_ERROR_ARGUMENT, place,
+                "no format is given and the name has no extension; choose %s", list.text);
   else
-    vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1},
-                "unknown grid format \"%s\"; choose binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off",
-                name);
+    vxm_fail_at(error, VXM_ERROR_ARGUMENT, place, "unknown grid format \"%s\"; choose %s", name, list.text);
+  return NULL;
+}
+
+const vxm_grid_format *vxm_grid_format_holding(const char *path, const char *format, unsigned holds,
+                                               const char *what, vxm_error *error) {
+  const char *name = format ? format : vxm_path_extension(path);
+  const vxm_grid_format *found = vxm_grid_format_named(name);
+  if (found && (found->holds & holds))
+    return found;
+  vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1}, "%s into %s, not \"%s\"", what,
+              vxm_grid_formats_holding(holds, ".").text, name);
   return NULL;
 }

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/bit_transpose.h"
-#include "gridio/common/format.h"
+#include "gridio/common/values_writer.h"
 #include "gridio/gridio.h"
 #include "gridio/mesh/surface_mesh.h"
 #include "meshio/meshio.h"
+
+#include <stdio.h>
 
 /** Word columns of the grid, each of which is up to 64 slices of a file that varies x slowest. */
 static vxm_status put_planes(vxm_grid_writer *writer, const vxm_grid *grid, vxm_error *error) {
@@ -38,6 +40,23 @@ static vxm_status write_slices(const vxm_grid *grid, const char *path, const cha
   return status;
 }
 
+/** Bits as a field of 0 and 1, for formats that need all of it. */
+static vxm_status write_bytes(const vxm_grid *grid, const char *path, const vxm_grid_format *format,
+                              vxm_error *error) {
+  vxm_field *field;
+  vxm_status status =
+      vxm_field_make(&field, grid->context, &grid->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_field_put_grid(field, grid);
+  if (format->check_field)
+    status = format->check_field(field, path, error);
+  if (status == VXM_OK)
+    status = format->write_field(field, path, error);
+  vxm_field_destroy(field);
+  return status;
+}
+
 static vxm_status write_surface(const vxm_grid *grid, const char *path, const char *format, unsigned how,
                                 vxm_error *error) {
   vxm_soup *surface;
@@ -56,12 +75,62 @@ vxm_status vxm_gridio_write_with(const vxm_grid *grid, const char *path,
     return VXM_ERROR_ARGUMENT;
   unsigned how = (options->keep_polygons ? 0 : VXM_SURFACE_TRIANGLES) |
                  (options->keep_contacts ? 0 : VXM_SURFACE_MANIFOLD);
-  return found->writer ? write_slices(grid, path, found->name, error)
-                       : write_surface(grid, path, found->name, how, error);
+  if (found->is_surface)
+    return write_surface(grid, path, found->name, how, error);
+  return vxm_grid_format_streams(found) ? write_slices(grid, path, found->name, error)
+                                        : write_bytes(grid, path, found, error);
 }
 
 vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {
   vxm_grid_write_options options = VXM_GRID_WRITE_OPTIONS_INIT;
   options.format = format;
   return vxm_gridio_write_with(grid, path, &options, error);
+}
+
+/* ---- Fields ---- */
+
+vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status status, const char *why,
+                            vxm_error *error) {
+  return vxm_fail_at(error, status, (vxm_place){path, 0, -1, -1}, "the field (%s, %s) %s",
+                     vxm_field_kind_name(field->about.kind), vxm_scalar_name(field->scalar), why);
+}
+
+vxm_status vxm_field_write_file(const vxm_field *field, const char *path,
+                                vxm_status (*write)(vxm_output *output, const vxm_field *field,
+                                                    vxm_error *error),
+                                vxm_error *error) {
+  vxm_output *output;
+  vxm_status status = vxm_output_open(&output, field->context, path, error);
+  if (status != VXM_OK)
+    return status;
+  status = write(output, field, error);
+  if (status == VXM_OK || vxm_output_failed(output))
+    return vxm_output_commit(output, error);
+  vxm_output_abort(output);
+  return status;
+}
+
+/** Whole numbers that are not said to be anything else may be labels. */
+static bool holds_field(const vxm_grid_format *format, const vxm_field *field) {
+  unsigned needs = vxm_field_needs(field);
+  if (field->about.kind == VXM_FIELD_NUMBERS && !vxm_scalar_is_float(field->scalar))
+    needs |= VXM_HOLDS_LABELS;
+  return (format->holds & needs) != 0;
+}
+
+vxm_status vxm_gridio_write_field(const vxm_field *field, const char *path, const char *format,
+                                  vxm_error *error) {
+  const char *name = format ? format : vxm_path_extension(path);
+  const vxm_grid_format *found = vxm_grid_format_named(name);
+  char why[400];
+  if (!found || !holds_field(found, field)) {
+    snprintf(why, sizeof why, "cannot be written as \"%.20s\"; choose %s, or make bits of it by a threshold",
+             name, vxm_grid_formats_holding(vxm_field_needs(field), "").text);
+    return vxm_field_refuse(field, path, VXM_ERROR_ARGUMENT, why, error);
+  }
+  vxm_status status = found->check_field ? found->check_field(field, path, error) : VXM_OK;
+  if (status != VXM_OK)
+    return status;
+  return found->write_field ? found->write_field(field, path, error)
+                            : vxm_values_write_field(found->values, field, path, error);
 }

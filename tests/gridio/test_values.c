@@ -4,7 +4,6 @@
 #include "config.h"
 #include "grids.h"
 
-#include "export/values_write.h"
 #include "gridio/common/format.h"
 #include "gridio/gridio.h"
 

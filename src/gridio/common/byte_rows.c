@@ -2,6 +2,7 @@
 #include "gridio/common/byte_rows.h"
 #include "base/endian.h"
 #include "base/threads.h"
+#include "gridio/common/values_writer.h"
 
 enum { CHUNK = 1 << 22, ROWS_PER_TASK = 64 };
 
@@ -54,4 +55,33 @@ vxm_status vxm_byte_rows_put(vxm_grid_writer *writer, const vxm_window *window, 
       return status;
   }
   return VXM_OK;
+}
+
+/* ---- Whole slices ---- */
+
+/** Slices that are turned into bytes together: CHUNK bytes, or one. */
+static size_t chunk_slices(const vxm_space *space, vxm_layout layout) {
+  size_t slice = (size_t)space->dims[layout.fast] * (size_t)space->dims[layout.middle],
+         all = (size_t)space->dims[layout.slow], slices = CHUNK / slice;
+  slices = slices < all ? slices : all;
+  return slices > 0 ? slices : 1;
+}
+
+size_t vxm_byte_rows_slice_bytes(const vxm_space *space, vxm_layout layout) {
+  return chunk_slices(space, layout) * (size_t)space->dims[layout.fast] * (size_t)space->dims[layout.middle];
+}
+
+vxm_status vxm_byte_rows_put_values(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error) {
+  int64_t most = (int64_t)chunk_slices(&writer->space, window->layout);
+  vxm_status status = VXM_OK;
+  for (int64_t begin = window->begin, end; begin < window->end && status == VXM_OK; begin = end) {
+    end = vxm_min(begin + most, window->end);
+    size_t rows = (size_t)window->middle_dim;
+    storing s = {window, writer->state, (size_t)(begin - window->begin) * rows, (size_t)(end - begin) * rows};
+    vxm_parallel(writer->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
+    status = vxm_values_writer_put(writer->values, s.bytes, begin, end, error);
+    if (status == VXM_OK)
+      status = vxm_grid_writer_step(writer, (double)end, error);
+  }
+  return status;
 }

@@ -9,5 +9,8 @@
 size_t vxm_byte_rows_bytes(const vxm_space *space, vxm_layout layout);
 /** Writes the slices of a window (vxm_grid_writer_kind.put), on the threads of the context. */
 vxm_status vxm_byte_rows_put(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error);
+/** The same for formats that take numbers (vxm_grid_writer.values), which get whole slices. */
+size_t vxm_byte_rows_slice_bytes(const vxm_space *space, vxm_layout layout);
+vxm_status vxm_byte_rows_put_values(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error);
 
 #endif

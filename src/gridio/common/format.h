@@ -21,6 +21,8 @@ struct vxm_grid_writer {
       length; /**< slices of the file, its padding included; those of the space unless `begin` says more */
   void *state;
   bool is_begun; /**< `begin` was called */
+  struct vxm_values_writer
+      *values; /**< where the format takes numbers: bits become bytes, and all else is its matter; or NULL */
 };
 
 /** Voxels of a checked space; below 2^60 and so a plain product. A byte each is what .npy and .nrrd take. */
@@ -57,27 +59,93 @@ static inline vxm_status vxm_grid_writer_step_rows(vxm_grid_writer *writer, cons
                               error);
 }
 
+/** What a file may hold. */
+enum {
+  VXM_HOLDS_BITS = 1,
+  VXM_HOLDS_NUMBERS = 2, /**< any field of one number per voxel that is not labels */
+  VXM_HOLDS_LABELS = 4,
+  VXM_HOLDS_COLORS = 8
+};
+
+/** A row of the table: all that is known of a format. What is NULL it cannot do, unless more is said. */
 typedef struct vxm_grid_format {
   const char *name; /**< also the extension */
+  unsigned holds;   /**< what is written of it: VXM_HOLDS_... */
   /** Whether the content is this format; NULL = never told by content. */
   bool (*sniff)(const vxm_input *input);
+  bool is_told_by_name; /**< `sniff` asks the name, since any content would do; it is asked first */
   /** Reads bits; VXM_ERROR_NUMBERS if there are numbers that the rule does not take for them. NULL = the
    * format is only written. */
   vxm_status (*read)(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error);
   /** Reads numbers, where `read` does not take them for bits; NULL = it holds only bits. */
   vxm_status (*read_field)(vxm_field **out, const vxm_input *input, vxm_error *error);
-  /** NULL = the surface is written as a mesh of this name. */
+  /** Writes bits slice by slice. NULL = they are written as a field of bytes, through `values` or
+   * `write_field`. */
   const vxm_grid_writer_kind *writer;
+  bool is_surface; /**< of bits the surface is written, as a mesh of this name */
   /** Writes an octree as it is; NULL = slice by slice. */
   vxm_status (*write_sparse)(const vxm_sparse *sparse, const char *path, vxm_error *error);
+  /** Writes fields slice by slice, as they are made; NULL = only whole ones. */
+  const struct vxm_values_writer_kind *values;
+  /** Refuses a field that it cannot hold, of a kind that it holds, before anything is opened; NULL = it holds
+   * all. */
+  vxm_status (*check_field)(const vxm_field *field, const char *path, vxm_error *error);
+  /** Writes a whole field, which has been checked; NULL = through `values`. */
+  vxm_status (*write_field)(const vxm_field *field, const char *path, vxm_error *error);
 } vxm_grid_format;
 
-/** The format of a file to be written; NULL with VXM_ERROR_ARGUMENT if there is none. */
+/** The format of a file of bits to be written; NULL with VXM_ERROR_ARGUMENT if there is none. */
 const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format, vxm_error *error);
+/** The format of a file to be written that holds one of these kinds of values, as model's are made.
+ * @param what begins the message, such as "labels go" */
+const vxm_grid_format *vxm_grid_format_holding(const char *path, const char *format, unsigned holds,
+                                               const char *what, vxm_error *error);
+/** The format of this name, in any case, or NULL. */
+const vxm_grid_format *vxm_grid_format_named(const char *name);
+
+/** Room for a list of formats. */
+typedef struct vxm_format_list {
+  char text[300];
+} vxm_format_list;
+
+/** All formats that hold one of these, such as ".npy, .nrrd or .vdb"; `before` stands before each name. */
+vxm_format_list vxm_grid_formats_holding(unsigned holds, const char *before);
+/** Those that can be read. */
+vxm_format_list vxm_grid_formats_read(const char *before);
+
+/** Whether bits are written slice by slice. */
+static inline bool vxm_grid_format_streams(const vxm_grid_format *format) {
+  return !format->is_surface && (format->writer || format->values);
+}
+
+/** What a field needs of a format. */
+static inline unsigned vxm_field_needs(const vxm_field *field) {
+  return field->channels == 4                    ? VXM_HOLDS_COLORS
+         : field->about.kind == VXM_FIELD_LABELS ? VXM_HOLDS_LABELS
+                                                 : VXM_HOLDS_NUMBERS;
+}
+
+/** The colour of a voxel, or NULL outside the grid. */
+static inline const uint8_t *vxm_field_color(const vxm_field *field, int64_t i, int64_t j, int64_t k) {
+  const int64_t *dims = field->space.dims;
+  if (i < 0 || j < 0 || k < 0 || i >= dims[0] || j >= dims[1] || k >= dims[2])
+    return NULL;
+  return field->values + 4 * (size_t)((i * dims[1] + j) * dims[2] + k);
+}
+
+/** Writes a field into one file by a function that needs it whole; there is nothing beside the file. */
+vxm_status vxm_field_write_file(const vxm_field *field, const char *path,
+                                vxm_status (*write)(vxm_output *output, const vxm_field *field,
+                                                    vxm_error *error),
+                                vxm_error *error);
+
+/** Refuses a field: "the field (distance, float32) WHY". */
+vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status status, const char *why,
+                            vxm_error *error);
 
 /** One per file of this room. */
-extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_nrrd, vxm_format_raw,
-    vxm_format_rle, vxm_format_vdb;
+extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_nrrd, vxm_format_ply,
+    vxm_format_raw, vxm_format_rle, vxm_format_vdb, vxm_format_vox;
 
 /** VXM_ERROR_FORMAT at a byte of the input. */
 #define vxm_fail_byte(error, input, offset, ...) \

@@ -476,4 +476,13 @@ static const vxm_grid_writer_kind writer_kind = {
     .file_bytes = vxm_binvox_bytes,
 };
 
-const vxm_grid_format vxm_format_binvox = {"binvox", sniff, read_binvox, read_field, &writer_kind, NULL};
+const vxm_grid_format vxm_format_binvox = {
+    .name = "binvox",
+    .holds = VXM_HOLDS_BITS | VXM_HOLDS_LABELS,
+    .sniff = sniff,
+    .read = read_binvox,
+    .read_field = read_field,
+    .writer = &writer_kind,
+    .values = &vxm_binvox_labels,
+    .check_field = vxm_binvox_check_field,
+};

@@ -5,9 +5,11 @@
 #include "gridio/common/format.h"
 #include "gridio/common/scalar_type.h"
 #include "gridio/common/sidecar.h"
+#include "gridio/common/values_writer.h"
 #include "gridio/formats/npy_header.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 static const vxm_sidecar_text description = {"voxmend npy", "z fastest, then y, then x", NULL};
@@ -189,4 +191,39 @@ static const vxm_grid_writer_kind writer_kind = {
     .file_bytes = vxm_space_voxels,
 };
 
-const vxm_grid_format vxm_format_npy = {"npy", vxm_npy_sniff, read_npy, read_field, &writer_kind, NULL};
+/* ---- Writing numbers: as they lie ---- */
+
+static const vxm_sidecar_text color_description = {"voxmend colors", "z fastest, then y, then x", NULL};
+
+static vxm_status begin_values(vxm_values_writer *w, vxm_error *error) {
+  (void)error;
+  char type[8];
+  size_t size = vxm_scalar_bytes(w->values.scalar);
+  char order = size == 1 ? '|' : vxm_le64(1) == 1 ? '<' : '>';
+  snprintf(type, sizeof type, "%c%c%zu", order, vxm_scalar_name(w->values.scalar)[0], size);
+  if (w->values.channels == 4)
+    vxm_npy_header_write_bytes(w->output, w->space.dims, 4);
+  else
+    vxm_npy_header_write(w->output, type, false, w->space.dims);
+  return VXM_OK;
+}
+
+static const vxm_values_writer_kind values_kind = {
+    .layout = VXM_PLANE_Z_FAST,
+    .holds = VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS,
+    .sidecar = &description,
+    .color_sidecar = &color_description,
+    .has_sidecar = true,
+    .file_bytes = vxm_values_plain_bytes,
+    .begin = begin_values,
+};
+
+const vxm_grid_format vxm_format_npy = {
+    .name = "npy",
+    .holds = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS,
+    .sniff = vxm_npy_sniff,
+    .read = read_npy,
+    .read_field = read_field,
+    .writer = &writer_kind,
+    .values = &values_kind,
+};

@@ -218,4 +218,11 @@ static const vxm_grid_writer_kind writer_kind = {
     .file_bytes = file_bytes,
 };
 
-const vxm_grid_format vxm_format_raw = {"raw", sniff, read_raw, NULL, &writer_kind, NULL};
+const vxm_grid_format vxm_format_raw = {
+    .name = "raw",
+    .holds = VXM_HOLDS_BITS,
+    .sniff = sniff,
+    .is_told_by_name = true,
+    .read = read_raw,
+    .writer = &writer_kind,
+};

@@ -147,4 +147,10 @@ static const vxm_grid_writer_kind writer_kind = {
     .end = end,
 };
 
-const vxm_grid_format vxm_format_rle = {"rle", sniff, read_rle, NULL, &writer_kind, NULL};
+const vxm_grid_format vxm_format_rle = {
+    .name = "rle",
+    .holds = VXM_HOLDS_BITS,
+    .sniff = sniff,
+    .read = read_rle,
+    .writer = &writer_kind,
+};

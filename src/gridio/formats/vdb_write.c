@@ -3,6 +3,7 @@
 #include "gridio/common/format.h"
 #include "gridio/formats/vdb_blocks.h"
 #include "gridio/formats/vdb_read.h"
+#include "gridio/formats/vdb_values.h"
 
 #include <string.h>
 
@@ -159,5 +160,15 @@ static vxm_status write_sparse(const vxm_sparse *sparse, const char *path, vxm_e
   return status;
 }
 
-const vxm_grid_format vxm_format_vdb = {"vdb",        vxm_vdb_sniff, vxm_vdb_read, vxm_vdb_read_field,
-                                        &writer_kind, write_sparse};
+const vxm_grid_format vxm_format_vdb = {
+    .name = "vdb",
+    .holds = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS,
+    .sniff = vxm_vdb_sniff,
+    .read = vxm_vdb_read,
+    .read_field = vxm_vdb_read_field,
+    .writer = &writer_kind,
+    .write_sparse = write_sparse,
+    .values = &vxm_vdb_values,
+    .check_field = vxm_vdb_check_field,
+    .write_field = vxm_vdb_write_field,
+};

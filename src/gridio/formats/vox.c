@@ -5,7 +5,7 @@
  * graph puts in their places.
  */
 #include "base/endian.h"
-#include "export/colors.h"
+#include "gridio/common/format.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -125,8 +125,8 @@ static void choose_colors(palette *p) {
     number_box(p, &boxes[i]);
 }
 
-static void count_colors(palette *p, const vxm_colored *c) {
-  const int64_t *dims = c->space->dims;
+static void count_colors(palette *p, const vxm_field *c) {
+  const int64_t *dims = c->space.dims;
   size_t voxels = (size_t)(dims[0] * dims[1] * dims[2]);
   for (size_t i = 0; i < voxels; i++) {
     const uint8_t *color = c->values + 4 * i;
@@ -162,25 +162,25 @@ typedef struct model_box {
   int64_t voxels;
 } model_box;
 
-static model_box model_at(const vxm_colored *c, int64_t index) {
+static model_box model_at(const vxm_field *c, int64_t index) {
   model_box box;
   int64_t counts[3];
   for (int a = 0; a < 3; a++)
-    counts[a] = (c->space->dims[a] + MODEL - 1) / MODEL;
+    counts[a] = (c->space.dims[a] + MODEL - 1) / MODEL;
   const int64_t place[3] = {index % counts[0], index / counts[0] % counts[1], index / counts[0] / counts[1]};
   for (int a = 0; a < 3; a++) {
     box.begin[a] = place[a] * MODEL;
-    box.end[a] = vxm_min(box.begin[a] + MODEL, c->space->dims[a]);
+    box.end[a] = vxm_min(box.begin[a] + MODEL, c->space.dims[a]);
   }
   box.voxels = 0;
   for (int64_t i = box.begin[0]; i < box.end[0]; i++)
     for (int64_t j = box.begin[1]; j < box.end[1]; j++)
       for (int64_t k = box.begin[2]; k < box.end[2]; k++)
-        box.voxels += vxm_colored_at(c, i, j, k)[3] != 0;
+        box.voxels += vxm_field_color(c, i, j, k)[3] != 0;
   return box;
 }
 
-static void put_model(vxm_output *output, const vxm_colored *c, const model_box *box, const palette *p) {
+static void put_model(vxm_output *output, const vxm_field *c, const model_box *box, const palette *p) {
   put_chunk(output, "SIZE", 12, 0);
   for (int a = 0; a < 3; a++)
     put_word(output, box->end[a] - box->begin[a]);
@@ -189,7 +189,7 @@ static void put_model(vxm_output *output, const vxm_colored *c, const model_box 
   for (int64_t i = box->begin[0]; i < box->end[0]; i++)
     for (int64_t j = box->begin[1]; j < box->end[1]; j++)
       for (int64_t k = box->begin[2]; k < box->end[2]; k++) {
-        const uint8_t *color = vxm_colored_at(c, i, j, k);
+        const uint8_t *color = vxm_field_color(c, i, j, k);
         if (!color[3])
           continue;
         const uint8_t voxel[4] = {(uint8_t)(i - box->begin[0]), (uint8_t)(j - box->begin[1]),
@@ -229,7 +229,7 @@ static int64_t put_transform(vxm_output *output, int64_t number, int64_t child, 
 
 /** The scene: a root, a group, and for each model a transform and a shape. Returns its bytes; writes them
  * where there is an output. */
-static int64_t put_scene(vxm_output *output, const vxm_colored *c, int64_t models) {
+static int64_t put_scene(vxm_output *output, const vxm_field *c, int64_t models) {
   int64_t bytes = put_transform(output, 0, 1, NULL), group = 4 + 4 + 4 + 4 * models;
   if (output) {
     put_chunk(output, "nGRP", group, 0);
@@ -267,10 +267,10 @@ static void put_palette(vxm_output *output, const palette *p) {
   }
 }
 
-static vxm_status write_chunks(vxm_output *output, const vxm_colored *c, const palette *p, vxm_error *error) {
+static vxm_status write_chunks(vxm_output *output, const vxm_field *c, const palette *p, vxm_error *error) {
   int64_t models = 1, bytes = 12 + 4 * (PALETTE + 1);
   for (int a = 0; a < 3; a++)
-    models *= (c->space->dims[a] + MODEL - 1) / MODEL;
+    models *= (c->space.dims[a] + MODEL - 1) / MODEL;
   for (int64_t m = 0; m < models && bytes <= INT32_MAX; m++)
     bytes += 24 + 16 + 4 * model_at(c, m).voxels;
   bytes += put_scene(NULL, c, models);
@@ -288,7 +288,7 @@ static vxm_status write_chunks(vxm_output *output, const vxm_colored *c, const p
   return VXM_OK;
 }
 
-vxm_status vxm_vox_write(vxm_output *output, const vxm_colored *c, vxm_error *error) {
+static vxm_status write_vox(vxm_output *output, const vxm_field *c, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   palette p = {.size = 0};
   p.count = vxm_calloc(c->context, BINS, sizeof *p.count, &local);
@@ -307,3 +307,13 @@ vxm_status vxm_vox_write(vxm_output *output, const vxm_colored *c, vxm_error *er
     vxm_error_pass(error, &local);
   return status;
 }
+
+static vxm_status write_field(const vxm_field *field, const char *path, vxm_error *error) {
+  return vxm_field_write_file(field, path, write_vox, error);
+}
+
+const vxm_grid_format vxm_format_vox = {
+    .name = "vox",
+    .holds = VXM_HOLDS_COLORS,
+    .write_field = write_field,
+};
