@@ -4,7 +4,7 @@
 #include "grid/octree_cut.h"
 #include "gridio/formats/coords.h"
 #include "gridio/formats/octree_file.h"
-#include "gridio/sparse_read.h"
+#include "gridio/gridio.h"
 #include "gridio/sparse_write.h"
 #include "voxel/sparse/sparse.h"
 

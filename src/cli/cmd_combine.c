@@ -133,7 +133,8 @@ static int read_octree(cli_run *cli, vxm_sparse **out, const request *given, con
 }
 
 static int read_operand(cli_run *cli, operand *out, const request *given, const char *path) {
-  return given->sparse ? read_octree(cli, &out->sparse, given, path) : read_bits(cli, &out->grid, given, path);
+  return given->sparse ? read_octree(cli, &out->sparse, given, path)
+                       : read_bits(cli, &out->grid, given, path);
 }
 
 /** Voxels are combined by index, so that both grids have to be one space; files hold it to about nine digits.
@@ -221,7 +222,8 @@ typedef struct outcome {
 
 static outcome outcome_of(const operand *set) {
   if (set->sparse)
-    return (outcome){vxm_sparse_space(set->sparse), vxm_sparse_count(set->sparse), vxm_sparse_hash(set->sparse)};
+    return (outcome){vxm_sparse_space(set->sparse), vxm_sparse_count(set->sparse),
+                     vxm_sparse_hash(set->sparse)};
   return (outcome){vxm_grid_space(set->grid), vxm_grid_count(set->grid), vxm_grid_hash(set->grid)};
 }
 

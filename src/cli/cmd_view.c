@@ -109,7 +109,7 @@ static int voxelize(cli_run *cli, vxm_grid **grid, const char *path) {
 
 /** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
 static int read_input(cli_run *cli, cli_values *values, const char *path) {
-  enum { MESH_FORMATS = 4, GRID_FORMATS = 6 }; /* the first grid formats; the others are meshes */
+  enum { MESH_FORMATS = 4, GRID_FORMATS = 7 }; /* the first grid formats; the others are meshes */
   if (is_named(path, cli_mesh_formats, MESH_FORMATS))
     return voxelize(cli, &values->grid, path);
   vxm_status status = cli_values_read(cli, values, path);

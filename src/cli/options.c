@@ -26,7 +26,7 @@ static const cli_option common_options[] = {
 
 const char *const cli_mesh_formats[] = {"off", "obj", "stl", "ply", NULL};
 const char *const cli_grid_formats[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb",
-                                        "obj",    "ply", "stl", "off", NULL};
+                                        "octree", "obj", "ply", "stl", "off",  NULL};
 
 /* ---- Help ---- */
 

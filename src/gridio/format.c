@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/common/format.h"
+#include "grid/octree_build.h"
 #include "gridio/gridio.h"
 
 #include <stdio.h>
@@ -16,9 +17,9 @@ static const vxm_grid_format mesh_formats[] = {
 
 /** In the order in which they are named, and their content is asked. */
 static const vxm_grid_format *const formats[] = {
-    &vxm_format_binvox, &vxm_format_npy,  &vxm_format_raw,  &vxm_format_rle,
-    &vxm_format_nrrd,   &vxm_format_vdb,  &mesh_formats[0], &vxm_format_ply,
-    &mesh_formats[1],   &mesh_formats[2], &vxm_format_vox,
+    &vxm_format_binvox, &vxm_format_npy,  &vxm_format_raw,    &vxm_format_rle,
+    &vxm_format_nrrd,   &vxm_format_vdb,  &vxm_format_octree, &mesh_formats[0],
+    &vxm_format_ply,    &mesh_formats[1], &mesh_formats[2],   &vxm_format_vox,
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -145,6 +146,39 @@ vxm_status vxm_gridio_read_space(vxm_grid **out, vxm_context *context, const cha
   vxm_status status = read_file(out, NULL, VXM_BITS_NONE, context, path, error);
   if (status == VXM_OK)
     memset((*out)->words, 0, (*out)->word_count * sizeof *(*out)->words);
+  return status;
+}
+
+/** By way of a grid, whose warnings stay. */
+static vxm_status read_dense(vxm_sparse **out, const vxm_grid_format *format, const vxm_input *input,
+                             vxm_error *error) {
+  vxm_grid *grid;
+  vxm_status status = format->read(&grid, input, VXM_BITS_STORED, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_octree_from_grid(out, grid, error);
+  if (status == VXM_OK)
+    (*out)->warnings = grid->warnings;
+  vxm_grid_destroy(grid);
+  return status;
+}
+
+vxm_status vxm_gridio_read_sparse(vxm_sparse **out, vxm_context *context, const char *path,
+                                  vxm_error *error) {
+  const vxm_grid_format *format;
+  vxm_input input;
+  vxm_error local = VXM_ERROR_INIT;
+  *out = NULL;
+  vxm_status status = vxm_input_open(&input, context, path, error);
+  if (status != VXM_OK)
+    return status;
+  status = find_format(&format, &input, path, &local);
+  if (status == VXM_OK)
+    status = format->read_sparse ? format->read_sparse(out, &input, &local)
+                                 : read_dense(out, format, &input, &local);
+  vxm_input_close(&input);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 

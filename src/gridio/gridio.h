@@ -22,6 +22,8 @@ vxm_status vxm_gridio_read_either(vxm_grid **grid, vxm_field **field, vxm_contex
                                   vxm_error *error);
 /** Reads only where the voxels lie; see vxm_grid_read_space in voxmend.h. */
 vxm_status vxm_gridio_read_space(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
+/** Reads an octree; see vxm_sparse_read in voxmend.h. */
+vxm_status vxm_gridio_read_sparse(vxm_sparse **out, vxm_context *context, const char *path, vxm_error *error);
 
 /**
  * Writes a grid; the file appears under its name when it is complete.

@@ -107,12 +107,13 @@ VXM_API vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path,
                                     const vxm_grid_write_options *options, vxm_error *error);
 
 /**
- * Reads a file of set voxels as an octree. Memory follows the surface for .octree, and for .vdb of bits; other
- * formats go by way of a grid.
+ * Reads a file of set voxels as an octree. Memory follows the surface for .octree, and for .vdb of bits;
+ * other formats go by way of a grid.
  *
  * @return as vxm_grid_read
  */
-VXM_API vxm_status vxm_sparse_read(vxm_sparse **out, vxm_context *context, const char *path, vxm_error *error);
+VXM_API vxm_status vxm_sparse_read(vxm_sparse **out, vxm_context *context, const char *path,
+                                   vxm_error *error);
 
 /** An open .octree file, of which parts can be read. It does not change: several threads may read it. */
 typedef struct vxm_sparse_file vxm_sparse_file;

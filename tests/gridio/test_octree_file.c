@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Octree files: read as they were written, whole and in windows, and damaged ones; octrees of blocks and boxes. */
+/** Octree files: read as they were written, whole and in windows, and damaged ones; octrees of blocks and
+ * boxes. */
 #include "grids.h"
 
 #include "base/endian.h"
@@ -35,8 +36,8 @@ static void set_box(vxm_grid *grid, const int64_t low[3], const int64_t high[3])
 
 /** Grids of one tile, of several, and with levels above them. */
 static vxm_grid *random_grid(vxm_context *context, vxm_rng *rng, int round) {
-  static const int64_t dims[][3] = {{1, 1, 1},     {5, 16, 17},   {64, 65, 3},    {256, 256, 20}, {257, 70, 31},
-                                    {600, 300, 9}, {20, 17, 1100}, {1030, 30, 270}};
+  static const int64_t dims[][3] = {{1, 1, 1},     {5, 16, 17},   {64, 65, 3},    {256, 256, 20},
+                                    {257, 70, 31}, {600, 300, 9}, {20, 17, 1100}, {1030, 30, 270}};
   const int64_t *n = dims[round % 8];
   vxm_space space = {{n[0], n[1], n[2]}, {-1.5, 0.1, 2e-7}, {0.25, 0.5, 1.0 / 3}};
   vxm_grid *grid = new_grid(context, space);
@@ -142,7 +143,7 @@ static vxm_status read_bytes(vxm_sparse **out, vxm_context *context, const unsig
   vxm_status status = vxm_octree_file_open(&file, &input, error);
   if (status == VXM_OK)
     status = vxm_octree_file_load(out, file, (int64_t[3]){0, 0, 0}, file->space.dims, error);
-  vxm_sparse_file_close(status == VXM_OK || file ? file : NULL);
+  vxm_sparse_file_close(file);
   free(copy);
   return status;
 }
@@ -168,7 +169,7 @@ static void damage(vxm_context *context, const unsigned char *data, size_t size,
     vxm_sparse *sparse;
     memcpy(copy, data, size);
     for (uint64_t times = 1 + vxm_rng_below(rng, 3); times > 0; times--) {
-      size_t at = vxm_rng_below(rng, round % 2 ? size : vxm_min(size, 200));
+      size_t at = vxm_rng_below(rng, round % 2 || size < 200 ? size : 200);
       copy[at] = vxm_rng_below(rng, 2) ? (unsigned char)(copy[at] ^ 1 << vxm_rng_below(rng, 8))
                                        : (unsigned char)vxm_rng_below(rng, 256);
     }

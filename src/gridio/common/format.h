@@ -79,6 +79,8 @@ typedef struct vxm_grid_format {
   vxm_status (*read)(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error);
   /** Reads numbers, where `read` does not take them for bits; NULL = it holds only bits. */
   vxm_status (*read_field)(vxm_field **out, const vxm_input *input, vxm_error *error);
+  /** Reads an octree, where it stores bits; VXM_ERROR_NUMBERS where not. NULL = by way of a grid. */
+  vxm_status (*read_sparse)(vxm_sparse **out, const vxm_input *input, vxm_error *error);
   /** Writes bits slice by slice. NULL = they are written as a field of bytes, through `values` or
    * `write_field`. */
   const vxm_grid_writer_kind *writer;
@@ -145,7 +147,7 @@ vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status
 
 /** One per file of this room. */
 extern const vxm_grid_format vxm_format_binvox, vxm_format_npy, vxm_format_nrrd, vxm_format_ply,
-    vxm_format_raw, vxm_format_rle, vxm_format_vdb, vxm_format_vox;
+    vxm_format_octree, vxm_format_raw, vxm_format_rle, vxm_format_vdb, vxm_format_vox;
 
 /** VXM_ERROR_FORMAT at a byte of the input. */
 #define vxm_fail_byte(error, input, offset, ...) \

@@ -10,7 +10,7 @@
 #ifndef VXM_GRIDIO_FORMATS_OCTREE_FILE_H
 #define VXM_GRIDIO_FORMATS_OCTREE_FILE_H
 
-#include "base/file.h"
+#include "base/output.h"
 #include "grid/octree.h"
 
 enum {
@@ -52,8 +52,8 @@ vxm_status vxm_octree_file_open(vxm_sparse_file **out, vxm_input *input, vxm_err
 vxm_status vxm_octree_file_load(vxm_sparse **out, const vxm_sparse_file *file, const int64_t begin[3],
                                 const int64_t end[3], vxm_error *error);
 
-/** Writes an octree. @return VXM_OK, VXM_ERROR_IO, VXM_ERROR_CANCELLED, VXM_ERROR_MEMORY,
- * VXM_ERROR_MEMORY_LIMIT */
-vxm_status vxm_octree_file_write(const vxm_sparse *sparse, const char *path, vxm_error *error);
+/** Writes an octree into an output. A failed write is told when that is committed. @return VXM_OK,
+ * VXM_ERROR_CANCELLED, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+vxm_status vxm_octree_file_put(vxm_output *output, const vxm_sparse *sparse, vxm_error *error);
 
 #endif

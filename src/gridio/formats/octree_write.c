@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Octrees out: nodes of a tile lie together on every level, as all are in Morton order. */
 #include "base/endian.h"
-#include "base/output.h"
 #include "gridio/formats/octree_file.h"
 
 /** What a tile has of a level: nodes begin..end-1, or bricks. */
@@ -90,7 +89,6 @@ static vxm_status put_tiles(vxm_output *output, entry *entries, const vxm_sparse
         return status;
     }
   }
-  entries[tiles] = (entry){offset, 0};
   return VXM_OK;
 }
 
@@ -125,21 +123,16 @@ static void put_header(vxm_output *output, const vxm_sparse *sparse, int level) 
   put_word(output, 0); /* nothing beside the voxels */
 }
 
-vxm_status vxm_octree_file_write(const vxm_sparse *sparse, const char *path, vxm_error *error) {
+vxm_status vxm_octree_file_put(vxm_output *output, const vxm_sparse *sparse, vxm_error *error) {
   int level = vxm_octree_tile_level(sparse->levels);
-  vxm_output *output;
   vxm_error local = VXM_ERROR_INIT;
-  entry *entries = vxm_alloc(sparse->context, sparse->node_count[level] + 1, sizeof *entries, &local);
-  vxm_status status = entries ? vxm_output_open(&output, sparse->context, path, &local) : local.code;
-  if (status == VXM_OK) {
-    put_header(output, sparse, level);
+  entry *entries = vxm_alloc(sparse->context, sparse->node_count[level], sizeof *entries, &local);
+  vxm_status status = local.code;
+  put_header(output, sparse, level);
+  if (status == VXM_OK)
     status = put_tiles(output, entries, sparse, level, &local);
-    if (status == VXM_OK) {
-      put_index(output, entries, sparse, level);
-      status = vxm_output_commit(output, &local);
-    } else
-      vxm_output_abort(output);
-  }
+  if (status == VXM_OK)
+    put_index(output, entries, sparse, level);
   vxm_free(sparse->context, entries);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);

@@ -60,8 +60,8 @@ static void add_bricks(const vxm_vdb_filling *f, const int64_t at[3], const uint
     for (int j = 0; j < ACROSS; j++)
       for (int k = 0; k < ACROSS; k++)
         if (bricks[i][j][k])
-          vxm_octree_pieces_brick(f->pieces, (int64_t[3]){first[0] + 4 * i, first[1] + 4 * j, first[2] + 4 * k},
-                                  bricks[i][j][k]);
+          vxm_octree_pieces_brick(
+              f->pieces, (int64_t[3]){first[0] + 4 * i, first[1] + 4 * j, first[2] + 4 * k}, bricks[i][j][k]);
 }
 
 void vxm_vdb_fill_bits(vxm_vdb_filling *f, const int64_t at[3], const uint64_t bits[VXM_SINK_SIDE]) {

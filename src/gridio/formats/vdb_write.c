@@ -166,6 +166,7 @@ const vxm_grid_format vxm_format_vdb = {
     .sniff = vxm_vdb_sniff,
     .read = vxm_vdb_read,
     .read_field = vxm_vdb_read_field,
+    .read_sparse = vxm_vdb_read_sparse,
     .writer = &writer_kind,
     .write_sparse = write_sparse,
     .values = &vxm_vdb_values,
