@@ -186,6 +186,20 @@ static void damage(vxm_context *context, const unsigned char *data, size_t size,
   free(copy);
 }
 
+/** Bytes between the last tile and the index belong to nothing. */
+static void check_gap(vxm_context *context, const unsigned char *data, size_t size) {
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_sparse *sparse;
+  uint64_t index = vxm_load_le64(data + 96);
+  unsigned char *copy = calloc(size + 8, 1);
+  assert_non_null(copy);
+  memcpy(copy, data, (size_t)index);
+  memcpy(copy + index + 8, data + index, size - (size_t)index);
+  vxm_store_le64(copy + 96, index + 8);
+  assert_int_equal(read_bytes(&sparse, context, copy, size + 8, &error), VXM_ERROR_FORMAT);
+  free(copy);
+}
+
 static void test_damage(void **state) {
   (void)state;
   char folder[64], path[80];
@@ -203,6 +217,8 @@ static void test_damage(void **state) {
       vxm_sparse *sparse;
       assert_int_equal(read_bytes(&sparse, context, data, length, &error), VXM_ERROR_FORMAT);
     }
+    if (vxm_load_le64(data + 88) > 0)
+      check_gap(context, data, size);
     damage(context, data, size, &rng);
     free(data);
     vxm_grid_destroy(grid);
@@ -225,6 +241,9 @@ static void test_pieces(void **state) {
     for (int p = 0; p < 1 + round; p++) {
       int64_t low[3], high[3];
       random_box(n, &rng, low, high);
+      if (p == 12) /* the whole */
+        for (int a = 0; a < 3; a++)
+          low[a] = 0, high[a] = n[a];
       if (p % 4 == 0) {
         for (int a = 0; a < 3; a++) /* may reach beyond the grid */
           high[a] += (int64_t)vxm_rng_below(&rng, 5), low[a] -= (int64_t)vxm_rng_below(&rng, 5);
