@@ -31,10 +31,12 @@ static vxm_engine *engine;
 static vxm_model *model;
 static vxm_sampler *sampler;
 static vxm_sparse *sparse;
+static vxm_sparse_file *sparse_file;
 static vxm_field *field;
 
 static const vxm_space space = {{4, 4, 4}, {0, 0, 0}, {0.25, 0.25, 0.25}};
 static const uint64_t words_of_grid[16];
+static const int64_t window_begin[3] = {0, 1, 2}, window_end[3] = {4, 3, 4};
 static const double unmoved[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 static const char off_text[] = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 static const vxm_variant variant;
@@ -68,6 +70,7 @@ static struct {
   vxm_model *model;
   vxm_sampler *sampler;
   vxm_sparse *sparse;
+  vxm_sparse_file *sparse_file;
   vxm_field *field;
   vxm_field_range range;
   vxm_reading_info reading;
@@ -100,6 +103,7 @@ static void drop_made(void) {
   vxm_model_destroy(out.model);
   vxm_sampler_destroy(out.sampler);
   vxm_sparse_destroy(out.sparse);
+  vxm_sparse_file_close(out.sparse_file);
   vxm_field_destroy(out.field);
   memset(&out, 0, sizeof out);
 }
@@ -344,25 +348,39 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
     vxm_sampler_files(P(0, variant_path), P(1, sampler), P(2, &variant), 1, P(3, &grid_write),              \
                       P(4, &out.written), P(5, &error)))
 
-#define SPARSE_CALLS(X)                                                                                \
-  X(vxm_model_sparse, 6, 13,                                                                           \
-    vxm_model_sparse(P(0, &out.sparse), P(1, &out.voxelize), P(2, model), P(3, &space), P(4, unmoved), \
-                     P(5, &error)))                                                                    \
-  X(vxm_sparse_destroy, 1, 0, (vxm_sparse_destroy(NULL), VXM_OK))                                      \
-  X(vxm_sparse_space, 1, 1, GIVES(vxm_sparse_space(P(0, sparse))))                                     \
-  X(vxm_sparse_get, 1, 1, GIVES(vxm_sparse_get(P(0, sparse), 0, 0, 0)))                                \
-  X(vxm_sparse_count, 1, 1, GIVES(vxm_sparse_count(P(0, sparse))))                                     \
-  X(vxm_sparse_hash, 1, 1, GIVES(vxm_sparse_hash(P(0, sparse))))                                       \
-  X(vxm_sparse_bricks, 1, 1, ANYTHING(vxm_sparse_bricks(P(0, sparse))))                                \
-  X(vxm_sparse_nodes, 1, 1, ANYTHING(vxm_sparse_nodes(P(0, sparse))))                                  \
-  X(vxm_sparse_bytes, 1, 1, GIVES(vxm_sparse_bytes(P(0, sparse))))                                     \
-  X(vxm_sparse_from_grid, 3, 3, vxm_sparse_from_grid(P(0, &out.sparse), P(1, grid), P(2, &error)))     \
-  X(vxm_sparse_to_grid, 3, 3, vxm_sparse_to_grid(P(0, &out.grid), P(1, sparse), P(2, &error)))         \
-  X(vxm_sparse_combine, 4, 7,                                                                          \
-    vxm_sparse_combine(P(0, &out.sparse), P(1, sparse), P(2, sparse), VXM_SET_UNION, P(3, &error)))    \
-  X(vxm_sparse_visit, 2, 3, DOES(vxm_sparse_visit(P(0, sparse), P(1, visit), NULL)))                   \
-  X(vxm_sparse_write, 4, 3,                                                                            \
-    vxm_sparse_write(P(0, sparse), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))                  \
+#define SPARSE_CALLS(X)                                                                                   \
+  X(vxm_model_sparse, 6, 13,                                                                              \
+    vxm_model_sparse(P(0, &out.sparse), P(1, &out.voxelize), P(2, model), P(3, &space), P(4, unmoved),    \
+                     P(5, &error)))                                                                       \
+  X(vxm_sparse_destroy, 1, 0, (vxm_sparse_destroy(NULL), VXM_OK))                                         \
+  X(vxm_sparse_space, 1, 1, GIVES(vxm_sparse_space(P(0, sparse))))                                        \
+  X(vxm_sparse_get, 1, 1, GIVES(vxm_sparse_get(P(0, sparse), 0, 0, 0)))                                   \
+  X(vxm_sparse_count, 1, 1, GIVES(vxm_sparse_count(P(0, sparse))))                                        \
+  X(vxm_sparse_hash, 1, 1, GIVES(vxm_sparse_hash(P(0, sparse))))                                          \
+  X(vxm_sparse_bricks, 1, 1, ANYTHING(vxm_sparse_bricks(P(0, sparse))))                                   \
+  X(vxm_sparse_nodes, 1, 1, ANYTHING(vxm_sparse_nodes(P(0, sparse))))                                     \
+  X(vxm_sparse_bytes, 1, 1, GIVES(vxm_sparse_bytes(P(0, sparse))))                                        \
+  X(vxm_sparse_from_grid, 3, 3, vxm_sparse_from_grid(P(0, &out.sparse), P(1, grid), P(2, &error)))        \
+  X(vxm_sparse_to_grid, 3, 3, vxm_sparse_to_grid(P(0, &out.grid), P(1, sparse), P(2, &error)))            \
+  X(vxm_sparse_combine, 4, 7,                                                                             \
+    vxm_sparse_combine(P(0, &out.sparse), P(1, sparse), P(2, sparse), VXM_SET_UNION, P(3, &error)))       \
+  X(vxm_sparse_warning_count, 1, 1, ANYTHING(vxm_sparse_warning_count(P(0, sparse))))                     \
+  X(vxm_sparse_warning, 1, 1, ANYTHING(vxm_sparse_warning(P(0, sparse), 0)))                              \
+  X(vxm_sparse_window, 5, 15,                                                                             \
+    vxm_sparse_window(P(0, &out.grid), P(1, sparse), P(2, window_begin), P(3, window_end), P(4, &error))) \
+  X(vxm_sparse_read, 4, 5,                                                                                \
+    vxm_sparse_read(P(0, &out.sparse), P(1, context), P(2, "in.octree"), P(3, &error)))                   \
+  X(vxm_sparse_file_open, 4, 5,                                                                           \
+    vxm_sparse_file_open(P(0, &out.sparse_file), P(1, context), P(2, "in.octree"), P(3, &error)))         \
+  X(vxm_sparse_file_close, 1, 0, (vxm_sparse_file_close(NULL), VXM_OK))                                   \
+  X(vxm_sparse_file_space, 1, 1, GIVES(vxm_sparse_file_space(P(0, sparse_file))))                         \
+  X(vxm_sparse_file_count, 1, 1, GIVES(vxm_sparse_file_count(P(0, sparse_file))))                         \
+  X(vxm_sparse_file_window, 5, 15,                                                                        \
+    vxm_sparse_file_window(P(0, &out.grid), P(1, sparse_file), P(2, window_begin), P(3, window_end),      \
+                           P(4, &error)))                                                                 \
+  X(vxm_sparse_visit, 2, 3, DOES(vxm_sparse_visit(P(0, sparse), P(1, visit), NULL)))                      \
+  X(vxm_sparse_write, 4, 3,                                                                               \
+    vxm_sparse_write(P(0, sparse), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))                     \
   X(vxm_sparse_write_coords, 3, 3, vxm_sparse_write_coords(P(0, sparse), P(1, "out.npy"), P(2, &error)))
 
 #define CALLS(X)             \
@@ -504,6 +522,8 @@ static int set_up(void **state) {
   assert_int_equal(vxm_sampler_put(sampler, 0, mesh, NULL), VXM_OK);
   vxm_grid_set(grid, 0, 0, 0, true);
   assert_int_equal(vxm_sparse_from_grid(&sparse, grid, NULL), VXM_OK);
+  assert_int_equal(vxm_sparse_write(sparse, "in.octree", NULL, NULL), VXM_OK);
+  assert_int_equal(vxm_sparse_file_open(&sparse_file, context, "in.octree", NULL), VXM_OK);
   return 0;
 }
 
@@ -519,9 +539,10 @@ static int tear_down(void **state) {
   vxm_field_destroy(field);
   vxm_defects_destroy(defects);
   vxm_sparse_destroy(sparse);
-  static const char *const files[] = {"in.off",  "in.obj",      "in.npy",          "in.npy.json",
-                                      "out.off", "out.ply",     "out.npy",         "out.npy.json",
-                                      "out.png", "variant.npy", "variant.npy.json"};
+  vxm_sparse_file_close(sparse_file);
+  static const char *const files[] = {"in.off",       "in.obj",  "in.npy",      "in.npy.json",
+                                      "in.octree",    "out.off", "out.ply",     "out.npy",
+                                      "out.npy.json", "out.png", "variant.npy", "variant.npy.json"};
   for (size_t f = 0; f < sizeof files / sizeof *files; f++)
     unlink(files[f]);
   return chdir("/") == 0 ? rmdir(folder) : 1;
