@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions of sparse sets of voxels: they check arguments and call down. */
 #include "base/sized.h"
+#include "grid/cut.h"
 #include "grid/octree_cut.h"
 #include "gridio/formats/coords.h"
 #include "gridio/formats/octree_file.h"
@@ -141,7 +142,7 @@ vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, const int
     *out = NULL;
   if (!out || !sparse || !begin || !end)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
-  vxm_status status = vxm_octree_check_box(&sparse->space, begin, end, error);
+  vxm_status status = vxm_space_check_box(&sparse->space, begin, end, error);
   return status == VXM_OK ? vxm_octree_cut(out, sparse, begin, end, error) : status;
 }
 
@@ -152,7 +153,13 @@ vxm_status vxm_sparse_read(vxm_sparse **out, vxm_context *context, const char *p
     *out = NULL;
   if (!out || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
-  return vxm_gridio_read_sparse(out, context, path, error);
+  vxm_context *owner;
+  vxm_status status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_gridio_read_sparse(out, owner, path, error);
+  vxm_context_release(owner);
+  return status;
 }
 
 vxm_status vxm_sparse_file_open(vxm_sparse_file **out, vxm_context *context, const char *path,
@@ -162,8 +169,15 @@ vxm_status vxm_sparse_file_open(vxm_sparse_file **out, vxm_context *context, con
     *out = NULL;
   if (!out || !path)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
-  vxm_status status = vxm_input_open(&input, context, path, error);
-  return status == VXM_OK ? vxm_octree_file_open(out, &input, error) : status;
+  vxm_context *owner;
+  vxm_status status = vxm_context_acquire(&owner, context, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_input_open(&input, owner, path, error);
+  if (status == VXM_OK)
+    status = vxm_octree_file_open(out, &input, error);
+  vxm_context_release(owner);
+  return status;
 }
 
 const vxm_space *vxm_sparse_file_space(const vxm_sparse_file *file) {
@@ -181,7 +195,7 @@ vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, c
     *out = NULL;
   if (!out || !file || !begin || !end)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
-  vxm_status status = vxm_octree_check_box(&file->space, begin, end, error);
+  vxm_status status = vxm_space_check_box(&file->space, begin, end, error);
   if (status == VXM_OK)
     status = vxm_octree_file_load(&part, file, begin, end, error);
   if (status != VXM_OK)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The public functions about fields in files: they check arguments and call down. */
 #include "base/sized.h"
+#include "grid/cut.h"
+#include "gridio/common/values_cut.h"
 #include "gridio/gridio.h"
 #include "gridio/picture/picture.h"
 
@@ -82,6 +84,16 @@ vxm_status vxm_field_read(vxm_field **out, vxm_context *context, const char *pat
     status = spread(out, grid, error);
   vxm_grid_destroy(grid);
   return status;
+}
+
+vxm_status vxm_field_window(vxm_field **out, const vxm_field *field, const int64_t begin[3],
+                            const int64_t end[3], vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !field || !begin || !end)
+    return fail_null(error);
+  vxm_status status = vxm_space_check_box(&field->space, begin, end, error);
+  return status == VXM_OK ? vxm_field_cut(out, field, begin, end, error) : status;
 }
 
 /* ---- What it holds ---- */

@@ -3,8 +3,9 @@
 #include "cli/cli.h"
 
 #include <inttypes.h>
+#include <string.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS };
+enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_WINDOW };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
@@ -14,6 +15,9 @@ static const cli_option known_options[] = {
     {KEY_FORMAT, "format", "F",
      "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl, off or vox [by the name of the\n"
      "output]"},
+    {KEY_WINDOW, "window", "X:X,Y:Y,Z:Z",
+     "only these voxels: along each axis from the first number, 0 or more, to before\n"
+     "the second; of .octree nothing else is read"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_THRESHOLD,
@@ -22,6 +26,8 @@ static const cli_option known_options[] = {
 typedef struct request {
   const char *input, *output, *format;
   bool force, keep_polygons, keep_contacts;
+  bool has_window;
+  int64_t begin[3], end[3];
   vxm_threshold_options threshold;
 } request;
 
@@ -36,6 +42,25 @@ static bool is_one_of(const char *format, const char *const *choices) {
   return cli_read_choice(format, choices) >= 0;
 }
 
+/** "0:64,10:20,0:1" */
+static int read_window(cli_run *cli, request *out, const char *value) {
+  char text[128], *rest = text;
+  bool is_read = strlen(value) < sizeof text;
+  if (is_read)
+    strcpy(text, value);
+  for (int a = 0; a < 3 && is_read; a++) {
+    char *axis = strsep(&rest, ","), *end = axis ? strchr(axis, ':') : NULL;
+    if (end)
+      *end++ = '\0';
+    is_read = end && cli_read_integer(&out->begin[a], axis, 0, 1 << 20) &&
+              cli_read_integer(&out->end[a], end, 1, 1 << 20) && out->begin[a] < out->end[a];
+  }
+  if (!is_read || rest)
+    return cli_usage(cli, "--window '%s' is not X:X,Y:Y,Z:Z, such as 0:64,0:64,10:20", value);
+  out->has_window = true;
+  return CLI_END;
+}
+
 static int read_arguments(cli_run *cli, request *out) {
   const char *value;
   int key;
@@ -48,7 +73,10 @@ static int read_arguments(cli_run *cli, request *out) {
       out->force = true;
     else if (key == KEY_CONTACTS)
       out->keep_contacts = true;
-    else if (key == KEY_POLYGONS) {
+    else if (key == KEY_WINDOW) {
+      if (read_window(cli, out, value) == CLI_STOP)
+        return CLI_STOP;
+    } else if (key == KEY_POLYGONS) {
       if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
         return CLI_STOP;
     } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
@@ -93,6 +121,33 @@ static bool keeps_numbers(const request *given, const vxm_field *field) {
          (vxm_field_kind_of(field) == VXM_FIELD_COLORS && is_one_of(given->format, colors));
 }
 
+/** Leaves the window of what a file holds. */
+static vxm_status cut(cli_run *cli, const request *given, cli_values *values) {
+  cli_values part = {NULL, NULL};
+  vxm_status status =
+      values->grid ? vxm_grid_window(&part.grid, values->grid, given->begin, given->end, &cli->error)
+                   : vxm_field_window(&part.field, values->field, given->begin, given->end, &cli->error);
+  cli_values_free(values);
+  *values = part;
+  return status;
+}
+
+static vxm_status read_part(cli_run *cli, const request *given, vxm_grid **out) {
+  vxm_sparse_file *file;
+  vxm_status status = vxm_sparse_file_open(&file, cli->context, given->input, &cli->error);
+  if (status == VXM_OK)
+    status = vxm_sparse_file_window(out, file, given->begin, given->end, &cli->error);
+  vxm_sparse_file_close(file);
+  return status;
+}
+
+static vxm_status read_values(cli_run *cli, const request *given, cli_values *values) {
+  if (given->has_window && cli_is_extension(given->input, "octree"))
+    return read_part(cli, given, &values->grid);
+  vxm_status status = cli_values_read(cli, values, given->input);
+  return status == VXM_OK && given->has_window ? cut(cli, given, values) : status;
+}
+
 /** Numbers stay numbers where the output holds them; else they become bits, or are refused. */
 static int settle(cli_run *cli, const request *given, cli_values *values) {
   char why[64];
@@ -130,8 +185,8 @@ static int run(cli_run *cli) {
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
-  cli_values values;
-  if (cli_values_read(cli, &values, given.input) != VXM_OK)
+  cli_values values = {NULL, NULL};
+  if (read_values(cli, &given, &values) != VXM_OK)
     return cli_fail(cli);
   int status = settle(cli, &given, &values);
   if (status == CLI_DONE)
@@ -155,7 +210,8 @@ const cli_command cli_command_convert = {
         "  voxmend convert chair.binvox -o chair.npy\n"
         "  voxmend convert chair.npy -o blocks.obj\n"
         "  voxmend convert distance.nrrd -o distance.vdb\n"
-        "  voxmend convert distance.nrrd --below 0 -o solid.binvox",
+        "  voxmend convert distance.nrrd --below 0 -o solid.binvox\n"
+        "  voxmend convert city.octree --window 0:512,0:512,0:64 -o corner.npy",
     .options = known_options,
     .run = run,
 };

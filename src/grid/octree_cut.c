@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/octree_cut.h"
-
-#include <inttypes.h>
+#include "grid/cut.h"
 
 typedef struct cut {
   const vxm_sparse *sparse;
@@ -71,24 +70,9 @@ static void cut_node(const cut *c, int level, size_t index, const int64_t at[3])
   }
 }
 
-vxm_status vxm_octree_check_box(const vxm_space *space, const int64_t begin[3], const int64_t end[3],
-                                vxm_error *error) {
-  for (int a = 0; a < 3; a++)
-    if (begin[a] < 0 || begin[a] >= end[a] || end[a] > space->dims[a])
-      return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                      "the window %" PRId64 ":%" PRId64 " along %c is empty, or not within the %" PRId64
-                      " voxels of the grid",
-                      begin[a], end[a], "xyz"[a], space -> dims[a]);
-  return VXM_OK;
-}
-
 vxm_status vxm_octree_cut(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
                           const int64_t end[3], vxm_error *error) {
-  vxm_space space = sparse->space;
-  for (int a = 0; a < 3; a++) {
-    space.dims[a] = end[a] - begin[a];
-    space.origin[a] += (double)begin[a] * space.voxel_size[a];
-  }
+  vxm_space space = vxm_space_of_box(&sparse->space, begin, end);
   vxm_status status = vxm_grid_create(out, sparse->context, &space, error);
   if (status != VXM_OK)
     return status;

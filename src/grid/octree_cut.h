@@ -5,10 +5,6 @@
 
 #include "grid/octree.h"
 
-/** Checks that a box of voxels begin..end-1 is not empty and lies within the dimensions. */
-vxm_status vxm_octree_check_box(const vxm_space *space, const int64_t begin[3], const int64_t end[3],
-                                vxm_error *error);
-
 /** See vxm_sparse_window in voxmend.h; the box has been checked. */
 vxm_status vxm_octree_cut(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
                           const int64_t end[3], vxm_error *error);

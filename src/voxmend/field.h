@@ -107,6 +107,15 @@ VXM_API vxm_status vxm_field_add_label(vxm_field *field, const char *name, int64
 VXM_API vxm_status vxm_field_add_metadata(vxm_field *field, const char *key, const char *value,
                                           vxm_error *error);
 
+/**
+ * The values of voxels begin..end-1 along each axis as a new field, which lies where they lie, with what is
+ * said of the values; of labels the voxels are counted anew.
+ *
+ * @return as vxm_grid_window
+ */
+VXM_API vxm_status vxm_field_window(vxm_field **out, const vxm_field *field, const int64_t begin[3],
+                                    const int64_t end[3], vxm_error *error);
+
 /** Warnings from reading, one line each. */
 VXM_API int64_t vxm_field_warning_count(const vxm_field *field);
 /** One of them; "" if there is none of this number. */

@@ -84,6 +84,14 @@ VXM_API const uint8_t *vxm_grid_confidence(const vxm_grid *grid);
  *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
 VXM_API vxm_status vxm_grid_write_confidence(const vxm_grid *grid, const char *path, vxm_error *error);
+/**
+ * The voxels begin..end-1 along each axis as a new grid, which lies where they lie, without their confidence.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for a window that is empty or not within the dimensions;
+ * VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_grid_window(vxm_grid **out, const vxm_grid *grid, const int64_t begin[3],
+                                   const int64_t end[3], vxm_error *error);
 /** Warnings from voxelizing or reading, one line each. */
 VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
 /** One of them; "" if there is none of this number. */
