@@ -173,7 +173,7 @@ vxm_status vxm_sparse_file_open(vxm_sparse_file **out, vxm_context *context, con
   vxm_status status = vxm_context_acquire(&owner, context, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_input_open(&input, owner, path, error);
+  status = vxm_input_open_in_parts(&input, owner, path, error);
   if (status == VXM_OK)
     status = vxm_octree_file_open(out, &input, error);
   vxm_context_release(owner);

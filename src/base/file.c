@@ -38,7 +38,7 @@ static vxm_status read_stream(vxm_input *input, int descriptor, vxm_error *error
 }
 
 /** Maps a file, or reads what cannot be mapped. */
-static vxm_status take_in(vxm_input *out, int descriptor, vxm_error *error) {
+static vxm_status take_in(vxm_input *out, int descriptor, bool in_parts, vxm_error *error) {
   const char *path = out->name;
   struct stat info;
   vxm_status status = VXM_OK;
@@ -50,14 +50,15 @@ static vxm_status take_in(vxm_input *out, int descriptor, vxm_error *error) {
   } else if (S_ISREG(info.st_mode) && info.st_size > 0) {
     out->size = (size_t)info.st_size;
     /* MAP_POPULATE maps the pages in one call rather than by one fault each. */
-    void *mapping = mmap(NULL, out->size, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor, 0);
+    void *mapping =
+        mmap(NULL, out->size, PROT_READ, MAP_PRIVATE | (in_parts ? 0 : MAP_POPULATE), descriptor, 0);
     if (mapping == MAP_FAILED)
       status = lseek(descriptor, 0, SEEK_SET) < 0 ? vxm_fail_errno(error, path, "cannot read")
                                                   : read_stream(out, descriptor, error);
     else {
       out->mapping = mapping;
       out->data = mapping;
-      posix_madvise(mapping, out->size, POSIX_MADV_SEQUENTIAL);
+      posix_madvise(mapping, out->size, in_parts ? POSIX_MADV_RANDOM : POSIX_MADV_SEQUENTIAL);
     }
   } else
     status = read_stream(out, descriptor, error);
@@ -67,10 +68,11 @@ static vxm_status take_in(vxm_input *out, int descriptor, vxm_error *error) {
 vxm_status vxm_input_take(vxm_input *out, vxm_context *context, const char *name, int descriptor,
                           vxm_error *error) {
   *out = (vxm_input){.name = name, .context = context};
-  return take_in(out, descriptor, error);
+  return take_in(out, descriptor, false, error);
 }
 
-vxm_status vxm_input_open(vxm_input *out, vxm_context *context, const char *path, vxm_error *error) {
+static vxm_status open_input(vxm_input *out, vxm_context *context, const char *path, bool in_parts,
+                             vxm_error *error) {
   *out = (vxm_input){.name = path, .context = context};
   if (strcmp(path, "-") == 0) {
     out->name = "<stdin>";
@@ -79,9 +81,17 @@ vxm_status vxm_input_open(vxm_input *out, vxm_context *context, const char *path
   int descriptor = open(path, O_RDONLY | O_CLOEXEC);
   if (descriptor < 0)
     return vxm_fail_errno(error, path, "cannot open");
-  vxm_status status = take_in(out, descriptor, error);
+  vxm_status status = take_in(out, descriptor, in_parts, error);
   close(descriptor);
   return status;
+}
+
+vxm_status vxm_input_open(vxm_input *out, vxm_context *context, const char *path, vxm_error *error) {
+  return open_input(out, context, path, false, error);
+}
+
+vxm_status vxm_input_open_in_parts(vxm_input *out, vxm_context *context, const char *path, vxm_error *error) {
+  return open_input(out, context, path, true, error);
 }
 
 void vxm_input_close(vxm_input *input) {

@@ -21,6 +21,8 @@ typedef struct vxm_input {
 
 /** Opens a file; "-" is standard input. The path must outlive the input. */
 vxm_status vxm_input_open(vxm_input *out, vxm_context *context, const char *path, vxm_error *error);
+/** The same for a file of which little is looked at: the rest is not read. */
+vxm_status vxm_input_open_in_parts(vxm_input *out, vxm_context *context, const char *path, vxm_error *error);
 /** The bytes of an open descriptor, which stays open; `name`, for messages, must outlive the input. */
 vxm_status vxm_input_take(vxm_input *out, vxm_context *context, const char *name, int descriptor,
                           vxm_error *error);

@@ -94,7 +94,7 @@ size_t vxm_octree_nodes(const vxm_sparse *sparse) {
 }
 
 uint64_t vxm_octree_bytes(const vxm_sparse *sparse) {
-  return sizeof *sparse + vxm_octree_nodes(sparse) * sizeof(vxm_octree_node) +
+  return sizeof *sparse - sizeof sparse->warnings + vxm_octree_nodes(sparse) * sizeof(vxm_octree_node) +
          sparse->brick_count * sizeof *sparse->bricks;
 }
 

@@ -238,6 +238,10 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_field_values, 1, 1, GIVES(vxm_field_values(P(0, field))))                                           \
   X(vxm_field_kind_name, 0, 0, GIVES_TEXT(vxm_field_kind_name(VXM_FIELD_NUMBERS)))                          \
   X(vxm_scalar_name, 0, 0, GIVES_TEXT(vxm_scalar_name(VXM_UINT8)))                                          \
+  X(vxm_field_window, 5, 15,                                                                                \
+    vxm_field_window(P(0, &out.field), P(1, field), P(2, window_begin), P(3, window_end), P(4, &error)))    \
+  X(vxm_grid_window, 5, 15,                                                                                 \
+    vxm_grid_window(P(0, &out.grid), P(1, grid), P(2, window_begin), P(3, window_end), P(4, &error)))       \
   X(vxm_field_measure, 3, 3, vxm_field_measure(P(0, &out.range), P(1, field), P(2, &error)))                \
   X(vxm_field_label_count, 1, 1, ANYTHING(vxm_field_label_count(P(0, field))))                              \
   X(vxm_field_label_name, 1, 1, ANYTHING(vxm_field_label_name(P(0, field), 1)))                             \

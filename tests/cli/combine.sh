@@ -34,6 +34,19 @@ run 'voxmend combine c.binvox or c.binvox -o c.obj --force -q'
 run 'voxmend combine a.npy and distance.npy --below 0 -o inside.npy --json'
 run 'voxmend combine - or c.binvox -o - --format binvox <c.binvox 2>err | cmp - c.binvox; cat err'
 
+say "# octrees"
+voxmend convert a.npy -o a.octree -q
+voxmend convert b.npy -o b.octree -q
+run 'voxmend combine a.octree or b.octree -o or.octree'
+for operation in or and minus xor; do
+  run "voxmend combine a.octree $operation b.npy -o x.rle --sparse -q && voxmend compare x.rle $operation.npy -q --strict && rm x.rle"
+done
+run 'voxmend combine a.octree minus b.octree or and.npy and a.octree -o a2.octree -q && cmp a2.octree a.octree'
+run 'voxmend combine a.npy and distance.npy --below 0 -o inside.octree -q && voxmend compare inside.octree inside.npy -q --strict'
+run 'voxmend combine a.octree or other.npy -o x.octree'
+run 'voxmend combine a.octree or distance.npy -o x.octree'
+run 'voxmend combine a.octree or b.octree -o x.stl --sparse'
+
 say "# what does not go"
 run 'voxmend combine a.npy or other.npy -o x.npy'
 run 'voxmend combine a.npy or moved.npy -o x.npy'

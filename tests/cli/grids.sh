@@ -16,6 +16,20 @@ run 'voxmend convert t.npy -o - --format nrrd -q | voxmend compare - t.nrrd -q'
 run 'voxmend voxelize in/torus.off -o direct.nrrd --like t.nrrd -q && cmp direct.nrrd t.nrrd'
 run 'voxmend voxelize in/torus.off -o direct.nrrd -r 24 --sparse -q && cmp direct.nrrd t.nrrd'
 
+say "# octrees and windows"
+run 'voxmend convert t.npy -o t.octree && voxmend convert t.octree -o back.npy -q && cmp back.npy t.npy'
+run 'voxmend voxelize in/torus.off -o direct.octree -r 24 --sparse -q && cmp direct.octree t.octree'
+run 'voxmend voxelize in/torus.off -o - --format octree -r 24 -q | cmp - t.octree'
+run 'voxmend convert t.octree -o part.npy --window 3:20,4:14,6:18'
+run 'voxmend convert t.npy -o part2.npy --window 3:20,4:14,6:18 -q && cmp part.npy part2.npy && cmp part.npy.json part2.npy.json'
+run 'voxmend voxelize in/torus.off -o d.nrrd --distance signed -r 24 -q && voxmend convert d.nrrd --window 3:20,4:14,6:18 -o d.npy'
+run 'voxmend convert d.npy --below 0 -o d.rle -q && voxmend compare d.rle part.npy -q --strict'
+run 'voxmend convert t.octree -o x.npy --window 3:20,4:14,6:99'
+run 'voxmend convert t.octree -o x.npy --window 3:20,5:6'
+run 'voxmend convert t.octree -o x.npy --window 3:20,6:6,0:9'
+head -c 300 t.octree >cut.octree
+run 'voxmend convert cut.octree -o x.npy'
+
 say "# compare"
 run 'voxmend voxelize in/sphere.off -o s.npy --like t.npy -q'
 run 'voxmend compare t.npy s.npy'
