@@ -2,6 +2,7 @@
 #include "grid/octree.h"
 
 #include <stdatomic.h>
+#include <stddef.h>
 
 int vxm_octree_levels(const vxm_space *space) {
   int64_t most = vxm_max(space->dims[0], vxm_max(space->dims[1], space->dims[2]));
@@ -94,7 +95,7 @@ size_t vxm_octree_nodes(const vxm_sparse *sparse) {
 }
 
 uint64_t vxm_octree_bytes(const vxm_sparse *sparse) {
-  return sizeof *sparse - sizeof sparse->warnings + vxm_octree_nodes(sparse) * sizeof(vxm_octree_node) +
+  return offsetof(vxm_sparse, warnings) + vxm_octree_nodes(sparse) * sizeof(vxm_octree_node) +
          sparse->brick_count * sizeof *sparse->bricks;
 }
 
