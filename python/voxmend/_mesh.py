@@ -152,12 +152,18 @@ class Mesh:
         return self.indices.reshape(-1, int(sizes[0]))
 
     def triangles(self) -> Uint32s:
-        """(T, 3) uint32: polygons cut into fans from their first corners."""
+        """(T, 3) uint32: polygons cut into fans from their first corners, which is right where they are convex; else see
+        `triangulated`."""
         offsets, indices = self.offsets.astype(numpy.int64), self.indices
         counts = numpy.maximum(numpy.diff(offsets) - 2, 0)
         first = numpy.repeat(offsets[:-1], counts)
         step = numpy.arange(counts.sum()) - numpy.repeat(numpy.cumsum(counts) - counts, counts)
         return numpy.stack([indices[first], indices[first + step + 1], indices[first + step + 2]], axis=1)
+
+    def triangulated(self) -> "Mesh":
+        """A mesh of the triangles that voxelizing takes polygons for, and `save` writes, whatever shape they have; the same
+        vertices and tags."""
+        return Mesh._of(_core.create("vxm_mesh", lib.vxm_mesh_triangulate, self._pointer, destroy=lib.vxm_mesh_destroy))
 
     @property
     def format(self) -> str:

@@ -21,13 +21,13 @@ def package(name: str) -> Any:
 
 
 def to_trimesh(mesh: Mesh) -> Any:
-    return package("trimesh").Trimesh(mesh.vertices.copy(), mesh.triangles().astype(numpy.int64), process=False)
+    return package("trimesh").Trimesh(mesh.vertices.copy(), mesh.triangulated().faces.astype(numpy.int64), process=False)
 
 
 def to_open3d(mesh: Mesh) -> Any:
     open3d = package("open3d")
     return open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(mesh.vertices),
-                                        open3d.utility.Vector3iVector(mesh.triangles().astype(numpy.int32)))
+                                        open3d.utility.Vector3iVector(mesh.triangulated().faces.astype(numpy.int32)))
 
 
 def to_pyvista(mesh: Mesh) -> Any:

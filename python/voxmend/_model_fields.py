@@ -47,7 +47,7 @@ def distance(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: 
         report = _core.new("vxm_distance_report", voxelize=solid)
         _core.call(lib.vxm_model_distance, _core.pointer("float *", values), report, model, space, options)
         told = DistanceReport._of(report, voxelize=work.report(solid))
-        made = VoxelField._made(values, space, "distance", told, work.warnings(model), {"units": "model"})
+        made = VoxelField._made(values, space, "distance", told, work.warnings(model))
     _core.warn(made.warnings)
     return made
 

@@ -214,6 +214,8 @@ bool cli_is_extension(const char *path, const char *extension);
 /** The arguments of --mode and --surface: CLI_END or CLI_STOP. */
 int cli_read_mode(cli_run *cli, vxm_voxelize_options *options, const char *value);
 int cli_read_surface(cli_run *cli, vxm_voxelize_options *options, const char *value);
+/** The argument of --voxel-size, "0.5" or "0.5,0.5,2": CLI_END or CLI_STOP. */
+int cli_read_voxel_size(cli_run *cli, vxm_space_options *space, const char *value);
 /** The argument of --thin: CLI_END or CLI_STOP. */
 int cli_read_thin(cli_run *cli, vxm_voxelize_options *options, const char *value);
 /** CLI_STOP if --surface, where it was given, does not go with the mode. */

@@ -131,21 +131,6 @@ static bool read_resolution(int64_t out[3], const char *text) {
   return true;
 }
 
-/** "0.5", or "0.5,0.5,2". */
-static int read_voxel_size(cli_run *cli, vxm_space_options *space, const char *value) {
-  double sizes[3];
-  space->voxel_size = 0;
-  memset(space->voxel_sizes, 0, sizeof space->voxel_sizes);
-  if (cli_read_number(&sizes[0], value) && sizes[0] > 0)
-    space->voxel_size = sizes[0];
-  else if (cli_read_numbers(sizes, 3, value) && sizes[0] > 0 && sizes[1] > 0 && sizes[2] > 0)
-    memcpy(space->voxel_sizes, sizes, sizeof sizes);
-  else
-    return cli_usage(cli, "--voxel-size '%s' is neither a positive number nor three such as 0.5,0.5,2",
-                     value);
-  return CLI_END;
-}
-
 /** The options that choose the voxel space. */
 static int read_space_option(cli_run *cli, voxelize_request *out, int key, const char *value) {
   static const char *const fits[] = {"cube", "tight", "sphere", NULL};
@@ -159,7 +144,7 @@ static int read_space_option(cli_run *cli, voxelize_request *out, int key, const
     return CLI_END;
   case KEY_SIZE:
     out->size = true;
-    return read_voxel_size(cli, space, value);
+    return cli_read_voxel_size(cli, space, value);
   case KEY_FIT:
     out->fit = true;
     result = cli_choose(cli, &choice, "fit", value, fits);

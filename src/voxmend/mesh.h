@@ -141,6 +141,15 @@ VXM_API vxm_status vxm_mesh_write(const vxm_mesh *mesh, const char *path,
 /** Drops it; NULL is allowed. */
 VXM_API void vxm_mesh_destroy(vxm_mesh *mesh);
 
+/**
+ * Makes a mesh of the triangles that voxelizing takes polygons for, and vxm_mesh_write writes: n - 2 of a
+ * face with n corners, in its place, with its tag; none of fewer than three corners. Vertices are as they
+ * were.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_mesh_triangulate(vxm_mesh **out, const vxm_mesh *mesh, vxm_error *error);
+
 /** Number of vertices. */
 VXM_API int64_t vxm_mesh_vertex_count(const vxm_mesh *mesh);
 /** Number of faces. */

@@ -143,6 +143,7 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_context_drop_files, 1, 0, (vxm_context_drop_files(P(0, context)), VXM_OK))
 
 #define MESH_CALLS(X)                                                                                      \
+  X(vxm_mesh_triangulate, 3, 3, vxm_mesh_triangulate(P(0, &out.mesh), P(1, mesh), P(2, &error)))           \
   X(vxm_mesh_create, 4, 5, vxm_mesh_create(P(0, &out.mesh), P(1, context), P(2, &arrays), P(3, &error)))   \
   X(vxm_mesh_read, 4, 5, vxm_mesh_read(P(0, &out.mesh), P(1, context), P(2, "in.off"), P(3, &error)))      \
   X(vxm_mesh_read_memory, 5, 5,                                                                            \
