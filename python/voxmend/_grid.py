@@ -12,7 +12,7 @@ from ._core import ffi, lib
 from ._errors import ArgumentError, KindError
 from ._mesh import Mesh, format_name
 from ._records import Comparison, VoxelizeReport
-from ._space import Placed, shown, space
+from ._space import Placed, shown, shown_size, space
 from ._types import Array, ArrayLike, Bools, Floats, Int64s, Path, Size, Uint8s, Uint64s
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ class VoxelGrid(Placed):
 
     def __repr__(self) -> str:
         return "<voxmend.VoxelGrid: %d x %d x %d voxels of %s from %s on, %d set>" % (
-            *self.shape, shown(self.pitch), shown(self.origin), self.filled_count)
+            *self.shape, shown_size(self.pitch), shown(self.origin), self.filled_count)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, VoxelGrid):
@@ -252,9 +252,10 @@ class VoxelGrid(Placed):
             raise KindError("compare: %s is not a VoxelGrid" % type(other).__name__)
         out = _core.new("vxm_comparison")
         _core.call(lib.vxm_grid_compare, out, self._pointer, other._pointer)
-        for name in ("origin", "pitch"):
-            if (getattr(self, name) != getattr(other, name)).any():
-                _core.warn(["the grids differ in %s; voxels are compared by index" % name])
+        try:
+            self._need_space_of(other, "compare")
+        except ArgumentError as differ:
+            _core.warn(["%s; voxels are compared by index" % str(differ).split(";")[0]])
         return Comparison._of(out)
 
     # ---- Sets ----

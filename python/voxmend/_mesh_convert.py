@@ -26,7 +26,7 @@ def to_trimesh(mesh: Mesh) -> Any:
 
 def to_open3d(mesh: Mesh) -> Any:
     open3d = package("open3d")
-    return open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(mesh.vertices),
+    return open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(mesh.vertices.copy()),
                                         open3d.utility.Vector3iVector(mesh.triangulated().faces.astype(numpy.int32)))
 
 

@@ -79,16 +79,20 @@ class Placed:
         near = 1e-3 * self.pitch
         if (abs(self.pitch - other.pitch) * self.shape > near).any():
             raise ArgumentError("%s: one has voxels of %s and the other of %s; voxelize(..., like=grid) makes equal ones" %
-                                (what, shown(self.pitch), shown(other.pitch)))
+                                (what, shown_size(self.pitch), shown_size(other.pitch)))
         if (abs(self.origin - other.origin) > near).any():
             raise ArgumentError("%s: one begins at %s and the other at %s; voxelize(..., like=grid) makes equal ones" %
                                 (what, shown(self.origin), shown(other.origin)))
 
 
 def shown(numbers: Floats) -> str:
-    """One number if all are equal, else (a, b, c)."""
-    texts = ["%.6g" % n for n in numbers.tolist()]
-    return texts[0] if len(set(texts)) == 1 and len(set(numbers.tolist())) == 1 else "(%s)" % ", ".join(texts)
+    """(a, b, c)"""
+    return "(%s)" % ", ".join("%.6g" % n for n in numbers.tolist())
+
+
+def shown_size(sizes: Floats) -> str:
+    """One number if all are equal."""
+    return "%.6g" % sizes[0] if (sizes == sizes[0]).all() else shown(sizes)
 
 
 def _sizes(caller: str, name: str, wanted: Size) -> List[float]:

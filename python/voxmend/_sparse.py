@@ -12,7 +12,7 @@ from ._errors import ArgumentError, KindError
 from ._grid import VoxelGrid
 from ._mesh import format_name
 from ._records import VoxelizeReport
-from ._space import Placed, shown
+from ._space import Placed, shown_size
 from ._types import ArrayLike, Bools, Floats, Int64s, Path
 
 
@@ -68,7 +68,7 @@ class SparseGrid(Placed):
 
     def __repr__(self) -> str:
         return "<voxmend.SparseGrid: %d x %d x %d voxels of %s, %d set, %d bricks>" % (
-            *self.shape, shown(self.pitch), self.filled_count, self.bricks)
+            *self.shape, shown_size(self.pitch), self.filled_count, self.bricks)
 
     @property
     def _own_space(self) -> Any:
