@@ -4,6 +4,14 @@
 #include "base/sized.h"
 #include "mesh/soup.h"
 
+/** Materials that say anything. */
+static int64_t count_materials(const vxm_appearance *look) {
+  int64_t count = 0;
+  for (size_t m = 0; m < look->material_count && look->face_materials; m++)
+    count += look->materials[m].has_color || look->materials[m].image != VXM_NO_LOOK;
+  return count;
+}
+
 vxm_status vxm_mesh_look(vxm_look *out, const vxm_mesh *mesh, vxm_error *error) {
   VXM_RESULT_CLEAR(out);
   if (!out || !mesh)
@@ -14,7 +22,7 @@ vxm_status vxm_mesh_look(vxm_look *out, const vxm_mesh *mesh, vxm_error *error) 
     found = (vxm_look){.has_colors = vxm_appearance_has_colors(look),
                        .vertex_colors = look->vertex_colors != NULL,
                        .face_colors = look->face_colors != NULL,
-                       .materials = look->face_materials ? (int64_t)look->material_count : 0,
+                       .materials = count_materials(look),
                        .textures = look->face_materials ? (int64_t)look->image_count : 0};
   VXM_RESULT_WRITE(out, &found);
   return VXM_OK;
@@ -25,11 +33,12 @@ vxm_status vxm_mesh_texture(vxm_texture *out, const vxm_mesh *mesh, int64_t inde
   if (!out || !mesh)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "look: an argument is NULL");
   const vxm_appearance *look = mesh->appearance;
-  if (!look || index < 0 || index >= (int64_t)look->image_count)
-    return vxm_fail(error, VXM_ERROR_ARGUMENT, "look: the mesh has no texture %lld", (long long)index);
-  const vxm_image *image = &look->images[index];
-  vxm_texture found = {
-      .name = image->name, .width = image->width, .height = image->height, .failure = image->failure};
+  vxm_texture found = {.name = "", .failure = "there is no such texture"};
+  if (look && index >= 0 && index < (int64_t)look->image_count) {
+    const vxm_image *image = &look->images[index];
+    found = (vxm_texture){
+        .name = image->name, .width = image->width, .height = image->height, .failure = image->failure};
+  }
   VXM_RESULT_WRITE(out, &found);
   return VXM_OK;
 }

@@ -509,6 +509,10 @@ int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_band(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value);
+/** Tell what a mesh looks like that was read with its colours; nothing where there is nothing (look.c). */
+void cli_look_json(json_t *report, const vxm_mesh *mesh);
+void cli_look_print(const cli_run *cli, const vxm_mesh *mesh);
+
 /** The argument of --color (colors.c). */
 int cli_color_read(cli_run *cli, cli_field *field, const char *value);
 /** Takes the mesh that gives the colours. */

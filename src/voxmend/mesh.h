@@ -128,7 +128,8 @@ typedef struct vxm_texture {
 /** Tells what a mesh looks like; nothing if it was read without `colors`, or is the result of a repair.
  * @return VXM_OK, VXM_ERROR_ARGUMENT */
 VXM_API vxm_status vxm_mesh_look(vxm_look *out, const vxm_mesh *mesh, vxm_error *error);
-/** Tells of one of its textures, from 0 on. @return VXM_OK, VXM_ERROR_ARGUMENT */
+/** Tells of one of its textures, from 0 on; of one that is not there, that it is not. @return VXM_OK,
+ * VXM_ERROR_ARGUMENT */
 VXM_API vxm_status vxm_mesh_texture(vxm_texture *out, const vxm_mesh *mesh, int64_t index, vxm_error *error);
 
 /** How meshes are read that are left to foreign libraries, each file in a process of its own. */

@@ -124,6 +124,8 @@ static vxm_status read_map(mtl_reader *reader, vxm_error *error) {
   size_t length = rest(reader), folder = reader->folder_length;
   if (length == 0)
     return VXM_OK;
+  for (; length > 2 && reader->at[0] == '.' && reader->at[1] == '/'; length -= 2)
+    reader->at += 2;
   if (folder + length >= sizeof path || *reader->at == '/')
     folder = 0;
   memcpy(path, reader->folder, folder);

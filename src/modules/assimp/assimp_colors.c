@@ -68,7 +68,10 @@ static vxm_status take_texture(vxm_appearance *look, const struct aiScene *scene
                                uint32_t *image, vxm_error *error) {
   char name[VXM_LOOK_NAME];
   const struct aiTexture *texture = find_embedded(scene, path);
-  snprintf(name, sizeof name, "%.*s", VXM_LOOK_NAME - 1, path);
+  if (texture && path[0] == '*')
+    snprintf(name, sizeof name, "embedded %.20s", path + 1);
+  else
+    snprintf(name, sizeof name, "%.*s", VXM_LOOK_NAME - 1, path);
   if (!texture)
     decode_uri(name);
   size_t known = look->image_count;
@@ -97,6 +100,8 @@ static vxm_status take_material(vxm_appearance *look, const struct aiScene *scen
     return status;
   vxm_material *material = &look->materials[index];
   struct aiColor4D color;
+  if (strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0) /* Assimp's own, where the file has none */
+    return VXM_OK;
   /* Assimp gives the base colour of glTF under this name too. */
   if (aiGetMaterialColor(from, AI_MATKEY_COLOR_DIFFUSE, &color) == aiReturn_SUCCESS) {
     const double rgb[3] = {(double)color.r, (double)color.g, (double)color.b};

@@ -164,7 +164,9 @@ static void add_piece(const vxm_surface_paint *paint, size_t triangle, double ar
   if (piece->count < 3)
     return;
   double pixels = vxm_surface_paint_pixels(paint, triangle, (const double(*)[3])piece->weight, piece->count);
-  int n = pixels > SUBDIVISION_MAX ? SUBDIVISION_MAX : pixels > 1 ? (int)ceil(pixels) : 1;
+  /* Between pixels light is not linear either: two places for each, and one more. */
+  int n = pixels > SUBDIVISION_MAX / 2 ? SUBDIVISION_MAX : pixels > 0 ? (int)ceil(2 * pixels) + 1 : 1;
+  n = n < SUBDIVISION_MAX ? n : SUBDIVISION_MAX;
   for (int c = 1; c + 1 < piece->count; c++) {
     const double *corner[3] = {piece->weight[0], piece->weight[c], piece->weight[c + 1]};
     double part = area * share_of(corner[0], corner[1], corner[2]);
