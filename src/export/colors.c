@@ -4,6 +4,7 @@
 #include "base/endian.h"
 #include "gridio/common/format.h"
 #include "gridio/formats/npy_header.h"
+#include "voxel/labels/mesh_colors.h"
 
 #include <string.h>
 
@@ -141,6 +142,8 @@ vxm_status vxm_colors_write(vxm_voxelize_report *report, vxm_model *model, const
   /* The values, the grid and, where they are wanted, the parts. */
   uint64_t voxels = (uint64_t)space->dims[0] * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
   uint64_t bytes = voxels > UINT64_MAX / 8 ? UINT64_MAX : voxels * (vxm_color_wants_parts(options) ? 6 : 4);
+  if (options->by == VXM_COLOR_MESH)
+    bytes += vxm_mesh_colors_bytes(options->mesh, space, options->average);
   vxm_status status = vxm_memory_check(model->context, bytes, "a colour per voxel", error);
   if (status != VXM_OK)
     return status;

@@ -2,6 +2,7 @@
 #include "voxel/labels/color.h"
 #include "base/threads.h"
 #include "voxel/labels/labels.h"
+#include "voxel/labels/mesh_colors.h"
 #include "voxel/model/voxelize.h"
 
 #include <math.h>
@@ -129,6 +130,12 @@ static vxm_status color_by_cpu(uint8_t *values, const vxm_color_job *job, vxm_co
 
 static vxm_status make_colors(uint8_t *values, const vxm_color_job *job, vxm_model *model, vxm_error *error) {
   vxm_engine *engine = model->options.engine;
+  if (job->options->by == VXM_COLOR_MESH) {
+    vxm_status status = vxm_progress(model->context, "colouring", 0, error);
+    if (status == VXM_OK)
+      status = vxm_mesh_colors(values, job->grid, job->options->mesh, job->options->average, error);
+    return status == VXM_OK ? vxm_progress(model->context, "colouring", 1, error) : status;
+  }
   if (!engine || !engine->ops || !engine->ops->color)
     return color_by_cpu(values, job, model->context, error);
   vxm_error local = VXM_ERROR_INIT;
