@@ -24,8 +24,8 @@ from ._mesh import Mesh
 from ._mesh_sources import MeshLike, info, load
 from ._model_fields import colors, coverage, distance, labels
 from ._progress import watch
-from ._records import (Census, Comparison, CoverageReport, DistanceReport, EngineInfo, Finding, Label, LabelReport, PartChange,
-                       PartState, RepairReport, Settings, Verification, VoxelizeReport)
+from ._records import (Census, Comparison, CoverageReport, DistanceReport, EngineInfo, Finding, Label, LabelReport, Look,
+                       PartChange, PartState, RepairReport, Settings, Texture, Verification, VoxelizeReport)
 from ._repair import repair, verify
 from ._sampler import Sampler
 from ._sparse import SparseGrid
@@ -36,8 +36,8 @@ __version__ = _text(_lib.vxm_version())
 __all__ = [
     "ArgumentError", "BusyError", "CancelledError", "Census", "Comparison", "CoverageReport", "DefectGroup", "Defects",
     "DistanceReport", "EmptyError", "Engine", "EngineInfo", "Field", "FileError", "Finding", "FormatError", "KindError", "Label",
-    "LabelReport", "Mesh", "MeshLike", "NumbersError", "OutOfMemoryError", "PartChange", "PartState", "RangeError", "RepairReport",
-    "Sampler", "Settings", "SparseGrid", "UnavailableError", "UnreachedError", "Verification", "VoxelField", "VoxelGrid",
+    "LabelReport", "Look", "Mesh", "MeshLike", "NumbersError", "OutOfMemoryError", "PartChange", "PartState", "RangeError", "RepairReport",
+    "Sampler", "Settings", "SparseGrid", "Texture", "UnavailableError", "UnreachedError", "Verification", "VoxelField", "VoxelGrid",
     "VoxelizeReport", "VoxmendError", "VoxmendTimeout", "VoxmendWarning", "colors", "configure", "coverage", "distance", "engines",
     "info", "labels", "load", "read", "read_field", "remesh", "repair", "settings", "verify", "voxelize", "voxelize_sparse", "watch",
     "write"

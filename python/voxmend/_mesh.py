@@ -9,7 +9,7 @@ import numpy
 from . import _core, _values
 from ._core import ffi, lib
 from ._errors import ArgumentError
-from ._records import Census, PartChange, PartState, RepairReport, Verification
+from ._records import Census, Look, PartChange, PartState, RepairReport, Texture, Verification
 from ._types import Array, ArrayLike, Floats, Int64s, Path, Progress, Uint32s, Uint64s
 
 if TYPE_CHECKING:
@@ -199,6 +199,18 @@ class Mesh:
             tag = self.tags[one.tag] if one.tag < lib.vxm_mesh_tag_count(self._pointer) else None
             out.append(PartChange._of(one, before=PartState._of(one.before), after=PartState._of(one.after), tag=tag))
         return out
+
+    @property
+    def look(self) -> Look:
+        """Which colours, materials and textures it has: none, unless `load` was told to keep them. Neither repairs nor pickles
+        keep them."""
+        out, textures = _core.new("vxm_look"), []
+        _core.call(lib.vxm_mesh_look, out, self._pointer)
+        for index in range(out.textures):
+            one = _core.new("vxm_texture")
+            _core.call(lib.vxm_mesh_texture, one, self._pointer, index)
+            textures.append(Texture._of(one, name=_core.text(one.name), failure=_core.text(one.failure)))
+        return Look._of(out, textures=tuple(textures))
 
     # ---- What is wrong, and mending it ----
 

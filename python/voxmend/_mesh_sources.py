@@ -89,16 +89,18 @@ MeshLike = Union[Mesh, Path, Tuple[ArrayLike, Any], HasFaces, HasTriangles, HasT
 
 # ---- Files ----
 
-def _read_options(format: Optional[str], deflection: float, external: str) -> Tuple[Any, Any]:
+def _read_options(format: Optional[str], deflection: float, external: str, colors: bool) -> Tuple[Any, Any]:
     """The options, and what they point to."""
     name = format_name("load", format)
     options = _core.new("vxm_mesh_read_options", deflection=_values.real("load: deflection", deflection),
-                        external=_core.choice("load: external", external, "VXM_EXTERNAL_"))
+                        external=_core.choice("load: external", external, "VXM_EXTERNAL_"),
+                        colors=_values.flag("load: colors", colors))
     options.format = name
     return options, name
 
 
-def load(path: Union[Path, IsFile], format: Optional[str] = None, deflection: float = 0.0, external: str = "folder") -> Mesh:
+def load(path: Union[Path, IsFile], format: Optional[str] = None, deflection: float = 0.0, external: str = "folder",
+         colors: bool = False) -> Mesh:
     """Reads a mesh file; what a damaged file still holds is read, and its damage told as VoxmendWarning.
 
     Args:
@@ -109,8 +111,9 @@ def load(path: Union[Path, IsFile], format: Optional[str] = None, deflection: fl
         external: which other files the mesh may refer to, such as the buffers of a glTF: "folder" = in its own folder or below,
             "any" = wherever it says, "none". What is refused is a warning, or an error where the mesh cannot be read without.
             Of an open file that has no path there is no folder.
+        colors: keep colours, materials and textures too, for `voxmend.colors(mesh, by="mesh")` and `Mesh.look`.
     """
-    options, name = _read_options(format, deflection, external)
+    options, name = _read_options(format, deflection, external, colors)
     if not isinstance(path, (str, bytes, os.PathLike)) and hasattr(path, "read"):
         made, shown = _read_file(path, options)
     else:
@@ -204,14 +207,14 @@ def _has(source: Any, *names: str) -> bool:
     return all(hasattr(source, name) for name in names)
 
 
-def as_mesh(source: Any) -> Mesh:
-    """A Mesh of what the type MeshLike stands for."""
+def as_mesh(source: Any, colors: bool = False) -> Mesh:
+    """A Mesh of what the type MeshLike stands for; a file is read with its colours on request."""
     if isinstance(source, Mesh):
         return source
     if isinstance(source, (tuple, list)) and len(source) == 2:
         return Mesh(*source)
     if isinstance(source, (str, bytes, os.PathLike)):
-        return load(source)
+        return load(source, colors=colors)
     if _has(source, "geometry", "graph"):
         return _of_scene(source)
     if _has(source, "points", "faces"):
@@ -227,7 +230,7 @@ def as_mesh(source: Any) -> Mesh:
     if _has(source, "points", "cells"):
         return _of_cells(source)
     if callable(getattr(source, "read", None)):
-        return load(source)
+        return load(source, colors=colors)
     raise KindError("a mesh is a Mesh, a path, an open file, (vertices, faces), or a mesh of trimesh, open3d, pyvista or meshio, "
                     "not %s" % type(source).__name__)
 

@@ -115,33 +115,38 @@ def labels(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str =
 
 
 def colors(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str = "noise", source: Optional[str] = None,
-           pitch: Optional[Size] = None, voxel_size: Optional[Size] = None, fit: Optional[str] = None, pad: int = 0,
-           bounds: Optional[ArrayLike] = None, like: Optional[Like] = None, mode: str = "solid", surface: str = "conservative",
-           method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto", thin: str = "auto",
-           repair: bool = True, engine: EngineLike = None, progress: Progress = None,
+           average: bool = False, pitch: Optional[Size] = None, voxel_size: Optional[Size] = None, fit: Optional[str] = None,
+           pad: int = 0, bounds: Optional[ArrayLike] = None, like: Optional[Like] = None, mode: str = "solid",
+           surface: str = "conservative", method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto",
+           thin: str = "auto", repair: bool = True, engine: EngineLike = None, progress: Progress = None,
            timeout: Optional[float] = None) -> VoxelField:
     """A colour for each set voxel.
 
     Args:
         by: "noise": Perlin's, in three dimensions; "position": red, green and blue along x, y and z; "part": a hue for each
-            connected component; "glsl": a function, `source`, which needs engine="opengl".
+            connected component; "glsl": a function, `source`, which needs engine="opengl"; "mesh": the mesh's own, of vertices,
+            faces, materials and textures. A file is read with them; a Mesh has them if `load(..., colors=True)` made it.
         source: with "glsl": defines vec3 color(vec3 position, vec3 unit, uint part), of a voxel's centre in model units, the
             same from the grid's corner on with its longest side as 1, and the number of the component, from 1 on; it may
             call float noise(vec3), -1 to 1.
+        average: with "mesh": the mean over the surface within a voxel, where there is any, in place of the colour nearest to
+            its centre.
         others: as for `voxmend.voxelize`, which sets the same voxels.
 
     Returns:
         a field of (nx, ny, nz, 4) uint8: red, green, blue and 255, zeros where no voxel is set; with a VoxelizeReport
     """
     place = Place("colors", resolution, pitch, voxel_size, fit, pad, bounds, like)
-    options = _core.new("vxm_color_options", by=_core.choice("colors: by", by, "VXM_COLOR_"))
+    options = _core.new("vxm_color_options", by=_core.choice("colors: by", by, "VXM_COLOR_"),
+                        average=_values.flag("colors: average", average))
     if (source is not None) != (by == "glsl"):
         raise ArgumentError("colors: by='glsl' and a source go together")
     code = ffi.NULL if source is None else ffi.new("char[]", _values.word("colors: source", source).encode())
     options.source = code
     rules = Rules(mode, surface, method, vote, parts, cavities, thin)
-    with Work(mesh, place, rules, Run(repair, engine, progress, timeout)) as work:
+    with Work(mesh, place, rules, Run(repair, engine, progress, timeout, by == "mesh")) as work:
         space, model = work.space(), work.model()
+        options.mesh = work.original._pointer if by == "mesh" else ffi.NULL
         values, report = _values_for(space, numpy.uint8, 4), _core.new("vxm_voxelize_report")
         _core.call(lib.vxm_model_colors, _core.pointer("uint8_t *", values), report, model, space, options)
         made = VoxelField._made(values, space, "colors", work.report(report), work.warnings(model))

@@ -93,6 +93,34 @@ class Census(Record):
 
 
 @dataclass(frozen=True)
+class Texture(Record):
+    """A picture that the materials of a mesh name: as the mesh says, its pixels, and why it cannot be read, "" if it can."""
+
+    name: str
+    width: int
+    height: int
+    failure: str
+
+
+@dataclass(frozen=True)
+class Look(Record):
+    """What a mesh looks like that was read with its colours (`Mesh.look`).
+
+    Attributes:
+        has_colors: any of what follows is there, textures that cannot be read left out.
+        vertex_colors, face_colors: vertices, or faces, have colours.
+        materials: colours and textures of faces.
+        textures: pictures that materials name, those that cannot be read among them.
+    """
+
+    has_colors: bool
+    vertex_colors: bool
+    face_colors: bool
+    materials: int
+    textures: Tuple[Texture, ...]
+
+
+@dataclass(frozen=True)
 class RepairReport(Record):
     """What a repair has done (`Mesh.report`). As a mapping it has the passes: report["exact_weld"].
 

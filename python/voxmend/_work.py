@@ -48,6 +48,7 @@ class Run:
     engine: EngineLike = None
     progress: Progress = None
     timeout: Optional[float] = None
+    colors: bool = False  # the mesh is read with its own
 
 
 class Work:
@@ -76,7 +77,7 @@ class Work:
         repairs = _values.flag(self._place.caller + ": repair", self._run.repair)
         self._stack.enter_context(watch(self._run.progress, self._run.timeout))
         self.options.engine, self._engine = self._stack.enter_context(used(self._run.engine))
-        self.original = as_mesh(self._mesh)
+        self.original = as_mesh(self._mesh, self._run.colors)
         self.source = repair_mesh(self.original, separate=True) if repairs else self.original
 
     def __exit__(self, *_: Any) -> None:

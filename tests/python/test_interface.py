@@ -94,6 +94,33 @@ class Fields(unittest.TestCase):
         with self.assertRaises(voxmend.UnavailableError):
             voxmend.colors(mesh, 8, by="glsl", source="vec3 color(vec3 p, vec3 u, uint n) { return u; }")
 
+    def test_colors_of_the_mesh(self):
+        """A red box and a blue one, by the colours of their vertices: each voxel has that of the box it lies in."""
+        corners, faces = boxes((2, (0, 0, 0)), (1, (3, 0, 0)))
+        shades = numpy.repeat([[255, 0, 0], [0, 0, 255]], 8, axis=0)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "two.ply")
+            kinds = "".join("property %s\n" % p for p in ("float x", "float y", "float z", "uchar red", "uchar green", "uchar blue"))
+            path.write_text("ply\nformat ascii 1.0\nelement vertex 16\n%selement face 12\nproperty list uchar int vertex_indices\nend_header\n"
+                            % kinds + "".join("%g %g %g %d %d %d\n" % (*p, *s) for p, s in zip(corners, shades)) +
+                            "".join("4 %d %d %d %d\n" % tuple(f) for f in faces))
+            mesh = voxmend.load(path, colors=True)
+            for given in (path, str(path), mesh, open(path, "rb")):
+                for average in (False, True):
+                    field = voxmend.colors(given, voxel_size=0.25, fit="tight", by="mesh", average=average)
+                    centres = field.indices_to_points(numpy.argwhere(field.values[..., 3]))
+                    wanted = numpy.where(centres[:, :1] < 2.5, [255, 0, 0, 255], [0, 0, 255, 255])
+                    numpy.testing.assert_array_equal(field.values[field.values[..., 3] > 0], wanted)
+                    self.assertEqual(len(centres), 576)
+                    if hasattr(given, "close"):
+                        given.seek(0)
+            given.close()
+            self.assertEqual((mesh.look.has_colors, mesh.look.vertex_colors, mesh.look.materials, mesh.look.textures), (True, True, 0, ()))
+            for plain in (voxmend.load(path), mesh.repair(), (corners, faces)):
+                self.assertFalse(voxmend.Mesh.of(plain).look.has_colors)
+                with self.assertRaisesRegex(voxmend.ArgumentError, "without its colours"):
+                    voxmend.colors(plain, 8, by="mesh")
+
     def test_coverage_of_a_box(self):
         """A box that ends in the middle of voxels: the share is the product along the axes."""
         share = numpy.array([1, 1, 0.5, 0])
@@ -406,7 +433,8 @@ class Defects(unittest.TestCase):
                                   ("vxm_part_state", voxmend.PartState, ()), ("vxm_part_change", voxmend.PartChange, ()),
                                   ("vxm_distance_report", voxmend.DistanceReport, ()), ("vxm_label_report", voxmend.LabelReport, ()),
                                   ("vxm_coverage_report", voxmend.CoverageReport, ()), ("vxm_comparison", voxmend.Comparison, ()),
-                                  ("vxm_engine_info", voxmend.EngineInfo, ())):
+                                  ("vxm_engine_info", voxmend.EngineInfo, ()), ("vxm_look", voxmend.Look, ()),
+                                  ("vxm_texture", voxmend.Texture, ())):
             there = {field for field, _ in ffi.typeof(name).fields} - {"size"} - set(apart)
             self.assertLessEqual(there, set(kind.__dataclass_fields__), name)
 

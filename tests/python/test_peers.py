@@ -92,6 +92,11 @@ class Trimesh(unittest.TestCase):
                 surface = voxmend.voxelize(mesh, pitch=pitch, mode="surface", repair=False)
                 self.assertEqual(int((theirs.matrix & ~surface.matrix).sum()), 0)
 
+        used = voxmend.load(sample("rocket")).to_trimesh()  # which has a vertex of no face
+        used.remove_unreferenced_vertices()
+        self.assertLess(len(used.vertices), len(voxmend.load(sample("rocket")).vertices))
+        self.assertEqual(voxmend.voxelize(sample("rocket"), pitch=0.25).shape, tuple(used.voxelized(0.25).shape))
+
     def test_grid(self):
         for matrix, pitch in ((numpy.random.default_rng(2).random((5, 9, 70)) < 0.3, (1, 2, 3)),
                               (voxmend.voxelize(sample("torus"), 20).matrix, 0.07)):

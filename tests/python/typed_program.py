@@ -87,6 +87,8 @@ def fields(mesh: voxmend.Mesh) -> List[voxmend.VoxelField]:
     table: List[voxmend.Label] = labels.labels
     names: Dict[int, str] = labels.label_names
     assert isinstance(labels.report, voxmend.LabelReport) and labels.report.labels == len(table) == len(names)
+    look: voxmend.Look = voxmend.load(folder / "torus.off", colors=True).look
+    print(look.has_colors, [texture.failure for texture in look.textures])
     out = [labels, voxmend.colors(mesh, 16, by="position"), voxmend.coverage(mesh, 16, subdivision=2)]
     solid: voxmend.VoxelGrid = voxmend.VoxelField(values, pitch, origin, "distance").threshold(below=0)
     for field in out:
