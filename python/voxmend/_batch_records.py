@@ -34,14 +34,14 @@ class Item(NamedTuple):
 
     @property
     def status(self) -> str:
-        return self.end.get("status", "pending")
+        return str(self.end.get("status", "pending"))
 
     def grid(self) -> Optional[Dict[str, Any]]:
         """The output that is a grid: {path, bytes, sha256}; None where there is none."""
         wanted = [self.plan["output"] + extension for extension in GRIDS]
         for output in self.end.get("outputs", ()) if self.status in DONE else ():
             if output["path"] in wanted:
-                return output
+                return dict(output)
         return None
 
 
@@ -53,7 +53,7 @@ def _place(plan: Dict[str, Any]) -> Tuple[str, str]:
         split = next((name for name in folders[:2] if name.lower() in _SPLITS), "")
     if kind is None:
         kind = next((name for name in folders if name.lower() not in _SPLITS), "")
-    return kind, split
+    return str(kind), str(split)
 
 
 class Records:
@@ -133,7 +133,8 @@ class Records:
         if file not in self._files:
             self._files[file] = open(self._at("plan.jsonl") if file < 0 else self.journal(file), "rb")
         self._files[file].seek(at)
-        return json.loads(self._files[file].readline())
+        out: Dict[str, Any] = json.loads(self._files[file].readline())
+        return out
 
     def __len__(self) -> int:
         return len(self._plan)

@@ -6,15 +6,18 @@ import contextlib
 import sys
 import threading
 import warnings
-from typing import Any, Iterator, Optional
+from types import FrameType
+from typing import Any, Iterable, Iterator, Optional, Tuple
 
 import numpy
 
 from . import _errors, _values
-from ._errors import ArgumentError, CancelledError, VoxmendWarning
+from ._errors import ArgumentError, VoxmendWarning
+from ._records import Settings
+from ._types import Array
 
 try:
-    from ._voxmend import ffi, lib
+    from ._voxmend import ffi as ffi, lib as lib
 except ImportError as problem:
     if "libvoxmend" not in str(problem):
         raise
@@ -25,7 +28,8 @@ except ImportError as problem:
 
 def text(pointer: Any) -> str:
     """A string of the library."""
-    return ffi.string(pointer).decode("utf-8", "replace")
+    out: bytes = ffi.string(pointer)
+    return out.decode("utf-8", "replace")
 
 
 def new(name: str, **values: Any) -> Any:
@@ -58,12 +62,18 @@ def failure(status: int, error: Any, path: Any = None) -> _errors.VoxmendError:
     """The exception for what a call has failed with; `path` is what the caller named a file by."""
     message, file = text(error.text), ffi.string(error.file)
     if status == lib.VXM_ERROR_IO:
-        made: Any = _errors.file_error(message, error.system, file, path)
+        made: _errors.VoxmendError = _errors.file_error(message, error.system, file, path)
     else:
         made = _classes.get(status, _errors.VoxmendError)(message)
     made.status = text(lib.vxm_status_name(status))
     made.file = file.decode("utf-8", "replace")
     made.line, made.offset, made.element = error.line, error.offset, error.element
+    return made
+
+
+def timeout() -> _errors.VoxmendTimeout:
+    made = _errors.VoxmendTimeout("the time is up: the call was stopped before it was done")
+    made.status = text(lib.vxm_status_name(lib.VXM_ERROR_CANCELLED))
     return made
 
 
@@ -77,22 +87,27 @@ class _Interrupt(threading.local):
 _interrupt = _Interrupt()
 
 
-def _keep(kind: Any, raised: BaseException, traceback: Any) -> None:
+def keep_raised(kind: Any, raised: BaseException, traceback: Any) -> None:
+    """What a callback raised ends the call that it serves, which raises it again."""
     _interrupt.raised = raised
 
 
-@ffi.def_extern(error=1, onerror=_keep)
-def voxmend_ask() -> int:
+def _ask() -> int:
     """Called by the library now and then in the main thread: handlers of signals run here."""
     for _ in (0,):  # the interpreter looks for signals where a loop begins anew
         pass
     return 0
 
 
+ffi.def_extern("voxmend_ask", error=1, onerror=keep_raised)(_ask)
+
+
 def call(function: Any, *arguments: Any, path: Any = None) -> None:
     """Calls a function whose last argument is a vxm_error. Other Python threads run meanwhile; in the main thread handlers
     of signals do, and what one raises ends the call."""
     error = new("vxm_error")
+    if lib.voxmend_is_late():
+        raise timeout()
     before = lib.voxmend_enter(threading.get_ident() == threading.main_thread().ident)
     try:
         status = function(*arguments, error)
@@ -101,6 +116,8 @@ def call(function: Any, *arguments: Any, path: Any = None) -> None:
     raised, _interrupt.raised = _interrupt.raised, None
     if raised is not None:
         raise raised
+    if status == lib.VXM_ERROR_CANCELLED and lib.voxmend_timed_out():
+        raise timeout()
     if status != lib.VXM_OK:
         raise failure(status, error, path)
 
@@ -127,11 +144,13 @@ def stoppable(flag: Any) -> Iterator[None]:
         lib.voxmend_stop_at(before)
 
 
-def warn(lines: Any) -> None:
+def warn(lines: Iterable[str]) -> None:
     """Tells the warnings of an object, as from the line of the user's program that asked for it."""
+    lines = list(lines)
     if not lines:
         return
-    level, frame = 1, sys._getframe()
+    level = 1
+    frame: Optional[FrameType] = sys._getframe()
     while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "voxmend":
         level, frame = level + 1, frame.f_back
     for line in lines:
@@ -151,17 +170,28 @@ def context() -> Any:
 
 
 def configure(threads: int = 0, memory_limit: int = 0) -> None:
-    """Chooses how objects made from now on work.
+    """Chooses how objects made from now on work; `settings` tells what is chosen.
 
     Args:
         threads: threads that a call works with; 0 = one per processor.
-        memory_limit: bytes that all objects may hold together; 0 = no limit.
+        memory_limit: bytes that all objects may hold together; 0 = no limit. What would exceed it raises OutOfMemoryError
+            before it is allocated. Arrays of numpy are not counted.
     """
-    global _context
+    global _context, _memory_limit
     options = new("vxm_context_options", threads=_values.whole("configure: threads", threads, 0, 0x7FFFFFFF),
                   memory_limit=_values.whole("configure: memory_limit", memory_limit, 0, 0xFFFFFFFFFFFFFFFF))
     options.progress = ffi.addressof(lib, "voxmend_on_progress")
     _context = create("vxm_context", lib.vxm_context_create, options, destroy=lib.vxm_context_destroy)
+    _memory_limit = int(options.memory_limit)
+
+
+_memory_limit = 0
+
+
+def settings() -> Settings:
+    """How many threads and bytes `configure` allows, and the most bytes that were held at once since."""
+    at = context()
+    return Settings(int(lib.vxm_context_threads(at)), _memory_limit, int(lib.vxm_context_peak_bytes(at)))
 
 
 # ---- Arrays ----
@@ -169,12 +199,12 @@ def configure(threads: int = 0, memory_limit: int = 0) -> None:
 class _Holder:
     """Memory of the library that numpy looks at; it holds the object to which it belongs."""
 
-    def __init__(self, owner: Any, address: int, shape: tuple, kind: str):
+    def __init__(self, owner: Any, address: int, shape: Tuple[int, ...], kind: str, strides: Optional[Tuple[int, ...]] = None):
         self.owner = owner
-        self.__array_interface__ = {"version": 3, "shape": shape, "typestr": kind, "data": (address, True)}
+        self.__array_interface__ = {"version": 3, "shape": shape, "typestr": kind, "data": (address, True), "strides": strides}
 
 
-def view(owner: Any, pointer: Any, shape: tuple, kind: str) -> numpy.ndarray:
+def view(owner: Any, pointer: Any, shape: Tuple[int, ...], kind: str) -> Array:
     """A read-only array over the library's memory, without a copy, which keeps its owner alive."""
     if pointer == ffi.NULL or 0 in shape:
         out = numpy.zeros(shape, kind)
@@ -183,14 +213,14 @@ def view(owner: Any, pointer: Any, shape: tuple, kind: str) -> numpy.ndarray:
     return numpy.asarray(_Holder(owner, int(ffi.cast("uintptr_t", pointer)), shape, kind))
 
 
-def read_only(array: numpy.ndarray) -> numpy.ndarray:
+def read_only(array: Array) -> Array:
     """The same memory, which nobody can make writeable again."""
     if array.size == 0:
         return array
-    return numpy.asarray(_Holder(array, array.ctypes.data, array.shape, array.dtype.str))
+    return numpy.asarray(_Holder(array, array.ctypes.data, array.shape, array.dtype.str, array.strides))
 
 
-def pointer(kind: str, array: numpy.ndarray) -> Any:
+def pointer(kind: str, array: Array) -> Any:
     """What C sees of an array; the caller keeps the array until the call is over."""
     return ffi.cast(kind, array.ctypes.data)
 
@@ -208,12 +238,3 @@ def choice(name: str, value: str, prefix: str) -> int:
                  if n.startswith(prefix) and not n.endswith("_KINDS")]
         raise ArgumentError("%s %r is none of %s" % (name, value, ", ".join(sorted(names))))
     return number
-
-
-def fields(struct: Any) -> dict:
-    """A struct of numbers as a dict, its own size apart; arrays become tuples."""
-    out = {}
-    for name, field in ffi.typeof(struct).fields[1:]:
-        value = getattr(struct, name)
-        out[name] = tuple(value) if field.type.kind == "array" else value
-    return out

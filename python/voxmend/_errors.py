@@ -99,6 +99,10 @@ class CancelledError(VoxmendError):
     """The call was told to stop, as its result is no longer wanted."""
 
 
+class VoxmendTimeout(CancelledError, TimeoutError):
+    """A call took longer than the `timeout` that it was given; nothing was made."""
+
+
 class BusyError(VoxmendError, RuntimeError):
     """An object was asked for something by a call of its own: by a handler of signals, for one."""
 

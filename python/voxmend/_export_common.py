@@ -15,6 +15,7 @@ from ._batch_records import Item, Records
 from ._errors import EmptyError, FormatError
 from ._grid import read
 from ._packed import pack
+from ._types import Array
 
 
 @contextlib.contextmanager
@@ -62,7 +63,7 @@ def describe(item: Item) -> Dict[str, Any]:
             "voxels": made.get("voxels"), "hash": made.get("hash"), "mesh_sha256": item.end.get("sha256")}
 
 
-def packed_grid(records: Records, item: Item, verify: bool = True) -> Tuple[numpy.ndarray, Dict[str, Any]]:
+def packed_grid(records: Records, item: Item, verify: bool = True) -> Tuple[Array, Dict[str, Any]]:
     """A grid's bits, (nx, ny, ceil(nz / 8)) uint8, and what is told of it."""
     output = item.grid()
     assert output is not None

@@ -24,14 +24,16 @@ Member = Tuple[str, bytes]
 
 def key_of(item: Item) -> str:
     """The item's name of outputs; webdataset's keys end at the first dot of a file's name."""
-    folder, slash, name = item.plan["output"].rpartition("/")
+    output: str = item.plan["output"]
+    folder, slash, name = output.rpartition("/")
     return folder + slash + name.replace("%", "%25").replace(".", "%2E")
 
 
 def _order(records: Records, numbers: List[int], seed: Optional[int]) -> List[int]:
     if seed is None:
         return numbers
-    return sorted(numbers, key=lambda number: hashlib.sha256(b"%d|%s" % (seed, records[number].item.encode())).digest())
+    salt = b"%d|" % seed
+    return sorted(numbers, key=lambda number: hashlib.sha256(salt + records[number].item.encode()).digest())
 
 
 def _bits(records: Records, item: Item) -> Tuple[List[Member], Dict[str, Any]]:

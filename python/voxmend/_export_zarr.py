@@ -4,7 +4,7 @@ items.jsonl beside them, a line for each grid in their order."""
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional, Tuple
 
 import numpy
 
@@ -12,6 +12,7 @@ from . import _values
 from ._batch_records import Records
 from ._errors import ArgumentError, EmptyError, UnavailableError
 from ._export_common import describe, json_line, packed_grid, published, with_grids
+from ._types import Array
 
 CHUNK_BYTES = 4 << 20
 
@@ -32,7 +33,7 @@ def _group(zarr: Any, path: str, version: Optional[int]) -> Any:
     return zarr.open_group(path, mode="w")
 
 
-def _array(group: Any, name: str, shape: tuple, chunks: tuple, dtype: str) -> Any:
+def _array(group: Any, name: str, shape: Tuple[int, ...], chunks: Tuple[int, ...], dtype: str) -> Any:
     create = group.create_array if hasattr(group, "create_array") else group.create_dataset
     return create(name, shape=shape, chunks=chunks, dtype=dtype)
 
@@ -46,10 +47,11 @@ def _common_shape(records: Records, numbers: List[int]) -> List[int]:
             raise ArgumentError("%s: %s has a grid of %s, %s one of %s, and an array needs the same for all: make them with "
                                 "--fit cube, or export to webdataset" %
                                 (records.folder, first["item"], first["shape"], other["item"], other["shape"]))
-    return first["shape"]
+    shape: List[int] = first["shape"]
+    return shape
 
 
-def _fill(records: Records, numbers: List[int], group: Any, classes: List[str], row: tuple, each: int) -> None:
+def _fill(records: Records, numbers: List[int], group: Any, classes: List[str], row: Tuple[int, ...], each: int) -> None:
     """Chunk by chunk: each is written once."""
     count = len(numbers)
     grids = _array(group, "grids", (count,) + row, (each,) + row, "u1")
@@ -64,7 +66,8 @@ def _fill(records: Records, numbers: List[int], group: Any, classes: List[str], 
             origins[begin + i], sizes[begin + i] = told["origin"], told["voxel_size"]
             labels[begin + i] = classes.index(item.kind)
         grids[begin:begin + len(some)] = chunk
-    for name, values in (("origin", origins), ("voxel_size", sizes), ("label", labels)):
+    others: List[Tuple[str, Array]] = [("origin", origins), ("voxel_size", sizes), ("label", labels)]
+    for name, values in others:
         _array(group, name, values.shape, (min(count, 65536),) + values.shape[1:], values.dtype.str)[...] = values
 
 

@@ -3,37 +3,49 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple, Type, Union
 
 import numpy
 
 from . import _core, _values
 from ._core import lib
 from ._errors import ArgumentError
-from ._grid import VoxelGrid, _space
+from ._grid import VoxelGrid
 from ._mesh import format_name
+from ._records import CoverageReport, DistanceReport, Label, LabelReport, VoxelizeReport
+from ._space import Placed, space
+from ._types import Array, ArrayLike, Path, Size
+
+FieldReport = Union[DistanceReport, CoverageReport, LabelReport, VoxelizeReport, None]
 
 _KINDS = ("numbers", "distance", "coverage", "labels", "confidence", "colors")
 
 
-def _scalars() -> dict:
+def _scalars() -> Dict[int, "numpy.dtype[Any]"]:
     """numpy's types by the library's numbers."""
     names = [n for n in dir(lib) if n.startswith(("VXM_FLOAT", "VXM_UINT", "VXM_INT"))]
     return {getattr(lib, n): numpy.dtype(n[4:].lower()) for n in names}
 
 
-class Field:
-    """A number (or colour) for each voxel of a box, as a file has them. It does not change once it is made.
+class VoxelField(Placed):
+    """A number (or colour) for each voxel of a box. It does not change once it is made.
+
+    Made by `voxmend.distance`, `coverage`, `labels` and `colors`, by `read_field`, or of an array; numpy.asarray(field) gives
+    its values. `values, origin, pitch = field` takes it apart.
 
     Args:
-        values: (nx, ny, nz) array of integers or floats, or (nx, ny, nz, 4) uint8 of colours.
+        values: (nx, ny, nz) array of integers or floats, or (nx, ny, nz, 4) uint8 of colours; copied.
         pitch: side of a voxel in model units, one number or three.
         origin: minimum corner of the box, model units.
         kind: "numbers", "distance", "coverage", "labels", "confidence" or "colors"; goes along into files.
+
+    Attributes:
+        report: of what made it of a mesh; None if that was something else.
     """
 
-    def __init__(self, values: Any, pitch: Union[float, Sequence[float]] = 1.0, origin: Sequence[float] = (0.0, 0.0, 0.0),
-                 kind: str = "numbers"):
+    report: FieldReport
+
+    def __init__(self, values: ArrayLike, pitch: Size = 1.0, origin: ArrayLike = (0.0, 0.0, 0.0), kind: str = "numbers"):
         array = _values.array("field: the values", values, "biuf", "integers or floats of 16 to 64 bits")
         if array.dtype == bool:
             array = array.view(numpy.uint8)
@@ -46,78 +58,113 @@ class Field:
         expected = 4 if kind == "colors" else 3
         if array.ndim != expected or (expected == 4 and array.shape[3] != 4):
             raise ArgumentError("field: values of shape %r are not those of %s" % (array.shape, kind))
-        plain = numpy.ascontiguousarray(array, native)
-        self._take(_core.create("vxm_field", lib.vxm_field_create, _core.context(), _space(plain.shape[:3], origin, pitch),
-                                _KINDS.index(kind), kinds[native], _core.pointer("void *", plain),
-                                destroy=lib.vxm_field_destroy))
+        self._take(_create(array, space(array.shape[:3], origin, pitch), kind))
 
-    def _take(self, pointer: Any) -> "Field":
-        self._pointer = pointer
-        self._told: Optional[list] = None  # warnings, where another field was read
+    def _take(self, pointer: Any) -> "VoxelField":
+        self._own: Any = pointer  # the library's field; None until it is asked for, of what is in an array
+        self._lying: Any = None  # that array, read-only, then
+        self._place: Any = None  # and its space
+        self._kind = ""
+        self._labels: List[str] = []
+        self._pairs: Dict[str, str] = {}
+        self._told: Optional[List[str]] = None  # warnings, where another field was read
+        self.report = None
         return self
 
     @classmethod
-    def _of(cls, pointer: Any) -> "Field":
+    def _of(cls, pointer: Any) -> "VoxelField":
         return cls.__new__(cls)._take(pointer)
 
-    def __reduce__(self) -> tuple:
-        labels = [_core.ffi.string(lib.vxm_field_label_name(self._pointer, n))
-                  for n in range(1, lib.vxm_field_label_count(self._pointer) + 1)]
-        pairs = [(_core.ffi.string(lib.vxm_field_metadata_key(self._pointer, n)),
-                  _core.ffi.string(lib.vxm_field_metadata_value(self._pointer, n)))
-                 for n in range(lib.vxm_field_metadata_count(self._pointer))]
+    @classmethod
+    def _made(cls, values: Array, place: Any, kind: str, report: FieldReport, warnings: List[str],
+              pairs: Optional[Dict[str, str]] = None, names: Sequence[str] = ()) -> "VoxelField":
+        """Of an array that nobody else has, or that nobody can change; the library has a copy only when it is asked for one."""
+        out = cls._of(None)
+        out._lying, out._place, out._kind = _core.read_only(values), place, kind
+        out._labels, out._pairs, out._told, out.report = list(names), dict(pairs or {}), list(warnings), report
+        return out
+
+    @property
+    def _pointer(self) -> Any:
+        if self._own is None:
+            made = _create(self._lying, self._place, self._kind)
+            _describe(made, self._lying, [name.encode() for name in self._labels],
+                      [(key.encode(), value.encode()) for key, value in self._pairs.items()])
+            self._own = made
+        return self._own
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        labels = [name.encode() for name in self.label_names.values()]
+        pairs = [(key.encode(), value.encode()) for key, value in self.metadata.items()]
         made = (self.values.copy(), self.pitch, self.origin, self.kind)
-        return _restore, (type(self), made, labels, pairs, self.warnings)
+        return _restore, (type(self), made, labels, pairs, self.warnings, self.report)
 
     def __repr__(self) -> str:
-        return "<voxmend.Field: %d x %d x %d, %s, %s>" % (*self.shape, self.kind, self.values.dtype)
+        return "<voxmend.VoxelField: %d x %d x %d, %s, %s>" % (*self.shape, self.kind, self.values.dtype)
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> Array:
+        out = self.values
+        if dtype is not None and numpy.dtype(dtype) != out.dtype:
+            return out.astype(dtype)
+        return out.copy() if copy else out
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter((self.values, self.origin, self.pitch))
+
+    @property
+    def _own_space(self) -> Any:
+        return self._place if self._own is None else lib.vxm_field_space(self._own)
 
     @property
     def kind(self) -> str:
         """What the numbers are, as far as the file says; "numbers" if it does not."""
-        return _core.text(lib.vxm_field_kind_name(lib.vxm_field_kind_of(self._pointer)))
+        return self._kind if self._own is None else _core.text(lib.vxm_field_kind_name(lib.vxm_field_kind_of(self._own)))
 
     @property
-    def values(self) -> numpy.ndarray:
+    def values(self) -> Array:
         """(nx, ny, nz), or of colours (nx, ny, nz, 4); read-only, without a copy."""
+        if self._lying is not None:
+            return self._lying  # type: ignore[no-any-return]
         shape = self.shape + ((4,) if lib.vxm_field_channels(self._pointer) == 4 else ())
         dtype = _scalars()[lib.vxm_field_scalar(self._pointer)]
         return _core.view(self._pointer, lib.vxm_field_values(self._pointer), shape, dtype.str)
 
     @property
-    def shape(self) -> tuple:
-        """(nx, ny, nz)"""
-        return tuple(lib.vxm_field_space(self._pointer).dims)
+    def label_names(self) -> Dict[int, str]:
+        """Names of labels by their numbers, where there is a table of them."""
+        if self._own is None:
+            return {n + 1: name for n, name in enumerate(self._labels)}
+        return {n: _core.text(lib.vxm_field_label_name(self._own, n)) for n in range(1, lib.vxm_field_label_count(self._own) + 1)}
 
     @property
-    def origin(self) -> numpy.ndarray:
-        """(3,) minimum corner of the box, model units."""
-        return numpy.array(list(lib.vxm_field_space(self._pointer).origin))
+    def labels(self) -> List[Label]:
+        """The table of labels: those that have a name, and those that a voxel has; empty of floats and colours."""
+        if self.kind != "labels" or self.values.dtype.kind not in "iu":
+            return []
+        names = self.label_names
+        numbers, counts = numpy.unique(self.values, return_counts=True)
+        voxels = {int(n): int(count) for n, count in zip(numbers, counts) if n != 0}
+        return [Label(n, names.get(n, ""), voxels.get(n, 0)) for n in sorted(set(names) | set(voxels))]
 
     @property
-    def pitch(self) -> numpy.ndarray:
-        """(3,) sides of a voxel, model units."""
-        return numpy.array(list(lib.vxm_field_space(self._pointer).voxel_size))
-
-    @property
-    def label_names(self) -> dict:
-        """Names of labels by their numbers, where the file has a table of them."""
-        count = lib.vxm_field_label_count(self._pointer)
-        return {n: _core.text(lib.vxm_field_label_name(self._pointer, n)) for n in range(1, count + 1)}
-
-    @property
-    def metadata(self) -> dict:
+    def metadata(self) -> Dict[str, str]:
         """What else the file says of its values, such as units."""
-        return {_core.text(lib.vxm_field_metadata_key(self._pointer, n)):
-                _core.text(lib.vxm_field_metadata_value(self._pointer, n))
-                for n in range(lib.vxm_field_metadata_count(self._pointer))}
+        if self._own is None:
+            return dict(self._pairs)
+        return {_core.text(lib.vxm_field_metadata_key(self._own, n)): _core.text(lib.vxm_field_metadata_value(self._own, n))
+                for n in range(lib.vxm_field_metadata_count(self._own))}
 
     @property
-    def warnings(self) -> list:
-        """What was odd about the file, told as VoxmendWarning too."""
+    def warnings(self) -> List[str]:
+        """What was odd about the file or mesh, told as VoxmendWarning too."""
         if self._told is not None:
             return list(self._told)
         return [_core.text(lib.vxm_field_warning(self._pointer, n)) for n in range(lib.vxm_field_warning_count(self._pointer))]
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.ImageData whose cells are the voxels, with the values in cell_data under the name of the kind."""
+        from . import _grid_convert
+        return _grid_convert.image_data(self, self.kind, self.values)
 
     def threshold(self, at_least: Optional[float] = None, below: Optional[float] = None) -> VoxelGrid:
         """A grid in which voxels are set whose number is `at_least` one number, `below` another, or both.
@@ -132,7 +179,7 @@ class Field:
         return VoxelGrid._of(_core.create("vxm_grid", lib.vxm_field_threshold, self._pointer, options,
                                           destroy=lib.vxm_grid_destroy))
 
-    def save(self, path: Any, format: Optional[str] = None) -> None:
+    def save(self, path: Path, format: Optional[str] = None) -> None:
         """Writes .npy, .nrrd or .vdb; labels also .binvox; colours .npy, .nrrd, .ply or .vox."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
@@ -140,23 +187,41 @@ class Field:
         _core.call(lib.vxm_field_write, self._pointer, _values.path(path), options, path=path)
 
 
-def _restore(kind: type, made: tuple, labels: list, pairs: list, warnings: list) -> Field:
+Field = VoxelField  # the name that it had
+
+
+def _create(values: Array, place: Any, kind: str) -> Any:
+    native = values.dtype.newbyteorder("=")
+    kinds = {dtype: number for number, dtype in _scalars().items()}
+    plain = numpy.ascontiguousarray(values, native)
+    return _core.create("vxm_field", lib.vxm_field_create, _core.context(), place, _KINDS.index(kind), kinds[native],
+                        _core.pointer("void *", plain), destroy=lib.vxm_field_destroy)
+
+
+def _describe(pointer: Any, values: Array, labels: List[bytes], pairs: List[Tuple[bytes, bytes]]) -> None:
+    """Adds a table of labels, with their voxels, and what else is known."""
+    if labels:
+        numbers, counts = numpy.unique(values, return_counts=True)
+        voxels = {int(n): int(count) for n, count in zip(numbers, counts)}
+        for n, label in enumerate(labels):
+            _core.call(lib.vxm_field_add_label, pointer, label, voxels.get(n + 1, 0))
+    for key, value in pairs:
+        _core.call(lib.vxm_field_add_metadata, pointer, key, value)
+
+
+def _restore(kind: Type[VoxelField], made: Tuple[Any, ...], labels: List[bytes], pairs: List[Tuple[bytes, bytes]],
+             warnings: List[str], report: FieldReport = None) -> VoxelField:
     """A field from its pickle."""
     field = kind.__new__(kind)
-    Field.__init__(field, *made)
-    if labels:
-        counts = [numpy.count_nonzero(made[0] == n + 1) for n in range(len(labels))]
-        for label, count in zip(labels, counts):
-            _core.call(lib.vxm_field_add_label, field._pointer, label, count)
-    for key, value in pairs:
-        _core.call(lib.vxm_field_add_metadata, field._pointer, key, value)
-    field._told = warnings
+    VoxelField.__init__(field, *made)
+    _describe(field._pointer, made[0], labels, pairs)
+    field._told, field.report = warnings, report
     return field
 
 
-def read_field(path: Any) -> Field:
+def read_field(path: Path) -> VoxelField:
     """Reads the numbers of a file as they are: .npy, .nrrd, .vdb or .binvox. Bits are 0 and 1."""
-    field = Field._of(_core.create("vxm_field", lib.vxm_field_read, _core.context(), _values.path(path),
+    field = VoxelField._of(_core.create("vxm_field", lib.vxm_field_read, _core.context(), _values.path(path),
                                    destroy=lib.vxm_field_destroy, path=path))
     _core.warn(["%s: %s" % (os.fsdecode(path), line) for line in field.warnings])
     return field

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy
 import torch
@@ -13,7 +13,8 @@ from . import _values
 from ._errors import EmptyError
 from ._grid_sources import open_source
 from ._packed import unpack as unpack_rows
-from ._sampler import Turn, watch_forks
+from ._turns import Turn, watch_forks
+from ._types import Array
 
 
 class GridDataset(Dataset):
@@ -56,12 +57,12 @@ class GridDataset(Dataset):
         if self._turn.is_taken():  # by a thread that is not in this process
             self._forget()
 
-    def __getstate__(self) -> dict:
+    def __getstate__(self) -> Dict[str, Any]:
         state = dict(self.__dict__)
         del state["_turn"]
         return state
 
-    def __setstate__(self, state: dict) -> None:
+    def __setstate__(self, state: Dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._forget()
 
@@ -72,7 +73,7 @@ class GridDataset(Dataset):
     def names(self) -> List[str]:
         return [self._source.names[i] for i in self._numbers]
 
-    def batch(self, items: Sequence[int], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
+    def batch(self, items: Union[Sequence[int], Array], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
         """Many at once: voxels (n, 1, nx, ny, nz), or packed, and labels (n,) int64. The epoch makes no difference."""
         at = _values.array("dataset: items", items, "iu", "whole numbers").reshape(-1).astype(numpy.int64)
         if at.size and (at.min() < -len(self) or at.max() >= len(self)):
@@ -96,7 +97,7 @@ class GridDataset(Dataset):
         return list(zip(voxels, labels.tolist()))
 
 
-def order_by_groups(groups: numpy.ndarray, together: int, draw: numpy.random.Generator) -> numpy.ndarray:
+def order_by_groups(groups: Array, together: int, draw: numpy.random.Generator) -> Array:
     """Groups in an order that is drawn, so many at a time with their members mixed: near enough to a shuffle of all, and
     each tar or chunk is read in one go."""
     order = numpy.argsort(groups, kind="stable")

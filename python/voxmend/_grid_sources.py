@@ -18,6 +18,7 @@ from ._batch_records import Records
 from ._errors import ArgumentError, EmptyError, FormatError, UnavailableError
 from ._export_common import packed_grid, with_grids
 from ._packed import pack
+from ._types import Array
 
 
 class _Told:
@@ -45,7 +46,7 @@ class _Told:
 class Source:
     """What all of them share."""
 
-    def __init__(self, told: _Told, groups: numpy.ndarray, where: str):
+    def __init__(self, told: _Told, groups: Array, where: str):
         if told.shape is None:
             raise EmptyError("%s: there is no grid in it" % where)
         self.where, self.shape, self.groups = where, told.shape, groups
@@ -54,10 +55,10 @@ class Source:
     def __len__(self) -> int:
         return len(self.names)
 
-    def packed(self, number: int) -> numpy.ndarray:
+    def packed(self, number: int) -> Array:
         raise NotImplementedError
 
-    def check(self, number: int, bits: numpy.ndarray) -> numpy.ndarray:
+    def check(self, number: int, bits: Array) -> Array:
         nx, ny, nz = self.shape
         if bits.shape != (nx, ny, (nz + 7) // 8) or bits.dtype != numpy.uint8:
             raise FormatError("%s: the grid of %s is %s of %s, not bits of %s" %
@@ -79,7 +80,7 @@ class FolderSource(Source):
                       "shape": item.end.get("voxelize", {}).get("grid", {}).get("dims")}, path)
         super().__init__(told, numpy.arange(len(told.names)), path)
 
-    def packed(self, number: int) -> numpy.ndarray:
+    def packed(self, number: int) -> Array:
         return self.check(number, packed_grid(self.records, self.records[int(self.numbers[number])], False)[0])
 
 
@@ -126,9 +127,9 @@ class TarSource(Source):
             if len(self._open) > 64:
                 self._open.popitem(last=False)[1].close()
         self._open.move_to_end(tar)
-        return self._open[tar].fileno()
+        return int(self._open[tar].fileno())
 
-    def packed(self, number: int) -> numpy.ndarray:
+    def packed(self, number: int) -> Array:
         tar, offset, size, is_plain = self.places[number].tolist()
         data = os.pread(self._descriptor(tar), size, offset)
         try:
@@ -146,7 +147,7 @@ class ZarrSource(Source):
     def __init__(self, path: str):
         told = _Told()
         self.path = path
-        self._held: "collections.OrderedDict[int, numpy.ndarray]" = collections.OrderedDict()
+        self._held: "collections.OrderedDict[int, Array]" = collections.OrderedDict()
         self._grids: Any = None
         attributes = dict(self._group().attrs)
         if attributes.get("format") != "voxmend grids":
@@ -171,7 +172,7 @@ class ZarrSource(Source):
     def __getstate__(self) -> Dict[str, Any]:
         return dict(self.__dict__, _grids=None, _held=collections.OrderedDict())
 
-    def packed(self, number: int) -> numpy.ndarray:
+    def packed(self, number: int) -> Array:
         chunk = number // self.each
         if chunk not in self._held:
             self._held[chunk] = self._array()[chunk * self.each:(chunk + 1) * self.each]

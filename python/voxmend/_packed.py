@@ -10,14 +10,15 @@ import numpy
 from . import _core
 from ._core import lib
 from ._errors import ArgumentError
+from ._types import Array
 
 
-def pack(matrix: Any) -> numpy.ndarray:
+def pack(matrix: Any) -> Array:
     """(..., nz) of what is 0 or not to (..., ceil(nz / 8)) uint8."""
     return numpy.packbits(numpy.asarray(matrix, numpy.bool_), axis=-1, bitorder="little")
 
 
-def unpack(packed: Any, length: int, dtype: Any = numpy.float32) -> numpy.ndarray:
+def unpack(packed: Any, length: int, dtype: Any = numpy.float32) -> Array:
     """(..., ceil(length / 8)) uint8 to (..., length) of 0 and 1: float32, uint8 or bool."""
     bits, kind = numpy.ascontiguousarray(packed), numpy.dtype(dtype)
     if bits.dtype != numpy.uint8 or bits.ndim < 1 or length < 1 or bits.shape[-1] != (length + 7) // 8:

@@ -2,56 +2,20 @@
 """Augmented variants of meshes, straight into arrays."""
 from __future__ import annotations
 
-import os
-import threading
-import weakref
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Dict, Optional, Sequence, Tuple, Type, Union
 
 import numpy
 
 from . import _core, _values
 from ._core import ffi, lib
-from ._errors import ArgumentError, BusyError, KindError
-from ._mesh import MeshLike, as_mesh
+from ._errors import ArgumentError, KindError
+from ._mesh import Mesh
+from ._mesh_sources import MeshLike, as_mesh
+from ._turns import Turn, watch_forks
+from ._types import Array, Floats, Uint32s
 
 _UINT32_MAX = 0xFFFFFFFF
 _VOXELS = {"bits": lib.VXM_VOXEL_FORMAT_PACKED, "uint8": lib.VXM_VOXEL_FORMAT_UINT8, "float32": lib.VXM_VOXEL_FORMAT_FLOAT32}
-
-
-class Turn:
-    """Lets one thread at a time in, others wait; a thread that is inside already is refused rather than stuck."""
-
-    def __init__(self) -> None:
-        self._lock, self._holder = threading.Lock(), 0
-
-    def __enter__(self) -> None:
-        if self._holder == threading.get_ident():
-            raise BusyError("the object is at work for this very thread, whose signal handler asks it for more")
-        self._lock.acquire()
-        self._holder = threading.get_ident()
-
-    def __exit__(self, *_: Any) -> None:
-        self._holder = 0
-        self._lock.release()
-
-    def is_taken(self) -> bool:
-        return self._lock.locked()
-
-
-_living: "weakref.WeakSet[Any]" = weakref.WeakSet()
-
-
-def watch_forks(holder: Any) -> None:
-    """Has holder._after_fork called in a process that a fork makes."""
-    _living.add(holder)
-
-
-def _after_fork() -> None:
-    for holder in list(_living):
-        holder._after_fork()
-
-
-os.register_at_fork(after_in_child=_after_fork)
 
 
 class Sampler:
@@ -90,7 +54,7 @@ class Sampler:
                              displacement=displacement, noise=noise, mirror=mirror, translate=translate, fill=fill,
                              mode=mode, surface=surface, method=method, vote=vote, parts=parts, cavities=cavities,
                              thin=thin, engine=engine)
-        self._meshes: dict = {}
+        self._meshes: Dict[int, Mesh] = {}
         self._turn = Turn()
         self._torn = False  # by a fork in the middle of a call
         self._pointer = self._make()
@@ -119,7 +83,7 @@ class Sampler:
         rotations = self._set_rotation(options, given["rotate"])
         voxelize.engine = engine = self._make_engine(given["engine"])
 
-        def destroy(sampler: Any, kept: tuple = (engine, self._meshes)) -> None:  # which outlive the sampler
+        def destroy(sampler: Any, kept: Tuple[Any, ...] = (engine, self._meshes)) -> None:  # which outlive the sampler
             lib.vxm_sampler_destroy(sampler)
         made = _core.create("vxm_sampler", lib.vxm_sampler_create, _core.context(), options, destroy=destroy)
         del rotations  # the library has copied them
@@ -134,7 +98,7 @@ class Sampler:
 
     # ---- Copies, and processes that are forked ----
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> Tuple[Any, ...]:
         with self._turn:
             return _restore, (type(self), self._options, dict(self._meshes))
 
@@ -193,7 +157,7 @@ class Sampler:
             if own is not None:
                 self._meshes[number] = own
 
-    def shape(self, count: int, dtype: str = "float32") -> tuple:
+    def shape(self, count: int, dtype: str = "float32") -> Tuple[int, ...]:
         """Of an array of `count` variants."""
         d = self.resolution
         count = _values.whole("sampler: count", count, 0)
@@ -201,8 +165,8 @@ class Sampler:
             raise ArgumentError("sampler: dtype %r is none of float32, uint8, bits" % (dtype,))
         return (count, d, d, (d + 7) // 8) if dtype == "bits" else (count, 1, d, d, d)
 
-    def batch(self, variants: Union[int, Sequence[int], numpy.ndarray], *, model: int = 0, epoch: int = 0,
-              dtype: str = "float32", out: Optional[numpy.ndarray] = None) -> numpy.ndarray:
+    def batch(self, variants: Union[int, Sequence[int], Array], *, model: int = 0, epoch: int = 0,
+              dtype: str = "float32", out: Optional[Array] = None) -> Array:
         """Makes variants with all threads.
 
         Args:
@@ -230,7 +194,7 @@ class Sampler:
         return out
 
     @staticmethod
-    def _names(variants: Any, model: Any, epoch: Any) -> numpy.ndarray:
+    def _names(variants: Any, model: Any, epoch: Any) -> Uint32s:
         """(n, 3) uint32: model, epoch and index of each variant."""
         if numpy.ndim(variants) == 0:
             variants = numpy.arange(_values.whole("sampler: variants", variants, 0, _UINT32_MAX))
@@ -242,7 +206,7 @@ class Sampler:
             raise ArgumentError("sampler: variants have shape %s, neither (n,) nor (n, 3)" % (names.shape,))
         return numpy.ascontiguousarray(names, numpy.uint32)
 
-    def pose(self, index: int, *, model: int = 0, epoch: int = 0) -> dict:
+    def pose(self, index: int, *, model: int = 0, epoch: int = 0) -> Dict[str, Floats]:
         """How a variant lies, before its vertices are displaced.
 
         Returns:
@@ -258,7 +222,7 @@ class Sampler:
         return {key: numpy.array(list(getattr(out, key))).reshape(shape) for key, shape in shapes.items()}
 
 
-def _restore(kind: type, options: dict, meshes: dict) -> Sampler:
+def _restore(kind: Type[Sampler], options: Dict[str, Any], meshes: Dict[int, Mesh]) -> Sampler:
     """A sampler from its pickle."""
     made = kind.__new__(kind)
     Sampler.__init__(made, **options)

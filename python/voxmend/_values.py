@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 import operator
 import os
-from typing import Any, Optional
+from typing import Any, Optional, Tuple
 
 import numpy
 
 from ._errors import ArgumentError, KindError
+from ._types import Array, Floats
 
 INT64_MAX = (1 << 63) - 1
 
@@ -91,7 +92,7 @@ def path(value: Any) -> bytes:
     return out
 
 
-def array(name: str, value: Any, kinds: str, wanted: str) -> numpy.ndarray:
+def array(name: str, value: Any, kinds: str, wanted: str) -> Array:
     """An array whose type is of one of the kinds (numpy's letters), of any shape, byte order and layout."""
     try:
         out = numpy.asarray(value)
@@ -106,7 +107,7 @@ def array(name: str, value: Any, kinds: str, wanted: str) -> numpy.ndarray:
     return out
 
 
-def reals(name: str, value: Any, shape: Optional[tuple] = None) -> numpy.ndarray:
+def reals(name: str, value: Any, shape: Optional[Tuple[int, ...]] = None) -> Floats:
     """A C-contiguous float64 array of finite numbers, broadcast to a shape if one is given."""
     out = numpy.ascontiguousarray(array(name, value, "iuf", "numbers"), numpy.float64)
     if not numpy.isfinite(out).all():
@@ -119,7 +120,7 @@ def reals(name: str, value: Any, shape: Optional[tuple] = None) -> numpy.ndarray
     return out
 
 
-def wholes(name: str, value: Any, least: int, most: int) -> numpy.ndarray:
+def wholes(name: str, value: Any, least: int, most: int) -> Array:
     """An array of whole numbers from `least` to `most`."""
     out = array(name, value, "iu", "whole numbers")
     if out.size and (out.min() < least or out.max() > most):

@@ -110,7 +110,8 @@ def run(inputs: Any, output: Any, *, shards: Optional[int] = None, dask: Any = N
     if not os.path.exists(summary):  # shards that ended at once may not have seen each other's end
         _run_here(0, arguments)
     with open(summary, encoding="utf-8") as file:
-        return json.load(file)
+        out: Dict[str, Any] = json.load(file)
+        return out
 
 
 def export(folder: Any, path: Any, *, to: str, **options: Any) -> Dict[str, Any]:
@@ -151,7 +152,7 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     from ._batch_command import read_arguments
     try:
         called, arguments = read_arguments(list(sys.argv[1:] if words is None else words))
-        result = (run if called == "run" else export)(**arguments)
+        result = run(**arguments) if called == "run" else export(**arguments)
         print(json.dumps(result, indent=2, sort_keys=True))
         return 0
     except KeyboardInterrupt:

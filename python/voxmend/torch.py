@@ -15,7 +15,7 @@ import os
 import queue
 import threading
 import time
-from typing import Any, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy
 import torch
@@ -25,8 +25,12 @@ from . import __version__, _core, _values
 from ._core import ffi
 from ._errors import ArgumentError, EmptyError
 from ._grid_dataset import GridDataset, order_by_groups
-from ._mesh import Mesh, load, repair
-from ._sampler import Sampler, Turn, watch_forks
+from ._mesh import Mesh
+from ._mesh_sources import load
+from ._repair import repair
+from ._sampler import Sampler
+from ._turns import Turn, watch_forks
+from ._types import Array
 
 __all__ = ["EXTENSIONS", "GridDataset", "IterableVoxelDataset", "VoxelDataset", "unpack"]
 
@@ -90,13 +94,13 @@ class VoxelDataset(Dataset):
         if self._turn.is_taken():  # by a thread that is not in this process
             self._forget()
 
-    def __getstate__(self) -> dict:
+    def __getstate__(self) -> Dict[str, Any]:
         state = dict(self.__dict__)
         for name in ("_sampler", "_held", "_turn"):  # of this process
             state.pop(name)
         return state
 
-    def __setstate__(self, state: dict) -> None:
+    def __setstate__(self, state: Dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._forget()
 
@@ -125,7 +129,7 @@ class VoxelDataset(Dataset):
         if cached is not None and os.path.exists(cached):
             return load(cached)
         mesh = repair(load(path), self.level, separate=True)
-        if cached is not None:
+        if cached is not None and self.cache is not None:
             os.makedirs(self.cache, exist_ok=True)
             mesh.save(cached, keep_polygons=True)  # under another name until it is complete
         return mesh
@@ -152,7 +156,7 @@ class VoxelDataset(Dataset):
 
     # ---- Items ----
 
-    def batch(self, items: Sequence[int], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
+    def batch(self, items: Union[Sequence[int], Array], epoch: Optional[int] = None) -> Tuple[torch.Tensor, torch.Tensor]:
         """Many items at once, made by all threads: voxels (n, 1, D, D, D), or packed, and labels (n,) int64."""
         at = _values.array("dataset: items", items, "iu", "whole numbers").reshape(-1)
         if at.size and (at.min() < -len(self) or at.max() >= len(self)):
@@ -220,7 +224,7 @@ class IterableVoxelDataset(IterableDataset):
         self.rank, self.ranks = rank, ranks
         self.waited = 0.0
 
-    def order(self, epoch: int) -> numpy.ndarray:
+    def order(self, epoch: int) -> Array:
         """The items of an epoch, in order: the same in every process."""
         if not self.shuffle:
             return numpy.arange(len(self.dataset))
@@ -229,7 +233,7 @@ class IterableVoxelDataset(IterableDataset):
             return order_by_groups(self.dataset.groups, self.TOGETHER, draw)
         return draw.permutation(len(self.dataset))
 
-    def _batches_of(self, epoch: int) -> List[numpy.ndarray]:
+    def _batches_of(self, epoch: int) -> List[Array]:
         """Those of this rank."""
         items = self.order(epoch)
         if self.ranks > 1:
@@ -239,7 +243,7 @@ class IterableVoxelDataset(IterableDataset):
         return [items[begin:begin + self.batch_size]
                 for begin in range(self.rank * self.batch_size, len(items), self.ranks * self.batch_size)]
 
-    def _batches(self) -> Iterator[Tuple[int, numpy.ndarray]]:
+    def _batches(self) -> Iterator[Tuple[int, Array]]:
         worker = get_worker_info()
         share, shares = (worker.id, worker.num_workers) if worker else (0, 1)
         number, epoch = 0, self.first_epoch

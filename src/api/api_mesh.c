@@ -4,6 +4,7 @@
 #include "base/sized.h"
 #include "mesh/census.h"
 #include "mesh/soup.h"
+#include "meshio/common/faces_out.h"
 #include "meshio/meshio.h"
 
 #include <inttypes.h>
@@ -153,6 +154,14 @@ vxm_status vxm_mesh_create(vxm_mesh **out, vxm_context *context, const vxm_mesh_
   }
   *out = soup;
   return VXM_OK;
+}
+
+vxm_status vxm_mesh_triangulate(vxm_mesh **out, const vxm_mesh *mesh, vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !mesh)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "mesh: an argument is NULL");
+  return vxm_faces_out_triangles(out, mesh, error);
 }
 
 /** NULL options are fine. */

@@ -220,6 +220,8 @@ bool cli_is_extension(const char *path, const char *extension);
 /** The arguments of --mode and --surface: CLI_END or CLI_STOP. */
 int cli_read_mode(cli_run *cli, vxm_voxelize_options *options, const char *value);
 int cli_read_surface(cli_run *cli, vxm_voxelize_options *options, const char *value);
+/** The argument of --voxel-size, "0.5" or "0.5,0.5,2": CLI_END or CLI_STOP. */
+int cli_read_voxel_size(cli_run *cli, vxm_space_options *space, const char *value);
 /** The argument of --thin: CLI_END or CLI_STOP. */
 int cli_read_thin(cli_run *cli, vxm_voxelize_options *options, const char *value);
 /** CLI_STOP if --surface, where it was given, does not go with the mode. */
@@ -441,6 +443,7 @@ typedef struct cli_input {
   char format[48];
   int64_t vertices, faces; /**< as read */
   vxm_mesh *mesh;
+  vxm_mesh *as_read;        /**< with its colours, where these are read and the mesh is repaired; or NULL */
   vxm_repair_report repair; /**< no passes without repair */
   double read_ms, repair_ms;
 } cli_input;
@@ -485,6 +488,7 @@ int cli_defects_show(cli_run *cli, cli_found *out, const cli_defects *wanted, co
 typedef struct cli_field {
   bool coverage, scalar, distance, band, labels, color; /**< which options were given */
   const char *color_name;                               /**< a function that is built in, or a file */
+  const char *color_mesh;                               /**< the mesh that gives the colours, for messages */
   vxm_coverage_options coverage_options;
   vxm_distance_options distance_options;
   vxm_label_options label_options;
@@ -513,8 +517,14 @@ int cli_field_read_scalar(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_distance(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_band(cli_run *cli, cli_field *field, const char *value);
 int cli_field_read_labels(cli_run *cli, cli_field *field, const char *value);
+/** Tell what a mesh looks like that was read with its colours; nothing where there is nothing (look.c). */
+void cli_look_json(json_t *report, const vxm_mesh *mesh);
+void cli_look_print(const cli_run *cli, const vxm_mesh *mesh);
+
 /** The argument of --color (colors.c). */
 int cli_color_read(cli_run *cli, cli_field *field, const char *value);
+/** Takes the mesh that gives the colours. */
+void cli_color_take(cli_field *field, const cli_input *input);
 /** Writes the file of --color; a failure is in cli->error. */
 vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const char *path, const char *format);

@@ -29,6 +29,7 @@ static json_t *describe_json(const cli_run *cli, const description *d) {
   json_object_set_new(object, "file", cli_json_text(d->path));
   json_object_set_new(object, "format", cli_json_text(vxm_mesh_format(d->mesh)));
   json_object_set_new(object, "verdict", cli_json_text(d->verdict));
+  cli_look_json(object, d->mesh);
   cli_census_json(object, &d->census);
   cli_intersections_json(object, d->found.intersections);
   if (d->found.list)
@@ -42,6 +43,7 @@ static void describe(const cli_run *cli, const description *d) {
   fprintf(cli->text, "  %-26s %12s\n", "format", vxm_mesh_format(d->mesh));
   if (cli->verbose && vxm_mesh_tag_count(d->mesh) > 0)
     fprintf(cli->text, "  %-26s %12lld\n", "tags", (long long)vxm_mesh_tag_count(d->mesh));
+  cli_look_print(cli, d->mesh);
   cli_census_print(cli, &d->census);
   cli_census_print_intersections(cli, d->found.intersections);
 }
@@ -170,6 +172,7 @@ static int run(cli_run *cli) {
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
+  cli->read.colors = true;
   json_t *reports = json_array();
   int failed = 0;
   for (int i = 0; i < cli->argument_count && !cli_signal(); i++)

@@ -9,7 +9,7 @@ enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_THIN, KEY_ASCII, KEY_FORMAT, KEY_FORCE };
 static const cli_option known_options[] = {
     {'o', "output", "MESH", "file to write; '-' is standard output (needs --format)"},
     {'r', "resolution", "N", "voxels along the longest side of the model [128]"},
-    {KEY_SIZE, "voxel-size", "S", "side of a voxel in model units, instead of -r"},
+    {KEY_SIZE, "voxel-size", "S|SX,SY,SZ", "sides of a voxel in model units, instead of -r"},
     {KEY_THIN, "thin", "keep|drop|26",
      "parts thinner than a voxel: as in 'voxmend voxelize'; those that are kept\n"
      "come out two thirds of a voxel thick or more [keep]"},
@@ -45,9 +45,7 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
       return cli_usage(cli, "-r '%s' is not a number of voxels from 1 to 1048576", value);
     return CLI_END;
   case KEY_SIZE:
-    if (!cli_read_number(&out->space.voxel_size, value) || !(out->space.voxel_size > 0))
-      return cli_usage(cli, "--voxel-size '%s' is not a positive number", value);
-    return CLI_END;
+    return cli_read_voxel_size(cli, &out->space, value);
   case KEY_FORCE:
     out->force = true;
     return CLI_END;
@@ -71,7 +69,7 @@ static int read_arguments(cli_run *cli, request *out) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
-  if (out->space.resolution[0] > 0 && out->space.voxel_size > 0)
+  if (out->space.resolution[0] > 0 && (out->space.voxel_size > 0 || out->space.voxel_sizes[0] > 0))
     return cli_usage(cli, "-r and --voxel-size exclude each other");
   out->space.fit = VXM_FIT_TIGHT;
   out->write.format = cli_output_format(cli, out->output, out->write.format, cli_mesh_formats);

@@ -174,8 +174,10 @@ static int run(cli_run *cli) {
   const vxm_repair_options *repair = given.no_repair ? NULL : &given.repair;
   if (cli_read_repaired(cli, &results.input, given.input, repair) != CLI_DONE)
     return CLI_FAILED;
+  cli_color_take(&given.field, &results.input);
   int status = make_file(cli, &given, &results);
   vxm_mesh_destroy(results.input.mesh);
+  vxm_mesh_destroy(results.input.as_read);
   if (status == CLI_DONE) {
     results.total_ms = cli_clock() - start;
     cli_progress_clear(cli);

@@ -31,14 +31,16 @@ static char *read_source(cli_run *cli, const char *path) {
 }
 
 int cli_color_read(cli_run *cli, cli_field *field, const char *value) {
-  static const char *const choices[] = {"noise", "position", "part", NULL};
+  static const char *const choices[] = {"noise", "position", "part", "mesh", NULL};
+  static const vxm_color_by by[] = {VXM_COLOR_NOISE, VXM_COLOR_POSITION, VXM_COLOR_PART, VXM_COLOR_MESH};
   int choice = cli_read_choice(value, choices);
   char list[CLI_LIST_MAX];
   if (choice < 0 && !cli_is_extension(value, "frag"))
     return cli_usage(cli, "--color '%s' is none of %s, and no FILE.frag", value, cli_list(list, choices));
   field->color = true;
   field->color_name = value;
-  field->color_options.by = choice >= 0 ? (vxm_color_by)choice : VXM_COLOR_GLSL;
+  field->color_options.by = choice >= 0 ? by[choice] : VXM_COLOR_GLSL;
+  cli->read.colors = field->color_options.by == VXM_COLOR_MESH;
   return CLI_END;
 }
 
@@ -55,5 +57,16 @@ vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
   }
   vxm_status status = vxm_model_write_colors(report, model, space, path, &options, &cli->error);
   free(source);
+  /* What the mesh lacks is said of it. */
+  if (status == VXM_ERROR_ARGUMENT && options.by == VXM_COLOR_MESH) {
+    char text[sizeof cli->error.text];
+    snprintf(text, sizeof text, "%.200s: %.300s", field->color_mesh, cli->error.text);
+    memcpy(cli->error.text, text, sizeof text);
+  }
   return status;
+}
+
+void cli_color_take(cli_field *field, const cli_input *input) {
+  field->color_mesh = cli_shown(input->path, "<stdin>");
+  field->color_options.mesh = input->as_read ? input->as_read : input->mesh;
 }

@@ -74,6 +74,8 @@ int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is
     return cli_usage(cli, "--coverage, --distance, --labels and --color exclude each other");
   if (field->scalar && !field->coverage)
     return cli_usage(cli, "--scalar goes with --coverage");
+  if (field->color_options.average && !(field->color && field->color_options.by == VXM_COLOR_MESH))
+    return cli_usage(cli, "--color-average goes with --color mesh");
   if (field->band && !field->distance)
     return cli_usage(cli, "--band goes with --distance");
   if (!cli_field_wanted(field))
@@ -147,9 +149,11 @@ static json_t *distance_json(const cli_field *field) {
 void cli_field_json(json_t *report, const cli_field *field) {
   if (field->coverage)
     json_object_set_new(report, "coverage", coverage_json(field));
-  else if (field->color)
+  else if (field->color) {
     json_object_set_new(report, "color", cli_json_text(field->color_name));
-  else if (field->labels)
+    if (field->color_options.average)
+      json_object_set_new(report, "color_average", json_true());
+  } else if (field->labels)
     cli_labels_json(report, field);
   else
     json_object_set_new(report, "distance", distance_json(field));
@@ -163,7 +167,8 @@ void cli_field_summarize(const cli_run *cli, const cli_field *field) {
             coverage->partial);
     cli_row(cli, "volume", "%.6g", coverage->volume);
   } else if (field->color)
-    cli_row(cli, "colour", "%s", field->color_name);
+    cli_row(cli, "colour", "%s%s", field->color_name,
+            field->color_options.average ? ", the mean over the surface within a voxel" : "");
   else if (field->labels)
     cli_labels_summarize(cli, field);
   else

@@ -57,7 +57,13 @@ int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vx
   input->read_ms = read - start;
   if (!options)
     return CLI_DONE;
-  vxm_status status = vxm_mesh_prepare_in_place(&input->mesh, &input->repair, options, &cli->error);
+  vxm_status status;
+  if (cli->read.colors) {
+    input->as_read = input->mesh;
+    input->mesh = NULL;
+    status = vxm_mesh_prepare(&input->mesh, &input->repair, input->as_read, options, &cli->error);
+  } else
+    status = vxm_mesh_prepare_in_place(&input->mesh, &input->repair, options, &cli->error);
   input->repair_ms = cli_clock() - read;
   if (status != VXM_OK)
     return cli_fail(cli);

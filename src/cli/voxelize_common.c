@@ -2,6 +2,8 @@
 /** What is made of a mesh, its inside or its surface: options that voxelize and augment have in common. */
 #include "cli/cli.h"
 
+#include <string.h>
+
 int cli_read_mode(cli_run *cli, vxm_voxelize_options *options, const char *value) {
   static const char *const modes[] = {"solid", "surface", "both", NULL};
   int choice = 0, result = cli_choose(cli, &choice, "mode", value, modes);
@@ -14,6 +16,20 @@ int cli_read_surface(cli_run *cli, vxm_voxelize_options *options, const char *va
   int choice = 0, result = cli_choose(cli, &choice, "surface", value, surfaces);
   options->surface = (vxm_surface_kind)choice;
   return result;
+}
+
+int cli_read_voxel_size(cli_run *cli, vxm_space_options *space, const char *value) {
+  double sizes[3];
+  space->voxel_size = 0;
+  memset(space->voxel_sizes, 0, sizeof space->voxel_sizes);
+  if (cli_read_number(&sizes[0], value) && sizes[0] > 0)
+    space->voxel_size = sizes[0];
+  else if (cli_read_numbers(sizes, 3, value) && sizes[0] > 0 && sizes[1] > 0 && sizes[2] > 0)
+    memcpy(space->voxel_sizes, sizes, sizeof sizes);
+  else
+    return cli_usage(cli, "--voxel-size '%s' is neither a positive number nor three such as 0.5,0.5,2",
+                     value);
+  return CLI_END;
 }
 
 int cli_read_thin(cli_run *cli, vxm_voxelize_options *options, const char *value) {

@@ -23,6 +23,7 @@ enum {
   KEY_BAND,
   KEY_LABELS,
   KEY_COLOR,
+  KEY_COLOR_AVERAGE,
   KEY_CONFIDENCE,
   KEY_SPARSE,
   KEY_COORDS,
@@ -92,9 +93,12 @@ const cli_option voxelize_options[] = {
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
      ".npy, .nrrd or .binvox, with the names in a .json beside it"},
-    {KEY_COLOR, "color", "noise|position|part|FILE.frag",
-     "write a colour for each set voxel instead: Perlin's noise, where it is, its part,\n"
-     "or a function in GLSL, which needs --engine opengl; .npy, .ply or .vox"},
+    {KEY_COLOR, "color", "mesh|noise|position|part|FILE.frag",
+     "write a colour for each set voxel instead: that of the nearest point of the mesh,\n"
+     "by its vertices, faces, materials and textures; Perlin's noise, where it is, its\n"
+     "part, or a function in GLSL, which needs --engine opengl; .npy, .ply or .vox"},
+    {KEY_COLOR_AVERAGE, "color-average", NULL,
+     "with --color mesh: the mean over the surface within a voxel, where there is any"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
@@ -131,21 +135,6 @@ static bool read_resolution(int64_t out[3], const char *text) {
   return true;
 }
 
-/** "0.5", or "0.5,0.5,2". */
-static int read_voxel_size(cli_run *cli, vxm_space_options *space, const char *value) {
-  double sizes[3];
-  space->voxel_size = 0;
-  memset(space->voxel_sizes, 0, sizeof space->voxel_sizes);
-  if (cli_read_number(&sizes[0], value) && sizes[0] > 0)
-    space->voxel_size = sizes[0];
-  else if (cli_read_numbers(sizes, 3, value) && sizes[0] > 0 && sizes[1] > 0 && sizes[2] > 0)
-    memcpy(space->voxel_sizes, sizes, sizeof sizes);
-  else
-    return cli_usage(cli, "--voxel-size '%s' is neither a positive number nor three such as 0.5,0.5,2",
-                     value);
-  return CLI_END;
-}
-
 /** The options that choose the voxel space. */
 static int read_space_option(cli_run *cli, voxelize_request *out, int key, const char *value) {
   static const char *const fits[] = {"cube", "tight", "sphere", NULL};
@@ -159,7 +148,7 @@ static int read_space_option(cli_run *cli, voxelize_request *out, int key, const
     return CLI_END;
   case KEY_SIZE:
     out->size = true;
-    return read_voxel_size(cli, space, value);
+    return cli_read_voxel_size(cli, space, value);
   case KEY_FIT:
     out->fit = true;
     result = cli_choose(cli, &choice, "fit", value, fits);
@@ -234,6 +223,9 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     return cli_field_read_labels(cli, &out->field, value);
   case KEY_COLOR:
     return cli_color_read(cli, &out->field, value);
+  case KEY_COLOR_AVERAGE:
+    out->field.color_options.average = true;
+    return CLI_END;
   case KEY_CONFIDENCE:
     out->confidence = value;
     out->voxelize.confidence = true;

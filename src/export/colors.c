@@ -3,12 +3,15 @@
 #include "base/clock.h"
 #include "gridio/common/format.h"
 #include "gridio/gridio.h"
+#include "voxel/labels/mesh_colors.h"
 
 /** The values, the grid and, where they are wanted, the parts. */
 static vxm_status check_memory(const vxm_model *model, const vxm_space *space,
                                const vxm_color_options *options, vxm_error *error) {
   uint64_t voxels = (uint64_t)space->dims[0] * (uint64_t)space->dims[1] * (uint64_t)space->dims[2];
   uint64_t bytes = voxels > UINT64_MAX / 8 ? UINT64_MAX : voxels * (vxm_color_wants_parts(options) ? 6 : 4);
+  if (options->by == VXM_COLOR_MESH)
+    bytes += vxm_mesh_colors_bytes(options->mesh, space, options->average);
   return vxm_memory_check(model->context, bytes, "a colour per voxel", error);
 }
 

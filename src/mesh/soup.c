@@ -39,6 +39,7 @@ void vxm_soup_destroy(vxm_soup *soup) {
   for (size_t t = 0; t < soup->tag_count; t++)
     vxm_free(context, soup->tags[t]);
   vxm_free(context, soup->tags);
+  vxm_appearance_destroy(soup->appearance);
   vxm_free(context, soup->part_changes);
   vxm_free(context, soup->part_states);
   vxm_free(context, soup->face_parts);

@@ -5,6 +5,7 @@
 
 #include "base/context.h"
 #include "base/warnings.h"
+#include "mesh/appearance.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -32,6 +33,7 @@ struct vxm_mesh {
   size_t vertex_capacity, face_capacity, corner_capacity, tag_capacity; /**< room while a soup grows */
   const char *format;                                                   /**< static text, such as "off" */
   vxm_warnings warnings;
+  vxm_appearance *appearance; /**< of the faces as they were read; made before reading where it is wanted */
   uint32_t
       *face_parts; /**< face_count: the part of the mesh that was repaired which each comes from, or NULL */
   vxm_part_change *part_changes; /**< part_count, or NULL */
@@ -47,7 +49,8 @@ struct vxm_mesh {
 vxm_status vxm_soup_create(vxm_soup **out, vxm_context *context, const char *format, vxm_error *error);
 /** Same as vxm_mesh_destroy; NULL is allowed. */
 void vxm_soup_destroy(vxm_soup *soup);
-/** Copies all but what a repair has found out, warnings included. */
+/** Copies all but the appearance, which is that of the mesh as read, and what a repair has found out;
+ * warnings included. */
 vxm_status vxm_soup_copy(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
 
 /** Makes room for at least so many elements in all (amortized doubling beyond what is there). */

@@ -3,6 +3,7 @@
 #include "base/open_beneath.h"
 #include "meshio/common/utf16.h"
 #include "meshio/external/external_formats.h"
+#include "meshio/external/textures.h"
 #include "meshio/formats/stl.h"
 #include "meshio/meshio.h"
 #include "sandbox/reader.h"
@@ -167,10 +168,14 @@ static vxm_status read_with(vxm_soup **out, vxm_context *context, const unsigned
     data = text;
     size = text_size;
   }
+  if (status == VXM_OK && chosen->colors)
+    status = vxm_appearance_create(&soup->appearance, soup->context, error);
   if (status == VXM_OK)
     status = vxm_progress(soup->context, "reading", 0.0, error);
   if (status == VXM_OK)
     status = read_bytes(soup, data, size, name, chosen, references, error);
+  if (status == VXM_OK && chosen->colors)
+    status = vxm_textures_read(soup, references, error);
   if (status == VXM_OK)
     status = vxm_progress(soup->context, "reading", 1.0, error);
   vxm_free(soup->context, text);

@@ -58,12 +58,17 @@ static bool fetch(void *payload, vxm_context *context, const char *name, vxm_rea
 }
 
 static vxm_status send_mesh(vxm_context *context, const vxm_reader *reader, const vxm_reader_request *request,
-                            vxm_error *error) {
+                            bool has_look, vxm_error *error) {
   vxm_soup *soup;
   vxm_status status = vxm_soup_create(&soup, context, "", error);
   if (status != VXM_OK)
     return status;
-  status = reader->read(soup, request, error);
+  if (has_look)
+    status = vxm_appearance_create(&soup->appearance, context, error);
+  if (status == VXM_OK)
+    status = reader->read(soup, request, error);
+  if (status == VXM_OK && has_look)
+    status = vxm_appearance_settle(soup->appearance, soup->vertex_count, soup->face_count, error);
   const vxm_error *unfetched = request->payload;
   if (unfetched->code != VXM_OK) {
     *error = *unfetched;
@@ -100,7 +105,9 @@ static vxm_status read_file(vxm_context *context, const vxm_reader *reader, char
                                 .path = VXM_MEMORY_NAME,
                                 .fetch = fetch,
                                 .payload = &unfetched};
-  status = (reader->read ? send_mesh : send_grid)(context, reader, &request, error);
+  bool has_look = strcmp(arguments[VXM_APART_LOOK], "1") == 0;
+  status = reader->read ? send_mesh(context, reader, &request, has_look, error)
+                        : send_grid(context, reader, &request, error);
   vxm_free(context, data);
   return status;
 }

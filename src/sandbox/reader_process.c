@@ -80,6 +80,7 @@ typedef struct conversation {
   vxm_context *context;
   const vxm_reader_request *request;
   vxm_references *references; /**< NULL for a grid */
+  bool has_look;              /**< an appearance is wanted */
   uint64_t size;              /**< of the file and all that it got */
   allowance allowed;
 } conversation;
@@ -103,6 +104,7 @@ static vxm_status start(vxm_process *reader, const char *program, const char *mo
       [VXM_APART_NAME] = c->request->name,
       [VXM_APART_HINT] = c->request->hint,
       [VXM_APART_DEFLECTION] = deflection,
+      [VXM_APART_LOOK] = c->has_look ? "1" : "0",
       [VXM_APART_MEMORY] = memory,
       [VXM_APART_MEMORY_MAX] = memory_max,
       [VXM_APART_SECONDS] = seconds,
@@ -248,7 +250,10 @@ static vxm_status read_apart(conversation *c, vxm_wire_listener *listener, const
 vxm_status vxm_reader_process_mesh(vxm_soup *soup, const vxm_module_need *need,
                                    const vxm_reader_request *request, vxm_references *references,
                                    vxm_error *error) {
-  conversation c = {.context = soup->context, .request = request, .references = references};
+  conversation c = {.context = soup->context,
+                    .request = request,
+                    .references = references,
+                    .has_look = soup->appearance != NULL};
   vxm_wire_listener listener = {.soup = soup, .answer = answer, .payload = &c};
   vxm_status status = read_apart(&c, &listener, need, error);
   if (status != VXM_OK)

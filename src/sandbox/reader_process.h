@@ -48,6 +48,7 @@ enum {
   VXM_APART_NAME,   /**< of the file */
   VXM_APART_HINT,
   VXM_APART_DEFLECTION, /**< %a */
+  VXM_APART_LOOK,       /**< "1" if the appearance of a mesh is wanted, else "0" */
   VXM_APART_MEMORY,     /**< bytes that it may hold */
   VXM_APART_MEMORY_MAX, /**< to which we may raise that, as further files come */
   VXM_APART_SECONDS,    /**< of computing */

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "sandbox/parcel.h"
+#include "sandbox/wire_appearance.h"
 
 /** Ahead of the arrays of a soup, which follow in the order of these counts. */
 typedef struct parcel_counts {
@@ -98,7 +99,9 @@ bool vxm_wire_send_soup(int channel, const vxm_soup *soup) {
   for (size_t t = 0; t < soup->tag_count; t++)
     if (!vxm_parcel_put(channel, soup->tags[t], strlen(soup->tags[t]) + 1))
       return false;
-  return vxm_parcel_put(channel, soup->warnings.text, counts.warnings * sizeof *soup->warnings.text);
+  if (!vxm_parcel_put(channel, soup->warnings.text, counts.warnings * sizeof *soup->warnings.text))
+    return false;
+  return !soup->appearance || vxm_wire_send_appearance(channel, soup->appearance);
 }
 
 /* ---- Receiving ---- */
@@ -224,6 +227,8 @@ static vxm_status receive_soup(vxm_soup *soup, vxm_process *sender, vxm_error *e
       status = vxm_parcel_damaged(error);
   if (status == VXM_OK)
     soup->warnings.count = (int)counts.warnings;
+  if (status == VXM_OK && soup->appearance)
+    status = vxm_wire_receive_appearance(soup, sender, error);
   return status;
 }
 

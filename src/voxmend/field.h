@@ -356,7 +356,8 @@ typedef enum vxm_color_by {
   VXM_COLOR_NOISE = 0, /**< Perlin's noise in three dimensions, four octaves */
   VXM_COLOR_POSITION,  /**< red, green and blue along x, y and z */
   VXM_COLOR_PART,      /**< a hue for each connected component */
-  VXM_COLOR_GLSL       /**< a function in GLSL: needs an engine of OpenGL */
+  VXM_COLOR_GLSL,      /**< a function in GLSL: needs an engine of OpenGL */
+  VXM_COLOR_MESH       /**< the mesh as it was read: its vertices, faces, materials and textures */
 } vxm_color_by;
 
 /** Which colours, and the format of their file. */
@@ -367,12 +368,16 @@ typedef struct vxm_color_options {
       *source; /**< with VXM_COLOR_GLSL: defines vec3 color(vec3 position, vec3 unit, uint part), of the
                   centre in model units, the same from the grid's corner on with its longest side as 1,
                   and the number of the component, from 1 on; may call float noise(vec3), -1 to 1 */
-  const char *format; /**< of a file: "npy", "ply" or "vox"; NULL = by extension */
+  const char *format;   /**< of a file: "npy", "ply" or "vox"; NULL = by extension */
+  const vxm_mesh *mesh; /**< with VXM_COLOR_MESH: read with its colours (vxm_mesh_read_options), not repaired,
+                           and in the same coordinates as the model's, which may be its repair */
+  bool average; /**< with VXM_COLOR_MESH: the mean over the surface within a voxel, by area and in linear
+                   light, where there is any; else the colour of the nearest point to its centre */
 } vxm_color_options;
 
 /** Initial value of vxm_color_options. */
 #define VXM_COLOR_OPTIONS_INIT \
-  { sizeof(vxm_color_options), VXM_COLOR_NOISE, NULL, NULL }
+  { sizeof(vxm_color_options), VXM_COLOR_NOISE, NULL, NULL, NULL, false }
 
 /**
  * Gives each set voxel of a model a colour.
@@ -382,8 +387,9 @@ typedef struct vxm_color_options {
  * @param report  may be NULL
  * @param options NULL = defaults
  * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT too, with what the driver says, for a function that does
- *         not compile; VXM_ERROR_UNAVAILABLE for GLSL without an engine of OpenGL. The engine and the CPU may
- *         differ by 1 in the built-in functions. After a failure the values are unspecified
+ *         not compile, and for a mesh without colours; VXM_ERROR_UNAVAILABLE for GLSL without an engine of
+ *         OpenGL. The engine and the CPU may differ by 1 in the built-in functions. After a failure the
+ * values are unspecified
  */
 VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report, vxm_model *model,
                                     const vxm_space *space, const vxm_color_options *options,

@@ -83,11 +83,12 @@ typedef struct vxm_mesh_read_options {
   double deflection;  /**< STEP and IGES: how far triangles may lie from a curved surface, as a part of the
                          model's diagonal, at most 1; 0 = 0.001 */
   vxm_external external; /**< files that the mesh refers to */
+  bool colors; /**< keep colours, materials and textures too, for VXM_COLOR_MESH and vxm_mesh_look */
 } vxm_mesh_read_options;
 
 /** Initial value of vxm_mesh_read_options. */
 #define VXM_MESH_READ_OPTIONS_INIT \
-  { sizeof(vxm_mesh_read_options), NULL, 0.0, VXM_EXTERNAL_FOLDER }
+  { sizeof(vxm_mesh_read_options), NULL, 0.0, VXM_EXTERNAL_FOLDER, false }
 
 /** As vxm_mesh_read, with options. @return also VXM_ERROR_ARGUMENT for options out of range */
 VXM_API vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, const char *path,
@@ -96,6 +97,40 @@ VXM_API vxm_status vxm_mesh_read_with(vxm_mesh **out, vxm_context *context, cons
 VXM_API vxm_status vxm_mesh_read_memory_with(vxm_mesh **out, vxm_context *context, const void *data,
                                              size_t size, const char *name,
                                              const vxm_mesh_read_options *options, vxm_error *error);
+
+/** What a mesh looks like that was read with its colours. */
+typedef struct vxm_look {
+  size_t size;        /**< as the initializer sets it, or 0 */
+  bool has_colors;    /**< any of what follows is there, textures that cannot be read left out */
+  bool vertex_colors; /**< vertices have colours */
+  bool face_colors;   /**< faces have */
+  int64_t materials;  /**< colours and textures of faces */
+  int64_t textures;   /**< pictures that materials name, those that cannot be read among them */
+} vxm_look;
+
+/** Initial value of vxm_look. */
+#define VXM_LOOK_INIT \
+  { sizeof(vxm_look), false, false, false, 0, 0 }
+
+/** A picture that the materials of a mesh name. */
+typedef struct vxm_texture {
+  size_t size;         /**< as the initializer sets it, or 0 */
+  const char *name;    /**< as the mesh says; lives as long as the mesh */
+  int64_t width;       /**< pixels; 0 if it cannot be read */
+  int64_t height;      /**< also */
+  const char *failure; /**< why it cannot be read; "" if it can */
+} vxm_texture;
+
+/** Initial value of vxm_texture. */
+#define VXM_TEXTURE_INIT \
+  { sizeof(vxm_texture), NULL, 0, 0, NULL }
+
+/** Tells what a mesh looks like; nothing if it was read without `colors`, or is the result of a repair.
+ * @return VXM_OK, VXM_ERROR_ARGUMENT */
+VXM_API vxm_status vxm_mesh_look(vxm_look *out, const vxm_mesh *mesh, vxm_error *error);
+/** Tells of one of its textures, from 0 on; of one that is not there, that it is not. @return VXM_OK,
+ * VXM_ERROR_ARGUMENT */
+VXM_API vxm_status vxm_mesh_texture(vxm_texture *out, const vxm_mesh *mesh, int64_t index, vxm_error *error);
 
 /** How meshes are read that are left to foreign libraries, each file in a process of its own. */
 typedef struct vxm_reading_info {
@@ -140,6 +175,15 @@ VXM_API vxm_status vxm_mesh_write(const vxm_mesh *mesh, const char *path,
                                   const vxm_mesh_write_options *options, vxm_error *error);
 /** Drops it; NULL is allowed. */
 VXM_API void vxm_mesh_destroy(vxm_mesh *mesh);
+
+/**
+ * Makes a mesh of the triangles that voxelizing takes polygons for, and vxm_mesh_write writes: n - 2 of a
+ * face with n corners, in its place, with its tag; none of fewer than three corners. Vertices are as they
+ * were.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_mesh_triangulate(vxm_mesh **out, const vxm_mesh *mesh, vxm_error *error);
 
 /** Number of vertices. */
 VXM_API int64_t vxm_mesh_vertex_count(const vxm_mesh *mesh);

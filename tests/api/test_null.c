@@ -74,6 +74,8 @@ static struct {
   vxm_field *field;
   vxm_field_range range;
   vxm_reading_info reading;
+  vxm_look look;
+  vxm_texture texture;
   vxm_census census;
   vxm_repair_report repair;
   vxm_verification verification;
@@ -147,6 +149,7 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_context_drop_files, 1, 0, (vxm_context_drop_files(P(0, context)), VXM_OK))
 
 #define MESH_CALLS(X)                                                                                      \
+  X(vxm_mesh_triangulate, 3, 3, vxm_mesh_triangulate(P(0, &out.mesh), P(1, mesh), P(2, &error)))           \
   X(vxm_mesh_create, 4, 5, vxm_mesh_create(P(0, &out.mesh), P(1, context), P(2, &arrays), P(3, &error)))   \
   X(vxm_mesh_read, 4, 5, vxm_mesh_read(P(0, &out.mesh), P(1, context), P(2, "in.off"), P(3, &error)))      \
   X(vxm_mesh_read_memory, 5, 5,                                                                            \
@@ -157,6 +160,8 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_mesh_read_memory_with, 6, 5,                                                                       \
     vxm_mesh_read_memory_with(P(0, &out.mesh), P(1, context), P(2, off_text), strlen(off_text), P(3, "x"), \
                               P(4, &read_options), P(5, &error)))                                          \
+  X(vxm_mesh_look, 3, 3, vxm_mesh_look(P(0, &out.look), P(1, mesh), P(2, &error)))                         \
+  X(vxm_mesh_texture, 3, 3, vxm_mesh_texture(P(0, &out.texture), P(1, mesh), 0, P(2, &error)))             \
   X(vxm_reading_find, 2, 1, vxm_reading_find(P(0, &out.reading), P(1, &error)))                            \
   X(vxm_mesh_write, 4, 3, vxm_mesh_write(P(0, mesh), P(1, "out.off"), P(2, &mesh_write), P(3, &error)))    \
   X(vxm_mesh_destroy, 1, 0, (vxm_mesh_destroy(NULL), VXM_OK))                                              \

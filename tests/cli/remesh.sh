@@ -20,6 +20,8 @@ say "# a sheet comes out as a plate, or not at all without what holds thin parts
 printf 'OFF\n4 1 0\n0 0 0\n8 0 0\n8 8 0\n0 8 0\n4 0 1 2 3\n' >sheet.off
 run 'voxmend remesh sheet.off -o s.ply --voxel-size 0.5 -q && facts s.ply'
 run 'voxmend remesh sheet.off -o s2.ply --voxel-size 0.5 --thin drop -q && facts s2.ply'
+say "# with voxels that are no cubes"
+run 'voxmend remesh in/torus.off -o flat.ply --voxel-size 0.02,0.04,0.06 -q && facts flat.ply'
 say "# two cubes that touch along an edge stay two"
 printf 'o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n' >a.obj
 sed -e '/^f/d' a.obj | awk '/^v/ { print "v", $2 + 1, $3 + 1, $4 }' >b.obj
@@ -28,6 +30,8 @@ run 'cat a.obj b.obj >two.obj; voxmend remesh two.obj -o two.ply -r 16 -q && fac
 say "# refusals"
 run 'voxmend remesh in/torus.off -o t.ply --force -r 0'
 run 'voxmend remesh in/torus.off -o t.ply --force -r 32 --voxel-size 1'
+run 'voxmend remesh in/torus.off -o t.ply --force -r 32 --voxel-size 1,1,2'
+run 'voxmend remesh in/torus.off -o t.ply --force --voxel-size 1,2'
 run 'voxmend remesh in/torus.off -o t.npy'
 run 'voxmend remesh in/torus.off -o big.ply -r 4000 --memlimit 100M; test -e big.ply'
 finish

@@ -25,6 +25,9 @@ void vxm_faces_out_close(vxm_faces_out *out);
  */
 vxm_status vxm_faces_out_take(vxm_faces_out *out, size_t face, vxm_error *error);
 
+/** See vxm_mesh_triangulate in voxmend.h. */
+vxm_status vxm_faces_out_triangles(vxm_soup **out, const vxm_soup *soup, vxm_error *error);
+
 /** The pieces of all faces together. */
 uint64_t vxm_faces_out_count(const vxm_soup *soup, bool polygons);
 

@@ -247,6 +247,8 @@ size_t vxm_soup_drop_bad_faces(vxm_soup *soup) {
     if (!good)
       continue;
     memmove(soup->indices + corners, soup->indices + begin, (size_t)(end - begin) * sizeof *soup->indices);
+    if (soup->appearance)
+      vxm_appearance_move_face(soup->appearance, kept, f, corners, (size_t)begin, (size_t)(end - begin));
     corners += (size_t)(end - begin);
     /* kept <= f, so no offset is overwritten before it is read: offsets[f + 1] was read above. */
     if (soup->face_tags)

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Wavefront OBJ: vertices and polygons, with groups and materials as face tags; the rest is passed over. */
+/** Wavefront OBJ: vertices and polygons, with groups and materials as face tags, and colours where they are
+ * asked for; the rest is passed over. */
 #include "meshio/common/cut.h"
 #include "meshio/common/format.h"
 #include "meshio/common/tags.h"
 #include "meshio/common/tokenizer.h"
+#include "meshio/formats/obj_colors.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -19,6 +21,8 @@ typedef struct obj_reader {
   bool ends_in_face;                /**< the last line is a face that was kept */
   const unsigned char *last_vertex; /**< the vertex in the last line, if that has no end */
   const unsigned char *cut_vertex;  /**< a vertex within which the file ends */
+  bool has_look;                    /**< colours are asked for */
+  vxm_obj_colors colors;
   vxm_text_defect numbers, flat, short_vertices, zero, beyond, small_faces, bad_faces;
 } obj_reader;
 
@@ -72,6 +76,11 @@ static vxm_status read_vertex(obj_reader *reader, vxm_error *error) {
     vxm_text_defect_add(&reader->short_vertices, first);
     for (; count < 3; count++)
       p[count] = (double)NAN;
+  }
+  if (__builtin_expect(reader->has_look, 0)) {
+    vxm_status status = vxm_obj_colors_vertex(scan, error);
+    if (status != VXM_OK)
+      return status;
   }
   reader->last_vertex = scan->at == scan->end ? first : NULL;
   return vxm_soup_add_vertex(reader->soup, p[0], p[1], p[2], error);
@@ -140,14 +149,18 @@ static vxm_status read_corners(obj_reader *reader, const unsigned char *first, s
 static vxm_status read_face(obj_reader *reader, vxm_error *error) {
   size_t corners;
   uint64_t largest = reader->largest;
-  vxm_status status = read_corners(reader, reader->scan.at, &corners, &largest, error);
+  const unsigned char *first = reader->scan.at;
+  vxm_status status = read_corners(reader, first, &corners, &largest, error);
   if (status != VXM_OK || corners == 0)
     return status;
   reader->largest = largest;
   status = vxm_tagger_face(&reader->tagger, error);
   if (status != VXM_OK)
     return status;
-  return vxm_face_end(reader->soup, corners, error);
+  status = vxm_face_end(reader->soup, corners, error);
+  if (__builtin_expect(reader->has_look, 0) && status == VXM_OK)
+    status = vxm_obj_colors_face(&reader->colors, &reader->scan, first, error);
+  return status;
 }
 
 /** Whether the line at the cursor is the statement `word`; the cursor moves behind it. */
@@ -162,7 +175,7 @@ static bool take_word(vxm_tokenizer *scan, const char *word) {
   return true;
 }
 
-static void read_name(obj_reader *reader, bool material) {
+static vxm_status read_name(obj_reader *reader, bool material, vxm_error *error) {
   const unsigned char *name = reader->scan.at;
   vxm_skip_rest(&reader->scan);
   size_t length = (size_t)(reader->scan.at - name);
@@ -170,22 +183,37 @@ static void read_name(obj_reader *reader, bool material) {
     vxm_tagger_material(&reader->tagger, name, length);
   else
     vxm_tagger_group(&reader->tagger, name, length);
+  return material && reader->has_look
+             ? vxm_obj_colors_material(&reader->colors, reader->soup, name, length, error)
+             : VXM_OK;
+}
+
+/** What only colours need. */
+static vxm_status read_for_colors(obj_reader *reader, vxm_error *error) {
+  vxm_tokenizer *scan = &reader->scan;
+  if (take_word(scan, "vt"))
+    return vxm_obj_colors_uv(&reader->colors, scan, error);
+  if (!take_word(scan, "mtllib"))
+    return VXM_OK;
+  const unsigned char *names = scan->at;
+  vxm_skip_rest(scan);
+  return vxm_obj_colors_library(reader->soup, names, (size_t)(scan->at - names), error);
 }
 
 /** Statements that are rarer than v, vt, vn and f. */
 static vxm_status read_rare(obj_reader *reader, vxm_error *error) {
   vxm_tokenizer *scan = &reader->scan;
   if (take_word(scan, "g") || take_word(scan, "o"))
-    read_name(reader, false);
+    return read_name(reader, false, error);
   else if (take_word(scan, "usemtl"))
-    read_name(reader, true);
+    return read_name(reader, true, error);
   else if (take_word(scan, "l") || take_word(scan, "p"))
     reader->lines_and_points++;
   else if (take_word(scan, "fo")) { /* f of the format's first version */
     reader->any_statement = true;
     return read_face(reader, error);
   }
-  return VXM_OK;
+  return reader->has_look ? read_for_colors(reader, error) : VXM_OK;
 }
 
 /** Makes about the room that will be needed; where that fails or is too little the soup grows as it is read.
@@ -213,7 +241,7 @@ static vxm_status read_statements(obj_reader *reader, vxm_error *error) {
       reader->any_statement = true;
       status = read_face(reader, error);
       reader->ends_in_face = scan->at == scan->end;
-    } else if (c != '#' && c != 'v')
+    } else if (c != '#' && (c != 'v' || reader->has_look))
       status = read_rare(reader, error);
     if (status == VXM_OK)
       status = vxm_tokenizer_progress(scan, error);
@@ -337,6 +365,11 @@ static vxm_status finish(obj_reader *reader, vxm_error *error) {
     soup->vertex_count--;
     reader->cut_vertex = reader->last_vertex;
   }
+  if (reader->has_look) {
+    vxm_status status = vxm_obj_colors_finish(&reader->colors, soup, error);
+    if (status != VXM_OK)
+      return status;
+  }
   drop_beyond(reader);
   if (soup->face_count == 0)
     vxm_tags_drop(soup);
@@ -361,7 +394,7 @@ static vxm_status finish(obj_reader *reader, vxm_error *error) {
 
 vxm_status vxm_obj_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error) {
-  obj_reader reader = {.soup = soup};
+  obj_reader reader = {.soup = soup, .has_look = soup->appearance != NULL};
   vxm_status status = vxm_tokenizer_open(&reader.scan, soup, data, size, name, error);
   if (status != VXM_OK)
     return status;
@@ -371,6 +404,7 @@ vxm_status vxm_obj_read(vxm_soup *soup, const unsigned char *data, size_t size, 
   status = read_statements(&reader, error);
   if (status == VXM_OK)
     status = finish(&reader, error);
+  vxm_obj_colors_free(&reader.colors, soup->context);
   vxm_tagger_close(&reader.tagger);
   vxm_tokenizer_close(&reader.scan);
   if (status == VXM_OK)

@@ -163,20 +163,37 @@ static inline double read_number(vxm_tokenizer *scan, off_damage *damage) {
   return (double)NAN;
 }
 
+/** Takes the colour of the next vertex from the numbers behind its coordinates, which follow a normal where
+ * there are normals; on its line, or wherever they are. */
+static vxm_status read_vertex_color(vxm_tokenizer *scan, const vxm_off_header *header, bool by_tokens,
+                                    vxm_error *error) {
+  double rgba[4] = {0, 0, 0, 0}, passed;
+  vxm_soup *soup = scan->soup;
+  vxm_tokenizer ahead = *scan;
+  int count = 0;
+  for (int n = header->normals ? -3 : 0; n < 4; n++) {
+    bool more = by_tokens ? skip_to_data(&ahead) : vxm_more_on_line(&ahead) && *ahead.at != '#';
+    if (!more || !vxm_tokenizer_double(&ahead, n < 0 ? &passed : &rgba[n]))
+      break;
+    count = n + 1;
+  }
+  if (count < 3)
+    return VXM_OK;
+  return vxm_gather_color(&soup->appearance->vertices, soup->context, soup->vertex_count, rgba, error);
+}
+
 static void skip_tokens(vxm_tokenizer *scan, size_t count) {
   while (count-- > 0 && skip_to_data(scan))
     vxm_skip_token(scan);
 }
 
 /** Reads `kept` coordinates; false where the file ends first. */
-static bool read_vertex_by_tokens(vxm_tokenizer *scan, double p[3], size_t kept, size_t skipped,
-                                  off_damage *damage) {
+static bool read_vertex_by_tokens(vxm_tokenizer *scan, double p[3], size_t kept, off_damage *damage) {
   for (size_t c = 0; c < kept; c++) {
     if (!skip_to_data(scan))
       return false;
     p[c] = read_number(scan, damage);
   }
-  skip_tokens(scan, skipped);
   return true;
 }
 
@@ -192,8 +209,6 @@ static inline bool read_vertex_by_line(vxm_tokenizer *scan, double p[3], size_t 
     }
     p[c] = read_number(scan, damage);
   }
-  if (vxm_more_on_line(scan))
-    vxm_skip_rest(scan);
   return true;
 }
 
@@ -205,16 +220,24 @@ static vxm_status read_vertices(vxm_tokenizer *scan, const vxm_off_header *heade
     return status;
   size_t kept = header->dimension < 3 ? header->dimension : 3;
   size_t skipped = header->dimension - kept + vxm_off_extras(header);
+  const bool has_colors = vxm_off_vertex_colors(soup, header) && kept == header->dimension;
   bool by_tokens = skip_to_data(scan) && vertex_layout(scan, header, vertices, faces) == BY_TOKENS;
   const unsigned char *const end = scan->end, *const last = vxm_last_token(scan);
   for (; soup->vertex_count < vertices && status == VXM_OK; soup->vertex_count++) {
     double *p = soup->positions + 3 * soup->vertex_count;
     p[2] = p[1] = 0.0;
     scan->end = soup->vertex_count + 1 < vertices ? last : end;
-    if (by_tokens ? !read_vertex_by_tokens(scan, p, kept, skipped, damage)
+    if (by_tokens ? !read_vertex_by_tokens(scan, p, kept, damage)
                   : !read_vertex_by_line(scan, p, kept, damage))
       break;
-    status = vxm_tokenizer_progress(scan, error);
+    if (__builtin_expect(has_colors, 0))
+      status = read_vertex_color(scan, header, by_tokens, error);
+    if (by_tokens)
+      skip_tokens(scan, skipped);
+    else if (vxm_more_on_line(scan))
+      vxm_skip_rest(scan);
+    if (status == VXM_OK)
+      status = vxm_tokenizer_progress(scan, error);
   }
   scan->end = end;
   return status;
@@ -275,10 +298,10 @@ typedef enum off_outcome { FACE_READ, FACE_DROPPED, FACE_MISSING } off_outcome;
 
 /**
  * Reads the corners of a face of n behind those the soup has. The cursor stands behind n.
- * `first` is where the face began, for messages.
+ * `first` is where the face began, for messages; `behind` becomes the end of the corners.
  */
 static inline off_outcome read_corners(vxm_tokenizer *scan, uint64_t n, bool by_lines, off_damage *damage,
-                                       const unsigned char *first) {
+                                       const unsigned char *first, const unsigned char **behind) {
   vxm_soup *soup = scan->soup;
   uint32_t *corner = soup->indices + soup->corner_count;
   const size_t vertices = soup->vertex_count;
@@ -305,6 +328,7 @@ static inline off_outcome read_corners(vxm_tokenizer *scan, uint64_t n, bool by_
     beyond |= index >= vertices;
     corner[c] = (uint32_t)index;
   }
+  *behind = scan->at;
   if (by_lines && vxm_more_on_line(scan))
     vxm_skip_rest(scan);
   if (__builtin_expect(beyond, 0)) {
@@ -316,6 +340,22 @@ static inline off_outcome read_corners(vxm_tokenizer *scan, uint64_t n, bool by_
     return FACE_DROPPED;
   }
   return FACE_READ;
+}
+
+/** Takes the colour of the soup's last face from the numbers behind its corners: one is a place in a table
+ * that nobody has, three or four are a colour. */
+static vxm_status read_face_color(const vxm_tokenizer *scan, const unsigned char *behind, vxm_error *error) {
+  vxm_soup *soup = scan->soup;
+  vxm_tokenizer ahead = *scan;
+  double rgba[4] = {0, 0, 0, 0};
+  int count = 0;
+  ahead.at = behind;
+  while (count < 4 && vxm_more_on_line(&ahead) && *ahead.at != '#' &&
+         vxm_tokenizer_double(&ahead, &rgba[count]))
+    count++;
+  if (count < 3)
+    return VXM_OK;
+  return vxm_gather_color(&soup->appearance->faces, soup->context, soup->face_count - 1, rgba, error);
 }
 
 /** Whether the token that touches the end of the file is the last index of the face of n that begins at
@@ -363,11 +403,14 @@ static vxm_status read_faces(vxm_tokenizer *scan, uint64_t faces, uint64_t *done
     status = vxm_corners_reserve(soup, (size_t)(n < rest ? n : rest), error);
     if (status != VXM_OK)
       break;
-    off_outcome outcome = read_corners(scan, n, by_lines, damage, first);
+    const unsigned char *behind;
+    off_outcome outcome = read_corners(scan, n, by_lines, damage, first, &behind);
     if (outcome == FACE_MISSING)
       break;
     if (outcome == FACE_READ)
       status = vxm_face_end(soup, (size_t)n, error);
+    if (__builtin_expect(soup->appearance != NULL, 0) && by_lines && outcome == FACE_READ && status == VXM_OK)
+      status = read_face_color(scan, behind, error);
     if (status == VXM_OK)
       status = vxm_tokenizer_progress(scan, error);
     if (outcome == FACE_READ && *done + 1 == faces && ends_in_index(scan, first, n) &&

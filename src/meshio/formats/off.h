@@ -21,6 +21,11 @@ static inline size_t vxm_off_extras(const vxm_off_header *header) {
   return (header->normals ? 3u : 0u) + (header->colours ? 4u : 0u) + (header->textures ? 2u : 0u);
 }
 
+/** What is kept of the colours of a soup: NULL for nothing. */
+static inline vxm_gathered *vxm_off_vertex_colors(const vxm_soup *soup, const vxm_off_header *header) {
+  return soup->appearance && header->colours ? &soup->appearance->vertices : NULL;
+}
+
 /** Reads what follows the words OFF BINARY and their line end. */
 vxm_status vxm_off_read_binary(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error);
 

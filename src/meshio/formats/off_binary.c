@@ -46,13 +46,21 @@ static vxm_status read_vertices(vxm_tokenizer *scan, const vxm_off_header *heade
                        left(scan) / stride);
   vxm_status status = vxm_soup_reserve(soup, vertices, 0, 0, error);
   const size_t kept = header->dimension < 3 ? header->dimension : 3;
-  const bool swap = vxm_must_swap(true);
+  const bool swap = vxm_must_swap(true), has_colors = vxm_off_vertex_colors(soup, header);
+  const size_t normal = header->normals ? 3 : 0;
   for (size_t v = 0; v < vertices && status == VXM_OK; v++) {
     double *p = soup->positions + 3 * v;
     for (size_t c = 0; c < 3; c++)
       p[c] = c < kept ? (double)vxm_load_f32(scan->at + c * WORD, swap) : 0.0;
+    if (has_colors) {
+      double rgba[4];
+      for (size_t c = 0; c < 4; c++)
+        rgba[c] = (double)vxm_load_f32(scan->at + (header->dimension + normal + c) * WORD, swap);
+      status = vxm_gather_color(&soup->appearance->vertices, soup->context, v, rgba, error);
+    }
     scan->at += stride;
-    status = vxm_tokenizer_progress(scan, error);
+    if (status == VXM_OK)
+      status = vxm_tokenizer_progress(scan, error);
   }
   soup->vertex_count = vertices;
   return status;
@@ -86,7 +94,14 @@ static vxm_status read_face(vxm_tokenizer *scan, bool *complete, vxm_text_defect
     vxm_text_defect_add(outside ? beyond : small, first);
     return VXM_OK;
   }
-  return vxm_face_end(soup, n, error);
+  status = vxm_face_end(soup, n, error);
+  if (status == VXM_OK && soup->appearance && (colours == 3 || colours == 4)) {
+    double rgba[4] = {0, 0, 0, 0};
+    for (size_t c = 0; c < colours; c++)
+      rgba[c] = (double)vxm_load_f32(from + (n + 1 + c) * WORD, vxm_must_swap(true));
+    status = vxm_gather_color(&soup->appearance->faces, soup->context, soup->face_count - 1, rgba, error);
+  }
+  return status;
 }
 
 vxm_status vxm_off_read_binary(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error) {

@@ -32,7 +32,8 @@ typedef struct vxm_ply_property {
   uint8_t type;       /**< vxm_ply_type of the number, or of each number of the list */
   uint8_t count_type; /**< of the list's length */
   bool is_list;
-  uint8_t use; /**< vxm_ply_use */
+  uint8_t use;     /**< vxm_ply_use */
+  uint8_t channel; /**< 1, 2 and 3 for red, green and blue; 0 = none */
 } vxm_ply_property;
 
 typedef enum vxm_ply_role { VXM_PLY_VERTICES, VXM_PLY_FACES, VXM_PLY_STRIPS, VXM_PLY_PASSED } vxm_ply_role;
@@ -40,6 +41,7 @@ typedef enum vxm_ply_role { VXM_PLY_VERTICES, VXM_PLY_FACES, VXM_PLY_STRIPS, VXM
 typedef struct vxm_ply_element {
   uint8_t role; /**< vxm_ply_role */
   bool has_list, has_corners;
+  bool has_colors; /**< red, green and blue, none of them a list */
   uint64_t count;
   size_t first, properties; /**< its part of the header's properties */
   size_t least;             /**< bytes of one such element whose lists are empty */
@@ -68,6 +70,9 @@ typedef struct vxm_ply_body {
 } vxm_ply_body;
 
 size_t vxm_ply_size(vxm_ply_type type);
+
+/** Whether the colours of an element are to be kept; if so what is full light is known from their type. */
+bool vxm_ply_wants_colors(const vxm_soup *soup, const vxm_ply_header *header, const vxm_ply_element *element);
 
 /** Reads the header; the cursor ends at the first byte of the body. */
 vxm_status vxm_ply_read_header(vxm_tokenizer *scan, vxm_ply_header *header, vxm_error *error);

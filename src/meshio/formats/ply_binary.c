@@ -15,6 +15,7 @@ typedef struct binary_reader {
   const vxm_ply_property *properties;
   vxm_ply_body *body;
   bool swap;
+  bool has_look; /**< colours of these elements are kept */
 } binary_reader;
 
 static size_t left(const vxm_tokenizer *scan) {
@@ -170,6 +171,25 @@ static void read_piece(const binary_reader *reader, const vertex_layout *layout,
                                        : 0.0;
 }
 
+/** Keeps the colours of vertices without lists, from the cursor on. */
+static vxm_status read_fixed_colors(const binary_reader *reader, size_t count, vxm_error *error) {
+  vxm_soup *soup = reader->soup;
+  vxm_status status = VXM_OK;
+  for (size_t v = 0; v < count && status == VXM_OK; v++) {
+    const unsigned char *at = reader->scan->at + v * reader->element->least;
+    double rgba[4] = {0, 0, 0, 0};
+    for (size_t p = 0; p < reader->element->properties; p++) {
+      const vxm_ply_property *property = &reader->properties[p];
+      if (property->channel)
+        rgba[property->channel - 1] = load_number(at, property->type, reader->swap);
+      at += vxm_ply_size((vxm_ply_type)property->type);
+    }
+    status =
+        vxm_gather_color(&soup->appearance->vertices, soup->context, soup->vertex_count + v, rgba, error);
+  }
+  return status;
+}
+
 static vxm_status read_fixed_vertices(binary_reader *reader, vxm_error *error) {
   vxm_tokenizer *scan = reader->scan;
   vxm_soup *soup = reader->soup;
@@ -180,9 +200,12 @@ static vxm_status read_fixed_vertices(binary_reader *reader, vxm_error *error) {
   while (status == VXM_OK && soup->vertex_count < count) {
     size_t piece = count - soup->vertex_count < PIECE ? count - soup->vertex_count : PIECE;
     read_piece(reader, &layout, soup->positions + 3 * soup->vertex_count, piece);
+    if (reader->has_look)
+      status = read_fixed_colors(reader, piece, error);
     soup->vertex_count += piece;
     scan->at += piece * layout.stride;
-    status = vxm_tokenizer_progress(scan, error);
+    if (status == VXM_OK)
+      status = vxm_tokenizer_progress(scan, error);
   }
   if (status == VXM_OK && count < reader->element->count)
     return cut_off(reader, count);
@@ -193,7 +216,7 @@ static vxm_status read_vertices_with_lists(binary_reader *reader, vxm_error *err
   vxm_tokenizer *scan = reader->scan;
   vxm_status status = VXM_OK;
   for (uint64_t v = 0; v < reader->element->count && status == VXM_OK; v++) {
-    double position[3] = {0.0, 0.0, 0.0};
+    double position[3] = {0.0, 0.0, 0.0}, rgba[4] = {0, 0, 0, 0};
     for (size_t p = 0; p < reader->element->properties; p++) {
       const vxm_ply_property *property = &reader->properties[p];
       const unsigned char *at = scan->at;
@@ -201,8 +224,14 @@ static vxm_status read_vertices_with_lists(binary_reader *reader, vxm_error *err
         return cut_off(reader, v);
       if (property->use <= VXM_PLY_Z)
         position[property->use] = load_number(at, property->type, reader->swap);
+      if (property->channel)
+        rgba[property->channel - 1] = load_number(at, property->type, reader->swap);
     }
-    status = vxm_soup_add_vertex(reader->soup, position[0], position[1], position[2], error);
+    if (reader->has_look)
+      status = vxm_gather_color(&reader->soup->appearance->vertices, reader->soup->context,
+                                reader->soup->vertex_count, rgba, error);
+    if (status == VXM_OK)
+      status = vxm_soup_add_vertex(reader->soup, position[0], position[1], position[2], error);
     if (status == VXM_OK)
       status = vxm_tokenizer_progress(scan, error);
   }
@@ -346,12 +375,16 @@ static vxm_status read_any_faces(binary_reader *reader, uint64_t limit, vxm_erro
   for (uint64_t f = 0; f < reader->element->count && status == VXM_OK; f++) {
     const unsigned char *first = scan->at, *from = NULL;
     const vxm_ply_property *corners = NULL;
-    size_t n = 0;
+    size_t n = 0, face = reader->soup->face_count;
+    double rgba[4] = {0, 0, 0, 0};
     for (size_t p = 0; p < reader->element->properties; p++) {
       const vxm_ply_property *property = &reader->properties[p];
       if (property->use != VXM_PLY_CORNERS) {
+        const unsigned char *at = scan->at;
         if (!skip_property(reader, property))
           return cut_off(reader, f);
+        if (property->channel)
+          rgba[property->channel - 1] = load_number(at, property->type, reader->swap);
         continue;
       }
       corners = property;
@@ -363,6 +396,8 @@ static vxm_status read_any_faces(binary_reader *reader, uint64_t limit, vxm_erro
     status = reader->element->role == VXM_PLY_STRIPS
                  ? add_strip(reader, corners, from, n, limit, error)
                  : add_face(reader, corners, from, n, first, limit, error);
+    if (status == VXM_OK && reader->has_look && reader->soup->face_count > face)
+      status = vxm_gather_color(&reader->soup->appearance->faces, reader->soup->context, face, rgba, error);
     if (status == VXM_OK)
       status = vxm_tokenizer_progress(scan, error);
   }
@@ -383,8 +418,8 @@ static vxm_status read_faces(binary_reader *reader, vxm_error *error) {
       vxm_soup_reserve(soup, 0, soup->face_count + faces, soup->corner_count + 3 * faces, error);
   if (status != VXM_OK)
     return status;
-  return layout.usual ? read_usual_faces(reader, &layout, limit, error)
-                      : read_any_faces(reader, limit, error);
+  return layout.usual && !reader->has_look ? read_usual_faces(reader, &layout, limit, error)
+                                           : read_any_faces(reader, limit, error);
 }
 
 /* ---- The body ---- */
@@ -422,7 +457,8 @@ vxm_status vxm_ply_read_binary(vxm_tokenizer *scan, const vxm_ply_header *header
                             .element = element,
                             .properties = element->properties ? header->properties + element->first : NULL,
                             .body = body,
-                            .swap = vxm_must_swap(header->big_endian)};
+                            .swap = vxm_must_swap(header->big_endian),
+                            .has_look = vxm_ply_wants_colors(scan->soup, header, element)};
     if (element->role == VXM_PLY_VERTICES)
       status =
           element->has_list ? read_vertices_with_lists(&reader, error) : read_fixed_vertices(&reader, error);

@@ -99,6 +99,17 @@ static uint8_t use_of(const vxm_ply_element *element, word name, bool is_list) {
   return VXM_PLY_OTHER;
 }
 
+/** Which light a property gives; names of two spellings. */
+static uint8_t channel_of(word name, bool is_list) {
+  static const char *const names[3][3] = {
+      {"red", "diffuse_red", "r"}, {"green", "diffuse_green", "g"}, {"blue", "diffuse_blue", "b"}};
+  for (int c = 0; c < 3 && !is_list; c++)
+    for (int n = 0; n < 3; n++)
+      if (is(name, names[c][n]))
+        return (uint8_t)(c + 1);
+  return 0;
+}
+
 static vxm_status read_property(vxm_tokenizer *scan, vxm_ply_header *header, vxm_error *error) {
   if (header->element_count == 0)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->at),
@@ -120,7 +131,9 @@ static vxm_status read_property(vxm_tokenizer *scan, vxm_ply_header *header, vxm
   }
   if (!find_type(w, &property->type))
     return fail_line(scan, w.text, error, "unknown property type", w);
-  property->use = use_of(element, next_word(scan), property->is_list);
+  word name = next_word(scan);
+  property->use = use_of(element, name, property->is_list);
+  property->channel = channel_of(name, property->is_list);
   element->has_list |= property->is_list;
   element->least += vxm_ply_size(property->is_list ? property->count_type : property->type);
   element->properties++;
@@ -149,6 +162,30 @@ static void drop_repeated_uses(vxm_ply_header *header, const vxm_ply_element *el
   }
 }
 
+static bool has_colors(const vxm_ply_header *header, const vxm_ply_element *element) {
+  unsigned seen = 0;
+  for (size_t p = 0; p < element->properties; p++)
+    seen |= 1U << header->properties[element->first + p].channel;
+  return (seen & 14U) == 14U;
+}
+
+bool vxm_ply_wants_colors(const vxm_soup *soup, const vxm_ply_header *header,
+                          const vxm_ply_element *element) {
+  if (!soup->appearance || !element->has_colors || element->role == VXM_PLY_STRIPS)
+    return false;
+  float unit = 0;
+  for (size_t p = 0; p < element->properties; p++) {
+    const vxm_ply_property *property = &header->properties[element->first + p];
+    if (property->channel)
+      unit = property->type == VXM_PLY_U8 ? 255 : property->type == VXM_PLY_U16 ? 65535 : 0;
+  }
+  if (element->role == VXM_PLY_VERTICES)
+    soup->appearance->vertices.unit = unit;
+  else
+    soup->appearance->faces.unit = unit;
+  return true;
+}
+
 /** Settles which elements give vertices and faces once all properties are known. */
 static vxm_status settle_roles(vxm_tokenizer *scan, vxm_ply_header *header, vxm_error *error) {
   bool vertices = false;
@@ -156,6 +193,7 @@ static vxm_status settle_roles(vxm_tokenizer *scan, vxm_ply_header *header, vxm_
     vxm_ply_element *element = &header->elements[e];
     drop_repeated_uses(header, element);
     element->has_corners = has_use(header, element, VXM_PLY_CORNERS);
+    element->has_colors = has_colors(header, element);
     if (element->role == VXM_PLY_VERTICES && vertices)
       element->role = VXM_PLY_PASSED; /* only the first counts */
     if (element->role == VXM_PLY_VERTICES) {

@@ -16,6 +16,7 @@ typedef struct text_reader {
   const vxm_ply_property *properties;
   vxm_ply_body *body;
   bool by_lines;
+  bool has_look;                    /**< colours of these elements are kept */
   bool is_last;                     /**< no element behind this one has lines */
   const unsigned char *end, *whole; /**< of the file, and before the token that touches its end */
 } text_reader;
@@ -145,10 +146,12 @@ static bool has_xyz_first(const text_reader *reader) {
 }
 
 /** Reads the properties of a vertex one by one; *there is false if not all were there. */
-static vxm_status read_vertex_values(text_reader *reader, double p[3], bool *there, vxm_error *error) {
+static vxm_status read_vertex_values(text_reader *reader, double p[3], double rgba[4], bool *there,
+                                     vxm_error *error) {
   for (size_t i = 0; i < reader->element->properties; i++) {
     const vxm_ply_property *property = &reader->properties[i];
-    if (property->use == VXM_PLY_OTHER) {
+    bool is_color = reader->has_look && property->channel;
+    if (property->use == VXM_PLY_OTHER && !is_color) {
       vxm_status status = skip_properties(reader, i, i + 1, there, error);
       if (status != VXM_OK || !*there)
         return status;
@@ -157,7 +160,7 @@ static vxm_status read_vertex_values(text_reader *reader, double p[3], bool *the
     *there = more(reader);
     if (!*there)
       return VXM_OK;
-    p[property->use] = read_number(reader);
+    *(is_color ? &rgba[property->channel - 1] : &p[property->use]) = read_number(reader);
   }
   return VXM_OK;
 }
@@ -166,16 +169,16 @@ static inline vxm_status read_vertex(text_reader *reader, bool xyz_first, bool *
   vxm_soup *soup = reader->soup;
   vxm_tokenizer *scan = reader->scan;
   const unsigned char *first = scan->at;
-  double p[3] = {0.0, 0.0, 0.0};
+  double p[3] = {0.0, 0.0, 0.0}, rgba[4] = {0, 0, 0, 0};
   vxm_status status = VXM_OK;
-  if (xyz_first && reader->by_lines) {
+  if (xyz_first && reader->by_lines && !reader->has_look) {
     for (size_t c = 0; c < 3 && *there; c++) {
       *there = vxm_more_on_line(scan);
       if (__builtin_expect(*there, 1))
         p[c] = read_number(reader);
     }
   } else
-    status = read_vertex_values(reader, p, there, error);
+    status = read_vertex_values(reader, p, rgba, there, error);
   if (status != VXM_OK)
     return status;
   if (__builtin_expect(!*there, 0)) {
@@ -188,7 +191,9 @@ static inline vxm_status read_vertex(text_reader *reader, bool xyz_first, bool *
   }
   if (reader->by_lines && vxm_more_on_line(scan))
     vxm_skip_rest(scan);
-  return vxm_soup_add_vertex(soup, p[0], p[1], p[2], error);
+  if (reader->has_look)
+    status = vxm_gather_color(&soup->appearance->vertices, soup->context, soup->vertex_count, rgba, error);
+  return status == VXM_OK ? vxm_soup_add_vertex(soup, p[0], p[1], p[2], error) : status;
 }
 
 /* ---- Faces and strips ---- */
@@ -262,6 +267,26 @@ static vxm_status read_strip_numbers(text_reader *reader, uint64_t n, uint64_t l
   return status;
 }
 
+/** Takes the colour of the face `face` from the properties behind its corners. */
+static vxm_status read_face_color(text_reader *reader, size_t corners, size_t face, bool *there,
+                                  vxm_error *error) {
+  vxm_soup *soup = reader->soup;
+  double rgba[4] = {0, 0, 0, 0};
+  for (size_t i = corners + 1; i < reader->element->properties; i++) {
+    const vxm_ply_property *property = &reader->properties[i];
+    vxm_status status = VXM_OK;
+    if (!property->channel)
+      status = skip_properties(reader, i, i + 1, there, error);
+    else if ((*there = more(reader)))
+      rgba[property->channel - 1] = read_number(reader);
+    if (status != VXM_OK || !*there)
+      return status;
+  }
+  if (soup->face_count == face)
+    return VXM_OK;
+  return vxm_gather_color(&soup->appearance->faces, soup->context, face, rgba, error);
+}
+
 /** Reads a face or a strip; `corners` is the property that lists its corners. */
 static vxm_status read_polygon(text_reader *reader, size_t corners, uint64_t limit, bool *there,
                                vxm_error *error) {
@@ -288,9 +313,12 @@ static vxm_status read_polygon(text_reader *reader, size_t corners, uint64_t lim
     status = vxm_corners_reserve(reader->soup, (size_t)n, error);
     if (status != VXM_OK)
       return status;
+    size_t face = reader->soup->face_count;
     list_outcome outcome = read_corners(reader, n, limit);
     *there = outcome != LIST_CUT;
     status = keep_face(reader, outcome, n, first, error);
+    if (reader->has_look && status == VXM_OK && outcome != LIST_CUT && outcome != LIST_BAD)
+      return read_face_color(reader, corners, face, there, error);
   }
   if (status == VXM_OK && *there && !reader->by_lines)
     status = skip_properties(reader, corners + 1, reader->element->properties, there, error);
@@ -386,6 +414,7 @@ vxm_status vxm_ply_read_text(vxm_tokenizer *scan, const vxm_ply_header *header, 
                           .element = element,
                           .properties = element->properties ? header->properties + element->first : NULL,
                           .body = body,
+                          .has_look = vxm_ply_wants_colors(scan->soup, header, element),
                           .is_last = is_last_element(header, e),
                           .end = end,
                           .whole = whole};

@@ -56,6 +56,8 @@ static vxm_status import(vxm_soup *soup, const vxm_reader_request *request, cons
   aiReleasePropertyStore(properties);
   if (!scene)
     return fail_import(request->name, error);
+  if (soup->appearance)
+    soup->appearance->is_product = strcmp(request->hint, "gltf") == 0 || strcmp(request->hint, "glb") == 0;
   vxm_status status = vxm_assimp_flatten(soup, scene, error);
   aiReleaseImport(scene);
   return status;

@@ -27,6 +27,7 @@ typedef struct flattener {
   vxm_tagger tagger;
   placed_node *nodes; /**< all, each before those below it */
   size_t node_count, node_capacity;
+  size_t uv_capacity;
   uint64_t lines_and_points, beyond, missing; /**< faces and meshes that are left out */
 } flattener;
 
@@ -148,7 +149,7 @@ static vxm_status add_face(flattener *f, const struct aiMesh *mesh, const struct
     return status;
   soup->corner_count += n;
   soup->offsets[++soup->face_count] = soup->corner_count;
-  return VXM_OK;
+  return soup->appearance ? vxm_assimp_face_look(soup, &f->uv_capacity, mesh, first, error) : VXM_OK;
 }
 
 static vxm_status add_mesh(flattener *f, const struct aiMesh *mesh, const placement *where,
@@ -160,7 +161,11 @@ static vxm_status add_mesh(flattener *f, const struct aiMesh *mesh, const placem
   uint32_t first = (uint32_t)f->soup->vertex_count;
   bool is_turned = is_mirrored(where);
   take_material(f, mesh);
-  vxm_status status = add_vertices(f->soup, mesh, where, error);
+  vxm_status status = VXM_OK;
+  if (f->soup->appearance)
+    status = vxm_assimp_vertex_colors(f->soup, mesh, error);
+  if (status == VXM_OK)
+    status = add_vertices(f->soup, mesh, where, error);
   for (unsigned i = 0; i < mesh->mNumFaces && status == VXM_OK; i++)
     status = add_face(f, mesh, &mesh->mFaces[i], first, is_turned, error);
   return status;
@@ -229,6 +234,8 @@ vxm_status vxm_assimp_flatten(vxm_soup *soup, const struct aiScene *scene, vxm_e
   flattener f = {.scene = scene, .soup = soup};
   vxm_tagger_open(&f.tagger, soup);
   vxm_status status = list_nodes(&f, error);
+  if (status == VXM_OK && soup->appearance)
+    status = vxm_assimp_materials(soup->appearance, scene, error);
   if (status == VXM_OK)
     status = add_parts(&f, error);
   if (status == VXM_OK) {

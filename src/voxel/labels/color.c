@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/labels/color.h"
+#include "base/task_progress.h"
 #include "base/threads.h"
 #include "voxel/labels/labels.h"
+#include "voxel/labels/mesh_colors.h"
 #include "voxel/model/voxelize.h"
 
 #include <math.h>
@@ -77,6 +79,7 @@ typedef struct color_task {
   const vxm_color_job *job;
   uint8_t *values;
   float longest;
+  vxm_task_progress watch;
 } color_task;
 
 static void color_voxel(const color_task *task, const int64_t at[3], size_t index) {
@@ -97,15 +100,17 @@ static void color_voxel(const color_task *task, const int64_t at[3], size_t inde
 }
 
 static void color_slice(size_t i, int worker, void *payload) {
-  (void)worker;
-  const color_task *task = payload;
+  color_task *task = payload;
   const int64_t *dims = task->job->grid->space.dims;
   size_t index = i * (size_t)(dims[1] * dims[2]);
+  if (vxm_task_progress_stopped(&task->watch, worker))
+    return;
   memset(task->values + 4 * index, 0, 4 * (size_t)(dims[1] * dims[2]));
   for (int64_t j = 0; j < dims[1]; j++)
     for (int64_t k = 0; k < dims[2]; k++, index++)
       if (vxm_grid_get(task->job->grid, (int64_t)i, j, k))
         color_voxel(task, (const int64_t[3]){(int64_t)i, j, k}, index);
+  vxm_task_progress_step(&task->watch);
 }
 
 double vxm_color_longest(const vxm_space *space) {
@@ -117,18 +122,26 @@ double vxm_color_longest(const vxm_space *space) {
 
 static vxm_status color_by_cpu(uint8_t *values, const vxm_color_job *job, vxm_context *context,
                                vxm_error *error) {
-  color_task task = {job, values, (float)vxm_color_longest(&job->grid->space)};
+  size_t slices = (size_t)job->grid->space.dims[0];
+  color_task task = {.job = job, .values = values, .longest = (float)vxm_color_longest(&job->grid->space)};
   if (job->options->by == VXM_COLOR_GLSL)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
                     "a colour function in GLSL needs OpenGL: --engine opengl (vxm_voxelize_options.engine)");
-  vxm_parallel(context, (size_t)job->grid->space.dims[0], color_slice, &task);
-  return vxm_progress(context, "colouring", 1, error);
+  vxm_task_progress_start(&task.watch, context, "colouring", slices, error);
+  vxm_parallel(context, slices, color_slice, &task);
+  return vxm_task_progress_end(&task.watch);
 }
 
 /* ---- All of it ---- */
 
 static vxm_status make_colors(uint8_t *values, const vxm_color_job *job, vxm_model *model, vxm_error *error) {
   vxm_engine *engine = model->options.engine;
+  if (job->options->by == VXM_COLOR_MESH) {
+    vxm_status status = vxm_progress(model->context, "colouring", 0, error);
+    if (status == VXM_OK)
+      status = vxm_mesh_colors(values, job->grid, job->options->mesh, job->options->average, error);
+    return status == VXM_OK ? vxm_progress(model->context, "colouring", 1, error) : status;
+  }
   if (!engine || !engine->ops || !engine->ops->color)
     return color_by_cpu(values, job, model->context, error);
   vxm_error local = VXM_ERROR_INIT;

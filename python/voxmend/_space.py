@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where voxels lie: boxes of cells, and what is said of them."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, List, Optional, Tuple, Union
+
+import numpy
+
+from . import _core, _values
+from ._core import ffi, lib
+from ._errors import ArgumentError, EmptyError, KindError, RangeError
+from ._mesh import Mesh
+from ._types import ArrayLike, Floats, Int64s, Resolution, Shape, Size
+
+
+def space(dims: Any, origin: Any, size: Any) -> Any:
+    """A vxm_space."""
+    out = ffi.new("vxm_space *")
+    out.dims[0:3] = [int(d) for d in dims]
+    out.origin[0:3] = _values.reals("grid: origin", origin, (3,)).tolist()
+    out.voxel_size[0:3] = _values.reals("grid: pitch", size, (3,)).tolist()
+    return out
+
+
+class Placed:
+    """What grids, fields and octrees tell of where they lie."""
+
+    @property
+    def _own_space(self) -> Any:
+        raise NotImplementedError
+
+    @property
+    def shape(self) -> Shape:
+        """(nx, ny, nz)"""
+        nx, ny, nz = (int(n) for n in self._own_space.dims)
+        return nx, ny, nz
+
+    @property
+    def origin(self) -> Floats:
+        """(3,) minimum corner of the box, model units."""
+        return numpy.array(list(self._own_space.origin))
+
+    @property
+    def pitch(self) -> Floats:
+        """(3,) sides of a voxel, model units."""
+        return numpy.array(list(self._own_space.voxel_size))
+
+    @property
+    def bounds(self) -> Floats:
+        """(2, 3) corners of the box, model units."""
+        return numpy.stack([self.origin, self.origin + self.pitch * self.shape])
+
+    @property
+    def transform(self) -> Floats:
+        """(4, 4): takes (i, j, k, 1) to the centre of the voxel, as in trimesh."""
+        out = numpy.diag([*self.pitch, 1.0])
+        out[:3, 3] = self.origin + self.pitch / 2
+        return out
+
+    def indices_to_points(self, indices: ArrayLike) -> Floats:
+        """Centres of voxels, (n, 3) in model units, of their (n, 3) indices."""
+        return numpy.asarray(self.origin + (_values.array("grid: indices", indices, "iuf", "numbers") + 0.5) * self.pitch)
+
+    def points_to_indices(self, points: ArrayLike) -> Int64s:
+        """(n, 3) indices of the voxels in which points lie; they may lie outside of the box."""
+        at = numpy.floor((_values.reals("grid: points", points) - self.origin) / self.pitch)
+        return numpy.asarray(numpy.clip(at, -(2.0 ** 62), 2.0 ** 62), numpy.int64)
+
+    def _has_space_of(self, other: "Placed") -> bool:
+        return (self.shape == other.shape and bool((self.origin == other.origin).all())
+                and bool((self.pitch == other.pitch).all()))
+
+    def _need_space_of(self, other: "Placed", what: str) -> None:
+        """As `voxmend combine`: files hold a space to about nine digits, so that a thousandth of a voxel is no difference."""
+        if self.shape != other.shape:
+            raise ArgumentError("%s: one has %d x %d x %d voxels and the other %d x %d x %d; voxelize(..., like=grid) makes equal "
+                                "ones" % (what, *self.shape, *other.shape))
+        near = 1e-3 * self.pitch
+        if (abs(self.pitch - other.pitch) * self.shape > near).any():
+            raise ArgumentError("%s: one has voxels of %s and the other of %s; voxelize(..., like=grid) makes equal ones" %
+                                (what, shown_size(self.pitch), shown_size(other.pitch)))
+        if (abs(self.origin - other.origin) > near).any():
+            raise ArgumentError("%s: one begins at %s and the other at %s; voxelize(..., like=grid) makes equal ones" %
+                                (what, shown(self.origin), shown(other.origin)))
+
+
+def shown(numbers: Floats) -> str:
+    """(a, b, c)"""
+    return "(%s)" % ", ".join("%.6g" % n for n in numbers.tolist())
+
+
+def shown_size(sizes: Floats) -> str:
+    """One number if all are equal."""
+    return "%.6g" % sizes[0] if (sizes == sizes[0]).all() else shown(sizes)
+
+
+def _sizes(caller: str, name: str, wanted: Size) -> List[float]:
+    """Three positive numbers, of one or three."""
+    title = "%s: %s" % (caller, name)
+    if isinstance(wanted, (str, bytes)) or numpy.ndim(wanted) == 0 or isinstance(wanted, complex):
+        out = [_values.real(title, wanted)] * 3
+    else:
+        out = [_values.real(title, n) for n in numpy.asarray(wanted, object)]
+    if len(out) != 3 or not min(out) > 0:
+        raise ArgumentError("%s: the %s %r is neither a positive number nor three" % (caller, name, wanted))
+    return out
+
+
+def _resolution(caller: str, wanted: Resolution) -> List[int]:
+    name = caller + ": the resolution"
+    if isinstance(wanted, (int, str, bytes)) or numpy.ndim(wanted) == 0:
+        return [_values.whole(name, wanted, 1), 0, 0]
+    numbers = [_values.whole(name, n, 1) for n in wanted]
+    if len(numbers) != 3:
+        raise ArgumentError("%s %r is neither one number nor three" % (name, wanted))
+    return numbers
+
+
+def _used_corners(mesh: Mesh) -> Tuple[Floats, Floats]:
+    """The bounds of the finite vertices that faces use."""
+    used = numpy.zeros(len(mesh.vertices), numpy.bool_)
+    used[mesh.indices] = True
+    points = mesh.vertices[used]
+    points = points[numpy.isfinite(points).all(axis=1)]
+    if len(points) == 0:
+        raise EmptyError("the mesh has no faces, and so no extent")
+    return points.min(axis=0), points.max(axis=0)
+
+
+def _lattice(mesh: Mesh, sizes: List[float], pad: int) -> Any:
+    """The space of trimesh's `mesh.voxelized(pitch)`: centres of voxels are whole multiples of the pitch, and reach from that
+    nearest to the least corner of the mesh to that nearest to its greatest (of two equally near ones the even one)."""
+    least, greatest = _used_corners(mesh)
+    size = numpy.array(sizes)
+    first, last = numpy.round(least / size) - pad, numpy.round(greatest / size) + pad
+    if not (abs(numpy.concatenate([first, last])) < 2.0 ** 52).all():
+        raise RangeError("voxelize: the pitch %s is too small for where the mesh lies" % shown(size))
+    return space(last - first + 1, first * size - size / 2, size)
+
+
+@dataclass
+class Place:
+    """What a caller says of where voxels are to lie."""
+
+    caller: str
+    resolution: Optional[Resolution] = None
+    pitch: Optional[Size] = None
+    voxel_size: Optional[Size] = None
+    fit: Optional[str] = None
+    pad: int = 0
+    bounds: Optional[ArrayLike] = None
+    like: Any = None
+
+    def check(self) -> None:
+        """What does not go together."""
+        given = [name for name in ("resolution", "pitch", "voxel_size") if getattr(self, name) is not None]
+        if len(given) > 1:
+            raise ArgumentError("%s: %s and %s exclude each other" % (self.caller, given[0], given[1]))
+        if self.like is None:
+            return
+        if given or self.bounds is not None or self.fit is not None or self.pad:
+            raise ArgumentError("%s: `like` takes the whole space of a grid; leave out the others" % self.caller)
+        if not all(hasattr(self.like, name) for name in ("shape", "origin", "pitch")):
+            raise KindError("%s: `like` is %s, which has no shape, origin and pitch" % (self.caller, type(self.like).__name__))
+
+    def options(self, original: Mesh) -> Tuple[Any, Any]:
+        """The options, and what they point to."""
+        fit = "cube" if self.fit is None else self.fit
+        options = _core.new("vxm_space_options", pad=_values.whole(self.caller + ": pad", self.pad, 0),
+                            fit=_core.choice(self.caller + ": fit", fit, "VXM_FIT_"))
+        kept = None
+        if self.like is not None:
+            kept = space(self.like.shape, self.like.origin, self.like.pitch)
+        if self.resolution is not None:
+            options.resolution[0:3] = _resolution(self.caller, self.resolution)
+        if self.voxel_size is not None:
+            options.voxel_sizes[0:3] = _sizes(self.caller, "voxel_size", self.voxel_size)
+        if self.pitch is not None:
+            sizes = _sizes(self.caller, "pitch", self.pitch)
+            options.voxel_sizes[0:3] = sizes
+            if self.fit is None and self.bounds is None:
+                kept = _lattice(original, sizes, options.pad)
+        if self.bounds is not None:
+            corners = _values.reals(self.caller + ": bounds", self.bounds).reshape(-1)
+            if corners.size != 6:
+                raise ArgumentError("%s: bounds are not two corners of three numbers" % self.caller)
+            options.use_bounds = True
+            options.bounds[0:6] = corners.tolist()
+        if kept is not None:
+            options.like = kept
+        return options, kept
+
+    def fitted(self, original: Mesh, source: Mesh) -> Any:
+        """The vxm_space: of the mesh that is voxelized, or of trimesh's lattice about the one that was given."""
+        options, kept = self.options(original)
+        out = ffi.new("vxm_space *")
+        _core.call(lib.vxm_space_fit, out, source._pointer, options)
+        del kept  # until now the options point to it
+        return out
+
+
+Like = Union[Placed, Any]

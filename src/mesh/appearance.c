@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/appearance.h"
+
+#include <math.h>
+#include <string.h>
+
+vxm_status vxm_appearance_create(vxm_appearance **out, vxm_context *context, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  *out = vxm_calloc(context, 1, sizeof **out, &local);
+  if (!*out) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  (*out)->context = context;
+  return VXM_OK;
+}
+
+void vxm_appearance_destroy(vxm_appearance *look) {
+  if (!look)
+    return;
+  vxm_context *context = look->context;
+  for (size_t i = 0; i < look->image_count; i++)
+    vxm_free(context, look->images[i].bytes);
+  vxm_free(context, look->libraries);
+  vxm_free(context, look->vertices.rgb);
+  vxm_free(context, look->faces.rgb);
+  vxm_free(context, look->images);
+  vxm_free(context, look->materials);
+  vxm_free(context, look->face_materials);
+  vxm_free(context, look->corner_uvs);
+  vxm_free(context, look->face_colors);
+  vxm_free(context, look->vertex_colors);
+  vxm_free(context, look);
+}
+
+/* ---- Light ---- */
+
+uint8_t vxm_srgb_encode(double light) {
+  if (!(light > 0))
+    return 0;
+  double value = light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
+  return value >= 1 ? 255 : (uint8_t)(value * 255 + 0.5);
+}
+
+double vxm_srgb_decode(double value) {
+  return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+}
+
+/* ---- Colours ---- */
+
+vxm_status vxm_gather_color(vxm_gathered *gathered, vxm_context *context, size_t index, const double rgba[4],
+                            vxm_error *error) {
+  vxm_status status = vxm_grow(context, (void **)&gathered->rgb, &gathered->capacity, index + 1,
+                               sizeof *gathered->rgb, error);
+  if (status != VXM_OK)
+    return status;
+  for (; gathered->count < index; gathered->count++)
+    for (int c = 0; c < 3; c++)
+      gathered->rgb[gathered->count][c] = NAN;
+  for (int c = 0; c < 3; c++)
+    gathered->rgb[index][c] = isfinite(rgba[c]) ? (float)rgba[c] : 0;
+  for (int c = 0; c < 4; c++)
+    if (isfinite(rgba[c]) && (float)rgba[c] > gathered->largest)
+      gathered->largest = (float)rgba[c];
+  if (gathered->count <= index)
+    gathered->count = index + 1;
+  return VXM_OK;
+}
+
+static uint8_t byte_of(float value, float unit) {
+  float scaled = value * (255 / unit);
+  return !(scaled > 0) ? 0 : scaled >= 255 ? 255 : (uint8_t)(scaled + 0.5F);
+}
+
+static vxm_status settle(uint8_t (**out)[4], size_t *out_count, vxm_gathered *gathered, size_t count,
+                         vxm_context *context, vxm_error *error) {
+  if (gathered->count == 0 || count == 0)
+    return VXM_OK;
+  vxm_error local = VXM_ERROR_INIT;
+  *out = vxm_calloc(context, count, sizeof **out, &local);
+  if (!*out) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  *out_count = count;
+  float unit = gathered->unit > 0 ? gathered->unit : gathered->largest > 1 ? 255.0F : 1.0F;
+  for (size_t i = 0; i < count && i < gathered->count; i++) {
+    const float *rgb = gathered->rgb[i];
+    for (int c = 0; c < 3; c++)
+      (*out)[i][c] = byte_of(rgb[c], unit);
+    (*out)[i][3] = isnan(rgb[0]) ? 0 : 255;
+  }
+  vxm_free(context, gathered->rgb);
+  *gathered = (vxm_gathered){0};
+  return VXM_OK;
+}
+
+vxm_status vxm_appearance_settle(vxm_appearance *look, size_t vertices, size_t faces, vxm_error *error) {
+  vxm_status status = settle(&look->vertex_colors, &look->vertex_color_count, &look->vertices, vertices,
+                             look->context, error);
+  if (status == VXM_OK)
+    status = settle(&look->face_colors, &look->face_color_count, &look->faces, faces, look->context, error);
+  return status;
+}
+
+/* ---- Materials and images ---- */
+
+static void take_name(char out[VXM_LOOK_NAME], const char *name, size_t length) {
+  size_t kept = length < VXM_LOOK_NAME - 1 ? length : VXM_LOOK_NAME - 1;
+  memcpy(out, name, kept);
+  out[kept] = '\0';
+}
+
+vxm_status vxm_appearance_add_material(vxm_appearance *look, const char *name, size_t length,
+                                       uint32_t *material, vxm_error *error) {
+  vxm_status status = vxm_grow(look->context, (void **)&look->materials, &look->material_capacity,
+                               look->material_count + 1, sizeof *look->materials, error);
+  if (status != VXM_OK)
+    return status;
+  *material = (uint32_t)look->material_count++;
+  vxm_material *made = &look->materials[*material];
+  *made = (vxm_material){.color = {1, 1, 1}, .image = VXM_NO_LOOK};
+  take_name(made->name, name, length);
+  return VXM_OK;
+}
+
+vxm_status vxm_appearance_material(vxm_appearance *look, const char *name, size_t length, uint32_t *material,
+                                   vxm_error *error) {
+  char cut[VXM_LOOK_NAME];
+  take_name(cut, name, length);
+  for (size_t m = look->material_count; m-- > 0;) /* the last ones are asked for most */
+    if (strcmp(look->materials[m].name, cut) == 0) {
+      *material = (uint32_t)m;
+      return VXM_OK;
+    }
+  return vxm_appearance_add_material(look, name, length, material, error);
+}
+
+vxm_status vxm_appearance_image(vxm_appearance *look, const char *name, size_t length, uint32_t *image,
+                                vxm_error *error) {
+  char cut[VXM_LOOK_NAME];
+  take_name(cut, name, length);
+  for (size_t i = 0; i < look->image_count; i++)
+    if (strcmp(look->images[i].name, cut) == 0) {
+      *image = (uint32_t)i;
+      return VXM_OK;
+    }
+  vxm_status status = vxm_grow(look->context, (void **)&look->images, &look->image_capacity,
+                               look->image_count + 1, sizeof *look->images, error);
+  if (status != VXM_OK)
+    return status;
+  *image = (uint32_t)look->image_count++;
+  memset(&look->images[*image], 0, sizeof *look->images);
+  memcpy(look->images[*image].name, cut, sizeof cut);
+  return VXM_OK;
+}
+
+vxm_status vxm_appearance_set_material(vxm_appearance *look, size_t face, uint32_t material,
+                                       vxm_error *error) {
+  vxm_status status = vxm_grow(look->context, (void **)&look->face_materials, &look->face_material_capacity,
+                               face + 1, sizeof *look->face_materials, error);
+  if (status != VXM_OK)
+    return status;
+  while (look->face_material_count < face)
+    look->face_materials[look->face_material_count++] = VXM_NO_LOOK;
+  look->face_materials[face] = material;
+  look->face_material_count = face + 1;
+  return VXM_OK;
+}
+
+/* ---- Faces that are left out ---- */
+
+void vxm_appearance_move_face(vxm_appearance *look, size_t to, size_t from, size_t to_corner,
+                              size_t from_corner, size_t corners) {
+  if (from < look->faces.count)
+    memcpy(look->faces.rgb[to], look->faces.rgb[from], sizeof look->faces.rgb[to]);
+  if (from < look->face_material_count)
+    look->face_materials[to] = look->face_materials[from];
+  if (from_corner + corners <= look->corner_uv_count)
+    memmove(look->corner_uvs + to_corner, look->corner_uvs + from_corner, corners * sizeof *look->corner_uvs);
+}
+
+bool vxm_appearance_has_colors(const vxm_appearance *look) {
+  if (!look)
+    return false;
+  bool has = look->vertex_colors || look->face_colors;
+  for (size_t m = 0; m < look->material_count && look->face_materials && !has; m++) {
+    const vxm_material *material = &look->materials[m];
+    has = material->has_color || (material->image < look->image_count &&
+                                  look->images[material->image].width > 0 && look->corner_uvs);
+  }
+  return has;
+}

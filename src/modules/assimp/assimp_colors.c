@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What a scene of Assimp looks like: colours of vertices, materials, and pictures within or beside it. */
+#include <assimp/material.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "modules/assimp/assimp.h"
+
+/* ---- Pictures ---- */
+
+/** Takes a picture within the file: its bytes as they stand there, or pixels that are decoded by now. */
+static vxm_status take_embedded(vxm_image *image, vxm_context *context, const struct aiTexture *texture,
+                                vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  bool is_file = texture->mHeight == 0;
+  uint64_t pixels = is_file ? 0 : (uint64_t)texture->mWidth * texture->mHeight;
+  if (!texture->pcData || texture->mWidth == 0 || pixels > VXM_PIXELS_MAX) {
+    snprintf(image->failure, sizeof image->failure, "the file holds nothing that could be it");
+    return VXM_OK;
+  }
+  image->size = is_file ? texture->mWidth : 4 * pixels;
+  image->bytes = vxm_alloc(context, (size_t)image->size, 1, &local);
+  if (!image->bytes) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  if (is_file)
+    memcpy(image->bytes, texture->pcData, (size_t)image->size);
+  for (uint64_t p = 0; p < pixels; p++) {
+    const struct aiTexel *texel = &texture->pcData[p];
+    const unsigned char rgba[4] = {texel->r, texel->g, texel->b, texel->a};
+    memcpy(image->bytes + 4 * p, rgba, 4);
+  }
+  image->width = is_file ? 0 : texture->mWidth;
+  image->height = is_file ? 0 : texture->mHeight;
+  return VXM_OK;
+}
+
+/** The picture within the file that a name stands for: "*3", or the name of one. */
+static const struct aiTexture *find_embedded(const struct aiScene *scene, const char *name) {
+  if (name[0] == '*') {
+    long number = strtol(name + 1, NULL, 10);
+    return number >= 0 && (unsigned long)number < scene->mNumTextures ? scene->mTextures[number] : NULL;
+  }
+  for (unsigned t = 0; t < scene->mNumTextures; t++)
+    if (scene->mTextures[t] && strcmp(scene->mTextures[t]->mFilename.data, name) == 0)
+      return scene->mTextures[t];
+  return NULL;
+}
+
+/** Names in URIs write blanks and others as %20; the file is looked for as it is called. */
+static void decode_uri(char *name) {
+  char *out = name;
+  for (const char *c = name; *c; c++, out++) {
+    char digits[3] = {c[0] == '%' ? c[1] : '\0', c[0] == '%' && c[1] ? c[2] : '\0', '\0'};
+    char *end;
+    long value = strtol(digits, &end, 16);
+    bool is_code = end == digits + 2 && value > 0;
+    *out = is_code ? (char)value : *c == '\\' ? '/' : *c;
+    c += is_code ? 2 : 0;
+  }
+  *out = '\0';
+}
+
+static vxm_status take_texture(vxm_appearance *look, const struct aiScene *scene, const char *path,
+                               uint32_t *image, vxm_error *error) {
+  char name[VXM_LOOK_NAME];
+  const struct aiTexture *texture = find_embedded(scene, path);
+  if (texture && path[0] == '*')
+    snprintf(name, sizeof name, "embedded %.20s", path + 1);
+  else
+    snprintf(name, sizeof name, "%.*s", VXM_LOOK_NAME - 1, path);
+  if (!texture)
+    decode_uri(name);
+  size_t known = look->image_count;
+  vxm_status status = vxm_appearance_image(look, name, strlen(name), image, error);
+  bool is_new = look->image_count > known;
+  return status == VXM_OK && is_new && texture
+             ? take_embedded(&look->images[*image], look->context, texture, error)
+             : status;
+}
+
+/* ---- Materials ---- */
+
+static uint8_t wrap_of(enum aiTextureMapMode mode) {
+  return mode == aiTextureMapMode_Mirror                                    ? VXM_WRAP_MIRROR
+         : mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? VXM_WRAP_CLAMP
+                                                                            : VXM_WRAP_REPEAT;
+}
+
+static vxm_status take_material(vxm_appearance *look, const struct aiScene *scene,
+                                const struct aiMaterial *from, vxm_error *error) {
+  struct aiString name = {.length = 0}, path = {.length = 0};
+  uint32_t index, image;
+  aiGetMaterialString(from, AI_MATKEY_NAME, &name);
+  vxm_status status = vxm_appearance_add_material(look, name.data, strlen(name.data), &index, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_material *material = &look->materials[index];
+  struct aiColor4D color;
+  if (strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0) /* Assimp's own, where the file has none */
+    return VXM_OK;
+  /* Assimp gives the base colour of glTF under this name too. */
+  if (aiGetMaterialColor(from, AI_MATKEY_COLOR_DIFFUSE, &color) == aiReturn_SUCCESS) {
+    const double rgb[3] = {(double)color.r, (double)color.g, (double)color.b};
+    material->has_color = true;
+    for (int c = 0; c < 3; c++) {
+      double value = rgb[c] > 0 ? rgb[c] < 1 ? rgb[c] : 1 : 0;
+      material->color[c] = (float)(look->is_product ? value : vxm_srgb_decode(value));
+    }
+  }
+  enum aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+  if (aiGetMaterialTexture(from, aiTextureType_DIFFUSE, 0, &path, NULL, NULL, NULL, NULL, modes, NULL) !=
+          aiReturn_SUCCESS ||
+      path.data[0] == '\0')
+    return VXM_OK;
+  status = take_texture(look, scene, path.data, &image, error);
+  material->image = image;
+  for (int a = 0; a < 2; a++)
+    material->wrap[a] = wrap_of(modes[a]);
+  return status;
+}
+
+vxm_status vxm_assimp_materials(vxm_appearance *look, const struct aiScene *scene, vxm_error *error) {
+  vxm_status status = VXM_OK;
+  for (unsigned m = 0; m < scene->mNumMaterials && status == VXM_OK; m++) {
+    uint32_t index;
+    if (scene->mMaterials[m])
+      status = take_material(look, scene, scene->mMaterials[m], error);
+    else
+      status = vxm_appearance_add_material(look, "", 0, &index, error);
+  }
+  return status;
+}
+
+/* ---- Vertices and faces ---- */
+
+vxm_status vxm_assimp_vertex_colors(vxm_soup *soup, const struct aiMesh *mesh, vxm_error *error) {
+  vxm_appearance *look = soup->appearance;
+  vxm_status status = VXM_OK;
+  if (!mesh->mColors[0])
+    return VXM_OK;
+  look->vertices.unit = 1;
+  for (unsigned v = 0; v < mesh->mNumVertices && status == VXM_OK; v++) {
+    const struct aiColor4D *color = &mesh->mColors[0][v];
+    double rgba[4] = {(double)color->r, (double)color->g, (double)color->b, 0};
+    /* The colours of glTF are light itself. */
+    for (int c = 0; c < 3 && look->is_product; c++)
+      rgba[c] = (double)vxm_srgb_encode(rgba[c]) / 255;
+    status = vxm_gather_color(&look->vertices, soup->context, soup->vertex_count + v, rgba, error);
+  }
+  return status;
+}
+
+vxm_status vxm_assimp_face_look(vxm_soup *soup, size_t *capacity, const struct aiMesh *mesh, uint32_t first,
+                                vxm_error *error) {
+  vxm_appearance *look = soup->appearance;
+  size_t face = soup->face_count - 1;
+  vxm_status status = VXM_OK;
+  if (mesh->mMaterialIndex < look->material_count)
+    status = vxm_appearance_set_material(look, face, mesh->mMaterialIndex, error);
+  if (status == VXM_OK)
+    status = vxm_grow(soup->context, (void **)&look->corner_uvs, capacity, soup->corner_count,
+                      sizeof *look->corner_uvs, error);
+  for (size_t c = (size_t)soup->offsets[face]; c < soup->corner_count && status == VXM_OK; c++) {
+    const struct aiVector3D *uvs = mesh->mTextureCoords[0];
+    uint32_t v = soup->indices[c] - first;
+    look->corner_uvs[c][0] = uvs ? (float)uvs[v].x : NAN;
+    look->corner_uvs[c][1] = uvs ? (float)uvs[v].y : NAN;
+    look->corner_uv_count = c + 1;
+  }
+  return status;
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "sandbox/wire_appearance.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "sandbox/parcel.h"
+
+/** Ahead of the arrays, which follow in the order of these counts; behind each image its bytes. */
+typedef struct look_counts {
+  uint64_t vertex_colors, face_colors, corner_uvs, face_materials, materials, images, is_product;
+} look_counts;
+
+/* ---- Sending ---- */
+
+bool vxm_wire_send_appearance(int channel, const vxm_appearance *look) {
+  const look_counts counts = {.vertex_colors = look->vertex_color_count,
+                              .face_colors = look->face_color_count,
+                              .corner_uvs = look->corner_uv_count,
+                              .face_materials = look->face_material_count,
+                              .materials = look->material_count,
+                              .images = look->image_count,
+                              .is_product = look->is_product};
+  bool sent =
+      vxm_parcel_put(channel, &counts, sizeof counts) &&
+      vxm_parcel_put(channel, look->vertex_colors, look->vertex_color_count * sizeof *look->vertex_colors) &&
+      vxm_parcel_put(channel, look->face_colors, look->face_color_count * sizeof *look->face_colors) &&
+      vxm_parcel_put(channel, look->corner_uvs, look->corner_uv_count * sizeof *look->corner_uvs) &&
+      vxm_parcel_put(channel, look->face_materials,
+                     look->face_material_count * sizeof *look->face_materials) &&
+      vxm_parcel_put(channel, look->materials, look->material_count * sizeof *look->materials);
+  for (size_t i = 0; i < look->image_count && sent; i++) {
+    vxm_image image = look->images[i];
+    image.bytes = NULL;
+    sent = vxm_parcel_put(channel, &image, sizeof image) &&
+           vxm_parcel_put(channel, look->images[i].bytes, (size_t)image.size);
+  }
+  return sent;
+}
+
+/* ---- Receiving ---- */
+
+/** Fills a new array; none where the count is 0. */
+static vxm_status receive_array(void **out, size_t *out_count, uint64_t count, size_t size,
+                                vxm_context *context, vxm_process *sender, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  if (count == 0)
+    return VXM_OK;
+  *out = vxm_alloc(context, (size_t)count, size, &local);
+  if (!*out) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  *out_count = (size_t)count;
+  return vxm_process_receive(sender, *out, (size_t)count * size, error);
+}
+
+static bool is_sound_material(vxm_material *material, uint64_t images) {
+  bool good = (material->image == VXM_NO_LOOK || material->image < images) &&
+              material->wrap[0] <= VXM_WRAP_MIRROR && material->wrap[1] <= VXM_WRAP_MIRROR;
+  unsigned char has_color;
+  memcpy(&has_color, &material->has_color, 1); /* as a byte: a bool may hold anything */
+  for (int c = 0; c < 3; c++)
+    good = good && isfinite(material->color[c]);
+  vxm_parcel_tame(material->name, sizeof material->name);
+  return good && has_color <= 1;
+}
+
+static vxm_status receive_image(vxm_image *image, vxm_context *context, vxm_process *sender,
+                                vxm_error *error) {
+  vxm_status status = vxm_process_receive(sender, image, sizeof *image, error);
+  image->bytes = NULL;
+  if (status != VXM_OK)
+    return status;
+  vxm_parcel_tame(image->name, sizeof image->name);
+  vxm_parcel_tame(image->failure, sizeof image->failure);
+  uint64_t pixels = (uint64_t)image->width * image->height;
+  bool is_decoded = image->width > 0 || image->height > 0;
+  if ((is_decoded && (pixels == 0 || pixels > VXM_PIXELS_MAX || image->size != 4 * pixels)) ||
+      image->size > UINT64_C(1) << 40)
+    return vxm_parcel_damaged(error);
+  size_t size = 0;
+  return receive_array((void **)&image->bytes, &size, image->size, 1, context, sender, error);
+}
+
+static vxm_status receive_images(vxm_appearance *look, uint64_t count, vxm_process *sender,
+                                 vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  if (count == 0)
+    return VXM_OK;
+  look->images = vxm_calloc(look->context, (size_t)count, sizeof *look->images, &local);
+  if (!look->images) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  look->image_capacity = (size_t)count;
+  vxm_status status = VXM_OK;
+  while (look->image_count < count && status == VXM_OK) /* counted first, as it may have bytes by then */
+    status = receive_image(&look->images[look->image_count++], look->context, sender, error);
+  return status;
+}
+
+vxm_status vxm_wire_receive_appearance(vxm_soup *soup, vxm_process *sender, vxm_error *error) {
+  vxm_appearance *look = soup->appearance;
+  vxm_context *context = soup->context;
+  look_counts counts;
+  vxm_status status = vxm_process_receive(sender, &counts, sizeof counts, error);
+  if (status != VXM_OK)
+    return status;
+  enum { MOST = 1 << 24 };
+  if ((counts.vertex_colors && counts.vertex_colors != soup->vertex_count) ||
+      (counts.face_colors && counts.face_colors != soup->face_count) ||
+      (counts.corner_uvs && counts.corner_uvs != soup->corner_count) ||
+      counts.face_materials > soup->face_count || counts.materials > MOST || counts.images > MOST ||
+      counts.is_product > 1)
+    return vxm_parcel_damaged(error);
+  look->is_product = counts.is_product;
+  status = receive_array((void **)&look->vertex_colors, &look->vertex_color_count, counts.vertex_colors,
+                         sizeof *look->vertex_colors, context, sender, error);
+  if (status == VXM_OK)
+    status = receive_array((void **)&look->face_colors, &look->face_color_count, counts.face_colors,
+                           sizeof *look->face_colors, context, sender, error);
+  if (status == VXM_OK)
+    status = receive_array((void **)&look->corner_uvs, &look->corner_uv_count, counts.corner_uvs,
+                           sizeof *look->corner_uvs, context, sender, error);
+  if (status == VXM_OK)
+    status = receive_array((void **)&look->face_materials, &look->face_material_count, counts.face_materials,
+                           sizeof *look->face_materials, context, sender, error);
+  if (status == VXM_OK)
+    status = receive_array((void **)&look->materials, &look->material_count, counts.materials,
+                           sizeof *look->materials, context, sender, error);
+  bool good = true;
+  for (size_t f = 0; f < look->face_material_count && status == VXM_OK; f++)
+    good = good && (look->face_materials[f] == VXM_NO_LOOK || look->face_materials[f] < counts.materials);
+  for (size_t m = 0; m < look->material_count && status == VXM_OK; m++)
+    good = is_sound_material(&look->materials[m], counts.images) && good;
+  if (status == VXM_OK && !good)
+    status = vxm_parcel_damaged(error);
+  return status == VXM_OK ? receive_images(look, counts.images, sender, error) : status;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** A tree of boxes over triangles, for the triangle that is the nearest to a point. */
+#ifndef VXM_VOXEL_CLOSEST_SURFACE_TREE_H
+#define VXM_VOXEL_CLOSEST_SURFACE_TREE_H
+
+#include "base/context.h"
+
+typedef struct vxm_surface_tree vxm_surface_tree;
+
+/** Takes the corners of a triangle from its owner; they are finite. */
+typedef void (*vxm_surface_corners_fn)(double out[3][3], size_t triangle, const void *payload);
+
+/** The nearest point of a surface. */
+typedef struct vxm_surface_hit {
+  uint32_t triangle;
+  uint32_t place; /**< in the tree, to begin with when a point nearby is asked for */
+  double foot[3];
+} vxm_surface_hit;
+
+/** Makes a tree over one triangle or more. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ * VXM_ERROR_CANCELLED */
+vxm_status vxm_surface_tree_create(vxm_surface_tree **out, vxm_context *context, size_t count,
+                                   vxm_surface_corners_fn corners, const void *payload, vxm_error *error);
+/** NULL is allowed. */
+void vxm_surface_tree_destroy(vxm_surface_tree *tree);
+/** Bytes that a tree of so many triangles takes at most, also while it is made. */
+uint64_t vxm_surface_tree_bytes(size_t count);
+
+/**
+ * The nearest triangle to a point, by vxm_closest_point; of equally near ones that with the lowest number.
+ *
+ * @param near the place of a triangle that is thought to be near; it only makes the search shorter
+ */
+vxm_surface_hit vxm_surface_tree_nearest(const vxm_surface_tree *tree, const double p[3], uint32_t near);
+
+#endif

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/labels/mesh_colors.h"
+#include "base/threads.h"
+#include "voxel/closest/surface_tree.h"
+#include "voxel/labels/surface_mean.h"
+
+#include <math.h>
+#include <string.h>
+
+vxm_status vxm_mesh_colors_check(const vxm_soup *mesh, vxm_error *error) {
+  const vxm_appearance *look = mesh->appearance;
+  if (!look)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "colours: the mesh was read without its colours, or is the result of a repair");
+  if (vxm_appearance_has_colors(look))
+    return VXM_OK;
+  for (size_t m = 0; m < look->material_count && look->face_materials; m++) {
+    const vxm_material *material = &look->materials[m];
+    if (material->image < look->image_count && look->images[material->image].failure[0])
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "the mesh has no colours: the texture %.80s of material %.40s cannot be read: %.160s",
+                      look->images[material->image].name, material->name,
+                      look->images[material->image].failure);
+    if (material->image < look->image_count && !look->corner_uvs)
+      return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                      "the mesh has no colours: its corners have no coordinates for the texture %.80s",
+                      look->images[material->image].name);
+  }
+  if (look->material_count > 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "the mesh has no colours: nothing is known of its material %.100s",
+                    look->materials[0].name);
+  return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                  "the mesh has no colours: neither its vertices and faces nor materials give any");
+}
+
+/* ---- One point ---- */
+
+static void between(double out[3], const double a[3], const double b[3]) {
+  for (int i = 0; i < 3; i++)
+    out[i] = b[i] - a[i];
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/** Weights along the longest edge of a triangle that is no more than that. */
+static void weigh_edge(const double at[3][3], const double p[3], double weight[3]) {
+  double longest = -1, ab[3], ap[3];
+  for (int e = 0; e < 3; e++) {
+    int b = (e + 1) % 3;
+    between(ab, at[e], at[b]);
+    between(ap, at[e], p);
+    double length2 = dot(ab, ab), along = length2 > 0 ? dot(ab, ap) / length2 : 0;
+    if (length2 <= longest)
+      continue;
+    longest = length2;
+    along = along < 0 ? 0 : along > 1 ? 1 : along;
+    weight[(e + 2) % 3] = 0;
+    weight[e] = 1 - along;
+    weight[b] = along;
+  }
+}
+
+/** The weights of the corners at a point of a triangle (Ericson, Real-Time Collision Detection, 3.4). */
+static void weigh(const double at[3][3], const double p[3], double weight[3]) {
+  double ab[3], ac[3], ap[3];
+  between(ab, at[0], at[1]);
+  between(ac, at[0], at[2]);
+  between(ap, at[0], p);
+  double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
+  double area = bb * cc - bc * bc, sum = 0;
+  if (!(area > 1e-12 * bb * cc)) {
+    weigh_edge(at, p, weight);
+    return;
+  }
+  weight[1] = (cc * pb - bc * pc) / area;
+  weight[2] = (bb * pc - bc * pb) / area;
+  weight[0] = 1 - weight[1] - weight[2];
+  for (int c = 0; c < 3; c++) {
+    weight[c] = weight[c] > 0 ? weight[c] : 0;
+    sum += weight[c];
+  }
+  for (int c = 0; c < 3; c++)
+    weight[c] /= sum;
+}
+
+/* ---- All voxels ---- */
+
+typedef struct color_task {
+  const vxm_grid *grid;
+  const vxm_surface_paint *paint;
+  const vxm_surface_tree *tree;
+  const vxm_surface_slices *slices; /**< NULL = no means */
+  vxm_surface_sum *sums;            /**< a slice for each worker */
+  uint8_t *values;
+} color_task;
+
+static void put_color(uint8_t value[4], const double light[3]) {
+  for (int c = 0; c < 3; c++)
+    value[c] = vxm_srgb_encode(light[c]);
+  value[3] = 255;
+}
+
+static void color_by_nearest(const color_task *task, const int64_t at[3], uint32_t *near, uint8_t value[4]) {
+  const vxm_space *space = &task->grid->space;
+  double p[3], corner[3][3], weight[3] = {1, 0, 0}, light[3];
+  for (int a = 0; a < 3; a++)
+    p[a] = space->origin[a] + ((double)at[a] + 0.5) * space->voxel_size[a];
+  vxm_surface_hit hit = vxm_surface_tree_nearest(task->tree, p, *near);
+  *near = hit.place;
+  vxm_surface_paint_corners(corner, hit.triangle, task->paint);
+  weigh((const double(*)[3])corner, hit.foot, weight);
+  vxm_surface_paint_color(task->paint, hit.triangle, weight, light);
+  put_color(value, light);
+}
+
+static void color_slice(size_t slice, int worker, void *payload) {
+  const color_task *task = payload;
+  const int64_t *dims = task->grid->space.dims;
+  const size_t rows = (size_t)(dims[1] * dims[2]);
+  vxm_surface_sum *sums = task->slices ? task->sums + (size_t)worker * rows : NULL;
+  uint8_t *value = task->values + 4 * slice * rows;
+  uint32_t near = 0;
+  memset(value, 0, 4 * rows);
+  if (sums) {
+    memset(sums, 0, rows * sizeof *sums);
+    vxm_surface_slices_sum(task->slices, (int64_t)slice, sums);
+  }
+  for (int64_t j = 0; j < dims[1]; j++)
+    for (int64_t k = 0; k < dims[2]; k++, value += 4) {
+      if (!vxm_grid_get(task->grid, (int64_t)slice, j, k))
+        continue;
+      const vxm_surface_sum *sum = sums ? &sums[j * dims[2] + k] : NULL;
+      if (sum && sum->area > 0) {
+        const double light[3] = {sum->light[0] / sum->area, sum->light[1] / sum->area,
+                                 sum->light[2] / sum->area};
+        put_color(value, light);
+      } else
+        color_by_nearest(task, (const int64_t[3]){(int64_t)slice, j, k}, &near, value);
+    }
+}
+
+static vxm_status color_all(color_task *task, bool average, vxm_error *error) {
+  vxm_context *context = task->grid->context;
+  const int64_t *dims = task->grid->space.dims;
+  vxm_surface_slices slices;
+  vxm_error local = VXM_ERROR_INIT;
+  bool is_open = false;
+  if (average) {
+    is_open = vxm_surface_slices_open(&slices, task->paint, &task->grid->space, &local) == VXM_OK;
+    task->slices = &slices;
+    if (is_open)
+      task->sums = vxm_alloc(context, (size_t)vxm_context_threads(context),
+                             (size_t)(dims[1] * dims[2]) * sizeof *task->sums, &local);
+  }
+  if (local.code == VXM_OK)
+    vxm_parallel_asked(context, (size_t)dims[0], color_slice, task, &local);
+  vxm_free(context, task->sums);
+  if (is_open)
+    vxm_surface_slices_close(&slices);
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
+  return local.code;
+}
+
+vxm_status vxm_mesh_colors(uint8_t *values, const vxm_grid *grid, const vxm_soup *mesh, bool average,
+                           vxm_error *error) {
+  vxm_surface_paint paint;
+  vxm_surface_tree *tree = NULL;
+  vxm_status status = vxm_surface_paint_open(&paint, mesh, error);
+  if (status != VXM_OK)
+    return status;
+  if (paint.count == 0)
+    status = vxm_fail(error, VXM_ERROR_EMPTY, "colours: the mesh has no triangle with finite corners");
+  if (status == VXM_OK)
+    status =
+        vxm_surface_tree_create(&tree, grid->context, paint.count, vxm_surface_paint_corners, &paint, error);
+  if (status == VXM_OK) {
+    color_task task = {.grid = grid, .paint = &paint, .tree = tree, .values = values};
+    status = color_all(&task, average, error);
+  }
+  vxm_surface_tree_destroy(tree);
+  vxm_surface_paint_close(&paint);
+  return status;
+}
+
+uint64_t vxm_mesh_colors_bytes(const vxm_soup *mesh, const vxm_space *space, bool average) {
+  size_t triangles =
+      mesh->corner_count > 2 * mesh->face_count ? mesh->corner_count - 2 * mesh->face_count : 0;
+  uint64_t bytes = vxm_surface_tree_bytes(triangles) + 2 * triangles * sizeof(vxm_painted_triangle);
+  if (average)
+    bytes += (uint64_t)vxm_context_threads(mesh->context) * (uint64_t)(space->dims[1] * space->dims[2]) *
+             sizeof(vxm_surface_sum);
+  return bytes;
+}
