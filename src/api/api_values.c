@@ -190,7 +190,6 @@ vxm_status vxm_field_page(const vxm_field *field, const char *path, const vxm_pa
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "page", error);
   if (status == VXM_OK)
     status = VXM_OPTIONS_READ(&bounds, threshold, "page", error);
-  return status == VXM_OK
-             ? vxm_gridio_page(NULL, field, path, &chosen, threshold ? &bounds : NULL, error)
-             : status;
+  return status == VXM_OK ? vxm_gridio_page(NULL, field, path, &chosen, threshold ? &bounds : NULL, error)
+                          : status;
 }

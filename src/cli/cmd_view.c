@@ -33,7 +33,7 @@ typedef struct request {
 /** What was made of the input. */
 typedef struct subject {
   cli_values values;
-  vxm_mesh *prepared;       /**< to be voxelized, or NULL */
+  vxm_mesh *prepared;        /**< to be voxelized, or NULL */
   vxm_mesh *mesh, *repaired; /**< of a page: as it was read, and what a repair would make of it */
 } subject;
 
@@ -171,7 +171,8 @@ static int read_input(cli_run *cli, subject *out, request *given) {
     return voxelize(cli, out, given);
   vxm_status status = cli_values_read(cli, &out->values, path);
   if (status == VXM_OK && given->resolution)
-    return cli_fail_text(cli, "%s: --resolution is for meshes; this has its voxels", cli_shown(path, "<stdin>"));
+    return cli_fail_text(cli, "%s: --resolution is for meshes; this has its voxels",
+                         cli_shown(path, "<stdin>"));
   if (status == VXM_OK)
     return CLI_DONE;
   bool maybe_mesh = status == VXM_ERROR_FORMAT && strcmp(path, "-") != 0;
@@ -223,7 +224,8 @@ static int make_output(cli_run *cli, const request *given, const subject *of) {
     cli_rows_space(cli, cli_values_space(values));
     cli_values_row(cli, values);
     if (given->up_hint)
-      cli_row(cli, "up", "%c, as usual for %s; --up changes it", "xyz"[given->picture.up - 1], given->up_hint);
+      cli_row(cli, "up", "%c, as usual for %s; --up changes it", "xyz"[given->picture.up - 1],
+              given -> up_hint);
     cli_row(cli, "output", "%s", given->output);
   }
   return cli_finish(cli, make_report(cli, given, values));
@@ -251,9 +253,11 @@ const cli_command cli_command_view = {
     .arguments = "GRID|MESH -o FILE.png|FILE.html [OPTION]...",
     .summary = "draw a picture of a grid or a mesh, or write a page that shows it",
     .notes =
-        "A mesh is repaired and voxelized first. Standard input is read as a grid. Up is y in OBJ, glTF, FBX\n"
+        "A mesh is repaired and voxelized first. Standard input is read as a grid. Up is y in OBJ, glTF, "
+        "FBX\n"
         "and VRML, else z, unless --up tells.\n\n"
-        "A page is one file that needs no network: it is turned by mouse, touch and keys, cut along the axes,\n"
+        "A page is one file that needs no network: it is turned by mouse, touch and keys, cut along the "
+        "axes,\n"
         "and switches labels; of a mesh it shows what is wrong with it, and what repair --level closed\n"
         "would change.\n\n"
         "A file of values is drawn by what they are: signed distances below 0, unsigned ones below half a\n"

@@ -170,8 +170,8 @@ VXM_API vxm_status vxm_field_picture(const vxm_field *field, const char *path,
                                      const vxm_threshold_options *threshold, vxm_error *error);
 
 /**
- * Writes a page as vxm_grid_page does, with labels to be switched on and off, and a threshold of numbers, which
- * are rounded to 1/32766 of the largest.
+ * Writes a page as vxm_grid_page does, with labels to be switched on and off, and a threshold of numbers,
+ * which are rounded to 1/32766 of the largest.
  *
  * @param options   NULL = defaults
  * @param threshold what is shown at first; NULL = as vxm_field_picture, and the upper half of other numbers

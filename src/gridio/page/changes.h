@@ -6,8 +6,8 @@
 #include "mesh/soup.h"
 
 /**
- * Compares the faces of two meshes by the positions of their corners, whichever way they run; positions count as
- * one within a millionth of the diagonal, as a repair moves some apart by less.
+ * Compares the faces of two meshes by the positions of their corners, whichever way they run; positions count
+ * as one within a millionth of the diagonal, as a repair moves some apart by less.
  *
  * @param removed faces of `before` that `after` does not have: a byte each, 0 or 1
  * @param added   the same the other way

@@ -13,7 +13,7 @@ uniform sampler2D palette, ramp;
 uniform int kind;            // 0: codes of a palette, 1: numbers, 2: colours
 uniform ivec3 dims, low, high; // what is cut away lies outside of low to high
 uniform uvec2 bounds;        // of the numbers that are drawn
-uniform bool section, diverging, ramped;
+uniform bool section, diverging, ramped, quick;
 uniform float codeScale, codeShift; // from a number of the code to a place in the ramp
 uniform vec2 picture, reach, shift, planes; // planes: of the nearest and farthest depth
 uniform vec3 eye, right, top, back, light, step3;
@@ -116,7 +116,7 @@ void main() {
   float line = smoothstep(0.5 - 1.2 / pixels, 0.5 - 0.4 / pixels, max(edge.x, edge.y)) * smoothstep(5.0, 12.0, pixels);
   if (section && isCut) color = vec4(cut(p, part, axis) * (1.0 - 0.15 * line), 1);
   else {
-    vec4 near = around(p, face);
+    vec4 near = quick ? vec4(face, 0) : around(p, face);
     float smoothness = isCut ? 0.0 : 1.0 - smoothstep(3.0, 10.0, pixels);
     vec3 normal = normalize(mix(vec3(face), near.xyz, 0.9 * smoothness));
     float open = 1.0 - (0.45 - 0.3 * smoothness) * near.w, sun = max(dot(normal, light), 0.0);
@@ -215,6 +215,7 @@ class March {
     gl.uniform1i(place("section"), +(v.isNumber && state.section));
     gl.uniform1i(place("diverging"), +(v.kind === "distance"));
     gl.uniform1i(place("ramped"), +(v.kind === "confidence" || v.kind === "numbers"));
+    gl.uniform1i(place("quick"), +scene.quick);
     gl.uniform1f(place("codeScale"), (about.scale || 1) / codeSteps / span);
     gl.uniform1f(place("codeShift"), -ends[0] / span);
     gl.uniform2f(place("picture"), scene.width, scene.height);

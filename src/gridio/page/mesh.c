@@ -108,9 +108,9 @@ static vxm_status put_vertices(const drawn_mesh *d, vxm_error *error) {
 static void add_layer(const drawn_mesh *d, const char *name, const char *what, int bit, int64_t count,
                       const char *color, const char *hint) {
   if (count > 0)
-    json_array_append_new(d->layers, json_pack("{s:s, s:s, s:i, s:I, s:s, s:s}", "name", name, "what", what,
-                                               "bit", bit, "count", (json_int_t)count, "color", color, "hint",
-                                               hint));
+    json_array_append_new(d->layers,
+                          json_pack("{s:s, s:s, s:i, s:I, s:s, s:s}", "name", name, "what", what, "bit", bit,
+                                    "count", (json_int_t)count, "color", color, "hint", hint));
 }
 
 static int64_t count_flag(const drawn_mesh *d, int flag) {
@@ -125,8 +125,7 @@ static vxm_status put_defects(const drawn_mesh *d, vxm_defect_kind kind, bool is
                               const char *color, const char *hint, vxm_error *error) {
   vxm_pack *pack;
   int64_t count = 0;
-  vxm_status status =
-      vxm_pack_begin(&pack, d->soup->context, d->page->output, vxm_defect_name(kind), error);
+  vxm_status status = vxm_pack_begin(&pack, d->soup->context, d->page->output, vxm_defect_name(kind), error);
   for (size_t i = 0; status == VXM_OK && i < d->defects->count; i++) {
     const vxm_defect *defect = d->defects->items + i;
     if (defect->kind != kind)
@@ -148,7 +147,8 @@ static vxm_status put_all_defects(const drawn_mesh *d, vxm_error *error) {
     bool is_edge;
     const char *name, *color, *hint;
   } all[] = {
-      {VXM_DEFECT_BOUNDARY_EDGE, true, "open edges", "#e6194b", "edges of one face: rims of holes and sheets"},
+      {VXM_DEFECT_BOUNDARY_EDGE, true, "open edges", "#e6194b",
+       "edges of one face: rims of holes and sheets"},
       {VXM_DEFECT_NONMANIFOLD_EDGE, true, "non-manifold edges", "#c000c0", "edges of more than two faces"},
       {VXM_DEFECT_INCONSISTENT_EDGE, true, "inconsistent edges", "#b07000",
        "edges whose two faces look to different sides"},
@@ -237,14 +237,14 @@ static vxm_status put_faces(drawn_mesh *d, vxm_error *error) {
             "faces that repeat an earlier one");
   add_layer(d, "taken away by repair", "faces", REMOVED, count_flag(d, REMOVED), "#d04060",
             "faces that the repaired mesh does not have");
-  add_layer(d, "added by repair", "added", 0, added, "#20a060",
-            "faces that only the repaired mesh has");
+  add_layer(d, "added by repair", "added", 0, added, "#20a060", "faces that only the repaired mesh has");
   return status;
 }
 
 vxm_status vxm_page_put_mesh(vxm_page *page, const vxm_soup *mesh, const vxm_soup *repaired,
                              vxm_error *error) {
-  size_t triangles = mesh->corner_count > 2 * mesh->face_count ? mesh->corner_count - 2 * mesh->face_count : 0;
+  size_t triangles =
+      mesh->corner_count > 2 * mesh->face_count ? mesh->corner_count - 2 * mesh->face_count : 0;
   json_t *about = json_pack("{s:I, s:I, s:I}", "vertices", (json_int_t)mesh->vertex_count, "faces",
                             (json_int_t)mesh->face_count, "triangles", (json_int_t)triangles);
   json_object_set_new(page->about, "mesh", about);

@@ -7,7 +7,8 @@
 
 typedef struct vxm_pack vxm_pack;
 
-/** Begins a block. @param id of its element: letters. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+/** Begins a block. @param id of its element: letters. @return VXM_OK, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_pack_begin(vxm_pack **out, vxm_context *context, vxm_output *output, const char *id,
                           vxm_error *error);
 /** Adds bytes; a failure is told by vxm_pack_end. */

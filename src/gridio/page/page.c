@@ -41,11 +41,12 @@ static vxm_status check(const vxm_space *space, const vxm_field *field, const vx
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "page: up axis %d; choose 1 (x), 2 (y) or 3 (z)", options->up);
   if (n[0] > SIDE_MAX || n[1] > SIDE_MAX || n[2] > SIDE_MAX ||
       (uint64_t)(n[0] * n[1] * n[2]) > TEXTURE_MAX / bytes)
-    return vxm_fail(error, VXM_ERROR_RANGE,
-                    "page: %" PRId64 " x %" PRId64 " x %" PRId64
-                    " voxels are too many for a browser, which takes %zu million of them; make them at a lower "
-                    "resolution, or a picture (.png)",
-                    n[0], n[1], n[2], TEXTURE_MAX / bytes / 1000000);
+    return vxm_fail(
+        error, VXM_ERROR_RANGE,
+        "page: %" PRId64 " x %" PRId64 " x %" PRId64
+        " voxels are too many for a browser, which takes %zu million of them; make them at a lower "
+        "resolution, or a picture (.png)",
+        n[0], n[1], n[2], TEXTURE_MAX / bytes / 1000000);
   return VXM_OK;
 }
 
@@ -86,8 +87,8 @@ static vxm_status put_all(vxm_page *page, const vxm_grid *grid, const vxm_field 
   const char *frame = (const char *)frame_bytes; /* it ends with a 0 */
   const char *found = strstr(frame, mark), *rest = found + sizeof mark - 1;
   vxm_output_write(page->output, frame, (size_t)(found - frame));
-  vxm_status status = grid ? vxm_page_put_grid(page, grid, error)
-                           : vxm_page_put_field(page, field, threshold, error);
+  vxm_status status =
+      grid ? vxm_page_put_grid(page, grid, error) : vxm_page_put_field(page, field, threshold, error);
   if (status == VXM_OK)
     status = vxm_progress(page->context, "page", options->mesh ? 0.5 : 1, error);
   if (status == VXM_OK && options->mesh)

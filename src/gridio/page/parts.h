@@ -26,6 +26,7 @@ vxm_status vxm_page_put_grid(vxm_page *page, const vxm_grid *grid, vxm_error *er
 vxm_status vxm_page_put_field(vxm_page *page, const vxm_field *field, const vxm_threshold_options *threshold,
                               vxm_error *error);
 /** Adds a mesh with what is wrong with it, and with what repair changed if `repaired` is not NULL. */
-vxm_status vxm_page_put_mesh(vxm_page *page, const vxm_soup *mesh, const vxm_soup *repaired, vxm_error *error);
+vxm_status vxm_page_put_mesh(vxm_page *page, const vxm_soup *mesh, const vxm_soup *repaired,
+                             vxm_error *error);
 
 #endif

@@ -36,7 +36,7 @@ class View {
     const free = [width * (1 - Math.abs(shift[0])), height * (1 - Math.abs(shift[1]))], shorter = Math.min(...free);
     const reach = [camera.half * width / shorter, camera.half * height / shorter];
     const light = add(add(axes.right.map((x) => -0.45 * x), 0.95, axes.up), 0.5, axes.back), length = Math.hypot(...light);
-    const scene = { ...axes, width, height, ratio, reach, shift, depths: camera.depths(), step: this.step, light: light.map((x) => x / length),
+    const scene = { ...axes, width, height, ratio, reach, shift, depths: camera.depths(), step: this.step, quick: scale < 0.7, light: light.map((x) => x / length),
       matrix: camera.matrix(reach, shift), clipLow: state.low.map((n, a) => n > 0 ? n * this.step[a] : -1e9),
       clipHigh: state.high.map((n, a) => n < about.dims[a] ? n * this.step[a] : 1e9) };
     gl.viewport(0, 0, width, height);

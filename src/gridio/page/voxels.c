@@ -171,8 +171,8 @@ static vxm_status put_labels(vxm_page *page, const rows *r, vxm_error *error) {
 /* ---- Numbers and colours ---- */
 
 /**
- * A number as 16 bits: 0 is not a number; 1 to 32767 are below 0 (or -0), 32768 to 65534 from 0 on, so that the
- * sign of a distance is kept however small it is.
+ * A number as 16 bits: 0 is not a number; 1 to 32767 are below 0 (or -0), 32768 to 65534 from 0 on, so that
+ * the sign of a distance is kept however small it is.
  */
 static unsigned code_of(double value, double largest) {
   enum { STEPS = 32766, ZERO = 32768 };
@@ -221,8 +221,9 @@ static json_t *bound_json(bool is_used, double value) {
   return is_used ? json_real(value) : json_null();
 }
 
-static vxm_status put_numbers(vxm_page *page, const rows *r, vxm_field_kind kind, const vxm_field_range *range,
-                              const vxm_threshold_options *shown, vxm_error *error) {
+static vxm_status put_numbers(vxm_page *page, const rows *r, vxm_field_kind kind,
+                              const vxm_field_range *range, const vxm_threshold_options *shown,
+                              vxm_error *error) {
   double largest = find_largest(r);
   double low = fmax(range->min, -largest), high = fmin(range->max, largest);
   const char *name = kind == VXM_FIELD_NUMBERS ? "numbers" : vxm_field_kind_name(kind);

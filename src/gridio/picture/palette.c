@@ -31,7 +31,7 @@ static void interpolate(uint8_t rgb[3], const uint8_t stops[][3], int count, dou
 }
 
 void vxm_palette_diverging(uint8_t rgb[3], double value) {
-  static const uint8_t stops[][3] = {{5, 48, 97},     {33, 102, 172},  {67, 147, 195}, {146, 197, 222},
+  static const uint8_t stops[][3] = {{5, 48, 97},     {33, 102, 172},  {67, 147, 195},  {146, 197, 222},
                                      {209, 229, 240}, {247, 247, 247}, {253, 219, 199}, {244, 165, 130},
                                      {214, 96, 77},   {178, 24, 43},   {103, 0, 31}};
   interpolate(rgb, stops, sizeof stops / sizeof *stops, (value + 1) / 2);
