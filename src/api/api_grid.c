@@ -5,6 +5,7 @@
 #include "gridio/formats/confidence.h"
 #include "gridio/gridio.h"
 #include "gridio/mesh/surface_mesh.h"
+#include "gridio/page/page.h"
 #include "gridio/picture/picture.h"
 
 typedef vxm_status (*read_fn)(vxm_grid **out, vxm_context *context, const char *path, vxm_error *error);
@@ -56,6 +57,15 @@ vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path, const vxm_pi
   vxm_picture_options chosen = VXM_PICTURE_OPTIONS_INIT;
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "picture", error);
   return status == VXM_OK ? vxm_gridio_picture(grid, NULL, NULL, path, &chosen, error) : status;
+}
+
+vxm_status vxm_grid_page(const vxm_grid *grid, const char *path, const vxm_page_options *options,
+                         vxm_error *error) {
+  if (!grid || !path)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "page: an argument is NULL");
+  vxm_page_options chosen = VXM_PAGE_OPTIONS_INIT;
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "page", error);
+  return status == VXM_OK ? vxm_gridio_page(grid, NULL, path, &chosen, NULL, error) : status;
 }
 
 vxm_status vxm_grid_write_confidence(const vxm_grid *grid, const char *path, vxm_error *error) {

@@ -4,6 +4,7 @@
 #include "grid/cut.h"
 #include "gridio/common/values_cut.h"
 #include "gridio/gridio.h"
+#include "gridio/page/page.h"
 #include "gridio/picture/picture.h"
 
 #include <inttypes.h>
@@ -189,4 +190,17 @@ vxm_status vxm_field_picture(const vxm_field *field, const char *path, const vxm
   vxm_picture_options chosen = VXM_PICTURE_OPTIONS_INIT;
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "picture", error);
   return status == VXM_OK ? vxm_gridio_field_picture(field, path, &chosen, threshold, error) : status;
+}
+
+vxm_status vxm_field_page(const vxm_field *field, const char *path, const vxm_page_options *options,
+                          const vxm_threshold_options *threshold, vxm_error *error) {
+  if (!field || !path)
+    return fail_null(error);
+  vxm_page_options chosen = VXM_PAGE_OPTIONS_INIT;
+  vxm_threshold_options bounds = VXM_THRESHOLD_OPTIONS_INIT;
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "page", error);
+  if (status == VXM_OK)
+    status = VXM_OPTIONS_READ(&bounds, threshold, "page", error);
+  return status == VXM_OK ? vxm_gridio_page(NULL, field, path, &chosen, threshold ? &bounds : NULL, error)
+                          : status;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** voxmend view: a picture of a grid, or of a mesh as voxels. */
+/** voxmend view: a picture of a grid, or of a mesh as voxels, or a page that shows them in a browser. */
 #include "cli/cli.h"
 
 #include <inttypes.h>
@@ -7,21 +7,35 @@
 
 enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_AZIMUTH, KEY_ELEVATION, KEY_UP };
 
+enum { RESOLUTION = 128 };
+
 static const cli_option known_options[] = {
-    {'o', "output", "FILE.png", "picture to write"},
+    {'o', "output", "FILE", "picture (.png), or page for a browser (.html), to write"},
+    {'r', "resolution", "N", "voxels along the longest side of a mesh [128]"},
     {KEY_SIZE, "size", "WxH", "pixels, each from 1 to 16384 [800x600]"},
     {KEY_AZIMUTH, "azimuth", "DEGREES", "direction to look from, about the up axis [30]"},
     {KEY_ELEVATION, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]"},
-    {KEY_UP, "up", "x|y|z", "axis that points up [z]"},
+    {KEY_UP, "up", "x|y|z", "axis that points up [by the format of a mesh, else z]"},
     CLI_OPTIONS_THRESHOLD,
     CLI_OPTIONS_READ,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output;
+  bool is_page;
+  const char *of_picture; /**< an option that is for pictures alone, or NULL */
+  int64_t resolution;     /**< 0 = not given */
+  const char *up_hint;    /**< the extension by which `up` was chosen, or NULL */
   vxm_picture_options picture;
   vxm_threshold_options threshold;
 } request;
+
+/** What was made of the input. */
+typedef struct subject {
+  cli_values values;
+  vxm_mesh *prepared;        /**< to be voxelized, or NULL */
+  vxm_mesh *mesh, *repaired; /**< of a page: as it was read, and what a repair would make of it */
+} subject;
 
 /** "800x600" */
 static bool read_size(vxm_picture_options *out, const char *text) {
@@ -44,9 +58,15 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const axes[] = {"x", "y", "z", NULL};
   vxm_picture_options *picture = &out->picture;
   int choice = 0, result;
+  if (key == KEY_SIZE || key == KEY_AZIMUTH || key == KEY_ELEVATION)
+    out->of_picture = key == KEY_SIZE ? "--size" : key == KEY_AZIMUTH ? "--azimuth" : "--elevation";
   switch (key) {
   case 'o':
     out->output = value;
+    return CLI_END;
+  case 'r':
+    if (!cli_read_integer(&out->resolution, value, 1, 2048))
+      return cli_usage(cli, "--resolution '%s' is not a number from 1 to 2048", value);
     return CLI_END;
   case KEY_SIZE:
     if (!read_size(picture, value))
@@ -80,9 +100,12 @@ static int read_arguments(cli_run *cli, request *out) {
     return cli_usage(cli, "one grid or mesh is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
   if (!out->output)
-    return cli_usage(cli, "-o FILE.png is missing");
-  if (!cli_is_extension(out->output, "png"))
-    return cli_usage(cli, "the picture is a PNG: '%s' must end in .png", out->output);
+    return cli_usage(cli, "-o FILE.png or -o FILE.html is missing");
+  out->is_page = cli_is_extension(out->output, "html");
+  if (!out->is_page && !cli_is_extension(out->output, "png"))
+    return cli_usage(cli, "'%s' must end in .png, for a picture, or .html, for a page", out->output);
+  if (out->is_page && out->of_picture)
+    return cli_usage(cli, "%s is for pictures (.png); a page is turned by hand", out->of_picture);
   cli_writes(cli, "-o", out->output, false);
   return cli_check_names(cli);
 }
@@ -94,29 +117,66 @@ static bool is_named(const char *path, const char *const *formats) {
   return false;
 }
 
-static int voxelize(cli_run *cli, vxm_grid **grid, const char *path) {
-  enum { RESOLUTION = 128 };
+/** The axis that points up in most files of a mesh's format. */
+static void guess_up(request *given) {
+  static const char *const y_formats[] = {"obj", "gltf", "glb", "wrl", "vrml", "x3d", "fbx"};
+  const char *dot = strrchr(given->input, '.'), *slash = strrchr(given->input, '/');
+  if (given->picture.up != 0 || !dot || (slash && dot < slash))
+    return;
+  bool is_y = is_named(given->input, y_formats, sizeof y_formats / sizeof *y_formats);
+  given->picture.up = is_y ? 2 : 3;
+  given->up_hint = dot;
+}
+
+/** For a page: what repair --level closed changes. */
+static int repair_mesh(cli_run *cli, subject *out) {
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.level = VXM_LEVEL_CLOSED;
+  vxm_status status = vxm_mesh_repair(&out->repaired, NULL, out->mesh, &options, &cli->error);
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+}
+
+/** Reads and prepares; for a page the mesh is kept as it was, too. */
+static int read_mesh(cli_run *cli, subject *out, const request *given) {
   cli_input input;
   vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
-  if (cli_read_repaired(cli, &input, path, &repair) != CLI_DONE)
+  vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
+  int status = cli_read_repaired(cli, &input, given->input, given->is_page ? NULL : &repair);
+  *(given->is_page ? &out->mesh : &out->prepared) = input.mesh;
+  if (status != CLI_DONE || !given->is_page)
+    return status;
+  if (vxm_mesh_prepare(&out->prepared, &report, out->mesh, &repair, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  cli_warn_lost(cli, given->input, &report);
+  if (vxm_mesh_face_count(out->prepared) == 0)
+    return cli_fail_text(cli, "%s: no face is left after repair", given->input);
+  return repair_mesh(cli, out);
+}
+
+static int voxelize(cli_run *cli, subject *out, request *given) {
+  if (read_mesh(cli, out, given) != CLI_DONE)
     return CLI_FAILED;
+  guess_up(given);
   vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
-  space.resolution[0] = RESOLUTION;
-  vxm_status status = vxm_voxelize(grid, NULL, input.mesh, &space, NULL, &cli->error);
-  vxm_mesh_destroy(input.mesh);
+  space.resolution[0] = given->resolution ? given->resolution : RESOLUTION;
+  vxm_status status = vxm_voxelize(&out->values.grid, NULL, out->prepared, &space, NULL, &cli->error);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
 /** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
-static int read_input(cli_run *cli, cli_values *values, const char *path) {
+static int read_input(cli_run *cli, subject *out, request *given) {
+  const char *path = given->input;
   if (is_named(path, cli_mesh_formats))
-    return voxelize(cli, &values->grid, path);
-  vxm_status status = cli_values_read(cli, values, path);
+    return voxelize(cli, out, given);
+  vxm_status status = cli_values_read(cli, &out->values, path);
+  if (status == VXM_OK && given->resolution)
+    return cli_fail_text(cli, "%s: --resolution is for meshes; this has its voxels",
+                         cli_shown(path, "<stdin>"));
   if (status == VXM_OK)
     return CLI_DONE;
   bool maybe_mesh = status == VXM_ERROR_FORMAT && strcmp(path, "-") != 0;
   if (maybe_mesh && !(vxm_grid_format_traits(vxm_grid_format_of(path)) & VXM_FORMAT_READ))
-    return voxelize(cli, &values->grid, path);
+    return voxelize(cli, out, given);
   return cli_fail(cli);
 }
 
@@ -130,6 +190,20 @@ static json_t *make_report(const cli_run *cli, const request *given, const cli_v
   return report;
 }
 
+static vxm_status write_page(cli_run *cli, const request *given, const subject *of) {
+  bool is_given = cli_threshold_given(&given->threshold);
+  const char *slash = strrchr(given->input, '/');
+  vxm_page_options page = VXM_PAGE_OPTIONS_INIT;
+  page.title = strcmp(given->input, "-") == 0 ? "standard input" : slash ? slash + 1 : given->input;
+  page.mesh = of->mesh;
+  page.repaired = of->repaired;
+  page.up = given->picture.up;
+  if (of->values.grid)
+    return vxm_grid_page(of->values.grid, given->output, &page, &cli->error);
+  return vxm_field_page(of->values.field, given->output, &page, is_given ? &given->threshold : NULL,
+                        &cli->error);
+}
+
 /** Bits as they are, or numbers by the threshold, or else by what they are. */
 static vxm_status draw(cli_run *cli, const request *given, const cli_values *values) {
   bool is_given = cli_threshold_given(&given->threshold);
@@ -139,14 +213,18 @@ static vxm_status draw(cli_run *cli, const request *given, const cli_values *val
                            &cli->error);
 }
 
-static int make_picture(cli_run *cli, const request *given, const cli_values *values) {
-  if (draw(cli, given, values) != VXM_OK)
+static int make_output(cli_run *cli, const request *given, const subject *of) {
+  const cli_values *values = &of->values;
+  if ((given->is_page ? write_page(cli, given, of) : draw(cli, given, values)) != VXM_OK)
     return cli_fail(cli);
   cli_progress_clear(cli);
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
     cli_rows_space(cli, cli_values_space(values));
     cli_values_row(cli, values);
+    if (given->up_hint)
+      cli_row(cli, "up", "%c, as usual for %s; --up changes it", "xyz"[given->picture.up - 1],
+              given -> up_hint);
     cli_row(cli, "output", "%s", given->output);
   }
   return cli_finish(cli, make_report(cli, given, values));
@@ -158,22 +236,29 @@ static int run(cli_run *cli) {
     return cli->status;
   if (!cli_start(cli))
     return CLI_FAILED;
-  cli_values values = {NULL, NULL};
-  if (read_input(cli, &values, given.input) != CLI_DONE)
-    return CLI_FAILED;
-  int status = make_picture(cli, &given, &values);
-  cli_values_free(&values);
+  subject of = {{NULL, NULL}, NULL, NULL, NULL};
+  int status = read_input(cli, &of, &given);
+  if (status == CLI_DONE)
+    status = make_output(cli, &given, &of);
+  cli_values_free(&of.values);
+  vxm_mesh_destroy(of.prepared);
+  vxm_mesh_destroy(of.repaired);
+  vxm_mesh_destroy(of.mesh);
   return status;
 }
 
 const cli_command cli_command_view = {
     .name = "view",
-    .arguments = "GRID|MESH -o FILE.png [OPTION]...",
-    .summary = "draw a picture of a grid, or of a mesh",
+    .arguments = "GRID|MESH -o FILE.png|FILE.html [OPTION]...",
+    .summary = "draw a picture of a grid or a mesh, or write a page that shows it",
     .notes =
-        "A mesh is repaired and voxelized at 128 voxels along its longest side first. Standard input is "
-        "read\n"
-        "as a grid.\n\n"
+        "A mesh is repaired and voxelized first. Standard input is read as a grid. Up is y in OBJ, glTF, "
+        "FBX\n"
+        "and VRML, else z, unless --up tells.\n\n"
+        "A page is one file that needs no network: it is turned by mouse, touch and keys, cut along the "
+        "axes,\n"
+        "and switches labels; of a mesh it shows what is wrong with it, and what repair --level closed\n"
+        "would change.\n\n"
         "A file of values is drawn by what they are: signed distances below 0, unsigned ones below half a\n"
         "voxel's diagonal; coverage from one half on; confidence below 255, where the solid was not proven;\n"
         "labels and colours in their colours. If the file does not tell, non-negative integers are labels,\n"
@@ -181,6 +266,7 @@ const cli_command cli_command_view = {
         "choose others.\n\n"
         "Examples:\n"
         "  voxmend view chair.binvox -o chair.png\n"
+        "  voxmend view chair.off -o chair.html -r 256\n"
         "  voxmend view bunny.obj -o bunny.png --up y --azimuth 120 --size 1200x900\n"
         "  voxmend view distance.nrrd -o inside.png --below -0.1",
     .options = known_options,

@@ -178,6 +178,17 @@ VXM_API vxm_status vxm_field_picture(const vxm_field *field, const char *path,
                                      const vxm_picture_options *options,
                                      const vxm_threshold_options *threshold, vxm_error *error);
 
+/**
+ * Writes a page as vxm_grid_page does, with labels to be switched on and off, and a threshold of numbers,
+ * which are rounded to 1/32766 of the largest.
+ *
+ * @param options   NULL = defaults
+ * @param threshold what is shown at first; NULL = as vxm_field_picture, and the upper half of other numbers
+ * @return as vxm_grid_page; VXM_ERROR_RANGE beyond 2^26 numbers or 2^25 colours
+ */
+VXM_API vxm_status vxm_field_page(const vxm_field *field, const char *path, const vxm_page_options *options,
+                                  const vxm_threshold_options *threshold, vxm_error *error);
+
 /* ---- Fields: a number per voxel ---- */
 
 /** How finely coverage is counted, and as what. */

@@ -190,6 +190,30 @@ VXM_API unsigned vxm_grid_format_traits(const char *name);
 /** The name of the format that a file's name tells, or "". */
 VXM_API const char *vxm_grid_format_of(const char *path);
 
+/** What a page shows beside the voxels. */
+typedef struct vxm_page_options {
+  size_t size;              /**< as the initializer sets it */
+  const char *title;        /**< UTF-8; NULL = none */
+  const vxm_mesh *mesh;     /**< drawn over the voxels, with its defects as layers; NULL = none */
+  const vxm_mesh *repaired; /**< what became of it by a repair, to show what that changed; NULL = nothing */
+  int up;                   /**< axis that points up: 0 = default (z), 1 = x, 2 = y, 3 = z */
+} vxm_page_options;
+
+/** Initial value of vxm_page_options. */
+#define VXM_PAGE_OPTIONS_INIT \
+  { sizeof(vxm_page_options), NULL, NULL, NULL, 0 }
+
+/**
+ * Writes a page that shows the grid in a browser, whole in one file (HTML, WebGL 2): to be turned, cut along
+ * the axes and, with a mesh, compared with that. A mesh of more than four million triangles is left out.
+ *
+ * @param options NULL = defaults
+ * @return VXM_OK; VXM_ERROR_RANGE beyond 2^27 voxels, or 2048 along a side; VXM_ERROR_ARGUMENT, VXM_ERROR_IO,
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_grid_page(const vxm_grid *grid, const char *path, const vxm_page_options *options,
+                                 vxm_error *error);
+
 /**
  * Reads only where the voxels of a grid or field lie: a grid in which none is set.
  *

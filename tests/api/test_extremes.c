@@ -88,6 +88,10 @@ static vxm_status draw(const void *options) {
   return vxm_grid_picture(grid, "/dev/null", options, &error);
 }
 
+static vxm_status show(const void *options) {
+  return vxm_grid_page(grid, "/dev/null", options, &error);
+}
+
 static vxm_status make_engine(const void *options) {
   vxm_engine *made;
   vxm_status status = vxm_engine_create(&made, context, "cpu", options, &error);
@@ -185,6 +189,7 @@ static const vxm_repair_options repair = {.size = sizeof(vxm_repair_options),
                                           .level = VXM_LEVEL_MANIFOLD};
 static const vxm_grid_write_options grid_write = {.size = sizeof(vxm_grid_write_options), .format = "npy"};
 static const vxm_picture_options picture = {sizeof(vxm_picture_options), 8, 8, 30, 25, 3};
+static const vxm_page_options page = {.size = sizeof(vxm_page_options), .title = "title", .up = 3};
 static const vxm_engine_options engine_options = VXM_ENGINE_OPTIONS_INIT;
 static const vxm_space_options size_options = {.size = sizeof(vxm_space_options), .voxel_size = 0.25};
 static const vxm_space_options bounds_options = {.size = sizeof(vxm_space_options),
@@ -229,6 +234,7 @@ static const options_case cases[] = {
      {F(vxm_picture_options, width, CHOICE), F(vxm_picture_options, height, CHOICE),
       F(vxm_picture_options, azimuth, NUMBER), F(vxm_picture_options, elevation, NUMBER),
       F(vxm_picture_options, up, CHOICE)}},
+    {S(page, show), {F(vxm_page_options, up, CHOICE)}},
     {S(engine_options, make_engine),
      {F(vxm_engine_options, gl_method, CHOICE), F(vxm_engine_options, slice_axis, CHOICE),
       F(vxm_engine_options, displacement, NUMBER), F(vxm_engine_options, cl_method, CHOICE)}},

@@ -49,6 +49,7 @@ static vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
 static vxm_grid_write_options grid_write = VXM_GRID_WRITE_OPTIONS_INIT;
 static vxm_threshold_options threshold = {sizeof(vxm_threshold_options), true, 0.5, false, 0};
 static vxm_picture_options picture = VXM_PICTURE_OPTIONS_INIT;
+static vxm_page_options page = VXM_PAGE_OPTIONS_INIT;
 static vxm_engine_options engine_options = VXM_ENGINE_OPTIONS_INIT;
 static vxm_published_options published_options = VXM_PUBLISHED_OPTIONS_INIT;
 static vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
@@ -225,6 +226,7 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_grid_write, 4, 3, vxm_grid_write(P(0, grid), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))    \
   X(vxm_grid_surface_mesh, 3, 3, vxm_grid_surface_mesh(P(0, &out.mesh), P(1, grid), P(2, &error)))         \
   X(vxm_grid_picture, 4, 3, vxm_grid_picture(P(0, grid), P(1, "out.png"), P(2, &picture), P(3, &error)))   \
+  X(vxm_grid_page, 4, 3, vxm_grid_page(P(0, grid), P(1, "out.html"), P(2, &page), P(3, &error)))           \
   X(vxm_grid_compare, 4, 7, vxm_grid_compare(P(0, &out.comparison), P(1, grid), P(2, grid), P(3, &error))) \
   X(vxm_grid_write_coords, 3, 3, vxm_grid_write_coords(P(0, grid), P(1, "out.npy"), P(2, &error)))
 
@@ -263,7 +265,9 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
     vxm_field_threshold(P(0, &out.grid), P(1, field), P(2, &threshold), P(3, &error)))                      \
   X(vxm_field_write, 4, 3, vxm_field_write(P(0, field), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))  \
   X(vxm_field_picture, 5, 3,                                                                                \
-    vxm_field_picture(P(0, field), P(1, "out.png"), P(2, &picture), P(3, &threshold), P(4, &error)))
+    vxm_field_picture(P(0, field), P(1, "out.png"), P(2, &picture), P(3, &threshold), P(4, &error)))        \
+  X(vxm_field_page, 5, 3,                                                                                   \
+    vxm_field_page(P(0, field), P(1, "out.html"), P(2, &page), P(3, &threshold), P(4, &error)))
 
 #define ENGINE_CALLS(X)                                                                                    \
   X(vxm_engine_create, 5, 5,                                                                               \

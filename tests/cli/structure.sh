@@ -19,7 +19,7 @@ order="voxmend base mesh sandbox
   voxel/lattice voxel/parts voxel/parity voxel/winding voxel/surface voxel/closest voxel/engine voxel/thin voxel/solid voxel/model
   voxel/sparse voxel/fields voxel/labels
   gpu/common gpu/opencl gpu/opengl gpu
-  gridio/common gridio/formats gridio/mesh gridio/picture gridio
+  gridio/common gridio/formats gridio/mesh gridio/picture gridio/page gridio
   export remesh augment api
   modules/assimp modules/images modules/occt modules/openmesh modules/cgal modules/openvdb"
 
@@ -42,7 +42,7 @@ for folder in $order; do
   esac
   pattern=$(echo $allowed | sed 's/ /|/g')
   found=$(grep -nE '#[[:space:]]*include[[:space:]]+"' $(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cc' -o -maxdepth 1 -name '*.inc') |
-    grep -vE "\"(($pattern)/[^/\"]*|voxmend/[a-z]*\.h|voxmend\.h|config\.h|build_hash\.h|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
+    grep -vE "\"(($pattern)/[^/\"]*|voxmend/[a-z]*\.h|voxmend\.h|config\.h|build_hash\.h|view_page\.inc|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
   [ -z "$found" ] || complain "$folder includes what does not come before it" "$found"
 done
 found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' batch | grep -vE '"(batch/[^"]*|voxmend\.h|config\.h|batch_page\.inc)"' || true)

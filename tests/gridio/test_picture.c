@@ -7,6 +7,7 @@
 #include "gridio/gridio.h"
 #include "gridio/picture/picture.h"
 #include "gridio/picture/raycast.h"
+#include "gridio/picture/tiles.h"
 
 #include <math.h>
 
@@ -63,7 +64,7 @@ static void test_rays(void **state) {
         d[a] = vxm_rng_unit(&rng) * (double)space.dims[a] - o[a]; /* toward the grid */
       }
       vxm_hit fast, slow;
-      bool hit = vxm_raycast(&fast, grid, &pyramid, o, d);
+      bool hit = vxm_raycast(&fast, &pyramid, o, d);
       assert_int_equal(hit, slow_trace(&slow, grid, o, d));
       if (hit) {
         assert_memory_equal(fast.voxel, slow.voxel, sizeof fast.voxel);
@@ -90,12 +91,12 @@ static void test_rays_along_axes(void **state) {
       o[axis] = forward ? -3 : 200;
       d[axis] = forward ? 2 : -2;
       vxm_hit hit;
-      assert_true(vxm_raycast(&hit, grid, &pyramid, o, d));
+      assert_true(vxm_raycast(&hit, &pyramid, o, d));
       assert_true(hit.axis == axis && hit.positive == !forward && hit.voxel[0] == 66);
       o[(axis + 1) % 3] += 1;
-      assert_false(vxm_raycast(&hit, grid, &pyramid, o, d));
+      assert_false(vxm_raycast(&hit, &pyramid, o, d));
       o[(axis + 1) % 3] = -1;
-      assert_false(vxm_raycast(&hit, grid, &pyramid, o, d));
+      assert_false(vxm_raycast(&hit, &pyramid, o, d));
     }
   vxm_occupancy_mips_destroy(&pyramid);
   vxm_grid_destroy(grid);
@@ -127,6 +128,45 @@ static void test_pyramid(void **state) {
           }
     }
     vxm_occupancy_mips_destroy(&pyramid);
+    vxm_grid_destroy(grid);
+  }
+  vxm_context_destroy(context);
+}
+
+/** No voxel lies before the depth of its tile, nor where there is none; and most tiles without voxels know
+ * it.
+ */
+static void test_tiles(void **state) {
+  (void)state;
+  vxm_context *context = context_of(1);
+  vxm_rng rng = {25};
+  for (int round = 0; round < 40; round++) {
+    vxm_grid *grid = new_grid(context, unit_space(90, 50, 70));
+    for (int n = 0; n < 6; n++)
+      vxm_grid_set(grid, (int64_t)vxm_rng_below(&rng, 90), (int64_t)vxm_rng_below(&rng, 50),
+                   (int64_t)vxm_rng_below(&rng, 70), true);
+    vxm_scene scene = {.grid = grid, .step = {1, 1, 1}};
+    assert_int_equal(vxm_occupancy_mips_create(&scene.pyramid, grid, NULL), VXM_OK);
+    double angle = vxm_rng_unit(&rng) * 6;
+    vxm_camera cam = {.width = 100, .height = 77, .pixel = 0.01, .top = {{0, 0, 1}}};
+    cam.back = vxm_ray_vec3_of(cos(angle), sin(angle), 0);
+    cam.right = vxm_ray_vec3_of(-sin(angle), cos(angle), 0);
+    cam.eye = vxm_ray_vec3_add(vxm_ray_vec3_of(45, 25, 35), round < 4 ? 20 : 150, cam.back); /* 20: within */
+    vxm_tiles tiles;
+    assert_int_equal(vxm_tiles_create(&tiles, &scene, &cam, NULL), VXM_OK);
+    int empty = 0;
+    for (int r = 0; r < 3000; r++) {
+      double x = vxm_rng_unit(&rng) * cam.width, y = vxm_rng_unit(&rng) * cam.height;
+      vxm_ray_vec3 direction = vxm_camera_direction(&cam, x, y);
+      vxm_hit hit;
+      double depth = (double)vxm_tiles_depth(&tiles, x, y);
+      empty += isinf(depth) != 0;
+      if (vxm_raycast(&hit, &scene.pyramid, cam.eye.c, direction.c))
+        assert_true(depth <= -hit.t * vxm_ray_vec3_dot(direction, cam.back));
+    }
+    assert_true(round < 4 || empty > 1500);
+    vxm_tiles_destroy(&tiles);
+    vxm_occupancy_mips_destroy(&scene.pyramid);
     vxm_grid_destroy(grid);
   }
   vxm_context_destroy(context);
@@ -345,6 +385,7 @@ int main(void) {
       cmocka_unit_test(test_rays),
       cmocka_unit_test(test_rays_along_axes),
       cmocka_unit_test(test_pyramid),
+      cmocka_unit_test(test_tiles),
 #ifdef HAVE_PNG
       cmocka_unit_test(test_framing),
       cmocka_unit_test(test_way_up),

@@ -3,14 +3,9 @@
 #include "base/threads.h"
 
 #include <math.h>
+#include <string.h>
 
 /* ---- Level 0 from bits ---- */
-
-/** Counts, in each byte half, of the set bits of each group of 4: 16 counts of 0 to 4. */
-static uint64_t count_nibbles(uint64_t word) {
-  word -= word >> 1 & UINT64_C(0x5555555555555555);
-  return (word & UINT64_C(0x3333333333333333)) + (word >> 2 & UINT64_C(0x3333333333333333));
-}
 
 typedef struct filling {
   vxm_occupancy_mips *pyramid;
@@ -22,27 +17,30 @@ static int64_t smaller(int64_t a, int64_t b) {
   return a < b ? a : b;
 }
 
+/** Takes the voxels of four rows, the first of which is j, into the blocks that they belong to. */
+static void gather(uint64_t *blocks, const vxm_grid *grid, int64_t j, int64_t k, int64_t count) {
+  for (int64_t y = j; y < smaller(j + 4, grid->space.dims[1]); y++) {
+    const uint64_t *row = vxm_grid_row(grid, y, k);
+    int shift = (int)(16 * (k & 3) + 4 * (y & 3));
+    for (int64_t b = 0; b < count; b++)
+      blocks[b] |= (row[b / 16] >> 4 * (b % 16) & 15) << shift;
+  }
+}
+
 /** One layer of blocks: each of up to 64 set voxels becomes 0 to 255. */
 static void fill_first(size_t task, int worker, void *payload) {
   (void)worker;
   const filling *f = payload;
-  const vxm_grid *grid = f->grid;
   const int64_t *dims = f->pyramid->level[0].dims, bk = (int64_t)task;
   for (int64_t bj = 0; bj < dims[1]; bj++) {
-    uint8_t *cells = f->pyramid->level[0].cells + (bk * dims[1] + bj) * dims[0];
-    for (size_t w = 0; w < grid->row_words; w++) {
-      uint64_t low = 0, high = 0; /* counts of even and odd groups, a byte each */
-      for (int64_t k = 4 * bk; k < smaller(4 * bk + 4, grid->space.dims[2]); k++)
-        for (int64_t j = 4 * bj; j < smaller(4 * bj + 4, grid->space.dims[1]); j++) {
-          uint64_t counts = count_nibbles(vxm_grid_row(grid, j, k)[w]);
-          low += counts & UINT64_C(0x0f0f0f0f0f0f0f0f);
-          high += counts >> 4 & UINT64_C(0x0f0f0f0f0f0f0f0f);
-        }
-      for (int64_t b = 0; b < smaller(16, dims[0] - 16 * (int64_t)w); b++) {
-        uint64_t count = (b % 2 ? high : low) >> (8 * (b / 2)) & 0xff;
-        cells[16 * (int64_t)w + b] = (uint8_t)((count * 255 + 63) / 64);
-      }
-    }
+    int64_t first = (bk * dims[1] + bj) * dims[0];
+    uint64_t *blocks = f->pyramid->blocks + first;
+    uint8_t *cells = f->pyramid->level[0].cells + first;
+    memset(blocks, 0, (size_t)dims[0] * sizeof *blocks);
+    for (int64_t k = 4 * bk; k < smaller(4 * bk + 4, f->grid->space.dims[2]); k++)
+      gather(blocks, f->grid, 4 * bj, k, dims[0]);
+    for (int64_t b = 0; b < dims[0]; b++)
+      cells[b] = (uint8_t)((__builtin_popcountll(blocks[b]) * 255 + 63) / 64);
   }
 }
 
@@ -66,34 +64,69 @@ static void fill_next(size_t task, int worker, void *payload) {
     }
 }
 
+/* ---- Gaps ---- */
+
+/** One layer of blocks. */
+static void measure_gaps(size_t task, int worker, void *payload) {
+  (void)worker;
+  const filling *f = payload;
+  const vxm_occupancy_mips *p = f->pyramid;
+  const int64_t *dims = p->level[0].dims, k = 4 * (int64_t)task;
+  for (int64_t j = 0; j < dims[1]; j++)
+    for (int64_t i = 0; i < dims[0]; i++) {
+      const int64_t voxel[3] = {4 * i, 4 * j, k};
+      int levels = 0;
+      while (levels < p->levels && vxm_occupancy_mips_cell(p, levels, voxel) == 0)
+        levels++;
+      p->gaps[vxm_occupancy_mips_index(p, voxel)] = (uint8_t)levels;
+    }
+}
+
+/** Room for a level; level 0 has the blocks and gaps beside. */
+static vxm_status make_level(vxm_occupancy_mips *p, int l, vxm_error *error) {
+  int64_t side = INT64_C(4) << l, *dims = p->level[l].dims;
+  for (int a = 0; a < 3; a++)
+    dims[a] = (p->dims[a] + side - 1) / side;
+  size_t count = (size_t)(dims[0] * dims[1] * dims[2]);
+  vxm_error local = VXM_ERROR_INIT;
+  if (l == 0)
+    p->blocks = vxm_alloc(p->context, count, sizeof *p->blocks, &local);
+  if (l == 0 && p->blocks)
+    p->gaps = vxm_alloc(p->context, count, 1, &local);
+  p->level[l].cells = p->gaps ? vxm_alloc(p->context, count, 1, &local) : NULL;
+  p->levels = l + 1;
+  if (!p->level[l].cells)
+    vxm_error_pass(error, &local);
+  return p->level[l].cells ? VXM_OK : local.code;
+}
+
 vxm_status vxm_occupancy_mips_create(vxm_occupancy_mips *out, const vxm_grid *grid, vxm_error *error) {
   *out = (vxm_occupancy_mips){.context = grid->context};
-  int64_t side = 4;
-  for (int l = 0; l < VXM_OCCUPANCY_LEVELS; l++, side *= 2) {
-    int64_t *dims = out->level[l].dims, largest = 0;
-    for (int a = 0; a < 3; a++) {
-      dims[a] = (grid->space.dims[a] + side - 1) / side;
-      largest = dims[a] > largest ? dims[a] : largest;
-    }
-    vxm_error local = VXM_ERROR_INIT;
-    out->level[l].cells = vxm_alloc(out->context, (size_t)(dims[0] * dims[1] * dims[2]), 1, &local);
-    if (!out->level[l].cells) {
+  memcpy(out->dims, grid->space.dims, sizeof out->dims);
+  for (int l = 0; l < VXM_OCCUPANCY_LEVELS; l++) {
+    vxm_status status = make_level(out, l, error);
+    if (status != VXM_OK) {
       vxm_occupancy_mips_destroy(out);
-      vxm_error_pass(error, &local);
-      return local.code;
+      return status;
     }
-    out->levels = l + 1;
+    const int64_t *dims = out->level[l].dims;
     filling f = {out, grid, l};
     vxm_parallel(out->context, (size_t)dims[2], l == 0 ? fill_first : fill_next, &f);
-    if (largest == 1)
+    if (dims[0] == 1 && dims[1] == 1 && dims[2] == 1)
       break;
   }
+  filling f = {out, grid, 0};
+  vxm_parallel(out->context, (size_t)out->level[0].dims[2], measure_gaps, &f);
   return VXM_OK;
 }
 
 void vxm_occupancy_mips_destroy(vxm_occupancy_mips *pyramid) {
   for (int l = 0; l < pyramid->levels; l++)
     vxm_free(pyramid->context, pyramid->level[l].cells);
+  vxm_free(pyramid->context, pyramid->blocks);
+  vxm_free(pyramid->context, pyramid->gaps);
+  pyramid->blocks = NULL;
+  pyramid->gaps = NULL;
   pyramid->levels = 0;
 }
 
@@ -108,19 +141,16 @@ double vxm_occupancy_mips_sample(const vxm_occupancy_mips *pyramid, int level, c
     base[a] = (int64_t)floor(at);
     part[a] = at - (double)base[a];
   }
-  double sum = 0;
-  for (int corner = 0; corner < 8; corner++) {
-    int64_t c[3];
-    double weight = 1;
-    bool outside = false;
-    for (int a = 0; a < 3; a++) {
-      int upper = corner >> a & 1;
-      c[a] = base[a] + upper;
-      weight *= upper ? part[a] : 1 - part[a];
-      outside |= c[a] < 0 || c[a] >= dims[a];
-    }
-    if (!outside)
-      sum += weight * pyramid->level[level].cells[(c[2] * dims[1] + c[1]) * dims[0] + c[0]];
+  double along[2] = {0, 0}, weight[2][2];
+  for (int n = 0; n < 4; n++)
+    weight[n >> 1][n & 1] = (n & 1 ? part[1] : 1 - part[1]) * (n >> 1 ? part[2] : 1 - part[2]);
+  for (int n = 0; n < 4; n++) {
+    int64_t j = base[1] + (n & 1), k = base[2] + (n >> 1);
+    if (j < 0 || k < 0 || j >= dims[1] || k >= dims[2])
+      continue;
+    const uint8_t *row = pyramid->level[level].cells + (k * dims[1] + j) * dims[0];
+    along[0] += base[0] >= 0 ? weight[n >> 1][n & 1] * row[base[0]] : 0;
+    along[1] += base[0] + 1 < dims[0] ? weight[n >> 1][n & 1] * row[base[0] + 1] : 0;
   }
-  return sum / 255;
+  return ((1 - part[0]) * along[0] + part[0] * along[1]) / 255;
 }

@@ -4,16 +4,16 @@
 #include "base/threads.h"
 #include "gridio/picture/png_write.h"
 #include "gridio/picture/shade.h"
+#include "gridio/picture/tiles.h"
 
 #include <string.h>
 
-enum { SIZE_MAX_PIXELS = 16384, BAND = 32, SAMPLES = 4 };
-
-typedef struct camera {
-  vxm_ray_vec3 eye, back, right, top; /**< unit vectors; the camera looks along -back */
-  double pixel;                       /**< width of a pixel at distance 1 */
-  int width, height;
-} camera;
+enum {
+  SIZE_MAX_PIXELS = 16384,
+  BAND = 32,
+  SAMPLES = 4,
+  FLOOR = 4 /**< pixels between points of the floor */
+};
 
 /* ---- What is to be seen ---- */
 
@@ -129,7 +129,7 @@ static vxm_ray_vec3 axis_vector(int axis) {
 /* ---- The camera ---- */
 
 /** Moves the camera back along its axis until the whole outline is in the picture, and centres it. */
-static void frame(camera *cam, const outline *o, vxm_ray_vec3 target) {
+static void frame(vxm_camera *cam, const outline *o, vxm_ray_vec3 target) {
   const double half_angle_tangent = 0.24, margin = 0.88;
   double shorter = cam->width < cam->height ? cam->width : cam->height;
   cam->pixel = 2 * half_angle_tangent / shorter;
@@ -158,7 +158,7 @@ static void frame(camera *cam, const outline *o, vxm_ray_vec3 target) {
 }
 
 /** Azimuth turns about the up axis from the axis that follows it (x, if z is up) to the one after. */
-static vxm_status set_up(camera *cam, vxm_scene *scene, const vxm_picture_options *options,
+static vxm_status set_up(vxm_camera *cam, vxm_scene *scene, const vxm_picture_options *options,
                          vxm_error *error) {
   const double degree = 3.14159265358979323846 / 180;
   int up = options->up == 0 ? 2 : options->up - 1;
@@ -200,10 +200,20 @@ static vxm_status set_up(camera *cam, vxm_scene *scene, const vxm_picture_option
 
 /* ---- Drawing ---- */
 
+/** What the picture shows at a corner of pixels. */
+typedef struct corner {
+  float light[3]; /**< as vxm_light */
+  float plain[3]; /**< -1 if there is no voxel */
+} corner;
+
 typedef struct drawing {
-  const camera *cam;
+  const vxm_camera *cam;
   const vxm_scene *scene;
-  int row; /**< first of the band */
+  vxm_tiles tiles;
+  int row;           /**< first of the band */
+  float (*floor)[3]; /**< what is behind the voxels, at every FLOOR-th corner of every FLOOR-th row */
+  size_t floor_width;
+  corner *corners; /**< of its rows of pixels: a row more, and in each one more than pixels */
   unsigned char *pixels;
 } drawing;
 
@@ -211,62 +221,178 @@ typedef struct drawing {
 static unsigned char encode(double light) {
   if (!(light > 0))
     return 0;
+  if (light >= 1)
+    return 255;
   double value = light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1 / 2.4) - 0.055;
-  return value >= 1 ? 255 : (unsigned char)(255 * value + 0.5);
+  return (unsigned char)(255 * value + 0.5);
 }
 
-/** A pixel is the mean of four rays, spread so that no two share a row or column of its 4 x 4 parts. */
-static void draw_pixel(const drawing *d, int x, int y, unsigned char *rgb) {
-  static const double offset[SAMPLES][2] = {{0.375, 0.125}, {0.875, 0.375}, {0.125, 0.625}, {0.625, 0.875}};
-  const camera *cam = d->cam;
-  /* Neighbouring pixels look at different points of the sun; their mean is even (Jimenez 2014). */
+/** Neighbouring pixels look at different points of the sun; their mean is even (Jimenez 2014). */
+static double turn_at(int x, int y) {
   double start = 52.9829189 * fmod(0.06711056 * x + 0.00583715 * y, 1);
-  start -= floor(start);
-  vxm_ray_vec3 sum = {{0, 0, 0}};
-  for (int s = 0; s < SAMPLES; s++) {
-    double across = (x + offset[s][0] - 0.5 * cam->width) * cam->pixel;
-    double upward = (0.5 * cam->height - y - offset[s][1]) * cam->pixel;
-    vxm_ray_vec3 direction = vxm_ray_vec3_add(vxm_ray_vec3_scale(across, cam->right), upward, cam->top);
-    direction = vxm_ray_vec3_unit(vxm_ray_vec3_add(direction, -1, cam->back));
-    double jitter[2] = {start + 0.25 * s, (s * 2 % SAMPLES + s / 2 + 0.5) / SAMPLES};
-    vxm_ray_vec3 light = vxm_shade(d->scene, cam->eye, direction, jitter);
-    for (int n = 0; n < 3; n++)
-      sum.c[n] += fmin(light.c[n], 1.0) / SAMPLES;
-  }
-  for (int n = 0; n < 3; n++)
-    rgb[n] = encode(sum.c[n]);
+  return start - floor(start);
 }
 
+/** A row of points of the floor. Its shadow is soft, and takes more rays than points. */
+static void look_behind(size_t task, int worker, void *payload) {
+  (void)worker;
+  const drawing *d = payload;
+  int y = d->row + FLOOR * (int)task;
+  float(*row)[3] = d->floor + task * d->floor_width;
+  for (size_t n = 0; n < d->floor_width; n++) {
+    int x = FLOOR * (int)n;
+    vxm_ray_vec3 light =
+        vxm_shade_background(d->scene, d->cam->eye, vxm_camera_direction(d->cam, x, y), turn_at(x, y));
+    for (int c = 0; c < 3; c++)
+      row[n][c] = (float)light.c[c];
+  }
+}
+
+/** What is behind the voxels, between four points of the floor. */
+static void behind(float out[3], const drawing *d, double x, double y) {
+  double u = x / FLOOR, v = (y - d->row) / FLOOR;
+  size_t i = (size_t)u, j = (size_t)v;
+  float s = (float)(u - (double)i), t = (float)(v - (double)j);
+  const float(*upper)[3] = (const float(*)[3])d->floor + j * d->floor_width + i,
+        (*lower)[3] = upper + d->floor_width;
+  for (int c = 0; c < 3; c++)
+    out[c] =
+        (1 - t) * ((1 - s) * upper[0][c] + s * upper[1][c]) + t * ((1 - s) * lower[0][c] + s * lower[1][c]);
+}
+
+/** Light of the voxel at a point of the picture, if there is one. */
+static bool look_at_voxels(vxm_light *light, const drawing *d, double x, double y, const double jitter[2]) {
+  const vxm_camera *cam = d->cam;
+  double depth = (double)vxm_tiles_depth(&d->tiles, x, y);
+  if (!(depth < INFINITY))
+    return false;
+  vxm_ray_vec3 direction = vxm_camera_direction(cam, x, y);
+  double begin = depth / -vxm_ray_vec3_dot(direction, cam->back);
+  return vxm_shade(light, d->scene, vxm_ray_vec3_add(cam->eye, begin, direction), direction, jitter);
+}
+
+/** What is seen at a point of the picture. `part`, 0 to 3, is the quarter of the sun that is looked at;
+ * `start` turns the sun's disk. */
+static corner look(const drawing *d, double x, double y, double start, int part) {
+  double jitter[2] = {start + 0.25 * part, (part * 2 % SAMPLES + part / 2 + 0.5) / SAMPLES};
+  vxm_light light;
+  corner seen = {{1, 1, 1}, {-1, -1, -1}};
+  if (!look_at_voxels(&light, d, x, y, jitter))
+    behind(seen.light, d, x, y);
+  else
+    for (int n = 0; n < 3; n++) {
+      seen.light[n] = (float)fmin(light.colour.c[n], 1.0);
+      seen.plain[n] = (float)light.plain.c[n];
+    }
+  return seen;
+}
+
+/** A row of corners: the four of any pixel look at the four quarters of the sun. */
+static void look_along(size_t task, int worker, void *payload) {
+  (void)worker;
+  const drawing *d = payload;
+  int y = d->row + (int)task;
+  corner *row = d->corners + task * ((size_t)d->cam->width + 1);
+  for (int x = 0; x <= d->cam->width; x++)
+    row[x] = look(d, x, y, turn_at(x, y), 2 * (y & 1) + (x & 1));
+}
+
+/** Whether something ends within a pixel: its corners see different things, or in different light. */
+static bool has_edge(const corner *upper, const corner *lower) {
+  const corner *all[4] = {upper, upper + 1, lower, lower + 1};
+  for (int n = 0; n < 3; n++) {
+    float low = all[0]->plain[n], high = low;
+    for (int c = 1; c < 4; c++) {
+      low = fminf(low, all[c]->plain[n]);
+      high = fmaxf(high, all[c]->plain[n]);
+    }
+    if (high - low > 0.02F + 0.12F * fmaxf(high, 0))
+      return true;
+  }
+  return false;
+}
+
+/** A pixel with an edge is the mean of four rays, spread so that no two share a row or column of its 4 x 4
+ * parts. */
+static void draw_edge(const drawing *d, int x, int y, double sum[3]) {
+  static const double offset[SAMPLES][2] = {{0.375, 0.125}, {0.875, 0.375}, {0.125, 0.625}, {0.625, 0.875}};
+  double start = turn_at(x, y);
+  for (int s = 0; s < SAMPLES; s++) {
+    corner seen = look(d, x + offset[s][0], y + offset[s][1], start, s);
+    for (int n = 0; n < 3; n++)
+      sum[n] += (double)seen.light[n] / SAMPLES;
+  }
+}
+
+/** Most pixels are the mean of their corners, each of which four pixels share. */
 static void draw_row(size_t task, int worker, void *payload) {
   (void)worker;
   const drawing *d = payload;
-  unsigned char *row = d->pixels + task * 3 * (size_t)d->cam->width;
-  for (int x = 0; x < d->cam->width; x++)
-    draw_pixel(d, x, d->row + (int)task, row + 3 * x);
+  size_t width = (size_t)d->cam->width;
+  unsigned char *row = d->pixels + task * 3 * width;
+  const corner *upper = d->corners + task * (width + 1), *lower = upper + width + 1;
+  for (int x = 0; x < d->cam->width; x++, upper++, lower++) {
+    double sum[3] = {0, 0, 0};
+    if (has_edge(upper, lower))
+      draw_edge(d, x, d->row + (int)task, sum);
+    else
+      for (int n = 0; n < 3; n++)
+        sum[n] = ((double)upper->light[n] + upper[1].light[n] + lower->light[n] + lower[1].light[n]) / 4;
+    for (int n = 0; n < 3; n++)
+      row[3 * x + n] = encode(sum[n]);
+  }
 }
 
-static vxm_status draw(vxm_output *output, const camera *cam, const vxm_scene *scene, vxm_error *error) {
-  vxm_context *context = scene->grid->context;
-  vxm_error local = VXM_ERROR_INIT;
-  unsigned char *pixels = vxm_alloc(context, (size_t)BAND * 3, (size_t)cam->width, &local);
-  if (!pixels) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  vxm_png *png;
-  vxm_status status = vxm_png_create(&png, context, output, cam->width, cam->height, error);
-  for (int row = 0; status == VXM_OK && row < cam->height; row += BAND) {
-    int rows = cam->height - row < BAND ? cam->height - row : BAND;
-    drawing d = {cam, scene, row, pixels};
-    vxm_parallel(context, (size_t)rows, draw_row, &d);
-    status = vxm_png_rows(png, pixels, rows, error);
+/** Draws all bands of rows. */
+static vxm_status draw_bands(vxm_png *png, drawing *d, vxm_error *error) {
+  vxm_context *context = d->scene->grid->context;
+  int height = d->cam->height;
+  vxm_status status = VXM_OK;
+  for (d->row = 0; status == VXM_OK && d->row < height; d->row += BAND) {
+    int rows = height - d->row < BAND ? height - d->row : BAND;
+    vxm_parallel(context, BAND / FLOOR + 2, look_behind, d);
+    vxm_parallel(context, (size_t)rows + 1, look_along, d);
+    vxm_parallel(context, (size_t)rows, draw_row, d);
+    status = vxm_png_rows(png, d->pixels, rows, error);
     if (status == VXM_OK)
-      status = vxm_progress(context, "drawing", (double)(row + rows) / cam->height, error);
+      status = vxm_progress(context, "drawing", (double)(d->row + rows) / height, error);
   }
+  return status;
+}
+
+/** Room for a band; the caller frees what there is. */
+static vxm_status make_room(drawing *d, vxm_context *context, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  size_t width = (size_t)d->cam->width;
+  d->floor_width = width / FLOOR + 2;
+  d->floor = vxm_alloc(context, (BAND / FLOOR + 2) * d->floor_width, sizeof *d->floor, &local);
+  if (d->floor)
+    d->corners = vxm_alloc(context, (BAND + 1) * (width + 1), sizeof *d->corners, &local);
+  if (d->corners)
+    d->pixels = vxm_alloc(context, BAND * width, 3, &local);
+  if (!d->pixels)
+    vxm_error_pass(error, &local);
+  return d->pixels ? VXM_OK : local.code;
+}
+
+static vxm_status draw(vxm_output *output, const vxm_camera *cam, const vxm_scene *scene, vxm_error *error) {
+  vxm_context *context = scene->grid->context;
+  drawing d = {.cam = cam, .scene = scene, .tiles = {.context = context}};
+  vxm_png *png = NULL;
+  vxm_status status = make_room(&d, context, error);
+  if (status == VXM_OK)
+    status = vxm_tiles_create(&d.tiles, scene, cam, error);
+  if (status == VXM_OK)
+    status = vxm_png_create(&png, context, output, cam->width, cam->height, error);
+  if (status == VXM_OK)
+    status = draw_bands(png, &d, error);
   if (status == VXM_OK)
     status = vxm_png_finish(png, error);
   vxm_png_destroy(png);
-  vxm_free(context, pixels);
+  vxm_tiles_destroy(&d.tiles);
+  vxm_free(context, d.pixels);
+  vxm_free(context, d.corners);
+  vxm_free(context, d.floor);
   return status;
 }
 
@@ -290,8 +416,8 @@ vxm_status vxm_gridio_picture(const vxm_grid *grid, vxm_paint_fn paint, const vo
     status = vxm_png_check(error);
   if (status != VXM_OK)
     return status;
-  camera cam = {.width = options->width ? options->width : 800,
-                .height = options->height ? options->height : 600};
+  vxm_camera cam = {.width = options->width ? options->width : 800,
+                    .height = options->height ? options->height : 600};
   vxm_scene scene = {.grid = grid, .paint = paint, .painted = painted};
   set_steps(&scene, &grid->space);
   vxm_scene_weigh(&scene);

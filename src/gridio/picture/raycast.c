@@ -6,6 +6,8 @@
 typedef struct ray {
   double origin[3], direction[3];
   double inverse[3]; /**< 1 / direction; infinite along an axis the ray is square to */
+  double step[3];    /**< its magnitude */
+  int sign[3];       /**< of the direction: -1 or 1 */
 } ray;
 
 /** Cuts the ray to the box of the grid; gives where it enters and through which face. */
@@ -69,62 +71,65 @@ static void leave_block(vxm_hit *hit, const ray *r, int shift, const int64_t dim
       hit->voxel[a] = index_at(r, a, hit->t, low[a], high[a] - 1);
 }
 
-static bool is_set(const vxm_grid *grid, const int64_t voxel[3]) {
-  return vxm_grid_row(grid, voxel[1], voxel[2])[voxel[0] / 64] >> (voxel[0] % 64) & 1;
-}
-
 /**
  * Goes voxel by voxel through a block of 4 x 4 x 4 (Amanatides & Woo 1987); true at a set one, false outside
- * the block or the grid. The few additions to `next` keep its rounding errors negligible.
+ * the block. The few additions to `next` keep its rounding errors negligible.
  */
-static bool search_block(vxm_hit *hit, const ray *r, const vxm_grid *grid) {
-  double next[3];
-  for (int a = 0; a < 3; a++)
+static bool search_block(vxm_hit *hit, const ray *r, uint64_t voxels) {
+  double next[3], t = hit->t;
+  int at[3], axis = -1;
+  for (int a = 0; a < 3; a++) {
+    at[a] = (int)(hit->voxel[a] & 3);
     next[a] = r->direction[a] == 0
                   ? INFINITY
                   : ((double)(hit->voxel[a] + (r->direction[a] > 0)) - r->origin[a]) * r->inverse[a];
-  for (;;) {
-    if (is_set(grid, hit->voxel))
-      return true;
-    int axis = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
-    int64_t before = hit->voxel[axis];
-    hit->t = next[axis] > hit->t ? next[axis] : hit->t;
-    next[axis] += fabs(r->inverse[axis]);
+  }
+  int index = at[0] + 4 * at[1] + 16 * at[2];
+  bool found;
+  while (!(found = voxels >> index & 1)) {
+    axis = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+    t = next[axis] > t ? next[axis] : t;
+    next[axis] += r->step[axis];
+    at[axis] += r->sign[axis];
+    index += r->sign[axis] << 2 * axis;
+    if ((at[axis] & ~3) != 0)
+      break;
+  }
+  if (axis >= 0) {
+    hit->t = t;
     hit->axis = axis;
     hit->positive = r->direction[axis] < 0;
-    hit->voxel[axis] += hit->positive ? -1 : 1;
-    /* The indices before and after agree but for their two low bits within a block. */
-    if ((before ^ hit->voxel[axis]) >> 2 != 0 || hit->voxel[axis] >= grid->space.dims[axis])
-      return false;
+    for (int a = 0; a < 3; a++)
+      hit->voxel[a] = (hit->voxel[a] & ~INT64_C(3)) + at[a];
   }
+  return found;
 }
 
-bool vxm_raycast(vxm_hit *hit, const vxm_grid *grid, const vxm_occupancy_mips *pyramid,
-                 const double origin[3], const double direction[3]) {
-  const int64_t *dims = grid->space.dims;
+bool vxm_raycast(vxm_hit *hit, const vxm_occupancy_mips *pyramid, const double origin[3],
+                 const double direction[3]) {
+  const int64_t *dims = pyramid->dims;
   ray r;
   for (int a = 0; a < 3; a++) {
     r.origin[a] = origin[a];
     r.direction[a] = direction[a];
     r.inverse[a] = 1 / direction[a];
+    r.step[a] = fabs(r.inverse[a]);
+    r.sign[a] = direction[a] < 0 ? -1 : 1;
   }
   if (!enter_box(hit, &r, dims))
     return false;
   for (int a = 0; a < 3; a++)
     hit->voxel[a] = index_at(&r, a, hit->t, 0, dims[a] - 1);
-  /* Each empty block is left at once; then the next larger one is tried, so that long gaps take few steps. */
-  int level = pyramid->levels - 1;
+  /* The largest empty block around is left at once. */
   for (;;) {
-    while (level >= 0 && vxm_occupancy_mips_cell(pyramid, level, hit->voxel) != 0)
-      level--;
-    if (level >= 0)
-      leave_block(hit, &r, level + 2, dims);
-    else if (search_block(hit, &r, grid))
+    int64_t block = vxm_occupancy_mips_index(pyramid, hit->voxel);
+    int gap = pyramid->gaps[block];
+    if (gap > 0)
+      leave_block(hit, &r, gap + 1, dims);
+    else if (search_block(hit, &r, pyramid->blocks[block]))
       return true;
     int64_t at = hit->voxel[hit->axis];
     if (at < 0 || at >= dims[hit->axis])
       return false;
-    if (level < pyramid->levels - 1)
-      level++;
   }
 }

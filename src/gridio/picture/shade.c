@@ -48,6 +48,11 @@ static unsigned window(const vxm_grid *grid, int64_t i, int64_t j, int64_t k) {
 static const double weight[WIDTH] = {0.15, 0.45, 0.80, 1.0, 0.80, 0.45, 0.15};
 
 void vxm_scene_weigh(vxm_scene *scene) {
+  for (int n = 0; n < VXM_SCENE_TURNS; n++) {
+    double turn = 6.283185307179586 * n / VXM_SCENE_TURNS;
+    scene->turned[n][0] = cos(turn);
+    scene->turned[n][1] = sin(turn);
+  }
   for (unsigned bits = 0; bits < 1u << WIDTH; bits++) {
     double mass = 0, moment = 0;
     for (int at = 0; at < WIDTH; at++)
@@ -135,16 +140,17 @@ static double sky_openness(const vxm_scene *scene, const double point[3], vxm_ra
 
 /** Whether the sun, or the point of it that `jitter` picks, is seen from a point in voxel coordinates. */
 static bool sees_sun(const vxm_scene *scene, const double point[3], const double jitter[2], double radius) {
-  double turn = 6.283185307179586 * jitter[0], out = radius * sqrt(jitter[1]), direction[3];
-  vxm_ray_vec3 toward = vxm_ray_vec3_add(vxm_ray_vec3_add(scene->light, out * cos(turn), scene->side[0]),
-                                         out * sin(turn), scene->side[1]);
+  const double *turned = scene->turned[(unsigned)(jitter[0] * VXM_SCENE_TURNS) % VXM_SCENE_TURNS];
+  double out = radius * sqrt(jitter[1]), direction[3];
+  vxm_ray_vec3 toward = vxm_ray_vec3_add(vxm_ray_vec3_add(scene->light, out * turned[0], scene->side[0]),
+                                         out * turned[1], scene->side[1]);
   to_voxels(scene, toward, direction);
   vxm_hit hit;
-  return !vxm_raycast(&hit, scene->grid, &scene->pyramid, point, direction);
+  return !vxm_raycast(&hit, &scene->pyramid, point, direction);
 }
 
-static vxm_ray_vec3 shade_voxel(const vxm_scene *scene, const vxm_hit *hit, const double origin[3],
-                                const double direction[3], const double jitter[2]) {
+static vxm_light shade_voxel(const vxm_scene *scene, const vxm_hit *hit, const double origin[3],
+                             const double direction[3], const double jitter[2]) {
   double point[3], part[2], outside[3];
   int axes[2];
   for (int a = 0; a < 3; a++)
@@ -169,25 +175,27 @@ static vxm_ray_vec3 shade_voxel(const vxm_scene *scene, const vxm_hit *hit, cons
     open = 1 - crisp * (1 - corner_openness(scene->grid, hit, axes, part));
   open *= sky_openness(scene, point, normal);
 
-  double toward = vxm_ray_vec3_dot(normal, scene->light), direct = 0;
-  if (toward > 0 && vxm_ray_vec3_dot(face, scene->light) > -scene->smoothness &&
-      sees_sun(scene, outside, jitter, sun_radius))
-    direct = toward;
+  double toward = vxm_ray_vec3_dot(normal, scene->light), direct = 0, most = 0;
+  if (toward > 0 && vxm_ray_vec3_dot(face, scene->light) > -scene->smoothness) {
+    most = toward;
+    direct = sees_sun(scene, outside, jitter, sun_radius) ? toward : 0;
+  }
   double upward = 0.5 + 0.5 * vxm_ray_vec3_dot(normal, scene->up);
   double line = 1 - 0.30 * crisp * (1 - off_line(scene->line_width, part));
-  vxm_ray_vec3 colour, own = scene->paint ? scene->paint(scene->painted, hit->voxel) : surface;
+  vxm_ray_vec3 own = scene->paint ? scene->paint(scene->painted, hit->voxel) : surface;
+  vxm_light seen;
   for (int n = 0; n < 3; n++) {
     double ambient = open * (upward * sky.c[n] + (1 - upward) * ground.c[n]);
-    colour.c[n] = line * own.c[n] * (direct * sun.c[n] + ambient);
+    seen.colour.c[n] = line * own.c[n] * (direct * sun.c[n] + ambient);
+    seen.plain.c[n] = own.c[n] * (most * sun.c[n] + ambient);
   }
-  return colour;
+  return seen;
 }
 
 /* ---- What is behind the voxels ---- */
 
-/** White, a little darker toward the bottom of the picture, with the shadow on the floor. */
-static vxm_ray_vec3 shade_background(const vxm_scene *scene, vxm_ray_vec3 origin, vxm_ray_vec3 direction,
-                                     const double jitter[2]) {
+vxm_ray_vec3 vxm_shade_background(const vxm_scene *scene, vxm_ray_vec3 origin, vxm_ray_vec3 direction,
+                                  double turn) {
   vxm_ray_vec3 white = {{1, 1, 1}};
   double down = vxm_ray_vec3_dot(direction, scene->up),
          height = vxm_ray_vec3_dot(origin, scene->up) - scene->floor;
@@ -202,23 +210,25 @@ static vxm_ray_vec3 shade_background(const vxm_scene *scene, vxm_ray_vec3 origin
   double point[3];
   to_voxels(scene, vxm_ray_vec3_add(at, 1e-6, scene->up), point);
   double open = sky_openness(scene, point, scene->up);
-  /* The shadow's border is wide here, so it takes a second ray, to the other half of the sun. */
-  const double other[2] = {jitter[0] + 0.5, fmod(jitter[1] + 0.125, 1)};
-  double direct = 0.5 * sees_sun(scene, point, jitter, 2 * sun_radius) +
-                  0.5 * sees_sun(scene, point, other, 2 * sun_radius);
+  double direct = 0;
+  for (int n = 0; n < 8; n++) {
+    const double jitter[2] = {turn + 0.125 * n, ((n * 3 & 7) + 0.5) / 8};
+    direct += 0.125 * sees_sun(scene, point, jitter, 2 * sun_radius);
+  }
   vxm_ray_vec3 colour;
   for (int n = 0; n < 3; n++)
     colour.c[n] = 1 - near * (0.40 * (1 - direct) + (0.60 - 0.02 * n) * (1 - open));
   return colour;
 }
 
-vxm_ray_vec3 vxm_shade(const vxm_scene *scene, vxm_ray_vec3 origin, vxm_ray_vec3 direction,
-                       const double jitter[2]) {
+bool vxm_shade(vxm_light *out, const vxm_scene *scene, vxm_ray_vec3 origin, vxm_ray_vec3 direction,
+               const double jitter[2]) {
   double from[3], along[3];
   to_voxels(scene, origin, from);
   to_voxels(scene, direction, along);
   vxm_hit hit;
-  if (vxm_raycast(&hit, scene->grid, &scene->pyramid, from, along) && hit.axis >= 0)
-    return shade_voxel(scene, &hit, from, along, jitter);
-  return shade_background(scene, origin, direction, jitter);
+  if (!vxm_raycast(&hit, &scene->pyramid, from, along) || hit.axis < 0)
+    return false;
+  *out = shade_voxel(scene, &hit, from, along, jitter);
+  return true;
 }

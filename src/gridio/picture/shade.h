@@ -13,6 +13,8 @@
 /** The linear colour of a set voxel. */
 typedef vxm_ray_vec3 (*vxm_paint_fn)(const void *payload, const int64_t voxel[3]);
 
+enum { VXM_SCENE_TURNS = 256 };
+
 typedef struct vxm_scene {
   const vxm_grid *grid;
   vxm_paint_fn paint;  /**< NULL = all voxels have one colour */
@@ -28,18 +30,31 @@ typedef struct vxm_scene {
   double line_width;      /**< of the lines between voxels, as a part of a voxel's side */
   struct {
     double mass, moment;
-  } weighed[128]; /**< every pattern of 7 voxels in a row, weighed around its middle */
+  } weighed[128];                    /**< every pattern of 7 voxels in a row, weighed around its middle */
+  double turned[VXM_SCENE_TURNS][2]; /**< points of a circle */
 } vxm_scene;
 
-/** Fills `weighed`; before the first ray. */
+/** Fills `weighed` and `turned`; before the first ray. */
 void vxm_scene_weigh(vxm_scene *scene);
 
+/** A voxel that a ray sees, linear red, green and blue. */
+typedef struct vxm_light {
+  vxm_ray_vec3 colour;
+  vxm_ray_vec3 plain; /**< the same without shadows of the sun and lines between voxels, which are soft by
+                         themselves: what tells where something ends */
+} vxm_light;
+
 /**
- * Light that comes along a ray, linear red, green and blue.
+ * Light of the first voxel along a ray; false if there is none.
  *
  * @param jitter two numbers in [0, 1) that pick a point of the light
  */
-vxm_ray_vec3 vxm_shade(const vxm_scene *scene, vxm_ray_vec3 origin, vxm_ray_vec3 direction,
-                       const double jitter[2]);
+bool vxm_shade(vxm_light *out, const vxm_scene *scene, vxm_ray_vec3 origin, vxm_ray_vec3 direction,
+               const double jitter[2]);
+
+/** Light of what is behind all voxels: white, with the shadow on the floor. @param turn of the sun's disk, in
+ * which eight points are looked at */
+vxm_ray_vec3 vxm_shade_background(const vxm_scene *scene, vxm_ray_vec3 origin, vxm_ray_vec3 direction,
+                                  double turn);
 
 #endif

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The picture of a field: which of its voxels are drawn, and in what colours. */
+#include "gridio/picture/palette.h"
 #include "gridio/picture/picture.h"
 
 #include <math.h>
 
 /* ---- What is drawn ---- */
 
-/** What numbers seem to be of which the file does not say it; VXM_FIELD_NUMBERS if that cannot be told. */
-static vxm_field_kind guess(const vxm_field *field, const vxm_field_range *range) {
+vxm_field_kind vxm_gridio_field_guess(const vxm_field *field, const vxm_field_range *range) {
   vxm_field_kind kind = field->about.kind;
   if (kind != VXM_FIELD_NUMBERS)
     return kind;
@@ -34,9 +34,8 @@ static double distance_level(const vxm_field *field, const vxm_field_range *rang
   return 0.5 * sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
 }
 
-/** The voxels that are drawn without being told; VXM_ERROR_NUMBERS if what they are cannot be known. */
-static vxm_status choose(vxm_threshold_options *out, vxm_field_kind kind, const vxm_field *field,
-                         const vxm_field_range *range, vxm_error *error) {
+vxm_status vxm_gridio_field_shown(vxm_threshold_options *out, vxm_field_kind kind, const vxm_field *field,
+                                  const vxm_field_range *range, vxm_error *error) {
   bool is_byte = field->scalar == VXM_UINT8;
   switch (kind) {
   case VXM_FIELD_DISTANCE:
@@ -81,24 +80,13 @@ static vxm_ray_vec3 paint_color(const void *payload, const int64_t voxel[3]) {
   return vxm_ray_vec3_of(linear(rgb[0] / 255.0), linear(rgb[1] / 255.0), linear(rgb[2] / 255.0));
 }
 
-/** A hue from 0 to 1 as sRGB, of some saturation and brightness. */
-static vxm_ray_vec3 color_of_hue(double hue, double saturation, double brightness) {
-  vxm_ray_vec3 color;
-  for (int n = 0; n < 3; n++) {
-    double at = fmod(hue * 6 + (n == 0 ? 5 : n == 1 ? 3 : 1), 6);
-    color.c[n] = linear(brightness * (1 - saturation * fmax(0, fmin(fmin(at, 4 - at), 1))));
-  }
-  return color;
-}
-
-/** Hues a golden section apart, so that labels near each other look different; every other one is paler. */
 static vxm_ray_vec3 paint_label(const void *payload, const int64_t voxel[3]) {
   const vxm_field *field = payload;
-  const double golden = 0.61803398874989485;
   double label;
+  uint8_t rgb[3];
   vxm_field_doubles(&label, field, index_of(field, voxel), 1);
-  double hue = fmod((label - 1) * golden, 1), pale = fmod(label, 2);
-  return color_of_hue(hue < 0 ? hue + 1 : hue, pale == 0 ? 0.45 : 0.7, pale == 0 ? 0.75 : 0.9);
+  vxm_palette_label(rgb, label);
+  return vxm_ray_vec3_of(linear(rgb[0] / 255.0), linear(rgb[1] / 255.0), linear(rgb[2] / 255.0));
 }
 
 /* ---- The picture ---- */
@@ -109,9 +97,9 @@ vxm_status vxm_gridio_field_picture(const vxm_field *field, const char *path,
   vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_threshold_options own;
   vxm_status status = vxm_field_measure(&range, field, error);
-  vxm_field_kind kind = guess(field, &range);
+  vxm_field_kind kind = vxm_gridio_field_guess(field, &range);
   if (status == VXM_OK && !threshold) {
-    status = choose(&own, kind, field, &range, error);
+    status = vxm_gridio_field_shown(&own, kind, field, &range, error);
     threshold = &own;
   }
   vxm_grid *grid = NULL;

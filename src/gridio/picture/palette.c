@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gridio/picture/palette.h"
+
+#include <math.h>
+
+/** A hue from 0 to 1 as sRGB, of some saturation and brightness. */
+static void from_hue(uint8_t rgb[3], double hue, double saturation, double brightness) {
+  for (int n = 0; n < 3; n++) {
+    double at = fmod(hue * 6 + (n == 0 ? 5 : n == 1 ? 3 : 1), 6);
+    double value = brightness * (1 - saturation * fmax(0, fmin(fmin(at, 4 - at), 1)));
+    rgb[n] = (uint8_t)(255 * value + 0.5);
+  }
+}
+
+/** Hues a golden section apart; every other one is paler. */
+void vxm_palette_label(uint8_t rgb[3], double label) {
+  const double golden = 0.61803398874989485;
+  double hue = fmod((label - 1) * golden, 1), pale = fmod(label, 2);
+  if (!isfinite(label))
+    hue = pale = 0;
+  from_hue(rgb, hue < 0 ? hue + 1 : hue, pale == 0 ? 0.45 : 0.7, pale == 0 ? 0.75 : 0.9);
+}
+
+/** Between colours at equal steps; `at` from 0 to 1. */
+static void interpolate(uint8_t rgb[3], const uint8_t stops[][3], int count, double at) {
+  double place = (at > 0 ? at < 1 ? at : 1 : 0) * (count - 1);
+  int first = place < count - 1 ? (int)place : count - 2;
+  double part = place - first;
+  for (int n = 0; n < 3; n++)
+    rgb[n] = (uint8_t)((1 - part) * stops[first][n] + part * stops[first + 1][n] + 0.5);
+}
+
+void vxm_palette_diverging(uint8_t rgb[3], double value) {
+  static const uint8_t stops[][3] = {{5, 48, 97},     {33, 102, 172},  {67, 147, 195},  {146, 197, 222},
+                                     {209, 229, 240}, {247, 247, 247}, {253, 219, 199}, {244, 165, 130},
+                                     {214, 96, 77},   {178, 24, 43},   {103, 0, 31}};
+  interpolate(rgb, stops, sizeof stops / sizeof *stops, (value + 1) / 2);
+}
+
+void vxm_palette_grey(uint8_t rgb[3], double value) {
+  static const uint8_t stops[][3] = {{250, 250, 250}, {20, 20, 20}};
+  interpolate(rgb, stops, 2, value);
+}
