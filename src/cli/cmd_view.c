@@ -119,11 +119,11 @@ static bool is_named(const char *path, const char *const *formats) {
 
 /** The axis that points up in most files of a mesh's format. */
 static void guess_up(request *given) {
-  static const char *const y_formats[] = {"obj", "gltf", "glb", "wrl", "vrml", "x3d", "fbx"};
+  static const char *const y_formats[] = {"obj", "gltf", "glb", "wrl", "vrml", "x3d", "fbx", NULL};
   const char *dot = strrchr(given->input, '.'), *slash = strrchr(given->input, '/');
   if (given->picture.up != 0 || !dot || (slash && dot < slash))
     return;
-  bool is_y = is_named(given->input, y_formats, sizeof y_formats / sizeof *y_formats);
+  bool is_y = is_named(given->input, y_formats);
   given->picture.up = is_y ? 2 : 3;
   given->up_hint = dot;
 }
