@@ -37,8 +37,13 @@ static vxm_status read_library(vxm_soup *soup, vxm_references *references, const
                                vxm_error *error) {
   vxm_input input;
   vxm_status status = VXM_OK;
-  if (!open_reference(&input, soup, references, name, &status, error))
+  char *failure = soup->appearance->library_failure;
+  int before = references->warnings.count;
+  if (!open_reference(&input, soup, references, name, &status, error)) {
+    if (!failure[0])
+      take_refusal(failure, VXM_LOOK_FAILURE, references, before);
     return status;
+  }
   status = vxm_mtl_read(soup->appearance, input.data, input.size, name, error);
   vxm_input_close(&input);
   return status;
