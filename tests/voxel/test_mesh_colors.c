@@ -439,6 +439,27 @@ static void test_faces(void **unused) {
   vxm_soup_destroy(soup);
 }
 
+/** Damage in colours is not damage to the mesh. */
+static void test_damaged_colors(void **unused) {
+  (void)unused;
+  static const char text[] =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n"
+      "property list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar "
+      "blue\n"
+      "end_header\n0 0 0 1 2 3\n1 0 0 4 five 6\n0 1 0 7\n0 0 1 7 8 9\n3 0 2 3 4 5 6\n3 0 1 2 1 2\n";
+  vxm_soup *soup = READ(text, "a.ply");
+  assert_int_equal(soup->face_count, 2);
+  assert_int_equal(soup->warnings.count, 0);
+  EXPECT(soup->appearance->vertex_colors, 0, 1, 2, 3);
+  assert_int_equal(soup->appearance->vertex_colors[1][3], 0);
+  assert_int_equal(soup->appearance->vertex_colors[2][3], 0);
+  EXPECT(soup->appearance->vertex_colors, 3, 7, 8, 9);
+  EXPECT(soup->appearance->face_colors, 0, 4, 5, 6);
+  assert_int_equal(soup->appearance->face_colors[1][3], 0);
+  vxm_soup_destroy(soup);
+}
+
 static void test_binary(void **unused) {
   (void)unused;
   static const char head[] =
@@ -471,8 +492,9 @@ static void test_binary(void **unused) {
 
 static void test_obj_corners(void **unused) {
   (void)unused;
-  static const char text[] = "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0\nvt 0 nan\n"
-                             "usemtl wood\nf 1/1/1 2/2 3\nf 1/7 2/-3 9\nusemtl steel\nf 1//4 2/-2 3/3\n";
+  static const char text[] =
+      "mtllib none.mtl  other one.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0\nvt 0 nan\n"
+      "usemtl wood\nf 1/1/1 2/2 3\nf 1/7 2/-3 9\nusemtl steel\nf 1//4 2/-2 3/3\n";
   vxm_soup *soup = READ(text, "a.obj");
   const vxm_appearance *look = soup->appearance;
   assert_int_equal(soup->face_count, 2);
@@ -488,9 +510,10 @@ static void test_obj_corners(void **unused) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_nearest),  cmocka_unit_test(test_mean),
-                                     cmocka_unit_test(test_border),   cmocka_unit_test(test_threads),
-                                     cmocka_unit_test(test_vertices), cmocka_unit_test(test_faces),
-                                     cmocka_unit_test(test_binary),   cmocka_unit_test(test_obj_corners)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_nearest),    cmocka_unit_test(test_mean),
+                                     cmocka_unit_test(test_border),     cmocka_unit_test(test_threads),
+                                     cmocka_unit_test(test_vertices),   cmocka_unit_test(test_faces),
+                                     cmocka_unit_test(test_binary),     cmocka_unit_test(test_damaged_colors),
+                                     cmocka_unit_test(test_obj_corners)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,12 +77,12 @@ static vxm_status read_vertex(obj_reader *reader, vxm_error *error) {
     for (; count < 3; count++)
       p[count] = (double)NAN;
   }
+  reader->last_vertex = scan->at == scan->end ? first : NULL;
   if (__builtin_expect(reader->has_look, 0)) {
     vxm_status status = vxm_obj_colors_vertex(scan, error);
     if (status != VXM_OK)
       return status;
   }
-  reader->last_vertex = scan->at == scan->end ? first : NULL;
   return vxm_soup_add_vertex(reader->soup, p[0], p[1], p[2], error);
 }
 

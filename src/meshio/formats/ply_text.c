@@ -145,6 +145,27 @@ static bool has_xyz_first(const text_reader *reader) {
          reader->properties[1].use == VXM_PLY_Y && reader->properties[2].use == VXM_PLY_Z;
 }
 
+/** Looks for a colour among the values of the line from `from` on, which begin with property `first`.
+ * Whatever is wrong with them is not the mesh's, and makes no colour. */
+static bool find_color(const text_reader *reader, const unsigned char *from, size_t first, double rgba[4]) {
+  vxm_tokenizer ahead = *reader->scan;
+  unsigned found = 0;
+  ahead.at = from;
+  for (size_t i = first; i < reader->element->properties && vxm_more_on_line(&ahead); i++) {
+    const vxm_ply_property *property = &reader->properties[i];
+    uint64_t passed = 1;
+    if (property->channel && vxm_tokenizer_double(&ahead, &rgba[property->channel - 1])) {
+      found |= 1U << property->channel;
+      continue;
+    }
+    if (property->channel || (property->is_list && !vxm_tokenizer_uint(&ahead, &passed)))
+      return false;
+    for (; passed > 0 && vxm_more_on_line(&ahead); passed--)
+      vxm_skip_token(&ahead);
+  }
+  return found == 14U;
+}
+
 /** Reads the properties of a vertex one by one; *there is false if not all were there. */
 static vxm_status read_vertex_values(text_reader *reader, double p[3], double rgba[4], bool *there,
                                      vxm_error *error) {
@@ -171,7 +192,8 @@ static inline vxm_status read_vertex(text_reader *reader, bool xyz_first, bool *
   const unsigned char *first = scan->at;
   double p[3] = {0.0, 0.0, 0.0}, rgba[4] = {0, 0, 0, 0};
   vxm_status status = VXM_OK;
-  if (xyz_first && reader->by_lines && !reader->has_look) {
+  bool has_color = reader->has_look;
+  if (xyz_first && reader->by_lines) {
     for (size_t c = 0; c < 3 && *there; c++) {
       *there = vxm_more_on_line(scan);
       if (__builtin_expect(*there, 1))
@@ -179,6 +201,8 @@ static inline vxm_status read_vertex(text_reader *reader, bool xyz_first, bool *
     }
   } else
     status = read_vertex_values(reader, p, rgba, there, error);
+  if (has_color && xyz_first && reader->by_lines)
+    has_color = find_color(reader, first, 0, rgba);
   if (status != VXM_OK)
     return status;
   if (__builtin_expect(!*there, 0)) {
@@ -191,7 +215,7 @@ static inline vxm_status read_vertex(text_reader *reader, bool xyz_first, bool *
   }
   if (reader->by_lines && vxm_more_on_line(scan))
     vxm_skip_rest(scan);
-  if (reader->has_look)
+  if (has_color)
     status = vxm_gather_color(&soup->appearance->vertices, soup->context, soup->vertex_count, rgba, error);
   return status == VXM_OK ? vxm_soup_add_vertex(soup, p[0], p[1], p[2], error) : status;
 }
@@ -272,7 +296,9 @@ static vxm_status read_face_color(text_reader *reader, size_t corners, size_t fa
                                   vxm_error *error) {
   vxm_soup *soup = reader->soup;
   double rgba[4] = {0, 0, 0, 0};
-  for (size_t i = corners + 1; i < reader->element->properties; i++) {
+  if (reader->by_lines && !find_color(reader, reader->scan->at, corners + 1, rgba))
+    return VXM_OK;
+  for (size_t i = corners + 1; !reader->by_lines && i < reader->element->properties; i++) {
     const vxm_ply_property *property = &reader->properties[i];
     vxm_status status = VXM_OK;
     if (!property->channel)
