@@ -4,7 +4,7 @@
 
 #include <inttypes.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS };
+enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_BLOCKS, KEY_UP };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
@@ -16,12 +16,14 @@ static const cli_option known_options[] = {
      "output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
+    CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
     CLI_OPTIONS_THRESHOLD,
     {0, NULL, NULL, NULL}};
 
 typedef struct request {
   const char *input, *output, *format;
   bool force, keep_polygons, keep_contacts;
+  cli_look look;
   vxm_threshold_options threshold;
 } request;
 
@@ -48,7 +50,12 @@ static int read_arguments(cli_run *cli, request *out) {
       out->force = true;
     else if (key == KEY_CONTACTS)
       out->keep_contacts = true;
-    else if (key == KEY_POLYGONS) {
+    else if (key == KEY_BLOCKS)
+      out->look.blocks = value;
+    else if (key == KEY_UP) {
+      if (cli_read_up(cli, &out->look, value) == CLI_STOP)
+        return CLI_STOP;
+    } else if (key == KEY_POLYGONS) {
       if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
         return CLI_STOP;
     } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
@@ -60,7 +67,7 @@ static int read_arguments(cli_run *cli, request *out) {
   if (!out->format)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, cli_has_json(out->format) || is_one_of(out->format, with_labels));
-  if (cli_check_names(cli) == CLI_STOP)
+  if (cli_check_names(cli) == CLI_STOP || cli_check_look(cli, &out->look, out->format) == CLI_STOP)
     return CLI_STOP;
   return cli_check_surface_file(cli, out->output, out->format, out->force);
 }
@@ -110,6 +117,8 @@ static int convert(cli_run *cli, const request *given, const cli_values *values)
   write.format = given->format;
   write.keep_polygons = given->keep_polygons;
   write.keep_contacts = given->keep_contacts;
+  write.blocks = given->look.blocks;
+  write.up = given->look.up;
   vxm_status status = values->grid ? vxm_grid_write(values->grid, given->output, &write, &cli->error)
                                    : vxm_field_write(values->field, given->output, &write, &cli->error);
   if (status != VXM_OK)

@@ -33,6 +33,8 @@ enum {
   KEY_FORCE,
   KEY_POLYGONS,
   KEY_CONTACTS,
+  KEY_BLOCKS,
+  KEY_UP,
   KEY_DRY_RUN
 };
 
@@ -46,6 +48,7 @@ const cli_option voxelize_options[] = {
      "output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
+    CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S|SX,SY,SZ", "sides of a voxel in model units, instead of -r"},
     {KEY_FIT, "fit", "cube|tight|sphere",
@@ -250,6 +253,11 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
   case KEY_CONTACTS:
     out->keep_contacts = true;
     return CLI_END;
+  case KEY_BLOCKS:
+    out->look.blocks = value;
+    return CLI_END;
+  case KEY_UP:
+    return cli_read_up(cli, &out->look, value);
   case KEY_POLYGONS:
     return cli_read_polygons(cli, &out->keep_polygons, value);
   case KEY_DRY_RUN:
@@ -348,6 +356,10 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
       cli_output_format(cli, out->output, out->format,
                         cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_grid_formats);
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
-    return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
+    return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
+  if (out->format && cli_check_look(cli, &out->look, out->format) == CLI_STOP)
+    return CLI_STOP;
+  out->field.label_options.blocks = out->field.color_options.blocks = out->look.blocks;
+  out->field.label_options.up = out->field.color_options.up = out->look.up;
   return out->format ? check_names(cli, out) : CLI_STOP;
 }

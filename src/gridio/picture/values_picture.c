@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The picture of a field: which of its voxels are drawn, and in what colours. */
+#include "gridio/common/label_color.h"
 #include "gridio/picture/picture.h"
 
 #include <math.h>
@@ -65,11 +66,6 @@ static vxm_status choose(vxm_threshold_options *out, vxm_field_kind kind, const 
 
 /* ---- Colours ---- */
 
-/** The linear light of an sRGB value from 0 to 1 (IEC 61966-2-1). */
-static double linear(double value) {
-  return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
-}
-
 static size_t index_of(const vxm_field *field, const int64_t voxel[3]) {
   const int64_t *n = field->space.dims;
   return (size_t)((voxel[0] * n[1] + voxel[1]) * n[2] + voxel[2]);
@@ -78,27 +74,16 @@ static size_t index_of(const vxm_field *field, const int64_t voxel[3]) {
 static vxm_ray_vec3 paint_color(const void *payload, const int64_t voxel[3]) {
   const vxm_field *field = payload;
   const unsigned char *rgb = field->values + 4 * index_of(field, voxel);
-  return vxm_ray_vec3_of(linear(rgb[0] / 255.0), linear(rgb[1] / 255.0), linear(rgb[2] / 255.0));
+  return vxm_ray_vec3_of(vxm_linear_light(rgb[0] / 255.0), vxm_linear_light(rgb[1] / 255.0),
+                         vxm_linear_light(rgb[2] / 255.0));
 }
 
-/** A hue from 0 to 1 as sRGB, of some saturation and brightness. */
-static vxm_ray_vec3 color_of_hue(double hue, double saturation, double brightness) {
-  vxm_ray_vec3 color;
-  for (int n = 0; n < 3; n++) {
-    double at = fmod(hue * 6 + (n == 0 ? 5 : n == 1 ? 3 : 1), 6);
-    color.c[n] = linear(brightness * (1 - saturation * fmax(0, fmin(fmin(at, 4 - at), 1))));
-  }
-  return color;
-}
-
-/** Hues a golden section apart, so that labels near each other look different; every other one is paler. */
 static vxm_ray_vec3 paint_label(const void *payload, const int64_t voxel[3]) {
   const vxm_field *field = payload;
-  const double golden = 0.61803398874989485;
-  double label;
+  double label, rgb[3];
   vxm_field_doubles(&label, field, index_of(field, voxel), 1);
-  double hue = fmod((label - 1) * golden, 1), pale = fmod(label, 2);
-  return color_of_hue(hue < 0 ? hue + 1 : hue, pale == 0 ? 0.45 : 0.7, pale == 0 ? 0.75 : 0.9);
+  vxm_label_color(rgb, label);
+  return vxm_ray_vec3_of(vxm_linear_light(rgb[0]), vxm_linear_light(rgb[1]), vxm_linear_light(rgb[2]));
 }
 
 /* ---- The picture ---- */
