@@ -58,8 +58,7 @@ static bool is_wanted(const batch_wish *wish, batch_product product) {
 
 /** Whether a grid of this format can be looked at; else the mesh is. */
 static bool can_be_viewed(const char *format) {
-  static const char *const known[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb", NULL};
-  return cli_read_choice(format, known) >= 0;
+  return (vxm_grid_format_traits(format) & VXM_FORMAT_READ) != 0;
 }
 
 /** Options of one mesh may say how its grid is made, and not what is written where. Names may be shortened.

@@ -139,6 +139,14 @@ static int take_grid_option(cli_run *cli, batch_wish *out, int key, const char *
   return good ? CLI_END : cli_usage(cli, "out of memory: free some");
 }
 
+static int read_format(cli_run *cli, const char *value) {
+  cli_formats formats = cli_formats_with(VXM_FORMAT_BITS | VXM_FORMAT_COLORS);
+  return cli_read_choice(value, formats.name) >= 0
+             ? CLI_END
+             : cli_usage(cli, "--format '%s' is none of %s", value,
+                         cli_list((char[CLI_LIST_MAX]){""}, formats.name));
+}
+
 static int read_option(cli_run *cli, batch_wish *out, int key, const char *value) {
   switch (key) {
   case 'o':
@@ -148,10 +156,7 @@ static int read_option(cli_run *cli, batch_wish *out, int key, const char *value
     return read_count(cli, &out->jobs, "jobs", value, 1, 512);
   case KEY_FORMAT:
     out->format = value;
-    return cli_read_choice(value, cli_grid_formats) >= 0 || strcmp(value, "vox") == 0
-               ? CLI_END
-               : cli_usage(cli, "--format '%s' is none of %s, vox", value,
-                           cli_list((char[CLI_LIST_MAX]){""}, cli_grid_formats));
+    return read_format(cli, value);
   case KEY_REPAIR:
     out->products[BATCH_REPAIRED] = value;
     return CLI_END;

@@ -203,9 +203,15 @@ int cli_choose(cli_run *cli, int *choice, const char *option, const char *value,
  */
 const char *cli_output_format(cli_run *cli, const char *path, const char *format, const char *const *known);
 extern const char *const cli_mesh_formats[];
-extern const char *const cli_grid_formats[];
-/** Whether a grid of this format has a .json beside it. */
-bool cli_has_json(const char *format);
+/** Formats of grids, and NULL. */
+enum { CLI_FORMATS_MAX = 64 };
+typedef struct cli_formats {
+  const char *name[CLI_FORMATS_MAX];
+} cli_formats;
+/** Those with one of these traits (vxm_format_trait). */
+cli_formats cli_formats_with(unsigned traits);
+/** Whether a file of this format has a .json beside it. */
+bool cli_has_json(const char *format, bool may_be_labels);
 /** Whether a file name ends in '.' and this extension, in any case. */
 bool cli_is_extension(const char *path, const char *extension);
 
@@ -515,7 +521,7 @@ typedef struct cli_field {
   }
 
 /** The formats of what is wanted. */
-const char *const *cli_field_formats(const cli_field *field);
+cli_formats cli_field_formats(const cli_field *field);
 /** Whether a number per voxel is wanted rather than a grid. */
 bool cli_field_wanted(const cli_field *field);
 /* The arguments of --coverage, --scalar, --distance, --band and --labels: CLI_END or CLI_STOP. */

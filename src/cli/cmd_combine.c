@@ -70,10 +70,11 @@ static int read_formula(cli_run *cli, int *words) {
 }
 
 static int check_names(cli_run *cli, request *out) {
-  out->format = cli_output_format(cli, out->output, out->format, cli_grid_formats);
+  cli_formats formats = cli_formats_with(VXM_FORMAT_BITS);
+  out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (!out->format)
     return CLI_STOP;
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format));
+  cli_writes(cli, "-o", out->output, cli_has_json(out->format, false));
   if (cli_check_names(cli) == CLI_STOP)
     return CLI_STOP;
   return cli_check_surface_file(cli, out->output, out->format, out->force);

@@ -27,17 +27,6 @@ typedef struct request {
   vxm_threshold_options threshold;
 } request;
 
-/** Those of grids, and one of colours alone. */
-static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb",
-                                      "obj",    "ply", "stl", "off", "vox",  NULL};
-
-/** Beside which there is a .json if they hold labels. */
-static const char *const with_labels[] = {"nrrd", "vdb", "binvox", NULL};
-
-static bool is_one_of(const char *format, const char *const *choices) {
-  return cli_read_choice(format, choices) >= 0;
-}
-
 static int read_arguments(cli_run *cli, request *out) {
   const char *value;
   int key;
@@ -63,10 +52,12 @@ static int read_arguments(cli_run *cli, request *out) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
-  out->format = cli_output_format(cli, out->output, out->format, formats);
+  cli_formats formats =
+      cli_formats_with(VXM_FORMAT_BITS | VXM_FORMAT_NUMBERS | VXM_FORMAT_LABELS | VXM_FORMAT_COLORS);
+  out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (!out->format)
     return CLI_STOP;
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format) || is_one_of(out->format, with_labels));
+  cli_writes(cli, "-o", out->output, cli_has_json(out->format, true));
   if (cli_check_names(cli) == CLI_STOP || cli_check_look(cli, &out->look, out->format) == CLI_STOP)
     return CLI_STOP;
   return cli_check_surface_file(cli, out->output, out->format, out->force);
@@ -92,12 +83,10 @@ static bool are_labels(const vxm_field *field) {
 
 /** Whether the output can have the numbers as they are. */
 static bool keeps_numbers(const request *given, const vxm_field *field) {
-  static const char *const all[] = {"npy", "nrrd", "vdb", NULL}, *const colors[] = {"ply", "vox", NULL},
-                           *const labels[] = {"binvox", NULL};
-  if (is_one_of(given->format, labels))
-    return are_labels(field);
-  return is_one_of(given->format, all) ||
-         (vxm_field_kind_of(field) == VXM_FIELD_COLORS && is_one_of(given->format, colors));
+  unsigned traits = vxm_grid_format_traits(given->format);
+  if (vxm_field_kind_of(field) == VXM_FIELD_COLORS)
+    return (traits & (VXM_FORMAT_COLORS | VXM_FORMAT_NUMBERS)) != 0;
+  return (traits & VXM_FORMAT_NUMBERS) || ((traits & VXM_FORMAT_LABELS) && are_labels(field));
 }
 
 /** Numbers stay numbers where the output holds them; else they become bits, or are refused. */

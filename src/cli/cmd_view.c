@@ -87,8 +87,8 @@ static int read_arguments(cli_run *cli, request *out) {
   return cli_check_names(cli);
 }
 
-static bool is_named(const char *path, const char *const *formats, int count) {
-  for (int i = 0; i < count; i++)
+static bool is_named(const char *path, const char *const *formats) {
+  for (int i = 0; formats[i]; i++)
     if (cli_is_extension(path, formats[i]))
       return true;
   return false;
@@ -109,14 +109,13 @@ static int voxelize(cli_run *cli, vxm_grid **grid, const char *path) {
 
 /** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
 static int read_input(cli_run *cli, cli_values *values, const char *path) {
-  enum { MESH_FORMATS = 4, GRID_FORMATS = 6 }; /* the first grid formats; the others are meshes */
-  if (is_named(path, cli_mesh_formats, MESH_FORMATS))
+  if (is_named(path, cli_mesh_formats))
     return voxelize(cli, &values->grid, path);
   vxm_status status = cli_values_read(cli, values, path);
   if (status == VXM_OK)
     return CLI_DONE;
   bool maybe_mesh = status == VXM_ERROR_FORMAT && strcmp(path, "-") != 0;
-  if (maybe_mesh && !is_named(path, cli_grid_formats, GRID_FORMATS))
+  if (maybe_mesh && !(vxm_grid_format_traits(vxm_grid_format_of(path)) & VXM_FORMAT_READ))
     return voxelize(cli, &values->grid, path);
   return cli_fail(cli);
 }

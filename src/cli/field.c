@@ -6,13 +6,10 @@
 #include <inttypes.h>
 #include <string.h>
 
-const char *const *cli_field_formats(const cli_field *field) {
-  static const char *const numbers[] = {"npy", "nrrd", "vdb", NULL};
-  static const char *const labels[] = {"npy", "nrrd", "binvox", NULL};
-  static const char *const colors[] = {"npy", "ply", "vox", NULL};
-  if (field->color)
-    return colors;
-  return field->labels ? labels : numbers;
+cli_formats cli_field_formats(const cli_field *field) {
+  return cli_formats_with(field->color    ? VXM_FORMAT_COLORS
+                          : field->labels ? VXM_FORMAT_LABELS
+                                          : VXM_FORMAT_NUMBERS);
 }
 
 bool cli_field_wanted(const cli_field *field) {

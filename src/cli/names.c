@@ -252,8 +252,9 @@ int cli_check_look(cli_run *cli, const cli_look *look, const char *format) {
 
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced) {
   struct stat info;
-  if (is_forced || cli_read_choice(format, cli_mesh_formats) < 0 || strcmp(path, "-") == 0 ||
-      stat(path, &info) != 0 || !S_ISREG(info.st_mode))
+  bool is_mesh = cli_read_choice(format, cli_mesh_formats) >= 0 ||
+                 (vxm_grid_format_traits(format) & VXM_FORMAT_SURFACE) != 0;
+  if (is_forced || !is_mesh || strcmp(path, "-") == 0 || stat(path, &info) != 0 || !S_ISREG(info.st_mode))
     return CLI_END;
   return cli_usage(cli, "%s is there already, and may be a mesh that is still needed; --force replaces it",
                    path);

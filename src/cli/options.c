@@ -25,8 +25,15 @@ static const cli_option common_options[] = {
     {0, NULL, NULL, NULL}};
 
 const char *const cli_mesh_formats[] = {"off", "obj", "stl", "ply", NULL};
-const char *const cli_grid_formats[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb",
-                                        "obj",    "ply", "stl", "off", NULL};
+
+cli_formats cli_formats_with(unsigned traits) {
+  cli_formats found = {{NULL}};
+  int count = 0;
+  for (int64_t i = 0; *vxm_grid_format_name(i) && count + 1 < CLI_FORMATS_MAX; i++)
+    if (vxm_grid_format_traits(vxm_grid_format_name(i)) & traits)
+      found.name[count++] = vxm_grid_format_name(i);
+  return found;
+}
 
 /* ---- Help ---- */
 
@@ -354,8 +361,11 @@ int cli_choose(cli_run *cli, int *choice, const char *option, const char *value,
 
 /* ---- Names of formats ---- */
 
-/** Part of a name behind the last '.', or "". */
+/** Part of a name behind the last '.', or "", or the extension of a grid format, which may have two parts. */
 static const char *extension_of(const char *path) {
+  const char *grid = vxm_grid_format_of(path);
+  if (*grid)
+    return path + strlen(path) - strlen(grid);
   const char *slash = strrchr(path, '/');
   const char *dot = strrchr(slash ? slash + 1 : path, '.');
   return dot ? dot + 1 : "";
@@ -369,8 +379,9 @@ static bool equal_nocase(const char *a, const char *b) {
   return !*a && !*b;
 }
 
-bool cli_has_json(const char *format) {
-  return strcmp(format, "raw") == 0 || strcmp(format, "npy") == 0;
+bool cli_has_json(const char *format, bool may_be_labels) {
+  unsigned traits = vxm_grid_format_traits(format);
+  return (traits & VXM_FORMAT_JSON) || (may_be_labels && (traits & VXM_FORMAT_LABELS_JSON));
 }
 
 bool cli_is_extension(const char *path, const char *extension) {

@@ -328,7 +328,7 @@ static int check_names(cli_run *cli, const voxelize_request *given) {
   cli_reads(cli, given->like);
   if (given->field.color && given->field.color_options.by == VXM_COLOR_GLSL)
     cli_reads(cli, given->field.color_name);
-  cli_writes(cli, "-o", given->output, cli_has_json(given->format) || given->field.labels);
+  cli_writes(cli, "-o", given->output, cli_has_json(given->format, given->field.labels));
   cli_writes(cli, "--confidence", given->confidence, true);
   cli_writes(cli, "--coords", given->coords, false);
   if (cli_check_names(cli) == CLI_STOP)
@@ -337,8 +337,7 @@ static int check_names(cli_run *cli, const voxelize_request *given) {
 }
 
 bool voxelize_is_sliced(const char *format) {
-  static const char *const sliced[] = {"binvox", "npy", "raw", "rle", "nrrd", "vdb", NULL};
-  return cli_read_choice(format, sliced) >= 0;
+  return (vxm_grid_format_traits(format) & VXM_FORMAT_SLICES) != 0;
 }
 
 int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
@@ -352,9 +351,9 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   out->input = cli->arguments[0];
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
-  out->format =
-      cli_output_format(cli, out->output, out->format,
-                        cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_grid_formats);
+  cli_formats formats =
+      cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_formats_with(VXM_FORMAT_BITS);
+  out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
     return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
   if (out->format && cli_check_look(cli, &out->look, out->format) == CLI_STOP)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "gridio/common/format.h"
+#include "gridio/common/values_writer.h"
 #include "gridio/gridio.h"
 
 #include <stdio.h>
@@ -16,9 +16,10 @@ static const vxm_grid_format mesh_formats[] = {
 
 /** In the order in which they are named, and their content is asked. */
 static const vxm_grid_format *const formats[] = {
-    &vxm_format_binvox, &vxm_format_npy,  &vxm_format_raw,   &vxm_format_rle,       &vxm_format_nrrd,
-    &vxm_format_vdb,    &mesh_formats[0], &vxm_format_ply,   &mesh_formats[1],      &mesh_formats[2],
-    &vxm_format_glb,    &vxm_format_vox,  &vxm_format_schem, &vxm_format_litematic,
+    &vxm_format_binvox, &vxm_format_npy,   &vxm_format_raw,       &vxm_format_rle,  &vxm_format_nrrd,
+    &vxm_format_vdb,    &vxm_format_nii,   &vxm_format_nii_gz,    &vxm_format_vti,  &vxm_format_vtk,
+    &mesh_formats[0],   &vxm_format_ply,   &mesh_formats[1],      &mesh_formats[2], &vxm_format_glb,
+    &vxm_format_vox,    &vxm_format_schem, &vxm_format_litematic,
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -28,6 +29,50 @@ const vxm_grid_format *vxm_grid_format_named(const char *name) {
     if (vxm_text_equal_nocase(formats[f]->name, name))
       return formats[f];
   return NULL;
+}
+
+/** The longest extension counts: .nii.gz is not a .gz. */
+const vxm_grid_format *vxm_grid_format_of_path(const char *path) {
+  const vxm_grid_format *found = NULL;
+  size_t length = strlen(path), best = 0;
+  for (size_t f = 0; f < FORMATS; f++) {
+    size_t size = strlen(formats[f]->name);
+    if (size > best && length > size && path[length - size - 1] == '.' &&
+        vxm_text_equal_nocase(path + length - size, formats[f]->name)) {
+      found = formats[f];
+      best = size;
+    }
+  }
+  return found;
+}
+
+const char *vxm_grid_format_name(int64_t index) {
+  return index >= 0 && index < FORMATS ? formats[index]->name : "";
+}
+
+const char *vxm_grid_format_of(const char *path) {
+  const vxm_grid_format *found = path ? vxm_grid_format_of_path(path) : NULL;
+  return found ? found->name : "";
+}
+
+/** What is written beside it. */
+static unsigned json_traits(const vxm_grid_format *format) {
+  unsigned traits = 0;
+  if (format->writer && format->writer->sidecar)
+    traits |= VXM_FORMAT_JSON;
+  if (format->values && format->values->sidecar)
+    traits |= format->values->has_sidecar ? VXM_FORMAT_JSON : VXM_FORMAT_LABELS_JSON;
+  return traits;
+}
+
+unsigned vxm_grid_format_traits(const char *name) {
+  const vxm_grid_format *format = name ? vxm_grid_format_named(name) : NULL;
+  if (!format)
+    return 0;
+  bool is_sliced = (format->holds & VXM_HOLDS_BITS) && vxm_grid_format_streams(format);
+  return format->holds | (format->read ? VXM_FORMAT_READ : 0) |
+         (format->is_surface || format->is_mesh ? VXM_FORMAT_SURFACE : 0) |
+         (is_sliced ? VXM_FORMAT_SLICES : 0) | json_traits(format);
 }
 
 static const vxm_grid_format *find_content(const vxm_input *input) {
@@ -92,7 +137,7 @@ static vxm_status find_format(const vxm_grid_format **out, const vxm_input *inpu
                               vxm_error *error) {
   const vxm_grid_format *format = find_content(input);
   if (!format)
-    format = vxm_grid_format_named(vxm_path_extension(path));
+    format = vxm_grid_format_of_path(path);
   *out = format;
   if (!format)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
@@ -153,7 +198,7 @@ vxm_status vxm_gridio_read_space(vxm_grid **out, vxm_context *context, const cha
 const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format, vxm_error *error) {
   const vxm_place place = {path, 0, -1, -1};
   const char *name = format ? format : vxm_path_extension(path);
-  const vxm_grid_format *found = vxm_grid_format_named(name);
+  const vxm_grid_format *found = format ? vxm_grid_format_named(format) : vxm_grid_format_of_path(path);
   if (found && (found->holds & VXM_HOLDS_BITS))
     return found;
   vxm_format_list list = vxm_grid_formats_holding(VXM_HOLDS_BITS, "");
@@ -172,7 +217,7 @@ const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format,
 const vxm_grid_format *vxm_grid_format_holding(const char *path, const char *format, unsigned holds,
                                                const char *what, vxm_error *error) {
   const char *name = format ? format : vxm_path_extension(path);
-  const vxm_grid_format *found = vxm_grid_format_named(name);
+  const vxm_grid_format *found = format ? vxm_grid_format_named(format) : vxm_grid_format_of_path(path);
   if (found && (found->holds & holds))
     return found;
   vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1}, "%s into %s, not \"%s\"", what,

@@ -165,6 +165,27 @@ typedef struct vxm_picture_options {
 VXM_API vxm_status vxm_grid_picture(const vxm_grid *grid, const char *path,
                                     const vxm_picture_options *options, vxm_error *error);
 
+/** What can be done with a format of grid files. */
+typedef enum vxm_format_trait {
+  VXM_FORMAT_BITS = 1,         /**< set and clear voxels are written */
+  VXM_FORMAT_NUMBERS = 2,      /**< a number per voxel is */
+  VXM_FORMAT_LABELS = 4,       /**< a label per voxel is */
+  VXM_FORMAT_COLORS = 8,       /**< a colour per voxel is */
+  VXM_FORMAT_READ = 16,        /**< files are read too */
+  VXM_FORMAT_SURFACE = 32,     /**< of set voxels the surface is written, as a mesh */
+  VXM_FORMAT_SLICES = 64,      /**< set voxels are written slice by slice, without the whole grid */
+  VXM_FORMAT_JSON = 128,       /**< a file of the same name with .json added is written too */
+  VXM_FORMAT_LABELS_JSON = 256 /**< that is so where there is a table of labels */
+} vxm_format_trait;
+
+/** The formats of grid files that this build knows, in a fixed order: the name of one, which is also its
+ * extension, or "" beyond the last. */
+VXM_API const char *vxm_grid_format_name(int64_t index);
+/** The traits of a format by its name, in any case; 0 if there is none of this name. */
+VXM_API unsigned vxm_grid_format_traits(const char *name);
+/** The name of the format that a file's name tells, or "". */
+VXM_API const char *vxm_grid_format_of(const char *path);
+
 /**
  * Reads only where the voxels of a grid or field lie: a grid in which none is set.
  *

@@ -61,10 +61,10 @@ static inline vxm_status vxm_grid_writer_step_rows(vxm_grid_writer *writer, cons
 
 /** What a file may hold. */
 enum {
-  VXM_HOLDS_BITS = 1,
-  VXM_HOLDS_NUMBERS = 2, /**< any field of one number per voxel that is not labels */
-  VXM_HOLDS_LABELS = 4,
-  VXM_HOLDS_COLORS = 8
+  VXM_HOLDS_BITS = VXM_FORMAT_BITS,
+  VXM_HOLDS_NUMBERS = VXM_FORMAT_NUMBERS, /**< any field of one number per voxel that is not labels */
+  VXM_HOLDS_LABELS = VXM_FORMAT_LABELS,
+  VXM_HOLDS_COLORS = VXM_FORMAT_COLORS
 };
 
 /** A row of the table: all that is known of a format. What is NULL it cannot do, unless more is said. */
@@ -103,6 +103,8 @@ const vxm_grid_format *vxm_grid_format_holding(const char *path, const char *for
                                                const char *what, vxm_error *error);
 /** The format of this name, in any case, or NULL. */
 const vxm_grid_format *vxm_grid_format_named(const char *name);
+/** The format that a file's name tells, or NULL. A name may have two extensions. */
+const vxm_grid_format *vxm_grid_format_of_path(const char *path);
 
 /** Room for a list of formats. */
 typedef struct vxm_format_list {
@@ -145,9 +147,9 @@ vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status
                             vxm_error *error);
 
 /** One per file of this room. */
-extern const vxm_grid_format vxm_format_binvox, vxm_format_glb, vxm_format_litematic, vxm_format_npy,
-    vxm_format_nrrd, vxm_format_ply, vxm_format_raw, vxm_format_rle, vxm_format_schem, vxm_format_vdb,
-    vxm_format_vox;
+extern const vxm_grid_format vxm_format_binvox, vxm_format_glb, vxm_format_litematic, vxm_format_nii,
+    vxm_format_nii_gz, vxm_format_npy, vxm_format_nrrd, vxm_format_ply, vxm_format_raw, vxm_format_rle,
+    vxm_format_schem, vxm_format_vdb, vxm_format_vox, vxm_format_vti, vxm_format_vtk;
 
 /** VXM_ERROR_FORMAT at a byte of the input. */
 #define vxm_fail_byte(error, input, offset, ...) \

@@ -176,6 +176,7 @@ static void drop(vxm_values_writer *w) {
 const vxm_values_writer_kind vxm_vdb_values = {
     .layout = VXM_PLANE_Z_FAST,
     .holds = VXM_HOLDS_NUMBERS,
+    .sidecar = &description,
     .check = check,
     .begin = begin,
     .put = put,

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gridio/common/deflate.h"
+#include "config.h"
+
+#include <string.h>
+
+#ifdef HAVE_ZLIB
+#define ZLIB_CONST
+#include <zlib.h>
+
+vxm_status vxm_deflate_check(const char *path, vxm_error *error) {
+  (void)path, (void)error;
+  return VXM_OK;
+}
+
+static void *take(void *payload, unsigned count, unsigned size) {
+  return vxm_alloc(payload, count, size, NULL);
+}
+
+static void give(void *payload, void *block) {
+  vxm_free(payload, block);
+}
+
+/* ---- Out ---- */
+
+struct vxm_deflater {
+  z_stream z;
+  vxm_context *context;
+  vxm_output *output;
+  uint64_t written;
+};
+
+vxm_status vxm_deflater_create(vxm_deflater **out, vxm_context *context, vxm_output *output,
+                               vxm_deflate_frame frame, vxm_error *error) {
+  enum { GZIP = 16, MEMORY_LEVEL = 8 };
+  *out = NULL;
+  vxm_deflater *d = vxm_calloc(context, 1, sizeof *d, error);
+  if (!d)
+    return VXM_ERROR_MEMORY;
+  d->context = context;
+  d->output = output;
+  d->z.zalloc = take;
+  d->z.zfree = give;
+  d->z.opaque = context;
+  int window = MAX_WBITS + (frame == VXM_DEFLATE_GZIP ? GZIP : 0);
+  if (deflateInit2(&d->z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, window, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
+    vxm_free(context, d);
+    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+  }
+  *out = d;
+  return VXM_OK;
+}
+
+/** Gives zlib what it asks for, until it has taken all. */
+static void run(vxm_deflater *d, int flush) {
+  enum { ROOM = 4096 };
+  do {
+    d->z.next_out = (unsigned char *)vxm_output_reserve(d->output, ROOM);
+    d->z.avail_out = ROOM;
+    deflate(&d->z, flush);
+    vxm_output_advance(d->output, ROOM - d->z.avail_out);
+    d->written += ROOM - d->z.avail_out;
+  } while (d->z.avail_out == 0);
+}
+
+void vxm_deflater_write(vxm_deflater *d, const void *data, size_t size) {
+  const size_t piece = (size_t)1 << 30; /* zlib counts in 32 bits */
+  const unsigned char *from = data;
+  while (size > 0 && !vxm_output_failed(d->output)) {
+    size_t some = size < piece ? size : piece;
+    d->z.next_in = from;
+    d->z.avail_in = (unsigned)some;
+    run(d, Z_NO_FLUSH);
+    from += some;
+    size -= some;
+  }
+}
+
+void vxm_deflater_end(vxm_deflater *d) {
+  d->z.next_in = (const unsigned char *)"";
+  d->z.avail_in = 0;
+  run(d, Z_FINISH);
+}
+
+uint64_t vxm_deflater_written(const vxm_deflater *d) {
+  return d->written;
+}
+
+void vxm_deflater_destroy(vxm_deflater *d) {
+  if (!d)
+    return;
+  deflateEnd(&d->z);
+  vxm_free(d->context, d);
+}
+
+/* ---- In ---- */
+
+struct vxm_inflater {
+  z_stream z;
+  const vxm_input *input;
+};
+
+vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_t offset, vxm_error *error) {
+  enum { ANY_HEADER = 32 /* gzip's or zlib's own */ };
+  *out = NULL;
+  vxm_inflater *i = vxm_calloc(input->context, 1, sizeof *i, error);
+  if (!i)
+    return VXM_ERROR_MEMORY;
+  i->input = input;
+  i->z.zalloc = take;
+  i->z.zfree = give;
+  i->z.opaque = input->context;
+  i->z.next_in = input->data + offset;
+  if (inflateInit2(&i->z, ANY_HEADER + MAX_WBITS) != Z_OK) {
+    vxm_free(input->context, i);
+    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+  }
+  *out = i;
+  return VXM_OK;
+}
+
+vxm_status vxm_inflater_read(vxm_inflater *i, void *to, size_t size, vxm_error *error) {
+  const size_t piece = (size_t)1 << 30;
+  const vxm_input *input = i->input;
+  z_stream *z = &i->z;
+  z->next_out = to;
+  while (size > 0) {
+    size_t left = input->size - (size_t)(z->next_in - input->data), room = size < piece ? size : piece;
+    z->avail_in = (unsigned)(left < piece ? left : piece);
+    z->avail_out = (unsigned)room;
+    int result = inflate(z, Z_NO_FLUSH);
+    size -= room - z->avail_out;
+    const vxm_place place = {input->name, 0, (int64_t)(z->next_in - input->data), -1};
+    if (result == Z_MEM_ERROR)
+      return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+    if (size > 0 && (result == Z_STREAM_END || result == Z_BUF_ERROR))
+      return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "the compressed values end too early");
+    if (result != Z_OK && result != Z_STREAM_END)
+      return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "the compressed values are damaged: %s",
+                         z->msg ? z->msg : "not those of zlib");
+  }
+  return VXM_OK;
+}
+
+void vxm_inflater_destroy(vxm_inflater *i) {
+  if (!i)
+    return;
+  inflateEnd(&i->z);
+  vxm_free(i->input->context, i);
+}
+
+#else
+
+vxm_status vxm_deflate_check(const char *path, vxm_error *error) {
+  return vxm_fail_at(error, VXM_ERROR_UNAVAILABLE, (vxm_place){path, 0, -1, -1},
+                     "compressed values need zlib, without which this build was made (configure --with-zlib; "
+                     "Debian: zlib1g-dev)");
+}
+
+vxm_status vxm_deflater_create(vxm_deflater **out, vxm_context *context, vxm_output *output,
+                               vxm_deflate_frame frame, vxm_error *error) {
+  (void)context, (void)output, (void)frame;
+  *out = NULL;
+  return vxm_deflate_check(NULL, error);
+}
+
+void vxm_deflater_write(vxm_deflater *deflater, const void *data, size_t size) {
+  (void)deflater, (void)data, (void)size;
+}
+
+void vxm_deflater_end(vxm_deflater *deflater) {
+  (void)deflater;
+}
+
+uint64_t vxm_deflater_written(const vxm_deflater *deflater) {
+  (void)deflater;
+  return 0;
+}
+
+void vxm_deflater_destroy(vxm_deflater *deflater) {
+  (void)deflater;
+}
+
+vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_t offset, vxm_error *error) {
+  (void)offset;
+  *out = NULL;
+  return vxm_deflate_check(input->name, error);
+}
+
+vxm_status vxm_inflater_read(vxm_inflater *inflater, void *to, size_t size, vxm_error *error) {
+  (void)inflater, (void)to, (void)size;
+  return vxm_deflate_check(NULL, error);
+}
+
+void vxm_inflater_destroy(vxm_inflater *inflater) {
+  (void)inflater;
+}
+#endif

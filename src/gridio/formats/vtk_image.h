@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** What VTK's two formats of images share: voxels are cells of the image, and their values one array of it. */
+#ifndef VXM_GRIDIO_FORMATS_VTK_IMAGE_H
+#define VXM_GRIDIO_FORMATS_VTK_IMAGE_H
+
+#include "gridio/common/raster.h"
+#include "gridio/common/values_writer.h"
+
+/** What an image says of its values. */
+typedef struct vxm_vtk_image {
+  int64_t points[3]; /**< along the axes; cells are one less */
+  double origin[3];  /**< of the first point */
+  double spacing[3];
+  bool is_points; /**< values are those of points, which are the centres of voxels */
+  vxm_scalar scalar;
+  int components;
+  char name[64]; /**< of the array, cut */
+} vxm_vtk_image;
+
+/** The name of the array of values, which tells their kind. */
+const char *vxm_vtk_array_name(const vxm_values_spec *values);
+/** Makes a raster of an image, and of the array's name what the values are. @param at for messages */
+vxm_status vxm_vtk_raster(vxm_raster *out, vxm_about *about, const vxm_vtk_image *image,
+                          const vxm_input *input, size_t at, vxm_error *error);
+
+/** Types that VTK has not: 16-bit floats become those of 32. */
+vxm_scalar vxm_vtk_stored(vxm_scalar scalar);
+void vxm_vtk_convert(void *out, const vxm_field *slice, size_t count);
+
+/** Values that lie in a file as they are. */
+typedef struct vxm_vtk_source {
+  const unsigned char *at;
+} vxm_vtk_source;
+
+vxm_status vxm_vtk_take(void *payload, void *slice, size_t size, vxm_error *error);
+
+#endif
