@@ -199,10 +199,23 @@ bool vxm_nbt_sniff(const vxm_input *input) {
 }
 #endif
 
+/** Some programs leave their trees unpacked. */
+static vxm_status copy(vxm_nbt *tree, size_t *size, const vxm_input *input, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  tree->bytes = vxm_alloc(tree->context, input->size, 1, &local);
+  if (tree->bytes)
+    memcpy(tree->bytes, input->data, input->size);
+  else
+    vxm_error_pass(error, &local);
+  *size = input->size;
+  return local.code;
+}
+
 vxm_status vxm_nbt_load(vxm_nbt *out, const vxm_input *input, vxm_error *error) {
   size_t size = 0;
   *out = (vxm_nbt){.context = input->context};
-  vxm_status status = load(out, &size, input, error);
+  bool is_plain = input->size > 0 && input->data[0] == VXM_NBT_COMPOUND;
+  vxm_status status = (is_plain ? copy : load)(out, &size, input, error);
   if (status == VXM_OK) {
     const unsigned char *bytes = out->bytes, *end = bytes + size, *at = NULL;
     if (size > 3 && bytes[0] == VXM_NBT_COMPOUND)
