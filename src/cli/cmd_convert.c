@@ -9,11 +9,11 @@ enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
      "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
-     "standard output"},
+     ".json beside them), .vox, .schem or .litematic, or the grid as a mesh: .obj,\n"
+     ".ply, .stl, .off, .glb; '-' is standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl, off or vox [by the name of the\n"
-     "output]"},
+     "binvox, npy, raw, rle, nrrd, vdb, vox, schem, litematic, obj, ply, stl, off or\n"
+     "glb [by the name of the output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
@@ -146,7 +146,9 @@ const cli_command cli_command_convert = {
         "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units, and\n"
         "split into triangles. Every edge has two faces, and programs that merge vertices leave it so.\n\n"
         "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd and .vdb;\n"
-        "labels up to 255 also in .binvox, colours in .npy, .nrrd, .ply and .vox. They become set and clear\n"
+        "labels up to 255 also in .binvox and .vox, all as blocks in .schem and .litematic and as objects "
+        "in\n"
+        ".glb, which take colours too, as .ply and .vox do. They become set and clear\n"
         "voxels only with --threshold or --below, or where nothing is lost: all are 0 or 1, or unsigned\n"
         "bytes 0 and 255.\n\n"
         "Examples:\n"

@@ -41,11 +41,11 @@ enum {
 const cli_option voxelize_options[] = {
     {'o', "output", "GRID",
      "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
-     "standard output"},
+     ".json beside them), .vox, .schem or .litematic, or the grid as a mesh: .obj,\n"
+     ".ply, .stl, .off, .glb; '-' is standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
-     "output]"},
+     "binvox, npy, raw, rle, nrrd, vdb, vox, schem, litematic, obj, ply, stl, off or\n"
+     "glb [by the name of the output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
@@ -94,10 +94,12 @@ const cli_option voxelize_options[] = {
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
-     ".npy, .nrrd or .binvox, with the names in a .json beside it"},
+     ".npy, .nrrd or .binvox, with the names in a .json beside it; .vox, .schem,\n"
+     ".litematic or .glb"},
     {KEY_COLOR, "color", "noise|position|part|FILE.frag",
      "write a colour for each set voxel instead: Perlin's noise, where it is, its part,\n"
-     "or a function in GLSL, which needs --engine opengl; .npy, .ply or .vox"},
+     "or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox, .glb,\n"
+     ".schem or .litematic"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
