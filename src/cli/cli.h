@@ -373,7 +373,7 @@ int cli_check_look(cli_run *cli, const cli_look *look, const char *format);
 /** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
 #define CLI_OPTION_FORCE(key) \
-  { key, "force", NULL, "replace a mesh that is there: .obj, .ply, .stl, .off or .glb" }
+  { key, "force", NULL, "replace a mesh that is there" }
 
 /* ---- values.c: bits and numbers in files ---- */
 
