@@ -251,7 +251,8 @@ class VoxelGrid:
         return _core.fields(out[0])
 
     def save(self, path: Any, format: Optional[str] = None) -> None:
-        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, or the surface as .obj, .ply, .stl, .off."""
+        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .vox, .schem, .litematic, or the surface as .obj, .ply, .stl,
+        .off, .glb."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
         options.format = name

@@ -22,7 +22,8 @@ static vxm_context *context_of(const char *name, size_t size) {
 
 static const vxm_grid_format *format_of(const char *name) {
   static const vxm_grid_format *const formats[] = {&vxm_format_binvox, &vxm_format_npy, &vxm_format_nrrd,
-                                                   &vxm_format_rle, &vxm_format_vdb, &vxm_format_vox, &vxm_format_schem};
+                                                   &vxm_format_rle,    &vxm_format_vdb, &vxm_format_vox,
+                                                   &vxm_format_schem};
   for (size_t f = 0; f < sizeof formats / sizeof *formats; f++)
     if (strcmp(name, formats[f]->name) == 0)
       return formats[f];

@@ -8,4 +8,4 @@ python=${READERS_PYTHON:-$TEST_PYTHON}
 folder=$(mktemp -d "${TMPDIR:-/tmp}/voxmend-blocks.XXXXXX")
 trap 'rm -rf "$folder"' EXIT
 "$BUILDDIR/samples/generate_samples" "$folder"
-"$python" "$SRCDIR/tests/gridio/other_block_readers.py" "$VOXMEND" "$folder" "$folder"/*.obj "$folder"/*.off
+"$python" "$SRCDIR/tests/gridio/other_block_readers.py" "$VOXMEND" "$folder" "$folder/rocket.off" "$folder/edge_cubes.off" "$folder/overlapping.off"
