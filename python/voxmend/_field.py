@@ -180,7 +180,7 @@ class VoxelField(Placed):
                                           destroy=lib.vxm_grid_destroy))
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
-        """Writes .npy, .nrrd or .vdb; labels also .binvox; colours .npy, .nrrd, .ply or .vox."""
+        """Writes .npy, .nrrd or .vdb; labels also .binvox; colours .npy, .nrrd or .ply; both .vox, .schem, .litematic, .glb."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
         options.format = name

@@ -304,7 +304,8 @@ class VoxelGrid(Placed):
         return _grid_convert.to_open3d(self)
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
-        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, or the surface as .obj, .ply, .stl, .off."""
+        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .vox, .schem, .litematic, or the surface as .obj, .ply, .stl,
+        .off, .glb."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
         options.format = name

@@ -180,7 +180,10 @@ vxm_status vxm_field_write(const vxm_field *field, const char *path, const vxm_g
     return fail_null(error);
   vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "field", error);
-  return status == VXM_OK ? vxm_gridio_write_field(field, path, chosen.format, error) : status;
+  vxm_field shown = *field; /* what it has is borrowed */
+  if (status == VXM_OK)
+    status = vxm_look_of(&shown.look, chosen.blocks, chosen.up, error);
+  return status == VXM_OK ? vxm_gridio_write_field(&shown, path, chosen.format, error) : status;
 }
 
 vxm_status vxm_field_picture(const vxm_field *field, const char *path, const vxm_picture_options *options,

@@ -355,10 +355,27 @@ int cli_check_surface_file(cli_run *cli, const char *path, const char *format, b
         "that edges may have four faces; else either side has vertices of its own,\n"  \
         "1/256 of a voxel within"                                                      \
   }
+/** How blocks and meshes stand: of vxm_grid_write_options. */
+typedef struct cli_look {
+  const char *blocks;
+  int up;
+} cli_look;
+#define CLI_OPTIONS_LOOK(blocks, up)                                                          \
+  {blocks, "blocks", "NAME[,NAME...]",                                                        \
+   "of .schem and .litematic: Minecraft's block for voxels, those for labels in\n"            \
+   "turn, or those that colours choose from [stone; concrete, wool and terracotta in\n"       \
+   "16 dyes; 83 plain cubes]"},                                                               \
+  {                                                                                           \
+    up, "up", "x|y|z", "of .schem, .litematic and .glb: axis of the model that points up [z]" \
+  }
+/** Takes over the argument of --up: CLI_END or CLI_STOP. */
+int cli_read_up(cli_run *cli, cli_look *look, const char *value);
+/** CLI_STOP if the format has no use for what was given. */
+int cli_check_look(cli_run *cli, const cli_look *look, const char *format);
 /** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
 #define CLI_OPTION_FORCE(key) \
-  { key, "force", NULL, "replace a mesh that is there: .obj, .ply, .stl or .off" }
+  { key, "force", NULL, "replace a mesh that is there" }
 
 /* ---- values.c: bits and numbers in files ---- */
 

@@ -5,21 +5,22 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_WINDOW };
+enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_BLOCKS, KEY_UP, KEY_WINDOW };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
      "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
-     "standard output"},
+     ".json beside them), .vox, .schem or .litematic, or the grid as a mesh: .obj,\n"
+     ".ply, .stl, .off, .glb; '-' is standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl, off or vox [by the name of the\n"
-     "output]"},
+     "binvox, npy, raw, rle, nrrd, vdb, vox, schem, litematic, obj, ply, stl, off or\n"
+     "glb [by the name of the output]"},
     {KEY_WINDOW, "window", "X:X,Y:Y,Z:Z",
      "only these voxels: along each axis from the first number, 0 or more, to before\n"
      "the second; of .octree nothing else is read"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
+    CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
     CLI_OPTIONS_THRESHOLD,
     {0, NULL, NULL, NULL}};
 
@@ -28,6 +29,7 @@ typedef struct request {
   bool force, keep_polygons, keep_contacts;
   bool has_window;
   int64_t begin[3], end[3];
+  cli_look look;
   vxm_threshold_options threshold;
 } request;
 
@@ -62,7 +64,12 @@ static int read_arguments(cli_run *cli, request *out) {
       out->force = true;
     else if (key == KEY_CONTACTS)
       out->keep_contacts = true;
-    else if (key == KEY_WINDOW) {
+    else if (key == KEY_BLOCKS)
+      out->look.blocks = value;
+    else if (key == KEY_UP) {
+      if (cli_read_up(cli, &out->look, value) == CLI_STOP)
+        return CLI_STOP;
+    } else if (key == KEY_WINDOW) {
       if (read_window(cli, out, value) == CLI_STOP)
         return CLI_STOP;
     } else if (key == KEY_POLYGONS) {
@@ -79,7 +86,7 @@ static int read_arguments(cli_run *cli, request *out) {
   if (!out->format)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, cli_has_json(out->format, true));
-  if (cli_check_names(cli) == CLI_STOP)
+  if (cli_check_names(cli) == CLI_STOP || cli_check_look(cli, &out->look, out->format) == CLI_STOP)
     return CLI_STOP;
   return cli_check_surface_file(cli, out->output, out->format, out->force);
 }
@@ -154,6 +161,8 @@ static int convert(cli_run *cli, const request *given, const cli_values *values)
   write.format = given->format;
   write.keep_polygons = given->keep_polygons;
   write.keep_contacts = given->keep_contacts;
+  write.blocks = given->look.blocks;
+  write.up = given->look.up;
   vxm_status status = values->grid ? vxm_grid_write(values->grid, given->output, &write, &cli->error)
                                    : vxm_field_write(values->field, given->output, &write, &cli->error);
   if (status != VXM_OK)
@@ -192,7 +201,8 @@ const cli_command cli_command_convert = {
         "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units, and\n"
         "split into triangles. Every edge has two faces, and programs that merge vertices leave it so.\n\n"
         "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd and .vdb;\n"
-        "labels up to 255 also in .binvox, colours in .npy, .nrrd, .ply and .vox. They become set and clear\n"
+        "labels up to 255 also in .binvox and .vox, all as blocks in .schem and .litematic and as objects\n"
+        "in .glb, which take colours too, as .ply and .vox do. They become set and clear\n"
         "voxels only with --threshold or --below, or where nothing is lost: all are 0 or 1, or unsigned\n"
         "bytes 0 and 255.\n\n"
         "Examples:\n"

@@ -233,10 +233,28 @@ int cli_read_polygons(cli_run *cli, bool *keep, const char *value) {
   return result;
 }
 
+int cli_read_up(cli_run *cli, cli_look *look, const char *value) {
+  static const char *const axes[] = {"x", "y", "z", NULL};
+  int choice = 0, result = cli_choose(cli, &choice, "up", value, axes);
+  look->up = choice + 1;
+  return result;
+}
+
+int cli_check_look(cli_run *cli, const cli_look *look, const char *format) {
+  static const char *const blocks[] = {"schem", "litematic", NULL}, *const turned[] = {"schem", "litematic",
+                                                                                       "glb", NULL};
+  if (look->blocks && cli_read_choice(format, blocks) < 0)
+    return cli_usage(cli, "--blocks goes with .schem and .litematic, not .%s", format);
+  if (look->up && cli_read_choice(format, turned) < 0)
+    return cli_usage(cli, "--up goes with .schem, .litematic and .glb, not .%s", format);
+  return CLI_END;
+}
+
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced) {
   struct stat info;
-  if (is_forced || cli_read_choice(format, cli_mesh_formats) < 0 || strcmp(path, "-") == 0 ||
-      stat(path, &info) != 0 || !S_ISREG(info.st_mode))
+  bool is_mesh = cli_read_choice(format, cli_mesh_formats) >= 0 ||
+                 (vxm_grid_format_traits(format) & VXM_FORMAT_SURFACE) != 0;
+  if (is_forced || !is_mesh || strcmp(path, "-") == 0 || stat(path, &info) != 0 || !S_ISREG(info.st_mode))
     return CLI_END;
   return cli_usage(cli, "%s is there already, and may be a mesh that is still needed; --force replaces it",
                    path);

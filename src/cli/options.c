@@ -407,9 +407,6 @@ const char *cli_output_format(cli_run *cli, const char *path, const char *format
     cli_usage(cli, "--format '%s' is none of %s", format, list);
   else if (!found && strcmp(path, "-") == 0)
     cli_usage(cli, "-o - needs --format: %s", list);
-  else if (!found && cli_is_extension(path, "vox") && strcmp(cli->command->name, "voxelize") == 0)
-    cli_usage(cli, "'%s': .vox holds colours and needs --color; convert turns a grid of colours into one too",
-              path);
   else if (!found)
     cli_usage(cli, "the name '%s' does not tell the format; give --format: %s", path, list);
   if (!found || strcmp(path, "-") != 0)

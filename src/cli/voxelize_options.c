@@ -34,19 +34,22 @@ enum {
   KEY_FORCE,
   KEY_POLYGONS,
   KEY_CONTACTS,
+  KEY_BLOCKS,
+  KEY_UP,
   KEY_DRY_RUN
 };
 
 const cli_option voxelize_options[] = {
     {'o', "output", "GRID",
      "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
-     "standard output"},
+     ".json beside them), .vox, .schem or .litematic, or the grid as a mesh: .obj,\n"
+     ".ply, .stl, .off, .glb; '-' is standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
-     "output]"},
+     "binvox, npy, raw, rle, nrrd, vdb, vox, schem, litematic, obj, ply, stl, off or\n"
+     "glb [by the name of the output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
+    CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S|SX,SY,SZ", "sides of a voxel in model units, instead of -r"},
     {KEY_FIT, "fit", "cube|tight|sphere",
@@ -92,11 +95,13 @@ const cli_option voxelize_options[] = {
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
-     ".npy, .nrrd or .binvox, with the names in a .json beside it"},
+     ".npy, .nrrd or .binvox, with the names in a .json beside it; .vox, .schem,\n"
+     ".litematic or .glb"},
     {KEY_COLOR, "color", "mesh|noise|position|part|FILE.frag",
      "write a colour for each set voxel instead: that of the nearest point of the mesh,\n"
      "by its vertices, faces, materials and textures; Perlin's noise, where it is, its\n"
-     "part, or a function in GLSL, which needs --engine opengl; .npy, .ply or .vox"},
+     "part, or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox, .glb,\n"
+     ".schem or .litematic"},
     {KEY_COLOR_AVERAGE, "color-average", NULL,
      "with --color mesh: the mean over the surface within a voxel, where there is any"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
@@ -242,6 +247,11 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
   case KEY_CONTACTS:
     out->keep_contacts = true;
     return CLI_END;
+  case KEY_BLOCKS:
+    out->look.blocks = value;
+    return CLI_END;
+  case KEY_UP:
+    return cli_read_up(cli, &out->look, value);
   case KEY_POLYGONS:
     return cli_read_polygons(cli, &out->keep_polygons, value);
   case KEY_DRY_RUN:
@@ -339,6 +349,10 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
       cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_formats_with(VXM_FORMAT_BITS);
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
-    return cli_usage(cli, "--sparse: the surface as .%s needs the whole grid", out->format);
+    return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
+  if (out->format && cli_check_look(cli, &out->look, out->format) == CLI_STOP)
+    return CLI_STOP;
+  out->field.label_options.blocks = out->field.color_options.blocks = out->look.blocks;
+  out->field.label_options.up = out->field.color_options.up = out->look.up;
   return out->format ? check_names(cli, out) : CLI_STOP;
 }

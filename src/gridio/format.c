@@ -17,10 +17,10 @@ static const vxm_grid_format mesh_formats[] = {
 
 /** In the order in which they are named, and their content is asked. */
 static const vxm_grid_format *const formats[] = {
-    &vxm_format_binvox, &vxm_format_npy,  &vxm_format_raw,    &vxm_format_rle,
-    &vxm_format_nrrd,   &vxm_format_vdb,  &vxm_format_octree, &vxm_format_nii,
-    &vxm_format_nii_gz, &vxm_format_vti,  &vxm_format_vtk,    &mesh_formats[0],
-    &vxm_format_ply,    &mesh_formats[1], &mesh_formats[2],   &vxm_format_vox,
+    &vxm_format_binvox, &vxm_format_npy,    &vxm_format_raw,   &vxm_format_rle,       &vxm_format_nrrd,
+    &vxm_format_vdb,    &vxm_format_octree, &vxm_format_nii,   &vxm_format_nii_gz,    &vxm_format_vti,
+    &vxm_format_vtk,    &mesh_formats[0],   &vxm_format_ply,   &mesh_formats[1],      &mesh_formats[2],
+    &vxm_format_glb,    &vxm_format_vox,    &vxm_format_schem, &vxm_format_litematic,
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -72,8 +72,8 @@ unsigned vxm_grid_format_traits(const char *name) {
     return 0;
   bool is_sliced = (format->holds & VXM_HOLDS_BITS) && vxm_grid_format_streams(format);
   return format->holds | (format->read ? VXM_FORMAT_READ : 0) |
-         (format->is_surface ? VXM_FORMAT_SURFACE : 0) | (is_sliced ? VXM_FORMAT_SLICES : 0) |
-         json_traits(format);
+         (format->is_surface || format->is_mesh ? VXM_FORMAT_SURFACE : 0) |
+         (is_sliced ? VXM_FORMAT_SLICES : 0) | json_traits(format);
 }
 
 static const vxm_grid_format *find_content(const vxm_input *input) {
@@ -144,7 +144,7 @@ static vxm_status find_format(const vxm_grid_format **out, const vxm_input *inpu
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
                        "not a grid: neither content nor name are those of %s",
                        vxm_grid_formats_read(".").text);
-  if (!format->read && !format->is_surface)
+  if (!format->read && !format->is_surface && !format->is_mesh)
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){input->name, 0, -1, -1},
                        ".%s is written but not read; choose %s", format->name,
                        vxm_grid_formats_read(".").text);

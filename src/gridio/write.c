@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/bit_transpose.h"
 #include "gridio/common/values_writer.h"
+#include "gridio/formats/blocks.h"
 #include "gridio/gridio.h"
 #include "gridio/mesh/surface_mesh.h"
 #include "meshio/meshio.h"
@@ -42,13 +43,14 @@ static vxm_status write_slices(const vxm_grid *grid, const char *path, const cha
 
 /** Bits as a field of 0 and 1, for formats that need all of it. */
 static vxm_status write_bytes(const vxm_grid *grid, const char *path, const vxm_grid_format *format,
-                              vxm_error *error) {
+                              vxm_look look, vxm_error *error) {
   vxm_field *field;
   vxm_status status =
       vxm_field_make(&field, grid->context, &grid->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
   if (status != VXM_OK)
     return status;
   vxm_field_put_grid(field, grid);
+  field->look = look;
   if (format->check_field)
     status = format->check_field(field, path, error);
   if (status == VXM_OK)
@@ -68,17 +70,25 @@ static vxm_status write_surface(const vxm_grid *grid, const char *path, const ch
   return status;
 }
 
+vxm_status vxm_look_of(vxm_look *out, const char *blocks, int up, vxm_error *error) {
+  *out = (vxm_look){blocks, up};
+  if (up < 0 || up > 3)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "up: %d is none of 0 to 3", up);
+  return vxm_blocks_check_names(blocks, error);
+}
+
 vxm_status vxm_gridio_write_with(const vxm_grid *grid, const char *path,
                                  const vxm_grid_write_options *options, vxm_error *error) {
+  vxm_look look;
   const vxm_grid_format *found = vxm_grid_format_for(path, options->format, error);
-  if (!found)
+  if (!found || vxm_look_of(&look, options->blocks, options->up, error) != VXM_OK)
     return VXM_ERROR_ARGUMENT;
   unsigned how = (options->keep_polygons ? 0 : VXM_SURFACE_TRIANGLES) |
                  (options->keep_contacts ? 0 : VXM_SURFACE_MANIFOLD);
   if (found->is_surface)
     return write_surface(grid, path, found->name, how, error);
   return vxm_grid_format_streams(found) ? write_slices(grid, path, found->name, error)
-                                        : write_bytes(grid, path, found, error);
+                                        : write_bytes(grid, path, found, look, error);
 }
 
 vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {

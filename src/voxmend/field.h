@@ -313,12 +313,15 @@ typedef enum vxm_label_by {
 typedef struct vxm_label_options {
   size_t size;        /**< as the initializer sets it */
   vxm_label_by by;    /**< what faces are labelled by */
-  const char *format; /**< of a file: "npy", "nrrd" or "binvox"; NULL = by extension */
+  const char *format; /**< of a file: "npy", "nrrd", "binvox", "vox", "schem", "litematic" or "glb"; NULL = by
+                         extension */
+  const char *blocks; /**< of a file: as in vxm_grid_write_options */
+  int up;             /**< of a file: as in vxm_grid_write_options */
 } vxm_label_options;
 
 /** Initial value of vxm_label_options. */
 #define VXM_LABEL_OPTIONS_INIT \
-  { sizeof(vxm_label_options), VXM_LABEL_PART, NULL }
+  { sizeof(vxm_label_options), VXM_LABEL_PART, NULL, NULL, 0 }
 
 /** What came of labels. */
 typedef struct vxm_label_report {
@@ -379,16 +382,19 @@ typedef struct vxm_color_options {
       *source; /**< with VXM_COLOR_GLSL: defines vec3 color(vec3 position, vec3 unit, uint part), of the
                   centre in model units, the same from the grid's corner on with its longest side as 1,
                   and the number of the component, from 1 on; may call float noise(vec3), -1 to 1 */
-  const char *format;   /**< of a file: "npy", "ply" or "vox"; NULL = by extension */
+  const char
+      *format; /**< of a file: "npy", "ply", "vox", "schem", "litematic" or "glb"; NULL = by extension */
   const vxm_mesh *mesh; /**< with VXM_COLOR_MESH: read with its colours (vxm_mesh_read_options), not repaired,
                            and in the same coordinates as the model's, which may be its repair */
   bool average; /**< with VXM_COLOR_MESH: the mean over the surface within a voxel, by area and in linear
                    light, where there is any; else the colour of the nearest point to its centre */
+  const char *blocks; /**< of a file: as in vxm_grid_write_options */
+  int up;             /**< of a file: as in vxm_grid_write_options */
 } vxm_color_options;
 
 /** Initial value of vxm_color_options. */
 #define VXM_COLOR_OPTIONS_INIT \
-  { sizeof(vxm_color_options), VXM_COLOR_NOISE, NULL, NULL, NULL, false }
+  { sizeof(vxm_color_options), VXM_COLOR_NOISE, NULL, NULL, NULL, false, NULL, 0 }
 
 /**
  * Gives each set voxel of a model a colour.

@@ -115,16 +115,20 @@ VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const cha
 /** The format of a grid file. */
 typedef struct vxm_grid_write_options {
   size_t size;        /**< as the initializer sets it */
-  const char *format; /**< "binvox", "npy", "raw", "rle", "nrrd", "vdb", or "obj", "ply", "stl", "off"; NULL =
-                         by extension */
+  const char *format; /**< "binvox", "npy", "raw", "rle", "nrrd", "vdb", "vox", "schem", "litematic", or
+                         "obj", "ply", "stl", "off", "glb"; NULL = by extension */
   bool keep_polygons; /**< obj, ply, off: polygons, rather than triangles: rectangles with further corners */
   bool keep_contacts; /**< meshes: where voxels touch in an edge or a corner alone they share its vertices, so
                          that edges may have four faces, rather than having vertices of their own */
+  const char *blocks; /**< schem, litematic: names of blocks between commas: the first for voxels, all in turn
+                         for labels, those to choose from for colours; NULL = stone, dyed blocks, and all that
+                         are known */
+  int up;             /**< schem, litematic, glb: axis that points up: 0 = default (z), 1 = x, 2 = y, 3 = z */
 } vxm_grid_write_options;
 
 /** Initial value of vxm_grid_write_options. */
 #define VXM_GRID_WRITE_OPTIONS_INIT \
-  { sizeof(vxm_grid_write_options), NULL, false, false }
+  { sizeof(vxm_grid_write_options), NULL, false, false, NULL, 0 }
 
 /**
  * Writes a grid, under a temporary name first. "-" writes standard output (not .raw). The mesh formats hold

@@ -62,7 +62,11 @@ def commands():
     yield "distance", "voxelize two.off -o out.nrrd -r 6 --distance signed", {}
     yield "distance vdb", "voxelize two.off -o out.vdb -r 6 --distance signed", {}
     yield "labels", "voxelize box.obj -o out.npy -r 6 --labels group", {}
-    for colors in ("npy", "ply", "vox"):
+    for labels in ("schem", "litematic", "vox", "glb"):
+        yield "blocks " + labels, "voxelize box.obj -o out.%s -r 6 --labels group" % labels, {}
+    for labels in ("schem", "litematic", "vox"):
+        yield "blocks from " + labels, "convert labels.%s -o out.npy" % labels, {}
+    for colors in ("npy", "ply", "vox", "schem", "glb"):
         yield "colours " + colors, "voxelize two.off -o out.%s -r 6 --color noise" % colors, {}
     yield "threads", "voxelize torn.off -o out.rle -r 6 --threads 3", {}
     yield "limit", "voxelize torn.off -o out.rle -r 6 --memlimit 64M", {}
@@ -221,6 +225,8 @@ def make_inputs(folder):
                        stderr=subprocess.DEVNULL)
     for command in ("voxelize box.obj -o labels.npy -r 4 --labels group", "convert labels.npy -o labels.nrrd",
                     "convert labels.npy -o labels.vdb", "convert labels.npy -o labels.binvox",
+                    "convert labels.npy -o labels.schem", "convert labels.npy -o labels.litematic",
+                    "convert labels.npy -o labels.vox",
                     "voxelize box.off -o distance.nrrd -r 4 --distance signed"):
         subprocess.run([PROGRAM] + command.split() + ["-q"], cwd=folder, stderr=subprocess.DEVNULL)
     seeds = os.path.join(os.environ["SRCDIR"], "tests", "fuzz", "corpus")

@@ -134,7 +134,8 @@ static vxm_status use_grids(made *m) {
 
 static vxm_status use_model(made *m) {
   static float values[VOXELS];
-  vxm_color_options by_part = {sizeof(vxm_color_options), VXM_COLOR_PART, NULL, NULL, NULL, false};
+  vxm_color_options by_part = VXM_COLOR_OPTIONS_INIT;
+  by_part.by = VXM_COLOR_PART;
   vxm_status status = vxm_model_create(&m->model, m->mesh, NULL, &m->error);
   if (status == VXM_OK)
     status = vxm_model_voxelize(m->grid, NULL, m->model, NULL, &m->error);

@@ -46,7 +46,7 @@ def commands():
         yield "coverage " + f, "voxelize in.off -o out.%s -r 20 --coverage 2" % f
     for f in ("npy", "nrrd", "binvox"):
         yield "labels " + f, "voxelize in.off -o out.%s -r 20 --labels part" % f
-    for f in ("npy", "ply", "vox"):
+    for f in ("npy", "ply", "vox", "schem", "litematic", "glb"):
         yield "colours " + f, "voxelize in.off -o out.%s -r 20 --color position --force" % f
     yield "view", "view in.rle -o out.png --size 320x240 --report report.json"
     yield "info", "info in.off --force --locate wrong.ply --report report.json"

@@ -22,7 +22,8 @@ static vxm_context *context_of(const char *name, size_t size) {
 
 static const vxm_grid_format *format_of(const char *name) {
   static const vxm_grid_format *const formats[] = {&vxm_format_binvox, &vxm_format_npy, &vxm_format_nrrd,
-                                                   &vxm_format_rle, &vxm_format_vdb};
+                                                   &vxm_format_rle,    &vxm_format_vdb, &vxm_format_vox,
+                                                   &vxm_format_schem};
   for (size_t f = 0; f < sizeof formats / sizeof *formats; f++)
     if (strcmp(name, formats[f]->name) == 0)
       return formats[f];
@@ -92,8 +93,10 @@ static void read_as(const char *name, const char *path, const uint8_t *data, siz
 
 void fuzz_grid(const char *name, const uint8_t *data, size_t size) {
   const vxm_grid_format *format = format_of(name);
-  vxm_input input = {.data = data, .size = size, .name = "fuzz"};
+  vxm_context *context = context_of(name, size);
+  vxm_input input = {.data = data, .size = size, .name = "fuzz", .context = context};
   (void)format->sniff(&input);
+  vxm_context_destroy(context);
   read_as(name, "fuzz", data, size);
   if (format->read_field)
     read_numbers(name, "fuzz", data, size);

@@ -13,6 +13,7 @@ static const fuzz_target targets[] = {
     {"npy", fuzz_grid, false, NULL},       {"nrrd", fuzz_grid, false, NULL},
     {"rle", fuzz_grid, false, NULL},       {"vdb", fuzz_grid, true, "openvdb"},
     {"raw", fuzz_raw, false, NULL},        {"sidecar", fuzz_sidecar, false, NULL},
+    {"vox", fuzz_grid, false, NULL},       {"schem", fuzz_grid, false, NULL},
     {"parcel", fuzz_parcel, false, NULL},  {"gltf", fuzz_foreign, true, "assimp"},
     {"glb", fuzz_foreign, true, "assimp"}, {"3mf", fuzz_foreign, true, "assimp"},
     {"dae", fuzz_foreign, true, "assimp"}, {"fbx", fuzz_foreign, true, "assimp"},

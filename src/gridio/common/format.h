@@ -85,6 +85,7 @@ typedef struct vxm_grid_format {
    * `write_field`. */
   const vxm_grid_writer_kind *writer;
   bool is_surface; /**< of bits the surface is written, as a mesh of this name */
+  bool is_mesh;    /**< what `write_field` writes is a mesh */
   /** Writes an octree as it is; NULL = slice by slice. */
   vxm_status (*write_sparse)(const vxm_sparse *sparse, const char *path, vxm_error *error);
   /** Writes fields slice by slice, as they are made; NULL = only whole ones. */
@@ -148,9 +149,9 @@ vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status
                             vxm_error *error);
 
 /** One per file of this room. */
-extern const vxm_grid_format vxm_format_binvox, vxm_format_nii, vxm_format_nii_gz, vxm_format_npy,
-    vxm_format_nrrd, vxm_format_octree, vxm_format_ply, vxm_format_raw, vxm_format_rle, vxm_format_vdb,
-    vxm_format_vox, vxm_format_vti, vxm_format_vtk;
+extern const vxm_grid_format vxm_format_binvox, vxm_format_glb, vxm_format_litematic, vxm_format_nii,
+    vxm_format_nii_gz, vxm_format_npy, vxm_format_nrrd, vxm_format_octree, vxm_format_ply, vxm_format_raw,
+    vxm_format_rle, vxm_format_schem, vxm_format_vdb, vxm_format_vox, vxm_format_vti, vxm_format_vtk;
 
 /** VXM_ERROR_FORMAT at a byte of the input. */
 #define vxm_fail_byte(error, input, offset, ...) \

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/common/sidecar.h"
 #include "gridio/common/format.h"
+#include "gridio/common/json_text.h"
 
 #include <errno.h>
-#include <jansson.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,8 +37,7 @@ bool vxm_sidecar_exists(const char *data_path) {
 
 /* ---- Writing ---- */
 
-/** A name, with '?' for what is no UTF-8. */
-static json_t *name_of(const char *name) {
+json_t *vxm_json_name(const char *name) {
   json_t *value = json_string(name);
   value = value ? value : json_string(name); /* was it for want of memory? */
   char *copy = value ? NULL : strdup(name);
@@ -55,7 +54,7 @@ static json_t *list_labels(const vxm_label_table *table) {
   json_t *array = json_array();
   for (size_t label = 1; array && label <= table->count; label++) {
     json_t *entry = json_pack("{s:I, s:o, s:I}", "label", (json_int_t)label, "name",
-                              name_of(vxm_label_table_name(table, label)), "voxels",
+                              vxm_json_name(vxm_label_table_name(table, label)), "voxels",
                               (json_int_t)table->voxels[label - 1]);
     if (json_array_append_new(array, entry) != 0) {
       json_decref(array);
@@ -68,8 +67,8 @@ static json_t *list_labels(const vxm_label_table *table) {
 static json_t *list_pairs(const vxm_metadata *pairs) {
   json_t *object = json_object();
   for (const char *key = NULL; object && (key = vxm_metadata_next(pairs, key)) != NULL;) {
-    json_t *name = name_of(key);
-    int result = json_object_set_new(object, json_string_value(name), name_of(vxm_metadata_value(key)));
+    json_t *name = vxm_json_name(key);
+    int result = json_object_set_new(object, json_string_value(name), vxm_json_name(vxm_metadata_value(key)));
     json_decref(name);
     if (result != 0) {
       json_decref(object);
@@ -115,11 +114,9 @@ static int append_text(const char *data, size_t size, void *payload) {
   return 0;
 }
 
-/** NULL without memory; 17 digits bring every double back bit for bit. */
-static char *text_of(const json_t *root) {
+char *vxm_json_text(const json_t *root, size_t how) {
   json_text text = {0};
-  if (json_dump_callback(root, append_text, &text, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0 &&
-      !text.failed)
+  if (json_dump_callback(root, append_text, &text, how | JSON_REAL_PRECISION(17)) == 0 && !text.failed)
     return text.data;
   free(text.data);
   return NULL;
@@ -138,7 +135,7 @@ static char *describe(const vxm_space *space, const vxm_sidecar_text *text, cons
     json_decref(root);
     return NULL;
   }
-  char *json = text_of(root);
+  char *json = vxm_json_text(root, JSON_INDENT(2));
   json_decref(root);
   return json;
 }

@@ -12,6 +12,8 @@
 #include "gridio/common/scalar_type.h"
 #include "voxel/parts/face_labels.h"
 
+#include <string.h>
+
 /** What a file says of its values beside their type. */
 typedef struct vxm_about {
   bool is_declared;      /**< it says what they are */
@@ -21,6 +23,12 @@ typedef struct vxm_about {
   bool starved; /**< the table, or the file beside the values, found no memory */
 } vxm_about;
 
+/** How a field is shown by formats that leave a choice. */
+typedef struct vxm_look {
+  const char *blocks; /**< names of Minecraft's blocks between commas, NULL = the format's own; not owned */
+  int up; /**< axis that becomes the y of formats in which y points up: 0 = z, 1 = x, 2 = y, 3 = z */
+} vxm_look;
+
 struct vxm_field {
   vxm_context *context; /**< one reference held */
   vxm_space space;
@@ -28,6 +36,7 @@ struct vxm_field {
   int channels;
   unsigned char *values; /**< [x][y][z][channels] in C order, in the byte order of the machine */
   vxm_about about;
+  vxm_look look; /**< set for the time of writing */
   vxm_warnings warnings;
 };
 
@@ -74,6 +83,20 @@ bool vxm_about_may_be_bits(const vxm_about *about, vxm_bits_rule rule);
 void vxm_field_describe(vxm_field *field, vxm_about *about);
 /** Adds an entry to a table of labels; false without memory. */
 bool vxm_label_table_add(vxm_label_table *table, vxm_context *context, const char *name, int64_t voxels);
+
+/** The number of a voxel of whole numbers that were found to be 0 to 65535. */
+static inline uint16_t vxm_field_label(const vxm_field *field, size_t voxel) {
+  size_t size = vxm_scalar_bytes(field->scalar);
+  const unsigned char *at = field->values + voxel * size;
+  if (size == 1)
+    return *at;
+  uint16_t low; /* of the bytes, those that are not 0 */
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  at += size - 2;
+#endif
+  memcpy(&low, at, sizeof low);
+  return low;
+}
 
 /** Numbers of voxels begin to begin + count - 1 as doubles, which hold all but large ones of 64 bits exactly;
  * of colours their opacity. */

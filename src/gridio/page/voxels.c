@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The voxels of a page: bits, numbers of labels in its legend, numbers of 16 bits, or colours; x fastest. */
 #include "base/endian.h"
+#include "gridio/common/label_color.h"
 #include "gridio/page/parts.h"
 #include "gridio/picture/palette.h"
 #include "gridio/picture/picture.h"
@@ -135,7 +136,7 @@ static json_t *legend_line(const vxm_field *field, const legend *l, int number) 
   const char *name = "";
   snprintf(text, sizeof text, "%.17g", label);
   if (number != OTHERS) {
-    vxm_palette_label(rgb, label);
+    vxm_label_color_bytes(rgb, label);
     name = label >= 1 && label <= (double)vxm_field_label_count(field)
                ? vxm_field_label_name(field, (int64_t)label)
                : "";

@@ -1,26 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/picture/palette.h"
 
-#include <math.h>
-
-/** A hue from 0 to 1 as sRGB, of some saturation and brightness. */
-static void from_hue(uint8_t rgb[3], double hue, double saturation, double brightness) {
-  for (int n = 0; n < 3; n++) {
-    double at = fmod(hue * 6 + (n == 0 ? 5 : n == 1 ? 3 : 1), 6);
-    double value = brightness * (1 - saturation * fmax(0, fmin(fmin(at, 4 - at), 1)));
-    rgb[n] = (uint8_t)(255 * value + 0.5);
-  }
-}
-
-/** Hues a golden section apart; every other one is paler. */
-void vxm_palette_label(uint8_t rgb[3], double label) {
-  const double golden = 0.61803398874989485;
-  double hue = fmod((label - 1) * golden, 1), pale = fmod(label, 2);
-  if (!isfinite(label))
-    hue = pale = 0;
-  from_hue(rgb, hue < 0 ? hue + 1 : hue, pale == 0 ? 0.45 : 0.7, pale == 0 ? 0.75 : 0.9);
-}
-
 /** Between colours at equal steps; `at` from 0 to 1. */
 static void interpolate(uint8_t rgb[3], const uint8_t stops[][3], int count, double at) {
   double place = (at > 0 ? at < 1 ? at : 1 : 0) * (count - 1);

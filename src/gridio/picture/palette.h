@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Colours of labels and numbers, as 8-bit sRGB, which pictures and pages have in common. */
+/** Colours of numbers, as 8-bit sRGB, which pictures and pages have in common. */
 #ifndef VXM_GRIDIO_PICTURE_PALETTE_H
 #define VXM_GRIDIO_PICTURE_PALETTE_H
 
 #include <stdint.h>
 
-/** The colour of a label, which depends on it alone: those near each other look different. */
-void vxm_palette_label(uint8_t rgb[3], double label);
 /** -1 (inside) to 1 (outside): blue, white at 0, red. */
 void vxm_palette_diverging(uint8_t rgb[3], double value);
 /** 0 to 1: white to black. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The picture of a field: which of its voxels are drawn, and in what colours. */
+#include "gridio/common/label_color.h"
 #include "gridio/picture/palette.h"
 #include "gridio/picture/picture.h"
 
@@ -64,11 +65,6 @@ vxm_status vxm_gridio_field_shown(vxm_threshold_options *out, vxm_field_kind kin
 
 /* ---- Colours ---- */
 
-/** The linear light of an sRGB value from 0 to 1 (IEC 61966-2-1). */
-static double linear(double value) {
-  return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
-}
-
 static size_t index_of(const vxm_field *field, const int64_t voxel[3]) {
   const int64_t *n = field->space.dims;
   return (size_t)((voxel[0] * n[1] + voxel[1]) * n[2] + voxel[2]);
@@ -77,16 +73,16 @@ static size_t index_of(const vxm_field *field, const int64_t voxel[3]) {
 static vxm_ray_vec3 paint_color(const void *payload, const int64_t voxel[3]) {
   const vxm_field *field = payload;
   const unsigned char *rgb = field->values + 4 * index_of(field, voxel);
-  return vxm_ray_vec3_of(linear(rgb[0] / 255.0), linear(rgb[1] / 255.0), linear(rgb[2] / 255.0));
+  return vxm_ray_vec3_of(vxm_linear_light(rgb[0] / 255.0), vxm_linear_light(rgb[1] / 255.0),
+                         vxm_linear_light(rgb[2] / 255.0));
 }
 
 static vxm_ray_vec3 paint_label(const void *payload, const int64_t voxel[3]) {
   const vxm_field *field = payload;
-  double label;
-  uint8_t rgb[3];
+  double label, rgb[3];
   vxm_field_doubles(&label, field, index_of(field, voxel), 1);
-  vxm_palette_label(rgb, label);
-  return vxm_ray_vec3_of(linear(rgb[0] / 255.0), linear(rgb[1] / 255.0), linear(rgb[2] / 255.0));
+  vxm_label_color(rgb, label);
+  return vxm_ray_vec3_of(vxm_linear_light(rgb[0]), vxm_linear_light(rgb[1]), vxm_linear_light(rgb[2]));
 }
 
 /* ---- The picture ---- */
