@@ -157,11 +157,8 @@ static vxm_status begin_packed(vxm_values_writer *w, vxm_error *error) {
   return status;
 }
 
-static vxm_status put_packed(vxm_values_writer *w, const void *values, int64_t begin, int64_t end,
-                             vxm_error *error) {
-  (void)error;
-  vxm_deflater_write(w->state, values, (size_t)(end - begin) * w->slice_bytes);
-  return VXM_OK;
+static void put_packed(vxm_values_writer *w, const void *bytes, size_t size) {
+  vxm_deflater_write(w->state, bytes, size);
 }
 
 static vxm_status end_packed(vxm_values_writer *w, vxm_error *error) {
@@ -209,7 +206,7 @@ static const vxm_values_writer_kind packed_kind = {
     .check = check_packed,
     .held_bytes = held_packed,
     .begin = begin_packed,
-    .put = put_packed,
+    .put_bytes = put_packed,
     .end = end_packed,
     .drop = drop_packed,
 };

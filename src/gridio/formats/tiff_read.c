@@ -70,7 +70,8 @@ static size_t entry_bytes(const stack *s) {
 /** Entries of a directory; none if they do not fit the file, or are more than any page has. */
 static uint64_t entries_of(const stack *s, uint64_t directory) {
   uint64_t count = number_at(s, directory, count_bytes(s)), there = s->input->size;
-  return directory < there && count <= ENTRIES_MAX && count <= (there - directory) / entry_bytes(s) ? count : 0;
+  return directory < there && count <= ENTRIES_MAX && count <= (there - directory) / entry_bytes(s) ? count
+                                                                                                    : 0;
 }
 
 static bool find_entry(entry *out, const stack *s, uint64_t directory, uint16_t tag) {
@@ -106,9 +107,11 @@ static double rational_of(const stack *s, uint64_t directory, uint16_t tag) {
   return below > 0 ? (double)number_at(s, e.at, 4) / below : 0;
 }
 
+/** 0 behind the last; beyond the file if it is cut short. */
 static uint64_t next_directory(const stack *s, uint64_t directory) {
-  return number_at(s, directory + count_bytes(s) + entries_of(s, directory) * entry_bytes(s),
-                   offset_bytes(s));
+  uint64_t at = directory + count_bytes(s) + entries_of(s, directory) * entry_bytes(s);
+  return at <= s->input->size && s->input->size - at >= offset_bytes(s) ? number_at(s, at, offset_bytes(s))
+                                                                        : UINT64_MAX;
 }
 
 static vxm_status fail(const stack *s, const char *why, vxm_error *error) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What VTK's two formats of images share: voxels are cells of the image, and their values one array of it. */
+/** What VTK's two formats of images share: voxels are cells of the image, and their values one array of it.
+ */
 #ifndef VXM_GRIDIO_FORMATS_VTK_IMAGE_H
 #define VXM_GRIDIO_FORMATS_VTK_IMAGE_H
 
