@@ -133,7 +133,8 @@ class Field:
                                           destroy=lib.vxm_grid_destroy))
 
     def save(self, path: Any, format: Optional[str] = None) -> None:
-        """Writes .npy, .nrrd or .vdb; labels also .binvox; colours .npy, .nrrd, .ply or .vox."""
+        """Writes .npy, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif, .h5 or .vdb; labels also .binvox; colours not .vdb, but
+        .ply and .vox."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
         options.format = name
@@ -155,7 +156,8 @@ def _restore(kind: type, made: tuple, labels: list, pairs: list, warnings: list)
 
 
 def read_field(path: Any) -> Field:
-    """Reads the numbers of a file as they are: .npy, .nrrd, .vdb or .binvox. Bits are 0 and 1."""
+    """Reads the numbers of a file as they are: .npy, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif, .vdb or .binvox. Bits are 0
+    and 1."""
     field = Field._of(_core.create("vxm_field", lib.vxm_field_read, _core.context(), _values.path(path),
                                    destroy=lib.vxm_field_destroy, path=path))
     _core.warn(["%s: %s" % (os.fsdecode(path), line) for line in field.warnings])

@@ -251,7 +251,8 @@ class VoxelGrid:
         return _core.fields(out[0])
 
     def save(self, path: Any, format: Optional[str] = None) -> None:
-        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, or the surface as .obj, .ply, .stl, .off."""
+        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .nii, .nii.gz, .vti, .vtk, .tif, .h5, or the surface as .obj, .ply,
+        .stl, .off."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
         options.format = name
@@ -269,7 +270,7 @@ def _restore(kind: type, place: tuple, words: numpy.ndarray, report: dict, warni
 
 
 def read(path: Any, *, at_least: Optional[float] = None, below: Optional[float] = None) -> VoxelGrid:
-    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd or .vdb; what is odd about it is told as VoxmendWarning.
+    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif or .vdb; what is odd about it is told as VoxmendWarning.
 
     Numbers are taken as set and clear voxels only if nothing is lost: all are 0 or 1, or unsigned bytes 0 and 255. Other
     files raise NumbersError; `read_field` reads them, or a bound says which voxels are set.

@@ -11,12 +11,12 @@ enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
-     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
-     "standard output"},
+     "file to write: .binvox, .rle, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .vdb,\n"
+     ".npy or .raw (the last two with a .json beside them), or the grid as a mesh:\n"
+     ".obj, .ply, .stl, .off; '-' is standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
-     "output]"},
+     "binvox, npy, raw, rle, nrrd, vdb, nii, nii.gz, vti, vtk, tif, h5, obj, ply, stl\n"
+     "or off [by the name of the output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_THRESHOLD,

@@ -8,12 +8,12 @@ enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE",
-     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
-     "standard output"},
+     "file to write: .binvox, .rle, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .vdb,\n"
+     ".npy or .raw (the last two with a .json beside them), or the grid as a mesh:\n"
+     ".obj, .ply, .stl, .off; '-' is standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl, off or vox [by the name of the\n"
-     "output]"},
+     "binvox, npy, raw, rle, nrrd, vdb, nii, nii.gz, vti, vtk, tif, h5, obj, ply, stl,\n"
+     "off or vox [by the name of the output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_THRESHOLD,
@@ -136,10 +136,11 @@ const cli_command cli_command_convert = {
     .notes =
         "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units, and\n"
         "split into triangles. Every edge has two faces, and programs that merge vertices leave it so.\n\n"
-        "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd and .vdb;\n"
-        "labels up to 255 also in .binvox, colours in .npy, .nrrd, .ply and .vox. They become set and clear\n"
-        "voxels only with --threshold or --below, or where nothing is lost: all are 0 or 1, or unsigned\n"
-        "bytes 0 and 255.\n\n"
+        "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd, .nii, "
+        ".vti,\n"
+        ".vtk, .tif, .h5 and, but for colours, .vdb; labels up to 255 also in .binvox, colours in .ply and\n"
+        ".vox. They become set and clear voxels only with --threshold or --below, or where nothing is lost:\n"
+        "all are 0 or 1, or unsigned bytes 0 and 255. .h5 is written but not read.\n\n"
         "Examples:\n"
         "  voxmend convert chair.binvox -o chair.npy\n"
         "  voxmend convert chair.npy -o blocks.obj\n"

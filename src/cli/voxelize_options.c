@@ -38,12 +38,12 @@ enum {
 
 const cli_option voxelize_options[] = {
     {'o', "output", "GRID",
-     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), or the grid as a mesh: .obj, .ply, .stl, .off; '-' is\n"
-     "standard output"},
+     "file to write: .binvox, .rle, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .vdb,\n"
+     ".npy or .raw (the last two with a .json beside them), or the grid as a mesh:\n"
+     ".obj, .ply, .stl, .off; '-' is standard output"},
     {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, obj, ply, stl or off [by the name of the\n"
-     "output]"},
+     "binvox, npy, raw, rle, nrrd, vdb, nii, nii.gz, vti, vtk, tif, h5, obj, ply, stl\n"
+     "or off [by the name of the output]"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
@@ -83,18 +83,20 @@ const cli_option voxelize_options[] = {
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
-     "each axis; .npy, .nrrd or .vdb"},
+     "each axis; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
-     "signed: negative inside; .npy, .nrrd or .vdb"},
+     "signed: negative inside; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
-     ".npy, .nrrd or .binvox, with the names in a .json beside it"},
+     ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .vdb or .binvox, with the names in a\n"
+     ".json beside it"},
     {KEY_COLOR, "color", "noise|position|part|FILE.frag",
      "write a colour for each set voxel instead: Perlin's noise, where it is, its part,\n"
-     "or a function in GLSL, which needs --engine opengl; .npy, .ply or .vox"},
+     "or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox,\n"
+     ".nrrd, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},

@@ -170,7 +170,7 @@ def sign(value):
 
 def main():
     samples, meshes = sys.argv[2:4]
-    paths = [os.path.join(samples, "l_prism.off")]
+    paths = [os.path.join(samples, name) for name in ("l_prism.off", "sphere.off")]
     real = os.path.join(meshes, "messy", "trimesh-bunny.ply")
     if os.path.exists(real):
         paths.append(real)
