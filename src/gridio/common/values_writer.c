@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/common/values_writer.h"
+#include "base/endian.h"
 
 #include <string.h>
 
@@ -16,6 +17,19 @@ static size_t voxel_bytes(const vxm_values_spec *values) {
 
 uint64_t vxm_values_plain_bytes(const vxm_space *space, const vxm_values_spec *values) {
   return vxm_space_voxels(space) * voxel_bytes(values);
+}
+
+vxm_scalar vxm_values_no_halves(vxm_scalar scalar) {
+  return scalar == VXM_FLOAT16 ? VXM_FLOAT32 : scalar;
+}
+
+void vxm_values_widen_halves(void *out, const vxm_field *slice, size_t count) {
+  float *wide = out;
+  for (size_t v = 0; v < count; v++) {
+    uint16_t bits;
+    memcpy(&bits, slice->values + 2 * v, sizeof bits);
+    wide[v] = vxm_half_value(bits);
+  }
 }
 
 uint64_t vxm_values_writer_bytes(const vxm_values_writer_kind *kind, const vxm_space *space,

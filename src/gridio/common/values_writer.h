@@ -68,6 +68,10 @@ typedef struct vxm_values_writer_kind {
 /** The bytes of all values: vxm_values_writer_kind.file_bytes of formats that do not compress. */
 uint64_t vxm_values_plain_bytes(const vxm_space *space, const vxm_values_spec *values);
 
+/** For formats without 16-bit floats, which become those of 32: vxm_values_writer_kind.stored and convert. */
+vxm_scalar vxm_values_no_halves(vxm_scalar scalar);
+void vxm_values_widen_halves(void *out, const vxm_field *slice, size_t count);
+
 /** What a writer holds, without the slices that are put. */
 uint64_t vxm_values_writer_bytes(const vxm_values_writer_kind *kind, const vxm_space *space,
                                  const vxm_values_spec *values);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** .h5: an array "voxels", [x][y][z], with its place and kind as attributes; written by HDF5. */
 #include "gridio/formats/hdf5.h"
-#include "base/endian.h"
 #include "grid/bit_transpose.h"
 #include "gridio/common/values_writer.h"
 
@@ -86,19 +85,6 @@ static uint64_t held_bytes(const vxm_space *space, const vxm_values_spec *values
   return is_even ? bytes / 4 : 2 * bytes;
 }
 
-static vxm_scalar stored(vxm_scalar scalar) {
-  return scalar == VXM_FLOAT16 ? VXM_FLOAT32 : scalar;
-}
-
-static void widen(void *out, const vxm_field *slice, size_t count) {
-  float *wide = out;
-  for (size_t v = 0; v < count; v++) {
-    uint16_t bits;
-    memcpy(&bits, slice->values + 2 * v, sizeof bits);
-    wide[v] = vxm_half_value(bits);
-  }
-}
-
 enum { HOLDS = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS };
 
 static const vxm_sidecar_text description = {"voxmend labels", "z fastest, then y, then x", NULL};
@@ -107,8 +93,8 @@ static const vxm_values_writer_kind values_kind = {
     .layout = VXM_PLANE_Z_FAST,
     .holds = HOLDS,
     .sidecar = &description,
-    .stored = stored,
-    .convert = widen,
+    .stored = vxm_values_no_halves,
+    .convert = vxm_values_widen_halves,
     .check = check,
     .held_bytes = held_bytes,
     .begin = begin,

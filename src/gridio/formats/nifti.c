@@ -124,19 +124,6 @@ static bool sniff(const vxm_input *input) {
 
 /* ---- Writing ---- */
 
-static vxm_scalar stored(vxm_scalar scalar) {
-  return scalar == VXM_FLOAT16 ? VXM_FLOAT32 : scalar;
-}
-
-static void widen(void *out, const vxm_field *slice, size_t count) {
-  float *wide = out;
-  for (size_t v = 0; v < count; v++) {
-    uint16_t bits;
-    memcpy(&bits, slice->values + 2 * v, sizeof bits);
-    wide[v] = vxm_half_value(bits);
-  }
-}
-
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
   vxm_nifti_block block;
   vxm_status status = vxm_nifti_header_make(&block, &w->space, &w->values, error);
@@ -191,8 +178,8 @@ static const vxm_values_writer_kind plain_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = HOLDS,
     .sidecar = &description,
-    .stored = stored,
-    .convert = widen,
+    .stored = vxm_values_no_halves,
+    .convert = vxm_values_widen_halves,
     .file_bytes = vxm_values_plain_bytes,
     .begin = begin,
 };
@@ -201,8 +188,8 @@ static const vxm_values_writer_kind packed_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = HOLDS,
     .sidecar = &description,
-    .stored = stored,
-    .convert = widen,
+    .stored = vxm_values_no_halves,
+    .convert = vxm_values_widen_halves,
     .check = check_packed,
     .held_bytes = held_packed,
     .begin = begin_packed,

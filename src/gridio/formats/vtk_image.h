@@ -24,10 +24,6 @@ const char *vxm_vtk_array_name(const vxm_values_spec *values);
 vxm_status vxm_vtk_raster(vxm_raster *out, vxm_about *about, const vxm_vtk_image *image,
                           const vxm_input *input, size_t at, vxm_error *error);
 
-/** Types that VTK has not: 16-bit floats become those of 32. */
-vxm_scalar vxm_vtk_stored(vxm_scalar scalar);
-void vxm_vtk_convert(void *out, const vxm_field *slice, size_t count);
-
 /** Values that lie in a file as they are. */
 typedef struct vxm_vtk_source {
   const unsigned char *at;
