@@ -143,7 +143,7 @@ class Mesh:
         away = numpy.abs(trimesh.proximity.closest_point(self.mesh, centres[some])[1]) > 1e-3 * size.max()
         some = some[away]
         inside = self.mesh.contains(centres[some])
-        return inside.any() and (inside == (voxels.reshape(-1)[some] != 0)).all()
+        return bool(inside.any() and (inside == (voxels.reshape(-1)[some] != 0)).all())
 
 
 def check(mesh, kind, reader):
@@ -195,7 +195,7 @@ def main():
                 for name, value in (found or {}).items():
                     name = {"same": "voxels" if kind == "bits" else "numbers" if kind != "labels" else "label numbers"}.get(name, name)
                     row[name] = False if row.get(name) is False else value
-                    if value is False:
+                    if value is not None and not value:
                         bad += 1
                         print(f"{path}: .{reader[0]} by {reader[1]}, {kind}: wrong ({name})")
     columns = ("voxels", "place", "numbers", "label numbers", "labels")
