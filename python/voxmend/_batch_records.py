@@ -10,7 +10,7 @@ from typing import Any, Dict, Iterator, NamedTuple, Optional, Tuple
 
 from ._errors import ArgumentError, FormatError
 
-GRIDS = (".binvox", ".npy", ".raw", ".rle", ".nrrd", ".vdb")
+GRIDS = (".binvox", ".npy", ".raw", ".rle", ".nrrd", ".vdb", ".nii", ".nii.gz", ".vti", ".vtk", ".tif")
 DONE = ("ok", "degraded", "duplicate")
 _HEAD, _SUM, _TAIL = b'{"sum":"', 16, b'",'
 _REST = len(_HEAD) + _SUM + len(_TAIL)

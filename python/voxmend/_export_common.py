@@ -49,7 +49,7 @@ def with_grids(records: Records) -> List[int]:
     """Numbers of those of which there is a grid, in the order of the plan."""
     out = [number for number, item in enumerate(records) if item.grid() is not None]
     if not out:
-        raise EmptyError("%s: no mesh of this batch has a grid that can be read (.binvox .npy .raw .rle .nrrd .vdb)" %
+        raise EmptyError("%s: no mesh of this batch has a grid that can be read (.binvox .npy .raw .rle .nrrd .vdb .nii .vti .vtk .tif)" %
                          records.folder)
     return out
 

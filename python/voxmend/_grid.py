@@ -304,8 +304,8 @@ class VoxelGrid(Placed):
         return _grid_convert.to_open3d(self)
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
-        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .vox, .schem, .litematic, or the surface as .obj, .ply, .stl,
-        .off, .glb."""
+        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .vox, .schem, .litematic,
+        or the surface as .obj, .ply, .stl, .off, .glb."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
         options.format = name
@@ -322,7 +322,8 @@ def _restore(kind: Type[VoxelGrid], place: Tuple[Any, ...], words: Uint64s, repo
 
 
 def read(path: Path, *, at_least: Optional[float] = None, below: Optional[float] = None) -> VoxelGrid:
-    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd or .vdb; what is odd about it is told as VoxmendWarning.
+    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd, .vdb, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .vox,
+    .schem or .litematic; what is odd about it is told as VoxmendWarning.
 
     Numbers are taken as set and clear voxels only if nothing is lost: all are 0 or 1, or unsigned bytes 0 and 255. Other
     files raise NumbersError; `read_field` reads them, or a bound says which voxels are set.

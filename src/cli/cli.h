@@ -55,6 +55,15 @@ enum {
         "with slices: move each vertex at random by up to D voxels along each axis [0]" \
   }
 
+/** What grids are written as, for help: the file, and the names of the formats. */
+#define CLI_GRID_FILES                                                                    \
+  "file to write: .binvox, .rle, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5,\n" \
+  ".vdb, .npy or .raw (the last two with a .json beside them), .vox, .schem or\n"         \
+  ".litematic, or the grid as a mesh: .obj, .ply, .stl, .off, .glb"
+#define CLI_GRID_FORMATS                                                                  \
+  "binvox, npy, raw, rle, nrrd, vdb, octree, nii, nii.gz, vti, vtk, tif, h5, obj, ply,\n" \
+  "stl, off, glb, vox, schem or litematic [by the name of the output]"
+
 /** For the tables of commands that make voxels of the numbers in a file; cli_threshold_read takes their
  * values. */
 #define CLI_OPTIONS_THRESHOLD                                                              \

@@ -10,13 +10,8 @@
 enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_SPARSE };
 
 static const cli_option known_options[] = {
-    {'o', "output", "FILE",
-     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), .vox, .schem or .litematic, or the grid as a mesh: .obj,\n"
-     ".ply, .stl, .off, .glb; '-' is standard output"},
-    {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, vox, schem, litematic, obj, ply, stl, off or\n"
-     "glb [by the name of the output]"},
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
+    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
     {KEY_SPARSE, "sparse", NULL,
      "combine octrees, whose memory follows the surface where files are .octree or\n"
      ".vdb [where the output is .octree]"},

@@ -8,13 +8,8 @@
 enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_BLOCKS, KEY_UP, KEY_WINDOW };
 
 static const cli_option known_options[] = {
-    {'o', "output", "FILE",
-     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), .vox, .schem or .litematic, or the grid as a mesh: .obj,\n"
-     ".ply, .stl, .off, .glb; '-' is standard output"},
-    {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, vox, schem, litematic, obj, ply, stl, off or\n"
-     "glb [by the name of the output]"},
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
+    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
     {KEY_WINDOW, "window", "X:X,Y:Y,Z:Z",
      "only these voxels: along each axis from the first number, 0 or more, to before\n"
      "the second; of .octree nothing else is read"},
@@ -200,11 +195,13 @@ const cli_command cli_command_convert = {
     .notes =
         "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units, and\n"
         "split into triangles. Every edge has two faces, and programs that merge vertices leave it so.\n\n"
-        "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd and .vdb;\n"
-        "labels up to 255 also in .binvox and .vox, all as blocks in .schem and .litematic and as objects\n"
-        "in .glb, which take colours too, as .ply and .vox do. They become set and clear\n"
-        "voxels only with --threshold or --below, or where nothing is lost: all are 0 or 1, or unsigned\n"
-        "bytes 0 and 255.\n\n"
+        "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd, .nii, "
+        ".vti,\n"
+        ".vtk, .tif, .h5 and, but for colours, .vdb; labels up to 255 also in .binvox and .vox, all as "
+        "blocks\n"
+        "in .schem and .litematic and as objects in .glb, which take colours too, as .ply and .vox do. They\n"
+        "become set and clear voxels only with --threshold or --below, or where nothing is lost: all are 0\n"
+        "or 1, or unsigned bytes 0 and 255. .h5 and .glb are written but not read.\n\n"
         "Examples:\n"
         "  voxmend convert chair.binvox -o chair.npy\n"
         "  voxmend convert chair.npy -o blocks.obj\n"

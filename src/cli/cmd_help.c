@@ -19,8 +19,9 @@ void cli_help_overview(void) {
     printf("  %-10s %s\n", cli_commands[i]->name, cli_commands[i]->summary);
   printf("\n'voxmend help COMMAND' shows the options of a command; 'voxmend --version' the version.\n"
          "Meshes: .off .obj .stl .ply; where built with them, also .gltf .glb .3mf .dae .fbx .3ds and more\n"
-         "(Assimp), .step and .iges (OpenCASCADE). Grids: .binvox .npy .raw .rle .nrrd .vox\n"
-         ".schem .litematic, and .vdb (OpenVDB).\n"
+         "(Assimp), .step and .iges (OpenCASCADE). Grids: .binvox .npy .raw .rle .nrrd .octree\n"
+         ".nii .nii.gz .vti .vtk .tif .vox .schem .litematic, .vdb (OpenVDB) and, to write, .h5\n"
+         "(HDF5) and .glb.\n"
          "'-' is standard input or output.\n\n"
          "Examples:\n"
          "  voxmend info chair.off                              what is wrong with it\n"

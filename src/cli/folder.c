@@ -8,9 +8,9 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-static const char *const known[] = {"off",    "obj", "stl", "ply",  "gltf", "glb",  "3mf",
-                                    "dae",    "fbx", "3ds", "step", "stp",  "iges", "igs",
-                                    "binvox", "npy", "raw", "rle",  "nrrd", "vdb"};
+static const char *const known[] = {"off", "obj", "stl",  "ply", "gltf", "glb", "3mf",    "dae",
+                                    "fbx", "3ds", "step", "stp", "iges", "igs", "binvox", "npy",
+                                    "raw", "rle", "nrrd", "vdb", "nii",  "vti", "vtk",    "tif"};
 enum { KNOWN = sizeof known / sizeof known[0], NAME_SIZE = 256 };
 
 typedef struct content {

@@ -40,13 +40,8 @@ enum {
 };
 
 const cli_option voxelize_options[] = {
-    {'o', "output", "GRID",
-     "file to write: .binvox, .rle, .nrrd, .vdb, .npy or .raw (the last two with a\n"
-     ".json beside them), .vox, .schem or .litematic, or the grid as a mesh: .obj,\n"
-     ".ply, .stl, .off, .glb; '-' is standard output"},
-    {KEY_FORMAT, "format", "F",
-     "binvox, npy, raw, rle, nrrd, vdb, vox, schem, litematic, obj, ply, stl, off or\n"
-     "glb [by the name of the output]"},
+    {'o', "output", "GRID", CLI_GRID_FILES "; '-' is standard output"},
+    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
@@ -87,21 +82,21 @@ const cli_option voxelize_options[] = {
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
-     "each axis; .npy, .nrrd or .vdb"},
+     "each axis; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
-     "signed: negative inside; .npy, .nrrd or .vdb"},
+     "signed: negative inside; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
-     ".npy, .nrrd or .binvox, with the names in a .json beside it; .vox, .schem,\n"
-     ".litematic or .glb"},
+     ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .vdb or .binvox, with the names in a\n"
+     ".json beside it; .vox, .schem, .litematic or .glb"},
     {KEY_COLOR, "color", "mesh|noise|position|part|FILE.frag",
      "write a colour for each set voxel instead: that of the nearest point of the mesh,\n"
      "by its vertices, faces, materials and textures; Perlin's noise, where it is, its\n"
      "part, or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox, .glb,\n"
-     ".schem or .litematic"},
+     ".schem, .litematic, .nrrd, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_COLOR_AVERAGE, "color-average", NULL,
      "with --color mesh: the mean over the surface within a voxel, where there is any"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},

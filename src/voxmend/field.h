@@ -38,8 +38,8 @@ VXM_API vxm_status vxm_field_create(vxm_field **out, vxm_context *context, const
                                     vxm_error *error);
 
 /**
- * Reads the numbers of a file as they are: .npy, .nrrd, .vdb, or .binvox. Files that hold bits give 0 and 1,
- * as VXM_UINT8. Floats of 16 bits in .vdb become VXM_FLOAT32.
+ * Reads the numbers of a file as they are: .npy, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif, .vdb, or .binvox.
+ * Files that hold bits give 0 and 1, as VXM_UINT8. Floats of 16 bits in .vdb become VXM_FLOAT32.
  *
  * @return as vxm_grid_read, without VXM_ERROR_NUMBERS
  */
@@ -153,8 +153,8 @@ VXM_API vxm_status vxm_field_threshold(vxm_grid **out, const vxm_field *field,
  *
  * .npy (with its .json beside it) and .nrrd hold every type (VXM_FLOAT16 becomes VXM_FLOAT32 in .nrrd), .vdb
  * 32-bit floats, if each value is one exactly; it remembers the type. .binvox (version 2) holds whole numbers
- * from 0 to 255. Colours go into .npy, .nrrd, .ply or .vox. Labels have their table in a .json beside the
- * file.
+ * from 0 to 255. Colours go into .npy, .nrrd, .ply, .vox and formats of images. Labels have their table in a
+ * .json beside the file.
  *
  * @param options NULL = defaults
  * @return VXM_OK; VXM_ERROR_ARGUMENT for a format that holds only bits or is unknown; VXM_ERROR_RANGE if it
@@ -193,10 +193,11 @@ VXM_API vxm_status vxm_field_page(const vxm_field *field, const char *path, cons
 
 /** How finely coverage is counted, and as what. */
 typedef struct vxm_coverage_options {
-  size_t size;        /**< as the initializer sets it */
-  int subdivision;    /**< 2, 4 or 8: a voxel is cut into so many sub-voxels along each axis */
-  vxm_scalar scalar;  /**< VXM_FLOAT32: the fraction, 0 to 1; VXM_UINT8: 255 times that, rounded, halves up */
-  const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
+  size_t size;       /**< as the initializer sets it */
+  int subdivision;   /**< 2, 4 or 8: a voxel is cut into so many sub-voxels along each axis */
+  vxm_scalar scalar; /**< VXM_FLOAT32: the fraction, 0 to 1; VXM_UINT8: 255 times that, rounded, halves up */
+  const char *
+      format; /**< of a file: one that vxm_grid_format_traits calls VXM_FORMAT_NUMBERS; NULL = by extension */
 } vxm_coverage_options;
 
 /** Initial value of vxm_coverage_options. */
@@ -232,8 +233,8 @@ VXM_API vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report,
                                       const vxm_space *space, const vxm_coverage_options *options,
                                       vxm_error *error);
 
-/** As vxm_model_coverage, into a file: .npy (with its .json beside it), .nrrd or .vdb; as much at a time as
- * the memory limit allows. @return as vxm_model_coverage and vxm_grid_write */
+/** As vxm_model_coverage, into a file: .npy (with its .json beside it), .nrrd, .vdb and others; as much at a
+ * time as the memory limit allows. @return as vxm_model_coverage and vxm_grid_write */
 VXM_API vxm_status vxm_model_write_coverage(vxm_coverage_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_coverage_options *options, vxm_error *error);
@@ -246,10 +247,11 @@ VXM_API vxm_status vxm_model_estimate_coverage(vxm_estimate *out, const vxm_mode
 
 /** Which distances, and how far. */
 typedef struct vxm_distance_options {
-  size_t size;        /**< as the initializer sets it */
-  bool is_unsigned;   /**< false = negative where the centre is inside the solid */
-  double band;        /**< voxels, of the longest side; 0 = everywhere */
-  const char *format; /**< of a file: "npy", "nrrd" or "vdb"; NULL = by extension */
+  size_t size;      /**< as the initializer sets it */
+  bool is_unsigned; /**< false = negative where the centre is inside the solid */
+  double band;      /**< voxels, of the longest side; 0 = everywhere */
+  const char *
+      format; /**< of a file: one that vxm_grid_format_traits calls VXM_FORMAT_NUMBERS; NULL = by extension */
 } vxm_distance_options;
 
 /** Initial value of vxm_distance_options. */
@@ -288,8 +290,8 @@ VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report
                                       const vxm_space *space, const vxm_distance_options *options,
                                       vxm_error *error);
 
-/** As vxm_model_distance, into a file: .npy (with its .json beside it), .nrrd or .vdb; as much at a time as
- * the memory limit allows. @return as vxm_model_distance and vxm_grid_write */
+/** As vxm_model_distance, into a file: .npy (with its .json beside it), .nrrd, .vdb and others; as much at a
+ * time as the memory limit allows. @return as vxm_model_distance and vxm_grid_write */
 VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
@@ -311,10 +313,10 @@ typedef enum vxm_label_by {
 
 /** What labels are of, and the format of their file. */
 typedef struct vxm_label_options {
-  size_t size;        /**< as the initializer sets it */
-  vxm_label_by by;    /**< what faces are labelled by */
-  const char *format; /**< of a file: "npy", "nrrd", "binvox", "vox", "schem", "litematic" or "glb"; NULL = by
-                         extension */
+  size_t size;     /**< as the initializer sets it */
+  vxm_label_by by; /**< what faces are labelled by */
+  const char
+      *format; /**< of a file: one that vxm_grid_format_traits calls VXM_FORMAT_LABELS; NULL = by extension */
   const char *blocks; /**< of a file: as in vxm_grid_write_options */
   int up;             /**< of a file: as in vxm_grid_write_options */
 } vxm_label_options;
@@ -355,8 +357,8 @@ VXM_API vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, 
                                     vxm_error *error);
 
 /**
- * As vxm_model_labels, into a file: .npy, .nrrd, or .binvox (version 2), which holds 255 labels at most. The
- * table of labels goes into a .json beside it. All values are in memory meanwhile. @return as
+ * As vxm_model_labels, into a file: .npy, .nrrd and others, or .binvox (version 2), which holds 255 labels at
+ * most. The table of labels goes into a .json beside it. All values are in memory meanwhile. @return as
  * vxm_model_labels and vxm_grid_write
  */
 VXM_API vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,

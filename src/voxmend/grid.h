@@ -98,9 +98,9 @@ VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
 VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
 
 /**
- * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd or .vdb, told by content first
- * and by name second. Of .vdb, the first grid of bool, mask or float: of bool and mask, what is active (and
- * true) is set. "-" reads standard input (not .raw).
+ * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif
+ * or .vdb, told by content first and by name second. Of .vdb, the first grid of bool, mask or float: of bool
+ * and mask, what is active (and true) is set. "-" reads standard input (not .raw).
  *
  * Numbers are taken as voxels only if nothing is lost: where all of them are 0 or 1, whatever their type, or
  * unsigned bytes of which some are 0 and the others 255. Distances and confidences, and colours, never are.
@@ -115,8 +115,8 @@ VXM_API vxm_status vxm_grid_read(vxm_grid **out, vxm_context *context, const cha
 /** The format of a grid file. */
 typedef struct vxm_grid_write_options {
   size_t size;        /**< as the initializer sets it */
-  const char *format; /**< "binvox", "npy", "raw", "rle", "nrrd", "vdb", "vox", "schem", "litematic", or
-                         "obj", "ply", "stl", "off", "glb"; NULL = by extension */
+  const char *format; /**< one that vxm_grid_format_traits calls VXM_FORMAT_BITS, such as "binvox"; NULL =
+                         by extension */
   bool keep_polygons; /**< obj, ply, off: polygons, rather than triangles: rectangles with further corners */
   bool keep_contacts; /**< meshes: where voxels touch in an edge or a corner alone they share its vertices, so
                          that edges may have four faces, rather than having vertices of their own */

@@ -221,6 +221,9 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_grid_warning_count, 1, 1, ANYTHING(vxm_grid_warning_count(P(0, grid))))                            \
   X(vxm_grid_warning, 1, 1, ANYTHING(vxm_grid_warning(P(0, grid), 0)))                                     \
   X(vxm_grid_read, 4, 5, vxm_grid_read(P(0, &out.grid), P(1, context), P(2, "in.npy"), P(3, &error)))      \
+  X(vxm_grid_format_name, 0, 0, GIVES_TEXT(vxm_grid_format_name(0)))                                       \
+  X(vxm_grid_format_of, 1, 1, GIVES_TEXT(vxm_grid_format_of(P(0, "a.npy"))))                               \
+  X(vxm_grid_format_traits, 1, 0, ((void)vxm_grid_format_traits(P(0, "npy")), VXM_OK))                     \
   X(vxm_grid_read_space, 4, 5,                                                                             \
     vxm_grid_read_space(P(0, &out.grid), P(1, context), P(2, "in.npy"), P(3, &error)))                     \
   X(vxm_grid_write, 4, 3, vxm_grid_write(P(0, grid), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))    \

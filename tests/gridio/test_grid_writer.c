@@ -7,9 +7,10 @@
 #include "gridio/formats/rle_encoder.h"
 #include "gridio/gridio.h"
 
-static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd"};
+static const char *const formats[] = {"binvox", "npy",    "raw", "rle", "nrrd",
+                                      "nii",    "nii.gz", "vti", "vtk", "tif"};
 
-enum { FORMATS = 5 };
+enum { FORMATS = sizeof formats / sizeof formats[0] };
 
 /** Slices begin..end-1 of a grid in a layout, with noise between slices; the words are to be freed. */
 static vxm_window cut(const vxm_grid *grid, vxm_layout layout, int64_t begin, int64_t end) {

@@ -6,9 +6,10 @@
 
 #include "gridio/gridio.h"
 
-static const char *const formats[] = {"binvox", "npy", "raw", "rle", "nrrd"};
+static const char *const formats[] = {"binvox", "npy",    "raw", "rle", "nrrd",
+                                      "nii",    "nii.gz", "vti", "vtk", "tif"};
 
-enum { FORMATS = 5 };
+enum { FORMATS = sizeof formats / sizeof formats[0] };
 
 static void assert_same_file(const char *a, const char *b) {
   size_t sizes[2];

@@ -57,9 +57,9 @@ vxm_status vxm_byte_rows_put(vxm_grid_writer *writer, const vxm_window *window, 
   return VXM_OK;
 }
 
-/* ---- Whole slices ---- */
+/* ---- Into formats that take numbers ---- */
 
-/** Slices that are turned into bytes together: CHUNK bytes, or one. */
+/** Whole slices that are turned into bytes together: CHUNK bytes, or one. */
 static size_t chunk_slices(const vxm_space *space, vxm_layout layout) {
   size_t slice = (size_t)space->dims[layout.fast] * (size_t)space->dims[layout.middle],
          all = (size_t)space->dims[layout.slow], slices = CHUNK / slice;
@@ -67,21 +67,32 @@ static size_t chunk_slices(const vxm_space *space, vxm_layout layout) {
   return slices > 0 ? slices : 1;
 }
 
-size_t vxm_byte_rows_slice_bytes(const vxm_space *space, vxm_layout layout) {
-  return chunk_slices(space, layout) * (size_t)space->dims[layout.fast] * (size_t)space->dims[layout.middle];
+/** Rows at once: some, or those of whole slices. */
+static size_t rows_at_once(const vxm_values_writer_kind *kind, const vxm_space *space) {
+  return kind->put ? chunk_slices(space, kind->layout) * (size_t)space->dims[kind->layout.middle]
+                   : chunk_rows(space, kind->layout);
+}
+
+size_t vxm_byte_rows_values_bytes(const vxm_values_writer_kind *kind, const vxm_space *space) {
+  return rows_at_once(kind, space) * (size_t)space->dims[kind->layout.fast];
 }
 
 vxm_status vxm_byte_rows_put_values(vxm_grid_writer *writer, const vxm_window *window, vxm_error *error) {
-  int64_t most = (int64_t)chunk_slices(&writer->space, window->layout);
+  const vxm_values_writer_kind *kind = writer->format->values;
+  size_t in_slice = (size_t)window->middle_dim, rows = (size_t)(window->end - window->begin) * in_slice,
+         most = rows_at_once(kind, &writer->space);
   vxm_status status = VXM_OK;
-  for (int64_t begin = window->begin, end; begin < window->end && status == VXM_OK; begin = end) {
-    end = vxm_min(begin + most, window->end);
-    size_t rows = (size_t)window->middle_dim;
-    storing s = {window, writer->state, (size_t)(begin - window->begin) * rows, (size_t)(end - begin) * rows};
+  for (size_t row = 0; row < rows && status == VXM_OK; row += most) {
+    storing s = {window, writer->state, row, rows - row < most ? rows - row : most};
     vxm_parallel(writer->context, (s.rows + ROWS_PER_TASK - 1) / ROWS_PER_TASK, store_rows, &s);
-    status = vxm_values_writer_put(writer->values, s.bytes, begin, end, error);
+    int64_t begin = window->begin + (int64_t)(row / in_slice);
+    if (kind->put)
+      status =
+          vxm_values_writer_put(writer->values, s.bytes, begin, begin + (int64_t)(s.rows / in_slice), error);
+    else
+      status = vxm_values_writer_put_bytes(writer->values, s.bytes, s.rows * (size_t)window->fast_dim, error);
     if (status == VXM_OK)
-      status = vxm_grid_writer_step(writer, (double)end, error);
+      status = vxm_grid_writer_step_rows(writer, window, row + s.rows, error);
   }
   return status;
 }

@@ -23,7 +23,7 @@ void vxm_deflater_destroy(vxm_deflater *deflater);
 /** What was written so far, compressed. */
 uint64_t vxm_deflater_written(const vxm_deflater *deflater);
 /** Memory that one takes, about. */
-#define VXM_DEFLATE_BYTES (UINT64_C(1) << 19)
+#define VXM_DEFLATE_BYTES (UINT64_C(270) << 10)
 
 /** Compressed bytes of a file, from an offset on. */
 typedef struct vxm_inflater vxm_inflater;

@@ -33,7 +33,7 @@ static uint64_t held_bytes(const vxm_grid_format *format, const vxm_space *space
   const vxm_grid_writer_kind *kind = format->writer;
   if (!kind)
     return vxm_values_writer_bytes(format->values, space, &bits) +
-           vxm_byte_rows_slice_bytes(space, layout_of(format));
+           vxm_byte_rows_values_bytes(format->values, space);
   return kind->state_bytes(space) + (kind->sidecar ? 2 : 1) * (uint64_t)OUTPUT_BYTES +
          (kind->held_bytes ? kind->held_bytes(space) : 0);
 }
@@ -96,9 +96,10 @@ static vxm_status create(vxm_grid_writer **out, vxm_context *context, const vxm_
   writer->space = *space;
   vxm_layout layout = layout_of(format);
   writer->length = space->dims[layout.slow];
-  writer->state = vxm_alloc(
-      owner, format->writer ? format->writer->state_bytes(space) : vxm_byte_rows_slice_bytes(space, layout),
-      1, &local);
+  writer->state = vxm_alloc(owner,
+                            format->writer ? format->writer->state_bytes(space)
+                                           : vxm_byte_rows_values_bytes(format->values, space),
+                            1, &local);
   if (writer->state && !format->writer)
     writer->values = vxm_calloc(owner, 1, sizeof *writer->values, &local);
   if (local.code != VXM_OK) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/common/values_writer.h"
+#include "base/endian.h"
 
 #include <string.h>
 
@@ -18,9 +19,22 @@ uint64_t vxm_values_plain_bytes(const vxm_space *space, const vxm_values_spec *v
   return vxm_space_voxels(space) * voxel_bytes(values);
 }
 
+vxm_scalar vxm_values_no_halves(vxm_scalar scalar) {
+  return scalar == VXM_FLOAT16 ? VXM_FLOAT32 : scalar;
+}
+
+void vxm_values_widen_halves(void *out, const vxm_field *slice, size_t count) {
+  float *wide = out;
+  for (size_t v = 0; v < count; v++) {
+    uint16_t bits;
+    memcpy(&bits, slice->values + 2 * v, sizeof bits);
+    wide[v] = vxm_half_value(bits);
+  }
+}
+
 uint64_t vxm_values_writer_bytes(const vxm_values_writer_kind *kind, const vxm_space *space,
                                  const vxm_values_spec *values) {
-  return 2 * (uint64_t)OUTPUT_BYTES + slice_values(space, kind->layout) * (uint64_t)voxel_bytes(values) +
+  return sizeof(vxm_values_writer) + (kind->has_sidecar ? 2 : 1) * (uint64_t)OUTPUT_BYTES +
          (kind->held_bytes ? kind->held_bytes(space, values) : 0);
 }
 
@@ -71,17 +85,29 @@ static bool has_failed(const vxm_values_writer *w) {
 
 vxm_status vxm_values_writer_put(vxm_values_writer *w, const void *values, int64_t begin, int64_t end,
                                  vxm_error *error) {
-  vxm_status status = VXM_OK;
   if (begin != w->next)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "slices: they are not next");
   w->next = end;
-  if (w->kind->put)
-    status = w->kind->put(w, values, begin, end, error);
-  else
-    for (int64_t s = begin; s < end && !has_failed(w); s++)
-      vxm_output_write(w->output, (const char *)values + (size_t)(s - begin) * w->slice_bytes,
-                       w->slice_bytes);
+  if (!w->kind->put)
+    return vxm_values_writer_put_bytes(w, values, (size_t)(end - begin) * w->slice_bytes, error);
+  vxm_status status = w->kind->put(w, values, begin, end, error);
   return has_failed(w) ? give_up(w, error) : status;
+}
+
+vxm_status vxm_values_writer_put_bytes(vxm_values_writer *w, const void *bytes, size_t size,
+                                       vxm_error *error) {
+  const size_t piece = (size_t)1 << 24; /* so that a full disk is noticed */
+  const char *from = bytes;
+  while (size > 0 && !has_failed(w)) {
+    size_t some = size < piece ? size : piece;
+    if (w->kind->put_bytes)
+      w->kind->put_bytes(w, from, some);
+    else
+      vxm_output_write(w->output, from, some);
+    from += some;
+    size -= some;
+  }
+  return has_failed(w) ? give_up(w, error) : VXM_OK;
 }
 
 static void close_state(vxm_values_writer *w) {

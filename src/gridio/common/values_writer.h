@@ -56,6 +56,9 @@ typedef struct vxm_values_writer_kind {
    */
   vxm_status (*put)(vxm_values_writer *writer, const void *values, int64_t begin, int64_t end,
                     vxm_error *error);
+  /** Values in their order, any number of bytes of them; NULL, without `put`, = they are written as they are.
+   */
+  void (*put_bytes)(vxm_values_writer *writer, const void *bytes, size_t size);
   /** What is left after the last slice; NULL = nothing. With files of its own it gives them their names. */
   vxm_status (*end)(vxm_values_writer *writer, vxm_error *error);
   /** Frees what `state` holds, whether or not the file was written; NULL = it holds nothing. */
@@ -65,7 +68,11 @@ typedef struct vxm_values_writer_kind {
 /** The bytes of all values: vxm_values_writer_kind.file_bytes of formats that do not compress. */
 uint64_t vxm_values_plain_bytes(const vxm_space *space, const vxm_values_spec *values);
 
-/** What a writer holds: its slices of a field or of bits, too. */
+/** For formats without 16-bit floats, which become those of 32: vxm_values_writer_kind.stored and convert. */
+vxm_scalar vxm_values_no_halves(vxm_scalar scalar);
+void vxm_values_widen_halves(void *out, const vxm_field *slice, size_t count);
+
+/** What a writer holds, without the slices that are put. */
 uint64_t vxm_values_writer_bytes(const vxm_values_writer_kind *kind, const vxm_space *space,
                                  const vxm_values_spec *values);
 
@@ -77,6 +84,9 @@ vxm_status vxm_values_writer_open(vxm_values_writer *out, const vxm_values_write
  * After a failure only vxm_values_writer_abort is allowed. */
 vxm_status vxm_values_writer_put(vxm_values_writer *writer, const void *values, int64_t begin, int64_t end,
                                  vxm_error *error);
+/** Takes the next bytes of values, which may be parts of slices, where the kind has no `put`. */
+vxm_status vxm_values_writer_put_bytes(vxm_values_writer *writer, const void *bytes, size_t size,
+                                       vxm_error *error);
 /** Completes the file; after a failure none is left. It ends the writer either way. */
 vxm_status vxm_values_writer_commit(vxm_values_writer *writer, vxm_error *error);
 /** Drops the file. A writer of zeros is allowed. */

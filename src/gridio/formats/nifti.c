@@ -124,19 +124,6 @@ static bool sniff(const vxm_input *input) {
 
 /* ---- Writing ---- */
 
-static vxm_scalar stored(vxm_scalar scalar) {
-  return scalar == VXM_FLOAT16 ? VXM_FLOAT32 : scalar;
-}
-
-static void widen(void *out, const vxm_field *slice, size_t count) {
-  float *wide = out;
-  for (size_t v = 0; v < count; v++) {
-    uint16_t bits;
-    memcpy(&bits, slice->values + 2 * v, sizeof bits);
-    wide[v] = vxm_half_value(bits);
-  }
-}
-
 static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
   vxm_nifti_block block;
   vxm_status status = vxm_nifti_header_make(&block, &w->space, &w->values, error);
@@ -157,11 +144,8 @@ static vxm_status begin_packed(vxm_values_writer *w, vxm_error *error) {
   return status;
 }
 
-static vxm_status put_packed(vxm_values_writer *w, const void *values, int64_t begin, int64_t end,
-                             vxm_error *error) {
-  (void)error;
-  vxm_deflater_write(w->state, values, (size_t)(end - begin) * w->slice_bytes);
-  return VXM_OK;
+static void put_packed(vxm_values_writer *w, const void *bytes, size_t size) {
+  vxm_deflater_write(w->state, bytes, size);
 }
 
 static vxm_status end_packed(vxm_values_writer *w, vxm_error *error) {
@@ -194,8 +178,8 @@ static const vxm_values_writer_kind plain_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = HOLDS,
     .sidecar = &description,
-    .stored = stored,
-    .convert = widen,
+    .stored = vxm_values_no_halves,
+    .convert = vxm_values_widen_halves,
     .file_bytes = vxm_values_plain_bytes,
     .begin = begin,
 };
@@ -204,12 +188,12 @@ static const vxm_values_writer_kind packed_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = HOLDS,
     .sidecar = &description,
-    .stored = stored,
-    .convert = widen,
+    .stored = vxm_values_no_halves,
+    .convert = vxm_values_widen_halves,
     .check = check_packed,
     .held_bytes = held_packed,
     .begin = begin_packed,
-    .put = put_packed,
+    .put_bytes = put_packed,
     .end = end_packed,
     .drop = drop_packed,
 };

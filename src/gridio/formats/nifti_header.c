@@ -174,10 +174,17 @@ static void read_sform(const reading *r, double m[3][4]) {
       m[row][c] = real_at(r, r->at->rows, 4 * row + c);
 }
 
+/** What is left of 1 below this is rounding: a half turn. */
+static const double half_turn = 1e-6;
+
 /** The same from a quaternion whose first number is left out, and the sizes of voxels. */
 static void read_qform(const reading *r, double m[3][4]) {
   double b = real_at(r, r->at->quatern, 0), c = real_at(r, r->at->quatern, 1),
-         d = real_at(r, r->at->quatern, 2), a = sqrt(fmax(0, 1 - b * b - c * c - d * d));
+         d = real_at(r, r->at->quatern, 2), square = b * b + c * c + d * d,
+         a = square < 1 - half_turn ? sqrt(1 - square) : 0, length = a > 0 ? 1 : sqrt(square);
+  b /= length;
+  c /= length;
+  d /= length;
   const double turn[3][3] = {{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
                              {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},
                              {2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c}};
@@ -204,7 +211,7 @@ static int axis_of(double m[3][4], int column) {
     length = hypot(length, m[row][column]);
   }
   for (int row = 0; row < 3; row++)
-    if (row != axis && fabs(m[row][column]) > 1e-5 * length)
+    if (row != axis && fabs(m[row][column]) > 1e-4 * length)
       return -1;
   return length > 0 && isfinite(length) ? axis : -1;
 }
@@ -368,18 +375,35 @@ static void put_type(unsigned char *bytes, const places *p, const vxm_values_spe
   memcpy(bytes + p->intent_name, name_of(values), strlen(name_of(values)));
 }
 
-/** Both forms of the transform: along the axes, so that the quaternion is that of no turn. */
-static void put_place(unsigned char *bytes, const places *p, const vxm_space *space) {
+/** Whether an axis of the model runs against that of the world: where the values came from a file that named
+ * its space, which then is to the left, or to the back (nrrd_header.c carries the name along). */
+static bool is_turned(const vxm_values_spec *values, int axis) {
+  const char *name = vxm_metadata_find(&values->about->pairs, "nrrd_space");
+  if (!name || axis == 2)
+    return false;
+  if (strlen(name) == 3 && strchr("LR", name[0]) && strchr("AP", name[1]))
+    return name[axis] == (axis == 0 ? 'L' : 'P');
+  return axis == 0 ? strncmp(name, "left-", 5) == 0 : strstr(name, "-posterior-") != NULL;
+}
+
+/** Both forms of the transform. With axes along or against those of the world the quaternion is that of half
+ * a turn, or of none, and a reflection of the last axis. */
+static void put_place(unsigned char *bytes, const places *p, const vxm_space *space,
+                      const vxm_values_spec *values) {
   size_t real = real_bytes(p);
-  put_real(bytes + p->pixdim, 1, p->is_wide);
+  bool x = is_turned(values, 0), y = is_turned(values, 1);
+  put_real(bytes + p->pixdim, x != y ? -1 : 1, p->is_wide);
   put_int(bytes + p->qform, ALIGNED, p->code_bytes);
   put_int(bytes + p->sform, ALIGNED, p->code_bytes);
+  if (x || y)
+    put_real(bytes + p->quatern + (size_t)(x && y ? 2 : x ? 1 : 0) * real, 1, p->is_wide);
   for (size_t a = 0; a < 3; a++) {
-    double size = space->voxel_size[a], centre = space->origin[a] + size / 2;
+    double size = space->voxel_size[a], centre = space->origin[a] + size / 2,
+           way = is_turned(values, (int)a) ? -1 : 1;
     put_real(bytes + p->pixdim + (a + 1) * real, size, p->is_wide);
-    put_real(bytes + p->quatern + (3 + a) * real, centre, p->is_wide);
-    put_real(bytes + p->rows + (4 * a + a) * real, size, p->is_wide);
-    put_real(bytes + p->rows + (4 * a + 3) * real, centre, p->is_wide);
+    put_real(bytes + p->quatern + (3 + a) * real, way * centre, p->is_wide);
+    put_real(bytes + p->rows + (4 * a + a) * real, way * size, p->is_wide);
+    put_real(bytes + p->rows + (4 * a + 3) * real, way * centre, p->is_wide);
   }
 }
 
@@ -411,7 +435,7 @@ vxm_status vxm_nifti_header_make(vxm_nifti_block *out, const vxm_space *space, c
   memcpy(bytes + (is_wide ? 4 : 344), is_wide ? "n+2\0\r\n\032\n" : "n+1", is_wide ? 8 : 4);
   put_dims(bytes, p, space);
   put_type(bytes, p, values);
-  put_place(bytes, p, space);
+  put_place(bytes, p, space, values);
   memcpy(bytes + p->text, "voxmend", 7);
   locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
   if (!c)

@@ -257,20 +257,6 @@ static const vxm_grid_writer_kind writer_kind = {
 
 static const vxm_sidecar_text description = {"voxmend labels", "x fastest, then y, then z", NULL};
 
-/** 16-bit floats are none of NRRD's types. */
-static vxm_scalar stored(vxm_scalar scalar) {
-  return scalar == VXM_FLOAT16 ? VXM_FLOAT32 : scalar;
-}
-
-static void widen(void *out, const vxm_field *slice, size_t count) {
-  float *wide = out;
-  for (size_t v = 0; v < count; v++) {
-    uint16_t bits;
-    memcpy(&bits, slice->values + 2 * v, sizeof bits);
-    wide[v] = vxm_half_value(bits);
-  }
-}
-
 static vxm_status begin_values(vxm_values_writer *w, vxm_error *error) {
   const vxm_nrrd_values header = {"a number per voxel, at its centre", w->values.scalar, w->values.channels,
                                   w->values.about};
@@ -281,8 +267,8 @@ static const vxm_values_writer_kind values_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS,
     .sidecar = &description,
-    .stored = stored,
-    .convert = widen,
+    .stored = vxm_values_no_halves,
+    .convert = vxm_values_widen_halves,
     .file_bytes = vxm_values_plain_bytes,
     .begin = begin_values,
 };

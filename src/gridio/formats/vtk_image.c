@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/vtk_image.h"
-#include "base/endian.h"
 
 #include <math.h>
 #include <string.h>
@@ -39,19 +38,6 @@ vxm_status vxm_vtk_raster(vxm_raster *out, vxm_about *about, const vxm_vtk_image
   else if (vxm_field_kind_find(&kind, image->name) && kind != VXM_FIELD_COLORS && kind != VXM_FIELD_NUMBERS)
     *about = (vxm_about){.is_declared = true, .kind = kind};
   return VXM_OK;
-}
-
-vxm_scalar vxm_vtk_stored(vxm_scalar scalar) {
-  return scalar == VXM_FLOAT16 ? VXM_FLOAT32 : scalar;
-}
-
-void vxm_vtk_convert(void *out, const vxm_field *slice, size_t count) {
-  float *wide = out;
-  for (size_t v = 0; v < count; v++) {
-    uint16_t bits;
-    memcpy(&bits, slice->values + 2 * v, sizeof bits);
-    wide[v] = vxm_half_value(bits);
-  }
 }
 
 vxm_status vxm_vtk_take(void *payload, void *slice, size_t size, vxm_error *error) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What VTK's two formats of images share: voxels are cells of the image, and their values one array of it. */
+/** What VTK's two formats of images share: voxels are cells of the image, and their values one array of it.
+ */
 #ifndef VXM_GRIDIO_FORMATS_VTK_IMAGE_H
 #define VXM_GRIDIO_FORMATS_VTK_IMAGE_H
 
@@ -22,10 +23,6 @@ const char *vxm_vtk_array_name(const vxm_values_spec *values);
 /** Makes a raster of an image, and of the array's name what the values are. @param at for messages */
 vxm_status vxm_vtk_raster(vxm_raster *out, vxm_about *about, const vxm_vtk_image *image,
                           const vxm_input *input, size_t at, vxm_error *error);
-
-/** Types that VTK has not: 16-bit floats become those of 32. */
-vxm_scalar vxm_vtk_stored(vxm_scalar scalar);
-void vxm_vtk_convert(void *out, const vxm_field *slice, size_t count);
 
 /** Values that lie in a file as they are. */
 typedef struct vxm_vtk_source {

@@ -272,15 +272,12 @@ static void put_swapped(vxm_output *output, const unsigned char *from, size_t co
   }
 }
 
-static vxm_status put(vxm_values_writer *w, const void *values, int64_t begin, int64_t end,
-                      vxm_error *error) {
-  (void)error;
-  size_t bytes = (size_t)(end - begin) * w->slice_bytes, size = vxm_scalar_bytes(w->values.scalar);
+static void put_bytes(vxm_values_writer *w, const void *bytes, size_t count) {
+  size_t size = vxm_scalar_bytes(w->values.scalar);
   if (is_swapped() && size > 1)
-    put_swapped(w->output, values, bytes / size, size);
+    put_swapped(w->output, bytes, count / size, size);
   else
-    vxm_output_write(w->output, values, bytes);
-  return VXM_OK;
+    vxm_output_write(w->output, bytes, count);
 }
 
 static vxm_status end(vxm_values_writer *w, vxm_error *error) {
@@ -297,11 +294,11 @@ static const vxm_values_writer_kind values_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = HOLDS,
     .sidecar = &description,
-    .stored = vxm_vtk_stored,
-    .convert = vxm_vtk_convert,
+    .stored = vxm_values_no_halves,
+    .convert = vxm_values_widen_halves,
     .file_bytes = vxm_values_plain_bytes,
     .begin = begin,
-    .put = put,
+    .put_bytes = put_bytes,
     .end = end,
 };
 
