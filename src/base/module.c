@@ -61,11 +61,16 @@ static bool find_file(char path[VXM_MODULE_PATH_MAX], const char *name) {
   return found_in(path, VXM_MODULE_DIR, strlen(VXM_MODULE_DIR), "", name);
 }
 
+/** The option of configure that a module takes: that of its first library. */
+static const char *option_of(const char *module) {
+  return strcmp(module, "images") == 0 ? "png" : module;
+}
+
 static vxm_status missing(const vxm_module_need *need, vxm_error *error) {
   return vxm_fail(
       error, VXM_ERROR_UNAVAILABLE,
       "%s needs voxmend's module \"%s\", which is not installed (configure --with-%s; Debian: %s)",
-      need->purpose, need->name, need->name, need->package);
+      need->purpose, need->name, option_of(need->name), need->package);
 }
 
 vxm_status vxm_module_find(char path[VXM_MODULE_PATH_MAX], const vxm_module_need *need, vxm_error *error) {

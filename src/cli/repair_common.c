@@ -44,6 +44,11 @@ void cli_warn_lost(cli_run *cli, const char *path, const vxm_repair_report *repo
         cli_shown(path, "<stdin>"), (long long)report->lost_parts);
 }
 
+static void drop_as_read(cli_input *input) {
+  vxm_mesh_destroy(input->as_read);
+  input->as_read = NULL;
+}
+
 int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options) {
   *input = (cli_input){.path = path, .repair = VXM_REPAIR_REPORT_INIT};
   double start = cli_clock();
@@ -65,12 +70,15 @@ int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vx
   } else
     status = vxm_mesh_prepare_in_place(&input->mesh, &input->repair, options, &cli->error);
   input->repair_ms = cli_clock() - read;
-  if (status != VXM_OK)
+  if (status != VXM_OK) {
+    drop_as_read(input);
     return cli_fail(cli);
+  }
   cli_warn_lost(cli, path, &input->repair);
   if (vxm_mesh_face_count(input->mesh) > 0)
     return CLI_DONE;
   vxm_mesh_destroy(input->mesh);
   input->mesh = NULL;
+  drop_as_read(input);
   return cli_fail_text(cli, "%s: no face is left after repair", cli_shown(path, "<stdin>"));
 }

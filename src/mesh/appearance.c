@@ -107,7 +107,8 @@ vxm_status vxm_appearance_settle(vxm_appearance *look, size_t vertices, size_t f
 
 static void take_name(char out[VXM_LOOK_NAME], const char *name, size_t length) {
   size_t kept = length < VXM_LOOK_NAME - 1 ? length : VXM_LOOK_NAME - 1;
-  memcpy(out, name, kept);
+  for (size_t i = 0; i < kept; i++) /* it will stand in messages */
+    out[i] = (unsigned char)name[i] < ' ' || name[i] == 0x7f ? '?' : name[i];
   out[kept] = '\0';
 }
 

@@ -62,7 +62,8 @@ typedef struct vxm_appearance {
                       texture, vertex, face and material counts */
   /* While it is read. */
   vxm_gathered vertices, faces;
-  char *libraries; /**< names of .mtl files, a line each */
+  char *libraries;                        /**< names of .mtl files, a line each */
+  char library_failure[VXM_LOOK_FAILURE]; /**< why the first that was not opened was not; or "" */
   size_t library_bytes, library_capacity, material_capacity, image_capacity, face_material_capacity;
 } vxm_appearance;
 

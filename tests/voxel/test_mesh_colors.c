@@ -471,8 +471,9 @@ static void test_binary(void **unused) {
 
 static void test_obj_corners(void **unused) {
   (void)unused;
-  static const char text[] = "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0\nvt 0 nan\n"
-                             "usemtl wood\nf 1/1/1 2/2 3\nf 1/7 2/-3 9\nusemtl steel\nf 1//4 2/-2 3/3\n";
+  static const char text[] =
+      "mtllib none.mtl  other one.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0\nvt 0 nan\n"
+      "usemtl wood\nf 1/1/1 2/2 3\nf 1/7 2/-3 9\nusemtl steel\nf 1//4 2/-2 3/3\n";
   vxm_soup *soup = READ(text, "a.obj");
   const vxm_appearance *look = soup->appearance;
   assert_int_equal(soup->face_count, 2);

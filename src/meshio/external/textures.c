@@ -37,14 +37,25 @@ static vxm_status read_library(vxm_soup *soup, vxm_references *references, const
                                vxm_error *error) {
   vxm_input input;
   vxm_status status = VXM_OK;
-  if (!open_reference(&input, soup, references, name, &status, error))
+  char *failure = soup->appearance->library_failure;
+  int before = references->warnings.count;
+  if (!open_reference(&input, soup, references, name, &status, error)) {
+    if (!failure[0])
+      take_refusal(failure, VXM_LOOK_FAILURE, references, before);
     return status;
+  }
   status = vxm_mtl_read(soup->appearance, input.data, input.size, name, error);
   vxm_input_close(&input);
   return status;
 }
 
-/** Reads the files that the lines of `libraries` name. A name may have blanks: the line is one name. */
+/** Where the first name of a line ends: names may have blanks, so behind ".mtl" where a blank follows. */
+static size_t first_name(const char *line, size_t length) {
+  const char *found = memmem(line, length, ".mtl ", 5);
+  return found ? (size_t)(found - line) + 4 : length;
+}
+
+/** Reads the files that the lines of `libraries` name. */
 static vxm_status read_libraries(vxm_soup *soup, vxm_references *references, vxm_error *error) {
   vxm_appearance *look = soup->appearance;
   const char *at = look->libraries, *end = at + look->library_bytes;
@@ -52,7 +63,7 @@ static vxm_status read_libraries(vxm_soup *soup, vxm_references *references, vxm
   char name[VXM_LOOK_NAME];
   for (int n = 0; at < end && n < LIBRARIES_MAX && status == VXM_OK; n++) {
     const char *line_end = memchr(at, '\n', (size_t)(end - at));
-    size_t length = (size_t)(line_end - at);
+    size_t length = first_name(at, (size_t)(line_end - at));
     if (length < sizeof name && !memchr(at, 0, length)) {
       memcpy(name, at, length);
       name[length] = '\0';
@@ -62,7 +73,8 @@ static vxm_status read_libraries(vxm_soup *soup, vxm_references *references, vxm
     } else
       vxm_warn(&soup->warnings, "the name of a file of materials has more than %d bytes; passed over",
                VXM_LOOK_NAME - 1);
-    at = line_end + 1;
+    at += length;
+    at += *at == ' ' ? strspn(at, " ") : 1;
   }
   return status;
 }

@@ -105,7 +105,8 @@ static vxm_status take_material(vxm_appearance *look, const struct aiScene *scen
   /* Assimp gives the base colour of glTF under this name too. */
   if (aiGetMaterialColor(from, AI_MATKEY_COLOR_DIFFUSE, &color) == aiReturn_SUCCESS) {
     const double rgb[3] = {(double)color.r, (double)color.g, (double)color.b};
-    material->has_color = true;
+    /* White without a name is what Assimp gives to glTF without materials. */
+    material->has_color = name.length > 0 || !look->is_product || rgb[0] < 1 || rgb[1] < 1 || rgb[2] < 1;
     for (int c = 0; c < 3; c++) {
       double value = rgb[c] > 0 ? rgb[c] < 1 ? rgb[c] : 1 : 0;
       material->color[c] = (float)(look->is_product ? value : vxm_srgb_decode(value));

@@ -15,6 +15,8 @@ bool vxm_picture_is_jpeg(const vxm_picture_file *file) {
 
 #include <jpeglib.h>
 
+#include <jerror.h>
+
 /** libjpeg leaves a failed call by longjmp. What is needed after it lies here, not in local variables. */
 typedef struct jpeg_reader {
   struct jpeg_decompress_struct decoder;
@@ -32,6 +34,15 @@ static void on_error(j_common_ptr decoder) {
 
 static void on_message(j_common_ptr decoder) {
   (void)decoder;
+}
+
+/** Keeps the first warning; libjpeg goes on where data are damaged or end early. Bytes too many between the
+ * parts of a file are a habit of cameras, and harm nothing. */
+static void on_warning(j_common_ptr decoder, int level) {
+  jpeg_reader *reader = decoder->client_data;
+  bool is_harmless = decoder->err->msg_code == JWRN_EXTRANEOUS_DATA;
+  if (level < 0 && !is_harmless && decoder->err->num_warnings++ == 0)
+    decoder->err->format_message(decoder, reader->message);
 }
 
 /** Rows of three bytes a pixel become four, from the last pixel to the first. */
@@ -79,15 +90,13 @@ vxm_status vxm_picture_read_jpeg(vxm_image *image, vxm_context *context, const v
   reader->decoder.client_data = reader;
   reader->errors.error_exit = on_error;
   reader->errors.output_message = on_message;
+  reader->errors.emit_message = on_warning;
   if (setjmp(reader->failed) == 0)
     read_all(reader, image, context, file, error);
   else
     reader->status = vxm_fail(error, VXM_ERROR_FORMAT, "damaged JPEG: %.160s", reader->message);
-  /* libjpeg goes on where data are damaged or end early, and counts that. */
-  if (reader->status == VXM_OK && reader->errors.num_warnings > 0) {
-    reader->errors.format_message((j_common_ptr)&reader->decoder, reader->message);
+  if (reader->status == VXM_OK && reader->errors.num_warnings > 0)
     reader->status = vxm_fail(error, VXM_ERROR_FORMAT, "damaged JPEG: %.160s", reader->message);
-  }
   jpeg_destroy_decompress(&reader->decoder);
   vxm_status status = reader->status;
   vxm_free(context, reader);

@@ -18,7 +18,7 @@ vxm_status vxm_mesh_colors_check(const vxm_soup *mesh, vxm_error *error) {
     const vxm_material *material = &look->materials[m];
     if (material->image < look->image_count && look->images[material->image].failure[0])
       return vxm_fail(error, VXM_ERROR_ARGUMENT,
-                      "the mesh has no colours: the texture %.80s of material %.40s cannot be read: %.160s",
+                      "the mesh has no colours: the texture %.80s of material %.40s cannot be read: %.199s",
                       look->images[material->image].name, material->name,
                       look->images[material->image].failure);
     if (material->image < look->image_count && !look->corner_uvs)
@@ -26,6 +26,8 @@ vxm_status vxm_mesh_colors_check(const vxm_soup *mesh, vxm_error *error) {
                       "the mesh has no colours: its corners have no coordinates for the texture %.80s",
                       look->images[material->image].name);
   }
+  if (look->library_failure[0])
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "the mesh has no colours: %s", look->library_failure);
   if (look->material_count > 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "the mesh has no colours: nothing is known of its material %.100s",
