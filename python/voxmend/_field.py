@@ -94,8 +94,13 @@ class VoxelField(Placed):
         return self._own
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        labels = [name.encode() for name in self.label_names.values()]
-        pairs = [(key.encode(), value.encode()) for key, value in self.metadata.items()]
+        labels = [name.encode() for name in self._labels]
+        pairs = [(key.encode(), value.encode()) for key, value in self._pairs.items()]
+        if self._own is not None:  # as its file has them, which may be no UTF-8
+            string, own = _core.ffi.string, self._own
+            labels = [string(lib.vxm_field_label_name(own, n + 1)) for n in range(lib.vxm_field_label_count(own))]
+            pairs = [(string(lib.vxm_field_metadata_key(own, n)), string(lib.vxm_field_metadata_value(own, n)))
+                     for n in range(lib.vxm_field_metadata_count(own))]
         made = (self.values.copy(), self.pitch, self.origin, self.kind)
         return _restore, (type(self), made, labels, pairs, self.warnings, self.report)
 

@@ -85,7 +85,7 @@ class Mesh:
         report: what the repair that made it has done; empty if there was none.
     """
 
-    def __init__(self, vertices: ArrayLike, faces: Any, *, tags: Sequence[str] = (), face_tags: Optional[ArrayLike] = None):
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, tags: Sequence[str] = (), face_tags: Optional[ArrayLike] = None):
         points, (offsets, corners) = _points_of(vertices), _corners_of(faces)
         numbers: Optional[Uint32s] = None
         if (face_tags is None) != (len(tags) == 0):

@@ -84,7 +84,7 @@ class IsFile(Protocol):
     def read(self) -> Any: ...
 
 
-MeshLike = Union[Mesh, Path, Tuple[ArrayLike, Any], HasFaces, HasTriangles, HasTensors, HasPolygons, HasCells, IsScene, IsFile]
+MeshLike = Union[Mesh, Path, Tuple[ArrayLike, ArrayLike], HasFaces, HasTriangles, HasTensors, HasPolygons, HasCells, IsScene, IsFile]
 
 
 # ---- Files ----

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, List, Optional, Tuple, Union
+from typing import Any, List, Optional, Protocol, Tuple
 
 import numpy
 
@@ -12,6 +12,19 @@ from ._core import ffi, lib
 from ._errors import ArgumentError, EmptyError, KindError, RangeError
 from ._mesh import Mesh
 from ._types import ArrayLike, Floats, Int64s, Resolution, Shape, Size
+
+
+class Like(Protocol):
+    """What says where its voxels lie: grids, octrees and fields, and anything else that has these."""
+
+    @property
+    def shape(self) -> Tuple[int, ...]: ...
+
+    @property
+    def origin(self) -> Any: ...
+
+    @property
+    def pitch(self) -> Any: ...
 
 
 def space(dims: Any, origin: Any, size: Any) -> Any:
@@ -150,7 +163,7 @@ class Place:
     fit: Optional[str] = None
     pad: int = 0
     bounds: Optional[ArrayLike] = None
-    like: Any = None
+    like: Optional[Like] = None
 
     def check(self) -> None:
         """What does not go together."""
@@ -198,6 +211,3 @@ class Place:
         _core.call(lib.vxm_space_fit, out, source._pointer, options)
         del kept  # until now the options point to it
         return out
-
-
-Like = Union[Placed, Any]
