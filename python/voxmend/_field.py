@@ -12,6 +12,7 @@ from ._core import lib
 from ._errors import ArgumentError
 from ._grid import VoxelGrid, _space
 from ._mesh import format_name
+from ._show import Shown
 
 _KINDS = ("numbers", "distance", "coverage", "labels", "confidence", "colors")
 
@@ -22,7 +23,7 @@ def _scalars() -> dict:
     return {getattr(lib, n): numpy.dtype(n[4:].lower()) for n in names}
 
 
-class Field:
+class Field(Shown):
     """A number (or colour) for each voxel of a box, as a file has them. It does not change once it is made.
 
     Args:

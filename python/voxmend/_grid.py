@@ -11,6 +11,7 @@ from . import _core, _values
 from ._core import ffi, lib
 from ._errors import ArgumentError, KindError
 from ._mesh import Mesh, MeshLike, as_mesh, format_name, repair as repair_mesh
+from ._show import Shown
 
 
 def _space(dims: Sequence[int], origin: Any, size: Any) -> Any:
@@ -40,7 +41,7 @@ def _filled(matrix: Any) -> numpy.ndarray:
     return out.view(numpy.uint8)
 
 
-class VoxelGrid:
+class VoxelGrid(Shown):
     """A box of voxels that are set or not. Voxel (i, j, k) has its centre at origin + ((i, j, k) + 1/2) * pitch.
 
     It does not change; pickles and copies hold the same content.
