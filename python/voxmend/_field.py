@@ -13,6 +13,7 @@ from ._errors import ArgumentError
 from ._grid import VoxelGrid
 from ._mesh import format_name
 from ._records import CoverageReport, DistanceReport, Label, LabelReport, VoxelizeReport
+from ._show import Shown
 from ._space import Placed, space
 from ._types import Array, ArrayLike, Path, Size
 
@@ -27,7 +28,7 @@ def _scalars() -> Dict[int, "numpy.dtype[Any]"]:
     return {getattr(lib, n): numpy.dtype(n[4:].lower()) for n in names}
 
 
-class VoxelField(Placed):
+class VoxelField(Placed, Shown):
     """A number (or colour) for each voxel of a box. It does not change once it is made.
 
     Made by `voxmend.distance`, `coverage`, `labels` and `colors`, by `read_field`, or of an array; numpy.asarray(field) gives

@@ -12,6 +12,7 @@ from ._core import ffi, lib
 from ._errors import ArgumentError, KindError
 from ._mesh import Mesh, format_name
 from ._records import Comparison, VoxelizeReport
+from ._show import Shown
 from ._space import Placed, shown, shown_size, space
 from ._types import Array, ArrayLike, Bools, Floats, Int64s, Path, Size, Uint8s, Uint64s
 
@@ -39,7 +40,7 @@ def _filled(matrix: Any) -> Uint8s:
     return out.view(numpy.uint8)
 
 
-class VoxelGrid(Placed):
+class VoxelGrid(Placed, Shown):
     """A box of voxels that are set or not. Voxel (i, j, k) has its centre at origin + ((i, j, k) + 1/2) * pitch.
 
     It does not change; pickles and copies hold the same content. Grids are equal if they have the same space, exactly, and

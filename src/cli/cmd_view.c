@@ -5,13 +5,14 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_AZIMUTH, KEY_ELEVATION, KEY_UP };
+enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_AZIMUTH, KEY_ELEVATION, KEY_UP, KEY_SLICE };
 
 enum { RESOLUTION = 128 };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE", "picture (.png), or page for a browser (.html), to write"},
     {'r', "resolution", "N", "voxels along the longest side of a mesh [128]"},
+    {KEY_SLICE, "slice", "x|y|z=S", "the cross-section at a share S, from 0 to 1, of the grid along an axis"},
     {KEY_SIZE, "size", "WxH", "pixels, each from 1 to 16384 [800x600]"},
     {KEY_AZIMUTH, "azimuth", "DEGREES", "direction to look from, about the up axis [30]"},
     {KEY_ELEVATION, "elevation", "DEGREES", "height to look from, -90 to 90 above the horizon [25]"},
@@ -54,10 +55,20 @@ static bool read_size(vxm_picture_options *out, const char *text) {
   return true;
 }
 
+/** "z=0.5" */
+static bool read_slice(vxm_picture_options *out, const char *text) {
+  if (text[0] < 'x' || text[0] > 'z' || text[1] != '=')
+    return false;
+  out->slice_axis = text[0] - 'x' + 1;
+  return cli_read_number(&out->slice, text + 2) && out->slice >= 0 && out->slice <= 1;
+}
+
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const axes[] = {"x", "y", "z", NULL};
   vxm_picture_options *picture = &out->picture;
   int choice = 0, result;
+  if (key == KEY_SLICE)
+    out->of_picture = "--slice";
   if (key == KEY_SIZE || key == KEY_AZIMUTH || key == KEY_ELEVATION)
     out->of_picture = key == KEY_SIZE ? "--size" : key == KEY_AZIMUTH ? "--azimuth" : "--elevation";
   switch (key) {
@@ -71,6 +82,10 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
   case KEY_SIZE:
     if (!read_size(picture, value))
       return cli_usage(cli, "--size '%s' is not WxH, each from 1 to 16384", value);
+    return CLI_END;
+  case KEY_SLICE:
+    if (!read_slice(picture, value))
+      return cli_usage(cli, "--slice '%s' is not x=S, y=S or z=S with S from 0 to 1", value);
     return CLI_END;
   case KEY_AZIMUTH:
     if (!cli_read_number(&picture->azimuth, value))
@@ -213,6 +228,13 @@ static vxm_status draw(cli_run *cli, const request *given, const cli_values *val
                            &cli->error);
 }
 
+static void slice_row(const cli_run *cli, const vxm_picture_options *picture, const vxm_space *space) {
+  int axis = picture->slice_axis - 1;
+  int64_t n = space->dims[axis], layer = (int64_t)(picture->slice * (double)n);
+  cli_row(cli, "slice", "%c, voxel %" PRId64 " of 0 to %" PRId64, "xyz"[axis], layer < n ? layer : n - 1,
+          n - 1);
+}
+
 static int make_output(cli_run *cli, const request *given, const subject *of) {
   const cli_values *values = &of->values;
   if ((given->is_page ? write_page(cli, given, of) : draw(cli, given, values)) != VXM_OK)
@@ -222,9 +244,11 @@ static int make_output(cli_run *cli, const request *given, const subject *of) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
     cli_rows_space(cli, cli_values_space(values));
     cli_values_row(cli, values);
-    if (given->up_hint)
+    if (given->up_hint && given->picture.slice_axis == 0)
       cli_row(cli, "up", "%c, as usual for %s; --up changes it", "xyz"[given->picture.up - 1],
               given -> up_hint);
+    if (given->picture.slice_axis != 0)
+      slice_row(cli, &given->picture, cli_values_space(values));
     cli_row(cli, "output", "%s", given->output);
   }
   return cli_finish(cli, make_report(cli, given, values));
@@ -268,7 +292,8 @@ const cli_command cli_command_view = {
         "  voxmend view chair.binvox -o chair.png\n"
         "  voxmend view chair.off -o chair.html -r 256\n"
         "  voxmend view bunny.obj -o bunny.png --up y --azimuth 120 --size 1200x900\n"
-        "  voxmend view distance.nrrd -o inside.png --below -0.1",
+        "  voxmend view distance.nrrd -o inside.png --below -0.1\n"
+        "  voxmend view distance.nrrd -o section.png --slice z=0.5",
     .options = known_options,
     .run = run,
 };

@@ -170,8 +170,12 @@ VXM_API vxm_status vxm_field_write(const vxm_field *field, const char *path,
  * labels if they are whole and not negative, as distances if some are below 0 and some above, as coverage if
  * all are from 0 to 1.
  *
+ * A slice shows all cells: labels and colours as they are; distances in blue below 0 and red above, with a
+ * line where they are 0; coverage in grey; other numbers from dark blue to yellow; beside it the range of
+ * colours.
+ *
  * @param options   NULL = defaults
- * @param threshold the voxels to be drawn; NULL = as above
+ * @param threshold the voxels to be drawn, but in a slice; NULL = as above
  * @return as vxm_grid_picture; VXM_ERROR_NUMBERS for other numbers without a threshold
  */
 VXM_API vxm_status vxm_field_picture(const vxm_field *field, const char *path,

@@ -158,14 +158,16 @@ typedef struct vxm_picture_options {
   double azimuth;   /**< degrees about the up axis */
   double elevation; /**< degrees above the horizon */
   int up;           /**< axis that points up: 0 = default (z), 1 = x, 2 = y, 3 = z */
+  int slice_axis;   /**< draw the cross-section along 1 = x, 2 = y or 3 = z; 0 = all */
+  double slice;     /**< where: a share of the grid's length along that axis, 0 to 1 */
 } vxm_picture_options;
 
 /** Initial value of vxm_picture_options. */
 #define VXM_PICTURE_OPTIONS_INIT \
-  { sizeof(vxm_picture_options), 0, 0, 30.0, 25.0, 0 }
+  { sizeof(vxm_picture_options), 0, 0, 30.0, 25.0, 0, 0, 0.0 }
 
 /**
- * Draws the grid as shaded voxels into a PNG file.
+ * Draws the grid as shaded voxels, or a slice of it as cells, into a PNG file.
  *
  * @return VXM_OK; VXM_ERROR_UNAVAILABLE without libpng; VXM_ERROR_ARGUMENT, VXM_ERROR_IO, VXM_ERROR_MEMORY,
  *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED

@@ -188,7 +188,7 @@ static const vxm_repair_options repair = {.size = sizeof(vxm_repair_options),
                                           .weld_tolerance = 1e-9,
                                           .level = VXM_LEVEL_MANIFOLD};
 static const vxm_grid_write_options grid_write = {.size = sizeof(vxm_grid_write_options), .format = "npy"};
-static const vxm_picture_options picture = {sizeof(vxm_picture_options), 8, 8, 30, 25, 3};
+static const vxm_picture_options picture = {sizeof(vxm_picture_options), 8, 8, 30, 25, 3, 0, 0.5};
 static const vxm_page_options page = {.size = sizeof(vxm_page_options), .title = "title", .up = 3};
 static const vxm_engine_options engine_options = VXM_ENGINE_OPTIONS_INIT;
 static const vxm_space_options size_options = {.size = sizeof(vxm_space_options), .voxel_size = 0.25};
@@ -233,7 +233,8 @@ static const options_case cases[] = {
     {S(picture, draw),
      {F(vxm_picture_options, width, CHOICE), F(vxm_picture_options, height, CHOICE),
       F(vxm_picture_options, azimuth, NUMBER), F(vxm_picture_options, elevation, NUMBER),
-      F(vxm_picture_options, up, CHOICE)}},
+      F(vxm_picture_options, up, CHOICE), F(vxm_picture_options, slice_axis, CHOICE),
+      F(vxm_picture_options, slice, NUMBER)}},
     {S(page, show), {F(vxm_page_options, up, CHOICE)}},
     {S(engine_options, make_engine),
      {F(vxm_engine_options, gl_method, CHOICE), F(vxm_engine_options, slice_axis, CHOICE),

@@ -33,6 +33,18 @@ run 'voxmend convert k.npy -o k.nrrd -q && voxmend view k.nrrd -o k2.png -q && c
 run 'voxmend view f.npy -o out.png'
 run 'voxmend view f.npy -o f.png --threshold 1.5 -q && size f.png'
 
+say "# slices, seen where the axis says"
+run 'voxmend view t.npy -o s.png --slice z=0.5 && size s.png'
+run 'voxmend view d.npy -o s1.png --slice x=1 --size 100x50 -q && voxmend view d.npy -o s2.png --slice x=0.99 --size 100x50 -q && cmp s1.png s2.png'
+run 'voxmend view d.npy -o s3.png --slice x=0.5 --size 100x50 -q && cmp -s s1.png s3.png'
+run 'voxmend view d.npy -o x.png --slice z=1.5'
+say "# pages"
+run 'voxmend view t.npy -o t.html'
+run 'cp in/torus.off torus.obj && voxmend view torus.obj -o m.html -r 16'
+run 'voxmend view t.npy -o t.html -r 16'
+run 'voxmend view t.npy -o t.html --slice z=0'
+run 'voxmend view t.npy -o t.htm'
+
 say "# failures"
 run 'voxmend view missing.npy -o out.png'
 run 'voxmend view in/truth.tsv -o out.png'

@@ -38,7 +38,7 @@ act() {
         const v = window.voxmendView.voxels, [nx, ny] = v.dims, table = v.table(), step = v.isColor ? 4 : 1;
         let sum = 0;
         for (let i = 0; i < v.codes.length / step; i++)
-          if (table[v.codes[step * i + step - 1]]) sum += i % nx + 1000 * ((i / nx | 0) % ny) + 1000000 * (i / nx / ny | 0);
+          if (table[v.codes[step * i + step - 1]]) sum += (i % nx) ** 2 + 1000 * ((i / nx | 0) % ny) + 1000000 * (i / nx / ny | 0);
         return sum;
       };
       const told = document.documentElement.dataset;
@@ -84,9 +84,9 @@ expect() {
 count() {
   voxmend info "$1" | sed -n 's/^voxels *\([0-9]*\).*/\1/p'
 }
-# The sum of x + 1000 y + 1000000 z over the voxels of a grid of 24 along each axis, from the bytes of a .npy.
+# The sum of x^2 + 1000 y + 1000000 z over the voxels of a grid of 24 along each axis, from the bytes of a .npy.
 sum() {
-  tail -c 13824 "$1" | od -An -v -tu1 -w1 | awk '$1 { n = NR - 1; sum += int(n / 576) + 1000 * (int(n / 24) % 24) + 1000000 * (n % 24) } END { printf "%.0f\n", sum }'
+  tail -c 13824 "$1" | od -An -v -tu1 -w1 | awk '$1 { n = NR - 1; sum += int(n / 576) ^ 2 + 1000 * (int(n / 24) % 24) + 1000000 * (n % 24) } END { printf "%.0f\n", sum }'
 }
 
 # Bits: those of the file, in their places.

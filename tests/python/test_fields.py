@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers in files through the package, against numpy's own reading of them. SAMPLES is a folder of sample meshes."""
+import base64
 import copy
+import json
 import os
 import pickle
+import re
 import unittest
+import unittest.mock
+import zlib
 
 import numpy
 
@@ -24,6 +29,15 @@ def read_nrrd(path):
     sizes = [int(n) for n in lines["sizes"].split()]
     array = numpy.frombuffer(data, order + names[lines["type"]]).reshape(sizes[::-1])
     return array.transpose(2, 1, 0, 3) if len(sizes) == 4 else array.transpose()
+
+
+def read_page(path):
+    """What a page says of its voxels, and their bytes."""
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    about = json.loads(re.search(r'<script type="application/json" id="about">(.*?)</script>', text)[1])
+    voxels = re.search(r'<script type="application/octet-stream;base64" id="voxels">(.*?)</script>', text)[1]
+    return about, zlib.decompress(base64.b64decode(voxels))
 
 
 class Fields(unittest.TestCase):
@@ -139,6 +153,38 @@ class Fields(unittest.TestCase):
         values = field.values
         del field, read, each, again
         numpy.testing.assert_array_equal(values, labels)
+
+    def test_pages(self):
+        path = self.path("page.html")
+        rng = numpy.random.default_rng(6)
+        bits = rng.random((13, 9, 7)) < 0.4
+        voxmend.VoxelGrid(bits, pitch=0.5, origin=(1, 2, 3)).save_page(path, "</script><b>")
+        about, data = read_page(path)
+        rows = numpy.frombuffer(data, numpy.uint8).reshape(7, 9, 2)
+        read = numpy.unpackbits(rows, axis=2, bitorder="little")[:, :, :13].transpose(2, 1, 0)
+        numpy.testing.assert_array_equal(read, bits)
+        self.assertEqual((about["title"], about["dims"], about["origin"]), ("</script><b>", [13, 9, 7], [1, 2, 3]))
+        values = rng.standard_normal((6, 5, 4))
+        values[0, 0, 0], values[1, 1, 1] = 1e-30, -0.0
+        voxmend.Field(values, kind="distance").save_page(path)
+        about, data = read_page(path)
+        high, low = numpy.frombuffer(data, numpy.uint8).reshape(2, 4, 5, 6).astype(int)
+        codes = (high * 256 + low).transpose(2, 1, 0)
+        numpy.testing.assert_array_equal(codes < 32768, numpy.signbit(values))
+        steps = numpy.where(codes < 32768, codes - 32767, codes - 32768)
+        numpy.testing.assert_allclose(steps / 32766 * about["scale"], values, atol=about["scale"] / 60000)
+
+    def test_shown(self):
+        grid = voxmend.VoxelGrid(numpy.ones((3, 3, 3), bool))
+        self.assertTrue(grid._repr_html_().startswith("<iframe srcdoc="))
+        self.assertNotIn("<script", grid._repr_html_())
+        large = voxmend.Field(numpy.random.default_rng(7).random((150, 150, 150)))
+        self.assertIn("too large for a notebook", large._repr_html_())
+        with unittest.mock.patch("webbrowser.open") as opened:
+            path = grid.show()
+        opened.assert_called_once_with("file://" + path)
+        self.assertEqual(read_page(path)[0]["count"], 27)
+        os.unlink(path)
 
 
 if __name__ == "__main__":

@@ -21,3 +21,9 @@ void vxm_palette_grey(uint8_t rgb[3], double value) {
   static const uint8_t stops[][3] = {{250, 250, 250}, {20, 20, 20}};
   interpolate(rgb, stops, 2, value);
 }
+
+void vxm_palette_sequential(uint8_t rgb[3], double value) {
+  static const uint8_t stops[][3] = {
+      {68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
+  interpolate(rgb, stops, sizeof stops / sizeof *stops, value);
+}

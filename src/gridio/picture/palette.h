@@ -9,5 +9,7 @@
 void vxm_palette_diverging(uint8_t rgb[3], double value);
 /** 0 to 1: white to black. */
 void vxm_palette_grey(uint8_t rgb[3], double value);
+/** 0 to 1: dark blue over green to yellow, evenly lighter. */
+void vxm_palette_sequential(uint8_t rgb[3], double value);
 
 #endif

@@ -4,6 +4,7 @@
 #include "base/threads.h"
 #include "gridio/picture/png_write.h"
 #include "gridio/picture/shade.h"
+#include "gridio/picture/slice.h"
 #include "gridio/picture/tiles.h"
 
 #include <string.h>
@@ -396,7 +397,7 @@ static vxm_status draw(vxm_output *output, const vxm_camera *cam, const vxm_scen
   return status;
 }
 
-static vxm_status check_options(const vxm_picture_options *o, vxm_error *error) {
+vxm_status vxm_gridio_picture_check(const vxm_picture_options *o, vxm_error *error) {
   if (o->width < 0 || o->height < 0 || o->width > SIZE_MAX_PIXELS || o->height > SIZE_MAX_PIXELS)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: %d x %d pixels; choose 1 to %d each", o->width,
                     o->height, SIZE_MAX_PIXELS);
@@ -406,16 +407,20 @@ static vxm_status check_options(const vxm_picture_options *o, vxm_error *error) 
                     o->azimuth, o->elevation);
   if (o->up < 0 || o->up > 3)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "picture: up axis %d; choose 1 (x), 2 (y) or 3 (z)", o->up);
-  return VXM_OK;
+  if (o->slice_axis < 0 || o->slice_axis > 3 || !(o->slice >= 0 && o->slice <= 1))
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "picture: slice at %g along axis %d; choose 0 to 1 along 1 (x), 2 (y) or 3 (z)", o->slice,
+                    o->slice_axis);
+  return vxm_png_check(error);
 }
 
 vxm_status vxm_gridio_picture(const vxm_grid *grid, vxm_paint_fn paint, const void *painted, const char *path,
                               const vxm_picture_options *options, vxm_error *error) {
-  vxm_status status = check_options(options, error);
-  if (status == VXM_OK)
-    status = vxm_png_check(error);
+  vxm_status status = vxm_gridio_picture_check(options, error);
   if (status != VXM_OK)
     return status;
+  if (options->slice_axis != 0)
+    return vxm_gridio_slice(grid, NULL, VXM_FIELD_NUMBERS, NULL, path, options, error);
   vxm_camera cam = {.width = options->width ? options->width : 800,
                     .height = options->height ? options->height : 600};
   vxm_scene scene = {.grid = grid, .paint = paint, .painted = painted};

@@ -22,6 +22,9 @@ vxm_status vxm_gridio_field_picture(const vxm_field *field, const char *path,
                                     const vxm_picture_options *options,
                                     const vxm_threshold_options *threshold, vxm_error *error);
 
+/** Whether a picture can be drawn so, and at all. */
+vxm_status vxm_gridio_picture_check(const vxm_picture_options *options, vxm_error *error);
+
 /** What numbers seem to be of which the file does not say it; VXM_FIELD_NUMBERS if that cannot be told. */
 vxm_field_kind vxm_gridio_field_guess(const vxm_field *field, const vxm_field_range *range);
 /** The voxels that are drawn without being told; VXM_ERROR_NUMBERS if what they are cannot be known. */

@@ -3,6 +3,7 @@
 #include "gridio/common/label_color.h"
 #include "gridio/picture/palette.h"
 #include "gridio/picture/picture.h"
+#include "gridio/picture/slice.h"
 
 #include <math.h>
 
@@ -92,9 +93,15 @@ vxm_status vxm_gridio_field_picture(const vxm_field *field, const char *path,
                                     const vxm_threshold_options *threshold, vxm_error *error) {
   vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_threshold_options own;
-  vxm_status status = vxm_field_measure(&range, field, error);
+  vxm_status status = vxm_gridio_picture_check(options, error);
+  if (status == VXM_OK)
+    status = vxm_field_measure(&range, field, error);
+  if (status != VXM_OK)
+    return status;
   vxm_field_kind kind = vxm_gridio_field_guess(field, &range);
-  if (status == VXM_OK && !threshold) {
+  if (options->slice_axis != 0)
+    return vxm_gridio_slice(NULL, field, kind, &range, path, options, error);
+  if (!threshold) {
     status = vxm_gridio_field_shown(&own, kind, field, &range, error);
     threshold = &own;
   }
