@@ -182,7 +182,7 @@ vxm_status vxm_field_write(const vxm_field *field, const char *path, const vxm_g
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "field", error);
   vxm_field shown = *field; /* what it has is borrowed */
   if (status == VXM_OK)
-    status = vxm_look_of(&shown.look, chosen.blocks, chosen.up, error);
+    status = vxm_style_of(&shown.style, chosen.blocks, chosen.up, error);
   return status == VXM_OK ? vxm_gridio_write_field(&shown, path, chosen.format, error) : status;
 }
 

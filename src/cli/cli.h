@@ -365,11 +365,11 @@ int cli_check_surface_file(cli_run *cli, const char *path, const char *format, b
         "1/256 of a voxel within"                                                      \
   }
 /** How blocks and meshes stand: of vxm_grid_write_options. */
-typedef struct cli_look {
+typedef struct cli_style {
   const char *blocks;
   int up;
-} cli_look;
-#define CLI_OPTIONS_LOOK(blocks, up)                                                          \
+} cli_style;
+#define CLI_OPTIONS_STYLE(blocks, up)                                                          \
   {blocks, "blocks", "NAME[,NAME...]",                                                        \
    "of .schem and .litematic: Minecraft's block for voxels, those for labels in\n"            \
    "turn, or those that colours choose from [stone; concrete, wool and terracotta in\n"       \
@@ -378,9 +378,9 @@ typedef struct cli_look {
     up, "up", "x|y|z", "of .schem, .litematic and .glb: axis of the model that points up [z]" \
   }
 /** Takes over the argument of --up: CLI_END or CLI_STOP. */
-int cli_read_up(cli_run *cli, cli_look *look, const char *value);
+int cli_read_up(cli_run *cli, cli_style *style, const char *value);
 /** CLI_STOP if the format has no use for what was given. */
-int cli_check_look(cli_run *cli, const cli_look *look, const char *format);
+int cli_check_style(cli_run *cli, const cli_style *style, const char *format);
 /** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
 #define CLI_OPTION_FORCE(key) \

@@ -15,7 +15,7 @@ static const cli_option known_options[] = {
      "the second; of .octree nothing else is read"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
-    CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
+    CLI_OPTIONS_STYLE(KEY_BLOCKS, KEY_UP),
     CLI_OPTIONS_THRESHOLD,
     {0, NULL, NULL, NULL}};
 
@@ -24,7 +24,7 @@ typedef struct request {
   bool force, keep_polygons, keep_contacts;
   bool has_window;
   int64_t begin[3], end[3];
-  cli_look look;
+  cli_style style;
   vxm_threshold_options threshold;
 } request;
 
@@ -60,9 +60,9 @@ static int read_arguments(cli_run *cli, request *out) {
     else if (key == KEY_CONTACTS)
       out->keep_contacts = true;
     else if (key == KEY_BLOCKS)
-      out->look.blocks = value;
+      out->style.blocks = value;
     else if (key == KEY_UP) {
-      if (cli_read_up(cli, &out->look, value) == CLI_STOP)
+      if (cli_read_up(cli, &out->style, value) == CLI_STOP)
         return CLI_STOP;
     } else if (key == KEY_WINDOW) {
       if (read_window(cli, out, value) == CLI_STOP)
@@ -81,7 +81,7 @@ static int read_arguments(cli_run *cli, request *out) {
   if (!out->format)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, cli_has_json(out->format, true));
-  if (cli_check_names(cli) == CLI_STOP || cli_check_look(cli, &out->look, out->format) == CLI_STOP)
+  if (cli_check_names(cli) == CLI_STOP || cli_check_style(cli, &out->style, out->format) == CLI_STOP)
     return CLI_STOP;
   return cli_check_surface_file(cli, out->output, out->format, out->force);
 }
@@ -156,8 +156,8 @@ static int convert(cli_run *cli, const request *given, const cli_values *values)
   write.format = given->format;
   write.keep_polygons = given->keep_polygons;
   write.keep_contacts = given->keep_contacts;
-  write.blocks = given->look.blocks;
-  write.up = given->look.up;
+  write.blocks = given->style.blocks;
+  write.up = given->style.up;
   vxm_status status = values->grid ? vxm_grid_write(values->grid, given->output, &write, &cli->error)
                                    : vxm_field_write(values->field, given->output, &write, &cli->error);
   if (status != VXM_OK)

@@ -23,8 +23,8 @@ static vxm_grid_write_options write_options(const voxelize_request *given) {
   options.format = given->format;
   options.keep_polygons = given->keep_polygons;
   options.keep_contacts = given->keep_contacts;
-  options.blocks = given->look.blocks;
-  options.up = given->look.up;
+  options.blocks = given->style.blocks;
+  options.up = given->style.up;
   return options;
 }
 

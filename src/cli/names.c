@@ -233,19 +233,19 @@ int cli_read_polygons(cli_run *cli, bool *keep, const char *value) {
   return result;
 }
 
-int cli_read_up(cli_run *cli, cli_look *look, const char *value) {
+int cli_read_up(cli_run *cli, cli_style *style, const char *value) {
   static const char *const axes[] = {"x", "y", "z", NULL};
   int choice = 0, result = cli_choose(cli, &choice, "up", value, axes);
-  look->up = choice + 1;
+  style->up = choice + 1;
   return result;
 }
 
-int cli_check_look(cli_run *cli, const cli_look *look, const char *format) {
+int cli_check_style(cli_run *cli, const cli_style *style, const char *format) {
   static const char *const blocks[] = {"schem", "litematic", NULL}, *const turned[] = {"schem", "litematic",
                                                                                        "glb", NULL};
-  if (look->blocks && cli_read_choice(format, blocks) < 0)
+  if (style->blocks && cli_read_choice(format, blocks) < 0)
     return cli_usage(cli, "--blocks goes with .schem and .litematic, not .%s", format);
-  if (look->up && cli_read_choice(format, turned) < 0)
+  if (style->up && cli_read_choice(format, turned) < 0)
     return cli_usage(cli, "--up goes with .schem, .litematic and .glb, not .%s", format);
   return CLI_END;
 }

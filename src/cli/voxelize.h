@@ -10,7 +10,7 @@ typedef struct voxelize_request {
   bool resolution, size, fit, pad, bounds, vote, surface, thin, no_repair, repair_options, dry_run, sparse,
       force,                        /**< which were given */
       keep_polygons, keep_contacts; /**< of a mesh: vxm_grid_write_options */
-  cli_look look;
+  cli_style style;
   vxm_repair_options repair;
   vxm_space_options space;
   vxm_voxelize_options voxelize;

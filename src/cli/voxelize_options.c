@@ -44,7 +44,7 @@ const cli_option voxelize_options[] = {
     {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
-    CLI_OPTIONS_LOOK(KEY_BLOCKS, KEY_UP),
+    CLI_OPTIONS_STYLE(KEY_BLOCKS, KEY_UP),
     {'r', "resolution", "N|NXxNYxNZ", "voxels along the longest side, or along each axis [128]"},
     {KEY_SIZE, "voxel-size", "S|SX,SY,SZ", "sides of a voxel in model units, instead of -r"},
     {KEY_FIT, "fit", "cube|tight|sphere",
@@ -243,10 +243,10 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     out->keep_contacts = true;
     return CLI_END;
   case KEY_BLOCKS:
-    out->look.blocks = value;
+    out->style.blocks = value;
     return CLI_END;
   case KEY_UP:
-    return cli_read_up(cli, &out->look, value);
+    return cli_read_up(cli, &out->style, value);
   case KEY_POLYGONS:
     return cli_read_polygons(cli, &out->keep_polygons, value);
   case KEY_DRY_RUN:
@@ -345,9 +345,9 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
     return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
-  if (out->format && cli_check_look(cli, &out->look, out->format) == CLI_STOP)
+  if (out->format && cli_check_style(cli, &out->style, out->format) == CLI_STOP)
     return CLI_STOP;
-  out->field.label_options.blocks = out->field.color_options.blocks = out->look.blocks;
-  out->field.label_options.up = out->field.color_options.up = out->look.up;
+  out->field.label_options.blocks = out->field.color_options.blocks = out->style.blocks;
+  out->field.label_options.up = out->field.color_options.up = out->style.up;
   return out->format ? check_names(cli, out) : CLI_STOP;
 }

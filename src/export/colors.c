@@ -21,16 +21,16 @@ vxm_status vxm_colors_write(vxm_voxelize_report *report, vxm_model *model, const
   vxm_field *colors = NULL;
   const vxm_grid_format *format =
       vxm_grid_format_holding(path, options->format, VXM_HOLDS_COLORS, "colours go", error);
-  vxm_look look;
+  vxm_style style;
   vxm_status status = format ? check_memory(model, space, options, error) : VXM_ERROR_ARGUMENT;
   if (status == VXM_OK)
-    status = vxm_look_of(&look, options->blocks, options->up, error);
+    status = vxm_style_of(&style, options->blocks, options->up, error);
   if (status == VXM_OK)
     status = vxm_field_make(&colors, model->context, space, VXM_FIELD_COLORS, VXM_UINT8, error);
   if (status != VXM_OK)
     return status;
   colors->about.is_declared = true;
-  colors->look = look;
+  colors->style = style;
   status = vxm_colors_run(colors->values, report, model, space, options, error);
   report->fill_ms = vxm_clock_ms() - start;
   if (status == VXM_OK)

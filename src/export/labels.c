@@ -12,7 +12,7 @@ typedef struct label_file {
   const char *path;
   const vxm_grid_format *format;
   bool streams;
-  vxm_look look;
+  vxm_style style;
   vxm_layout layout;
   vxm_field *field; /**< its values in the order of the layout */
   vxm_about about;  /**< with the table of labels, which belongs to another */
@@ -71,7 +71,7 @@ static vxm_status write_file(label_file *file, const vxm_label_table *table, vxm
   }
   vxm_field whole = *file->field;
   whole.about = file->about;
-  whole.look = file->look;
+  whole.style = file->style;
   return vxm_gridio_write_field(&whole, file->path, file->format->name, error);
 }
 
@@ -82,7 +82,7 @@ vxm_status vxm_labels_write(vxm_label_report *report, vxm_model *model, const vx
   vxm_face_labels labelling;
   vxm_status status = choose_format(&file, options->format, error);
   if (status == VXM_OK)
-    status = vxm_look_of(&file.look, options->blocks, options->up, error);
+    status = vxm_style_of(&file.style, options->blocks, options->up, error);
   if (status == VXM_OK)
     status = vxm_face_labels_create(&labelling, model->analysis.soup, options->by, error);
   if (status != VXM_OK)

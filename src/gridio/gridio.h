@@ -39,7 +39,7 @@ vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *
 vxm_status vxm_gridio_write_with(const vxm_grid *grid, const char *path,
                                  const vxm_grid_write_options *options, vxm_error *error);
 /** How the options say that fields are shown. @return VXM_OK, VXM_ERROR_ARGUMENT for what cannot be */
-vxm_status vxm_look_of(vxm_look *out, const char *blocks, int up, vxm_error *error);
+vxm_status vxm_style_of(vxm_style *out, const char *blocks, int up, vxm_error *error);
 /** Writes a field; see vxm_field_write in voxmend.h. @param format NULL = by the extension of `path` */
 vxm_status vxm_gridio_write_field(const vxm_field *field, const char *path, const char *format,
                                   vxm_error *error);

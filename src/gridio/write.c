@@ -43,14 +43,14 @@ static vxm_status write_slices(const vxm_grid *grid, const char *path, const cha
 
 /** Bits as a field of 0 and 1, for formats that need all of it. */
 static vxm_status write_bytes(const vxm_grid *grid, const char *path, const vxm_grid_format *format,
-                              vxm_look look, vxm_error *error) {
+                              vxm_style style, vxm_error *error) {
   vxm_field *field;
   vxm_status status =
       vxm_field_make(&field, grid->context, &grid->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
   if (status != VXM_OK)
     return status;
   vxm_field_put_grid(field, grid);
-  field->look = look;
+  field->style = style;
   if (format->check_field)
     status = format->check_field(field, path, error);
   if (status == VXM_OK)
@@ -70,8 +70,8 @@ static vxm_status write_surface(const vxm_grid *grid, const char *path, const ch
   return status;
 }
 
-vxm_status vxm_look_of(vxm_look *out, const char *blocks, int up, vxm_error *error) {
-  *out = (vxm_look){blocks, up};
+vxm_status vxm_style_of(vxm_style *out, const char *blocks, int up, vxm_error *error) {
+  *out = (vxm_style){blocks, up};
   if (up < 0 || up > 3)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "up: %d is none of 0 to 3", up);
   return vxm_blocks_check_names(blocks, error);
@@ -79,16 +79,16 @@ vxm_status vxm_look_of(vxm_look *out, const char *blocks, int up, vxm_error *err
 
 vxm_status vxm_gridio_write_with(const vxm_grid *grid, const char *path,
                                  const vxm_grid_write_options *options, vxm_error *error) {
-  vxm_look look;
+  vxm_style style;
   const vxm_grid_format *found = vxm_grid_format_for(path, options->format, error);
-  if (!found || vxm_look_of(&look, options->blocks, options->up, error) != VXM_OK)
+  if (!found || vxm_style_of(&style, options->blocks, options->up, error) != VXM_OK)
     return VXM_ERROR_ARGUMENT;
   unsigned how = (options->keep_polygons ? 0 : VXM_SURFACE_TRIANGLES) |
                  (options->keep_contacts ? 0 : VXM_SURFACE_MANIFOLD);
   if (found->is_surface)
     return write_surface(grid, path, found->name, how, error);
   return vxm_grid_format_streams(found) ? write_slices(grid, path, found->name, error)
-                                        : write_bytes(grid, path, found, look, error);
+                                        : write_bytes(grid, path, found, style, error);
 }
 
 vxm_status vxm_gridio_write(const vxm_grid *grid, const char *path, const char *format, vxm_error *error) {

@@ -102,7 +102,7 @@ static void test_labels(void **state) {
       snprintf(name, sizeof name, "part %d \xc3\xa4", label);
       assert_true(vxm_label_table_add(&field->about.table, context, name, 0));
     }
-    field->look.up = round % 4;
+    field->style.up = round % 4;
     for (int f = 0; f < FORMATS; f++) {
       const char *path = file_of(folder, formats[f]);
       write_field(field, path);
@@ -519,7 +519,7 @@ static void test_glb_text(void **state) {
   assert_true(vxm_label_table_add(&field->about.table, context, "the \"first\"", 0));
   for (int up = 0; up < 3; up++) {
     const char *path = path_in(folder, "x.glb");
-    field->look.up = up;
+    field->style.up = up;
     write_field(field, path);
     surface s = load_surface(path, false);
     assert_non_null(strstr(s.text, matrices[up]));

@@ -3,10 +3,6 @@
 
 #include <math.h>
 
-double vxm_linear_light(double value) {
-  return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
-}
-
 /** A hue from 0 to 1, of some saturation and brightness. */
 static void color_of_hue(double rgb[3], double hue, double saturation, double brightness) {
   for (int n = 0; n < 3; n++) {
@@ -17,7 +13,7 @@ static void color_of_hue(double rgb[3], double hue, double saturation, double br
 
 void vxm_label_color(double rgb[3], double label) {
   const double golden = 0.61803398874989485;
-  double hue = fmod((label - 1) * golden, 1), pale = fmod(label, 2);
+  double whole = isfinite(label) ? label : 0, hue = fmod((whole - 1) * golden, 1), pale = fmod(whole, 2);
   color_of_hue(rgb, hue < 0 ? hue + 1 : hue, pale == 0 ? 0.45 : 0.7, pale == 0 ? 0.75 : 0.9);
 }
 

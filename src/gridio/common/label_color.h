@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The colours of labels, and the light of colours. */
+/** The colours of labels. */
 #ifndef VXM_GRIDIO_COMMON_LABEL_COLOR_H
 #define VXM_GRIDIO_COMMON_LABEL_COLOR_H
 
 #include <stdint.h>
 
-/** The linear light of an sRGB value, both from 0 to 1 (IEC 61966-2-1). */
-double vxm_linear_light(double value);
 /** The colour of a label as sRGB from 0 to 1: hues a golden section apart, so that labels near each other
  * look different; every other one is paler. */
 void vxm_label_color(double rgb[3], double label);

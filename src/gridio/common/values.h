@@ -24,10 +24,10 @@ typedef struct vxm_about {
 } vxm_about;
 
 /** How a field is shown by formats that leave a choice. */
-typedef struct vxm_look {
+typedef struct vxm_style {
   const char *blocks; /**< names of Minecraft's blocks between commas, NULL = the format's own; not owned */
   int up; /**< axis that becomes the y of formats in which y points up: 0 = z, 1 = x, 2 = y, 3 = z */
-} vxm_look;
+} vxm_style;
 
 struct vxm_field {
   vxm_context *context; /**< one reference held */
@@ -36,7 +36,7 @@ struct vxm_field {
   int channels;
   unsigned char *values; /**< [x][y][z][channels] in C order, in the byte order of the machine */
   vxm_about about;
-  vxm_look look; /**< set for the time of writing */
+  vxm_style style; /**< set for the time of writing */
   vxm_warnings warnings;
 };
 

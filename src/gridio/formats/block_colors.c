@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/block_colors.h"
-#include "gridio/common/label_color.h"
+#include "mesh/appearance.h"
 
 #include <math.h>
 #include <string.h>
@@ -117,7 +117,7 @@ static void to_lab(double lab[3], const uint8_t rgb[3]) {
   for (int c = 0; c < 3; c++) {
     double sum = 0;
     for (int d = 0; d < 3; d++)
-      sum += to_xyz[c][d] * vxm_linear_light(rgb[d] / 255.0);
+      sum += to_xyz[c][d] * vxm_srgb_decode(rgb[d] / 255.0);
     f[c] = root(sum / white[c]);
   }
   lab[0] = 116 * f[1] - 16;

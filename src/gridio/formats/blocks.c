@@ -167,7 +167,7 @@ static vxm_status bar_others(const vxm_blocks *blocks, vxm_block_matcher *matche
 
 /** The blocks that may occur: those that are named, or all whose colours are known. */
 static vxm_status add_colored(vxm_blocks *out, vxm_error *error) {
-  const char *names = out->field->look.blocks;
+  const char *names = out->field->style.blocks;
   size_t count, length = 0, number;
   const vxm_block_color *table = vxm_block_colors(&count);
   vxm_status status = VXM_OK;
@@ -195,7 +195,7 @@ static vxm_status match_colors(vxm_blocks *out, vxm_block_matcher *matcher, vxm_
   size_t voxels = vxm_field_count(field);
   vxm_status status = add_colored(out, error);
   vxm_block_matcher_init(matcher);
-  if (status == VXM_OK && field->look.blocks)
+  if (status == VXM_OK && field->style.blocks)
     status = bar_others(out, matcher, error);
   number_colored(numbers, out);
   for (size_t v = 0; v < voxels && status == VXM_OK; v++) {
@@ -219,10 +219,10 @@ vxm_status vxm_blocks_make(vxm_blocks *out, const vxm_field *field, vxm_error *e
   vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_error local = VXM_ERROR_INIT;
   size_t air;
-  *out = (vxm_blocks){.field = field, .axes = vxm_y_up_of(field->look.up)};
+  *out = (vxm_blocks){.field = field, .axes = vxm_y_up_of(field->style.up)};
   for (int a = 0; a < 3; a++)
     out->size[a] = field->space.dims[out->axes.of[a]];
-  vxm_status status = vxm_blocks_check_names(field->look.blocks, &local);
+  vxm_status status = vxm_blocks_check_names(field->style.blocks, &local);
   if (status == VXM_OK)
     status = vxm_field_measure(&range, field, &local);
   if (status == VXM_OK)
@@ -230,7 +230,7 @@ vxm_status vxm_blocks_make(vxm_blocks *out, const vxm_field *field, vxm_error *e
   if (status == VXM_OK) {
     out->kind = kind_of(field, &range);
     status = out->kind == VXM_FIELD_COLORS ? choose_colors(out, &local)
-                                           : choose_labels(out, field->look.blocks, &range, &local);
+                                           : choose_labels(out, field->style.blocks, &range, &local);
   }
   if (status != VXM_OK) {
     vxm_blocks_destroy(out);

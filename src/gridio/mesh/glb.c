@@ -10,6 +10,7 @@
 #include "gridio/common/label_color.h"
 #include "gridio/common/y_up.h"
 #include "gridio/mesh/colored_quads.h"
+#include "mesh/appearance.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -124,7 +125,7 @@ static void put_normals(vxm_output *output, const vxm_colored_quads *quads) {
 static void put_colors(vxm_output *output, const vxm_colored_quads *quads) {
   uint16_t light[256];
   for (int v = 0; v < 256; v++)
-    light[v] = (uint16_t)(65535 * vxm_linear_light(v / 255.0) + 0.5);
+    light[v] = (uint16_t)(65535 * vxm_srgb_decode(v / 255.0) + 0.5);
   for (size_t q = 0; q < quads->count; q++) {
     uint32_t key = quads->items[q].key;
     unsigned char bytes[COLOR] = {0, 0, 0, 0, 0, 0, 255, 255};
@@ -229,7 +230,7 @@ static json_t *material(scene *s, const part *p) {
   if (s->has_labels)
     vxm_label_color(rgb, p->key);
   for (int c = 0; c < 3; c++)
-    rgb[c] = s->has_colors ? 1 : vxm_linear_light(rgb[c]);
+    rgb[c] = s->has_colors ? 1 : vxm_srgb_decode(rgb[c]);
   return json_pack("{s:o, s:{s:[f,f,f,f], s:f, s:f}}", "name", name_of(s, p), "pbrMetallicRoughness",
                    "baseColorFactor", rgb[0], rgb[1], rgb[2], 1.0, "metallicFactor", 0.0, "roughnessFactor",
                    1.0);
@@ -248,7 +249,7 @@ static json_t *mesh(scene *s, size_t index) {
 static json_t *matrix_of(scene *s) {
   const vxm_field *field = s->field;
   const vxm_space *space = &field->space;
-  vxm_y_up axes = vxm_y_up_of(field->look.up);
+  vxm_y_up axes = vxm_y_up_of(field->style.up);
   double m[16] = {[15] = 1};
   for (int a = 0; a < 3; a++) {
     double sign = axes.back[a] ? -1 : 1;

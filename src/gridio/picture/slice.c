@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/picture/slice.h"
+#include "gridio/common/label_color.h"
 #include "gridio/picture/palette.h"
 #include "gridio/picture/png_write.h"
 
@@ -91,7 +92,7 @@ static void color_cell(uint8_t rgb[3], const slice *s, int64_t u, int64_t v) {
     else if (value == 0 || isnan(value))
       memcpy(rgb, clear, 3);
     else
-      vxm_palette_label(rgb, value);
+      vxm_label_color_bytes(rgb, value);
   }
 }
 

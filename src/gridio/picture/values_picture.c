@@ -4,6 +4,7 @@
 #include "gridio/picture/palette.h"
 #include "gridio/picture/picture.h"
 #include "gridio/picture/slice.h"
+#include "mesh/appearance.h"
 
 #include <math.h>
 
@@ -74,8 +75,8 @@ static size_t index_of(const vxm_field *field, const int64_t voxel[3]) {
 static vxm_ray_vec3 paint_color(const void *payload, const int64_t voxel[3]) {
   const vxm_field *field = payload;
   const unsigned char *rgb = field->values + 4 * index_of(field, voxel);
-  return vxm_ray_vec3_of(vxm_linear_light(rgb[0] / 255.0), vxm_linear_light(rgb[1] / 255.0),
-                         vxm_linear_light(rgb[2] / 255.0));
+  return vxm_ray_vec3_of(vxm_srgb_decode(rgb[0] / 255.0), vxm_srgb_decode(rgb[1] / 255.0),
+                         vxm_srgb_decode(rgb[2] / 255.0));
 }
 
 static vxm_ray_vec3 paint_label(const void *payload, const int64_t voxel[3]) {
@@ -83,7 +84,7 @@ static vxm_ray_vec3 paint_label(const void *payload, const int64_t voxel[3]) {
   double label, rgb[3];
   vxm_field_doubles(&label, field, index_of(field, voxel), 1);
   vxm_label_color(rgb, label);
-  return vxm_ray_vec3_of(vxm_linear_light(rgb[0]), vxm_linear_light(rgb[1]), vxm_linear_light(rgb[2]));
+  return vxm_ray_vec3_of(vxm_srgb_decode(rgb[0]), vxm_srgb_decode(rgb[1]), vxm_srgb_decode(rgb[2]));
 }
 
 /* ---- The picture ---- */
