@@ -369,7 +369,7 @@ typedef struct cli_style {
   const char *blocks;
   int up;
 } cli_style;
-#define CLI_OPTIONS_STYLE(blocks, up)                                                          \
+#define CLI_OPTIONS_STYLE(blocks, up)                                                         \
   {blocks, "blocks", "NAME[,NAME...]",                                                        \
    "of .schem and .litematic: Minecraft's block for voxels, those for labels in\n"            \
    "turn, or those that colours choose from [stone; concrete, wool and terracotta in\n"       \
@@ -551,6 +551,8 @@ void cli_look_print(const cli_run *cli, const vxm_mesh *mesh);
 int cli_color_read(cli_run *cli, cli_field *field, const char *value);
 /** Takes the mesh that gives the colours. */
 void cli_color_take(cli_field *field, const cli_input *input);
+/** Says of the mesh what it lacks: puts its name before the error. */
+void cli_color_name_mesh(cli_run *cli, const char *path);
 /** Writes the file of --color; a failure is in cli->error. */
 vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const char *path, const char *format);

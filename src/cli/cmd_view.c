@@ -3,15 +3,18 @@
 #include "cli/cli.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_AZIMUTH, KEY_ELEVATION, KEY_UP, KEY_SLICE };
+enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_AZIMUTH, KEY_ELEVATION, KEY_UP, KEY_SLICE, KEY_COLOR, KEY_LABELS };
 
-enum { RESOLUTION = 128 };
+enum { RESOLUTION = 128, VALUES_RESOLUTION_MAX = 512 };
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE", "picture (.png), or page for a browser (.html), to write"},
     {'r', "resolution", "N", "voxels along the longest side of a mesh [128]"},
+    {KEY_COLOR, "color", "mesh|position|part|noise", "colours of a mesh's voxels, as for voxelize"},
+    {KEY_LABELS, "labels", "part|group|material", "labels of a mesh's voxels, as for voxelize"},
     {KEY_SLICE, "slice", "x|y|z=S", "the cross-section at a share S, from 0 to 1, of the grid along an axis"},
     {KEY_SIZE, "size", "WxH", "pixels, each from 1 to 16384 [800x600]"},
     {KEY_AZIMUTH, "azimuth", "DEGREES", "direction to look from, about the up axis [30]"},
@@ -26,7 +29,11 @@ typedef struct request {
   bool is_page;
   const char *of_picture; /**< an option that is for pictures alone, or NULL */
   int64_t resolution;     /**< 0 = not given */
-  const char *up_hint;    /**< the extension by which `up` was chosen, or NULL */
+  const char *of_mesh;    /**< an option that is for meshes alone, or NULL */
+  bool has_colors, has_labels;
+  vxm_color_options colors;
+  vxm_label_options labels;
+  const char *up_hint; /**< the extension by which `up` was chosen, or NULL */
   vxm_picture_options picture;
   vxm_threshold_options threshold;
 } request;
@@ -34,8 +41,9 @@ typedef struct request {
 /** What was made of the input. */
 typedef struct subject {
   cli_values values;
-  vxm_mesh *prepared;        /**< to be voxelized, or NULL */
-  vxm_mesh *mesh, *repaired; /**< of a page: as it was read, and what a repair would make of it */
+  vxm_mesh *prepared; /**< to be voxelized, or NULL */
+  vxm_mesh *mesh;     /**< of a page, and where its colours are wanted: as it was read; or NULL */
+  vxm_mesh *repaired; /**< of a page: what a repair would make of it, or NULL */
 } subject;
 
 /** "800x600" */
@@ -63,6 +71,28 @@ static bool read_slice(vxm_picture_options *out, const char *text) {
   return cli_read_number(&out->slice, text + 2) && out->slice >= 0 && out->slice <= 1;
 }
 
+static int read_color(cli_run *cli, request *out, const char *value) {
+  static const char *const names[] = {"mesh", "position", "part", "noise", NULL};
+  static const vxm_color_by by[] = {VXM_COLOR_MESH, VXM_COLOR_POSITION, VXM_COLOR_PART, VXM_COLOR_NOISE};
+  int choice = 0;
+  if (cli_choose(cli, &choice, "color", value, names) == CLI_STOP)
+    return CLI_STOP;
+  out->has_colors = true;
+  out->colors.by = by[choice];
+  cli->read.colors = out->colors.by == VXM_COLOR_MESH;
+  return CLI_END;
+}
+
+static int read_labels(cli_run *cli, request *out, const char *value) {
+  static const char *const names[] = {"part", "group", "material", NULL};
+  int choice = 0;
+  if (cli_choose(cli, &choice, "labels", value, names) == CLI_STOP)
+    return CLI_STOP;
+  out->has_labels = true;
+  out->labels.by = (vxm_label_by)choice;
+  return CLI_END;
+}
+
 static int read_option(cli_run *cli, request *out, int key, const char *value) {
   static const char *const axes[] = {"x", "y", "z", NULL};
   vxm_picture_options *picture = &out->picture;
@@ -71,7 +101,13 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     out->of_picture = "--slice";
   if (key == KEY_SIZE || key == KEY_AZIMUTH || key == KEY_ELEVATION)
     out->of_picture = key == KEY_SIZE ? "--size" : key == KEY_AZIMUTH ? "--azimuth" : "--elevation";
+  if (key == 'r' || key == KEY_COLOR || key == KEY_LABELS)
+    out->of_mesh = key == 'r' ? "--resolution" : key == KEY_COLOR ? "--color" : "--labels";
   switch (key) {
+  case KEY_COLOR:
+    return read_color(cli, out, value);
+  case KEY_LABELS:
+    return read_labels(cli, out, value);
   case 'o':
     out->output = value;
     return CLI_END;
@@ -119,6 +155,11 @@ static int read_arguments(cli_run *cli, request *out) {
   out->is_page = cli_is_extension(out->output, "html");
   if (!out->is_page && !cli_is_extension(out->output, "png"))
     return cli_usage(cli, "'%s' must end in .png, for a picture, or .html, for a page", out->output);
+  if (out->has_colors && out->has_labels)
+    return cli_usage(cli, "--color and --labels are two things to show; choose one");
+  if ((out->has_colors || out->has_labels) && out->resolution > VALUES_RESOLUTION_MAX)
+    return cli_usage(cli, "colours and labels are shown at up to %d voxels; lower --resolution",
+                     VALUES_RESOLUTION_MAX);
   if (out->is_page && out->of_picture)
     return cli_usage(cli, "%s is for pictures (.png); a page is turned by hand", out->of_picture);
   cli_writes(cli, "-o", out->output, false);
@@ -158,6 +199,8 @@ static int read_mesh(cli_run *cli, subject *out, const request *given) {
   vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
   int status = cli_read_repaired(cli, &input, given->input, given->is_page ? NULL : &repair);
   *(given->is_page ? &out->mesh : &out->prepared) = input.mesh;
+  if (!given->is_page)
+    out->mesh = input.as_read;
   if (status != CLI_DONE || !given->is_page)
     return status;
   if (vxm_mesh_prepare(&out->prepared, &report, out->mesh, &repair, &cli->error) != VXM_OK)
@@ -168,13 +211,73 @@ static int read_mesh(cli_run *cli, subject *out, const request *given) {
   return repair_mesh(cli, out);
 }
 
+/** Room for so many bytes a voxel; NULL after a failure, which is in cli->error. */
+static void *values_of(cli_run *cli, const vxm_space *space, size_t bytes) {
+  size_t voxels = (size_t)(space->dims[0] * space->dims[1] * space->dims[2]); /* 512^3 at most */
+  void *values = malloc(voxels * bytes);
+  if (!values) {
+    cli->error = (vxm_error)VXM_ERROR_INIT;
+    cli->error.code = VXM_ERROR_MEMORY;
+    snprintf(cli->error.text, sizeof cli->error.text,
+             "out of memory for the colours or labels of voxels: lower -r");
+  }
+  return values;
+}
+
+static vxm_status make_colors(cli_run *cli, subject *out, const request *given, vxm_model *model,
+                              const vxm_space *space) {
+  vxm_color_options options = given->colors;
+  options.mesh = out->mesh;
+  void *values = values_of(cli, space, 4);
+  vxm_status status =
+      values ? vxm_model_colors(values, NULL, model, space, &options, &cli->error) : VXM_ERROR_MEMORY;
+  if (status == VXM_OK)
+    status = vxm_field_create(&out->values.field, cli->context, space, VXM_FIELD_COLORS, VXM_UINT8, values,
+                              &cli->error);
+  free(values);
+  if (status == VXM_ERROR_ARGUMENT && options.by == VXM_COLOR_MESH)
+    cli_color_name_mesh(cli, cli_shown(given->input, "<stdin>"));
+  return status;
+}
+
+static vxm_status make_labels(cli_run *cli, subject *out, const request *given, vxm_model *model,
+                              const vxm_space *space) {
+  uint16_t *values = values_of(cli, space, sizeof *values);
+  vxm_status status =
+      values ? vxm_model_labels(values, NULL, model, space, &given->labels, &cli->error) : VXM_ERROR_MEMORY;
+  if (status == VXM_OK)
+    status = vxm_field_create(&out->values.field, cli->context, space, VXM_FIELD_LABELS, VXM_UINT16, values,
+                              &cli->error);
+  for (int64_t l = 1; status == VXM_OK && l <= vxm_model_label_count(model); l++)
+    status = vxm_field_add_label(out->values.field, vxm_model_label_name(model, l),
+                                 vxm_model_label_voxels(model, l), &cli->error);
+  free(values);
+  return status;
+}
+
+static vxm_status make_values(cli_run *cli, subject *out, const request *given,
+                              const vxm_space_options *wanted) {
+  vxm_space space;
+  vxm_model *model = NULL;
+  vxm_status status = vxm_space_fit(&space, out->prepared, wanted, &cli->error);
+  if (status == VXM_OK)
+    status = vxm_model_create(&model, out->prepared, NULL, &cli->error);
+  if (status == VXM_OK)
+    status = given->has_colors ? make_colors(cli, out, given, model, &space)
+                               : make_labels(cli, out, given, model, &space);
+  vxm_model_destroy(model);
+  return status;
+}
+
 static int voxelize(cli_run *cli, subject *out, request *given) {
   if (read_mesh(cli, out, given) != CLI_DONE)
     return CLI_FAILED;
   guess_up(given);
   vxm_space_options space = VXM_SPACE_OPTIONS_INIT;
   space.resolution[0] = given->resolution ? given->resolution : RESOLUTION;
-  vxm_status status = vxm_voxelize(&out->values.grid, NULL, out->prepared, &space, NULL, &cli->error);
+  vxm_status status = given->has_colors || given->has_labels
+                          ? make_values(cli, out, given, &space)
+                          : vxm_voxelize(&out->values.grid, NULL, out->prepared, &space, NULL, &cli->error);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
@@ -184,9 +287,9 @@ static int read_input(cli_run *cli, subject *out, request *given) {
   if (is_named(path, cli_mesh_formats))
     return voxelize(cli, out, given);
   vxm_status status = cli_values_read(cli, &out->values, path);
-  if (status == VXM_OK && given->resolution)
-    return cli_fail_text(cli, "%s: --resolution is for meshes; this has its voxels",
-                         cli_shown(path, "<stdin>"));
+  if (status == VXM_OK && given->of_mesh)
+    return cli_fail_text(cli, "%s: %s is for meshes; this has its voxels", cli_shown(path, "<stdin>"),
+                         given->of_mesh);
   if (status == VXM_OK)
     return CLI_DONE;
   bool maybe_mesh = status == VXM_ERROR_FORMAT && strcmp(path, "-") != 0;
@@ -244,9 +347,9 @@ static int make_output(cli_run *cli, const request *given, const subject *of) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
     cli_rows_space(cli, cli_values_space(values));
     cli_values_row(cli, values);
-    if (given->up_hint && given->picture.slice_axis == 0)
-      cli_row(cli, "up", "%c, as usual for %s; --up changes it", "xyz"[given->picture.up - 1],
-              given -> up_hint);
+    const char *hint = given->up_hint;
+    if (hint && given->picture.slice_axis == 0)
+      cli_row(cli, "up", "%c, as usual for %s; --up changes it", "xyz"[given->picture.up - 1], hint);
     if (given->picture.slice_axis != 0)
       slice_row(cli, &given->picture, cli_values_space(values));
     cli_row(cli, "output", "%s", given->output);
@@ -255,7 +358,10 @@ static int make_output(cli_run *cli, const request *given, const subject *of) {
 }
 
 static int run(cli_run *cli) {
-  request given = {.picture = VXM_PICTURE_OPTIONS_INIT, .threshold = VXM_THRESHOLD_OPTIONS_INIT};
+  request given = {.colors = VXM_COLOR_OPTIONS_INIT,
+                   .labels = VXM_LABEL_OPTIONS_INIT,
+                   .picture = VXM_PICTURE_OPTIONS_INIT,
+                   .threshold = VXM_THRESHOLD_OPTIONS_INIT};
   if (read_arguments(cli, &given) == CLI_STOP)
     return cli->status;
   if (!cli_start(cli))
@@ -292,6 +398,7 @@ const cli_command cli_command_view = {
         "  voxmend view chair.binvox -o chair.png\n"
         "  voxmend view chair.off -o chair.html -r 256\n"
         "  voxmend view bunny.obj -o bunny.png --up y --azimuth 120 --size 1200x900\n"
+        "  voxmend view teapot.glb -o teapot.png --color mesh\n"
         "  voxmend view distance.nrrd -o inside.png --below -0.1\n"
         "  voxmend view distance.nrrd -o section.png --slice z=0.5",
     .options = known_options,

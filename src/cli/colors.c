@@ -44,6 +44,12 @@ int cli_color_read(cli_run *cli, cli_field *field, const char *value) {
   return CLI_END;
 }
 
+void cli_color_name_mesh(cli_run *cli, const char *path) {
+  char text[sizeof cli->error.text];
+  snprintf(text, sizeof text, "%.200s: %.300s", path, cli->error.text);
+  memcpy(cli->error.text, text, sizeof text);
+}
+
 vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const char *path, const char *format) {
   vxm_color_options options = field->color_options;
@@ -57,12 +63,8 @@ vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
   }
   vxm_status status = vxm_model_write_colors(report, model, space, path, &options, &cli->error);
   free(source);
-  /* What the mesh lacks is said of it. */
-  if (status == VXM_ERROR_ARGUMENT && options.by == VXM_COLOR_MESH) {
-    char text[sizeof cli->error.text];
-    snprintf(text, sizeof text, "%.200s: %.300s", field->color_mesh, cli->error.text);
-    memcpy(cli->error.text, text, sizeof text);
-  }
+  if (status == VXM_ERROR_ARGUMENT && options.by == VXM_COLOR_MESH)
+    cli_color_name_mesh(cli, field->color_mesh);
   return status;
 }
 

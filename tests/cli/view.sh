@@ -20,6 +20,36 @@ run 'cp t.npy grid; voxmend view grid -o grid.png -q && cmp grid.png t.png'
 run 'cp in/torus.off mesh; voxmend view mesh -o mesh.png'
 run 'voxmend view - -o pipe.png -q <t.npy && cmp pipe.png t.png'
 run 'voxmend view t.npy -o again.png -q --threads 7 && cmp again.png t.png'
+say "# colours and labels of a mesh: those of voxelize"
+run 'voxmend view in/torus.off -o v.png -r 24 --color position -q && voxmend voxelize in/torus.off -o v.npy -r 24 --color position -q && voxmend view v.npy -o v2.png -q && cmp v.png v2.png'
+run 'voxmend view in/torus.off -o v.png -r 24 --labels part -q && voxmend voxelize in/torus.off -o v.npy -r 24 --labels part -q && voxmend view v.npy -o v2.png -q && cmp v.png v2.png'
+cat >tetra.ply <<'END'
+ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+element face 4
+property list uchar int vertex_indices
+end_header
+0 0 0 255 0 0
+1 0 0 0 255 0
+0 1 0 0 0 255
+0 0 1 255 255 0
+3 0 2 1
+3 0 1 3
+3 1 2 3
+3 2 0 3
+END
+run 'voxmend view tetra.ply -o v.png -r 24 --color mesh && voxmend voxelize tetra.ply -o v.npy -r 24 --color mesh -q && voxmend view v.npy -o v2.png -q && cmp v.png v2.png'
+run 'voxmend view in/torus.off -o x.png --color mesh'
+run 'voxmend view in/torus.off -o x.png --color part --labels part'
+run 'voxmend view in/torus.off -o x.png --labels part -r 600'
+run 'voxmend view t.npy -o x.png --labels part'
 say "# numbers: what of them is drawn"
 run 'voxmend voxelize in/torus.off -o d.npy --like t.npy --distance signed -q && voxmend view d.npy -o d.png && cmp d.png t.png'
 run 'voxmend view d.npy -o wide.png --below 0.1 -q && cmp -s wide.png t.png'
