@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import importlib
 import os
 import sys
 import tempfile
@@ -51,8 +52,8 @@ class Shown:
     def show(self) -> Optional[str]:
         """Shows it in the notebook, or else in the browser: then gives the path of the page, which stays there."""
         if _in_notebook():
-            from IPython.display import HTML, display  # type: ignore[import-not-found]
-            display(HTML(self._repr_html_()))
+            notebook = importlib.import_module("IPython.display")
+            notebook.display(notebook.HTML(self._repr_html_()))
             return None
         handle, path = tempfile.mkstemp(prefix="voxmend-", suffix=".html")
         os.close(handle)
