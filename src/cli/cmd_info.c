@@ -54,7 +54,7 @@ static bool is_table(const cli_run *cli, const cli_defects *wanted) {
 }
 
 static int name_width(const cli_run *cli) {
-  size_t width = strlen("file"), most = 40;
+  size_t width = strlen("file"), most = 100;
   for (int i = 0; i < cli->argument_count; i++) {
     size_t length = strlen(cli_shown(cli->arguments[i], "<stdin>"));
     width = length > width ? length : width;

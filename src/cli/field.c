@@ -171,6 +171,8 @@ void cli_field_summarize(const cli_run *cli, const cli_field *field) {
             field->color_options.average ? ", the mean over the surface within a voxel" : "");
   else if (field->labels)
     cli_labels_summarize(cli, field);
+  else if (field->distance_options.band == 0)
+    cli_row(cli, "distance", "%.6g to %.6g; exact everywhere", distance->min, distance->max);
   else
     cli_row(cli, "distance", "%.6g to %.6g; %" PRId64 " voxels within the band", distance->min, distance->max,
             distance->exact);

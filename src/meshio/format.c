@@ -92,8 +92,8 @@ static const struct {
     {"<!DOCTYPE", "is a web page, not a mesh: download the file itself"},
     {"<!doctype", "is a web page, not a mesh: download the file itself"},
     {"<html", "is a web page, not a mesh: download the file itself"},
-    {"#binvox", "is a binvox grid, not a mesh"},
-    {"\x93NUMPY", "is a numpy array, not a mesh"},
+    {"#binvox", "is a binvox grid, not a mesh: 'voxmend view' and 'convert' take grids"},
+    {"\x93NUMPY", "is a numpy array, not a mesh: 'voxmend view' and 'convert' take grids"},
 };
 
 static const char *find_stranger(const unsigned char *data, size_t size) {

@@ -17,7 +17,8 @@ vxm_status vxm_binvox_check_field(const vxm_field *field, const char *path, vxm_
   if (status == VXM_OK && (range.min < 0 || range.max > LABELS_MAX))
     return vxm_field_refuse(
         field, path, VXM_ERROR_RANGE,
-        "has numbers beyond 0 to 255, which .binvox does not hold; choose a threshold, or .npy or .nrrd",
+        "has numbers beyond 0 to 255, which .binvox does not hold; choose .npy or .nrrd, or set and clear "
+        "voxels by a threshold",
         error);
   return status == VXM_OK ? vxm_binvox_check(&field->space, path, error) : status;
 }

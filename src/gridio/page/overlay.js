@@ -62,7 +62,7 @@ class Overlay {
     o.mesh = o.indexed(triangles);
     o.edges = o.indexed(edgesOf(triangles));
     o.layers = [];
-    for (const layer of about.mesh.layers ?? []) o.layers.push({ ...layer, on: layer.what === "boundary_edge" || layer.what === "nonmanifold_edge", rgb: rgbOf(layer.color), ...await o.read(layer, triangles, flags) });
+    for (const layer of about.mesh.layers ?? []) o.layers.push({ ...layer, on: layer.what === "boundary_edge", rgb: rgbOf(layer.color), ...await o.read(layer, triangles, flags) });
     return o;
   }
 
