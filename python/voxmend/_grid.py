@@ -305,8 +305,8 @@ class VoxelGrid(Placed, Shown):
         return _grid_convert.to_open3d(self)
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
-        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .vox, .schem, .litematic,
-        or the surface as .obj, .ply, .stl, .off, .glb."""
+        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .octree, .bt, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .vox, .schem,
+        .litematic, or the surface as .obj, .ply, .stl, .off, .glb."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
         options.format = name

@@ -58,11 +58,11 @@ enum {
 /** What grids are written as, for help: the file, and the names of the formats. */
 #define CLI_GRID_FILES                                                                    \
   "file to write: .binvox, .rle, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5,\n" \
-  ".vdb, .npy or .raw (the last two with a .json beside them), .vox, .schem or\n"         \
+  ".vdb, .bt, .npy or .raw (the last three with a .json beside them), .vox, .schem or\n"  \
   ".litematic, or the grid as a mesh: .obj, .ply, .stl, .off, .glb"
-#define CLI_GRID_FORMATS                                                                  \
-  "binvox, npy, raw, rle, nrrd, vdb, octree, nii, nii.gz, vti, vtk, tif, h5, obj, ply,\n" \
-  "stl, off, glb, vox, schem or litematic [by the name of the output]"
+#define CLI_GRID_FORMATS                                                                 \
+  "binvox, npy, raw, rle, nrrd, vdb, octree, bt, nii, nii.gz, vti, vtk, tif, h5, obj,\n" \
+  "ply, stl, off, glb, vox, schem or litematic [by the name of the output]"
 
 /** For the tables of commands that make voxels of the numbers in a file; cli_threshold_read takes their
  * values. */
@@ -336,6 +336,11 @@ const char *cli_bytes_text(char text[24], uint64_t bytes);
 /** Prints the report with --json, writes it with --report, frees it, and publishes. Returns an exit status.
  */
 int cli_finish(cli_run *cli, json_t *report);
+
+/* ---- lattice.c ---- */
+
+/** Warns of a grid in a .bt file that other programs will see in a slightly other place. */
+void cli_warn_lattice(cli_run *cli, const char *path, const char *format, const vxm_space *space);
 
 /* ---- names.c: which files are read and written ---- */
 

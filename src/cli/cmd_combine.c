@@ -250,6 +250,8 @@ static int write_set(cli_run *cli, const request *given, const operand *set, con
     return cli_fail(cli);
   const outcome made = outcome_of(set);
   cli_progress_clear(cli);
+  cli_warn_lattice(cli, given->output, given->format,
+                   set->sparse ? vxm_sparse_space(set->sparse) : vxm_grid_space(set->grid));
   if (cli_summary(cli)) {
     cli_rows_space(cli, made.space);
     cli_row(cli, "voxels", "%" PRId64, made.voxels);

@@ -163,6 +163,7 @@ static int convert(cli_run *cli, const request *given, const cli_values *values)
   if (status != VXM_OK)
     return cli_fail(cli);
   cli_progress_clear(cli);
+  cli_warn_lattice(cli, given->output, given->format, cli_values_space(values));
   if (cli_summary(cli)) {
     cli_row(cli, "input", "%s", cli_shown(given->input, "<stdin>"));
     cli_rows_space(cli, cli_values_space(values));

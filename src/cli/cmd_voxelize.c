@@ -28,9 +28,11 @@ static vxm_grid_write_options write_options(const voxelize_request *given) {
   return options;
 }
 
-static void warn_of_model(cli_run *cli, const voxelize_request *given, const vxm_model *model) {
+static void warn_of_model(cli_run *cli, const voxelize_request *given, const voxelize_outcome *results,
+                          const vxm_model *model) {
   for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
     cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
+  cli_warn_lattice(cli, given->output, given->format, &results->space);
 }
 
 /** Written beside the grid are its confidence and coordinates: it is made as a whole. */
@@ -56,7 +58,7 @@ static int write_whole(cli_run *cli, const voxelize_request *given, voxelize_out
   vxm_grid_destroy(grid);
   if (status != VXM_OK)
     return cli_fail(cli);
-  warn_of_model(cli, given, model);
+  warn_of_model(cli, given, results, model);
   return CLI_DONE;
 }
 
@@ -81,7 +83,7 @@ static int write_sparse(cli_run *cli, const voxelize_request *given, voxelize_ou
   vxm_sparse_destroy(sparse);
   if (status != VXM_OK)
     return cli_fail(cli);
-  warn_of_model(cli, given, model);
+  warn_of_model(cli, given, results, model);
   return CLI_DONE;
 }
 
@@ -97,7 +99,7 @@ static int write_model(cli_run *cli, voxelize_request *given, voxelize_outcome *
     return cli_fail(cli);
   results->write_ms = results->voxelize.write_ms;
   results->voxelize_ms += cli_clock() - start - results->write_ms;
-  warn_of_model(cli, given, model);
+  warn_of_model(cli, given, results, model);
   return CLI_DONE;
 }
 

@@ -17,11 +17,11 @@ static const vxm_grid_format mesh_formats[] = {
 
 /** In the order in which they are named, and their content is asked. */
 static const vxm_grid_format *const formats[] = {
-    &vxm_format_binvox,    &vxm_format_npy,    &vxm_format_raw, &vxm_format_rle,    &vxm_format_nrrd,
-    &vxm_format_vdb,       &vxm_format_octree, &vxm_format_nii, &vxm_format_nii_gz, &vxm_format_vti,
-    &vxm_format_vtk,       &vxm_format_tif,    &vxm_format_h5,  &mesh_formats[0],   &vxm_format_ply,
-    &mesh_formats[1],      &mesh_formats[2],   &vxm_format_glb, &vxm_format_vox,    &vxm_format_schem,
-    &vxm_format_litematic,
+    &vxm_format_binvox, &vxm_format_npy,       &vxm_format_raw,  &vxm_format_rle, &vxm_format_nrrd,
+    &vxm_format_vdb,    &vxm_format_octree,    &vxm_format_bt,   &vxm_format_nii, &vxm_format_nii_gz,
+    &vxm_format_vti,    &vxm_format_vtk,       &vxm_format_tif,  &vxm_format_h5,  &mesh_formats[0],
+    &vxm_format_ply,    &mesh_formats[1],      &mesh_formats[2], &vxm_format_glb, &vxm_format_vox,
+    &vxm_format_schem,  &vxm_format_litematic,
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };

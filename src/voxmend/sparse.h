@@ -101,13 +101,14 @@ typedef void (*vxm_sparse_fn)(const vxm_sparse_piece *piece, void *payload);
 /** Calls for each piece, in Morton order. */
 VXM_API void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload);
 
-/** As vxm_grid_write, slice by slice, but for .vdb, whose tree is made of the octree's pieces; not as a mesh.
+/** As vxm_grid_write, slice by slice, but for .vdb and .bt, whose trees are made of the octree's pieces; not
+ * as a mesh.
  */
 VXM_API vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path,
                                     const vxm_grid_write_options *options, vxm_error *error);
 
 /**
- * Reads a file of set voxels as an octree. Memory follows the surface for .octree, and for .vdb of bits;
+ * Reads a file of set voxels as an octree. Memory follows the surface for .octree, .bt, and for .vdb of bits;
  * other formats go by way of a grid.
  *
  * @return as vxm_grid_read
