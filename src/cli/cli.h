@@ -59,10 +59,11 @@ enum {
 #define CLI_GRID_FILES                                                                    \
   "file to write: .binvox, .rle, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5,\n" \
   ".vdb, .npy or .raw (the last two with a .json beside them), .vox, .schem or\n"         \
-  ".litematic, or the grid as a mesh: .obj, .ply, .stl, .off, .glb"
+  ".litematic, a picture for each slice (slice_%04d.png, with a .json), or the grid\n"    \
+  "as a mesh: .obj, .ply, .stl, .off, .glb"
 #define CLI_GRID_FORMATS                                                                  \
   "binvox, npy, raw, rle, nrrd, vdb, octree, nii, nii.gz, vti, vtk, tif, h5, obj, ply,\n" \
-  "stl, off, glb, vox, schem or litematic [by the name of the output]"
+  "stl, off, glb, vox, schem, litematic or png [by the name of the output]"
 
 /** For the tables of commands that make voxels of the numbers in a file; cli_threshold_read takes their
  * values. */
@@ -369,7 +370,7 @@ typedef struct cli_style {
   const char *blocks;
   int up;
 } cli_style;
-#define CLI_OPTIONS_STYLE(blocks, up)                                                          \
+#define CLI_OPTIONS_STYLE(blocks, up)                                                         \
   {blocks, "blocks", "NAME[,NAME...]",                                                        \
    "of .schem and .litematic: Minecraft's block for voxels, those for labels in\n"            \
    "turn, or those that colours choose from [stone; concrete, wool and terracotta in\n"       \
