@@ -374,6 +374,16 @@ vxm_status vxm_output_commit_both(vxm_output *first, vxm_output *second, vxm_err
   return held ? vxm_file_transaction_take(context, held, error) : VXM_OK;
 }
 
+vxm_status vxm_output_keep(vxm_output *output, vxm_file_transaction_file **list, vxm_error *error) {
+  vxm_file_transaction_file *held;
+  vxm_status status = end_output(&held, output, error);
+  if (held) {
+    held->next = *list;
+    *list = held;
+  }
+  return status;
+}
+
 vxm_status vxm_output_commit(vxm_output *output, vxm_error *error) {
   return vxm_output_commit_both(output, NULL, error);
 }

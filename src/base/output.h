@@ -51,6 +51,10 @@ bool vxm_output_failed(const vxm_output *output);
 vxm_status vxm_output_commit(vxm_output *output, vxm_error *error);
 /** The same for two files, of which none appears without the other; `second` may be NULL. */
 vxm_status vxm_output_commit_both(vxm_output *first, vxm_output *second, vxm_error *error);
+struct vxm_file_transaction_file;
+/** Completes a file, and adds it to a list of files that get their names together
+ * (base/file_transaction.h). Frees the output either way. */
+vxm_status vxm_output_keep(vxm_output *output, struct vxm_file_transaction_file **list, vxm_error *error);
 /** The same for a file of the library's own, which never waits for others. */
 vxm_status vxm_output_commit_now(vxm_output *output, vxm_error *error);
 /** Drops the output: no file is left. NULL is allowed. */

@@ -409,6 +409,11 @@ const char *cli_output_format(cli_run *cli, const char *path, const char *format
     cli_usage(cli, "-o - needs --format: %s", list);
   else if (!found)
     cli_usage(cli, "the name '%s' does not tell the format; give --format: %s", path, list);
+  if (found && strcmp(found, "png") == 0 && !strchr(path, '%')) {
+    cli_usage(cli, "-o '%s': .png is a picture for each slice, whose name needs a number: slice_%%04d.png",
+              path);
+    return NULL;
+  }
   if (!found || strcmp(path, "-") != 0)
     return found;
   if (cli->json) {

@@ -21,7 +21,7 @@ static const vxm_grid_format *const formats[] = {
     &vxm_format_vdb,    &vxm_format_octree,    &vxm_format_bt,   &vxm_format_nii, &vxm_format_nii_gz,
     &vxm_format_vti,    &vxm_format_vtk,       &vxm_format_tif,  &vxm_format_h5,  &mesh_formats[0],
     &vxm_format_ply,    &mesh_formats[1],      &mesh_formats[2], &vxm_format_glb, &vxm_format_vox,
-    &vxm_format_schem,  &vxm_format_litematic,
+    &vxm_format_schem,  &vxm_format_litematic, &vxm_format_png,
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -155,6 +155,15 @@ static vxm_status find_format(const vxm_grid_format **out, const vxm_input *inpu
   return VXM_OK;
 }
 
+/** Opens a file; the slices of a sequence are opened by its reader, one by one. */
+static vxm_status open_file(vxm_input *out, vxm_context *context, const char *path, vxm_error *error) {
+  const vxm_grid_format *format = vxm_grid_format_of_path(path);
+  if (!format || !format->is_sequence)
+    return vxm_input_open(out, context, path, error);
+  *out = (vxm_input){.data = (const unsigned char *)"", .name = path, .context = context};
+  return VXM_OK;
+}
+
 /** Opens a file, finds its format, and reads bits by a rule, or else, if `field` is not NULL, numbers. */
 static vxm_status read_file(vxm_grid **grid, vxm_field **field, vxm_bits_rule rule, vxm_context *context,
                             const char *path, vxm_error *error) {
@@ -162,7 +171,7 @@ static vxm_status read_file(vxm_grid **grid, vxm_field **field, vxm_bits_rule ru
   vxm_input input;
   vxm_error local = VXM_ERROR_INIT;
   *grid = NULL;
-  vxm_status status = vxm_input_open(&input, context, path, error);
+  vxm_status status = open_file(&input, context, path, error);
   if (status != VXM_OK)
     return status;
   status = find_format(&format, &input, path, &local);
@@ -215,7 +224,7 @@ vxm_status vxm_gridio_read_sparse(vxm_sparse **out, vxm_context *context, const 
   vxm_input input;
   vxm_error local = VXM_ERROR_INIT;
   *out = NULL;
-  vxm_status status = vxm_input_open(&input, context, path, error);
+  vxm_status status = open_file(&input, context, path, error);
   if (status != VXM_OK)
     return status;
   status = find_format(&format, &input, path, &local);

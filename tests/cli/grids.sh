@@ -30,6 +30,19 @@ run 'voxmend convert t.octree -o x.npy --window 3:20,6:6,0:9'
 head -c 300 t.octree >cut.octree
 run 'voxmend convert cut.octree -o x.npy'
 
+say "# slices as pictures"
+if voxmend convert t.npy -o s%02d.png -q 2>no_png; then
+  run 'ls s??.png | wc -l && voxmend convert s%02d.png -o back.npy && cmp t.npy back.npy && cmp t.npy.json back.npy.json'
+  rm s03.png
+  run 'voxmend convert s%02d.png -o x.npy'
+  run 'voxmend convert t.npy -o x.png'
+  run 'voxmend convert d.npy -o x%d.png'
+  run 'voxmend convert no%d.png -o x.npy'
+else
+  grep -q libpng no_png
+  sed -n '/# slices as pictures/,/# compare/p' "$expected" | sed '1d;$d' >>transcript
+fi
+
 say "# compare"
 run 'voxmend voxelize in/sphere.off -o s.npy --like t.npy -q'
 run 'voxmend compare t.npy s.npy'

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/common/values_writer.h"
 #include "base/endian.h"
+#include "base/file_transaction.h"
 
 #include <string.h>
 
@@ -110,6 +111,17 @@ vxm_status vxm_values_writer_put_bytes(vxm_values_writer *w, const void *bytes, 
   return has_failed(w) ? give_up(w, error) : VXM_OK;
 }
 
+/** Gives the files of a kind their names, and the one beside them. */
+static vxm_status commit_kept(vxm_values_writer *w, vxm_error *error) {
+  vxm_status status = w->sidecar ? vxm_output_keep(w->sidecar, &w->kept, error) : VXM_OK;
+  w->sidecar = NULL;
+  if (status != VXM_OK)
+    return status;
+  vxm_file_transaction_file *list = w->kept;
+  w->kept = NULL;
+  return vxm_file_transaction_take(w->context, list, error);
+}
+
 static void close_state(vxm_values_writer *w) {
   if (w->kind && w->kind->drop)
     w->kind->drop(w);
@@ -126,7 +138,9 @@ vxm_status vxm_values_writer_commit(vxm_values_writer *w, vxm_error *error) {
   if (status == VXM_OK && text)
     status = vxm_sidecar_open(&w->sidecar, w->context, &w->space, w->path, text, w->values.about, error);
   if (status == VXM_OK) {
-    if (w->output)
+    if (w->kept)
+      status = commit_kept(w, error);
+    else if (w->output)
       status = vxm_output_commit_both(w->output, w->sidecar, error);
     else if (w->sidecar)
       status = vxm_output_commit(w->sidecar, error);
@@ -141,6 +155,7 @@ void vxm_values_writer_abort(vxm_values_writer *w) {
     return;
   vxm_output_abort(w->sidecar);
   vxm_output_abort(w->output);
+  vxm_file_transaction_drop(w->kept);
   close_state(w);
 }
 

@@ -26,6 +26,7 @@ typedef struct vxm_values_writer {
   vxm_values_spec values;
   vxm_output *output;  /**< NULL after its failure has been reported, or where the kind has its own files */
   vxm_output *sidecar; /**< NULL if there is none */
+  struct vxm_file_transaction_file *kept; /**< complete files of the kind's own, named with the sidecar */
   size_t slice_bytes;
   int64_t next; /**< slice */
   void *state;  /**< the kind's own, NULL at first */

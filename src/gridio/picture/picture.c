@@ -2,7 +2,7 @@
 /** The picture of a grid: a camera, bands of rows drawn by all threads, and PNG. */
 #include "gridio/picture/picture.h"
 #include "base/threads.h"
-#include "gridio/picture/png_write.h"
+#include "gridio/common/png_write.h"
 #include "gridio/picture/shade.h"
 #include "gridio/picture/slice.h"
 #include "gridio/picture/tiles.h"

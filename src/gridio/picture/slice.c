@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/picture/slice.h"
 #include "gridio/common/label_color.h"
+#include "gridio/common/png_write.h"
 #include "gridio/picture/palette.h"
-#include "gridio/picture/png_write.h"
 
 #include <math.h>
 #include <string.h>

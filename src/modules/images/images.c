@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The module voxmend-images.so: textures of meshes through libpng and libjpeg. */
+/** The module voxmend-images.so: textures of meshes, and slices of grids, through libpng and libjpeg. */
 #include "modules/images/images.h"
 
 #include <inttypes.h>
@@ -44,8 +44,10 @@ static const char *kind_of(const vxm_picture_file *file) {
   return "unknown";
 }
 
-static vxm_status decode(vxm_image *image, vxm_context *context, const vxm_picture_file *file,
+static vxm_status decode(vxm_image *image, vxm_context *context, const vxm_picture_file *file, bool is_slice,
                          vxm_error *error) {
+  if (is_slice)
+    return vxm_picture_read_slice(image, context, file, error);
   if (vxm_picture_is_png(file))
     return vxm_picture_read_png(image, context, file, error);
   if (vxm_picture_is_jpeg(file))
@@ -59,7 +61,10 @@ static vxm_status read_image(vxm_soup *soup, const vxm_reader_request *request, 
   if (!soup->appearance)
     return vxm_fail(error, VXM_ERROR_FORMAT, "a picture is no mesh");
   vxm_status status = vxm_appearance_image(soup->appearance, "", 0, &index, error);
-  return status == VXM_OK ? decode(&soup->appearance->images[index], soup->context, &file, error) : status;
+  if (status != VXM_OK)
+    return status;
+  return decode(&soup->appearance->images[index], soup->context, &file, strcmp(request->hint, "slice") == 0,
+                error);
 }
 
 static void prepare(void) {

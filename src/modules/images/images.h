@@ -24,6 +24,10 @@ bool vxm_picture_is_jpeg(const vxm_picture_file *file);
  * this build lacks the library; as vxm_picture_begin */
 vxm_status vxm_picture_read_png(vxm_image *image, vxm_context *context, const vxm_picture_file *file,
                                 vxm_error *error);
+/* The numbers of a slice, as they stand in the file: grey as two bytes, the low one first, and two of 0;
+ * colours as RGBA. */
+vxm_status vxm_picture_read_slice(vxm_image *image, vxm_context *context, const vxm_picture_file *file,
+                                  vxm_error *error);
 vxm_status vxm_picture_read_jpeg(vxm_image *image, vxm_context *context, const vxm_picture_file *file,
                                  vxm_error *error);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "config.h"
 
-#include "gridio/picture/png_write.h"
+#include "gridio/common/png_write.h"
 
 #ifdef HAVE_PNG
 
@@ -63,21 +63,29 @@ vxm_status vxm_png_check(vxm_error *error) {
   return VXM_OK;
 }
 
-static vxm_status begin(vxm_png *png, int width, int height, vxm_error *error) {
+static int color_type(vxm_png_pixels pixels) {
+  return pixels.channels == 1   ? PNG_COLOR_TYPE_GRAY
+         : pixels.channels == 3 ? PNG_COLOR_TYPE_RGB
+                                : PNG_COLOR_TYPE_RGB_ALPHA;
+}
+
+/** Grey is numbers, and no light of any kind. */
+static vxm_status begin(vxm_png *png, int width, int height, vxm_png_pixels pixels, vxm_error *error) {
   if (setjmp(png_jmpbuf(png->writer)))
     return fail(png, error);
   png_set_write_fn(png->writer, png, on_write, on_flush);
-  png_set_IHDR(png->writer, png->info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB,
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png->writer, png->info, (png_uint_32)width, (png_uint_32)height, pixels.bits,
+               color_type(pixels), PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   /* Above this level drawing would wait for zlib, for a few hundredths of the size. */
   png_set_compression_level(png->writer, 4);
-  png_set_sRGB(png->writer, png->info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (pixels.channels > 1)
+    png_set_sRGB(png->writer, png->info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_write_info(png->writer, png->info);
   return VXM_OK;
 }
 
-vxm_status vxm_png_create(vxm_png **out, vxm_context *context, vxm_output *output, int width, int height,
-                          vxm_error *error) {
+vxm_status vxm_png_create_of(vxm_png **out, vxm_context *context, vxm_output *output, int width, int height,
+                             vxm_png_pixels pixels, vxm_error *error) {
   *out = NULL;
   vxm_error local = VXM_ERROR_INIT;
   vxm_png *png = vxm_calloc(context, 1, sizeof *png, &local);
@@ -87,12 +95,12 @@ vxm_status vxm_png_create(vxm_png **out, vxm_context *context, vxm_output *outpu
   }
   png->context = context;
   png->output = output;
-  png->row_bytes = 3 * (size_t)width;
+  png->row_bytes = (size_t)(pixels.channels * pixels.bits / 8) * (size_t)width;
   png->writer =
       png_create_write_struct_2(PNG_LIBPNG_VER_STRING, png, on_error, on_warning, png, on_allocate, on_free);
   if (png->writer)
     png->info = png_create_info_struct(png->writer);
-  vxm_status status = png->info ? begin(png, width, height, error) : fail(png, error);
+  vxm_status status = png->info ? begin(png, width, height, pixels, error) : fail(png, error);
   if (status != VXM_OK) {
     vxm_png_destroy(png);
     return status;
@@ -131,9 +139,9 @@ vxm_status vxm_png_check(vxm_error *error) {
                   "pictures need libpng, which this build lacks; configure voxmend with --with-png");
 }
 
-vxm_status vxm_png_create(vxm_png **out, vxm_context *context, vxm_output *output, int width, int height,
-                          vxm_error *error) {
-  (void)context, (void)output, (void)width, (void)height;
+vxm_status vxm_png_create_of(vxm_png **out, vxm_context *context, vxm_output *output, int width, int height,
+                             vxm_png_pixels pixels, vxm_error *error) {
+  (void)context, (void)output, (void)width, (void)height, (void)pixels;
   *out = NULL;
   return vxm_png_check(error);
 }
@@ -153,3 +161,8 @@ void vxm_png_destroy(vxm_png *png) {
 }
 
 #endif
+
+vxm_status vxm_png_create(vxm_png **out, vxm_context *context, vxm_output *output, int width, int height,
+                          vxm_error *error) {
+  return vxm_png_create_of(out, context, output, width, height, (vxm_png_pixels){3, 8}, error);
+}
