@@ -148,10 +148,12 @@ def _of_polygons(source: Any) -> Mesh:
     flat = numpy.asarray(source.faces)
     if flat.ndim != 1:
         return Mesh(source.points, source.faces)
-    if len(flat) and len(flat) % (int(flat[0]) + 1) == 0 and (flat[::int(flat[0]) + 1] == flat[0]).all():
+    if len(flat) and int(flat[0]) > 0 and len(flat) % (int(flat[0]) + 1) == 0 and (flat[::int(flat[0]) + 1] == flat[0]).all():
         return Mesh(source.points, flat.reshape(-1, int(flat[0]) + 1)[:, 1:])
     faces, at = [], 0
     while at < len(flat):
+        if int(flat[at]) < 0:
+            raise ArgumentError("faces: %d corners of a face" % int(flat[at]))
         faces.append(flat[at + 1:at + 1 + int(flat[at])])
         at += 1 + int(flat[at])
     return Mesh(source.points, faces)

@@ -12,6 +12,7 @@ from typing import Any, Optional
 
 from . import _core, _values
 from ._core import ffi, lib
+from ._errors import RangeError
 
 # Notebooks keep what they show.
 _NOTEBOOK_MOST = 8 << 20
@@ -42,7 +43,10 @@ class Shown:
     def _repr_html_(self) -> str:
         with tempfile.TemporaryDirectory(prefix="voxmend-") as folder:
             path = os.path.join(folder, "page.html")
-            self.save_page(path, type(self).__name__)
+            try:
+                self.save_page(path, type(self).__name__)
+            except RangeError:
+                return "<pre>%s: too large for a page</pre>" % html.escape(repr(self))
             if os.path.getsize(path) > _NOTEBOOK_MOST:
                 return "<pre>%s: too large for a notebook; save_page(path) writes a page</pre>" % html.escape(repr(self))
             with open(path, encoding="utf-8") as file:

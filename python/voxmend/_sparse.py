@@ -48,6 +48,15 @@ class SparseGrid(Placed):
         """The same voxels as a dense grid has."""
         return cls(grid)
 
+    @classmethod
+    def read(cls, path: Path) -> "SparseGrid":
+        """Reads a file of set voxels: memory follows the surface for .octree, .vdb and .bt; others go by way of a grid."""
+        pointer = _core.create("vxm_sparse", lib.vxm_sparse_read, _core.context(), _values.path(path), path=path,
+                               destroy=lib.vxm_sparse_destroy)
+        texts = [_core.text(lib.vxm_sparse_warning(pointer, i)) for i in range(lib.vxm_sparse_warning_count(pointer))]
+        _core.warn(texts)
+        return cls._of(pointer, None, texts)
+
     def to_grid(self) -> VoxelGrid:
         """All of it as a dense grid: one bit for each voxel."""
         return VoxelGrid._of(_core.create("vxm_grid", lib.vxm_sparse_to_grid, self._pointer, destroy=lib.vxm_grid_destroy))
@@ -173,7 +182,8 @@ class SparseGrid(Placed):
     # ---- Files ----
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
-        """Writes .binvox, .npy, .raw, .rle, .nrrd or .vdb, a few slices at a time."""
+        """Writes .octree, .vdb or .bt as they are, and .binvox, .npy, .raw, .rle, .nrrd, .nii, .vti, .vtk or .tif a few slices at
+        a time."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
         options.format = name

@@ -82,8 +82,9 @@ int cli_field_check(cli_run *cli, const cli_field *field, vxm_mode mode, bool is
     return CLI_END;
   if (is_sure)
     return cli_usage(cli, "--confidence is of a grid; leave it out with --%s", name);
-  if (is_tried && field->labels)
-    return cli_usage(cli, "--dry-run tells nothing of labels; leave it out with --labels");
+  if (is_tried && (field->labels || field->color))
+    return cli_usage(cli, "--dry-run tells nothing of %s; leave it out with --%s",
+                     field->labels ? "labels" : "colours", name);
   if (field->distance && mode != VXM_MODE_SOLID)
     return cli_usage(cli, "--distance goes with --mode solid, which gives the sign");
   return CLI_END;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/appearance.h"
+#include "base/hash.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,6 +27,8 @@ void vxm_appearance_destroy(vxm_appearance *look) {
   vxm_free(context, look->faces.rgb);
   vxm_free(context, look->images);
   vxm_free(context, look->materials);
+  vxm_free(context, look->material_names.slots);
+  vxm_free(context, look->image_names.slots);
   vxm_free(context, look->face_materials);
   vxm_free(context, look->corner_uvs);
   vxm_free(context, look->face_colors);
@@ -112,6 +115,54 @@ static void take_name(char out[VXM_LOOK_NAME], const char *name, size_t length) 
   out[kept] = '\0';
 }
 
+/** Names in a list of structs. */
+typedef struct name_list {
+  const void *first; /**< name of the first struct */
+  size_t stride;
+} name_list;
+
+static name_list materials_of(const vxm_appearance *look) {
+  return (name_list){look->materials ? look->materials->name : NULL, sizeof *look->materials};
+}
+
+static name_list images_of(const vxm_appearance *look) {
+  return (name_list){look->images ? look->images->name : NULL, sizeof *look->images};
+}
+
+static const char *name_at(name_list list, size_t number) {
+  return (const char *)list.first + number * list.stride;
+}
+
+/** The slot of a name, or the free one where it belongs. */
+static uint32_t *find_slot(const vxm_name_index *index, name_list list, const char *name) {
+  uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a, mixed */
+  for (const char *c = name; *c; c++)
+    hash = (hash ^ (unsigned char)*c) * UINT64_C(1099511628211);
+  size_t mask = index->capacity - 1, at = (size_t)vxm_mix(hash) & mask;
+  while (index->slots[at] && strcmp(name_at(list, index->slots[at] - 1), name) != 0)
+    at = (at + 1) & mask;
+  return &index->slots[at];
+}
+
+/** Makes room for one more, so that a quarter stays free at least. */
+static vxm_status widen(vxm_name_index *index, vxm_context *context, name_list list, vxm_error *error) {
+  if (4 * (index->count + 1) <= 3 * index->capacity)
+    return VXM_OK;
+  vxm_name_index wider = {.capacity = index->capacity ? 2 * index->capacity : 64, .count = index->count};
+  vxm_error local = VXM_ERROR_INIT;
+  wider.slots = vxm_calloc(context, wider.capacity, sizeof *wider.slots, &local);
+  if (!wider.slots) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  for (size_t s = 0; s < index->capacity; s++)
+    if (index->slots[s])
+      *find_slot(&wider, list, name_at(list, index->slots[s] - 1)) = index->slots[s];
+  vxm_free(context, index->slots);
+  *index = wider;
+  return VXM_OK;
+}
+
 vxm_status vxm_appearance_add_material(vxm_appearance *look, const char *name, size_t length,
                                        uint32_t *material, vxm_error *error) {
   vxm_status status = vxm_grow(look->context, (void **)&look->materials, &look->material_capacity,
@@ -129,28 +180,52 @@ vxm_status vxm_appearance_material(vxm_appearance *look, const char *name, size_
                                    vxm_error *error) {
   char cut[VXM_LOOK_NAME];
   take_name(cut, name, length);
-  for (size_t m = look->material_count; m-- > 0;) /* the last ones are asked for most */
-    if (strcmp(look->materials[m].name, cut) == 0) {
-      *material = (uint32_t)m;
-      return VXM_OK;
-    }
-  return vxm_appearance_add_material(look, name, length, material, error);
+  vxm_name_index *index = &look->material_names;
+  vxm_status status = widen(index, look->context, materials_of(look), error);
+  uint32_t *slot = status == VXM_OK ? find_slot(index, materials_of(look), cut) : NULL;
+  if (!slot || *slot) {
+    *material = slot ? *slot - 1 : 0;
+    return status;
+  }
+  status = vxm_appearance_add_material(look, name, length, material, error);
+  if (status == VXM_OK) {
+    *slot = *material + 1;
+    index->count++;
+  }
+  return status;
+}
+
+bool vxm_appearance_find_material(const vxm_appearance *look, const char *name, size_t length,
+                                  uint32_t *material) {
+  char cut[VXM_LOOK_NAME];
+  take_name(cut, name, length);
+  if (look->material_names.capacity == 0)
+    return false;
+  const uint32_t *slot = find_slot(&look->material_names, materials_of(look), cut);
+  *material = *slot - 1;
+  return *slot != 0;
 }
 
 vxm_status vxm_appearance_image(vxm_appearance *look, const char *name, size_t length, uint32_t *image,
                                 vxm_error *error) {
   char cut[VXM_LOOK_NAME];
   take_name(cut, name, length);
-  for (size_t i = 0; i < look->image_count; i++)
-    if (strcmp(look->images[i].name, cut) == 0) {
-      *image = (uint32_t)i;
-      return VXM_OK;
-    }
-  vxm_status status = vxm_grow(look->context, (void **)&look->images, &look->image_capacity,
-                               look->image_count + 1, sizeof *look->images, error);
+  vxm_name_index *index = &look->image_names;
+  vxm_status status = widen(index, look->context, images_of(look), error);
+  if (status != VXM_OK)
+    return status;
+  uint32_t *slot = find_slot(index, images_of(look), cut);
+  if (*slot) {
+    *image = *slot - 1;
+    return VXM_OK;
+  }
+  status = vxm_grow(look->context, (void **)&look->images, &look->image_capacity, look->image_count + 1,
+                    sizeof *look->images, error);
   if (status != VXM_OK)
     return status;
   *image = (uint32_t)look->image_count++;
+  *slot = *image + 1;
+  index->count++;
   memset(&look->images[*image], 0, sizeof *look->images);
   memcpy(look->images[*image].name, cut, sizeof cut);
   return VXM_OK;

@@ -38,6 +38,13 @@ typedef struct vxm_material {
   char name[VXM_LOOK_NAME];
 } vxm_material;
 
+/** Where names stand in a list: a hash table of their numbers. */
+typedef struct vxm_name_index {
+  uint32_t *slots; /**< number + 1; 0 = free */
+  size_t capacity; /**< a power of two, or 0 */
+  size_t count;
+} vxm_name_index;
+
 /** Colours on their way from a file. */
 typedef struct vxm_gathered {
   float (*rgb)[3]; /**< NaN where there is none */
@@ -65,6 +72,7 @@ typedef struct vxm_appearance {
   char *libraries;                        /**< names of .mtl files, a line each */
   char library_failure[VXM_LOOK_FAILURE]; /**< why the first that was not opened was not; or "" */
   size_t library_bytes, library_capacity, material_capacity, image_capacity, face_material_capacity;
+  vxm_name_index material_names, image_names;
 } vxm_appearance;
 
 vxm_status vxm_appearance_create(vxm_appearance **out, vxm_context *context, vxm_error *error);
@@ -81,6 +89,9 @@ vxm_status vxm_appearance_settle(vxm_appearance *look, size_t vertices, size_t f
 /** Adds a material without colour and texture, or finds it by its name, which is cut if it is long. */
 vxm_status vxm_appearance_material(vxm_appearance *look, const char *name, size_t length, uint32_t *material,
                                    vxm_error *error);
+/** Finds a material that was added by its name. */
+bool vxm_appearance_find_material(const vxm_appearance *look, const char *name, size_t length,
+                                  uint32_t *material);
 /** Adds a material, whatever its name. */
 vxm_status vxm_appearance_add_material(vxm_appearance *look, const char *name, size_t length,
                                        uint32_t *material, vxm_error *error);

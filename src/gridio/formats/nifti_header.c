@@ -237,7 +237,7 @@ static vxm_status read_place(const reading *r, const int64_t dims[3], vxm_error 
     raster->axis[j] = axis;
     raster->is_flipped[j] = m[axis][j] < 0;
     double size = fabs(m[axis][j]),
-           low = raster->is_flipped[j] ? m[axis][3] - size * (double)(dims[j] - 1) : m[axis][3];
+           low = raster->is_flipped[j] ? m[axis][3] - size * ((double)dims[j] - 1) : m[axis][3];
     raster->space.dims[axis] = dims[j];
     raster->space.voxel_size[axis] = size;
     raster->space.origin[axis] = low - size / 2;

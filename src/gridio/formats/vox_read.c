@@ -10,7 +10,7 @@
 #include <string.h>
 
 /** Voxels of a box: models far apart ask for more than their bytes are worth. */
-static const uint64_t voxels_most = UINT64_C(1) << 33;
+static const uint64_t voxels_most = UINT64_C(1) << 30;
 
 typedef struct loaded {
   vxm_vox_file file;
@@ -82,7 +82,7 @@ static vxm_status find_space(loaded *l, const vxm_input *input, vxm_error *error
   vxm_status status = vxm_space_check_file(&l->space, input, 0, error);
   if (status == VXM_OK && vxm_space_voxels(&l->space) > voxels_most)
     status = vxm_fail_at(error, VXM_ERROR_RANGE, (vxm_place){input->name, 0, -1, -1},
-                         "the models stand so far apart that a grid of all has more than 2^33 voxels");
+                         "the models stand so far apart that a grid of all has more than 2^30 voxels");
   return status;
 }
 

@@ -39,8 +39,12 @@ static vxm_status check(const vxm_space *space, const vxm_field *field, const vx
   size_t bytes = !field ? 1 : field->channels == 4 ? 4 : 2;
   if (options->up < 0 || options->up > 3)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "page: up axis %d; choose 1 (x), 2 (y) or 3 (z)", options->up);
-  if (n[0] > SIDE_MAX || n[1] > SIDE_MAX || n[2] > SIDE_MAX ||
-      (uint64_t)(n[0] * n[1] * n[2]) > TEXTURE_MAX / bytes)
+  if (n[0] > SIDE_MAX || n[1] > SIDE_MAX || n[2] > SIDE_MAX)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "page: a browser takes up to %d voxels along an axis, not %" PRId64 " x %" PRId64
+                    " x %" PRId64,
+                    SIDE_MAX, n[0], n[1], n[2]);
+  if ((uint64_t)(n[0] * n[1] * n[2]) > TEXTURE_MAX / bytes)
     return vxm_fail(
         error, VXM_ERROR_RANGE,
         "page: %" PRId64 " x %" PRId64 " x %" PRId64

@@ -227,6 +227,8 @@ static vxm_status put_numbers(vxm_page *page, const rows *r, vxm_field_kind kind
                               vxm_error *error) {
   double largest = find_largest(r);
   double low = fmax(range->min, -largest), high = fmin(range->max, largest);
+  if (!(low <= high)) /* no number is finite */
+    low = high = 0;
   const char *name = kind == VXM_FIELD_NUMBERS ? "numbers" : vxm_field_kind_name(kind);
   json_object_set_new(page->about, "kind", json_string(name));
   json_object_set_new(page->about, "scale", json_real(largest));

@@ -60,16 +60,12 @@ static size_t rest(mtl_reader *reader) {
 static void begin_material(mtl_reader *reader) {
   size_t length = rest(reader);
   reader->material = NULL;
-  for (size_t m = 0; m < reader->look->material_count && !reader->material; m++) {
-    vxm_material *material = &reader->look->materials[m];
-    size_t known = strlen(material->name);
-    bool is_same = memcmp(material->name, reader->at, known < length ? known : length) == 0 &&
-                   (known == length || (known == VXM_LOOK_NAME - 1 && length > known));
-    if (is_same && !reader->is_described[m]) {
-      reader->is_described[m] = true;
-      reader->material = material;
-    }
-  }
+  uint32_t m;
+  if (!vxm_appearance_find_material(reader->look, (const char *)reader->at, length, &m) ||
+      reader->is_described[m])
+    return;
+  reader->is_described[m] = true;
+  reader->material = &reader->look->materials[m];
 }
 
 /** Kd r g b, of which the latter two may be left out; other forms (spectral, xyz) give no colour. */
