@@ -214,7 +214,7 @@ act open.html <<'END'
   note("triangles", view.overlay.mesh.elements / 3);
   for (const box of document.querySelectorAll("#controls label input")) box.click();
   view.draw(1);
-  note("layers", view.overlay.layers.every((layer) => layer.on !== (layer.bit === -2 && layer.what !== "inconsistent_edge")));
+  note("layers", view.overlay.layers.every((layer) => layer.on !== (layer.what === "boundary_edge")));
 END
 for what in "triangles: 13" "open edges: 5" "repeated faces: 1" "open parts: 13" "layers: true"; do expect "$what"; done
 grep -q "RESULT added by repair: " results || fail "nothing is added by repair"
