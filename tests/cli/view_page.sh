@@ -226,5 +226,5 @@ while [ "$i" -lt 8 ]; do printf '\000\377' && i=$((i + 1)); done >>long.binvox
 printf '\001\011' >>long.binvox
 voxmend view long.binvox -o long.html 2>err && fail "a page of 2049 voxels along a side"
 cat err
-[ "$(grep -c 'too many for a browser' err)" = 1 ] || fail "no line that tells why"
+[ "$(grep -c 'up to 2048 voxels along an axis' err)" = 1 ] || fail "no line that tells why"
 [ ! -e long.html ] || fail "a page was left"
