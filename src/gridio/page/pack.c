@@ -115,7 +115,9 @@ static vxm_status open_stream(vxm_pack *pack) {
 /** A block as it is (RFC 1951, 3.2.4). */
 static void store(vxm_pack *pack, bool is_last) {
   unsigned count = (unsigned)pack->stored_count;
-  const unsigned char header[5] = {is_last, count & 255, count >> 8, ~count & 255, ~count >> 8 & 255};
+  unsigned char low = (unsigned char)(count & 255), high = (unsigned char)(count >> 8 & 255);
+  const unsigned char header[5] = {is_last, low, high, (unsigned char)(low ^ 255),
+                                   (unsigned char)(high ^ 255)};
   put_base64(pack, header, sizeof header);
   put_base64(pack, pack->stored, count);
   pack->stored_count = 0;
@@ -133,8 +135,9 @@ static void put_stream(vxm_pack *pack, const unsigned char *bytes, size_t size) 
 
 static void close_stream(vxm_pack *pack) {
   store(pack, true);
-  const unsigned char sum[4] = {pack->sums[1] >> 8, pack->sums[1] & 255, pack->sums[0] >> 8,
-                                pack->sums[0] & 255};
+  unsigned char sum[4];
+  for (int b = 0; b < 4; b++) /* the second sum first, high bytes before low ones */
+    sum[b] = (unsigned char)(pack->sums[b < 2] >> (b % 2 ? 0 : 8) & 255);
   put_base64(pack, sum, sizeof sum);
 }
 
