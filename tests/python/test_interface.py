@@ -499,7 +499,7 @@ class Progress(unittest.TestCase):
 
     def test_timeout(self):
         for call in (lambda: voxmend.distance(sample("rocket"), 400, band=0, timeout=0.2),
-                     lambda: voxmend.voxelize(sample("rocket"), 900, method="winding", timeout=0.2),
+                     lambda: voxmend.voxelize(sample("rocket"), 900, method="winding", timeout=0.001),
                      lambda: voxmend.voxelize(sample("cube"), 8, timeout=0)):
             start = time.monotonic()
             with self.assertRaises(voxmend.VoxmendTimeout) as caught:
