@@ -99,8 +99,8 @@ static void test_fields_come_back(void **state) {
                {VXM_FIELD_NUMBERS, VXM_UINT16}, {VXM_FIELD_NUMBERS, VXM_UINT8}};
   for (size_t c = 0; c < sizeof cases / sizeof *cases && has_png(); c++) {
     vxm_context *context = context_with(2, 0, NULL, NULL);
-    vxm_field *back, *field = new_field(context, cases[c].kind, cases[c].scalar, 4);
-    vxm_grid *grid;
+    vxm_field *back = NULL, *field = new_field(context, cases[c].kind, cases[c].scalar, 4);
+    vxm_grid *grid = NULL;
     vxm_error error = VXM_ERROR_INIT;
     if (cases[c].kind == VXM_FIELD_LABELS)
       assert_true(vxm_label_table_add(&field->about.table, context, "wing", 3));

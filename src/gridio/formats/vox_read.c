@@ -229,7 +229,7 @@ static void count_labels(values *v) {
 
 /** The names that voxmend wrote, from 1 on. */
 static void find_names(vxm_about *about, const loaded *l, const values *v) {
-  char key[sizeof VXM_VOX_LABEL_KEY + 8], name[512];
+  char key[sizeof VXM_VOX_LABEL_KEY + 12], name[512];
   for (int label = 1; label <= VXM_VOX_COLORS && !about->starved; label++) {
     snprintf(key, sizeof key, VXM_VOX_LABEL_KEY "%d", label);
     if (!find_attribute(name, sizeof name, l, key))
