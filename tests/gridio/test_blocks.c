@@ -328,7 +328,7 @@ static void test_all_turns(void **state) {
     }
   for (int turn = 0; turn < 128; turn++) {
     int of[3] = {turn & 3, turn >> 2 & 3, 0}, sign[3];
-    char text[8];
+    char text[16];
     bytes b = {.size = 0};
     vxm_grid *grid;
     snprintf(text, sizeof text, "%d", turn);
