@@ -170,8 +170,9 @@ static void damage(vxm_context *context, const unsigned char *data, size_t size,
     memcpy(copy, data, size);
     for (uint64_t times = 1 + vxm_rng_below(rng, 3); times > 0; times--) {
       size_t at = vxm_rng_below(rng, round % 2 || size < 200 ? size : 200);
-      copy[at] = vxm_rng_below(rng, 2) ? (unsigned char)(copy[at] ^ 1 << vxm_rng_below(rng, 8))
-                                       : (unsigned char)vxm_rng_below(rng, 256);
+      uint64_t change =
+          vxm_rng_below(rng, 2) ? UINT64_C(1) << vxm_rng_below(rng, 8) : vxm_rng_below(rng, 256);
+      copy[at] = (unsigned char)(copy[at] ^ change);
     }
     size_t length = round % 5 == 0 ? vxm_rng_below(rng, size) : size;
     vxm_status status = read_bytes(&sparse, context, copy, length, &error);
