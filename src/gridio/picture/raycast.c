@@ -91,7 +91,7 @@ static bool search_block(vxm_hit *hit, const ray *r, uint64_t voxels) {
     t = next[axis] > t ? next[axis] : t;
     next[axis] += r->step[axis];
     at[axis] += r->sign[axis];
-    index += r->sign[axis] << 2 * axis;
+    index += r->sign[axis] * (1 << 2 * axis);
     if ((at[axis] & ~3) != 0)
       break;
   }
