@@ -99,22 +99,43 @@ void vxm_deflater_destroy(vxm_deflater *d) {
 struct vxm_inflater {
   z_stream z;
   const vxm_input *input;
+  vxm_error fault; /**< of memory that zlib asked for in vain */
 };
+
+static void *take_noting(void *payload, unsigned count, unsigned size) {
+  vxm_inflater *i = payload;
+  return vxm_alloc(i->input->context, count, size, &i->fault);
+}
+
+static void give_noted(void *payload, void *block) {
+  const vxm_inflater *i = payload;
+  vxm_free(i->input->context, block);
+}
+
+static vxm_status fail_memory(vxm_inflater *i, vxm_error *error) {
+  if (i->fault.code == VXM_OK)
+    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+  vxm_error_pass(error, &i->fault);
+  return i->fault.code;
+}
 
 vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_t offset, vxm_error *error) {
   enum { ANY_HEADER = 32 /* gzip's or zlib's own */ };
   *out = NULL;
-  vxm_inflater *i = vxm_calloc(input->context, 1, sizeof *i, error);
-  if (!i)
-    return VXM_ERROR_MEMORY;
-  i->input = input;
-  i->z.zalloc = take;
-  i->z.zfree = give;
-  i->z.opaque = input->context;
-  i->z.next_in = input->data + offset;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_inflater *i = vxm_calloc(input->context, 1, sizeof *i, &local);
+  if (!i) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
+  *i = (vxm_inflater){.z = {.zalloc = take_noting, .zfree = give_noted, .next_in = input->data + offset},
+                      .input = input,
+                      .fault = VXM_ERROR_INIT};
+  i->z.opaque = i;
   if (inflateInit2(&i->z, ANY_HEADER + MAX_WBITS) != Z_OK) {
+    vxm_status status = fail_memory(i, error);
     vxm_free(input->context, i);
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+    return status;
   }
   *out = i;
   return VXM_OK;
@@ -133,12 +154,12 @@ vxm_status vxm_inflater_read(vxm_inflater *i, void *to, size_t size, vxm_error *
     size -= room - z->avail_out;
     const vxm_place place = {input->name, 0, (int64_t)(z->next_in - input->data), -1};
     if (result == Z_MEM_ERROR)
-      return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+      return fail_memory(i, error);
     if (size > 0 && (result == Z_STREAM_END || result == Z_BUF_ERROR))
       return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "the compressed values end too early");
     if (result != Z_OK && result != Z_STREAM_END)
       return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "the compressed values are damaged: %s",
-                         z->msg ? z->msg : "not those of zlib");
+                         z->msg ? z->msg : "not those of gzip or zlib");
   }
   return VXM_OK;
 }

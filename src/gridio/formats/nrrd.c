@@ -3,26 +3,21 @@
 #include "base/endian.h"
 #include "config.h"
 #include "gridio/common/byte_rows.h"
+#include "gridio/common/deflate.h"
 #include "gridio/common/scalar_type.h"
 #include "gridio/common/values_writer.h"
 #include "gridio/formats/nrrd_header.h"
 
 #include <inttypes.h>
 #include <string.h>
-#ifdef HAVE_ZLIB
-#define ZLIB_CONST
-#include <zlib.h>
-#endif
 
 /* ---- Reading ---- */
 
 static vxm_status check_length(const vxm_nrrd_header *h, const vxm_input *input, vxm_warnings *warnings,
                                vxm_error *error) {
-  /* Deflate makes at most 1032 bytes of one. */
-  enum { LARGEST_RATIO = 1032 };
   size_t size = h->size * (size_t)h->channels;
   uint64_t voxels = vxm_space_voxels(&h->space), there = input->size - h->data;
-  if (h->gzip && voxels * size / LARGEST_RATIO <= there)
+  if (h->gzip && voxels * size / VXM_INFLATE_RATIO_MAX <= there)
     return VXM_OK;
   if (h->gzip || there / size < voxels)
     return vxm_fail_byte(error, input, input->size,
@@ -43,46 +38,6 @@ typedef struct rows_to {
 } rows_to;
 
 #ifdef HAVE_ZLIB
-/** zlib at work, with memory of the context. */
-typedef struct unpacking {
-  z_stream z;
-  const vxm_input *input;
-  vxm_error error;
-} unpacking;
-
-static void *take(void *payload, unsigned count, unsigned size) {
-  unpacking *u = payload;
-  return vxm_alloc(u->input->context, count, size, &u->error);
-}
-
-static void give(void *payload, void *block) {
-  const unpacking *u = payload;
-  vxm_free(u->input->context, block);
-}
-
-/** Fills `size` bytes; the compressed values may end behind them, not before. */
-static vxm_status unpack_bytes(unpacking *u, unsigned char *to, size_t size) {
-  const size_t piece = (size_t)1 << 30; /* zlib counts in 32 bits */
-  z_stream *z = &u->z;
-  z->next_out = to;
-  while (size > 0) {
-    size_t left = u->input->size - (size_t)(z->next_in - u->input->data), room = size < piece ? size : piece;
-    z->avail_in = (unsigned)(left < piece ? left : piece);
-    z->avail_out = (unsigned)room;
-    int result = inflate(z, Z_NO_FLUSH);
-    size -= room - z->avail_out;
-    size_t at = (size_t)(z->next_in - u->input->data);
-    if (result == Z_MEM_ERROR)
-      return u->error.code;
-    if (size > 0 && (result == Z_STREAM_END || result == Z_BUF_ERROR))
-      return vxm_fail_byte(&u->error, u->input, at, "the compressed values end too early");
-    if (result != Z_OK && result != Z_STREAM_END)
-      return vxm_fail_byte(&u->error, u->input, at, "the compressed values are damaged: %s",
-                           z->msg ? z->msg : "not those of gzip");
-  }
-  return VXM_OK;
-}
-
 /** Rows that are unpacked together: up to 4 MiB, but at least one; of fields, whole slices. */
 static size_t rows_at_once(const vxm_space *space, bool is_field, size_t row_bytes) {
   enum { CHUNK = 1 << 22 };
@@ -101,41 +56,35 @@ static void put_rows(const rows_to *to, size_t row, size_t rows, const unsigned 
                        to->is_swapped);
 }
 
-static vxm_status unpack_rows(unpacking *u, const rows_to *to, const vxm_nrrd_header *h) {
-  vxm_context *context = u->input->context;
+static vxm_status unpack_rows(vxm_inflater *inflater, const rows_to *to, const vxm_nrrd_header *h,
+                              vxm_context *context, vxm_error *error) {
   size_t row_bytes = (size_t)h->space.dims[0] * h->size * (size_t)h->channels,
          all = (size_t)h->space.dims[1] * (size_t)h->space.dims[2],
          most = rows_at_once(&h->space, !to->grid, row_bytes);
-  unsigned char *bytes = vxm_alloc(context, most, row_bytes, &u->error);
-  vxm_status status = u->error.code;
+  vxm_error local = VXM_ERROR_INIT;
+  unsigned char *bytes = vxm_alloc(context, most, row_bytes, &local);
+  vxm_status status = local.code;
   for (size_t row = 0; row < all && status == VXM_OK; row += most) {
     size_t rows = all - row < most ? all - row : most;
-    status = unpack_bytes(u, bytes, rows * row_bytes);
+    status = vxm_inflater_read(inflater, bytes, rows * row_bytes, &local);
     if (status != VXM_OK)
       break;
     put_rows(to, row, rows, bytes);
-    status = vxm_progress(context, "reading", (double)(row + rows) / (double)all, &u->error);
+    status = vxm_progress(context, "reading", (double)(row + rows) / (double)all, &local);
   }
   vxm_free(context, bytes);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
 static vxm_status read_gzip(const rows_to *to, const vxm_nrrd_header *h, const vxm_input *input,
                             vxm_error *error) {
-  enum { ANY_HEADER = 32 /* gzip's or zlib's own */ };
-  unpacking u = {.z = {.zalloc = take, .zfree = give, .next_in = input->data + h->data},
-                 .input = input,
-                 .error = VXM_ERROR_INIT};
-  u.z.opaque = &u;
-  vxm_status status = VXM_OK;
-  if (inflateInit2(&u.z, ANY_HEADER + MAX_WBITS) != Z_OK)
-    status = u.error.code != VXM_OK ? u.error.code : vxm_fail(&u.error, VXM_ERROR_MEMORY, "out of memory");
-  if (status == VXM_OK) {
-    status = unpack_rows(&u, to, h);
-    inflateEnd(&u.z);
-  }
-  if (status != VXM_OK)
-    vxm_error_pass(error, &u.error);
+  vxm_inflater *inflater;
+  vxm_status status = vxm_inflater_create(&inflater, input, h->data, error);
+  if (status == VXM_OK)
+    status = unpack_rows(inflater, to, h, input->context, error);
+  vxm_inflater_destroy(inflater);
   return status;
 }
 #else
