@@ -64,7 +64,8 @@ enum {
   VXM_HOLDS_BITS = VXM_FORMAT_BITS,
   VXM_HOLDS_NUMBERS = VXM_FORMAT_NUMBERS, /**< any field of one number per voxel that is not labels */
   VXM_HOLDS_LABELS = VXM_FORMAT_LABELS,
-  VXM_HOLDS_COLORS = VXM_FORMAT_COLORS
+  VXM_HOLDS_COLORS = VXM_FORMAT_COLORS,
+  VXM_HOLDS_ALL = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS
 };
 
 /** A row of the table: all that is known of a format. What is NULL it cannot do, unless more is said. */

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+const vxm_sidecar_text vxm_sidecar_labels = {"voxmend labels", "x fastest, then y, then z", NULL};
+
 /* A description has some 300 bytes, and that of 65535 labels with names of 511 up to 70 million; whatever is
  * far longer is another file. */
 enum { LENGTH_MAX = 1 << 27 };

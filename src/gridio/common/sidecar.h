@@ -13,6 +13,9 @@ typedef struct vxm_sidecar_text {
   const char *bits;   /**< within a byte; NULL where voxels are whole bytes */
 } vxm_sidecar_text;
 
+/** Of files with x fastest that have one for a table of labels alone. */
+extern const vxm_sidecar_text vxm_sidecar_labels;
+
 /**
  * Opens the JSON beside `data_path` and fills it. *out is NULL if `data_path` is standard output, a pipe or a
  * device, which have nothing beside them.

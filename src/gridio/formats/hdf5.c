@@ -85,13 +85,11 @@ static uint64_t held_bytes(const vxm_space *space, const vxm_values_spec *values
   return is_even ? bytes / 4 : 2 * bytes;
 }
 
-enum { HOLDS = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS };
-
 static const vxm_sidecar_text description = {"voxmend labels", "z fastest, then y, then x", NULL};
 
 static const vxm_values_writer_kind values_kind = {
     .layout = VXM_PLANE_Z_FAST,
-    .holds = HOLDS,
+    .holds = VXM_HOLDS_ALL,
     .sidecar = &description,
     .stored = vxm_values_no_halves,
     .convert = vxm_values_widen_halves,
@@ -105,7 +103,7 @@ static const vxm_values_writer_kind values_kind = {
 
 const vxm_grid_format vxm_format_h5 = {
     .name = "h5",
-    .holds = HOLDS,
+    .holds = VXM_HOLDS_ALL,
     .values = &values_kind,
     .check_field = check_field,
 };

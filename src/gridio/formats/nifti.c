@@ -170,14 +170,10 @@ static uint64_t held_packed(const vxm_space *space, const vxm_values_spec *value
   return VXM_DEFLATE_BYTES;
 }
 
-enum { HOLDS = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS };
-
-static const vxm_sidecar_text description = {"voxmend labels", "x fastest, then y, then z", NULL};
-
 static const vxm_values_writer_kind plain_kind = {
     .layout = VXM_LAYOUT_GRID,
-    .holds = HOLDS,
-    .sidecar = &description,
+    .holds = VXM_HOLDS_ALL,
+    .sidecar = &vxm_sidecar_labels,
     .stored = vxm_values_no_halves,
     .convert = vxm_values_widen_halves,
     .file_bytes = vxm_values_plain_bytes,
@@ -186,8 +182,8 @@ static const vxm_values_writer_kind plain_kind = {
 
 static const vxm_values_writer_kind packed_kind = {
     .layout = VXM_LAYOUT_GRID,
-    .holds = HOLDS,
-    .sidecar = &description,
+    .holds = VXM_HOLDS_ALL,
+    .sidecar = &vxm_sidecar_labels,
     .stored = vxm_values_no_halves,
     .convert = vxm_values_widen_halves,
     .check = check_packed,
@@ -200,7 +196,7 @@ static const vxm_values_writer_kind packed_kind = {
 
 const vxm_grid_format vxm_format_nii = {
     .name = "nii",
-    .holds = HOLDS,
+    .holds = VXM_HOLDS_ALL,
     .sniff = sniff,
     .read = read_bits,
     .read_field = read_field,
@@ -209,7 +205,7 @@ const vxm_grid_format vxm_format_nii = {
 
 const vxm_grid_format vxm_format_nii_gz = {
     .name = "nii.gz",
-    .holds = HOLDS,
+    .holds = VXM_HOLDS_ALL,
     .read = read_bits,
     .read_field = read_field,
     .values = &packed_kind,

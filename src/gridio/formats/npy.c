@@ -220,7 +220,7 @@ static const vxm_values_writer_kind values_kind = {
 
 const vxm_grid_format vxm_format_npy = {
     .name = "npy",
-    .holds = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS,
+    .holds = VXM_HOLDS_ALL,
     .sniff = vxm_npy_sniff,
     .read = read_npy,
     .read_field = read_field,

@@ -204,8 +204,6 @@ static const vxm_grid_writer_kind writer_kind = {
 
 /* ---- Writing numbers ---- */
 
-static const vxm_sidecar_text description = {"voxmend labels", "x fastest, then y, then z", NULL};
-
 static vxm_status begin_values(vxm_values_writer *w, vxm_error *error) {
   const vxm_nrrd_values header = {"a number per voxel, at its centre", w->values.scalar, w->values.channels,
                                   w->values.about};
@@ -215,7 +213,7 @@ static vxm_status begin_values(vxm_values_writer *w, vxm_error *error) {
 static const vxm_values_writer_kind values_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS,
-    .sidecar = &description,
+    .sidecar = &vxm_sidecar_labels,
     .stored = vxm_values_no_halves,
     .convert = vxm_values_widen_halves,
     .file_bytes = vxm_values_plain_bytes,
@@ -224,7 +222,7 @@ static const vxm_values_writer_kind values_kind = {
 
 const vxm_grid_format vxm_format_nrrd = {
     .name = "nrrd",
-    .holds = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS,
+    .holds = VXM_HOLDS_ALL,
     .sniff = vxm_nrrd_sniff,
     .read = read_nrrd,
     .read_field = read_field,

@@ -252,7 +252,7 @@ static vxm_status read_bits(vxm_grid **out, const vxm_input *input, vxm_bits_rul
 
 const vxm_grid_format vxm_format_png = {
     .name = "png",
-    .holds = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS,
+    .holds = VXM_HOLDS_ALL,
     .read = read_bits,
     .read_field = read_field,
     .is_sequence = true,

@@ -181,7 +181,7 @@ static const vxm_sidecar_text description = {
 
 const vxm_values_writer_kind vxm_slices_values = {
     .layout = VXM_LAYOUT_GRID,
-    .holds = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS,
+    .holds = VXM_HOLDS_ALL,
     .sidecar = &description,
     .has_sidecar = true,
     .has_own_files = true,

@@ -221,14 +221,10 @@ static vxm_status end(vxm_values_writer *w, vxm_error *error) {
   return VXM_OK;
 }
 
-enum { HOLDS = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS };
-
-static const vxm_sidecar_text description = {"voxmend labels", "x fastest, then y, then z", NULL};
-
 static const vxm_values_writer_kind values_kind = {
     .layout = VXM_LAYOUT_GRID,
-    .holds = HOLDS,
-    .sidecar = &description,
+    .holds = VXM_HOLDS_ALL,
+    .sidecar = &vxm_sidecar_labels,
     .stored = vxm_values_no_halves,
     .convert = vxm_values_widen_halves,
     .file_bytes = vxm_values_plain_bytes,
@@ -238,7 +234,7 @@ static const vxm_values_writer_kind values_kind = {
 
 const vxm_grid_format vxm_format_tif = {
     .name = "tif",
-    .holds = HOLDS,
+    .holds = VXM_HOLDS_ALL,
     .sniff = vxm_tiff_sniff,
     .read = vxm_tiff_read,
     .read_field = vxm_tiff_read_field,

@@ -115,8 +115,6 @@ static vxm_status write_tree(vxm_output *output, const vxm_field *field, vxm_err
   return status;
 }
 
-static const vxm_sidecar_text description = {"voxmend labels", "x fastest, then y, then z", NULL};
-
 vxm_status vxm_vdb_write_field(const vxm_field *field, const char *path, vxm_error *error) {
   vxm_output *output, *sidecar = NULL;
   vxm_status status = vxm_output_open(&output, field->context, path, error);
@@ -127,8 +125,8 @@ vxm_status vxm_vdb_write_field(const vxm_field *field, const char *path, vxm_err
   if (status == VXM_ERROR_IO && vxm_output_failed(output))
     return vxm_output_commit(output, error);
   if (status == VXM_OK && field->about.table.count > 0)
-    status =
-        vxm_sidecar_open(&sidecar, field->context, &field->space, path, &description, &field->about, error);
+    status = vxm_sidecar_open(&sidecar, field->context, &field->space, path, &vxm_sidecar_labels,
+                              &field->about, error);
   if (status == VXM_OK)
     return vxm_output_commit_both(output, sidecar, error);
   vxm_output_abort(output);
@@ -176,7 +174,7 @@ static void drop(vxm_values_writer *w) {
 const vxm_values_writer_kind vxm_vdb_values = {
     .layout = VXM_PLANE_Z_FAST,
     .holds = VXM_HOLDS_NUMBERS,
-    .sidecar = &description,
+    .sidecar = &vxm_sidecar_labels,
     .check = check,
     .begin = begin,
     .put = put,

@@ -392,14 +392,10 @@ static vxm_status end(vxm_values_writer *w, vxm_error *error) {
   return VXM_OK;
 }
 
-enum { HOLDS = VXM_HOLDS_BITS | VXM_HOLDS_NUMBERS | VXM_HOLDS_LABELS | VXM_HOLDS_COLORS };
-
-static const vxm_sidecar_text description = {"voxmend labels", "x fastest, then y, then z", NULL};
-
 static const vxm_values_writer_kind values_kind = {
     .layout = VXM_LAYOUT_GRID,
-    .holds = HOLDS,
-    .sidecar = &description,
+    .holds = VXM_HOLDS_ALL,
+    .sidecar = &vxm_sidecar_labels,
     .stored = vxm_values_no_halves,
     .convert = vxm_values_widen_halves,
     .file_bytes = vxm_values_plain_bytes,
@@ -409,7 +405,7 @@ static const vxm_values_writer_kind values_kind = {
 
 const vxm_grid_format vxm_format_vti = {
     .name = "vti",
-    .holds = HOLDS,
+    .holds = VXM_HOLDS_ALL,
     .sniff = sniff,
     .read = read_bits,
     .read_field = read_field,
