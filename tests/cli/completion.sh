@@ -68,7 +68,7 @@ expect_bash 'binvox chair' ''
 # The same with keys on a real terminal, where there is one to be had.
 if command -v python3 >/dev/null; then
   python3 - "$SRCDIR/completions/voxmend.bash" <<'END' || bad=1
-import os, pty, re, select, sys, time
+import concurrent.futures, os, pty, re, select, sys, time
 
 def session(typed):
     pid, fd = pty.fork()
@@ -100,13 +100,15 @@ def session(typed):
     return found[-1].decode() if found else repr(got)
 
 bad = 0
-for typed, wanted in [("voxmend voxe\t", "voxmend voxelize"),
-                      ("voxmend voxelize --resol\t64 ch\t", "voxmend voxelize --resolution 64 chair.off"),
-                      ("voxmend voxelize my\t--mode su\t", "voxmend voxelize my table.off --mode surface"),
-                      ("binvox -dm\t4 ch\t", "binvox -dmin 4 chair.off"),
-                      ("voxmend repair -o mod\t", "voxmend repair -o models/"),
-                      ("voxmend voxelize --mode=b\t", "voxmend voxelize --mode=both")]:
-    got = session(typed)
+sessions = [("voxmend voxe\t", "voxmend voxelize"),
+            ("voxmend voxelize --resol\t64 ch\t", "voxmend voxelize --resolution 64 chair.off"),
+            ("voxmend voxelize my\t--mode su\t", "voxmend voxelize my table.off --mode surface"),
+            ("binvox -dm\t4 ch\t", "binvox -dmin 4 chair.off"),
+            ("voxmend repair -o mod\t", "voxmend repair -o models/"),
+            ("voxmend voxelize --mode=b\t", "voxmend voxelize --mode=both")]
+with concurrent.futures.ThreadPoolExecutor(len(sessions)) as pool: # each waits for keys most of the time
+    found = pool.map(session, [typed for typed, _ in sessions])
+for (typed, wanted), got in zip(sessions, found):
     if got != wanted:
         print("FAILED: bash at a terminal makes %r of %r and not %r" % (got, typed, wanted))
         bad = 1

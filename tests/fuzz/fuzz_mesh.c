@@ -3,6 +3,7 @@
 #include "fuzz.h"
 #include "fuzz_soup.h"
 
+#include "base/clock.h"
 #include "meshio/common/format.h"
 #include "meshio/external/external_formats.h"
 #include "meshio/meshio.h"
@@ -50,17 +51,19 @@ void fuzz_check_error(const vxm_error *error, vxm_status status) {
   fuzz_require(error->text[0] && !strchr(error->text, '\n'), "a failure is one line");
 }
 
-static vxm_context *context_of(uint64_t limit) {
+static vxm_context *context_of(uint64_t limit, vxm_progress_fn progress, void *payload) {
   vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
   options.threads = 1;
   options.memory_limit = limit;
+  options.progress = progress;
+  options.payload = payload;
   vxm_context *context;
   fuzz_require(vxm_context_create(&context, &options, NULL) == VXM_OK, "a context can be made");
   return context;
 }
 
 vxm_context *fuzz_context(size_t size, uint64_t rate, uint64_t besides) {
-  return context_of((uint64_t)size * rate + besides);
+  return context_of((uint64_t)size * rate + besides, NULL, NULL);
 }
 
 void fuzz_mesh(const char *name, const uint8_t *data, size_t size) {
@@ -91,11 +94,19 @@ void fuzz_mesh(const char *name, const uint8_t *data, size_t size) {
   vxm_context_destroy(context);
 }
 
+/** Cancels what takes longer; payload: until when, in ms. */
+static int stop_in_time(const char *phase, double fraction, void *payload) {
+  (void)phase, (void)fraction;
+  return vxm_clock_ms() > *(const double *)payload;
+}
+
 /** Libraries crash, hang and ask for all memory: that this process goes on, and says one line, is what
  * counts.
  */
 void fuzz_foreign(const char *name, const uint8_t *data, size_t size) {
-  vxm_context *context = context_of(UINT64_C(512) << 20);
+  enum { PATIENCE_MS = 5000 }; /* rather than the minute after which the library ends that process */
+  double until = vxm_clock_ms() + PATIENCE_MS;
+  vxm_context *context = context_of(UINT64_C(512) << 20, stop_in_time, &until);
   char file[32];
   vxm_soup *soup = NULL;
   vxm_error error = VXM_ERROR_INIT;

@@ -104,8 +104,8 @@ static void test_pieces_make_the_file(void **state) {
     vxm_context *context = context_with(1 + round % 3, 0, NULL, NULL);
     vxm_grid *grid = new_grid(context, random_space(&rng, round < 50 ? 70 : 140, true));
     fill_random(grid, &rng, round % KINDS);
-    for (int f = 0; f < FORMATS; f++)
-      check_format(grid, folder, formats[f], 1 + (round + f) % 3, &rng);
+    for (int f = round % 2; f < FORMATS; f += 2) /* every other one in turn */
+      check_format(grid, folder, formats[f], 1 + (round / 2 + f) % 3, &rng);
     vxm_grid_destroy(grid);
     vxm_context_destroy(context);
   }
@@ -126,7 +126,9 @@ static void test_long_rows_and_rough_grids(void **state) {
       fill_random(grid, &rng, kind == 3 ? 5 : kind);
       if (kind == 3) /* one hole in the last voxel of a full grid */
         vxm_grid_set(grid, dims[d][0] - 1, dims[d][1] - 1, dims[d][2] - 1, false);
-      for (int f = d < 3 ? 1 : 0; f < FORMATS; f++) { /* the cube around the others would be huge */
+      for (int f = kind % 2; f < FORMATS; f += 2) { /* every other one in turn */
+        if (f == 0 && d < 3)                        /* the cube around these would be huge */
+          continue;
         check_format(grid, folder, formats[f], 1 + f % 2, &rng);
         char path[80];
         snprintf(path, sizeof path, "%s/back.%s", folder, formats[f]);

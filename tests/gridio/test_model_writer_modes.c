@@ -108,6 +108,7 @@ static uint64_t limit_for(const char *path, const vxm_voxelize_options *options,
 }
 
 static void check_mode(const vxm_voxelize_options *options, const char *folder) {
+  static int turn;
   vxm_context *context = context_with(2, 0, NULL, NULL);
   vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
   vxm_grid *grid = make_whole(context, options, &report);
@@ -117,16 +118,15 @@ static void check_mode(const vxm_voxelize_options *options, const char *folder) 
     snprintf(whole, sizeof whole, "%s/whole.%s", folder, formats[f]);
     snprintf(pieces, sizeof pieces, "%s/pieces.%s", folder, formats[f]);
     assert_int_equal(vxm_grid_write(grid, whole, NULL, NULL), VXM_OK);
-    for (int threads = 1; threads <= 2; threads++) {
-      result r = write_file(pieces, options, threads, limit_for(pieces, options, threads));
-      assert_true(r.windows > 1);
-      assert_same(whole, pieces);
-      assert_true(r.report.hash == report.hash);
-      assert_int_equal(r.report.voxels, report.voxels);
-      assert_int_equal(r.report.contested, report.contested);
-      assert_int_equal(r.report.winding_decided, report.winding_decided);
-      assert_int_equal(r.report.empty_parts, report.empty_parts);
-    }
+    int threads = 1 + turn++ % 2; /* an odd number of formats: each meets both in two modes */
+    result r = write_file(pieces, options, threads, limit_for(pieces, options, threads));
+    assert_true(r.windows > 1);
+    assert_same(whole, pieces);
+    assert_true(r.report.hash == report.hash);
+    assert_int_equal(r.report.voxels, report.voxels);
+    assert_int_equal(r.report.contested, report.contested);
+    assert_int_equal(r.report.winding_decided, report.winding_decided);
+    assert_int_equal(r.report.empty_parts, report.empty_parts);
   }
   vxm_grid_destroy(grid);
   vxm_context_destroy(context);
