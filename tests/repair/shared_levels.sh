@@ -6,5 +6,11 @@ set -eu
 meshes=$SRCDIR/../shared/meshes
 [ -d "$meshes" ] || { echo "no ../shared/meshes"; exit 77; }
 "$TEST_PYTHON" -c 'import numpy' 2>/dev/null || { echo "no Python with numpy"; exit 77; }
-exec "$TEST_PYTHON" "$SRCDIR/tests/repair/levels.py" "$VOXMEND" "$meshes" --levels "${LEVELS:-clean,manifold,closed}" \
-  --folders "${FOLDERS:-messy,cad,modelnet}" ${MARKDOWN:+--markdown "$MARKDOWN"}
+levels=${LEVELS:-clean,manifold,closed}
+folders=${FOLDERS:-messy,cad,modelnet}
+judge() {
+  "$TEST_PYTHON" "$SRCDIR/tests/repair/levels.py" "$VOXMEND" "$meshes" --folders "$folders" "$@"
+}
+judge --levels "$levels" --formats ply ${MARKDOWN:+--markdown "$MARKDOWN"}
+# What 32-bit floats and decimal digits do to vertices, where most may go wrong.
+judge --levels "${levels##*,}" --formats stl,obj
