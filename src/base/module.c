@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "config.h"
+#include "module_folder.h"
 
 /* Writes DIRECTORY/SUBFOLDERvoxmend-NAME.so if there is such a file. */
 static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size_t length,

@@ -2,6 +2,7 @@
 #include "batch/archive.h"
 #include "batch/descriptor.h"
 #include "batch/unpack.h"
+#include "module_folder.h"
 
 #include <errno.h>
 #include <fcntl.h>

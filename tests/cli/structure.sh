@@ -42,10 +42,10 @@ for folder in $order; do
   esac
   pattern=$(echo $allowed | sed 's/ /|/g')
   found=$(grep -nE '#[[:space:]]*include[[:space:]]+"' $(find "$folder" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cc' -o -maxdepth 1 -name '*.inc') |
-    grep -vE "\"(($pattern)/[^/\"]*|voxmend/[a-z]*\.h|voxmend\.h|config\.h|build_hash\.h|view_page\.inc|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
+    grep -vE "\"(($pattern)/[^/\"]*|voxmend/[a-z]*\.h|voxmend\.h|config\.h|build_hash\.h|module_folder\.h|view_page\.inc|shaders/(kernels\.inc|shaders\.inc|rules\.h))\"" || true)
   [ -z "$found" ] || complain "$folder includes what does not come before it" "$found"
 done
-found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' batch | grep -vE '"(batch/[^"]*|voxmend\.h|config\.h|batch_page\.inc)"' || true)
+found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' batch | grep -vE '"(batch/[^"]*|voxmend\.h|config\.h|module_folder\.h|batch_page\.inc)"' || true)
 [ -z "$found" ] || complain "batch includes more than voxmend.h and its own headers" "$found"
 found=$(grep -rnE '#[[:space:]]*include[[:space:]]+"' cli | grep -vE '"(cli/[^"]*|batch/[^"]*|voxmend/experimental\.h|voxmend\.h|config\.h)"' || true)
 [ -z "$found" ] || complain "cli includes more than voxmend.h and its own headers" "$found"
