@@ -109,11 +109,12 @@ typedef struct cli_command {
   const cli_option
       *others;           /**< those of another command that are taken too, but of names above; NULL = none */
   const char *others_of; /**< that command */
-  bool many;             /**< takes any number of files */
-  void (*print_help)(void);    /**< for options of another kind; NULL = the help is made of the table */
-  bool folders;                /**< takes folders too; else cli_check_names refuses them */
-  void (*print_choices)(void); /**< prints lists for the help, shown before the notes; NULL = none */
-  int (*run)(cli_run *cli);    /**< returns an exit status */
+  const char *const *others_refused; /**< names of those of them that are not; NULL = none */
+  bool many;                         /**< takes any number of files */
+  void (*print_help)(void);          /**< for options of another kind; NULL = the help is made of the table */
+  bool folders;                      /**< takes folders too; else cli_check_names refuses them */
+  void (*print_choices)(void);       /**< prints lists for the help, shown before the notes; NULL = none */
+  int (*run)(cli_run *cli);          /**< returns an exit status */
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
@@ -182,6 +183,8 @@ int cli_next_option(cli_run *cli, const char **value);
 /** Prints one line about wrong usage, sets cli->status and returns CLI_STOP. */
 int cli_usage(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 void cli_help(const cli_command *command);
+/** Whether a command refuses an option that it would take of another command. */
+bool cli_is_refused(const cli_command *command, const char *name);
 /** The options of a command for programs, a line each: "--name", letter, argument and purpose, with tabs
  * between.
  */
@@ -353,6 +356,8 @@ void cli_writes(cli_run *cli, const char *option, const char *path, bool has_jso
  * two that are written are the same.
  */
 int cli_check_names(cli_run *cli);
+/** Whether there are the folders that outputs are to be in; false after a line. */
+bool cli_check_places(cli_run *cli);
 /** CLI_STOP if an argument is a folder where the command takes files (folder.c); among many it is left alone.
  */
 int cli_check_folders(cli_run *cli);
@@ -419,6 +424,23 @@ int cli_values_to_bits(cli_run *cli, cli_values *values, const vxm_threshold_opt
 /** The row about voxels or numbers, and the keys of the report. */
 void cli_values_row(const cli_run *cli, const cli_values *values);
 void cli_values_json(json_t *report, const cli_values *values, bool has_hash);
+
+/** "distance, float32 from -0.1 to 0.2" */
+void cli_values_text(char text[128], const vxm_field *field);
+
+/* ---- grid_info.c: what info tells of grids ---- */
+
+/** Where it stands among several files. */
+typedef struct cli_grid_row {
+  int width;        /**< of the names */
+  bool has_heading; /**< it is the first of the table */
+  bool is_next;     /**< something was told before */
+} cli_grid_row;
+
+/** Whether a name is that of a grid file that can be read. */
+bool cli_is_grid_name(const char *path);
+/** Tells of a grid, in full or as a row of a table, and adds its object to `reports`. */
+int cli_grid_info(cli_run *cli, json_t *reports, const char *path, const cli_grid_row *row, bool is_row);
 
 /* ---- progress.c ---- */
 
