@@ -186,9 +186,9 @@ void cli_help(const cli_command *command);
 /** Whether a command refuses an option that it would take of another command. */
 bool cli_is_refused(const cli_command *command, const char *name);
 /** The options of a command for programs, a line each: "--name", letter, argument and purpose, with tabs
- * between.
+ * between. @param is_all with those of another command that it takes too
  */
-void cli_help_table(const cli_command *command);
+void cli_help_table(const cli_command *command, bool is_all);
 /**
  * Makes the context, which holds the files that are written until cli_finish, and tries the report, so that a
  * wrong name fails before the work; false after a failure that has been printed.

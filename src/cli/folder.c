@@ -10,7 +10,7 @@
 
 enum { KNOWN_MAX = 128, WORDS_SIZE = 1024, NAME_SIZE = 256 };
 
-/** Extensions of meshes and grids that this build reads. */
+/** Extensions of meshes and grids, also of those that need a module. */
 typedef struct extensions {
   const char *name[KNOWN_MAX];
   int count;
@@ -41,8 +41,7 @@ static void find_known(extensions *known) {
   vxm_reading_find(&readers, NULL);
   for (int i = 0; cli_mesh_formats[i]; i++)
     add_known(known, cli_mesh_formats[i]);
-  snprintf(known->words, sizeof known->words, "%s %s", readers.assimp ? readers.assimp_formats : "",
-           readers.occt ? readers.occt_formats : "");
+  snprintf(known->words, sizeof known->words, "%s %s", readers.assimp_formats, readers.occt_formats);
   char *rest = known->words;
   for (char *word; (word = strsep(&rest, " "));)
     if (*word)

@@ -103,12 +103,12 @@ static void print_row(const cli_option *option) {
          (int)strcspn(option->help, "\n"), option->help);
 }
 
-void cli_help_table(const cli_command *command) {
+void cli_help_table(const cli_command *command, bool is_all) {
   if (command->print_help)
     return;
   for (const cli_option *option = command->options; option->name; option++)
     print_row(option);
-  for (const cli_option *option = command->others; option && option->name; option++)
+  for (const cli_option *option = is_all ? command->others : NULL; option && option->name; option++)
     if (!is_replaced(command, option) && !cli_is_refused(command, option->name))
       print_row(option);
   for (const cli_option *option = common_options; option->name; option++)

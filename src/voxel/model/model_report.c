@@ -80,7 +80,7 @@ static void warn_of_empty_parts(vxm_model_pass *pass, const vxm_voxelize_report 
   char names[200];
   if (report->empty_parts > 0 && report->voxels > 0 && !vxm_faces_wanted(&pass->solid.options))
     vxm_warn(pass->warnings,
-             "%" PRId64 " of %" PRId64 " parts, %.3g %% of the surface, hold no voxel centre, being thinner "
+             "%" PRId64 " of %" PRId64 " parts, %.2g %% of the surface, hold no voxel centre, being thinner "
              "than a voxel or open sheets: those at %s; %s",
              report->empty_parts, report->parts,
              100 * surface_area(&pass->solid, true) / surface_area(&pass->solid, false),
