@@ -13,10 +13,10 @@ typedef struct polygon {
   int count;
 } polygon;
 
-/** What counts as the grid: a little more than that. */
 typedef struct grid_box {
   double low[3], high[3];
-  const double *transform; /**< of what is looked at; NULL = none */
+  double least[3], most[3]; /**< what still counts as within: a little more */
+  const double *transform;  /**< of what is looked at; NULL = none */
 } grid_box;
 
 static grid_box box_of(const vxm_space *space, const double transform[12]) {
@@ -24,8 +24,10 @@ static grid_box box_of(const vxm_space *space, const double transform[12]) {
   grid_box box = {.transform = transform};
   for (int a = 0; a < 3; a++) {
     double size = space->voxel_size[a];
-    box.low[a] = space->origin[a] - slack * size;
-    box.high[a] = space->origin[a] + ((double)space->dims[a] + slack) * size;
+    box.low[a] = space->origin[a];
+    box.high[a] = space->origin[a] + (double)space->dims[a] * size;
+    box.least[a] = box.low[a] - slack * size;
+    box.most[a] = box.high[a] + slack * size;
   }
   return box;
 }
@@ -45,7 +47,7 @@ static bool is_within(const grid_box *box, const vxm_triangle_set *triangles) {
       at[a] = corner >> a & 1 ? triangles->high[a] : triangles->low[a];
     place(p, box, at);
     for (int a = 0; a < 3; a++)
-      if (p[a] < box->low[a] || p[a] > box->high[a])
+      if (p[a] < box->least[a] || p[a] > box->most[a])
         return false;
   }
   return true;
@@ -88,9 +90,9 @@ static void add(vxm_overhang *out, double *all, double *outside, const grid_box 
   for (int a = 0; a < 3; a++) { /* each side of its own: what one cuts off may lie beyond another */
     double low = fmin(fmin(triangle->at[0][a], triangle->at[1][a]), triangle->at[2][a]);
     double high = fmax(fmax(triangle->at[0][a], triangle->at[1][a]), triangle->at[2][a]);
-    out->below[a] |= low < box->low[a];
-    out->above[a] |= high > box->high[a];
-    is_cut |= low < box->low[a] || high > box->high[a];
+    out->below[a] |= low < box->least[a];
+    out->above[a] |= high > box->most[a];
+    is_cut |= low < box->least[a] || high > box->most[a];
   }
   for (int a = 0; a < 3 && is_cut; a++) {
     cut(triangle, a, box->high[a], 1);
