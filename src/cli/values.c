@@ -41,7 +41,8 @@ void cli_values_text(char text[128], const vxm_field *field) {
   vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_field_kind kind = vxm_field_kind_of(field);
   if (kind == VXM_FIELD_COLORS) {
-    snprintf(text, 128, "colours, red, green, blue and opacity, %s", vxm_scalar_name(vxm_field_scalar(field)));
+    snprintf(text, 128, "colours, red, green, blue and opacity, %s",
+             vxm_scalar_name(vxm_field_scalar(field)));
     return;
   }
   vxm_field_measure(&range, field, NULL);
