@@ -66,7 +66,7 @@ _voxmend() {
     _voxmend_binvox "$1" binvox
     return
   fi
-  table=$("$1" help --table "$command" 2>/dev/null) || return
+  table=$("$1" help --all "$command" 2>/dev/null) || return
   if [[ $word == = ]]; then # "--mode=" is three words to bash
     word=
   elif [[ $before == = ]]; then

@@ -17,7 +17,7 @@ end
 # The options of the command, with what they are for.
 function __voxmend_options
     set -l words (commandline -opc)
-    for line in (command $words[1] help --table $words[2] 2>/dev/null)
+    for line in (command $words[1] help --all $words[2] 2>/dev/null)
         set -l fields (string split \t -- $line)
         echo $fields[1]\t$fields[4]
         test -n "$fields[2]"; and echo $fields[2]\t$fields[4]
@@ -28,7 +28,7 @@ end
 function __voxmend_argument
     set -l words (commandline -opc)
     test (count $words) -ge 3; or return 1
-    for line in (command $words[1] help --table $words[2] 2>/dev/null)
+    for line in (command $words[1] help --all $words[2] 2>/dev/null)
         set -l fields (string split \t -- $line)
         if test -n "$fields[3]"; and contains -- $words[-1] $fields[1] $fields[2]
             echo $fields[3]

@@ -44,6 +44,8 @@ typedef struct batch_wish {
 } batch_wish;
 
 extern const cli_option batch_options[];
+/** Options of voxelize that are about one mesh. */
+extern const char *const batch_refused[];
 
 /** Reads the command line; CLI_STOP if it is at fault, or all has been said. */
 int batch_read_arguments(cli_run *cli, batch_wish *out);

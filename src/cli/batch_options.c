@@ -26,11 +26,13 @@ enum {
   KEY_MEMLIMIT
 };
 
+const char *const batch_refused[] = {"confidence", "coords", "dry-run", "output", "force", NULL};
+
 const cli_option batch_options[] = {
     {'o', "output", "DIR", "folder of what is made; its folders are those of the inputs"},
     {KEY_FORMAT, "format", "F",
-     "of the grids: binvox, npy, raw, rle, nrrd, vdb, bt, nii, nii.gz, vti, vtk, tif, h5,\n"
-     "obj, ply, stl or off [binvox]"},
+     "of the grids: binvox, npy, raw, rle, nrrd, vdb, octree, bt, nii, nii.gz, vti, vtk,\n"
+     "tif, h5, obj, ply, stl, off, glb, vox, schem or litematic [binvox]"},
     {KEY_REPAIR, "repair", "OPTIONS",
      "write the repaired meshes too, with these options of 'voxmend repair', such as\n"
      "\"--level closed --format ply\""},
@@ -49,7 +51,7 @@ const cli_option batch_options[] = {
     {KEY_FILE_LIMIT, "file-limit", "SIZE", "largest file that may be written [64G]"},
     {KEY_RETRY, "retry", "LIST",
      "do again what ended so in a run before: timeout, oom, crash, failed, unreadable,\n"
-     "quarantined, degraded, or all of these"},
+     "quarantined, degraded (done, with warnings), or all of these"},
     {KEY_SHARD, "shard", "I/N",
      "only every N-th mesh, from the I-th on, I from 0 to N-1: each of N machines takes\n"
      "one; I may be slurm, kubernetes or aws: from the variable of an array of jobs"},
@@ -127,21 +129,31 @@ static int refuse_file(cli_run *cli, const char *name) {
 
 /** An option of voxelize is handed on as it is. */
 static int take_grid_option(cli_run *cli, batch_wish *out, int key, const char *value) {
-  static const char *const refused[] = {"confidence", "coords", "dry-run", "output", "force", NULL};
   const cli_option *option = voxelize_options;
   while (option->name && option->key != key)
     option++;
   if (!option->name)
     return cli_usage(cli, "an option is not known");
-  if (cli_read_choice(option->name, refused) >= 0)
+  if (cli_is_refused(cli->command, option->name))
     return refuse_file(cli, option->name);
   bool good = option->argument ? batch_words_add(&out->grid_options, "--%s=%s", option->name, value)
                                : batch_words_add(&out->grid_options, "--%s", option->name);
   return good ? CLI_END : cli_usage(cli, "out of memory: free some");
 }
 
-static int read_format(cli_run *cli, const char *value) {
+/** A picture for each slice is no file of a grid. */
+static cli_formats grid_formats(void) {
   cli_formats formats = cli_formats_with(VXM_FORMAT_BITS | VXM_FORMAT_COLORS);
+  int kept = 0;
+  for (int f = 0; formats.name[f]; f++)
+    if (strcmp(formats.name[f], "png") != 0)
+      formats.name[kept++] = formats.name[f];
+  formats.name[kept] = NULL;
+  return formats;
+}
+
+static int read_format(cli_run *cli, const char *value) {
+  cli_formats formats = grid_formats();
   return cli_read_choice(value, formats.name) >= 0
              ? CLI_END
              : cli_usage(cli, "--format '%s' is none of %s", value,

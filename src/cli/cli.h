@@ -6,6 +6,7 @@
 #ifndef VXM_CLI_CLI_H
 #define VXM_CLI_CLI_H
 
+#include "cli/option_tables.h"
 #include "voxmend.h"
 
 #include <jansson.h>
@@ -32,62 +33,6 @@ enum {
   CLI_KEY_COMMAND
 };
 
-/** For the tables of commands that make voxels; cli_engine_read takes their values. */
-#define CLI_OPTIONS_ENGINE_METHODS                                                           \
-  {CLI_KEY_DEVICE, "device", "N|NAME",                                                       \
-   "the OpenCL device: its number in 'voxmend engines', or a part of its name or its\n"      \
-   "platform's [a GPU, else the first]"},                                                    \
-      {CLI_KEY_CL_METHOD, "cl-method", "auto|triangles|tiles",                               \
-       "how OpenCL makes solids: triangles = each flips bits by itself; tiles = sorted by\n" \
-       "tiles of columns; both have the bits of the cpu [auto]"},                            \
-      {CLI_KEY_GL_METHOD, "gl-method", "columns|slices|tetra-vertex",                        \
-       "how OpenGL makes solids: columns = a pass along an axis, the same bits as the\n"     \
-       "cpu; slices, tetra-vertex = tetrahedra cut slice by slice, as published [columns]"}, \
-  {                                                                                          \
-    CLI_KEY_GL_AXIS, "gl-axis", "x|y|z", "across which axis slices are cut [y]"              \
-  }
-#define CLI_OPTIONS_ENGINE                                                              \
-  {CLI_KEY_ENGINE, "engine", "E",                                                       \
-   "who makes the voxels: cpu; opencl, opengl, or one that 'voxmend engines' lists;\n"  \
-   "auto = a GPU by opencl or opengl, or else the cpu [cpu]"},                          \
-      CLI_OPTIONS_ENGINE_METHODS, {                                                     \
-    CLI_KEY_GL_DISPLACE, "gl-displace", "D[,SEED]",                                     \
-        "with slices: move each vertex at random by up to D voxels along each axis [0]" \
-  }
-
-/** What grids are written as, for help: the file, and the names of the formats. */
-#define CLI_GRID_FILES                                                                    \
-  "file to write: .binvox, .rle, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5,\n" \
-  ".vdb, .bt, .npy or .raw (the last three with a .json beside them), .vox, .schem or\n"  \
-  ".litematic, a picture for each slice (slice_%04d.png, with a .json), or the grid\n"    \
-  "as a mesh: .obj, .ply, .stl, .off, .glb"
-#define CLI_GRID_FORMATS                                                                 \
-  "binvox, npy, raw, rle, nrrd, vdb, octree, bt, nii, nii.gz, vti, vtk, tif, h5, obj,\n" \
-  "ply, stl, off, glb, vox, schem, litematic or png [by the name of the output]"
-
-/** For the tables of commands that make voxels of the numbers in a file; cli_threshold_read takes their
- * values. */
-#define CLI_OPTIONS_THRESHOLD                                                              \
-  {CLI_KEY_THRESHOLD, "threshold", "T",                                                    \
-   "numbers in a file: voxels are set where the number is T or greater, such as\n"         \
-   "0.5 of a coverage (128 where it is bytes) or 1 of labels"},                            \
-  {                                                                                        \
-    CLI_KEY_BELOW, "below", "T",                                                           \
-        "voxels are set where the number is less than T, such as 0 of a signed distance\n" \
-        "(-0 too); with --threshold, where both hold"                                      \
-  }
-
-/** For the tables of commands that read meshes; cli_next_option puts their values into cli->read. */
-#define CLI_OPTIONS_READ                                                                 \
-  {CLI_KEY_DEFLECTION, "deflection", "F",                                                \
-   "STEP and IGES: how far triangles may lie from a curved surface, as a\n"              \
-   "part of the model's diagonal [0.001]"},                                              \
-  {                                                                                      \
-    CLI_KEY_EXTERNAL, "external", "folder|any|none",                                     \
-        "glTF and others: which files the mesh may refer to; folder = in its own\n"      \
-        "folder or below, and none from standard input; any = wherever it says [folder]" \
-  }
-
 /** What cli_next_option returns beside an option's key, and functions that read arguments return. */
 enum { CLI_END = 0, CLI_STOP = -1 };
 
@@ -109,11 +54,12 @@ typedef struct cli_command {
   const cli_option
       *others;           /**< those of another command that are taken too, but of names above; NULL = none */
   const char *others_of; /**< that command */
-  bool many;             /**< takes any number of files */
-  void (*print_help)(void);    /**< for options of another kind; NULL = the help is made of the table */
-  bool folders;                /**< takes folders too; else cli_check_names refuses them */
-  void (*print_choices)(void); /**< prints lists for the help, shown before the notes; NULL = none */
-  int (*run)(cli_run *cli);    /**< returns an exit status */
+  const char *const *others_refused; /**< names of those of them that are not; NULL = none */
+  bool many;                         /**< takes any number of files */
+  void (*print_help)(void);          /**< for options of another kind; NULL = the help is made of the table */
+  bool folders;                      /**< takes folders too; else cli_check_names refuses them */
+  void (*print_choices)(void);       /**< prints lists for the help, shown before the notes; NULL = none */
+  int (*run)(cli_run *cli);          /**< returns an exit status */
 } cli_command;
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
@@ -182,10 +128,12 @@ int cli_next_option(cli_run *cli, const char **value);
 /** Prints one line about wrong usage, sets cli->status and returns CLI_STOP. */
 int cli_usage(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 void cli_help(const cli_command *command);
+/** Whether a command refuses an option that it would take of another command. */
+bool cli_is_refused(const cli_command *command, const char *name);
 /** The options of a command for programs, a line each: "--name", letter, argument and purpose, with tabs
- * between.
+ * between. @param is_all with those of another command that it takes too
  */
-void cli_help_table(const cli_command *command);
+void cli_help_table(const cli_command *command, bool is_all);
 /**
  * Makes the context, which holds the files that are written until cli_finish, and tries the report, so that a
  * wrong name fails before the work; false after a failure that has been printed.
@@ -353,45 +301,25 @@ void cli_writes(cli_run *cli, const char *option, const char *path, bool has_jso
  * two that are written are the same.
  */
 int cli_check_names(cli_run *cli);
+/** Whether there are the folders that outputs are to be in; false after a line. */
+bool cli_check_places(cli_run *cli);
 /** CLI_STOP if an argument is a folder where the command takes files (folder.c); among many it is left alone.
  */
 int cli_check_folders(cli_run *cli);
 /** The one rule for what is there already: CLI_STOP if a mesh would be written in place of a file, which may
  * be the mesh that all else is made of. Grids, pictures and reports replace what was there. */
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced);
-/** Those of grids that are written as meshes. */
-#define CLI_OPTIONS_SURFACE(polygons, contacts)                                        \
-  {polygons, "polygons", "split|keep",                                                 \
-   "of a mesh: split = write triangles; keep = rectangles with further corners,\n"     \
-   "in .obj, .ply and .off [split]"},                                                  \
-  {                                                                                    \
-    contacts, "no-manifold", NULL,                                                     \
-        "of a mesh: leave voxels joined that touch in an edge or a corner alone, so\n" \
-        "that edges may have four faces; else either side has vertices of its own,\n"  \
-        "1/256 of a voxel within"                                                      \
-  }
 /** How blocks and meshes stand: of vxm_grid_write_options. */
 typedef struct cli_style {
   const char *blocks;
   int up;
 } cli_style;
-#define CLI_OPTIONS_STYLE(blocks, up)                                                         \
-  {blocks, "blocks", "NAME[,NAME...]",                                                        \
-   "of .schem and .litematic: Minecraft's block for voxels, those for labels in\n"            \
-   "turn, or those that colours choose from [stone; concrete, wool and terracotta in\n"       \
-   "16 dyes; 83 plain cubes]"},                                                               \
-  {                                                                                           \
-    up, "up", "x|y|z", "of .schem, .litematic and .glb: axis of the model that points up [z]" \
-  }
 /** Takes over the argument of --up: CLI_END or CLI_STOP. */
 int cli_read_up(cli_run *cli, cli_style *style, const char *value);
 /** CLI_STOP if the format has no use for what was given. */
 int cli_check_style(cli_run *cli, const cli_style *style, const char *format);
 /** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
-#define CLI_OPTION_FORCE(key) \
-  { key, "force", NULL, "replace a mesh that is there" }
-
 /* ---- values.c: bits and numbers in files ---- */
 
 /** What a file holds: bits, or numbers; the other is NULL. */
@@ -419,6 +347,23 @@ int cli_values_to_bits(cli_run *cli, cli_values *values, const vxm_threshold_opt
 /** The row about voxels or numbers, and the keys of the report. */
 void cli_values_row(const cli_run *cli, const cli_values *values);
 void cli_values_json(json_t *report, const cli_values *values, bool has_hash);
+
+/** "distance, float32 from -0.1 to 0.2" */
+void cli_values_text(char text[128], const vxm_field *field);
+
+/* ---- grid_info.c: what info tells of grids ---- */
+
+/** Where it stands among several files. */
+typedef struct cli_grid_row {
+  int width;        /**< of the names */
+  bool has_heading; /**< it is the first of the table */
+  bool is_next;     /**< something was told before */
+} cli_grid_row;
+
+/** Whether a name is that of a grid file that can be read. */
+bool cli_is_grid_name(const char *path);
+/** Tells of a grid, in full or as a row of a table, and adds its object to `reports`. */
+int cli_grid_info(cli_run *cli, json_t *reports, const char *path, const cli_grid_row *row, bool is_row);
 
 /* ---- progress.c ---- */
 

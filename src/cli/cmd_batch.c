@@ -83,6 +83,9 @@ static void summarize(const cli_run *cli, const batch_wish *wish, const batch_ma
     cli_row(cli, "passed over", "%" PRId64 " files that are no meshes:%s", manifest->passed_over,
             manifest->note);
   cli_row(cli, "result", "%s", batch_counts_text(counts, tally->counts));
+  if (tally->counts[BATCH_DEGRADED] > 0)
+    cli_row(cli, "degraded", "made all the same, with warnings: open meshes, lost parts and the like; %s",
+            has_all ? "the page tells each" : "'voxmend batch status' counts them");
   if (tally->done_before > 0)
     cli_row(cli, "before", "%" PRId64 " of them in a run before", tally->done_before);
   if (tally->fresh > 0)
@@ -247,7 +250,10 @@ const cli_command cli_command_batch = {
         "and any of id, class, split, options) or an archive (.tar, .tar.gz, .zip, .7z). What crashes, "
         "hangs\n"
         "or takes all memory costs that mesh alone. When a run is ended, by whatever, the same command goes\n"
-        "on with it. At the end DIR has index.html, failures.tsv and summary.json.\n\n"
+        "on with it. At the end DIR has index.html, failures.tsv and summary.json. A mesh is ok, degraded\n"
+        "(made, with warnings, which index.html tells: look at those with much contested), duplicate,\n"
+        "unreadable, failed, timeout, oom (out of memory), crash or quarantined (the run went down with "
+        "it).\n\n"
         "  voxmend batch status DIR    what has become of its meshes, also while it runs\n"
         "  voxmend batch verify DIR    whether all outputs are there, with the bytes that were written\n"
         "  voxmend batch export DIR --to sqlite|parquet|webdataset|zarr -o PATH\n\n"
@@ -259,6 +265,7 @@ const cli_command cli_command_batch = {
     .options = batch_options,
     .others = voxelize_options,
     .others_of = "voxelize",
+    .others_refused = batch_refused,
     .many = true,
     .folders = true,
     .run = run,

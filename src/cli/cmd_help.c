@@ -4,12 +4,13 @@
 
 #include <string.h>
 
-enum { KEY_TABLE = CLI_KEY_COMMAND };
+enum { KEY_TABLE = CLI_KEY_COMMAND, KEY_ALL };
 
 static const cli_option known_options[] = {
     {KEY_TABLE, "table", NULL,
      "as lines with tabs, for programs: the names of the commands with what they do,\n"
      "or the options of one, each with its letter, what it takes, and what it is for"},
+    {KEY_ALL, "all", NULL, "the same with the options of another command that one takes too"},
     {0, NULL, NULL, NULL}};
 
 void cli_help_overview(void) {
@@ -47,9 +48,9 @@ const char *cli_suggest_command(char text[CLI_LIST_MAX], const char *typed) {
   return cli_suggestion(text, typed, "", names);
 }
 
-static void print_table(const cli_command *command) {
+static void print_table(const cli_command *command, bool is_all) {
   if (command) {
-    cli_help_table(command);
+    cli_help_table(command, is_all);
     return;
   }
   for (int i = 0; cli_commands[i]; i++)
@@ -59,10 +60,12 @@ static void print_table(const cli_command *command) {
 static int run(cli_run *cli) {
   char hint[CLI_LIST_MAX];
   const char *value;
-  bool is_table = false;
-  for (int key; (key = cli_next_option(cli, &value)) != CLI_END; is_table = true)
+  bool is_table = false, is_all = false;
+  for (int key; (key = cli_next_option(cli, &value)) != CLI_END; is_table = true) {
     if (key == CLI_STOP)
       return cli->status;
+    is_all |= key == KEY_ALL;
+  }
   if (cli->argument_count > 1)
     cli_usage(cli, "one command is expected, not %d", cli->argument_count);
   const char *name = cli->argument_count > 0 ? cli->arguments[0] : NULL;
@@ -72,7 +75,7 @@ static int run(cli_run *cli) {
   if (cli->status != 0)
     return cli->status;
   if (is_table)
-    print_table(command);
+    print_table(command, is_all);
   else if (command)
     cli_help(command);
   else
@@ -82,7 +85,7 @@ static int run(cli_run *cli) {
 
 const cli_command cli_command_help = {
     .name = "help",
-    .arguments = "[COMMAND] [--table]",
+    .arguments = "[COMMAND] [--table|--all]",
     .summary = "show the commands, or the options of one",
     .notes = "'man voxmend' has more to say, and so has the page of each command, such as 'man "
              "voxmend-voxelize'.\n\n"

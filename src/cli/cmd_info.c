@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** voxmend info: what is wrong with a mesh. */
+/** voxmend info: what is wrong with a mesh, or what a grid holds. */
 #include "cli/cli.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { KEY_LOCATE = CLI_KEY_COMMAND, KEY_LIST, KEY_INTERSECTIONS, KEY_FORCE };
 
@@ -96,20 +98,37 @@ static int count_openings(cli_run *cli, cli_openings *out, const description *d)
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
-static void show(const cli_run *cli, const description *d, const cli_defects *wanted, bool first) {
+/** What has been told so far. */
+typedef struct told {
+  bool any, is_grid; /**< and of what the last of it was */
+} told;
+
+/** Whether a file is the first of all, or stands behind one of the other kind. */
+static bool begins_table(told *before, bool is_grid) {
+  bool begins = !before->any || before->is_grid != is_grid;
+  *before = (told){true, is_grid};
+  return begins;
+}
+
+static void put_between(const cli_run *cli, told *before) {
+  if (before->any)
+    fputc('\n', cli->text);
+  before->any = true;
+}
+
+static void show(const cli_run *cli, const description *d, const cli_defects *wanted, told *before) {
   if (is_table(cli, wanted)) {
-    if (first)
+    if (begins_table(before, false))
       print_heading(cli);
     print_row(cli, d);
     return;
   }
-  if (!first)
-    fputc('\n', cli->text);
+  put_between(cli, before);
   describe(cli, d);
   cli_defects_print(cli, d->found.list);
 }
 
-static int look_at(cli_run *cli, json_t *reports, description *d, const cli_defects *wanted) {
+static int look_at(cli_run *cli, json_t *reports, description *d, const cli_defects *wanted, told *before) {
   if (vxm_mesh_census(&d->census, d->mesh, &cli->error) != VXM_OK)
     return cli_fail(cli);
   char sentence[CLI_SENTENCE];
@@ -119,14 +138,36 @@ static int look_at(cli_run *cli, json_t *reports, description *d, const cli_defe
   d->verdict = cli_verdict(sentence, &d->census, &openings, d->found.intersections);
   cli_progress_clear(cli);
   if (cli_summary(cli))
-    show(cli, d, wanted, json_array_size(reports) == 0);
+    show(cli, d, wanted, before);
   json_array_append_new(reports, describe_json(cli, d));
   return CLI_DONE;
 }
 
+static int examine_grid(cli_run *cli, json_t *reports, const char *path, const cli_defects *wanted,
+                        told *before) {
+  told now = *before;
+  cli_grid_row row = {name_width(cli), begins_table(&now, true), before->any};
+  int status = cli_grid_info(cli, reports, path, &row, is_table(cli, wanted));
+  if (status == CLI_DONE)
+    *before = now;
+  return status;
+}
+
+/** Whether a file is only what stands beside a grid, "grid.npy.json", among many. */
+static bool is_beside_grid(const cli_run *cli, const char *path) {
+  char *grid = cli_is_extension(path, "json") ? strndup(path, strlen(path) - strlen(".json")) : NULL;
+  bool is_one = grid && cli->argument_count > 1 && cli_is_grid_name(grid) && access(grid, R_OK) == 0;
+  free(grid);
+  return is_one;
+}
+
 /** Adds the file's object to `reports` if it can be read. */
-static int examine(cli_run *cli, json_t *reports, const char *path, const cli_defects *wanted) {
+static int examine(cli_run *cli, json_t *reports, const char *path, const cli_defects *wanted, told *before) {
   json_array_clear(cli->warnings);
+  if (is_beside_grid(cli, path))
+    return CLI_DONE;
+  if (cli_is_grid_name(path))
+    return examine_grid(cli, reports, path, wanted, before);
   vxm_mesh *mesh = NULL;
   if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
@@ -134,7 +175,7 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
   description d = {.path = path, .mesh = mesh, .census = VXM_CENSUS_INIT};
   int status = cli_defects_show(cli, &d.found, wanted, mesh);
   if (status == CLI_DONE)
-    status = look_at(cli, reports, &d, wanted);
+    status = look_at(cli, reports, &d, wanted, before);
   json_decref(d.found.list);
   vxm_mesh_destroy(mesh);
   return status;
@@ -157,9 +198,13 @@ static int read_arguments(cli_run *cli, cli_defects *wanted) {
       return CLI_STOP;
   }
   if (cli->argument_count < 1)
-    return cli_usage(cli, "a mesh is missing");
+    return cli_usage(cli, "a mesh or grid is missing");
   if (wanted->locate && cli->argument_count > 1)
     return cli_usage(cli, "--locate is for one mesh, not %d", cli->argument_count);
+  for (int i = 0; i < cli->argument_count; i++)
+    if ((wanted->locate || wanted->list || wanted->intersections) && cli_is_grid_name(cli->arguments[i]))
+      return cli_usage(cli, "--locate, --list and --intersections are for meshes, and %s is a grid",
+                       cli->arguments[i]);
   if (cli_defects_check(cli, wanted) == CLI_STOP)
     return CLI_STOP;
   cli_writes(cli, "--locate", wanted->locate, false);
@@ -175,8 +220,9 @@ static int run(cli_run *cli) {
   cli->read.colors = true;
   json_t *reports = json_array();
   int failed = 0;
+  told before = {false, false};
   for (int i = 0; i < cli->argument_count && !cli_signal(); i++)
-    failed += examine(cli, reports, cli->arguments[i], &wanted) != CLI_DONE;
+    failed += examine(cli, reports, cli->arguments[i], &wanted, &before) != CLI_DONE;
   if (failed == cli->argument_count || cli_signal()) {
     json_decref(reports);
     return CLI_FAILED;
@@ -192,19 +238,22 @@ static int run(cli_run *cli) {
 
 const cli_command cli_command_info = {
     .name = "info",
-    .arguments = "MESH... [OPTION]...",
-    .summary = "tell what is wrong with meshes",
+    .arguments = "MESH|GRID... [OPTION]...",
+    .summary = "tell what is wrong with meshes, and what grids hold",
     .notes =
         "Edges, components and repeated faces are counted after welding vertices at identical positions.\n"
         "Of several meshes each is a row of a table: open, forked and turned are edges of one face, of more\n"
         "than two, and of two that are wound against each other; with --verbose or --list, each is told in\n"
         "full. --json prints one object for one mesh and an array for several. Files that cannot be read "
         "are\n"
-        "named, the others are reported, and the exit status is 1.\n\n"
+        "named, the others are reported, and the exit status is 1.\n"
+        "Of a grid it tells dimensions, voxel size, where it lies, and what is set: ranges of numbers, the\n"
+        "voxels of each label with their names.\n\n"
         "Examples:\n"
         "  voxmend info chair.off\n"
         "  voxmend info --json *.obj > census.json\n"
-        "  voxmend info part.stl --locate wrong.ply",
+        "  voxmend info part.stl --locate wrong.ply\n"
+        "  voxmend info grids/*.npy",
     .options = known_options,
     .many = true,
     .run = run,

@@ -145,7 +145,7 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   results->octree = takes_octree(given, results);
   results->voxelize_ms = cli_clock() - start;
   int result = status == VXM_OK ? CLI_DONE : cli_fail(cli);
-  if (result == CLI_DONE && cli_summary(cli)) {
+  if (result == CLI_DONE && cli_summary(cli) && voxelize_is_told_before(given, results)) {
     cli_progress_clear(cli);
     voxelize_summarize_begin(cli, given, results);
   }

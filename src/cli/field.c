@@ -151,6 +151,7 @@ void cli_field_json(json_t *report, const cli_field *field) {
   if (field->coverage)
     json_object_set_new(report, "coverage", coverage_json(field));
   else if (field->color) {
+    json_object_set_new(report, "voxels", json_integer(field->coverage_report.voxelize->voxels));
     json_object_set_new(report, "color", cli_json_text(field->color_name));
     if (field->color_options.average)
       json_object_set_new(report, "color_average", json_true());
@@ -167,10 +168,11 @@ void cli_field_summarize(const cli_run *cli, const cli_field *field) {
     cli_row(cli, "coverage", "%" PRId64 " voxels full, %" PRId64 " in part", coverage->full,
             coverage->partial);
     cli_row(cli, "volume", "%.6g", coverage->volume);
-  } else if (field->color)
+  } else if (field->color) {
+    cli_row(cli, "voxels", "%" PRId64, field->coverage_report.voxelize->voxels);
     cli_row(cli, "colour", "%s%s", field->color_name,
             field->color_options.average ? ", the mean over the surface within a voxel" : "");
-  else if (field->labels)
+  } else if (field->labels)
     cli_labels_summarize(cli, field);
   else if (field->distance_options.band == 0)
     cli_row(cli, "distance", "%.6g to %.6g; exact everywhere", distance->min, distance->max);

@@ -8,13 +8,18 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-static const char *const known[] = {"off", "obj", "stl",  "ply", "gltf", "glb", "3mf",    "dae",
-                                    "fbx", "3ds", "step", "stp", "iges", "igs", "binvox", "npy",
-                                    "raw", "rle", "nrrd", "vdb", "nii",  "vti", "vtk",    "tif"};
-enum { KNOWN = sizeof known / sizeof known[0], NAME_SIZE = 256 };
+enum { KNOWN_MAX = 128, WORDS_SIZE = 1024, NAME_SIZE = 256 };
+
+/** Extensions of meshes and grids, also of those that need a module. */
+typedef struct extensions {
+  const char *name[KNOWN_MAX];
+  int count;
+  char words[WORDS_SIZE]; /**< those that are words of a text */
+} extensions;
 
 typedef struct content {
-  int64_t files[KNOWN], others, folders;
+  extensions known;
+  int64_t files[KNOWN_MAX], others, folders;
   char example[NAME_SIZE]; /**< the first file, by name, of the kind that most are of */
 } content;
 
@@ -23,17 +28,48 @@ static bool is_folder(const char *path) {
   return strcmp(path, "-") != 0 && stat(path, &info) == 0 && S_ISDIR(info.st_mode);
 }
 
-static int kind_of(const char *name) {
-  const char *dot = strrchr(name, '.');
-  for (int k = 0; dot && dot > name && k < KNOWN; k++)
-    if (strcasecmp(dot + 1, known[k]) == 0)
-      return k;
-  return -1;
+static void add_known(extensions *known, const char *name) {
+  for (int k = 0; k < known->count; k++)
+    if (strcmp(known->name[k], name) == 0)
+      return;
+  if (known->count < KNOWN_MAX)
+    known->name[known->count++] = name;
+}
+
+static void find_known(extensions *known) {
+  vxm_reading_info readers = VXM_READING_INFO_INIT;
+  vxm_reading_find(&readers, NULL);
+  for (int i = 0; cli_mesh_formats[i]; i++)
+    add_known(known, cli_mesh_formats[i]);
+  snprintf(known->words, sizeof known->words, "%s %s", readers.assimp_formats, readers.occt_formats);
+  char *rest = known->words;
+  for (char *word; (word = strsep(&rest, " "));)
+    if (*word)
+      add_known(known, word);
+  cli_formats grids = cli_formats_with(VXM_FORMAT_READ);
+  for (int i = 0; grids.name[i]; i++)
+    if (strcmp(grids.name[i], "png") != 0) /* pictures of any kind */
+      add_known(known, grids.name[i]);
+}
+
+/** The longest that fits: "scan.nii.gz" is no other .gz. */
+static int kind_of(const extensions *known, const char *name) {
+  int best = -1;
+  size_t length = strlen(name), longest = 0;
+  for (int k = 0; k < known->count; k++) {
+    size_t own = strlen(known->name[k]);
+    if (own > longest && length > own + 1 && name[length - own - 1] == '.' &&
+        strcasecmp(name + length - own, known->name[k]) == 0) {
+      best = k;
+      longest = own;
+    }
+  }
+  return best;
 }
 
 static int commonest(const content *found) {
   int best = 0;
-  for (int k = 1; k < KNOWN; k++)
+  for (int k = 1; k < found->known.count; k++)
     if (found->files[k] > found->files[best])
       best = k;
   return found->files[best] > 0 ? best : -1;
@@ -44,7 +80,7 @@ static void count(content *out, const char *folder, const struct dirent *entry) 
   if (entry->d_name[0] == '.')
     return;
   int length = snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-  int kind = kind_of(entry->d_name);
+  int kind = kind_of(&out->known, entry->d_name);
   if (length > 0 && length < (int)sizeof path && is_folder(path))
     out->folders++;
   else if (kind >= 0)
@@ -56,7 +92,7 @@ static void count(content *out, const char *folder, const struct dirent *entry) 
 static void find_example(content *out, struct dirent **entries, int number) {
   int kind = commonest(out);
   for (int i = 0; i < number && kind >= 0 && !out->example[0]; i++)
-    if (entries[i]->d_name[0] != '.' && kind_of(entries[i]->d_name) == kind)
+    if (entries[i]->d_name[0] != '.' && kind_of(&out->known, entries[i]->d_name) == kind)
       snprintf(out->example, sizeof out->example, "%s", entries[i]->d_name);
 }
 
@@ -65,6 +101,7 @@ static bool look_into(content *out, const char *folder) {
   struct dirent **entries;
   int number = scandir(folder, &entries, NULL, alphasort);
   *out = (content){.others = 0};
+  find_known(&out->known);
   for (int i = 0; i < number; i++)
     count(out, folder, entries[i]);
   find_example(out, entries, number < 0 ? 0 : number);
@@ -86,8 +123,8 @@ static void add(char text[CLI_LIST_MAX], int64_t number, const char *one, const 
 static void describe(char text[CLI_LIST_MAX], const content *found) {
   char name[16];
   text[0] = '\0';
-  for (int k = 0; k < KNOWN; k++) {
-    snprintf(name, sizeof name, ".%s", known[k]);
+  for (int k = 0; k < found->known.count; k++) {
+    snprintf(name, sizeof name, ".%s", found->known.name[k]);
     add(text, found->files[k], name, name);
   }
   bool any = text[0] != '\0';

@@ -60,8 +60,10 @@ void cli_labels_summarize(const cli_run *cli, const cli_field *field) {
   cli_row(cli, "voxels", "%" PRId64, voxelize->voxels);
   cli_row(cli, "hash", "%016" PRIx64, voxelize->hash);
   cli_row(cli, "labels",
-          "%" PRId64 " by %s; the nearest face decides %" PRId64 " voxels that several claim, and "
+          "%" PRId64 " by %s%s; the nearest face decides %" PRId64 " voxels that several claim, and "
           "%" PRId64 " that none does",
-          labels->labels, kinds[field->label_options.by], labels->contested, labels->unassigned);
+          labels->labels, kinds[field->label_options.by],
+          field->label_options.by == VXM_LABEL_PART ? ", connected pieces as in 'voxmend info'" : "",
+          labels->contested, labels->unassigned);
   summarize_table(cli, field->label_table);
 }

@@ -226,6 +226,28 @@ int cli_check_names(cli_run *cli) {
   return CLI_END;
 }
 
+/** The part of a name before the last '/', "/" or "."; to be freed. */
+static char *folder_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  size_t length = slash ? (size_t)(slash - path) : 0;
+  return slash ? strndup(path, length > 0 ? length : 1) : strdup(".");
+}
+
+bool cli_check_places(cli_run *cli) {
+  bool good = true;
+  for (int i = 0; i < cli->write_count && good; i++) {
+    const cli_written *output = &cli->writes[i];
+    struct stat info;
+    char *folder = strcmp(output->path, "-") == 0 ? NULL : folder_name(output->path);
+    good = !folder || (stat(folder, &info) == 0 && S_ISDIR(info.st_mode));
+    if (!good)
+      cli_fail_text(cli, "%s '%s': there is no folder %s; make it first", output->option, output->path,
+                    folder);
+    free(folder);
+  }
+  return good;
+}
+
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value) {
   static const char *const polygons[] = {"split", "keep", NULL};
   int choice = 0, result = cli_choose(cli, &choice, "polygons", value, polygons);

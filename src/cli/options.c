@@ -66,6 +66,10 @@ static bool is_replaced(const cli_command *command, const cli_option *common) {
   return false;
 }
 
+bool cli_is_refused(const cli_command *command, const char *name) {
+  return command->others_refused && cli_read_choice(name, command->others_refused) >= 0;
+}
+
 void cli_help(const cli_command *command) {
   if (command->print_help) {
     command->print_help();
@@ -99,11 +103,14 @@ static void print_row(const cli_option *option) {
          (int)strcspn(option->help, "\n"), option->help);
 }
 
-void cli_help_table(const cli_command *command) {
+void cli_help_table(const cli_command *command, bool is_all) {
   if (command->print_help)
     return;
   for (const cli_option *option = command->options; option->name; option++)
     print_row(option);
+  for (const cli_option *option = is_all ? command->others : NULL; option && option->name; option++)
+    if (!is_replaced(command, option) && !cli_is_refused(command, option->name))
+      print_row(option);
   for (const cli_option *option = common_options; option->name; option++)
     if (!is_replaced(command, option))
       print_row(option);
@@ -267,6 +274,8 @@ int cli_next_option(cli_run *cli, const char **value) {
 
 bool cli_start(cli_run *cli) {
   cli_progress_init(cli);
+  if (!cli_check_places(cli))
+    return false;
   if (vxm_context_create(&cli->context, &cli->limits, &cli->error) == VXM_OK &&
       vxm_context_hold_files(cli->context, &cli->error) == VXM_OK)
     return !cli->report || cli_try_file(cli, cli->report);

@@ -37,10 +37,14 @@ const vxm_space *cli_values_space(const cli_values *values) {
   return values->grid ? vxm_grid_space(values->grid) : vxm_field_space(values->field);
 }
 
-/** "distance, float32 from -0.1 to 0.2" */
-static void describe(char text[128], const vxm_field *field) {
+void cli_values_text(char text[128], const vxm_field *field) {
   vxm_field_range range = VXM_FIELD_RANGE_INIT;
   vxm_field_kind kind = vxm_field_kind_of(field);
+  if (kind == VXM_FIELD_COLORS) {
+    snprintf(text, 128, "colours, red, green, blue and opacity, %s",
+             vxm_scalar_name(vxm_field_scalar(field)));
+    return;
+  }
   vxm_field_measure(&range, field, NULL);
   snprintf(text, 128, "%s%s%s from %.6g to %.6g", kind == VXM_FIELD_NUMBERS ? "" : vxm_field_kind_name(kind),
            kind == VXM_FIELD_NUMBERS ? "" : ", ", vxm_scalar_name(vxm_field_scalar(field)), range.min,
@@ -49,7 +53,7 @@ static void describe(char text[128], const vxm_field *field) {
 
 static int refuse(cli_run *cli, const vxm_field *field, const char *path, const char *why) {
   char text[128];
-  describe(text, field);
+  cli_values_text(text, field);
   return cli_fail_text(cli,
                        "%s: it holds numbers (%s), but %s: choose --threshold T (set where T or greater) or "
                        "--below T (set where less)",
@@ -83,7 +87,7 @@ void cli_values_row(const cli_run *cli, const cli_values *values) {
     cli_row(cli, "voxels", "%" PRId64, vxm_grid_count(values->grid));
     return;
   }
-  describe(text, values->field);
+  cli_values_text(text, values->field);
   cli_row(cli, "values", "%s", text);
 }
 

@@ -40,7 +40,10 @@ bool voxelize_is_sliced(const char *format);
 
 /** The report for --json and --report. */
 json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const voxelize_outcome *results);
-/** What is known before the voxels are made, with the estimate if it is wanted or large. */
+/** Whether the summary begins before the voxels are made: it is all that is wanted, or they may take long.
+ * Else nothing is told of what fails. */
+bool voxelize_is_told_before(const voxelize_request *given, const voxelize_outcome *results);
+/** What is known before the voxels are made, with the estimate. */
 void voxelize_summarize_begin(const cli_run *cli, const voxelize_request *given,
                               const voxelize_outcome *results);
 /** What came of it. */

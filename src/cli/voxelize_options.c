@@ -100,7 +100,10 @@ const cli_option voxelize_options[] = {
     {KEY_COLOR_AVERAGE, "color-average", NULL,
      "with --color mesh: the mean over the surface within a voxel, where there is any"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
-    {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
+    {KEY_SPARSE, "sparse", NULL,
+     "make the voxels as an octree, whose memory follows the surface, for 1024 and more\n"
+     "along a side; a .octree file follows it too, and 'convert --window' cuts grids out\n"
+     "of that; not for formats that need the whole grid"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
     {KEY_DRY_RUN, "dry-run", NULL, "tell the grid and the memory it takes, and write nothing"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},

@@ -53,6 +53,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   }
   if (given->engine.engine)
     json_object_set_new(report, "engine", cli_engine_json(&given->engine));
+  json_object_set_new(report, "components", json_integer(results->voxelize.components));
   json_object_set_new(report, "parts", json_integer(results->voxelize.parts));
   json_object_set_new(report, "closed_parts", json_integer(results->voxelize.closed_parts));
   json_object_set_new(report, "capped_parts", json_integer(results->voxelize.capped_parts));
@@ -89,11 +90,14 @@ static void summarize_repair(const cli_run *cli, const vxm_repair_report *repair
   fprintf(cli->text, "%s\n", *separator ? "" : repair->pass_count ? "nothing to do" : "not wanted");
 }
 
-/** "3: 1 closed, 2 closed by caps over 7 holes"; kinds without a part are left out. */
+/** "3 made of 5 components: 1 closed, 1 closed by caps over 7 rims, 1 of all that stay open"; kinds without a
+ * part are left out. */
 static void summarize_parts(const cli_run *cli, const vxm_voxelize_report *report) {
   int64_t open = report->parts - report->closed_parts - report->capped_parts;
   const char *separator = ": ";
   fprintf(cli->text, "%-10s %" PRId64, "parts", report->parts);
+  if (report->components > report->parts)
+    fprintf(cli->text, " made of %" PRId64 " components", report->components);
   if (report->closed_parts > 0) {
     fprintf(cli->text, "%s%" PRId64 " closed", separator, report->closed_parts);
     separator = ", ";
@@ -104,7 +108,8 @@ static void summarize_parts(const cli_run *cli, const vxm_voxelize_report *repor
     separator = ", ";
   }
   if (open > 0)
-    fprintf(cli->text, "%s%" PRId64 " open", separator, open);
+    fprintf(cli->text, "%s%" PRId64 " %s", separator, open,
+            open == 1 && report->components > report->parts ? "of all that stay open" : "open");
   fputc('\n', cli->text);
 }
 
@@ -117,15 +122,16 @@ static void summarize_input(const cli_run *cli, const voxelize_outcome *results)
   cli_rows_space(cli, &results->space);
 }
 
-/** The estimate: always with --dry-run, else for what may take long. */
+bool voxelize_is_told_before(const voxelize_request *given, const voxelize_outcome *results) {
+  const uint64_t large = UINT64_C(1) << 26; /* 64 MiB */
+  return given->dry_run || results->estimate.grid_bytes >= large;
+}
+
 static void summarize_estimate(const cli_run *cli, const voxelize_request *given,
                                const voxelize_outcome *results) {
-  const uint64_t large = UINT64_C(1) << 26; /* 64 MiB */
   const vxm_estimate *estimate = &results->estimate;
   char size[24], memory[24];
   cli_bytes_text(size, estimate->grid_bytes);
-  if (!given->dry_run && estimate->grid_bytes < large)
-    return;
   if (results->octree)
     cli_row(cli, "estimate", "%s of voxels, made as an octree: its memory follows the surface", size);
   else
@@ -148,6 +154,8 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
   const vxm_space *space = &results->space;
   double cells = (double)space->dims[0] * (double)space->dims[1] * (double)space->dims[2];
   char bytes[24];
+  if (!voxelize_is_told_before(given, results))
+    summarize_input(cli, results);
   cli_engine_summarize(cli, &given->engine);
   if (report->parts > 0) /* none were looked for where no solid was made */
     summarize_parts(cli, report);

@@ -155,12 +155,16 @@ typedef struct vxm_voxelize_report {
   double fill_ms;      /**< of what is written to a file: time for making the voxels; else 0 */
   double write_ms;     /**< and for writing them */
   int64_t thin_voxels; /**< voxels that were added because parts are thinner than one */
-  double thin_share;   /**< the share of the surface that needed them: 0 to 1 */
+  double thin_share;  /**< the share of the surface that needed them: 0 to 1; of signed distances, that has no
+                         voxel inside */
+  int64_t components; /**< pieces that share vertices, also after a repair has cut them apart, of which the
+                         parts are made: those that stay open are one part. 1 with VXM_SPLIT_MODE_WHOLE.
+                         Labels by part count what touches as one */
 } vxm_voxelize_report;
 
 /** Initial value of vxm_voxelize_report. */
 #define VXM_VOXELIZE_REPORT_INIT \
-  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0, 0.0 }
+  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0, 0.0, 0 }
 
 /**
  * Voxelizes the inside of a mesh: voxel (i,j,k) is set where its centre is inside, and where parts thinner

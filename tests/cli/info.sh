@@ -30,6 +30,19 @@ run 'voxmend info missing.off in/cube.off empty.off'
 run 'voxmend info --json missing.off in/cube.off empty.off'
 run 'voxmend info --memlimit 1K in/torus.off'
 
+say "# grids"
+voxmend voxelize in/cavity.off -o g.npy -r 8 --labels part -q
+voxmend voxelize in/cavity.off -o g.nrrd -r 8 --distance signed -q
+voxmend voxelize in/cavity.off -o g.binvox -r 8 -q
+voxmend voxelize in/cavity.off -o g.octree -r 16 --sparse -q
+run 'voxmend info g.npy'
+run 'voxmend info g.nrrd'
+run 'voxmend info g.binvox'
+run 'voxmend info g.* in/cube.off'
+run 'voxmend info g.npy g.binvox --json'
+run 'voxmend info g.binvox --list 3'
+run 'voxmend info g.raw'
+
 say "# report and progress"
 run 'voxmend info -q --report r.json in/cube.off && cat r.json'
 run 'voxmend info -q --report no/such/r.json in/cube.off'

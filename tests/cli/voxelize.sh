@@ -55,6 +55,15 @@ run 'voxmend voxelize thin.off -o t.npy -r 24 --thin drop --json 2>&1 | grep -A 
 run 'voxmend voxelize in/cube.off -o t.npy -r 24 | grep ^thin'
 run 'voxmend voxelize in/rocket.off -o t.npy -r 16 --coverage 2 2>&1 | grep -E "^coverage|surface"'
 
+run 'voxmend voxelize thin.off -o t.npy -r 24 --distance signed 2>&1 | grep -c "no distance there is negative"'
+run 'voxmend voxelize in/cube.off -o t.npy -r 24 --distance signed 2>&1 | grep -c "no distance there is negative"'
+
+say "# beyond the grid"
+printf 'OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n' >floor.off
+run 'voxmend voxelize floor.off -o t.npy -r 8 --bounds 0,0,0,1,1,1 2>&1 | grep -E "^voxels|outside"'
+run 'voxmend voxelize in/cube.off -o t.npy -r 8 --bounds 0,0,0,1,1,0.5 2>&1 | grep -E "^voxels|outside"'
+run 'voxmend voxelize in/cube.off -o like.npy -r 8 --bounds 0.5,0,0,2,1,1 -q; voxmend voxelize in/cube.off -o t.npy --like like.npy --mode surface --json -q | grep outside'
+
 say "# a number per voxel"
 run 'voxmend voxelize in/cube.off -o c.nrrd -r 8 --pad 1 --coverage 4'
 run 'voxmend voxelize in/cube.off -o c.npy -r 8 --pad 1 --coverage 2 --scalar uint8 --json'

@@ -2,10 +2,15 @@
 #include "gridio/picture/slice.h"
 #include "gridio/common/label_color.h"
 #include "gridio/common/png_write.h"
+#include "gridio/picture/digits.h"
 #include "gridio/picture/palette.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+/** Numbers beside the bar of colours, from its upper end to its lower. */
+enum { NUMBERS = 5, NUMBER_SIZE = 16 };
 
 typedef struct slice {
   const vxm_grid *grid;
@@ -18,6 +23,8 @@ typedef struct slice {
   double left, top;      /**< the corner of the drawing, pixels */
   double size[2];        /**< its size, pixels */
   int bar_left, bar_end; /**< columns of the bar of colours; none if they are the same */
+  int pixel;             /**< of a digit is so many wide and high; 0 = there is no room for numbers */
+  char number[NUMBERS][NUMBER_SIZE];
 } slice;
 
 /* ---- Cells ---- */
@@ -121,11 +128,25 @@ static void color_place(uint8_t rgb[3], const slice *s, double u, double v, cons
 
 /* ---- The picture ---- */
 
+/** The numbers that are in a row of the picture, in grey. */
+static void draw_numbers(unsigned char *row, const slice *s, int y) {
+  if (s->pixel == 0)
+    return;
+  int height = VXM_DIGIT_HEIGHT * s->pixel, left = s->bar_end + 2 * s->pixel;
+  for (int n = 0; n < NUMBERS; n++) {
+    int down = y - ((int)(s->top + s->size[1] * n / (NUMBERS - 1)) - height / 2);
+    for (int x = left; x < s->width && down >= 0 && down < height; x++)
+      if (vxm_digits_ink(s->number[n], (x - left) / s->pixel, down / s->pixel))
+        memset(row + 3 * x, 64, 3);
+  }
+}
+
 static void draw_row(unsigned char *row, const slice *s, int y) {
   const int64_t *n = s->field ? s->field->space.dims : s->grid->space.dims;
   const double step[2] = {(double)n[s->right] / s->size[0], (double)n[s->up] / s->size[1]};
   double down = y + 0.5 - s->top, v = (s->size[1] - down) * step[1];
   memset(row, 255, 3 * (size_t)s->width);
+  draw_numbers(row, s, y);
   if (down < 0 || down > s->size[1])
     return;
   for (int x = 0; x < s->width; x++) {
@@ -167,10 +188,25 @@ static vxm_status draw(const slice *s, vxm_context *context, const char *path, v
   return status;
 }
 
-/** Where the drawing and the bar of colours lie. */
+/** Prints the numbers, and returns the columns that they take. */
+static int put_numbers(slice *s) {
+  const int small = 200, usual = 300;
+  int least = s->width < s->height ? s->width : s->height;
+  size_t longest = 0;
+  s->pixel = least < small ? 0 : least < usual ? 1 : least / usual;
+  for (int n = 0; n < NUMBERS; n++) {
+    double value = s->high - (s->high - s->low) * n / (NUMBERS - 1);
+    snprintf(s->number[n], NUMBER_SIZE, "%.3g", value + 0.0); /* no -0 */
+    longest = strlen(s->number[n]) > longest ? strlen(s->number[n]) : longest;
+  }
+  return s->pixel * (2 + VXM_DIGIT_WIDTH * (int)longest);
+}
+
+/** Where the drawing and the bar of colours with its numbers lie. */
 static void lay_out(slice *s, const vxm_space *space) {
   bool has_bar = s->field && s->kind != VXM_FIELD_LABELS && s->kind != VXM_FIELD_COLORS;
-  double bar = has_bar ? 0.06 * s->width : 0, room[2] = {0.94 * s->width - bar, 0.94 * s->height};
+  double strip = has_bar ? 0.06 * s->width : 0, bar = strip + (has_bar ? put_numbers(s) : 0),
+         room[2] = {0.94 * s->width - bar, 0.94 * s->height};
   double extent[2] = {(double)space->dims[s->right] * (space->voxel_size[s->right] * 0x1p-60),
                       (double)space->dims[s->up] * (space->voxel_size[s->up] * 0x1p-60)};
   double scale = fmin(room[0] / extent[0], room[1] / extent[1]);
@@ -178,8 +214,8 @@ static void lay_out(slice *s, const vxm_space *space) {
     s->size[a] = fmax(extent[a] * scale, 1);
   s->left = (s->width - bar - s->size[0]) / 2;
   s->top = (s->height - s->size[1]) / 2;
-  s->bar_left = has_bar ? (int)(s->left + s->size[0] + bar / 3) : 0;
-  s->bar_end = has_bar ? s->bar_left + (int)(bar / 2) : 0;
+  s->bar_left = has_bar ? (int)(s->left + s->size[0] + strip / 3) : 0;
+  s->bar_end = has_bar ? s->bar_left + (int)(strip / 2) : 0;
 }
 
 vxm_status vxm_gridio_slice(const vxm_grid *grid, const vxm_field *field, vxm_field_kind kind,

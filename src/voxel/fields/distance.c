@@ -241,6 +241,24 @@ static vxm_status measure_windows(measure *m, const vxm_field_target *target, co
   return status;
 }
 
+/**
+ * Finds out how much of the surface has no inside in the grid, for a warning. Only where the whole solid is
+ * at hand, whose words are overwritten, and nothing that memory is short for.
+ */
+static vxm_status look_for_thin(measure *m, int separating, vxm_error *error) {
+  vxm_voxel_pass *solid = &m->pass->solid;
+  vxm_error local = VXM_ERROR_INIT;
+  bool too_many = false;
+  if (separating == 0 || m->solid.begin > 0 || m->solid.end < m->solid.slow_dim)
+    return VXM_OK;
+  vxm_thin_add(&m->pass->thin.thin, &m->solid, 0, m->solid.end, &solid->analysis->triangles, &solid->placed,
+               separating, NULL, &too_many, &local);
+  if (local.code != VXM_ERROR_CANCELLED)
+    return VXM_OK;
+  vxm_error_pass(error, &local);
+  return local.code;
+}
+
 static void sum_up(vxm_distance_report *report, const measure *m, int workers) {
   int64_t inside = 0;
   *report = (vxm_distance_report){.voxelize = report->voxelize, .min = INFINITY, .max = -INFINITY};
@@ -297,10 +315,13 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
   vxm_status status = local.code == VXM_OK ? make_workers(m, workers, &local) : local.code;
   if (status == VXM_OK && m->is_signed)
     status = vxm_model_begin(&m->pass, model, m->space, NULL, NULL, &local);
+  int separating = m->pass ? m->pass->separating : 0;
   if (status == VXM_OK && m->pass)
     vxm_model_pass_make_field(m->pass);
   if (status == VXM_OK)
     status = measure_windows(m, target, plan, &local);
+  if (status == VXM_OK && m->pass)
+    status = look_for_thin(m, separating, &local);
   if (status == VXM_OK)
     sum_up(report, m, workers);
   vxm_model_close(model, m->pass);

@@ -70,6 +70,7 @@ vxm_status vxm_model_pass_place(vxm_model_pass *pass, const vxm_lattice *lattice
   bool displaces = solid->engine && solid->engine->displaces; /* where to is not known here */
   pass->separating = displaces ? 0 : vxm_thin_separating(&pass->solid.options);
   pass->is_field = false;
+  pass->transform = transform;
   solid->mirrored = false;
   vxm_status status = transform ? check_transform(transform, &solid->mirrored, error) : VXM_OK;
   if (status != VXM_OK)

@@ -15,6 +15,7 @@ typedef struct vxm_model_pass {
   size_t part_room;             /**< of solid.has_voxels */
   vxm_surface *surface;         /**< NULL before the first grid that wants it */
   const double (*vertices)[3];  /**< where the soup's have moved to; NULL = nowhere */
+  const double *transform;      /**< of the grid that is made; NULL = none */
   vxm_slice_buffer shell_solid; /**< the solid around a window of its shell */
   vxm_thin_window thin;
   int separating; /**< what vxm_thin_separating says of the options; 0 where only centres are asked for */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model/model_report.h"
 #include "voxel/solid/outside_parts.h"
+#include "voxel/solid/overhang.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -90,6 +91,65 @@ static void warn_of_empty_parts(vxm_model_pass *pass, const vxm_voxelize_report 
              report->outside_parts, report->parts, name_parts(pass, true, report->outside_parts, names));
 }
 
+/** "upper x and lower z sides" */
+static const char *name_sides(const vxm_overhang *overhang, char names[80]) {
+  int count = 0, named = 0;
+  size_t used = 0;
+  for (int a = 0; a < 3; a++)
+    count += overhang->below[a] + overhang->above[a];
+  for (int s = 0; s < 6; s++) {
+    int a = s / 2;
+    if (!(s % 2 ? overhang->above[a] : overhang->below[a]))
+      continue;
+    const char *between = named == 0 ? "" : named + 1 == count ? " and " : ", ";
+    used += (size_t)snprintf(names + used, 80 - used, "%s%s %c", between, s % 2 ? "upper" : "lower", 'x' + a);
+    named++;
+  }
+  snprintf(names + used, 80 - used, count == 1 ? " side" : " sides");
+  return names;
+}
+
+/** Not of variants that are drawn for training, which go beyond their grid as they were told to. */
+static void warn_of_overhang(vxm_model_pass *pass, const vxm_voxelize_report *report) {
+  char names[80];
+  if (report->voxels == 0 || pass->vertices || pass->solid.motion)
+    return;
+  vxm_overhang overhang = vxm_overhang_of(&pass->solid.analysis->triangles, &pass->space, pass->transform);
+  if (overhang.share > 0)
+    vxm_warn(
+        pass->warnings,
+        "%.3g %% of the surface lies outside of the grid, beyond its %s, and is cut off: wider --bounds, "
+        "a larger grid for --like, or neither of them take in all",
+        100 * overhang.share, name_sides(&overhang, names));
+}
+
+/** Of signed distances, in which nothing is added. */
+static void warn_of_thin(vxm_model_pass *pass, const vxm_voxelize_report *report) {
+  const double noticed = 0.005;
+  if (pass->is_field && report->thin_share >= noticed)
+    vxm_warn(
+        pass->warnings,
+        "%.3g %% of the surface is thinner than a voxel, so that no distance there is negative: a higher "
+        "resolution (-r) or --distance unsigned show it, and so does 'voxmend remesh' as a mesh",
+        100 * report->thin_share);
+}
+
+/** What it means for the grid, and what helps. */
+static void warn_of_open(vxm_model_pass *pass, const vxm_voxelize_report *report) {
+  bool winding = report->winding_decided > 0;
+  const int64_t *dims = pass->space.dims;
+  double voxels = (double)dims[0] * (double)dims[1] * (double)dims[2];
+  vxm_warn(pass->warnings,
+           "the model is open (%zu odd edges): %" PRId64 " voxels, %.3g %% of the grid, are inside or not by "
+           "%s; %s",
+           pass->solid.analysis->triangles.split.odd_edge_count, report->contested,
+           100 * (double)report->contested / voxels, winding ? "the winding number" : "a vote",
+           winding
+               ? "that is right where openings are small: look at it with 'view'; 'voxmend repair --level "
+                 "closed' closes it before, --confidence tells how sure each voxel is"
+               : "that may leave holes and streaks: --vote auto asks the winding number");
+}
+
 static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
   vxm_warnings *warnings = pass->warnings;
   bool faces = vxm_faces_wanted(&pass->solid.options);
@@ -103,16 +163,13 @@ static void warn(vxm_model_pass *pass, const vxm_voxelize_report *report) {
              "resolution (-r)",
              pass->is_field ? "" : "--thin keep or ");
   warn_of_empty_parts(pass, report);
+  warn_of_thin(pass, report);
+  warn_of_overhang(pass, report);
   const vxm_engine *engine = pass->solid.engine;
   if (engine && engine->falls_back && !engine->ops)
     vxm_warn(warnings, "%s", engine->info.note);
   if (report->contested > 0)
-    vxm_warn(warnings,
-             "the model is open (%zu odd edges) and x, y and z disagree on %" PRId64
-             " voxels, decided by %s; "
-             "compare --method winding, --vote majority and --parts whole",
-             pass->solid.analysis->triangles.split.odd_edge_count, report->contested,
-             report->winding_decided > 0 ? "the winding number" : "the vote");
+    warn_of_open(pass, report);
 }
 
 void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t voxels, uint64_t hash) {
@@ -129,7 +186,8 @@ void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t
       .winding_decided = pass->solid.winding_decided,
       .voxels = voxels,
       .hash = hash,
-      .thin_voxels = pass->thin.thin.added};
+      .components = (int64_t)split->component_count,
+      .thin_voxels = pass->is_field ? 0 : pass->thin.thin.added};
   if (pass->thin.thin.area > 0)
     report->thin_share =
         fmin((double)pass->thin.thin.area / VXM_OFFSET_UNIT / surface_area(&pass->solid, false), 1);

@@ -239,20 +239,24 @@ static double squared_distance(const double *p, const double *q) {
   return sum;
 }
 
-/** Of the box of all points but the apexes. */
-static double squared_diagonal(const vxm_triangle_set *triangles) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+static void find_box(vxm_triangle_set *triangles) {
+  double *low = triangles->low, *high = triangles->high;
+  for (int a = 0; a < 3; a++) {
+    low[a] = INFINITY;
+    high[a] = -INFINITY;
+  }
   for (size_t p = 0; p < triangles->first_apex; p++)
     for (int a = 0; a < 3; a++) {
-      low[a] = fmin(low[a], triangles->positions[p][a]);
-      high[a] = fmax(high[a], triangles->positions[p][a]);
+      double at = triangles->positions[p][a]; /* which may be no number */
+      low[a] = at < low[a] ? at : low[a];
+      high[a] = at > high[a] ? at : high[a];
     }
-  return squared_distance(low, high);
 }
 
 /** Sums up how long triangles are. A cone reaches from its edge to somewhere among the triangles. */
 static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
   size_t cones = 0;
+  find_box(triangles);
   for (size_t f = 0; f < triangles->triangle_count; f++) {
     const uint32_t *corner = triangles->corners[f];
     vxm_status status = vxm_ask_at(f, triangles->context, error);
@@ -272,7 +276,7 @@ static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
     triangles->lengths.squared += squared;
   }
   if (cones > 0) {
-    double diagonal = squared_diagonal(triangles);
+    double diagonal = squared_distance(triangles->low, triangles->high);
     triangles->lengths.sum += (double)cones * sqrt(diagonal);
     triangles->lengths.squared += (double)cones * diagonal;
   }

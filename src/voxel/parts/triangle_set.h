@@ -53,6 +53,7 @@ typedef struct vxm_triangle_set {
   size_t first_apex, point_count;
   double (*positions)[3];   /**< of the points before first_apex, model units */
   uint32_t *vertex;         /**< of the same: the soup's vertex; a greater number is a cap's own point */
+  double low[3], high[3];   /**< the box of the same */
   vxm_edge_lengths lengths; /**< model units */
   vxm_split split;          /**< trimmed: counts only */
 } vxm_triangle_set;

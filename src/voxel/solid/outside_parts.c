@@ -18,8 +18,9 @@ bool vxm_part_is_outside(const vxm_voxel_pass *pass, size_t part) {
     }
   for (int a = 0; a < 3 && p->begin < p->caps; a++) {
     int64_t end = lattice->space.dims[a] * lattice->unit, half = lattice->unit / 2;
-    bool before = most[a] <= 0 || (most[a] < half && least[a] < -half);
-    bool behind = least[a] >= end || (least[a] > end - half && most[a] > end + half);
+    bool before = most[a] < 0 || (most[a] == 0 && least[a] < 0) || (most[a] < half && least[a] < -half);
+    bool behind = least[a] > end || (least[a] == end && most[a] > end) ||
+                  (least[a] > end - half && most[a] > end + half);
     if (before || behind)
       return true;
   }
