@@ -30,7 +30,7 @@ const cli_option batch_options[] = {
     {'o', "output", "DIR", "folder of what is made; its folders are those of the inputs"},
     {KEY_FORMAT, "format", "F",
      "of the grids: binvox, npy, raw, rle, nrrd, vdb, bt, nii, nii.gz, vti, vtk, tif, h5,\n"
-     "obj, ply, stl or off [binvox]"},
+     "zarr, obj, ply, stl or off [binvox]"},
     {KEY_REPAIR, "repair", "OPTIONS",
      "write the repaired meshes too, with these options of 'voxmend repair', such as\n"
      "\"--level closed --format ply\""},

@@ -59,11 +59,11 @@ enum {
 #define CLI_GRID_FILES                                                                    \
   "file to write: .binvox, .rle, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5,\n" \
   ".vdb, .bt, .npy or .raw (the last three with a .json beside them), .vox, .schem or\n"  \
-  ".litematic, a picture for each slice (slice_%04d.png, with a .json), or the grid\n"    \
-  "as a mesh: .obj, .ply, .stl, .off, .glb"
-#define CLI_GRID_FORMATS                                                                 \
-  "binvox, npy, raw, rle, nrrd, vdb, octree, bt, nii, nii.gz, vti, vtk, tif, h5, obj,\n" \
-  "ply, stl, off, glb, vox, schem, litematic or png [by the name of the output]"
+  ".litematic, .zarr (a folder), a picture for each slice (slice_%04d.png, with a\n"      \
+  ".json), or the grid as a mesh: .obj, .ply, .stl, .off, .glb"
+#define CLI_GRID_FORMATS                                                            \
+  "binvox, npy, raw, rle, nrrd, vdb, octree, bt, nii, nii.gz, vti, vtk, tif, h5,\n" \
+  "zarr, obj, ply, stl, off, glb, vox, schem, litematic or png [by the name of the output]"
 
 /** For the tables of commands that make voxels of the numbers in a file; cli_threshold_read takes their
  * values. */
@@ -387,6 +387,8 @@ typedef struct cli_style {
 int cli_read_up(cli_run *cli, cli_style *style, const char *value);
 /** CLI_STOP if the format has no use for what was given. */
 int cli_check_style(cli_run *cli, const cli_style *style, const char *format);
+/** CLI_STOP if the format is not one of meshes that heed --polygons keep and --no-manifold. */
+int cli_check_quads(cli_run *cli, bool keep_polygons, bool keep_contacts, const char *format);
 /** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
 #define CLI_OPTION_FORCE(key) \

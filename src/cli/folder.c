@@ -7,10 +7,11 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
-static const char *const known[] = {"off", "obj", "stl",  "ply", "gltf", "glb", "3mf",    "dae",
-                                    "fbx", "3ds", "step", "stp", "iges", "igs", "binvox", "npy",
-                                    "raw", "rle", "nrrd", "vdb", "nii",  "vti", "vtk",    "tif"};
+static const char *const known[] = {"off",  "obj",  "stl", "ply",  "gltf", "glb",    "3mf", "dae", "fbx",
+                                    "3ds",  "step", "stp", "iges", "igs",  "binvox", "npy", "raw", "rle",
+                                    "nrrd", "vdb",  "nii", "vti",  "vtk",  "tif",    "zarr"};
 enum { KNOWN = sizeof known / sizeof known[0], NAME_SIZE = 256 };
 
 typedef struct content {
@@ -21,6 +22,18 @@ typedef struct content {
 static bool is_folder(const char *path) {
   struct stat info;
   return strcmp(path, "-") != 0 && stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+/** A folder that is one grid: a Zarr array, whatever its name, or what its reader says more of. */
+static bool is_grid(const char *path) {
+  static const char *const marks[] = {".zarray", ".zgroup", "zarr.json"};
+  char inner[4096];
+  for (int m = 0; m < 3; m++) {
+    int length = snprintf(inner, sizeof inner, "%s/%s", path, marks[m]);
+    if (length > 0 && length < (int)sizeof inner && access(inner, F_OK) == 0)
+      return true;
+  }
+  return false;
 }
 
 static int kind_of(const char *name) {
@@ -45,7 +58,7 @@ static void count(content *out, const char *folder, const struct dirent *entry) 
     return;
   int length = snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
   int kind = kind_of(entry->d_name);
-  if (length > 0 && length < (int)sizeof path && is_folder(path))
+  if (length > 0 && length < (int)sizeof path && is_folder(path) && !(kind >= 0 && is_grid(path)))
     out->folders++;
   else if (kind >= 0)
     out->files[kind]++;
@@ -123,7 +136,7 @@ int cli_check_folders(cli_run *cli) {
   if (cli->command->folders || (cli->command->many && cli->argument_count > 1))
     return CLI_END;
   for (int i = 0; i < cli->argument_count; i++)
-    if (is_folder(cli->arguments[i]))
+    if (is_folder(cli->arguments[i]) && !is_grid(cli->arguments[i]))
       return refuse(cli, cli->arguments[i]);
   return CLI_END;
 }
