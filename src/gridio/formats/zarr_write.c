@@ -51,7 +51,7 @@ static vxm_zarr_array describe(const vxm_space *space, const vxm_values_spec *va
     a.chunk[i] = a.shape[i] < CHUNK ? a.shape[i] : CHUNK;
   a.chunk[3] = 4;
   while (a.chunk[0] > CHUNK_X_MIN && (uint64_t)a.chunk[0] * slice_bytes(space, values) > SLAB_BYTES)
-    a.chunk[0] = (a.chunk[0] + 1) / 2;
+    a.chunk[0] = a.chunk[0] / 2 > CHUNK_X_MIN ? a.chunk[0] / 2 : CHUNK_X_MIN;
   return a;
 }
 

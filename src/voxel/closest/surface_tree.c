@@ -253,7 +253,7 @@ static const double disc_far = 4;
 /** More than what floats within that lose in a squared distance, some 2e-5. */
 static const float square_slack = 1e-4F;
 /** Coordinates of which the last digits matter leave no room for that. */
-static const double centre_far = 1e8;
+static const double centre_far = 1e5;
 
 /** The squared distance of a point, from the middle, to a disc. */
 static double to_disc(const disc *d, const double off[3]) {

@@ -105,8 +105,8 @@ static void put_color(uint8_t value[4], const double light[3]) {
   value[3] = 255;
 }
 
-/** Voxels along an edge of a tile, whose voxels look for what is near together; its parts do so in turn, down
- * to those of LEAST voxels along an edge. */
+/** Voxels along an edge of a tile, which look together for what may be near; its halves do so in turn, over
+ * so many levels, where there are voxels enough for it to be worth it. */
 enum { TILE = 8, LEVELS = 3, WORTH = 6 };
 
 static void find_centre(double p[3], const vxm_space *space, const int64_t at[3]) {
