@@ -305,7 +305,7 @@ class VoxelGrid(Placed, Shown):
         return _grid_convert.to_open3d(self)
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
-        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .octree, .bt, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .vox, .schem,
+        """Writes .binvox, .npy, .raw, .rle, .nrrd, .vdb, .octree, .bt, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .zarr, .vox, .schem,
         .litematic, or the surface as .obj, .ply, .stl, .off, .glb."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
@@ -323,7 +323,7 @@ def _restore(kind: Type[VoxelGrid], place: Tuple[Any, ...], words: Uint64s, repo
 
 
 def read(path: Path, *, at_least: Optional[float] = None, below: Optional[float] = None) -> VoxelGrid:
-    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd, .vdb, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .vox,
+    """Reads a grid: .binvox, .npy, .raw, .rle, .nrrd, .vdb, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .zarr, .vox,
     .schem or .litematic; what is odd about it is told as VoxmendWarning.
 
     Numbers are taken as set and clear voxels only if nothing is lost: all are 0 or 1, or unsigned bytes 0 and 255. Other

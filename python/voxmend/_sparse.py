@@ -182,7 +182,7 @@ class SparseGrid(Placed):
     # ---- Files ----
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
-        """Writes .octree, .vdb or .bt as they are, and .binvox, .npy, .raw, .rle, .nrrd, .nii, .vti, .vtk or .tif a few slices at
+        """Writes .octree, .vdb or .bt as they are, and .binvox, .npy, .raw, .rle, .nrrd, .nii, .vti, .vtk, .tif or .zarr a few slices at
         a time."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)

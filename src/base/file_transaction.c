@@ -14,14 +14,51 @@ vxm_file_transaction_file *vxm_file_transaction_file_create(const vxm_new_file *
     free(held);
     return NULL;
   }
-  *held = (vxm_file_transaction_file){NULL, *file, name};
+  *held = (vxm_file_transaction_file){NULL, *file, NULL, name};
   return held;
+}
+
+vxm_file_transaction_file *vxm_file_transaction_folder_create(const vxm_new_folder *folder,
+                                                              const char *path) {
+  vxm_new_folder *taken = malloc(sizeof *taken);
+  const vxm_new_file none = {.spot = {.folder = -1, .device = -1}, .descriptor = -1};
+  vxm_file_transaction_file *held = taken ? vxm_file_transaction_file_create(&none, path) : NULL;
+  if (!held) {
+    free(taken);
+    return NULL;
+  }
+  *taken = *folder;
+  held->folder = taken;
+  return held;
+}
+
+static void close_held(vxm_file_transaction_file *held) {
+  if (held->folder)
+    vxm_new_folder_close(held->folder);
+  else
+    vxm_new_file_close(&held->file);
+  free(held->folder);
+}
+
+static bool publish_held(vxm_file_transaction_file *held, bool keeps_old) {
+  return held->folder ? vxm_new_folder_publish(held->folder) : vxm_new_file_publish(&held->file, keeps_old);
+}
+
+static void revert_held(vxm_file_transaction_file *held) {
+  if (held->folder)
+    vxm_new_folder_revert(held->folder);
+  else
+    vxm_new_file_revert(&held->file);
+}
+
+static const vxm_output_path *spot_of(const vxm_file_transaction_file *held) {
+  return held->folder ? &held->folder->spot : &held->file.spot;
 }
 
 void vxm_file_transaction_drop(vxm_file_transaction_file *list) {
   while (list) {
     vxm_file_transaction_file *next = list->next;
-    vxm_new_file_close(&list->file);
+    close_held(list);
     free(list->path);
     free(list);
     list = next;
@@ -31,10 +68,10 @@ void vxm_file_transaction_drop(vxm_file_transaction_file *list) {
 vxm_status vxm_file_transaction_publish(vxm_file_transaction_file *list, vxm_error *error) {
   vxm_status status = VXM_OK;
   for (vxm_file_transaction_file *held = list; held && status == VXM_OK; held = held->next)
-    if (!vxm_new_file_publish(&held->file, held->next != NULL)) /* the last one can only fail itself */
+    if (!publish_held(held, held->next != NULL)) /* the last one can only fail itself */
       status = vxm_fail_errno(error, held->path, "cannot write");
   for (vxm_file_transaction_file *held = list; held && status != VXM_OK; held = held->next)
-    vxm_new_file_revert(&held->file);
+    revert_held(held);
   vxm_file_transaction_drop(list);
   return status;
 }
@@ -53,7 +90,7 @@ static vxm_file_transaction_file **find_end(vxm_file_transaction *held,
   vxm_file_transaction_file **at = &held->first;
   for (; *at; at = &(*at)->next)
     for (const vxm_file_transaction_file *other = list; other; other = other->next)
-      if (is_same_spot(&(*at)->file.spot, &other->file.spot))
+      if (is_same_spot(spot_of(*at), spot_of(other)))
         return NULL;
   return at;
 }

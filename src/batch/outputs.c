@@ -23,7 +23,7 @@ static int by_name(const struct dirent **a, const struct dirent **b) {
 }
 
 static int is_shown(const struct dirent *entry) {
-  return entry->d_name[0] != '.';
+  return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0; /* .zarray is a part */
 }
 
 /** "NAME DIGEST" of each file, a line each, to be freed; NULL with errno. */

@@ -32,7 +32,7 @@ const cli_option batch_options[] = {
     {'o', "output", "DIR", "folder of what is made; its folders are those of the inputs"},
     {KEY_FORMAT, "format", "F",
      "of the grids: binvox, npy, raw, rle, nrrd, vdb, octree, bt, nii, nii.gz, vti, vtk,\n"
-     "tif, h5, obj, ply, stl, off, glb, vox, schem or litematic [binvox]"},
+     "tif, h5, zarr, obj, ply, stl, off, glb, vox, schem or litematic [binvox]"},
     {KEY_REPAIR, "repair", "OPTIONS",
      "write the repaired meshes too, with these options of 'voxmend repair', such as\n"
      "\"--level closed --format ply\""},

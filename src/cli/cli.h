@@ -318,6 +318,8 @@ typedef struct cli_style {
 int cli_read_up(cli_run *cli, cli_style *style, const char *value);
 /** CLI_STOP if the format has no use for what was given. */
 int cli_check_style(cli_run *cli, const cli_style *style, const char *format);
+/** CLI_STOP if the format is not one of meshes that heed --polygons keep and --no-manifold. */
+int cli_check_quads(cli_run *cli, bool keep_polygons, bool keep_contacts, const char *format);
 /** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
 /* ---- values.c: bits and numbers in files ---- */

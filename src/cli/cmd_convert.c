@@ -81,7 +81,8 @@ static int read_arguments(cli_run *cli, request *out) {
   if (!out->format)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, cli_has_json(out->format, true));
-  if (cli_check_names(cli) == CLI_STOP || cli_check_style(cli, &out->style, out->format) == CLI_STOP)
+  if (cli_check_names(cli) == CLI_STOP || cli_check_style(cli, &out->style, out->format) == CLI_STOP ||
+      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
     return CLI_STOP;
   return cli_check_surface_file(cli, out->output, out->format, out->force);
 }
@@ -198,7 +199,8 @@ const cli_command cli_command_convert = {
         "split into triangles. Every edge has two faces, and programs that merge vertices leave it so.\n\n"
         "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd, .nii, "
         ".vti,\n"
-        ".vtk, .tif, .h5 and, but for colours, .vdb; labels up to 255 also in .binvox and .vox, all as "
+        ".vtk, .tif, .h5, .zarr and, but for colours, .vdb; labels up to 255 also in .binvox and .vox, all "
+        "as "
         "blocks\n"
         "in .schem and .litematic and as objects in .glb, which take colours too, as .ply and .vox do. They\n"
         "become set and clear voxels only with --threshold or --below, or where nothing is lost: all are 0\n"

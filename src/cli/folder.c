@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { KNOWN_MAX = 128, WORDS_SIZE = 1024, NAME_SIZE = 256 };
 
@@ -67,6 +68,18 @@ static int kind_of(const extensions *known, const char *name) {
   return best;
 }
 
+/** A folder that is one grid: a Zarr array, whatever its name, or what its reader says more of. */
+static bool is_grid(const char *path) {
+  static const char *const marks[] = {".zarray", ".zgroup", "zarr.json"};
+  char inner[4096];
+  for (int m = 0; m < 3; m++) {
+    int length = snprintf(inner, sizeof inner, "%s/%s", path, marks[m]);
+    if (length > 0 && length < (int)sizeof inner && access(inner, F_OK) == 0)
+      return true;
+  }
+  return false;
+}
+
 static int commonest(const content *found) {
   int best = 0;
   for (int k = 1; k < found->known.count; k++)
@@ -81,7 +94,7 @@ static void count(content *out, const char *folder, const struct dirent *entry) 
     return;
   int length = snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
   int kind = kind_of(&out->known, entry->d_name);
-  if (length > 0 && length < (int)sizeof path && is_folder(path))
+  if (length > 0 && length < (int)sizeof path && is_folder(path) && !(kind >= 0 && is_grid(path)))
     out->folders++;
   else if (kind >= 0)
     out->files[kind]++;
@@ -160,7 +173,7 @@ int cli_check_folders(cli_run *cli) {
   if (cli->command->folders || (cli->command->many && cli->argument_count > 1))
     return CLI_END;
   for (int i = 0; i < cli->argument_count; i++)
-    if (is_folder(cli->arguments[i]))
+    if (is_folder(cli->arguments[i]) && !is_grid(cli->arguments[i]))
       return refuse(cli, cli->arguments[i]);
   return CLI_END;
 }

@@ -272,6 +272,14 @@ int cli_check_style(cli_run *cli, const cli_style *style, const char *format) {
   return CLI_END;
 }
 
+int cli_check_quads(cli_run *cli, bool keep_polygons, bool keep_contacts, const char *format) {
+  static const char *const meshes[] = {"obj", "ply", "stl", "off", NULL};
+  if ((keep_polygons || keep_contacts) && cli_read_choice(format, meshes) < 0)
+    return cli_usage(cli, "--%s goes with .obj, .ply, .stl and .off, not .%s",
+                     keep_polygons ? "polygons keep" : "no-manifold", format);
+  return CLI_END;
+}
+
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced) {
   struct stat info;
   bool is_mesh = cli_read_choice(format, cli_mesh_formats) >= 0 ||

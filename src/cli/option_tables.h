@@ -30,11 +30,11 @@
 #define CLI_GRID_FILES                                                                    \
   "file to write: .binvox, .rle, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5,\n" \
   ".vdb, .bt, .npy or .raw (the last three with a .json beside them), .vox, .schem or\n"  \
-  ".litematic, a picture for each slice (slice_%04d.png, with a .json), or the grid\n"    \
-  "as a mesh: .obj, .ply, .stl, .off, .glb"
-#define CLI_GRID_FORMATS                                                                 \
-  "binvox, npy, raw, rle, nrrd, vdb, octree, bt, nii, nii.gz, vti, vtk, tif, h5, obj,\n" \
-  "ply, stl, off, glb, vox, schem, litematic or png [by the name of the output]"
+  ".litematic, .zarr (a folder), a picture for each slice (slice_%04d.png, with a\n"      \
+  ".json), or the grid as a mesh: .obj, .ply, .stl, .off, .glb"
+#define CLI_GRID_FORMATS                                                            \
+  "binvox, npy, raw, rle, nrrd, vdb, octree, bt, nii, nii.gz, vti, vtk, tif, h5,\n" \
+  "zarr, obj, ply, stl, off, glb, vox, schem, litematic or png [by the name of the output]"
 
 /** For the tables of commands that make voxels of the numbers in a file; cli_threshold_read takes their
  * values. */

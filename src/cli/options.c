@@ -370,11 +370,12 @@ int cli_choose(cli_run *cli, int *choice, const char *option, const char *value,
 
 /* ---- Names of formats ---- */
 
-/** Part of a name behind the last '.', or "", or the extension of a grid format, which may have two parts. */
+/** Part of a name behind the last '.', or "", or the extension of a grid format, which may have two parts, or
+ * a slash behind it. */
 static const char *extension_of(const char *path) {
   const char *grid = vxm_grid_format_of(path);
   if (*grid)
-    return path + strlen(path) - strlen(grid);
+    return grid;
   const char *slash = strrchr(path, '/');
   const char *dot = strrchr(slash ? slash + 1 : path, '.');
   return dot ? dot + 1 : "";

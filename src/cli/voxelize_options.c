@@ -82,21 +82,21 @@ const cli_option voxelize_options[] = {
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
-     "each axis; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif or .h5"},
+     "each axis; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
     {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
-     "signed: negative inside; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif or .h5"},
+     "signed: negative inside; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
-     ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .vdb or .binvox, with the names in a\n"
+     ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .zarr, .vdb or .binvox, with the names in a\n"
      ".json beside it; .vox, .schem, .litematic or .glb"},
     {KEY_COLOR, "color", "mesh|noise|position|part|FILE.frag",
      "write a colour for each set voxel instead: that of the nearest point of the mesh,\n"
      "by its vertices, faces, materials and textures; Perlin's noise, where it is, its\n"
      "part, or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox, .glb,\n"
-     ".schem, .litematic, .nrrd, .nii, .vti, .vtk, .tif or .h5"},
+     ".schem, .litematic, .nrrd, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
     {KEY_COLOR_AVERAGE, "color-average", NULL,
      "with --color mesh: the mean over the surface within a voxel, where there is any"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
@@ -348,7 +348,8 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
     return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
-  if (out->format && cli_check_style(cli, &out->style, out->format) == CLI_STOP)
+  if (out->format && (cli_check_style(cli, &out->style, out->format) == CLI_STOP ||
+                      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP))
     return CLI_STOP;
   out->field.label_options.blocks = out->field.color_options.blocks = out->style.blocks;
   out->field.label_options.up = out->field.color_options.up = out->style.up;

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/octree_build.h"
 #include "gridio/common/values_writer.h"
+#include "gridio/formats/zarr.h"
 #include "gridio/gridio.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* ---- The table ---- */
 
@@ -17,11 +19,11 @@ static const vxm_grid_format mesh_formats[] = {
 
 /** In the order in which they are named, and their content is asked. */
 static const vxm_grid_format *const formats[] = {
-    &vxm_format_binvox, &vxm_format_npy,       &vxm_format_raw,  &vxm_format_rle, &vxm_format_nrrd,
-    &vxm_format_vdb,    &vxm_format_octree,    &vxm_format_bt,   &vxm_format_nii, &vxm_format_nii_gz,
-    &vxm_format_vti,    &vxm_format_vtk,       &vxm_format_tif,  &vxm_format_h5,  &mesh_formats[0],
-    &vxm_format_ply,    &mesh_formats[1],      &mesh_formats[2], &vxm_format_glb, &vxm_format_vox,
-    &vxm_format_schem,  &vxm_format_litematic, &vxm_format_png,
+    &vxm_format_binvox, &vxm_format_npy,    &vxm_format_raw,       &vxm_format_rle,  &vxm_format_nrrd,
+    &vxm_format_vdb,    &vxm_format_octree, &vxm_format_bt,        &vxm_format_nii,  &vxm_format_nii_gz,
+    &vxm_format_vti,    &vxm_format_vtk,    &vxm_format_tif,       &vxm_format_h5,   &vxm_format_zarr,
+    &mesh_formats[0],   &vxm_format_ply,    &mesh_formats[1],      &mesh_formats[2], &vxm_format_glb,
+    &vxm_format_vox,    &vxm_format_schem,  &vxm_format_litematic, &vxm_format_png,
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -33,14 +35,26 @@ const vxm_grid_format *vxm_grid_format_named(const char *name) {
   return NULL;
 }
 
+/** Whether a path ends in a format's name; that of a folder may have slashes behind it. */
+static bool has_name(const char *path, const vxm_grid_format *format) {
+  size_t length = strlen(path), size = strlen(format->name);
+  while (format->is_folder && length > 0 && path[length - 1] == '/')
+    length--;
+  char end[16];
+  if (length <= size || path[length - size - 1] != '.' || size >= sizeof end)
+    return false;
+  memcpy(end, path + length - size, size);
+  end[size] = '\0';
+  return vxm_text_equal_nocase(end, format->name);
+}
+
 /** The longest extension counts: .nii.gz is not a .gz. */
 const vxm_grid_format *vxm_grid_format_of_path(const char *path) {
   const vxm_grid_format *found = NULL;
-  size_t length = strlen(path), best = 0;
+  size_t best = 0;
   for (size_t f = 0; f < FORMATS; f++) {
     size_t size = strlen(formats[f]->name);
-    if (size > best && length > size && path[length - size - 1] == '.' &&
-        vxm_text_equal_nocase(path + length - size, formats[f]->name)) {
+    if (size > best && has_name(path, formats[f])) {
       found = formats[f];
       best = size;
     }
@@ -155,10 +169,17 @@ static vxm_status find_format(const vxm_grid_format **out, const vxm_input *inpu
   return VXM_OK;
 }
 
-/** Opens a file; the slices of a sequence are opened by its reader, one by one. */
+static bool is_folder(const char *path) {
+  struct stat info;
+  return strcmp(path, "-") != 0 && stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+/** Opens a file; slices of a sequence and what is in a folder are opened by their reader, one by one. */
 static vxm_status open_file(vxm_input *out, vxm_context *context, const char *path, vxm_error *error) {
   const vxm_grid_format *format = vxm_grid_format_of_path(path);
-  if (!format || !format->is_sequence)
+  bool is_several =
+      (format && format->is_sequence) || (is_folder(path) && vxm_zarr_sniff(&(vxm_input){.name = path}));
+  if (!is_several)
     return vxm_input_open(out, context, path, error);
   *out = (vxm_input){.data = (const unsigned char *)"", .name = path, .context = context};
   return VXM_OK;

@@ -8,6 +8,7 @@
 #include "meshio/meshio.h"
 #include "sandbox/reader.h"
 
+#include <fcntl.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -201,6 +202,15 @@ vxm_status vxm_meshio_read_with(vxm_soup **out, vxm_context *context, const unsi
   return status;
 }
 
+/** A folder that is a grid is told as what it is. */
+static bool is_zarr(const char *path) {
+  int folder = open(path, O_PATH | O_DIRECTORY | O_CLOEXEC);
+  bool found = folder >= 0 && faccessat(folder, ".zarray", F_OK, 0) == 0;
+  if (folder >= 0)
+    close(folder);
+  return found;
+}
+
 /** Opens a mesh file within its folder, so that both belong together whoever renames what meanwhile; what is
  * not in it (a link that leads elsewhere, a pipe, standard input) has no folder. */
 static vxm_status open_file(vxm_input *input, vxm_references *references, vxm_context *context,
@@ -211,6 +221,9 @@ static vxm_status open_file(vxm_input *input, vxm_references *references, vxm_co
   int file = is_stream || references->folder < 0
                  ? -1
                  : vxm_regular_open(references->folder, slash ? slash + 1 : path, VXM_BENEATH);
+  if (file < 0 && is_zarr(path))
+    return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){path, 0, -1, -1},
+                       "is a Zarr array, not a mesh: 'voxmend view' and 'convert' take grids");
   if (file < 0)
     return vxm_input_open(input, context, path, error);
   references->is_inside = true;

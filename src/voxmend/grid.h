@@ -98,9 +98,9 @@ VXM_API int64_t vxm_grid_warning_count(const vxm_grid *grid);
 VXM_API const char *vxm_grid_warning(const vxm_grid *grid, int64_t index);
 
 /**
- * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif
- * or .vdb, told by content first and by name second. Of .vdb, the first grid of bool, mask or float: of bool
- * and mask, what is active (and true) is set. "-" reads standard input (not .raw).
+ * Reads a grid: .binvox, .npy, .raw (with its .json beside it), .rle, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif,
+ * .zarr (a folder) or .vdb, told by content first and by name second. Of .vdb, the first grid of bool, mask
+ * or float: of bool and mask, what is active (and true) is set. "-" reads standard input (not .raw).
  *
  * Numbers are taken as voxels only if nothing is lost: where all of them are 0 or 1, whatever their type, or
  * unsigned bytes of which some are 0 and the others 255. Distances and confidences, and colours, never are.

@@ -29,6 +29,9 @@ run 'voxmend convert solid.npy -o solid.glb'
 run 'voxmend convert solid.npy -o solid.glb'
 run 'voxmend convert solid.npy -o solid.glb --force --up y -q'
 run 'voxmend convert solid.glb -o x.npy'
+run 'voxmend convert solid.npy -o x.glb --polygons keep'
+run 'voxmend combine solid.npy or solid.npy -o x.glb --no-manifold'
+run 'voxmend voxelize in/sphere.off -o x.npy -r 12 --no-manifold'
 
 say "# what cannot be"
 run 'voxmend convert solid.npy -o x.npy --blocks stone'

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What other programs find in grids that voxmend writes: nibabel, VTK, tifffile, Pillow, h5py and pynrrd, those that are
+"""What other programs find in grids that voxmend writes: nibabel, VTK, tifffile, Pillow, h5py, zarr and pynrrd, those that are
 there.
 
 other_grid_readers.py VOXMEND SAMPLES MESHES
@@ -99,6 +99,15 @@ def hdf5(path):
         return voxels, text["origin"] + size / 2, size, names if text["kind"] == "labels" else False
 
 
+def zarr_array(path):
+    import zarr
+
+    array = zarr.open(path, mode="r")
+    text = dict(array.attrs)
+    size = numpy.array(text["voxel_size"])
+    return array[...], text["origin"] + size / 2, size, text.get("label_names") if text["kind"] == "labels" else False
+
+
 def nrrd_file(path):
     import nrrd
 
@@ -116,6 +125,7 @@ READERS = (
     ("tif", "Pillow", pillow, "PIL"),
     ("%03d.png", "Pillow (place, names: the JSON)", slices, "PIL"),
     ("h5", "h5py", hdf5, "h5py"),
+    ("zarr", "zarr", zarr_array, "zarr"),
     ("nrrd", "pynrrd", nrrd_file, "nrrd"),
 )
 

@@ -94,30 +94,62 @@ void vxm_deflater_destroy(vxm_deflater *d) {
   vxm_free(d->context, d);
 }
 
+/* ---- Memory that was asked for in vain ---- */
+
+typedef struct noting {
+  vxm_context *context;
+  vxm_error fault;
+} noting;
+
+static void *take_noting(void *payload, unsigned count, unsigned size) {
+  noting *n = payload;
+  return vxm_alloc(n->context, count, size, &n->fault);
+}
+
+static void give_noted(void *payload, void *block) {
+  const noting *n = payload;
+  vxm_free(n->context, block);
+}
+
+static vxm_status fail_memory(const noting *n, vxm_error *error) {
+  if (n->fault.code == VXM_OK)
+    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
+  vxm_error_pass(error, &n->fault);
+  return n->fault.code;
+}
+
+/* ---- Blocks ---- */
+
+size_t vxm_deflate_bound(size_t size) {
+  return compressBound(size);
+}
+
+vxm_status vxm_deflate_block(vxm_context *context, void *out, size_t *size, const void *data,
+                             size_t data_size, vxm_error *error) {
+  noting memory = {context, VXM_ERROR_INIT};
+  z_stream z = {.zalloc = take_noting, .zfree = give_noted, .opaque = &memory};
+  if (data_size > VXM_DEFLATE_BLOCK_MAX)
+    return vxm_fail(error, VXM_ERROR_RANGE, "a block of %zu bytes is too large to be compressed", data_size);
+  if (deflateInit(&z, Z_DEFAULT_COMPRESSION) != Z_OK)
+    return fail_memory(&memory, error);
+  z.next_in = data;
+  z.avail_in = (unsigned)data_size;
+  z.next_out = out;
+  z.avail_out = (unsigned)vxm_deflate_bound(data_size);
+  deflate(&z, Z_FINISH); /* there is room for all of it */
+  *size = z.total_out;
+  deflateEnd(&z);
+  return VXM_OK;
+}
+
 /* ---- In ---- */
 
 struct vxm_inflater {
   z_stream z;
   const vxm_input *input;
-  vxm_error fault; /**< of memory that zlib asked for in vain */
+  bool is_gzip; /**< and so may have several members */
+  noting memory;
 };
-
-static void *take_noting(void *payload, unsigned count, unsigned size) {
-  vxm_inflater *i = payload;
-  return vxm_alloc(i->input->context, count, size, &i->fault);
-}
-
-static void give_noted(void *payload, void *block) {
-  const vxm_inflater *i = payload;
-  vxm_free(i->input->context, block);
-}
-
-static vxm_status fail_memory(vxm_inflater *i, vxm_error *error) {
-  if (i->fault.code == VXM_OK)
-    return vxm_fail(error, VXM_ERROR_MEMORY, "out of memory");
-  vxm_error_pass(error, &i->fault);
-  return i->fault.code;
-}
 
 vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_t offset, vxm_error *error) {
   enum { ANY_HEADER = 32 /* gzip's or zlib's own */ };
@@ -130,10 +162,11 @@ vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_
   }
   *i = (vxm_inflater){.z = {.zalloc = take_noting, .zfree = give_noted, .next_in = input->data + offset},
                       .input = input,
-                      .fault = VXM_ERROR_INIT};
-  i->z.opaque = i;
+                      .is_gzip = input->size - offset >= 2 && input->data[offset] == 0x1f,
+                      .memory = {input->context, VXM_ERROR_INIT}};
+  i->z.opaque = &i->memory;
   if (inflateInit2(&i->z, ANY_HEADER + MAX_WBITS) != Z_OK) {
-    vxm_status status = fail_memory(i, error);
+    vxm_status status = fail_memory(&i->memory, error);
     vxm_free(input->context, i);
     return status;
   }
@@ -141,27 +174,47 @@ vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_
   return VXM_OK;
 }
 
-vxm_status vxm_inflater_read(vxm_inflater *i, void *to, size_t size, vxm_error *error) {
-  const size_t piece = (size_t)1 << 30;
+/** Goes on with the next member of a gzip file, of which pigz, bgzip and cat make several; false if there is
+ * none.
+ */
+static bool next_member(vxm_inflater *i) {
+  const unsigned char *at = i->z.next_in;
+  size_t left = i->input->size - (size_t)(at - i->input->data);
+  return i->is_gzip && left >= 2 && at[0] == 0x1f && at[1] == 0x8b && inflateReset(&i->z) == Z_OK;
+}
+
+vxm_status vxm_inflater_some(vxm_inflater *i, void *to, size_t room, size_t *out, vxm_error *error) {
+  const size_t piece = (size_t)1 << 30; /* zlib counts in 32 bits */
   const vxm_input *input = i->input;
   z_stream *z = &i->z;
   z->next_out = to;
-  while (size > 0) {
-    size_t left = input->size - (size_t)(z->next_in - input->data), room = size < piece ? size : piece;
+  for (*out = 0; *out < room;) {
+    size_t left = input->size - (size_t)(z->next_in - input->data), step = room - *out;
     z->avail_in = (unsigned)(left < piece ? left : piece);
-    z->avail_out = (unsigned)room;
+    z->avail_out = (unsigned)(step < piece ? step : piece);
     int result = inflate(z, Z_NO_FLUSH);
-    size -= room - z->avail_out;
+    *out = (size_t)(z->next_out - (unsigned char *)to);
     const vxm_place place = {input->name, 0, (int64_t)(z->next_in - input->data), -1};
+    if (result == Z_STREAM_END && !next_member(i))
+      return VXM_OK;
     if (result == Z_MEM_ERROR)
-      return fail_memory(i, error);
-    if (size > 0 && (result == Z_STREAM_END || result == Z_BUF_ERROR))
+      return fail_memory(&i->memory, error);
+    if (result == Z_BUF_ERROR)
       return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "the compressed values end too early");
     if (result != Z_OK && result != Z_STREAM_END)
       return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "the compressed values are damaged: %s",
                          z->msg ? z->msg : "not those of gzip or zlib");
   }
   return VXM_OK;
+}
+
+vxm_status vxm_inflater_read(vxm_inflater *i, void *to, size_t size, vxm_error *error) {
+  size_t got;
+  vxm_status status = vxm_inflater_some(i, to, size, &got, error);
+  if (status != VXM_OK || got == size)
+    return status;
+  const vxm_place place = {i->input->name, 0, (int64_t)(i->z.next_in - i->input->data), -1};
+  return vxm_fail_at(error, VXM_ERROR_FORMAT, place, "the compressed values end too early");
 }
 
 void vxm_inflater_destroy(vxm_inflater *i) {
@@ -209,8 +262,25 @@ vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_
   return vxm_deflate_check(input->name, error);
 }
 
+vxm_status vxm_inflater_some(vxm_inflater *inflater, void *to, size_t room, size_t *out, vxm_error *error) {
+  (void)inflater, (void)to, (void)room;
+  *out = 0;
+  return vxm_deflate_check(NULL, error);
+}
+
 vxm_status vxm_inflater_read(vxm_inflater *inflater, void *to, size_t size, vxm_error *error) {
   (void)inflater, (void)to, (void)size;
+  return vxm_deflate_check(NULL, error);
+}
+
+size_t vxm_deflate_bound(size_t size) {
+  return size;
+}
+
+vxm_status vxm_deflate_block(vxm_context *context, void *out, size_t *size, const void *data,
+                             size_t data_size, vxm_error *error) {
+  (void)context, (void)out, (void)data, (void)data_size;
+  *size = 0;
   return vxm_deflate_check(NULL, error);
 }
 

@@ -25,7 +25,18 @@ uint64_t vxm_deflater_written(const vxm_deflater *deflater);
 /** Memory that one takes, about. */
 #define VXM_DEFLATE_BYTES (UINT64_C(270) << 10)
 
-/** Compressed bytes of a file, from an offset on. */
+/** The largest block that is compressed at once. */
+enum { VXM_DEFLATE_BLOCK_MAX = 1 << 30 };
+/** Room for a block of `size` bytes that does not get smaller. */
+size_t vxm_deflate_bound(size_t size);
+/**
+ * Compresses a block with zlib's frame, into vxm_deflate_bound(data_size) bytes; *size is how many they
+ * became. Thread-safe.
+ */
+vxm_status vxm_deflate_block(vxm_context *context, void *out, size_t *size, const void *data,
+                             size_t data_size, vxm_error *error);
+
+/** Compressed bytes of a file, from an offset on; of a gzip file all its members. */
 typedef struct vxm_inflater vxm_inflater;
 
 /** @param input outlives it */
@@ -33,6 +44,8 @@ vxm_status vxm_inflater_create(vxm_inflater **out, const vxm_input *input, size_
 /** The next `size` bytes; VXM_ERROR_FORMAT with the offset if there are fewer, or what is there is damaged.
  */
 vxm_status vxm_inflater_read(vxm_inflater *inflater, void *to, size_t size, vxm_error *error);
+/** Up to `room` bytes; *out is how many. Fewer are the end. */
+vxm_status vxm_inflater_some(vxm_inflater *inflater, void *to, size_t room, size_t *out, vxm_error *error);
 /** NULL is allowed. */
 void vxm_inflater_destroy(vxm_inflater *inflater);
 

@@ -88,6 +88,7 @@ typedef struct vxm_grid_format {
   bool is_surface;  /**< of bits the surface is written, as a mesh of this name */
   bool is_mesh;     /**< what `write_field` writes is a mesh */
   bool is_sequence; /**< a path is a pattern of several names; nothing is opened under it */
+  bool is_folder;   /**< a path is that of a folder, and may end in slashes */
   /** Writes an octree as it is; NULL = slice by slice. */
   vxm_status (*write_sparse)(const vxm_sparse *sparse, const char *path, vxm_error *error);
   /** Writes fields slice by slice, as they are made; NULL = only whole ones. */
@@ -154,7 +155,7 @@ vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status
 extern const vxm_grid_format vxm_format_binvox, vxm_format_bt, vxm_format_glb, vxm_format_h5,
     vxm_format_litematic, vxm_format_nii, vxm_format_nii_gz, vxm_format_npy, vxm_format_nrrd,
     vxm_format_octree, vxm_format_ply, vxm_format_png, vxm_format_raw, vxm_format_rle, vxm_format_schem,
-    vxm_format_tif, vxm_format_vdb, vxm_format_vox, vxm_format_vti, vxm_format_vtk;
+    vxm_format_tif, vxm_format_vdb, vxm_format_vox, vxm_format_vti, vxm_format_vtk, vxm_format_zarr;
 
 /** VXM_ERROR_FORMAT at a byte of the input. */
 #define vxm_fail_byte(error, input, offset, ...) \

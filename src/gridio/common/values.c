@@ -129,8 +129,10 @@ bool vxm_label_table_add(vxm_label_table *table, vxm_context *context, const cha
 
 /* ---- Life ---- */
 
-vxm_status vxm_field_make(vxm_field **out, vxm_context *context, const vxm_space *space, vxm_field_kind kind,
-                          vxm_scalar scalar, vxm_error *error) {
+typedef void *(*allocate_fn)(vxm_context *context, size_t count, size_t size, vxm_error *error);
+
+static vxm_status make_by(allocate_fn allocate, vxm_field **out, vxm_context *context, const vxm_space *space,
+                          vxm_field_kind kind, vxm_scalar scalar, vxm_error *error) {
   *out = NULL;
   int channels = kind == VXM_FIELD_COLORS ? 4 : 1;
   uint64_t voxels = (uint64_t)space->dims[0] * (uint64_t)space->dims[1] * (uint64_t)space->dims[2],
@@ -141,7 +143,7 @@ vxm_status vxm_field_make(vxm_field **out, vxm_context *context, const vxm_space
   if (status != VXM_OK)
     return status;
   vxm_field *field = vxm_calloc(context, 1, sizeof *field, &local);
-  unsigned char *values = field ? vxm_alloc(context, (size_t)voxels, (size_t)size, &local) : NULL;
+  unsigned char *values = field ? allocate(context, (size_t)voxels, (size_t)size, &local) : NULL;
   vxm_context *owner = NULL;
   if (values)
     vxm_context_acquire(&owner, context, &local);
@@ -159,6 +161,16 @@ vxm_status vxm_field_make(vxm_field **out, vxm_context *context, const vxm_space
                        .about = {.kind = kind}};
   *out = field;
   return VXM_OK;
+}
+
+vxm_status vxm_field_make(vxm_field **out, vxm_context *context, const vxm_space *space, vxm_field_kind kind,
+                          vxm_scalar scalar, vxm_error *error) {
+  return make_by(vxm_alloc, out, context, space, kind, scalar, error);
+}
+
+vxm_status vxm_field_make_zeros(vxm_field **out, vxm_context *context, const vxm_space *space,
+                                vxm_field_kind kind, vxm_scalar scalar, vxm_error *error) {
+  return make_by(vxm_calloc, out, context, space, kind, scalar, error);
 }
 
 void vxm_field_destroy(vxm_field *field) {

@@ -43,6 +43,9 @@ struct vxm_field {
 /** Makes a field whose values are still to be filled. The space has been checked. */
 vxm_status vxm_field_make(vxm_field **out, vxm_context *context, const vxm_space *space, vxm_field_kind kind,
                           vxm_scalar scalar, vxm_error *error);
+/** The same with zeros, which take no memory before they are written to. */
+vxm_status vxm_field_make_zeros(vxm_field **out, vxm_context *context, const vxm_space *space,
+                                vxm_field_kind kind, vxm_scalar scalar, vxm_error *error);
 
 /** Ends the making: *out is the field if `status` is VXM_OK, and what is said of its values found memory;
  * else it is destroyed. */

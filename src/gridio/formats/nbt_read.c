@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/nbt_read.h"
+#include "gridio/common/deflate.h"
 #include "gridio/common/format.h"
 
 #include <inttypes.h>
 #include <string.h>
-
-#include "config.h"
-#ifdef HAVE_ZLIB
-#define ZLIB_CONST
-#include <zlib.h>
-#endif
 
 /** As deep as the game itself reads. */
 enum { DEPTH_MOST = 512 };
@@ -91,113 +86,51 @@ static const unsigned char *skip(unsigned type, const unsigned char *at, const u
 
 /* ---- Unpacking ---- */
 
-#ifdef HAVE_ZLIB
-typedef struct unpacking {
-  z_stream z;
-  const vxm_input *input;
-  vxm_error error;
-} unpacking;
-
-static void *take(void *payload, unsigned count, unsigned size) {
-  unpacking *u = payload;
-  return vxm_alloc(u->input->context, count, size, &u->error);
-}
-
-static void give(void *payload, void *block) {
-  const unpacking *u = payload;
-  vxm_free(u->input->context, block);
-}
-
-static vxm_status start(unpacking *u, const vxm_input *input) {
-  enum { ANY_HEADER = 32 };
-  *u = (unpacking){
-      .z = {.zalloc = take, .zfree = give, .next_in = input->data}, .input = input, .error = VXM_ERROR_INIT};
-  u->z.opaque = u;
-  if (inflateInit2(&u->z, ANY_HEADER + MAX_WBITS) == Z_OK)
-    return VXM_OK;
-  return u->error.code != VXM_OK ? u->error.code : vxm_fail(&u->error, VXM_ERROR_MEMORY, "out of memory");
-}
-
-/** Unpacks up to `room` bytes; *out is how many. Fewer are the end. */
-static vxm_status unpack(unpacking *u, unsigned char *to, size_t room, size_t *out) {
-  const size_t piece = (size_t)1 << 30; /* zlib counts in 32 bits */
-  z_stream *z = &u->z;
-  z->next_out = to;
-  for (*out = 0; *out < room;) {
-    size_t left = u->input->size - (size_t)(z->next_in - u->input->data), step = room - *out;
-    z->avail_in = (unsigned)(left < piece ? left : piece);
-    z->avail_out = (unsigned)(step < piece ? step : piece);
-    int result = inflate(z, Z_NO_FLUSH);
-    *out = (size_t)(z->next_out - to);
-    if (result == Z_STREAM_END)
-      return VXM_OK;
-    if (result == Z_MEM_ERROR)
-      return u->error.code;
-    size_t at = (size_t)(z->next_in - u->input->data);
-    if (result == Z_BUF_ERROR && *out < room)
-      return vxm_fail_byte(&u->error, u->input, u->input->size, "the packed bytes end too early");
-    if (result != Z_OK && result != Z_BUF_ERROR)
-      return vxm_fail_byte(&u->error, u->input, at, "the packed bytes are damaged: %s",
-                           z->msg ? z->msg : "not those of gzip");
-  }
-  return VXM_OK;
-}
-
-static vxm_status unpack_all(vxm_nbt *tree, size_t *size, unpacking *u) {
+static vxm_status unpack_all(vxm_nbt *tree, size_t *size, vxm_inflater *inflater, const vxm_input *input,
+                             vxm_error *error) {
   size_t capacity = 0, more = 1;
   vxm_status status = VXM_OK;
   *size = 0;
   while (status == VXM_OK && more > 0) {
     /* doubles, beginning with what most of such files take */
     status = vxm_grow(tree->context, (void **)&tree->bytes, &capacity,
-                      capacity > 0 ? capacity + 1 : 8 * u->input->size + 4096, 1, &u->error);
+                      capacity > 0 ? capacity + 1 : 8 * input->size + 4096, 1, error);
     if (status == VXM_OK)
-      status = unpack(u, tree->bytes + *size, capacity - *size, &more);
+      status = vxm_inflater_some(inflater, tree->bytes + *size, capacity - *size, &more, error);
     *size += status == VXM_OK ? more : 0;
     if (status == VXM_OK && *size < capacity)
       break;
     if (status == VXM_OK)
-      status = vxm_ask(tree->context, &u->error);
+      status = vxm_ask(tree->context, error);
   }
   return status;
 }
 
 static vxm_status load(vxm_nbt *tree, size_t *size, const vxm_input *input, vxm_error *error) {
-  unpacking u;
-  vxm_status status = start(&u, input);
-  if (status == VXM_OK) {
-    status = unpack_all(tree, size, &u);
-    inflateEnd(&u.z);
-  }
+  vxm_inflater *inflater;
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = vxm_inflater_create(&inflater, input, 0, &local);
+  if (status == VXM_OK)
+    status = unpack_all(tree, size, inflater, input, &local);
+  vxm_inflater_destroy(inflater);
   if (status != VXM_OK)
-    vxm_error_pass(error, &u.error);
+    vxm_error_pass(error, &local);
   return status;
 }
 
 bool vxm_nbt_sniff(const vxm_input *input) {
   unsigned char first[3];
   size_t size = 0;
-  unpacking u;
-  if (input->size < 18 || input->data[0] != 0x1f || input->data[1] != 0x8b || start(&u, input) != VXM_OK)
+  vxm_inflater *inflater;
+  if (input->size < 18 || input->data[0] != 0x1f || input->data[1] != 0x8b ||
+      vxm_inflater_create(&inflater, input, 0, NULL) != VXM_OK)
     return false;
-  bool is_tree = unpack(&u, first, sizeof first, &size) == VXM_OK && size == sizeof first;
-  inflateEnd(&u.z);
+  bool is_tree =
+      vxm_inflater_some(inflater, first, sizeof first, &size, NULL) == VXM_OK && size == sizeof first;
+  vxm_inflater_destroy(inflater);
   /* a compound with a name of less than 256 bytes */
   return is_tree && first[0] == VXM_NBT_COMPOUND && first[1] == 0;
 }
-#else
-static vxm_status load(vxm_nbt *tree, size_t *size, const vxm_input *input, vxm_error *error) {
-  (void)tree, (void)size;
-  return vxm_fail_at(error, VXM_ERROR_UNAVAILABLE, (vxm_place){input->name, 0, -1, -1},
-                     "the files of Minecraft need zlib, without which this build was made (configure "
-                     "--with-zlib; Debian: zlib1g-dev)");
-}
-
-bool vxm_nbt_sniff(const vxm_input *input) {
-  (void)input;
-  return false;
-}
-#endif
 
 /** Some programs leave their trees unpacked. */
 static vxm_status copy(vxm_nbt *tree, size_t *size, const vxm_input *input, vxm_error *error) {

@@ -5,12 +5,20 @@
 
 #include <math.h>
 #include <string.h>
+#ifdef __SSE__
+#include <immintrin.h>
+#endif
 
-enum { LEAF = VXM_ORDER_LEAF, DEPTH_MAX = 40 };
+enum { LEAF = VXM_ORDER_LEAF, DEPTH_MAX = 40, LANES = 4 };
 
 typedef struct box {
   double low[3], high[3];
 } box;
+
+/** A disc in the plane of a triangle that covers it. */
+typedef struct disc {
+  double middle[3], normal[3], radius;
+} disc;
 
 /** Triangles in spatial order; a leaf is a run of LEAF of them. Node n has the children 2 n and 2 n + 1, and
  * the leaves are the nodes from leaf_count on, which is a power of 2. */
@@ -18,6 +26,7 @@ struct vxm_surface_tree {
   vxm_context *context;
   size_t count, leaf_count;
   vxm_closest_triangle *triangles;
+  disc *discs;
   uint32_t *numbers; /**< of the triangles, as their owner has them */
   box *boxes;
 };
@@ -33,11 +42,55 @@ static size_t leaves_for(size_t count) {
 }
 
 uint64_t vxm_surface_tree_bytes(size_t count) {
-  return (uint64_t)count * (sizeof(vxm_closest_triangle) + sizeof(uint32_t) + sizeof(vxm_spatial_point)) +
+  return (uint64_t)count *
+             (sizeof(vxm_closest_triangle) + sizeof(disc) + sizeof(uint32_t) + sizeof(vxm_spatial_point)) +
          2 * (uint64_t)leaves_for(count) * sizeof(box) + 4096;
 }
 
 /* ---- Making it ---- */
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/** How far the farthest corner is from a point. */
+static double radius_at(const vxm_closest_triangle *triangle, const double p[3]) {
+  double most = 0;
+  for (int c = 0; c < 3; c++) {
+    const double *q = triangle->at[c], off[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+    most = fmax(most, dot(off, off));
+  }
+  return sqrt(most);
+}
+
+/** Around the centroid, or the middle of an edge: whichever gives the smallest. */
+static disc disc_of(const vxm_closest_triangle *t) {
+  disc d = {.radius = INFINITY};
+  double edge[2][3];
+  for (int c = 0; c < 4; c++) {
+    double p[3];
+    for (int a = 0; a < 3; a++)
+      p[a] =
+          c < 3 ? t->at[c][a] / 2 + t->at[(c + 1) % 3][a] / 2 : (t->at[0][a] + t->at[1][a] + t->at[2][a]) / 3;
+    const double radius = radius_at(t, p);
+    if (!(radius < d.radius))
+      continue;
+    d.radius = radius;
+    memcpy(d.middle, p, sizeof p);
+  }
+  for (int e = 0; e < 2; e++)
+    for (int a = 0; a < 3; a++)
+      edge[e][a] = t->at[e + 1][a] - t->at[0][a];
+  const double cross[3] = {edge[0][1] * edge[1][2] - edge[0][2] * edge[1][1],
+                           edge[0][2] * edge[1][0] - edge[0][0] * edge[1][2],
+                           edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0]},
+               length = sqrt(dot(cross, cross));
+  /* The normal of a needle has no digits left. */
+  bool is_sound = !t->is_thin && length > 1e-6 * sqrt(dot(edge[0], edge[0])) * sqrt(dot(edge[1], edge[1]));
+  for (int a = 0; a < 3 && is_sound; a++)
+    d.normal[a] = cross[a] / length;
+  return d;
+}
 
 static void make_leaf(vxm_surface_tree *tree, size_t leaf) {
   box *b = &tree->boxes[tree->leaf_count + leaf];
@@ -79,6 +132,7 @@ static vxm_status fill(vxm_surface_tree *tree, vxm_spatial_point *spots, vxm_sur
   for (size_t i = 0; i < tree->count && status == VXM_OK; i++) {
     corners(at, spots[i].index, payload);
     vxm_closest_triangle_make(&tree->triangles[i], (const double(*)[3])at);
+    tree->discs[i] = disc_of(&tree->triangles[i]);
     tree->numbers[i] = spots[i].index;
     status = vxm_ask_at(i, tree->context, error);
   }
@@ -98,6 +152,7 @@ vxm_status vxm_surface_tree_create(vxm_surface_tree **out, vxm_context *context,
     tree->count = count;
     tree->leaf_count = leaves_for(count);
     tree->triangles = vxm_alloc(context, count, sizeof *tree->triangles, &local);
+    tree->discs = vxm_alloc(context, count, sizeof *tree->discs, &local);
     tree->numbers = vxm_alloc(context, count, sizeof *tree->numbers, &local);
     tree->boxes = vxm_alloc(context, 2 * tree->leaf_count, sizeof *tree->boxes, &local);
     spots = vxm_alloc(context, count, sizeof *spots, &local);
@@ -119,6 +174,7 @@ void vxm_surface_tree_destroy(vxm_surface_tree *tree) {
     return;
   vxm_free(tree->context, tree->boxes);
   vxm_free(tree->context, tree->numbers);
+  vxm_free(tree->context, tree->discs);
   vxm_free(tree->context, tree->triangles);
   vxm_free(tree->context, tree);
 }
@@ -185,4 +241,185 @@ vxm_surface_hit vxm_surface_tree_nearest(const vxm_surface_tree *tree, const dou
     stack[depth++].square = is_left_first ? left : right;
   }
   return s.hit;
+}
+
+/* ---- Points that lie close together ---- */
+
+typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
+typedef int32_t lane_mask __attribute__((vector_size(LANES * sizeof(float))));
+
+/** What lies farther from the centre, in its scale, or is larger is looked at always. */
+static const double disc_far = 4;
+/** More than what floats within that lose in a squared distance, some 2e-5. */
+static const float square_slack = 1e-4F;
+/** Coordinates of which the last digits matter leave no room for that. */
+static const double centre_far = 1e5;
+
+/** The squared distance of a point, from the middle, to a disc. */
+static double to_disc(const disc *d, const double off[3]) {
+  const double height = dot(d->normal, off),
+               flat = sqrt(fmax(dot(off, off) - height * height, 0)) - d->radius;
+  return height * height + (flat > 0 ? flat * flat : 0);
+}
+
+/** Adds a triangle whose disc comes within the reach; false if there is no room. */
+static bool add_candidate(vxm_surface_candidates *out, uint32_t place, double reach) {
+  const disc *d = &out->tree->discs[place];
+  const double off[3] = {out->centre[0] - d->middle[0], out->centre[1] - d->middle[1],
+                         out->centre[2] - d->middle[2]};
+  bool is_near = dot(off, off) <= disc_far * disc_far * reach * reach && d->radius <= disc_far * reach;
+  if (is_near && to_disc(d, off) > reach * reach * (1 + 1e-9))
+    return true;
+  if (out->count == VXM_CANDIDATES_MAX)
+    return false;
+  for (int a = 0; a < 3; a++) {
+    out->at[a][out->count] = is_near ? (float)(-off[a] * out->scale) : 0;
+    out->normal[a][out->count] = is_near ? (float)d->normal[a] : 0;
+  }
+  out->radius[out->count] = is_near ? (float)(d->radius * out->scale) : 1e9F;
+  out->places[out->count++] = place;
+  return true;
+}
+
+/** Adds the triangles of a leaf. */
+static bool add_leaf(vxm_surface_candidates *out, size_t leaf, double reach) {
+  for (size_t i = leaf * LEAF; i < (leaf + 1) * LEAF && i < out->tree->count; i++)
+    if (!add_candidate(out, (uint32_t)i, reach))
+      return false;
+  return true;
+}
+
+/** Lanes behind the last candidate are those of no triangle: far away, and of no size. */
+static void fill_lanes(vxm_surface_candidates *out) {
+  for (size_t i = out->count; i % LANES != 0; i++) {
+    for (int a = 0; a < 3; a++) {
+      out->at[a][i] = 1e9F;
+      out->normal[a][i] = 0;
+    }
+    out->radius[i] = 0;
+  }
+}
+
+/** Begins a ball of which the nearest to its centre is known, and tells how far it reaches; 0 if floats
+ * cannot. */
+static double begin_ball(vxm_surface_candidates *out, const vxm_surface_tree *tree, const double centre[3],
+                         double radius, const vxm_surface_hit *hit) {
+  const double off[3] = {hit->foot[0] - centre[0], hit->foot[1] - centre[1], hit->foot[2] - centre[2]};
+  /* To a point of the ball the nearest is at most `radius` farther than to the centre, from where it is seen
+   * as much farther again. */
+  const double reach = (sqrt(dot(off, off)) + 2 * radius) * (1 + 1e-9);
+  const double farthest = fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2])));
+  out->tree = tree;
+  out->scale = 1 / reach;
+  out->count = 0;
+  memcpy(out->centre, centre, sizeof out->centre);
+  return reach > 1e-100 && reach < 1e100 && farthest < centre_far * reach ? reach : 0;
+}
+
+bool vxm_surface_candidates_gather(vxm_surface_candidates *out, const vxm_surface_tree *tree,
+                                   const double centre[3], double radius, uint32_t *near) {
+  size_t stack[DEPTH_MAX];
+  int depth = 0;
+  const vxm_surface_hit hit = vxm_surface_tree_nearest(tree, centre, *near);
+  const double reach = begin_ball(out, tree, centre, radius, &hit);
+  *near = hit.place;
+  if (reach == 0)
+    return false;
+  for (stack[depth++] = 1; depth > 0;) {
+    const size_t node = stack[--depth];
+    if (to_box(&tree->boxes[node], centre) > reach * reach)
+      continue;
+    if (node < tree->leaf_count) {
+      stack[depth++] = 2 * node;
+      stack[depth++] = 2 * node + 1;
+    } else if (!add_leaf(out, node - tree->leaf_count, reach))
+      return false;
+  }
+  fill_lanes(out);
+  return true;
+}
+
+/** How far a search may still look, squared, in the scale of the candidates. */
+static lanes reach_of(const search *s, double scale) {
+  return (float)(s->square * scale * scale) + square_slack + (lanes){0};
+}
+
+static lanes root(lanes x) {
+#ifdef __SSE__
+  return (lanes)_mm_sqrt_ps((__m128)x);
+#else
+  for (int lane = 0; lane < LANES; lane++)
+    x[lane] = sqrtf(x[lane]);
+  return x;
+#endif
+}
+
+static lanes load(const float *from) {
+  lanes four;
+  memcpy(&four, from, sizeof four);
+  return four;
+}
+
+/** A point as the candidates have it. */
+static void place_point(lanes out[3], const vxm_surface_candidates *c, const double p[3]) {
+  for (int a = 0; a < 3; a++)
+    out[a] = (float)((p[a] - c->centre[a]) * c->scale) + (lanes){0};
+}
+
+/** Whether the discs of four candidates are, squared, no farther than `most` from a point; false if none is.
+ */
+static bool find_near(lane_mask *out, const vxm_surface_candidates *c, size_t group, const lanes at[3],
+                      lanes most) {
+  const lanes none = {0};
+  const lanes x = at[0] - load(&c->at[0][group]), y = at[1] - load(&c->at[1][group]),
+              z = at[2] - load(&c->at[2][group]),
+              height = x * load(&c->normal[0][group]) + y * load(&c->normal[1][group]) +
+                       z * load(&c->normal[2][group]),
+              above = height * height, level = x * x + y * y + z * z - above,
+              flat = root((lanes)((lane_mask)level & (level > none))) - load(&c->radius[group]),
+              beside = (lanes)((lane_mask)flat & (flat > none));
+  uint64_t halves[2];
+  *out = above + beside * beside <= most;
+  memcpy(halves, out, sizeof halves);
+  return (halves[0] | halves[1]) != 0;
+}
+
+vxm_surface_hit vxm_surface_candidates_nearest(const vxm_surface_candidates *c, const double p[3],
+                                               uint32_t near) {
+  search s = {.tree = c->tree, .p = p, .square = INFINITY, .hit = {.triangle = UINT32_MAX}};
+  lanes at[3];
+  lane_mask is_near;
+  place_point(at, c, p);
+  look_at(&s, near);
+  lanes most = reach_of(&s, c->scale);
+  for (size_t g = 0; g < c->count; g += LANES) {
+    if (!find_near(&is_near, c, g, at, most))
+      continue;
+    for (size_t lane = 0; lane < LANES; lane++)
+      if (is_near[lane] && c->places[g + lane] != near)
+        look_at(&s, c->places[g + lane]);
+    most = reach_of(&s, c->scale);
+  }
+  return s.hit;
+}
+
+bool vxm_surface_candidates_narrow(vxm_surface_candidates *out, const vxm_surface_candidates *from,
+                                   const double centre[3], double radius, uint32_t *near) {
+  const vxm_surface_hit hit = vxm_surface_candidates_nearest(from, centre, *near);
+  const double reach = begin_ball(out, from->tree, centre, radius, &hit);
+  lanes at[3];
+  lane_mask is_near;
+  *near = hit.place;
+  if (reach == 0)
+    return false;
+  place_point(at, from, centre);
+  const float far = (float)(reach * from->scale);
+  const lanes most = far * far + square_slack + (lanes){0};
+  for (size_t g = 0; g < from->count; g += LANES)
+    if (find_near(&is_near, from, g, at, most))
+      for (size_t lane = 0; lane < LANES; lane++)
+        if (is_near[lane])
+          add_candidate(out, from->places[g + lane], reach);
+  fill_lanes(out);
+  return true;
 }

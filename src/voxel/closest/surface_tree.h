@@ -33,4 +33,32 @@ uint64_t vxm_surface_tree_bytes(size_t count);
  */
 vxm_surface_hit vxm_surface_tree_nearest(const vxm_surface_tree *tree, const double p[3], uint32_t near);
 
+/** Triangles among which the nearest to each point of a ball is. They suit points that lie close together:
+ * what is looked up in the tree for all of them is looked up once. */
+enum { VXM_CANDIDATES_MAX = 1024 };
+typedef struct vxm_surface_candidates {
+  const vxm_surface_tree *tree;
+  double centre[3], scale; /**< of the ball, and 1 / how far the farthest of them may be */
+  size_t count;
+  /** Discs around the triangles, in their planes, from the centre on, in that scale. A normal of 0 makes a
+   * ball of one. */
+  float at[3][VXM_CANDIDATES_MAX], normal[3][VXM_CANDIDATES_MAX], radius[VXM_CANDIDATES_MAX];
+  uint32_t places[VXM_CANDIDATES_MAX];
+} vxm_surface_candidates;
+
+/**
+ * Gathers them.
+ *
+ * @param near as for vxm_surface_tree_nearest; takes the place of the nearest to the centre
+ * @return false if they are too many to be worth it: ask the tree
+ */
+bool vxm_surface_candidates_gather(vxm_surface_candidates *out, const vxm_surface_tree *tree,
+                                   const double centre[3], double radius, uint32_t *near);
+/** The same out of those of a larger ball that holds this one. */
+bool vxm_surface_candidates_narrow(vxm_surface_candidates *out, const vxm_surface_candidates *from,
+                                   const double centre[3], double radius, uint32_t *near);
+/** What vxm_surface_tree_nearest gives, of a point of the ball. */
+vxm_surface_hit vxm_surface_candidates_nearest(const vxm_surface_candidates *candidates, const double p[3],
+                                               uint32_t near);
+
 #endif

@@ -105,43 +105,150 @@ static void put_color(uint8_t value[4], const double light[3]) {
   value[3] = 255;
 }
 
-static void color_by_nearest(const color_task *task, const int64_t at[3], uint32_t *near, uint8_t value[4]) {
-  const vxm_space *space = &task->grid->space;
-  double p[3], corner[3][3], weight[3] = {1, 0, 0}, light[3];
+/** Voxels along an edge of a tile, which look together for what may be near; its halves do so in turn, over
+ * so many levels, where there are voxels enough for it to be worth it. */
+enum { TILE = 8, LEVELS = 3, WORTH = 6 };
+
+static void find_centre(double p[3], const vxm_space *space, const int64_t at[3]) {
   for (int a = 0; a < 3; a++)
     p[a] = space->origin[a] + ((double)at[a] + 0.5) * space->voxel_size[a];
-  vxm_surface_hit hit = vxm_surface_tree_nearest(task->tree, p, *near);
-  *near = hit.place;
-  vxm_surface_paint_corners(corner, hit.triangle, task->paint);
-  weigh((const double(*)[3])corner, hit.foot, weight);
-  vxm_surface_paint_color(task->paint, hit.triangle, weight, light);
+}
+
+static void color_by_hit(const color_task *task, const vxm_surface_hit *hit, uint8_t value[4]) {
+  double corner[3][3], weight[3] = {1, 0, 0}, light[3];
+  vxm_surface_paint_corners(corner, hit->triangle, task->paint);
+  weigh((const double(*)[3])corner, hit->foot, weight);
+  vxm_surface_paint_color(task->paint, hit->triangle, weight, light);
   put_color(value, light);
 }
 
-static void color_slice(size_t slice, int worker, void *payload) {
+/** A box of voxels. */
+typedef struct tile {
+  int64_t first[3], end[3];
+} tile;
+
+static uint8_t *value_at(const color_task *task, const int64_t at[3]) {
+  const int64_t *dims = task->grid->space.dims;
+  return task->values + 4 * (size_t)((at[0] * dims[1] + at[1]) * dims[2] + at[2]);
+}
+
+/** The next voxel from `at` on that is set and has no mean. */
+static bool find_voxel(const color_task *task, const tile *t, int64_t at[3]) {
+  for (; at[0] < t->end[0]; at[0]++, at[1] = t->first[1])
+    for (; at[1] < t->end[1]; at[1]++, at[2] = t->first[2])
+      for (; at[2] < t->end[2]; at[2]++)
+        if (vxm_grid_get(task->grid, at[0], at[1], at[2]) && value_at(task, at)[3] == 0)
+          return true;
+  return false;
+}
+
+static int count_voxels(const color_task *task, const tile *t) {
+  int count = 0;
+  int64_t at[3] = {t->first[0], t->first[1], t->first[2]};
+  for (; find_voxel(task, t, at); at[2]++)
+    count++;
+  return count;
+}
+
+/** The ball around the centres of a tile's voxels. */
+static double find_ball(double centre[3], const color_task *task, const tile *t) {
+  const int64_t last[3] = {t->end[0] - 1, t->end[1] - 1, t->end[2] - 1};
+  double low[3], high[3], square = 0;
+  find_centre(low, &task->grid->space, t->first);
+  find_centre(high, &task->grid->space, last);
+  for (int a = 0; a < 3; a++) {
+    centre[a] = low[a] / 2 + high[a] / 2;
+    double half = fmax(high[a] - centre[a], centre[a] - low[a]);
+    square += half * half;
+  }
+  return sqrt(square) * (1 + 1e-9);
+}
+
+static void color_voxels(const color_task *task, const tile *t, const vxm_surface_candidates *among,
+                         uint32_t *near) {
+  int64_t at[3] = {t->first[0], t->first[1], t->first[2]};
+  for (; find_voxel(task, t, at); at[2]++) {
+    double p[3];
+    find_centre(p, &task->grid->space, at);
+    vxm_surface_hit hit = among ? vxm_surface_candidates_nearest(among, p, *near)
+                                : vxm_surface_tree_nearest(task->tree, p, *near);
+    *near = hit.place;
+    color_by_hit(task, &hit, value_at(task, at));
+  }
+}
+
+static int64_t lesser(int64_t a, int64_t b) {
+  return a < b ? a : b;
+}
+
+/** Colours a tile part by part: each gathers what may be near out of what the whole has gathered.
+ * @param room for each level
+ * @param among the candidates of a larger tile, or NULL */
+static void color_tile(const color_task *task, const tile *t, int level, vxm_surface_candidates *room,
+                       const vxm_surface_candidates *among, uint32_t *near) {
+  const int64_t half = TILE >> (level + 1);
+  double centre[3];
+  const int count = count_voxels(task, t);
+  if (count < WORTH) {
+    color_voxels(task, t, among, near);
+    return;
+  }
+  const double radius = find_ball(centre, task, t);
+  if (among ? vxm_surface_candidates_narrow(room, among, centre, radius, near)
+            : vxm_surface_candidates_gather(room, task->tree, centre, radius, near))
+    among = room++;
+  if (level + 1 == LEVELS) {
+    color_voxels(task, t, among, near);
+    return;
+  }
+  for (int part = 0; part < 8; part++) {
+    tile inner;
+    bool is_there = true;
+    for (int a = 0; a < 3; a++) {
+      inner.first[a] = t->first[a] + (part >> a & 1) * half;
+      inner.end[a] = lesser(inner.first[a] + half, t->end[a]);
+      is_there = is_there && inner.first[a] < inner.end[a];
+    }
+    if (is_there)
+      color_tile(task, &inner, level + 1, room, among, near);
+  }
+}
+
+/** Means of the surface within the voxels of a slice. */
+static void color_by_means(const color_task *task, int64_t slice, vxm_surface_sum *sums) {
+  const int64_t *dims = task->grid->space.dims;
+  const size_t rows = (size_t)(dims[1] * dims[2]);
+  uint8_t *value = value_at(task, (const int64_t[3]){slice, 0, 0});
+  memset(sums, 0, rows * sizeof *sums);
+  vxm_surface_slices_sum(task->slices, slice, sums);
+  for (int64_t j = 0; j < dims[1]; j++)
+    for (int64_t k = 0; k < dims[2]; k++, value += 4, sums++)
+      if (sums->area > 0 && vxm_grid_get(task->grid, slice, j, k)) {
+        const double light[3] = {sums->light[0] / sums->area, sums->light[1] / sums->area,
+                                 sums->light[2] / sums->area};
+        put_color(value, light);
+      }
+}
+
+/** TILE slices. */
+static void color_slab(size_t slab, int worker, void *payload) {
   const color_task *task = payload;
   const int64_t *dims = task->grid->space.dims;
   const size_t rows = (size_t)(dims[1] * dims[2]);
-  vxm_surface_sum *sums = task->slices ? task->sums + (size_t)worker * rows : NULL;
-  uint8_t *value = task->values + 4 * slice * rows;
+  tile t = {.first = {(int64_t)slab * TILE}};
+  t.end[0] = lesser(t.first[0] + TILE, dims[0]);
+  vxm_surface_candidates room[LEVELS];
   uint32_t near = 0;
-  memset(value, 0, 4 * rows);
-  if (sums) {
-    memset(sums, 0, rows * sizeof *sums);
-    vxm_surface_slices_sum(task->slices, (int64_t)slice, sums);
-  }
-  for (int64_t j = 0; j < dims[1]; j++)
-    for (int64_t k = 0; k < dims[2]; k++, value += 4) {
-      if (!vxm_grid_get(task->grid, (int64_t)slice, j, k))
-        continue;
-      const vxm_surface_sum *sum = sums ? &sums[j * dims[2] + k] : NULL;
-      if (sum && sum->area > 0) {
-        const double light[3] = {sum->light[0] / sum->area, sum->light[1] / sum->area,
-                                 sum->light[2] / sum->area};
-        put_color(value, light);
-      } else
-        color_by_nearest(task, (const int64_t[3]){(int64_t)slice, j, k}, &near, value);
+  memset(value_at(task, t.first), 0, 4 * rows * (size_t)(t.end[0] - t.first[0]));
+  for (int64_t i = t.first[0]; i < t.end[0] && task->slices; i++)
+    color_by_means(task, i, task->sums + (size_t)worker * rows);
+  for (t.first[1] = 0; t.first[1] < dims[1]; t.first[1] += TILE) {
+    t.end[1] = lesser(t.first[1] + TILE, dims[1]);
+    for (t.first[2] = 0; t.first[2] < dims[2]; t.first[2] += TILE) {
+      t.end[2] = lesser(t.first[2] + TILE, dims[2]);
+      color_tile(task, &t, 0, room, NULL, &near);
     }
+  }
 }
 
 static vxm_status color_all(color_task *task, bool average, vxm_error *error) {
@@ -158,7 +265,7 @@ static vxm_status color_all(color_task *task, bool average, vxm_error *error) {
                              (size_t)(dims[1] * dims[2]) * sizeof *task->sums, &local);
   }
   if (local.code == VXM_OK)
-    vxm_parallel_asked(context, (size_t)dims[0], color_slice, task, &local);
+    vxm_parallel_asked(context, (size_t)((dims[0] + TILE - 1) / TILE), color_slab, task, &local);
   vxm_free(context, task->sums);
   if (is_open)
     vxm_surface_slices_close(&slices);

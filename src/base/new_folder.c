@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/new_folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+enum { ATTEMPTS = 1000, DEPTH_MAX = 8 };
+
+static const int folder_flags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+
+/* ---- What is in a folder ---- */
+
+/** The next entry but "." and ".."; NULL behind the last. */
+static const struct dirent *next_entry(DIR *folder) {
+  const struct dirent *entry;
+  do
+    entry = readdir(folder);
+  while (entry && (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0));
+  return entry;
+}
+
+static DIR *open_entries(int parent, const char *name) {
+  int descriptor = openat(parent, name, folder_flags);
+  DIR *folder = descriptor >= 0 ? fdopendir(descriptor) : NULL;
+  if (!folder && descriptor >= 0)
+    close(descriptor);
+  return folder;
+}
+
+static bool is_folder(int parent, const char *name) {
+  struct stat info;
+  return fstatat(parent, name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISDIR(info.st_mode);
+}
+
+/** Looks for what is no part; its name is left in `other`. */
+static bool has_other(int parent, const char *name, vxm_folder_part_fn is_part, int depth,
+                      char other[NAME_MAX + 1]) {
+  DIR *folder = depth < DEPTH_MAX ? open_entries(parent, name) : NULL;
+  const struct dirent *entry;
+  bool found = !folder;
+  snprintf(other, NAME_MAX + 1, "%s", name);
+  while (!found && (entry = next_entry(folder)) != NULL) {
+    bool inner = is_folder(dirfd(folder), entry->d_name);
+    snprintf(other, NAME_MAX + 1, "%s", entry->d_name);
+    found = !is_part(entry->d_name, inner) ||
+            (inner && has_other(dirfd(folder), entry->d_name, is_part, depth + 1, other));
+  }
+  if (folder)
+    closedir(folder);
+  return found;
+}
+
+static bool is_empty(int parent, const char *name) {
+  DIR *folder = open_entries(parent, name);
+  bool empty = folder && !next_entry(folder);
+  if (folder)
+    closedir(folder);
+  return empty;
+}
+
+/** Removes a folder and what is a part in it; what is none stays, and so does then the folder. */
+static void remove_parts(int parent, const char *name, vxm_folder_part_fn is_part, int depth) {
+  DIR *folder = depth < DEPTH_MAX ? open_entries(parent, name) : NULL;
+  const struct dirent *entry;
+  while (folder && (entry = next_entry(folder)) != NULL) {
+    bool inner = is_folder(dirfd(folder), entry->d_name);
+    if (!is_part(entry->d_name, inner))
+      continue;
+    if (inner)
+      remove_parts(dirfd(folder), entry->d_name, is_part, depth + 1);
+    else
+      unlinkat(dirfd(folder), entry->d_name, 0);
+  }
+  if (folder)
+    closedir(folder);
+  unlinkat(parent, name, AT_REMOVEDIR);
+}
+
+/* ---- Opening ---- */
+
+/** Splits a path into what leads to the folder, with its slash, and its name. */
+static bool split(char lead[PATH_MAX], char name[NAME_MAX + 1], const char *path) {
+  size_t end = strlen(path);
+  while (end > 0 && path[end - 1] == '/')
+    end--;
+  size_t begin = end;
+  while (begin > 0 && path[begin - 1] != '/')
+    begin--;
+  bool is_name = end > begin && !(end - begin <= 2 && strncmp(path + begin, "..", end - begin) == 0);
+  errno = is_name ? ENAMETOOLONG : EISDIR;
+  if (!is_name || end - begin > NAME_MAX || begin >= PATH_MAX)
+    return false;
+  memcpy(lead, path, begin);
+  lead[begin] = '\0';
+  memcpy(name, path + begin, end - begin);
+  name[end - begin] = '\0';
+  return true;
+}
+
+static void name_temporary(vxm_new_folder *folder, const char *name, int attempt) {
+  uint32_t hash = 2166136261U; /* FNV-1a: the same for every process that writes this folder */
+  for (const char *c = name; *c; c++)
+    hash = (hash ^ (unsigned char)*c) * 16777619U;
+  snprintf(folder->temporary, sizeof folder->temporary, "voxmend-%08x-%d.tmp", (unsigned)hash, attempt);
+}
+
+/** Where it is to be: links on the way are followed as those to files are, by a name that is not there yet.
+ */
+static bool find_spot(vxm_new_folder *folder, const char *path) {
+  char lead[PATH_MAX], name[NAME_MAX + 1], probe[PATH_MAX];
+  if (!split(lead, name, path))
+    return false;
+  name_temporary(folder, name, ATTEMPTS);
+  int length = snprintf(probe, sizeof probe, "%s%s", lead, folder->temporary);
+  folder->temporary[0] = '\0';
+  errno = ENAMETOOLONG;
+  if (length >= (int)sizeof probe || !vxm_output_path_find(&folder->spot, probe))
+    return false;
+  memcpy(folder->spot.name, name, sizeof name);
+  return true;
+}
+
+static bool lock(int descriptor) {
+  while (flock(descriptor, LOCK_EX | LOCK_NB) != 0)
+    if (errno != EINTR)
+      return false;
+  return true;
+}
+
+/** Removes what a killed program left under a temporary name: whoever still writes there holds its lock. */
+static void remove_abandoned(const vxm_new_folder *folder) {
+  struct stat info;
+  int descriptor = openat(folder->spot.folder, folder->temporary, folder_flags);
+  if (descriptor >= 0 && fstat(descriptor, &info) == 0 && info.st_uid == geteuid() && lock(descriptor))
+    remove_parts(folder->spot.folder, folder->temporary, folder->is_part, 0);
+  if (descriptor >= 0)
+    close(descriptor);
+}
+
+static bool make(vxm_new_folder *folder) {
+  const int parent = folder->spot.folder;
+  for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+    name_temporary(folder, folder->spot.name, attempt);
+    remove_abandoned(folder);
+    if (mkdirat(parent, folder->temporary, 0777) == 0) {
+      folder->descriptor = openat(parent, folder->temporary, folder_flags);
+      if (folder->descriptor >= 0)
+        lock(folder->descriptor);
+      return folder->descriptor >= 0;
+    }
+    if (errno != EEXIST)
+      break;
+  }
+  folder->temporary[0] = '\0';
+  return false;
+}
+
+/** Refuses to replace anything but what such a folder is. */
+static vxm_status check_old(const vxm_new_folder *folder, const char *path, const char *mark,
+                            const char *what, vxm_error *error) {
+  const vxm_place place = {path, 0, -1, -1};
+  const int parent = folder->spot.folder;
+  const char *name = folder->spot.name;
+  char other[NAME_MAX + 1], inner[PATH_MAX];
+  struct stat info;
+  if (fstatat(parent, name, &info, AT_SYMLINK_NOFOLLOW) != 0)
+    return VXM_OK;
+  if (!S_ISDIR(info.st_mode))
+    return vxm_fail_at(error, VXM_ERROR_ARGUMENT, place,
+                       "%s becomes a folder, and a %s of this name is there; give another name", what,
+                       S_ISLNK(info.st_mode) ? "link" : "file");
+  if (is_empty(parent, name))
+    return VXM_OK;
+  snprintf(inner, sizeof inner, "%s/%s", name, mark);
+  if (fstatat(parent, inner, &info, AT_SYMLINK_NOFOLLOW) != 0)
+    return vxm_fail_at(error, VXM_ERROR_ARGUMENT, place,
+                       "this folder is not %s, and is not replaced; give another name", what);
+  if (has_other(parent, name, folder->is_part, 0, other))
+    return vxm_fail_at(
+        error, VXM_ERROR_ARGUMENT, place,
+        "this folder has \"%s\", which is no part of %s, and is not replaced; give another name", other,
+        what);
+  return VXM_OK;
+}
+
+vxm_status vxm_new_folder_open(vxm_new_folder *out, const char *path, const char *mark,
+                               vxm_folder_part_fn is_part, const char *what, vxm_error *error) {
+  *out = (vxm_new_folder){.spot = {.folder = -1, .device = -1}, .descriptor = -1, .is_part = is_part};
+  if (!find_spot(out, path))
+    return vxm_fail_errno(
+        error, path,
+        out->spot.is_strangers
+            ? "cannot write through another user's link in a folder that everybody may write to"
+            : "cannot write");
+  vxm_status status = check_old(out, path, mark, what, error);
+  if (status == VXM_OK && !make(out))
+    status = vxm_fail_errno(error, path, "cannot write");
+  if (status != VXM_OK)
+    vxm_new_folder_close(out);
+  return status;
+}
+
+/* ---- Files ---- */
+
+static bool write_all(int descriptor, const char *data, size_t size) {
+  while (size > 0) {
+    ssize_t done = write(descriptor, data, size < (1u << 30) ? size : (1u << 30));
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done < 0)
+      return false;
+    data += done;
+    size -= (size_t)done;
+  }
+  return true;
+}
+
+bool vxm_new_folder_put(const vxm_new_folder *folder, const char *name, const void *data, size_t size) {
+  int descriptor =
+      openat(folder->descriptor, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (descriptor < 0)
+    return false;
+  bool good = write_all(descriptor, data, size);
+  int reason = errno;
+  bool is_closed = close(descriptor) == 0; /* network file systems tell some failures only here */
+  if (!good)
+    errno = reason;
+  return good && is_closed;
+}
+
+/* ---- Completing ---- */
+
+/** Moves the old one away where names cannot be exchanged. */
+static bool move_old(vxm_new_folder *folder) {
+  const int parent = folder->spot.folder;
+  char old[sizeof folder->temporary];
+  memcpy(old, folder->temporary, sizeof old);
+  memcpy(strrchr(old, '.'), ".old", sizeof ".old"); /* for ".tmp" */
+  if (renameat(parent, folder->spot.name, parent, old) != 0)
+    return false;
+  if (renameat(parent, folder->temporary, parent, folder->spot.name) == 0) {
+    memcpy(folder->temporary, old, sizeof old);
+    return true;
+  }
+  int reason = errno;
+  renameat(parent, old, parent, folder->spot.name);
+  errno = reason;
+  return false;
+}
+
+bool vxm_new_folder_publish(vxm_new_folder *folder) {
+  const int parent = folder->spot.folder;
+  struct stat info;
+  if (fstatat(parent, folder->spot.name, &info, AT_SYMLINK_NOFOLLOW) == 0) {
+    if (S_ISDIR(info.st_mode) && info.st_uid == geteuid())
+      (void)!fchmod(folder->descriptor, info.st_mode & 0777);
+    folder->has_replaced =
+        renameat2(parent, folder->temporary, parent, folder->spot.name, RENAME_EXCHANGE) == 0 ||
+        move_old(folder);
+    return folder->is_published = folder->has_replaced;
+  }
+  if (renameat(parent, folder->temporary, parent, folder->spot.name) != 0)
+    return false;
+  folder->temporary[0] = '\0';
+  return folder->is_published = true;
+}
+
+void vxm_new_folder_revert(vxm_new_folder *folder) {
+  const int parent = folder->spot.folder;
+  if (!folder->is_published)
+    return;
+  folder->is_published = false;
+  if (!folder->has_replaced) {
+    remove_parts(parent, folder->spot.name, folder->is_part, 0);
+    return;
+  }
+  if (renameat2(parent, folder->temporary, parent, folder->spot.name, RENAME_EXCHANGE) == 0)
+    return; /* the new one has the temporary name, and goes with it */
+  remove_parts(parent, folder->spot.name, folder->is_part, 0);
+  if (renameat(parent, folder->temporary, parent, folder->spot.name) == 0)
+    folder->temporary[0] = '\0';
+}
+
+void vxm_new_folder_close(vxm_new_folder *folder) {
+  if (folder->temporary[0])
+    remove_parts(folder->spot.folder, folder->temporary, folder->is_part, 0);
+  if (folder->descriptor >= 0)
+    close(folder->descriptor);
+  vxm_output_path_close(&folder->spot);
+  folder->descriptor = -1;
+  folder->temporary[0] = '\0';
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * A folder of files that appears under its name when it is complete. Until then it has a temporary one beside
+ * it, "voxmend-HASH-N.tmp"; what a killed program left there is removed by the next folder for the same
+ * place.
+ *
+ * Steps: open, put files, publish, close. What fails leaves errno.
+ */
+#ifndef VXM_BASE_NEW_FOLDER_H
+#define VXM_BASE_NEW_FOLDER_H
+
+#include "base/context.h"
+#include "base/output_path.h"
+
+#include <stddef.h>
+
+/** Whether an entry is one that such a folder has: nothing else is ever removed.
+ * @param is_folder whether it is a folder, whose entries are asked for too */
+typedef bool (*vxm_folder_part_fn)(const char *name, bool is_folder);
+
+typedef struct vxm_new_folder {
+  vxm_output_path spot; /**< `name` may be that of a folder */
+  int descriptor;       /**< of the new one, locked */
+  char temporary[48];   /**< its present name; of a published one that of what it replaced; "" = none */
+  bool is_published, has_replaced;
+  vxm_folder_part_fn is_part;
+} vxm_new_folder;
+
+/**
+ * Makes the folder. One that is there is replaced if it has an entry `mark` and nothing that is not a part;
+ * one that is empty too.
+ *
+ * @param path may end in slashes
+ * @param what the name of such a folder in messages, such as "a Zarr array"
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_ARGUMENT if something else is there
+ */
+vxm_status vxm_new_folder_open(vxm_new_folder *out, const char *path, const char *mark,
+                               vxm_folder_part_fn is_part, const char *what, vxm_error *error);
+/** Adds a file of these bytes; false with errno set. Thread-safe. */
+bool vxm_new_folder_put(const vxm_new_folder *folder, const char *name, const void *data, size_t size);
+/** Gives it its name; what it replaces stays until the end. False with errno set. */
+bool vxm_new_folder_publish(vxm_new_folder *folder);
+/** Takes a published folder away again; what it had replaced is back. */
+void vxm_new_folder_revert(vxm_new_folder *folder);
+/** Closes it. What was not published is gone, and what was replaced. */
+void vxm_new_folder_close(vxm_new_folder *folder);
+
+#endif
