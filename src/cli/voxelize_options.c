@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend voxelize: its options. */
-#include "cli/voxelize.h"
+#include "cli/baseline.h"
 
 #include <string.h>
 
@@ -36,7 +36,8 @@ enum {
   KEY_CONTACTS,
   KEY_BLOCKS,
   KEY_UP,
-  KEY_DRY_RUN
+  KEY_DRY_RUN,
+  KEY_BASELINE
 };
 
 const cli_option voxelize_options[] = {
@@ -102,6 +103,11 @@ const cli_option voxelize_options[] = {
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
+    {KEY_BASELINE, "baseline", "NAME",
+     "use a published method instead, as it was published, for comparison: fang-chen,\n"
+     "chen-tu, tetra-listed, tetra-full, tetra-anew, tetra-layers, eisemann (solids);\n"
+     "density, simple, specialized, sorted, zhang (surfaces); faieghi and faieghi-voxels\n"
+     "(surfaces, with --engine opencl)"},
     {KEY_DRY_RUN, "dry-run", NULL, "tell the grid and the memory it takes, and write nothing"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
@@ -252,6 +258,9 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
   case KEY_DRY_RUN:
     out->dry_run = true;
     return CLI_END;
+  case KEY_BASELINE:
+    out->baseline_name = value;
+    return cli_choose(cli, &out->baseline, "baseline", value, cli_baseline_names);
   case KEY_NO_REPAIR:
     out->no_repair = true;
     return CLI_END;
@@ -306,7 +315,7 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
                           "--labels and --color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
-  if (cli_engine_check(cli, &given->engine) == CLI_STOP)
+  if (cli_engine_check(cli, &given->engine) == CLI_STOP || cli_baseline_check(cli, given) == CLI_STOP)
     return CLI_STOP;
   if (cli_check_repair(cli, given->no_repair, given->repair_options) == CLI_STOP)
     return CLI_STOP;

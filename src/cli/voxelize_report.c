@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "cli/voxelize.h"
+#include "cli/baseline.h"
 
 #include <inttypes.h>
 
@@ -42,7 +42,7 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "input", cli_json_text(given->input));
   json_object_set_new(report, "output", cli_json_text(given->output));
   json_object_set_new(report, "repair", cli_passes_json(&results->input.repair));
-  if (!given->field.labels)
+  if (!given->field.labels && !given->baseline_name)
     json_object_set_new(report, "estimate", estimate_json(&results->estimate, results->octree));
   json_object_set_new(report, "grid", cli_json_space(&results->space));
   if (given->dry_run) {
@@ -53,6 +53,10 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   }
   if (given->engine.engine)
     json_object_set_new(report, "engine", cli_engine_json(&given->engine));
+  if (given->baseline_name) {
+    json_object_set_new(report, "baseline", json_string(cli_baseline_names[given->baseline]));
+    json_object_set(report, "figures", results->figures);
+  }
   json_object_set_new(report, "parts", json_integer(results->voxelize.parts));
   json_object_set_new(report, "closed_parts", json_integer(results->voxelize.closed_parts));
   json_object_set_new(report, "capped_parts", json_integer(results->voxelize.capped_parts));
@@ -124,7 +128,7 @@ static void summarize_estimate(const cli_run *cli, const voxelize_request *given
   const vxm_estimate *estimate = &results->estimate;
   char size[24], memory[24];
   cli_bytes_text(size, estimate->grid_bytes);
-  if (!given->dry_run && estimate->grid_bytes < large)
+  if ((!given->dry_run && estimate->grid_bytes < large) || given->baseline_name)
     return;
   if (results->octree)
     cli_row(cli, "estimate", "%s of voxels, made as an octree: its memory follows the surface", size);
@@ -164,10 +168,15 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
     cli_row(cli, "thin",
             "%" PRId64 " voxels added for the %.3g %% of the surface that is thinner than a voxel",
             report->thin_voxels, 100 * report->thin_share);
-  cli_row(cli, "contested", "%" PRId64 "%s", report->contested,
-          report->contested == 0        ? ""
-          : report->winding_decided > 0 ? " (open parts, decided by the winding number)"
-                                        : " (open parts: the voters disagreed there)");
+  if (given->baseline_name) {
+    char figures[512];
+    cli_figures_text(figures, sizeof figures, results->figures);
+    cli_row(cli, "baseline", "%s: %s", cli_baseline_names[given->baseline], figures);
+  } else
+    cli_row(cli, "contested", "%" PRId64 "%s", report->contested,
+            report->contested == 0        ? ""
+            : report->winding_decided > 0 ? " (open parts, decided by the winding number)"
+                                          : " (open parts: the voters disagreed there)");
   if (report->winding_decided > report->contested)
     cli_row(cli, "winding", "%" PRId64 " voxels decided by the winding number", report->winding_decided);
   if (results->octree)

@@ -108,6 +108,40 @@ typedef struct vxm_baseline_report {
 VXM_API vxm_status vxm_baseline_voxelize(vxm_grid *grid, vxm_baseline_report *report, const vxm_mesh *mesh,
                                          const vxm_baseline_options *options, vxm_error *error);
 
+/* ---- Stages of the work on an OpenCL device ---- */
+
+/** How long stages took, in milliseconds, and what they had to do: those of Schwarz & Seidel 2010, table 2
+ * (solids by VXM_CL_TILES) and table 3 (octrees). */
+typedef struct vxm_engine_stages {
+  size_t size;         /**< as the initializer sets it, or 0 */
+  double pairs_ms;     /**< listing tiles of columns and the triangles that may cover them */
+  double sort_ms;      /**< sorting that list by tile */
+  double tiles_ms;     /**< filling the tiles */
+  int64_t pairs;       /**< of a tile and a triangle */
+  int64_t tiles;       /**< of columns, with triangles or without */
+  double active_ms;    /**< finding the nodes that the surface meets */
+  double construct_ms; /**< the octree above them */
+  double voxelize_ms;  /**< flips of the lowest level */
+  double propagate_ms; /**< carrying them along x, through all levels */
+  double prune_ms;     /**< leaving out what is all empty or full, and reading back the rest */
+  int64_t active;      /**< nodes that the surface meets, of 16^3 voxels */
+  int64_t nodes;       /**< of all levels, before any is left out */
+} vxm_engine_stages;
+
+/** Initial value of vxm_engine_stages. */
+#define VXM_ENGINE_STAGES_INIT \
+  { sizeof(vxm_engine_stages), 0.0, 0.0, 0.0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0 }
+
+/**
+ * Tells how long stages took since the last call, and whether those to come are measured: the device is then
+ * waited for after each, which makes the whole slower. At first they are not.
+ *
+ * @param[out] out may be NULL; all 0 where nothing was measured
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_UNAVAILABLE for an engine that is not of OpenCL
+ */
+VXM_API vxm_status vxm_engine_measure(vxm_engine_stages *out, vxm_engine *engine, bool measure,
+                                      vxm_error *error);
+
 /* ---- A published OpenCL program, for comparison ---- */
 
 /** The voxels of a mesh in the memory of an OpenCL device, made by the program of Faieghi, Tutunea-Fatan and

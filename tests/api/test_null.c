@@ -87,6 +87,7 @@ static struct {
   vxm_space space;
   vxm_published_report published_report;
   vxm_baseline_report baseline;
+  vxm_engine_stages stages;
   vxm_voxelize_report voxelize;
   vxm_estimate estimate;
   vxm_coverage_report coverage;
@@ -287,6 +288,8 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_baseline_voxelize, 5, 5,                                                                           \
     vxm_baseline_voxelize(P(0, grid), P(1, &out.baseline), P(2, mesh), P(3, &baseline_options),            \
                           P(4, &error)))                                                                   \
+  X(vxm_engine_measure, 3, 2,                                                                              \
+    nulls & 2 ? vxm_engine_measure(P(0, &out.stages), P(1, engine), true, P(2, &error)) : VXM_OK)          \
   X(vxm_published_create, 6, 29,                                                                           \
     vxm_published_create(P(0, &out.published), P(1, &out.space), P(2, engine), P(3, mesh),                 \
                          P(4, &published_options), P(5, &error)))                                          \
