@@ -156,6 +156,38 @@ static void test_groups_are_counted(void **state) {
   vxm_soup_destroy(soup);
 }
 
+/** Whatever the order of vertices, faces and corners, groups are what hangs together. */
+static void test_groups_in_any_order(void **state) {
+  (void)state;
+  for (uint64_t seed = 1; seed < 10; seed++) {
+    enum { STRIPS = 5, LENGTH = 40, COUNT = STRIPS * LENGTH };
+    vxm_soup *soup = shape_empty(context);
+    vxm_rng rng = {seed};
+    uint32_t number[COUNT];
+    for (uint32_t v = 0; v < COUNT; v++) {
+      uint32_t other = (uint32_t)vxm_rng_below(&rng, v + 1);
+      number[v] = v;
+      number[v] = number[other];
+      number[other] = v;
+      shape_vertex(soup, shape_quarter(&rng, 0, 60), shape_quarter(&rng, 0, 60), shape_quarter(&rng, 0, 60));
+    }
+    for (uint32_t v = 0; v + 2 < COUNT; v++) {
+      uint32_t turn = (uint32_t)vxm_rng_below(&rng, 3), at = (v * 7) % COUNT;
+      if (at % LENGTH + 2 < LENGTH)
+        shape_triangle(soup, number[at + turn], number[at + (turn + 1) % 3], number[at + (turn + 2) % 3]);
+    }
+    for (uint32_t at = 0; at + 2 < COUNT; at++) /* those that the loop above leaves out */
+      if (at % LENGTH + 2 < LENGTH)
+        shape_triangle(soup, number[at], number[at + 1], number[at + 2]);
+    vxm_grid *grid = grid_make(SIZE);
+    vxm_baseline_options options = VXM_BASELINE_OPTIONS_INIT;
+    options.method = VXM_BASELINE_CHEN_TU;
+    assert_int_equal(run(grid, soup, &options).parts, STRIPS);
+    vxm_grid_destroy(grid);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** Who asks which tetrahedra in which slices. */
 static void test_tetrahedra_asked(void **state) {
   (void)state;
@@ -320,6 +352,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_solids),
                                      cmocka_unit_test(test_open_groups),
                                      cmocka_unit_test(test_groups_are_counted),
+                                     cmocka_unit_test(test_groups_in_any_order),
                                      cmocka_unit_test(test_tetrahedra_asked),
                                      cmocka_unit_test(test_surfaces),
                                      cmocka_unit_test(test_kinds_of_boxes),

@@ -48,8 +48,8 @@ def figure_6(p, meshes, size):
 
 def failures(p, size):
     cases = [("a hollow sphere: the inner one is a group, and fills the hole", "cavity.off", None),
-             ("panels that share no vertices: each is a group, and alone it is nothing", "soup.off", None),
-             ("a face missing: two of three axes", "open_box.off", None),
+             ("triangles that share no vertices: each is a group", "soup.off", None),
+             ("a face missing, which two of three axes put right", "open_box.off", None),
              ("every face doubled and reversed: two crossings for each", "doubled.off", None),
              ("scan with holes", None, "paper/tinyply-bunny.ply")]
     rows = []
@@ -71,7 +71,8 @@ def pictures(p, meshes, size):
     for name, path in meshes[:1] + meshes[3:]:
         start = os.path.join(folder, name.lower().replace(" ", "-"))
         p.run("view", path, "-r", size, "--labels", "part", "-o", start + "-parts.png", "-q")
-        p.run("voxelize", path, "-r", size, "--distance", "signed", "--band", 0, "-o", p.place("distance.nrrd"), "-q")
+        p.run("remesh", path, "-r", size, "-o", p.place("body.ply"), "--force", "-q")  # without the surfaces within
+        p.run("voxelize", p.place("body.ply"), "-r", size, "--distance", "signed", "--band", 0, "-o", p.place("distance.nrrd"), "-q")
         p.run("view", p.place("distance.nrrd"), "--slice", "z=0.5", "-o", start + "-distance.png", "-q")
         for method in "fang-chen", "chen-tu":
             p.run("voxelize", path, "-r", size, "--no-repair", "--baseline", method, "-o", p.place("bits.npy"), "-q")

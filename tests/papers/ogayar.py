@@ -4,12 +4,10 @@
 alternatives of section III-B, tables 2 and 3, figures 2 and 7 to 9."""
 import os
 
-from papers import Paper, ms
+from papers import Paper, ms, show
 
-# Of 1000 models with 5000 variants each: hours of all, by approach and grid; and of the voxelizations alone per second
-VARIANTS = 5000
-# Table 3, for 9843 models, gigabytes as far as the scan can be read
-MODELS = 9843
+VARIANTS = 5000  # of each model
+MODELS = 9843  # of table 3
 
 
 def alternatives(p, grids):
@@ -18,18 +16,17 @@ def alternatives(p, grids):
     names = ("baseline_tetra_anew", "baseline_tetra_full", "baseline_tetra_layers", "solid_centres")
     for path in (p.mesh("classic/common3d-cheburashka.obj", "torus.off"), p.mesh("classic/cgal-armadillo.off", "sphere.off")):
         found = p.bench(path, ",".join(names), grids, time=0)
-        faces = p.report("info", path)["faces"]
         for grid in grids:
             cells = [found[(name, "cpu", grid)] for name in names]
             for cell in cells:
                 p.expect(cell["voxels"] == cells[3]["voxels"], "%s is voxmend's solid" % cell["phase"])
-            rows.append([os.path.basename(path), faces, "%d³" % grid] + [ms(c) for c in cells[:3]] +
+            rows.append([os.path.basename(path), p.triangles, "%d³" % grid] + [ms(c) for c in cells[:3]] +
                         [cells[2]["figures"]["bytes"] >> 10, ms(cells[3])])
     p.text("**Sections III-B2 and III-B3**, the alternatives that they tried and rejected, as scan-lines on one thread, ms (`--phases "
            "baseline_tetra`). As published, each slice makes the tetrahedra of all triangles anew; made once and kept (their "
            "alternatives a to c) that was 15 to 20 % slower on their GPU; each tetrahedron once into all its layers (their option a of "
-           "textures) noticeably slower. On a CPU it is the other way round: making them anew costs most, and a single pass least, as "
-           "memory is near and no tetrahedron is looked at in a slice that it does not meet.")
+           "textures) noticeably slower. On a CPU it is the other way round: making them anew costs most, and a single pass, which looks at "
+           "no tetrahedron in a slice that it does not meet, as much as keeping them or less:")
     p.table(["model", "triangles", "grid", "as published", "made once", "single pass", "KiB kept", "voxmend, solid"], rows)
 
 
@@ -58,8 +55,8 @@ def table_3(p, grids):
             p.run("augment", path, "-o", folder, "-r", grid, "-n", 4 if p.quick else 16, "--format", kind, "-q")
             files = [os.path.join(folder, f) for f in os.listdir(folder) if f.endswith("." + kind)]
             sizes[kind] = sum(os.path.getsize(f) for f in files) / len(files)
-        rows.append(["%d³" % grid] + ["%.3g GB" % (sizes[k] * VARIANTS * MODELS / 1e9) for k in ("raw", "rle")] +
-                    ["%.3g MB" % (sizes[k] * VARIANTS / 1e6) for k in ("raw", "rle")] + ["0"])
+        rows.append(["%d³" % grid] + ["%s GB" % show(sizes[k] * VARIANTS * MODELS / 1e9) for k in ("raw", "rle")] +
+                    ["%s MB" % show(sizes[k] * VARIANTS / 1e6) for k in ("raw", "rle")] + ["0"])
     p.text("**Table 3**, what the files of all variants would take: 5000 of each of the 9843 models of ModelNet40's training set "
            "(standard), or of one model at a time (batch), from the mean size of %d variants of %s. Raw is a bit for each voxel as theirs "
            "is: their 156.25 MB at 64³ and 9.76 GB at 256³ for 5000 are these numbers with M = 2^20. RLE depends on the model:" %

@@ -28,6 +28,7 @@ class Paper:
         self.folder = tempfile.TemporaryDirectory()
         self.lines = []
         self.machine_told = False
+        self.triangles = 0  # of the mesh that was measured last
 
     # ---- Meshes ----
 
@@ -76,6 +77,7 @@ class Paper:
         time = time if time is not None else 0 if self.quick else 1000
         report = self.report("bench", path, "--threads", threads, "-r", ",".join(map(str, resolutions)), "--time", time,
                              *(["--phases", phases] if phases else []), *(["--engine", engine] if engine else []), *options)
+        self.triangles = report["mesh"]["triangles"]
         if not self.machine_told:
             machine = report["machine"]
             self.machine_told = True
@@ -140,6 +142,3 @@ def show(cell):
 def ms(result, key="min_ms"):
     return result[key] if result else None
 
-
-def label(path):
-    return os.path.splitext(os.path.basename(path))[0]

@@ -34,7 +34,6 @@ def tables(p, grids):
     for name, path in models(p).items():
         slow = [g for g in grids if THEIRS[name][0] * g < 3e7]
         found = p.bench(path, phases, slow, time=0)
-        faces = p.report("info", path)["faces"]
         for grid in slow:
             at = GRIDS.index(grid) if grid in GRIDS else 0
             theirs = [1000 * THEIRS[name][t][at] for t in (1, 2, 3)]
@@ -42,7 +41,7 @@ def tables(p, grids):
             solid = found[("solid_centres", "cpu", grid)]
             for cell in cells[:2]:
                 p.expect(cell["voxels"] == solid["voxels"], "%s at %d: the tetrahedra's solid is voxmend's" % (name, grid))
-            rows.append([name, THEIRS[name][0], os.path.basename(path), faces, "%d³" % grid, theirs[0], ms(cells[0]), theirs[1],
+            rows.append([name, THEIRS[name][0], os.path.basename(path), p.triangles, "%d³" % grid, theirs[0], ms(cells[0]), theirs[1],
                          ms(cells[1]), theirs[2], ms(cells[2]), ms(solid), ms(found[("surface_conservative", "cpu", grid)])])
     p.text("**Tables 2 and 3** (and of table 4 the column DL), ms. HA: the sections of the tetrahedra that a slice meets, computed by "
            "the CPU. VP (DL): all tetrahedra in each slice. Both are drawn here by a scan-line with XOR on one thread, there by a "

@@ -3,7 +3,7 @@
 """Schwarz and Seidel, Fast Parallel Surface and Solid Voxelization on GPUs: tables 1 to 3."""
 import os
 
-from papers import Paper, ms
+from papers import Paper, ms, show
 
 # Grid -> ms: Zhang, simple, specialized, sorted; thousands of voxels; 1D/2D/3D; then the 6-separating surface
 TABLE_1 = {
@@ -30,7 +30,6 @@ TABLE_3 = {
     "Stanford dragon": {512: (14.50, 8.07, 0.97, 4.45, 0.32, 0.10, 2.3), 1024: (23.59, 10.63, 1.52, 9.59, 0.92, 0.28, 9.7),
                         2048: (37.71, 9.02, 3.37, 20.57, 3.28, 1.02, 39.6), 4096: (100.32, 17.79, 9.43, 55.36, 13.16, 3.98, 159)},
 }
-TRIANGLES = {"Stanford bunny": 69666, "Stanford dragon": 871414}
 
 
 def models(p):
@@ -41,7 +40,6 @@ def models(p):
 
 def beside(theirs, ours):
     """"theirs / ours"."""
-    from papers import show
     return "%s / %s" % (show(theirs), show(ours))
 
 
@@ -66,7 +64,7 @@ def surfaces(p, grids, kind, at):
                 row += [beside(theirs[0], ms(zhang)), "%+.2g %%" % (100 * (zhang["voxels"] / ours["voxels"] - 1)), "%s / %s" % (paper[2], shares)]
                 theirs = theirs[1:]
             row += [beside(t, ms(c)) for t, c in zip(theirs, cells)]
-            rows.append(row + ["%s / %d" % (paper[at + 1] if at == 3 else paper[1], ours["voxels"] // 1000), ms(ours)])
+            rows.append(row + [beside(paper[at + 1], ours["voxels"] // 1000), ms(ours)])
     heads = ["model", "grid"] + (["Zhang et al.", "Zhang's voxels beyond", "1D/2D/3D %"] if kind == "conservative" else [])
     p.text("**Table 1, %s surface**, theirs (GeForce GTX 285) / here (one thread of a CPU), ms and thousands of voxels; the last column is "
            "voxmend's own, one thread. `voxmend bench FILE --threads 1 -r %s --phases %s`:" %
@@ -92,8 +90,8 @@ def table_2(p, grids):
                 row += [beside(t[i], f[k]) for i, k in ((3, "pairs_ms"), (4, "sort_ms"), (5, "tiles_ms"))]
                 row += [beside(t[6], f["pairs"] // 1000)]
             rows.append(row + [ms(cpu)])
-    p.text("**Table 2**, solids, theirs / here, ms. Eisemann and Décoret's single pass by the CPU; triangles and tiles by OpenCL, here PoCL "
-           "on two cores, with the stages of one run in which the device is waited for after each; the last column is voxmend's own on two "
+    p.text("**Table 2**, solids, theirs / here, ms. Eisemann and Décoret's single pass by the CPU; triangles and tiles by OpenCL, "
+           "with the stages of one run in which the device is waited for after each; the last column is voxmend's own on two "
            "threads. `voxmend bench FILE --threads 2 -r %s --engine cpu,opencl/triangles,opencl/tiles --phases solid_x,baseline_eisemann`. "
            "Tiles here have 64 columns, theirs 16, hence fewer pairs:" % ",".join(map(str, grids)))
     p.table(["model", "grid", "Eisemann"] + (["triangles", "tiles", "pairs ms", "sort ms", "tiles ms", "thousands of pairs"] if opencl else []) +
@@ -115,10 +113,11 @@ def table_3(p, grids):
                 row += [beside(t[0], ms(other))] + [beside(t[i], f[k]) for i, k in ((1, "active_ms"), (2, "construct_ms"), (3, "voxelize_ms"),
                                                                                     (4, "propagate_ms"))] + [f["prune_ms"]]
                 p.expect(other["voxels"] == cpu["voxels"], "OpenCL's octree has the CPU's voxels")
-            rows.append(row + ["%s / %.3g" % (t[6], cpu["bytes"] / 1e6), ms(cpu)])
-    p.text("**Table 3**, octrees, theirs / here (PoCL on two cores), ms and MB; the last column is voxmend's own by the CPU, two threads. "
-           "`voxmend bench FILE --threads 2 -r %s --engine cpu,opencl --phases sparse`. Octrees here keep no pointers between neighbours, "
-           "and nodes of 16³ voxels with bricks of a bit for each, hence their size:" % ",".join(map(str, grids)))
+            rows.append(row + [beside(t[6], cpu["bytes"] / 1e6), ms(cpu)])
+    p.text("**Table 3**, octrees, theirs / here (OpenCL), ms and MB; the last column is voxmend's own by the CPU, two threads. "
+           "`voxmend bench FILE --threads 2 -r %s --engine cpu,opencl --phases sparse`. The total and voxmend's column hold thin parts "
+           "together besides, which takes more than half of them and is not among the stages. Octrees here keep no pointers between "
+           "neighbours, and nodes of 16³ voxels with bricks of a bit for each, hence their size:" % ",".join(map(str, grids)))
     p.table(["model", "grid"] + (["total", "active nodes", "construct", "voxelize", "propagate", "leave out, read back"] if opencl else []) +
             ["MB", "voxmend"], rows)
 
