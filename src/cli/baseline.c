@@ -178,6 +178,7 @@ int cli_baseline_write(cli_run *cli, voxelize_request *given, voxelize_outcome *
   if (status == VXM_OK) {
     results->voxelize.voxels = vxm_grid_count(grid);
     results->voxelize.hash = vxm_grid_hash(grid);
+    cli_warn_lattice(cli, given->output, given->format, &results->space);
   }
   vxm_grid_destroy(grid);
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);

@@ -73,7 +73,7 @@ typedef enum bench_kind {
   BENCH_USUAL = 0,
   BENCH_AUGMENT, /**< with --augment, in place of the others */
   BENCH_OPENCL,  /**< where an engine of OpenCL is named, and by such engines only */
-  BENCH_BASELINE /**< where it is named */
+  BENCH_BASELINE /**< where it is named: for comparison with papers */
 } bench_kind;
 
 typedef struct bench_phase {

@@ -98,7 +98,8 @@ static json_t *octree_json(const vxm_engine_stages *stages) {
 json_t *bench_stages(bench_stage *stage, const bench_phase *phase) {
   vxm_engine *engine = stage->engines[stage->engine];
   vxm_engine_stages stages = VXM_ENGINE_STAGES_INIT;
-  if (!phase->by_engine || vxm_engine_measure(NULL, engine, true, NULL) != VXM_OK)
+  bool has_stages = phase->kind == BENCH_USUAL || phase->kind == BENCH_BASELINE;
+  if (!has_stages || !phase->by_engine || vxm_engine_measure(NULL, engine, true, NULL) != VXM_OK)
     return NULL;
   vxm_status status = phase->run(stage);
   bench_stage_drop(stage);

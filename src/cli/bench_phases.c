@@ -196,6 +196,13 @@ static vxm_status begin_sparse(bench_stage *stage) {
   return vxm_model_create(&stage->model, stage->mesh, &options, &stage->cli->error);
 }
 
+static vxm_status begin_octree_centres(bench_stage *stage) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.engine = stage->engines[stage->engine];
+  options.thin = VXM_THIN_DROP;
+  return vxm_model_create(&stage->model, stage->mesh, &options, &stage->cli->error);
+}
+
 static vxm_status run_sparse(bench_stage *stage) {
   return vxm_model_sparse(&stage->made_sparse, NULL, stage->model, &stage->space, NULL, &stage->cli->error);
 }
@@ -290,6 +297,8 @@ const bench_phase bench_phases[] = {
      BENCH_OPENCL, 0, bench_begin_transfer, bench_run_transfer_read, bench_tell_published},
     {"transfer_map", "the same by clEnqueueMapBuffer", true, true, BENCH_OPENCL, 0, bench_begin_transfer,
      bench_run_transfer_map, bench_tell_published},
+    {"octree_centres", "the octree of solid_centres, as papers have it", true, true, BENCH_BASELINE, 0,
+     begin_octree_centres, run_sparse, tell_sparse},
     {"baseline_fang_chen", "solid by slices of the whole mesh along three axes", true, false, BENCH_BASELINE,
      SLOW_MS, bench_begin_fang_chen, bench_run_baseline, bench_tell_baseline},
     {"baseline_chen_tu", "the same for each group of vertices, which setup_ms finds", true, false,

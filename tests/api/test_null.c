@@ -564,9 +564,9 @@ static int tear_down(void **state) {
   vxm_defects_destroy(defects);
   vxm_sparse_destroy(sparse);
   vxm_sparse_file_close(sparse_file);
-  static const char *const files[] = {"in.off",       "in.obj",  "in.npy",      "in.npy.json",
-                                      "in.octree",    "out.off", "out.ply",     "out.npy",
-                                      "out.npy.json", "out.png", "variant.npy", "variant.npy.json"};
+  static const char *const files[] = {
+      "in.off",  "in.obj",       "in.npy",  "in.npy.json", "in.octree",   "out.off",         "out.ply",
+      "out.npy", "out.npy.json", "out.png", "out.html",    "variant.npy", "variant.npy.json"};
   for (size_t f = 0; f < sizeof files / sizeof *files; f++)
     unlink(files[f]);
   return chdir("/") == 0 ? rmdir(folder) : 1;

@@ -102,21 +102,20 @@ def table_3(p, grids):
     opencl = p.has_opencl()
     rows = []
     for name, path in models(p).items():
-        found = p.bench(path, "sparse", grids, threads=2, engine="cpu,opencl" if opencl else None, time=0)
+        found = p.bench(path, "octree_centres", grids, threads=2, engine="cpu,opencl" if opencl else None, time=0)
         for grid in grids:
             t = TABLE_3[name].get(grid, (None,) * 7)
-            cpu = found[("sparse", "cpu", grid)]
+            cpu = found[("octree_centres", "cpu", grid)]
             row = [name, "%d³" % grid]
             if opencl:
-                other = found[("sparse", "opencl", grid)]
+                other = found[("octree_centres", "opencl", grid)]
                 f = other["figures"]
                 row += [beside(t[0], ms(other))] + [beside(t[i], f[k]) for i, k in ((1, "active_ms"), (2, "construct_ms"), (3, "voxelize_ms"),
                                                                                     (4, "propagate_ms"))] + [f["prune_ms"]]
                 p.expect(other["voxels"] == cpu["voxels"], "OpenCL's octree has the CPU's voxels")
             rows.append(row + [beside(t[6], cpu["bytes"] / 1e6), ms(cpu)])
     p.text("**Table 3**, octrees, theirs / here (OpenCL), ms and MB; the last column is voxmend's own by the CPU, two threads. "
-           "`voxmend bench FILE --threads 2 -r %s --engine cpu,opencl --phases sparse`. The total and voxmend's column hold thin parts "
-           "together besides, which takes more than half of them and is not among the stages. Octrees here keep no pointers between "
+           "`voxmend bench FILE --threads 2 -r %s --engine cpu,opencl --phases octree_centres`. Octrees here keep no pointers between "
            "neighbours, and nodes of 16³ voxels with bricks of a bit for each, hence their size:" % ",".join(map(str, grids)))
     p.table(["model", "grid"] + (["total", "active nodes", "construct", "voxelize", "propagate", "leave out, read back"] if opencl else []) +
             ["MB", "voxmend"], rows)
