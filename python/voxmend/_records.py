@@ -340,6 +340,8 @@ class EngineInfo(Record):
         int64, int64_atomics, subpixel_bits, attachment, compute_units: what it has.
         moves: it moves the vertices of variants for training itself.
         note: why it is not available, or why another one was taken.
+        kind, clock_mhz, cache_bytes, shares_memory: of an OpenCL device: "cpu", "gpu", "accelerator" or "custom"; its
+            highest clock rate, the cache of its memory, and whether that is the host's.
     """
 
     name: str
@@ -362,3 +364,7 @@ class EngineInfo(Record):
     int64_atomics: bool
     moves: bool
     note: str
+    kind: str
+    clock_mhz: int
+    cache_bytes: int
+    shares_memory: bool

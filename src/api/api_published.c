@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** The public functions of the published OpenCL program: they check arguments and call down. */
+/** The public functions of the published OpenCL program, and of the stages of an OpenCL engine: they check
+ * arguments and call down. */
 #include "base/sized.h"
 #include "config.h"
 #include "voxel/engine/engine.h"
@@ -13,12 +14,16 @@
 #include <inttypes.h>
 #include <string.h>
 
+static bool is_opencl(const vxm_engine *engine) {
+  return engine->ops && strncmp(engine->info.name, "opencl:", 7) == 0;
+}
+
 static vxm_status check(const vxm_engine *engine, const vxm_published_options *options, vxm_error *error) {
   if (!(options->voxel_size >= (double)FLT_MIN && options->voxel_size <= 1 / (double)FLT_MIN))
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "published program: voxel size %g is not a positive number that a 32-bit float holds",
                     options->voxel_size);
-  if (!engine->ops || strncmp(engine->info.name, "opencl:", 7) != 0)
+  if (!is_opencl(engine))
     return vxm_fail(
         error, VXM_ERROR_UNAVAILABLE,
         "the published program needs an engine of OpenCL, and this one is %s; use --engine opencl",
@@ -89,4 +94,35 @@ void vxm_published_destroy(vxm_published *published) {
 #else
   (void)published;
 #endif
+}
+
+vxm_status vxm_engine_measure(vxm_engine_stages *out, vxm_engine *engine, bool measure, vxm_error *error) {
+  VXM_RESULT_CLEAR(out);
+  if (!engine)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "stages: an argument is NULL");
+  if (!is_opencl(engine))
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
+                    "stages are those of an engine of OpenCL, and this one is %s", engine->info.name);
+#ifdef HAVE_OPENCL
+  vxm_opencl *opencl = vxm_opencl_of(engine);
+  const vxm_cl_stages *s = &opencl->own_stages;
+  vxm_engine_stages made = {.pairs_ms = s->pairs,
+                            .sort_ms = s->sort,
+                            .tiles_ms = s->tiles,
+                            .pairs = (int64_t)s->pair_count,
+                            .tiles = (int64_t)s->tile_count,
+                            .active_ms = s->cells,
+                            .construct_ms = s->construct,
+                            .voxelize_ms = s->voxelize,
+                            .propagate_ms = s->propagate,
+                            .prune_ms = s->prune,
+                            .active = (int64_t)s->cells_active,
+                            .nodes = (int64_t)s->nodes};
+  VXM_RESULT_WRITE(out, &made);
+  opencl->own_stages = (vxm_cl_stages){0};
+  opencl->stages = measure ? &opencl->own_stages : NULL;
+#else
+  (void)measure;
+#endif
+  return VXM_OK;
 }

@@ -8,7 +8,7 @@
 
 enum {
   BENCH_LIST_MAX = 32,
-  BENCH_PHASES_MAX = 32,
+  BENCH_PHASES_MAX = 64,
   BENCH_ENGINES_MAX = 8,
   BENCH_RUNS_LEAST = 5,
   BENCH_RUNS_MOST = 10000
@@ -48,7 +48,9 @@ typedef struct bench_stage {
   vxm_model *model;                       /**< of the present phase */
   bench_team *team;                       /**< of the present phase */
   void *values;                           /**< a number per voxel, of the present phase */
-  vxm_published *published;               /**< of the present phase, with value_count voxels */
+  vxm_baseline_options baseline;          /**< of the present phase, and what its last run came to */
+  vxm_baseline_report baseline_report;
+  vxm_published *published; /**< of the present phase, with value_count voxels */
   size_t value_count;
   bench_augment *augment; /**< of the present phase */
   int64_t variants;       /**< that each of its runs makes: times are for one; 0 = does not apply */
@@ -63,13 +65,15 @@ typedef struct bench_stage {
 typedef struct bench_output {
   uint64_t bytes;
   int64_t voxels;
+  json_t *figures; /**< what else there is to tell, or NULL; the taker's */
 } bench_output;
 
 /** When a phase is measured, unless it is named. */
 typedef enum bench_kind {
   BENCH_USUAL = 0,
   BENCH_AUGMENT, /**< with --augment, in place of the others */
-  BENCH_OPENCL   /**< where an engine of OpenCL is named, and by such engines only */
+  BENCH_OPENCL,  /**< where an engine of OpenCL is named, and by such engines only */
+  BENCH_BASELINE /**< where it is named: for comparison with papers */
 } bench_kind;
 
 typedef struct bench_phase {
@@ -130,6 +134,30 @@ vxm_status bench_run_transfer_read(bench_stage *stage);
 vxm_status bench_run_transfer_map(bench_stage *stage);
 void bench_tell_published(bench_output *out, const bench_stage *stage);
 
+/** How long the stages of a run on an OpenCL device take, measured off the clock in a run of its own; NULL
+ * where the engine or the phase has none. */
+json_t *bench_stages(bench_stage *stage, const bench_phase *phase);
+
+/* ---- Published methods (bench_baseline.c) ---- */
+
+vxm_status bench_begin_fang_chen(bench_stage *stage);
+vxm_status bench_begin_chen_tu(bench_stage *stage);
+vxm_status bench_begin_tetra_listed(bench_stage *stage);
+vxm_status bench_begin_tetra_full(bench_stage *stage);
+vxm_status bench_begin_tetra_anew(bench_stage *stage);
+vxm_status bench_begin_tetra_layers(bench_stage *stage);
+vxm_status bench_begin_density(bench_stage *stage);
+vxm_status bench_begin_simple(bench_stage *stage);
+vxm_status bench_begin_specialized(bench_stage *stage);
+vxm_status bench_begin_sorted(bench_stage *stage);
+vxm_status bench_begin_simple_thin(bench_stage *stage);
+vxm_status bench_begin_specialized_thin(bench_stage *stage);
+vxm_status bench_begin_sorted_thin(bench_stage *stage);
+vxm_status bench_begin_zhang(bench_stage *stage);
+vxm_status bench_begin_eisemann(bench_stage *stage);
+vxm_status bench_run_baseline(bench_stage *stage);
+void bench_tell_baseline(bench_output *out, const bench_stage *stage);
+
 /* ---- Measuring (bench_measure.c) ---- */
 
 typedef struct bench_result {
@@ -143,6 +171,7 @@ typedef struct bench_result {
   int64_t voxels;     /**< set voxels; those covered in part too, and those inside */
   double of_memset;   /**< median over that of memset of as many bytes by as many threads; 0 = not measured */
   char left_out[560]; /**< why it was not measured, or "" */
+  json_t *figures;    /**< of the first run, or NULL */
 } bench_result;
 
 typedef struct bench_memory {
@@ -158,6 +187,7 @@ typedef struct bench_results {
   int memory_count;
 } bench_results;
 
+void bench_results_drop(bench_results *results);
 /** The result of a phase, or NULL if there is none that was measured. */
 const bench_result *bench_find(const bench_results *results, const char *phase, int64_t resolution,
                                int threads, int engine);

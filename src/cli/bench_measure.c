@@ -34,6 +34,12 @@ bench_result *bench_add(bench_results *results) {
   return item;
 }
 
+void bench_results_drop(bench_results *results) {
+  for (int i = 0; i < results->count; i++)
+    json_decref(results->items[i].figures);
+  free(results->items);
+}
+
 /* ---- Runs ---- */
 
 /** @param output NULL = not wanted */
@@ -82,8 +88,11 @@ static vxm_status measure(bench_result *out, bench_stage *stage, const bench_pha
     status = run_once(stage, phase, &first, &output);
   out->bytes = output.bytes;
   out->voxels = output.voxels;
+  out->figures = output.figures;
   if (status == VXM_OK)
     status = repeat(out, stage, phase, time_ms);
+  if (status == VXM_OK && !out->figures)
+    out->figures = bench_stages(stage, phase);
   bench_stage_drop(stage);
   bench_stage_end_phase(stage);
   return status;
@@ -140,7 +149,7 @@ static vxm_status leave_out_if_slow(bench_result *out, const bench_results *resu
 static vxm_status leave_out_if_impossible(bench_result *out, bench_stage *stage, vxm_status status) {
   bool no_memory = status == VXM_ERROR_MEMORY || status == VXM_ERROR_MEMORY_LIMIT;
   bool not_here = status == VXM_ERROR_UNAVAILABLE || status == VXM_ERROR_RANGE;
-  if (!no_memory && (!not_here || out->phase->kind != BENCH_OPENCL))
+  if (!no_memory && (!not_here || (out->phase->kind != BENCH_OPENCL && out->phase->kind != BENCH_BASELINE)))
     return status;
   snprintf(out->left_out, sizeof out->left_out, "%s", stage->cli->error.text);
   stage->cli->error = (vxm_error)VXM_ERROR_INIT;
@@ -157,8 +166,10 @@ vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench
   if (status == VXM_OK && !*made.left_out)
     status = measure(&made, stage, phase, plan->time_ms);
   status = leave_out_if_impossible(&made, stage, status);
-  if (status != VXM_OK)
+  if (status != VXM_OK) {
+    json_decref(made.figures);
     return status;
+  }
   const bench_result *base = bench_find(results, "memset", resolution, stage->threads, 0);
   if (base && phase->per_grid && phase->kind != BENCH_OPENCL && phase != base->phase && base->median_ms > 0)
     made.of_memset = made.median_ms / base->median_ms;
@@ -166,6 +177,7 @@ vxm_status bench_measure(bench_results *results, bench_stage *stage, const bench
   if (!place) {
     stage->cli->error.code = VXM_ERROR_MEMORY;
     snprintf(stage->cli->error.text, sizeof stage->cli->error.text, "out of memory");
+    json_decref(made.figures);
     return VXM_ERROR_MEMORY;
   }
   *place = made;

@@ -80,3 +80,30 @@ void bench_tell_published(bench_output *out, const bench_stage *stage) {
   for (size_t i = 0; i < stage->value_count; i++)
     out->voxels += voxel[i] != 0;
 }
+
+/* ---- Stages ---- */
+
+static json_t *tiles_json(const vxm_engine_stages *stages) {
+  return json_pack("{sf sf sf sI sI}", "pairs_ms", stages->pairs_ms, "sort_ms", stages->sort_ms, "tiles_ms",
+                   stages->tiles_ms, "pairs", (json_int_t)stages->pairs, "tiles", (json_int_t)stages->tiles);
+}
+
+static json_t *octree_json(const vxm_engine_stages *stages) {
+  return json_pack("{sf sf sf sf sf sI sI}", "active_ms", stages->active_ms, "construct_ms",
+                   stages->construct_ms, "voxelize_ms", stages->voxelize_ms, "propagate_ms",
+                   stages->propagate_ms, "prune_ms", stages->prune_ms, "active", (json_int_t)stages->active,
+                   "nodes", (json_int_t)stages->nodes);
+}
+
+json_t *bench_stages(bench_stage *stage, const bench_phase *phase) {
+  vxm_engine *engine = stage->engines[stage->engine];
+  vxm_engine_stages stages = VXM_ENGINE_STAGES_INIT;
+  bool has_stages = phase->kind == BENCH_USUAL || phase->kind == BENCH_BASELINE;
+  if (!has_stages || !phase->by_engine || vxm_engine_measure(NULL, engine, true, NULL) != VXM_OK)
+    return NULL;
+  vxm_status status = phase->run(stage);
+  bench_stage_drop(stage);
+  if (vxm_engine_measure(&stages, engine, false, NULL) != VXM_OK || status != VXM_OK)
+    return NULL;
+  return stages.pairs > 0 ? tiles_json(&stages) : stages.nodes > 0 ? octree_json(&stages) : NULL;
+}

@@ -185,7 +185,7 @@ static vxm_status begin_thin(bench_stage *stage) {
 }
 
 static void tell_grid(bench_output *out, const bench_stage *stage) {
-  *out = (bench_output){grid_bytes(stage), vxm_grid_count(stage->grid)};
+  *out = (bench_output){grid_bytes(stage), vxm_grid_count(stage->grid), NULL};
 }
 
 /* ---- Octrees and numbers ---- */
@@ -196,12 +196,19 @@ static vxm_status begin_sparse(bench_stage *stage) {
   return vxm_model_create(&stage->model, stage->mesh, &options, &stage->cli->error);
 }
 
+static vxm_status begin_octree_centres(bench_stage *stage) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  options.engine = stage->engines[stage->engine];
+  options.thin = VXM_THIN_DROP;
+  return vxm_model_create(&stage->model, stage->mesh, &options, &stage->cli->error);
+}
+
 static vxm_status run_sparse(bench_stage *stage) {
   return vxm_model_sparse(&stage->made_sparse, NULL, stage->model, &stage->space, NULL, &stage->cli->error);
 }
 
 static void tell_sparse(bench_output *out, const bench_stage *stage) {
-  *out = (bench_output){vxm_sparse_bytes(stage->made_sparse), vxm_sparse_count(stage->made_sparse)};
+  *out = (bench_output){vxm_sparse_bytes(stage->made_sparse), vxm_sparse_count(stage->made_sparse), NULL};
 }
 
 /** Voxels of the space: below 2^60, as no axis has more than 2^20. */
@@ -290,4 +297,36 @@ const bench_phase bench_phases[] = {
      BENCH_OPENCL, 0, bench_begin_transfer, bench_run_transfer_read, bench_tell_published},
     {"transfer_map", "the same by clEnqueueMapBuffer", true, true, BENCH_OPENCL, 0, bench_begin_transfer,
      bench_run_transfer_map, bench_tell_published},
+    {"octree_centres", "the octree of solid_centres, as papers have it", true, true, BENCH_BASELINE, 0,
+     begin_octree_centres, run_sparse, tell_sparse},
+    {"baseline_fang_chen", "solid by slices of the whole mesh along three axes", true, false, BENCH_BASELINE,
+     SLOW_MS, bench_begin_fang_chen, bench_run_baseline, bench_tell_baseline},
+    {"baseline_chen_tu", "the same for each group of vertices, which setup_ms finds", true, false,
+     BENCH_BASELINE, SLOW_MS, bench_begin_chen_tu, bench_run_baseline, bench_tell_baseline},
+    {"baseline_tetra_listed", "XOR of tetrahedra, of those that a slice meets", true, false, BENCH_BASELINE,
+     SLOW_MS, bench_begin_tetra_listed, bench_run_baseline, bench_tell_baseline},
+    {"baseline_tetra_full", "XOR of tetrahedra, all asked in each slice", true, false, BENCH_BASELINE,
+     SLOW_MS, bench_begin_tetra_full, bench_run_baseline, bench_tell_baseline},
+    {"baseline_tetra_anew", "the same with the tetrahedra made in each slice", true, false, BENCH_BASELINE,
+     SLOW_MS, bench_begin_tetra_anew, bench_run_baseline, bench_tell_baseline},
+    {"baseline_tetra_layers", "XOR of tetrahedra, each into all of its slices", true, false, BENCH_BASELINE,
+     SLOW_MS, bench_begin_tetra_layers, bench_run_baseline, bench_tell_baseline},
+    {"baseline_eisemann", "solid by flips of all voxels behind a triangle", true, false, BENCH_BASELINE,
+     SLOW_MS, bench_begin_eisemann, bench_run_baseline, bench_tell_baseline},
+    {"baseline_density", "a density about the surface", true, false, BENCH_BASELINE, SLOW_MS,
+     bench_begin_density, bench_run_baseline, bench_tell_baseline},
+    {"baseline_simple", "conservative surface, all voxels of a triangle's box asked", true, false,
+     BENCH_BASELINE, SLOW_MS, bench_begin_simple, bench_run_baseline, bench_tell_baseline},
+    {"baseline_specialized", "the same by the dimensions of the box and the axis of the normal", true, false,
+     BENCH_BASELINE, SLOW_MS, bench_begin_specialized, bench_run_baseline, bench_tell_baseline},
+    {"baseline_sorted", "the same with the triangles sorted by these", true, false, BENCH_BASELINE, SLOW_MS,
+     bench_begin_sorted, bench_run_baseline, bench_tell_baseline},
+    {"baseline_thin_simple", "6-separating surface, as baseline_simple", true, false, BENCH_BASELINE, SLOW_MS,
+     bench_begin_simple_thin, bench_run_baseline, bench_tell_baseline},
+    {"baseline_thin_specialized", "6-separating surface, as baseline_specialized", true, false,
+     BENCH_BASELINE, SLOW_MS, bench_begin_specialized_thin, bench_run_baseline, bench_tell_baseline},
+    {"baseline_thin_sorted", "6-separating surface, as baseline_sorted", true, false, BENCH_BASELINE, SLOW_MS,
+     bench_begin_sorted_thin, bench_run_baseline, bench_tell_baseline},
+    {"baseline_zhang", "surface by conservative rasterization and ranges of depth", true, false,
+     BENCH_BASELINE, SLOW_MS, bench_begin_zhang, bench_run_baseline, bench_tell_baseline},
     {NULL, NULL, false, false, BENCH_USUAL, 0, NULL, NULL, NULL}};

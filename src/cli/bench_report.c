@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The results of `voxmend bench` as tables and as JSON. */
+#include "cli/baseline.h"
 #include "cli/bench.h"
 
 #include <inttypes.h>
@@ -61,6 +62,11 @@ static void print_row(const cli_run *cli, const bench_plan *plan, const bench_re
   fprintf(cli->text, "%-*s %6s %s %s %9.*f %8s  %s\n", width, name, grid,
           show_ms(median, sizeof median, item->median_ms), show_ms(least, sizeof least, item->least_ms),
           rate < 100 ? 2 : 0, rate, of_memset, show_bar(bar, item->median_ms));
+  if (item->figures) {
+    char figures[512];
+    cli_figures_text(figures, sizeof figures, item->figures);
+    fprintf(cli->text, "%-*s %6s  %s\n", width, "", "", figures);
+  }
 }
 
 static void print_threads(const cli_run *cli, const bench_plan *plan, const bench_results *results,
@@ -207,6 +213,8 @@ static json_t *result_json(const bench_plan *plan, const bench_result *item) {
   json_object_set_new(object, "voxels", json_integer(item->voxels));
   json_object_set_new(object, "per_second", cli_json_number(1e3 / item->median_ms));
   json_object_set_new(object, "of_memset", item->of_memset > 0 ? json_real(item->of_memset) : json_null());
+  if (item->figures)
+    json_object_set(object, "figures", item->figures);
   return object;
 }
 

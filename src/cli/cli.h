@@ -71,7 +71,7 @@ enum { CLI_COMMANDS_MAX = 24 };
 /** All of them, in the order in which they are shown (main.c); NULL ends them. */
 extern const cli_command *const cli_commands[CLI_COMMANDS_MAX + 1];
 
-enum { CLI_OPTIONS_MAX = 96, CLI_LIST_MAX = 512, CLI_NAMES_MAX = 8 };
+enum { CLI_OPTIONS_MAX = 96, CLI_LIST_MAX = 1024, CLI_NAMES_MAX = 8 };
 
 /** A file that a run writes. */
 typedef struct cli_written {

@@ -411,7 +411,7 @@ static int run(cli_run *cli) {
     return CLI_FAILED;
   bench_machine_read(&work.subject.machine);
   int status = bench(&work);
-  free(work.results.items);
+  bench_results_drop(&work.results);
   return status;
 }
 

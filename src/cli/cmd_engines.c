@@ -16,6 +16,10 @@ static void add_opencl(json_t *object, const vxm_engine_info *info) {
   json_object_set_new(object, "local_bytes", json_integer(info->local_bytes));
   json_object_set_new(object, "work_group", json_integer(info->work_group));
   json_object_set_new(object, "int64_atomics", json_boolean(info->int64_atomics));
+  json_object_set_new(object, "kind", json_string(info->kind));
+  json_object_set_new(object, "clock_mhz", json_integer(info->clock_mhz));
+  json_object_set_new(object, "cache_bytes", json_integer(info->cache_bytes));
+  json_object_set_new(object, "shares_memory", json_boolean(info->shares_memory));
 }
 
 static json_t *engine_json(const vxm_engine_info *info) {
@@ -55,7 +59,7 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
   fprintf(cli->text, "  version                %s\n", info->version);
   fprintf(cli->text, "  moves variants         %s\n",
           info->moves ? "yes" : "no: the CPU does (voxmend augment)");
-  char memory[24], buffers[24];
+  char memory[24], buffers[24], cache[24];
   cli_bytes_text(memory, (uint64_t)info->global_bytes);
   cli_bytes_text(buffers, (uint64_t)info->block_bytes);
   if (is_opencl) {
@@ -63,6 +67,9 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
             "  limits                 %d compute units, groups of %" PRId64
             "; memory of %s, buffers of %s,\n                         %" PRId64 " KiB shared by a group\n",
             info->compute_units, info->work_group, memory, buffers, info->local_bytes >> 10);
+    cli_bytes_text(cache, (uint64_t)info->cache_bytes);
+    fprintf(cli->text, "  %-22s up to %d MHz, cache of %s%s\n", info->kind, info->clock_mhz, cache,
+            info->shares_memory ? "; its memory is the host's" : "");
     fprintf(cli->text, "  64-bit atomics         %s\n", info->int64_atomics ? "yes" : "no (not needed)");
     return;
   }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend voxelize: mesh in, voxel grid out. */
-#include "cli/voxelize.h"
+#include "cli/baseline.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -157,6 +157,14 @@ static int make_file(cli_run *cli, voxelize_request *given, voxelize_outcome *re
   return result;
 }
 
+/** As make_file, by a published method. */
+static int make_baseline(cli_run *cli, voxelize_request *given, voxelize_outcome *results) {
+  if (vxm_space_fit(&results->space, results->input.mesh, &given->space, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  results->estimate.grid_bytes = bytes_of_bits(&results->space);
+  return cli_baseline_write(cli, given, results);
+}
+
 static int run(cli_run *cli) {
   voxelize_request given = {.repair = VXM_REPAIR_OPTIONS_INIT,
                             .space = VXM_SPACE_OPTIONS_INIT,
@@ -179,7 +187,7 @@ static int run(cli_run *cli) {
   if (cli_read_repaired(cli, &results.input, given.input, repair) != CLI_DONE)
     return CLI_FAILED;
   cli_color_take(&given.field, &results.input);
-  int status = make_file(cli, &given, &results);
+  int status = given.baseline_name ? make_baseline(cli, &given, &results) : make_file(cli, &given, &results);
   vxm_mesh_destroy(results.input.mesh);
   vxm_mesh_destroy(results.input.as_read);
   if (status == CLI_DONE) {
@@ -190,6 +198,7 @@ static int run(cli_run *cli) {
     status = cli_finish(cli, voxelize_report(cli, &given, &results));
   }
   json_decref(given.field.label_table);
+  json_decref(results.figures);
   vxm_engine_destroy(given.engine.engine);
   return status;
 }

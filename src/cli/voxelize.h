@@ -7,6 +7,8 @@
 
 typedef struct voxelize_request {
   const char *input, *output, *format, *like, *confidence, *coords;
+  const char *baseline_name; /**< NULL = the library's own methods */
+  int baseline;              /**< its place in cli_baseline_names */
   bool resolution, size, fit, pad, bounds, vote, surface, thin, no_repair, repair_options, dry_run, sparse,
       force,                        /**< which were given */
       keep_polygons, keep_contacts; /**< of a mesh: vxm_grid_write_options */
@@ -23,7 +25,8 @@ typedef struct voxelize_outcome {
   vxm_voxelize_report voxelize;
   vxm_space space;
   vxm_estimate estimate;
-  bool octree; /**< the voxels are made as one: --sparse, or the grid is large */
+  bool octree;     /**< the voxels are made as one: --sparse, or the grid is large */
+  json_t *figures; /**< of --baseline, or NULL */
   struct {
     int64_t bricks, nodes; /**< none without an octree */
     uint64_t bytes;

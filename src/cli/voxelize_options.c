@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend voxelize: its options. */
-#include "cli/voxelize.h"
+#include "cli/baseline.h"
 
 #include <string.h>
 
@@ -36,7 +36,8 @@ enum {
   KEY_CONTACTS,
   KEY_BLOCKS,
   KEY_UP,
-  KEY_DRY_RUN
+  KEY_DRY_RUN,
+  KEY_BASELINE
 };
 
 const cli_option voxelize_options[] = {
@@ -105,6 +106,11 @@ const cli_option voxelize_options[] = {
      "along a side; a .octree file follows it too, and 'convert --window' cuts grids out\n"
      "of that; not for formats that need the whole grid"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
+    {KEY_BASELINE, "baseline", "NAME",
+     "use a published method instead, as it was published, for comparison: fang-chen,\n"
+     "chen-tu, tetra-listed, tetra-full, tetra-anew, tetra-layers, eisemann (solids);\n"
+     "density, simple, specialized, sorted, zhang (surfaces); faieghi and faieghi-voxels\n"
+     "(surfaces, with --engine opencl)"},
     {KEY_DRY_RUN, "dry-run", NULL, "tell the grid and the memory it takes, and write nothing"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},
     {KEY_WELD, "weld", "auto|off|EPS", "as in 'voxmend repair' [auto]"},
@@ -255,6 +261,9 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
   case KEY_DRY_RUN:
     out->dry_run = true;
     return CLI_END;
+  case KEY_BASELINE:
+    out->baseline_name = value;
+    return cli_choose(cli, &out->baseline, "baseline", value, cli_baseline_names);
   case KEY_NO_REPAIR:
     out->no_repair = true;
     return CLI_END;
@@ -309,7 +318,7 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
                           "--labels and --color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
-  if (cli_engine_check(cli, &given->engine) == CLI_STOP)
+  if (cli_engine_check(cli, &given->engine) == CLI_STOP || cli_baseline_check(cli, given) == CLI_STOP)
     return CLI_STOP;
   if (cli_check_repair(cli, given->no_repair, given->repair_options) == CLI_STOP)
     return CLI_STOP;

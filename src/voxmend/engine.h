@@ -40,13 +40,17 @@ typedef struct vxm_engine_info {
   bool int64_atomics;   /**< not needed */
   bool moves;     /**< moves the vertices of variants for training (vxm_sampler) itself; else the CPU does */
   char note[256]; /**< why it is not available, or why another one was taken */
+  char kind[16];  /**< of an OpenCL device: "cpu", "gpu", "accelerator" or "custom"; "" for others */
+  int clock_mhz;  /**< highest clock rate that the device tells; 0 = it tells none */
+  int64_t cache_bytes; /**< cache of its memory; 0 = none, or not told */
+  bool shares_memory;  /**< device and host have the same memory */
 } vxm_engine_info;
 
 /** Initial value of vxm_engine_info. */
 #define VXM_ENGINE_INFO_INIT                                                                             \
   {                                                                                                      \
     sizeof(vxm_engine_info), "", false, false, "", "", 0, 0, 0, 0, false, "", "", "", 0, 0, 0, 0, false, \
-        false, ""                                                                                        \
+        false, "", "", 0, 0, false                                                                       \
   }
 
 /** How an engine of OpenGL makes solids. */

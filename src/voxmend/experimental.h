@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * @file voxmend/experimental.h
- * What may change from one version to the next, and is in no other header: which instructions are used, and a
- * published program, for comparison.
+ * What may change from one version to the next, and is in no other header: which instructions are used, and
+ * published methods, for comparison.
  */
 #ifndef VOXMEND_EXPERIMENTAL_H
 #define VOXMEND_EXPERIMENTAL_H
@@ -34,6 +34,113 @@ VXM_API vxm_cpu_level vxm_cpu_used(void);
  * vxm_cpu_highest
  */
 VXM_API vxm_status vxm_cpu_limit(vxm_cpu_level level, vxm_error *error);
+
+/* ---- Published methods, for comparison ---- */
+
+/** Methods of the papers that this library was measured against, plainly and by one thread of the CPU: they
+ * show by how much a method is slower, or sets other voxels (doc/papers.md). */
+typedef enum vxm_baseline {
+  VXM_BASELINE_FANG_CHEN = 0, /**< slices of the whole mesh along x, y and z, of which two decide */
+  VXM_BASELINE_CHEN_TU, /**< the same for each group of connected vertices; united along each axis first */
+  VXM_BASELINE_TETRA_LISTED, /**< XOR of tetrahedra, slice by slice, of those that a slice meets (Rueda et
+                                al.: HA) */
+  VXM_BASELINE_TETRA_FULL,   /**< all tetrahedra asked in each slice (Rueda et al.: DL), made once (Ogayar et
+                                al.: precomputed) */
+  VXM_BASELINE_TETRA_ANEW,   /**< all triangles in each slice, whose tetrahedra are made there (Ogayar et al.)
+                              */
+  VXM_BASELINE_TETRA_LAYERS, /**< each tetrahedron once, into all of its slices (Ogayar et al.: single pass)
+                              */
+  VXM_BASELINE_DENSITY,     /**< a density that falls with the distance from the surface (Sramek & Kaufman) */
+  VXM_BASELINE_SIMPLE,      /**< each triangle asks all voxels of its box (Schwarz & Seidel, section 3.2) */
+  VXM_BASELINE_SPECIALIZED, /**< boxes of one, two and three dimensions, and the axis of the normal, apart */
+  VXM_BASELINE_SORTED,      /**< the same with the triangles sorted by that first */
+  VXM_BASELINE_ZHANG,       /**< conservative rasterization with a range of depth (Zhang et al.) */
+  VXM_BASELINE_EISEMANN /**< each triangle flips all voxels behind it, word by word (Eisemann & Decoret) */
+} vxm_baseline;
+
+/** Which method, and how. */
+typedef struct vxm_baseline_options {
+  size_t size;         /**< as the initializer sets it */
+  vxm_baseline method; /**< which */
+  bool
+      thin; /**< of the simple, specialized and sorted one: the 6-separating surface, else the conservative */
+  double radius;    /**< of the density: voxels from the surface within which it is above 0; 0 = 1.8 */
+  uint8_t *density; /**< NULL, or room for a byte per voxel, x fastest: 255 on the surface */
+} vxm_baseline_options;
+
+/** Initial value of vxm_baseline_options. */
+#define VXM_BASELINE_OPTIONS_INIT \
+  { sizeof(vxm_baseline_options), VXM_BASELINE_FANG_CHEN, false, 0.0, NULL }
+
+/** What a baseline came to. What a method does not have is 0. */
+typedef struct vxm_baseline_report {
+  size_t size;       /**< as the initializer sets it, or 0 */
+  double setup_ms;   /**< before the first voxel: groups, tetrahedra, sorting */
+  double fill_ms;    /**< making the voxels */
+  int64_t triangles; /**< polygons are cut into triangles */
+  int64_t parts;     /**< groups of connected vertices that have faces */
+  int64_t rounds;    /**< passes over the faces until groups stay as they are */
+  int64_t tests;     /**< of a triangle, tetrahedron or column against a voxel or slice */
+  int64_t sections;  /**< triangles that were drawn into slices */
+  int64_t boxes[3];  /**< triangles whose box is longer than a voxel along one axis at most, two, three */
+  uint64_t bytes;    /**< held beside the mesh and the grid */
+} vxm_baseline_report;
+
+/** Initial value of vxm_baseline_report. */
+#define VXM_BASELINE_REPORT_INIT \
+  { sizeof(vxm_baseline_report), 0.0, 0.0, 0, 0, 0, 0, 0, {0, 0, 0}, 0 }
+
+/**
+ * Voxelizes a mesh by a published method: all bits of the grid are replaced. Of a closed mesh that lies
+ * within the grid the solids are those of VXM_SPLIT_MODE_GROUP or VXM_SPLIT_MODE_WHOLE without thin parts;
+ * the simple, specialized and sorted surfaces are those of VXM_MODE_SURFACE; the density's voxels, those
+ * within half of its radius, and Zhang's are these and more.
+ *
+ * @param grid        says the space
+ * @param[out] report may be NULL
+ * @param mesh        as for vxm_voxelize
+ * @param options     NULL = defaults
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY without triangles; VXM_ERROR_RANGE where a triangle is
+ *         longer than 2^20 steps of the lattice, which is the grid's length up to 1024 voxels;
+ *         VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED. After a failure the content of the
+ *         grid is unspecified
+ */
+VXM_API vxm_status vxm_baseline_voxelize(vxm_grid *grid, vxm_baseline_report *report, const vxm_mesh *mesh,
+                                         const vxm_baseline_options *options, vxm_error *error);
+
+/* ---- Stages of the work on an OpenCL device ---- */
+
+/** How long stages took, in milliseconds, and what they had to do: those of Schwarz & Seidel 2010, table 2
+ * (solids by VXM_CL_TILES) and table 3 (octrees). */
+typedef struct vxm_engine_stages {
+  size_t size;         /**< as the initializer sets it, or 0 */
+  double pairs_ms;     /**< listing tiles of columns and the triangles that may cover them */
+  double sort_ms;      /**< sorting that list by tile */
+  double tiles_ms;     /**< filling the tiles */
+  int64_t pairs;       /**< of a tile and a triangle */
+  int64_t tiles;       /**< of columns, with triangles or without */
+  double active_ms;    /**< finding the nodes that the surface meets */
+  double construct_ms; /**< the octree above them */
+  double voxelize_ms;  /**< flips of the lowest level */
+  double propagate_ms; /**< carrying them along x, through all levels */
+  double prune_ms;     /**< leaving out what is all empty or full, and reading back the rest */
+  int64_t active;      /**< nodes that the surface meets, of 16^3 voxels */
+  int64_t nodes;       /**< of all levels, before any is left out */
+} vxm_engine_stages;
+
+/** Initial value of vxm_engine_stages. */
+#define VXM_ENGINE_STAGES_INIT \
+  { sizeof(vxm_engine_stages), 0.0, 0.0, 0.0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0 }
+
+/**
+ * Tells how long stages took since the last call, and whether those to come are measured: the device is then
+ * waited for after each, which makes the whole slower. At first they are not.
+ *
+ * @param[out] out may be NULL; all 0 where nothing was measured
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_UNAVAILABLE for an engine that is not of OpenCL
+ */
+VXM_API vxm_status vxm_engine_measure(vxm_engine_stages *out, vxm_engine *engine, bool measure,
+                                      vxm_error *error);
 
 /* ---- A published OpenCL program, for comparison ---- */
 

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "voxmend.h"
+#include "voxmend/experimental.h"
 
 #include <limits.h>
 #include <math.h>
@@ -71,6 +72,10 @@ static vxm_status read_mesh(const void *options) {
 
 static vxm_status write_mesh(const void *options) {
   return vxm_mesh_write(mesh, "/dev/null", options, &error);
+}
+
+static vxm_status compare_with(const void *options) {
+  return vxm_baseline_voxelize(grid, NULL, mesh, options, &error);
 }
 
 static vxm_status repair_mesh(const void *options) {
@@ -200,6 +205,8 @@ static const vxm_voxelize_options voxelize_options = {.size = sizeof(vxm_voxeliz
 static const vxm_coverage_options coverage_options = {sizeof(vxm_coverage_options), 2, VXM_UINT8, NULL};
 static const vxm_distance_options distance_options = VXM_DISTANCE_OPTIONS_INIT;
 static const vxm_label_options label_options = VXM_LABEL_OPTIONS_INIT;
+static const vxm_baseline_options baseline_options = {.size = sizeof(vxm_baseline_options),
+                                                      .method = VXM_BASELINE_DENSITY};
 static const vxm_color_options color_options = VXM_COLOR_OPTIONS_INIT;
 static const vxm_sampler_options sampler_options = {.size = sizeof(vxm_sampler_options),
                                                     .resolution = 8,
@@ -256,6 +263,8 @@ static const options_case cases[] = {
     {S(distance_options, measure), {F(vxm_distance_options, band, NUMBER)}},
     {S(label_options, label), {F(vxm_label_options, by, CHOICE)}},
     {S(color_options, color), {F(vxm_color_options, by, CHOICE)}},
+    {S(baseline_options, compare_with),
+     {F(vxm_baseline_options, method, CHOICE), F(vxm_baseline_options, radius, NUMBER)}},
     {S(sampler_options, sample),
      {F(vxm_sampler_options, resolution, COUNT), F(vxm_sampler_options, pad, COUNT),
       F(vxm_sampler_options, rotation, CHOICE), F(vxm_sampler_options, axis[0], NUMBER),

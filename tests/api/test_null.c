@@ -52,6 +52,7 @@ static vxm_picture_options picture = VXM_PICTURE_OPTIONS_INIT;
 static vxm_page_options page = VXM_PAGE_OPTIONS_INIT;
 static vxm_engine_options engine_options = VXM_ENGINE_OPTIONS_INIT;
 static vxm_published_options published_options = VXM_PUBLISHED_OPTIONS_INIT;
+static vxm_baseline_options baseline_options = VXM_BASELINE_OPTIONS_INIT;
 static vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
 static vxm_voxelize_options voxelize_options = VXM_VOXELIZE_OPTIONS_INIT;
 static vxm_coverage_options coverage_options = VXM_COVERAGE_OPTIONS_INIT;
@@ -85,6 +86,8 @@ static struct {
   int64_t count;
   vxm_space space;
   vxm_published_report published_report;
+  vxm_baseline_report baseline;
+  vxm_engine_stages stages;
   vxm_voxelize_report voxelize;
   vxm_estimate estimate;
   vxm_coverage_report coverage;
@@ -282,6 +285,11 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   X(vxm_cpu_highest, 0, 0, (vxm_cpu_highest(), VXM_OK))                                                    \
   X(vxm_cpu_used, 0, 0, (vxm_cpu_used(), VXM_OK))                                                          \
   X(vxm_cpu_limit, 1, 0, vxm_cpu_limit(vxm_cpu_highest(), P(0, &error)))                                   \
+  X(vxm_baseline_voxelize, 5, 5,                                                                           \
+    vxm_baseline_voxelize(P(0, grid), P(1, &out.baseline), P(2, mesh), P(3, &baseline_options),            \
+                          P(4, &error)))                                                                   \
+  X(vxm_engine_measure, 3, 2,                                                                              \
+    nulls & 2 ? vxm_engine_measure(P(0, &out.stages), P(1, engine), true, P(2, &error)) : VXM_OK)          \
   X(vxm_published_create, 6, 29,                                                                           \
     vxm_published_create(P(0, &out.published), P(1, &out.space), P(2, engine), P(3, mesh),                 \
                          P(4, &published_options), P(5, &error)))                                          \
@@ -556,9 +564,9 @@ static int tear_down(void **state) {
   vxm_defects_destroy(defects);
   vxm_sparse_destroy(sparse);
   vxm_sparse_file_close(sparse_file);
-  static const char *const files[] = {"in.off",       "in.obj",  "in.npy",      "in.npy.json",
-                                      "in.octree",    "out.off", "out.ply",     "out.npy",
-                                      "out.npy.json", "out.png", "variant.npy", "variant.npy.json"};
+  static const char *const files[] = {
+      "in.off",  "in.obj",       "in.npy",  "in.npy.json", "in.octree",   "out.off",         "out.ply",
+      "out.npy", "out.npy.json", "out.png", "out.html",    "variant.npy", "variant.npy.json"};
   for (size_t f = 0; f < sizeof files / sizeof *files; f++)
     unlink(files[f]);
   return chdir("/") == 0 ? rmdir(folder) : 1;

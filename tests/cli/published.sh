@@ -26,6 +26,16 @@ run 'results in/torus.off -r 8 --engine opencl | cut -d " " -f 1 | paste -s -d "
 run 'results in/torus.off -r 8 --engine opencl --phases solid,transfer_map | cut -d " " -f 1 | paste -s -d " " -'
 run 'results in/torus.off -r 8 | grep -c -E "published|transfer"'
 
+say "# as a file; the stages of tiles and octrees"
+figures() {
+  sed -E 's/_ms": [0-9][0-9.e+-]*/_ms": T/; s/"(work_group|profiled|pairs|tiles)": [^,]*/"\1": N/'
+}
+for approach in faieghi faieghi-voxels; do
+  run "voxmend voxelize in/rocket.off -o $approach.npy --voxel-size 0.2 --engine opencl --baseline $approach --json | figures | sed -n '/\"dims\"/,/]/p; /\"baseline\"/,/}/p; /\"voxels\"/p'"
+done
+run 'cmp faieghi.npy faieghi-voxels.npy'
+run 'voxmend bench in/torus.off -r 64 --engine opencl/tiles --phases solid_x,sparse $quick --json | figures | grep -A 9 "\"figures\""'
+
 say "# what is left out"
 run 'left in/torus.off -r 512 --engine opencl --phases memset,transfer_map --memlimit 24M | sed "s/:.*/: .../"'
 run 'left in/torus.off -r 8 --phases memset,transfer,published_facets'

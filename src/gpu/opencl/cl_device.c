@@ -132,6 +132,13 @@ int vxm_cl_device_find(const vxm_cl *cl, const vxm_cl_device *devices, int count
   return found;
 }
 
+static const char *kind_of(cl_device_type type) {
+  return type & CL_DEVICE_TYPE_GPU           ? "gpu"
+         : type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator"
+         : type & CL_DEVICE_TYPE_CPU         ? "cpu"
+                                             : "custom";
+}
+
 void vxm_cl_device_describe(vxm_engine_info *out, const vxm_cl *cl, const vxm_cl_device *device, int number) {
   char extensions[8192] = "";
   cl_device_id id = device->id;
@@ -143,6 +150,10 @@ void vxm_cl_device_describe(vxm_engine_info *out, const vxm_cl *cl, const vxm_cl
   device_text(out->driver, cl, id, CL_DRIVER_VERSION);
   platform_name(out->platform, cl, device->platform);
   out->hardware = (type_of(cl, device) & (CL_DEVICE_TYPE_GPU | CL_DEVICE_TYPE_ACCELERATOR)) != 0;
+  snprintf(out->kind, sizeof out->kind, "%s", kind_of(type_of(cl, device)));
+  out->clock_mhz = (int)device_number(cl, id, CL_DEVICE_MAX_CLOCK_FREQUENCY, sizeof(cl_uint));
+  out->cache_bytes = device_number(cl, id, CL_DEVICE_GLOBAL_MEM_CACHE_SIZE, sizeof(cl_ulong));
+  out->shares_memory = device_number(cl, id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof(cl_bool)) != 0;
   out->compute_units = (int)device_number(cl, id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
   out->block_bytes = device_number(cl, id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(cl_ulong));
   out->global_bytes = device_number(cl, id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(cl_ulong));

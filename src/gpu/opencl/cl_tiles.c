@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Solids tile by tile (Schwarz & Seidel 2010, section 4.2): count, scan, fill, sort by tile, a work-group
  * for each tile. See shaders/tiles.cl. */
+#include "base/clock.h"
 #include "gpu/opencl/cl_solid.h"
 #include "gpu/opencl/cl_sort.h"
+#include "gpu/opencl/cl_tree.h"
 
 enum {
   TILE_LOCAL_BYTES = 1 << 14, /**< for flips: half of what the least device has, the rest is for triangles */
@@ -62,6 +64,7 @@ static tiling tiling_of(vxm_opencl *engine, const vxm_slice_job *tile, const vxm
 static vxm_status list_triangles(tiling *t, cl_uint *pairs, vxm_error *error) {
   vxm_opencl *engine = t->engine;
   size_t triangles = t->columns.triangle_count;
+  double since = vxm_clock_ms();
   int bits = 0;
   while (bits < 32 && t->count > UINT64_C(1) << bits)
     bits++;
@@ -97,6 +100,8 @@ static vxm_status list_triangles(tiling *t, cl_uint *pairs, vxm_error *error) {
                                     VXM_CL_VALUE(t->roles), VXM_CL_VALUE(t->across)),
                         error);
   if (status == VXM_OK)
+    status = vxm_cl_stage_end(engine, VXM_CL_STAGE(pairs), &since, error);
+  if (status == VXM_OK)
     status = vxm_cl_sort(engine, VXM_CL_TILE_KEYS, VXM_CL_TILE_TRIANGLES, *pairs, bits, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, VXM_CL_LISTS, t->count * sizeof(cl_uint2), error);
@@ -105,7 +110,7 @@ static vxm_status list_triangles(tiling *t, cl_uint *pairs, vxm_error *error) {
                         VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_TILE_KEYS), VXM_CL_MEM(engine, VXM_CL_LISTS),
                                     VXM_CL_VALUE(*pairs)),
                         error);
-  return status;
+  return status == VXM_OK ? vxm_cl_stage_end(engine, VXM_CL_STAGE(sort), &since, error) : status;
 }
 
 /** Words of the columns from `first` on, as many as local memory has room for. */
@@ -155,8 +160,14 @@ vxm_status vxm_cl_tiles(vxm_opencl *engine, const vxm_slice_job *tile, const vxm
   status = list_triangles(&t, &pairs, error);
   cl_uint words = (cl_uint)(tile->window->fast_dim + 31) / 32;
   cl_uint most = (cl_uint)(TILE_LOCAL_BYTES / sizeof(cl_uint) / engine->group);
+  double since = vxm_clock_ms();
   for (cl_uint w = 0; w < words && pairs > 0 && status == VXM_OK; w += most)
     status = fill_words(&t, w, words - w < most ? words - w : most, into, error);
+  if (status == VXM_OK && engine->stages) {
+    engine->stages->pair_count += pairs;
+    engine->stages->tile_count += t.count;
+    status = vxm_cl_stage_end(engine, VXM_CL_STAGE(tiles), &since, error);
+  }
   return status == VXM_OK ? vxm_progress(engine->base.context, job->phase, 1.0, error) : status;
 }
 

@@ -14,7 +14,7 @@ enum {
 vxm_status vxm_cl_stage_end(vxm_opencl *engine, size_t stage, double *since, vxm_error *error) {
   if (!engine->stages)
     return VXM_OK;
-  vxm_status status = vxm_cl_check(engine->cl->Finish(engine->queue), "making an octree", error);
+  vxm_status status = vxm_cl_check(engine->cl->Finish(engine->queue), "waiting for a stage", error);
   double now = vxm_clock_ms();
   *(double *)((char *)engine->stages + stage) += now - *since;
   *since = now;

@@ -129,10 +129,11 @@ typedef struct vxm_cl_buffer {
 } vxm_cl_buffer;
 
 /** How long the stages of an octree take, in milliseconds (Schwarz & Seidel 2010, table 3), and its nodes
- * before it is pruned. */
+ * before it is pruned; those of tiles (table 2), and how many tiles, and pairs of a tile and a triangle. */
 typedef struct vxm_cl_stages {
   double cells, construct, voxelize, propagate, prune;
-  size_t cells_active, nodes;
+  double pairs, sort, tiles;
+  size_t cells_active, nodes, pair_count, tile_count;
 } vxm_cl_stages;
 
 typedef struct vxm_opencl {
@@ -148,8 +149,9 @@ typedef struct vxm_opencl {
   size_t group; /**< work-items of a group: a power of two that all kernels made so far can have */
   vxm_cl_buffer buffers[VXM_CL_BUFFERS];
   vxm_device_cache resident;
-  uint64_t parts_serial; /**< of the triangles whose parts are there, too */
-  vxm_cl_stages *stages; /**< NULL; else the device is waited for after each, and its time is added */
+  uint64_t parts_serial;    /**< of the triangles whose parts are there, too */
+  vxm_cl_stages *stages;    /**< NULL; else the device is waited for after each, and its time is added */
+  vxm_cl_stages own_stages; /**< of vxm_engine_measure */
 } vxm_opencl;
 
 static inline vxm_opencl *vxm_opencl_of(vxm_engine *engine) {
