@@ -6,6 +6,7 @@
 #include "gridio/formats/coords.h"
 #include "gridio/formats/octree_file.h"
 #include "gridio/gridio.h"
+#include "gridio/sparse_coverage.h"
 #include "gridio/sparse_write.h"
 #include "voxel/sparse/sparse.h"
 
@@ -104,7 +105,7 @@ vxm_status vxm_sparse_combine(vxm_sparse **out, const vxm_sparse *a, const vxm_s
 
 void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload) {
   if (sparse && function)
-    vxm_octree_walk(sparse, 2, 0, sparse->space.dims[2], function, payload);
+    vxm_octree_walk_layers(sparse, 2, 0, sparse->space.dims[2], function, payload);
 }
 
 vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path, const vxm_grid_write_options *options,
@@ -144,6 +145,17 @@ vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, const int
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
   vxm_status status = vxm_space_check_box(&sparse->space, begin, end, error);
   return status == VXM_OK ? vxm_octree_cut(out, sparse, begin, end, error) : status;
+}
+
+vxm_status vxm_sparse_coverage(vxm_field **out, const vxm_sparse *sparse, const vxm_coverage_options *options,
+                               const int64_t begin[3], const int64_t end[3], vxm_error *error) {
+  vxm_coverage_options chosen = VXM_COVERAGE_OPTIONS_INIT;
+  if (out)
+    *out = NULL;
+  if (!out || !sparse)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "coverage", error);
+  return status == VXM_OK ? vxm_gridio_coverage(out, sparse, &chosen, begin, end, error) : status;
 }
 
 /* ---- Files ---- */
@@ -203,4 +215,16 @@ vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, c
   status = vxm_octree_cut(out, part, begin, end, error);
   vxm_sparse_destroy(part);
   return status;
+}
+
+vxm_status vxm_sparse_file_coverage(vxm_field **out, const vxm_sparse_file *file,
+                                    const vxm_coverage_options *options, const int64_t begin[3],
+                                    const int64_t end[3], vxm_error *error) {
+  vxm_coverage_options chosen = VXM_COVERAGE_OPTIONS_INIT;
+  if (out)
+    *out = NULL;
+  if (!out || !file)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "coverage", error);
+  return status == VXM_OK ? vxm_gridio_coverage_file(out, file, &chosen, begin, end, error) : status;
 }

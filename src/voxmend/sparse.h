@@ -6,7 +6,7 @@
 #ifndef VOXMEND_SPARSE_H
 #define VOXMEND_SPARSE_H
 
-#include "voxmend/voxelize.h"
+#include "voxmend/field.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -68,6 +68,22 @@ VXM_API vxm_status vxm_sparse_to_grid(vxm_grid **out, const vxm_sparse *sparse, 
  */
 VXM_API vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
                                      const int64_t end[3], vxm_error *error);
+
+/**
+ * Counts how much is set of each cube of voxels: the coverage of a grid that is coarser by a power of two. It
+ * has the same minimum corner, and cubes at the far sides may reach beyond the dimensions, where nothing is
+ * set. Counts are exact; each number is rounded once.
+ *
+ * @param options subdivision: voxels along a cube, 1, 2, 4, ... 2^20; scalar: VXM_FLOAT32 or VXM_FLOAT64, the
+ * share, 0 to 1; VXM_UINT8, 255 times that, rounded, halves up; VXM_UINT64, the number of voxels, as
+ * VXM_FIELD_NUMBERS; NULL = defaults
+ * @param begin,end cubes begin..end-1 along each axis; NULL = from the first, to the last
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ * VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_sparse_coverage(vxm_field **out, const vxm_sparse *sparse,
+                                       const vxm_coverage_options *options, const int64_t begin[3],
+                                       const int64_t end[3], vxm_error *error);
 
 /** What two sets of voxels are combined to. */
 typedef enum vxm_set_operation {
@@ -140,6 +156,16 @@ VXM_API int64_t vxm_sparse_file_count(const vxm_sparse_file *file);
  */
 VXM_API vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, const int64_t begin[3],
                                           const int64_t end[3], vxm_error *error);
+
+/**
+ * As vxm_sparse_coverage, of a file: cubes of 256 voxels or more are counted by its index alone, of smaller
+ * ones a layer of the octree is in memory at a time.
+ *
+ * @return as vxm_sparse_coverage; VXM_ERROR_FORMAT with the byte offset where the file is damaged
+ */
+VXM_API vxm_status vxm_sparse_file_coverage(vxm_field **out, const vxm_sparse_file *file,
+                                            const vxm_coverage_options *options, const int64_t begin[3],
+                                            const int64_t end[3], vxm_error *error);
 
 /**
  * Writes the coordinates of all set voxels as .npy: int32, n rows of (i, j, k), sorted by i, then j, then k,

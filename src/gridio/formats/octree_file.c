@@ -71,7 +71,7 @@ static vxm_status read_nodes(vxm_sparse_file *file, int level, size_t count, uin
 
 /** Tiles begin behind the header, one behind the other. */
 static vxm_status check_entries(const vxm_sparse_file *file, vxm_error *error) {
-  uint64_t last = 0;
+  uint64_t last = 0, side = (uint64_t)vxm_octree_side(file->tile_level + 1);
   for (size_t t = 0; t < file->tile_count; t++) {
     const unsigned char *entry = file->entries + VXM_OCTREE_ENTRY * t;
     uint64_t offset = vxm_load_le64(entry);
@@ -80,8 +80,24 @@ static vxm_status check_entries(const vxm_sparse_file *file, vxm_error *error) {
       return vxm_fail_byte(error, &file->input, entry - file->input.data,
                            "tile %zu begins at byte %" PRIu64 ", where none can: the file is damaged", t,
                            offset);
+    if (vxm_octree_file_tile_voxels(file, t) > side * side * side)
+      return vxm_fail_byte(error, &file->input, entry + 8 - file->input.data,
+                           "tile %zu has more voxels than it can: the file is damaged", t);
     last = offset;
   }
+  return VXM_OK;
+}
+
+/** What the index says is within the grid, and as much as the header says. */
+static vxm_status check_sum(const vxm_sparse_file *file, vxm_error *error) {
+  uint64_t voxels;
+  if (!vxm_octree_file_sum(&voxels, file))
+    return vxm_fail_byte(error, &file->input, file->index,
+                         "the index has voxels beyond the grid: the file is damaged");
+  if (voxels != file->voxels)
+    return vxm_fail_byte(error, &file->input, 80,
+                         "the index has %" PRIu64 " voxels and the header %" PRIu64 ": the file is damaged",
+                         voxels, file->voxels);
   return VXM_OK;
 }
 
@@ -99,7 +115,8 @@ static vxm_status read_index(vxm_sparse_file *file, vxm_error *error) {
       (input->size - at) % VXM_OCTREE_ENTRY != 0)
     return vxm_fail_byte(error, input, at,
                          "the index is not that of the file's %zu tiles: it is damaged or cut short", count);
-  return check_entries(file, error);
+  status = check_entries(file, error);
+  return status == VXM_OK ? check_sum(file, error) : status;
 }
 
 vxm_status vxm_octree_file_open(vxm_sparse_file **out, vxm_input *input, vxm_error *error) {
@@ -164,13 +181,6 @@ static bool meets(const load *l, const int64_t at[3], int64_t side) {
   return yes;
 }
 
-static bool fits(const load *l, const int64_t at[3], int64_t side) {
-  bool yes = true;
-  for (int a = 0; a < 3; a++)
-    yes &= at[a] + side <= l->file->space.dims[a];
-  return yes;
-}
-
 static vxm_octree_cell load_node(load *l, int level, size_t index, const int64_t at[3]);
 
 /** A mixed child of a node above tiles, at a level. */
@@ -198,9 +208,6 @@ static vxm_octree_cell load_node(load *l, int level, size_t index, const int64_t
       continue;
     if (node->mixed >> child & 1)
       cell = load_child(l, level - 1, vxm_octree_index(node, child), place);
-    else if (!fits(l, place, side))
-      l->growth.status = vxm_fail_byte(l->growth.error, &l->file->input, l->file->index,
-                                       "the index has voxels beyond the grid: the file is damaged");
     mixed |= (uint64_t)(cell == VXM_CELL_MIXED) << child;
     full |= (uint64_t)(cell == VXM_CELL_FULL) << child;
   }

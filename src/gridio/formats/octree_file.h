@@ -11,7 +11,7 @@
 #define VXM_GRIDIO_FORMATS_OCTREE_FILE_H
 
 #include "base/output.h"
-#include "grid/octree.h"
+#include "grid/octree_count.h"
 
 enum {
   VXM_OCTREE_TILE_LEVEL = 2, /**< a tile is 256 x 256 x 256 voxels; the whole where that is less */
@@ -51,6 +51,13 @@ vxm_status vxm_octree_file_open(vxm_sparse_file **out, vxm_input *input, vxm_err
  */
 vxm_status vxm_octree_file_load(vxm_sparse **out, const vxm_sparse_file *file, const int64_t begin[3],
                                 const int64_t end[3], vxm_error *error);
+
+/** Voxels of a tile, as the index tells it. */
+uint64_t vxm_octree_file_tile_voxels(const vxm_sparse_file *file, size_t tile);
+/** Sums the voxels that the index tells. @return whether all that is full in it is within the grid */
+bool vxm_octree_file_sum(uint64_t *voxels, const vxm_sparse_file *file);
+/** Adds what the index alone tells, to cubes that are not smaller than tiles. */
+void vxm_octree_file_count(const vxm_octree_counts *box, const vxm_sparse_file *file);
 
 /** Writes an octree into an output. A failed write is told when that is committed. @return VXM_OK,
  * VXM_ERROR_CANCELLED, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
