@@ -4,7 +4,7 @@
 #include "grid/cut.h"
 #include "grid/octree_cut.h"
 #include "gridio/formats/coords.h"
-#include "gridio/formats/octree_file.h"
+#include "gridio/formats/octree_values.h"
 #include "gridio/gridio.h"
 #include "gridio/sparse_coverage.h"
 #include "gridio/sparse_write.h"
@@ -196,6 +196,10 @@ const vxm_space *vxm_sparse_file_space(const vxm_sparse_file *file) {
   return file ? &file->space : NULL;
 }
 
+bool vxm_sparse_file_has_values(const vxm_sparse_file *file) {
+  return file && file->values != 0;
+}
+
 int64_t vxm_sparse_file_count(const vxm_sparse_file *file) {
   return file ? (int64_t)file->voxels : 0;
 }
@@ -207,7 +211,9 @@ vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, c
     *out = NULL;
   if (!out || !file || !begin || !end)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
-  vxm_status status = vxm_space_check_box(&file->space, begin, end, error);
+  vxm_status status = vxm_octree_file_need_bits(file, error);
+  if (status == VXM_OK)
+    status = vxm_space_check_box(&file->space, begin, end, error);
   if (status == VXM_OK)
     status = vxm_octree_file_load(&part, file, begin, end, error);
   if (status != VXM_OK)
@@ -226,5 +232,34 @@ vxm_status vxm_sparse_file_coverage(vxm_field **out, const vxm_sparse_file *file
   if (!out || !file)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "coverage", error);
+  if (status == VXM_OK)
+    status = vxm_octree_file_need_bits(file, error);
   return status == VXM_OK ? vxm_gridio_coverage_file(out, file, &chosen, begin, end, error) : status;
+}
+
+/** Set voxels as 0 and 1. */
+static vxm_status bits_as_field(vxm_field **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                const int64_t end[3], vxm_error *error) {
+  vxm_grid *grid;
+  vxm_status status = vxm_sparse_file_window(&grid, file, begin, end, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_field_make(out, file->context, &grid->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
+  if (status == VXM_OK)
+    vxm_field_put_grid(*out, grid);
+  vxm_grid_destroy(grid);
+  return status;
+}
+
+vxm_status vxm_sparse_file_field(vxm_field **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                 const int64_t end[3], vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !file || !begin || !end)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = vxm_space_check_box(&file->space, begin, end, error);
+  if (status != VXM_OK)
+    return status;
+  return file->values != 0 ? vxm_octree_values_load(out, file, begin, end, error)
+                           : bits_as_field(out, file, begin, end, error);
 }

@@ -147,11 +147,13 @@ static vxm_status cut(cli_run *cli, const request *given, cli_values *values) {
   return status;
 }
 
-static vxm_status read_part(cli_run *cli, const request *given, vxm_grid **out) {
+static vxm_status read_part(cli_run *cli, const request *given, cli_values *out) {
   vxm_sparse_file *file;
   vxm_status status = vxm_sparse_file_open(&file, cli->context, given->input, &cli->error);
-  if (status == VXM_OK)
-    status = vxm_sparse_file_window(out, file, given->begin, given->end, &cli->error);
+  if (status == VXM_OK && vxm_sparse_file_has_values(file))
+    status = vxm_sparse_file_field(&out->field, file, given->begin, given->end, &cli->error);
+  else if (status == VXM_OK)
+    status = vxm_sparse_file_window(&out->grid, file, given->begin, given->end, &cli->error);
   vxm_sparse_file_close(file);
   return status;
 }
@@ -188,7 +190,7 @@ static int read_values(cli_run *cli, const request *given, cli_values *values) {
   if (given->coverage)
     return read_counts(cli, given, &values->field);
   if (given->has_window && cli_is_extension(given->input, "octree"))
-    return read_part(cli, given, &values->grid) == VXM_OK ? CLI_DONE : cli_fail(cli);
+    return read_part(cli, given, values) == VXM_OK ? CLI_DONE : cli_fail(cli);
   vxm_status status = cli_values_read(cli, values, given->input);
   if (status == VXM_OK && given->has_window)
     status = cut(cli, given, values);

@@ -301,9 +301,9 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
     return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
-  if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
-    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance, "
-                          "--labels and --color");
+  if (given->coords && cli_field_wanted(&given->field))
+    return cli_usage(cli, "--coords is about set voxels; leave out --coverage, --distance, --labels and "
+                          "--color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
   if (cli_engine_check(cli, &given->engine) == CLI_STOP)
@@ -345,6 +345,14 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
     return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
+  if (out->format && out->sparse && cli_field_wanted(&out->field)) {
+    if (strcmp(out->format, "octree") != 0)
+      return cli_usage(cli,
+                       "--sparse: of --coverage, --distance, --labels and --color .octree alone is "
+                       "sparse, not .%s",
+                       out->format);
+    out->sparse = false; /* the file is an octree as it is */
+  }
   if (out->format && cli_check_style(cli, &out->style, out->format) == CLI_STOP)
     return CLI_STOP;
   out->field.label_options.blocks = out->field.color_options.blocks = out->style.blocks;

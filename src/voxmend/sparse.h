@@ -147,21 +147,34 @@ VXM_API vxm_status vxm_sparse_file_open(vxm_sparse_file **out, vxm_context *cont
 VXM_API void vxm_sparse_file_close(vxm_sparse_file *file);
 /** Where its voxels lie. */
 VXM_API const vxm_space *vxm_sparse_file_space(const vxm_sparse_file *file);
-/** Number of set voxels, as the file tells it. */
+/** Whether it holds numbers, labels or colours rather than set and clear voxels. */
+VXM_API bool vxm_sparse_file_has_values(const vxm_sparse_file *file);
+/** Number of set voxels, as the file tells it; of values, those that are not the background. */
 VXM_API int64_t vxm_sparse_file_count(const vxm_sparse_file *file);
 /**
  * Reads the voxels begin..end-1 along each axis as a grid; only what they need of the file is looked at.
  *
- * @return as vxm_sparse_window; VXM_ERROR_FORMAT with the byte offset where the file is damaged
+ * @return as vxm_sparse_window; VXM_ERROR_FORMAT with the byte offset where the file is damaged;
+ * VXM_ERROR_NUMBERS if it has values
  */
 VXM_API vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, const int64_t begin[3],
                                           const int64_t end[3], vxm_error *error);
 
 /**
+ * Reads the values of voxels begin..end-1 along each axis as a field; only what they need of the file is
+ * looked at. A file of set voxels gives 0 and 1, as VXM_UINT8.
+ *
+ * @return as vxm_sparse_window; VXM_ERROR_FORMAT with the byte offset where the file is damaged
+ */
+VXM_API vxm_status vxm_sparse_file_field(vxm_field **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                         const int64_t end[3], vxm_error *error);
+
+/**
  * As vxm_sparse_coverage, of a file: cubes of 256 voxels or more are counted by its index alone, of smaller
  * ones a layer of the octree is in memory at a time.
  *
- * @return as vxm_sparse_coverage; VXM_ERROR_FORMAT with the byte offset where the file is damaged
+ * @return as vxm_sparse_coverage; VXM_ERROR_FORMAT with the byte offset where the file is damaged;
+ * VXM_ERROR_NUMBERS if it has values
  */
 VXM_API vxm_status vxm_sparse_file_coverage(vxm_field **out, const vxm_sparse_file *file,
                                             const vxm_coverage_options *options, const int64_t begin[3],

@@ -397,6 +397,10 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
     vxm_sparse_file_open(P(0, &out.sparse_file), P(1, context), P(2, "in.octree"), P(3, &error)))            \
   X(vxm_sparse_file_close, 1, 0, (vxm_sparse_file_close(NULL), VXM_OK))                                      \
   X(vxm_sparse_file_space, 1, 1, GIVES(vxm_sparse_file_space(P(0, sparse_file))))                            \
+  X(vxm_sparse_file_has_values, 1, 1, ANYTHING(vxm_sparse_file_has_values(P(0, sparse_file))))               \
+  X(vxm_sparse_file_field, 5, 15,                                                                            \
+    vxm_sparse_file_field(P(0, &out.field), P(1, sparse_file), P(2, window_begin), P(3, window_end),         \
+                          P(4, &error)))                                                                     \
   X(vxm_sparse_file_count, 1, 1, GIVES(vxm_sparse_file_count(P(0, sparse_file))))                            \
   X(vxm_sparse_file_window, 5, 15,                                                                           \
     vxm_sparse_file_window(P(0, &out.grid), P(1, sparse_file), P(2, window_begin), P(3, window_end),         \

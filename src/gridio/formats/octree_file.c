@@ -3,6 +3,7 @@
 #include "base/endian.h"
 #include "gridio/common/format.h"
 #include "gridio/formats/octree_tile.h"
+#include "gridio/formats/octree_values.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -34,21 +35,27 @@ static vxm_status read_header(vxm_sparse_file *file, vxm_error *error) {
   file->voxels = vxm_load_le64(data + 80);
   file->tile_count = (size_t)vxm_load_le64(data + 88);
   file->index = vxm_load_le64(data + 96);
-  if (vxm_load_le64(data + 104) != 0)
-    return vxm_fail_byte(error, input, 104,
-                         "the octree has more than voxels, which this version cannot read");
+  file->values = vxm_load_le64(data + 104);
   file->levels = vxm_octree_levels(&file->space);
   file->tile_level = vxm_octree_tile_level(file->levels);
   if (file->index < VXM_OCTREE_HEADER || file->index > input->size)
     return vxm_fail_byte(error, input, 96, "the index begins beyond the file, which is damaged or cut short");
+  if (file->values != 0 && (file->values < file->index || file->values > input->size))
+    return vxm_fail_byte(error, input, 104,
+                         "the values begin where none can: the file is damaged or cut short");
   return VXM_OK;
+}
+
+/** Where the index ends. */
+static uint64_t index_end(const vxm_sparse_file *file) {
+  return file->values != 0 ? file->values : file->input.size;
 }
 
 /** Reads `count` nodes of a level above tiles. */
 static vxm_status read_nodes(vxm_sparse_file *file, int level, size_t count, uint64_t *at, size_t *children,
                              vxm_error *error) {
   const vxm_input *input = &file->input;
-  if (count > (input->size - *at) / VXM_OCTREE_NODE)
+  if (count > (index_end(file) - *at) / VXM_OCTREE_NODE)
     return vxm_fail_byte(error, input, *at, "the file ends before its index does: it is cut short");
   vxm_error local = VXM_ERROR_INIT;
   vxm_octree_node *nodes = vxm_alloc(file->context, count, sizeof *nodes, &local);
@@ -111,8 +118,8 @@ static vxm_status read_index(vxm_sparse_file *file, vxm_error *error) {
   if (status != VXM_OK)
     return status;
   file->entries = input->data + at;
-  if (count != file->tile_count || (input->size - at) / VXM_OCTREE_ENTRY != count ||
-      (input->size - at) % VXM_OCTREE_ENTRY != 0)
+  if (count != file->tile_count || (index_end(file) - at) / VXM_OCTREE_ENTRY != count ||
+      (index_end(file) - at) % VXM_OCTREE_ENTRY != 0)
     return vxm_fail_byte(error, input, at,
                          "the index is not that of the file's %zu tiles: it is damaged or cut short", count);
   status = check_entries(file, error);
@@ -145,6 +152,8 @@ vxm_status vxm_octree_file_open(vxm_sparse_file **out, vxm_input *input, vxm_err
   }
   if (status == VXM_OK)
     status = read_index(file, &local);
+  if (status == VXM_OK && file->values != 0)
+    status = vxm_octree_values_open(file, &local);
   if (status != VXM_OK) {
     vxm_sparse_file_close(file);
     vxm_error_pass(error, &local);
