@@ -82,25 +82,28 @@ const cli_option voxelize_options[] = {
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
-     "each axis; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif or .h5"},
+     "each axis; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
-     "signed: negative inside; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif or .h5"},
+     "signed: negative inside; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif\n"
+     "or .h5"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
-     ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .vdb or .binvox, with the names in a\n"
-     ".json beside it; .vox, .schem, .litematic or .glb"},
+     ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .vdb, .octree or .binvox, with the\n"
+     "names in a .json beside it; .vox, .schem, .litematic or .glb"},
     {KEY_COLOR, "color", "mesh|noise|position|part|FILE.frag",
      "write a colour for each set voxel instead: that of the nearest point of the mesh,\n"
      "by its vertices, faces, materials and textures; Perlin's noise, where it is, its\n"
      "part, or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox, .glb,\n"
-     ".schem, .litematic, .nrrd, .nii, .vti, .vtk, .tif or .h5"},
+     ".schem, .litematic, .nrrd, .octree, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_COLOR_AVERAGE, "color-average", NULL,
      "with --color mesh: the mean over the surface within a voxel, where there is any"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
-    {KEY_SPARSE, "sparse", NULL, "make the voxels as an octree, whose memory follows the surface"},
+    {KEY_SPARSE, "sparse", NULL,
+     "make the voxels as an octree, whose memory follows the surface; with\n"
+     "--distance, --labels and the like for .octree alone"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
     {KEY_DRY_RUN, "dry-run", NULL, "tell the grid and the memory it takes, and write nothing"},
     {KEY_NO_REPAIR, "no-repair", NULL, "take the mesh as it is in the file"},

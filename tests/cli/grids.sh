@@ -36,6 +36,19 @@ run 'voxmend convert d.nrrd -o x.npy --coverage 8'
 run 'voxmend convert t.octree -o x.npy --coverage 8 --window 0:3,0:3,0:4'
 run 'voxmend convert t.octree -o x.npy --coverage 3'
 run 'voxmend convert t.octree -o x.rle --coverage 4'
+for choice in '--labels part' '--color position' '--distance signed' '--coverage 2'; do
+  run "voxmend voxelize in/rocket.off -o v.octree -r 40 $choice --sparse -q && voxmend voxelize in/rocket.off -o v.nrrd -r 40 $choice -q"
+  run 'voxmend convert v.octree -o w.nrrd -q && cmp w.nrrd v.nrrd && voxmend convert v.nrrd -o w.octree -q && cmp w.octree v.octree'
+  run 'voxmend convert v.octree -o w.nrrd --window 3:30,10:24,16:38 && voxmend convert v.nrrd -o w2.nrrd --window 3:30,10:24,16:38 -q && cmp w.nrrd w2.nrrd'
+done
+run 'voxmend voxelize in/rocket.off -o l.octree -r 40 --labels part -q && grep -c name l.octree.json && voxmend convert l.octree -o l.npy -q && grep -c name l.npy.json'
+run 'voxmend combine l.octree or l.octree -o x.octree'
+run 'voxmend combine l.octree or l.octree -o x.octree --threshold 1 -q && voxmend voxelize in/rocket.off -o y.octree -r 40 -q && cmp x.octree y.octree'
+run 'voxmend convert l.octree -o x.npy --coverage 4'
+run 'voxmend convert l.octree -o x.npy --coverage 4 --threshold 1 -q && voxmend convert y.octree -o y.npy --coverage 4 -q && cmp x.npy y.npy'
+run 'voxmend voxelize in/rocket.off -o x.nrrd -r 40 --labels part --sparse'
+head -c 300 l.octree >cut.octree
+run 'voxmend convert cut.octree -o x.npy'
 head -c 300 t.octree >cut.octree
 run 'voxmend convert cut.octree -o x.npy'
 
