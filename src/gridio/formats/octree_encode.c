@@ -113,12 +113,14 @@ static bool is_empty(const vxm_octree_encoder *e, const node *n, const unsigned 
   return true;
 }
 
-static const unsigned char *value_at(const vxm_octree_encoder *e, const node *n, int64_t x, int64_t y,
-                                     int64_t z) {
-  return n->first + (size_t)z * n->slice + (size_t)y * n->row + (size_t)x * e->value_bytes;
+static inline const unsigned char *value_at(const node *n, int64_t x, int64_t y, int64_t z, size_t size) {
+  return n->first + (size_t)z * n->slice + (size_t)y * n->row + (size_t)x * size;
 }
 
-static uint64_t bits_of(const vxm_octree_encoder *e, const node *n, const int64_t brick[3]) {
+/** Voxels of a brick that are not the background; `size` is that of a value, a constant where this is
+ * inlined. */
+static inline uint64_t bits_sized(const vxm_octree_encoder *e, const node *n, const int64_t brick[3],
+                                  size_t size) {
   uint64_t bits = 0;
   int64_t end[3];
   for (int a = 0; a < 3; a++)
@@ -126,9 +128,29 @@ static uint64_t bits_of(const vxm_octree_encoder *e, const node *n, const int64_
   for (int64_t z = 4 * brick[2]; z < end[2]; z++)
     for (int64_t y = 4 * brick[1]; y < end[1]; y++)
       for (int64_t x = 4 * brick[0]; x < end[0]; x++)
-        bits |= (uint64_t)(memcmp(value_at(e, n, x, y, z), e->background, e->value_bytes) != 0)
+        bits |= (uint64_t)(memcmp(value_at(n, x, y, z, size), e->background, size) != 0)
                 << vxm_octree_bit(x, y, z);
   return bits;
+}
+
+static uint64_t bits_of(const vxm_octree_encoder *e, const node *n, const int64_t brick[3]) {
+  switch (e->value_bytes) {
+  case 1:
+    return bits_sized(e, n, brick, 1);
+  case 2:
+    return bits_sized(e, n, brick, 2);
+  case 4:
+    return bits_sized(e, n, brick, 4);
+  default:
+    return bits_sized(e, n, brick, 8);
+  }
+}
+
+/** The value of a bit of a brick. */
+static const unsigned char *value_of(const vxm_octree_encoder *e, const node *n, const int64_t brick[3],
+                                     int bit) {
+  return value_at(n, 4 * brick[0] + bit % 4, 4 * brick[1] + bit / 4 % 4, 4 * brick[2] + bit / 16,
+                  e->value_bytes);
 }
 
 static void encode_brick(vxm_octree_encoder *e, bytes *to, const node *n, const int64_t brick[3],
@@ -137,20 +159,15 @@ static void encode_brick(vxm_octree_encoder *e, bytes *to, const node *n, const 
   const unsigned char *first = NULL;
   bool alike = true;
   for (uint64_t left = bits; left && alike; left &= left - 1) {
-    int b = __builtin_ctzll(left);
-    const unsigned char *value =
-        value_at(e, n, 4 * brick[0] + b % 4, 4 * brick[1] + b / 4 % 4, 4 * brick[2] + b / 16);
+    const unsigned char *value = value_of(e, n, brick, __builtin_ctzll(left));
     first = first ? first : value;
     alike = memcmp(first, value, e->value_bytes) == 0;
   }
   if (!add(e, to, alike ? &uniform : &varied, 1))
     return;
-  for (uint64_t left = alike ? bits & -bits : bits; left; left &= left - 1) {
-    int b = __builtin_ctzll(left);
-    if (!add_value(e, to,
-                   value_at(e, n, 4 * brick[0] + b % 4, 4 * brick[1] + b / 4 % 4, 4 * brick[2] + b / 16)))
+  for (uint64_t left = alike ? bits & -bits : bits; left; left &= left - 1)
+    if (!add_value(e, to, value_of(e, n, brick, __builtin_ctzll(left))))
       return;
-  }
 }
 
 static uint64_t morton(uint64_t x, uint64_t y, uint64_t z) {
