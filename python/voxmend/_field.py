@@ -186,7 +186,7 @@ class VoxelField(Placed, Shown):
                                           destroy=lib.vxm_grid_destroy))
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
-        """Writes .npy, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .zarr or .vdb; labels also .binvox, colours not .vdb, but .ply;
+        """Writes .npy, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .zarr or .vdb; labels also .binvox, colours not .vdb, but .ply;
         both .vox, .schem, .litematic and .glb."""
         options = _core.new("vxm_grid_write_options")
         name = format_name("save", format)
@@ -227,7 +227,7 @@ def _restore(kind: Type[VoxelField], made: Tuple[Any, ...], labels: List[bytes],
 
 
 def read_field(path: Path) -> VoxelField:
-    """Reads the numbers of a file as they are: .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif, .zarr, .vox, .schem, .litematic or .binvox. Bits are 0 and 1."""
+    """Reads the numbers of a file as they are: .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif, .zarr, .vox, .schem, .litematic or .binvox. Bits are 0 and 1."""
     field = VoxelField._of(_core.create("vxm_field", lib.vxm_field_read, _core.context(), _values.path(path),
                                    destroy=lib.vxm_field_destroy, path=path))
     _core.warn(["%s: %s" % (os.fsdecode(path), line) for line in field.warnings])

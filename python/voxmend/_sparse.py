@@ -9,6 +9,7 @@ import numpy
 from . import _core, _values
 from ._core import ffi, lib
 from ._errors import ArgumentError, KindError
+from ._field import VoxelField
 from ._grid import VoxelGrid
 from ._mesh import format_name
 from ._records import VoxelizeReport
@@ -71,6 +72,28 @@ class SparseGrid(Placed):
         lib.voxmend_sparse_window(self._pointer, _core.pointer("int64_t *", first), _core.pointer("int64_t *", last),
                                   _core.pointer("uint8_t *", bytes_))
         return VoxelGrid(bytes_.view(numpy.bool_), self.pitch, self.origin + first * self.pitch)
+
+    def coverage(self, subdivision: int = 4, begin: Optional[ArrayLike] = None, end: Optional[ArrayLike] = None,
+                 dtype: str = "float32") -> VoxelField:
+        """How much is set of each cube of voxels: the coverage of a grid that is coarser by a power of two.
+
+        Args:
+            subdivision: voxels along a cube: 1, 2, 4, ... 2**20.
+            begin, end: cubes from index `begin` to the one before `end` along each axis. [all]
+            dtype: "float32" or "float64", 0 to 1; "uint8", 0 to 255; "uint64", the number of voxels.
+        """
+        scalars = {"float32": lib.VXM_FLOAT32, "float64": lib.VXM_FLOAT64, "uint8": lib.VXM_UINT8, "uint64": lib.VXM_UINT64}
+        if _values.word("coverage: dtype", dtype) not in scalars:
+            raise ArgumentError("coverage: dtype %r is none of %s" % (dtype, ", ".join(scalars)))
+        options = _core.new("vxm_coverage_options", scalar=scalars[dtype],
+                            subdivision=_values.whole("coverage: subdivision", subdivision, 1, 1 << 20))
+        ends = [None if end is None else _values.wholes("coverage: a window", end, 0, _values.INT64_MAX).astype(numpy.int64)
+                for end in (begin, end)]
+        if any(end is not None and end.shape != (3,) for end in ends):
+            raise ArgumentError("coverage: begin and end of a window are three numbers each")
+        first, last = (ffi.NULL if end is None else _core.pointer("int64_t *", end) for end in ends)
+        return VoxelField._of(_core.create("vxm_field", lib.vxm_sparse_coverage, self._pointer, options, first, last,
+                                           destroy=lib.vxm_field_destroy))
 
     def __reduce__(self) -> Tuple[Any, ...]:
         return _restore, (type(self), self.to_grid(), self.report, self._told)

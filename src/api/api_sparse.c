@@ -4,8 +4,9 @@
 #include "grid/cut.h"
 #include "grid/octree_cut.h"
 #include "gridio/formats/coords.h"
-#include "gridio/formats/octree_file.h"
+#include "gridio/formats/octree_values.h"
 #include "gridio/gridio.h"
+#include "gridio/sparse_coverage.h"
 #include "gridio/sparse_write.h"
 #include "voxel/sparse/sparse.h"
 
@@ -104,7 +105,7 @@ vxm_status vxm_sparse_combine(vxm_sparse **out, const vxm_sparse *a, const vxm_s
 
 void vxm_sparse_visit(const vxm_sparse *sparse, vxm_sparse_fn function, void *payload) {
   if (sparse && function)
-    vxm_octree_walk(sparse, 2, 0, sparse->space.dims[2], function, payload);
+    vxm_octree_walk_layers(sparse, 2, 0, sparse->space.dims[2], function, payload);
 }
 
 vxm_status vxm_sparse_write(const vxm_sparse *sparse, const char *path, const vxm_grid_write_options *options,
@@ -146,6 +147,17 @@ vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, const int
   return status == VXM_OK ? vxm_octree_cut(out, sparse, begin, end, error) : status;
 }
 
+vxm_status vxm_sparse_coverage(vxm_field **out, const vxm_sparse *sparse, const vxm_coverage_options *options,
+                               const int64_t begin[3], const int64_t end[3], vxm_error *error) {
+  vxm_coverage_options chosen = VXM_COVERAGE_OPTIONS_INIT;
+  if (out)
+    *out = NULL;
+  if (!out || !sparse)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "coverage", error);
+  return status == VXM_OK ? vxm_gridio_coverage(out, sparse, &chosen, begin, end, error) : status;
+}
+
 /* ---- Files ---- */
 
 vxm_status vxm_sparse_read(vxm_sparse **out, vxm_context *context, const char *path, vxm_error *error) {
@@ -184,6 +196,10 @@ const vxm_space *vxm_sparse_file_space(const vxm_sparse_file *file) {
   return file ? &file->space : NULL;
 }
 
+bool vxm_sparse_file_has_values(const vxm_sparse_file *file) {
+  return file && file->values != 0;
+}
+
 int64_t vxm_sparse_file_count(const vxm_sparse_file *file) {
   return file ? (int64_t)file->voxels : 0;
 }
@@ -195,7 +211,9 @@ vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, c
     *out = NULL;
   if (!out || !file || !begin || !end)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
-  vxm_status status = vxm_space_check_box(&file->space, begin, end, error);
+  vxm_status status = vxm_octree_file_need_bits(file, error);
+  if (status == VXM_OK)
+    status = vxm_space_check_box(&file->space, begin, end, error);
   if (status == VXM_OK)
     status = vxm_octree_file_load(&part, file, begin, end, error);
   if (status != VXM_OK)
@@ -203,4 +221,45 @@ vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, c
   status = vxm_octree_cut(out, part, begin, end, error);
   vxm_sparse_destroy(part);
   return status;
+}
+
+vxm_status vxm_sparse_file_coverage(vxm_field **out, const vxm_sparse_file *file,
+                                    const vxm_coverage_options *options, const int64_t begin[3],
+                                    const int64_t end[3], vxm_error *error) {
+  vxm_coverage_options chosen = VXM_COVERAGE_OPTIONS_INIT;
+  if (out)
+    *out = NULL;
+  if (!out || !file)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = VXM_OPTIONS_READ(&chosen, options, "coverage", error);
+  if (status == VXM_OK)
+    status = vxm_octree_file_need_bits(file, error);
+  return status == VXM_OK ? vxm_gridio_coverage_file(out, file, &chosen, begin, end, error) : status;
+}
+
+/** Set voxels as 0 and 1. */
+static vxm_status bits_as_field(vxm_field **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                const int64_t end[3], vxm_error *error) {
+  vxm_grid *grid;
+  vxm_status status = vxm_sparse_file_window(&grid, file, begin, end, error);
+  if (status != VXM_OK)
+    return status;
+  status = vxm_field_make(out, file->context, &grid->space, VXM_FIELD_NUMBERS, VXM_UINT8, error);
+  if (status == VXM_OK)
+    vxm_field_put_grid(*out, grid);
+  vxm_grid_destroy(grid);
+  return status;
+}
+
+vxm_status vxm_sparse_file_field(vxm_field **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                 const int64_t end[3], vxm_error *error) {
+  if (out)
+    *out = NULL;
+  if (!out || !file || !begin || !end)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sparse: an argument is NULL");
+  vxm_status status = vxm_space_check_box(&file->space, begin, end, error);
+  if (status != VXM_OK)
+    return status;
+  return file->values != 0 ? vxm_octree_values_load(out, file, begin, end, error)
+                           : bits_as_field(out, file, begin, end, error);
 }

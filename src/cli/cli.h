@@ -346,6 +346,12 @@ const vxm_space *cli_values_space(const cli_values *values);
  */
 int cli_values_to_bits(cli_run *cli, cli_values *values, const vxm_threshold_options *threshold,
                        const char *path, const char *why);
+/** Reads set voxels, as cli_values_read and cli_values_to_bits do. CLI_FAILED, and said so, if not. */
+int cli_bits_read(cli_run *cli, vxm_grid **out, const vxm_threshold_options *threshold, const char *path,
+                  const char *why);
+/** The same as an octree; *out is NULL before. */
+int cli_sparse_read(cli_run *cli, vxm_sparse **out, const vxm_threshold_options *threshold, const char *path,
+                    const char *why);
 /** The row about voxels or numbers, and the keys of the report. */
 void cli_values_row(const cli_run *cli, const cli_values *values);
 void cli_values_json(json_t *report, const cli_values *values, bool has_hash);

@@ -98,40 +98,10 @@ static const vxm_space *space_of(const operand *set) {
   return set->sparse ? vxm_sparse_space(set->sparse) : vxm_grid_space(set->grid);
 }
 
-static int read_bits(cli_run *cli, vxm_grid **out, const request *given, const char *path) {
-  cli_values values = {NULL, NULL};
-  if (cli_values_read(cli, &values, path) != VXM_OK)
-    return cli_fail(cli);
-  if (cli_values_to_bits(cli, &values, &given->threshold, path,
-                         "only set and clear voxels can be combined") != CLI_DONE) {
-    cli_values_free(&values);
-    return CLI_FAILED;
-  }
-  *out = values.grid;
-  return CLI_DONE;
-}
-
-/** As an octree. Numbers become bits in a grid, and standard input can be read but once. */
-static int read_octree(cli_run *cli, vxm_sparse **out, const request *given, const char *path) {
-  vxm_status status = VXM_ERROR_NUMBERS;
-  if (strcmp(path, "-") != 0 && !cli_threshold_given(&given->threshold))
-    status = vxm_sparse_read(out, cli->context, path, &cli->error);
-  for (int64_t i = 0; i < vxm_sparse_warning_count(*out); i++)
-    cli_warn(cli, "%s: %s", path, vxm_sparse_warning(*out, i));
-  if (status != VXM_ERROR_NUMBERS)
-    return status == VXM_OK ? CLI_DONE : cli_fail(cli);
-  cli->error = (vxm_error)VXM_ERROR_INIT;
-  vxm_grid *grid = NULL;
-  int result = read_bits(cli, &grid, given, path);
-  if (result == CLI_DONE && vxm_sparse_from_grid(out, grid, &cli->error) != VXM_OK)
-    result = cli_fail(cli);
-  vxm_grid_destroy(grid);
-  return result;
-}
-
 static int read_operand(cli_run *cli, operand *out, const request *given, const char *path) {
-  return given->sparse ? read_octree(cli, &out->sparse, given, path)
-                       : read_bits(cli, &out->grid, given, path);
+  static const char why[] = "only set and clear voxels can be combined";
+  return given->sparse ? cli_sparse_read(cli, &out->sparse, &given->threshold, path, why)
+                       : cli_bits_read(cli, &out->grid, &given->threshold, path, why);
 }
 
 /** Voxels are combined by index, so that both grids have to be one space; files hold it to about nine digits.

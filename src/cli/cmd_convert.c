@@ -5,7 +5,16 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_BLOCKS, KEY_UP, KEY_WINDOW };
+enum {
+  KEY_FORMAT = CLI_KEY_COMMAND,
+  KEY_FORCE,
+  KEY_POLYGONS,
+  KEY_CONTACTS,
+  KEY_BLOCKS,
+  KEY_UP,
+  KEY_WINDOW,
+  KEY_COVERAGE
+};
 
 static const cli_option known_options[] = {
     {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
@@ -13,6 +22,9 @@ static const cli_option known_options[] = {
     {KEY_WINDOW, "window", "X:X,Y:Y,Z:Z",
      "only these voxels: along each axis from the first number, 0 or more, to before\n"
      "the second; of .octree nothing else is read"},
+    {KEY_COVERAGE, "coverage", "N",
+     "write how much is set of each cube of N voxels along a side instead, 0 to 1; N a\n"
+     "power of two; --window counts cubes then; of .octree a layer is read at a time"},
     CLI_OPTION_FORCE(KEY_FORCE),
     CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
     CLI_OPTIONS_STYLE(KEY_BLOCKS, KEY_UP),
@@ -22,6 +34,7 @@ static const cli_option known_options[] = {
 typedef struct request {
   const char *input, *output, *format;
   bool force, keep_polygons, keep_contacts;
+  int coverage; /**< 0 = not wanted */
   bool has_window;
   int64_t begin[3], end[3];
   cli_style style;
@@ -47,6 +60,14 @@ static int read_window(cli_run *cli, request *out, const char *value) {
   return CLI_END;
 }
 
+static int read_coverage(cli_run *cli, request *out, const char *value) {
+  int64_t side;
+  if (!cli_read_integer(&side, value, 1, 1 << 20) || (side & (side - 1)) != 0)
+    return cli_usage(cli, "--coverage '%s' is none of 1, 2, 4, 8, ... 1048576", value);
+  out->coverage = (int)side;
+  return CLI_END;
+}
+
 static int read_arguments(cli_run *cli, request *out) {
   const char *value;
   int key;
@@ -67,6 +88,9 @@ static int read_arguments(cli_run *cli, request *out) {
     } else if (key == KEY_WINDOW) {
       if (read_window(cli, out, value) == CLI_STOP)
         return CLI_STOP;
+    } else if (key == KEY_COVERAGE) {
+      if (read_coverage(cli, out, value) == CLI_STOP)
+        return CLI_STOP;
     } else if (key == KEY_POLYGONS) {
       if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
         return CLI_STOP;
@@ -75,8 +99,8 @@ static int read_arguments(cli_run *cli, request *out) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
-  cli_formats formats =
-      cli_formats_with(VXM_FORMAT_BITS | VXM_FORMAT_NUMBERS | VXM_FORMAT_LABELS | VXM_FORMAT_COLORS);
+  unsigned any = VXM_FORMAT_BITS | VXM_FORMAT_NUMBERS | VXM_FORMAT_LABELS | VXM_FORMAT_COLORS;
+  cli_formats formats = cli_formats_with(out->coverage ? VXM_FORMAT_NUMBERS : any);
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (!out->format)
     return CLI_STOP;
@@ -124,20 +148,54 @@ static vxm_status cut(cli_run *cli, const request *given, cli_values *values) {
   return status;
 }
 
-static vxm_status read_part(cli_run *cli, const request *given, vxm_grid **out) {
+static vxm_status read_part(cli_run *cli, const request *given, cli_values *out) {
   vxm_sparse_file *file;
   vxm_status status = vxm_sparse_file_open(&file, cli->context, given->input, &cli->error);
-  if (status == VXM_OK)
-    status = vxm_sparse_file_window(out, file, given->begin, given->end, &cli->error);
+  if (status == VXM_OK && vxm_sparse_file_has_values(file))
+    status = vxm_sparse_file_field(&out->field, file, given->begin, given->end, &cli->error);
+  else if (status == VXM_OK)
+    status = vxm_sparse_file_window(&out->grid, file, given->begin, given->end, &cli->error);
   vxm_sparse_file_close(file);
   return status;
 }
 
-static vxm_status read_values(cli_run *cli, const request *given, cli_values *values) {
+/** Coverage by the index and a part of the octree at a time. */
+static vxm_status count_file(cli_run *cli, const request *given, const vxm_coverage_options *options,
+                             vxm_field **out) {
+  vxm_sparse_file *file;
+  vxm_status status = vxm_sparse_file_open(&file, cli->context, given->input, &cli->error);
+  if (status == VXM_OK)
+    status = vxm_sparse_file_coverage(out, file, options, given->has_window ? given->begin : NULL,
+                                      given->has_window ? given->end : NULL, &cli->error);
+  vxm_sparse_file_close(file);
+  return status;
+}
+
+static int read_counts(cli_run *cli, const request *given, vxm_field **out) {
+  vxm_coverage_options options = VXM_COVERAGE_OPTIONS_INIT;
+  options.subdivision = given->coverage;
+  if (cli_is_extension(given->input, "octree") && !cli_threshold_given(&given->threshold))
+    return count_file(cli, given, &options, out) == VXM_OK ? CLI_DONE : cli_fail(cli);
+  vxm_sparse *sparse = NULL;
+  int result =
+      cli_sparse_read(cli, &sparse, &given->threshold, given->input, "coverage counts set and clear voxels");
+  if (result == CLI_DONE &&
+      vxm_sparse_coverage(out, sparse, &options, given->has_window ? given->begin : NULL,
+                          given->has_window ? given->end : NULL, &cli->error) != VXM_OK)
+    result = cli_fail(cli);
+  vxm_sparse_destroy(sparse);
+  return result;
+}
+
+static int read_values(cli_run *cli, const request *given, cli_values *values) {
+  if (given->coverage)
+    return read_counts(cli, given, &values->field);
   if (given->has_window && cli_is_extension(given->input, "octree"))
-    return read_part(cli, given, &values->grid);
+    return read_part(cli, given, values) == VXM_OK ? CLI_DONE : cli_fail(cli);
   vxm_status status = cli_values_read(cli, values, given->input);
-  return status == VXM_OK && given->has_window ? cut(cli, given, values) : status;
+  if (status == VXM_OK && given->has_window)
+    status = cut(cli, given, values);
+  return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
 /** Numbers stay numbers where the output holds them; else they become bits, or are refused. */
@@ -146,6 +204,8 @@ static int settle(cli_run *cli, const request *given, cli_values *values) {
   if (values->grid && cli_threshold_given(&given->threshold))
     cli_warn(cli, "%s holds set and clear voxels already: --threshold and --below are not applied",
              cli_shown(given->input, "<stdin>"));
+  if (given->coverage) /* was for what has been counted */
+    return CLI_DONE;
   if (values->grid || (!cli_threshold_given(&given->threshold) && keeps_numbers(given, values->field)))
     return CLI_DONE;
   snprintf(why, sizeof why, ".%s holds only set and clear voxels", given->format);
@@ -181,8 +241,8 @@ static int run(cli_run *cli) {
   if (!cli_start(cli))
     return CLI_FAILED;
   cli_values values = {NULL, NULL};
-  if (read_values(cli, &given, &values) != VXM_OK)
-    return cli_fail(cli);
+  if (read_values(cli, &given, &values) != CLI_DONE)
+    return CLI_FAILED;
   int status = settle(cli, &given, &values);
   if (status == CLI_DONE)
     status = convert(cli, &given, &values);
@@ -197,20 +257,20 @@ const cli_command cli_command_convert = {
     .notes =
         "As a mesh, the faces between set and empty voxels are merged into rectangles, in model units, and\n"
         "split into triangles. Every edge has two faces, and programs that merge vertices leave it so.\n\n"
-        "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd, .nii, "
-        ".vti,\n"
-        ".vtk, .tif, .h5, .zarr and, but for colours, .vdb; labels up to 255 also in .binvox and .vox, all "
-        "as "
-        "blocks\n"
-        "in .schem and .litematic and as objects in .glb, which take colours too, as .ply and .vox do. They\n"
-        "become set and clear voxels only with --threshold or --below, or where nothing is lost: all are 0\n"
-        "or 1, or unsigned bytes 0 and 255. .h5 and .glb are written but not read.\n\n"
+        "Values (distances, coverage, labels, confidence, colours) are preserved in .npy, .nrrd, .nii,\n"
+        ".vti, .vtk, .tif, .octree, .h5, .zarr and, but for colours, .vdb; labels up to 255 also in .binvox\n"
+        "and .vox, all as blocks in .schem and .litematic and as objects in .glb, which take colours too, "
+        "as\n"
+        ".ply and .vox do. They become set and clear voxels only with --threshold or --below, or where\n"
+        "nothing is lost: all are 0 or 1, or unsigned bytes 0 and 255. .h5 and .glb are written but not\n"
+        "read.\n\n"
         "Examples:\n"
         "  voxmend convert chair.binvox -o chair.npy\n"
         "  voxmend convert chair.npy -o blocks.obj\n"
         "  voxmend convert distance.nrrd -o distance.vdb\n"
         "  voxmend convert distance.nrrd --below 0 -o solid.binvox\n"
-        "  voxmend convert city.octree --window 0:512,0:512,0:64 -o corner.npy",
+        "  voxmend convert city.octree --window 0:512,0:512,0:64 -o corner.npy\n"
+        "  voxmend convert city.octree --coverage 64 -o overview.nrrd",
     .options = known_options,
     .run = run,
 };

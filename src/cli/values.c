@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 int cli_threshold_read(cli_run *cli, vxm_threshold_options *out, int key, const char *value) {
   bool is_below = key == CLI_KEY_BELOW;
@@ -79,6 +80,38 @@ int cli_values_to_bits(cli_run *cli, cli_values *values, const vxm_threshold_opt
   cli_values_free(values);
   values->grid = grid;
   return CLI_DONE;
+}
+
+int cli_bits_read(cli_run *cli, vxm_grid **out, const vxm_threshold_options *threshold, const char *path,
+                  const char *why) {
+  cli_values values = {NULL, NULL};
+  if (cli_values_read(cli, &values, path) != VXM_OK)
+    return cli_fail(cli);
+  if (cli_values_to_bits(cli, &values, threshold, path, why) != CLI_DONE) {
+    cli_values_free(&values);
+    return CLI_FAILED;
+  }
+  *out = values.grid;
+  return CLI_DONE;
+}
+
+/** Numbers become bits in a grid, and standard input can be read but once. */
+int cli_sparse_read(cli_run *cli, vxm_sparse **out, const vxm_threshold_options *threshold, const char *path,
+                    const char *why) {
+  vxm_status status = VXM_ERROR_NUMBERS;
+  if (strcmp(path, "-") != 0 && !cli_threshold_given(threshold))
+    status = vxm_sparse_read(out, cli->context, path, &cli->error);
+  for (int64_t i = 0; i < vxm_sparse_warning_count(*out); i++)
+    cli_warn(cli, "%s: %s", path, vxm_sparse_warning(*out, i));
+  if (status != VXM_ERROR_NUMBERS)
+    return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+  cli->error = (vxm_error)VXM_ERROR_INIT;
+  vxm_grid *grid = NULL;
+  int result = cli_bits_read(cli, &grid, threshold, path, why);
+  if (result == CLI_DONE && vxm_sparse_from_grid(out, grid, &cli->error) != VXM_OK)
+    result = cli_fail(cli);
+  vxm_grid_destroy(grid);
+  return result;
 }
 
 void cli_values_row(const cli_run *cli, const cli_values *values) {

@@ -83,28 +83,29 @@ const cli_option voxelize_options[] = {
      "against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
-     "each axis; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
+     "each axis; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
     {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
-     "signed: negative inside; .npy, .nrrd, .vdb, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
+     "signed: negative inside; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif,\n"
+     ".h5 or .zarr"},
     {KEY_BAND, "band", "B", "how many voxels from the mesh --distance is exact; 0 = everywhere [3]"},
     {KEY_LABELS, "labels", "part|group|material",
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
-     ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .zarr, .vdb or .binvox, with the names in a\n"
-     ".json beside it; .vox, .schem, .litematic or .glb"},
+     ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .zarr, .vdb, .octree or .binvox, with\n"
+     "the names in a .json beside it; .vox, .schem, .litematic or .glb"},
     {KEY_COLOR, "color", "mesh|noise|position|part|FILE.frag",
      "write a colour for each set voxel instead: that of the nearest point of the mesh,\n"
      "by its vertices, faces, materials and textures; Perlin's noise, where it is, its\n"
      "part, or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox, .glb,\n"
-     ".schem, .litematic, .nrrd, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
+     ".schem, .litematic, .nrrd, .octree, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
     {KEY_COLOR_AVERAGE, "color-average", NULL,
      "with --color mesh: the mean over the surface within a voxel, where there is any"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL,
      "make the voxels as an octree, whose memory follows the surface, for 1024 and more\n"
      "along a side; a .octree file follows it too, and 'convert --window' cuts grids out\n"
-     "of that; not for formats that need the whole grid"},
+     "of that; with --distance, --labels and the like for .octree alone"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
     {KEY_BASELINE, "baseline", "NAME",
      "use a published method instead, as it was published, for comparison: fang-chen,\n"
@@ -313,9 +314,9 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
     return cli_usage(cli, "--confidence '%s': the name must end in .npy", given->confidence);
   if (given->confidence && given->sparse)
     return cli_usage(cli, "--confidence needs the whole grid; leave out --sparse");
-  if ((given->sparse || given->coords) && cli_field_wanted(&given->field))
-    return cli_usage(cli, "--sparse and --coords are about set voxels; leave out --coverage, --distance, "
-                          "--labels and --color");
+  if (given->coords && cli_field_wanted(&given->field))
+    return cli_usage(cli, "--coords is about set voxels; leave out --coverage, --distance, --labels and "
+                          "--color");
   if (given->coords && !is_npy(given->coords))
     return cli_usage(cli, "--coords '%s': the name must end in .npy", given->coords);
   if (cli_engine_check(cli, &given->engine) == CLI_STOP || cli_baseline_check(cli, given) == CLI_STOP)
@@ -357,6 +358,14 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
     return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
+  if (out->format && out->sparse && cli_field_wanted(&out->field)) {
+    if (strcmp(out->format, "octree") != 0)
+      return cli_usage(cli,
+                       "--sparse: of --coverage, --distance, --labels and --color .octree alone is "
+                       "sparse, not .%s",
+                       out->format);
+    out->sparse = false; /* the file is an octree as it is */
+  }
   if (out->format && (cli_check_style(cli, &out->style, out->format) == CLI_STOP ||
                       cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP))
     return CLI_STOP;

@@ -3,6 +3,7 @@
 
 #include <stdatomic.h>
 #include <stddef.h>
+#include <string.h>
 
 int vxm_octree_levels(const vxm_space *space) {
   int64_t most = vxm_max(space->dims[0], vxm_max(space->dims[1], space->dims[2]));
@@ -103,11 +104,17 @@ uint64_t vxm_octree_bytes(const vxm_sparse *sparse) {
 
 typedef struct walk {
   const vxm_sparse *sparse;
-  int axis;
-  int64_t begin, end;
+  const int64_t *begin, *end;
   vxm_sparse_fn function;
   void *payload;
 } walk;
+
+static bool meets(const walk *w, const int64_t at[3], int64_t side) {
+  bool yes = true;
+  for (int a = 0; a < 3; a++)
+    yes &= at[a] < w->end[a] && at[a] + side > w->begin[a];
+  return yes;
+}
 
 static void walk_node(const walk *w, int level, size_t index, const int64_t at[3]) {
   const vxm_octree_node *node = &w->sparse->nodes[level][index];
@@ -122,7 +129,7 @@ static void walk_node(const walk *w, int level, size_t index, const int64_t at[3
     vxm_octree_place(child, piece.position);
     for (int a = 0; a < 3; a++)
       piece.position[a] = at[a] + piece.position[a] * side;
-    if (piece.position[w->axis] >= w->end || piece.position[w->axis] + side <= w->begin)
+    if (!meets(w, piece.position, side))
       continue;
     if (mixed && level > 0) {
       walk_node(w, level - 1, below, piece.position);
@@ -134,8 +141,17 @@ static void walk_node(const walk *w, int level, size_t index, const int64_t at[3
   }
 }
 
-void vxm_octree_walk(const vxm_sparse *sparse, int axis, int64_t begin, int64_t end, vxm_sparse_fn function,
-                     void *payload) {
-  const walk w = {sparse, axis, begin, end, function, payload};
+void vxm_octree_walk(const vxm_sparse *sparse, const int64_t begin[3], const int64_t end[3],
+                     vxm_sparse_fn function, void *payload) {
+  const walk w = {sparse, begin, end, function, payload};
   walk_node(&w, sparse->levels - 1, 0, (int64_t[3]){0, 0, 0});
+}
+
+void vxm_octree_walk_layers(const vxm_sparse *sparse, int axis, int64_t begin, int64_t end,
+                            vxm_sparse_fn function, void *payload) {
+  int64_t low[3] = {0, 0, 0}, high[3];
+  memcpy(high, sparse->space.dims, sizeof high);
+  low[axis] = begin;
+  high[axis] = end;
+  vxm_octree_walk(sparse, low, high, function, payload);
 }

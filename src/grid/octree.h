@@ -72,9 +72,12 @@ static inline size_t vxm_octree_index(const vxm_octree_node *node, unsigned chil
   return (size_t)node->first + (size_t)vxm_popcount(node->mixed & vxm_low_bits(child));
 }
 
-/** Calls for each piece that meets layers begin..end-1 along an axis, in Morton order. */
-void vxm_octree_walk(const vxm_sparse *sparse, int axis, int64_t begin, int64_t end, vxm_sparse_fn function,
-                     void *payload);
+/** Calls for each piece that meets the box of voxels begin..end-1, in Morton order. */
+void vxm_octree_walk(const vxm_sparse *sparse, const int64_t begin[3], const int64_t end[3],
+                     vxm_sparse_fn function, void *payload);
+/** The same for layers begin..end-1 along an axis. */
+void vxm_octree_walk_layers(const vxm_sparse *sparse, int axis, int64_t begin, int64_t end,
+                            vxm_sparse_fn function, void *payload);
 
 /** The brick with voxel (i,j,k), which lies within the dimensions. */
 uint64_t vxm_octree_brick(const vxm_sparse *sparse, int64_t i, int64_t j, int64_t k);

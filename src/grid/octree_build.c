@@ -4,50 +4,31 @@
 
 #include <string.h>
 
-enum { BLOCK_BYTES = 1 << 20 };
-
-typedef struct vxm_strip_block {
-  struct vxm_strip_block *next;
-  size_t bytes;
-  _Alignas(8) unsigned char data[];
-} vxm_strip_block;
-
 /* ---- Memory ---- */
 
 static void note_failure(vxm_octree_builder *builder, vxm_status status) {
   atomic_store_explicit(&builder->failed, (int)status, memory_order_relaxed);
 }
 
-/** A pointer to `bytes` free ones, of which `keep` then says how many were used; NULL if memory ran out. */
-static void *room(vxm_octree_builder *builder, size_t worker, size_t bytes) {
-  vxm_strip_arena *arena = &builder->arenas[worker];
-  if (arena->first && arena->first->bytes - arena->used >= bytes)
-    return arena->first->data + arena->used;
-  size_t size = bytes > BLOCK_BYTES ? bytes : BLOCK_BYTES - sizeof(vxm_strip_block);
-  vxm_error local = VXM_ERROR_INIT;
-  vxm_strip_block *block = vxm_alloc(builder->context, 1, sizeof *block + size, &local);
-  if (!block) {
-    note_failure(builder, local.code);
-    return NULL;
+/** Room in an arena; NULL if memory ran out. */
+static void *room(vxm_octree_builder *builder, vxm_block_arena *arena, size_t bytes) {
+  vxm_status failed = VXM_OK;
+  void *data = vxm_block_arena_room(arena, builder->context, bytes, &failed);
+  if (!data)
+    note_failure(builder, failed);
+  return data;
+}
+
+/** Puts what was added in the place of a strip. */
+static void end_strip(vxm_octree_builder *builder, vxm_strip_arena *arena, vxm_strip *strip) {
+  size_t bytes = arena->item_count * sizeof *arena->items;
+  void *items = bytes > 0 ? room(builder, &arena->strips[builder->turn], bytes) : NULL;
+  if (items) {
+    memcpy(items, arena->items, bytes);
+    vxm_block_arena_keep(&arena->strips[builder->turn], bytes);
   }
-  block->next = arena->first;
-  block->bytes = size;
-  arena->first = block;
-  arena->used = 0;
-  return block->data;
-}
-
-static void keep(vxm_octree_builder *builder, size_t worker, size_t bytes) {
-  builder->arenas[worker].used += bytes;
-}
-
-static const void *copy(vxm_octree_builder *builder, size_t worker, const void *from, size_t bytes) {
-  void *to = bytes > 0 ? room(builder, worker, bytes) : NULL;
-  if (!to)
-    return NULL;
-  memcpy(to, from, bytes);
-  keep(builder, worker, bytes);
-  return to;
+  *strip = (vxm_strip){items, items ? arena->item_count : 0};
+  arena->item_count = 0;
 }
 
 vxm_status vxm_octree_builder_create(vxm_octree_builder *out, vxm_context *context, const vxm_space *space,
@@ -67,12 +48,12 @@ vxm_status vxm_octree_builder_create(vxm_octree_builder *out, vxm_context *conte
 
 void vxm_octree_builder_destroy(vxm_octree_builder *builder) {
   for (size_t w = 0; builder->arenas && w < builder->workers; w++) {
-    for (vxm_strip_block *block = builder->arenas[w].first; block;) {
-      vxm_strip_block *next = block->next;
-      vxm_free(builder->context, block);
-      block = next;
-    }
-    vxm_free(builder->context, builder->arenas[w].items);
+    vxm_strip_arena *arena = &builder->arenas[w];
+    vxm_block_arena_clear(&arena->bricks, builder->context);
+    vxm_block_arena_clear(&arena->seeds, builder->context);
+    vxm_block_arena_clear(&arena->strips[0], builder->context);
+    vxm_block_arena_clear(&arena->strips[1], builder->context);
+    vxm_free(builder->context, arena->items);
   }
   vxm_free(builder->context, builder->arenas);
   vxm_free(builder->context, builder->strips);
@@ -152,22 +133,20 @@ void vxm_strip_add_known(vxm_octree_builder *builder, size_t worker, size_t x,
     vxm_strip_add_full(builder, worker, x, x + 1);
     return;
   }
-  uint64_t *to = room(builder, worker, VXM_STRIP_BRICKS * sizeof *to);
+  vxm_block_arena *arena = &builder->arenas[worker].bricks;
+  uint64_t *to = room(builder, arena, VXM_STRIP_BRICKS * sizeof *to);
   if (!to)
     return;
   vxm_seed seed = {morton_mask(set & ~full), morton_mask(full), to};
   size_t count = 0;
   for (uint64_t left = seed.mixed; left; left &= left - 1)
     to[count++] = bricks[plain_place((unsigned)__builtin_ctzll(left))];
-  keep(builder, worker, count * sizeof *to);
+  vxm_block_arena_keep(arena, count * sizeof *to);
   add_item(builder, worker, (vxm_strip_item){(uint32_t)x, (uint32_t)x + 1, seed});
 }
 
 void vxm_strip_end(vxm_octree_builder *builder, size_t worker, size_t y, size_t z) {
-  vxm_strip_arena *arena = &builder->arenas[worker];
-  builder->strips[z * builder->across + y] = (vxm_strip){
-      copy(builder, worker, arena->items, arena->item_count * sizeof *arena->items), arena->item_count};
-  arena->item_count = 0;
+  end_strip(builder, &builder->arenas[worker], &builder->strips[z * builder->across + y]);
 }
 
 void vxm_strip_expand(const vxm_strip_item *item, uint64_t bricks[VXM_STRIP_BRICKS]) {
@@ -218,14 +197,15 @@ static void merge_node(vxm_octree_builder *builder, size_t worker, cursor rows[1
     vxm_strip_add_full(builder, worker, x, x + 1);
     return;
   }
-  vxm_seed *to = room(builder, worker, VXM_STRIP_BRICKS * sizeof *to);
+  vxm_block_arena *arena = &builder->arenas[worker].seeds;
+  vxm_seed *to = room(builder, arena, VXM_STRIP_BRICKS * sizeof *to);
   if (!to)
     return;
   vxm_seed seed = {morton_mask(mixed), morton_mask(full), to};
   size_t count = 0;
   for (uint64_t left = seed.mixed; left; left &= left - 1)
     to[count++] = seeds[plain_place((unsigned)__builtin_ctzll(left))];
-  keep(builder, worker, count * sizeof *to);
+  vxm_block_arena_keep(arena, count * sizeof *to);
   add_item(builder, worker, (vxm_strip_item){x, x + 1, seed});
 }
 
@@ -275,26 +255,30 @@ static void merge_strip(size_t task, int worker, void *payload) {
       rows[r].at += rows[r].at->end <= 4 * full_end;
     from = full_end;
   }
-  vxm_strip_arena *arena = &job->builder->arenas[w];
-  job->above[task] = (vxm_strip){
-      copy(job->builder, w, arena->items, arena->item_count * sizeof *arena->items), arena->item_count};
-  arena->item_count = 0;
+  end_strip(job->builder, &job->builder->arenas[w], &job->above[task]);
+}
+
+/** Drops the strips that were made last, or before those. */
+static void drop_strips(vxm_octree_builder *builder, unsigned turn) {
+  for (size_t w = 0; w < builder->workers; w++)
+    vxm_block_arena_clear(&builder->arenas[w].strips[turn], builder->context);
 }
 
 /** Merges level after level until one strip of one node is left. */
 static vxm_status merge_levels(vxm_octree_builder *builder, int levels, vxm_seed *root, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   size_t across = builder->across, deep = builder->deep;
-  vxm_strip *below = builder->strips;
   for (int l = 1; l < levels && local.code == VXM_OK; l++) {
-    merge_job job = {builder, below, across, deep, NULL, (across + 3) / 4};
+    merge_job job = {builder, builder->strips, across, deep, NULL, (across + 3) / 4};
     size_t count = job.across * ((deep + 3) / 4);
     job.above = vxm_alloc(builder->context, count, sizeof *job.above, &local);
-    if (job.above)
-      vxm_parallel(builder->context, count, merge_strip, &job);
-    if (below != builder->strips)
-      vxm_free(builder->context, below);
-    below = job.above;
+    if (!job.above)
+      break;
+    builder->turn ^= 1;
+    vxm_parallel(builder->context, count, merge_strip, &job);
+    drop_strips(builder, builder->turn ^ 1);
+    vxm_free(builder->context, builder->strips);
+    builder->strips = job.above;
     across = job.across;
     deep = (deep + 3) / 4;
   }
@@ -302,10 +286,9 @@ static vxm_status merge_levels(vxm_octree_builder *builder, int levels, vxm_seed
     vxm_error_pass(error, &local);
   vxm_status status = local.code == VXM_OK ? vxm_octree_builder_check(builder, error) : local.code;
   *root = (vxm_seed){0, 0, NULL};
-  if (status == VXM_OK && below->count > 0)
-    *root = below->items->seed;
-  if (below != builder->strips)
-    vxm_free(builder->context, below);
+  if (status == VXM_OK && builder->strips->count > 0)
+    *root = builder->strips->items->seed;
+  drop_strips(builder, builder->turn);
   return status;
 }
 
@@ -388,8 +371,11 @@ vxm_status vxm_octree_builder_end(vxm_sparse **out, vxm_octree_builder *builder,
   if (seeds)
     status = merge_levels(builder, sparse->levels, seeds, &local);
   sparse->node_count[sparse->levels - 1] = 1;
-  for (int l = sparse->levels - 1; l >= 0 && local.code == VXM_OK; l--)
+  for (int l = sparse->levels - 1; l >= 0 && local.code == VXM_OK; l--) {
+    for (size_t w = 0; w < builder->workers && l == 0; w++) /* all are gathered */
+      vxm_block_arena_clear(&builder->arenas[w].seeds, builder->context);
     status = spread(sparse, l, &seeds, &local);
+  }
   vxm_free(builder->context, seeds);
   if (local.code != VXM_OK) {
     vxm_sparse_destroy(sparse);

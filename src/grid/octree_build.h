@@ -7,6 +7,7 @@
 #ifndef VXM_GRID_OCTREE_BUILD_H
 #define VXM_GRID_OCTREE_BUILD_H
 
+#include "grid/block_arena.h"
 #include "grid/octree.h"
 
 #include <stdatomic.h>
@@ -33,10 +34,12 @@ typedef struct vxm_strip {
   size_t count;
 } vxm_strip;
 
+/** What a worker has made, by how long it is needed. */
 typedef struct vxm_strip_arena {
-  struct vxm_strip_block *first;
-  size_t used;           /**< bytes of `first` */
-  vxm_strip_item *items; /**< of the strip being made */
+  vxm_block_arena bricks;    /**< to the end */
+  vxm_block_arena seeds;     /**< above level 0: until all of level 0 are gathered */
+  vxm_block_arena strips[2]; /**< until they are merged to those of the next level, in turn */
+  vxm_strip_item *items;     /**< of the strip being made */
   size_t item_count, item_capacity;
 } vxm_strip_arena;
 
@@ -47,6 +50,7 @@ typedef struct vxm_octree_builder {
   vxm_strip *strips;   /**< strip (y,z) is z * across + y */
   vxm_strip_arena *arenas;
   size_t workers;
+  unsigned turn;     /**< which arena strips go to */
   atomic_int failed; /**< a vxm_status */
 } vxm_octree_builder;
 
@@ -78,7 +82,8 @@ void vxm_strip_expand(const vxm_strip_item *item, uint64_t bricks[VXM_STRIP_BRIC
 /** Adds a window in the layout of a grid, which begins and ends at whole strips or at the end of the grid. */
 void vxm_octree_builder_add(vxm_octree_builder *builder, const vxm_window *window);
 
-/** Makes the octree of all strips. @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+/** Makes the octree of all strips, which the builder has no more then. @return VXM_OK, VXM_ERROR_MEMORY,
+ * VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_octree_builder_end(vxm_sparse **out, vxm_octree_builder *builder, vxm_error *error);
 
 /** The octree of a grid. */

@@ -114,6 +114,8 @@ vxm_status vxm_octree_combine(vxm_sparse **out, const vxm_sparse *a, const vxm_s
     first.kind = BOX;
   }
   vxm_octree_growth_begin(&c.result, a->context, &a->space, error);
+  if (op == VXM_SET_UNION)
+    vxm_octree_growth_reserve(&c.result, a, b);
   if (c.result.status == VXM_OK)
     combine_nodes(&c, c.result.sparse->levels - 1, first, root, (int64_t[3]){0, 0, 0});
   return vxm_octree_growth_end(out, &c.result);

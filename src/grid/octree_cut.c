@@ -3,7 +3,6 @@
 #include "grid/cut.h"
 
 typedef struct cut {
-  const vxm_sparse *sparse;
   const int64_t *begin, *end;
   vxm_grid *grid;
 } cut;
@@ -43,31 +42,12 @@ static void put_brick(const cut *c, const int64_t at[3], uint64_t bits) {
     }
 }
 
-static bool meets(const cut *c, const int64_t at[3], int64_t side) {
-  bool yes = true;
-  for (int a = 0; a < 3; a++)
-    yes &= at[a] < c->end[a] && at[a] + side > c->begin[a];
-  return yes;
-}
-
-static void cut_node(const cut *c, int level, size_t index, const int64_t at[3]) {
-  const vxm_octree_node *node = &c->sparse->nodes[level][index];
-  int64_t side = vxm_octree_side(level);
-  for (uint64_t left = node->mixed | node->full; left; left &= left - 1) {
-    unsigned child = (unsigned)__builtin_ctzll(left);
-    int64_t place[3];
-    vxm_octree_place(child, place);
-    for (int a = 0; a < 3; a++)
-      place[a] = at[a] + place[a] * side;
-    if (!meets(c, place, side))
-      continue;
-    if (node->full >> child & 1)
-      put_cube(c, place, side);
-    else if (level == 0)
-      put_brick(c, place, c->sparse->bricks[vxm_octree_index(node, child)]);
-    else
-      cut_node(c, level - 1, vxm_octree_index(node, child), place);
-  }
+static void put_piece(const vxm_sparse_piece *piece, void *payload) {
+  const cut *c = payload;
+  if (piece->bits == ~UINT64_C(0))
+    put_cube(c, piece->position, piece->side);
+  else
+    put_brick(c, piece->position, piece->bits);
 }
 
 vxm_status vxm_octree_cut(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
@@ -76,7 +56,7 @@ vxm_status vxm_octree_cut(vxm_grid **out, const vxm_sparse *sparse, const int64_
   vxm_status status = vxm_grid_create(out, sparse->context, &space, error);
   if (status != VXM_OK)
     return status;
-  const cut c = {sparse, begin, end, *out};
-  cut_node(&c, sparse->levels - 1, 0, (int64_t[3]){0, 0, 0});
+  cut c = {begin, end, *out};
+  vxm_octree_walk(sparse, begin, end, put_piece, &c);
   return VXM_OK;
 }

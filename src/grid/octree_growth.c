@@ -7,6 +7,16 @@ void vxm_octree_growth_begin(vxm_octree_growth *out, vxm_context *context, const
   out->status = vxm_octree_new(&out->sparse, context, space, error);
 }
 
+void vxm_octree_growth_reserve(vxm_octree_growth *growth, const vxm_sparse *a, const vxm_sparse *b) {
+  vxm_sparse *sparse = growth->sparse;
+  if (growth->status == VXM_OK)
+    growth->status = vxm_grow(sparse->context, (void **)&sparse->bricks, &growth->brick_capacity,
+                              a->brick_count + b->brick_count, sizeof *sparse->bricks, growth->error);
+  for (int l = 0; growth->status == VXM_OK && l < sparse->levels; l++)
+    growth->status = vxm_grow(sparse->context, (void **)&sparse->nodes[l], &growth->node_capacity[l],
+                              a->node_count[l] + b->node_count[l], sizeof *sparse->nodes[l], growth->error);
+}
+
 vxm_octree_cell vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bits) {
   if (bits == 0 || bits == ~UINT64_C(0) || growth->status != VXM_OK)
     return bits ? VXM_CELL_FULL : VXM_CELL_EMPTY;

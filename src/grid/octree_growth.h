@@ -19,6 +19,9 @@ typedef struct vxm_octree_growth {
 void vxm_octree_growth_begin(vxm_octree_growth *out, vxm_context *context, const vxm_space *space,
                              vxm_error *error);
 
+/** Makes room for as much as two octrees have together, before anything is added. */
+void vxm_octree_growth_reserve(vxm_octree_growth *growth, const vxm_sparse *a, const vxm_sparse *b);
+
 /** Where the next child of a node of a level will be: its `first`. */
 static inline size_t vxm_octree_growth_next(const vxm_octree_growth *growth, int level) {
   return level > 0 ? growth->sparse->node_count[level - 1] : growth->sparse->brick_count;

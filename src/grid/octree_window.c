@@ -81,7 +81,7 @@ static void fill_slices(size_t task, int worker, void *payload) {
   for (int64_t s = range.begin; s < range.end; s++)
     memset(vxm_window_row(window, 0, s), 0,
            window->row_words * (size_t)window->middle_dim * sizeof *window->words);
-  vxm_octree_walk(job->sparse, window->layout.slow, range.begin, range.end, fill_piece, &range);
+  vxm_octree_walk_layers(job->sparse, window->layout.slow, range.begin, range.end, fill_piece, &range);
 }
 
 void vxm_octree_fill(const vxm_sparse *sparse, const vxm_window *window) {

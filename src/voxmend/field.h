@@ -38,8 +38,9 @@ VXM_API vxm_status vxm_field_create(vxm_field **out, vxm_context *context, const
                                     vxm_error *error);
 
 /**
- * Reads the numbers of a file as they are: .npy, .nrrd, .nii, .nii.gz, .vti, .vtk, .tif, .zarr, .vdb, or
- * .binvox. Files that hold bits give 0 and 1, as VXM_UINT8. Floats of 16 bits in .vdb become VXM_FLOAT32.
+ * Reads the numbers of a file as they are: .npy, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .zarr,
+ * .vdb, or .binvox. Files that hold bits give 0 and 1, as VXM_UINT8. Floats of 16 bits in .vdb become
+ * VXM_FLOAT32.
  *
  * @return as vxm_grid_read, without VXM_ERROR_NUMBERS
  */

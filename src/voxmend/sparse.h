@@ -6,7 +6,7 @@
 #ifndef VOXMEND_SPARSE_H
 #define VOXMEND_SPARSE_H
 
-#include "voxmend/voxelize.h"
+#include "voxmend/field.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -68,6 +68,22 @@ VXM_API vxm_status vxm_sparse_to_grid(vxm_grid **out, const vxm_sparse *sparse, 
  */
 VXM_API vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, const int64_t begin[3],
                                      const int64_t end[3], vxm_error *error);
+
+/**
+ * Counts how much is set of each cube of voxels: the coverage of a grid that is coarser by a power of two. It
+ * has the same minimum corner, and cubes at the far sides may reach beyond the dimensions, where nothing is
+ * set. Counts are exact; each number is rounded once.
+ *
+ * @param options subdivision: voxels along a cube, 1, 2, 4, ... 2^20; scalar: VXM_FLOAT32 or VXM_FLOAT64, the
+ * share, 0 to 1; VXM_UINT8, 255 times that, rounded, halves up; VXM_UINT64, the number of voxels, as
+ * VXM_FIELD_NUMBERS; NULL = defaults
+ * @param begin,end cubes begin..end-1 along each axis; NULL = from the first, to the last
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ * VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_sparse_coverage(vxm_field **out, const vxm_sparse *sparse,
+                                       const vxm_coverage_options *options, const int64_t begin[3],
+                                       const int64_t end[3], vxm_error *error);
 
 /** What two sets of voxels are combined to. */
 typedef enum vxm_set_operation {
@@ -131,15 +147,38 @@ VXM_API vxm_status vxm_sparse_file_open(vxm_sparse_file **out, vxm_context *cont
 VXM_API void vxm_sparse_file_close(vxm_sparse_file *file);
 /** Where its voxels lie. */
 VXM_API const vxm_space *vxm_sparse_file_space(const vxm_sparse_file *file);
-/** Number of set voxels, as the file tells it. */
+/** Whether it holds numbers, labels or colours rather than set and clear voxels. */
+VXM_API bool vxm_sparse_file_has_values(const vxm_sparse_file *file);
+/** Number of set voxels, as the file tells it; of values, those that are not the background. */
 VXM_API int64_t vxm_sparse_file_count(const vxm_sparse_file *file);
 /**
  * Reads the voxels begin..end-1 along each axis as a grid; only what they need of the file is looked at.
  *
- * @return as vxm_sparse_window; VXM_ERROR_FORMAT with the byte offset where the file is damaged
+ * @return as vxm_sparse_window; VXM_ERROR_FORMAT with the byte offset where the file is damaged;
+ * VXM_ERROR_NUMBERS if it has values
  */
 VXM_API vxm_status vxm_sparse_file_window(vxm_grid **out, const vxm_sparse_file *file, const int64_t begin[3],
                                           const int64_t end[3], vxm_error *error);
+
+/**
+ * Reads the values of voxels begin..end-1 along each axis as a field; only what they need of the file is
+ * looked at. A file of set voxels gives 0 and 1, as VXM_UINT8.
+ *
+ * @return as vxm_sparse_window; VXM_ERROR_FORMAT with the byte offset where the file is damaged
+ */
+VXM_API vxm_status vxm_sparse_file_field(vxm_field **out, const vxm_sparse_file *file, const int64_t begin[3],
+                                         const int64_t end[3], vxm_error *error);
+
+/**
+ * As vxm_sparse_coverage, of a file: cubes of 256 voxels or more are counted by its index alone, of smaller
+ * ones a layer of the octree is in memory at a time.
+ *
+ * @return as vxm_sparse_coverage; VXM_ERROR_FORMAT with the byte offset where the file is damaged;
+ * VXM_ERROR_NUMBERS if it has values
+ */
+VXM_API vxm_status vxm_sparse_file_coverage(vxm_field **out, const vxm_sparse_file *file,
+                                            const vxm_coverage_options *options, const int64_t begin[3],
+                                            const int64_t end[3], vxm_error *error);
 
 /**
  * Writes the coordinates of all set voxels as .npy: int32, n rows of (i, j, k), sorted by i, then j, then k,

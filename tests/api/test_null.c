@@ -37,6 +37,7 @@ static vxm_field *field;
 static const vxm_space space = {{4, 4, 4}, {0, 0, 0}, {0.25, 0.25, 0.25}};
 static const uint64_t words_of_grid[16];
 static const int64_t window_begin[3] = {0, 1, 2}, window_end[3] = {4, 3, 4};
+static const int64_t first_cube[3] = {0, 0, 0}, last_cube[3] = {1, 1, 1};
 static const double unmoved[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 static const char off_text[] = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 static const vxm_variant variant;
@@ -372,39 +373,49 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
     vxm_sampler_files(P(0, variant_path), P(1, sampler), P(2, &variant), 1, P(3, &grid_write),              \
                       P(4, &out.written), P(5, &error)))
 
-#define SPARSE_CALLS(X)                                                                                   \
-  X(vxm_model_sparse, 6, 13,                                                                              \
-    vxm_model_sparse(P(0, &out.sparse), P(1, &out.voxelize), P(2, model), P(3, &space), P(4, unmoved),    \
-                     P(5, &error)))                                                                       \
-  X(vxm_sparse_destroy, 1, 0, (vxm_sparse_destroy(NULL), VXM_OK))                                         \
-  X(vxm_sparse_space, 1, 1, GIVES(vxm_sparse_space(P(0, sparse))))                                        \
-  X(vxm_sparse_get, 1, 1, GIVES(vxm_sparse_get(P(0, sparse), 0, 0, 0)))                                   \
-  X(vxm_sparse_count, 1, 1, GIVES(vxm_sparse_count(P(0, sparse))))                                        \
-  X(vxm_sparse_hash, 1, 1, GIVES(vxm_sparse_hash(P(0, sparse))))                                          \
-  X(vxm_sparse_bricks, 1, 1, ANYTHING(vxm_sparse_bricks(P(0, sparse))))                                   \
-  X(vxm_sparse_nodes, 1, 1, ANYTHING(vxm_sparse_nodes(P(0, sparse))))                                     \
-  X(vxm_sparse_bytes, 1, 1, GIVES(vxm_sparse_bytes(P(0, sparse))))                                        \
-  X(vxm_sparse_from_grid, 3, 3, vxm_sparse_from_grid(P(0, &out.sparse), P(1, grid), P(2, &error)))        \
-  X(vxm_sparse_to_grid, 3, 3, vxm_sparse_to_grid(P(0, &out.grid), P(1, sparse), P(2, &error)))            \
-  X(vxm_sparse_combine, 4, 7,                                                                             \
-    vxm_sparse_combine(P(0, &out.sparse), P(1, sparse), P(2, sparse), VXM_SET_UNION, P(3, &error)))       \
-  X(vxm_sparse_warning_count, 1, 1, ANYTHING(vxm_sparse_warning_count(P(0, sparse))))                     \
-  X(vxm_sparse_warning, 1, 1, ANYTHING(vxm_sparse_warning(P(0, sparse), 0)))                              \
-  X(vxm_sparse_window, 5, 15,                                                                             \
-    vxm_sparse_window(P(0, &out.grid), P(1, sparse), P(2, window_begin), P(3, window_end), P(4, &error))) \
-  X(vxm_sparse_read, 4, 5,                                                                                \
-    vxm_sparse_read(P(0, &out.sparse), P(1, context), P(2, "in.octree"), P(3, &error)))                   \
-  X(vxm_sparse_file_open, 4, 5,                                                                           \
-    vxm_sparse_file_open(P(0, &out.sparse_file), P(1, context), P(2, "in.octree"), P(3, &error)))         \
-  X(vxm_sparse_file_close, 1, 0, (vxm_sparse_file_close(NULL), VXM_OK))                                   \
-  X(vxm_sparse_file_space, 1, 1, GIVES(vxm_sparse_file_space(P(0, sparse_file))))                         \
-  X(vxm_sparse_file_count, 1, 1, GIVES(vxm_sparse_file_count(P(0, sparse_file))))                         \
-  X(vxm_sparse_file_window, 5, 15,                                                                        \
-    vxm_sparse_file_window(P(0, &out.grid), P(1, sparse_file), P(2, window_begin), P(3, window_end),      \
-                           P(4, &error)))                                                                 \
-  X(vxm_sparse_visit, 2, 3, DOES(vxm_sparse_visit(P(0, sparse), P(1, visit), NULL)))                      \
-  X(vxm_sparse_write, 4, 3,                                                                               \
-    vxm_sparse_write(P(0, sparse), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))                     \
+#define SPARSE_CALLS(X)                                                                                      \
+  X(vxm_model_sparse, 6, 13,                                                                                 \
+    vxm_model_sparse(P(0, &out.sparse), P(1, &out.voxelize), P(2, model), P(3, &space), P(4, unmoved),       \
+                     P(5, &error)))                                                                          \
+  X(vxm_sparse_destroy, 1, 0, (vxm_sparse_destroy(NULL), VXM_OK))                                            \
+  X(vxm_sparse_space, 1, 1, GIVES(vxm_sparse_space(P(0, sparse))))                                           \
+  X(vxm_sparse_get, 1, 1, GIVES(vxm_sparse_get(P(0, sparse), 0, 0, 0)))                                      \
+  X(vxm_sparse_count, 1, 1, GIVES(vxm_sparse_count(P(0, sparse))))                                           \
+  X(vxm_sparse_hash, 1, 1, GIVES(vxm_sparse_hash(P(0, sparse))))                                             \
+  X(vxm_sparse_bricks, 1, 1, ANYTHING(vxm_sparse_bricks(P(0, sparse))))                                      \
+  X(vxm_sparse_nodes, 1, 1, ANYTHING(vxm_sparse_nodes(P(0, sparse))))                                        \
+  X(vxm_sparse_bytes, 1, 1, GIVES(vxm_sparse_bytes(P(0, sparse))))                                           \
+  X(vxm_sparse_from_grid, 3, 3, vxm_sparse_from_grid(P(0, &out.sparse), P(1, grid), P(2, &error)))           \
+  X(vxm_sparse_to_grid, 3, 3, vxm_sparse_to_grid(P(0, &out.grid), P(1, sparse), P(2, &error)))               \
+  X(vxm_sparse_combine, 4, 7,                                                                                \
+    vxm_sparse_combine(P(0, &out.sparse), P(1, sparse), P(2, sparse), VXM_SET_UNION, P(3, &error)))          \
+  X(vxm_sparse_warning_count, 1, 1, ANYTHING(vxm_sparse_warning_count(P(0, sparse))))                        \
+  X(vxm_sparse_warning, 1, 1, ANYTHING(vxm_sparse_warning(P(0, sparse), 0)))                                 \
+  X(vxm_sparse_window, 5, 15,                                                                                \
+    vxm_sparse_window(P(0, &out.grid), P(1, sparse), P(2, window_begin), P(3, window_end), P(4, &error)))    \
+  X(vxm_sparse_coverage, 6, 3,                                                                               \
+    vxm_sparse_coverage(P(0, &out.field), P(1, sparse), P(2, &coverage_options), P(3, first_cube),           \
+                        P(4, last_cube), P(5, &error)))                                                      \
+  X(vxm_sparse_file_coverage, 6, 3,                                                                          \
+    vxm_sparse_file_coverage(P(0, &out.field), P(1, sparse_file), P(2, &coverage_options), P(3, first_cube), \
+                             P(4, last_cube), P(5, &error)))                                                 \
+  X(vxm_sparse_read, 4, 5,                                                                                   \
+    vxm_sparse_read(P(0, &out.sparse), P(1, context), P(2, "in.octree"), P(3, &error)))                      \
+  X(vxm_sparse_file_open, 4, 5,                                                                              \
+    vxm_sparse_file_open(P(0, &out.sparse_file), P(1, context), P(2, "in.octree"), P(3, &error)))            \
+  X(vxm_sparse_file_close, 1, 0, (vxm_sparse_file_close(NULL), VXM_OK))                                      \
+  X(vxm_sparse_file_space, 1, 1, GIVES(vxm_sparse_file_space(P(0, sparse_file))))                            \
+  X(vxm_sparse_file_has_values, 1, 1, ANYTHING(vxm_sparse_file_has_values(P(0, sparse_file))))               \
+  X(vxm_sparse_file_field, 5, 15,                                                                            \
+    vxm_sparse_file_field(P(0, &out.field), P(1, sparse_file), P(2, window_begin), P(3, window_end),         \
+                          P(4, &error)))                                                                     \
+  X(vxm_sparse_file_count, 1, 1, GIVES(vxm_sparse_file_count(P(0, sparse_file))))                            \
+  X(vxm_sparse_file_window, 5, 15,                                                                           \
+    vxm_sparse_file_window(P(0, &out.grid), P(1, sparse_file), P(2, window_begin), P(3, window_end),         \
+                           P(4, &error)))                                                                    \
+  X(vxm_sparse_visit, 2, 3, DOES(vxm_sparse_visit(P(0, sparse), P(1, visit), NULL)))                         \
+  X(vxm_sparse_write, 4, 3,                                                                                  \
+    vxm_sparse_write(P(0, sparse), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))                        \
   X(vxm_sparse_write_coords, 3, 3, vxm_sparse_write_coords(P(0, sparse), P(1, "out.npy"), P(2, &error)))
 
 #define CALLS(X)             \

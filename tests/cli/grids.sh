@@ -27,6 +27,28 @@ run 'voxmend convert d.npy --below 0 -o d.rle -q && voxmend compare d.rle part.n
 run 'voxmend convert t.octree -o x.npy --window 3:20,4:14,6:99'
 run 'voxmend convert t.octree -o x.npy --window 3:20,5:6'
 run 'voxmend convert t.octree -o x.npy --window 3:20,6:6,0:9'
+run 'voxmend convert t.octree -o c.npy --coverage 4 && voxmend convert t.npy -o c2.npy --coverage 4 -q && cmp c.npy c2.npy'
+run 'voxmend voxelize in/torus.off -o f.octree -r 24 --thin drop -q && voxmend convert f.octree -o c.npy --coverage 4 -q'
+run 'voxmend voxelize in/torus.off -o c2.npy -r 6 --coverage 4 -q && cmp c.npy c2.npy && cmp c.npy.json c2.npy.json'
+run 'voxmend convert f.octree -o c3.nrrd --coverage 4 --window 1:5,0:2,2:4 -q && voxmend convert c2.npy -o c4.nrrd --window 1:5,0:2,2:4 -q && cmp c3.nrrd c4.nrrd'
+run 'voxmend convert d.nrrd -o c.npy --below 0 --coverage 8 | grep values'
+run 'voxmend convert d.nrrd -o x.npy --coverage 8'
+run 'voxmend convert t.octree -o x.npy --coverage 8 --window 0:3,0:3,0:4'
+run 'voxmend convert t.octree -o x.npy --coverage 3'
+run 'voxmend convert t.octree -o x.rle --coverage 4'
+for choice in '--labels part' '--color position' '--distance signed' '--coverage 2'; do
+  run "voxmend voxelize in/rocket.off -o v.octree -r 40 $choice --sparse -q && voxmend voxelize in/rocket.off -o v.nrrd -r 40 $choice -q"
+  run 'voxmend convert v.octree -o w.nrrd -q && cmp w.nrrd v.nrrd && voxmend convert v.nrrd -o w.octree -q && cmp w.octree v.octree'
+  run 'voxmend convert v.octree -o w.nrrd --window 3:30,10:24,16:38 && voxmend convert v.nrrd -o w2.nrrd --window 3:30,10:24,16:38 -q && cmp w.nrrd w2.nrrd'
+done
+run 'voxmend voxelize in/rocket.off -o l.octree -r 40 --labels part -q && grep -c name l.octree.json && voxmend convert l.octree -o l.npy -q && grep -c name l.npy.json'
+run 'voxmend combine l.octree or l.octree -o x.octree'
+run 'voxmend combine l.octree or l.octree -o x.octree --threshold 1 -q && voxmend voxelize in/rocket.off -o y.octree -r 40 -q && cmp x.octree y.octree'
+run 'voxmend convert l.octree -o x.npy --coverage 4'
+run 'voxmend convert l.octree -o x.npy --coverage 4 --threshold 1 -q && voxmend convert y.octree -o y.npy --coverage 4 -q && cmp x.npy y.npy'
+run 'voxmend voxelize in/rocket.off -o x.nrrd -r 40 --labels part --sparse'
+head -c 300 l.octree >cut.octree
+run 'voxmend convert cut.octree -o x.npy'
 head -c 300 t.octree >cut.octree
 run 'voxmend convert cut.octree -o x.npy'
 

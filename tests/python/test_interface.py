@@ -302,6 +302,20 @@ class Sets(unittest.TestCase):
 
 
 class Sparse(unittest.TestCase):
+    def check_coverage(self, sparse, dense):
+        cubes = numpy.zeros([(n + 7) // 8 * 8 for n in dense.shape])
+        cubes[tuple(slice(n) for n in dense.shape)] = dense.matrix
+        wanted = cubes.reshape(sum(([n // 8, 8] for n in cubes.shape), [])).sum(axis=(1, 3, 5))
+        field = sparse.coverage(8)
+        self.assertEqual((field.kind, field.values.dtype), ("coverage", numpy.float32))
+        numpy.testing.assert_array_equal(field.values, wanted / 512)
+        part = sparse.coverage(8, (1, 2, 3), (4, 8, 5), "uint64")
+        numpy.testing.assert_array_equal(part.values, wanted[1:4, 2:8, 3:5])
+        numpy.testing.assert_allclose(part.origin, dense.origin + 8 * dense.pitch * (1, 2, 3))
+        for wrong in (dict(subdivision=6), dict(begin=(1, 2)), dict(end=(1, 1, 99)), dict(dtype="int8")):
+            with self.assertRaises(voxmend.ArgumentError):
+                sparse.coverage(**wrong)
+
     def test_like_dense(self):
         mesh = voxmend.load(sample("star_prism"))
         for choice in (dict(), dict(mode="surface"), dict(thin="drop", method="x")):
@@ -312,6 +326,7 @@ class Sparse(unittest.TestCase):
             numpy.testing.assert_array_equal(sparse.sparse_indices, numpy.argwhere(dense.matrix))
             numpy.testing.assert_allclose(sparse.points, dense.points)
             self.assertEqual(sparse, voxmend.SparseGrid.from_grid(dense))
+            self.check_coverage(sparse, dense)
             at = numpy.random.default_rng(1).integers(-5, 80, (500, 3))
             inside = ((at >= 0) & (at < 70)).all(axis=1)
             wanted = numpy.zeros(500, bool)

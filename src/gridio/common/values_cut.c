@@ -14,9 +14,8 @@ static void copy_values(vxm_field *out, const vxm_field *field, const int64_t be
              row);
 }
 
-/** Names every label again, with its voxels in `out`. */
-static vxm_status copy_labels(vxm_field *out, const vxm_field *field, vxm_error *error) {
-  size_t labels = field->about.table.count, length = (size_t)out->space.dims[2];
+vxm_status vxm_field_add_table(vxm_field *out, const vxm_label_table *table, vxm_error *error) {
+  size_t labels = table->count, length = (size_t)out->space.dims[2];
   vxm_error local = VXM_ERROR_INIT;
   int64_t *voxels = vxm_calloc(out->context, labels + 1, sizeof *voxels, &local);
   double *row = voxels ? vxm_alloc(out->context, length, sizeof *row, &local) : NULL;
@@ -28,7 +27,7 @@ static vxm_status copy_labels(vxm_field *out, const vxm_field *field, vxm_error 
         voxels[(size_t)row[v]]++;
   }
   for (size_t label = 1; status == VXM_OK && label <= labels; label++)
-    status = vxm_field_add_label(out, vxm_field_label_name(field, (int64_t)label), voxels[label], &local);
+    status = vxm_field_add_label(out, vxm_label_table_name(table, label), voxels[label], &local);
   vxm_free(out->context, row);
   vxm_free(out->context, voxels);
   if (status != VXM_OK)
@@ -48,7 +47,7 @@ vxm_status vxm_field_cut(vxm_field **out, const vxm_field *field, const int64_t 
   made->about.is_declared = about->is_declared;
   copy_values(made, field, begin);
   if (about->table.count > 0)
-    status = copy_labels(made, field, error);
+    status = vxm_field_add_table(made, &about->table, error);
   for (const char *key = NULL; status == VXM_OK && (key = vxm_metadata_next(&about->pairs, key)) != NULL;)
     status = vxm_field_add_metadata(made, key, vxm_metadata_value(key), error);
   return vxm_field_hand_over(out, made, status, error);

@@ -8,5 +8,7 @@
 /** See vxm_field_window in voxmend.h; the box has been checked. */
 vxm_status vxm_field_cut(vxm_field **out, const vxm_field *field, const int64_t begin[3],
                          const int64_t end[3], vxm_error *error);
+/** Gives a field the labels of a table, with the voxels that it has of each. */
+vxm_status vxm_field_add_table(vxm_field *out, const vxm_label_table *table, vxm_error *error);
 
 #endif

@@ -88,7 +88,7 @@ static vxm_status put_octree(vxm_output *output, const vxm_sparse *sparse, vxm_e
     status = d.functions->create(&d.map, sparse->context, sparse->space.voxel_size[0], first, error);
   if (status != VXM_OK)
     return status;
-  vxm_octree_walk(sparse, 2, 0, sparse->space.dims[2], put_piece, &d);
+  vxm_octree_walk_layers(sparse, 2, 0, sparse->space.dims[2], put_piece, &d);
   if (d.status == VXM_OK)
     d.status = d.functions->write(d.map, output, error);
   d.functions->destroy(d.map);

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** .octree as a grid format: slices become an octree before they are written. */
+/** .octree as a grid format: slices become an octree before they are written; see octree_values.h for values.
+ */
 #include "gridio/common/format.h"
+#include "gridio/common/raster.h"
 #include "gridio/formats/octree_file.h"
 #include "gridio/formats/octree_slices.h"
+#include "gridio/formats/octree_values.h"
 
 /* ---- Reading ---- */
 
@@ -17,8 +20,30 @@ static vxm_status read_sparse(vxm_sparse **out, const vxm_input *input, vxm_erro
   vxm_sparse_file *file;
   vxm_status status = open_borrowed(&file, input, error);
   if (status == VXM_OK)
+    status = vxm_octree_file_need_bits(file, error);
+  if (status == VXM_OK)
     status = vxm_octree_file_load(out, file, (int64_t[3]){0, 0, 0}, file->space.dims, error);
   vxm_sparse_file_close(file);
+  return status;
+}
+
+static vxm_status read_field(vxm_field **out, const vxm_input *input, vxm_error *error) {
+  vxm_sparse_file *file;
+  vxm_status status = open_borrowed(&file, input, error);
+  if (status == VXM_OK)
+    status = vxm_octree_values_load(out, file, (int64_t[3]){0, 0, 0}, file->space.dims, error);
+  vxm_sparse_file_close(file);
+  return status;
+}
+
+/** Values that may be bits. */
+static vxm_status read_mask(vxm_grid **out, const vxm_sparse_file *file, vxm_bits_rule rule,
+                            vxm_error *error) {
+  vxm_field *field;
+  vxm_status status = vxm_octree_values_load(&field, file, (int64_t[3]){0, 0, 0}, file->space.dims, error);
+  if (status == VXM_OK)
+    status = vxm_raster_bits(out, field, rule, file->name, error);
+  vxm_field_destroy(field);
   return status;
 }
 
@@ -26,6 +51,11 @@ static vxm_status read_grid(vxm_grid **out, const vxm_input *input, vxm_bits_rul
   vxm_sparse_file *file;
   vxm_sparse *sparse = NULL;
   vxm_status status = open_borrowed(&file, input, error);
+  if (status == VXM_OK && file->values != 0 && rule != VXM_BITS_NONE) {
+    status = read_mask(out, file, rule, error);
+    vxm_sparse_file_close(file);
+    return status;
+  }
   if (status == VXM_OK)
     status = vxm_grid_create(out, input->context, &file->space, error);
   if (status == VXM_OK && rule != VXM_BITS_NONE)
@@ -50,7 +80,7 @@ static vxm_status write_sparse(const vxm_sparse *sparse, const char *path, vxm_e
   vxm_status status = vxm_output_open(&output, sparse->context, path, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_octree_file_put(output, sparse, error);
+  status = vxm_octree_file_put(output, sparse, NULL, error);
   if (status == VXM_OK)
     return vxm_output_commit(output, error);
   vxm_output_abort(output);
@@ -61,7 +91,7 @@ static vxm_status end(vxm_grid_writer *writer, vxm_error *error) {
   vxm_sparse *sparse;
   vxm_status status = vxm_octree_slices_end(&sparse, writer, error);
   if (status == VXM_OK)
-    status = vxm_octree_file_put(writer->output, sparse, error);
+    status = vxm_octree_file_put(writer->output, sparse, NULL, error);
   vxm_sparse_destroy(sparse);
   return status;
 }
@@ -78,10 +108,12 @@ static const vxm_grid_writer_kind writer_kind = {
 
 const vxm_grid_format vxm_format_octree = {
     .name = "octree",
-    .holds = VXM_HOLDS_BITS,
+    .holds = VXM_HOLDS_ALL,
     .sniff = vxm_octree_sniff,
     .read = read_grid,
+    .read_field = read_field,
     .read_sparse = read_sparse,
     .writer = &writer_kind,
     .write_sparse = write_sparse,
+    .values = &vxm_octree_values,
 };

@@ -3,6 +3,7 @@
 #include "base/endian.h"
 #include "gridio/common/format.h"
 #include "gridio/formats/octree_tile.h"
+#include "gridio/formats/octree_values.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -34,21 +35,27 @@ static vxm_status read_header(vxm_sparse_file *file, vxm_error *error) {
   file->voxels = vxm_load_le64(data + 80);
   file->tile_count = (size_t)vxm_load_le64(data + 88);
   file->index = vxm_load_le64(data + 96);
-  if (vxm_load_le64(data + 104) != 0)
-    return vxm_fail_byte(error, input, 104,
-                         "the octree has more than voxels, which this version cannot read");
+  file->values = vxm_load_le64(data + 104);
   file->levels = vxm_octree_levels(&file->space);
   file->tile_level = vxm_octree_tile_level(file->levels);
   if (file->index < VXM_OCTREE_HEADER || file->index > input->size)
     return vxm_fail_byte(error, input, 96, "the index begins beyond the file, which is damaged or cut short");
+  if (file->values != 0 && (file->values < file->index || file->values > input->size))
+    return vxm_fail_byte(error, input, 104,
+                         "the values begin where none can: the file is damaged or cut short");
   return VXM_OK;
+}
+
+/** Where the index ends. */
+static uint64_t index_end(const vxm_sparse_file *file) {
+  return file->values != 0 ? file->values : file->input.size;
 }
 
 /** Reads `count` nodes of a level above tiles. */
 static vxm_status read_nodes(vxm_sparse_file *file, int level, size_t count, uint64_t *at, size_t *children,
                              vxm_error *error) {
   const vxm_input *input = &file->input;
-  if (count > (input->size - *at) / VXM_OCTREE_NODE)
+  if (count > (index_end(file) - *at) / VXM_OCTREE_NODE)
     return vxm_fail_byte(error, input, *at, "the file ends before its index does: it is cut short");
   vxm_error local = VXM_ERROR_INIT;
   vxm_octree_node *nodes = vxm_alloc(file->context, count, sizeof *nodes, &local);
@@ -71,7 +78,7 @@ static vxm_status read_nodes(vxm_sparse_file *file, int level, size_t count, uin
 
 /** Tiles begin behind the header, one behind the other. */
 static vxm_status check_entries(const vxm_sparse_file *file, vxm_error *error) {
-  uint64_t last = 0;
+  uint64_t last = 0, side = (uint64_t)vxm_octree_side(file->tile_level + 1);
   for (size_t t = 0; t < file->tile_count; t++) {
     const unsigned char *entry = file->entries + VXM_OCTREE_ENTRY * t;
     uint64_t offset = vxm_load_le64(entry);
@@ -80,8 +87,24 @@ static vxm_status check_entries(const vxm_sparse_file *file, vxm_error *error) {
       return vxm_fail_byte(error, &file->input, entry - file->input.data,
                            "tile %zu begins at byte %" PRIu64 ", where none can: the file is damaged", t,
                            offset);
+    if (vxm_octree_file_tile_voxels(file, t) > side * side * side)
+      return vxm_fail_byte(error, &file->input, entry + 8 - file->input.data,
+                           "tile %zu has more voxels than it can: the file is damaged", t);
     last = offset;
   }
+  return VXM_OK;
+}
+
+/** What the index says is within the grid, and as much as the header says. */
+static vxm_status check_sum(const vxm_sparse_file *file, vxm_error *error) {
+  uint64_t voxels;
+  if (!vxm_octree_file_sum(&voxels, file))
+    return vxm_fail_byte(error, &file->input, file->index,
+                         "the index has voxels beyond the grid: the file is damaged");
+  if (voxels != file->voxels)
+    return vxm_fail_byte(error, &file->input, 80,
+                         "the index has %" PRIu64 " voxels and the header %" PRIu64 ": the file is damaged",
+                         voxels, file->voxels);
   return VXM_OK;
 }
 
@@ -95,11 +118,12 @@ static vxm_status read_index(vxm_sparse_file *file, vxm_error *error) {
   if (status != VXM_OK)
     return status;
   file->entries = input->data + at;
-  if (count != file->tile_count || (input->size - at) / VXM_OCTREE_ENTRY != count ||
-      (input->size - at) % VXM_OCTREE_ENTRY != 0)
+  if (count != file->tile_count || (index_end(file) - at) / VXM_OCTREE_ENTRY != count ||
+      (index_end(file) - at) % VXM_OCTREE_ENTRY != 0)
     return vxm_fail_byte(error, input, at,
                          "the index is not that of the file's %zu tiles: it is damaged or cut short", count);
-  return check_entries(file, error);
+  status = check_entries(file, error);
+  return status == VXM_OK ? check_sum(file, error) : status;
 }
 
 vxm_status vxm_octree_file_open(vxm_sparse_file **out, vxm_input *input, vxm_error *error) {
@@ -128,6 +152,8 @@ vxm_status vxm_octree_file_open(vxm_sparse_file **out, vxm_input *input, vxm_err
   }
   if (status == VXM_OK)
     status = read_index(file, &local);
+  if (status == VXM_OK && file->values != 0)
+    status = vxm_octree_values_open(file, &local);
   if (status != VXM_OK) {
     vxm_sparse_file_close(file);
     vxm_error_pass(error, &local);
@@ -164,13 +190,6 @@ static bool meets(const load *l, const int64_t at[3], int64_t side) {
   return yes;
 }
 
-static bool fits(const load *l, const int64_t at[3], int64_t side) {
-  bool yes = true;
-  for (int a = 0; a < 3; a++)
-    yes &= at[a] + side <= l->file->space.dims[a];
-  return yes;
-}
-
 static vxm_octree_cell load_node(load *l, int level, size_t index, const int64_t at[3]);
 
 /** A mixed child of a node above tiles, at a level. */
@@ -198,9 +217,6 @@ static vxm_octree_cell load_node(load *l, int level, size_t index, const int64_t
       continue;
     if (node->mixed >> child & 1)
       cell = load_child(l, level - 1, vxm_octree_index(node, child), place);
-    else if (!fits(l, place, side))
-      l->growth.status = vxm_fail_byte(l->growth.error, &l->file->input, l->file->index,
-                                       "the index has voxels beyond the grid: the file is damaged");
     mixed |= (uint64_t)(cell == VXM_CELL_MIXED) << child;
     full |= (uint64_t)(cell == VXM_CELL_FULL) << child;
   }

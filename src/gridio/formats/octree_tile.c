@@ -106,7 +106,7 @@ vxm_status vxm_octree_add_tile(vxm_octree_growth *growth, const vxm_sparse_file 
     add_bricks(&r, count);
   if (growth->status != VXM_OK)
     return growth->status;
-  if (r.offset != r.end || r.voxels != vxm_load_le64(entry + 8))
+  if (r.offset != r.end || r.voxels != vxm_octree_file_tile_voxels(file, tile))
     return fail(&r, begin, "the tile has not the bytes or the voxels that the index says");
   return is_inside(growth->sparse, file->tile_level, root, at)
              ? VXM_OK

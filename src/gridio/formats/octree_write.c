@@ -13,11 +13,6 @@ typedef struct entry {
   uint64_t offset, voxels;
 } entry;
 
-static void put_word(vxm_output *output, uint64_t word) {
-  word = vxm_le64(word);
-  vxm_output_write(output, &word, sizeof word);
-}
-
 static void put_double(vxm_output *output, double number) {
   unsigned char bytes[8];
   vxm_store_double(bytes, number);
@@ -41,8 +36,8 @@ static uint64_t count_voxels(const vxm_sparse *sparse, int level, range r) {
 
 static void put_nodes(vxm_output *output, const vxm_octree_node *nodes, range r) {
   for (size_t n = r.begin; n < r.end; n++) {
-    put_word(output, nodes[n].mixed);
-    put_word(output, nodes[n].full);
+    vxm_octree_put_word(output, nodes[n].mixed);
+    vxm_octree_put_word(output, nodes[n].full);
   }
 }
 
@@ -66,7 +61,7 @@ static uint64_t put_tile(vxm_output *output, const vxm_sparse *sparse, int level
     count = children_of(sparse->nodes[l], r);
   }
   for (size_t b = next[0]; b < next[0] + count; b++) {
-    put_word(output, sparse->bricks[b]);
+    vxm_octree_put_word(output, sparse->bricks[b]);
     voxels += (uint64_t)vxm_popcount(sparse->bricks[b]);
   }
   next[0] += count;
@@ -96,13 +91,13 @@ static void put_index(vxm_output *output, const entry *entries, const vxm_sparse
   for (int l = sparse->levels - 1; l > level; l--)
     put_nodes(output, sparse->nodes[l], (range){0, sparse->node_count[l]});
   for (size_t t = 0; t < sparse->node_count[level]; t++) {
-    put_word(output, entries[t].offset);
-    put_word(output, entries[t].voxels);
+    vxm_octree_put_word(output, entries[t].offset);
+    vxm_octree_put_word(output, entries[t].voxels);
   }
 }
 
 /** The header comes first, and so the tiles are measured before they are written. */
-static void put_header(vxm_output *output, const vxm_sparse *sparse, int level) {
+static void put_header(vxm_output *output, const vxm_sparse *sparse, int level, uint64_t *values) {
   uint64_t voxels = 0, words = sparse->brick_count, upper = 0;
   for (size_t b = 0; b < sparse->brick_count; b++)
     voxels += (uint64_t)vxm_popcount(sparse->bricks[b]);
@@ -112,23 +107,27 @@ static void put_header(vxm_output *output, const vxm_sparse *sparse, int level) 
   }
   vxm_output_write(output, "VXMOCT1\n", 8);
   for (int a = 0; a < 3; a++)
-    put_word(output, (uint64_t)sparse->space.dims[a]);
+    vxm_octree_put_word(output, (uint64_t)sparse->space.dims[a]);
   for (int a = 0; a < 3; a++)
     put_double(output, sparse->space.origin[a]);
   for (int a = 0; a < 3; a++)
     put_double(output, sparse->space.voxel_size[a]);
-  put_word(output, voxels);
-  put_word(output, sparse->node_count[level]);
-  put_word(output, VXM_OCTREE_HEADER + 8 * words);
-  put_word(output, 0); /* nothing beside the voxels */
+  vxm_octree_put_word(output, voxels);
+  vxm_octree_put_word(output, sparse->node_count[level]);
+  vxm_octree_put_word(output, VXM_OCTREE_HEADER + 8 * words);
+  if (values)
+    *values =
+        VXM_OCTREE_HEADER + 8 * (words + upper) + VXM_OCTREE_ENTRY * (uint64_t)sparse->node_count[level];
+  vxm_octree_put_word(output, values ? *values : 0);
 }
 
-vxm_status vxm_octree_file_put(vxm_output *output, const vxm_sparse *sparse, vxm_error *error) {
+vxm_status vxm_octree_file_put(vxm_output *output, const vxm_sparse *sparse, uint64_t *values,
+                               vxm_error *error) {
   int level = vxm_octree_tile_level(sparse->levels);
   vxm_error local = VXM_ERROR_INIT;
   entry *entries = vxm_alloc(sparse->context, sparse->node_count[level], sizeof *entries, &local);
   vxm_status status = local.code;
-  put_header(output, sparse, level);
+  put_header(output, sparse, level, values);
   if (status == VXM_OK)
     status = put_tiles(output, entries, sparse, level, &local);
   if (status == VXM_OK)

@@ -139,7 +139,7 @@ static void put_piece(const vxm_sparse_piece *piece, void *payload) {
 
 vxm_status vxm_vdb_put_octree(const vxm_vdb_target *target, const vxm_sparse *sparse, vxm_error *error) {
   gathering g = {.target = target, .sparse = sparse, .error = error};
-  vxm_octree_walk(sparse, 2, 0, sparse->space.dims[2], put_piece, &g);
+  vxm_octree_walk_layers(sparse, 2, 0, sparse->space.dims[2], put_piece, &g);
   flush(&g);
   return g.status;
 }

@@ -98,6 +98,9 @@ static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pas
   return is_direct(model) && !makes_windows(pass);
 }
 
+/** From so many bytes on an octree matters more than room that is kept for the next call. */
+static const uint64_t large_octree = UINT64_C(1) << 27;
+
 static vxm_status build(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass, vxm_error *error) {
   vxm_octree_builder builder;
   vxm_status status = vxm_octree_builder_create(&builder, model->context, &pass->space, error);
@@ -107,6 +110,10 @@ static vxm_status build(vxm_sparse **out, const vxm_model *model, vxm_model_pass
   if (status == VXM_OK)
     status = vxm_octree_builder_end(out, &builder, error);
   vxm_octree_builder_destroy(&builder);
+  if (status == VXM_OK && vxm_octree_bytes(*out) >= large_octree) {
+    vxm_workspace_destroy(&pass->workspace);
+    pass->workspace = vxm_workspace_of(model->context);
+  }
   return status;
 }
 

@@ -135,6 +135,16 @@ static vxm_status find_by_slices(vxm_thin_adder *thin, vxm_voxel_set *set, const
   return status;
 }
 
+/** From so many bytes on an octree matters more than room that is kept for the next call. */
+static const uint64_t large_octree = UINT64_C(1) << 27;
+
+static void release_room(vxm_thin_adder *thin) {
+  int64_t added = thin->added, area = thin->area;
+  vxm_thin_destroy(thin);
+  thin->added = added;
+  thin->area = area;
+}
+
 vxm_status vxm_thin_add_sparse(vxm_thin_adder *thin, vxm_sparse **octree, const vxm_triangle_set *triangles,
                                const vxm_snapped_points *placed, int separating, vxm_error *error) {
   vxm_voxel_set set = {.context = thin->context};
@@ -142,6 +152,9 @@ vxm_status vxm_thin_add_sparse(vxm_thin_adder *thin, vxm_sparse **octree, const 
   vxm_status status = find_by_slices(thin, &set, *octree, triangles, placed, separating, error);
   if (status == VXM_OK && set.count > 0)
     status = make_octree(&added, &set, thin->context, &(*octree)->space, error);
+  vxm_voxel_set_destroy(&set);
+  if (vxm_octree_bytes(*octree) >= large_octree)
+    release_room(thin);
   if (status == VXM_OK && added)
     status = vxm_octree_combine(&both, *octree, added, VXM_SET_UNION, error);
   if (both) {
@@ -149,6 +162,5 @@ vxm_status vxm_thin_add_sparse(vxm_thin_adder *thin, vxm_sparse **octree, const 
     *octree = both;
   }
   vxm_sparse_destroy(added);
-  vxm_voxel_set_destroy(&set);
   return status;
 }
