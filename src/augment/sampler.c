@@ -4,6 +4,7 @@
 #include "base/task_progress.h"
 #include "base/threads.h"
 #include "voxel/engine/engine.h"
+#include "voxel/model/model_keep.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -293,6 +294,36 @@ vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant 
                    .step = vxm_unpack_row_bytes(voxels, (int64_t)n) * n * n,
                    .voxels = voxels};
   return make_all(&job, count, error);
+}
+
+static vxm_status keep_one(vxm_device_voxels *voxels, vxm_sampler *sampler, vxm_worker *desk, size_t index,
+                           const vxm_variant *variant, vxm_error *error) {
+  const vxm_sampler_model *subject = vxm_sampler_find(sampler, variant->model, error);
+  if (!subject)
+    return VXM_ERROR_ARGUMENT;
+  vxm_placement placement;
+  vxm_pose_draw(&placement, &sampler->rules, &subject->extent, variant);
+  return vxm_worker_keep(desk, voxels, (int64_t)index, subject, &placement, &sampler->noise, error);
+}
+
+vxm_status vxm_sampler_keep(vxm_device_voxels **out, vxm_sampler *sampler, const vxm_variant *variants,
+                            size_t count, vxm_voxel_format format, vxm_error *error) {
+  vxm_device_voxels *voxels = NULL;
+  vxm_worker *desk;
+  vxm_space space = vxm_worker_space(sampler->rules.options.resolution);
+  vxm_status status = need_table(&desk, sampler, error);
+  if (status == VXM_OK)
+    status = vxm_keep_create(&voxels, sampler->rules.voxelize.engine, &space, (int64_t)count, format, error);
+  if (status != VXM_OK)
+    return status;
+  voxels->is_batch = true;
+  for (size_t v = 0; v < count && status == VXM_OK; v++)
+    status = keep_one(voxels, sampler, desk, v, &variants[v], error);
+  if (status == VXM_OK)
+    *out = voxels;
+  else
+    vxm_device_voxels_drop(voxels);
+  return status;
 }
 
 vxm_status vxm_sampler_save(vxm_sampler *sampler, const char *const *paths, const vxm_variant *variants,

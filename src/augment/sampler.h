@@ -28,6 +28,9 @@ vxm_status vxm_sampler_fill(vxm_sampler *sampler, vxm_grid *grid, const vxm_vari
 /** See vxm_sampler_batch. */
 vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant *variants, size_t count,
                              vxm_voxel_format voxels, vxm_error *error);
+/** See vxm_sampler_batch_device. */
+vxm_status vxm_sampler_keep(vxm_device_voxels **out, vxm_sampler *sampler, const vxm_variant *variants,
+                            size_t count, vxm_voxel_format format, vxm_error *error);
 /** See vxm_sampler_files; `format` may be NULL. */
 vxm_status vxm_sampler_save(vxm_sampler *sampler, const char *const *paths, const vxm_variant *variants,
                             size_t count, const char *format, bool *written, vxm_error *error);

@@ -21,6 +21,11 @@ void vxm_worker_destroy(vxm_worker *desk);
 vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
                            const vxm_placement *placement, const vxm_noise *noise, vxm_error *error);
 
+/** The same into variant `index` of voxels that stay on the engine's device. */
+vxm_status vxm_worker_keep(vxm_worker *desk, vxm_device_voxels *voxels, int64_t index,
+                           const vxm_sampler_model *subject, const vxm_placement *placement,
+                           const vxm_noise *noise, vxm_error *error);
+
 /** The same into memory, as [x][y][z] in C order. */
 vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
                             const vxm_sampler_model *subject, const vxm_placement *placement,

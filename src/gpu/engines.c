@@ -276,15 +276,16 @@ vxm_status vxm_engines_make(vxm_engine **out, vxm_context *context, const char *
   if (status != VXM_OK)
     return status;
   status = make(out, held, name, options, error);
-  if (status == VXM_OK)
+  if (status == VXM_OK) {
     (*out)->info.size = sizeof(*out)->info;
-  else
+    atomic_init(&(*out)->holders, 1);
+  } else
     vxm_context_release(held);
   return status;
 }
 
 void vxm_engine_destroy(vxm_engine *engine) {
-  if (!engine)
+  if (!engine || atomic_fetch_sub(&engine->holders, 1) > 1)
     return;
   vxm_context *context = engine->context;
   if (engine->ops)

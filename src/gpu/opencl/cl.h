@@ -17,6 +17,7 @@
   X(CreateKernel)              \
   X(CreateProgramWithBinary)   \
   X(CreateProgramWithSource)   \
+  X(EnqueueCopyBuffer)         \
   X(EnqueueFillBuffer)         \
   X(EnqueueMapBuffer)          \
   X(EnqueueMarkerWithWaitList) \
@@ -40,6 +41,8 @@
   X(ReleaseKernel)             \
   X(ReleaseMemObject)          \
   X(ReleaseProgram)            \
+  X(RetainCommandQueue)        \
+  X(RetainContext)             \
   X(SetKernelArg)              \
   X(WaitForEvents)
 
