@@ -338,6 +338,8 @@ class EngineInfo(Record):
         int64, int64_atomics, subpixel_bits, attachment, compute_units: what it has.
         moves: it moves the vertices of variants for training itself.
         note: why it is not available, or why another one was taken.
+        clock_mhz: highest clock rate of an OpenCL device.
+        devices, lost_devices: that work at once, 1 of one; that failed, whose work the others did.
     """
 
     name: str
@@ -360,3 +362,6 @@ class EngineInfo(Record):
     int64_atomics: bool
     moves: bool
     note: str
+    clock_mhz: int
+    devices: int
+    lost_devices: int

@@ -18,7 +18,7 @@ static vxm_status check(const vxm_engine *engine, const vxm_published_options *o
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "published program: voxel size %g is not a positive number that a 32-bit float holds",
                     options->voxel_size);
-  if (!engine->ops || strncmp(engine->info.name, "opencl:", 7) != 0)
+  if (!engine->ops || strncmp(engine->info.name, "opencl:", 7) != 0 || engine->info.devices != 1)
     return vxm_fail(
         error, VXM_ERROR_UNAVAILABLE,
         "the published program needs an engine of OpenCL, and this one is %s; use --engine opencl",

@@ -4,6 +4,7 @@
 #define VXM_AUGMENT_SAMPLER_H
 
 #include "augment/worker.h"
+#include "gpu/team.h"
 
 struct vxm_sampler {
   vxm_context *context; /**< one reference held */
@@ -12,7 +13,8 @@ struct vxm_sampler {
   vxm_noise noise;
   vxm_sampler_model *subjects; /**< in the order of their numbers */
   size_t subject_count, subject_room;
-  vxm_worker *desks; /**< one for each thread, and then one for all of them together */
+  vxm_worker *desks;               /**< one for each thread, and then one for all of them together */
+  vxm_worker seats[VXM_TEAM_MOST]; /**< one for each device, where several work at once */
 };
 
 /** See vxm_sampler_create in voxmend.h; the options have been checked. */

@@ -59,6 +59,8 @@ static vxm_status place(vxm_worker *desk, int64_t resolution, const vxm_sampler_
   vxm_status status = vxm_model_instance_attach(instance, subject->model, error);
   if (status != VXM_OK)
     return status;
+  if (desk->engine)
+    instance->pass.solid.engine = desk->engine;
   vxm_space space = vxm_worker_space(resolution);
   vxm_lattice lattice = vxm_lattice_of(&space);
   vxm_variation variation = {.points = motion_of(subject, placement, noise, false),

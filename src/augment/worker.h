@@ -8,8 +8,9 @@
 typedef struct vxm_worker {
   vxm_context *context; /**< one reference held; NULL = not made yet */
   vxm_model_instance instance;
-  vxm_grid *grid;  /**< a variant on its way to a file; NULL before the first */
-  uint64_t *words; /**< of a window, where what is asked for has another form */
+  vxm_engine *engine; /**< in place of the model's; NULL = that one */
+  vxm_grid *grid;     /**< a variant on its way to a file; NULL before the first */
+  uint64_t *words;    /**< of a window, where what is asked for has another form */
   size_t word_room;
 } vxm_worker;
 

@@ -49,7 +49,8 @@ enum {
 #define CLI_OPTIONS_ENGINE                                                              \
   {CLI_KEY_ENGINE, "engine", "E",                                                       \
    "who makes the voxels: cpu; opencl, opengl, or one that 'voxmend engines' lists;\n"  \
-   "auto = a GPU by opencl or opengl, or else the cpu [cpu]"},                          \
+   "auto = a GPU by opencl or opengl, or else the cpu; several at once: opencl:all,\n"  \
+   "or names joined by + [cpu]"},                                                       \
       CLI_OPTIONS_ENGINE_METHODS, {                                                     \
     CLI_KEY_GL_DISPLACE, "gl-displace", "D[,SEED]",                                     \
         "with slices: move each vertex at random by up to D voxels along each axis [0]" \
@@ -264,6 +265,8 @@ vxm_status cli_engine_open(cli_run *cli, cli_engine *engine);
 /** The row, and the object of the report; only where one was named. */
 void cli_engine_summarize(const cli_run *cli, const cli_engine *engine);
 json_t *cli_engine_json(const cli_engine *engine);
+/** Warns of devices that failed while others went on. */
+void cli_engine_warn(cli_run *cli, const cli_engine *engine);
 
 /* ---- entry.c ---- */
 

@@ -12,6 +12,7 @@ static void add_opencl(json_t *object, const vxm_engine_info *info) {
   json_object_set_new(object, "platform", cli_json_text(info->platform));
   json_object_set_new(object, "driver", cli_json_text(info->driver));
   json_object_set_new(object, "compute_units", json_integer(info->compute_units));
+  json_object_set_new(object, "clock_mhz", json_integer(info->clock_mhz));
   json_object_set_new(object, "global_bytes", json_integer(info->global_bytes));
   json_object_set_new(object, "local_bytes", json_integer(info->local_bytes));
   json_object_set_new(object, "work_group", json_integer(info->work_group));
@@ -49,7 +50,7 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
     return;
   bool is_opencl = *info->platform != '\0';
   if (is_opencl)
-    fprintf(cli->text, "  platform               %s\n", info->platform);
+    fprintf(cli->text, "  platform               %s, driver %s\n", info->platform, info->driver);
   fprintf(cli->text, "  %-22s %s%s\n", is_opencl ? "device" : "renderer", info->renderer,
           info->hardware ? "" : ", in software: slower than cpu");
   fprintf(cli->text, "  version                %s\n", info->version);
@@ -60,9 +61,9 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
   cli_bytes_text(buffers, (uint64_t)info->block_bytes);
   if (is_opencl) {
     fprintf(cli->text,
-            "  limits                 %d compute units, groups of %" PRId64
-            "; memory of %s, buffers of %s,\n                         %" PRId64 " KiB shared by a group\n",
-            info->compute_units, info->work_group, memory, buffers, info->local_bytes >> 10);
+            "  limits                 %d compute units of at most %d MHz, groups of %" PRId64
+            "; memory of %s,\n                         buffers of %s, %" PRId64 " KiB shared by a group\n",
+            info->compute_units, info->clock_mhz, info->work_group, memory, buffers, info->local_bytes >> 10);
     fprintf(cli->text, "  64-bit atomics         %s\n", info->int64_atomics ? "yes" : "no (not needed)");
     return;
   }
@@ -133,7 +134,8 @@ const cli_command cli_command_engines = {
     .notes =
         "Each is tried out. --engine of 'voxmend voxelize' and 'voxmend bench' takes its name; 'opencl'\n"
         "takes a GPU, or else the first device (--device chooses); 'opengl' the first that works of a\n"
-        "hardware device, EGL without a surface, and OSMesa.\n\n"
+        "hardware device, EGL without a surface, and OSMesa. Names joined by '+' work at once, and\n"
+        "so do 'opencl:all', 'opengl:all', and the parts of a device: 'opencl:0:2' is two halves.\n\n"
         "Below stand the libraries that read further mesh formats, with the extensions of what they are\n"
         "given, and how the process that they work in is confined.\n\n"
         "Example:\n"

@@ -17,6 +17,7 @@
   X(CreateKernel)              \
   X(CreateProgramWithBinary)   \
   X(CreateProgramWithSource)   \
+  X(CreateSubDevices)          \
   X(EnqueueCopyBuffer)         \
   X(EnqueueFillBuffer)         \
   X(EnqueueMapBuffer)          \
@@ -37,6 +38,7 @@
   X(GetProgramInfo)            \
   X(ReleaseCommandQueue)       \
   X(ReleaseContext)            \
+  X(ReleaseDevice)             \
   X(ReleaseEvent)              \
   X(ReleaseKernel)             \
   X(ReleaseMemObject)          \

@@ -20,6 +20,7 @@ static void destroy(vxm_engine *base) {
     cl->ReleaseCommandQueue(engine->transfer);
   if (engine->context)
     cl->ReleaseContext(engine->context);
+  vxm_cl_device_release(&engine->device, cl);
   vxm_device_cache_destroy(&engine->resident);
 }
 
@@ -65,6 +66,7 @@ vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_c
   vxm_opencl *engine = vxm_calloc(context, 1, sizeof *engine, &local);
   *out = NULL;
   if (!engine) {
+    vxm_cl_device_release(device, cl);
     vxm_error_pass(error, &local);
     return local.code;
   }

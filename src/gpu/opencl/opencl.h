@@ -161,8 +161,8 @@ static inline vxm_opencl *vxm_opencl_of(vxm_engine *engine) {
   return (vxm_opencl *)engine;
 }
 
-/** Makes an engine on a device; the reference to `context` is the caller's. @return VXM_OK,
- * VXM_ERROR_UNAVAILABLE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+/** Makes an engine on a device, which it takes over, also after a failure; the reference to `context` is the
+ * caller's. @return VXM_OK, VXM_ERROR_UNAVAILABLE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_cl *cl,
                              const vxm_cl_device *device, int number, const vxm_engine_options *options,
                              vxm_error *error);

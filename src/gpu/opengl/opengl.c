@@ -209,6 +209,7 @@ static vxm_status start(vxm_opengl *engine, vxm_error *error) {
   gl->Disable(GL_CULL_FACE);
   gl->Disable(GL_DITHER);
   engine->base.info.available = true;
+  engine->base.info.devices = 1;
   return vxm_gl_check(gl, "opengl: starting", error);
 }
 
