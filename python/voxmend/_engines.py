@@ -35,8 +35,8 @@ class Engine:
     Threads take turns. A process that a fork makes opens the device anew.
 
     Args:
-        name: "cpu"; "opencl"; "opengl"; one of them by the name that `engines` gives; "auto": a GPU that works, else, and
-            wherever it fails later, the CPU.
+        name: "cpu"; "opencl"; "opengl"; one of them by the name that `engines` gives; several that work at once, joined by
+            "+", or "opencl:all"; "auto": a GPU that works, else, and wherever it fails later, the CPU.
         device: OpenCL: the number of a device, or a part of its name or its platform's.
         gl_method: "columns", with the bits of the CPU; "slices" or "tetra_vertex", as published.
         cl_method: "auto", "triangles" or "tiles"; all have the bits of the CPU.

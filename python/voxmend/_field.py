@@ -9,6 +9,7 @@ import numpy
 
 from . import _core, _values
 from ._core import lib
+from ._dlpack import Shared
 from ._errors import ArgumentError
 from ._grid import VoxelGrid
 from ._mesh import format_name
@@ -125,6 +126,13 @@ class VoxelField(Placed, Shown):
     def kind(self) -> str:
         """What the numbers are, as far as the file says; "numbers" if it does not."""
         return self._kind if self._own is None else _core.text(lib.vxm_field_kind_name(lib.vxm_field_kind_of(self._own)))
+
+    def __dlpack__(self, **arguments: Any) -> Any:
+        """The values as they are, without a copy, not to be written to: torch.from_dlpack(field)."""
+        return Shared(self.values).__dlpack__(**arguments)
+
+    def __dlpack_device__(self) -> Tuple[int, int]:
+        return 1, 0  # the CPU
 
     @property
     def values(self) -> Array:

@@ -9,6 +9,7 @@ import numpy
 
 from . import _core, _values
 from ._core import ffi, lib
+from ._dlpack import Shared
 from ._errors import ArgumentError, KindError
 from ._mesh import Mesh, format_name
 from ._records import Comparison, VoxelizeReport
@@ -130,6 +131,12 @@ class VoxelGrid(Placed, Shown):
         nx, ny, nz = self.shape
         words = lib.vxm_grid_row_words(self._pointer)
         return _core.view(self._pointer, lib.vxm_grid_words(self._pointer), (nz, ny, words), "<u8")
+
+    @property
+    def bits(self) -> Shared:
+        """The same memory as (nz, ny, 8 * words) uint8 for other packages, without a copy: torch.from_dlpack(grid.bits). Bit
+        i % 8 of byte i // 8 of a row is voxel (i, j, k). What they give must not be written to."""
+        return Shared(self.packed.view("u1"))
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> Array:
         out = self.matrix

@@ -342,6 +342,7 @@ class EngineInfo(Record):
         note: why it is not available, or why another one was taken.
         kind, clock_mhz, cache_bytes, shares_memory: of an OpenCL device: "cpu", "gpu", "accelerator" or "custom"; its
             highest clock rate, the cache of its memory, and whether that is the host's.
+        devices, lost_devices: that work at once, 1 of one; that failed, whose work the others did.
     """
 
     name: str
@@ -368,3 +369,5 @@ class EngineInfo(Record):
     clock_mhz: int
     cache_bytes: int
     shares_memory: bool
+    devices: int
+    lost_devices: int

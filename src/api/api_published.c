@@ -15,7 +15,7 @@
 #include <string.h>
 
 static bool is_opencl(const vxm_engine *engine) {
-  return engine->ops && strncmp(engine->info.name, "opencl:", 7) == 0;
+  return engine->ops && strncmp(engine->info.name, "opencl:", 7) == 0 && engine->info.devices == 1;
 }
 
 static vxm_status check(const vxm_engine *engine, const vxm_published_options *options, vxm_error *error) {

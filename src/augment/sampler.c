@@ -4,6 +4,7 @@
 #include "base/task_progress.h"
 #include "base/threads.h"
 #include "voxel/engine/engine.h"
+#include "voxel/model/model_keep.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -79,6 +80,8 @@ void vxm_sampler_destroy(vxm_sampler *sampler) {
   vxm_context *context = sampler->context;
   for (int d = 0; sampler->desks && d <= vxm_context_threads(context); d++)
     vxm_worker_destroy(&sampler->desks[d]);
+  for (int s = 0; s < VXM_TEAM_MOST; s++)
+    vxm_worker_destroy(&sampler->seats[s]);
   for (size_t s = 0; s < sampler->subject_count; s++)
     vxm_sampler_model_destroy(&sampler->subjects[s]);
   vxm_noise_destroy(&sampler->noise, context);
@@ -112,6 +115,8 @@ static bool is_there(const vxm_sampler *sampler, size_t place, uint32_t model) {
 static void detach(vxm_sampler *sampler) {
   for (int d = 0; d <= vxm_context_threads(sampler->context); d++)
     sampler->desks[d].instance.of = NULL;
+  for (int s = 0; s < VXM_TEAM_MOST; s++)
+    sampler->seats[s].instance.of = NULL;
 }
 
 static void take_out(vxm_sampler *sampler, size_t place) {
@@ -264,6 +269,24 @@ static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
   return job->error.code;
 }
 
+/** Variants by one of several devices that work at once. */
+static vxm_status make_there(vxm_engine *engine, int who, int64_t begin, int64_t end, void *payload,
+                             vxm_error *error) {
+  const batch_job *job = payload;
+  vxm_worker *seat = &job->sampler->seats[who];
+  vxm_status status = seat->context ? VXM_OK : vxm_worker_create(seat, job->sampler->context, true, error);
+  seat->engine = engine;
+  for (int64_t v = begin; v < end && status == VXM_OK; v++)
+    status = make_one(job, (size_t)v, seat, error);
+  return status;
+}
+
+static vxm_status make_by_team(batch_job *job, vxm_team *team, size_t count, vxm_error *error) {
+  vxm_team_work work = {
+      .end = (int64_t)count, .least = 1, .phase = "making variants", .function = make_there, .payload = job};
+  return vxm_team_run(team, &work, error);
+}
+
 /** Whether variants are made by something that does one thing at a time. */
 static bool has_engine(const vxm_sampler *sampler) {
   const vxm_engine *engine = sampler->rules.voxelize.engine;
@@ -277,6 +300,9 @@ static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
   atomic_flag_clear(&job->lock);
   if (count > 1 && sampler->rules.options.resolution <= ALONE_MOST && !has_engine(sampler))
     return make_alone(job, count, error);
+  vxm_team *team = vxm_team_of(sampler->rules.voxelize.engine);
+  if (team && count > 1)
+    return make_by_team(job, team, count, error);
   vxm_worker *desk;
   vxm_status status = need_table(&desk, sampler, error);
   for (size_t v = 0; v < count && status == VXM_OK; v++)
@@ -293,6 +319,36 @@ vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant 
                    .step = vxm_unpack_row_bytes(voxels, (int64_t)n) * n * n,
                    .voxels = voxels};
   return make_all(&job, count, error);
+}
+
+static vxm_status keep_one(vxm_device_voxels *voxels, vxm_sampler *sampler, vxm_worker *desk, size_t index,
+                           const vxm_variant *variant, vxm_error *error) {
+  const vxm_sampler_model *subject = vxm_sampler_find(sampler, variant->model, error);
+  if (!subject)
+    return VXM_ERROR_ARGUMENT;
+  vxm_placement placement;
+  vxm_pose_draw(&placement, &sampler->rules, &subject->extent, variant);
+  return vxm_worker_keep(desk, voxels, (int64_t)index, subject, &placement, &sampler->noise, error);
+}
+
+vxm_status vxm_sampler_keep(vxm_device_voxels **out, vxm_sampler *sampler, const vxm_variant *variants,
+                            size_t count, vxm_voxel_format format, vxm_error *error) {
+  vxm_device_voxels *voxels = NULL;
+  vxm_worker *desk;
+  vxm_space space = vxm_worker_space(sampler->rules.options.resolution);
+  vxm_status status = need_table(&desk, sampler, error);
+  if (status == VXM_OK)
+    status = vxm_keep_create(&voxels, sampler->rules.voxelize.engine, &space, (int64_t)count, format, error);
+  if (status != VXM_OK)
+    return status;
+  voxels->is_batch = true;
+  for (size_t v = 0; v < count && status == VXM_OK; v++)
+    status = keep_one(voxels, sampler, desk, v, &variants[v], error);
+  if (status == VXM_OK)
+    *out = voxels;
+  else
+    vxm_device_voxels_drop(voxels);
+  return status;
 }
 
 vxm_status vxm_sampler_save(vxm_sampler *sampler, const char *const *paths, const vxm_variant *variants,

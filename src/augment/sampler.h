@@ -4,6 +4,7 @@
 #define VXM_AUGMENT_SAMPLER_H
 
 #include "augment/worker.h"
+#include "gpu/team.h"
 
 struct vxm_sampler {
   vxm_context *context; /**< one reference held */
@@ -12,7 +13,8 @@ struct vxm_sampler {
   vxm_noise noise;
   vxm_sampler_model *subjects; /**< in the order of their numbers */
   size_t subject_count, subject_room;
-  vxm_worker *desks; /**< one for each thread, and then one for all of them together */
+  vxm_worker *desks;               /**< one for each thread, and then one for all of them together */
+  vxm_worker seats[VXM_TEAM_MOST]; /**< one for each device, where several work at once */
 };
 
 /** See vxm_sampler_create in voxmend.h; the options have been checked. */
@@ -28,6 +30,9 @@ vxm_status vxm_sampler_fill(vxm_sampler *sampler, vxm_grid *grid, const vxm_vari
 /** See vxm_sampler_batch. */
 vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant *variants, size_t count,
                              vxm_voxel_format voxels, vxm_error *error);
+/** See vxm_sampler_batch_device. */
+vxm_status vxm_sampler_keep(vxm_device_voxels **out, vxm_sampler *sampler, const vxm_variant *variants,
+                            size_t count, vxm_voxel_format format, vxm_error *error);
 /** See vxm_sampler_files; `format` may be NULL. */
 vxm_status vxm_sampler_save(vxm_sampler *sampler, const char *const *paths, const vxm_variant *variants,
                             size_t count, const char *format, bool *written, vxm_error *error);

@@ -2,6 +2,7 @@
 #include "augment/worker.h"
 #include "augment/unpack_bits.h"
 #include "gridio/gridio.h"
+#include "voxel/model/model_keep.h"
 
 #include <math.h>
 #include <string.h>
@@ -52,18 +53,33 @@ static vxm_vertex_transform motion_of(const vxm_sampler_model *subject, const vx
                                 .noise_serial = noise->serial};
 }
 
-vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
-                           const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
+static vxm_status place(vxm_worker *desk, int64_t resolution, const vxm_sampler_model *subject,
+                        const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
   vxm_model_instance *instance = &desk->instance;
   vxm_status status = vxm_model_instance_attach(instance, subject->model, error);
   if (status != VXM_OK)
     return status;
-  vxm_space space = vxm_worker_space(window->fast_dim);
+  if (desk->engine)
+    instance->pass.solid.engine = desk->engine;
+  vxm_space space = vxm_worker_space(resolution);
   vxm_lattice lattice = vxm_lattice_of(&space);
   vxm_variation variation = {.points = motion_of(subject, placement, noise, false),
                              .vertices = motion_of(subject, placement, noise, true),
                              .mirrored = placement->mirrored};
-  return vxm_model_instance_fill(instance, window, &lattice, &variation, error);
+  return vxm_model_instance_place(instance, &lattice, &variation, error);
+}
+
+vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
+                           const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
+  vxm_status status = place(desk, window->fast_dim, subject, placement, noise, error);
+  return status == VXM_OK ? vxm_model_pass_fill(&desk->instance.pass, window, error) : status;
+}
+
+vxm_status vxm_worker_keep(vxm_worker *desk, vxm_device_voxels *voxels, int64_t index,
+                           const vxm_sampler_model *subject, const vxm_placement *placement,
+                           const vxm_noise *noise, vxm_error *error) {
+  vxm_status status = place(desk, voxels->info.dims[0], subject, placement, noise, error);
+  return status == VXM_OK ? vxm_model_pass_keep(&desk->instance.pass, voxels, index, error) : status;
 }
 
 static vxm_status make_room(vxm_worker *desk, size_t words, vxm_error *error) {

@@ -8,8 +8,9 @@
 typedef struct vxm_worker {
   vxm_context *context; /**< one reference held; NULL = not made yet */
   vxm_model_instance instance;
-  vxm_grid *grid;  /**< a variant on its way to a file; NULL before the first */
-  uint64_t *words; /**< of a window, where what is asked for has another form */
+  vxm_engine *engine; /**< in place of the model's; NULL = that one */
+  vxm_grid *grid;     /**< a variant on its way to a file; NULL before the first */
+  uint64_t *words;    /**< of a window, where what is asked for has another form */
   size_t word_room;
 } vxm_worker;
 
@@ -20,6 +21,11 @@ void vxm_worker_destroy(vxm_worker *desk);
 /** Voxelizes a variant into a window, which is all of a cube. @return as vxm_sampler_batch */
 vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
                            const vxm_placement *placement, const vxm_noise *noise, vxm_error *error);
+
+/** The same into variant `index` of voxels that stay on the engine's device. */
+vxm_status vxm_worker_keep(vxm_worker *desk, vxm_device_voxels *voxels, int64_t index,
+                           const vxm_sampler_model *subject, const vxm_placement *placement,
+                           const vxm_noise *noise, vxm_error *error);
 
 /** The same into memory, as [x][y][z] in C order. */
 vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,

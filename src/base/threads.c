@@ -44,8 +44,12 @@ void vxm_loop_stop(void) {
     atomic_store_explicit(&at_work->stop, true, memory_order_relaxed);
 }
 
+/** Of a thread that another than a pool has started. */
+static _Thread_local const atomic_bool *told_to_stop;
+
 bool vxm_loop_stopped(void) {
-  return at_work && atomic_load_explicit(&at_work->stop, memory_order_relaxed);
+  return (at_work && atomic_load_explicit(&at_work->stop, memory_order_relaxed)) ||
+         (told_to_stop && atomic_load_explicit(told_to_stop, memory_order_relaxed));
 }
 
 static void run_tasks(vxm_pool *pool, int worker) {
@@ -61,6 +65,11 @@ static _Thread_local bool is_worker;
 
 bool vxm_is_worker(void) {
   return is_worker;
+}
+
+void vxm_worker_begin(const atomic_bool *stop) {
+  is_worker = true;
+  told_to_stop = stop;
 }
 
 static void *worker_main(void *argument) {

@@ -5,6 +5,8 @@
 
 #include "base/context.h"
 
+#include <stdatomic.h>
+
 /** One task of a loop. `worker` is below vxm_context_threads and tells apart tasks that may run at the same
  * time. */
 typedef void (*vxm_task_fn)(size_t task, int worker, void *payload);
@@ -34,6 +36,10 @@ bool vxm_loop_stopped(void);
 
 /** Whether this is one of the threads that vxm_parallel starts, rather than one that called it. */
 bool vxm_is_worker(void);
+
+/** For a thread of its own that works for a call made by another: it reports nothing, and hears through
+ * `stop`, which outlives it, whether to stop. */
+void vxm_worker_begin(const atomic_bool *stop);
 
 /** First element of slice `index` of `total` elements cut into `slices` nearly equal slices. */
 static inline size_t vxm_slice_begin(size_t total, size_t slices, size_t index) {

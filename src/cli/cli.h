@@ -212,6 +212,8 @@ vxm_status cli_engine_open(cli_run *cli, cli_engine *engine);
 /** The row, and the object of the report; only where one was named. */
 void cli_engine_summarize(const cli_run *cli, const cli_engine *engine);
 json_t *cli_engine_json(const cli_engine *engine);
+/** Warns of devices that failed while others went on. */
+void cli_engine_warn(cli_run *cli, const cli_engine *engine);
 
 /* ---- entry.c ---- */
 

@@ -155,6 +155,7 @@ static int run(cli_run *cli) {
   if (status == CLI_DONE) {
     results.total_ms = cli_clock() - start;
     cli_progress_clear(cli);
+    cli_engine_warn(cli, &given.engine);
     if (cli_summary(cli))
       summarize(cli, &given, &results);
     status = cli_finish(cli, report(cli, &given, &results));

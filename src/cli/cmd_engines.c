@@ -53,7 +53,7 @@ static void print_engine(const cli_run *cli, const vxm_engine_info *info) {
     return;
   bool is_opencl = *info->platform != '\0';
   if (is_opencl)
-    fprintf(cli->text, "  platform               %s\n", info->platform);
+    fprintf(cli->text, "  platform               %s, driver %s\n", info->platform, info->driver);
   fprintf(cli->text, "  %-22s %s%s\n", is_opencl ? "device" : "renderer", info->renderer,
           info->hardware ? "" : ", in software: slower than cpu");
   fprintf(cli->text, "  version                %s\n", info->version);
@@ -140,7 +140,8 @@ const cli_command cli_command_engines = {
     .notes =
         "Each is tried out. --engine of 'voxmend voxelize' and 'voxmend bench' takes its name; 'opencl'\n"
         "takes a GPU, or else the first device (--device chooses); 'opengl' the first that works of a\n"
-        "hardware device, EGL without a surface, and OSMesa.\n\n"
+        "hardware device, EGL without a surface, and OSMesa. Names joined by '+' work at once, and\n"
+        "so do 'opencl:all', 'opengl:all', and the parts of a device: 'opencl:0:2' is two halves.\n\n"
         "Below stand the libraries that read further mesh formats, with the extensions of what they are\n"
         "given, and how the process that they work in is confined.\n\n"
         "Example:\n"

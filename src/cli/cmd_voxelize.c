@@ -193,6 +193,7 @@ static int run(cli_run *cli) {
   if (status == CLI_DONE) {
     results.total_ms = cli_clock() - start;
     cli_progress_clear(cli);
+    cli_engine_warn(cli, &given.engine);
     if (cli_summary(cli) && !given.dry_run)
       voxelize_summarize(cli, &given, &results);
     status = cli_finish(cli, voxelize_report(cli, &given, &results));

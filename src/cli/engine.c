@@ -81,11 +81,19 @@ void cli_engine_summarize(const cli_run *cli, const cli_engine *engine) {
           *info->note ? " (" : "", info->note, *info->note ? ")" : "");
 }
 
+void cli_engine_warn(cli_run *cli, const cli_engine *engine) {
+  const vxm_engine_info *info = vxm_engine_describe(engine->engine);
+  if (info && info->lost_devices > 0)
+    cli_warn(cli, "%s", info->note);
+}
+
 json_t *cli_engine_json(const cli_engine *engine) {
   const vxm_engine_info *info = vxm_engine_describe(engine->engine);
   json_t *object = json_object();
   json_object_set_new(object, "name", json_string(info->name));
   json_object_set_new(object, "renderer", cli_json_text(info->renderer));
   json_object_set_new(object, "note", cli_json_text(info->note));
+  json_object_set_new(object, "devices", json_integer(info->devices));
+  json_object_set_new(object, "lost_devices", json_integer(info->lost_devices));
   return object;
 }

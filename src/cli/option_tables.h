@@ -20,7 +20,8 @@
 #define CLI_OPTIONS_ENGINE                                                              \
   {CLI_KEY_ENGINE, "engine", "E",                                                       \
    "who makes the voxels: cpu; opencl, opengl, or one that 'voxmend engines' lists;\n"  \
-   "auto = a GPU by opencl or opengl, or else the cpu [cpu]"},                          \
+   "auto = a GPU by opencl or opengl, or else the cpu; several at once: opencl:all,\n"  \
+   "or names joined by + [cpu]"},                                                       \
       CLI_OPTIONS_ENGINE_METHODS, {                                                     \
     CLI_KEY_GL_DISPLACE, "gl-displace", "D[,SEED]",                                     \
         "with slices: move each vertex at random by up to D voxels along each axis [0]" \

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gpu/engines.h"
 #include "config.h"
+#include "gpu/team_names.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -163,7 +164,13 @@ static vxm_status make_opencl(vxm_engine **out, vxm_context *context, const char
   if (count == 0)
     return VXM_ERROR_UNAVAILABLE;
   vxm_error local = VXM_ERROR_INIT;
-  int chosen = vxm_cl_device_find(cl, devices, count, name ? name : options->device, &local);
+  const char *choice = name ? name : options->device;
+  int parts = 0, part = 0;
+  char whole[64];
+  snprintf(whole, sizeof whole, "%s", choice ? choice : "");
+  if (vxm_cl_device_read_part(whole, &parts, &part))
+    choice = whole;
+  int chosen = vxm_cl_device_find(cl, devices, count, choice, &local);
   if (chosen < 0) {
     vxm_error_pass(error, &local);
     return local.code;
@@ -172,6 +179,9 @@ static vxm_status make_opencl(vxm_engine **out, vxm_context *context, const char
   vxm_cl_device_describe(&info, cl, &devices[chosen], chosen);
   if (hardware && !info.hardware)
     return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "no OpenCL device here is a GPU or an accelerator");
+  vxm_status status = parts > 0 ? vxm_cl_device_divide(&devices[chosen], cl, parts, part, error) : VXM_OK;
+  if (status != VXM_OK)
+    return status;
   return vxm_opencl_create(out, context, cl, &devices[chosen], chosen, options, error);
 }
 
@@ -219,7 +229,7 @@ static void list_opencl(vxm_engine_info *out, int64_t capacity, int64_t *count, 
 
 #endif
 
-static const vxm_engine_info cpu_info = {.name = "cpu", .available = true, .hardware = true};
+static const vxm_engine_info cpu_info = {.name = "cpu", .available = true, .hardware = true, .devices = 1};
 
 static vxm_status make_cpu(vxm_engine **out, vxm_context *context, const char *note, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
@@ -234,8 +244,26 @@ static vxm_status make_cpu(vxm_engine **out, vxm_context *context, const char *n
   return VXM_OK;
 }
 
-static vxm_status make(vxm_engine **out, vxm_context *context, const char *name,
-                       const vxm_engine_options *options, vxm_error *error) {
+int vxm_engines_opencl_count(void) {
+#ifdef HAVE_OPENCL
+  vxm_cl_device devices[VXM_CL_DEVICES_MAX];
+  const vxm_cl *cl = vxm_cl_load(NULL);
+  return cl ? vxm_cl_devices(devices, cl, NULL) : 0;
+#else
+  return 0;
+#endif
+}
+
+int vxm_engines_opengl_count(void) {
+#ifdef HAVE_OPENGL
+  return vxm_gl_egl_device.count(NULL);
+#else
+  return 0;
+#endif
+}
+
+vxm_status vxm_engines_make_one(vxm_engine **out, vxm_context *context, const char *name,
+                                const vxm_engine_options *options, vxm_error *error) {
   vxm_error reason = VXM_ERROR_INIT;
   if (strcmp(name, "cpu") == 0)
     return make_cpu(out, context, "", error);
@@ -275,16 +303,18 @@ vxm_status vxm_engines_make(vxm_engine **out, vxm_context *context, const char *
   vxm_status status = vxm_context_acquire(&held, context, error);
   if (status != VXM_OK)
     return status;
-  status = make(out, held, name, options, error);
-  if (status == VXM_OK)
+  status = vxm_team_is_named(name) ? vxm_team_make(out, held, name, options, error)
+                                   : vxm_engines_make_one(out, held, name, options, error);
+  if (status == VXM_OK) {
     (*out)->info.size = sizeof(*out)->info;
-  else
+    atomic_init(&(*out)->holders, 1);
+  } else
     vxm_context_release(held);
   return status;
 }
 
 void vxm_engine_destroy(vxm_engine *engine) {
-  if (!engine)
+  if (!engine || atomic_fetch_sub(&engine->holders, 1) > 1)
     return;
   vxm_context *context = engine->context;
   if (engine->ops)

@@ -44,13 +44,15 @@ typedef struct vxm_engine_info {
   int clock_mhz;  /**< highest clock rate that the device tells; 0 = it tells none */
   int64_t cache_bytes; /**< cache of its memory; 0 = none, or not told */
   bool shares_memory;  /**< device and host have the same memory */
+  int devices;         /**< that work at once: 1, or of several those that have not failed */
+  int lost_devices;    /**< of several those that have failed, whose work the others did; `note` says why */
 } vxm_engine_info;
 
 /** Initial value of vxm_engine_info. */
 #define VXM_ENGINE_INFO_INIT                                                                             \
   {                                                                                                      \
     sizeof(vxm_engine_info), "", false, false, "", "", 0, 0, 0, 0, false, "", "", "", 0, 0, 0, 0, false, \
-        false, "", "", 0, 0, false                                                                       \
+        false, "", "", 0, 0, false, 0, 0                                                                 \
   }
 
 /** How an engine of OpenGL makes solids. */
@@ -86,6 +88,12 @@ typedef struct vxm_engine_options {
 
 /**
  * Makes an engine. One thread at a time may use it; many models may, one after another.
+ *
+ * Several devices work at once where names are joined by '+', as in "opencl:0+opencl:1+opengl:egl-device0",
+ * or by "opencl:all" and "opengl:all", which are all that work. "opencl:0:2" is device 0 in two equal parts
+ * (clCreateSubDevices), "opencl:0:2.1" the second of them. Slices of a grid, and variants of
+ * vxm_sampler_batch and vxm_sampler_files, go to whichever device is free, more to the faster ones; the bits
+ * are those of one. What a device that fails had left to do goes to the others.
  *
  * @param context whose memory limit counts what it holds
  * @param name    "cpu"; "opencl", on the device that the options choose; "opengl", which prefers a hardware

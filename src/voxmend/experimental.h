@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * @file voxmend/experimental.h
- * What may change from one version to the next, and is in no other header: which instructions are used, and
- * published methods, for comparison.
+ * What may change from one version to the next, and is in no other header: which instructions are used,
+ * voxels that stay on a device, and published methods, for comparison.
  */
 #ifndef VOXMEND_EXPERIMENTAL_H
 #define VOXMEND_EXPERIMENTAL_H
 
 #include "voxmend/engine.h"
 #include "voxmend/grid.h"
+#include "voxmend/sampler.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -141,6 +142,108 @@ typedef struct vxm_engine_stages {
  */
 VXM_API vxm_status vxm_engine_measure(vxm_engine_stages *out, vxm_engine *engine, bool measure,
                                       vxm_error *error);
+/* ---- Voxels that stay on a device ---- */
+
+struct DLManagedTensor; /* of dlpack.h, which whoever takes one includes */
+
+/** Voxels in the memory of an OpenCL device or in a texture of OpenGL, for who goes on with them there. They
+ * do not change. */
+typedef struct vxm_device_voxels vxm_device_voxels;
+
+/** What holds voxels that stay. */
+typedef enum vxm_device_kind {
+  VXM_DEVICE_OPENCL = 0, /**< a buffer */
+  VXM_DEVICE_EGL,        /**< a 3D texture in a context of EGL */
+  VXM_DEVICE_OSMESA      /**< the same of OSMesa */
+} vxm_device_kind;
+
+/**
+ * Where voxels are, and how they lie.
+ *
+ * In a buffer voxel (i,j,k) of variant v is the element, or with VXM_VOXEL_FORMAT_PACKED the bit k % 8 of the
+ * byte k / 8, of the row that begins at byte v * step[0] + i * step[1] + j * step[2]: [v][x][y][z] in C
+ * order. Packed rows have whole words of 64 bits, little-endian; bits beyond the last voxel are 0.
+ *
+ * In a texture voxel (i,j,k) is texel (i,j,k): GL_R8UI with 0 and 1, or GL_R32F with 0 and 1, which can be
+ * filtered; or packed the bit i % 32 of texel (i / 32, j, k) of GL_R32UI.
+ */
+typedef struct vxm_device_info {
+  size_t size;             /**< as the initializer sets it, or 0 */
+  vxm_device_kind kind;    /**< what holds the voxels */
+  vxm_voxel_format format; /**< what each is */
+  int64_t count;           /**< variants one behind the other; 1 of a model, and in a texture */
+  int64_t dims[3];         /**< voxels along x, y, z */
+  int64_t step[3];         /**< bytes from a variant to the next, along x and along y; 0 in a texture */
+  int64_t bytes;           /**< of the buffer, or of the texture's texels */
+  bool stayed;   /**< made on the device alone; else the CPU had a share in them, and they were sent there */
+  int device;    /**< number of the OpenCL device, N of "opencl:N"; 0 of others */
+  void *buffer;  /**< cl_mem; NULL for a texture */
+  void *context; /**< cl_context, EGLContext or OSMesaContext */
+  void *queue;   /**< cl_command_queue of the engine, in order, with nothing under way; else NULL */
+  void *device_id;         /**< cl_device_id; else NULL */
+  void *display;           /**< EGLDisplay; else NULL */
+  uint32_t texture;        /**< its name; 0 for a buffer */
+  uint32_t texture_format; /**< GL_R8UI, GL_R32F or GL_R32UI; 0 for a buffer */
+  int64_t texels[3];       /**< of a texture */
+} vxm_device_info;
+
+/** Initial value of vxm_device_info. */
+#define VXM_DEVICE_INFO_INIT                                                                                \
+  {                                                                                                         \
+    sizeof(vxm_device_info), VXM_DEVICE_OPENCL, VXM_VOXEL_FORMAT_PACKED, 0, {0, 0, 0}, {0, 0, 0}, 0, false, \
+        0, NULL, NULL, NULL, NULL, NULL, 0, 0, {                                                            \
+      0, 0, 0                                                                                               \
+    }                                                                                                       \
+  }
+
+/**
+ * Voxelizes a model where its engine is, and leaves the voxels there: those of vxm_model_voxelize.
+ *
+ * They never leave the device if all parts are closed or one method decides them (VXM_METHOD_X and the like,
+ * or a vote by majority, any or all), thin parts are not looked after (VXM_THIN_DROP) and no shell is asked
+ * for. Else the CPU completes them as ever, and they are sent to the device; `stayed` tells.
+ *
+ * @param[out] out  owned by the caller (vxm_device_voxels_destroy)
+ * @param model     with an engine of one OpenCL device, or of OpenGL; without confidence
+ * @param transform as for vxm_model_voxelize; NULL = none
+ * @return as vxm_model_voxelize; VXM_ERROR_UNAVAILABLE where there is no such engine; VXM_ERROR_RANGE for
+ * more than the device gives to a buffer, or a texture has along an axis
+ */
+VXM_API vxm_status vxm_model_voxelize_device(vxm_device_voxels **out, vxm_model *model,
+                                             const vxm_space *space, const double transform[12],
+                                             vxm_voxel_format format, vxm_error *error);
+/**
+ * The voxels of vxm_sampler_batch in a buffer of the OpenCL device that is the sampler's engine.
+ *
+ * @return as vxm_sampler_batch and vxm_model_voxelize_device; VXM_ERROR_ARGUMENT for no variants
+ */
+VXM_API vxm_status vxm_sampler_batch_device(vxm_device_voxels **out, vxm_sampler *sampler,
+                                            const vxm_variant *variants, size_t count,
+                                            vxm_voxel_format format, vxm_error *error);
+/**
+ * Tells where voxels are. The handles are those of the voxels: who needs them longer retains them
+ * (clRetainMemObject), or takes a DLPack. All work on them is done. A texture is in the context of the
+ * engine, which makes it current only while it works, in the thread that called; others may do so between
+ * that, and have to leave nothing bound that they do not delete.
+ *
+ * @return VXM_OK, VXM_ERROR_ARGUMENT
+ */
+VXM_API vxm_status vxm_device_voxels_describe(vxm_device_info *out, const vxm_device_voxels *voxels,
+                                              vxm_error *error);
+/**
+ * The voxels of a buffer as a DLPack tensor, on kDLOpenCL with the number of the device, its data the cl_mem:
+ * unsigned bytes or floats as [x][y][z], of packed voxels unsigned bytes as [x][y][(z + 7) / 8] with the
+ * steps of rows; of a sampler [variant] before that. It holds the buffer until its deleter is called, from
+ * any thread, also when the voxels and the engine are gone.
+ *
+ * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_UNAVAILABLE for a texture, for which DLPack has no name;
+ * VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ */
+VXM_API vxm_status vxm_device_voxels_dlpack(struct DLManagedTensor **out, vxm_device_voxels *voxels,
+                                            vxm_error *error);
+/** Drops them: a buffer when nobody else holds it, from any thread; a texture at once, from the thread that
+ * may use its engine, which stays until then. NULL is allowed. */
+VXM_API void vxm_device_voxels_destroy(vxm_device_voxels *voxels);
 
 /* ---- A published OpenCL program, for comparison ---- */
 

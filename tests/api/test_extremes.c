@@ -338,8 +338,10 @@ static void test_counts(void **state) {
   assert_int_equal(vxm_sampler_create(&sampler, context, &sampler_options, NULL), VXM_OK);
   vxm_variant variant = {0, 0, 0};
   const char *path = "/dev/null";
+  vxm_device_voxels *voxels;
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     REFUSED(vxm_sampler_batch(values, sampler, &variant, counts[i], VXM_VOXEL_FORMAT_UINT8, &error));
+    REFUSED(vxm_sampler_batch_device(&voxels, sampler, &variant, counts[i], VXM_VOXEL_FORMAT_UINT8, &error));
     REFUSED(vxm_sampler_files(&path, sampler, &variant, counts[i], NULL, NULL, &error));
   }
   assert_int_equal(vxm_sampler_batch(values, sampler, &variant, 0, VXM_VOXEL_FORMAT_UINT8, &error), VXM_OK);

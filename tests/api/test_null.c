@@ -70,6 +70,8 @@ static struct {
   vxm_grid *grid;
   vxm_engine *engine;
   vxm_published *published;
+  vxm_device_voxels *voxels;
+  struct DLManagedTensor *tensor;
   vxm_model *model;
   vxm_sampler *sampler;
   vxm_sparse *sparse;
@@ -89,6 +91,7 @@ static struct {
   vxm_published_report published_report;
   vxm_baseline_report baseline;
   vxm_engine_stages stages;
+  vxm_device_info device;
   vxm_voxelize_report voxelize;
   vxm_estimate estimate;
   vxm_coverage_report coverage;
@@ -107,6 +110,7 @@ static void drop_made(void) {
   vxm_grid_destroy(out.grid);
   vxm_engine_destroy(out.engine);
   vxm_published_destroy(out.published);
+  vxm_device_voxels_destroy(out.voxels);
   vxm_model_destroy(out.model);
   vxm_sampler_destroy(out.sampler);
   vxm_sparse_destroy(out.sparse);
@@ -300,7 +304,18 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
     !nulls ? VXM_OK                                                                                        \
            : vxm_published_read(P(0, (uint8_t *)out.values), P(1, &out.ms), NULL, VXM_TRANSFER_MAP,        \
                                 P(2, &error)))                                                             \
-  X(vxm_published_destroy, 1, 0, (vxm_published_destroy(NULL), VXM_OK))
+  X(vxm_published_destroy, 1, 0, (vxm_published_destroy(NULL), VXM_OK))                                    \
+  X(vxm_model_voxelize_device, 5, 7,                                                                       \
+    vxm_model_voxelize_device(P(0, &out.voxels), P(1, model), P(2, &space), P(3, unmoved),                 \
+                              VXM_VOXEL_FORMAT_UINT8, P(4, &error)))                                       \
+  X(vxm_sampler_batch_device, 4, 7,                                                                        \
+    vxm_sampler_batch_device(P(0, &out.voxels), P(1, sampler), P(2, &variant), 1, VXM_VOXEL_FORMAT_UINT8,  \
+                             P(3, &error)))                                                                \
+  X(vxm_device_voxels_describe, 2, 3,                                                                      \
+    nulls ? vxm_device_voxels_describe(P(0, &out.device), NULL, P(1, &error)) : VXM_OK)                    \
+  X(vxm_device_voxels_dlpack, 2, 3,                                                                        \
+    nulls ? vxm_device_voxels_dlpack(P(0, &out.tensor), NULL, P(1, &error)) : VXM_OK)                      \
+  X(vxm_device_voxels_destroy, 1, 0, (vxm_device_voxels_destroy(NULL), VXM_OK))
 
 #define MODEL_CALLS(X)                                                                                     \
   X(vxm_space_fit, 4, 3, vxm_space_fit(P(0, &out.space), P(1, mesh), P(2, &space_options), P(3, &error)))  \

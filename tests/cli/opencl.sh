@@ -38,7 +38,7 @@ run 'voxmend voxelize in/rocket.off -o a.npy -r 64 --engine opencl --memlimit 10
 run 'ls a.npy.tmp* 2>/dev/null; cmp cpu.npy a.npy >/dev/null; test $? -eq 1'
 
 say "# devices"
-run 'voxmend engines --json | grep -A 14 "\"name\": \"opencl:0\"" | grep -cE "compute_units|local_bytes|global_bytes|work_group|int64_atomics"'
+run 'voxmend engines --json | grep -A 15 "\"name\": \"opencl:0\"" | grep -cE "compute_units|clock_mhz|local_bytes|global_bytes|work_group|int64_atomics"'
 platform=$(voxmend engines --json | sed -n -E 's/^ *"platform": "(.*)",?$/\1/p' | head -n 1)
 voxmend voxelize in/cube.off -o d.npy -r 8 -q --engine opencl --device "$platform" && say "the first platform is found by its name"
 voxmend voxelize in/cube.off -o d.npy -r 8 -q --engine opencl --device 0 && say "the first device is found by its number"
@@ -48,6 +48,17 @@ run 'voxmend voxelize in/cube.off -o d.npy -r 8 --engine opencl --device "no suc
 run 'voxmend voxelize in/cube.off -o d.npy -r 8 --engine opencl:99 2>&1 | sed "s/0 to [0-9]*/0 to N/"'
 run 'voxmend voxelize in/cube.off -o d.npy -r 8 --engine auto --device "no such device"'
 run 'ls d.npy'
+
+say "# several at once"
+several() {
+  POCL_DEVICES="pthread pthread" voxmend voxelize "$@" -o several.npy -q --engine opencl:all && cmp cpu.npy several.npy
+}
+run 'once in/rocket.off -r 64 && several in/rocket.off -r 64'
+run 'once in/rocket.off -r 64 --mode surface && several in/rocket.off -r 64 --mode surface'
+run 'once in/missing.off -r 41x30x20 --coverage 8 && several in/missing.off -r 41x30x20 --coverage 8'
+run 'voxmend voxelize in/cube.off -o d.npy -r 8 --engine opencl:0+cpu'
+run 'voxmend voxelize in/cube.off -o d.npy -r 8 --engine opencl:all --device 0'
+run 'voxmend voxelize in/cube.off -o d.npy -r 8 --engine opencl:0:999.0 2>&1 | sed "s/has [0-9]* compute/has N compute/"'
 
 say "# the cache"
 XDG_CACHE_HOME=$work/cache

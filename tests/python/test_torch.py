@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The datasets for PyTorch. SAMPLES is a folder of what samples/generate_samples makes."""
+import gc
 import os
 import pickle
 import tempfile
 import threading
 import unittest
 
+import numpy
 import torch
 from torch.utils.data import DataLoader
 
@@ -17,6 +19,22 @@ SAMPLES = os.environ["SAMPLES"]
 
 def sample(name):
     return os.path.join(SAMPLES, name + ".off")
+
+
+class Tensors(unittest.TestCase):
+    def test_from_dlpack(self):
+        grid = voxmend.voxelize(sample("torus"), 24)
+        voxels, bits = torch.from_dlpack(grid), torch.from_dlpack(grid.bits)
+        self.assertEqual((voxels.dtype, tuple(voxels.shape), int(voxels.sum())), (torch.uint8, (24, 24, 24), grid.filled_count))
+        voxels.zero_()  # of its own
+        self.assertEqual((bits.dtype, bits.data_ptr()), (torch.uint8, grid.packed.ctypes.data))
+        matrix = torch.from_numpy(numpy.array(grid.matrix))
+        del grid
+        gc.collect()
+        unpacked = (bits[..., None] >> torch.arange(8) & 1).reshape(24, 24, -1)[..., :24]
+        self.assertTrue(torch.equal(unpacked.permute(2, 1, 0).bool(), matrix))
+        field = voxmend.coverage(sample("sphere"), 16)
+        self.assertEqual(torch.from_dlpack(field).data_ptr(), field.values.ctypes.data)
 
 
 class Datasets(unittest.TestCase):

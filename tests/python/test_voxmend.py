@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The package as its users see it. SAMPLES is a folder of what samples/generate_samples makes."""
+import gc
 import os
 import subprocess
 import sys
@@ -7,6 +8,7 @@ import tempfile
 import threading
 import time
 import unittest
+import weakref
 
 import numpy
 
@@ -249,6 +251,20 @@ class Grids(unittest.TestCase):
         again = numpy.from_dlpack(grid)
         self.assertEqual(again.sum(), grid.filled_count)
         self.assertFalse(numpy.shares_memory(again, grid.matrix))
+
+    def test_dlpack_of_bits(self):
+        grid = voxmend.voxelize(sample("torus"), (70, 13, 16))
+        bits = numpy.from_dlpack(grid.bits)
+        self.assertTrue(numpy.shares_memory(bits, grid.packed))
+        matrix, words, owner = numpy.array(grid.matrix), numpy.array(grid.packed), weakref.ref(grid)
+        del grid
+        gc.collect()
+        self.assertIsNone(owner())  # its memory stays
+        self.assertTrue((bits.view("<u8") == words).all())
+        unpacked = numpy.unpackbits(bits, axis=2, count=70, bitorder="little")
+        self.assertTrue((unpacked.transpose(2, 1, 0) == matrix).all())
+        field = voxmend.coverage(sample("sphere"), 16)
+        self.assertTrue(numpy.shares_memory(numpy.from_dlpack(field), field.values))
 
     def test_fields(self):
         values, origin, pitch = voxmend.distance(cube(), 16, pad=2, band=0)

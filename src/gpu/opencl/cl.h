@@ -17,6 +17,8 @@
   X(CreateKernel)              \
   X(CreateProgramWithBinary)   \
   X(CreateProgramWithSource)   \
+  X(CreateSubDevices)          \
+  X(EnqueueCopyBuffer)         \
   X(EnqueueFillBuffer)         \
   X(EnqueueMapBuffer)          \
   X(EnqueueMarkerWithWaitList) \
@@ -36,10 +38,13 @@
   X(GetProgramInfo)            \
   X(ReleaseCommandQueue)       \
   X(ReleaseContext)            \
+  X(ReleaseDevice)             \
   X(ReleaseEvent)              \
   X(ReleaseKernel)             \
   X(ReleaseMemObject)          \
   X(ReleaseProgram)            \
+  X(RetainCommandQueue)        \
+  X(RetainContext)             \
   X(SetKernelArg)              \
   X(WaitForEvents)
 

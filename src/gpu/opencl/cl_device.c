@@ -53,7 +53,7 @@ int vxm_cl_devices(vxm_cl_device out[VXM_CL_DEVICES_MAX], const vxm_cl *cl, vxm_
         CL_SUCCESS)
       continue;
     for (cl_uint d = 0; d < device_count && d < VXM_CL_DEVICES_MAX && count < VXM_CL_DEVICES_MAX; d++)
-      out[count++] = (vxm_cl_device){platforms[p], devices[d]};
+      out[count++] = (vxm_cl_device){.platform = platforms[p], .id = devices[d]};
   }
   if (count == 0)
     vxm_fail(error, VXM_ERROR_UNAVAILABLE,
@@ -139,12 +139,55 @@ static const char *kind_of(cl_device_type type) {
                                              : "custom";
 }
 
+bool vxm_cl_device_read_part(char *choice, int *parts, int *part) {
+  int used = 0;
+  char *colon = strrchr(choice, ':');
+  if (!colon || strspn(colon + 1, "0123456789.") != strlen(colon + 1) ||
+      sscanf(colon + 1, "%3d.%3d%n", parts, part, &used) != 2 || colon[1 + used] != '\0')
+    return false;
+  *colon = '\0';
+  return true;
+}
+
+vxm_status vxm_cl_device_divide(vxm_cl_device *device, const vxm_cl *cl, int parts, int part,
+                                vxm_error *error) {
+  enum { PARTS_MAX = 64 };
+  cl_device_id made[PARTS_MAX];
+  cl_uint count = 0;
+  int units = (int)device_number(cl, device->id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(cl_uint));
+  if (parts < 1 || parts > PARTS_MAX || part >= parts || units / parts < 1)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "part %d of %d: the OpenCL device has %d compute units", part,
+                    parts, units);
+  const cl_device_partition_property equally[] = {CL_DEVICE_PARTITION_EQUALLY, units / parts, 0};
+  cl_int code = cl->CreateSubDevices(device->id, equally, 0, NULL, &count);
+  if (code == CL_SUCCESS && (int)count >= parts && count <= PARTS_MAX)
+    code = cl->CreateSubDevices(device->id, equally, count, made, NULL);
+  else if (code == CL_SUCCESS)
+    code = CL_DEVICE_PARTITION_FAILED;
+  if (code != CL_SUCCESS)
+    return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "the OpenCL driver does not divide the device (error %d)",
+                    (int)code);
+  for (cl_uint d = 0; d < count; d++)
+    if ((int)d != part)
+      cl->ReleaseDevice(made[d]);
+  *device = (vxm_cl_device){device->platform, made[part], parts, part};
+  return VXM_OK;
+}
+
+void vxm_cl_device_release(const vxm_cl_device *device, const vxm_cl *cl) {
+  if (device->parts > 0)
+    cl->ReleaseDevice(device->id);
+}
+
 void vxm_cl_device_describe(vxm_engine_info *out, const vxm_cl *cl, const vxm_cl_device *device, int number) {
   char extensions[8192] = "";
   cl_device_id id = device->id;
   size_t group = 0;
   *out = (vxm_engine_info){.int64 = true};
   snprintf(out->name, sizeof out->name, "opencl:%d", number);
+  if (device->parts > 0)
+    snprintf(out->name, sizeof out->name, "opencl:%d:%d.%d", number, device->parts, device->part);
+  out->devices = 1;
   device_text(out->renderer, cl, id, CL_DEVICE_NAME);
   device_text(out->version, cl, id, CL_DEVICE_VERSION);
   device_text(out->driver, cl, id, CL_DRIVER_VERSION);

@@ -57,7 +57,9 @@ vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool i
     back[which].tile = tile;
     back[which].words = window->words;
     back[which].is_or = is_or;
-    if (status == VXM_OK)
+    if (status == VXM_OK && engine->base.keeps)
+      status = vxm_cl_tile_stay(engine, &tile, back[which].from, error);
+    else if (status == VXM_OK)
       status = vxm_cl_return_begin(engine, &back[which], error);
   }
   return vxm_cl_finish(engine, back, status, error);
@@ -116,8 +118,10 @@ vxm_status vxm_cl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
                         vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
   vxm_disjoint_passes passes = {.context = base->context};
+  if (base->keeps && !job->fresh)
+    return vxm_fail_to_keep(base, error);
   if (job->part_begin >= job->part_end) {
-    if (job->fresh)
+    if (job->fresh && !base->keeps) /* what stays began as zeros */
       clear(window);
     return VXM_OK;
   }
@@ -182,7 +186,8 @@ static vxm_status elect_tile(vxm_opencl *engine, const vxm_slice_job *tile, cons
                              const voter_set *b, vxm_cl_buffer_id result, vxm_vote_tally *tally,
                              vxm_error *error) {
   uint32_t counted[2] = {0, 0};
-  vxm_status status = vxm_cl_tile_upload(engine, result, tile, error);
+  vxm_status status = engine->base.keeps ? vxm_cl_tile_bring(engine, tile, result, error)
+                                         : vxm_cl_tile_upload(engine, result, tile, error);
   if (status == VXM_OK)
     status = vxm_cl_reserve(engine, VXM_CL_MASK, tile->words * sizeof(uint64_t), error);
   for (int v = 0; v < b->count && status == VXM_OK; v++)
@@ -215,7 +220,9 @@ static vxm_status elect_tiles(vxm_opencl *engine, const vxm_window *window, cons
     back[0].tile = back[1].tile = tile;
     back[0].words = window->words;
     back[1].words = job->mask;
-    for (int i = 0; i < (job->mask ? 2 : 1) && status == VXM_OK; i++)
+    if (status == VXM_OK && engine->base.keeps)
+      status = vxm_cl_tile_stay(engine, &tile, VXM_CL_RESULT, error);
+    for (int i = 0; i < (job->mask ? 2 : 1) && status == VXM_OK && !engine->base.keeps; i++)
       status = vxm_cl_return_begin(engine, &back[i], error);
   }
   return vxm_cl_finish(engine, back, status, error);
@@ -226,6 +233,8 @@ vxm_status vxm_cl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
   vxm_opencl *engine = vxm_opencl_of(base);
   if (job->part_begin >= job->part_end)
     return VXM_OK;
+  if (base->keeps && job->mask)
+    return vxm_fail_to_keep(base, error);
   vxm_status status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
   if (status == VXM_OK && job->has_voxels)
     status = clear_touched(engine, job->triangles, error);

@@ -23,6 +23,19 @@ vxm_status vxm_cl_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_space *
 vxm_status vxm_cl_count(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
                         vxm_error *error);
 
+/** See vxm_engine_ops (cl_keep.c). */
+vxm_status vxm_cl_keep(vxm_engine *engine, vxm_device_voxels **out, const vxm_device_info *shape,
+                       vxm_error *error);
+vxm_status vxm_cl_keep_begin(vxm_engine *engine, const vxm_window *window, vxm_error *error);
+vxm_status vxm_cl_keep_end(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
+                           const vxm_window *window, vxm_error *error);
+/** Puts a tile of a window that stays where it belongs. */
+vxm_status vxm_cl_tile_stay(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id from,
+                            vxm_error *error);
+/** The other way. */
+vxm_status vxm_cl_tile_bring(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id to,
+                             vxm_error *error);
+
 /** Ends what is under way; after a failure, when flips may be left over and something may still run, too.
  * Returns `status`, or the first failure. */
 vxm_status vxm_cl_finish(vxm_opencl *engine, vxm_cl_return back[2], vxm_status status, vxm_error *error);

@@ -7,6 +7,7 @@ enum { FEW_COLUMNS = 64 /**< of a triangle that one work-item does */ };
 typedef struct surface_job {
   const vxm_surface *surface;
   vxm_surface_kind kind;
+  bool is_fresh;
 } surface_job;
 
 static vxm_status set_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id into,
@@ -14,7 +15,9 @@ static vxm_status set_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl
   const surface_job *s = payload;
   vxm_slice_job_surface job = vxm_slice_job_surface_of(tile, s->surface, s->kind);
   job.few_columns = FEW_COLUMNS;
-  vxm_status status = vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
+  vxm_status status = engine->base.keeps && !s->is_fresh
+                          ? vxm_cl_tile_bring(engine, tile, into, error)
+                          : vxm_cl_clear(engine, into, tile->words * sizeof(uint64_t), error);
   if (status == VXM_OK)
     status = vxm_cl_clear_large(engine, job.triangle_count, error);
   const vxm_cl_arg args[] = {VXM_CL_MEM(engine, VXM_CL_SURFACE_POINTS),
@@ -36,9 +39,12 @@ vxm_status vxm_cl_surface(vxm_engine *base, const vxm_surface *surface, const vx
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
   vxm_opencl *engine = vxm_opencl_of(base);
   vxm_status status = vxm_device_cache_surface(&engine->resident, surface, error);
+  if (status == VXM_OK && base->keeps && engine->resident.far_surface.count > 0)
+    return vxm_fail_to_keep(base, error);
   if (status == VXM_OK)
-    status = vxm_cl_each_tile(engine, window, !is_fresh, set_tile, &(surface_job){surface, kind}, error);
-  return status == VXM_OK
+    status =
+        vxm_cl_each_tile(engine, window, !is_fresh, set_tile, &(surface_job){surface, kind, is_fresh}, error);
+  return status == VXM_OK && !base->keeps
              ? vxm_oversized_surface_add(&engine->resident.far_surface, surface, window, kind, error)
              : status;
 }

@@ -20,6 +20,7 @@ static void destroy(vxm_engine *base) {
     cl->ReleaseCommandQueue(engine->transfer);
   if (engine->context)
     cl->ReleaseContext(engine->context);
+  vxm_cl_device_release(&engine->device, cl);
   vxm_device_cache_destroy(&engine->resident);
 }
 
@@ -29,6 +30,9 @@ static const vxm_engine_ops opencl_ops = {.move = vxm_cl_move,
                                           .surface = vxm_cl_surface,
                                           .sparse = vxm_cl_sparse,
                                           .count = vxm_cl_count,
+                                          .keep = vxm_cl_keep,
+                                          .keep_begin = vxm_cl_keep_begin,
+                                          .keep_end = vxm_cl_keep_end,
                                           .destroy = destroy};
 
 static vxm_status start(vxm_opencl *engine, vxm_error *error) {
@@ -62,6 +66,7 @@ vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_c
   vxm_opencl *engine = vxm_calloc(context, 1, sizeof *engine, &local);
   *out = NULL;
   if (!engine) {
+    vxm_cl_device_release(device, cl);
     vxm_error_pass(error, &local);
     return local.code;
   }
@@ -72,6 +77,7 @@ vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_c
   engine->options.device = NULL; /* the caller's */
   engine->cl = cl;
   engine->device = *device;
+  engine->number = number;
   vxm_cl_device_describe(&engine->base.info, cl, device, number);
   vxm_status status = start(engine, error);
   if (status != VXM_OK) {

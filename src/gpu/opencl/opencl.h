@@ -21,6 +21,7 @@ typedef enum vxm_cl_program_id {
   VXM_CL_COVERAGE,
   VXM_CL_MOVE,
   VXM_CL_PUBLISHED,
+  VXM_CL_KEEP,
   VXM_CL_PROGRAMS
 } vxm_cl_program_id;
 
@@ -67,6 +68,8 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_MOVE_POINTS,
   VXM_CL_PUBLISHED_FACETS,
   VXM_CL_PUBLISHED_VOXELS,
+  VXM_CL_KEEP_BYTES,
+  VXM_CL_KEEP_FLOATS,
   VXM_CL_KERNELS
 } vxm_cl_kernel_id;
 
@@ -97,8 +100,9 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_COUNTS, /**< tiles of each triangle, then where its pairs begin */
   VXM_CL_TILE_KEYS,
   VXM_CL_TILE_TRIANGLES,
-  VXM_CL_GROUPS, /**< how many voxels of each are set */
-  VXM_CL_LISTS,  /**< where the pairs of each tile begin and end */
+  VXM_CL_GROUPS,  /**< how many voxels of each are set */
+  VXM_CL_LISTS,   /**< where the pairs of each tile begin and end */
+  VXM_CL_STAYING, /**< the bits of a window that stays */
   /* Octrees, freed when one is made. Arrays "of all nodes" hold level after level, the lowest first. */
   VXM_CL_CELLS,  /**< a bit for each cell of 16^3 voxels: whether it is a node */
   VXM_CL_BEFORE, /**< of each word of them: how many nodes lie before it */
@@ -141,6 +145,7 @@ typedef struct vxm_opencl {
   vxm_engine_options options;
   const vxm_cl *cl;
   vxm_cl_device device;
+  int number; /**< of the device, in the order in which the loader lists them */
   cl_context context;
   cl_command_queue queue;    /**< kernels, in order */
   cl_command_queue transfer; /**< what is read while kernels run */
@@ -158,8 +163,8 @@ static inline vxm_opencl *vxm_opencl_of(vxm_engine *engine) {
   return (vxm_opencl *)engine;
 }
 
-/** Makes an engine on a device; the reference to `context` is the caller's. @return VXM_OK,
- * VXM_ERROR_UNAVAILABLE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
+/** Makes an engine on a device, which it takes over, also after a failure; the reference to `context` is the
+ * caller's. @return VXM_OK, VXM_ERROR_UNAVAILABLE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_opencl_create(vxm_engine **out, vxm_context *context, const vxm_cl *cl,
                              const vxm_cl_device *device, int number, const vxm_engine_options *options,
                              vxm_error *error);

@@ -41,6 +41,7 @@
   X(DRAWBUFFERS, DrawBuffers)                         \
   X(ENABLE, Enable)                                   \
   X(FENCESYNC, FenceSync)                             \
+  X(FINISH, Finish)                                   \
   X(FLUSH, Flush)                                     \
   X(FRAMEBUFFERPARAMETERI, FramebufferParameteri)     \
   X(FRAMEBUFFERTEXTURELAYER, FramebufferTextureLayer) \

@@ -67,6 +67,10 @@ static vxm_status unite_tiles(vxm_opengl *engine, const vxm_window *window, cons
     vxm_progress_leave(before);
     if (status != VXM_OK)
       break;
+    if (engine->base.keeps) {
+      status = vxm_gl_tile_stay(engine, &tile, error);
+      continue;
+    }
     back[which] = (vxm_gl_return){.tile = tile, .is_or = !job->fresh, .staging = which};
     status = vxm_gl_return_begin(engine, &back[which], error);
     if (status == VXM_OK)
@@ -86,8 +90,10 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
   vxm_opengl *engine = vxm_opengl_of(base);
   vxm_disjoint_passes passes = {0};
   size_t parts = job->triangles->split.part_count;
+  if (base->keeps && !job->fresh)
+    return vxm_fail_to_keep(base, error);
   if (job->part_begin >= job->part_end) {
-    if (job->fresh)
+    if (job->fresh && !base->keeps) /* what stays began as zeros */
       clear(window);
     return VXM_OK;
   }
@@ -163,7 +169,8 @@ static vxm_status count_votes(vxm_opengl *engine, const vxm_slice_job *tile, con
 static vxm_status elect_tile(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_vote_job *job,
                              const voter_set *b, vxm_vote_tally *tally, vxm_error *error) {
   uint32_t counted[2] = {0, 0};
-  vxm_status status = vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
+  vxm_status status = engine->base.keeps ? vxm_gl_tile_bring(engine, tile, error)
+                                         : vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
   if (status == VXM_OK)
     status = vxm_gl_reserve(engine, VXM_GL_MASK, tile->words * sizeof(uint64_t), error);
   if (status == VXM_OK)
@@ -193,6 +200,10 @@ static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, cons
     vxm_progress_leave(before);
     if (status != VXM_OK)
       break;
+    if (engine->base.keeps) {
+      status = vxm_gl_tile_stay(engine, &tile, error);
+      continue;
+    }
     back[which] = (vxm_gl_return){.tile = tile, .mask = job->mask, .staging = which};
     status = vxm_gl_return_begin(engine, &back[which], error);
     if (status == VXM_OK)
@@ -207,6 +218,8 @@ vxm_status vxm_gl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
   size_t parts = job->triangles->split.part_count;
   if (job->part_begin >= job->part_end)
     return VXM_OK;
+  if (base->keeps && job->mask)
+    return vxm_fail_to_keep(base, error);
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;

@@ -74,15 +74,20 @@ static vxm_status draw(vxm_opengl *engine, surface_job *job, vxm_error *error) {
 }
 
 static vxm_status draw_tile(vxm_opengl *engine, const vxm_surface *surface, const vxm_slice_job *tile,
-                            vxm_surface_kind kind, vxm_error *error) {
+                            vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
   const vxm_gl *gl = &engine->context.gl;
   surface_job job = job_of(engine, surface, tile, kind);
   vxm_status status = vxm_gl_reserve(engine, VXM_GL_RESULT, tile->words * sizeof(uint64_t), error);
   if (status != VXM_OK)
     return status;
-  gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_RESULT].name);
-  gl->ClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
-  status = find(engine, &job, error);
+  if (engine->base.keeps && !is_fresh)
+    status = vxm_gl_tile_bring(engine, tile, error);
+  else {
+    gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_RESULT].name);
+    gl->ClearBufferData(GL_COPY_WRITE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
+  }
+  if (status == VXM_OK)
+    status = find(engine, &job, error);
   if (status == VXM_OK && engine->can_pull_late)
     status = draw(engine, &job, error);
   if (status == VXM_OK)
@@ -103,10 +108,14 @@ static vxm_status draw_tiles(vxm_opengl *engine, const vxm_surface *surface, con
   for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
     vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
     vxm_progress_part before = vxm_slice_job_progress(&tile);
-    status = draw_tile(engine, surface, &tile, kind, error);
+    status = draw_tile(engine, surface, &tile, kind, is_fresh, error);
     vxm_progress_leave(before);
     if (status != VXM_OK)
       break;
+    if (engine->base.keeps) {
+      status = vxm_gl_tile_stay(engine, &tile, error);
+      continue;
+    }
     back[which] = (vxm_gl_return){.tile = tile, .is_or = !is_fresh, .staging = which};
     status = vxm_gl_return_begin(engine, &back[which], error);
     if (status == VXM_OK)
@@ -122,10 +131,13 @@ vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vx
   if (status != VXM_OK)
     return status;
   status = vxm_device_cache_surface(&engine->resident, surface, error);
-  if (status == VXM_OK)
+  bool needs_host = base->keeps && engine->resident.far_surface.count > 0;
+  if (status == VXM_OK && !needs_host)
     status = draw_tiles(engine, surface, window, kind, is_fresh, error);
   vxm_gl_leave(&engine->context);
-  return status == VXM_OK
+  if (status == VXM_OK && needs_host)
+    return vxm_fail_to_keep(base, error);
+  return status == VXM_OK && !base->keeps
              ? vxm_oversized_surface_add(&engine->resident.far_surface, surface, window, kind, error)
              : status;
 }

@@ -189,6 +189,9 @@ static const vxm_engine_ops opengl_ops = {.move = vxm_gl_move,
                                           .vote = vxm_gl_vote,
                                           .surface = vxm_gl_surface,
                                           .color = vxm_gl_color,
+                                          .keep = vxm_gl_keep,
+                                          .keep_begin = vxm_gl_keep_begin,
+                                          .keep_end = vxm_gl_keep_end,
                                           .destroy = destroy};
 
 static vxm_status start(vxm_opengl *engine, vxm_error *error) {
@@ -206,6 +209,7 @@ static vxm_status start(vxm_opengl *engine, vxm_error *error) {
   gl->Disable(GL_CULL_FACE);
   gl->Disable(GL_DITHER);
   engine->base.info.available = true;
+  engine->base.info.devices = 1;
   return vxm_gl_check(gl, "opengl: starting", error);
 }
 

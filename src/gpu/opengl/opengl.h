@@ -22,6 +22,7 @@ typedef enum vxm_gl_program_id {
   VXM_GL_FIND_SURFACE,
   VXM_GL_DRAW_SURFACE,
   VXM_GL_MOVE,
+  VXM_GL_KEEP,
   VXM_GL_PROGRAMS
 } vxm_gl_program_id;
 
@@ -46,6 +47,7 @@ typedef enum vxm_gl_buffer_id {
   VXM_GL_TALLY,
   VXM_GL_RANDOM, /**< the circular buffer of displacements of slices */
   VXM_GL_TOUCHED,
+  VXM_GL_STAYING, /**< the bits of a window that stays */
   VXM_GL_STAGING, /**< two, mapped while the next tile is drawn */
   VXM_GL_STAGING2,
   VXM_GL_BUFFERS

@@ -28,3 +28,9 @@ bool vxm_engine_falls_back(vxm_engine *engine, const vxm_error *error) {
   snprintf(engine->info.name, sizeof engine->info.name, "cpu");
   return true;
 }
+
+vxm_status vxm_fail_to_keep(vxm_engine *engine, vxm_error *error) {
+  engine->needs_host = true;
+  return vxm_fail(error, VXM_ERROR_UNAVAILABLE, "%s cannot make these voxels without the CPU",
+                  engine->info.name);
+}

@@ -4,6 +4,7 @@
 #ifndef VXM_VOXEL_ENGINE_ENGINE_H
 #define VXM_VOXEL_ENGINE_ENGINE_H
 
+#include "voxel/engine/device_voxels.h"
 #include "voxel/engine/sparse_job.h"
 #include "voxel/lattice/vertex_transform.h"
 #include "voxel/parity/parity_union.h"
@@ -69,6 +70,15 @@ typedef struct vxm_engine_ops {
    * groups: a number for each, along bits, then rows, then slices. */
   vxm_status (*count)(vxm_engine *engine, uint16_t *counts, const vxm_window *window, int n,
                       vxm_error *error);
+  /** Makes room for voxels that stay; see device_voxels.h. NULL: the engine keeps none. */
+  vxm_status (*keep)(vxm_engine *engine, vxm_device_voxels **out, const vxm_device_info *shape,
+                     vxm_error *error);
+  /** Before a window is made that stays, and is all of a grid: from now on `unite`, `vote` and `surface`
+   * leave it on the device, and look at no words. */
+  vxm_status (*keep_begin)(vxm_engine *engine, const vxm_window *window, vxm_error *error);
+  /** Takes the window, or where its words are not NULL these, into variant `index` of the voxels. */
+  vxm_status (*keep_end)(vxm_engine *engine, vxm_device_voxels *voxels, int64_t index,
+                         const vxm_window *window, vxm_error *error);
   void (*destroy)(vxm_engine *engine);
 } vxm_engine_ops;
 
@@ -78,10 +88,16 @@ struct vxm_engine {
   bool wants_apexes;         /**< apexes have to be placed */
   bool displaces;            /**< its voxels are those of a mesh whose vertices it has moved */
   bool falls_back;           /**< where it fails, the CPU does the work, and `info.note` says so */
+  bool keeps;                /**< what is made stays on the device */
+  bool needs_host;           /**< what should have stayed cannot be made without the CPU */
+  atomic_int holders;        /**< who made it, and voxels in its context */
   vxm_engine_info info;
 };
 
 /** Whether the CPU is to do the work after a failure of the engine, which is then switched off and noted. */
 bool vxm_engine_falls_back(vxm_engine *engine, const vxm_error *error);
+
+/** For an engine that keeps: the CPU has to take part. @return VXM_ERROR_UNAVAILABLE */
+vxm_status vxm_fail_to_keep(vxm_engine *engine, vxm_error *error);
 
 #endif

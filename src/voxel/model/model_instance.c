@@ -38,9 +38,8 @@ vxm_status vxm_model_instance_attach(vxm_model_instance *instance, const vxm_mod
   return status;
 }
 
-vxm_status vxm_model_instance_fill(vxm_model_instance *instance, const vxm_window *window,
-                                   const vxm_lattice *lattice, const vxm_variation *variation,
-                                   vxm_error *error) {
+vxm_status vxm_model_instance_place(vxm_model_instance *instance, const vxm_lattice *lattice,
+                                    const vxm_variation *variation, vxm_error *error) {
   vxm_model_pass *pass = &instance->pass;
   if (vxm_faces_wanted(&pass->solid.options)) {
     vxm_vertex_transform_apply(instance->context, instance->vertices, &variation->vertices);
@@ -50,7 +49,7 @@ vxm_status vxm_model_instance_fill(vxm_model_instance *instance, const vxm_windo
   vxm_status status = vxm_model_pass_place(pass, lattice, NULL, NULL, error);
   pass->solid.motion = NULL;
   pass->solid.mirrored = variation->mirrored;
-  return status == VXM_OK ? vxm_model_pass_fill(pass, window, error) : status;
+  return status;
 }
 
 void vxm_model_instance_destroy(vxm_model_instance *instance) {

@@ -31,10 +31,9 @@ vxm_status vxm_model_instance_prepare(const vxm_model *model, vxm_error *error);
 /** Attaches an instance to a model that has been prepared. Memory is kept from one to the next. */
 vxm_status vxm_model_instance_attach(vxm_model_instance *instance, const vxm_model *of, vxm_error *error);
 
-/** Voxelizes a variation into a window, which is all of the lattice's space. */
-vxm_status vxm_model_instance_fill(vxm_model_instance *instance, const vxm_window *window,
-                                   const vxm_lattice *lattice, const vxm_variation *variation,
-                                   vxm_error *error);
+/** Places a variation on a lattice; then the pass is filled, in one window that is all of its space. */
+vxm_status vxm_model_instance_place(vxm_model_instance *instance, const vxm_lattice *lattice,
+                                    const vxm_variation *variation, vxm_error *error);
 void vxm_model_instance_destroy(vxm_model_instance *instance);
 
 #endif

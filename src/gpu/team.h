@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Several engines that work at once as one: each takes from what is left as much as its speed says. */
+#ifndef VXM_GPU_TEAM_H
+#define VXM_GPU_TEAM_H
+
+#include "voxel/engine/engine.h"
+
+enum { VXM_TEAM_MOST = 16 };
+
+typedef struct vxm_team_member {
+  vxm_engine *engine; /**< in a context of its own; belongs to the team */
+  double rate;        /**< pieces of work in a millisecond, lately; 0 = not known */
+  bool is_lost;       /**< it has failed, and gets no more work */
+} vxm_team_member;
+
+typedef struct vxm_team {
+  vxm_engine base; /**< first, so that it is one */
+  vxm_engine_ops ops;
+  int count;
+  vxm_team_member members[VXM_TEAM_MOST];
+} vxm_team;
+
+/** The team that an engine is; NULL if it is something else. */
+vxm_team *vxm_team_of(vxm_engine *engine);
+
+/**
+ * Makes an engine of several, which it takes over, also after a failure. @param context as for
+ * vxm_engines_make: the reference is the caller's
+ */
+vxm_status vxm_team_create(vxm_engine **out, vxm_context *context, vxm_engine *const engines[], int count,
+                           vxm_error *error);
+
+/** Does pieces begin..end-1 by member number `who` (of a task that did nothing it starts anew). */
+typedef vxm_status (*vxm_team_fn)(vxm_engine *engine, int who, int64_t begin, int64_t end, void *payload,
+                                  vxm_error *error);
+
+/** Work to share out. */
+typedef struct vxm_team_work {
+  int64_t begin, end;
+  int64_t least; /**< so many pieces at once at least, where there are as many */
+  const char *phase;
+  vxm_team_fn function;
+  void *payload;
+} vxm_team_work;
+
+/**
+ * Has the members do all of it, in threads of their own; the caller reports progress. What one fails to do
+ * goes to the others.
+ *
+ * @return VXM_OK; VXM_ERROR_CANCELLED, VXM_ERROR_MEMORY_LIMIT and VXM_ERROR_ARGUMENT as soon as one member
+ *         has them; what the last member failed with
+ */
+vxm_status vxm_team_run(vxm_team *team, const vxm_team_work *work, vxm_error *error);
+
+#endif
