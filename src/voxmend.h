@@ -8,6 +8,7 @@
 #define VOXMEND_H
 
 #include "voxmend/base.h"
+#include "voxmend/carve.h"
 #include "voxmend/engine.h"
 #include "voxmend/field.h"
 #include "voxmend/grid.h"

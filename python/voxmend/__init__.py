@@ -12,6 +12,7 @@
 
 doc/python.md of the sources has more.
 """
+from ._carve import Carver
 from ._core import configure, lib as _lib, settings, text as _text
 from ._defects import DefectGroup, Defects
 from ._engines import Engine, engines
@@ -24,7 +25,7 @@ from ._mesh import Mesh
 from ._mesh_sources import MeshLike, info, load
 from ._model_fields import colors, coverage, distance, labels
 from ._progress import watch
-from ._records import (Census, Comparison, CoverageReport, DistanceReport, EngineInfo, Finding, Label, LabelReport, Look,
+from ._records import (CarveReport, Census, Comparison, CoverageReport, DistanceReport, EngineInfo, Finding, Label, LabelReport, Look,
                        PartChange, PartState, RepairReport, Settings, Texture, Verification, VoxelizeReport)
 from ._repair import repair, verify
 from ._sampler import Sampler
@@ -34,7 +35,7 @@ from ._voxelize import remesh, voxelize, voxelize_sparse
 __version__ = _text(_lib.vxm_version())
 
 __all__ = [
-    "ArgumentError", "BusyError", "CancelledError", "Census", "Comparison", "CoverageReport", "DefectGroup", "Defects",
+    "ArgumentError", "BusyError", "CancelledError", "CarveReport", "Carver", "Census", "Comparison", "CoverageReport", "DefectGroup", "Defects",
     "DistanceReport", "EmptyError", "Engine", "EngineInfo", "Field", "FileError", "Finding", "FormatError", "KindError", "Label",
     "LabelReport", "Look", "Mesh", "MeshLike", "NumbersError", "OutOfMemoryError", "PartChange", "PartState", "RangeError", "RepairReport",
     "Sampler", "Settings", "SparseGrid", "Texture", "UnavailableError", "UnreachedError", "Verification", "VoxelField", "VoxelGrid",

@@ -19,6 +19,7 @@ from ._types import Array, ArrayLike, Bools, Floats, Int64s, Path, Size, Uint8s,
 
 if TYPE_CHECKING:
     from ._field import VoxelField
+    from ._mesh_sources import MeshLike
     from ._sparse import SparseGrid
 
 
@@ -288,6 +289,20 @@ class VoxelGrid(Placed, Shown):
 
     def __invert__(self) -> "VoxelGrid":
         return VoxelGrid._of_words(~self.packed, self._own_space)
+
+    def carve(self, tool: "MeshLike", path: ArrayLike, *, repair: bool = True) -> "VoxelGrid":
+        """What a tool leaves that moves along a path: every voxel is removed whose centre comes to lie within it, at any time.
+
+        Args:
+            tool: as for `voxelize`, in model units about its origin; repaired first unless `repair` is False.
+            path: where its origin goes: (n, 3); with quaternions w, x, y, z (n, 7); or matrices (n, 3, 4), (n, 4, 4).
+
+        `voxmend.Carver` goes step by step, and tells what each has removed.
+        """
+        from ._carve import Carver
+        carver = Carver(self, tool, repair=repair)
+        carver.follow(path)
+        return carver.grid()
 
     # ---- For files and other packages ----
 

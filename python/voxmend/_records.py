@@ -329,6 +329,20 @@ class Comparison(Record):
 
 
 @dataclass(frozen=True)
+class CarveReport(Record):
+    """What a step of a `Carver` has removed.
+
+    Attributes:
+        removed: voxels that were set.
+        begin, end: the box of these, from a voxel to the one before another; (0, 0, 0) where none was removed.
+    """
+
+    removed: int
+    begin: Tuple[int, int, int]
+    end: Tuple[int, int, int]
+
+
+@dataclass(frozen=True)
 class EngineInfo(Record):
     """What is known of an engine (`voxmend.engines`).
 

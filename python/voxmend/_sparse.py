@@ -2,7 +2,7 @@
 """Voxels in an octree, whose memory follows their surface."""
 from __future__ import annotations
 
-from typing import Any, List, Optional, Tuple, Type
+from typing import TYPE_CHECKING, Any, List, Optional, Tuple, Type
 
 import numpy
 
@@ -15,6 +15,9 @@ from ._mesh import format_name
 from ._records import VoxelizeReport
 from ._space import Placed, shown_size
 from ._types import ArrayLike, Bools, Floats, Int64s, Path
+
+if TYPE_CHECKING:
+    from ._mesh_sources import MeshLike
 
 
 class SparseGrid(Placed):
@@ -192,6 +195,20 @@ class SparseGrid(Placed):
     def __invert__(self) -> "SparseGrid":
         return SparseGrid._of(_core.create("vxm_sparse", lib.vxm_sparse_combine, self._pointer, ffi.NULL, lib.VXM_SET_COMPLEMENT,
                                            destroy=lib.vxm_sparse_destroy))
+
+    def carve(self, tool: "MeshLike", path: ArrayLike, *, repair: bool = True) -> "SparseGrid":
+        """What a tool leaves that moves along a path: every voxel is removed whose centre comes to lie within it, at any time.
+
+        Args:
+            tool: as for `voxelize`, in model units about its origin; repaired first unless `repair` is False.
+            path: where its origin goes: (n, 3); with quaternions w, x, y, z (n, 7); or matrices (n, 3, 4), (n, 4, 4).
+
+        `voxmend.Carver` goes step by step, and tells what each has removed.
+        """
+        from ._carve import Carver
+        carver = Carver(self, tool, repair=repair)
+        carver.follow(path)
+        return carver.grid()
 
     def __eq__(self, other: object) -> bool:
         """Whether both have the same space, exactly, and the same voxels."""

@@ -64,7 +64,8 @@ typedef struct cli_command {
 
 extern const cli_command cli_command_info, cli_command_repair, cli_command_voxelize, cli_command_convert,
     cli_command_batch, cli_command_compare, cli_command_augment, cli_command_remesh, cli_command_view,
-    cli_command_bench, cli_command_engines, cli_command_combine, cli_command_help, cli_command_binvox;
+    cli_command_bench, cli_command_carve, cli_command_engines, cli_command_combine, cli_command_help,
+    cli_command_binvox;
 
 enum { CLI_COMMANDS_MAX = 24 };
 

@@ -6,9 +6,9 @@
 
 const cli_command *const cli_commands[CLI_COMMANDS_MAX + 1] = {
     &cli_command_info,    &cli_command_repair,  &cli_command_remesh,  &cli_command_voxelize,
-    &cli_command_convert, &cli_command_combine, &cli_command_compare, &cli_command_augment,
-    &cli_command_batch,   &cli_command_view,    &cli_command_bench,   &cli_command_engines,
-    &cli_command_binvox,  &cli_command_help};
+    &cli_command_convert, &cli_command_combine, &cli_command_compare, &cli_command_carve,
+    &cli_command_augment, &cli_command_batch,   &cli_command_view,    &cli_command_bench,
+    &cli_command_engines, &cli_command_binvox,  &cli_command_help};
 
 static int refuse(const char *name) {
   static const char *const options[] = {"help", "version", NULL};

@@ -32,6 +32,7 @@ static vxm_model *model;
 static vxm_sampler *sampler;
 static vxm_sparse *sparse;
 static vxm_sparse_file *sparse_file;
+static vxm_carver *carver;
 static vxm_field *field;
 
 static const vxm_space space = {{4, 4, 4}, {0, 0, 0}, {0.25, 0.25, 0.25}};
@@ -76,6 +77,8 @@ static struct {
   vxm_sampler *sampler;
   vxm_sparse *sparse;
   vxm_sparse_file *sparse_file;
+  vxm_carver *carver;
+  vxm_carve_report carved;
   vxm_field *field;
   vxm_field_range range;
   vxm_reading_info reading;
@@ -115,6 +118,7 @@ static void drop_made(void) {
   vxm_sampler_destroy(out.sampler);
   vxm_sparse_destroy(out.sparse);
   vxm_sparse_file_close(out.sparse_file);
+  vxm_carver_destroy(out.carver);
   vxm_field_destroy(out.field);
   memset(&out, 0, sizeof out);
 }
@@ -433,6 +437,15 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
     vxm_sparse_write(P(0, sparse), P(1, "out.npy"), P(2, &grid_write), P(3, &error)))                        \
   X(vxm_sparse_write_coords, 3, 3, vxm_sparse_write_coords(P(0, sparse), P(1, "out.npy"), P(2, &error)))
 
+#define CARVE_CALLS(X)                                                                                      \
+  X(vxm_carver_create, 4, 7, vxm_carver_create(P(0, &out.carver), P(1, grid), P(2, mesh), P(3, &error)))    \
+  X(vxm_carver_create_sparse, 4, 7,                                                                         \
+    vxm_carver_create_sparse(P(0, &out.carver), P(1, sparse), P(2, mesh), P(3, &error)))                    \
+  X(vxm_carver_destroy, 1, 0, (vxm_carver_destroy(NULL), VXM_OK))                                           \
+  X(vxm_carver_place, 4, 6, vxm_carver_place(P(0, &out.carved), P(1, carver), P(2, unmoved), P(3, &error))) \
+  X(vxm_carver_move, 4, 6, vxm_carver_move(P(0, &out.carved), P(1, carver), P(2, unmoved), P(3, &error)))   \
+  X(vxm_carver_sparse, 3, 3, vxm_carver_sparse(P(0, &out.sparse), P(1, carver), P(2, &error)))
+
 #define CALLS(X)             \
   ERROR_AND_CONTEXT_CALLS(X) \
   MESH_CALLS(X)              \
@@ -441,7 +454,8 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
   ENGINE_CALLS(X)            \
   MODEL_CALLS(X)             \
   SAMPLER_CALLS(X)           \
-  SPARSE_CALLS(X)
+  SPARSE_CALLS(X)            \
+  CARVE_CALLS(X)
 
 #define FUNCTION(name, pointers, needed, call)    \
   static vxm_status call_##name(unsigned nulls) { \
@@ -517,8 +531,8 @@ static int check_header(const char *name) {
 
 static void test_all_are_listed(void **state) {
   (void)state;
-  static const char *const headers[] = {"base", "engine", "experimental", "field",  "grid",
-                                        "mesh", "repair", "sampler",      "sparse", "voxelize"};
+  static const char *const headers[] = {"base", "carve",  "engine",  "experimental", "field",   "grid",
+                                        "mesh", "repair", "sampler", "sparse",       "voxelize"};
   int found = 0;
   for (size_t h = 0; h < sizeof headers / sizeof *headers; h++)
     found += check_header(headers[h]);
@@ -574,6 +588,7 @@ static int set_up(void **state) {
   assert_int_equal(vxm_sparse_from_grid(&sparse, grid, NULL), VXM_OK);
   assert_int_equal(vxm_sparse_write(sparse, "in.octree", NULL, NULL), VXM_OK);
   assert_int_equal(vxm_sparse_file_open(&sparse_file, context, "in.octree", NULL), VXM_OK);
+  assert_int_equal(vxm_carver_create_sparse(&carver, sparse, mesh, NULL), VXM_OK);
   return 0;
 }
 
@@ -582,6 +597,7 @@ static int tear_down(void **state) {
   (void)state;
   vxm_context_destroy(context);
   vxm_engine_destroy(engine);
+  vxm_carver_destroy(carver);
   vxm_model_destroy(model);
   vxm_sampler_destroy(sampler);
   vxm_mesh_destroy(mesh);

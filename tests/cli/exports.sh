@@ -50,7 +50,7 @@ there=$(cd "$headers" && ls | grep -v '^experimental\.h$' | sort | tr '\n' ' ')
 unsized=$(cat "$headers"/*.h | awk '/^typedef struct vxm_[a-z_]+ \{/ { name = $3; getline; if ($0 !~ /^  size_t size;/) print name }' | sort | tr '\n' ' ')
 [ "$unsized" = "vxm_space vxm_variant " ] || fail "structs without their size: $unsized"
 
-for header in voxmend.h voxmend/base.h voxmend/engine.h voxmend/experimental.h voxmend/field.h voxmend/grid.h voxmend/mesh.h \
+for header in voxmend.h voxmend/base.h voxmend/carve.h voxmend/engine.h voxmend/experimental.h voxmend/field.h voxmend/grid.h voxmend/mesh.h \
   voxmend/repair.h voxmend/sampler.h voxmend/sparse.h voxmend/voxelize.h; do
   [ -e "$SRCDIR/src/$header" ] || fail "there is no $header"
   # every initializer of the header, too

@@ -20,7 +20,7 @@ order="voxmend base mesh sandbox
   voxel/sparse voxel/fields voxel/labels
   gpu/common gpu/opencl gpu/opengl gpu
   gridio/common gridio/formats gridio/mesh gridio/picture gridio/page gridio
-  export remesh augment experimental api
+  export remesh augment carve experimental api
   modules/assimp modules/images modules/occt modules/openmesh modules/cgal modules/openvdb modules/hdf5 modules/octomap"
 
 # Modules share the rooms that their makefile lists, and not each other.

@@ -73,6 +73,8 @@ def commands():
     yield "view", "view in.rle -o out.png --size 16x12", {}
     for operation in ("or", "minus"):
         yield "combine " + operation, "combine in.rle %s in.npy -o out.npy --report report.json" % operation, {}
+    yield "carve", "carve in.rle -t two.off -p path.csv -o out.npy --report report.json", {}
+    yield "carve octree", "carve in.rle -t two.off -p path.csv -o out.octree", {}
     for kind in ("binvox", "nrrd", "raw", "vtk", "msh", "schematic"):
         yield "binvox " + kind, "binvox -d 6 -t %s -dc -down -ri -fit -rotx two.off" % kind, {}
     yield "binvox blocks", "binvox -d 6 -e -mb -t schematic -rotz blocks.obj", {}
@@ -216,6 +218,7 @@ def make_inputs(folder):
     lines = ["v %r %r %r" % p for p in corners]
     for i, f in enumerate(faces):
         lines += ["g side%d" % (i % 2)] + ["f " + " ".join(str(c + 1) for c in f)]
+    write("path.csv", "0.1,0.2,0.3\n0.7,0.2,0.3\n0.7,0.2,0.3,1,1,0,0\n".replace(".3\n", ".3,1,0,0,0\n"))
     write("box.obj", "\n".join(lines) + "\n")
     write("blocks.obj", "\n".join(lines).replace("g side", "usemtl blockid_4") + "\n")
     for mesh in ("stl", "ply"):

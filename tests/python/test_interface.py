@@ -147,6 +147,32 @@ class Fields(unittest.TestCase):
         self.assertEqual(field.threshold(below=0), voxmend.voxelize(box(2), like=field))
         self.assertTrue((voxmend.distance(box(2), like=field, band=0, unsigned=True).values == abs(values)).all())
 
+    def test_carve(self):
+        """A box that goes along x, is lifted, and turns: what it meets is counted, and the stock stays."""
+        stock = voxmend.VoxelGrid(numpy.ones((12, 8, 8), bool), pitch=0.5)
+        corners = numpy.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) * 0.5
+        faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+        wanted = numpy.ones(stock.shape, bool)
+        wanted[1:9, 1:3, 1:3] = False
+        path = [[1.0, 1, 1], [4.0, 1, 1]]
+        self.assertTrue((stock.carve((corners, faces), path).matrix == wanted).all())
+        self.assertTrue((stock.to_sparse().carve((corners, faces), path).to_grid().matrix == wanted).all())
+        self.assertEqual(stock.filled_count, 12 * 8 * 8)
+        carver = voxmend.Carver(stock, (corners, faces))
+        self.assertEqual(carver.place(path[0]), voxmend.CarveReport(8, (1, 1, 1), (3, 3, 3)))
+        self.assertEqual(carver.move(path[1] + [2, 0, 0, 0]).removed, 24)
+        self.assertTrue((carver.grid().matrix == wanted).all())
+        quarter = numpy.array([[0, -1, 0, 4.5], [1, 0, 0, 1], [0, 0, 1, 1.0]])
+        turned = carver.move(quarter)
+        self.assertGreaterEqual(turned.removed, 4)
+        self.assertLessEqual(turned.removed, 4 * 4)  # corners go beyond the box, along x and y
+        self.assertEqual(carver.move([9.0, 9, 9]).end[0], 12)
+        for wrong in ([1.0, 2], [[1.0, 2, 3]], numpy.ones((3, 3)), [1.0, 2, 3, 0, 0, 0, 0], -numpy.eye(4)):
+            with self.assertRaises(voxmend.ArgumentError):
+                carver.move(wrong)
+        with self.assertRaises(voxmend.KindError):
+            voxmend.Carver(numpy.ones((2, 2, 2)), (corners, faces))
+
     def test_confidence(self):
         self.assertIsNone(voxmend.voxelize(sample("open_box"), 16).confidence)
         sure = voxmend.voxelize(sample("torus"), 16, confidence=True)

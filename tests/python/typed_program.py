@@ -98,6 +98,14 @@ def fields(mesh: voxmend.Mesh) -> List[voxmend.VoxelField]:
     return out
 
 
+def carved(grid: voxmend.VoxelGrid, tool: voxmend.Mesh) -> int:
+    carver = voxmend.Carver(grid.to_sparse(), tool)
+    step: voxmend.CarveReport = carver.place([0.0, 0.0, 0.0])
+    rest: voxmend.SparseGrid = carver.grid()
+    left: voxmend.VoxelGrid = grid.carve(tool, numpy.zeros((2, 3)))
+    return step.removed - carver.follow([[0.0, 0.0, 0.5]]) + rest.filled_count - left.filled_count
+
+
 def engines() -> List[str]:
     found: List[voxmend.EngineInfo] = voxmend.engines()
     engine = voxmend.Engine(found[0].name)
@@ -126,7 +134,7 @@ def main() -> None:
             torus = voxmend.load(file)
         torus = voxmend.load(io.BytesIO((folder / "torus.off").read_bytes()), "off")
         grid = grids(torus)
-        print(octrees(torus), len(fields(torus)), engines(), variants(torus).sum(), voxmend.remesh(mesh, voxel_size=(0.1, 0.1, 0.2)))
+        print(octrees(torus), len(fields(torus)), carved(grid, mesh), engines(), variants(torus).sum(), voxmend.remesh(mesh, voxel_size=(0.1, 0.1, 0.2)))
     grid.save(folder / "grid.binvox")
     print(voxmend.read(folder / "grid.binvox").compare(grid)["iou"], len(told))
     try:

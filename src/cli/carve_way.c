@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Reads the way of a tool: a pose in each line. */
+#include "cli/carve.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum { LINE_SIZE = 4096, MATRIX = 12, QUATERNION = 7, PLACE = 3 };
+
+int cli_way_open(cli_run *cli, cli_way *way, const char *path) {
+  *way = (cli_way){.name = cli_shown(path, "<stdin>")};
+  way->file = strcmp(path, "-") == 0 ? stdin : fopen(path, "re");
+  if (!way->file)
+    return cli_fail_text(cli, "%s: cannot open: %s", path, strerror(errno));
+  return CLI_DONE;
+}
+
+void cli_way_close(cli_way *way) {
+  if (way->file && way->file != stdin)
+    fclose(way->file);
+  way->file = NULL;
+}
+
+/** Removes blanks, so that "1, 2" is what "1,2" is. */
+static void squeeze(char *text) {
+  char *to = text;
+  for (const char *from = text; *from; from++)
+    if (!isspace((unsigned char)*from))
+      *to++ = *from;
+  *to = '\0';
+}
+
+static int columns_of(const char *text) {
+  int count = 1;
+  for (; *text; text++)
+    count += *text == ',';
+  return count;
+}
+
+/** A rotation as w,x,y,z, of any length, as a matrix. */
+static bool turn(double pose[12], const double q[4]) {
+  double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], s = 2 / n;
+  if (!(n > 0) || !isfinite(n) || !isfinite(s))
+    return false;
+  for (int a = 0; a < 3; a++) {
+    int b = (a + 1) % 3, c = (a + 2) % 3;
+    double x = q[1 + a], y = q[1 + b], z = q[1 + c];
+    pose[4 * a + a] = 1 - s * (y * y + z * z);
+    pose[4 * a + b] = s * (x * y - q[0] * z);
+    pose[4 * a + c] = s * (x * z + q[0] * y);
+  }
+  return true;
+}
+
+static bool make_pose(double pose[12], const double *numbers, int columns) {
+  if (columns == MATRIX) {
+    memcpy(pose, numbers, MATRIX * sizeof *pose);
+    return true;
+  }
+  const double straight[4] = {1, 0, 0, 0};
+  for (int a = 0; a < 3; a++)
+    pose[4 * a + 3] = numbers[a];
+  return turn(pose, columns == QUATERNION ? numbers + PLACE : straight);
+}
+
+/** Reads a line that is not empty; a first one that does not begin with a number is a heading. */
+static int read_pose(cli_run *cli, cli_way *way, const char *text, double pose[12], bool *is_heading) {
+  double numbers[MATRIX], first;
+  char begin[32];
+  snprintf(begin, sizeof begin, "%.*s", (int)strcspn(text, ","), text);
+  *is_heading = way->columns == 0 && !cli_read_number(&first, begin);
+  int columns = columns_of(text);
+  if (columns != MATRIX && columns != QUATERNION && columns != PLACE)
+    return cli_fail_text(cli,
+                         "%s:%" PRId64 ": %d columns: x,y,z are expected, x,y,z,qw,qx,qy,qz or the 12 "
+                         "numbers of a matrix",
+                         way->name, way->line, columns);
+  if (*is_heading)
+    return CLI_DONE;
+  if (way->columns != 0 && way->columns != columns)
+    return cli_fail_text(cli, "%s:%" PRId64 ": %d columns, and %d before", way->name, way->line, columns,
+                         way->columns);
+  if (!cli_read_numbers(numbers, columns, text))
+    return cli_fail_text(cli, "%s:%" PRId64 ": not %d numbers with commas between them", way->name, way->line,
+                         columns);
+  if (!make_pose(pose, numbers, columns))
+    return cli_fail_text(cli, "%s:%" PRId64 ": the quaternion is no rotation", way->name, way->line);
+  way->columns = columns;
+  return CLI_DONE;
+}
+
+int cli_way_next(cli_run *cli, cli_way *way, double pose[12], bool *is_lifted, bool *is_end) {
+  char text[LINE_SIZE];
+  *is_lifted = *is_end = false;
+  while (fgets(text, sizeof text, way->file)) {
+    way->line++;
+    if (!strchr(text, '\n') && !feof(way->file))
+      return cli_fail_text(cli, "%s:%" PRId64 ": longer than %d bytes", way->name, way->line, LINE_SIZE - 2);
+    squeeze(text);
+    *is_lifted |= !*text;
+    if (!*text || *text == '#')
+      continue;
+    bool is_heading;
+    int status = read_pose(cli, way, text, pose, &is_heading);
+    if (status != CLI_DONE || !is_heading)
+      return status;
+  }
+  if (ferror(way->file))
+    return cli_fail_text(cli, "%s: cannot read: %s", way->name, strerror(errno));
+  *is_end = true;
+  return CLI_DONE;
+}

@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** voxmend carve: what a tool leaves of a grid on its way. */
+#include "cli/carve.h"
+#include "cli/repair.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+enum { KEY_FORMAT = CLI_KEY_COMMAND, KEY_FORCE, KEY_POLYGONS, KEY_CONTACTS, KEY_SPARSE };
+
+static const cli_option known_options[] = {
+    {'t', "tool", "MESH", "the tool, in the model units of the grid, about its origin"},
+    {'p', "path", "FILE.csv",
+     "where the tool's origin goes, a position in each line: x,y,z; or x,y,z and a\n"
+     "quaternion qw,qx,qy,qz; or the 12 numbers of a 3 x 4 matrix, row after row. An\n"
+     "empty line lifts the tool: to the next position nothing is cut on the way;\n"
+     "'-' is standard input, whose lines are cut as they come"},
+    {'o', "output", "FILE", CLI_GRID_FILES "; '-' is standard output"},
+    {KEY_FORMAT, "format", "F", CLI_GRID_FORMATS},
+    {KEY_SPARSE, "sparse", NULL,
+     "cut an octree, whose memory follows the surface and the path [where the output\n"
+     "is .octree]"},
+    CLI_OPTION_FORCE(KEY_FORCE),
+    CLI_OPTIONS_SURFACE(KEY_POLYGONS, KEY_CONTACTS),
+    CLI_OPTIONS_THRESHOLD,
+    CLI_OPTIONS_READ,
+    {0, NULL, NULL, NULL}};
+
+typedef struct request {
+  const char *tool, *path, *output, *format;
+  bool force, sparse, keep_polygons, keep_contacts;
+  vxm_threshold_options threshold;
+} request;
+
+typedef struct outcome {
+  cli_input tool;
+  vxm_grid *grid; /**< the stock, then what is left of it; or NULL */
+  vxm_sparse *sparse;
+  int64_t before, removed, steps;
+  json_t *by_step; /**< voxels that each has removed; NULL = nobody asks */
+  double carve_ms; /**< without the time for reading the path */
+} outcome;
+
+static int read_options(cli_run *cli, request *out) {
+  const char *value;
+  int key;
+  while ((key = cli_next_option(cli, &value)) != CLI_END)
+    if (key == 'o')
+      out->output = value;
+    else if (key == 't')
+      out->tool = value;
+    else if (key == 'p')
+      out->path = value;
+    else if (key == KEY_FORMAT)
+      out->format = value;
+    else if (key == KEY_FORCE)
+      out->force = true;
+    else if (key == KEY_SPARSE)
+      out->sparse = true;
+    else if (key == KEY_CONTACTS)
+      out->keep_contacts = true;
+    else if (key == KEY_POLYGONS) {
+      if (cli_read_polygons(cli, &out->keep_polygons, value) == CLI_STOP)
+        return CLI_STOP;
+    } else if (key == CLI_STOP || cli_threshold_read(cli, &out->threshold, key, value) == CLI_STOP)
+      return CLI_STOP;
+  return CLI_END;
+}
+
+static int check(cli_run *cli, request *out) {
+  if (cli->argument_count != 1)
+    return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
+  if (!out->tool || !out->path)
+    return cli_usage(cli, "%s is missing", out->tool ? "-p PATH.csv" : "-t TOOL");
+  int inputs =
+      (strcmp(cli->arguments[0], "-") == 0) + (strcmp(out->tool, "-") == 0) + (strcmp(out->path, "-") == 0);
+  if (inputs > 1)
+    return cli_usage(cli, "standard input can be but one of the grid, the tool and the path");
+  cli_formats formats = cli_formats_with(VXM_FORMAT_BITS);
+  out->format = cli_output_format(cli, out->output, out->format, formats.name);
+  if (!out->format)
+    return CLI_STOP;
+  cli_reads(cli, out->tool);
+  cli_reads(cli, out->path);
+  cli_writes(cli, "-o", out->output, cli_has_json(out->format, false));
+  if (cli_check_names(cli) == CLI_STOP)
+    return CLI_STOP;
+  out->sparse |= strcmp(out->format, "octree") == 0;
+  return cli_check_surface_file(cli, out->output, out->format, out->force);
+}
+
+/* ---- Reading ---- */
+
+static int read_grid(cli_run *cli, vxm_grid **out, const request *given) {
+  cli_values values = {NULL, NULL};
+  const char *path = cli->arguments[0];
+  if (cli_values_read(cli, &values, path) != VXM_OK)
+    return cli_fail(cli);
+  if (cli_values_to_bits(cli, &values, &given->threshold, path, "only set and clear voxels can be cut") !=
+      CLI_DONE) {
+    cli_values_free(&values);
+    return CLI_FAILED;
+  }
+  *out = values.grid;
+  return CLI_DONE;
+}
+
+/** As an octree, if that can be had without a grid; VXM_ERROR_NUMBERS if not. */
+static vxm_status read_octree(cli_run *cli, vxm_sparse **out, const request *given) {
+  const char *path = cli->arguments[0];
+  if (strcmp(path, "-") == 0 || cli_threshold_given(&given->threshold))
+    return VXM_ERROR_NUMBERS;
+  vxm_status status = vxm_sparse_read(out, cli->context, path, &cli->error);
+  for (int64_t i = 0; i < vxm_sparse_warning_count(*out); i++)
+    cli_warn(cli, "%s: %s", path, vxm_sparse_warning(*out, i));
+  return status;
+}
+
+static int read_stock(cli_run *cli, outcome *made, const request *given) {
+  if (!given->sparse)
+    return read_grid(cli, &made->grid, given);
+  vxm_status status = read_octree(cli, &made->sparse, given);
+  if (status != VXM_ERROR_NUMBERS)
+    return status == VXM_OK ? CLI_DONE : cli_fail(cli);
+  cli->error = (vxm_error)VXM_ERROR_INIT;
+  vxm_grid *grid = NULL;
+  int result = read_grid(cli, &grid, given);
+  if (result == CLI_DONE && vxm_sparse_from_grid(&made->sparse, grid, &cli->error) != VXM_OK)
+    result = cli_fail(cli);
+  vxm_grid_destroy(grid);
+  return result;
+}
+
+/* ---- Cutting ---- */
+
+static int step(cli_run *cli, outcome *made, vxm_carver *carver, const cli_way *way, const double pose[12],
+                bool is_lifted) {
+  vxm_carve_report report = VXM_CARVE_REPORT_INIT;
+  double start = cli_clock();
+  vxm_status status = is_lifted ? vxm_carver_place(&report, carver, pose, &cli->error)
+                                : vxm_carver_move(&report, carver, pose, &cli->error);
+  made->carve_ms += cli_clock() - start;
+  if (status == VXM_ERROR_ARGUMENT || status == VXM_ERROR_RANGE)
+    return cli_fail_text(cli, "%s:%" PRId64 ": %s", way->name, way->line, cli->error.text);
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  made->steps++;
+  made->removed += report.removed;
+  if (made->by_step)
+    json_array_append_new(made->by_step, json_integer(report.removed));
+  return CLI_DONE;
+}
+
+static int go(cli_run *cli, outcome *made, vxm_carver *carver, cli_way *way) {
+  for (;;) {
+    double pose[12];
+    bool is_lifted, is_end;
+    int status = cli_way_next(cli, way, pose, &is_lifted, &is_end);
+    if (status == CLI_DONE && cli_progress(cli, "carving", 0))
+      return cli_fail_text(cli, "interrupted");
+    if (status == CLI_DONE && !is_end)
+      status = step(cli, made, carver, way, pose, is_lifted);
+    if (status != CLI_DONE || is_end)
+      return status;
+  }
+}
+
+/** Puts what is left in the place of the octree that was read. */
+static int take_octree(cli_run *cli, outcome *made, const vxm_carver *carver) {
+  vxm_sparse *left = NULL;
+  if (vxm_carver_sparse(&left, carver, &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  vxm_sparse_destroy(made->sparse);
+  made->sparse = left;
+  return CLI_DONE;
+}
+
+static int carve(cli_run *cli, outcome *made, const request *given) {
+  vxm_carver *carver = NULL;
+  cli_way way = {.file = NULL};
+  vxm_status created = made->sparse
+                           ? vxm_carver_create_sparse(&carver, made->sparse, made->tool.mesh, &cli->error)
+                           : vxm_carver_create(&carver, made->grid, made->tool.mesh, &cli->error);
+  int status = created == VXM_OK ? cli_way_open(cli, &way, given->path) : cli_fail(cli);
+  made->before = made->sparse ? vxm_sparse_count(made->sparse) : vxm_grid_count(made->grid);
+  if (status == CLI_DONE)
+    status = go(cli, made, carver, &way);
+  if (status == CLI_DONE && made->steps == 0)
+    status = cli_fail_text(cli, "%s: there is no position in it", way.name);
+  if (status == CLI_DONE && made->sparse)
+    status = take_octree(cli, made, carver);
+  cli_way_close(&way);
+  vxm_carver_destroy(carver);
+  return status;
+}
+
+/* ---- Results ---- */
+
+static const vxm_space *space_of(const outcome *made) {
+  return made->sparse ? vxm_sparse_space(made->sparse) : vxm_grid_space(made->grid);
+}
+
+static double steps_per_second(const outcome *made) {
+  return made->carve_ms > 0 ? 1e3 * (double)made->steps / made->carve_ms : 0;
+}
+
+static json_t *make_report(const cli_run *cli, const request *given, outcome *made, uint64_t hash) {
+  const double *size = space_of(made)->voxel_size;
+  double voxel = size[0] * size[1] * size[2];
+  json_t *report = json_object();
+  json_object_set_new(report, "input", cli_json_text(cli->arguments[0]));
+  json_object_set_new(report, "tool", cli_json_text(given->tool));
+  json_object_set_new(report, "path", cli_json_text(given->path));
+  json_object_set_new(report, "output", cli_json_text(given->output));
+  json_object_set_new(report, "grid", cli_json_space(space_of(made)));
+  json_object_set_new(report, "steps", json_integer(made->steps));
+  json_object_set_new(report, "voxels_before", json_integer(made->before));
+  json_object_set_new(report, "voxels", json_integer(made->before - made->removed));
+  json_object_set_new(report, "removed", json_integer(made->removed));
+  json_object_set_new(report, "removed_volume", cli_json_number((double)made->removed * voxel));
+  json_object_set_new(report, "voxel_volume", cli_json_number(voxel));
+  json_object_set(report, "removed_by_step", made->by_step);
+  json_object_set_new(report, "hash", cli_json_hash(hash));
+  json_object_set_new(report, "carve_ms", cli_json_number(made->carve_ms));
+  json_object_set_new(report, "steps_per_second", cli_json_number(steps_per_second(made)));
+  json_object_set(report, "warnings", cli->warnings);
+  return report;
+}
+
+static int write_rest(cli_run *cli, const request *given, outcome *made) {
+  vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
+  write.format = given->format;
+  write.keep_polygons = given->keep_polygons;
+  write.keep_contacts = given->keep_contacts;
+  vxm_status status = made->sparse ? vxm_sparse_write(made->sparse, given->output, &write, &cli->error)
+                                   : vxm_grid_write(made->grid, given->output, &write, &cli->error);
+  if (status != VXM_OK)
+    return cli_fail(cli);
+  uint64_t hash = made->sparse ? vxm_sparse_hash(made->sparse) : vxm_grid_hash(made->grid);
+  cli_progress_clear(cli);
+  cli_warn_lattice(cli, given->output, given->format, space_of(made));
+  if (cli_summary(cli)) {
+    cli_rows_space(cli, space_of(made));
+    cli_row(cli, "steps", "%" PRId64 " in %.1f ms (%.0f a second)", made->steps, made->carve_ms,
+            steps_per_second(made));
+    cli_row(cli, "removed", "%" PRId64 " of %" PRId64 " voxels", made->removed, made->before);
+    cli_row(cli, "voxels", "%" PRId64, made->before - made->removed);
+    cli_row(cli, "hash", "%016" PRIx64, hash);
+    cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
+  }
+  return cli_finish(cli, make_report(cli, given, made, hash));
+}
+
+static int run(cli_run *cli) {
+  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
+  if (read_options(cli, &given) == CLI_STOP || check(cli, &given) == CLI_STOP)
+    return cli->status;
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  vxm_repair_options repair = VXM_REPAIR_OPTIONS_INIT;
+  outcome made = {.by_step = cli->json || cli->report || cli->capture ? json_array() : NULL};
+  int status = read_stock(cli, &made, &given);
+  if (status == CLI_DONE)
+    status = cli_read_repaired(cli, &made.tool, given.tool, &repair);
+  if (status == CLI_DONE)
+    status = carve(cli, &made, &given);
+  if (status == CLI_DONE)
+    status = write_rest(cli, &given, &made);
+  vxm_mesh_destroy(made.tool.mesh);
+  vxm_grid_destroy(made.grid);
+  vxm_sparse_destroy(made.sparse);
+  json_decref(made.by_step);
+  return status;
+}
+
+const cli_command cli_command_carve = {
+    .name = "carve",
+    .arguments = "GRID -t TOOL -p PATH.csv -o FILE [OPTION]...",
+    .summary = "remove what a moving tool cuts: milling, drilling",
+    .notes =
+        "Every voxel is removed whose centre comes to lie within the tool, at any time of its way. A "
+        "straight\n"
+        "way is covered exactly, however long a step is and whatever the shape of the tool; through turns "
+        "no\n"
+        "point moves by more than half a voxel at a time, without gaps. The tool is repaired as 'voxmend\n"
+        "voxelize' does. In the path, lines that begin with # and a heading such as x,y,z are passed over.\n"
+        "The report (--json) has the voxels that each step has removed.\n\n"
+        "Examples:\n"
+        "  voxmend carve block.npy -t ball.stl -p path.csv -o part.npy\n"
+        "  voxmend carve block.octree -t drill.stl -p holes.csv -o part.octree --json\n"
+        "  controller | voxmend carve block.npy -t ball.stl -p - -o part.stl",
+    .options = known_options,
+    .run = run,
+};
