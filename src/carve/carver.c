@@ -180,7 +180,8 @@ static vxm_status fill_window(vxm_carver *carver, const vxm_window *window, cons
   vxm_lattice lattice = {carver->lattice.bits, carver->lattice.unit, *space};
   vxm_variation variation = {
       .points = {.from = (const double(*)[3])carver->moved, .count = carver->point_count, .matrix = unmoved}};
-  return vxm_model_instance_fill(&carver->instance, window, &lattice, &variation, error);
+  vxm_status status = vxm_model_instance_place(&carver->instance, &lattice, &variation, error);
+  return status == VXM_OK ? vxm_model_pass_fill(&carver->instance.pass, window, error) : status;
 }
 
 static void clear_window(vxm_stock *stock, const vxm_window *window, const int64_t begin[3]) {
