@@ -92,10 +92,11 @@ const cli_option voxelize_options[] = {
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
      ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .vdb or .binvox, with the names in a\n"
      ".json beside it; .vox, .schem, .litematic or .glb"},
-    {KEY_COLOR, "color", "mesh|noise|position|part|FILE.frag",
+    {KEY_COLOR, "color", "mesh|noise|position|part|FILE",
      "write a colour for each set voxel instead: that of the nearest point of the mesh,\n"
      "by its vertices, faces, materials and textures; Perlin's noise, where it is, its\n"
-     "part, or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox, .glb,\n"
+     "part, a function in GLSL (FILE.frag, needs --engine opengl), or the numbers or\n"
+     "colours of a volume (such as FILE.nrrd) there; .npy, .ply, .vox, .glb,\n"
      ".schem, .litematic, .nrrd, .nii, .vti, .vtk, .tif or .h5"},
     {KEY_COLOR_AVERAGE, "color-average", NULL,
      "with --color mesh: the mean over the surface within a voxel, where there is any"},
@@ -315,7 +316,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
 
 static int check_names(cli_run *cli, const voxelize_request *given) {
   cli_reads(cli, given->like);
-  if (given->field.color && given->field.color_options.by == VXM_COLOR_GLSL)
+  if (given->field.color &&
+      (given->field.color_options.by == VXM_COLOR_GLSL || given->field.color_options.by == VXM_COLOR_VOLUME))
     cli_reads(cli, given->field.color_name);
   cli_writes(cli, "-o", given->output, cli_has_json(given->format, given->field.labels));
   cli_writes(cli, "--confidence", given->confidence, true);
