@@ -9,7 +9,7 @@ import numpy
 from . import _core, _values
 from ._core import ffi, lib
 from ._engines import EngineLike
-from ._errors import ArgumentError
+from ._errors import ArgumentError, KindError
 from ._field import VoxelField
 from ._mesh_sources import MeshLike
 from ._records import CoverageReport, DistanceReport, LabelReport
@@ -115,22 +115,25 @@ def labels(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str =
 
 
 def colors(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str = "noise", source: Optional[str] = None,
-           average: bool = False, pitch: Optional[Size] = None, voxel_size: Optional[Size] = None, fit: Optional[str] = None,
-           pad: int = 0, bounds: Optional[ArrayLike] = None, like: Optional[Like] = None, mode: str = "solid",
-           surface: str = "conservative", method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto",
-           thin: str = "auto", repair: bool = True, engine: EngineLike = None, progress: Progress = None,
-           timeout: Optional[float] = None) -> VoxelField:
+           average: bool = False, volume: Optional[VoxelField] = None, pitch: Optional[Size] = None,
+           voxel_size: Optional[Size] = None, fit: Optional[str] = None, pad: int = 0, bounds: Optional[ArrayLike] = None,
+           like: Optional[Like] = None, mode: str = "solid", surface: str = "conservative", method: str = "vote",
+           vote: str = "auto", parts: str = "auto", cavities: str = "auto", thin: str = "auto", repair: bool = True,
+           engine: EngineLike = None, progress: Progress = None, timeout: Optional[float] = None) -> VoxelField:
     """A colour for each set voxel.
 
     Args:
         by: "noise": Perlin's, in three dimensions; "position": red, green and blue along x, y and z; "part": a hue for each
             connected component; "glsl": a function, `source`, which needs engine="opengl"; "mesh": the mesh's own, of vertices,
-            faces, materials and textures. A file is read with them; a Mesh has them if `load(..., colors=True)` made it.
+            faces, materials and textures. A file is read with them; a Mesh has them if `load(..., colors=True)` made it;
+            "volume": numbers or colours that are sampled at the centres of voxels.
         source: with "glsl": defines vec3 color(vec3 position, vec3 unit, uint part), of a voxel's centre in model units, the
             same from the grid's corner on with its longest side as 1, and the number of the component, from 1 on; it may
             call float noise(vec3), -1 to 1.
         average: with "mesh": the mean over the surface within a voxel, where there is any, in place of the colour nearest to
             its centre.
+        volume: with "volume": a field in the same coordinates. It is interpolated between the centres of its voxels; beyond the
+            outermost ones the nearest point counts. Numbers are grey, black the least and white the greatest.
         others: as for `voxmend.voxelize`, which sets the same voxels.
 
     Returns:
@@ -141,6 +144,11 @@ def colors(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str =
                         average=_values.flag("colors: average", average))
     if (source is not None) != (by == "glsl"):
         raise ArgumentError("colors: by='glsl' and a source go together")
+    if (volume is not None) != (by == "volume"):
+        raise ArgumentError("colors: by='volume' and a volume go together")
+    if volume is not None and not isinstance(volume, VoxelField):
+        raise KindError("colors: the volume is a %s, not a VoxelField" % type(volume).__name__)
+    options.volume = ffi.NULL if volume is None else volume._pointer
     code = ffi.NULL if source is None else ffi.new("char[]", _values.word("colors: source", source).encode())
     options.source = code
     rules = Rules(mode, surface, method, vote, parts, cavities, thin)

@@ -2,6 +2,7 @@
 /** The public functions about colours: they check arguments and call down. */
 #include "base/sized.h"
 #include "export/colors.h"
+#include "export/volume_colors.h"
 #include "voxel/labels/mesh_colors.h"
 
 static vxm_status check(vxm_color_options *chosen, const vxm_space *space, const vxm_color_options *options,
@@ -10,15 +11,21 @@ static vxm_status check(vxm_color_options *chosen, const vxm_space *space, const
   vxm_status status = VXM_OPTIONS_READ(chosen, options, "colours", error);
   if (status != VXM_OK)
     return status;
-  if ((unsigned)chosen->by > VXM_COLOR_MESH)
+  if ((unsigned)chosen->by > VXM_COLOR_VOLUME)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "colours: %d is none of the functions", (int)chosen->by);
   if (chosen->by == VXM_COLOR_GLSL && !chosen->source)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "colours: the source of the function is NULL");
   if (chosen->by == VXM_COLOR_MESH && !chosen->mesh)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "colours: the mesh that gives them is NULL");
+  if (chosen->by == VXM_COLOR_VOLUME && !chosen->volume)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "colours: the volume that gives them is NULL");
   if (chosen->by == VXM_COLOR_MESH)
     status = vxm_mesh_colors_check(chosen->mesh, error);
-  return status == VXM_OK ? vxm_space_check(space, error) : status;
+  if (status == VXM_OK)
+    status = vxm_space_check(space, error);
+  return status == VXM_OK && chosen->by == VXM_COLOR_VOLUME
+             ? vxm_volume_colors_check(chosen->volume, space, error)
+             : status;
 }
 
 vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report, vxm_model *model,
@@ -30,7 +37,7 @@ vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report, vxm_mo
   vxm_status status = check(&chosen, space, options, error);
   vxm_voxelize_report made = {0};
   if (status == VXM_OK)
-    status = vxm_colors_run(values, &made, model, space, &chosen, error);
+    status = vxm_colors_make(values, &made, model, space, &chosen, error);
   if (status == VXM_OK)
     VXM_RESULT_WRITE(report, &made);
   return status;

@@ -35,11 +35,13 @@ int cli_color_read(cli_run *cli, cli_field *field, const char *value) {
   static const vxm_color_by by[] = {VXM_COLOR_NOISE, VXM_COLOR_POSITION, VXM_COLOR_PART, VXM_COLOR_MESH};
   int choice = cli_read_choice(value, choices);
   char list[CLI_LIST_MAX];
-  if (choice < 0 && !cli_is_extension(value, "frag"))
-    return cli_usage(cli, "--color '%s' is none of %s, and no FILE.frag", value, cli_list(list, choices));
+  bool is_function = cli_is_extension(value, "frag");
+  if (choice < 0 && !is_function && !strchr(value, '.'))
+    return cli_usage(cli, "--color '%s' is none of %s, and no FILE.frag or FILE.nrrd", value,
+                     cli_list(list, choices));
   field->color = true;
   field->color_name = value;
-  field->color_options.by = choice >= 0 ? by[choice] : VXM_COLOR_GLSL;
+  field->color_options.by = choice >= 0 ? by[choice] : is_function ? VXM_COLOR_GLSL : VXM_COLOR_VOLUME;
   cli->read.colors = field->color_options.by == VXM_COLOR_MESH;
   return CLI_END;
 }
@@ -54,7 +56,16 @@ vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
                            const vxm_space *space, const char *path, const char *format) {
   vxm_color_options options = field->color_options;
   char *source = NULL;
+  vxm_field *volume = NULL;
   options.format = format;
+  if (options.by == VXM_COLOR_VOLUME) {
+    vxm_status read = vxm_field_read(&volume, cli->context, field->color_name, &cli->error);
+    if (read != VXM_OK)
+      return read;
+    for (int64_t i = 0; i < vxm_field_warning_count(volume); i++)
+      cli_warn(cli, "%s: %s", field->color_name, vxm_field_warning(volume, i));
+    options.volume = volume;
+  }
   if (options.by == VXM_COLOR_GLSL) {
     source = read_source(cli, field->color_name);
     if (!source)
@@ -63,8 +74,9 @@ vxm_status cli_color_write(cli_run *cli, cli_field *field, vxm_voxelize_report *
   }
   vxm_status status = vxm_model_write_colors(report, model, space, path, &options, &cli->error);
   free(source);
-  if (status == VXM_ERROR_ARGUMENT && options.by == VXM_COLOR_MESH)
-    cli_color_name_mesh(cli, field->color_mesh);
+  if (status == VXM_ERROR_ARGUMENT && (options.by == VXM_COLOR_MESH || options.by == VXM_COLOR_VOLUME))
+    cli_color_name_mesh(cli, volume ? field->color_name : field->color_mesh);
+  vxm_field_destroy(volume);
   return status;
 }
 

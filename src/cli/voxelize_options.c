@@ -94,11 +94,12 @@ const cli_option voxelize_options[] = {
      "write which part, group or material each voxel belongs to instead, from 1 on;\n"
      ".npy, .nrrd, .nii, .vti, .vtk, .tif, .h5, .zarr, .vdb, .octree or .binvox, with\n"
      "the names in a .json beside it; .vox, .schem, .litematic or .glb"},
-    {KEY_COLOR, "color", "mesh|noise|position|part|FILE.frag",
+    {KEY_COLOR, "color", "mesh|noise|position|part|FILE",
      "write a colour for each set voxel instead: that of the nearest point of the mesh,\n"
      "by its vertices, faces, materials and textures; Perlin's noise, where it is, its\n"
-     "part, or a function in GLSL, which needs --engine opengl; .npy, .ply, .vox, .glb,\n"
-     ".schem, .litematic, .nrrd, .octree, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
+     "part, a function in GLSL (FILE.frag, needs --engine opengl), or the numbers or\n"
+     "colours of a volume (such as FILE.nrrd) there; .npy, .ply, .vox, .glb, .schem,\n"
+     ".litematic, .nrrd, .octree, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
     {KEY_COLOR_AVERAGE, "color-average", NULL,
      "with --color mesh: the mean over the surface within a voxel, where there is any"},
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
@@ -328,7 +329,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
 
 static int check_names(cli_run *cli, const voxelize_request *given) {
   cli_reads(cli, given->like);
-  if (given->field.color && given->field.color_options.by == VXM_COLOR_GLSL)
+  if (given->field.color &&
+      (given->field.color_options.by == VXM_COLOR_GLSL || given->field.color_options.by == VXM_COLOR_VOLUME))
     cli_reads(cli, given->field.color_name);
   cli_writes(cli, "-o", given->output, cli_has_json(given->format, given->field.labels));
   cli_writes(cli, "--confidence", given->confidence, true);

@@ -378,7 +378,8 @@ typedef enum vxm_color_by {
   VXM_COLOR_POSITION,  /**< red, green and blue along x, y and z */
   VXM_COLOR_PART,      /**< a hue for each connected component */
   VXM_COLOR_GLSL,      /**< a function in GLSL: needs an engine of OpenGL */
-  VXM_COLOR_MESH       /**< the mesh as it was read: its vertices, faces, materials and textures */
+  VXM_COLOR_MESH,      /**< the mesh as it was read: its vertices, faces, materials and textures */
+  VXM_COLOR_VOLUME     /**< a field that is sampled at the voxels' centres */
 } vxm_color_by;
 
 /** Which colours, and the format of their file. */
@@ -395,13 +396,18 @@ typedef struct vxm_color_options {
                            and in the same coordinates as the model's, which may be its repair */
   bool average; /**< with VXM_COLOR_MESH: the mean over the surface within a voxel, by area and in linear
                    light, where there is any; else the colour of the nearest point to its centre */
-  const char *blocks; /**< of a file: as in vxm_grid_write_options */
-  int up;             /**< of a file: as in vxm_grid_write_options */
+  const char *blocks;      /**< of a file: as in vxm_grid_write_options */
+  int up;                  /**< of a file: as in vxm_grid_write_options */
+  const vxm_field *volume; /**< with VXM_COLOR_VOLUME: numbers or colours, in the same coordinates as the
+                              model's. Between the centres of its voxels they are interpolated along x, y and
+                              z; beyond the outermost centres the nearest point counts. Numbers are grey,
+                              black the least and white the greatest of the volume; what is no finite number,
+                              or has no colour, does not count, and is black where nothing else is near */
 } vxm_color_options;
 
 /** Initial value of vxm_color_options. */
 #define VXM_COLOR_OPTIONS_INIT \
-  { sizeof(vxm_color_options), VXM_COLOR_NOISE, NULL, NULL, NULL, false, NULL, 0 }
+  { sizeof(vxm_color_options), VXM_COLOR_NOISE, NULL, NULL, NULL, false, NULL, 0, NULL }
 
 /**
  * Gives each set voxel of a model a colour.
@@ -411,9 +417,9 @@ typedef struct vxm_color_options {
  * @param report  may be NULL
  * @param options NULL = defaults
  * @return as vxm_model_voxelize; VXM_ERROR_ARGUMENT too, with what the driver says, for a function that does
- *         not compile, and for a mesh without colours; VXM_ERROR_UNAVAILABLE for GLSL without an engine of
- *         OpenGL. The engine and the CPU may differ by 1 in the built-in functions. After a failure the
- * values are unspecified
+ *         not compile, for a mesh without colours, and for a volume of labels or one beside the grid;
+ * VXM_ERROR_UNAVAILABLE for GLSL without an engine of OpenGL. The engine and the CPU may differ by 1 in the
+ * built-in functions. After a failure the values are unspecified
  */
 VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report, vxm_model *model,
                                     const vxm_space *space, const vxm_color_options *options,

@@ -3,6 +3,7 @@
  * every voxel in its place with a colour near its own. */
 #include "../voxel/shapes.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -181,8 +182,145 @@ static void test_arguments(void **state) {
   vxm_soup_destroy(soup);
 }
 
+/* ---- From a volume ---- */
+
+/** A number along an axis, between what a function gives at the two centres about it. */
+static double oracle(const vxm_space *of, const double *numbers, const double at[3], int axis, int64_t i[3]) {
+  if (axis == 3)
+    return numbers[(i[0] * of->dims[1] + i[1]) * of->dims[2] + i[2]];
+  int64_t before = -1;
+  double centre = 0, value[2];
+  for (int64_t n = 0; n < of->dims[axis]; n++) { /* the last centre that is not behind it */
+    double next = of->origin[axis] + ((double)n + 0.5) * of->voxel_size[axis];
+    if (next <= at[axis]) {
+      before = n;
+      centre = next;
+    }
+  }
+  i[axis] = before < 0 ? 0 : before;
+  value[0] = oracle(of, numbers, at, axis + 1, i);
+  if (before < 0 || before + 1 == of->dims[axis])
+    return value[0];
+  i[axis] = before + 1;
+  value[1] = oracle(of, numbers, at, axis + 1, i);
+  return value[0] + (value[1] - value[0]) * (at[axis] - centre) / of->voxel_size[axis];
+}
+
+enum { WIDE = 7, DEEP = 5, HIGH = 4, NUMBERS = WIDE * DEEP * HIGH };
+
+/** It covers a part of the model. */
+static const vxm_space small = {{WIDE, DEEP, HIGH}, {2.3, 1.7, 1.1}, {3.7, 5.1, 4.3}};
+static const vxm_space coarse = {{40, 30, 25}, {0, 0, 0}, {1, 1, 1}};
+
+static uint8_t *colors_of(const vxm_field *volume, vxm_status wanted) {
+  vxm_soup *soup;
+  vxm_model *model = model_of(&soup);
+  vxm_color_options options = VXM_COLOR_OPTIONS_INIT;
+  uint8_t *values = malloc((size_t)4 * 40 * 30 * 25);
+  vxm_error error = VXM_ERROR_INIT;
+  assert_non_null(values);
+  options.by = VXM_COLOR_VOLUME;
+  options.volume = volume;
+  vxm_status status = vxm_model_colors(values, NULL, model, &coarse, &options, &error);
+  if (status != wanted)
+    fail_msg("%s", error.text);
+  vxm_model_destroy(model);
+  vxm_soup_destroy(soup);
+  return values;
+}
+
+/** Each channel is that of its numbers, which lie from 0 to 1; `given` is 0 where nothing counts. */
+static void check_sampled(const uint8_t *values, double numbers[3][NUMBERS], const double *given) {
+  size_t set = 0;
+  for (int64_t i = 0; i < 40; i++)
+    for (int64_t j = 0; j < 30; j++)
+      for (int64_t k = 0; k < 25; k++) {
+        const uint8_t *voxel = values + 4 * ((i * 30 + j) * 25 + k);
+        const double at[3] = {(double)i + 0.5, (double)j + 0.5, (double)k + 0.5};
+        if (voxel[3] == 0)
+          continue;
+        int64_t index[3];
+        double weight = oracle(&small, given, at, 0, index);
+        assert_int_equal(voxel[3], 255);
+        set++;
+        for (int c = 0; c < 3; c++) {
+          double sum = oracle(&small, numbers[c], at, 0, index);
+          assert_true(fabs(voxel[c] - (weight > 1e-9 ? 255 * sum / weight : 0)) < 0.51);
+        }
+      }
+  assert_true(set > 500);
+}
+
+static void test_volume_of_numbers(void **state) {
+  (void)state;
+  static double numbers[3][NUMBERS], given[NUMBERS];
+  float made[NUMBERS];
+  vxm_field *volume;
+  for (size_t n = 0; n < NUMBERS; n++) {
+    made[n] = -3 + 20 * (float)((n * 37) % 101) / 100;
+    given[n] = 1;
+  }
+  made[50] = NAN;
+  made[51] = INFINITY;
+  made[0] = -3; /* the least and the greatest */
+  made[1] = 17;
+  given[50] = given[51] = 0;
+  for (size_t n = 0; n < NUMBERS; n++)
+    for (int c = 0; c < 3; c++)
+      numbers[c][n] = given[n] > 0 ? ((double)made[n] + 3) / 20 : 0;
+  assert_int_equal(vxm_field_create(&volume, context, &small, VXM_FIELD_NUMBERS, VXM_FLOAT32, made, NULL),
+                   VXM_OK);
+  uint8_t *values = colors_of(volume, VXM_OK);
+  check_sampled(values, numbers, given);
+  vxm_field_destroy(volume);
+  free(values);
+}
+
+static void test_volume_of_colors(void **state) {
+  (void)state;
+  static double numbers[3][NUMBERS], given[NUMBERS];
+  uint8_t made[NUMBERS][4];
+  vxm_field *volume;
+  for (size_t n = 0; n < NUMBERS; n++) {
+    made[n][3] = n % 9 == 0 ? 0 : 255;
+    given[n] = n % 9 != 0;
+    for (int c = 0; c < 3; c++) {
+      made[n][c] = (uint8_t)(n % 9 == 0 ? 0 : (n * 53 + (size_t)c * 91) % 256);
+      numbers[c][n] = made[n][c] / 255.0;
+    }
+  }
+  assert_int_equal(vxm_field_create(&volume, context, &small, VXM_FIELD_COLORS, VXM_UINT8, made, NULL),
+                   VXM_OK);
+  uint8_t *values = colors_of(volume, VXM_OK);
+  check_sampled(values, numbers, given);
+  vxm_field_destroy(volume);
+  free(values);
+}
+
+static void test_volumes_refused(void **state) {
+  (void)state;
+  static const uint8_t labels[NUMBERS] = {1};
+  vxm_space beside = small;
+  vxm_field *volume;
+  free(colors_of(NULL, VXM_ERROR_ARGUMENT));
+  assert_int_equal(vxm_field_create(&volume, context, &small, VXM_FIELD_LABELS, VXM_UINT8, labels, NULL),
+                   VXM_OK);
+  free(colors_of(volume, VXM_ERROR_ARGUMENT));
+  vxm_field_destroy(volume);
+  beside.origin[1] = 30;
+  assert_int_equal(vxm_field_create(&volume, context, &beside, VXM_FIELD_NUMBERS, VXM_UINT8, labels, NULL),
+                   VXM_OK);
+  free(colors_of(volume, VXM_ERROR_ARGUMENT));
+  vxm_field_destroy(volume);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_npy), cmocka_unit_test(test_ply),
-                                     cmocka_unit_test(test_vox), cmocka_unit_test(test_arguments)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_npy),
+                                     cmocka_unit_test(test_ply),
+                                     cmocka_unit_test(test_vox),
+                                     cmocka_unit_test(test_arguments),
+                                     cmocka_unit_test(test_volume_of_numbers),
+                                     cmocka_unit_test(test_volume_of_colors),
+                                     cmocka_unit_test(test_volumes_refused)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }

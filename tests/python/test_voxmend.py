@@ -275,6 +275,19 @@ class Grids(unittest.TestCase):
         self.assertAlmostEqual(float(values.sum() * pitch.prod()), voxmend.info(sample("sphere"))["volume"], delta=0.05)
 
 
+    def test_colors_of_a_volume(self):
+        box = cube()
+        volume = voxmend.VoxelField(numpy.arange(8.0).reshape(2, 2, 2), 4.0, (-4.0, -4.0, -4.0), "numbers")
+        colors = voxmend.colors(box, 8, by="volume", volume=volume)
+        grid = voxmend.voxelize(box, 8)
+        at = numpy.clip((grid.origin + (numpy.argwhere(grid.matrix) + 0.5) * grid.pitch + 4) / 4 - 0.5, 0, 1)
+        expected = (at @ [4, 2, 1]) / 7 * 255
+        self.assertLess(abs(colors.values[grid.matrix][:, 0] - expected).max(), 0.51)
+        for wrong in (dict(by="volume"), dict(volume=volume), dict(by="volume", volume=3)):
+            with self.assertRaises((voxmend.ArgumentError, voxmend.KindError)):
+                voxmend.colors(box, 8, **wrong)
+
+
 class Variants(unittest.TestCase):
     def make(self, **changed):
         sampler = voxmend.Sampler(**dict(ALL, **changed))
