@@ -12,6 +12,7 @@
 #include "voxel/closest/closest_point.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct work {
   const vxm_baseline_job *job;
@@ -70,19 +71,13 @@ static void set_bits(const work *w) {
 
 vxm_status vxm_baseline_density(const vxm_baseline_job *job, vxm_error *error) {
   const int64_t *dims = job->grid->space.dims;
-  uint64_t bytes = vxm_space_bytes(&job->grid->space), voxels = 0; /* the grid has this many: they fit */
-  voxels = (uint64_t)dims[0] * (uint64_t)dims[1] * (uint64_t)dims[2];
-  if (bytes > SIZE_MAX / 8 || voxels > SIZE_MAX)
-    return vxm_fail(error, VXM_ERROR_RANGE, "baseline: the grid has too many voxels for a byte of each");
+  size_t voxels = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2]; /* the grid has a bit of each */
   work w = {job, job->options->radius > 0 ? job->options->radius : 1.8, job->options->density};
-  uint8_t *own = w.density ? NULL : vxm_baseline_block(job, (size_t)voxels, 1, error);
+  uint8_t *own = w.density ? NULL : vxm_baseline_block(job, voxels, 1, error);
   if (!w.density && !own)
     return error->code;
-  if (own)
-    w.density = own;
-  else
-    for (uint64_t i = 0; i < voxels; i++)
-      w.density[i] = 0;
+  w.density = own ? own : w.density;
+  memset(w.density, 0, voxels);
   vxm_status status = draw_all(&w, error);
   if (status == VXM_OK)
     set_bits(&w);

@@ -37,7 +37,7 @@ def table_2(p, grids):
     rows = []
     for grid in grids:
         cells = [found.get(("augment_" + kind, "cpu", grid)) for kind in ("standard", "batch", "direct")]
-        rows.append(["%d³" % grid] + [ms(c, "median_ms") for c in cells] + 
+        rows.append(["%d³" % grid] + [ms(c, "median_ms") for c in cells] +
                     ["%s / %s" % (theirs, show(c["per_second"])) for theirs, c in zip(RATES.get(grid, "–––"), cells)])
     p.text("**Table 2**, the three ways to feed a network: a process for each variant that reads and writes (standard), one for all "
            "variants of a model that writes them (one-model batch), numbers in memory (direct). Milliseconds a variant and variants a "

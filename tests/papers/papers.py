@@ -141,4 +141,3 @@ def show(cell):
 
 def ms(result, key="min_ms"):
     return result[key] if result else None
-
