@@ -4,6 +4,7 @@
 #include "grids.h"
 
 #include "base/endian.h"
+#include "grid/octree_pieces.h"
 #include "gridio/formats/octree_values.h"
 
 typedef struct sort {
@@ -173,6 +174,71 @@ static void test_bits(void **state) {
   remove_folder(folder);
 }
 
+/* ---- Blocks ---- */
+
+typedef struct block {
+  uint64_t number;
+  int64_t at[3];
+} block;
+
+typedef struct block_list {
+  block items[2000];
+  size_t count;
+} block_list;
+
+static bool list_block(uint64_t number, const int64_t at[3], void *payload) {
+  block_list *list = payload;
+  assert_true(list->count < 2000);
+  list->items[list->count++] = (block){number, {at[0], at[1], at[2]}};
+  return true;
+}
+
+/** In cubes that are full over many tiles, blocks have the same numbers whatever is asked for. */
+static void test_blocks(void **state) {
+  (void)state;
+  static block_list all, some;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  vxm_octree_pieces pieces = {.context = context, .space = unit_space(3000, 2500, 2100)};
+  vxm_octree_pieces_box(&pieces, (int64_t[3]){300, 0, 0}, (int64_t[3]){2100, 2048, 1500});
+  vxm_octree_pieces_box(&pieces, (int64_t[3]){2700, 2300, 2000}, (int64_t[3]){2800, 2500, 2100});
+  vxm_sparse *sparse;
+  assert_int_equal(vxm_octree_pieces_end(&sparse, &pieces), VXM_OK);
+  const int64_t origin[3] = {0, 0, 0};
+  uint64_t count =
+      vxm_octree_each_block(sparse->nodes, sparse->levels, origin, sparse->space.dims, list_block, &all);
+  assert_int_equal(count, all.count);
+  assert_int_equal(count, 8 * 8 * 6 + 1 * 2 * 2); /* each axis by hand */
+  for (size_t b = 0; b < all.count; b++)
+    assert_int_equal(all.items[b].number, b);
+  vxm_rng rng = {84};
+  for (int round = 0; round < 200; round++) {
+    int64_t begin[3], end[3];
+    size_t wanted = 0;
+    for (int a = 0; a < 3; a++) {
+      begin[a] = (int64_t)vxm_rng_below(&rng, (uint64_t)sparse->space.dims[a]);
+      end[a] = vxm_min(begin[a] + 1 + (int64_t)vxm_rng_below(&rng, 700), sparse->space.dims[a]);
+    }
+    some.count = 0;
+    assert_int_equal(vxm_octree_each_block(sparse->nodes, sparse->levels, begin, end, list_block, &some),
+                     count);
+    for (size_t b = 0; b < all.count; b++) {
+      bool meets = true;
+      for (int a = 0; a < 3; a++)
+        meets &= all.items[b].at[a] < end[a] && all.items[b].at[a] + 256 > begin[a];
+      if (meets) {
+        assert_true(wanted < some.count);
+        assert_memory_equal(&some.items[wanted], &all.items[b], sizeof(block));
+        wanted++;
+      }
+    }
+    assert_int_equal(wanted, some.count);
+  }
+  vxm_sparse_destroy(sparse);
+  vxm_context_destroy(context);
+}
+
+/* ---- Damage ---- */
+
 /** From a block of exactly the size, so that a sanitizer sees every step beyond it. */
 static vxm_status read_bytes(vxm_context *context, const unsigned char *data, size_t size, vxm_error *error) {
   unsigned char *copy = malloc(size ? size : 1);
@@ -239,6 +305,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_round_trip),
       cmocka_unit_test(test_bits),
+      cmocka_unit_test(test_blocks),
       cmocka_unit_test(test_damage),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
