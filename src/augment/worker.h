@@ -21,9 +21,9 @@ void vxm_worker_destroy(vxm_worker *desk);
 vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
                            const vxm_placement *placement, const vxm_noise *noise, vxm_error *error);
 
-/** The same into memory, as [x][y][z] in C order. */
+/** The same into memory, as [x][y][z] in C order; `coverage` as in vxm_sampler_options. */
 vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
-                            const vxm_sampler_model *subject, const vxm_placement *placement,
+                            int coverage, const vxm_sampler_model *subject, const vxm_placement *placement,
                             const vxm_noise *noise, vxm_error *error);
 
 /** The same into a file. */

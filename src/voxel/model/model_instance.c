@@ -49,6 +49,8 @@ vxm_status vxm_model_instance_fill(vxm_model_instance *instance, const vxm_windo
   pass->solid.motion = &variation->points;
   vxm_status status = vxm_model_pass_place(pass, lattice, NULL, NULL, error);
   pass->solid.motion = NULL;
+  if (variation->is_field)
+    vxm_model_pass_make_field(pass);
   pass->solid.mirrored = variation->mirrored;
   return status == VXM_OK ? vxm_model_pass_fill(pass, window, error) : status;
 }
