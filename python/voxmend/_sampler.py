@@ -35,6 +35,8 @@ class Sampler:
         translate: part of the room on each side, 0 to 1, by which variants are moved.
         fill: the longest side fills the grid rather than the diagonal; without rotation.
         mode, surface, method, vote, parts, cavities, thin: as for `voxmend.voxelize`.
+        coverage: None; 2, 4 or 8: each voxel is the share of its sub-voxels, so many along each axis, that are inside: 0 to 1
+            of "float32", 0 to 255 of "uint8".
         engine: who makes the voxels: "cpu"; "opengl", "opencl" or one that the command 'voxmend engines' lists, one variant
             after another; "auto": a GPU, or else the CPU. Variants have the same bits.
 
@@ -47,13 +49,13 @@ class Sampler:
                  displace: float = 0.0, displacement: str = "uniform", noise: int = 65536, mirror: str = "",
                  translate: float = 0.0, fill: bool = False, mode: str = "solid", surface: str = "conservative",
                  method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto",
-                 thin: str = "auto", engine: Optional[str] = None):
+                 thin: str = "auto", engine: Optional[str] = None, coverage: Optional[int] = None):
         if isinstance(rotate, (list, tuple, numpy.ndarray)):
             rotate = numpy.array(rotate)  # a copy
         self._options = dict(resolution=resolution, pad=pad, seed=seed, rotate=rotate, scale=scale, displace=displace,
                              displacement=displacement, noise=noise, mirror=mirror, translate=translate, fill=fill,
                              mode=mode, surface=surface, method=method, vote=vote, parts=parts, cavities=cavities,
-                             thin=thin, engine=engine)
+                             thin=thin, engine=engine, coverage=coverage)
         self._meshes: Dict[int, Mesh] = {}
         self._turn = Turn()
         self._torn = False  # by a fork in the middle of a call
@@ -71,6 +73,8 @@ class Sampler:
             setattr(options, name, _values.whole("sampler: " + name, given[name], least, most))
         for name in ("scale", "displace", "translate"):
             setattr(options, name, _values.real("sampler: " + name, given[name], 0))
+        if given["coverage"] is not None:
+            options.coverage = _values.whole("sampler: coverage", given["coverage"], 1, 8)
         options.fill = _values.flag("sampler: fill", given["fill"])
         options.displacement = _core.choice("sampler: displacement", given["displacement"], "VXM_DISPLACEMENT_")
         for axis in _values.word("sampler: mirror", given["mirror"]):

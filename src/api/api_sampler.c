@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { RESOLUTION = 64, RESOLUTION_MOST = 1024, NOISE = 1 << 16, NOISE_MOST = 1 << 24 };
+enum { RESOLUTION = 64, RESOLUTION_MOST = 4096, NOISE = 1 << 16, NOISE_MOST = 1 << 24 };
 
 static vxm_status check_rotations(const vxm_sampler_options *options, vxm_error *error) {
   for (int a = 0; a < 3; a++)
@@ -45,6 +45,16 @@ static vxm_status check(const vxm_sampler_options *options, vxm_error *error) {
     return vxm_fail(error, VXM_ERROR_RANGE,
                     "sampler: %" PRId64 " voxels along an axis; at most %d can be made", options->resolution,
                     RESOLUTION_MOST);
+  if (options->coverage != 0 && options->coverage != 2 && options->coverage != 4 && options->coverage != 8)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: coverage %d is none of 0, 2, 4 and 8",
+                    options->coverage);
+  if (options->coverage > 0 && options->resolution * options->coverage > RESOLUTION_MOST)
+    return vxm_fail(error, VXM_ERROR_RANGE,
+                    "sampler: %" PRId64 " voxels of %d sub-voxels along an axis; at most %d of these can be "
+                    "made",
+                    options->resolution, options->coverage, RESOLUTION_MOST);
+  if (options->coverage > 0 && options->voxelize->mode != VXM_MODE_SOLID)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: only solids fill shares of voxels");
   if ((unsigned)options->rotation > VXM_ROTATION_LIST)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: rotation %d is unknown", (int)options->rotation);
   if ((unsigned)options->displacement > VXM_DISPLACEMENT_NORMAL)
@@ -146,10 +156,20 @@ vxm_status vxm_sampler_pose(vxm_pose *out, const vxm_sampler *sampler, const vxm
   return VXM_OK;
 }
 
+/** Whether its voxels are set or clear. */
+static vxm_status check_bits(const vxm_sampler *sampler, vxm_error *error) {
+  return sampler->rules.options.coverage == 0
+             ? VXM_OK
+             : vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: its voxels are shares, which bits cannot hold");
+}
+
 vxm_status vxm_sampler_grid(vxm_grid *grid, vxm_sampler *sampler, const vxm_variant *variant,
                             vxm_error *error) {
   if (!grid || !sampler || !variant)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
+  vxm_status status = check_bits(sampler, error);
+  if (status != VXM_OK)
+    return status;
   int64_t dim = sampler->rules.options.resolution;
   for (int a = 0; a < 3; a++)
     if (grid->space.dims[a] != dim)
@@ -172,6 +192,8 @@ vxm_status vxm_sampler_batch(void *out, vxm_sampler *sampler, const vxm_variant 
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
   if ((unsigned)voxels > VXM_VOXEL_FORMAT_FLOAT32)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: voxels %d are unknown", (int)voxels);
+  if (voxels == VXM_VOXEL_FORMAT_PACKED && check_bits(sampler, error) != VXM_OK)
+    return VXM_ERROR_ARGUMENT;
   if (voxels == VXM_VOXEL_FORMAT_FLOAT32 && (uintptr_t)out % sizeof(float) != 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: the memory is not aligned as floats are");
   size_t bytes = vxm_sampler_bytes(sampler, voxels);
@@ -188,6 +210,8 @@ vxm_status vxm_sampler_files(const char *const *paths, vxm_sampler *sampler, con
     return vxm_fail(error, VXM_ERROR_ARGUMENT, "sampler: an argument is NULL");
   vxm_grid_write_options chosen = VXM_GRID_WRITE_OPTIONS_INIT;
   vxm_status status = VXM_OPTIONS_READ(&chosen, options, "grid", error);
+  if (status == VXM_OK)
+    status = check_bits(sampler, error);
   if (status == VXM_OK)
     status = check_count(count, sizeof *variants, error);
   if (status != VXM_OK)

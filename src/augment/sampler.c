@@ -217,8 +217,8 @@ static vxm_status make_one(const batch_job *job, size_t v, vxm_worker *desk, vxm
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, &job->variants[v]);
   int64_t resolution = sampler->rules.options.resolution;
   if (!job->paths)
-    return vxm_worker_write(desk, job->out + v * job->step, job->voxels, resolution, subject, &placement,
-                            &sampler->noise, error);
+    return vxm_worker_write(desk, job->out + v * job->step, job->voxels, resolution,
+                            sampler->rules.options.coverage, subject, &placement, &sampler->noise, error);
   vxm_status status = vxm_worker_save(desk, job->paths[v], job->format, resolution, subject, &placement,
                                       &sampler->noise, error);
   if (job->written)
@@ -298,7 +298,9 @@ static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
   job->error = (vxm_error)VXM_ERROR_INIT;
   atomic_init(&job->failed_at, SIZE_MAX);
   atomic_flag_clear(&job->lock);
-  if (count > 1 && sampler->rules.options.resolution <= ALONE_MOST && !has_engine(sampler))
+  const vxm_sampler_options *options = &sampler->rules.options;
+  int64_t dim = options->resolution * (options->coverage > 0 ? options->coverage : 1);
+  if (count > 1 && dim <= ALONE_MOST && !has_engine(sampler))
     return make_alone(job, count, error);
   vxm_team *team = vxm_team_of(sampler->rules.voxelize.engine);
   if (team && count > 1)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "augment/worker.h"
+#include "augment/density.h"
 #include "augment/unpack_bits.h"
 #include "gridio/gridio.h"
 #include "voxel/model/model_keep.h"
@@ -54,7 +55,8 @@ static vxm_vertex_transform motion_of(const vxm_sampler_model *subject, const vx
 }
 
 static vxm_status place(vxm_worker *desk, int64_t resolution, const vxm_sampler_model *subject,
-                        const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
+                        const vxm_placement *placement, const vxm_noise *noise, bool is_field,
+                        vxm_error *error) {
   vxm_model_instance *instance = &desk->instance;
   vxm_status status = vxm_model_instance_attach(instance, subject->model, error);
   if (status != VXM_OK)
@@ -65,21 +67,28 @@ static vxm_status place(vxm_worker *desk, int64_t resolution, const vxm_sampler_
   vxm_lattice lattice = vxm_lattice_of(&space);
   vxm_variation variation = {.points = motion_of(subject, placement, noise, false),
                              .vertices = motion_of(subject, placement, noise, true),
-                             .mirrored = placement->mirrored};
+                             .mirrored = placement->mirrored,
+                             .is_field = is_field};
   return vxm_model_instance_place(instance, &lattice, &variation, error);
 }
 
-vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
-                           const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
-  vxm_status status = place(desk, window->fast_dim, subject, placement, noise, error);
+static vxm_status fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
+                       const vxm_placement *placement, const vxm_noise *noise, bool is_field,
+                       vxm_error *error) {
+  vxm_status status = place(desk, window->fast_dim, subject, placement, noise, is_field, error);
   return status == VXM_OK ? vxm_model_pass_fill(&desk->instance.pass, window, error) : status;
 }
 
 vxm_status vxm_worker_keep(vxm_worker *desk, vxm_device_voxels *voxels, int64_t index,
                            const vxm_sampler_model *subject, const vxm_placement *placement,
                            const vxm_noise *noise, vxm_error *error) {
-  vxm_status status = place(desk, voxels->info.dims[0], subject, placement, noise, error);
+  vxm_status status = place(desk, voxels->info.dims[0], subject, placement, noise, false, error);
   return status == VXM_OK ? vxm_model_pass_keep(&desk->instance.pass, voxels, index, error) : status;
+}
+
+vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
+                           const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
+  return fill(desk, window, subject, placement, noise, false, error);
 }
 
 static vxm_status make_room(vxm_worker *desk, size_t words, vxm_error *error) {
@@ -93,9 +102,27 @@ static bool is_window(const void *out, vxm_voxel_format voxels, int64_t resoluti
          (uintptr_t)out % sizeof(uint64_t) == 0 && *(const unsigned char *)&one == 1;
 }
 
+/** The shares of voxels. */
+static vxm_status write_shares(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
+                               int coverage, const vxm_sampler_model *subject, const vxm_placement *placement,
+                               const vxm_noise *noise, vxm_error *error) {
+  vxm_space space = vxm_worker_space(resolution * coverage);
+  vxm_window window = vxm_window_of(&space, layout_of_arrays, 0, space.dims[0]);
+  vxm_status status = make_room(desk, window.slice_words * (size_t)space.dims[0], error);
+  if (status != VXM_OK)
+    return status;
+  window.words = desk->words;
+  status = fill(desk, &window, subject, placement, noise, true, error);
+  if (status == VXM_OK)
+    vxm_density_write(out, desk->context, &window, coverage, voxels);
+  return status;
+}
+
 vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
-                            const vxm_sampler_model *subject, const vxm_placement *placement,
+                            int coverage, const vxm_sampler_model *subject, const vxm_placement *placement,
                             const vxm_noise *noise, vxm_error *error) {
+  if (coverage > 0)
+    return write_shares(desk, out, voxels, resolution, coverage, subject, placement, noise, error);
   vxm_space space = vxm_worker_space(resolution);
   vxm_window window = vxm_window_of(&space, layout_of_arrays, 0, resolution);
   bool direct = is_window(out, voxels, resolution);

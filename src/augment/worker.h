@@ -27,9 +27,9 @@ vxm_status vxm_worker_keep(vxm_worker *desk, vxm_device_voxels *voxels, int64_t 
                            const vxm_sampler_model *subject, const vxm_placement *placement,
                            const vxm_noise *noise, vxm_error *error);
 
-/** The same into memory, as [x][y][z] in C order. */
+/** The same into memory, as [x][y][z] in C order; `coverage` as in vxm_sampler_options. */
 vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
-                            const vxm_sampler_model *subject, const vxm_placement *placement,
+                            int coverage, const vxm_sampler_model *subject, const vxm_placement *placement,
                             const vxm_noise *noise, vxm_error *error);
 
 /** The same into a file. */

@@ -41,6 +41,10 @@ typedef struct augment_folder {
 int augment_check_folder(cli_run *cli, const augment_request *given);
 /** Writes the files; CLI_DONE or CLI_FAILED. */
 int augment_write_folder(cli_run *cli, augment_folder *f, const augment_request *given, vxm_sampler *sampler);
+/** As vxm_sampler_files, for numbers; a failure is in cli->error. */
+vxm_status augment_write_numbers(cli_run *cli, const char *const *paths, vxm_sampler *sampler,
+                                 const vxm_variant *variants, size_t count, const char *format,
+                                 bool *written);
 /** A failed run leaves no file behind that was not there before. */
 void augment_remove_files(const augment_folder *f, const augment_request *given);
 

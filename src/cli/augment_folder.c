@@ -122,7 +122,11 @@ static int write_files(cli_run *cli, augment_folder *f, const augment_request *g
     name_file(names + i * PATH_SIZE, given, f->made + (int64_t)i, "");
     paths[i] = names + i * PATH_SIZE;
   }
-  if (vxm_sampler_files(paths, sampler, variants, count, &options, f->written, &cli->error) != VXM_OK)
+  vxm_status status =
+      given->sampler.coverage > 0
+          ? augment_write_numbers(cli, paths, sampler, variants, count, given->format, f->written)
+          : vxm_sampler_files(paths, sampler, variants, count, &options, f->written, &cli->error);
+  if (status != VXM_OK)
     return cli_fail(cli);
   for (size_t i = 0; i < count; i++) {
     struct stat info;

@@ -23,7 +23,8 @@ enum {
   KEY_THIN,
   KEY_NO_REPAIR,
   KEY_WELD,
-  KEY_KEEP
+  KEY_KEEP,
+  KEY_COVERAGE
 };
 
 const cli_option augment_options[] = {
@@ -40,7 +41,10 @@ const cli_option augment_options[] = {
     {KEY_MODEL, "model", "M",
      "number of the model; seed, epoch and model number together determine the\n"
      "variants [0]"},
-    {'r', "resolution", "N", "voxels along each axis, up to 1024 [64]"},
+    {'r', "resolution", "N", "voxels along each axis, up to 4096 [64]"},
+    {KEY_COVERAGE, "coverage", "2|4|8",
+     "a number for each voxel: how much of it is filled, from so many sub-voxels along\n"
+     "each axis; in files (npy, nrrd) and as uint8 0 to 255, as float32 0 to 1"},
     {KEY_PAD, "pad", "P", "keep P voxels free on each side, before the model is moved [0]"},
     {KEY_ROTATE, "rotate", "none|any|x|y|z|X,Y,Z|FILE",
      "not at all; uniform over all rotations; about an axis; or by the matrices of\n"
@@ -126,6 +130,15 @@ static int read_mirror(cli_run *cli, augment_request *out, const char *value) {
   return CLI_END;
 }
 
+static int read_coverage(cli_run *cli, augment_request *out, const char *value) {
+  static const char *const counts[] = {"2", "4", "8", NULL};
+  int choice;
+  if (cli_choose(cli, &choice, "coverage", value, counts) == CLI_STOP)
+    return CLI_STOP;
+  out->sampler.coverage = 2 << choice;
+  return CLI_END;
+}
+
 static int read_option(cli_run *cli, augment_request *out, int key, const char *value) {
   const int64_t most = UINT32_MAX;
   int64_t number = 0;
@@ -154,9 +167,9 @@ static int read_option(cli_run *cli, augment_request *out, int key, const char *
     out->variant.model = (uint32_t)number;
     return result;
   case 'r':
-    return read_number_of(cli, &out->sampler.resolution, "resolution", value, 1, 1024);
+    return read_number_of(cli, &out->sampler.resolution, "resolution", value, 1, 4096);
   case KEY_PAD:
-    return read_number_of(cli, &out->sampler.pad, "pad", value, 0, 511);
+    return read_number_of(cli, &out->sampler.pad, "pad", value, 0, 2047);
   case KEY_ROTATE:
     return read_rotate(cli, out, value);
   case KEY_SCALE:
@@ -174,6 +187,8 @@ static int read_option(cli_run *cli, augment_request *out, int key, const char *
     return read_mirror(cli, out, value);
   case KEY_TRANSLATE:
     return read_part(cli, &out->sampler.translate, "translate", value);
+  case KEY_COVERAGE:
+    return read_coverage(cli, out, value);
   case KEY_FILL:
     out->sampler.fill = true;
     return CLI_END;
@@ -211,14 +226,16 @@ bool augment_is_stream(const augment_request *given) {
 static int check_format(cli_run *cli, augment_request *given) {
   static const char *const files[] = {"rle", "raw", "binvox", "npy", "nrrd", NULL};
   static const char *const streams[] = {"bits", "uint8", "float32", NULL};
+  enum { NUMBERS = 3 /**< the first of the files that hold numbers; of streams it is the second */ };
   char list[CLI_LIST_MAX];
-  bool stream = augment_is_stream(given);
-  int choice = given->format ? cli_read_choice(given->format, stream ? streams : files) : 0;
+  bool stream = augment_is_stream(given), shares = given->sampler.coverage > 0;
+  const char *const *known = stream ? streams + shares : files + (shares ? NUMBERS : 0);
+  int choice = given->format ? cli_read_choice(given->format, known) : 0;
   if (choice < 0)
-    return cli_usage(cli, "--format '%s' is none of %s, which %s", given->format,
-                     cli_list(list, stream ? streams : files), stream ? "a stream has" : "files have");
-  given->format = stream ? streams[choice] : files[choice];
-  given->voxels = (vxm_voxel_format)choice;
+    return cli_usage(cli, "--format '%s' is none of %s, which %s%s", given->format, cli_list(list, known),
+                     stream ? "a stream has" : "files have", shares ? " with --coverage" : "");
+  given->format = known[choice];
+  given->voxels = stream ? (vxm_voxel_format)(choice + shares) : VXM_VOXEL_FORMAT_UINT8;
   if (stream && cli->json)
     return cli_usage(cli, "-o - and --json both want standard output; use --report FILE.json");
   if (stream)
@@ -234,6 +251,12 @@ static int check_conflicts(cli_run *cli, const augment_request *given) {
     return cli_usage(cli, "--first and -n go beyond variant 4294967295");
   if (sampler->fill && sampler->rotation != VXM_ROTATION_NONE)
     return cli_usage(cli, "--fill leaves no room to rotate in; leave out --rotate");
+  if (sampler->coverage > 0 && given->voxelize.mode != VXM_MODE_SOLID)
+    return cli_usage(cli, "--coverage goes with --mode solid, which fills voxels");
+  if (sampler->coverage > 0 && given->thin)
+    return cli_usage(cli, "--coverage counts what is inside, and --thin adds voxels; give one of them");
+  if (sampler->resolution * (sampler->coverage > 0 ? sampler->coverage : 1) > 4096)
+    return cli_usage(cli, "-r and --coverage make more than 4096 sub-voxels along an axis");
   if (given->noise && sampler->displace == 0)
     return cli_usage(cli, "--noise goes with --displace");
   if (cli_check_surface(cli, &given->voxelize, given->surface) == CLI_STOP)

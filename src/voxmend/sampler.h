@@ -32,8 +32,8 @@ typedef enum vxm_displacement {
 typedef enum vxm_voxel_format {
   VXM_VOXEL_FORMAT_PACKED = 0, /**< a bit; each row along z begins with a byte of its own:
                             numpy.unpackbits(..., count=D, bitorder="little") */
-  VXM_VOXEL_FORMAT_UINT8,      /**< a byte, 0 or 1 */
-  VXM_VOXEL_FORMAT_FLOAT32     /**< a float, 0 or 1 */
+  VXM_VOXEL_FORMAT_UINT8,      /**< a byte, 0 or 1; a share (vxm_sampler_options.coverage) 0 to 255 */
+  VXM_VOXEL_FORMAT_FLOAT32     /**< a float, 0 or 1; a share between them */
 } vxm_voxel_format;
 
 /**
@@ -63,13 +63,17 @@ typedef struct vxm_sampler_options {
   const vxm_voxelize_options *voxelize; /**< how, without the confidence; NULL = defaults. It is copied. An
                                     engine, which must outlive the sampler, makes one variant after another,
                                     and moves the vertices if it says so (vxm_engine_info.moves) */
+  int coverage; /**< 0 = voxels are set or clear; 2, 4 or 8: each is the share of its sub-voxels, so many
+                   along each axis, whose centres are inside, as of vxm_model_coverage: 0 to 255 of
+                   VXM_VOXEL_FORMAT_UINT8, 0 to 1 of VXM_VOXEL_FORMAT_FLOAT32. Then `voxelize` is of
+                   VXM_MODE_SOLID */
 } vxm_sampler_options;
 
 /** Initial value of vxm_sampler_options. */
 #define VXM_SAMPLER_OPTIONS_INIT                                                      \
   {                                                                                   \
     sizeof(vxm_sampler_options), 0, 0, 0, VXM_ROTATION_NONE, {0, 0, 0}, NULL, 0, 0.0, \
-        VXM_DISPLACEMENT_UNIFORM, 0.0, 0, 0, 0.0, false, NULL                         \
+        VXM_DISPLACEMENT_UNIFORM, 0.0, 0, 0, 0.0, false, NULL, 0                      \
   }
 
 /** Names a variant. Its voxels follow from this, the options and the mesh: on any machine, in any order. */
@@ -107,7 +111,7 @@ typedef struct vxm_sampler vxm_sampler;
  * @param context NULL = a new one
  * @param options NULL = defaults: no augmentation
  * @return VXM_OK; VXM_ERROR_ARGUMENT, also if pad and displacement leave no room for a model; VXM_ERROR_RANGE
- *         beyond 1024 voxels along an axis; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
+ *         beyond 4096 voxels, or sub-voxels, along an axis; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT
  */
 VXM_API vxm_status vxm_sampler_create(vxm_sampler **out, vxm_context *context,
                                       const vxm_sampler_options *options, vxm_error *error);
@@ -135,7 +139,8 @@ VXM_API vxm_status vxm_sampler_pose(vxm_pose *out, const vxm_sampler *sampler, c
                                     vxm_error *error);
 
 /**
- * Makes one variant in a grid: all its bits are replaced.
+ * Makes one variant in a grid: all its bits are replaced. Not of a sampler of shares, as with
+ * vxm_sampler_files.
  *
  * @param grid of the dimensions of vxm_sampler_space
  * @return VXM_OK; VXM_ERROR_ARGUMENT, also if there is no such model; VXM_ERROR_MEMORY,

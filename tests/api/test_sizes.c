@@ -85,6 +85,21 @@ static vxm_status pose(void *out) {
   return vxm_sampler_pose(out, sampler, &(vxm_variant){0, 0, 1}, &error);
 }
 
+/** Where the tool takes the voxels of its own solid, once. */
+static vxm_status carve(void *out) {
+  static const double pose[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  vxm_sparse *stock = NULL;
+  vxm_carver *carver = NULL;
+  vxm_status status = vxm_sparse_from_grid(&stock, grid, &error);
+  if (status == VXM_OK)
+    status = vxm_carver_create_sparse(&carver, stock, mesh, &error);
+  if (status == VXM_OK)
+    status = vxm_carver_place(out, carver, pose, &error);
+  vxm_carver_destroy(carver);
+  vxm_sparse_destroy(stock);
+  return status;
+}
+
 /** The error of a call that fails. */
 static vxm_status go_wrong(void *out) {
   return vxm_mesh_census(NULL, mesh, out) == VXM_ERROR_ARGUMENT ? VXM_OK : VXM_ERROR_ARGUMENT;
@@ -109,6 +124,7 @@ static const struct {
     {"distance", measure_distance, sizeof(vxm_distance_report)},
     {"labels", label, sizeof(vxm_label_report)},
     {"pose", pose, sizeof(vxm_pose)},
+    {"carving", carve, sizeof(vxm_carve_report)},
 };
 
 /** Of `size` bytes, with junk behind them: what is known there is as in `whole`, and the junk is still there.

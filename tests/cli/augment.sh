@@ -31,6 +31,10 @@ run 'voxmend augment in/l_prism.off -o npy -n 2 $all --format npy | timeless; ls
 run 'for i in 0 1; do record c.bin 32768 $i >x; tail -c 32768 npy/00000$i.npy | cmp - x && echo equal; done; rm x'
 run 'for f in rle raw binvox nrrd; do voxmend augment in/l_prism.off -o $f -n 2 $all --format $f -q; voxmend compare $f/000001.$f npy/000001.npy --json; done | grep iou'
 run 'voxmend augment in/l_prism.off -o rle -n 2 --first 999999 $all -q; ls rle'
+run 'voxmend augment in/l_prism.off -o shares -n 2 $all --coverage 4 -q; ls shares; voxmend augment in/l_prism.off -o - -n 2 $all --coverage 4 -q | tail -c +65 | cksum'
+run 'voxmend augment in/l_prism.off -o shares -n 1 $all --coverage 2 --format nrrd -q && voxmend convert shares/000000.nrrd -o x.npy --threshold 128 -q && voxmend compare x.npy npy/000000.npy | tail -n 1'
+for option in '--format rle' '--mode surface' '--thin keep' '-r 1025'; do run "voxmend augment in/l_prism.off -o shares -n 1 --coverage 4 $option"; done
+run 'voxmend augment in/l_prism.off -o shares -n 1 --coverage 3'
 run 'voxmend augment in/l_prism.off -o json -n 1 --json | timeless | sed -E "/peak_bytes|file_bytes/s/[0-9]+/N/"'
 
 say "# each augmentation"
@@ -52,7 +56,7 @@ run 'voxmend augment in/l_prism.off -o x --engine cpu --device 0'
 run 'voxmend augment in/l_prism.off -o x --engine vulkan'
 
 say "# what is refused"
-for options in '' '-o' '-o x -n -1' '-o x -n 0' '-o x -n 5000000000' '-o x --first 4294967295 -n 2' '-o x -r 0' '-o x -r 2000' '-o x --seed -3' \
+for options in '' '-o' '-o x -n -1' '-o x -n 0' '-o x -n 5000000000' '-o x --first 4294967295 -n 2' '-o x -r 0' '-o x -r 5000' '-o x --seed -3' \
   '-o x --rotate 0,0,0' '-o x --rotate no/such' '-o x --scale 1' '-o x --scale -0.1' '-o x --displace 2' '-o x --displace 0.1,uniform' \
   '-o x --displace 0.5' '-o x --mirror w' '-o x --translate 2' '-o x --fill --rotate any' '-o x --noise 5' '-o x --surface thin' \
   '-o x --mode both --surface shell6' '-o x --mode solid --surface thin' '-o x --mode surface --thin keep' '-o x --thin most' '-o x --format vdb' '-o - --format rle' '-o x --pad 32' \

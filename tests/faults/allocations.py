@@ -80,6 +80,7 @@ def commands():
     yield "binvox blocks", "binvox -d 6 -e -mb -t schematic -rotz blocks.obj", {}
     yield "compare", "compare in.rle in.npy --report report.json", {}
     yield "augment", "augment two.off -o many -n 2 -r 8 --format npy --rotate any", {}
+    yield "augment coverage", "augment two.off -o many -n 2 -r 8 --coverage 2 --rotate any", {}
     yield "augment stdout", "augment two.off -o - -n 2 -r 8", {}
     yield "engines", "engines --json", {"ALLOCATION_FROM": OURS}
     yield "bench", "bench two.off --report report.json --time 0 -r 4 --phases solid_vote --threads 1", {}

@@ -147,6 +147,21 @@ class Fields(unittest.TestCase):
         self.assertEqual(field.threshold(below=0), voxmend.voxelize(box(2), like=field))
         self.assertTrue((voxmend.distance(box(2), like=field, band=0, unsigned=True).values == abs(values)).all())
 
+    def test_shares_of_variants(self):
+        """A box that fills half of a row of voxels along x: as floats, as bytes, and in a copy of the sampler."""
+        corners = numpy.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]) * [5.0, 8, 8]
+        faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+        sampler = voxmend.Sampler(8, fill=True, coverage=4)
+        sampler.put((corners, faces))
+        share = numpy.array([0, 0.5, 1, 1, 1, 1, 0.5, 0])
+        for one in (sampler, pickle.loads(pickle.dumps(sampler))):
+            self.assertTrue((one.batch(1)[0, 0] == share[:, None, None]).all())
+        self.assertTrue((sampler.batch(1, dtype="uint8")[0, 0] == numpy.floor(255 * share + 0.5)[:, None, None]).all())
+        with self.assertRaises(voxmend.ArgumentError):
+            sampler.batch(1, dtype="bits")
+        with self.assertRaises(voxmend.ArgumentError):
+            voxmend.Sampler(8, coverage=3)
+
     def test_carve(self):
         """A box that goes along x, is lifted, and turns: what it meets is counted, and the stock stays."""
         stock = voxmend.VoxelGrid(numpy.ones((12, 8, 8), bool), pitch=0.5)

@@ -48,6 +48,8 @@ vxm_status vxm_model_instance_place(vxm_model_instance *instance, const vxm_latt
   pass->solid.motion = &variation->points;
   vxm_status status = vxm_model_pass_place(pass, lattice, NULL, NULL, error);
   pass->solid.motion = NULL;
+  if (variation->is_field)
+    vxm_model_pass_make_field(pass);
   pass->solid.mirrored = variation->mirrored;
   return status;
 }

@@ -13,6 +13,7 @@ typedef struct vxm_variation {
   vxm_vertex_transform points;   /**< of the triangles, before first_apex */
   vxm_vertex_transform vertices; /**< of the soup; looked at only where faces set voxels */
   bool mirrored;                 /**< whether the points lie as in a mirror */
+  bool is_field;                 /**< shares are made of the voxels, in which thin parts play no part */
 } vxm_variation;
 
 /** Start from {.context = ...}; stays where it is in memory. */
