@@ -337,6 +337,9 @@ vxm_status vxm_sampler_keep(vxm_device_voxels **out, vxm_sampler *sampler, const
                             size_t count, vxm_voxel_format format, vxm_error *error) {
   vxm_device_voxels *voxels = NULL;
   vxm_worker *desk;
+  if (sampler->rules.options.coverage > 0)
+    return vxm_fail(error, VXM_ERROR_ARGUMENT,
+                    "voxels on a device: this sampler makes densities, which vxm_sampler_batch alone gives");
   vxm_space space = vxm_worker_space(sampler->rules.options.resolution);
   vxm_status status = need_table(&desk, sampler, error);
   if (status == VXM_OK)

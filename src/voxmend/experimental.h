@@ -215,7 +215,8 @@ VXM_API vxm_status vxm_model_voxelize_device(vxm_device_voxels **out, vxm_model 
 /**
  * The voxels of vxm_sampler_batch in a buffer of the OpenCL device that is the sampler's engine.
  *
- * @return as vxm_sampler_batch and vxm_model_voxelize_device; VXM_ERROR_ARGUMENT for no variants
+ * @return as vxm_sampler_batch and vxm_model_voxelize_device; VXM_ERROR_ARGUMENT for no variants,
+ * and where the sampler makes densities (vxm_sampler_options.coverage)
  */
 VXM_API vxm_status vxm_sampler_batch_device(vxm_device_voxels **out, vxm_sampler *sampler,
                                             const vxm_variant *variants, size_t count,
