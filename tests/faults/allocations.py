@@ -48,7 +48,7 @@ def commands():
         if grid not in ("ply", "stl"):
             yield "convert " + grid, "convert in.%s -o out.rle" % grid, {}
             yield "sparse " + grid, "voxelize two.off -o out.%s -r 6 --sparse --coords coords.npy" % grid, {}
-    for grid in ("npy", "nrrd", "vdb", "binvox"):
+    for grid in ("npy", "nrrd", "vdb", "octree", "binvox"):
         yield "numbers " + grid, "convert labels.%s -o out.nrrd" % grid, {}
         yield "numbers to " + grid, "convert labels.npy -o out.%s" % grid, {}
     yield "threshold", "convert distance.nrrd -o out.rle --below 0", {}
@@ -61,6 +61,10 @@ def commands():
     yield "coverage", "voxelize two.off -o out.npy -r 6 --coverage 2", {}
     yield "distance", "voxelize two.off -o out.nrrd -r 6 --distance signed", {}
     yield "distance vdb", "voxelize two.off -o out.vdb -r 6 --distance signed", {}
+    yield "octree", "voxelize torn.off -o out.octree -r 20 --sparse", {}
+    yield "octree values", "voxelize two.off -o out.octree -r 20 --distance signed --threads 2", {}
+    yield "octree window", "convert labels.octree -o out.npy --window 0:2,1:3,0:4", {}
+    yield "octree coverage", "convert in.npy -o out.nrrd --coverage 2", {}
     yield "labels", "voxelize box.obj -o out.npy -r 6 --labels group", {}
     for labels in ("schem", "litematic", "vox", "glb"):
         yield "blocks " + labels, "voxelize box.obj -o out.%s -r 6 --labels group" % labels, {}
@@ -229,6 +233,7 @@ def make_inputs(folder):
                        stderr=subprocess.DEVNULL)
     for command in ("voxelize box.obj -o labels.npy -r 4 --labels group", "convert labels.npy -o labels.nrrd",
                     "convert labels.npy -o labels.vdb", "convert labels.npy -o labels.binvox",
+                    "convert labels.npy -o labels.octree",
                     "convert labels.npy -o labels.schem", "convert labels.npy -o labels.litematic",
                     "convert labels.npy -o labels.vox",
                     "voxelize box.off -o distance.nrrd -r 4 --distance signed"):
