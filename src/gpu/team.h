@@ -30,7 +30,7 @@ vxm_team *vxm_team_of(vxm_engine *engine);
 vxm_status vxm_team_create(vxm_engine **out, vxm_context *context, vxm_engine *const engines[], int count,
                            vxm_error *error);
 
-/** Does pieces begin..end-1 by member number `who` (of a task that did nothing it starts anew). */
+/** Does pieces begin..end-1 by member number `who`; those that another failed to do from the start. */
 typedef vxm_status (*vxm_team_fn)(vxm_engine *engine, int who, int64_t begin, int64_t end, void *payload,
                                   vxm_error *error);
 

@@ -76,7 +76,7 @@ static vxm_status add_parts(crew *all, const char *name, int parts, vxm_error *e
   if (parts > VXM_TEAM_MOST)
     return vxm_fail(error, VXM_ERROR_RANGE, "engine: more than %d devices at once", VXM_TEAM_MOST);
   for (int p = 0; p < parts && status == VXM_OK; p++) {
-    char part[NAME_MAX_LENGTH + 8];
+    char part[NAME_MAX_LENGTH + 16];
     snprintf(part, sizeof part, "%s.%d", name, p);
     status = add(all, part, error);
   }
