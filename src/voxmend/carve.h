@@ -57,8 +57,8 @@ typedef struct vxm_carve_report {
  * @param tool in the model units of the grid; closed, as vxm_mesh_prepare makes it: open parts have the caps
  *             of their holes, and what has no inside cuts where its faces pass. Must outlive the carver
  * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners; VXM_ERROR_RANGE
- *         for corners that are not finite, edges longer than 2048 voxels, or a tool 2^30 voxels away from
- *         its origin; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
+ *         for corners that are not finite, edges longer than 2048 voxels, or a tool that reaches 2^22 voxels
+ *         from its origin; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 VXM_API vxm_status vxm_carver_create(vxm_carver **out, vxm_grid *grid, const vxm_mesh *tool,
                                      vxm_error *error);
