@@ -91,44 +91,11 @@ static int check(cli_run *cli, request *out) {
 
 /* ---- Reading ---- */
 
-static int read_grid(cli_run *cli, vxm_grid **out, const request *given) {
-  cli_values values = {NULL, NULL};
-  const char *path = cli->arguments[0];
-  if (cli_values_read(cli, &values, path) != VXM_OK)
-    return cli_fail(cli);
-  if (cli_values_to_bits(cli, &values, &given->threshold, path, "only set and clear voxels can be cut") !=
-      CLI_DONE) {
-    cli_values_free(&values);
-    return CLI_FAILED;
-  }
-  *out = values.grid;
-  return CLI_DONE;
-}
-
-/** As an octree, if that can be had without a grid; VXM_ERROR_NUMBERS if not. */
-static vxm_status read_octree(cli_run *cli, vxm_sparse **out, const request *given) {
-  const char *path = cli->arguments[0];
-  if (strcmp(path, "-") == 0 || cli_threshold_given(&given->threshold))
-    return VXM_ERROR_NUMBERS;
-  vxm_status status = vxm_sparse_read(out, cli->context, path, &cli->error);
-  for (int64_t i = 0; i < vxm_sparse_warning_count(*out); i++)
-    cli_warn(cli, "%s: %s", path, vxm_sparse_warning(*out, i));
-  return status;
-}
-
 static int read_stock(cli_run *cli, outcome *made, const request *given) {
-  if (!given->sparse)
-    return read_grid(cli, &made->grid, given);
-  vxm_status status = read_octree(cli, &made->sparse, given);
-  if (status != VXM_ERROR_NUMBERS)
-    return status == VXM_OK ? CLI_DONE : cli_fail(cli);
-  cli->error = (vxm_error)VXM_ERROR_INIT;
-  vxm_grid *grid = NULL;
-  int result = read_grid(cli, &grid, given);
-  if (result == CLI_DONE && vxm_sparse_from_grid(&made->sparse, grid, &cli->error) != VXM_OK)
-    result = cli_fail(cli);
-  vxm_grid_destroy(grid);
-  return result;
+  static const char why[] = "only set and clear voxels can be cut";
+  const char *path = cli->arguments[0];
+  return given->sparse ? cli_sparse_read(cli, &made->sparse, &given->threshold, path, why)
+                       : cli_bits_read(cli, &made->grid, &given->threshold, path, why);
 }
 
 /* ---- Cutting ---- */

@@ -33,6 +33,9 @@ done | sort -u >"$work/declared"
 [ -s "$work/declared" ]
 diff "$work/declared" "$work/exported" || fail "declared (<) and exported (>) differ: src/api/voxmend.map lists the functions"
 
+sed -n 's/^ \(vxm_.*\)@\(VOXMEND_.*\) .*/\1@@\2/p' "$SRCDIR"/packaging/debian/libvoxmend*.symbols | sort >"$work/packaged"
+diff "$work/packaged" "$work/exported" || fail "packaging/debian/libvoxmend*.symbols (<) and exported (>) differ"
+
 for module in "$BUILDDIR"/.libs/voxmend-*.so; do
   [ -e "$module" ] || continue
   [ "$(exported_by "$module")" = vxm_module_table ] || {
