@@ -204,7 +204,7 @@ const cli_command cli_command_convert = {
         "blocks\n"
         "in .schem and .litematic and as objects in .glb, which take colours too, as .ply and .vox do. They\n"
         "become set and clear voxels only with --threshold or --below, or where nothing is lost: all are 0\n"
-        "or 1, or unsigned bytes 0 and 255. .h5 and .glb are written but not read.\n\n"
+        "or 1, or unsigned bytes 0 and 255. .glb is written but not read.\n\n"
         "Examples:\n"
         "  voxmend convert chair.binvox -o chair.npy\n"
         "  voxmend convert chair.npy -o blocks.obj\n"
