@@ -349,7 +349,11 @@ static int make_output(cli_run *cli, const request *given, const subject *of) {
     cli_values_row(cli, values);
     const char *hint = given->up_hint;
     if (hint && given->picture.slice_axis == 0)
-      cli_row(cli, "up", "%c, as usual for %s; --up changes it", "xyz"[given->picture.up - 1], hint);
+      cli_row(cli, "up",
+              of->prepared || of->mesh
+                  ? "%c, as usual for %s; --up changes it"
+                  : "%c: %s says of no axis that it is up; --up y where it was y in the model (.obj, .glb)",
+              "xyz"[given->picture.up - 1], hint);
     if (given->picture.slice_axis != 0)
       slice_row(cli, &given->picture, cli_values_space(values));
     cli_row(cli, "output", "%s", given->output);
