@@ -11,11 +11,12 @@ _PHRASES = (
     ("look at it with 'view'", "look at it with show()"),
     ("--distance unsigned", "unsigned=True"),
     ("--confidence tells", "confidence=True tells"),
-    ("--best-effort", "best_effort=True"),
+    ("--memlimit", "voxmend.configure(memory_limit=...)"),
 )
 
-# An option, and its value where that is one word of a choice; those of configure are left as they are.
-_OPTION = re.compile(r"(?<![\w-])--(?!with-)([a-z][a-z-]*[a-z])(?: (keep|drop|auto|cpu|none|any|fan|clean|manifold|closed)\b)?")
+# An option that is a parameter too, and its value where that is one word of a choice. Others stay as they are.
+_OPTION = re.compile(r"(?<![\w-])--(bounds|engine|external|fill|fill-holes|fit|level|like|max-change|method|pad|parts|thin|vote)\b(?!-)"
+                     r"(?: (keep|drop|auto|cpu|none|any|fan|clean|manifold|closed|winding|tetra|majority|whole|group)\b)?")
 
 
 def in_python(line: str) -> str:
