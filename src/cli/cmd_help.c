@@ -22,7 +22,7 @@ void cli_help_overview(void) {
          "Meshes: .off .obj .stl .ply; where built with them, also .gltf .glb .3mf .dae .fbx .3ds and more\n"
          "(Assimp), .step and .iges (OpenCASCADE). Grids: .binvox .npy .raw .rle .nrrd .octree\n"
          ".nii .nii.gz .vti .vtk .tif .zarr .vox .schem .litematic, .vdb (OpenVDB), .bt (OctoMap),\n"
-         ".h5 (HDF5) and, to write, .glb. Slices as pictures: slice_%%04d.png.\n"
+         ".h5 (HDF5) and, to write, .glb. Slices as pictures: slice_%%04d.png, .tif.\n"
          "'-' is standard input or output.\n\n"
          "Examples:\n"
          "  voxmend info chair.off                              what is wrong with it\n"
