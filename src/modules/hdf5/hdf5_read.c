@@ -267,7 +267,12 @@ static vxm_status choose(const reading *r, const vxm_hdf5_survey *survey, vxm_er
 
 vxm_status vxm_hdf5_read_array(vxm_voxel_sink *sink, vxm_context *context, const vxm_reader_request *request,
                                vxm_error *error) {
+  enum { NEEDED = 4 << 20 }; /* with less HDF5 crashes, where it should say so */
   static vxm_hdf5_survey survey;
+  void *room = vxm_alloc(context, NEEDED, 1, error);
+  if (!room)
+    return VXM_ERROR_MEMORY;
+  vxm_free(context, room);
   reading r = {.sink = sink, .context = context, .request = request};
   hid_t file = vxm_hdf5_open_image(request->data, request->size);
   if (file < 0)
