@@ -15,6 +15,7 @@ from . import _errors, _values
 from ._errors import ArgumentError, VoxmendWarning
 from ._records import Settings
 from ._types import Array
+from ._wording import in_python
 
 try:
     from ._voxmend import ffi as ffi, lib as lib
@@ -154,7 +155,7 @@ def warn(lines: Iterable[str]) -> None:
     while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "voxmend":
         level, frame = level + 1, frame.f_back
     for line in lines:
-        warnings.warn(line, VoxmendWarning, stacklevel=level)
+        warnings.warn(in_python(line), VoxmendWarning, stacklevel=level)
 
 
 # ---- The context ----

@@ -130,6 +130,33 @@ static vxm_voxelize_options voxelize_options_of(const binvox_request *given) {
   return options;
 }
 
+/** Warnings name options of voxmend; these are what binvox has instead. The longest come first. */
+static void warn_of_model(cli_run *cli, const char *model, const char *text) {
+  static const char *const words[][2] = {
+      {"wider --bounds, a larger grid for --like, or neither of them take in all",
+       "a wider -bb, or none, takes in all"},
+      {"check --bounds or --like", "check -bb"},
+      {"see --bounds and --like", "see -bb"},
+      {"'voxmend repair --level closed' closes it before, --confidence tells how sure each voxel is",
+       "'voxmend repair --level closed' closes it before"},
+      {"--vote auto asks the winding number", "without -v and -c the winding number is asked"},
+      {"--thin keep or a higher resolution (-r)", "-aw, or more voxels (-d)"},
+      {"--thin keep keeps them, and so may a higher resolution (-r)",
+       "-aw keeps them, and so may more voxels (-d)"},
+      {"a higher resolution (-r)", "more voxels (-d)"},
+  };
+  char line[1024];
+  for (size_t w = 0; w < sizeof words / sizeof words[0]; w++) {
+    const char *at = strstr(text, words[w][0]);
+    if (!at)
+      continue;
+    snprintf(line, sizeof line, "%.*s%s%s", (int)(at - text), text, words[w][1], at + strlen(words[w][0]));
+    cli_warn(cli, "%s: %s", model, line);
+    return;
+  }
+  cli_warn(cli, "%s: %s", model, text);
+}
+
 static int voxelize(cli_run *cli, const binvox_request *given, binvox_bits *out, binvox_blocks *blocks,
                     const vxm_mesh *mesh, const vxm_space *space) {
   vxm_voxelize_options options = voxelize_options_of(given);
@@ -142,7 +169,7 @@ static int voxelize(cli_run *cli, const binvox_request *given, binvox_bits *out,
   if (status == VXM_OK)
     status = vxm_model_voxelize(grid, &report, model, NULL, &cli->error);
   for (int64_t i = 0; status == VXM_OK && i < vxm_model_warning_count(model); i++)
-    cli_warn(cli, "%s: %s", given->model, vxm_model_warning(model, i));
+    warn_of_model(cli, given->model, vxm_model_warning(model, i));
   int result = status == VXM_OK ? CLI_DONE : cli_fail(cli);
   if (result == CLI_DONE && !binvox_bits_read(out, grid))
     result = cli_fail_text(cli, "out of memory for the voxels: free some, or lower -d");

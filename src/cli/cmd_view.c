@@ -348,8 +348,11 @@ static int make_output(cli_run *cli, const request *given, const subject *of) {
     cli_rows_space(cli, cli_values_space(values));
     cli_values_row(cli, values);
     const char *hint = given->up_hint;
+    bool has_mesh = of->prepared || of->mesh;
     if (hint && given->picture.slice_axis == 0)
       cli_row(cli, "up", "%c, as usual for %s; --up changes it", "xyz"[given->picture.up - 1], hint);
+    else if (!has_mesh && given->picture.up == 0 && given->picture.slice_axis == 0)
+      cli_row(cli, "up", "z, as a grid does not tell; --up y where y is up in its model (.obj, .glb)");
     if (given->picture.slice_axis != 0)
       slice_row(cli, &given->picture, cli_values_space(values));
     cli_row(cli, "output", "%s", given->output);

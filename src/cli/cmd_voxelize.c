@@ -3,6 +3,7 @@
 #include "cli/baseline.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 /* ---- Work ---- */
@@ -28,10 +29,37 @@ static vxm_grid_write_options write_options(const voxelize_request *given) {
   return options;
 }
 
+/** The most voxels that the model's box has along an axis, in parts. */
+static double voxels_along(const vxm_mesh *mesh, const vxm_space *space) {
+  const double *at = vxm_mesh_vertices(mesh);
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, most = 0;
+  for (int64_t v = 0, count = vxm_mesh_vertex_count(mesh); v < count; v++, at += 3)
+    for (int a = 0; a < 3; a++) {
+      low[a] = fmin(low[a], at[a]);
+      high[a] = fmax(high[a], at[a]);
+    }
+  for (int a = 0; a < 3; a++)
+    most = fmax(most, (high[a] - low[a]) / space->voxel_size[a]);
+  return most;
+}
+
+/** A grid of another model's units, most often. */
+static void warn_of_coarse_like(cli_run *cli, const voxelize_request *given,
+                                const voxelize_outcome *results) {
+  const double few = 3;
+  double along = given->like ? voxels_along(results->input.mesh, &results->space) : few;
+  if (along < few)
+    cli_warn(cli,
+             "%s: the model is %.2g voxels long in the grid of %s: is it in the same units? Without --like "
+             "-r sets its size",
+             cli_shown(given->input, "<stdin>"), along, given->like);
+}
+
 static void warn_of_model(cli_run *cli, const voxelize_request *given, const voxelize_outcome *results,
                           const vxm_model *model) {
   for (int64_t i = 0; i < vxm_model_warning_count(model); i++)
     cli_warn(cli, "%s: %s", cli_shown(given->input, "<stdin>"), vxm_model_warning(model, i));
+  warn_of_coarse_like(cli, given, results);
   cli_warn_lattice(cli, given->output, given->format, &results->space);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/octree_build.h"
 #include "gridio/common/values_writer.h"
+#include "gridio/formats/slices.h"
 #include "gridio/formats/zarr.h"
 #include "gridio/gridio.h"
 
@@ -48,6 +49,11 @@ static bool has_name(const char *path, const vxm_grid_format *format) {
   return vxm_text_equal_nocase(end, format->name);
 }
 
+/** A pattern of names makes a sequence of what is a stack in one file. */
+static const vxm_grid_format *of_pattern(const vxm_grid_format *format, const char *path) {
+  return format == &vxm_format_tif && vxm_slices_are_tiff(path) ? &vxm_format_tif_slices : format;
+}
+
 /** The longest extension counts: .nii.gz is not a .gz. */
 const vxm_grid_format *vxm_grid_format_of_path(const char *path) {
   const vxm_grid_format *found = NULL;
@@ -59,7 +65,11 @@ const vxm_grid_format *vxm_grid_format_of_path(const char *path) {
       best = size;
     }
   }
-  return found;
+  return of_pattern(found, path);
+}
+
+const vxm_grid_format *vxm_grid_format_chosen(const char *path, const char *format) {
+  return format ? of_pattern(vxm_grid_format_named(format), path) : vxm_grid_format_of_path(path);
 }
 
 const char *vxm_grid_format_name(int64_t index) {
@@ -263,7 +273,7 @@ vxm_status vxm_gridio_read_sparse(vxm_sparse **out, vxm_context *context, const 
 const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format, vxm_error *error) {
   const vxm_place place = {path, 0, -1, -1};
   const char *name = format ? format : vxm_path_extension(path);
-  const vxm_grid_format *found = format ? vxm_grid_format_named(format) : vxm_grid_format_of_path(path);
+  const vxm_grid_format *found = vxm_grid_format_chosen(path, format);
   if (found && (found->holds & VXM_HOLDS_BITS))
     return found;
   vxm_format_list list = vxm_grid_formats_holding(VXM_HOLDS_BITS, "");
@@ -282,7 +292,7 @@ const vxm_grid_format *vxm_grid_format_for(const char *path, const char *format,
 const vxm_grid_format *vxm_grid_format_holding(const char *path, const char *format, unsigned holds,
                                                const char *what, vxm_error *error) {
   const char *name = format ? format : vxm_path_extension(path);
-  const vxm_grid_format *found = format ? vxm_grid_format_named(format) : vxm_grid_format_of_path(path);
+  const vxm_grid_format *found = vxm_grid_format_chosen(path, format);
   if (found && (found->holds & holds))
     return found;
   vxm_fail_at(error, VXM_ERROR_ARGUMENT, (vxm_place){path, 0, -1, -1}, "%s into %s, not \"%s\"", what,

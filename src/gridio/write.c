@@ -131,7 +131,7 @@ static bool holds_field(const vxm_grid_format *format, const vxm_field *field) {
 vxm_status vxm_gridio_write_field(const vxm_field *field, const char *path, const char *format,
                                   vxm_error *error) {
   const char *name = format ? format : vxm_path_extension(path);
-  const vxm_grid_format *found = format ? vxm_grid_format_named(format) : vxm_grid_format_of_path(path);
+  const vxm_grid_format *found = vxm_grid_format_chosen(path, format);
   char why[400];
   if (!found || !holds_field(found, field)) {
     snprintf(why, sizeof why, "cannot be written as \"%.20s\"; choose %s, or make bits of it by a threshold",

@@ -19,6 +19,9 @@ typedef enum vxm_parcel_kind {
   VXM_PARCEL_GRID,
   VXM_PARCEL_EXTENT,
   VXM_PARCEL_BLOCKS,
+  /* or of an array */
+  VXM_PARCEL_ARRAY,
+  VXM_PARCEL_VALUES,
   VXM_PARCEL_END
 } vxm_parcel_kind;
 

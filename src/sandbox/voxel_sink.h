@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * What a reader of voxels hands over: first the texts of a grid, then the grid, its extent, and its voxels as
- * blocks and cubes. The module that reads calls a sink that sends it all, and our process one that makes a
- * grid of it: both ends of the channel (wire_voxels.h) look the same.
+ * blocks and cubes; or, instead of these, an array and its values in their order. The module that reads calls
+ * a sink that sends it all, and our process one that makes a grid of it: both ends of the channel
+ * (wire_voxels.h) look the same.
  */
 #ifndef VXM_SANDBOX_VOXEL_SINK_H
 #define VXM_SANDBOX_VOXEL_SINK_H
@@ -36,6 +37,16 @@ typedef struct vxm_sink_extent {
   float background;        /**< of the voxels that are in no block and no cube */
 } vxm_sink_extent;
 
+/** An array with a value for each voxel, or the 4 bytes of a colour. */
+typedef struct vxm_sink_array {
+  uint32_t scalar;   /**< vxm_scalar */
+  uint32_t is_color; /**< 0 or 1 */
+  int64_t shape[3];  /**< the last is the fastest */
+  double place[6];   /**< origin, and size of voxels */
+  uint32_t has_place;
+  uint32_t fits; /**< arrays of the file that could have been read */
+} vxm_sink_array;
+
 typedef struct vxm_voxel_sink {
   vxm_status (*text)(void *payload, const char *key, size_t key_size, const char *value, size_t value_size,
                      vxm_error *error);
@@ -49,6 +60,10 @@ typedef struct vxm_voxel_sink {
   /** A cube of which all voxels are set, or of this number. */
   void (*cube)(void *payload, const int64_t at[3], int64_t side, float number);
   void *payload;
+  /* Both NULL if no array is wanted. */
+  vxm_status (*array)(void *payload, const vxm_sink_array *array, vxm_error *error);
+  /** The next values; pieces may end within one. */
+  vxm_status (*values)(void *payload, const void *values, size_t size, vxm_error *error);
   bool is_full; /**< set by one of these functions that wants no more */
 } vxm_voxel_sink;
 

@@ -100,6 +100,26 @@ static void send_cube(void *payload, const int64_t at[3], int64_t side, float nu
   add(payload, &head, NULL);
 }
 
+static vxm_status send_array(void *payload, const vxm_sink_array *array, vxm_error *error) {
+  vxm_wire_sender *s = payload;
+  return sent(s,
+              vxm_parcel_put_kind(s->channel, VXM_PARCEL_ARRAY) &&
+                  vxm_parcel_put(s->channel, array, sizeof *array),
+              error);
+}
+
+static vxm_status send_values(void *payload, const void *values, size_t size, vxm_error *error) {
+  vxm_wire_sender *s = payload;
+  for (const char *at = values; size > 0 && !s->is_gone;) {
+    uint64_t part = size < VXM_WIRE_BATCH ? size : VXM_WIRE_BATCH;
+    s->is_gone = !(vxm_parcel_put_kind(s->channel, VXM_PARCEL_VALUES) &&
+                   vxm_parcel_put(s->channel, &part, sizeof part) && vxm_parcel_put(s->channel, at, part));
+    at += part;
+    size -= part;
+  }
+  return sent(s, !s->is_gone, error);
+}
+
 vxm_voxel_sink vxm_wire_sink(vxm_wire_sender *sender) {
   return (vxm_voxel_sink){.text = send_text,
                           .grid = send_grid,
@@ -107,7 +127,9 @@ vxm_voxel_sink vxm_wire_sink(vxm_wire_sender *sender) {
                           .bits = send_bits,
                           .numbers = send_numbers,
                           .cube = send_cube,
-                          .payload = sender};
+                          .payload = sender,
+                          .array = send_array,
+                          .values = send_values};
 }
 
 bool vxm_wire_send_end(vxm_wire_sender *sender) {
@@ -215,20 +237,48 @@ static vxm_status receive_blocks(vxm_voxel_sink *sink, vxm_process *sender, vxm_
   return status;
 }
 
+static vxm_status receive_array(vxm_voxel_sink *sink, vxm_process *sender, vxm_error *error) {
+  vxm_sink_array array;
+  vxm_status status = vxm_process_receive(sender, &array, sizeof array, error);
+  if (status != VXM_OK)
+    return status;
+  bool is_sound = array.scalar <= VXM_INT64 && array.is_color <= 1 && array.has_place <= 1;
+  for (int a = 0; a < 3; a++)
+    is_sound &= array.shape[a] >= 1 && is_place(array.shape[a]);
+  return is_sound ? sink->array(sink->payload, &array, error) : vxm_parcel_damaged(error);
+}
+
+static vxm_status receive_values(vxm_voxel_sink *sink, vxm_process *sender, vxm_error *error) {
+  unsigned char batch[VXM_WIRE_BATCH];
+  uint64_t size;
+  vxm_status status = vxm_process_receive(sender, &size, sizeof size, error);
+  if (status == VXM_OK && size > sizeof batch)
+    status = vxm_parcel_damaged(error);
+  if (status == VXM_OK)
+    status = vxm_process_receive(sender, batch, (size_t)size, error);
+  return status == VXM_OK ? sink->values(sink->payload, batch, (size_t)size, error) : status;
+}
+
 vxm_status vxm_wire_receive_voxels(vxm_voxel_sink *sink, vxm_wire_arrival *arrival, uint64_t kind,
                                    vxm_process *sender, vxm_error *error) {
   if (kind == VXM_PARCEL_TEXT && !arrival->has_grid)
     return receive_text(sink, sender, error);
-  if (kind == VXM_PARCEL_GRID && !arrival->has_grid) {
+  if (kind == VXM_PARCEL_GRID && !arrival->has_grid && sink->grid) {
     arrival->has_grid = true;
     return receive_grid(sink, sender, error);
   }
-  if (kind == VXM_PARCEL_EXTENT && arrival->has_grid && !arrival->has_extent) {
+  if (kind == VXM_PARCEL_EXTENT && arrival->has_grid && !arrival->has_array && !arrival->has_extent) {
     arrival->has_extent = true;
     return receive_extent(sink, sender, error);
   }
   if (kind == VXM_PARCEL_BLOCKS && arrival->has_extent)
     return receive_blocks(sink, sender, error);
-  arrival->is_whole = kind == VXM_PARCEL_END && arrival->has_extent;
+  if (kind == VXM_PARCEL_ARRAY && !arrival->has_grid && sink->array) {
+    arrival->has_grid = arrival->has_array = true;
+    return receive_array(sink, sender, error);
+  }
+  if (kind == VXM_PARCEL_VALUES && arrival->has_array)
+    return receive_values(sink, sender, error);
+  arrival->is_whole = kind == VXM_PARCEL_END && (arrival->has_extent || arrival->has_array);
   return arrival->is_whole ? VXM_OK : vxm_parcel_damaged(error);
 }

@@ -29,7 +29,7 @@ bool vxm_wire_send_end(vxm_wire_sender *sender);
 
 /** How far a grid has come. */
 typedef struct vxm_wire_arrival {
-  bool has_grid, has_extent, is_whole;
+  bool has_grid, has_extent, has_array, is_whole;
 } vxm_wire_arrival;
 
 /**

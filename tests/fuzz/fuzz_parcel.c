@@ -56,7 +56,7 @@ static void receive_soup(const uint8_t *data, size_t size) {
 
 /** What has come so far; sums of it make a sanitizer look at all of it. */
 typedef struct arrival {
-  bool has_grid, has_extent;
+  bool has_grid, has_extent, has_array;
   uint64_t seen;
 } arrival;
 
@@ -116,16 +116,36 @@ static void see_cube(void *payload, const int64_t at[3], int64_t side, float num
   fuzz_require(a->has_extent && side > 0 && side <= VXM_SINK_CUBE_MAX, "cubes have a size");
 }
 
+static vxm_status see_array(void *payload, const vxm_sink_array *array, vxm_error *error) {
+  (void)error;
+  arrival *a = payload;
+  fuzz_require(!a->has_grid && array->is_color <= 1 && array->scalar <= VXM_INT64, "one array comes");
+  for (int axis = 0; axis < 3; axis++)
+    fuzz_require(array->shape[axis] >= 1 && array->shape[axis] <= INT32_MAX, "an array has a size");
+  a->has_grid = a->has_array = true;
+  return VXM_OK;
+}
+
+static vxm_status see_values(void *payload, const void *values, size_t size, vxm_error *error) {
+  (void)error;
+  arrival *a = payload;
+  fuzz_require(a->has_array, "values come after their array");
+  for (size_t b = 0; b < size; b++)
+    a->seen += ((const unsigned char *)values)[b];
+  return VXM_OK;
+}
+
 static void receive_grid(const uint8_t *data, size_t size) {
   vxm_context *context = fuzz_context(size, RATE, BESIDES);
   vxm_process sender = sender_of(context, data, size);
   arrival came = {.has_grid = false};
-  vxm_voxel_sink sink = {see_text, see_grid, see_extent, see_bits, see_numbers, see_cube, &came, false};
+  vxm_voxel_sink sink = {see_text, see_grid, see_extent, see_bits,   see_numbers,
+                         see_cube, &came,    see_array,  see_values, false};
   vxm_wire_listener listener = {.sink = &sink};
   vxm_error error = VXM_ERROR_INIT;
   vxm_status status = vxm_wire_receive(&sender, &listener, &error);
   if (status == VXM_OK)
-    fuzz_require(came.has_extent, "a whole grid comes");
+    fuzz_require(came.has_extent != came.has_array, "a whole grid comes");
   else if (status != VXM_ERROR_IO)
     fuzz_check_error(&error, status);
   vxm_context_destroy(context);

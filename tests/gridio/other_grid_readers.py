@@ -79,11 +79,12 @@ def slices(path):
     names = [path % number for number in range(told["dims"][2])]
     assert not os.path.exists(path % len(names))
     pages = [Image.open(name) for name in names]
-    assert {page.mode for page in pages} <= {"L", "I;16", "I"}
+    assert {page.mode for page in pages} <= {"L", "I;16", "I", "F"}
     voxels = numpy.stack([numpy.asarray(page).transpose() for page in pages], axis=2)
     if "values" not in told:
-        assert set(numpy.unique(voxels)) <= {0, 255}
-        voxels = voxels // 255
+        full = 255 if path.endswith("png") else 1  # as a stack in one .tif has them
+        assert set(numpy.unique(voxels)) <= {0, full}
+        voxels = voxels // full
     size = numpy.array(told["voxel_size"])
     names = [label["name"] for label in told.get("labels", [])]
     return voxels, told["origin"] + size / 2, size, names if told.get("values") == "labels" else False
@@ -124,6 +125,7 @@ READERS = (
     ("tif", "tifffile", tiff, "tifffile"),
     ("tif", "Pillow", pillow, "PIL"),
     ("%03d.png", "Pillow (place, names: the JSON)", slices, "PIL"),
+    ("%03d.tif", "Pillow (place, names: the JSON)", slices, "PIL"),
     ("h5", "h5py", hdf5, "h5py"),
     ("zarr", "zarr", zarr_array, "zarr"),
     ("nrrd", "pynrrd", nrrd_file, "nrrd"),

@@ -189,6 +189,10 @@ class Grids(unittest.TestCase):
             self.assertEqual((grid.filled_count, grid.report["thin_voxels"], grid.report["thin_share"]), (0, 0, 0))
         with self.assertRaisesRegex(ValueError, "none of 26, auto, drop, keep"):
             voxmend.voxelize(sheet, thin="most")
+        for choice, words in ((dict(thin="drop"), 'thin="keep"'), (dict(bounds=[[5, 5, 5], [6, 6, 6]]), "bounds= or like=")):
+            with self.assertWarnsRegex(voxmend.VoxmendWarning, words) as told:  # as Python has it, not the command line
+                voxmend.voxelize(sheet, **{**box, **choice})
+            self.assertNotIn("--", str(told.warning))
 
     def test_packed_and_matrix_agree(self):
         grid = voxmend.voxelize(sample("star_prism"), 70)

@@ -110,6 +110,8 @@ const vxm_grid_format *vxm_grid_format_holding(const char *path, const char *for
 const vxm_grid_format *vxm_grid_format_named(const char *name);
 /** The format that a file's name tells, or NULL. A name may have two extensions. */
 const vxm_grid_format *vxm_grid_format_of_path(const char *path);
+/** The one of a file to be written: by a name, or, if that is NULL, by its path; or NULL. */
+const vxm_grid_format *vxm_grid_format_chosen(const char *path, const char *format);
 
 /** Room for a list of formats. */
 typedef struct vxm_format_list {
@@ -155,7 +157,8 @@ vxm_status vxm_field_refuse(const vxm_field *field, const char *path, vxm_status
 extern const vxm_grid_format vxm_format_binvox, vxm_format_bt, vxm_format_glb, vxm_format_h5,
     vxm_format_litematic, vxm_format_nii, vxm_format_nii_gz, vxm_format_npy, vxm_format_nrrd,
     vxm_format_octree, vxm_format_ply, vxm_format_png, vxm_format_raw, vxm_format_rle, vxm_format_schem,
-    vxm_format_tif, vxm_format_vdb, vxm_format_vox, vxm_format_vti, vxm_format_vtk, vxm_format_zarr;
+    vxm_format_tif, vxm_format_tif_slices, vxm_format_vdb, vxm_format_vox, vxm_format_vti, vxm_format_vtk,
+    vxm_format_zarr;
 
 /** VXM_ERROR_FORMAT at a byte of the input. */
 #define vxm_fail_byte(error, input, offset, ...) \

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** .h5: an array "voxels", [x][y][z], with its place and kind as attributes; written by HDF5. */
+/** .h5: an array "voxels", [x][y][z], with its place and kind as attributes; written and read by HDF5. */
 #include "gridio/formats/hdf5.h"
 #include "grid/bit_transpose.h"
 #include "gridio/common/values_writer.h"
+#include "gridio/formats/hdf5_read.h"
 
 #include <string.h>
 
-static const vxm_module_need need = {"hdf5", "libhdf5-dev", "writing .h5 files"};
+const vxm_module_need vxm_hdf5_need = {"hdf5", "libhdf5-dev", "reading and writing .h5 files"};
 
 typedef struct state {
   const vxm_hdf5_functions *functions;
@@ -15,7 +16,7 @@ typedef struct state {
 
 static vxm_status open_module(const vxm_hdf5_functions **out, vxm_error *error) {
   const vxm_module *module;
-  vxm_status status = vxm_module_open(&module, &need, error);
+  vxm_status status = vxm_module_open(&module, &vxm_hdf5_need, error);
   if (status == VXM_OK)
     *out = module->functions;
   return status;
@@ -104,6 +105,9 @@ static const vxm_values_writer_kind values_kind = {
 const vxm_grid_format vxm_format_h5 = {
     .name = "h5",
     .holds = VXM_HOLDS_ALL,
+    .sniff = vxm_hdf5_sniff,
+    .read = vxm_hdf5_read,
+    .read_field = vxm_hdf5_read_field,
     .values = &values_kind,
     .check_field = check_field,
 };

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
  * The module "hdf5": what the library asks of HDF5, as a table of functions. The file is made in memory, in
- * its compressed form, and written when it is complete. Files are not read: HDF5 trusts them.
+ * its compressed form, and written when it is complete. Files are read in a process of their own
+ * (sandbox/reader_process.h), because HDF5 trusts them.
  */
 #ifndef VXM_GRIDIO_FORMATS_HDF5_H
 #define VXM_GRIDIO_FORMATS_HDF5_H
 
 #include "base/module.h"
 #include "base/output.h"
+#include "sandbox/reader.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -27,10 +29,16 @@ typedef struct vxm_hdf5_label {
   int64_t voxels;
 } vxm_hdf5_label;
 
+/** What the key of a label's name begins with, before the count of its voxels, when it comes from the reader.
+ */
+#define VXM_HDF5_LABEL "label "
+
 /** A file in the making. */
 typedef struct vxm_hdf5 vxm_hdf5;
 
 typedef struct vxm_hdf5_functions {
+  /** Reads in a process of its own: texts "kind" and "axes", labels, and an array. */
+  vxm_reader reader;
   /** @return VXM_OK; VXM_ERROR_MEMORY; VXM_ERROR_RANGE for what HDF5 refuses */
   vxm_status (*create)(vxm_hdf5 **out, vxm_context *context, const vxm_hdf5_array *array, vxm_error *error);
   /** Slices begin to end - 1 across x: z fastest, then y. */
@@ -40,6 +48,8 @@ typedef struct vxm_hdf5_functions {
   vxm_status (*write)(vxm_hdf5 *file, vxm_output *output, vxm_error *error);
   void (*destroy)(vxm_hdf5 *file);
 } vxm_hdf5_functions;
+
+extern const vxm_module_need vxm_hdf5_need;
 
 #ifdef __cplusplus
 }

@@ -133,7 +133,8 @@ static vxm_status receive(receipt *r, vxm_error *error) {
   const vxm_input *input = r->input;
   const vxm_reader_request request = {
       .data = input->data, .size = input->size, .name = input->name, .hint = "bt"};
-  r->sink = (vxm_voxel_sink){take_text, take_grid, take_extent, take_bits, take_numbers, take_cube, r, false};
+  r->sink = (vxm_voxel_sink){take_text, take_grid, take_extent, take_bits, take_numbers,
+                             take_cube, r,         NULL,        NULL,      false};
   if (!vxm_octomap_sniff(input))
     return vxm_fail_byte(error, input, 0, "not a .bt file: it does not begin with \"%s\"", first_line);
   vxm_status status =

@@ -6,6 +6,7 @@
 #include "gridio/common/raster.h"
 #include "gridio/common/values_writer.h"
 #include "gridio/formats/slices.h"
+#include "gridio/formats/tiff.h"
 #include "mesh/appearance.h"
 #include "sandbox/reader_process.h"
 
@@ -20,7 +21,7 @@ enum { HEADER = 33, GREY = 0, RGB = 2, PALETTE = 3, RGBA = 6 };
 /** What a picture says at its begin. */
 typedef struct header {
   uint32_t width, height;
-  int bits, type;
+  int bits, type; /**< of a TIFF file its vxm_scalar, and RGBA or GREY */
 } header;
 
 /** A sequence on its way in. */
@@ -123,6 +124,29 @@ static vxm_status decode(unsigned char *to, const sequence *s, const vxm_input *
   return status;
 }
 
+/* ---- A TIFF file ---- */
+
+/** Reads a file of one page, whose header is made to be compared; `to` may be NULL. */
+static vxm_status read_page(unsigned char *to, header *out, const sequence *s, const vxm_input *input,
+                            vxm_error *error) {
+  vxm_field *field = NULL;
+  vxm_status status = vxm_tiff_sniff(input) ? vxm_tiff_read_field(&field, input, error)
+                                            : vxm_fail_byte(error, input, 0, "not a TIFF file");
+  if (status != VXM_OK)
+    return status;
+  const int64_t *n = field->space.dims;
+  const size_t size = vxm_field_voxel_bytes(field), columns = (size_t)n[0], rows = (size_t)n[1];
+  *out = (header){(uint32_t)n[0], (uint32_t)n[1], (int)field->scalar, field->channels == 4 ? RGBA : GREY};
+  if (n[2] != 1)
+    status = vxm_fail_byte(error, input, 0, "it has %" PRId64 " pages, not the one of a slice", n[2]);
+  else if (to && memcmp(out, &s->first, sizeof *out) == 0)
+    for (size_t y = 0; y < rows; y++)
+      for (size_t x = 0; x < columns; x++)
+        memcpy(to + (y * columns + x) * size, field->values + (x * rows + y) * size, size);
+  vxm_field_destroy(field);
+  return status;
+}
+
 /** The next slice. */
 static vxm_status take_slice(void *payload, void *slice, size_t size, vxm_error *error) {
   sequence *s = payload;
@@ -134,10 +158,11 @@ static vxm_status take_slice(void *payload, void *slice, size_t size, vxm_error 
   vxm_status status = vxm_input_open(&input, s->context, name, error);
   if (status != VXM_OK)
     return status;
-  status = read_header(&found, &input, error);
+  const bool is_tiff = vxm_slices_are_tiff(s->path);
+  status = is_tiff ? read_page(slice, &found, s, &input, error) : read_header(&found, &input, error);
   if (status == VXM_OK && memcmp(&found, &s->first, sizeof found) != 0)
     status = vxm_fail_byte(error, &input, 16, "its size or type is not that of the first slice");
-  if (status == VXM_OK)
+  if (status == VXM_OK && !is_tiff)
     status = decode(slice, s, &input, error);
   vxm_input_close(&input);
   return status;
@@ -152,13 +177,18 @@ static vxm_status read_first(sequence *s, vxm_error *error) {
   vxm_status status = vxm_input_open(&input, s->context, name, error);
   if (status != VXM_OK)
     return status;
-  status = read_header(&s->first, &input, error);
+  const bool is_tiff = vxm_slices_are_tiff(s->path);
+  status = is_tiff ? read_page(NULL, &s->first, s, &input, error) : read_header(&s->first, &input, error);
   vxm_input_close(&input);
   int channels = is_color(&s->first) ? 4 : 1;
   vxm_space space = s->raster.space;
   space.dims[0] = s->first.width;
   space.dims[1] = s->first.height;
-  s->raster = vxm_raster_plain(&space, s->first.bits == 16 ? VXM_UINT16 : VXM_UINT8, channels);
+  s->raster = vxm_raster_plain(&space,
+                               is_tiff               ? (vxm_scalar)s->first.bits
+                               : s->first.bits == 16 ? VXM_UINT16
+                                                     : VXM_UINT8,
+                               channels);
   return status;
 }
 
@@ -257,5 +287,16 @@ const vxm_grid_format vxm_format_png = {
     .read_field = read_field,
     .is_sequence = true,
     .values = &vxm_slices_values,
+    .check_field = vxm_slices_check_field,
+};
+
+/** Not in the table of formats, where .tif is a stack: the pattern of a name leads here. */
+const vxm_grid_format vxm_format_tif_slices = {
+    .name = "tif",
+    .holds = VXM_HOLDS_ALL,
+    .read = read_bits,
+    .read_field = read_field,
+    .is_sequence = true,
+    .values = &vxm_slices_tiff_values,
     .check_field = vxm_slices_check_field,
 };

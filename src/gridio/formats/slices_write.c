@@ -3,6 +3,7 @@
 #include "gridio/common/png_write.h"
 #include "gridio/common/values_writer.h"
 #include "gridio/formats/slices.h"
+#include "gridio/formats/tiff.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -27,10 +28,18 @@ static const char *find_number(const char *path, int *digits, const char **rest)
   return *at == 'd' ? sign : NULL;
 }
 
-bool vxm_slices_is_pattern(const char *path) {
+static bool is_numbered(const char *path, const char *extension) {
   int digits;
   const char *rest;
-  return vxm_text_equal_nocase(vxm_path_extension(path), "png") && find_number(path, &digits, &rest);
+  return vxm_text_equal_nocase(vxm_path_extension(path), extension) && find_number(path, &digits, &rest);
+}
+
+bool vxm_slices_are_tiff(const char *path) {
+  return is_numbered(path, "tif");
+}
+
+bool vxm_slices_is_pattern(const char *path) {
+  return is_numbered(path, "png") || vxm_slices_are_tiff(path);
 }
 
 bool vxm_slices_name(char out[PATH_MAX], const char *path, int64_t number) {
@@ -72,6 +81,8 @@ static vxm_status check(const vxm_space *space, const vxm_values_spec *values, c
                         vxm_error *error) {
   const vxm_place place = {path, 0, -1, -1};
   vxm_status status = vxm_slices_check_pattern(path, error);
+  if (status == VXM_OK && vxm_slices_are_tiff(path))
+    return make_room(space->dims[2], path, error);
   if (status == VXM_OK)
     status = vxm_png_check(error);
   if (status != VXM_OK)
@@ -154,7 +165,8 @@ static vxm_status put_slice(vxm_values_writer *w, const unsigned char *slice, in
   vxm_status status = vxm_output_open(&output, w->context, path, error);
   if (status != VXM_OK)
     return status;
-  status = put_picture(w, output, slice, error);
+  status = vxm_slices_are_tiff(w->path) ? vxm_tiff_write_page(w, output, slice, z, error)
+                                        : put_picture(w, output, slice, error);
   if (status == VXM_OK)
     return vxm_output_keep(output, &w->kept, error);
   vxm_output_abort(output);
@@ -189,4 +201,22 @@ const vxm_values_writer_kind vxm_slices_values = {
     .begin = begin,
     .put = put,
     .drop = drop,
+};
+
+/** No row has to be made of them. */
+static vxm_status begin_tiff(vxm_values_writer *w, vxm_error *error) {
+  return check(&w->space, &w->values, w->path, error);
+}
+
+const vxm_values_writer_kind vxm_slices_tiff_values = {
+    .layout = VXM_LAYOUT_GRID,
+    .holds = VXM_HOLDS_ALL,
+    .sidecar = &description,
+    .has_sidecar = true,
+    .has_own_files = true,
+    .stored = vxm_values_no_halves,
+    .convert = vxm_values_widen_halves,
+    .check = check,
+    .begin = begin_tiff,
+    .put = put,
 };

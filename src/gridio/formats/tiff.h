@@ -41,6 +41,11 @@ enum {
 /** What begins the line that says exactly what ImageJ's lines say: "voxmend=KIND ORIGIN SIZE". */
 #define VXM_TIFF_LINE "voxmend="
 
+struct vxm_values_writer;
+/** Writes slice z of a file of values as a TIFF file of its own. */
+vxm_status vxm_tiff_write_page(const struct vxm_values_writer *writer, vxm_output *output, const void *values,
+                               int64_t z, vxm_error *error);
+
 bool vxm_tiff_sniff(const vxm_input *input);
 vxm_status vxm_tiff_read(vxm_grid **out, const vxm_input *input, vxm_bits_rule rule, vxm_error *error);
 vxm_status vxm_tiff_read_field(vxm_field **out, const vxm_input *input, vxm_error *error);

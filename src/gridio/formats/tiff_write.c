@@ -221,6 +221,22 @@ static vxm_status end(vxm_values_writer *w, vxm_error *error) {
   return VXM_OK;
 }
 
+vxm_status vxm_tiff_write_page(const vxm_values_writer *writer, vxm_output *output, const void *values,
+                               int64_t z, vxm_error *error) {
+  vxm_values_writer one = *writer;
+  one.output = output;
+  one.state = NULL;
+  one.space.dims[2] = 1;
+  one.space.origin[2] += (double)z * one.space.voxel_size[2];
+  vxm_status status = begin(&one, error);
+  if (status == VXM_OK) {
+    vxm_output_write(output, values, one.slice_bytes);
+    status = end(&one, error);
+  }
+  vxm_free(one.context, one.state);
+  return status;
+}
+
 static const vxm_values_writer_kind values_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = VXM_HOLDS_ALL,

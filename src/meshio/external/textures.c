@@ -89,9 +89,15 @@ static void note_missing(vxm_soup *soup) {
       first = first ? first : look->materials[m].name;
       missing++;
     }
-  if (missing > 0 && look->library_bytes > 0)
-    vxm_warn(&soup->warnings, "no colour is known of the material \"%.100s\" (materials: %zu)", first,
-             missing);
+  if (missing == 1 && look->library_bytes > 0)
+    vxm_warn(&soup->warnings,
+             "the material \"%.100s\" has no colour: no .mtl file that could be read describes it", first);
+  else if (missing > 0 && look->library_bytes > 0)
+    vxm_warn(
+        &soup->warnings,
+        "%zu of %zu materials have no colour, \"%.100s\" first: no .mtl file that could be read describes "
+        "them",
+        missing, look->material_count, first);
 }
 
 /* ---- Pictures ---- */

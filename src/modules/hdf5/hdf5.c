@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Arrays out, by HDF5. */
+/** The module "hdf5" (gridio/formats/hdf5.h): arrays out. hdf5_read.c reads. */
 #include "config.h"
 
-#include <hdf5.h>
-
 #include "base/context.h"
-#include "gridio/formats/hdf5.h"
+#include "modules/hdf5/hdf5.h"
 
 enum { CHUNK_X = 8, CHUNK = 64, LEVEL = 4, AXES = 4, CACHE_SLOTS = 12421 };
 
@@ -197,7 +195,8 @@ static vxm_status write_file(vxm_hdf5 *file, vxm_output *output, vxm_error *erro
   return local.code;
 }
 
-static const vxm_hdf5_functions functions = {create, put, label, write_file, destroy};
+static const vxm_hdf5_functions functions = {
+    {vxm_hdf5_prepare, NULL, vxm_hdf5_read_array}, create, put, label, write_file, destroy};
 
 __attribute__((visibility("default"))) extern const vxm_module vxm_module_table;
 const vxm_module vxm_module_table = {VXM_BUILD, "HDF5 " H5_VERS_INFO, "BSD-3-Clause", &functions};
