@@ -12,7 +12,8 @@ enum { LABELS_MAX = 1 << 16, LABELS_SHOWN = 12, TEXT_SIZE = 240 };
 typedef struct facts {
   const char *path, *format;
   vxm_space space;
-  cli_values values;        /**< both NULL of an octree, which may be too large to be held */
+  cli_values values;        /**< both NULL of an octree that is told of by its file's header */
+  bool has_values;          /**< of an octree: numbers, labels or colours rather than bits */
   int64_t set;              /**< voxels: set, or below 0, or that have a label or colour; -1 = numbers */
   int64_t begin[3], end[3]; /**< the box of set voxels; only of a grid with some */
   int64_t *counts;          /**< voxels of each label; NULL = no labels */
@@ -130,14 +131,21 @@ static vxm_status look_at_octree(cli_run *cli, facts *f) {
     return status;
   f->space = *vxm_sparse_file_space(file);
   f->set = vxm_sparse_file_count(file);
+  f->has_values = vxm_sparse_file_has_values(file);
   vxm_sparse_file_close(file);
   return VXM_OK;
 }
 
+/** Values of an octree are looked at where they can be held; bits of one need not be read. */
 static vxm_status look(cli_run *cli, facts *f) {
-  if (strcmp(f->format, "octree") == 0)
-    return look_at_octree(cli, f);
-  vxm_status status = cli_values_read(cli, &f->values, f->path);
+  const size_t most = (size_t)1 << 28;
+  vxm_status status = VXM_OK;
+  if (strcmp(f->format, "octree") == 0) {
+    status = look_at_octree(cli, f);
+    if (status != VXM_OK || !f->has_values || cells_of(&f->space) > most)
+      return status;
+  }
+  status = cli_values_read(cli, &f->values, f->path);
   if (status != VXM_OK)
     return status;
   f->space = *cli_values_space(&f->values);
@@ -176,7 +184,8 @@ static const char *content_text(char text[TEXT_SIZE], const facts *f) {
   char values[128];
   const vxm_field *field = f->values.field;
   if (!field) {
-    snprintf(text, TEXT_SIZE, "%" PRId64 " set (%.2f %%)", f->set, share_of(f));
+    snprintf(text, TEXT_SIZE, "%" PRId64 " %s (%.2f %%)", f->set, f->has_values ? "with values" : "set",
+             share_of(f));
     return text;
   }
   vxm_field_kind kind = vxm_field_kind_of(field);

@@ -42,6 +42,7 @@ for choice in '--labels part' '--color position' '--distance signed' '--coverage
   run 'voxmend convert v.octree -o w.nrrd --window 3:30,10:24,16:38 && voxmend convert v.nrrd -o w2.nrrd --window 3:30,10:24,16:38 -q && cmp w.nrrd w2.nrrd'
 done
 run 'voxmend voxelize in/rocket.off -o l.octree -r 40 --labels part -q && grep -c name l.octree.json && voxmend convert l.octree -o l.npy -q && grep -c name l.npy.json'
+run 'voxmend info l.octree'
 run 'voxmend combine l.octree or l.octree -o x.octree'
 run 'voxmend combine l.octree or l.octree -o x.octree --threshold 1 -q && voxmend voxelize in/rocket.off -o y.octree -r 40 -q && cmp x.octree y.octree'
 run 'voxmend convert l.octree -o x.npy --coverage 4'
