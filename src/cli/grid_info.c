@@ -93,7 +93,8 @@ static vxm_status count_labels(cli_run *cli, facts *f, const vxm_field_range *ra
   size_t cells = cells_of(&f->space);
   for (size_t i = 0; i < cells; i++)
     f->counts[whole_number(vxm_field_values(field), scalar, i)]++;
-  f->label_end = (int64_t)range->max + 1;
+  int64_t last = (int64_t)range->max, named = vxm_field_label_count(field);
+  f->label_end = (named > last && named < LABELS_MAX ? named : last) + 1;
   f->set = (int64_t)cells - f->counts[0];
   return VXM_OK;
 }
@@ -200,15 +201,36 @@ static const char *content_text(char text[TEXT_SIZE], const facts *f) {
   return text;
 }
 
+/** Names in a file of a stranger must not steer the terminal. */
+static void put_printable(const cli_run *cli, const char *text) {
+  for (; *text; text++)
+    fputc((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text, cli->text);
+}
+
+static void tell_label(const cli_run *cli, const facts *f, int64_t label, bool is_first) {
+  const char *name = vxm_field_label_name(f->values.field, label);
+  fprintf(cli->text, "  %-12s %5" PRId64 "  ", is_first ? "labels" : "", label);
+  put_printable(cli, name);
+  fprintf(cli->text, "%s%" PRId64 " voxels\n", *name ? ": " : "", f->counts[label]);
+}
+
+static void tell_metadata(const cli_run *cli, const vxm_field *field, int64_t index) {
+  const char *key = vxm_field_metadata_key(field, index);
+  int room = (int)strnlen(key, 12);
+  fputs("  ", cli->text);
+  put_printable(cli, key);
+  fprintf(cli->text, "%*s", 13 - room, "");
+  put_printable(cli, vxm_field_metadata_value(field, index));
+  fputc('\n', cli->text);
+}
+
 static void tell_labels(const cli_run *cli, const facts *f) {
   int64_t there = 0;
   for (int64_t l = 1; l < f->label_end; l++) {
     if (f->counts[l] == 0 && !*vxm_field_label_name(f->values.field, l))
       continue;
     if (++there <= LABELS_SHOWN || cli->verbose)
-      fprintf(cli->text, "  %-12s %5" PRId64 "  %s%s%" PRId64 " voxels\n", there == 1 ? "labels" : "", l,
-              vxm_field_label_name(f->values.field, l), *vxm_field_label_name(f->values.field, l) ? ": " : "",
-              f->counts[l]);
+      tell_label(cli, f, l, there == 1);
   }
   if (there > LABELS_SHOWN && !cli->verbose)
     fprintf(cli->text, "  %-12s   ... and %" PRId64 " more (-v shows all)\n", "", there - LABELS_SHOWN);
@@ -234,8 +256,7 @@ static void tell(const cli_run *cli, const facts *f) {
   if (f->counts)
     tell_labels(cli, f);
   for (int64_t m = 0; f->values.field && m < vxm_field_metadata_count(f->values.field); m++)
-    fprintf(cli->text, "  %-12s %s\n", vxm_field_metadata_key(f->values.field, m),
-            vxm_field_metadata_value(f->values.field, m));
+    tell_metadata(cli, f->values.field, m);
 }
 
 static void tell_heading(const cli_run *cli, int width) {

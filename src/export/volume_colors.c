@@ -63,8 +63,8 @@ static double corner(double out[3], const volume_task *task, size_t index) {
   vxm_field_doubles(&value, volume, index, 1);
   if (!isfinite(value))
     return 0;
-  double range = task->high - task->low;
-  out[0] = out[1] = out[2] = range > 0 ? (value - task->low) / range : 0;
+  double half = task->high / 2 - task->low / 2; /* the whole may be more than a double holds */
+  out[0] = out[1] = out[2] = half > 0 ? (value / 2 - task->low / 2) / half : 0;
   return 1;
 }
 
