@@ -269,22 +269,38 @@ static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
   return job->error.code;
 }
 
-/** Variants by one of several devices that work at once. */
+/** Variants by one of several devices that work at once. A file that cannot be written is not the device's
+ * fault, as whose the team would take it: it ends the work. */
 static vxm_status make_there(vxm_engine *engine, int who, int64_t begin, int64_t end, void *payload,
                              vxm_error *error) {
-  const batch_job *job = payload;
+  batch_job *job = payload;
   vxm_worker *seat = &job->sampler->seats[who];
-  vxm_status status = seat->context ? VXM_OK : vxm_worker_create(seat, job->sampler->context, true, error);
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = seat->context ? VXM_OK : vxm_worker_create(seat, job->sampler->context, true, &local);
   seat->engine = engine;
-  for (int64_t v = begin; v < end && status == VXM_OK; v++)
-    status = make_one(job, (size_t)v, seat, error);
+  seat->write_failed = false;
+  for (int64_t v = begin; v < end && status == VXM_OK; v++) {
+    status = make_one(job, (size_t)v, seat, &local);
+    if (status != VXM_OK && seat->write_failed) {
+      note_failure(job, (size_t)v, &local);
+      return VXM_ERROR_CANCELLED;
+    }
+  }
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   return status;
 }
 
 static vxm_status make_by_team(batch_job *job, vxm_team *team, size_t count, vxm_error *error) {
   vxm_team_work work = {
       .end = (int64_t)count, .least = 1, .phase = "making variants", .function = make_there, .payload = job};
-  return vxm_team_run(team, &work, error);
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = vxm_team_run(team, &work, &local);
+  if (status == VXM_OK)
+    return VXM_OK;
+  const vxm_error *told = atomic_load(&job->failed_at) == SIZE_MAX ? &local : &job->error;
+  vxm_error_pass(error, told);
+  return told->code;
 }
 
 /** Whether variants are made by something that does one thing at a time. */

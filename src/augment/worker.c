@@ -147,5 +147,9 @@ vxm_status vxm_worker_save(vxm_worker *desk, const char *path, const char *forma
     return status;
   vxm_window window = vxm_window_of_grid(desk->grid);
   status = vxm_worker_fill(desk, &window, subject, placement, noise, error);
-  return status == VXM_OK ? vxm_gridio_write(desk->grid, path, format, error) : status;
+  if (status != VXM_OK)
+    return status;
+  status = vxm_gridio_write(desk->grid, path, format, error);
+  desk->write_failed = status != VXM_OK;
+  return status;
 }

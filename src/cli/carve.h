@@ -11,6 +11,7 @@ typedef struct cli_way {
   const char *name; /**< for messages */
   int64_t line;     /**< read so far */
   int columns;      /**< of the first pose: 3, 7 or 12; 0 before it */
+  bool has_heading; /**< a line of names has been passed over; there is no second */
 } cli_way;
 
 /** Opens it, '-' for standard input; CLI_FAILED after a line. */

@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 enum { LINE_SIZE = 4096, MATRIX = 12, QUATERNION = 7, PLACE = 3 };
 
@@ -24,12 +25,23 @@ void cli_way_close(cli_way *way) {
   way->file = NULL;
 }
 
-/** Removes blanks, so that "1, 2" is what "1,2" is. */
+static bool is_blank(char c) {
+  return isspace((unsigned char)c) != 0;
+}
+
+/** Removes blanks beside commas and at both ends, so that "1, 2" is what "1,2" is, and "1 2" is no number. */
 static void squeeze(char *text) {
   char *to = text;
-  for (const char *from = text; *from; from++)
-    if (!isspace((unsigned char)*from))
+  for (const char *from = text; *from; from++) {
+    const char *next = from;
+    while (is_blank(*next))
+      next++;
+    if (next == from)
       *to++ = *from;
+    else if (to > text && to[-1] != ',' && *next && *next != ',')
+      *to++ = ' ';
+    from = next > from ? next - 1 : from;
+  }
   *to = '\0';
 }
 
@@ -66,12 +78,27 @@ static bool make_pose(double pose[12], const double *numbers, int columns) {
   return turn(pose, columns == QUATERNION ? numbers + PLACE : straight);
 }
 
-/** Reads a line that is not empty; a first one that does not begin with a number is a heading. */
+/** Whether a field is a word, and no damaged number. */
+static bool is_word(const char *text) {
+  return isalpha((unsigned char)*text) && strncasecmp(text, "nan", 3) != 0 &&
+         strncasecmp(text, "inf", 3) != 0;
+}
+
+/** Whether all columns have names: of a line with numbers one may be damaged. */
+static bool is_heading_line(const char *text) {
+  for (const char *field = text; field; field = strchr(field, ',')) {
+    field += *field == ',';
+    if (!is_word(field))
+      return false;
+  }
+  return true;
+}
+
+/** Reads a line that is not empty; a first one of words is a heading. */
 static int read_pose(cli_run *cli, cli_way *way, const char *text, double pose[12], bool *is_heading) {
-  double numbers[MATRIX], first;
-  char begin[32];
-  snprintf(begin, sizeof begin, "%.*s", (int)strcspn(text, ","), text);
-  *is_heading = way->columns == 0 && !cli_read_number(&first, begin);
+  double numbers[MATRIX];
+  *is_heading = way->columns == 0 && !way->has_heading && is_heading_line(text);
+  way->has_heading |= *is_heading;
   int columns = columns_of(text);
   if (columns != MATRIX && columns != QUATERNION && columns != PLACE)
     return cli_fail_text(cli,

@@ -94,6 +94,19 @@ static void lose(vxm_team *team, int who, const vxm_error *error) {
            error->text);
 }
 
+/** Work that was too much for some may be followed by less. */
+static void give_back_the_small(vxm_team *team) {
+  vxm_engine_info *info = &team->base.info;
+  for (int m = 0; m < team->count; m++)
+    if (team->members[m].is_too_small) {
+      team->members[m].is_lost = team->members[m].is_too_small = false;
+      info->devices++;
+      info->lost_devices--;
+    }
+  if (info->lost_devices == 0)
+    info->note[0] = '\0';
+}
+
 /** Whether others may do what failed. */
 static bool is_of_device(vxm_status status) {
   return status == VXM_ERROR_UNAVAILABLE || status == VXM_ERROR_MEMORY || status == VXM_ERROR_RANGE;
@@ -109,6 +122,7 @@ static bool account(team_run *run, int who, const span *piece, double ms, vxm_st
   }
   if (is_of_device(status)) {
     lose(run->team, who, error);
+    run->team->members[who].is_too_small = status == VXM_ERROR_RANGE;
     run->left[run->left_count++] = *piece;
   }
   if (!is_of_device(status) || count_members(run->team) == 0) {
@@ -213,6 +227,7 @@ vxm_status vxm_team_run(vxm_team *team, const vxm_team_work *work, vxm_error *er
     run_once(&run);
   pthread_cond_destroy(&run.change);
   pthread_mutex_destroy(&run.mutex);
+  give_back_the_small(team);
   if (run.status != VXM_OK)
     vxm_error_pass(error, &run.error);
   return run.status;
@@ -353,7 +368,8 @@ static vxm_status surface(vxm_engine *base, const vxm_surface *faces, const vxm_
         return VXM_OK;                                                                            \
       if (!is_of_device(status))                                                                  \
         break;                                                                                    \
-      lose(team, m, &local);                                                                      \
+      if (status != VXM_ERROR_RANGE)                                                              \
+        lose(team, m, &local);                                                                    \
     }                                                                                             \
     vxm_error_pass(error, &local);                                                                \
     return local.code;                                                                            \

@@ -11,6 +11,7 @@ typedef struct vxm_team_member {
   vxm_engine *engine; /**< in a context of its own; belongs to the team */
   double rate;        /**< pieces of work in a millisecond, lately; 0 = not known */
   bool is_lost;       /**< it has failed, and gets no more work */
+  bool is_too_small;  /**< lost for this work alone, which is more than it can hold */
 } vxm_team_member;
 
 typedef struct vxm_team {

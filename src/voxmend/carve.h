@@ -53,7 +53,8 @@ typedef struct vxm_carve_report {
 /**
  * Makes a carver that cuts a grid in place.
  *
- * @param grid must outlive the carver; its bits may be read, and written, between steps
+ * @param grid must outlive the carver; its bits may be read, and written, between steps; those set within
+ *             the tool where it stands stay until it is placed there again
  * @param tool in the model units of the grid; closed, as vxm_mesh_prepare makes it: open parts have the caps
  *             of their holes, and what has no inside cuts where its faces pass. Must outlive the carver
  * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_EMPTY if no face has three different corners; VXM_ERROR_RANGE

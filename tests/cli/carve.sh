@@ -66,7 +66,11 @@ printf '0,0,0,0,0,0,0\n' >null.csv
 printf '1,0,0,0,0,1,0,0,0,0,-1,0\n' >mirror.csv
 printf '0,0,0\n0,0,1e99\n' >far.csv
 printf 'x,y,z\n# nothing\n' >empty.csv
-for name in two mixed wrong null mirror far empty missing; do
+printf '1 2,3,4\n' >blank.csv
+printf 'O,0,0\n0,0,0\n' >letter.csv
+printf 'nan,0,0\n0,0,0\n' >nan.csv
+printf 'x,y,z\nx,y,z\n0,0,0\n' >twice.csv
+for name in two mixed wrong null mirror far empty blank letter nan twice missing; do
   run "voxmend carve stock.npy -t tool.off -p $name.csv -o y.npy"
 done
 run 'voxmend carve stock.npy -t tool.off -o y.npy'

@@ -224,6 +224,21 @@ static void test_all_fail(void **state) {
   drop_team();
 }
 
+/** Work that is more than any can hold is refused, and less of it is done afterwards. */
+static void test_too_large(void **state) {
+  (void)state;
+  make_team(NULL);
+  for (int m = 0; m < team()->count; m++) {
+    watched[m].fails_at = 1;
+    watched[m].with = VXM_ERROR_RANGE;
+  }
+  assert_int_equal(voxelize(context), VXM_ERROR_RANGE);
+  assert_int_equal(vxm_engine_describe(engine)->devices, team()->count);
+  assert_int_equal(vxm_engine_describe(engine)->lost_devices, 0);
+  assert_int_equal(voxelize(context), VXM_OK);
+  drop_team();
+}
+
 static int stop(const char *phase, double fraction, void *payload) {
   (void)phase;
   (void)payload;
@@ -307,6 +322,41 @@ static void test_variants(void **state) {
   free(out[1]);
 }
 
+/** A format that needs a module that is not there costs no device. */
+static void test_unwritable_files(void **state) {
+  (void)state;
+  make_team(NULL);
+  vxm_sampler_options options = VXM_SAMPLER_OPTIONS_INIT;
+  vxm_voxelize_options how = VXM_VOXELIZE_OPTIONS_INIT;
+  vxm_grid_write_options as = VXM_GRID_WRITE_OPTIONS_INIT;
+  vxm_sampler *sampler;
+  const vxm_variant variants[4] = {{0, 1, 0}, {0, 1, 1}, {0, 1, 2}, {0, 1, 3}};
+  const char *const paths[4] = {"/nowhere/0.vdb", "/nowhere/1.vdb", "/nowhere/2.vdb", "/nowhere/3.vdb"};
+  const char *modules = getenv("VOXMEND_MODULES");
+  char *before = modules ? strdup(modules) : NULL;
+  setenv("VOXMEND_MODULES", "/nowhere", 1);
+  vxm_soup *box = box_with_ties(0.25, 0.5);
+  vxm_error error = VXM_ERROR_INIT;
+  options.resolution = 9;
+  options.voxelize = &how;
+  how.engine = engine;
+  as.format = "vdb";
+  assert_int_equal(vxm_sampler_create(&sampler, context, &options, NULL), VXM_OK);
+  assert_int_equal(vxm_sampler_put(sampler, 0, box, NULL), VXM_OK);
+  assert_int_not_equal(vxm_sampler_files(paths, sampler, variants, 4, &as, NULL, &error), VXM_OK);
+  assert_non_null(strstr(error.text, "/nowhere/"));
+  assert_int_equal(vxm_engine_describe(engine)->devices, team()->count);
+  assert_int_equal(voxelize(context), VXM_OK);
+  if (before)
+    setenv("VOXMEND_MODULES", before, 1);
+  else
+    unsetenv("VOXMEND_MODULES");
+  free(before);
+  vxm_sampler_destroy(sampler);
+  vxm_soup_destroy(box);
+  drop_team();
+}
+
 /* ---- Names ---- */
 
 static void test_names(void **state) {
@@ -328,10 +378,12 @@ static void test_names(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_same),  cmocka_unit_test(test_by_speed),
-                                     cmocka_unit_test(test_one_fails), cmocka_unit_test(test_all_fail),
-                                     cmocka_unit_test(test_limits),    cmocka_unit_test(test_variants),
-                                     cmocka_unit_test(test_names)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_same),  cmocka_unit_test(test_by_speed),
+      cmocka_unit_test(test_one_fails), cmocka_unit_test(test_all_fail),
+      cmocka_unit_test(test_too_large), cmocka_unit_test(test_limits),
+      cmocka_unit_test(test_variants),  cmocka_unit_test(test_unwritable_files),
+      cmocka_unit_test(test_names)};
   setenv("POCL_DEVICES", "pthread pthread", 0);
   int status = gpu_test_start(NULL);
   if (status != 0)

@@ -52,7 +52,12 @@ static vxm_status make_texture(vxm_opengl *engine, vxm_device_voxels *made, vxm_
   gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_NEAREST); /* of whole numbers none other is */
   gl->TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   gl->BindTexture(GL_TEXTURE_3D, 0);
-  return vxm_gl_check(gl, "opengl: making a texture", error);
+  status = vxm_gl_check(gl, "opengl: making a texture", error);
+  if (status != VXM_OK) { /* here, as the context is the engine's now: `release` would enter it again */
+    gl->DeleteTextures(1, &info->texture);
+    info->texture = 0;
+  }
+  return status;
 }
 
 static vxm_status make(vxm_opengl *engine, vxm_device_voxels **out, vxm_device_info *info, vxm_error *error) {
