@@ -158,9 +158,11 @@ static int refuse(cli_run *cli, const char *path) {
   if (kind < 0)
     return cli_usage(cli, "%s is a folder with %s; a file is expected", path,
                      text[0] ? text : "nothing in it");
+  /* as the example has it, also in capitals and with two dots */
+  const char *extension = found.example + strlen(found.example) - strlen(found.known.name[kind]) - 1;
   if (cli->command->many)
     return cli_usage(cli, "%s is a folder with %s; 'voxmend %s %s%s*%s' takes all of a kind", path, text,
-                     cli->command->name, path, slash, strrchr(found.example, '.'));
+                     cli->command->name, path, slash, extension);
   if (cli_find_command("batch"))
     return cli_usage(cli,
                      "%s is a folder with %s; give one file, such as %s%s%s, or see 'voxmend help batch'",

@@ -260,7 +260,7 @@ static void tell(const cli_run *cli, const facts *f) {
 }
 
 static void tell_heading(const cli_run *cli, int width) {
-  fprintf(cli->text, "%-*s %-18s %-12s %-26s  %s\n", width, "file", "voxels", "voxel size", "from",
+  fprintf(cli->text, "%-*s %-18s %-12s %-32s  %s\n", width, "file", "voxels", "voxel size", "from",
           "content");
 }
 
@@ -268,7 +268,7 @@ static void tell_row(const cli_run *cli, const facts *f, int width) {
   char dims[TEXT_SIZE], size[TEXT_SIZE], from[TEXT_SIZE], content[TEXT_SIZE];
   const double *o = f->space.origin;
   snprintf(from, sizeof from, "(%.6g, %.6g, %.6g)", o[0], o[1], o[2]);
-  fprintf(cli->text, "%-*s %-18s %-12s %-26s  %s\n", width, f->path, dims_text(dims, &f->space),
+  fprintf(cli->text, "%-*s %-18s %-12s %-32s  %s\n", width, f->path, dims_text(dims, &f->space),
           size_text(size, &f->space), from, content_text(content, f));
 }
 
