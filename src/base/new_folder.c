@@ -202,15 +202,15 @@ static bool make(vxm_new_folder *folder) {
     name_moved(moved, folder);
     if (has_old) /* else it may be all that is left of it */
       remove_abandoned(folder, moved);
-    if (mkdirat(parent, folder->temporary, mode) == 0) {
-      if (take(folder))
-        return true;
-      if (errno != 0)
-        break;
-      errno = EEXIST;
-    } else if (errno != EEXIST)
+    if (faccessat(parent, moved, F_OK, AT_SYMLINK_NOFOLLOW) == 0)
+      continue;
+    bool is_made = mkdirat(parent, folder->temporary, mode) == 0;
+    if (is_made && take(folder))
+      return true;
+    if (errno != (is_made ? 0 : EEXIST))
       break;
   }
+  errno = errno == 0 ? EEXIST : errno;
   folder->temporary[0] = '\0';
   return false;
 }

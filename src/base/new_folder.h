@@ -22,11 +22,11 @@ typedef bool (*vxm_folder_part_fn)(const char *name, bool is_folder, int depth);
 enum { VXM_NEW_FOLDER_TEMPORARY = 48 };
 
 typedef struct vxm_new_folder {
-  vxm_output_path spot;                     /**< `name` may be that of a folder */
-  int descriptor;                           /**< of the new one, locked */
-  int old;                                  /**< of what it replaced, locked; -1 = none */
-  char temporary[VXM_NEW_FOLDER_TEMPORARY]; /**< its present name; of a published one that of what it
-                                               replaced; "" = none */
+  vxm_output_path spot; /**< `name` may be that of a folder */
+  int descriptor;       /**< of the new one, locked */
+  int old;              /**< of what it replaced, locked; -1 = none */
+  /** Its present name; of a published one that of what it replaced; "" = none. */
+  char temporary[VXM_NEW_FOLDER_TEMPORARY];
   bool is_published, has_replaced;
   const char *mark, *what; /**< as given */
   vxm_folder_part_fn is_part;

@@ -249,6 +249,15 @@ static void test_abandoned_folders(void **state) {
   assert_int_equal(close(left.descriptor), 0); /* and its lock */
   assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
   assert_int_equal(entries(folder), 1);
+  char moved[160]; /* the old one, where names cannot be exchanged */
+  snprintf(moved, sizeof moved, "%s/%s", folder, left.temporary);
+  memcpy(strrchr(moved, '.'), ".old", 5);
+  assert_int_equal(mkdir(moved, 0700), 0);
+  assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
+  assert_int_equal(entries(folder), 1);
+  assert_int_equal(rename(path, moved), 0); /* all that is left of it */
+  assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
+  assert_int_equal(entries(folder), 2);
   left.descriptor = -1;
   vxm_new_folder_close(&left);
   vxm_context_destroy(context);
