@@ -40,8 +40,11 @@ static void close_held(vxm_file_transaction_file *held) {
   free(held->folder);
 }
 
-static bool publish_held(vxm_file_transaction_file *held, bool keeps_old) {
-  return held->folder ? vxm_new_folder_publish(held->folder) : vxm_new_file_publish(&held->file, keeps_old);
+static vxm_status publish_held(vxm_file_transaction_file *held, bool keeps_old, vxm_error *error) {
+  if (held->folder)
+    return vxm_new_folder_publish(held->folder, held->path, error);
+  return vxm_new_file_publish(&held->file, keeps_old) ? VXM_OK
+                                                      : vxm_fail_errno(error, held->path, "cannot write");
 }
 
 static void revert_held(vxm_file_transaction_file *held) {
@@ -68,8 +71,7 @@ void vxm_file_transaction_drop(vxm_file_transaction_file *list) {
 vxm_status vxm_file_transaction_publish(vxm_file_transaction_file *list, vxm_error *error) {
   vxm_status status = VXM_OK;
   for (vxm_file_transaction_file *held = list; held && status == VXM_OK; held = held->next)
-    if (!publish_held(held, held->next != NULL)) /* the last one can only fail itself */
-      status = vxm_fail_errno(error, held->path, "cannot write");
+    status = publish_held(held, held->next != NULL, error); /* the last one can only fail itself */
   for (vxm_file_transaction_file *held = list; held && status != VXM_OK; held = held->next)
     revert_held(held);
   vxm_file_transaction_drop(list);

@@ -10,7 +10,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-enum { ATTEMPTS = 1000, DEPTH_MAX = 8 };
+enum { ATTEMPTS = 1000, DEPTH_MAX = 8, TEMPORARY_MAX = VXM_NEW_FOLDER_TEMPORARY };
 
 static const int folder_flags = O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
 
@@ -38,6 +38,14 @@ static bool is_folder(int parent, const char *name) {
   return fstatat(parent, name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISDIR(info.st_mode);
 }
 
+/** Whether a name is still that of an opened folder. */
+static bool is_named(int descriptor, int parent, const char *name) {
+  struct stat opened, named;
+  return descriptor >= 0 && fstat(descriptor, &opened) == 0 &&
+         fstatat(parent, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && opened.st_dev == named.st_dev &&
+         opened.st_ino == named.st_ino;
+}
+
 /** Looks for what is no part; its name is left in `other`. */
 static bool has_other(int parent, const char *name, vxm_folder_part_fn is_part, int depth,
                       char other[NAME_MAX + 1]) {
@@ -48,7 +56,7 @@ static bool has_other(int parent, const char *name, vxm_folder_part_fn is_part, 
   while (!found && (entry = next_entry(folder)) != NULL) {
     bool inner = is_folder(dirfd(folder), entry->d_name);
     snprintf(other, NAME_MAX + 1, "%s", entry->d_name);
-    found = !is_part(entry->d_name, inner) ||
+    found = !is_part(entry->d_name, inner, depth) ||
             (inner && has_other(dirfd(folder), entry->d_name, is_part, depth + 1, other));
   }
   if (folder)
@@ -64,22 +72,34 @@ static bool is_empty(int parent, const char *name) {
   return empty;
 }
 
-/** Removes a folder and what is a part in it; what is none stays, and so does then the folder. */
-static void remove_parts(int parent, const char *name, vxm_folder_part_fn is_part, int depth) {
-  DIR *folder = depth < DEPTH_MAX ? open_entries(parent, name) : NULL;
+/** Removes the parts in a folder; what is none stays. */
+static void remove_parts(int descriptor, vxm_folder_part_fn is_part, int depth) {
+  DIR *folder = depth < DEPTH_MAX ? open_entries(descriptor, ".") : NULL;
   const struct dirent *entry;
   while (folder && (entry = next_entry(folder)) != NULL) {
-    bool inner = is_folder(dirfd(folder), entry->d_name);
-    if (!is_part(entry->d_name, inner))
+    bool inner = is_folder(descriptor, entry->d_name);
+    if (!is_part(entry->d_name, inner, depth))
       continue;
-    if (inner)
-      remove_parts(dirfd(folder), entry->d_name, is_part, depth + 1);
-    else
-      unlinkat(dirfd(folder), entry->d_name, 0);
+    int below = inner ? openat(descriptor, entry->d_name, folder_flags) : -1;
+    if (below >= 0) {
+      remove_parts(below, is_part, depth + 1);
+      close(below);
+    }
+    unlinkat(descriptor, entry->d_name, inner ? AT_REMOVEDIR : 0);
   }
   if (folder)
     closedir(folder);
-  unlinkat(parent, name, AT_REMOVEDIR);
+}
+
+/** Removes an opened folder and the parts in it, if the name is still its own: meanwhile another program may
+ * have taken the name. The mark goes first: who reads the folder sees by it that files begin to lack. */
+static void remove_folder(const vxm_new_folder *folder, const char *name, int descriptor) {
+  if (!is_named(descriptor, folder->spot.folder, name))
+    return;
+  unlinkat(descriptor, folder->mark, 0);
+  remove_parts(descriptor, folder->is_part, 0);
+  if (is_named(descriptor, folder->spot.folder, name))
+    unlinkat(folder->spot.folder, name, AT_REMOVEDIR);
 }
 
 /* ---- Opening ---- */
@@ -133,40 +153,73 @@ static bool lock(int descriptor) {
   return true;
 }
 
-/** Removes what a killed program left under a temporary name: whoever still writes there holds its lock. */
-static void remove_abandoned(const vxm_new_folder *folder) {
+/** Removes what a killed program left under such a name: whoever still needs it holds its lock. */
+static void remove_abandoned(const vxm_new_folder *folder, const char *name) {
   struct stat info;
-  int descriptor = openat(folder->spot.folder, folder->temporary, folder_flags);
+  int descriptor = openat(folder->spot.folder, name, folder_flags);
   if (descriptor >= 0 && fstat(descriptor, &info) == 0 && info.st_uid == geteuid() && lock(descriptor))
-    remove_parts(folder->spot.folder, folder->temporary, folder->is_part, 0);
+    remove_folder(folder, name, descriptor);
   if (descriptor >= 0)
     close(descriptor);
 }
 
+static void name_moved(char out[TEMPORARY_MAX], const vxm_new_folder *folder) {
+  memcpy(out, folder->temporary, TEMPORARY_MAX);
+  memcpy(strrchr(out, '.'), ".old", sizeof ".old"); /* for ".tmp" */
+}
+
+/** Opens and locks the folder that was just made. False if another program took it for an abandoned one, with
+ * errno 0, or with the reason. */
+static bool take(vxm_new_folder *folder) {
+  const int parent = folder->spot.folder;
+  int descriptor = openat(parent, folder->temporary, folder_flags);
+  if (descriptor < 0) {
+    int reason = errno == ENOENT ? 0 : errno;
+    unlinkat(parent, folder->temporary, AT_REMOVEDIR);
+    errno = reason;
+    return false;
+  }
+  /* Where folders cannot be locked at all nobody removes them either. */
+  if ((lock(descriptor) || errno != EWOULDBLOCK) && is_named(descriptor, parent, folder->temporary)) {
+    folder->descriptor = descriptor;
+    return true;
+  }
+  close(descriptor);
+  errno = 0;
+  return false;
+}
+
 static bool make(vxm_new_folder *folder) {
   const int parent = folder->spot.folder;
+  struct stat old;
+  const bool has_old = fstatat(parent, folder->spot.name, &old, AT_SYMLINK_NOFOLLOW) == 0;
+  /* What others may not read is not shown to them until it is complete either. */
+  const mode_t mode = has_old && old.st_uid == geteuid() ? (old.st_mode & 0777) | S_IRWXU : 0777;
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+    char moved[TEMPORARY_MAX];
     name_temporary(folder, folder->spot.name, attempt);
-    remove_abandoned(folder);
-    if (mkdirat(parent, folder->temporary, 0777) == 0) {
-      folder->descriptor = openat(parent, folder->temporary, folder_flags);
-      if (folder->descriptor >= 0)
-        lock(folder->descriptor);
-      return folder->descriptor >= 0;
-    }
-    if (errno != EEXIST)
+    remove_abandoned(folder, folder->temporary);
+    name_moved(moved, folder);
+    if (has_old) /* else it may be all that is left of it */
+      remove_abandoned(folder, moved);
+    if (faccessat(parent, moved, F_OK, AT_SYMLINK_NOFOLLOW) == 0)
+      continue;
+    bool is_made = mkdirat(parent, folder->temporary, mode) == 0;
+    if (is_made && take(folder))
+      return true;
+    if (errno != (is_made ? 0 : EEXIST))
       break;
   }
+  errno = errno == 0 ? EEXIST : errno;
   folder->temporary[0] = '\0';
   return false;
 }
 
 /** Refuses to replace anything but what such a folder is. */
-static vxm_status check_old(const vxm_new_folder *folder, const char *path, const char *mark,
-                            const char *what, vxm_error *error) {
+static vxm_status check_old(const vxm_new_folder *folder, const char *path, vxm_error *error) {
   const vxm_place place = {path, 0, -1, -1};
   const int parent = folder->spot.folder;
-  const char *name = folder->spot.name;
+  const char *name = folder->spot.name, *what = folder->what;
   char other[NAME_MAX + 1], inner[PATH_MAX];
   struct stat info;
   if (fstatat(parent, name, &info, AT_SYMLINK_NOFOLLOW) != 0)
@@ -177,7 +230,7 @@ static vxm_status check_old(const vxm_new_folder *folder, const char *path, cons
                        S_ISLNK(info.st_mode) ? "link" : "file");
   if (is_empty(parent, name))
     return VXM_OK;
-  snprintf(inner, sizeof inner, "%s/%s", name, mark);
+  snprintf(inner, sizeof inner, "%s/%s", name, folder->mark);
   if (fstatat(parent, inner, &info, AT_SYMLINK_NOFOLLOW) != 0)
     return vxm_fail_at(error, VXM_ERROR_ARGUMENT, place,
                        "this folder is not %s, and is not replaced; give another name", what);
@@ -191,14 +244,19 @@ static vxm_status check_old(const vxm_new_folder *folder, const char *path, cons
 
 vxm_status vxm_new_folder_open(vxm_new_folder *out, const char *path, const char *mark,
                                vxm_folder_part_fn is_part, const char *what, vxm_error *error) {
-  *out = (vxm_new_folder){.spot = {.folder = -1, .device = -1}, .descriptor = -1, .is_part = is_part};
+  *out = (vxm_new_folder){.spot = {.folder = -1, .device = -1},
+                          .descriptor = -1,
+                          .old = -1,
+                          .mark = mark,
+                          .what = what,
+                          .is_part = is_part};
   if (!find_spot(out, path))
     return vxm_fail_errno(
         error, path,
         out->spot.is_strangers
             ? "cannot write through another user's link in a folder that everybody may write to"
             : "cannot write");
-  vxm_status status = check_old(out, path, mark, what, error);
+  vxm_status status = check_old(out, path, error);
   if (status == VXM_OK && !make(out))
     status = vxm_fail_errno(error, path, "cannot write");
   if (status != VXM_OK)
@@ -239,9 +297,8 @@ bool vxm_new_folder_put(const vxm_new_folder *folder, const char *name, const vo
 /** Moves the old one away where names cannot be exchanged. */
 static bool move_old(vxm_new_folder *folder) {
   const int parent = folder->spot.folder;
-  char old[sizeof folder->temporary];
-  memcpy(old, folder->temporary, sizeof old);
-  memcpy(strrchr(old, '.'), ".old", sizeof ".old"); /* for ".tmp" */
+  char old[TEMPORARY_MAX];
+  name_moved(old, folder);
   if (renameat(parent, folder->spot.name, parent, old) != 0)
     return false;
   if (renameat(parent, folder->temporary, parent, folder->spot.name) == 0) {
@@ -254,45 +311,59 @@ static bool move_old(vxm_new_folder *folder) {
   return false;
 }
 
-bool vxm_new_folder_publish(vxm_new_folder *folder) {
+/** Puts it in the place of the old one, which stays open and locked: under a temporary name nobody is to take
+ * it for an abandoned one. */
+static bool replace(vxm_new_folder *folder) {
   const int parent = folder->spot.folder;
   struct stat info;
-  if (fstatat(parent, folder->spot.name, &info, AT_SYMLINK_NOFOLLOW) == 0) {
-    if (S_ISDIR(info.st_mode) && info.st_uid == geteuid())
-      (void)!fchmod(folder->descriptor, info.st_mode & 0777);
-    folder->has_replaced =
-        renameat2(parent, folder->temporary, parent, folder->spot.name, RENAME_EXCHANGE) == 0 ||
-        move_old(folder);
-    return folder->is_published = folder->has_replaced;
-  }
-  if (renameat(parent, folder->temporary, parent, folder->spot.name) != 0)
-    return false;
-  folder->temporary[0] = '\0';
-  return folder->is_published = true;
+  (void)!lock(folder->old); /* another program that has just published it may hold it still */
+  if (fstat(folder->old, &info) == 0 && info.st_uid == geteuid())
+    (void)!fchmod(folder->descriptor, info.st_mode & 0777);
+  return renameat2(parent, folder->temporary, parent, folder->spot.name, RENAME_EXCHANGE) == 0 ||
+         move_old(folder);
+}
+
+vxm_status vxm_new_folder_publish(vxm_new_folder *folder, const char *path, vxm_error *error) {
+  const int parent = folder->spot.folder;
+  vxm_status status = check_old(folder, path, error); /* since it was opened much may have come there */
+  if (status != VXM_OK)
+    return status;
+  folder->old = openat(parent, folder->spot.name, folder_flags);
+  if (folder->old >= 0)
+    folder->is_published = folder->has_replaced = replace(folder);
+  else if (errno == ENOENT)
+    folder->is_published = renameat(parent, folder->temporary, parent, folder->spot.name) == 0;
+  if (!folder->is_published)
+    return vxm_fail_errno(error, path, "cannot write");
+  if (!folder->has_replaced)
+    folder->temporary[0] = '\0';
+  return VXM_OK;
 }
 
 void vxm_new_folder_revert(vxm_new_folder *folder) {
   const int parent = folder->spot.folder;
-  if (!folder->is_published)
-    return;
+  if (!folder->is_published || !is_named(folder->descriptor, parent, folder->spot.name))
+    return; /* another program has replaced it already */
   folder->is_published = false;
   if (!folder->has_replaced) {
-    remove_parts(parent, folder->spot.name, folder->is_part, 0);
+    remove_folder(folder, folder->spot.name, folder->descriptor);
     return;
   }
   if (renameat2(parent, folder->temporary, parent, folder->spot.name, RENAME_EXCHANGE) == 0)
     return; /* the new one has the temporary name, and goes with it */
-  remove_parts(parent, folder->spot.name, folder->is_part, 0);
+  remove_folder(folder, folder->spot.name, folder->descriptor);
   if (renameat(parent, folder->temporary, parent, folder->spot.name) == 0)
     folder->temporary[0] = '\0';
 }
 
 void vxm_new_folder_close(vxm_new_folder *folder) {
   if (folder->temporary[0])
-    remove_parts(folder->spot.folder, folder->temporary, folder->is_part, 0);
+    remove_folder(folder, folder->temporary, folder->is_published ? folder->old : folder->descriptor);
   if (folder->descriptor >= 0)
     close(folder->descriptor);
+  if (folder->old >= 0)
+    close(folder->old);
   vxm_output_path_close(&folder->spot);
-  folder->descriptor = -1;
+  folder->descriptor = folder->old = -1;
   folder->temporary[0] = '\0';
 }

@@ -15,14 +15,20 @@
 #include <stddef.h>
 
 /** Whether an entry is one that such a folder has: nothing else is ever removed.
- * @param is_folder whether it is a folder, whose entries are asked for too */
-typedef bool (*vxm_folder_part_fn)(const char *name, bool is_folder);
+ * @param is_folder whether it is a folder, whose entries are asked for too
+ * @param depth     0 for what lies in the folder itself */
+typedef bool (*vxm_folder_part_fn)(const char *name, bool is_folder, int depth);
+
+enum { VXM_NEW_FOLDER_TEMPORARY = 48 };
 
 typedef struct vxm_new_folder {
   vxm_output_path spot; /**< `name` may be that of a folder */
   int descriptor;       /**< of the new one, locked */
-  char temporary[48];   /**< its present name; of a published one that of what it replaced; "" = none */
+  int old;              /**< of what it replaced, locked; -1 = none */
+  /** Its present name; of a published one that of what it replaced; "" = none. */
+  char temporary[VXM_NEW_FOLDER_TEMPORARY];
   bool is_published, has_replaced;
+  const char *mark, *what; /**< as given */
   vxm_folder_part_fn is_part;
 } vxm_new_folder;
 
@@ -31,6 +37,7 @@ typedef struct vxm_new_folder {
  * one that is empty too.
  *
  * @param path may end in slashes
+ * @param mark stays the caller's until the folder is closed, and so does `what`
  * @param what the name of such a folder in messages, such as "a Zarr array"
  * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_ARGUMENT if something else is there
  */
@@ -38,8 +45,13 @@ vxm_status vxm_new_folder_open(vxm_new_folder *out, const char *path, const char
                                vxm_folder_part_fn is_part, const char *what, vxm_error *error);
 /** Adds a file of these bytes; false with errno set. Thread-safe. */
 bool vxm_new_folder_put(const vxm_new_folder *folder, const char *name, const void *data, size_t size);
-/** Gives it its name; what it replaces stays until the end. False with errno set. */
-bool vxm_new_folder_publish(vxm_new_folder *folder);
+/**
+ * Gives it its name; what it replaces stays until the end.
+ *
+ * @param path for messages
+ * @return VXM_OK; VXM_ERROR_IO; VXM_ERROR_ARGUMENT if something has come there that is not replaced
+ */
+vxm_status vxm_new_folder_publish(vxm_new_folder *folder, const char *path, vxm_error *error);
 /** Takes a published folder away again; what it had replaced is back. */
 void vxm_new_folder_revert(vxm_new_folder *folder);
 /** Closes it. What was not published is gone, and what was replaced. */

@@ -6,6 +6,7 @@
 #include "base/file_transaction.h"
 #include "gridio/common/format.h"
 
+#include <sys/file.h>
 #include <sys/stat.h>
 
 static char folder[64], path[96];
@@ -230,7 +231,8 @@ static void test_several_together(void **state) {
   vxm_context_destroy(context);
 }
 
-static bool is_part(const char *name, bool is_folder) {
+static bool is_part(const char *name, bool is_folder, int depth) {
+  (void)depth;
   return !is_folder && (name[0] == '.' || strspn(name, "0123456789.") == strlen(name));
 }
 
@@ -247,9 +249,120 @@ static void test_abandoned_folders(void **state) {
   assert_int_equal(close(left.descriptor), 0); /* and its lock */
   assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
   assert_int_equal(entries(folder), 1);
+  char moved[160]; /* the old one, where names cannot be exchanged */
+  snprintf(moved, sizeof moved, "%s/%s", folder, left.temporary);
+  memcpy(strrchr(moved, '.'), ".old", 5);
+  assert_int_equal(mkdir(moved, 0700), 0);
+  assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
+  assert_int_equal(entries(folder), 1);
+  assert_int_equal(rename(path, moved), 0); /* all that is left of it */
+  assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
+  assert_int_equal(entries(folder), 2);
   left.descriptor = -1;
   vxm_new_folder_close(&left);
   vxm_context_destroy(context);
+}
+
+static void open_new(vxm_new_folder *out, const char *chunk) {
+  assert_int_equal(vxm_new_folder_open(out, path, ".zarray", is_part, "a Zarr array", NULL), VXM_OK);
+  assert_true(vxm_new_folder_put(out, ".zarray", "{}", 2));
+  assert_true(vxm_new_folder_put(out, chunk, "x", 1));
+}
+
+/** Two write one array at the same time: neither takes away what is the other's. */
+static void test_two_writers(void **state) {
+  (void)state;
+  vxm_new_folder first, second, third;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
+  for (int locks = 1; locks >= 0; locks--) {
+    open_new(&first, "0.0.1");
+    assert_int_equal(vxm_new_folder_publish(&first, path, NULL), VXM_OK);
+    if (!locks) /* as where folders cannot be locked */
+      assert_int_equal(flock(first.old, LOCK_UN), 0);
+    open_new(&second, "0.0.2");
+    assert_int_equal(strcmp(first.temporary, second.temporary) == 0, !locks);
+    open_new(&third, "0.0.3");
+    vxm_new_folder_close(&first);
+    assert_int_equal(vxm_new_folder_publish(&second, path, NULL), VXM_OK);
+    vxm_new_folder_close(&second);
+    assert_int_equal(access(inner("0.0.2"), F_OK), 0);
+    assert_int_equal(vxm_new_folder_publish(&third, path, NULL), VXM_OK);
+    vxm_new_folder_revert(&third);
+    vxm_new_folder_close(&third);
+    assert_int_equal(access(inner("0.0.2"), F_OK), 0);
+    assert_int_equal(entries(path), 2);
+    assert_int_equal(entries(folder), 1);
+  }
+  vxm_context_destroy(context);
+}
+
+/** What comes there while the new one is written is looked at too; a secret array stays one meanwhile. */
+static void test_changes_meanwhile(void **state) {
+  (void)state;
+  vxm_new_folder late;
+  struct stat info;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
+  assert_int_equal(chmod(path, 0700), 0);
+  open_new(&late, "0.0.1");
+  assert_int_equal(fstat(late.descriptor, &info), 0);
+  assert_int_equal(info.st_mode & 0777, 0700);
+  save_file(inner("note.txt"), "mine", 4);
+  assert_int_equal(vxm_new_folder_publish(&late, path, &error), VXM_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.text, "\"note.txt\", which is no part"));
+  vxm_new_folder_close(&late);
+  assert_int_equal(entries(path), 4);
+  assert_int_equal(entries(folder), 1);
+  vxm_context_destroy(context);
+}
+
+/** Digits alone make no chunk. */
+static void test_digits_are_kept(void **state) {
+  (void)state;
+  static const char *const names[] = {"0/1/2", "0/1/2/0", "3.1.2", "3.1.2.0",   "2024", "1.2", "1.2.3.4.5",
+                                      "1..2",  "1.2.",    "3/1.2", "3/1/2/4/5", "3/1",  "3/a"};
+  char command[256];
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+    assert_int_equal(write_box(context, path, 3, NULL), VXM_OK);
+    snprintf(command, sizeof command, "mkdir -p $(dirname %s/%s) && touch %s/%s", path, names[n], path,
+             names[n]);
+    assert_int_equal(system(command), 0);
+    assert_int_equal(write_box(context, path, 4, NULL), n < 4 ? VXM_OK : VXM_ERROR_ARGUMENT);
+    assert_int_equal(access(inner(names[n]), F_OK) == 0, n >= 4);
+    empty();
+  }
+  vxm_context_destroy(context);
+}
+
+/** An array that is taken away while it is read is no array of fill values. */
+static int replace_it(const char *phase, double fraction, void *payload) {
+  (void)phase, (void)fraction;
+  bool *done = payload;
+  if (!*done)
+    write_box(NULL, path, 5, NULL);
+  *done = true;
+  return 0;
+}
+
+static void test_replaced_while_read(void **state) {
+  (void)state;
+  bool done = false;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_context *writer = context_with(1, 0, NULL, NULL), *reader = context_with(1, 0, replace_it, &done);
+  vxm_grid *grid = new_grid(writer, unit_space(200, 64, 64)), *back;
+  for (int64_t i = 0; i < 200; i += 3)
+    vxm_grid_set(grid, i, 5, 5, true);
+  assert_int_equal(vxm_gridio_write(grid, path, NULL, NULL), VXM_OK);
+  assert_int_equal(vxm_gridio_read(&back, reader, path, &error), VXM_ERROR_IO);
+  assert_true(done);
+  assert_null(back);
+  assert_non_null(strstr(error.text, "was replaced while it was read"));
+  vxm_grid_destroy(grid);
+  vxm_context_destroy(writer);
+  vxm_context_destroy(reader);
 }
 
 /* ---- Damage ---- */
@@ -333,6 +446,38 @@ static void test_mutation(void **state) {
   }
 }
 
+static vxm_status read_described(vxm_field **field, vxm_context *context, const char *shape, const char *type,
+                                 const char *fill, vxm_error *error) {
+  char text[256];
+  vxm_grid *grid;
+  int length = snprintf(text, sizeof text,
+                        "{\"zarr_format\":2,\"shape\":%s,\"chunks\":[1,1,1],\"dtype\":\"%s\",\"order\":\"C\","
+                        "\"compressor\":null,\"fill_value\":%s,\"filters\":null}",
+                        shape, type, fill);
+  save_file(inner(".zarray"), text, (size_t)length);
+  vxm_status status = vxm_gridio_read_either(&grid, field, context, path, error);
+  vxm_grid_destroy(grid);
+  return status;
+}
+
+static void test_odd_descriptions(void **state) {
+  (void)state;
+  vxm_error error = VXM_ERROR_INIT;
+  vxm_field *field;
+  vxm_context *context = context_with(1, 0, NULL, NULL);
+  assert_int_equal(mkdir(path, 0700), 0);
+  assert_int_equal(read_described(&field, context, "[1,1,2]", "<i8", "9.1e15", &error), VXM_ERROR_FORMAT);
+  assert_non_null(strstr(error.text, "fill_value"));
+  assert_int_equal(read_described(&field, context, "[1,1,2]", "<i8", "9.0e15", &error), VXM_OK);
+  assert_true(((const int64_t *)(const void *)field->values)[1] == INT64_C(9000000000000000));
+  vxm_field_destroy(field);
+  assert_int_equal(read_described(&field, context, "[1,1,2]", "|b1", "5", &error), VXM_OK);
+  assert_null(field); /* bits, set */
+  assert_int_equal(read_described(&field, context, "[500,200,200]", "|u1", "0", &error), VXM_ERROR_FORMAT);
+  assert_non_null(strstr(error.text, "it has over 4194304 chunks"));
+  vxm_context_destroy(context);
+}
+
 /** What is asked of a chunk that is not a file, or has another length. */
 static void test_odd_chunks(void **state) {
   (void)state;
@@ -371,7 +516,12 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_nothing_is_left_after_failure, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_several_together, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_abandoned_folders, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_two_writers, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_changes_meanwhile, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_digits_are_kept, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_replaced_while_read, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_mutation, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_odd_descriptions, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_odd_chunks, set_up, tear_down),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -19,6 +19,9 @@ enum { LENGTH_MAX = 1 << 27 };
 /** What numcodecs compresses at once. */
 static const uint64_t CHUNK_BYTES_MAX = INT32_MAX;
 
+/** Each chunk is looked for by its name, also where there is none. */
+static const uint64_t CHUNKS_MAX = UINT64_C(1) << 22;
+
 void vxm_zarr_key(char out[VXM_ZARR_KEY_MAX], const vxm_zarr_array *array, const int64_t *chunk) {
   int used = 0;
   for (int a = 0; a < array->rank; a++)
@@ -238,6 +241,12 @@ static vxm_status check_chunk(const vxm_zarr_array *array, const spot *p, vxm_er
       return FAIL(p, error, "its chunks have over 2 GiB; save it with smaller ones");
     bytes *= (uint64_t)array->chunk[a];
   }
+  uint64_t chunks = 1;
+  for (int a = 0; a < array->rank; a++) {
+    if ((uint64_t)vxm_zarr_chunks(array, a) > CHUNKS_MAX / chunks)
+      return FAIL(p, error, "it has over %" PRIu64 " chunks; save it with larger ones", CHUNKS_MAX);
+    chunks *= (uint64_t)vxm_zarr_chunks(array, a);
+  }
   return VXM_OK;
 }
 
@@ -278,9 +287,11 @@ static vxm_status read_fill(vxm_zarr_array *out, const json_t *root, const spot 
     out->fill[is_big_endian() ? vxm_scalar_bytes(out->scalar) - 1 : 0] = json_is_true(fill);
   else {
     json_int_t number = json_integer_value(fill);
-    if (json_is_real(fill) && fabs(json_real_value(fill)) < 0x1p53)
+    good = json_is_integer(fill) || (json_is_real(fill) && fabs(json_real_value(fill)) < 0x1p53);
+    if (good && json_is_real(fill))
       number = (json_int_t)json_real_value(fill);
-    good = json_is_number(fill);
+    if (out->is_bool)
+      number = number != 0;
     put_integer(out->fill, (uint64_t)number, vxm_scalar_bytes(out->scalar));
   }
   return good ? VXM_OK : FAIL(p, error, "its \"fill_value\" is not one that is read");

@@ -247,6 +247,12 @@ static vxm_status load_values(vxm_field **out, vxm_zarr_array *array, int folder
   return vxm_field_hand_over(out, l.field, status, error);
 }
 
+/** A file that lacks is a chunk of the fill value only while the array is whole: whoever takes it away begins
+ * with .zarray. */
+static bool stays(int folder) {
+  return faccessat(folder, ".zarray", F_OK, 0) == 0;
+}
+
 /** Reads the description, and then, if `field` is not NULL, the values; else it makes a clear grid. */
 static vxm_status read_folder(vxm_field **field, vxm_grid **grid, const vxm_input *input, vxm_error *error) {
   vxm_zarr_array array;
@@ -262,6 +268,17 @@ static vxm_status read_folder(vxm_field **field, vxm_grid **grid, const vxm_inpu
       warn(&array, &(*grid)->warnings);
   }
   vxm_about_destroy(&array.about);
+  if (status == VXM_OK && !stays(folder)) {
+    status = vxm_fail_at(error, VXM_ERROR_IO, (vxm_place){input->name, 0, -1, -1},
+                         "was replaced while it was read; read it again");
+    if (field) {
+      vxm_field_destroy(*field);
+      *field = NULL;
+    } else {
+      vxm_grid_destroy(*grid);
+      *grid = NULL;
+    }
+  }
   close(folder);
   return status;
 }

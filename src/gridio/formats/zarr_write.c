@@ -71,11 +71,23 @@ static uint64_t held_bytes(const vxm_space *space, const vxm_values_spec *values
 
 /* ---- Beginning ---- */
 
-/** What the folder of an array has: .zarray, .zattrs, and chunks, whose names are of digits. */
-static bool is_part(const char *name, bool is_folder) {
-  if (!is_folder && (strcmp(name, ".zarray") == 0 || strcmp(name, ".zattrs") == 0))
+/** What the folder of an array has: .zarray, .zattrs, and chunks, "0.3.1" or "0/3/1", of 3 or 4 numbers. */
+static bool is_part(const char *name, bool is_folder, int depth) {
+  int numbers = 1;
+  if (!is_folder && depth == 0 && (strcmp(name, ".zarray") == 0 || strcmp(name, ".zattrs") == 0))
     return true;
-  return name[strspn(name, is_folder ? "0123456789" : "0123456789.")] == '\0' && *name != '.';
+  for (const char *at = name;; at++, numbers++) {
+    size_t digits = strspn(at, "0123456789");
+    at += digits;
+    if (digits == 0 || (*at && *at != '.'))
+      return false;
+    if (!*at)
+      break;
+  }
+  if (is_folder)
+    return numbers == 1 && depth < VXM_ZARR_RANK_MAX - 1;
+  int rank = depth + numbers;
+  return (depth == 0 || numbers == 1) && (rank == 3 || rank == VXM_ZARR_RANK_MAX);
 }
 
 static vxm_status check(const vxm_space *space, const vxm_values_spec *values, const char *path,
