@@ -344,7 +344,7 @@ static void test_unwritable_files(void **state) {
   assert_int_equal(vxm_sampler_create(&sampler, context, &options, NULL), VXM_OK);
   assert_int_equal(vxm_sampler_put(sampler, 0, box, NULL), VXM_OK);
   assert_int_not_equal(vxm_sampler_files(paths, sampler, variants, 4, &as, NULL, &error), VXM_OK);
-  assert_non_null(strstr(error.text, "/nowhere/"));
+  assert_null(strstr(error.text, "device"));
   assert_int_equal(vxm_engine_describe(engine)->devices, team()->count);
   assert_int_equal(voxelize(context), VXM_OK);
   if (before)
