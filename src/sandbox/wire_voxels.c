@@ -216,14 +216,19 @@ static bool take_block(vxm_voxel_sink *sink, const block_head *head, const unsig
   }
 }
 
+/** How many bytes a parcel has, and these: a batch at most. */
+static vxm_status receive_batch(unsigned char batch[VXM_WIRE_BATCH], uint64_t *size, vxm_process *sender,
+                                vxm_error *error) {
+  vxm_status status = vxm_process_receive(sender, size, sizeof *size, error);
+  if (status == VXM_OK && *size > VXM_WIRE_BATCH)
+    status = vxm_parcel_damaged(error);
+  return status == VXM_OK ? vxm_process_receive(sender, batch, (size_t)*size, error) : status;
+}
+
 static vxm_status receive_blocks(vxm_voxel_sink *sink, vxm_process *sender, vxm_error *error) {
   unsigned char batch[VXM_WIRE_BATCH];
   uint64_t size;
-  vxm_status status = vxm_process_receive(sender, &size, sizeof size, error);
-  if (status == VXM_OK && size > sizeof batch)
-    status = vxm_parcel_damaged(error);
-  if (status == VXM_OK)
-    status = vxm_process_receive(sender, batch, (size_t)size, error);
+  vxm_status status = receive_batch(batch, &size, sender, error);
   for (size_t at = 0; status == VXM_OK && at < size;) {
     block_head head;
     if (size - at < sizeof head)
@@ -251,11 +256,7 @@ static vxm_status receive_array(vxm_voxel_sink *sink, vxm_process *sender, vxm_e
 static vxm_status receive_values(vxm_voxel_sink *sink, vxm_process *sender, vxm_error *error) {
   unsigned char batch[VXM_WIRE_BATCH];
   uint64_t size;
-  vxm_status status = vxm_process_receive(sender, &size, sizeof size, error);
-  if (status == VXM_OK && size > sizeof batch)
-    status = vxm_parcel_damaged(error);
-  if (status == VXM_OK)
-    status = vxm_process_receive(sender, batch, (size_t)size, error);
+  vxm_status status = receive_batch(batch, &size, sender, error);
   return status == VXM_OK ? sink->values(sink->payload, batch, (size_t)size, error) : status;
 }
 
