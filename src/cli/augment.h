@@ -61,8 +61,8 @@ int augment_stream_open(cli_run *cli, augment_stream **out, const augment_reques
                         vxm_sampler *sampler);
 /** Writes the records of model number given->variant.model; CLI_DONE or CLI_FAILED. */
 int augment_stream_write(cli_run *cli, augment_stream *s, const augment_request *given, int64_t *made);
-/** After the last, or a failure: the status so far, or CLI_FAILED where it cannot be written to its end. NULL is
- * allowed. */
+/** After the last, or a failure: the status so far, or CLI_FAILED where it cannot be written to its end. NULL
+ * is allowed. */
 int augment_stream_close(cli_run *cli, augment_stream *s, int status);
 
 /* ---- augment_model.c: a model, and its variants ---- */

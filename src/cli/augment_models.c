@@ -117,9 +117,9 @@ static int make(cli_run *cli, several *s, const augment_request *given, int64_t 
     s->bytes += made.folder.bytes;
   }
   if (status != CLI_DONE)
-    json_array_append_new(s->failures, json_pack("{s:o, s:I}", "file",
-                                                 cli_json_text(s->manifest.items[i].path), "model",
-                                                 (json_int_t)given->variant.model + i));
+    json_array_append_new(s->failures,
+                          json_pack("{s:o, s:I}", "file", cli_json_text(s->manifest.items[i].path), "model",
+                                    (json_int_t)given->variant.model + i));
   if (own.output != given->output) {
     if (status != CLI_DONE && s->is_new)
       remove_folders(given->output, own.output);
