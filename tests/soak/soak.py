@@ -401,7 +401,7 @@ def check(program, rng, folder, words, output, before, result, sent):
 
 
 def is_repeatable(words, result, fault, output):
-    return fault == "none" and result[0] in (0, 3) and output and "--memlimit" not in words and not output.endswith((".html", ".h5"))
+    return fault == "none" and result[0] in (0, 3) and output and not {"--memlimit", "--dry-run"} & set(words) and not output.endswith((".html", ".h5"))
 
 
 def one_case(program, number_of_case, kept, keep_always=False):
