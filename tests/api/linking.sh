@@ -92,8 +92,8 @@ if command -v cmake >/dev/null; then
   by_cmake "$SRCDIR/samples" "$work/cmake" && cmake --build "$work/cmake" >>"$work/log" 2>&1 ||
     { cat "$work/log"; fail "CMake"; }
   runs "$work/cmake"
-  for asked in 99 0.0; do
-    sed "s/voxmend 0.1 REQUIRED/voxmend $asked REQUIRED/" "$SRCDIR/samples/CMakeLists.txt" >"$work/CMakeLists.txt"
+  for asked in 99 1.99 0.1; do
+    sed "s/voxmend 1.0 REQUIRED/voxmend $asked REQUIRED/" "$SRCDIR/samples/CMakeLists.txt" >"$work/CMakeLists.txt"
     if by_cmake "$work" "$work/other"; then
       fail "CMake takes this version for $asked"
     fi

@@ -263,7 +263,7 @@ static void messages(void **state) {
     assert_one_printable_line(warnings.text[i], VXM_NOTE_LENGTH);
   assert_string_equal(vxm_status_name(VXM_OK), "ok");
   assert_string_equal(vxm_status_name(VXM_ERROR_CANCELLED), "cancelled");
-  assert_string_equal(vxm_version(), "0.1.0");
+  assert_string_equal(vxm_version(), "1.0.0");
 }
 
 int main(void) {
