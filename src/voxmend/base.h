@@ -49,8 +49,8 @@ extern "C" {
 #define VXM_API
 #endif
 
-#define VXM_VERSION_MAJOR 0 /**< of these headers */
-#define VXM_VERSION_MINOR 1 /**< of these headers */
+#define VXM_VERSION_MAJOR 1 /**< of these headers */
+#define VXM_VERSION_MINOR 0 /**< of these headers */
 #define VXM_VERSION_PATCH 0 /**< of these headers */
 
 /** Version of the library that runs, "MAJOR.MINOR.PATCH". */
