@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/context.h"
 #include "base/context_struct.h"
+#include "base/machine_memory.h"
 #include "base/size_text.h"
 
 #include <stdlib.h>
@@ -19,12 +20,36 @@ static vxm_status fail_limit(vxm_error *error, const char *what, uint64_t needed
                   vxm_size_text_of(used).text);
 }
 
+/**
+ * Without a limit the machine is one. The system would hand out more than it has, and end this program, or
+ * another, when it is used.
+ */
+static bool fits_machine(size_t used, uint64_t bytes) {
+  const uint64_t small = UINT64_C(1) << 29; /* about so little nobody is asked */
+  if (used < small && bytes < small)
+    return true;
+  const uint64_t all = vxm_machine_memory();
+  return used < all && bytes <= all - used;
+}
+
+static vxm_status fail_machine(vxm_error *error, const char *what, uint64_t needed, size_t used) {
+  return vxm_fail(
+      error, VXM_ERROR_MEMORY_LIMIT,
+      "%s needs %s, but the machine has %s and %s of it are in use here; lower the resolution (-r), "
+      "or set a limit above that if it can swap (--memlimit)",
+      what, vxm_size_text_of(needed).text, vxm_size_text_of(vxm_machine_memory()).text,
+      vxm_size_text_of(used).text);
+}
+
 /** Books `bytes`, or says why not. */
 static bool reserve(const vxm_context *owner, size_t bytes, vxm_error *error) {
   vxm_context *context = owner->account;
   size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
   do
-    if (bytes > context->limit - (used < context->limit ? used : context->limit)) {
+    if (context->limit == SIZE_MAX && !fits_machine(used, bytes)) {
+      fail_machine(error, "this step", bytes, used);
+      return false;
+    } else if (bytes > context->limit - (used < context->limit ? used : context->limit)) {
       fail_limit(error, "this step", bytes, context->limit, used);
       return false;
     }
@@ -264,9 +289,11 @@ size_t vxm_memory_left(const vxm_context *owner) {
 
 vxm_status vxm_memory_check(const vxm_context *owner, uint64_t bytes, const char *what, vxm_error *error) {
   const vxm_context *context = owner->account;
+  size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
+  if (context->limit == SIZE_MAX)
+    return fits_machine(used, bytes) ? VXM_OK : fail_machine(error, what, bytes, used);
   if (bytes <= vxm_memory_left(context))
     return VXM_OK;
-  size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
   return fail_limit(error, what, bytes, context->limit, used);
 }
 

@@ -129,9 +129,10 @@ typedef int (*vxm_progress_fn)(const char *phase, double fraction, void *payload
 
 /** How a context works. */
 typedef struct vxm_context_options {
-  size_t size;              /**< as the initializer sets it */
-  int threads;              /**< 0 = one per processor available */
-  uint64_t memory_limit;    /**< bytes of all objects and scratch of the context together; 0 = no limit */
+  size_t size;           /**< as the initializer sets it */
+  int threads;           /**< 0 = one per processor available */
+  uint64_t memory_limit; /**< bytes of all objects and scratch of the context together; 0 = what the machine,
+                            or its container, has */
   vxm_progress_fn progress; /**< NULL = none */
   void *payload;            /**< handed to progress */
 } vxm_context_options;
