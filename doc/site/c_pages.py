@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A page for each public header, in the order of the header, of what Doxygen found: c_pages.py OUTPUT INTRODUCTION.md XML SOURCE
+The directives are Breathe's, which fills in the comments."""
+import os
+import re
+import sys
+from xml.etree import ElementTree
+
+# In the order in which they are read.
+HEADERS = ("base", "mesh", "repair", "grid", "voxelize", "field", "sparse", "carve", "sampler", "engine", "experimental")
+DIRECTIVES = {"function": "doxygenfunction", "define": "doxygendefine", "typedef": "doxygentypedef", "enum": "doxygenenum"}
+
+
+def text_of(node):
+    return " ".join("".join(node.itertext()).split()) if node is not None else ""
+
+
+def described(node):
+    return bool(text_of(node.find("briefdescription")) or text_of(node.find("detaileddescription")))
+
+
+def file_compounds(xml):
+    index = ElementTree.parse(os.path.join(xml, "index.xml")).getroot()
+    for compound in index.iter("compound"):
+        if compound.get("kind") == "file":
+            root = ElementTree.parse(os.path.join(xml, compound.get("refid") + ".xml")).getroot().find("compounddef")
+            yield root.find("location").get("file"), root
+
+
+def items_of(root, xml):
+    """(line, directive) of all that the header declares."""
+    for member in root.iter("memberdef"):
+        if described(member) and member.get("kind") in DIRECTIVES:
+            yield int(member.find("location").get("line")), "%s:: %s" % (DIRECTIVES[member.get("kind")], member.findtext("name"))
+    for inner in root.findall("innerclass"):
+        struct = ElementTree.parse(os.path.join(xml, inner.get("refid") + ".xml")).getroot().find("compounddef")
+        if described(struct) and "." not in inner.text:
+            yield int(struct.find("location").get("line")), "doxygenstruct:: %s\n   :members:\n   :undoc-members:" % inner.text
+
+
+def headings_of(path):
+    with open(path, encoding="utf-8") as file:
+        for line, text in enumerate(file, 1):
+            found = re.match(r"/\* ---- (.*) ---- \*/", text)
+            if found:
+                yield line, found[1]
+
+
+def main():
+    out, introduction, xml, source = sys.argv[1:]
+    os.makedirs(out, exist_ok=True)
+    compounds = {name: root for name, root in file_compounds(xml)}
+    index = open(introduction, encoding="utf-8").read()
+    for header in HEADERS:
+        name = "voxmend/%s.h" % header
+        root = next(root for path, root in compounds.items() if path.endswith(name))
+        lines = [name, "=" * len(name), "", ".. doxygenfile:: %s" % name, "   :sections: briefdescription detaileddescription", ""]
+        headings = dict(headings_of(os.path.join(source, name)))
+        items = sorted(items_of(root, xml))
+        for line in sorted([*headings, *(line for line, _ in items)]):
+            if line in headings:
+                lines += [headings[line], "-" * len(headings[line]), ""]
+            lines += [".. %s\n" % directive for at, directive in items if at == line]
+        with open(os.path.join(out, header + ".rst"), "w", encoding="utf-8") as file:
+            file.write("\n".join(lines))
+        index += "| [`%s`](%s.rst) | %s |\n" % (name, header, text_of(root.find("briefdescription")) or text_of(root.find("detaileddescription")))
+    with open(os.path.join(out, "index.md"), "w", encoding="utf-8") as file:
+        file.write(index + "\n```{toctree}\n:hidden:\n\n%s\n```\n" % "\n".join(HEADERS))
+
+
+main()
