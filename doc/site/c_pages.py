@@ -27,6 +27,30 @@ def file_compounds(xml):
             yield root.find("location").get("file"), root
 
 
+def name_unnamed(xml, source):
+    """Members of a structure without a name within another one, which Doxygen lists beside those of that: `passes.count`."""
+    for file in sorted(os.listdir(xml)):
+        if not file.startswith("struct"):
+            continue
+        path = os.path.join(xml, file)
+        tree = ElementTree.parse(path)
+        members = list(tree.getroot().iter("memberdef"))
+        outer = [member for member in members if "::@" in text_of(member.find("type"))]
+        for array in outer:
+            location, name = array.find("location"), array.findtext("name")
+            last = int(location.get("line"))
+            with open(os.path.join(source, location.get("file")), encoding="utf-8") as header:
+                lines = header.read().splitlines()[:last]
+            first = last - lines[::-1].index("  struct {")
+            for member in members:
+                if first <= int(member.find("location").get("line")) < last:
+                    member.find("name").text = name + "." + member.findtext("name")
+            array.find("type").clear()
+            array.find("type").text = "struct unnamed"
+        if outer:
+            tree.write(path, encoding="utf-8")
+
+
 def items_of(root, xml):
     """(line, directive) of all that the header declares."""
     for member in root.iter("memberdef"):
@@ -49,12 +73,13 @@ def headings_of(path):
 def main():
     out, introduction, xml, source = sys.argv[1:]
     os.makedirs(out, exist_ok=True)
+    name_unnamed(xml, source)
     compounds = {name: root for name, root in file_compounds(xml)}
     index = open(introduction, encoding="utf-8").read()
     for header in HEADERS:
         name = "voxmend/%s.h" % header
         root = next(root for path, root in compounds.items() if path.endswith(name))
-        lines = [name, "=" * len(name), "", ".. doxygenfile:: %s" % name, "   :sections: briefdescription detaileddescription", ""]
+        lines = [".. _%s:" % root.get("id"), "", name, "=" * len(name), "", ".. doxygenfile:: %s" % name, "   :sections: briefdescription detaileddescription", ""]
         headings = dict(headings_of(os.path.join(source, name)))
         items = sorted(items_of(root, xml))
         for line in sorted([*headings, *(line for line, _ in items)]):

@@ -23,7 +23,7 @@ breathe_default_project = "voxmend"
 breathe_domain_by_extension = {"h": "c"}
 c_id_attributes = ["VXM_API"]
 nitpick_ignore = [("c:identifier", name) for name in (
-    "bool", "size_t", "int64_t", "uint8_t", "uint16_t", "uint32_t", "uint64_t", "DLManagedTensor")]
+    "bool", "size_t", "int64_t", "uint8_t", "uint16_t", "uint32_t", "uint64_t", "DLManagedTensor", "unnamed")]
 
 # ---- Python: of the package that was built ----
 autodoc_mock_imports = ["torch"]
@@ -40,7 +40,7 @@ nitpick_ignore_regex = [("py:.*", r"(?!voxmend).*"), ("py:.*", r"voxmend\._.*")]
 # ---- The look ----
 html_theme = "furo"
 html_title = "voxmend " + version
-html_static_path = ["_static"]
+html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_copy_source = False

@@ -20,6 +20,7 @@ cp model.stl car.stl
 "$VOXMEND" repair torus.off -o ball.stl -q
 "$VOXMEND" repair cube.off -o block.stl -q
 "$VOXMEND" repair open_box.off -o plane.obj -q
+cp plane.obj model.obj
 cp rocket.off bunny.ply # told by content
 mkdir objaverse samples build-demo
 cp stool.glb objaverse/
