@@ -51,6 +51,51 @@ def name_unnamed(xml, source):
             tree.write(path, encoding="utf-8")
 
 
+def link_names(xml):
+    """Names of the library within descriptions become links; Doxygen links functions only where "()" stands behind them."""
+    targets = {}
+    for compound in ElementTree.parse(os.path.join(xml, "index.xml")).getroot().iter("compound"):
+        if compound.get("kind") == "struct":
+            targets[compound.findtext("name")] = compound.get("refid"), "compound"
+        for member in compound.iter("member"):
+            if compound.get("kind") == "file":
+                targets.setdefault(member.findtext("name"), (member.get("refid"), "member"))
+
+    def split(text):
+        """The text before the first link, and links with the text behind each."""
+        parts, links = re.split(r"\b((?:vxm|VXM)_\w+)", text or ""), []
+        before = parts[0]
+        for name, after in zip(parts[1::2], parts[2::2]):
+            if name in targets:
+                link = ElementTree.Element("ref", refid=targets[name][0], kindref=targets[name][1])
+                link.text, link.tail = name, after
+                links.append(link)
+            elif links:
+                links[-1].tail += name + after
+            else:
+                before += name + after
+        return before, links
+
+    def walk(node):
+        if node.tag in ("ref", "computeroutput", "programlisting"):
+            return
+        children = list(node)
+        node.text, links = split(node.text)
+        for child in children:
+            walk(child)
+            child.tail, more = split(child.tail)
+            links += [child, *more]
+        node[:] = links
+
+    for file in sorted(os.listdir(xml)):
+        if file.endswith(".xml") and file != "index.xml":
+            tree = ElementTree.parse(os.path.join(xml, file))
+            for tag in ("briefdescription", "detaileddescription"):
+                for description in tree.getroot().iter(tag):
+                    walk(description)
+            tree.write(os.path.join(xml, file), encoding="utf-8")
+
+
 def items_of(root, xml):
     """(line, directive) of all that the header declares."""
     for member in root.iter("memberdef"):
@@ -74,6 +119,7 @@ def main():
     out, introduction, xml, source = sys.argv[1:]
     os.makedirs(out, exist_ok=True)
     name_unnamed(xml, source)
+    link_names(xml)
     compounds = {name: root for name, root in file_compounds(xml)}
     index = open(introduction, encoding="utf-8").read()
     for header in HEADERS:
