@@ -54,9 +54,8 @@ static vxm_status repair(vxm_mesh **out, vxm_level *reached, const vxm_mesh *raw
     vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
     vxm_verification found = VXM_VERIFICATION_INIT;
     options.level = (vxm_level)level;
-    options.weld =
-        weld > 0 ? VXM_WELD_TOLERANCE : VXM_WELD_AUTO; /* vertices that are no farther apart are one */
-    options.weld_tolerance = weld;
+    options.weld = weld > 0 ? VXM_WELD_TOLERANCE : VXM_WELD_AUTO;
+    options.weld_tolerance = weld; /* vertices that are no farther apart are one */
     options.part_changes = true;
     options.sheets = VXM_SHEETS_KEEP; /* the part as it was drawn: what is open is not to become a plate */
     options.max_change = 0.05;        /* a repair that inflates a part by more is none */

@@ -52,7 +52,8 @@ PYTHONDONTWRITEBYTECODE=1
 export PATH PYTHONDONTWRITEBYTECODE
 [ -z "${PYTHON:-}" ] || { PYTHONPATH=$BUILDDIR/python-package; export PYTHONPATH; }
 
-pages=${PAGES:-$(cd "$SRCDIR" && find README.md SECURITY.md python/README.md samples/README.md packaging/README.md doc tests/fuzz/README.md -name '*.md' | sort)}
+pages=${PAGES:-$(cd "$SRCDIR" && find README.md SECURITY.md python/README.md samples/README.md packaging/README.md doc tests/fuzz/README.md \
+  -path doc/site/source -prune -o -name '*.md' -print | sort)}
 for page in $pages; do
   set -- "$@" "$SRCDIR/$page"
 done

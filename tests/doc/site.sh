@@ -13,6 +13,12 @@ fail() {
 "$SRCDIR/doc/site/build" "$SRCDIR" "$BUILDDIR" "$work" "$site" "$("$VOXMEND" --version | sed -n '1s/^voxmend //p')" || fail "warnings"
 "$site" "$SRCDIR/tests/doc/links.py" "$work/html" || fail "links"
 
+# Light and dark as the system says, and by the button.
+grep -q prefers-color-scheme "$work/html/_static/styles/furo.css" || fail "the style does not know the system's choice"
+if grep -q '^import' "$work/html/_static/scripts/furo.js"; then
+  fail "a script is a module, which browsers do not load from files"
+fi
+
 # Each command, each public function and each public name of Python is described.
 "$VOXMEND" help --table | cut -f 1 | while read -r command; do
   [ -s "$work/html/reference/commands/$command.html" ] || echo "the command $command"
