@@ -8,7 +8,7 @@ Each page begins in a copy of the folder SAMPLES. What the line that opens a blo
   c, cpp    a program, or statements to which `int main(void)` is added; compiled without a warning, linked, and run
   with NAME[, NAME]     left out where the build (sh, console, c, cpp) or the interpreter (python) is without it
   not run: REASON       is left out
-Blocks of other languages are no programs; each has to name its own (text).
+Blocks of other languages are no programs; each has to name its own (text). `as FILE` behind it writes the block to a file.
 """
 import importlib.util
 import os
@@ -123,6 +123,9 @@ def run_page(path, with_package):
         block = re.sub("^" + found[1], "", found[4], flags=re.M)
         try:
             if language in NO_PROGRAMS:
+                if note.startswith("as "):
+                    with open(note[3:], "w", encoding="utf-8") as file:
+                        file.write(block)
                 continue
             if language not in RUNNERS:
                 raise Failure("the block has no language that is known: '%s'" % language)
