@@ -9,8 +9,6 @@ version = release = os.environ["VOXMEND_VERSION"]
 
 extensions = ["myst_parser", "breathe", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 nitpicky = True
-# The repository's own marks are no pages; suppressions would hide broken links.
-exclude_patterns = []
 highlight_language = "text"
 
 # ---- Markdown ----
