@@ -46,7 +46,7 @@ class VoxelGrid(Placed, Shown):
     """A box of voxels that are set or not. Voxel (i, j, k) has its centre at origin + ((i, j, k) + 1/2) * pitch.
 
     It does not change; pickles and copies hold the same content. Grids are equal if they have the same space, exactly, and
-    the same voxels. Grids in one space are combined by |, &, - and ^, and ~ is what is not set.
+    the same voxels. Grids in one space are combined by `|`, `&`, `-` and `^`, and `~` is what is not set.
 
     Args:
         matrix: (nx, ny, nz) array; what is not 0 is set. It is copied.

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 class SparseGrid(Placed):
     """A set of voxels as an octree over bricks of 4 x 4 x 4: only bricks that are neither empty nor full are held.
 
-    Made by `voxmend.voxelize_sparse` or `SparseGrid.from_grid`. It does not change. Sets in one space are combined by |, &, -
-    and ^, and ~ is what is not set within the box. Pickles hold it as a dense grid.
+    Made by `voxmend.voxelize_sparse` or `SparseGrid.from_grid`. It does not change. Sets in one space are combined by
+    `|`, `&`, `-` and `^`, and `~` is what is not set within the box. Pickles hold it as a dense grid.
 
     Attributes:
         report: what came of voxelizing; all 0, and False, if something else made it.

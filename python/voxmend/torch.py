@@ -43,7 +43,7 @@ def _files_of(folder: str) -> List[str]:
 
 
 class VoxelDataset(Dataset):
-    """The meshes of a folder of class folders, as in ModelNet: root/chair/train/chair_0001.off; or root/chair/*.off.
+    """The meshes of a folder of class folders, as in ModelNet: `root/chair/train/chair_0001.off`; or `root/chair/*.off`.
 
     Item i is variant i // models of model i % models, in the present epoch: the same whoever asks for it, in whatever
     process, and another one in each epoch.

@@ -77,7 +77,7 @@ VXM_API vxm_status vxm_sparse_window(vxm_grid **out, const vxm_sparse *sparse, c
  * @param options subdivision: voxels along a cube, 1, 2, 4, ... 2^20; scalar: VXM_FLOAT32 or VXM_FLOAT64, the
  * share, 0 to 1; VXM_UINT8, 255 times that, rounded, halves up; VXM_UINT64, the number of voxels, as
  * VXM_FIELD_NUMBERS; NULL = defaults
- * @param begin,end cubes begin..end-1 along each axis; NULL = from the first, to the last
+ * @param begin   cubes begin..end-1 along each axis; NULL = from the first, to the last
  * @return VXM_OK; VXM_ERROR_ARGUMENT; VXM_ERROR_RANGE, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
  * VXM_ERROR_CANCELLED
  */

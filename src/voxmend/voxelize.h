@@ -265,8 +265,8 @@ VXM_API vxm_status vxm_model_estimate(vxm_estimate *out, const vxm_model *model,
  * range after range of slices, in the order of the file; the file is the same.
  *
  * @param report may be NULL
- * @param path, options as for vxm_grid_write. The mesh formats and the confidence need the whole grid in
- * memory
+ * @param path as for vxm_grid_write, and so are the options. The mesh formats and the confidence need the
+ * whole grid in memory
  * @return as vxm_voxelize and vxm_grid_write
  */
 VXM_API vxm_status vxm_model_write(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,

@@ -42,3 +42,8 @@ grep -q '^the mesh is closed$' out || fail "import_part: $(cat out)"
 grep -Eq '^handed over: .* [1-9][0-9]* of 4096 voxels$' out || fail "import_part: $(cat out)"
 "$programs/import_part" a/inner_sheet.off 16 >out || fail "import_part: $(cat out)"
 grep -q '^not closed: 4 boundary_edges$' out || fail "import_part: $(cat out)"
+"$programs/import_part" a/cracks.off 16 0.01 >out || fail "import_part: $(cat out)"
+grep -q '^the mesh is closed$' out || fail "import_part at a tolerance: $(cat out)"
+code=0
+"$programs/import_part" a/rocket.off 16 0 0 >out 2>err || code=$?
+test "$code" -eq 3 && test "$(wc -l <err)" -eq 1 || fail "import_part does not cancel: $(cat out err)"
