@@ -20,7 +20,7 @@ def main():
     for name in ("first", "second"):
         os.makedirs("models/%s/train" % name, exist_ok=True)
         shutil.copy(sys.argv[1], "models/%s/train/mesh.off" % name)
-    dataset = voxmend.torch.VoxelDataset("models", 16, rotate="any", seed=3, variants=4)
+    dataset = voxmend.torch.VoxelDataset("models", "train", 16, rotate="any", seed=3, variants=4)
     alone = batches(dataset, 0, None)
     assert alone.any()
     for method in ("fork", "spawn"):
