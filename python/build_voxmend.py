@@ -4,6 +4,8 @@
 The library is found by pkg-config. VOXMEND_INCLUDE and VOXMEND_LIB, the folders of voxmend.h and of libvoxmend.so, take
 precedence: for a library that was built and not installed. When the package runs, the system finds the library as any other
 (ldconfig, LD_LIBRARY_PATH); VOXMEND_RPATH=1 has the extension remember the folder in which it was found.
+
+A package that brings the library (build_library.py) has it in its own folder, and the extension looks for it there alone.
 """
 import os
 import re
@@ -13,6 +15,9 @@ import sys
 
 from cffi import FFI
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import build_library
+
 
 def find_library():
     """Folders of headers and libraries."""
@@ -21,6 +26,8 @@ def find_library():
         sys.exit("of VOXMEND_INCLUDE and VOXMEND_LIB one is set: set both or none")
     if include and lib:
         return [include], [lib]
+    if build_library.is_packed():
+        return [build_library.INCLUDE], [build_library.STAGED]
     try:
         flags = subprocess.run(
             ["pkg-config", "--cflags-only-I", "--libs-only-L", "--keep-system-cflags", "--keep-system-libs", "voxmend"],
@@ -274,6 +281,9 @@ int *voxmend_stop_at(int *flag);
 int voxmend_on_progress(const char *phase, double fraction, void *payload);
 """
 
+# Not the tag that LD_LIBRARY_PATH goes before.
+OWN = ["-Wl,--disable-new-dtags,-rpath,$ORIGIN/lib"] if build_library.is_packed() else []
+
 include_dirs, library_dirs = find_library()
 HEADER = read_header(include_dirs)
 NAMES = initializers(HEADER)
@@ -285,7 +295,8 @@ ffi.set_source(
     '#include "voxmend.h"\n' + "".join(
         "static void voxmend_init_%s(%s *out) { %s value = %s_INIT; *out = value; }\n" % (n, n, n, n.upper())
         for n in NAMES) + PROGRESS + UNPACKING + GATHERING,
-    include_dirs=include_dirs, library_dirs=library_dirs, runtime_library_dirs=remembered(library_dirs), libraries=["voxmend"])
+    include_dirs=include_dirs, library_dirs=library_dirs, runtime_library_dirs=remembered(library_dirs), libraries=["voxmend"],
+    extra_link_args=OWN)
 
 if __name__ == "__main__":
     ffi.compile(verbose=False, tmpdir=sys.argv[1] if len(sys.argv) > 1 else ".")

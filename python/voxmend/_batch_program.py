@@ -12,7 +12,7 @@ import threading
 import time
 from typing import Any, Callable, Dict, Optional, Sequence
 
-from . import __version__
+from . import __version__, _program
 from ._errors import ArgumentError, UnavailableError
 
 WRONG_USAGE = 2
@@ -29,21 +29,17 @@ os.execv(sys.argv[2], sys.argv[2:])
 
 
 def find_program(given: Any = None) -> str:
-    """Path of the program voxmend: the one given, or that beside the package, or that on the PATH."""
-    here = os.path.dirname(os.path.abspath(__file__))
+    """Path of the program voxmend: the one given, or that of the package, or that on the PATH."""
     if given is not None:
         found = shutil.which(os.fsdecode(given))
         if not found:
             raise ArgumentError("batch: there is no program %s" % os.fsdecode(given))
         return os.path.abspath(found)
-    for path in (os.path.join(here, "..", "..", "voxmend"), os.path.join(sys.prefix, "bin", "voxmend")):
-        if os.path.isfile(path) and os.access(path, os.X_OK):
-            return os.path.abspath(path)
-    found = shutil.which("voxmend")
-    if not found:
+    own = _program.find()
+    if not own:
         raise UnavailableError("batch: the program voxmend is neither beside the package nor on the PATH; name it: "
                                "program=... or --program")
-    return os.path.abspath(found)
+    return own
 
 
 def check_version(program: str) -> None:

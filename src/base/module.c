@@ -59,7 +59,7 @@ static bool find_file(char path[VXM_MODULE_PATH_MAX], const char *name) {
     return found_in(path, chosen, strlen(chosen), "", name);
   if (getauxval(AT_SECURE) == 0 && find_beside(path, name))
     return true;
-  return found_in(path, VXM_MODULE_DIR, strlen(VXM_MODULE_DIR), "", name);
+  return !VXM_WHEEL && found_in(path, VXM_MODULE_DIR, strlen(VXM_MODULE_DIR), "", name);
 }
 
 /** The option of configure that a module takes: that of its first library. */
@@ -68,6 +68,18 @@ static const char *option_of(const char *module) {
 }
 
 static vxm_status missing(const vxm_module_need *need, vxm_error *error) {
+  if (VXM_WHEEL && strcmp(need->name, "cgal") == 0)
+    return vxm_fail(
+        error, VXM_ERROR_UNAVAILABLE,
+        "%s needs voxmend's module \"cgal\", which is under the GPL and in no package of PyPI: build "
+        "voxmend from its own sources (configure --with-cgal; Debian: %s)",
+        need->purpose, need->package);
+  if (VXM_WHEEL)
+    return vxm_fail(
+        error, VXM_ERROR_UNAVAILABLE,
+        "%s needs voxmend's module \"%s\", which is not in this wheel: install its libraries (Debian: "
+        "%s), then 'pip install --force-reinstall --no-binary voxmend voxmend' builds it",
+        need->purpose, need->name, need->package);
   return vxm_fail(
       error, VXM_ERROR_UNAVAILABLE,
       "%s needs voxmend's module \"%s\", which is not installed (configure --with-%s; Debian: %s)",

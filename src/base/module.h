@@ -39,7 +39,7 @@ enum { VXM_MODULE_PATH_MAX = 4096 };
 /**
  * Opens a module, which then stays open. It is looked for in $VOXMEND_MODULES, an absolute path, alone if
  * that is set, else beside the library and where it was installed; in a program that runs with rights of its
- * own (setuid, capabilities) only there.
+ * own (setuid, capabilities) only there. A wheel's library looks for them beside itself alone.
  *
  * @return VXM_OK; VXM_ERROR_UNAVAILABLE if it is missing, cannot be loaded, or belongs to another build
  */

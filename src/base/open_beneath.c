@@ -67,11 +67,11 @@ static int walk(int folder, const char *name, int flags) {
 /** The kernel's own look-up, which renames at the same time cannot lead astray: then it wants to be asked
  * again. */
 static int ask_kernel(int folder, const char *name, int flags) {
-  enum { TRIES = 16 };
+  enum { TRIES = 16, OPENAT2 = 437 /* on every architecture; older C libraries have no name for it */ };
   struct open_how how = {.flags = (unsigned)(flags | O_CLOEXEC),
                          .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
   for (int t = 0;; t++) {
-    int descriptor = (int)syscall(SYS_openat2, folder, name, &how, sizeof how);
+    int descriptor = (int)syscall(OPENAT2, folder, name, &how, sizeof how);
     if (descriptor >= 0 || (errno != EAGAIN && errno != EINTR) || t == TRIES)
       return descriptor;
   }

@@ -2,6 +2,7 @@
 #include "batch/archive.h"
 #include "batch/descriptor.h"
 #include "batch/unpack.h"
+#include "config.h"
 #include "module_folder.h"
 
 #include <errno.h>
@@ -41,7 +42,8 @@ static bool found_in(char path[PATH_BYTES], const char *folder, size_t length) {
   return length > 0 && written > 0 && written < PATH_BYTES && access(path, X_OK) == 0;
 }
 
-/** Where modules are told to be, else beside this program, else where they are installed. */
+/** Where modules are told to be, else beside this program, else, but for a wheel's, where they are installed.
+ */
 static bool find_program(char path[PATH_BYTES]) {
   const char *chosen = secure_getenv("VOXMEND_MODULES");
   char self[PATH_BYTES];
@@ -56,7 +58,7 @@ static bool find_program(char path[PATH_BYTES]) {
     if (length > 0 && found_in(path, self, (size_t)length))
       return true;
   }
-  return found_in(path, VXM_MODULE_DIR, strlen(VXM_MODULE_DIR));
+  return !VXM_WHEEL && found_in(path, VXM_MODULE_DIR, strlen(VXM_MODULE_DIR));
 }
 
 _Noreturn static void be_unpacker(const char *program, const char *path, uint64_t most, int channel) {
@@ -78,10 +80,10 @@ bool batch_unpacker_start(batch_unpacker *out, const char *path, uint64_t most, 
   char program[PATH_BYTES];
   *out = (batch_unpacker){.channel = -1};
   if (!find_program(program))
-    return batch_fail(error,
-                      "%s: archives need the program voxmend-unpack, which is not installed (configure "
-                      "--with-archive; Debian: libarchive-dev); or unpack it first",
-                      path);
+    return batch_fail(
+        error, "%s: archives need the program voxmend-unpack, which is not %s; or unpack it first", path,
+        VXM_WHEEL ? "in this wheel, as libarchive was not there when it was built"
+                  : "installed (configure --with-archive; Debian: libarchive-dev)");
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     return batch_fail_errno(error, "%s: cannot open a channel to a process", path);
   pid_t parent = getpid(), id = fork();

@@ -32,6 +32,13 @@ typedef struct kind {
 #ifndef SYS_newfstatat
 #define SYS_newfstatat -2
 #endif
+/* Older C libraries lack the names of newer calls, whose numbers are those of every architecture. */
+#ifndef SYS_openat2
+#define SYS_openat2 437
+#endif
+#ifndef SYS_faccessat2
+#define SYS_faccessat2 439
+#endif
 
 static const kind kinds[] = {
     {"open a file", {SYS_open, SYS_openat, SYS_openat2, SYS_creat, SYS_name_to_handle_at, -1}},

@@ -95,7 +95,7 @@ const char *vxm_syscall_filter(int channel) {
   if (failure == 0)
     failure = seccomp_load(filter);
   /* The filter's memory is left to it: freeing it is one more call that could want something. */
-  return failure == 0 ? NULL : strerrordesc_np(-failure);
+  return failure == 0 ? NULL : strerror(-failure);
 }
 
 #else

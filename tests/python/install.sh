@@ -12,12 +12,12 @@ library=$BUILDDIR/.libs
 
 # As 'python -m build --sdist', whose part is to call this.
 mkdir source sdist
-(cd "$SRCDIR/python" && cp -r LICENSE MANIFEST.in README.md build_voxmend.py pyproject.toml setup.py voxmend "$SAMPLES/source")
+(cd "$SRCDIR/python" && cp -r LICENSE MANIFEST.in README.md build_library.py build_voxmend.py pyproject.toml scripts setup.py voxmend "$SAMPLES/source")
 chmod -R u+w source
 (cd source && "$PYTHON" -c 'from setuptools import build_meta; build_meta.build_sdist("../sdist")' >../log 2>&1) || { cat log; exit 1; }
 archive=$(ls "$SAMPLES"/sdist/voxmend-*.tar.gz)
 tar -tzf "$archive" | sed 's/^[^/]*//' | sort >content
-for file in /LICENSE /README.md /build_voxmend.py /setup.py /pyproject.toml /PKG-INFO /voxmend/py.typed; do
+for file in /LICENSE /README.md /build_library.py /build_voxmend.py /setup.py /pyproject.toml /PKG-INFO /voxmend/py.typed; do
   grep -qxF "$file" content || { echo "FAILED: no $file in the archive"; exit 1; }
 done
 for file in "$SRCDIR"/python/voxmend/*.py; do
