@@ -78,7 +78,7 @@ static vxm_status missing(const vxm_module_need *need, vxm_error *error) {
     return vxm_fail(
         error, VXM_ERROR_UNAVAILABLE,
         "%s needs voxmend's module \"%s\", which is not in this wheel: install its libraries (Debian: "
-        "%s), then 'pip install --force-reinstall --no-binary voxmend voxmend' builds it",
+        "%s), and then voxmend by pip from its archive of sources",
         need->purpose, need->name, need->package);
   return vxm_fail(
       error, VXM_ERROR_UNAVAILABLE,
