@@ -85,7 +85,7 @@ static inline bool has_middle(const vxm_view *view, cell_box box) {
 }
 
 /** Triangles that are looked at together, so that those with nothing to do cost little. */
-enum { BATCH = 256 };
+enum { BATCH = 2048 };
 
 /** The triangles from `begin` on that may meet something without a voxel. */
 static size_t keep_unsure(uint32_t kept[BATCH], const vxm_thin_job *job, const bounds *b, size_t begin,
