@@ -24,7 +24,7 @@ static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pas
   const vxm_engine *engine = pass->solid.engine;
   const vxm_engine_ops *ops = engine ? engine->ops : NULL;
   bool solid = vxm_solid_wanted(&model->options), faces = vxm_faces_wanted(&model->options);
-  if (ops && ((solid && !ops->sparse) || (faces && ops->surface)))
+  if (ops && ((solid && !ops->sparse) || (faces && ops->surface && !ops->sparse_surface)))
     return false; /* the engine makes windows only */
   return !solid || is_direct(model);
 }
@@ -85,10 +85,32 @@ static vxm_status make_solid(vxm_sparse **out, vxm_model_pass *pass, vxm_error *
              : status;
 }
 
+/** The faces by the pass's engine; `*out` stays NULL where that is for the CPU. */
+static vxm_status make_faces_elsewhere(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
+  vxm_engine *engine = pass->solid.engine;
+  vxm_error local = VXM_ERROR_INIT;
+  if (!engine || !engine->ops || !engine->ops->sparse_surface)
+    return VXM_OK;
+  vxm_status status =
+      engine->ops->sparse_surface(engine, out, pass->surface, pass->solid.options.surface, &local);
+  if (status == VXM_OK || vxm_engine_falls_back(engine, &local))
+    return VXM_OK;
+  vxm_error_pass(error, &local);
+  return status;
+}
+
+static vxm_status make_faces(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
+  *out = NULL;
+  vxm_status status = make_faces_elsewhere(out, pass, error);
+  return status == VXM_OK && !*out
+             ? vxm_surface_octree(out, pass->surface, pass->solid.options.surface, error)
+             : status;
+}
+
 /** Puts the voxels of the faces to those of the solid; NULL for none. */
 static vxm_status add_faces(vxm_sparse **octree, vxm_model_pass *pass, vxm_error *error) {
   vxm_sparse *faces, *both = NULL;
-  vxm_status status = vxm_surface_octree(&faces, pass->surface, pass->solid.options.surface, error);
+  vxm_status status = make_faces(&faces, pass, error);
   if (status == VXM_OK && *octree) {
     status = vxm_octree_combine(&both, *octree, faces, VXM_SET_UNION, error);
     vxm_sparse_destroy(faces);
