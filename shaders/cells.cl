@@ -61,7 +61,7 @@ __kernel void mark_cells(__global const int4 *points, __global const uint *corne
                          __global uint *large, const SurfaceJob job, const uint2 list) {
   uint i = (uint)get_global_id(0);
   Shape t;
-  const Voxels cells = {bits, places};
+  const Voxels cells = {bits, places, 0, 0};
   if (i >= job.triangle_count)
     return;
   uint triangle = list.y ? order[list.x + i] : list.x + i;
@@ -77,7 +77,7 @@ __kernel void mark_cells(__global const int4 *points, __global const uint *corne
 __kernel void mark_large(__global const int4 *points, __global const uint *corners, __global uint *bits,
                          __global const ulong *places, __global const uint *large, const SurfaceJob job) {
   uint count = large[0];
-  const Voxels cells = {bits, places};
+  const Voxels cells = {bits, places, 0, 0};
   for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
     Shape t;
     load_shape(&t, &job, points, corners, large[1 + i]);
@@ -91,7 +91,7 @@ __kernel void mark_box(__global uint *bits, __global const ulong *places, const 
   size_t i = get_global_id(0);
   if (i >= (size_t)size.x * size.y * size.z)
     return;
-  const Voxels cells = {bits, places};
+  const Voxels cells = {bits, places, 0, 0};
   int x = (int)(i % size.x), y = (int)(i / size.x % size.y), z = (int)(i / size.x / size.y);
   mark_cell(&cells, &job, first.xyz + (int3)(x, y, z));
 }

@@ -11,7 +11,7 @@ __kernel void set_surface(__global const int4 *points, __global const uint *corn
                           __global uint *large, const SurfaceJob job) {
   uint i = (uint)get_global_id(0);
   Shape t;
-  Voxels voxels = {bits, 0};
+  Voxels voxels = {bits, 0, 0, 0};
   if (i >= job.triangle_count || !load_shape(&t, &job, points, corners, i))
     return;
   int3 size = t.end - t.begin;
@@ -26,7 +26,7 @@ __kernel void set_surface(__global const int4 *points, __global const uint *corn
 __kernel void set_large(__global const int4 *points, __global const uint *corners, __global uint *bits,
                         __global const uint *large, const SurfaceJob job) {
   uint count = large[0];
-  Voxels voxels = {bits, 0};
+  Voxels voxels = {bits, 0, 0, 0};
   for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
     Shape t;
     load_shape(&t, &job, points, corners, large[1 + i]);

@@ -16,7 +16,8 @@ typedef struct SurfaceJob { /* vxm_slice_job_surface */
 /* Where the voxels go: a bit for each. */
 typedef struct Voxels {
   __global uint *bits;
-  __global const ulong *places; /* of cells only */
+  __global const ulong *places;         /* of cells, and of bricks */
+  __global const uint *cells, *before; /* of bricks only */
 } Voxels;
 
 /* A side seen along an axis: a voxel meets it where the value is 0 or more. It belongs to the first voxel of

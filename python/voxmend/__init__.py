@@ -30,6 +30,7 @@ from ._records import (CarveReport, Census, Comparison, CoverageReport, Distance
 from ._repair import repair, verify
 from ._sampler import Sampler
 from ._sparse import SparseGrid
+from ._sparse_file import SparseFile
 from ._voxelize import remesh, voxelize, voxelize_sparse
 
 __version__ = _text(_lib.vxm_version())
@@ -38,8 +39,8 @@ __all__ = [
     "ArgumentError", "BusyError", "CancelledError", "CarveReport", "Carver", "Census", "Comparison", "CoverageReport", "DefectGroup", "Defects",
     "DistanceReport", "EmptyError", "Engine", "EngineInfo", "Field", "FileError", "Finding", "FormatError", "KindError", "Label",
     "LabelReport", "Look", "Mesh", "MeshLike", "NumbersError", "OutOfMemoryError", "PartChange", "PartState", "RangeError", "RepairReport",
-    "Sampler", "Settings", "SparseGrid", "Texture", "UnavailableError", "UnreachedError", "Verification", "VoxelField", "VoxelGrid",
-    "VoxelizeReport", "VoxmendError", "VoxmendTimeout", "VoxmendWarning", "colors", "configure", "coverage", "distance", "engines",
+    "Sampler", "Settings", "SparseFile", "SparseGrid", "Texture", "UnavailableError", "UnreachedError", "Verification", "VoxelField",
+    "VoxelGrid", "VoxelizeReport", "VoxmendError", "VoxmendTimeout", "VoxmendWarning", "colors", "configure", "coverage", "distance", "engines",
     "info", "labels", "load", "read", "read_field", "remesh", "repair", "settings", "verify", "voxelize", "voxelize_sparse", "watch",
     "write"
 ]

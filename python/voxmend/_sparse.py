@@ -20,6 +20,21 @@ if TYPE_CHECKING:
     from ._mesh_sources import MeshLike
 
 
+def coverage_arguments(subdivision: int, begin: Optional[ArrayLike], end: Optional[ArrayLike], dtype: str) -> Tuple[Any, Any, Any]:
+    """The options of a coverage, and its window of cubes."""
+    scalars = {"float32": lib.VXM_FLOAT32, "float64": lib.VXM_FLOAT64, "uint8": lib.VXM_UINT8, "uint64": lib.VXM_UINT64}
+    if _values.word("coverage: dtype", dtype) not in scalars:
+        raise ArgumentError("coverage: dtype %r is none of %s" % (dtype, ", ".join(scalars)))
+    options = _core.new("vxm_coverage_options", scalar=scalars[dtype],
+                        subdivision=_values.whole("coverage: subdivision", subdivision, 1, 1 << 20))
+    ends = [None if end is None else _values.wholes("coverage: a window", end, 0, _values.INT64_MAX).astype(numpy.int64)
+            for end in (begin, end)]
+    if any(end is not None and end.shape != (3,) for end in ends):
+        raise ArgumentError("coverage: begin and end of a window are three numbers each")
+    first, last = (ffi.NULL if end is None else _core.pointer("int64_t *", end) for end in ends)
+    return options, first, last
+
+
 class SparseGrid(Placed):
     """A set of voxels as an octree over bricks of 4 x 4 x 4: only bricks that are neither empty nor full are held.
 
@@ -85,18 +100,8 @@ class SparseGrid(Placed):
             begin, end: cubes from index `begin` to the one before `end` along each axis. [all]
             dtype: "float32" or "float64", 0 to 1; "uint8", 0 to 255; "uint64", the number of voxels.
         """
-        scalars = {"float32": lib.VXM_FLOAT32, "float64": lib.VXM_FLOAT64, "uint8": lib.VXM_UINT8, "uint64": lib.VXM_UINT64}
-        if _values.word("coverage: dtype", dtype) not in scalars:
-            raise ArgumentError("coverage: dtype %r is none of %s" % (dtype, ", ".join(scalars)))
-        options = _core.new("vxm_coverage_options", scalar=scalars[dtype],
-                            subdivision=_values.whole("coverage: subdivision", subdivision, 1, 1 << 20))
-        ends = [None if end is None else _values.wholes("coverage: a window", end, 0, _values.INT64_MAX).astype(numpy.int64)
-                for end in (begin, end)]
-        if any(end is not None and end.shape != (3,) for end in ends):
-            raise ArgumentError("coverage: begin and end of a window are three numbers each")
-        first, last = (ffi.NULL if end is None else _core.pointer("int64_t *", end) for end in ends)
-        return VoxelField._of(_core.create("vxm_field", lib.vxm_sparse_coverage, self._pointer, options, first, last,
-                                           destroy=lib.vxm_field_destroy))
+        return VoxelField._of(_core.create("vxm_field", lib.vxm_sparse_coverage, self._pointer,
+                                           *coverage_arguments(subdivision, begin, end, dtype), destroy=lib.vxm_field_destroy))
 
     def __reduce__(self) -> Tuple[Any, ...]:
         return _restore, (type(self), self.to_grid(), self.report, self._told)

@@ -72,6 +72,16 @@ void vxm_strip_add_node(vxm_octree_builder *builder, size_t worker, size_t x,
 /** The same where it is known which bricks are not empty, and which are full: bit b for brick b. */
 void vxm_strip_add_known(vxm_octree_builder *builder, size_t worker, size_t x,
                          const uint64_t bricks[VXM_STRIP_BRICKS], uint64_t set, uint64_t full);
+/** Rows of a strip: `y_count` side by side in each of `z_count` slices, both 1 to 16. */
+typedef struct vxm_strip_rows {
+  const uint64_t *words;         /**< of the first row */
+  size_t row_words, slice_words; /**< from one row or slice to the next */
+  int y_count, z_count;
+} vxm_strip_rows;
+
+/** The nodes that words begin..end-1 of the rows have, 64 voxels each. */
+void vxm_strip_add_words(vxm_octree_builder *builder, size_t worker, const vxm_strip_rows *rows, size_t begin,
+                         size_t end);
 void vxm_strip_add_full(vxm_octree_builder *builder, size_t worker, size_t begin, size_t end);
 /** Puts what was added in the place of the strip (y,z). */
 void vxm_strip_end(vxm_octree_builder *builder, size_t worker, size_t y, size_t z);

@@ -129,34 +129,34 @@ typedef struct add_job {
   const vxm_window *window;
 } add_job;
 
-/** The 16 x 16 rows of a strip that the space has. */
-typedef struct add_rows {
-  const vxm_window *window;
-  int64_t y, z, y_end, z_end;
-} add_rows;
+static inline const uint64_t *row_of(const vxm_strip_rows *rows, int y, int z) {
+  return rows->words + (size_t)z * rows->slice_words + (size_t)y * rows->row_words;
+}
 
 /** One node of the strip: bits 16 n on of a word of each row. */
-static void add_node(const add_job *job, const add_rows *rows, size_t worker, size_t word, unsigned n) {
+static void add_node(vxm_octree_builder *builder, const vxm_strip_rows *rows, size_t worker, size_t word,
+                     unsigned n) {
   uint64_t bricks[VXM_STRIP_BRICKS] = {0};
-  for (int64_t z = rows->z; z < rows->z_end; z++)
-    for (int64_t y = rows->y; y < rows->y_end; y++) {
-      uint64_t bits = vxm_window_row(rows->window, y, z)[word] >> 16 * n & 0xffff;
-      unsigned in_y = (unsigned)(y - rows->y), in_z = (unsigned)(z - rows->z);
+  for (int z = 0; z < rows->z_count; z++)
+    for (int y = 0; y < rows->y_count; y++) {
+      uint64_t bits = row_of(rows, y, z)[word] >> 16 * n & 0xffff;
+      unsigned in_y = (unsigned)y, in_z = (unsigned)z;
       unsigned r = (in_y >> 2 & 1) | (in_z >> 1 & 2) | (in_y >> 1 & 4) | (in_z & 8);
       unsigned shift = 16 * (in_z & 3) + 4 * (in_y & 3);
       for (unsigned b = 0; bits; b++, bits >>= 4)
         bricks[16 * b + r] |= (bits & 15) << shift;
     }
-  vxm_strip_add_node(job->builder, worker, 4 * word + n, bricks);
+  vxm_strip_add_node(builder, worker, 4 * word + n, bricks);
 }
 
-static void add_words(const add_job *job, const add_rows *rows, size_t worker, size_t first, size_t count) {
+static void add_block(vxm_octree_builder *builder, const vxm_strip_rows *rows, size_t worker, size_t first,
+                      size_t count) {
   uint64_t any[BLOCK_WORDS] = {0}, all[BLOCK_WORDS];
-  bool whole = rows->y_end - rows->y == VXM_STRIP_VOXELS && rows->z_end - rows->z == VXM_STRIP_VOXELS;
+  bool whole = rows->y_count == VXM_STRIP_VOXELS && rows->z_count == VXM_STRIP_VOXELS;
   memset(all, whole ? 255 : 0, sizeof all);
-  for (int64_t z = rows->z; z < rows->z_end; z++)
-    for (int64_t y = rows->y; y < rows->y_end; y++) {
-      const uint64_t *row = vxm_window_row(rows->window, y, z) + first;
+  for (int z = 0; z < rows->z_count; z++)
+    for (int y = 0; y < rows->y_count; y++) {
+      const uint64_t *row = row_of(rows, y, z) + first;
       for (size_t w = 0; w < count; w++) {
         any[w] |= row[w];
         all[w] &= row[w];
@@ -165,10 +165,16 @@ static void add_words(const add_job *job, const add_rows *rows, size_t worker, s
   for (size_t w = 0; w < count; w++)
     for (unsigned n = 0; n < 4 && any[w] >> 16 * n; n++) {
       if ((all[w] >> 16 * n & 0xffff) == 0xffff)
-        vxm_strip_add_full(job->builder, worker, 4 * (first + w) + n, 4 * (first + w) + n + 1);
+        vxm_strip_add_full(builder, worker, 4 * (first + w) + n, 4 * (first + w) + n + 1);
       else if (any[w] >> 16 * n & 0xffff)
-        add_node(job, rows, worker, first + w, n);
+        add_node(builder, rows, worker, first + w, n);
     }
+}
+
+void vxm_strip_add_words(vxm_octree_builder *builder, size_t worker, const vxm_strip_rows *rows, size_t begin,
+                         size_t end) {
+  for (size_t w = begin; w < end; w += BLOCK_WORDS)
+    add_block(builder, rows, worker, w, end - w < BLOCK_WORDS ? end - w : BLOCK_WORDS);
 }
 
 static void add_strip(size_t task, int worker, void *payload) {
@@ -176,12 +182,13 @@ static void add_strip(size_t task, int worker, void *payload) {
   const vxm_window *window = job->window;
   size_t across = job->builder->across, y = task % across;
   size_t z = (size_t)window->begin / VXM_STRIP_VOXELS + task / across;
-  add_rows rows = {window, (int64_t)y * VXM_STRIP_VOXELS, (int64_t)z * VXM_STRIP_VOXELS, 0, 0};
-  rows.y_end = vxm_min(rows.y + VXM_STRIP_VOXELS, window->middle_dim);
-  rows.z_end = vxm_min(rows.z + VXM_STRIP_VOXELS, window->end);
-  for (size_t w = 0; w < window->row_words; w += BLOCK_WORDS)
-    add_words(job, &rows, (size_t)worker, w,
-              window->row_words - w < BLOCK_WORDS ? window->row_words - w : BLOCK_WORDS);
+  int64_t y_begin = (int64_t)y * VXM_STRIP_VOXELS, z_begin = (int64_t)z * VXM_STRIP_VOXELS;
+  vxm_strip_rows rows = {.words = vxm_window_row(window, y_begin, z_begin),
+                         .row_words = window->row_words,
+                         .slice_words = window->slice_words};
+  rows.y_count = (int)vxm_min(VXM_STRIP_VOXELS, window->middle_dim - y_begin);
+  rows.z_count = (int)vxm_min(VXM_STRIP_VOXELS, window->end - z_begin);
+  vxm_strip_add_words(job->builder, (size_t)worker, &rows, 0, window->row_words);
   vxm_strip_end(job->builder, (size_t)worker, y, z);
 }
 

@@ -5,6 +5,8 @@
 #include "grid/octree_count.h"
 #include "gridio/formats/octree_file.h"
 
+#include <pthread.h>
+
 /** Layers of cubes that a task counts at once have about so many voxels across, so that bricks are visited
  * once, unless the counts would be more than this. */
 enum { TASK_VOXELS = 16, TASK_BYTES = 1 << 24 };
@@ -17,11 +19,13 @@ typedef struct job {
   int64_t first, last;         /**< layers of cubes */
   int64_t layers;              /**< of a task */
   size_t layer_cubes;
+  size_t task_cubes;
   uint64_t *counts; /**< for each worker those of a task */
 } job;
 
 /* ---- Values ---- */
 
+/** Stores some cubes, in the order of the field from a place on. */
 static void store(const job *j, size_t from, const uint64_t *counts, size_t count) {
   uint64_t side = (uint64_t)j->box.side, most = side * side * side;
   unsigned char *out = j->field->values + from * vxm_scalar_bytes(j->field->scalar);
@@ -49,7 +53,7 @@ static void count_layers(size_t task, int worker, void *payload) {
   box.begin[0] = j->first + (int64_t)task * j->layers;
   box.end[0] = vxm_min(box.begin[0] + j->layers, j->last);
   size_t cubes = (size_t)(box.end[0] - box.begin[0]) * j->layer_cubes;
-  box.counts = j->counts + (size_t)worker * (size_t)j->layers * j->layer_cubes;
+  box.counts = j->counts + (size_t)worker * j->task_cubes;
   memset(box.counts, 0, cubes * sizeof *box.counts);
   if (j->sparse)
     vxm_octree_count(&box, j->sparse);
@@ -71,34 +75,91 @@ static vxm_status count_sparse(job *j, vxm_error *error) {
   return count_all(j, j->box.begin[0], j->box.end[0], error);
 }
 
-/** Cubes that are not smaller than tiles are counted by the index alone, others by a layer of tiles after the
- * other. */
+/** Rows of tiles along z, one task each. */
+typedef struct tile_rows {
+  const job *job;
+  int64_t cubes;         /**< along a tile */
+  int64_t first[2];      /**< tiles along x and y */
+  size_t across;         /**< rows along y */
+  pthread_mutex_t mutex; /**< of what follows */
+  size_t failed;         /**< the first row that did, or SIZE_MAX */
+  vxm_error error;       /**< of that */
+} tile_rows;
+
+/** The cubes of a row that the field has. */
+static vxm_octree_counts row_box(const tile_rows *rows, size_t task) {
+  vxm_octree_counts box = rows->job->box;
+  const size_t at[2] = {task / rows->across, task % rows->across};
+  for (int a = 0; a < 2; a++) {
+    int64_t begin = (rows->first[a] + (int64_t)at[a]) * rows->cubes;
+    box.begin[a] = vxm_max(begin, box.begin[a]);
+    box.end[a] = vxm_min(begin + rows->cubes, box.end[a]);
+  }
+  return box;
+}
+
+/** Counts a row, some layers along x after others. */
+static void count_row(const tile_rows *rows, const vxm_octree_counts *row, const vxm_sparse *part,
+                      uint64_t *counts) {
+  const job *j = rows->job;
+  size_t deep = (size_t)(row->end[2] - row->begin[2]), line = (size_t)(row->end[1] - row->begin[1]) * deep;
+  int64_t layers = vxm_max(1, (int64_t)(j->task_cubes / line));
+  for (int64_t x = row->begin[0]; x < row->end[0]; x += layers) {
+    vxm_octree_counts box = *row;
+    box.begin[0] = x;
+    box.end[0] = vxm_min(x + layers, row->end[0]);
+    box.counts = counts;
+    memset(counts, 0, (size_t)(box.end[0] - x) * line * sizeof *counts);
+    vxm_octree_count(&box, part);
+    for (int64_t l = x; l < box.end[0]; l++, box.counts += line)
+      store(j,
+            (size_t)(l - j->box.begin[0]) * j->layer_cubes + (size_t)(row->begin[1] - j->box.begin[1]) * deep,
+            box.counts, line);
+  }
+}
+
+static void read_row(size_t task, int worker, void *payload) {
+  tile_rows *rows = payload;
+  const job *j = rows->job;
+  vxm_octree_counts row = row_box(rows, task);
+  int64_t begin[3], end[3];
+  for (int a = 0; a < 3; a++) {
+    begin[a] = row.begin[a] * row.side;
+    end[a] = vxm_min(row.end[a] * row.side, j->file->space.dims[a]);
+  }
+  vxm_sparse *part;
+  vxm_error local = VXM_ERROR_INIT;
+  if (vxm_octree_file_load(&part, j->file, begin, end, &local) == VXM_OK)
+    count_row(rows, &row, part, j->counts + (size_t)worker * j->task_cubes);
+  vxm_sparse_destroy(part);
+  pthread_mutex_lock(&rows->mutex);
+  if (local.code != VXM_OK && task < rows->failed) { /* the same one for any number of threads */
+    rows->failed = task;
+    rows->error = local;
+  }
+  pthread_mutex_unlock(&rows->mutex);
+}
+
+/** Cubes that are not smaller than tiles are counted by the index alone; of others each thread has a row of
+ * tiles at a time. */
 static vxm_status count_file(job *j, vxm_error *error) {
-  const vxm_sparse_file *file = j->file;
-  int64_t tile = vxm_octree_side(file->tile_level + 1), side = j->box.side;
+  int64_t tile = vxm_octree_side(j->file->tile_level + 1), side = j->box.side;
   if (side >= tile)
     return count_all(j, j->box.begin[0], j->box.end[0], error);
-  vxm_status status = VXM_OK;
-  for (int64_t first = j->box.begin[0], last; first < j->box.end[0] && status == VXM_OK; first = last) {
-    int64_t begin[3], end[3];
-    last = vxm_min((first / (tile / side) + 1) * (tile / side), j->box.end[0]);
-    for (int a = 0; a < 3; a++) {
-      begin[a] = (a == 0 ? first : j->box.begin[a]) * side;
-      end[a] = vxm_min((a == 0 ? last : j->box.end[a]) * side, file->space.dims[a]);
-    }
-    vxm_sparse *part;
-    status = vxm_octree_file_load(&part, file, begin, end, error);
-    j->sparse = part;
-    if (status == VXM_OK)
-      status = count_all(j, first, last, error);
-    vxm_sparse_destroy(part);
-    j->sparse = NULL;
-    if (status == VXM_OK)
-      status =
-          vxm_progress(file->context, "counting",
-                       (double)(last - j->box.begin[0]) / (double)(j->box.end[0] - j->box.begin[0]), error);
+  tile_rows rows = {.job = j, .cubes = tile / side, .failed = SIZE_MAX, .error = VXM_ERROR_INIT};
+  size_t count[2];
+  for (int a = 0; a < 2; a++) {
+    rows.first[a] = j->box.begin[a] / rows.cubes;
+    count[a] = (size_t)((j->box.end[a] - 1) / rows.cubes - rows.first[a]) + 1;
   }
-  return status;
+  rows.across = count[1];
+  pthread_mutex_init(&rows.mutex, NULL);
+  vxm_status status = vxm_parallel_asked(j->field->context, count[0] * count[1], read_row, &rows, error);
+  pthread_mutex_destroy(&rows.mutex);
+  if (status != VXM_OK || rows.failed == SIZE_MAX)
+    return status;
+  vxm_error_pass(error, &rows.error);
+  return rows.error.code;
 }
 
 /* ---- Fields ---- */
@@ -157,9 +218,10 @@ static vxm_status begin_job(job *j, vxm_context *context, const vxm_space *space
   j->layers = vxm_min(vxm_max(TASK_VOXELS / j->box.side, 1), part.dims[0]);
   if ((size_t)j->layers * j->layer_cubes > TASK_BYTES / sizeof *j->counts)
     j->layers = 1;
+  j->task_cubes = (size_t)j->layers * j->layer_cubes;
   vxm_error local = VXM_ERROR_INIT;
   size_t workers = (size_t)vxm_context_threads(context);
-  j->counts = vxm_alloc(context, workers * (size_t)j->layers, j->layer_cubes * sizeof *j->counts, &local);
+  j->counts = vxm_alloc(context, workers, j->task_cubes * sizeof *j->counts, &local);
   if (!j->counts)
     vxm_error_pass(error, &local);
   return local.code;

@@ -22,7 +22,8 @@ typedef struct vxm_sparse vxm_sparse;
 
 /**
  * Voxelizes a model into an octree, straight from the triangles where its parts are closed, or closed by
- * caps (then an OpenCL engine makes it on its device); else, and for surfaces, by way of ranges of slices.
+ * caps, and for surfaces (then an OpenCL engine makes it on its device); else, and for shells of the solid, by
+ * way of ranges of slices.
  * The voxels are those of vxm_model_voxelize.
  *
  * @param report    NULL = not wanted, which saves counting and hashing
@@ -171,7 +172,7 @@ VXM_API vxm_status vxm_sparse_file_field(vxm_field **out, const vxm_sparse_file 
 
 /**
  * As vxm_sparse_coverage, of a file: cubes of 256 voxels or more are counted by its index alone, of smaller
- * ones a layer of the octree is in memory at a time.
+ * ones each thread has a row of tiles in memory at a time.
  *
  * @return as vxm_sparse_coverage; VXM_ERROR_FORMAT with the byte offset where the file is damaged;
  * VXM_ERROR_NUMBERS if it has values

@@ -22,7 +22,7 @@ for target in amdgcn-amd-amdhsa:gfx906 amdgcn-amd-amdhsa:gfx1030 nvptx64-nvidia-
   compile_this "$work/nothing.cl" "$work/nothing.o" >"$work/why.txt" 2>&1 || continue
   sed -n '/^static const char \*const sources/,/^};/p' "$SRCDIR/src/gpu/opencl/cl_program.c" |
     tr '\n' ' ' | sed 's/},/}\n/g' | sed -n -E 's/.*\[(VXM_CL_[A-Z_]*)\] = \{(.*)\}$/\1 \2/p' | tr -d '",' >"$work/programs.txt"
-  test "$(wc -l <"$work/programs.txt")" -eq 10
+  test "$(wc -l <"$work/programs.txt")" -eq 11
   while read -r program files; do
     (cd "$SRCDIR/shaders" && cat $files) >"$work/program.cl"
     if ! compile_this "$work/program.cl" "$work/program.o" >"$work/out.txt" 2>&1; then

@@ -90,9 +90,33 @@ static void check_parts(const vxm_soup *soup, const vxm_space *space) {
   }
 }
 
+/** Surfaces alone, and with the solid. */
+static void check_faces(const vxm_soup *soup, const vxm_space *space) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  for (int mode = VXM_MODE_SURFACE; mode <= VXM_MODE_BOTH; mode++)
+    for (int thin = 0; thin < 2; thin++) {
+      options.mode = (vxm_mode)mode;
+      options.surface = thin ? VXM_SURFACE_THIN : VXM_SURFACE_CONSERVATIVE;
+      check(soup, space, options);
+    }
+}
+
 static int64_t random_side(vxm_rng *rng) {
   static const int64_t sides[] = {1, 4, 5, 16, 17, 33, 64, 65, 80, 130};
   return sides[vxm_rng_below(rng, sizeof sides / sizeof *sides)];
+}
+
+static void test_surfaces(void **state) {
+  (void)state;
+  vxm_rng rng = {35};
+  made_here = 0;
+  for (int round = 0; round < 20; round++) {
+    vxm_space space = engine_space(random_side(&rng), random_side(&rng), random_side(&rng));
+    vxm_soup *soup = random_soup(context, 300 + (uint64_t)round, round % SOUP_KINDS, &space);
+    check_faces(soup, &space);
+    vxm_soup_destroy(soup);
+  }
+  assert_true(made_here > 80);
 }
 
 /** Every kind of soup; those that are open go another way. */
@@ -359,12 +383,12 @@ static void test_real_meshes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_random),         cmocka_unit_test(test_cut),
-                                     cmocka_unit_test(test_many_parts),     cmocka_unit_test(test_ties),
-                                     cmocka_unit_test(test_shapes),         cmocka_unit_test(test_far),
-                                     cmocka_unit_test(test_empty_and_full), cmocka_unit_test(test_before),
-                                     cmocka_unit_test(test_deep),           cmocka_unit_test(test_limits),
-                                     cmocka_unit_test(test_real_meshes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_surfaces), cmocka_unit_test(test_random),
+                                     cmocka_unit_test(test_cut),      cmocka_unit_test(test_many_parts),
+                                     cmocka_unit_test(test_ties),     cmocka_unit_test(test_shapes),
+                                     cmocka_unit_test(test_far),      cmocka_unit_test(test_empty_and_full),
+                                     cmocka_unit_test(test_before),   cmocka_unit_test(test_deep),
+                                     cmocka_unit_test(test_limits),   cmocka_unit_test(test_real_meshes)};
   int status = gpu_test_start(NULL);
   if (status == 0) {
     vxm_opencl_of(engine)->stages = &stages;

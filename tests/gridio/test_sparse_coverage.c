@@ -236,11 +236,47 @@ static void test_damage(void **state) {
   remove_folder(folder);
 }
 
+/** Where a damaged file is, is told the same by any number of threads. */
+static void test_damage_told(void **state) {
+  (void)state;
+  char folder[64], path[80];
+  make_folder(folder);
+  snprintf(path, sizeof path, "%s/a.octree", folder);
+  char told[2][512];
+  for (int t = 0; t < 2; t++) {
+    vxm_context *context = context_with(1 + 3 * t, 0, NULL, NULL);
+    vxm_rng rng = {75};
+    vxm_grid *grid = random_grid(context, &rng, 13); /* 600 x 300 x 9: six rows of tiles */
+    assert_int_equal(vxm_grid_write(grid, path, NULL, NULL), VXM_OK);
+    size_t size;
+    unsigned char *data = load_file(path, &size);
+    for (size_t at = 112 + 8; at < vxm_load_le64(data + 96); at += 640)
+      data[at] ^= 255;
+    vxm_input input = {.data = data, .size = size, .name = "a.octree", .context = context};
+    vxm_sparse_file *file;
+    vxm_field *field;
+    vxm_error error = VXM_ERROR_INIT;
+    vxm_coverage_options options = VXM_COVERAGE_OPTIONS_INIT;
+    options.subdivision = 16;
+    assert_int_equal(vxm_octree_file_open(&file, &input, &error), VXM_OK);
+    assert_int_equal(vxm_sparse_file_coverage(&field, file, &options, NULL, NULL, &error), VXM_ERROR_FORMAT);
+    assert_null(field);
+    snprintf(told[t], sizeof told[t], "%s", error.text);
+    vxm_sparse_file_close(file);
+    free(data);
+    vxm_grid_destroy(grid);
+    vxm_context_destroy(context);
+  }
+  assert_string_equal(told[0], told[1]);
+  remove_folder(folder);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_same_as_counting),
       cmocka_unit_test(test_options),
       cmocka_unit_test(test_damage),
+      cmocka_unit_test(test_damage_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -415,6 +415,70 @@ class Sparse(unittest.TestCase):
             voxmend.SparseGrid(sparse.to_grid().matrix)
 
 
+class SparseFiles(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = pathlib.Path(folder.name, "a.octree")
+
+    def check_windows(self, file, wanted, read):
+        rng = numpy.random.default_rng(6)
+        for _ in range(20):
+            begin = rng.integers(0, file.shape)
+            end = begin + 1 + rng.integers(0, numpy.array(file.shape) - begin)
+            part = read(begin, end)
+            values = part.matrix if isinstance(part, voxmend.VoxelGrid) else part.values
+            numpy.testing.assert_array_equal(values, wanted[tuple(slice(b, e) for b, e in zip(begin, end))])
+            numpy.testing.assert_allclose(part.origin, file.origin + begin * file.pitch)
+        for begin, end in (((0, 0, 0), (0, 1, 1)), ((0, 0, 0), (601, 1, 1)), ((-1, 0, 0), (1, 1, 1)), ((0, 0), (1, 1))):
+            with self.assertRaises(voxmend.ArgumentError):
+                read(begin, end)
+
+    def test_voxels(self):
+        dense = voxmend.voxelize(voxmend.load(sample("star_prism")), 300, pad=2)
+        sparse = dense.to_sparse()
+        sparse.save(self.path)
+        with voxmend.SparseFile(self.path) as file:
+            self.assertEqual((file.shape, file.filled_count, file.has_values), (dense.shape, dense.filled_count, False))
+            numpy.testing.assert_array_equal((file.origin, file.pitch), (dense.origin, dense.pitch))
+            self.check_windows(file, dense.matrix, file.window)
+            self.check_windows(file, dense.matrix, file.field)
+            self.assertEqual(file.window(), dense)
+            for side, part in ((8, {}), (256, {}), (4, dict(begin=(1, 2, 3), end=(60, 70, 50), dtype="uint64"))):
+                numpy.testing.assert_array_equal(file.coverage(side, **part).values, sparse.coverage(side, **part).values)
+            for wrong in (dict(subdivision=6), dict(begin=(1, 2)), dict(end=(1, 1, 99)), dict(dtype="int8")):
+                with self.assertRaises(voxmend.ArgumentError):
+                    file.coverage(**wrong)
+            self.assertEqual(file.read(), sparse)
+            self.assertIn("a.octree", repr(file))
+        for call in (lambda: file.shape, lambda: file.window(), lambda: file.coverage(), lambda: file.__enter__()):
+            with self.assertRaisesRegex(voxmend.ArgumentError, "closed"):
+                call()
+        file.close()
+        self.assertIn("closed", repr(file))
+
+    def test_values(self):
+        labels = voxmend.labels(sample("star_prism"), 100, by="part")
+        labels.save(self.path)
+        file = voxmend.SparseFile(str(self.path))
+        self.assertTrue(file.has_values)
+        self.assertEqual(file.filled_count, (labels.values != 0).sum())
+        self.check_windows(file, labels.values, file.field)
+        for call in (file.window, file.coverage, file.read):
+            with self.assertRaises(voxmend.NumbersError):
+                call()
+
+    def test_refused(self):
+        with self.assertRaises(FileNotFoundError):
+            voxmend.SparseFile(self.path)
+        self.path.write_bytes(b"no octree")
+        with self.assertRaises(voxmend.FormatError):
+            voxmend.SparseFile(self.path)
+        for wrong in (3, None):
+            with self.assertRaises(TypeError):
+                voxmend.SparseFile(wrong)
+
+
 class Defects(unittest.TestCase):
     def test_positions(self):
         """Of a box without its lid: four open edges, where they are."""

@@ -78,6 +78,11 @@ def octrees(mesh: voxmend.Mesh) -> int:
     part: voxmend.VoxelGrid = (first | second).window((0, 0, 0), (16, 16, 16))
     indices: numpy.typing.NDArray[numpy.int64] = (second - first).sparse_indices
     first.save(folder / "sparse.npy")
+    first.save(folder / "sparse.octree")
+    with voxmend.SparseFile(folder / "sparse.octree") as file:
+        block: voxmend.VoxelGrid = file.window((0, 0, 0), (16, 16, 16))
+        coarse: voxmend.VoxelField = file.coverage(16)
+        print(file.shape, file.has_values, block.filled_count, coarse.values.sum(), file.field().kind)
     return part.filled_count + len(indices) + first.bricks + first.nodes + first.nbytes
 
 

@@ -128,6 +128,39 @@ static void test_random_soups(void **state) {
   context = shared;
 }
 
+/**
+ * Surfaces, alone and with the solid, in grids of long rows: small facets, and long ones across many words of
+ * few rows; some with corners far beyond the grid, and so far that coordinates do not fit 32 bits.
+ */
+static void test_surfaces(void **state) {
+  (void)state;
+  static const int64_t dims[][3] = {{1300, 40, 33}, {700, 130, 17}, {65, 200, 130}, {4100, 17, 20}};
+  static const int threads[3] = {1, 2, 7};
+  vxm_context *shared = context;
+  vxm_rng rng = {83};
+  for (int round = 0; round < 24; round++) {
+    vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
+    limits.threads = threads[round % 3];
+    assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
+    const int64_t *n = dims[round % 4];
+    vxm_space space = {{n[0], n[1], n[2]}, {0, 0, 0}, {1, 1, 1}};
+    vxm_soup *soup = shape_empty(context);
+    int reach = round % 6 == 5 ? 1 << 24 : round % 6 == 4 ? 20000 : 1300;
+    for (int f = 0; f < 6; f++)
+      add_open(soup, &rng, f % 2 ? -8 : -reach, f % 2 ? 140 : reach, 2);
+    for (int o = 0; o < 4; o++)
+      shape_random_octahedron(soup, &rng, 0, (int)n[o % 3]);
+    vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+    options.mode = round % 2 ? VXM_MODE_SURFACE : VXM_MODE_BOTH;
+    options.surface = round / 2 % 2 ? VXM_SURFACE_THIN : VXM_SURFACE_CONSERVATIVE;
+    options.method = VXM_METHOD_X;
+    check(soup, &space, &options);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+  }
+  context = shared;
+}
+
 /** Large enough for several windows of slabs; a smooth part, alone and united with others. */
 static void test_many_slabs(void **state) {
   (void)state;
@@ -324,9 +357,13 @@ static void test_real_meshes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_random_soups),      cmocka_unit_test(test_many_slabs),
-      cmocka_unit_test(test_rounds_and_limits), cmocka_unit_test(test_cancelling),
-      cmocka_unit_test(test_refusals),          cmocka_unit_test(test_plates_through_centres),
+      cmocka_unit_test(test_random_soups),
+      cmocka_unit_test(test_surfaces),
+      cmocka_unit_test(test_many_slabs),
+      cmocka_unit_test(test_rounds_and_limits),
+      cmocka_unit_test(test_cancelling),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_plates_through_centres),
       cmocka_unit_test(test_real_meshes),
   };
   return cmocka_run_group_tests(tests, setup, teardown);

@@ -16,6 +16,8 @@ vxm_status vxm_cl_surface(vxm_engine *engine, const vxm_surface *surface, const 
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error);
 
 /** See vxm_engine_ops (cl_sparse.c). Open parts and triangles that reach far are left to the CPU. */
+vxm_status vxm_cl_surface_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_surface *surface,
+                                 vxm_surface_kind kind, vxm_error *error);
 vxm_status vxm_cl_sparse(vxm_engine *engine, vxm_sparse **out, const vxm_space *space,
                          const vxm_sparse_job *job, vxm_error *error);
 

@@ -80,21 +80,26 @@ static vxm_slice_job_surface surface_of(const vxm_cl_tree *tree, const vxm_latti
   return job;
 }
 
-static vxm_status mark_triangles(vxm_opencl *engine, const vxm_slice_job_surface *job,
-                                 const vxm_disjoint_passes *passes, vxm_error *error) {
-  const cl_uint2 list = {{passes->ordered ? 0 : (cl_uint)passes->first, passes->ordered}};
+/** Points and corners of triangles; `list`: the first of them, and whether they are looked up in `order`. */
+typedef struct marking {
+  vxm_cl_buffer_id points, corners, order;
+  cl_uint2 list;
+} marking;
+
+static vxm_status mark_triangles(vxm_opencl *engine, const vxm_slice_job_surface *job, const marking *m,
+                                 vxm_error *error) {
   vxm_status status = vxm_cl_clear_large(engine, job->triangle_count, error);
   if (status == VXM_OK)
     status = vxm_cl_run(engine, VXM_CL_MARK_CELLS, job->triangle_count,
-                        VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
-                                    VXM_CL_MEM(engine, VXM_CL_ORDER), VXM_CL_MEM(engine, VXM_CL_CELLS),
+                        VXM_CL_ARGS(VXM_CL_MEM(engine, m->points), VXM_CL_MEM(engine, m->corners),
+                                    VXM_CL_MEM(engine, m->order), VXM_CL_MEM(engine, VXM_CL_CELLS),
                                     VXM_CL_MEM(engine, VXM_CL_PLACES), VXM_CL_MEM(engine, VXM_CL_LARGE),
-                                    VXM_CL_VALUE(*job), VXM_CL_VALUE(list)),
+                                    VXM_CL_VALUE(*job), VXM_CL_VALUE(m->list)),
                         error);
   if (status == VXM_OK)
     status =
         vxm_cl_run_groups(engine, VXM_CL_MARK_LARGE, vxm_cl_busy_groups(engine),
-                          VXM_CL_ARGS(VXM_CL_MEM(engine, VXM_CL_POINTS), VXM_CL_MEM(engine, VXM_CL_CORNERS),
+                          VXM_CL_ARGS(VXM_CL_MEM(engine, m->points), VXM_CL_MEM(engine, m->corners),
                                       VXM_CL_MEM(engine, VXM_CL_CELLS), VXM_CL_MEM(engine, VXM_CL_PLACES),
                                       VXM_CL_MEM(engine, VXM_CL_LARGE), VXM_CL_VALUE(*job)),
                           error);
@@ -141,15 +146,32 @@ static vxm_status mark_border(vxm_opencl *engine, const vxm_cl_tree *tree, const
 static vxm_status mark(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_sparse_job *job,
                        const vxm_disjoint_passes *passes, vxm_error *error) {
   vxm_slice_job_surface surface = surface_of(tree, &job->placed->lattice);
+  const marking all = {VXM_CL_POINTS,
+                       VXM_CL_CORNERS,
+                       VXM_CL_ORDER,
+                       {{passes->ordered ? 0 : (cl_uint)passes->first, passes->ordered}}};
   surface.triangle_count = (uint32_t)passes->triangle_end[passes->count - 1];
   vxm_status status = upload_places(engine, tree, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, VXM_CL_CELLS, tree->words * sizeof(cl_uint), error);
   if (status == VXM_OK)
-    status = mark_triangles(engine, &surface, passes, error);
+    status = mark_triangles(engine, &surface, &all, error);
   if (status == VXM_OK)
     status = mark_border(engine, tree, job, &surface, error);
   return status;
+}
+
+/** The cells that the triangles of a surface touch. */
+static vxm_status mark_surface(vxm_opencl *engine, const vxm_cl_tree *tree, const vxm_surface *surface,
+                               vxm_error *error) {
+  vxm_slice_job_surface job = surface_of(tree, &surface->lattice);
+  const marking all = {VXM_CL_SURFACE_POINTS, VXM_CL_SURFACE_CORNERS, VXM_CL_SURFACE_CORNERS, {{0, 0}}};
+  job.shift = job.shadow = 0;
+  job.triangle_count = (uint32_t)surface->triangle_count;
+  vxm_status status = upload_places(engine, tree, error);
+  if (status == VXM_OK)
+    status = vxm_cl_clear(engine, VXM_CL_CELLS, tree->words * sizeof(cl_uint), error);
+  return status == VXM_OK ? mark_triangles(engine, &job, &all, error) : status;
 }
 
 /** Counts the cells before each word; all of them are level 0. */
@@ -267,6 +289,16 @@ static vxm_status construct(vxm_opencl *engine, vxm_cl_tree *tree, vxm_error *er
   return status;
 }
 
+/** The nodes of the cells that are marked. */
+static vxm_status make_nodes(vxm_cl_tree *tree, vxm_opencl *engine, double *since, vxm_error *error) {
+  vxm_status status = count_cells(engine, tree, error);
+  if (status == VXM_OK)
+    status = vxm_cl_stage_end(engine, VXM_CL_STAGE(cells), since, error);
+  if (status == VXM_OK && tree->level[0].count > 0)
+    status = construct(engine, tree, error);
+  return status == VXM_OK ? vxm_cl_stage_end(engine, VXM_CL_STAGE(construct), since, error) : status;
+}
+
 vxm_status vxm_cl_tree_create(vxm_cl_tree *out, vxm_opencl *engine, const vxm_space *space,
                               const vxm_sparse_job *job, const vxm_disjoint_passes *passes,
                               vxm_error *error) {
@@ -274,11 +306,14 @@ vxm_status vxm_cl_tree_create(vxm_cl_tree *out, vxm_opencl *engine, const vxm_sp
   vxm_status status = shape(out, space, error);
   if (status == VXM_OK)
     status = mark(engine, out, job, passes, error);
+  return status == VXM_OK ? make_nodes(out, engine, &since, error) : status;
+}
+
+vxm_status vxm_cl_tree_create_surface(vxm_cl_tree *out, vxm_opencl *engine, const vxm_surface *surface,
+                                      vxm_error *error) {
+  double since = vxm_clock_ms();
+  vxm_status status = shape(out, &surface->lattice.space, error);
   if (status == VXM_OK)
-    status = count_cells(engine, out, error);
-  if (status == VXM_OK)
-    status = vxm_cl_stage_end(engine, VXM_CL_STAGE(cells), &since, error);
-  if (status == VXM_OK && out->level[0].count > 0)
-    status = construct(engine, out, error);
-  return status == VXM_OK ? vxm_cl_stage_end(engine, VXM_CL_STAGE(construct), &since, error) : status;
+    status = mark_surface(engine, out, surface, error);
+  return status == VXM_OK ? make_nodes(out, engine, &since, error) : status;
 }

@@ -31,6 +31,10 @@ typedef struct vxm_cl_tree {
 vxm_status vxm_cl_tree_create(vxm_cl_tree *out, vxm_opencl *engine, const vxm_space *space,
                               const vxm_sparse_job *job, const vxm_disjoint_passes *passes, vxm_error *error);
 
+/** The same for the triangles of a surface, whose points and corners are on the device. */
+vxm_status vxm_cl_tree_create_surface(vxm_cl_tree *out, vxm_opencl *engine, const vxm_surface *surface,
+                                      vxm_error *error);
+
 /** Makes the octree of what bricks and nodes have inside. */
 vxm_status vxm_cl_tree_take(vxm_sparse **out, vxm_opencl *engine, const vxm_cl_tree *tree,
                             vxm_cl_buffer_id bricks, vxm_cl_buffer_id inside, vxm_context *context,

@@ -18,6 +18,7 @@ typedef enum vxm_cl_program_id {
   VXM_CL_TILES_PROGRAM,
   VXM_CL_TREE,        /**< octrees: their nodes */
   VXM_CL_BRICK_FLIPS, /**< and their voxels */
+  VXM_CL_SURFACE_BRICKS,
   VXM_CL_COVERAGE,
   VXM_CL_MOVE,
   VXM_CL_PUBLISHED,
@@ -64,6 +65,8 @@ typedef enum vxm_cl_kernel_id {
   VXM_CL_FLIP_BRICKS_LARGE,
   VXM_CL_FOLD_BRICKS,
   VXM_CL_PUSH_BRICKS,
+  VXM_CL_SET_BRICKS,
+  VXM_CL_SET_BRICKS_LARGE,
   VXM_CL_COUNT_GROUPS,
   VXM_CL_MOVE_POINTS,
   VXM_CL_PUBLISHED_FACETS,

@@ -64,6 +64,9 @@ typedef struct vxm_engine_ops {
   /** The octree of a job; `*out` stays NULL, and that is no failure, where the CPU has to make it. */
   vxm_status (*sparse)(vxm_engine *engine, vxm_sparse **out, const vxm_space *space,
                        const vxm_sparse_job *job, vxm_error *error);
+  /** As vxm_surface_octree; `*out` stays NULL, and that is no failure, where the CPU has to make it. */
+  vxm_status (*sparse_surface)(vxm_engine *engine, vxm_sparse **out, const vxm_surface *surface,
+                               vxm_surface_kind kind, vxm_error *error);
   /** Fills [x][y][z][4] bytes, 0 where a voxel is not set. */
   vxm_status (*color)(vxm_engine *engine, uint8_t *values, const vxm_color_job *job, vxm_error *error);
   /** Counts the voxels that are set in each group of n x n x n of a window, which begins and ends between

@@ -2,6 +2,7 @@
 #include "voxel/sparse/sparse.h"
 #include "voxel/model/memory_need.h"
 #include "voxel/model/model_report.h"
+#include "voxel/surface/surface_octree.h"
 #include "voxel/thin/thin_sparse.h"
 
 /** Bytes of a range of slices, unless so few are more. */
@@ -11,12 +12,21 @@ static const uint64_t window_bytes_most = UINT64_C(1) << 26;
 static bool is_direct(const vxm_model *model) {
   const vxm_voxelize_options *options = &model->options;
   const vxm_split *split = &model->analysis.triangles.split;
-  bool solid = options->mode != VXM_MODE_SURFACE && !vxm_faces_wanted(options);
-  if (!solid || options->method == VXM_METHOD_WINDING)
+  if (vxm_shell_wanted(options) || options->method == VXM_METHOD_WINDING)
     return false;
   if (vxm_one_voter(options)) /* of closed parts all axes tell the same */
     return options->method == VXM_METHOD_X || split->kind_end[VXM_PART_CLOSED] == split->part_count;
   return !vxm_votes_wanted(&model->analysis, options);
+}
+
+/** Whether nothing is made by windows: neither the solid, where one is wanted, nor the faces. */
+static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pass) {
+  const vxm_engine *engine = pass->solid.engine;
+  const vxm_engine_ops *ops = engine ? engine->ops : NULL;
+  bool solid = vxm_solid_wanted(&model->options), faces = vxm_faces_wanted(&model->options);
+  if (ops && ((solid && !ops->sparse) || (faces && ops->surface && !ops->sparse_surface)))
+    return false; /* the engine makes windows only */
+  return !solid || is_direct(model);
 }
 
 static vxm_sparse_job job_of(const vxm_model_pass *pass) {
@@ -31,23 +41,85 @@ static vxm_sparse_job job_of(const vxm_model_pass *pass) {
   return job;
 }
 
-static vxm_status unite_directly(vxm_octree_builder *builder, vxm_model_pass *pass, vxm_error *error) {
+static vxm_status unite_directly(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
   vxm_sparse_job job = job_of(pass);
-  return vxm_sparse_union(builder, &pass->workspace, &job, error);
+  vxm_octree_builder builder;
+  vxm_status status = vxm_octree_builder_create(&builder, pass->solid.context, &pass->space, error);
+  if (status == VXM_OK)
+    status = vxm_sparse_union(&builder, &pass->workspace, &job, error);
+  if (status == VXM_OK)
+    status = vxm_octree_builder_end(out, &builder, error);
+  vxm_octree_builder_destroy(&builder);
+  return status;
 }
 
 /** By the pass's engine; `*out` stays NULL where that is for the CPU. */
-static vxm_status unite_elsewhere(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass,
-                                  vxm_error *error) {
+static vxm_status unite_elsewhere(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
   vxm_engine *engine = pass->solid.engine;
   vxm_error local = VXM_ERROR_INIT;
-  if (!engine || !engine->ops || !engine->ops->sparse || !is_direct(model))
+  if (!engine || !engine->ops || !engine->ops->sparse)
     return VXM_OK;
   vxm_sparse_job job = job_of(pass);
   vxm_status status = engine->ops->sparse(engine, out, &pass->space, &job, &local);
   if (status == VXM_OK || vxm_engine_falls_back(engine, &local))
     return VXM_OK;
   vxm_error_pass(error, &local);
+  return status;
+}
+
+/** From so many bytes on an octree matters more than room that is kept for the next call. */
+static const uint64_t large_octree = UINT64_C(1) << 27;
+
+/** The solid, straight from the triangles. */
+static vxm_status make_solid(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
+  vxm_status status = unite_elsewhere(out, pass, error);
+  if (status == VXM_OK && !*out)
+    status = unite_directly(out, pass, error);
+  if (status == VXM_OK && vxm_octree_bytes(*out) >= large_octree) {
+    vxm_workspace_destroy(&pass->workspace);
+    pass->workspace = vxm_workspace_of(pass->solid.context);
+  }
+  return status == VXM_OK && pass->separating
+             ? vxm_thin_add_sparse(&pass->thin.thin, out, &pass->solid.analysis->triangles,
+                                   &pass->solid.placed, pass->separating, error)
+             : status;
+}
+
+/** The faces by the pass's engine; `*out` stays NULL where that is for the CPU. */
+static vxm_status make_faces_elsewhere(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
+  vxm_engine *engine = pass->solid.engine;
+  vxm_error local = VXM_ERROR_INIT;
+  if (!engine || !engine->ops || !engine->ops->sparse_surface)
+    return VXM_OK;
+  vxm_status status =
+      engine->ops->sparse_surface(engine, out, pass->surface, pass->solid.options.surface, &local);
+  if (status == VXM_OK || vxm_engine_falls_back(engine, &local))
+    return VXM_OK;
+  vxm_error_pass(error, &local);
+  return status;
+}
+
+static vxm_status make_faces(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
+  *out = NULL;
+  vxm_status status = make_faces_elsewhere(out, pass, error);
+  return status == VXM_OK && !*out
+             ? vxm_surface_octree(out, pass->surface, pass->solid.options.surface, error)
+             : status;
+}
+
+/** Puts the voxels of the faces to those of the solid; NULL for none. */
+static vxm_status add_faces(vxm_sparse **octree, vxm_model_pass *pass, vxm_error *error) {
+  vxm_sparse *faces, *both = NULL;
+  vxm_status status = make_faces(&faces, pass, error);
+  if (status == VXM_OK && *octree) {
+    status = vxm_octree_combine(&both, *octree, faces, VXM_SET_UNION, error);
+    vxm_sparse_destroy(faces);
+    faces = both;
+  }
+  if (status == VXM_OK) {
+    vxm_sparse_destroy(*octree);
+    *octree = faces;
+  }
   return status;
 }
 
@@ -62,8 +134,8 @@ static int64_t range_slices(const vxm_model *model, const vxm_space *space, cons
 }
 
 /** Range of slices after range, each as a window. */
-static vxm_status unite_by_windows(vxm_octree_builder *builder, const vxm_model *model, vxm_model_pass *pass,
-                                   vxm_error *error) {
+static vxm_status add_windows(vxm_octree_builder *builder, const vxm_model *model, vxm_model_pass *pass,
+                              vxm_error *error) {
   vxm_layout layout = VXM_LAYOUT_GRID;
   vxm_window window = vxm_window_of(&pass->space, layout, 0, 0);
   int64_t slices = vxm_min(range_slices(model, &pass->space, &window), window.slow_dim);
@@ -87,34 +159,23 @@ static vxm_status unite_by_windows(vxm_octree_builder *builder, const vxm_model 
   return status;
 }
 
-/** Whether the pass's engine makes windows, but no octrees. */
-static bool makes_windows(const vxm_model_pass *pass) {
-  const vxm_engine *engine = pass->solid.engine;
-  return engine && engine->ops && !engine->ops->sparse;
-}
-
-/** Whether triangles become an octree without any window between, by the CPU or by an engine that can. */
-static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pass) {
-  return is_direct(model) && !makes_windows(pass);
-}
-
-/** From so many bytes on an octree matters more than room that is kept for the next call. */
-static const uint64_t large_octree = UINT64_C(1) << 27;
-
-static vxm_status build(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass, vxm_error *error) {
+static vxm_status unite_by_windows(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass,
+                                   vxm_error *error) {
   vxm_octree_builder builder;
   vxm_status status = vxm_octree_builder_create(&builder, model->context, &pass->space, error);
   if (status == VXM_OK)
-    status = is_without_windows(model, pass) ? unite_directly(&builder, pass, error)
-                                             : unite_by_windows(&builder, model, pass, error);
+    status = add_windows(&builder, model, pass, error);
   if (status == VXM_OK)
     status = vxm_octree_builder_end(out, &builder, error);
   vxm_octree_builder_destroy(&builder);
-  if (status == VXM_OK && vxm_octree_bytes(*out) >= large_octree) {
-    vxm_workspace_destroy(&pass->workspace);
-    pass->workspace = vxm_workspace_of(model->context);
-  }
   return status;
+}
+
+static vxm_status make(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass, vxm_error *error) {
+  if (!is_without_windows(model, pass))
+    return unite_by_windows(out, model, pass, error);
+  vxm_status status = vxm_solid_wanted(&model->options) ? make_solid(out, pass, error) : VXM_OK;
+  return status == VXM_OK && vxm_faces_wanted(&model->options) ? add_faces(out, pass, error) : status;
 }
 
 vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
@@ -125,12 +186,7 @@ vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_mo
   vxm_model_pass *pass;
   vxm_status status = vxm_model_begin(&pass, model, space, transform, NULL, error);
   if (status == VXM_OK)
-    status = unite_elsewhere(out, model, pass, error);
-  if (status == VXM_OK && !*out)
-    status = build(out, model, pass, error);
-  if (status == VXM_OK && pass->separating && is_without_windows(model, pass)) /* windows have it already */
-    status = vxm_thin_add_sparse(&pass->thin.thin, out, &pass->solid.analysis->triangles, &pass->solid.placed,
-                                 pass->separating, error);
+    status = make(out, model, pass, error);
   if (status != VXM_OK) {
     vxm_sparse_destroy(*out);
     *out = NULL;

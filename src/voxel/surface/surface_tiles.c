@@ -23,6 +23,8 @@ typedef struct tiling {
   const vxm_surface *surface;
   vxm_surface_pen pen; /**< its tile is the whole window, its rows those of all workers */
   bool is_fresh, is_large;
+  vxm_surface_take_fn take; /**< NULL: tiles go to the window */
+  void *payload;
   size_t tile_words;
   int row_bits, slice_bits;  /**< a tile has 2^row_bits rows of 2^slice_bits slices */
   size_t across, tile_count; /**< tiles side by side in a slice, and in all */
@@ -55,6 +57,21 @@ static int least(int a, int b) {
   return a < b ? a : b;
 }
 
+/** Cuts the window into tiles of the shape that was chosen. */
+static void cut_window(tiling *t) {
+  const vxm_window *window = t->pen.window;
+  t->across = (size_t)((window->middle_dim - 1) >> t->row_bits) + 1;
+  t->tile_count = t->across * ((size_t)((window->end - window->begin - 1) >> t->slice_bits) + 1);
+}
+
+static void choose_chunks(tiling *t) {
+  size_t most = (size_t)vxm_context_threads(t->surface->context) * 4;
+  t->chunks = 1 + t->surface->triangle_count / CHUNK;
+  t->chunks = t->chunks < most ? t->chunks : most;
+  while (t->chunks > 1 && t->chunks * t->tile_count > COUNTERS_MAX)
+    t->chunks--;
+}
+
 /** About square, so that few triangles reach over several tiles, but small enough for every thread. */
 static void choose_tiles(tiling *t) {
   const vxm_window *window = t->pen.window;
@@ -66,16 +83,8 @@ static void choose_tiles(tiling *t) {
   int size = log2_floor(vxm_min(fitting, fair));
   t->slice_bits = least(least(size / 2, log2_ceil(slices)), log2_floor(VXM_SURFACE_SLICES));
   t->row_bits = least(size - t->slice_bits, log2_ceil(rows));
-  t->across = (size_t)((rows - 1) >> t->row_bits) + 1;
-  t->tile_count = t->across * ((size_t)((slices - 1) >> t->slice_bits) + 1);
-  /* Slices a power of two apart would share few sets of the caches. */
-  t->pen.slice_words = (window->row_words << t->row_bits) + LINE_WORDS;
-  t->tile_words = t->pen.slice_words << t->slice_bits;
   t->is_large = (size_t)slices * window->slice_words >= LARGE_WORDS;
-  t->chunks = 1 + t->surface->triangle_count / CHUNK;
-  t->chunks = t->chunks < (size_t)threads * 4 ? t->chunks : (size_t)threads * 4;
-  while (t->chunks > 1 && t->chunks * t->tile_count > COUNTERS_MAX)
-    t->chunks--;
+  cut_window(t);
 }
 
 static vxm_surface_box tile_box(const tiling *t, size_t tile) {
@@ -231,6 +240,10 @@ static void move_tile(const tiling *t, const vxm_surface_pen *pen) {
 
 static void draw_tile(size_t task, int worker, void *payload) {
   tiling *t = payload;
+  if (t->take && t->begin[task] == t->begin[task + 1]) {
+    vxm_task_progress_step(&t->watch);
+    return;
+  }
   if (vxm_task_progress_stopped(&t->watch, worker))
     return;
   vxm_surface_pen pen = t->pen;
@@ -242,18 +255,24 @@ static void draw_tile(size_t task, int worker, void *payload) {
   pen.words += (size_t)worker * t->tile_words;
   if (!vxm_surface_draw_some(&pen, t->list, t->begin[task], t->begin[task + 1], &t->watch, worker))
     return;
-  if (t->is_fresh || t->begin[task] < t->begin[task + 1])
+  if (t->take)
+    t->take(&pen, t->list + t->begin[task], t->begin[task + 1] - t->begin[task], worker, t->payload);
+  else if (t->is_fresh || t->begin[task] < t->begin[task + 1])
     move_tile(t, &pen);
   vxm_task_progress_step(&t->watch);
 }
 
+/** The tiles of a window, or of a band of its slices. */
 static vxm_status draw_tiles(tiling *t) {
   vxm_context *context = t->surface->context;
   t->end = t->tile_count;
+  t->first = 0;
+  vxm_free(context, t->list);
+  t->list = NULL;
   vxm_parallel(context, t->chunks, sort_chunk, t); /* counts only, while there is no list */
   if (t->watch.status != VXM_OK)
     return t->watch.status;
-  for (t->first = 0; t->first < t->tile_count; t->first = t->end) {
+  for (; t->first < t->tile_count; t->first = t->end) {
     vxm_status status = list_tiles(t);
     if (status != VXM_OK)
       return status;
@@ -261,34 +280,79 @@ static vxm_status draw_tiles(tiling *t) {
     if (t->watch.status != VXM_OK)
       return t->watch.status;
   }
-  return vxm_task_progress_end(&t->watch);
+  return VXM_OK;
+}
+
+/** Room for the tiles, whose shape has been chosen. @return t->error->code */
+static vxm_status reserve(tiling *t) {
+  vxm_context *context = t->surface->context;
+  choose_chunks(t);
+  /* Slices a power of two apart would share few sets of the caches. */
+  t->pen.slice_words = (t->pen.window->row_words << t->row_bits) + LINE_WORDS;
+  t->tile_words = t->pen.slice_words << t->slice_bits;
+  size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t->row_bits;
+  t->counters = vxm_calloc(context, t->chunks * t->tile_count, sizeof *t->counters, t->error);
+  t->places = vxm_alloc(context, t->surface->triangle_count, sizeof *t->places, t->error);
+  t->begin = vxm_alloc(context, t->tile_count + 1, sizeof *t->begin, t->error);
+  t->pen.rows = vxm_alloc(context, workers * rows, sizeof *t->pen.rows, t->error);
+  t->pen.row_begin = vxm_calloc(context, workers * 2 * (rows + (size_t)2 * VXM_SURFACE_LANES),
+                                sizeof *t->pen.row_begin, t->error);
+  t->pen.words = vxm_calloc(context, workers * t->tile_words, sizeof *t->pen.words, t->error);
+  return t->error->code;
+}
+
+static void release(tiling *t) {
+  vxm_context *context = t->surface->context;
+  vxm_free(context, t->list);
+  vxm_free(context, t->pen.words);
+  vxm_free(context, t->pen.row_begin);
+  vxm_free(context, t->pen.rows);
+  vxm_free(context, t->begin);
+  vxm_free(context, t->places);
+  vxm_free(context, t->counters);
 }
 
 vxm_status vxm_surface_add_tiled(const vxm_surface_pen *pen, bool is_fresh, vxm_error *error) {
-  const vxm_surface *surface = pen->surface;
-  vxm_context *context = surface->context;
   vxm_error local = VXM_ERROR_INIT;
-  tiling t = {.surface = surface, .pen = *pen, .is_fresh = is_fresh, .error = &local};
+  tiling t = {.surface = pen->surface, .pen = *pen, .is_fresh = is_fresh, .error = &local};
   choose_tiles(&t);
-  vxm_task_progress_start(&t.watch, context, "voxelizing the surface", t.tile_count, &local);
-  size_t workers = (size_t)vxm_context_threads(context), rows = (size_t)1 << t.row_bits;
-  t.counters = vxm_calloc(context, t.chunks * t.tile_count, sizeof *t.counters, &local);
-  t.places = vxm_alloc(context, surface->triangle_count, sizeof *t.places, &local);
-  t.begin = vxm_alloc(context, t.tile_count + 1, sizeof *t.begin, &local);
-  t.pen.rows = vxm_alloc(context, workers * rows, sizeof *t.pen.rows, &local);
-  t.pen.row_begin = vxm_calloc(context, workers * 2 * (rows + (size_t)2 * VXM_SURFACE_LANES),
-                               sizeof *t.pen.row_begin, &local);
-  t.pen.words = vxm_calloc(context, workers * t.tile_words, sizeof *t.pen.words, &local);
-  vxm_status status = t.counters && t.places && t.begin && t.pen.rows && t.pen.row_begin && t.pen.words
-                          ? draw_tiles(&t)
-                          : local.code;
-  vxm_free(context, t.list);
-  vxm_free(context, t.pen.words);
-  vxm_free(context, t.pen.row_begin);
-  vxm_free(context, t.pen.rows);
-  vxm_free(context, t.begin);
-  vxm_free(context, t.places);
-  vxm_free(context, t.counters);
+  vxm_task_progress_start(&t.watch, pen->surface->context, "voxelizing the surface", t.tile_count, &local);
+  vxm_status status = reserve(&t);
+  if (status == VXM_OK)
+    status = draw_tiles(&t);
+  if (status == VXM_OK)
+    status = vxm_task_progress_end(&t.watch);
+  release(&t);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
+  return status;
+}
+
+vxm_status vxm_surface_take_tiles(const vxm_surface_pen *pen, int bits, vxm_surface_take_fn take,
+                                  void *payload, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  tiling t = {.surface = pen->surface, .pen = *pen, .take = take, .payload = payload, .error = &local};
+  t.row_bits = t.slice_bits = bits;
+  /* Bands of slices, so that counters, one for each tile and chunk, stay few. */
+  vxm_window band = *pen->window;
+  int64_t across = ((band.middle_dim - 1) >> bits) + 1, all = pen->window->end;
+  int64_t slices = vxm_max(1, COUNTERS_MAX / 4 / across) << bits;
+  t.pen.window = &band;
+  band.end = vxm_min(slices, all);
+  cut_window(&t);
+  size_t tiles = (size_t)across * ((size_t)((all - 1) >> bits) + 1);
+  vxm_task_progress_start(&t.watch, pen->surface->context, "voxelizing the surface", tiles, &local);
+  vxm_status status = reserve(&t);
+  for (int64_t begin = 0; begin < all && status == VXM_OK; begin += slices) {
+    band.begin = t.pen.tile.begin[VXM_SLOW] = begin;
+    band.end = t.pen.tile.end[VXM_SLOW] = vxm_min(begin + slices, all);
+    cut_window(&t);
+    memset(t.counters, 0, t.chunks * t.tile_count * sizeof *t.counters);
+    status = draw_tiles(&t);
+  }
+  if (status == VXM_OK)
+    status = vxm_task_progress_end(&t.watch);
+  release(&t);
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
   return status;
