@@ -113,8 +113,8 @@ static void be_first(int end) {
   }
   for (int stream = 0; stream < 3; stream++) /* who waits for the end of these is not to wait for us */
     close(stream);
-  close_range(3, (unsigned)end - 1, 0);
-  close_range((unsigned)end + 1, ~0U, 0);
+  syscall(SYS_close_range, 3U, (unsigned)end - 1, 0U);
+  syscall(SYS_close_range, (unsigned)end + 1, ~0U, 0U);
   if (worker > 0)
     wait_for(worker, end);
   _exit(1);
