@@ -169,6 +169,10 @@ static bool add_named(batch_manifest *out, const batch_inputs *inputs, const cha
   return add_file(out, name + prefix, name, &info, error);
 }
 
+#ifndef GLOB_BRACE /* without {a,b}, as in musl */
+#define GLOB_BRACE 0
+#endif
+
 /** A pattern that the shell has left alone, since it stood in quotes: too many names for a command line. */
 static bool add_pattern(batch_manifest *out, const batch_inputs *inputs, const char *pattern,
                         batch_error *error) {
