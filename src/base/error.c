@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "config.h"
-
 const char *vxm_version(void) {
 #define VXM_TEXT2(x) #x
 #define VXM_TEXT(x) VXM_TEXT2(x)
@@ -107,7 +105,7 @@ static void VXM_PRINTF(4, 5)
 vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what) {
   int saved = errno;
   char reason[128] = "";
-#ifdef STRERROR_R_CHAR_P /* GNU's may return a static text instead of filling the buffer */
+#ifdef __GLIBC__ /* whose own may return a static text instead of filling the buffer */
   const char *text = strerror_r(saved, reason, sizeof reason);
 #else
   const char *text = strerror_r(saved, reason, sizeof reason) == 0 ? reason : "unknown error";
