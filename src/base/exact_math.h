@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Lengths and angles by operations that IEEE 754 rounds in one way only, so that they have the same bits on every
- * machine: hypot and atan2 are rounded as the C library and the processor have it.
+ * Lengths and angles by operations that IEEE 754 rounds in one way only, so that they have the same bits on
+ * every machine: hypot and atan2 are rounded as the C library and the processor have it.
  */
 #ifndef VXM_BASE_EXACT_MATH_H
 #define VXM_BASE_EXACT_MATH_H
@@ -22,8 +22,9 @@ static inline double vxm_length3(double x, double y, double z) {
 }
 
 /**
- * The angle, 0 to pi, of which sine >= 0 and cosine are given, both times the same number; 0 if both are 0. The tangent
- * of its sixteenth, at most 0.2, goes into the series of atan; the error is some units in the last place.
+ * The angle, 0 to pi, of which sine >= 0 and cosine are given, both times the same number; 0 if both are 0.
+ * The tangent of its sixteenth, at most 0.2, goes into the series of atan; the error is some units in the
+ * last place.
  */
 static inline double vxm_angle(double sine, double cosine) {
   const double pi = 3.141592653589793;

@@ -26,9 +26,9 @@ static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size
 
 /** What this code lies in, a library or a program. */
 typedef struct code_file {
-  size_t seen;        /**< files of the process that were looked at */
-  bool is_program;    /**< it is the first of them */
-  bool needs_loader;  /**< the program names one */
+  size_t seen;         /**< files of the process that were looked at */
+  bool is_program;     /**< it is the first of them */
+  bool needs_loader;   /**< the program names one */
   const char *library; /**< the loader's path; NULL if it is not known */
 } code_file;
 
@@ -116,10 +116,11 @@ static vxm_status missing(const vxm_module_need *need, vxm_error *error) {
 
 vxm_status vxm_module_find(char path[VXM_MODULE_PATH_MAX], const vxm_module_need *need, vxm_error *error) {
   if (is_static())
-    return vxm_fail(error, VXM_ERROR_UNAVAILABLE,
-                    "%s needs voxmend's module \"%s\", and this is a static program, which cannot open modules: "
-                    "use one that is linked with the C library's loader",
-                    need->purpose, need->name);
+    return vxm_fail(
+        error, VXM_ERROR_UNAVAILABLE,
+        "%s needs voxmend's module \"%s\", and this is a static program, which cannot open modules: "
+        "use one that is linked with the C library's loader",
+        need->purpose, need->name);
   const char *chosen = secure_getenv("VOXMEND_MODULES");
   if (chosen != NULL && chosen[0] != '/')
     return vxm_fail(

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What kernels take of NEON by name, as they take SSE2 of x86; the rest are the compiler's own vectors, of which it makes
- * NEON by itself. Without NEON, and where lanes are numbered from the other end, VXM_NEON is 0. */
+/** What kernels take of NEON by name, as they take SSE2 of x86; the rest are the compiler's own vectors, of
+ * which it makes NEON by itself. Without NEON, and where lanes are numbered from the other end, VXM_NEON is
+ * 0. */
 #ifndef VXM_BASE_NEON_H
 #define VXM_BASE_NEON_H
 

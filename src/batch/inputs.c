@@ -98,8 +98,8 @@ static bool add_entry(const search *s, const batch_tree_entry *entry) {
              : add_file(s->out, id, entry->path, entry->info, s->error);
 }
 
-/** Links are followed; those that lead back to where they are, or to nothing, are passed over, as are sockets,
- * pipes and devices. */
+/** Links are followed; those that lead back to where they are, or to nothing, are passed over, as are
+ * sockets, pipes and devices. */
 static batch_tree_step visit(const batch_tree_entry *entry, void *payload) {
   search *s = payload;
   bool is_hidden = entry->depth > 0 && entry->name[0] == '.';

@@ -55,9 +55,8 @@ static batch_tree_step walk_folder(const tree *t, const char *path, int depth, c
   for (int n = 0; n < count; n++) {
     char *inner = NULL;
     if (step != BATCH_TREE_STOP)
-      step = asprintf(&inner, "%s%s%s", path, slash, names[n]->d_name) < 0
-                 ? BATCH_TREE_STOP
-                 : walk(t, inner, depth + 1, at);
+      step = asprintf(&inner, "%s%s%s", path, slash, names[n]->d_name) < 0 ? BATCH_TREE_STOP
+                                                                           : walk(t, inner, depth + 1, at);
     free(inner);
     free(names[n]);
   }

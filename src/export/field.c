@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "export/field.h"
-#include "base/exact_math.h"
 #include "base/clock.h"
+#include "base/exact_math.h"
 #include "grid/bit_transpose.h"
 #include "gridio/common/values_writer.h"
 #include "gridio/gridio.h"

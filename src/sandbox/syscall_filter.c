@@ -98,7 +98,7 @@ const char *vxm_syscall_filter(int channel) {
     failure = -errno;
   if (failure == 0)
     failure = seccomp_load(filter);
-  /* The filter's memory is left to it: freeing it is one more call that could want something. */
+    /* The filter's memory is left to it: freeing it is one more call that could want something. */
 #ifdef HAVE_STRERRORDESC_NP
   return failure == 0 ? NULL : strerrordesc_np(-failure);
 #else
