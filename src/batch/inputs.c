@@ -192,14 +192,24 @@ static bool add_pattern(batch_manifest *out, const batch_inputs *inputs, const c
   return good;
 }
 
-bool batch_inputs_read(batch_manifest *out, const batch_inputs *inputs, batch_error *error) {
+/** A pattern, unless there is a file of that name. */
+static bool is_pattern(const char *name) {
   struct stat info;
+  return strpbrk(name, "*?[{") && stat(name, &info) != 0;
+}
+
+bool batch_is_several(const char *name) {
+  struct stat info;
+  return is_list(name) || batch_is_archive(name) || is_pattern(name) ||
+         (stat(name, &info) == 0 && S_ISDIR(info.st_mode));
+}
+
+bool batch_inputs_read(batch_manifest *out, const batch_inputs *inputs, batch_error *error) {
   *out = (batch_manifest){0};
   bool good = true;
   for (int i = 0; good && i < inputs->count; i++) {
     const char *name = inputs->names[i];
-    bool is_pattern = strpbrk(name, "*?[{") && stat(name, &info) != 0;
-    good = is_pattern ? add_pattern(out, inputs, name, error) : add_named(out, inputs, name, 0, error);
+    good = is_pattern(name) ? add_pattern(out, inputs, name, error) : add_named(out, inputs, name, 0, error);
   }
   if (good && out->count == 0)
     good = batch_fail(error, "%s: there is no mesh in it%s%s", inputs->names[0],

@@ -14,6 +14,9 @@ typedef struct batch_inputs {
 
 bool batch_inputs_read(batch_manifest *out, const batch_inputs *inputs, batch_error *error);
 
+/** Whether a name stands for several meshes: that of a folder, list, table or archive, or a pattern. */
+bool batch_is_several(const char *name);
+
 /** Whether the name is that of a mesh. */
 bool batch_is_mesh(const batch_inputs *inputs, const char *name);
 /** The extension behind the last dot, or "". */

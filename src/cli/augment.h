@@ -7,6 +7,7 @@
 
 typedef struct augment_request {
   const char *input, *output, *format;
+  bool is_several;       /**< all arguments are inputs, and `input` is NULL until one of them is at work */
   const char *rotations; /**< file of a list, or NULL */
   int64_t count, first;  /**< count 0 = a stream without end */
   vxm_variant variant;   /**< model and epoch */
@@ -17,6 +18,8 @@ typedef struct augment_request {
   vxm_repair_options repair;
   vxm_sampler_options sampler;
   vxm_voxelize_options voxelize; /**< of the sampler */
+  int64_t model_at,
+      model_of; /**< of several models the one at work, from 0, and how many; for the progress */
 } augment_request;
 
 extern const cli_option augment_options[];
@@ -48,8 +51,52 @@ vxm_status augment_write_numbers(cli_run *cli, const char *const *paths, vxm_sam
 /** A failed run leaves no file behind that was not there before. */
 void augment_remove_files(const augment_folder *f, const augment_request *given);
 
-/** Writes the records of a stream to standard output (doc/training.md has its form); CLI_DONE or CLI_FAILED.
+/* ---- augment_stream.c: records on standard output (doc/training.md has their form) ---- */
+
+/** Records of one model after another. */
+typedef struct augment_stream augment_stream;
+
+/** Writes the header, of a stream of so many models; CLI_DONE, or CLI_FAILED and *out is NULL. */
+int augment_stream_open(cli_run *cli, augment_stream **out, const augment_request *given,
+                        vxm_sampler *sampler);
+/** Writes the records of model number given->variant.model; CLI_DONE or CLI_FAILED. */
+int augment_stream_write(cli_run *cli, augment_stream *s, const augment_request *given, int64_t *made);
+/** After the last, or a failure: the status so far, or CLI_FAILED where it cannot be written to its end. NULL
+ * is allowed. */
+int augment_stream_close(cli_run *cli, augment_stream *s, int status);
+
+/* ---- augment_model.c: a model, and its variants ---- */
+
+typedef struct augment_outcome {
+  cli_input input;
+  vxm_census census;
+  augment_folder folder;
+  int64_t made;
+  double prepare_ms, make_ms;
+} augment_outcome;
+
+#define AUGMENT_OUTCOME_INIT \
+  { .census = VXM_CENSUS_INIT }
+
+/** Makes the sampler and its engine; CLI_FAILED after a line. */
+int augment_open_sampler(cli_run *cli, vxm_sampler **out, augment_request *given);
+/**
+ * Reads and repairs given->input, and makes its variants, into the stream or, where that is NULL, into
+ * given->output. CLI_FAILED after a line, and then no file of it is left that was not there before.
  */
-int augment_stream(cli_run *cli, const augment_request *given, vxm_sampler *sampler, int64_t *made);
+int augment_model(cli_run *cli, augment_outcome *out, const augment_request *given, vxm_sampler *sampler,
+                  augment_stream *stream);
+void augment_outcome_free(augment_outcome *outcome);
+/** What the reports of one model and of several have in common: input, repair, triangles, variants. */
+json_t *augment_outcome_json(const augment_request *given, const augment_outcome *outcome);
+/** Adds what was asked for, and who made it. */
+void augment_request_json(json_t *report, const augment_request *given);
+
+/* ---- augment_models.c: several models in a run ---- */
+
+/** Whether the arguments are more than one mesh: several, or a folder, list, table, archive or pattern. */
+bool augment_has_several(const cli_run *cli);
+/** Makes the variants of all; an exit status. */
+int augment_several(cli_run *cli, augment_request *given);
 
 #endif

@@ -143,7 +143,9 @@ static int write_files(cli_run *cli, augment_folder *f, const augment_request *g
 static int write_chunks(cli_run *cli, augment_folder *f, const augment_request *given, vxm_sampler *sampler,
                         char *names) {
   while (f->made < given->count) {
-    if (cli_progress(cli, "augmenting", (double)f->made / (double)given->count)) {
+    if (cli_progress(cli, "augmenting",
+                     ((double)given->model_at + (double)f->made / (double)given->count) /
+                         (double)given->model_of)) {
       cli->error.code = VXM_ERROR_CANCELLED;
       return cli_fail(cli);
     }

@@ -29,8 +29,8 @@ enum {
 
 const cli_option augment_options[] = {
     {'o', "output", "DIR|-",
-     "folder for a file of each variant, 000000.rle and so on, or - for a stream of\n"
-     "records of equal size on standard output"},
+     "folder for a file of each variant, 000000.rle and so on (of several meshes: for\n"
+     "a folder of each), or - for a stream of records of equal size on standard output"},
     {KEY_FORMAT, "format", "F",
      "of files: rle, raw, binvox, npy or nrrd [rle]; of a stream: bits, uint8 or\n"
      "float32 [bits]"},
@@ -39,8 +39,8 @@ const cli_option augment_options[] = {
     {KEY_SEED, "seed", "S", "of the random numbers, up to 2^63 - 1 [0]"},
     {KEY_EPOCH, "epoch", "E", "another epoch gives other variants [0]"},
     {KEY_MODEL, "model", "M",
-     "number of the model; seed, epoch and model number together determine the\n"
-     "variants [0]"},
+     "number of the model, or of the first of several; seed, epoch and model number\n"
+     "together determine the variants [0]"},
     {'r', "resolution", "N", "voxels along each axis, up to 4096 [64]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "a number for each voxel: how much of it is filled, from so many sub-voxels along\n"
@@ -247,6 +247,8 @@ static int check_format(cli_run *cli, augment_request *given) {
 
 static int check_conflicts(cli_run *cli, const augment_request *given) {
   const vxm_sampler_options *sampler = &given->sampler;
+  if (given->is_several && given->count == 0)
+    return cli_usage(cli, "-n 0 has no end, and the second mesh would never come; give -n or one mesh");
   if (given->first + given->count > (int64_t)UINT32_MAX + 1)
     return cli_usage(cli, "--first and -n go beyond variant 4294967295");
   if (sampler->fill && sampler->rotation != VXM_ROTATION_NONE)
@@ -272,9 +274,10 @@ int augment_read_arguments(cli_run *cli, augment_request *out) {
   while ((key = cli_next_option(cli, &value)) != CLI_END)
     if (key == CLI_STOP || read_option(cli, out, key, value) == CLI_STOP)
       return CLI_STOP;
-  if (cli->argument_count != 1)
-    return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
-  out->input = cli->arguments[0];
+  if (cli->argument_count < 1)
+    return cli_usage(cli, "a mesh is missing");
+  out->is_several = augment_has_several(cli);
+  out->input = out->is_several ? NULL : cli->arguments[0];
   if (!out->output)
     return cli_usage(cli, "-o DIR or -o - is missing");
   cli_reads(cli, out->rotations);
@@ -283,5 +286,5 @@ int augment_read_arguments(cli_run *cli, augment_request *out) {
   if (cli_check_names(cli) == CLI_STOP || cli_engine_check(cli, &out->engine) == CLI_STOP ||
       check_format(cli, out) == CLI_STOP || check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
-  return augment_is_stream(out) ? CLI_END : augment_check_folder(cli, out);
+  return augment_is_stream(out) || out->is_several ? CLI_END : augment_check_folder(cli, out);
 }

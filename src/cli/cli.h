@@ -309,6 +309,10 @@ bool cli_check_places(cli_run *cli);
 /** CLI_STOP if an argument is a folder where the command takes files (folder.c); among many it is left alone.
  */
 int cli_check_folders(cli_run *cli);
+/** All extensions of meshes that this build reads, ended by NULL, which is what there is without memory, too.
+ */
+const char **cli_mesh_extensions(void);
+void cli_mesh_extensions_free(const char **extensions);
 /** The one rule for what is there already: CLI_STOP if a mesh would be written in place of a file, which may
  * be the mesh that all else is made of. Grids, pictures and reports replace what was there. */
 int cli_check_surface_file(cli_run *cli, const char *path, const char *format, bool is_forced);

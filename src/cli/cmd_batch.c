@@ -43,27 +43,6 @@ static batch_limits limits_of(const cli_run *cli, const batch_wish *wish) {
 
 /* ---- Inputs ---- */
 
-/** All extensions of meshes that this build reads, ended by NULL; to be freed, the list's first word too. */
-static const char **mesh_extensions(void) {
-  enum { MOST = 64 };
-  vxm_reading_info readers = VXM_READING_INFO_INIT;
-  const char **list = calloc(MOST + 1, sizeof *list);
-  char *text = NULL;
-  vxm_error error = VXM_ERROR_INIT;
-  vxm_reading_find(&readers, &error);
-  if (!list || asprintf(&text, "off obj stl ply %s %s", readers.assimp ? readers.assimp_formats : "",
-                        readers.occt ? readers.occt_formats : "") < 0) {
-    free(list);
-    return NULL;
-  }
-  int count = 0;
-  char *rest = text;
-  for (char *word; count < MOST && (word = strsep(&rest, " "));)
-    if (*word)
-      list[count++] = word;
-  return list;
-}
-
 static bool make_folder(const char *path, batch_error *error) {
   if (mkdir(path, 0777) == 0 || errno == EEXIST)
     return true;
@@ -176,7 +155,7 @@ static int run_inputs(cli_run *cli, const batch_wish *wish, batch_maker *maker) 
   batch_error error;
   batch_manifest manifest;
   batch_zygote zygote;
-  const char **extensions = mesh_extensions();
+  const char **extensions = cli_mesh_extensions();
   batch_inputs inputs = {cli->arguments, cli->argument_count, extensions, wish->output};
   int status = CLI_FAILED;
   allow_descriptors();
@@ -188,8 +167,7 @@ static int run_inputs(cli_run *cli, const batch_wish *wish, batch_maker *maker) 
     status = fail(cli, &error);
   batch_zygote_end(&zygote);
   batch_manifest_free(&manifest);
-  free((char *)(uintptr_t)extensions[0]);
-  free(extensions);
+  cli_mesh_extensions_free(extensions);
   return status;
 }
 

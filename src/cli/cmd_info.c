@@ -36,7 +36,7 @@ static json_t *describe_json(const cli_run *cli, const description *d) {
   cli_intersections_json(object, d->found.intersections);
   if (d->found.list)
     json_object_set(object, "defects", d->found.list);
-  json_object_set(object, "warnings", cli->warnings);
+  json_object_set_new(object, "warnings", json_copy(cli->warnings));
   return object;
 }
 

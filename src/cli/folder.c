@@ -24,6 +24,31 @@ typedef struct content {
   char example[NAME_SIZE]; /**< the first file, by name, of the kind that most are of */
 } content;
 
+const char **cli_mesh_extensions(void) {
+  enum { MOST = 64 };
+  vxm_reading_info readers = VXM_READING_INFO_INIT;
+  const char **list = calloc(MOST + 1, sizeof *list);
+  char *text = NULL;
+  vxm_reading_find(&readers, NULL);
+  if (!list || asprintf(&text, "off obj stl ply %s %s", readers.assimp ? readers.assimp_formats : "",
+                        readers.occt ? readers.occt_formats : "") < 0) {
+    free(list);
+    return NULL;
+  }
+  int count = 0;
+  char *rest = text;
+  for (char *word; count < MOST && (word = strsep(&rest, " "));)
+    if (*word)
+      list[count++] = word;
+  return list;
+}
+
+void cli_mesh_extensions_free(const char **list) {
+  if (list)
+    free((char *)(uintptr_t)list[0]); /* all of them are words of one text */
+  free(list);
+}
+
 static bool is_folder(const char *path) {
   struct stat info;
   return strcmp(path, "-") != 0 && stat(path, &info) == 0 && S_ISDIR(info.st_mode);

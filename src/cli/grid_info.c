@@ -311,7 +311,7 @@ static json_t *describe_json(const cli_run *cli, const facts *f) {
     json_object_set_new(object, "set_within", box_json(f));
   if (f->counts)
     json_object_set_new(object, "labels", labels_json(f));
-  json_object_set(object, "warnings", cli->warnings);
+  json_object_set_new(object, "warnings", json_copy(cli->warnings));
   return object;
 }
 

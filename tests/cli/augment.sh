@@ -37,6 +37,35 @@ for option in '--format rle' '--mode surface' '--thin keep' '-r 1025'; do run "v
 run 'voxmend augment in/l_prism.off -o shares -n 1 --coverage 3'
 run 'voxmend augment in/l_prism.off -o json -n 1 --json | timeless | sed -E "/peak_bytes|file_bytes/s/[0-9]+/N/"'
 
+say "# several meshes: folders, or one stream"
+mkdir -p set/chair/train set/table/test
+cp in/l_prism.off set/chair/train/a.off
+cp in/cube.off set/chair/train/b.off
+cp in/torus.off set/table/test/c.off
+echo 'OFF 1' >set/table/test/d.off
+echo note >set/readme.md
+run 'voxmend augment set -o many -n 2 $all --model 7 | timeless; find many -type f | LC_ALL=C sort; cat many/models.tsv'
+run 'for m in chair/train/a:7 chair/train/b:8 table/test/c:9; do voxmend augment set/${m%:*}.off -o one -n 2 $all --model ${m#*:} -q; for i in 0 1; do cmp one/00000$i.rle many/${m%:*}/00000$i.rle && echo equal; done; done'
+run 'voxmend augment set -o new -n 2 -r 8 --coverage 2 -q; find new -type f | LC_ALL=C sort'
+run 'voxmend augment set/chair/train/a.off set/table/test/c.off -o - -n 3 $all --model 1 -q >m.bin; wc -c <a.bin; head -c 64 m.bin | od -A d -t u4 | sed -n 3p; for i in 0 2 3 5; do tail -c +$((65 + i * 4112)) m.bin | head -c 12 | od -A n -t u4; done'
+run 'voxmend augment set/table/test/c.off -o - -n 3 $all --model 2 -q | tail -c +65 >b.bin; tail -c +$((65 + 3 * 4112)) m.bin | cmp - b.bin && echo equal'
+run 'printf "set/chair/train/a.off\nset/table/test/c.off\n" >list.txt; for t in 1 2; do voxmend augment list.txt -o - -n 3 $all --model 1 -q --threads $t | cmp - m.bin && echo equal; done'
+printf 'path,class,split\nset/chair/train/b.off,box,val\n' >table.csv
+run 'voxmend augment table.csv -o listed -n 1 -r 8 -q --json | timeless | sed -E "/_bytes/s/[0-9]+/N/"; cat listed/models.tsv'
+run 'voxmend augment set -o - -n 2 -r 8 -q | wc -c'
+cp set/table/test/d.off e.off
+run 'voxmend augment set/table/test/d.off e.off -o none'
+run 'ls -d none'
+run 'voxmend augment "set/*/train/?.off" -o found -n 1 -r 8 -q; find found -type f | LC_ALL=C sort'
+run 'voxmend augment set -o - -n 0'
+run 'voxmend augment set -o x --model 4294967295'
+run 'voxmend augment nothing.txt -o x'
+printf 'path,options\nin/cube.off,-r 8\n' >options.csv
+run 'voxmend augment options.csv -o x'
+tar cf set.tar set
+run 'voxmend augment set.tar -o x'
+run 'mkdir bare; voxmend augment bare -o x'
+
 say "# each augmentation"
 printf '0 -1 0 1 0 0 0 0 1\n1,0,0, 0,0,-1, 0,1,0\n' >turns.txt
 for option in '--rotate none' '--rotate x' '--rotate z' '--rotate 1,2,-2' '--rotate turns.txt' '--scale 0.3' '--displace 0.02' \
@@ -67,7 +96,6 @@ printf '1 0 0 0 1 0 0 0\n' >short.txt
 printf '1 0 0 0 1 0 0 0 one\n' >word.txt
 printf '1 0.5 0 0 1 0 0 0 1\n' >shear.txt
 run 'for f in short word shear; do voxmend augment in/l_prism.off -o x --rotate $f.txt; done'
-run 'voxmend augment in/cube.off in/torus.off -o x'
 run 'voxmend augment missing.off -o x'
 run 'voxmend augment in/l_prism.off -o - -n 3 -r 16 -q >/dev/full'
 run 'voxmend augment in/l_prism.off -o x -n 3 --memlimit 20K'

@@ -22,6 +22,7 @@ run 'voxmend info --strict cut.off'
 run 'voxmend info --strict -q cut.off'
 run 'voxmend info -v index.obj'
 run 'voxmend info --json --strict index.obj'
+run 'voxmend info --json -q index.obj in/cube.off | grep -A 2 warnings' # each has its own
 run 'voxmend info stump.off'
 run 'voxmend info junk.stl'
 run 'voxmend info empty.off'

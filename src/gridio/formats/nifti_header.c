@@ -2,6 +2,7 @@
 #include "gridio/formats/nifti_header.h"
 #include "base/endian.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <locale.h>
 #include <math.h>
@@ -416,10 +417,20 @@ static size_t put_extension(unsigned char *to, size_t room, const vxm_space *spa
   return size;
 }
 
+/** Whether the place can be told in 32-bit floats, as the first version does. */
+static bool is_narrow(const vxm_space *space) {
+  for (int a = 0; a < 3; a++) {
+    double size = space->voxel_size[a];
+    if (size < FLT_MIN || size > FLT_MAX || fabs(space->origin[a] + size / 2) > FLT_MAX)
+      return false;
+  }
+  return true;
+}
+
 vxm_status vxm_nifti_header_make(vxm_nifti_block *out, const vxm_space *space, const vxm_values_spec *values,
                                  vxm_error *error) {
   const int64_t *n = space->dims;
-  bool is_wide = n[0] > INT16_MAX || n[1] > INT16_MAX || n[2] > INT16_MAX;
+  bool is_wide = n[0] > INT16_MAX || n[1] > INT16_MAX || n[2] > INT16_MAX || !is_narrow(space);
   const places *p = is_wide ? &version_2 : &version_1;
   size_t size = is_wide ? VXM_NIFTI_2 : VXM_NIFTI_1;
   unsigned char *bytes = out->bytes;
