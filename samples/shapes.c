@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "shapes.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -60,12 +61,28 @@ static void add_quad(shape *s, int64_t a, int64_t b, int64_t c, int64_t d) {
 
 /* ---- Bodies ---- */
 
+#if LDBL_MANT_DIG >= 113
+typedef long double quad;
+#else
+__extension__ typedef __float128 quad;
+#endif
+
+/** The sum of x^n / n! over every second n from `first` on, with signs in turn. */
+static double sum_series(double x, int first) {
+  quad square = (quad)x * (quad)x, term = first == 0 ? (quad)1 : (quad)x, sum = term;
+  for (int n = first + 2; n < 80; n += 2) {
+    term = -term * square / (quad)(n * (n - 1));
+    sum += term;
+  }
+  return (double)sum;
+}
+
 double shape_cosine(double angle) {
-  return (double)cosl((long double)angle);
+  return sum_series(angle, 0);
 }
 
 double shape_sine(double angle) {
-  return (double)sinl((long double)angle);
+  return sum_series(angle, 1);
 }
 
 shape shape_box(double x0, double y0, double z0, double x1, double y1, double z1) {
