@@ -38,8 +38,8 @@ static shape make_star_prism(void) {
   double corners[4 * STAR];
   for (int i = 0; i < 2 * STAR; i++) {
     double angle = 3.14159265358979323846 * i / STAR, radius = i % 2 ? 0.4 : 1;
-    corners[2 * i] = radius * cos(angle);
-    corners[2 * i + 1] = radius * sin(angle);
+    corners[2 * i] = radius * shape_cosine(angle);
+    corners[2 * i + 1] = radius * shape_sine(angle);
   }
   return shape_prism(2 * (size_t)STAR, corners, -0.3, 0.3);
 }
@@ -205,7 +205,8 @@ shape model_rocket(void) {
     shape_repeat_faces(&fin, true, i % 2 ? 1 : 0, 25);
     add(&rocket, fin);
     double angle = 45 + 90 * i, along = angle * 3.14159265358979323846 / 180;
-    shape tank = make_turned(5, booster, false, 20, 0.56 * cos(along), 0.56 * sin(along), -0.1);
+    shape tank =
+        make_turned(5, booster, false, 20, 0.56 * shape_cosine(along), 0.56 * shape_sine(along), -0.1);
     shape_crack(&tank, i % 2 ? 2e-8 : 0, 26 + (uint64_t)i);
     shape_reverse_faces(&tank, 0.3, 31 + (uint64_t)i);
     add(&rocket, tank);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "shapes.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -60,6 +61,30 @@ static void add_quad(shape *s, int64_t a, int64_t b, int64_t c, int64_t d) {
 
 /* ---- Bodies ---- */
 
+#if LDBL_MANT_DIG >= 113
+typedef long double quad;
+#else
+__extension__ typedef __float128 quad;
+#endif
+
+/** The sum of x^n / n! over every second n from `first` on, with signs in turn. */
+static double sum_series(double x, int first) {
+  quad square = (quad)x * (quad)x, term = first == 0 ? (quad)1 : (quad)x, sum = term;
+  for (int n = first + 2; n < 80; n += 2) {
+    term = -term * square / (quad)(n * (n - 1));
+    sum += term;
+  }
+  return (double)sum;
+}
+
+double shape_cosine(double angle) {
+  return sum_series(angle, 0);
+}
+
+double shape_sine(double angle) {
+  return sum_series(angle, 1);
+}
+
 shape shape_box(double x0, double y0, double z0, double x1, double y1, double z1) {
   return shape_prism(4, (double[]){x0, y0, x1, y0, x1, y1, x0, y1}, z0, z1);
 }
@@ -91,7 +116,7 @@ static int64_t *add_ring(shape *made, double r, double z, size_t segments) {
     ring[0] = shape_add_vertex(made, 0, 0, z);
   for (size_t s = 0; s < segments; s++) {
     double angle = 2 * pi * (double)s / (double)segments;
-    ring[s] = r == 0 ? ring[0] : shape_add_vertex(made, r * cos(angle), r * sin(angle), z);
+    ring[s] = r == 0 ? ring[0] : shape_add_vertex(made, r * shape_cosine(angle), r * shape_sine(angle), z);
   }
   return ring;
 }
@@ -145,16 +170,16 @@ void shape_half_circle(double *profile, size_t count, double radius) {
   for (size_t i = 0; i < count; i++) {
     double angle = pi * ((double)i / (double)(count - 1) - 0.5);
     bool pole = i == 0 || i + 1 == count;
-    profile[2 * i] = pole ? 0 : radius * cos(angle);
-    profile[2 * i + 1] = radius * sin(angle);
+    profile[2 * i] = pole ? 0 : radius * shape_cosine(angle);
+    profile[2 * i + 1] = radius * shape_sine(angle);
   }
 }
 
 void shape_circle(double *profile, size_t count, double centre, double radius) {
   for (size_t i = 0; i < count; i++) {
     double angle = 2 * pi * (double)i / (double)count;
-    profile[2 * i] = centre + radius * cos(angle);
-    profile[2 * i + 1] = radius * sin(angle);
+    profile[2 * i] = centre + radius * shape_cosine(angle);
+    profile[2 * i + 1] = radius * shape_sine(angle);
   }
 }
 
@@ -167,7 +192,7 @@ void shape_move(shape *s, double x, double y, double z) {
 }
 
 void shape_turn(shape *s, int axis, double degrees) {
-  double cosine = cos(degrees * pi / 180), sine = sin(degrees * pi / 180);
+  double cosine = shape_cosine(degrees * pi / 180), sine = shape_sine(degrees * pi / 180);
   int u = (axis + 1) % 3, v = (axis + 2) % 3;
   for (size_t i = 0; i < s->vertex_count; i++) {
     double *p = s->positions + 3 * i, a = p[u], b = p[v];

@@ -23,6 +23,11 @@ void shape_free(shape *s);
 int64_t shape_add_vertex(shape *s, double x, double y, double z);
 void shape_add_face(shape *s, size_t count, const int64_t *corners);
 
+/* Of angles of few turns, by series of 113 bits, rounded once: those of the C library differ from one to
+ * another in the last digit. */
+double shape_cosine(double angle);
+double shape_sine(double angle);
+
 /* ---- Closed bodies, their faces wound to point outward ---- */
 
 /** Six rectangles. */

@@ -65,6 +65,16 @@ static inline void vxm_store_f64(void *at, double value, bool swap) {
   memcpy(at, &bits, sizeof bits);
 }
 
+/** Turns the bytes of each of `count` numbers of `size` bytes round. */
+static inline void vxm_swap_each(unsigned char *bytes, size_t count, size_t size) {
+  for (size_t n = 0; n < count; n++, bytes += size)
+    for (size_t b = 0; b < size / 2; b++) {
+      unsigned char kept = bytes[b];
+      bytes[b] = bytes[size - 1 - b];
+      bytes[size - 1 - b] = kept;
+    }
+}
+
 /* ---- Little-endian files ---- */
 
 static inline uint64_t vxm_le64(uint64_t word) {
@@ -89,9 +99,14 @@ static inline uint64_t vxm_load_le64(const unsigned char *bytes) {
   return vxm_le64(word);
 }
 
-static inline void vxm_store_le32(unsigned char *bytes, uint32_t word) {
-  for (int b = 0; b < 4; b++)
+/** The lowest 1 to 8 bytes of a word. */
+static inline void vxm_store_le(unsigned char *bytes, uint64_t word, size_t count) {
+  for (size_t b = 0; b < count; b++)
     bytes[b] = (unsigned char)(word >> 8 * b);
+}
+
+static inline void vxm_store_le32(unsigned char *bytes, uint32_t word) {
+  vxm_store_le(bytes, word, 4);
 }
 
 static inline void vxm_store_le64(unsigned char *bytes, uint64_t word) {

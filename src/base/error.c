@@ -104,9 +104,12 @@ static void VXM_PRINTF(4, 5)
 
 vxm_status vxm_fail_errno(vxm_error *error, const char *file, const char *what) {
   int saved = errno;
-  char reason[128];
-  /* The GNU strerror_r may return a static text instead of filling the buffer. */
+  char reason[128] = "";
+#ifdef __GLIBC__ /* whose own may return a static text instead of filling the buffer */
   const char *text = strerror_r(saved, reason, sizeof reason);
+#else
+  const char *text = strerror_r(saved, reason, sizeof reason) == 0 ? reason : "unknown error";
+#endif
   fail_system(error, file, saved, "%s: %s", what, text);
   errno = saved;
   return VXM_ERROR_IO;

@@ -2,6 +2,7 @@
 #include "base/module.h"
 
 #include <dlfcn.h>
+#include <elf.h>
 #include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,21 +24,60 @@ static bool found_in(char path[VXM_MODULE_PATH_MAX], const char *directory, size
   return written > 0 && written < VXM_MODULE_PATH_MAX && access(path, R_OK) == 0;
 }
 
+/** What this code lies in, a library or a program. */
+typedef struct code_file {
+  size_t seen;         /**< files of the process that were looked at */
+  bool is_program;     /**< it is the first of them */
+  bool needs_loader;   /**< the program names one */
+  const char *library; /**< the loader's path; NULL if it is not known */
+} code_file;
+
+static bool holds(const struct dl_phdr_info *file, uintptr_t address) {
+  for (size_t p = 0; p < file->dlpi_phnum; p++) {
+    const ElfW(Phdr) *part = &file->dlpi_phdr[p];
+    uintptr_t begin = (uintptr_t)file->dlpi_addr + (uintptr_t)part->p_vaddr;
+    if (part->p_type == PT_LOAD && address >= begin && address - begin < part->p_memsz)
+      return true;
+  }
+  return false;
+}
+
+static int look_at_file(struct dl_phdr_info *file, size_t size, void *payload) {
+  code_file *s = payload;
+  (void)size;
+  bool is_program = s->seen++ == 0;
+  for (size_t p = 0; is_program && p < file->dlpi_phnum; p++)
+    s->needs_loader |= file->dlpi_phdr[p].p_type == PT_INTERP;
+  if (!holds(file, (uintptr_t)&vxm_module_open))
+    return 0;
+  s->is_program = is_program;
+  s->library = is_program ? NULL : file->dlpi_name;
+  return 1;
+}
+
+static code_file look_at_self(void) {
+  code_file s = {0};
+  dl_iterate_phdr(look_at_file, &s);
+  return s;
+}
+
+/** A static program has no loader, with which to open anything. */
+static bool is_static(void) {
+  code_file s = look_at_self();
+  return s.is_program && !s.needs_loader;
+}
+
 /**
- * The file that this code lies in, a library or a program. Only what is beyond doubt is believed: the
- * loader's path of a library if it is absolute, and what the kernel says of the program, never argv[0].
+ * The file that this code lies in. Only what is beyond doubt is believed: the loader's path of a library if
+ * it is absolute, and what the kernel says of the program, never argv[0].
  */
 static bool find_self(char path[VXM_MODULE_PATH_MAX]) {
-  Dl_info info;
-  struct link_map *map = NULL;
-  void *here = (void *)(uintptr_t)&vxm_module_open;
-  if (dladdr1(here, &info, (void **)&map, RTLD_DL_LINKMAP) == 0 || map == NULL)
-    return false;
-  ssize_t length;
-  if (map->l_name[0] == '\0') /* the program itself */
+  code_file s = look_at_self();
+  ssize_t length = 0;
+  if (s.is_program)
     length = readlink("/proc/self/exe", path, VXM_MODULE_PATH_MAX - 1);
-  else
-    length = snprintf(path, VXM_MODULE_PATH_MAX, "%s", map->l_name);
+  else if (s.library)
+    length = snprintf(path, VXM_MODULE_PATH_MAX, "%s", s.library);
   if (length <= 0 || length >= VXM_MODULE_PATH_MAX - 1 || path[0] != '/')
     return false;
   path[length] = '\0';
@@ -87,6 +127,12 @@ static vxm_status missing(const vxm_module_need *need, vxm_error *error) {
 }
 
 vxm_status vxm_module_find(char path[VXM_MODULE_PATH_MAX], const vxm_module_need *need, vxm_error *error) {
+  if (is_static())
+    return vxm_fail(
+        error, VXM_ERROR_UNAVAILABLE,
+        "%s needs voxmend's module \"%s\", and this is a static program, which cannot open modules: "
+        "use one that is linked with the C library's loader",
+        need->purpose, need->name);
   const char *chosen = secure_getenv("VOXMEND_MODULES");
   if (chosen != NULL && chosen[0] != '/')
     return vxm_fail(

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/new_file.h"
 #include "base/new_mode.h"
+#include "base/system_calls.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "base/new_folder.h"
+#include "base/system_calls.h"
 
 #include <dirent.h>
 #include <errno.h>

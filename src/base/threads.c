@@ -33,6 +33,8 @@ enum { SPINS = 1000 /**< some tens of microseconds */ };
 static inline void pause_a_moment(void) {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  __asm__ __volatile__("isb"); /* about as long as the pause of x86, which yield is not */
 #endif
 }
 

@@ -10,7 +10,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-static void limit(__rlimit_resource_t what, uint64_t value) {
+static void limit(unsigned what, uint64_t value) {
   struct rlimit r;
   if (getrlimit(what, &r) != 0 || value > r.rlim_max)
     return;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/inputs.h"
 #include "batch/archive.h"
+#include "batch/tree.h"
 
 #include <errno.h>
-#include <fts.h>
 #include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,57 +73,56 @@ static bool add_archive(batch_manifest *out, const batch_inputs *inputs, const c
 
 /* ---- Folders ---- */
 
-/** A file below a folder: a mesh, an archive, or something else. Sockets, pipes and devices are not looked
- * at. */
-static bool add_entry(batch_manifest *out, const batch_inputs *inputs, const FTSENT *entry, const char *id,
-                      batch_error *error) {
-  const struct stat *info = entry->fts_statp;
-  if (!S_ISREG(info->st_mode) ||
-      (!batch_is_mesh(inputs, entry->fts_name) && !batch_is_archive(entry->fts_name))) {
-    batch_pass_over(out, entry->fts_name);
+/** Going through a folder. */
+typedef struct search {
+  batch_manifest *out;
+  const batch_inputs *inputs;
+  size_t prefix; /**< letters of a path that its id does without */
+  bool has_except;
+  struct stat except;
+  batch_error *error;
+  bool has_failed;
+} search;
+
+/** A file below a folder: a mesh, an archive, or something else. */
+static bool add_entry(const search *s, const batch_tree_entry *entry) {
+  const char *id = entry->path + s->prefix;
+  bool is_archive = batch_is_archive(entry->name);
+  if (!is_archive && !batch_is_mesh(s->inputs, entry->name)) {
+    batch_pass_over(s->out, entry->name);
     return true;
   }
   batch_error damaged; /* one archive of many: it is told of as a mesh that cannot be read would be */
-  return batch_is_archive(entry->fts_name) && add_archive(out, inputs, id, entry->fts_path, info, &damaged)
+  return is_archive && add_archive(s->out, s->inputs, id, entry->path, entry->info, &damaged)
              ? true
-             : add_file(out, id, entry->fts_path, info, error);
+             : add_file(s->out, id, entry->path, entry->info, s->error);
 }
 
-/** Links are followed; those that lead back to where they are, or to nothing, are passed over. */
-static bool walk(batch_manifest *out, const batch_inputs *inputs, FTS *tree, size_t prefix,
-                 batch_error *error) {
-  struct stat except;
-  bool has_except = inputs->except && stat(inputs->except, &except) == 0;
-  FTSENT *entry;
-  while ((entry = fts_read(tree))) {
-    bool is_hidden = entry->fts_level > 0 && entry->fts_name[0] == '.';
-    switch (entry->fts_info) {
-    case FTS_D:
-      if (is_hidden || (has_except && entry->fts_statp->st_dev == except.st_dev &&
-                        entry->fts_statp->st_ino == except.st_ino))
-        fts_set(tree, entry, FTS_SKIP);
-      break;
-    case FTS_F:
-      if (!is_hidden && !add_entry(out, inputs, entry, entry->fts_path + prefix, error))
-        return false;
-      break;
-    case FTS_DNR:
-      errno = entry->fts_errno;
-      return batch_fail_errno(error, "%s: cannot read the folder", entry->fts_path);
-    case FTS_ERR:
-      errno = entry->fts_errno;
-      return batch_fail_errno(error, "%s: cannot go through it", entry->fts_path);
-    case FTS_DC:
-    case FTS_NS:
-    case FTS_SLNONE:
-    case FTS_DEFAULT:
-      batch_pass_over(out, entry->fts_name);
-      break;
-    default:
-      break;
-    }
+/** Links are followed; those that lead back to where they are, or to nothing, are passed over, as are
+ * sockets, pipes and devices. */
+static batch_tree_step visit(const batch_tree_entry *entry, void *payload) {
+  search *s = payload;
+  bool is_hidden = entry->depth > 0 && entry->name[0] == '.';
+  switch (entry->kind) {
+  case BATCH_TREE_FOLDER:
+    return is_hidden || (s->has_except && entry->info->st_dev == s->except.st_dev &&
+                         entry->info->st_ino == s->except.st_ino)
+               ? BATCH_TREE_SKIP
+               : BATCH_TREE_ON;
+  case BATCH_TREE_FILE:
+    s->has_failed = !is_hidden && !add_entry(s, entry);
+    break;
+  case BATCH_TREE_CLOSED:
+    s->has_failed = true;
+    batch_fail_errno(s->error, "%s: cannot read the folder", entry->path);
+    break;
+  case BATCH_TREE_OTHER:
+    batch_pass_over(s->out, entry->name);
+    break;
+  case BATCH_TREE_LEFT:
+    break;
   }
-  return errno == 0 || batch_fail_errno(error, "cannot go through the folders");
+  return s->has_failed ? BATCH_TREE_STOP : BATCH_TREE_ON;
 }
 
 static bool add_folder(batch_manifest *out, const batch_inputs *inputs, const char *name,
@@ -131,18 +130,14 @@ static bool add_folder(batch_manifest *out, const batch_inputs *inputs, const ch
   size_t length = strlen(name);
   while (length > 1 && name[length - 1] == '/')
     length--;
-  char *path = strndup(name, length);
-  char *const roots[] = {path, NULL};
-  FTS *tree = path ? fts_open(roots, FTS_LOGICAL | FTS_NOCHDIR, NULL) : NULL;
-  errno = tree ? 0 : errno;
+  search s = {.out = out, .inputs = inputs, .error = error};
   /* below one folder alone names need not tell which */
-  bool good =
-      tree ? walk(out, inputs, tree, inputs->count == 1 ? length + (name[length - 1] != '/') : 0, error)
-           : batch_fail_errno(error, "%s: cannot read the folder", name);
-  if (tree)
-    fts_close(tree);
+  s.prefix = inputs->count == 1 ? length + (name[length - 1] != '/') : 0;
+  s.has_except = inputs->except && stat(inputs->except, &s.except) == 0;
+  char *path = strndup(name, length);
+  bool good = path && batch_tree_walk(path, true, visit, &s);
   free(path);
-  return good;
+  return good || (s.has_failed ? false : batch_fail_errno(error, "%s: cannot go through it", name));
 }
 
 /* ---- What is named ---- */
@@ -173,6 +168,10 @@ static bool add_named(batch_manifest *out, const batch_inputs *inputs, const cha
                        error);
   return add_file(out, name + prefix, name, &info, error);
 }
+
+#ifndef GLOB_BRACE /* without {a,b}, as in musl */
+#define GLOB_BRACE 0
+#endif
 
 /** A pattern that the shell has left alone, since it stood in quotes: too many names for a command line. */
 static bool add_pattern(batch_manifest *out, const batch_inputs *inputs, const char *pattern,

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/outputs.h"
 #include "batch/digest.h"
+#include "batch/tree.h"
 
 #include <dirent.h>
 #include <errno.h>
-#include <fts.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,16 +93,17 @@ bool batch_output_is_there(const char *output, const json_t *described) {
 
 /* ---- Removing ---- */
 
+static batch_tree_step remove_entry(const batch_tree_entry *entry, void *payload) {
+  (void)payload;
+  if (entry->kind == BATCH_TREE_LEFT || entry->kind == BATCH_TREE_CLOSED)
+    rmdir(entry->path);
+  else if (entry->kind != BATCH_TREE_FOLDER)
+    unlink(entry->path);
+  return BATCH_TREE_ON;
+}
+
 void batch_folder_remove(const char *path) {
-  char *const roots[] = {(char *)(uintptr_t)path, NULL};
-  FTS *tree = fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
-  for (FTSENT *entry; tree && (entry = fts_read(tree));)
-    if (entry->fts_info == FTS_DP)
-      rmdir(entry->fts_path);
-    else if (entry->fts_info != FTS_D)
-      unlink(entry->fts_path);
-  if (tree)
-    fts_close(tree);
+  batch_tree_walk(path, false, remove_entry, NULL);
 }
 
 void batch_output_remove(const char *output, const char *name) {

@@ -4,10 +4,10 @@
 #include "batch/outputs.h"
 #include "batch/plan.h"
 #include "batch/state.h"
+#include "batch/tree.h"
 
 #include <errno.h>
 #include <fnmatch.h>
-#include <fts.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -90,15 +90,12 @@ static bool verify_journals(verifying *v, int shards, batch_error *error) {
 }
 
 /** What a killed process may leave between two steps; the next that writes there takes it away. */
-static void find_strangers(const verifying *v) {
-  char *const roots[] = {(char *)(uintptr_t)v->output, NULL};
-  FTS *tree = fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
-  for (FTSENT *entry; tree && (entry = fts_read(tree));)
-    if (entry->fts_info == FTS_F && fnmatch("voxmend-*-*.tmp", entry->fts_name, 0) == 0)
-      report(v, &v->found->strangers, entry->fts_path + strlen(v->output) + 1,
-             "was left behind by a run that was ended");
-  if (tree)
-    fts_close(tree);
+static batch_tree_step find_stranger(const batch_tree_entry *entry, void *payload) {
+  const verifying *v = payload;
+  if (entry->kind == BATCH_TREE_FILE && fnmatch("voxmend-*-*.tmp", entry->name, 0) == 0)
+    report(v, &v->found->strangers, entry->path + strlen(v->output) + 1,
+           "was left behind by a run that was ended");
+  return BATCH_TREE_ON;
 }
 
 bool batch_verify(batch_verification *out, const char *output, void (*tell)(const char *line, void *payload),
@@ -113,7 +110,7 @@ bool batch_verify(batch_verification *out, const char *output, void (*tell)(cons
   v.last = calloc((size_t)state.manifest.count + 1, sizeof *v.last);
   bool good =
       v.last ? verify_journals(&v, state.shards, error) : batch_fail(error, "out of memory: free some");
-  find_strangers(&v);
+  batch_tree_walk(output, false, find_stranger, &v);
   batch_state_count(&state, counts);
   out->unfinished = counts[BATCH_PENDING];
   out->damaged = state.damaged;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "export/field.h"
 #include "base/clock.h"
+#include "base/exact_math.h"
 #include "grid/bit_transpose.h"
 #include "gridio/common/values_writer.h"
 #include "gridio/gridio.h"
@@ -125,10 +126,10 @@ vxm_status vxm_field_write_coverage(vxm_coverage_report *report, vxm_model *mode
 /** Without a band there is no number for what lies beyond: that of the diagonal stands for it. */
 static float distance_beyond(const vxm_distance_options *options, const vxm_space *space) {
   float limit = vxm_distance_limit(options, space);
-  double square = 0;
+  double side[3];
   for (int a = 0; a < 3; a++)
-    square += pow((double)space->dims[a] * space->voxel_size[a], 2);
-  return isinf(limit) ? (float)sqrt(square) : limit;
+    side[a] = (double)space->dims[a] * space->voxel_size[a];
+  return isinf(limit) ? (float)vxm_length3(side[0], side[1], side[2]) : limit;
 }
 
 static vxm_status request_distance(request *out, const vxm_space *space, const char *path,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "grid/space.h"
+#include "base/exact_math.h"
 #include "grid/bitgrid.h"
 #include "mesh/unit_scale.h"
 
@@ -22,7 +23,7 @@ static double longest(const box *b) {
 }
 
 static double diagonal(const box *b) {
-  return hypot(hypot(extent(b, 0), extent(b, 1)), extent(b, 2));
+  return vxm_length3(extent(b, 0), extent(b, 1), extent(b, 2));
 }
 
 /** Box of the finite vertices that faces use. */

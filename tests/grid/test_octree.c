@@ -2,6 +2,7 @@
 /** Octrees against dense grids: voxel by voxel, in windows of all layouts, and by set operations. */
 #include "../gridio/grids.h"
 
+#include "base/endian.h"
 #include "grid/octree_build.h"
 
 static const vxm_layout layouts[6] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
@@ -315,7 +316,8 @@ static void check_coords(const vxm_grid *grid, const char *path) {
         if (vxm_grid_get(grid, i, j, k)) {
           int32_t row[3];
           assert_true(at + 12 <= size);
-          memcpy(row, bytes + at, sizeof row);
+          for (int a = 0; a < 3; a++)
+            row[a] = (int32_t)vxm_load_u32(bytes + at + 4 * a, vxm_must_swap(false));
           assert_true(row[0] == i && row[1] == j && row[2] == k);
           at += 12;
         }

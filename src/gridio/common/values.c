@@ -237,16 +237,6 @@ void vxm_field_doubles(double *out, const vxm_field *field, size_t begin, size_t
 
 /* ---- Order ---- */
 
-/** Turns the bytes of each number round. */
-static void swap_bytes(unsigned char *bytes, size_t count, size_t size) {
-  for (size_t n = 0; n < count; n++, bytes += size)
-    for (size_t b = 0; b < size / 2; b++) {
-      unsigned char byte = bytes[b];
-      bytes[b] = bytes[size - 1 - b];
-      bytes[size - 1 - b] = byte;
-    }
-}
-
 /** One way through a field: slices across z on one side, all of it on the other. */
 typedef struct turning {
   const vxm_field *field;
@@ -297,7 +287,7 @@ static void turn_row(size_t task, int worker, void *payload) {
         if (t->is_put) {
           copy_step(t->to + in_field, size, t->from + in_file, step, count, size);
           if (t->is_swapped)
-            swap_bytes(t->to + in_field, count * size / scalar, scalar);
+            vxm_swap_each(t->to + in_field, count * size / scalar, scalar);
         } else
           copy_step(t->to + in_file, step, t->from + in_field, size, count, size);
       }
@@ -322,7 +312,7 @@ static void copy_slice(size_t task, int worker, void *payload) {
              (size_t)(t->field->space.dims[1] * t->field->space.dims[2]) * vxm_field_voxel_bytes(t->field);
   memcpy(t->to + task * bytes, t->from + task * bytes, bytes);
   if (t->is_swapped)
-    swap_bytes(t->to + task * bytes, bytes / scalar, scalar);
+    vxm_swap_each(t->to + task * bytes, bytes / scalar, scalar);
 }
 
 void vxm_field_put_all(vxm_field *field, const unsigned char *data, bool is_swapped) {

@@ -95,16 +95,39 @@ vxm_status vxm_values_writer_put(vxm_values_writer *w, const void *values, int64
   return has_failed(w) ? give_up(w, error) : status;
 }
 
+static void put_little(vxm_values_writer *w, const void *bytes, size_t size) {
+  if (w->kind->put_bytes)
+    w->kind->put_bytes(w, bytes, size);
+  else
+    vxm_output_write(w->output, bytes, size);
+}
+
+void vxm_values_writer_pass(vxm_values_writer *w, const void *values, size_t size) {
+  enum { ROOM = 4096 };
+  unsigned char room[ROOM];
+  const size_t each = vxm_scalar_bytes(w->values.scalar);
+  const unsigned char *from = values;
+  if (each == 1 || !vxm_must_swap(false)) {
+    put_little(w, values, size);
+    return;
+  }
+  while (size > 0) {
+    size_t some = size < ROOM ? size : ROOM;
+    memcpy(room, from, some);
+    vxm_swap_each(room, some / each, each);
+    put_little(w, room, some);
+    from += some;
+    size -= some;
+  }
+}
+
 vxm_status vxm_values_writer_put_bytes(vxm_values_writer *w, const void *bytes, size_t size,
                                        vxm_error *error) {
   const size_t piece = (size_t)1 << 24; /* so that a full disk is noticed */
   const char *from = bytes;
   while (size > 0 && !has_failed(w)) {
     size_t some = size < piece ? size : piece;
-    if (w->kind->put_bytes)
-      w->kind->put_bytes(w, from, some);
-    else
-      vxm_output_write(w->output, from, some);
+    vxm_values_writer_pass(w, from, some);
     from += some;
     size -= some;
   }

@@ -53,12 +53,12 @@ typedef struct vxm_values_writer_kind {
   /** What is held beside the slices, about; NULL = nothing. */
   uint64_t (*held_bytes)(const vxm_space *space, const vxm_values_spec *values);
   vxm_status (*begin)(vxm_values_writer *writer, vxm_error *error);
-  /** Slices begin to end - 1; NULL = they are written as they are. A failed write may be left to the output.
-   */
+  /** Slices begin to end - 1, in the machine's byte order; NULL = they are written as they are, the lowest
+   * byte first. A failed write may be left to the output. */
   vxm_status (*put)(vxm_values_writer *writer, const void *values, int64_t begin, int64_t end,
                     vxm_error *error);
-  /** Values in their order, any number of bytes of them; NULL, without `put`, = they are written as they are.
-   */
+  /** Values in their order, any number of them, each with its lowest byte first on machines of either byte
+   * order; NULL, without `put`, = they are written so. */
   void (*put_bytes)(vxm_values_writer *writer, const void *bytes, size_t size);
   /** What is left after the last slice; NULL = nothing. With files of its own it gives them their names. */
   vxm_status (*end)(vxm_values_writer *writer, vxm_error *error);
@@ -85,6 +85,8 @@ vxm_status vxm_values_writer_open(vxm_values_writer *out, const vxm_values_write
  * After a failure only vxm_values_writer_abort is allowed. */
 vxm_status vxm_values_writer_put(vxm_values_writer *writer, const void *values, int64_t begin, int64_t end,
                                  vxm_error *error);
+/** Hands values to `put_bytes`, or to the output, with the lowest byte of each first. */
+void vxm_values_writer_pass(vxm_values_writer *writer, const void *values, size_t size);
 /** Takes the next bytes of values, which may be parts of slices, where the kind has no `put`. */
 vxm_status vxm_values_writer_put_bytes(vxm_values_writer *writer, const void *bytes, size_t size,
                                        vxm_error *error);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/nifti_header.h"
+#include "base/endian.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -339,25 +340,17 @@ void vxm_nifti_extension_read(vxm_nifti_header *h, const unsigned char *data, si
   freelocale(c);
 }
 
-/* ---- Writing ---- */
+/* ---- Writing: little-endian ---- */
 
 static void put_int(unsigned char *to, int64_t value, int size) {
-  int16_t half = (int16_t)value;
-  int32_t word = (int32_t)value;
-  if (size == 2)
-    memcpy(to, &half, sizeof half);
-  else if (size == 4)
-    memcpy(to, &word, sizeof word);
-  else
-    memcpy(to, &value, sizeof value);
+  vxm_store_le(to, (uint64_t)value, (size_t)size);
 }
 
 static void put_real(unsigned char *to, double value, bool is_wide) {
-  float narrow = (float)value;
   if (is_wide)
-    memcpy(to, &value, sizeof value);
+    vxm_store_double(to, value);
   else
-    memcpy(to, &narrow, sizeof narrow);
+    vxm_store_f32(to, (float)value, vxm_must_swap(false));
 }
 
 static const char *name_of(const vxm_values_spec *values) {

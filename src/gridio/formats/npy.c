@@ -191,7 +191,7 @@ static const vxm_grid_writer_kind writer_kind = {
     .file_bytes = vxm_space_voxels,
 };
 
-/* ---- Writing numbers: as they lie ---- */
+/* ---- Writing numbers: as they lie, little-endian ---- */
 
 static const vxm_sidecar_text color_description = {"voxmend colors", "z fastest, then y, then x", NULL};
 
@@ -199,8 +199,7 @@ static vxm_status begin_values(vxm_values_writer *w, vxm_error *error) {
   (void)error;
   char type[8];
   size_t size = vxm_scalar_bytes(w->values.scalar);
-  char order = size == 1 ? '|' : vxm_le64(1) == 1 ? '<' : '>';
-  snprintf(type, sizeof type, "%c%c%zu", order, vxm_scalar_name(w->values.scalar)[0], size);
+  snprintf(type, sizeof type, "%c%c%zu", size == 1 ? '|' : '<', vxm_scalar_name(w->values.scalar)[0], size);
   if (w->values.channels == 4)
     vxm_npy_header_write_bytes(w->output, w->space.dims, 4);
   else

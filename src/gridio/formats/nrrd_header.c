@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/formats/nrrd_header.h"
-#include "base/endian.h"
 #include "base/number.h"
 #include "gridio/common/format.h"
 
@@ -507,7 +506,7 @@ vxm_status vxm_nrrd_header_write(vxm_output *output, const vxm_nrrd_values *valu
   vxm_output_printf(output, "kinds: %sdomain domain domain\ncenterings: %scell cell cell\n",
                     is_color ? "RGBA-color " : "", is_color ? "none " : "");
   if (vxm_scalar_bytes(values->scalar) > 1)
-    vxm_output_printf(output, "endian: %s\n", vxm_le64(1) == 1 ? "little" : "big");
+    vxm_output_printf(output, "endian: little\n");
   vxm_output_printf(output, "encoding: raw\n");
   write_numbers(output, c_locale, "space origin: (*,*,*)\n", first);
   vxm_output_printf(output, "%s:=", corner_key);

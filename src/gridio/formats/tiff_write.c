@@ -30,35 +30,22 @@ typedef struct directory {
   bool is_big;
 } directory;
 
-static void add_bytes(directory *d, const void *data, size_t size) {
-  memcpy(d->bytes + d->size, data, size);
+static void add_number(directory *d, uint64_t value, size_t size) {
+  vxm_store_le(d->bytes + d->size, value, size);
   d->size += size;
 }
 
 /** A number of the width of an offset. */
 static void add_offset(directory *d, uint64_t value) {
-  uint32_t word = (uint32_t)value;
-  if (d->is_big)
-    add_bytes(d, &value, sizeof value);
-  else
-    add_bytes(d, &word, sizeof word);
+  add_number(d, value, d->is_big ? 8 : 4);
 }
 
 /** A field with its one value, or the offset of several. */
 static void add_field(directory *d, uint16_t tag, uint16_t type, uint64_t count, uint64_t value) {
-  unsigned char inside[8] = {0};
-  uint16_t half = (uint16_t)value;
-  uint32_t word = (uint32_t)value;
-  add_bytes(d, &tag, sizeof tag);
-  add_bytes(d, &type, sizeof type);
+  add_number(d, tag, 2);
+  add_number(d, type, 2);
   add_offset(d, count);
-  if (type == VXM_TIFF_SHORT && count == 1)
-    memcpy(inside, &half, sizeof half);
-  else if (d->is_big && (type != VXM_TIFF_LONG || count > 1))
-    memcpy(inside, &value, sizeof value);
-  else
-    memcpy(inside, &word, sizeof word);
-  add_bytes(d, inside, d->is_big ? 8 : 4);
+  add_offset(d, value); /* a shorter number stands first, before zeros */
   d->count++;
 }
 
@@ -103,11 +90,7 @@ static void make_directory(directory *out, const vxm_values_writer *w, const tif
   else
     add_field(&d, VXM_TIFF_SAMPLE_FORMAT, VXM_TIFF_SHORT, 1, sample_format(w->values.scalar));
   add_offset(&d, next);
-  uint16_t half = (uint16_t)d.count;
-  if (t->is_big)
-    memcpy(d.bytes, &d.count, sizeof d.count);
-  else
-    memcpy(d.bytes, &half, sizeof half);
+  vxm_store_le(d.bytes, d.count, t->is_big ? 8 : 2);
   *out = d;
 }
 
@@ -138,13 +121,19 @@ static vxm_status describe(tiff *t, const vxm_values_writer *w, vxm_error *error
   return VXM_OK;
 }
 
+static void put_number(vxm_output *output, uint64_t value, size_t size) {
+  unsigned char bytes[8];
+  vxm_store_le(bytes, value, size);
+  vxm_output_write(output, bytes, size);
+}
+
 /** Voxels in a unit of length, as near as 32 bits allow. */
 static void put_resolution(vxm_output *output, double size) {
   const double most = UINT32_MAX;
   double across = 1 / size;
   double below = across >= 1 ? floor(most / across) : most, above = round(across * below);
-  uint32_t parts[2] = {(uint32_t)fmin(fmax(above, 1), most), (uint32_t)fmin(fmax(below, 1), most)};
-  vxm_output_write(output, parts, sizeof parts);
+  put_number(output, (uint64_t)fmin(fmax(above, 1), most), 4);
+  put_number(output, (uint64_t)fmin(fmax(below, 1), most), 4);
 }
 
 /** Offsets of all parts; each begins at a multiple of 16. */
@@ -171,23 +160,20 @@ static void pad_to(vxm_output *output, uint64_t from, uint64_t to) {
 }
 
 static void put_header(vxm_values_writer *w, const tiff *t) {
-  const uint16_t order = vxm_le64(1) == 1 ? 0x4949 : 0x4d4d, version = t->is_big ? 43 : 42, wide[2] = {8, 0},
-                 bits[4] = {8, 8, 8, 8};
-  uint32_t first = (uint32_t)t->directories;
-  vxm_output_write(w->output, &order, sizeof order);
-  vxm_output_write(w->output, &version, sizeof version);
+  vxm_output_write(w->output, "II", 2); /* little-endian */
+  put_number(w->output, t->is_big ? 43 : 42, 2);
   if (t->is_big) {
-    vxm_output_write(w->output, wide, sizeof wide);
-    vxm_output_write(w->output, &t->directories, sizeof t->directories);
+    put_number(w->output, 8, 4); /* bytes of an offset */
+    put_number(w->output, t->directories, 8);
   } else {
-    vxm_output_write(w->output, &first, sizeof first);
+    put_number(w->output, t->directories, 4);
     pad_to(w->output, 8, 16);
   }
   vxm_output_write(w->output, t->text, t->description_bytes);
   pad_to(w->output, t->shared + t->description_bytes, t->resolution);
   put_resolution(w->output, w->space.voxel_size[0]);
   put_resolution(w->output, w->space.voxel_size[1]);
-  vxm_output_write(w->output, bits, sizeof bits);
+  put_number(w->output, UINT64_C(0x0008000800080008), 8);
   pad_to(w->output, 8, 16);
 }
 
@@ -221,22 +207,6 @@ static vxm_status end(vxm_values_writer *w, vxm_error *error) {
   return VXM_OK;
 }
 
-vxm_status vxm_tiff_write_page(const vxm_values_writer *writer, vxm_output *output, const void *values,
-                               int64_t z, vxm_error *error) {
-  vxm_values_writer one = *writer;
-  one.output = output;
-  one.state = NULL;
-  one.space.dims[2] = 1;
-  one.space.origin[2] += (double)z * one.space.voxel_size[2];
-  vxm_status status = begin(&one, error);
-  if (status == VXM_OK) {
-    vxm_output_write(output, values, one.slice_bytes);
-    status = end(&one, error);
-  }
-  vxm_free(one.context, one.state);
-  return status;
-}
-
 static const vxm_values_writer_kind values_kind = {
     .layout = VXM_LAYOUT_GRID,
     .holds = VXM_HOLDS_ALL,
@@ -247,6 +217,23 @@ static const vxm_values_writer_kind values_kind = {
     .begin = begin,
     .end = end,
 };
+
+vxm_status vxm_tiff_write_page(const vxm_values_writer *writer, vxm_output *output, const void *values,
+                               int64_t z, vxm_error *error) {
+  vxm_values_writer one = *writer;
+  one.kind = &values_kind;
+  one.output = output;
+  one.state = NULL;
+  one.space.dims[2] = 1;
+  one.space.origin[2] += (double)z * one.space.voxel_size[2];
+  vxm_status status = begin(&one, error);
+  if (status == VXM_OK) {
+    vxm_values_writer_pass(&one, values, one.slice_bytes);
+    status = end(&one, error);
+  }
+  vxm_free(one.context, one.state);
+  return status;
+}
 
 const vxm_grid_format vxm_format_tif = {
     .name = "tif",

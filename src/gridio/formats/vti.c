@@ -358,9 +358,8 @@ static void put_xml(vxm_values_writer *w) {
   const vxm_space *s = &w->space;
   const char *name = vxm_vtk_array_name(&w->values);
   vxm_output_printf(w->output,
-                    "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"%s\" "
-                    "header_type=\"UInt64\">\n  <ImageData WholeExtent=",
-                    vxm_le64(1) == 1 ? "LittleEndian" : "BigEndian");
+                    "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" "
+                    "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <ImageData WholeExtent=");
   put_extent(w->output, s);
   vxm_output_printf(w->output, " Origin=\"%.17g %.17g %.17g\" Spacing=\"%.17g %.17g %.17g\">\n", s->origin[0],
                     s->origin[1], s->origin[2], s->voxel_size[0], s->voxel_size[1], s->voxel_size[2]);
@@ -381,7 +380,7 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
   put_xml(w);
   uselocale(previous);
   freelocale(c);
-  uint64_t bytes = vxm_values_plain_bytes(&w->space, &w->values);
+  uint64_t bytes = vxm_le64(vxm_values_plain_bytes(&w->space, &w->values));
   vxm_output_write(w->output, &bytes, sizeof bytes);
   return VXM_OK;
 }

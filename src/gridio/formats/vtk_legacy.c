@@ -274,7 +274,7 @@ static void put_swapped(vxm_output *output, const unsigned char *from, size_t co
 
 static void put_bytes(vxm_values_writer *w, const void *bytes, size_t count) {
   size_t size = vxm_scalar_bytes(w->values.scalar);
-  if (is_swapped() && size > 1)
+  if (size > 1)
     put_swapped(w->output, bytes, count / size, size);
   else
     vxm_output_write(w->output, bytes, count);

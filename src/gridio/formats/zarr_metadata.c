@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What a Zarr array says of itself, in and out. */
+#include "base/endian.h"
 #include "base/open_beneath.h"
 #include "gridio/common/json_text.h"
 #include "gridio/formats/zarr.h"
@@ -32,13 +33,6 @@ void vxm_zarr_key(char out[VXM_ZARR_KEY_MAX], const vxm_zarr_array *array, const
                      chunk[a]);
 }
 
-static bool is_big_endian(void) {
-  const uint16_t one = 1;
-  unsigned char first;
-  memcpy(&first, &one, 1);
-  return first == 0;
-}
-
 /* ---- Out ---- */
 
 static json_t *list_numbers(const int64_t *numbers, int count) {
@@ -55,7 +49,7 @@ static void name_type(char out[8], const vxm_zarr_array *array) {
   size_t size = vxm_scalar_bytes(array->scalar);
   const char *name = vxm_scalar_name(array->scalar);
   char kind = array->is_bool ? 'b' : *name; /* uint8, int16, float32 */
-  snprintf(out, 8, "%c%c%zu", size == 1 ? '|' : is_big_endian() ? '>' : '<', kind, size);
+  snprintf(out, 8, "%c%c%zu", size == 1 ? '|' : '<', kind, size);
 }
 
 /** The whole text of a tree that it takes over, or of NULL. */
@@ -206,7 +200,7 @@ static vxm_status read_type(vxm_zarr_array *out, const json_t *root, const spot 
                 type ? type : "(no text)");
   out->is_bool = kind == 'b';
   out->scalar = vxm_scalar_of(kind == 'b' ? 'u' : kind, size);
-  out->is_swapped = size > 1 && (type[0] == '>') != is_big_endian();
+  out->is_swapped = size > 1 && vxm_must_swap(type[0] == '>');
   if (out->rank == 4 &&
       (out->scalar != VXM_UINT8 || out->is_bool || (out->shape[3] != 3 && out->shape[3] != 4)))
     return FAIL(p, error, "its array has 4 dimensions, but is not 3 or 4 bytes of a colour for each voxel");
@@ -254,7 +248,7 @@ static vxm_status check_chunk(const vxm_zarr_array *array, const spot *p, vxm_er
 
 static void put_integer(unsigned char *to, uint64_t number, size_t size) {
   for (size_t b = 0; b < size; b++)
-    to[is_big_endian() ? size - 1 - b : b] = (unsigned char)(number >> 8 * b);
+    to[vxm_must_swap(false) ? size - 1 - b : b] = (unsigned char)(number >> 8 * b);
 }
 
 static bool put_float(unsigned char *to, double number, vxm_scalar scalar) {
@@ -284,7 +278,7 @@ static vxm_status read_fill(vxm_zarr_array *out, const json_t *root, const spot 
   } else if (is_float)
     good = json_is_number(fill) && put_float(out->fill, json_number_value(fill), out->scalar);
   else if (json_is_boolean(fill))
-    out->fill[is_big_endian() ? vxm_scalar_bytes(out->scalar) - 1 : 0] = json_is_true(fill);
+    out->fill[vxm_must_swap(false) ? vxm_scalar_bytes(out->scalar) - 1 : 0] = json_is_true(fill);
   else {
     json_int_t number = json_integer_value(fill);
     good = json_is_integer(fill) || (json_is_real(fill) && fabs(json_real_value(fill)) < 0x1p53);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** .zarr out: slices across x are gathered until they make up chunks, which are compressed side by side. */
+#include "base/endian.h"
 #include "base/file_transaction.h"
 #include "base/threads.h"
 #include "grid/bit_transpose.h"
@@ -22,7 +23,7 @@ typedef struct state {
   bool is_open;
   vxm_zarr_array array;
   size_t voxel_bytes;
-  unsigned char *slab;   /**< chunk[0] slices: z fastest, then y, then x */
+  unsigned char *slab;   /**< chunk[0] slices: z fastest, then y, then x, little-endian */
   int64_t filled, first; /**< slices in the slab, and the first of them */
   size_t workers;
   unsigned char **room; /**< of each worker: a chunk, and behind it the compressed one */
@@ -228,8 +229,12 @@ static vxm_status put(vxm_values_writer *w, const void *values, int64_t first, i
   state *s = w->state;
   const unsigned char *slice = values;
   vxm_status status = VXM_OK;
+  const size_t each = vxm_scalar_bytes(w->values.scalar);
   for (int64_t x = first; x < end && status == VXM_OK; x++, slice += w->slice_bytes) {
-    memcpy(s->slab + (size_t)s->filled * w->slice_bytes, slice, w->slice_bytes);
+    unsigned char *to = s->slab + (size_t)s->filled * w->slice_bytes;
+    memcpy(to, slice, w->slice_bytes);
+    if (vxm_must_swap(false))
+      vxm_swap_each(to, w->slice_bytes / each, each);
     s->filled++;
     if (s->filled == s->array.chunk[0] || x + 1 == w->space.dims[0])
       status = flush(w, error);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "gridio/page/changes.h"
+#include "base/exact_math.h"
 #include "base/hash.h"
 #include "mesh/near_vertices.h"
 #include "mesh/sort.h"
@@ -77,7 +78,7 @@ static vxm_status weld(vertices *v, const vxm_soup *before, const vxm_soup *afte
   double b[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
   gather(v, before, 0, b);
   gather(v, after, before->vertex_count, b);
-  double diagonal = sqrt(pow(b[3] - b[0], 2) + pow(b[4] - b[1], 2) + pow(b[5] - b[2], 2));
+  double diagonal = vxm_length3(b[3] - b[0], b[4] - b[1], b[5] - b[2]);
   double tolerance = isfinite(diagonal) ? 1e-6 * diagonal : 0;
   size_t count = before->vertex_count + after->vertex_count;
   return vxm_near_vertices_group(before->context, v->positions, count, v->roles, tolerance, v->map, error);

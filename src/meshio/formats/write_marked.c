@@ -4,6 +4,7 @@
  * refuse the file for them, or for colours of faces where it is binary; triangles in text are shown by all.
  */
 #include "meshio/formats/write_marked.h"
+#include "base/exact_math.h"
 #include "base/output.h"
 #include "mesh/unit_scale.h"
 #include "meshio/common/faces_out.h"
@@ -53,11 +54,10 @@ static void put_triangle(marking *m, const uint32_t corners[3], vxm_colour colou
 /** Three corners around each end of an edge; a vertex is an edge of a rod's thickness. */
 static void put_rod(marking *m, const vxm_marked_edge *edge) {
   const double *ends[2] = {vxm_position(m->soup, edge->a), vxm_position(m->soup, edge->b)};
-  double along[3], length = 0, u[3], v[3];
-  for (size_t a = 0; a < 3; a++) {
+  double along[3], u[3], v[3];
+  for (size_t a = 0; a < 3; a++)
     along[a] = ends[1][a] / 2 - ends[0][a] / 2;
-    length = hypot(length, along[a]);
-  }
+  double length = vxm_length3(along[0], along[1], along[2]);
   size_t least = 0;
   for (size_t a = 0; a < 3; a++) {
     along[a] = length > 0 ? along[a] / length : (double)(a == 2);
@@ -131,7 +131,7 @@ static double diagonal_of(const vxm_soup *soup) {
       low[a] = fmin(low[a], vxm_position(soup, v)[a]);
       high[a] = fmax(high[a], vxm_position(soup, v)[a]);
     }
-  double diagonal = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+  double diagonal = vxm_length3(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
   return isfinite(diagonal) ? diagonal : 0;
 }
 

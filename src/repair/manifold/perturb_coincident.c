@@ -235,11 +235,14 @@ static bool find_along(const moving *m, const moves *by, double p[3]) {
 
 typedef struct nearby {
   double p[3], distance;
+  int number;
 } nearby;
 
 static int by_distance(const void *a, const void *b) {
   const nearby *p = a, *q = b;
-  return (p->distance > q->distance) - (p->distance < q->distance);
+  if (p->distance != q->distance)
+    return p->distance < q->distance ? -1 : 1;
+  return (p->number > q->number) - (p->number < q->number);
 }
 
 /** Where numbers are coarse: the nearest place that lies on the side of the faces, such as along the one axis
@@ -259,6 +262,7 @@ static bool find_nearest(const moving *m, const moves *by, double p[3]) {
       squared += step * step;
     }
     place->distance = sqrt(squared);
+    place->number = n;
     count += along >= AXIS * place->distance;
   }
   qsort(places, (size_t)count, sizeof *places, by_distance);

@@ -51,8 +51,10 @@ static const double *position_of(const vxm_halfedge_pairing *fans, uint32_t corn
 
 static int by_position(const void *a, const void *b) {
   const rim_fan *p = a, *q = b;
-  int order = memcmp(p->position, q->position, sizeof p->position);
-  return order != 0 ? order : (p->fan > q->fan) - (p->fan < q->fan);
+  for (int i = 0; i < 3; i++)
+    if (p->position[i] != q->position[i])
+      return p->position[i] < q->position[i] ? -1 : 1;
+  return (p->fan > q->fan) - (p->fan < q->fan);
 }
 
 static void note_fan(stitching *s, size_t *count, uint32_t corner) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/sheets/sheet_offsets.h"
 
+#include "base/exact_math.h"
 #include "mesh/unit_scale.h"
 #include "repair/sheets/offset_vector.h"
 
@@ -48,7 +49,7 @@ static double angle_at(const offsetting *o, uint32_t corner) {
       vxm_vec3_between(vxm_position(soup, vxm_sheet_vertex(o->sides, vxm_sheet_next(corner))), p, o->scale);
   vxm_vec3 b = vxm_vec3_between(vxm_position(soup, vxm_sheet_vertex(o->sides, vxm_sheet_previous(corner))), p,
                                 o->scale);
-  return atan2(vxm_vec3_length(vxm_vec3_cross(a, b)), vxm_vec3_dot(a, b));
+  return vxm_angle(vxm_vec3_length(vxm_vec3_cross(a, b)), vxm_vec3_dot(a, b));
 }
 
 /** Normal of the side that a corner is of. */

@@ -6,6 +6,7 @@
 #ifndef VXM_REPAIR_STATE_MERGE_PLACES_H
 #define VXM_REPAIR_STATE_MERGE_PLACES_H
 
+#include "base/exact_math.h"
 #include "mesh/unit_scale.h"
 
 #include <math.h>
@@ -37,7 +38,7 @@ static inline vxm_merge_rule vxm_merge_rule_of(double diagonal) {
 }
 
 static inline double vxm_extent_diagonal(const double b[6]) {
-  return hypot(hypot(b[3] - b[0], b[4] - b[1]), b[5] - b[2]);
+  return vxm_length3(b[3] - b[0], b[4] - b[1], b[5] - b[2]);
 }
 
 /** As vxm_weld_exact, of positions by a rule. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/state/provenance.h"
 
+#include "base/exact_math.h"
 #include "mesh/components.h"
 #include "mesh/part_census.h"
 #include "mesh/weld.h"
@@ -203,7 +204,7 @@ vxm_status vxm_provenance_settle(vxm_provenance *track, const vxm_soup *soup, vx
     vxm_status status = vxm_ask_at(v, track->context, error);
     if (status != VXM_OK)
       return status;
-    double distance = hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
+    double distance = vxm_length3(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
     uint32_t part = track->vertex_part[v];
     if (part != NO_PART && isfinite(distance))
       track->most[part] = fmax(track->most[part], distance);
@@ -217,7 +218,7 @@ vxm_status vxm_provenance_settle(vxm_provenance *track, const vxm_soup *soup, vx
 /* ---- The account ---- */
 
 static double diagonal_of(const double bounds[6]) {
-  return hypot(hypot(bounds[3] - bounds[0], bounds[4] - bounds[1]), bounds[5] - bounds[2]);
+  return vxm_length3(bounds[3] - bounds[0], bounds[4] - bounds[1], bounds[5] - bounds[2]);
 }
 
 /** A part without volume to speak of, whose faces have all gone for that. */

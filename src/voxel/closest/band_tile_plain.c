@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Tiles of distances for any processor. */
+#include "base/neon.h"
+
 #include <math.h>
 #include <stdint.h>
 
@@ -50,6 +52,8 @@ INLINE wide wide_unless(wide_mask mask, wide x) {
 INLINE unsigned wide_bits(wide_mask mask) {
 #if defined(__SSE__) && defined(__GNUC__)
   return (unsigned)__builtin_ia32_movmskps((wide)mask);
+#elif VXM_NEON
+  return vxm_neon_signs4((int32x4_t)mask);
 #else
   unsigned bits = 0;
   for (unsigned n = 0; n < WIDTH; n++)
@@ -83,7 +87,11 @@ INLINE lanes lanes_min(lanes a, lanes b) {
 }
 
 INLINE lanes lanes_root(lanes x) {
+#if VXM_NEON
+  return (lanes)vsqrtq_f64((float64x2_t)x);
+#else
   return (lanes){sqrt(x[0]), sqrt(x[1])};
+#endif
 }
 
 #include "voxel/closest/band_tile_body.inc"

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Nearest triangles for any processor. */
+#include "base/neon.h"
+
 #include <stdint.h>
 
 #define LANES 2
@@ -22,10 +24,14 @@ static inline wide wide_min(wide a, wide b) {
 }
 
 static inline unsigned wide_mask(wide_int mask) {
+#if VXM_NEON
+  return vxm_neon_signs4((int32x4_t)mask);
+#else
   unsigned bits = 0;
   for (unsigned n = 0; n < WIDTH; n++)
     bits |= (unsigned)(mask[n] & 1) << n;
   return bits;
+#endif
 }
 
 typedef double lanes __attribute__((vector_size(8 * LANES)));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/closest/surface_tree.h"
+#include "base/neon.h"
 #include "mesh/spatial_sort.h"
 #include "voxel/closest/closest_point.h"
 
@@ -347,6 +348,8 @@ static lanes reach_of(const search *s, double scale) {
 static lanes root(lanes x) {
 #ifdef __SSE__
   return (lanes)_mm_sqrt_ps((__m128)x);
+#elif VXM_NEON
+  return (lanes)vsqrtq_f32((float32x4_t)x);
 #else
   for (int lane = 0; lane < LANES; lane++)
     x[lane] = sqrtf(x[lane]);
