@@ -22,9 +22,8 @@ typedef struct vxm_sparse vxm_sparse;
 
 /**
  * Voxelizes a model into an octree, straight from the triangles where its parts are closed, or closed by
- * caps, and for surfaces (then an OpenCL engine makes it on its device); else, and for shells of the solid, by
- * way of ranges of slices.
- * The voxels are those of vxm_model_voxelize.
+ * caps, and for surfaces (then an OpenCL engine makes it on its device); else, and for shells of the solid,
+ * by way of ranges of slices. The voxels are those of vxm_model_voxelize.
  *
  * @param report    NULL = not wanted, which saves counting and hashing
  * @param space     the octree's
