@@ -175,7 +175,7 @@ def configure(threads: int = 0, memory_limit: int = 0) -> None:
 
     Args:
         threads: threads that a call works with; 0 = one per processor.
-        memory_limit: bytes that all objects may hold together; 0 = no limit. What would exceed it raises OutOfMemoryError
+        memory_limit: bytes that all objects may hold together; 0 = what the machine has. What would exceed it raises OutOfMemoryError
             before it is allocated. Arrays of numpy are not counted.
     """
     global _context, _memory_limit

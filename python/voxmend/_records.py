@@ -43,7 +43,7 @@ class Settings(Record):
 
     Attributes:
         threads: that a call works with.
-        memory_limit: bytes that objects may hold together; 0 = no limit.
+        memory_limit: bytes that objects may hold together; 0 = what the machine has.
         peak_bytes: held at once at most since `configure` was called.
     """
 

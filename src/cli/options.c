@@ -16,7 +16,8 @@ static const cli_option common_options[] = {
     {KEY_REPORT, "report", "FILE.json", "write the report as JSON into a file too"},
     {KEY_THREADS, "threads", "N", "threads to work with, 1 to 256 [one per processor]"},
     {KEY_MEMLIMIT, "memlimit", "SIZE",
-     "fail rather than hold more memory than this, in bytes\nor with a binary suffix: 512M, 4G [no limit]"},
+     "fail rather than hold more memory than this, in bytes\nor with a binary suffix: 512M, 4G [what the "
+     "machine has]"},
     {'q', "quiet", NULL, "print neither the summary nor warnings"},
     {'v', "verbose", NULL, "print more: tags, passes that changed nothing, threads and memory"},
     {KEY_PROGRESS, "progress", "WHEN", "auto (where standard error is a terminal), always or never [auto]"},
