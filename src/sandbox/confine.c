@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "sandbox/confine.h"
-#include "base/system_calls.h"
 
 #include <dirent.h>
 #include <linux/capability.h>
