@@ -45,7 +45,7 @@ def missing():
     """What is not in the wheel says so, and how it can be had."""
     mesh = voxmend.load(sys.argv[1])
     for call, words in ((lambda: voxmend.repair(mesh, "solid"), ("cgal", "GPL", "configure --with-cgal")),
-                        (lambda: voxmend.voxelize(mesh, 8).save("grid.vdb"), ("openvdb", "not in this wheel", "pip install"))):
+                        (lambda: voxmend.voxelize(mesh, 8).save("grid.vdb"), ("openvdb", "not in this wheel", "archive of sources"))):
         try:
             call()
         except voxmend.UnavailableError as error:
