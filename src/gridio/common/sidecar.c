@@ -168,19 +168,6 @@ vxm_status vxm_sidecar_open(vxm_output **out, vxm_context *context, const vxm_sp
 
 /* ---- Reading ---- */
 
-static bool read_numbers(const json_t *root, const char *key, double values[3]) {
-  const json_t *array = json_object_get(root, key);
-  if (json_array_size(array) != 3)
-    return false;
-  for (size_t a = 0; a < 3; a++) {
-    const json_t *number = json_array_get(array, a);
-    if (!json_is_number(number))
-      return false;
-    values[a] = json_number_value(number);
-  }
-  return true;
-}
-
 static bool read_dims(const json_t *root, int64_t dims[3]) {
   const json_t *array = json_object_get(root, "dims");
   if (json_array_size(array) != 3)
@@ -239,7 +226,8 @@ static vxm_status read_root(vxm_space *space, const json_t *root, const vxm_inpu
     return vxm_fail_byte(error, input, 0, "its \"version\" is not 1");
   if (!read_dims(root, space->dims))
     return vxm_fail_byte(error, input, 0, "\"dims\" must be three whole numbers");
-  if (!read_numbers(root, "origin", space->origin) || !read_numbers(root, "voxel_size", space->voxel_size))
+  if (!vxm_json_triple(space->origin, root, "origin") ||
+      !vxm_json_triple(space->voxel_size, root, "voxel_size"))
     return vxm_fail_byte(error, input, 0, "\"origin\" and \"voxel_size\" must be three numbers each");
   return vxm_space_check_file(space, input, 0, error);
 }

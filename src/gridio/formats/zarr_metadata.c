@@ -293,19 +293,6 @@ static vxm_status read_fill(vxm_zarr_array *out, const json_t *root, const spot 
 
 /* ---- In: attributes ---- */
 
-static bool read_triple(const json_t *root, const char *key, double out[3]) {
-  const json_t *array = json_object_get(root, key);
-  if (json_array_size(array) != 3)
-    return false;
-  for (size_t a = 0; a < 3; a++) {
-    const json_t *number = json_array_get(array, a);
-    if (!json_is_number(number))
-      return false;
-    out[a] = json_number_value(number);
-  }
-  return true;
-}
-
 /** Takes three letters for the axes; false if they are not x, y and z in any order. */
 static bool take_axes(int axis[3], const char letters[3]) {
   unsigned seen = 0;
@@ -372,7 +359,7 @@ static void read_attributes(vxm_zarr_array *out, vxm_context *context, const jso
   vxm_space place = out->space;
   read_axes(out, root);
   out->has_place =
-      read_triple(root, "origin", place.origin) && read_triple(root, "voxel_size", place.voxel_size);
+      vxm_json_triple(place.origin, root, "origin") && vxm_json_triple(place.voxel_size, root, "voxel_size");
   if (out->has_place)
     out->space = place;
   read_about(&out->about, context, root);
