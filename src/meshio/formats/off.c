@@ -12,104 +12,6 @@ typedef struct off_damage {
   vxm_text_defect numbers, short_vertices, beyond, small_faces, bad_faces, short_faces, cut;
 } off_damage;
 
-/* ---- The header ---- */
-
-/** Skips blanks, line ends and comments; false at the end of the file. */
-static bool skip_to_data(vxm_tokenizer *scan) {
-  while (vxm_skip_space(scan) && *scan->at == '#')
-    vxm_skip_line(scan);
-  return scan->at < scan->end;
-}
-
-static bool starts_with(const vxm_tokenizer *scan, const char *word) {
-  const unsigned char *p = scan->at;
-  for (; *word; word++, p++)
-    if (p == scan->end || (*p & 0xdf) != *word)
-      return false;
-  return true;
-}
-
-/** Reads the first word; false if it is not one of OFF's. The cursor ends behind it, before glued counts. */
-static bool read_word(vxm_tokenizer *scan, vxm_off_header *header) {
-  *header = (vxm_off_header){.dimension = 3};
-  for (int prefix = 0; prefix < 6; prefix++) {
-    if (starts_with(scan, "OFF")) {
-      scan->at += 3;
-      return scan->at == scan->end || *scan->at <= ' ' || *scan->at == '#' || vxm_is_digit(*scan->at);
-    }
-    if (starts_with(scan, "ST")) {
-      header->textures = true;
-      scan->at++;
-    } else if (scan->at < scan->end && *scan->at == 'C')
-      header->colours = true;
-    else if (scan->at < scan->end && *scan->at == 'N')
-      header->normals = true;
-    else if (scan->at < scan->end && *scan->at == 'n')
-      header->n_dimensional = true;
-    else if (scan->at < scan->end && *scan->at == '4')
-      header->four = true;
-    else
-      return false;
-    scan->at++;
-  }
-  return false;
-}
-
-vxm_likeness vxm_off_sniff(const unsigned char *data, size_t size) {
-  vxm_tokenizer scan = {.begin = data, .at = data, .end = data + size};
-  vxm_off_header header;
-  if (!skip_to_data(&scan))
-    return VXM_LIKENESS_NONE;
-  vxm_tokenizer counts = scan;
-  if (read_word(&scan, &header))
-    return VXM_LIKENESS_CERTAIN;
-  /* Without the word: a line of two or three whole numbers. */
-  size_t numbers = 0;
-  uint64_t count;
-  while (vxm_more_on_line(&counts) && vxm_tokenizer_uint(&counts, &count))
-    numbers++;
-  return vxm_at_line_end(&counts) && (numbers == 2 || numbers == 3) ? VXM_LIKENESS_POSSIBLE
-                                                                    : VXM_LIKENESS_NONE;
-}
-
-static vxm_status read_count(vxm_tokenizer *scan, const char *what, uint64_t *count, vxm_error *error) {
-  if (!skip_to_data(scan))
-    return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->end),
-                       "the file ends before the number of %s", what);
-  if (vxm_tokenizer_uint(scan, count))
-    return VXM_OK;
-  char quote[VXM_QUOTE];
-  return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->at),
-                     "the number of %s is not a whole number: \"%s\"", what,
-                     vxm_quote(quote, scan->at, vxm_token_length(scan)));
-}
-
-/** Skips the number of edges, which says nothing and is often left out. */
-static void skip_edge_count(vxm_tokenizer *scan, bool one_per_line) {
-  uint64_t edges;
-  vxm_tokenizer ahead = *scan;
-  vxm_skip_blanks(&ahead);
-  if (vxm_at_line_end(&ahead) || *ahead.at == '#') {
-    /* Where the other counts had a line each, this one may have too. */
-    if (!one_per_line || !skip_to_data(&ahead) || vxm_tokens_on_line(&ahead, '#') != 1)
-      return;
-  }
-  if (vxm_tokenizer_uint(&ahead, &edges))
-    *scan = ahead;
-}
-
-static vxm_status read_counts(vxm_tokenizer *scan, uint64_t *vertices, uint64_t *faces, vxm_error *error) {
-  vxm_status status = read_count(scan, "vertices", vertices, error);
-  if (status != VXM_OK)
-    return status;
-  vxm_skip_blanks(scan);
-  bool one_per_line = vxm_at_line_end(scan);
-  status = read_count(scan, "faces", faces, error);
-  if (status == VXM_OK)
-    skip_edge_count(scan, one_per_line);
-  return status;
-}
-
 /** Every number takes a digit and a separator, so the file's size bounds what it can hold. */
 static vxm_status check_vertex_count(const vxm_tokenizer *scan, uint64_t vertices, size_t dimension,
                                      vxm_error *error) {
@@ -139,7 +41,7 @@ static off_layout vertex_layout(const vxm_tokenizer *scan, const vxm_off_header 
     return BY_TOKENS;
   vxm_tokenizer second = *scan;
   vxm_skip_line(&second);
-  bool own_lines = skip_to_data(&second) && vxm_tokens_on_line(&second, '#') == whole - position;
+  bool own_lines = vxm_off_skip_to_data(&second) && vxm_tokens_on_line(&second, '#') == whole - position;
   if (tokens == position && whole != 2 * position) /* no colours here: left out, or on lines of their own? */
     return own_lines ? BY_TOKENS : BY_LINES;
   if (tokens == position)
@@ -172,7 +74,7 @@ static vxm_status read_vertex_color(vxm_tokenizer *scan, const vxm_off_header *h
   vxm_tokenizer ahead = *scan;
   int count = 0;
   for (int n = header->normals ? -3 : 0; n < 4; n++) {
-    bool more = by_tokens ? skip_to_data(&ahead) : vxm_more_on_line(&ahead) && *ahead.at != '#';
+    bool more = by_tokens ? vxm_off_skip_to_data(&ahead) : vxm_more_on_line(&ahead) && *ahead.at != '#';
     if (!more || !vxm_tokenizer_double(&ahead, n < 0 ? &passed : &rgba[n]))
       break;
     count = n + 1;
@@ -183,14 +85,14 @@ static vxm_status read_vertex_color(vxm_tokenizer *scan, const vxm_off_header *h
 }
 
 static void skip_tokens(vxm_tokenizer *scan, size_t count) {
-  while (count-- > 0 && skip_to_data(scan))
+  while (count-- > 0 && vxm_off_skip_to_data(scan))
     vxm_skip_token(scan);
 }
 
 /** Reads `kept` coordinates; false where the file ends first. */
 static bool read_vertex_by_tokens(vxm_tokenizer *scan, double p[3], size_t kept, off_damage *damage) {
   for (size_t c = 0; c < kept; c++) {
-    if (!skip_to_data(scan))
+    if (!vxm_off_skip_to_data(scan))
       return false;
     p[c] = read_number(scan, damage);
   }
@@ -198,7 +100,7 @@ static bool read_vertex_by_tokens(vxm_tokenizer *scan, double p[3], size_t kept,
 }
 
 static inline bool read_vertex_by_line(vxm_tokenizer *scan, double p[3], size_t kept, off_damage *damage) {
-  if (!skip_to_data(scan))
+  if (!vxm_off_skip_to_data(scan))
     return false;
   for (size_t c = 0; c < kept; c++) {
     if (__builtin_expect(!vxm_more_on_line(scan), 0)) {
@@ -221,7 +123,7 @@ static vxm_status read_vertices(vxm_tokenizer *scan, const vxm_off_header *heade
   size_t kept = header->dimension < 3 ? header->dimension : 3;
   size_t skipped = header->dimension - kept + vxm_off_extras(header);
   const bool has_colors = vxm_off_vertex_colors(soup, header) && kept == header->dimension;
-  bool by_tokens = skip_to_data(scan) && vertex_layout(scan, header, vertices, faces) == BY_TOKENS;
+  bool by_tokens = vxm_off_skip_to_data(scan) && vertex_layout(scan, header, vertices, faces) == BY_TOKENS;
   const unsigned char *const end = scan->end, *const last = vxm_last_token(scan);
   for (; soup->vertex_count < vertices && status == VXM_OK; soup->vertex_count++) {
     double *p = soup->positions + 3 * soup->vertex_count;
@@ -270,7 +172,7 @@ static bool is_continued(const vxm_tokenizer *scan, uint64_t n, uint64_t there) 
   uint64_t next;
   if (there == 0) /* a count alone on its line is a habit, not damage */
     return true;
-  if (!skip_to_data(&ahead))
+  if (!vxm_off_skip_to_data(&ahead))
     return false;
   size_t tokens = vxm_tokens_on_line(&ahead, '#');
   if (!vxm_tokenizer_uint(&ahead, &next))
@@ -309,7 +211,7 @@ static inline off_outcome read_corners(vxm_tokenizer *scan, uint64_t n, bool by_
   for (uint64_t c = 0; c < n; c++) {
     if (__builtin_expect(!vxm_more_on_line(scan) || *scan->at == '#', 0)) {
       bool continued = !by_lines || is_continued(scan, n, c);
-      if (!skip_to_data(scan))
+      if (!vxm_off_skip_to_data(scan))
         return FACE_MISSING;
       if (!continued) {
         vxm_text_defect_add(&damage->short_faces, first);
@@ -363,10 +265,10 @@ static vxm_status read_face_color(const vxm_tokenizer *scan, const unsigned char
 static bool ends_in_index(const vxm_tokenizer *scan, const unsigned char *first, uint64_t n) {
   vxm_tokenizer ahead = *scan;
   ahead.at = first;
-  for (uint64_t t = 0; t < n && skip_to_data(&ahead); t++)
+  for (uint64_t t = 0; t < n && vxm_off_skip_to_data(&ahead); t++)
     vxm_skip_token(&ahead);
   const unsigned char *last = vxm_last_token(scan);
-  return last < scan->end && skip_to_data(&ahead) && ahead.at == last;
+  return last < scan->end && vxm_off_skip_to_data(&ahead) && ahead.at == last;
 }
 
 /**
@@ -377,7 +279,7 @@ static vxm_status read_faces(vxm_tokenizer *scan, uint64_t faces, uint64_t *done
                              vxm_error *error) {
   vxm_soup *soup = scan->soup;
   *done = 0;
-  if (faces == 0 || !skip_to_data(scan))
+  if (faces == 0 || !vxm_off_skip_to_data(scan))
     return VXM_OK;
   bool by_lines = face_layout(scan, soup->vertex_count, faces) == BY_LINES;
   /* A triangle takes 8 bytes at least. */
@@ -386,7 +288,7 @@ static vxm_status read_faces(vxm_tokenizer *scan, uint64_t faces, uint64_t *done
   const unsigned char *const end = scan->end, *const last = vxm_last_token(scan);
   for (; status == VXM_OK && *done < faces; ++*done) {
     scan->end = *done + 1 < faces ? last : end;
-    if (!skip_to_data(scan))
+    if (!vxm_off_skip_to_data(scan))
       break;
     const unsigned char *first = scan->at;
     uint64_t n;
@@ -466,7 +368,7 @@ static vxm_status finish(vxm_tokenizer *scan, uint64_t vertices, uint64_t faces,
   else if (done < faces)
     vxm_warn(&soup->warnings, "line %" PRId64 ": the file ends after %" PRIu64 " of %" PRIu64 " faces",
              end.line, done, faces);
-  else if (skip_to_data(scan))
+  else if (vxm_off_skip_to_data(scan))
     vxm_warn(&soup->warnings, "line %" PRId64 ": more than announced; ignored (lines: %" PRIu64 ")",
              vxm_tokenizer_line(scan, scan->at), vxm_lines_with_data(scan, '#', UINT64_MAX));
   if (soup->face_count == 0)
@@ -477,7 +379,7 @@ static vxm_status finish(vxm_tokenizer *scan, uint64_t vertices, uint64_t faces,
 static vxm_status read_text(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error) {
   uint64_t vertices = 0, faces = 0, done = 0;
   off_damage damage = {0};
-  vxm_status status = read_counts(scan, &vertices, &faces, error);
+  vxm_status status = vxm_off_read_counts(scan, &vertices, &faces, error);
   if (status == VXM_OK)
     status = check_vertex_count(scan, vertices, header->dimension, error);
   if (status == VXM_OK)
@@ -490,39 +392,6 @@ static vxm_status read_text(vxm_tokenizer *scan, vxm_off_header *header, vxm_err
   return finish(scan, vertices, faces, done, error);
 }
 
-static vxm_status read_header(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error) {
-  bool any = skip_to_data(scan);
-  const unsigned char *first = scan->at;
-  if (!any || !read_word(scan, header)) {
-    if (!any || !vxm_is_digit(*first)) {
-      char quote[VXM_QUOTE];
-      size_t length = (size_t)(vxm_find_newline(first, scan->end) - first);
-      return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, first), "no OFF header: \"%s\"",
-                         vxm_quote(quote, first, length));
-    }
-    *header = (vxm_off_header){.missing = true, .dimension = 3};
-    scan->at = first;
-  }
-  header->at = first;
-  vxm_skip_blanks(scan);
-  if (starts_with(scan, "BINARY")) {
-    header->binary = true;
-    vxm_skip_line(scan);
-    return VXM_OK;
-  }
-  uint64_t dimension = 3;
-  if (header->n_dimensional) {
-    vxm_status status = read_count(scan, "dimensions", &dimension, error);
-    if (status != VXM_OK)
-      return status;
-    if (dimension == 0 || dimension > (uint64_t)(scan->end - scan->begin))
-      return vxm_fail_at(error, VXM_ERROR_FORMAT, vxm_tokenizer_place(scan, scan->at),
-                         "%" PRIu64 " dimensions cannot be read", dimension);
-  }
-  header->dimension = (size_t)dimension + header->four;
-  return VXM_OK;
-}
-
 vxm_status vxm_off_read(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                         vxm_error *error) {
   vxm_tokenizer scan;
@@ -530,7 +399,7 @@ vxm_status vxm_off_read(vxm_soup *soup, const unsigned char *data, size_t size, 
   vxm_status status = vxm_tokenizer_open(&scan, soup, data, size, name, error);
   if (status != VXM_OK)
     return status;
-  status = read_header(&scan, &header, error);
+  status = vxm_off_read_header(&scan, &header, error);
   if (status == VXM_OK) {
     soup->format = header.binary ? "off binary" : "off";
     status = header.binary ? vxm_off_read_binary(&scan, &header, error) : read_text(&scan, &header, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** What the text and the binary reader of OFF share: the first word. */
+/** What the readers of OFF share: the header, in text and in binary files. */
 #ifndef VXM_MESHIO_FORMATS_OFF_H
 #define VXM_MESHIO_FORMATS_OFF_H
 
@@ -26,6 +26,18 @@ static inline vxm_gathered *vxm_off_vertex_colors(const vxm_soup *soup, const vx
   return soup->appearance && header->colours ? &soup->appearance->vertices : NULL;
 }
 
+/** Skips blanks, line ends and comments; false at the end of the file. */
+static inline bool vxm_off_skip_to_data(vxm_tokenizer *scan) {
+  while (vxm_skip_space(scan) && *scan->at == '#')
+    vxm_skip_line(scan);
+  return scan->at < scan->end;
+}
+
+/** Reads the word, if there is one, and the number of dimensions; the cursor ends before the counts, or
+ * behind the line of OFF BINARY. */
+vxm_status vxm_off_read_header(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error);
+/** Reads the counts of a text, also the one of edges, which says nothing and is often left out. */
+vxm_status vxm_off_read_counts(vxm_tokenizer *scan, uint64_t *vertices, uint64_t *faces, vxm_error *error);
 /** Reads what follows the words OFF BINARY and their line end. */
 vxm_status vxm_off_read_binary(vxm_tokenizer *scan, vxm_off_header *header, vxm_error *error);
 
