@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Repair: the plan that orders the passes. */
+/** Repair of a soup: a repaired copy, and the report of what was done. */
 #ifndef VXM_REPAIR_REPAIR_H
 #define VXM_REPAIR_REPAIR_H
 
