@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Octree files: read as they were written, whole and in windows, and damaged ones; octrees of blocks and
  * boxes. */
+#include "../base/rounds.h"
 #include "grids.h"
 
 #include "base/endian.h"
@@ -102,7 +103,7 @@ static void test_round_trip(void **state) {
   snprintf(path, sizeof path, "%s/a.octree", folder);
   vxm_context *context = context_with(2, 0, NULL, NULL);
   vxm_rng rng = {17};
-  for (int round = 0; round < 48; round++) {
+  for (int round = 0; round < ROUNDS(48); round++) {
     vxm_grid *grid = random_grid(context, &rng, round), *whole;
     vxm_sparse *sparse = octree_of(grid), *back;
     vxm_sparse_file *file;
@@ -164,7 +165,7 @@ static void assert_sound(const vxm_sparse *sparse) {
 static void damage(vxm_context *context, const unsigned char *data, size_t size, vxm_rng *rng) {
   unsigned char *copy = malloc(size);
   assert_non_null(copy);
-  for (int round = 0; round < 4000; round++) {
+  for (int round = 0; round < ROUNDS(4000); round++) {
     vxm_error error = VXM_ERROR_INIT;
     vxm_sparse *sparse;
     memcpy(copy, data, size);
@@ -234,7 +235,7 @@ static void test_pieces(void **state) {
   (void)state;
   vxm_context *context = context_with(1, 0, NULL, NULL);
   vxm_rng rng = {19};
-  for (int round = 0; round < 64; round++) {
+  for (int round = 0; round < ROUNDS(64); round++) {
     static const int64_t dims[][3] = {{7, 9, 3}, {64, 64, 64}, {65, 20, 130}, {256, 256, 256}};
     const int64_t *n = dims[round % 4];
     vxm_grid *grid = new_grid(context, unit_space(n[0], n[1], n[2]));

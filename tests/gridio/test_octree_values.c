@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Octree files of numbers, labels and colours: read as they were written, whole and in windows, the same
  * from fields and slices, and damaged ones. */
+#include "../base/rounds.h"
 #include "grids.h"
 
 #include "base/endian.h"
@@ -211,7 +212,7 @@ static void test_blocks(void **state) {
   for (size_t b = 0; b < all.count; b++)
     assert_int_equal(all.items[b].number, b);
   vxm_rng rng = {84};
-  for (int round = 0; round < 200; round++) {
+  for (int round = 0; round < ROUNDS(200); round++) {
     int64_t begin[3], end[3];
     size_t wanted = 0;
     for (int a = 0; a < 3; a++) {
@@ -278,7 +279,7 @@ static void test_damage(void **state) {
       error = (vxm_error)VXM_ERROR_INIT;
       assert_int_equal(read_bytes(context, data, length, &error), VXM_ERROR_FORMAT);
     }
-    for (int round = 0; round < 200; round++, rounds++) {
+    for (int round = 0; round < ROUNDS(200); round++, rounds++) {
       size_t from = round % 4 == 0 ? 0 : values, room = round % 4 == 0 ? 112 : size - values;
       if (round % 4 == 1 && room > 200)
         room = 200;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Polygons into triangles: exact, whatever touches what; and fast. */
 #include "mesh/triangulate.h"
+#include "../base/rounds.h"
 #include "mesh/orient2d.h"
 #include "polygons.h"
 
@@ -33,7 +34,7 @@ static void test_turn(void **state) {
   (void)state;
   vxm_rng rng = {41};
   int zeros = 0;
-  for (int round = 0; round < 200000; round++) {
+  for (int round = 0; round < ROUNDS(200000); round++) {
     int64_t p[3][2], range = INT64_C(1) << (2 + round % 50);
     for (int c = 0; c < 2; c++) {
       int64_t from = (int64_t)vxm_rng_below(&rng, (uint64_t)range);
@@ -127,7 +128,7 @@ static void test_random(void **state) {
   vxm_triangulator tri;
   vxm_triangulator_open(&tri, context);
   int made = 0;
-  for (int round = 0; round < 6000; round++) {
+  for (int round = 0; round < ROUNDS(6000); round++) {
     if (!flat_random(&f, &rng, round))
       continue;
     flat_map(&f, &rng);
@@ -177,7 +178,7 @@ static void test_crossings(void **state) {
   vxm_rng rng = {44};
   vxm_triangulator tri;
   vxm_triangulator_open(&tri, context);
-  for (int round = 0; round < 3000; round++) {
+  for (int round = 0; round < ROUNDS(3000); round++) {
     f.n = 0;
     size_t n = 4 + (size_t)vxm_rng_below(&rng, round % 100 ? 12 : 300);
     for (size_t i = 0; i < n; i++)
@@ -201,7 +202,7 @@ static void test_scales(void **state) {
   vxm_rng rng = {45};
   vxm_triangulator tri;
   vxm_triangulator_open(&tri, context);
-  for (int round = 0; round < 300; round++) {
+  for (int round = 0; round < ROUNDS(300); round++) {
     if (!flat_random(&f, &rng, round))
       continue;
     double *positions = malloc(3 * f.n * sizeof *positions);
@@ -236,7 +237,7 @@ static void test_no_area(void **state) {
   vxm_rng rng = {47};
   vxm_triangulator tri;
   vxm_triangulator_open(&tri, context);
-  for (int round = 0; round < 2000; round++) {
+  for (int round = 0; round < ROUNDS(2000); round++) {
     bool met[16][16] = {{false}};
     f.n = 0;
     walk(&f, met, 8, 8, &rng);

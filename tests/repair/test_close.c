@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Closing of holes. */
+#include "../base/rounds.h"
 #include "repair_test.h"
 
 #include "../mesh/shared.h"
@@ -259,7 +260,7 @@ static void long_cracks_are_cut(void **state) {
 
 static void random_soups(void **state) {
   vxm_rng rng = {4};
-  for (int round = 0; round < 1500; round++) {
+  for (int round = 0; round < ROUNDS(1500); round++) {
     vxm_soup *soup = random_soup(*state, &rng, 1 + (size_t)vxm_rng_below(&rng, 40),
                                  (size_t)vxm_rng_below(&rng, 60), 2 + (unsigned)vxm_rng_below(&rng, 30), 7);
     check_closing(soup, NULL);
@@ -273,7 +274,7 @@ static void crowded_soups(void **state) {
   static const uint32_t sides[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                                         {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   vxm_rng rng = {7};
-  for (int round = 0; round < 4000; round++) {
+  for (int round = 0; round < ROUNDS(4000); round++) {
     vxm_soup *soup = new_soup(*state);
     uint64_t boxes = 1 + vxm_rng_below(&rng, 3);
     for (uint32_t b = 0; b < boxes; b++) {

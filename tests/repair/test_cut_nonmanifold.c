@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Soups made manifold. */
+#include "../base/rounds.h"
 #include "manifold.h"
 #include "outlines.h"
 #include "repair_test.h"
@@ -68,7 +69,7 @@ static void cubes_touch_along_an_edge(void **state) {
   vxm_soup *soup = cell_surface(*state, 2, full);
   assert_int_equal(look_brute(soup).complex_edges, 1);
   vxm_rng rng = {1};
-  for (int i = 0; i < 200; i++) {
+  for (int i = 0; i < ROUNDS(200); i++) {
     vxm_soup *mixed = shuffled(soup, &rng, 0, i % 2);
     outcome out = check(mixed);
     assert_int_equal(out.split, 2);
@@ -98,7 +99,7 @@ static void cubes_touch_along_an_edge(void **state) {
 /** Parts that overlap stay whole, also where one begins within the other, and along more than one edge. */
 static void prisms_overlap_at_an_edge(void **state) {
   vxm_rng rng = {2};
-  for (int i = 0; i < 300; i++) {
+  for (int i = 0; i < ROUNDS(300); i++) {
     /* wedges about the z axis, from one angle to another, all with the axis as their edge */
     size_t wedges = 2 + (size_t)vxm_rng_below(&rng, 3);
     uint32_t levels = 1 + (uint32_t)vxm_rng_below(&rng, 3);
@@ -136,7 +137,7 @@ static void prisms_overlap_at_an_edge(void **state) {
 /** Two rooms, each with its half of the wall between them, whatever triangles the halves are of. */
 static void rooms_with_a_wall_each(void **state) {
   vxm_rng rng = {11};
-  for (int i = 0; i < 300; i++) {
+  for (int i = 0; i < ROUNDS(300); i++) {
     vxm_soup *soup = new_soup(*state);
     static const uint8_t full[2][8] = {{1}, {0, 1}};
     for (int room = 0; room < 2; room++) {
@@ -199,7 +200,7 @@ static void wall_between_two_rooms(void **state) {
 static void blocks_of_cells(void **state) {
   vxm_rng rng = {3};
   size_t split = 0;
-  for (int i = 0; i < 1500; i++) {
+  for (int i = 0; i < ROUNDS(1500); i++) {
     uint8_t full[64];
     unsigned n = 2 + (unsigned)vxm_rng_below(&rng, 3);
     double share = 0.2 + 0.6 * vxm_rng_unit(&rng);
@@ -241,7 +242,7 @@ static void edge_twice_between_two_vertices(void **state) {
 static void tangles(void **state) {
   vxm_rng rng = {4};
   int64_t split = 0, stitched = 0;
-  for (int i = 0; i < 6000; i++) {
+  for (int i = 0; i < ROUNDS(6000); i++) {
     size_t vertices = 5 + (size_t)vxm_rng_below(&rng, 20), faces = (size_t)vxm_rng_below(&rng, 60);
     vxm_soup *soup = tangle(*state, &rng, vertices, faces, i % 3 ? 100 : 3);
     if (i % 5 == 0 && faces > 0)
@@ -258,7 +259,7 @@ static void tangles(void **state) {
 /** Faces that were turned against their neighbours have a border there; all else holds. */
 static void turned_faces(void **state) {
   vxm_rng rng = {5};
-  for (int i = 0; i < 300; i++) {
+  for (int i = 0; i < ROUNDS(300); i++) {
     uint8_t full[27];
     for (int c = 0; c < 27; c++)
       full[c] = vxm_rng_below(&rng, 2) == 0;
@@ -274,7 +275,7 @@ static void repaired_to_manifold(void **state) {
   vxm_rng rng = {10};
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   options.level = VXM_LEVEL_MANIFOLD;
-  for (int i = 0; i < 600; i++) {
+  for (int i = 0; i < ROUNDS(600); i++) {
     uint8_t full[27];
     for (int c = 0; c < 27; c++)
       full[c] = vxm_rng_below(&rng, 2) == 0;
@@ -295,7 +296,7 @@ static void panels_are_stitched(void **state) {
   static const uint8_t cubes[3][8] = {
       {1, 0, 0, 0, 0, 0, 0, 0}, {1, 0, 0, 1, 0, 0, 0, 0}, {1, 0, 0, 0, 0, 0, 0, 1}};
   vxm_rng rng = {6};
-  for (int i = 0; i < 300; i++) {
+  for (int i = 0; i < ROUNDS(300); i++) {
     vxm_soup *soup = cell_surface(*state, 2, cubes[i % 3]), *mixed = shuffled(soup, &rng, 0, i % 2);
     vxm_soup *panels = unshared(mixed);
     outcome out = check(panels);
@@ -314,7 +315,7 @@ static void panels_are_stitched(void **state) {
 static void panels_of_blocks(void **state) {
   vxm_rng rng = {7};
   int64_t open = 0, edges = 0;
-  for (int i = 0; i < 300; i++) {
+  for (int i = 0; i < ROUNDS(300); i++) {
     uint8_t full[27];
     for (int c = 0; c < 27; c++)
       full[c] = vxm_rng_below(&rng, 2) == 0;
@@ -383,7 +384,7 @@ static void shared_meshes(void **state) {
 static void odd_positions(void **state) {
   static const double values[] = {NAN, INFINITY, -INFINITY, 1e308, -1e308, 5e-324, 1e-200, 0, 1};
   vxm_rng rng = {8};
-  for (int i = 0; i < 500; i++) {
+  for (int i = 0; i < ROUNDS(500); i++) {
     vxm_soup *soup = tangle(*state, &rng, 12, 40, 100);
     for (size_t k = 0; k < 3 * soup->vertex_count; k++)
       if (vxm_rng_below(&rng, 2))
@@ -420,7 +421,7 @@ static int cancel_at(const char *phase, double fraction, void *payload) {
 /** Whatever fails, the result is NULL, the error is told, and nothing is left behind. */
 static void failures(void **state) {
   (void)state;
-  for (int round = 0; round < 60; round++) {
+  for (int round = 0; round < ROUNDS(60); round++) {
     int left = round;
     vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
     options.threads = 1;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The module for OpenMesh: what it says of soups, and how it fails. */
+#include "../base/rounds.h"
 #include "halfedges.h"
 
 #include "../mesh/shared.h"
@@ -16,7 +17,7 @@
 static void opinions_agree(void **state) {
   vxm_rng rng = {1};
   int manifold = 0;
-  for (int i = 0; i < 4000; i++) {
+  for (int i = 0; i < ROUNDS(4000); i++) {
     vxm_soup *soup =
                  tangle(*state, &rng, 4 + (size_t)i % 30, (size_t)vxm_rng_below(&rng, i % 2 ? 8 : 40), 100),
              *apart;
@@ -33,7 +34,7 @@ static void opinions_agree(void **state) {
 
 static void blocks_are_closed(void **state) {
   vxm_rng rng = {2};
-  for (int i = 0; i < 400; i++) {
+  for (int i = 0; i < ROUNDS(400); i++) {
     uint8_t full[27];
     for (int c = 0; c < 27; c++)
       full[c] = vxm_rng_below(&rng, 2) == 0;
@@ -52,7 +53,7 @@ static void blocks_are_closed(void **state) {
 /** Anything goes: faces of no, one or two corners, corners twice. */
 static void any_soup_is_inspected(void **state) {
   vxm_rng rng = {3};
-  for (int i = 0; i < 2000; i++) {
+  for (int i = 0; i < ROUNDS(2000); i++) {
     vxm_soup *soup = random_soup(*state, &rng, 1 + (size_t)vxm_rng_below(&rng, 20), 30, 4, 8);
     vxm_halfedge_report report = inspected(soup);
     int64_t bad = 0;
@@ -92,7 +93,7 @@ static void nothing_is_printed(void **state) {
 static void *inspect_often(void *payload) {
   const vxm_soup *soup = payload;
   vxm_halfedge_report first = inspected(soup);
-  for (int i = 0; i < 100; i++) {
+  for (int i = 0; i < ROUNDS(100); i++) {
     vxm_halfedge_report again = inspected(soup);
     if (memcmp(&first, &again, sizeof first) != 0)
       return payload;
@@ -140,7 +141,7 @@ static int cancel_at(const char *phase, double fraction, void *payload) {
 static void failures(void **state) {
   (void)state;
   int done = 0, refused = 0, cancelled = 0;
-  for (int round = 0; round < 48; round++) {
+  for (int round = 0; round < ROUNDS(48); round++) {
     int steps = round / 2;
     vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
     options.threads = 1;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Orientation of faces. */
+#include "../base/rounds.h"
 #include "repair_test.h"
 
 #include "../mesh/shared.h"
@@ -204,7 +205,7 @@ static void moebius_bands_are_reported(void **state) {
 static void small_random_soups(void **state) {
   vxm_rng rng = {6};
   int orientable = 0, others = 0;
-  for (int round = 0; round < 3000; round++) {
+  for (int round = 0; round < ROUNDS(3000); round++) {
     vxm_soup *soup = new_soup(*state);
     size_t vertices = 5 + (size_t)vxm_rng_below(&rng, 4), faces = 3 + (size_t)vxm_rng_below(&rng, 8);
     for (size_t v = 0; v < vertices; v++)

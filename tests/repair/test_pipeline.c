@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What holds for the whole repair, on thousands of random soups. */
+#include "../base/rounds.h"
 #include "repair_test.h"
 
 #include "mesh/census.h"
@@ -202,7 +203,7 @@ static void random_soups(void **state) {
   (void)state;
   vxm_rng rng = {2024};
   vxm_context *context = context_of_threads(2);
-  for (int round = 0; round < 2500; round++) {
+  for (int round = 0; round < ROUNDS(2500); round++) {
     vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
     options.weld = round % 2 ? VXM_WELD_OFF : VXM_WELD_AUTO;
     options.keep_duplicates = round % 3 == 0;
@@ -232,7 +233,7 @@ static void random_tolerances(void **state) {
   vxm_rng rng = {7};
   vxm_context *context = context_of_threads(2);
   int64_t merged = 0;
-  for (int round = 0; round < 1500; round++) {
+  for (int round = 0; round < ROUNDS(1500); round++) {
     vxm_soup *soup = random_soup(context, &rng, 1 + (size_t)vxm_rng_below(&rng, 24),
                                  (size_t)vxm_rng_below(&rng, 28), 3, 5);
     for (size_t c = 0; c < 3 * soup->vertex_count; c++) {

@@ -3,6 +3,7 @@
  * Tiles of a band, in all builds, against the distance to every triangle asked for every voxel, to the bit;
  * and what becomes of them against the same done voxel by voxel.
  */
+#include "../base/rounds.h"
 #include "distance_triangles.h"
 #include "shapes.h"
 
@@ -119,7 +120,7 @@ static void test_tiles(void **state) {
   (void)state;
   static const size_t counts[] = {1, 2, 7, 9, 64, 65, 130, 400, 700};
   vxm_rng rng = {42};
-  for (int round = 0; round < 60; round++) {
+  for (int round = 0; round < ROUNDS(60); round++) {
     size_t count = counts[round % 9];
     double extent = round % 4 == 0 ? 60 : 16;
     triangle_corners *corners = make_corners(count, extent, &rng, round / 9 + round);
@@ -186,7 +187,7 @@ static void test_values(void **state) {
   size_t build_count = vxm_band_kernels_all(builds);
   static float values[VXM_BAND_TILE * VXM_BAND_TILE * 200];
   static uint64_t words[VXM_BAND_TILE * VXM_BAND_TILE * 5];
-  for (int round = 0; round < 40; round++) {
+  for (int round = 0; round < ROUNDS(40); round++) {
     bool is_fill = round % 2;
     int64_t count[3];
     int shift = is_fill ? (int)vxm_rng_below(&rng, 2) * 32 : 32;

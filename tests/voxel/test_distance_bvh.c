@@ -3,6 +3,7 @@
  * The distance to a triangle against exact integers; the tree, in all builds, against that distance asked of
  * every triangle, to the bit.
  */
+#include "../base/rounds.h"
 #include "distance_triangles.h"
 #include "shapes.h"
 
@@ -86,7 +87,7 @@ static void test_triangle(void **state) {
   (void)state;
   vxm_rng rng = {31};
   double worst = 0;
-  for (int round = 0; round < 20000; round++) {
+  for (int round = 0; round < ROUNDS(20000); round++) {
     vec corner[3];
     random_triangle(corner, &rng);
     double corners[3][3], longest = 0;
@@ -162,7 +163,7 @@ static void test_tiles(void **state) {
   (void)state;
   static const size_t counts[] = {1, 2, 7, 9, 64, 65, 130, 600, 1100};
   vxm_rng rng = {32};
-  for (int round = 0; round < 90; round++) {
+  for (int round = 0; round < ROUNDS(90); round++) {
     size_t count = counts[round % 9];
     double extent = round % 4 == 0 ? 100 : 16;
     triangle_corners *corners = malloc(count * sizeof *corners);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Every build of the kernels does the same as plain loops, and gives the same solids. */
+#include "../base/rounds.h"
 #include "engine.h"
 
 #include "base/cpu.h"
@@ -145,7 +146,7 @@ static void test_rows_are_folded_onto_rows(void **state) {
 static void test_nodes_are_folded(void **state) {
   (void)state;
   vxm_rng rng = {17};
-  for (int round = 0; round < 300; round++) {
+  for (int round = 0; round < ROUNDS(300); round++) {
     uint64_t flipped[64], inside[16], want[64] = {0}, want_inside[16] = {0}, all = 0;
     uint64_t want_masks[2] = {0, 0};
     random_words(&rng, flipped, 64);
@@ -294,7 +295,7 @@ static void test_points_are_placed(void **state) {
   (void)state;
   static const double far[] = {NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e12, -4e9, 5.4e8, -5.4e8, 0.5, -0.0};
   vxm_rng rng = {15};
-  for (int round = 0; round < 400; round++) {
+  for (int round = 0; round < ROUNDS(400); round++) {
     double positions[3 * 9];
     size_t count = vxm_rng_below(&rng, 10);
     vxm_affine affine = {.bits = 8 + round % 9};
@@ -371,7 +372,7 @@ static void compare_builds(const vxm_soup *soup, const vxm_space *space,
 static void test_solids_are_the_same_in_every_build(void **state) {
   (void)state;
   vxm_rng rng = {16};
-  for (int round = 0; round < 108; round++) {
+  for (int round = 0; round < ROUNDS(108); round++) {
     vxm_space space = random_space(&rng, round);
     vxm_soup *soup = random_soup(context, 100 + (uint64_t)round, round % SOUP_KINDS, &space);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
@@ -416,7 +417,7 @@ static void compare_with_oracle(const vxm_soup *soup, const vxm_space *space) {
 static void test_every_build_matches_the_oracle(void **state) {
   (void)state;
   vxm_rng rng = {17};
-  for (int round = 0; round < 60; round++) {
+  for (int round = 0; round < ROUNDS(60); round++) {
     vxm_space space = random_space(&rng, round % 9);
     size_t count = (size_t)(space.dims[0] * space.dims[1] * space.dims[2]);
     if (count > 20000)
@@ -465,7 +466,7 @@ static vxm_soup *small_triangles(vxm_rng *rng, const vxm_space *space) {
 static void test_small_triangles_match_the_oracle(void **state) {
   (void)state;
   vxm_rng rng = {18};
-  for (int round = 0; round < 240; round++) {
+  for (int round = 0; round < ROUNDS(240); round++) {
     vxm_space space = engine_space(11, 13, 12);
     if (round % 2) /* fewer steps to a voxel, so that boxes of many columns are not too long */
       space.dims[round / 2 % 3] = 130;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Labels against brute force, and what they are called. */
+#include "../base/rounds.h"
 #include "label_oracle.h"
 
 #include "voxel/closest/closest_point.h"
@@ -177,7 +178,7 @@ static vxm_soup *random_soup(vxm_rng *rng, int bodies) {
 static void test_equals_brute_force(void **state) {
   (void)state;
   vxm_rng rng = {31};
-  for (int round = 0; round < 60; round++) {
+  for (int round = 0; round < ROUNDS(60); round++) {
     vxm_soup *soup = random_soup(&rng, 1 + (int)vxm_rng_below(&rng, 12));
     vxm_space space = {{1 + (int64_t)vxm_rng_below(&rng, 18), 1 + (int64_t)vxm_rng_below(&rng, 18),
                         1 + (int64_t)vxm_rng_below(&rng, 18)},
@@ -639,7 +640,7 @@ static void test_what_is_refused(void **state) {
 static void test_foot(void **state) {
   (void)state;
   vxm_rng rng = {34};
-  for (int round = 0; round < 40000; round++) {
+  for (int round = 0; round < ROUNDS(40000); round++) {
     double at[3][3], p[3], foot[3], sum = 0, size = round % 3 == 0 ? 30 : 2;
     for (int c = 0; c < 3; c++)
       for (int a = 0; a < 3; a++)

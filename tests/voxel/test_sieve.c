@@ -166,7 +166,7 @@ static void test_what_is_put_aside_meets_nothing(void **state) {
   static const vxm_layout layouts[6] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   vxm_rng rng = {511};
   counts sum = {0};
-  for (int round = 0; round < ROUNDS(96); round++) {
+  for (int round = 0; round < ROUNDS(48); round++) {
     vxm_layout layout = layouts[round % 6];
     vxm_space space = engine_space(1, 1, 1);
     for (int a = 0; a < 3; a++)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The solid against a brute-force oracle, and the properties that hold for every closed mesh. */
+#include "../base/rounds.h"
 #include "shapes.h"
 
 #include "grid/bitgrid.h"
@@ -87,7 +88,7 @@ static void assert_matches_oracle(const vxm_soup *soup, const vxm_space *space) 
 static void test_random_triangles_match_the_oracle(void **state) {
   (void)state;
   vxm_rng rng = {1};
-  for (int round = 0; round < 3000; round++) {
+  for (int round = 0; round < ROUNDS(3000); round++) {
     vxm_soup *soup = shape_empty(context);
     int count = 1 + (int)vxm_rng_below(&rng, 6), low = round % 3 ? 0 : -8,
         high = round % 3 ? 4 * TINY : 4 * TINY + 8;
@@ -118,7 +119,7 @@ static void test_wide_grids_match_the_oracle(void **state) {
   (void)state;
   static const int64_t widths[] = {1, 63, 64, 65, 128, 130};
   vxm_rng rng = {8};
-  for (int round = 0; round < 600; round++) {
+  for (int round = 0; round < ROUNDS(600); round++) {
     vxm_soup *soup = shape_empty(context);
     int wide = (int)(round % 3);
     int64_t dims[3] = {3, 2, 3};
@@ -144,7 +145,7 @@ static void test_wide_grids_match_the_oracle(void **state) {
 static void test_random_closed_meshes_agree_on_all_axes(void **state) {
   (void)state;
   vxm_rng rng = {2};
-  for (int round = 0; round < 3000; round++) {
+  for (int round = 0; round < ROUNDS(3000); round++) {
     vxm_soup *soup = shape_empty(context);
     int low = round % 3 ? 0 : -8, high = round % 3 ? 4 * TINY : 4 * TINY + 8;
     int count = 1 + (int)vxm_rng_below(&rng, 3);
@@ -166,7 +167,7 @@ static void test_random_closed_meshes_agree_on_all_axes(void **state) {
 static void test_tetrahedra_equal_parity_with_cones(void **state) {
   (void)state;
   vxm_rng rng = {3};
-  for (int round = 0; round < 2000; round++) {
+  for (int round = 0; round < ROUNDS(2000); round++) {
     vxm_soup *soup = shape_empty(context);
     uint32_t vertices = 4 + (uint32_t)vxm_rng_below(&rng, 8);
     for (uint32_t v = 0; v < vertices; v++) {
@@ -341,7 +342,7 @@ static void test_non_convex_polygons(void **state) {
 static void test_huge_triangles(void **state) {
   (void)state;
   vxm_rng rng = {5};
-  for (int round = 0; round < 200; round++) {
+  for (int round = 0; round < ROUNDS(200); round++) {
     vxm_soup *soup = shape_empty(context);
     double far = ldexp(1, 4 + (int)vxm_rng_below(&rng, 16));
     uint32_t v[4];

@@ -4,6 +4,7 @@
  * methods and modes, all numbers of threads, transforms, memory limits, and real meshes.
  * VOXMEND_TEST_RESOLUTIONS="64 200" chooses other resolutions for these.
  */
+#include "../base/rounds.h"
 #include "shapes.h"
 
 #include "grid/octree.h"
@@ -107,7 +108,7 @@ static void test_random_soups(void **state) {
     vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
     limits.threads = threads[t];
     assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);
-    for (int round = 0; round < 60; round++) {
+    for (int round = 0; round < ROUNDS(60); round++) {
       vxm_space space = random_space(&rng);
       vxm_soup *soup = random_soup(context, &rng, &space, round);
       vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
@@ -138,7 +139,7 @@ static void test_surfaces(void **state) {
   static const int threads[3] = {1, 2, 7};
   vxm_context *shared = context;
   vxm_rng rng = {83};
-  for (int round = 0; round < 24; round++) {
+  for (int round = 0; round < ROUNDS(24); round++) {
     vxm_context_options limits = VXM_CONTEXT_OPTIONS_INIT;
     limits.threads = threads[round % 3];
     assert_int_equal(vxm_context_create(&context, &limits, NULL), VXM_OK);

@@ -45,7 +45,7 @@ static void check_soup(const vxm_soup *soup, const vxm_space *space, vxm_thin_pa
 static void test_connected_meshes(void **state) {
   (void)state;
   vxm_rng rng = {501};
-  for (int round = 0; round < ROUNDS(45 * THIN_KINDS); round++) {
+  for (int round = 0; round < ROUNDS(22 * THIN_KINDS); round++) {
     vxm_space space = small_space(&rng);
     vxm_soup *soup = thin_soup(context, &rng, round % THIN_KINDS, &space);
     check_soup(soup, &space, round / THIN_KINDS % 5 ? VXM_THIN_KEEP : VXM_THIN_KEEP26, 1);
@@ -57,7 +57,7 @@ static void test_connected_meshes(void **state) {
 static void test_several_meshes(void **state) {
   (void)state;
   vxm_rng rng = {502};
-  for (int round = 0; round < ROUNDS(100); round++) {
+  for (int round = 0; round < ROUNDS(50); round++) {
     vxm_space space = small_space(&rng);
     vxm_soup *soup = shape_empty(context);
     int parts = 2 + (int)vxm_rng_below(&rng, 3);
@@ -93,7 +93,7 @@ static void add_fine_sheet(vxm_soup *soup, vxm_rng *rng, const vxm_space *space,
 static void test_fine_sheets_beside_bodies(void **state) {
   (void)state;
   vxm_rng rng = {507};
-  for (int round = 0; round < ROUNDS(60); round++) {
+  for (int round = 0; round < ROUNDS(30); round++) {
     vxm_space space = small_space(&rng);
     vxm_soup *soup = shape_empty(context);
     int axis = round % 3;
@@ -114,7 +114,7 @@ static void test_fine_sheets_beside_bodies(void **state) {
 static void test_polygons(void **state) {
   (void)state;
   vxm_rng rng = {503};
-  for (int round = 0; round < ROUNDS(120); round++) {
+  for (int round = 0; round < ROUNDS(60); round++) {
     vxm_space space = engine_space(10, 11, 12);
     vxm_soup *soup = shape_empty(context);
     double corner[3], size = 0.2 + 6 * vxm_rng_unit(&rng);
@@ -131,7 +131,7 @@ static void test_polygons(void **state) {
 static void test_meshes_that_reach_out(void **state) {
   (void)state;
   vxm_rng rng = {504};
-  for (int round = 0; round < ROUNDS(20 * THIN_KINDS); round++) {
+  for (int round = 0; round < ROUNDS(10 * THIN_KINDS); round++) {
     vxm_space space = small_space(&rng);
     vxm_soup *soup = thin_soup(context, &rng, round % THIN_KINDS, &space);
     for (int a = 0; a < 3; a++) {
@@ -151,7 +151,7 @@ static void test_thick_bodies_stay(void **state) {
   vxm_rng rng = {505};
   vxm_space space = engine_space(16, 16, 16);
   int64_t added = 0, voxels = 0;
-  for (int round = 0; round < ROUNDS(60); round++) {
+  for (int round = 0; round < ROUNDS(30); round++) {
     vxm_soup *soup = shape_empty(context);
     double low[3], high[3], centre[3];
     for (int a = 0; a < 3; a++) {
@@ -199,7 +199,7 @@ static int64_t columns_of(const vxm_grid *grid, int axis, int64_t height) {
 static void test_plates_are_one_voxel_thick(void **state) {
   (void)state;
   vxm_rng rng = {506};
-  for (int round = 0; round < ROUNDS(150); round++) {
+  for (int round = 0; round < ROUNDS(75); round++) {
     int axis = round % 3;
     vxm_space space = engine_space(14, 14, 14);
     vxm_soup *soup = shape_empty(context);
@@ -229,7 +229,7 @@ static void test_plates_are_one_voxel_thick(void **state) {
 static void test_rods_are_one_voxel_thick(void **state) {
   (void)state;
   vxm_rng rng = {507};
-  for (int round = 0; round < ROUNDS(150); round++) {
+  for (int round = 0; round < ROUNDS(75); round++) {
     int axis = round % 3;
     vxm_space space = engine_space(14, 14, 14);
     vxm_soup *soup = shape_empty(context);

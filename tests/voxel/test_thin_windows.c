@@ -145,7 +145,7 @@ static void check_soup(const vxm_soup *soup, const vxm_space *space, const vxm_v
 static void test_random_soups(void **state) {
   (void)state;
   vxm_rng rng = {601};
-  for (int round = 0; round < ROUNDS(90); round++) {
+  for (int round = 0; round < ROUNDS(45); round++) {
     vxm_space space = engine_space(1, 1, 1);
     for (int a = 0; a < 3; a++)
       space.dims[a] = 12 + (int64_t)vxm_rng_below(&rng, a == 0 ? 60 : 20);
@@ -167,7 +167,7 @@ static void test_random_soups(void **state) {
 static void test_soups_of_all_kinds(void **state) {
   (void)state;
   vxm_space space = engine_space(21, 19, 24);
-  for (int round = 0; round < ROUNDS(4 * SOUP_KINDS); round++) {
+  for (int round = 0; round < ROUNDS(2 * SOUP_KINDS); round++) {
     vxm_soup *soup = random_soup(context, 700 + (uint64_t)round, round % SOUP_KINDS, &space);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.thin = round % 3 ? VXM_THIN_KEEP : VXM_THIN_KEEP26;
@@ -199,7 +199,7 @@ static void test_many_triangles(void **state) {
 static void test_scraps(void **state) {
   (void)state;
   vxm_rng rng = {606};
-  for (int round = 0; round < ROUNDS(24); round++) {
+  for (int round = 0; round < ROUNDS(12); round++) {
     vxm_space space = engine_space(18, 18, 18);
     vxm_soup *soup = shape_empty(context);
     int scraps = round % 2 ? 800 : 300;
@@ -244,7 +244,7 @@ static void test_far_points(void **state) {
   (void)state;
   vxm_rng rng = {603};
   vxm_space space = engine_space(24, 24, 24);
-  for (int round = 0; round < ROUNDS(40); round++) {
+  for (int round = 0; round < ROUNDS(20); round++) {
     vxm_soup *soup = shape_empty(context);
     switch (round % 4) {
     case 0:
@@ -284,7 +284,7 @@ static void test_far_points(void **state) {
 static void test_mirrors(void **state) {
   (void)state;
   vxm_rng rng = {604};
-  for (int round = 0; round < ROUNDS(20 * THIN_KINDS); round++) {
+  for (int round = 0; round < ROUNDS(10 * THIN_KINDS); round++) {
     vxm_space space = engine_space(11, 12, 13);
     int kind = round % THIN_KINDS, axis = round / THIN_KINDS % 3;
     if (kind == 6 || kind == 7)
@@ -319,7 +319,7 @@ static void test_turned_meshes(void **state) {
   (void)state;
   vxm_rng rng = {605};
   int64_t all = 0, others = 0;
-  for (int round = 0; round < ROUNDS(20 * THIN_KINDS); round++) {
+  for (int round = 0; round < ROUNDS(10 * THIN_KINDS); round++) {
     vxm_space space = engine_space(12, 12, 12);
     int kind = round % THIN_KINDS;
     if (kind == 6 || kind == 7)

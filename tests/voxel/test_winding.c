@@ -4,6 +4,7 @@
  * the walk through cells, in windows, along any axis, by every build, for what is asked about.
  * VOXMEND_TEST_WINDING=1 looks at all meshes of the shared collection, at all voxels where they are small.
  */
+#include "../base/rounds.h"
 #include "shapes.h"
 
 #include "meshes.h"
@@ -152,7 +153,7 @@ static const vxm_space cube = {{SIDE, SIDE, SIDE}, {0, 0, 0}, {1, 1, 1}};
 static void test_signs_are_those_of_the_sum(void **state) {
   (void)state;
   size_t ties = 0, set = 0;
-  for (int round = 0; round < 60; round++) {
+  for (int round = 0; round < ROUNDS(60); round++) {
     vxm_soup *soup = random_soup(round, SIDE);
     subject s;
     begin(&s, soup, &cube);
@@ -190,7 +191,7 @@ static void compare(const uint64_t *a, const uint64_t *b, const vxm_space *space
 /** The bytes of confidence at some voxels: 255 min(1, |2 w - 1|), but for the errors of floats. */
 static void check_confidence(const subject *s, const uint8_t *confidence) {
   const int64_t *dims = s->placed.lattice.space.dims;
-  for (int n = 0; n < 50; n++) {
+  for (int n = 0; n < ROUNDS(50); n++) {
     int64_t at[3];
     bool touches;
     for (int a = 0; a < 3; a++)
@@ -246,7 +247,7 @@ static void test_bits_are_the_same_in_all_ways(void **state) {
   size_t build_count = vxm_kernels_all(builds);
   const vxm_space space = {{70, 21, 37}, {0, 0, 0}, {0.5, 0.5, 0.5}};
   vxm_context *usual = context;
-  for (int round = 0; round < 24; round++) {
+  for (int round = 0; round < ROUNDS(24); round++) {
     vxm_soup *soup = random_soup(round, 12);
     subject s;
     begin(&s, soup, &space);
@@ -299,7 +300,7 @@ static void test_bits_are_the_same_in_all_ways(void **state) {
 /** The chain is closed, and with the rest it is the soup: as sums of oriented edges. */
 static void test_the_chain_is_closed(void **state) {
   (void)state;
-  for (int round = 0; round < 200; round++) {
+  for (int round = 0; round < ROUNDS(200); round++) {
     vxm_soup *soup = random_soup(round, SIDE);
     subject s;
     begin(&s, soup, &cube);

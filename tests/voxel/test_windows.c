@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Windows made one after another, in any layout, are the grid made as a whole; whatever the threads. */
+#include "../base/rounds.h"
 #include "engine.h"
 
 #include "base/cpu.h"
@@ -109,7 +110,7 @@ static void check_soup(uint64_t seed, int kind, const vxm_space *space, const vx
 static void test_windows_of_one_voter(void **state) {
   (void)state;
   vxm_rng rng = {31};
-  for (int round = 0; round < 96; round++) {
+  for (int round = 0; round < ROUNDS(96); round++) {
     vxm_space space = random_space(&rng);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.method = (vxm_method)(VXM_METHOD_X + round % 3);
@@ -125,7 +126,7 @@ static void test_windows_of_one_voter(void **state) {
 static void test_windows_of_votes(void **state) {
   (void)state;
   vxm_rng rng = {32};
-  for (int round = 0; round < 96; round++) {
+  for (int round = 0; round < ROUNDS(96); round++) {
     vxm_space space = random_space(&rng);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.vote = (vxm_vote)(VXM_VOTE_MAJORITY + round % 3);
@@ -139,7 +140,7 @@ static void test_windows_of_votes(void **state) {
 static void test_windows_of_the_default(void **state) {
   (void)state;
   vxm_rng rng = {33};
-  for (int round = 0; round < 24; round++) {
+  for (int round = 0; round < ROUNDS(24); round++) {
     vxm_space space = random_space(&rng);
     vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
     options.split_mode = round % 4 == 3 ? VXM_SPLIT_MODE_WHOLE : (vxm_split_mode)(round % 2);

@@ -5,12 +5,7 @@
 
 #include "engine.h"
 
-/** Rounds of a test: fewer where each is slow. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define ROUNDS(n) ((n) / 8)
-#else
-#define ROUNDS(n) ((n) / 2)
-#endif
+#include "../base/rounds.h"
 
 /** A turned frame: three directions at right angles, each of length 1. */
 static inline void thin_frame(vxm_rng *rng, double frame[3][3]) {
