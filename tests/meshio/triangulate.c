@@ -139,7 +139,7 @@ static void test_random(void **state) {
     free(positions);
     made++;
   }
-  assert_true(made > 5000);
+  assert_true(made > ROUNDS(5000));
   vxm_triangulator_close(&tri);
 }
 

@@ -217,7 +217,7 @@ static void blocks_of_cells(void **state) {
     vxm_soup_destroy(mixed);
     vxm_soup_destroy(soup);
   }
-  assert_true(split > 10000);
+  assert_true(split > ROUNDS(10000));
 }
 
 /** Two cells that touch along an edge, and are connected by others around both of its ends: either way of

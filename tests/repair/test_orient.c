@@ -249,7 +249,7 @@ static void small_random_soups(void **state) {
     vxm_soup_destroy(soup);
   }
   print_message("%d orientable, %d not\n", orientable, others);
-  assert_true(orientable > 100 && others > 10);
+  assert_true(orientable > ROUNDS(100) && others > ROUNDS(10));
 }
 
 static void flip_real_mesh(const shared_mesh *mesh, void *payload) {

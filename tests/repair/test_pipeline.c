@@ -253,7 +253,7 @@ static void random_tolerances(void **state) {
     vxm_soup_destroy(out);
     vxm_soup_destroy(soup);
   }
-  assert_true(merged > 500);
+  assert_true(merged > ROUNDS(500));
   vxm_context_destroy(context);
 }
 
