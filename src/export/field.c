@@ -3,8 +3,9 @@
 #include "base/clock.h"
 #include "base/exact_math.h"
 #include "grid/bit_transpose.h"
-#include "gridio/common/values_writer.h"
+#include "gridio/formats/octree_values.h"
 #include "gridio/gridio.h"
+#include "voxel/fields/distance_nodes.h"
 
 #include <math.h>
 #include <string.h>
@@ -143,6 +144,36 @@ static vxm_status request_distance(request *out, const vxm_space *space, const c
   return choose_format(out, options->format, error);
 }
 
+/** Whether only what is near the surface is made, for an octree. */
+static bool takes_nodes(const request *r, const vxm_model *model, const vxm_distance_options *options) {
+  return r->format->values == &vxm_octree_values && vxm_distance_nodes_are_for(options) &&
+         !model->options.confidence;
+}
+
+static vxm_status write_nodes(vxm_distance_report *report, vxm_model *model, const request *r,
+                              const vxm_distance_options *options, vxm_error *error) {
+  vxm_distance_nodes *nodes;
+  vxm_values_writer writer = {0};
+  double start = vxm_clock_ms();
+  vxm_status status = vxm_distance_nodes_create(&nodes, model, r->space, options, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_node_maker maker = vxm_distance_nodes_maker(nodes);
+  status = vxm_values_writer_open(&writer, &vxm_octree_values, model->context, r->space, &r->values, r->path,
+                                  error);
+  if (status == VXM_OK)
+    status = vxm_octree_values_make(&writer, &maker, error);
+  if (status == VXM_OK)
+    status = vxm_distance_nodes_report(report, nodes, error);
+  vxm_distance_nodes_destroy(nodes);
+  report->voxelize->fill_ms = vxm_clock_ms() - start;
+  if (status == VXM_OK)
+    status = vxm_values_writer_commit(&writer, error);
+  vxm_values_writer_abort(&writer);
+  report->voxelize->write_ms = vxm_clock_ms() - start - report->voxelize->fill_ms;
+  return status;
+}
+
 vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *model, const vxm_space *space,
                                     const char *path, const vxm_distance_options *options, vxm_error *error) {
   request r;
@@ -150,6 +181,8 @@ vxm_status vxm_field_write_distance(vxm_distance_report *report, vxm_model *mode
   vxm_field_target target;
   double start = vxm_clock_ms();
   vxm_status status = request_distance(&r, space, path, options, error);
+  if (status == VXM_OK && takes_nodes(&r, model, options))
+    return write_nodes(report, model, &r, options, error);
   if (status == VXM_OK)
     status = open_file(&file, &target, model->context, &r, error);
   if (status != VXM_OK)
@@ -193,6 +226,11 @@ vxm_status vxm_field_estimate_distance(vxm_estimate *out, const vxm_model *model
   request r;
   vxm_field_plan plan;
   vxm_status status = request_distance(&r, space, path, options, error);
+  if (status == VXM_OK && takes_nodes(&r, model, options)) {
+    uint64_t memory = vxm_distance_nodes_bytes(model, options) + file_bytes;
+    *out = (vxm_estimate){.grid_bytes = values_bytes(&r), .memory_bytes = memory, .passes = 1};
+    return vxm_memory_check(model->context, memory, "distances", error);
+  }
   if (status == VXM_OK)
     status = vxm_distance_plan(&plan, model, space, layout_of(&r), !streams(&r), options, error);
   if (status == VXM_OK)

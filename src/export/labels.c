@@ -2,8 +2,9 @@
 #include "export/labels.h"
 #include "base/clock.h"
 #include "grid/bit_transpose.h"
-#include "gridio/common/values_writer.h"
+#include "gridio/formats/octree_values.h"
 #include "gridio/gridio.h"
+#include "voxel/labels/label_nodes.h"
 
 #include <string.h>
 
@@ -75,6 +76,41 @@ static vxm_status write_file(label_file *file, const vxm_label_table *table, vxm
   return vxm_gridio_write_field(&whole, file->path, file->format->name, error);
 }
 
+/** As a whole, or slice by slice. */
+static vxm_status write_dense(label_file *file, vxm_label_report *report, vxm_model *model,
+                              const vxm_space *space, vxm_face_labels *labelling, double *made,
+                              vxm_error *error) {
+  vxm_status status = open_file(file, model->context, space, &labelling->table, error);
+  if (status == VXM_OK)
+    status = vxm_labels_run((uint16_t *)(void *)file->field->values, file->layout, report, model, space,
+                            labelling, error);
+  *made = vxm_clock_ms();
+  return status == VXM_OK ? write_file(file, &vxm_model_results_read(model->results)->labels, error) : status;
+}
+
+/** As an octree, of which only what has voxels is made. */
+static vxm_status write_octree(label_file *file, vxm_label_report *report, vxm_model *model,
+                               const vxm_space *space, vxm_face_labels *labelling, double *made,
+                               vxm_error *error) {
+  vxm_label_nodes *nodes;
+  vxm_status status = vxm_label_nodes_create(&nodes, report->voxelize, model, space, labelling, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_node_maker maker = vxm_label_nodes_maker(nodes);
+  status = vxm_values_writer_open(&file->writer, file->format->values, model->context, space, &file->values,
+                                  file->path, error);
+  if (status == VXM_OK)
+    status = vxm_octree_values_make(&file->writer, &maker, error);
+  if (status == VXM_OK)
+    status = vxm_label_nodes_report(report, nodes, error);
+  vxm_label_nodes_destroy(nodes);
+  *made = vxm_clock_ms();
+  if (status != VXM_OK)
+    return status;
+  file->about.table = vxm_model_results_read(model->results)->labels;
+  return vxm_values_writer_commit(&file->writer, error);
+}
+
 vxm_status vxm_labels_write(vxm_label_report *report, vxm_model *model, const vxm_space *space,
                             const char *path, const vxm_label_options *options, vxm_error *error) {
   double start = vxm_clock_ms();
@@ -87,13 +123,9 @@ vxm_status vxm_labels_write(vxm_label_report *report, vxm_model *model, const vx
     status = vxm_face_labels_create(&labelling, model->analysis.soup, options->by, error);
   if (status != VXM_OK)
     return status;
-  status = open_file(&file, model->context, space, &labelling.table, error);
-  if (status == VXM_OK)
-    status = vxm_labels_run((uint16_t *)(void *)file.field->values, file.layout, report, model, space,
-                            &labelling, error);
-  double made = vxm_clock_ms();
-  if (status == VXM_OK)
-    status = write_file(&file, &vxm_model_results_read(model->results)->labels, error);
+  double made = start;
+  bool is_octree = file.format->values == &vxm_octree_values && !model->options.confidence;
+  status = (is_octree ? write_octree : write_dense)(&file, report, model, space, &labelling, &made, error);
   vxm_values_writer_abort(&file.writer);
   report->voxelize->fill_ms = made - start;
   report->voxelize->write_ms = vxm_clock_ms() - made;

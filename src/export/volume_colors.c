@@ -7,10 +7,9 @@
 #include <string.h>
 
 typedef struct volume_task {
-  const vxm_field *volume;
+  vxm_volume_sampler sampler;
   const vxm_grid *grid;
   uint8_t *values;
-  double low, high; /**< of the volume's numbers */
   vxm_task_progress watch;
 } volume_task;
 
@@ -51,8 +50,8 @@ static between between_of(const vxm_space *space, int axis, double at) {
 
 /** Red, green and blue of a voxel of the volume, or its number three times; the share in which it counts: 0
  * of what has no colour or is no number. */
-static double corner(double out[3], const volume_task *task, size_t index) {
-  const vxm_field *volume = task->volume;
+static double corner(double out[3], const vxm_volume_sampler *sampler, size_t index) {
+  const vxm_field *volume = sampler->volume;
   if (volume->channels == 4) {
     const uint8_t *color = (const uint8_t *)volume->values + 4 * index;
     for (int c = 0; c < 3; c++)
@@ -63,13 +62,13 @@ static double corner(double out[3], const volume_task *task, size_t index) {
   vxm_field_doubles(&value, volume, index, 1);
   if (!isfinite(value))
     return 0;
-  double half = task->high / 2 - task->low / 2; /* the whole may be more than a double holds */
-  out[0] = out[1] = out[2] = half > 0 ? (value / 2 - task->low / 2) / half : 0;
+  double half = sampler->high / 2 - sampler->low / 2; /* the whole may be more than a double holds */
+  out[0] = out[1] = out[2] = half > 0 ? (value / 2 - sampler->low / 2) / half : 0;
   return 1;
 }
 
-static void sample(double out[3], const volume_task *task, const double at[3]) {
-  const vxm_space *space = &task->volume->space;
+static void sample(double out[3], const vxm_volume_sampler *sampler, const double at[3]) {
+  const vxm_space *space = &sampler->volume->space;
   between b[3];
   double sum[3] = {0, 0, 0}, all = 0, color[3];
   for (int a = 0; a < 3; a++)
@@ -83,7 +82,7 @@ static void sample(double out[3], const volume_task *task, const double at[3]) {
       continue;
     int64_t index =
         (b[0].index[side[0]] * space->dims[1] + b[1].index[side[1]]) * space->dims[2] + b[2].index[side[2]];
-    share *= corner(color, task, (size_t)index);
+    share *= corner(color, sampler, (size_t)index);
     for (int c = 0; share > 0 && c < 3; c++)
       sum[c] += share * color[c];
     all += share;
@@ -94,6 +93,34 @@ static void sample(double out[3], const volume_task *task, const double at[3]) {
 
 /* ---- All voxels ---- */
 
+vxm_volume_sampler vxm_volume_sampler_of(const vxm_field *volume) {
+  enum { AT_ONCE = 512 };
+  double values[AT_ONCE];
+  size_t count = vxm_field_count(volume);
+  vxm_volume_sampler sampler = {volume, INFINITY, -INFINITY};
+  for (size_t begin = 0; begin < count && volume->channels == 1; begin += AT_ONCE) {
+    size_t some = count - begin < AT_ONCE ? count - begin : AT_ONCE;
+    vxm_field_doubles(values, volume, begin, some);
+    for (size_t n = 0; n < some; n++)
+      if (isfinite(values[n])) {
+        sampler.low = fmin(sampler.low, values[n]);
+        sampler.high = fmax(sampler.high, values[n]);
+      }
+  }
+  return sampler;
+}
+
+void vxm_volume_color(uint8_t value[4], const vxm_volume_sampler *sampler, const vxm_space *space,
+                      const int64_t voxel[3]) {
+  double at[3], color[3];
+  for (int a = 0; a < 3; a++)
+    at[a] = space->origin[a] + ((double)voxel[a] + 0.5) * space->voxel_size[a];
+  sample(color, sampler, at);
+  for (int c = 0; c < 3; c++)
+    value[c] = (uint8_t)(color[c] * 255 + 0.5);
+  value[3] = 255;
+}
+
 static void color_slice(size_t i, int worker, void *payload) {
   volume_task *task = payload;
   const vxm_space *space = &task->grid->space;
@@ -103,43 +130,16 @@ static void color_slice(size_t i, int worker, void *payload) {
     return;
   memset(to, 0, 4 * plane);
   for (int64_t j = 0; j < space->dims[1]; j++)
-    for (int64_t k = 0; k < space->dims[2]; k++, to += 4) {
-      const int64_t voxel[3] = {(int64_t)i, j, k};
-      double at[3], color[3];
-      if (!vxm_grid_get(task->grid, voxel[0], j, k))
-        continue;
-      for (int a = 0; a < 3; a++)
-        at[a] = space->origin[a] + ((double)voxel[a] + 0.5) * space->voxel_size[a];
-      sample(color, task, at);
-      for (int c = 0; c < 3; c++)
-        to[c] = (uint8_t)(color[c] * 255 + 0.5);
-      to[3] = 255;
-    }
+    for (int64_t k = 0; k < space->dims[2]; k++, to += 4)
+      if (vxm_grid_get(task->grid, (int64_t)i, j, k))
+        vxm_volume_color(to, &task->sampler, space, (const int64_t[3]){(int64_t)i, j, k});
   vxm_task_progress_step(&task->watch);
-}
-
-static void measure(volume_task *task) {
-  enum { AT_ONCE = 512 };
-  double values[AT_ONCE];
-  size_t count = vxm_field_count(task->volume);
-  task->low = INFINITY;
-  task->high = -INFINITY;
-  for (size_t begin = 0; begin < count && task->volume->channels == 1; begin += AT_ONCE) {
-    size_t some = count - begin < AT_ONCE ? count - begin : AT_ONCE;
-    vxm_field_doubles(values, task->volume, begin, some);
-    for (size_t n = 0; n < some; n++)
-      if (isfinite(values[n])) {
-        task->low = fmin(task->low, values[n]);
-        task->high = fmax(task->high, values[n]);
-      }
-  }
 }
 
 vxm_status vxm_volume_colors(uint8_t *values, const vxm_grid *grid, const vxm_field *volume,
                              vxm_error *error) {
-  volume_task task = {.volume = volume, .grid = grid, .values = values};
+  volume_task task = {.sampler = vxm_volume_sampler_of(volume), .grid = grid, .values = values};
   size_t slices = (size_t)grid->space.dims[0];
-  measure(&task);
   vxm_task_progress_start(&task.watch, grid->context, "colouring", slices, error);
   vxm_parallel(grid->context, slices, color_slice, &task);
   return vxm_task_progress_end(&task.watch);

@@ -9,6 +9,18 @@
 /** Refuses labels, and a volume that lies beside the grid. @return VXM_OK, VXM_ERROR_ARGUMENT */
 vxm_status vxm_volume_colors_check(const vxm_field *volume, const vxm_space *space, vxm_error *error);
 
+/** A volume, and the range of its numbers. */
+typedef struct vxm_volume_sampler {
+  const vxm_field *volume;
+  double low, high;
+} vxm_volume_sampler;
+
+/** Of a volume that has passed the check. */
+vxm_volume_sampler vxm_volume_sampler_of(const vxm_field *volume);
+/** What lies at the centre of a voxel of a space. */
+void vxm_volume_color(uint8_t value[4], const vxm_volume_sampler *sampler, const vxm_space *space,
+                      const int64_t voxel[3]);
+
 /**
  * Gives each set voxel what lies at its centre in a volume that has passed the check; see VXM_COLOR_VOLUME.
  *

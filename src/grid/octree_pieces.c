@@ -37,8 +37,7 @@ void vxm_octree_pieces_brick(vxm_octree_pieces *p, const int64_t at[3], uint64_t
     add(p, (vxm_octree_piece){key_of(at), bits, 1});
 }
 
-/** The part of a box in a brick. */
-static uint64_t bits_within(const int64_t at[3], const int64_t begin[3], const int64_t end[3]) {
+uint64_t vxm_octree_bits_within(const int64_t at[3], const int64_t begin[3], const int64_t end[3]) {
   uint64_t bits = 0;
   for (int b = 0; b < 64; b++) {
     const int64_t voxel[3] = {at[0] + b % 4, at[1] + b / 4 % 4, at[2] + b / 16};
@@ -63,7 +62,7 @@ static void add_box(vxm_octree_pieces *p, const int64_t at[3], int64_t side, con
   if (whole)
     add(p, (vxm_octree_piece){key_of(at), ~UINT64_C(0), bricks * bricks * bricks});
   else if (side == 4)
-    add(p, (vxm_octree_piece){key_of(at), bits_within(at, begin, end), 1});
+    add(p, (vxm_octree_piece){key_of(at), vxm_octree_bits_within(at, begin, end), 1});
   else
     for (unsigned child = 0; child < 64 && p->status == VXM_OK; child++) {
       int64_t place[3];
@@ -86,6 +85,56 @@ void vxm_octree_pieces_box(vxm_octree_pieces *p, const int64_t begin[3], const i
   while (side < high[0] || side < high[1] || side < high[2])
     side *= 4;
   add_box(p, (int64_t[3]){0, 0, 0}, side, low, high);
+}
+
+/** The words of a window's rows `y` to y + 15 of 16 slices from z on; those that it has not are 0.
+ * @return the voxels that all of them have */
+static uint64_t take_words(uint64_t words[256], const vxm_window *window, int64_t y, int64_t z, size_t word) {
+  uint64_t all = ~UINT64_C(0);
+  for (int64_t r = 0; r < 256; r++) {
+    int64_t middle = y + r % 16, slow = z + r / 16;
+    bool is_there = middle >= 0 && middle < window->middle_dim && slow >= window->begin && slow < window->end;
+    words[r] = is_there ? vxm_window_row(window, middle, slow)[word] : 0;
+    all &= words[r];
+  }
+  return all;
+}
+
+/** The bricks of 16 x 16 rows of words; from `at` on. */
+static void add_words(vxm_octree_pieces *p, const uint64_t words[256], const int64_t at[3]) {
+  for (int64_t b = 0; b < 16; b++) {
+    const uint64_t *rows = words + 64 * (b / 4) + 4 * (b % 4);
+    uint64_t any = 0;
+    for (int r = 0; r < 16; r++)
+      any |= rows[16 * (r / 4) + r % 4];
+    for (int64_t x = 0; any; x++, any >>= 4) {
+      uint64_t bits = 0;
+      for (int r = 0; r < 16 && (any & 15); r++)
+        bits |= (rows[16 * (r / 4) + r % 4] >> 4 * x & 15) << 4 * r;
+      if (bits)
+        vxm_octree_pieces_brick(p, (int64_t[3]){at[0] + 4 * x, at[1] + b % 4 * 4, at[2] + b / 4 * 4}, bits);
+    }
+  }
+}
+
+void vxm_octree_pieces_window(vxm_octree_pieces *p, const vxm_window *window, const int64_t first[3]) {
+  uint64_t words[256];
+  int64_t at[3];
+  for (at[2] = (first[2] + window->begin) & -16; at[2] < first[2] + window->end; at[2] += 16)
+    for (at[1] = first[1] & -16; at[1] < first[1] + window->middle_dim; at[1] += 16)
+      for (size_t w = 0; w < window->row_words && p->status == VXM_OK; w++) {
+        uint64_t all = take_words(words, window, at[1] - first[1], at[2] - first[2], w), full = 0;
+        at[0] = first[0] + 64 * (int64_t)w;
+        for (int64_t x = 0; x < 64; x += 16)
+          if ((all >> x & 0xffff) == 0xffff) {
+            full |= UINT64_C(0xffff) << x;
+            vxm_octree_pieces_box(p, (int64_t[3]){at[0] + x, at[1], at[2]},
+                                  (int64_t[3]){at[0] + x + 16, at[1] + 16, at[2] + 16});
+          }
+        for (int r = 0; r < 256; r++)
+          words[r] &= ~full;
+        add_words(p, words, at);
+      }
 }
 
 /* ---- The octree ---- */

@@ -26,6 +26,11 @@ typedef struct vxm_octree_pieces {
 void vxm_octree_pieces_brick(vxm_octree_pieces *pieces, const int64_t at[3], uint64_t bits);
 /** Sets all voxels begin..end-1 that the grid has. */
 void vxm_octree_pieces_box(vxm_octree_pieces *pieces, const int64_t begin[3], const int64_t end[3]);
+/** Sets the voxels of a window in the layout of a grid, whose space begins at voxel `first` of the grid, the
+ * x of it a multiple of 64. */
+void vxm_octree_pieces_window(vxm_octree_pieces *pieces, const vxm_window *window, const int64_t first[3]);
+/** The bits of a brick that lie in a box of voxels. */
+uint64_t vxm_octree_bits_within(const int64_t at[3], const int64_t begin[3], const int64_t end[3]);
 /** Makes the octree, and frees the list, also after a failure. @return VXM_OK, VXM_ERROR_MEMORY,
  * VXM_ERROR_MEMORY_LIMIT */
 vxm_status vxm_octree_pieces_end(vxm_sparse **out, vxm_octree_pieces *pieces);

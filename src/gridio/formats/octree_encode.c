@@ -1,57 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Values of an octree in the making: nodes of level 0 are encoded while their slices are there, and put
- * together in Morton order in the end. */
+/** Values of an octree in the making: nodes of level 0 are encoded while their values are there. */
 #include "base/endian.h"
 #include "base/threads.h"
-#include "grid/octree_build.h"
-#include "gridio/formats/octree_values.h"
+#include "gridio/formats/octree_encoder.h"
 
-#include <inttypes.h>
-#include <stdlib.h>
-
-enum { SIDE = VXM_STRIP_VOXELS, WORKER_SHIFT = 48 };
-
-/** Bytes that grow. */
-typedef struct bytes {
-  unsigned char *data;
-  size_t size, capacity;
-} bytes;
-
-/** Where the values of a node of level 0 are. */
-typedef struct entry {
-  uint64_t key; /**< Morton number of the node */
-  uint64_t at;  /**< the worker, above WORKER_SHIFT bits, and where its bytes begin */
-} entry;
-
-typedef struct worker_room {
-  bytes values;
-  entry *entries;
-  size_t count, capacity;
-} worker_room;
-
-struct vxm_octree_encoder {
-  vxm_context *context;
-  vxm_space space;
-  vxm_values_spec spec;
-  size_t value_bytes;
-  unsigned char background[VXM_OCTREE_VALUE_BYTES];
-  vxm_octree_builder builder;
-  worker_room *rooms;
-  size_t workers;
-  atomic_int failed;           /**< a vxm_status */
-  const unsigned char *slices; /**< at hand, begin..end-1 */
-  int64_t begin, end;
-  const entry *next;      /**< in the end */
-  const vxm_sparse *tree; /**< in the end */
-  bytes out;              /**< in the end, of a block */
-};
+enum { SIDE = VXM_STRIP_VOXELS };
 
 static void note(vxm_octree_encoder *e, vxm_status status) {
   if (status != VXM_OK)
     atomic_store_explicit(&e->failed, (int)status, memory_order_relaxed);
 }
 
-static vxm_status check(const vxm_octree_encoder *e, vxm_error *error) {
+vxm_status vxm_octree_encoder_check(const vxm_octree_encoder *e, vxm_error *error) {
   vxm_status status = (vxm_status)atomic_load_explicit(&e->failed, memory_order_relaxed);
   if (status != VXM_OK)
     return vxm_fail(error, status,
@@ -59,8 +19,7 @@ static vxm_status check(const vxm_octree_encoder *e, vxm_error *error) {
   return vxm_octree_builder_check(&e->builder, error);
 }
 
-/** Adds bytes, or room for them; false if memory ran out. */
-static bool add(vxm_octree_encoder *e, bytes *to, const void *data, size_t size) {
+bool vxm_octree_encoder_add(vxm_octree_encoder *e, vxm_value_bytes *to, const void *data, size_t size) {
   vxm_status status = vxm_grow(e->context, (void **)&to->data, &to->capacity, to->size + size, 1, NULL);
   if (status != VXM_OK) {
     note(e, status);
@@ -71,28 +30,10 @@ static bool add(vxm_octree_encoder *e, bytes *to, const void *data, size_t size)
   return true;
 }
 
-static bool add_value(vxm_octree_encoder *e, bytes *to, const unsigned char *value) {
+static bool add_value(vxm_octree_encoder *e, vxm_value_bytes *to, const unsigned char *value) {
   unsigned char stored[VXM_OCTREE_VALUE_BYTES];
   vxm_octree_copy_value(stored, value, e->value_bytes, e->spec.channels);
-  return add(e, to, stored, e->value_bytes);
-}
-
-/**
- * Replaces what was added from `from` on, a 0 and the encoded children, by 1 and their value if that is one.
- *
- * @param alike all children have one value, and that of the first stands behind the first two bytes
- */
-static void unite(const vxm_octree_encoder *e, bytes *to, size_t from, bool alike) {
-  if (!alike)
-    return;
-  memmove(to->data + from, to->data + from + 1, 1 + e->value_bytes);
-  to->size = from + 1 + e->value_bytes;
-}
-
-/** Whether what was added from `from` on is one value, equal to the first that was added from `first` on. */
-static bool is_like(const vxm_octree_encoder *e, const bytes *b, size_t first, size_t from) {
-  return b->data[first] == 1 && b->data[from] == 1 &&
-         memcmp(b->data + first + 1, b->data + from + 1, e->value_bytes) == 0;
+  return vxm_octree_encoder_add(e, to, stored, e->value_bytes);
 }
 
 /* ---- A node of level 0 ---- */
@@ -153,7 +94,7 @@ static const unsigned char *value_of(const vxm_octree_encoder *e, const node *n,
                   e->value_bytes);
 }
 
-static void encode_brick(vxm_octree_encoder *e, bytes *to, const node *n, const int64_t brick[3],
+static void encode_brick(vxm_octree_encoder *e, vxm_value_bytes *to, const node *n, const int64_t brick[3],
                          uint64_t bits) {
   static const unsigned char varied = 0, uniform = 1;
   const unsigned char *first = NULL;
@@ -163,7 +104,7 @@ static void encode_brick(vxm_octree_encoder *e, bytes *to, const node *n, const 
     first = first ? first : value;
     alike = memcmp(first, value, e->value_bytes) == 0;
   }
-  if (!add(e, to, alike ? &uniform : &varied, 1))
+  if (!vxm_octree_encoder_add(e, to, alike ? &uniform : &varied, 1))
     return;
   for (uint64_t left = alike ? bits & -bits : bits; left; left &= left - 1)
     if (!add_value(e, to, value_of(e, n, brick, __builtin_ctzll(left))))
@@ -177,13 +118,20 @@ static uint64_t morton(uint64_t x, uint64_t y, uint64_t z) {
   return key;
 }
 
+static void add_entry(vxm_octree_encoder *e, vxm_node_room *room, uint64_t key, uint64_t at) {
+  note(e, vxm_grow(e->context, (void **)&room->entries, &room->capacity, room->count + 1,
+                   sizeof *room->entries, NULL));
+  if (room->count < room->capacity)
+    room->entries[room->count++] = (vxm_node_entry){key, at};
+}
+
 /** Encodes a node, whose bricks go to `bricks` in the order of vxm_strip_add_node. */
-static void encode_node(vxm_octree_encoder *e, worker_room *room, const node *n, uint64_t key,
+static void encode_node(vxm_octree_encoder *e, vxm_node_room *room, const node *n, uint64_t key,
                         uint64_t worker, uint64_t bricks[VXM_STRIP_BRICKS]) {
   static const unsigned char varied = 0;
-  bytes *to = &room->values;
+  vxm_value_bytes *to = &room->values;
   size_t from = to->size, count = 0;
-  bool alike = add(e, to, &varied, 1);
+  bool alike = vxm_octree_encoder_add(e, to, &varied, 1);
   for (unsigned child = 0; child < 64; child++) {
     int64_t brick[3];
     vxm_octree_place(child, brick);
@@ -194,16 +142,31 @@ static void encode_node(vxm_octree_encoder *e, worker_room *room, const node *n,
       continue;
     size_t begin = to->size;
     encode_brick(e, to, n, brick, bits);
-    if (atomic_load_explicit(&e->failed, memory_order_relaxed) != VXM_OK)
+    if (vxm_octree_encoder_failed(e))
       return;
-    alike &= is_like(e, to, from + 1, begin);
+    alike &= vxm_octree_encoder_is_like(e, to, from + 1, begin);
     count++;
   }
-  unite(e, to, from, alike && count > 0);
-  note(e, vxm_grow(e->context, (void **)&room->entries, &room->capacity, room->count + 1,
-                   sizeof *room->entries, NULL));
-  if (room->count < room->capacity)
-    room->entries[room->count++] = (entry){key, worker << WORKER_SHIFT | from};
+  vxm_octree_encoder_unite(e, to, from, alike && count > 0);
+  add_entry(e, room, key, worker << VXM_WORKER_SHIFT | from);
+}
+
+static void fill_clear(const vxm_octree_encoder *e, unsigned char clear[SIDE * VXM_OCTREE_VALUE_BYTES]) {
+  for (size_t v = 0; v < SIDE; v++)
+    memcpy(clear + v * e->value_bytes, e->background, e->value_bytes);
+}
+
+/** Encodes a node unless it is empty; false if memory ran out. */
+static bool put_node(vxm_octree_encoder *e, size_t worker, const node *n, const size_t at[3],
+                     const unsigned char *clear) {
+  uint64_t bricks[VXM_STRIP_BRICKS];
+  if (is_empty(e, n, clear))
+    return true;
+  encode_node(e, &e->rooms[worker], n, morton(at[0], at[1], at[2]), worker, bricks);
+  if (vxm_octree_encoder_failed(e))
+    return false;
+  vxm_strip_add_node(&e->builder, worker, at[0], bricks);
+  return true;
 }
 
 static void put_strip(size_t task, int worker, void *payload) {
@@ -215,34 +178,135 @@ static void put_strip(size_t task, int worker, void *payload) {
   n.slice = n.row * (size_t)dims[1];
   n.count[1] = vxm_min(SIDE, dims[1] - (int64_t)y * SIDE);
   n.count[2] = vxm_min(SIDE, e->end - (int64_t)z * SIDE);
-  for (size_t v = 0; v < SIDE; v++)
-    memcpy(clear + v * e->value_bytes, e->background, e->value_bytes);
+  fill_clear(e, clear);
   for (size_t x = 0; (int64_t)x * SIDE < dims[0]; x++) {
-    uint64_t bricks[VXM_STRIP_BRICKS];
     n.count[0] = vxm_min(SIDE, dims[0] - (int64_t)x * SIDE);
     n.first =
         e->slices + (z * SIDE - (size_t)e->begin) * n.slice + y * SIDE * n.row + x * SIDE * e->value_bytes;
-    if (is_empty(e, &n, clear))
-      continue;
-    encode_node(e, &e->rooms[worker], &n, morton(x, y, z), (uint64_t)worker, bricks);
-    if (atomic_load_explicit(&e->failed, memory_order_relaxed) != VXM_OK)
+    if (!put_node(e, (size_t)worker, &n, (size_t[3]){x, y, z}, clear))
       return;
-    vxm_strip_add_node(&e->builder, (size_t)worker, x, bricks);
   }
   vxm_strip_end(&e->builder, (size_t)worker, y, z);
 }
 
+/** Of distances and numbers the first value is the background, of others 0. */
+static void take_background(vxm_octree_encoder *e, const unsigned char *first) {
+  vxm_field_kind kind = e->spec.about->kind;
+  if (kind == VXM_FIELD_DISTANCE || kind == VXM_FIELD_NUMBERS)
+    memcpy(e->background, first, e->value_bytes);
+}
+
 vxm_status vxm_octree_encoder_put(vxm_octree_encoder *e, const unsigned char *values, int64_t begin,
                                   int64_t end, vxm_error *error) {
-  vxm_field_kind kind = e->spec.about->kind;
-  if (begin == 0 && (kind == VXM_FIELD_DISTANCE || kind == VXM_FIELD_NUMBERS)) /* of others it is 0 */
-    memcpy(e->background, values, e->value_bytes);
+  if (begin == 0)
+    take_background(e, values);
   e->slices = values;
   e->begin = begin;
   e->end = end;
   size_t deep = (size_t)((end - begin + SIDE - 1) / SIDE);
   vxm_parallel(e->context, deep * e->builder.across, put_strip, e);
-  return check(e, error);
+  return vxm_octree_encoder_check(e, error);
+}
+
+/* ---- Values that are made in nodes ---- */
+
+/** Encodes a node whose voxels have one value; such nodes share their bytes. */
+static void put_one(vxm_octree_encoder *e, size_t worker, const unsigned char *value, const size_t at[3]) {
+  static const unsigned char uniform = 1;
+  vxm_node_room *room = &e->rooms[worker];
+  if (memcmp(value, e->background, e->value_bytes) == 0)
+    return;
+  if (!room->has_one || memcmp(value, room->one, e->value_bytes) != 0) {
+    room->one_at = worker << VXM_WORKER_SHIFT | room->values.size;
+    memcpy(room->one, value, e->value_bytes);
+    room->has_one =
+        vxm_octree_encoder_add(e, &room->values, &uniform, 1) && add_value(e, &room->values, value);
+  }
+  add_entry(e, room, morton(at[0], at[1], at[2]), room->one_at);
+  const int64_t first[3] = {(int64_t)at[0] * SIDE, (int64_t)at[1] * SIDE, (int64_t)at[2] * SIDE};
+  uint64_t bricks[VXM_STRIP_BRICKS];
+  bool whole = true;
+  for (int a = 0; a < 3; a++)
+    whole &= first[a] + SIDE <= e->space.dims[a];
+  if (whole) {
+    vxm_strip_add_full(&e->builder, worker, at[0], at[0] + 1);
+    return;
+  }
+  for (int64_t b = 0; b < VXM_STRIP_BRICKS; b++) { /* in the order of vxm_strip_add_node */
+    const int64_t y = (b & 1) | (b >> 1 & 2), z = (b >> 1 & 1) | (b >> 2 & 2);
+    bricks[b] = vxm_octree_box(e->space.dims,
+                               (int64_t[3]){first[0] + b / 16 * 4, first[1] + 4 * y, first[2] + 4 * z});
+  }
+  vxm_strip_add_node(&e->builder, worker, at[0], bricks);
+}
+
+static void make_row(size_t y, int worker, void *payload) {
+  vxm_octree_encoder *e = payload;
+  const vxm_node_maker *maker = e->maker;
+  unsigned char clear[SIDE * VXM_OCTREE_VALUE_BYTES];
+  int64_t at[3] = {0, (int64_t)y * SIDE, e->begin};
+  node n = {.row = SIDE * e->value_bytes, .slice = (size_t)SIDE * SIDE * e->value_bytes};
+  if (vxm_task_progress_stopped(&e->watch, worker))
+    return;
+  if (maker->begin_row)
+    maker->begin_row(maker->payload, worker, at[1], at[2]);
+  fill_clear(e, clear);
+  for (; at[0] < e->space.dims[0]; at[0] += SIDE) {
+    const size_t place[3] = {(size_t)at[0] / SIDE, y, (size_t)at[2] / SIDE};
+    bool is_first = at[0] + at[1] + at[2] == 0, is_one = e->is_first_one;
+    n.first = is_first ? e->first : e->rooms[worker].node;
+    if (!is_first)
+      is_one = maker->make(maker->payload, worker, at, e->rooms[worker].node);
+    for (int a = 0; a < 3; a++)
+      n.count[a] = vxm_node_count(&e->space, at, a);
+    if (is_one)
+      put_one(e, (size_t)worker, n.first, place);
+    else
+      put_node(e, (size_t)worker, &n, place, clear);
+    if (vxm_octree_encoder_failed(e))
+      return;
+  }
+  vxm_strip_end(&e->builder, (size_t)worker, y, (size_t)e->begin / SIDE);
+  vxm_task_progress_step(&e->watch);
+}
+
+static vxm_status make_room(vxm_octree_encoder *e, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  e->first = vxm_alloc(e->context, VXM_NODE_VOXELS, e->value_bytes, &local);
+  for (size_t w = 0; w < e->workers && local.code == VXM_OK; w++)
+    e->rooms[w].node = vxm_alloc(e->context, VXM_NODE_VOXELS, e->value_bytes, &local);
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
+  return local.code;
+}
+
+/** The first node, whose first value may be the background. */
+static void make_first(vxm_octree_encoder *e) {
+  static const int64_t origin[3] = {0, 0, 0};
+  if (e->maker->begin_row)
+    e->maker->begin_row(e->maker->payload, 0, 0, 0);
+  e->is_first_one = e->maker->make(e->maker->payload, 0, origin, e->first);
+  take_background(e, e->first);
+}
+
+vxm_status vxm_octree_encoder_make(vxm_octree_encoder *e, const vxm_node_maker *maker, vxm_error *error) {
+  vxm_status status = make_room(e, error);
+  e->maker = maker;
+  if (status != VXM_OK)
+    return status;
+  vxm_task_progress_start(&e->watch, e->context, maker->phase, e->builder.across * e->builder.deep, error);
+  for (e->begin = 0; e->begin < e->space.dims[2] && status == VXM_OK; e->begin = e->end) {
+    e->end = vxm_min(e->begin + SIDE, e->space.dims[2]);
+    if (maker->begin_layer)
+      status = maker->begin_layer(maker->payload, e->begin, error);
+    if (status == VXM_OK && e->begin == 0)
+      make_first(e);
+    if (status == VXM_OK)
+      vxm_parallel(e->context, e->builder.across, make_row, e);
+    if (status == VXM_OK)
+      status = e->watch.status == VXM_OK ? vxm_octree_encoder_check(e, error) : e->watch.status;
+  }
+  return status == VXM_OK ? vxm_task_progress_end(&e->watch) : status;
 }
 
 /* ---- All of it ---- */
@@ -273,166 +337,11 @@ void vxm_octree_encoder_destroy(vxm_octree_encoder *e) {
   for (size_t w = 0; e->rooms && w < e->workers; w++) {
     vxm_free(e->context, e->rooms[w].values.data);
     vxm_free(e->context, e->rooms[w].entries);
+    vxm_free(e->context, e->rooms[w].node);
   }
   vxm_free(e->context, e->rooms);
+  vxm_free(e->context, e->first);
   vxm_free(e->context, e->out.data);
   vxm_octree_builder_destroy(&e->builder);
   vxm_free(e->context, e);
-}
-
-static int compare(const void *a, const void *b) {
-  const entry *p = a, *q = b;
-  return p->key < q->key ? -1 : p->key > q->key;
-}
-
-/** All entries in Morton order. */
-static vxm_status gather(entry **out, vxm_octree_encoder *e, vxm_error *error) {
-  size_t count = 0, at = 0;
-  vxm_error local = VXM_ERROR_INIT;
-  for (size_t w = 0; w < e->workers; w++)
-    count += e->rooms[w].count;
-  entry *all = vxm_alloc(e->context, count, sizeof *all, &local);
-  *out = all;
-  if (!all) {
-    if (local.code != VXM_OK)
-      vxm_error_pass(error, &local);
-    return local.code;
-  }
-  for (size_t w = 0; w < e->workers; w++) {
-    if (e->rooms[w].count > 0)
-      memcpy(all + at, e->rooms[w].entries, e->rooms[w].count * sizeof *all);
-    at += e->rooms[w].count;
-    vxm_free(e->context, e->rooms[w].entries);
-    e->rooms[w].entries = NULL;
-  }
-  if (count > 1)
-    qsort(all, count, sizeof *all, compare);
-  return VXM_OK;
-}
-
-/** How many bytes the encoded part of a tree takes at `data`, of a node of level 0. */
-static size_t node_bytes(const vxm_octree_encoder *e, vxm_octree_part part, const unsigned char *data) {
-  const unsigned char *at = data + 1;
-  if (*data == 1)
-    return 1 + e->value_bytes;
-  for (uint64_t left = vxm_octree_children(e->tree, 0, part); left; left &= left - 1) {
-    vxm_octree_part brick = vxm_octree_child_part(e->tree, 0, part, (unsigned)__builtin_ctzll(left));
-    uint64_t bits = brick.kind == VXM_CELL_MIXED ? e->tree->bricks[brick.index] : ~UINT64_C(0);
-    at += 1 + (*at == 1 ? 1 : (size_t)vxm_popcount(bits)) * e->value_bytes;
-  }
-  return (size_t)(at - data);
-}
-
-/** Puts a part together out of the nodes that are next. */
-static void encode_part(vxm_octree_encoder *e, int level, vxm_octree_part part) {
-  static const unsigned char varied = 0;
-  if (level == 0) {
-    uint64_t at = e->next++->at;
-    const unsigned char *data =
-        e->rooms[at >> WORKER_SHIFT].values.data + (at & ((UINT64_C(1) << WORKER_SHIFT) - 1));
-    add(e, &e->out, data, node_bytes(e, part, data));
-    return;
-  }
-  size_t from = e->out.size;
-  bool alike = add(e, &e->out, &varied, 1);
-  for (uint64_t left = vxm_octree_children(e->tree, level, part); left; left &= left - 1) {
-    size_t begin = e->out.size;
-    encode_part(e, level - 1, vxm_octree_child_part(e->tree, level, part, (unsigned)__builtin_ctzll(left)));
-    if (atomic_load_explicit(&e->failed, memory_order_relaxed) != VXM_OK)
-      return;
-    alike &= is_like(e, &e->out, from + 1, begin);
-  }
-  unite(e, &e->out, from, alike);
-}
-
-/** Blocks are measured first, since where they begin stands before them, and then written. */
-typedef struct pass {
-  vxm_octree_encoder *e;
-  vxm_output *output; /**< NULL = measure */
-  uint64_t *ends;
-  uint64_t end;
-} pass;
-
-static bool do_block(uint64_t number, const int64_t at[3], void *payload) {
-  pass *p = payload;
-  vxm_octree_encoder *e = p->e;
-  int level = vxm_octree_tile_level(e->tree->levels);
-  e->out.size = 0;
-  encode_part(e, level, vxm_octree_part_at(e->tree, level, at));
-  if (atomic_load_explicit(&e->failed, memory_order_relaxed) != VXM_OK)
-    return false;
-  p->end += e->out.size;
-  if (p->output)
-    vxm_output_write(p->output, e->out.data, e->out.size);
-  else
-    p->ends[number] = p->end;
-  return true;
-}
-
-static bool skip(uint64_t number, const int64_t at[3], void *payload) {
-  (void)number;
-  (void)at;
-  (void)payload;
-  return true;
-}
-
-static void put_header(const vxm_octree_encoder *e, vxm_output *output, uint64_t blocks) {
-  unsigned char text[40] = {0};
-  const vxm_about *about = e->spec.about;
-  const char *kind = about->is_declared ? vxm_field_kind_name(about->kind) : "";
-  memcpy(text, kind, strlen(kind));
-  memcpy(text + 16, vxm_scalar_name(e->spec.scalar), strlen(vxm_scalar_name(e->spec.scalar)));
-  vxm_store_le64(text + 24, (uint64_t)e->spec.channels);
-  vxm_octree_copy_value(text + VXM_OCTREE_BACKGROUND, e->background, e->value_bytes, e->spec.channels);
-  vxm_output_write(output, text, sizeof text);
-  vxm_octree_put_word(output, blocks);
-  vxm_octree_put_word(output, 0);
-}
-
-static vxm_status put_all(vxm_octree_encoder *e, vxm_output *output, const entry *entries, uint64_t begin,
-                          vxm_error *error) {
-  const int64_t origin[3] = {0, 0, 0};
-  vxm_error local = VXM_ERROR_INIT;
-  uint64_t blocks = vxm_octree_each_block(e->tree->nodes, e->tree->levels, origin, origin, skip, NULL);
-  pass p = {.e = e, .end = begin + VXM_OCTREE_VALUES_HEADER + 8 * (blocks + 1)};
-  p.ends = vxm_alloc(e->context, (size_t)blocks + 1, sizeof *p.ends, &local);
-  if (!p.ends) {
-    vxm_error_pass(error, &local);
-    return local.code;
-  }
-  uint64_t first = p.end;
-  for (int turn = 0; turn < 2; turn++) {
-    e->next = entries;
-    vxm_octree_each_block(e->tree->nodes, e->tree->levels, origin, e->space.dims, do_block, &p);
-    if (check(e, &local) != VXM_OK || p.output)
-      break;
-    put_header(e, output, blocks);
-    vxm_octree_put_word(output, first);
-    for (uint64_t b = 0; b < blocks; b++)
-      vxm_octree_put_word(output, p.ends[b]);
-    p.output = output;
-  }
-  vxm_free(e->context, p.ends);
-  if (local.code != VXM_OK)
-    vxm_error_pass(error, &local);
-  return local.code;
-}
-
-vxm_status vxm_octree_encoder_end(vxm_octree_encoder *e, vxm_output *output, vxm_error *error) {
-  vxm_sparse *tree;
-  entry *entries = NULL;
-  uint64_t begin;
-  vxm_status status = vxm_octree_builder_end(&tree, &e->builder, error);
-  if (status != VXM_OK)
-    return status;
-  e->tree = tree;
-  status = gather(&entries, e, error);
-  if (status == VXM_OK)
-    status = vxm_octree_file_put(output, tree, &begin, error);
-  if (status == VXM_OK)
-    status = put_all(e, output, entries, begin, error);
-  vxm_free(e->context, entries);
-  vxm_sparse_destroy(tree);
-  e->tree = NULL;
-  return status;
 }

@@ -10,6 +10,7 @@
 #ifndef VXM_GRIDIO_FORMATS_OCTREE_VALUES_H
 #define VXM_GRIDIO_FORMATS_OCTREE_VALUES_H
 
+#include "grid/node_values.h"
 #include "gridio/common/values_writer.h"
 #include "gridio/formats/octree_blocks.h"
 
@@ -36,6 +37,8 @@ static inline void vxm_octree_copy_value(unsigned char *out, const unsigned char
 
 /** Writes values slice by slice, along z. */
 extern const vxm_values_writer_kind vxm_octree_values;
+/** Instead of slices: makes all values of an open file of this kind in nodes. */
+vxm_status vxm_octree_values_make(vxm_values_writer *writer, const vxm_node_maker *maker, vxm_error *error);
 
 /** What encodes nodes of 16 x 16 x 16 voxels, and then all. */
 typedef struct vxm_octree_encoder vxm_octree_encoder;
@@ -47,6 +50,9 @@ void vxm_octree_encoder_destroy(vxm_octree_encoder *encoder);
 /** Takes slices begin..end-1 along z, x fastest: whole strips (VXM_STRIP_VOXELS), or up to the end. */
 vxm_status vxm_octree_encoder_put(vxm_octree_encoder *encoder, const unsigned char *values, int64_t begin,
                                   int64_t end, vxm_error *error);
+/** Takes all values from a maker; instead of slices. */
+vxm_status vxm_octree_encoder_make(vxm_octree_encoder *encoder, const vxm_node_maker *maker,
+                                   vxm_error *error);
 /** Writes the file. A failed write is told when the output is committed. */
 vxm_status vxm_octree_encoder_end(vxm_octree_encoder *encoder, vxm_output *output, vxm_error *error);
 

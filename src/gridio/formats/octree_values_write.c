@@ -5,7 +5,7 @@
 
 typedef struct state {
   vxm_octree_encoder *encoder;
-  unsigned char *kept; /**< slices begin to end - 1 */
+  unsigned char *kept; /**< slices begin to end - 1; NULL = none has been kept so far */
   int64_t begin, end;
 } state;
 
@@ -14,9 +14,6 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
   state *s = vxm_calloc(w->context, 1, sizeof *s, &local);
   w->state = s;
   if (s)
-    s->kept =
-        vxm_alloc(w->context, (size_t)vxm_min(VXM_STRIP_VOXELS, w->space.dims[2]), w->slice_bytes, &local);
-  if (local.code == VXM_OK)
     vxm_octree_encoder_create(&s->encoder, w->context, &w->space, &w->values, &local);
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
@@ -26,6 +23,14 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
 /** Keeps a slice, and encodes those that are kept once they make a strip. */
 static vxm_status keep(vxm_values_writer *w, const unsigned char *slice, vxm_error *error) {
   state *s = w->state;
+  vxm_error local = VXM_ERROR_INIT;
+  if (!s->kept)
+    s->kept =
+        vxm_alloc(w->context, (size_t)vxm_min(VXM_STRIP_VOXELS, w->space.dims[2]), w->slice_bytes, &local);
+  if (!s->kept) {
+    vxm_error_pass(error, &local);
+    return local.code;
+  }
   memcpy(s->kept + (size_t)(s->end - s->begin) * w->slice_bytes, slice, w->slice_bytes);
   s->end++;
   if (s->end % VXM_STRIP_VOXELS != 0 && s->end != w->space.dims[2])
@@ -54,6 +59,11 @@ static vxm_status put(vxm_values_writer *w, const void *values, int64_t first, i
     at += (size_t)whole * w->slice_bytes;
   }
   return status;
+}
+
+vxm_status vxm_octree_values_make(vxm_values_writer *w, const vxm_node_maker *maker, vxm_error *error) {
+  state *s = w->state;
+  return vxm_octree_encoder_make(s->encoder, maker, error);
 }
 
 static vxm_status end(vxm_values_writer *w, vxm_error *error) {

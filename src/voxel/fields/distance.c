@@ -2,34 +2,23 @@
 #include "voxel/fields/distance.h"
 #include "base/task_progress.h"
 #include "base/threads.h"
-#include "voxel/closest/distance_bvh.h"
 #include "voxel/fields/distance_band.h"
 #include "voxel/model/model_report.h"
-#include "voxel/surface/surface.h"
 
 #include <math.h>
 #include <string.h>
-
-/** Bands up to that are measured from the triangles; wider ones, and all of space, by the tree. */
-static const double widest_band = 6;
 
 typedef vxm_band_tally tally;
 
 typedef struct measure {
   vxm_context *context;
   vxm_model_pass *pass; /**< NULL without a sign */
-  const vxm_surface *surface;
   const vxm_space *space;
-  int axes[3];            /**< of the values: the one that varies fastest, the next, the slices */
-  int64_t dims[3];        /**< in that order */
-  double side;            /**< the longest of a voxel, model units: lengths are counted in it */
-  double band;            /**< INFINITY = none */
-  float beyond[VXM_TILE]; /**< values beyond it */
+  vxm_distance_search search;
+  int64_t dims[3];        /**< in the order of the values */
+  float beyond[VXM_TILE]; /**< values beyond the band */
   bool is_signed;
-  double (*places)[3]; /**< of the vertices, while triangles are taken */
-  vxm_band_families *families;
-  vxm_distance_band *near; /**< instead of all up to `squares`, where there is a narrow band */
-  vxm_distance_bvh *nearest;
+  vxm_distance_band *near; /**< where there is a narrow band */
   vxm_distance_bvh_tile_fn *find;
   vxm_search **searches; /**< of each worker */
   double *squares;       /**< VXM_TILE_POINTS for each worker */
@@ -41,28 +30,13 @@ typedef struct measure {
   vxm_task_progress watch;
 } measure;
 
-/** The side of a voxel that a band is counted in. */
-static double longest_side(const vxm_space *space) {
-  const double *size = space->voxel_size;
-  return fmax(fmax(size[0], size[1]), size[2]);
-}
-
-float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space) {
-  return (float)((options->band > 0 ? options->band : INFINITY) * longest_side(space));
-}
-
-static measure measure_of(vxm_context *context, const vxm_surface *surface, const vxm_space *space,
-                          vxm_layout layout, const vxm_distance_options *options) {
+static measure measure_of(vxm_context *context, const vxm_space *space, vxm_layout layout,
+                          const vxm_distance_options *options) {
   measure m = {.context = context,
-               .surface = surface,
                .space = space,
-               .axes = {layout.fast, layout.middle, layout.slow},
-               .side = longest_side(space),
-               .band = options->band > 0 ? options->band : INFINITY,
+               .dims = {space->dims[layout.fast], space->dims[layout.middle], space->dims[layout.slow]},
                .is_signed = !options->is_unsigned,
                .find = vxm_distance_bvh_tile_best()};
-  for (int a = 0; a < 3; a++)
-    m.dims[a] = space->dims[m.axes[a]];
   for (int i = 0; i < VXM_TILE; i++)
     m.beyond[i] = vxm_distance_limit(options, space);
   m.across = (m.dims[0] + VXM_TILE - 1) / VXM_TILE;
@@ -70,80 +44,7 @@ static measure measure_of(vxm_context *context, const vxm_surface *surface, cons
   return m;
 }
 
-/* ---- Triangles ---- */
-
-enum { PLACE_TASKS = 64 };
-
-static void place_vertices(size_t task, int worker, void *payload) {
-  (void)worker;
-  const measure *m = payload;
-  const vxm_soup *soup = m->surface->soup;
-  size_t end = vxm_slice_begin(soup->vertex_count, PLACE_TASKS, task + 1);
-  for (size_t v = vxm_slice_begin(soup->vertex_count, PLACE_TASKS, task); v < end; v++)
-    for (int a = 0; a < 3; a++)
-      m->places[v][a] = (vxm_position(soup, v)[a] - m->space->origin[a]) / m->side;
-}
-
-static void corners_of(double out[3][3], size_t triangle, const void *payload) {
-  const measure *m = payload;
-  for (size_t c = 0; c < 3; c++)
-    memcpy(out[c], m->places[m->surface->corners[3 * triangle + c]], sizeof out[c]);
-}
-
-static bool is_narrow(double band) {
-  return band > 0 && band <= widest_band;
-}
-
-/** For distances within a narrow band. */
-static void make_near(measure *m, vxm_error *error) {
-  vxm_context *context = m->context;
-  vxm_band_grid grid = {.band = m->band};
-  for (int a = 0; a < 3; a++) {
-    grid.axes[a] = m->axes[a];
-    grid.dims[a] = m->dims[a];
-    grid.step[a] = m->space->voxel_size[a] / m->side;
-  }
-  if (vxm_band_families_create(&m->families, context, m->surface->triangle_count, corners_of, m, &grid,
-                               error) == VXM_OK)
-    vxm_distance_band_create(&m->near, m->families, vxm_context_threads(context), error);
-}
-
-static vxm_status make_nearest(measure *m, vxm_error *error) {
-  vxm_context *context = m->context;
-  vxm_error local = VXM_ERROR_INIT;
-  m->places = vxm_alloc(context, m->surface->soup->vertex_count, sizeof *m->places, &local);
-  if (m->places) {
-    vxm_parallel(context, PLACE_TASKS, place_vertices, m);
-    if (is_narrow(m->band))
-      make_near(m, &local);
-    else
-      vxm_distance_bvh_create(&m->nearest, context, m->surface->triangle_count, corners_of, m, &local);
-  }
-  vxm_free(context, m->places);
-  m->places = NULL;
-  if (local.code != VXM_OK)
-    vxm_error_pass(error, &local);
-  return local.code;
-}
-
 /* ---- Values ---- */
-
-static void see(tally *t, float value) {
-  t->least = value < t->least ? value : t->least;
-  t->greatest = value > t->greatest ? value : t->greatest;
-}
-
-/** Some values in a row from squares that are `stride` apart. */
-static void finish_row(const measure *m, float *values, const double *squares, ptrdiff_t stride,
-                       uint64_t inside, int count, tally *t) {
-  for (int i = 0; i < count; i++) {
-    double distance = sqrt(squares[i * stride]);
-    t->exact += distance < m->band;
-    float value = (float)((distance < m->band ? distance : m->band) * m->side);
-    values[i] = inside >> i & 1 ? -value : value;
-    see(t, values[i]);
-  }
-}
 
 /** Some beyond the band. */
 static void fill_row(const measure *m, float *values, uint64_t inside, int count, tally *t) {
@@ -152,21 +53,21 @@ static void fill_row(const measure *m, float *values, uint64_t inside, int count
   for (uint64_t bits = inside; bits; bits &= bits - 1)
     values[__builtin_ctzll(bits)] = -most;
   if (inside)
-    see(t, -most);
+    vxm_band_see(t, -most);
   if (inside != vxm_low_bits((unsigned)count))
-    see(t, most);
+    vxm_band_see(t, most);
 }
 
 static vxm_point_block tile_of(const measure *m, size_t task) {
-  vxm_point_block tile = {.most = m->band};
+  vxm_point_block tile = {.most = m->search.band};
   int64_t row = (int64_t)task / m->across;
   const int64_t first[3] = {(int64_t)task % m->across * VXM_TILE, row % m->down * VXM_TILE,
                             m->begin + row / m->down * VXM_TILE};
   const int64_t end[3] = {m->dims[0], m->dims[1], m->end};
   for (int a = 0; a < 3; a++) {
-    tile.first[m->axes[a]] = first[a];
-    tile.count[m->axes[a]] = (int)vxm_min(end[a] - first[a], VXM_TILE);
-    tile.step[a] = m->space->voxel_size[a] / m->side;
+    tile.first[m->search.axes[a]] = first[a];
+    tile.count[m->search.axes[a]] = (int)vxm_min(end[a] - first[a], VXM_TILE);
+    tile.step[a] = m->space->voxel_size[a] / m->search.side;
   }
   return tile;
 }
@@ -174,7 +75,8 @@ static vxm_point_block tile_of(const measure *m, size_t task) {
 /** Tiles always lie along x, y and z, whatever the order of the values, which then makes no difference. */
 static void finish_tile(const measure *m, const vxm_point_block *tile, const double *squares, tally *t) {
   static const ptrdiff_t strides[3] = {1, VXM_TILE, (ptrdiff_t)VXM_TILE * VXM_TILE};
-  const int fast = m->axes[0], middle = m->axes[1], slow = m->axes[2], count = tile->count[fast];
+  const int fast = m->search.axes[0], middle = m->search.axes[1], slow = m->search.axes[2],
+            count = tile->count[fast];
   const int64_t at = tile->first[fast];
   for (int64_t k = tile->first[slow]; k < tile->first[slow] + tile->count[slow]; k++)
     for (int64_t j = tile->first[middle]; j < tile->first[middle] + tile->count[middle]; j++) {
@@ -184,7 +86,7 @@ static void finish_tile(const measure *m, const vxm_point_block *tile, const dou
       t->inside += vxm_popcount(inside);
       ptrdiff_t row = (k - tile->first[slow]) * strides[slow] + (j - tile->first[middle]) * strides[middle];
       if (squares)
-        finish_row(m, values, squares + row, strides[fast], inside, count, t);
+        vxm_distance_finish(&m->search, values, squares + row, strides[fast], inside, count, t);
       else
         fill_row(m, values, inside, count, t);
     }
@@ -213,7 +115,8 @@ static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_err
   if (status != VXM_OK)
     return status;
   if (m->near)
-    return vxm_distance_band_measure(m->near, m->values, &m->solid, begin, end, m->side, m->tallies, error);
+    return vxm_distance_band_measure(m->near, m->values, &m->solid, begin, end, m->search.side, m->tallies,
+                                     error);
   size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_TILE - 1) / VXM_TILE));
   vxm_task_progress_start(&m->watch, m->context, "measuring distances", tiles, error);
   vxm_parallel(m->context, tiles, measure_tile, m);
@@ -276,15 +179,15 @@ static void sum_up(vxm_distance_report *report, const measure *m, int workers) {
 static vxm_status make_workers(measure *m, int workers, vxm_error *error) {
   vxm_context *context = m->context;
   vxm_error local = VXM_ERROR_INIT;
-  if (m->nearest) {
+  if (m->search.nearest) {
     m->searches = vxm_calloc(context, (size_t)workers, sizeof *m->searches, &local);
     m->squares = vxm_alloc(context, (size_t)workers * VXM_TILE_POINTS, sizeof *m->squares, &local);
   }
   m->tallies = vxm_calloc(context, (size_t)workers, sizeof *m->tallies, &local);
   for (int w = 0; w < workers && local.code == VXM_OK; w++) {
     m->tallies[w] = (tally){.least = INFINITY, .greatest = -INFINITY};
-    if (m->nearest)
-      vxm_search_create(&m->searches[w], m->nearest, &local);
+    if (m->search.nearest)
+      vxm_search_create(&m->searches[w], m->search.nearest, &local);
   }
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
@@ -336,17 +239,15 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
 vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
                              vxm_layout layout, bool is_whole, const vxm_distance_options *options,
                              vxm_error *error) {
-  const vxm_soup *soup = model->analysis.soup;
   size_t triangles;
-  uint64_t held = vxm_surface_held_bytes(soup, &triangles);
   int workers = vxm_context_threads(model->context);
+  uint64_t fixed = vxm_distance_search_bytes(model->analysis.soup, options, &triangles);
   const int64_t dims[3] = {space->dims[layout.fast], space->dims[layout.middle], space->dims[layout.slow]};
   uint64_t each =
       vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double) + sizeof(void *);
-  uint64_t engine = is_narrow(options->band) ? vxm_band_families_bytes(triangles) +
-                                                   vxm_distance_band_bytes(triangles, workers, dims)
-                                             : vxm_distance_bvh_bytes(triangles) + (uint64_t)workers * each;
-  uint64_t fixed = held + engine + soup->vertex_count * sizeof(double[3]) + (uint64_t)workers * sizeof(tally);
+  fixed += vxm_distance_is_narrow(options) ? vxm_distance_band_bytes(triangles, workers, dims)
+                                           : (uint64_t)workers * each;
+  fixed += (uint64_t)workers * sizeof(tally);
   uint64_t values = (uint64_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(float);
   return vxm_field_plan_of(out, model, space, layout, options->is_unsigned ? 0 : 1, true, fixed,
                            is_whole ? 0 : values, error);
@@ -355,22 +256,19 @@ vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const 
 vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_distance_options *options, vxm_error *error) {
   vxm_field_plan plan;
+  vxm_context *context = model->context;
   vxm_status status =
       vxm_distance_plan(&plan, model, space, target->layout, target->whole != NULL, options, error);
   if (status != VXM_OK)
     return status;
-  vxm_surface *surface;
-  vxm_lattice lattice = vxm_lattice_of(space);
-  status = vxm_surface_create(&surface, model->analysis.soup, &lattice, NULL, error);
-  if (status != VXM_OK)
-    return status;
-  measure m = measure_of(model->context, surface, space, target->layout, options);
-  status = make_nearest(&m, error);
+  measure m = measure_of(context, space, target->layout, options);
+  status = vxm_distance_search_create(&m.search, context, model->analysis.soup, space, target->layout,
+                                      options, error);
+  if (status == VXM_OK && m.search.families)
+    status = vxm_distance_band_create(&m.near, m.search.families, vxm_context_threads(context), error);
   if (status == VXM_OK)
     status = run_planned(&m, target, report, model, &plan, error);
   vxm_distance_band_destroy(m.near);
-  vxm_band_families_destroy(m.families);
-  vxm_distance_bvh_destroy(m.nearest);
-  vxm_surface_destroy(surface);
+  vxm_distance_search_destroy(&m.search);
   return status;
 }

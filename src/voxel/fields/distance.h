@@ -3,6 +3,7 @@
 #ifndef VXM_VOXEL_FIELDS_DISTANCE_H
 #define VXM_VOXEL_FIELDS_DISTANCE_H
 
+#include "voxel/fields/distance_search.h"
 #include "voxel/fields/field.h"
 
 /**
@@ -19,8 +20,5 @@ vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report 
 vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
                              vxm_layout layout, bool is_whole, const vxm_distance_options *options,
                              vxm_error *error);
-
-/** The distance of voxels beyond the band, in model units; INFINITY where there is none. */
-float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space);
 
 #endif

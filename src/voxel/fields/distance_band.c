@@ -106,18 +106,18 @@ static bool is_within_reach(const vxm_band_family *f, const vxm_band_grid *grid,
   return true;
 }
 
-static size_t find_near(const vxm_distance_band *band, uint32_t *near, const uint32_t *entries, size_t count,
-                        const vxm_band_tile *tile) {
+size_t vxm_distance_band_near(const vxm_band_families *families, uint32_t *near, const uint32_t *entries,
+                              size_t count, const vxm_band_tile *tile) {
   size_t found = 0;
   int64_t begin = tile->first[0], end = begin + tile->count[0];
   for (size_t i = 0; i < count; i++) {
-    const vxm_band_family *f = &band->families->families[entries[i]];
+    const vxm_band_family *f = &families->families[entries[i]];
     if (f->box[0][0] >= end || f->box[0][1] <= begin)
       continue;
     bool is_large = f->box[0][1] - f->box[0][0] > VXM_BAND_TILE ||
                     f->box[1][1] - f->box[1][0] > VXM_BAND_TILE ||
                     f->box[2][1] - f->box[2][0] > VXM_BAND_TILE;
-    if (!is_large || is_within_reach(f, &band->families->grid, tile))
+    if (!is_large || is_within_reach(f, &families->grid, tile))
       near[found++] = entries[i];
   }
   return found;
@@ -169,7 +169,7 @@ static void measure_piece(size_t task, int worker, void *payload) {
   for (int64_t t = from; t < to; t++) {
     tile->first[0] = t * VXM_BAND_TILE;
     tile->count[0] = (int)vxm_min(dims[0] - tile->first[0], VXM_BAND_TILE);
-    size_t found = find_near(band, near, entries, count, tile);
+    size_t found = vxm_distance_band_near(band->families, near, entries, count, tile);
     if (found == 0)
       continue;
     fill_tiles(band, tile, filled, t, tally);

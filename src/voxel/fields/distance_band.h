@@ -9,6 +9,10 @@
 
 typedef struct vxm_distance_band vxm_distance_band;
 
+/** Lists the families that reach a tile out of those that reach its row of tiles; returns how many. */
+size_t vxm_distance_band_near(const vxm_band_families *families, uint32_t *near, const uint32_t *entries,
+                              size_t count, const vxm_band_tile *tile);
+
 /**
  * Makes what distances within a band are measured with; the families must outlive it.
  *

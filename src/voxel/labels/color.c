@@ -82,21 +82,26 @@ typedef struct color_task {
   vxm_task_progress watch;
 } color_task;
 
-static void color_voxel(const color_task *task, const int64_t at[3], size_t index) {
-  const vxm_color_job *job = task->job;
-  const vxm_space *space = &job->grid->space;
+void vxm_color_voxel(uint8_t value[4], vxm_color_by by, const vxm_space *space, float longest,
+                     const int64_t at[3], uint16_t part) {
   float color[3], unit[3];
   for (int a = 0; a < 3; a++)
-    unit[a] = ((float)at[a] + 0.5F) * (float)space->voxel_size[a] / task->longest;
-  if (job->options->by == VXM_COLOR_NOISE)
+    unit[a] = ((float)at[a] + 0.5F) * (float)space->voxel_size[a] / longest;
+  if (by == VXM_COLOR_NOISE)
     color_by_noise(color, unit);
-  else if (job->options->by == VXM_COLOR_PART)
-    color_by_part(color, job->parts[index]);
+  else if (by == VXM_COLOR_PART)
+    color_by_part(color, part);
   else
     memcpy(color, unit, sizeof color);
   for (int c = 0; c < 3; c++)
-    task->values[4 * index + (size_t)c] = (uint8_t)(clamp(color[c]) * 255 + 0.5F);
-  task->values[4 * index + 3] = 255;
+    value[c] = (uint8_t)(clamp(color[c]) * 255 + 0.5F);
+  value[3] = 255;
+}
+
+static void color_voxel(const color_task *task, const int64_t at[3], size_t index) {
+  const vxm_color_job *job = task->job;
+  vxm_color_voxel(task->values + 4 * index, job->options->by, &job->grid->space, task->longest, at,
+                  job->parts ? job->parts[index] : 0);
 }
 
 static void color_slice(size_t i, int worker, void *payload) {

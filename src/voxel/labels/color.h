@@ -10,6 +10,15 @@
 bool vxm_color_wants_parts(const vxm_color_options *options);
 
 /**
+ * The colour of a set voxel by a function that is built in, on the CPU.
+ *
+ * @param longest vxm_color_longest of the space
+ * @param part    with VXM_COLOR_PART
+ */
+void vxm_color_voxel(uint8_t value[4], vxm_color_by by, const vxm_space *space, float longest,
+                     const int64_t at[3], uint16_t part);
+
+/**
  * Makes the colours of a model.
  *
  * @param values room for dims[0]*dims[1]*dims[2]*4 bytes, [x][y][z][4] in C order

@@ -162,8 +162,10 @@ static void settle_tile(size_t task, int worker, void *payload) {
     const vxm_label_overlap *claim = &c->claim[i];
     if (!atomic_load_explicit(&claim->is_contested, memory_order_relaxed) || !part_of(&part, &tile, claim))
       continue;
-    vxm_nearest_label nearest = {c->bvh,       &c->lattice.space, &claim->window,
-                                 claim->first, c->values,         claim->piece->label};
+    const size_t row = (size_t)c->set.fast_dim, plane = row * (size_t)c->set.middle_dim;
+    uint16_t *values = vxm_label_overlaps_row(c, claim->first[1], claim->first[2]) + claim->first[0];
+    vxm_nearest_label nearest = {c->bvh, &c->lattice.space,  &claim->window, claim->first, values, row,
+                                 plane,  claim->piece->label};
     const int64_t begin[3] = {0, part.begin[0], part.begin[1]},
                   end[3] = {claim->window.fast_dim, part.end[0], part.end[1]};
     vxm_nearest_label_voxels(&nearest, begin, end);

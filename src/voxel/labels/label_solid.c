@@ -2,6 +2,7 @@
 #include "voxel/labels/label_solid.h"
 #include "base/hash.h"
 #include "voxel/fields/field.h"
+#include "voxel/sparse/sparse.h"
 
 #include <string.h>
 
@@ -146,30 +147,143 @@ static vxm_status fill(vxm_model *model, const vxm_window *window, const vxm_lat
   return status;
 }
 
-vxm_status vxm_label_component_fill(vxm_label_component_desk *desk, const vxm_window *window,
-                                    const vxm_label_components *pieces, const vxm_label_component *piece,
-                                    const vxm_voxelize_options *options, const vxm_lattice *lattice,
-                                    bool at_once, vxm_error *error) {
+/** The faces of a piece as a model; NULL where none has an area. */
+static vxm_status make_model(vxm_model **out, vxm_label_component_desk *desk,
+                             const vxm_label_components *pieces, const vxm_label_component *piece,
+                             const vxm_voxelize_options *options, vxm_error *error) {
   vxm_voxelize_options solid = *options;
   solid.mode = VXM_MODE_SOLID;
   solid.confidence = false;
   solid.thin = VXM_THIN_DROP; /* what holds thin parts together has the label of the nearest face */
   solid.engine = NULL;        /* pieces are too small for what an engine costs to start */
-  vxm_lattice own = *lattice;
-  own.space = vxm_label_component_space(piece, &lattice->space);
-  vxm_model *model = NULL;
   vxm_error local = VXM_ERROR_INIT;
+  *out = NULL;
   vxm_status status = gather_faces(desk, pieces, piece, &local);
   if (status == VXM_OK)
-    status = vxm_model_make(&model, desk->soup, &solid, &local);
-  if (status == VXM_OK)
-    status = fill(model, window, &own, at_once, &local);
-  vxm_model_destroy(model);
-  if (status == VXM_ERROR_EMPTY) {
-    memset(window->words, 0, window->slice_words * (size_t)window->slow_dim * sizeof *window->words);
+    status = vxm_model_make(out, desk->soup, &solid, &local);
+  if (status == VXM_ERROR_EMPTY)
     return VXM_OK;
-  }
   if (status != VXM_OK)
     vxm_error_pass(error, &local);
+  return status;
+}
+
+vxm_status vxm_label_component_fill(vxm_label_component_desk *desk, const vxm_window *window,
+                                    const vxm_label_components *pieces, const vxm_label_component *piece,
+                                    const vxm_voxelize_options *options, const vxm_lattice *lattice,
+                                    bool at_once, vxm_error *error) {
+  vxm_lattice own = *lattice;
+  own.space = vxm_label_component_space(piece, &lattice->space);
+  vxm_model *model;
+  vxm_status status = make_model(&model, desk, pieces, piece, options, error);
+  if (status == VXM_OK && model)
+    status = fill(model, window, &own, at_once, error);
+  else if (status == VXM_OK)
+    memset(window->words, 0, window->slice_words * (size_t)window->slow_dim * sizeof *window->words);
+  vxm_model_destroy(model);
+  return status;
+}
+
+/* ---- As an octree ---- */
+
+/** Slices of a box's window that begin and end at nodes of the whole space. */
+static int64_t next_slice(const vxm_label_component *piece, int64_t begin, int64_t slices, int64_t end) {
+  enum { NODE = 16 };
+  int64_t next = begin + slices, over = (piece->begin[2] + next) % NODE;
+  return vxm_min(next - (over < slices ? over : 0), end);
+}
+
+/** Range of slices after range, each as a window. */
+static vxm_status add_windows(vxm_octree_pieces *out, vxm_model *model, const vxm_label_component *piece,
+                              const vxm_lattice *whole, bool is_without, vxm_error *error) {
+  const vxm_layout layout = VXM_LAYOUT_GRID;
+  vxm_lattice own = *whole;
+  vxm_field_plan plan;
+  vxm_model_pass *pass = NULL;
+  vxm_error local = VXM_ERROR_INIT;
+  own.space = vxm_label_component_space(piece, &whole->space);
+  vxm_window part = vxm_window_of(&own.space, layout, 0, 0);
+  vxm_status status = vxm_field_plan_of(&plan, model, &own.space, layout, 1, true, 0, 0, &local);
+  if (status == VXM_OK) {
+    part.words =
+        vxm_alloc(model->context, (size_t)plan.slices * part.slice_words, sizeof *part.words, &local);
+    status = local.code;
+  }
+  if (status == VXM_OK)
+    status = vxm_model_begin_on(&pass, model, &own, NULL, NULL, &local);
+  for (; part.end < part.slow_dim && status == VXM_OK;) {
+    part.begin = part.end;
+    part.end = next_slice(piece, part.begin, plan.slices, part.slow_dim);
+    status = is_without ? fill_without_sheets(&pass->solid, &part, &local)
+                        : vxm_model_pass_fill(pass, &part, &local);
+    if (status == VXM_OK)
+      vxm_octree_pieces_window(out, &part, piece->begin);
+    if (status == VXM_OK)
+      status = out->status;
+  }
+  vxm_model_close(model, pass);
+  vxm_free(model->context, part.words);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
+  return status;
+}
+
+/** Straight from the triangles. */
+static vxm_status make_octree(vxm_sparse **out, vxm_model *model, const vxm_lattice *whole, bool is_without,
+                              vxm_error *error) {
+  vxm_model_pass *pass;
+  vxm_status status = vxm_model_begin_on(&pass, model, whole, NULL, NULL, error);
+  if (status == VXM_OK)
+    status = is_without ? vxm_sparse_closed(out, pass, error) : vxm_sparse_of_pass(out, model, pass, error);
+  vxm_model_close(model, pass);
+  return status;
+}
+
+typedef struct clip {
+  vxm_octree_pieces *out;
+  const vxm_label_component *piece;
+} clip;
+
+/** What lies in the piece's box. */
+static void add_clipped(const vxm_sparse_piece *from, void *payload) {
+  const clip *c = payload;
+  int64_t begin[3], end[3];
+  bool is_inside = true;
+  for (int a = 0; a < 3; a++) {
+    begin[a] = vxm_max(from->position[a], c->piece->begin[a]);
+    end[a] = vxm_min(from->position[a] + from->side, c->piece->end[a]);
+    is_inside &= end[a] - begin[a] == from->side;
+  }
+  if (from->bits == ~UINT64_C(0))
+    vxm_octree_pieces_box(c->out, begin, end);
+  else if (is_inside)
+    vxm_octree_pieces_brick(c->out, from->position, from->bits);
+  else
+    vxm_octree_pieces_brick(c->out, from->position,
+                            from->bits & vxm_octree_bits_within(from->position, begin, end));
+}
+
+vxm_status vxm_label_component_add(vxm_octree_pieces *out, vxm_label_component_desk *desk,
+                                   const vxm_label_components *pieces, const vxm_label_component *piece,
+                                   const vxm_voxelize_options *options, const vxm_lattice *lattice,
+                                   bool is_small, vxm_error *error) {
+  vxm_model *model;
+  vxm_sparse *octree = NULL;
+  vxm_status status = make_model(&model, desk, pieces, piece, options, error);
+  if (status != VXM_OK || !model)
+    return status;
+  bool is_without = has_lone_sheet(model);
+  bool is_empty = is_without && model->analysis.triangles.split.kind_end[VXM_PART_CAPPED] == 0;
+  if (!is_empty && !is_small && (is_without || vxm_sparse_is_direct(model)))
+    status = make_octree(&octree, model, lattice, is_without, error);
+  else if (!is_empty)
+    status = add_windows(out, model, piece, lattice, is_without, error);
+  if (octree) {
+    clip c = {out, piece};
+    vxm_octree_walk(octree, piece->begin, piece->end, add_clipped, &c);
+    status = out->status;
+  }
+  vxm_sparse_destroy(octree);
+  vxm_model_destroy(model);
   return status;
 }

@@ -3,6 +3,7 @@
 #ifndef VXM_VOXEL_LABELS_LABEL_SOLID_H
 #define VXM_VOXEL_LABELS_LABEL_SOLID_H
 
+#include "grid/octree_pieces.h"
 #include "voxel/labels/label_components.h"
 #include "voxel/model/model.h"
 
@@ -35,5 +36,16 @@ vxm_status vxm_label_component_fill(vxm_label_component_desk *desk, const vxm_wi
                                     const vxm_label_components *pieces, const vxm_label_component *piece,
                                     const vxm_voxelize_options *options, const vxm_lattice *lattice,
                                     bool at_once, vxm_error *error);
+
+/**
+ * Adds the same voxels to the pieces of an octree of the whole space.
+ *
+ * @param lattice  of the whole space
+ * @param is_small its box is not worth an octree of its own
+ */
+vxm_status vxm_label_component_add(vxm_octree_pieces *out, vxm_label_component_desk *desk,
+                                   const vxm_label_components *pieces, const vxm_label_component *piece,
+                                   const vxm_voxelize_options *options, const vxm_lattice *lattice,
+                                   bool is_small, vxm_error *error);
 
 #endif

@@ -85,7 +85,8 @@ static void settle_tile(size_t task, int worker, void *payload) {
   if (vxm_task_progress_stopped(&l->watch, worker))
     return;
   vxm_row_tile tile = vxm_row_tiles_at(&l->whole, task);
-  vxm_nearest_label nearest = {c->bvh, &c->lattice.space, &c->set, nowhere, c->values, 0};
+  const size_t row = (size_t)c->set.fast_dim, plane = row * (size_t)c->set.middle_dim;
+  vxm_nearest_label nearest = {c->bvh, &c->lattice.space, &c->set, nowhere, c->values, row, plane, 0};
   const int64_t begin[3] = {0, tile.begin[0], tile.begin[1]},
                 end[3] = {c->set.fast_dim, tile.end[0], tile.end[1]};
   vxm_nearest_label_voxels(&nearest, begin, end);
@@ -124,26 +125,31 @@ static void count_tile(size_t task, int worker, void *payload) {
   }
 }
 
-static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
-  vxm_label_table *table = &l->labelling->table;
-  vxm_warnings *warnings = l->pass->warnings;
+void vxm_labels_warn(const vxm_face_labels *labelling, int64_t voxels, vxm_warnings *warnings) {
+  const vxm_label_table *table = &labelling->table;
   size_t empty = 0, first = 0;
-  vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), count_tile, l);
   for (size_t label = table->count; label > 0; label--) {
-    table->voxels[label - 1] = atomic_load_explicit(&l->counts[label - 1], memory_order_relaxed);
     empty += table->voxels[label - 1] == 0;
     first = table->voxels[label - 1] == 0 ? label : first;
   }
+  if (labelling->is_untagged)
+    vxm_warn(warnings, "the mesh names no groups or materials: all of it has one label, \"unnamed\"");
+  if (empty > 0 && voxels > 0)
+    vxm_warn(warnings, "%zu of %zu labels have no voxel, the first of them label %zu, \"%.80s\"", empty,
+             table->count, first, vxm_label_table_name(table, first));
+}
+
+static void sum_up(labels *l, vxm_label_report *report, const vxm_sum *sum) {
+  vxm_label_table *table = &l->labelling->table;
+  vxm_parallel(l->context, vxm_row_tiles_count(&l->whole), count_tile, l);
+  for (size_t label = 0; label < table->count; label++)
+    table->voxels[label] = atomic_load_explicit(&l->counts[label], memory_order_relaxed);
   *report = (vxm_label_report){.voxelize = report->voxelize, .labels = (int64_t)table->count};
   report->unassigned = atomic_load_explicit(&l->unassigned, memory_order_relaxed);
   for (size_t w = 0; w < grid_words(l); w++)
     report->contested += vxm_popcount(l->claims.several[w]);
   vxm_model_report(l->pass, report->voxelize, sum->count, sum->hash);
-  if (l->labelling->is_untagged)
-    vxm_warn(warnings, "the mesh names no groups or materials: all of it has one label, \"unnamed\"");
-  if (empty > 0 && sum->count > 0)
-    vxm_warn(warnings, "%zu of %zu labels have no voxel, the first of them label %zu, \"%.80s\"", empty,
-             table->count, first, vxm_label_table_name(table, first));
+  vxm_labels_warn(l->labelling, sum->count, l->pass->warnings);
 }
 
 /* ---- All of it ---- */

@@ -35,4 +35,7 @@
 vxm_status vxm_labels_run(uint16_t *values, vxm_layout layout, vxm_label_report *report, vxm_model *model,
                           const vxm_space *space, vxm_face_labels *labelling, vxm_error *error);
 
+/** Warns of a mesh without names, and of labels without voxels, as the table has them. */
+void vxm_labels_warn(const vxm_face_labels *labelling, int64_t voxels, vxm_warnings *warnings);
+
 #endif

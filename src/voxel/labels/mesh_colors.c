@@ -91,7 +91,10 @@ static void weigh(const double at[3][3], const double p[3], double weight[3]) {
 /* ---- All voxels ---- */
 
 typedef struct color_task {
-  const vxm_grid *grid;
+  const vxm_space *space;
+  const vxm_grid *grid; /**< all voxels; NULL = those of a node */
+  const uint64_t *rows; /**< of the node whose first voxel is `first` */
+  int64_t first[3];
   const vxm_surface_paint *paint;
   const vxm_surface_tree *tree;
   const vxm_surface_slices *slices; /**< NULL = no means */
@@ -128,8 +131,19 @@ typedef struct tile {
 } tile;
 
 static uint8_t *value_at(const color_task *task, const int64_t at[3]) {
-  const int64_t *dims = task->grid->space.dims;
+  const int64_t *dims = task->space->dims, *first = task->first;
+  if (!task->grid)
+    return task->values +
+           4 * (size_t)(((at[2] - first[2]) * VXM_NODE_SIDE + at[1] - first[1]) * VXM_NODE_SIDE + at[0] -
+                        first[0]);
   return task->values + 4 * (size_t)((at[0] * dims[1] + at[1]) * dims[2] + at[2]);
+}
+
+static bool is_set(const color_task *task, const int64_t at[3]) {
+  const int64_t *first = task->first;
+  if (task->grid)
+    return vxm_grid_get(task->grid, at[0], at[1], at[2]);
+  return task->rows[(at[2] - first[2]) * VXM_NODE_SIDE + at[1] - first[1]] >> (at[0] - first[0]) & 1;
 }
 
 /** The next voxel from `at` on that is set and has no mean. */
@@ -137,7 +151,7 @@ static bool find_voxel(const color_task *task, const tile *t, int64_t at[3]) {
   for (; at[0] < t->end[0]; at[0]++, at[1] = t->first[1])
     for (; at[1] < t->end[1]; at[1]++, at[2] = t->first[2])
       for (; at[2] < t->end[2]; at[2]++)
-        if (vxm_grid_get(task->grid, at[0], at[1], at[2]) && value_at(task, at)[3] == 0)
+        if (is_set(task, at) && value_at(task, at)[3] == 0)
           return true;
   return false;
 }
@@ -154,8 +168,8 @@ static int count_voxels(const color_task *task, const tile *t) {
 static double find_ball(double centre[3], const color_task *task, const tile *t) {
   const int64_t last[3] = {t->end[0] - 1, t->end[1] - 1, t->end[2] - 1};
   double low[3], high[3], square = 0;
-  find_centre(low, &task->grid->space, t->first);
-  find_centre(high, &task->grid->space, last);
+  find_centre(low, task->space, t->first);
+  find_centre(high, task->space, last);
   for (int a = 0; a < 3; a++) {
     centre[a] = low[a] / 2 + high[a] / 2;
     double half = fmax(high[a] - centre[a], centre[a] - low[a]);
@@ -169,7 +183,7 @@ static void color_voxels(const color_task *task, const tile *t, const vxm_surfac
   int64_t at[3] = {t->first[0], t->first[1], t->first[2]};
   for (; find_voxel(task, t, at); at[2]++) {
     double p[3];
-    find_centre(p, &task->grid->space, at);
+    find_centre(p, task->space, at);
     vxm_surface_hit hit = among ? vxm_surface_candidates_nearest(among, p, *near)
                                 : vxm_surface_tree_nearest(task->tree, p, *near);
     *near = hit.place;
@@ -216,7 +230,7 @@ static void color_tile(const color_task *task, const tile *t, int level, vxm_sur
 
 /** Means of the surface within the voxels of a slice. */
 static void color_by_means(const color_task *task, int64_t slice, vxm_surface_sum *sums) {
-  const int64_t *dims = task->grid->space.dims;
+  const int64_t *dims = task->space->dims;
   const size_t rows = (size_t)(dims[1] * dims[2]);
   uint8_t *value = value_at(task, (const int64_t[3]){slice, 0, 0});
   memset(sums, 0, rows * sizeof *sums);
@@ -233,7 +247,7 @@ static void color_by_means(const color_task *task, int64_t slice, vxm_surface_su
 /** TILE slices. */
 static void color_slab(size_t slab, int worker, void *payload) {
   const color_task *task = payload;
-  const int64_t *dims = task->grid->space.dims;
+  const int64_t *dims = task->space->dims;
   const size_t rows = (size_t)(dims[1] * dims[2]);
   tile t = {.first = {(int64_t)slab * TILE}};
   t.end[0] = lesser(t.first[0] + TILE, dims[0]);
@@ -253,7 +267,7 @@ static void color_slab(size_t slab, int worker, void *payload) {
 
 static vxm_status color_all(color_task *task, bool average, vxm_error *error) {
   vxm_context *context = task->grid->context;
-  const int64_t *dims = task->grid->space.dims;
+  const int64_t *dims = task->space->dims;
   vxm_surface_slices slices;
   vxm_error local = VXM_ERROR_INIT;
   bool is_open = false;
@@ -274,24 +288,75 @@ static vxm_status color_all(color_task *task, bool average, vxm_error *error) {
   return local.code;
 }
 
-vxm_status vxm_mesh_colors(uint8_t *values, const vxm_grid *grid, const vxm_soup *mesh, bool average,
-                           vxm_error *error) {
+/* ---- Meshes ---- */
+
+struct vxm_mesh_painter {
+  vxm_context *context;
   vxm_surface_paint paint;
-  vxm_surface_tree *tree = NULL;
-  vxm_status status = vxm_surface_paint_open(&paint, mesh, error);
-  if (status != VXM_OK)
+  vxm_surface_tree *tree;
+};
+
+vxm_status vxm_mesh_painter_create(vxm_mesh_painter **out, vxm_context *context, const vxm_soup *mesh,
+                                   vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_mesh_painter *p = *out = vxm_calloc(context, 1, sizeof *p, &local);
+  vxm_status status = p ? vxm_surface_paint_open(&p->paint, mesh, &local) : local.code;
+  if (status != VXM_OK) {
+    vxm_free(context, p);
+    *out = NULL;
+    vxm_error_pass(error, &local);
     return status;
-  if (paint.count == 0)
+  }
+  p->context = context;
+  if (p->paint.count == 0)
     status = vxm_fail(error, VXM_ERROR_EMPTY, "colours: the mesh has no triangle with finite corners");
   if (status == VXM_OK)
-    status =
-        vxm_surface_tree_create(&tree, grid->context, paint.count, vxm_surface_paint_corners, &paint, error);
-  if (status == VXM_OK) {
-    color_task task = {.grid = grid, .paint = &paint, .tree = tree, .values = values};
-    status = color_all(&task, average, error);
+    status = vxm_surface_tree_create(&p->tree, context, p->paint.count, vxm_surface_paint_corners, &p->paint,
+                                     error);
+  if (status != VXM_OK) {
+    vxm_mesh_painter_destroy(p);
+    *out = NULL;
   }
-  vxm_surface_tree_destroy(tree);
-  vxm_surface_paint_close(&paint);
+  return status;
+}
+
+void vxm_mesh_painter_destroy(vxm_mesh_painter *painter) {
+  if (!painter)
+    return;
+  vxm_surface_tree_destroy(painter->tree);
+  vxm_surface_paint_close(&painter->paint);
+  vxm_free(painter->context, painter);
+}
+
+void vxm_mesh_painter_node(const vxm_mesh_painter *painter, uint8_t *values, const vxm_space *space,
+                           const int64_t at[3], const uint64_t *rows, uint32_t *near) {
+  const color_task task = {.space = space,
+                           .rows = rows,
+                           .first = {at[0], at[1], at[2]},
+                           .paint = &painter->paint,
+                           .tree = painter->tree,
+                           .values = values};
+  vxm_surface_candidates room[LEVELS];
+  for (int part = 0; part < 8; part++) {
+    tile t;
+    for (int a = 0; a < 3; a++) {
+      t.first[a] = at[a] + (part >> a & 1) * TILE;
+      t.end[a] = lesser(t.first[a] + TILE, at[a] + vxm_node_count(space, at, a));
+    }
+    color_tile(&task, &t, 0, room, NULL, near);
+  }
+}
+
+vxm_status vxm_mesh_colors(uint8_t *values, const vxm_grid *grid, const vxm_soup *mesh, bool average,
+                           vxm_error *error) {
+  vxm_mesh_painter *painter;
+  vxm_status status = vxm_mesh_painter_create(&painter, grid->context, mesh, error);
+  if (status != VXM_OK)
+    return status;
+  color_task task = {
+      .space = &grid->space, .grid = grid, .paint = &painter->paint, .tree = painter->tree, .values = values};
+  status = color_all(&task, average, error);
+  vxm_mesh_painter_destroy(painter);
   return status;
 }
 

@@ -10,8 +10,7 @@ enum {
 
 typedef struct job {
   const vxm_nearest_label *nearest;
-  double step[3];    /**< from one voxel to the next, in the order of the layout */
-  size_t row, plane; /**< values from one to the next */
+  double step[3]; /**< from one voxel to the next, in the order of the layout */
 } job;
 
 /** Voxels of the box, in the order of the layout. */
@@ -36,9 +35,8 @@ static bool is_asked(const job *j, const voxels *v) {
 }
 
 static uint16_t *value_at(const job *j, int64_t fast, int64_t middle, int64_t slow) {
-  const int64_t *first = j->nearest->first;
-  return j->nearest->values + (size_t)(slow + first[2]) * j->plane + (size_t)(middle + first[1]) * j->row +
-         (size_t)(fast + first[0]);
+  const vxm_nearest_label *nearest = j->nearest;
+  return nearest->values + (size_t)slow * nearest->plane + (size_t)middle * nearest->row + (size_t)fast;
 }
 
 /** Calls for each asked voxel; whether all calls returned true. Inlined with the function. */
@@ -216,8 +214,7 @@ void vxm_nearest_label_voxels(const vxm_nearest_label *nearest, const int64_t be
   const int axis[3] = {layout->fast, layout->middle, layout->slow};
   const double *size = nearest->space->voxel_size;
   double side = fmax(size[0], fmax(size[1], size[2]));
-  job j = {.nearest = nearest, .row = (size_t)nearest->space->dims[layout->fast]};
-  j.plane = j.row * (size_t)nearest->space->dims[layout->middle];
+  job j = {.nearest = nearest};
   for (int a = 0; a < 3; a++)
     j.step[a] = size[axis[a]] / side;
   voxels v;

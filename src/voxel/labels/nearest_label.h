@@ -12,7 +12,8 @@ typedef struct vxm_nearest_label {
   const vxm_space *space;
   const vxm_window *asked; /**< all slices of a box of the space: the voxels in question */
   const int64_t *first;    /**< voxel of the space at which the box begins, in the order of the layout */
-  uint16_t *values;        /**< of the whole space, in the layout of the window */
+  uint16_t *values;        /**< of the box, in the layout of the window */
+  size_t row, plane;       /**< values from one row, or slice, to the next */
   uint32_t label;          /**< takes a voxel where it is nearer than the label there; 0 = the nearest of all
                                 labels takes it, whatever is there */
 } vxm_nearest_label;

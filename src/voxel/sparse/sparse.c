@@ -8,8 +8,7 @@
 /** Bytes of a range of slices, unless so few are more. */
 static const uint64_t window_bytes_most = UINT64_C(1) << 26;
 
-/** Whether one axis tells all of the solid: then the triangles become an octree directly. */
-static bool is_direct(const vxm_model *model) {
+bool vxm_sparse_is_direct(const vxm_model *model) {
   const vxm_voxelize_options *options = &model->options;
   const vxm_split *split = &model->analysis.triangles.split;
   if (vxm_shell_wanted(options) || options->method == VXM_METHOD_WINDING)
@@ -26,7 +25,7 @@ static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pas
   bool solid = vxm_solid_wanted(&model->options), faces = vxm_faces_wanted(&model->options);
   if (ops && ((solid && !ops->sparse) || (faces && ops->surface && !ops->sparse_surface)))
     return false; /* the engine makes windows only */
-  return !solid || is_direct(model);
+  return !solid || vxm_sparse_is_direct(model);
 }
 
 static vxm_sparse_job job_of(const vxm_model_pass *pass) {
@@ -41,16 +40,23 @@ static vxm_sparse_job job_of(const vxm_model_pass *pass) {
   return job;
 }
 
-static vxm_status unite_directly(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
-  vxm_sparse_job job = job_of(pass);
+static vxm_status unite_directly(vxm_sparse **out, vxm_model_pass *pass, const vxm_sparse_job *job,
+                                 vxm_error *error) {
   vxm_octree_builder builder;
   vxm_status status = vxm_octree_builder_create(&builder, pass->solid.context, &pass->space, error);
   if (status == VXM_OK)
-    status = vxm_sparse_union(&builder, &pass->workspace, &job, error);
+    status = vxm_sparse_union(&builder, &pass->workspace, job, error);
   if (status == VXM_OK)
     status = vxm_octree_builder_end(out, &builder, error);
   vxm_octree_builder_destroy(&builder);
   return status;
+}
+
+vxm_status vxm_sparse_closed(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
+  vxm_sparse_job job = job_of(pass);
+  job.part_end = pass->solid.analysis->triangles.split.kind_end[VXM_PART_CAPPED];
+  job.roles = VXM_ROLE_FACE | VXM_ROLE_CAP;
+  return unite_directly(out, pass, &job, error);
 }
 
 /** By the pass's engine; `*out` stays NULL where that is for the CPU. */
@@ -73,8 +79,9 @@ static const uint64_t large_octree = UINT64_C(1) << 27;
 /** The solid, straight from the triangles. */
 static vxm_status make_solid(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error) {
   vxm_status status = unite_elsewhere(out, pass, error);
+  vxm_sparse_job job = job_of(pass);
   if (status == VXM_OK && !*out)
-    status = unite_directly(out, pass, error);
+    status = unite_directly(out, pass, &job, error);
   if (status == VXM_OK && vxm_octree_bytes(*out) >= large_octree) {
     vxm_workspace_destroy(&pass->workspace);
     pass->workspace = vxm_workspace_of(pass->solid.context);
@@ -178,6 +185,17 @@ static vxm_status make(vxm_sparse **out, const vxm_model *model, vxm_model_pass 
   return status == VXM_OK && vxm_faces_wanted(&model->options) ? add_faces(out, pass, error) : status;
 }
 
+vxm_status vxm_sparse_of_pass(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass,
+                              vxm_error *error) {
+  *out = NULL;
+  vxm_status status = make(out, model, pass, error);
+  if (status != VXM_OK) {
+    vxm_sparse_destroy(*out);
+    *out = NULL;
+  }
+  return status;
+}
+
 vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const double transform[12], vxm_error *error) {
   *out = NULL;
@@ -186,11 +204,7 @@ vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_mo
   vxm_model_pass *pass;
   vxm_status status = vxm_model_begin(&pass, model, space, transform, NULL, error);
   if (status == VXM_OK)
-    status = make(out, model, pass, error);
-  if (status != VXM_OK) {
-    vxm_sparse_destroy(*out);
-    *out = NULL;
-  }
+    status = vxm_sparse_of_pass(out, model, pass, error);
   if (status == VXM_OK && report) {
     int64_t voxels;
     uint64_t hash;

@@ -16,6 +16,15 @@
 vxm_status vxm_sparse_union(vxm_octree_builder *builder, vxm_workspace *workspace, const vxm_sparse_job *job,
                             vxm_error *error);
 
+/** Whether one axis tells all of the solid: then the triangles become an octree directly. */
+bool vxm_sparse_is_direct(const vxm_model *model);
+
+/** The octree of a pass that has been begun and has filled nothing. @return as vxm_model_sparse */
+vxm_status vxm_sparse_of_pass(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass,
+                              vxm_error *error);
+/** The same of the parts that are closed, or closed by caps, and no others. */
+vxm_status vxm_sparse_closed(vxm_sparse **out, vxm_model_pass *pass, vxm_error *error);
+
 /** See vxm_model_sparse in voxmend.h; the arguments are not NULL, except report and transform. */
 vxm_status vxm_sparse_make(vxm_sparse **out, vxm_voxelize_report *report, vxm_model *model,
                            const vxm_space *space, const double transform[12], vxm_error *error);
