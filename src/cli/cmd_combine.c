@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend combine: the union, intersection or difference of grids. */
-#include "cli/cli.h"
+#include "cli/combine.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -23,13 +23,7 @@ static const cli_option known_options[] = {
 static const char *const operations[] = {"or", "and", "minus", "xor", NULL};
 enum { OR, AND, MINUS, XOR };
 
-typedef struct request {
-  const char *output, *format;
-  bool force, sparse, keep_polygons, keep_contacts;
-  vxm_threshold_options threshold;
-} request;
-
-static int read_options(cli_run *cli, request *out) {
+static int read_options(cli_run *cli, combine_request *out) {
   const char *value;
   int key;
   while ((key = cli_next_option(cli, &value)) != CLI_END)
@@ -69,12 +63,12 @@ static int read_formula(cli_run *cli, int *words) {
   return CLI_END;
 }
 
-static int check_names(cli_run *cli, request *out) {
+static int check_names(cli_run *cli, combine_request *out) {
   cli_formats formats = cli_formats_with(VXM_FORMAT_BITS);
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (!out->format)
     return CLI_STOP;
-  cli_writes(cli, "-o", out->output, cli_has_json(out->format, false));
+  cli_writes(cli, "-o", out->output, cli_has_json(out->format, true));
   if (cli_check_names(cli) == CLI_STOP ||
       cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
     return CLI_STOP;
@@ -82,31 +76,8 @@ static int check_names(cli_run *cli, request *out) {
   return cli_check_surface_file(cli, out->output, out->format, out->force);
 }
 
-/** A set of voxels, as one of the two. */
-typedef struct operand {
-  vxm_grid *grid;
-  vxm_sparse *sparse;
-} operand;
-
-static void free_operand(operand *set) {
-  vxm_grid_destroy(set->grid);
-  vxm_sparse_destroy(set->sparse);
-  *set = (operand){NULL, NULL};
-}
-
-static const vxm_space *space_of(const operand *set) {
-  return set->sparse ? vxm_sparse_space(set->sparse) : vxm_grid_space(set->grid);
-}
-
-static int read_operand(cli_run *cli, operand *out, const request *given, const char *path) {
-  static const char why[] = "only set and clear voxels can be combined";
-  return given->sparse ? cli_sparse_read(cli, &out->sparse, &given->threshold, path, why)
-                       : cli_bits_read(cli, &out->grid, &given->threshold, path, why);
-}
-
-/** Voxels are combined by index, so that both grids have to be one space; files hold it to about nine digits.
- */
-static int check_spaces(cli_run *cli, const vxm_space *a, const vxm_space *b, const char *const paths[2]) {
+/** Files hold a space to about nine digits. */
+int combine_check_spaces(cli_run *cli, const vxm_space *a, const vxm_space *b, const char *const paths[2]) {
   const int64_t *m = a->dims, *n = b->dims;
   const double *o = a->origin, *p = b->origin, *s = a->voxel_size, *t = b->voxel_size;
   bool moved = false, scaled = false;
@@ -151,9 +122,10 @@ static int combine_grids(cli_run *cli, vxm_grid *grid, const vxm_grid *other, in
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
+static const vxm_set_operation meant[] = {VXM_SET_UNION, VXM_SET_INTERSECTION, VXM_SET_DIFFERENCE,
+                                          VXM_SET_SYMMETRIC_DIFFERENCE};
+
 static int combine_octrees(cli_run *cli, vxm_sparse **set, const vxm_sparse *other, int operation) {
-  static const vxm_set_operation meant[] = {VXM_SET_UNION, VXM_SET_INTERSECTION, VXM_SET_DIFFERENCE,
-                                            VXM_SET_SYMMETRIC_DIFFERENCE};
   vxm_sparse *combined;
   if (vxm_sparse_combine(&combined, *set, other, meant[operation], &cli->error) != VXM_OK)
     return cli_fail(cli);
@@ -162,20 +134,37 @@ static int combine_octrees(cli_run *cli, vxm_sparse **set, const vxm_sparse *oth
   return CLI_DONE;
 }
 
+static int combine_fields(cli_run *cli, vxm_field **field, const vxm_field *other, int operation) {
+  vxm_field *combined;
+  if (vxm_field_combine(&combined, *field, other, meant[operation], &cli->error) != VXM_OK)
+    return cli_fail(cli);
+  vxm_field_destroy(*field);
+  *field = combined;
+  return CLI_DONE;
+}
+
+static int combine_two(cli_run *cli, combine_operand *out, const combine_operand *other, int operation) {
+  return out->field    ? combine_fields(cli, &out->field, other->field, operation)
+         : out->sparse ? combine_octrees(cli, &out->sparse, other->sparse, operation)
+                       : combine_grids(cli, out->grid, other->grid, operation);
+}
+
 /** From left to right. */
-static int combine_all(cli_run *cli, operand *out, const request *given, const int *words) {
+static int combine_all(cli_run *cli, combine_operand *out, const combine_request *given, const int *words,
+                       json_t *renumbered) {
   const char *first = cli_shown(cli->arguments[0], "<stdin>");
-  int status = read_operand(cli, out, given, cli->arguments[0]);
+  int status = combine_read(cli, out, given, cli->arguments[0], NULL);
   for (int i = 1; i < cli->argument_count && status == CLI_DONE; i++) {
-    operand other = {NULL, NULL};
-    status = read_operand(cli, &other, given, cli->arguments[i]);
+    combine_operand other = {NULL, NULL, NULL};
+    status = combine_read(cli, &other, given, cli->arguments[i], out);
     const char *paths[2] = {first, cli_shown(cli->arguments[i], "<stdin>")};
     if (status == CLI_DONE)
-      status = check_spaces(cli, space_of(out), space_of(&other), paths);
+      status = combine_check_spaces(cli, combine_space(out), combine_space(&other), paths);
     if (status == CLI_DONE)
-      status = given->sparse ? combine_octrees(cli, &out->sparse, other.sparse, words[i - 1])
-                             : combine_grids(cli, out->grid, other.grid, words[i - 1]);
-    free_operand(&other);
+      status = combine_two(cli, out, &other, words[i - 1]);
+    if (status == CLI_DONE && out->field)
+      combine_note_labels(renumbered, cli->arguments[i], other.field, out->field);
+    combine_free(&other);
   }
   return status;
 }
@@ -187,14 +176,15 @@ typedef struct outcome {
   uint64_t hash;
 } outcome;
 
-static outcome outcome_of(const operand *set) {
+static outcome outcome_of(const combine_operand *set) {
   if (set->sparse)
     return (outcome){vxm_sparse_space(set->sparse), vxm_sparse_count(set->sparse),
                      vxm_sparse_hash(set->sparse)};
   return (outcome){vxm_grid_space(set->grid), vxm_grid_count(set->grid), vxm_grid_hash(set->grid)};
 }
 
-static json_t *make_report(const cli_run *cli, const request *given, const outcome *made, const int *words) {
+/** What was asked for. */
+static json_t *make_report(const cli_run *cli, const combine_request *given, const int *words) {
   json_t *report = json_object(), *inputs = json_array(), *names = json_array();
   for (int i = 0; i < cli->argument_count; i++)
     json_array_append_new(inputs, cli_json_text(cli->arguments[i]));
@@ -203,14 +193,11 @@ static json_t *make_report(const cli_run *cli, const request *given, const outco
   json_object_set_new(report, "inputs", inputs);
   json_object_set_new(report, "operations", names);
   json_object_set_new(report, "output", cli_json_text(given->output));
-  json_object_set_new(report, "grid", cli_json_space(made->space));
-  json_object_set_new(report, "voxels", json_integer(made->voxels));
-  json_object_set_new(report, "hash", cli_json_hash(made->hash));
-  json_object_set(report, "warnings", cli->warnings);
   return report;
 }
 
-static int write_set(cli_run *cli, const request *given, const operand *set, const int *words) {
+static int write_set(cli_run *cli, const combine_request *given, const combine_operand *set,
+                     const int *words) {
   vxm_grid_write_options write = VXM_GRID_WRITE_OPTIONS_INIT;
   write.format = given->format;
   write.keep_polygons = given->keep_polygons;
@@ -220,34 +207,64 @@ static int write_set(cli_run *cli, const request *given, const operand *set, con
   if (status != VXM_OK)
     return cli_fail(cli);
   const outcome made = outcome_of(set);
+  json_t *report = make_report(cli, given, words);
   cli_progress_clear(cli);
-  cli_warn_lattice(cli, given->output, given->format,
-                   set->sparse ? vxm_sparse_space(set->sparse) : vxm_grid_space(set->grid));
+  cli_warn_lattice(cli, given->output, given->format, made.space);
   if (cli_summary(cli)) {
     cli_rows_space(cli, made.space);
     cli_row(cli, "voxels", "%" PRId64, made.voxels);
     cli_row(cli, "hash", "%016" PRIx64, made.hash);
     cli_row(cli, "output", "%s (%s)", cli_shown(given->output, "<stdout>"), given->format);
   }
-  return cli_finish(cli, make_report(cli, given, &made, words));
+  json_object_set_new(report, "grid", cli_json_space(made.space));
+  json_object_set_new(report, "voxels", json_integer(made.voxels));
+  json_object_set_new(report, "hash", cli_json_hash(made.hash));
+  json_object_set(report, "warnings", cli->warnings);
+  return cli_finish(cli, report);
+}
+
+/** In memory. */
+static int combine_here(cli_run *cli, const combine_request *given, const int *words) {
+  combine_operand set = {NULL, NULL, NULL};
+  json_t *renumbered = json_array();
+  int status = combine_all(cli, &set, given, words, renumbered);
+  if (status == CLI_DONE)
+    status = set.field
+                 ? combine_write_field(cli, given, set.field, make_report(cli, given, words), renumbered)
+                 : write_set(cli, given, &set, words);
+  json_decref(renumbered);
+  combine_free(&set);
+  return status;
+}
+
+/** From file to file where that goes. */
+static int combine(cli_run *cli, const combine_request *given, const int *words) {
+  bool made = false;
+  int status = CLI_DONE;
+  if (combine_are_octrees(cli, given)) {
+    vxm_set_operation *list = calloc((size_t)cli->argument_count, sizeof *list);
+    if (!list)
+      return cli_fail_text(cli, "out of memory for the command line");
+    for (int i = 1; i < cli->argument_count; i++)
+      list[i - 1] = meant[words[i - 1]];
+    status = combine_files(cli, given, list, make_report(cli, given, words), &made);
+    free(list);
+  }
+  return made || status != CLI_DONE ? status : combine_here(cli, given, words);
 }
 
 static int run(cli_run *cli) {
-  request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
+  combine_request given = {.threshold = VXM_THRESHOLD_OPTIONS_INIT};
   if (read_options(cli, &given) == CLI_STOP)
     return cli->status;
   int *words = calloc((size_t)cli->argument_count / 2 + 1, sizeof *words);
   if (!words)
     return cli_fail_text(cli, "out of memory for the command line");
   int status = CLI_FAILED;
-  operand set = {NULL, NULL};
   if (read_formula(cli, words) == CLI_STOP || check_names(cli, &given) == CLI_STOP)
     status = cli->status;
   else if (cli_start(cli))
-    status = combine_all(cli, &set, &given, words);
-  if (status == CLI_DONE)
-    status = write_set(cli, &given, &set, words);
-  free_operand(&set);
+    status = combine(cli, &given, words);
   free(words);
   return status;
 }
@@ -261,13 +278,18 @@ const cli_command cli_command_combine = {
         "what one alone has. More than two go from left to right. The grids must have equal dimensions,\n"
         "origins and voxel sizes, as 'voxmend voxelize --like' makes them; a file without a place, such as "
         "a\n"
-        ".npy without its .json, lies at the origin with voxels of 1. Numbers in a file become set and "
-        "clear\n"
-        "voxels by --threshold or --below; a file of set and clear voxels is taken as it is.\n\n"
+        ".npy without its .json, lies at the origin with voxels of 1.\n\n"
+        "Values of one kind and type are combined, too. Labels, colours and numbers other than 0 go with\n"
+        "their voxels; where both grids have one the first one's stays. Labels are one if their names are,\n"
+        "and new names are numbered behind those of the first. Of signed distances or is the lesser, and\n"
+        "the greater, minus the greater of the first and the second's negative, xor that of or and and.\n"
+        ".octree files with values go from file to file to an .octree. With --threshold or --below numbers\n"
+        "become set and clear voxels instead; a file of such voxels is taken as it is.\n\n"
         "Examples:\n"
         "  voxmend combine body.npy or lid.npy -o box.npy\n"
         "  voxmend combine block.binvox minus drill.binvox minus slot.binvox -o part.stl\n"
-        "  voxmend combine city.octree minus road.octree -o rest.octree",
+        "  voxmend combine city.octree minus road.octree -o rest.octree\n"
+        "  voxmend combine frame-labels.octree or glass-labels.octree -o car-labels.octree",
     .options = known_options,
     .run = run,
 };

@@ -181,6 +181,41 @@ VXM_API vxm_status vxm_sparse_file_coverage(vxm_field **out, const vxm_sparse_fi
                                             const int64_t end[3], vxm_error *error);
 
 /**
+ * Makes a new field of two of one kind and type and of equal dimensions; it takes the space of `a`.
+ *
+ * Labels, colours and numbers belong to the voxels that have any but 0, of colours to those that can be seen.
+ * A voxel of the result has the value of `a`, or if that has none that of `b`; the others have 0. Labels of
+ * one name are one, and those of `b` whose names `a` has not are numbered behind its own; without names, in
+ * either, labels of one number are one. They become VXM_UINT16.
+ *
+ * Of signed distances the union is the lesser, the intersection the greater, and the difference the greater
+ * of a and -b (A. Ricci, A Constructive Geometry for Computer Graphics, The Computer Journal 16, 1973); the
+ * symmetric difference is that of union and intersection. Signs are right everywhere, and distances on one
+ * side of the surface; on the other they may be too short where both meet.
+ *
+ * @param operation not VXM_SET_COMPLEMENT
+ * @return VXM_OK; VXM_ERROR_ARGUMENT for other dimensions, kinds or types, and for labels that are not of one
+ * or two bytes; VXM_ERROR_RANGE beyond 65535 labels; VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
+ * VXM_ERROR_CANCELLED
+ */
+VXM_API vxm_status vxm_field_combine(vxm_field **out, const vxm_field *a, const vxm_field *b,
+                                     vxm_set_operation operation, vxm_error *error);
+
+/**
+ * Combines files with values to another, an .octree: as vxm_field_combine does, from the first to the last,
+ * but time and memory follow what the files hold.
+ *
+ * @param path       of the new file
+ * @param files      `count` of them, two or more, of equal dimensions
+ * @param operations count - 1 of them; the first is that of the first and the second file
+ * @return as vxm_field_combine, vxm_sparse_file_field and vxm_grid_write; VXM_ERROR_ARGUMENT if one has no
+ * values
+ */
+VXM_API vxm_status vxm_sparse_file_combine(const char *path, const vxm_sparse_file *const *files,
+                                           int64_t count, const vxm_set_operation *operations,
+                                           vxm_error *error);
+
+/**
  * Writes the coordinates of all set voxels as .npy: int32, n rows of (i, j, k), sorted by i, then j, then k,
  * as numpy.argwhere gives them for the .npy of the grid.
  *

@@ -32,6 +32,8 @@ static vxm_model *model;
 static vxm_sampler *sampler;
 static vxm_sparse *sparse;
 static vxm_sparse_file *sparse_file;
+static const vxm_sparse_file *values_files[2];
+static const vxm_set_operation set_operations[] = {VXM_SET_UNION};
 static vxm_carver *carver;
 static vxm_field *field;
 
@@ -422,6 +424,10 @@ static vxm_status prepare_in_place(vxm_mesh **at, vxm_repair_report *report,
     vxm_sparse_read(P(0, &out.sparse), P(1, context), P(2, "in.octree"), P(3, &error)))                      \
   X(vxm_sparse_file_open, 4, 5,                                                                              \
     vxm_sparse_file_open(P(0, &out.sparse_file), P(1, context), P(2, "in.octree"), P(3, &error)))            \
+  X(vxm_field_combine, 4, 7,                                                                                 \
+    vxm_field_combine(P(0, &out.field), P(1, field), P(2, field), VXM_SET_UNION, P(3, &error)))              \
+  X(vxm_sparse_file_combine, 4, 7,                                                                           \
+    vxm_sparse_file_combine(P(0, "out.octree"), P(1, values_files), 2, P(2, set_operations), P(3, &error)))  \
   X(vxm_sparse_file_close, 1, 0, (vxm_sparse_file_close(NULL), VXM_OK))                                      \
   X(vxm_sparse_file_space, 1, 1, GIVES(vxm_sparse_file_space(P(0, sparse_file))))                            \
   X(vxm_sparse_file_has_values, 1, 1, ANYTHING(vxm_sparse_file_has_values(P(0, sparse_file))))               \
@@ -588,6 +594,10 @@ static int set_up(void **state) {
   assert_int_equal(vxm_sparse_from_grid(&sparse, grid, NULL), VXM_OK);
   assert_int_equal(vxm_sparse_write(sparse, "in.octree", NULL, NULL), VXM_OK);
   assert_int_equal(vxm_sparse_file_open(&sparse_file, context, "in.octree", NULL), VXM_OK);
+  vxm_sparse_file *values_file;
+  assert_int_equal(vxm_field_write(field, "values.octree", NULL, NULL), VXM_OK);
+  assert_int_equal(vxm_sparse_file_open(&values_file, context, "values.octree", NULL), VXM_OK);
+  values_files[0] = values_files[1] = values_file;
   assert_int_equal(vxm_carver_create_sparse(&carver, sparse, mesh, NULL), VXM_OK);
   return 0;
 }
@@ -606,9 +616,11 @@ static int tear_down(void **state) {
   vxm_defects_destroy(defects);
   vxm_sparse_destroy(sparse);
   vxm_sparse_file_close(sparse_file);
-  static const char *const files[] = {
-      "in.off",  "in.obj",       "in.npy",  "in.npy.json", "in.octree",   "out.off",         "out.ply",
-      "out.npy", "out.npy.json", "out.png", "out.html",    "variant.npy", "variant.npy.json"};
+  vxm_sparse_file_close((vxm_sparse_file *)values_files[0]);
+  static const char *const files[] = {"in.off",     "in.obj",      "in.npy",          "in.npy.json",
+                                      "in.octree",  "out.off",     "out.ply",         "values.octree",
+                                      "out.octree", "out.npy",     "out.npy.json",    "out.png",
+                                      "out.html",   "variant.npy", "variant.npy.json"};
   for (size_t f = 0; f < sizeof files / sizeof *files; f++)
     unlink(files[f]);
   return chdir("/") == 0 ? rmdir(folder) : 1;

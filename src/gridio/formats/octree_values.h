@@ -62,6 +62,11 @@ vxm_status vxm_octree_encoder_end(vxm_octree_encoder *encoder, vxm_output *outpu
 vxm_status vxm_octree_values_open(vxm_sparse_file *file, vxm_error *error);
 /** VXM_ERROR_NUMBERS of a file that has values. */
 vxm_status vxm_octree_file_need_bits(const vxm_sparse_file *file, vxm_error *error);
+/** Called for what stands for the values of a node of level 0, or of a higher one that has one value. */
+typedef void (*vxm_octree_found_fn)(int level, const int64_t at[3], const unsigned char *data, void *payload);
+/** Checks all values of a file, and calls in Morton order. @param tree of the whole file */
+vxm_status vxm_octree_values_visit(const vxm_sparse_file *file, const vxm_sparse *tree,
+                                   vxm_octree_found_fn found, void *payload, vxm_error *error);
 /** The values of a box of voxels, which has been checked, of a file that has some. */
 vxm_status vxm_octree_values_load(vxm_field **out, const vxm_sparse_file *file, const int64_t begin[3],
                                   const int64_t end[3], vxm_error *error);

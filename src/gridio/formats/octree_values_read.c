@@ -95,7 +95,9 @@ typedef struct decoder {
   const vxm_sparse_file *file;
   const vxm_sparse *tree;
   const int64_t *begin, *end;
-  vxm_field *field;
+  vxm_field *field; /**< NULL = the values are only visited */
+  vxm_octree_found_fn found;
+  void *payload;
   size_t bytes;              /**< of a value */
   const unsigned char *at;   /**< still to be read */
   const unsigned char *stop; /**< where the block ends */
@@ -127,6 +129,8 @@ static unsigned char *place_of(const decoder *d, int64_t x, int64_t y, int64_t z
 }
 
 static void put(const decoder *d, const int64_t brick[3], int bit, const unsigned char *value) {
+  if (!d->field)
+    return;
   const int64_t at[3] = {brick[0] + bit % 4, brick[1] + bit / 4 % 4, brick[2] + bit / 16};
   for (int a = 0; a < 3; a++)
     if (at[a] < d->begin[a] || at[a] >= d->end[a])
@@ -171,7 +175,7 @@ static uint64_t bits_of(const decoder *d, vxm_octree_part brick) {
 /** Gives all voxels of a part one value. */
 static void fill(const decoder *d, int level, vxm_octree_part part, const int64_t at[3],
                  const unsigned char *value) {
-  if (!meets(d, at, side_of(level)))
+  if (!d->field || !meets(d, at, side_of(level)))
     return;
   if (part.kind == VXM_CELL_FULL) {
     fill_cube(d, at, side_of(level), value);
@@ -219,6 +223,8 @@ static const unsigned char *decode(decoder *d, int level, vxm_octree_part part, 
   const unsigned char *how = take(d, 1), *value = NULL;
   if (!how)
     return NULL;
+  if (d->found && (level == 0 || (level > 0 && *how == 1)))
+    d->found(level, at, how, d->payload);
   if (*how == 1) {
     value = take_value(d);
     if (value)
@@ -260,6 +266,21 @@ static bool decode_block(uint64_t number, const int64_t at[3], void *payload) {
   if (d->at != d->stop)
     fail(d, "the values of a block end before its bytes do");
   return d->status == VXM_OK;
+}
+
+vxm_status vxm_octree_values_visit(const vxm_sparse_file *file, const vxm_sparse *tree,
+                                   vxm_octree_found_fn found, void *payload, vxm_error *error) {
+  static const int64_t origin[3] = {0, 0, 0};
+  decoder d = {.file = file,
+               .tree = tree,
+               .begin = origin,
+               .end = file->space.dims,
+               .found = found,
+               .payload = payload,
+               .bytes = vxm_scalar_bytes(file->scalar) * (size_t)file->channels,
+               .error = error};
+  each_block(file, origin, file->space.dims, decode_block, &d);
+  return d.status;
 }
 
 static void fill_background(const decoder *d) {
