@@ -10,7 +10,7 @@ import numpy
 from . import _core, _values
 from ._core import lib
 from ._dlpack import Shared
-from ._errors import ArgumentError
+from ._errors import ArgumentError, KindError
 from ._grid import VoxelGrid
 from ._mesh import format_name
 from ._records import CoverageReport, DistanceReport, Label, LabelReport, VoxelizeReport
@@ -192,6 +192,29 @@ class VoxelField(Placed, Shown):
                 setattr(options, name, _values.real("field: " + name, bound))
         return VoxelGrid._of(_core.create("vxm_grid", lib.vxm_field_threshold, self._pointer, options,
                                           destroy=lib.vxm_grid_destroy))
+
+    def _combined(self, other: object, operation: int, word: str) -> "VoxelField":
+        if not isinstance(other, VoxelField):
+            raise KindError("%s: %s is not a VoxelField" % (word, type(other).__name__))
+        self._need_space_of(other, word)
+        return VoxelField._of(_core.create("vxm_field", lib.vxm_field_combine, self._pointer, other._pointer, operation,
+                                           destroy=lib.vxm_field_destroy))
+
+    def __or__(self, other: "VoxelField") -> "VoxelField":
+        """The union, of values of one kind and type: where both have one, that of the first; the lesser distance."""
+        return self._combined(other, lib.VXM_SET_UNION, "or")
+
+    def __and__(self, other: "VoxelField") -> "VoxelField":
+        """The values of the first where both have one; the greater distance."""
+        return self._combined(other, lib.VXM_SET_INTERSECTION, "and")
+
+    def __sub__(self, other: "VoxelField") -> "VoxelField":
+        """The values of the first where the second has none; of distances max(a, -b)."""
+        return self._combined(other, lib.VXM_SET_DIFFERENCE, "minus")
+
+    def __xor__(self, other: "VoxelField") -> "VoxelField":
+        """The values where one alone has one; of distances the union minus the intersection."""
+        return self._combined(other, lib.VXM_SET_SYMMETRIC_DIFFERENCE, "xor")
 
     def save(self, path: Path, format: Optional[str] = None) -> None:
         """Writes .npy, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .h5, .zarr or .vdb; labels also .binvox, colours not .vdb, but .ply;

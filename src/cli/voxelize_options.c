@@ -106,7 +106,7 @@ const cli_option voxelize_options[] = {
     {KEY_SPARSE, "sparse", NULL,
      "make the voxels as an octree, whose memory follows the surface, for 1024 and more\n"
      "along a side; a .octree file follows it too, and 'convert --window' cuts grids out\n"
-     "of that; with --distance, --labels and the like for .octree alone"},
+     "of that; --labels, --color and --distance are made so for .octree, with it or not"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
     {KEY_BASELINE, "baseline", "NAME",
      "use a published method instead, as it was published, for comparison: fang-chen,\n"

@@ -296,13 +296,14 @@ VXM_API vxm_status vxm_model_distance(float *values, vxm_distance_report *report
                                       vxm_error *error);
 
 /** As vxm_model_distance, into a file: .npy (with its .json beside it), .nrrd, .vdb and others; as much at a
- * time as the memory limit allows. @return as vxm_model_distance and vxm_grid_write */
+ * time as the memory limit allows. For .octree, with a band, only what is near the surface is measured.
+ * @return as vxm_model_distance and vxm_grid_write */
 VXM_API vxm_status vxm_model_write_distance(vxm_distance_report *report, vxm_model *model,
                                             const vxm_space *space, const char *path,
                                             const vxm_distance_options *options, vxm_error *error);
 
-/** Estimates vxm_model_write_distance, as vxm_model_estimate does; what a .vdb holds until it is written
- * follows the surface, and is not counted. */
+/** Estimates vxm_model_write_distance, as vxm_model_estimate does; what a .vdb or .octree holds until it is
+ * written follows the surface, and is not counted. */
 VXM_API vxm_status vxm_model_estimate_distance(vxm_estimate *out, const vxm_model *model,
                                                const vxm_space *space, const char *path,
                                                const vxm_distance_options *options, vxm_error *error);
@@ -363,7 +364,8 @@ VXM_API vxm_status vxm_model_labels(uint16_t *values, vxm_label_report *report, 
 
 /**
  * As vxm_model_labels, into a file: .npy, .nrrd and others, or .binvox (version 2), which holds 255 labels at
- * most. The table of labels goes into a .json beside it. All values are in memory meanwhile. @return as
+ * most. The table of labels goes into a .json beside it. All values are in memory meanwhile, but for .octree,
+ * of which only voxels that are set are made: vxm_sparse_file_field reads parts of that. @return as
  * vxm_model_labels and vxm_grid_write
  */
 VXM_API vxm_status vxm_model_write_labels(vxm_label_report *report, vxm_model *model, const vxm_space *space,
@@ -429,7 +431,8 @@ VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report
  * As vxm_model_colors, into a file: .npy, uint8 [x][y][z][4] (with its .json beside it); .ply, the faces
  * between set and empty voxels with coloured corners; .vox of MagicaVoxel, where colours are
  * told apart by 5 bits each and reduced to at most 255, and every 256 voxels along an axis begin another
- * model. @return as vxm_model_colors and vxm_grid_write
+ * model; .octree, of which only voxels that are set are made, unless an engine makes the colours, or `average`
+ * is wanted. @return as vxm_model_colors and vxm_grid_write
  */
 VXM_API vxm_status vxm_model_write_colors(vxm_voxelize_report *report, vxm_model *model,
                                           const vxm_space *space, const char *path,
