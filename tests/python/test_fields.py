@@ -93,6 +93,26 @@ class Fields(unittest.TestCase):
         self.assertRaises(voxmend.ArgumentError, field.threshold)
         self.assertRaises(voxmend.ArgumentError, field.save, self.path("d.rle"))
 
+    def test_sets(self):
+        rng = numpy.random.default_rng(3)
+        shape, place = (9, 20, 33), (0.5, (1, 2, 3))
+        for kind, dtype in (("labels", "uint16"), ("numbers", "int32"), ("coverage", "float32")):
+            a, b = ((rng.integers(1, 7, shape) * (rng.random(shape) < 0.5)).astype(dtype) for _ in range(2))
+            x, y = (voxmend.VoxelField(v, *place, kind=kind) for v in (a, b))
+            for made, wanted in ((x | y, numpy.where(a != 0, a, b)), (x & y, a * (b != 0)), (x - y, a * (b == 0)),
+                                 (x ^ y, numpy.where(a != 0, a * (b == 0), b))):
+                numpy.testing.assert_array_equal(made.values, wanted)
+                self.assertEqual((made.kind, made.values.dtype), (kind, a.dtype))
+        a, b = (rng.normal(size=shape).astype(numpy.float32) for _ in range(2))
+        x, y = (voxmend.VoxelField(v, *place, kind="distance") for v in (a, b))
+        for made, wanted in ((x | y, numpy.minimum(a, b)), (x & y, numpy.maximum(a, b)), (x - y, numpy.maximum(a, -b)),
+                             (x ^ y, numpy.maximum(numpy.minimum(a, b), -numpy.maximum(a, b)))):
+            numpy.testing.assert_array_equal(made.values, wanted)
+        for other, error in ((voxmend.VoxelField(a, *place), voxmend.ArgumentError), (a, TypeError),
+                             (voxmend.VoxelField(a[1:], *place, kind="distance"), voxmend.ArgumentError)):
+            with self.assertRaises(error):
+                x | other
+
     def test_masks(self):
         rng = numpy.random.default_rng(6)
         bits = rng.random((5, 6, 7)) < 0.5
