@@ -431,8 +431,8 @@ VXM_API vxm_status vxm_model_colors(uint8_t *values, vxm_voxelize_report *report
  * As vxm_model_colors, into a file: .npy, uint8 [x][y][z][4] (with its .json beside it); .ply, the faces
  * between set and empty voxels with coloured corners; .vox of MagicaVoxel, where colours are
  * told apart by 5 bits each and reduced to at most 255, and every 256 voxels along an axis begin another
- * model; .octree, of which only voxels that are set are made, unless an engine makes the colours, or `average`
- * is wanted. @return as vxm_model_colors and vxm_grid_write
+ * model; .octree, of which only voxels that are set are made, unless an engine makes the colours, or
+ * `average` is wanted. @return as vxm_model_colors and vxm_grid_write
  */
 VXM_API vxm_status vxm_model_write_colors(vxm_voxelize_report *report, vxm_model *model,
                                           const vxm_space *space, const char *path,
