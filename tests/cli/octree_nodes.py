@@ -27,10 +27,10 @@ def random_mesh(path, seed):
     draw = random.Random(seed)
     lines, count = [], 0
     for group in range(draw.randrange(1, 9)):
-        low = [draw.uniform(-1, 0.8) for _ in range(3)]
-        size = draw.choice([0.02, 0.3, 1.0])
-        corners, faces = box(low, [x + draw.uniform(0.01, size) for x in low])
-        corners = [[x + draw.uniform(-0.2, 0.2) * size for x in c] for c in corners]
+        size = draw.choice([0.02, 0.5, 1.2, 1.2])
+        low = [draw.uniform(-1, 1 - size) for _ in range(3)]
+        corners, faces = box(low, [x + draw.uniform(size / 3, size) for x in low])
+        corners = [[x + draw.uniform(-0.1, 0.1) * size for x in c] for c in corners]
         if draw.random() < 0.3:
             faces = faces[:draw.randrange(1, len(faces))]
         lines += ["g group%d" % draw.randrange(5), "usemtl m%d" % draw.randrange(3)]
