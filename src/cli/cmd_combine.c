@@ -160,10 +160,11 @@ static int combine_all(cli_run *cli, combine_operand *out, const combine_request
     const char *paths[2] = {first, cli_shown(cli->arguments[i], "<stdin>")};
     if (status == CLI_DONE)
       status = combine_check_spaces(cli, combine_space(out), combine_space(&other), paths);
+    int64_t named = vxm_field_label_count(out->field);
     if (status == CLI_DONE)
       status = combine_two(cli, out, &other, words[i - 1]);
     if (status == CLI_DONE && out->field)
-      combine_note_labels(renumbered, cli->arguments[i], other.field, out->field);
+      combine_note_labels(renumbered, cli->arguments[i], other.field, named, meant[words[i - 1]], out->field);
     combine_free(&other);
   }
   return status;

@@ -26,9 +26,10 @@ int combine_read(cli_run *cli, combine_operand *out, const combine_request *give
 /** Refuses grids that are not one space: voxels are combined by index. */
 int combine_check_spaces(cli_run *cli, const vxm_space *a, const vxm_space *b, const char *const paths[2]);
 
-/** Labels of an operand that have another number in the result, for the report. */
-void combine_note_labels(json_t *renumbered, const char *path, const vxm_field *from,
-                         const vxm_field *result);
+/** Labels of an operand that have another number in the result, for the report.
+ * @param named how many names the operand before had */
+void combine_note_labels(json_t *renumbered, const char *path, const vxm_field *from, int64_t named,
+                         vxm_set_operation operation, const vxm_field *result);
 /** Writes values, and tells what they are. */
 int combine_write_field(cli_run *cli, const combine_request *given, const vxm_field *field, json_t *report,
                         const json_t *renumbered);

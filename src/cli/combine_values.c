@@ -44,7 +44,10 @@ int combine_read(cli_run *cli, combine_operand *out, const combine_request *give
   cli_values values = {NULL, NULL};
   if (!out->sparse && cli_values_read(cli, &values, path) != VXM_OK)
     return cli_fail(cli);
-  bool is_bits = !values.field || cli_threshold_given(&given->threshold) || vxm_field_is_mask(values.field);
+  bool is_mask =
+      values.field && vxm_field_kind_of(values.field) == VXM_FIELD_NUMBERS &&
+      vxm_field_is_mask(values.field); /* labels and shares stay what they are, whatever they are */
+  bool is_bits = !values.field || cli_threshold_given(&given->threshold) || is_mask;
   if (with && with->field && is_bits) {
     char text[128];
     cli_values_text(text, with->field);
@@ -70,16 +73,20 @@ int combine_read(cli_run *cli, combine_operand *out, const combine_request *give
 
 /* ---- Labels ---- */
 
-/** The numbers of labels by their names, the lowest of those that share one. */
+/** The numbers of labels by their names, the lowest of those that share one; those without a name are
+ * nobody's. */
 static json_t *numbers_of(const vxm_field *field) {
   json_t *numbers = json_object();
   for (int64_t label = vxm_field_label_count(field); label > 0; label--)
-    json_object_set_new(numbers, vxm_field_label_name(field, label), json_integer(label));
+    if (*vxm_field_label_name(field, label))
+      json_object_set_new(numbers, vxm_field_label_name(field, label), json_integer(label));
   return numbers;
 }
 
-void combine_note_labels(json_t *renumbered, const char *path, const vxm_field *from,
-                         const vxm_field *result) {
+void combine_note_labels(json_t *renumbered, const char *path, const vxm_field *from, int64_t named,
+                         vxm_set_operation operation, const vxm_field *result) {
+  if (named == 0 || (operation != VXM_SET_UNION && operation != VXM_SET_SYMMETRIC_DIFFERENCE))
+    return; /* labels of one number are one, or none of these comes into the result */
   json_t *numbers = numbers_of(result);
   for (int64_t label = 1; label <= vxm_field_label_count(from); label++) {
     const char *name = vxm_field_label_name(from, label);
@@ -205,7 +212,8 @@ static int make_names(cli_run *cli, vxm_field **out, vxm_sparse_file **files,
     if (status == VXM_OK)
       status = vxm_field_combine(&both, *out, own, operations[i - 1], &cli->error);
     if (status == VXM_OK) {
-      combine_note_labels(renumbered, cli->arguments[i], own, both);
+      combine_note_labels(renumbered, cli->arguments[i], own, vxm_field_label_count(*out), operations[i - 1],
+                          both);
       vxm_field_destroy(*out);
       *out = both;
     }

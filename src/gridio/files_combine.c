@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** Octree files with values, combined node by node: what neither has is not looked at. */
+/** Octree files with values, combined node by node: what is one value in all of them is one in the result. */
 #include "gridio/formats/octree_reader.h"
 #include "gridio/values_combine.h"
 
@@ -43,10 +43,15 @@ static bool take(const job *j, size_t file, const int64_t at[3], unsigned char *
 
 static void count_labels(const desk *d, const vxm_space *space, const int64_t at[3], const uint16_t *values,
                          bool is_one) {
+  if (is_one) {
+    d->voxels[values[0]] +=
+        (int64_t)vxm_node_count(space, at, 0) * vxm_node_count(space, at, 1) * vxm_node_count(space, at, 2);
+    return;
+  }
   for (int z = 0; z < vxm_node_count(space, at, 2); z++)
     for (int y = 0; y < vxm_node_count(space, at, 1); y++)
       for (int x = 0; x < vxm_node_count(space, at, 0); x++)
-        d->voxels[values[is_one ? 0 : (VXM_NODE_SIDE * z + y) * VXM_NODE_SIDE + x]]++;
+        d->voxels[values[(VXM_NODE_SIDE * z + y) * VXM_NODE_SIDE + x]]++;
 }
 
 static bool make_node(void *payload, int worker, const int64_t at[3], void *values) {

@@ -190,10 +190,12 @@ vxm_status vxm_label_table_merge(vxm_label_table *to, uint16_t *numbers, const v
     index.mask = 2 * index.mask + 1;
   index.slots = vxm_calloc(context, index.mask + 1, sizeof *index.slots, &local);
   for (size_t label = to->count; label > 0 && index.slots; label--) /* of one name the lowest counts */
-    *slot_of(&index, to, vxm_label_table_name(to, label)) = (uint32_t)label;
+    if (*vxm_label_table_name(to, label))
+      *slot_of(&index, to, vxm_label_table_name(to, label)) = (uint32_t)label;
   for (size_t label = 1; label <= from->count && local.code == VXM_OK; label++) {
     const char *name = vxm_label_table_name(from, label);
-    uint32_t *slot = slot_of(&index, to, name);
+    uint32_t unnamed = 0,
+             *slot = *name ? slot_of(&index, to, name) : &unnamed; /* each is a label of its own */
     if (by_number || !*slot) {
       if (to->count == VXM_LABELS_MAX)
         vxm_fail(&local, VXM_ERROR_RANGE, "combine: together they have more than %d labels", VXM_LABELS_MAX);

@@ -147,6 +147,26 @@ for output in ("y.npy", "y.octree"):
     assert told == {(1, "glass"): 4, (2, "seat"): 7, (3, "wheel"): 2, (4, "seat"): 7, (5, "hull"): 1, (6, "mirror"): 8}, told
     assert [entry["name"] for entry in json.load(open(output + ".json"))["labels"]] == names
 
+# Labels that have no name are their own, each; nothing is told of those that do not come into the result.
+write("a", "labels", "uint16", a, ["hull", "", "door", "", "roof", "lamp"])
+write("b", "labels", "uint16", b, ["", "hull", "", "seat", "seat", ""])
+moved = {0: 0, 1: 7, 2: 1, 3: 8, 4: 9, 5: 9, 6: 10}
+for operation in ("or", "xor", "and", "minus"):
+    check("labels", "uint16", "uint16", operation, expected("labels", operation, a, [moved[v] for v in b]), 2)
+for operation, count in (("or", 3), ("minus", 0)):
+    run("combine", "a.npy", operation, "b.npy", "-o", "y.npy", "-q", "--force", "--report", "y.report")
+    assert len(json.load(open("y.report"))["renumbered"]) == count, operation
+
+# One label, none, and shares of all or nothing are values as others are, not bits.
+for kind, scalar, first, second in (("labels", "uint16", [1], [1, 2]), ("labels", "uint16", [1], [1]), ("labels", "uint8", [0], [1]),
+                                    ("coverage", "uint8", [255], [255, 100])):
+    for operation in ("or", "minus"):
+        a, b = boxes(0, first), boxes(0, second)
+        for one, other in ((a, b), (b, a)):
+            write("a", kind, scalar, one)
+            write("b", kind, scalar, other)
+            check(kind, scalar, "uint16" if kind == "labels" else scalar, operation, expected(kind, operation, one, other), 2)
+
 # What does not go together.
 write("a", "labels", "uint16", make("labels"))
 write("d", "distance", "float32", make("distance"))

@@ -264,6 +264,14 @@ vxm_status vxm_sidecar_read(vxm_space *space, vxm_about *about, vxm_context *con
   return status;
 }
 
+void vxm_sidecar_remove_labels(vxm_context *context, const char *data_path) {
+  char path[PATH_MAX];
+  vxm_space space;
+  if (strcmp(data_path, "-") != 0 && vxm_sidecar_exists(data_path) && sidecar_path(path, data_path) &&
+      vxm_sidecar_read(&space, NULL, context, data_path, "voxmend labels", NULL) == VXM_OK)
+    unlink(path);
+}
+
 bool vxm_sidecar_read_labels(vxm_space *space, vxm_about *about, const vxm_input *input) {
   bool is_file = input->mapping || strcmp(input->name, "<stdin>") != 0;
   if (!is_file || !vxm_sidecar_exists(input->name) || (about->is_declared && about->kind != VXM_FIELD_LABELS))

@@ -45,6 +45,9 @@ bool vxm_sidecar_exists(const char *data_path);
 vxm_status vxm_sidecar_read(vxm_space *space, vxm_about *about, vxm_context *context, const char *data_path,
                             const char *format, vxm_error *error);
 
+/** Removes the table of labels of a file that has been written anew, without one; any other JSON stays. */
+void vxm_sidecar_remove_labels(vxm_context *context, const char *data_path);
+
 /**
  * Reads the table of labels beside a file whose transform it has itself, unless the file says that its values
  * are not labels.

@@ -169,6 +169,8 @@ vxm_status vxm_values_writer_commit(vxm_values_writer *w, vxm_error *error) {
       status = vxm_output_commit(w->sidecar, error);
     w->output = w->sidecar = NULL;
   }
+  if (status == VXM_OK && !text)
+    vxm_sidecar_remove_labels(w->context, w->path); /* which would name the labels of what was there before */
   vxm_values_writer_abort(w);
   return status;
 }
