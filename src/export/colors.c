@@ -32,14 +32,11 @@ vxm_status vxm_colors_make(uint8_t *values, vxm_voxelize_report *report, vxm_mod
 
 /** As a field, all of which is made first. */
 static vxm_status write_field(vxm_voxelize_report *report, vxm_model *model, const vxm_space *space,
-                              const char *path, const vxm_grid_format *format,
+                              const char *path, const vxm_grid_format *format, vxm_style style,
                               const vxm_color_options *options, vxm_error *error) {
   double start = vxm_clock_ms();
   vxm_field *colors = NULL;
-  vxm_style style;
   vxm_status status = check_memory(model, space, options, error);
-  if (status == VXM_OK)
-    status = vxm_style_of(&style, options->blocks, options->up, error);
   if (status == VXM_OK)
     status = vxm_field_make(&colors, model->context, space, VXM_FIELD_COLORS, VXM_UINT8, error);
   if (status != VXM_OK)
@@ -98,9 +95,10 @@ vxm_status vxm_colors_write(vxm_voxelize_report *report, vxm_model *model, const
                             const char *path, const vxm_color_options *options, vxm_error *error) {
   const vxm_grid_format *format =
       vxm_grid_format_holding(path, options->format, VXM_HOLDS_COLORS, "colours go", error);
-  if (!format)
+  vxm_style style;
+  if (!format || vxm_style_of(&style, options->blocks, options->up, error) != VXM_OK)
     return VXM_ERROR_ARGUMENT;
   return format->values == &vxm_octree_values && vxm_color_nodes_are_for(model, options)
              ? write_octree(report, model, space, path, options, error)
-             : write_field(report, model, space, path, format, options, error);
+             : write_field(report, model, space, path, format, style, options, error);
 }

@@ -73,6 +73,15 @@ check("in/cube.off", "-r", "40", "--bounds", "-0.1,-0.1,-0.1,0.1,0.1,0.1", "--di
 check("in/cube.off", "-r", "40", "--bounds", "-0.1,-0.1,-0.1,0.1,0.1,0.1", "--labels", "part")
 run("voxelize", "in/torus.off", "-o", "volume.nrrd", "-r", "12", "--pad", "2", "--distance", "signed", "-q")
 check("in/torus.off", "-r", "40", "--color", "volume.nrrd")
+corners, faces = box((0, 0, 0), (1, 0.7, 0.4))
+with open("colored.ply", "w") as out:
+    out.write("ply\nformat ascii 1.0\nelement vertex 8\n")
+    out.write("".join("property %s\n" % p for p in ("float x", "float y", "float z", "uchar red", "uchar green", "uchar blue")))
+    out.write("element face 12\nproperty list uchar int vertex_indices\nend_header\n")
+    out.write("".join("%r %r %r %d %d %d\n" % (*c, 255 * (n & 1), 30 * n, 255 * (n >> 2)) for n, c in enumerate(corners)))
+    out.write("".join("3 %d %d %d\n" % f for f in faces))
+for options in (["-r", "40"], ["-r", "61x20x33", "--fit", "tight", "--mode", "surface", "--threads", "2"], ["-r", "30", "--color-average"]):
+    check("colored.ply", "--color", "mesh", *options)
 rules = [[], ["--method", "x"], ["--vote", "majority"], ["--parts", "whole"], ["--thin", "26"], ["--method", "winding"]]
 for seed in range(60):
     random_mesh("random.obj", seed)
