@@ -82,9 +82,25 @@ static int64_t random_coordinate(vxm_rng *rng, int64_t unit, int64_t dim) {
   }
 }
 
-enum { FLAT = 1, SLIVER = 4, SEGMENT, POINT, FAR, HUGE_ONE, SMALL, STRAIGHT, WIDE, TOUCHING, KINDS };
+enum {
+  FLAT = 1,
+  SLIVER = 4,
+  SEGMENT,
+  POINT,
+  FAR,
+  HUGE_ONE,
+  SMALL,
+  STRAIGHT,
+  WIDE,
+  TOUCHING,
+  FEW,
+  LIMIT,
+  KINDS
+};
 
-static void random_triangle(vxm_rng *rng, const vxm_lattice *lattice, int kind, vxm_point corner[3]) {
+/** @param largest differences of corners up to which boxes of four voxels and of two are tested in 32 bits */
+static void random_triangle(vxm_rng *rng, const vxm_lattice *lattice, int kind, const int64_t largest[2],
+                            vxm_point corner[3]) {
   const int64_t *dims = lattice->space.dims, unit = lattice->unit, most = VXM_LATTICE_MAX - 1;
   for (int c = 0; c < 3; c++)
     for (int a = 0; a < 3; a++)
@@ -133,6 +149,21 @@ static void random_triangle(vxm_rng *rng, const vxm_lattice *lattice, int kind, 
       corner[0].at[a] = p + d;
       corner[1].at[a] = p + e;
       corner[2].at[a] = p - d - e;
+    }
+  }
+  if (kind == FEW) { /* boxes of few voxels */
+    int64_t reach = (1 + (int64_t)vxm_rng_below(rng, 4)) * unit / 2;
+    for (int c = 1; c < 3; c++)
+      for (int a = 0; a < 3; a++)
+        corner[c].at[a] = corner[0].at[a] + (int64_t)vxm_rng_below(rng, (uint64_t)(2 * reach)) - reach;
+  }
+  if (kind == LIMIT) { /* numbers as large as differences of that size make them */
+    vxm_point middle = corner[0];
+    int64_t size = largest[vxm_rng_below(rng, 2)] + 2;
+    for (int c = 0; c < 3; c++) {
+      int64_t by = size - (int64_t)vxm_rng_below(rng, 4);
+      corner[c] = middle;
+      corner[c].at[c] += vxm_rng_below(rng, 2) ? by : -by;
     }
   }
   if (kind == STRAIGHT) { /* two of its sides along axes */
@@ -194,12 +225,14 @@ static void check_random(vxm_rng *rng, const vxm_space *space, int rounds, int o
     s.surface.context = contexts[vxm_rng_below(rng, 3)];
     /* Few, or so many that lanes are filled, and some are left over. */
     s.surface.triangle_count = 1 + (size_t)vxm_rng_below(rng, vxm_rng_below(rng, 4) == 0 ? MOST : 2);
-    for (size_t t = 0; t < s.surface.triangle_count; t++)
-      random_triangle(rng, &s.surface.lattice, t < 2 || t % 2 ? kind : SMALL, s.points + 3 * t);
-    scene_end(&s);
     vxm_layout layout = layouts[vxm_rng_below(rng, 6)];
     vxm_window cover = window_make(space, layout, 0, space->dims[layout.slow]);
     vxm_window thin = window_make(space, layout, 0, space->dims[layout.slow]);
+    vxm_surface_pen pen = vxm_surface_pen_of(&s.surface, &thin, VXM_SURFACE_THIN);
+    for (size_t t = 0; t < s.surface.triangle_count; t++)
+      random_triangle(rng, &s.surface.lattice, t < 2 || t % 2 ? kind : SMALL,
+                      (int64_t[]){pen.four_max, pen.two_max}, s.points + 3 * t);
+    scene_end(&s);
     window_fill(&cover, ~UINT64_C(0)); /* fresh: whatever was there does not count */
     window_fill(&thin, 0);
     draw_some_way(rng, &s.surface, &cover, VXM_SURFACE_CONSERVATIVE, true);
@@ -216,6 +249,8 @@ static void test_triangles_match_brute_force(void **state) {
   vxm_space cube = unit_space(7, 6, 5), beam = unit_space(130, 3, 4), sheet = unit_space(20, 19, 2);
   check_random(&rng, &cube, 6000, -1);
   check_random(&rng, &cube, 3000, TOUCHING);
+  check_random(&rng, &cube, 3000, FEW);
+  check_random(&rng, &cube, 3000, LIMIT);
   check_random(&rng, &beam, 600, -1);
   check_random(&rng, &sheet, 1200, -1);
 }

@@ -26,6 +26,23 @@ static int64_t lane_max(const vxm_lattice *lattice) {
   return low;
 }
 
+/** The largest D with which all of surface_few.inc fits for boxes of `side` voxels. */
+static int64_t few_max(const vxm_lattice *lattice, int64_t side) {
+  const int64_t u = lattice->unit;
+  int64_t low = 0, high = INT64_C(1) << 15;
+  while (high - low > 1) {
+    int64_t d = (low + high) / 2, square = 3 * d * d;
+    bool centre = d + u / 2 < INT64_C(1) << 15;
+    bool edges = square + 2 * u * d < INT64_C(1) << 31;
+    /* less 2 for rounding */
+    bool plane = square * (d + u) < (u << 31) - 2 * u && square * (d + (side + 1) * u) < (u << 32) - 2 * u;
+    bool fits = centre && edges && plane;
+    low = fits ? d : low;
+    high = fits ? high : d;
+  }
+  return low;
+}
+
 vxm_surface_pen vxm_surface_pen_of(const vxm_surface *surface, const vxm_window *window,
                                    vxm_surface_kind kind) {
   return (vxm_surface_pen){
@@ -36,6 +53,8 @@ vxm_surface_pen vxm_surface_pen_of(const vxm_surface *surface, const vxm_window 
       .build = vxm_surface_best(),
       .narrow_max = narrow_max(&surface->lattice),
       .lane_max = lane_max(&surface->lattice),
+      .four_max = few_max(&surface->lattice, 4),
+      .two_max = few_max(&surface->lattice, 2),
       .tile = {{0, 0, window->begin}, {window->fast_dim, window->middle_dim, window->end}}};
 }
 

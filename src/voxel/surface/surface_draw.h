@@ -65,7 +65,9 @@ typedef struct vxm_surface_pen {
   const vxm_lattice *lattice;
   vxm_surface_kind kind;
   int64_t narrow_max;   /**< differences of corners up to this are exact in surface_i64.inc, */
-  int64_t lane_max;     /**< and up to this in surface_lanes.inc */
+  int64_t lane_max;     /**< and up to this in surface_some.inc */
+  int64_t four_max;     /**< and in surface_few.inc for boxes of up to four voxels, */
+  int64_t two_max;      /**< and of up to two */
   vxm_surface_box tile; /**< of the window */
   uint64_t *words;      /**< the tile's rows, window->row_words each; slices lie slice_words apart */
   size_t slice_words;
