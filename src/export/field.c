@@ -35,6 +35,10 @@ static bool streams(const request *r) {
   return r->format->values && (r->format->values->holds & VXM_HOLDS_NUMBERS);
 }
 
+static bool takes_tiles(const request *r) {
+  return streams(r) && r->format->values->put_tile;
+}
+
 /** The order in which values are made. */
 static vxm_layout layout_of(const request *r) {
   return streams(r) ? r->format->values->layout : (vxm_layout)VXM_PLANE_Z_FAST;
@@ -62,10 +66,17 @@ static vxm_status put_values(void *payload, const void *values, int64_t begin, i
   return status;
 }
 
+static vxm_status put_tile(void *payload, const vxm_value_tile *tile, vxm_error *error) {
+  field_file *file = payload;
+  return file->writer.kind->put_tile(&file->writer, tile, error);
+}
+
 static vxm_status open_file(field_file *file, vxm_field_target *target, vxm_context *context,
                             const request *r, vxm_error *error) {
   *file = (field_file){.request = r};
   *target = (vxm_field_target){.layout = layout_of(r), .put = put_values, .payload = file};
+  if (takes_tiles(r))
+    target->put_tile = put_tile;
   if (streams(r))
     return vxm_values_writer_open(&file->writer, r->format->values, context, r->space, &r->values, r->path,
                                   error);
@@ -232,7 +243,8 @@ vxm_status vxm_field_estimate_distance(vxm_estimate *out, const vxm_model *model
     return vxm_memory_check(model->context, memory, "distances", error);
   }
   if (status == VXM_OK)
-    status = vxm_distance_plan(&plan, model, space, layout_of(&r), !streams(&r), options, error);
+    status = vxm_distance_plan(&plan, model, space, layout_of(&r),
+                               vxm_distance_way_of(!streams(&r), takes_tiles(&r), options), options, error);
   if (status == VXM_OK)
     *out = estimate_of(&plan, &r);
   return status;

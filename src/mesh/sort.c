@@ -8,11 +8,11 @@ enum { FEW = 24 };
 /** From so many on fewer passes pay for longer digits. */
 enum { MANY = 2048, DIGIT_BITS_OF_FEW = 8 };
 
-static void insertion_sort(uint64_t *keys, size_t count) {
+static void insertion_sort(uint64_t *keys, size_t count, unsigned shift) {
   for (size_t i = 1; i < count; i++) {
     uint64_t key = keys[i];
     size_t j = i;
-    for (; j > 0 && keys[j - 1] > key; j--)
+    for (; j > 0 && keys[j - 1] >> shift > key >> shift; j--)
       keys[j] = keys[j - 1];
     keys[j] = key;
   }
@@ -20,14 +20,14 @@ static void insertion_sort(uint64_t *keys, size_t count) {
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
 
-/** Sorts by digits from the lowest up, of those bits in which not all keys agree. */
-static void radix_sort(uint64_t *keys, uint64_t *scratch, size_t count, unsigned bits) {
+/** Sorts by digits from bit `first` up, of those bits in which not all keys agree. */
+static void radix_sort(uint64_t *keys, uint64_t *scratch, size_t count, unsigned bits, unsigned first) {
   const uint64_t mask = ((uint64_t)1 << bits) - 1;
   uint64_t varying = 0;
   for (size_t i = 1; i < count; i++)
     varying |= keys[i] ^ keys[0];
   uint64_t *from = keys, *to = scratch;
-  for (unsigned shift = 0; shift < 64 && varying >> shift; shift += bits) {
+  for (unsigned shift = first; shift < 64 && varying >> shift; shift += bits) {
     if ((varying >> shift & mask) == 0)
       continue;
     size_t place[DIGITS];
@@ -50,9 +50,13 @@ static void radix_sort(uint64_t *keys, uint64_t *scratch, size_t count, unsigned
     memcpy(keys, from, count * sizeof *keys);
 }
 
-void vxm_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count) {
+void vxm_sort_keys_above(uint64_t *keys, uint64_t *scratch, size_t count, unsigned shift) {
   if (count <= FEW)
-    insertion_sort(keys, count);
+    insertion_sort(keys, count, shift);
   else
-    radix_sort(keys, scratch, count, count < MANY ? DIGIT_BITS_OF_FEW : DIGIT_BITS);
+    radix_sort(keys, scratch, count, count < MANY ? DIGIT_BITS_OF_FEW : DIGIT_BITS, shift);
+}
+
+void vxm_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count) {
+  vxm_sort_keys_above(keys, scratch, count, 0);
 }

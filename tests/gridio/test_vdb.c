@@ -174,13 +174,39 @@ static void test_identifier(void **state) {
 /* ---- Numbers ---- */
 
 static float value_of(const vxm_vdb_kind *kind, int64_t i, int64_t j, int64_t k) {
-  double r = sqrt((double)((i - 20) * (i - 20) + (j - 13) * (j - 13) + (k - 15) * (k - 15))) - 11.3;
+  double r = sqrt((double)((i - 20) * (i - 20) + (j - 63) * (j - 63) + (k - 65) * (k - 65))) - 61.3;
   if (kind->content == VXM_VDB_FOG)
     return (float)fmin(1, fmax(0, -r / 3));
   return (float)fmin(2, fmax(-2, r));
 }
 
-/** Numbers come back as they are, and are never taken for bits; slices come in any number. */
+/** Puts tiles of z fastest values, of some all alike without these, and none that is only background. */
+static void put_tiles(vxm_vdb_field *field, const float *values, const int64_t n[3], float background) {
+  for (int64_t x = 0; x < n[0]; x += VXM_VALUE_TILE)
+    for (int64_t y = 0; y < n[1]; y += VXM_VALUE_TILE)
+      for (int64_t z = 0; z < n[2]; z += VXM_VALUE_TILE) {
+        const int64_t first[3] = {z, y, x}, dims[3] = {n[2], n[1], n[0]};
+        vxm_value_tile tile = {.values = values + (x * n[1] + y) * n[2] + z,
+                               .row = (size_t)n[2],
+                               .slice = (size_t)(n[1] * n[2])};
+        bool is_even = true;
+        tile.value = tile.values[0];
+        for (int a = 0; a < 3; a++) {
+          tile.first[a] = first[a];
+          tile.count[a] = (int)vxm_min(dims[a] - first[a], VXM_VALUE_TILE);
+        }
+        for (int64_t i = 0; i < tile.count[2]; i++)
+          for (int64_t j = 0; j < tile.count[1]; j++)
+            for (int64_t k = 0; k < tile.count[0]; k++)
+              is_even = is_even && tile.values[(i * n[1] + j) * n[2] + k] == tile.value;
+        if (is_even)
+          tile.values = NULL;
+        if (!is_even || tile.value != background)
+          assert_int_equal(vxm_vdb_field_put_tile(field, &tile, NULL), VXM_OK);
+      }
+}
+
+/** Numbers come back as they are, and are never taken for bits; slices come in any number, or as tiles. */
 static void test_fields(void **state) {
   (void)state;
   static const vxm_vdb_kind kinds[] = {{VXM_VDB_LEVEL_SET, "distance", 2, NULL},
@@ -189,7 +215,7 @@ static void test_fields(void **state) {
   make_folder(folder);
   vxm_context *context = context_with(2, 0, NULL, NULL);
   vxm_rng rng = {73};
-  vxm_space space = {{41, 27, 35}, {1, 2, 3}, {0.5, 0.25, 1}};
+  vxm_space space = {{41, 127, 135}, {1, 2, 3}, {0.5, 0.25, 1}};
   const int64_t *n = space.dims;
   for (int kind = 0; kind < 2; kind++) {
     vxm_vdb_field *field;
@@ -198,7 +224,9 @@ static void test_fields(void **state) {
       values[v] = value_of(&kinds[kind], v / (n[1] * n[2]), v / n[2] % n[1], v % n[2]);
     for (int round = 0; round < 2; round++) {
       assert_int_equal(vxm_vdb_field_create(&field, context, &space, &kinds[kind], NULL), VXM_OK);
-      for (int64_t at = 0, next; at < n[0]; at = next) {
+      if (round == 0)
+        put_tiles(field, values, n, kinds[kind].background);
+      for (int64_t at = 0, next; at < n[0] && round > 0; at = next) {
         next = at + 1 + (int64_t)vxm_rng_below(&rng, (uint64_t)(n[0] - at));
         assert_int_equal(vxm_vdb_field_put(field, values + at * n[1] * n[2], at, next, NULL), VXM_OK);
       }

@@ -203,6 +203,26 @@ static void keys_are_sorted(void **state) {
     }
 }
 
+/** By their upper bits alone, with those that are alike in their order. */
+static void keys_are_sorted_above(void **state) {
+  (void)state;
+  enum { N = 3000 };
+  static uint64_t keys[N], scratch[N];
+  vxm_rng rng = {42};
+  for (size_t count = 0; count <= N; count = count * 2 + 1)
+    for (unsigned shift = 0; shift < 64; shift += 9) {
+      const unsigned number = shift < 12 ? 0 : 12; /* bits for it below those that are sorted by */
+      for (size_t i = 0; i < count; i++)
+        keys[i] = number ? (vxm_rng_next(&rng) & 7) << shift | i : vxm_rng_next(&rng);
+      vxm_sort_keys_above(keys, scratch, count, shift);
+      for (size_t i = 1; i < count; i++) {
+        assert_true(keys[i - 1] >> shift <= keys[i] >> shift);
+        if (number && keys[i - 1] >> shift == keys[i] >> shift)
+          assert_true(keys[i - 1] < keys[i]);
+      }
+    }
+}
+
 static void same_for_any_threads(void **state) {
   (void)state;
   vxm_edges first = {0};
@@ -257,7 +277,7 @@ int main(void) {
       cmocka_unit_test(edges_equal_counting),    cmocka_unit_test(sheet_and_cube),
       cmocka_unit_test(crowded_vertex_and_edge), cmocka_unit_test(same_for_any_threads),
       cmocka_unit_test(memory_limit_is_kept),    cmocka_unit_test(few_faces_on_many_vertices),
-      cmocka_unit_test(keys_are_sorted),
+      cmocka_unit_test(keys_are_sorted),         cmocka_unit_test(keys_are_sorted_above),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -278,9 +278,33 @@ static vxm_status take(void *payload, const void *values, int64_t begin, int64_t
   return VXM_OK;
 }
 
+/** Tiles come from several threads, but no voxel twice. */
+static vxm_status take_tile(void *payload, const vxm_value_tile *tile, vxm_error *error) {
+  (void)error;
+  const taken *t = payload;
+  const int64_t *dims = t->space->dims;
+  const int axes[3] = {t->layout.fast, t->layout.middle, t->layout.slow};
+  int64_t at[3];
+  for (int a = 0; a < 3; a++) {
+    assert_true(tile->first[a] % 8 == 0 && tile->count[a] > 0 && tile->count[a] <= VXM_VALUE_TILE);
+    assert_true(tile->first[a] + tile->count[a] <= dims[axes[a]]);
+  }
+  for (int z = 0; z < tile->count[2]; z++)
+    for (int y = 0; y < tile->count[1]; y++)
+      for (int x = 0; x < tile->count[0]; x++) {
+        at[axes[0]] = tile->first[0] + x;
+        at[axes[1]] = tile->first[1] + y;
+        at[axes[2]] = tile->first[2] + z;
+        t->values[(at[0] * dims[1] + at[1]) * dims[2] + at[2]] =
+            tile->values ? tile->values[(size_t)z * tile->slice + (size_t)y * tile->row + (size_t)x]
+                         : tile->value;
+      }
+  return VXM_OK;
+}
+
 /** Distances in an order and under a limit, as [x][y][z]; returns whether they could be had. */
 static bool measure_in(float *values, vxm_layout layout, int threads, uint64_t limit, double band,
-                       int *windows) {
+                       bool in_tiles, int *windows) {
   vxm_space space = layout_space;
   vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
   options.threads = threads;
@@ -291,7 +315,9 @@ static bool measure_in(float *values, vxm_layout layout, int threads, uint64_t l
   shape_torus(soup, 20, 12, 1, 0.4, (double[]){0.01, 0.02, 0.03});
   vxm_model *model = model_of(soup);
   taken t = {&space, layout, values, 0};
-  vxm_field_target target = {layout, NULL, take, &t};
+  vxm_field_target target = {layout, NULL, take, &t, in_tiles ? take_tile : NULL};
+  for (size_t v = 0; v < voxels_of(&space) && in_tiles; v++)
+    values[v] = (float)(band * 0.08);
   vxm_distance_options chosen = VXM_DISTANCE_OPTIONS_INIT;
   chosen.band = band;
   vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
@@ -316,17 +342,72 @@ static void test_layouts(void **state) {
   int windows, most = 0;
   for (int n = 0; n < 2; n++) {
     double band = n == 0 ? 4 : 0;
-    assert_true(measure_in(first, layouts[0], 1, 0, band, &windows));
+    assert_true(measure_in(first, layouts[0], 1, 0, band, false, &windows));
     for (int l = 1; l < 4; l++) {
-      assert_true(measure_in(next, layouts[l], l, 0, band, &windows));
-      assert_memory_equal(first, next, bytes);
+      for (int tiles = 0; tiles < 2; tiles++) {
+        assert_true(measure_in(next, layouts[l], l, 0, band, tiles, &windows));
+        assert_memory_equal(first, next, bytes);
+        assert_true((windows == 0) == (tiles && n == 0));
+      }
     }
-    for (uint64_t limit = 11 << 20; measure_in(next, layouts[n], 2, limit, band, &windows); limit -= 100000) {
-      assert_memory_equal(first, next, bytes);
-      most = windows > most ? windows : most;
-    }
+    for (int tiles = 0; tiles < 2; tiles++)
+      for (uint64_t limit = 11 << 20; measure_in(next, layouts[n], 2, limit, band, tiles, &windows);
+           limit -= 100000) {
+        assert_memory_equal(first, next, bytes);
+        most = windows > most ? windows : most;
+      }
   }
   assert_true(most > 2);
+  free(next);
+  free(first);
+}
+
+static vxm_status refuse_tile(void *payload, const vxm_value_tile *tile, vxm_error *error) {
+  (void)payload;
+  (void)tile;
+  return vxm_fail(error, VXM_ERROR_IO, "no room");
+}
+
+/** Large bodies, with whole tiles inside and such that the mouth of an open one goes through: whatever is
+ * beyond the band. */
+static void test_far_tiles(void **state) {
+  (void)state;
+  vxm_space space = {{150, 131, 170}, {0, 0, 0}, {1, 1, 1}};
+  size_t bytes = voxels_of(&space) * sizeof(float);
+  float *first = malloc(bytes), *next = malloc(bytes);
+  for (int round = 0; round < 6; round++) {
+    vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
+    options.threads = 1 + round % 3;
+    vxm_context *own;
+    assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
+    vxm_soup *soup = shape_empty(own);
+    shape_box(soup, (double[]){3.5, 4.2, 5.1}, (double[]){146.3, 125.4, 160.2});
+    if (round >= 2)
+      soup->face_count--;
+    vxm_model *model = model_of(soup);
+    taken t = {&space, {2, 1, 0}, next, 0};
+    vxm_field_target target = {t.layout, NULL, take, &t, take_tile};
+    vxm_distance_options chosen = VXM_DISTANCE_OPTIONS_INIT;
+    chosen.is_unsigned = round == 5;
+    vxm_distance_report report = measure(first, model, &space, 3, round == 5),
+                        other = VXM_DISTANCE_REPORT_INIT;
+    vxm_voxelize_report voxelize = VXM_VOXELIZE_REPORT_INIT;
+    other.voxelize = &voxelize;
+    for (size_t v = 0; v < voxels_of(&space); v++)
+      next[v] = 3;
+    assert_int_equal(vxm_distance_run(&target, &other, model, &space, &chosen, NULL), VXM_OK);
+    assert_memory_equal(first, next, bytes);
+    assert_int_equal(t.calls, 0);
+    assert_int_equal(report.exact, other.exact);
+    assert_true(report.min == other.min && report.max == other.max);
+    target.put_tile = refuse_tile;
+    vxm_error error = VXM_ERROR_INIT;
+    assert_int_equal(vxm_distance_run(&target, &other, model, &space, &chosen, &error), VXM_ERROR_IO);
+    assert_string_equal(error.text, "no room");
+    vxm_model_destroy(model);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(own);
+  }
   free(next);
   free(first);
 }
@@ -401,6 +482,7 @@ int main(void) {
       cmocka_unit_test(test_far_off),
       cmocka_unit_test(test_wide_band),
       cmocka_unit_test(test_layouts),
+      cmocka_unit_test(test_far_tiles),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -26,10 +26,14 @@ static void test_frames(void **state) {
   const vxm_band_kernels *builds[3];
   size_t build_count = vxm_band_kernels_all(builds);
   vxm_distance_triangle *made = malloc(COUNT * sizeof *made), right;
+  static vxm_band_stage stage;
   for (int kind = 0; kind < 15; kind++) {
     triangle_corners *corners = make_corners(COUNT, 20, &rng, kind);
     for (size_t b = 0; b < build_count; b++) {
-      builds[b]->make_frames(made, (const double(*)[3][3])corners, COUNT - (size_t)kind);
+      for (size_t t = 0; t < COUNT - (size_t)kind; t += VXM_BAND_STAGED) {
+        size_t some = (size_t)vxm_min((int64_t)(COUNT - (size_t)kind - t), VXM_BAND_STAGED);
+        builds[b]->make_frames(made + t, &stage, (const double(*)[3][3])corners + t, some);
+      }
       for (size_t t = 0; t < COUNT - (size_t)kind; t++) {
         vxm_distance_triangle_make(&right, (const double(*)[3])corners[t]);
         assert_memory_equal(&made[t], &right, sizeof right);

@@ -6,6 +6,7 @@
 #ifndef VXM_GRIDIO_COMMON_VALUES_WRITER_H
 #define VXM_GRIDIO_COMMON_VALUES_WRITER_H
 
+#include "grid/value_tile.h"
 #include "gridio/common/format.h"
 
 /** What is written. */
@@ -57,6 +58,9 @@ typedef struct vxm_values_writer_kind {
    * byte first. A failed write may be left to the output. */
   vxm_status (*put)(vxm_values_writer *writer, const void *values, int64_t begin, int64_t end,
                     vxm_error *error);
+  /** Tiles that begin at multiples of 8 voxels, in the order of slices, from several threads at once; what
+   * never comes is the background. In place of `put`; NULL = slices only. */
+  vxm_status (*put_tile)(vxm_values_writer *writer, const vxm_value_tile *tile, vxm_error *error);
   /** Values in their order, any number of them, each with its lowest byte first on machines of either byte
    * order; NULL, without `put`, = they are written so. */
   void (*put_bytes)(vxm_values_writer *writer, const void *bytes, size_t size);

@@ -3,6 +3,7 @@
 #ifndef VXM_GRIDIO_FORMATS_VDB_FIELD_H
 #define VXM_GRIDIO_FORMATS_VDB_FIELD_H
 
+#include "grid/value_tile.h"
 #include "gridio/formats/vdb.h"
 
 typedef struct vxm_vdb_field vxm_vdb_field;
@@ -15,6 +16,11 @@ void vxm_vdb_field_destroy(vxm_vdb_field *field);
 /** Takes the next slices begin..end-1 across x: z fastest, then y. */
 vxm_status vxm_vdb_field_put(vxm_vdb_field *field, const float *values, int64_t begin, int64_t end,
                              vxm_error *error);
+/**
+ * Takes a tile that begins at multiples of 8 voxels, in the order of vxm_vdb_field_put, each once; from
+ * several threads at once. What never comes is the background. Not for a field that takes slices.
+ */
+vxm_status vxm_vdb_field_put_tile(vxm_vdb_field *field, const vxm_value_tile *tile, vxm_error *error);
 /** Writes the file; VXM_ERROR_IO if a write failed, of which committing the output tells the reason. */
 vxm_status vxm_vdb_field_write(vxm_vdb_field *field, vxm_output *output, vxm_error *error);
 

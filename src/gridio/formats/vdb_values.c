@@ -162,6 +162,10 @@ static vxm_status put(vxm_values_writer *w, const void *values, int64_t begin, i
   return vxm_vdb_field_put(w->state, values, begin, end, error);
 }
 
+static vxm_status put_tile(vxm_values_writer *w, const vxm_value_tile *tile, vxm_error *error) {
+  return vxm_vdb_field_put_tile(w->state, tile, error);
+}
+
 static vxm_status end(vxm_values_writer *w, vxm_error *error) {
   return vxm_vdb_field_write(w->state, w->output, error);
 }
@@ -178,6 +182,7 @@ const vxm_values_writer_kind vxm_vdb_values = {
     .check = check,
     .begin = begin,
     .put = put,
+    .put_tile = put_tile,
     .end = end,
     .drop = drop,
 };

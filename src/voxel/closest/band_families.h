@@ -21,10 +21,21 @@ enum { VXM_BAND_FAMILY = 8 /**< triangles in a family at most */ };
 
 /** vxm_distance_triangle in floats, as seen from its family's origin; the columns are fast, middle, slow. */
 typedef struct vxm_band_triangle {
-  float axis[3][3], offset[3]; /**< a point q lies at axis q - offset in the triangle's frame */
+  float axis[3][3], offset[3]; /**< a point q lies at axis q + offset in the triangle's frame */
   float length, leg[2][2], leg_length[2];
   float middle[3];
 } vxm_band_triangle;
+
+/** Triangles whose frames are made at once, number by number: corners, and vxm_distance_triangle. */
+enum { VXM_BAND_STAGED = 64, VXM_BAND_STAGE_ROOM = VXM_BAND_STAGED + VXM_BAND_FAMILY };
+typedef struct vxm_band_stage {
+  _Alignas(64) double corner[9][VXM_BAND_STAGE_ROOM];
+  double frame[sizeof(vxm_distance_triangle) / sizeof(double)][VXM_BAND_STAGE_ROOM];
+} vxm_band_stage;
+
+typedef struct vxm_band_box {
+  double low[3], high[3];
+} vxm_band_box;
 
 /** Triangles side by side. All threes that are not doubles are in the order fast, middle, slow. */
 typedef struct vxm_band_family {
@@ -44,7 +55,6 @@ typedef struct vxm_band_families {
   vxm_band_family *families;
   vxm_distance_triangle *exact; /**< of the triangles, in the order of the families */
   vxm_band_triangle *rough;
-  uint32_t *family_of; /**< of each triangle */
 } vxm_band_families;
 
 /**

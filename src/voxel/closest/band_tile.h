@@ -5,13 +5,15 @@
 
 #include "voxel/closest/band_families.h"
 
-/** Voxels along an edge of a tile; its rows have room for more, and each slice has one more row. */
+/** Voxels along an edge of a tile; its rows have room for more, and each slice has one more row. A vector has
+ * so many at most. */
 enum {
   VXM_BAND_TILE = 32,
   VXM_BAND_ROW = VXM_BAND_TILE + 8,
   VXM_BAND_SLICE = VXM_BAND_ROW * (VXM_BAND_TILE + 1),
   VXM_BAND_VOXELS = VXM_BAND_SLICE * VXM_BAND_TILE,
-  VXM_BAND_NOTES = 1 << 14
+  VXM_BAND_NOTES = 1 << 13,
+  VXM_BAND_VECTOR = 16
 };
 
 /** A vector of voxels that has to be looked at in doubles, for a triangle. */
@@ -22,9 +24,10 @@ typedef struct vxm_band_note {
 
 /** What a worker makes a tile in. */
 typedef struct vxm_band_tile {
-  _Alignas(64) double squares[VXM_BAND_VOXELS]; /**< the result, band^2 where nothing is nearer */
-  float upper[VXM_BAND_VOXELS];                 /**< no less than what is to come, squared */
-  double places[3][VXM_BAND_ROW];               /**< of the voxels, along fast, middle and slow */
+  _Alignas(64) float lower[VXM_BAND_NOTES][VXM_BAND_VECTOR]; /**< of notes: squares are not below that */
+  double squares[VXM_BAND_VOXELS]; /**< the result, band^2 where nothing is nearer */
+  float upper[VXM_BAND_VOXELS];    /**< no less than what is to come, squared */
+  double places[3][VXM_BAND_ROW];  /**< of the voxels, along fast, middle and slow */
   vxm_band_note notes[VXM_BAND_NOTES];
   size_t note_count;
   int64_t first[3];
@@ -48,8 +51,16 @@ typedef struct vxm_band_tally {
 } vxm_band_tally;
 
 typedef struct vxm_band_kernels {
-  /** vxm_distance_triangle_make for many, to the bit. */
-  void (*make_frames)(vxm_distance_triangle *out, const double (*corners)[3][3], size_t count);
+  /** vxm_distance_triangle_make for up to VXM_BAND_STAGED triangles, to the bit. */
+  void (*make_frames)(vxm_distance_triangle *out, vxm_band_stage *stage, const double (*corners)[3][3],
+                      size_t count);
+  /**
+   * Makes a family that has `first` and `count` of triangles whose frames have been made, `first` of the
+   * stage and those behind it: all but its room and voxels, with a low, high and half that are not widened
+   * yet. Returns how far it reaches from its origin.
+   */
+  double (*make_family)(vxm_band_family *f, vxm_band_box *around, vxm_band_triangle *rough,
+                        const vxm_band_stage *stage, size_t first, const vxm_band_grid *grid);
   /**
    * The squared distances of a tile that has `first` and `count` to the nearest triangle of the families
    * listed: the least that vxm_triangle_distance2 gives, to the bit, where that is below band^2, or band^2.

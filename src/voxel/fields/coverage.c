@@ -233,7 +233,7 @@ vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const 
                       ? (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(uint16_t)
                       : 0;
   return vxm_field_plan_of(out, model, &finer, layout, options->subdivision, true, scratch,
-                           (is_whole ? 0 : values) + counts, error);
+                           (is_whole ? 0 : values) + counts, 1, error);
 }
 
 vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report *report, vxm_model *model,

@@ -8,10 +8,19 @@
 #include <math.h>
 #include <string.h>
 
+<<<<<<< HEAD
+=======
+/** Bands up to that are measured from the triangles; wider ones, and all of space, by the tree. */
+static const double widest_band = 6;
+/** Slices that tiles begin at multiples of. */
+enum { TILE_STEP = VXM_VALUE_TILE / 4 };
+
+>>>>>>> distance
 typedef vxm_band_tally tally;
 
 typedef struct measure {
   vxm_context *context;
+  vxm_distance_way way;
   vxm_model_pass *pass; /**< NULL without a sign */
   const vxm_space *space;
   vxm_distance_search search;
@@ -30,8 +39,33 @@ typedef struct measure {
   vxm_task_progress watch;
 } measure;
 
+<<<<<<< HEAD
 static measure measure_of(vxm_context *context, const vxm_space *space, vxm_layout layout,
                           const vxm_distance_options *options) {
+=======
+/** The side of a voxel that a band is counted in. */
+static double longest_side(const vxm_space *space) {
+  const double *size = space->voxel_size;
+  return fmax(fmax(size[0], size[1]), size[2]);
+}
+
+float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space) {
+  return (float)((options->band > 0 ? options->band : INFINITY) * longest_side(space));
+}
+
+static bool is_narrow(double band) {
+  return band > 0 && band <= widest_band;
+}
+
+vxm_distance_way vxm_distance_way_of(bool is_whole, bool takes_tiles, const vxm_distance_options *options) {
+  if (is_whole)
+    return VXM_DISTANCE_WHOLE;
+  return takes_tiles && is_narrow(options->band) ? VXM_DISTANCE_TILES : VXM_DISTANCE_SLICES;
+}
+
+static measure measure_of(vxm_context *context, const vxm_surface *surface, const vxm_space *space,
+                          vxm_layout layout, const vxm_distance_options *options) {
+>>>>>>> distance
   measure m = {.context = context,
                .space = space,
                .dims = {space->dims[layout.fast], space->dims[layout.middle], space->dims[layout.slow]},
@@ -44,6 +78,61 @@ static measure measure_of(vxm_context *context, const vxm_space *space, vxm_layo
   return m;
 }
 
+<<<<<<< HEAD
+=======
+/* ---- Triangles ---- */
+
+enum { PLACE_TASKS = 64 };
+
+static void place_vertices(size_t task, int worker, void *payload) {
+  (void)worker;
+  const measure *m = payload;
+  const vxm_soup *soup = m->surface->soup;
+  size_t end = vxm_slice_begin(soup->vertex_count, PLACE_TASKS, task + 1);
+  for (size_t v = vxm_slice_begin(soup->vertex_count, PLACE_TASKS, task); v < end; v++)
+    for (int a = 0; a < 3; a++)
+      m->places[v][a] = (vxm_position(soup, v)[a] - m->space->origin[a]) / m->side;
+}
+
+static void corners_of(double out[3][3], size_t triangle, const void *payload) {
+  const measure *m = payload;
+  for (size_t c = 0; c < 3; c++)
+    memcpy(out[c], m->places[m->surface->corners[3 * triangle + c]], sizeof out[c]);
+}
+
+/** For distances within a narrow band. */
+static void make_near(measure *m, vxm_error *error) {
+  vxm_context *context = m->context;
+  vxm_band_grid grid = {.band = m->band};
+  for (int a = 0; a < 3; a++) {
+    grid.axes[a] = m->axes[a];
+    grid.dims[a] = m->dims[a];
+    grid.step[a] = m->space->voxel_size[a] / m->side;
+  }
+  if (vxm_band_families_create(&m->families, context, m->surface->triangle_count, corners_of, m, &grid,
+                               error) == VXM_OK)
+    vxm_distance_band_create(&m->near, m->families, vxm_context_threads(context), error);
+}
+
+static vxm_status make_nearest(measure *m, vxm_error *error) {
+  vxm_context *context = m->context;
+  vxm_error local = VXM_ERROR_INIT;
+  m->places = vxm_alloc(context, m->surface->soup->vertex_count, sizeof *m->places, &local);
+  if (m->places) {
+    vxm_parallel(context, PLACE_TASKS, place_vertices, m);
+    if (is_narrow(m->band))
+      make_near(m, &local);
+    else
+      vxm_distance_bvh_create(&m->nearest, context, m->surface->triangle_count, corners_of, m, &local);
+  }
+  vxm_free(context, m->places);
+  m->places = NULL;
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
+  return local.code;
+}
+
+>>>>>>> distance
 /* ---- Values ---- */
 
 /** Some beyond the band. */
@@ -103,7 +192,8 @@ static void measure_tile(size_t task, int worker, void *payload) {
   vxm_task_progress_step(&m->watch);
 }
 
-static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_error *error) {
+static vxm_status measure_slices(measure *m, const vxm_field_target *target, int64_t begin, int64_t end,
+                                 vxm_error *error) {
   vxm_status status = VXM_OK;
   m->begin = begin;
   m->end = end;
@@ -115,8 +205,15 @@ static vxm_status measure_slices(measure *m, int64_t begin, int64_t end, vxm_err
   if (status != VXM_OK)
     return status;
   if (m->near)
+<<<<<<< HEAD
     return vxm_distance_band_measure(m->near, m->values, &m->solid, begin, end, m->search.side, m->tallies,
                                      error);
+=======
+    return m->way == VXM_DISTANCE_TILES ? vxm_distance_band_measure(m->near, target, NULL, &m->solid, begin,
+                                                                    end, m->side, m->tallies, error)
+                                        : vxm_distance_band_measure(m->near, NULL, m->values, &m->solid,
+                                                                    begin, end, m->side, m->tallies, error);
+>>>>>>> distance
   size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_TILE - 1) / VXM_TILE));
   vxm_task_progress_start(&m->watch, m->context, "measuring distances", tiles, error);
   vxm_parallel(m->context, tiles, measure_tile, m);
@@ -131,14 +228,16 @@ static vxm_status measure_windows(measure *m, const vxm_field_target *target, co
   const int64_t tile = m->near ? VXM_BAND_TILE : VXM_TILE;
   if (slices > tile) /* whole tiles cost less */
     slices -= slices % tile;
+  else if (m->way == VXM_DISTANCE_TILES && slices < length)
+    slices -= slices % TILE_STEP;
   size_t slice = (size_t)(m->dims[0] * m->dims[1]);
   float *block = m->values;
   vxm_status status = VXM_OK;
   for (int64_t begin = 0, end; begin < length && status == VXM_OK; begin = end) {
     end = vxm_min(begin + slices, length);
     m->values = target->whole ? (float *)target->whole + (size_t)begin * slice : block;
-    status = measure_slices(m, begin, end, error);
-    if (status == VXM_OK && !target->whole)
+    status = measure_slices(m, target, begin, end, error);
+    if (status == VXM_OK && m->way == VXM_DISTANCE_SLICES)
       status = target->put(target->payload, m->values, begin, end, error);
   }
   return status;
@@ -208,7 +307,7 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
                               vxm_model *model, const vxm_field_plan *plan, vxm_error *error) {
   vxm_context *context = m->context;
   int workers = vxm_context_threads(context);
-  size_t values = target->whole ? 0 : (size_t)(m->dims[0] * m->dims[1]);
+  size_t values = m->way == VXM_DISTANCE_SLICES ? (size_t)(m->dims[0] * m->dims[1]) : 0;
   vxm_error local = VXM_ERROR_INIT;
   m->solid = plan->bits;
   float *block = m->values = vxm_alloc(context, (size_t)plan->slices * values, sizeof *block, &local);
@@ -237,7 +336,7 @@ static vxm_status run_planned(measure *m, const vxm_field_target *target, vxm_di
 }
 
 vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
-                             vxm_layout layout, bool is_whole, const vxm_distance_options *options,
+                             vxm_layout layout, vxm_distance_way way, const vxm_distance_options *options,
                              vxm_error *error) {
   size_t triangles;
   int workers = vxm_context_threads(model->context);
@@ -250,12 +349,14 @@ vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const 
   fixed += (uint64_t)workers * sizeof(tally);
   uint64_t values = (uint64_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(float);
   return vxm_field_plan_of(out, model, space, layout, options->is_unsigned ? 0 : 1, true, fixed,
-                           is_whole ? 0 : values, error);
+                           way == VXM_DISTANCE_SLICES ? values : 0, way == VXM_DISTANCE_TILES ? TILE_STEP : 1,
+                           error);
 }
 
 vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_distance_options *options, vxm_error *error) {
   vxm_field_plan plan;
+<<<<<<< HEAD
   vxm_context *context = model->context;
   vxm_status status =
       vxm_distance_plan(&plan, model, space, target->layout, target->whole != NULL, options, error);
@@ -266,6 +367,20 @@ vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report 
                                       options, error);
   if (status == VXM_OK && m.search.families)
     status = vxm_distance_band_create(&m.near, m.search.families, vxm_context_threads(context), error);
+=======
+  vxm_distance_way way = vxm_distance_way_of(target->whole != NULL, target->put_tile != NULL, options);
+  vxm_status status = vxm_distance_plan(&plan, model, space, target->layout, way, options, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_surface *surface;
+  vxm_lattice lattice = vxm_lattice_of(space);
+  status = vxm_surface_create(&surface, model->analysis.soup, &lattice, NULL, error);
+  if (status != VXM_OK)
+    return status;
+  measure m = measure_of(model->context, surface, space, target->layout, options);
+  m.way = way;
+  status = make_nearest(&m, error);
+>>>>>>> distance
   if (status == VXM_OK)
     status = run_planned(&m, target, report, model, &plan, error);
   vxm_distance_band_destroy(m.near);

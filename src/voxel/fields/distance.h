@@ -16,9 +16,19 @@
 vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_distance_options *options, vxm_error *error);
 
-/** How vxm_distance_run goes about it; `is_whole`: the values are the caller's. */
+/** Where values go: into an array of the caller's, into slices that are handed on, or into tiles. */
+typedef enum vxm_distance_way {
+  VXM_DISTANCE_WHOLE,
+  VXM_DISTANCE_SLICES,
+  VXM_DISTANCE_TILES
+} vxm_distance_way;
+
+/** How a target takes distances; `takes_tiles`: it would if it can. */
+vxm_distance_way vxm_distance_way_of(bool is_whole, bool takes_tiles, const vxm_distance_options *options);
+
+/** How vxm_distance_run goes about it. */
 vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
-                             vxm_layout layout, bool is_whole, const vxm_distance_options *options,
+                             vxm_layout layout, vxm_distance_way way, const vxm_distance_options *options,
                              vxm_error *error);
 
 #endif

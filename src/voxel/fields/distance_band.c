@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/fields/distance_band.h"
 #include "base/bits.h"
+#include "base/task_progress.h"
 #include "base/threads.h"
+#include "voxel/fields/distance_tiles.h"
 
 #include <math.h>
 
@@ -13,16 +15,17 @@ struct vxm_distance_band {
   const vxm_band_families *families;
   const vxm_band_kernels *kernels;
   int workers;
-  vxm_band_tile *tiles;   /**< of each worker */
-  uint32_t *near;         /**< families near a tile, of each worker */
-  size_t *starts;         /**< of the bins at hand, and the end of the last */
-  uint32_t *entries;      /**< the families of some bins */
-  size_t room;            /**< entries that there is room for: the families of any one bin at least */
-  int64_t across, down;   /**< bins beside each other: tiles in a row, rows of tiles in a slice */
-  int64_t begin, end;     /**< slices at hand */
-  size_t first_bin, base; /**< whose entries are at hand, and where they would begin */
-  int64_t piece, pieces;  /**< tiles of a bin that are one task, and tasks in a bin */
-  vxm_band_values out;    /**< of the first slice */
+  vxm_band_tile *tiles;    /**< of each worker */
+  uint32_t *near;          /**< families near a tile, of each worker */
+  size_t *starts;          /**< of the bins at hand, and the end of the last */
+  uint32_t *entries;       /**< the families of some bins */
+  size_t room;             /**< entries that there is room for: the families of any one bin at least */
+  int64_t across, down;    /**< bins beside each other: tiles in a row, rows of tiles in a slice */
+  int64_t begin, end;      /**< slices at hand */
+  size_t first_bin, base;  /**< whose entries are at hand, and where they would begin */
+  int64_t piece, pieces;   /**< tiles of a bin that are one task, and tasks in a bin */
+  vxm_band_values out;     /**< of the first slice */
+  vxm_distance_tiles *put; /**< of each worker; NULL where values are written to `out` */
   vxm_band_tally *tallies;
   vxm_task_progress watch;
 };
@@ -127,23 +130,36 @@ size_t vxm_distance_band_near(const vxm_band_families *families, uint32_t *near,
 static vxm_band_values values_at(const vxm_distance_band *band, const int64_t at[3]) {
   vxm_band_values out = band->out;
   size_t slice = (size_t)(at[2] - band->begin);
-  out.values += slice * out.slice + (size_t)at[1] * out.row + (size_t)at[0];
+  if (out.values)
+    out.values += slice * out.slice + (size_t)at[1] * out.row + (size_t)at[0];
   if (out.words)
     out.words += slice * out.slice_words + (size_t)at[1] * out.row_words + (size_t)at[0] / 64;
   out.shift = (int)(at[0] % 64);
   return out;
 }
 
-/** Fills the tiles from..to-1 of a bin; `tile` is any of them. */
-static void fill_tiles(const vxm_distance_band *band, const vxm_band_tile *tile, int64_t from, int64_t to,
-                       vxm_band_tally *tally) {
+/** Fills the tiles from..to-1 of a bin, or puts those that are not all outside; `tile` is any of them. */
+static void fill_tiles(const vxm_distance_band *band, int worker, const vxm_band_tile *tile, int64_t from,
+                       int64_t to) {
   const int64_t at[3] = {from * VXM_BAND_TILE, tile->first[1], tile->first[2]};
   const int64_t count[3] = {vxm_min(to * VXM_BAND_TILE, band->families->grid.dims[0]) - at[0], tile->count[1],
                             tile->count[2]};
   if (from == to)
     return;
   vxm_band_values out = values_at(band, at);
-  band->kernels->fill(&out, count, tally);
+  if (band->put)
+    vxm_distance_tiles_fill(&band->put[worker], band->kernels, &out, at, count, &band->tallies[worker]);
+  else
+    band->kernels->fill(&out, count, &band->tallies[worker]);
+}
+
+/** Writes or puts a tile that has been measured. */
+static void finish_tile(const vxm_distance_band *band, int worker, const vxm_band_tile *tile) {
+  vxm_band_values out = values_at(band, tile->first);
+  if (band->put)
+    vxm_distance_tiles_finish(&band->put[worker], band->kernels, &out, tile, &band->tallies[worker]);
+  else
+    band->kernels->finish(&out, tile, &band->tallies[worker]);
 }
 
 static void measure_piece(size_t task, int worker, void *payload) {
@@ -159,7 +175,6 @@ static void measure_piece(size_t task, int worker, void *payload) {
   size_t count = band->starts[bin] - begin;
   uint32_t *near = band->near + (size_t)worker * band->families->count;
   vxm_band_tile *tile = &band->tiles[worker];
-  vxm_band_tally *tally = &band->tallies[worker];
   int64_t middle = (int64_t)bin % band->down * VXM_BAND_TILE,
           slow = band->begin + (int64_t)bin / band->down * VXM_BAND_TILE;
   tile->first[1] = middle;
@@ -172,23 +187,58 @@ static void measure_piece(size_t task, int worker, void *payload) {
     size_t found = vxm_distance_band_near(band->families, near, entries, count, tile);
     if (found == 0)
       continue;
-    fill_tiles(band, tile, filled, t, tally);
+    fill_tiles(band, worker, tile, filled, t);
     filled = t + 1;
     band->kernels->measure(tile, band->families, near, found);
-    vxm_band_values out = values_at(band, tile->first);
-    band->kernels->finish(&out, tile, tally);
+    finish_tile(band, worker, tile);
   }
-  fill_tiles(band, tile, filled, to, tally);
+  fill_tiles(band, worker, tile, filled, to);
   vxm_task_progress_step(&band->watch);
+  if (band->put && band->put[worker].error.code != VXM_OK)
+    atomic_store_explicit(&band->watch.stop, true, memory_order_relaxed);
 }
 
 /* ---- Slices ---- */
 
-vxm_status vxm_distance_band_measure(vxm_distance_band *band, float *values, const vxm_window *solid,
-                                     int64_t begin, int64_t end, double side, vxm_band_tally *tallies,
-                                     vxm_error *error) {
-  const int64_t *dims = band->families->grid.dims;
+static vxm_status measure_bins(vxm_distance_band *band, vxm_error *error) {
   vxm_context *context = band->families->context;
+  size_t bins = bin_count(band), pieces = (size_t)vxm_max(1, TASKS * band->workers / (int64_t)bins);
+  band->piece = vxm_max(1, band->across / (int64_t)pieces);
+  band->pieces = (band->across + band->piece - 1) / band->piece;
+  count_entries(band);
+  vxm_task_progress_start(&band->watch, context, "measuring distances", bins * (size_t)band->pieces, error);
+  for (size_t from = 0, to; from < bins && !atomic_load(&band->watch.stop); from = to) {
+    band->first_bin = from;
+    band->base = band->starts[from];
+    for (to = from + 1; to < bins && band->starts[to + 1] - band->base <= band->room;)
+      to++;
+    list_entries(band, from, to);
+    vxm_parallel(context, (to - from) * (size_t)band->pieces, measure_piece, band);
+  }
+  for (int w = 0; band->put && w < band->workers; w++)
+    if (band->put[w].error.code != VXM_OK) {
+      vxm_error_pass(error, &band->put[w].error);
+      return band->put[w].error.code;
+    }
+  return vxm_task_progress_end(&band->watch);
+}
+
+static vxm_status make_tiles(vxm_distance_band *band, const vxm_field_target *target, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  band->put = vxm_alloc(band->families->context, (size_t)band->workers, sizeof *band->put, &local);
+  for (int w = 0; w < band->workers && band->put; w++) {
+    band->put[w].target = target;
+    band->put[w].error = (vxm_error)VXM_ERROR_INIT;
+  }
+  if (local.code != VXM_OK)
+    vxm_error_pass(error, &local);
+  return local.code;
+}
+
+vxm_status vxm_distance_band_measure(vxm_distance_band *band, const vxm_field_target *target, float *values,
+                                     const vxm_window *solid, int64_t begin, int64_t end, double side,
+                                     vxm_band_tally *tallies, vxm_error *error) {
+  const int64_t *dims = band->families->grid.dims;
   band->begin = begin;
   band->end = end;
   band->tallies = tallies;
@@ -200,20 +250,12 @@ vxm_status vxm_distance_band_measure(vxm_distance_band *band, float *values, con
                                 .slice_words = solid->slice_words,
                                 .band = band->families->grid.band,
                                 .side = side};
-  size_t bins = bin_count(band), pieces = (size_t)vxm_max(1, TASKS * band->workers / (int64_t)bins);
-  band->piece = vxm_max(1, band->across / (int64_t)pieces);
-  band->pieces = (band->across + band->piece - 1) / band->piece;
-  count_entries(band);
-  vxm_task_progress_start(&band->watch, context, "measuring distances", bins * (size_t)band->pieces, error);
-  for (size_t from = 0, to; from < bins && band->watch.status == VXM_OK; from = to) {
-    band->first_bin = from;
-    band->base = band->starts[from];
-    for (to = from + 1; to < bins && band->starts[to + 1] - band->base <= band->room;)
-      to++;
-    list_entries(band, from, to);
-    vxm_parallel(context, (to - from) * (size_t)band->pieces, measure_piece, band);
-  }
-  return vxm_task_progress_end(&band->watch);
+  vxm_status status = target ? make_tiles(band, target, error) : VXM_OK;
+  if (status == VXM_OK)
+    status = measure_bins(band, error);
+  vxm_free(band->families->context, band->put);
+  band->put = NULL;
+  return status;
 }
 
 /* ---- What it takes ---- */
@@ -221,8 +263,9 @@ vxm_status vxm_distance_band_measure(vxm_distance_band *band, float *values, con
 uint64_t vxm_distance_band_bytes(size_t triangles, int workers, const int64_t dims[3]) {
   uint64_t bins = (uint64_t)tiles_of(dims[1]) * (uint64_t)tiles_of(dims[2]) + 1;
   return sizeof(vxm_distance_band) +
-         (uint64_t)workers * (sizeof(vxm_band_tile) + triangles * sizeof(uint32_t)) + bins * sizeof(size_t) +
-         room_of(triangles) * sizeof(uint32_t) + 4096;
+         (uint64_t)workers *
+             (sizeof(vxm_band_tile) + sizeof(vxm_distance_tiles) + triangles * sizeof(uint32_t)) +
+         bins * sizeof(size_t) + room_of(triangles) * sizeof(uint32_t) + 4096;
 }
 
 vxm_status vxm_distance_band_create(vxm_distance_band **out, const vxm_band_families *families, int workers,

@@ -3,9 +3,9 @@
 #ifndef VXM_VOXEL_FIELDS_DISTANCE_BAND_H
 #define VXM_VOXEL_FIELDS_DISTANCE_BAND_H
 
-#include "base/task_progress.h"
 #include "grid/window.h"
 #include "voxel/closest/band_tile.h"
+#include "voxel/fields/field.h"
 
 typedef struct vxm_distance_band vxm_distance_band;
 
@@ -29,14 +29,15 @@ uint64_t vxm_distance_band_bytes(size_t triangles, int workers, const int64_t di
 /**
  * Measures the slices begin..end-1 of a grid.
  *
- * @param values  of the first of them
+ * @param target  takes tiles; NULL = `values` are written
+ * @param values  of the first slice; NULL with a target
  * @param solid   a window of these slices; its words NULL = no signs
  * @param side    the longest of a voxel
  * @param tallies of each worker; what is seen is added
- * @return VXM_OK, VXM_ERROR_CANCELLED
+ * @return VXM_OK, VXM_ERROR_CANCELLED, what the target returns
  */
-vxm_status vxm_distance_band_measure(vxm_distance_band *band, float *values, const vxm_window *solid,
-                                     int64_t begin, int64_t end, double side, vxm_band_tally *tallies,
-                                     vxm_error *error);
+vxm_status vxm_distance_band_measure(vxm_distance_band *band, const vxm_field_target *target, float *values,
+                                     const vxm_window *solid, int64_t begin, int64_t end, double side,
+                                     vxm_band_tally *tallies, vxm_error *error);
 
 #endif

@@ -10,7 +10,7 @@ static uint64_t saturating_sum(uint64_t a, uint64_t b) {
 
 vxm_status vxm_field_plan_of(vxm_field_plan *out, const vxm_model *model, const vxm_space *space,
                              vxm_layout layout, int subdivision, bool centres, uint64_t fixed,
-                             uint64_t value_bytes, vxm_error *error) {
+                             uint64_t value_bytes, int64_t least, vxm_error *error) {
   uint64_t left = vxm_memory_left(model->context);
   left = left == SIZE_MAX ? UINT64_MAX : left - left / 16;
   *out = (vxm_field_plan){.bits = vxm_window_of(space, layout, 0, 0)};
@@ -24,7 +24,7 @@ vxm_status vxm_field_plan_of(vxm_field_plan *out, const vxm_model *model, const 
     uint64_t beside = saturating_sum(demand.fixed, fixed);
     uint64_t each = slice * (uint64_t)demand.windows + value_bytes + 1;
     uint64_t room = left > beside ? (left - beside) / each : 0;
-    int64_t slices = vxm_min(vxm_max((int64_t)(room < most ? room : most), 1), length);
+    int64_t slices = vxm_min(vxm_max((int64_t)(room < most ? room : most), least), length);
     uint64_t memory = saturating_sum(beside, (uint64_t)slices * each);
     if (slices > out->slices || (slices == out->slices && memory < out->memory)) {
       out->slices = slices;

@@ -132,7 +132,7 @@ static vxm_status fill(vxm_model *model, const vxm_window *window, const vxm_lat
   bool is_without = has_lone_sheet(model);
   vxm_status status = VXM_OK;
   if (!at_once)
-    status = vxm_field_plan_of(&plan, model, &lattice->space, window->layout, 1, true, 0, 0, error);
+    status = vxm_field_plan_of(&plan, model, &lattice->space, window->layout, 1, true, 0, 0, 1, error);
   if (status == VXM_OK)
     status = vxm_model_begin_on(&pass, model, lattice, NULL, NULL, error);
   vxm_window part = *window;

@@ -168,7 +168,7 @@ static vxm_status plan_slices(vxm_field_plan *plan, const labels *l, vxm_error *
   uint64_t fixed = 2 * (uint64_t)grid_words(l) * sizeof(uint64_t) + vxm_label_overlaps_bytes(&l->claims) +
                    l->labelling->table.count * sizeof *l->counts;
   return vxm_field_plan_of(plan, l->model, &l->claims.lattice.space, l->claims.set.layout, 1, false, fixed, 0,
-                           error);
+                           1, error);
 }
 
 static vxm_status run(labels *l, vxm_label_report *report, vxm_error *error) {
