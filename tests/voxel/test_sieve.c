@@ -5,6 +5,7 @@
 
 #include "voxel/parity/kernels.h"
 #include "voxel/thin/sieve_kernels.h"
+#include "voxel/thin/slice_order.h"
 
 /** The border of a solid. */
 typedef struct border {
@@ -99,19 +100,20 @@ typedef struct counts {
 
 static void check_builds(const vxm_thin_job *job, const bool *meets, counts *sum) {
   const vxm_kernels *builds[4];
-  size_t count = vxm_kernels_all(builds), all = job->triangles->triangle_count;
+  size_t count = vxm_kernels_all(builds), all = job->triangles->triangle_count,
+         looked_at = job->order ? job->order_count : all;
   vxm_sieve sieve;
   assert_true(vxm_sieve_of(&sieve, job));
-  uint32_t *kept = malloc((all + 8) * sizeof *kept);
+  uint32_t *kept = malloc((all + 16) * sizeof *kept);
   bool *is_kept = malloc(all);
   assert_true(kept && is_kept);
   for (size_t b = 0; b < count; b++) {
     memset(is_kept, 0, all);
-    for (size_t begin = 0, end; begin < all; begin = end) {
-      end = begin + 50 < all ? begin + 50 : all;
+    for (size_t begin = 0, end; begin < looked_at; begin = end) {
+      end = begin + 50 < looked_at ? begin + 50 : looked_at;
       size_t found = vxm_sieve_kernels_of(builds[b])->sift(&sieve, kept, begin, end);
       for (size_t k = 0; k < found; k++) {
-        assert_in_range(kept[k], begin, end - 1);
+        assert_in_range(kept[k], job->order ? 0 : begin, (job->order ? all : end) - 1);
         assert_false(is_kept[kept[k]]);
         is_kept[kept[k]] = true;
       }
@@ -129,14 +131,26 @@ static void check_builds(const vxm_thin_job *job, const bool *meets, counts *sum
   free(is_kept);
 }
 
+/** The same in the order of slices, in which no triangle comes twice. */
+static void check_order(const vxm_thin_job *job, const bool *meets, counts *sum) {
+  vxm_slice_order order = {.context = context};
+  vxm_thin_job ordered = *job;
+  assert_int_equal(vxm_slice_order_make(&order, job, NULL), VXM_OK);
+  ordered.order = order.triangles;
+  ordered.order_count = order.count;
+  check_builds(&ordered, meets, sum);
+  vxm_slice_order_destroy(&order);
+}
+
 static void check_window(vxm_rng *rng, const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
                          vxm_window *window, const border *b, counts *sum) {
   thin_mesh mesh = {.lattice = placed->lattice};
   size_t words = window->slice_words * (size_t)(window->end - window->begin), all = triangles->triangle_count;
   window->words = calloc(words, sizeof *window->words);
-  uint64_t *maps = calloc(7 * words, sizeof *maps), *middles[8];
+  uint64_t *maps = calloc(8 * vxm_middle_words(words), sizeof *maps);
+  uint32_t *cells = calloc(triangles->point_count, sizeof *cells);
   bool *meets = calloc(all, sizeof *meets);
-  assert_true(window->words && maps && meets);
+  assert_true(window->words && maps && cells && meets);
   random_solid(rng, window, b);
   vxm_thin_job job = {.triangles = triangles,
                       .placed = placed,
@@ -152,12 +166,16 @@ static void check_window(vxm_rng *rng, const vxm_triangle_set *triangles, const 
     meets[t] = meets_something(&mesh, &job.view, &one);
   }
   check_builds(&job, meets, sum);
-  for (size_t m = 0; m < 8; m++)
-    job.middles[m] = middles[m] = m == 7 ? window->words : maps + m * words;
-  vxm_middles_fill(middles, window);
+  check_order(&job, meets, sum);
+  assert_true(vxm_middles_fit(window));
+  vxm_middles_fill(maps, window);
+  vxm_sieve_kernels_of(NULL)->shorten(cells, placed->cells, triangles->point_count);
+  job.middles = maps;
+  job.short_cells = cells;
   check_builds(&job, meets, sum);
   free(meets);
   free(maps);
+  free(cells);
   free(window->words);
 }
 

@@ -32,15 +32,16 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
   return bins + slabs + held * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
 }
 
-/** What is held of the surface while thin parts are looked for: where all of it is thin, all that it meets.
- */
+/** What is held of the surface while thin parts are looked for: where all of it is thin, all that it meets;
+ * and the order of triangles, or short numbers of the cells of points. */
 static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space) {
   const vxm_triangle_set *triangles = &model->analysis.triangles;
   enum { AXES = 3 };
   double all = vxm_raster_schedule_bound(triangles->lengths, triangles->triangle_count, space, NULL) * AXES *
                VXM_THIN_COPIES * sizeof(vxm_meeting);
   uint64_t budget = vxm_thin_budget(model->context);
-  return all < (double)budget ? (uint64_t)all : budget;
+  uint64_t numbers = (triangles->triangle_count + triangles->point_count) * sizeof(uint32_t);
+  return numbers + (all < (double)budget ? (uint64_t)all : budget);
 }
 
 vxm_memory_need vxm_model_memory_need(const vxm_model *model, const vxm_space *space, const vxm_window *shape,

@@ -6,6 +6,7 @@ bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
   const vxm_view *view = &job->view;
   *sieve = (vxm_sieve){.points = (const int32_t(*)[4])job->placed->narrow,
                        .corners = (const uint32_t(*)[3])job->triangles->corners,
+                       .order = job->order,
                        .words = view->words,
                        .bits = job->placed->lattice.bits};
   if (!view->words || job->placed->wide)
@@ -22,27 +23,38 @@ bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
     sieve->end[i] = (int32_t)view->end[axis[i]];
     sieve->step[i] = (int32_t)(view->step[axis[i]] / 8);
   }
-  for (int m = 0; m < 8; m++)
-    sieve->middles[m] = job->middles[m];
   sieve->cells = job->placed->cells;
-  sieve->origin = (uint64_t)view->origin;
-  for (int a = 0; a < 3; a++) {
-    sieve->cell_step[a] = (uint64_t)view->step[a];
-    sieve->first_cell |= (uint64_t)(view->begin[a] + 1) << (VXM_CELL_BITS * a);
-    sieve->last_cell |= (uint64_t)(view->end[a] - 1) << (VXM_CELL_BITS * a);
+  sieve->middles = job->middles;
+  sieve->short_cells = job->short_cells;
+  sieve->middle_bits = (uint32_t)(64 * vxm_middle_words((size_t)bytes / 8));
+  sieve->short_origin = (uint32_t)view->origin;
+  for (int a = 0; a < 3 && job->middles; a++) {
+    sieve->short_step[a] = (uint32_t)view->step[a];
+    sieve->short_first |= (uint32_t)(view->begin[a] + 1) << (VXM_SHORT_BITS * a);
+    sieve->short_last |= (uint32_t)(view->end[a] - 1) << (VXM_SHORT_BITS * a);
   }
   sieve->last = (int32_t)(bytes - 4);
   return true;
 }
 
-void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window) {
-  const int axis[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
-  const size_t step[3] = {0, window->row_words, window->slice_words};
+bool vxm_middles_fit(const vxm_window *window) {
+  const int64_t longest = (1 << (VXM_SHORT_BITS - 1)) - 1;
+  const size_t most = 1 << 22; /* words, so that bits of all maps have numbers of 32 bits */
+  return window->slice_words == window->row_words * (size_t)window->middle_dim &&
+         window->fast_dim < longest && window->middle_dim < longest && window->slow_dim < longest &&
+         (size_t)(window->end - window->begin) * window->slice_words < most;
+}
+
+void vxm_middles_fill(uint64_t *middles, const vxm_window *window) {
   size_t words = (size_t)(window->end - window->begin) * window->slice_words;
-  for (int two = 6; two >= 0; two--) {
-    int a = 0; /* along which the voxel before is added, to what is there for both axes with two cells */
-    while (two >> axis[a] & 1)
-      a++;
-    vxm_sieve_kernels_of(NULL)->join(middles[two], middles[two | 1 << axis[a]], step[a], words);
-  }
+  const size_t each = vxm_middle_words(words), middle = each << window->layout.middle,
+               slow = each << window->layout.slow;
+  uint64_t *all = middles + 7 * each, *not_middle = all - middle, *not_slow = all - slow,
+           *neither = not_slow - middle;
+  const ptrdiff_t along = -(ptrdiff_t)(each << window->layout.fast); /* to one cell along the fast axis */
+  const vxm_sieve_kernels *kernels = vxm_sieve_kernels_of(NULL);
+  kernels->join(all, all + along, window->words, 0, words);
+  kernels->join(not_middle, not_middle + along, all, window->row_words, words);
+  kernels->join(not_slow, not_slow + along, all, window->slice_words, words);
+  kernels->join(neither, neither + along, not_middle, window->slice_words, words);
 }

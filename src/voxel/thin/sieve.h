@@ -16,30 +16,46 @@
 typedef struct vxm_sieve {
   const int32_t (*points)[4];
   const uint32_t (*corners)[3];
+  const uint32_t *order; /**< of the triangles, by number; NULL = as they are */
   const uint64_t *words;
   int32_t last; /**< byte of `words` at which four can be read */
   int bits;     /**< of the lattice */
   int axis[3];
   int32_t begin[3], end[3];
-  int32_t step[3];                /**< bytes from a row to the next one, along the middle and the slow axis */
-  const uint64_t *middles[8];     /**< as in vxm_thin_job */
-  const uint64_t *cells;          /**< of the points; and along x, y, z: */
-  uint64_t first_cell, last_cell; /**< around which all voxels are in the window */
-  uint64_t cell_step[3], origin;  /**< from the number of a cell to the bit of the voxel behind it */
+  int32_t step[3];         /**< bytes from a row to the next one, along the middle and the slow axis */
+  const uint64_t *cells;   /**< of the points */
+  const uint64_t *middles; /**< as in vxm_thin_job; and if they are there: */
+  const uint32_t *short_cells;
+  uint32_t middle_bits;                 /**< of one of them */
+  uint32_t short_first, short_last;     /**< cells around which all voxels are in the window */
+  uint32_t short_step[3], short_origin; /**< from the number of a cell to the bit of the voxel behind it */
 } vxm_sieve;
 
 /** Boxes of more cells along an axis are kept: a row of their voxels is to fit 32 bits, from any bit of a
  * byte on. */
 enum { VXM_SIEVE_CELLS = 23 };
 
+/** Triangles that are looked at together at most. */
+enum { VXM_SIEVE_BATCH = 2048 };
+
 /** The lowest bit of each of the numbers of a cell. */
 #define VXM_SIEVE_ONES (UINT64_C(1) | UINT64_C(1) << VXM_CELL_BITS | UINT64_C(1) << 2 * VXM_CELL_BITS)
+#define VXM_SHORT_ONES (UINT32_C(1) | UINT32_C(1) << VXM_SHORT_BITS | UINT32_C(1) << 2 * VXM_SHORT_BITS)
 
 /** The sieve of a job; false if it has none, as points or the solid are not in its form. */
 bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job);
 
-/** Fills the maps of vxm_thin_job of a window, without padding between slices; middles[7] are its own words.
- * The first voxels along an axis have no others before them, and no bits that mean something. */
-void vxm_middles_fill(uint64_t *const middles[8], const vxm_window *window);
+/** Whether a window can have the maps of vxm_thin_job: it has no padding between slices, and is not too
+ * large.
+ */
+bool vxm_middles_fit(const vxm_window *window);
+/** Words from one map to the next: some more than a window has, as processors take a load for one of what was
+ * stored a multiple of 4096 bytes away, and wait. */
+static inline size_t vxm_middle_words(size_t window_words) {
+  return window_words + 8;
+}
+
+/** Fills them. The first voxels along an axis have no others before them, and no bits that mean something. */
+void vxm_middles_fill(uint64_t *middles, const vxm_window *window);
 
 #endif

@@ -8,12 +8,14 @@
 #include "voxel/thin/sieve.h"
 
 typedef struct vxm_sieve_kernels {
-  /** The triangles begin..end-1 that may meet something without a voxel; there is room for eight more.
-   * Returns how many. */
+  /** Of the triangles begin..end-1, or those of the sieve's order, the ones that may meet something without a
+   * voxel; there is room for sixteen more. Returns how many. */
   size_t (*sift)(const vxm_sieve *sieve, uint32_t *kept, size_t begin, size_t end);
-  /** to[i] = from[i] | from[i - step] for all `count` words that are there; or, if step is 0, | the bit
-   * before each. */
-  void (*join)(uint64_t *to, const uint64_t *from, size_t step, size_t count);
+  /** to[i] = from[i] | from[i - step], if that is there, for all `count` words, and `along` is the same with
+   * the bit before each. */
+  void (*join)(uint64_t *to, uint64_t *along, const uint64_t *from, size_t step, size_t count);
+  /** Short numbers of cells, as vxm_thin_job has them. */
+  void (*shorten)(uint32_t *to, const uint64_t *cells, size_t count);
 } vxm_sieve_kernels;
 
 /** The build that goes with other kernels; NULL = with those of vxm_kernels_get. */

@@ -84,12 +84,11 @@ static inline bool has_middle(const vxm_view *view, cell_box box) {
   return false;
 }
 
-/** Triangles that are looked at together, so that those with nothing to do cost little. */
-enum { BATCH = 2048 };
+/* Triangles are looked at together, so that those with nothing to do cost little. */
 
 /** The triangles from `begin` on that may meet something without a voxel. */
-static size_t keep_unsure(uint32_t kept[BATCH], const vxm_thin_job *job, const bounds *b, size_t begin,
-                          size_t end) {
+static size_t keep_unsure(uint32_t kept[VXM_SIEVE_BATCH], const vxm_thin_job *job, const bounds *b,
+                          size_t begin, size_t end) {
   const uint64_t *cells = job->placed->cells;
   const vxm_view *view = &job->view;
   size_t count = 0;
@@ -290,9 +289,9 @@ void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end) {
   bounds b = bounds_of(&frames[0].job->view);
   vxm_sieve sieve;
   bool sifted = vxm_sieve_of(&sieve, frames[0].job);
-  for (; begin < end; begin += BATCH) {
-    uint32_t kept[BATCH + 8];
-    size_t last = end - begin < BATCH ? end : begin + BATCH;
+  for (; begin < end; begin += VXM_SIEVE_BATCH) {
+    uint32_t kept[VXM_SIEVE_BATCH + 16];
+    size_t last = end - begin < VXM_SIEVE_BATCH ? end : begin + VXM_SIEVE_BATCH;
     size_t count = sifted ? vxm_sieve_kernels_of(NULL)->sift(&sieve, kept, begin, last)
                           : keep_unsure(kept, frames[0].job, &b, begin, last);
     for (size_t k = 0; k < count; k++)

@@ -2,6 +2,7 @@
 #include "voxel/thin/thin.h"
 #include "base/threads.h"
 #include "voxel/thin/sieve.h"
+#include "voxel/thin/sieve_kernels.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -32,12 +33,17 @@ static bool cells_are_short(const vxm_thin_job *job) {
   return !job->placed->wide && dims[0] < longest && dims[1] < longest && dims[2] < longest;
 }
 
+/** How many triangles are looked at. */
+static size_t count_looked_at(const vxm_thin_job *job) {
+  return job->order ? job->order_count : job->triangles->triangle_count;
+}
+
 static void look_at_some(size_t task, int worker, void *payload) {
   const search *s = payload;
   const vxm_thin_job *job = s->job;
   vxm_link_frame frames[VXM_LINK_DIRECTIONS];
   vxm_link_frames(frames, job, &s->thin->found[worker]);
-  size_t end = least(job->triangles->triangle_count, (task + 1) * TASK_TRIANGLES);
+  size_t end = least(count_looked_at(job), (task + 1) * TASK_TRIANGLES);
   if (s->thin->found[worker].is_full)
     return;
   if (!cells_are_short(job) || job->directions > VXM_LINK_AXES)
@@ -250,7 +256,7 @@ static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error
 static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to, bool *too_many,
                       vxm_error *error) {
   search s = {thin, job};
-  size_t tasks = (job->triangles->triangle_count + TASK_TRIANGLES - 1) / TASK_TRIANGLES, count = 0;
+  size_t tasks = (count_looked_at(job) + TASK_TRIANGLES - 1) / TASK_TRIANGLES, count = 0;
   vxm_meeting *lists[2];
   vxm_status status = make_room(thin, too_many != NULL, error);
   if (status == VXM_OK)
@@ -270,17 +276,37 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
 /** Makes the maps where they cost less than they save. */
 static vxm_status make_middles(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window,
                                vxm_error *error) {
-  size_t words = (size_t)(window->end - window->begin) * window->slice_words;
-  bool padded = window->slice_words != window->row_words * (size_t)window->middle_dim;
-  if (padded || job->placed->wide || words > job->triangles->triangle_count)
+  size_t words = (size_t)(window->end - window->begin) * window->slice_words,
+         points = job->triangles->point_count;
+  if (job->placed->wide || words > job->triangles->triangle_count || !vxm_middles_fit(window))
     return VXM_OK;
-  uint64_t *middles[8] = {NULL};
-  vxm_status status =
-      vxm_grow(thin->context, (void **)&thin->maps, &thin->map_words, 7 * words, sizeof *thin->maps, error);
-  for (size_t m = 0; m < 8 && status == VXM_OK; m++)
-    job->middles[m] = middles[m] = m == 7 ? window->words : thin->maps + m * words;
+  vxm_status status = vxm_grow(thin->context, (void **)&thin->maps, &thin->map_words,
+                               8 * vxm_middle_words(words), sizeof *thin->maps, error);
   if (status == VXM_OK)
-    vxm_middles_fill(middles, window);
+    status = vxm_grow(thin->context, (void **)&thin->short_cells, &thin->short_room, points,
+                      sizeof *thin->short_cells, error);
+  if (status != VXM_OK)
+    return status;
+  vxm_middles_fill(thin->maps, window);
+  vxm_sieve_kernels_of(NULL)->shorten(thin->short_cells, job->placed->cells, points);
+  job->middles = thin->maps;
+  job->short_cells = thin->short_cells;
+  return VXM_OK;
+}
+
+/** Orders the triangles where the window does not stay in the cache, and the sieve is for all of them. */
+static vxm_status make_order(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window,
+                             vxm_error *error) {
+  const size_t large = 1 << 22; /* 32 MiB */
+  size_t words = (size_t)(window->end - window->begin) * window->slice_words;
+  vxm_sieve sieve;
+  if (words <= large || job->directions > VXM_LINK_AXES || !cells_are_short(job) ||
+      !vxm_sieve_of(&sieve, job))
+    return VXM_OK;
+  thin->order.context = thin->context;
+  vxm_status status = vxm_slice_order_make(&thin->order, job, error);
+  job->order = thin->order.triangles;
+  job->order_count = thin->order.count;
   return status;
 }
 
@@ -295,6 +321,8 @@ vxm_status vxm_thin_add(vxm_thin_adder *thin, const vxm_window *window, int64_t 
                       .directions = separating == 26 ? VXM_LINK_DIRECTIONS : VXM_LINK_AXES};
   target to = {NULL, confidence};
   vxm_status status = make_middles(thin, &job, window, error);
+  if (status == VXM_OK && !job.middles)
+    status = make_order(thin, &job, window, error);
   return status == VXM_OK ? add(thin, &job, &to, too_many, error) : status;
 }
 
@@ -319,6 +347,8 @@ void vxm_thin_destroy(vxm_thin_adder *thin) {
   vxm_free(thin->context, thin->found);
   vxm_free(thin->context, thin->scratch);
   vxm_free(thin->context, thin->maps);
+  vxm_free(thin->context, thin->short_cells);
+  vxm_slice_order_destroy(&thin->order);
   vxm_free(thin->context, thin->chosen);
   *thin = (vxm_thin_adder){.context = thin->context};
 }

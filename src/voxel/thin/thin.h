@@ -15,6 +15,7 @@
 #define VXM_VOXEL_THIN_THIN_H
 
 #include "voxel/thin/meetings.h"
+#include "voxel/thin/slice_order.h"
 #include "voxel/thin/voxel_set.h"
 
 /** Slices on either side of those that are wanted which decide about these: one for each stage. */
@@ -32,6 +33,9 @@ typedef struct vxm_thin_adder {
   size_t capacity; /**< of `scratch` */
   uint64_t *maps;  /**< see vxm_thin_job */
   size_t map_words;
+  uint32_t *short_cells;
+  size_t short_room;
+  vxm_slice_order order;
   uint64_t *chosen; /**< voxels of one stage */
   size_t chosen_room;
   int64_t added;

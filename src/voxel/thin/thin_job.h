@@ -6,16 +6,23 @@
 #include "voxel/parity/snapped_points.h"
 #include "voxel/thin/centre_cells.h"
 
+/** Bits of the short number of a cell along one axis; the highest is not used. */
+enum { VXM_SHORT_BITS = 10 };
+
 /** What all threads look at. */
 typedef struct vxm_thin_job {
   const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
-  vxm_view view;              /**< the solid; nothing is set while threads look */
-  int64_t counted[2];         /**< slices that samples are counted in */
-  int slow;                   /**< the axis of slices */
-  const uint64_t *middles[8]; /**< NULL, or bit maps like the view's words: by the axes along which a box of
-                                 cells has two (1: x, 2: y, 4: z), whether a voxel in the middle of the box is
-                                 set; a bit is that of the voxel behind the first cell */
+  const uint32_t *order; /**< NULL, or the triangles that are looked at, for vxm_sieve_of alone */
+  size_t order_count;
+  vxm_view view;           /**< the solid; nothing is set while threads look */
+  int64_t counted[2];      /**< slices that samples are counted in */
+  int slow;                /**< the axis of slices */
+  const uint64_t *middles; /**< NULL, or eight bit maps like the view's words, side by side: by the axes along
+                              which a box of cells has two (1: x, 2: y, 4: z), whether a voxel in the middle
+                              of the box is set; a bit is that of the voxel behind the first cell */
+  const uint32_t *short_cells; /**< with them: the cells of points, x from bit 0 on, y from VXM_SHORT_BITS, z
+                                  from twice that */
   int directions; /**< VXM_LINK_AXES, or VXM_LINK_DIRECTIONS for links over edges and corners of voxels, too
                    */
 } vxm_thin_job;
