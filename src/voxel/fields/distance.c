@@ -8,14 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-<<<<<<< HEAD
-=======
-/** Bands up to that are measured from the triangles; wider ones, and all of space, by the tree. */
-static const double widest_band = 6;
 /** Slices that tiles begin at multiples of. */
 enum { TILE_STEP = VXM_VALUE_TILE / 4 };
 
->>>>>>> distance
 typedef vxm_band_tally tally;
 
 typedef struct measure {
@@ -39,33 +34,14 @@ typedef struct measure {
   vxm_task_progress watch;
 } measure;
 
-<<<<<<< HEAD
-static measure measure_of(vxm_context *context, const vxm_space *space, vxm_layout layout,
-                          const vxm_distance_options *options) {
-=======
-/** The side of a voxel that a band is counted in. */
-static double longest_side(const vxm_space *space) {
-  const double *size = space->voxel_size;
-  return fmax(fmax(size[0], size[1]), size[2]);
-}
-
-float vxm_distance_limit(const vxm_distance_options *options, const vxm_space *space) {
-  return (float)((options->band > 0 ? options->band : INFINITY) * longest_side(space));
-}
-
-static bool is_narrow(double band) {
-  return band > 0 && band <= widest_band;
-}
-
 vxm_distance_way vxm_distance_way_of(bool is_whole, bool takes_tiles, const vxm_distance_options *options) {
   if (is_whole)
     return VXM_DISTANCE_WHOLE;
-  return takes_tiles && is_narrow(options->band) ? VXM_DISTANCE_TILES : VXM_DISTANCE_SLICES;
+  return takes_tiles && vxm_distance_is_narrow(options) ? VXM_DISTANCE_TILES : VXM_DISTANCE_SLICES;
 }
 
-static measure measure_of(vxm_context *context, const vxm_surface *surface, const vxm_space *space,
-                          vxm_layout layout, const vxm_distance_options *options) {
->>>>>>> distance
+static measure measure_of(vxm_context *context, const vxm_space *space, vxm_layout layout,
+                          const vxm_distance_options *options) {
   measure m = {.context = context,
                .space = space,
                .dims = {space->dims[layout.fast], space->dims[layout.middle], space->dims[layout.slow]},
@@ -78,61 +54,6 @@ static measure measure_of(vxm_context *context, const vxm_surface *surface, cons
   return m;
 }
 
-<<<<<<< HEAD
-=======
-/* ---- Triangles ---- */
-
-enum { PLACE_TASKS = 64 };
-
-static void place_vertices(size_t task, int worker, void *payload) {
-  (void)worker;
-  const measure *m = payload;
-  const vxm_soup *soup = m->surface->soup;
-  size_t end = vxm_slice_begin(soup->vertex_count, PLACE_TASKS, task + 1);
-  for (size_t v = vxm_slice_begin(soup->vertex_count, PLACE_TASKS, task); v < end; v++)
-    for (int a = 0; a < 3; a++)
-      m->places[v][a] = (vxm_position(soup, v)[a] - m->space->origin[a]) / m->side;
-}
-
-static void corners_of(double out[3][3], size_t triangle, const void *payload) {
-  const measure *m = payload;
-  for (size_t c = 0; c < 3; c++)
-    memcpy(out[c], m->places[m->surface->corners[3 * triangle + c]], sizeof out[c]);
-}
-
-/** For distances within a narrow band. */
-static void make_near(measure *m, vxm_error *error) {
-  vxm_context *context = m->context;
-  vxm_band_grid grid = {.band = m->band};
-  for (int a = 0; a < 3; a++) {
-    grid.axes[a] = m->axes[a];
-    grid.dims[a] = m->dims[a];
-    grid.step[a] = m->space->voxel_size[a] / m->side;
-  }
-  if (vxm_band_families_create(&m->families, context, m->surface->triangle_count, corners_of, m, &grid,
-                               error) == VXM_OK)
-    vxm_distance_band_create(&m->near, m->families, vxm_context_threads(context), error);
-}
-
-static vxm_status make_nearest(measure *m, vxm_error *error) {
-  vxm_context *context = m->context;
-  vxm_error local = VXM_ERROR_INIT;
-  m->places = vxm_alloc(context, m->surface->soup->vertex_count, sizeof *m->places, &local);
-  if (m->places) {
-    vxm_parallel(context, PLACE_TASKS, place_vertices, m);
-    if (is_narrow(m->band))
-      make_near(m, &local);
-    else
-      vxm_distance_bvh_create(&m->nearest, context, m->surface->triangle_count, corners_of, m, &local);
-  }
-  vxm_free(context, m->places);
-  m->places = NULL;
-  if (local.code != VXM_OK)
-    vxm_error_pass(error, &local);
-  return local.code;
-}
-
->>>>>>> distance
 /* ---- Values ---- */
 
 /** Some beyond the band. */
@@ -205,15 +126,11 @@ static vxm_status measure_slices(measure *m, const vxm_field_target *target, int
   if (status != VXM_OK)
     return status;
   if (m->near)
-<<<<<<< HEAD
-    return vxm_distance_band_measure(m->near, m->values, &m->solid, begin, end, m->search.side, m->tallies,
-                                     error);
-=======
-    return m->way == VXM_DISTANCE_TILES ? vxm_distance_band_measure(m->near, target, NULL, &m->solid, begin,
-                                                                    end, m->side, m->tallies, error)
-                                        : vxm_distance_band_measure(m->near, NULL, m->values, &m->solid,
-                                                                    begin, end, m->side, m->tallies, error);
->>>>>>> distance
+    return m->way == VXM_DISTANCE_TILES
+               ? vxm_distance_band_measure(m->near, target, NULL, &m->solid, begin, end, m->search.side,
+                                           m->tallies, error)
+               : vxm_distance_band_measure(m->near, NULL, m->values, &m->solid, begin, end, m->search.side,
+                                           m->tallies, error);
   size_t tiles = (size_t)(m->across * m->down * ((end - begin + VXM_TILE - 1) / VXM_TILE));
   vxm_task_progress_start(&m->watch, m->context, "measuring distances", tiles, error);
   vxm_parallel(m->context, tiles, measure_tile, m);
@@ -356,31 +273,17 @@ vxm_status vxm_distance_plan(vxm_field_plan *out, const vxm_model *model, const 
 vxm_status vxm_distance_run(const vxm_field_target *target, vxm_distance_report *report, vxm_model *model,
                             const vxm_space *space, const vxm_distance_options *options, vxm_error *error) {
   vxm_field_plan plan;
-<<<<<<< HEAD
   vxm_context *context = model->context;
-  vxm_status status =
-      vxm_distance_plan(&plan, model, space, target->layout, target->whole != NULL, options, error);
-  if (status != VXM_OK)
-    return status;
-  measure m = measure_of(context, space, target->layout, options);
-  status = vxm_distance_search_create(&m.search, context, model->analysis.soup, space, target->layout,
-                                      options, error);
-  if (status == VXM_OK && m.search.families)
-    status = vxm_distance_band_create(&m.near, m.search.families, vxm_context_threads(context), error);
-=======
   vxm_distance_way way = vxm_distance_way_of(target->whole != NULL, target->put_tile != NULL, options);
   vxm_status status = vxm_distance_plan(&plan, model, space, target->layout, way, options, error);
   if (status != VXM_OK)
     return status;
-  vxm_surface *surface;
-  vxm_lattice lattice = vxm_lattice_of(space);
-  status = vxm_surface_create(&surface, model->analysis.soup, &lattice, NULL, error);
-  if (status != VXM_OK)
-    return status;
-  measure m = measure_of(model->context, surface, space, target->layout, options);
+  measure m = measure_of(context, space, target->layout, options);
   m.way = way;
-  status = make_nearest(&m, error);
->>>>>>> distance
+  status = vxm_distance_search_create(&m.search, context, model->analysis.soup, space, target->layout,
+                                      options, error);
+  if (status == VXM_OK && m.search.families)
+    status = vxm_distance_band_create(&m.near, m.search.families, vxm_context_threads(context), error);
   if (status == VXM_OK)
     status = run_planned(&m, target, report, model, &plan, error);
   vxm_distance_band_destroy(m.near);

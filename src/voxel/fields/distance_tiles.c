@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/fields/distance_tiles.h"
 #include "base/bits.h"
+#include "voxel/fields/distance_search.h"
 
 enum {
   TILE = VXM_BAND_TILE,
@@ -46,11 +47,6 @@ void vxm_distance_tiles_finish(vxm_distance_tiles *tiles, const vxm_band_kernels
 
 /* ---- Beyond the band ---- */
 
-static void see(vxm_band_tally *tally, float value) {
-  tally->least = value < tally->least ? value : tally->least;
-  tally->greatest = value > tally->greatest ? value : tally->greatest;
-}
-
 /** A tile in whose rows the bits `any` are inside somewhere, the bits `all` everywhere. */
 static void put_far(vxm_distance_tiles *tiles, const vxm_band_kernels *kernels, const vxm_band_values *out,
                     const int64_t at[3], const int64_t count[3], int64_t off, uint64_t any, uint64_t all,
@@ -61,9 +57,9 @@ static void put_far(vxm_distance_tiles *tiles, const vxm_band_kernels *kernels, 
                          .value = -most};
   const uint64_t valid = vxm_low_bits((unsigned)tile.count[0]);
   if ((any & valid) == 0)
-    see(tally, most);
+    vxm_band_see(tally, most);
   else if ((all & valid) == valid) {
-    see(tally, -most);
+    vxm_band_see(tally, -most);
     tally->inside += count[1] * count[2] * tile.count[0];
     put(tiles, &tile);
   } else {
@@ -94,7 +90,7 @@ void vxm_distance_tiles_fill(vxm_distance_tiles *tiles, const vxm_band_kernels *
                              const vxm_band_values *out, const int64_t at[3], const int64_t count[3],
                              vxm_band_tally *tally) {
   if (!out->words) {
-    see(tally, (float)(out->band * out->side));
+    vxm_band_see(tally, (float)(out->band * out->side));
     return;
   }
   size_t ends = (size_t)(out->shift + count[0] + 63) / 64;

@@ -203,7 +203,7 @@ static vxm_status add_windows(vxm_octree_pieces *out, vxm_model *model, const vx
   vxm_error local = VXM_ERROR_INIT;
   own.space = vxm_label_component_space(piece, &whole->space);
   vxm_window part = vxm_window_of(&own.space, layout, 0, 0);
-  vxm_status status = vxm_field_plan_of(&plan, model, &own.space, layout, 1, true, 0, 0, &local);
+  vxm_status status = vxm_field_plan_of(&plan, model, &own.space, layout, 1, true, 0, 0, 1, &local);
   if (status == VXM_OK) {
     part.words =
         vxm_alloc(model->context, (size_t)plan.slices * part.slice_words, sizeof *part.words, &local);
