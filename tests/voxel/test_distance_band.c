@@ -153,6 +153,31 @@ static void test_crowd(void **state) {
   free(corners);
 }
 
+/** Faces of an octahedron, cut into pieces: their normals are equally long along all axes. */
+static void test_equal_slopes(void **state) {
+  (void)state;
+  enum { CUTS = 12, COUNT = 8 * CUTS * CUTS };
+  vxm_rng rng = {46};
+  triangle_corners *corners = malloc(COUNT * sizeof *corners);
+  size_t t = 0;
+  for (int octant = 0; octant < 8; octant++)
+    for (int i = 0; i < CUTS; i++)
+      for (int j = 0; i + j < CUTS; j++)
+        for (int turned = 0; turned < (i + j + 1 < CUTS ? 2 : 1); turned++, t++) {
+          const int places[2][3][2] = {{{i, j}, {i + 1, j}, {i, j + 1}},
+                                       {{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
+          for (int c = 0; c < 3; c++) {
+            const int *at = places[turned][c], parts[3] = {at[0], at[1], CUTS - at[0] - at[1]};
+            for (int a = 0; a < 3; a++)
+              corners[t][c][a] = 10 + (octant >> a & 1 ? -9.0 : 9.0) * parts[a] / CUTS;
+          }
+        }
+  assert_int_equal(t, COUNT);
+  vxm_band_grid grid = {{0, 1, 2}, {20, 20, 20}, {1, 1, 1}, 3};
+  check_families((const triangle_corners *)corners, COUNT, &grid, &rng);
+  free(corners);
+}
+
 /** So far away, or so large, that floats cannot tell which is nearer. */
 static void test_far_and_large(void **state) {
   (void)state;
@@ -263,8 +288,10 @@ static void test_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_frames),        cmocka_unit_test(test_tiles),  cmocka_unit_test(test_crowd),
-      cmocka_unit_test(test_far_and_large), cmocka_unit_test(test_values), cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_frames),        cmocka_unit_test(test_tiles),
+      cmocka_unit_test(test_crowd),         cmocka_unit_test(test_equal_slopes),
+      cmocka_unit_test(test_far_and_large), cmocka_unit_test(test_values),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }
