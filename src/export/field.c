@@ -152,7 +152,9 @@ static vxm_status request_distance(request *out, const vxm_space *space, const c
                    .values = {.scalar = VXM_FLOAT32,
                               .is_signed = !options->is_unsigned,
                               .background = distance_beyond(options, space)}};
-  return choose_format(out, options->format, error);
+  vxm_status status = choose_format(out, options->format, error);
+  out->values.in_tiles = status == VXM_OK && takes_tiles(out) && vxm_distance_is_narrow(options);
+  return status;
 }
 
 /** Whether only what is near the surface is made, for an octree. */

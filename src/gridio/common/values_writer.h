@@ -16,6 +16,7 @@ typedef struct vxm_values_spec {
   const vxm_about *about; /**< what is said of them, until the file is complete */
   bool is_bits;           /**< 0 and 1 in bytes, for set and clear */
   bool is_signed;         /**< distances have a sign */
+  bool in_tiles;          /**< they come by put_tile, where the kind has it */
   float background;       /**< the distance beyond the band */
 } vxm_values_spec;
 

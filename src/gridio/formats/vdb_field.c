@@ -93,7 +93,7 @@ static vxm_status put_slab(const vxm_vdb_field *field, int64_t x, int64_t slices
   return status;
 }
 
-static vxm_status make_room(vxm_vdb_field *field, vxm_error *error) {
+vxm_status vxm_vdb_field_make_room(vxm_vdb_field *field, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   if (!field->values)
     field->values = vxm_alloc(field->context, SIDE * field->slice, sizeof *field->values, &local);
@@ -104,7 +104,7 @@ static vxm_status make_room(vxm_vdb_field *field, vxm_error *error) {
 
 vxm_status vxm_vdb_field_put(vxm_vdb_field *field, const float *values, int64_t begin, int64_t end,
                              vxm_error *error) {
-  vxm_status status = make_room(field, error);
+  vxm_status status = vxm_vdb_field_make_room(field, error);
   for (int64_t x = begin; x < end && status == VXM_OK; x++) {
     memcpy(field->values + (size_t)(x % SIDE) * field->slice, values + (size_t)(x - begin) * field->slice,
            field->slice * sizeof *values);

@@ -13,6 +13,8 @@ vxm_status vxm_vdb_field_create(vxm_vdb_field **out, vxm_context *context, const
                                 const vxm_vdb_kind *kind, vxm_error *error);
 void vxm_vdb_field_destroy(vxm_vdb_field *field);
 
+/** Allocates what slices need, at the first of them if it has not been done before. */
+vxm_status vxm_vdb_field_make_room(vxm_vdb_field *field, vxm_error *error);
 /** Takes the next slices begin..end-1 across x: z fastest, then y. */
 vxm_status vxm_vdb_field_put(vxm_vdb_field *field, const float *values, int64_t begin, int64_t end,
                              vxm_error *error);

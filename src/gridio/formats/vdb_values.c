@@ -154,7 +154,7 @@ static vxm_status begin(vxm_values_writer *w, vxm_error *error) {
   vxm_vdb_field *tree = NULL;
   vxm_status status = vxm_vdb_field_create(&tree, w->context, &w->space, &kind, error);
   w->state = tree;
-  return status;
+  return status == VXM_OK && !w->values.in_tiles ? vxm_vdb_field_make_room(tree, error) : status;
 }
 
 static vxm_status put(vxm_values_writer *w, const void *values, int64_t begin, int64_t end,

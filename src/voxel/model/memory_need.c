@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model/memory_need.h"
 #include "voxel/solid/orient_open.h"
+#include "voxel/thin/sieve.h"
 #include "voxel/thin/thin.h"
 
 #include <math.h>
@@ -33,14 +34,17 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
 }
 
 /** What is held of the surface while thin parts are looked for: where all of it is thin, all that it meets;
- * and the order of triangles, or short numbers of the cells of points. */
-static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space) {
+ * and the order of triangles, or maps and short numbers of the cells of points. */
+static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space, const vxm_window *shape) {
   const vxm_triangle_set *triangles = &model->analysis.triangles;
   enum { AXES = 3 };
   double all = vxm_raster_schedule_bound(triangles->lengths, triangles->triangle_count, space, NULL) * AXES *
                VXM_THIN_COPIES * sizeof(vxm_meeting);
   uint64_t budget = vxm_thin_budget(model->context);
   uint64_t numbers = (triangles->triangle_count + triangles->point_count) * sizeof(uint32_t);
+  uint64_t words = shape->slice_words * (uint64_t)shape->slow_dim;
+  if (words <= triangles->triangle_count)
+    numbers += 8 * vxm_middle_words((size_t)words) * sizeof(uint64_t);
   return numbers + (all < (double)budget ? (uint64_t)all : budget);
 }
 
@@ -81,7 +85,7 @@ vxm_memory_need vxm_model_memory_need(const vxm_model *model, const vxm_space *s
      * it. */
     uint64_t around = (uint64_t)vxm_thin_margin(vxm_thin_separating(&model->options)) *
                       ((uint64_t)need.windows + 2 * 2 + 1);
-    need.fixed += around * shape->slice_words * sizeof(uint64_t) + thin_bytes(model, space);
+    need.fixed += around * shape->slice_words * sizeof(uint64_t) + thin_bytes(model, space, shape);
     need.windows += 2;
   }
   if (vxm_shell_wanted(&model->options)) /* two slices more of the solid */

@@ -44,23 +44,25 @@ vxm_status vxm_slice_order_make(vxm_slice_order *order, const vxm_thin_job *job,
   order->count = 0;
   if (status != VXM_OK)
     return status;
-  for (size_t t = 0; t < triangles->triangle_count; t++) {
+  for (size_t t = 0; t < triangles->triangle_count && status == VXM_OK; t++) {
     int64_t bin = bin_of(&b, triangles->corners[t]);
     if (bin >= 0)
       next[bin]++;
+    status = vxm_ask_at(t, order->context, error);
   }
   for (int i = 0; i < BINS_MAX; i++) {
     size_t here = next[i];
     next[i] = total;
     total += here;
   }
-  order->count = total;
-  for (size_t t = 0; t < triangles->triangle_count; t++) {
+  for (size_t t = 0; t < triangles->triangle_count && status == VXM_OK; t++) {
     int64_t bin = bin_of(&b, triangles->corners[t]);
     if (bin >= 0)
       order->triangles[next[bin]++] = (uint32_t)t;
+    status = vxm_ask_at(t, order->context, error);
   }
-  return VXM_OK;
+  order->count = status == VXM_OK ? total : 0;
+  return status;
 }
 
 void vxm_slice_order_destroy(vxm_slice_order *order) {

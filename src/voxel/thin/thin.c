@@ -273,28 +273,25 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
   return apply(thin, job, sort_meetings(lists[0], lists[1], count), count, to, error);
 }
 
-/** Makes the maps where they cost less than they save. */
-static vxm_status make_middles(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window,
-                               vxm_error *error) {
+/** Makes the maps where they cost less than they save, and there is memory. */
+static void make_middles(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window) {
   size_t words = (size_t)(window->end - window->begin) * window->slice_words,
          points = job->triangles->point_count;
   if (job->placed->wide || words > job->triangles->triangle_count || !vxm_middles_fit(window))
-    return VXM_OK;
-  vxm_status status = vxm_grow(thin->context, (void **)&thin->maps, &thin->map_words,
-                               8 * vxm_middle_words(words), sizeof *thin->maps, error);
-  if (status == VXM_OK)
-    status = vxm_grow(thin->context, (void **)&thin->short_cells, &thin->short_room, points,
-                      sizeof *thin->short_cells, error);
-  if (status != VXM_OK)
-    return status;
+    return;
+  if (vxm_renew(thin->context, (void **)&thin->maps, &thin->map_words, 8 * vxm_middle_words(words),
+                sizeof *thin->maps, NULL) != VXM_OK ||
+      vxm_renew(thin->context, (void **)&thin->short_cells, &thin->short_room, points,
+                sizeof *thin->short_cells, NULL) != VXM_OK)
+    return;
   vxm_middles_fill(thin->maps, window);
   vxm_sieve_kernels_of(NULL)->shorten(thin->short_cells, job->placed->cells, points);
   job->middles = thin->maps;
   job->short_cells = thin->short_cells;
-  return VXM_OK;
 }
 
-/** Orders the triangles where the window does not stay in the cache, and the sieve is for all of them. */
+/** Orders the triangles where the window does not stay in the cache, and the sieve is for all of them; not
+ * without memory, as this only saves time. */
 static vxm_status make_order(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window,
                              vxm_error *error) {
   const size_t large = 1 << 22; /* 32 MiB */
@@ -304,7 +301,12 @@ static vxm_status make_order(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_
       !vxm_sieve_of(&sieve, job))
     return VXM_OK;
   thin->order.context = thin->context;
-  vxm_status status = vxm_slice_order_make(&thin->order, job, error);
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = vxm_slice_order_make(&thin->order, job, &local);
+  if (status == VXM_ERROR_MEMORY || status == VXM_ERROR_MEMORY_LIMIT)
+    return VXM_OK;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
   job->order = thin->order.triangles;
   job->order_count = thin->order.count;
   return status;
@@ -320,8 +322,9 @@ vxm_status vxm_thin_add(vxm_thin_adder *thin, const vxm_window *window, int64_t 
                       .slow = window->layout.slow,
                       .directions = separating == 26 ? VXM_LINK_DIRECTIONS : VXM_LINK_AXES};
   target to = {NULL, confidence};
-  vxm_status status = make_middles(thin, &job, window, error);
-  if (status == VXM_OK && !job.middles)
+  vxm_status status = VXM_OK;
+  make_middles(thin, &job, window);
+  if (!job.middles)
     status = make_order(thin, &job, window, error);
   return status == VXM_OK ? add(thin, &job, &to, too_many, error) : status;
 }
