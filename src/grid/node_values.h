@@ -8,26 +8,6 @@
 
 enum { VXM_NODE_SIDE = 16, VXM_NODE_VOXELS = VXM_NODE_SIDE * VXM_NODE_SIDE * VXM_NODE_SIDE };
 
-/**
- * Who makes them. Nodes are asked for in layers along z, one after the other; the rows of a layer by all
- * threads; the nodes of a row along x, by one.
- */
-typedef struct vxm_node_maker {
-  /** Begins the layer whose first slice is z; NULL = there is nothing to be done. */
-  vxm_status (*begin_layer)(void *payload, int64_t z, vxm_error *error);
-  /** Begins the row of a layer whose first voxel is (0, y, z); NULL = there is nothing to be done. */
-  void (*begin_row)(void *payload, int worker, int64_t y, int64_t z);
-  /**
-   * Makes the values of the node whose first voxel is `at`.
-   *
-   * @param values room for all of them, x fastest and 16 to a row; those beyond the grid are not looked at
-   * @return whether all have one value: then the first of them alone is there
-   */
-  bool (*make)(void *payload, int worker, const int64_t at[3], void *values);
-  void *payload;
-  const char *phase; /**< for progress */
-} vxm_node_maker;
-
 /** Voxels that a node at `at` has along an axis. */
 static inline int vxm_node_count(const vxm_space *space, const int64_t at[3], int axis) {
   return (int)vxm_min(space->dims[axis] - at[axis], VXM_NODE_SIDE);
@@ -71,5 +51,22 @@ static inline size_t vxm_node_boxes_next(const vxm_node_boxes *boxes, int worker
   }
   return SIZE_MAX;
 }
+
+/**
+ * Who makes values. Nodes are asked for in layers along z, one after the other; the rows of a layer by all
+ * threads; the nodes of a row along x, by one.
+ */
+typedef struct vxm_node_maker {
+  vxm_node_boxes *boxes; /**< begun with each layer and each row before its nodes; NULL = there are none */
+  /**
+   * Makes the values of the node whose first voxel is `at`.
+   *
+   * @param values room for all of them, x fastest and 16 to a row; those beyond the grid are not looked at
+   * @return whether all have one value: then the first of them alone is there
+   */
+  bool (*make)(void *payload, int worker, const int64_t at[3], void *values);
+  void *payload;
+  const char *phase; /**< for progress */
+} vxm_node_maker;
 
 #endif

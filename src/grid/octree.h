@@ -53,6 +53,16 @@ static inline unsigned vxm_octree_child(unsigned x, unsigned y, unsigned z) {
   return (unsigned)(spread[x & 3] | spread[y & 3] << 1 | spread[z & 3] << 2);
 }
 
+/** The Morton number of the cube at (x,y,z) among those of its size: bits of x, y and z in turn, x first. */
+static inline uint64_t vxm_octree_morton(int64_t x, int64_t y, int64_t z) {
+  const uint64_t at[3] = {(uint64_t)x, (uint64_t)y, (uint64_t)z};
+  uint64_t number = 0;
+  for (int b = 0; b < 2 * VXM_OCTREE_LEVELS; b++)
+    for (int a = 0; a < 3; a++)
+      number |= (at[a] >> b & 1) << (3 * b + a);
+  return number;
+}
+
 /** The bit of a voxel in its brick. */
 static inline unsigned vxm_octree_bit(int64_t i, int64_t j, int64_t k) {
   return (unsigned)((k & 3) * 16 + (j & 3) * 4 + (i & 3));

@@ -14,18 +14,9 @@ static void add(vxm_octree_pieces *p, vxm_octree_piece piece) {
     p->list[p->count++] = piece;
 }
 
-/** Bits of x, y and z in turn, x first. */
-static uint64_t morton(const int64_t brick[3]) {
-  uint64_t key = 0;
-  for (int b = 0; b < 2 * VXM_OCTREE_LEVELS; b++)
-    for (int a = 0; a < 3; a++)
-      key |= ((uint64_t)brick[a] >> b & 1) << (3 * b + a);
-  return key;
-}
-
+/** Of the brick with the voxel `at`. */
 static uint64_t key_of(const int64_t at[3]) {
-  const int64_t brick[3] = {at[0] / 4, at[1] / 4, at[2] / 4};
-  return morton(brick);
+  return vxm_octree_morton(at[0] / 4, at[1] / 4, at[2] / 4);
 }
 
 void vxm_octree_pieces_brick(vxm_octree_pieces *p, const int64_t at[3], uint64_t bits) {

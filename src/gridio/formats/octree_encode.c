@@ -111,11 +111,9 @@ static void encode_brick(vxm_octree_encoder *e, vxm_value_bytes *to, const node 
       return;
 }
 
-static uint64_t morton(uint64_t x, uint64_t y, uint64_t z) {
-  uint64_t key = 0;
-  for (int b = 0; b < 16; b++)
-    key |= (x >> b & 1) << 3 * b | (y >> b & 1) << (3 * b + 1) | (z >> b & 1) << (3 * b + 2);
-  return key;
+/** Of the node at `at`, counted in nodes. */
+static uint64_t key_of(const size_t at[3]) {
+  return vxm_octree_morton((int64_t)at[0], (int64_t)at[1], (int64_t)at[2]);
 }
 
 static void add_entry(vxm_octree_encoder *e, vxm_node_room *room, uint64_t key, uint64_t at) {
@@ -162,7 +160,7 @@ static bool put_node(vxm_octree_encoder *e, size_t worker, const node *n, const 
   uint64_t bricks[VXM_STRIP_BRICKS];
   if (is_empty(e, n, clear))
     return true;
-  encode_node(e, &e->rooms[worker], n, morton(at[0], at[1], at[2]), worker, bricks);
+  encode_node(e, &e->rooms[worker], n, key_of(at), worker, bricks);
   if (vxm_octree_encoder_failed(e))
     return false;
   vxm_strip_add_node(&e->builder, worker, at[0], bricks);
@@ -222,7 +220,7 @@ static void put_one(vxm_octree_encoder *e, size_t worker, const unsigned char *v
     room->has_one =
         vxm_octree_encoder_add(e, &room->values, &uniform, 1) && add_value(e, &room->values, value);
   }
-  add_entry(e, room, morton(at[0], at[1], at[2]), room->one_at);
+  add_entry(e, room, key_of(at), room->one_at);
   const int64_t first[3] = {(int64_t)at[0] * SIDE, (int64_t)at[1] * SIDE, (int64_t)at[2] * SIDE};
   uint64_t bricks[VXM_STRIP_BRICKS];
   bool whole = true;
@@ -248,8 +246,8 @@ static void make_row(size_t y, int worker, void *payload) {
   node n = {.row = SIDE * e->value_bytes, .slice = (size_t)SIDE * SIDE * e->value_bytes};
   if (vxm_task_progress_stopped(&e->watch, worker))
     return;
-  if (maker->begin_row)
-    maker->begin_row(maker->payload, worker, at[1], at[2]);
+  if (maker->boxes)
+    vxm_node_boxes_begin_row(maker->boxes, worker, at[1]);
   fill_clear(e, clear);
   for (; at[0] < e->space.dims[0]; at[0] += SIDE) {
     const size_t place[3] = {(size_t)at[0] / SIDE, y, (size_t)at[2] / SIDE};
@@ -283,8 +281,8 @@ static vxm_status make_room(vxm_octree_encoder *e, vxm_error *error) {
 /** The first node, whose first value may be the background. */
 static void make_first(vxm_octree_encoder *e) {
   static const int64_t origin[3] = {0, 0, 0};
-  if (e->maker->begin_row)
-    e->maker->begin_row(e->maker->payload, 0, 0, 0);
+  if (e->maker->boxes)
+    vxm_node_boxes_begin_row(e->maker->boxes, 0, 0);
   e->is_first_one = e->maker->make(e->maker->payload, 0, origin, e->first);
   take_background(e, e->first);
 }
@@ -297,14 +295,12 @@ vxm_status vxm_octree_encoder_make(vxm_octree_encoder *e, const vxm_node_maker *
   vxm_task_progress_start(&e->watch, e->context, maker->phase, e->builder.across * e->builder.deep, error);
   for (e->begin = 0; e->begin < e->space.dims[2] && status == VXM_OK; e->begin = e->end) {
     e->end = vxm_min(e->begin + SIDE, e->space.dims[2]);
-    if (maker->begin_layer)
-      status = maker->begin_layer(maker->payload, e->begin, error);
-    if (status == VXM_OK && e->begin == 0)
+    if (maker->boxes)
+      vxm_node_boxes_begin_layer(maker->boxes, e->begin);
+    if (e->begin == 0)
       make_first(e);
-    if (status == VXM_OK)
-      vxm_parallel(e->context, e->builder.across, make_row, e);
-    if (status == VXM_OK)
-      status = e->watch.status == VXM_OK ? vxm_octree_encoder_check(e, error) : e->watch.status;
+    vxm_parallel(e->context, e->builder.across, make_row, e);
+    status = e->watch.status == VXM_OK ? vxm_octree_encoder_check(e, error) : e->watch.status;
   }
   return status == VXM_OK ? vxm_task_progress_end(&e->watch) : status;
 }

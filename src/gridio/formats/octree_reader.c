@@ -18,11 +18,7 @@ struct vxm_octree_reader {
 };
 
 static uint64_t key_of(const int64_t at[3]) {
-  uint64_t key = 0;
-  for (int b = 0; b < 16; b++)
-    for (int a = 0; a < 3; a++)
-      key |= ((uint64_t)at[a] / VXM_NODE_SIDE >> b & 1) << (3 * b + a);
-  return key;
+  return vxm_octree_morton(at[0] / VXM_NODE_SIDE, at[1] / VXM_NODE_SIDE, at[2] / VXM_NODE_SIDE);
 }
 
 static void list_entry(int level, const int64_t at[3], const unsigned char *data, void *payload) {

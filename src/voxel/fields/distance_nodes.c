@@ -107,23 +107,8 @@ static bool make_node(void *payload, int worker, const int64_t at[3], void *valu
   return false;
 }
 
-static vxm_status begin_layer(void *payload, int64_t z, vxm_error *error) {
-  (void)error;
-  vxm_distance_nodes *n = payload;
-  vxm_node_boxes_begin_layer(&n->boxes, z);
-  return VXM_OK;
-}
-
-static void begin_row(void *payload, int worker, int64_t y, int64_t z) {
-  (void)z;
-  vxm_distance_nodes *n = payload;
-  vxm_node_boxes_begin_row(&n->boxes, worker, y);
-}
-
 vxm_node_maker vxm_distance_nodes_maker(vxm_distance_nodes *nodes) {
-  bool lists = nodes->search.families != NULL;
-  return (vxm_node_maker){.begin_layer = lists ? begin_layer : NULL,
-                          .begin_row = lists ? begin_row : NULL,
+  return (vxm_node_maker){.boxes = nodes->search.families ? &nodes->boxes : NULL,
                           .make = make_node,
                           .payload = nodes,
                           .phase = "measuring distances"};

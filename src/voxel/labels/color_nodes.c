@@ -78,22 +78,8 @@ static bool make_node(void *payload, int worker, const int64_t at[3], void *to) 
   return false;
 }
 
-static vxm_status begin_layer(void *payload, int64_t z, vxm_error *error) {
-  vxm_color_nodes *n = payload;
-  vxm_node_maker maker = vxm_label_nodes_maker(n->parts);
-  return maker.begin_layer(maker.payload, z, error);
-}
-
-static void begin_row(void *payload, int worker, int64_t y, int64_t z) {
-  vxm_color_nodes *n = payload;
-  vxm_node_maker maker = vxm_label_nodes_maker(n->parts);
-  maker.begin_row(maker.payload, worker, y, z);
-}
-
 vxm_node_maker vxm_color_nodes_maker(vxm_color_nodes *nodes) {
-  bool lists = nodes->parts != NULL;
-  return (vxm_node_maker){.begin_layer = lists ? begin_layer : NULL,
-                          .begin_row = lists ? begin_row : NULL,
+  return (vxm_node_maker){.boxes = nodes->parts ? vxm_label_nodes_maker(nodes->parts).boxes : NULL,
                           .make = make_node,
                           .payload = nodes,
                           .phase = "colouring"};

@@ -138,21 +138,8 @@ static bool make_node(void *payload, int worker, const int64_t at[3], void *to) 
   return false;
 }
 
-static vxm_status begin_layer(void *payload, int64_t z, vxm_error *error) {
-  (void)error;
-  vxm_label_nodes *n = payload;
-  vxm_node_boxes_begin_layer(&n->boxes, z);
-  return VXM_OK;
-}
-
-static void begin_row(void *payload, int worker, int64_t y, int64_t z) {
-  (void)z;
-  vxm_label_nodes *n = payload;
-  vxm_node_boxes_begin_row(&n->boxes, worker, y);
-}
-
 vxm_node_maker vxm_label_nodes_maker(vxm_label_nodes *nodes) {
-  return (vxm_node_maker){begin_layer, begin_row, make_node, nodes, "labelling"};
+  return (vxm_node_maker){&nodes->boxes, make_node, nodes, "labelling"};
 }
 
 const vxm_sparse *vxm_label_nodes_voxels(const vxm_label_nodes *nodes) {
