@@ -3,7 +3,8 @@
 #ifndef VXM_CLI_AUGMENT_H
 #define VXM_CLI_AUGMENT_H
 
-#include "cli/cli.h"
+#include "cli/engine.h"
+#include "cli/repair_common.h"
 
 typedef struct augment_request {
   const char *input, *output, *format;

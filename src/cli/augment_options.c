@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend augment: its options. */
 #include "cli/augment.h"
+#include "cli/voxelize_common.h"
 
 #include <string.h>
 

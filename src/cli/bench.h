@@ -3,7 +3,7 @@
 #ifndef VXM_CLI_BENCH_H
 #define VXM_CLI_BENCH_H
 
-#include "cli/cli.h"
+#include "cli/repair_common.h"
 #include "voxmend/experimental.h"
 
 enum {

@@ -2,6 +2,7 @@
 /** The results of `voxmend bench` as tables and as JSON. */
 #include "cli/baseline.h"
 #include "cli/bench.h"
+#include "cli/defects.h"
 
 #include <inttypes.h>
 #include <math.h>

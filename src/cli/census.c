@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The census of a mesh as a table and as JSON. */
-#include "cli/cli.h"
+#include "cli/defects.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend bench: how long the phases of the work take on this machine. */
 #include "cli/bench.h"
+#include "cli/engine.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -2,6 +2,8 @@
 /** voxmend carve: what a tool leaves of a grid on its way. */
 #include "cli/carve.h"
 #include "cli/repair.h"
+#include "cli/repair_common.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend combine: the union, intersection or difference of grids. */
 #include "cli/combine.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend compare: in which voxels two grids differ. */
-#include "cli/cli.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <math.h>

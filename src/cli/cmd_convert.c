@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend convert: a grid in another format, or as a mesh. */
-#include "cli/cli.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <string.h>

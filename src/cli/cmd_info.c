@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend info: what is wrong with a mesh, or what a grid holds. */
-#include "cli/cli.h"
+#include "cli/defects.h"
+#include "cli/field.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend repair: a repaired mesh, verified, and a table of what changed. */
 #include "cli/repair.h"
+#include "cli/repair_common.h"
 
 #include <string.h>
 

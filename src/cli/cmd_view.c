@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend view: a picture of a grid, or of a mesh as voxels, or a page that shows them in a browser. */
-#include "cli/cli.h"
+#include "cli/field.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

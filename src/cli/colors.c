@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend voxelize --color: a colour per voxel. */
-#include "cli/cli.h"
+#include "cli/field.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend combine with values: what is read, what goes together, and files of octrees. */
 #include "cli/combine.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <math.h>

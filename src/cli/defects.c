@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What is wrong with a mesh, and where: the options, list and picture of info and repair. */
-#include "cli/cli.h"
+#include "cli/defects.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** The options that say which engine makes the voxels. */
-#include "cli/cli.h"
+#include "cli/engine.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** A number per voxel instead of a bit: the options, files and reports of coverage, distance, labels and
  * colours. */
-#include "cli/cli.h"
+#include "cli/field.h"
 
 #include <inttypes.h>
 #include <string.h>

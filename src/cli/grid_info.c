@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What voxmend info tells of a grid: where its voxels lie, and what they hold. */
-#include "cli/cli.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

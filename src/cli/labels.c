@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Labels: the file, the table of labels, and what came of it. */
-#include "cli/cli.h"
+#include "cli/field.h"
 
 #include <inttypes.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What a mesh looks like, in reports: colours, materials and textures. */
-#include "cli/cli.h"
+#include "cli/field.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef VXM_CLI_REPAIR_H
 #define VXM_CLI_REPAIR_H
 
-#include "cli/cli.h"
+#include "cli/defects.h"
 
 typedef struct repair_outcome {
   vxm_mesh *mesh;

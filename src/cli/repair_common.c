@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Reading and repairing a mesh, which repair, voxelize and view have in common. */
-#include "cli/cli.h"
+#include "cli/repair_common.h"
 
 #include <string.h>
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What a repair did, as a table and as JSON. */
 #include "cli/repair.h"
+#include "cli/repair_common.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What the files of convert, compare and view hold: bits, or numbers, which become bits only by a threshold.
  */
-#include "cli/cli.h"
+#include "cli/values.h"
 
 #include <inttypes.h>
 #include <string.h>

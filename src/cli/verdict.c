@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What is wrong with a mesh in a sentence, and which command mends it. */
-#include "cli/cli.h"
+#include "cli/defects.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -3,7 +3,8 @@
 #ifndef VXM_CLI_VOXELIZE_H
 #define VXM_CLI_VOXELIZE_H
 
-#include "cli/cli.h"
+#include "cli/engine.h"
+#include "cli/field.h"
 
 typedef struct voxelize_request {
   const char *input, *output, *format, *like, *confidence, *coords;

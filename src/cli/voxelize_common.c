@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** What is made of a mesh, its inside or its surface: options that voxelize and augment have in common. */
-#include "cli/cli.h"
+#include "cli/voxelize_common.h"
 
 #include <string.h>
 

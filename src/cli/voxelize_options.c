@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** voxmend voxelize: its options. */
 #include "cli/baseline.h"
+#include "cli/voxelize_common.h"
 
 #include <string.h>
 

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/** Meshes that are read and repaired before something is made of them. */
+#ifndef VXM_CLI_REPAIR_COMMON_H
+#define VXM_CLI_REPAIR_COMMON_H
+
+#include "cli/cli.h"
+
+/** A mesh that was read, and repaired unless that was not wanted. */
+typedef struct cli_input {
+  const char *path;
+  char format[48];
+  int64_t vertices, faces; /**< as read */
+  vxm_mesh *mesh;
+  vxm_mesh *as_read;        /**< with its colours, where these are read and the mesh is repaired; or NULL */
+  vxm_repair_report repair; /**< no passes without repair */
+  double read_ms, repair_ms;
+} cli_input;
+
+/** The argument of --weld: CLI_END or CLI_STOP. */
+int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value);
+/** CLI_STOP if options about the repair were given with --no-repair. */
+int cli_check_repair(cli_run *cli, bool no_repair, bool repair_options);
+json_t *cli_passes_json(const vxm_repair_report *report);
+/** Warns of parts that the repair has lost. */
+void cli_warn_lost(cli_run *cli, const char *path, const vxm_repair_report *report);
+/** Reads, and repairs unless `options` is NULL. After CLI_FAILED a line was printed and input->mesh is NULL.
+ */
+int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vxm_repair_options *options);
+
+#endif
