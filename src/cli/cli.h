@@ -287,6 +287,7 @@ int cli_check_style(cli_run *cli, const cli_style *style, const char *format);
 int cli_check_quads(cli_run *cli, bool keep_polygons, bool keep_contacts, const char *format);
 /** Takes over the argument of --polygons: CLI_END or CLI_STOP. */
 int cli_read_polygons(cli_run *cli, bool *keep, const char *value);
+
 /* ---- progress.c ---- */
 
 /** Sets the context options up for progress on stderr and for cancelling by a signal. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/weld/rejoin_jittered.h"
+#include "repair/weld/vertex_clusters.h"
 
 #include "base/hash.h"
 #include "mesh/geometry.h"
@@ -8,17 +9,15 @@
 #include <math.h>
 #include <string.h>
 
-static const double REACH = 3e-4;       /**< of the diagonal: ends of mates are no farther apart */
-static const double GROUP_WIDTH = 5e-4; /**< of the diagonal: that of a group's box */
-static const double EDGE_PART = 0.35;   /**< of an edge: nearer ends make mates beyond doubt */
-static const double PLAIN_PART = 0.15;  /**< of an edge: so near that it does not matter who comes first */
-static const double BOX_PART = 1.75;    /**< diagonal of a box of points that are no farther than 1 apart */
+static const double CLUSTER_WIDTH = 5e-4; /**< of the diagonal: that of a cluster's box */
+static const double BOX_PART = 1.75;      /**< diagonal of a box of points that are no farther than 1 apart */
+static const double REACH = 3e-4;         /**< of the diagonal: ends of mates are no farther apart */
+static const double EDGE_PART = 0.35;     /**< of an edge: nearer ends make mates beyond doubt */
+static const double PLAIN_PART = 0.15;    /**< of an edge: so near that it does not matter who comes first */
 
 enum {
   CHAIN_MAX = 64,      /**< edges looked at in a cell; where more crowd, some find no mate */
   PAIRS_PER_EDGE = 16, /**< beyond, on average, nothing is mended: no torn surface has that many */
-  GROUP_MAX = 256,     /**< vertices of the smaller of two groups that may still be joined */
-  FACES_MAX = 4096,    /**< at the vertices of the smaller of two groups */
   ROUNDS_MAX = 8
 };
 
@@ -38,10 +37,6 @@ typedef struct pair {
   bool sure, plain; /**< by EDGE_PART, by PLAIN_PART */
 } pair;
 
-typedef struct box {
-  double low[3], high[3];
-} box;
-
 typedef struct search {
   vxm_repair_state *state;
   const vxm_soup *soup;
@@ -58,11 +53,7 @@ typedef struct search {
   uint64_t *order; /**< cost << 32 | place among the pairs; sorted. Twice the room, for the sort */
   size_t order_count;
   uint8_t *joined; /**< per rim */
-  uint32_t *parent, *size;
-  uint32_t *ring; /**< per vertex: the next of its group */
-  box *boxes;     /**< per root of a group of more than one */
-  size_t *first_face;
-  size_t *faces; /**< of vertex v: faces[first_face[v]] to faces[first_face[v + 1] - 1] */
+  vxm_vertex_clusters clusters;
 } search;
 
 /** Without the calls and the care for NaN of fmin and fmax. */
@@ -293,108 +284,6 @@ static void sort_pairs(search *s) {
   vxm_sort_keys(s->order, s->order + s->order_count, s->order_count);
 }
 
-/* ---- Groups of vertices ---- */
-
-static uint32_t root_of(const search *s, uint32_t v) {
-  while (s->parent[v] != v)
-    v = s->parent[v] = s->parent[s->parent[v]];
-  return v;
-}
-
-static bool start_groups(search *s) {
-  size_t vertices = s->soup->vertex_count;
-  s->parent = allocate(s, vertices, sizeof *s->parent);
-  s->size = allocate(s, vertices, sizeof *s->size);
-  s->ring = allocate(s, vertices, sizeof *s->ring);
-  s->boxes = allocate(s, vertices, sizeof *s->boxes);
-  s->first_face = allocate(s, vertices + 2, sizeof *s->first_face);
-  s->faces = allocate(s, s->soup->corner_count, sizeof *s->faces);
-  if (!s->parent || !s->size || !s->ring || !s->boxes || !s->first_face || !s->faces)
-    return false;
-  for (uint32_t v = 0; v < vertices; v++) {
-    s->parent[v] = s->ring[v] = v;
-    s->size[v] = 1;
-  }
-  /* counted two places on, the sums are the begins, and listing moves each to the next one's begin */
-  for (size_t c = 0; c < s->soup->corner_count; c++)
-    s->first_face[s->soup->indices[c] + 2]++;
-  for (size_t v = 2; v < vertices + 2; v++)
-    s->first_face[v] += s->first_face[v - 1];
-  for (size_t f = 0; f < s->soup->face_count; f++) {
-    size_t count;
-    const uint32_t *corner = vxm_face(s->soup, f, &count);
-    for (size_t c = 0; c < count; c++)
-      s->faces[s->first_face[corner[c] + 1]++] = f;
-  }
-  return true;
-}
-
-static box box_of(const search *s, uint32_t root) {
-  if (s->size[root] > 1)
-    return s->boxes[root];
-  box around;
-  for (int a = 0; a < 3; a++)
-    around.low[a] = around.high[a] = vxm_position(s->soup, root)[a] * s->scale;
-  return around;
-}
-
-static box box_around(const box *p, const box *q) {
-  box around;
-  for (int a = 0; a < 3; a++) {
-    around.low[a] = least(p->low[a], q->low[a]);
-    around.high[a] = most(p->high[a], q->high[a]);
-  }
-  return around;
-}
-
-static bool has_corner_in(const search *s, size_t face, uint32_t root) {
-  size_t count;
-  const uint32_t *corner = vxm_face(s->soup, face, &count);
-  for (size_t c = 0; c < count; c++)
-    if (root_of(s, corner[c]) == root)
-      return true;
-  return false;
-}
-
-/** Whether two groups may become one: not too wide, and no face with corners in both. */
-static bool may_unite(const search *s, uint32_t p, uint32_t q) {
-  if (p == q)
-    return true;
-  double limit = least(GROUP_WIDTH / REACH * s->reach, BOX_PART * s->width), sum = 0;
-  box of_p = box_of(s, p), of_q = box_of(s, q), around = box_around(&of_p, &of_q);
-  for (int a = 0; a < 3; a++)
-    sum += (around.high[a] - around.low[a]) * (around.high[a] - around.low[a]);
-  if (!(sum <= limit * limit))
-    return false;
-  uint32_t small = s->size[p] < s->size[q] ? p : q, v = small;
-  if (s->size[small] > GROUP_MAX)
-    return false;
-  size_t faces = 0;
-  do {
-    faces += s->first_face[v + 1] - s->first_face[v];
-    if (faces > FACES_MAX)
-      return false;
-    for (size_t k = s->first_face[v]; k < s->first_face[v + 1]; k++)
-      if (has_corner_in(s, s->faces[k], small == p ? q : p))
-        return false;
-    v = s->ring[v];
-  } while (v != small);
-  return true;
-}
-
-static void unite(search *s, uint32_t p, uint32_t q) {
-  if (p == q)
-    return;
-  uint32_t root = p < q ? p : q, other = p < q ? q : p;
-  box of_p = box_of(s, p), of_q = box_of(s, q);
-  s->boxes[root] = box_around(&of_p, &of_q);
-  s->parent[other] = root;
-  s->size[root] += s->size[other];
-  uint32_t kept = s->ring[root];
-  s->ring[root] = s->ring[other];
-  s->ring[other] = kept;
-}
-
 /* ---- Joining pairs ---- */
 
 /** Which pairs a round may join. */
@@ -407,19 +296,21 @@ typedef enum round_kind {
 static bool join_pair(search *s, const pair *k, round_kind kind) {
   if (s->joined[k->i] && s->joined[k->j])
     return false;
+  vxm_vertex_clusters *clusters = &s->clusters;
   const rim *i = &s->rims[k->i], *j = &s->rims[k->j];
-  uint32_t a = root_of(s, i->a), b = root_of(s, i->b);
-  uint32_t c = root_of(s, k->crosswise ? j->b : j->a), d = root_of(s, k->crosswise ? j->a : j->b);
+  uint32_t a = vxm_vertex_clusters_root(clusters, i->a), b = vxm_vertex_clusters_root(clusters, i->b);
+  uint32_t c = vxm_vertex_clusters_root(clusters, k->crosswise ? j->b : j->a),
+           d = vxm_vertex_clusters_root(clusters, k->crosswise ? j->a : j->b);
   if (kind == ROUND_ZIP && a != c && b != d)
     return false;
-  if (!may_unite(s, a, c) || !may_unite(s, b, d))
+  if (!vxm_vertex_clusters_may_unite(clusters, a, c) || !vxm_vertex_clusters_may_unite(clusters, b, d))
     return false;
-  unite(s, a, c);
+  vxm_vertex_clusters_unite(clusters, a, c);
   /* the first union may have changed what the second one would do */
-  b = root_of(s, b);
-  d = root_of(s, d);
-  if (may_unite(s, b, d))
-    unite(s, b, d);
+  b = vxm_vertex_clusters_root(clusters, b);
+  d = vxm_vertex_clusters_root(clusters, d);
+  if (vxm_vertex_clusters_may_unite(clusters, b, d))
+    vxm_vertex_clusters_unite(clusters, b, d);
   s->joined[k->i] = s->joined[k->j] = 1;
   return true;
 }
@@ -473,21 +364,20 @@ static bool match(search *s, size_t rims, const vxm_unit_scale *frame) {
   if (!(s->reach > 1e-9) || !s->joined || !find_pairs(s) || 2 * count_mates(s) < s->rim_count)
     return false;
   s->order = allocate(s, s->pair_count, 2 * sizeof *s->order);
-  if (!s->order || !start_groups(s))
+  if (!s->order)
     return false;
   set_width(s);
+  double width = least(CLUSTER_WIDTH / REACH * s->reach, BOX_PART * s->width);
+  if (vxm_vertex_clusters_create(&s->clusters, s->soup, s->scale, width, s->state->context, &s->error) !=
+      VXM_OK)
+    return false;
   join_all(s);
   return true;
 }
 
 static void release(search *s) {
   vxm_context *context = s->state->context;
-  vxm_free(context, s->faces);
-  vxm_free(context, s->first_face);
-  vxm_free(context, s->boxes);
-  vxm_free(context, s->ring);
-  vxm_free(context, s->size);
-  vxm_free(context, s->parent);
+  vxm_vertex_clusters_destroy(&s->clusters);
   vxm_free(context, s->joined);
   vxm_free(context, s->order);
   vxm_free(context, s->pairs);
@@ -513,7 +403,7 @@ vxm_status vxm_rejoin_jittered(vxm_repair_state *state, uint32_t *map, vxm_error
   search s = {.state = state, .soup = state->soup, .error = VXM_ERROR_INIT};
   if (match(&s, rims, &frame))
     for (size_t v = 0; v < vertices; v++)
-      map[v] = root_of(&s, (uint32_t)v);
+      map[v] = vxm_vertex_clusters_root(&s.clusters, (uint32_t)v);
   release(&s);
   if (s.error.code != VXM_OK)
     vxm_error_pass(error, &s.error);
