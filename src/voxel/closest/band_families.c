@@ -18,8 +18,8 @@ static const double widest = 4;
 /** A length in floats is off by less than this part of the lengths that it is made from: ninety-six
  * roundings, where some sixty are made. */
 static const double rounding = 96 * 0x1p-24;
-/** Vectors of voxels reach beyond a family's box by as much. */
-static const double beyond[3] = {8, 1, 0};
+/** Bricks of voxels reach beyond a family's box by as much. */
+static const double beyond[3] = {3, 1, 1};
 
 typedef struct builder {
   vxm_band_families *made;

@@ -5,30 +5,38 @@
 
 #include "voxel/closest/band_families.h"
 
-/** Voxels along an edge of a tile; its rows have room for more, and each slice has one more row. A vector has
- * so many at most. */
+/** Voxels along an edge of a tile. Its rows of squares lie farther apart, and so do its slices, so that
+ * neighbours share no lines of the cache. A brick has so many voxels at most, and four at least. */
 enum {
   VXM_BAND_TILE = 32,
   VXM_BAND_ROW = VXM_BAND_TILE + 8,
   VXM_BAND_SLICE = VXM_BAND_ROW * (VXM_BAND_TILE + 1),
   VXM_BAND_VOXELS = VXM_BAND_SLICE * VXM_BAND_TILE,
   VXM_BAND_NOTES = 1 << 13,
-  VXM_BAND_VECTOR = 16
+  VXM_BAND_VECTOR = 16,
+  VXM_BAND_BRICKS = VXM_BAND_TILE * VXM_BAND_TILE * VXM_BAND_TILE / 4
 };
 
-/** A vector of voxels that has to be looked at in doubles, for a triangle. */
+/** A brick of a tile, voxels that are one vector: the how manieth along fast, middle and slow. */
+typedef struct vxm_band_brick {
+  uint8_t at[4];
+} vxm_band_brick;
+
+/** A brick that has to be looked at in doubles, for a triangle. */
 typedef struct vxm_band_note {
   uint32_t triangle;
-  uint8_t at[4]; /**< in the tile: fast, middle, slow */
+  vxm_band_brick brick;
 } vxm_band_note;
 
 /** What a worker makes a tile in. */
 typedef struct vxm_band_tile {
   _Alignas(64) float lower[VXM_BAND_NOTES][VXM_BAND_VECTOR]; /**< of notes: squares are not below that */
+  /** No less than what is to come, squared: brick after brick. */
+  _Alignas(64) float upper[VXM_BAND_TILE * VXM_BAND_TILE * VXM_BAND_TILE];
   double squares[VXM_BAND_VOXELS]; /**< the result, band^2 where nothing is nearer */
-  float upper[VXM_BAND_VOXELS];    /**< no less than what is to come, squared */
   double places[3][VXM_BAND_ROW];  /**< of the voxels, along fast, middle and slow */
   vxm_band_note notes[VXM_BAND_NOTES];
+  vxm_band_brick bricks[VXM_BAND_BRICKS + 1]; /**< of a family */
   size_t note_count;
   int64_t first[3];
   int count[3]; /**< 1 to VXM_BAND_TILE */

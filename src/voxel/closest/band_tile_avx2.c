@@ -13,7 +13,9 @@
 
 #define LANES 4
 #define WIDTH 8
-#define DOWN 1
+#define ACROSS 4
+#define DOWN 2
+#define DEEP 1
 #define BUILD(name) name##_avx2
 
 typedef float wide __attribute__((vector_size(4 * WIDTH)));
@@ -56,12 +58,22 @@ INLINE unsigned wide_bits(wide_mask mask) {
   return (unsigned)_mm256_movemask_ps(mask);
 }
 
-INLINE wide rows_load(const float *from) {
-  return (wide)_mm256_loadu_ps(from);
+INLINE lanes rows_load(const double *from) {
+  return *(const lanes_loaded *)(const void *)from;
 }
 
-INLINE void rows_store(float *to, wide x) {
-  _mm256_storeu_ps(to, (__m256)x);
+INLINE void rows_store(double *to, lanes x) {
+  *(lanes_loaded *)(void *)to = x;
+}
+
+/** A number for each voxel of a row. */
+INLINE lanes lanes_along(const double *from) {
+  return *(const lanes_loaded *)(const void *)from;
+}
+
+/** A number for each row. */
+INLINE lanes lanes_across(const double *from) {
+  return from[0] - (lanes){0};
 }
 
 INLINE lanes lanes_max(lanes a, lanes b) {

@@ -15,7 +15,9 @@
 
 #define LANES 8
 #define WIDTH 16
+#define ACROSS 4
 #define DOWN 2
+#define DEEP 2
 #define BUILD(name) name##_avx512
 
 typedef float wide __attribute__((vector_size(4 * WIDTH)));
@@ -58,18 +60,28 @@ INLINE unsigned wide_bits(wide_mask mask) {
   return mask;
 }
 
-/* Two rows of eight. */
+/* Two rows of four. */
 
 enum { NEXT_ROW = 40 };
 
-INLINE wide rows_load(const float *from) {
-  return (wide)_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(from)),
-                                  _mm256_loadu_ps(from + NEXT_ROW), 1);
+INLINE lanes rows_load(const double *from) {
+  return (lanes)_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(from)),
+                                   _mm256_loadu_pd(from + NEXT_ROW), 1);
 }
 
-INLINE void rows_store(float *to, wide x) {
-  _mm256_storeu_ps(to, _mm512_castps512_ps256((__m512)x));
-  _mm256_storeu_ps(to + NEXT_ROW, _mm512_extractf32x8_ps((__m512)x, 1));
+INLINE void rows_store(double *to, lanes x) {
+  _mm256_storeu_pd(to, _mm512_castpd512_pd256((__m512d)x));
+  _mm256_storeu_pd(to + NEXT_ROW, _mm512_extractf64x4_pd((__m512d)x, 1));
+}
+
+/** A number for each voxel of a row. */
+INLINE lanes lanes_along(const double *from) {
+  return (lanes)_mm512_broadcast_f64x4(_mm256_loadu_pd(from));
+}
+
+/** A number for each row. */
+INLINE lanes lanes_across(const double *from) {
+  return (lanes)_mm512_insertf64x4(_mm512_set1_pd(from[0]), _mm256_set1_pd(from[1]), 1);
 }
 
 INLINE lanes lanes_max(lanes a, lanes b) {

@@ -7,14 +7,15 @@
 
 #define LANES 2
 #define WIDTH 4
-#define DOWN 1
+#define ACROSS 2
+#define DOWN 2
+#define DEEP 1
 #define BUILD(name) name##_plain
 
 typedef float wide __attribute__((vector_size(4 * WIDTH)));
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t lanes_int __attribute__((vector_size(8 * LANES)));
 typedef double lanes_loaded __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
-typedef float wide_loaded __attribute__((vector_size(4 * WIDTH), aligned(4), may_alias));
 typedef int32_t wide_mask __attribute__((vector_size(4 * WIDTH)));
 
 #define INLINE static inline __attribute__((always_inline))
@@ -62,12 +63,22 @@ INLINE unsigned wide_bits(wide_mask mask) {
 #endif
 }
 
-INLINE wide rows_load(const float *from) {
-  return *(const wide_loaded *)(const void *)from;
+INLINE lanes rows_load(const double *from) {
+  return *(const lanes_loaded *)(const void *)from;
 }
 
-INLINE void rows_store(float *to, wide x) {
-  *(wide_loaded *)(void *)to = x;
+INLINE void rows_store(double *to, lanes x) {
+  *(lanes_loaded *)(void *)to = x;
+}
+
+/** A number for each voxel of a row. */
+INLINE lanes lanes_along(const double *from) {
+  return *(const lanes_loaded *)(const void *)from;
+}
+
+/** A number for each row. */
+INLINE lanes lanes_across(const double *from) {
+  return from[0] - (lanes){0};
 }
 
 INLINE unsigned lanes_bits(lanes_int mask) {
