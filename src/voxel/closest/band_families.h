@@ -23,7 +23,7 @@ enum { VXM_BAND_FAMILY = 8 /**< triangles in a family at most */ };
 typedef struct vxm_band_triangle {
   float axis[3][3], offset[3]; /**< a point q lies at axis q + offset in the triangle's frame */
   float length, leg[2][2], leg_length[2];
-  float middle[3];
+  float middle[3], radius; /**< of a sphere about it */
 } vxm_band_triangle;
 
 /** Triangles whose frames are made at once, number by number: corners, and vxm_distance_triangle. */
@@ -42,8 +42,10 @@ typedef struct vxm_band_family {
   double origin[3]; /**< amid them; x, y, z */
   float axis[3][3]; /**< of a box about them */
   float low[3], high[3];
-  float half[3]; /**< of the box along the grid's axes, whose middle is the origin */
-  float room;    /**< what squared lengths that matter may be wrong by */
+  float half[3];  /**< of the box along the grid's axes, whose middle is the origin */
+  float point[3]; /**< of the surface, about amid the family; fast, middle, slow */
+  bool has_point; /**< none of triangles that are so wide that it would say little */
+  float room;     /**< what squared lengths that matter may be wrong by */
   uint32_t first, count;
   int32_t box[3][2]; /**< the voxels that may be nearer than the band; empty if box[0][0] >= box[0][1] */
 } vxm_band_family;

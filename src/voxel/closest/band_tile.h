@@ -33,8 +33,9 @@ typedef struct vxm_band_tile {
   _Alignas(64) float lower[VXM_BAND_NOTES][VXM_BAND_VECTOR]; /**< of notes: squares are not below that */
   /** No less than what is to come, squared: brick after brick. */
   _Alignas(64) float upper[VXM_BAND_TILE * VXM_BAND_TILE * VXM_BAND_TILE];
-  double squares[VXM_BAND_VOXELS]; /**< the result, band^2 where nothing is nearer */
-  double places[3][VXM_BAND_ROW];  /**< of the voxels, along fast, middle and slow */
+  double squares[VXM_BAND_VOXELS];   /**< the result, band^2 where nothing is nearer */
+  double places[3][VXM_BAND_ROW];    /**< of the voxels, along fast, middle and slow */
+  double bricks_at[3][VXM_BAND_ROW]; /**< of the first voxels of bricks */
   vxm_band_note notes[VXM_BAND_NOTES];
   vxm_band_brick bricks[VXM_BAND_BRICKS + 1]; /**< of a family */
   size_t note_count;

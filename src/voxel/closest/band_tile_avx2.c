@@ -54,6 +54,10 @@ INLINE wide wide_unless(wide_mask mask, wide x) {
   return (wide)_mm256_andnot_ps(mask, (__m256)x);
 }
 
+INLINE wide wide_root(wide x) {
+  return (wide)_mm256_sqrt_ps((__m256)x);
+}
+
 INLINE unsigned wide_bits(wide_mask mask) {
   return (unsigned)_mm256_movemask_ps(mask);
 }

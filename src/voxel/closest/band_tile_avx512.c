@@ -56,6 +56,10 @@ INLINE wide wide_unless(wide_mask mask, wide x) {
   return (wide)_mm512_maskz_mov_ps((__mmask16)~mask, (__m512)x);
 }
 
+INLINE wide wide_root(wide x) {
+  return (wide)_mm512_sqrt_ps((__m512)x);
+}
+
 INLINE unsigned wide_bits(wide_mask mask) {
   return mask;
 }

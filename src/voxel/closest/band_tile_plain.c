@@ -50,6 +50,14 @@ INLINE wide wide_unless(wide_mask mask, wide x) {
   return (wide)(~mask & (wide_mask)x);
 }
 
+INLINE wide wide_root(wide x) {
+#if VXM_NEON
+  return (wide)vsqrtq_f32((float32x4_t)x);
+#else
+  return (wide){sqrtf(x[0]), sqrtf(x[1]), sqrtf(x[2]), sqrtf(x[3])};
+#endif
+}
+
 INLINE unsigned wide_bits(wide_mask mask) {
 #if defined(__SSE__) && defined(__GNUC__)
   return (unsigned)__builtin_ia32_movmskps((wide)mask);
