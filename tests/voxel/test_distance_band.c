@@ -228,9 +228,16 @@ static void test_values(void **state) {
       tile.squares[i] = fmin(6.25, 9 * vxm_rng_unit(&rng));
     for (size_t w = 0; w < sizeof words / sizeof *words; w++)
       words[w] = w % 3 ? vxm_rng_next(&rng) : w % 2 ? ~UINT64_C(0) : 0;
-    vxm_band_values out = {
-        values, 200, (size_t)200 * VXM_BAND_TILE, round % 5 ? words : NULL, 5, 5 * VXM_BAND_TILE, shift,
-        2.5,    0.3};
+    vxm_band_values out = {values,
+                           200,
+                           (size_t)200 * VXM_BAND_TILE,
+                           round % 5 ? words : NULL,
+                           5,
+                           5 * VXM_BAND_TILE,
+                           shift,
+                           round % 4 > 1,
+                           2.5,
+                           0.3};
     for (size_t b = 0; b < build_count; b++) {
       vxm_band_tally tally = {.least = INFINITY, .greatest = -INFINITY}, right = tally;
       if (is_fill)

@@ -14,7 +14,7 @@ enum {
 };
 
 /** How wide a family gets, in voxels; a wider triangle is one by itself. */
-static const double widest = 4;
+static const double widest = 6;
 /** A length in floats is off by less than this part of the lengths that it is made from: ninety-six
  * roundings, where some sixty are made. */
 static const double rounding = 96 * 0x1p-24;

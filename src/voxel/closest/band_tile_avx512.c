@@ -21,6 +21,7 @@
 #define BUILD(name) name##_avx512
 
 typedef float wide __attribute__((vector_size(4 * WIDTH)));
+typedef float narrow __attribute__((vector_size(4 * LANES)));
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t lanes_int __attribute__((vector_size(8 * LANES)));
 typedef double lanes_loaded __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
@@ -106,6 +107,15 @@ INLINE lanes lanes_choose(lanes_int mask, lanes a, lanes b) {
 
 INLINE lanes lanes_root(lanes x) {
   return (lanes)_mm512_sqrt_pd((__m512d)x);
+}
+
+/** Stores half a vector of floats past the cache. */
+INLINE void store_past(float *to, narrow x) {
+  _mm256_stream_ps(to, (__m256)x);
+}
+
+INLINE void end_past(void) {
+  _mm_sfence();
 }
 
 #include "voxel/closest/band_tile_body.inc"

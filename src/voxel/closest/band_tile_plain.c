@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
 #define LANES 2
 #define WIDTH 4
@@ -13,6 +14,7 @@
 #define BUILD(name) name##_plain
 
 typedef float wide __attribute__((vector_size(4 * WIDTH)));
+typedef float narrow __attribute__((vector_size(4 * LANES)));
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t lanes_int __attribute__((vector_size(8 * LANES)));
 typedef double lanes_loaded __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
@@ -111,6 +113,13 @@ INLINE lanes lanes_root(lanes x) {
 #else
   return (lanes){sqrt(x[0]), sqrt(x[1])};
 #endif
+}
+
+INLINE void store_past(float *to, narrow x) {
+  memcpy(to, &x, sizeof x);
+}
+
+INLINE void end_past(void) {
 }
 
 #include "voxel/closest/band_tile_body.inc"
