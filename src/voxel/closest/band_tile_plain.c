@@ -115,6 +115,7 @@ INLINE lanes lanes_root(lanes x) {
 #endif
 }
 
+/** Not all processors can store past the cache. */
 INLINE void store_past(float *to, narrow x) {
   memcpy(to, &x, sizeof x);
 }

@@ -10,7 +10,7 @@
 /* The tiles of a grid that lie side by side along rows are a bin. */
 
 /** From so many values on what is beyond the band is written past the cache: it would not stay there. */
-static const uint64_t past_values = UINT64_C(1) << 24;
+static const int64_t past_values = INT64_C(1) << 24;
 
 enum { TASKS = 8 /**< for each worker, if there are tiles enough */ };
 
@@ -251,7 +251,7 @@ vxm_status vxm_distance_band_measure(vxm_distance_band *band, const vxm_field_ta
                                 .words = solid->words,
                                 .row_words = solid->row_words,
                                 .slice_words = solid->slice_words,
-                                .is_past = (uint64_t)(dims[0] * dims[1] * (end - begin)) >= past_values,
+                                .is_past = values && dims[0] * dims[1] * (end - begin) >= past_values,
                                 .band = band->families->grid.band,
                                 .side = side};
   vxm_status status = target ? make_tiles(band, target, error) : VXM_OK;
