@@ -225,10 +225,10 @@ const cli_command cli_command_batch = {
     .summary = "voxelize a whole dataset, each mesh in a process of its own",
     .notes =
         "INPUT is a folder, a mesh, a pattern in quotes, a list of paths (.txt), a table (.csv, .tsv: path,\n"
-        "and any of id, class, split, options) or an archive (.tar, .tar.gz, .zip, .7z). What crashes, "
-        "hangs\n"
-        "or takes all memory costs that mesh alone. When a run is ended, by whatever, the same command goes\n"
-        "on with it. At the end DIR has index.html, failures.tsv and summary.json. A mesh is ok, degraded\n"
+        "and any of id, class, split, options) or an archive (.tar, .tar.gz, .zip, .7z). Paths in a list or\n"
+        "table begin in its folder. What crashes, hangs or takes all memory costs that mesh alone. When a\n"
+        "run is ended, by whatever, the same command goes on with it. At the end DIR has index.html, "
+        "failures.tsv and summary.json. A mesh is ok, degraded\n"
         "(made, with warnings, which index.html tells: look at those with much contested), duplicate,\n"
         "unreadable, failed, timeout, oom (out of memory), crash or quarantined (the run went down with "
         "it).\n\n"
