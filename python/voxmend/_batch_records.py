@@ -10,7 +10,8 @@ from typing import Any, Dict, Iterator, NamedTuple, Optional, Tuple
 
 from ._errors import ArgumentError, FormatError
 
-GRIDS = (".binvox", ".npy", ".raw", ".rle", ".nrrd", ".vdb", ".nii", ".nii.gz", ".vti", ".vtk", ".tif")
+GRIDS = (".binvox", ".npy", ".raw", ".rle", ".nrrd", ".vdb", ".octree", ".bt", ".nii", ".nii.gz", ".vti", ".vtk", ".tif", ".h5",
+         ".vox", ".schem", ".litematic")
 DONE = ("ok", "degraded", "duplicate")
 _HEAD, _SUM, _TAIL = b'{"sum":"', 16, b'",'
 _REST = len(_HEAD) + _SUM + len(_TAIL)

@@ -11,7 +11,7 @@ from typing import Any, Dict, Iterator, List, Tuple
 
 import numpy
 
-from ._batch_records import Item, Records
+from ._batch_records import GRIDS, Item, Records
 from ._errors import EmptyError, FormatError
 from ._grid import read
 from ._packed import pack
@@ -49,8 +49,7 @@ def with_grids(records: Records) -> List[int]:
     """Numbers of those of which there is a grid, in the order of the plan."""
     out = [number for number, item in enumerate(records) if item.grid() is not None]
     if not out:
-        raise EmptyError("%s: no mesh of this batch has a grid that can be read (.binvox .npy .raw .rle .nrrd .vdb .nii .vti .vtk .tif)" %
-                         records.folder)
+        raise EmptyError("%s: no mesh of this batch has a grid that can be read (%s)" % (records.folder, " ".join(GRIDS)))
     return out
 
 

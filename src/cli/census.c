@@ -26,7 +26,7 @@ static const count_row counts[] = {
     COUNT(components_raw, NULL),
     COUNT(duplicate_faces, "repeat another face; repair removes them"),
     COUNT(opposite_duplicate_faces, "lie back to back with another; repair merges them"),
-    COUNT(degenerate_faces, "have no area; repair removes them"),
+    COUNT(degenerate_faces, "have no area; repair removes those that close no gap"),
     COUNT(boundary_edges, "open: holes, cracks or loose sheets"),
     COUNT(nonmanifold_edges, "join more than two faces"),
     COUNT(inconsistent_edges, "join two faces that are wound against each other"),

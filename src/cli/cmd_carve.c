@@ -74,10 +74,6 @@ static int check(cli_run *cli, request *out) {
     return cli_usage(cli, "one grid is expected, not %d", cli->argument_count);
   if (!out->tool || !out->path)
     return cli_usage(cli, "%s is missing", out->tool ? "-p PATH.csv" : "-t TOOL");
-  int inputs =
-      (strcmp(cli->arguments[0], "-") == 0) + (strcmp(out->tool, "-") == 0) + (strcmp(out->path, "-") == 0);
-  if (inputs > 1)
-    return cli_usage(cli, "standard input can be but one of the grid, the tool and the path");
   cli_formats formats = cli_formats_with(VXM_FORMAT_BITS);
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
   if (!out->format)

@@ -250,7 +250,7 @@ const cli_command cli_command_info = {
         "are\n"
         "named, the others are reported, and the exit status is 1.\n"
         "Of a grid it tells dimensions, voxel size, where it lies, and what is set: ranges of numbers, the\n"
-        "voxels of each label with their names.\n\n"
+        "voxels of each label with their names. Standard input is read as a mesh.\n\n"
         "Examples:\n"
         "  voxmend info chair.off\n"
         "  voxmend info --json *.obj > census.json\n"

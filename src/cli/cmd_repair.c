@@ -381,13 +381,12 @@ const cli_command cli_command_repair = {
     .arguments = "MESH -o MESH [OPTION]...",
     .summary = "mend a mesh, verify it, and show it before and after",
     .notes =
-        "Removes vertices that are not finite with their faces, welds vertices, removes faces without area,\n"
-        "repeated faces (of two that lie back to back one stays) and unused vertices, and turns faces\n"
-        "consistently, outward where they enclose something; then goes as far as --level says. Repairing "
-        "the\n"
-        "result again changes nothing. Where the level is not reached, the exit status is 1, what remains\n"
-        "is listed, also in the report, and no mesh is written. Groups and the names of materials stay in\n"
-        ".obj; colours, textures and normals do not.\n\n"
+        "Removes vertices that are not finite with their faces, welds vertices, removes faces without area\n"
+        "(but those that close a gap), repeated faces (of two that lie back to back one stays) and unused\n"
+        "vertices, and turns faces consistently, outward where they enclose something; then goes as far as\n"
+        "--level says. Repairing the result again changes nothing. Where the level is not reached, the exit\n"
+        "status is 1, what remains is listed, also in the report, and no mesh is written. Groups and the\n"
+        "names of materials stay in .obj; colours, textures and normals do not.\n\n"
         "Examples:\n"
         "  voxmend repair scan.obj -o scan.ply\n"
         "  voxmend repair part.stl -o part.off --weld 0.001\n"

@@ -207,9 +207,19 @@ static bool meet(const cli_written *a, const cli_written *b) {
   return false;
 }
 
+/** Whoever reads it second finds nothing there. */
+static int check_standard_input(cli_run *cli) {
+  int inputs = 0;
+  for (int i = 0; i < cli->argument_count; i++)
+    inputs += strcmp(cli->arguments[i], "-") == 0;
+  for (int i = 0; i < cli->read_count; i++)
+    inputs += strcmp(cli->reads[i], "-") == 0;
+  return inputs > 1 ? cli_usage(cli, "standard input can be but one of the files that are read") : CLI_END;
+}
+
 int cli_check_names(cli_run *cli) {
   char name[PATH_SIZE];
-  if (cli_check_folders(cli) == CLI_STOP)
+  if (check_standard_input(cli) == CLI_STOP || cli_check_folders(cli) == CLI_STOP)
     return CLI_STOP;
   cli_writes(cli, "--report", cli->report, false);
   for (int i = 0; i < cli->write_count; i++) {

@@ -44,9 +44,11 @@ static bool say_unclean(char *text, const vxm_census *census) {
   int64_t repeated = census->duplicate_faces + census->opposite_duplicate_faces;
   if (repeated > 0)
     count(text, "closed, but with ", repeated, "repeated face", "repeated faces");
-  else if (census->degenerate_faces > 0)
+  else if (census->degenerate_faces > 0) {
     count(text, "closed, but with ", census->degenerate_faces, "face without area", "faces without area");
-  else if (census->nonfinite_vertices > 0)
+    add(text, "; repair removes those that close no gap"); /* the others it needs: they stay */
+    return true;
+  } else if (census->nonfinite_vertices > 0)
     count(text, "closed, but with ", census->nonfinite_vertices, "vertex that is not finite",
           "vertices that are not finite");
   else if (census->inconsistent_edges > 0)

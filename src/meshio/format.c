@@ -78,6 +78,8 @@ static bool choose_named(choice *out, const unsigned char *data, size_t size, co
   return out->foreign != NULL;
 }
 
+#define GRIDS_GO_TO "'voxmend view' and 'convert' take grids, and 'info' by their names"
+
 /** What people hand in by mistake, by the first bytes. */
 static const struct {
   const char *magic, *advice;
@@ -93,8 +95,11 @@ static const struct {
     {"<!DOCTYPE", "is a web page, not a mesh: download the file itself"},
     {"<!doctype", "is a web page, not a mesh: download the file itself"},
     {"<html", "is a web page, not a mesh: download the file itself"},
-    {"#binvox", "is a binvox grid, not a mesh: 'voxmend view' and 'convert' take grids"},
-    {"\x93NUMPY", "is a numpy array, not a mesh: 'voxmend view' and 'convert' take grids"},
+    {"NRRD000", "is an NRRD grid, not a mesh: " GRIDS_GO_TO},
+    {"VXMOCT1", "is an octree, not a mesh: " GRIDS_GO_TO},
+    {"VXMRLE1", "is a grid (.rle), not a mesh: " GRIDS_GO_TO},
+    {"#binvox", "is a binvox grid, not a mesh: " GRIDS_GO_TO},
+    {"\x93NUMPY", "is a numpy array, not a mesh: " GRIDS_GO_TO},
 };
 
 static const char *find_stranger(const unsigned char *data, size_t size) {
@@ -223,7 +228,7 @@ static vxm_status open_file(vxm_input *input, vxm_references *references, vxm_co
                  : vxm_regular_open(references->folder, slash ? slash + 1 : path, VXM_BENEATH);
   if (file < 0 && is_zarr(path))
     return vxm_fail_at(error, VXM_ERROR_FORMAT, (vxm_place){path, 0, -1, -1},
-                       "is a Zarr array, not a mesh: 'voxmend view' and 'convert' take grids");
+                       "is a Zarr array, not a mesh: " GRIDS_GO_TO);
   if (file < 0)
     return vxm_input_open(input, context, path, error);
   references->is_inside = true;

@@ -9,6 +9,10 @@ run 'voxmend info --list 1 in/cube.off in/degenerate.off'
 run 'voxmend info --json in/nonfinite.off'
 run 'voxmend info --json in/cube.off in/open_box.off'
 run 'voxmend info - <in/l_prism.off'
+# A tetrahedron with a corner on one edge, for one of its two sides: the face without area between them stays.
+printf 'OFF\n5 6 0\n0 0 0\n2 0 0\n0 2 0\n0 0 2\n1 0 0\n3 0 2 4\n3 4 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 4 1\n' >gap.off
+run 'voxmend info gap.off'
+run 'voxmend repair gap.off -o kept.off -q && voxmend info gap.off kept.off'
 run 'voxmend info -q in/cube.off'
 
 say "# damage"
@@ -43,6 +47,10 @@ run 'voxmend info g.* in/cube.off'
 run 'voxmend info g.npy g.binvox --json'
 run 'voxmend info g.binvox --list 3'
 run 'voxmend info g.raw'
+run 'voxmend info - <g.binvox' # which is read as a mesh
+run 'voxmend info - <g.octree'
+run 'voxmend info - <g.nrrd'
+run 'voxmend info - - <in/cube.off'
 
 say "# report and progress"
 run 'voxmend info -q --report r.json in/cube.off && cat r.json'

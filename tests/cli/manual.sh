@@ -19,6 +19,8 @@ plain() {
 while IFS='	' read -r command summary; do
   page=$BUILDDIR/doc/voxmend-$command.1
   [ -s "$page" ] || { fail "there is no manual page doc/voxmend-$command.1: add it to doc/doc.am"; continue; }
+  sed '1,/^\.SH SYNOPSIS/d; /^\.SH DESCRIPTION/,$d' "$SRCDIR/doc/voxmend.1" | grep -qE "^\.B voxmend $command( |$)" ||
+    fail "the synopsis of voxmend(1) lacks $command"
   plain "$page" >"$work/page"
   grep -qxF "voxmend-$command - $summary" "$work/page" || fail "the summary of voxmend-$command(1) is not '$summary'"
   # Where options are explained: what stands before the text, at .TP, and the description where there is little to say.
@@ -47,6 +49,9 @@ while IFS='	' read -r command summary; do
     [ ! -s "$work/warnings" ] || fail "voxmend-$command(1): $(cat "$work/warnings")"
   fi
 done <"$work/commands"
+# Macros of two fonts leave no blanks between their words: a sentence that begins on such a line has none.
+! grep -nE '^\.[BIR]{2} .* [.,;:] [A-Za-z]' "$SRCDIR/doc/voxmend.1" >"$work/joined" ||
+  fail "voxmend(1): $(cat "$work/joined")"
 for page in "$BUILDDIR"/doc/voxmend-*.1; do
   command=${page##*/voxmend-}
   cut -f 1 "$work/commands" | grep -qxF "${command%.1}" || fail "$page is of no command"

@@ -12,6 +12,9 @@ import numpy
 import voxmend
 import voxmend.batch
 
+from voxmend._export_common import packed_grid, with_grids
+from voxmend._packed import pack
+
 from batch_lib import make_batch
 
 WANTED = sys.argv[1:]
@@ -28,6 +31,17 @@ class Exports(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
+
+    def test_other_formats(self):
+        """Grids of octrees are grids like others."""
+        with tempfile.TemporaryDirectory() as folder:
+            make_batch(folder, "-r", "21", "--format", "octree")
+            records = voxmend.batch.Records(os.path.join(folder, "out"))
+            numbers = with_grids(records)
+            self.assertEqual(len(numbers), 11)
+            for number in numbers:
+                item = records[number]
+                self.assertTrue((packed_grid(records, item)[0] == pack(self.grid(item.item).matrix)).all())
 
     def at(self, name):
         return os.path.join(self.folder.name, name)
