@@ -68,7 +68,7 @@ class Sampler:
         given = self._options
         voxelize = _core.new("vxm_voxelize_options")
         options = _core.new("vxm_sampler_options", voxelize=voxelize)
-        for name, least, most in (("resolution", 1, _values.INT64_MAX), ("pad", 0, _values.INT64_MAX),
+        for name, least, most in (("resolution", 1, _values.DIM_MAX), ("pad", 0, _values.INT64_MAX),
                                   ("seed", 0, 0xFFFFFFFFFFFFFFFF), ("noise", 0, _UINT32_MAX)):
             setattr(options, name, _values.whole("sampler: " + name, given[name], least, most))
         for name in ("scale", "displace", "translate"):

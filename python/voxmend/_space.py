@@ -123,8 +123,8 @@ def _sizes(caller: str, name: str, wanted: Size) -> List[float]:
 def _resolution(caller: str, wanted: Resolution) -> List[int]:
     name = caller + ": the resolution"
     if isinstance(wanted, (int, str, bytes)) or numpy.ndim(wanted) == 0:
-        return [_values.whole(name, wanted, 1), 0, 0]
-    numbers = [_values.whole(name, n, 1) for n in wanted]
+        return [_values.whole(name, wanted, 1, _values.DIM_MAX), 0, 0]
+    numbers = [_values.whole(name, n, 1, _values.DIM_MAX) for n in wanted]
     if len(numbers) != 3:
         raise ArgumentError("%s %r is neither one number nor three" % (name, wanted))
     return numbers

@@ -16,6 +16,7 @@ from ._errors import ArgumentError, KindError
 from ._types import Array, Floats
 
 INT64_MAX = (1 << 63) - 1
+DIM_MAX = 1 << 20  # voxels along an axis
 
 
 def _shown(value: Any) -> str:

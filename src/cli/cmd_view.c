@@ -29,6 +29,7 @@ typedef struct request {
   const char *input, *output;
   bool is_page;
   const char *of_picture; /**< an option that is for pictures alone, or NULL */
+  const char *of_view;    /**< one of these that tells where to look from, or NULL */
   int64_t resolution;     /**< 0 = not given */
   const char *of_mesh;    /**< an option that is for meshes alone, or NULL */
   bool has_colors, has_labels;
@@ -102,6 +103,8 @@ static int read_option(cli_run *cli, request *out, int key, const char *value) {
     out->of_picture = "--slice";
   if (key == KEY_SIZE || key == KEY_AZIMUTH || key == KEY_ELEVATION)
     out->of_picture = key == KEY_SIZE ? "--size" : key == KEY_AZIMUTH ? "--azimuth" : "--elevation";
+  if (key == KEY_AZIMUTH || key == KEY_ELEVATION)
+    out->of_view = out->of_picture;
   if (key == 'r' || key == KEY_COLOR || key == KEY_LABELS)
     out->of_mesh = key == 'r' ? "--resolution" : key == KEY_COLOR ? "--color" : "--labels";
   switch (key) {
@@ -161,6 +164,8 @@ static int read_arguments(cli_run *cli, request *out) {
   if ((out->has_colors || out->has_labels) && out->resolution > VALUES_RESOLUTION_MAX)
     return cli_usage(cli, "colours and labels are shown at up to %d voxels; lower --resolution",
                      VALUES_RESOLUTION_MAX);
+  if (out->of_view && out->picture.slice_axis != 0)
+    return cli_usage(cli, "%s is for a view from outside; --slice is seen along its axis", out->of_view);
   if (out->is_page && out->of_picture)
     return cli_usage(cli, "%s is for pictures (.png); a page is turned by hand", out->of_picture);
   cli_writes(cli, "-o", out->output, false);
@@ -271,6 +276,10 @@ static vxm_status make_values(cli_run *cli, subject *out, const request *given,
 }
 
 static int voxelize(cli_run *cli, subject *out, request *given) {
+  if (cli_threshold_given(&given->threshold))
+    return cli_fail_text(
+        cli, "%s: --threshold and --below are for files of numbers; of a mesh solid voxels are shown",
+        given->input);
   if (read_mesh(cli, out, given) != CLI_DONE)
     return CLI_FAILED;
   guess_up(given);

@@ -406,13 +406,27 @@ static const char *find_format(const char *name, const char *const *known) {
   return NULL;
 }
 
+/** Lists those of the formats that go to standard output, too: no folders, and no file for each slice. */
+static void list_streams(char list[CLI_LIST_MAX], const char *const *known) {
+  const char *streams[CLI_FORMATS_MAX];
+  size_t count = 0;
+  for (; *known && count + 1 < CLI_FORMATS_MAX; known++)
+    if (strcmp(*known, "zarr") != 0 && strcmp(*known, "png") != 0)
+      streams[count++] = *known;
+  streams[count] = NULL;
+  cli_list(list, streams);
+}
+
 const char *cli_output_format(cli_run *cli, const char *path, const char *format, const char *const *known) {
   char list[CLI_LIST_MAX];
-  cli_list(list, known);
   if (!path) {
     cli_usage(cli, "-o FILE is missing");
     return NULL;
   }
+  if (strcmp(path, "-") == 0)
+    list_streams(list, known);
+  else
+    cli_list(list, known);
   const char *found = find_format(format ? format : extension_of(path), known);
   if (!found && format)
     cli_usage(cli, "--format '%s' is none of %s", format, list);

@@ -49,6 +49,7 @@ run 'voxmend view tetra.ply -o v.png -r 24 --color mesh && voxmend voxelize tetr
 run 'voxmend view in/torus.off -o x.png --color mesh'
 run 'voxmend view in/torus.off -o x.png --color part --labels part'
 run 'voxmend view in/torus.off -o x.png --labels part -r 600'
+run 'voxmend view in/torus.off -o x.png --threshold 1'
 run 'voxmend view t.npy -o x.png --labels part'
 say "# numbers: what of them is drawn"
 run 'voxmend voxelize in/torus.off -o d.npy --like t.npy --distance signed -q && voxmend view d.npy -o d.png && cmp d.png t.png'
@@ -68,6 +69,7 @@ run 'voxmend view t.npy -o s.png --slice z=0.5 && size s.png'
 run 'voxmend view d.npy -o s1.png --slice x=1 --size 100x50 -q && voxmend view d.npy -o s2.png --slice x=0.99 --size 100x50 -q && cmp s1.png s2.png'
 run 'voxmend view d.npy -o s3.png --slice x=0.5 --size 100x50 -q && cmp -s s1.png s3.png'
 run 'voxmend view d.npy -o x.png --slice z=1.5'
+run 'voxmend view d.npy -o x.png --slice z=0.5 --elevation 10'
 say "# pages"
 run 'voxmend view t.npy -o t.html'
 run 'cp in/torus.off torus.obj && voxmend view torus.obj -o m.html -r 16'
