@@ -96,12 +96,14 @@ static sums sums_of_triangle(const double p[3][3]) {
     out.radius = fmax(out.radius, length_of(from));
     /* The mean of x_j x_k over a triangle is a twelfth of its corners' sum. */
     UNROLL
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
       UNROLL
-    for (int j = 0; j < 3; j++)
-      UNROLL
-    for (int k = 0; k < 3; k++)
-      out.second[i][j][k] += out.area[i] * from[j] * from[k] / 12;
+      for (int j = 0; j < 3; j++) {
+        UNROLL
+        for (int k = 0; k < 3; k++)
+          out.second[i][j][k] += out.area[i] * from[j] * from[k] / 12;
+      }
+    }
   }
   return out;
 }
@@ -146,13 +148,15 @@ static void store(vxm_winding_tree *out, size_t node, const sums *of) {
   }
   double s[3][3][3], trace[3] = {0, 0, 0};
   UNROLL
-  for (int i = 0; i < 3; i++)
+  for (int i = 0; i < 3; i++) {
     UNROLL
-  for (int j = 0; j < 3; j++)
-    UNROLL
-  for (int k = 0; k < 3; k++) {
-    s[i][j][k] = (of->second[i][j][k] + of->second[j][i][k] + of->second[k][i][j]) / 3;
-    trace[k] += i == j ? s[i][j][k] : 0;
+    for (int j = 0; j < 3; j++) {
+      UNROLL
+      for (int k = 0; k < 3; k++) {
+        s[i][j][k] = (of->second[i][j][k] + of->second[j][i][k] + of->second[k][i][j]) / 3;
+        trace[k] += i == j ? s[i][j][k] : 0;
+      }
+    }
   }
   static const struct {
     int i, j, k, times;
