@@ -27,19 +27,28 @@ vxm_status vxm_brick_mask_begin(vxm_brick_mask *mask, const int64_t begin[3], co
   return VXM_OK;
 }
 
+/** Whether eight cells, or the last ones, are all 0. */
+static bool are_clear(const uint8_t *cell, int64_t count) {
+  uint64_t any = 0;
+  memcpy(&any, cell, (size_t)(count < 8 ? count : 8));
+  return any == 0;
+}
+
 bool vxm_brick_mask_raise(vxm_brick_mask *mask) {
   for (int l = 0; l + 1 < mask->levels; l++) {
+    const int64_t *first = mask->first[l], *count = mask->count[l], *above = mask->count[l + 1];
     const uint8_t *cell = mask->cells[l];
-    int64_t at[3];
-    for (int64_t z = 0; z < mask->count[l][2]; z++)
-      for (int64_t y = 0; y < mask->count[l][1]; y++)
-        for (int64_t x = 0; x < mask->count[l][0]; x++, cell++)
-          if (*cell) {
-            at[0] = (mask->first[l][0] + x) << (l + 2);
-            at[1] = (mask->first[l][1] + y) << (l + 2);
-            at[2] = (mask->first[l][2] + z) << (l + 2);
-            *vxm_brick_mask_at(mask, at, l + 1) = 1;
-          }
+    for (int64_t z = 0; z < count[2]; z++)
+      for (int64_t y = 0; y < count[1]; y++, cell += count[0]) {
+        int64_t row = ((first[2] + z) / 2 - first[2] / 2) * above[1] + (first[1] + y) / 2 - first[1] / 2;
+        uint8_t *to = mask->cells[l + 1] + row * above[0];
+        for (int64_t x = 0; x < count[0];)
+          if (are_clear(cell + x, count[0] - x))
+            x += 8;
+          else
+            for (int64_t end = x + 8 < count[0] ? x + 8 : count[0]; x < end; x++)
+              to[(first[0] + x) / 2 - first[0] / 2] |= cell[x];
+      }
   }
   return mask->cells[mask->levels - 1][0] != 0; /* which is one cell */
 }

@@ -153,9 +153,13 @@ static double sum_up(const vxm_winding_tree *tree, const int64_t voxel[3], doubl
   return atan2(near.imaginary, near.real) / (2 * half_turn) + near.turns + far_sum;
 }
 
-double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3]) {
+double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3], bool is_close) {
   /* Errors measured on real meshes are at most 4e-5 and 2e-7. */
   const double soon = 6, late = 16, sure = 2e-4;
-  double w = sum_up(tree, voxel, soon), h = w - 0.5;
-  return fabs(h - rint(h)) > sure ? w : sum_up(tree, voxel, late);
+  if (!is_close) {
+    double w = sum_up(tree, voxel, soon), h = w - 0.5;
+    if (fabs(h - rint(h)) > sure)
+      return w;
+  }
+  return sum_up(tree, voxel, late);
 }

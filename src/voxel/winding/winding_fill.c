@@ -29,6 +29,7 @@ typedef struct fill_job {
   int64_t begin[3], end[3]; /**< the voxels of the window along x, y, z */
   int top;                  /**< the level of which one cell holds all of the grid */
   bool is_asked;            /**< mesh->asked says which cells are */
+  bool is_alone;            /**< one thread works */
   const vxm_winding_kernels *kernels;
   cell_task *tasks;
   size_t task_count, task_capacity;
@@ -61,15 +62,22 @@ static bool wants(const vxm_winding_walk *walk, const int64_t origin[3], int lev
   return !job->is_asked || (asked && *asked);
 }
 
-/** Bits first..first+count-1 of a row become `bits`; other threads may change other bits of these words. */
-static void store_bits(uint64_t *row, int64_t first, int64_t count, uint64_t bits) {
+/** Bits of a word become those of `bits`. */
+static void store_word(const fill_job *job, uint64_t *word, uint64_t bits, uint64_t mask) {
+  uint64_t change = (__atomic_load_n(word, __ATOMIC_RELAXED) ^ bits) & mask;
+  if (!change)
+    return;
+  if (job->is_alone)
+    *word ^= change;
+  else /* other threads may change other bits */
+    __atomic_fetch_xor(word, change, __ATOMIC_RELAXED);
+}
+
+/** Bits first..first+count-1 of a row become `bits`. */
+static void store_bits(const fill_job *job, uint64_t *row, int64_t first, int64_t count, uint64_t bits) {
   for (int64_t done = 0; done < count;) {
     int64_t at = first + done, n = vxm_min(count - done, 64 - at % 64);
-    uint64_t mask = vxm_low_bits((unsigned)n) << (at % 64), *word = row + at / 64;
-    uint64_t now = __atomic_load_n(word, __ATOMIC_RELAXED);
-    uint64_t change = (now ^ (bits >> done << (at % 64))) & mask;
-    if (change)
-      __atomic_fetch_xor(word, change, __ATOMIC_RELAXED);
+    store_word(job, row + at / 64, bits >> done << (at % 64), vxm_low_bits((unsigned)n) << (at % 64));
     done += n;
   }
 }
@@ -113,7 +121,7 @@ static void settle_cell(const vxm_winding_walk *walk, const int64_t origin[3], i
       size_t row = row_of(job, m, s);
       for (int64_t f = 0; f < count[0]; f += 64) {
         int64_t n = vxm_min(64, count[0] - f);
-        store_bits(out->words + row * out->row_words, first[0] + f, n,
+        store_bits(job, out->words + row * out->row_words, first[0] + f, n,
                    at_least_one(job, row, first[0] + f, n, number));
       }
     }
@@ -165,11 +173,14 @@ static uint64_t settle_row(const fill_job *job, const vxm_winding_brick *brick, 
 }
 
 /** What is still in doubt gets its number by doubles. */
-static void resolve(const fill_job *job, const int64_t origin[3], vxm_winding_brick *brick) {
-  for (uint64_t left = brick->doubtful; left; left &= left - 1) {
+static void resolve(const fill_job *job, const int64_t origin[3], uint64_t doubtful,
+                    vxm_winding_brick *brick) {
+  for (uint64_t left = doubtful; left; left &= left - 1) {
     int v = __builtin_ctzll(left);
     const int64_t at[3] = {origin[0] + v % 4, origin[1] + v / 4 % 4, origin[2] + v / 16};
-    double w = vxm_winding_exact(&job->mesh->tree, at);
+    double half = (double)brick->value[v] - 0.5;
+    bool is_close = fabs(half - rint(half)) < (double)strict_doubt && !job->confidence;
+    double w = vxm_winding_exact(&job->mesh->tree, at, is_close);
     uint64_t bit = UINT64_C(1) << v;
     brick->value[v] = (float)w;
     brick->above[0] = (brick->above[0] & ~bit) | (w > tie - 0.5 ? bit : 0);
@@ -177,40 +188,81 @@ static void resolve(const fill_job *job, const int64_t origin[3], vxm_winding_br
   }
 }
 
+/** Voxels of a brick are this far from each other in its masks, along x, y and z. */
+static const int64_t place[3] = {1, 4, 16};
+
+/** A row of a brick, as far as it lies in the window. */
+typedef struct brick_row {
+  size_t row;     /**< of the window */
+  int64_t start;  /**< the voxel of the brick that is its first one */
+  uint64_t asked; /**< which of its voxels are asked about */
+} brick_row;
+
+/** The rows of a brick in which something is asked about; returns how many. */
+static int list_rows(brick_row rows[VXM_BRICK_SIDE * VXM_BRICK_SIDE], const fill_job *job,
+                     const int64_t origin[3], const int64_t first[3], const int64_t count[3]) {
+  const vxm_window *window = job->window;
+  const vxm_layout *layout = &window->layout;
+  const uint64_t all = vxm_low_bits((unsigned)count[0]);
+  int listed = 0;
+  for (int64_t s = first[2]; s < first[2] + count[2]; s++)
+    for (int64_t m = first[1]; m < first[1] + count[1]; m++) {
+      size_t word = (size_t)(s - window->begin) * window->slice_words + (size_t)m * window->row_words +
+                    (size_t)first[0] / 64;
+      brick_row row = {.asked = job->asked ? job->asked[word] >> (first[0] % 64) & all : all};
+      if (!row.asked)
+        continue;
+      row.row = row_of(job, m, s);
+      row.start = (s - origin[layout->slow]) * place[layout->slow] +
+                  (m - origin[layout->middle]) * place[layout->middle] +
+                  (first[0] - origin[layout->fast]) * place[layout->fast];
+      rows[listed++] = row;
+    }
+  return listed;
+}
+
+/** Which voxels of a brick are asked about in its rows. */
+static uint64_t asked_of(const brick_row *rows, int count, int64_t step) {
+  uint64_t all = 0;
+  for (int r = 0; r < count; r++)
+    for (int64_t i = 0; i < VXM_BRICK_SIDE; i++)
+      all |= (rows[r].asked >> i & 1) << (rows[r].start + i * step);
+  return all;
+}
+
 static void settle_brick(const vxm_winding_walk *walk, const int64_t origin[3],
                          const vxm_winding_brick *brick) {
-  static const int64_t place[3] = {1, 4, 16};
   const fill_job *job = job_of(walk);
   const vxm_window *out = decided(job);
-  const vxm_layout *layout = &out->layout;
+  int64_t first[3], count[3], step = place[out->layout.fast];
+  brick_row rows[VXM_BRICK_SIDE * VXM_BRICK_SIDE];
+  clip(job, origin, VXM_BRICK_SIDE, first, count);
+  int listed = list_rows(rows, job, origin, first, count);
+  uint64_t doubtful = brick->doubtful;
+  if (doubtful && !job->confidence)
+    doubtful &= asked_of(rows, listed, step);
   vxm_winding_brick resolved;
-  if (brick->doubtful && !walk->strict) {
+  if (doubtful && !walk->strict) {
     *vxm_brick_mask_at(&job->mesh->doubted, origin, 0) = 1; /* the bits stay those of the closed chain */
     return;
   }
-  if (brick->doubtful) {
+  if (doubtful) {
     resolved = *brick;
-    resolve(job, origin, &resolved);
+    resolve(job, origin, doubtful, &resolved);
     brick = &resolved;
   }
-  int64_t first[3], count[3];
-  clip(job, origin, VXM_BRICK_SIDE, first, count);
-  for (int64_t s = first[2]; s < first[2] + count[2]; s++)
-    for (int64_t m = first[1]; m < first[1] + count[1]; m++) {
-      size_t row = row_of(job, m, s);
-      int64_t from = (s - origin[layout->slow]) * place[layout->slow] +
-                     (m - origin[layout->middle]) * place[layout->middle] +
-                     (first[0] - origin[layout->fast]) * place[layout->fast];
-      uint64_t *words = out->words + row * out->row_words, bits;
-      if (job->confidence || job->mesh->closed.counted[row])
-        bits = settle_row(job, brick, row, first[0], from, place[layout->fast], count[0]);
-      else {
-        uint64_t chain = __atomic_load_n(words + first[0] / 64, __ATOMIC_RELAXED) >> (first[0] % 64);
-        bits = (chain & row_bits(brick->above[0], from, place[layout->fast], count[0])) |
-               (~chain & row_bits(brick->above[1], from, place[layout->fast], count[0]));
-      }
-      store_bits(words, first[0], count[0], bits);
+  for (int r = 0; r < listed; r++) {
+    const brick_row *row = &rows[r];
+    uint64_t *word = out->words + row->row * out->row_words + first[0] / 64, bits;
+    if (job->confidence || job->mesh->closed.counted[row->row])
+      bits = settle_row(job, brick, row->row, first[0], row->start, step, count[0]);
+    else {
+      uint64_t chain = __atomic_load_n(word, __ATOMIC_RELAXED) >> (first[0] % 64);
+      bits = (chain & row_bits(brick->above[0], row->start, step, count[0])) |
+             (~chain & row_bits(brick->above[1], row->start, step, count[0]));
     }
+    store_word(job, word, bits << (first[0] % 64), row->asked << (first[0] % 64));
+  }
 }
 
 /* ---- The walk ---- */
@@ -372,6 +424,7 @@ vxm_status vxm_winding_fill(vxm_winding_mesh *mesh, const vxm_window *window, co
                   .window = window,
                   .asked = asked,
                   .confidence = confidence,
+                  .is_alone = vxm_context_threads(mesh->context) == 1,
                   .kernels = vxm_winding_kernels_get()};
   job.end[window->layout.fast] = window->fast_dim;
   job.end[window->layout.middle] = window->middle_dim;

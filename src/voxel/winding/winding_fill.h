@@ -9,8 +9,9 @@
  * Sets in a window the voxels whose winding number is above 1/2; of those asked about, if not all are: others
  * stay as they are.
  *
- * First by floats; bricks that come within 0.008 of a number and a half are looked at again more strictly,
- * and voxels that are then within 0.0003 of it by doubles. Within 10^-6 of one half a voxel is outside.
+ * First by floats; bricks in which a voxel asked about comes within 0.008 of a number and a half are looked
+ * at again more strictly, and voxels that are then within 0.0003 of it by doubles. Within 10^-6 of one half a
+ * voxel is outside.
  *
  * @param asked      words of the voxels to ask about, laid out as the window's; NULL = all, and the window's
  * words are replaced

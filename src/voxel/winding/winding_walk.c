@@ -52,7 +52,7 @@ static void make_bound(int level) {
       double sum = 0;
       for (int v = 0; v < 4; v++)
         sum += by_value[c][v] * lagrange(level, i, reach * (2 * v / 3.0 - 1));
-      levels[level].bound[c][i] = (float)sum;
+      levels[level].bound[i][c] = (float)sum;
     }
 }
 
@@ -68,7 +68,7 @@ static void make_levels(void) {
     for (int half = 0; half < 2 && l > 0; half++)
       for (int to = 0; to < 4; to++)
         for (int i = 0; i < 4; i++)
-          levels[l].to_child[half][to][i] =
+          levels[l].to_child[half][i][to] =
               (float)lagrange(l, i, place_of(l - 1, to) + (half ? quarter : -quarter));
   }
 }

@@ -28,8 +28,8 @@ enum {
  */
 typedef struct vxm_winding_level {
   float x[16], y[16], z[4]; /**< of samples 4 y + x with one z, and of all with another z */
-  float to_child[2][4][4];  /**< [half][sample of the child][sample] */
-  float bound[4][4]; /**< [coefficient of Bernstein's polynomials][sample]: these bound what is between */
+  float to_child[2][4][4];  /**< [half][sample][sample of the child] */
+  float bound[4][4]; /**< [sample][coefficient of Bernstein's polynomials]: these bound what is between */
   float reach;       /**< of the voxel centres of a cell, from its middle, along an axis */
 } vxm_winding_level;
 
