@@ -30,8 +30,8 @@ bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
   sieve->short_origin = (uint32_t)view->origin;
   for (int a = 0; a < 3 && job->middles; a++) {
     sieve->short_step[a] = (uint32_t)view->step[a];
-    sieve->short_first |= (uint32_t)(view->begin[a] + 1) << (VXM_SHORT_BITS * a);
-    sieve->short_last |= (uint32_t)(view->end[a] - 1) << (VXM_SHORT_BITS * a);
+    sieve->short_first |= (uint32_t)view->begin[a] << (VXM_SHORT_BITS * a);
+    sieve->short_last |= (uint32_t)view->end[a] << (VXM_SHORT_BITS * a);
   }
   sieve->last = (int32_t)(bytes - 4);
   return true;

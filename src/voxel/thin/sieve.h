@@ -27,7 +27,7 @@ typedef struct vxm_sieve {
   const uint64_t *middles; /**< as in vxm_thin_job; and if they are there: */
   const uint32_t *short_cells;
   uint32_t middle_bits;                 /**< of one of them */
-  uint32_t short_first, short_last;     /**< cells around which all voxels are in the window */
+  uint32_t short_first, short_last;     /**< cells that have a voxel in the window */
   uint32_t short_step[3], short_origin; /**< from the number of a cell to the bit of the voxel behind it */
 } vxm_sieve;
 

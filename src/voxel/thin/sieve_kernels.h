@@ -8,9 +8,10 @@
 #include "voxel/thin/sieve.h"
 
 typedef struct vxm_sieve_kernels {
-  /** Of the triangles begin..end-1, or those of the sieve's order, the ones that may meet something without a
-   * voxel; there is room for sixteen more. Returns how many. */
-  size_t (*sift)(const vxm_sieve *sieve, uint32_t *kept, size_t begin, size_t end);
+  /** Of the triangles from *begin on, to `end` - 1 at most, or those of the sieve's order, the ones that may
+   * meet something without a voxel: *begin becomes the first that was not looked at. There is room for
+   * VXM_SIEVE_BATCH + 16. Returns how many. */
+  size_t (*sift)(const vxm_sieve *sieve, uint32_t *kept, size_t *begin, size_t end);
   /** to[i] = from[i] | from[i - step], if that is there, for all `count` words, and `along` is the same with
    * the bit before each. */
   void (*join)(uint64_t *to, uint64_t *along, const uint64_t *from, size_t step, size_t count);

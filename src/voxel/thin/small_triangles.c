@@ -86,18 +86,20 @@ static inline bool has_middle(const vxm_view *view, cell_box box) {
 
 /* Triangles are looked at together, so that those with nothing to do cost little. */
 
-/** The triangles from `begin` on that may meet something without a voxel. */
+/** The triangles from *begin on that may meet something without a voxel; *begin becomes the first that was
+ * not looked at. */
 static size_t keep_unsure(uint32_t kept[VXM_SIEVE_BATCH], const vxm_thin_job *job, const bounds *b,
-                          size_t begin, size_t end) {
+                          size_t *begin, size_t end) {
   const uint64_t *cells = job->placed->cells;
   const vxm_view *view = &job->view;
-  size_t count = 0;
-  for (size_t t = begin; t < end; t++) {
+  size_t count = 0, t = *begin;
+  for (; t < end && count < VXM_SIEVE_BATCH; t++) {
     const uint32_t *corner = job->triangles->corners[t];
     cell_box box = box_of(b, cells[corner[0]], cells[corner[1]], cells[corner[2]]);
     kept[count] = (uint32_t)t;
     count += !(box.is_near && has_middle(view, box));
   }
+  *begin = t;
   return count;
 }
 
@@ -289,11 +291,10 @@ void vxm_meet_by_cells(vxm_link_frame *frames, size_t begin, size_t end) {
   bounds b = bounds_of(&frames[0].job->view);
   vxm_sieve sieve;
   bool sifted = vxm_sieve_of(&sieve, frames[0].job);
-  for (; begin < end; begin += VXM_SIEVE_BATCH) {
+  while (begin < end) {
     uint32_t kept[VXM_SIEVE_BATCH + 16];
-    size_t last = end - begin < VXM_SIEVE_BATCH ? end : begin + VXM_SIEVE_BATCH;
-    size_t count = sifted ? vxm_sieve_kernels_of(NULL)->sift(&sieve, kept, begin, last)
-                          : keep_unsure(kept, frames[0].job, &b, begin, last);
+    size_t count = sifted ? vxm_sieve_kernels_of(NULL)->sift(&sieve, kept, &begin, end)
+                          : keep_unsure(kept, frames[0].job, &b, &begin, end);
     for (size_t k = 0; k < count; k++)
       meet_one(frames, kept[k]);
   }

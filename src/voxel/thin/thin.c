@@ -7,11 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TASK_TRIANGLES = 2048 };
+enum {
+  TASK_LEAST = VXM_SIEVE_BATCH,
+  TASK_MOST = 1 << 14, /**< triangles of which maps leave few */
+  TASKS_PER_THREAD = 8
+};
 
 typedef struct search {
   vxm_thin_adder *thin;
   const vxm_thin_job *job;
+  size_t task; /**< triangles of one */
 } search;
 
 static size_t least(size_t a, size_t b) {
@@ -43,14 +48,14 @@ static void look_at_some(size_t task, int worker, void *payload) {
   const vxm_thin_job *job = s->job;
   vxm_link_frame frames[VXM_LINK_DIRECTIONS];
   vxm_link_frames(frames, job, &s->thin->found[worker]);
-  size_t end = least(count_looked_at(job), (task + 1) * TASK_TRIANGLES);
+  size_t begin = task * s->task, end = least(count_looked_at(job), begin + s->task);
   if (s->thin->found[worker].is_full)
     return;
   if (!cells_are_short(job) || job->directions > VXM_LINK_AXES)
-    for (size_t t = task * TASK_TRIANGLES; t < end; t++)
+    for (size_t t = begin; t < end; t++)
       look_at(frames, t);
   else
-    vxm_meet_by_cells(frames, task * TASK_TRIANGLES, end);
+    vxm_meet_by_cells(frames, begin, end);
 }
 
 /* ---- Sorting ---- */
@@ -253,10 +258,16 @@ static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error
   return VXM_OK;
 }
 
+/** Triangles of a task. */
+static size_t task_of(const vxm_thin_adder *thin, const vxm_thin_job *job) {
+  size_t share = count_looked_at(job) / ((size_t)vxm_context_threads(thin->context) * TASKS_PER_THREAD);
+  return !job->middles || share < TASK_LEAST ? TASK_LEAST : least(share, TASK_MOST);
+}
+
 static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to, bool *too_many,
                       vxm_error *error) {
-  search s = {thin, job};
-  size_t tasks = (count_looked_at(job) + TASK_TRIANGLES - 1) / TASK_TRIANGLES, count = 0;
+  search s = {thin, job, task_of(thin, job)};
+  size_t tasks = (count_looked_at(job) + s.task - 1) / s.task, count = 0;
   vxm_meeting *lists[2];
   vxm_status status = make_room(thin, too_many != NULL, error);
   if (status == VXM_OK)
