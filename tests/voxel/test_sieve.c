@@ -238,6 +238,37 @@ static void test_what_is_put_aside_meets_nothing(void **state) {
   assert_true(sum.kept < sum.all - sum.all / 4);
 }
 
+/** The short numbers of cells and the maps, which only one build makes above. */
+static void test_every_build_makes_the_same_maps(void **state) {
+  (void)state;
+  enum { MOST = 1200 };
+  const vxm_kernels *builds[4];
+  size_t builds_count = vxm_kernels_all(builds);
+  vxm_rng rng = {512};
+  uint64_t from[MOST], to[MOST], along[MOST];
+  uint32_t cells[MOST];
+  for (int round = 0; round < ROUNDS(40) * (int)builds_count; round++) {
+    const vxm_sieve_kernels *build = vxm_sieve_kernels_of(builds[(size_t)round % builds_count]);
+    size_t count = (size_t)vxm_rng_below(&rng, round % 8 ? 40 : MOST),
+           step = 1 + (size_t)vxm_rng_below(&rng, round % 3 ? 9 : 200);
+    const uint32_t most = (1U << (VXM_SHORT_BITS - 1)) - 1;
+    for (size_t i = 0; i < count; i++)
+      from[i] = vxm_rng_below(&rng, most) | vxm_rng_below(&rng, most) << VXM_CELL_BITS |
+                vxm_rng_below(&rng, most) << 2 * VXM_CELL_BITS;
+    build->shorten(cells, from, count);
+    for (size_t i = 0; i < count; i++)
+      for (int a = 0; a < 3; a++)
+        assert_int_equal(cells[i] >> a * VXM_SHORT_BITS & most, from[i] >> a * VXM_CELL_BITS & most);
+    for (size_t i = 0; i < count; i++)
+      from[i] = vxm_rng_next(&rng) & vxm_rng_next(&rng);
+    build->join(to, along, from, step, count);
+    for (size_t i = 0; i < count; i++) {
+      assert_true(to[i] == (from[i] | (i < step ? 0 : from[i - step])));
+      assert_true(along[i] == (to[i] | to[i] << 1 | (i == 0 ? 0 : to[i - 1] >> 63)));
+    }
+  }
+}
+
 /** At the border of a window only one side of a cell has voxels. */
 static void test_nor_does_what_is_at_walls(void **state) {
   (void)state;
@@ -250,6 +281,7 @@ static void test_nor_does_what_is_at_walls(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_put_aside_meets_nothing),
+                                     cmocka_unit_test(test_every_build_makes_the_same_maps),
                                      cmocka_unit_test(test_nor_does_what_is_at_walls)};
   return cmocka_run_group_tests(tests, setup, teardown);
 }
