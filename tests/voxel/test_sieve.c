@@ -274,7 +274,7 @@ static void test_nor_does_what_is_at_walls(void **state) {
   (void)state;
   vxm_rng rng = {512};
   counts sum = {0};
-  for (int round = 0; round < ROUNDS(24); round++)
+  for (int round = 0; round < ROUNDS(12); round++)
     check_space(&rng, round, true, &sum);
   assert_true(sum.kept < sum.all);
 }
