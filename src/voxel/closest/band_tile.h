@@ -6,7 +6,7 @@
 #include "voxel/closest/band_families.h"
 
 /** Voxels along an edge of a tile. Its rows of squares lie farther apart, and so do its slices, so that
- * neighbours share no lines of the cache. A brick has so many voxels at most, and four at least. */
+ * neighbours share no lines of the cache. A brick has VXM_BAND_VECTOR voxels at most, and four at least. */
 enum {
   VXM_BAND_TILE = 32,
   VXM_BAND_ROW = VXM_BAND_TILE + 8,
