@@ -28,7 +28,7 @@ typedef struct vxm_vertex_clusters {
 vxm_status vxm_vertex_clusters_create(vxm_vertex_clusters *clusters, const vxm_soup *soup, double scale,
                                       double width, vxm_context *context, vxm_error *error);
 void vxm_vertex_clusters_destroy(vxm_vertex_clusters *clusters);
-/** The lowest vertex of a vertex's cluster, its root. */
+/** The lowest vertex of a vertex's cluster, its root. Ways to roots become shorter with each look. */
 static inline uint32_t vxm_vertex_clusters_root(const vxm_vertex_clusters *clusters, uint32_t v) {
   while (clusters->parent[v] != v)
     v = clusters->parent[v] = clusters->parent[clusters->parent[v]];

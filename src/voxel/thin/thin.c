@@ -288,7 +288,8 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
 static void make_middles(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_window *window) {
   size_t words = (size_t)(window->end - window->begin) * window->slice_words,
          points = job->triangles->point_count;
-  if (job->placed->wide || words > job->triangles->triangle_count || !vxm_middles_fit(window))
+  if (job->directions > VXM_LINK_AXES || job->placed->wide || words > job->triangles->triangle_count ||
+      !vxm_middles_fit(window))
     return;
   if (vxm_renew(thin->context, (void **)&thin->maps, &thin->map_words, 8 * vxm_middle_words(words),
                 sizeof *thin->maps, NULL) != VXM_OK ||
