@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/winding/winding_tree.h"
 #include "base/threads.h"
+#include "base/unroll.h"
 #include "mesh/sort.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Before the short loops over axes, which compilers leave as they are at -O2. */
-#if defined(__clang__)
-#define UNROLL
-#else
-#define UNROLL _Pragma("GCC unroll 16")
-#endif
+#define UNROLL VXM_UNROLL(16)
 
 enum { MORTON_BITS = 10 /**< per axis; with the triangle's number below, a sort key fits 64 bits */ };
 
