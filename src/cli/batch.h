@@ -85,7 +85,7 @@ bool batch_tell(json_t **summary, const batch_maker *maker, batch_error *error);
 /** Makes a sample in a folder that is dropped, and tells what all will take. An exit status. */
 int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *settings, batch_maker *maker);
 
-/* ---- batch_checks.c: subcommands; exit statuses ---- */
+/* ---- batch_checks.c, batch_export.c: subcommands; exit statuses ---- */
 
 int batch_status_command(cli_run *cli, const char *folder);
 int batch_verify_command(cli_run *cli, const char *folder);

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** voxmend batch status, verify and export: what has become of a batch. */
-#include "batch/export_sqlite.h"
+/** voxmend batch status and verify: what has become of a batch. */
 #include "batch/summary.h"
 #include "batch/tally.h"
 #include "batch/verify.h"
 #include "cli/batch.h"
 
-#include <errno.h>
 #include <inttypes.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 static int fail(cli_run *cli, const batch_error *error) {
   return cli_fail_text(cli, "%s", error->text);
@@ -67,33 +62,4 @@ int batch_verify_command(cli_run *cli, const char *folder) {
                          "batch makes what is missing again",
                          folder);
   return status;
-}
-
-/** Tables, tars and arrays are made by the Python package, with the libraries that are at home there. */
-static int export_by_python(cli_run *cli, const char *folder, const char *to, const char *path) {
-  const char *python = getenv("PYTHON");
-  if (!python || !*python)
-    python = "python3";
-  fflush(NULL);
-  execlp(python, python, "-m", "voxmend.batch", "export", folder, "--to", to, "-o", path, (char *)NULL);
-  return cli_fail_text(cli, "%s: cannot start it for --to %s: %s", python, to, strerror(errno));
-}
-
-int batch_export_command(cli_run *cli, const char *folder, const char *to, const char *path) {
-  static const char *const kinds[] = {"sqlite", "parquet", "webdataset", "zarr", NULL};
-  batch_error error;
-  int64_t rows = 0;
-  int kind = 0;
-  if (!to || !path)
-    return cli_usage(cli, "an export needs --to sqlite|parquet|webdataset|zarr and -o PATH"), cli->status;
-  if (cli_choose(cli, &kind, "to", to, kinds) == CLI_STOP)
-    return cli->status;
-  if (kind > 0)
-    return export_by_python(cli, folder, to, path);
-  if (!batch_export_sqlite(folder, path, &rows, &error))
-    return fail(cli, &error);
-  if (cli_summary(cli))
-    cli_row(cli, "output", "%s (SQLite): %" PRId64 " meshes", path, rows);
-  return cli_finish(cli,
-                    json_pack("{s:s, s:s, s:I}", "output", path, "format", to, "meshes", (json_int_t)rows));
 }

@@ -195,10 +195,26 @@ class Batches(unittest.TestCase):
 
     def test_program_exports(self):
         program = voxmend._batch_program.find_program()
-        done = subprocess.run([program, "batch", "export", self.out, "--to", "webdataset", "-o", self.at("by")],
-                              capture_output=True, text=True, env=dict(os.environ, PYTHON=sys.executable))
+
+        def export(name, *options, python=sys.executable):
+            return subprocess.run([program, "batch", "export", self.out, "--to", "webdataset", "-o", self.at(name), *options],
+                                  capture_output=True, text=True, env=dict(os.environ, PYTHON=python))
+
+        done = export("by", "--json", "--report", self.at("by.json"))
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(json.loads(done.stdout)["meshes"], 11)
+        with open(self.at("by.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file), json.loads(done.stdout))
+        done = export("words")
+        self.assertEqual((done.returncode, done.stdout), (0, "output     %s (webdataset): 11 meshes\n" % self.at("words")))
+        bare = self.at("bare")  # a Python without packages
+        with open(bare, "w", encoding="utf-8") as file:
+            file.write('#!/bin/sh\nexec "%s" -I -S "$@"\n' % sys.executable)
+        os.chmod(bare, 0o755)
+        done = export("never", python=bare)
+        self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (1, "", 1))
+        self.assertIn("lacks the Python package voxmend, or what it needs", done.stderr)
+        self.assertFalse(os.path.exists(self.at("never")))
 
     # ---- Bits ----
 
