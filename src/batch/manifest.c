@@ -169,10 +169,29 @@ static bool is_split(const char *word, size_t length) {
   return false;
 }
 
+/** The folder before `from`, which is the beginning of a name in the path; the path if there is none. */
+static const char *folder_before(const char *path, const char *from) {
+  if (from > path)
+    from--;
+  while (from > path && from[-1] != '/')
+    from--;
+  return from;
+}
+
+/** Where classes and splits begin: at the class, where the last folder is a split, as in
+ * data/ModelNet40/chair/train/1.off, which find lists; else at the first folder. */
+static const char *first_folder(const char *id) {
+  const char *slash = strrchr(id, '/');
+  if (!slash)
+    return id;
+  const char *last = folder_before(id, slash + 1);
+  return is_split(last, (size_t)(slash - last)) ? folder_before(id, last) : id;
+}
+
 /** Where a table tells neither, folders do as in ModelNet: chair/train/chair_0001.off; train/chair/1.off as
  * well. */
 static bool place(batch_item *item) {
-  const char *folder = item->id, *slash;
+  const char *folder = first_folder(item->id), *slash;
   bool good = true;
   for (int depth = 0; good && (slash = strchr(folder, '/')); depth++) {
     size_t length = (size_t)(slash - folder);

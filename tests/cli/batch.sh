@@ -58,11 +58,12 @@ run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --forma
 run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'
 run 'voxmend batch data/a -o fixed --no-grid --repair "--format off" --pictures 0 && find fixed -name "*.off" | sort'
 run 'voxmend batch data/a --dry-run 2 -r 8'
-# Folders as in ModelNet tell class and split.
+# Folders as in ModelNet tell class and split, also in a list made from above.
 mkdir -p net/chair/train net/chair/test
 cp in/cube.off net/chair/train/chair_1.off
 cp in/torus.off net/chair/test/chair_2.off
 run 'voxmend batch net -o netted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" netted/.batch/plan.jsonl'
+run 'find net -name "*.off" >net.txt && voxmend batch net.txt -o enlisted -r 8 --pictures 0 -q && grep -oE "\"(item|class|split)\":\"[^\"]*\"" enlisted/.batch/plan.jsonl'
 # Inputs are never outputs, and no two outputs are the same.
 mkdir clash
 cp in/cube.off clash/a.off
