@@ -35,7 +35,9 @@ void batch_words_free(batch_words *words);
 typedef struct batch_wish {
   const char *output, *to, *products[BATCH_PRODUCTS]; /**< products: the options of each, NULL = not wanted */
   batch_words grid_options;                           /**< those given to the batch itself */
-  const char *format;                                 /**< of grids */
+  batch_words export_options;
+  const char *of_run; /**< an option that is neither of an export nor -o, or NULL */
+  const char *format; /**< of grids */
   bool no_grid, reports, dry_run;
   int64_t jobs, shard, shards, threads, sample, pictures;
   double time_limit;
@@ -89,6 +91,6 @@ int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *
 
 int batch_status_command(cli_run *cli, const char *folder);
 int batch_verify_command(cli_run *cli, const char *folder);
-int batch_export_command(cli_run *cli, const char *folder, const char *to, const char *path);
+int batch_export_command(cli_run *cli, const char *folder, const batch_wish *wish);
 
 #endif

@@ -57,20 +57,28 @@ static bool end(pid_t id, FILE *channel, json_t **report) {
 
 /** Tars and arrays, and tables of Parquet, are made by the Python package, with the libraries that are at
  * home there. */
-static int export_by_python(cli_run *cli, const char *folder, const char *to, const char *path,
-                            json_t **report) {
+static int export_by_python(cli_run *cli, const char *folder, const batch_wish *wish, json_t **report) {
   const char *python = getenv("PYTHON");
-  FILE *channel = NULL;
-  pid_t id = 0;
   if (!python || !*python)
     python = "python3";
-  const char *words[] = {python, "-c", program, "export", folder, "--to", to, "-o", path, NULL};
-  int failure = start(&id, &channel, (char *const *)(uintptr_t)words); /* which leaves them as they are */
+  batch_words words = {NULL, 0, 0};
+  bool good = batch_words_add(&words, "%s", python) && batch_words_add(&words, "-c") &&
+              batch_words_add(&words, "%s", program) && batch_words_add(&words, "export") &&
+              batch_words_add(&words, "--to=%s", wish->to) &&
+              batch_words_add(&words, "--output=%s", wish->output);
+  for (int w = 0; good && w < wish->export_options.count; w++)
+    good = batch_words_add(&words, "%s", wish->export_options.words[w]);
+  good = good && batch_words_add(&words, "--") && batch_words_add(&words, "%s", folder);
+  FILE *channel = NULL;
+  pid_t id = 0;
+  int failure = good ? start(&id, &channel, words.words) : ENOMEM;
+  batch_words_free(&words);
   if (failure != 0)
-    return cli_fail_text(cli, "%s: cannot start it for --to %s: %s", python, to, strerror(failure));
+    return cli_fail_text(cli, "%s: cannot start it for --to %s: %s", python, wish->to, strerror(failure));
   if (!end(id, channel, report))
     return CLI_FAILED; /* it has said why */
-  return *report ? CLI_DONE : cli_fail_text(cli, "%s: its package voxmend told nothing of %s", python, path);
+  return *report ? CLI_DONE
+                 : cli_fail_text(cli, "%s: its package voxmend told nothing of %s", python, wish->output);
 }
 
 static int export_sqlite(cli_run *cli, const char *folder, const char *path, json_t **report) {
@@ -82,22 +90,45 @@ static int export_sqlite(cli_run *cli, const char *folder, const char *path, jso
   return CLI_DONE;
 }
 
-int batch_export_command(cli_run *cli, const char *folder, const char *to, const char *path) {
-  static const char *const kinds[] = {"sqlite", "parquet", "webdataset", "zarr", NULL};
+enum { SQLITE, PARQUET, WEBDATASET, ZARR };
+
+static const char *const kinds[] = {"sqlite", "parquet", "webdataset", "zarr", NULL};
+
+/** CLI_STOP after a line where an option is for another kind. */
+static int check_options(cli_run *cli, const batch_words *options, int kind) {
+  static const struct {
+    const char *name;
+    int kind;
+  } known[] = {{"--max-bytes", WEBDATASET}, {"--content", WEBDATASET}, {"--shuffle", WEBDATASET},
+               {"--split", ZARR},           {"--chunk-bytes", ZARR},   {"--zarr-format", ZARR}};
+  for (int w = 0; w < options->count; w++)
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+      size_t length = strlen(known[k].name);
+      bool is_it = strncmp(options->words[w], known[k].name, length) == 0 && options->words[w][length] == '=';
+      if (is_it && known[k].kind != kind)
+        return cli_usage(cli, "%s is for --to %s, not %s", known[k].name, kinds[known[k].kind], kinds[kind]);
+    }
+  return CLI_END;
+}
+
+int batch_export_command(cli_run *cli, const char *folder, const batch_wish *wish) {
   json_t *report = NULL;
-  int kind = 0;
-  if (!to || !path)
+  int kind = SQLITE;
+  if (!wish->to || !wish->output)
     return cli_usage(cli, "an export needs --to sqlite|parquet|webdataset|zarr and -o PATH"), cli->status;
-  if (cli_choose(cli, &kind, "to", to, kinds) == CLI_STOP)
+  if (cli_choose(cli, &kind, "to", wish->to, kinds) == CLI_STOP ||
+      check_options(cli, &wish->export_options, kind) == CLI_STOP)
     return cli->status;
-  int status = kind == 0 ? export_sqlite(cli, folder, path, &report)
-                         : export_by_python(cli, folder, to, path, &report);
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  int status = kind == SQLITE ? export_sqlite(cli, folder, wish->output, &report)
+                              : export_by_python(cli, folder, wish, &report);
   if (status != CLI_DONE) {
     json_decref(report);
     return status;
   }
   if (cli_summary(cli))
-    cli_row(cli, "output", "%s (%s): %" JSON_INTEGER_FORMAT " meshes", path, to,
+    cli_row(cli, "output", "%s (%s): %" JSON_INTEGER_FORMAT " meshes", wish->output, wish->to,
             json_integer_value(json_object_get(report, "meshes")));
   return cli_finish(cli, report);
 }

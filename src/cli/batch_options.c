@@ -3,6 +3,7 @@
 #include "cli/batch.h"
 #include "cli/voxelize.h"
 
+#include <inttypes.h>
 #include <sched.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,8 +23,14 @@ enum {
   KEY_DRY_RUN,
   KEY_PICTURES,
   KEY_FORMAT,
-  KEY_TO,
-  KEY_MEMLIMIT
+  KEY_MEMLIMIT,
+  KEY_TO, /* from here on of an export */
+  KEY_MAX_BYTES,
+  KEY_CONTENT,
+  KEY_SHUFFLE,
+  KEY_SPLIT,
+  KEY_CHUNK_BYTES,
+  KEY_ZARR_FORMAT
 };
 
 const char *const batch_refused[] = {"confidence", "coords", "dry-run", "output", "force", NULL};
@@ -60,6 +67,13 @@ const cli_option batch_options[] = {
     {KEY_PICTURES, "pictures", "N", "show so many of the worst in index.html [48]"},
     {KEY_TO, "to", "sqlite|parquet|webdataset|zarr",
      "what 'export' writes; the last three need the Python package"},
+    {KEY_MAX_BYTES, "max-bytes", "SIZE", "export, webdataset: of a tar [256M]"},
+    {KEY_CONTENT, "content", "bits|files",
+     "export, webdataset: grids, eight voxels a byte, or all files as they are [bits]"},
+    {KEY_SHUFFLE, "shuffle", "SEED", "export, webdataset: meshes in an order that is drawn by this number"},
+    {KEY_SPLIT, "split", "NAME", "export, zarr: only meshes of this split, such as train"},
+    {KEY_CHUNK_BYTES, "chunk-bytes", "SIZE", "export, zarr: of a chunk of grids [4M]"},
+    {KEY_ZARR_FORMAT, "zarr-format", "2|3", "export, zarr: version of the format [that of the package zarr]"},
     {0, NULL, NULL, NULL}};
 
 /* ---- Values ---- */
@@ -127,11 +141,40 @@ static int refuse_file(cli_run *cli, const char *name) {
   return cli_usage(cli, "--%s is about one mesh; leave it out of a batch", name);
 }
 
+/** Of one of the lists; its name is NULL if it is in none. */
+static const cli_option *option_of(int key, const cli_option *options) {
+  while (options->name && options->key != key)
+    options++;
+  return options;
+}
+
+/** An option of an export is handed on to what writes it, sizes as numbers. */
+static int take_export_option(cli_run *cli, batch_wish *out, int key, const char *value) {
+  const cli_option *option = option_of(key, batch_options);
+  static const char *const contents[] = {"bits", "files", NULL}, *const formats[] = {"2", "3", NULL};
+  char number[24];
+  uint64_t bytes;
+  int64_t seed;
+  int choice;
+  if (key == KEY_MAX_BYTES || key == KEY_CHUNK_BYTES) {
+    if (!cli_read_size(&bytes, value) || bytes == 0 || bytes > INT64_MAX)
+      return cli_usage(cli, "--%s '%s' is not a size such as 512M or 4G", option->name, value);
+    snprintf(number, sizeof number, "%" PRIu64, bytes);
+    value = number;
+  }
+  if (key == KEY_SHUFFLE && !cli_read_integer(&seed, value, 0, INT64_MAX))
+    return cli_usage(cli, "--shuffle '%s' is not a number from 0 on", value);
+  if (key == KEY_CONTENT && cli_choose(cli, &choice, "content", value, contents) == CLI_STOP)
+    return CLI_STOP;
+  if (key == KEY_ZARR_FORMAT && cli_choose(cli, &choice, "zarr-format", value, formats) == CLI_STOP)
+    return CLI_STOP;
+  bool good = batch_words_add(&out->export_options, "--%s=%s", option->name, value);
+  return good ? CLI_END : cli_usage(cli, "out of memory: free some");
+}
+
 /** An option of voxelize is handed on as it is. */
 static int take_grid_option(cli_run *cli, batch_wish *out, int key, const char *value) {
-  const cli_option *option = voxelize_options;
-  while (option->name && option->key != key)
-    option++;
+  const cli_option *option = option_of(key, voxelize_options);
   if (!option->name)
     return cli_usage(cli, "an option is not known");
   if (cli_is_refused(cli->command, option->name))
@@ -161,6 +204,12 @@ static int read_format(cli_run *cli, const char *value) {
 }
 
 static int read_option(cli_run *cli, batch_wish *out, int key, const char *value) {
+  if (key > KEY_TO && key <= KEY_ZARR_FORMAT)
+    return take_export_option(cli, out, key, value);
+  if (key != 'o' && key != KEY_TO) {
+    const cli_option *own = option_of(key, batch_options);
+    out->of_run = own->name ? own->name : option_of(key, voxelize_options)->name;
+  }
   switch (key) {
   case 'o':
     out->output = value;

@@ -180,17 +180,29 @@ static bool is_check(const char *word) {
 
 static int check(cli_run *cli, const batch_wish *wish) {
   const char *word = cli->arguments[0], *folder = cli->arguments[1];
-  return *word == 's'   ? batch_status_command(cli, folder)
-         : *word == 'v' ? batch_verify_command(cli, folder)
-                        : batch_export_command(cli, folder, wish->to, wish->output);
+  bool is_export = *word == 'e';
+  if (wish->of_run)
+    return cli_usage(cli, "--%s is for making a batch, not for 'voxmend batch %s'", wish->of_run, word),
+           cli->status;
+  if (!is_export && (wish->output || wish->to || wish->export_options.count > 0))
+    return cli_usage(cli, "'voxmend batch %s' takes a folder alone; -o, --to and the like are for export",
+                     word),
+           cli->status;
+  if (is_export)
+    return batch_export_command(cli, folder, wish);
+  if (!cli_start(cli))
+    return CLI_FAILED;
+  return *word == 's' ? batch_status_command(cli, folder) : batch_verify_command(cli, folder);
 }
 
 /** What was wanted, once the command line is read. */
 static int do_wish(cli_run *cli, batch_wish *wish) {
   if (cli->argument_count == 2 && is_check(cli->arguments[0]))
-    return cli_start(cli) ? check(cli, wish) : CLI_FAILED;
-  if (wish->to)
-    return cli_usage(cli, "--to goes with 'voxmend batch export DIR'"), cli->status;
+    return check(cli, wish);
+  if (wish->to || wish->export_options.count > 0)
+    return cli_usage(cli, "%s goes with 'voxmend batch export DIR'",
+                     wish->to ? "--to" : wish->export_options.words[0]),
+           cli->status;
   if (cli->argument_count == 0)
     return cli_usage(cli, "no input is named: folders, meshes, lists or archives"), cli->status;
   if (!wish->output && wish->dry_run)
@@ -216,6 +228,7 @@ static int run(cli_run *cli) {
                      .pictures = 48};
   int status = batch_read_arguments(cli, &wish) == CLI_STOP ? cli->status : do_wish(cli, &wish);
   batch_words_free(&wish.grid_options);
+  batch_words_free(&wish.export_options);
   return status;
 }
 
@@ -233,12 +246,13 @@ const cli_command cli_command_batch = {
         "memory), crash or quarantined (the run went down with it).\n\n"
         "  voxmend batch status DIR    what has become of its meshes, also while it runs\n"
         "  voxmend batch verify DIR    whether all outputs are there, with the bytes that were written\n"
-        "  voxmend batch export DIR --to sqlite|parquet|webdataset|zarr -o PATH\n\n"
+        "  voxmend batch export DIR --to sqlite|parquet|webdataset|zarr -o PATH [OPTION]...\n\n"
         "Examples:\n"
         "  voxmend batch ModelNet40/ -o grids/ -r 64\n"
         "  voxmend batch ModelNet40.zip -o grids/ -r 64 --format npy -j 8 --time-limit 60\n"
         "  voxmend batch scans/ -o fixed/ --no-grid --repair \"--level closed --format ply\"\n"
-        "  voxmend batch meshes.csv -o grids/ -r 64 --shard slurm/100",
+        "  voxmend batch meshes.csv -o grids/ -r 64 --shard slurm/100\n"
+        "  voxmend batch export grids/ --to webdataset -o tars/ --shuffle 1",
     .options = batch_options,
     .others = voxelize_options,
     .others_of = "voxelize",

@@ -207,6 +207,12 @@ class Batches(unittest.TestCase):
             self.assertEqual(json.load(file), json.loads(done.stdout))
         done = export("words")
         self.assertEqual((done.returncode, done.stdout), (0, "output     %s (webdataset): 11 meshes\n" % self.at("words")))
+        done = export("drawn", "--shuffle", "5", "--max-bytes", "10K", "--content=bits", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        voxmend.batch.export(self.out, self.at("same"), to="webdataset", shuffle=5, max_bytes=10240)
+        self.assertGreater(json.loads(done.stdout)["tars"], 1)
+        with open(self.at("drawn/index.jsonl"), "rb") as one, open(self.at("same/index.jsonl"), "rb") as other:
+            self.assertEqual(one.read(), other.read())
         bare = self.at("bare")  # a Python without packages
         with open(bare, "w", encoding="utf-8") as file:
             file.write('#!/bin/sh\nexec "%s" -I -S "$@"\n' % sys.executable)
