@@ -64,15 +64,16 @@ static double estimate_all(const vxm_raster_schedule *x, size_t f) {
  * of M^T M, which its largest sum of a row bounds. Nothing is lost where M turns and scales.
  */
 static double stretch_of(const double m[12]) {
-  double most = 0;
+  double most = 0, total = 0;
   for (int i = 0; i < 3; i++) {
     double sum = 0;
     for (int j = 0; j < 3; j++)
       sum += fabs(m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j]);
     most = fmax(most, sum);
+    total += sum;
   }
   const double rounding = 1 + 0x1p-40;
-  return sqrt(most) * rounding;
+  return total < INFINITY ? sqrt(most) * rounding : INFINITY; /* also where sums overflow to no number */
 }
 
 double vxm_raster_schedule_bound(const vxm_edge_lengths lengths[VXM_LENGTHS_SETS], unsigned roles,
