@@ -321,7 +321,8 @@ static void test_rounds_give_the_same(void **state) {
   assert_true(rounds[1] > 2);
 }
 
-/** The bound on crossings holds: of any soup, in any grid, along any axis. */
+/** The bound on crossings holds: of any soup, in any grid, along any axis, with cones and without; turned,
+ * and moved and displaced. */
 static void test_crossings_stay_below_their_bound(void **state) {
   (void)state;
   for (int round = 0; round < 60; round++) {
@@ -334,15 +335,36 @@ static void test_crossings_stay_below_their_bound(void **state) {
     double transform[12] = {0.7, -0.8, 0, 1, 0.9, 0.6, 0.1, 0, 0, -0.2, 1.3, 2};
     vxm_lattice lattice = vxm_lattice_of(&space);
     vxm_snapped_points placed = {.context = context};
-    const double *matrix = round % 3 ? transform : NULL;
-    assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, matrix, true, NULL), VXM_OK);
+    const double turned[12] = {0, -1, 0, 33, 1, 0, 0, 0, 0, 0, 1, 0};
+    const double *matrix = (const double *[]){NULL, transform, turned}[round % 3];
+    float noise[7][4];
+    uint32_t *entry = calloc(triangles.first_apex, sizeof *entry);
+    assert_non_null(entry);
+    vxm_rng rng = {(uint64_t)round};
+    for (int i = 0; i < 28; i++)
+      noise[i / 4][i % 4] = i % 4 < 3 ? (float)vxm_rng_below(&rng, 3) - 1 : 0;
+    for (size_t p = 0; p < triangles.first_apex; p++)
+      entry[p] = (uint32_t)vxm_rng_below(&rng, 7);
+    vxm_vertex_transform motion = {.from = (const double(*)[3])triangles.positions,
+                                   .count = triangles.first_apex,
+                                   .matrix = turned,
+                                   .entry = entry,
+                                   .noise = (const float(*)[4])noise,
+                                   .noise_size = 7,
+                                   .stretch = 1,
+                                   .reach = 2 * sqrt(3.0)};
+    if (round % 4 == 3)
+      assert_int_equal(vxm_snapped_points_move(&placed, &triangles, &lattice, &motion, true, NULL), VXM_OK);
+    else
+      assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, matrix, true, NULL), VXM_OK);
+    free(entry);
     vxm_window window = vxm_window_of(&space, (vxm_layout)VXM_LAYOUT_GRID, 0, space.dims[2]);
-    double bound = vxm_raster_schedule_bound(triangles.lengths, triangles.triangle_count, &space, matrix);
     for (int axis = 0; axis < 3; axis++) {
       vxm_columns columns = vxm_columns_of(&window, axis);
-      columns.roles = VXM_ROLE_FACE | VXM_ROLE_CAP;
+      columns.roles = VXM_ROLE_FACE | VXM_ROLE_CAP | ((axis + round) % 2 ? VXM_ROLE_CONE : 0);
       columns.triangle_end = triangles.triangle_count;
       columns.slab_shift = 20;
+      double bound = vxm_raster_schedule_placed_bound(&placed, columns.roles);
       vxm_crossing_bins bins = {.context = context};
       size_t words = window.slice_words * (size_t)space.dims[2] + (64 << 20);
       assert_int_equal(vxm_crossing_bins_reset(&bins, 1, 1, 1, words, NULL), VXM_OK);

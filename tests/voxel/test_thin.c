@@ -110,6 +110,40 @@ static void test_fine_sheets_beside_bodies(void **state) {
   }
 }
 
+/** A thin upright tube with a floor and no lid: a part with many caps and cones behind its faces. */
+static void add_open_tube(vxm_soup *soup, vxm_rng *rng, const vxm_space *space) {
+  enum { SIDES = 48 };
+  const double turn = 6.283185307179586 / SIDES;
+  double centre[2], radius = 0.2 + 0.2 * vxm_rng_unit(rng), low = 1 + vxm_rng_unit(rng);
+  for (int a = 0; a < 2; a++)
+    centre[a] = 1 + ((double)space->dims[a] - 2) * vxm_rng_unit(rng);
+  uint32_t middle = (uint32_t)soup->vertex_count, first = middle + 1;
+  shape_vertex(soup, centre[0], centre[1], low);
+  for (int i = 0; i < 2 * SIDES; i++)
+    shape_vertex(soup, centre[0] + radius * cos(turn * (i / 2)), centre[1] + radius * sin(turn * (i / 2)),
+                 i % 2 ? (double)space->dims[2] - 1.5 : low);
+  for (uint32_t i = 0; i < SIDES; i++) {
+    uint32_t p = first + 2 * i, q = first + 2 * ((i + 1) % SIDES);
+    shape_triangle(soup, middle, q, p);
+    shape_triangle(soup, p, q, q + 1);
+    shape_triangle(soup, p, q + 1, p + 1);
+  }
+}
+
+/** What is not a face lies between parts, too, and is passed over there. */
+static void test_several_open_tubes(void **state) {
+  (void)state;
+  vxm_rng rng = {512};
+  for (int round = 0; round < ROUNDS(20); round++) {
+    vxm_space space = small_space(&rng);
+    vxm_soup *soup = shape_empty(context);
+    for (int tube = 0; tube < 4; tube++)
+      add_open_tube(soup, &rng, &space);
+    check_soup(soup, &space, round % 4 ? VXM_THIN_KEEP : VXM_THIN_KEEP26, 4);
+    vxm_soup_destroy(soup);
+  }
+}
+
 /** Non-convex polygons: the triangles that cover them cover what they do not, too. */
 static void test_polygons(void **state) {
   (void)state;
@@ -254,10 +288,15 @@ static void test_rods_are_one_voxel_thick(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_connected_meshes),           cmocka_unit_test(test_several_meshes),
-      cmocka_unit_test(test_fine_sheets_beside_bodies),  cmocka_unit_test(test_polygons),
-      cmocka_unit_test(test_meshes_that_reach_out),      cmocka_unit_test(test_thick_bodies_stay),
-      cmocka_unit_test(test_plates_are_one_voxel_thick), cmocka_unit_test(test_rods_are_one_voxel_thick),
+      cmocka_unit_test(test_connected_meshes),
+      cmocka_unit_test(test_several_meshes),
+      cmocka_unit_test(test_several_open_tubes),
+      cmocka_unit_test(test_fine_sheets_beside_bodies),
+      cmocka_unit_test(test_polygons),
+      cmocka_unit_test(test_meshes_that_reach_out),
+      cmocka_unit_test(test_thick_bodies_stay),
+      cmocka_unit_test(test_plates_are_one_voxel_thick),
+      cmocka_unit_test(test_rods_are_one_voxel_thick),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -176,8 +176,7 @@ static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, v
   size_t slice_bytes = (size_t)(r->row_length * r->rows) * vxm_scalar_bytes(r->values.scalar);
   unsigned char *block = r->values.out;
   bool spans = vxm_coverage_has_spans(pass);
-  double crossings =
-      vxm_raster_schedule_placed_bound(&pass->solid.analysis->triangles, &pass->solid.placed, &pass->space);
+  double crossings = vxm_raster_schedule_placed_bound(&pass->solid.placed, VXM_ROLE_FACE | VXM_ROLE_CAP);
   if (spans && target->whole &&
       crossings < fmin(most_crossings, (double)vxm_memory_left(pass->solid.context) / bytes_of_a_crossing))
     slices = length;

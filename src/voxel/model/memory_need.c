@@ -38,7 +38,7 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
 static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space, const vxm_window *shape) {
   const vxm_triangle_set *triangles = &model->analysis.triangles;
   enum { AXES = 3 };
-  double all = vxm_raster_schedule_bound(triangles->lengths, triangles->triangle_count, space, NULL) * AXES *
+  double all = vxm_raster_schedule_bound(triangles->lengths, VXM_ROLE_FACE, space, NULL) * AXES *
                VXM_THIN_COPIES * sizeof(vxm_meeting);
   uint64_t budget = vxm_thin_budget(model->context);
   uint64_t numbers = (triangles->triangle_count + triangles->point_count) * sizeof(uint32_t);
@@ -70,10 +70,10 @@ vxm_memory_need vxm_model_memory_need(const vxm_model *model, const vxm_space *s
     need.windows += polled ? BUFFERS_OF_VOTES : BUFFERS;
     need.fixed += triangles->triangle_count * BYTES_PER_TRIANGLE + points;
   }
+  const unsigned all_roles = VXM_ROLE_FACE | VXM_ROLE_CAP | VXM_ROLE_CONE;
   /* Chunks of records are half full at worst. */
-  double bound = 2 * sizeof(uint64_t) *
-                 vxm_raster_schedule_bound(triangles->lengths, triangles->triangle_count, space, NULL) *
-                 voters;
+  double bound =
+      2 * sizeof(uint64_t) * vxm_raster_schedule_bound(triangles->lengths, all_roles, space, NULL) * voters;
   double round = 2 * sizeof(uint64_t) * vxm_raster_schedule_round(model->context);
   if (worst) /* a bin keeps a slab of records of a part before it becomes a bitmap */
     need.windows += 2 * voters * (int)threads;

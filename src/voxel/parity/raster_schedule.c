@@ -59,21 +59,38 @@ static double estimate_all(const vxm_raster_schedule *x, size_t f) {
   return sum;
 }
 
-double vxm_raster_schedule_bound(vxm_edge_lengths lengths, size_t count, const vxm_space *space,
-                                 const double transform[12]) {
-  double voxel = space->voxel_size[0], norm = 0;
-  for (int a = 1; a < 3; a++)
-    voxel = fmin(voxel, space->voxel_size[a]);
-  for (int r = 0; r < 3; r++) /* the Frobenius norm is at least the longest that a unit vector becomes */
-    for (int c = 0; c < 3; c++)
-      norm += transform ? transform[4 * r + c] * transform[4 * r + c] : 0;
-  double scale = (transform ? sqrt(norm) : 1) / voxel;
-  return lengths.squared * scale * scale + 2 * lengths.sum * scale + (double)count;
+/**
+ * At least the longest that a unit vector becomes: with the matrix M the square of that is the spectral norm
+ * of M^T M, which its largest sum of a row bounds. Nothing is lost where M turns and scales.
+ */
+static double stretch_of(const double m[12]) {
+  double most = 0, total = 0;
+  for (int i = 0; i < 3; i++) {
+    double sum = 0;
+    for (int j = 0; j < 3; j++)
+      sum += fabs(m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j]);
+    most = fmax(most, sum);
+    total += sum;
+  }
+  const double rounding = 1 + 0x1p-40;
+  return total < INFINITY ? sqrt(most) * rounding : INFINITY; /* also where sums overflow to no number */
 }
 
-double vxm_raster_schedule_placed_bound(const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
-                                        const vxm_space *space) {
-  return vxm_raster_schedule_bound(placed->lengths, triangles->triangle_count, space, placed->transform);
+double vxm_raster_schedule_bound(const vxm_edge_lengths lengths[VXM_LENGTHS_SETS], unsigned roles,
+                                 const vxm_space *space, const double transform[12]) {
+  double voxel = space->voxel_size[0], bound = 0;
+  for (int a = 1; a < 3; a++)
+    voxel = fmin(voxel, space->voxel_size[a]);
+  double scale = (transform ? stretch_of(transform) : 1) / voxel;
+  const bool counts[VXM_LENGTHS_SETS] = {true, (roles & VXM_ROLE_CONE) != 0};
+  for (int s = 0; s < VXM_LENGTHS_SETS; s++)
+    if (counts[s])
+      bound += lengths[s].squared * scale * scale + 2 * lengths[s].sum * scale + lengths[s].count;
+  return bound;
+}
+
+double vxm_raster_schedule_placed_bound(const vxm_snapped_points *placed, unsigned roles) {
+  return vxm_raster_schedule_bound(placed->lengths, roles, &placed->lattice.space, placed->transform);
 }
 
 /* ---- Planning ---- */
@@ -138,9 +155,11 @@ vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *x, const vxm_triangle_s
   x->columns_count = columns_count;
   x->range_count = x->round_count = 0;
   size_t begin = SIZE_MAX, end = 0;
+  double most = 0;
   for (size_t c = 0; c < columns_count; c++) {
     begin = columns[c].triangle_begin < begin ? columns[c].triangle_begin : begin;
     end = columns[c].triangle_end > end ? columns[c].triangle_end : end;
+    most += vxm_raster_schedule_placed_bound(placed, columns[c].roles);
   }
   if (begin >= end)
     return end_round(x, error);
@@ -148,8 +167,6 @@ vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *x, const vxm_triangle_s
      where few triangles have very many crossings. */
   bool one_part = triangles->part[begin] == triangles->part[end - 1];
   bool sharing = vxm_context_threads(x->context) > 1 && end - begin <= TRIANGLES_MAX;
-  double most =
-      vxm_raster_schedule_placed_bound(triangles, placed, &placed->lattice.space) * (double)columns_count;
   if (one_part ? !sharing || most <= round_most : most <= vxm_raster_schedule_round(x->context))
     return plan_evenly(x, begin, end, error);
   return plan_by_estimate(x, begin, end, error);

@@ -37,14 +37,13 @@ vxm_status vxm_raster_schedule_plan(vxm_raster_schedule *crossings, const vxm_tr
 /** Crossings after which a round ends with the present part: a share of the memory that is left. */
 double vxm_raster_schedule_round(const vxm_context *context);
 /**
- * At least the number of columns along any one axis that `count` triangles cover: squares about their longest
- * edges, which a transform, or NULL, makes longer.
+ * At least the number of columns along any one axis that triangles of some roles cover: squares about their
+ * longest edges, which a transform, or NULL, makes longer.
  */
-double vxm_raster_schedule_bound(vxm_edge_lengths lengths, size_t count, const vxm_space *space,
-                                 const double transform[12]);
-/** The same of all triangles as they lie in a space. */
-double vxm_raster_schedule_placed_bound(const vxm_triangle_set *triangles, const vxm_snapped_points *placed,
-                                        const vxm_space *space);
+double vxm_raster_schedule_bound(const vxm_edge_lengths lengths[VXM_LENGTHS_SETS], unsigned roles,
+                                 const vxm_space *space, const double transform[12]);
+/** The same of triangles as they lie in their space. */
+double vxm_raster_schedule_placed_bound(const vxm_snapped_points *placed, unsigned roles);
 void vxm_raster_schedule_destroy(vxm_raster_schedule *crossings);
 
 /** Puts the crossings of a round into the bins, which are empty and have a worker for each thread. */

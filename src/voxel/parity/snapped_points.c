@@ -181,15 +181,11 @@ static vxm_status reserve(vxm_snapped_points *placed, size_t count, vxm_error *e
   return local.code;
 }
 
-/** At most, once the points have moved. */
-static vxm_edge_lengths lengths_of(const vxm_triangle_set *triangles, const vxm_vertex_transform *motion) {
-  const vxm_edge_lengths *own = &triangles->lengths;
-  double count = (double)triangles->triangle_count, stretch = motion->stretch, reach = motion->reach;
-  if (stretch == 0)
-    return *own;
-  /* (a + b)^2 <= 2 a^2 + 2 b^2 */
-  return (vxm_edge_lengths){own->sum * stretch + count * reach,
-                            2 * (own->squared * stretch * stretch + count * reach * reach)};
+/** At most, once the points have moved: an edge of length a is at most a stretch + reach long. */
+static vxm_edge_lengths moved_lengths(vxm_edge_lengths own, double stretch, double reach) {
+  return (vxm_edge_lengths){own.count, own.sum * stretch + own.count * reach,
+                            own.squared * stretch * stretch + 2 * own.sum * stretch * reach +
+                                own.count * reach * reach};
 }
 
 vxm_status vxm_snapped_points_begin(vxm_snapped_points *placed, const vxm_triangle_set *triangles,
@@ -198,7 +194,10 @@ vxm_status vxm_snapped_points_begin(vxm_snapped_points *placed, const vxm_triang
   static atomic_uint_fast64_t last_serial;
   placed->serial = atomic_fetch_add(&last_serial, 1) + 1;
   placed->lattice = *lattice;
-  placed->lengths = lengths_of(triangles, motion);
+  for (int s = 0; s < VXM_LENGTHS_SETS; s++)
+    placed->lengths[s] = motion->stretch == 0
+                             ? triangles->lengths[s]
+                             : moved_lengths(triangles->lengths[s], motion->stretch, motion->reach);
   memcpy(placed->transform, identity, sizeof identity);
   vxm_free(placed->context, placed->wide);
   placed->wide = NULL;

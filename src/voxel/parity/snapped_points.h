@@ -23,12 +23,13 @@ typedef struct vxm_snapped_points {
   vxm_context *context;
   uint64_t serial; /**< no two that hold different points have the same */
   vxm_lattice lattice;
-  vxm_edge_lengths lengths; /**< of the triangles as they lie here, or more, before `transform` */
-  double transform[12];     /**< that of vxm_snapped_points_set, else nothing */
-  size_t capacity;          /**< of `narrow` and `cells` */
-  int32_t (*narrow)[4];     /**< points by number; the fourth number is 0 */
-  uint64_t *cells;          /**< of each point: x from bit 0 on, y from VXM_CELL_BITS, z from twice that */
-  vxm_point *wide;          /**< used instead where a point lies beyond VXM_NARROW_MAX, else NULL */
+  vxm_edge_lengths lengths[VXM_LENGTHS_SETS]; /**< of the triangles as they lie here, or more, before
+                                                 `transform` */
+  double transform[12];                       /**< that of vxm_snapped_points_set, else nothing */
+  size_t capacity;                            /**< of `narrow` and `cells` */
+  int32_t (*narrow)[4];                       /**< points by number; the fourth number is 0 */
+  uint64_t *cells; /**< of each point: x from bit 0 on, y from VXM_CELL_BITS, z from twice that */
+  vxm_point *wide; /**< used instead where a point lies beyond VXM_NARROW_MAX, else NULL */
 } vxm_snapped_points;
 
 /**

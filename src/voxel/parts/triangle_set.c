@@ -255,7 +255,7 @@ static void find_box(vxm_triangle_set *triangles) {
 
 /** Sums up how long triangles are. A cone reaches from its edge to somewhere among the triangles. */
 static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
-  size_t cones = 0;
+  vxm_edge_lengths *faces = &triangles->lengths[VXM_LENGTHS_FACES], *cones = faces + VXM_LENGTHS_CONES;
   find_box(triangles);
   for (size_t f = 0; f < triangles->triangle_count; f++) {
     const uint32_t *corner = triangles->corners[f];
@@ -263,7 +263,7 @@ static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
     if (status != VXM_OK)
       return status;
     if (corner[2] >= triangles->first_apex) {
-      cones++;
+      cones->count++;
       continue;
     }
     double squared = 0;
@@ -272,13 +272,14 @@ static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
           squared_distance(triangles->positions[corner[k]], triangles->positions[corner[(k + 1) % 3]]);
       squared = side > squared ? side : squared;
     }
-    triangles->lengths.sum += sqrt(squared);
-    triangles->lengths.squared += squared;
+    faces->count++;
+    faces->sum += sqrt(squared);
+    faces->squared += squared;
   }
-  if (cones > 0) {
+  if (cones->count > 0) {
     double diagonal = squared_distance(triangles->low, triangles->high);
-    triangles->lengths.sum += (double)cones * sqrt(diagonal);
-    triangles->lengths.squared += (double)cones * diagonal;
+    cones->sum = cones->count * sqrt(diagonal);
+    cones->squared = cones->count * diagonal;
   }
   return VXM_OK;
 }

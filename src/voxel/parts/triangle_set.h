@@ -33,10 +33,13 @@ typedef struct vxm_part {
   size_t begin, caps, cones, end;
 } vxm_part;
 
-/** Sums over all triangles of the longest edge and of its square. */
+/** Sums over triangles: 1, their longest edge, and its square. */
 typedef struct vxm_edge_lengths {
-  double sum, squared;
+  double count, sum, squared;
 } vxm_edge_lengths;
+
+/** Those of faces and caps together, and of cones, which few voters ask for and which are long. */
+enum { VXM_LENGTHS_FACES, VXM_LENGTHS_CONES, VXM_LENGTHS_SETS };
 
 typedef struct vxm_triangle_set {
   vxm_context *context;
@@ -51,11 +54,11 @@ typedef struct vxm_triangle_set {
   /* Points: the vertices that triangles have, and the caps' own, in the order in which triangles first have
      them, so that neighbours lie close together in memory; then an apex for each part. */
   size_t first_apex, point_count;
-  double (*positions)[3];   /**< of the points before first_apex, model units */
-  uint32_t *vertex;         /**< of the same: the soup's vertex; a greater number is a cap's own point */
-  double low[3], high[3];   /**< the box of the same */
-  vxm_edge_lengths lengths; /**< model units */
-  vxm_split split;          /**< trimmed: counts only */
+  double (*positions)[3]; /**< of the points before first_apex, model units */
+  uint32_t *vertex;       /**< of the same: the soup's vertex; a greater number is a cap's own point */
+  double low[3], high[3]; /**< the box of the same */
+  vxm_edge_lengths lengths[VXM_LENGTHS_SETS]; /**< model units */
+  vxm_split split;                            /**< trimmed: counts only */
 } vxm_triangle_set;
 
 /** Splits a soup into parts and covers its polygons. Destroy with vxm_triangle_set_destroy, also after a

@@ -420,8 +420,7 @@ static void free_desks(sparse_state *state, size_t workers) {
 /** Slabs of a window: so few that its crossings are not too many, so many that all threads have work. */
 static size_t window_slabs(const sparse_state *state) {
   vxm_context *context = state->builder->context;
-  double bound =
-      vxm_raster_schedule_placed_bound(state->job->triangles, state->job->placed, &state->builder->space);
+  double bound = vxm_raster_schedule_placed_bound(state->job->placed, state->columns.roles);
   double most = vxm_raster_schedule_round(context), slabs = (double)state->builder->deep;
   most = most < CROSSINGS ? most : CROSSINGS;
   double wanted = slabs * most / (bound + 1);

@@ -44,23 +44,25 @@ vxm_status vxm_slice_order_make(vxm_slice_order *order, const vxm_thin_job *job,
   order->count = 0;
   if (status != VXM_OK)
     return status;
-  for (size_t t = 0; t < triangles->triangle_count && status == VXM_OK; t++) {
-    int64_t bin = bin_of(&b, triangles->corners[t]);
-    if (bin >= 0)
-      next[bin]++;
-    status = vxm_ask_at(t, order->context, error);
-  }
+  for (size_t p = 0; p < triangles->split.part_count; p++)
+    for (size_t t = triangles->parts[p].begin; t < triangles->parts[p].caps && status == VXM_OK; t++) {
+      int64_t bin = bin_of(&b, triangles->corners[t]);
+      if (bin >= 0)
+        next[bin]++;
+      status = vxm_ask_at(t, order->context, error);
+    }
   for (int i = 0; i < BINS_MAX; i++) {
     size_t here = next[i];
     next[i] = total;
     total += here;
   }
-  for (size_t t = 0; t < triangles->triangle_count && status == VXM_OK; t++) {
-    int64_t bin = bin_of(&b, triangles->corners[t]);
-    if (bin >= 0)
-      order->triangles[next[bin]++] = (uint32_t)t;
-    status = vxm_ask_at(t, order->context, error);
-  }
+  for (size_t p = 0; p < triangles->split.part_count; p++)
+    for (size_t t = triangles->parts[p].begin; t < triangles->parts[p].caps && status == VXM_OK; t++) {
+      int64_t bin = bin_of(&b, triangles->corners[t]);
+      if (bin >= 0)
+        order->triangles[next[bin]++] = (uint32_t)t;
+      status = vxm_ask_at(t, order->context, error);
+    }
   order->count = status == VXM_OK ? total : 0;
   return status;
 }

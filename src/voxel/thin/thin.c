@@ -43,6 +43,20 @@ static size_t count_looked_at(const vxm_thin_job *job) {
   return job->order ? job->order_count : job->triangles->triangle_count;
 }
 
+/**
+ * From `begin` on, before `end`: the end of triangles that are faces, or of them and a few caps and cones
+ * between. *next becomes the first triangle behind the caps and cones that follow.
+ */
+static size_t faces_end(const vxm_triangle_set *triangles, size_t begin, size_t end, size_t *next) {
+  const size_t few = 64; /* the sieve takes many at a time, and is not to stop for these */
+  for (uint32_t part = triangles->part[begin];; part++) {
+    const vxm_part *p = &triangles->parts[part];
+    *next = least(p->end, end);
+    if (p->end - p->caps > few || *next == end)
+      return p->caps < begin ? begin : least(p->caps, end);
+  }
+}
+
 static void look_at_some(size_t task, int worker, void *payload) {
   const search *s = payload;
   const vxm_thin_job *job = s->job;
@@ -51,11 +65,15 @@ static void look_at_some(size_t task, int worker, void *payload) {
   size_t begin = task * s->task, end = least(count_looked_at(job), begin + s->task);
   if (s->thin->found[worker].is_full)
     return;
-  if (!cells_are_short(job) || job->directions > VXM_LINK_AXES)
-    for (size_t t = begin; t < end; t++)
-      look_at(frames, t);
-  else
-    vxm_meet_by_cells(frames, begin, end);
+  bool by_cells = cells_are_short(job) && job->directions == VXM_LINK_AXES;
+  for (size_t next = end, last; begin < end; begin = next) {
+    last = job->order ? end : faces_end(job->triangles, begin, end, &next);
+    if (by_cells)
+      vxm_meet_by_cells(frames, begin, last);
+    else
+      for (size_t t = begin; t < last; t++)
+        look_at(frames, t);
+  }
 }
 
 /* ---- Sorting ---- */

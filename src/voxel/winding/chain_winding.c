@@ -280,7 +280,7 @@ static vxm_status plan(const fold_state *state, vxm_columns *columns, vxm_worksp
   const vxm_chain_winding *out = state->out;
   *columns = vxm_columns_of(&state->part, state->part.layout.fast);
   columns->slab_shift = state->slabs.shift;
-  columns->roles = VXM_ROLES_ALL;
+  columns->roles = VXM_ROLES_ALL | VXM_ROLE_CONE; /* some cross holes, and are as long as cones may be */
   columns->triangle_begin = kind ? out->entered : 0;
   columns->triangle_end = kind ? out->corner_count : out->entered;
   return vxm_raster_schedule_plan(&workspace->crossings, &state->triangles, placed, columns, 1, error);
