@@ -19,6 +19,16 @@ typedef struct vxm_unsure_links {
   int64_t begin[3][3], end[3][3]; /**< voxels: that along the axis itself does not matter */
 } vxm_unsure_links;
 
+static inline vxm_unsure_links vxm_unsure_links_none(void) {
+  vxm_unsure_links none;
+  for (int axis = 0; axis < 3; axis++)
+    for (int a = 0; a < 3; a++) {
+      none.begin[axis][a] = INT64_MAX;
+      none.end[axis][a] = INT64_MIN;
+    }
+  return none;
+}
+
 /** A triangle, in voxels from the centre of voxel (0, 0, 0) on. */
 typedef struct vxm_octree_sieve {
   const vxm_sparse *octree;

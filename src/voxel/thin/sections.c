@@ -324,11 +324,7 @@ static bool are_unsure(vxm_link_frame *frames, const vxm_point points[3], vxm_un
           vxm_octree_sieve_of(&sieve, &job->view, &job->placed->lattice, points);
   if (!*told)
     return true;
-  for (int d = 0; d < VXM_LINK_AXES; d++)
-    for (int a = 0; a < 3; a++) {
-      unsure->begin[d][a] = INT64_MAX;
-      unsure->end[d][a] = INT64_MIN;
-    }
+  *unsure = vxm_unsure_links_none();
   return vxm_octree_sieve_search(&sieve, &frames[0].inner, unsure);
 }
 
