@@ -82,9 +82,21 @@ static bounds bits_of(const combination *c, int which, cell brick, const int64_t
   return (bounds){bits, bits};
 }
 
+/** The operand that alone says what two cells make together: the other is all alike there. -1 = none. */
+static int deciding(vxm_set_operation op, cell a, cell b) {
+  int neutral = op == VXM_SET_INTERSECTION ? FULL : EMPTY;
+  if (a.kind == MIXED && (int)b.kind == neutral)
+    return 0;
+  bool same = op == VXM_SET_UNION || op == VXM_SET_INTERSECTION || op == VXM_SET_SYMMETRIC_DIFFERENCE;
+  return same && b.kind == MIXED && (int)a.kind == neutral ? 1 : -1;
+}
+
 /** Two nodes of a level at the same place. */
 static vxm_octree_cell combine_nodes(combination *c, int level, cell a, cell b, const int64_t at[3]) {
   int64_t side = vxm_octree_side(level);
+  int which = deciding(c->op, a, b);
+  if (which >= 0)
+    return vxm_octree_growth_copy(&c->result, c->operand[which], level, which == 0 ? a.index : b.index);
   size_t first = vxm_octree_growth_next(&c->result, level);
   bounds p = children_of(c, 0, level, a, at), q = children_of(c, 1, level, b, at), all = apply(c->op, p, q);
   uint64_t mixed = 0, full = all.low;

@@ -33,6 +33,10 @@ vxm_octree_cell vxm_octree_growth_brick(vxm_octree_growth *growth, uint64_t bits
 vxm_octree_cell vxm_octree_growth_node(vxm_octree_growth *growth, int level, uint64_t mixed, uint64_t full,
                                        size_t first);
 
+/** Adds a mixed node of another octree of as many levels, below its root, with all that is below it. */
+vxm_octree_cell vxm_octree_growth_copy(vxm_octree_growth *growth, const vxm_sparse *from, int level,
+                                       size_t node);
+
 /** Hands the octree over, or drops it after a failure. @return growth->status */
 vxm_status vxm_octree_growth_end(vxm_sparse **out, vxm_octree_growth *growth);
 

@@ -19,24 +19,17 @@ vxm_kept_bricks *vxm_view_kept_bricks(const vxm_view *view) {
   return &kept;
 }
 
-/** The node of level 0 with a voxel. */
-static const vxm_octree_node *kept_node(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit) {
-  enum { LOW = (1 << VXM_KEPT_BITS) - 1 };
+const vxm_octree_node *vxm_kept_node_fetch(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit,
+                                           size_t at) {
   const int64_t mask = (INT64_C(1) << VXM_VIEW_AXIS_BITS) - 1;
-  int64_t i = bit & mask, j = bit >> VXM_VIEW_AXIS_BITS & mask, k = bit >> 2 * VXM_VIEW_AXIS_BITS & mask;
-  size_t at =
-      (size_t)((k >> 4 & LOW) << 2 * VXM_KEPT_BITS | (j >> 4 & LOW) << VXM_KEPT_BITS | (i >> 4 & LOW));
-  uint64_t number =
-      vxm_brick_number((i >> 2) << 2 * VXM_VIEW_AXIS_BITS | (j >> 2) << VXM_VIEW_AXIS_BITS | k >> 2);
-  if (kept->node_number[at] != number) {
-    kept->node_number[at] = number;
-    kept->nodes[at] = vxm_octree_low_node(octree, i, j, k);
-  }
+  kept->node_number[at] = vxm_node_number(bit);
+  kept->nodes[at] = vxm_octree_low_node(octree, bit & mask, bit >> VXM_VIEW_AXIS_BITS & mask,
+                                        bit >> 2 * VXM_VIEW_AXIS_BITS & mask);
   return kept->nodes[at];
 }
 
 uint64_t vxm_kept_brick_fetch(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit, size_t at) {
-  const vxm_octree_node *node = kept_node(kept, octree, bit);
+  const vxm_octree_node *node = vxm_kept_node(kept, octree, bit);
   unsigned child = vxm_octree_child((unsigned)(bit >> 2), (unsigned)(bit >> (VXM_VIEW_AXIS_BITS + 2)),
                                     (unsigned)(bit >> (2 * VXM_VIEW_AXIS_BITS + 2)));
   kept->number[at] = vxm_brick_number(bit);

@@ -116,10 +116,30 @@ static inline uint64_t vxm_brick_number(int64_t bit) {
   return ((uint64_t)bit & ~low) | 1;
 }
 
+/** The same of the node of level 0. */
+static inline uint64_t vxm_node_number(int64_t bit) {
+  const uint64_t low =
+      UINT64_C(15) | UINT64_C(15) << VXM_VIEW_AXIS_BITS | UINT64_C(15) << 2 * VXM_VIEW_AXIS_BITS;
+  return ((uint64_t)bit & ~low) | 1;
+}
+
 /** Where in its brick a voxel has its bit. */
 static inline unsigned vxm_place_in_brick(int64_t bit) {
   return (unsigned)((bit & 3) | (bit >> (VXM_VIEW_AXIS_BITS - 2) & 12) |
                     (bit >> (2 * VXM_VIEW_AXIS_BITS - 4) & 48));
+}
+
+/** The node of level 0 with a voxel. */
+const vxm_octree_node *vxm_kept_node_fetch(vxm_kept_bricks *kept, const vxm_sparse *octree, int64_t bit,
+                                           size_t at);
+
+static inline const vxm_octree_node *vxm_kept_node(vxm_kept_bricks *kept, const vxm_sparse *octree,
+                                                   int64_t bit) {
+  enum { LOW = (1 << VXM_KEPT_BITS) - 1 };
+  uint64_t x = (uint64_t)bit >> 4, y = x >> VXM_VIEW_AXIS_BITS, z = y >> VXM_VIEW_AXIS_BITS;
+  size_t at = (z & LOW) << 2 * VXM_KEPT_BITS | (y & LOW) << VXM_KEPT_BITS | (x & LOW);
+  return kept->node_number[at] == vxm_node_number(bit) ? kept->nodes[at]
+                                                       : vxm_kept_node_fetch(kept, octree, bit, at);
 }
 
 /** The brick of a voxel within the octree's dimensions. */

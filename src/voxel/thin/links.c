@@ -2,6 +2,7 @@
 #include "voxel/thin/meetings.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef vxm_link_frame frame;
 
@@ -14,6 +15,7 @@ static frame frame_of(const vxm_thin_job *job, vxm_meetings *meetings, int direc
              .meetings = meetings,
              .direction = direction,
              .w = w,
+             .inner = -1,
              .plain = direction < VXM_LINK_AXES};
   f.u = view->step[(w + 1) % 3] < view->step[(w + 2) % 3] ? (w + 1) % 3
                                                           : (w + 2) % 3; /* rows along near bits */
@@ -169,7 +171,17 @@ void vxm_link_frames(vxm_link_frame frames[VXM_LINK_DIRECTIONS], const vxm_thin_
     frames[d] = frame_of(job, meetings, d);
 }
 
-void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ) {
+/** Columns that are looked at, of a box that need not have any. */
+static void narrow_to(int64_t range[3][2], const frame *f, const int64_t begin[3], const int64_t end[3]) {
+  for (int a = 0; a < 3; a++)
+    if (a != f->w) {
+      range[a][0] = vxm_max(range[a][0], begin[a]);
+      range[a][1] = vxm_min(range[a][1], end[a]);
+    }
+}
+
+void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ,
+                    const vxm_unsure_links *unsure) {
   const vxm_thin_job *job = frames[0].job;
   vxm_point points[3];
   for (int k = 0; k < 3; k++)
@@ -182,9 +194,13 @@ void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ) {
       continue;
     frames[d].triangle = triangle;
     frames[d].surface = &surface;
-    if (d < VXM_LINK_AXES)
-      cross_box(&frames[d], points, range, longest);
-    else
+    if (d < VXM_LINK_AXES) {
+      int64_t columns[3][2];
+      memcpy(columns, range, sizeof columns);
+      if (unsure)
+        narrow_to(columns, &frames[d], unsure->begin[d], unsure->end[d]);
+      cross_box(&frames[d], points, columns, longest);
+    } else
       cross_sheared(&frames[d], points);
   }
 }

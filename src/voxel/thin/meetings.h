@@ -7,6 +7,7 @@
 #define VXM_VOXEL_THIN_MEETINGS_H
 
 #include "base/context.h"
+#include "voxel/thin/octree_sieve.h"
 #include "voxel/thin/thin_job.h"
 
 /** Meetings that one thread has found. Start from {.context = ...}. */
@@ -45,6 +46,7 @@ typedef struct vxm_link_frame {
   size_t triangle;                 /**< that is looked at */
   const vxm_link_surface *surface; /**< its own */
   int direction, u, v, w;
+  int inner;  /**< see vxm_octree_sieve_search */
   bool plain; /**< along an axis: no shear */
   int64_t shear[3];
   int64_t begin[3], end[3]; /**< columns, and voxels along w that are the upper end of a link of the view */
@@ -67,8 +69,8 @@ void vxm_keep_link(const vxm_link_frame *frame, const int64_t lower[3], double o
 int64_t vxm_link_voxel(const vxm_link_frame *frame, const vxm_point corner[3], int64_t column_u,
                        int64_t column_v, double *rest);
 /** The links that a triangle crosses. @param differ the axes along which its corners have different cells, or
- * all (vxm_cell_mask) */
-void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ);
+ * all (vxm_cell_mask) @param unsure NULL, or links along axes that may have no voxel, and the others have */
+void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ, const vxm_unsure_links *unsure);
 /** The squares in which its sections lie, and all links that it crosses. */
 void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ);
 /** The cube in which it lies; nothing if it reaches into several, as it crosses squares then. */

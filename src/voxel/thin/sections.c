@@ -315,6 +315,19 @@ static bool is_large(const vxm_lattice *lattice, const vxm_point p[3]) {
   return longest > LARGE * lattice->unit;
 }
 
+/** Whether links along axes may have no voxel; `*told`: whether `unsure` says which. */
+static bool are_unsure(vxm_link_frame *frames, const vxm_point points[3], vxm_unsure_links *unsure,
+                       bool *told) {
+  const vxm_thin_job *job = frames[0].job;
+  vxm_octree_sieve sieve;
+  *told = job->directions == VXM_LINK_AXES &&
+          vxm_octree_sieve_of(&sieve, &job->view, &job->placed->lattice, points);
+  if (!*told)
+    return true;
+  *unsure = vxm_unsure_links_none();
+  return vxm_octree_sieve_search(&sieve, &frames[0].inner, unsure);
+}
+
 void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ) {
   const vxm_thin_job *job = frames[0].job;
   const vxm_triangle_set *triangles = job->triangles;
@@ -325,18 +338,21 @@ void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ)
     points[k] = vxm_snapped_points_at(job->placed, corner[k]);
   /* Links of large triangles are cheaper found row by row, and some not at all by sections. */
   bool alone = is_polygon || job->directions > VXM_LINK_AXES || is_large(&job->placed->lattice, points);
-  if (alone)
-    vxm_meet_links(frames, triangle, differ);
+  vxm_unsure_links unsure;
+  bool told, links = are_unsure(frames, points, &unsure, &told);
+  if (alone && links)
+    vxm_meet_links(frames, triangle, differ, told ? &unsure : NULL);
   if (is_polygon) {
     meet_polygon(frames[0].meetings, job, triangle, points);
     return;
   }
-  vxm_link_surface surface = vxm_link_surface_of(points);
-  for (int d = 0; d < VXM_LINK_AXES && !alone; d++) {
+  vxm_link_surface surface = links ? vxm_link_surface_of(points) : (vxm_link_surface){{0}};
+  for (int d = 0; d < VXM_LINK_AXES && links && !alone; d++) {
     frames[d].triangle = triangle;
     frames[d].surface = &surface;
   }
-  looked l = {job, frames[0].meetings, alone ? NULL : frames, points, is_far(&job->placed->lattice, points)};
+  looked l = {job, frames[0].meetings, alone || !links ? NULL : frames, points,
+              is_far(&job->placed->lattice, points)};
   for (int axis = 0; axis < 3; axis++)
     if (differ & vxm_cell_mask(axis))
       cross_sections(&l, axis);

@@ -5,6 +5,7 @@
 #define VXM_VOXEL_THIN_SIEVE_KERNELS_H
 
 #include "voxel/parity/kernels.h"
+#include "voxel/thin/octree_sieve.h"
 #include "voxel/thin/sieve.h"
 
 typedef struct vxm_sieve_kernels {
@@ -17,6 +18,10 @@ typedef struct vxm_sieve_kernels {
   void (*join)(uint64_t *to, uint64_t *along, const uint64_t *from, size_t step, size_t count);
   /** Short numbers of cells, as vxm_thin_job has them. */
   void (*shorten)(uint32_t *to, const uint64_t *cells, size_t count);
+  /** Whether links that a triangle crosses may have no voxel at their ends, if the solid is on one side of
+   * it, 1 for that to which the normal points, else -1. @param unsure NULL, or becomes such links: they are
+   * boxes, and empty ones lie from INT64_MAX to INT64_MIN */
+  bool (*search_bricks)(const vxm_octree_sieve *sieve, int inner, vxm_unsure_links *unsure);
 } vxm_sieve_kernels;
 
 /** The build that goes with other kernels; NULL = with those of vxm_kernels_get. */

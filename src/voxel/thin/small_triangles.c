@@ -265,7 +265,7 @@ static bool meet_small(vxm_link_frame *frames, size_t triangle, uint64_t differ)
     }
   /* Of two lines that a section crosses the one told is such that the other sections tell all others. */
   if (lines != 0 && !keep_links(frames, triangle, &s, lines))
-    vxm_meet_links(frames, triangle, differ);
+    vxm_meet_links(frames, triangle, differ, NULL);
   return true;
 }
 
