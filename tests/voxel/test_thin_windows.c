@@ -39,11 +39,9 @@ static void check_windows(vxm_model *model, const vxm_grid *whole, vxm_layout la
     if (vxm_model_pass_fill(pass, &window, &error) != VXM_OK)
       fail_msg("%s", error.text);
     int64_t v[3];
-    for (v[2] = 0; v[2] < space->dims[2]; v[2]++)
-      for (v[1] = 0; v[1] < space->dims[1]; v[1]++)
-        for (v[0] = 0; v[0] < space->dims[0]; v[0]++) {
-          if (v[layout.slow] < begin || v[layout.slow] >= end)
-            continue;
+    for (v[layout.slow] = begin; v[layout.slow] < end; v[layout.slow]++)
+      for (v[layout.middle] = 0; v[layout.middle] < space->dims[layout.middle]; v[layout.middle]++)
+        for (v[layout.fast] = 0; v[layout.fast] < space->dims[layout.fast]; v[layout.fast]++) {
           int64_t fast = v[layout.fast];
           const uint64_t *row = vxm_window_row(&window, v[layout.middle], v[layout.slow]);
           if ((row[fast / 64] >> (fast % 64) & 1) != vxm_grid_get(whole, v[0], v[1], v[2]))
