@@ -39,6 +39,6 @@ run 'voxmend voxelize in/torus.off -o no.npy --baseline zhang --mode surface --s
 run 'voxmend voxelize in/torus.off -o no.npy --baseline simple --mode surface --surface shell6'
 run 'voxmend voxelize in/torus.off -o no.npy --baseline zhang --engine opencl'
 run 'voxmend voxelize in/torus.off -o no.npy --baseline faieghi'
-run 'voxmend voxelize in/torus.off -o no.npy -r 3000 --bounds 0,0,0,.01,.01,.01 --baseline simple'
+run 'voxmend voxelize in/torus.off -o no.npy -r 3000x9x9 --bounds 0,0,0,.01,.01,.01 --baseline simple'
 run 'ls no.npy'
 finish

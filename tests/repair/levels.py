@@ -37,7 +37,13 @@ def read_ply(path):
     faces = int(re.search(r"element face (\d+)", text).group(1))
     lists = numpy.dtype("<u4" if "list uint" in text else "u1")
     points = numpy.frombuffer(data, "<f8", 3 * vertices).reshape(-1, 3)
-    at, found = 24 * vertices, []
+    at = 24 * vertices
+    triangle = numpy.dtype([("count", lists), ("corners", "<u4", 3)])
+    if faces and len(data) - at == faces * triangle.itemsize:
+        triangles = numpy.frombuffer(data, triangle, faces, at)
+        if (triangles["count"] == 3).all():
+            return points, triangles["corners"].tolist()
+    found = []
     for _ in range(faces):
         count = int(numpy.frombuffer(data, lists, 1, at)[0])
         at += lists.itemsize
@@ -69,17 +75,23 @@ def read_obj(path):
     return numpy.array(points).reshape(-1, 3), faces
 
 
-def judge(points, faces):
-    """What a program that welds positions finds: closed, manifold edges."""
-    places = {}
-    name = [places.setdefault((p + 0.0).tobytes(), len(places)) for p in points]
-    sides = collections.Counter()
+def sides_of(faces):
+    """(from, to) of each side of each face."""
+    by_count = collections.defaultdict(list)
     for face in faces:
-        for a, b in zip(face, face[1:] + face[:1]):
-            sides[name[a], name[b]] += 1
-    manifold = all(n == 1 for n in sides.values())
-    closed = manifold and all((b, a) in sides for a, b in sides)
-    return closed, manifold
+        by_count[len(face)].append(face)
+    return numpy.concatenate([numpy.zeros((0, 2), "<i8")] + [
+        numpy.stack([alike, numpy.roll(alike, -1, 1)], -1).reshape(-1, 2) for alike in map(numpy.array, by_count.values())])
+
+
+def judge(points, sides):
+    """What a program that welds positions finds: closed, manifold edges."""
+    places = numpy.ascontiguousarray(points + 0.0)  # one zero, not two
+    name = numpy.unique(places.view("V%d" % (3 * places.itemsize)), return_inverse=True)[1].ravel()
+    a, b = name[sides[:, 0]], name[sides[:, 1]]
+    there, back = numpy.sort(a * len(points) + b), numpy.sort(b * len(points) + a)
+    manifold = not (there[1:] == there[:-1]).any()
+    return manifold and numpy.array_equal(there, back), manifold
 
 
 def winding(points, faces, origin, size, dims):
@@ -195,11 +207,12 @@ class Trial:
         points, faces = {"ply": read_ply, "stl": read_stl, "obj": read_obj}[path[-3:]](path)
         if level != "clean" and any(len(face) != 3 for face in faces):
             return "wrong", "has polygons"
+        sides = sides_of(faces)
         low, high = report["after"]["bounds"][:3], report["after"]["bounds"][3:]
         small = numpy.linalg.norm(numpy.subtract(high, low)) < 1e-3
         for how, places in (("", points), (" after rounding to 1e-8", points if small else numpy.rint(points * 1e8)),
                             (" as 32-bit floats", points if level == "manifold" else points.astype("<f4"))):
-            closed, manifold = judge(places, faces)
+            closed, manifold = judge(places, sides)
             if level in ("closed", "solid") and not closed:
                 return "wrong", "is said to be closed, and is not" + how
             if level == "manifold" and not manifold:

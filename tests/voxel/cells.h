@@ -3,6 +3,7 @@
 #ifndef VXM_TESTS_CELLS_H
 #define VXM_TESTS_CELLS_H
 
+#include "../base/rounds.h"
 #include "../mesh/soups.h"
 
 #include "repair/repair.h"
@@ -139,7 +140,7 @@ static inline int count_wrong(const vxm_soup *soup, const manner *how, const boo
 
 static inline uint64_t rounds_of(uint64_t usual) {
   const char *rounds = getenv("VOXMEND_TEST_ROUNDS");
-  return rounds ? (uint64_t)atoll(rounds) : usual;
+  return rounds ? (uint64_t)atoll(rounds) : ROUNDS(usual);
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The surface, conservative and thin, against brute force in exact integers, however the work is divided. */
+#include "../base/rounds.h"
 #include "surface_oracle.h"
 #include "surfaces.h"
 
@@ -217,7 +218,7 @@ static void draw_some_way(vxm_rng *rng, const vxm_surface *surface, const vxm_wi
 
 /** @param only -1 = all in turn */
 static void check_random(vxm_rng *rng, const vxm_space *space, int rounds, int only) {
-  for (int round = 0; round < rounds; round++) {
+  for (int round = 0; round < ROUNDS(rounds); round++) {
     scene s;
     int kind = only < 0 ? round % KINDS : only;
     vxm_surface_force(builds[vxm_rng_below(rng, build_count)]);

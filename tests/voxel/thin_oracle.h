@@ -136,11 +136,26 @@ static inline exact thin_det(const exact a[3], const exact b[3], const exact c[3
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
+/** Whether all of a triangle lies more than two voxels beyond a centre along an axis: no link reaches it. */
+static inline bool thin_is_far(const thin_mesh *mesh, const thin_triangle *t, const int64_t from[3]) {
+  const vxm_point *at = t->at;
+  for (int a = 0; a < 3; a++) {
+    int64_t low = vxm_lattice_centre(&mesh->lattice, from[a] - 2),
+            high = vxm_lattice_centre(&mesh->lattice, from[a] + 2);
+    if ((at[0].at[a] < low && at[1].at[a] < low && at[2].at[a] < low) ||
+        (at[0].at[a] > high && at[1].at[a] > high && at[2].at[a] > high))
+      return true;
+  }
+  return false;
+}
+
 /** Whether a triangle crosses the link from a voxel's centre over `step`, and how far along that, 0 to 1. */
 static inline bool thin_crosses_link(const thin_mesh *mesh, const thin_triangle *t, const int64_t from[3],
                                      const int step[3], double *part) {
   exact way[3], corner[3][3];
   int sum = 0;
+  if (thin_is_far(mesh, t, from))
+    return false;
   for (int a = 0; a < 3; a++) {
     way[a] = step[a] * mesh->lattice.unit;
     for (int k = 0; k < 3; k++)
