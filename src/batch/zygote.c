@@ -11,6 +11,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+/** What the program has open is not for it: whoever inherits the journal holds its lock, and may outlive us. */
+static void close_all_but(int channel) {
+  enum { FIRST = 3 };
+  if (channel > FIRST)
+    close_range(FIRST, (unsigned)channel - 1, 0);
+  close_range((unsigned)channel + 1, ~0U, 0);
+}
+
 bool batch_zygote_start(batch_zygote *out, batch_work *work, void *payload, batch_error *error) {
   int ends[2];
   *out = (batch_zygote){.channel = -1};
@@ -22,7 +30,7 @@ bool batch_zygote_start(batch_zygote *out, batch_work *work, void *payload, batc
   }
   pid_t parent = getpid(), id = fork();
   if (id == 0) {
-    close(ends[0]);
+    close_all_but(ends[1]);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() == parent)
       batch_zygote_loop(ends[1], work, payload);
