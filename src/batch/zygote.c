@@ -11,7 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/** What the program has open is not for it: whoever inherits the journal holds its lock, and may outlive us. */
+/** What the program has open is not for it: whoever inherits the journal holds its lock, and may outlive us.
+ */
 static void close_all_but(int channel) {
   enum { FIRST = 3 };
   if (channel > FIRST)
