@@ -23,9 +23,14 @@ static void random_words(vxm_rng *rng, uint64_t *out, size_t count) {
 }
 
 /** A block of exactly `count` words, so that sanitizers see the first word behind it. */
+static uint64_t *block_of(size_t count) {
+  uint64_t *block = malloc(count * sizeof *block + (count == 0));
+  assert_non_null(block);
+  return block;
+}
+
 static uint64_t *copy_of(const uint64_t *words, size_t count) {
-  uint64_t *copy = malloc(count * sizeof *words + (count == 0));
-  assert_non_null(copy);
+  uint64_t *copy = block_of(count);
   if (count > 0)
     memcpy(copy, words, count * sizeof *words);
   return copy;
@@ -95,31 +100,70 @@ static void test_single_bits_fill_their_row(void **state) {
     }
 }
 
-/** Lines folded past the cache are those folded in place, and leave nothing behind. */
+/** Rows of which many are folded some at a time, and such as are folded in pieces. */
+static void test_many_and_long_rows_are_folded(void **state) {
+  (void)state;
+  const size_t shapes[][2] = {{3, 400}, {5, 203}, {12, 90}, {100, 9}, {255, 3}, {256, 3}, {257, 3}, {300, 2}};
+  vxm_rng rng = {18};
+  for (size_t s = 0; s < sizeof shapes / sizeof *shapes; s++)
+    for (int round = 0; round < 3; round++) {
+      size_t count = shapes[s][0] * shapes[s][1];
+      uint64_t *data = block_of(count);
+      random_words(&rng, data, count);
+      for (size_t i = 0; i < count; i++)
+        data[i] = vxm_rng_below(&rng, 3) ? 0 : data[i];
+      check_fold_rows(data, shapes[s][0], shapes[s][1], 1 + (unsigned)vxm_rng_below(&rng, 64));
+      free(data);
+    }
+}
+
+/** Rows folded past the cache, to any place in a line, are those folded in place; nothing is left behind, and
+ * nothing written around. */
+static void check_fold_past(vxm_rng *rng, size_t row_words, size_t rows) {
+  enum { AROUND = 8 };
+  const uint64_t other = UINT64_C(0xa5a5a5a5a5a5a5a5);
+  size_t count = row_words * rows, shift = (size_t)vxm_rng_below(rng, AROUND);
+  uint64_t tail_mask = vxm_low_bits(vxm_rng_below(rng, 2) ? 64 : 1 + (unsigned)vxm_rng_below(rng, 64));
+  uint64_t *data = block_of(count);
+  random_words(rng, data, count);
+  for (size_t i = 0; i < count; i++) /* many lines without a flip */
+    data[i] = vxm_rng_below(rng, 4) ? 0 : data[i];
+  for (size_t r = 1; r <= rows; r++)
+    data[r * row_words - 1] &= tail_mask;
+  for (size_t b = 0; b < build_count; b++) {
+    uint64_t *want = copy_of(data, count), *from = copy_of(data, count);
+    uint64_t *room = aligned_alloc(64, (count + 3 * AROUND) / 8 * 64), *to = room + AROUND + shift;
+    assert_non_null(room);
+    for (size_t i = 0; i < count + 2 * AROUND; i++)
+      room[i] = other;
+    uint64_t any = builds[b]->fold_rows_past(to, from, row_words, rows, tail_mask);
+    uint64_t in_place = builds[b]->fold_rows(want, row_words, rows, tail_mask);
+    assert_true((any != 0) == (in_place != 0));
+    assert_words(to, want, count);
+    for (size_t i = 0; i < count; i++)
+      assert_true(from[i] == 0);
+    for (size_t i = 0; i < AROUND + shift; i++)
+      assert_true(room[i] == other);
+    for (size_t i = AROUND + shift + count; i < count + 2 * AROUND; i++)
+      assert_true(room[i] == other);
+    free(room);
+    free(from);
+    free(want);
+  }
+  free(data);
+}
+
 static void test_rows_are_folded_past_the_cache(void **state) {
   (void)state;
-  enum { ROWS = 5, ROW_MAX = 40 };
   vxm_rng rng = {14};
-  for (size_t row_words = 8; row_words <= ROW_MAX; row_words += 8)
-    for (int round = 0; round < 20; round++) {
-      _Alignas(64) uint64_t from[ROWS * ROW_MAX], to[ROWS * ROW_MAX], want[ROWS * ROW_MAX];
-      size_t count = ROWS * row_words;
-      random_words(&rng, want, count);
-      for (size_t i = 0; i < count; i++) /* many lines without a flip */
-        want[i] = vxm_rng_below(&rng, 4) ? 0 : want[i];
-      for (size_t b = 0; b < build_count; b++) {
-        uint64_t *folded = copy_of(want, count);
-        memcpy(from, want, count * sizeof *from);
-        memset(to, 0xa5, sizeof to);
-        uint64_t any = builds[b]->fold_rows_past(to, from, row_words, ROWS);
-        uint64_t in_place = builds[b]->fold_rows(folded, row_words, ROWS, ~UINT64_C(0));
-        assert_true((any != 0) == (in_place != 0));
-        assert_words(to, folded, count);
-        for (size_t i = 0; i < count; i++)
-          assert_true(from[i] == 0);
-        free(folded);
-      }
-    }
+  for (size_t row_words = 1; row_words <= 40; row_words++)
+    for (int round = 0; round < 20; round++)
+      check_fold_past(&rng, row_words, 5);
+  const size_t shapes[][2] = {{2, 300}, {4, 150}, {7, 99},  {8, 99}, {16, 40},
+                              {255, 3}, {256, 3}, {257, 3}, {264, 2}};
+  for (size_t s = 0; s < sizeof shapes / sizeof *shapes; s++)
+    for (int round = 0; round < 20; round++)
+      check_fold_past(&rng, shapes[s][0], shapes[s][1]);
 }
 
 static void test_rows_are_folded_onto_rows(void **state) {
@@ -216,10 +260,13 @@ static void test_words_are_moved(void **state) {
 static void check_vote(vxm_rng *rng, size_t count, vxm_vote rule, bool fourth, bool masked) {
   uint64_t data[5][WORDS_MAX];
   bool fresh = vxm_rng_below(rng, 2), past = vxm_rng_below(rng, 2);
+  size_t at = (size_t)vxm_rng_below(rng, 8); /* in a line */
   for (int v = 0; v < 5; v++)
     random_words(rng, data[v], count);
   for (size_t b = 0; b < build_count; b++) {
-    uint64_t *voter[4], *out = copy_of(data[4], count), *mask = copy_of(data[0], count);
+    uint64_t *voter[4], *mask = copy_of(data[0], count);
+    uint64_t *room = block_of(count + 8), *out = room + at;
+    memcpy(out, data[4], count * sizeof *out);
     for (int v = 0; v < 4; v++)
       voter[v] = copy_of(data[v], count);
     const uint64_t *const voters[4] = {voter[0], voter[1], voter[2], fourth ? voter[3] : NULL};
@@ -242,7 +289,7 @@ static void check_vote(vxm_rng *rng, size_t count, vxm_vote rule, bool fourth, b
     assert_true(added == want_added);
     for (int v = 0; v < 4; v++)
       free(voter[v]);
-    free(out);
+    free(room);
     free(mask);
   }
 }
@@ -517,6 +564,7 @@ int main(void) {
       cmocka_unit_test(test_the_level_limits_the_builds),
       cmocka_unit_test(test_rows_are_folded),
       cmocka_unit_test(test_single_bits_fill_their_row),
+      cmocka_unit_test(test_many_and_long_rows_are_folded),
       cmocka_unit_test(test_rows_are_folded_past_the_cache),
       cmocka_unit_test(test_rows_are_folded_onto_rows),
       cmocka_unit_test(test_nodes_are_folded),

@@ -45,9 +45,9 @@ typedef struct vxm_kernels {
   /** Prefix XOR along each of `rows` rows of row_words words, in place; the last word is masked. Returns
    * 0 if no bit is set. */
   uint64_t (*fold_rows)(uint64_t *words, size_t row_words, size_t rows, uint64_t tail_mask);
-  /** The same for whole lines of 64 bytes, with the result stored past the cache to `to`, and `words`
-   * cleared. row_words is a multiple of 8, and both are aligned to lines. */
-  uint64_t (*fold_rows_past)(uint64_t *to, uint64_t *words, size_t row_words, size_t rows);
+  /** The same with the result stored past the cache to `to`, and `words` cleared. */
+  uint64_t (*fold_rows_past)(uint64_t *to, uint64_t *words, size_t row_words, size_t rows,
+                             uint64_t tail_mask);
   /** words[i] ^= words[i - distance] for i = distance to count - 1: prefix XOR of row onto row. */
   void (*fold_across)(uint64_t *words, size_t distance, size_t count);
   /** to |= from, from = 0; returns the OR of all words of `from`. */

@@ -275,7 +275,8 @@ static void do_in_place(const slab *s, vxm_crossing_bin_reader *reader, uint32_t
       flip_piece(s, words, &piece, &flipped);
   if (state->past) {
     size_t rows = (size_t)(s->end - s->begin) * (size_t)state->window->middle_dim;
-    if (state->kernels->fold_rows_past(s->out, s->work, state->window->row_words, rows))
+    if (state->kernels->fold_rows_past(s->out, s->work, state->window->row_words, rows,
+                                       vxm_window_tail_mask(state->window)))
       touch(state, part);
     return;
   }
@@ -385,8 +386,7 @@ static void shape(unite_state *state) {
   if (slices)
     columns->step[layout->slow] = state->row_bits << state->slabs.shift;
   state->in_place = !slices && job->fresh && job->part_end - job->part_begin == 1;
-  state->past = state->in_place && state->along == ALONG_ROWS && vxm_window_is_large(window) &&
-                window->fast_dim % 512 == 0 && (uintptr_t)window->words % 64 == 0;
+  state->past = state->in_place && state->along == ALONG_ROWS && vxm_window_is_large(window);
   state->straight = state->in_place && vxm_context_threads(state->workspace->context) == 1 &&
                     (size_t)depth * window->slice_words <= STRAIGHT_WORDS;
   if (state->straight)
