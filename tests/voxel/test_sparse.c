@@ -8,6 +8,7 @@
 #include "shapes.h"
 
 #include "grid/octree.h"
+#include "voxel/sparse/sparse.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -15,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void check_model(vxm_model *model, const vxm_space *space, const double *transform, const char *name) {
+static void check_way(vxm_model *model, const vxm_space *space, const double *transform, const char *name) {
   vxm_error error = VXM_ERROR_INIT;
   vxm_voxelize_report dense = VXM_VOXELIZE_REPORT_INIT, sparse = VXM_VOXELIZE_REPORT_INIT;
   vxm_grid *grid, *back;
@@ -39,6 +40,15 @@ static void check_model(vxm_model *model, const vxm_space *space, const double *
   vxm_sparse_destroy(octree);
   vxm_grid_destroy(back);
   vxm_grid_destroy(grid);
+}
+
+/** Octrees made from the triangles and by way of a grid. */
+static void check_model(vxm_model *model, const vxm_space *space, const double *transform, const char *name) {
+  for (int direct = 0; direct < 2; direct++) {
+    vxm_sparse_force_direct(direct);
+    check_way(model, space, transform, name);
+  }
+  vxm_sparse_force_direct(false);
 }
 
 static void check(const vxm_soup *soup, const vxm_space *space, const vxm_voxelize_options *options) {

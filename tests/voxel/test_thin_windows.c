@@ -6,6 +6,7 @@
 
 #include "grid/octree.h"
 #include "voxel/model/model_report.h"
+#include "voxel/sparse/sparse.h"
 
 static vxm_context *contexts[3]; /* of 1, 2 and 3 threads */
 
@@ -89,7 +90,8 @@ static void test_many_sheets(void **state) {
     }
 }
 
-static void check_sparse(vxm_model *model, const vxm_grid *whole, int64_t thin_voxels, double thin_share) {
+static void check_sparse_way(vxm_model *model, const vxm_grid *whole, int64_t thin_voxels,
+                             double thin_share) {
   vxm_error error = VXM_ERROR_INIT;
   vxm_sparse *octree;
   vxm_grid *grid;
@@ -102,6 +104,15 @@ static void check_sparse(vxm_model *model, const vxm_grid *whole, int64_t thin_v
   assert_true(fabs(report.thin_share - thin_share) < 1e-9);
   vxm_grid_destroy(grid);
   vxm_sparse_destroy(octree);
+}
+
+/** An octree, made from the triangles and by way of a grid. */
+static void check_sparse(vxm_model *model, const vxm_grid *whole, int64_t thin_voxels, double thin_share) {
+  for (int direct = 0; direct < 2; direct++) {
+    vxm_sparse_force_direct(direct);
+    check_sparse_way(model, whole, thin_voxels, thin_share);
+  }
+  vxm_sparse_force_direct(false);
 }
 
 /** A soup in each context: the whole grid of the first is that of the others, in windows and as an octree. */

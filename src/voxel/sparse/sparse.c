@@ -18,6 +18,22 @@ bool vxm_sparse_is_direct(const vxm_model *model) {
   return !vxm_votes_wanted(&model->analysis, options);
 }
 
+static bool is_direct_forced;
+
+void vxm_sparse_force_direct(bool force) {
+  is_direct_forced = force;
+}
+
+/** Whether the mesh is so fine that to keep thin parts takes less time in a grid than in an octree. */
+static bool is_better_in_grid(const vxm_model_pass *pass) {
+  const uint64_t words_each = 128; /* for each triangle, as measured */
+  const int64_t *dims = pass->space.dims;
+  uint64_t triangles = pass->solid.analysis->triangles.triangle_count;
+  uint64_t words = (uint64_t)(dims[0] + 63) / 64 * (uint64_t)dims[1] * (uint64_t)dims[2];
+  return pass->separating && !is_direct_forced && words <= words_each * triangles &&
+         words * sizeof words < vxm_memory_left(pass->solid.context) / 4;
+}
+
 /** Whether nothing is made by windows: neither the solid, where one is wanted, nor the faces. */
 static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pass) {
   const vxm_engine *engine = pass->solid.engine;
@@ -25,7 +41,7 @@ static bool is_without_windows(const vxm_model *model, const vxm_model_pass *pas
   bool solid = vxm_solid_wanted(&model->options), faces = vxm_faces_wanted(&model->options);
   if (ops && ((solid && !ops->sparse) || (faces && ops->surface && !ops->sparse_surface)))
     return false; /* the engine makes windows only */
-  return !solid || vxm_sparse_is_direct(model);
+  return !solid || (vxm_sparse_is_direct(model) && (ops || !is_better_in_grid(pass)));
 }
 
 static vxm_sparse_job job_of(const vxm_model_pass *pass) {

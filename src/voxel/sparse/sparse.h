@@ -19,6 +19,10 @@ vxm_status vxm_sparse_union(vxm_octree_builder *builder, vxm_workspace *workspac
 /** Whether one axis tells all of the solid: then the triangles become an octree directly. */
 bool vxm_sparse_is_direct(const vxm_model *model);
 
+/** Whether octrees are made from triangles directly also where it is faster to make a grid first. For tests,
+ * while nothing runs. */
+void vxm_sparse_force_direct(bool force);
+
 /** The octree of a pass that has been begun and has filled nothing. @return as vxm_model_sparse */
 vxm_status vxm_sparse_of_pass(vxm_sparse **out, const vxm_model *model, vxm_model_pass *pass,
                               vxm_error *error);
