@@ -3,12 +3,15 @@
 
 #include <math.h>
 
+/** Whether another one may be put. */
+static bool is_open(vxm_meetings *meetings) {
+  meetings->is_full |= meetings->count + meetings->in_cubes_count >= meetings->most;
+  return meetings->error.code == VXM_OK && !meetings->is_full;
+}
+
 /** Room for another one, or NULL. */
 static vxm_meeting *next_of(vxm_meetings *meetings) {
-  if (meetings->error.code != VXM_OK)
-    return NULL;
-  meetings->is_full |= meetings->count >= meetings->most;
-  if (meetings->is_full)
+  if (!is_open(meetings))
     return NULL;
   if (meetings->count == meetings->capacity &&
       vxm_grow(meetings->context, (void **)&meetings->list, &meetings->capacity, meetings->count + 1,
@@ -26,6 +29,15 @@ void vxm_meetings_put_link(vxm_meetings *meetings, const vxm_view *view, vxm_thi
   vxm_meeting *m = next_of(meetings);
   if (m)
     *m = (vxm_meeting){vxm_cell_number(view, stage, direction, lowest), {parts_of(offset)}, polygon};
+}
+
+void vxm_meetings_put_in_cube(vxm_meetings *meetings, size_t triangle) {
+  if (!is_open(meetings) ||
+      (meetings->in_cubes_count == meetings->in_cubes_room &&
+       vxm_grow(meetings->context, (void **)&meetings->in_cubes, &meetings->in_cubes_room,
+                meetings->in_cubes_count + 1, sizeof *meetings->in_cubes, &meetings->error) != VXM_OK))
+    return;
+  meetings->in_cubes[meetings->in_cubes_count++] = (uint32_t)triangle;
 }
 
 void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, const int64_t lowest[3],

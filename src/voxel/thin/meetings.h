@@ -15,7 +15,9 @@ typedef struct vxm_meetings {
   vxm_context *context;
   vxm_meeting *list;
   size_t count, capacity;
-  size_t most;       /**< of `count` */
+  uint32_t *in_cubes; /**< triangles in cubes without a voxel, see vxm_meet_cubes */
+  size_t in_cubes_count, in_cubes_room;
+  size_t most;       /**< of `count` and `in_cubes_count` together */
   bool is_full;      /**< there were more */
   int64_t thin_area; /**< of faces at links along the axes along which their normals are longest; in parts of
                         a square of voxels, of which a square has VXM_OFFSET_UNIT */
@@ -25,6 +27,8 @@ typedef struct vxm_meetings {
 /** Puts a face that crosses a link into the list, `offset` voxels beyond its middle. */
 void vxm_meetings_put_link(vxm_meetings *meetings, const vxm_view *view, vxm_thin_stage stage,
                            const int64_t lowest[3], int direction, double offset, uint32_t polygon);
+/** Puts a triangle into the list of those in cubes. */
+void vxm_meetings_put_in_cube(vxm_meetings *meetings, size_t triangle);
 /** Puts what lies in a square or a cube: its `count` points are so many voxels off the middle. */
 void vxm_meetings_put(vxm_meetings *meetings, const vxm_view *view, int kind, const int64_t lowest[3],
                       const double (*offsets)[3], int count);
@@ -73,8 +77,11 @@ int64_t vxm_link_voxel(const vxm_link_frame *frame, const vxm_point corner[3], i
 void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ, const vxm_unsure_links *unsure);
 /** The squares in which its sections lie, and all links that it crosses. */
 void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ);
-/** The cube in which it lies; nothing if it reaches into several, as it crosses squares then. */
+/** The cube in which it lies, which is looked at later; nothing if it reaches into several, as it crosses
+ * squares then. */
 void vxm_meet_cube(vxm_meetings *meetings, const vxm_thin_job *job, size_t triangle);
+/** The cubes of triangles, once links and squares have their voxels: few have none by then. */
+void vxm_meet_cubes(vxm_meetings *meetings, const vxm_thin_job *job);
 
 /** What triangles begin..end-1 meet: links along the axes, squares and cubes. The points' cells must be
  * known. */

@@ -76,6 +76,12 @@ static void look_at_some(size_t task, int worker, void *payload) {
   }
 }
 
+static void look_at_cubes(size_t list, int worker, void *payload) {
+  (void)worker;
+  const search *s = payload;
+  vxm_meet_cubes(&s->thin->found[list], s->job);
+}
+
 /* ---- Sorting ---- */
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
@@ -220,7 +226,6 @@ static vxm_status gather(vxm_thin_adder *thin, vxm_meeting *lists[2], size_t *co
       return thin->found[w].error.code;
     }
     total += thin->found[w].count;
-    thin->area += thin->found[w].thin_area;
   }
   *count = total;
   if (total == 0)
@@ -257,6 +262,7 @@ static vxm_status make_room(vxm_thin_adder *thin, bool limited, vxm_error *error
       (size_t)(vxm_thin_budget(thin->context) / VXM_THIN_COPIES / sizeof(vxm_meeting)) / (size_t)threads;
   for (int w = 0; w < thin->threads; w++) {
     thin->found[w].count = 0;
+    thin->found[w].in_cubes_count = 0;
     thin->found[w].thin_area = 0;
     thin->found[w].is_full = false;
     thin->found[w].most = limited ? most : SIZE_MAX;
@@ -282,11 +288,34 @@ static size_t task_of(const vxm_thin_adder *thin, const vxm_thin_job *job) {
   return !job->middles || share < TASK_LEAST ? TASK_LEAST : least(share, TASK_MOST);
 }
 
+/** Sets the voxels that what has been found asks for. */
+static vxm_status apply_found(vxm_thin_adder *thin, const vxm_thin_job *job, const target *to,
+                              vxm_error *error) {
+  size_t count = 0;
+  vxm_meeting *lists[2];
+  vxm_status status = gather(thin, lists, &count, error);
+  if (status != VXM_OK || count == 0)
+    return status;
+  return apply(thin, job, sort_meetings(lists[0], lists[1], count), count, to, error);
+}
+
+/** Sets the voxels of cubes, behind all others. */
+static vxm_status add_cubes(vxm_thin_adder *thin, search *s, const target *to, vxm_error *error) {
+  bool any = false;
+  for (int w = 0; w < thin->threads; w++) {
+    thin->found[w].count = 0;
+    any |= thin->found[w].in_cubes_count > 0;
+  }
+  if (!any)
+    return VXM_OK;
+  vxm_status status = vxm_parallel_asked(thin->context, (size_t)thin->threads, look_at_cubes, s, error);
+  return status == VXM_OK ? apply_found(thin, s->job, to, error) : status;
+}
+
 static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to, bool *too_many,
                       vxm_error *error) {
   search s = {thin, job, task_of(thin, job)};
-  size_t tasks = (count_looked_at(job) + s.task - 1) / s.task, count = 0;
-  vxm_meeting *lists[2];
+  size_t tasks = (count_looked_at(job) + s.task - 1) / s.task;
   vxm_status status = make_room(thin, too_many != NULL, error);
   if (status == VXM_OK)
     status = vxm_parallel_asked(thin->context, tasks, look_at_some, &s, error);
@@ -294,12 +323,12 @@ static vxm_status add(vxm_thin_adder *thin, vxm_thin_job *job, const target *to,
     *too_many = true;
     return VXM_OK;
   }
-  if (status == VXM_OK)
-    status = gather(thin, lists, &count, error);
-  if (status != VXM_OK || count == 0)
-    return status;
+  for (int w = 0; w < thin->threads; w++)
+    thin->area += thin->found[w].thin_area;
   job->view.added = to->added;
-  return apply(thin, job, sort_meetings(lists[0], lists[1], count), count, to, error);
+  if (status == VXM_OK)
+    status = apply_found(thin, job, to, error);
+  return status == VXM_OK ? add_cubes(thin, &s, to, error) : status;
 }
 
 /** Makes the maps where they cost less than they save, and there is memory. */
@@ -375,8 +404,10 @@ vxm_status vxm_thin_find(vxm_thin_adder *thin, vxm_voxel_set *added, const vxm_s
 }
 
 void vxm_thin_destroy(vxm_thin_adder *thin) {
-  for (int w = 0; w < thin->threads; w++)
+  for (int w = 0; w < thin->threads; w++) {
     vxm_free(thin->context, thin->found[w].list);
+    vxm_free(thin->context, thin->found[w].in_cubes);
+  }
   vxm_free(thin->context, thin->found);
   vxm_free(thin->context, thin->scratch);
   vxm_free(thin->context, thin->maps);
