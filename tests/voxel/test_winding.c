@@ -11,6 +11,7 @@
 #include "voxel/winding/oriented_chain.h"
 #include "voxel/winding/winding_exact.h"
 #include "voxel/winding/winding_fill.h"
+#include "voxel/winding/winding_walk.h"
 
 #include <math.h>
 #include <string.h>
@@ -75,33 +76,36 @@ static bool bit_at(const uint64_t *words, const vxm_space *space, vxm_layout lay
   return words[row + (size_t)at[layout.fast] / 64] >> (at[layout.fast] % 64) & 1;
 }
 
+/** The solid angle of a triangle from the centre of a voxel, by 4 pi; *touches if that lies on it. */
+static double share_of(const subject *s, const uint32_t corners[3], const int64_t voxel[3], bool *touches) {
+  double v[3][3], length[3], dot[3], volume = 0;
+  for (int k = 0; k < 3; k++) {
+    vxm_point p = vxm_snapped_points_at(&s->placed, corners[k]);
+    for (int a = 0; a < 3; a++)
+      v[k][a] = (double)(p.at[a] - vxm_lattice_centre(&s->placed.lattice, voxel[a])) /
+                (double)s->placed.lattice.unit;
+  }
+  for (int k = 0; k < 3; k++) {
+    length[k] = sqrt(v[k][0] * v[k][0] + v[k][1] * v[k][1] + v[k][2] * v[k][2]);
+    const double *next = v[(k + 1) % 3];
+    dot[k] = v[k][0] * next[0] + v[k][1] * next[1] + v[k][2] * next[2];
+  }
+  for (int a = 0; a < 3; a++)
+    volume += v[0][a] * (v[1][(a + 1) % 3] * v[2][(a + 2) % 3] - v[1][(a + 2) % 3] * v[2][(a + 1) % 3]);
+  double sides =
+      length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
+  *touches |= fabs(volume) < 1e-12 && sides <= 1e-12;
+  return atan2(volume, sides) / (2 * M_PI);
+}
+
 /** The sum of all solid angles, term by term; *touches: the centre of the voxel lies on a triangle. */
 static double oracle(const subject *s, const int64_t voxel[3], bool *touches) {
   double sum = 0;
   *touches = false;
-  for (size_t t = 0; t < s->triangles.triangle_count; t++) {
-    if (vxm_role_of(&s->triangles, t) != VXM_ROLE_FACE)
-      continue;
-    double v[3][3], length[3], dot[3], volume = 0;
-    for (int k = 0; k < 3; k++) {
-      vxm_point p = vxm_snapped_points_at(&s->placed, s->triangles.corners[t][k]);
-      for (int a = 0; a < 3; a++)
-        v[k][a] = (double)(p.at[a] - vxm_lattice_centre(&s->placed.lattice, voxel[a])) /
-                  (double)s->placed.lattice.unit;
-    }
-    for (int k = 0; k < 3; k++) {
-      length[k] = sqrt(v[k][0] * v[k][0] + v[k][1] * v[k][1] + v[k][2] * v[k][2]);
-      const double *next = v[(k + 1) % 3];
-      dot[k] = v[k][0] * next[0] + v[k][1] * next[1] + v[k][2] * next[2];
-    }
-    for (int a = 0; a < 3; a++)
-      volume += v[0][a] * (v[1][(a + 1) % 3] * v[2][(a + 2) % 3] - v[1][(a + 2) % 3] * v[2][(a + 1) % 3]);
-    double sides =
-        length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
-    *touches |= fabs(volume) < 1e-12 && sides <= 1e-12;
-    sum += 2 * atan2(volume, sides);
-  }
-  return sum / (4 * M_PI);
+  for (size_t t = 0; t < s->triangles.triangle_count; t++)
+    if (vxm_role_of(&s->triangles, t) == VXM_ROLE_FACE)
+      sum += share_of(s, s->triangles.corners[t], voxel, touches);
+  return sum;
 }
 
 static vxm_rng rng = {21};
@@ -148,34 +152,135 @@ static vxm_soup *random_soup(int round, double side) {
 enum { SIDE = 20 };
 static const vxm_space cube = {{SIDE, SIDE, SIDE}, {0, 0, 0}, {1, 1, 1}};
 
-/** The sign at every voxel is that of the sum; where that is one half to rounding, or jumps, it may be
- * either. */
+/** The sign at every voxel of a cube is that of the sum; where that is one half to rounding, or jumps, it may
+ * be either. */
+static void check_signs(const vxm_soup *soup, const vxm_space *space, int round, size_t *set, size_t *ties) {
+  subject s;
+  begin(&s, soup, space);
+  uint64_t *words = fill(&s, (vxm_layout)VXM_LAYOUT_GRID, SIDE, NULL, NULL);
+  int64_t at[3];
+  for (at[2] = 0; at[2] < SIDE; at[2]++)
+    for (at[1] = 0; at[1] < SIDE; at[1]++)
+      for (at[0] = 0; at[0] < SIDE; at[0]++) {
+        bool touches, bit = bit_at(words, space, (vxm_layout)VXM_LAYOUT_GRID, at);
+        double w = oracle(&s, at, &touches);
+        *set += bit;
+        if (touches || fabs(w - 0.5) < 2e-6)
+          ++*ties;
+        else if (bit != (w > 0.5))
+          fail_msg("round %d, voxel %d %d %d: w %.7f, but %d", round, (int)at[0], (int)at[1], (int)at[2], w,
+                   bit);
+      }
+  free(words);
+  end(&s);
+}
+
 static void test_signs_are_those_of_the_sum(void **state) {
   (void)state;
   size_t ties = 0, set = 0;
   for (int round = 0; round < ROUNDS(60); round++) {
     vxm_soup *soup = random_soup(round, SIDE);
-    subject s;
-    begin(&s, soup, &cube);
-    uint64_t *words = fill(&s, (vxm_layout)VXM_LAYOUT_GRID, SIDE, NULL, NULL);
-    int64_t at[3];
-    for (at[2] = 0; at[2] < SIDE; at[2]++)
-      for (at[1] = 0; at[1] < SIDE; at[1]++)
-        for (at[0] = 0; at[0] < SIDE; at[0]++) {
-          bool touches, bit = bit_at(words, &cube, (vxm_layout)VXM_LAYOUT_GRID, at);
-          double w = oracle(&s, at, &touches);
-          set += bit;
-          if (touches || fabs(w - 0.5) < 2e-6)
-            ties++;
-          else if (bit != (w > 0.5))
-            fail_msg("round %d, voxel %d %d %d: w %.7f, but %d", round, (int)at[0], (int)at[1], (int)at[2], w,
-                     bit);
-        }
-    free(words);
-    end(&s);
+    check_signs(soup, &cube, round, &set, &ties);
     vxm_soup_destroy(soup);
   }
   assert_true(set > 5000 && ties < 60 * SIDE * SIDE);
+}
+
+/* ---- What floats say ---- */
+
+/** A walk whose numbers are held to those of the rest, which are what it sums up. */
+typedef struct checked_walk {
+  vxm_winding_walk walk; /**< first, so that what is called back finds the subject */
+  const subject *s;
+  size_t voxels, doubtful;
+} checked_walk;
+
+static double rest_at(const checked_walk *c, const int64_t origin[3], int side, int voxel, bool *touches) {
+  const int64_t at[3] = {origin[0] + voxel % side, origin[1] + voxel / side % side,
+                         origin[2] + voxel / side / side};
+  double sum = 0;
+  *touches = false;
+  for (size_t t = 0; t < c->s->chain.rest_count; t++)
+    sum += share_of(c->s, c->s->chain.rest[t], at, touches);
+  return sum;
+}
+
+static bool want_all(const vxm_winding_walk *walk, const int64_t origin[3], int level) {
+  (void)walk, (void)level;
+  return origin[0] < SIDE && origin[1] < SIDE && origin[2] < SIDE;
+}
+
+static void check_cell(const vxm_winding_walk *walk, const int64_t origin[3], int level, int number) {
+  const checked_walk *c = (const checked_walk *)(const void *)walk;
+  int side = 4 << level;
+  for (int n = 0; n < 8; n++) {
+    bool touches;
+    double w = rest_at(c, origin, side, (int)vxm_rng_below(&rng, (uint64_t)(side * side * side)), &touches);
+    if (!touches && fabs(w - number) > 0.5)
+      fail_msg("a cell has %d, a voxel in it %.7f", number, w);
+  }
+}
+
+static void check_brick(const vxm_winding_walk *walk, const int64_t origin[3],
+                        const vxm_winding_brick *brick) {
+  checked_walk *c = (checked_walk *)(uintptr_t)(const void *)walk;
+  for (int v = 0; v < VXM_BRICK; v++) {
+    bool touches;
+    double w = rest_at(c, origin, VXM_BRICK_SIDE, v, &touches), off = fabs(w - (double)brick->value[v]);
+    c->voxels++;
+    c->doubtful += brick->doubtful >> v & 1;
+    if (!(brick->doubtful >> v & 1) && (touches || off > (double)walk->doubt))
+      fail_msg("voxel %d of a brick has %.7f, not %.7f", v, (double)brick->value[v], w);
+  }
+}
+
+/** Beside edges of 100 to 20000 voxels, where floats alone tell little: most run along a row of voxel
+ * centres, a few lattice steps beside them. What is not told to be in doubt is right, in every build. */
+static void test_numbers_beside_long_edges(void **state) {
+  (void)state;
+  const vxm_kernels *builds[4];
+  size_t build_count = vxm_kernels_all(builds), voxels = 0, doubtful = 0;
+  for (int round = 0; round < ROUNDS(150); round++) {
+    static const double sides[] = {100, 4000, 20000};
+    double side = sides[round % 3], part = 0.2 + 0.6 * vxm_rng_unit(&rng);
+    vxm_soup *soup = random_soup(5 * round, side); /* of full size */
+    size_t count;
+    const uint32_t *corner = vxm_face(soup, vxm_rng_below(&rng, soup->face_count), &count);
+    double *a = soup->positions + 3 * (size_t)corner[0], *b = soup->positions + 3 * (size_t)corner[1];
+    int axis = (int)vxm_rng_below(&rng, 3);
+    for (int i = 0; i < 3 && round % 4; i++) {
+      a[i] = floor(a[i]) + 0.5 + ((double)vxm_rng_below(&rng, 5) - 2) / 256;
+      b[i] = i == axis ? a[i] + 0.9 * side : a[i];
+    }
+    vxm_space space = cube;
+    for (int i = 0; i < 3; i++)
+      space.origin[i] = rint(a[i] + part * (b[i] - a[i])) - SIDE / 2;
+    subject s;
+    begin(&s, soup, &space);
+    assert_int_equal(vxm_winding_mesh_place(&s.mesh, &s.chain, &s.placed, 0, false, NULL), VXM_OK);
+    vxm_kernels_force(builds[(size_t)round % build_count]);
+    checked_walk c = {.walk = {.tree = &s.mesh.tree,
+                               .levels = vxm_winding_levels(),
+                               .doubt = 0.008F,
+                               .strict = round % 5 == 4,
+                               .wants = want_all,
+                               .settle_cell = check_cell,
+                               .settle_brick = check_brick},
+                      .s = &s};
+    vxm_winding_scratch scratch = {.context = context, .error = VXM_ERROR_INIT};
+    for (size_t r = 0; r < s.mesh.tree.root_count; r++)
+      vxm_winding_scratch_add(&scratch, s.mesh.tree.roots[r]);
+    static const int64_t origin[3] = {0, 0, 0};
+    static const float nothing[VXM_BRICK] = {0};
+    vxm_winding_kernels_get()->descend(&c.walk, &scratch, origin, 3, nothing, 0, scratch.count);
+    vxm_kernels_force(NULL);
+    vxm_free(context, scratch.nodes);
+    voxels += c.voxels;
+    doubtful += c.doubtful;
+    end(&s);
+    vxm_soup_destroy(soup);
+  }
+  assert_true(voxels > 10000 && doubtful < voxels / 10);
 }
 
 static void compare(const uint64_t *a, const uint64_t *b, const vxm_space *space, vxm_layout layout,
@@ -405,6 +510,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_the_chain_is_closed),
       cmocka_unit_test(test_signs_are_those_of_the_sum),
+      cmocka_unit_test(test_numbers_beside_long_edges),
       cmocka_unit_test(test_a_small_window_in_a_large_mesh),
       cmocka_unit_test(test_bits_are_the_same_in_all_ways),
       cmocka_unit_test(test_real_meshes),

@@ -86,7 +86,7 @@ static void turn(angle_sum *sum, double den, double num) {
 /** Adds half the solid angle of a triangle. */
 static void add_triangle(angle_sum *sum, const vxm_winding_tree *tree, uint32_t triangle, const int64_t q[3],
                          const double at[3]) {
-  const double(*corner)[3] = (const double(*)[3])tree->triangles[triangle];
+  const double(*corner)[3] = (const double(*)[3])tree->triangles[triangle].corner;
   double d[3][3], length[3], dot[3], volume = 0;
   for (int k = 0; k < 3; k++) {
     for (int a = 0; a < 3; a++)

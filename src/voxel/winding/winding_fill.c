@@ -224,7 +224,9 @@ static int list_rows(brick_row rows[VXM_BRICK_SIDE * VXM_BRICK_SIDE], const fill
 /** Which voxels of a brick are asked about in its rows. */
 static uint64_t asked_of(const brick_row *rows, int count, int64_t step) {
   uint64_t all = 0;
-  for (int r = 0; r < count; r++)
+  for (int r = 0; r < count && step == 1; r++)
+    all |= rows[r].asked << rows[r].start;
+  for (int r = 0; r < count && step != 1; r++)
     for (int64_t i = 0; i < VXM_BRICK_SIDE; i++)
       all |= (rows[r].asked >> i & 1) << (rows[r].start + i * step);
   return all;
@@ -336,26 +338,43 @@ static vxm_status walk(fill_job *job, int top, vxm_error *error) {
 
 /* ---- What is asked, and what comes of it ---- */
 
+/** The words of up to four rows of up to four slices together. */
+static uint64_t any_of(const uint64_t *words, const vxm_window *window, int64_t slices, int64_t rows) {
+  uint64_t any = 0;
+  size_t row = window->row_words;
+  for (int64_t s = 0; s < slices; s++, words += window->slice_words)
+    if (rows == 4)
+      any |= words[0] | words[row] | words[2 * row] | words[3 * row];
+    else
+      for (int64_t r = 0; r < rows; r++)
+        any |= words[(size_t)r * row];
+  return any;
+}
+
 /** Marks the bricks of four slices by the rows of each together. */
 static void mark_asked_slice(size_t layer, int worker, void *payload) {
   (void)worker;
   const fill_job *job = payload;
   const vxm_window *window = job->window;
+  const vxm_brick_mask *mask = &job->mesh->asked;
+  const ptrdiff_t step[3] = {1, (ptrdiff_t)mask->count[0][0],
+                             (ptrdiff_t)(mask->count[0][0] * mask->count[0][1])};
   int64_t base = window->begin / VXM_BRICK_SIDE * VXM_BRICK_SIDE + VXM_BRICK_SIDE * (int64_t)layer, at[3];
   int64_t s_begin = vxm_max(base, window->begin), s_end = vxm_min(base + VXM_BRICK_SIDE, window->end);
   at[window->layout.slow] = s_begin;
   for (int64_t m = 0; m < window->middle_dim && s_begin < s_end; m += VXM_BRICK_SIDE) {
+    const uint64_t *words =
+        job->asked + (size_t)(s_begin - window->begin) * window->slice_words + (size_t)m * window->row_words;
+    int64_t rows = vxm_min(VXM_BRICK_SIDE, window->middle_dim - m);
     at[window->layout.middle] = m;
     for (size_t w = 0; w < window->row_words; w++) {
-      uint64_t any = 0;
-      for (int64_t s = s_begin; s < s_end; s++)
-        for (int64_t r = m; r < vxm_min(m + VXM_BRICK_SIDE, window->middle_dim); r++)
-          any |= job->asked[(size_t)(s - window->begin) * window->slice_words +
-                            (size_t)r * window->row_words + w];
-      for (; any; any &= ~(UINT64_C(15) << (__builtin_ctzll(any) & ~3))) {
-        at[window->layout.fast] = 64 * (int64_t)w + __builtin_ctzll(any);
-        *vxm_brick_mask_at(&job->mesh->asked, at, 0) = 1;
-      }
+      uint64_t any = any_of(words + w, window, s_end - s_begin, rows);
+      if (!any)
+        continue;
+      at[window->layout.fast] = 64 * (int64_t)w;
+      uint8_t *cell = vxm_brick_mask_at(mask, at, 0);
+      for (; any; any &= ~(UINT64_C(15) << (__builtin_ctzll(any) & ~3)))
+        cell[__builtin_ctzll(any) / VXM_BRICK_SIDE * step[window->layout.fast]] = 1;
     }
   }
 }
@@ -375,6 +394,8 @@ static void merge_slice(size_t slice, int worker, void *payload) {
   const uint64_t *bits = from->words + slice * from->slice_words,
                  *asked = job->asked ? job->asked + slice * window->slice_words : NULL;
   for (size_t w = 0; w < from->slice_words; w++) {
+    if (asked && !asked[w]) /* nearly everywhere */
+      continue;
     uint64_t inside = asked ? bits[w] & asked[w] : bits[w];
     added |= inside & ~(asked ? to[w] : 0);
     to[w] = asked ? to[w] | inside : inside;

@@ -43,12 +43,19 @@ typedef struct builder {
   vxm_error error;
 } builder;
 
+static void points_of(const builder *b, size_t triangle, uint32_t out[3]) {
+  const uint32_t *corner = b->corners[triangle];
+  out[0] = corner[0];
+  out[1 + b->mirrored] = corner[1];
+  out[2 - b->mirrored] = corner[2];
+}
+
 /** The corners of a triangle on the lattice. */
 static void corners_of(const builder *b, size_t triangle, vxm_point out[3]) {
-  const uint32_t *corner = b->corners[triangle];
-  out[0] = vxm_snapped_points_at(b->out->placed, corner[0]);
-  out[1 + b->mirrored] = vxm_snapped_points_at(b->out->placed, corner[1]);
-  out[2 - b->mirrored] = vxm_snapped_points_at(b->out->placed, corner[2]);
+  uint32_t point[3];
+  points_of(b, triangle, point);
+  for (int k = 0; k < 3; k++)
+    out[k] = vxm_snapped_points_at(b->out->placed, point[k]);
 }
 
 /* ---- Moments ---- */
@@ -213,14 +220,22 @@ static vxm_status list_tasks(builder *b, branch at) {
 static sums build_leaf(builder *b, branch at) {
   vxm_winding_tree *out = b->out;
   vxm_point corner[3];
-  double(*p)[3] = out->triangles[at.begin];
+  vxm_winding_triangle *triangle = &out->triangles[at.begin];
+  double(*p)[3] = triangle->corner;
   corners_of(b, b->keys[at.begin] & UINT32_MAX, corner);
+  points_of(b, b->keys[at.begin] & UINT32_MAX, triangle->point);
   for (int k = 0; k < 3; k++)
     for (int a = 0; a < 3; a++)
       p[k][a] = (double)corner[k].at[a] * b->step;
   out->nodes[at.node].next = (uint32_t)at.begin;
   out->nodes[at.node].is_leaf = true;
-  return sums_of_triangle((const double(*)[3])p);
+  sums of = sums_of_triangle((const double(*)[3])p);
+  for (int k = 0; k < 3; k++) {
+    double edge[3] = {p[k][0] - p[(k + 1) % 3][0], p[k][1] - p[(k + 1) % 3][1], p[k][2] - p[(k + 1) % 3][2]};
+    triangle->length[k] = (float)(edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]);
+    triangle->normal[k] = (float)(2 * of.area[k]);
+  }
+  return of;
 }
 
 /** At most 30 + 32 nodes deep. */

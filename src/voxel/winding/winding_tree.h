@@ -32,11 +32,19 @@ typedef struct vxm_winding_moments {
   float area[3], first[6], second[10];
 } vxm_winding_moments;
 
+/** A triangle that is a leaf. */
+typedef struct vxm_winding_triangle {
+  double corner[3][3]; /**< whole lattice steps */
+  float normal[3];     /**< as long as twice the area */
+  float length[3];     /**< squared, of the edges ab, bc, ca */
+  uint32_t point[3];   /**< what corners are the same */
+} vxm_winding_triangle;
+
 typedef struct vxm_winding_tree {
   vxm_context *context;
   const vxm_snapped_points *placed;
-  size_t count;              /**< of triangles */
-  double (*triangles)[3][3]; /**< their corners, in the order of leaves; whole lattice steps */
+  size_t count;                    /**< of triangles */
+  vxm_winding_triangle *triangles; /**< in the order of leaves */
   vxm_winding_node *nodes;
   vxm_winding_moments *moments; /**< of each node */
   size_t node_count;

@@ -93,7 +93,4 @@ static inline void vxm_winding_scratch_add(vxm_winding_scratch *scratch, uint32_
     scratch->nodes[scratch->count++] = node;
 }
 
-/** The distance of a triangle from a point, which is the origin. */
-float vxm_winding_distance(const float corner[3][3]);
-
 #endif
