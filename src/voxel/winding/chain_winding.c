@@ -9,48 +9,75 @@
 
 /* ---- Which side of a triangle a row comes to ---- */
 
+/** Triangles that rows enter from the beginning of a list on, those that they leave from its end. */
+typedef struct two_sides {
+  uint32_t (*corners)[3];
+  size_t entered, left; /**< from these on, and before, there is room */
+  double rows;          /**< that boxes of triangles have, at most */
+} two_sides;
+
+/** Of a triangle whose normal's sign along the rows is `side`. There is room for one more. */
+static inline void put(two_sides *to, const uint32_t corners[3], int side, bool mirrored) {
+  /* Into both places, of which one is kept at most: a branch here would be foretold wrongly every other time.
+   */
+  memcpy(to->corners[to->entered], corners, sizeof *to->corners);
+  memcpy(to->corners[to->left - 1], corners, sizeof *to->corners);
+  to->entered += mirrored ? side > 0 : side < 0;
+  to->left -= mirrored ? side < 0 : side > 0;
+}
+
+static inline int64_t extent(int64_t a, int64_t b, int64_t c) {
+  int64_t low = vxm_min(vxm_min(a, b), c), high = vxm_max(vxm_max(a, b), c);
+  return high - low;
+}
+
+/** The place of a cell along an axis. */
+static inline int64_t cell_at(uint64_t cell, int axis) {
+  return (int64_t)(cell >> (VXM_CELL_BITS * axis) & vxm_cell_mask(0));
+}
+
+static void sort_narrow(two_sides *to, const vxm_winding_chain *chain, const vxm_snapped_points *placed,
+                        int axis, bool mirrored) {
+  int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  for (size_t t = 0; t < chain->closed_count; t++) {
+    const uint32_t *corner = chain->closed[t];
+    const int32_t *a = placed->narrow[corner[0]], *b = placed->narrow[corner[1]],
+                  *c = placed->narrow[corner[2]];
+    uint64_t cell[3] = {placed->cells[corner[0]], placed->cells[corner[1]], placed->cells[corner[2]]};
+    int64_t rows = extent(cell_at(cell[0], u), cell_at(cell[1], u), cell_at(cell[2], u)) *
+                   extent(cell_at(cell[0], v), cell_at(cell[1], v), cell_at(cell[2], v));
+    int64_t forth = (int64_t)(b[u] - a[u]) * (c[v] - a[v]), back = (int64_t)(b[v] - a[v]) * (c[u] - a[u]);
+    int side = (forth > back) - (forth < back);
+    put(to, corner, rows > 0 ? side : 0, mirrored);
+    to->rows += (double)rows;
+  }
+}
+
 /** Rows that a triangle's box covers. */
-static double rows_of(const vxm_snapped_points *placed, const uint32_t corners[3], int axis) {
+static double rows_of(const vxm_snapped_points *placed, const vxm_point p[3], int axis) {
   double rows = 1;
   for (int i = 1; i < 3; i++) {
     int a = (axis + i) % 3;
-    int64_t low = INT64_MAX, high = INT64_MIN, most = placed->lattice.space.dims[a] * placed->lattice.unit;
-    for (int k = 0; k < 3; k++) {
-      int64_t at = vxm_snapped_points_at(placed, corners[k]).at[a];
-      low = vxm_min(low, at);
-      high = vxm_max(high, at);
-    }
-    low = vxm_max(low, 0);
-    high = vxm_min(high, most);
+    int64_t most = placed->lattice.space.dims[a] * placed->lattice.unit;
+    int64_t low = vxm_max(vxm_min(vxm_min(p[0].at[a], p[1].at[a]), p[2].at[a]), 0);
+    int64_t high = vxm_min(vxm_max(vxm_max(p[0].at[a], p[1].at[a]), p[2].at[a]), most);
     rows *= low <= high ? (double)(high - low) / (double)placed->lattice.unit + 1 : 0;
   }
   return rows;
 }
 
-/** The sign of the normal along an axis: by products of two differences, in 128 bits where points are wide.
- */
-static int facing(const vxm_snapped_points *placed, const uint32_t corners[3], int axis) {
-  vxm_point p[3];
-  for (int k = 0; k < 3; k++)
-    p[k] = vxm_snapped_points_at(placed, corners[k]);
+static void sort_wide(two_sides *to, const vxm_winding_chain *chain, const vxm_snapped_points *placed,
+                      int axis, bool mirrored) {
   int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  int64_t bu = p[1].at[u] - p[0].at[u], bv = p[1].at[v] - p[0].at[v];
-  int64_t cu = p[2].at[u] - p[0].at[u], cv = p[2].at[v] - p[0].at[v];
-  if (placed->wide) {
-    vxm_int128 left = (vxm_int128)bu * cv, right = (vxm_int128)bv * cu;
-    return (left > right) - (left < right);
+  for (size_t t = 0; t < chain->closed_count; t++) {
+    vxm_point p[3];
+    for (int k = 0; k < 3; k++)
+      p[k] = vxm_snapped_points_at(placed, chain->closed[t][k]);
+    vxm_int128 forth = (vxm_int128)(p[1].at[u] - p[0].at[u]) * (p[2].at[v] - p[0].at[v]),
+               back = (vxm_int128)(p[1].at[v] - p[0].at[v]) * (p[2].at[u] - p[0].at[u]);
+    put(to, chain->closed[t], (forth > back) - (forth < back), mirrored);
+    to->rows += rows_of(placed, p, axis);
   }
-  int64_t left = bu * cv, right = bv * cu;
-  return (left > right) - (left < right);
-}
-
-/** Whether a triangle's box covers no row: its corners lie in one cell along an axis across the rows. */
-static bool covers_none(const vxm_snapped_points *placed, const uint32_t corners[3], int axis) {
-  if (placed->wide)
-    return false;
-  uint64_t first = placed->cells[corners[0]];
-  uint64_t differ = (first ^ placed->cells[corners[1]]) | (first ^ placed->cells[corners[2]]);
-  return !(differ & vxm_cell_mask((axis + 1) % 3)) || !(differ & vxm_cell_mask((axis + 2) % 3));
 }
 
 vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_chain *chain,
@@ -71,22 +98,18 @@ vxm_status vxm_chain_winding_place(vxm_chain_winding *out, const vxm_winding_cha
   out->corner_capacity = out->part ? capacity : 0;
   if (status != VXM_OK)
     return status;
-  size_t entered = 0, left = chain->closed_count;
-  out->estimate = 0;
-  for (size_t t = 0; t < chain->closed_count; t++) {
-    if (covers_none(placed, chain->closed[t], axis))
-      continue;
-    int side = facing(placed, chain->closed[t], axis);
-    if (side == 0)
-      continue;
-    out->estimate += rows_of(placed, chain->closed[t], axis);
-    size_t to = (side < 0) != mirrored ? entered++ : --left;
-    memcpy(out->corners[to], chain->closed[t], sizeof *out->corners);
-  }
-  if (left < chain->closed_count)
-    memmove(out->corners + entered, out->corners + left, (chain->closed_count - left) * sizeof *out->corners);
-  out->entered = entered;
-  out->corner_count = entered + chain->closed_count - left;
+  size_t count = chain->closed_count;
+  two_sides sides = {.corners = out->corners, .left = count};
+  if (placed->wide)
+    sort_wide(&sides, chain, placed, axis, mirrored);
+  else
+    sort_narrow(&sides, chain, placed, axis, mirrored);
+  if (sides.left < count)
+    memmove(out->corners + sides.entered, out->corners + sides.left,
+            (count - sides.left) * sizeof *out->corners);
+  out->estimate = sides.rows;
+  out->entered = sides.entered;
+  out->corner_count = sides.entered + count - sides.left;
   return VXM_OK;
 }
 
