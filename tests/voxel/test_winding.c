@@ -78,24 +78,24 @@ static bool bit_at(const uint64_t *words, const vxm_space *space, vxm_layout lay
 
 /** The solid angle of a triangle from the centre of a voxel, by 4 pi; *touches if that lies on it. */
 static double share_of(const subject *s, const uint32_t corners[3], const int64_t voxel[3], bool *touches) {
-  double v[3][3], length[3], dot[3], volume = 0;
+  long double v[3][3], length[3], dot[3], volume = 0;
   for (int k = 0; k < 3; k++) {
     vxm_point p = vxm_snapped_points_at(&s->placed, corners[k]);
     for (int a = 0; a < 3; a++)
-      v[k][a] = (double)(p.at[a] - vxm_lattice_centre(&s->placed.lattice, voxel[a])) /
-                (double)s->placed.lattice.unit;
+      v[k][a] = (long double)(p.at[a] - vxm_lattice_centre(&s->placed.lattice, voxel[a])) /
+                (long double)s->placed.lattice.unit;
   }
   for (int k = 0; k < 3; k++) {
-    length[k] = sqrt(v[k][0] * v[k][0] + v[k][1] * v[k][1] + v[k][2] * v[k][2]);
-    const double *next = v[(k + 1) % 3];
+    length[k] = sqrtl(v[k][0] * v[k][0] + v[k][1] * v[k][1] + v[k][2] * v[k][2]);
+    const long double *next = v[(k + 1) % 3];
     dot[k] = v[k][0] * next[0] + v[k][1] * next[1] + v[k][2] * next[2];
   }
   for (int a = 0; a < 3; a++)
     volume += v[0][a] * (v[1][(a + 1) % 3] * v[2][(a + 2) % 3] - v[1][(a + 2) % 3] * v[2][(a + 1) % 3]);
-  double sides =
+  long double sides =
       length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
-  *touches |= fabs(volume) < 1e-12 && sides <= 1e-12;
-  return atan2(volume, sides) / (2 * M_PI);
+  *touches |= fabsl(volume) < 1e-12L && sides <= 1e-12L;
+  return (double)(atan2l(volume, sides) / (2 * 3.14159265358979323846L));
 }
 
 /** The sum of all solid angles, term by term; *touches: the centre of the voxel lies on a triangle. */
@@ -152,9 +152,10 @@ static vxm_soup *random_soup(int round, double side) {
 enum { SIDE = 20 };
 static const vxm_space cube = {{SIDE, SIDE, SIDE}, {0, 0, 0}, {1, 1, 1}};
 
-/** The sign at every voxel of a cube is that of the sum; where that is one half to rounding, or jumps, it may
- * be either. */
-static void check_signs(const vxm_soup *soup, const vxm_space *space, int round, size_t *set, size_t *ties) {
+/** The sign at every voxel of a cube is that of the sum; where that is one half to within `tie`, or jumps, it
+ * may be either. */
+static void check_signs(const vxm_soup *soup, const vxm_space *space, int round, double tie, size_t *set,
+                        size_t *ties) {
   subject s;
   begin(&s, soup, space);
   uint64_t *words = fill(&s, (vxm_layout)VXM_LAYOUT_GRID, SIDE, NULL, NULL);
@@ -165,7 +166,7 @@ static void check_signs(const vxm_soup *soup, const vxm_space *space, int round,
         bool touches, bit = bit_at(words, space, (vxm_layout)VXM_LAYOUT_GRID, at);
         double w = oracle(&s, at, &touches);
         *set += bit;
-        if (touches || fabs(w - 0.5) < 2e-6)
+        if (touches || fabs(w - 0.5) < tie)
           ++*ties;
         else if (bit != (w > 0.5))
           fail_msg("round %d, voxel %d %d %d: w %.7f, but %d", round, (int)at[0], (int)at[1], (int)at[2], w,
@@ -180,10 +181,33 @@ static void test_signs_are_those_of_the_sum(void **state) {
   size_t ties = 0, set = 0;
   for (int round = 0; round < ROUNDS(60); round++) {
     vxm_soup *soup = random_soup(round, SIDE);
-    check_signs(soup, &cube, round, &set, &ties);
+    check_signs(soup, &cube, round, 2e-6, &set, &ties);
     vxm_soup_destroy(soup);
   }
   assert_true(set > 5000 && ties < 60 * SIDE * SIDE);
+}
+
+/** Triangles with corners as far as a million voxels from a cube in their midst, and others within it. */
+static void test_signs_amid_far_corners(void **state) {
+  (void)state;
+  size_t ties = 0, set = 0;
+  for (int round = 0; round < ROUNDS(30); round++) {
+    double far = pow(10, 4 + round % 3);
+    vxm_soup *soup = shape_empty(context);
+    for (int v = 0; v < 18; v++) {
+      double p[3];
+      for (int a = 0; a < 3; a++)
+        p[a] = v < 12 ? far * (2 * vxm_rng_unit(&rng) - 1) : SIDE * vxm_rng_unit(&rng);
+      shape_vertex(soup, p[0], p[1], p[2]);
+    }
+    for (int t = 0; t < 25; t++) {
+      uint32_t a = (uint32_t)vxm_rng_below(&rng, 18), b = (a + 1 + (uint32_t)vxm_rng_below(&rng, 8)) % 18;
+      shape_triangle(soup, a, b, (b + 1 + (uint32_t)vxm_rng_below(&rng, 8)) % 18);
+    }
+    check_signs(soup, &cube, round, 1e-5, &set, &ties);
+    vxm_soup_destroy(soup);
+  }
+  assert_true(set > 1000);
 }
 
 /* ---- What floats say ---- */
@@ -234,53 +258,77 @@ static void check_brick(const vxm_winding_walk *walk, const int64_t origin[3],
   }
 }
 
-/** Beside edges of 100 to 20000 voxels, where floats alone tell little: most run along a row of voxel
- * centres, a few lattice steps beside them. What is not told to be in doubt is right, in every build. */
+/** The numbers of a walk through the cube. */
+static void check_walk(const vxm_soup *soup, bool strict, size_t *voxels, size_t *doubtful) {
+  subject s;
+  begin(&s, soup, &cube);
+  assert_int_equal(vxm_winding_mesh_place(&s.mesh, &s.chain, &s.placed, 0, false, NULL), VXM_OK);
+  checked_walk c = {.walk = {.tree = &s.mesh.tree,
+                             .levels = vxm_winding_levels(),
+                             .doubt = strict ? 3e-4F : 0.008F,
+                             .strict = strict,
+                             .wants = want_all,
+                             .settle_cell = check_cell,
+                             .settle_brick = check_brick},
+                    .s = &s};
+  vxm_winding_scratch scratch = {.context = context, .error = VXM_ERROR_INIT};
+  for (size_t r = 0; r < s.mesh.tree.root_count; r++)
+    vxm_winding_scratch_add(&scratch, s.mesh.tree.roots[r]);
+  static const int64_t origin[3] = {0, 0, 0};
+  static const float nothing[VXM_BRICK] = {0};
+  vxm_winding_kernels_get()->descend(&c.walk, &scratch, origin, 3, nothing, 0, scratch.count);
+  vxm_free(context, scratch.nodes);
+  *voxels += c.voxels;
+  *doubtful += c.doubtful;
+  end(&s);
+}
+
+/** A fan about a corner a few lattice steps beside the centre of a voxel: of triangles of any shape, of
+ * needles, of right angles along rows of voxel centres, or of slivers along them. */
+static vxm_soup *random_fan(int kind, double length) {
+  vxm_soup *soup = shape_empty(context);
+  double middle[3], p[3];
+  for (int i = 0; i < 3; i++)
+    middle[i] = SIDE / 2 + 0.5 + ((double)vxm_rng_below(&rng, 5) - 2) / 256;
+  shape_vertex(soup, middle[0], middle[1], middle[2]);
+  uint32_t count = 3 + (uint32_t)vxm_rng_below(&rng, 5);
+  for (uint32_t v = 0; v < count; v++) {
+    int axis = (int)vxm_rng_below(&rng, 3);
+    for (int i = 0; i < 3; i++) {
+      double u = 2 * vxm_rng_unit(&rng) - 1, along = 0.9 * length * (u > 0 ? 1 : -1),
+             from = 0.55 * length * u;
+      if (kind == 1 && v % 2 == 0)
+        from = floor(4 * u) + ((double)vxm_rng_below(&rng, 3) - 1) / 256;
+      if (kind == 2)
+        from = i == axis ? along : vxm_rng_below(&rng, 2) ? 0 : 0.3 * length * u;
+      if (kind == 3)
+        from = i == axis ? along : ((double)vxm_rng_below(&rng, 5) - 2) / 256;
+      p[i] = middle[i] + from;
+    }
+    shape_vertex(soup, p[0], p[1], p[2]);
+  }
+  for (uint32_t v = 0; v + 1 < count; v++)
+    shape_triangle(soup, 0, v + 1, v + 2);
+  return soup;
+}
+
+/** Beside long edges, corners and slivers, where floats alone tell little, what is not told to be in doubt is
+ * right, in every build. */
 static void test_numbers_beside_long_edges(void **state) {
   (void)state;
   const vxm_kernels *builds[4];
-  size_t build_count = vxm_kernels_all(builds), voxels = 0, doubtful = 0;
-  for (int round = 0; round < ROUNDS(150); round++) {
-    static const double sides[] = {100, 4000, 20000};
-    double side = sides[round % 3], part = 0.2 + 0.6 * vxm_rng_unit(&rng);
-    vxm_soup *soup = random_soup(5 * round, side); /* of full size */
-    size_t count;
-    const uint32_t *corner = vxm_face(soup, vxm_rng_below(&rng, soup->face_count), &count);
-    double *a = soup->positions + 3 * (size_t)corner[0], *b = soup->positions + 3 * (size_t)corner[1];
-    int axis = (int)vxm_rng_below(&rng, 3);
-    for (int i = 0; i < 3 && round % 4; i++) {
-      a[i] = floor(a[i]) + 0.5 + ((double)vxm_rng_below(&rng, 5) - 2) / 256;
-      b[i] = i == axis ? a[i] + 0.9 * side : a[i];
-    }
-    vxm_space space = cube;
-    for (int i = 0; i < 3; i++)
-      space.origin[i] = rint(a[i] + part * (b[i] - a[i])) - SIDE / 2;
-    subject s;
-    begin(&s, soup, &space);
-    assert_int_equal(vxm_winding_mesh_place(&s.mesh, &s.chain, &s.placed, 0, false, NULL), VXM_OK);
+  size_t build_count = vxm_kernels_all(builds), voxels = 0, doubtful = 0, set = 0, ties = 0;
+  static const double lengths[] = {30, 80, 150, 500, 2000, 4000, 10000};
+  for (int round = 0; round < ROUNDS(700); round++) {
+    vxm_soup *soup = random_fan(round % 4, lengths[round % 7]);
     vxm_kernels_force(builds[(size_t)round % build_count]);
-    checked_walk c = {.walk = {.tree = &s.mesh.tree,
-                               .levels = vxm_winding_levels(),
-                               .doubt = 0.008F,
-                               .strict = round % 5 == 4,
-                               .wants = want_all,
-                               .settle_cell = check_cell,
-                               .settle_brick = check_brick},
-                      .s = &s};
-    vxm_winding_scratch scratch = {.context = context, .error = VXM_ERROR_INIT};
-    for (size_t r = 0; r < s.mesh.tree.root_count; r++)
-      vxm_winding_scratch_add(&scratch, s.mesh.tree.roots[r]);
-    static const int64_t origin[3] = {0, 0, 0};
-    static const float nothing[VXM_BRICK] = {0};
-    vxm_winding_kernels_get()->descend(&c.walk, &scratch, origin, 3, nothing, 0, scratch.count);
+    check_walk(soup, round % 5 == 4, &voxels, &doubtful);
+    if (round % 16 == 3)
+      check_signs(soup, &cube, round, 1e-5, &set, &ties);
     vxm_kernels_force(NULL);
-    vxm_free(context, scratch.nodes);
-    voxels += c.voxels;
-    doubtful += c.doubtful;
-    end(&s);
     vxm_soup_destroy(soup);
   }
-  assert_true(voxels > 10000 && doubtful < voxels / 10);
+  assert_true(voxels > 100000 && doubtful < voxels / 5);
 }
 
 static void compare(const uint64_t *a, const uint64_t *b, const vxm_space *space, vxm_layout layout,
@@ -510,6 +558,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_the_chain_is_closed),
       cmocka_unit_test(test_signs_are_those_of_the_sum),
+      cmocka_unit_test(test_signs_amid_far_corners),
       cmocka_unit_test(test_numbers_beside_long_edges),
       cmocka_unit_test(test_a_small_window_in_a_large_mesh),
       cmocka_unit_test(test_bits_are_the_same_in_all_ways),

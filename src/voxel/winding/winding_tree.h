@@ -37,7 +37,7 @@ typedef struct vxm_winding_triangle {
   double corner[3][3]; /**< whole lattice steps */
   float normal[3];     /**< as long as twice the area */
   float length[3];     /**< squared, of the edges ab, bc, ca */
-  uint32_t point[3];   /**< what corners are the same */
+  uint32_t point[3];   /**< the numbers of its corners: the same, the same corner */
 } vxm_winding_triangle;
 
 typedef struct vxm_winding_tree {
