@@ -178,7 +178,7 @@ static vxm_status reduce_window(reduction *r, vxm_window *fine, const vxm_field_
 }
 
 /** From so many bytes of values on they are stored past the cache. */
-static const double past_bytes = 1 << 26;
+static const double past_bytes = 1 << 25;
 
 static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, vxm_window *fine,
                                  const vxm_field_plan *plan, vxm_model_pass *pass, vxm_error *error) {
