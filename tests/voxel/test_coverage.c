@@ -4,6 +4,7 @@
 
 #include "grid/bitgrid.h"
 #include "voxel/model/model.h"
+#include "voxel/parity/kernels.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -106,6 +107,30 @@ static void test_equals_counting(void **state) {
                        {0.5, 0.25, -0.5},
                        {0.7, 0.8, 0.45}};
     check_counts(soup, &space, subdivisions[round % 3], (vxm_mode)(round / 3 % 3));
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(own);
+  }
+}
+
+/** Long rows with many parts, by every build of the kernels, also where memory is short: rows are then made
+ * some at a time. */
+static void test_many_parts_equal_counting(void **state) {
+  (void)state;
+  const vxm_kernels *builds[4];
+  size_t build_count = vxm_kernels_all(builds);
+  vxm_rng rng = {12};
+  for (int round = 0; round < 12; round++) {
+    vxm_context *own = context_of(1 + round % 2, round % 4 > 1 ? UINT64_C(24) << 20 : 0);
+    vxm_soup *soup = shape_empty(own);
+    for (int part = 0; part < 9; part++)
+      shape_random_octahedron(soup, &rng, -10, 60);
+    vxm_space space = {{9 + (int64_t)vxm_rng_below(&rng, 30), 10 + (int64_t)vxm_rng_below(&rng, 20),
+                        60 + (int64_t)vxm_rng_below(&rng, 140)},
+                       {-1.5, 0.25, -0.5},
+                       {1.7, 1.8, 0.31}};
+    vxm_kernels_force(builds[(size_t)round % build_count]);
+    check_counts(soup, &space, 2 << round % 3, VXM_MODE_SOLID);
+    vxm_kernels_force(NULL);
     vxm_soup_destroy(soup);
     vxm_context_destroy(own);
   }
@@ -215,11 +240,9 @@ static void test_what_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_equals_counting),
-      cmocka_unit_test(test_a_box_has_its_volume),
-      cmocka_unit_test(test_a_sphere_sums_to_its_volume),
-      cmocka_unit_test(test_memory_limit),
-      cmocka_unit_test(test_what_is_refused),
+      cmocka_unit_test(test_equals_counting),      cmocka_unit_test(test_many_parts_equal_counting),
+      cmocka_unit_test(test_a_box_has_its_volume), cmocka_unit_test(test_a_sphere_sums_to_its_volume),
+      cmocka_unit_test(test_memory_limit),         cmocka_unit_test(test_what_is_refused),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

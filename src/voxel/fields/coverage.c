@@ -2,7 +2,7 @@
 #include "voxel/fields/coverage.h"
 #include "base/threads.h"
 #include "voxel/engine/engine.h"
-#include "voxel/fields/coverage_spans.h"
+#include "voxel/fields/coverage_parity.h"
 #include "voxel/model/model_report.h"
 
 #include <inttypes.h>
@@ -143,10 +143,18 @@ static vxm_status count_elsewhere(reduction *r, vxm_engine *engine, const vxm_wi
   return status;
 }
 
-/** Crossings that are held at once, at most, rather than those of a few slices after the other. */
-static const double most_crossings = 1 << 25;
-/** In bins, sorted, and as spans; half of what is left of the memory. */
-static const double bytes_of_a_crossing = 64;
+/** Crossings that are held at once, at most, by their bound: one in two to ten is there. */
+static const double most_crossings = 1 << 26;
+/** In bins that are half full; half of what is left of the memory. */
+static const double bytes_of_a_crossing = 32;
+
+/** Slices whose crossings are held at once, at least those planned. */
+static int64_t slices_by_parity(const vxm_field_plan *plan, const vxm_model_pass *pass, int64_t length) {
+  double bound = vxm_raster_schedule_placed_bound(&pass->solid.placed, VXM_ROLE_FACE | VXM_ROLE_CAP);
+  double most = fmin(most_crossings, (double)vxm_memory_left(pass->solid.context) / bytes_of_a_crossing);
+  double slices = bound <= most ? (double)length : ceil((double)length / ceil(bound / most));
+  return vxm_max((int64_t)slices, plan->slices);
+}
 
 /** A window by its sub-voxels. */
 static vxm_status reduce_window(reduction *r, vxm_window *fine, const vxm_field_plan *plan,
@@ -169,27 +177,31 @@ static vxm_status reduce_window(reduction *r, vxm_window *fine, const vxm_field_
   return status;
 }
 
+/** From so many bytes of values on they are stored past the cache. */
+static const double past_bytes = 1 << 25;
+
 static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, vxm_window *fine,
                                  const vxm_field_plan *plan, vxm_model_pass *pass, vxm_error *error) {
   vxm_status status = VXM_OK;
   int64_t length = fine->slow_dim / r->n, slices = plan->slices;
   size_t slice_bytes = (size_t)(r->row_length * r->rows) * vxm_scalar_bytes(r->values.scalar);
   unsigned char *block = r->values.out;
-  bool spans = vxm_coverage_has_spans(pass);
-  double crossings = vxm_raster_schedule_placed_bound(&pass->solid.placed, VXM_ROLE_FACE | VXM_ROLE_CAP);
-  if (spans && target->whole &&
-      crossings < fmin(most_crossings, (double)vxm_memory_left(pass->solid.context) / bytes_of_a_crossing))
-    slices = length;
+  bool by_parity = vxm_coverage_by_parity(pass);
+  r->values.past = target->whole && (double)slice_bytes * (double)length >= past_bytes;
+  if (by_parity && target->whole)
+    slices = slices_by_parity(plan, pass, length);
   r->fine = fine;
   for (int64_t begin = 0, end; begin < length && status == VXM_OK; begin = end) {
-    end = vxm_min(begin + (spans ? slices : plan->slices), length);
+    end = vxm_min(begin + (by_parity ? slices : plan->slices), length);
     fine->begin = begin * r->n;
     fine->end = end * r->n;
     r->slices = end - begin;
     r->values.out = target->whole ? (unsigned char *)target->whole + (size_t)begin * slice_bytes : block;
-    if (spans) {
-      status = vxm_coverage_spans(&r->values, pass, fine, r->tallies, &spans, error);
-      if (status == VXM_OK && !spans) { /* too many at once: the same slices, and all others, by sub-voxels */
+    if (by_parity) {
+      status = vxm_coverage_parity(&r->values, pass, fine, r->tallies, &by_parity, error);
+      if (status == VXM_OK && !by_parity) { /* too many at once: fewer slices, then all by sub-voxels */
+        by_parity = slices > plan->slices;
+        slices = vxm_max(slices / 2, plan->slices);
         end = begin;
         continue;
       }
@@ -227,7 +239,8 @@ vxm_status vxm_coverage_plan(vxm_field_plan *out, const vxm_model *model, const 
   size_t values =
       (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * vxm_scalar_bytes(options->scalar);
   size_t scratch = workers * (2 * row_words * sizeof(uint64_t) + sizeof(vxm_coverage_tally) +
-                              vxm_coverage_spans_bytes(space->dims[layout.fast], space->dims[layout.middle]));
+                              vxm_coverage_parity_bytes(model, options->subdivision, space->dims[layout.fast],
+                                                        space->dims[layout.middle]));
   size_t counts = has_counts(model->options.engine)
                       ? (size_t)(space->dims[layout.fast] * space->dims[layout.middle]) * sizeof(uint16_t)
                       : 0;
