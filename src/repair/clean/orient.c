@@ -353,7 +353,7 @@ static bool turn_outward(orienting *o) {
 
 static bool orient(orienting *o) {
   size_t faces = o->soup->face_count;
-  if (vxm_repair_state_edges(o->state, &o->error) != VXM_OK)
+  if (vxm_repair_state_count_edges(o->state, &o->error) != VXM_OK)
     return false;
   if (is_consistent(o)) {
     o->turn = allocate(o, faces, sizeof *o->turn);

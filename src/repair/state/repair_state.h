@@ -53,9 +53,9 @@ typedef struct vxm_repair_state {
   uint8_t *gone;   /**< vertex_count; 1 = removed or merged by a pass that counted it */
   uint8_t *used;   /**< vertex_count; as the last vxm_repair_state_extent has found */
   uint8_t *turned; /**< face_count, or NULL as long as no face was turned: see vxm_turned */
-  bool has_edges, has_patches, has_extent;
+  bool has_counts, has_edges, has_patches, has_extent;
   bool is_manifold;    /**< the present faces are known to be (vxm_is_manifold) */
-  vxm_edges edges;     /**< of the present faces, if has_edges */
+  vxm_edges edges;     /**< of the present faces, if has_edges; if only has_counts, their numbers */
   vxm_patches patches; /**< of the present faces, if has_patches */
   vxm_extent extent;   /**< of the present soup, if has_extent */
   int64_t counts[VXM_PASS_COUNT];
@@ -110,7 +110,10 @@ void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t siz
                                vxm_error *error);
 /** The edge map of the present faces, with their sides, built if need be. */
 vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error);
-/** The patches of the present faces, and their edges, built if need be; there are none (count = 0) where an
+/** How many edges there are of each kind, counted if need be: less than a map where all is closed, else just
+ * that (vxm_edges_build_pairs). */
+vxm_status vxm_repair_state_count_edges(vxm_repair_state *state, vxm_error *error);
+/** The patches of the present faces, and the numbers of their edges, built if need be; there are none (count = 0) where an
  * edge has more than two sides. */
 vxm_status vxm_repair_state_patches(vxm_repair_state *state, vxm_error *error);
 /** Which vertices are used (state->used), and the bounds of these, looked at if need be. */
