@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
-#include "mesh/surface_sums.h"
 #include "repair/state/repair_state.h"
 
 #include <math.h>
@@ -31,7 +30,6 @@ typedef struct orienting {
   size_t *queue;
   patch *patches;
   size_t patch_count, patch_capacity;
-  const double *bounds;
   double volume; /**< where all is one patch that is consistent, and so measured in one go */
 } orienting;
 
@@ -168,10 +166,10 @@ static void add_area(patch *p, vxm_vec3 area) {
 /** The areas of patches that are consistent. */
 static bool measure_patches(orienting *o) {
   if (o->patch_count == 1) {
-    vxm_surface_sums sums;
-    vxm_status status = vxm_surface_sums_of(&sums, o->soup, o->bounds, &o->frame, &o->error);
-    o->patches[0] = (patch){.area = sums.area, .vector_area = sums.vector_area};
-    o->volume = sums.volume;
+    vxm_status status = vxm_repair_state_measure(o->state, NULL, &o->error);
+    const vxm_surface_sums *sums = &o->state->sums;
+    o->patches[0] = (patch){.area = sums->area, .vector_area = sums->vector_area};
+    o->volume = sums->volume;
     return status == VXM_OK;
   }
   for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
@@ -397,7 +395,6 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
   orienting o = {.state = state,
                  .soup = state->soup,
                  .error = VXM_ERROR_INIT,
-                 .bounds = extent.bounds,
                  .frame = vxm_unit_scale_of(extent.bounds)};
   bool done = orient(&o);
   state->nonorientable = 0;
