@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /** A patch whose vector area is at least this part of its area is a sheet; of a hemisphere it is half. */
 static const double SHEET = 0.45;
@@ -333,7 +334,8 @@ static bool turn_outward(orienting *o) {
       if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
         nesting.volume[i] = 0;
     choose_sides(&nesting, solid, held, over, known, chain);
-    for (size_t f = 0; f < o->soup->face_count; f++)
+    bool any = memchr(over, 1, count) != NULL;
+    for (size_t f = 0; any && f < o->soup->face_count; f++)
       if (over[o->label[f]]) {
         o->turn[f] ^= 1;
         reverse(o->soup, f);
