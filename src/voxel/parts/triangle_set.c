@@ -238,11 +238,13 @@ static vxm_status gather_points(builder *b) {
 
 /* ---- Sizes ---- */
 
-static double squared_distance(const double *p, const double *q) {
-  double sum = 0;
-  for (int a = 0; a < 3; a++)
-    sum += (p[a] - q[a]) * (p[a] - q[a]);
-  return sum;
+static inline double squared_distance(const double *p, const double *q) {
+  double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+  return x * x + y * y + z * z;
+}
+
+static inline double larger(double most, double x) {
+  return x > most ? x : most;
 }
 
 static void find_box(vxm_triangle_set *triangles) {
@@ -272,12 +274,11 @@ static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
       cones->count++;
       continue;
     }
-    double squared = 0;
-    for (int k = 0; k < 3; k++) {
-      double side =
-          squared_distance(triangles->positions[corner[k]], triangles->positions[corner[(k + 1) % 3]]);
-      squared = side > squared ? side : squared;
-    }
+    const double *p = triangles->positions[corner[0]], *q = triangles->positions[corner[1]],
+                 *r = triangles->positions[corner[2]];
+    double squared = larger(0, squared_distance(p, q)); /* what is no number is left out */
+    squared = larger(squared, squared_distance(q, r));
+    squared = larger(squared, squared_distance(r, p));
     faces.count++;
     faces.sum += sqrt(squared);
     faces.squared += squared;
