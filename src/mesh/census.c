@@ -176,7 +176,7 @@ static vxm_status weld(taking *t, vxm_error *error) {
 /* ---- Edges, duplicates, components ---- */
 
 static vxm_status count_edges(taking *t, vxm_error *error) {
-  vxm_status status = vxm_edges_build_sides(&t->edges, t->context, &t->welded, NULL, error);
+  vxm_status status = vxm_edges_build_pairs(&t->edges, t->context, &t->welded, error);
   if (status == VXM_OK && t->edges.crowded == 0)
     status = vxm_patches_build(&t->patches, &t->welded, &t->edges, error);
   if (status != VXM_OK)

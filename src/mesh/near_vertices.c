@@ -24,6 +24,15 @@ typedef struct box {
   double low[3], high[3];
 } box;
 
+/* Of an obstacle in the middle of nowhere that is found out with less: the box of the members is cut into
+   coarse zones, and those that come near a member are marked. */
+enum { ZONES_BITS = 6, ZONES = 1 << ZONES_BITS /**< along an axis */ };
+
+typedef struct zones {
+  double low[3], per_unit[3]; /**< column = (position - low) * per_unit */
+  _Atomic uint64_t *marks;    /**< a bit per zone, x in a word; NULL = there are none, and all is near */
+} zones;
+
 typedef struct search {
   const double *positions;
   const uint8_t *roles;
@@ -34,6 +43,7 @@ typedef struct search {
   _Atomic uint8_t *blocked; /**< vertices near an obstacle */
   _Atomic uint64_t *homes;  /**< bits that tell which cells may have members, by hash */
   unsigned homes_shift;
+  zones zones;
   unsigned bucket_shift;
   vxm_radix_partition buckets;
   uint32_t *scratch; /**< per worker: a hash table, then the links of the lists */
@@ -187,12 +197,47 @@ static bool may_have_members(const search *s, uint64_t hash) {
   return atomic_load_explicit(&s->homes[bit / 64], memory_order_relaxed) >> bit % 64 & 1;
 }
 
+/** The zone along an axis; the outermost ones reach on without end. */
+static size_t zone_of(const zones *z, double at, int axis) {
+  double column = (at - z->low[axis]) * z->per_unit[axis];
+  return column > 0 ? column < ZONES - 1 ? (size_t)column : ZONES - 1 : 0;
+}
+
+/** How far from a member an obstacle may be that blocks it: beside the box around those of its cell. */
+static double reach_of(const search *s) {
+  return (CELL_TOLERANCES + 2) * s->tolerance;
+}
+
+/** Marks the zones about a member. */
+static void mark_zones(const search *s, const double *p) {
+  double reach = reach_of(s);
+  size_t low[3], high[3];
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = zone_of(&s->zones, p[axis] - reach, axis);
+    high[axis] = zone_of(&s->zones, p[axis] + reach, axis);
+  }
+  uint64_t row = UINT64_MAX >> (63 - (high[0] - low[0])) << low[0];
+  for (size_t z = low[2]; z <= high[2]; z++)
+    for (size_t y = low[1]; y <= high[1]; y++)
+      atomic_fetch_or_explicit(&s->zones.marks[z << ZONES_BITS | y], row, memory_order_relaxed);
+}
+
+static bool is_near_members(const search *s, const double *p) {
+  const zones *z = &s->zones;
+  if (!z->marks)
+    return true;
+  size_t row = zone_of(z, p[2], 2) << ZONES_BITS | zone_of(z, p[1], 1);
+  return atomic_load_explicit(&z->marks[row], memory_order_relaxed) >> zone_of(z, p[0], 0) & 1;
+}
+
 static void emit_vertices(size_t begin, size_t end, vxm_sink *sink, void *payload) {
   const search *s = payload;
   for (size_t v = begin; v < end; v++) {
     if (s->roles[v] == VXM_NEAR_ABSENT)
       continue;
     bool member = s->roles[v] == VXM_NEAR_MEMBER;
+    if (!member && !is_near_members(s, s->positions + 3 * v))
+      continue;
     columns c = columns_of(s, s->positions + 3 * v);
     uint64_t home = hash_home(&c), hashes[8];
     if (member)
@@ -219,6 +264,8 @@ static void start_slice(size_t slice, int worker, void *payload) {
     uint64_t bit = hash_home(&c) >> s->homes_shift, mask = UINT64_C(1) << bit % 64;
     if (!(atomic_load_explicit(&s->homes[bit / 64], memory_order_relaxed) & mask))
       atomic_fetch_or_explicit(&s->homes[bit / 64], mask, memory_order_relaxed);
+    if (s->zones.marks)
+      mark_zones(s, s->positions + 3 * v);
   }
 }
 
@@ -352,6 +399,25 @@ static vxm_status map_groups(search *s, vxm_context *context, uint32_t *map, vxm
   return VXM_OK;
 }
 
+/** Lays zones over the members, where these are few and come near few zones. */
+static vxm_status lay_zones(search *s, size_t members, vxm_context *context, vxm_error *error) {
+  enum { FEW_OF = 4, NEAR = 2 };
+  box around = no_box();
+  for (size_t v = 0; v < s->count; v++)
+    if (s->roles[v] == VXM_NEAR_MEMBER)
+      box_include(&around, s->positions + 3 * v);
+  bool some = members > 0 && members < s->count / FEW_OF;
+  for (int axis = 0; axis < 3; axis++) {
+    double length = around.high[axis] - around.low[axis];
+    s->zones.low[axis] = around.low[axis];
+    s->zones.per_unit[axis] = length > 0 ? ZONES / length : 0;
+    some = some && isfinite(length) && reach_of(s) * s->zones.per_unit[axis] < NEAR;
+  }
+  if (some)
+    s->zones.marks = vxm_calloc(context, (size_t)1 << 2 * ZONES_BITS, sizeof *s->zones.marks, error);
+  return some && !s->zones.marks ? error->code : VXM_OK;
+}
+
 static vxm_status fill_cells(search *s, vxm_context *context, vxm_error *error) {
   size_t members = 0, bits = 1024;
   for (size_t v = 0; v < s->count; v++)
@@ -367,7 +433,9 @@ static vxm_status fill_cells(search *s, vxm_context *context, vxm_error *error) 
   if (!s->homes)
     return error->code;
   s->slices = s->count / 16384 + 1;
-  vxm_status status = vxm_parallel_asked(context, s->slices, start_slice, s, error);
+  vxm_status status = lay_zones(s, members, context, error);
+  if (status == VXM_OK)
+    status = vxm_parallel_asked(context, s->slices, start_slice, s, error);
   if (status != VXM_OK)
     return status;
   size_t bucket_count = vxm_radix_partition_advise(2 * members);
@@ -401,6 +469,7 @@ vxm_status vxm_near_vertices_group(vxm_context *context, const double *positions
   vxm_radix_partition_free(&s.buckets);
   if (status == VXM_OK)
     status = map_groups(&s, context, map, &local);
+  vxm_free(context, s.zones.marks);
   vxm_free(context, s.homes);
   vxm_free(context, s.blocked);
   vxm_free(context, s.parent);

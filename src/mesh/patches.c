@@ -1,70 +1,122 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/patches.h"
 
-#include "base/threads.h"
-#include "mesh/disjoint_sets.h"
+#include "mesh/across.h"
 
 #include <string.h>
 
 static const uint32_t NONE = UINT32_MAX;
 
-/** Joins a face with those before it; says whether one of them has all its sides. */
-static bool join(uint32_t *parent, uint32_t *first, const vxm_soup *soup, const uint32_t *sides,
-                 uint32_t face) {
-  uint32_t other = NONE;
+/** A walk over the faces from one to those across its sides. */
+typedef struct walk {
+  const vxm_soup *soup;
+  const uint32_t *across;
+  uint32_t *label; /**< per face: its patch, or NONE */
+  uint32_t *queue; /**< faces that have a label; room for one more than there are faces */
+  bool may_repeat;
+} walk;
+
+/** Fetches what will be needed soon, which may lie here and there. */
+static inline void look_ahead(const walk *w, uint64_t corner) {
+  if (w->across[corner] != NONE)
+    __builtin_prefetch(w->label + w->across[corner], 1);
+}
+
+/** Gives the faces across the sides of a face its label, and puts those that had none into the queue: without
+ * a branch, as nobody can tell which these are. Says how long the queue is then. */
+static inline size_t visit(walk *w, uint32_t face, size_t queued) {
+  uint32_t label = w->label[face], other = NONE;
   bool same = true;
-  parent[face] = face;
-  for (uint64_t c = soup->offsets[face]; c < soup->offsets[face + 1]; c++) {
-    if (sides[c] == VXM_NO_EDGE)
+  for (uint64_t c = w->soup->offsets[face]; c < w->soup->offsets[face + 1]; c++) {
+    uint32_t next = w->across[c];
+    if (next == NONE)
       continue;
-    uint32_t *at = &first[sides[c]], before = *at < face ? *at : face;
-    *at = before; /* without a branch, as nobody can tell which is which */
-    same &= (before != face) & ((other == NONE) | (before == other));
-    other = before;
-    vxm_sets_join(parent, face, before);
+    same &= (next < face) & ((other == NONE) | (next == other));
+    other = next;
+    w->queue[queued] = next;
+    queued += w->label[next] == NONE;
+    w->label[next] = label;
   }
-  return same && other != NONE;
+  w->may_repeat |= same && other != NONE;
+  return queued;
 }
 
-/** Numbers the sets; as each is led by its first face, what a face points to has its number already. */
-static size_t number_sets(uint32_t *parent, size_t faces) {
-  uint32_t count = 0;
-  for (size_t f = 0; f < faces; f++)
-    parent[f] = parent[f] == f ? count++ : parent[parent[f]];
-  return count;
+/** Labels what edges connect with a face. */
+static vxm_status visit_patch(walk *w, uint32_t first, uint32_t label, vxm_error *error) {
+  enum { AHEAD = 8 };
+  vxm_status status = VXM_OK;
+  w->label[first] = label;
+  w->queue[0] = first;
+  for (size_t at = 0, queued = 1; at < queued && status == VXM_OK; at++) {
+    if (at + AHEAD < queued)
+      look_ahead(w, w->soup->offsets[w->queue[at + AHEAD]]);
+    queued = visit(w, w->queue[at], queued);
+    status = vxm_ask_at(at + 1, w->soup->context, error);
+  }
+  return status;
 }
 
-/** Fetches what will be needed soon, which lies here and there. */
-static inline void look_ahead(const uint32_t *parent, const uint32_t *first, const vxm_soup *soup,
-                              const uint32_t *sides, size_t face) {
-  enum { AHEAD = 48, NEAR = 24 /**< corners */ };
-  uint64_t begin = soup->offsets[face], end = soup->offsets[face + 1];
-  for (uint64_t c = begin + AHEAD; c < end + AHEAD && c < soup->corner_count; c++)
-    if (sides[c] != VXM_NO_EDGE)
-      __builtin_prefetch(first + sides[c], 1);
-  for (uint64_t c = begin + NEAR; c < end + NEAR && c < soup->corner_count; c++)
-    if (sides[c] != VXM_NO_EDGE && first[sides[c]] != NONE)
-      __builtin_prefetch(parent + first[sides[c]], 1);
+/** Patches are numbered in the order of their first faces, as each is walked over from there. */
+static vxm_status visit_all(vxm_patches *out, const vxm_soup *soup, const uint32_t *across,
+                            vxm_error *error) {
+  vxm_status status = VXM_OK;
+  walk w = {.soup = soup, .across = across, .label = out->of_face};
+  w.queue = vxm_alloc(out->context, soup->face_count + 1, sizeof *w.queue, error);
+  if (!w.queue)
+    return error->code;
+  memset(w.label, 0xff, soup->face_count * sizeof *w.label); /* NONE */
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    if (w.label[f] == NONE)
+      status = visit_patch(&w, (uint32_t)f, (uint32_t)out->count++, error);
+    if (status == VXM_OK)
+      status = vxm_ask_at(f, out->context, error);
+  }
+  vxm_free(out->context, w.queue);
+  out->may_repeat = w.may_repeat;
+  return status;
+}
+
+/** What lies across the sides along edges, in a soup with edges of one side, across which lies the face
+ * itself, or whose two run the same way. */
+static vxm_status find_across(uint32_t **across, const vxm_soup *soup, const vxm_edges *edges,
+                              vxm_error *error) {
+  vxm_context *context = soup->context;
+  const uint32_t *sides = edges->sides;
+  *across = vxm_alloc(context, soup->corner_count, sizeof **across, error);
+  uint32_t *both = *across ? vxm_calloc(context, edges->count, sizeof *both, error) : NULL;
+  if (!both)
+    return error->code;
+  vxm_status status = VXM_OK;
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
+      if (sides[c] != VXM_NO_EDGE && edges->edges[sides[c]].count == 2)
+        both[sides[c]] ^= (uint32_t)f; /* the number of the one and that of the other */
+    status = vxm_ask_at(f, context, error);
+  }
+  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
+    for (uint64_t c = soup->offsets[f]; c < soup->offsets[f + 1]; c++)
+      (*across)[c] = sides[c] != VXM_NO_EDGE ? both[sides[c]] ^ (uint32_t)f : VXM_ACROSS_NONE;
+    status = vxm_ask_at(f, context, error);
+  }
+  vxm_free(context, both);
+  return status;
 }
 
 static vxm_status build(vxm_patches *out, const vxm_soup *soup, const vxm_edges *edges, vxm_error *error) {
   if (soup->face_count >= UINT32_MAX)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu faces are too many to number; split the mesh",
                     soup->face_count);
-  out->of_face = vxm_alloc(out->context, soup->face_count, sizeof *out->of_face, error);
-  uint32_t *first = out->of_face ? vxm_alloc(out->context, edges->count, sizeof *first, error) : NULL;
-  if (!first)
-    return error->code;
-  memset(first, 0xff, edges->count * sizeof *first); /* NONE */
+  uint32_t *across = NULL;
   vxm_status status = VXM_OK;
-  for (size_t f = 0; f < soup->face_count && status == VXM_OK; f++) {
-    look_ahead(out->of_face, first, soup, edges->sides, f);
-    out->may_repeat |= join(out->of_face, first, soup, edges->sides, (uint32_t)f);
-    status = vxm_ask_at(f, out->context, error);
-  }
-  vxm_free(out->context, first);
-  out->count = status == VXM_OK ? number_sets(out->of_face, soup->face_count) : 0;
   out->is_closed = edges->open == 0;
+  out->of_face = vxm_alloc(out->context, soup->face_count, sizeof *out->of_face, error);
+  if (!out->of_face)
+    return error->code;
+  if (!edges->across)
+    status = find_across(&across, soup, edges, error);
+  if (status == VXM_OK)
+    status = visit_all(out, soup, edges->across ? edges->across : across, error);
+  vxm_free(out->context, across);
   return status;
 }
 

@@ -16,7 +16,7 @@ typedef struct vxm_patches {
 
 /**
  * @param[out] out freed with vxm_patches_destroy; empty after a failure
- * @param edges    of the soup as it is, with their sides; no edge has more than two
+ * @param edges    of the soup as it is, with their sides or what lies across these; none has more than two
  * @return VXM_OK, VXM_ERROR_RANGE beyond 2^32 - 1 faces, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT,
  *         VXM_ERROR_CANCELLED
  */

@@ -10,6 +10,7 @@ typedef struct vxm_surface_sums {
   double area;          /**< in the frame */
   vxm_vec3 vector_area; /**< in the frame */
   double volume;        /**< model units, signed, about the middle of the bounds; of faces that are finite */
+  size_t flat_faces;    /**< faces without area (vxm_unit_scale_no_area) */
 } vxm_surface_sums;
 
 /**
@@ -17,9 +18,10 @@ typedef struct vxm_surface_sums {
  * many there are.
  *
  * @param bounds of the faces (vxm_extent), to which the frame belongs
+ * @param flat   face_count elements that become 1 where a face has no area, else 0; may be NULL
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
 vxm_status vxm_surface_sums_of(vxm_surface_sums *out, const vxm_soup *soup, const double bounds[6],
-                               const vxm_unit_scale *frame, vxm_error *error);
+                               const vxm_unit_scale *frame, uint8_t *flat, vxm_error *error);
 
 #endif

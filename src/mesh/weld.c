@@ -16,10 +16,15 @@ static uint64_t coordinate_bits(double x) {
   return bits;
 }
 
+static uint64_t rotate(uint64_t x, unsigned by) {
+  return x << by | x >> (64 - by);
+}
+
+/** One mixing for all three, as it is made for each vertex twice. */
 static uint64_t position_hash(const double p[3]) {
-  uint64_t hash = vxm_hash_word(0, coordinate_bits(p[0]));
-  hash = vxm_hash_word(hash, coordinate_bits(p[1]));
-  return vxm_hash_word(hash, coordinate_bits(p[2]));
+  return vxm_mix(coordinate_bits(p[0]) * UINT64_C(0x9e3779b97f4a7c15) ^
+                 rotate(coordinate_bits(p[1]) * UINT64_C(0xc2b2ae3d27d4eb4f), 21) ^
+                 rotate(coordinate_bits(p[2]) * UINT64_C(0x165667b19e3779f9), 42));
 }
 
 /** Equal as numbers is equal in bits once -0.0 is 0.0; NaN never gets here. */

@@ -94,6 +94,45 @@ static void equals_all_pairs(void **state) {
   }
 }
 
+/** The same where most vertices are obstacles far from all members, and some stand in their way. */
+static void few_members_among_many(void **state) {
+  (void)state;
+  cloud *c = &the_cloud;
+  vxm_rng rng = {22};
+  size_t merged = 0, blocked = 0;
+  for (int round = 0; round < 60; round++) {
+    vxm_context *context = context_of_threads(1 + round % 3);
+    c->count = 100 + (size_t)vxm_rng_below(&rng, 200);
+    bool flat = vxm_rng_below(&rng, 4) == 0;
+    for (size_t v = 0; v < c->count; v++) {
+      size_t like = v > 0 && vxm_rng_below(&rng, 2) ? (size_t)vxm_rng_below(&rng, v) : v;
+      for (size_t axis = 0; axis < 3; axis++) {
+        double step = ((double)vxm_rng_below(&rng, 7) - 3) / 8192;
+        c->positions[3 * v + axis] =
+            like == v ? (double)vxm_rng_below(&rng, 1024) / 1024 - 0.5 : c->positions[3 * like + axis] + step;
+        if (flat && axis == 1)
+          c->positions[3 * v + axis] = 0.25;
+      }
+      c->roles[v] = vxm_rng_below(&rng, 6) ? VXM_NEAR_OBSTACLE : VXM_NEAR_MEMBER;
+      if (like != v && is_member(c, like) && vxm_rng_below(&rng, 4))
+        c->roles[v] = VXM_NEAR_MEMBER;
+    }
+    static uint32_t wanted[N_MAX];
+    double tolerance = 0.00047 * (1 + (double)vxm_rng_below(&rng, 3));
+    weld(context, c, tolerance);
+    weld_by_pairs(c, tolerance, wanted);
+    assert_memory_equal(c->map, wanted, c->count * sizeof *wanted);
+    for (size_t v = 0; v < c->count; v++)
+      for (size_t u = 0; u < v; u++)
+        if (is_member(c, u) && is_member(c, v) && distance(c, u, v) <= tolerance) {
+          merged += c->map[u] == c->map[v];
+          blocked += c->map[u] != c->map[v];
+        }
+    vxm_context_destroy(context);
+  }
+  assert_true(merged > 50 && blocked > 50);
+}
+
 /** What holds for any input: nothing farther apart than the tolerance, and merged groups are by themselves.
  */
 static void check_promises(const cloud *c, double tolerance) {
@@ -243,9 +282,9 @@ static void many_vertices(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(equals_all_pairs),  cmocka_unit_test(crowds_keep_the_promises),
-      cmocka_unit_test(pairs_of_any_size), cmocka_unit_test(cells_beyond_integers),
-      cmocka_unit_test(many_vertices),
+      cmocka_unit_test(equals_all_pairs),         cmocka_unit_test(few_members_among_many),
+      cmocka_unit_test(crowds_keep_the_promises), cmocka_unit_test(pairs_of_any_size),
+      cmocka_unit_test(cells_beyond_integers),    cmocka_unit_test(many_vertices),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

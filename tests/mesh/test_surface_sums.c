@@ -11,7 +11,7 @@ static vxm_surface_sums sums_of(const vxm_soup *soup) {
   free(used);
   vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
   vxm_surface_sums sums;
-  assert_int_equal(vxm_surface_sums_of(&sums, soup, extent.bounds, &frame, NULL), VXM_OK);
+  assert_int_equal(vxm_surface_sums_of(&sums, soup, extent.bounds, &frame, NULL, NULL), VXM_OK);
   sums.area /= frame.scale * frame.scale;
   sums.vector_area.z /= frame.scale * frame.scale;
   return sums;
@@ -60,12 +60,12 @@ static void equals_one_loop(void **state) {
         volume += vxm_polygon_cone(first, around);
     }
     vxm_surface_sums sums;
-    assert_int_equal(vxm_surface_sums_of(&sums, soup, bounds, &frame, NULL), VXM_OK);
+    assert_int_equal(vxm_surface_sums_of(&sums, soup, bounds, &frame, NULL, NULL), VXM_OK);
     assert_true(sums.volume == volume / frame.scale / frame.scale / frame.scale);
     assert_false(sums.area == area); /* infinite, or not a number */
     soup->positions[3 * 77] = 0;
     vxm_surface_sums again;
-    assert_int_equal(vxm_surface_sums_of(&again, soup, bounds, &frame, NULL), VXM_OK);
+    assert_int_equal(vxm_surface_sums_of(&again, soup, bounds, &frame, NULL, NULL), VXM_OK);
     assert_true(isfinite(again.area) && again.area > area);
     vxm_soup_destroy(soup);
     vxm_context_destroy(context);

@@ -1,45 +1,29 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "repair/state/repair_state.h"
 
-#include "base/threads.h"
-
-#include <stdatomic.h>
-#include <string.h>
-
 /* A face without area may be all that joins two others whose shared side has a vertex more on one of them: a
    sliver between A-B on one side and A-C, C-B on the other. Without it the mesh would be open there. So such
    a face goes only if that does not leave more edges odd. Removing one may let its neighbours go: an edge
    that has become odd puts the faces along it forward again. */
 
-enum { FACES_PER_SLICE = 1 << 14 };
-
 typedef struct removal {
   vxm_repair_state *state;
-  vxm_unit_scale frame;
-  uint8_t *flat;       /**< per face: 1 = without area, 2 = to be removed */
-  atomic_size_t sides; /**< of all faces without area */
-  uint8_t *odd;        /**< per edge, of the faces not to be removed */
-  size_t *side_face;   /**< per side: its face */
-  size_t *side_next;   /**< per side: 1 + another side along the same edge, or 0 */
-  size_t *edge_side;   /**< per edge: 1 + one of its sides, or 0 */
-  size_t *queue;       /**< edges to look at again */
-  uint8_t *queued;     /**< per edge */
+  uint8_t *flat;     /**< per face: 1 = without area, 2 = to be removed */
+  size_t sides;      /**< of all faces without area */
+  uint8_t *odd;      /**< per edge, of the faces not to be removed */
+  size_t *side_face; /**< per side: its face */
+  size_t *side_next; /**< per side: 1 + another side along the same edge, or 0 */
+  size_t *edge_side; /**< per edge: 1 + one of its sides, or 0 */
+  size_t *queue;     /**< edges to look at again */
+  uint8_t *queued;   /**< per edge */
   size_t queue_begin, queue_count;
 } removal;
 
-static void flag_slice(size_t slice, int worker, void *payload) {
-  (void)worker;
-  removal *r = payload;
+static void count_sides(removal *r) {
   const vxm_soup *soup = r->state->soup;
-  size_t begin = slice * FACES_PER_SLICE, end = begin + FACES_PER_SLICE, sides = 0;
-  for (size_t f = begin; f < end && f < soup->face_count; f++) {
-    vxm_soup_look_ahead(soup, f);
-    if (vxm_unit_scale_no_area(&r->frame, soup, f)) {
-      r->flat[f] = 1;
-      sides += (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
-    }
-  }
-  atomic_fetch_add_explicit(&r->sides, sides, memory_order_relaxed);
+  for (size_t f = 0; f < soup->face_count; f++)
+    if (r->flat[f])
+      r->sides += (size_t)(soup->offsets[f + 1] - soup->offsets[f]);
 }
 
 static size_t edge_of_side(const removal *r, const uint32_t *corners, size_t count, size_t i) {
@@ -116,7 +100,7 @@ static vxm_status choose(removal *r, vxm_error *error) {
   vxm_status status = vxm_repair_state_edges(r->state, error);
   if (status != VXM_OK)
     return status;
-  size_t edges = r->state->edges.count, sides = atomic_load(&r->sides);
+  size_t edges = r->state->edges.count;
   vxm_error local = VXM_ERROR_INIT;
   vxm_repair_state *state = r->state;
   r->odd = vxm_repair_state_scratch(state, edges, sizeof *r->odd, &status, &local);
@@ -125,9 +109,9 @@ static vxm_status choose(removal *r, vxm_error *error) {
   r->edge_side =
       r->queue ? vxm_repair_state_scratch(state, edges, sizeof *r->edge_side, &status, &local) : NULL;
   r->side_face =
-      r->edge_side ? vxm_repair_state_scratch(state, sides, sizeof *r->side_face, &status, &local) : NULL;
+      r->edge_side ? vxm_repair_state_scratch(state, r->sides, sizeof *r->side_face, &status, &local) : NULL;
   r->side_next =
-      r->side_face ? vxm_repair_state_scratch(state, sides, sizeof *r->side_next, &status, &local) : NULL;
+      r->side_face ? vxm_repair_state_scratch(state, r->sides, sizeof *r->side_next, &status, &local) : NULL;
   if (r->side_next) {
     list_sides(r);
     choose_faces(r);
@@ -144,17 +128,15 @@ static vxm_status choose(removal *r, vxm_error *error) {
 
 /** Faces have been reduced before: they have at least three corners, and no side from a vertex to itself. */
 vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error *error) {
-  vxm_extent extent;
-  vxm_repair_state_extent(state, &extent);
-  removal r = {.state = state, .frame = vxm_unit_scale_of(extent.bounds)};
+  removal r = {.state = state};
   vxm_status status = VXM_OK;
   *changed = false;
   r.flat = vxm_repair_state_scratch(state, state->soup->face_count, sizeof *r.flat, &status, error);
   if (!r.flat)
     return status;
-  status = vxm_parallel_asked(state->context, state->soup->face_count / FACES_PER_SLICE + 1, flag_slice, &r,
-                              error);
-  if (status == VXM_OK && atomic_load(&r.sides) > 0) {
+  status = vxm_repair_state_measure(state, r.flat, error);
+  if (status == VXM_OK && state->sums.flat_faces > 0) {
+    count_sides(&r);
     status = choose(&r, error);
     for (size_t f = 0; f < state->soup->face_count; f++)
       r.flat[f] = r.flat[f] == 2;

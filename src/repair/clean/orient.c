@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
-#include "mesh/surface_sums.h"
 #include "repair/state/repair_state.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /** A patch whose vector area is at least this part of its area is a sheet; of a hemisphere it is half. */
 static const double SHEET = 0.45;
@@ -31,7 +31,6 @@ typedef struct orienting {
   size_t *queue;
   patch *patches;
   size_t patch_count, patch_capacity;
-  const double *bounds;
   double volume; /**< where all is one patch that is consistent, and so measured in one go */
 } orienting;
 
@@ -168,10 +167,10 @@ static void add_area(patch *p, vxm_vec3 area) {
 /** The areas of patches that are consistent. */
 static bool measure_patches(orienting *o) {
   if (o->patch_count == 1) {
-    vxm_surface_sums sums;
-    vxm_status status = vxm_surface_sums_of(&sums, o->soup, o->bounds, &o->frame, &o->error);
-    o->patches[0] = (patch){.area = sums.area, .vector_area = sums.vector_area};
-    o->volume = sums.volume;
+    vxm_status status = vxm_repair_state_measure(o->state, NULL, &o->error);
+    const vxm_surface_sums *sums = &o->state->sums;
+    o->patches[0] = (patch){.area = sums->area, .vector_area = sums->vector_area};
+    o->volume = sums->volume;
     return status == VXM_OK;
   }
   for (size_t f = 0; f < o->soup->face_count && goes_on(o, f); f++) {
@@ -335,7 +334,8 @@ static bool turn_outward(orienting *o) {
       if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
         nesting.volume[i] = 0;
     choose_sides(&nesting, solid, held, over, known, chain);
-    for (size_t f = 0; f < o->soup->face_count; f++)
+    bool any = memchr(over, 1, count) != NULL;
+    for (size_t f = 0; any && f < o->soup->face_count; f++)
       if (over[o->label[f]]) {
         o->turn[f] ^= 1;
         reverse(o->soup, f);
@@ -353,7 +353,7 @@ static bool turn_outward(orienting *o) {
 
 static bool orient(orienting *o) {
   size_t faces = o->soup->face_count;
-  if (vxm_repair_state_edges(o->state, &o->error) != VXM_OK)
+  if (vxm_repair_state_count_edges(o->state, &o->error) != VXM_OK)
     return false;
   if (is_consistent(o)) {
     o->turn = allocate(o, faces, sizeof *o->turn);
@@ -397,7 +397,6 @@ vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_erro
   orienting o = {.state = state,
                  .soup = state->soup,
                  .error = VXM_ERROR_INIT,
-                 .bounds = extent.bounds,
                  .frame = vxm_unit_scale_of(extent.bounds)};
   bool done = orient(&o);
   state->nonorientable = 0;

@@ -37,6 +37,8 @@ static size_t reduce(uint32_t *corners, size_t count, size_t *begin) {
 static bool needs_reducing(const uint32_t *corners, size_t count) {
   if (count < 3)
     return true;
+  if (count == 3)
+    return (corners[0] == corners[1]) | (corners[1] == corners[2]) | (corners[2] == corners[0]);
   uint32_t before = corners[count - 2], last = corners[count - 1];
   for (size_t i = 0; i < count; i++) {
     if (corners[i] == last || corners[i] == before)

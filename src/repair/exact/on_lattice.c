@@ -68,8 +68,8 @@ vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_unio
   state->turned = turned;
   state->gone = gone;
   state->used = used;
-  state->has_edges = state->has_patches = state->has_extent = state->is_manifold =
-      false; /* it was of another soup */
+  state->has_counts = state->has_edges = state->has_patches = state->has_extent = state->has_sums =
+      state->is_manifold = false; /* it was of another soup */
   if (state->track)
     vxm_provenance_recall(state->track);
   return vxm_repair_state_renew(state, error);

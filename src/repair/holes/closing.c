@@ -134,7 +134,7 @@ vxm_status vxm_pass_closing(vxm_repair_state *state, bool *changed, vxm_error *e
   size_t most = largest_hole(&state->options);
   if (most == 0)
     return VXM_OK;
-  vxm_status status = vxm_repair_state_edges(state, error);
+  vxm_status status = vxm_repair_state_count_edges(state, error);
   if (status != VXM_OK || state->edges.odd == 0)
     return status;
   if (state->options.hole_fill == VXM_HOLE_FILL_FAN) {

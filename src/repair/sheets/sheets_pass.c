@@ -92,7 +92,7 @@ vxm_status vxm_pass_sheets(vxm_repair_state *state, bool *changed, vxm_error *er
   *changed = false;
   if (!is_asked_for(state))
     return VXM_OK;
-  vxm_status status = vxm_repair_state_edges(state, error);
+  vxm_status status = vxm_repair_state_count_edges(state, error);
   if (status != VXM_OK || state->edges.odd == 0)
     return status;
   int64_t count = 0;

@@ -20,13 +20,23 @@ void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t siz
 vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error) {
   if (state->has_edges)
     return VXM_OK;
+  vxm_repair_state_turn(state); /* drops what is only counted */
   vxm_status status = vxm_edges_build_sides(&state->edges, state->context, state->soup, NULL, error);
-  state->has_edges = status == VXM_OK;
+  state->has_edges = state->has_counts = status == VXM_OK;
+  return status;
+}
+
+vxm_status vxm_repair_state_count_edges(vxm_repair_state *state, vxm_error *error) {
+  if (state->has_counts)
+    return VXM_OK;
+  vxm_status status = vxm_edges_build_pairs(&state->edges, state->context, state->soup, error);
+  state->has_counts = status == VXM_OK;
+  state->has_edges = state->edges.edges != NULL;
   return status;
 }
 
 vxm_status vxm_repair_state_patches(vxm_repair_state *state, vxm_error *error) {
-  vxm_status status = state->has_patches ? VXM_OK : vxm_repair_state_edges(state, error);
+  vxm_status status = state->has_patches ? VXM_OK : vxm_repair_state_count_edges(state, error);
   if (status == VXM_OK && !state->has_patches && state->edges.crowded == 0) {
     status = vxm_patches_build(&state->patches, state->soup, &state->edges, error);
     state->has_patches = status == VXM_OK;
@@ -41,14 +51,25 @@ void vxm_repair_state_extent(vxm_repair_state *state, vxm_extent *extent) {
   *extent = state->extent;
 }
 
+vxm_status vxm_repair_state_measure(vxm_repair_state *state, uint8_t *flat, vxm_error *error) {
+  if (state->has_sums && !flat)
+    return VXM_OK;
+  vxm_extent extent;
+  vxm_repair_state_extent(state, &extent);
+  vxm_unit_scale frame = vxm_unit_scale_of(extent.bounds);
+  vxm_status status = vxm_surface_sums_of(&state->sums, state->soup, extent.bounds, &frame, flat, error);
+  state->has_sums = status == VXM_OK;
+  return status;
+}
+
 void vxm_repair_state_move(vxm_repair_state *state) {
-  state->has_extent = false;
+  state->has_extent = state->has_sums = false;
 }
 
 void vxm_repair_state_turn(vxm_repair_state *state) {
-  if (state->has_edges)
+  if (state->has_counts)
     vxm_edges_destroy(&state->edges);
-  state->has_edges = state->is_manifold = false;
+  state->has_counts = state->has_edges = state->has_sums = state->is_manifold = false;
 }
 
 void vxm_repair_state_touch(vxm_repair_state *state) {

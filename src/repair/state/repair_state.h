@@ -4,6 +4,7 @@
 #define VXM_REPAIR_STATE_REPAIR_STATE_H
 
 #include "mesh/patches.h"
+#include "mesh/surface_sums.h"
 #include "mesh/unit_scale.h"
 #include "repair/state/lost_parts.h"
 #include "repair/state/provenance.h"
@@ -53,11 +54,12 @@ typedef struct vxm_repair_state {
   uint8_t *gone;   /**< vertex_count; 1 = removed or merged by a pass that counted it */
   uint8_t *used;   /**< vertex_count; as the last vxm_repair_state_extent has found */
   uint8_t *turned; /**< face_count, or NULL as long as no face was turned: see vxm_turned */
-  bool has_edges, has_patches, has_extent;
-  bool is_manifold;    /**< the present faces are known to be (vxm_is_manifold) */
-  vxm_edges edges;     /**< of the present faces, if has_edges */
-  vxm_patches patches; /**< of the present faces, if has_patches */
-  vxm_extent extent;   /**< of the present soup, if has_extent */
+  bool has_counts, has_edges, has_patches, has_extent, has_sums;
+  bool is_manifold;      /**< the present faces are known to be (vxm_is_manifold) */
+  vxm_edges edges;       /**< of the present faces, if has_edges; if only has_counts, their numbers */
+  vxm_patches patches;   /**< of the present faces, if has_patches */
+  vxm_extent extent;     /**< of the present soup, if has_extent */
+  vxm_surface_sums sums; /**< of the present soup, if has_sums */
   int64_t counts[VXM_PASS_COUNT];
   vxm_pass_finding firsts[VXM_PASS_COUNT]; /**< of which `element`, `placed` and `at` are kept */
   bool renumbered;                         /**< faces have other numbers than they came in with */
@@ -110,11 +112,17 @@ void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t siz
                                vxm_error *error);
 /** The edge map of the present faces, with their sides, built if need be. */
 vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error);
-/** The patches of the present faces, and their edges, built if need be; there are none (count = 0) where an
- * edge has more than two sides. */
+/** How many edges there are of each kind, counted if need be: less than a map where all is closed, else just
+ * that (vxm_edges_build_pairs). */
+vxm_status vxm_repair_state_count_edges(vxm_repair_state *state, vxm_error *error);
+/** The patches of the present faces, and the numbers of their edges, built if need be; there are none (count
+ * = 0) where an edge has more than two sides. */
 vxm_status vxm_repair_state_patches(vxm_repair_state *state, vxm_error *error);
 /** Which vertices are used (state->used), and the bounds of these, looked at if need be. */
 void vxm_repair_state_extent(vxm_repair_state *state, vxm_extent *extent);
+/** Areas and volume of the present soup (state->sums), looked at if need be or `flat` is not NULL, as for
+ * vxm_surface_sums_of. */
+vxm_status vxm_repair_state_measure(vxm_repair_state *state, uint8_t *flat, vxm_error *error);
 /** Puts map[v] in the place of each corner v; vertices that lose their place are marked gone. Returns how
  * many were not gone before. */
 int64_t vxm_repair_state_merge(vxm_repair_state *state, const uint32_t *map);

@@ -70,19 +70,83 @@ vxm_status vxm_vertex_fans_count(uint8_t **fans, vxm_repair_state *state, vxm_er
   return status;
 }
 
+/* ---- Where it is known what lies across each side ---- */
+
+/** A corner, and the face it is of. */
+typedef struct place {
+  uint64_t corner;
+  size_t face;
+} place;
+
+/** The corner at the same vertex of the face across the side that begins at a corner: where the side that
+ * runs back ends. */
+static inline place step(const vxm_soup *soup, const uint32_t *across, place at) {
+  const uint32_t *index = soup->indices;
+  uint64_t after = at.corner + 1 < soup->offsets[at.face + 1] ? at.corner + 1 : soup->offsets[at.face];
+  uint32_t here = index[at.corner], there = index[after];
+  place next = {.face = across[at.corner]};
+  uint64_t begin = soup->offsets[next.face], end = soup->offsets[next.face + 1], last = end - 1;
+  next.corner = begin;
+  for (uint64_t c = begin; c < end; last = c++) /* to the end: nobody can tell which it is */
+    next.corner = (index[c] == here) & (index[last] == there) ? c : next.corner;
+  return next;
+}
+
+/** Whether a walk about a vertex comes back after so many corners, and not before. */
+static bool goes_round(const vxm_soup *soup, const uint32_t *across, place first, uint32_t corners) {
+  place at = first;
+  for (uint32_t count = 1; count <= corners; count++) {
+    at = step(soup, across, at);
+    if (at.corner == first.corner)
+      return count == corners;
+  }
+  return false;
+}
+
+/** Whether a walk about each vertex from its first corner meets all its corners, in a closed soup. */
+static vxm_status are_whole(bool *out, const vxm_soup *soup, const uint32_t *across, vxm_error *error) {
+  vxm_error local = VXM_ERROR_INIT;
+  vxm_status status = VXM_OK;
+  uint32_t *corners = vxm_calloc(soup->context, soup->vertex_count, sizeof *corners, &local);
+  *out = corners != NULL;
+  for (size_t c = 0; corners && c < soup->corner_count; c++)
+    corners[soup->indices[c]]++;
+  for (size_t f = 0; *out && f < soup->face_count && status == VXM_OK; f++) {
+    for (uint64_t c = soup->offsets[f]; *out && c < soup->offsets[f + 1]; c++) {
+      uint32_t *left = &corners[soup->indices[c]];
+      *out = *left == 0 || goes_round(soup, across, (place){c, f}, *left);
+      *left = 0; /* it was looked at */
+    }
+    status = vxm_ask_at(f, soup->context, &local);
+  }
+  vxm_free(soup->context, corners);
+  status = corners ? status : local.code;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
+  return status;
+}
+
+/* ---- All together ---- */
+
 vxm_status vxm_is_manifold(bool *out, vxm_repair_state *state, vxm_error *error) {
   *out = state->is_manifold;
   if (*out)
     return VXM_OK;
-  vxm_status status = vxm_repair_state_edges(state, error);
+  vxm_status status = vxm_repair_state_count_edges(state, error);
   if (status != VXM_OK || state->edges.crowded > 0 || state->edges.against > 0)
     return status;
-  uint8_t *fans;
-  status = vxm_vertex_fans_count(&fans, state, error);
-  *out = status == VXM_OK;
-  for (size_t v = 0; *out && v < state->soup->vertex_count; v++)
-    *out = fans[v] <= 1;
-  vxm_free(state->context, fans);
+  /* where each corner has a side, as there is none from a vertex to itself */
+  if (state->edges.across && 2 * state->edges.count == state->soup->corner_count)
+    status = are_whole(out, state->soup, state->edges.across, error);
+  else {
+    uint8_t *fans;
+    status = vxm_vertex_fans_count(&fans, state, error);
+    *out = status == VXM_OK;
+    for (size_t v = 0; *out && v < state->soup->vertex_count; v++)
+      *out = fans[v] <= 1;
+    vxm_free(state->context, fans);
+  }
+  *out = *out && status == VXM_OK;
   state->is_manifold = *out;
   return status;
 }

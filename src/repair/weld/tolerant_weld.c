@@ -107,7 +107,7 @@ static vxm_status is_wanted(vxm_repair_state *state, bool *wanted, vxm_error *er
   *wanted = state->options.weld == VXM_WELD_TOLERANCE && state->options.weld_tolerance > 0;
   if (state->options.weld != VXM_WELD_AUTO)
     return VXM_OK;
-  vxm_status status = vxm_repair_state_edges(state, error);
+  vxm_status status = vxm_repair_state_count_edges(state, error);
   *wanted = status == VXM_OK && state->edges.open > 1;
   return status;
 }

@@ -18,6 +18,11 @@ static void *allocate(builder *b, size_t count, size_t size) {
   return vxm_calloc(b->triangles->context, count, size, &b->error);
 }
 
+/** The same, not zeroed: for what is written as a whole. */
+static void *allocate_raw(builder *b, size_t count, size_t size) {
+  return vxm_alloc(b->triangles->context, count, size, &b->error);
+}
+
 /* ---- Covering polygons by triangles ---- */
 
 static bool comes_before(const double *p, const double *q) {
@@ -43,7 +48,7 @@ static bool has_three_corners(uint32_t p, uint32_t q, uint32_t r) {
 }
 
 /** Counts a triangle of its part (no triangles yet) or puts it in place. */
-static void add(builder *b, uint32_t part, uint32_t polygon, uint32_t p, uint32_t q, uint32_t r) {
+static inline void add(builder *b, uint32_t part, uint32_t polygon, uint32_t p, uint32_t q, uint32_t r) {
   size_t at = b->next[part]++;
   b->polygons |= polygon != 0;
   if (!b->triangles->corners)
@@ -57,7 +62,7 @@ static void add(builder *b, uint32_t part, uint32_t polygon, uint32_t p, uint32_
   b->triangles->part[at] = part;
 }
 
-static void cover_face(builder *b, size_t face) {
+static inline void cover_face(builder *b, size_t face) {
   const vxm_split *split = &b->triangles->split;
   size_t n;
   const uint32_t *corner = vxm_face(b->soup, face, &n);
@@ -140,11 +145,11 @@ static vxm_status make_triangles(builder *b) {
     return vxm_fail(&b->error, VXM_ERROR_RANGE, "%zu triangles are too many to number; split the mesh",
                     total);
   triangles->triangle_count = total;
-  triangles->part = allocate(b, total, sizeof *triangles->part);
+  triangles->part = allocate_raw(b, total, sizeof *triangles->part);
   triangles->polygon = b->polygons ? allocate(b, total, sizeof *triangles->polygon) : NULL;
   if (b->polygons && !triangles->polygon)
     return b->error.code;
-  triangles->corners = allocate(b, total, sizeof *triangles->corners);
+  triangles->corners = allocate_raw(b, total, sizeof *triangles->corners);
   if (!triangles->corners || !triangles->part)
     return b->error.code;
   for (int w = 0; w < 3; w++)
@@ -171,14 +176,14 @@ static const double *position_of(const builder *b, uint32_t vertex) {
   return vertex < count ? vxm_position(b->soup, vertex) : b->triangles->split.caps.points[vertex - count];
 }
 
-/** Numbers points anew, as triangles have them one after another; false if it was cancelled. */
+/** Numbers points anew, as triangles have them one after another; false if it was cancelled. `vertex` has
+ * room for one more than there are. */
 static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *points) {
   vxm_triangle_set *triangles = b->triangles;
   enum { AHEAD = 16 }; /* triangles, whose vertices lie here and there */
   const uint32_t none = UINT32_MAX;
   size_t count = 0, first_apex = triangles->first_apex;
-  for (size_t v = 0; v < first_apex; v++)
-    number[v] = none;
+  memset(number, 0xff, first_apex * sizeof *number); /* none */
   for (size_t f = 0; f < triangles->triangle_count; f++) {
     if (vxm_ask_at(f, triangles->context, &b->error) != VXM_OK)
       return false;
@@ -189,11 +194,12 @@ static bool renumber(builder *b, uint32_t *number, uint32_t *vertex, size_t *poi
       uint32_t *corner = &triangles->corners[f][k];
       if (*corner >= first_apex)
         continue;
-      if (number[*corner] == none) {
-        vertex[count] = *corner;
-        number[*corner] = (uint32_t)count++;
-      }
-      *corner = number[*corner];
+      /* without a branch on whether it is new, as nobody can tell */
+      uint32_t old = *corner, known = number[old];
+      bool is_new = known == none;
+      vertex[count] = old;
+      *corner = number[old] = is_new ? (uint32_t)count : known;
+      count += is_new;
     }
   }
   *points = count;
@@ -212,14 +218,14 @@ static void renumber_apexes(vxm_triangle_set *triangles, size_t count) {
 static vxm_status gather_points(builder *b) {
   vxm_triangle_set *triangles = b->triangles;
   size_t count = 0;
-  uint32_t *number = allocate(b, triangles->first_apex, sizeof *number);
-  triangles->vertex = allocate(b, triangles->first_apex, sizeof *triangles->vertex);
+  uint32_t *number = allocate_raw(b, triangles->first_apex, sizeof *number);
+  triangles->vertex = allocate_raw(b, triangles->first_apex + 1, sizeof *triangles->vertex);
   bool done = number && triangles->vertex && renumber(b, number, triangles->vertex, &count);
   vxm_free(triangles->context, number);
   if (!done)
     return b->error.code;
   renumber_apexes(triangles, count);
-  triangles->positions = allocate(b, triangles->first_apex, sizeof *triangles->positions);
+  triangles->positions = allocate_raw(b, triangles->first_apex, sizeof *triangles->positions);
   if (!triangles->positions)
     return b->error.code;
   for (size_t p = 0; p < triangles->first_apex; p++) {
@@ -232,11 +238,13 @@ static vxm_status gather_points(builder *b) {
 
 /* ---- Sizes ---- */
 
-static double squared_distance(const double *p, const double *q) {
-  double sum = 0;
-  for (int a = 0; a < 3; a++)
-    sum += (p[a] - q[a]) * (p[a] - q[a]);
-  return sum;
+static inline double squared_distance(const double *p, const double *q) {
+  double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+  return x * x + y * y + z * z;
+}
+
+static inline double larger(double most, double x) {
+  return x > most ? x : most;
 }
 
 static void find_box(vxm_triangle_set *triangles) {
@@ -255,7 +263,7 @@ static void find_box(vxm_triangle_set *triangles) {
 
 /** Sums up how long triangles are. A cone reaches from its edge to somewhere among the triangles. */
 static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
-  vxm_edge_lengths *faces = &triangles->lengths[VXM_LENGTHS_FACES], *cones = faces + VXM_LENGTHS_CONES;
+  vxm_edge_lengths faces = {0}, *cones = &triangles->lengths[VXM_LENGTHS_CONES];
   find_box(triangles);
   for (size_t f = 0; f < triangles->triangle_count; f++) {
     const uint32_t *corner = triangles->corners[f];
@@ -266,16 +274,16 @@ static vxm_status measure(vxm_triangle_set *triangles, vxm_error *error) {
       cones->count++;
       continue;
     }
-    double squared = 0;
-    for (int k = 0; k < 3; k++) {
-      double side =
-          squared_distance(triangles->positions[corner[k]], triangles->positions[corner[(k + 1) % 3]]);
-      squared = side > squared ? side : squared;
-    }
-    faces->count++;
-    faces->sum += sqrt(squared);
-    faces->squared += squared;
+    const double *p = triangles->positions[corner[0]], *q = triangles->positions[corner[1]],
+                 *r = triangles->positions[corner[2]];
+    double squared = larger(0, squared_distance(p, q)); /* what is no number is left out */
+    squared = larger(squared, squared_distance(q, r));
+    squared = larger(squared, squared_distance(r, p));
+    faces.count++;
+    faces.sum += sqrt(squared);
+    faces.squared += squared;
   }
+  triangles->lengths[VXM_LENGTHS_FACES] = faces;
   if (cones->count > 0) {
     double diagonal = squared_distance(triangles->low, triangles->high);
     cones->sum = cones->count * sqrt(diagonal);
