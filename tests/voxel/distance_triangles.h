@@ -10,10 +10,6 @@
 
 typedef double triangle_corners[3][3];
 
-static void corners_of(double out[3][3], size_t triangle, const void *payload) {
-  memcpy(out, ((const triangle_corners *)payload)[triangle], sizeof(triangle_corners));
-}
-
 /** Crowds of small ones, or few that are large; some far away; slivers, points, and the same ones again. */
 static void fill_corners(triangle_corners *corners, size_t count, double extent, vxm_rng *rng, int kind) {
   for (size_t t = 0; t < count; t++) {

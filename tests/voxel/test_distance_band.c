@@ -8,6 +8,7 @@
 #include "shapes.h"
 
 #include "base/bits.h"
+#include "voxel/closest/triangle_distance.h"
 #include "voxel/fields/distance_band.h"
 
 #include <math.h>
@@ -17,31 +18,6 @@ static triangle_corners *make_corners(size_t count, double extent, vxm_rng *rng,
   triangle_corners *corners = malloc(count * sizeof *corners);
   fill_corners(corners, count, extent, rng, kind);
   return corners;
-}
-
-static void test_frames(void **state) {
-  (void)state;
-  enum { COUNT = 3001 };
-  vxm_rng rng = {41};
-  const vxm_band_kernels *builds[3];
-  size_t build_count = vxm_band_kernels_all(builds);
-  vxm_distance_triangle *made = malloc(COUNT * sizeof *made), right;
-  static vxm_band_stage stage;
-  for (int kind = 0; kind < 15; kind++) {
-    triangle_corners *corners = make_corners(COUNT, 20, &rng, kind);
-    for (size_t b = 0; b < build_count; b++) {
-      for (size_t t = 0; t < COUNT - (size_t)kind; t += VXM_BAND_STAGED) {
-        size_t some = (size_t)vxm_min((int64_t)(COUNT - (size_t)kind - t), VXM_BAND_STAGED);
-        builds[b]->make_frames(made + t, &stage, (const double(*)[3][3])corners + t, some);
-      }
-      for (size_t t = 0; t < COUNT - (size_t)kind; t++) {
-        vxm_distance_triangle_make(&right, (const double(*)[3])corners[t]);
-        assert_memory_equal(&made[t], &right, sizeof right);
-      }
-    }
-    free(corners);
-  }
-  free(made);
 }
 
 /* ---- Tiles ---- */
@@ -100,6 +76,19 @@ static void choose_tile(vxm_band_tile *tile, const vxm_band_grid *grid, vxm_rng 
   }
 }
 
+/** As many points as corners. */
+static vxm_band_soup soup_of(const triangle_corners *corners, size_t count) {
+  uint32_t(*numbers)[3] = malloc(count * sizeof *numbers);
+  for (size_t t = 0; t < count; t++)
+    for (size_t c = 0; c < 3; c++)
+      numbers[t][c] = (uint32_t)(3 * t + c);
+  return (vxm_band_soup){corners[0], (const uint32_t(*)[3])numbers, count};
+}
+
+static void soup_free(const vxm_band_soup *soup) {
+  free((void *)soup->corners);
+}
+
 static void check_families(const triangle_corners *corners, size_t count, const vxm_band_grid *grid,
                            vxm_rng *rng) {
   static vxm_band_tile tile;
@@ -107,7 +96,8 @@ static void check_families(const triangle_corners *corners, size_t count, const 
   for (size_t t = 0; t < count; t++)
     vxm_distance_triangle_make(&triangles[t], (const double(*)[3])corners[t]);
   vxm_band_families *all;
-  assert_int_equal(vxm_band_families_create(&all, context, count, corners_of, corners, grid, NULL), VXM_OK);
+  vxm_band_soup soup = soup_of(corners, count);
+  assert_int_equal(vxm_band_families_create(&all, context, &soup, grid, NULL), VXM_OK);
   uint32_t *list = malloc(all->count * sizeof *list);
   for (uint32_t i = 0; i < all->count; i++)
     list[i] = i;
@@ -117,7 +107,23 @@ static void check_families(const triangle_corners *corners, size_t count, const 
   }
   free(list);
   vxm_band_families_destroy(all);
+  soup_free(&soup);
   free(triangles);
+}
+
+/** Few triangles of all kinds, so that each is the nearest somewhere: their frames are the same to the bit.
+ */
+static void test_frames(void **state) {
+  (void)state;
+  vxm_rng rng = {41};
+  vxm_band_grid grid = {{0, 1, 2}, {9, 8, 7}, {1, 1, 1}, 6};
+  for (int kind = 0; kind < 15; kind++)
+    for (int round = 0; round < ROUNDS(20); round++) {
+      size_t count = 1 + (size_t)vxm_rng_below(&rng, 12);
+      triangle_corners *corners = make_corners(count, 8, &rng, kind);
+      check_families((const triangle_corners *)corners, count, &grid, &rng);
+      free(corners);
+    }
 }
 
 static void test_tiles(void **state) {
@@ -270,6 +276,7 @@ static void test_memory(void **state) {
   enum { COUNT = 5000 };
   vxm_rng rng = {46};
   triangle_corners *corners = make_corners(COUNT, 50, &rng, 2);
+  vxm_band_soup soup = soup_of((const triangle_corners *)corners, COUNT);
   vxm_band_grid grid = {{0, 1, 2}, {50, 70, 90}, {1, 1, 1}, 3};
   for (int part = 0; part <= 10; part++) {
     vxm_context_options options = VXM_CONTEXT_OPTIONS_INIT;
@@ -280,7 +287,7 @@ static void test_memory(void **state) {
     assert_int_equal(vxm_context_create(&own, &options, NULL), VXM_OK);
     vxm_band_families *all;
     vxm_distance_band *band = NULL;
-    vxm_status status = vxm_band_families_create(&all, own, COUNT, corners_of, corners, &grid, NULL);
+    vxm_status status = vxm_band_families_create(&all, own, &soup, &grid, NULL);
     if (status == VXM_OK)
       status = vxm_distance_band_create(&band, all, 2, NULL);
     assert_true(status == VXM_OK || status == VXM_ERROR_MEMORY_LIMIT);
@@ -290,12 +297,13 @@ static void test_memory(void **state) {
     vxm_band_families_destroy(all);
     vxm_context_destroy(own);
   }
+  soup_free(&soup);
   free(corners);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_frames),        cmocka_unit_test(test_tiles),
+      cmocka_unit_test(test_tiles),         cmocka_unit_test(test_frames),
       cmocka_unit_test(test_crowd),         cmocka_unit_test(test_equal_slopes),
       cmocka_unit_test(test_far_and_large), cmocka_unit_test(test_values),
       cmocka_unit_test(test_memory),

@@ -16,6 +16,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void corners_of(double out[3][3], size_t triangle, const void *payload) {
+  memcpy(out, ((const triangle_corners *)payload)[triangle], sizeof(triangle_corners));
+}
+
 /* ---- The exact distance: integers up to 2^21 ---- */
 
 typedef struct vec {

@@ -4,10 +4,13 @@
 #define VXM_VOXEL_CLOSEST_BAND_FAMILIES_H
 
 #include "base/context.h"
-#include "voxel/closest/triangle_distance.h"
 
-/** Takes the corners of a triangle from its owner: lengths in voxels, as vxm_band_grid has them. */
-typedef void (*vxm_band_corners_fn)(double out[3][3], size_t triangle, const void *payload);
+/** Triangles: lengths in voxels, as vxm_band_grid has them. */
+typedef struct vxm_band_soup {
+  const double (*points)[3];
+  const uint32_t (*corners)[3];
+  size_t count;
+} vxm_band_soup;
 
 /** The voxels whose centres are asked: that of (i,j,k) is ((i + 1/2) * step[0], ...). */
 typedef struct vxm_band_grid {
@@ -19,23 +22,13 @@ typedef struct vxm_band_grid {
 
 enum { VXM_BAND_FAMILY = 8 /**< triangles in a family at most */ };
 
-/** vxm_distance_triangle in floats, as seen from its family's origin; the columns are fast, middle, slow. */
+/** A triangle, and vxm_distance_triangle in floats, as seen from its family's origin; the columns are fast,
+ * middle, slow. */
 typedef struct vxm_band_triangle {
+  uint32_t corner[3];          /**< points of the soup */
   float axis[3][3], offset[3]; /**< a point q lies at axis q + offset in the triangle's frame */
   float length, leg[2][2], leg_length[2];
-  float middle[3], radius; /**< of a sphere about it */
 } vxm_band_triangle;
-
-/** Triangles whose frames are made at once, number by number: corners, and vxm_distance_triangle. */
-enum { VXM_BAND_STAGED = 64, VXM_BAND_STAGE_ROOM = VXM_BAND_STAGED + VXM_BAND_FAMILY };
-typedef struct vxm_band_stage {
-  _Alignas(64) double corner[9][VXM_BAND_STAGE_ROOM];
-  double frame[sizeof(vxm_distance_triangle) / sizeof(double)][VXM_BAND_STAGE_ROOM];
-} vxm_band_stage;
-
-typedef struct vxm_band_box {
-  double low[3], high[3];
-} vxm_band_box;
 
 /** Triangles side by side. All threes that are not doubles are in the order fast, middle, slow. */
 typedef struct vxm_band_family {
@@ -53,20 +46,19 @@ typedef struct vxm_band_family {
 typedef struct vxm_band_families {
   vxm_context *context;
   vxm_band_grid grid;
+  const double (*points)[3]; /**< of the soup */
   size_t count, triangle_count;
   vxm_band_family *families;
-  vxm_distance_triangle *exact; /**< of the triangles, in the order of the families */
-  vxm_band_triangle *rough;
+  vxm_band_triangle *triangles; /**< in the order of the families */
 } vxm_band_families;
 
 /**
  * Makes the families of one triangle or more.
  *
- * @param corners called from several threads
+ * @param soup its points must outlive the families
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  */
-vxm_status vxm_band_families_create(vxm_band_families **out, vxm_context *context, size_t count,
-                                    vxm_band_corners_fn corners, const void *payload,
+vxm_status vxm_band_families_create(vxm_band_families **out, vxm_context *context, const vxm_band_soup *soup,
                                     const vxm_band_grid *grid, vxm_error *error);
 /** NULL is allowed. */
 void vxm_band_families_destroy(vxm_band_families *families);

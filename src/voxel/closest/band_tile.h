@@ -12,21 +12,45 @@ enum {
   VXM_BAND_ROW = VXM_BAND_TILE + 8,
   VXM_BAND_SLICE = VXM_BAND_ROW * (VXM_BAND_TILE + 1),
   VXM_BAND_VOXELS = VXM_BAND_SLICE * VXM_BAND_TILE,
-  VXM_BAND_NOTES = 1 << 13,
+  VXM_BAND_NOTES = 1 << 12,
+  VXM_BAND_GROUPS = 1 << 11,
   VXM_BAND_VECTOR = 16,
-  VXM_BAND_BRICKS = VXM_BAND_TILE * VXM_BAND_TILE * VXM_BAND_TILE / 4
+  VXM_BAND_BRICKS = VXM_BAND_TILE * VXM_BAND_TILE * VXM_BAND_TILE / 4,
+  VXM_BAND_GATHERED = 1 << 10,
+  VXM_BAND_PAIRS = 1 << 9
 };
 
-/** A brick of a tile, voxels that are one vector: the how manieth along fast, middle and slow. */
-typedef struct vxm_band_brick {
-  uint8_t at[4];
-} vxm_band_brick;
+/** Voxels in which a family may be the nearest. */
+typedef struct vxm_band_gathered {
+  _Alignas(64) float at[3][VXM_BAND_GATHERED + VXM_BAND_VECTOR];   /**< as seen from the family */
+  _Alignas(64) int32_t place[VXM_BAND_GATHERED + VXM_BAND_VECTOR]; /**< in the order of bricks */
+} vxm_band_gathered;
 
-/** A brick that has to be looked at in doubles, for a triangle. */
+/** Some of them, which are one vector. */
+typedef struct vxm_band_group {
+  int32_t place[VXM_BAND_VECTOR]; /**< behind the last one any */
+  uint32_t family;
+  uint16_t count;
+  bool is_brick; /**< they follow one another from a multiple of their number on */
+} vxm_band_group;
+
+/** A group of voxels that has to be looked at in doubles, for a triangle. */
 typedef struct vxm_band_note {
-  uint32_t triangle;
-  vxm_band_brick brick;
+  uint16_t group, triangle; /**< the how manieth of its family */
 } vxm_band_note;
+
+/** A note that still holds, and a bit for each voxel that it does for. */
+typedef struct vxm_band_holding {
+  uint32_t note, voxels;
+} vxm_band_holding;
+
+/** Single voxels for which one of a few triangles is looked at. */
+typedef struct vxm_band_pairs {
+  double square[VXM_BAND_PAIRS];
+  int32_t triangle[VXM_BAND_PAIRS + VXM_BAND_VECTOR];
+  int32_t place[VXM_BAND_PAIRS + VXM_BAND_VECTOR]; /**< in the order of bricks */
+  uint32_t to[VXM_BAND_PAIRS];                     /**< the voxel's square */
+} vxm_band_pairs;
 
 /** What a worker makes a tile in. */
 typedef struct vxm_band_tile {
@@ -37,8 +61,12 @@ typedef struct vxm_band_tile {
   double places[3][VXM_BAND_ROW];    /**< of the voxels, along fast, middle and slow */
   double bricks_at[3][VXM_BAND_ROW]; /**< of the first voxels of bricks */
   vxm_band_note notes[VXM_BAND_NOTES];
-  vxm_band_brick bricks[VXM_BAND_BRICKS + 1]; /**< of a family */
-  size_t note_count;
+  vxm_band_holding holding[VXM_BAND_NOTES + 1];
+  vxm_band_group groups[VXM_BAND_GROUPS];
+  vxm_band_gathered gathered;
+  vxm_band_pairs pairs;
+  uint32_t bricks[VXM_BAND_BRICKS + 1]; /**< of a family: their numbers, above a bit for each voxel */
+  size_t note_count, group_count;
   int64_t first[3];
   int count[3]; /**< 1 to VXM_BAND_TILE */
 } vxm_band_tile;
@@ -61,16 +89,13 @@ typedef struct vxm_band_tally {
 } vxm_band_tally;
 
 typedef struct vxm_band_kernels {
-  /** vxm_distance_triangle_make for up to VXM_BAND_STAGED triangles, to the bit. */
-  void (*make_frames)(vxm_distance_triangle *out, vxm_band_stage *stage, const double (*corners)[3][3],
-                      size_t count);
   /**
-   * Makes a family that has `first` and `count` of triangles whose frames have been made, `first` of the
-   * stage and those behind it: all but its room and voxels, with a low, high and half that are not widened
-   * yet. Returns how far it reaches from its origin.
+   * Makes a family that has `first` and `count`, and the frames of its triangles, which have corners: all but
+   * its room and voxels, with a low, high and half that are not widened yet. Returns how far it reaches from
+   * its origin.
    */
-  double (*make_family)(vxm_band_family *f, vxm_band_box *around, vxm_band_triangle *rough,
-                        const vxm_band_stage *stage, size_t first, const vxm_band_grid *grid);
+  double (*make_family)(vxm_band_family *f, vxm_band_triangle *triangles, const double (*points)[3],
+                        const vxm_band_grid *grid);
   /**
    * The squared distances of a tile that has `first` and `count` to the nearest triangle of the families
    * listed: the least that vxm_triangle_distance2 gives, to the bit, where that is below band^2, or band^2.

@@ -3,8 +3,9 @@
 #include "base/cpu.h"
 
 #if VXM_KERNELS_X86
+#include "voxel/closest/band_tile.h"
+
 #include <immintrin.h>
-#include <stdint.h>
 #if defined(__clang__)
 #pragma clang attribute push(                                                                 \
     __attribute__((target("avx512f,avx512dq,avx512bw,avx512vl,avx2,bmi,bmi2,popcnt,lzcnt"))), \
@@ -29,12 +30,52 @@ typedef __mmask16 wide_mask;
 
 #define INLINE static inline __attribute__((always_inline))
 
+typedef float eight __attribute__((vector_size(32)));
+typedef float eight_stored __attribute__((vector_size(32), aligned(4), may_alias));
+typedef int32_t eight_int __attribute__((vector_size(32)));
+
+INLINE eight eight_max(eight a, eight b) {
+  return (eight)_mm256_max_ps((__m256)a, (__m256)b);
+}
+
+INLINE eight eight_min(eight a, eight b) {
+  return (eight)_mm256_min_ps((__m256)a, (__m256)b);
+}
+
+INLINE eight eight_root(eight x) {
+  return (eight)_mm256_sqrt_ps((__m256)x);
+}
+
+INLINE eight eight_choose(eight_int mask, eight a, eight b) {
+  return (eight)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)mask);
+}
+
+INLINE unsigned eight_bits(eight_int mask) {
+  return (unsigned)_mm256_movemask_ps((__m256)mask);
+}
+
+INLINE float eight_least(eight x) {
+  __m128 y = _mm_min_ps(_mm256_castps256_ps128((__m256)x), _mm256_extractf128_ps((__m256)x, 1));
+  y = _mm_min_ps(y, _mm_movehl_ps(y, y));
+  return _mm_cvtss_f32(_mm_min_ss(y, _mm_movehdup_ps(y)));
+}
+
+INLINE float eight_sum(eight x) {
+  __m128 y = _mm_add_ps(_mm256_castps256_ps128((__m256)x), _mm256_extractf128_ps((__m256)x, 1));
+  y = _mm_add_ps(y, _mm_movehl_ps(y, y));
+  return _mm_cvtss_f32(_mm_add_ss(y, _mm_movehdup_ps(y)));
+}
+
 INLINE wide wide_max(wide a, wide b) {
   return (wide)_mm512_max_ps((__m512)a, (__m512)b);
 }
 
 INLINE wide wide_min(wide a, wide b) {
   return (wide)_mm512_min_ps((__m512)a, (__m512)b);
+}
+
+INLINE wide wide_size(wide x) {
+  return (wide)_mm512_abs_ps((__m512)x);
 }
 
 INLINE wide wide_fma(wide a, wide b, wide c) {
@@ -57,36 +98,43 @@ INLINE wide wide_unless(wide_mask mask, wide x) {
   return (wide)_mm512_maskz_mov_ps((__mmask16)~mask, (__m512)x);
 }
 
-INLINE wide wide_root(wide x) {
-  return (wide)_mm512_sqrt_ps((__m512)x);
-}
-
 INLINE unsigned wide_bits(wide_mask mask) {
   return mask;
 }
 
-/* Two rows of four. */
-
-enum { NEXT_ROW = 40 };
-
-INLINE lanes rows_load(const double *from) {
-  return (lanes)_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(from)),
-                                   _mm256_loadu_pd(from + NEXT_ROW), 1);
+/** Puts the voxels of a brick that have a bit behind `count` others. */
+INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
+  const __m512i number = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const __mmask16 mask = (__mmask16)bits;
+  for (int a = 0; a < 3; a++)
+    _mm512_storeu_ps(to->at[a] + count, _mm512_maskz_compress_ps(mask, (__m512)q[a]));
+  _mm512_storeu_si512(to->place + count,
+                      _mm512_maskz_compress_epi32(mask, _mm512_add_epi32(number, _mm512_set1_epi32(first))));
 }
 
-INLINE void rows_store(double *to, lanes x) {
-  _mm256_storeu_pd(to, _mm512_castpd512_pd256((__m512d)x));
-  _mm256_storeu_pd(to + NEXT_ROW, _mm512_extractf64x4_pd((__m512d)x, 1));
+INLINE wide wide_gather(const float *from, const int32_t *place) {
+  return (wide)_mm512_i32gather_ps(_mm512_loadu_si512(place), from, 4);
 }
 
-/** A number for each voxel of a row. */
-INLINE lanes lanes_along(const double *from) {
-  return (lanes)_mm512_broadcast_f64x4(_mm256_loadu_pd(from));
+/** The first `count` of a vector. */
+INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
+  _mm512_mask_i32scatter_ps(to, (__mmask16)((1U << count) - 1), _mm512_loadu_si512(place), (__m512)x, 4);
 }
 
-/** A number for each row. */
-INLINE lanes lanes_across(const double *from) {
-  return (lanes)_mm512_insertf64x4(_mm512_set1_pd(from[0]), _mm256_set1_pd(from[1]), 1);
+/** Puts a triangle and the voxels of a group that have a bit behind `count` other pairs; returns how many
+ * there are then. */
+INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, const int32_t *place,
+                        unsigned bits) {
+  const __m512i places = _mm512_loadu_si512(place);
+  _mm512_storeu_si512(to->place + count, _mm512_maskz_compress_epi32((__mmask16)bits, places));
+  _mm512_storeu_si512(to->triangle + count, _mm512_set1_epi32(triangle));
+  return count + (size_t)_mm_popcnt_u32(bits);
+}
+
+/** A number for each lane out of VXM_BAND_FAMILY. */
+INLINE lanes lanes_pick(const double *from, const int32_t *which) {
+  const __m512i index = _mm512_cvtepi32_epi64(_mm256_loadu_si256((const __m256i *)(const void *)which));
+  return (lanes)_mm512_permutexvar_pd(index, _mm512_loadu_pd(from));
 }
 
 INLINE lanes lanes_max(lanes a, lanes b) {
@@ -119,8 +167,6 @@ INLINE void end_past(void) {
 }
 
 #include "voxel/closest/band_tile_body.inc"
-
-_Static_assert((int)NEXT_ROW == (int)VXM_BAND_ROW, "rows lie as far apart as they are loaded");
 
 #if defined(__clang__)
 #pragma clang attribute pop

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /** Tiles of distances for any processor. */
 #include "base/neon.h"
+#include "voxel/closest/band_tile.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
 #define LANES 2
@@ -22,6 +22,49 @@ typedef int32_t wide_mask __attribute__((vector_size(4 * WIDTH)));
 
 #define INLINE static inline __attribute__((always_inline))
 
+typedef float eight __attribute__((vector_size(32)));
+typedef float eight_stored __attribute__((vector_size(32), aligned(4), may_alias));
+typedef int32_t eight_int __attribute__((vector_size(32)));
+
+INLINE eight eight_choose(eight_int mask, eight a, eight b) {
+  return (eight)((mask & (eight_int)a) | (~mask & (eight_int)b));
+}
+
+INLINE eight eight_max(eight a, eight b) {
+  return eight_choose(a > b, a, b);
+}
+
+INLINE eight eight_min(eight a, eight b) {
+  return eight_choose(a < b, a, b);
+}
+
+INLINE eight eight_root(eight x) {
+  for (int n = 0; n < 8; n++)
+    x[n] = sqrtf(x[n]);
+  return x;
+}
+
+INLINE unsigned eight_bits(eight_int mask) {
+  unsigned bits = 0;
+  for (unsigned n = 0; n < 8; n++)
+    bits |= (unsigned)(mask[n] & 1) << n;
+  return bits;
+}
+
+INLINE float eight_least(eight x) {
+  float least = x[0];
+  for (int n = 1; n < 8; n++)
+    least = x[n] < least ? x[n] : least;
+  return least;
+}
+
+INLINE float eight_sum(eight x) {
+  float sum = 0;
+  for (int n = 0; n < 8; n++)
+    sum += x[n];
+  return sum;
+}
+
 INLINE wide wide_max(wide a, wide b) {
   wide_mask is_a = a > b;
   return (wide)((is_a & (wide_mask)a) | (~is_a & (wide_mask)b));
@@ -30,6 +73,10 @@ INLINE wide wide_max(wide a, wide b) {
 INLINE wide wide_min(wide a, wide b) {
   wide_mask is_a = a < b;
   return (wide)((is_a & (wide_mask)a) | (~is_a & (wide_mask)b));
+}
+
+INLINE wide wide_size(wide x) {
+  return (wide)((wide_mask)x & INT32_MAX);
 }
 
 INLINE wide wide_fma(wide a, wide b, wide c) {
@@ -52,14 +99,6 @@ INLINE wide wide_unless(wide_mask mask, wide x) {
   return (wide)(~mask & (wide_mask)x);
 }
 
-INLINE wide wide_root(wide x) {
-#if VXM_NEON
-  return (wide)vsqrtq_f32((float32x4_t)x);
-#else
-  return (wide){sqrtf(x[0]), sqrtf(x[1]), sqrtf(x[2]), sqrtf(x[3])};
-#endif
-}
-
 INLINE unsigned wide_bits(wide_mask mask) {
 #if defined(__SSE__) && defined(__GNUC__)
   return (unsigned)__builtin_ia32_movmskps((wide)mask);
@@ -73,22 +112,41 @@ INLINE unsigned wide_bits(wide_mask mask) {
 #endif
 }
 
-INLINE lanes rows_load(const double *from) {
-  return *(const lanes_loaded *)(const void *)from;
+/** Puts the voxels of a brick that have a bit behind `count` others. */
+INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
+  for (; bits; bits &= bits - 1, count++) {
+    const int lane = __builtin_ctz(bits);
+    for (int a = 0; a < 3; a++)
+      to->at[a][count] = q[a][lane];
+    to->place[count] = first + lane;
+  }
 }
 
-INLINE void rows_store(double *to, lanes x) {
-  *(lanes_loaded *)(void *)to = x;
+INLINE wide wide_gather(const float *from, const int32_t *place) {
+  return (wide){from[place[0]], from[place[1]], from[place[2]], from[place[3]]};
 }
 
-/** A number for each voxel of a row. */
-INLINE lanes lanes_along(const double *from) {
-  return *(const lanes_loaded *)(const void *)from;
+/** The first `count` of a vector. */
+INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
+  for (size_t n = 0; n < count; n++)
+    to[place[n]] = x[n];
 }
 
-/** A number for each row. */
-INLINE lanes lanes_across(const double *from) {
-  return from[0] - (lanes){0};
+/** Puts a triangle and the voxels of a group that have a bit behind `count` other pairs; returns how many
+ * there are then. Others come along, so that all lanes have the same triangle. */
+INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, const int32_t *place,
+                        unsigned bits) {
+  for (int n = 0; n < WIDTH; n += LANES) {
+    memcpy(to->place + count, place + n, LANES * sizeof *place);
+    to->triangle[count] = triangle;
+    count += bits >> n & ((1U << LANES) - 1) ? LANES : 0;
+  }
+  return count;
+}
+
+/** A number for each lane out of VXM_BAND_FAMILY. */
+INLINE lanes lanes_pick(const double *from, const int32_t *which) {
+  return from[which[0]] - (lanes){0};
 }
 
 INLINE unsigned lanes_bits(lanes_int mask) {

@@ -50,7 +50,10 @@ static void make_families(vxm_distance_search *s, vxm_error *error) {
     grid.dims[a] = s->space->dims[s->axes[a]];
     grid.step[a] = s->space->voxel_size[a] / s->side;
   }
-  vxm_band_families_create(&s->families, s->context, s->surface->triangle_count, corners_of, s, &grid, error);
+  const vxm_band_soup soup = {(const double(*)[3])s->places,
+                              (const uint32_t(*)[3])(const void *)s->surface->corners,
+                              s->surface->triangle_count};
+  vxm_band_families_create(&s->families, s->context, &soup, &grid, error);
 }
 
 static vxm_status take_triangles(vxm_distance_search *s, bool is_narrow, vxm_error *error) {
@@ -64,8 +67,10 @@ static vxm_status take_triangles(vxm_distance_search *s, bool is_narrow, vxm_err
     else
       vxm_distance_bvh_create(&s->nearest, context, s->surface->triangle_count, corners_of, s, &local);
   }
-  vxm_free(context, s->places);
-  s->places = NULL;
+  if (!is_narrow) {
+    vxm_free(context, s->places);
+    s->places = NULL;
+  }
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
   return local.code;
@@ -86,6 +91,7 @@ vxm_status vxm_distance_search_create(vxm_distance_search *out, vxm_context *con
 
 void vxm_distance_search_destroy(vxm_distance_search *search) {
   vxm_band_families_destroy(search->families);
+  vxm_free(search->context, search->places);
   vxm_distance_bvh_destroy(search->nearest);
   vxm_surface_destroy(search->surface);
   *search = (vxm_distance_search){.context = search->context};

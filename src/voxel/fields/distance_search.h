@@ -16,7 +16,7 @@ typedef struct vxm_distance_search {
   int axes[3];                 /**< of the values: the one that varies fastest, the next, the slices */
   double side;                 /**< the longest of a voxel, model units: lengths are counted in it */
   double band;                 /**< INFINITY = none */
-  double (*places)[3];         /**< of the vertices, while triangles are taken */
+  double (*places)[3];         /**< of the vertices, for families; else while triangles are taken */
   vxm_band_families *families; /**< of a narrow band, else NULL */
   vxm_distance_bvh *nearest;   /**< without one */
 } vxm_distance_search;

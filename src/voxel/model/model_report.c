@@ -39,11 +39,12 @@ static double surface_area(const vxm_voxel_pass *solid, bool lost) {
   const vxm_triangle_set *triangles = &solid->analysis->triangles;
   double unit = (double)solid->placed.lattice.unit, twice = 0;
   for (size_t t = 0; t < triangles->triangle_count; t++) {
-    vxm_point corner[3];
     if (vxm_role_of(triangles, t) != VXM_ROLE_FACE || (lost && !is_lost(solid, triangles->part[t])))
       continue;
-    for (int k = 0; k < 3; k++)
-      corner[k] = vxm_snapped_points_at(&solid->placed, triangles->corners[t][k]);
+    const uint32_t *k = triangles->corners[t];
+    const vxm_point corner[3] = {vxm_snapped_points_at(&solid->placed, k[0]),
+                                 vxm_snapped_points_at(&solid->placed, k[1]),
+                                 vxm_snapped_points_at(&solid->placed, k[2])};
     vxm_link_surface surface = vxm_link_surface_of(corner);
     twice += vxm_link_surface_length(&surface);
   }

@@ -38,25 +38,6 @@ static bool is_dominant(const frame *f) {
   return f->plain;
 }
 
-/** The normal of a triangle: its products are exact where it matters, to tell equals, of small numbers. */
-vxm_link_surface vxm_link_surface_of(const vxm_point p[3]) {
-  vxm_link_surface out;
-  double d[2][3];
-  for (int k = 0; k < 2; k++)
-    for (int a = 0; a < 3; a++)
-      d[k][a] = (double)(p[k + 1].at[a] - p[0].at[a]);
-  for (int w = 0; w < 3; w++) {
-    int u = (w + 1) % 3, v = (w + 2) % 3;
-    out.size[w] = fabs(d[0][u] * d[1][v] - d[0][v] * d[1][u]);
-  }
-  return out;
-}
-
-double vxm_link_surface_length(const vxm_link_surface *surface) {
-  const double *n = surface->size;
-  return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-}
-
 /** The ends of the link to voxel `to` of a column. */
 static inline void ends_of(const frame *f, int64_t ends[2][3], int64_t column_u, int64_t column_v,
                            int64_t to) {

@@ -10,6 +10,8 @@
 #include "voxel/thin/octree_sieve.h"
 #include "voxel/thin/thin_job.h"
 
+#include <math.h>
+
 /** Meetings that one thread has found. Start from {.context = ...}. */
 typedef struct vxm_meetings {
   vxm_context *context;
@@ -38,6 +40,21 @@ typedef struct vxm_link_surface {
   double size[3]; /**< of its components */
 } vxm_link_surface;
 
+/** The normal of a triangle: its products are exact where it matters, to tell equals, of small numbers. */
+static inline vxm_link_surface vxm_link_surface_of(const vxm_point corner[3]) {
+  const int64_t *from = corner[0].at, *one = corner[1].at, *two = corner[2].at;
+  const double x[2] = {(double)(one[0] - from[0]), (double)(two[0] - from[0])},
+               y[2] = {(double)(one[1] - from[1]), (double)(two[1] - from[1])},
+               z[2] = {(double)(one[2] - from[2]), (double)(two[2] - from[2])};
+  return (vxm_link_surface){
+      {fabs(y[0] * z[1] - z[0] * y[1]), fabs(z[0] * x[1] - x[0] * z[1]), fabs(x[0] * y[1] - y[0] * x[1])}};
+}
+
+static inline double vxm_link_surface_length(const vxm_link_surface *surface) {
+  const double *n = surface->size;
+  return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
 /**
  * Links of one direction: columns along its axis w in a frame that is sheared along the others. A voxel at
  * (u, v, w) has column (u - s_u w, v - s_v w), s being the steps of the direction. The shear takes voxel
@@ -59,9 +76,6 @@ typedef struct vxm_link_frame {
 /** The frames of a job's directions, for one thread. */
 void vxm_link_frames(vxm_link_frame frames[VXM_LINK_DIRECTIONS], const vxm_thin_job *job,
                      vxm_meetings *meetings);
-/** The normal of a triangle: its products are exact where it matters, to tell equals, of small numbers. */
-vxm_link_surface vxm_link_surface_of(const vxm_point corner[3]);
-double vxm_link_surface_length(const vxm_link_surface *surface);
 /** A triangle, which is told in the frame, crosses the link to voxel `to` of a column, `offset` voxels beyond
  * its middle: looks at its ends. */
 void vxm_meet_link(const vxm_link_frame *frame, int64_t column_u, int64_t column_v, int64_t to,
