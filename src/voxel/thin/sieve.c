@@ -2,6 +2,8 @@
 #include "voxel/thin/sieve.h"
 #include "voxel/thin/sieve_kernels.h"
 
+#include <string.h>
+
 bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
   const vxm_view *view = &job->view;
   *sieve = (vxm_sieve){.points = (const int32_t(*)[4])job->placed->narrow,
@@ -26,7 +28,8 @@ bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
   sieve->cells = job->placed->cells;
   sieve->middles = job->middles;
   sieve->short_cells = job->short_cells;
-  sieve->middle_bits = (uint32_t)(64 * vxm_middle_words((size_t)bytes / 8));
+  for (int i = 1; i < 3; i++)
+    sieve->map_step[axis[i]] = (uint32_t)(64 * i * (int64_t)vxm_middle_words((size_t)bytes / 8));
   sieve->short_origin = (uint32_t)view->origin;
   for (int a = 0; a < 3 && job->middles; a++) {
     sieve->short_step[a] = (uint32_t)view->step[a];
@@ -47,14 +50,12 @@ bool vxm_middles_fit(const vxm_window *window) {
 
 void vxm_middles_fill(uint64_t *middles, const vxm_window *window) {
   size_t words = (size_t)(window->end - window->begin) * window->slice_words;
-  const size_t each = vxm_middle_words(words), middle = each << window->layout.middle,
-               slow = each << window->layout.slow;
-  uint64_t *all = middles + 7 * each, *not_middle = all - middle, *not_slow = all - slow,
-           *neither = not_slow - middle;
-  const ptrdiff_t along = -(ptrdiff_t)(each << window->layout.fast); /* to one cell along the fast axis */
+  const size_t each = vxm_middle_words(words);
+  uint64_t *neither = middles, *two_middle = neither + each, *two_slow = two_middle + each,
+           *both = two_slow + each;
   const vxm_sieve_kernels *kernels = vxm_sieve_kernels_of(NULL);
-  kernels->join(all, all + along, window->words, 0, words);
-  kernels->join(not_middle, not_middle + along, all, window->row_words, words);
-  kernels->join(not_slow, not_slow + along, all, window->slice_words, words);
-  kernels->join(neither, neither + along, not_middle, window->slice_words, words);
+  memcpy(both, window->words, words * sizeof *both);
+  kernels->join(two_slow, both, window->row_words, words);
+  kernels->join(two_middle, both, window->slice_words, words);
+  kernels->join(neither, two_slow, window->slice_words, words);
 }

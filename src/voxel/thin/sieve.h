@@ -26,8 +26,8 @@ typedef struct vxm_sieve {
   const uint64_t *cells;   /**< of the points */
   const uint64_t *middles; /**< as in vxm_thin_job; and if they are there: */
   const uint32_t *short_cells;
-  uint32_t middle_bits;                 /**< of one of them */
-  uint32_t short_first, short_last;     /**< cells that have a voxel in the window */
+  uint32_t map_step[3];             /**< bits from a map to that of two cells along an axis; 0: the fast */
+  uint32_t short_first, short_last; /**< cells that have a voxel in the window */
   uint32_t short_step[3], short_origin; /**< from the number of a cell to the bit of the voxel behind it */
 } vxm_sieve;
 
@@ -55,7 +55,13 @@ static inline size_t vxm_middle_words(size_t window_words) {
   return window_words + 8;
 }
 
-/** Fills them. The first voxels along an axis have no others before them, and no bits that mean something. */
+/** Words of all maps: four bytes can be read from any bit on. */
+static inline size_t vxm_middles_words(size_t window_words) {
+  return VXM_MIDDLES * vxm_middle_words(window_words);
+}
+
+/** Fills them. The first voxels along an axis have no others before them, and no bits that mean something,
+ * but along the fast axis. */
 void vxm_middles_fill(uint64_t *middles, const vxm_window *window);
 
 #endif

@@ -13,9 +13,8 @@ typedef struct vxm_sieve_kernels {
    * meet something without a voxel: *begin becomes the first that was not looked at. There is room for
    * VXM_SIEVE_BATCH + 16. Returns how many. */
   size_t (*sift)(const vxm_sieve *sieve, uint32_t *kept, size_t *begin, size_t end);
-  /** to[i] = from[i] | from[i - step], if that is there, for all `count` words, and `along` is the same with
-   * the bit before each. */
-  void (*join)(uint64_t *to, uint64_t *along, const uint64_t *from, size_t step, size_t count);
+  /** to[i] = from[i] | from[i - step], if that is there, for all `count` words. */
+  void (*join)(uint64_t *to, const uint64_t *from, size_t step, size_t count);
   /** Short numbers of cells, as vxm_thin_job has them. */
   void (*shorten)(uint32_t *to, const uint64_t *cells, size_t count);
   /** Whether links that a triangle crosses may have no voxel at their ends, if the solid is on one side of

@@ -9,6 +9,9 @@
 /** Bits of the short number of a cell along one axis; the highest is not used. */
 enum { VXM_SHORT_BITS = 10 };
 
+/** Maps of the voxels in the middle of boxes. */
+enum { VXM_MIDDLES = 4 };
+
 /** What all threads look at. */
 typedef struct vxm_thin_job {
   const vxm_triangle_set *triangles;
@@ -18,9 +21,10 @@ typedef struct vxm_thin_job {
   vxm_view view;           /**< the solid; nothing is set while threads look */
   int64_t counted[2];      /**< slices that samples are counted in */
   int slow;                /**< the axis of slices */
-  const uint64_t *middles; /**< NULL, or eight bit maps like the view's words, side by side: by the axes along
-                              which a box of cells has two (1: x, 2: y, 4: z), whether a voxel in the middle
-                              of the box is set; a bit is that of the voxel behind the first cell */
+  const uint64_t *middles; /**< NULL, or VXM_MIDDLES bit maps like the view's words, side by side: by the axes
+                              along which a box of cells has two (1: the middle axis, 2: the slow one),
+                              whether a voxel in the middle of the box is set; a bit is that of the voxel
+                              behind the first cell */
   const uint32_t *short_cells; /**< with them: the cells of points, x from bit 0 on, y from VXM_SHORT_BITS, z
                                   from twice that */
   int directions; /**< VXM_LINK_AXES, or VXM_LINK_DIRECTIONS for links over edges and corners of voxels, too
