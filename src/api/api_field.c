@@ -41,6 +41,8 @@ vxm_status vxm_model_coverage(void *values, vxm_coverage_report *report, vxm_mod
     return fail_null("coverage", error);
   vxm_coverage_options chosen;
   vxm_status status = check_coverage(&chosen, space, options, error);
+  if (status == VXM_OK && (uintptr_t)values % vxm_scalar_bytes(chosen.scalar) != 0)
+    status = vxm_fail(error, VXM_ERROR_ARGUMENT, "coverage: the array is not aligned as float has to be");
   vxm_field_target target = array_of(values);
   if (status == VXM_OK)
     status = vxm_coverage_run(&target, &results.made, model, space, &chosen, error);

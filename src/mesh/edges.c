@@ -5,7 +5,6 @@
 #include "mesh/across.h"
 #include "mesh/sort.h"
 
-#include <inttypes.h>
 #include <stdatomic.h>
 #include <string.h>
 

@@ -57,8 +57,8 @@ vxm_status vxm_edges_build_sides(vxm_edges *out, vxm_context *context, const vxm
                                  const uint32_t *vertex_map, vxm_error *error);
 /**
  * Where each edge has two sides that run opposite ways, as in most meshes that are closed, only counts them,
- * and tells which face lies `across` each side: there are no `edges` and no `sides`, for which one looks at
- * less than half of the time. Else as vxm_edges_build_sides.
+ * and tells which face lies `across` each side: there are no `edges` and no `sides`, which take more than
+ * half of the time. Else as vxm_edges_build_sides.
  */
 vxm_status vxm_edges_build_pairs(vxm_edges *out, vxm_context *context, const vxm_soup *soup,
                                  vxm_error *error);

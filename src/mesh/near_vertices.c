@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/near_vertices.h"
 
-#include "base/hash.h"
 #include "base/threads.h"
+#include "mesh/position_hash.h"
 #include "mesh/radix_partition.h"
 #include "mesh/soup.h"
 
@@ -118,24 +118,6 @@ static void link_vertices(const search *s, uint32_t u, uint32_t v) {
 
 /* ---- Cells ---- */
 
-static uint64_t coordinate_bits(double x) {
-  double plain = x + 0.0;
-  uint64_t bits;
-  memcpy(&bits, &plain, sizeof bits);
-  return bits;
-}
-
-static uint64_t rotate(uint64_t x, unsigned by) {
-  return x << by | x >> (64 - by);
-}
-
-/** Hash of the cell in column x, y, z; whole numbers, but as doubles, as they may be beyond 64 bits. */
-static uint64_t hash_cell(double x, double y, double z) {
-  return vxm_mix(coordinate_bits(x) * UINT64_C(0x9e3779b97f4a7c15) ^
-                 rotate(coordinate_bits(y) * UINT64_C(0xc2b2ae3d27d4eb4f), 21) ^
-                 rotate(coordinate_bits(z) * UINT64_C(0x165667b19e3779f9), 42));
-}
-
 /** floor, without a call on processors that the build does not take for granted to have it. */
 static double whole_below(double x) {
   if (!(fabs(x) < 0x1p52))
@@ -164,7 +146,7 @@ static inline columns columns_of(const search *s, const double *p) {
 }
 
 static uint64_t hash_home(const columns *c) {
-  return hash_cell(c->home[0], c->home[1], c->home[2]);
+  return vxm_position_hash(c->home[0], c->home[1], c->home[2]);
 }
 
 /** Hashes of all cells that the ball meets. */
@@ -179,7 +161,7 @@ static int hash_visited(const columns *c, uint64_t hashes[8]) {
       at[axis] = far ? c->high[axis] : c->low[axis];
     }
     if (!again)
-      hashes[count++] = hash_cell(at[0], at[1], at[2]);
+      hashes[count++] = vxm_position_hash(at[0], at[1], at[2]);
   }
   return count;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * Distribution of 64-bit records into buckets: the first step of welding, of the edge map and of the search
- * for repeated faces. A bucket then fits a cache and is worked on by one task alone.
+ * Distribution of 64-bit records into buckets: the first step of welding and of the search for repeated
+ * faces. A bucket then fits a cache and is worked on by one task alone.
  */
 #ifndef VXM_MESH_RADIX_PARTITION_H
 #define VXM_MESH_RADIX_PARTITION_H

@@ -3,8 +3,6 @@
 
 #include "base/threads.h"
 
-#include <string.h>
-
 enum {
   SLICES_MAX = 8,
   FACES_PER_SLICE = 1 << 14 /**< at least */

@@ -1,31 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/weld.h"
 
-#include "base/hash.h"
 #include "base/threads.h"
+#include "mesh/position_hash.h"
 #include "mesh/radix_partition.h"
 
 #include <math.h>
 #include <string.h>
-
-/** The bits of a coordinate; adding 0.0 turns -0.0 into 0.0 and changes nothing else. */
-static uint64_t coordinate_bits(double x) {
-  double plain = x + 0.0;
-  uint64_t bits;
-  memcpy(&bits, &plain, sizeof bits);
-  return bits;
-}
-
-static uint64_t rotate(uint64_t x, unsigned by) {
-  return x << by | x >> (64 - by);
-}
-
-/** One mixing for all three, as it is made for each vertex twice. */
-static uint64_t position_hash(const double p[3]) {
-  return vxm_mix(coordinate_bits(p[0]) * UINT64_C(0x9e3779b97f4a7c15) ^
-                 rotate(coordinate_bits(p[1]) * UINT64_C(0xc2b2ae3d27d4eb4f), 21) ^
-                 rotate(coordinate_bits(p[2]) * UINT64_C(0x165667b19e3779f9), 42));
-}
 
 /** Equal as numbers is equal in bits once -0.0 is 0.0; NaN never gets here. */
 static bool same_position(const double *p, const double *q) {
@@ -50,7 +31,7 @@ static void emit_vertices(size_t begin, size_t end, vxm_sink *sink, void *payloa
       w->map[v] = (uint32_t)v;
       continue;
     }
-    uint64_t hash = position_hash(p);
+    uint64_t hash = vxm_position_hash(p[0], p[1], p[2]);
     vxm_sink_put(sink, (size_t)(hash >> w->bucket_shift), hash << 32 | v);
   }
 }

@@ -228,7 +228,8 @@ typedef struct vxm_coverage_report {
  * the options of the model say. They are made a few slices at a time, never all at once.
  * Voxels that vxm_thin_parts adds are not counted: they have no share.
  *
- * @param values  room for dims[0]*dims[1]*dims[2] float or uint8_t, as [x][y][z] in C order (z fastest)
+ * @param values  room for dims[0]*dims[1]*dims[2] float or uint8_t, as [x][y][z] in C order (z fastest);
+ *                aligned as these are, or VXM_ERROR_ARGUMENT
  * @param report  may be NULL
  * @param options NULL = defaults
  * @return as vxm_model_voxelize; VXM_ERROR_RANGE beyond 2^20 sub-voxels along an axis. After a failure the

@@ -120,4 +120,16 @@ static inline void add_cube(vxm_soup *soup, double x) {
   }
 }
 
+/** Two fans over one polygon. */
+static inline void add_bipyramid(vxm_soup *soup, uint32_t n) {
+  uint32_t first = (uint32_t)soup->vertex_count;
+  for (uint32_t v = 0; v < n + 2; v++)
+    add_vertex(soup, first + v, v, 0);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t p = first + i, q = first + (i + 1) % n;
+    add_triangle(soup, p, q, first + n);
+    add_triangle(soup, q, p, first + n + 1);
+  }
+}
+
 #endif

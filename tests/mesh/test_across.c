@@ -80,18 +80,6 @@ static bool check(const vxm_soup *soup) {
 
 /* ---- Soups that are closed, or nearly ---- */
 
-/** Two fans over one polygon. */
-static void add_bipyramid(vxm_soup *soup, uint32_t n) {
-  uint32_t first = (uint32_t)soup->vertex_count;
-  for (uint32_t v = 0; v < n + 2; v++)
-    add_vertex(soup, first + v, v, 0);
-  for (uint32_t i = 0; i < n; i++) {
-    uint32_t p = first + i, q = first + (i + 1) % n;
-    add_triangle(soup, p, q, first + n);
-    add_triangle(soup, q, p, first + n + 1);
-  }
-}
-
 /** Gives vertices other numbers, at times two the same one. */
 static void shuffle(vxm_soup *soup, vxm_rng *rng, bool merges) {
   uint32_t number[256];

@@ -26,15 +26,20 @@ static bool is_manifold(vxm_soup *soup, bool *paired) {
   return manifold;
 }
 
-/** Two fans over one polygon. */
-static void add_bipyramid(vxm_soup *soup, uint32_t n) {
-  uint32_t first = (uint32_t)soup->vertex_count;
-  for (uint32_t v = 0; v < n + 2; v++)
-    add_vertex(soup, first + v, v, 0);
-  for (uint32_t i = 0; i < n; i++) {
-    uint32_t p = first + i, q = first + (i + 1) % n;
-    add_triangle(soup, p, q, first + n);
-    add_triangle(soup, q, p, first + n + 1);
+/** A polygon, another one opposite, and sides of four corners. */
+static void add_prism(vxm_soup *soup, uint32_t n) {
+  uint32_t first = (uint32_t)soup->vertex_count, low[64], high[64];
+  for (uint32_t v = 0; v < n; v++) {
+    add_vertex(soup, v, first, 0);
+    add_vertex(soup, v, first, 1);
+    low[n - 1 - v] = first + 2 * v;
+    high[v] = first + 2 * v + 1;
+  }
+  add_face(soup, low, n);
+  add_face(soup, high, n);
+  for (uint32_t v = 0; v < n; v++) {
+    uint32_t p = first + 2 * v, q = first + 2 * ((v + 1) % n), side[4] = {p, q, q + 1, p + 1};
+    add_face(soup, side, 4);
   }
 }
 
@@ -50,6 +55,8 @@ static void bodies_that_touch(void **state) {
     for (uint64_t bodies = 1 + vxm_rng_below(&rng, 3); bodies > 0; bodies--)
       if (vxm_rng_below(&rng, 3) == 0)
         add_cube(soup, (double)bodies);
+      else if (vxm_rng_below(&rng, 4) == 0)
+        add_prism(soup, 3 + (uint32_t)vxm_rng_below(&rng, 60)); /* large faces, too */
       else
         add_bipyramid(soup, 3 + (uint32_t)vxm_rng_below(&rng, 9));
     for (uint64_t merges = vxm_rng_below(&rng, 3); merges > 0; merges--) {

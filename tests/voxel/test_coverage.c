@@ -223,13 +223,16 @@ static void test_what_is_refused(void **state) {
   vxm_model *model = model_of(soup, VXM_MODE_SOLID);
   vxm_space space = {{1 << 18, 1, 1}, {0, 0, 0}, {1, 1, 1}};
   vxm_coverage_options options = VXM_COVERAGE_OPTIONS_INIT;
-  uint8_t value = 0;
+  float value[2] = {0};
   options.subdivision = 3;
-  assert_int_equal(vxm_model_coverage(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_model_coverage(value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
   options.subdivision = 8;
-  assert_int_equal(vxm_model_coverage(&value, NULL, model, &space, &options, NULL), VXM_ERROR_RANGE);
+  assert_int_equal(vxm_model_coverage(value, NULL, model, &space, &options, NULL), VXM_ERROR_RANGE);
+  options.subdivision = 2;
+  void *beside = (char *)value + 1; /* where no float may lie */
+  assert_int_equal(vxm_model_coverage(beside, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
   options.scalar = VXM_FLOAT64;
-  assert_int_equal(vxm_model_coverage(&value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
+  assert_int_equal(vxm_model_coverage(value, NULL, model, &space, &options, NULL), VXM_ERROR_ARGUMENT);
   assert_int_equal(vxm_model_coverage(NULL, NULL, model, &space, NULL, NULL), VXM_ERROR_ARGUMENT);
   options = (vxm_coverage_options)VXM_COVERAGE_OPTIONS_INIT;
   assert_int_equal(vxm_model_write_coverage(NULL, model, &space, "x.binvox", &options, NULL),

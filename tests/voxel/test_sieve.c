@@ -177,7 +177,7 @@ static void check_window(vxm_rng *rng, const vxm_triangle_set *triangles, const 
   thin_mesh mesh = {.lattice = placed->lattice};
   size_t words = window->slice_words * (size_t)(window->end - window->begin), all = triangles->triangle_count;
   window->words = calloc(words, sizeof *window->words);
-  uint64_t *maps = calloc(vxm_middles_words(words), sizeof *maps);
+  uint64_t *maps = calloc(vxm_all_middle_words(words), sizeof *maps);
   uint32_t *cells = calloc(triangles->point_count, sizeof *cells);
   bool *meets = calloc(all, sizeof *meets);
   assert_true(window->words && maps && cells && meets);

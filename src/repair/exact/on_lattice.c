@@ -51,6 +51,7 @@ void vxm_snap_to_lattice(vxm_repair_state *state, int bits) {
   for (size_t i = 0; i < 3 * state->soup->vertex_count; i++)
     state->soup->positions[i] =
         vxm_repair_state_round(state, lattice * rint(state->soup->positions[i] / lattice));
+  vxm_repair_state_move(state);
 }
 
 vxm_status vxm_before_union_again(vxm_repair_state *state, const vxm_before_union *kept, vxm_error *error) {

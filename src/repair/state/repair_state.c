@@ -20,7 +20,8 @@ void *vxm_repair_state_scratch(vxm_repair_state *state, size_t count, size_t siz
 vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error) {
   if (state->has_edges)
     return VXM_OK;
-  vxm_repair_state_turn(state); /* drops what is only counted */
+  if (state->has_counts) /* without a list */
+    vxm_edges_destroy(&state->edges);
   vxm_status status = vxm_edges_build_sides(&state->edges, state->context, state->soup, NULL, error);
   state->has_edges = state->has_counts = status == VXM_OK;
   return status;

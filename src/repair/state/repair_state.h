@@ -115,8 +115,8 @@ vxm_status vxm_repair_state_edges(vxm_repair_state *state, vxm_error *error);
 /** How many edges there are of each kind, counted if need be: less than a map where all is closed, else just
  * that (vxm_edges_build_pairs). */
 vxm_status vxm_repair_state_count_edges(vxm_repair_state *state, vxm_error *error);
-/** The patches of the present faces, and the numbers of their edges, built if need be; there are none (count
- * = 0) where an edge has more than two sides. */
+/** The patches of the present faces, built if need be; there are none (count = 0) where an edge has more than
+ * two sides. */
 vxm_status vxm_repair_state_patches(vxm_repair_state *state, vxm_error *error);
 /** Which vertices are used (state->used), and the bounds of these, looked at if need be. */
 void vxm_repair_state_extent(vxm_repair_state *state, vxm_extent *extent);

@@ -88,7 +88,7 @@ static inline place step(const vxm_soup *soup, const uint32_t *across, place at)
   uint64_t begin = soup->offsets[next.face], end = soup->offsets[next.face + 1], last = end - 1;
   next.corner = begin;
   for (uint64_t c = begin; c < end; last = c++) /* to the end: nobody can tell which it is */
-    next.corner = (index[c] == here) & (index[last] == there) ? c : next.corner;
+    next.corner = ((index[c] == here) & (index[last] == there)) ? c : next.corner;
   return next;
 }
 
@@ -126,6 +126,17 @@ static vxm_status are_whole(bool *out, const vxm_soup *soup, const uint32_t *acr
   return status;
 }
 
+/** Whether steps, which go through all of a face, take no more than some corners each in the mean. */
+static bool are_small(const vxm_soup *soup) {
+  const double most = 8;
+  double steps = 0;
+  for (size_t f = 0; f < soup->face_count; f++) {
+    double count = (double)(soup->offsets[f + 1] - soup->offsets[f]);
+    steps += count * count;
+  }
+  return steps <= most * (double)soup->corner_count;
+}
+
 /* ---- All together ---- */
 
 vxm_status vxm_is_manifold(bool *out, vxm_repair_state *state, vxm_error *error) {
@@ -136,7 +147,7 @@ vxm_status vxm_is_manifold(bool *out, vxm_repair_state *state, vxm_error *error)
   if (status != VXM_OK || state->edges.crowded > 0 || state->edges.against > 0)
     return status;
   /* where each corner has a side, as there is none from a vertex to itself */
-  if (state->edges.across && 2 * state->edges.count == state->soup->corner_count)
+  if (state->edges.across && 2 * state->edges.count == state->soup->corner_count && are_small(state->soup))
     status = are_whole(out, state->soup, state->edges.across, error);
   else {
     uint8_t *fans;

@@ -20,6 +20,7 @@ typedef struct reduction {
   uint16_t *counts;         /**< of the groups at hand, where an engine counts them; else NULL */
   uint64_t *sums; /**< for each worker two words for each of a row: groups 0, 2, 4, ... and 1, 3, 5, ... */
   vxm_coverage_tally *tallies;
+  vxm_coverage_scratch *scratch; /**< of windows by parity */
 } reduction;
 
 /* ---- Counting bits in groups ---- */
@@ -198,7 +199,7 @@ static vxm_status reduce_windows(reduction *r, const vxm_field_target *target, v
     r->slices = end - begin;
     r->values.out = target->whole ? (unsigned char *)target->whole + (size_t)begin * slice_bytes : block;
     if (by_parity) {
-      status = vxm_coverage_parity(&r->values, pass, fine, r->tallies, &by_parity, error);
+      status = vxm_coverage_parity(&r->values, pass, fine, r->tallies, &r->scratch, &by_parity, error);
       if (status == VXM_OK && !by_parity) { /* too many at once: fewer slices, then all by sub-voxels */
         by_parity = slices > plan->slices;
         slices = vxm_max(slices / 2, plan->slices);
@@ -289,6 +290,7 @@ vxm_status vxm_coverage_run(const vxm_field_target *target, vxm_coverage_report 
   if (status == VXM_OK)
     sum_up(report, &r, space, workers, pass);
   vxm_model_close(model, pass);
+  vxm_coverage_scratch_destroy(r.scratch);
   vxm_free(context, counts);
   vxm_free(context, block);
   vxm_free(context, r.tallies);

@@ -4,13 +4,21 @@
 #include "voxel/fields/coverage_flips.h"
 #include "voxel/model/model.h"
 
-/** What a thread works with: the flips of the rows at hand, and those of a part beside others. */
+/** What a thread works with: the flips of the rows at hand, and those of a part beside others. None are left
+ * from one slice to the next. */
 typedef struct scratch {
   vxm_coverage_flips all, part;
 } scratch;
 
-/** Bytes of flips that a thread takes at most, where a row does not take more. */
-static const uint64_t most_flips = 16 << 20;
+struct vxm_coverage_scratch {
+  vxm_context *context;
+  size_t some_rows; /**< of a slice, as many as a thread does at once */
+  size_t count;     /**< of threads that have theirs */
+  scratch of[];
+};
+
+/** Bytes of flips that a thread takes at most, and all of them together, where a row does not take more. */
+static const uint64_t most_flips = 16 << 20, most_together = 64 << 20;
 
 typedef struct parity_job {
   const vxm_coverage_values *values;
@@ -18,9 +26,9 @@ typedef struct parity_job {
   vxm_window fine;
   vxm_coverage_flips shape;
   size_t part_count;
-  size_t rows, some_rows; /**< of a slice, and as many as are done at once */
+  size_t rows; /**< of a slice */
   vxm_crossing_bins *bins;
-  scratch *scratch;
+  vxm_coverage_scratch *scratch;
   vxm_coverage_tally *tallies;
   vxm_task_progress watch;
 } parity_job;
@@ -33,10 +41,10 @@ bool vxm_coverage_by_parity(const vxm_model_pass *pass) {
 
 /** Rows of voxels that a thread does at once, of a slice of so many. */
 static size_t rows_at_once(vxm_context *context, const vxm_coverage_flips *shape, size_t rows) {
-  size_t left = vxm_memory_left(context);
-  uint64_t most = most_flips, share = left / (32 * (size_t)vxm_context_threads(context));
-  if (left != SIZE_MAX && share < most)
-    most = share;
+  size_t left = vxm_memory_left(context), threads = (size_t)vxm_context_threads(context);
+  uint64_t most = most_flips < most_together / threads ? most_flips : most_together / threads;
+  if (left != SIZE_MAX && left / (32 * threads) < most)
+    most = left / (32 * threads);
   size_t some = (size_t)(most / vxm_coverage_flips_bytes(shape, 1));
   return some < 1 ? 1 : some < rows ? some : rows;
 }
@@ -105,14 +113,15 @@ static void do_slice(size_t task, int worker, void *payload) {
   parity_job *job = payload;
   if (vxm_task_progress_stopped(&job->watch, worker))
     return;
-  scratch *s = &job->scratch[worker];
+  scratch *s = &job->scratch->of[worker];
+  size_t some_rows = job->scratch->some_rows;
   vxm_coverage_writer writer;
   vxm_coverage_writer_begin(&writer, job->values, task * job->rows * job->shape.row_length,
                             &job->tallies[worker]);
-  for (size_t row = 0; row < job->rows; row += job->some_rows) {
+  for (size_t row = 0; row < job->rows; row += some_rows) {
     size_t left = job->rows - row;
     flip_rows(job, s, task, row);
-    vxm_coverage_put_rows(&s->all, left < job->some_rows ? left : job->some_rows, &writer);
+    vxm_coverage_put_rows(&s->all, left < some_rows ? left : some_rows, &writer);
   }
   vxm_coverage_writer_end(&writer);
   vxm_task_progress_step(&job->watch);
@@ -120,48 +129,61 @@ static void do_slice(size_t task, int worker, void *payload) {
 
 /* ---- All of it ---- */
 
-static vxm_status make_scratch(parity_job *job, int workers, vxm_error *error) {
+/** For so many threads; what there is stays as it is. */
+static vxm_status make_scratch(const parity_job *job, vxm_coverage_scratch **out, size_t count,
+                               vxm_error *error) {
   vxm_context *context = job->pass->solid.context;
+  size_t workers = (size_t)vxm_context_threads(context);
   vxm_error local = VXM_ERROR_INIT;
-  job->scratch = vxm_calloc(context, (size_t)workers, sizeof *job->scratch, &local);
-  for (int w = 0; w < workers && local.code == VXM_OK; w++) {
-    scratch *s = &job->scratch[w];
+  if (!*out) {
+    *out = vxm_calloc(context, 1, sizeof **out + workers * sizeof(scratch), &local);
+    if (*out) {
+      (*out)->context = context;
+      (*out)->some_rows = rows_at_once(context, &job->shape, job->rows);
+    }
+  }
+  for (size_t w = *out ? (*out)->count : count; w < count && local.code == VXM_OK; w++) {
+    scratch *s = &(*out)->of[w];
     s->all = s->part = job->shape;
-    vxm_coverage_flips_make(&s->all, context, job->some_rows, &local);
+    (*out)->count = w + 1;
+    vxm_coverage_flips_make(&s->all, context, (*out)->some_rows, &local);
     if (job->part_count > 1)
-      vxm_coverage_flips_make(&s->part, context, job->some_rows, &local);
+      vxm_coverage_flips_make(&s->part, context, (*out)->some_rows, &local);
   }
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
   return local.code;
 }
 
-static void free_scratch(parity_job *job, int workers) {
-  vxm_context *context = job->pass->solid.context;
-  for (int w = 0; w < workers && job->scratch; w++) {
-    vxm_coverage_flips_free(&job->scratch[w].part, context);
-    vxm_coverage_flips_free(&job->scratch[w].all, context);
+void vxm_coverage_scratch_destroy(vxm_coverage_scratch *of) {
+  if (!of)
+    return;
+  for (size_t w = 0; w < of->count; w++) {
+    vxm_coverage_flips_free(&of->of[w].part, of->context);
+    vxm_coverage_flips_free(&of->of[w].all, of->context);
   }
-  vxm_free(context, job->scratch);
+  vxm_free(of->context, of);
 }
 
-static vxm_status run(parity_job *job, const vxm_raster_schedule *crossings, int workers, vxm_error *error) {
+static vxm_status run(parity_job *job, const vxm_raster_schedule *crossings, vxm_coverage_scratch **kept,
+                      vxm_error *error) {
   vxm_context *context = job->pass->solid.context;
-  size_t slices = (size_t)(job->fine.end - job->fine.begin) / (size_t)job->values->n;
+  size_t slices = (size_t)(job->fine.end - job->fine.begin) / (size_t)job->values->n,
+         workers = (size_t)vxm_context_threads(context);
   vxm_task_progress_start(&job->watch, context, "measuring coverage", crossings->range_count + slices, error);
   vxm_raster_schedule_run(crossings, 0, job->bins, &job->watch);
   vxm_status status = vxm_crossing_bins_check(job->bins, error);
   if (status == VXM_OK)
-    status = make_scratch(job, workers, error);
+    status = make_scratch(job, kept, slices < workers ? slices : workers, error);
+  job->scratch = *kept;
   if (status == VXM_OK && job->watch.status == VXM_OK)
     vxm_parallel(context, slices, do_slice, job);
-  free_scratch(job, workers);
   return status == VXM_OK ? vxm_task_progress_end(&job->watch) : status;
 }
 
 vxm_status vxm_coverage_parity(const vxm_coverage_values *values, vxm_model_pass *pass,
-                               const vxm_window *fine, vxm_coverage_tally *tallies, bool *done,
-                               vxm_error *error) {
+                               const vxm_window *fine, vxm_coverage_tally *tallies,
+                               vxm_coverage_scratch **kept, bool *done, vxm_error *error) {
   const vxm_triangle_set *triangles = &pass->solid.analysis->triangles;
   vxm_workspace *workspace = pass->solid.workspace;
   int workers = vxm_context_threads(pass->solid.context), n = values->n;
@@ -170,7 +192,6 @@ vxm_status vxm_coverage_parity(const vxm_coverage_values *values, vxm_model_pass
   job.part_count = triangles->split.part_count;
   job.shape = vxm_coverage_flips_of(n, (size_t)(fine->fast_dim / n));
   job.rows = (size_t)(fine->middle_dim / n);
-  job.some_rows = rows_at_once(pass->solid.context, &job.shape, job.rows);
   vxm_columns columns = vxm_columns_of(fine, fine->layout.fast);
   columns.slab_shift = job.shape.shift;
   columns.step[fine->layout.slow] = UINT64_C(1) << job.shape.place_bits;
@@ -186,5 +207,5 @@ vxm_status vxm_coverage_parity(const vxm_coverage_values *values, vxm_model_pass
   uint64_t places = (uint64_t)job.rows << (job.shape.place_bits + 2 * job.shape.shift);
   status =
       vxm_crossing_bins_reset(&workspace->bins, (size_t)workers, 1, slices, (size_t)(places / 64 + 1), error);
-  return status == VXM_OK ? run(&job, &workspace->crossings, workers, error) : status;
+  return status == VXM_OK ? run(&job, &workspace->crossings, kept, error) : status;
 }

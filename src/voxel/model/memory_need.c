@@ -44,7 +44,7 @@ static uint64_t thin_bytes(const vxm_model *model, const vxm_space *space, const
   uint64_t numbers = (triangles->triangle_count + triangles->point_count) * sizeof(uint32_t);
   uint64_t words = shape->slice_words * (uint64_t)shape->slow_dim;
   if (words <= triangles->triangle_count)
-    numbers += vxm_middles_words((size_t)words) * sizeof(uint64_t);
+    numbers += vxm_all_middle_words((size_t)words) * sizeof(uint64_t);
   return numbers + (all < (double)budget ? (uint64_t)all : budget);
 }
 

@@ -56,7 +56,7 @@ static inline size_t vxm_middle_words(size_t window_words) {
 }
 
 /** Words of all maps: four bytes can be read from any bit on. */
-static inline size_t vxm_middles_words(size_t window_words) {
+static inline size_t vxm_all_middle_words(size_t window_words) {
   return VXM_MIDDLES * vxm_middle_words(window_words);
 }
 

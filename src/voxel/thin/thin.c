@@ -338,7 +338,7 @@ static void make_middles(vxm_thin_adder *thin, vxm_thin_job *job, const vxm_wind
   if (job->directions > VXM_LINK_AXES || job->placed->wide || words > job->triangles->triangle_count ||
       !vxm_middles_fit(window))
     return;
-  if (vxm_renew(thin->context, (void **)&thin->maps, &thin->map_words, vxm_middles_words(words),
+  if (vxm_renew(thin->context, (void **)&thin->maps, &thin->map_words, vxm_all_middle_words(words),
                 sizeof *thin->maps, NULL) != VXM_OK ||
       vxm_renew(thin->context, (void **)&thin->short_cells, &thin->short_room, points,
                 sizeof *thin->short_cells, NULL) != VXM_OK)
