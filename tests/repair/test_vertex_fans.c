@@ -28,7 +28,7 @@ static bool is_manifold(vxm_soup *soup, bool *paired) {
 
 /** A polygon, another one opposite, and sides of four corners. */
 static void add_prism(vxm_soup *soup, uint32_t n) {
-  uint32_t first = (uint32_t)soup->vertex_count, low[64], high[64];
+  uint32_t first = (uint32_t)soup->vertex_count, low[64] = {0}, high[64] = {0};
   for (uint32_t v = 0; v < n; v++) {
     add_vertex(soup, v, first, 0);
     add_vertex(soup, v, first, 1);
