@@ -29,41 +29,7 @@ typedef __m256 wide_mask;
 
 #define INLINE static inline __attribute__((always_inline))
 
-typedef float eight __attribute__((vector_size(32)));
-typedef float eight_stored __attribute__((vector_size(32), aligned(4), may_alias));
-typedef int32_t eight_int __attribute__((vector_size(32)));
-
-INLINE eight eight_max(eight a, eight b) {
-  return (eight)_mm256_max_ps((__m256)a, (__m256)b);
-}
-
-INLINE eight eight_min(eight a, eight b) {
-  return (eight)_mm256_min_ps((__m256)a, (__m256)b);
-}
-
-INLINE eight eight_root(eight x) {
-  return (eight)_mm256_sqrt_ps((__m256)x);
-}
-
-INLINE eight eight_choose(eight_int mask, eight a, eight b) {
-  return (eight)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)mask);
-}
-
-INLINE unsigned eight_bits(eight_int mask) {
-  return (unsigned)_mm256_movemask_ps((__m256)mask);
-}
-
-INLINE float eight_least(eight x) {
-  __m128 y = _mm_min_ps(_mm256_castps256_ps128((__m256)x), _mm256_extractf128_ps((__m256)x, 1));
-  y = _mm_min_ps(y, _mm_movehl_ps(y, y));
-  return _mm_cvtss_f32(_mm_min_ss(y, _mm_movehdup_ps(y)));
-}
-
-INLINE float eight_sum(eight x) {
-  __m128 y = _mm_add_ps(_mm256_castps256_ps128((__m256)x), _mm256_extractf128_ps((__m256)x, 1));
-  y = _mm_add_ps(y, _mm_movehl_ps(y, y));
-  return _mm_cvtss_f32(_mm_add_ss(y, _mm_movehdup_ps(y)));
-}
+#include "voxel/closest/band_eight_avx.inc"
 
 INLINE wide wide_max(wide a, wide b) {
   return (wide)_mm256_max_ps((__m256)a, (__m256)b);
@@ -101,41 +67,10 @@ INLINE unsigned wide_bits(wide_mask mask) {
   return (unsigned)_mm256_movemask_ps(mask);
 }
 
-/** Puts the voxels of a brick that have a bit behind `count` others. */
-INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
-  for (; bits; bits &= bits - 1, count++) {
-    const int lane = __builtin_ctz(bits);
-    for (int a = 0; a < 3; a++)
-      to->at[a][count] = q[a][lane];
-    to->place[count] = first + lane;
-  }
-}
+#include "voxel/closest/band_one_by_one.inc"
 
 INLINE wide wide_gather(const float *from, const int32_t *place) {
   return (wide)_mm256_i32gather_ps(from, _mm256_loadu_si256((const __m256i *)(const void *)place), 4);
-}
-
-/** The first `count` of a vector. */
-INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
-  for (size_t n = 0; n < count; n++)
-    to[place[n]] = x[n];
-}
-
-/** Puts a triangle and the voxels of a group that have a bit behind `count` other pairs; returns how many
- * there are then. Others come along, so that all lanes have the same triangle. */
-INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, const int32_t *place,
-                        unsigned bits) {
-  for (int n = 0; n < WIDTH; n += LANES) {
-    memcpy(to->place + count, place + n, LANES * sizeof *place);
-    to->triangle[count] = triangle;
-    count += bits >> n & ((1U << LANES) - 1) ? LANES : 0;
-  }
-  return count;
-}
-
-/** A number for each lane out of VXM_BAND_FAMILY. */
-INLINE lanes lanes_pick(const double *from, const int32_t *which) {
-  return from[which[0]] - (lanes){0};
 }
 
 INLINE lanes lanes_max(lanes a, lanes b) {

@@ -30,41 +30,7 @@ typedef __mmask16 wide_mask;
 
 #define INLINE static inline __attribute__((always_inline))
 
-typedef float eight __attribute__((vector_size(32)));
-typedef float eight_stored __attribute__((vector_size(32), aligned(4), may_alias));
-typedef int32_t eight_int __attribute__((vector_size(32)));
-
-INLINE eight eight_max(eight a, eight b) {
-  return (eight)_mm256_max_ps((__m256)a, (__m256)b);
-}
-
-INLINE eight eight_min(eight a, eight b) {
-  return (eight)_mm256_min_ps((__m256)a, (__m256)b);
-}
-
-INLINE eight eight_root(eight x) {
-  return (eight)_mm256_sqrt_ps((__m256)x);
-}
-
-INLINE eight eight_choose(eight_int mask, eight a, eight b) {
-  return (eight)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)mask);
-}
-
-INLINE unsigned eight_bits(eight_int mask) {
-  return (unsigned)_mm256_movemask_ps((__m256)mask);
-}
-
-INLINE float eight_least(eight x) {
-  __m128 y = _mm_min_ps(_mm256_castps256_ps128((__m256)x), _mm256_extractf128_ps((__m256)x, 1));
-  y = _mm_min_ps(y, _mm_movehl_ps(y, y));
-  return _mm_cvtss_f32(_mm_min_ss(y, _mm_movehdup_ps(y)));
-}
-
-INLINE float eight_sum(eight x) {
-  __m128 y = _mm_add_ps(_mm256_castps256_ps128((__m256)x), _mm256_extractf128_ps((__m256)x, 1));
-  y = _mm_add_ps(y, _mm_movehl_ps(y, y));
-  return _mm_cvtss_f32(_mm_add_ss(y, _mm_movehdup_ps(y)));
-}
+#include "voxel/closest/band_eight_avx.inc"
 
 INLINE wide wide_max(wide a, wide b) {
   return (wide)_mm512_max_ps((__m512)a, (__m512)b);

@@ -112,41 +112,10 @@ INLINE unsigned wide_bits(wide_mask mask) {
 #endif
 }
 
-/** Puts the voxels of a brick that have a bit behind `count` others. */
-INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
-  for (; bits; bits &= bits - 1, count++) {
-    const int lane = __builtin_ctz(bits);
-    for (int a = 0; a < 3; a++)
-      to->at[a][count] = q[a][lane];
-    to->place[count] = first + lane;
-  }
-}
+#include "voxel/closest/band_one_by_one.inc"
 
 INLINE wide wide_gather(const float *from, const int32_t *place) {
   return (wide){from[place[0]], from[place[1]], from[place[2]], from[place[3]]};
-}
-
-/** The first `count` of a vector. */
-INLINE void wide_scatter(float *to, const int32_t *place, wide x, size_t count) {
-  for (size_t n = 0; n < count; n++)
-    to[place[n]] = x[n];
-}
-
-/** Puts a triangle and the voxels of a group that have a bit behind `count` other pairs; returns how many
- * there are then. Others come along, so that all lanes have the same triangle. */
-INLINE size_t add_pairs(vxm_band_pairs *to, size_t count, int32_t triangle, const int32_t *place,
-                        unsigned bits) {
-  for (int n = 0; n < WIDTH; n += LANES) {
-    memcpy(to->place + count, place + n, LANES * sizeof *place);
-    to->triangle[count] = triangle;
-    count += bits >> n & ((1U << LANES) - 1) ? LANES : 0;
-  }
-  return count;
-}
-
-/** A number for each lane out of VXM_BAND_FAMILY. */
-INLINE lanes lanes_pick(const double *from, const int32_t *which) {
-  return from[which[0]] - (lanes){0};
 }
 
 INLINE unsigned lanes_bits(lanes_int mask) {
