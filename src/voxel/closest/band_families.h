@@ -25,9 +25,10 @@ enum { VXM_BAND_FAMILY = 8 /**< triangles in a family at most */ };
 /** A triangle, and vxm_distance_triangle in floats, as seen from its family's origin; the columns are fast,
  * middle, slow. */
 typedef struct vxm_band_triangle {
-  uint32_t corner[3];          /**< points of the soup */
   float axis[3][3], offset[3]; /**< a point q lies at axis q + offset in the triangle's frame */
   float length, leg[2][2], leg_length[2];
+  uint32_t corner[3]; /**< points of the soup */
+  uint32_t rest[2];   /**< so that whole vectors are stored */
 } vxm_band_triangle;
 
 /** Triangles side by side. All threes that are not doubles are in the order fast, middle, slow. */

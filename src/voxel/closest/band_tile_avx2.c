@@ -28,6 +28,7 @@ typedef double lanes_loaded __attribute__((vector_size(8 * LANES), aligned(8), m
 typedef __m256 wide_mask;
 
 #define INLINE static inline __attribute__((always_inline))
+#define UNROLL _Pragma("GCC unroll 8")
 
 #include "voxel/closest/band_eight_avx.inc"
 
