@@ -144,12 +144,8 @@ INLINE wide_mask wide_not_above(wide a, wide b) {
   return ~(a > b);
 }
 
-INLINE wide_mask wide_both(wide_mask a, wide_mask b) {
-  return a & b;
-}
-
-INLINE wide wide_unless(wide_mask mask, wide x) {
-  return (wide)(~mask & (wide_mask)x);
+INLINE wide wide_choose(wide_mask mask, wide a, wide b) {
+  return (wide)((mask & (wide_mask)a) | (~mask & (wide_mask)b));
 }
 
 INLINE unsigned wide_bits(wide_mask mask) {
@@ -163,6 +159,16 @@ INLINE unsigned wide_bits(wide_mask mask) {
     bits |= (unsigned)(mask[n] & 1) << n;
   return bits;
 #endif
+}
+
+/** Puts the voxels of a brick that have a bit behind `count` others. */
+INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
+  for (; bits; bits &= bits - 1, count++) {
+    const int lane = __builtin_ctz(bits);
+    for (int a = 0; a < 3; a++)
+      to->at[a][count] = q[a][lane];
+    to->place[count] = first + lane;
+  }
 }
 
 #include "voxel/closest/band_one_by_one.inc"
