@@ -8,26 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-  SLICES = 64,     /**< of triangles, for the threads */
-  PLACE_SHIFT = 32 /**< in keys: where triangles lie, above their numbers */
-};
+enum { SLICES = 64 /**< of triangles, for the threads */ };
 
-/** How wide a family gets, in voxels; a wider triangle is one by itself. */
-static const double widest = 6;
 /** A length in floats is off by less than this part of the lengths that it is made from: ninety-six
  * roundings, where some eighty are made, what flat triangles lose included. */
 static const double rounding = 96 * 0x1p-24;
 /** Bricks of voxels reach beyond a family's box by as much. */
 static const double beyond[3] = {3, 1, 1};
-
-/** How wide it gets in times of its widest triangle: what lies farther apart had better not wait for each
- * other. */
-static const double widest_of_own = 5;
-
-typedef struct box {
-  double low[3], high[3];
-} box;
 
 typedef struct builder {
   vxm_band_families *made;
@@ -51,81 +38,18 @@ static inline double most_of(double a, double b) {
   return a > b ? a : b;
 }
 
-/* ---- Order ---- */
-
-/** The low ten bits of two numbers, the other one from bit 32 on, with two zeros between any two of them. */
-static uint64_t spread(uint64_t x) {
-  x = (x | x << 16) & UINT64_C(0x030000ff030000ff);
-  x = (x | x << 8) & UINT64_C(0x0300f00f0300f00f);
-  x = (x | x << 4) & UINT64_C(0x030c30c3030c30c3);
-  return (x | x << 2) & UINT64_C(0x0924924909249249);
-}
-
 static void make_keys(size_t slice, int worker, void *payload) {
   (void)worker;
-  builder *b = payload;
-  const vxm_band_grid *grid = &b->made->grid;
-  const double(*points)[3] = b->soup->points;
-  double scale = 2;
-  for (int a = 0; a < 3; a++)
-    scale = least_of(scale, 1024 / ((double)grid->dims[a] * grid->step[grid->axes[a]]));
-  for (size_t i = slice_begin(b, slice); i < slice_begin(b, slice + 1); i++) {
-    const uint32_t *c = b->soup->corners[i];
-    uint32_t at[3];
-    for (int a = 0; a < 3; a++) {
-      double place = (points[c[0]][a] + points[c[1]][a] + points[c[2]][a]) * (scale / 3);
-      at[a] = (uint32_t)(int32_t)least_of(most_of(place, 0), 1023);
-    }
-    uint64_t two = spread(at[0] | (uint64_t)at[1] << 32);
-    b->keys[i] = (two | two >> 31 | spread(at[2]) << 2) << PLACE_SHIFT | i;
-  }
-}
-
-/* ---- Which belong together ---- */
-
-static box box_of(const vxm_band_soup *soup, size_t triangle) {
-  const uint32_t *c = soup->corners[triangle];
-  const double *x = soup->points[c[0]], *y = soup->points[c[1]], *z = soup->points[c[2]];
-  box made;
-  for (int a = 0; a < 3; a++) {
-    made.low[a] = least_of(least_of(x[a], y[a]), z[a]);
-    made.high[a] = most_of(most_of(x[a], y[a]), z[a]);
-  }
-  return made;
-}
-
-static box joined(box a, box b) {
-  for (int i = 0; i < 3; i++) {
-    a.low[i] = least_of(a.low[i], b.low[i]);
-    a.high[i] = most_of(a.high[i], b.high[i]);
-  }
-  return a;
-}
-
-static double width_of(box b) {
-  return most_of(most_of(b.high[0] - b.low[0], b.high[1] - b.low[1]), b.high[2] - b.low[2]);
+  const builder *b = payload;
+  b->kernels->make_keys(b->keys, b->soup, &b->made->grid, slice_begin(b, slice), slice_begin(b, slice + 1));
 }
 
 static void find_starts(size_t slice, int worker, void *payload) {
   (void)worker;
   builder *b = payload;
-  size_t begin = slice_begin(b, slice), end = slice_begin(b, slice + 1), count = 0, first = begin;
-  box all = {{0}, {0}};
-  double most = 0;
-  for (size_t i = begin; i < end; i++) {
-    box own = box_of(b->soup, (uint32_t)b->keys[i]), both = joined(all, own);
-    double width = width_of(own);
-    most = most_of(most, width);
-    if (i == begin || i - first == VXM_BAND_FAMILY ||
-        width_of(both) > least_of(widest, widest_of_own * most)) {
-      b->starts[begin + count++] = (uint32_t)i;
-      first = i;
-      both = own;
-      most = width;
-    }
-    all = both;
-  }
-  b->counts[slice] = count;
+  size_t begin = slice_begin(b, slice);
+  b->counts[slice] =
+      b->kernels->find_starts(b->starts + begin, b->soup, b->keys, begin, slice_begin(b, slice + 1));
 }
 
 /* ---- Families ---- */
@@ -153,9 +77,7 @@ static void make_family(const builder *b, size_t at, size_t first, size_t end) {
   double reach2 = 0;
   f->first = (uint32_t)first;
   f->count = (uint32_t)(end - first);
-  for (size_t i = first; i < end; i++)
-    memcpy(made->triangles[i].corner, b->soup->corners[(uint32_t)b->keys[i]], sizeof(uint32_t[3]));
-  double reach = b->kernels->make_family(f, &made->triangles[first], b->soup->points, grid);
+  double reach = b->kernels->make_family(f, &made->triangles[first], b->soup, &b->keys[first], grid);
   for (int a = 0; a < 3; a++) {
     double far = (double)f->half[a] + grid->band + (beyond[a] + 2) * grid->step[grid->axes[a]];
     reach2 += far * far;
@@ -206,7 +128,7 @@ static vxm_status build(builder *b, vxm_error *error) {
   vxm_status status = vxm_parallel_asked(context, SLICES, make_keys, b, error);
   if (status != VXM_OK)
     return status;
-  vxm_sort_keys_above(b->keys, b->scratch, made->triangle_count, PLACE_SHIFT);
+  vxm_sort_keys_above(b->keys, b->scratch, made->triangle_count, VXM_BAND_PLACE_SHIFT);
   status = vxm_parallel_asked(context, SLICES, find_starts, b, error);
   if (status != VXM_OK)
     return status;

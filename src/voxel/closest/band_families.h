@@ -25,9 +25,15 @@ enum { VXM_BAND_FAMILY = 8 /**< triangles in a family at most */ };
 /** A triangle, and vxm_distance_triangle in floats, as seen from its family's origin; the columns are fast,
  * middle, slow. */
 typedef struct vxm_band_triangle {
-  uint32_t corner[3];          /**< points of the soup */
-  float axis[3][3], offset[3]; /**< a point q lies at axis q + offset in the triangle's frame */
-  float length, leg[2][2], leg_length[2];
+  /** A point q lies at axis q + offset in a frame that begins on the longest edge below the apex, where the
+   * edge cuts the triangle in two: what is nearest to a point lies on its own side. Along the second axis the
+   * apex is below 0. Twos are of the sides above 0 along the first axis, and below. */
+  float axis[3][3], offset[3];
+  float base[2]; /**< how far the longest edge reaches */
+  float leg[2][2],
+      leg_length[2];  /**< from its ends to the apex, away from 0 and down the second axis; unit */
+  uint32_t corner[3]; /**< points of the soup */
+  uint32_t rest;      /**< so that whole vectors are stored */
 } vxm_band_triangle;
 
 /** Triangles side by side. All threes that are not doubles are in the order fast, middle, slow. */

@@ -17,7 +17,8 @@ enum {
   VXM_BAND_VECTOR = 16,
   VXM_BAND_BRICKS = VXM_BAND_TILE * VXM_BAND_TILE * VXM_BAND_TILE / 4,
   VXM_BAND_GATHERED = 1 << 10,
-  VXM_BAND_PAIRS = 1 << 9
+  VXM_BAND_PAIRS = 1 << 9,
+  VXM_BAND_PLACE_SHIFT = 32
 };
 
 /** Voxels in which a family may be the nearest. */
@@ -89,13 +90,20 @@ typedef struct vxm_band_tally {
 } vxm_band_tally;
 
 typedef struct vxm_band_kernels {
+  /** Keys of the triangles begin..end-1: where they lie, from bit VXM_BAND_PLACE_SHIFT on, and which they
+   * are. */
+  void (*make_keys)(uint64_t *keys, const vxm_band_soup *soup, const vxm_band_grid *grid, size_t begin,
+                    size_t end);
+  /** Lists where families begin among the triangles that have the keys begin..end-1; returns how many. */
+  size_t (*find_starts)(uint32_t *starts, const vxm_band_soup *soup, const uint64_t *keys, size_t begin,
+                        size_t end);
   /**
-   * Makes a family that has `first` and `count`, and the frames of its triangles, which have corners: all but
-   * its room and voxels, with a low, high and half that are not widened yet. Returns how far it reaches from
-   * its origin.
+   * Makes a family that has `first` and `count`, and its triangles, whose keys are handed over: all but its
+   * room and voxels, with a low, high and half that are not widened yet. Returns how far it reaches from its
+   * origin.
    */
-  double (*make_family)(vxm_band_family *f, vxm_band_triangle *triangles, const double (*points)[3],
-                        const vxm_band_grid *grid);
+  double (*make_family)(vxm_band_family *f, vxm_band_triangle *triangles, const vxm_band_soup *soup,
+                        const uint64_t *keys, const vxm_band_grid *grid);
   /**
    * The squared distances of a tile that has `first` and `count` to the nearest triangle of the families
    * listed: the least that vxm_triangle_distance2 gives, to the bit, where that is below band^2, or band^2.

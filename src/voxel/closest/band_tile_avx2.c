@@ -28,6 +28,7 @@ typedef double lanes_loaded __attribute__((vector_size(8 * LANES), aligned(8), m
 typedef __m256 wide_mask;
 
 #define INLINE static inline __attribute__((always_inline))
+#define UNROLL _Pragma("GCC unroll 8")
 
 #include "voxel/closest/band_eight_avx.inc"
 
@@ -55,16 +56,28 @@ INLINE wide_mask wide_not_above(wide a, wide b) {
   return _mm256_cmp_ps((__m256)a, (__m256)b, _CMP_NGT_UQ);
 }
 
-INLINE wide_mask wide_both(wide_mask a, wide_mask b) {
-  return _mm256_and_ps(a, b);
-}
-
-INLINE wide wide_unless(wide_mask mask, wide x) {
-  return (wide)_mm256_andnot_ps(mask, (__m256)x);
+INLINE wide wide_choose(wide_mask mask, wide a, wide b) {
+  return (wide)_mm256_blendv_ps((__m256)b, (__m256)a, mask);
 }
 
 INLINE unsigned wide_bits(wide_mask mask) {
   return (unsigned)_mm256_movemask_ps(mask);
+}
+
+/** Puts the voxels of a brick that have a bit behind `count` others: half of a vector at a time. */
+INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
+  static const _Alignas(16)
+      int32_t chosen[16][4] = {{0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
+                               {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
+  const __m128i low = _mm_load_si128((const __m128i *)(const void *)chosen[bits & 15]),
+                high = _mm_load_si128((const __m128i *)(const void *)chosen[bits >> 4]);
+  const size_t second = count + (size_t)_mm_popcnt_u32(bits & 15);
+  for (int a = 0; a < 3; a++) {
+    _mm_storeu_ps(to->at[a] + count, _mm_permutevar_ps(_mm256_castps256_ps128((__m256)q[a]), low));
+    _mm_storeu_ps(to->at[a] + second, _mm_permutevar_ps(_mm256_extractf128_ps((__m256)q[a], 1), high));
+  }
+  _mm_storeu_si128((__m128i *)(void *)(to->place + count), _mm_add_epi32(low, _mm_set1_epi32(first)));
+  _mm_storeu_si128((__m128i *)(void *)(to->place + second), _mm_add_epi32(high, _mm_set1_epi32(first + 4)));
 }
 
 #include "voxel/closest/band_one_by_one.inc"

@@ -29,6 +29,7 @@ typedef double lanes_loaded __attribute__((vector_size(8 * LANES), aligned(8), m
 typedef __mmask16 wide_mask;
 
 #define INLINE static inline __attribute__((always_inline))
+#define UNROLL _Pragma("GCC unroll 8")
 
 #include "voxel/closest/band_eight_avx.inc"
 
@@ -56,12 +57,8 @@ INLINE wide_mask wide_not_above(wide a, wide b) {
   return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_NGT_UQ);
 }
 
-INLINE wide_mask wide_both(wide_mask a, wide_mask b) {
-  return a & b;
-}
-
-INLINE wide wide_unless(wide_mask mask, wide x) {
-  return (wide)_mm512_maskz_mov_ps((__mmask16)~mask, (__m512)x);
+INLINE wide wide_choose(wide_mask mask, wide a, wide b) {
+  return (wide)_mm512_mask_mov_ps((__m512)b, mask, (__m512)a);
 }
 
 INLINE unsigned wide_bits(wide_mask mask) {

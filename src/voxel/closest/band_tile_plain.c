@@ -21,6 +21,7 @@ typedef double lanes_loaded __attribute__((vector_size(8 * LANES), aligned(8), m
 typedef int32_t wide_mask __attribute__((vector_size(4 * WIDTH)));
 
 #define INLINE static inline __attribute__((always_inline))
+#define UNROLL _Pragma("GCC unroll 8")
 
 typedef float eight __attribute__((vector_size(32)));
 typedef float eight_stored __attribute__((vector_size(32), aligned(4), may_alias));
@@ -65,6 +66,58 @@ INLINE float eight_sum(eight x) {
   return sum;
 }
 
+/** Of eight points with a number to spare. */
+INLINE void eight_columns(eight out[3], const float (*points)[4]) {
+  for (int n = 0; n < 8; n++)
+    for (int a = 0; a < 3; a++)
+      out[a][n] = points[n][a];
+}
+
+/** Rows become columns. */
+INLINE void eight_transpose(eight x[8]) {
+  float rows[8][8];
+  memcpy(rows, x, sizeof rows);
+  for (int n = 0; n < 8; n++)
+    for (int k = 0; k < 8; k++)
+      x[n][k] = rows[k][n];
+}
+
+typedef double four __attribute__((vector_size(32)));
+typedef int64_t four_mask __attribute__((vector_size(32)));
+
+/** Three numbers, and zero. */
+INLINE four four_load3(const double *from) {
+  return (four){from[0], from[1], from[2], 0};
+}
+
+INLINE four four_max(four a, four b) {
+  four_mask is_a = a > b;
+  return (four)((is_a & (four_mask)a) | (~is_a & (four_mask)b));
+}
+
+INLINE four four_min(four a, four b) {
+  four_mask is_a = a < b;
+  return (four)((is_a & (four_mask)a) | (~is_a & (four_mask)b));
+}
+
+/** The greatest of the first three. */
+INLINE double four_most(four x) {
+  const double most = x[0] > x[1] ? x[0] : x[1];
+  return most > x[2] ? most : x[2];
+}
+
+/** Cut off. */
+INLINE void four_whole(uint32_t to[4], four x) {
+  for (int n = 0; n < 4; n++)
+    to[n] = (uint32_t)(int32_t)x[n];
+}
+
+/** In floats. */
+INLINE void four_store(float to[4], four x) {
+  for (int n = 0; n < 4; n++)
+    to[n] = (float)x[n];
+}
+
 INLINE wide wide_max(wide a, wide b) {
   wide_mask is_a = a > b;
   return (wide)((is_a & (wide_mask)a) | (~is_a & (wide_mask)b));
@@ -91,12 +144,8 @@ INLINE wide_mask wide_not_above(wide a, wide b) {
   return ~(a > b);
 }
 
-INLINE wide_mask wide_both(wide_mask a, wide_mask b) {
-  return a & b;
-}
-
-INLINE wide wide_unless(wide_mask mask, wide x) {
-  return (wide)(~mask & (wide_mask)x);
+INLINE wide wide_choose(wide_mask mask, wide a, wide b) {
+  return (wide)((mask & (wide_mask)a) | (~mask & (wide_mask)b));
 }
 
 INLINE unsigned wide_bits(wide_mask mask) {
@@ -110,6 +159,16 @@ INLINE unsigned wide_bits(wide_mask mask) {
     bits |= (unsigned)(mask[n] & 1) << n;
   return bits;
 #endif
+}
+
+/** Puts the voxels of a brick that have a bit behind `count` others. */
+INLINE void gather(vxm_band_gathered *to, size_t count, const wide q[3], int32_t first, unsigned bits) {
+  for (; bits; bits &= bits - 1, count++) {
+    const int lane = __builtin_ctz(bits);
+    for (int a = 0; a < 3; a++)
+      to->at[a][count] = q[a][lane];
+    to->place[count] = first + lane;
+  }
 }
 
 #include "voxel/closest/band_one_by_one.inc"
