@@ -113,7 +113,8 @@ static inline size_t digit_of(const digits *d, uint64_t cell, int place) {
 /** A pass of a stable sort. */
 static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, const digits *d,
                           int place) {
-  size_t next[DIGITS] = {0}, total = 0;
+  size_t next[DIGITS], total = 0;
+  memset(next, 0, sizeof *next << d->bits);
   for (size_t m = 0; m < count; m++)
     next[digit_of(d, from[m].cell, place)]++;
   for (int i = 0; i < 1 << d->bits; i++) {
@@ -132,9 +133,9 @@ static int compare(const void *a, const void *b) {
   return (p->detail > q->detail) - (p->detail < q->detail);
 }
 
-/** Sorts the meetings of one link by polygon: nearly always two or three. */
-static void sort_by_polygon(vxm_meeting *meetings, size_t count) {
-  const size_t few = 16;
+/** Sorts a few, by cells and polygons. */
+static void sort_few(vxm_meeting *meetings, size_t count) {
+  const size_t few = 64;
   if (count > few) {
     qsort(meetings, count, sizeof *meetings, compare);
     return;
@@ -142,7 +143,7 @@ static void sort_by_polygon(vxm_meeting *meetings, size_t count) {
   for (size_t m = 1; m < count; m++) {
     vxm_meeting one = meetings[m];
     size_t to = m;
-    for (; to > 0 && meetings[to - 1].detail > one.detail; to--)
+    for (; to > 0 && compare(&meetings[to - 1], &one) > 0; to--)
       meetings[to] = meetings[to - 1];
     meetings[to] = one;
   }
@@ -151,9 +152,9 @@ static void sort_by_polygon(vxm_meeting *meetings, size_t count) {
 /** Sorts meetings by cells, those with links by polygon, too. `from` is overwritten; returns which of the two
  * has them. */
 static vxm_meeting *sort_meetings(vxm_meeting *from, vxm_meeting *to, size_t count) {
-  const size_t few = 512;
+  const size_t few = 32; /* less than digits */
   if (count <= few) {
-    qsort(from, count, sizeof *from, compare);
+    sort_few(from, count);
     return from;
   }
   const digits d = digits_of(from, count);
@@ -168,7 +169,7 @@ static vxm_meeting *sort_meetings(vxm_meeting *from, vxm_meeting *to, size_t cou
     for (next = m; next < count && from[next].cell == from[m].cell; next++)
       polygons |= from[next].detail != 0;
     if (polygons)
-      sort_by_polygon(from + m, next - m);
+      sort_few(from + m, next - m);
   }
   return from;
 }
