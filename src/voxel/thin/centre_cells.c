@@ -52,11 +52,13 @@ bool vxm_view_octree_bit_set(const vxm_view *view, int64_t bit) {
 /** The lowest voxel of a cell. */
 static void lowest_of(const vxm_view *view, uint64_t number, int64_t lowest[3]) {
   number &= (UINT64_C(1) << VXM_CELL_VOXEL_BITS) - 1;
-  for (int a = 0; a < 3; a++) {
+  for (int i = 0; i < 2; i++) {
+    int a = view->axis[i];
     uint64_t size = (uint64_t)(view->end[a] - view->begin[a] + 2);
     lowest[a] = (int64_t)(number % size) + view->begin[a] - 1;
     number /= size;
   }
+  lowest[view->axis[2]] = (int64_t)number + view->begin[view->axis[2]] - 1;
 }
 
 /** The axes that a kind spans, lowest first; a link is an axis of its own. */

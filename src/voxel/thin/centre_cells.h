@@ -55,6 +55,7 @@ typedef struct vxm_view {
   const vxm_sparse *octree;
   const struct vxm_voxel_set *added; /**< beside the octree's; NULL = none */
   int64_t begin[3], end[3];          /**< of the window along x, y, z */
+  int axis[3];                       /**< by `step`, from near to far */
   int64_t step[3];                   /**< bits from a voxel to the next one */
   int64_t origin;                    /**< bits from voxel (0, 0, 0) to the first one, negated */
 } vxm_view;
@@ -65,6 +66,7 @@ static inline vxm_view vxm_view_of(const vxm_window *window) {
   const int64_t step[3] = {1, (int64_t)window->row_words * 64, (int64_t)window->slice_words * 64};
   const int64_t end[3] = {window->fast_dim, window->middle_dim, window->end};
   for (int i = 0; i < 3; i++) {
+    view.axis[i] = axis[i];
     view.step[axis[i]] = step[i];
     view.end[axis[i]] = end[i];
   }
@@ -77,6 +79,7 @@ static inline vxm_view vxm_view_of(const vxm_window *window) {
 static inline vxm_view vxm_view_of_octree(const vxm_sparse *octree) {
   vxm_view view = {.octree = octree};
   for (int a = 0; a < 3; a++) {
+    view.axis[a] = a;
     view.end[a] = octree->space.dims[a];
     view.step[a] = INT64_C(1) << (VXM_VIEW_AXIS_BITS * a);
   }
@@ -164,15 +167,17 @@ static inline bool vxm_view_set(const vxm_view *view, const int64_t voxel[3]) {
 }
 
 /** The number of a cell: in which stage it comes and of which kind it is, above these bits, and its lowest
- * voxel. Cells of an earlier stage have lower numbers. */
+ * voxel, in the order of bits. Cells of an earlier stage have lower numbers. */
 enum { VXM_CELL_VOXEL_BITS = 59 };
 
 static inline uint64_t vxm_cell_number(const vxm_view *view, vxm_thin_stage stage, int kind,
                                        const int64_t lowest[3]) {
   uint64_t voxel = 0; /* it may lie one before the view */
-  for (int a = 2; a >= 0; a--)
+  for (int i = 2; i >= 0; i--) {
+    int a = view->axis[i];
     voxel =
         voxel * (uint64_t)(view->end[a] - view->begin[a] + 2) + (uint64_t)(lowest[a] - view->begin[a] + 1);
+  }
   return (uint64_t)(stage == VXM_THIN_DOMINANT_LINKS ? kind : kind + VXM_LINK_AXES) << VXM_CELL_VOXEL_BITS |
          voxel;
 }

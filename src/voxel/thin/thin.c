@@ -86,18 +86,44 @@ static void look_at_cubes(size_t list, int worker, void *payload) {
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
 
-/** A pass of a stable sort, by the digits of cells from bit `shift` on. */
-static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, int shift) {
-  size_t next[DIGITS] = {0}, total = 0;
+/** How numbers of cells are taken apart: bits that none of them has are left out. */
+typedef struct digits {
+  int voxel_bits; /**< below the kind */
+  int bits, count;
+} digits;
+
+static digits digits_of(const vxm_meeting *meetings, size_t count) {
+  enum { KIND_BITS = 64 - VXM_CELL_VOXEL_BITS };
+  uint64_t any = 0;
   for (size_t m = 0; m < count; m++)
-    next[from[m].cell >> shift & (DIGITS - 1)]++;
-  for (int d = 0; d < DIGITS; d++) {
-    size_t here = next[d];
-    next[d] = total;
+    any |= meetings[m].cell;
+  digits d = {.voxel_bits = 0};
+  while (d.voxel_bits < VXM_CELL_VOXEL_BITS && (any & vxm_low_bits(VXM_CELL_VOXEL_BITS)) >> d.voxel_bits != 0)
+    d.voxel_bits++;
+  d.count = (d.voxel_bits + KIND_BITS + DIGIT_BITS - 1) / DIGIT_BITS;
+  d.bits = (d.voxel_bits + KIND_BITS + d.count - 1) / d.count;
+  return d;
+}
+
+static inline size_t digit_of(const digits *d, uint64_t cell, int place) {
+  uint64_t number = (cell & vxm_low_bits(VXM_CELL_VOXEL_BITS)) | cell >> VXM_CELL_VOXEL_BITS << d->voxel_bits;
+  return (size_t)(number >> place * d->bits & vxm_low_bits((unsigned)d->bits));
+}
+
+/** A pass of a stable sort. */
+static void sort_by_digit(vxm_meeting *to, const vxm_meeting *from, size_t count, const digits *d,
+                          int place) {
+  size_t next[DIGITS], total = 0;
+  memset(next, 0, sizeof *next << d->bits);
+  for (size_t m = 0; m < count; m++)
+    next[digit_of(d, from[m].cell, place)]++;
+  for (int i = 0; i < 1 << d->bits; i++) {
+    size_t here = next[i];
+    next[i] = total;
     total += here;
   }
   for (size_t m = 0; m < count; m++)
-    to[next[from[m].cell >> shift & (DIGITS - 1)]++] = from[m];
+    to[next[digit_of(d, from[m].cell, place)]++] = from[m];
 }
 
 static int compare(const void *a, const void *b) {
@@ -107,21 +133,33 @@ static int compare(const void *a, const void *b) {
   return (p->detail > q->detail) - (p->detail < q->detail);
 }
 
+/** Sorts a few, by cells and polygons. */
+static void sort_few(vxm_meeting *meetings, size_t count) {
+  const size_t few = 64;
+  if (count > few) {
+    qsort(meetings, count, sizeof *meetings, compare);
+    return;
+  }
+  for (size_t m = 1; m < count; m++) {
+    vxm_meeting one = meetings[m];
+    size_t to = m;
+    for (; to > 0 && compare(&meetings[to - 1], &one) > 0; to--)
+      meetings[to] = meetings[to - 1];
+    meetings[to] = one;
+  }
+}
+
 /** Sorts meetings by cells, those with links by polygon, too. `from` is overwritten; returns which of the two
  * has them. */
 static vxm_meeting *sort_meetings(vxm_meeting *from, vxm_meeting *to, size_t count) {
-  const size_t few = 512;
+  const size_t few = 32; /* less than digits */
   if (count <= few) {
-    qsort(from, count, sizeof *from, compare);
+    sort_few(from, count);
     return from;
   }
-  uint64_t any = 0;
-  for (size_t m = 0; m < count; m++)
-    any |= from[m].cell;
-  for (int shift = 0; shift < 64; shift += DIGIT_BITS) {
-    if (!(any >> shift & (DIGITS - 1)))
-      continue;
-    sort_by_digit(to, from, count, shift);
+  const digits d = digits_of(from, count);
+  for (int place = 0; place < d.count; place++) {
+    sort_by_digit(to, from, count, &d, place);
     vxm_meeting *sorted = to;
     to = from;
     from = sorted;
@@ -131,7 +169,7 @@ static vxm_meeting *sort_meetings(vxm_meeting *from, vxm_meeting *to, size_t cou
     for (next = m; next < count && from[next].cell == from[m].cell; next++)
       polygons |= from[next].detail != 0;
     if (polygons)
-      qsort(from + m, next - m, sizeof *from, compare);
+      sort_few(from + m, next - m);
   }
   return from;
 }
