@@ -24,13 +24,20 @@ enum {
   VXM_BRICK_SIDE = 4
 };
 
+/** What samples count at four places along an axis: one[sample][place]. */
+typedef struct vxm_winding_weights {
+  float one[4][4];
+  float in_rows[4][16]; /**< [sample], for each of a layer's samples 4 y + x by x */
+  float of_rows[4][16]; /**< and by y */
+} vxm_winding_weights;
+
 /** Where the samples of a cell lie, from its middle, along each axis alike, and what they tell its children.
  */
 typedef struct vxm_winding_level {
-  float x[16], y[16], z[4]; /**< of samples 4 y + x with one z, and of all with another z */
-  float to_child[2][4][4];  /**< [half][sample][sample of the child] */
-  float bound[4][4]; /**< [sample][coefficient of Bernstein's polynomials]: these bound what is between */
-  float reach;       /**< of the voxel centres of a cell, from its middle, along an axis */
+  float x[16], y[16], z[4];        /**< of samples 4 y + x with one z, and of all with another z */
+  vxm_winding_weights to_child[2]; /**< at the samples of children, by half */
+  vxm_winding_weights bound; /**< for coefficients of Bernstein's polynomials: these bound what is between */
+  float reach;               /**< of the voxel centres of a cell, from its middle, along an axis */
 } vxm_winding_level;
 
 typedef struct vxm_winding_walk vxm_winding_walk;
