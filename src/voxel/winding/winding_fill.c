@@ -180,7 +180,7 @@ static void resolve(const fill_job *job, const int64_t origin[3], uint64_t doubt
     const int64_t at[3] = {origin[0] + v % 4, origin[1] + v / 4 % 4, origin[2] + v / 16};
     double half = (double)brick->value[v] - 0.5;
     bool is_close = fabs(half - rint(half)) < (double)strict_doubt && !job->confidence;
-    double w = vxm_winding_exact(&job->mesh->tree, at, is_close);
+    double w = vxm_winding_exact(job->kernels, &job->mesh->tree, at, is_close);
     uint64_t bit = UINT64_C(1) << v;
     brick->value[v] = (float)w;
     brick->above[0] = (brick->above[0] & ~bit) | (w > tie - 0.5 ? bit : 0);

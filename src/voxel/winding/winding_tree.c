@@ -14,9 +14,9 @@ enum { MORTON_BITS = 10 /**< per axis; with the triangle's number below, a sort 
 
 static const double by_sphere = 0.079577471545947673; /* 1 / 4 pi */
 
-/** Sums about `centre`: of vector areas A, and what harmonic expansions see of their products with one and two
- * offsets x: the mean of A_i x_j + A_j x_i, xx yy zz xy xz yz, and of A_i x_j x_k + A_j x_i x_k + A_k x_i x_j,
- * in the order of `triple`. */
+/** Sums about `centre`: of vector areas A, and what harmonic expansions see of their products with one and
+ * two offsets x: the mean of A_i x_j + A_j x_i, xx yy zz xy xz yz, and of A_i x_j x_k + A_j x_i x_k + A_k x_i
+ * x_j, in the order of `triple`. */
 typedef struct sums {
   double centre[3], area[3], first[6], second[10];
   double size, radius, low[3], high[3];
@@ -164,8 +164,7 @@ static void store(vxm_winding_tree *out, size_t node, const sums *of) {
     m->first[i] = (float)(-1.5 * cube * (of->first[i] - third));
     m->first[3 + i] = (float)(-3 * cube * of->first[3 + i]);
   }
-  const double *s = of->second,
-               trace[3] = {s[0] + s[2] + s[7], s[1] + s[3] + s[8], s[4] + s[6] + s[9]};
+  const double *s = of->second, trace[3] = {s[0] + s[2] + s[7], s[1] + s[3] + s[8], s[4] + s[6] + s[9]};
   UNROLL
   for (int t = 0; t < 10; t++) {
     int i = triple[t].i, j = triple[t].j, k = triple[t].k;

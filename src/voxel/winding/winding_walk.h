@@ -76,6 +76,16 @@ struct vxm_winding_walk {
   int task_level;
 };
 
+/** Triangles that are seen from one point. Half a solid angle is the argument of (sides, volume), which is
+ * (den, num) when it is one long. */
+enum { VXM_WINDING_SEEN = 64 };
+typedef struct vxm_winding_seen {
+  size_t count;
+  double corner[3][3][VXM_WINDING_SEEN]; /**< behind the last one there are numbers up to a multiple of 8 */
+  double sides[VXM_WINDING_SEEN], volume[VXM_WINDING_SEEN], product[VXM_WINDING_SEEN]; /**< of distances */
+  double den[VXM_WINDING_SEEN], num[VXM_WINDING_SEEN];
+} vxm_winding_seen;
+
 typedef struct vxm_winding_kernels {
   /**
    * Settles a cell, or all that it consists of.
@@ -85,6 +95,8 @@ typedef struct vxm_winding_kernels {
    */
   void (*descend)(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
                   int level, const float samples[VXM_BRICK], size_t list, size_t count);
+  /** Finds what is to be known of triangles of which the corners are. */
+  void (*see)(vxm_winding_seen *seen, const double from[3]);
 } vxm_winding_kernels;
 
 /** The build that goes with vxm_kernels_get. */
