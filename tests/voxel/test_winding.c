@@ -406,8 +406,8 @@ static void test_nodes_from_afar(void **state) {
         from[a] = tree->nodes[i].centre[a] - d[a];
       }
       sum_below(tree, i, from, &sum, &size);
-      double off = fabs(expand(&tree->moments[i], d) - sum) * far * far;
-      if (off > size * (10 / (times * times * times) + 1e-6))
+      double off = fabs(expand(&tree->moments[i], d) - sum) * 4 * 3.14159265358979324 * far * far;
+      if (off > size / (times * times * times))
         fail_msg("node %u of radius %g is off by %g of its area %g", (unsigned)i,
                  (double)tree->nodes[i].radius, off, size);
     }
