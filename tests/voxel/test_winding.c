@@ -331,6 +331,92 @@ static void test_numbers_beside_long_edges(void **state) {
   assert_true(voxels > 100000 && doubtful < voxels / 5);
 }
 
+/** Adds up the solid angles of a node's triangles from a point, by 4 pi, and their areas. */
+static void sum_below(const vxm_winding_tree *tree, uint32_t node, const double from[3], double *sum,
+                      double *size) {
+  const vxm_winding_node *n = &tree->nodes[node];
+  if (!n->is_leaf) {
+    sum_below(tree, n->next, from, sum, size);
+    sum_below(tree, n->next + 1, from, sum, size);
+    return;
+  }
+  const vxm_winding_triangle *t = &tree->triangles[n->next];
+  long double v[3][3], length[3], dot[3], volume = 0, area = 0;
+  for (int k = 0; k < 3; k++) {
+    for (int a = 0; a < 3; a++)
+      v[k][a] = (long double)t->corner[k][a] - (long double)from[a];
+    length[k] = sqrtl(v[k][0] * v[k][0] + v[k][1] * v[k][1] + v[k][2] * v[k][2]);
+  }
+  for (int k = 0; k < 3; k++) {
+    const long double *next = v[(k + 1) % 3];
+    dot[k] = v[k][0] * next[0] + v[k][1] * next[1] + v[k][2] * next[2];
+  }
+  for (int a = 0; a < 3; a++) {
+    int b = (a + 1) % 3, c = (a + 2) % 3;
+    long double normal =
+        (v[1][b] - v[0][b]) * (v[2][c] - v[0][c]) - (v[1][c] - v[0][c]) * (v[2][b] - v[0][b]);
+    volume += normal * v[0][a];
+    area += normal * normal;
+  }
+  long double sides =
+      length[0] * length[1] * length[2] + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
+  *sum += (double)(atan2l(volume, sides) / (2 * 3.14159265358979323846L));
+  *size += (double)sqrtl(area) / 2;
+}
+
+/** What voxel/winding/winding_tree.h says of a node's moments, seen from where its centre is at d. */
+static double expand(const vxm_winding_moments *m, const double d[3]) {
+  static const int first[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  static const int second[10][3] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {0, 0, 2},
+                                    {0, 1, 2}, {1, 1, 2}, {0, 2, 2}, {1, 2, 2}, {2, 2, 2}};
+  double x[3], square = 0, n = 0, f = 0, s = 0;
+  for (int a = 0; a < 3; a++) {
+    x[a] = d[a] * (double)m->scale;
+    square += x[a] * x[a];
+  }
+  for (int a = 0; a < 3; a++)
+    n += (double)m->area[a] * x[a];
+  for (int t = 0; t < 6; t++)
+    f += (double)m->first[t] * x[first[t][0]] * x[first[t][1]];
+  for (int t = 0; t < 10; t++)
+    s += (double)m->second[t] * x[second[t][0]] * x[second[t][1]] * x[second[t][2]];
+  return (n + f / square + s / (square * square)) / (square * sqrt(square));
+}
+
+/** From afar a node looks as its triangles do: what its expansion leaves out falls with the third power of
+ * its radius over the distance. */
+static void test_nodes_from_afar(void **state) {
+  (void)state;
+  const double times = 100;
+  size_t nodes = 0;
+  for (int round = 0; round < ROUNDS(40); round++) {
+    vxm_soup *soup = random_soup(round, 12);
+    subject s;
+    begin(&s, soup, &cube);
+    assert_int_equal(vxm_winding_mesh_place(&s.mesh, &s.chain, &s.placed, 0, false, NULL), VXM_OK);
+    const vxm_winding_tree *tree = &s.mesh.tree;
+    for (uint32_t i = 0; i < tree->node_count; i++, nodes++) {
+      double d[3], from[3], sum = 0, size = 0, length = 0, far = times * (double)tree->nodes[i].radius;
+      for (int a = 0; a < 3; a++) {
+        d[a] = 2 * vxm_rng_unit(&rng) - 1;
+        length += d[a] * d[a];
+      }
+      for (int a = 0; a < 3; a++) {
+        d[a] *= far / sqrt(length);
+        from[a] = tree->nodes[i].centre[a] - d[a];
+      }
+      sum_below(tree, i, from, &sum, &size);
+      double off = fabs(expand(&tree->moments[i], d) - sum) * 4 * 3.14159265358979324 * far * far;
+      if (off > size / (times * times * times))
+        fail_msg("node %u of radius %g is off by %g of its area %g", (unsigned)i,
+                 (double)tree->nodes[i].radius, off, size);
+    }
+    end(&s);
+    vxm_soup_destroy(soup);
+  }
+  assert_true(nodes > 500);
+}
+
 static void compare(const uint64_t *a, const uint64_t *b, const vxm_space *space, vxm_layout layout,
                     const char *what) {
   int64_t at[3];
@@ -557,6 +643,7 @@ static void test_real_meshes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_the_chain_is_closed),
+      cmocka_unit_test(test_nodes_from_afar),
       cmocka_unit_test(test_signs_are_those_of_the_sum),
       cmocka_unit_test(test_signs_amid_far_corners),
       cmocka_unit_test(test_numbers_beside_long_edges),

@@ -30,7 +30,10 @@ vxm_status vxm_brick_mask_begin(vxm_brick_mask *mask, const int64_t begin[3], co
 /** Whether eight cells, or the last ones, are all 0. */
 static bool are_clear(const uint8_t *cell, int64_t count) {
   uint64_t any = 0;
-  memcpy(&any, cell, (size_t)(count < 8 ? count : 8));
+  if (count >= 8) /* so that copying takes no call */
+    memcpy(&any, cell, 8);
+  else
+    memcpy(&any, cell, (size_t)count);
   return any == 0;
 }
 

@@ -52,8 +52,9 @@ typedef struct fold_state {
   vxm_task_progress watch;
 } fold_state;
 
-/** The place of a row's crossings is not known yet. */
-static const uint32_t to_count = UINT32_MAX;
+/** The place of a row's crossings is not known yet; of one that has some it is not known whether they are to
+ * be kept. */
+static const uint32_t to_count = UINT32_MAX, to_look_at = 1;
 
 static void add_more(fold_state *state, size_t word, unsigned bit, int sign) {
   vxm_chain_winding *out = state->out;
@@ -151,12 +152,21 @@ static void fold_slab(size_t task, int worker, void *payload) {
   memset(out->counted + row, 0, rows * sizeof *out->counted);
   take_crossings(state, task, 0, enter, first);
   take_crossings(state, task, 1, leave, first);
-  for (size_t w = 0; w < count; w++)
-    bits[w] = enter[w] ^ leave[w];
+  for (size_t r = 0; r < rows; r++) {
+    uint64_t any = 0;
+    for (size_t w = r * window->row_words; w < (r + 1) * window->row_words; w++) {
+      any |= enter[w] | leave[w];
+      bits[w] = enter[w] ^ leave[w];
+    }
+    out->counted[row + r] |= any ? to_look_at : 0;
+  }
   state->kernels->fold_rows(bits, window->row_words, rows, vxm_window_tail_mask(window));
   for (size_t r = 0; r < rows; r++) {
     size_t at = r * window->row_words;
-    if (out->counted[row + r] || !parity_tells(bits + at, enter + at, leave + at, window->row_words))
+    if (out->counted[row + r] == to_look_at &&
+        parity_tells(bits + at, enter + at, leave + at, window->row_words))
+      out->counted[row + r] = 0;
+    else if (out->counted[row + r])
       keep_row(state, row + r, enter + at, leave + at);
   }
   memset(enter, 0, count * sizeof *enter);

@@ -70,64 +70,73 @@ typedef struct angle_sum {
   double real, imaginary, turns;
 } angle_sum;
 
-/** Adds the argument of (den, num), which are not both 0. */
-static void turn(angle_sum *sum, double den, double num) {
-  double by = 1 / sqrt(den * den + num * num), real, imaginary;
-  den *= by;
-  num *= by;
-  real = sum->real * den - sum->imaginary * num;
-  imaginary = sum->real * num + sum->imaginary * den;
+/** Adds the argument of (den, num), which is one long. */
+static inline void turn(angle_sum *sum, double den, double num) {
+  double real = sum->real * den - sum->imaginary * num, imaginary = sum->real * num + sum->imaginary * den;
   bool was = sum->imaginary < 0, adds = num < 0, is = imaginary < 0;
   sum->turns += (!was && !adds && is) - (was && adds && !is);
   sum->real = real;
   sum->imaginary = imaginary;
 }
 
-/** Adds half the solid angle of a triangle. */
-static void add_triangle(angle_sum *sum, const vxm_winding_tree *tree, uint32_t triangle, const int64_t q[3],
-                         const double at[3]) {
-  const double(*corner)[3] = (const double(*)[3])tree->triangles[triangle].corner;
-  double d[3][3], length[3], dot[3], volume = 0;
-  for (int k = 0; k < 3; k++) {
-    for (int a = 0; a < 3; a++)
-      d[k][a] = corner[k][a] - at[a];
-    length[k] = sqrt(d[k][0] * d[k][0] + d[k][1] * d[k][1] + d[k][2] * d[k][2]);
-  }
-  for (int k = 0; k < 3; k++) {
-    const double *a = d[k], *b = d[(k + 1) % 3];
-    dot[k] = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  }
-  for (int a = 0; a < 3; a++) {
-    int u = (a + 1) % 3, v = (a + 2) % 3;
-    volume += d[0][a] * (d[1][u] * d[2][v] - d[1][v] * d[2][u]);
-  }
-  double product = length[0] * length[1] * length[2];
-  double sides = product + dot[0] * length[2] + dot[1] * length[0] + dot[2] * length[1];
-  if (fabs(volume) > 1e-9 * (1 + product)) {
-    turn(sum, sides, volume);
-    return;
-  }
+/** A centre that is looked at. */
+typedef struct centre {
+  const vxm_winding_kernels *kernels;
+  const vxm_winding_tree *tree;
+  int64_t at[3]; /**< lattice steps */
+  double in_voxels[3];
+  angle_sum near; /**< of triangles */
+  vxm_winding_seen seen;
+} centre;
+
+/** Adds half the solid angle of a triangle in whose plane the centre may lie. */
+static void add_flat(centre *c, size_t t) {
+  const vxm_winding_seen *seen = &c->seen;
+  double volume = seen->volume[t];
   bool inside;
   vxm_point p[3];
   for (int k = 0; k < 3; k++)
     for (int a = 0; a < 3; a++)
-      p[k].at[a] = (int64_t)(corner[k][a] * (double)tree->placed->lattice.unit);
-  int side = side_of(p, q, &inside);
-  if (inside || (sides < 0 && volume != 0 && side != 0 && !(volume * side > 0)))
-    sum->turns += 0.5 * side; /* in its plane, or as good as */
+      p[k].at[a] = (int64_t)(seen->corner[k][a][t] * (double)c->tree->placed->lattice.unit);
+  int side = side_of(p, c->at, &inside);
+  if (inside || (seen->sides[t] < 0 && volume != 0 && side != 0 && !(volume * side > 0)))
+    c->near.turns += 0.5 * side; /* in its plane, or as good as */
   else if (volume * side > 0)
-    turn(sum, sides, volume);
+    turn(&c->near, seen->den[t], seen->num[t]);
+}
+
+/** Adds half the solid angles of the triangles that have been put together. */
+static void take_seen(centre *c) {
+  vxm_winding_seen *seen = &c->seen;
+  for (size_t t = seen->count; t % 8 != 0; t++)
+    for (int k = 0; k < 9; k++)
+      seen->corner[k / 3][k % 3][t] = 0;
+  c->kernels->see(seen, c->in_voxels);
+  for (size_t t = 0; t < seen->count; t++)
+    if (fabs(seen->volume[t]) > 1e-9 * (1 + seen->product[t]))
+      turn(&c->near, seen->den[t], seen->num[t]);
+    else
+      add_flat(c, t);
+  seen->count = 0;
+}
+
+static void see_triangle(centre *c, uint32_t triangle) {
+  const vxm_winding_triangle *of = &c->tree->triangles[triangle];
+  vxm_winding_seen *seen = &c->seen;
+  if (seen->count == VXM_WINDING_SEEN)
+    take_seen(c);
+  for (int k = 0; k < 3; k++)
+    for (int a = 0; a < 3; a++)
+      seen->corner[k][a][seen->count] = of->corner[k][a];
+  seen->count++;
 }
 
 /** Nodes at least `far` of their radii away count by their expansion. */
-static double sum_up(const vxm_winding_tree *tree, const int64_t voxel[3], double far) {
-  int64_t q[3];
-  double at[3], far_sum = 0;
-  angle_sum near = {1, 0, 0};
-  for (int a = 0; a < 3; a++) {
-    q[a] = vxm_lattice_centre(&tree->placed->lattice, voxel[a]);
-    at[a] = (double)voxel[a] + 0.5;
-  }
+static double sum_up(centre *c, double far) {
+  const vxm_winding_tree *tree = c->tree;
+  double far_sum = 0;
+  c->near = (angle_sum){1, 0, 0};
+  c->seen.count = 0;
   for (size_t r = 0; r < tree->root_count; r++) {
     uint32_t stack[STACK];
     size_t top = 0;
@@ -137,29 +146,38 @@ static double sum_up(const vxm_winding_tree *tree, const int64_t voxel[3], doubl
       const vxm_winding_node *n = &tree->nodes[i];
       double d[3], square = 0, reach = far * (double)n->radius;
       for (int a = 0; a < 3; a++) {
-        d[a] = n->centre[a] - at[a];
+        d[a] = n->centre[a] - c->in_voxels[a];
         square += d[a] * d[a];
       }
       if (square > reach * reach)
         far_sum += add_node(&tree->moments[i], d);
       else if (n->is_leaf)
-        add_triangle(&near, tree, n->next, q, at);
+        see_triangle(c, n->next);
       else {
         stack[top++] = n->next + 1;
         stack[top++] = n->next;
       }
     }
   }
-  return atan2(near.imaginary, near.real) / (2 * half_turn) + near.turns + far_sum;
+  take_seen(c);
+  return atan2(c->near.imaginary, c->near.real) / (2 * half_turn) + c->near.turns + far_sum;
 }
 
-double vxm_winding_exact(const vxm_winding_tree *tree, const int64_t voxel[3], bool is_close) {
+double vxm_winding_exact(const vxm_winding_kernels *kernels, const vxm_winding_tree *tree,
+                         const int64_t voxel[3], bool is_close) {
   /* Errors measured on real meshes are at most 4e-5 and 2e-7. */
   const double soon = 6, late = 16, sure = 2e-4;
+  centre c;
+  c.kernels = kernels;
+  c.tree = tree;
+  for (int a = 0; a < 3; a++) {
+    c.at[a] = vxm_lattice_centre(&tree->placed->lattice, voxel[a]);
+    c.in_voxels[a] = (double)voxel[a] + 0.5;
+  }
   if (!is_close) {
-    double w = sum_up(tree, voxel, soon), h = w - 0.5;
+    double w = sum_up(&c, soon), h = w - 0.5;
     if (fabs(h - rint(h)) > sure)
       return w;
   }
-  return sum_up(tree, voxel, late);
+  return sum_up(&c, late);
 }

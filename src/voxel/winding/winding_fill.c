@@ -62,15 +62,19 @@ static bool wants(const vxm_winding_walk *walk, const int64_t origin[3], int lev
   return !job->is_asked || (asked && *asked);
 }
 
-/** Bits of a word become those of `bits`. */
-static void store_word(const fill_job *job, uint64_t *word, uint64_t bits, uint64_t mask) {
-  uint64_t change = (__atomic_load_n(word, __ATOMIC_RELAXED) ^ bits) & mask;
+/** Turns bits of a word over. */
+static void flip(const fill_job *job, uint64_t *word, uint64_t change) {
   if (!change)
     return;
   if (job->is_alone)
     *word ^= change;
   else /* other threads may change other bits */
     __atomic_fetch_xor(word, change, __ATOMIC_RELAXED);
+}
+
+/** Bits of a word become those of `bits`. */
+static void store_word(const fill_job *job, uint64_t *word, uint64_t bits, uint64_t mask) {
+  flip(job, word, (__atomic_load_n(word, __ATOMIC_RELAXED) ^ bits) & mask);
 }
 
 /** Bits first..first+count-1 of a row become `bits`. */
@@ -146,32 +150,6 @@ static uint64_t row_bits(uint64_t mask, int64_t from, int64_t step, int64_t coun
   return bits;
 }
 
-static bool is_asked_about(const fill_job *job, size_t row, int64_t fast) {
-  const vxm_window *w = job->window;
-  size_t rows = (size_t)w->middle_dim;
-  return !job->asked ||
-         (job->asked[row / rows * w->slice_words + row % rows * w->row_words + (size_t)fast / 64] >>
-              (fast % 64) &
-          1);
-}
-
-/** A row in which the number of the closed chain must be counted, or of which confidence is asked. */
-static uint64_t settle_row(const fill_job *job, const vxm_winding_brick *brick, size_t row, int64_t first,
-                           int64_t from, int64_t step, int64_t count) {
-  const vxm_window *out = decided(job);
-  uint64_t bits = 0;
-  for (int64_t i = 0; i < count; i++) {
-    double w = whole_number(job, row, first + i, (double)brick->value[from + i * step]);
-    bits |= (uint64_t)(w > 0.5 + tie) << i;
-    if (job->confidence && is_asked_about(job, row, first + i)) {
-      double sure = fabs(2 * w - 1);
-      job->confidence[(size_t)out->fast_dim * (row + (size_t)(out->begin * out->middle_dim)) +
-                      (size_t)(first + i)] = (uint8_t)(sure < 1 ? 255 * sure : 255);
-    }
-  }
-  return bits;
-}
-
 /** What is still in doubt gets its number by doubles. */
 static void resolve(const fill_job *job, const int64_t origin[3], uint64_t doubtful,
                     vxm_winding_brick *brick) {
@@ -180,7 +158,7 @@ static void resolve(const fill_job *job, const int64_t origin[3], uint64_t doubt
     const int64_t at[3] = {origin[0] + v % 4, origin[1] + v / 4 % 4, origin[2] + v / 16};
     double half = (double)brick->value[v] - 0.5;
     bool is_close = fabs(half - rint(half)) < (double)strict_doubt && !job->confidence;
-    double w = vxm_winding_exact(&job->mesh->tree, at, is_close);
+    double w = vxm_winding_exact(job->kernels, &job->mesh->tree, at, is_close);
     uint64_t bit = UINT64_C(1) << v;
     brick->value[v] = (float)w;
     brick->above[0] = (brick->above[0] & ~bit) | (w > tie - 0.5 ? bit : 0);
@@ -198,51 +176,106 @@ typedef struct brick_row {
   uint64_t asked; /**< which of its voxels are asked about */
 } brick_row;
 
-/** The rows of a brick in which something is asked about; returns how many. */
-static int list_rows(brick_row rows[VXM_BRICK_SIDE * VXM_BRICK_SIDE], const fill_job *job,
-                     const int64_t origin[3], const int64_t first[3], const int64_t count[3]) {
-  const vxm_window *window = job->window;
-  const vxm_layout *layout = &window->layout;
-  const uint64_t all = vxm_low_bits((unsigned)count[0]);
-  int listed = 0;
-  for (int64_t s = first[2]; s < first[2] + count[2]; s++)
-    for (int64_t m = first[1]; m < first[1] + count[1]; m++) {
-      size_t word = (size_t)(s - window->begin) * window->slice_words + (size_t)m * window->row_words +
-                    (size_t)first[0] / 64;
-      brick_row row = {.asked = job->asked ? job->asked[word] >> (first[0] % 64) & all : all};
-      if (!row.asked)
-        continue;
-      row.row = row_of(job, m, s);
-      row.start = (s - origin[layout->slow]) * place[layout->slow] +
-                  (m - origin[layout->middle]) * place[layout->middle] +
-                  (first[0] - origin[layout->fast]) * place[layout->fast];
-      rows[listed++] = row;
-    }
-  return listed;
+/** The rows of a brick in which something is asked about. */
+typedef struct brick_rows {
+  brick_row row[VXM_BRICK_SIDE * VXM_BRICK_SIDE];
+  int count;
+  int64_t first;  /**< voxel of all of them */
+  int64_t step;   /**< of their voxels in masks of the brick */
+  uint64_t asked; /**< about which voxels of the brick */
+} brick_rows;
+
+/** The bits of a row, as far from each other as in a mask of a brick. */
+static inline uint64_t apart(uint64_t bits, int64_t step) {
+  if (step == 1)
+    return bits;
+  uint64_t out = 0;
+  for (int64_t i = 0; i < VXM_BRICK_SIDE; i++)
+    out |= (bits >> i & 1) << (i * step);
+  return out;
 }
 
-/** Which voxels of a brick are asked about in its rows. */
-static uint64_t asked_of(const brick_row *rows, int count, int64_t step) {
-  uint64_t all = 0;
-  for (int r = 0; r < count && step == 1; r++)
-    all |= rows[r].asked << rows[r].start;
-  for (int r = 0; r < count && step != 1; r++)
-    for (int64_t i = 0; i < VXM_BRICK_SIDE; i++)
-      all |= (rows[r].asked >> i & 1) << (rows[r].start + i * step);
-  return all;
+static void list_rows(brick_rows *out, const fill_job *job, const int64_t origin[3]) {
+  const vxm_window *window = job->window;
+  const vxm_layout *layout = &window->layout;
+  int64_t first[3], count[3];
+  clip(job, origin, VXM_BRICK_SIDE, first, count);
+  const int64_t step = place[layout->fast];
+  const uint64_t all = vxm_low_bits((unsigned)count[0]);
+  out->count = 0;
+  out->asked = 0;
+  out->first = first[0];
+  out->step = step;
+  for (int64_t s = first[2]; s < first[2] + count[2]; s++) {
+    size_t word = (size_t)(s - window->begin) * window->slice_words + (size_t)first[1] * window->row_words +
+                  (size_t)first[0] / 64;
+    size_t row = row_of(job, first[1], s);
+    int64_t start = (s - origin[layout->slow]) * place[layout->slow] +
+                    (first[1] - origin[layout->middle]) * place[layout->middle] +
+                    (first[0] - origin[layout->fast]) * step;
+    for (int64_t m = 0; m < count[1]; m++, word += window->row_words, start += place[layout->middle]) {
+      uint64_t asked = job->asked ? job->asked[word] >> (first[0] % 64) & all : all;
+      if (!asked)
+        continue;
+      out->asked |= apart(asked, step) << start;
+      out->row[out->count++] = (brick_row){row + (size_t)m, start, asked};
+    }
+  }
+}
+
+/** The word of a row in which the voxels of a brick are. */
+static uint64_t *word_of(const fill_job *job, const brick_rows *rows, const brick_row *row) {
+  return decided(job)->words + row->row * decided(job)->row_words + rows->first / 64;
+}
+
+/** A row by numbers: where that of the closed chain must be counted, or confidence is asked. */
+static void settle_row(const fill_job *job, const vxm_winding_brick *brick, const brick_rows *rows,
+                       const brick_row *row) {
+  const vxm_window *out = decided(job);
+  uint64_t bits = 0;
+  for (int64_t i = 0; i < VXM_BRICK_SIDE && rows->first + i < out->fast_dim; i++) {
+    int64_t fast = rows->first + i;
+    double w = whole_number(job, row->row, fast, (double)brick->value[row->start + i * rows->step]);
+    bits |= (uint64_t)(w > 0.5 + tie) << i;
+    if (job->confidence && row->asked >> i & 1) {
+      double sure = fabs(2 * w - 1);
+      job->confidence[(size_t)out->fast_dim * (row->row + (size_t)(out->begin * out->middle_dim)) +
+                      (size_t)fast] = (uint8_t)(sure < 1 ? 255 * sure : 255);
+    }
+  }
+  store_word(job, word_of(job, rows, row), bits << (rows->first % 64), row->asked << (rows->first % 64));
+}
+
+/** Rows of which the closed chain has a number of 0 or 1 all over, which their bits tell. */
+static void settle_rows(const fill_job *job, const vxm_winding_brick *brick, const brick_rows *rows) {
+  const int shift = (int)(rows->first % 64);
+  uint64_t chain = 0;
+  for (int r = 0; r < rows->count; r++) {
+    uint64_t word = __atomic_load_n(word_of(job, rows, &rows->row[r]), __ATOMIC_RELAXED);
+    chain |= apart(word >> shift & 15, rows->step) << rows->row[r].start;
+  }
+  uint64_t change = ((chain & ~brick->above[0]) | (~chain & brick->above[1])) & rows->asked;
+  for (int r = 0; r < rows->count && change; r++) {
+    uint64_t bits = row_bits(change, rows->row[r].start, rows->step, VXM_BRICK_SIDE) & rows->row[r].asked;
+    flip(job, word_of(job, rows, &rows->row[r]), bits << shift);
+  }
+}
+
+static bool has_counted(const fill_job *job, const brick_rows *rows) {
+  uint32_t any = 0;
+  for (int r = 0; r < rows->count; r++)
+    any |= job->mesh->closed.counted[rows->row[r].row];
+  return any != 0;
 }
 
 static void settle_brick(const vxm_winding_walk *walk, const int64_t origin[3],
                          const vxm_winding_brick *brick) {
   const fill_job *job = job_of(walk);
-  const vxm_window *out = decided(job);
-  int64_t first[3], count[3], step = place[out->layout.fast];
-  brick_row rows[VXM_BRICK_SIDE * VXM_BRICK_SIDE];
-  clip(job, origin, VXM_BRICK_SIDE, first, count);
-  int listed = list_rows(rows, job, origin, first, count);
+  brick_rows rows;
+  list_rows(&rows, job, origin);
   uint64_t doubtful = brick->doubtful;
-  if (doubtful && !job->confidence)
-    doubtful &= asked_of(rows, listed, step);
+  if (!job->confidence)
+    doubtful &= rows.asked;
   vxm_winding_brick resolved;
   if (doubtful && !walk->strict) {
     *vxm_brick_mask_at(&job->mesh->doubted, origin, 0) = 1; /* the bits stay those of the closed chain */
@@ -253,18 +286,12 @@ static void settle_brick(const vxm_winding_walk *walk, const int64_t origin[3],
     resolve(job, origin, doubtful, &resolved);
     brick = &resolved;
   }
-  for (int r = 0; r < listed; r++) {
-    const brick_row *row = &rows[r];
-    uint64_t *word = out->words + row->row * out->row_words + first[0] / 64, bits;
-    if (job->confidence || job->mesh->closed.counted[row->row])
-      bits = settle_row(job, brick, row->row, first[0], row->start, step, count[0]);
-    else {
-      uint64_t chain = __atomic_load_n(word, __ATOMIC_RELAXED) >> (first[0] % 64);
-      bits = (chain & row_bits(brick->above[0], row->start, step, count[0])) |
-             (~chain & row_bits(brick->above[1], row->start, step, count[0]));
-    }
-    store_word(job, word, bits << (first[0] % 64), row->asked << (first[0] % 64));
+  if (!job->confidence && !has_counted(job, &rows)) {
+    settle_rows(job, brick, &rows);
+    return;
   }
+  for (int r = 0; r < rows.count; r++)
+    settle_row(job, brick, &rows, &rows.row[r]);
 }
 
 /* ---- The walk ---- */

@@ -14,11 +14,21 @@ enum { MORTON_BITS = 10 /**< per axis; with the triangle's number below, a sort 
 
 static const double by_sphere = 0.079577471545947673; /* 1 / 4 pi */
 
-/** Sums about `centre`: of vector areas, and of their products with one and with two offsets. */
+/** Sums about `centre`: of vector areas A, and what harmonic expansions see of their products with one and
+ * two offsets x: the mean of A_i x_j + A_j x_i, xx yy zz xy xz yz, and of A_i x_j x_k + A_j x_i x_k + A_k x_i
+ * x_j, in the order of `triple`. */
 typedef struct sums {
-  double centre[3], area[3], first[3][3], second[3][3][3];
+  double centre[3], area[3], first[6], second[10];
   double size, radius, low[3], high[3];
 } sums;
+
+static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+/** Where a pair is. */
+static const int pair_at[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+static const struct triple {
+  int i, j, k, times; /**< that it occurs in a sum over all i, j and k */
+} triple[10] = {{0, 0, 0, 1}, {0, 0, 1, 3}, {0, 1, 1, 3}, {1, 1, 1, 1}, {0, 0, 2, 3},
+                {0, 1, 2, 6}, {1, 1, 2, 3}, {0, 2, 2, 3}, {1, 2, 2, 3}, {2, 2, 2, 1}};
 
 /** The node of the keys begin..end-1; those below it follow each other from `below` on: its children, all
  * below the first, all below the second. */
@@ -64,23 +74,34 @@ static double length_of(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
+/** Adds to the sums over triples the products of pairs and one more factor, each with each. */
+static inline __attribute__((always_inline)) void add_products(double out[10], const double pairs[6],
+                                                               const double by[3]) {
+  UNROLL
+  for (int t = 0; t < 10; t++) {
+    int i = triple[t].i, j = triple[t].j, k = triple[t].k;
+    out[t] += pairs[pair_at[i][j]] * by[k] + pairs[pair_at[i][k]] * by[j] + pairs[pair_at[j][k]] * by[i];
+  }
+}
+
 /** Moves sums to another centre and adds them to `to`. */
 static void add_moved(sums *to, const sums *from) {
-  double s[3];
-  for (int a = 0; a < 3; a++)
+  double s[3], between[6];
+  for (int a = 0; a < 3; a++) {
     s[a] = from->centre[a] - to->centre[a];
-  UNROLL
-  for (int i = 0; i < 3; i++) {
-    to->area[i] += from->area[i];
-    UNROLL
-    for (int j = 0; j < 3; j++) {
-      to->first[i][j] += from->first[i][j] + from->area[i] * s[j];
-      UNROLL
-      for (int k = 0; k < 3; k++)
-        to->second[i][j][k] += from->second[i][j][k] + from->first[i][j] * s[k] + from->first[i][k] * s[j] +
-                               from->area[i] * s[j] * s[k];
-    }
+    to->area[a] += from->area[a];
   }
+  UNROLL
+  for (int p = 0; p < 6; p++) {
+    int i = pair[p][0], j = pair[p][1];
+    double moved = from->area[i] * s[j] + from->area[j] * s[i];
+    between[p] = from->first[p] + 0.5 * moved;
+    to->first[p] += from->first[p] + moved;
+  }
+  UNROLL
+  for (int t = 0; t < 10; t++)
+    to->second[t] += from->second[t];
+  add_products(to->second, between, s);
 }
 
 static sums sums_of_triangle(const double p[3][3]) {
@@ -95,20 +116,15 @@ static sums sums_of_triangle(const double p[3][3]) {
     out.area[a] = ((p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) - (p[1][v] - p[0][v]) * (p[2][u] - p[0][u])) / 2;
   }
   out.size = length_of(out.area);
+  double offsets[6] = {0}; /* the mean of x_j x_k over a triangle is a twelfth of its corners' sum */
   for (int c = 0; c < 3; c++) {
     double from[3] = {p[c][0] - out.centre[0], p[c][1] - out.centre[1], p[c][2] - out.centre[2]};
     out.radius = fmax(out.radius, length_of(from));
-    /* The mean of x_j x_k over a triangle is a twelfth of its corners' sum. */
     UNROLL
-    for (int i = 0; i < 3; i++) {
-      UNROLL
-      for (int j = 0; j < 3; j++) {
-        UNROLL
-        for (int k = 0; k < 3; k++)
-          out.second[i][j][k] += out.area[i] * from[j] * from[k] / 12;
-      }
-    }
+    for (int i = 0; i < 6; i++)
+      offsets[i] += from[pair[i][0]] * from[pair[i][1]] * (1.0 / 12);
   }
+  add_products(out.second, offsets, out.area);
   return out;
 }
 
@@ -143,34 +159,17 @@ static void store(vxm_winding_tree *out, size_t node, const sums *of) {
     n->centre[a] = of->centre[a];
     m->area[a] = (float)(square * of->area[a]);
   }
-  double third = (of->first[0][0] + of->first[1][1] + of->first[2][2]) / 3;
-  static const int pair[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  double third = (of->first[0] + of->first[1] + of->first[2]) / 3;
   for (int i = 0; i < 3; i++) {
-    int p = pair[i][0], q = pair[i][1];
-    m->first[i] = (float)(-3 * cube * (of->first[i][i] - third));
-    m->first[3 + i] = (float)(-3 * cube * (of->first[p][q] + of->first[q][p]));
+    m->first[i] = (float)(-1.5 * cube * (of->first[i] - third));
+    m->first[3 + i] = (float)(-3 * cube * of->first[3 + i]);
   }
-  double s[3][3][3], trace[3] = {0, 0, 0};
-  UNROLL
-  for (int i = 0; i < 3; i++) {
-    UNROLL
-    for (int j = 0; j < 3; j++) {
-      UNROLL
-      for (int k = 0; k < 3; k++) {
-        s[i][j][k] = (of->second[i][j][k] + of->second[j][i][k] + of->second[k][i][j]) / 3;
-        trace[k] += i == j ? s[i][j][k] : 0;
-      }
-    }
-  }
-  static const struct {
-    int i, j, k, times;
-  } term[10] = {{0, 0, 0, 1}, {0, 0, 1, 3}, {0, 1, 1, 3}, {1, 1, 1, 1}, {0, 0, 2, 3},
-                {0, 1, 2, 6}, {1, 1, 2, 3}, {0, 2, 2, 3}, {1, 2, 2, 3}, {2, 2, 2, 1}};
+  const double *s = of->second, trace[3] = {s[0] + s[2] + s[7], s[1] + s[3] + s[8], s[4] + s[6] + s[9]};
   UNROLL
   for (int t = 0; t < 10; t++) {
-    int i = term[t].i, j = term[t].j, k = term[t].k;
-    double traces = ((i == j) * trace[k] + (i == k) * trace[j] + (j == k) * trace[i]) / 5;
-    m->second[t] = (float)(7.5 * cube * scale * term[t].times * (s[i][j][k] - traces));
+    int i = triple[t].i, j = triple[t].j, k = triple[t].k;
+    double traces = ((i == j) * trace[k] + (i == k) * trace[j] + (j == k) * trace[i]) * 0.2;
+    m->second[t] = (float)(2.5 * cube * scale * triple[t].times * (s[t] - traces));
   }
 }
 

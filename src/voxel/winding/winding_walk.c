@@ -42,6 +42,12 @@ static double lagrange(int level, int i, double place) {
   return product;
 }
 
+static void set_weight(vxm_winding_weights *out, int sample, int place, double weight) {
+  out->one[sample][place] = (float)weight;
+  for (int i = 0; i < 4; i++)
+    out->in_rows[sample][4 * i + place] = out->of_rows[sample][4 * place + i] = (float)weight;
+}
+
 /** Between the outermost voxel centres of a cell, by the values at its ends and thirds. */
 static void make_bound(int level) {
   static const double by_value[4][4] = {
@@ -52,7 +58,7 @@ static void make_bound(int level) {
       double sum = 0;
       for (int v = 0; v < 4; v++)
         sum += by_value[c][v] * lagrange(level, i, reach * (2 * v / 3.0 - 1));
-      levels[level].bound[i][c] = (float)sum;
+      set_weight(&levels[level].bound, i, c, sum);
     }
 }
 
@@ -68,8 +74,8 @@ static void make_levels(void) {
     for (int half = 0; half < 2 && l > 0; half++)
       for (int to = 0; to < 4; to++)
         for (int i = 0; i < 4; i++)
-          levels[l].to_child[half][i][to] =
-              (float)lagrange(l, i, place_of(l - 1, to) + (half ? quarter : -quarter));
+          set_weight(&levels[l].to_child[half], i, to,
+                     lagrange(l, i, place_of(l - 1, to) + (half ? quarter : -quarter)));
   }
 }
 

@@ -24,13 +24,20 @@ enum {
   VXM_BRICK_SIDE = 4
 };
 
+/** What samples count at four places along an axis: one[sample][place]. */
+typedef struct vxm_winding_weights {
+  float one[4][4];
+  float in_rows[4][16]; /**< [sample], for each of a layer's samples 4 y + x by x */
+  float of_rows[4][16]; /**< and by y */
+} vxm_winding_weights;
+
 /** Where the samples of a cell lie, from its middle, along each axis alike, and what they tell its children.
  */
 typedef struct vxm_winding_level {
-  float x[16], y[16], z[4]; /**< of samples 4 y + x with one z, and of all with another z */
-  float to_child[2][4][4];  /**< [half][sample][sample of the child] */
-  float bound[4][4]; /**< [sample][coefficient of Bernstein's polynomials]: these bound what is between */
-  float reach;       /**< of the voxel centres of a cell, from its middle, along an axis */
+  float x[16], y[16], z[4];        /**< of samples 4 y + x with one z, and of all with another z */
+  vxm_winding_weights to_child[2]; /**< at the samples of children, by half */
+  vxm_winding_weights bound; /**< for coefficients of Bernstein's polynomials: these bound what is between */
+  float reach;               /**< of the voxel centres of a cell, from its middle, along an axis */
 } vxm_winding_level;
 
 typedef struct vxm_winding_walk vxm_winding_walk;
@@ -69,6 +76,16 @@ struct vxm_winding_walk {
   int task_level;
 };
 
+/** Triangles that are seen from one point. Half a solid angle is the argument of (sides, volume), which is
+ * (den, num) when it is one long. */
+enum { VXM_WINDING_SEEN = 64 };
+typedef struct vxm_winding_seen {
+  size_t count;
+  double corner[3][3][VXM_WINDING_SEEN]; /**< behind the last one there are numbers up to a multiple of 8 */
+  double sides[VXM_WINDING_SEEN], volume[VXM_WINDING_SEEN], product[VXM_WINDING_SEEN]; /**< of distances */
+  double den[VXM_WINDING_SEEN], num[VXM_WINDING_SEEN];
+} vxm_winding_seen;
+
 typedef struct vxm_winding_kernels {
   /**
    * Settles a cell, or all that it consists of.
@@ -78,6 +95,8 @@ typedef struct vxm_winding_kernels {
    */
   void (*descend)(const vxm_winding_walk *walk, vxm_winding_scratch *scratch, const int64_t origin[3],
                   int level, const float samples[VXM_BRICK], size_t list, size_t count);
+  /** Finds what is to be known of triangles of which the corners are. */
+  void (*see)(vxm_winding_seen *seen, const double from[3]);
 } vxm_winding_kernels;
 
 /** The build that goes with vxm_kernels_get. */
