@@ -196,6 +196,7 @@ typedef struct batch_job {
   /* into memory */
   unsigned char *out;
   size_t step; /**< bytes of a variant */
+  bool past;   /**< all of them together do not stay in the cache */
   vxm_voxel_format voxels;
   /* or into files, if there are paths */
   const char *const *paths;
@@ -216,6 +217,7 @@ static vxm_status make_one(const batch_job *job, size_t v, vxm_worker *desk, vxm
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, &job->variants[v]);
   int64_t resolution = sampler->rules.options.resolution;
+  desk->past = job->past;
   if (!job->paths)
     return vxm_worker_write(desk, job->out + v * job->step, job->voxels, resolution,
                             sampler->rules.options.coverage, subject, &placement, &sampler->noise, error);
@@ -330,11 +332,14 @@ static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
 
 vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant *variants, size_t count,
                              vxm_voxel_format voxels, vxm_error *error) {
+  const size_t large = 1 << 25; /* bytes */
   size_t n = (size_t)sampler->rules.options.resolution;
+  size_t step = vxm_unpack_row_bytes(voxels, (int64_t)n) * n * n;
   batch_job job = {.sampler = sampler,
                    .variants = variants,
                    .out = out,
-                   .step = vxm_unpack_row_bytes(voxels, (int64_t)n) * n * n,
+                   .step = step,
+                   .past = count > large / step,
                    .voxels = voxels};
   return make_all(&job, count, error);
 }

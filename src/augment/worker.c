@@ -134,7 +134,8 @@ vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels
   window.words = direct ? out : desk->words;
   vxm_status status = vxm_worker_fill(desk, &window, subject, placement, noise, error);
   if (status == VXM_OK && !direct)
-    vxm_unpack_row(out, voxels, window.words, (size_t)resolution * (size_t)resolution, resolution);
+    vxm_unpack_row(out, voxels, window.words, (size_t)resolution * (size_t)resolution, resolution,
+                   desk->past);
   return status;
 }
 

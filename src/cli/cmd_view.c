@@ -291,11 +291,40 @@ static int voxelize(cli_run *cli, subject *out, request *given) {
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 
+/** What a page takes (vxm_grid_page): voxels along a side, and bytes of all of them. */
+enum { PAGE_SIDE = 2048, PAGE_BYTES = 1 << 27 };
+
+/** An octree may be of more voxels than a page takes, or than there is memory for when they are read one by
+ * one: its header tells. What is wrong with the file is told when it is read. */
+static int check_page(cli_run *cli, const char *path) {
+  vxm_sparse_file *file;
+  vxm_error unread = VXM_ERROR_INIT;
+  if (!cli_is_extension(path, "octree") || vxm_sparse_file_open(&file, cli->context, path, &unread) != VXM_OK)
+    return CLI_DONE;
+  const vxm_space space = *vxm_sparse_file_space(file);
+  const int64_t *n = space.dims, most = PAGE_BYTES / (vxm_sparse_file_has_values(file) ? 2 : 1);
+  vxm_sparse_file_close(file);
+  for (int a = 0; a < 3; a++)
+    if (n[a] > PAGE_SIDE)
+      return cli_fail_text(
+          cli, "%s: a browser takes up to %d voxels along an axis, not %" PRId64 " x %" PRId64 " x %" PRId64,
+          path, PAGE_SIDE, n[0], n[1], n[2]);
+  if (n[0] * n[1] * n[2] > most)
+    return cli_fail_text(cli,
+                         "%s: %" PRId64 " x %" PRId64 " x %" PRId64
+                         " voxels are too many for a browser, which takes %" PRId64
+                         " million of them; make them at a lower resolution, or a picture (.png)",
+                         path, n[0], n[1], n[2], most / 1000000);
+  return CLI_DONE;
+}
+
 /** A grid or a mesh: the name tells; where it does not, it is a mesh if it is not a grid. */
 static int read_input(cli_run *cli, subject *out, request *given) {
   const char *path = given->input;
   if (is_named(path, cli_mesh_formats))
     return voxelize(cli, out, given);
+  if (given->is_page && check_page(cli, path) != CLI_DONE)
+    return CLI_FAILED;
   vxm_status status = cli_values_read(cli, &out->values, path);
   if (status == VXM_OK && given->of_mesh)
     return cli_fail_text(cli, "%s: %s is for meshes; this has its voxels", cli_shown(path, "<stdin>"),

@@ -76,6 +76,10 @@ run 'cp in/torus.off torus.obj && voxmend view torus.obj -o m.html -r 16'
 run 'voxmend view t.npy -o t.html -r 16'
 run 'voxmend view t.npy -o t.html --slice z=0'
 run 'voxmend view t.npy -o t.htm'
+say "# the header of an octree tells what a page does not take: its values are not read"
+run 'voxmend voxelize in/torus.off -o l.octree --labels part -r 800x800x110 -q && voxmend view l.octree -o l.html --memlimit 64M'
+run 'voxmend voxelize in/torus.off -o s.octree -r 2049x9x9 -q && voxmend view s.octree -o s.html'
+run 'ls l.html s.html'
 
 say "# failures"
 run 'voxmend view missing.npy -o out.png'

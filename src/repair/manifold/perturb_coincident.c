@@ -8,12 +8,11 @@
  */
 #include "mesh/geometry.h"
 #include "repair/manifold/contact_direction.h"
-#include "repair/state/position_hash.h"
+#include "repair/manifold/near_places.h"
 #include "repair/state/repair_state.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 /** Of the diagonal: four units in the last place of a 32-bit float. */
 static const double STEP = 2.5e-7;
@@ -31,8 +30,6 @@ static const double STEP_FLOAT = 1e-5;
 static const double FINE = 1e-6;
 /** Of the longest edge about a vertex: a larger step would deform the faces, and the vertex stays. */
 static const double COARSE = 1.0 / 64;
-/** Of the direction's length: along an axis that has less of it nothing has to change. */
-static const double AXIS = 0.2;
 /** Of the number of faces: where the directions to their middles nearly cancel, the vertex goes inward. */
 static const double FLAT = 0.2;
 
@@ -59,6 +56,7 @@ typedef struct moving {
   double diagonal;
   vxm_position_hash places; /**< what is taken */
   vxm_position_hash floats; /**< what is taken once positions are 32-bit floats */
+  vxm_near_places near;
 } moving;
 
 /* ---- What lies around a vertex ---- */
@@ -134,16 +132,6 @@ typedef enum precision {
   NEXT_FLOAT /**< by a single unit: what such floats do to the faces in any case */
 } precision;
 
-/** What a vertex is to be moved by. */
-typedef struct moves {
-  double from[3], toward[3]; /**< toward: of length 1 */
-  double unit[3];            /**< along each axis: what the numbers that hold the position tell apart */
-  double step;               /**< how far to go, where they allow it */
-  double fine, coarse;
-  bool straight; /**< the direction is to be kept */
-  bool floats;   /**< 32-bit floats are to tell it from others, too */
-} moves;
-
 /** The distance to the next 32-bit float beyond x. */
 static double float_unit(double x) {
   float single = (float)fabs(x);
@@ -168,7 +156,7 @@ static vxm_vec3 direction_of(const surroundings *s) {
   return (vxm_vec3){s->toward.x + s->inward.x, s->toward.y + s->inward.y, s->toward.z + s->inward.z};
 }
 
-static moves moves_of(const moving *m, uint32_t v, const surroundings *s, precision to) {
+static vxm_near_moves moves_of(const moving *m, uint32_t v, const surroundings *s, precision to) {
   const double *p = vxm_position(m->soup, v);
   vxm_vec3 direction = direction_of(s), none = {0, 0, 0};
   vxm_vec3 leaving = m->contact && vxm_vec3_length(s->away) == 0 ? m->contact[m->number[v]] : none;
@@ -176,10 +164,10 @@ static moves moves_of(const moving *m, uint32_t v, const surroundings *s, precis
     direction = leaving;
   double length = vxm_vec3_length(direction);
   double height = s->lowest > 0 ? fmin(s->lowest, s->shortest) : s->shortest;
-  moves by = {.floats = to != DOUBLES,
-              .straight = vxm_vec3_length(leaving) > 0,
-              .step = fmin(STEP * m->diagonal, STEP_HEIGHT * height),
-              .coarse = COARSE * s->longest};
+  vxm_near_moves by = {.floats = to != DOUBLES,
+                       .straight = vxm_vec3_length(leaving) > 0,
+                       .step = fmin(STEP * m->diagonal, STEP_HEIGHT * height),
+                       .coarse = COARSE * s->longest};
   if (to != DOUBLES)
     by.coarse = fmin(to == FLOATS ? fmin(by.coarse, ROOM * height) : by.coarse, STEP_FLOAT * m->diagonal);
   by.fine = fmin(by.coarse, vxm_repair_state_reaches(m->state, VXM_LEVEL_SOLID)
@@ -194,87 +182,6 @@ static moves moves_of(const moving *m, uint32_t v, const surroundings *s, precis
   return by;
 }
 
-/** Whether a place is free, and no farther than `most` along each axis. */
-static bool fits(const moving *m, const moves *by, const double p[3], double most) {
-  for (int a = 0; a < 3; a++)
-    if (!(fabs(p[a] - by->from[a]) <= most))
-      return false;
-  return !vxm_position_hash_taken(&m->places, p) && !(by->floats && vxm_position_hash_taken(&m->floats, p));
-}
-
-/** Exactly in that direction, by what one axis takes: anything else might meet what is on the other side. */
-static bool find_straight(const moving *m, const moves *by, double p[3]) {
-  double step = INFINITY;
-  for (int a = 0; a < 3; a++)
-    if (fabs(by->toward[a]) > AXIS)
-      step = fmin(step, by->unit[a] / fabs(by->toward[a]));
-  step = fmax(step, by->step);
-  for (int quarter = 4; quarter <= 12; quarter++) {
-    for (int a = 0; a < 3; a++)
-      p[a] = vxm_repair_state_round(m->state, by->from[a] + step * quarter / 4 * by->toward[a]);
-    if (fits(m, by, p, by->fine))
-      return true;
-  }
-  return false;
-}
-
-/** In the direction of the faces, so that what touched along an edge touches nowhere. */
-static bool find_along(const moving *m, const moves *by, double p[3]) {
-  for (int quarter = 4; quarter <= 12; quarter++) {
-    for (int a = 0; a < 3; a++) {
-      double step = by->step * quarter / 4 * fabs(by->toward[a]);
-      if (fabs(by->toward[a]) > AXIS)
-        step = fmax(step, by->unit[a] * (quarter / 4));
-      p[a] = vxm_repair_state_round(m->state, by->from[a] + copysign(step, by->toward[a]));
-    }
-    if (fits(m, by, p, by->fine))
-      return true;
-  }
-  return false;
-}
-
-typedef struct nearby {
-  double p[3], distance;
-  int number;
-} nearby;
-
-static int by_distance(const void *a, const void *b) {
-  const nearby *p = a, *q = b;
-  if (p->distance != q->distance)
-    return p->distance < q->distance ? -1 : 1;
-  return (p->number > q->number) - (p->number < q->number);
-}
-
-/** Where numbers are coarse: the nearest place that lies on the side of the faces, such as along the one axis
- * on which they are fine. */
-static bool find_nearest(const moving *m, const moves *by, double p[3]) {
-  enum { STEPS = 4 };
-  nearby places[STEPS * STEPS * STEPS];
-  int count = 0;
-  for (int n = 1; n < STEPS * STEPS * STEPS; n++) {
-    const int steps[3] = {n % STEPS, n / STEPS % STEPS, n / STEPS / STEPS};
-    nearby *place = &places[count];
-    double along = 0, squared = 0;
-    for (int a = 0; a < 3; a++) {
-      double step = copysign(steps[a] * fmax(by->step, by->unit[a]), by->toward[a]);
-      place->p[a] = vxm_repair_state_round(m->state, by->from[a] + step);
-      along += step * by->toward[a];
-      squared += step * step;
-    }
-    place->distance = sqrt(squared);
-    place->number = n;
-    count += along >= AXIS * place->distance;
-  }
-  qsort(places, (size_t)count, sizeof *places, by_distance);
-  for (int i = 0; i < count; i++)
-    if (fits(m, by, places[i].p, by->coarse)) {
-      for (int a = 0; a < 3; a++)
-        p[a] = places[i].p[a];
-      return true;
-    }
-  return false;
-}
-
 /** Whether there is a place. */
 static bool move(moving *m, uint32_t v) {
   const surroundings *s = &m->around[m->number[v]];
@@ -282,8 +189,8 @@ static bool move(moving *m, uint32_t v) {
   static const precision first[] = {FLOATS, DOUBLES}, then[] = {FLOATS, NEXT_FLOAT};
   bool found = false;
   for (int i = m->state->options.single_precision || m->state->doubles_only; i < 2 && !found; i++) {
-    moves by = moves_of(m, v, s, m->floats_only ? then[i] : first[i]);
-    found = (by.straight && find_straight(m, &by, to)) || find_along(m, &by, to) || find_nearest(m, &by, to);
+    vxm_near_moves by = moves_of(m, v, s, m->floats_only ? then[i] : first[i]);
+    found = vxm_near_places_find(&m->near, v, &by, to);
   }
   for (int a = 0; a < 3 && found; a++)
     p[a] = to[a];
@@ -363,10 +270,17 @@ static vxm_status move_shared(moving *m, int64_t *moved, vxm_error *error) {
     status = vxm_position_hash_open(&m->places, m->soup, vertices + m->shared, m->rule, error);
   if (status == VXM_OK && m->shared > 0)
     status = vxm_position_hash_open(&m->floats, m->soup, vertices + m->shared, VXM_MERGE_FLOAT, error);
+  m->near = (vxm_near_places){.places = &m->places,
+                              .floats = &m->floats,
+                              .number = m->number,
+                              .single_precision = state->options.single_precision};
+  if (status == VXM_OK && m->shared > 0)
+    m->near.full = vxm_repair_state_scratch(state, VXM_FULL_PLACES, sizeof *m->near.full, &status, error);
   if (status == VXM_OK && m->shared > 0)
     status = look_for_contacts(m, error);
   if (status == VXM_OK && m->shared > 0)
     *moved = move_all(m);
+  vxm_free(state->context, m->near.full);
   vxm_free(state->context, m->contact);
   vxm_free(state->context, m->stays);
   m->contact = NULL;

@@ -54,6 +54,11 @@ bool vxm_position_hash_taken(const vxm_position_hash *places, const double p[3])
   return places->slots[find_slot(places, p)] != 0;
 }
 
+uint32_t vxm_position_hash_find(const vxm_position_hash *places, const double p[3]) {
+  uint32_t slot = places->slots[find_slot(places, p)];
+  return slot != 0 ? slot - 1 : VXM_NO_VERTEX;
+}
+
 void vxm_position_hash_add(vxm_position_hash *places, uint32_t vertex) {
   places->slots[find_slot(places, vxm_position(places->soup, vertex))] = vertex + 1;
 }

@@ -21,6 +21,8 @@ vxm_status vxm_position_hash_open(vxm_position_hash *places, const vxm_soup *sou
 void vxm_position_hash_close(vxm_position_hash *places);
 /** Whether a vertex that was added has this position; of zeros either. */
 bool vxm_position_hash_taken(const vxm_position_hash *places, const double p[3]);
+/** The vertex that was added and has this position, or VXM_NO_VERTEX. */
+uint32_t vxm_position_hash_find(const vxm_position_hash *places, const double p[3]);
 /** Adds a vertex, unless one was added at its position. */
 void vxm_position_hash_add(vxm_position_hash *places, uint32_t vertex);
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * A window is cut into tiles, rows by slices; triangles are sorted into the tiles that they may touch, and
- * each tile is drawn by one task, in words of its own that stay in cache, and then moved into the window.
+ * each tile is drawn by one task, where it is in the window. Of a window that no cache holds it is drawn in
+ * words of its own that stay in cache, and then moved there.
  */
 #include "voxel/surface/surface_tiles.h"
 #include "base/threads.h"
@@ -19,12 +20,17 @@ enum {
   BOXED_MAX = 4           /**< bands and tiles in each up to which a triangle is sorted by its box alone */
 };
 
+/** What a narrow point has along x, y and z, and a number that does not matter. */
+typedef int32_t lanes __attribute__((vector_size(16)));
+
 typedef struct tiling {
   const vxm_surface *surface;
   vxm_surface_pen pen; /**< its tile is the whole window, its rows those of all workers */
-  bool is_fresh, is_large;
+  bool is_fresh;
   vxm_surface_take_fn take; /**< NULL: tiles go to the window */
   void *payload;
+  bool in_place;   /**< tiles are drawn in the window itself */
+  lanes low, high; /**< the window along x, y and z: its first voxels, and those beyond it */
   size_t tile_words;
   int row_bits, slice_bits;  /**< a tile has 2^row_bits rows of 2^slice_bits slices */
   size_t across, tile_count; /**< tiles side by side in a slice, and in all */
@@ -60,6 +66,11 @@ static int least(int a, int b) {
 /** Cuts the window into tiles of the shape that was chosen. */
 static void cut_window(tiling *t) {
   const vxm_window *window = t->pen.window;
+  const int axis[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
+  for (int role = 0; role < 3; role++) {
+    t->low[axis[role]] = (int32_t)t->pen.tile.begin[role];
+    t->high[axis[role]] = (int32_t)vxm_min(t->pen.tile.end[role], INT32_MAX);
+  }
   t->across = (size_t)((window->middle_dim - 1) >> t->row_bits) + 1;
   t->tile_count = t->across * ((size_t)((window->end - window->begin - 1) >> t->slice_bits) + 1);
 }
@@ -83,7 +94,7 @@ static void choose_tiles(tiling *t) {
   int size = log2_floor(vxm_min(fitting, fair));
   t->slice_bits = least(least(size / 2, log2_ceil(slices)), log2_floor(VXM_SURFACE_SLICES));
   t->row_bits = least(size - t->slice_bits, log2_ceil(rows));
-  t->is_large = (size_t)slices * window->slice_words >= LARGE_WORDS;
+  t->in_place = (size_t)slices * window->slice_words < LARGE_WORDS;
   cut_window(t);
 }
 
@@ -142,7 +153,7 @@ static void sort_large(const tiling *t, const vxm_point *const v[3], const vxm_s
 }
 
 /**
- * What the first pass warnings of a triangle: its first tile, and how many bands and tiles in each less one.
+ * What the first pass finds of a triangle: its first tile, and how many bands and tiles in each less one.
  * There are far fewer than 2^28 tiles, which would be terabytes.
  */
 static const uint32_t place_nowhere = UINT32_MAX, place_large = UINT32_MAX - 1;
@@ -161,24 +172,69 @@ static uint32_t place_triangle(const tiling *t, const vxm_point *const v[3], vxm
   return (uint32_t)(((low * t->across + left) * BOXED_MAX + (high - low)) * BOXED_MAX + (right - left));
 }
 
+static inline lanes lower(lanes a, lanes b) {
+  lanes is_a = a < b;
+  return (a & is_a) | (b & ~is_a);
+}
+
+static inline lanes upper(lanes a, lanes b) {
+  lanes is_a = a > b;
+  return (a & is_a) | (b & ~is_a);
+}
+
+/** The same of a triangle whose points are narrow, all axes at once. */
+static inline uint32_t place_narrow(const tiling *t, size_t triangle) {
+  const uint32_t *corner = t->surface->corners + 3 * triangle;
+  const vxm_lattice *lattice = t->pen.lattice;
+  const vxm_layout layout = t->pen.window->layout;
+  lanes p[3];
+  for (int c = 0; c < 3; c++)
+    memcpy(&p[c], t->surface->narrow[corner[c]], sizeof p[c]);
+  lanes low = lower(lower(p[0], p[1]), p[2]), high = upper(upper(p[0], p[1]), p[2]);
+  low = upper(((low + (int32_t)(lattice->unit - 1)) >> lattice->bits) - 1, t->low);
+  high = lower((high >> lattice->bits) + 1, t->high) - 1;
+  lanes is_beyond = low > high;
+  int32_t first[4], last[4];
+  memcpy(first, &low, sizeof first);
+  memcpy(last, &high, sizeof last);
+  if (is_beyond[0] | is_beyond[1] | is_beyond[2])
+    return place_nowhere;
+  int32_t begin = (int32_t)t->pen.window->begin;
+  uint32_t low_band = (uint32_t)(first[layout.slow] - begin) >> t->slice_bits;
+  uint32_t bands = ((uint32_t)(last[layout.slow] - begin) >> t->slice_bits) - low_band;
+  uint32_t left = (uint32_t)first[layout.middle] >> t->row_bits;
+  uint32_t width = ((uint32_t)last[layout.middle] >> t->row_bits) - left;
+  if (bands >= BOXED_MAX || width >= BOXED_MAX)
+    return place_large;
+  return ((low_band * (uint32_t)t->across + left) * BOXED_MAX + bands) * BOXED_MAX + width;
+}
+
+static uint32_t place_any(const tiling *t, size_t triangle) {
+  const vxm_point *v[3];
+  vxm_point room[3];
+  vxm_surface_box box;
+  if (!t->surface->wide)
+    return place_narrow(t, triangle);
+  vxm_surface_corners(t->surface, triangle, v, room);
+  return place_triangle(t, v, &box);
+}
+
 static void sort_chunk(size_t chunk, int worker, void *payload) {
   tiling *t = payload;
   size_t end = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk + 1);
   size_t *counter = t->counters + chunk * t->tile_count;
   for (size_t i = vxm_slice_begin(t->surface->triangle_count, t->chunks, chunk); i < end; i++) {
-    const vxm_point *v[3];
-    vxm_point room[3];
-    vxm_surface_box box;
     if (i % VXM_ASK_STEPS == 0 && vxm_task_progress_stopped(&t->watch, worker))
       return;
-    if (!t->list) {
-      vxm_surface_corners(t->surface, i, v, room);
-      t->places[i] = place_triangle(t, v, &box);
-    }
+    if (!t->list)
+      t->places[i] = place_any(t, i);
     uint32_t place = t->places[i];
     if (place == place_nowhere)
       continue;
     if (place == place_large) {
+      const vxm_point *v[3];
+      vxm_point room[3];
+      vxm_surface_box box;
       vxm_surface_corners(t->surface, i, v, room);
       place_triangle(t, v, &box);
       sort_large(t, v, &box, counter, t->list, (uint32_t)i);
@@ -229,13 +285,20 @@ static void move_tile(const tiling *t, const vxm_surface_pen *pen) {
     uint64_t *from = vxm_surface_row(pen, box->begin[VXM_MIDDLE], s);
     if (!t->is_fresh)
       pen->build->join(to, from, count);
-    else if (t->is_large)
+    else
       pen->build->put(to, from, count);
-    else {
-      memcpy(to, from, count * sizeof *to);
-      memset(from, 0, count * sizeof *from);
-    }
   }
+}
+
+/** Lets a tile be drawn where it is in the window: nobody else writes its rows. */
+static void enter_window(const tiling *t, vxm_surface_pen *pen) {
+  const vxm_surface_box *box = &pen->tile;
+  const vxm_window *window = pen->window;
+  size_t bytes =
+      (size_t)(box->end[VXM_MIDDLE] - box->begin[VXM_MIDDLE]) * window->row_words * sizeof *window->words;
+  for (int64_t s = box->begin[VXM_SLOW]; s < box->end[VXM_SLOW] && t->is_fresh; s++)
+    memset(vxm_window_row(window, box->begin[VXM_MIDDLE], s), 0, bytes);
+  pen->words = vxm_window_row(window, box->begin[VXM_MIDDLE], box->begin[VXM_SLOW]);
 }
 
 static void draw_tile(size_t task, int worker, void *payload) {
@@ -252,12 +315,15 @@ static void draw_tile(size_t task, int worker, void *payload) {
   pen.rows += (size_t)worker * room;
   pen.row_begin += (size_t)worker * 2 * padded;
   pen.row_end = pen.row_begin + padded;
-  pen.words += (size_t)worker * t->tile_words;
+  if (t->in_place)
+    enter_window(t, &pen);
+  else
+    pen.words += (size_t)worker * t->tile_words;
   if (!vxm_surface_draw_some(&pen, t->list, t->begin[task], t->begin[task + 1], &t->watch, worker))
     return;
   if (t->take)
     t->take(&pen, t->list + t->begin[task], t->begin[task + 1] - t->begin[task], worker, t->payload);
-  else if (t->is_fresh || t->begin[task] < t->begin[task + 1])
+  else if (!t->in_place && (t->is_fresh || t->begin[task] < t->begin[task + 1]))
     move_tile(t, &pen);
   vxm_task_progress_step(&t->watch);
 }
@@ -297,7 +363,10 @@ static vxm_status reserve(tiling *t) {
   t->pen.rows = vxm_alloc(context, workers * rows, sizeof *t->pen.rows, t->error);
   t->pen.row_begin = vxm_calloc(context, workers * 2 * (rows + (size_t)2 * VXM_SURFACE_LANES),
                                 sizeof *t->pen.row_begin, t->error);
-  t->pen.words = vxm_calloc(context, workers * t->tile_words, sizeof *t->pen.words, t->error);
+  if (t->in_place)
+    t->pen.slice_words = t->pen.window->slice_words;
+  else
+    t->pen.words = vxm_calloc(context, workers * t->tile_words, sizeof *t->pen.words, t->error);
   return t->error->code;
 }
 
