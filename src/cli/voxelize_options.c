@@ -70,11 +70,11 @@ const cli_option voxelize_options[] = {
      "empty one, over corners, edges or faces [conservative]"},
     {KEY_METHOD, "method", "vote|x|y|z|tetra|winding",
      "how inside is told: parity along one axis, the XOR of tetrahedra, a\n"
-     "vote of these four (they agree wherever the mesh is closed), or the winding\n"
+     "vote (--vote; all agree wherever the mesh is closed), or the winding\n"
      "number, which always has an answer [vote]"},
     {KEY_VOTE, "vote", "auto|majority|any|all",
      "what is inside where the mesh is open: auto = close holes by caps over their\n"
-     "rims, and ask the winding number where that cannot be; majority = what two\n"
+     "rims; what stays open by x, y and z where they agree, and the winding number elsewhere; majority = what two\n"
      "of x, y and z say; any, all = what any or all of the four say [auto]"},
     {KEY_PARTS, "parts", "auto|group|whole",
      "what is voxelized alone, then united: auto = each closed component, and\n"

@@ -52,7 +52,8 @@ typedef enum vxm_method {
 /** How voters are combined. */
 typedef enum vxm_vote {
   VXM_VOTE_AUTO = 0, /**< holes closed by caps over their rims; what stays open by agreement of x, y and z,
-                        and by the winding number where they disagree */
+                        as far as a line along them meets an even number of faces, and by the winding number
+                        where two axes at least do not agree */
   VXM_VOTE_MAJORITY, /**< at least two of x, y and z (Chen & Tu); the tetrahedra cannot overturn that */
   VXM_VOTE_ANY,      /**< at least one voter */
   VXM_VOTE_ALL       /**< every voter */

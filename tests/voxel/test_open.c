@@ -248,17 +248,18 @@ static void test_patches_are_turned_outward(void **state) {
   assert_int_equal(vxm_triangle_set_create(&triangles, soup, rule, NULL), VXM_OK);
   vxm_snapped_points placed = {.context = context};
   assert_int_equal(vxm_snapped_points_set(&placed, &triangles, &lattice, NULL, false, NULL), VXM_OK);
-  vxm_flip_mask turns;
+  vxm_facings turns;
   const uint64_t *const voters[3] = {truth->words, truth->words, truth->words};
   assert_int_equal(
-      vxm_orient_patches_find(&turns, &triangles, &placed, 0, triangles.split.part_count, voters, NULL),
+      vxm_orient_patches_find(&turns, &triangles, &placed, 0, triangles.split.part_count, voters, true, NULL),
       VXM_OK);
   assert_int_equal(turns.patch_count, soup->face_count);
   double volume = 0;
   for (size_t t = 0; t < turns.count; t++) {
     double c[3][3];
     for (int k = 0; k < 3; k++) {
-      vxm_point p = vxm_snapped_points_at(&placed, triangles.corners[t][turns.turned[t] ? (3 - k) % 3 : k]);
+      vxm_point p = vxm_snapped_points_at(
+          &placed, triangles.corners[t][turns.facing[t] == VXM_FACING_IN ? (3 - k) % 3 : k]);
       for (int a = 0; a < 3; a++)
         c[k][a] = (double)p.at[a] / (double)lattice.unit;
     }
@@ -268,7 +269,7 @@ static void test_patches_are_turned_outward(void **state) {
   }
   double true_volume = 2 * M_PI * M_PI * 0.45 * 0.45 / pow(0.05, 3);
   assert_true(fabs(volume / 6 / true_volume - 1) < 0.02);
-  vxm_flip_mask_destroy(&turns);
+  vxm_facings_destroy(&turns);
   vxm_snapped_points_destroy(&placed);
   vxm_triangle_set_destroy(&triangles);
   vxm_grid *grid = voxelize(soup, options, NULL);

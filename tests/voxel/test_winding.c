@@ -33,12 +33,12 @@ static void begin(subject *s, const vxm_soup *soup, const vxm_space *space) {
   if (vxm_triangle_set_create(&s->triangles, soup, rule, &error) != VXM_OK ||
       vxm_snapped_points_set(&s->placed, &s->triangles, &lattice, NULL, false, &error) != VXM_OK)
     fail_msg("%s", error.text);
-  vxm_flip_mask turns = {.context = context, .part_end = s->triangles.split.part_count};
+  vxm_facings turns = {.context = context, .part_end = s->triangles.split.part_count};
   for (size_t p = 0; p < turns.part_end; p++)
     turns.count += s->triangles.parts[p].caps - s->triangles.parts[p].begin;
-  turns.turned = calloc(turns.count + 1, 1);
+  turns.facing = calloc(turns.count + 1, 1);
   assert_int_equal(vxm_oriented_chain_create(&s->chain, &s->triangles, &turns, NULL), VXM_OK);
-  free(turns.turned);
+  free(turns.facing);
   s->mesh = vxm_winding_mesh_of(context);
 }
 

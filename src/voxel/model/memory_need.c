@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/model/memory_need.h"
+#include "voxel/parity/odd_lines.h"
 #include "voxel/solid/orient_open.h"
 #include "voxel/thin/sieve.h"
 #include "voxel/thin/thin.h"
@@ -29,8 +30,12 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
   uint64_t slabs = threads * shape->row_words * (uint64_t)shape->slow_dim * sizeof(uint64_t);
   if (one || !vxm_caps_wanted(&model->options))
     return bins + slabs;
+  vxm_window whole = *shape;
+  whole.begin = 0;
+  whole.end = whole.slow_dim;
+  uint64_t lines = vxm_odd_lines_bytes(&whole, end - begin);
   uint64_t held = begin < end ? triangles->parts[end - 1].end - triangles->parts[begin].begin : 0;
-  return bins + slabs + held * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
+  return bins + slabs + lines + held * VXM_TURNED_BYTES + VXM_ORIENT_BYTES;
 }
 
 /** What is held of the surface while thin parts are looked for: where all of it is thin, all that it meets;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/parity/axis_vote.h"
 #include "base/threads.h"
+#include "voxel/parity/odd_lines.h"
 #include "voxel/parity/parity_difference.h"
 
 #include <string.h>
@@ -22,6 +23,7 @@ typedef struct vote_state {
   size_t stripes;
   size_t words_each; /**< scratch of a worker: a slab for each set, and a slice */
   bool past;         /**< the window is larger than caches */
+  vxm_odd_lines odd; /**< for VXM_VOTE_AUTO */
   uint64_t *carries; /**< a slice for each stripe, and one for the end */
   atomic_int_fast64_t contested;
   atomic_bool added;
@@ -145,6 +147,26 @@ static void fold_voters(const vote_state *state, slab *s, uint64_t *carry, const
   voters[3] = voter_of(state, s, CONES);
 }
 
+/** Takes the axes that abstain out of a slab. */
+static void leave_out_abstainers(const vote_state *state, slab *s, const uint64_t *voters[4]) {
+  const size_t first = s->index << state->slabs.shift, slice = state->window->slice_words;
+  bool is_some = false;
+  for (size_t k = 0; k < s->slices; k++)
+    is_some = is_some || vxm_odd_lines_in(&state->odd, first + k);
+  if (!is_some)
+    return;
+  for (int set = MIDDLE, v = 1; set <= SLOW; set++, v++) {
+    if (voters[v] == s->words[BASE])
+      memcpy(s->words[set], s->words[BASE], s->count * sizeof *s->words[set]);
+    voters[v] = s->words[set];
+  }
+  s->used[BASE] = s->used[MIDDLE] = s->used[SLOW] = true;
+  for (size_t k = 0; k < s->slices; k++)
+    vxm_odd_lines_abstain(
+        &state->odd, first + k,
+        (uint64_t *[]){s->words[BASE] + k * slice, s->words[MIDDLE] + k * slice, s->words[SLOW] + k * slice});
+}
+
 /** Makes the words of a slab zeros again; those of SLOW have a slice before them. */
 static void clear(slab *s, size_t slice) {
   for (int set = 0; set < SETS; set++) {
@@ -173,6 +195,8 @@ static void do_stripe(size_t stripe, int worker, void *payload) {
     s.count = s.slices * slice;
     size_t at = (size_t)first * slice;
     fold_voters(state, &s, carry, voters);
+    if (state->job->rule == VXM_VOTE_AUTO)
+      leave_out_abstainers(state, &s, voters);
     contested +=
         state->kernels->vote(window->words + at, voters, state->job->mask ? state->job->mask + at : NULL,
                              s.count, state->job->rule, state->job->fresh, state->past, &added);
@@ -252,7 +276,11 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
   vxm_context *context = workspace->context;
   if (window->begin >= window->end)
     return VXM_OK;
-  vote_state state = {.workspace = workspace, .window = window, .job = job, .kernels = vxm_kernels_get()};
+  vote_state state = {.workspace = workspace,
+                      .window = window,
+                      .job = job,
+                      .kernels = vxm_kernels_get(),
+                      .odd = {.context = context}};
   shape(&state);
   atomic_init(&state.contested, 0);
   atomic_init(&state.added, false);
@@ -265,12 +293,16 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
   if (status == VXM_OK)
     status =
         vxm_crossing_bins_reset(&workspace->bins, workers, SETS, state.slabs.count, state.slabs.words, error);
+  if (status == VXM_OK && job->rule == VXM_VOTE_AUTO)
+    status =
+        vxm_odd_lines_find(&state.odd, window, job->placed, job->triangles, job->part, job->part + 1, error);
   if (status != VXM_OK)
     return status;
   vxm_error local = VXM_ERROR_INIT;
   state.carries =
       vxm_alloc(context, (state.stripes + 1) * window->slice_words, sizeof *state.carries, &local);
   if (!state.carries) {
+    vxm_odd_lines_destroy(&state.odd);
     vxm_error_pass(error, &local);
     return local.code;
   }
@@ -283,6 +315,7 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
   if (status == VXM_OK && state.watch.status == VXM_OK)
     run_stripes(&state);
   vxm_free(context, state.carries);
+  vxm_odd_lines_destroy(&state.odd);
   tally->contested += atomic_load(&state.contested);
   tally->added |= atomic_load(&state.added);
   return status == VXM_OK ? vxm_task_progress_end(&state.watch) : status;

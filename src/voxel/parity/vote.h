@@ -16,7 +16,8 @@ typedef struct vxm_vote_tally {
  *
  * VXM_VOTE_MAJORITY elects what at least two of x, y and z hold (Chen & Tu, section 2.3). The tetrahedral
  * voter cannot change that: with it on the side of the axes' minority the four are at most two against two,
- * and a tie goes to the axes. VXM_VOTE_AUTO elects what x, y and z all hold, and leaves the rest to others.
+ * and a tie goes to the axes. VXM_VOTE_AUTO elects what x, y and z all hold, and leaves the rest to others;
+ * the axes that abstain have been taken out before (voxel/parity/odd_lines.h).
  *
  * @param voters words of x, y, z and, or NULL, the tetrahedra
  * @param mask   NULL, or words that become the contested voxels

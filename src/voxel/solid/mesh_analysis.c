@@ -61,18 +61,18 @@ static vxm_status lock(pthread_mutex_t *mutex, vxm_context *context, vxm_error *
   return status;
 }
 
-static vxm_status make_chain(vxm_winding_chain *out, const vxm_mesh_analysis *analysis, vxm_flip_finder find,
+static vxm_status make_chain(vxm_winding_chain *out, const vxm_mesh_analysis *analysis, vxm_facing_finder find,
                              void *payload, vxm_error *error) {
-  vxm_flip_mask turns = {.context = analysis->context};
+  vxm_facings turns = {.context = analysis->context};
   vxm_status status = find(&turns, analysis, payload, error);
   if (status == VXM_OK)
     status = vxm_oriented_chain_create(out, &analysis->triangles, &turns, error);
-  vxm_flip_mask_destroy(&turns);
+  vxm_facings_destroy(&turns);
   return status;
 }
 
 vxm_status vxm_chain_once_get(const vxm_winding_chain **out, vxm_chain_once *once,
-                              const vxm_mesh_analysis *analysis, vxm_flip_finder find, void *payload,
+                              const vxm_mesh_analysis *analysis, vxm_facing_finder find, void *payload,
                               vxm_error *error) {
   vxm_status status = lock(&once->mutex, analysis->context, error);
   if (status != VXM_OK)

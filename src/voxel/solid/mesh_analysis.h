@@ -35,7 +35,7 @@ vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup
 void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis);
 
 /** Finds out which triangles face inward, from what `payload` says. */
-typedef vxm_status (*vxm_flip_finder)(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, void *payload,
+typedef vxm_status (*vxm_facing_finder)(vxm_facings *out, const vxm_mesh_analysis *analysis, void *payload,
                                       vxm_error *error);
 
 /**
@@ -45,7 +45,7 @@ typedef vxm_status (*vxm_flip_finder)(vxm_flip_mask *out, const vxm_mesh_analysi
  * @return what `find` does; VXM_ERROR_CANCELLED
  */
 vxm_status vxm_chain_once_get(const vxm_winding_chain **out, vxm_chain_once *once,
-                              const vxm_mesh_analysis *analysis, vxm_flip_finder find, void *payload,
+                              const vxm_mesh_analysis *analysis, vxm_facing_finder find, void *payload,
                               vxm_error *error);
 
 #endif

@@ -3,7 +3,7 @@
 #include "voxel/solid/orient_open.h"
 #include "voxel/solid/solid_votes.h"
 
-static vxm_status find(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, void *payload,
+static vxm_status find(vxm_facings *out, const vxm_mesh_analysis *analysis, void *payload,
                        vxm_error *error) {
   vxm_workspace *workspace = payload;
   vxm_orient_pass look = {.window = {.words = NULL}};
@@ -22,7 +22,7 @@ static vxm_status find(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, vo
   const uint64_t *const voters[3] = {solid, solid, solid};
   if (status == VXM_OK)
     status = vxm_orient_patches_find(out, &analysis->triangles, &look.pass.placed, 0,
-                                     analysis->triangles.split.part_count, voters, error);
+                                     analysis->triangles.split.part_count, voters, false, error);
   vxm_free(workspace->context, solid);
   vxm_voxel_pass_destroy(&look.pass);
   return status;

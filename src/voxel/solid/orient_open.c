@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/solid/orient_open.h"
 #include "grid/space.h"
+#include "voxel/solid/solid_votes.h"
 
 enum { VOXELS = 256 /**< along the longest side */ };
 
@@ -21,13 +22,13 @@ vxm_status vxm_orient_pass_begin(vxm_orient_pass *out, const vxm_mesh_analysis *
   return vxm_voxel_pass_place(&out->pass, &lattice, NULL, error);
 }
 
-/** By what three axes see of the open parts. */
-static vxm_status find(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, void *payload,
+/** By what three axes see of the open parts, from both ends. */
+static vxm_status find(vxm_facings *out, const vxm_mesh_analysis *analysis, void *payload,
                        vxm_error *error) {
   vxm_orient_pass look = {.window = {.words = NULL}};
   vxm_status status = vxm_orient_pass_begin(&look, analysis, payload, error);
   size_t begin = vxm_voted_begin(analysis, &look.pass.options), end = analysis->triangles.split.part_count;
-  const uint64_t *voters[3] = {NULL};
+  uint64_t *voters[3] = {NULL};
   for (int axis = 0; axis < 3 && status == VXM_OK; axis++) {
     vxm_window voter;
     status = vxm_voxel_pass_buffer(&look.pass, axis, &look.window, &voter, error);
@@ -36,7 +37,10 @@ static vxm_status find(vxm_flip_mask *out, const vxm_mesh_analysis *analysis, vo
     voters[axis] = voter.words;
   }
   if (status == VXM_OK)
-    status = vxm_orient_patches_find(out, &analysis->triangles, &look.pass.placed, begin, end, voters, error);
+    status = vxm_solid_leave_out_abstainers(&look.pass, &look.window, begin, end, voters, error);
+  if (status == VXM_OK)
+    status = vxm_orient_patches_find(out, &analysis->triangles, &look.pass.placed, begin, end,
+                                     (const uint64_t *const *)voters, true, error);
   vxm_voxel_pass_destroy(&look.pass);
   return status;
 }

@@ -57,7 +57,7 @@ int vxm_buffers_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_opt
   if (!vxm_votes_wanted(analysis, options))
     return winding;
   winding += vxm_caps_wanted(options) ? WINDING : 0;
-  if (vxm_voted_begin(analysis, options) + 1 == analysis->triangles.split.part_count)
+  if (vxm_voted_begin(analysis, options) + 1 == analysis->triangles.split.part_count && !options->engine)
     return winding + vxm_caps_wanted(options); /* one part: only what is contested */
   return winding + 4;                          /* three axes, and what is contested or the tetrahedra */
 }

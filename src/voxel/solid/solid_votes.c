@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/solid/solid_votes.h"
+#include "base/threads.h"
 #include "voxel/parity/axis_vote.h"
+#include "voxel/parity/odd_lines.h"
 #include "voxel/solid/orient_open.h"
 #include "voxel/winding/winding_fill.h"
 
@@ -10,7 +12,7 @@ enum { VOTERS = 4 };
 
 /** The x, y, z and, if asked for, the tetrahedral voter of parts from `begin` on. */
 static vxm_status fill_voters(vxm_voxel_pass *pass, const vxm_window *window, size_t begin, bool tetra,
-                              const uint64_t *voters[VOTERS], vxm_error *error) {
+                              uint64_t *voters[VOTERS], vxm_error *error) {
   vxm_status status = VXM_OK;
   size_t end = pass->analysis->triangles.split.part_count;
   for (int v = 0; v < (tetra ? VOTERS : 3) && status == VXM_OK; v++) {
@@ -70,7 +72,56 @@ static vxm_status poll_part(vxm_voxel_pass *pass, const vxm_window *window, size
   return vxm_axis_vote(pass->workspace, window, &job, tally, error);
 }
 
-/** By an engine that has votes. */
+typedef struct abstention {
+  const vxm_odd_lines *lines;
+  uint64_t *voters[3]; /**< fast, middle, slow */
+} abstention;
+
+static void abstain_in_slice(size_t slice, int worker, void *payload) {
+  (void)worker;
+  const abstention *job = payload;
+  size_t at = slice * job->lines->window.slice_words;
+  if (vxm_odd_lines_in(job->lines, slice))
+    vxm_odd_lines_abstain(job->lines, slice,
+                          (uint64_t *[]){job->voters[0] + at, job->voters[1] + at, job->voters[2] + at});
+}
+
+vxm_status vxm_solid_leave_out_abstainers(vxm_voxel_pass *pass, const vxm_window *window, size_t part_begin,
+                                          size_t part_end, uint64_t *const voters[3], vxm_error *error) {
+  const vxm_layout layout = window->layout;
+  vxm_odd_lines lines;
+  abstention job = {&lines, {voters[layout.fast], voters[layout.middle], voters[layout.slow]}};
+  vxm_status status = vxm_odd_lines_find(&lines, window, &pass->placed, &pass->analysis->triangles,
+                                         part_begin, part_end, error);
+  if (status == VXM_OK)
+    status = vxm_parallel_asked(pass->context, (size_t)(window->end - window->begin), abstain_in_slice, &job,
+                                error);
+  vxm_odd_lines_destroy(&lines);
+  return status;
+}
+
+/** The voters are made as a whole, by an engine if there is one. */
+static vxm_status count_votes(vxm_voxel_pass *pass, const vxm_window *window, bool tetra, vxm_vote rule,
+                              uint64_t *mask, vxm_vote_tally *tally, vxm_error *error) {
+  size_t begin = vxm_voted_begin(pass->analysis, &pass->options),
+         end = pass->analysis->triangles.split.part_count;
+  uint64_t *voters[VOTERS] = {NULL};
+  atomic_uchar *has_voxels = pass->has_voxels;
+  bool is_one = end - begin == 1; /* then what is elected tells whether it has voxels */
+  pass->has_voxels = is_one ? NULL : has_voxels;
+  vxm_status status = fill_voters(pass, window, begin, tetra, voters, error);
+  pass->has_voxels = has_voxels;
+  if (status == VXM_OK && rule == VXM_VOTE_AUTO)
+    status = vxm_solid_leave_out_abstainers(pass, window, begin, end, voters, error);
+  if (status == VXM_OK)
+    vxm_vote_count(window->words, (const uint64_t *const *)voters, mask,
+                   window->slice_words * (size_t)(window->end - window->begin), rule, pass->context, tally);
+  if (is_one && tally->added && has_voxels)
+    atomic_store_explicit(&has_voxels[begin], 1, memory_order_relaxed);
+  return status;
+}
+
+/** By the rules that need nothing but the voters, by an engine that has votes. */
 static vxm_status elect_elsewhere(vxm_voxel_pass *pass, const vxm_window *window, bool tetra, vxm_vote rule,
                                   uint64_t *mask, vxm_vote_tally *tally, vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
@@ -95,20 +146,14 @@ static vxm_status decide_open_parts(vxm_voxel_pass *pass, const vxm_window *wind
   vxm_window mask = {.words = NULL};
   vxm_vote_tally tally = {0, false};
   vxm_status status = decide ? vxm_voxel_pass_buffer(pass, VXM_BUFFER_MASK, window, &mask, error) : VXM_OK;
-  if (status == VXM_OK && vxm_voxel_pass_ops(pass) && vxm_voxel_pass_ops(pass)->vote)
+  if (status == VXM_OK && !decide && vxm_voxel_pass_ops(pass) && vxm_voxel_pass_ops(pass)->vote)
     status = elect_elsewhere(pass, window, tetra, rule, mask.words, &tally, error);
-  else if (status == VXM_OK && end - begin == 1 && !pass->no_vote_resume) {
+  else if (status == VXM_OK && end - begin == 1 && !vxm_voxel_pass_ops(pass) && !pass->no_vote_resume) {
     status = poll_part(pass, window, begin, tetra, rule, mask.words, &tally, error);
     if (tally.added && pass->has_voxels)
       atomic_store_explicit(&pass->has_voxels[begin], 1, memory_order_relaxed);
-  } else if (status == VXM_OK) {
-    const uint64_t *voters[VOTERS] = {NULL};
-    status = fill_voters(pass, window, begin, tetra, voters, error);
-    if (status == VXM_OK)
-      vxm_vote_count(window->words, voters, mask.words,
-                     window->slice_words * (size_t)(window->end - window->begin), rule, pass->context,
-                     &tally);
-  }
+  } else if (status == VXM_OK)
+    status = count_votes(pass, window, tetra, rule, mask.words, &tally, error);
   if (status != VXM_OK)
     return status;
   pass->contested += tally.contested;

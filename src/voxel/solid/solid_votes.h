@@ -8,5 +8,12 @@
 
 /** Replaces the words of a window by the solid, as vxm_solid_fill does for a method that has voters. */
 vxm_status vxm_solid_vote(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error);
+/**
+ * Takes the axes that abstain (voxel/parity/odd_lines.h) out of the votes on some parts.
+ *
+ * @param voters words of a window by x, y and z parity of these parts
+ */
+vxm_status vxm_solid_leave_out_abstainers(vxm_voxel_pass *pass, const vxm_window *window, size_t part_begin,
+                                          size_t part_end, uint64_t *const voters[3], vxm_error *error);
 
 #endif

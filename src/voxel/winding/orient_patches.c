@@ -26,9 +26,10 @@ typedef struct side {
 } side;
 
 typedef struct builder {
-  vxm_flip_mask *out;
+  vxm_facings *out;
   const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
+  bool leave_untold;
   uint32_t *triangle; /**< of every triangle */
   uint32_t (*neighbour)[3];
   uint8_t *against; /**< bit k: neighbour k runs along the common edge in the same direction */
@@ -200,7 +201,7 @@ typedef struct opinion {
 } opinion;
 
 static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
-  vxm_flip_mask *out = b->out;
+  vxm_facings *out = b->out;
   opinion *opinions = allocate(b, out->patch_count, sizeof *opinions);
   if (!opinions)
     return false;
@@ -217,7 +218,8 @@ static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
   for (size_t t = 0; t < out->count; t++) {
     const opinion *o = &opinions[b->patch[t]];
     bool told = fabs(o->evidence) >= evidence_min * o->area;
-    out->turned[t] = b->turn[t] ^ ((told ? o->evidence : o->came) < 0);
+    bool turned = b->turn[t] ^ ((told ? o->evidence : o->came) < 0);
+    out->facing[t] = !told && b->leave_untold ? VXM_FACING_UNTOLD : turned ? VXM_FACING_IN : VXM_FACING_OUT;
   }
   vxm_free(out->context, opinions);
   return true;
@@ -226,18 +228,18 @@ static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
 /* ---- All of it ---- */
 
 static bool collect_triangles(builder *b) {
-  vxm_flip_mask *out = b->out;
+  vxm_facings *out = b->out;
   const vxm_triangle_set *triangles = b->triangles;
   for (size_t p = out->part_begin; p < out->part_end; p++)
     out->count += triangles->parts[p].caps - triangles->parts[p].begin;
-  out->turned = allocate(b, out->count, sizeof *out->turned);
+  out->facing = allocate(b, out->count, sizeof *out->facing);
   b->triangle = allocate(b, out->count, sizeof *b->triangle);
   b->neighbour = allocate(b, out->count, sizeof *b->neighbour);
   b->against = allocate(b, out->count, sizeof *b->against);
   b->neighbour_count = allocate(b, out->count, sizeof *b->neighbour_count);
   b->turn = allocate(b, out->count, sizeof *b->turn);
   b->patch = allocate(b, out->count, sizeof *b->patch);
-  if (!out->turned || !b->triangle || !b->neighbour || !b->against || !b->neighbour_count || !b->turn ||
+  if (!out->facing || !b->triangle || !b->neighbour || !b->against || !b->neighbour_count || !b->turn ||
       !b->patch)
     return false;
   size_t next = 0;
@@ -247,12 +249,16 @@ static bool collect_triangles(builder *b) {
   return true;
 }
 
-vxm_status vxm_orient_patches_find(vxm_flip_mask *out, const vxm_triangle_set *triangles,
+vxm_status vxm_orient_patches_find(vxm_facings *out, const vxm_triangle_set *triangles,
                                    const vxm_snapped_points *placed, size_t part_begin, size_t part_end,
-                                   const uint64_t *const voters[3], vxm_error *error) {
+                                   const uint64_t *const voters[3], bool leave_untold, vxm_error *error) {
   vxm_context *context = triangles->context;
-  *out = (vxm_flip_mask){.context = context, .part_begin = part_begin, .part_end = part_end};
-  builder b = {.out = out, .triangles = triangles, .placed = placed, .error = VXM_ERROR_INIT};
+  *out = (vxm_facings){.context = context, .part_begin = part_begin, .part_end = part_end};
+  builder b = {.out = out,
+               .triangles = triangles,
+               .placed = placed,
+               .leave_untold = leave_untold,
+               .error = VXM_ERROR_INIT};
   if (triangles->triangle_count > UINT32_MAX / 3)
     return vxm_fail(error, VXM_ERROR_RANGE, "%zu triangles are too many to turn outward; split the mesh",
                     triangles->triangle_count);
@@ -265,12 +271,12 @@ vxm_status vxm_orient_patches_find(vxm_flip_mask *out, const vxm_triangle_set *t
   vxm_free(context, b.triangle);
   if (done)
     return VXM_OK;
-  vxm_flip_mask_destroy(out);
+  vxm_facings_destroy(out);
   vxm_error_pass(error, &b.error);
   return b.error.code;
 }
 
-void vxm_flip_mask_destroy(vxm_flip_mask *turns) {
-  vxm_free(turns->context, turns->turned);
-  *turns = (vxm_flip_mask){.context = turns->context};
+void vxm_facings_destroy(vxm_facings *turns) {
+  vxm_free(turns->context, turns->facing);
+  *turns = (vxm_facings){.context = turns->context};
 }

@@ -2,7 +2,7 @@
 #include "voxel/winding/oriented_chain.h"
 
 vxm_status vxm_oriented_chain_create(vxm_winding_chain *out, const vxm_triangle_set *triangles,
-                                     const vxm_flip_mask *turns, vxm_error *error) {
+                                     const vxm_facings *turns, vxm_error *error) {
   vxm_context *context = triangles->context;
   vxm_error local = VXM_ERROR_INIT;
   *out = (vxm_winding_chain){.context = context};
@@ -11,11 +11,16 @@ vxm_status vxm_oriented_chain_create(vxm_winding_chain *out, const vxm_triangle_
     vxm_error_pass(error, &local);
     return local.code;
   }
-  size_t t = 0;
+  size_t t = 0, seen = 0;
   for (size_t p = turns->part_begin; p < turns->part_end; p++)
-    for (size_t f = triangles->parts[p].begin; f < triangles->parts[p].caps; f++, t++)
+    for (size_t f = triangles->parts[p].begin; f < triangles->parts[p].caps; f++) {
+      int facing = turns->facing[seen++];
+      if (facing == VXM_FACING_UNTOLD)
+        continue;
       for (int k = 0; k < 3; k++)
-        corners[t][k] = triangles->corners[f][turns->turned[t] ? (3 - k) % 3 : k];
+        corners[t][k] = triangles->corners[f][facing == VXM_FACING_IN ? (3 - k) % 3 : k];
+      t++;
+    }
   vxm_status status =
       vxm_winding_chain_create(out, context, (const uint32_t(*)[3])corners, t, triangles->first_apex, error);
   vxm_free(context, corners);

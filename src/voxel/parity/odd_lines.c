@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/parity/odd_lines.h"
+#include "base/threads.h"
+#include "voxel/parity/edge_passages.h"
+#include "voxel/parity/kernels.h"
+
+#include <string.h>
+
+/** The lines along an axis: bits along u, a row for each slice begin..end-1 across w. */
+typedef struct plane {
+  uint64_t *words, *of_part; /**< of_part: rows of one of many parts, zeros; NULL if there is one */
+  int u, w;
+  int64_t count, begin, end;
+  size_t row_words;
+} plane;
+
+typedef struct finder {
+  plane planes[3];
+  const vxm_snapped_points *placed;
+  const vxm_triangle_set *triangles;
+  size_t part_begin, part_end;
+} finder;
+
+static plane plane_of(const vxm_window *window, int along) {
+  const int64_t dims[3] = {window->fast_dim, window->middle_dim, window->slow_dim};
+  const int axes[3] = {window->layout.fast, window->layout.middle, window->layout.slow};
+  int u = along == 0, w = along == 2 ? 1 : 2;
+  plane p = {.u = axes[u], .w = axes[w], .count = dims[u], .end = dims[w]};
+  if (w == 2) {
+    p.begin = window->begin;
+    p.end = window->end;
+  }
+  p.row_words = ((size_t)p.count + 63) / 64;
+  return p;
+}
+
+static size_t words_of(const plane *p) {
+  return p->row_words * (size_t)(p->end - p->begin);
+}
+
+/** Flips where the odd edges of a part pass; `rows` becomes those that have some. */
+static void flip_part(const finder *f, const plane *p, size_t part, uint64_t *words, size_t rows[2]) {
+  const vxm_part *of = &f->triangles->parts[part];
+  vxm_edge_passages e;
+  for (size_t t = of->cones; t < of->end; t++) {
+    if (!vxm_edge_passages_of(&e, f->placed, f->triangles->corners[t], p->w, p->begin, p->end))
+      continue;
+    vxm_edge_place u = vxm_edge_place_of(&f->placed->lattice, &e, p->u, p->w);
+    size_t first = (size_t)(e.first - p->begin), end = (size_t)(e.last - p->begin);
+    rows[0] = first < rows[0] ? first : rows[0];
+    rows[1] = end > rows[1] ? end : rows[1];
+    for (size_t row = first; row < end; row++, vxm_edge_place_step(&u))
+      if (u.voxel < p->count) {
+        uint64_t at = (uint64_t)vxm_max(u.voxel, 0);
+        words[row * p->row_words + at / 64] ^= UINT64_C(1) << (at % 64);
+      }
+  }
+}
+
+static void find_plane(size_t along, int worker, void *payload) {
+  (void)worker;
+  const finder *f = payload;
+  const plane *p = &f->planes[along];
+  const vxm_kernels *kernels = vxm_kernels_get();
+  const uint64_t tail = p->count % 64 ? vxm_low_bits((unsigned)(p->count % 64)) : ~UINT64_C(0);
+  for (size_t part = f->part_begin; part < f->part_end; part++) {
+    uint64_t *words = p->of_part ? p->of_part : p->words;
+    size_t rows[2] = {SIZE_MAX, 0};
+    flip_part(f, p, part, words, rows);
+    if (rows[0] >= rows[1])
+      continue;
+    size_t first = rows[0] * p->row_words, count = (rows[1] - rows[0]) * p->row_words;
+    kernels->fold_rows(words + first, p->row_words, rows[1] - rows[0], tail);
+    if (p->of_part)
+      kernels->move_or(p->words + first, words + first, count);
+  }
+}
+
+static bool is_some(const uint64_t *words, size_t count) {
+  uint64_t any = 0;
+  for (size_t w = 0; w < count; w++)
+    any |= words[w];
+  return any != 0;
+}
+
+vxm_status vxm_odd_lines_find(vxm_odd_lines *out, const vxm_window *window, const vxm_snapped_points *placed,
+                              const vxm_triangle_set *triangles, size_t part_begin, size_t part_end,
+                              vxm_error *error) {
+  vxm_context *context = triangles->context;
+  vxm_error local = VXM_ERROR_INIT;
+  finder f = {.placed = placed, .triangles = triangles, .part_begin = part_begin, .part_end = part_end};
+  *out = (vxm_odd_lines){.context = context, .window = *window};
+  for (int a = 0; a < 3; a++) {
+    plane *p = &f.planes[a];
+    *p = plane_of(window, a);
+    p->words = out->along[a] =
+        local.code == VXM_OK ? vxm_calloc(context, words_of(p), sizeof *p->words, &local) : NULL;
+    if (part_end - part_begin > 1 && local.code == VXM_OK)
+      p->of_part = vxm_calloc(context, words_of(p), sizeof *p->of_part, &local);
+  }
+  vxm_status status = local.code;
+  if (status != VXM_OK)
+    vxm_error_pass(error, &local);
+  else
+    status = vxm_parallel_asked(context, 3, find_plane, &f, error);
+  for (int a = 0; a < 3; a++)
+    vxm_free(context, f.planes[a].of_part);
+  if (status == VXM_OK)
+    out->has_slow = is_some(out->along[2], words_of(&f.planes[2]));
+  else
+    vxm_odd_lines_destroy(out);
+  return status;
+}
+
+void vxm_odd_lines_destroy(vxm_odd_lines *lines) {
+  for (int a = 0; a < 3; a++) {
+    vxm_free(lines->context, lines->along[a]);
+    lines->along[a] = NULL;
+  }
+}
+
+uint64_t vxm_odd_lines_bytes(const vxm_window *window, size_t parts) {
+  uint64_t words = 0;
+  for (int a = 0; a < 3; a++) {
+    plane p = plane_of(window, a);
+    words += words_of(&p);
+  }
+  return (parts > 1 ? 2 : 1) * words * sizeof(uint64_t);
+}
+
+/** Those along the middle axis that pass through a slice. */
+static const uint64_t *middle_row(const vxm_odd_lines *lines, size_t slice) {
+  return lines->along[1] + slice * lines->window.row_words;
+}
+
+/** Those along the fast axis. */
+static const uint64_t *fast_row(const vxm_odd_lines *lines, size_t slice) {
+  return lines->along[0] + slice * (((size_t)lines->window.middle_dim + 63) / 64);
+}
+
+bool vxm_odd_lines_in(const vxm_odd_lines *lines, size_t slice) {
+  const vxm_window *w = &lines->window;
+  return lines->has_slow || is_some(middle_row(lines, slice), w->row_words) ||
+         is_some(fast_row(lines, slice), ((size_t)w->middle_dim + 63) / 64);
+}
+
+void vxm_odd_lines_abstain(const vxm_odd_lines *lines, size_t slice, uint64_t *const voters[3]) {
+  const vxm_window *window = &lines->window;
+  const uint64_t *middle = middle_row(lines, slice), *fast = fast_row(lines, slice);
+  for (size_t row = 0; row < (size_t)window->middle_dim; row++) {
+    const uint64_t a = fast[row / 64] >> (row % 64) & 1 ? ~UINT64_C(0) : 0,
+                   *slow = lines->along[2] + row * window->row_words;
+    for (size_t i = 0; i < window->row_words; i++) {
+      const uint64_t b = middle[i], c = slow[i];
+      if ((a | b | c) == 0)
+        continue;
+      uint64_t *of[3] = {voters[0] + row * window->row_words + i, voters[1] + row * window->row_words + i,
+                         voters[2] + row * window->row_words + i};
+      const uint64_t x = *of[0], y = *of[1], z = *of[2];
+      const uint64_t valid = i + 1 == window->row_words ? vxm_window_tail_mask(window) : ~UINT64_C(0);
+      *of[0] = ((~a & x) | (a & ((~b & ~c & y & z) | (b & ~c & z) | (c & ~b & y) | (b & c)))) & valid;
+      *of[1] = ((~b & y) | (b & ((~a & ~c & x & z) | (a & ~c & ~z) | (c & ~a & x)))) & valid;
+      *of[2] = ((~c & z) | (c & ((~a & ~b & x & y) | (a & ~b & ~y) | (b & ~a & ~x)))) & valid;
+    }
+  }
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Lines of voxel centres that meet an odd number of a part's faces, of those before the grid and behind it
+ * too: somewhere along such a line the surface is open.
+ *
+ * Seen from the other end of such a line every voxel has the other parity, so what it tells of inside and
+ * outside depends on where one stands: an axis along which a voxel lies on one abstains. On all others both
+ * ends tell the same. So a mirrored mesh gets mirrored voxels.
+ *
+ * A surface and a line meet as often, mod 2, as the surface's border, seen along the line, winds round it. So
+ * odd edges alone tell these lines: along an axis, each flips in every row across it the voxels behind it.
+ */
+#ifndef VXM_VOXEL_PARITY_ODD_LINES_H
+#define VXM_VOXEL_PARITY_ODD_LINES_H
+
+#include "grid/window.h"
+#include "voxel/parity/snapped_points.h"
+
+/** A bit for each line of a window. Those along the slow axis are of the whole grid. */
+typedef struct vxm_odd_lines {
+  vxm_context *context;
+  vxm_window window;
+  uint64_t
+      *along[3]; /**< the fast axis: bits along the middle one, a row a slice; the middle axis: bits along
+                    the fast one, a row a slice; the slow axis: bits along the fast one, as in a slice */
+  bool has_slow; /**< whether one of those along the slow axis is odd */
+} vxm_odd_lines;
+
+/**
+ * Finds the lines that are odd for a part of part_begin..part_end-1 or more.
+ *
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; then it holds nothing
+ */
+vxm_status vxm_odd_lines_find(vxm_odd_lines *out, const vxm_window *window, const vxm_snapped_points *placed,
+                              const vxm_triangle_set *triangles, size_t part_begin, size_t part_end,
+                              vxm_error *error);
+void vxm_odd_lines_destroy(vxm_odd_lines *lines);
+/** Bytes that they take at most. */
+uint64_t vxm_odd_lines_bytes(const vxm_window *window, size_t parts);
+
+/** Whether a line through a slice, counted from the window's first, is odd. */
+bool vxm_odd_lines_in(const vxm_odd_lines *lines, size_t slice);
+
+/**
+ * Takes the votes of axes that abstain out of a slice, such that a count of the three votes tells it all:
+ * where one axis abstains it votes with the other two if they agree; where two do, they contradict each
+ * other; where all three do, one is for inside and two are against. So what all three hold has two axes or
+ * three for it and none against it, and what a majority holds is the best guess.
+ *
+ * @param voters words of the slice for the fast, the middle and the slow axis
+ */
+void vxm_odd_lines_abstain(const vxm_odd_lines *lines, size_t slice, uint64_t *const voters[3]);
+
+#endif
