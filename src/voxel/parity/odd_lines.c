@@ -146,21 +146,23 @@ bool vxm_odd_lines_in(const vxm_odd_lines *lines, size_t slice) {
 
 void vxm_odd_lines_abstain(const vxm_odd_lines *lines, size_t slice, uint64_t *const voters[3]) {
   const vxm_window *window = &lines->window;
-  const uint64_t *middle = middle_row(lines, slice), *fast = fast_row(lines, slice);
+  const uint64_t *middle = middle_row(lines, slice), *fast = fast_row(lines, slice), *slow = lines->along[2],
+                 tail = vxm_window_tail_mask(window);
+  size_t at = 0;
   for (size_t row = 0; row < (size_t)window->middle_dim; row++) {
-    const uint64_t a = fast[row / 64] >> (row % 64) & 1 ? ~UINT64_C(0) : 0,
-                   *slow = lines->along[2] + row * window->row_words;
-    for (size_t i = 0; i < window->row_words; i++) {
-      const uint64_t b = middle[i], c = slow[i];
+    const uint64_t along_row = -(fast[row / 64] >> (row % 64) & 1);
+    for (size_t i = 0; i < window->row_words; i++, at++) {
+      const uint64_t b = middle[i], c = slow[at],
+                     a = i + 1 == window->row_words ? along_row & tail : along_row;
       if ((a | b | c) == 0)
         continue;
-      uint64_t *of[3] = {voters[0] + row * window->row_words + i, voters[1] + row * window->row_words + i,
-                         voters[2] + row * window->row_words + i};
-      const uint64_t x = *of[0], y = *of[1], z = *of[2];
-      const uint64_t valid = i + 1 == window->row_words ? vxm_window_tail_mask(window) : ~UINT64_C(0);
-      *of[0] = ((~a & x) | (a & ((~b & ~c & y & z) | (b & ~c & z) | (c & ~b & y) | (b & c)))) & valid;
-      *of[1] = ((~b & y) | (b & ((~a & ~c & x & z) | (a & ~c & ~z) | (c & ~a & x)))) & valid;
-      *of[2] = ((~c & z) | (c & ((~a & ~b & x & y) | (a & ~b & ~y) | (b & ~a & ~x)))) & valid;
+      /* Votes that count, and where two axes or three abstain. */
+      const uint64_t x = voters[0][at] & ~a, y = voters[1][at] & ~b, z = voters[2][at] & ~c;
+      const uint64_t few = (a & b) | (c & (a | b)), some = x | y | z, two = (x & y) | (z & (x | y)),
+                     inside = (x | a) & (y | b) & (z | c) & ~few;
+      voters[0][at] = some | few;
+      voters[1][at] = inside;
+      voters[2][at] = inside | two | (few & some);
     }
   }
 }
