@@ -11,6 +11,15 @@ run 'voxmend repair in/cracks.off -o off.off -q --weld off && voxmend info off.o
 run 'voxmend repair in/cracks.off -o eps.off -q --weld 1e-6 && voxmend info eps.off'
 run 'voxmend repair in/repeated.off -o kept.off -q --keep-duplicates && voxmend info kept.off'
 run 'voxmend repair in/l_prism.off -o l.stl --ascii -q && voxmend info l.stl'
+run 'voxmend repair in/rocket.off -o rocket.stl --ascii -q && voxmend repair rocket.stl -o rocket2.stl --ascii && cmp rocket.stl rocket2.stl'
+run 'voxmend repair in/rocket.off -o binary.stl -q && voxmend repair binary.stl -o text.stl --ascii -q && cmp rocket.stl text.stl'
+# what others write: more digits than a float has, and the fewest that tell a float
+printf 'solid\n' >digits.stl
+for x in 0.1 0.12345678901234567; do
+  printf 'facet normal 0 0 0\nouter loop\nvertex %s 0 0\nvertex 1 0.3 0\nvertex 0 1 0.7\nendloop\nendfacet\n' $x
+done >>digits.stl
+echo endsolid >>digits.stl
+run 'voxmend repair digits.stl -o once.stl --ascii -q && voxmend repair once.stl -o again.stl --ascii && cmp once.stl again.stl && cat once.stl'
 run 'voxmend repair in/l_prism.off -o l.anything --format ply --ascii -q && cat l.anything'
 
 say "# once repaired, nothing is left to do"
