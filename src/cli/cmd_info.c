@@ -86,7 +86,9 @@ static void print_row(const cli_run *cli, const description *d) {
  * the repair. */
 static int count_openings(cli_run *cli, cli_openings *out, const description *d) {
   *out = (cli_openings){.known = true};
-  if ((d->census.closed && d->census.nonmanifold_edges == 0) || d->census.faces == 0)
+  const vxm_census *census = &d->census;
+  bool may_vanish = census->degenerate_faces == census->faces;
+  if ((census->closed && census->nonmanifold_edges == 0 && !may_vanish) || census->faces == 0)
     return CLI_DONE;
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
@@ -94,6 +96,7 @@ static int count_openings(cli_run *cli, cli_openings *out, const description *d)
   options.sheets = VXM_SHEETS_KEEP;
   vxm_mesh *closed = NULL;
   vxm_status status = vxm_mesh_repair(&closed, &report, d->mesh, &options, &cli->error);
+  out->empty = status == VXM_OK && vxm_mesh_face_count(closed) == 0;
   vxm_mesh_destroy(closed);
   out->sheets = report.open_parts;
   out->holes = report.filled_holes;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /**
- * STL out: 32-bit floats and triangles; larger polygons are split. Text holds the very numbers that binary files
- * hold, for readers of doubles too, which the shortest digits of a float are not.
+ * STL out: 32-bit floats and triangles; larger polygons are split. Text holds the very numbers that binary
+ * files hold, for readers of doubles too, which the shortest digits of a float are not.
  */
 #include "base/endian.h"
 #include "meshio/common/faces_out.h"
