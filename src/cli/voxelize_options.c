@@ -106,8 +106,8 @@ const cli_option voxelize_options[] = {
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL,
      "make the voxels as an octree, whose memory follows the surface, for 1024 and more\n"
-     "along a side; a .octree file follows it too, and 'convert --window' cuts grids out\n"
-     "of that; --labels, --color and --distance are made so for .octree, with it or not"},
+     "along a side; a .octree file follows it too, is made so without being asked, and\n"
+     "'convert --window' cuts grids out of it"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
     {KEY_BASELINE, "baseline", "NAME",
      "use a published method instead, as it was published, for comparison: fang-chen,\n"
@@ -359,10 +359,14 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   cli_formats formats =
       cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_formats_with(VXM_FORMAT_BITS);
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
+  bool is_octree = out->format && strcmp(out->format, "octree") == 0;
+  /* faster at any resolution, and in little memory; an engine and the confidence fill whole grids */
+  out->sparse |= is_octree && !cli_field_wanted(&out->field) && !out->confidence && !out->engine.name &&
+                 !out->baseline_name;
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
     return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
   if (out->format && out->sparse && cli_field_wanted(&out->field)) {
-    if (strcmp(out->format, "octree") != 0)
+    if (!is_octree)
       return cli_usage(cli,
                        "--sparse: of --coverage, --distance, --labels and --color .octree alone is "
                        "sparse, not .%s",
