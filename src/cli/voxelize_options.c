@@ -58,7 +58,7 @@ const cli_option voxelize_options[] = {
     {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
     {KEY_MODE, "mode", "solid|surface|both",
      "solid: the inside, by voxel centres and --thin; surface: as --surface says;\n"
-     "both: either [solid]"},
+     "both: either (a conservative surface has all that --thin would add) [solid]"},
     {KEY_THIN, "thin", "keep|drop|26",
      "parts thinner than a voxel: keep = add the few voxels that hold them together\n"
      "and through which no path from face to face leaks; 26 = nor one over edges and\n"
