@@ -10,6 +10,7 @@
 #include "voxmend.h"
 
 #include <jansson.h>
+#include <stdarg.h>
 #include <stdio.h>
 
 /** Exit status, a contract with scripts. */
@@ -214,6 +215,11 @@ void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh);
 void cli_warn_grid(cli_run *cli, const char *path, const vxm_grid *grid);
 /** A row of a summary, "label  text", to cli->text. */
 void cli_row(const cli_run *cli, const char *label, const char *format, ...) CLI_PRINTF(3, 4);
+/** A text of a stranger, such as the name of a file, to cli->text: without control codes, and as wide at
+ * least. */
+void cli_put_text(const cli_run *cli, const char *text, int width);
+/** A line of a message or of a summary, without its end, likewise. */
+void cli_put_line(FILE *to, const char *format, va_list arguments);
 /** The rows about a voxel space. */
 void cli_rows_space(const cli_run *cli, const vxm_space *space);
 /** Whether the summary is wanted: neither --json nor --quiet. */

@@ -43,7 +43,8 @@ static json_t *describe_json(const cli_run *cli, const description *d) {
 }
 
 static void describe(const cli_run *cli, const description *d) {
-  fprintf(cli->text, "%s\n%s\n", cli_shown(d->path, "<stdin>"), d->verdict);
+  cli_put_text(cli, cli_shown(d->path, "<stdin>"), 0);
+  fprintf(cli->text, "\n%s\n", d->verdict);
   fprintf(cli->text, "  %-26s %12s\n", "format", vxm_mesh_format(d->mesh));
   if (cli->verbose && vxm_mesh_tag_count(d->mesh) > 0)
     fprintf(cli->text, "  %-26s %12lld\n", "tags", (long long)vxm_mesh_tag_count(d->mesh));
@@ -73,12 +74,12 @@ static void print_heading(const cli_run *cli) {
 
 static void print_row(const cli_run *cli, const description *d) {
   const vxm_census *c = &d->census;
+  cli_put_text(cli, cli_shown(d->path, "<stdin>"), name_width(cli));
   fprintf(cli->text,
-          "%-*s %9" PRId64 " %9" PRId64 " %7" PRId64 " %7" PRId64 " %8" PRId64 " %7" PRId64 " %8" PRId64
+          " %9" PRId64 " %9" PRId64 " %7" PRId64 " %7" PRId64 " %8" PRId64 " %7" PRId64 " %8" PRId64
           " %7" PRId64 "  %.*s\n",
-          name_width(cli), cli_shown(d->path, "<stdin>"), c->vertices, c->faces, c->components,
-          c->boundary_edges, c->nonmanifold_edges, c->inconsistent_edges,
-          c->duplicate_faces + c->opposite_duplicate_faces, c->degenerate_faces,
+          c->vertices, c->faces, c->components, c->boundary_edges, c->nonmanifold_edges,
+          c->inconsistent_edges, c->duplicate_faces + c->opposite_duplicate_faces, c->degenerate_faces,
           (int)strcspn(d->verdict, ";"), d->verdict);
 }
 

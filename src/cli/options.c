@@ -155,7 +155,7 @@ int cli_usage(cli_run *cli, const char *format, ...) {
   fprintf(stderr, "voxmend: ");
   va_list arguments;
   va_start(arguments, format);
-  vfprintf(stderr, format, arguments);
+  cli_put_line(stderr, format, arguments);
   va_end(arguments);
   if (cli->command)
     fprintf(stderr, " (see 'voxmend %s --help')\n", cli->command->name);
