@@ -210,8 +210,8 @@ int cli_fail(cli_run *cli);
 int cli_fail_text(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 /** Notes a warning for the report and prints it unless --quiet. */
 void cli_warn(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
-/** The warnings from reading a file. */
-void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh);
+/** The warnings from reading a file, and from repairing it, but for the first, which have been told. */
+void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh, int64_t told);
 void cli_warn_grid(cli_run *cli, const char *path, const vxm_grid *grid);
 /** A row of a summary, "label  text", to cli->text. */
 void cli_row(const cli_run *cli, const char *label, const char *format, ...) CLI_PRINTF(3, 4);

@@ -177,7 +177,7 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
   vxm_mesh *mesh = NULL;
   if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli_warn_mesh(cli, path, mesh);
+  cli_warn_mesh(cli, path, mesh, 0);
   description d = {.path = path, .mesh = mesh, .census = VXM_CENSUS_INIT};
   int status = cli_defects_show(cli, &d.found, wanted, mesh);
   if (status == CLI_DONE)

@@ -314,12 +314,14 @@ static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outco
   vxm_mesh *raw = NULL;
   if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli_warn_mesh(cli, given->input, raw);
+  cli_warn_mesh(cli, given->input, raw, 0);
   cli_defects wanted = given->defects; /* the repair counts intersections itself */
   wanted.intersections = wanted.intersections && (wanted.list || wanted.locate);
   int status = cli_defects_show(cli, &outcome->found, &wanted, raw);
   if (status == CLI_DONE)
     status = try_repair(cli, given, outcome, raw);
+  if (outcome->mesh)
+    cli_warn_mesh(cli, given->input, outcome->mesh, vxm_mesh_warning_count(raw));
   vxm_mesh_destroy(raw);
   if (status == CLI_DONE && outcome->repair.union_failures > 0)
     repair_warn_ununited(cli, given->input, outcome);

@@ -86,8 +86,8 @@ void cli_warn(cli_run *cli, const char *format, ...) {
   fputc('\n', stderr);
 }
 
-void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh) {
-  for (int64_t i = 0; i < vxm_mesh_warning_count(mesh); i++)
+void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh, int64_t told) {
+  for (int64_t i = told; i < vxm_mesh_warning_count(mesh); i++)
     cli_warn(cli, "%s: %s", cli_shown(path, "<stdin>"), vxm_mesh_warning(mesh, i));
 }
 

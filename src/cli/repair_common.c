@@ -54,7 +54,8 @@ int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vx
   double start = cli_clock();
   if (vxm_mesh_read_with(&input->mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli_warn_mesh(cli, path, input->mesh);
+  cli_warn_mesh(cli, path, input->mesh, 0);
+  int64_t told = vxm_mesh_warning_count(input->mesh);
   snprintf(input->format, sizeof input->format, "%s", vxm_mesh_format(input->mesh));
   input->vertices = vxm_mesh_vertex_count(input->mesh);
   input->faces = vxm_mesh_face_count(input->mesh);
@@ -74,6 +75,7 @@ int cli_read_repaired(cli_run *cli, cli_input *input, const char *path, const vx
     drop_as_read(input);
     return cli_fail(cli);
   }
+  cli_warn_mesh(cli, path, input->mesh, told);
   cli_warn_lost(cli, path, &input->repair);
   if (vxm_mesh_face_count(input->mesh) > 0)
     return CLI_DONE;

@@ -69,7 +69,8 @@ const char *cli_verdict(char text[CLI_SENTENCE], const vxm_census *census, const
   if (census->faces == 0)
     add(text, "empty: there is no face");
   else if (openings->known && openings->empty)
-    add(text, "empty: no face has both an area and finite vertices; repair leaves none");
+    add(text,
+        "empty: no face has finite vertices and an area beside the size of the whole; repair leaves none");
   else if (!census->closed || (openings->known && openings->sheets + openings->holes > 0))
     say_open(text, census, openings);
   else if (census->nonmanifold_edges > 0) {

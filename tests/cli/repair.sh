@@ -36,6 +36,13 @@ run 'voxmend repair in/cube.off -o x.off --force --drop-parts 50'
 run 'voxmend repair in/cube.off -o x.off --force --drop-parts faces:0'
 run 'voxmend repair in/cube.off -o x.off --force --drop-parts volume:much'
 
+say "# something far off"
+awk 'NR == 2 { print $1 + 3, $2 + 1, 0; next } NF == 3 { at++ } { print } at == 8 && NF == 3 { print "1e9 0 0\n1000000001 0 0\n1e9 1 0" } END { print "3 8 9 10" }' in/cube.off >outlier.off
+run 'voxmend repair outlier.off -o inlier.off -q --strict'
+run 'voxmend voxelize outlier.off -o outlier.npy -r 8 --strict'
+sed 's/^1e9/1e20/' outlier.off >beyond.off
+run 'voxmend info beyond.off'
+
 say "# streams"
 run 'voxmend repair - -o - --format off <in/unused.off'
 run 'voxmend repair in/cube.off -o - --format obj -q | voxmend info -'
