@@ -85,7 +85,8 @@ const cli_option voxelize_options[] = {
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
      "each axis; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
-    {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
+    {KEY_SCALAR, "scalar", "float32|uint8",
+     "what --coverage writes: 0 to 1, or 0 to 255, as .png needs [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
      "signed: negative inside; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif,\n"

@@ -51,6 +51,11 @@ say "# failures leave nothing"
 mkdir out
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
 run 'voxmend repair flat.off -o out/x.off'
+printf 'OFF\n2 0 0\n0 0 0\n1 0 0\n' >points.off
+run 'voxmend repair points.off -o out/x.off'
+run 'voxmend voxelize points.off -o out/x.npy'
+awk 'NR > 2 && NF == 3 { printf "%.17g %.17g %.17g\n", $1 + 1e9, $2 + 1e9, $3 + 1e9; next } { print }' in/cube.off >far.off
+run 'voxmend repair far.off -o out/x.stl'
 run 'voxmend repair missing.off -o out/x.off'
 run 'voxmend repair in/cube.off -o no/such/x.off'
 run 'voxmend repair in/torus.off -o out/x.off --memlimit 64K'
