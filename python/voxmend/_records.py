@@ -63,7 +63,8 @@ class Census(Record):
         degenerate_faces: of fewer than three corners, or without area; finite ones.
         boundary_edges, nonmanifold_edges: with one face, with more than two.
         inconsistent_edges: of which both faces run along it in the same direction.
-        nonfinite_vertices: with a coordinate that is not a finite number; their faces have no edges, as repair removes them.
+        nonfinite_vertices: with a coordinate that is not a finite number; repair removes them with their faces, which
+            therefore have no edges here.
         largest_face: corners of the largest face.
         watertight: there are edges, and none of them has one or more than two.
         closed: there are edges, and every one has an even number of them.
