@@ -131,7 +131,8 @@ static void warn_nonfinite(vxm_soup *soup) {
     vxm_warn(&soup->warnings, "face %zu has a vertex that is not finite; repair removes it", first);
   else if (count > 1)
     vxm_warn(&soup->warnings,
-             "face %zu has a vertex that is not finite; repair removes it; %zu such faces in all", first, count);
+             "face %zu has a vertex that is not finite; repair removes it; %zu such faces in all", first,
+             count);
 }
 
 static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
