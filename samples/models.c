@@ -345,7 +345,7 @@ const model models[] = {
     {"nonfinite",
      "the cube with faces at a NaN and at an infinite vertex",
      make_nonfinite,
-     {10, 8, 15, 1, 1, 0, 0, 2, 4, 2, 0, 2, 0, false, false},
+     {10, 8, 15, 1, 1, 0, 0, 0, 0, 0, 0, 2, 0, true, true},
      1,
      "auto",
      "cube"},

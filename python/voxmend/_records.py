@@ -60,13 +60,14 @@ class Census(Record):
         triangles: after splitting polygons.
         components: connected by welded vertices; components_raw: by the numbers of vertices as they are.
         duplicate_faces, opposite_duplicate_faces: that repeat an earlier one, turned the same way or the other.
-        degenerate_faces: of fewer than three corners, or without area.
+        degenerate_faces: of fewer than three corners, or without area; finite ones.
         boundary_edges, nonmanifold_edges: with one face, with more than two.
         inconsistent_edges: of which both faces run along it in the same direction.
-        nonfinite_vertices: with a coordinate that is not a finite number.
+        nonfinite_vertices: with a coordinate that is not a finite number; repair removes them with their faces, which
+            therefore have no edges here.
         largest_face: corners of the largest face.
-        watertight: there are faces, and no edge has one or more than two.
-        closed: there are faces, and every edge has an even number of them.
+        watertight: there are edges, and none of them has one or more than two.
+        closed: there are edges, and every one has an even number of them.
         bounds: x0 y0 z0 x1 y1 z1 in model units.
         area, volume: model units squared and cubed; the volume is positive if faces look outward.
     """

@@ -44,7 +44,7 @@ const char *vxm_status_name(vxm_status status) {
 }
 
 /** A message is one line of printable text, whatever a damaged file put into it. */
-static void make_printable(char *text) {
+void vxm_make_printable(char *text) {
   for (; *text; text++)
     if ((unsigned char)*text < 0x20 || *text == 0x7f)
       *text = '?';
@@ -74,7 +74,7 @@ static void fill(vxm_error *out, vxm_status code, vxm_place place, int system, c
   }
   if (used < sizeof error->text)
     vsnprintf(error->text + used, sizeof error->text - used, format, arguments);
-  make_printable(error->text);
+  vxm_make_printable(error->text);
   VXM_RESULT_WRITE(out, error);
 }
 

@@ -35,6 +35,9 @@ static inline void vxm_error_pass(vxm_error *error, const vxm_error *kept) {
   VXM_RESULT_WRITE(error, kept);
 }
 
+/** Makes text fit for a line that is shown: a control code becomes a question mark. */
+void vxm_make_printable(char *text);
+
 #ifdef __cplusplus
 }
 #endif

@@ -12,7 +12,5 @@ void vxm_warn(vxm_warnings *warnings, const char *format, ...) {
   va_start(arguments, format);
   vsnprintf(text, VXM_NOTE_LENGTH, format, arguments);
   va_end(arguments);
-  for (; *text; text++)
-    if ((unsigned char)*text < 0x20 || *text == 0x7f)
-      *text = '?';
+  vxm_make_printable(text);
 }

@@ -197,6 +197,16 @@ static bool take_record(json_t *record, void *payload) {
   return true;
 }
 
+/** What went wrong is told of the file that was tried, whose name it begins with. */
+static void tell_of_original(json_t *record, const batch_item *original) {
+  const char *message = batch_json_text(record, "message");
+  char *text;
+  if (!message || asprintf(&text, "the same bytes as %s failed: %s", original->id, message) < 0)
+    return;
+  json_object_set_new(record, "message", batch_json_string(text));
+  free(text);
+}
+
 /** Copies of the original's record, and of its files. */
 static bool finish_duplicate(run *r, int64_t index, const json_t *of_original) {
   batch_item *item = &r->manifest->items[index];
@@ -207,6 +217,8 @@ static bool finish_duplicate(run *r, int64_t index, const json_t *of_original) {
     json_object_del(record, own[k]);
   json_object_set_new(record, "duplicate_of", batch_json_string(original->id));
   bool is_done = batch_is_done(original->status);
+  if (!is_done)
+    tell_of_original(record, original);
   if (is_done && !link_outputs(r, original, item, record)) {
     json_decref(record); /* a file system without links: it is made like any other */
     item->original = -1;

@@ -27,16 +27,24 @@ bool batch_is_mesh(const batch_inputs *inputs, const char *name) {
   return is_among(batch_extension(name), inputs->extensions);
 }
 
-void batch_pass_over(batch_manifest *manifest, const char *name) {
-  const char *extension = batch_extension(name);
-  char word[32];
+/** Counts a file, and tells once of what kind such files are. */
+static void pass_over_as(batch_manifest *manifest, const char *kind) {
+  char word[48];
   size_t used = strlen(manifest->note);
   manifest->passed_over++;
-  int length = snprintf(word, sizeof word, *extension ? " .%s" : " (no extension)", extension);
+  int length = snprintf(word, sizeof word, " %s", kind);
   bool fits = length > 0 && (size_t)length < sizeof word && used + (size_t)length + 1 < sizeof manifest->note;
   const char *found = fits ? strstr(manifest->note, word) : manifest->note;
   if (!found || (fits && found[length] != ' ' && found[length] != '\0'))
     memcpy(manifest->note + used, word, (size_t)length + 1);
+}
+
+void batch_pass_over(batch_manifest *manifest, const char *name) {
+  const char *extension = batch_extension(name);
+  if (*extension)
+    pass_over_as(manifest, extension - 1); /* with its dot */
+  else
+    pass_over_as(manifest, "(no extension)");
 }
 
 /** "./a//b" as "a/b" would be found: an id is a name, not a way. */
@@ -105,10 +113,9 @@ static batch_tree_step visit(const batch_tree_entry *entry, void *payload) {
   bool is_hidden = entry->depth > 0 && entry->name[0] == '.';
   switch (entry->kind) {
   case BATCH_TREE_FOLDER:
-    return is_hidden || (s->has_except && entry->info->st_dev == s->except.st_dev &&
-                         entry->info->st_ino == s->except.st_ino)
-               ? BATCH_TREE_SKIP
-               : BATCH_TREE_ON;
+    if (s->has_except && entry->info->st_dev == s->except.st_dev && entry->info->st_ino == s->except.st_ino)
+      s->out->has_left_out = is_hidden = true;
+    return is_hidden ? BATCH_TREE_SKIP : BATCH_TREE_ON;
   case BATCH_TREE_FILE:
     s->has_failed = !is_hidden && !add_entry(s, entry);
     break;
@@ -117,7 +124,7 @@ static batch_tree_step visit(const batch_tree_entry *entry, void *payload) {
     batch_fail_errno(s->error, "%s: cannot read the folder", entry->path);
     break;
   case BATCH_TREE_OTHER:
-    batch_pass_over(s->out, entry->name);
+    pass_over_as(s->out, "(pipes, devices, links to nothing or back)");
     break;
   case BATCH_TREE_LEFT:
     break;
@@ -212,8 +219,10 @@ bool batch_inputs_read(batch_manifest *out, const batch_inputs *inputs, batch_er
     good = is_pattern(name) ? add_pattern(out, inputs, name, error) : add_named(out, inputs, name, 0, error);
   }
   if (good && out->count == 0)
-    good = batch_fail(error, "%s: there is no mesh in it%s%s", inputs->names[0],
-                      out->passed_over ? ", only" : "", out->note);
+    good = batch_fail(error, "%s: there is no mesh in it%s%s%s%s%s", inputs->names[0],
+                      out->passed_over ? ", only" : "", out->note, out->has_left_out ? "; " : "",
+                      out->has_left_out ? inputs->except : "",
+                      out->has_left_out ? ", the output, is left out: give -o another folder" : "");
   good = good && batch_manifest_finish(out, error);
   if (!good)
     batch_manifest_free(out);

@@ -23,7 +23,8 @@ typedef struct batch_item {
   uint8_t attempts; /**< starts with an end */
   uint8_t aborted;  /**< starts without, since the last end */
   uint8_t kills;    /**< in this run: children that were killed by others */
-  bool is_misnamed; /**< its name is no UTF-8, which requests and journals are */
+  bool is_misnamed; /**< its name is no UTF-8, which requests and journals are: the path may not be that of
+                       the file */
   bool is_in_flight;
   int64_t original; /**< the item whose bytes it has; -1 = none */
 } batch_item;
@@ -33,6 +34,7 @@ typedef struct batch_manifest {
   int64_t count, room;
   int64_t passed_over; /**< files in folders that are no meshes, by their names */
   char note[256];      /**< names the extensions that were passed over */
+  bool has_left_out;   /**< the folder of the output is one of those looked through, or within one */
 } batch_manifest;
 
 /** Adds a copy; texts may be NULL where that has a meaning. */

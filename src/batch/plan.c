@@ -46,6 +46,8 @@ static json_t *item_json(const batch_item *item, bool with_path) {
   set_text(object, "item", item->id);
   if (with_path)
     set_text(object, "path", item->path);
+  if (with_path && item->is_misnamed)
+    json_object_set_new(object, "misnamed", json_true());
   set_text(object, "member", item->member);
   set_text(object, "output", item->output);
   set_text(object, "class", item->kind);
@@ -125,6 +127,7 @@ static void note(char *first, int64_t *count, const char *id) {
 static bool same_item(const batch_item *item, const json_t *old) {
   json_t *now = item_json(item, false), *before = json_copy((json_t *)(uintptr_t)old);
   json_object_del(before, "path");
+  json_object_del(before, "misnamed");
   bool same = json_equal(now, before);
   json_decref(now);
   json_decref(before);

@@ -31,6 +31,7 @@ static bool add_item(const json_t *line, void *payload) {
     return false;
   batch_item *added = &a->manifest->items[a->manifest->count - 1];
   added->output = strdup(output);
+  added->is_misnamed = json_is_true(json_object_get(line, "misnamed"));
   return added->output || batch_fail(a->error, "out of memory: free some");
 }
 

@@ -208,6 +208,8 @@ static const char *unpacker_of(const char *archive) {
 char *batch_command_line(const batch_item *item, const batch_maker *maker) {
   const batch_wish *wish = maker->wish;
   batch_product product = is_wanted(wish, BATCH_GRID) ? BATCH_GRID : BATCH_REPAIRED;
+  if (item->is_misnamed) /* nothing was run, and what a journal has of the name is another one */
+    return NULL;
   while (!is_wanted(wish, product) && product + 1 < BATCH_PRODUCTS)
     product++;
   batch_words words = {0}, source = {0};

@@ -10,6 +10,7 @@
 #include "voxmend.h"
 
 #include <jansson.h>
+#include <stdarg.h>
 #include <stdio.h>
 
 /** Exit status, a contract with scripts. */
@@ -209,11 +210,16 @@ int cli_fail(cli_run *cli);
 int cli_fail_text(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
 /** Notes a warning for the report and prints it unless --quiet. */
 void cli_warn(cli_run *cli, const char *format, ...) CLI_PRINTF(2, 3);
-/** The warnings from reading a file. */
-void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh);
+/** The warnings from reading a file, and from repairing it, but for the first, which have been told. */
+void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh, int64_t told);
 void cli_warn_grid(cli_run *cli, const char *path, const vxm_grid *grid);
 /** A row of a summary, "label  text", to cli->text. */
 void cli_row(const cli_run *cli, const char *label, const char *format, ...) CLI_PRINTF(3, 4);
+/** A text of a stranger, such as the name of a file, to cli->text: without control codes, and as wide at
+ * least. */
+void cli_put_text(const cli_run *cli, const char *text, int width);
+/** A line of a message or of a summary, without its end, likewise. */
+void cli_put_line(FILE *to, const char *format, va_list arguments);
 /** The rows about a voxel space. */
 void cli_rows_space(const cli_run *cli, const vxm_space *space);
 /** Whether the summary is wanted: neither --json nor --quiet. */

@@ -299,7 +299,7 @@ static int run(cli_run *cli) {
   vxm_mesh *mesh = NULL;
   if (vxm_mesh_read_with(&mesh, cli->context, given.model, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli_warn_mesh(cli, given.model, mesh);
+  cli_warn_mesh(cli, given.model, mesh, 0);
   printf("  %s, %" PRId64 " vertices, %" PRId64 " faces\n", vxm_mesh_format(mesh),
          vxm_mesh_vertex_count(mesh), vxm_mesh_face_count(mesh));
   int status = make(cli, &given, &mesh);

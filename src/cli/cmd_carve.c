@@ -81,7 +81,8 @@ static int check(cli_run *cli, request *out) {
   cli_reads(cli, out->tool);
   cli_reads(cli, out->path);
   cli_writes(cli, "-o", out->output, cli_has_json(out->format, false));
-  if (cli_check_names(cli) == CLI_STOP)
+  if (cli_check_names(cli) == CLI_STOP ||
+      cli_check_quads(cli, out->keep_polygons, out->keep_contacts, out->format) == CLI_STOP)
     return CLI_STOP;
   out->sparse |= strcmp(out->format, "octree") == 0;
   return cli_check_surface_file(cli, out->output, out->format, out->force);

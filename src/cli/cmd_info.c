@@ -43,7 +43,8 @@ static json_t *describe_json(const cli_run *cli, const description *d) {
 }
 
 static void describe(const cli_run *cli, const description *d) {
-  fprintf(cli->text, "%s\n%s\n", cli_shown(d->path, "<stdin>"), d->verdict);
+  cli_put_text(cli, cli_shown(d->path, "<stdin>"), 0);
+  fprintf(cli->text, "\n%s\n", d->verdict);
   fprintf(cli->text, "  %-26s %12s\n", "format", vxm_mesh_format(d->mesh));
   if (cli->verbose && vxm_mesh_tag_count(d->mesh) > 0)
     fprintf(cli->text, "  %-26s %12lld\n", "tags", (long long)vxm_mesh_tag_count(d->mesh));
@@ -73,12 +74,12 @@ static void print_heading(const cli_run *cli) {
 
 static void print_row(const cli_run *cli, const description *d) {
   const vxm_census *c = &d->census;
+  cli_put_text(cli, cli_shown(d->path, "<stdin>"), name_width(cli));
   fprintf(cli->text,
-          "%-*s %9" PRId64 " %9" PRId64 " %7" PRId64 " %7" PRId64 " %8" PRId64 " %7" PRId64 " %8" PRId64
+          " %9" PRId64 " %9" PRId64 " %7" PRId64 " %7" PRId64 " %8" PRId64 " %7" PRId64 " %8" PRId64
           " %7" PRId64 "  %.*s\n",
-          name_width(cli), cli_shown(d->path, "<stdin>"), c->vertices, c->faces, c->components,
-          c->boundary_edges, c->nonmanifold_edges, c->inconsistent_edges,
-          c->duplicate_faces + c->opposite_duplicate_faces, c->degenerate_faces,
+          c->vertices, c->faces, c->components, c->boundary_edges, c->nonmanifold_edges,
+          c->inconsistent_edges, c->duplicate_faces + c->opposite_duplicate_faces, c->degenerate_faces,
           (int)strcspn(d->verdict, ";"), d->verdict);
 }
 
@@ -86,7 +87,9 @@ static void print_row(const cli_run *cli, const description *d) {
  * the repair. */
 static int count_openings(cli_run *cli, cli_openings *out, const description *d) {
   *out = (cli_openings){.known = true};
-  if ((d->census.closed && d->census.nonmanifold_edges == 0) || d->census.faces == 0)
+  const vxm_census *census = &d->census;
+  bool may_vanish = census->degenerate_faces == census->faces;
+  if ((census->closed && census->nonmanifold_edges == 0 && !may_vanish) || census->faces == 0)
     return CLI_DONE;
   vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
   vxm_repair_report report = VXM_REPAIR_REPORT_INIT;
@@ -94,6 +97,7 @@ static int count_openings(cli_run *cli, cli_openings *out, const description *d)
   options.sheets = VXM_SHEETS_KEEP;
   vxm_mesh *closed = NULL;
   vxm_status status = vxm_mesh_repair(&closed, &report, d->mesh, &options, &cli->error);
+  out->empty = status == VXM_OK && vxm_mesh_face_count(closed) == 0;
   vxm_mesh_destroy(closed);
   out->sheets = report.open_parts;
   out->holes = report.filled_holes;
@@ -173,7 +177,7 @@ static int examine(cli_run *cli, json_t *reports, const char *path, const cli_de
   vxm_mesh *mesh = NULL;
   if (vxm_mesh_read_with(&mesh, cli->context, path, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli_warn_mesh(cli, path, mesh);
+  cli_warn_mesh(cli, path, mesh, 0);
   description d = {.path = path, .mesh = mesh, .census = VXM_CENSUS_INIT};
   int status = cli_defects_show(cli, &d.found, wanted, mesh);
   if (status == CLI_DONE)

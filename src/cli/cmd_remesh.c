@@ -5,6 +5,7 @@
 #include "cli/voxelize_common.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 enum { KEY_SIZE = CLI_KEY_COMMAND, KEY_THIN, KEY_ASCII, KEY_FORMAT, KEY_FORCE };
 
@@ -117,6 +118,13 @@ static int remesh(cli_run *cli, const request *given, outcome *made) {
                                    false, &cli->error);
   made->remesh_ms = remeshed - start;
   made->write_ms = cli_clock() - remeshed;
+  if (status == VXM_ERROR_UNREACHED)
+    cli_advise(
+        cli,
+        strcmp(given->write.format, "stl") == 0
+            ? "write another format than stl, whose 32-bit floats are too coarse here, move the model to "
+              "the origin, or choose a lower -r"
+            : "move the model to the origin, or choose a lower -r");
   return status == VXM_OK ? CLI_DONE : cli_fail(cli);
 }
 

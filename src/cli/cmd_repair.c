@@ -252,7 +252,8 @@ static int read_arguments(cli_run *cli, request *out) {
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
   out->write.format = cli_output_format(cli, out->output, out->format, cli_mesh_formats);
-  if (!out->write.format)
+  if (!out->write.format ||
+      cli_check_quads(cli, out->write.keep_polygons, false, out->write.format) == CLI_STOP)
     return CLI_STOP;
   cli_writes(cli, "-o", out->output, false);
   cli_writes(cli, "--locate", out->defects.locate, false);
@@ -295,9 +296,7 @@ static int try_repair(cli_run *cli, const request *given, repair_outcome *outcom
   if (status == VXM_OK && vxm_mesh_face_count(outcome->mesh) > 0)
     return CLI_DONE;
   if (status == VXM_OK) {
-    cli->error.code = VXM_ERROR_EMPTY;
-    snprintf(cli->error.text, sizeof cli->error.text, "%.400s: no face is left after repair",
-             cli_shown(given->input, "<stdin>"));
+    cli_no_face(cli, given->input, vxm_mesh_face_count(raw), &outcome->repair);
   } else if (status != VXM_ERROR_UNREACHED)
     return cli_fail(cli);
   else if (wants_report(cli)) { /* what changes by too much is told nevertheless */
@@ -313,34 +312,51 @@ static int repair_mesh(cli_run *cli, const request *given, repair_outcome *outco
   vxm_mesh *raw = NULL;
   if (vxm_mesh_read_with(&raw, cli->context, given->input, &cli->read, &cli->error) != VXM_OK)
     return cli_fail(cli);
-  cli_warn_mesh(cli, given->input, raw);
+  cli_warn_mesh(cli, given->input, raw, 0);
   cli_defects wanted = given->defects; /* the repair counts intersections itself */
   wanted.intersections = wanted.intersections && (wanted.list || wanted.locate);
   int status = cli_defects_show(cli, &outcome->found, &wanted, raw);
   if (status == CLI_DONE)
     status = try_repair(cli, given, outcome, raw);
+  if (outcome->mesh)
+    cli_warn_mesh(cli, given->input, outcome->mesh, vxm_mesh_warning_count(raw));
   vxm_mesh_destroy(raw);
   if (status == CLI_DONE && outcome->repair.union_failures > 0)
     repair_warn_ununited(cli, given->input, outcome);
   return status;
 }
 
+/** What helps where a level is not reached. */
+static const char *advice(const vxm_repair_options *repair) {
+  if (repair->level == VXM_LEVEL_CLEAN)
+    return repair->single_precision ? "write another format than stl, or take what there is (--best-effort)"
+                                    : "repair the result again, or take what there is (--best-effort)";
+  if (repair->level == VXM_LEVEL_MANIFOLD)
+    return "choose --level clean, or take what there is (--best-effort)";
+  return "choose a lower --level, fill or drop what is in the way (--fill-holes, --drop-parts), go around it "
+         "(--wrap, --fallback), or take what there is (--best-effort)";
+}
+
 static int write_mesh(cli_run *cli, const request *given, repair_outcome *outcome) {
   vxm_status status = vxm_mesh_write_verified(&outcome->verification, outcome->mesh, given->output,
                                               &given->write, &given->repair, given->best_effort, &cli->error);
-  if (status == VXM_ERROR_UNREACHED)
+  if (status == VXM_ERROR_UNREACHED) {
+    cli_advise(cli, advice(&given->repair));
     return refuse(cli, given, outcome);
+  }
   if (status != VXM_OK)
     return cli_fail(cli);
   cli_warn_lost(cli, given->input, &outcome->repair);
   if (outcome->repair.opened_parts > 0)
-    cli_warn(cli, "%s: %lld closed parts are open after the repair", given->output,
-             (long long)outcome->repair.opened_parts);
+    cli_warn(cli, "%s: %lld closed %s open after the repair", given->output,
+             (long long)outcome->repair.opened_parts,
+             outcome->repair.opened_parts == 1 ? "part is" : "parts are");
   if (outcome->repair.shared_faces > 0)
     cli_warn(cli,
-             "%s: %lld faces repeat others, where bodies overlap and share a part of their surfaces; "
+             "%s: %lld %s, where bodies overlap and share a part of their surfaces; "
              "--level manifold gives each body its own, --level solid unites them",
-             given->output, (long long)outcome->repair.shared_faces);
+             given->output, (long long)outcome->repair.shared_faces,
+             outcome->repair.shared_faces == 1 ? "face repeats another" : "faces repeat others");
   if (!outcome->verification.reached)
     cli_warn(cli, "%s: the level %s is not reached; the report lists what remains", given->output,
              repair_levels[outcome->level]);

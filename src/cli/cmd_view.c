@@ -211,9 +211,12 @@ static int read_mesh(cli_run *cli, subject *out, const request *given) {
     return status;
   if (vxm_mesh_prepare(&out->prepared, &report, out->mesh, &repair, &cli->error) != VXM_OK)
     return cli_fail(cli);
+  cli_warn_mesh(cli, given->input, out->prepared, vxm_mesh_warning_count(out->mesh));
   cli_warn_lost(cli, given->input, &report);
-  if (vxm_mesh_face_count(out->prepared) == 0)
-    return cli_fail_text(cli, "%s: no face is left after repair", given->input);
+  if (vxm_mesh_face_count(out->prepared) == 0) {
+    cli_no_face(cli, given->input, input.faces, &report);
+    return cli_fail(cli);
+  }
   return repair_mesh(cli, out);
 }
 

@@ -28,11 +28,12 @@ void cli_census_json(json_t *object, const vxm_census *census);
 
 /* ---- verdict.c ---- */
 
-enum { CLI_SENTENCE = 200 };
+enum { CLI_SENTENCE = 256 };
 
 /** What has to be closed, as repair --level closed sees it. */
 typedef struct cli_openings {
   bool known;
+  bool empty; /**< no face is left */
   int64_t sheets, holes;
 } cli_openings;
 

@@ -201,26 +201,19 @@ static const char *content_text(char text[TEXT_SIZE], const facts *f) {
   return text;
 }
 
-/** Names in a file of a stranger must not steer the terminal. */
-static void put_printable(const cli_run *cli, const char *text) {
-  for (; *text; text++)
-    fputc((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text, cli->text);
-}
-
 static void tell_label(const cli_run *cli, const facts *f, int64_t label, bool is_first) {
   const char *name = vxm_field_label_name(f->values.field, label);
   fprintf(cli->text, "  %-12s %5" PRId64 "  ", is_first ? "labels" : "", label);
-  put_printable(cli, name);
+  cli_put_text(cli, name, 0);
   fprintf(cli->text, "%s%" PRId64 " voxels\n", *name ? ": " : "", f->counts[label]);
 }
 
 static void tell_metadata(const cli_run *cli, const vxm_field *field, int64_t index) {
   const char *key = vxm_field_metadata_key(field, index);
-  int room = (int)strnlen(key, 12);
   fputs("  ", cli->text);
-  put_printable(cli, key);
-  fprintf(cli->text, "%*s", 13 - room, "");
-  put_printable(cli, vxm_field_metadata_value(field, index));
+  cli_put_text(cli, key, 12);
+  fputc(' ', cli->text);
+  cli_put_text(cli, vxm_field_metadata_value(field, index), 0);
   fputc('\n', cli->text);
 }
 
@@ -240,8 +233,8 @@ static void tell(const cli_run *cli, const facts *f) {
   char text[TEXT_SIZE];
   const double *o = f->space.origin, *s = f->space.voxel_size;
   const int64_t *n = f->space.dims, *b = f->begin, *e = f->end;
-  fprintf(cli->text, "%s\n", f->path);
-  fprintf(cli->text, "a grid of %s voxels: ", dims_text(text, &f->space));
+  cli_put_text(cli, f->path, 0);
+  fprintf(cli->text, "\na grid of %s voxels: ", dims_text(text, &f->space));
   fprintf(cli->text, "%s\n", content_text(text, f));
   fprintf(cli->text, "  %-12s %s\n", "format", f->format);
   fprintf(cli->text, "  %-12s %s\n", "voxel size", size_text(text, &f->space));
@@ -268,8 +261,9 @@ static void tell_row(const cli_run *cli, const facts *f, int width) {
   char dims[TEXT_SIZE], size[TEXT_SIZE], from[TEXT_SIZE], content[TEXT_SIZE];
   const double *o = f->space.origin;
   snprintf(from, sizeof from, "(%.6g, %.6g, %.6g)", o[0], o[1], o[2]);
-  fprintf(cli->text, "%-*s %-18s %-12s %-32s  %s\n", width, f->path, dims_text(dims, &f->space),
-          size_text(size, &f->space), from, content_text(content, f));
+  cli_put_text(cli, f->path, width);
+  fprintf(cli->text, " %-18s %-12s %-32s  %s\n", dims_text(dims, &f->space), size_text(size, &f->space), from,
+          content_text(content, f));
 }
 
 static json_t *labels_json(const facts *f) {

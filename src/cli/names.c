@@ -283,10 +283,11 @@ int cli_check_style(cli_run *cli, const cli_style *style, const char *format) {
 }
 
 int cli_check_quads(cli_run *cli, bool keep_polygons, bool keep_contacts, const char *format) {
-  static const char *const meshes[] = {"obj", "ply", "stl", "off", NULL};
-  if ((keep_polygons || keep_contacts) && cli_read_choice(format, meshes) < 0)
-    return cli_usage(cli, "--%s goes with .obj, .ply, .stl and .off, not .%s",
-                     keep_polygons ? "polygons keep" : "no-manifold", format);
+  static const char *const of_polygons[] = {"obj", "ply", "off", NULL};
+  if (keep_polygons && cli_read_choice(format, of_polygons) < 0)
+    return cli_usage(cli, "--polygons keep goes with .obj, .ply and .off, not .%s", format);
+  if (keep_contacts && cli_read_choice(format, cli_mesh_formats) < 0)
+    return cli_usage(cli, "--no-manifold goes with .obj, .ply, .stl and .off, not .%s", format);
   return CLI_END;
 }
 

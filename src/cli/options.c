@@ -155,7 +155,7 @@ int cli_usage(cli_run *cli, const char *format, ...) {
   fprintf(stderr, "voxmend: ");
   va_list arguments;
   va_start(arguments, format);
-  vfprintf(stderr, format, arguments);
+  cli_put_line(stderr, format, arguments);
   va_end(arguments);
   if (cli->command)
     fprintf(stderr, " (see 'voxmend %s --help')\n", cli->command->name);
@@ -406,6 +406,11 @@ static const char *find_format(const char *name, const char *const *known) {
   return NULL;
 }
 
+/** Whether the name tells a format, be it one of grids or of meshes. */
+static bool tells_format(const char *path) {
+  return *vxm_grid_format_of(path) || find_format(extension_of(path), cli_mesh_formats);
+}
+
 /** Lists those of the formats that go to standard output, too: no folders, and no file for each slice. */
 static void list_streams(char list[CLI_LIST_MAX], const char *const *known) {
   const char *streams[CLI_FORMATS_MAX];
@@ -432,6 +437,9 @@ const char *cli_output_format(cli_run *cli, const char *path, const char *format
     cli_usage(cli, "--format '%s' is none of %s", format, list);
   else if (!found && strcmp(path, "-") == 0)
     cli_usage(cli, "-o - needs --format: %s", list);
+  else if (!found && tells_format(path))
+    cli_usage(cli, "-o '%s': what is asked for does not go into .%s; choose one of %s", path,
+              extension_of(path), list);
   else if (!found)
     cli_usage(cli, "the name '%s' does not tell the format; give --format: %s", path, list);
   if (found && strcmp(found, "png") == 0 && !strchr(path, '%')) {

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -37,12 +38,33 @@ int cli_fail(cli_run *cli) {
   return CLI_FAILED;
 }
 
+/** Names of files, and in files of strangers, must not steer the terminal. */
+static void put_printable(FILE *to, const char *text) {
+  for (; *text; text++)
+    fputc((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text, to);
+}
+
+void cli_put_text(const cli_run *cli, const char *text, int width) {
+  int length = (int)strnlen(text, INT_MAX);
+  put_printable(cli->text, text);
+  if (length < width)
+    fprintf(cli->text, "%*s", width - length, "");
+}
+
+void cli_put_line(FILE *to, const char *format, va_list arguments) {
+  char *text;
+  if (vasprintf(&text, format, arguments) < 0)
+    return;
+  put_printable(to, text);
+  free(text);
+}
+
 int cli_fail_text(cli_run *cli, const char *format, ...) {
   cli_progress_clear(cli);
   fprintf(stderr, "voxmend: ");
   va_list arguments;
   va_start(arguments, format);
-  vfprintf(stderr, format, arguments);
+  cli_put_line(stderr, format, arguments);
   va_end(arguments);
   fputc('\n', stderr);
   return CLI_FAILED;
@@ -59,11 +81,13 @@ void cli_warn(cli_run *cli, const char *format, ...) {
   if (cli->quiet)
     return;
   cli_progress_clear(cli);
-  fprintf(stderr, "voxmend: warning: %s\n", text);
+  fputs("voxmend: warning: ", stderr);
+  put_printable(stderr, text);
+  fputc('\n', stderr);
 }
 
-void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh) {
-  for (int64_t i = 0; i < vxm_mesh_warning_count(mesh); i++)
+void cli_warn_mesh(cli_run *cli, const char *path, const vxm_mesh *mesh, int64_t told) {
+  for (int64_t i = told; i < vxm_mesh_warning_count(mesh); i++)
     cli_warn(cli, "%s: %s", cli_shown(path, "<stdin>"), vxm_mesh_warning(mesh, i));
 }
 
@@ -80,7 +104,7 @@ void cli_row(const cli_run *cli, const char *label, const char *format, ...) {
   fprintf(cli->text, "%-10s ", label);
   va_list arguments;
   va_start(arguments, format);
-  vfprintf(cli->text, format, arguments);
+  cli_put_line(cli->text, format, arguments);
   va_end(arguments);
   fputc('\n', cli->text);
 }

@@ -21,6 +21,12 @@ int cli_read_weld(cli_run *cli, vxm_repair_options *options, const char *value);
 /** CLI_STOP if options about the repair were given with --no-repair. */
 int cli_check_repair(cli_run *cli, bool no_repair, bool repair_options);
 json_t *cli_passes_json(const vxm_repair_report *report);
+/** Says what may help after what the error says. */
+void cli_advise(cli_run *cli, const char *advice);
+
+/** Makes the error say why no face is left of a mesh, which had so many before its repair. */
+void cli_no_face(cli_run *cli, const char *path, int64_t faces, const vxm_repair_report *report);
+
 /** Warns of parts that the repair has lost. */
 void cli_warn_lost(cli_run *cli, const char *path, const vxm_repair_report *report);
 /** Reads, and repairs unless `options` is NULL. After CLI_FAILED a line was printed and input->mesh is NULL.

@@ -19,7 +19,11 @@ static void add(char *text, const char *more) {
 
 static void say_open(char *text, const vxm_census *census, const cli_openings *openings) {
   /* where all faces are doubled every edge has an even number of them */
-  add(text, census->closed ? "open once doubled faces are merged: " : "open: ");
+  add(text, census->closed ? "open once doubled faces are merged" : "open");
+  if (census->nonfinite_vertices > 0)
+    count(text, " without the faces of ", census->nonfinite_vertices, "vertex that is not finite",
+          "vertices that are not finite");
+  add(text, ": ");
   if (!openings->known || openings->sheets + openings->holes == 0) {
     if (census->boundary_edges > 0)
       count(text, "", census->boundary_edges, "open edge", "open edges");
@@ -42,16 +46,16 @@ static void say_open(char *text, const vxm_census *census, const cli_openings *o
 /** What repair removes or turns by itself. */
 static bool say_unclean(char *text, const vxm_census *census) {
   int64_t repeated = census->duplicate_faces + census->opposite_duplicate_faces;
-  if (repeated > 0)
+  if (census->nonfinite_vertices > 0)
+    count(text, "closed, but with ", census->nonfinite_vertices, "vertex that is not finite",
+          "vertices that are not finite");
+  else if (repeated > 0)
     count(text, "closed, but with ", repeated, "repeated face", "repeated faces");
   else if (census->degenerate_faces > 0) {
     count(text, "closed, but with ", census->degenerate_faces, "face without area", "faces without area");
     add(text, "; repair removes those that close no gap"); /* the others it needs: they stay */
     return true;
-  } else if (census->nonfinite_vertices > 0)
-    count(text, "closed, but with ", census->nonfinite_vertices, "vertex that is not finite",
-          "vertices that are not finite");
-  else if (census->inconsistent_edges > 0)
+  } else if (census->inconsistent_edges > 0)
     add(text, "closed, but faces are turned against each other");
   else
     return false;
@@ -64,6 +68,9 @@ const char *cli_verdict(char text[CLI_SENTENCE], const vxm_census *census, const
   text[0] = '\0';
   if (census->faces == 0)
     add(text, "empty: there is no face");
+  else if (openings->known && openings->empty)
+    add(text,
+        "empty: no face has finite vertices and an area beside the size of the whole; repair leaves none");
   else if (!census->closed || (openings->known && openings->sheets + openings->holes > 0))
     say_open(text, census, openings);
   else if (census->nonmanifold_edges > 0) {

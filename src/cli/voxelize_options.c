@@ -58,7 +58,7 @@ const cli_option voxelize_options[] = {
     {KEY_LIKE, "like", "GRID", "take dimensions, origin and voxel size from this grid"},
     {KEY_MODE, "mode", "solid|surface|both",
      "solid: the inside, by voxel centres and --thin; surface: as --surface says;\n"
-     "both: either [solid]"},
+     "both: either (a conservative surface has all that --thin would add) [solid]"},
     {KEY_THIN, "thin", "keep|drop|26",
      "parts thinner than a voxel: keep = add the few voxels that hold them together\n"
      "and through which no path from face to face leaks; 26 = nor one over edges and\n"
@@ -85,7 +85,8 @@ const cli_option voxelize_options[] = {
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
      "each axis; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
-    {KEY_SCALAR, "scalar", "float32|uint8", "what --coverage writes: 0 to 1, or 0 to 255 [float32]"},
+    {KEY_SCALAR, "scalar", "float32|uint8",
+     "what --coverage writes: 0 to 1, or 0 to 255, as .png needs [float32]"},
     {KEY_DISTANCE, "distance", "signed|unsigned",
      "write the distance from each centre to the mesh instead, in model units;\n"
      "signed: negative inside; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif,\n"
@@ -106,8 +107,8 @@ const cli_option voxelize_options[] = {
     {KEY_CONFIDENCE, "confidence", "FILE.npy", "write how sure each voxel is too, 0 to 255"},
     {KEY_SPARSE, "sparse", NULL,
      "make the voxels as an octree, whose memory follows the surface, for 1024 and more\n"
-     "along a side; a .octree file follows it too, and 'convert --window' cuts grids out\n"
-     "of that; --labels, --color and --distance are made so for .octree, with it or not"},
+     "along a side; a .octree file follows it too, is made so without being asked, and\n"
+     "'convert --window' cuts grids out of it"},
     {KEY_COORDS, "coords", "FILE.npy", "write the coordinates of set voxels too, int32, n rows of i, j, k"},
     {KEY_BASELINE, "baseline", "NAME",
      "use a published method instead, as it was published, for comparison: fang-chen,\n"
@@ -359,10 +360,14 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   cli_formats formats =
       cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_formats_with(VXM_FORMAT_BITS);
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
+  bool is_octree = out->format && strcmp(out->format, "octree") == 0;
+  /* faster at any resolution, and in little memory; an engine and the confidence fill whole grids */
+  out->sparse |= is_octree && !cli_field_wanted(&out->field) && !out->confidence && !out->engine.name &&
+                 !out->baseline_name;
   if (out->format && out->sparse && !voxelize_is_sliced(out->format))
     return cli_usage(cli, "--sparse: .%s needs the whole grid", out->format);
   if (out->format && out->sparse && cli_field_wanted(&out->field)) {
-    if (strcmp(out->format, "octree") != 0)
+    if (!is_octree)
       return cli_usage(cli,
                        "--sparse: of --coverage, --distance, --labels and --color .octree alone is "
                        "sparse, not .%s",

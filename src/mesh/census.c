@@ -5,6 +5,7 @@
 #include "mesh/components.h"
 #include "mesh/duplicate_faces.h"
 #include "mesh/geometry.h"
+#include "mesh/nonfinite.h"
 #include "mesh/patches.h"
 #include "mesh/weld.h"
 
@@ -76,8 +77,9 @@ static void add_face(const taking *t, size_t face, face_sums *sums) {
   sums->triangles += count > 2 ? count - 2 : 0;
   vxm_vec3 normal = vxm_polygon_area(t->soup->positions, corners, count, t->frame.scale);
   double area = vxm_vec3_length(normal);
-  if (vxm_unit_scale_no_area(&t->frame, t->soup, face) ||
-      !vxm_face_has_three(t->welded.indices + (corners - t->soup->indices), count, NULL))
+  if (vxm_face_is_finite(t->soup, corners, count) &&
+      (vxm_unit_scale_no_area(&t->frame, t->soup, face) ||
+       !vxm_face_has_three(t->welded.indices + (corners - t->soup->indices), count, NULL)))
     sums->degenerate++;
   if (count == 0)
     return;
@@ -146,7 +148,8 @@ static void rename_slice(size_t slice, int worker, void *payload) {
     t->welded.indices[c] = t->map[t->soup->indices[c]];
 }
 
-/** Numbers positions in the order of their first vertices, and gives corners these numbers. */
+/** Numbers positions in the order of their first vertices, and gives corners these numbers. Faces of vertices
+ * that are not finite have one corner left, and nothing is closed by them. */
 static vxm_status weld(taking *t, vxm_error *error) {
   size_t next = 0;
   vxm_status status =
@@ -161,13 +164,14 @@ static vxm_status weld(taking *t, vxm_error *error) {
                          .vertex_count = next,
                          .face_count = t->soup->face_count,
                          .corner_count = t->soup->corner_count};
-  if (next == t->soup->vertex_count) /* each has its own position */
+  if (next == t->soup->vertex_count && t->census->nonfinite_vertices == 0) /* each has its own position */
     return VXM_OK;
   t->welded.indices = vxm_alloc(t->context, t->soup->corner_count, sizeof *t->welded.indices, error);
   if (!t->welded.indices)
     return error->code;
   status =
       vxm_parallel_asked(t->context, t->soup->corner_count / CORNERS_PER_SLICE + 1, rename_slice, t, error);
+  vxm_nonfinite_collapse(t->welded.indices, t->soup);
   vxm_free(t->context, t->map);
   t->map = NULL;
   return status;
@@ -185,9 +189,9 @@ static vxm_status count_edges(taking *t, vxm_error *error) {
   census->boundary_edges = (int64_t)t->edges.open;
   census->nonmanifold_edges = (int64_t)t->edges.crowded;
   census->inconsistent_edges = (int64_t)t->edges.against;
-  bool faces = t->soup->face_count > 0;
-  census->watertight = faces && census->boundary_edges == 0 && census->nonmanifold_edges == 0;
-  census->closed = faces && t->edges.odd == 0;
+  bool any = t->edges.count > 0; /* faces of fewer than three corners have none */
+  census->watertight = any && census->boundary_edges == 0 && census->nonmanifold_edges == 0;
+  census->closed = any && t->edges.odd == 0;
   vxm_edges_destroy(&t->edges);
   return VXM_OK;
 }
@@ -219,7 +223,7 @@ static vxm_status count_components(taking *t, vxm_error *error) {
   size_t raw, welded;
   vxm_status status = count_welded(t, &welded, error);
   raw = welded;
-  if (status == VXM_OK && t->welded.vertex_count < t->soup->vertex_count)
+  if (status == VXM_OK && t->welded.indices != t->soup->indices)
     status = vxm_components(t->context, t->soup, NULL, NULL, &raw, error);
   t->census->components_raw = status == VXM_OK ? (int64_t)raw : 0;
   t->census->components = status == VXM_OK ? (int64_t)welded : 0;

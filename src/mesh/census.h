@@ -9,6 +9,8 @@
  * Takes the census of a soup (vxm_mesh_census).
  *
  * Vertices are taken by position, that is after vxm_weld_exact, except for components_raw. In detail:
+ *  - Faces of vertices that are not finite count as faces, and in their component; to all else they are gone,
+ * as repair removes them: their neighbours have open edges.
  *  - degenerate_faces: fewer than three distinct corners, or no area (vxm_unit_scale_no_area).
  *  - Faces with fewer than three distinct corners have no edges and are no duplicates of each other. Faces
  *    without area but with three distinct corners do and are, as they may be what keeps a mesh closed.

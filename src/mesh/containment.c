@@ -3,8 +3,8 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/geometry.h"
+#include "mesh/nonfinite.h"
 #include "mesh/point_in_mesh.h"
-#include "mesh/unit_scale.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,13 +46,6 @@ static bool is_solid(const builder *b, size_t component) {
 }
 
 /* ---- Boxes, faces and volumes ---- */
-
-static bool face_is_finite(const vxm_soup *soup, const uint32_t *corner, size_t count) {
-  for (size_t c = 0; c < count; c++)
-    if (!vxm_is_finite(vxm_position(soup, corner[c])))
-      return false;
-  return true;
-}
 
 /** None of them NaN. */
 static inline void include(double box[6], const double low[3], const double high[3]) {
@@ -139,7 +132,7 @@ static double add_cones(const builder *b, size_t face, size_t end, double volume
   for (size_t f = face; f < end; f++) {
     size_t count;
     const uint32_t *corner = vxm_face(b->soup, f, &count);
-    if (count < 3 || !face_is_finite(b->soup, corner, count))
+    if (count < 3 || !vxm_face_is_finite(b->soup, corner, count))
       continue;
     const double *p = vxm_position(b->soup, corner[0]);
     vxm_vec3 first = {p[0] * scale - middle[0], p[1] * scale - middle[1], p[2] * scale - middle[2]};
@@ -204,7 +197,7 @@ static bool sample(const builder *b, uint32_t component, int number, double poin
   for (size_t i = 0; i < faces; i++) {
     size_t count;
     const uint32_t *corner = vxm_face(b->soup, b->faces[first + (start + i) % faces], &count);
-    if (count < 3 || !face_is_finite(b->soup, corner, count))
+    if (count < 3 || !vxm_face_is_finite(b->soup, corner, count))
       continue;
     const double *p = vxm_position(b->soup, corner[0]), *q = vxm_position(b->soup, corner[1]);
     const double *r = vxm_position(b->soup, corner[count - 1]);

@@ -4,7 +4,7 @@
 #include "mesh/boundary_loops.h"
 #include "mesh/edges.h"
 #include "mesh/geometry.h"
-#include "mesh/unit_scale.h"
+#include "mesh/nonfinite.h"
 #include "mesh/weld.h"
 
 #include <math.h>
@@ -153,6 +153,7 @@ vxm_status vxm_part_census_all(vxm_part_state *out, size_t part_count, const vxm
   if (status == VXM_OK) {
     for (size_t c = 0; c < soup->corner_count; c++)
       m.view.indices[c] = map[soup->indices[c]];
+    vxm_nonfinite_collapse(m.view.indices, soup); /* as the census of the whole does */
     status = measure(&m, part_count);
   }
   vxm_free(context, m.edge_part);

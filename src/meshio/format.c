@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "meshio/common/format.h"
 #include "base/open_beneath.h"
+#include "mesh/nonfinite.h"
 #include "meshio/common/utf16.h"
 #include "meshio/external/external_formats.h"
 #include "meshio/external/textures.h"
@@ -122,6 +123,18 @@ static vxm_status refuse_unknown(const unsigned char *data, size_t size, const c
                      "not a known mesh format: neither off, obj, stl nor ply by content or extension");
 }
 
+/** Whatever the format and the command: such faces are gone once the mesh is repaired, and no voxel tells it.
+ */
+static void warn_nonfinite(vxm_soup *soup) {
+  size_t first = 0, count = vxm_nonfinite_faces(&first, soup);
+  if (count == 1)
+    vxm_warn(&soup->warnings, "face %zu has a vertex that is not finite; repair removes it", first);
+  else if (count > 1)
+    vxm_warn(&soup->warnings,
+             "face %zu has a vertex that is not finite; repair removes it; %zu such faces in all", first,
+             count);
+}
+
 static vxm_status read_bytes(vxm_soup *soup, const unsigned char *data, size_t size, const char *name,
                              const vxm_mesh_read_options *options, vxm_references *references,
                              vxm_error *error) {
@@ -180,6 +193,8 @@ static vxm_status read_with(vxm_soup **out, vxm_context *context, const unsigned
     status = vxm_progress(soup->context, "reading", 0.0, error);
   if (status == VXM_OK)
     status = read_bytes(soup, data, size, name, chosen, references, error);
+  if (status == VXM_OK)
+    warn_nonfinite(soup);
   if (status == VXM_OK && chosen->colors)
     status = vxm_textures_read(soup, references, error);
   if (status == VXM_OK)

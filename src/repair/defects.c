@@ -2,6 +2,7 @@
 #include "repair/defects.h"
 
 #include "mesh/duplicate_faces.h"
+#include "mesh/nonfinite.h"
 #include "mesh/weld.h"
 #include "meshio/formats/write_marked.h"
 #include "repair/state/self_intersections.h"
@@ -82,6 +83,7 @@ static bool find_degenerate(finding *f) {
     if (vxm_ask_at(i, f->state.context, &f->error) != VXM_OK)
       return false;
     bool bad = vxm_unit_scale_no_area(&frame, f->soup, i) || !vxm_face_has_three(corner, count, NULL);
+    bad = bad && vxm_face_is_finite(f->soup, f->soup->indices + f->soup->offsets[i], count);
     if (bad && !enter_face(f, VXM_DEFECT_DEGENERATE_FACE, i))
       return false;
   }
@@ -185,6 +187,7 @@ static bool prepare(finding *f) {
     return false;
   for (size_t c = 0; c < f->soup->corner_count; c++)
     f->state.soup->indices[c] = f->map[f->soup->indices[c]];
+  vxm_nonfinite_collapse(f->state.soup->indices, f->soup); /* as the census does */
   return vxm_repair_state_edges(&f->state, &f->error) == VXM_OK;
 }
 

@@ -255,16 +255,6 @@ static const char *level_name(vxm_level level) {
   return names[level];
 }
 
-static const char *advice(const vxm_repair_options *repair) {
-  if (repair->level == VXM_LEVEL_CLEAN)
-    return repair->single_precision ? "write another format than stl, or take what there is (--best-effort)"
-                                    : "repair the result again, or take what there is (--best-effort)";
-  if (repair->level == VXM_LEVEL_MANIFOLD)
-    return "choose --level clean, or take what there is (--best-effort)";
-  return "choose a lower --level, fill or drop what is in the way (--fill-holes, --drop-parts), go around it "
-         "(--wrap, --fallback), or take what there is (--best-effort)";
-}
-
 static vxm_status check(const vxm_soup *read_back, void *payload, vxm_error *error) {
   const checking *c = payload;
   vxm_status status = vxm_verify(c->out, read_back, c->repair, error);
@@ -272,10 +262,10 @@ static vxm_status check(const vxm_soup *read_back, void *payload, vxm_error *err
     return status;
   bool cut = strcmp(c->out->findings[0].what, "self_intersections") == 0 &&
              c->out->findings[0].count >= VXM_CROSSINGS_MOST;
-  return vxm_fail(error, VXM_ERROR_UNREACHED, "%s: the level %s is not reached: %s%lld %s remain%s; %s",
+  return vxm_fail(error, VXM_ERROR_UNREACHED, "%s: the level %s is not reached: %s%lld %s remain%s",
                   strcmp(c->path, "-") == 0 ? "<stdout>" : c->path, level_name(c->repair->level),
                   cut ? "at least " : "", (long long)c->out->findings[0].count, c->out->findings[0].what,
-                  c->out->count > 1 ? ", and more" : "", advice(c->repair));
+                  c->out->count > 1 ? ", and more" : "");
 }
 
 vxm_status vxm_write_verified(vxm_verification *out, const vxm_soup *soup, const char *path,

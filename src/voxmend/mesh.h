@@ -212,7 +212,9 @@ VXM_API const char *vxm_mesh_warning(const vxm_mesh *mesh, int64_t index);
 
 /* ---- Census: what is wrong with a mesh ---- */
 
-/** Counts over a mesh. Edges, components and duplicates are taken after welding bit-identical positions. */
+/** Counts over a mesh. Edges, components and duplicates are taken after welding bit-identical positions.
+ * Faces of vertices that are not finite have no edges, as repair removes them: a mesh is not closed by them.
+ */
 typedef struct vxm_census {
   size_t size;             /**< as the initializer sets it, or 0 */
   int64_t vertices;        /**< as in the file */
@@ -223,15 +225,15 @@ typedef struct vxm_census {
   int64_t duplicate_faces; /**< faces that repeat an earlier one with the same orientation */
   int64_t
       opposite_duplicate_faces; /**< faces that repeat an earlier one with the opposite orientation only */
-  int64_t degenerate_faces;     /**< fewer than three distinct corners, or no area */
+  int64_t degenerate_faces;     /**< of finite ones: fewer than three distinct corners, or no area */
   int64_t boundary_edges;       /**< one incident face */
   int64_t nonmanifold_edges;    /**< more than two incident faces */
   int64_t inconsistent_edges;   /**< two incident faces that run along it in the same direction */
   int64_t nonfinite_vertices;   /**< with a coordinate that is not a finite number */
   int64_t unused_vertices;      /**< of no face */
   int64_t largest_face;         /**< corners of the largest face */
-  bool watertight;              /**< at least one face, no boundary and no non-manifold edge */
-  bool closed;                  /**< at least one face, and every edge has an even number of incident faces */
+  bool watertight;              /**< some edges, and none of them open or non-manifold */
+  bool closed;                  /**< some edges, and each has an even number of incident faces */
   double bounds[6]; /**< x0 y0 z0 x1 y1 z1 of the finite vertices used by faces; zeros if there are none */
   double area;      /**< model units squared; polygons by their vector area */
   double volume;    /**< signed; positive if faces point outward. Meaningful if closed. This and the area are

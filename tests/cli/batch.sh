@@ -93,6 +93,11 @@ run 'voxmend batch data -o none --retry all,lost'
 run 'voxmend batch nothing -o none'
 run 'voxmend batch "none*.off" -o none'
 run 'mkdir empty && voxmend batch empty -o none'
+mkdir twice && printf 'OFF\n1 0 0\n' >twice/a.off && cp twice/a.off twice/b.off
+run 'voxmend batch twice -o failed -r 8 --pictures 0 -q; cut -f 1-4 failed/failures.tsv'
+cp in/cube.off "twice/$(printf 'c\377').off"
+run 'voxmend batch twice -o misnamed -r 8 --pictures 0 -q; cut -f 1,4,5 misnamed/failures.tsv | sed "s/[^	]*announced[^	]*/.../"; voxmend batch twice -o misnamed -r 8 --pictures 0 -q; wc -l <misnamed/failures.tsv'
+run 'mkdir self && cp in/cube.off self && voxmend batch self -o self'
 run 'voxmend batch status data'
 run 'voxmend batch export grids --to sqlite'
 run 'voxmend batch export grids --to sqlite -o grids.db'

@@ -34,6 +34,8 @@ run 'voxmend convert f.octree -o c3.nrrd --coverage 4 --window 1:5,0:2,2:4 -q &&
 run 'voxmend convert d.nrrd -o c.npy --below 0 --coverage 8 | grep values'
 run 'voxmend convert d.nrrd -o x.npy --coverage 8'
 run 'voxmend convert t.octree -o x.npy --coverage 8 --window 0:3,0:3,0:4'
+# a grid of its own would take 128 MiB: a .octree is made as one without being asked
+run 'voxmend voxelize in/torus.off -o large.octree -r 1024 --memlimit 64M -q && voxmend voxelize in/torus.off -o asked.octree -r 1024 --sparse -q && cmp large.octree asked.octree && rm large.octree asked.octree'
 run 'voxmend convert t.octree -o x.npy --coverage 3'
 run 'voxmend convert t.octree -o x.rle --coverage 4'
 for choice in '--labels part' '--color position' '--distance signed' '--coverage 2'; do

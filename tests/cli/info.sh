@@ -52,6 +52,17 @@ run 'voxmend info - <g.octree'
 run 'voxmend info - <g.nrrd'
 run 'voxmend info - - <in/cube.off'
 
+say "# nothing that repair would leave, vertices that are not finite, and names that would steer a terminal"
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
+sed '3s/.*/nan nan nan/' in/cube.off >nan.off
+run 'voxmend info flat.off | head -2'
+run 'voxmend info nan.off --strict | head -2; voxmend info flat.off nan.off; voxmend voxelize nan.off -o nan.npy -r 4 -q --strict; rm flat.off nan.*'
+name=$(printf 'es\033[31mc')
+cp in/cube.off "$name.obj"
+voxmend voxelize in/cube.off -o "$name.npy" -r 4 -q
+run 'for f in es*.obj es*.npy; do voxmend info "$f"; done | head -1; voxmend info es*'
+run 'voxmend voxelize es*.obj -o "$name.npy" -r 4 --threads 1 | head -1; voxmend info "no$name"; rm es*'
+
 say "# report and progress"
 run 'voxmend info -q --report r.json in/cube.off && cat r.json'
 run 'voxmend info -q --report no/such/r.json in/cube.off'

@@ -33,6 +33,8 @@ run 'voxmend remesh in/torus.off -o t.ply --force -r 32 --voxel-size 1'
 run 'voxmend remesh in/torus.off -o t.ply --force -r 32 --voxel-size 1,1,2'
 run 'voxmend remesh in/torus.off -o t.ply --force --voxel-size 1,2'
 run 'voxmend remesh in/torus.off -o t.npy'
+awk 'NR > 2 && NF == 3 { printf "%.17g %.17g %.17g\n", $1 + 1e9, $2, $3; next } { print }' in/cube.off >far.off
+run 'voxmend remesh far.off -o far.stl -r 8'
 run 'voxmend remesh in/torus.off -o big.ply -r 4000 --memlimit 100M; test -e big.ply'
 say "# more than the machine has"
 run "voxmend remesh in/cube.off -o huge.off -r 1048576 2>&1 | sed -E 's/has [0-9.]+ .iB and .* are in use/has N and M are in use/'"

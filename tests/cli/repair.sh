@@ -11,6 +11,15 @@ run 'voxmend repair in/cracks.off -o off.off -q --weld off && voxmend info off.o
 run 'voxmend repair in/cracks.off -o eps.off -q --weld 1e-6 && voxmend info eps.off'
 run 'voxmend repair in/repeated.off -o kept.off -q --keep-duplicates && voxmend info kept.off'
 run 'voxmend repair in/l_prism.off -o l.stl --ascii -q && voxmend info l.stl'
+run 'voxmend repair in/rocket.off -o rocket.stl --ascii -q && voxmend repair rocket.stl -o rocket2.stl --ascii && cmp rocket.stl rocket2.stl'
+run 'voxmend repair in/rocket.off -o binary.stl -q && voxmend repair binary.stl -o text.stl --ascii -q && cmp rocket.stl text.stl'
+# what others write: more digits than a float has, and the fewest that tell a float
+printf 'solid\n' >digits.stl
+for x in 0.1 0.12345678901234567; do
+  printf 'facet normal 0 0 0\nouter loop\nvertex %s 0 0\nvertex 1 0.3 0\nvertex 0 1 0.7\nendloop\nendfacet\n' $x
+done >>digits.stl
+echo endsolid >>digits.stl
+run 'voxmend repair digits.stl -o once.stl --ascii -q && voxmend repair once.stl -o again.stl --ascii && cmp once.stl again.stl && cat once.stl'
 run 'voxmend repair in/l_prism.off -o l.anything --format ply --ascii -q && cat l.anything'
 
 say "# once repaired, nothing is left to do"
@@ -27,6 +36,13 @@ run 'voxmend repair in/cube.off -o x.off --force --drop-parts 50'
 run 'voxmend repair in/cube.off -o x.off --force --drop-parts faces:0'
 run 'voxmend repair in/cube.off -o x.off --force --drop-parts volume:much'
 
+say "# something far off"
+awk 'NR == 2 { print $1 + 3, $2 + 1, 0; next } NF == 3 { at++ } { print } at == 8 && NF == 3 { print "1e9 0 0\n1000000001 0 0\n1e9 1 0" } END { print "3 8 9 10" }' in/cube.off >outlier.off
+run 'voxmend repair outlier.off -o inlier.off -q --strict'
+run 'voxmend voxelize outlier.off -o outlier.npy -r 8 --strict'
+sed 's/^1e9/1e20/' outlier.off >beyond.off
+run 'voxmend info beyond.off'
+
 say "# streams"
 run 'voxmend repair - -o - --format off <in/unused.off'
 run 'voxmend repair in/cube.off -o - --format obj -q | voxmend info -'
@@ -35,6 +51,11 @@ say "# failures leave nothing"
 mkdir out
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
 run 'voxmend repair flat.off -o out/x.off'
+printf 'OFF\n2 0 0\n0 0 0\n1 0 0\n' >points.off
+run 'voxmend repair points.off -o out/x.off'
+run 'voxmend voxelize points.off -o out/x.npy'
+awk 'NR > 2 && NF == 3 { printf "%.17g %.17g %.17g\n", $1 + 1e9, $2 + 1e9, $3 + 1e9; next } { print }' in/cube.off >far.off
+run 'voxmend repair far.off -o out/x.stl'
 run 'voxmend repair missing.off -o out/x.off'
 run 'voxmend repair in/cube.off -o no/such/x.off'
 run 'voxmend repair in/torus.off -o out/x.off --memlimit 64K'

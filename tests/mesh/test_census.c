@@ -58,7 +58,9 @@ static bool is_flat(const vxm_soup *soup, const uint32_t *face, size_t count) {
 
 static vxm_census count_edges_by_hand(const vxm_soup *soup, const by_hand *h) {
   vxm_census census = {0};
-  bool odd = false;
+  bool odd = false, any = false;
+  for (size_t f = 0; f < soup->face_count; f++)
+    any |= h->real[f];
   for (uint32_t a = 0; a < soup->vertex_count; a++)
     for (uint32_t b = a + 1; b < soup->vertex_count; b++) {
       int sides = 0, forward = 0;
@@ -76,8 +78,8 @@ static vxm_census count_edges_by_hand(const vxm_soup *soup, const by_hand *h) {
       census.inconsistent_edges += sides == 2 && forward != 1;
       odd |= sides % 2 == 1;
     }
-  census.watertight = soup->face_count > 0 && census.boundary_edges == 0 && census.nonmanifold_edges == 0;
-  census.closed = soup->face_count > 0 && !odd;
+  census.watertight = any && census.boundary_edges == 0 && census.nonmanifold_edges == 0;
+  census.closed = any && !odd;
   return census;
 }
 
@@ -228,9 +230,11 @@ static void not_finite_and_empty(void **state) {
   census = census_of(soup);
   assert_int_equal(census.nonfinite_vertices, 2);
   assert_int_equal(census.unused_vertices, 1);
-  assert_int_equal(census.degenerate_faces, 2);
-  assert_int_equal(census.boundary_edges, 4);
-  assert_int_equal(census.nonmanifold_edges, 1);
+  assert_int_equal(census.degenerate_faces, 0);
+  assert_int_equal(census.boundary_edges, 0);
+  assert_int_equal(census.nonmanifold_edges, 0);
+  assert_int_equal(census.components, 1);
+  assert_true(census.watertight && census.closed);
   assert_true(census.area == cube.area && census.volume == cube.volume);
   assert_memory_equal(census.bounds, cube.bounds, sizeof cube.bounds);
   vxm_soup_destroy(soup);
@@ -241,13 +245,50 @@ static void not_finite_and_empty(void **state) {
     add_triangle(soup, 0, 0, 0);
   add_face(soup, NULL, 0);
   census = census_of(soup);
-  assert_int_equal(census.degenerate_faces, 4);
+  assert_int_equal(census.degenerate_faces, 1); /* the others are not finite */
   assert_int_equal(census.duplicate_faces, 0);
   assert_int_equal(census.components, 2);
   for (int i = 0; i < 6; i++)
     assert_true(census.bounds[i] == 0);
   vxm_soup_destroy(soup);
   vxm_context_destroy(context);
+}
+
+/** Faces of a vertex that is not finite are as if they were not there, whichever vertex it is, and whether or
+ * not others share positions. */
+static void not_finite_opens(void **state) {
+  (void)state;
+  for (size_t v = 0; v < 16; v++) {
+    vxm_context *context = context_of_threads(1);
+    vxm_soup *soup = new_soup(context), *left = new_soup(context);
+    add_cube(soup, 0);
+    if (v >= 8) /* the same once more, to be welded, then to be open */
+      add_cube(soup, 0);
+    soup->positions[3 * v + v % 3] = v % 2 ? (double)NAN : (double)INFINITY;
+    for (size_t i = 0; i < soup->vertex_count; i++)
+      add_vertex(left, soup->positions[3 * i], soup->positions[3 * i + 1], soup->positions[3 * i + 2]);
+    for (size_t f = 0; f < soup->face_count; f++) {
+      size_t count, bad = 0;
+      const uint32_t *corner = vxm_face(soup, f, &count);
+      for (size_t c = 0; c < count; c++)
+        bad += corner[c] == v;
+      if (bad == 0)
+        add_face(left, corner, count);
+    }
+    assert_true(left->face_count < soup->face_count);
+    vxm_census census = census_of(soup), other = census_of(left);
+    assert_int_equal(census.nonfinite_vertices, 1);
+    assert_false(census.closed || census.watertight);
+    assert_int_equal(census.boundary_edges, other.boundary_edges);
+    assert_int_equal(census.nonmanifold_edges, other.nonmanifold_edges);
+    assert_int_equal(census.degenerate_faces, other.degenerate_faces);
+    assert_int_equal(census.duplicate_faces, other.duplicate_faces);
+    assert_int_equal(census.components, other.components);
+    assert_int_equal(census.components_raw, v < 8 ? 1 : 2);
+    vxm_soup_destroy(left);
+    vxm_soup_destroy(soup);
+    vxm_context_destroy(context);
+  }
 }
 
 static void same_for_any_threads(void **state) {
@@ -373,9 +414,13 @@ static void equals_the_manifest(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(equals_counting),         cmocka_unit_test(cubes_of_any_size_and_place),
-      cmocka_unit_test(measures_beyond_doubles), cmocka_unit_test(not_finite_and_empty),
-      cmocka_unit_test(same_for_any_threads),    cmocka_unit_test(stops_at_limit_and_when_asked),
+      cmocka_unit_test(equals_counting),
+      cmocka_unit_test(cubes_of_any_size_and_place),
+      cmocka_unit_test(measures_beyond_doubles),
+      cmocka_unit_test(not_finite_and_empty),
+      cmocka_unit_test(not_finite_opens),
+      cmocka_unit_test(same_for_any_threads),
+      cmocka_unit_test(stops_at_limit_and_when_asked),
       cmocka_unit_test(equals_the_manifest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

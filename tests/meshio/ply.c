@@ -300,7 +300,7 @@ static void test_random_binary(void **state) {
     }
     vxm_soup *back = read_data(b.data, b.size, "x.ply");
     expect_same(soup, back);
-    expect_no_notes(back);
+    expect_no_damage(back);
     assert_string_equal(back->format, big ? "ply binary_big_endian" : "ply binary_little_endian");
     vxm_soup_destroy(back);
     for (int k = 0; k < 10; k++) {

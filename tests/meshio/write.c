@@ -198,7 +198,7 @@ static void test_stl(void **state) {
     expect_counts(back, 900, 300);
     for (size_t c = 0; c < 900; c++)
       for (size_t a = 0; a < 3; a++)
-        assert_true((float)vxm_position(back, c)[a] == (float)vxm_position(soup, soup->indices[c])[a]);
+        assert_true(vxm_position(back, c)[a] == (double)(float)vxm_position(soup, soup->indices[c])[a]);
     vxm_soup_destroy(back);
   }
   unlink(path_of("s.stl"));

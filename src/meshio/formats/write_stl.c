@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/** STL out: 32-bit floats and triangles; larger polygons are split. */
+/**
+ * STL out: 32-bit floats and triangles; larger polygons are split. Text holds the very numbers that binary
+ * files hold, for readers of doubles too, which the shortest digits of a float are not.
+ */
 #include "base/endian.h"
 #include "meshio/common/faces_out.h"
 #include "meshio/common/format.h"
@@ -73,7 +76,8 @@ static void write_facet(stl_writer *writer, const uint32_t triangle[3]) {
     vxm_text_vertex_float(&writer->text, "  facet normal ", normal);
     vxm_output_printf(writer->output, "    outer loop\n");
     for (size_t k = 0; k < 3; k++)
-      vxm_text_vertex_float(&writer->text, "      vertex ", corner[k]);
+      vxm_text_vertex(&writer->text, "      vertex ",
+                      (const double[]){(double)corner[k][0], (double)corner[k][1], (double)corner[k][2]});
     vxm_output_printf(writer->output, "    endloop\n  endfacet\n");
     return;
   }

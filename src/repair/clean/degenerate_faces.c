@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
+#include "mesh/geometry.h"
 #include "repair/state/repair_state.h"
+
+#include <math.h>
 
 /* A face without area may be all that joins two others whose shared side has a vertex more on one of them: a
    sliver between A-B on one side and A-C, C-B on the other. Without it the mesh would be open there. So such
@@ -126,6 +129,39 @@ static vxm_status choose(removal *r, vxm_error *error) {
   return status;
 }
 
+/** Whether a face that goes has a shape: it is only small, beside all that there is. */
+static bool has_shape(const vxm_soup *soup, size_t face) {
+  const double sliver = 1e-4; /* of the squared diagonal: flatter than that it would go in any company */
+  double bounds[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+  size_t count;
+  const uint32_t *corner = vxm_face(soup, face, &count);
+  for (size_t i = 0; i < count; i++)
+    for (int a = 0; a < 3; a++) {
+      double x = vxm_position(soup, corner[i])[a];
+      bounds[a] = x < bounds[a] ? x : bounds[a];
+      bounds[a + 3] = x > bounds[a + 3] ? x : bounds[a + 3];
+    }
+  vxm_unit_scale own = vxm_unit_scale_of(bounds);
+  return vxm_polygon_fan_area(soup->positions, corner, count, own.scale) >
+         sliver * own.diagonal * own.diagonal;
+}
+
+/** Where most faces have no area beside the whole, something lies far off, and what goes was meant. */
+static void warn_of_far(const removal *r) {
+  vxm_soup *soup = r->state->soup;
+  size_t lost = 0;
+  if (r->state->sums.flat_faces <= soup->face_count / 2)
+    return;
+  for (size_t f = 0; f < soup->face_count; f++)
+    lost += r->flat[f] && has_shape(soup, f);
+  if (lost > 0)
+    vxm_warn(
+        &soup->warnings,
+        "most faces are too small to have an area beside the size of the whole: does something lie far off? "
+        "%zu of them %s removed for that",
+        lost, lost == 1 ? "was" : "were");
+}
+
 /** Faces have been reduced before: they have at least three corners, and no side from a vertex to itself. */
 vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error *error) {
   removal r = {.state = state};
@@ -140,8 +176,10 @@ vxm_status vxm_pass_zero_area(vxm_repair_state *state, bool *changed, vxm_error 
     status = choose(&r, error);
     for (size_t f = 0; f < state->soup->face_count; f++)
       r.flat[f] = r.flat[f] == 2;
-    if (status == VXM_OK)
+    if (status == VXM_OK) {
+      warn_of_far(&r);
       vxm_repair_state_note_marked(state, VXM_PASS_ZERO_AREA, r.flat);
+    }
     int64_t count = status == VXM_OK ? vxm_repair_state_remove_faces(state, r.flat) : 0;
     state->counts[VXM_PASS_ZERO_AREA] += count;
     *changed = count > 0;
