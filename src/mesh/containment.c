@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
 
+#include "mesh/box_tree.h"
 #include "mesh/geometry.h"
 #include "mesh/point_in_mesh.h"
 #include "mesh/unit_scale.h"
@@ -9,11 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  SAMPLES = 3,                /**< points per component */
-  REGISTRATIONS_PER_BODY = 8, /**< in the grid of candidates, at most, on average */
-  CELLS_MAX = 1024            /**< of that grid along an axis */
-};
+enum { SAMPLES = 3 /**< points per component */ };
 
 typedef struct body {
   double box[6]; /**< scaled; low above high if no corner is finite */
@@ -35,10 +32,8 @@ typedef struct builder {
   size_t *faces;    /**< grouped by component */
   uint32_t *order;  /**< solid components by increasing box */
   size_t order_count;
-  size_t cells[3];
-  double per_unit[3];
-  size_t *begin;              /**< per cell */
-  uint32_t *listed;           /**< places in `order`, increasing within a cell */
+  double (*boxes)[6];         /**< in that order */
+  vxm_box_tree around;        /**< of them */
   vxm_point_in_mesh **inside; /**< per component, NULL until asked */
 } builder;
 
@@ -166,70 +161,7 @@ static bool sum_volumes(builder *b, double *volume) {
   return true;
 }
 
-/* ---- Candidates: a coarse grid whose cells list the boxes that meet them ---- */
-
-static size_t cell_of(const builder *b, int axis, double at) {
-  double cell = (at - b->bounds[axis]) * b->per_unit[axis];
-  if (!(cell > 0))
-    return 0;
-  return cell < (double)(b->cells[axis] - 1) ? (size_t)cell : b->cells[axis] - 1;
-}
-
-static void set_cells(builder *b, double wanted) {
-  double size[3], largest = 0;
-  for (int a = 0; a < 3; a++) {
-    size[a] = b->bounds[a + 3] - b->bounds[a];
-    largest = fmax(largest, size[a]);
-  }
-  for (int a = 0; a < 3; a++) {
-    double cells = largest > 0 ? cbrt(wanted) * size[a] / largest : 1;
-    b->cells[a] = cells > 1 ? (cells < CELLS_MAX ? (size_t)cells : CELLS_MAX) : 1;
-    b->per_unit[a] = size[a] > 0 ? (double)b->cells[a] / size[a] : 0;
-  }
-}
-
-typedef struct cell_range {
-  size_t low[3], high[3];
-} cell_range;
-
-static cell_range range_of(const builder *b, const body *of) {
-  cell_range r;
-  for (int a = 0; a < 3; a++) {
-    r.low[a] = cell_of(b, a, of->box[a]);
-    r.high[a] = cell_of(b, a, of->box[a + 3]);
-  }
-  return r;
-}
-
-/** As many cells as bodies, or fewer if their boxes are so large that they would be in too many. */
-static size_t choose_cells(builder *b) {
-  for (double wanted = (double)b->order_count;; wanted /= 8) {
-    set_cells(b, wanted > 1 ? wanted : 1);
-    size_t registered = 0;
-    for (size_t i = 0; i < b->order_count; i++) {
-      cell_range r = range_of(b, &b->bodies[b->order[i]]);
-      registered += (r.high[0] - r.low[0] + 1) * (r.high[1] - r.low[1] + 1) * (r.high[2] - r.low[2] + 1);
-    }
-    if (registered <= REGISTRATIONS_PER_BODY * b->order_count || b->cells[0] * b->cells[1] * b->cells[2] == 1)
-      return registered;
-  }
-}
-
-/** Counts (listed NULL) or lists the bodies of every cell, in the order of their size. */
-static void register_bodies(builder *b, uint32_t *listed) {
-  for (size_t i = 0; i < b->order_count; i++) {
-    cell_range r = range_of(b, &b->bodies[b->order[i]]);
-    for (size_t z = r.low[2]; z <= r.high[2]; z++)
-      for (size_t y = r.low[1]; y <= r.high[1]; y++)
-        for (size_t x = r.low[0]; x <= r.high[0]; x++) {
-          size_t cell = (z * b->cells[1] + y) * b->cells[0] + x;
-          if (listed)
-            listed[b->begin[cell + 1]++] = (uint32_t)i;
-          else
-            b->begin[cell + 2]++;
-        }
-  }
-}
+/* ---- Candidates: solid components by increasing box ---- */
 
 static int smaller_first(const void *p, const void *q) {
   const body *a = p, *b = q;
@@ -254,17 +186,11 @@ static bool order_bodies(builder *b) {
 }
 
 static bool list_candidates(builder *b) {
-  size_t registered = choose_cells(b), cells = b->cells[0] * b->cells[1] * b->cells[2];
-  b->begin = allocate(b, cells + 2, sizeof *b->begin);
-  b->listed = allocate(b, registered, sizeof *b->listed);
-  if (!b->begin || !b->listed)
-    return false;
-  /* counted two places on, the sums are the begins, and listing moves each to the next one's begin */
-  register_bodies(b, NULL);
-  for (size_t c = 2; c < cells + 2; c++)
-    b->begin[c] += b->begin[c - 1];
-  register_bodies(b, b->listed);
-  return true;
+  b->boxes = allocate(b, b->order_count, sizeof *b->boxes);
+  for (size_t i = 0; b->boxes && i < b->order_count; i++)
+    memcpy(b->boxes[i], b->bodies[b->order[i]].box, sizeof *b->boxes);
+  return b->boxes && vxm_box_tree_build(&b->around, b->context, (const double(*)[6])b->boxes, b->order_count,
+                                        &b->error) == VXM_OK;
 }
 
 /* ---- Containment ---- */
@@ -331,18 +257,12 @@ static vxm_status contains(builder *b, uint32_t outer, uint32_t inner, bool *res
   return VXM_OK;
 }
 
-static bool box_within(const double inner[6], const double outer[6]) {
-  for (int a = 0; a < 3; a++)
-    if (inner[a] < outer[a] || inner[a + 3] > outer[a + 3])
-      return false;
-  return true;
-}
-
-/** First place in the list of a cell whose body is larger than the given one. */
-static size_t first_larger(const builder *b, size_t begin, size_t end, double size) {
+/** First place in the order whose body is larger than the given one. */
+static size_t first_larger(const builder *b, double size) {
+  size_t begin = 0, end = b->order_count;
   while (begin < end) {
     size_t middle = begin + (end - begin) / 2;
-    if (b->bodies[b->order[b->listed[middle]]].size > size)
+    if (b->bodies[b->order[middle]].size > size)
       end = middle;
     else
       begin = middle + 1;
@@ -356,21 +276,18 @@ enum { TRIES_MAX = 256 };
 
 static vxm_status find_parent(builder *b, uint32_t component, uint32_t *parent) {
   const body *inner = &b->bodies[component];
-  size_t cell[3];
-  for (int a = 0; a < 3; a++)
-    cell[a] = cell_of(b, a, inner->box[a]);
-  size_t place = (cell[2] * b->cells[1] + cell[1]) * b->cells[0] + cell[0], end = b->begin[place + 1];
-  int tries = 0;
-  for (size_t i = first_larger(b, b->begin[place], end, inner->size); i < end && tries < TRIES_MAX; i++) {
-    uint32_t outer = b->order[b->listed[i]];
-    bool within = box_within(inner->box, b->bodies[outer].box);
-    vxm_status status = within ? contains(b, outer, component, &within) : VXM_OK;
-    tries += box_within(inner->box, b->bodies[outer].box);
+  vxm_box_tree_search(&b->around, inner->box, first_larger(b, inner->size));
+  for (int tries = 0; tries < TRIES_MAX; tries++) {
+    uint32_t place = vxm_box_tree_next(&b->around);
+    if (place == VXM_NO_BOX)
+      break;
+    bool within = false;
+    vxm_status status = contains(b, b->order[place], component, &within);
     if (status != VXM_OK)
       return status;
     if (within) {
-      *parent = outer;
-      return VXM_OK;
+      *parent = b->order[place];
+      break;
     }
   }
   return VXM_OK;
@@ -419,8 +336,8 @@ vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, con
       vxm_free(b.context, b.inside[i]);
     }
   vxm_free(b.context, b.inside);
-  vxm_free(b.context, b.listed);
-  vxm_free(b.context, b.begin);
+  vxm_box_tree_destroy(&b.around);
+  vxm_free(b.context, b.boxes);
   vxm_free(b.context, b.order);
   vxm_free(b.context, b.faces);
   vxm_free(b.context, b.bodies);
