@@ -281,11 +281,14 @@ static bool is_closed_or_nearly(const patch *p) {
   return p->conflicts == 0 && p->area > 0 && vxm_vec3_length(p->vector_area) < SHEET * p->area;
 }
 
-/** Which patches to turn over: outward those that bound a volume, but for cavities. */
+/** Which patches to turn over: outward those that bound a volume, but for cavities. The others that `follow`
+ * the model are turned over where it came inside out. */
 static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, const uint8_t *held,
-                         uint8_t *over, uint8_t *known, size_t *chain) {
+                         bool follow, uint8_t *over, uint8_t *known, size_t *chain) {
   for (size_t i = 0; i < nesting->count; i++) {
     size_t depth = 0, at = i;
+    if (!solid[i])
+      over[i] = follow;
     for (; !known[at] && solid[at]; at = nesting->parent[at]) {
       chain[depth++] = at;
       if (nesting->parent[at] == VXM_NO_COMPONENT)
@@ -299,10 +302,36 @@ static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, c
       if (parent != VXM_NO_COMPONENT && inward != (nesting->volume[parent] < 0))
         over[child] = over[parent]; /* against the parent it stays */
       if (held[child])
-        over[child] = 0;
+        over[child] = follow;
       known[child] = 1;
     }
   }
+}
+
+/** Volume about the middle of the model of all faces as they are by now. */
+static double volume_of_all(const orienting *o) {
+  double volume = 0;
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(o->soup, f, &count);
+    if (count > 0)
+      volume += vxm_polygon_cone(
+          vxm_vec3_between(vxm_position(o->soup, corner[0]), o->frame.centre, o->frame.scale), area_of(o, f));
+  }
+  return volume;
+}
+
+/** Whether the model came inside out: most of the area that bounds a volume does, or, where none does but
+ * faces meet along edges that have more than two, all faces together. So the patches that have no side of their
+ * own stand to the others as they did, and reversing all faces of a file changes nothing about how they meet. */
+static bool is_inside_out(const orienting *o, const vxm_containment *nesting, const uint8_t *solid) {
+  double outward = 0;
+  for (size_t i = 0; i < nesting->count; i++)
+    if (solid[i] && nesting->parent[i] == VXM_NO_COMPONENT && nesting->volume[i] != 0)
+      outward += nesting->volume[i] < 0 ? -o->patches[i].area : o->patches[i].area;
+  if (outward == 0 && o->state->edges.crowded > 0)
+    return volume_of_all(o) < -NO_VOLUME;
+  return outward < 0;
 }
 
 /** What lies inside what, and the volumes; freed with vxm_containment_destroy. */
@@ -333,7 +362,7 @@ static bool turn_outward(orienting *o) {
     for (size_t i = 0; i < count; i++)
       if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
         nesting.volume[i] = 0;
-    choose_sides(&nesting, solid, held, over, known, chain);
+    choose_sides(&nesting, solid, held, is_inside_out(o, &nesting, solid), over, known, chain);
     bool any = memchr(over, 1, count) != NULL;
     for (size_t f = 0; any && f < o->soup->face_count; f++)
       if (over[o->label[f]]) {
