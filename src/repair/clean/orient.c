@@ -281,6 +281,11 @@ static bool is_closed_or_nearly(const patch *p) {
   return p->conflicts == 0 && p->area > 0 && vxm_vec3_length(p->vector_area) < SHEET * p->area;
 }
 
+/** What bounds no volume goes with the model. */
+static bool is_inward(const vxm_containment *nesting, size_t i, bool follow) {
+  return nesting->volume[i] < 0 || (nesting->volume[i] == 0 && follow);
+}
+
 /** Which patches to turn over: outward those that bound a volume, but for cavities. The others that `follow`
  * the model are turned over where it came inside out. */
 static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, const uint8_t *held,
@@ -297,9 +302,9 @@ static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, c
     while (depth > 0) {
       size_t child = chain[--depth];
       uint32_t parent = nesting->parent[child];
-      bool inward = nesting->volume[child] < 0;
+      bool inward = is_inward(nesting, child, follow);
       over[child] = inward;
-      if (parent != VXM_NO_COMPONENT && inward != (nesting->volume[parent] < 0))
+      if (parent != VXM_NO_COMPONENT && inward != is_inward(nesting, parent, follow))
         over[child] = over[parent]; /* against the parent it stays */
       if (held[child])
         over[child] = follow;
@@ -322,8 +327,9 @@ static double volume_of_all(const orienting *o) {
 }
 
 /** Whether the model came inside out: most of the area that bounds a volume does, or, where none does but
- * faces meet along edges that have more than two, all faces together. So the patches that have no side of their
- * own stand to the others as they did, and reversing all faces of a file changes nothing about how they meet. */
+ * faces meet along edges that have more than two, all faces together. So the patches that have no side of
+ * their own stand to the others as they did, and reversing all faces of a file changes nothing about how they
+ * meet. */
 static bool is_inside_out(const orienting *o, const vxm_containment *nesting, const uint8_t *solid) {
   double outward = 0;
   for (size_t i = 0; i < nesting->count; i++)

@@ -11,8 +11,8 @@ static const double probe_weights[4][3] = {
     {1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.7, 0.15, 0.15}, {0.15, 0.7, 0.15}, {0.15, 0.15, 0.7}};
 /** What a probe counts if the voters disagree at one of its ends. */
 static const double doubtful = 0.3;
-/** Evidence below this part of the patch's area says nothing. A little less than 0.05, which is what some whole
- * numbers of probes sum up to: rounding must not decide about them. */
+/** Evidence below this part of the patch's area says nothing. A little less than 0.05, which is what some
+ * whole numbers of probes sum up to: rounding must not decide about them. */
 static const double evidence_min = 0.05 - 1e-9;
 
 /** A triangle in voxel units. */
