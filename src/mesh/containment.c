@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh/containment.h"
 
-#include "base/hash.h"
 #include "mesh/box_tree.h"
 #include "mesh/geometry.h"
 #include "mesh/point_in_mesh.h"
-#include "mesh/position_hash.h"
 #include "mesh/unit_scale.h"
 
 #include <math.h>
@@ -13,11 +11,6 @@
 #include <string.h>
 
 enum { SAMPLES = 3 /**< points per component */ };
-/** In place of the number of a face. */
-#define NO_FACE SIZE_MAX
-#define NOT_DRAWN (SIZE_MAX - 1)
-/** Lots that differ by less than this part are equal but for rounding. */
-static const double SAME_LOT = 1e-9;
 
 typedef struct body {
   double box[6]; /**< scaled; low above high if no corner is finite */
@@ -42,7 +35,6 @@ typedef struct builder {
   double (*boxes)[6];         /**< in that order */
   vxm_box_tree around;        /**< of them */
   vxm_point_in_mesh **inside; /**< per component, NULL until asked */
-  size_t (*drawn)[SAMPLES];   /**< per component: faces with a sample, NOT_DRAWN until asked */
 } builder;
 
 static void *allocate(builder *b, size_t count, size_t size) {
@@ -203,73 +195,25 @@ static bool list_candidates(builder *b) {
 
 /* ---- Containment ---- */
 
-/** A corner's lot. It depends on where the corner is within its component, but not on the sides of that: so
- * a mirrored component has the same. */
-static uint64_t lot_of(const builder *b, const double box[6], uint32_t corner) {
-  const double *p = vxm_position(b->soup, corner);
-  double from[3];
-  for (int a = 0; a < 3; a++)
-    from[a] = fabs(p[a] * b->frame.scale - (box[a] + box[a + 3]) / 2);
-  return vxm_position_hash(from[0], from[1], from[2]);
-}
-
-/** Draws the faces that samples lie on, large ones rather than small ones. By lots, not by numbers: neither
- * the order of faces, nor which corner a face begins with, nor the way it is turned must change what lies
- * inside what. Of equal lots that of the face with the lower corner is drawn. */
-static const size_t *draw_faces(builder *b, uint32_t component) {
-  size_t *drawn = b->drawn[component], end = b->bodies[component + 1].first;
-  double least[SAMPLES], low[SAMPLES] = {0};
-  if (drawn[0] != NOT_DRAWN)
-    return drawn;
-  for (int s = 0; s < SAMPLES; s++) {
-    least[s] = INFINITY;
-    drawn[s] = NO_FACE;
-  }
-  for (size_t i = b->bodies[component].first; i < end; i++) {
+/** A point on a face of the component, off the lines on which edges use to lie. The same if the face is
+ * reversed about its first corner: turning faces must not change what lies inside what. */
+static bool sample(const builder *b, uint32_t component, int number, double point[3]) {
+  static const double weights[SAMPLES] = {0.35355339, 0.31415927, 0.33873241}; /* of the first corner */
+  size_t first = b->bodies[component].first, faces = b->bodies[component + 1].first - first;
+  size_t start = faces * (2 * (size_t)number + 1) / (2 * SAMPLES);
+  for (size_t i = 0; i < faces; i++) {
     size_t count;
-    const uint32_t *corner = vxm_face(b->soup, b->faces[i], &count);
+    const uint32_t *corner = vxm_face(b->soup, b->faces[first + (start + i) % faces], &count);
     if (count < 3 || !face_is_finite(b->soup, corner, count))
       continue;
-    uint64_t lots = 0;
-    double lowest = INFINITY;
-    for (size_t c = 0; c < count; c++) {
-      const double *p = vxm_position(b->soup, corner[c]);
-      lots += lot_of(b, b->bodies[component].box, corner[c]);
-      lowest = fmin(lowest, p[0] + 0.7 * p[1] + 0.4 * p[2]);
-    }
-    double area = vxm_vec3_length(vxm_polygon_area(b->soup->positions, corner, count, b->frame.scale));
-    for (int s = 0; s < SAMPLES; s++) {
-      double lot = ((double)(vxm_hash_word(lots, (uint64_t)s) >> 11) * 0x1p-53 + 0x1p-54) / area;
-      bool first = lot < least[s] * (1 - SAME_LOT) || drawn[s] == NO_FACE;
-      if (!first && (lot > least[s] * (1 + SAME_LOT) || lowest >= low[s]))
-        continue;
-      least[s] = lot;
-      low[s] = lowest;
-      drawn[s] = b->faces[i];
-    }
+    const double *p = vxm_position(b->soup, corner[0]), *q = vxm_position(b->soup, corner[1]);
+    const double *r = vxm_position(b->soup, corner[count - 1]);
+    for (int a = 0; a < 3; a++)
+      point[a] = weights[number] * (p[a] * b->frame.scale) +
+                 (1 - weights[number]) / 2 * (q[a] * b->frame.scale + r[a] * b->frame.scale);
+    return true;
   }
-  return drawn;
-}
-
-/** A point on a face of the component, off the lines on which edges use to lie: near its corner of the
- * least lot. */
-static bool sample(builder *b, uint32_t component, int number, double point[3]) {
-  static const double weights[SAMPLES] = {0.35355339, 0.31415927, 0.33873241}; /* of that corner */
-  size_t face = draw_faces(b, component)[number], count, at = 0;
-  if (face == NO_FACE)
-    return false;
-  const uint32_t *corner = vxm_face(b->soup, face, &count);
-  const double *box = b->bodies[component].box;
-  for (size_t c = 1; c < count; c++)
-    if (lot_of(b, box, corner[c]) < lot_of(b, box, corner[at]))
-      at = c;
-  const double *p = vxm_position(b->soup, corner[at]);
-  const double *q = vxm_position(b->soup, corner[(at + 1) % count]);
-  const double *r = vxm_position(b->soup, corner[(at + count - 1) % count]);
-  for (int a = 0; a < 3; a++)
-    point[a] = weights[number] * (p[a] * b->frame.scale) +
-               (1 - weights[number]) / 2 * (q[a] * b->frame.scale + r[a] * b->frame.scale);
-  return true;
+  return false;
 }
 
 static vxm_point_in_mesh *inside_of(builder *b, uint32_t component) {
@@ -351,11 +295,8 @@ static vxm_status find_parent(builder *b, uint32_t component, uint32_t *parent) 
 
 static bool find_parents(builder *b, uint32_t *parents) {
   b->inside = allocate(b, b->count, sizeof *b->inside);
-  b->drawn = allocate(b, b->count, sizeof *b->drawn);
-  if (!b->inside || !b->drawn)
+  if (!b->inside)
     return false;
-  for (size_t i = 0; i < b->count; i++)
-    b->drawn[i][0] = NOT_DRAWN;
   for (size_t i = 0; i < b->order_count; i++)
     if (vxm_ask(b->context, &b->error) != VXM_OK ||
         find_parent(b, b->order[i], &parents[b->order[i]]) != VXM_OK)
@@ -394,7 +335,6 @@ vxm_status vxm_containment_build(vxm_containment *out, const vxm_soup *soup, con
       vxm_point_in_mesh_release(b.inside[i]);
       vxm_free(b.context, b.inside[i]);
     }
-  vxm_free(b.context, b.drawn);
   vxm_free(b.context, b.inside);
   vxm_box_tree_destroy(&b.around);
   vxm_free(b.context, b.boxes);
