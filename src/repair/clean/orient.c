@@ -420,8 +420,8 @@ static bool note_turned(orienting *o, bool *changed) {
  * Turns faces: consistent within a patch, and patches that are closed or nearly so outward. A patch inside
  * another one that was wound against it is a cavity and stays so. Patches that only together are consistent
  * about an edge stay as they are, and sheets keep the side that most of their area has; both are turned where
- * the model as a whole came inside out. A patch that no turning makes consistent gets as few inconsistent edges as a walk over its faces
- * leaves.
+ * the model as a whole came inside out. A patch that no turning makes consistent gets as few inconsistent
+ * edges as a walk over its faces leaves.
  */
 vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;
