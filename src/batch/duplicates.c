@@ -90,14 +90,23 @@ static batch_turn next_hashes(run *r, void *payload) {
 
 typedef struct keyed {
   batch_content content;
+  bool trains; /**< not in a split that is held back */
   int64_t index;
 } keyed;
+
+/** A test stays as it was published; what it has in common with the training is left out of that, and so it
+ * is there that a file is called a duplicate. */
+static bool is_for_training(const batch_item *item) {
+  return !item->split || strcasecmp(item->split, "train") == 0;
+}
 
 static int by_key(const void *a, const void *b) {
   const keyed *x = a, *y = b;
   for (int h = 0; h < 2; h++)
     if (x->content.half[h] != y->content.half[h])
       return x->content.half[h] < y->content.half[h] ? -1 : 1;
+  if (x->trains != y->trains)
+    return x->trains ? 1 : -1;
   return (x->index > y->index) - (x->index < y->index);
 }
 
@@ -133,7 +142,7 @@ void batch_find_duplicates(run *r) {
     for (int64_t i = 0; i < h.count; i++) {
       int64_t index = h.items[i] - r->manifest->items;
       if (r->contents[index].half[0])
-        keys[known++] = (keyed){r->contents[index], index};
+        keys[known++] = (keyed){r->contents[index], is_for_training(h.items[i]), index};
     }
     mark(r, keys, known);
   }

@@ -57,10 +57,11 @@ static char *base64_of(const char *path) {
   return text;
 }
 
-/** A picture of what was made of an item, to be freed; NULL = none. */
+/** A picture of what was made of an item, to be freed; NULL = none, as of a duplicate: it would be the same
+ * picture once more. */
 static char *picture_of(const batch_item *item, const char *output, const batch_telling *telling) {
-  char *name = batch_is_done(item->status) ? telling->viewed(item, telling->payload) : NULL, *path = NULL,
-       *text = NULL;
+  bool is_drawn = batch_is_done(item->status) && item->status != BATCH_DUPLICATE;
+  char *name = is_drawn ? telling->viewed(item, telling->payload) : NULL, *path = NULL, *text = NULL;
   char *picture = batch_plan_path(output, "picture.png");
   if (name && picture && asprintf(&path, "%s/%s", output, name) >= 0 &&
       telling->draw(path, picture, telling->payload))

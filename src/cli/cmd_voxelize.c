@@ -236,14 +236,16 @@ const cli_command cli_command_voxelize = {
     .name = "voxelize",
     .arguments = "MESH -o GRID [OPTION]...",
     .summary = "turn a mesh into a voxel grid",
-    .notes = "The mesh is repaired first, as by 'voxmend repair'. Voxel (i,j,k) is set where its centre,\n"
-             "origin + ((i,j,k) + 1/2) * size, is inside the mesh.\n\n"
-             "Examples:\n"
-             "  voxmend voxelize chair.off -o chair.binvox\n"
-             "  voxmend voxelize part.stl -o part.npy --voxel-size 0.5 --fit tight --pad 1\n"
-             "  voxmend voxelize second.stl -o second.npy --like part.npy\n"
-             "  voxmend voxelize chair.off -o chair.nrrd --distance signed --band 5\n"
-             "  voxmend voxelize chair.off -o - --format rle -r 64 | wc -c",
+    .notes =
+        "The mesh is repaired first, as by 'voxmend repair'. Voxel (i,j,k) is set where its centre,\n"
+        "origin + ((i,j,k) + 1/2) * size, is inside the mesh, and where parts thinner than a voxel would\n"
+        "fall apart without it, unless --thin drop says that centres alone count.\n\n"
+        "Examples:\n"
+        "  voxmend voxelize chair.off -o chair.binvox\n"
+        "  voxmend voxelize part.stl -o part.npy --voxel-size 0.5 --fit tight --pad 1\n"
+        "  voxmend voxelize second.stl -o second.npy --like part.npy\n"
+        "  voxmend voxelize chair.off -o chair.nrrd --distance signed --band 5\n"
+        "  voxmend voxelize chair.off -o - --format rle -r 64 | wc -c",
     .options = voxelize_options,
     .run = run,
 };

@@ -24,7 +24,8 @@ typedef enum vxm_field_kind {
   VXM_FIELD_COLORS       /**< red, green, blue and opacity, 0 = no voxel: VXM_UINT8, four channels */
 } vxm_field_kind;
 
-/** One number (or colour) for each voxel of a space. It does not change once it is made. */
+/** One number (or colour) for each voxel of a space. Its numbers do not change once it is made; labels and
+ * metadata may be added until it is used by others. */
 typedef struct vxm_field vxm_field;
 
 /**
@@ -38,9 +39,8 @@ VXM_API vxm_status vxm_field_create(vxm_field **out, vxm_context *context, const
                                     vxm_error *error);
 
 /**
- * Reads the numbers of a file as they are: .npy, .nrrd, .octree, .nii, .nii.gz, .vti, .vtk, .tif, .zarr,
- * .vdb, or .binvox. Files that hold bits give 0 and 1, as VXM_UINT8. Floats of 16 bits in .vdb become
- * VXM_FLOAT32.
+ * Reads the numbers of a file as they are, in any format that vxm_grid_format_traits calls VXM_FORMAT_READ.
+ * Files that hold bits give 0 and 1, as VXM_UINT8. Floats of 16 bits in .vdb become VXM_FLOAT32.
  *
  * @return as vxm_grid_read, without VXM_ERROR_NUMBERS
  */
@@ -89,7 +89,7 @@ VXM_API int64_t vxm_field_label_count(const vxm_field *field);
 VXM_API const char *vxm_field_label_name(const vxm_field *field, int64_t label);
 
 /** What else a file says of its values, such as units, as pairs of texts; it goes along into .npy (its
- * .json), .nrrd and .vdb. */
+ * .json), .nrrd, .vdb, .h5 and .zarr. */
 VXM_API int64_t vxm_field_metadata_count(const vxm_field *field);
 /** The first text of pair 0 to vxm_field_metadata_count - 1; "" for others. */
 VXM_API const char *vxm_field_metadata_key(const vxm_field *field, int64_t index);
@@ -394,7 +394,7 @@ typedef struct vxm_color_options {
                   centre in model units, the same from the grid's corner on with its longest side as 1,
                   and the number of the component, from 1 on; may call float noise(vec3), -1 to 1 */
   const char
-      *format; /**< of a file: "npy", "ply", "vox", "schem", "litematic" or "glb"; NULL = by extension */
+      *format; /**< of a file: one that vxm_grid_format_traits calls VXM_FORMAT_COLORS; NULL = by extension */
   const vxm_mesh *mesh; /**< with VXM_COLOR_MESH: read with its colours (vxm_mesh_read_options), not repaired,
                            and in the same coordinates as the model's, which may be its repair */
   bool average; /**< with VXM_COLOR_MESH: the mean over the surface within a voxel, by area and in linear

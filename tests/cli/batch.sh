@@ -53,6 +53,12 @@ run 'cd table && find . -type f -name "*.npy*" | sort && cd ..'
 run 'cut -f 1-4 table/failures.tsv'
 run 'ls data/a/*.off | sed 1d >list.txt; voxmend batch list.txt -o listed -r 8 --shard 1/2 && find listed -name "*.binvox"'
 run 'voxmend batch list.txt -o listed -r 8 --shard 0/2 --pictures 0 && find listed -name "*.binvox" | sort'
+# Of files with the same bytes those for training are the duplicates, whatever their names; a picture is drawn of the other.
+mkdir -p splits/chair/train splits/chair/test splits/chair/val splits/chair/extra
+for name in train/a test/b; do cp in/cube.off splits/chair/$name.off; done
+for name in extra/a val/b train/c; do cp in/torus.off splits/chair/$name.off; done
+run 'voxmend batch splits -o once -r 8 -q && grep -o "\"status\":\"duplicate\"[^}]*\"item\":\"[^\"]*\"" once/index.html | sed "s/.*:\"//" | sort'
+run 'grep -o "\"picture\":\"" once/index.html | wc -l'
 # Other products.
 run 'voxmend batch "data/a/c*.off" -o made -r 8 --repair "--level closed --format obj" --remesh "-r 8" --augment "-n 2 -r 8 --format npy" --view "--size 40x30" --pictures 0'
 run 'cd made && find . -type f -not -path "./.batch/*" | sort && cd ..'

@@ -329,6 +329,118 @@ static void real_meshes(void **state) {
   assert_true(100 * count[1] >= 95 * count[0]);
 }
 
+/* ---- All faces the other way ---- */
+
+static bool is_turned(const vxm_soup *soup, const vxm_soup *other, size_t face) {
+  size_t count, at = 0;
+  const uint32_t *p = vxm_face(soup, face, &count), *q = vxm_face(other, face, &count);
+  while (q[at] != p[0])
+    at++;
+  bool same = true, turned = true;
+  for (size_t c = 0; c < count; c++) {
+    same &= q[(at + c) % count] == p[c];
+    turned &= q[(at + count - c) % count] == p[c];
+  }
+  assert_true(same != turned);
+  return turned;
+}
+
+/** Repairs a soup and its reverse, without what cuts faces apart: they differ in all faces, where nothing
+ * tells outside from inside, or in none. Returns whether they are the same. */
+static bool check_reversed(const vxm_soup *soup) {
+  vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+  options.level = VXM_LEVEL_CLEAN;
+  options.keep_duplicates = true; /* which of two doubled faces stays, the file's order tells */
+  vxm_soup *reversed;
+  assert_int_equal(vxm_soup_copy(&reversed, soup, NULL), VXM_OK);
+  for (size_t f = 0; f < reversed->face_count; f++)
+    reverse_face(reversed, f);
+  vxm_soup *out = repaired(soup, &options, NULL), *other = repaired(reversed, &options, NULL);
+  size_t turned = 0;
+  assert_int_equal(out->face_count, other->face_count);
+  for (size_t f = 0; f < out->face_count; f++)
+    turned += is_turned(out, other, f);
+  assert_true(turned == 0 || turned == out->face_count);
+  vxm_soup_destroy(other);
+  vxm_soup_destroy(out);
+  vxm_soup_destroy(reversed);
+  return turned == 0;
+}
+
+/** Boxes, some inward, that share edges and have walls and fins: what has no side of its own goes with the
+ * boxes. */
+static void reversed_soups_come_out_alike(void **state) {
+  vxm_rng rng = {11};
+  for (int round = 0; round < ROUNDS(2000); round++) {
+    vxm_soup *soup = new_soup(*state);
+    size_t boxes = vxm_rng_below(&rng, 2) ? 3 : 1, fins = (size_t)vxm_rng_below(&rng, 4);
+    for (size_t i = 0, cell = (size_t)vxm_rng_below(&rng, 8); i < boxes; i++, cell += 3) /* an odd number */
+      add_box(soup, 2.0 * (double)(cell % 2), 2.0 * (double)(cell / 2 % 2), 2.0 * (double)(cell / 4 % 2), 1,
+              vxm_rng_below(&rng, 2));
+    for (size_t i = 0; i < fins; i++) {
+      uint32_t a = (uint32_t)vxm_rng_below(&rng, soup->vertex_count), b = (a + 1) % 8, c;
+      if (a == b)
+        continue;
+      c = (uint32_t)soup->vertex_count;
+      add_vertex(soup, 7 * vxm_rng_unit(&rng), 7 * vxm_rng_unit(&rng), 7 * vxm_rng_unit(&rng));
+      add_triangle(soup, a, b, c);
+    }
+    check_reversed(soup);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** A box that is inside out, and a wall of it that goes on as a sheet: both are turned, or neither. */
+static void sheets_go_with_the_model(void **state) {
+  for (int inward = 0; inward < 2; inward++) {
+    vxm_soup *soup = new_soup(*state);
+    add_box(soup, 0, 0, 0, 1, inward);
+    uint32_t far = (uint32_t)soup->vertex_count;
+    add_vertex(soup, 5, 0, 0);
+    add_vertex(soup, 6, 0, 0);
+    add_vertex(soup, 5, 1, 0);
+    add_triangle(soup, far, far + (inward ? 2 : 1), far + (inward ? 1 : 2));
+    vxm_soup *out = repaired(soup, NULL, NULL);
+    const uint32_t *corner = out->indices + out->corner_count - 3;
+    assert_true(volume_of(out, 0, out->face_count - 1) > 0);
+    double turn = 0;
+    for (int c = 0; c < 3; c++) {
+      const double *p = vxm_position(out, corner[c]), *q = vxm_position(out, corner[(c + 1) % 3]);
+      turn += p[0] * q[1] - p[1] * q[0];
+    }
+    assert_true(turn > 0);
+    assert_true(check_reversed(soup));
+    vxm_soup_destroy(out);
+    vxm_soup_destroy(soup);
+  }
+}
+
+static void reverse_real_mesh(const shared_mesh *mesh, void *payload) {
+  int *count = payload;
+  vxm_context *context = context_of_threads(2);
+  vxm_soup *soup = read_soup(context, mesh->path);
+  if (soup->face_count < 20000) {
+    vxm_repair_options options = VXM_REPAIR_OPTIONS_INIT;
+    options.level = VXM_LEVEL_CLEAN;
+    options.keep_orientation = true;
+    vxm_soup *clean = repaired(soup, &options, NULL); /* which of two doubled faces is kept is not asked */
+    count[0]++;
+    count[1] += check_reversed(clean);
+    vxm_soup_destroy(clean);
+  }
+  vxm_soup_destroy(soup);
+  vxm_context_destroy(context);
+}
+
+static void real_meshes_reversed(void **state) {
+  (void)state;
+  int count[2] = {0};
+  if (for_each_shared_mesh(reverse_real_mesh, count) == 0)
+    skip();
+  print_message("%d of %d meshes have an outside\n", count[1], count[0]);
+  assert_true(2 * count[1] >= count[0]);
+}
+
 static void memory_may_run_out(void **state) {
   (void)state;
   bool passed = false;
@@ -364,6 +476,9 @@ int main(void) {
       cmocka_unit_test(small_random_soups),
       cmocka_unit_test(balance_is_kept),
       cmocka_unit_test(real_meshes),
+      cmocka_unit_test(reversed_soups_come_out_alike),
+      cmocka_unit_test(sheets_go_with_the_model),
+      cmocka_unit_test(real_meshes_reversed),
       cmocka_unit_test(memory_may_run_out),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

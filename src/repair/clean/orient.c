@@ -281,11 +281,19 @@ static bool is_closed_or_nearly(const patch *p) {
   return p->conflicts == 0 && p->area > 0 && vxm_vec3_length(p->vector_area) < SHEET * p->area;
 }
 
-/** Which patches to turn over: outward those that bound a volume, but for cavities. */
+/** What bounds no volume goes with the model. */
+static bool is_inward(const vxm_containment *nesting, size_t i, bool follow) {
+  return nesting->volume[i] < 0 || (nesting->volume[i] == 0 && follow);
+}
+
+/** Which patches to turn over: outward those that bound a volume, but for cavities. The others that `follow`
+ * the model are turned over where it came inside out. */
 static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, const uint8_t *held,
-                         uint8_t *over, uint8_t *known, size_t *chain) {
+                         bool follow, uint8_t *over, uint8_t *known, size_t *chain) {
   for (size_t i = 0; i < nesting->count; i++) {
     size_t depth = 0, at = i;
+    if (!solid[i])
+      over[i] = follow;
     for (; !known[at] && solid[at]; at = nesting->parent[at]) {
       chain[depth++] = at;
       if (nesting->parent[at] == VXM_NO_COMPONENT)
@@ -294,15 +302,48 @@ static void choose_sides(const vxm_containment *nesting, const uint8_t *solid, c
     while (depth > 0) {
       size_t child = chain[--depth];
       uint32_t parent = nesting->parent[child];
-      bool inward = nesting->volume[child] < 0;
+      bool inward = is_inward(nesting, child, follow);
       over[child] = inward;
-      if (parent != VXM_NO_COMPONENT && inward != (nesting->volume[parent] < 0))
+      if (parent != VXM_NO_COMPONENT && inward != is_inward(nesting, parent, follow))
         over[child] = over[parent]; /* against the parent it stays */
       if (held[child])
-        over[child] = 0;
+        over[child] = follow;
       known[child] = 1;
     }
   }
+}
+
+/** Volume about the middle of the model of all faces as they are by now. */
+static double volume_of_all(const orienting *o) {
+  double volume = 0;
+  for (size_t f = 0; f < o->soup->face_count; f++) {
+    size_t count;
+    const uint32_t *corner = vxm_face(o->soup, f, &count);
+    if (count > 0)
+      volume += vxm_polygon_cone(
+          vxm_vec3_between(vxm_position(o->soup, corner[0]), o->frame.centre, o->frame.scale), area_of(o, f));
+  }
+  return volume;
+}
+
+/** Of all area, which bounds a volume at least if it is to speak for what does not. */
+static const double speaking = 0.1;
+
+/** Whether the model came inside out: most of the area that bounds a volume does, if it is not next to
+ * nothing beside the rest, or, where none does but faces meet along edges that have more than two, all faces
+ * together. So the patches that have no side of
+ * their own stand to the others as they did, and reversing all faces of a file changes nothing about how they
+ * meet. */
+static bool is_inside_out(const orienting *o, const vxm_containment *nesting, const uint8_t *solid) {
+  double outward = 0, all = 0;
+  for (size_t i = 0; i < nesting->count; i++) {
+    all += o->patches[i].area;
+    if (solid[i] && nesting->parent[i] == VXM_NO_COMPONENT && nesting->volume[i] != 0)
+      outward += nesting->volume[i] < 0 ? -o->patches[i].area : o->patches[i].area;
+  }
+  if (outward == 0 && o->state->edges.crowded > 0)
+    return volume_of_all(o) < -NO_VOLUME;
+  return outward < -speaking * all;
 }
 
 /** What lies inside what, and the volumes; freed with vxm_containment_destroy. */
@@ -333,7 +374,7 @@ static bool turn_outward(orienting *o) {
     for (size_t i = 0; i < count; i++)
       if (!(fabs(nesting.volume[i]) * unit > NO_VOLUME * o->patches[i].area * o->frame.diagonal))
         nesting.volume[i] = 0;
-    choose_sides(&nesting, solid, held, over, known, chain);
+    choose_sides(&nesting, solid, held, is_inside_out(o, &nesting, solid), over, known, chain);
     bool any = memchr(over, 1, count) != NULL;
     for (size_t f = 0; any && f < o->soup->face_count; f++)
       if (over[o->label[f]]) {
@@ -384,9 +425,9 @@ static bool note_turned(orienting *o, bool *changed) {
 /**
  * Turns faces: consistent within a patch, and patches that are closed or nearly so outward. A patch inside
  * another one that was wound against it is a cavity and stays so. Patches that only together are consistent
- * about an edge stay as they are. Sheets keep the side that most of their
- * area has. A patch that no turning makes consistent gets as few inconsistent edges as a walk over its faces
- * leaves.
+ * about an edge stay as they are, and sheets keep the side that most of their area has; both are turned where
+ * the model as a whole came inside out. A patch that no turning makes consistent gets as few inconsistent
+ * edges as a walk over its faces leaves.
  */
 vxm_status vxm_pass_orientation(vxm_repair_state *state, bool *changed, vxm_error *error) {
   *changed = false;

@@ -6,8 +6,8 @@
 
 /* ---- Crossings ---- */
 
-vxm_status vxm_self_intersections_add(vxm_self_intersections *list, vxm_context *context,
-                                      const vxm_crossing *one, vxm_error *error) {
+vxm_status vxm_line_crossings_add(vxm_line_crossings *list, vxm_context *context, const vxm_crossing *one,
+                                  vxm_error *error) {
   void *block = list->items;
   vxm_status status = list->count < list->room ? VXM_OK
                                                : vxm_grow(context, &block, &list->room, list->count + 1,
@@ -28,7 +28,7 @@ static int by_line_part_height(const void *a, const void *b) {
   return p->height < q->height ? -1 : p->height > q->height;
 }
 
-void vxm_self_intersections_sort(vxm_self_intersections *list) {
+void vxm_line_crossings_sort(vxm_line_crossings *list) {
   if (list->count > 0)
     qsort(list->items, list->count, sizeof *list->items, by_line_part_height);
 }

@@ -12,16 +12,16 @@ typedef struct vxm_crossing {
   double height;
 } vxm_crossing;
 
-typedef struct vxm_self_intersections {
+typedef struct vxm_line_crossings {
   vxm_crossing *items;
   size_t count, room;
-} vxm_self_intersections;
+} vxm_line_crossings;
 
 /** @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT */
-vxm_status vxm_self_intersections_add(vxm_self_intersections *list, vxm_context *context,
-                                      const vxm_crossing *one, vxm_error *error);
+vxm_status vxm_line_crossings_add(vxm_line_crossings *list, vxm_context *context, const vxm_crossing *one,
+                                  vxm_error *error);
 /** Sorts by line, then by part, then by height. */
-void vxm_self_intersections_sort(vxm_self_intersections *list);
+void vxm_line_crossings_sort(vxm_line_crossings *list);
 
 /** The crossings of one part with one line. */
 typedef struct vxm_stretch {

@@ -13,9 +13,9 @@
 enum {
   PARTS_ASKED = 1 << 15,
   CELLS_MAX = 256,
-  CROSSINGS_MAX = 1 << 20, /**< with more of them, or */
-  TESTS_MAX = 1 << 27,     /**< of triangles with lines, every second line is left out: of thousands of plates
-                              every line may meet all */
+  /* Of thousands of plates every line may meet all: beyond either, every second line is left out. */
+  CROSSINGS_MAX = 1 << 20, /**< crossings of lines with triangles that are kept */
+  TESTS_MAX = 1 << 27,     /**< tests of a triangle with a line */
   ASK_TESTS = 1 << 18      /**< between two questions whether to go on */
 };
 
@@ -48,7 +48,7 @@ typedef struct asking {
   size_t *begin, *in_cell; /**< lines by cell */
   size_t cells;            /**< along each side */
   size_t tests, ask_after;
-  vxm_self_intersections of_before, of_after;
+  vxm_line_crossings of_before, of_after;
   vxm_spans covered;     /**< on one line, by parts of `after` */
   double *inside, *gone; /**< per part, twice: length by winding and by parity */
   vxm_lost_parts *out;
@@ -122,12 +122,12 @@ static double scatter(uint64_t key) {
 }
 
 static void place_lines(asking *a) {
-  size_t step = a->parts / PARTS_ASKED + 1;
+  size_t every = a->parts / PARTS_ASKED + 1; /* parts, of which one is asked */
   a->line_count = 0;
   a->step = 1;
   for (size_t p = 0; p < a->parts; p++)
     a->first_line[p] = SIZE_MAX;
-  for (size_t p = 0; p < a->parts; p += step) {
+  for (size_t p = 0; p < a->parts; p += every) {
     const double *box = a->box + 6 * p;
     a->first_line[p] = !a->open[p] && box[a->u] <= box[a->u + 3] ? a->line_count : SIZE_MAX;
     for (size_t i = 0; i < a->per_side * a->per_side && a->first_line[p] != SIZE_MAX; i++) {
@@ -182,7 +182,7 @@ static bool edge_crosses(const asking *a, const vxm_soup *soup, uint32_t p, uint
   return hv > lv ? turn > 0 : turn < 0;
 }
 
-static bool note_crossing(asking *a, vxm_self_intersections *list, const vxm_soup *soup, const uint32_t v[3],
+static bool note_crossing(asking *a, vxm_line_crossings *list, const vxm_soup *soup, const uint32_t v[3],
                           size_t l, uint32_t part) {
   const double *at = a->lines[l].at;
   bool covers = false;
@@ -199,7 +199,7 @@ static bool note_crossing(asking *a, vxm_self_intersections *list, const vxm_sou
   }
   double height = weight != 0 ? sum / weight : vxm_position(soup, v[0])[a->axis];
   const vxm_crossing crossing = {l, part, weight > 0 ? 1 : -1, height};
-  return vxm_self_intersections_add(list, a->context, &crossing, &a->error) == VXM_OK;
+  return vxm_line_crossings_add(list, a->context, &crossing, &a->error) == VXM_OK;
 }
 
 /** Where a triangle lies across the axis; false if it has a corner that is not finite. */
@@ -255,7 +255,7 @@ static bool cross_after(asking *a, const uint32_t v[3], uint32_t part) {
   return true;
 }
 
-static void keep_lines(vxm_self_intersections *list, size_t step) {
+static void keep_lines(vxm_line_crossings *list, size_t step) {
   size_t kept = 0;
   for (size_t i = 0; i < list->count; i++)
     if (list->items[i].line % step == 0)
@@ -360,8 +360,8 @@ static bool ask_axis(asking *a, int axis) {
   if (!cross_soup(a, a->before, a->part_before, cross_before) ||
       !cross_soup(a, a->after, a->part_after, cross_after))
     return false;
-  vxm_self_intersections_sort(&a->of_before);
-  vxm_self_intersections_sort(&a->of_after);
+  vxm_line_crossings_sort(&a->of_before);
+  vxm_line_crossings_sort(&a->of_after);
   return compare(a);
 }
 

@@ -11,8 +11,9 @@ static const double probe_weights[4][3] = {
     {1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.7, 0.15, 0.15}, {0.15, 0.7, 0.15}, {0.15, 0.15, 0.7}};
 /** What a probe counts if the voters disagree at one of its ends. */
 static const double doubtful = 0.3;
-/** Evidence below this part of the patch's area says nothing. */
-static const double evidence_min = 0.05;
+/** Evidence below this part of the patch's area says nothing. A little less than 0.05, which is what some
+ * whole numbers of probes sum up to: rounding must not decide about them. */
+static const double evidence_min = 0.05 - 1e-9;
 
 /** A triangle in voxel units. */
 typedef struct voxel_triangle {
@@ -200,6 +201,10 @@ typedef struct opinion {
   double area, evidence, came; /**< `came`: how it came, before triangles were made consistent */
 } opinion;
 
+static bool is_told(const opinion *o) {
+  return o->area > 0 && fabs(o->evidence) >= evidence_min * o->area;
+}
+
 static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
   vxm_facings *out = b->out;
   opinion *opinions = allocate(b, out->patch_count, sizeof *opinions);
@@ -215,11 +220,18 @@ static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
     o->came += b->turn[t] ? -length : length;
     o->evidence += length * evidence_of(b, &triangle, n, length, voters);
   }
+  /* the others face as they came, or the other way if most of those that are told came inside out */
+  double outward = 0;
+  for (size_t p = 0; p < out->patch_count; p++)
+    if (is_told(&opinions[p]))
+      outward += opinions[p].came * opinions[p].evidence < 0 ? -opinions[p].area : opinions[p].area;
   for (size_t t = 0; t < out->count; t++) {
     const opinion *o = &opinions[b->patch[t]];
-    bool told = fabs(o->evidence) >= evidence_min * o->area;
-    bool turned = b->turn[t] ^ ((told ? o->evidence : o->came) < 0);
-    out->facing[t] = !told && b->leave_untold ? VXM_FACING_UNTOLD : turned ? VXM_FACING_IN : VXM_FACING_OUT;
+    double facing = is_told(o) ? o->evidence : outward < 0 ? -o->came : o->came;
+    bool inward = b->turn[t] ^ (facing < 0);
+    out->facing[t] = !is_told(o) && b->leave_untold ? VXM_FACING_UNTOLD
+                     : inward                       ? VXM_FACING_IN
+                                                    : VXM_FACING_OUT;
   }
   vxm_free(out->context, opinions);
   return true;
