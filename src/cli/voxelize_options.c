@@ -74,8 +74,8 @@ const cli_option voxelize_options[] = {
      "number, which always has an answer [vote]"},
     {KEY_VOTE, "vote", "auto|majority|any|all",
      "what is inside where the mesh is open: auto = close holes by caps over their\n"
-     "rims; what stays open by x, y and z where they agree, and the winding number elsewhere; majority = what two\n"
-     "of x, y and z say; any, all = what any or all of the four say [auto]"},
+     "rims; what stays open by what x, y and z agree on, else by the winding number;\n"
+     "majority = what two of x, y and z say; any, all = what any or all of the four say [auto]"},
     {KEY_PARTS, "parts", "auto|group|whole",
      "what is voxelized alone, then united: auto = each closed component, and\n"
      "all others together; group = each component; whole = no splitting [auto]"},
