@@ -335,15 +335,17 @@ static const double speaking = 0.1;
  * their own stand to the others as they did, and reversing all faces of a file changes nothing about how they
  * meet. */
 static bool is_inside_out(const orienting *o, const vxm_containment *nesting, const uint8_t *solid) {
-  double outward = 0, all = 0;
+  double outward = 0, bounding = 0, all = 0;
   for (size_t i = 0; i < nesting->count; i++) {
     all += o->patches[i].area;
-    if (solid[i] && nesting->parent[i] == VXM_NO_COMPONENT && nesting->volume[i] != 0)
+    if (solid[i] && nesting->parent[i] == VXM_NO_COMPONENT && nesting->volume[i] != 0) {
       outward += nesting->volume[i] < 0 ? -o->patches[i].area : o->patches[i].area;
+      bounding += o->patches[i].area;
+    }
   }
   if (outward == 0 && o->state->edges.crowded > 0)
     return volume_of_all(o) < -NO_VOLUME;
-  return outward < -speaking * all;
+  return outward < 0 && bounding > speaking * all;
 }
 
 /** What lies inside what, and the volumes; freed with vxm_containment_destroy. */
