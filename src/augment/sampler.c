@@ -58,7 +58,7 @@ vxm_status vxm_sampler_make(vxm_sampler **out, vxm_context *context, const vxm_s
   sampler->rules.voxelize = *options->voxelize;
   sampler->rules.reach = vxm_noise_reach(options->displacement, options->displace);
   set_axis(&sampler->rules);
-  sampler->desks = vxm_calloc(own, (size_t)vxm_context_threads(own) + 1, sizeof *sampler->desks, &local);
+  sampler->workers = vxm_calloc(own, (size_t)vxm_context_threads(own) + 1, sizeof *sampler->workers, &local);
   status = local.code;
   if (status == VXM_OK)
     status = copy_rotations(sampler, &local);
@@ -78,8 +78,8 @@ void vxm_sampler_destroy(vxm_sampler *sampler) {
   if (!sampler)
     return;
   vxm_context *context = sampler->context;
-  for (int d = 0; sampler->desks && d <= vxm_context_threads(context); d++)
-    vxm_worker_destroy(&sampler->desks[d]);
+  for (int d = 0; sampler->workers && d <= vxm_context_threads(context); d++)
+    vxm_worker_destroy(&sampler->workers[d]);
   for (int s = 0; s < VXM_TEAM_MOST; s++)
     vxm_worker_destroy(&sampler->seats[s]);
   for (size_t s = 0; s < sampler->subject_count; s++)
@@ -87,7 +87,7 @@ void vxm_sampler_destroy(vxm_sampler *sampler) {
   vxm_noise_destroy(&sampler->noise, context);
   vxm_free(context, sampler->rotations);
   vxm_free(context, sampler->subjects);
-  vxm_free(context, sampler->desks);
+  vxm_free(context, sampler->workers);
   vxm_free(context, sampler);
   vxm_context_release(context);
 }
@@ -114,7 +114,7 @@ static bool is_there(const vxm_sampler *sampler, size_t place, uint32_t model) {
 /** Desks must not go on with a model that is gone, or with another at the same address. */
 static void detach(vxm_sampler *sampler) {
   for (int d = 0; d <= vxm_context_threads(sampler->context); d++)
-    sampler->desks[d].instance.of = NULL;
+    sampler->workers[d].instance.of = NULL;
   for (int s = 0; s < VXM_TEAM_MOST; s++)
     sampler->seats[s].instance.of = NULL;
 }
@@ -158,31 +158,31 @@ const vxm_sampler_model *vxm_sampler_find(const vxm_sampler *sampler, uint32_t m
 
 /* ---- One variant, by all threads ---- */
 
-static vxm_status need_desk(vxm_sampler *sampler, int desk, bool alone, vxm_error *error) {
-  vxm_worker *at = &sampler->desks[desk];
+static vxm_status need_worker(vxm_sampler *sampler, int worker, bool alone, vxm_error *error) {
+  vxm_worker *at = &sampler->workers[worker];
   return at->context ? VXM_OK : vxm_worker_create(at, sampler->context, alone, error);
 }
 
-/** The desk at which all threads work together. */
-static vxm_status need_table(vxm_worker **out, vxm_sampler *sampler, vxm_error *error) {
-  int table = vxm_context_threads(sampler->context);
-  *out = &sampler->desks[table];
-  return need_desk(sampler, table, false, error);
+/** The worker that all threads work for together. */
+static vxm_status need_shared(vxm_worker **out, vxm_sampler *sampler, vxm_error *error) {
+  int last = vxm_context_threads(sampler->context);
+  *out = &sampler->workers[last];
+  return need_worker(sampler, last, false, error);
 }
 
 vxm_status vxm_sampler_fill(vxm_sampler *sampler, vxm_grid *grid, const vxm_variant *variant,
                             vxm_error *error) {
-  vxm_worker *desk;
+  vxm_worker *worker;
   const vxm_sampler_model *subject = vxm_sampler_find(sampler, variant->model, error);
   if (!subject)
     return VXM_ERROR_ARGUMENT;
-  vxm_status status = need_table(&desk, sampler, error);
+  vxm_status status = need_shared(&worker, sampler, error);
   if (status != VXM_OK)
     return status;
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, variant);
   vxm_window window = vxm_window_of_grid(grid);
-  return vxm_worker_fill(desk, &window, subject, &placement, &sampler->noise, error);
+  return vxm_worker_fill(worker, &window, subject, &placement, &sampler->noise, error);
 }
 
 /* ---- Many variants ---- */
@@ -209,7 +209,7 @@ typedef struct batch_job {
   vxm_error error; /**< of that one */
 } batch_job;
 
-static vxm_status make_one(const batch_job *job, size_t v, vxm_worker *desk, vxm_error *error) {
+static vxm_status make_one(const batch_job *job, size_t v, vxm_worker *worker, vxm_error *error) {
   const vxm_sampler *sampler = job->sampler;
   const vxm_sampler_model *subject = vxm_sampler_find(sampler, job->variants[v].model, error);
   if (!subject)
@@ -217,11 +217,11 @@ static vxm_status make_one(const batch_job *job, size_t v, vxm_worker *desk, vxm
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, &job->variants[v]);
   int64_t resolution = sampler->rules.options.resolution;
-  desk->past = job->past;
+  worker->past = job->past;
   if (!job->paths)
-    return vxm_worker_write(desk, job->out + v * job->step, job->voxels, resolution,
+    return vxm_worker_write(worker, job->out + v * job->step, job->voxels, resolution,
                             sampler->rules.options.coverage, subject, &placement, &sampler->noise, error);
-  vxm_status status = vxm_worker_save(desk, job->paths[v], job->format, resolution, subject, &placement,
+  vxm_status status = vxm_worker_save(worker, job->paths[v], job->format, resolution, subject, &placement,
                                       &sampler->noise, error);
   if (job->written)
     job->written[v] = status == VXM_OK;
@@ -249,7 +249,7 @@ static void make_task(size_t v, int worker, void *payload) {
       return; /* one before the failure is made all the same, as it may fail too */
   }
   vxm_error error = VXM_ERROR_INIT;
-  vxm_status status = make_one(job, v, &job->sampler->desks[worker], &error);
+  vxm_status status = make_one(job, v, &job->sampler->workers[worker], &error);
   if (status != VXM_OK)
     note_failure(job, v, &error);
   vxm_task_progress_step(&job->watch);
@@ -259,7 +259,7 @@ static void make_task(size_t v, int worker, void *payload) {
 static vxm_status make_alone(batch_job *job, size_t count, vxm_error *error) {
   vxm_sampler *sampler = job->sampler;
   for (int d = 0; d < vxm_context_threads(sampler->context); d++) {
-    vxm_status status = need_desk(sampler, d, true, error);
+    vxm_status status = need_worker(sampler, d, true, error);
     if (status != VXM_OK)
       return status;
   }
@@ -323,10 +323,10 @@ static vxm_status make_all(batch_job *job, size_t count, vxm_error *error) {
   vxm_team *team = vxm_team_of(sampler->rules.voxelize.engine);
   if (team && count > 1)
     return make_by_team(job, team, count, error);
-  vxm_worker *desk;
-  vxm_status status = need_table(&desk, sampler, error);
+  vxm_worker *worker;
+  vxm_status status = need_shared(&worker, sampler, error);
   for (size_t v = 0; v < count && status == VXM_OK; v++)
-    status = make_one(job, v, desk, error);
+    status = make_one(job, v, worker, error);
   return status;
 }
 
@@ -344,32 +344,32 @@ vxm_status vxm_sampler_write(vxm_sampler *sampler, void *out, const vxm_variant 
   return make_all(&job, count, error);
 }
 
-static vxm_status keep_one(vxm_device_voxels *voxels, vxm_sampler *sampler, vxm_worker *desk, size_t index,
+static vxm_status keep_one(vxm_device_voxels *voxels, vxm_sampler *sampler, vxm_worker *worker, size_t index,
                            const vxm_variant *variant, vxm_error *error) {
   const vxm_sampler_model *subject = vxm_sampler_find(sampler, variant->model, error);
   if (!subject)
     return VXM_ERROR_ARGUMENT;
   vxm_placement placement;
   vxm_pose_draw(&placement, &sampler->rules, &subject->extent, variant);
-  return vxm_worker_keep(desk, voxels, (int64_t)index, subject, &placement, &sampler->noise, error);
+  return vxm_worker_keep(worker, voxels, (int64_t)index, subject, &placement, &sampler->noise, error);
 }
 
 vxm_status vxm_sampler_keep(vxm_device_voxels **out, vxm_sampler *sampler, const vxm_variant *variants,
                             size_t count, vxm_voxel_format format, vxm_error *error) {
   vxm_device_voxels *voxels = NULL;
-  vxm_worker *desk;
+  vxm_worker *worker;
   if (sampler->rules.options.coverage > 0)
     return vxm_fail(error, VXM_ERROR_ARGUMENT,
                     "voxels on a device: this sampler makes densities, which vxm_sampler_batch alone gives");
   vxm_space space = vxm_worker_space(sampler->rules.options.resolution);
-  vxm_status status = need_table(&desk, sampler, error);
+  vxm_status status = need_shared(&worker, sampler, error);
   if (status == VXM_OK)
     status = vxm_keep_create(&voxels, sampler->rules.voxelize.engine, &space, (int64_t)count, format, error);
   if (status != VXM_OK)
     return status;
   voxels->is_batch = true;
   for (size_t v = 0; v < count && status == VXM_OK; v++)
-    status = keep_one(voxels, sampler, desk, v, &variants[v], error);
+    status = keep_one(voxels, sampler, worker, v, &variants[v], error);
   if (status == VXM_OK)
     *out = voxels;
   else

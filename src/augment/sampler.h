@@ -13,7 +13,7 @@ struct vxm_sampler {
   vxm_noise noise;
   vxm_sampler_model *subjects; /**< in the order of their numbers */
   size_t subject_count, subject_room;
-  vxm_worker *desks;               /**< one for each thread, and then one for all of them together */
+  vxm_worker *workers;             /**< one for each thread, and then one for all of them together */
   vxm_worker seats[VXM_TEAM_MOST]; /**< one for each device, where several work at once */
 };
 

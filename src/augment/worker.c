@@ -23,14 +23,14 @@ vxm_status vxm_worker_create(vxm_worker *out, vxm_context *context, bool alone, 
   return status;
 }
 
-void vxm_worker_destroy(vxm_worker *desk) {
-  if (!desk->context)
+void vxm_worker_destroy(vxm_worker *worker) {
+  if (!worker->context)
     return;
-  vxm_model_instance_destroy(&desk->instance);
-  vxm_free(desk->context, desk->words);
-  vxm_grid_destroy(desk->grid);
-  vxm_context_release(desk->context);
-  *desk = (vxm_worker){0};
+  vxm_model_instance_destroy(&worker->instance);
+  vxm_free(worker->context, worker->words);
+  vxm_grid_destroy(worker->grid);
+  vxm_context_release(worker->context);
+  *worker = (vxm_worker){0};
 }
 
 /* ---- Variants ---- */
@@ -54,15 +54,15 @@ static vxm_vertex_transform motion_of(const vxm_sampler_model *subject, const vx
                                 .noise_serial = noise->serial};
 }
 
-static vxm_status place(vxm_worker *desk, int64_t resolution, const vxm_sampler_model *subject,
+static vxm_status place(vxm_worker *worker, int64_t resolution, const vxm_sampler_model *subject,
                         const vxm_placement *placement, const vxm_noise *noise, bool is_field,
                         vxm_error *error) {
-  vxm_model_instance *instance = &desk->instance;
+  vxm_model_instance *instance = &worker->instance;
   vxm_status status = vxm_model_instance_attach(instance, subject->model, error);
   if (status != VXM_OK)
     return status;
-  if (desk->engine)
-    instance->pass.solid.engine = desk->engine;
+  if (worker->engine)
+    instance->pass.solid.engine = worker->engine;
   vxm_space space = vxm_worker_space(resolution);
   vxm_lattice lattice = vxm_lattice_of(&space);
   vxm_variation variation = {.points = motion_of(subject, placement, noise, false),
@@ -72,27 +72,28 @@ static vxm_status place(vxm_worker *desk, int64_t resolution, const vxm_sampler_
   return vxm_model_instance_place(instance, &lattice, &variation, error);
 }
 
-static vxm_status fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
+static vxm_status fill(vxm_worker *worker, const vxm_window *window, const vxm_sampler_model *subject,
                        const vxm_placement *placement, const vxm_noise *noise, bool is_field,
                        vxm_error *error) {
-  vxm_status status = place(desk, window->fast_dim, subject, placement, noise, is_field, error);
-  return status == VXM_OK ? vxm_model_pass_fill(&desk->instance.pass, window, error) : status;
+  vxm_status status = place(worker, window->fast_dim, subject, placement, noise, is_field, error);
+  return status == VXM_OK ? vxm_model_pass_fill(&worker->instance.pass, window, error) : status;
 }
 
-vxm_status vxm_worker_keep(vxm_worker *desk, vxm_device_voxels *voxels, int64_t index,
+vxm_status vxm_worker_keep(vxm_worker *worker, vxm_device_voxels *voxels, int64_t index,
                            const vxm_sampler_model *subject, const vxm_placement *placement,
                            const vxm_noise *noise, vxm_error *error) {
-  vxm_status status = place(desk, voxels->info.dims[0], subject, placement, noise, false, error);
-  return status == VXM_OK ? vxm_model_pass_keep(&desk->instance.pass, voxels, index, error) : status;
+  vxm_status status = place(worker, voxels->info.dims[0], subject, placement, noise, false, error);
+  return status == VXM_OK ? vxm_model_pass_keep(&worker->instance.pass, voxels, index, error) : status;
 }
 
-vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
+vxm_status vxm_worker_fill(vxm_worker *worker, const vxm_window *window, const vxm_sampler_model *subject,
                            const vxm_placement *placement, const vxm_noise *noise, vxm_error *error) {
-  return fill(desk, window, subject, placement, noise, false, error);
+  return fill(worker, window, subject, placement, noise, false, error);
 }
 
-static vxm_status make_room(vxm_worker *desk, size_t words, vxm_error *error) {
-  return vxm_renew(desk->context, (void **)&desk->words, &desk->word_room, words, sizeof *desk->words, error);
+static vxm_status make_room(vxm_worker *worker, size_t words, vxm_error *error) {
+  return vxm_renew(worker->context, (void **)&worker->words, &worker->word_room, words, sizeof *worker->words,
+                   error);
 }
 
 /** Whether packed voxels have the form of a window's words, so that it can be filled where they belong. */
@@ -103,54 +104,54 @@ static bool is_window(const void *out, vxm_voxel_format voxels, int64_t resoluti
 }
 
 /** The shares of voxels. */
-static vxm_status write_shares(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
+static vxm_status write_shares(vxm_worker *worker, void *out, vxm_voxel_format voxels, int64_t resolution,
                                int coverage, const vxm_sampler_model *subject, const vxm_placement *placement,
                                const vxm_noise *noise, vxm_error *error) {
   vxm_space space = vxm_worker_space(resolution * coverage);
   vxm_window window = vxm_window_of(&space, layout_of_arrays, 0, space.dims[0]);
-  vxm_status status = make_room(desk, window.slice_words * (size_t)space.dims[0], error);
+  vxm_status status = make_room(worker, window.slice_words * (size_t)space.dims[0], error);
   if (status != VXM_OK)
     return status;
-  window.words = desk->words;
-  status = fill(desk, &window, subject, placement, noise, true, error);
+  window.words = worker->words;
+  status = fill(worker, &window, subject, placement, noise, true, error);
   if (status == VXM_OK)
-    vxm_density_write(out, desk->context, &window, coverage, voxels);
+    vxm_density_write(out, worker->context, &window, coverage, voxels);
   return status;
 }
 
-vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
+vxm_status vxm_worker_write(vxm_worker *worker, void *out, vxm_voxel_format voxels, int64_t resolution,
                             int coverage, const vxm_sampler_model *subject, const vxm_placement *placement,
                             const vxm_noise *noise, vxm_error *error) {
   if (coverage > 0)
-    return write_shares(desk, out, voxels, resolution, coverage, subject, placement, noise, error);
+    return write_shares(worker, out, voxels, resolution, coverage, subject, placement, noise, error);
   vxm_space space = vxm_worker_space(resolution);
   vxm_window window = vxm_window_of(&space, layout_of_arrays, 0, resolution);
   bool direct = is_window(out, voxels, resolution);
   if (!direct) {
-    vxm_status status = make_room(desk, window.slice_words * (size_t)resolution, error);
+    vxm_status status = make_room(worker, window.slice_words * (size_t)resolution, error);
     if (status != VXM_OK)
       return status;
   }
-  window.words = direct ? out : desk->words;
-  vxm_status status = vxm_worker_fill(desk, &window, subject, placement, noise, error);
+  window.words = direct ? out : worker->words;
+  vxm_status status = vxm_worker_fill(worker, &window, subject, placement, noise, error);
   if (status == VXM_OK && !direct)
     vxm_unpack_row(out, voxels, window.words, (size_t)resolution * (size_t)resolution, resolution,
-                   desk->past);
+                   worker->past);
   return status;
 }
 
-vxm_status vxm_worker_save(vxm_worker *desk, const char *path, const char *format, int64_t resolution,
+vxm_status vxm_worker_save(vxm_worker *worker, const char *path, const char *format, int64_t resolution,
                            const vxm_sampler_model *subject, const vxm_placement *placement,
                            const vxm_noise *noise, vxm_error *error) {
   vxm_space space = vxm_worker_space(resolution);
-  vxm_status status = desk->grid ? VXM_OK : vxm_grid_create(&desk->grid, desk->context, &space, error);
+  vxm_status status = worker->grid ? VXM_OK : vxm_grid_create(&worker->grid, worker->context, &space, error);
   if (status != VXM_OK)
     return status;
-  vxm_window window = vxm_window_of_grid(desk->grid);
-  status = vxm_worker_fill(desk, &window, subject, placement, noise, error);
+  vxm_window window = vxm_window_of_grid(worker->grid);
+  status = vxm_worker_fill(worker, &window, subject, placement, noise, error);
   if (status != VXM_OK)
     return status;
-  status = vxm_gridio_write(desk->grid, path, format, error);
-  desk->write_failed = status != VXM_OK;
+  status = vxm_gridio_write(worker->grid, path, format, error);
+  worker->write_failed = status != VXM_OK;
   return status;
 }

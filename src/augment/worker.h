@@ -18,24 +18,24 @@ typedef struct vxm_worker {
 
 /** @param alone whether one thread works here while others work elsewhere; else all of the context's do */
 vxm_status vxm_worker_create(vxm_worker *out, vxm_context *context, bool alone, vxm_error *error);
-void vxm_worker_destroy(vxm_worker *desk);
+void vxm_worker_destroy(vxm_worker *worker);
 
 /** Voxelizes a variant into a window, which is all of a cube. @return as vxm_sampler_batch */
-vxm_status vxm_worker_fill(vxm_worker *desk, const vxm_window *window, const vxm_sampler_model *subject,
+vxm_status vxm_worker_fill(vxm_worker *worker, const vxm_window *window, const vxm_sampler_model *subject,
                            const vxm_placement *placement, const vxm_noise *noise, vxm_error *error);
 
 /** The same into variant `index` of voxels that stay on the engine's device. */
-vxm_status vxm_worker_keep(vxm_worker *desk, vxm_device_voxels *voxels, int64_t index,
+vxm_status vxm_worker_keep(vxm_worker *worker, vxm_device_voxels *voxels, int64_t index,
                            const vxm_sampler_model *subject, const vxm_placement *placement,
                            const vxm_noise *noise, vxm_error *error);
 
 /** The same into memory, as [x][y][z] in C order; `coverage` as in vxm_sampler_options. */
-vxm_status vxm_worker_write(vxm_worker *desk, void *out, vxm_voxel_format voxels, int64_t resolution,
+vxm_status vxm_worker_write(vxm_worker *worker, void *out, vxm_voxel_format voxels, int64_t resolution,
                             int coverage, const vxm_sampler_model *subject, const vxm_placement *placement,
                             const vxm_noise *noise, vxm_error *error);
 
 /** The same into a file. */
-vxm_status vxm_worker_save(vxm_worker *desk, const char *path, const char *format, int64_t resolution,
+vxm_status vxm_worker_save(vxm_worker *worker, const char *path, const char *format, int64_t resolution,
                            const vxm_sampler_model *subject, const vxm_placement *placement,
                            const vxm_noise *noise, vxm_error *error);
 

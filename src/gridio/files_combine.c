@@ -4,10 +4,10 @@
 #include "gridio/values_combine.h"
 
 /** What a worker has of its own. */
-typedef struct desk {
+typedef struct scratch {
   unsigned char *stored, *other; /**< a node of a file, as it is and as a result has it */
   int64_t *voxels;               /**< of each label; NULL = there are none */
-} desk;
+} scratch;
 
 typedef struct job {
   vxm_context *context;
@@ -17,7 +17,7 @@ typedef struct job {
   vxm_octree_reader **nodes;
   uint16_t **numbers; /**< of the labels of each file, but for the first */
   vxm_values_type type;
-  desk *desks;
+  scratch *scratches;
   vxm_about about;
 } job;
 
@@ -41,8 +41,8 @@ static bool take(const job *j, size_t file, const int64_t at[3], unsigned char *
   return is_one;
 }
 
-static void count_labels(const desk *d, const vxm_space *space, const int64_t at[3], const uint16_t *values,
-                         bool is_one) {
+static void count_labels(const scratch *d, const vxm_space *space, const int64_t at[3],
+                         const uint16_t *values, bool is_one) {
   if (is_one) {
     d->voxels[values[0]] +=
         (int64_t)vxm_node_count(space, at, 0) * vxm_node_count(space, at, 1) * vxm_node_count(space, at, 2);
@@ -56,7 +56,7 @@ static void count_labels(const desk *d, const vxm_space *space, const int64_t at
 
 static bool make_node(void *payload, int worker, const int64_t at[3], void *values) {
   job *j = payload;
-  desk *d = &j->desks[worker];
+  scratch *d = &j->scratches[worker];
   size_t size = vxm_values_bytes(j->type);
   bool is_one = take(j, 0, at, d->stored, values);
   for (size_t f = 1; f < j->count; f++) {
@@ -83,9 +83,9 @@ static vxm_status allocate(job *j, vxm_error *error) {
   j->numbers = vxm_calloc(j->context, j->count, sizeof *j->numbers, &local);
   for (size_t f = 1; f < j->count && are_labels && local.code == VXM_OK; f++)
     j->numbers[f] = vxm_alloc(j->context, VXM_LABEL_NUMBERS, sizeof *j->numbers[f], &local);
-  j->desks = vxm_calloc(j->context, workers, sizeof *j->desks, &local);
+  j->scratches = vxm_calloc(j->context, workers, sizeof *j->scratches, &local);
   for (size_t w = 0; w < workers && local.code == VXM_OK; w++) {
-    desk *d = &j->desks[w];
+    scratch *d = &j->scratches[w];
     d->stored = vxm_alloc(j->context, VXM_NODE_VOXELS, size, &local);
     d->other = vxm_alloc(j->context, VXM_NODE_VOXELS, size, &local);
     if (are_labels)
@@ -103,14 +103,14 @@ static void release(job *j) {
     if (j->numbers)
       vxm_free(j->context, j->numbers[f]);
   }
-  for (int w = 0; j->desks && w < vxm_context_threads(j->context); w++) {
-    vxm_free(j->context, j->desks[w].stored);
-    vxm_free(j->context, j->desks[w].other);
-    vxm_free(j->context, j->desks[w].voxels);
+  for (int w = 0; j->scratches && w < vxm_context_threads(j->context); w++) {
+    vxm_free(j->context, j->scratches[w].stored);
+    vxm_free(j->context, j->scratches[w].other);
+    vxm_free(j->context, j->scratches[w].voxels);
   }
   vxm_free(j->context, j->nodes);
   vxm_free(j->context, j->numbers);
-  vxm_free(j->context, j->desks);
+  vxm_free(j->context, j->scratches);
   vxm_about_destroy(&j->about);
 }
 
@@ -145,7 +145,7 @@ static void sum_labels(job *j) {
   vxm_label_table *table = &j->about.table;
   for (size_t label = 1; label <= table->count; label++)
     for (int w = 0; w < vxm_context_threads(j->context); w++)
-      table->voxels[label - 1] += j->desks[w].voxels[label];
+      table->voxels[label - 1] += j->scratches[w].voxels[label];
 }
 
 static vxm_status write(job *j, const char *path, vxm_error *error) {

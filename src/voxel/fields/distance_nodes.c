@@ -10,13 +10,13 @@
 enum { SIDE = VXM_NODE_SIDE };
 
 /** What a worker has of its own. */
-typedef struct desk {
+typedef struct scratch {
   vxm_band_tally tally;
   vxm_band_tile *tile; /**< with families */
   uint32_t *near;
   vxm_search *search; /**< with a tree */
   double *squares;
-} desk;
+} scratch;
 
 struct vxm_distance_nodes {
   vxm_context *context;
@@ -29,7 +29,7 @@ struct vxm_distance_nodes {
   const vxm_band_kernels *kernels;
   vxm_distance_bvh_tile_fn *find;
   vxm_node_boxes boxes; /**< of the families */
-  desk *desks;
+  scratch *scratches;
   int workers;
 };
 
@@ -39,7 +39,7 @@ struct vxm_distance_nodes {
 static bool measure_by_families(vxm_distance_nodes *n, int worker, const int64_t at[3]) {
   const vxm_band_families *families = n->search.families;
   const uint32_t *row = n->boxes.row + (size_t)worker * n->boxes.count;
-  desk *d = &n->desks[worker];
+  scratch *d = &n->scratches[worker];
   if (n->boxes.row_count[worker] == 0)
     return false;
   for (int a = 0; a < 3; a++) {
@@ -60,13 +60,13 @@ static bool measure_by_tree(vxm_distance_nodes *n, int worker, const int64_t at[
     tile.count[a] = vxm_node_count(n->space, at, a);
     tile.step[a] = n->space->voxel_size[a] / n->search.side;
   }
-  return n->find(n->desks[worker].search, n->desks[worker].squares, &tile);
+  return n->find(n->scratches[worker].search, n->scratches[worker].squares, &tile);
 }
 
 /** The values of a node that has been measured by the tree. */
 static void finish_tree(const vxm_distance_nodes *n, int worker, const int64_t at[3], float *values,
                         const uint64_t *rows) {
-  desk *d = &n->desks[worker];
+  scratch *d = &n->scratches[worker];
   const int count = vxm_node_count(n->space, at, 0);
   for (int z = 0; z < vxm_node_count(n->space, at, 2); z++)
     for (int y = 0; y < vxm_node_count(n->space, at, 1); y++) {
@@ -79,7 +79,7 @@ static void finish_tree(const vxm_distance_nodes *n, int worker, const int64_t a
 
 static bool make_node(void *payload, int worker, const int64_t at[3], void *values) {
   vxm_distance_nodes *n = payload;
-  desk *d = &n->desks[worker];
+  scratch *d = &n->scratches[worker];
   uint64_t rows[SIDE * SIDE] = {0};
   const int64_t count[3] = {vxm_node_count(n->space, at, 0), vxm_node_count(n->space, at, 1),
                             vxm_node_count(n->space, at, 2)};
@@ -128,11 +128,11 @@ static vxm_status list_families(vxm_distance_nodes *n, vxm_error *error) {
   return status;
 }
 
-static vxm_status make_desks(vxm_distance_nodes *n, vxm_error *error) {
+static vxm_status make_scratches(vxm_distance_nodes *n, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  n->desks = vxm_calloc(n->context, (size_t)n->workers, sizeof *n->desks, &local);
+  n->scratches = vxm_calloc(n->context, (size_t)n->workers, sizeof *n->scratches, &local);
   for (int w = 0; w < n->workers && local.code == VXM_OK; w++) {
-    desk *d = &n->desks[w];
+    scratch *d = &n->scratches[w];
     d->tally = (vxm_band_tally){.least = INFINITY, .greatest = -INFINITY};
     if (n->search.families) {
       d->tile = vxm_alloc(n->context, 1, sizeof *d->tile, &local);
@@ -164,7 +164,7 @@ uint64_t vxm_distance_nodes_bytes(const vxm_model *model, const vxm_distance_opt
                       : vxm_distance_bvh_search_bytes(triangles) + VXM_TILE_POINTS * sizeof(double);
   if (vxm_distance_is_narrow(options))
     bytes += vxm_node_boxes_bytes(triangles, workers);
-  return bytes + (uint64_t)workers * (sizeof(desk) + each);
+  return bytes + (uint64_t)workers * (sizeof(scratch) + each);
 }
 
 static vxm_status make(vxm_distance_nodes *n, const vxm_distance_options *options, vxm_error *error) {
@@ -178,7 +178,7 @@ static vxm_status make(vxm_distance_nodes *n, const vxm_distance_options *option
                                         options, error);
   if (status == VXM_OK && n->search.families)
     status = list_families(n, error);
-  return status == VXM_OK ? make_desks(n, error) : status;
+  return status == VXM_OK ? make_scratches(n, error) : status;
 }
 
 vxm_status vxm_distance_nodes_create(vxm_distance_nodes **out, vxm_model *model, const vxm_space *space,
@@ -208,13 +208,13 @@ void vxm_distance_nodes_destroy(vxm_distance_nodes *n) {
   if (!n)
     return;
   vxm_model_close(n->model, n->pass);
-  for (int w = 0; n->desks && w < n->workers; w++) {
-    vxm_free(n->context, n->desks[w].tile);
-    vxm_free(n->context, n->desks[w].near);
-    vxm_search_destroy(n->desks[w].search);
-    vxm_free(n->context, n->desks[w].squares);
+  for (int w = 0; n->scratches && w < n->workers; w++) {
+    vxm_free(n->context, n->scratches[w].tile);
+    vxm_free(n->context, n->scratches[w].near);
+    vxm_search_destroy(n->scratches[w].search);
+    vxm_free(n->context, n->scratches[w].squares);
   }
-  vxm_free(n->context, n->desks);
+  vxm_free(n->context, n->scratches);
   vxm_node_boxes_destroy(&n->boxes);
   vxm_distance_search_destroy(&n->search);
   vxm_sparse_destroy(n->solid);
@@ -239,7 +239,7 @@ vxm_status vxm_distance_nodes_report(vxm_distance_report *report, vxm_distance_n
   int64_t inside = 0;
   *report = (vxm_distance_report){.voxelize = report->voxelize, .min = INFINITY, .max = -INFINITY};
   for (int w = 0; w < n->workers; w++) {
-    const vxm_band_tally *t = &n->desks[w].tally;
+    const vxm_band_tally *t = &n->scratches[w].tally;
     report->exact += t->exact;
     report->min = fmin(report->min, (double)t->least);
     report->max = fmax(report->max, (double)t->greatest);

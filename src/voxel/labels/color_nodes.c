@@ -8,10 +8,10 @@
 enum { SIDE = VXM_NODE_SIDE, ROWS = SIDE * SIDE };
 
 /** What a worker has of its own. */
-typedef struct desk {
+typedef struct scratch {
   uint16_t *parts; /**< of the node at hand, where they are wanted */
   uint32_t near;
-} desk;
+} scratch;
 
 struct vxm_color_nodes {
   vxm_context *context;
@@ -24,7 +24,7 @@ struct vxm_color_nodes {
   vxm_mesh_painter *painter; /**< NULL = another way */
   vxm_color_fn color;        /**< from elsewhere */
   const void *payload;
-  desk *desks;
+  scratch *scratches;
   int workers;
 };
 
@@ -55,7 +55,7 @@ static void color_each(const vxm_color_nodes *n, const int64_t at[3], uint8_t *v
 
 static bool make_node(void *payload, int worker, const int64_t at[3], void *to) {
   vxm_color_nodes *n = payload;
-  desk *d = &n->desks[worker];
+  scratch *d = &n->scratches[worker];
   uint8_t *values = to;
   uint64_t rows[ROWS];
   const vxm_sparse *voxels = n->parts ? vxm_label_nodes_voxels(n->parts) : n->voxels;
@@ -96,11 +96,11 @@ static vxm_status make_voxels(vxm_color_nodes *n, vxm_voxelize_report *report, v
                           : status;
 }
 
-static vxm_status make_desks(vxm_color_nodes *n, vxm_error *error) {
+static vxm_status make_scratches(vxm_color_nodes *n, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
-  n->desks = vxm_calloc(n->context, (size_t)n->workers, sizeof *n->desks, &local);
+  n->scratches = vxm_calloc(n->context, (size_t)n->workers, sizeof *n->scratches, &local);
   for (int w = 0; w < n->workers && n->parts && local.code == VXM_OK; w++)
-    n->desks[w].parts = vxm_alloc(n->context, VXM_NODE_VOXELS, sizeof *n->desks[w].parts, &local);
+    n->scratches[w].parts = vxm_alloc(n->context, VXM_NODE_VOXELS, sizeof *n->scratches[w].parts, &local);
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
   return local.code;
@@ -125,7 +125,7 @@ vxm_status vxm_color_nodes_create(vxm_color_nodes **out, vxm_voxelize_report *re
   if (status == VXM_OK && options->by == VXM_COLOR_MESH)
     status = vxm_mesh_painter_create(&n->painter, n->context, options->mesh, &local);
   if (status == VXM_OK)
-    status = make_desks(n, &local);
+    status = make_scratches(n, &local);
   if (status != VXM_OK) {
     vxm_color_nodes_destroy(n);
     vxm_error_pass(error, &local);
@@ -138,9 +138,9 @@ vxm_status vxm_color_nodes_create(vxm_color_nodes **out, vxm_voxelize_report *re
 void vxm_color_nodes_destroy(vxm_color_nodes *n) {
   if (!n)
     return;
-  for (int w = 0; n->desks && w < n->workers; w++)
-    vxm_free(n->context, n->desks[w].parts);
-  vxm_free(n->context, n->desks);
+  for (int w = 0; n->scratches && w < n->workers; w++)
+    vxm_free(n->context, n->scratches[w].parts);
+  vxm_free(n->context, n->scratches);
   vxm_mesh_painter_destroy(n->painter);
   if (n->labelling.soup)
     vxm_face_labels_destroy(&n->labelling);

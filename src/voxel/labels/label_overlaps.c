@@ -76,8 +76,9 @@ static void make_solid(size_t task, int worker, void *payload) {
   const vxm_label_overlap *claim = &c->claim[task];
   if (atomic_load_explicit(&c->has_failed, memory_order_relaxed))
     return;
-  vxm_status status = vxm_label_component_fill(&c->desks[worker], &claim->window, &c->pieces, claim->piece,
-                                               c->options, &c->lattice, c->batch > 1, &c->errors[worker]);
+  vxm_status status =
+      vxm_label_component_fill(&c->scratches[worker], &claim->window, &c->pieces, claim->piece, c->options,
+                               &c->lattice, c->batch > 1, &c->errors[worker]);
   if (status != VXM_OK)
     atomic_store_explicit(&c->has_failed, true, memory_order_relaxed);
 }
@@ -215,7 +216,7 @@ static vxm_status allocate(vxm_label_overlaps *c, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   c->words = vxm_alloc(c->context, words_needed(c), sizeof *c->words, &local);
   c->errors = vxm_calloc(c->context, threads, sizeof *c->errors, &local);
-  c->desks = vxm_calloc(c->context, threads, sizeof *c->desks, &local);
+  c->scratches = vxm_calloc(c->context, threads, sizeof *c->scratches, &local);
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
   return local.code;
@@ -237,9 +238,9 @@ vxm_status vxm_label_overlaps_run(vxm_label_overlaps *claims, vxm_error *error) 
 }
 
 void vxm_label_overlaps_end(vxm_label_overlaps *claims) {
-  for (int w = 0; claims->desks && w < vxm_context_threads(claims->context); w++)
-    vxm_label_component_desk_destroy(&claims->desks[w], claims->context);
-  vxm_free(claims->context, claims->desks);
+  for (int w = 0; claims->scratches && w < vxm_context_threads(claims->context); w++)
+    vxm_label_component_scratch_destroy(&claims->scratches[w], claims->context);
+  vxm_free(claims->context, claims->scratches);
   vxm_free(claims->context, claims->errors);
   vxm_free(claims->context, claims->words);
   vxm_label_bvh_destroy(claims->bvh);

@@ -29,10 +29,10 @@ typedef struct vxm_label_overlaps {
   uint16_t *values;   /**< in the layout of the window; 0 = no label so far */
   vxm_label_bvh *bvh; /**< made when first needed */
   vxm_label_components pieces;
-  vxm_label_component_desk *desks; /**< of each thread */
-  vxm_error *errors;               /**< of each thread */
-  uint64_t *words;                 /**< of the solids at hand */
-  size_t batch;                    /**< how many these are: one, or small ones, each made by one thread */
+  vxm_label_component_scratch *scratches; /**< of each thread */
+  vxm_error *errors;                      /**< of each thread */
+  uint64_t *words;                        /**< of the solids at hand */
+  size_t batch; /**< how many these are: one, or small ones, each made by one thread */
   vxm_label_overlap claim[VXM_CLAIMS_BATCH];
   vxm_row_tile tiles; /**< rows and slices that they have voxels in */
   atomic_bool has_failed;

@@ -11,10 +11,10 @@ typedef struct job {
   const vxm_voxelize_options *options;
   const vxm_lattice *lattice;
   vxm_label_components pieces;
-  size_t *first;                   /**< piece of each label, and the end of the last */
-  size_t *small;                   /**< labels of small pieces alone */
-  vxm_label_component_desk *desks; /**< of each thread */
-  vxm_error *errors;               /**< of each thread */
+  size_t *first;                          /**< piece of each label, and the end of the last */
+  size_t *small;                          /**< labels of small pieces alone */
+  vxm_label_component_scratch *scratches; /**< of each thread */
+  vxm_error *errors;                      /**< of each thread */
   vxm_task_progress watch;
 } job;
 
@@ -38,8 +38,8 @@ static vxm_status make_set(job *j, size_t label, int worker, vxm_error *error) {
   for (size_t p = j->first[label]; p < j->first[label + 1] && status == VXM_OK; p++) {
     const vxm_label_component *piece = &j->pieces.pieces[p];
     if (piece->begin[0] < piece->end[0])
-      status = vxm_label_component_add(&list, &j->desks[worker], &j->pieces, piece, j->options, j->lattice,
-                                       is_small(piece), error);
+      status = vxm_label_component_add(&list, &j->scratches[worker], &j->pieces, piece, j->options,
+                                       j->lattice, is_small(piece), error);
   }
   list.status = status;
   if (status == VXM_OK && list.count == 0)
@@ -92,7 +92,7 @@ static vxm_status allocate(job *j, vxm_error *error) {
   j->first = vxm_calloc(context, labels + 1, sizeof *j->first, &local);
   j->small = vxm_alloc(context, labels, sizeof *j->small, &local);
   j->errors = vxm_calloc(context, threads, sizeof *j->errors, &local);
-  j->desks = vxm_calloc(context, threads, sizeof *j->desks, &local);
+  j->scratches = vxm_calloc(context, threads, sizeof *j->scratches, &local);
   if (local.code != VXM_OK)
     vxm_error_pass(error, &local);
   return local.code;
@@ -119,9 +119,9 @@ vxm_status vxm_label_sets_create(vxm_label_sets *out, const vxm_face_labels *lab
     find_pieces(&j);
     status = make_sets(&j, error);
   }
-  for (int w = 0; j.desks && w < vxm_context_threads(context); w++)
-    vxm_label_component_desk_destroy(&j.desks[w], context);
-  vxm_free(context, j.desks);
+  for (int w = 0; j.scratches && w < vxm_context_threads(context); w++)
+    vxm_label_component_scratch_destroy(&j.scratches[w], context);
+  vxm_free(context, j.scratches);
   vxm_free(context, j.errors);
   vxm_free(context, j.small);
   vxm_free(context, j.first);

@@ -26,62 +26,64 @@ static size_t slots_for(size_t corners) {
   return count;
 }
 
-static vxm_status clear_desk(vxm_label_component_desk *desk, vxm_context *context, size_t faces,
-                             size_t corners, vxm_error *error) {
+static vxm_status clear_scratch(vxm_label_component_scratch *scratch, vxm_context *context, size_t faces,
+                                size_t corners, vxm_error *error) {
   vxm_status status = VXM_OK;
-  if (!desk->soup)
-    status = vxm_soup_create(&desk->soup, context, "piece", error);
+  if (!scratch->soup)
+    status = vxm_soup_create(&scratch->soup, context, "piece", error);
   if (status == VXM_OK)
-    status = vxm_soup_reserve(desk->soup, 0, faces, corners, error);
+    status = vxm_soup_reserve(scratch->soup, 0, faces, corners, error);
   if (status == VXM_OK)
-    status =
-        vxm_grow(context, (void **)&desk->vertex, &desk->vertex_room, corners, sizeof *desk->vertex, error);
+    status = vxm_grow(context, (void **)&scratch->vertex, &scratch->vertex_room, corners,
+                      sizeof *scratch->vertex, error);
   if (status == VXM_OK)
-    status = vxm_grow(context, (void **)&desk->slots, &desk->slot_room, slots_for(corners),
-                      sizeof *desk->slots, error);
+    status = vxm_grow(context, (void **)&scratch->slots, &scratch->slot_room, slots_for(corners),
+                      sizeof *scratch->slots, error);
   if (status != VXM_OK)
     return status;
-  memset(desk->slots, 0, slots_for(corners) * sizeof *desk->slots);
-  desk->soup->vertex_count = desk->soup->face_count = desk->soup->corner_count = 0;
+  memset(scratch->slots, 0, slots_for(corners) * sizeof *scratch->slots);
+  scratch->soup->vertex_count = scratch->soup->face_count = scratch->soup->corner_count = 0;
   return VXM_OK;
 }
 
 /** The place of a vertex in the soup, where it is put if it is not there. */
-static vxm_status take_vertex(vxm_label_component_desk *desk, const vxm_soup *from, uint32_t vertex,
+static vxm_status take_vertex(vxm_label_component_scratch *scratch, const vxm_soup *from, uint32_t vertex,
                               size_t mask, uint32_t *out, vxm_error *error) {
   size_t slot = (size_t)vxm_mix(vertex) & mask;
-  for (; desk->slots[slot]; slot = (slot + 1) & mask) {
-    *out = desk->slots[slot] - 1;
-    if (desk->vertex[*out] == vertex)
+  for (; scratch->slots[slot]; slot = (slot + 1) & mask) {
+    *out = scratch->slots[slot] - 1;
+    if (scratch->vertex[*out] == vertex)
       return VXM_OK;
   }
   const double *p = vxm_position(from, vertex);
-  *out = (uint32_t)desk->soup->vertex_count;
-  desk->vertex[*out] = vertex;
-  desk->slots[slot] = *out + 1;
-  return vxm_soup_add_vertex(desk->soup, p[0], p[1], p[2], error);
+  *out = (uint32_t)scratch->soup->vertex_count;
+  scratch->vertex[*out] = vertex;
+  scratch->slots[slot] = *out + 1;
+  return vxm_soup_add_vertex(scratch->soup, p[0], p[1], p[2], error);
 }
 
-static vxm_status gather_faces(vxm_label_component_desk *desk, const vxm_label_components *pieces,
+static vxm_status gather_faces(vxm_label_component_scratch *scratch, const vxm_label_components *pieces,
                                const vxm_label_component *piece, vxm_error *error) {
   size_t corners = corners_of(pieces, piece), mask = slots_for(corners) - 1;
-  vxm_status status = clear_desk(desk, pieces->context, piece->face_end - piece->first_face, corners, error);
-  vxm_soup *soup = desk->soup;
+  vxm_status status =
+      clear_scratch(scratch, pieces->context, piece->face_end - piece->first_face, corners, error);
+  vxm_soup *soup = scratch->soup;
   for (size_t i = piece->first_face; i < piece->face_end && status == VXM_OK; i++) {
     size_t n;
     const uint32_t *corner = vxm_face(pieces->soup, pieces->faces[i], &n);
     for (size_t c = 0; c < n && status == VXM_OK; c++)
-      status = take_vertex(desk, pieces->soup, corner[c], mask, &soup->indices[soup->corner_count++], error);
+      status =
+          take_vertex(scratch, pieces->soup, corner[c], mask, &soup->indices[soup->corner_count++], error);
     soup->offsets[++soup->face_count] = soup->corner_count;
   }
   return status;
 }
 
-void vxm_label_component_desk_destroy(vxm_label_component_desk *desk, vxm_context *context) {
-  vxm_soup_destroy(desk->soup);
-  vxm_free(context, desk->vertex);
-  vxm_free(context, desk->slots);
-  *desk = (vxm_label_component_desk){.soup = NULL};
+void vxm_label_component_scratch_destroy(vxm_label_component_scratch *scratch, vxm_context *context) {
+  vxm_soup_destroy(scratch->soup);
+  vxm_free(context, scratch->vertex);
+  vxm_free(context, scratch->slots);
+  *scratch = (vxm_label_component_scratch){.soup = NULL};
 }
 
 uint64_t vxm_label_component_bytes(const vxm_label_components *pieces, const vxm_label_component *piece) {
@@ -148,7 +150,7 @@ static vxm_status fill(vxm_model *model, const vxm_window *window, const vxm_lat
 }
 
 /** The faces of a piece as a model; NULL where none has an area. */
-static vxm_status make_model(vxm_model **out, vxm_label_component_desk *desk,
+static vxm_status make_model(vxm_model **out, vxm_label_component_scratch *scratch,
                              const vxm_label_components *pieces, const vxm_label_component *piece,
                              const vxm_voxelize_options *options, vxm_error *error) {
   vxm_voxelize_options solid = *options;
@@ -158,9 +160,9 @@ static vxm_status make_model(vxm_model **out, vxm_label_component_desk *desk,
   solid.engine = NULL;        /* pieces are too small for what an engine costs to start */
   vxm_error local = VXM_ERROR_INIT;
   *out = NULL;
-  vxm_status status = gather_faces(desk, pieces, piece, &local);
+  vxm_status status = gather_faces(scratch, pieces, piece, &local);
   if (status == VXM_OK)
-    status = vxm_model_make(out, desk->soup, &solid, &local);
+    status = vxm_model_make(out, scratch->soup, &solid, &local);
   if (status == VXM_ERROR_EMPTY)
     return VXM_OK;
   if (status != VXM_OK)
@@ -168,14 +170,14 @@ static vxm_status make_model(vxm_model **out, vxm_label_component_desk *desk,
   return status;
 }
 
-vxm_status vxm_label_component_fill(vxm_label_component_desk *desk, const vxm_window *window,
+vxm_status vxm_label_component_fill(vxm_label_component_scratch *scratch, const vxm_window *window,
                                     const vxm_label_components *pieces, const vxm_label_component *piece,
                                     const vxm_voxelize_options *options, const vxm_lattice *lattice,
                                     bool at_once, vxm_error *error) {
   vxm_lattice own = *lattice;
   own.space = vxm_label_component_space(piece, &lattice->space);
   vxm_model *model;
-  vxm_status status = make_model(&model, desk, pieces, piece, options, error);
+  vxm_status status = make_model(&model, scratch, pieces, piece, options, error);
   if (status == VXM_OK && model)
     status = fill(model, window, &own, at_once, error);
   else if (status == VXM_OK)
@@ -263,13 +265,13 @@ static void add_clipped(const vxm_sparse_piece *from, void *payload) {
                             from->bits & vxm_octree_bits_within(from->position, begin, end));
 }
 
-vxm_status vxm_label_component_add(vxm_octree_pieces *out, vxm_label_component_desk *desk,
+vxm_status vxm_label_component_add(vxm_octree_pieces *out, vxm_label_component_scratch *scratch,
                                    const vxm_label_components *pieces, const vxm_label_component *piece,
                                    const vxm_voxelize_options *options, const vxm_lattice *lattice,
                                    bool is_small, vxm_error *error) {
   vxm_model *model;
   vxm_sparse *octree = NULL;
-  vxm_status status = make_model(&model, desk, pieces, piece, options, error);
+  vxm_status status = make_model(&model, scratch, pieces, piece, options, error);
   if (status != VXM_OK || !model)
     return status;
   bool is_without = has_lone_sheet(model);

@@ -61,8 +61,8 @@ static vxm_status lock(pthread_mutex_t *mutex, vxm_context *context, vxm_error *
   return status;
 }
 
-static vxm_status make_chain(vxm_winding_chain *out, const vxm_mesh_analysis *analysis, vxm_facing_finder find,
-                             void *payload, vxm_error *error) {
+static vxm_status make_chain(vxm_winding_chain *out, const vxm_mesh_analysis *analysis,
+                             vxm_facing_finder find, void *payload, vxm_error *error) {
   vxm_facings turns = {.context = analysis->context};
   vxm_status status = find(&turns, analysis, payload, error);
   if (status == VXM_OK)

@@ -36,7 +36,7 @@ void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis);
 
 /** Finds out which triangles face inward, from what `payload` says. */
 typedef vxm_status (*vxm_facing_finder)(vxm_facings *out, const vxm_mesh_analysis *analysis, void *payload,
-                                      vxm_error *error);
+                                        vxm_error *error);
 
 /**
  * The chain of the triangles that `find` finds, made if there is none yet. Threads that ask for it meanwhile

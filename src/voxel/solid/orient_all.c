@@ -3,8 +3,7 @@
 #include "voxel/solid/orient_open.h"
 #include "voxel/solid/solid_votes.h"
 
-static vxm_status find(vxm_facings *out, const vxm_mesh_analysis *analysis, void *payload,
-                       vxm_error *error) {
+static vxm_status find(vxm_facings *out, const vxm_mesh_analysis *analysis, void *payload, vxm_error *error) {
   vxm_workspace *workspace = payload;
   vxm_orient_pass look = {.window = {.words = NULL}};
   uint64_t *solid = NULL;

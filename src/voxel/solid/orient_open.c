@@ -23,8 +23,7 @@ vxm_status vxm_orient_pass_begin(vxm_orient_pass *out, const vxm_mesh_analysis *
 }
 
 /** By what three axes see of the open parts, from both ends. */
-static vxm_status find(vxm_facings *out, const vxm_mesh_analysis *analysis, void *payload,
-                       vxm_error *error) {
+static vxm_status find(vxm_facings *out, const vxm_mesh_analysis *analysis, void *payload, vxm_error *error) {
   vxm_orient_pass look = {.window = {.words = NULL}};
   vxm_status status = vxm_orient_pass_begin(&look, analysis, payload, error);
   size_t begin = vxm_voted_begin(analysis, &look.pass.options), end = analysis->triangles.split.part_count;

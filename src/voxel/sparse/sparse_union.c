@@ -15,7 +15,7 @@ enum {
 typedef uint32_t flip;
 
 /** What a thread works with. */
-typedef struct desk {
+typedef struct scratch {
   flip *flips; /**< of a slab, strip after strip */
   uint32_t *parts;
   size_t capacity;
@@ -26,7 +26,7 @@ typedef struct desk {
   uint8_t *has_flips; /**< per node, in whole words */
   /* A bit per node: whether something is united in it, whether all of it is full. */
   uint64_t *is_united, *is_full;
-} desk;
+} scratch;
 
 /** Where a row of a strip lies: in which row of bricks in the order of vxm_strip_add_node, and at which bits
  * of them. */
@@ -46,14 +46,14 @@ typedef struct sparse_state {
   bool many;        /**< parts are united, or rounds */
   bool again;       /**< there may be something in the strips already */
   uint64_t last[4]; /**< per x: the voxels of a brick of the last node that the space has */
-  desk *desks;
+  scratch *scratches;
   strip_place places[256];
   vxm_task_progress watch;
 } sparse_state;
 
 /* ---- Out of the bins ---- */
 
-static bool reserve(sparse_state *state, desk *d, size_t count) {
+static bool reserve(sparse_state *state, scratch *d, size_t count) {
   if (count <= d->capacity)
     return true;
   vxm_context *context = state->builder->context;
@@ -90,7 +90,7 @@ static void count_records(int shift, uint32_t (*ends)[STREAMS], const uint64_t *
 }
 
 /** Counts the flips of each strip; returns how many there are. */
-static size_t count_flips(const sparse_state *state, desk *d, size_t slab) {
+static size_t count_flips(const sparse_state *state, scratch *d, size_t slab) {
   int shift = state->row_shift + 8;
   size_t total = 0;
   memset(d->ends, 0, state->builder->across * sizeof *d->ends);
@@ -142,7 +142,7 @@ static void put_records(decoding how, flip *flips, uint32_t (*ends)[STREAMS], co
 }
 
 /** Puts each flip of a piece where the next one of its strip goes. */
-static void put_piece(const sparse_state *state, desk *d, const vxm_crossing_bin_piece *piece,
+static void put_piece(const sparse_state *state, scratch *d, const vxm_crossing_bin_piece *piece,
                       uint32_t part) {
   decoding how = {state->row_shift, vxm_low_bits((unsigned)state->row_shift)};
   if (!state->many && !piece->is_bitmap) {
@@ -162,7 +162,7 @@ static void put_piece(const sparse_state *state, desk *d, const vxm_crossing_bin
 }
 
 /** Sorts the flips of a slab by strip, and by part within; false if memory ran out. */
-static bool sort_flips(sparse_state *state, desk *d, size_t slab) {
+static bool sort_flips(sparse_state *state, scratch *d, size_t slab) {
   enum { WORKERS_MAX = 256 };
   vxm_crossing_bin_reader reader[WORKERS_MAX];
   size_t workers = state->bins->workers;
@@ -197,7 +197,7 @@ static void add_bits(uint64_t *words, size_t begin, size_t end) {
 }
 
 /** A node that a part reaches. */
-static void put_node(sparse_state *state, desk *d, size_t worker, size_t x, uint64_t *bricks) {
+static void put_node(sparse_state *state, scratch *d, size_t worker, size_t x, uint64_t *bricks) {
   if (x == state->nodes - 1)
     for (int b = 0; b < VXM_STRIP_BRICKS; b++)
       bricks[b] &= state->last[b / 16];
@@ -212,7 +212,7 @@ static void put_node(sparse_state *state, desk *d, size_t worker, size_t x, uint
 }
 
 /** Nodes begin..end-1 without flips: `inside` says for each row of bricks what is inside all along. */
-static void put_gap(sparse_state *state, desk *d, size_t worker, size_t begin, size_t end,
+static void put_gap(sparse_state *state, scratch *d, size_t worker, size_t begin, size_t end,
                     const uint64_t inside[16]) {
   uint64_t any = 0, all = ~UINT64_C(0), bricks[VXM_STRIP_BRICKS];
   for (int r = 0; r < 16; r++) {
@@ -249,7 +249,7 @@ static void flip_voxels(const strip_place *restrict places, uint64_t *restrict f
 }
 
 /** Flips of one part: the prefix XOR along x, node after node. Returns the OR of what is inside. */
-static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const flip *flips, size_t count) {
+static uint64_t fold_flips(sparse_state *state, scratch *d, size_t worker, const flip *flips, size_t count) {
   uint64_t inside[16] = {0}, any = 0;
   size_t done = 0;
   flip_voxels(state->places, d->flipped, d->has_flips, flips, count);
@@ -279,7 +279,7 @@ static uint64_t fold_flips(sparse_state *state, desk *d, size_t worker, const fl
 /* ---- Strips ---- */
 
 /** Takes what rounds before have left in a strip. */
-static void take_strip(desk *d, const vxm_strip *strip) {
+static void take_strip(scratch *d, const vxm_strip *strip) {
   for (size_t i = 0; strip->items && i < strip->count; i++) {
     const vxm_strip_item *item = &strip->items[i];
     if (item->seed.full == ~UINT64_C(0)) {
@@ -292,7 +292,7 @@ static void take_strip(desk *d, const vxm_strip *strip) {
 }
 
 /** Adds what was united, and clears it. */
-static void put_united(sparse_state *state, desk *d, size_t worker) {
+static void put_united(sparse_state *state, scratch *d, size_t worker) {
   for (size_t w = 0; w < (state->nodes + 63) / 64; w++) {
     for (uint64_t left = d->is_united[w] | d->is_full[w]; left; left &= left - 1) {
       unsigned b = (unsigned)__builtin_ctzll(left);
@@ -313,7 +313,7 @@ static void touch(const sparse_state *state, uint32_t part) {
   atomic_store_explicit(&state->job->has_voxels[part], 1, memory_order_relaxed);
 }
 
-static void do_strip(sparse_state *state, desk *d, size_t worker, size_t y, size_t z, size_t begin,
+static void do_strip(sparse_state *state, scratch *d, size_t worker, size_t y, size_t z, size_t begin,
                      size_t end) {
   vxm_strip *strip = &state->builder->strips[z * state->builder->across + y];
   if (state->again)
@@ -337,7 +337,7 @@ static void do_strip(sparse_state *state, desk *d, size_t worker, size_t y, size
 
 static void do_slab(size_t task, int worker, void *payload) {
   sparse_state *state = payload;
-  desk *d = &state->desks[worker];
+  scratch *d = &state->scratches[worker];
   if (vxm_task_progress_stopped(&state->watch, worker) || !sort_flips(state, d, task))
     return;
   size_t begin = 0;
@@ -383,13 +383,13 @@ static void shape(sparse_state *state) {
   }
 }
 
-static vxm_status make_desks(sparse_state *state, size_t workers, vxm_error *error) {
+static vxm_status make_scratches(sparse_state *state, size_t workers, vxm_error *error) {
   vxm_context *context = state->builder->context;
   vxm_error local = VXM_ERROR_INIT;
   size_t words = state->nodes * VXM_STRIP_BRICKS, marks = (state->nodes + 63) / 64;
-  state->desks = vxm_calloc(context, workers, sizeof *state->desks, &local);
+  state->scratches = vxm_calloc(context, workers, sizeof *state->scratches, &local);
   for (size_t w = 0; w < workers && local.code == VXM_OK; w++) {
-    desk *d = &state->desks[w];
+    scratch *d = &state->scratches[w];
     d->ends = vxm_alloc(context, state->builder->across, sizeof *d->ends, &local);
     d->flipped = vxm_calloc(context, words, sizeof *d->flipped, &local);
     d->united = state->many ? vxm_calloc(context, words, sizeof *d->united, &local) : NULL;
@@ -402,10 +402,10 @@ static vxm_status make_desks(sparse_state *state, size_t workers, vxm_error *err
   return local.code;
 }
 
-static void free_desks(sparse_state *state, size_t workers) {
+static void free_scratches(sparse_state *state, size_t workers) {
   vxm_context *context = state->builder->context;
-  for (size_t w = 0; state->desks && w < workers; w++) {
-    desk *d = &state->desks[w];
+  for (size_t w = 0; state->scratches && w < workers; w++) {
+    scratch *d = &state->scratches[w];
     vxm_free(context, d->flips);
     vxm_free(context, d->parts);
     vxm_free(context, d->ends);
@@ -414,7 +414,7 @@ static void free_desks(sparse_state *state, size_t workers) {
     vxm_free(context, d->has_flips);
     vxm_free(context, d->is_united);
   }
-  vxm_free(context, state->desks);
+  vxm_free(context, state->scratches);
 }
 
 /** Slabs of a window: so few that its crossings are not too many, so many that all threads have work. */
@@ -468,13 +468,13 @@ vxm_status vxm_sparse_union(vxm_octree_builder *builder, vxm_workspace *workspac
                         .kernels = vxm_kernels_get(),
                         .many = job->part_end > 1};
   shape(&state);
-  vxm_status status = make_desks(&state, builder->workers, error);
+  vxm_status status = make_scratches(&state, builder->workers, error);
   vxm_task_progress_start(&state.watch, builder->context, "voxelizing", 1, error);
   size_t step = window_slabs(&state);
   for (size_t first = 0; first < builder->deep && status == VXM_OK && state.watch.status == VXM_OK;
        first += step)
     status = do_window(&state, workspace, first, builder->deep - first < step ? builder->deep : first + step,
                        error);
-  free_desks(&state, builder->workers);
+  free_scratches(&state, builder->workers);
   return status == VXM_OK ? vxm_task_progress_end(&state.watch) : status;
 }
