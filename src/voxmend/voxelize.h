@@ -53,7 +53,7 @@ typedef enum vxm_method {
 typedef enum vxm_vote {
   VXM_VOTE_AUTO = 0, /**< holes closed by caps over their rims; what stays open by agreement of x, y and z,
                         as far as a line along them meets an even number of faces, and by the winding number
-                        where two axes at least do not agree */
+                        where not all three say inside, nor two outside and none inside */
   VXM_VOTE_MAJORITY, /**< at least two of x, y and z (Chen & Tu); the tetrahedra cannot overturn that */
   VXM_VOTE_ANY,      /**< at least one voter */
   VXM_VOTE_ALL       /**< every voter */

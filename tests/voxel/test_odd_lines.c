@@ -108,7 +108,8 @@ static bool next_voxel(int64_t voxel[3], const vxm_window *w) {
   return false;
 }
 
-/** What the axes say of a voxel that do not abstain: at least two are needed, and all must agree. */
+/** What the axes say of a voxel that do not abstain: two of them may tell outside and three inside, where
+ * none says anything else. */
 typedef enum verdict { OUTSIDE, INSIDE, CONTESTED } verdict;
 
 static verdict verdict_of(const bool inside[3], const bool odd[3]) {
@@ -117,7 +118,7 @@ static verdict verdict_of(const bool inside[3], const bool odd[3]) {
     count += !odd[a];
     votes += !odd[a] && inside[a];
   }
-  return count < 2 || (votes != 0 && votes != count) ? CONTESTED : votes != 0 ? INSIDE : OUTSIDE;
+  return votes == 3 ? INSIDE : votes == 0 && count >= 2 ? OUTSIDE : CONTESTED;
 }
 
 static verdict expected(const subject *s, const int64_t voxel[3]) {
@@ -185,7 +186,7 @@ static void polls_elect_what_the_oracle_elects(void **state) {
   }
   vxm_workspace_destroy(&workspace);
   print_message("outside %d, inside %d, contested %d\n", counts[0], counts[1], counts[2]);
-  assert_true(counts[OUTSIDE] > 1000 && counts[INSIDE] > 1000 && counts[CONTESTED] > 1000);
+  assert_true(counts[OUTSIDE] > 1000 && counts[INSIDE] > 500 && counts[CONTESTED] > 1000);
 }
 
 /** Of many parts a line is odd if it is for one. */

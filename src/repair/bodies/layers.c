@@ -56,7 +56,7 @@ static size_t list_samples(vxm_layers *l, uint8_t *bound, vxm_set_side *sets, si
   return count;
 }
 
-/** Takes what most of the samples of a patch say; where none has sides that differ by its copies, warnings
+/** Takes what most of the samples of a patch say; where none has sides that differ by its copies, finds
  * between what they lie. */
 static void take_answers(vxm_layers *l, const vxm_set_side *sets, size_t count, int32_t *reach) {
   size_t root = sets[0].set;

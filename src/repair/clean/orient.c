@@ -326,14 +326,13 @@ static double volume_of_all(const orienting *o) {
   return volume;
 }
 
-/** Of all area, which bounds a volume at least if it is to speak for what does not. */
-static const double speaking = 0.1;
+/** A sum of areas or volumes below that part of all is rounding. */
+static const double some = 1e-6;
 
-/** Whether the model came inside out: most of the area that bounds a volume does, if it is not next to
- * nothing beside the rest, or, where none does but faces meet along edges that have more than two, all faces
- * together. So the patches that have no side of
- * their own stand to the others as they did, and reversing all faces of a file changes nothing about how they
- * meet. */
+/** Whether the model came inside out: what bounds a volume is a quarter of its area or more, and most of that
+ * inward; or, where nothing does but faces meet along edges that have more than two, all faces together are.
+ * So the patches that have no side of their own stand to the others as they did, and reversing all faces of a
+ * file changes nothing about how they meet. */
 static bool is_inside_out(const orienting *o, const vxm_containment *nesting, const uint8_t *solid) {
   double outward = 0, bounding = 0, all = 0;
   for (size_t i = 0; i < nesting->count; i++) {
@@ -344,8 +343,8 @@ static bool is_inside_out(const orienting *o, const vxm_containment *nesting, co
     }
   }
   if (outward == 0 && o->state->edges.crowded > 0)
-    return volume_of_all(o) < -NO_VOLUME;
-  return outward < 0 && bounding > speaking * all;
+    return volume_of_all(o) < -some;
+  return 4 * bounding > all && outward < -some * all;
 }
 
 /** What lies inside what, and the volumes; freed with vxm_containment_destroy. */

@@ -19,8 +19,8 @@ typedef struct vxm_axis_vote_job {
   const vxm_snapped_points *placed;
   size_t part;
   bool tetra;      /**< ask the tetrahedra, too, as parity with cones */
-  vxm_vote rule;   /**< VXM_VOTE_AUTO elects what the axes hold that do not abstain (odd_lines.h), if they are
-                      two at least and agree, and leaves the rest to others */
+  vxm_vote rule;   /**< VXM_VOTE_AUTO elects what x, y and z all hold, and leaves to others on what fewer than
+                      two   that do not abstain agree (odd_lines.h), and what two alone hold */
   bool fresh;      /**< the window's words are replaced; else voxels are added to them */
   uint64_t *mask;  /**< NULL, or words laid out as the window's that become the contested voxels */
   uint64_t *carry; /**< a slice of words: what is open along slices at the begin of the window; becomes that

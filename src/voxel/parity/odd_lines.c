@@ -156,10 +156,11 @@ void vxm_odd_lines_abstain(const vxm_odd_lines *lines, size_t slice, uint64_t *c
                      a = i + 1 == window->row_words ? along_row & tail : along_row;
       if ((a | b | c) == 0)
         continue;
-      /* Votes that count, and where two axes or three abstain. */
+      /* Votes that count, and where two axes or three abstain. It takes two votes to call a voxel outside,
+       * and three to call it inside: what is open beside it and above it is often a skirt, not a body. */
       const uint64_t x = voters[0][at] & ~a, y = voters[1][at] & ~b, z = voters[2][at] & ~c;
       const uint64_t few = (a & b) | (c & (a | b)), some = x | y | z, two = (x & y) | (z & (x | y)),
-                     inside = (x | a) & (y | b) & (z | c) & ~few;
+                     inside = x & y & z;
       voters[0][at] = some | few;
       voters[1][at] = inside;
       voters[2][at] = inside | two | (few & some);

@@ -42,9 +42,9 @@ uint64_t vxm_odd_lines_bytes(const vxm_window *window, size_t parts);
 bool vxm_odd_lines_in(const vxm_odd_lines *lines, size_t slice);
 
 /**
- * Takes the votes of axes that abstain out of a slice, such that a count of the three tells it all: three are
- * for inside where two axes or three are left that all say so, none where they all say outside. Elsewhere
- * it is one or two: two where most of the axes that are left say inside.
+ * Takes the votes of axes that abstain out of a slice, such that a count of the three tells it all: it is
+ * three where no axis abstains and all say inside, none where two axes or three are left and say outside.
+ * Elsewhere it is one or two: two where most of the axes that are left say inside.
  *
  * @param voters words of the slice for the fast, the middle and the slow axis
  */

@@ -201,6 +201,10 @@ typedef struct opinion {
   double area, evidence, came; /**< `came`: how it came, before triangles were made consistent */
 } opinion;
 
+/** Twice the area, in square voxels, of a patch about which the grid can tell anything: probes reach past all
+ * of a smaller one. */
+static const double told_area = 2 * 4;
+
 static bool is_told(const opinion *o) {
   return o->area > 0 && fabs(o->evidence) >= evidence_min * o->area;
 }
@@ -229,9 +233,9 @@ static bool turn_patches(builder *b, const uint64_t *const voters[3]) {
     const opinion *o = &opinions[b->patch[t]];
     double facing = is_told(o) ? o->evidence : outward < 0 ? -o->came : o->came;
     bool inward = b->turn[t] ^ (facing < 0);
-    out->facing[t] = !is_told(o) && b->leave_untold ? VXM_FACING_UNTOLD
-                     : inward                       ? VXM_FACING_IN
-                                                    : VXM_FACING_OUT;
+    out->facing[t] = !is_told(o) && b->leave_untold && o->area >= told_area ? VXM_FACING_UNTOLD
+                     : inward                                               ? VXM_FACING_IN
+                                                                            : VXM_FACING_OUT;
   }
   vxm_free(out->context, opinions);
   return true;
