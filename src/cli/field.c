@@ -6,22 +6,10 @@
 #include <inttypes.h>
 #include <string.h>
 
-/** Pictures have whole numbers. */
-static void leave_out_pictures(cli_formats *formats) {
-  int kept = 0;
-  for (int f = 0; formats->name[f]; f++)
-    if (strcmp(formats->name[f], "png") != 0)
-      formats->name[kept++] = formats->name[f];
-  formats->name[kept] = NULL;
-}
-
 cli_formats cli_field_formats(const cli_field *field) {
-  cli_formats formats = cli_formats_with(field->color    ? VXM_FORMAT_COLORS
-                                         : field->labels ? VXM_FORMAT_LABELS
-                                                         : VXM_FORMAT_NUMBERS);
-  if (field->distance || (field->coverage && field->coverage_options.scalar == VXM_FLOAT32))
-    leave_out_pictures(&formats);
-  return formats;
+  return cli_formats_with(field->color    ? VXM_FORMAT_COLORS
+                          : field->labels ? VXM_FORMAT_LABELS
+                                          : VXM_FORMAT_NUMBERS);
 }
 
 bool cli_field_wanted(const cli_field *field) {

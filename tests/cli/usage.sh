@@ -90,8 +90,6 @@ for options in '-r 8 --voxel-size 1' '--like y.npy -r 8' '--like y.npy --pad 1' 
   run "voxmend voxelize in/cube.off -o x.npy $options"
 done
 run 'voxmend voxelize in/cube.off -o x.binvox --coverage 4'
-run 'voxmend voxelize in/cube.off -o x_%d.png --coverage 4'
-run 'voxmend voxelize in/cube.off -o x_%d.png --coverage 4 --scalar uint8 -r 2 -q && ls x_* && rm x_*'
 run 'voxmend voxelize in/cube.off -o x.stl --polygons keep'
 run 'voxmend repair in/cube.off -o x.stl --polygons keep'
 

@@ -207,8 +207,8 @@ static void lines_are_those_of_the_oracle(void **state) {
     vxm_window window = vxm_window_of(&s.space, layout, from, all);
     size_t part_count = s.triangles.split.part_count;
     vxm_odd_lines lines;
-    assert_int_equal(vxm_odd_lines_find(&lines, &window, &s.placed, &s.triangles, 0, part_count, NULL),
-                     VXM_OK);
+    assert_int_equal(
+        vxm_odd_lines_find(&lines, context, &window, &s.placed, &s.triangles, 0, part_count, NULL), VXM_OK);
     parts += part_count > 1;
     int64_t voxel[3] = {0, 0, 0};
     voxel[layout.slow] = from;

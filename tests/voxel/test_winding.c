@@ -184,7 +184,7 @@ static void test_signs_are_those_of_the_sum(void **state) {
     check_signs(soup, &cube, round, 2e-6, &set, &ties);
     vxm_soup_destroy(soup);
   }
-  assert_true(set > 5000 && ties < 60 * SIDE * SIDE);
+  assert_true(set > 80 * ROUNDS(60) && ties < ROUNDS(60) * SIDE * SIDE);
 }
 
 /** Triangles with corners as far as a million voxels from a cube in their midst, and others within it. */

@@ -294,8 +294,8 @@ vxm_status vxm_axis_vote(vxm_workspace *workspace, const vxm_window *window, con
     status =
         vxm_crossing_bins_reset(&workspace->bins, workers, SETS, state.slabs.count, state.slabs.words, error);
   if (status == VXM_OK && job->rule == VXM_VOTE_AUTO)
-    status =
-        vxm_odd_lines_find(&state.odd, window, job->placed, job->triangles, job->part, job->part + 1, error);
+    status = vxm_odd_lines_find(&state.odd, context, window, job->placed, job->triangles, job->part,
+                                job->part + 1, error);
   if (status != VXM_OK)
     return status;
   vxm_error local = VXM_ERROR_INIT;

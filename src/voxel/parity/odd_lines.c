@@ -83,10 +83,9 @@ static bool is_some(const uint64_t *words, size_t count) {
   return any != 0;
 }
 
-vxm_status vxm_odd_lines_find(vxm_odd_lines *out, const vxm_window *window, const vxm_snapped_points *placed,
-                              const vxm_triangle_set *triangles, size_t part_begin, size_t part_end,
-                              vxm_error *error) {
-  vxm_context *context = triangles->context;
+vxm_status vxm_odd_lines_find(vxm_odd_lines *out, vxm_context *context, const vxm_window *window,
+                              const vxm_snapped_points *placed, const vxm_triangle_set *triangles,
+                              size_t part_begin, size_t part_end, vxm_error *error) {
   vxm_error local = VXM_ERROR_INIT;
   finder f = {.placed = placed, .triangles = triangles, .part_begin = part_begin, .part_end = part_end};
   *out = (vxm_odd_lines){.context = context, .window = *window};

@@ -29,11 +29,12 @@ typedef struct vxm_odd_lines {
 /**
  * Finds the lines that are odd for a part of part_begin..part_end-1 or more.
  *
+ * @param context whose threads work, and which counts the lines
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; then it holds nothing
  */
-vxm_status vxm_odd_lines_find(vxm_odd_lines *out, const vxm_window *window, const vxm_snapped_points *placed,
-                              const vxm_triangle_set *triangles, size_t part_begin, size_t part_end,
-                              vxm_error *error);
+vxm_status vxm_odd_lines_find(vxm_odd_lines *out, vxm_context *context, const vxm_window *window,
+                              const vxm_snapped_points *placed, const vxm_triangle_set *triangles,
+                              size_t part_begin, size_t part_end, vxm_error *error);
 void vxm_odd_lines_destroy(vxm_odd_lines *lines);
 /** Bytes that they take at most. */
 uint64_t vxm_odd_lines_bytes(const vxm_window *window, size_t parts);

@@ -91,8 +91,8 @@ vxm_status vxm_solid_leave_out_abstainers(vxm_voxel_pass *pass, const vxm_window
   const vxm_layout layout = window->layout;
   vxm_odd_lines lines;
   abstention job = {&lines, {voters[layout.fast], voters[layout.middle], voters[layout.slow]}};
-  vxm_status status = vxm_odd_lines_find(&lines, window, &pass->placed, &pass->analysis->triangles,
-                                         part_begin, part_end, error);
+  vxm_status status = vxm_odd_lines_find(&lines, pass->context, window, &pass->placed,
+                                         &pass->analysis->triangles, part_begin, part_end, error);
   if (status == VXM_OK)
     status = vxm_parallel_asked(pass->context, (size_t)(window->end - window->begin), abstain_in_slice, &job,
                                 error);
