@@ -327,7 +327,7 @@ static double volume_of_all(const orienting *o) {
 }
 
 /** A sum of areas or volumes below that part of all is rounding. */
-static const double some = 1e-6;
+static const double rounding = 1e-6;
 
 /** Whether the model came inside out: what bounds a volume is a quarter of its area or more, and most of that
  * inward; or, where nothing does but faces meet along edges that have more than two, all faces together are.
@@ -343,8 +343,8 @@ static bool is_inside_out(const orienting *o, const vxm_containment *nesting, co
     }
   }
   if (outward == 0 && o->state->edges.crowded > 0)
-    return volume_of_all(o) < -some;
-  return 4 * bounding > all && outward < -some * all;
+    return volume_of_all(o) < -rounding;
+  return 4 * bounding > all && outward < -rounding * all;
 }
 
 /** What lies inside what, and the volumes; freed with vxm_containment_destroy. */

@@ -18,10 +18,10 @@ typedef struct vxm_axis_vote_job {
   const vxm_triangle_set *triangles;
   const vxm_snapped_points *placed;
   size_t part;
-  bool tetra;      /**< ask the tetrahedra, too, as parity with cones */
-  vxm_vote rule;   /**< VXM_VOTE_AUTO elects what x, y and z all hold, and leaves to others on what fewer than
-                      two   that do not abstain agree (odd_lines.h), and what two alone hold */
-  bool fresh;      /**< the window's words are replaced; else voxels are added to them */
+  bool tetra;    /**< ask the tetrahedra, too, as parity with cones */
+  vxm_vote rule; /**< VXM_VOTE_AUTO elects what x, y and z all hold and none abstains from (odd_lines.h); what
+                    two or three that do not abstain call outside is, and the rest is left to others */
+  bool fresh;    /**< the window's words are replaced; else voxels are added to them */
   uint64_t *mask;  /**< NULL, or words laid out as the window's that become the contested voxels */
   uint64_t *carry; /**< a slice of words: what is open along slices at the begin of the window; becomes that
                       at its end. Zeros for the first window */

@@ -107,8 +107,8 @@ static vxm_status count_votes(vxm_voxel_pass *pass, const vxm_window *window, bo
          end = pass->analysis->triangles.split.part_count;
   uint64_t *voters[VOTERS] = {NULL};
   atomic_uchar *has_voxels = pass->has_voxels;
-  bool is_one = end - begin == 1; /* then what is elected tells whether it has voxels */
-  pass->has_voxels = is_one ? NULL : has_voxels;
+  if (end - begin == 1)
+    pass->has_voxels = NULL; /* what is elected tells that */
   vxm_status status = fill_voters(pass, window, begin, tetra, voters, error);
   pass->has_voxels = has_voxels;
   if (status == VXM_OK && rule == VXM_VOTE_AUTO)
@@ -116,14 +116,12 @@ static vxm_status count_votes(vxm_voxel_pass *pass, const vxm_window *window, bo
   if (status == VXM_OK)
     vxm_vote_count(window->words, (const uint64_t *const *)voters, mask,
                    window->slice_words * (size_t)(window->end - window->begin), rule, pass->context, tally);
-  if (is_one && tally->added && has_voxels)
-    atomic_store_explicit(&has_voxels[begin], 1, memory_order_relaxed);
   return status;
 }
 
 /** By the rules that need nothing but the voters, by an engine that has votes. */
 static vxm_status elect_elsewhere(vxm_voxel_pass *pass, const vxm_window *window, bool tetra, vxm_vote rule,
-                                  uint64_t *mask, vxm_vote_tally *tally, vxm_error *error) {
+                                  vxm_vote_tally *tally, vxm_error *error) {
   const vxm_mesh_analysis *analysis = pass->analysis;
   vxm_vote_job job = {.triangles = &analysis->triangles,
                       .placed = &pass->placed,
@@ -131,7 +129,6 @@ static vxm_status elect_elsewhere(vxm_voxel_pass *pass, const vxm_window *window
                       .part_end = analysis->triangles.split.part_count,
                       .tetra = tetra,
                       .rule = rule,
-                      .mask = mask,
                       .has_voxels = pass->has_voxels};
   return vxm_voxel_pass_ops(pass)->vote(pass->engine, window, &job, tally, error);
 }
@@ -147,13 +144,13 @@ static vxm_status decide_open_parts(vxm_voxel_pass *pass, const vxm_window *wind
   vxm_vote_tally tally = {0, false};
   vxm_status status = decide ? vxm_voxel_pass_buffer(pass, VXM_BUFFER_MASK, window, &mask, error) : VXM_OK;
   if (status == VXM_OK && !decide && vxm_voxel_pass_ops(pass) && vxm_voxel_pass_ops(pass)->vote)
-    status = elect_elsewhere(pass, window, tetra, rule, mask.words, &tally, error);
-  else if (status == VXM_OK && end - begin == 1 && !vxm_voxel_pass_ops(pass) && !pass->no_vote_resume) {
+    status = elect_elsewhere(pass, window, tetra, rule, &tally, error);
+  else if (status == VXM_OK && end - begin == 1 && !vxm_voxel_pass_ops(pass) && !pass->no_vote_resume)
     status = poll_part(pass, window, begin, tetra, rule, mask.words, &tally, error);
-    if (tally.added && pass->has_voxels)
-      atomic_store_explicit(&pass->has_voxels[begin], 1, memory_order_relaxed);
-  } else if (status == VXM_OK)
+  else if (status == VXM_OK)
     status = count_votes(pass, window, tetra, rule, mask.words, &tally, error);
+  if (end - begin == 1 && tally.added && pass->has_voxels)
+    atomic_store_explicit(&pass->has_voxels[begin], 1, memory_order_relaxed);
   if (status != VXM_OK)
     return status;
   pass->contested += tally.contested;
