@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Adds what the voters elect, and tells where they disagree: words of 32 voxels. The rule is 0 = all (and auto), 1 =
+/* Adds what the voters elect, and counts where they disagree: words of 32 voxels. The rule is 0 = all (and auto), 1 =
    majority, 2 = any. The tally is how many voxels are contested, and whether any was added. */
 __kernel void vote(__global const uint *voter_x, __global const uint *voter_y, __global const uint *voter_z,
-                   __global const uint *voter_t, __global uint *result, __global uint *mask, __global uint *tally,
+                   __global const uint *voter_t, __global uint *result, __global uint *tally,
                    const uint count, const uint rule) {
   __local uint contested, added;
   uint i = (uint)get_global_id(0);
@@ -16,7 +16,6 @@ __kernel void vote(__global const uint *voter_x, __global const uint *voter_y, _
     uint some = x | y | z | t, every = x & y & z & t, before = result[i];
     uint elected = rule == 1 ? (x & y) | (z & (x | y)) : rule == 2 ? some : every;
     uint disagree = some & ~every & ~before;
-    mask[i] = disagree;
     if ((elected & ~before) != 0) {
       result[i] = before | elected;
       atomic_or(&added, 1u);

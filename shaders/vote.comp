@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Adds what the voters elect, and tells where they disagree: words of 32 voxels. */
+/* Adds what the voters elect, and counts where they disagree: words of 32 voxels. */
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) readonly buffer VoterX {
   uint word[];
@@ -18,9 +18,6 @@ layout(std430, binding = 7) readonly buffer VoterT {
 } voter_t;
 layout(location = 0) uniform uint count;
 layout(location = 1) uniform uint rule; // 0 = all (and auto), 1 = majority, 2 = any
-layout(std430, binding = 1) writeonly buffer Mask {
-  uint word[];
-} mask;
 layout(std430, binding = 2) buffer Tally {
   uint contested, added;
 } tally;
@@ -39,7 +36,6 @@ void main() {
     uint some = x | y | z | t, every = x & y & z & t, before = result.word[i];
     uint elected = rule == 1u ? (x & y) | (z & (x | y)) : rule == 2u ? some : every;
     uint disagree = some & ~every & ~before;
-    mask.word[i] = disagree;
     if ((elected & ~before) != 0u) {
       result.word[i] = before | elected;
       atomicOr(added, 1u);

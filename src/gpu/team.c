@@ -305,12 +305,9 @@ static vxm_status vote_part(vxm_engine *engine, int who, int64_t begin, int64_t 
                             vxm_error *error) {
   vote_work *work = payload;
   vxm_window part = part_of(work->window, begin, end);
-  vxm_vote_job job = *work->job;
   vxm_vote_tally tally = {0, false};
   (void)who;
-  if (job.mask)
-    job.mask += (size_t)(begin - work->window->begin) * work->window->slice_words;
-  vxm_status status = vote_restorable(engine, &part, &job, &tally, work->context, error);
+  vxm_status status = vote_restorable(engine, &part, work->job, &tally, work->context, error);
   if (status != VXM_OK)
     return status;
   atomic_fetch_add(&work->contested, tally.contested);

@@ -95,12 +95,11 @@ vxm_status vxm_cl_download(vxm_opencl *engine, vxm_cl_buffer_id id, size_t offse
 /** What a tile may take under the memory limit: of what is left, and what its buffers have already. */
 static int64_t tile_share(const vxm_opencl *engine) {
   enum {
-    BUFFERS =
-        12 /**< flips, two results, mask and four voters; and as much for lists of tiles and what is added */
+    BUFFERS = 11 /**< flips, two results and four voters; and as much for lists of tiles and what is added */
   };
-  static const vxm_cl_buffer_id own[] = {VXM_CL_FLIPS,       VXM_CL_RESULT,     VXM_CL_RESULT2,
-                                         VXM_CL_MASK,        VXM_CL_VOTER_X,    VXM_CL_VOTER_X + 1,
-                                         VXM_CL_VOTER_X + 2, VXM_CL_VOTER_X + 3};
+  static const vxm_cl_buffer_id own[] = {VXM_CL_FLIPS,      VXM_CL_RESULT,      VXM_CL_RESULT2,
+                                         VXM_CL_VOTER_X,    VXM_CL_VOTER_X + 1, VXM_CL_VOTER_X + 2,
+                                         VXM_CL_VOTER_X + 3};
   size_t left = vxm_memory_left(engine->base.context);
   if (left > INT64_MAX / 2) /* there is no limit */
     return INT64_MAX;
@@ -147,7 +146,7 @@ vxm_status vxm_cl_return_begin(vxm_opencl *engine, vxm_cl_return *back, vxm_erro
   const vxm_cl *cl = engine->cl;
   size_t bytes = back->tile.words * sizeof(uint64_t);
   cl_event made = NULL;
-  uint64_t *to = vxm_slice_job_slice_at(&back->tile, back->words, back->tile.begin);
+  uint64_t *to = vxm_slice_job_slice_at(&back->tile, back->tile.window->words, back->tile.begin);
   if (back->is_or || !is_dense(&back->tile)) {
     vxm_error local = VXM_ERROR_INIT;
     to = back->block = vxm_alloc(engine->base.context, back->tile.words, sizeof *to, &local);
@@ -176,7 +175,7 @@ vxm_status vxm_cl_return_end(vxm_opencl *engine, vxm_cl_return *back, vxm_status
     back->event = NULL;
     vxm_status ended = vxm_cl_check(code, "reading voxels", status == VXM_OK ? error : NULL);
     if (ended == VXM_OK && back->block)
-      vxm_slice_job_take(&back->tile, back->words, back->block, back->is_or);
+      vxm_slice_job_take(&back->tile, back->tile.window->words, back->block, back->is_or);
     status = status == VXM_OK ? ended : status;
   }
   vxm_free(engine->base.context, back->block);

@@ -55,7 +55,6 @@ vxm_status vxm_cl_each_tile(vxm_opencl *engine, const vxm_window *window, bool i
       status = make(engine, &tile, back[which].from, payload, error);
     vxm_progress_leave(before);
     back[which].tile = tile;
-    back[which].words = window->words;
     back[which].is_or = is_or;
     if (status == VXM_OK && engine->base.keeps)
       status = vxm_cl_tile_stay(engine, &tile, back[which].from, error);
@@ -177,55 +176,34 @@ static vxm_status count_votes(vxm_opencl *engine, const vxm_slice_job *tile, con
   return vxm_cl_run(engine, VXM_CL_VOTE, count,
                     VXM_CL_ARGS(VXM_CL_MEM(engine, b->words[0]), VXM_CL_MEM(engine, b->words[1]),
                                 VXM_CL_MEM(engine, b->words[2]), VXM_CL_MEM(engine, b->words[3]),
-                                VXM_CL_MEM(engine, result), VXM_CL_MEM(engine, VXM_CL_MASK),
-                                VXM_CL_MEM(engine, VXM_CL_TALLY), VXM_CL_VALUE(count), VXM_CL_VALUE(number)),
+                                VXM_CL_MEM(engine, result), VXM_CL_MEM(engine, VXM_CL_TALLY),
+                                VXM_CL_VALUE(count), VXM_CL_VALUE(number)),
                     error);
 }
 
-static vxm_status elect_tile(vxm_opencl *engine, const vxm_slice_job *tile, const vxm_vote_job *job,
-                             const voter_set *b, vxm_cl_buffer_id result, vxm_vote_tally *tally,
-                             vxm_error *error) {
+typedef struct election {
+  const vxm_vote_job *job;
+  voter_set voters;
+  vxm_vote_tally *tally;
+} election;
+
+static vxm_status elect_tile(vxm_opencl *engine, const vxm_slice_job *tile, vxm_cl_buffer_id result,
+                             void *payload, vxm_error *error) {
+  const election *e = payload;
   uint32_t counted[2] = {0, 0};
   vxm_status status = engine->base.keeps ? vxm_cl_tile_bring(engine, tile, result, error)
                                          : vxm_cl_tile_upload(engine, result, tile, error);
-  if (status == VXM_OK)
-    status = vxm_cl_reserve(engine, VXM_CL_MASK, tile->words * sizeof(uint64_t), error);
-  for (int v = 0; v < b->count && status == VXM_OK; v++)
-    status = make_voter(engine, tile, b, v, error);
+  for (int v = 0; v < e->voters.count && status == VXM_OK; v++)
+    status = make_voter(engine, tile, &e->voters, v, error);
   if (status == VXM_OK)
     status = vxm_cl_clear(engine, VXM_CL_TALLY, sizeof counted, error);
   if (status == VXM_OK)
-    status = count_votes(engine, tile, b, job->rule, result, error);
+    status = count_votes(engine, tile, &e->voters, e->job->rule, result, error);
   if (status == VXM_OK)
     status = vxm_cl_download(engine, VXM_CL_TALLY, 0, counted, sizeof counted, error);
-  tally->contested += counted[0];
-  tally->added |= counted[1] != 0;
+  e->tally->contested += counted[0];
+  e->tally->added |= counted[1] != 0;
   return status;
-}
-
-static vxm_status elect_tiles(vxm_opencl *engine, const vxm_window *window, const vxm_vote_job *job,
-                              vxm_vote_tally *tally, vxm_error *error) {
-  vxm_cl_return back[2] = {{.from = VXM_CL_RESULT}, {.from = VXM_CL_MASK}};
-  int64_t slices = 1;
-  voter_set b = voters_of(job);
-  vxm_status status = vxm_cl_tile_slices(&slices, engine, window, error);
-  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices) {
-    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
-    for (int i = 0; i < 2; i++)
-      status = vxm_cl_return_end(engine, &back[i], status, error);
-    vxm_progress_part before = vxm_slice_job_progress(&tile);
-    if (status == VXM_OK)
-      status = elect_tile(engine, &tile, job, &b, VXM_CL_RESULT, tally, error);
-    vxm_progress_leave(before);
-    back[0].tile = back[1].tile = tile;
-    back[0].words = window->words;
-    back[1].words = job->mask;
-    if (status == VXM_OK && engine->base.keeps)
-      status = vxm_cl_tile_stay(engine, &tile, VXM_CL_RESULT, error);
-    for (int i = 0; i < (job->mask ? 2 : 1) && status == VXM_OK && !engine->base.keeps; i++)
-      status = vxm_cl_return_begin(engine, &back[i], error);
-  }
-  return vxm_cl_finish(engine, back, status, error);
 }
 
 vxm_status vxm_cl_vote(vxm_engine *base, const vxm_window *window, const vxm_vote_job *job,
@@ -233,13 +211,12 @@ vxm_status vxm_cl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
   vxm_opencl *engine = vxm_opencl_of(base);
   if (job->part_begin >= job->part_end)
     return VXM_OK;
-  if (base->keeps && job->mask)
-    return vxm_fail_to_keep(base, error);
   vxm_status status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
   if (status == VXM_OK && job->has_voxels)
     status = clear_touched(engine, job->triangles, error);
+  election e = {job, voters_of(job), tally};
   if (status == VXM_OK)
-    status = elect_tiles(engine, window, job, tally, error);
+    status = vxm_cl_each_tile(engine, window, false, elect_tile, &e, error);
   if (status == VXM_OK && job->has_voxels)
     status = vxm_cl_touched_take(engine, job->has_voxels, job->triangles, error);
   return status;

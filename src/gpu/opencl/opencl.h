@@ -90,7 +90,6 @@ typedef enum vxm_cl_buffer_id {
   VXM_CL_LARGE,                 /**< how many triangles of many columns, and which */
   VXM_CL_RESULT,                /**< two: one is read while the other is made */
   VXM_CL_RESULT2,
-  VXM_CL_MASK,    /**< contested voxels of a tile */
   VXM_CL_VOTER_X, /**< four of them */
   VXM_CL_VOTER_T = VXM_CL_VOTER_X + 3,
   VXM_CL_TALLY,
@@ -234,8 +233,7 @@ vxm_status vxm_cl_tile_upload(vxm_opencl *engine, vxm_cl_buffer_id id, const vxm
 typedef struct vxm_cl_return {
   vxm_slice_job tile;
   vxm_cl_buffer_id from;
-  uint64_t *words; /**< laid out as the window's */
-  bool is_or;      /**< added to them */
+  bool is_or;      /**< added to the window's words */
   uint64_t *block; /**< what is added waits here */
   cl_event event;  /**< NULL: none is under way */
 } vxm_cl_return;

@@ -157,7 +157,6 @@ static vxm_status count_votes(vxm_opengl *engine, const vxm_slice_job *tile, con
   vxm_gl_bind(engine, 5, VXM_GL_RESULT);
   vxm_gl_bind(engine, 6, b->words[2]);
   vxm_gl_bind(engine, 7, b->words[3]);
-  vxm_gl_bind(engine, 1, VXM_GL_MASK);
   vxm_gl_bind(engine, 2, VXM_GL_TALLY);
   gl->Uniform1ui(0, (GLuint)(2 * tile->words));
   gl->Uniform1ui(1, rule == VXM_VOTE_MAJORITY ? 1 : rule == VXM_VOTE_ANY ? 2 : 0);
@@ -171,8 +170,6 @@ static vxm_status elect_tile(vxm_opengl *engine, const vxm_slice_job *tile, cons
   uint32_t counted[2] = {0, 0};
   vxm_status status = engine->base.keeps ? vxm_gl_tile_bring(engine, tile, error)
                                          : vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
-  if (status == VXM_OK)
-    status = vxm_gl_reserve(engine, VXM_GL_MASK, tile->words * sizeof(uint64_t), error);
   if (status == VXM_OK)
     status = vxm_gl_upload(engine, VXM_GL_TALLY, counted, sizeof counted, error);
   for (int v = 0; v < b->count && status == VXM_OK; v++)
@@ -204,7 +201,7 @@ static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, cons
       status = vxm_gl_tile_stay(engine, &tile, error);
       continue;
     }
-    back[which] = (vxm_gl_return){.tile = tile, .mask = job->mask, .staging = which};
+    back[which] = (vxm_gl_return){.tile = tile, .staging = which};
     status = vxm_gl_return_begin(engine, &back[which], error);
     if (status == VXM_OK)
       status = vxm_gl_return_end(engine, &back[which ^ 1], error);
@@ -218,8 +215,6 @@ vxm_status vxm_gl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
   size_t parts = job->triangles->split.part_count;
   if (job->part_begin >= job->part_end)
     return VXM_OK;
-  if (base->keeps && job->mask)
-    return vxm_fail_to_keep(base, error);
   vxm_status status = vxm_gl_enter(&engine->context, error);
   if (status != VXM_OK)
     return status;

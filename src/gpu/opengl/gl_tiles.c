@@ -10,12 +10,10 @@ static const int64_t slice_bytes_most = INT64_C(256) << 20;
 
 /** What a tile may take under the memory limit: of what is left, and what its buffers have already. */
 static int64_t tile_share(const vxm_opengl *engine) {
-  enum {
-    BUFFERS = 12 /**< flips, result, mask, four voters, two staging buffers twice as large; and one spare */
-  };
-  static const vxm_gl_buffer_id own[] = {VXM_GL_FLIPS,       VXM_GL_RESULT,      VXM_GL_MASK,
-                                         VXM_GL_VOTER_X,     VXM_GL_VOTER_X + 1, VXM_GL_VOTER_X + 2,
-                                         VXM_GL_VOTER_X + 3, VXM_GL_STAGING,     VXM_GL_STAGING2};
+  enum { BUFFERS = 9 /**< flips, result, four voters, two staging buffers; and one spare */ };
+  static const vxm_gl_buffer_id own[] = {VXM_GL_FLIPS,       VXM_GL_RESULT,      VXM_GL_VOTER_X,
+                                         VXM_GL_VOTER_X + 1, VXM_GL_VOTER_X + 2, VXM_GL_VOTER_X + 3,
+                                         VXM_GL_STAGING,     VXM_GL_STAGING2};
   size_t left = vxm_memory_left(engine->base.context);
   if (left > INT64_MAX / 2) /* there is no limit */
     return INT64_MAX;
@@ -56,17 +54,13 @@ vxm_status vxm_gl_return_begin(vxm_opengl *engine, vxm_gl_return *back, vxm_erro
   const vxm_gl *gl = &engine->context.gl;
   size_t bytes = back->tile.words * sizeof(uint64_t);
   vxm_gl_buffer_id staging = (vxm_gl_buffer_id)(VXM_GL_STAGING + back->staging);
-  vxm_status status = vxm_gl_reserve(engine, staging, back->mask ? 2 * bytes : bytes, error);
+  vxm_status status = vxm_gl_reserve(engine, staging, bytes, error);
   if (status != VXM_OK)
     return status;
   gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[staging].name);
   gl->BindBuffer(GL_COPY_READ_BUFFER, engine->buffers[VXM_GL_RESULT].name);
   gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, (GLsizeiptr)bytes);
-  if (back->mask) {
-    gl->BindBuffer(GL_COPY_READ_BUFFER, engine->buffers[VXM_GL_MASK].name);
-    gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, (GLintptr)bytes, (GLsizeiptr)bytes);
-  }
   back->fence = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   gl->Flush();
   return vxm_gl_check(gl, "opengl: drawing", error);
@@ -85,13 +79,11 @@ vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error 
   gl->DeleteSync(back->fence);
   back->fence = NULL;
   const vxm_slice_job *tile = &back->tile;
-  size_t bytes = tile->words * sizeof(uint64_t), all = back->mask ? 2 * bytes : bytes;
+  size_t bytes = tile->words * sizeof(uint64_t);
   gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_STAGING + back->staging].name);
-  const uint64_t *data = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)all, GL_MAP_READ_BIT);
+  const uint64_t *data = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
   if (data) {
     vxm_slice_job_take(tile, tile->window->words, data, back->is_or);
-    if (back->mask)
-      vxm_slice_job_take(tile, back->mask, data + tile->words, false);
     gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
   }
   vxm_status status = vxm_gl_check(gl, "opengl: reading voxels", error);

@@ -41,7 +41,6 @@ typedef enum vxm_gl_buffer_id {
   VXM_GL_LARGE,                 /**< the indirect draw, and its triangles */
   VXM_GL_JOB,                   /**< vxm_gl_job */
   VXM_GL_RESULT,                /**< what is inside, a bit per voxel of a tile */
-  VXM_GL_MASK,                  /**< contested voxels of a tile */
   VXM_GL_VOTER_X,               /**< four of them */
   VXM_GL_VOTER_T = VXM_GL_VOTER_X + 3,
   VXM_GL_TALLY,
@@ -160,14 +159,12 @@ vxm_status vxm_gl_tile_upload(vxm_opengl *engine, vxm_gl_buffer_id id, const vxm
 /** A tile on its way back. Start from {0}. */
 typedef struct vxm_gl_return {
   vxm_slice_job tile;
-  uint64_t *mask; /**< NULL, or laid out as the window's words: it takes the second half of the staging buffer
-                   */
-  bool is_or;     /**< added to the window's words */
-  GLsync fence;   /**< NULL: none is under way */
-  int staging;    /**< 0 or 1 */
+  bool is_or;   /**< added to the window's words */
+  GLsync fence; /**< NULL: none is under way */
+  int staging;  /**< 0 or 1 */
 } vxm_gl_return;
 
-/** Begins to take back a tile that lies in VXM_GL_RESULT (and VXM_GL_MASK). */
+/** Begins to take back a tile that lies in VXM_GL_RESULT. */
 vxm_status vxm_gl_return_begin(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error);
 /** Waits for it and moves it into the window. Does nothing if none is under way. */
 vxm_status vxm_gl_return_end(vxm_opengl *engine, vxm_gl_return *back, vxm_error *error);

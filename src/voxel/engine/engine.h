@@ -18,7 +18,6 @@ typedef struct vxm_vote_job {
   size_t part_begin, part_end; /**< each voter is the union of these */
   bool tetra;                  /**< ask the tetrahedra, too, as parity with cones */
   vxm_vote rule;
-  uint64_t *mask;           /**< NULL, or words laid out as the window's that become the contested voxels */
   atomic_uchar *has_voxels; /**< as in vxm_parity_union_job */
 } vxm_vote_job;
 
