@@ -7,6 +7,7 @@
 #define VXM_VOXEL_SOLID_MESH_ANALYSIS_H
 
 #include "voxel/winding/oriented_chain.h"
+#include "voxel/winding/self_overlap.h"
 
 #include <pthread.h>
 
@@ -26,6 +27,7 @@ struct vxm_mesh_analysis {
   vxm_context *context;
   const vxm_soup *soup;
   vxm_triangle_set triangles;
+  vxm_self_overlap self_overlap;
   vxm_orientation *orientation; /**< see solid/orient_open.h and solid/orient_all.h */
 };
 

@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "voxel/winding/self_overlap.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  LINES_MOST = 32,        /**< along y, and along z */
+  LINES_FREE = 16,        /**< of a part of few triangles */
+  CROSSINGS_EACH = 16,    /**< of a triangle, on average: with more there are fewer lines */
+  CROSSINGS_FREE = 16384, /**< and so many besides */
+  INSERTED_MOST = 32      /**< crossings of a line that are sorted by insertion */
+};
+
+/** Of the length inside: what is less is not worth the time, or comes of rounding. */
+static const double noticed = 1e-5;
+/** Where the first line lies, between two of them: corners rarely lie there. */
+static const double first_line = 0.4371;
+
+/** Lines along x, as far apart along y and along z as the box of a part tells. */
+typedef struct lines {
+  double low[2], per_unit[2], step[2];
+  int count;
+} lines;
+
+/** How many lines lie below a point. */
+typedef struct line_cell {
+  uint16_t along[2];
+} line_cell;
+
+typedef struct crossing {
+  double x;
+  uint32_t line;
+  int32_t sign;
+} crossing;
+
+typedef struct finder {
+  const vxm_triangle_set *triangles;
+  lines lines;
+  line_cell *cells; /**< of each point */
+  crossing *crossings;
+  size_t count, most, capacity;
+  crossing *sorted; /**< by line */
+  size_t sorted_capacity;
+  uint32_t ends[LINES_MOST * LINES_MOST + 1];
+  double inside, twice; /**< lengths: signed, and absolute */
+  vxm_error error;
+} finder;
+
+/* ---- Which lines ---- */
+
+static inline const double *position(const finder *f, uint32_t point) {
+  return f->triangles->positions[point];
+}
+
+/** Lines below a place along y (0) or z (1). All that is asked of a place is asked by this, so that triangles
+ * that share a side agree on it. */
+static inline uint16_t lines_below(const lines *l, int axis, double at) {
+  double count = (at - l->low[axis]) * l->per_unit[axis] + (1 - first_line);
+  return (uint16_t)(count > 0 ? count < l->count ? (int)count : l->count : 0);
+}
+
+/** The points of a part. */
+typedef struct points {
+  uint32_t begin, end;
+} points;
+
+/** Points are numbered as triangles use them, part by part, and no two parts share one: the first of a part
+ * is a corner of its first triangle. */
+static points points_of(const vxm_triangle_set *triangles, size_t part) {
+  size_t begin = triangles->parts[part].begin, end = triangles->parts[part].end;
+  return (points){triangles->corners[begin][0], end < triangles->triangle_count
+                                                    ? triangles->corners[end][0]
+                                                    : (uint32_t)triangles->first_apex};
+}
+
+/** Lays `count` lines along y and along z; false if the points have no extent that could be told. */
+static bool lay_lines(finder *f, points range, int count) {
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (uint32_t p = range.begin; p < range.end; p++)
+    for (int a = 0; a < 2; a++) {
+      double at = position(f, p)[1 + a];
+      low[a] = at < low[a] ? at : low[a];
+      high[a] = at > high[a] ? at : high[a];
+    }
+  f->lines.count = count;
+  for (int a = 0; a < 2; a++) {
+    f->lines.low[a] = low[a];
+    f->lines.step[a] = (high[a] - low[a]) / count;
+    f->lines.per_unit[a] = count / (high[a] - low[a]);
+    if (!isnormal(f->lines.step[a]) || !isnormal(f->lines.per_unit[a]))
+      return false;
+  }
+  for (uint32_t p = range.begin; p < range.end; p++)
+    for (int a = 0; a < 2; a++)
+      f->cells[p].along[a] = lines_below(&f->lines, a, position(f, p)[1 + a]);
+  return true;
+}
+
+/* ---- Crossings ---- */
+
+/** Where a side comes to a row of lines. */
+typedef struct side_place {
+  double x, y;
+  int columns; /**< lines of the row below y */
+} side_place;
+
+/** The same whichever way the side runs; y is between those of its ends. */
+static side_place place_on(const lines *l, const double *p, const double *q, double z) {
+  const double *low = p[2] < q[2] ? p : q, *high = low == p ? q : p;
+  double share = (z - low[2]) / (high[2] - low[2]), y = low[1] + share * (high[1] - low[1]);
+  double least = p[1] < q[1] ? p[1] : q[1], most = p[1] < q[1] ? q[1] : p[1];
+  y = y < least ? least : y > most ? most : y;
+  return (side_place){low[0] + share * (high[0] - low[0]), y, lines_below(l, 0, y)};
+}
+
+static bool add_row(finder *f, int row, const side_place *from, const side_place *to, int sign) {
+  const lines *l = &f->lines;
+  size_t more = (size_t)(to->columns - from->columns);
+  if (vxm_grow(f->triangles->context, (void **)&f->crossings, &f->capacity, f->count + more,
+               sizeof *f->crossings, &f->error) != VXM_OK)
+    return false;
+  double slope = (to->x - from->x) / (to->y - from->y);
+  for (int c = from->columns; c < to->columns; c++) {
+    double y = l->low[0] + (c + first_line) * l->step[0];
+    f->crossings[f->count++] =
+        (crossing){from->x + (y - from->y) * slope, (uint32_t)(row * l->count + c), sign};
+  }
+  return true;
+}
+
+/** Crossings of a triangle: where its projection along x winds around a line, with the sign of that. */
+static bool add_triangle(finder *f, const uint32_t k[3]) {
+  /* The corner that lies alone on its side of a row, by which corners lie above. */
+  static const uint8_t alone[8] = {0, 0, 1, 2, 2, 1, 0, 0};
+  int below[3], first = f->lines.count, end = 0;
+  for (int i = 0; i < 3; i++) {
+    below[i] = f->cells[k[i]].along[1];
+    first = below[i] < first ? below[i] : first;
+    end = below[i] > end ? below[i] : end;
+  }
+  for (int row = first; row < end; row++) {
+    double z = f->lines.low[1] + (row + first_line) * f->lines.step[1];
+    int above = (below[0] > row) | (below[1] > row) << 1 | (below[2] > row) << 2, i = alone[above];
+    const double *tip = position(f, k[i]);
+    side_place to = place_on(&f->lines, tip, position(f, k[i < 2 ? i + 1 : 0]), z);
+    side_place from = place_on(&f->lines, tip, position(f, k[i > 0 ? i - 1 : 2]), z);
+    int sign = below[i] > row ? 1 : -1; /* of a row that is entered at `from` and left at `to` */
+    if (to.columns == from.columns)
+      continue;
+    if (!(to.columns > from.columns ? add_row(f, row, &from, &to, sign) : add_row(f, row, &to, &from, -sign)))
+      return false;
+  }
+  return true;
+}
+
+/** Whether lines lie between the corners of a triangle both along y and along z: told without a branch, as
+ * nobody can tell beforehand. */
+static inline bool has_lines(const line_cell *cells, const uint32_t k[3]) {
+  line_cell a = cells[k[0]], b = cells[k[1]], c = cells[k[2]];
+  int along_y = (a.along[0] ^ b.along[0]) | (a.along[0] ^ c.along[0]);
+  int along_z = (a.along[1] ^ b.along[1]) | (a.along[1] ^ c.along[1]);
+  return (along_y != 0) & (along_z != 0);
+}
+
+/** Those of triangles begin..end-1, until they are more than f->most. */
+static vxm_status find_crossings(finder *f, size_t begin, size_t end) {
+  enum { AT_ONCE = 1024 };
+  uint32_t(*corners)[3] = f->triangles->corners;
+  f->count = 0;
+  for (size_t first = begin; first < end && f->count <= f->most; first += AT_ONCE) {
+    size_t wanted[AT_ONCE], count = 0, last = first + AT_ONCE < end ? first + AT_ONCE : end;
+    for (size_t t = first; t < last; t++) {
+      wanted[count] = t;
+      count += has_lines(f->cells, corners[t]);
+    }
+    if (vxm_ask(f->triangles->context, &f->error) != VXM_OK)
+      return f->error.code;
+    for (size_t i = 0; i < count; i++)
+      if (!add_triangle(f, corners[wanted[i]]))
+        return f->error.code;
+  }
+  return VXM_OK;
+}
+
+/* ---- Along the lines ---- */
+
+static vxm_status sort_by_line(finder *f) {
+  size_t line_count = (size_t)f->lines.count * (size_t)f->lines.count;
+  vxm_status status = vxm_renew(f->triangles->context, (void **)&f->sorted, &f->sorted_capacity, f->count,
+                                sizeof *f->sorted, &f->error);
+  if (status != VXM_OK)
+    return status;
+  memset(f->ends, 0, sizeof f->ends);
+  for (size_t i = 0; i < f->count; i++)
+    f->ends[f->crossings[i].line + 1]++;
+  for (size_t line = 0; line < line_count; line++)
+    f->ends[line + 1] += f->ends[line];
+  for (size_t i = 0; i < f->count; i++) /* moves the beginning of each line to its end */
+    f->sorted[f->ends[f->crossings[i].line]++] = f->crossings[i];
+  return VXM_OK;
+}
+
+static int compare(const void *a, const void *b) {
+  const crossing *p = a, *q = b;
+  return (p->x > q->x) - (p->x < q->x);
+}
+
+static void sort_along(crossing *at, size_t count) {
+  if (count > INSERTED_MOST) {
+    qsort(at, count, sizeof *at, compare);
+    return;
+  }
+  for (size_t i = 1; i < count; i++) {
+    crossing moved = at[i];
+    size_t to = i;
+    for (; to > 0 && at[to - 1].x > moved.x; to--)
+      at[to] = at[to - 1];
+    at[to] = moved;
+  }
+}
+
+/** Adds up one line; false if it is entered more or less often than left, as where faces are wound against
+ * each other. */
+static bool follow(finder *f, const crossing *at, size_t count) {
+  int wound = 0;
+  for (size_t i = 0; i < count; i++) {
+    double length = wound ? at[i].x - at[i - 1].x : 0;
+    f->inside += wound * length;
+    if (wound % 2 == 0)
+      f->twice += length;
+    wound += at[i].sign;
+  }
+  return wound == 0;
+}
+
+static bool follow_all(finder *f) {
+  size_t line_count = (size_t)f->lines.count * (size_t)f->lines.count, begin = 0;
+  f->inside = f->twice = 0;
+  for (size_t line = 0; line < line_count; line++) {
+    size_t count = f->ends[line] - begin;
+    sort_along(f->sorted + begin, count);
+    if (!follow(f, f->sorted + begin, count))
+      return false;
+    begin = f->ends[line];
+  }
+  return f->twice > noticed * fabs(f->inside);
+}
+
+/* ---- The chain ---- */
+
+/** Adds triangles begin..end-1, turned outward, if they are a closed chain. */
+static vxm_status add_part(vxm_self_overlap *out, finder *f, size_t begin, size_t end) {
+  vxm_context *context = f->triangles->context;
+  vxm_winding_chain own, *all = &out->chain;
+  size_t count = end - begin, capacity = all->closed_count;
+  uint32_t(*turned)[3] = vxm_alloc(context, count, sizeof *turned, &f->error);
+  if (!turned)
+    return f->error.code;
+  for (size_t t = 0; t < count; t++)
+    for (int k = 0; k < 3; k++)
+      turned[t][k] = f->triangles->corners[begin + t][f->inside < 0 ? (3 - k) % 3 : k];
+  vxm_status status = vxm_winding_chain_create(&own, context, (const uint32_t(*)[3])turned, count,
+                                               f->triangles->first_apex, &f->error);
+  if (status == VXM_OK && own.rest_count == 0)
+    status = vxm_grow(context, (void **)&all->closed, &capacity, all->closed_count + own.closed_count,
+                      sizeof *all->closed, &f->error);
+  if (status == VXM_OK && own.rest_count == 0) {
+    memcpy(all->closed + all->closed_count, own.closed, own.closed_count * sizeof *own.closed);
+    all->closed_count += own.closed_count;
+    out->part_count++;
+  }
+  vxm_winding_chain_destroy(&own);
+  vxm_free(context, turned);
+  return status;
+}
+
+static vxm_status look_at_part(vxm_self_overlap *out, finder *f, size_t part) {
+  size_t begin = f->triangles->parts[part].begin, end = f->triangles->parts[part].cones;
+  if (begin == end)
+    return VXM_OK;
+  points range = points_of(f->triangles, part);
+  int count = (int)fmin(sqrt((double)(2 * (end - begin)) + LINES_FREE * LINES_FREE), LINES_MOST);
+  vxm_status status = VXM_OK;
+  f->most = CROSSINGS_EACH * (end - begin) + CROSSINGS_FREE;
+  do {
+    if (!lay_lines(f, range, count))
+      return VXM_OK;
+    status = find_crossings(f, begin, end);
+    count /= 2;
+  } while (status == VXM_OK && f->count > f->most && count > 0);
+  if (status == VXM_OK)
+    status = sort_by_line(f);
+  return status == VXM_OK && follow_all(f) ? add_part(out, f, begin, end) : status;
+}
+
+vxm_status vxm_self_overlap_find(vxm_self_overlap *out, const vxm_triangle_set *triangles, vxm_error *error) {
+  vxm_context *context = triangles->context;
+  *out = (vxm_self_overlap){.chain = {.context = context}};
+  size_t parts = triangles->split.kind_end[VXM_PART_CAPPED];
+  if (parts == 0)
+    return VXM_OK;
+  finder f = {.triangles = triangles, .error = VXM_ERROR_INIT};
+  f.cells = vxm_alloc(context, triangles->first_apex, sizeof *f.cells, &f.error);
+  vxm_status status = f.error.code;
+  for (size_t p = 0; p < parts && status == VXM_OK; p++)
+    status = look_at_part(out, &f, p);
+  vxm_free(context, f.cells);
+  vxm_free(context, f.crossings);
+  vxm_free(context, f.sorted);
+  if (status != VXM_OK)
+    vxm_error_pass(error, &f.error);
+  return status;
+}
+
+void vxm_self_overlap_destroy(vxm_self_overlap *overlap) {
+  vxm_winding_chain_destroy(&overlap->chain);
+  overlap->part_count = 0;
+}
