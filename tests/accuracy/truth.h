@@ -10,7 +10,7 @@
 vxm_space truth_space(vxm_context *context, const shape *body, int64_t resolution);
 
 /**
- * The solid of a closed body: parity along z of every component, and what the body is wound around twice.
+ * The solid of a closed body: parity along z of every component, and what the body winds around twice.
  * Closing and votes have no part in it, and orientation adds no more than that, so that none of them makes its
  * own truth.
  */

@@ -230,6 +230,81 @@ static void test_with_holes(void **state) {
   }
 }
 
+/** Some faces wound the other way, as where caps meet, do not hide that all else is wound twice. */
+static void test_a_few_turned(void **state) {
+  (void)state;
+  vxm_rng rng = {17};
+  for (int round = 0; round < ROUNDS(12); round++) {
+    vxm_soup *soup = random_tube(&rng);
+    signed char *number = winding_numbers(soup, 1);
+    reverse_face(soup, 2 * SIDES * (RINGS / 4)); /* far from where the branches cross */
+    vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+    vxm_grid *grid = voxelize_centres(soup, &report);
+    assert_int_equal(report.self_overlapping_parts, 1);
+    for (size_t i = 0; i < WIDTH * WIDTH * WIDTH; i++)
+      if (number[i] != on_surface && is_set(grid, i) != (number[i] != 0))
+        fail_msg("voxel %zu is wound around %d times, and %s", i, number[i],
+                 is_set(grid, i) ? "set" : "not set");
+    vxm_grid_destroy(grid);
+    free(number);
+    vxm_soup_destroy(soup);
+  }
+}
+
+/** A loop that curls twice, as a band `low` to `high`, in the plane of two axes, extruded along the third:
+ * small beside all of the part, of which a long arm tells the box. */
+static void add_curl(vxm_soup *soup, int axis, double low, double high) {
+  static const double loop[][2] = {{1, 1},     {18.5, 1},  {18.5, 2},  {2.2, 2},
+                                   {2.2, 1.4}, {4.7, 1.4}, {4.7, 2.7}, {1, 2.7}};
+  enum { CORNERS = sizeof loop / sizeof *loop };
+  uint32_t v[2][CORNERS];
+  for (int side = 0; side < 2; side++)
+    for (int i = 0; i < CORNERS; i++) {
+      double p[3];
+      p[axis] = side ? high : low;
+      p[(axis + 1) % 3] = loop[i][0];
+      p[(axis + 2) % 3] = loop[i][1];
+      v[side][i] = shape_vertex(soup, p[0], p[1], p[2]);
+    }
+  for (int i = 0; i < CORNERS; i++) {
+    int next = (i + 1) % CORNERS;
+    shape_triangle(soup, v[0][i], v[0][next], v[1][next]);
+    shape_triangle(soup, v[0][i], v[1][next], v[1][i]);
+  }
+  for (int i = 1; i + 1 < CORNERS; i++) { /* fans, which the winding number counts with their signs */
+    shape_triangle(soup, v[0][0], v[0][i + 1], v[0][i]);
+    shape_triangle(soup, v[1][0], v[1][i], v[1][i + 1]);
+  }
+}
+
+/** What lies at the rim of a part is found, whichever way the part lies, and what is wound backward is not
+ * told to be filled. */
+static void test_at_the_rim(void **state) {
+  (void)state;
+  for (int axis = 0; axis < 3; axis++)
+    for (int turned = 0; turned < 2; turned++) {
+      vxm_soup *soup = shape_empty(context);
+      add_curl(soup, axis, 1.25, 18.75);
+      for (size_t f = 0; turned && f < soup->face_count; f++)
+        reverse_face(soup, f);
+      signed char *number = winding_numbers(soup, turned ? -1 : 1);
+      vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
+      vxm_grid *grid = voxelize_centres(soup, &report);
+      int twice = 0;
+      for (size_t i = 0; i < WIDTH * WIDTH * WIDTH; i++) {
+        twice += number[i] == 2;
+        if (number[i] != on_surface && number[i] >= -1 && is_set(grid, i) != (number[i] != 0))
+          fail_msg("axis %d: voxel %zu is wound around %d times, and %s", axis, i, number[i],
+                   is_set(grid, i) ? "set" : "not set");
+      }
+      assert_true(twice > 0);
+      assert_int_equal(report.self_overlapping_parts, 1);
+      vxm_grid_destroy(grid);
+      free(number);
+      vxm_soup_destroy(soup);
+    }
+}
+
 /** What does not run through itself, or cannot be told of, is left alone: as parity has it. */
 static void test_others_are_left(void **state) {
   (void)state;
@@ -244,7 +319,7 @@ static void test_others_are_left(void **state) {
         if (vxm_rng_unit(&rng) < 0.3)
           reverse_face(soup, f);
     } else {
-      add_tube(soup, &turned, 5 + vxm_rng_unit(&rng), 2);
+      add_tube(soup, &turned, 6 + vxm_rng_unit(&rng), 1.2);
     }
     shape_torus(soup, 12, 8, 3 + vxm_rng_unit(&rng), 1, (double[]){9.3, 9.7, 10.1});
     shape_box(soup, (double[]){2, 3, 4}, (double[]){11, 12, 13});
@@ -421,6 +496,8 @@ int main(void) {
       cmocka_unit_test(test_wound_twice_is_inside),
       cmocka_unit_test(test_beside_others),
       cmocka_unit_test(test_with_holes),
+      cmocka_unit_test(test_a_few_turned),
+      cmocka_unit_test(test_at_the_rim),
       cmocka_unit_test(test_others_are_left),
       cmocka_unit_test(test_ways),
       cmocka_unit_test(test_confidence),

@@ -121,8 +121,8 @@ static bool has_lone_sheet(const vxm_model *model) {
 static vxm_status fill_without_sheets(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
   size_t end = pass->analysis->triangles.split.kind_end[VXM_PART_CAPPED];
   if (end > 0) {
-    vxm_status status = vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, end,
-                                             VXM_ROLE_FACE | VXM_ROLE_CAP, error);
+    vxm_status status =
+        vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, end, VXM_ROLE_FACE | VXM_ROLE_CAP, error);
     return status == VXM_OK ? vxm_self_overlap_fill(pass, window, error) : status;
   }
   memset(window->words, 0,

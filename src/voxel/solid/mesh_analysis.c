@@ -14,9 +14,12 @@ static void chain_once_end(vxm_chain_once *once) {
 }
 
 vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup, vxm_split_rule rule,
-                                    vxm_error *error) {
+                                    bool overlaps, vxm_error *error) {
   vxm_context *context = soup->context;
-  *out = (vxm_mesh_analysis){.context = context, .soup = soup, .triangles = {.context = context}, .self_overlap.chain.context = context};
+  *out = (vxm_mesh_analysis){.context = context,
+                             .soup = soup,
+                             .triangles = {.context = context},
+                             .self_overlap.chain.context = context};
   vxm_error local = VXM_ERROR_INIT;
   out->orientation = vxm_calloc(context, 1, sizeof *out->orientation, &local);
   if (!out->orientation) {
@@ -31,7 +34,10 @@ vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup
   if (out->triangles.triangle_count == 0)
     return vxm_fail(error, VXM_ERROR_EMPTY,
                     "the mesh has no face with three different corners, so there is nothing to voxelize");
-  return vxm_self_overlap_find(&out->self_overlap, &out->triangles, error);
+  /* A cavity that is kept may be wound as what is around it is: then it is wound twice, and meant to be
+   * hollow. */
+  overlaps &= rule.cavities != VXM_CAVITIES_KEEP || out->triangles.split.cavity_count == 0;
+  return overlaps ? vxm_self_overlap_find(&out->self_overlap, &out->triangles, error) : VXM_OK;
 }
 
 void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis) {

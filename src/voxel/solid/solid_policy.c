@@ -50,10 +50,14 @@ bool vxm_votes_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_opti
   return !vxm_one_voter(options) && vxm_voted_begin(analysis, options) < analysis->triangles.split.part_count;
 }
 
+bool vxm_fills_overlaps(const vxm_voxelize_options *options) {
+  return options->method == VXM_METHOD_VOTE && options->vote == VXM_VOTE_AUTO && vxm_solid_wanted(options) &&
+         options->split_mode != VXM_SPLIT_MODE_WHOLE; /* which unites nothing */
+}
+
 bool vxm_overlaps_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
   bool displaces = options->engine && options->engine->displaces; /* where to is not known here */
-  return analysis->self_overlap.part_count > 0 && options->method != VXM_METHOD_WINDING &&
-         vxm_caps_wanted(options) && !displaces;
+  return analysis->self_overlap.part_count > 0 && vxm_fills_overlaps(options) && !displaces;
 }
 
 int vxm_buffers_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
