@@ -104,12 +104,14 @@ static void wait_for(pid_t worker, int end) {
 
 /**
  * Returns in the process that is to work. The parent is in another space, where its number is not seen from
- * here: it has to say a word, which it can no longer if it has gone.
+ * here. So it is told when its end would be ours, and has to answer, which it can no longer if it has gone
+ * before.
  */
 static void be_first(int end) {
   char word;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   setpgid(0, 0);
+  say(end, "", 1);
   if (!hear(end, &word, 1))
     _exit(1);
   pid_t worker = fork();
@@ -144,7 +146,9 @@ pid_t batch_cage_fork(const batch_cage *cage, int *status) {
     close(ends[0]);
     return -1;
   }
-  say(ends[0], "", 1);
+  char word;
+  if (hear(ends[0], &word, 1))
+    say(ends[0], "", 1);
   *status = ends[0];
   return id;
 }

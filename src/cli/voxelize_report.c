@@ -63,6 +63,8 @@ json_t *voxelize_report(const cli_run *cli, const voxelize_request *given, const
   json_object_set_new(report, "capped_parts", json_integer(results->voxelize.capped_parts));
   json_object_set_new(report, "caps", json_integer(results->voxelize.caps));
   json_object_set_new(report, "cavities", json_integer(results->voxelize.cavities));
+  json_object_set_new(report, "self_overlapping_parts",
+                      json_integer(results->voxelize.self_overlapping_parts));
   json_object_set_new(report, "empty_parts", json_integer(results->voxelize.empty_parts));
   json_object_set_new(report, "outside_parts", json_integer(results->voxelize.outside_parts));
   json_object_set_new(report, "votes", votes);
@@ -165,6 +167,11 @@ void voxelize_summarize(const cli_run *cli, const voxelize_request *given, const
     summarize_parts(cli, report);
   if (report->cavities > 0)
     cli_row(cli, "cavities", "%" PRId64, report->cavities);
+  if (report->self_overlapping_parts > 0)
+    cli_row(cli, "overlap", "%" PRId64 " of the parts run%s through %s, and %s filled there",
+            report->self_overlapping_parts, report->self_overlapping_parts == 1 ? "s" : "",
+            report->self_overlapping_parts == 1 ? "itself" : "themselves",
+            report->self_overlapping_parts == 1 ? "is" : "are");
   if (cli_field_wanted(&given->field))
     cli_field_summarize(cli, &given->field);
   else

@@ -161,11 +161,15 @@ typedef struct vxm_voxelize_report {
   int64_t components; /**< pieces that share vertices, also after a repair has cut them apart, of which the
                          parts are made: those that stay open are one part. 1 with VXM_SPLIT_MODE_WHOLE.
                          Labels by part count what touches as one */
+  int64_t self_overlapping_parts; /**< closed or capped parts that run through themselves, and are filled
+                                     there, where parity would leave them hollow; 0 with another method than
+                                     VXM_METHOD_VOTE, another vote than VXM_VOTE_AUTO, VXM_SPLIT_MODE_WHOLE,
+                                     and without a solid */
 } vxm_voxelize_report;
 
 /** Initial value of vxm_voxelize_report. */
 #define VXM_VOXELIZE_REPORT_INIT \
-  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0, 0.0, 0 }
+  { sizeof(vxm_voxelize_report), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, 0, 0.0, 0, 0 }
 
 /**
  * Voxelizes the inside of a mesh: voxel (i,j,k) is set where its centre is inside, and where parts thinner
@@ -182,7 +186,8 @@ typedef struct vxm_voxelize_report {
  *         VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED
  *
  * Parity is computed exactly on an integer lattice (at least 1/256 voxel). For parts closed mod 2 all methods
- * give the same bits, except the winding number where a part cuts through itself or a centre lies on a face.
+ * give the same bits, except where a part cuts through itself, which the winding number fills, and the
+ * default where it notices (more than some 10^-5 of the part), and for the winding number where a centre lies on a face.
  * With VXM_METHOD_WINDING the parts of the report are those of the solid that is made first, to turn the
  * faces.
  */

@@ -15,19 +15,6 @@ vxm_space truth_space(vxm_context *context, const shape *body, int64_t resolutio
   return space;
 }
 
-vxm_grid *truth_solid(vxm_context *context, const shape *body, const vxm_space *space) {
-  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
-  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
-  space_options.like = space;
-  options.method = VXM_METHOD_Z;
-  vxm_mesh *mesh = mesh_of_shape(context, body);
-  vxm_grid *grid;
-  vxm_error error = VXM_ERROR_INIT;
-  require(vxm_voxelize(&grid, NULL, mesh, &space_options, &options, &error), &error);
-  vxm_mesh_destroy(mesh);
-  return grid;
-}
-
 /** Gives every voxel of `into` that `other` has the value. */
 static void assign(vxm_grid *into, const vxm_grid *other, bool value) {
   const int64_t *dims = vxm_grid_space(into)->dims;
@@ -44,6 +31,27 @@ void truth_unite(vxm_grid *into, const vxm_grid *other) {
 
 void truth_subtract(vxm_grid *from, const vxm_grid *other) {
   assign(from, other, false);
+}
+
+static vxm_grid *solid_by(const vxm_mesh *mesh, const vxm_space *space, vxm_method method) {
+  vxm_voxelize_options options = VXM_VOXELIZE_OPTIONS_INIT;
+  vxm_space_options space_options = VXM_SPACE_OPTIONS_INIT;
+  space_options.like = space;
+  options.method = method;
+  options.thin = VXM_THIN_DROP;
+  vxm_grid *grid;
+  vxm_error error = VXM_ERROR_INIT;
+  require(vxm_voxelize(&grid, NULL, mesh, &space_options, &options, &error), &error);
+  return grid;
+}
+
+vxm_grid *truth_solid(vxm_context *context, const shape *body, const vxm_space *space) {
+  vxm_mesh *mesh = mesh_of_shape(context, body);
+  vxm_grid *grid = solid_by(mesh, space, VXM_METHOD_Z), *wound = solid_by(mesh, space, VXM_METHOD_WINDING);
+  truth_unite(grid, wound);
+  vxm_grid_destroy(wound);
+  vxm_mesh_destroy(mesh);
+  return grid;
 }
 
 /** Edge of the largest cube of set voxels whose last voxel is (i,j,k), from those of its seven predecessors.

@@ -36,7 +36,8 @@ typedef struct parity_job {
 bool vxm_coverage_by_parity(const vxm_model_pass *pass) {
   const vxm_voxelize_options *options = &pass->solid.options;
   return options->mode == VXM_MODE_SOLID && options->method == VXM_METHOD_VOTE &&
-         !vxm_voxel_pass_ops(&pass->solid) && !vxm_votes_wanted(pass->solid.analysis, options);
+         !vxm_voxel_pass_ops(&pass->solid) && !vxm_votes_wanted(pass->solid.analysis, options) &&
+         !vxm_overlaps_wanted(pass->solid.analysis, options);
 }
 
 /** Rows of voxels that a thread does at once, of a slice of so many. */

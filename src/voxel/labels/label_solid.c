@@ -2,6 +2,7 @@
 #include "voxel/labels/label_solid.h"
 #include "base/hash.h"
 #include "voxel/fields/field.h"
+#include "voxel/solid/self_overlap_fill.h"
 #include "voxel/sparse/sparse.h"
 
 #include <string.h>
@@ -119,9 +120,11 @@ static bool has_lone_sheet(const vxm_model *model) {
 /** Fills slices with the parts that are closed, or closed by caps. */
 static vxm_status fill_without_sheets(vxm_voxel_pass *pass, const vxm_window *window, vxm_error *error) {
   size_t end = pass->analysis->triangles.split.kind_end[VXM_PART_CAPPED];
-  if (end > 0)
-    return vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, end, VXM_ROLE_FACE | VXM_ROLE_CAP,
-                                error);
+  if (end > 0) {
+    vxm_status status =
+        vxm_voxel_pass_unite(pass, window, window->layout.fast, 0, end, VXM_ROLE_FACE | VXM_ROLE_CAP, error);
+    return status == VXM_OK ? vxm_self_overlap_fill(pass, window, error) : status;
+  }
   memset(window->words, 0,
          window->slice_words * (size_t)(window->end - window->begin) * sizeof *window->words);
   return VXM_OK;

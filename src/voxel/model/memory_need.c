@@ -24,6 +24,8 @@ static uint64_t decision_bytes(const vxm_model *model, const vxm_window *shape) 
          end = triangles->split.part_count;
   uint64_t threads = (uint64_t)vxm_context_threads(model->context);
   uint64_t bins = 5 * threads * (uint64_t)(shape->slow_dim + shape->middle_dim) * sizeof(vxm_crossing_bin);
+  if (vxm_overlaps_wanted(&model->analysis, &model->options))
+    bins += model->analysis.self_overlap.chain.closed_count * VXM_TURNED_BYTES;
   bool one = vxm_one_voter(&model->options);
   if (begin >= end && !one)
     return bins;

@@ -5,7 +5,9 @@ static vxm_status fill_model(vxm_model *model, const vxm_soup *soup, vxm_error *
   const vxm_voxelize_options *options = &model->options;
   vxm_split_rule rule = {options->split_mode, options->cavities, vxm_caps_wanted(options)};
   vxm_status status = vxm_model_results_create(&model->results, model->context, error);
-  return status == VXM_OK ? vxm_mesh_analysis_create(&model->analysis, soup, rule, error) : status;
+  return status == VXM_OK
+             ? vxm_mesh_analysis_create(&model->analysis, soup, rule, vxm_fills_overlaps(options), error)
+             : status;
 }
 
 vxm_status vxm_model_make(vxm_model **out, const vxm_soup *soup, const vxm_voxelize_options *options,

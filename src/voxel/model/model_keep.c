@@ -27,7 +27,9 @@ static bool can_stay(const vxm_model_pass *pass) {
     return true;
   if (!ops->unite)
     return false;
-  /* What is contested is settled by the winding number, by the CPU. */
+  /* What is contested, or lies in itself, is settled by the winding number, by the CPU. */
+  if (vxm_overlaps_wanted(solid->analysis, options))
+    return false;
   return !vxm_votes_wanted(solid->analysis, options) || (ops->vote && !vxm_caps_wanted(options));
 }
 

@@ -188,6 +188,9 @@ void vxm_model_report(vxm_model_pass *pass, vxm_voxelize_report *report, int64_t
       .voxels = voxels,
       .hash = hash,
       .components = (int64_t)split->component_count,
+      .self_overlapping_parts = vxm_overlaps_wanted(pass->solid.analysis, &pass->solid.options)
+                                    ? (int64_t)pass->solid.analysis->self_overlap.part_count
+                                    : 0,
       .thin_voxels = pass->is_field ? 0 : pass->thin.thin.added};
   if (pass->thin.thin.area > 0)
     report->thin_share =

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/solid/confidence.h"
 #include "base/threads.h"
+#include "voxel/solid/self_overlap_fill.h"
 
 #include <string.h>
 
@@ -53,6 +54,8 @@ vxm_status vxm_confidence_fill(vxm_voxel_pass *pass, const vxm_window *window, v
   vxm_status status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_CLOSED, window, &made, error);
   if (status == VXM_OK)
     status = vxm_voxel_pass_unite(pass, &made, 0, 0, begin, VXM_ROLE_FACE, error);
+  if (status == VXM_OK && method == VXM_METHOD_VOTE)
+    status = vxm_self_overlap_fill(pass, &made, error);
   job.closed = made.words;
   for (int v = 0; v < VOTERS && status == VXM_OK; v++) {
     status = vxm_voxel_pass_buffer(pass, VXM_BUFFER_VOTERS + v, window, &made, error);

@@ -14,9 +14,12 @@ static void chain_once_end(vxm_chain_once *once) {
 }
 
 vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup, vxm_split_rule rule,
-                                    vxm_error *error) {
+                                    bool overlaps, vxm_error *error) {
   vxm_context *context = soup->context;
-  *out = (vxm_mesh_analysis){.context = context, .soup = soup, .triangles = {.context = context}};
+  *out = (vxm_mesh_analysis){.context = context,
+                             .soup = soup,
+                             .triangles = {.context = context},
+                             .self_overlap.chain.context = context};
   vxm_error local = VXM_ERROR_INIT;
   out->orientation = vxm_calloc(context, 1, sizeof *out->orientation, &local);
   if (!out->orientation) {
@@ -28,10 +31,13 @@ vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup
   vxm_status status = vxm_triangle_set_create(&out->triangles, soup, rule, error);
   if (status != VXM_OK)
     return status;
-  return out->triangles.triangle_count > 0
-             ? VXM_OK
-             : vxm_fail(error, VXM_ERROR_EMPTY,
-                        "the mesh has no face with three different corners, so there is nothing to voxelize");
+  if (out->triangles.triangle_count == 0)
+    return vxm_fail(error, VXM_ERROR_EMPTY,
+                    "the mesh has no face with three different corners, so there is nothing to voxelize");
+  /* A cavity that is kept may be wound as what is around it is: then it is wound twice, and meant to be
+   * hollow. */
+  overlaps &= rule.cavities != VXM_CAVITIES_KEEP || out->triangles.split.cavity_count == 0;
+  return overlaps ? vxm_self_overlap_find(&out->self_overlap, &out->triangles, error) : VXM_OK;
 }
 
 void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis) {
@@ -40,6 +46,7 @@ void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis) {
   chain_once_end(&analysis->orientation->open);
   chain_once_end(&analysis->orientation->all);
   vxm_free(analysis->context, analysis->orientation);
+  vxm_self_overlap_destroy(&analysis->self_overlap);
   vxm_triangle_set_destroy(&analysis->triangles);
   *analysis = (vxm_mesh_analysis){.context = analysis->context};
 }

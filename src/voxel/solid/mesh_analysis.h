@@ -7,6 +7,7 @@
 #define VXM_VOXEL_SOLID_MESH_ANALYSIS_H
 
 #include "voxel/winding/oriented_chain.h"
+#include "voxel/winding/self_overlap.h"
 
 #include <pthread.h>
 
@@ -26,12 +27,14 @@ struct vxm_mesh_analysis {
   vxm_context *context;
   const vxm_soup *soup;
   vxm_triangle_set triangles;
-  vxm_orientation *orientation; /**< see solid/orient_open.h and solid/orient_all.h */
+  vxm_self_overlap self_overlap; /**< none if they were not looked for */
+  vxm_orientation *orientation;  /**< see solid/orient_open.h and solid/orient_all.h */
 };
 
-/** Destroy with vxm_mesh_analysis_destroy, also after a failure. @return as vxm_model_create */
+/** Destroy with vxm_mesh_analysis_destroy, also after a failure. `overlaps`: whether parts that lie in
+ * themselves are looked for. @return as vxm_model_create */
 vxm_status vxm_mesh_analysis_create(vxm_mesh_analysis *out, const vxm_soup *soup, vxm_split_rule rule,
-                                    vxm_error *error);
+                                    bool overlaps, vxm_error *error);
 void vxm_mesh_analysis_destroy(vxm_mesh_analysis *analysis);
 
 /** Finds out which triangles face inward, from what `payload` says. */

@@ -3,6 +3,7 @@
 #include "voxel/parity/tetra.h"
 #include "voxel/solid/orient_all.h"
 #include "voxel/solid/orient_open.h"
+#include "voxel/solid/self_overlap_fill.h"
 #include "voxel/solid/solid_votes.h"
 #include "voxel/winding/winding_fill.h"
 
@@ -59,6 +60,8 @@ static vxm_status fill(vxm_voxel_pass *pass, const vxm_window *window, vxm_error
   vxm_status status = one_closed ? VXM_OK : vxm_solid_vote(pass, window, error);
   if (status == VXM_OK && winding)
     status = fill_by_winding(pass, window, error);
+  else if (status == VXM_OK)
+    status = vxm_self_overlap_fill(pass, window, error);
   if (status == VXM_OK && one_closed && pass->added && pass->has_voxels)
     atomic_store_explicit(&pass->has_voxels[0], 1, memory_order_relaxed);
   return status;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "voxel/solid/solid_policy.h"
+#include "voxel/engine/engine.h"
 
 static bool is_shell(const vxm_voxelize_options *options) {
   return options->surface >= VXM_SURFACE_SHELL26;
@@ -49,11 +50,22 @@ bool vxm_votes_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_opti
   return !vxm_one_voter(options) && vxm_voted_begin(analysis, options) < analysis->triangles.split.part_count;
 }
 
+bool vxm_fills_overlaps(const vxm_voxelize_options *options) {
+  return options->method == VXM_METHOD_VOTE && options->vote == VXM_VOTE_AUTO && vxm_solid_wanted(options) &&
+         options->split_mode != VXM_SPLIT_MODE_WHOLE; /* which unites nothing */
+}
+
+bool vxm_overlaps_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
+  bool displaces = options->engine && options->engine->displaces; /* where to is not known here */
+  return analysis->self_overlap.part_count > 0 && vxm_fills_overlaps(options) && !displaces;
+}
+
 int vxm_buffers_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options) {
   /* What is decided by winding numbers, two masks of bricks, and the crossings of rows that are counted: for
    * all, and for what is contested. */
   enum { WINDING = 6 };
   int winding = options->method == VXM_METHOD_WINDING ? WINDING : 0;
+  winding += vxm_overlaps_wanted(analysis, options) ? WINDING : 0;
   if (!vxm_votes_wanted(analysis, options))
     return winding;
   winding += vxm_caps_wanted(options) ? WINDING : 0;

@@ -22,6 +22,11 @@ bool vxm_one_voter(const vxm_voxelize_options *options);
 size_t vxm_voted_begin(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options);
 /** Whether voters decide some parts, where there is not one for all. */
 bool vxm_votes_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options);
+/** Whether parts that lie in themselves are to be filled where parity leaves them hollow: where no rule of
+ * the papers was asked for, and the winding number is not asked about all voxels anyway. */
+bool vxm_fills_overlaps(const vxm_voxelize_options *options);
+/** Whether there are such parts, and they are filled. */
+bool vxm_overlaps_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options);
 /** Windows that a pass holds beside its result. */
 int vxm_buffers_wanted(const vxm_mesh_analysis *analysis, const vxm_voxelize_options *options);
 /** Whether a pass needs apexes placed. */

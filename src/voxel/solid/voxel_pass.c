@@ -11,7 +11,8 @@ vxm_voxel_pass vxm_voxel_pass_of(const vxm_mesh_analysis *analysis, const vxm_vo
                           .engine = options->engine,
                           .placed = {.context = context},
                           .open_winding = vxm_winding_mesh_of(context),
-                          .all_winding = vxm_winding_mesh_of(context)};
+                          .all_winding = vxm_winding_mesh_of(context),
+                          .overlap_winding = {.context = context}};
 }
 
 void vxm_voxel_pass_destroy(vxm_voxel_pass *pass) {
@@ -20,6 +21,7 @@ void vxm_voxel_pass_destroy(vxm_voxel_pass *pass) {
   vxm_snapped_points_destroy(&pass->placed);
   vxm_winding_mesh_destroy(&pass->open_winding);
   vxm_winding_mesh_destroy(&pass->all_winding);
+  vxm_chain_winding_destroy(&pass->overlap_winding);
 }
 
 void vxm_voxel_pass_begin(vxm_voxel_pass *pass) {
@@ -29,6 +31,7 @@ void vxm_voxel_pass_begin(vxm_voxel_pass *pass) {
   pass->contested = pass->winding_decided = 0;
   pass->added = false;
   pass->open_winding.chain = pass->all_winding.chain = NULL;
+  pass->overlap_placed = false;
 }
 
 vxm_status vxm_voxel_pass_buffer(vxm_voxel_pass *pass, int buffer, const vxm_window *like, vxm_window *out,

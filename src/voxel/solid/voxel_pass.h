@@ -37,6 +37,8 @@ typedef struct vxm_voxel_pass {
   bool mirrored; /**< the transform turns triangles inside out */
   vxm_buffer buffers[VXM_BUFFERS];
   vxm_winding_mesh open_winding, all_winding; /**< made when first needed */
+  vxm_chain_winding overlap_winding;          /**< of parts that lie in themselves */
+  bool overlap_placed;                        /**< whether it is */
   atomic_uchar *has_voxels;                   /**< per part: whether it sets a voxel; NULL = not asked */
   uint8_t *confidence;                        /**< of the whole grid, x fastest; NULL = not asked */
   int64_t contested, winding_decided;

@@ -15,7 +15,7 @@ bool vxm_sparse_is_direct(const vxm_model *model) {
     return false;
   if (vxm_one_voter(options)) /* of closed parts all axes tell the same */
     return options->method == VXM_METHOD_X || split->kind_end[VXM_PART_CLOSED] == split->part_count;
-  return !vxm_votes_wanted(&model->analysis, options);
+  return !vxm_votes_wanted(&model->analysis, options) && !vxm_overlaps_wanted(&model->analysis, options);
 }
 
 static bool is_direct_forced;

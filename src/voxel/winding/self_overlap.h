@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/**
+ * Closed parts that lie in themselves, as an arm that reaches into the trunk of the same body.
+ *
+ * There the surface is entered twice before it is left, so that parity says outside; the winding number is 2.
+ */
+#ifndef VXM_VOXEL_WINDING_SELF_OVERLAP_H
+#define VXM_VOXEL_WINDING_SELF_OVERLAP_H
+
+#include "voxel/parts/triangle_set.h"
+#include "voxel/winding/chain.h"
+
+typedef struct vxm_self_overlap {
+  vxm_winding_chain chain; /**< faces and caps of all such parts, turned outward: closed, without a rest */
+  size_t *part;            /**< their numbers */
+  size_t part_count;       /**< 0 = there are none, and no chain */
+} vxm_self_overlap;
+
+/**
+ * Finds the closed and capped parts that lie in themselves.
+ *
+ * Lines along x through each part are followed from face to face: up to 16 x 16 of them as far apart as one
+ * another, and as many again along y and z where the part has its points. A part counts where these lines run
+ * through what is wound twice, or more often, for more than 10^-5 of what they run inside of; so one that
+ * overlaps itself in a small place only may be passed over. Its faces must be wound consistently, as a repair
+ * leaves them, but for one in fifty: of other parts only parity tells something.
+ *
+ * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; to be destroyed in any case.
+ * Takes time linear in the number of triangles
+ */
+vxm_status vxm_self_overlap_find(vxm_self_overlap *out, const vxm_triangle_set *triangles, vxm_error *error);
+void vxm_self_overlap_destroy(vxm_self_overlap *overlap);
+
+#endif
