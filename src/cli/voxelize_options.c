@@ -357,6 +357,9 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   out->input = cli->arguments[0];
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
+  cli->sized_by = out->like   ? CLI_SIZED_BY_LIKE
+                  : out->size ? CLI_SIZED_BY_VOXEL_SIZE
+                              : CLI_SIZED_BY_RESOLUTION;
   cli_formats formats =
       cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_formats_with(VXM_FORMAT_BITS);
   out->format = cli_output_format(cli, out->output, out->format, formats.name);
