@@ -25,7 +25,7 @@ def _values_for(space: Any, dtype: Any, channels: int = 1) -> Any:
 
 def distance(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: Optional[Size] = None,
              voxel_size: Optional[Size] = None, fit: Optional[str] = None, pad: int = 0, bounds: Optional[ArrayLike] = None,
-             like: Optional[Like] = None, band: float = 3.0, unsigned: bool = False, thin: str = "auto", repair: bool = True,
+             like: Optional[Like] = None, band: float = 3.0, unsigned: bool = False, repair: bool = True,
              engine: EngineLike = None, progress: Progress = None, timeout: Optional[float] = None) -> VoxelField:
     """Distances from the centres of voxels to the mesh, negative inside.
 
@@ -41,7 +41,7 @@ def distance(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: 
     place = Place("distance", resolution, pitch, voxel_size, fit, pad, bounds, like)
     options = _core.new("vxm_distance_options", band=_values.real("distance: band", band, 0),
                         is_unsigned=_values.flag("distance: unsigned", unsigned))
-    with Work(mesh, place, Rules(thin=thin), Run(repair, engine, progress, timeout)) as work:
+    with Work(mesh, place, Rules(), Run(repair, engine, progress, timeout)) as work:
         space, model = work.space(), work.model()
         values, solid = _values_for(space, numpy.float32), _core.new("vxm_voxelize_report")
         report = _core.new("vxm_distance_report", voxelize=solid)
@@ -84,9 +84,10 @@ def coverage(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: 
 
 def labels(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str = "part", pitch: Optional[Size] = None,
            voxel_size: Optional[Size] = None, fit: Optional[str] = None, pad: int = 0, bounds: Optional[ArrayLike] = None,
-           like: Optional[Like] = None, mode: str = "solid", surface: str = "conservative", method: str = "vote",
-           vote: str = "auto", parts: str = "auto", cavities: str = "auto", thin: str = "auto", repair: bool = True,
-           engine: EngineLike = None, progress: Progress = None, timeout: Optional[float] = None) -> VoxelField:
+           like: Optional[Like] = None, mode: str = "solid", surface: Optional[str] = None, method: Optional[str] = None,
+           vote: Optional[str] = None, parts: str = "auto", cavities: Optional[str] = None, thin: str = "auto",
+           repair: bool = True, engine: EngineLike = None, progress: Progress = None,
+           timeout: Optional[float] = None) -> VoxelField:
     """Which part, group or material each set voxel belongs to.
 
     Args:
@@ -117,9 +118,10 @@ def labels(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str =
 def colors(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str = "noise", source: Optional[str] = None,
            average: bool = False, volume: Optional[VoxelField] = None, pitch: Optional[Size] = None,
            voxel_size: Optional[Size] = None, fit: Optional[str] = None, pad: int = 0, bounds: Optional[ArrayLike] = None,
-           like: Optional[Like] = None, mode: str = "solid", surface: str = "conservative", method: str = "vote",
-           vote: str = "auto", parts: str = "auto", cavities: str = "auto", thin: str = "auto", repair: bool = True,
-           engine: EngineLike = None, progress: Progress = None, timeout: Optional[float] = None) -> VoxelField:
+           like: Optional[Like] = None, mode: str = "solid", surface: Optional[str] = None, method: Optional[str] = None,
+           vote: Optional[str] = None, parts: str = "auto", cavities: Optional[str] = None, thin: str = "auto",
+           repair: bool = True, engine: EngineLike = None, progress: Progress = None,
+           timeout: Optional[float] = None) -> VoxelField:
     """A colour for each set voxel.
 
     Args:
@@ -142,6 +144,8 @@ def colors(mesh: MeshLike, resolution: Optional[Resolution] = None, *, by: str =
     place = Place("colors", resolution, pitch, voxel_size, fit, pad, bounds, like)
     options = _core.new("vxm_color_options", by=_core.choice("colors: by", by, "VXM_COLOR_"),
                         average=_values.flag("colors: average", average))
+    if options.average and by != "mesh":
+        raise ArgumentError("colors: average goes with by='mesh'")
     if (source is not None) != (by == "glsl"):
         raise ArgumentError("colors: by='glsl' and a source go together")
     if (volume is not None) != (by == "volume"):

@@ -13,6 +13,7 @@ from ._mesh import Mesh
 from ._mesh_sources import MeshLike, as_mesh
 from ._turns import Turn, watch_forks
 from ._types import Array, Floats, Uint32s
+from ._work import Rules
 
 _UINT32_MAX = 0xFFFFFFFF
 _VOXELS = {"bits": lib.VXM_VOXEL_FORMAT_PACKED, "uint8": lib.VXM_VOXEL_FORMAT_UINT8, "float32": lib.VXM_VOXEL_FORMAT_FLOAT32}
@@ -47,8 +48,8 @@ class Sampler:
 
     def __init__(self, resolution: int = 64, *, pad: int = 0, seed: int = 0, rotate: Any = None, scale: float = 0.0,
                  displace: float = 0.0, displacement: str = "uniform", noise: int = 65536, mirror: str = "",
-                 translate: float = 0.0, fill: bool = False, mode: str = "solid", surface: str = "conservative",
-                 method: str = "vote", vote: str = "auto", parts: str = "auto", cavities: str = "auto",
+                 translate: float = 0.0, fill: bool = False, mode: str = "solid", surface: Optional[str] = None,
+                 method: Optional[str] = None, vote: Optional[str] = None, parts: str = "auto", cavities: Optional[str] = None,
                  thin: str = "auto", engine: Optional[str] = None, coverage: Optional[int] = None):
         if isinstance(rotate, (list, tuple, numpy.ndarray)):
             rotate = numpy.array(rotate)  # a copy
@@ -66,7 +67,8 @@ class Sampler:
     def _make(self) -> Any:
         """The library's sampler of the options, without models."""
         given = self._options
-        voxelize = _core.new("vxm_voxelize_options")
+        rules = ("mode", "surface", "method", "vote", "parts", "cavities", "thin")
+        voxelize = Rules(**{name: given[name] for name in rules}).options("sampler")
         options = _core.new("vxm_sampler_options", voxelize=voxelize)
         for name, least, most in (("resolution", 1, _values.DIM_MAX), ("pad", 0, _values.INT64_MAX),
                                   ("seed", 0, 0xFFFFFFFFFFFFFFFF), ("noise", 0, _UINT32_MAX)):
@@ -75,15 +77,14 @@ class Sampler:
             setattr(options, name, _values.real("sampler: " + name, given[name], 0))
         if given["coverage"] is not None:
             options.coverage = _values.whole("sampler: coverage", given["coverage"], 1, 8)
+            if voxelize.thin != lib.VXM_THIN_AUTO:
+                raise ArgumentError("sampler: coverage counts what is inside, and thin adds voxels; give one of them")
         options.fill = _values.flag("sampler: fill", given["fill"])
         options.displacement = _core.choice("sampler: displacement", given["displacement"], "VXM_DISPLACEMENT_")
         for axis in _values.word("sampler: mirror", given["mirror"]):
             if axis not in "xyz":
                 raise ArgumentError("sampler: mirror %r names other axes than x, y and z" % given["mirror"])
             options.mirror |= 1 << "xyz".index(axis)
-        for name in ("mode", "surface", "method", "vote", "parts", "cavities", "thin"):
-            field = "split_mode" if name == "parts" else name
-            setattr(voxelize, field, _core.choice("sampler: " + name, given[name], "VXM_%s_" % field.upper()))
         rotations = self._set_rotation(options, given["rotate"])
         voxelize.engine = engine = self._make_engine(given["engine"])
 

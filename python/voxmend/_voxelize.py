@@ -18,9 +18,9 @@ from ._work import Rules, Run, Work
 
 def voxelize(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: Optional[Size] = None,
              voxel_size: Optional[Size] = None, fit: Optional[str] = None, pad: int = 0, bounds: Optional[ArrayLike] = None,
-             like: Optional[Like] = None, mode: str = "solid", surface: str = "conservative", method: str = "vote",
-             vote: str = "auto", parts: str = "auto", cavities: str = "auto", thin: str = "auto", confidence: bool = False,
-             repair: bool = True, engine: EngineLike = None, progress: Progress = None,
+             like: Optional[Like] = None, mode: str = "solid", surface: Optional[str] = None, method: Optional[str] = None,
+             vote: Optional[str] = None, parts: str = "auto", cavities: Optional[str] = None, thin: str = "auto",
+             confidence: bool = False, repair: bool = True, engine: EngineLike = None, progress: Progress = None,
              timeout: Optional[float] = None) -> VoxelGrid:
     """Voxelizes a mesh: a voxel is set where its centre is inside, and where parts thinner than a voxel need it.
 
@@ -37,11 +37,13 @@ def voxelize(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: 
         bounds: (2, 3) corners of the box to cover, model units.
         like: a grid, octree or field whose space is taken.
         mode: "solid", "surface" or "both".
-        surface: "conservative", "thin", "shell26", "shell18" or "shell6".
-        method, vote, parts, cavities: as in `voxmend voxelize --help`.
+        surface: with mode "surface", "conservative", which is what is taken if nothing is said, "thin", "shell26", "shell18" or
+            "shell6"; with "both" one of the first two.
+        method, vote, parts, cavities: as in `voxmend voxelize --help`. None: "vote", "auto", "auto". `vote` goes with method
+            "vote", `cavities` with parts "auto", and neither `method` nor `vote` with a surface that is no shell.
         thin: parts thinner than a voxel: "keep": voxels are added that hold them together, and through which no path from
             face to face leaks; "26": nor one over edges and corners; "drop": only voxels whose centre is inside; "auto":
-            "keep", but "drop" where `method` or `vote` chooses another rule.
+            "keep", but "drop" where `method` or `vote` chooses another rule. With a surface it goes if that is a shell.
         confidence: keep for each voxel how sure it is: `VoxelGrid.confidence`.
         repair: repair the mesh first, as `voxmend.repair(mesh, separate=True)` does.
         engine: "cpu"; "opencl", "opengl", a name that `voxmend.engines` gives, "auto", or an `Engine`. The bits are the same.
@@ -69,9 +71,9 @@ def voxelize(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: 
 def voxelize_sparse(mesh: MeshLike, resolution: Optional[Resolution] = None, *, pitch: Optional[Size] = None,
                     voxel_size: Optional[Size] = None, fit: Optional[str] = None, pad: int = 0,
                     bounds: Optional[ArrayLike] = None, like: Optional[Like] = None, mode: str = "solid",
-                    surface: str = "conservative", method: str = "vote", vote: str = "auto", parts: str = "auto",
-                    cavities: str = "auto", thin: str = "auto", repair: bool = True, engine: EngineLike = None,
-                    progress: Progress = None, timeout: Optional[float] = None) -> SparseGrid:
+                    surface: Optional[str] = None, method: Optional[str] = None, vote: Optional[str] = None,
+                    parts: str = "auto", cavities: Optional[str] = None, thin: str = "auto", repair: bool = True,
+                    engine: EngineLike = None, progress: Progress = None, timeout: Optional[float] = None) -> SparseGrid:
     """As `voxelize`, into an octree, whose memory follows the surface: for grids of 4096 voxels along a side and more."""
     place = Place("voxelize_sparse", resolution, pitch, voxel_size, fit, pad, bounds, like)
     rules = Rules(mode, surface, method, vote, parts, cavities, thin)

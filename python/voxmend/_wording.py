@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 _PHRASES = (
-    ("a higher resolution (-r)", "a higher resolution"),
+    ("resolution (-r)", "resolution"),
     ("'voxmend repair --level closed'", "voxmend.repair(level=\"closed\")"),
     ("'voxmend remesh'", "voxmend.remesh"),
     ("look at it with 'view'", "look at it with show()"),

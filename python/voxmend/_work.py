@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass
-from typing import Any, List, Optional
+from typing import Any, List, Optional, Tuple
 
 from . import _core, _values
 from ._core import ffi, lib
 from ._engines import Engine, EngineLike, used
+from ._errors import ArgumentError
 from ._mesh import Mesh
 from ._mesh_sources import MeshLike, as_mesh
 from ._progress import watch
@@ -20,24 +21,45 @@ from ._types import Progress
 
 @dataclass
 class Rules:
-    """Which voxels are set."""
+    """Which voxels are set; None where nothing was said."""
 
     mode: str = "solid"
-    surface: str = "conservative"
-    method: str = "vote"
-    vote: str = "auto"
+    surface: Optional[str] = None
+    method: Optional[str] = None
+    vote: Optional[str] = None
     parts: str = "auto"
-    cavities: str = "auto"
+    cavities: Optional[str] = None
     thin: str = "auto"
     confidence: bool = False
 
     def options(self, caller: str) -> Any:
         out = _core.new("vxm_voxelize_options")
         for name in ("mode", "surface", "method", "vote", "parts", "cavities", "thin"):
-            field = "split_mode" if name == "parts" else name
-            setattr(out, field, _core.choice("%s: %s" % (caller, name), getattr(self, name), "VXM_%s_" % field.upper()))
+            field, value = "split_mode" if name == "parts" else name, getattr(self, name)
+            if value is not None:
+                setattr(out, field, _core.choice("%s: %s" % (caller, name), value, "VXM_%s_" % field.upper()))
         out.confidence = _values.flag(caller + ": confidence", self.confidence)
+        for is_wrong, what in self._conflicts(out):
+            if is_wrong:
+                raise ArgumentError("%s: %s" % (caller, what))
         return out
+
+    def _conflicts(self, chosen: Any) -> List[Tuple[bool, str]]:
+        """What would be of no effect, as the command line refuses it."""
+        is_shell = chosen.surface >= lib.VXM_SURFACE_SHELL26
+        is_solid = chosen.mode != lib.VXM_MODE_SURFACE or is_shell
+        return [
+            (self.surface is not None and chosen.mode == lib.VXM_MODE_SOLID, "surface goes with mode='surface' or 'both'"),
+            (is_shell and chosen.mode == lib.VXM_MODE_BOTH,
+             "a shell is a part of the solid; with mode='both' leave out surface"),
+            (chosen.thin != lib.VXM_THIN_AUTO and not is_solid,
+             "thin goes with the solid: mode='solid' or 'both', or a shell as surface"),
+            (self.vote is not None and chosen.method != lib.VXM_METHOD_VOTE, "vote goes with method='vote' only"),
+            (self.cavities is not None and chosen.split_mode != lib.VXM_SPLIT_MODE_AUTO,
+             "cavities goes with parts='auto' only"),
+            ((self.method is not None or self.vote is not None) and not is_solid,
+             "method and vote are about the solid; leave them out with mode='surface', unless surface is a shell"),
+        ]
 
 
 @dataclass

@@ -92,6 +92,13 @@ typedef struct cli_capture {
 int cli_capture_command(const char *name, int count, char **words, cli_capture *capture);
 
 /** One run of the program. */
+/** What tells how large voxels are; advice in messages names it. */
+typedef enum cli_sizing {
+  CLI_SIZED_BY_RESOLUTION = 0, /**< -r, in commands that have it */
+  CLI_SIZED_BY_VOXEL_SIZE,
+  CLI_SIZED_BY_LIKE
+} cli_sizing;
+
 struct cli_run {
   const cli_command *command;
   int argc;
@@ -106,6 +113,8 @@ struct cli_run {
   const char *progress;
   vxm_context_options limits;
   vxm_mesh_read_options read;
+
+  cli_sizing sized_by;
 
   vxm_context *context; /**< made by cli_start */
   vxm_error error;      /**< hand &cli->error to the library, then cli_fail */

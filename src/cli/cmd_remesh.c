@@ -72,8 +72,10 @@ static int read_arguments(cli_run *cli, request *out) {
   if (cli->argument_count != 1)
     return cli_usage(cli, "one mesh is expected, not %d", cli->argument_count);
   out->input = cli->arguments[0];
-  if (out->space.resolution[0] > 0 && (out->space.voxel_size > 0 || out->space.voxel_sizes[0] > 0))
+  bool is_sized = out->space.voxel_size > 0 || out->space.voxel_sizes[0] > 0;
+  if (out->space.resolution[0] > 0 && is_sized)
     return cli_usage(cli, "-r and --voxel-size exclude each other");
+  cli->sized_by = is_sized ? CLI_SIZED_BY_VOXEL_SIZE : CLI_SIZED_BY_RESOLUTION;
   out->space.fit = VXM_FIT_TIGHT;
   out->write.format = cli_output_format(cli, out->output, out->write.format, cli_mesh_formats);
   if (!out->write.format)

@@ -16,15 +16,41 @@
 
 /* ---- Messages ---- */
 
-/** Errors about memory end with a hint that is of use only where the resolution can be chosen. */
-static void trim_hint(cli_run *cli) {
-  static const char hint[] = " or lower the resolution (-r)";
-  size_t length = strlen(cli->error.text), tail = sizeof hint - 1;
-  for (const cli_option *option = cli->command->options; option->name; option++)
-    if (option->key == 'r')
-      return;
-  if (length > tail && strcmp(cli->error.text + length - tail, hint) == 0)
-    cli->error.text[length - tail] = '\0';
+typedef struct wording {
+  const char *said, *meant;
+} wording;
+
+static bool has_resolution(const cli_option *options) {
+  for (; options && options->name; options++)
+    if (options->key == 'r')
+      return true;
+  return false;
+}
+
+/** The library's advice names the resolution. Here it names what the size of voxels was told by, or nothing
+ * where it cannot be chosen. */
+static void reword(const cli_run *cli, char *text, size_t size) {
+  static const wording by_voxel_size[] = {{"lower the resolution (-r)", "take a larger --voxel-size"},
+                                          {"a higher resolution (-r)", "a smaller --voxel-size"}},
+                       by_like[] = {{"lower the resolution (-r)", "take a smaller grid for --like"},
+                                    {"a higher resolution (-r)", "a finer grid for --like"}},
+                       fixed[] = {{" or lower the resolution (-r)", ""},
+                                  {"lower the resolution (-r), or ", ""}};
+  if (cli->sized_by == CLI_SIZED_BY_RESOLUTION &&
+      (has_resolution(cli->command->options) || has_resolution(cli->command->others)))
+    return;
+  const wording *words = cli->sized_by == CLI_SIZED_BY_VOXEL_SIZE ? by_voxel_size
+                         : cli->sized_by == CLI_SIZED_BY_LIKE     ? by_like
+                                                                  : fixed;
+  for (int w = 0; w < 2; w++) {
+    const char *at = strstr(text, words[w].said);
+    char *line;
+    if (!at ||
+        asprintf(&line, "%.*s%s%s", (int)(at - text), text, words[w].meant, at + strlen(words[w].said)) < 0)
+      continue;
+    snprintf(text, size, "%s", line);
+    free(line);
+  }
 }
 
 int cli_fail(cli_run *cli) {
@@ -32,7 +58,7 @@ int cli_fail(cli_run *cli) {
   if (cli->error.code == VXM_ERROR_CANCELLED && cli_signal())
     fprintf(stderr, "voxmend: interrupted\n");
   else {
-    trim_hint(cli);
+    reword(cli, cli->error.text, sizeof cli->error.text);
     fprintf(stderr, "voxmend: %s\n", cli->error.text);
   }
   return CLI_FAILED;
@@ -76,6 +102,7 @@ void cli_warn(cli_run *cli, const char *format, ...) {
   va_start(arguments, format);
   vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
+  reword(cli, text, sizeof text);
   json_array_append_new(cli->warnings, cli_json_text(text));
   cli->warning_count++;
   if (cli->quiet)

@@ -47,8 +47,12 @@ int cli_check_surface(cli_run *cli, const vxm_voxelize_options *options, bool is
   return CLI_END;
 }
 
+bool cli_makes_solid(const vxm_voxelize_options *options) {
+  return options->mode != VXM_MODE_SURFACE || options->surface >= VXM_SURFACE_SHELL26;
+}
+
 int cli_check_thin(cli_run *cli, const vxm_voxelize_options *options, bool is_given) {
-  if (is_given && options->mode == VXM_MODE_SURFACE && options->surface < VXM_SURFACE_SHELL26)
+  if (is_given && !cli_makes_solid(options))
     return cli_usage(cli, "--thin goes with the solid: --mode solid or both, or a shell as --surface");
   return CLI_END;
 }

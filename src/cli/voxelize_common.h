@@ -14,6 +14,8 @@ int cli_read_voxel_size(cli_run *cli, vxm_space_options *space, const char *valu
 int cli_read_thin(cli_run *cli, vxm_voxelize_options *options, const char *value);
 /** CLI_STOP if --surface, where it was given, does not go with the mode. */
 int cli_check_surface(cli_run *cli, const vxm_voxelize_options *options, bool is_given);
+/** Whether the voxels follow from the inside: those of a shell too, not those of the surface itself. */
+bool cli_makes_solid(const vxm_voxelize_options *options);
 /** CLI_STOP if --thin, where it was given, does not go with the mode. */
 int cli_check_thin(cli_run *cli, const vxm_voxelize_options *options, bool is_given);
 

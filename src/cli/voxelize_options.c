@@ -80,8 +80,8 @@ const cli_option voxelize_options[] = {
      "what is voxelized alone, then united: auto = each closed component, and\n"
      "all others together; group = each component; whole = no splitting [auto]"},
     {KEY_CAVITIES, "cavities", "auto|keep|fill",
-     "what a closed component inside another is: auto = a cavity if it is wound\n"
-     "against that, else solid; keep = a cavity; fill = solid [auto]"},
+     "with --parts auto, what a closed component inside another is: auto = a cavity if\n"
+     "it is wound against that, else solid; keep = a cavity; fill = solid [auto]"},
     {KEY_COVERAGE, "coverage", "2|4|8",
      "write how much of each voxel is filled instead, from 2, 4 or 8 sub-voxels along\n"
      "each axis; .npy, .nrrd, .vdb, .octree, .nii, .vti, .vtk, .tif, .h5 or .zarr"},
@@ -205,6 +205,7 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     out->surface = true;
     return cli_read_surface(cli, &out->voxelize, value);
   case KEY_METHOD:
+    out->method = true;
     result = cli_choose(cli, &choice, "method", value, methods);
     out->voxelize.method = (vxm_method)choice;
     return result;
@@ -214,6 +215,7 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     out->voxelize.vote = (vxm_vote)choice;
     return result;
   case KEY_PARTS:
+    out->parts = true;
     result = cli_choose(cli, &choice, "parts", value, parts);
     out->voxelize.split_mode = (vxm_split_mode)choice;
     return result;
@@ -221,6 +223,7 @@ static int read_option(cli_run *cli, voxelize_request *out, int key, const char 
     out->thin = true;
     return cli_read_thin(cli, &out->voxelize, value);
   case KEY_CAVITIES:
+    out->cavities = true;
     result = cli_choose(cli, &choice, "cavities", value, cavities);
     out->voxelize.cavities = (vxm_cavities)choice;
     return result;
@@ -294,6 +297,25 @@ static bool is_npy(const char *path) {
   return length > 4 && strcmp(path + length - 4, ".npy") == 0;
 }
 
+/** Options about what is inside, where others make them of no effect. What is reported of a surface has its
+ * parts and cavities. */
+static int check_rules(cli_run *cli, const voxelize_request *given) {
+  const vxm_voxelize_options *options = &given->voxelize;
+  if (given->vote && options->method != VXM_METHOD_VOTE)
+    return cli_usage(cli, "--vote goes with --method vote only");
+  if (given->cavities && options->split_mode != VXM_SPLIT_MODE_AUTO)
+    return cli_usage(cli, "--cavities goes with --parts auto only");
+  if ((given->method || given->vote) && !cli_makes_solid(options))
+    return cli_usage(cli,
+                     "--method and --vote are about the solid; leave them out with --mode surface, unless "
+                     "--surface is a shell");
+  if ((given->method || given->vote || given->parts || given->cavities) && given->field.distance &&
+      given->field.distance_options.is_unsigned)
+    return cli_usage(cli, "--method, --vote, --parts and --cavities are about the solid; leave them out with "
+                          "--distance unsigned");
+  return CLI_END;
+}
+
 /** Options that contradict each other. */
 static int check_conflicts(cli_run *cli, const voxelize_request *given) {
   if (given->like && (given->resolution || given->size || given->fit || given->pad || given->bounds))
@@ -305,8 +327,8 @@ static int check_conflicts(cli_run *cli, const voxelize_request *given) {
     return cli_usage(cli, "--bounds is covered exactly; leave out --pad");
   if (given->bounds && given->fit)
     return cli_usage(cli, "--bounds is covered exactly; leave out --fit");
-  if (given->vote && given->voxelize.method != VXM_METHOD_VOTE)
-    return cli_usage(cli, "--vote goes with --method vote only");
+  if (check_rules(cli, given) == CLI_STOP)
+    return CLI_STOP;
   if (cli_check_surface(cli, &given->voxelize, given->surface) == CLI_STOP)
     return CLI_STOP;
   if (cli_check_thin(cli, &given->voxelize, given->thin) == CLI_STOP)
@@ -357,6 +379,9 @@ int voxelize_read_arguments(cli_run *cli, voxelize_request *out) {
   out->input = cli->arguments[0];
   if (check_conflicts(cli, out) == CLI_STOP)
     return CLI_STOP;
+  cli->sized_by = out->like   ? CLI_SIZED_BY_LIKE
+                  : out->size ? CLI_SIZED_BY_VOXEL_SIZE
+                              : CLI_SIZED_BY_RESOLUTION;
   cli_formats formats =
       cli_field_wanted(&out->field) ? cli_field_formats(&out->field) : cli_formats_with(VXM_FORMAT_BITS);
   out->format = cli_output_format(cli, out->output, out->format, formats.name);

@@ -117,10 +117,10 @@ VXM_API vxm_status vxm_space_fit(vxm_space *out, const vxm_mesh *mesh, const vxm
 /** How a mesh is voxelized. */
 typedef struct vxm_voxelize_options {
   size_t size;               /**< as the initializer sets it */
-  vxm_method method;         /**< how a voxel is decided */
-  vxm_vote vote;             /**< how voters are combined */
+  vxm_method method;         /**< how inside is told, where `mode` is not the surface alone */
+  vxm_vote vote;             /**< how voters are combined, with VXM_METHOD_VOTE */
   vxm_split_mode split_mode; /**< which components are voxelized apart */
-  vxm_cavities cavities;     /**< what closed components inside others are */
+  vxm_cavities cavities;     /**< what closed components inside others are, with VXM_SPLIT_MODE_AUTO */
   vxm_mode mode;             /**< which voxels are set */
   bool confidence;           /**< keep for every voxel how sure it is: vxm_grid_confidence */
   bool vote_always; /**< with `vote` majority, any or all: on closed parts too, where the voters agree anyway

@@ -83,7 +83,9 @@ for option in '-r 0' '-r 8.5' '-r 8x8' '-r 8x8x8x8' '-r 8x8x' '-r 0x8' '-r -8' '
   run "voxmend voxelize in/cube.off -o x.npy $option"
 done
 for options in '-r 8 --voxel-size 1' '--like y.npy -r 8' '--like y.npy --pad 1' '--bounds 0,0,0,1,1,1 --pad 1' \
-  '--bounds 0,0,0,1,1,1 --fit tight' '--method x --vote any' '--surface thin' '--mode solid --surface thin' '--mode both --surface shell6' '--mode surface --thin keep' '--mode surface --surface thin --thin drop' '--coverage 4 --thin keep' '--distance signed --thin 26' '--no-repair --weld off' '--no-repair --keep-duplicates' \
+  '--bounds 0,0,0,1,1,1 --fit tight' '--method x --vote any' '--parts group --cavities fill' '--cavities auto --parts whole' \
+  '--mode surface --method vote' '--mode surface --surface thin --vote any' '--distance unsigned --method x' '--distance unsigned --vote any' \
+  '--distance unsigned --parts whole' '--distance unsigned --cavities keep' '--surface thin' '--mode solid --surface thin' '--mode both --surface shell6' '--mode surface --thin keep' '--mode surface --surface thin --thin drop' '--coverage 4 --thin keep' '--distance signed --thin 26' '--no-repair --weld off' '--no-repair --keep-duplicates' \
   '--coverage 4 --distance signed' '--scalar uint8' '--band 3' '--coverage 4 --confidence c.npy' '--labels part --dry-run' \
   '--confidence ./x.npy' '--coords in/../x.npy' \
   '--distance unsigned --mode surface' '--coverage 2 --format rle'; do

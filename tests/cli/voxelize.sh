@@ -98,6 +98,15 @@ run 'voxmend voxelize in/rocket.off -o not.npy -r 1000 --coverage 4 --dry-run --
 run 'voxmend voxelize in/rocket.off -o not.npy -r 1000 --coverage 2 --scalar uint8 --dry-run --json --threads 2 | grep -A 4 estimate | sed "s/memory_bytes.: .*,/memory_bytes\": N,/"'
 run 'voxmend voxelize in/rocket.off -o not.nrrd -r 1000 --distance signed --dry-run --memlimit 60M --threads 2 | sed "s/up to .* of memory/up to N of memory/"'
 run 'voxmend voxelize in/rocket.off -o not.nrrd -r 1000 --distance unsigned --dry-run --memlimit 1M'
+say "# advice names what told the size of voxels"
+voxmend voxelize thin.off -o like.npy -r 24 -q
+run 'voxmend voxelize in/rocket.off -o not.nrrd --voxel-size 0.004 --distance unsigned --dry-run --memlimit 1M'
+run 'voxmend voxelize in/rocket.off -o not.nrrd --like like.npy --distance unsigned --dry-run --memlimit 20K'
+run "voxmend voxelize in/cube.off -o not.npy --voxel-size 0.00001 2>&1 | sed -E 's/needs .* are in use/needs N and more/'"
+for options in '-r 24' '--voxel-size 0.5' '--like like.npy'; do
+  run "voxmend voxelize thin.off -o few.npy $options --thin drop >/dev/null"
+  run "voxmend voxelize thin.off -o near.npy $options --distance signed >/dev/null"
+done
 run 'test -e not.npy || test -e not.nrrd || echo nothing written'
 
 say "# octrees and coordinates"

@@ -3,10 +3,12 @@
 folder of what samples/generate_samples makes."""
 import copy
 import io
+import itertools
 import os
 import pathlib
 import pickle
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
@@ -18,7 +20,7 @@ import numpy
 
 import voxmend
 
-SAMPLES = os.environ["SAMPLES"]
+SAMPLES, VOXMEND = os.environ["SAMPLES"], os.environ["VOXMEND"]
 
 
 def sample(name):
@@ -222,6 +224,71 @@ class Fields(unittest.TestCase):
         for k in range(8):  # every layer is alike, and layers differ
             self.assertEqual(len(numpy.unique(values[:, :, k])), 1)
         self.assertGreater(len(numpy.unique(values)), 1)
+
+
+class Rules(unittest.TestCase):
+    """What would be of no effect is refused, as by the command line."""
+
+    CHOICES = dict(mode=("solid", "surface", "both"), surface=("conservative", "thin", "shell26", "shell6"), method=("vote", "x"),
+                   vote=("auto", "any"), parts=("auto", "group"), cavities=("auto", "fill"), thin=("keep", "drop"))
+
+    def chosen(self):
+        """Each choice of up to three options."""
+        for names in (c for n in (1, 2, 3) for c in itertools.combinations(self.CHOICES, n)):
+            for values in itertools.product(*(self.CHOICES[name] for name in names)):
+                yield dict(zip(names, values))
+
+    def refuses(self, make, **options):
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                make(**options)
+        except voxmend.ArgumentError:
+            return True
+        return False
+
+    def test_as_the_command_line(self):
+        refused = 0
+        for options in self.chosen():
+            words = [word for name, value in options.items() for word in ("--" + name, value)]
+            told = subprocess.run([VOXMEND, "voxelize", sample("cube"), "-o", "no.npy", "-r", "2", "--dry-run", *words],
+                                  capture_output=True)
+            self.assertIn(told.returncode, (0, 2))
+            refused += told.returncode == 2
+            self.assertEqual(self.refuses(lambda **more: voxmend.voxelize(sample("cube"), 2, repair=False, **more), **options),
+                             told.returncode == 2, (options, told.stderr))
+        self.assertGreater(refused, 100)
+
+    def test_everywhere(self):
+        mesh, wrong = voxmend.load(sample("cube")), (
+            (dict(surface="thin"), "mode='surface'"), (dict(mode="both", surface="shell6"), "leave out surface"),
+            (dict(method="z", vote="any"), "method='vote'"), (dict(mode="surface", thin="keep"), "thin goes with the solid"),
+            (dict(parts="whole", cavities="fill"), "parts='auto'"), (dict(mode="surface", vote="any"), "about the solid"))
+        makers = dict(voxelize=lambda **more: voxmend.voxelize(mesh, 2, **more), labels=lambda **more: voxmend.labels(mesh, 2, **more),
+                      voxelize_sparse=lambda **more: voxmend.voxelize_sparse(mesh, 2, **more),
+                      colors=lambda **more: voxmend.colors(mesh, 2, **more), sampler=lambda **more: voxmend.Sampler(2, **more))
+        for name, make in makers.items():
+            for options, words in wrong:
+                with self.assertRaisesRegex(ValueError, name + ": .*" + words):
+                    make(**options)
+            for options in (dict(mode="surface", surface="shell6", method="x", thin="keep"), dict(mode="both", surface="thin"),
+                            dict(mode="surface", parts="group"), dict(vote="any", parts="auto", cavities="keep", thin="auto")):
+                self.assertFalse(self.refuses(make, **options), (name, options))
+
+    def test_others(self):
+        with self.assertRaisesRegex(TypeError, "thin"):
+            voxmend.distance(sample("cube"), 4, thin="keep")
+        with self.assertRaisesRegex(ValueError, "by='mesh'"):
+            voxmend.colors(sample("cube"), 4, average=True)
+        with self.assertRaisesRegex(ValueError, "give one of them"):
+            voxmend.Sampler(4, coverage=2, thin="drop")
+        try:
+            voxmend.configure(memory_limit=10000)
+            with self.assertRaisesRegex(voxmend.OutOfMemoryError, r"raise it \(voxmend.configure\(memory_limit=...\)\)") as told:
+                voxmend.voxelize(sample("cube"), voxel_size=1e-4)
+            self.assertNotRegex(str(told.exception), r"-r\b|--")
+        finally:
+            voxmend.configure()
 
 
 class Engines(unittest.TestCase):
