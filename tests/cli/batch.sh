@@ -87,6 +87,7 @@ again='voxmend batch mend -o parts -r 16 --pictures 0 --shard 0/2'
 run 'statuses && voxmend batch mend -o parts -r 16 --pictures 0 --shard 1/2 -q && cp parts/.batch/run.json old.json'
 run 'touch mend/*.off && statuses && cmp old.json parts/.batch/run.json'
 run 'cp in/cube.off mend/e.off && statuses --retry all'
+run 'again="voxmend batch mend -o half -r 16 --pictures 0 --shard 0/2"; statuses && cp in/torus.off mend/d.off && statuses'
 # A table, with options of its own; a list; members of a shard.
 printf 'path,id,class,split,options\n../in/cube.off,"box, one",box,train,-r 4 --fit tight\n../in/sphere.off,ball,ball,test,\n../in/gone.off,gone,,,\n../in/cube.off,bad,,,-r none\n' >data/table.csv
 run 'voxmend batch data/table.csv -o table -r 8 --format npy --pictures 0'
