@@ -112,9 +112,9 @@ class Records:
                     self.damaged, bad = self.damaged + bad, 0
                     record = json.loads(line)
                     event = record.get("event")
-                    if event == "end" and record["item"] in numbers:
+                    if event in ("end", "changed") and record["item"] in numbers:  # changed: pending again
                         self._shard[numbers[record["item"]]], self._end[numbers[record["item"]]] = shard, at
-                    elif event in ("begin", "complete"):
+                    if event in ("begin", "complete", "changed"):
                         is_complete = event == "complete"
                 else:
                     bad += 1  # those at the very end are being written

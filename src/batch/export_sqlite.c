@@ -95,7 +95,7 @@ static bool take_record(json_t *record, void *payload) {
   const char *event = batch_json_text(record, "event");
   const json_t *item = json_object_get(record, "item"), *made = json_object_get(record, "voxelize");
   const json_t *grid = json_object_get(made, "grid"), *origin = json_object_get(grid, "origin");
-  if (!event || strcmp(event, "end") != 0)
+  if (!event || (strcmp(event, "end") != 0 && strcmp(event, "changed") != 0))
     return true;
   bind(d->update, 1, item);
   for (int k = 0; k < 6; k++)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "batch/plan.h"
+#include "batch/changes.h"
 #include "batch/digest.h"
 
 #include <errno.h>
@@ -40,8 +41,7 @@ static void set_text(json_t *object, const char *key, const char *text) {
     json_object_set_new(object, key, batch_json_string(text));
 }
 
-/** Where a file lies is no part of the plan: the same may be mounted elsewhere, or named in another way. */
-static json_t *item_json(const batch_item *item, bool with_path) {
+json_t *batch_plan_line(const batch_item *item, bool with_path) {
   json_t *object = json_object();
   set_text(object, "item", item->id);
   if (with_path)
@@ -64,7 +64,7 @@ static char *list_text(const batch_manifest *manifest, bool with_paths, size_t *
   FILE *file = open_memstream(&text, size);
   bool good = file != NULL;
   for (int64_t i = 0; good && i < manifest->count; i++) {
-    json_t *item = item_json(&manifest->items[i], with_paths);
+    json_t *item = batch_plan_line(&manifest->items[i], with_paths);
     good = json_dumpf(item, file, JSON_COMPACT) == 0 && fputc('\n', file) != EOF;
     json_decref(item);
   }
@@ -112,63 +112,6 @@ bool batch_plan_each(const char *output, bool (*each)(const json_t *item, void *
 
 /* ---- Comparing ---- */
 
-/** What was there and is not, or is new, or has changed. Both lists are in the order of ids. */
-typedef struct comparison {
-  const batch_manifest *manifest;
-  int64_t next, added, removed, changed;
-  char first[3][128];
-} comparison;
-
-static void note(char *first, int64_t *count, const char *id) {
-  if ((*count)++ == 0)
-    snprintf(first, 128, "%s", id);
-}
-
-static bool same_item(const batch_item *item, const json_t *old) {
-  json_t *now = item_json(item, false), *before = json_copy((json_t *)(uintptr_t)old);
-  json_object_del(before, "path");
-  json_object_del(before, "misnamed");
-  bool same = json_equal(now, before);
-  json_decref(now);
-  json_decref(before);
-  return same;
-}
-
-static bool compare_item(const json_t *old, void *payload) {
-  comparison *c = payload;
-  const char *id = batch_json_text(old, "item");
-  const batch_manifest *m = c->manifest;
-  for (; id && c->next < m->count && strcmp(m->items[c->next].id, id) < 0; c->next++)
-    note(c->first[0], &c->added, m->items[c->next].id);
-  if (id && c->next < m->count && strcmp(m->items[c->next].id, id) == 0) {
-    if (!same_item(&m->items[c->next], old))
-      note(c->first[2], &c->changed, id);
-    c->next++;
-  } else
-    note(c->first[1], &c->removed, id ? id : "?");
-  return true;
-}
-
-static bool tell_changed_inputs(const char *output, const batch_manifest *manifest, batch_error *error) {
-  comparison c = {.manifest = manifest};
-  if (!batch_plan_each(output, compare_item, &c, error))
-    return false;
-  for (; c.next < manifest->count; c.next++)
-    note(c.first[0], &c.added, manifest->items[c.next].id);
-  static const char *const what[] = {"new", "gone", "changed"};
-  const int64_t counts[] = {c.added, c.removed, c.changed};
-  int used = snprintf(error->text, sizeof error->text,
-                      "%s: the inputs are not those that the batch began with:", output);
-  for (int k = 0; k < 3; k++)
-    if (counts[k] > 0 && used > 0 && (size_t)used < sizeof error->text)
-      used += snprintf(error->text + used, sizeof error->text - (size_t)used, " %lld %s (%s%s),",
-                       (long long)counts[k], what[k], c.first[k], counts[k] > 1 ? ", ..." : "");
-  if (used > 0 && (size_t)used < sizeof error->text)
-    snprintf(error->text + used - 1, sizeof error->text - (size_t)used + 1,
-             "; give another -o, or undo that");
-  return false;
-}
-
 static bool same_settings(const char *output, const json_t *old, const json_t *now, batch_error *error) {
   const char *key;
   json_t *value;
@@ -183,17 +126,15 @@ static bool same_settings(const char *output, const json_t *old, const json_t *n
          batch_fail(error, "%s: the batch began with other options; give another -o, or the same", output);
 }
 
-static bool same_run(const char *output, const json_t *run, const batch_manifest *manifest,
-                     const char *digest, const json_t *settings, int shards, batch_error *error) {
+static bool same_run(const json_t *run, const json_t *plan, const batch_settings *settings,
+                     batch_error *error) {
   json_int_t before = json_integer_value(json_object_get(run, "shards"));
-  const char *list = batch_json_text(run, "plan_sha256");
-  if (!same_settings(output, json_object_get(run, "settings"), settings, error))
+  if (!same_settings(settings->output, json_object_get(run, "settings"), plan, error))
     return false;
-  if (before != shards)
-    return batch_fail(
-        error, "%s: the batch began with --shard of %lld, now it is of %d; give another -o, or the same",
-        output, (long long)before, shards);
-  return (list && strcmp(list, digest) == 0) || tell_changed_inputs(output, manifest, error);
+  return before == settings->shards ||
+         batch_fail(error,
+                    "%s: the batch began with --shard of %lld, now it is of %d; give another -o, or the same",
+                    settings->output, (long long)before, settings->shards);
 }
 
 /* ---- Freezing ---- */
@@ -227,7 +168,7 @@ static bool create_once(const char *output, const char *name, const char *text, 
   return good;
 }
 
-/** One that is there without a run.json is of a run that was ended before it began. */
+/** In one step. One that is there without a run.json is of a run that was ended before it began. */
 static bool replace(const char *output, const char *name, const char *text, size_t size, batch_error *error) {
   char *path = batch_plan_path(output, name);
   bool good = path ? batch_write_file(path, text, size, error) : batch_fail(error, out_of_memory);
@@ -254,20 +195,48 @@ static bool begin(const char *output, const batch_manifest *manifest, const char
   return good;
 }
 
-bool batch_plan_freeze(const char *output, const batch_manifest *manifest, const json_t *settings, int shards,
-                       batch_error *error) {
+/** As the list is told without paths; false without memory. */
+static bool digest_of(char out[BATCH_DIGEST], const batch_manifest *manifest, batch_error *error) {
   size_t size = 0;
-  char digest[BATCH_DIGEST], *list = list_text(manifest, false, &size),
-                             *path = batch_plan_path(output, "run.json");
-  bool good = list && path ? true : batch_fail(error, out_of_memory);
-  if (good)
-    batch_digest(digest, list, size);
-  if (good && access(path, F_OK) != 0)
-    good = begin(output, manifest, digest, settings, shards, error);
-  json_t *run = good ? batch_plan_read(output, error) : NULL;
-  good = run && same_run(output, run, manifest, digest, settings, shards, error);
-  json_decref(run);
+  char *list = list_text(manifest, false, &size);
+  if (list)
+    batch_digest(out, list, size);
   free(list);
+  return list || batch_fail(error, out_of_memory);
+}
+
+bool batch_plan_freeze(batch_manifest *manifest, const json_t *plan, const batch_settings *settings,
+                       batch_error *error) {
+  const char *output = settings->output;
+  char digest[BATCH_DIGEST], *path = batch_plan_path(output, "run.json");
+  bool good = path ? digest_of(digest, manifest, error) : batch_fail(error, out_of_memory);
+  if (good && access(path, F_OK) != 0)
+    good = begin(output, manifest, digest, plan, settings->shards, error);
+  json_t *run = good ? batch_plan_read(output, error) : NULL;
+  good = run && same_run(run, plan, settings, error);
+  const char *before = batch_json_text(run, "plan_sha256");
+  if (good && (!before || strcmp(before, digest) != 0))
+    good = batch_changes_take(manifest, settings, error);
+  json_decref(run);
   free(path);
+  return good;
+}
+
+/** Ended between the two, the next run finds the list as it wants it, and renews the digest. */
+bool batch_plan_renew(const char *output, const batch_manifest *manifest, batch_error *error) {
+  size_t size = 0;
+  char digest[BATCH_DIGEST], *list = list_text(manifest, true, &size), *text = NULL;
+  json_t *run = batch_plan_read(output, error);
+  bool good = run && digest_of(digest, manifest, error);
+  if (good) {
+    json_object_set_new(run, "plan_sha256", json_string(digest));
+    text = json_dumps(run, JSON_INDENT(2));
+    good = list && text ? replace(output, "plan.jsonl", list, size, error) &&
+                              replace(output, "run.json", text, strlen(text), error)
+                        : batch_fail(error, out_of_memory);
+  }
+  json_decref(run);
+  free(text);
+  free(list);
   return good;
 }

@@ -10,19 +10,29 @@
 #ifndef VXM_BATCH_PLAN_H
 #define VXM_BATCH_PLAN_H
 
-#include "batch/manifest.h"
+#include "batch/supervisor.h"
 
 #define BATCH_FOLDER ".batch"
 
 /**
- * Freezes the plan, or compares with the one that is there.
+ * Freezes the plan, or compares with the one that is there, which is renewed where inputs have changed and
+ * the batch may go on with them (changes.h).
  *
- * @param output   the folder of outputs, which is there
- * @param settings what decides about the bytes of outputs: an object of texts
+ * @param plan what decides about the bytes of outputs: an object of texts
+ * @param settings of the run; their folder of outputs is there
  * @return false with what has changed, where something has
  */
-bool batch_plan_freeze(const char *output, const batch_manifest *manifest, const json_t *settings, int shards,
+bool batch_plan_freeze(batch_manifest *manifest, const json_t *plan, const batch_settings *settings,
                        batch_error *error);
+/** Writes the list of a plan anew. */
+bool batch_plan_renew(const char *output, const batch_manifest *manifest, batch_error *error);
+/**
+ * A line of the list.
+ *
+ * @param with_path where a file lies is no part of what is compared: the same may be mounted elsewhere, or
+ * named in another way
+ */
+json_t *batch_plan_line(const batch_item *item, bool with_path);
 
 /** What was frozen: run.json, to be released; NULL after a failure. */
 json_t *batch_plan_read(const char *output, batch_error *error);

@@ -38,6 +38,13 @@ static void take_end(const replay *r, batch_item *item, const json_t *record) {
   item->status = again ? BATCH_PENDING : status;
 }
 
+/** It is another file from then on. */
+static void take_change(const replay *r, int64_t at) {
+  r->manifest->items[at].status = BATCH_PENDING;
+  r->manifest->items[at].aborted = 0;
+  r->contents[at] = (batch_content){{0, 0}};
+}
+
 static bool take(json_t *record, void *payload) {
   const replay *r = payload;
   const char *event = batch_json_text(record, "event");
@@ -56,6 +63,8 @@ static bool take(json_t *record, void *payload) {
       item->aborted--;
   } else if (strcmp(event, "end") == 0)
     take_end(r, item, record);
+  else if (strcmp(event, "changed") == 0)
+    take_change(r, at);
   if (strcmp(event, "end") == 0 || strcmp(event, "hash") == 0)
     batch_content_read(&r->contents[at], batch_json_text(record, "sha256"));
   return true;

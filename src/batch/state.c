@@ -94,17 +94,18 @@ static bool take(json_t *record, void *payload) {
   const char *event = batch_json_text(record, "event");
   if (!event)
     return true;
-  if (strcmp(event, "begin") == 0 || strcmp(event, "complete") == 0)
-    r->is_complete = *event == 'c';
-  int64_t at = strcmp(event, "end") == 0
-                   ? batch_manifest_find(&r->state->manifest, batch_json_text(record, "item"))
-                   : -1;
+  bool is_complete = strcmp(event, "complete") == 0, is_end = strcmp(event, "end") == 0;
+  bool is_changed = strcmp(event, "changed") == 0; /* to be done, with the rest as in an end */
+  if (strcmp(event, "begin") == 0 || is_complete || is_changed)
+    r->is_complete = is_complete;
+  int64_t at =
+      is_end || is_changed ? batch_manifest_find(&r->state->manifest, batch_json_text(record, "item")) : -1;
   batch_status status = batch_status_of(batch_json_text(record, "status"));
   if (at < 0 || status == BATCH_STATUSES)
     return true;
   batch_end *end = &r->state->ends[at];
   free_end(end);
-  r->state->records++;
+  r->state->records += is_end;
   take_numbers(end, record);
   take_texts(end, record);
   r->state->manifest.items[at].status = status;

@@ -47,7 +47,7 @@ static void verify_file(const verifying *v, const json_t *file) {
 
 static int64_t item_of(const verifying *v, const json_t *record) {
   const char *event = batch_json_text(record, "event");
-  return event && strcmp(event, "end") == 0
+  return event && (strcmp(event, "end") == 0 || strcmp(event, "changed") == 0)
              ? batch_manifest_find(v->manifest, batch_json_text(record, "item"))
              : -1;
 }

@@ -76,7 +76,7 @@ int batch_dry_run(cli_run *cli, batch_manifest *manifest, const batch_settings *
   sampled.shard = 0;
   sampled.shards = 1;
   json_t *plan = batch_make_settings(maker->wish), *report = NULL;
-  bool good = batch_plan_freeze(folder, manifest, plan, 1, &error);
+  bool good = batch_plan_freeze(manifest, plan, &sampled, &error);
   json_decref(plan);
   batch_outcome outcome = good ? batch_run(&tally, manifest, &sampled, &error) : BATCH_BROKEN;
   if (outcome == BATCH_COMPLETE && batch_state_read(&state, folder, &error)) {

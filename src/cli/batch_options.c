@@ -57,8 +57,9 @@ const cli_option batch_options[] = {
      "memory over -j; what needs more runs once more, alone, with all of it]"},
     {KEY_FILE_LIMIT, "file-limit", "SIZE", "largest file that may be written [64G]"},
     {KEY_RETRY, "retry", "LIST",
-     "do again what ended so in a run before: timeout, oom, crash, failed, unreadable,\n"
-     "quarantined, degraded (done, with warnings), or all of these"},
+     "do again what ended so in a run before, also where its file has been mended since:\n"
+     "timeout, oom, crash, failed, unreadable, quarantined, degraded (done, with\n"
+     "warnings), or all of these"},
     {KEY_SHARD, "shard", "I/N",
      "only every N-th mesh, from the I-th on, I from 0 to N-1: each of N machines takes\n"
      "one; I may be slurm, kubernetes or aws: from the variable of an array of jobs"},

@@ -134,7 +134,7 @@ static int run_batch(cli_run *cli, batch_maker *maker, batch_zygote *zygote, bat
     return batch_dry_run(cli, manifest, &settings, maker);
   json_t *plan = batch_make_settings(wish);
   bool good = batch_outputs_check(manifest, &settings, &error) && make_folder(wish->output, &error) &&
-              batch_plan_freeze(wish->output, manifest, plan, (int)wish->shards, &error);
+              batch_plan_freeze(manifest, plan, &settings, &error);
   json_decref(plan);
   if (!good)
     return fail(cli, &error);

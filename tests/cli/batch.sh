@@ -46,6 +46,48 @@ run 'voxmend batch verify grids'
 run 'printf x >>grids/b/torus.binvox && voxmend batch verify grids'
 run 'voxmend batch status grids --json'
 run 'cp in/torus.off data/b/broken.off && voxmend batch data -o grids -r 16 --reports'
+run 'voxmend batch data -o grids -r 16 --reports --pictures 0 --retry unreadable && cmp grids/b/broken.binvox grids/b/torus.binvox && voxmend batch verify grids'
+# Inputs that change. x and y have the same bytes at first, and so have d and e; x stays as long as it was.
+mkdir mend
+cp in/cube.off in/sphere.off in/torus.off mend/
+sed '1s,OFF,OFX,; 3s,0 0 0,0 0 x,' in/cube.off >mend/x.off
+sed '2s,8,9,' in/cube.off >mend/d.off
+cp mend/x.off mend/y.off
+cp mend/d.off mend/e.off
+again='voxmend batch mend -o mended -r 16 --pictures 0'
+statuses() {
+  $again "$@" >all.txt || return
+  grep -E '^(meshes|result|before)' all.txt
+}
+run 'statuses && cut -f 1-4 mended/failures.tsv'
+# Another time alone is no change; once renewed the plan needs no more looking.
+run 'cp mended/.batch/run.json old.json && touch -d 2001-01-01 mend/*.off && statuses && ! cmp -s old.json mended/.batch/run.json'
+run 'cp mended/.batch/run.json old.json && statuses && cmp old.json mended/.batch/run.json && grep -c changed mended/.batch/*.jsonl'
+# A mended one is done again when its status is asked for, and is no duplicate of what it was.
+run 'cp in/cube.off mend/x.off && statuses'
+run 'flock mended/.batch/journal-0-of-1.jsonl "$VOXMEND" batch mend -o mended -r 16 --pictures 0 --retry all; cmp old.json mended/.batch/run.json'
+run 'statuses --retry timeout'
+run 'cp -r mended/.batch before && statuses --retry unreadable && cut -f 1-4 mended/failures.tsv && cmp mended/x.binvox mended/cube.binvox'
+# Ended at each of the steps of that: nothing but the journal; the list as well; all, and nothing done.
+run 'cp before/run.json before/plan.jsonl mended/.batch/ && statuses && ! cmp -s before/run.json mended/.batch/run.json'
+run 'cp before/run.json mended/.batch/ && statuses && ! cmp -s before/run.json mended/.batch/run.json'
+run 'rm mended/x.binvox && sed -i "/\"changed\"/q" mended/.batch/journal-0-of-1.jsonl && voxmend batch status mended --json | grep -E "pending|unreadable|complete|duplicate"; voxmend batch verify mended'
+run 'statuses && cmp mended/x.binvox mended/cube.binvox && voxmend batch verify mended'
+run 'cp in/sphere.off mend/d.off && statuses'
+run 'statuses --retry degraded && cmp mended/d.binvox mended/sphere.binvox && voxmend voxelize mend/e.off -o e.binvox -r 16 -q; cmp e.binvox mended/e.binvox'
+# What is done stays, unless its outputs are taken away; other files are none of this batch.
+run 'cp in/torus.off mend/sphere.off && statuses --retry all'
+run 'cp in/torus.off mend/y.off && statuses'
+run 'rm mended/sphere.binvox && statuses --retry unreadable && cmp mended/sphere.binvox mended/torus.binvox && voxmend batch verify mended'
+run 'cp in/cube.off mend/a.off && statuses --retry all'
+run 'mv mend/a.off a.off && mv mend/x.off x.off && statuses --retry all'
+# Shards, which do not know each other, take the same bytes alone.
+mv x.off mend/x.off
+again='voxmend batch mend -o parts -r 16 --pictures 0 --shard 0/2'
+run 'statuses && voxmend batch mend -o parts -r 16 --pictures 0 --shard 1/2 -q && cp parts/.batch/run.json old.json'
+run 'touch mend/*.off && statuses && cmp old.json parts/.batch/run.json'
+run 'cp in/cube.off mend/e.off && statuses --retry all'
+run 'again="voxmend batch mend -o half -r 16 --pictures 0 --shard 0/2"; statuses && cp in/torus.off mend/d.off && statuses'
 # A table, with options of its own; a list; members of a shard.
 printf 'path,id,class,split,options\n../in/cube.off,"box, one",box,train,-r 4 --fit tight\n../in/sphere.off,ball,ball,test,\n../in/gone.off,gone,,,\n../in/cube.off,bad,,,-r none\n' >data/table.csv
 run 'voxmend batch data/table.csv -o table -r 8 --format npy --pictures 0'

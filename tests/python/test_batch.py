@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """voxmend.batch without Dask: runs, records, tars, packed grids."""
+import hashlib
 import io
 import json
 import os
+import shutil
+import sqlite3
 import subprocess
 import sys
 import tarfile
@@ -112,6 +115,30 @@ class Batches(unittest.TestCase):
         with self.assertRaisesRegex(voxmend.ArgumentError, "0 of 1 shards are at their end"):
             voxmend.batch.export(self.at("cut"), self.at("never"), to="webdataset")
         self.assertFalse(os.path.exists(self.at("never")))
+
+    def test_changed_input_is_pending(self):
+        remove(self.at("mended"))
+        shutil.copytree(self.out, self.at("mended"))
+        item = "prism/test/rocket 0.v1.off"
+        rest = b'"event":"changed","item":"%s","status":"pending"}' % item.encode()
+        with open(self.at("mended/.batch/journal-0-of-1.jsonl"), "ab") as file:
+            file.write(b'{"sum":"%s",%s\n' % (hashlib.sha256(rest).hexdigest()[:16].encode(), rest))
+        records = voxmend.batch.Records(self.at("mended"))
+        self.assertEqual((records.complete, records.damaged), (0, 0))
+        self.assertEqual([found.item for found in records if found.status == "pending"], [item])
+        with self.assertRaisesRegex(voxmend.ArgumentError, "0 of 1 shards are at their end"):
+            voxmend.batch.export(self.at("mended"), self.at("never"), to="webdataset")
+        program = voxmend._batch_program.find_program()
+        done = subprocess.run([program, "batch", "export", self.at("mended"), "--to", "sqlite", "-o", self.at("mended.db")],
+                              capture_output=True, text=True)
+        if "writes no databases" in done.stderr:
+            return
+        self.assertEqual(done.returncode, 0, done.stderr)
+        database = sqlite3.connect(self.at("mended.db"))
+        self.assertEqual(database.execute("SELECT status, sha256 FROM meshes WHERE item = ?", (item,)).fetchall(),
+                         [("pending", None)])
+        self.assertEqual(database.execute("SELECT count(*) FROM outputs WHERE item = ?", (item,)).fetchone(), (0,))
+        database.close()
 
     # ---- Tars ----
 
