@@ -30,8 +30,8 @@ typedef struct vxm_band_triangle {
    * apex is below 0. Twos are of the sides above 0 along the first axis, and below. */
   float axis[3][3], offset[3];
   float base[2]; /**< how far the longest edge reaches */
-  float leg[2][2],
-      leg_length[2];  /**< from its ends to the apex, away from 0 and down the second axis; unit */
+  float leg[2][2];    /**< from its ends to the apex, away from 0 and down the second axis; unit */
+  float leg_half[2];  /**< half of their lengths */
   uint32_t corner[3]; /**< points of the soup */
   uint32_t rest;      /**< so that whole vectors are stored */
 } vxm_band_triangle;

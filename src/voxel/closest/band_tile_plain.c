@@ -132,6 +132,11 @@ INLINE wide wide_size(wide x) {
   return (wide)((wide_mask)x & INT32_MAX);
 }
 
+/** How far a number is beyond a half, which is not below 0: either way from 0. */
+INLINE wide wide_beyond(wide x, wide half) {
+  return wide_max(wide_size(x), half) - half;
+}
+
 INLINE wide wide_fma(wide a, wide b, wide c) {
   return a * b + c;
 }
