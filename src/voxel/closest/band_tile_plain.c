@@ -106,12 +106,6 @@ INLINE double four_most(four x) {
   return most > x[2] ? most : x[2];
 }
 
-/** Cut off. */
-INLINE void four_whole(uint32_t to[4], four x) {
-  for (int n = 0; n < 4; n++)
-    to[n] = (uint32_t)(int32_t)x[n];
-}
-
 /** In floats. */
 INLINE void four_store(float to[4], four x) {
   for (int n = 0; n < 4; n++)
