@@ -5,8 +5,7 @@
 
 /** So few keys are sorted faster by insertion. */
 enum { FEW = 24 };
-/** From so many on fewer passes pay for longer digits. */
-enum { MANY = 2048, DIGIT_BITS_OF_FEW = 8 };
+enum { DIGIT_BITS = 12, DIGITS = 1 << DIGIT_BITS };
 
 static void insertion_sort(uint64_t *keys, size_t count, unsigned shift) {
   for (size_t i = 1; i < count; i++) {
@@ -18,14 +17,20 @@ static void insertion_sort(uint64_t *keys, size_t count, unsigned shift) {
   }
 }
 
-enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
+/** Bits of a digit at most: fewer passes pay for longer digits from so many keys on. */
+static unsigned longest_digit(size_t count) {
+  return count < 2048 ? 8 : count < 16384 ? 11 : DIGIT_BITS;
+}
 
-/** Sorts by digits from bit `first` up, of those bits in which not all keys agree. */
-static void radix_sort(uint64_t *keys, uint64_t *scratch, size_t count, unsigned bits, unsigned first) {
-  const uint64_t mask = ((uint64_t)1 << bits) - 1;
+/** Sorts by digits from bit `first` up, of those bits in which not all keys agree; digits are of about one
+ * length. */
+static void radix_sort(uint64_t *keys, uint64_t *scratch, size_t count, unsigned longest, unsigned first) {
   uint64_t varying = 0;
   for (size_t i = 1; i < count; i++)
     varying |= keys[i] ^ keys[0];
+  const unsigned width = varying >> first ? 64 - (unsigned)__builtin_clzll(varying >> first) : 1,
+                 passes = (width + longest - 1) / longest, bits = (width + passes - 1) / passes;
+  const uint64_t mask = ((uint64_t)1 << bits) - 1;
   uint64_t *from = keys, *to = scratch;
   for (unsigned shift = first; shift < 64 && varying >> shift; shift += bits) {
     if ((varying >> shift & mask) == 0)
@@ -54,7 +59,7 @@ void vxm_sort_keys_above(uint64_t *keys, uint64_t *scratch, size_t count, unsign
   if (count <= FEW)
     insertion_sort(keys, count, shift);
   else
-    radix_sort(keys, scratch, count, count < MANY ? DIGIT_BITS_OF_FEW : DIGIT_BITS, shift);
+    radix_sort(keys, scratch, count, longest_digit(count), shift);
 }
 
 void vxm_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count) {

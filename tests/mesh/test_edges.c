@@ -186,7 +186,7 @@ static void few_faces_on_many_vertices(void **state) {
 
 static void keys_are_sorted(void **state) {
   (void)state;
-  enum { N = 3000 };
+  enum { N = 40000 };
   static uint64_t keys[N], scratch[N];
   vxm_rng rng = {41};
   for (size_t count = 0; count <= N; count = count * 2 + 1)
@@ -206,12 +206,12 @@ static void keys_are_sorted(void **state) {
 /** By their upper bits alone, with those that are alike in their order. */
 static void keys_are_sorted_above(void **state) {
   (void)state;
-  enum { N = 3000 };
+  enum { N = 40000 };
   static uint64_t keys[N], scratch[N];
   vxm_rng rng = {42};
   for (size_t count = 0; count <= N; count = count * 2 + 1)
     for (unsigned shift = 0; shift < 64; shift += 9) {
-      const unsigned number = shift < 12 ? 0 : 12; /* bits for it below those that are sorted by */
+      const unsigned number = shift < 16 ? 0 : 16; /* bits for it below those that are sorted by */
       for (size_t i = 0; i < count; i++)
         keys[i] = number ? (vxm_rng_next(&rng) & 7) << shift | i : vxm_rng_next(&rng);
       vxm_sort_keys_above(keys, scratch, count, shift);

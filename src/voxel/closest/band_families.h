@@ -29,9 +29,9 @@ typedef struct vxm_band_triangle {
    * edge cuts the triangle in two: what is nearest to a point lies on its own side. Along the second axis the
    * apex is below 0. Twos are of the sides above 0 along the first axis, and below. */
   float axis[3][3], offset[3];
-  float base[2]; /**< how far the longest edge reaches */
-  float leg[2][2],
-      leg_length[2];  /**< from its ends to the apex, away from 0 and down the second axis; unit */
+  float base[2];      /**< how far the longest edge reaches */
+  float leg[2][2];    /**< from its ends to the apex, away from 0 and down the second axis; unit */
+  float leg_half[2];  /**< half of their lengths */
   uint32_t corner[3]; /**< points of the soup */
   uint32_t rest;      /**< so that whole vectors are stored */
 } vxm_band_triangle;

@@ -44,6 +44,11 @@ INLINE wide wide_size(wide x) {
   return (wide)_mm256_andnot_ps(_mm256_set1_ps(-0.0F), (__m256)x);
 }
 
+/** How far a number is beyond a half, which is not below 0: either way from 0. */
+INLINE wide wide_beyond(wide x, wide half) {
+  return wide_max(wide_size(x), half) - half;
+}
+
 INLINE wide wide_fma(wide a, wide b, wide c) {
   return (wide)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
 }

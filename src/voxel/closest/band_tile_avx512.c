@@ -45,6 +45,11 @@ INLINE wide wide_size(wide x) {
   return (wide)_mm512_abs_ps((__m512)x);
 }
 
+/** How far a number is beyond a half, which is not below 0: either way from 0. */
+INLINE wide wide_beyond(wide x, wide half) {
+  return (wide)_mm512_range_ps((__m512)x, (__m512)half, 0xB) - half; /* the greater one by size */
+}
+
 INLINE wide wide_fma(wide a, wide b, wide c) {
   return (wide)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
 }

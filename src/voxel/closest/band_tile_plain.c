@@ -106,12 +106,6 @@ INLINE double four_most(four x) {
   return most > x[2] ? most : x[2];
 }
 
-/** Cut off. */
-INLINE void four_whole(uint32_t to[4], four x) {
-  for (int n = 0; n < 4; n++)
-    to[n] = (uint32_t)(int32_t)x[n];
-}
-
 /** In floats. */
 INLINE void four_store(float to[4], four x) {
   for (int n = 0; n < 4; n++)
@@ -130,6 +124,11 @@ INLINE wide wide_min(wide a, wide b) {
 
 INLINE wide wide_size(wide x) {
   return (wide)((wide_mask)x & INT32_MAX);
+}
+
+/** How far a number is beyond a half, which is not below 0: either way from 0. */
+INLINE wide wide_beyond(wide x, wide half) {
+  return wide_max(wide_size(x), half) - half;
 }
 
 INLINE wide wide_fma(wide a, wide b, wide c) {
