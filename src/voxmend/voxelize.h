@@ -187,9 +187,9 @@ typedef struct vxm_voxelize_report {
  *
  * Parity is computed exactly on an integer lattice (at least 1/256 voxel). For parts closed mod 2 all methods
  * give the same bits, except where a part cuts through itself, which the winding number fills, and the
- * default where it notices (more than some 10^-5 of the part), and for the winding number where a centre lies on a face.
- * With VXM_METHOD_WINDING the parts of the report are those of the solid that is made first, to turn the
- * faces.
+ * default where it notices (more than some 10^-5 of the part), and for the winding number where a centre lies
+ * on a face. With VXM_METHOD_WINDING the parts of the report are those of the solid that is made first, to
+ * turn the faces.
  */
 VXM_API vxm_status vxm_voxelize(vxm_grid **out, vxm_voxelize_report *report, const vxm_mesh *mesh,
                                 const vxm_space_options *space, const vxm_voxelize_options *options,
