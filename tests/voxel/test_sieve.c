@@ -183,6 +183,7 @@ static void check_window(vxm_rng *rng, const vxm_triangle_set *triangles, const 
   assert_true(window->words && maps && cells && meets);
   random_solid(rng, window, b);
   vxm_thin_job job = {.triangles = triangles,
+                      .corners = vxm_pieces_of(triangles),
                       .placed = placed,
                       .view = vxm_view_of(window),
                       .slow = window->layout.slow,

@@ -11,6 +11,7 @@ typedef struct builder {
   const vxm_soup *soup;
   size_t *next;    /**< per part: where the next triangle goes, or how many there are */
   bool polygons;   /**< a face has more than three corners */
+  bool cuts;       /**< a polygon is cut into pieces */
   vxm_error error; /**< of the last allocation that failed */
 } builder;
 
@@ -62,6 +63,18 @@ static inline void add(builder *b, uint32_t part, uint32_t polygon, uint32_t p, 
   b->triangles->part[at] = part;
 }
 
+/** Cuts a polygon that triangles from `begin` on cover; not one with such as cover nothing, which are left
+ * out.
+ */
+static void cut(builder *b, const uint32_t *corner, size_t n, size_t begin, size_t end) {
+  vxm_triangle_set *triangles = b->triangles;
+  if (n < VXM_CUT_CORNERS || end - begin != n - 2)
+    return;
+  b->cuts = true;
+  if (triangles->corners)
+    vxm_cut_polygon(corner, n, triangles->pieces + begin, triangles->edges + begin);
+}
+
 static inline void cover_face(builder *b, size_t face) {
   const vxm_split *split = &b->triangles->split;
   size_t n;
@@ -72,12 +85,13 @@ static inline void cover_face(builder *b, size_t face) {
       add(b, part, 0, corner[0], corner[1], corner[2]);
     return;
   }
-  size_t apex = n > 3 ? covering_corner(b->soup, corner, n) : 0;
+  size_t begin = b->next[part], apex = n > 3 ? covering_corner(b->soup, corner, n) : 0;
   for (size_t i = 1; i + 1 < n; i++) {
     uint32_t p = corner[apex], q = corner[(apex + i) % n], r = corner[(apex + i + 1) % n];
     if (has_three_corners(p, q, r))
       add(b, part, n > 3 ? (uint32_t)face + 1 : 0, p, q, r);
   }
+  cut(b, corner, n, begin, b->next[part]);
 }
 
 static bool add_triangles(builder *b) {
@@ -149,6 +163,9 @@ static vxm_status make_triangles(builder *b) {
   triangles->polygon = b->polygons ? allocate(b, total, sizeof *triangles->polygon) : NULL;
   if (b->polygons && !triangles->polygon)
     return b->error.code;
+  if (b->cuts && (!(triangles->pieces = allocate_raw(b, total, sizeof *triangles->pieces)) ||
+                  !(triangles->edges = allocate(b, total, sizeof *triangles->edges))))
+    return b->error.code;
   triangles->corners = allocate_raw(b, total, sizeof *triangles->corners);
   if (!triangles->corners || !triangles->part)
     return b->error.code;
@@ -215,16 +232,33 @@ static void renumber_apexes(vxm_triangle_set *triangles, size_t count) {
   triangles->point_count = count + triangles->split.part_count;
 }
 
+/** Numbers the points of pieces as the triangles that cover the same polygons have them. */
+static void renumber_pieces(vxm_triangle_set *triangles, const uint32_t *number) {
+  for (size_t f = 0; f < triangles->triangle_count && triangles->pieces; f++)
+    for (int k = 0; k < 3 && triangles->edges[f]; k++)
+      triangles->pieces[f][k] = number[triangles->pieces[f][k]];
+}
+
+/** All other triangles are pieces as they are. */
+static void copy_to_pieces(vxm_triangle_set *triangles) {
+  for (size_t f = 0; f < triangles->triangle_count && triangles->pieces; f++)
+    if (!triangles->edges[f])
+      memcpy(triangles->pieces[f], triangles->corners[f], sizeof triangles->pieces[f]);
+}
+
 static vxm_status gather_points(builder *b) {
   vxm_triangle_set *triangles = b->triangles;
   size_t count = 0;
   uint32_t *number = allocate_raw(b, triangles->first_apex, sizeof *number);
   triangles->vertex = allocate_raw(b, triangles->first_apex + 1, sizeof *triangles->vertex);
   bool done = number && triangles->vertex && renumber(b, number, triangles->vertex, &count);
+  if (done)
+    renumber_pieces(triangles, number);
   vxm_free(triangles->context, number);
   if (!done)
     return b->error.code;
   renumber_apexes(triangles, count);
+  copy_to_pieces(triangles);
   triangles->positions = allocate_raw(b, triangles->first_apex, sizeof *triangles->positions);
   if (!triangles->positions)
     return b->error.code;
@@ -323,6 +357,8 @@ void vxm_triangle_set_destroy(vxm_triangle_set *triangles) {
   vxm_free(triangles->context, triangles->parts);
   vxm_free(triangles->context, triangles->part);
   vxm_free(triangles->context, triangles->polygon);
+  vxm_free(triangles->context, triangles->pieces);
+  vxm_free(triangles->context, triangles->edges);
   vxm_free(triangles->context, triangles->corners);
   *triangles = (vxm_triangle_set){.context = triangles->context, .split = {.context = triangles->context}};
 }

@@ -21,6 +21,7 @@
 #define VXM_VOXEL_PARTS_TRIANGLE_SET_H
 
 #include "voxel/parts/parts.h"
+#include "voxel/parts/polygon_cuts.h"
 
 typedef enum vxm_triangle_role { VXM_ROLE_FACE = 1, VXM_ROLE_CAP = 2, VXM_ROLE_CONE = 4 } vxm_triangle_role;
 
@@ -49,6 +50,10 @@ typedef struct vxm_triangle_set {
   uint32_t *part;         /**< of each triangle */
   uint32_t *polygon; /**< of each triangle: 0, or one more than the number of its face if that has more than
                         three corners; its triangles follow one another. NULL = all 0 */
+  uint32_t (*pieces)[3]; /**< like `corners`, but with polygons of many corners cut into as many other
+                            triangles (voxel/parts/polygon_cuts.h). NULL = `corners` */
+  uint8_t *edges; /**< of each of them: 0, or VXM_CUT_PIECE and the sides that are edges of its polygon.
+                     NULL = all 0 */
   size_t triangle_count;
   vxm_part *parts;
   /* Points: the vertices that triangles have, and the caps' own, in the order in which triangles first have
@@ -67,6 +72,11 @@ typedef struct vxm_triangle_set {
 vxm_status vxm_triangle_set_create(vxm_triangle_set *out, const vxm_soup *soup, vxm_split_rule rule,
                                    vxm_error *error);
 void vxm_triangle_set_destroy(vxm_triangle_set *triangles);
+
+/** What shows where faces lie, rather than to count how often they do. */
+static inline const uint32_t (*vxm_pieces_of(const vxm_triangle_set *triangles))[3] {
+  return (const uint32_t(*)[3])(triangles->pieces ? triangles->pieces : triangles->corners);
+}
 
 /** The point that is the apex of a part. */
 static inline uint32_t vxm_apex_of(const vxm_triangle_set *triangles, size_t part) {

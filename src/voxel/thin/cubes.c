@@ -3,7 +3,7 @@
 
 /** The lowest voxel of the cube in which a triangle lies; false if it reaches into several. */
 static bool cube_of(int64_t lowest[3], vxm_point corner[3], const vxm_thin_job *job, size_t triangle) {
-  const uint32_t *number = job->triangles->corners[triangle];
+  const uint32_t *number = job->corners[triangle];
   for (int k = 0; k < 3; k++) {
     corner[k] = vxm_snapped_points_at(job->placed, number[k]);
     for (int a = 0; a < 3; a++) {

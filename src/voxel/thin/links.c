@@ -166,7 +166,7 @@ void vxm_meet_links(vxm_link_frame *frames, size_t triangle, uint64_t differ,
   const vxm_thin_job *job = frames[0].job;
   vxm_point points[3];
   for (int k = 0; k < 3; k++)
-    points[k] = vxm_snapped_points_at(job->placed, job->triangles->corners[triangle][k]);
+    points[k] = vxm_snapped_points_at(job->placed, job->corners[triangle][k]);
   vxm_link_surface surface = vxm_link_surface_of(points);
   int64_t range[3][2], longest = box_of(range, &job->placed->lattice, points);
   for (int d = 0; d < job->directions; d++) {

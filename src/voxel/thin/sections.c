@@ -282,6 +282,8 @@ static void cross_sections(const looked *l, int axis) {
 
 /** Whether a side of a triangle is an edge of its face, rather than between two triangles that cover it. */
 static bool is_edge(const vxm_triangle_set *triangles, size_t t, int side) {
+  if (triangles->edges && triangles->edges[t])
+    return triangles->edges[t] >> side & 1;
   bool first = t == 0 || triangles->polygon[t - 1] != triangles->polygon[t];
   bool last = t + 1 == triangles->triangle_count || triangles->polygon[t + 1] != triangles->polygon[t];
   return side == 1 || (side == 0 && first) || (side == 2 && last);
@@ -331,7 +333,7 @@ static bool are_unsure(vxm_link_frame *frames, const vxm_point points[3], vxm_un
 void vxm_meet_sections(vxm_link_frame *frames, size_t triangle, uint64_t differ) {
   const vxm_thin_job *job = frames[0].job;
   const vxm_triangle_set *triangles = job->triangles;
-  const uint32_t *corner = triangles->corners[triangle];
+  const uint32_t *corner = job->corners[triangle];
   bool is_polygon = triangles->polygon && triangles->polygon[triangle];
   vxm_point points[3];
   for (int k = 0; k < 3; k++)

@@ -7,7 +7,7 @@
 bool vxm_sieve_of(vxm_sieve *sieve, const vxm_thin_job *job) {
   const vxm_view *view = &job->view;
   *sieve = (vxm_sieve){.points = (const int32_t(*)[4])job->placed->narrow,
-                       .corners = (const uint32_t(*)[3])job->triangles->corners,
+                       .corners = job->corners,
                        .order = job->order,
                        .words = view->words,
                        .bits = job->placed->lattice.bits};

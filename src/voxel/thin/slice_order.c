@@ -46,7 +46,7 @@ vxm_status vxm_slice_order_make(vxm_slice_order *order, const vxm_thin_job *job,
     return status;
   for (size_t p = 0; p < triangles->split.part_count; p++)
     for (size_t t = triangles->parts[p].begin; t < triangles->parts[p].caps && status == VXM_OK; t++) {
-      int64_t bin = bin_of(&b, triangles->corners[t]);
+      int64_t bin = bin_of(&b, job->corners[t]);
       if (bin >= 0)
         next[bin]++;
       status = vxm_ask_at(t, order->context, error);
@@ -58,7 +58,7 @@ vxm_status vxm_slice_order_make(vxm_slice_order *order, const vxm_thin_job *job,
   }
   for (size_t p = 0; p < triangles->split.part_count; p++)
     for (size_t t = triangles->parts[p].begin; t < triangles->parts[p].caps && status == VXM_OK; t++) {
-      int64_t bin = bin_of(&b, triangles->corners[t]);
+      int64_t bin = bin_of(&b, job->corners[t]);
       if (bin >= 0)
         order->triangles[next[bin]++] = (uint32_t)t;
       status = vxm_ask_at(t, order->context, error);

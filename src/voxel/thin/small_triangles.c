@@ -94,7 +94,7 @@ static size_t keep_unsure(uint32_t kept[VXM_SIEVE_BATCH], const vxm_thin_job *jo
   const vxm_view *view = &job->view;
   size_t count = 0, t = *begin;
   for (; t < end && count < VXM_SIEVE_BATCH; t++) {
-    const uint32_t *corner = job->triangles->corners[t];
+    const uint32_t *corner = job->corners[t];
     cell_box box = box_of(b, cells[corner[0]], cells[corner[1]], cells[corner[2]]);
     kept[count] = (uint32_t)t;
     count += !(box.is_near && has_middle(view, box));
@@ -240,7 +240,7 @@ static bool keep_links(vxm_link_frame *frames, size_t triangle, const small *s, 
 static bool meet_small(vxm_link_frame *frames, size_t triangle, uint64_t differ) {
   const vxm_thin_job *job = frames[0].job;
   const vxm_view *view = &job->view;
-  const uint32_t *corner = job->triangles->corners[triangle];
+  const uint32_t *corner = job->corners[triangle];
   small s;
   for (int a = 0; a < 3; a++) {
     int64_t cell[3], low, high;
@@ -272,7 +272,7 @@ static bool meet_small(vxm_link_frame *frames, size_t triangle, uint64_t differ)
 static void meet_one(vxm_link_frame *frames, size_t triangle) {
   const vxm_thin_job *job = frames[0].job;
   const vxm_triangle_set *triangles = job->triangles;
-  const uint32_t *corner = triangles->corners[triangle];
+  const uint32_t *corner = job->corners[triangle];
   const uint64_t *cells = job->placed->cells;
   if (vxm_role_of(triangles, triangle) != VXM_ROLE_FACE)
     return;
