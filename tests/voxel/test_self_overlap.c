@@ -230,27 +230,6 @@ static void test_with_holes(void **state) {
   }
 }
 
-/** Some faces wound the other way, as where caps meet, do not hide that all else is wound twice. */
-static void test_a_few_turned(void **state) {
-  (void)state;
-  vxm_rng rng = {17};
-  for (int round = 0; round < ROUNDS(12); round++) {
-    vxm_soup *soup = random_tube(&rng);
-    signed char *number = winding_numbers(soup, 1);
-    reverse_face(soup, 2 * SIDES * (RINGS / 4)); /* far from where the branches cross */
-    vxm_voxelize_report report = VXM_VOXELIZE_REPORT_INIT;
-    vxm_grid *grid = voxelize_centres(soup, &report);
-    assert_int_equal(report.self_overlapping_parts, 1);
-    for (size_t i = 0; i < WIDTH * WIDTH * WIDTH; i++)
-      if (number[i] != on_surface && is_set(grid, i) != (number[i] != 0))
-        fail_msg("voxel %zu is wound around %d times, and %s", i, number[i],
-                 is_set(grid, i) ? "set" : "not set");
-    vxm_grid_destroy(grid);
-    free(number);
-    vxm_soup_destroy(soup);
-  }
-}
-
 /** A loop that curls twice, as a band `low` to `high`, in the plane of two axes, extruded along the third:
  * small beside all of the part, of which a long arm tells the box. */
 static void add_curl(vxm_soup *soup, int axis, double low, double high) {
@@ -496,7 +475,6 @@ int main(void) {
       cmocka_unit_test(test_wound_twice_is_inside),
       cmocka_unit_test(test_beside_others),
       cmocka_unit_test(test_with_holes),
-      cmocka_unit_test(test_a_few_turned),
       cmocka_unit_test(test_at_the_rim),
       cmocka_unit_test(test_others_are_left),
       cmocka_unit_test(test_ways),

@@ -6,25 +6,23 @@
 #include <string.h>
 
 enum {
-  LINES_EVEN = 16,             /**< along y, and along z: so many at most as far apart as one another, */
+  LINES_EVEN = 12,             /**< along y, and along z: so many at most as far apart as one another, */
   LINES_MOST = 2 * LINES_EVEN, /**< and as many where the points of a part are */
   SAMPLES = 64,                /**< points that tell where these are */
-  CELLS = 128,                 /**< of a part's width, in which lines are looked up */
+  CELLS = 256,                 /**< of a part's width, in which lines are looked up */
   CROSSINGS_MOST = 1 << 16,    /**< with more there are fewer lines */
   INSERTED_MOST = 32           /**< crossings of a line that are sorted by insertion */
 };
 
 /** Of the length inside: what is less is not worth the time, or comes of rounding. */
 static const double noticed = 1e-5;
-/** Of the lines, and of the triangles: so much may be wound the other way, as where caps meet. */
-static const double tolerated = 0.02;
 /** Where a line lies between two places: corners rarely lie there. */
 static const double between = 0.4371;
 
 /** Where lines along x lie along y, or along z. */
 typedef struct line_places {
   double low, cells_per_unit;
-  double at[LINES_MOST]; /**< in order */
+  double at[LINES_MOST + 2]; /**< in order, and NaN, which nothing reaches, behind */
   int count;
   uint8_t first[CELLS]; /**< of each cell: lines in those before */
 } line_places;
@@ -69,7 +67,8 @@ static inline int cell_of(const line_places *l, double at) {
  * side agree on it. */
 static inline uint8_t lines_below(const line_places *l, double at) {
   int count = l->first[cell_of(l, at)];
-  while (count < l->count && l->at[count] <= at)
+  count += l->at[count] <= at; /* few cells have a second one, so that the loop is rarely gone through */
+  while (l->at[count] <= at)
     count++;
   return (uint8_t)count;
 }
@@ -126,6 +125,7 @@ static bool lay_lines_along(line_places *l, const finder *f, points range, int a
     l->at[l->count++] = low + (i + between) * step;
   add_lines_by_points(l, f, range, axis, count);
   qsort(l->at, (size_t)l->count, sizeof *l->at, compare_places);
+  l->at[l->count] = l->at[l->count + 1] = NAN;
   for (int i = 0; i < l->count; i++)
     for (int c = cell_of(l, l->at[i]) + 1; c < CELLS; c++)
       l->first[c]++;
@@ -278,18 +278,19 @@ static bool follow(finder *f, const crossing *at, size_t count) {
   return wound == 0;
 }
 
-/** Whether the part is wound twice somewhere, and told so by nearly all lines. */
+/** Whether the part is wound twice somewhere. */
 static bool follow_all(finder *f) {
-  size_t line_count = (size_t)f->lines[0].count * (size_t)f->lines[1].count, begin = 0, bad = 0;
+  size_t line_count = (size_t)f->lines[0].count * (size_t)f->lines[1].count, begin = 0;
   f->inside = f->twice_out = f->twice_in = 0;
   for (size_t line = 0; line < line_count; line++) {
     size_t count = f->ends[line] - begin;
     sort_along(f->sorted + begin, count);
-    bad += !follow(f, f->sorted + begin, count);
+    if (!follow(f, f->sorted + begin, count))
+      return false;
     begin = f->ends[line];
   }
   double twice = f->inside < 0 ? f->twice_in : f->twice_out;
-  return twice > noticed * fabs(f->inside) && (double)bad <= tolerated * (double)line_count;
+  return twice > noticed * fabs(f->inside);
 }
 
 /* ---- The chain ---- */
@@ -310,7 +311,7 @@ static vxm_status add_chain(vxm_self_overlap *out, size_t part, const vxm_windin
   return VXM_OK;
 }
 
-/** Adds triangles begin..end-1 of a part, turned outward, if they are a closed chain but for a few. */
+/** Adds triangles begin..end-1 of a part, turned outward, if they are a closed chain. */
 static vxm_status add_part(vxm_self_overlap *out, finder *f, size_t part, size_t begin, size_t end) {
   vxm_context *context = f->triangles->context;
   vxm_winding_chain own;
@@ -323,7 +324,7 @@ static vxm_status add_part(vxm_self_overlap *out, finder *f, size_t part, size_t
       turned[t][k] = f->triangles->corners[begin + t][f->inside < 0 ? (3 - k) % 3 : k];
   vxm_status status = vxm_winding_chain_create(&own, context, (const uint32_t(*)[3])turned, count,
                                                f->triangles->first_apex, &f->error);
-  if (status == VXM_OK && (double)own.rest_count <= tolerated * (double)count)
+  if (status == VXM_OK && own.rest_count == 0)
     status = add_chain(out, part, &own, &f->error);
   vxm_winding_chain_destroy(&own);
   vxm_free(context, turned);
@@ -335,7 +336,7 @@ static vxm_status look_at_part(vxm_self_overlap *out, finder *f, size_t part) {
   if (begin == end)
     return VXM_OK;
   points range = points_of(f->triangles, part);
-  int count = (int)fmin(sqrt((double)(end - begin)) / 2 + 2, LINES_EVEN);
+  int count = (int)fmin(sqrt((double)(end - begin)) / 4 + 3, LINES_EVEN);
   vxm_status status = VXM_OK;
   do {
     if (!lay_lines(f, range, count))

@@ -19,11 +19,11 @@ typedef struct vxm_self_overlap {
 /**
  * Finds the closed and capped parts that lie in themselves.
  *
- * Lines along x through each part are followed from face to face: up to 16 x 16 of them as far apart as one
+ * Lines along x through each part are followed from face to face: up to 12 x 12 of them as far apart as one
  * another, and as many again along y and z where the part has its points. A part counts where these lines run
  * through what is wound twice, or more often, for more than 10^-5 of what they run inside of; so one that
  * overlaps itself in a small place only may be passed over. Its faces must be wound consistently, as a repair
- * leaves them, but for one in fifty: of other parts only parity tells something.
+ * leaves them where it can: a wall of two skins that face the same way is wound twice as well, and hollow.
  *
  * @return VXM_OK, VXM_ERROR_MEMORY, VXM_ERROR_MEMORY_LIMIT, VXM_ERROR_CANCELLED; to be destroyed in any case.
  * Takes time linear in the number of triangles
