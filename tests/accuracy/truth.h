@@ -11,8 +11,8 @@ vxm_space truth_space(vxm_context *context, const shape *body, int64_t resolutio
 
 /**
  * The solid of a closed body: parity along z of every component, and what the body winds around twice.
- * Closing and votes have no part in it, and orientation adds no more than that, so that none of them makes its
- * own truth.
+ * Closing and votes have no part in it, and orientation adds no more than that, so that none of them makes
+ * its own truth.
  */
 vxm_grid *truth_solid(vxm_context *context, const shape *body, const vxm_space *space);
 
