@@ -45,7 +45,7 @@ typedef struct finder {
   crossing *crossings;
   size_t count, capacity;
   crossing *sorted; /**< by line */
-  size_t sorted_capacity;
+  size_t sorted_capacity, closed_capacity, part_capacity;
   uint32_t ends[LINES_MOST * LINES_MOST + 1];
   double inside;              /**< length times number */
   double twice_out, twice_in; /**< lengths wound 2, 4, ... and -2, -4, ... times */
@@ -295,17 +295,20 @@ static bool follow_all(finder *f) {
 
 /* ---- The chain ---- */
 
-static vxm_status add_chain(vxm_self_overlap *out, size_t part, const vxm_winding_chain *own,
-                            vxm_error *error) {
+/** Adds a chain, of points that are numbered from the part's first one on. */
+static vxm_status add_chain(vxm_self_overlap *out, finder *f, size_t part, const vxm_winding_chain *own,
+                            uint32_t first_point) {
   vxm_winding_chain *all = &out->chain;
-  size_t capacity = all->closed_count, parts = out->part_count;
-  vxm_status status = vxm_grow(all->context, (void **)&all->closed, &capacity,
-                               all->closed_count + own->closed_count, sizeof *all->closed, error);
+  vxm_status status = vxm_grow(all->context, (void **)&all->closed, &f->closed_capacity,
+                               all->closed_count + own->closed_count, sizeof *all->closed, &f->error);
   if (status == VXM_OK)
-    status = vxm_grow(all->context, (void **)&out->part, &parts, parts + 1, sizeof *out->part, error);
+    status = vxm_grow(all->context, (void **)&out->part, &f->part_capacity, out->part_count + 1,
+                      sizeof *out->part, &f->error);
+  for (size_t t = 0; t < own->closed_count && status == VXM_OK; t++)
+    for (int k = 0; k < 3; k++)
+      all->closed[all->closed_count + t][k] = own->closed[t][k] + first_point;
   if (status != VXM_OK)
     return status;
-  memcpy(all->closed + all->closed_count, own->closed, own->closed_count * sizeof *own->closed);
   all->closed_count += own->closed_count;
   out->part[out->part_count++] = part;
   return VXM_OK;
@@ -315,17 +318,18 @@ static vxm_status add_chain(vxm_self_overlap *out, size_t part, const vxm_windin
 static vxm_status add_part(vxm_self_overlap *out, finder *f, size_t part, size_t begin, size_t end) {
   vxm_context *context = f->triangles->context;
   vxm_winding_chain own;
+  points range = points_of(f->triangles, part);
   size_t count = end - begin;
   uint32_t(*turned)[3] = vxm_alloc(context, count, sizeof *turned, &f->error);
   if (!turned)
     return f->error.code;
   for (size_t t = 0; t < count; t++)
     for (int k = 0; k < 3; k++)
-      turned[t][k] = f->triangles->corners[begin + t][f->inside < 0 ? (3 - k) % 3 : k];
+      turned[t][k] = f->triangles->corners[begin + t][f->inside < 0 ? (3 - k) % 3 : k] - range.begin;
   vxm_status status = vxm_winding_chain_create(&own, context, (const uint32_t(*)[3])turned, count,
-                                               f->triangles->first_apex, &f->error);
+                                               range.end - range.begin, &f->error);
   if (status == VXM_OK && own.rest_count == 0)
-    status = add_chain(out, part, &own, &f->error);
+    status = add_chain(out, f, part, &own, range.begin);
   vxm_winding_chain_destroy(&own);
   vxm_free(context, turned);
   return status;
