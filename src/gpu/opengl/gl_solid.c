@@ -4,14 +4,9 @@
 
 #include <string.h>
 
-/** By the method that was chosen; parts that stay open have no tetrahedra to speak of, and go by columns. */
-static vxm_status make_tile(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
-                            const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
-  bool slices = engine->options.gl_method != VXM_GL_COLUMNS && vxm_gl_can_slice(job);
-  return (slices ? vxm_gl_slices : vxm_gl_columns)(engine, tile, job, passes, into, error);
-}
-
-vxm_status vxm_gl_finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status status, vxm_error *error) {
+/** Ends what is under way, after a failure too: a driver may not lose a buffer that it writes. Returns
+ * `status`, or the first failure. */
+static vxm_status finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status status, vxm_error *error) {
   for (int i = 0; i < 2; i++) {
     vxm_status ended = vxm_gl_return_end(engine, &back[i], status == VXM_OK ? error : NULL);
     status = status == VXM_OK ? ended : status;
@@ -19,6 +14,38 @@ vxm_status vxm_gl_finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status s
   if (status != VXM_OK) /* flips may be left in it */
     vxm_gl_release(engine, VXM_GL_FLIPS);
   return status;
+}
+
+vxm_status vxm_gl_each_tile(vxm_opengl *engine, const vxm_window *window, bool is_or, vxm_gl_tile_fn make,
+                            void *payload, vxm_error *error) {
+  vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
+  int64_t slices = 1;
+  int which = 0;
+  vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
+  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
+    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
+    vxm_progress_part before = vxm_slice_job_progress(&tile);
+    status = make(engine, &tile, payload, error);
+    vxm_progress_leave(before);
+    if (status != VXM_OK)
+      break;
+    if (engine->base.keeps) {
+      status = vxm_gl_tile_stay(engine, &tile, error);
+      continue;
+    }
+    back[which] = (vxm_gl_return){.tile = tile, .is_or = is_or, .staging = which};
+    status = vxm_gl_return_begin(engine, &back[which], error);
+    if (status == VXM_OK)
+      status = vxm_gl_return_end(engine, &back[which ^ 1], error);
+  }
+  return finish(engine, back, status, error);
+}
+
+/** By the method that was chosen; parts that stay open have no tetrahedra to speak of, and go by columns. */
+static vxm_status make_tile(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_parity_union_job *job,
+                            const vxm_disjoint_passes *passes, vxm_gl_buffer_id into, vxm_error *error) {
+  bool slices = engine->options.gl_method != VXM_GL_COLUMNS && vxm_gl_can_slice(job);
+  return (slices ? vxm_gl_slices : vxm_gl_columns)(engine, tile, job, passes, into, error);
 }
 
 static vxm_status create_passes(vxm_disjoint_passes *out, vxm_opengl *engine, const vxm_window *window,
@@ -54,29 +81,14 @@ static vxm_status take_touched(vxm_opengl *engine, atomic_uchar *has_voxels, siz
   return status;
 }
 
-static vxm_status unite_tiles(vxm_opengl *engine, const vxm_window *window, const vxm_parity_union_job *job,
-                              const vxm_disjoint_passes *passes, vxm_error *error) {
-  vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
-  int64_t slices = 1;
-  int which = 0;
-  vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
-  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
-    vxm_progress_part before = vxm_slice_job_progress(&tile);
-    status = make_tile(engine, &tile, job, passes, VXM_GL_RESULT, error);
-    vxm_progress_leave(before);
-    if (status != VXM_OK)
-      break;
-    if (engine->base.keeps) {
-      status = vxm_gl_tile_stay(engine, &tile, error);
-      continue;
-    }
-    back[which] = (vxm_gl_return){.tile = tile, .is_or = !job->fresh, .staging = which};
-    status = vxm_gl_return_begin(engine, &back[which], error);
-    if (status == VXM_OK)
-      status = vxm_gl_return_end(engine, &back[which ^ 1], error);
-  }
-  return vxm_gl_finish(engine, back, status, error);
+typedef struct unite_work {
+  const vxm_parity_union_job *job;
+  const vxm_disjoint_passes *passes;
+} unite_work;
+
+static vxm_status unite_tile(vxm_opengl *engine, const vxm_slice_job *tile, void *payload, vxm_error *error) {
+  const unite_work *work = payload;
+  return make_tile(engine, tile, work->job, work->passes, VXM_GL_RESULT, error);
 }
 
 static void clear(const vxm_window *window) {
@@ -105,8 +117,9 @@ vxm_status vxm_gl_unite(vxm_engine *base, const vxm_window *window, const vxm_pa
     status = create_passes(&passes, engine, window, job, error);
   if (status == VXM_OK && job->has_voxels)
     status = clear_touched(engine, parts, error);
+  unite_work work = {job, &passes};
   if (status == VXM_OK)
-    status = unite_tiles(engine, window, job, &passes, error);
+    status = vxm_gl_each_tile(engine, window, !job->fresh, unite_tile, &work, error);
   if (status == VXM_OK && job->has_voxels)
     status = take_touched(engine, job->has_voxels, parts, error);
   vxm_disjoint_passes_destroy(&passes);
@@ -165,48 +178,28 @@ static vxm_status count_votes(vxm_opengl *engine, const vxm_slice_job *tile, con
   return vxm_gl_check(gl, "opengl: counting votes", error);
 }
 
-static vxm_status elect_tile(vxm_opengl *engine, const vxm_slice_job *tile, const vxm_vote_job *job,
-                             const voter_set *b, vxm_vote_tally *tally, vxm_error *error) {
+typedef struct election {
+  const vxm_vote_job *job;
+  voter_set voters;
+  vxm_vote_tally *tally;
+} election;
+
+static vxm_status elect_tile(vxm_opengl *engine, const vxm_slice_job *tile, void *payload, vxm_error *error) {
+  const election *e = payload;
   uint32_t counted[2] = {0, 0};
   vxm_status status = engine->base.keeps ? vxm_gl_tile_bring(engine, tile, error)
                                          : vxm_gl_tile_upload(engine, VXM_GL_RESULT, tile, error);
   if (status == VXM_OK)
     status = vxm_gl_upload(engine, VXM_GL_TALLY, counted, sizeof counted, error);
-  for (int v = 0; v < b->count && status == VXM_OK; v++)
-    status = make_voter(engine, tile, b, v, error);
+  for (int v = 0; v < e->voters.count && status == VXM_OK; v++)
+    status = make_voter(engine, tile, &e->voters, v, error);
   if (status == VXM_OK)
-    status = count_votes(engine, tile, b, job->rule, error);
+    status = count_votes(engine, tile, &e->voters, e->job->rule, error);
   if (status == VXM_OK)
     status = vxm_gl_download(engine, VXM_GL_TALLY, counted, sizeof counted, error);
-  tally->contested += counted[0];
-  tally->added |= counted[1] != 0;
+  e->tally->contested += counted[0];
+  e->tally->added |= counted[1] != 0;
   return status;
-}
-
-static vxm_status elect_tiles(vxm_opengl *engine, const vxm_window *window, const vxm_vote_job *job,
-                              vxm_vote_tally *tally, vxm_error *error) {
-  vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
-  voter_set b = voters_of(job);
-  int64_t slices = 1;
-  int which = 0;
-  vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
-  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
-    vxm_progress_part before = vxm_slice_job_progress(&tile);
-    status = elect_tile(engine, &tile, job, &b, tally, error);
-    vxm_progress_leave(before);
-    if (status != VXM_OK)
-      break;
-    if (engine->base.keeps) {
-      status = vxm_gl_tile_stay(engine, &tile, error);
-      continue;
-    }
-    back[which] = (vxm_gl_return){.tile = tile, .staging = which};
-    status = vxm_gl_return_begin(engine, &back[which], error);
-    if (status == VXM_OK)
-      status = vxm_gl_return_end(engine, &back[which ^ 1], error);
-  }
-  return vxm_gl_finish(engine, back, status, error);
 }
 
 vxm_status vxm_gl_vote(vxm_engine *base, const vxm_window *window, const vxm_vote_job *job,
@@ -221,8 +214,9 @@ vxm_status vxm_gl_vote(vxm_engine *base, const vxm_window *window, const vxm_vot
   status = vxm_device_cache_triangles(&engine->resident, job->triangles, job->placed, error);
   if (status == VXM_OK && job->has_voxels)
     status = clear_touched(engine, parts, error);
+  election e = {job, voters_of(job), tally};
   if (status == VXM_OK)
-    status = elect_tiles(engine, window, job, tally, error);
+    status = vxm_gl_each_tile(engine, window, false, elect_tile, &e, error);
   if (status == VXM_OK && job->has_voxels)
     status = take_touched(engine, job->has_voxels, parts, error);
   vxm_gl_leave(&engine->context);

@@ -30,8 +30,11 @@ vxm_status vxm_gl_tile_stay(vxm_opengl *engine, const vxm_slice_job *tile, vxm_e
 /** The other way. */
 vxm_status vxm_gl_tile_bring(vxm_opengl *engine, const vxm_slice_job *tile, vxm_error *error);
 
-/** Ends what is under way, after a failure too: a driver may not lose a buffer that it writes. Returns
- * `status`, or the first failure. */
-vxm_status vxm_gl_finish(vxm_opengl *engine, vxm_gl_return back[2], vxm_status status, vxm_error *error);
+/** Makes the words of a tile in VXM_GL_RESULT. */
+typedef vxm_status (*vxm_gl_tile_fn)(vxm_opengl *engine, const vxm_slice_job *tile, void *payload,
+                                     vxm_error *error);
+/** Makes a window tile by tile, and takes each back while the next is made; `is_or`: adds to the window. */
+vxm_status vxm_gl_each_tile(vxm_opengl *engine, const vxm_window *window, bool is_or, vxm_gl_tile_fn make,
+                            void *payload, vxm_error *error);
 
 #endif

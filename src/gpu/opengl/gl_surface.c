@@ -73,14 +73,20 @@ static vxm_status draw(vxm_opengl *engine, surface_job *job, vxm_error *error) {
   return status;
 }
 
-static vxm_status draw_tile(vxm_opengl *engine, const vxm_surface *surface, const vxm_slice_job *tile,
-                            vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
+typedef struct drawing {
+  const vxm_surface *surface;
+  vxm_surface_kind kind;
+  bool is_fresh;
+} drawing;
+
+static vxm_status draw_tile(vxm_opengl *engine, const vxm_slice_job *tile, void *payload, vxm_error *error) {
+  const drawing *d = payload;
   const vxm_gl *gl = &engine->context.gl;
-  surface_job job = job_of(engine, surface, tile, kind);
+  surface_job job = job_of(engine, d->surface, tile, d->kind);
   vxm_status status = vxm_gl_reserve(engine, VXM_GL_RESULT, tile->words * sizeof(uint64_t), error);
   if (status != VXM_OK)
     return status;
-  if (engine->base.keeps && !is_fresh)
+  if (engine->base.keeps && !d->is_fresh)
     status = vxm_gl_tile_bring(engine, tile, error);
   else {
     gl->BindBuffer(GL_COPY_WRITE_BUFFER, engine->buffers[VXM_GL_RESULT].name);
@@ -99,31 +105,6 @@ static vxm_status draw_tile(vxm_opengl *engine, const vxm_surface *surface, cons
                           : status;
 }
 
-static vxm_status draw_tiles(vxm_opengl *engine, const vxm_surface *surface, const vxm_window *window,
-                             vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
-  vxm_gl_return back[2] = {{.staging = 0}, {.staging = 1}};
-  int64_t slices = 1;
-  int which = 0;
-  vxm_status status = vxm_gl_tile_slices(&slices, engine, window, error);
-  for (int64_t k = window->begin; k < window->end && status == VXM_OK; k += slices, which ^= 1) {
-    vxm_slice_job tile = vxm_slice_job_of(window, k, slices);
-    vxm_progress_part before = vxm_slice_job_progress(&tile);
-    status = draw_tile(engine, surface, &tile, kind, is_fresh, error);
-    vxm_progress_leave(before);
-    if (status != VXM_OK)
-      break;
-    if (engine->base.keeps) {
-      status = vxm_gl_tile_stay(engine, &tile, error);
-      continue;
-    }
-    back[which] = (vxm_gl_return){.tile = tile, .is_or = !is_fresh, .staging = which};
-    status = vxm_gl_return_begin(engine, &back[which], error);
-    if (status == VXM_OK)
-      status = vxm_gl_return_end(engine, &back[which ^ 1], error);
-  }
-  return vxm_gl_finish(engine, back, status, error);
-}
-
 vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vxm_window *window,
                           vxm_surface_kind kind, bool is_fresh, vxm_error *error) {
   vxm_opengl *engine = vxm_opengl_of(base);
@@ -132,8 +113,9 @@ vxm_status vxm_gl_surface(vxm_engine *base, const vxm_surface *surface, const vx
     return status;
   status = vxm_device_cache_surface(&engine->resident, surface, error);
   bool needs_host = base->keeps && engine->resident.far_surface.count > 0;
+  drawing d = {surface, kind, is_fresh};
   if (status == VXM_OK && !needs_host)
-    status = draw_tiles(engine, surface, window, kind, is_fresh, error);
+    status = vxm_gl_each_tile(engine, window, !is_fresh, draw_tile, &d, error);
   vxm_gl_leave(&engine->context);
   if (status == VXM_OK && needs_host)
     return vxm_fail_to_keep(base, error);

@@ -26,7 +26,7 @@ vxm_status vxm_gl_tile_slices(int64_t *out, const vxm_opengl *engine, const vxm_
                               vxm_error *error) {
   int64_t slice = (int64_t)window->row_words * window->middle_dim * (int64_t)sizeof(uint64_t);
   int64_t most = vxm_min(vxm_min(engine->base.info.block_bytes, tile_bytes_most), tile_share(engine));
-  /* The staging buffer may hold two; shaders count the bits of a tile in 32 bits. */
+  /* Not all that a block may take; and shaders count the bits of a tile in 32 bits. */
   if (slice > engine->base.info.block_bytes / 2 || slice > slice_bytes_most)
     return vxm_fail(
         error, VXM_ERROR_RANGE, "one slice of the grid takes %s; %s can do %s; use --engine cpu",
