@@ -7,8 +7,7 @@
 #include <string.h>
 
 static double rounded(const vxm_near_places *near, double x) {
-  volatile float single = 0; /* as in vxm_merge_place */
-  return near->single_precision ? (double)(single = (float)x) : x;
+  return near->single_precision ? vxm_single(x) : x;
 }
 
 /* ---- Whether a place will do ---- */

@@ -23,12 +23,18 @@ typedef enum vxm_merge_rule {
   VXM_MERGE_FLOAT      /**< where their 32-bit floats are */
 } vxm_merge_rule;
 
+/** The 32-bit float next to a number. */
+static inline double vxm_single(double x) {
+  volatile float single =
+      (float)x; /* gcc 12 at -O2 loses a plain conversion there and back when it vectorizes */
+  return (double)single;
+}
+
 static inline double vxm_merge_place(double x, vxm_merge_rule rule) {
-  volatile float single = 0; /* gcc 12 at -O2 loses a plain conversion there and back when it vectorizes */
   if (rule == VXM_MERGE_ROUNDED)
     return nearbyint(x * (1 / VXM_MERGE_GRID)) + 0.0;
   if (rule == VXM_MERGE_FLOAT)
-    return (double)(single = (float)x) + 0.0;
+    return vxm_single(x) + 0.0;
   return x + 0.0; /* of both zeros the positive one */
 }
 

@@ -7,6 +7,7 @@
 #include "mesh/surface_sums.h"
 #include "mesh/unit_scale.h"
 #include "repair/state/lost_parts.h"
+#include "repair/state/merge_places.h"
 #include "repair/state/provenance.h"
 
 typedef enum vxm_pass {
@@ -144,11 +145,7 @@ void vxm_repair_state_mark_added(vxm_repair_state *state, size_t first);
 vxm_status vxm_repair_state_renew(vxm_repair_state *state, vxm_error *error);
 /** What a position becomes where positions are to be held by 32-bit floats, else itself. */
 static inline double vxm_repair_state_round(const vxm_repair_state *state, double x) {
-  if (!state->options.single_precision)
-    return x;
-  volatile float rounded =
-      (float)x; /* gcc 12 at -O2 loses a plain conversion there and back when it vectorizes */
-  return (double)rounded;
+  return state->options.single_precision ? vxm_single(x) : x;
 }
 /** Whether the level asks for this much. */
 static inline bool vxm_repair_state_reaches(const vxm_repair_state *state, vxm_level level) {
